@@ -15,3 +15,5 @@ layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer echoes;  // ConeEch
 bool returns_echo(int beam, uint hit, vec2 heading, float min_cosine) { return true; }
 
 #include "shaders/lib/cone.glsl"
+
+void main() { write_echo(int(gl_GlobalInvocationID.x)); }

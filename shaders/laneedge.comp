@@ -14,3 +14,11 @@ layout(binding = 4, r32ui) uniform readonly uimageBuffer order;         // which
 layout(binding = 5, r32ui) uniform writeonly uimageBuffer mixtures;     // a word a sensor: 1 where edges had to be told apart
 
 #include "shaders/lib/edge_fit.glsl"
+
+void main() {
+  const EdgeRow row = load_EdgeRow(rows, int(imageLoad(order, int(gl_GlobalInvocationID.x)).x));
+  bool mixed;
+  const EdgeReading reading = fit_edge(row, mixed);
+  store_EdgeReading(readings, int(row.reading), reading);
+  imageStore(mixtures, int(row.reading), uvec4(mixed ? 1u : 0u));
+}

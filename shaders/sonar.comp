@@ -32,3 +32,5 @@ bool returns_echo(int beam, uint hit, vec2 heading, float min_cosine) {
 }
 
 #include "shaders/lib/cone.glsl"
+
+void main() { write_echo(int(gl_GlobalInvocationID.x)); }

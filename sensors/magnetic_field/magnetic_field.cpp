@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "sensors/magnetic_field/tables.h"
 #include "shaders/magnetometer.comp.h"
-#include "shaders/magnetometer_magnitudes.comp.h"
 
 namespace sf::sensors {
 
@@ -48,9 +47,9 @@ MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Threa
   using gpu::Texel;
   fixed_magnets = count_of(world.magnets);
   for (const world::Mover& mover : world.movers) moving_magnets += count_of(mover.magnets);
-  const auto code = magnitudes ? std::span<const std::uint32_t>(magnetometer_magnitudes_comp_spv)
-                               : std::span<const std::uint32_t>(magnetometer_comp_spv);
-  kernel = std::make_unique<gpu::Kernel>(device, magnitudes ? "magnetometer with magnitudes" : "magnetometer", code);
+  const std::uint32_t constants[] = {magnitudes};
+  kernel = std::make_unique<gpu::Kernel>(device, magnitudes ? "magnetometer with magnitudes" : "magnetometer",
+                                         magnetometer_comp_spv, constants);
   // A turn may load magnets behind the last one, and counts them as nothing.
   const std::size_t rows = std::size_t{fixed_magnets} + moving_magnets + SF_FIELD_UNROLL;
   dipoles = std::make_unique<gpu::Buffer>(device, "magnets", Role::upload, Texel::u32x4, 2 * rows);

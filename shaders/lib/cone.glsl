@@ -1,7 +1,7 @@
-// The nearest echo of every cone of beams that is due. The kernel declares the tables cones, ranges, hits and echoes; and `returns_echo`, which says whether what a beam met sends its echo back.
+// The nearest echo of a cone of beams. The kernel declares the tables cones, ranges, hits and echoes; and `returns_echo`: true where the
+// surface that a beam meets sends its echo back.
 
-void main() {
-  const int at = int(gl_GlobalInvocationID.x);
+void write_echo(int at) {
   const ConeRow cone = load_ConeRow(cones, at);
   const vec2 heading = vec2(cone.heading_cos, cone.heading_sin);
 

@@ -1,4 +1,4 @@
-// Fields of magnets at the points of an item: the whole kernel. With SF_MAGNITUDES also the sum of their magnitudes.
+// The field of a magnet, and where kMagnitudes says so its magnitude. The kernel declares the table dipoles.
 //
 // A point dipole of moment m along +z, with r from dipole to point and u = r / |r|, without the factor mu0 / 4 pi,
 // which the host applies:
@@ -7,16 +7,7 @@
 // doubles its 23 bits: a 64-bit root and division cost four times as much. Every operation is `precise` and in a fixed
 // order: host and device results are equal bit by bit.
 
-#include "shaders/sensors/magnetic_field/records.glsl"
-
-layout(local_size_x = 32) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer items;     // FieldItem
-layout(binding = 1, r32ui) uniform readonly uimageBuffer spans;        // MagnetSpan
-layout(binding = 2, rgba32ui) uniform readonly uimageBuffer dipoles;   // DipoleRow
-layout(binding = 3, rgba32ui) uniform readonly uimageBuffer places;    // FieldPointRow
-layout(binding = 4, rgba32ui) uniform writeonly uimageBuffer results;  // FieldSum
-
-// At the exact centre of a magnet, the field is that straight above it.
+// Exactly in the middle of a magnet, the field is the one above it.
 #define SF_ABOVE 1e-18LF
 // [m^2] least square with a finite 32-bit inverse root.
 #define SF_LEAST 1e-37
@@ -51,44 +42,13 @@ void add(DipoleRow m, FieldPointRow p, double cutoff_squared, inout FieldSum sum
   sum.x += bx;
   sum.y += by;
   sum.z += bz;
-#ifdef SF_MAGNITUDES
-  precise double q = 1.0LF + 3.0LF * uz * uz;
-  precise float rough_q = sqrt(float(q));
-  precise float half_over = 0.5 / rough_q;
-  precise double s = double(rough_q);
-  precise double shape = s + (q - s * s) * double(half_over);
-  precise double magnitude = abs(scale) * shape;
-  sum.magnitudes += magnitude;
-#endif
-}
-
-void main() {
-  const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
-  const FieldItem item = load_FieldItem(items, lane);
-  FieldPointRow at[SF_FIELD_POINTS];
-  precise FieldSum sums[SF_FIELD_POINTS];
-  for (int i = 0; i < SF_FIELD_POINTS; ++i) {
-    at[i] = load_FieldPointRow(places, SF_FIELD_POINTS * int(item.group) + i);
-    sums[i] = FieldSum(0.0LF, 0.0LF, 0.0LF, 0.0LF);
-  }
-
-  // One loop over all spans, so that lanes with short ones do not wait for others at each.
-  int at_span = int(item.first);
-  MagnetSpan span = load_MagnetSpan(spans, at_span);
-  int magnet = int(span.first);
-  while (at_span < int(item.end)) {
-    for (int k = 0; k < SF_FIELD_UNROLL; ++k) {
-      const DipoleRow m = dipole_at(magnet + k, magnet + k < int(span.end));
-      for (int i = 0; i < SF_FIELD_POINTS; ++i) add(m, at[i], at[0].cutoff_squared, sums[i]);
-    }
-    magnet += SF_FIELD_UNROLL;
-    const bool done = magnet >= int(span.end);
-    at_span += done ? 1 : 0;
-    span = load_MagnetSpan(spans, at_span);
-    magnet = done ? int(span.first) : magnet;
-  }
-
-  for (int i = 0; i < SF_FIELD_POINTS; ++i) {
-    store_FieldSum(results, SF_FIELD_POINTS * int(item.sums) + i, sums[i]);
+  if (kMagnitudes) {
+    precise double q = 1.0LF + 3.0LF * uz * uz;
+    precise float rough_q = sqrt(float(q));
+    precise float half_over = 0.5 / rough_q;
+    precise double s = double(rough_q);
+    precise double shape = s + (q - s * s) * double(half_over);
+    precise double magnitude = abs(scale) * shape;
+    sum.magnitudes += magnitude;
   }
 }

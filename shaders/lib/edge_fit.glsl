@@ -1,5 +1,4 @@
-// Distance of a lane edge from the points of a scan. The including shader declares the tables rows, points, grains,
-// order, readings and mixtures.
+// From the points of a fan to the distance of a lane edge. The kernel declares the tables points and grains.
 //
 // 1. A line through all points, and a parabola for its residuals. If the points lie on it within their source's
 //    tolerance, it is the edge.
@@ -146,8 +145,15 @@ double noise_across(Line line, double range_sigma, double range_proportional, do
   return variance;
 }
 
-void main() {
-  const EdgeRow row = load_EdgeRow(rows, int(imageLoad(order, int(gl_GlobalInvocationID.x)).x));
+// Of a sensor of one beam.
+EdgeReading single_ray(EdgeRow row, Points start, double grain) {
+  precise double range = sqrt(start.x[0] * start.x[0] + start.y[0] * start.y[0]);
+  precise double spread = row.range_proportional * range;
+  precise double sigma = sqrt(row.range_sigma * row.range_sigma + spread * spread + grain * grain / 12.0);
+  return EdgeReading(range, start.w[0], 0.0, sigma, 1.0, 0.0);
+}
+
+EdgeReading fit_edge(EdgeRow row, out bool mixed) {
   const bool packed = (row.flags & SF_EDGE_PACKED) != 0u;
   const bool single = (row.flags & SF_EDGE_SINGLE) != 0u;
   const int beams = int(row.beams);
@@ -164,8 +170,8 @@ void main() {
   LineMoments trend = trend_near(fan, lanes, line, 1e30);
   Parabola curvature = parabola_of(trend);
 
-  // The points of one edge among several.
-  const bool mixed = !single && trend.n > 2.5 && !is_one_edge(trend, curvature, source);
+  // Those of one edge among several.
+  mixed = !single && trend.n > 2.5 && !is_one_edge(trend, curvature, source);
   const Candidate best = elect(fan, mixed, source);
   const int again = mixed ? lanes : 0;
   const Moments near = moments_near(fan, 0, again, best.line, best.allowed);
@@ -184,21 +190,13 @@ void main() {
   const PointError point_error = PointError(grain, noise > floor_of_noise ? noise : floor_of_noise);
   const LineFit fitted = fit_at(line, trend, curvature, point_error, row.perpendicular_x, row.perpendicular_y, row.distance_max);
 
-  // The range of a single beam is the reading.
-  const Points start = points_of(fan, 0);
-  precise double first = sqrt(start.x[0] * start.x[0] + start.y[0] * start.y[0]);
-  precise double spread = row.range_proportional * first;
-  precise double along_ray = sqrt(row.range_sigma * row.range_sigma + spread * spread + grain * grain / 12.0);
-  const double nan = packDouble2x32(uvec2(0u, 0x7ff80000u));
   precise double left_over = all.n - fitted.points;
-  EdgeReading reading;
-  const bool seen = single ? start.w[0] > 0.0 : fitted.seen;
-  reading.distance = !seen ? nan : single ? first : fitted.distance;
-  reading.points = single ? start.w[0] : fitted.points;
-  reading.residual = single || !seen ? 0.0 : fitted.residual;
-  reading.sigma = !seen ? nan : single ? along_ray : fitted.sigma;
-  reading.gain = single ? 1.0 : fitted.gain;
-  reading.others = single ? 0.0 : left_over;
-  store_EdgeReading(readings, int(row.reading), reading);
-  imageStore(mixtures, int(row.reading), uvec4(mixed ? 1u : 0u));
+  EdgeReading reading = EdgeReading(fitted.distance, fitted.points, fitted.residual, fitted.sigma, fitted.gain, left_over);
+  if (single) reading = single_ray(row, points_of(fan, 0), grain);
+  if (single ? reading.points <= 0.0 : !fitted.seen) {
+    const double nan = packDouble2x32(uvec2(0u, 0x7ff80000u));
+    reading.distance = reading.sigma = nan;
+    reading.residual = 0.0;
+  }
+  return reading;
 }
