@@ -71,27 +71,43 @@ void RayCaster::add_copies(gpu::Batch& batch, bool results) {
   if (t.scene) t.scene->upload(batch);
   if (t.scene) batch.upload(*t.rows, 0, t.due.size() * sizeof(RayRow));
   const auto send = [&](const CastDispatch& pass) {
-    batch.upload(*pass.lanes, 0, pass.lanes->bytes());
+    const auto counts = pass.groups->host<std::uint32_t>();
+    batch.upload(*pass.lanes, 0, sizeof(Lane) * t.lanes_per_group * counts[0] * counts[1]);
     batch.upload(*pass.groups, 0, pass.groups->bytes());
   };
   send(t.exact);
   if (t.single) send(*t.single);
-  if (t.beams_changed || t.any_angle_noise) {
+  if (t.beams_changed) {
     batch.upload(*t.mid_bearings, 0, t.mid_bearings->bytes());
     batch.upload(*t.directions64, 0, t.directions64->bytes());
-    t.beams_changed = false;
   }
+  for (const DueSample& d : t.due) {
+    const ScannerRow& row = t.scanner_rows[d.row];
+    if (t.beams_changed || !row.angle_noise) continue;
+    batch.upload(*t.mid_bearings, sizeof(float) * row.beams, sizeof(float) * row.plan.lanes());
+    const std::size_t lane = SF_BEAMS_PER_LANE * sizeof(BeamDirection);
+    batch.upload(*t.directions64, lane * row.beams, lane * row.plan.lanes());
+  }
+  t.beams_changed = false;
   for (const std::uint32_t i : t.host_due) {
     const ScannerRow& row = t.scanner_rows[t.due[i].row];
     const std::size_t lanes = row.plan.lanes();
-    batch.upload(*t.ranges, 32 * std::size_t{row.out}, 32 * lanes);
-    batch.upload(*t.hits, 16 * std::size_t{row.out}, 16 * lanes);
+    batch.upload(*t.ranges, sizeof(LaneRanges) * row.out, sizeof(LaneRanges) * lanes);
+    batch.upload(*t.hits, sizeof(LaneHits) * row.out, sizeof(LaneHits) * lanes);
     batch.upload(*t.beam_flags, 4 * std::size_t{row.out}, 4 * lanes);
   }
-  batch.download(*t.beam_flags, 0, t.beam_flags->bytes());
-  if (!results) return;
-  batch.download(*t.ranges, 0, t.ranges->bytes());
-  batch.download(*t.hits, 0, t.hits->bytes());
+  if (!t.scene) return;
+  // Fans whose results lie one behind the other are copied together.
+  for (std::size_t i = 0; i < t.due.size();) {
+    const std::size_t first = t.scanner_rows[t.due[i].row].out;
+    std::size_t lanes = 0;
+    for (; i < t.due.size() && t.scanner_rows[t.due[i].row].out == first + lanes; ++i)
+      lanes += t.scanner_rows[t.due[i].row].plan.lanes();
+    batch.download(*t.beam_flags, 4 * first, 4 * lanes);
+    if (!results) continue;
+    batch.download(*t.ranges, sizeof(LaneRanges) * first, sizeof(LaneRanges) * lanes);
+    batch.download(*t.hits, sizeof(LaneHits) * first, sizeof(LaneHits) * lanes);
+  }
 }
 
 ScanResult RayCaster::results(std::size_t i) const {

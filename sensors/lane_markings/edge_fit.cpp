@@ -199,7 +199,10 @@ void EdgeFit::add_copies(gpu::Batch& batch) {
   batch.upload(groups_, 0, groups_.bytes());
   if (fresh_) batch.upload(directions_, 0, directions_.bytes());
   if (fresh_) batch.upload(grains_, 0, grains_.bytes());
-  if (fresh_ || plan_.any_noise) batch.upload(normals_, 0, normals_.bytes());
+  if (fresh_) batch.upload(normals_, 0, normals_.bytes());
+  for (const DueSample& d : due_)
+    if (!fresh_ && plan_.rows[d.row].noise_share != 0.0F)
+      batch.upload(normals_, 16 * std::size_t{plan_.rows[d.row].noise}, 16 * std::size_t{plan_.beams[d.row].lanes()});
   fresh_ = false;
   batch.upload(order_, 0, kernel_.padded(due_.size()) * sizeof(std::uint32_t));
   batch.download(mixtures_, 0, due_.size() * sizeof(std::uint32_t));

@@ -117,7 +117,8 @@ void MagneticField::add_copies(gpu::Batch& batch) {
   const std::size_t first = t.fixed_sent ? t.fixed_magnets * sizeof(DipoleRow) : 0;
   batch.upload(*t.dipoles, first, t.dipoles->bytes() - first);
   t.fixed_sent = true;
-  batch.upload(*t.items, 0, t.items->bytes());
+  const auto counts = t.groups->host<std::uint32_t>();
+  batch.upload(*t.items, 0, sizeof(FieldItem) * t.kernel->group_size() * counts[0] * counts[1]);
   batch.upload(*t.spans, 0, t.point_groups.size() * t.stride * sizeof(MagnetSpan));
   batch.upload(*t.points, 0, t.point_groups.size() * SF_FIELD_POINTS * sizeof(FieldPointRow));
   batch.upload(*t.groups, 0, t.groups->bytes());
