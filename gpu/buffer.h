@@ -30,7 +30,7 @@ constexpr std::size_t texels_of(std::size_t records) {
   return sizeof(Record) / 16 * records;
 }
 
-/// A table of texels with a host view. On a unified device the host view is the table itself; elsewhere a Batch copies.
+/// A table of texels with a host view. On a unified device the host view is the table itself; on others a Batch copies.
 class Buffer {
  public:
   /// @param name description of the contents, for Device::allocations

@@ -34,9 +34,9 @@ struct TableBinding {
 
 class Kernel {
  public:
-  /// @param name what it computes, for Device::allocations
+  /// @param name for Device::allocations
   /// @param spirv words of a module with one entry point `main`; its group size and tables are read from the module.
-  /// @param constants of the module, from constant_id 0 on: one word each
+  /// @param constants values of the module's constant_ids from 0 on, one word each
   Kernel(Device& device, std::string_view name, std::span<const std::uint32_t> spirv,
          std::span<const std::uint32_t> constants = {});
   ~Kernel();

@@ -127,7 +127,7 @@ void RayCaster::Tables::make_tables(gpu::Device& device, std::size_t largest_buf
 void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool is_single) {
   using gpu::Role;
   using gpu::Texel;
-  // Lanes are padded to whole groups, and groups to whole rows of groups where there are many.
+  // Lanes are padded to whole groups, and large numbers of groups to whole rows of groups.
   const std::size_t most_groups = out_lanes / lanes_per_group + 1;
   const std::size_t padded =
       (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * lanes_per_group;

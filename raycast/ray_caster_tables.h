@@ -14,7 +14,7 @@
 
 namespace sf::raycast {
 
-/// Of fans that share no view.
+/// Value of `shared` for scanners without a shared view.
 inline constexpr std::uint32_t kNotShared = 0xFFFFFFFFu;
 
 /// One host scan, for one scanner or a shared view.

@@ -44,7 +44,7 @@ struct EdgeRow {
   double distance_max;        ///< [m] a farther edge is out of sight
   std::uint32_t noise;        ///< first lane of its normal deviates
   std::uint32_t reading;      ///< row of its reading
-  float noise_share;          ///< 1: ranges are disturbed; 0: they are not
+  float noise_share;          ///< 1: ranges have noise; 0: they have none
   float range_max;            ///< [m]
 };
 

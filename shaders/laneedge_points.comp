@@ -8,7 +8,7 @@
 layout(local_size_x = SF_LANES_PER_GROUP) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer edges;       // EdgeRow of each sensor
 layout(binding = 1, rgba32ui) uniform readonly uimageBuffer directions;  // BeamDirection of each beam
-layout(binding = 2, rgba32f) uniform readonly imageBuffer normals;       // a texel a lane: normal deviates
+layout(binding = 2, rgba32f) uniform readonly imageBuffer normals;       // one texel per lane: normal deviates
 layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer points;     // EdgePoint of each beam
 layout(binding = 4, r32ui) uniform readonly uimageBuffer lanes;          // Lane of each lane
 layout(binding = 5, rgba32ui) uniform readonly uimageBuffer ranges;      // LaneRanges of each lane

@@ -5,21 +5,21 @@
 #include "shaders/raycast/records.glsl"
 
 layout(local_size_x = SF_LANES_PER_GROUP) in;
-layout(constant_id = 0) const bool kMovers = true;   // there are some
-layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges are measured in 32 bits where these are close enough
-layout(constant_id = 2) const bool kTexels = false;  // results are too large for storage buffers, which are faster
+layout(constant_id = 0) const bool kMovers = true;   // the world has movers
+layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges in 32 bits where these are accurate enough
+layout(constant_id = 2) const bool kTexels = false;  // results exceed the limit of storage buffers, which are faster
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;            // RayRow of each sensor
 layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;              // Lane of each lane
-layout(binding = 2, r32f) uniform readonly imageBuffer bearings;             // a lane's middle bearing [sectors]
+layout(binding = 2, r32f) uniform readonly imageBuffer bearings;             // middle bearing of each lane [sectors]
 layout(binding = 3, rgba32ui) uniform readonly uimageBuffer directions;      // BeamDirection of each beam
 layout(binding = 4, rgba32ui) uniform readonly uimageBuffer lists;           // ListHead, ListEntry, ListChunk
 layout(binding = 5, r32ui) uniform readonly uimageBuffer segment_ids;              // exact segment of each entry
 layout(binding = 6, rgba32ui) uniform readonly uimageBuffer mover_rows;          // MoverRow of each mover and height
 layout(binding = 7, rgba32ui) uniform readonly uimageBuffer segments;        // ExactSegment of each segment
-layout(binding = 8, r32ui) uniform readonly uimageBuffer models;             // what a beam reports that meets the segment
+layout(binding = 8, r32ui) uniform readonly uimageBuffer models;             // `Segment::model` of each segment
 layout(binding = 9, rgba32ui) uniform writeonly uimageBuffer range_texels;   // LaneRanges of each lane
 layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer hit_texels;    // LaneHits of each lane
-layout(binding = 11, r32ui) uniform writeonly uimageBuffer flag_texels;   // a word a lane: SF_DOUBT, SF_GRAZES
+layout(binding = 11, r32ui) uniform writeonly uimageBuffer flag_texels;   // one word per lane: SF_UNCERTAIN, SF_GRAZING
 layout(binding = 12) writeonly buffer Ranges { uvec4 lane[][2]; } ranges;         // the same tables
 layout(binding = 13) writeonly buffer Hits { uvec4 lane[][1]; } hits;
 layout(binding = 14) writeonly buffer BeamFlags { uint lane[]; } beam_flags;

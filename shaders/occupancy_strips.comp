@@ -13,8 +13,8 @@
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;     // MapRow of each scan
 layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;      // MapBlock of eight lanes
-layout(binding = 2, rgba32f) uniform readonly imageBuffer lines;      // a texel for two beams: slope, reach; slope, reach (LinePair)
-layout(binding = 3, r32ui) uniform writeonly uimageBuffer strips;     // a word a lane: bit k for its k-th cell
+layout(binding = 2, rgba32f) uniform readonly imageBuffer lines;      // one texel per two beams: slope, reach; slope, reach (BeamLine)
+layout(binding = 3, r32ui) uniform writeonly uimageBuffer strips;     // one word per lane: bit k for its k-th cell
 
 #include "shaders/lib/candidates.glsl"
 
@@ -24,7 +24,7 @@ void main() {
   const bool flat_strip = (block.row & SF_STEEP) == 0u;
   const MapRow map = load_MapRow(rows, int(block.row & ~SF_STEEP));
 
-  // The strip from the sensor's cell: `offset` along the lines, cells [side, side + 32) across.
+  // The strip relative to the sensor's cell: `offset` along the lines, cells [side, side + 32) across.
   const int at = int(block.place & 0xFFFFu) + lane % SF_MAP_BLOCK;
   const int across = SF_STRIP * int(block.place >> 16);
   const int offset = at - (flat_strip ? map.column : map.row);
@@ -34,7 +34,8 @@ void main() {
   const int low = max(side, -i);  // no line is farther to the side than along
   const int high = min(side + SF_STRIP - 1, i);
 
-  // A covered cell's middle lies within half a cell along and one across from the beam itself: half for the end's cell, half for rounding.
+  // A covered cell's middle lies within half a cell along and one across from the beam itself: half for the end's cell,
+  // half for rounding.
   const vec2 within = flat_strip ? vec2(map.within_x, map.within_y) : vec2(map.within_y, map.within_x);
   const float along = float(i) - (back ? -within.x : within.x);
   const float y_low = float(low) - 1.01 - within.y;

@@ -12,7 +12,7 @@ layout(binding = 2, rgba32ui) uniform readonly uimageBuffer hits;        // Lane
 layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer echoes;     // ConeEcho of each cone
 layout(binding = 4, rgba32ui) uniform readonly uimageBuffer directions;  // BeamDirection of each beam
 layout(binding = 5, rgba32ui) uniform readonly uimageBuffer reflectors;  // ReflectorDirection of each surface
-layout(binding = 6, rgba32f) uniform readonly imageBuffer headings;      // a texel a mover, the first stands still: cosine, sine
+layout(binding = 6, rgba32f) uniform readonly imageBuffer headings;      // one texel per mover, the first for static surfaces: cosine, sine
 
 vec2 turned(vec2 by, vec2 v) {
   precise float x = by.x * v.x - by.y * v.y;

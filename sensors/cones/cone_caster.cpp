@@ -44,7 +44,7 @@ ConeCaster::Plan ConeCaster::plan(const world::World& world, const std::vector<C
   if (plan.scanners.size() > most_cones)
     throw base::InputError(world.file, 0,
                            "the world has " + std::to_string(plan.scanners.size()) +
-                               " transducers of one kind; at most " + std::to_string(most_cones) + " are supported");
+                               " transducers of one type; at most " + std::to_string(most_cones) + " are supported");
   return plan;
 }
 
@@ -70,7 +70,7 @@ ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const Ref
       reflectors_(context.device, "faces", gpu::Role::upload, gpu::Texel::u32x4, reflectors.rows.size() + 1),
       headings_(context.device, "headings", gpu::Role::upload, gpu::Texel::f32x4, context.world.movers.size() + 1),
       incidence_(plan.incidence) {
-  SF_CHECK(kernel.uses_incidence || !incidence_, "this kernel hears all angles");
+  SF_CHECK(kernel.uses_incidence || !incidence_, "this kernel ignores the angle of incidence");
   std::vector<gpu::TableBinding> tables{
       {"cones", &rows_}, {"ranges", &caster_.ranges()}, {"hits", &caster_.hits()}, {"echoes", &echoes_}};
   if (kernel.uses_incidence)

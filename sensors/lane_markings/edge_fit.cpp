@@ -169,7 +169,7 @@ void EdgeFit::write_order(bool same_due) {
   for (const std::uint32_t mixed : {1u, 0u})
     for (std::uint32_t i = 0; i < due_.size(); ++i)
       if ((same_due ? mixtures[i] & 1u : 0u) == mixed) put(last = i);
-  // Padding repeats one row, which then is written more than once with the same values.
+  // Padding repeats one row; its results are written repeatedly with equal values.
   while (at < groups * size) put(last);
 }
 

@@ -50,7 +50,7 @@ MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Threa
   const std::uint32_t constants[] = {magnitudes};
   kernel = std::make_unique<gpu::Kernel>(device, magnitudes ? "magnetometer with magnitudes" : "magnetometer",
                                          magnetometer_comp_spv, constants);
-  // A turn may load magnets behind the last one, and counts them as nothing.
+  // An unrolled iteration may load rows behind the last magnet; they have moment 0.
   const std::size_t rows = std::size_t{fixed_magnets} + moving_magnets + SF_FIELD_UNROLL;
   dipoles = std::make_unique<gpu::Buffer>(device, "magnets", Role::upload, Texel::u32x4, 2 * rows);
   groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);

@@ -30,8 +30,8 @@ struct FieldPointRow {
 
 /// Work of one lane: one texel.
 struct FieldItem {
-  std::uint32_t first;  ///< span
-  std::uint32_t end;    ///< span behind the last one
+  std::uint32_t first;  ///< first span
+  std::uint32_t end;    ///< behind the last span
   std::uint32_t group;  ///< of SF_FIELD_POINTS places
   std::uint32_t sums;   ///< of SF_FIELD_POINTS results
 };

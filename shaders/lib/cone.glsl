@@ -5,7 +5,7 @@ void write_echo(int at) {
   const ConeRow cone = load_ConeRow(cones, at);
   const vec2 heading = vec2(cone.heading_cos, cone.heading_sin);
 
-  // Places of a lane without a beam repeat one.
+  // Unused places of a lane repeat a beam.
   double nearest = cone.range_max;
   uint met = SF_NO_HIT;
   const int lanes = int(cone.lanes);

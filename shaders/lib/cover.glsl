@@ -8,7 +8,8 @@ struct WordUpdate {
   uint occupied;   // bit 2 k of cell k
 };
 
-// Strips of which four cross a word one after the other, from `at` on; the word's cells begin at `across` in them. Four bits of each.
+// Four bits of each of the four consecutive strips that cross a word, starting at `at`; the word's cells begin at
+// `across` in them.
 uvec4 nibbles(StripTable table, int at, int across, bool inside) {
   const int first = int(table.first) + (across / SF_STRIP - int(table.chunk)) * int(table.pitch) + at - int(table.low);
   const int safe = inside ? first : 0;
@@ -21,7 +22,8 @@ WordUpdate cover_word(int lane, MapBlock block, MapRow map) {
   const ivec2 at = ivec2(int(block.place & 0xFFFFu) + lane % SF_MAP_BLOCK, int(block.place >> 16));
   const bool inside = at.x < int(map.box_right);
 
-  // Flat strips are columns: bit k is row k, which lies at 8 k. Steep ones are rows: bit k is column k, at 2 k.
+  // Flat strips are columns: bit k is row k, at bit 8 k of the word. Steep ones are rows: bit k is column k, at bit 2
+  // k.
   const uvec4 columns = nibbles(map.flat_strips, 4 * at.x, 4 * at.y, inside);
   const uvec4 lines = nibbles(map.steep_strips, 4 * at.y, 4 * at.x, inside);
   const uvec4 down = (columns & 1u) | (columns & 2u) << 7 | (columns & 4u) << 14 | (columns & 8u) << 21;

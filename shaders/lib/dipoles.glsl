@@ -7,7 +7,7 @@
 // doubles its 23 bits: a 64-bit root and division cost four times as much. Every operation is `precise` and in a fixed
 // order: host and device results are equal bit by bit.
 
-// Exactly in the middle of a magnet, the field is the one above it.
+// At the exact centre of a magnet, the field is that straight above it.
 #define SF_ABOVE 1e-18LF
 // [m^2] least square with a finite 32-bit inverse root.
 #define SF_LEAST 1e-37

@@ -170,7 +170,7 @@ EdgeReading fit_edge(EdgeRow row, out bool mixed) {
   LineMoments trend = trend_near(fan, lanes, line, 1e30);
   Parabola curvature = parabola_of(trend);
 
-  // Those of one edge among several.
+  // The points of one edge among several.
   mixed = !single && trend.n > 2.5 && !is_one_edge(trend, curvature, source);
   const Candidate best = elect(fan, mixed, source);
   const int again = mixed ? lanes : 0;

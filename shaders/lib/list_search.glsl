@@ -73,8 +73,8 @@ void search_chunk(Chunk chunk, float band, inout Search s) {
 // True where every beam has a certain hit nearer than `nearest` [m].
 bool all_nearer(Search s, float nearest) { return all(greaterThan(nearest * s.low, vec4(1.0001))); }
 
-// Searches the walls, then the movers, until nothing that is left can be nearer. One loop for both: lavapipe runs a
-// loop's body once more, in vain, after the last lane has left.
+// Searches the walls, then the movers, until no remaining entry can be nearer. One loop for both: lavapipe runs the
+// body of a loop once more after the last lane has left it.
 void search_lists(ListHead walls, ListHead movers, vec2 offset, dvec2 origin, float band, inout Search s) {
   bool at_walls = walls.count > 0u;
   int at = int(at_walls ? walls.first : movers.first);
