@@ -23,7 +23,7 @@ function fail(why) {
 
 # The next `count` words of the record, as components of a texel.
 function words(count,   part) {
-  if (at % 4 + count > 4) fail(record "'s field reaches into a second texel; expected all of it in 16 bytes")
+  if (at % 4 + count > 4) fail(record ": a field crosses the end of a texel; expected each field within 16 bytes")
   part = "t" int(at / 4) "." substr("xyzw", at % 4 + 1, count)
   at += count
   return part
@@ -40,7 +40,7 @@ function add_field(cpp, name,   type, from, i) {
   array = sub(/\[.*/, "", name)
   checks = checks "static_assert(offsetof(" space "::" record ", " name ") == " 4 * at ");\n"
   if (cpp in texels) {
-    if (texels[cpp] != 1 || at % 4 != 0) fail(record "::" name " is no texel of its own")
+    if (texels[cpp] != 1 || at % 4 != 0) fail(record "::" name " does not start a texel; expected a record of one texel at a multiple of 16 bytes")
     type = cpp
     add_read("decode_" cpp "(t" at / 4 ")")
     add_put("encode_" cpp "(r." name ")[0]", at)

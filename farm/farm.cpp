@@ -157,7 +157,7 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
   watch.lap(stats.lists_s);
   submit();
   watch.lap(stats.device_s);
-  // Readings that need no device are taken while it runs.
+  // Sensors of the host are read while the device runs.
   const auto collect_all = [&](bool from_device) {
     for (SensorPipeline& pipeline : pipelines)
       if (!pipeline.derived() && pipeline.needs_device() == from_device) collect(pipeline, now, reuse);

@@ -1,5 +1,5 @@
 #pragma once
-// One submit and one wait per tick: copies up, kernels, copies down. The host may work in between.
+// One submission per tick: uploads, kernels, downloads. The host may work between `submit` and `wait`.
 
 #include <cstddef>
 #include <memory>
@@ -30,9 +30,9 @@ class Batch {
   void upload(const Buffer& table, std::size_t offset, std::size_t size);
   void download(const Buffer& table, std::size_t offset, std::size_t size);
 
-  /// Submits all of it once. Its tables belong to the device until `wait` returns.
+  /// Submits all copies and kernels once. The host must not touch their tables until `wait` returns.
   void submit();
-  /// Waits for what was submitted; nothing: at once.
+  /// Waits for the end of the submission; returns at once without one.
   void wait();
   void run() { submit(), wait(); }
 

@@ -23,7 +23,7 @@ enum class Role {
 
 std::size_t texel_size(Texel texel);  ///< [bytes] 4 or 16
 
-/// Texels of 16 bytes of a table of records.
+/// Number of 16-byte texels in a table of `records` records.
 template <class Record>
 constexpr std::size_t texels_of(std::size_t records) {
   static_assert(sizeof(Record) % 16 == 0);

@@ -91,7 +91,7 @@ KernelInterface interface_of(std::span<const std::uint32_t> spirv) {
       names[op[1]].assign(text, strnlen(text, 4 * (words - 2)));
     }
     if (opcode == kDecorate && words >= 4 && op[2] == kBinding) bindings[op[1]] = op[3];
-    // Names and decorations come before what they are of.
+    // Names and decorations precede their targets.
     if (opcode == kVariable && words >= 4 && bindings.count(op[2]) > 0)
       found.tables.push_back({names[op[2]], bindings[op[2]], op[3] == kStorageBuffer});
     at += words;

@@ -20,9 +20,9 @@ struct KernelTable {
   bool is_buffer = false;     ///< a `buffer`; else an `imageBuffer` of the table's texel
 };
 
-/// What a SPIR-V module declares.
+/// Declarations of a SPIR-V module.
 struct KernelInterface {
-  std::uint32_t group_size = 0;  ///< LocalSize x of its entry point; 0: it has none
+  std::uint32_t group_size = 0;  ///< LocalSize x of its entry point; 0 without one
   std::vector<KernelTable> tables;
 };
 KernelInterface interface_of(std::span<const std::uint32_t> spirv);
@@ -43,12 +43,12 @@ class Kernel {
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
-  /// Which tables the next recorded dispatches use: all that the kernel declares, in any order, as much of each
-  /// `buffer` as the device bears. Tables must outlive those dispatches.
+  /// Sets the tables of the dispatches recorded next: all tables that the kernel declares, in any order. Of a `buffer`
+  /// larger than the device's limit the first part is bound. Tables must outlive these dispatches.
   void bind(const std::vector<TableBinding>& tables);
 
   std::uint32_t group_size() const;  ///< invocations along x per group
-  /// So many invocations or more: whole groups.
+  /// `invocations` rounded up to whole groups.
   std::size_t padded(std::size_t invocations) const {
     return (invocations + group_size() - 1) / group_size() * group_size();
   }

@@ -97,7 +97,7 @@ void RayCaster::add_copies(gpu::Batch& batch, bool results) {
     batch.upload(*t.beam_flags, 4 * std::size_t{row.out}, 4 * lanes);
   }
   if (!t.scene) return;
-  // Fans whose results lie one behind the other are copied together.
+  // Scans with adjacent results are copied together.
   for (std::size_t i = 0; i < t.due.size();) {
     const std::size_t first = t.scanner_rows[t.due[i].row].out;
     std::size_t lanes = 0;

@@ -42,7 +42,7 @@ struct CastDispatch {
 };
 
 struct RayCaster::Tables {
-  std::uint32_t lanes_per_group;  ///< of each dispatch over lanes
+  std::uint32_t lanes_per_group;  ///< workgroup size of all dispatches over lanes
   base::ThreadPool& thread_pool;
   std::uint64_t seed;
   bool noise;

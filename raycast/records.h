@@ -38,7 +38,7 @@
 
 namespace sf::raycast {
 
-/// One sensor that is due: where it looks from and which tables serve it.
+/// One due sensor: its pose and tables.
 struct RayRow {
   float offset_x;  ///< [m] sensor relative to the centre of its cell
   float offset_y;
@@ -71,7 +71,7 @@ struct ListChunk {
   std::uint16_t entries[SF_CHUNK];  ///< relative to the first entry of the walls or the mover
 };
 
-/// Pose and outline of a mover at one height: two texels.
+/// Pose and outline of a mover at one height.
 struct MoverRow {
   double x, y;              ///< [m] world
   float cos, sin;           ///< of its heading
@@ -85,19 +85,19 @@ struct ListEntry {
   float ex, ey;  ///< [m] from the middle to its end
 };
 
-/// A segment for the 64-bit intersection: two texels.
+/// A segment for the 64-bit intersection.
 struct ExactSegment {
   double ax, ay, bx, by;  ///< [m] world
 };
 
-/// The ranges of a lane's beams [m].
+/// The result of a lane.
 struct LaneRanges {
-  double range[SF_BEAMS_PER_LANE];
+  double range[SF_BEAMS_PER_LANE];  ///< [m]
 };
 
-/// What a lane's beams hit: `Segment::model`, or SF_NO_HIT.
+/// The hits of a lane.
 struct LaneHits {
-  std::uint32_t model[SF_BEAMS_PER_LANE];
+  std::uint32_t model[SF_BEAMS_PER_LANE];  ///< `Segment::model`; SF_NO_HIT: none
 };
 
 /// A unit vector.
@@ -105,7 +105,7 @@ struct BeamDirection {
   double cos, sin;
 };
 
-/// The beams of one invocation: two words.
+/// The beams of one invocation.
 struct Lane {
   std::uint32_t row;   ///< row of the due sensor
   std::uint32_t lane;  ///< within the sensor

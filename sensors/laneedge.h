@@ -48,12 +48,12 @@ struct EdgeRow {
   float range_max;            ///< [m]
 };
 
-/// What a beam met, in the sensor's frame. The grain is in the last bits of x.
+/// The point that a beam met, sensor frame. The row of its pixel size is in the last bits of x (SF_GRAIN_MASK).
 struct EdgePoint {
   double x, y;  ///< [m]
 };
 
-/// A pixel size, which points name by its row.
+/// A pixel size of road markings.
 struct Grain {
   double size;  ///< [m]
   double spare;

@@ -27,7 +27,7 @@ layout(binding = 14) writeonly buffer BeamFlags { uint lane[]; } beam_flags;
 #include "shaders/lib/intersect.glsl"
 #include "shaders/lib/list_search.glsl"
 
-// In the world, of the lane whose beams begin at `first` in the tables.
+// Directions in the world of the lane whose beams begin at `first` in the tables.
 Beam64[SF_BEAMS_PER_LANE] beams_of(RayRow row, int first) {
   Beam64 beams[SF_BEAMS_PER_LANE];
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
@@ -39,7 +39,7 @@ Beam64[SF_BEAMS_PER_LANE] beams_of(RayRow row, int first) {
   return beams;
 }
 
-// Nothing is found yet: the end of the range is the nearest.
+// Initially the end of the range is the nearest.
 Search begin_search(Beam64 beams[SF_BEAMS_PER_LANE], double range_max) {
   const float farthest = 1.0 / float(range_max);
   Search s;
@@ -53,7 +53,7 @@ Search begin_search(Beam64 beams[SF_BEAMS_PER_LANE], double range_max) {
   return s;
 }
 
-// Exact ranges of the segments that the search found. Returns the beams, a bit each, of which it has not proved the nearest.
+// Evaluates the nearest segments in 64 bits. Returns the uncertain beams, a bit each.
 uint measure(Search s, Beam64 beams[SF_BEAMS_PER_LANE], double range_max, out ClosestHit closest[SF_BEAMS_PER_LANE]) {
   uint uncertain = 0u;
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
@@ -64,7 +64,7 @@ uint measure(Search s, Beam64 beams[SF_BEAMS_PER_LANE], double range_max, out Cl
   return uncertain;
 }
 
-// A place in a list: the next entry of a chunk.
+// Position in a list: the next entry of a chunk.
 struct ListCursor {
   int at, facing_end, end;  // chunks
   int k;
@@ -75,7 +75,7 @@ ListCursor begin_list(ListHead list) {
   return ListCursor(int(list.first), facing_end, facing_end + int(list.back_facing), 0);
 }
 
-// To the next entry; where the rest of the part of the list is too far, to the next part.
+// Advances to the next entry; where the rest of this part of the list is too far, to the next part.
 void advance(inout ListCursor c, bool far) {
   ++c.k;
   const bool chunk_done = far || c.k == SF_CHUNK;
@@ -83,7 +83,7 @@ void advance(inout ListCursor c, bool far) {
   c.k = chunk_done ? 0 : c.k;
 }
 
-// The segment of the entry at `c`, or SF_NO_HIT and `far` where it and all that follow lie beyond `range`.
+// The segment of the entry at `c`; SF_NO_HIT and `far` where it and its successors lie beyond `range`.
 uint entry_at(ListCursor c, RayRow row, int base, double range, out bool far) {
   const dvec2 origin = dvec2(row.origin_x, row.origin_y);
   const Chunk chunk = chunk_of(c.at < c.end ? imageLoad(lists, c.at) : uvec4(0u), vec2(row.offset_x, row.offset_y), base, origin);
@@ -93,8 +93,8 @@ uint entry_at(ListCursor c, RayRow row, int base, double range, out bool far) {
   return name == SF_NO_HIT ? SF_NO_HIT : name + uint(chunk.first_row);
 }
 
-// Decides uncertain beams in 64 bits, one after another, against every entry that is not farther than the nearest so far. Returns which
-// of them graze. One loop for walls and movers, as in search_lists.
+// Intersects uncertain beams with every entry up to the range found so far, in 64 bits, beam by beam. Returns the beams
+// that graze. One loop for walls and movers, as in search_lists.
 uint decide(uint uncertain, RayRow row, Beam64 beams[SF_BEAMS_PER_LANE], ListHead walls, ListHead movers,
             inout ClosestHit closest[SF_BEAMS_PER_LANE]) {
   const ClosestHit nothing = ClosestHit(row.range_max, SF_NO_HIT, vec3(0.0));
@@ -130,7 +130,7 @@ uint decide(uint uncertain, RayRow row, Beam64 beams[SF_BEAMS_PER_LANE], ListHea
   return grazing;
 }
 
-// The range that is reported, within the sensor's limits.
+// The reported range, within the sensor's limits.
 double reported_range(ClosestHit hit, Beam64 beam, RayRow row) {
   double range = hit.range;
   if (kSinglePrecision) {

@@ -5,7 +5,7 @@
 #include "shaders/sensors/magnetic_field/records.glsl"
 
 layout(local_size_x = 32) in;
-layout(constant_id = 0) const bool kMagnitudes = false;  // some sensor adds up magnitudes
+layout(constant_id = 0) const bool kMagnitudes = false;  // some sensor sums magnitudes
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer items;     // FieldItem
 layout(binding = 1, r32ui) uniform readonly uimageBuffer spans;        // MagnetSpan
 layout(binding = 2, rgba32ui) uniform readonly uimageBuffer dipoles;   // DipoleRow
@@ -24,7 +24,7 @@ void main() {
     sums[i] = FieldSum(0.0LF, 0.0LF, 0.0LF, 0.0LF);
   }
 
-  // One loop over all spans, so that lanes with short ones do not wait for others at each.
+  // One loop over all spans, so that lanes with short spans do not wait for others at each of them.
   int at_span = int(item.first);
   MagnetSpan span = load_MagnetSpan(spans, at_span);
   int magnet = int(span.first);

@@ -9,13 +9,13 @@
 layout(local_size_x = SF_LANES_PER_GROUP) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;          // RasterRow of each sensor
 layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;            // Lane of each lane
-layout(binding = 2, rgba32ui) uniform readonly uimageBuffer directions64;  // BeamDirection of each beam, as it looks
+layout(binding = 2, rgba32ui) uniform readonly uimageBuffer directions64;  // BeamDirection of each beam, actual
 layout(binding = 3, r32ui) uniform readonly uimageBuffer directory;        // one word per block
 layout(binding = 4, r32ui) uniform readonly uimageBuffer blocks;           // four words per block with paint
 layout(binding = 5, rgba32ui) uniform readonly uimageBuffer ranges;        // LaneRanges of each lane
 layout(binding = 6, rgba32ui) uniform readonly uimageBuffer hits;          // LaneHits of each lane: tags
 layout(binding = 7, rgba32ui) uniform readonly uimageBuffer edges;         // EdgeRow of each sensor
-layout(binding = 8, rgba32ui) uniform readonly uimageBuffer directions;    // BeamDirection of each beam, as it is told
+layout(binding = 8, rgba32ui) uniform readonly uimageBuffer directions;    // BeamDirection of each beam, nominal
 layout(binding = 9, rgba32f) uniform readonly imageBuffer normals;         // one texel per lane: normal deviates
 layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer points;      // EdgePoint of each beam
 

@@ -2,8 +2,8 @@
 #define SENSORS_MAGNETIC_FIELD_RECORDS_H
 // Records of sums of magnets' fields, for host and device. cmake/records.awk writes the accessors of kernels.
 //
-// An item is one lane's work: up to SF_FIELD_POINTS places that lie together, and a run of spans of magnets. Each
-// magnet that is loaded serves all of its places.
+// An item is the work of one lane: a group of up to SF_FIELD_POINTS neighbouring points, and a run of spans of magnets.
+// Each magnet is loaded once for all points of the group.
 
 #define SF_FIELD_POINTS 5  // the number of elements of the thesis' array
 #define SF_FIELD_UNROLL 2  // magnets per loop iteration
@@ -21,19 +21,19 @@ struct DipoleRow {
   float inverse_radius;  ///< [1/m] inside the radius the field is that at the radius
 };
 
-/// A point of a group: two texels.
+/// A point of a group.
 struct FieldPointRow {
   double x, y, z;         ///< [m] world
   double cutoff_squared;  ///< [m^2] magnets farther away along the ground are ignored; read from the group's first
                           ///< point
 };
 
-/// Work of one lane: one texel.
+/// Work of one lane.
 struct FieldItem {
   std::uint32_t first;  ///< first span
   std::uint32_t end;    ///< behind the last span
-  std::uint32_t group;  ///< of SF_FIELD_POINTS places
-  std::uint32_t sums;   ///< of SF_FIELD_POINTS results
+  std::uint32_t group;  ///< index of the group of SF_FIELD_POINTS points
+  std::uint32_t sums;   ///< index of the group of SF_FIELD_POINTS results
 };
 
 /// A contiguous range of magnets in their table: two words.

@@ -29,8 +29,7 @@ int candidate(Candidates c, int j) {
   return j < c.count ? c.first + j : j < c.count + c.low ? j - c.count : c.high + (j - c.count - c.low);
 }
 
-// Within `wide` of `bearing` (in [-pi, pi], in the sensor's frame), or all. In pairs of beams of the
-// scan: pair p holds beams 2 p and 2 p + 1, half a pair apart.
+// Candidates within `wide` of `bearing` (in [-pi, pi], sensor frame), or all pairs: pair p holds beams 2 p and 2 p + 1, half a pair apart.
 Candidates candidates(float bearing, float wide, bool all, MapRow scan) {
   const int pairs = int(scan.pairs);
   const float last = float(pairs);

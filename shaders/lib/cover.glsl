@@ -1,6 +1,6 @@
 // Effect of a scan on one word's cells, from the strips that cross it and the ends that the host has marked.
 //
-// The caller declares the tables strips and hit_words.
+// The kernel declares the tables strips and hit_words.
 
 struct WordUpdate {
   int word;        // in the table of all maps; -1: no work for this lane

@@ -1,4 +1,4 @@
-// The field of a magnet, and where kMagnitudes says so its magnitude. The kernel declares the table dipoles.
+// The field of a magnet, with kMagnitudes also its magnitude. The kernel declares the table dipoles.
 //
 // A point dipole of moment m along +z, with r from dipole to point and u = r / |r|, without the factor mu0 / 4 pi,
 // which the host applies:

@@ -1,4 +1,4 @@
-// From the points of a fan to the distance of a lane edge. The kernel declares the tables points and grains.
+// Distance of a lane edge from the points of a scan. The kernel declares the tables points and grains.
 //
 // 1. A line through all points, and a parabola for its residuals. If the points lie on it within their source's
 //    tolerance, it is the edge.
@@ -145,7 +145,7 @@ double noise_across(Line line, double range_sigma, double range_proportional, do
   return variance;
 }
 
-// Of a sensor of one beam.
+// The range of a single beam is the reading.
 EdgeReading single_ray(EdgeRow row, Points start, double grain) {
   precise double range = sqrt(start.x[0] * start.x[0] + start.y[0] * start.y[0]);
   precise double spread = row.range_proportional * range;

@@ -1,4 +1,4 @@
-// From what a ray met to a point in the sensor's frame. The kernel declares the tables directions and points.
+// From a hit to a point in the sensor frame. The kernel declares the tables directions and points.
 //
 // The last bits of a point's x hold the row of its pixel size. A beam that is no point lies at SF_NOWHERE: ranges near
 // the maximum or up to the minimum, hits of movers and of the ends of dashes.

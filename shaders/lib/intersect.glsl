@@ -17,7 +17,7 @@ bool grazes(ClosestHit d, float least) {
   return d.id != SF_NO_HIT && d.incidence.x * d.incidence.x < least * least * dot(d.incidence.yz, d.incidence.yz);
 }
 
-// A segment; of SF_NO_HIT, any.
+// A segment [m]; any values for SF_NO_HIT.
 ExactSegment segment_at(uint id) { return load_ExactSegment(segments, int(id == SF_NO_HIT ? 0u : id)); }
 
 // Every segment that shares an end uses the same doubles for it, so no beam passes between two neighbours.
