@@ -18,7 +18,7 @@ std::string loaded_by(const Words& arguments) {
   return outcome.err;
 }
 
-TEST(Loading, WhoDrawsNothingLoadsNothingToDrawWith) {
+TEST(Loading, CommandsWithoutPicturesLoadNoDrawingLibrary) {
   const std::string world = our_world("rooms.world");
   for (const Words& arguments : {Words{"--version"}, Words{"check", world}, Words{"run", world, "--duration", "0.3"},
                                  Words{"sense", world}, Words{"explain", world}}) {
@@ -28,7 +28,7 @@ TEST(Loading, WhoDrawsNothingLoadsNothingToDrawWith) {
   }
 }
 
-TEST(Loading, WhoDrawsDoes) {
+TEST(Loading, DrawingLoadsTheTextRenderer) {
   const Folder folder;
   const std::string said = loaded_by({"draw", our_world("rooms.world"), "-o", folder.path("rooms.png")});
   EXPECT_NE(said.find("sensorfarm_text_renderer.so"), std::string::npos);

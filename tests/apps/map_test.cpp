@@ -147,7 +147,7 @@ TEST(Map, SequencesThatLeapAreLeftOut) {
 }
 
 /// More than the port's buffer holds, while nobody takes it.
-TEST(Map, WhatTheKernelDroppedIsTold) {
+TEST(Map, DatagramsDroppedByTheKernelAreReported) {
   const unsigned port = free_ports(1);
   Program map(listen(port, {}));
   ASSERT_TRUE(map.says("listening for maps on 1 port"));

@@ -77,7 +77,7 @@ TEST(SendAndListen, ReadingsBetweenTicksAreSentToo) {
 }
 
 /// Each counted under its own name: 2 came twice, 3 late, 4 to 6 never; then another farm.
-TEST(SendAndListen, WhatTheNetworkDidIsTold) {
+TEST(SendAndListen, LostAndReorderedPacketsAreReported) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( samples 2 range_max 8 ) )\n");
   const unsigned base = free_ports(16);
@@ -176,7 +176,7 @@ TEST(SendAndListen, PortsPastTheLastAreRefusedAtLoad) {
   EXPECT_NE(outcome.err.find("65535"), std::string::npos) << outcome.err;
 }
 
-TEST(SendAndListen, WhatTheThesisCannotCarryIsRefusedAtLoad) {
+TEST(SendAndListen, ScansTooLargeForTheThesisFormatAreRefusedAtLoad) {
   const Folder folder;
   for (const std::string laser : {"laser( samples 362 )", "laser( range_max 65.6 )"}) {
     const std::string world = folder.write("w.world", "position( name \"roomba1\" " + laser + " )\n");
@@ -315,7 +315,7 @@ TEST(Serve, StatesArePassedOnWithinTheRadiosRange) {
 }
 
 /// A robot hears whom others follow: for one that follows it and has fallen behind it drives at half its speed.
-TEST(Serve, WhoIsFollowedWaits) {
+TEST(Serve, AFollowedRobotWaits) {
   const std::string car = "position( size [0.33 0.33 0.1] name \"roomba";
   Service service("road( rndf \"" + our_world("simville/simville.rndf") + "\" )\n" + car +
                   "1\" pose [3.9 0.75 0 0] )\n" + car + "2\" pose [2.4 0.75 0 0] )\n");

@@ -97,7 +97,7 @@ TEST(Roads, SidecarIsRead) {
   EXPECT_EQ(Json(outcome.out).size("/warnings"), 0u);
 }
 
-TEST(Roads, WhatIsWrongIsOneLineWithItsPlace) {
+TEST(Roads, AnErrorIsOneLineWithItsPlace) {
   const Folder folder;
   const std::string file = folder.write("two.rndf", replaced(kRoads, "1.2.1\nstop", "9.9.9\nstop"));
   const Outcome outcome = run_program({"check", file});

@@ -129,7 +129,7 @@ TEST(Run, SaysWhoStandsAndWhy) {
 }
 
 /// Five robots with one reason are one line, three of them by name.
-TEST(Run, WhoStandsForOneReasonIsOneLine) {
+TEST(Run, RobotsThatStandForOneReasonShareALine) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laneedge( ) )\n");
   const Outcome outcome = run_program(
@@ -253,7 +253,7 @@ TEST(Run, OnlyWhoIsNamedIsDriven) {
   EXPECT_EQ(Json(two.out).number("/robots"), 8);
 }
 
-TEST(Run, WhoIsDrivenIsDrivenAsBefore) {
+TEST(Run, ADrivenRobotsPathDoesNotDependOnTheOption) {
   const auto some = [](const Words& drive) {
     Words more{"--duration", "3"};
     more.insert(more.end(), drive.begin(), drive.end());
@@ -396,7 +396,7 @@ TEST(Run, CountsContactsAsItsPictureDoes) {
 }
 
 /// A hash is of what is sent and recorded.
-TEST(Run, WhatBeamsReadThatMetNothingIsInTheHash) {
+TEST(Run, TheHashCoversBeamsWithoutReturn) {
   const Folder folder;
   const std::string open = folder.write("open.world", "position( name \"a\" laser( samples 3 range_max 5 ) )\n");
   const auto hash_of = [&](const std::string& no_return) {

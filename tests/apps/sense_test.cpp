@@ -152,7 +152,7 @@ TEST(Sense, RobotsAndNestedModelsAreNamedAndTheOwnBodyIsNotSeen) {
   EXPECT_TRUE(other.is_null(beam(0, "hit")));
 }
 
-TEST(Sense, WhatMetNothingReadsRangeMaxOrNull) {
+TEST(Sense, ABeamWithoutReturnReadsRangeMaxOrNull) {
   const Folder folder;
   const std::string world = folder.write("empty.world", "position( name \"a\" laser( samples 3 range_max 5 ) )\n");
   EXPECT_EQ(sense({world}).number(beam(1, "range_m")), 5.0);

@@ -111,7 +111,7 @@ TEST_F(Kinds, WithoutAWordNumbersCountThroughAllKinds) {
   EXPECT_EQ(last.number("/sensor"), 1);
 }
 
-TEST_F(Kinds, WhoIsAskedForWhatItHasNotSaysWhatItHas) {
+TEST_F(Kinds, AMissingSensorIsRefusedWithTheListOfThoseThere) {
   struct Wrong {
     Words arguments;
     std::string said;
@@ -300,7 +300,7 @@ TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
 }
 
 /// Robots drive by their lasers: what else they carry, and how often it speaks, moves none of them.
-TEST_F(Kinds, WhatNobodyDrivesByChangesNoPath) {
+TEST_F(Kinds, AnUnusedSensorChangesNoPath) {
   const auto states = [&](const std::string& name, const std::string& sensor) {
     const std::string file =
         folder.write(name + ".world", "position( name \"a\" laser( samples 91 fov 180 range_max 2 rate 2 )" + sensor +

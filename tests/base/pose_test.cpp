@@ -39,7 +39,7 @@ TEST(Pose, HeadingsWrapIntoHalfATurnEitherWay) {
   EXPECT_LE(std::fabs(wrap_angle(1e9)), M_PI);
 }
 
-TEST(Bytes, WhatWasWrittenIsRead) {
+TEST(Bytes, WrittenValuesAreRead) {
   Bytes bytes;
   ByteWriter writer(bytes);
   writer.put(std::uint16_t{0x1234});

@@ -14,7 +14,7 @@ namespace {
 // ---- Right of way.
 
 // 12.2 has a stop sign, 2.2 has none: a robot on 2.2 goes first, though the other has stopped there before it arrived.
-TEST(RightOfWay, WhoNeedNotStopGoesFirst) {
+TEST(RightOfWay, ARobotWithoutAStopLineGoesFirst) {
   Streets t;
   t.add(on_lane(t.roads, "12.2", 3.4), "route", go({4, 8}));
   t.add(on_lane(t.roads, "2.2", 2.45), "route", go({4, 8}));

@@ -63,7 +63,7 @@ TEST(Settings, RawTextsMayHaveQuotesAroundThem) {
   EXPECT_EQ(text_of(raw("a b")), "a b");
 }
 
-TEST(Settings, WhatARawValueCannotBeIsRefusedWithWhatCame) {
+TEST(Settings, InvalidRawValuesAreRefusedAndQuoted) {
   const char* const no_lists[] = {"",      "a",   "1,",  ",1",    "1,,2", "[1", "1]",
                                   "1 2,3", "1;2", "nan", "1,inf", "0x10", "]["};
   for (const char* text : no_lists)

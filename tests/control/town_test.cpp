@@ -93,7 +93,7 @@ TEST(Town, ARouteCutInTheCarParkStaysInOnePiece) {
   EXPECT_GT(in_zone, 3);
 }
 
-TEST(Town, NobodyStandsForGoodAndTheConvoyDrivesOn) {
+TEST(Town, NoRobotStandsForGoodAndTheConvoyDrivesOn) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Town t = town(seed, 500.0);
     EXPECT_EQ(t.contacts, 0) << seed;

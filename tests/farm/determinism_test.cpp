@@ -27,7 +27,7 @@ TEST(Determinism, TheSameSeedGivesTheSameBytes) {
   EXPECT_NE(run(world, {.seed = 1}), run(world, {.seed = 2}));
 }
 
-TEST(Determinism, WhateverTheThreads) {
+TEST(Determinism, IndependentOfTheNumberOfThreads) {
   const world::World world = small_world(30, kNoise);
   const std::uint64_t one = run(world, {.seed = 1, .threads = 1});
   for (const unsigned threads : {2u, 3u, 7u}) EXPECT_EQ(run(world, {.seed = 1, .threads = threads}), one) << threads;
@@ -61,7 +61,7 @@ TEST(Determinism, TheHashIsOfWhatIsSent) {
 }
 
 /// The cache is so small that cells are evicted every tick and that it must grow within a tick.
-TEST(Determinism, WhateverThePool) {
+TEST(Determinism, IndependentOfThePoolsSize) {
   const world::World world = small_world(30, kNoise);
   const std::uint64_t large = run(world, {.seed = 1});
   for (const std::uint32_t chunks : {32u, 1024u, 16'384u})
@@ -121,7 +121,7 @@ TEST(Determinism, RobotsThatCannotBeSensedChangeNothing) {
 }
 
 /// A robot's readings do not depend on the other sensors due in its tick.
-TEST(Determinism, WhateverTheBatch) {
+TEST(Determinism, IndependentOfTheBatch) {
   world::World world = small_world(12, kNoise);
   const std::vector<Kept> alone = of_first(world, false);
   EXPECT_EQ(of_first(world, true), alone);

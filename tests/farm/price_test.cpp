@@ -91,7 +91,7 @@ TEST(Price, TheUnheardCastAndSubmitNothing) {
 }
 
 /// 10 Hz with ticks of a millisecond: one batch per hundred ticks.
-TEST(Price, WhoIsNotDueSubmitsNothing) {
+TEST(Price, SensorsThatAreNotDueSubmitNothing) {
   const world::World world = small_world(20);
   Farm farm(world, device(), kOnDevice);
   farm.subscribe_all();
@@ -100,7 +100,7 @@ TEST(Price, WhoIsNotDueSubmitsNothing) {
   EXPECT_EQ(farm.stats().work.rays, 10u * 20u * kBeams);
 }
 
-TEST(Price, WhoStandsCastsAndSubmitsNothing) {
+TEST(Price, AStandingFleetCastsAndSubmitsNothing) {
   const world::World world = small_world(20);
   Farm farm(world, device(), kOnDevice);
   farm.subscribe_all();
@@ -111,7 +111,7 @@ TEST(Price, WhoStandsCastsAndSubmitsNothing) {
 }
 
 /// Host scans need no batch and give the same bytes.
-TEST(Price, WhatTheHostCastsSubmitsNothing) {
+TEST(Price, ScansOfTheHostSubmitNothing) {
   const world::World world = small_world(20);
   Farm by_host(world, device(), {.scene = {.caster = raycast::CasterChoice::host}});
   Farm by_device(world, device(), kOnDevice);

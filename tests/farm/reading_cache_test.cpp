@@ -179,7 +179,7 @@ struct Pair {
   }
 };
 
-TEST(ReadingCache, WhoStandsLooksTwiceAndNeverAgain) {
+TEST(ReadingCache, AStandingSensorIsMeasuredTwice) {
   Pair pair;
   const base::Pose far{5.0, 0.0, 0.0, 0.0};
   EXPECT_FALSE(pair.again_with(far));
@@ -189,7 +189,7 @@ TEST(ReadingCache, WhoStandsLooksTwiceAndNeverAgain) {
 }
 
 /// Any change of its own pose counts, even the sign of a zero.
-TEST(ReadingCache, WhoMovesLooks) {
+TEST(ReadingCache, AMovingSensorIsMeasured) {
   const base::Pose far{5.0, 0.0, 0.0, 0.0};
   for (const base::Pose& own : {base::Pose{1e-300, 0, 0, 0}, base::Pose{0, -1e-9, 0, 0}, base::Pose{0, 0, 0, 1e-16},
                                 base::Pose{0, 0, 0, 2.0 * M_PI}, base::Pose{0, 0, 0, -0.0}}) {
@@ -287,7 +287,7 @@ TEST(ReadingCache, MagnetometersMindMagnetsAlone) {
 }
 
 /// A robot without an outline is invisible.
-TEST(ReadingCache, WhatHasNoOutlineDisturbsNobody) {
+TEST(ReadingCache, AMoverWithoutOutlineInvalidatesNothing) {
   Pair pair([](world::World& world) { world.movers[1].body.clear(); });
   pair.settle({5.0, 0.0, 0.0, 0.0});
   EXPECT_TRUE(pair.again_with({1.0, 0.0, 0.0, 0.0}));

@@ -90,7 +90,7 @@ TEST(Choose, EveryOtherDeviceHasItsReason) {
 }
 
 /// A device that fails its self-check gets the fault as its reason, and the next best is chosen.
-TEST(Choose, WhatFailsItsSelfCheckMakesWay) {
+TEST(Choose, ADeviceThatFailsItsSelfCheckIsPassedOver) {
   DeviceCandidates candidates = five();
   std::vector<std::size_t> tried;
   const TryDevice only_software = [&](DeviceCandidates& all, std::size_t row) {

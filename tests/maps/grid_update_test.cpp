@@ -36,7 +36,7 @@ TEST(MapRule, ABeamThatMeetsNothingFreesItsEnd) {
     EXPECT_EQ(text_of(one_beam({2.5, 9.5, 0, 0}, range, 3.0)).substr(2 * 13, 12), "00    000000") << range;
 }
 
-TEST(MapRule, WhatSaysNothing) {
+TEST(MapRule, RangesWithoutMeaningChangeNoCell) {
   EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, std::nan(""), 3.0)).unexplored, 144u);
   EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, -0.1, 3.0)).unexplored, 144u);
   EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, 0.5, 3.0, 0.5)).unexplored, 144u) << "that, or anything nearer";

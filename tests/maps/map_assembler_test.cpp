@@ -54,7 +54,7 @@ TEST(MapPackets, PartsFillADatagram) {
   EXPECT_EQ(plain_parts(numbered(0))[1].size(), 1800u);
 }
 
-TEST(MapPackets, WhatNoMapSaysIsRefused) {
+TEST(MapPackets, MalformedPartsAreRefused) {
   const base::Bytes good = parts_of(numbered(3))[2];
   MapPart part;
   ASSERT_EQ(read_part(good, part), PartFault::none);
@@ -96,7 +96,7 @@ TEST(MapAssembler, PartsInAnyOrderMakeTheMap) {
   EXPECT_EQ(assembler.incomplete_maps(), 0u);
 }
 
-TEST(MapAssembler, WhatWasLostIsAsBefore) {
+TEST(MapAssembler, LostPartsKeepTheirOldContent) {
   MapAssembler assembler;
   for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(1, part);
   const auto next = parts_of(numbered(2));

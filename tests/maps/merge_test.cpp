@@ -68,7 +68,7 @@ TEST(Merge, EveryCellIsThatOfItsMaps) {
   }
 }
 
-TEST(Merge, WhatCannotBeOneIsRefused) {
+TEST(Merge, MapsThatDoNotFitTogetherAreRefused) {
   const OccupancyGrid a(GridGeometry{0, 0, 0.03, 2, 2}), coarse(GridGeometry{0, 0, 0.05, 2, 2}),
       far(GridGeometry{1e5, 0, 0.03, 2, 2});
   const OccupancyGrid* const cells[] = {&a, &coarse};

@@ -29,7 +29,7 @@ TEST_F(ClientRegistryTest, KnowsItsIdsOnly) {
   EXPECT_FALSE(registry.source(1));
 }
 
-TEST_F(ClientRegistryTest, NobodyIsActiveBeforeSending) {
+TEST_F(ClientRegistryTest, NoClientIsActiveBeforeSending) {
   EXPECT_FALSE(registry.is_active(7, 0));
   EXPECT_FALSE(registry.source(7));
 }
@@ -99,7 +99,7 @@ TEST_F(ClientRegistryTest, ChannelsCountApart) {
             PacketStatus::accepted);  // this channel was silent, the other one kept the binding
 }
 
-TEST_F(ClientRegistryTest, WhoLeavesFreesItsIdAtOnce) {
+TEST_F(ClientRegistryTest, ALeavingClientFreesItsIdAtOnce) {
   say(kAlice, 10, 0);
   EXPECT_EQ(registry.leave(7, kAlice, 1), PacketStatus::accepted);
   EXPECT_FALSE(registry.is_active(7, 1));
@@ -109,7 +109,7 @@ TEST_F(ClientRegistryTest, WhoLeavesFreesItsIdAtOnce) {
   EXPECT_EQ(say(kAlice, 11, 2), PacketStatus::wrong_source);
 }
 
-TEST_F(ClientRegistryTest, WhatALeaveOvertookBindsNobody) {
+TEST_F(ClientRegistryTest, APacketThatALeaveOvertookBindsNoClient) {
   say(kAlice, 10, 0);
   registry.leave(7, kAlice, kSecond);
   EXPECT_EQ(say(kAlice, 9, kSecond), PacketStatus::stale);

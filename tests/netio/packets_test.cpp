@@ -80,7 +80,7 @@ TEST(Packets, V2vComesBack) {
   EXPECT_FALSE(got.docking);
 }
 
-TEST(Packets, NobodyAndNowhereAreReserved) {
+TEST(Packets, NoRobotAndNoCheckpointHaveReservedValues) {
   base::Bytes bytes;
   encode({}, V2v{}, bytes);
   EXPECT_EQ(body_of<V2v>(bytes).follows, kNone);
@@ -140,7 +140,7 @@ TEST(Packets, ReservedBytesOfTheHeaderAreIgnored) {
   EXPECT_EQ(reason_of(patched<std::uint16_t>(v2v_example(), 62, 0xFFFF)), PacketStatus::accepted);
 }
 
-TEST(Packets, WhatIsReservedIsSentAsZero) {
+TEST(Packets, ReservedBytesAreSentAsZero) {
   for (const base::Bytes& bytes : examples())
     for (std::size_t at = 32; at < kHeaderBytes; ++at) EXPECT_EQ(bytes[at], 0) << at;
 }

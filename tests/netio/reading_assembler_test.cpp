@@ -58,7 +58,7 @@ TEST(ReadingAssembler, TheLastPartMakesItWhole) {
   EXPECT_EQ(p.assembler.lost(), 0u);
 }
 
-TEST(ReadingAssembler, WhatNoPartSaysIsNotANumber) {
+TEST(ReadingAssembler, ValuesOfMissingPartsAreNotANumber) {
   ReadingAssembler assembler(3);
   assembler.take({0, 0, 1, 0}, 0, [](std::span<double> values) { values[1] = 5.0; });
   EXPECT_TRUE(std::isnan(assembler.newest()->values[0]));

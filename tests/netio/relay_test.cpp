@@ -105,7 +105,7 @@ TEST_F(RelayTest, TheNewestOfEachOncePerTick) {
   EXPECT_EQ(heard(3).size(), 1u);
 }
 
-TEST_F(RelayTest, WhatNobodyAskedForIsForgotten) {
+TEST_F(RelayTest, StatesWithoutSubscribersAreForgotten) {
   say(7, 2.0);
   tick();
   ask(3, kNeighboursBit);

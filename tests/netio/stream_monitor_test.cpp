@@ -319,7 +319,7 @@ class Full : public testing::Test {
 };
 using FullOutbox = Full;
 
-TEST_F(FullOutbox, WhatIsNotTakenIsDroppedAndCounted) {
+TEST_F(FullOutbox, RefusedDatagramsAreDroppedAndCounted) {
   Outbox outbox(std::move(full_), {.capacity = 20'000, .patience_ms = 0});
   for (int i = 0; i < 20'000; ++i) outbox.queue({kLoopback, 9}, base::Bytes(kMaxHeaderlessDatagram));
   outbox.flush();
@@ -377,7 +377,7 @@ TEST_F(FullOutbox, ABacklogHasABound) {
 }
 
 /// Claimed and returned slots are neither sent nor counted.
-TEST(Outbox, WhatIsGivenBackIsForgotten) {
+TEST(Outbox, DatagramsGivenBackAreForgotten) {
   const Socket ears = open_udp({kLoopback, 0});
   Outbox outbox;
   outbox.queue(bound_endpoint(ears), base::Bytes{1});

@@ -232,7 +232,7 @@ TEST(McapReader, OpcodesOfLaterVersionsArePassedOver) {
   EXPECT_EQ(read(file.bytes).messages.size(), 1u);
 }
 
-TEST(McapReader, WhatIsNoMCAPFileIsRefused) {
+TEST(McapReader, OtherFilesAreRefused) {
   const std::vector<Bytes> corpus = {
       {}, {0x89}, Bytes(8, 0), {'#', 'R', 'O', 'S', 'B', 'A', 'G', ' ', 'V', '2', '.', '0'}};
   for (const Bytes& bytes : corpus) EXPECT_THROW(read(bytes), base::InputError);

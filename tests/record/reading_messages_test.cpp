@@ -85,7 +85,7 @@ TEST(Readings, ReadingsOfAnyShapeComeBackToTheBit) {
   }
 }
 
-TEST(Readings, WhatIsNotThereStaysNotANumber) {
+TEST(Readings, MissingValuesStayNotANumber) {
   std::vector<double> got;
   std::int64_t time = 0;
   ASSERT_TRUE(decode_reading(edge_kind(), encoded(edge_kind(), {std::nan(""), 0, 0, 0, 0}), time, got));

@@ -217,7 +217,7 @@ void add_run_info(McapWriter& writer, const RunInfo& info) {
   writer.add_message({.channel = writer.add_channel(schema, "/run", "cdr"), .data = message});
 }
 
-TEST(Recording, WhatIsNoRecordingOfOursIsRefusedWithTheReason) {
+TEST(Recording, OtherRecordingsAreRefusedWithTheReason) {
   EXPECT_NE(refusal({'P', 'K', 3, 4}).find("dir/run.mcap: not an MCAP file"), std::string::npos);
   EXPECT_NE(refusal({}).find("not an MCAP file"), std::string::npos);
 

@@ -56,7 +56,7 @@ TEST(Sectors, EndWhereTheSurfaceIsAMillimetreAway) {
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.20101, -1.0}, {0.20101, 1.0})), 0u);
 }
 
-TEST(Sectors, WhatIsAboveOrBelowDoesNotTouch) {
+TEST(Sectors, ObjectsAboveOrBelowDoNotTouch) {
   EXPECT_NE(contact_sectors(square(), {0, 0, 0.5, 0}, wall({0.2, -1.0}, {0.2, 1.0})), 0u);
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2, -1.0}, {0.2, 1.0}, 0.1, 1.0)), 0u) << "the square is 0.1 m high";
   EXPECT_EQ(contact_sectors(square(), {0, 0, 1.0, 0}, wall({0.2, -1.0}, {0.2, 1.0})), 0u);

@@ -33,7 +33,7 @@ double gap_to(const world::World& world, const Pose& X_WM, const world::Mover& m
   return gap;
 }
 
-TEST(Contact, WhateverARobotRunsIntoItComesWithinHalfAMillimetre) {
+TEST(Contact, ARobotStopsWithinHalfAMillimetreOfAnyObstacle) {
   for (std::uint32_t k = 0; k < 60; ++k) {
     const auto u = base::random_uniform({.seed = 31, .stream = base::RandomStream::placement, .a = k}, 0);
     world::World world = scenes::boxed_world(2, 2);
@@ -96,7 +96,7 @@ TEST(Contact, PassingByIsNone) {
   EXPECT_EQ(fleet.contacts()[0], 0);
 }
 
-TEST(Contact, WhoIsRunIntoFeelsItToo) {
+TEST(Contact, BothRobotsFeelAContact) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {0, 0, 0, M_PI});  // with its back to the other
   scenes::add_square(world, {1, 0, 0, M_PI});
@@ -179,7 +179,7 @@ TEST(Contact, ARobotThatIsToldPressesOnVirtualThings) {
   EXPECT_EQ(fleet.predict(5 * kTick)[1].contact_mask, 0u);
 }
 
-TEST(Contact, WhatAReportSaysOfARealBumperStays) {
+TEST(Contact, AReportedContactOfARealBumperStays) {
   world::World world = scenes::empty_world();
   scenes::add_create(world, {0, 0, 0, 0});
   Fleet fleet(world);

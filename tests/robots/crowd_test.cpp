@@ -256,7 +256,7 @@ TEST(Crowd, OfTwoThatWantOneGapTheSmallerIdGoesFirst) {
 }
 
 /// A robot close behind a moving one is not stopped by the other's previous place, whichever has the smaller id.
-TEST(Crowd, WhoFollowsCloselyIsNotStopped) {
+TEST(Crowd, ACloseFollowerIsNotStopped) {
   for (const bool swapped : {false, true}) {
     world::World world = scenes::empty_world();
     for (int i = 0; i < 3; ++i) scenes::add_square(world, {-0.41 * i, 0, 0, 0});
@@ -296,7 +296,7 @@ TEST(Crowd, AllWhoPushThroughAGapGetThrough) {
   EXPECT_EQ(through, 20);
 }
 
-TEST(Crowd, WhatIsFarAwayChangesNothing) {
+TEST(Crowd, ARobotFarAwayChangesNothing) {
   world::World alone = scenes::boxed_world(6, 6), together = alone;
   scenes::add_create(alone, {3, 3, 0, 0});
   scenes::add_create(together, {3, 3, 0, 0});

@@ -29,7 +29,7 @@ TEST(DriverModel, DirectIsTheCommandItself) {
   expect_twist(apply_driver(world::Mover{}, {0.1234, 0.2, -3.3}), {0.1234, 0.2, -3.3});
 }
 
-TEST(DriverModel, WhatIsNotFiniteIsZero) {
+TEST(DriverModel, CommandsThatAreNotFiniteAreZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   expect_twist(apply_driver(world::Mover{}, {nan, inf, 1.0}), {0.0, 0.0, 1.0});
   expect_twist(apply_driver(create(), {nan, inf, -inf}), {0.0, 0.0, 0.0});

@@ -262,7 +262,7 @@ TEST(Fleet, HeightsAreThoseAtLoadWhateverReportsSay) {
   }
 }
 
-TEST(Fleet, WhoIsGoneIsInNobodysWay) {
+TEST(Fleet, AnAbsentRobotTouchesNoOther) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {});
   scenes::add_square(world, {2, 0, 0, 0});
@@ -279,7 +279,7 @@ TEST(Fleet, WhoIsGoneIsInNobodysWay) {
 }
 
 /// A robot drives through the place of an absent one.
-TEST(Fleet, WhoIsGoneStopsNobody) {
+TEST(Fleet, AnAbsentRobotStopsNoOther) {
   for (const bool gone : {false, true}) {
     world::World world = scenes::empty_world();
     scenes::add_square(world, {});

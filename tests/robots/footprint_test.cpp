@@ -79,7 +79,7 @@ TEST(Footprint, StepIsAQuarterOfTheInradius) {
   EXPECT_NEAR(footprint_of(mover).step, std::hypot(1.2, 0.2) / 16, 1e-12) << "the origin is outside";
 }
 
-TEST(Footprint, WhatDoesNotStopIsLeftOut) {
+TEST(Footprint, EdgesThatStopNoRobotAreLeftOut) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   for (world::Segment& s : mover.body) s.stops_robots = false;

@@ -81,7 +81,7 @@ TEST(Interpolate, HinderedItIsOnTheArcBetweenItsPoses) {
 }
 
 /// Bitwise, whatever the reported velocity, and for any representation of the yaw.
-TEST(Interpolate, WhoStandsStands) {
+TEST(Interpolate, AStandingMoverStands) {
   const base::Report before = at(0, {0.1, 0.2, 0.3, 7.0}, {}), after = at(kTick, before.X_WM, {0.3, 0, 0});
   const base::Report report = interpolate(before, after, kTick / 3);
   EXPECT_EQ(report.X_WM.x, 0.1);
@@ -173,7 +173,7 @@ TEST(LimitAcceleration, ReportsThatSayTooMuchAreFollowedBackAtOnce) {
   EXPECT_EQ(limit_acceleration(lazy(world::Drive::differential), {5.0, 0.3, 0}, {0.5, 0, 0}, 0.1).forward, 0.5);
 }
 
-TEST(LimitKinematics, WhatIsNotFiniteIsZero) {
+TEST(LimitKinematics, CommandsThatAreNotFiniteAreZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const auto drive : {world::Drive::differential, world::Drive::omni, world::Drive::car}) {
     const Twist v = limit_kinematics(mover(drive), {nan, inf, -inf});

@@ -46,7 +46,7 @@ TEST_F(BodyTest, WallsStopIt) {
 }
 
 /// The other robot reports a pose in the way, and then is silent.
-TEST_F(BodyTest, WhoIsSilentForLongIsInNobodysWay) {
+TEST_F(BodyTest, ALongSilentRobotIsNoObstacle) {
   for (const std::int64_t forget : {std::int64_t{0}, 2000 * kMilli}) {
     RobotBody one(world, 0, forget);
     one.move({}, 100 * kMilli);

@@ -60,7 +60,7 @@ TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
 }
 
 /// 3 m x 3 m without three boxes of 0.25 m^2 and the tree; no cell beyond the walls.
-TEST(Coverage, WhatCouldBeSeenIsTheRoom) {
+TEST(Coverage, TheVisibleAreaIsTheRoom) {
   const world::World world = mapping_world();
   const RobotMap map(world, 0);
   const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().plan);

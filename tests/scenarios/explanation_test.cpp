@@ -50,7 +50,7 @@ TEST(Explanation, CountsWhatThereIs) {
 }
 
 /// A tag that stands: its laser has the room to itself.
-TEST(Explanation, WhatIsGivenAgainIsCounted) {
+TEST(Explanation, ReusedReadingsAreCounted) {
   world::World world;
   scenes::add_room(world, {}, 20.0);
   scenes::add_robot(world, {}, scenes::laser(61, M_PI, 4.0));

@@ -104,7 +104,7 @@ TEST(Junit, HasASuiteAScenarioAndACaseAnExpectation) {
   EXPECT_NE(text.find("two.toml:7"), std::string::npos);
 }
 
-TEST(Junit, WhatXmlReservesIsEscaped) {
+TEST(Junit, ReservedCharactersAreEscaped) {
   const std::string bad = "a<b> & \"c\" 'd'";
   const std::vector<ScenarioResult> results{{.name = bad, .file = bad, .outcomes = {{bad, bad, bad, false, 1}}}};
   const std::string text = junit_of(results);

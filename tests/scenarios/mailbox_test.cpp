@@ -62,7 +62,7 @@ TEST(Mailbox, ADelayOfDIsSeenDLater) {
   EXPECT_EQ(newest(box, 1150 * kMs), 9.0);
 }
 
-TEST(Mailbox, WhatIsLostNeverComes) {
+TEST(Mailbox, LostReadingsNeverCome) {
   Mailbox box({.loss = 1.0}, 0);
   Sender sender;
   for (std::uint32_t k = 0; k < 20; ++k) box.send(sender.reading(k), k * 100 * kMs);

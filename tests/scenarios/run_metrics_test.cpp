@@ -74,7 +74,7 @@ base::Pose line_of(const Town& town, const std::string& name) {
   return {p.x, p.y, 0.0, *world::yaw_of(roads, *at)};
 }
 
-TEST(RunMetrics, WhoPassesAtRedIsCountedAndNobodyElse) {
+TEST(RunMetrics, OnlyPassesAtRedAreCounted) {
   Town town;
   ASSERT_NE(town.simulation().roads(), nullptr);
   ASSERT_FALSE(town.world().lights.empty());

@@ -29,7 +29,7 @@ std::string refusal(const std::string& text) {
 }
 
 /// One error each, with the message before any run.
-TEST(CheckScenario, WhatARunWouldRefuseIsRefusedAtItsLine) {
+TEST(CheckScenario, ErrorsOfARunAreFoundAtTheirLines) {
   const std::string rooms = kRooms, path = kPath;
   const std::string robots = "robots = 2\n";
   const std::pair<std::string, std::string> kCorpus[] = {
@@ -47,7 +47,7 @@ TEST(CheckScenario, WhatARunWouldRefuseIsRefusedAtItsLine) {
   for (const auto& [text, said] : kCorpus) EXPECT_EQ(refusal(text).substr(0, said.size()), said) << text;
 }
 
-TEST(CheckScenario, WhatCanRunPasses) {
+TEST(CheckScenario, AValidScenarioPasses) {
   EXPECT_EQ(refusal(std::string(kRooms) + "robots = 2\n"), "");
   EXPECT_EQ(refusal(std::string(kPath) + "[default]\ncontroller = \"lane-keeping\"\n[expect]\nmean_error = 1\n"), "");
 }

@@ -78,7 +78,7 @@ TEST(Simulation, AMailboxThatKeepsNothingBackChangesNothing) {
   EXPECT_EQ(hash_after(world, options, 30), direct);
 }
 
-TEST(Simulation, WhoHasNoControllerStands) {
+TEST(Simulation, ARobotWithoutControllerStands) {
   const world::World world = our_world("rooms.world", 3);
   SimulationOptions options;
   options.actor.plan.controller.clear();

@@ -45,7 +45,7 @@ TEST(Supervisor, TakesWhoHasStoodForSoLong) {
   EXPECT_EQ(help.mover, 0u);
 }
 
-TEST(Supervisor, NobodyIsThereUnlessToldSo) {
+TEST(Supervisor, NoSupervisorByDefault) {
   Ride ride({});
   Supervisor::Intervention help;
   EXPECT_EQ(ride.wait(help), 1000);

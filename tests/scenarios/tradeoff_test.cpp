@@ -52,7 +52,7 @@ TEST(Tradeoff, CanBeStopped) {
 }
 
 /// A lane edge sensor in a bend: no bound covers its readings, and none is shown.
-TEST(Tradeoff, WhatNoBoundCoversHasNone) {
+TEST(Tradeoff, NoBoundIsStatedWhereNoneHolds) {
   world::World world;
   world::LaneMarking bend{{}, 0.1};
   for (int i = 0; i <= 600; ++i) bend.line.push_back(base::rotate(0.01 * i, {0.68, 0.0}));

@@ -64,7 +64,7 @@ TEST(Accuracy, AnOrderComesBeforeBoth) {
   EXPECT_EQ(modes(load("accuracy \"skip2\"", "", "", "exact")), "exact");
 }
 
-TEST(Accuracy, WhatNobodyKnowsIsRefusedWhereItStands) {
+TEST(Accuracy, UnknownModesAreRefusedAtTheirLine) {
   EXPECT_NE(refusal(load("\naccuracy \"skip3\""))
                 .find("sf_accuracy.world:2: there is no accuracy \"skip3\"; expected "
                       "one of \"exact\", \"single\""),

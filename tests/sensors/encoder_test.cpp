@@ -300,7 +300,7 @@ TEST(Encoder, DrivingFastIsNoJump) {
   }
 }
 
-TEST(Encoder, WhoIsPutElsewhereHasNotRolled) {
+TEST(Encoder, ARelocatedRobotHasNotRolled) {
   const world::World world = one_robot();
   farm::Farm farm(world, device());
   farm.subscribe_all();

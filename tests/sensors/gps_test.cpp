@@ -129,7 +129,7 @@ TEST(Gps, AWallBlocksWhereTheLineCrossesItsHeights) {
   EXPECT_TRUE(is_visible(world, {0, 0}, 0, kEast)) << "edge on";
 }
 
-TEST(Gps, WhatNeitherLasersSeeNorStopsRobotsIsAir) {
+TEST(Gps, ASegmentThatNeitherEchoesNorStopsHidesNoSatellite) {
   world::World world;
   world.walls = {{.a = {1, -1}, .b = {1, 1}, .z_min = 0, .z_max = 9}};
   world.walls[0].seen_by_laser = false;

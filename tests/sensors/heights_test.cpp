@@ -47,7 +47,7 @@ TEST(Heights, UnderABridgeAndOverALowBoxTheWallBehindIsSeen) {
   EXPECT_NEAR(look(world, 0.2), 5.0, 1e-12);
 }
 
-TEST(Heights, WhatDoesNotEchoIsNotSeen) {
+TEST(Heights, ABoxThatDoesNotEchoIsNotSeen) {
   world::World world;
   add_box(world, 0.0, 1.0, false);
   EXPECT_EQ(look(world, 0.2), 8.0);

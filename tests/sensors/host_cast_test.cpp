@@ -161,7 +161,7 @@ TEST(HostCast, RangersAndLaneEdgesInACrowdAtOnePlace) {
 
 /// The lasers of one robot share a list, made for a disc that contains both: walls hidden from its middle may be
 /// visible from its rim.
-TEST(SharedLists, WhatOneOfTwoLasersSeesPastANeighbourIsSeen) {
+TEST(SharedLists, AWallThatOneOfTwoLasersSeesIsSeen) {
   for (const double y : {0.3, -0.3}) {
     world::World world;
     const std::uint32_t m = add_eye(world, {}, eye(361, M_PI, 8.0));

@@ -135,7 +135,7 @@ TEST(LaneEdgeNoise, IsAFunctionOfNames) {
 }
 
 /// No sensor due, then all, then one: the tables follow.
-TEST(LaneEdgeNoise, WhoeverIsDue) {
+TEST(LaneEdgeNoise, IndependentOfTheSensorsThatAreDue) {
   const world::World world = noisy_world(70, {0.0, 0.0, 0.0});
   EdgeRig rig(world);
   std::vector<base::Pose> poses;

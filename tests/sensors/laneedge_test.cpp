@@ -74,7 +74,7 @@ TEST(LaneEdge, AtTheMaximumNothingIsSeen) {
   EXPECT_NEAR(askew(0.985, 0.0).distance, 0.985, 1e-10);
 }
 
-TEST(LaneEdge, WhatIsBehindIsNotSeen) {
+TEST(LaneEdge, AMarkingBehindIsNotSeen) {
   const EdgeReading r = askew(0.25, 180.0);
   EXPECT_TRUE(std::isnan(r.distance));
   EXPECT_EQ(r.points, 0);
@@ -282,7 +282,7 @@ TEST(LaneEdge, FarFromTheOrigin) {
 glm::dvec2 mirrored(glm::dvec2 p) { return {p.x, -p.y}; }
 
 /// Rotated, translated and mirrored, with a robot added that hides nothing: the reading is the same.
-TEST(LaneEdge, WhatMustNotMatter) {
+TEST(LaneEdge, InvariantUnderMotionAndReflection) {
   world::World world;
   Chance chance(8);
   add_dashes(world, {-3.0, 0.0}, {3.0, 0.7}, 0.05, 0.2, 0.1);

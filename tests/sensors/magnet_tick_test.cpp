@@ -37,7 +37,7 @@ std::vector<base::Report> reports_at(const world::World& world, int tick) {
 }
 
 /// Magnets of an absent robot are absent too, as in a world without them.
-TEST(MagnetTick, WhoIsGoneTakesItsMagnetsAlong) {
+TEST(MagnetTick, AnAbsentRobotHasNoMagnets) {
   for (const double cutoff : {0.0, 1.5}) {
     const world::World world = park(cutoff);
     world::World without = world;

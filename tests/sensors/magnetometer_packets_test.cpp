@@ -54,7 +54,7 @@ TEST(MagnetometerPackets, RoundsToNearestAndSaturates) {
   EXPECT_DOUBLE_EQ(word(-1e300), -21.47483648);
 }
 
-TEST(MagnetometerPackets, WhatIsNotANumberIsNotSent) {
+TEST(MagnetometerPackets, ReadingsThatAreNotANumberAreNotSent) {
   for (std::size_t i = 0; i < 8; ++i) {
     std::vector<double> values(8, 1e-5);
     values[i] = std::nan("");

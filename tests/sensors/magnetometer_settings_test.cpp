@@ -96,7 +96,7 @@ void say(world::Sensor& sensor, const std::string& key, const std::string& text)
   sensor.settings.push_back({key, {}, text, 42, "park.world"});
 }
 
-TEST(MagnetometerSettings, WhatIsWrongIsRefusedWithFileAndLine) {
+TEST(MagnetometerSettings, WrongSettingsAreRefusedWithFileAndLine) {
   const std::vector<Wrong> corpus = {
       {"the thesis' sample, whose spose[0] came five times",
        [](auto& s) {

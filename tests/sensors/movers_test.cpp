@@ -46,7 +46,7 @@ TEST(Movers, AnotherIsSeenWhereItWasReported) {
 }
 
 /// A silent robot is invisible until its next report; the reading is not reused.
-TEST(Movers, WhoIsGoneIsNotSeenUntilItIsBack) {
+TEST(Movers, AnAbsentRobotIsNotSeenUntilItIsBack) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
   const std::uint32_t other = scenes::add_robot(world, {2, 0, 0, 0}, eye(1, 0.0, 8.0));

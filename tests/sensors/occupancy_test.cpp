@@ -85,7 +85,7 @@ TEST(OccupancySettings, AsWritten) {
   EXPECT_FALSE(only(mapped(1, {numbers("log_odds", {0})})).plan.odds);
 }
 
-TEST(OccupancySettings, WhatMakesNoSense) {
+TEST(OccupancySettings, WrongSettingsAreRefused) {
   expect_refused({numbers("cell", {0.0})}, "'cell' is 0");
   expect_refused({numbers("cell", {0.0005})}, "more than 1022 cells");
   expect_refused({numbers("words", {30})}, "[columns rows]");

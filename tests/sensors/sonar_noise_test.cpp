@@ -114,7 +114,7 @@ TEST(SonarNoise, StaysWithinRangeAndLeavesAloneWhatHeardNothing) {
 }
 
 /// Transducers that do not fire keep their draw too: their last reading stays the same to the bit.
-TEST(SonarNoise, WhatDoesNotFireStands) {
+TEST(SonarNoise, ATransducerThatDoesNotFireKeepsItsReading) {
   world::World world;
   scenes::add_outline(world, {{1, -50}, {2, -50}, {2, 50}, {1, 50}}, "wall");
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8), {cone_setting("noise", {0.05})}));

@@ -117,7 +117,7 @@ struct Wrong {
   const char* type = "sonar";
 };
 
-TEST(SonarSettings, WhatIsWrongIsRefusedWithFileAndLine) {
+TEST(SonarSettings, WrongSettingsAreRefusedWithFileAndLine) {
   const std::vector<Wrong> corpus = {
       {"scount", {0}, "", "'scount' is 0; expected 1 to 64"},
       {"scount", {65}, "", "'scount' is 65; expected 1 to 64"},

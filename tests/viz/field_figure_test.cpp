@@ -64,7 +64,7 @@ TEST(FieldFigure, AColumnOfMagnetsHasALineUpwards) {
   EXPECT_GT(view.line.b.y, 0.1775);
 }
 
-TEST(FieldFigure, WhatIsAskedForIsShown) {
+TEST(FieldFigure, TheFigureCoversTheRequestedExtentAndLine) {
   const FieldView view = field_view(six(), {0.1, Line{{0, 1}, {2, 3}}, world::Extent{-1, -5, 3, 7}});
   EXPECT_EQ(view.line.b.x, 2.0);
   EXPECT_LE(view.extent.x_min, -1.0);

@@ -191,7 +191,7 @@ TEST(WorldFigure, ViewStopsAtWalls) {
   EXPECT_EQ(seen.at(6.62, 2.27), kWhite);
 }
 
-TEST(WorldFigure, WhatAllWallsAreNotIsDrawnToo) {  // all combinations of flags: no wall disappears
+TEST(WorldFigure, EveryCombinationOfWallFlagsIsDrawn) {  // all combinations of flags: no wall disappears
   for (int flags = 0; flags < 8; ++flags) {
     world::World world = room();
     for (world::Segment& s : world.walls) {
@@ -368,7 +368,7 @@ TEST(TrajectoryFigure, LaterTracksLieOnTop) {
   EXPECT_EQ(see(file("over.png"), 0.03).at(3.03, 2.0), 0xFF0000FFu);
 }
 
-TEST(TrajectoryFigure, WhatLeavesTheWorldIsShown) {  // the figure grows with the tracks
+TEST(TrajectoryFigure, TracksBeyondTheWorldAreShown) {  // the figure grows with the tracks
   Track track = straight();
   track.poses.push_back({60.0, 2.0, 0, 0});
   draw_trajectories(room(), {&track, 1}, file("away.png"));

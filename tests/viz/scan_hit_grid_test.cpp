@@ -70,7 +70,7 @@ TEST(Occupancy, JustUnderRangeMaxIsAnEcho) {
 
 TEST(Occupancy, InfinityFreesUpToRangeMax) { EXPECT_EQ(known_cells(one_beam(kInfinity, 4.2)), 5); }
 
-TEST(Occupancy, WhatSaysNothingIsLeftOut) {
+TEST(Occupancy, RangesWithoutMeaningAreLeftOut) {
   EXPECT_EQ(known_cells(one_beam(kNaN, 8.0)), 0);
   EXPECT_EQ(known_cells(one_beam(-1.0, 8.0)), 0);
   EXPECT_EQ(known_cells(one_beam(-kInfinity, 8.0)), 0);
@@ -155,7 +155,7 @@ TEST(Occupancy, CountersDoNotOverflow) {  // beyond 65535 scans the ratio stays
   EXPECT_GT(grid.hits(4, 2), 30000u);
 }
 
-TEST(Occupancy, WhatMovesLeavesNoMark) {
+TEST(Occupancy, MoversLeaveNoMark) {
   ScanHitGrid grid({0, 0, 10, 5}, 1.0);
   const double echo = 4.2;
   const std::uint8_t moving = 1;

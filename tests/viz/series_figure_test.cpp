@@ -43,7 +43,7 @@ TEST(SeriesFigure, ALineRunsFromItsFirstToItsLastValue) {
   for (double part = 0.1; part < 0.95; part += 0.05) EXPECT_GT(colored(p, color, part, part + 0.05), 20) << part;
 }
 
-TEST(SeriesFigure, WhatIsMissingIsAGap) {
+TEST(SeriesFigure, MissingValuesAreGaps) {
   const scenes::Picture p = drawn(one_panel({per_second("a", {1, 1.1, kNan, INFINITY, 1.1, 1})}), "gap.png");
   const std::uint32_t color = row_color(0, 1);
   EXPECT_GT(colored(p, color, 0.1, 0.2), 20);

@@ -74,7 +74,7 @@ TEST(TownFigure, TracksWithoutPosesAreLeftOut) {
   EXPECT_GT(pixels(without, kRed), 50) << "the town is there";
 }
 
-TEST(TownFigure, WhatCannotBeWrittenIsAnError) {
+TEST(TownFigure, AnUnwritableFileIsAnError) {
   const Scene scene;
   EXPECT_THROW(draw_town(town(), scene.tracks, scene.end, "/nowhere/town.png"), base::InputError);
 }

@@ -41,7 +41,7 @@ TEST(SignalAt, OnePhaseNeverChanges) {
   EXPECT_EQ(signal_at(light, 100.0).left, HUGE_VAL);
 }
 
-TEST(SignalAt, WhatIsLeftIsWhatItTakes) {
+TEST(SignalAt, TheTimeLeftIsTheTimeToTheNextPhase) {
   for (std::uint32_t k = 0; k < 2000; ++k) {
     const auto u = base::random_uniform({.seed = 3, .stream = base::RandomStream::placement, .a = k}, 0);
     Light light = plan();

@@ -74,7 +74,7 @@ TEST(Mdf, MissingEndsAreWarnings) {
     EXPECT_EQ(parse_mdf("go.mdf", mdf_with(end, "")).warnings.size(), 1u) << end;
 }
 
-TEST(Mdf, WhatIsWrongIsRefused) {
+TEST(Mdf, WrongFilesAreRefused) {
   const std::vector<std::tuple<std::string, std::string, std::string>> corpus{
       {"num_checkpoints 3", "num_checkpoints 4", "go.mdf:6: 'num_checkpoints' says 4, but there are 3"},
       {"num_checkpoints 3\n", "", "go.mdf: 'num_checkpoints' is missing"},

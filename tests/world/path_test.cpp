@@ -113,7 +113,7 @@ TEST(Path, ADoubleLineIsTwoStripes) {
   EXPECT_NEAR(world.lane_markings[1].line[0].y, 0.30, 1e-12);
 }
 
-TEST(Path, WhatIsWrongIsSaid) {
+TEST(Path, ErrorsNameTheirLine) {
   EXPECT_EQ(error_of("path( )"), "test.world:1: a path needs 'pieces', and a straight[i] or an arc[i] for each");
   EXPECT_EQ(error_of("path( pieces 2\nstraight[0] [1 1] )"),
             "test.world:1: expected either straight[1] or arc[1]: 'pieces' is 2");

@@ -15,7 +15,7 @@ struct Slip {
 };
 
 // Each slip is refused in strict mode, and changes no number of the network otherwise.
-TEST(RndfSlips, WhatIsClearIsTaken) {
+TEST(RndfSlips, SlipsWithAClearMeaningAreWarnings) {
   const RoadCounts fine = count(small_rndf());
   const std::vector<Slip> corpus{
       {"num_waypoints 3", "num_waypoints 122", "10: 'num_waypoints' says 122, but lane 1.1 has 3; 3 are used"},
@@ -76,7 +76,7 @@ TEST(RndfSlips, AnExitOfTheNeighbourLeavesTheNeighbour) {
   EXPECT_EQ(id_of(roads, steps[0].to), (PointId{2, 1, 1}));
 }
 
-TEST(RndfSlips, WhatHasNoMeaningIsRefused) {
+TEST(RndfSlips, SlipsWithoutMeaningAreRefused) {
   const std::vector<std::pair<std::pair<std::string, std::string>, std::string>> corpus{
       {{"exit 1.1.3 2.1.1", "exit 1.1.3 9.1.1"}, "small.rndf:16: the exit leads to way-point 9.1.1, which does not"},
       {{"exit 1.1.3 2.1.1", "exit 1.1.3 3.1.1"}, "small.rndf:16: the exit leads to 3.1.1, a point of a parking spot"},
@@ -154,7 +154,7 @@ const std::string kMission =
     "MDF_name go\nRNDF small\ncheckpoints\nnum_checkpoints 2\n1\n2\nend_checkpoints\nspeed_limits\n"
     "num_speed_limits 2\n1 0 15\n3 5 25\nend_speed_limits\nend_file\n";
 
-TEST(MdfSlips, WhatIsClearIsTaken) {
+TEST(MdfSlips, SlipsWithAClearMeaningAreWarnings) {
   const std::vector<Slip> corpus{
       {"num_speed_limits 2", "num_speed_limits 68", "9: 'num_speed_limits' says 68, but there are 2; 2 are used"},
       {"num_speed_limits 2\n", "", "0: 'num_speed_limits' is missing; 2 are used"},
@@ -177,7 +177,7 @@ TEST(MdfSlips, WhatIsClearIsTaken) {
   }
 }
 
-TEST(MdfSlips, WhatHasNoMeaningIsRefusedAllAtOnce) {
+TEST(MdfSlips, SlipsWithoutMeaningAreRefusedTogether) {
   const std::string text = with(with(kMission, "\n2\n", "\n2 3\n"), "3 5 25", "3 25 5");
   try {
     parse_mdf("go.mdf", text);

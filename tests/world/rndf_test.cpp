@@ -159,7 +159,7 @@ TEST(Rndf, UnknownWordsAreNamedOnceWithTheNearest) {
   EXPECT_EQ(lines_of(rndf.warnings), "15: unknown keyword 'stopp' is ignored; did you mean 'stop'?\n");
 }
 
-TEST(Rndf, WhatFollowsTheEndIsIgnored) {
+TEST(Rndf, TextBehindTheEndIsIgnored) {
   const Rndf rndf = parse_rndf("x", std::string(kSmallRndf) + "segment 9\n");
   EXPECT_EQ(rndf.warnings.size(), 1u);
   EXPECT_EQ(rndf.segments.size(), 2u);

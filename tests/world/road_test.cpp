@@ -45,7 +45,7 @@ TEST(Road, AllLanesUnlessNamed) {
   EXPECT_GT(read_world(road("magnetic_moment 1 magnet_spacing 0.1")).magnets.size(), 400u);
 }
 
-TEST(Road, WhatIsWrongIsSaid) {
+TEST(Road, ErrorsNameTheirLine) {
   EXPECT_EQ(error_of("\nroad( )"), "test.world:2: a road needs its network: rndf \"FILE\"");
   EXPECT_EQ(error_of("road(\nrndf \"nowhere.rndf\" )"),
             "test.world:2: cannot find the road network \"nowhere.rndf\"; expected it beside this file, beside the "

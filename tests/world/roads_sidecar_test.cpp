@@ -81,7 +81,7 @@ TEST(Sidecar, UnknownKeysAreWarnings) {
       "unknown key 'z' is ignored\n");
 }
 
-TEST(Sidecar, WhatIsWrongIsRefused) {
+TEST(Sidecar, WrongFilesAreRefused) {
   const std::vector<std::pair<std::string, std::string>> corpus{
       {"scale = ", "small.toml:1: not TOML"},
       {"\n\nscale = 0", "small.toml:3: 'scale' expects a number from 1e-6"},

@@ -136,7 +136,7 @@ TEST_F(RosMap, PosesThatNobodyCanHaveAreNamed) {
   EXPECT_EQ(where(-10.1, 1), "outside of 'map'");
 }
 
-TEST_F(RosMap, WhatIsKnownTurnsWithTheMap) {
+TEST_F(RosMap, TheKnownAreaTurnsWithTheMap) {
   std::string yaml = kGood;
   yaml.replace(yaml.find("20, 0]"), 6, "20, 1.5707963267948966]");
   const std::vector<Segment> known = known_free(load(yaml));

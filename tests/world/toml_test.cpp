@@ -59,7 +59,7 @@ a = 2
 
 TEST(Toml, AnEmptyTextIsAnEmptyTable) { EXPECT_TRUE(parse_toml("f.toml", "").items.empty()); }
 
-TEST(Toml, WhatIsNoTomlIsRefusedAtItsLine) {
+TEST(Toml, InvalidTomlIsRefusedAtItsLine) {
   EXPECT_EQ(refusal("a = 1\nb = \n").substr(0, 18), "f.toml:2: not TOML");
   EXPECT_EQ(refusal("a = 1\na = 2\n").substr(0, 18), "f.toml:2: not TOML");
   EXPECT_EQ(refusal("a = \"\xC3\xA9\"\n").substr(0, 9), "f.toml:1:");
