@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/wall_grid.h"
+
 namespace sf::raycast {
 
 namespace {
@@ -81,8 +83,8 @@ void find_candidate_walls(const WallIndex& wall_index, const CellShape& shape, g
   const double radius = shape.radius();
   walls.front_facing.clear();
   walls.back_facing.clear();
-  wall_index.near(centre, shape.reach(), walls.query);
-  for (const std::uint32_t i : walls.query.found) {
+  wall_index.near(centre, shape.reach(), walls.near);
+  for (const std::uint32_t i : walls.near) {
     const IndexedWall& s = wall_index.segments()[i];
     glm::dvec2 a = s.a - centre, b = s.b - centre;
     if (!clip(a, b, shape.reach())) continue;

@@ -35,7 +35,7 @@ struct CandidateWall {
 struct CandidateWalls {
   std::vector<CandidateWall> front_facing;
   std::vector<CandidateWall> back_facing;  ///< facing away from the whole cell: they decide only ties at corners
-  WallIndex::Query query;
+  std::vector<std::uint32_t> near;         ///< indices into the segments of the wall index
 };
 
 /// Clips ab to within `reach` [m] of the origin. @return false when nothing is left

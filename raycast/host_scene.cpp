@@ -141,7 +141,7 @@ void HostScene::build_missing_cells() {
       cell.first = cells_.cache().first_chunk(slot);
       lists_[slot] = cell;
       if (cell.all <= kMaxMaskedBlocks) block_masks_[slot] = sector_block_masks(t.blocks);
-      cells_.classify_cell(key, slot, t.walls.query);
+      cells_.classify_cell(key, slot, t.walls.near);
       std::copy(t.blocks.begin(), t.blocks.end(), blocks_.begin() + static_cast<std::ptrdiff_t>(cell.first));
     }
   });

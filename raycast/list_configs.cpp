@@ -28,7 +28,7 @@ std::uint32_t ListConfigs::add(const ListConfig& config) {
   if (!wall_index) {
     world::World view;
     view.walls = walls_;
-    wall_index = std::make_unique<WallIndex>(view, config.z, config.range);
+    wall_index = std::make_unique<WallIndex>(view, config.z);
   }
   for (std::uint32_t i = 0; i < rows_.size(); ++i) {
     ListConfig& known = rows_[i].config;

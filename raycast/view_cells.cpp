@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "world/wall_grid.h"
+
 namespace sf::raycast {
 
 ViewCells::ViewCells(const ListConfigs& configs, double (*size)(double range, std::uint32_t beams), CellCache cache)
@@ -32,11 +34,11 @@ CellKey ViewCells::key_of(const Viewpoint& view) const {
   return key;
 }
 
-void ViewCells::classify_cell(const CellKey& key, std::uint32_t slot, const WallIndex::Query& query) {
+void ViewCells::classify_cell(const CellKey& key, std::uint32_t slot, std::span<const std::uint32_t> near) {
   const glm::dvec2 centre = centre_of(key);
   const WallIndex& wall_index = configs_.wall_index(config_of(key));
   const double reach = sizes_[config_of(key)] * M_SQRT1_2 * (1.0 + 1e-9) + 1e-9 * (1.0 + length(centre));
-  const bool any = std::any_of(query.found.begin(), query.found.end(), [&](std::uint32_t row) {
+  const bool any = std::any_of(near.begin(), near.end(), [&](std::uint32_t row) {
     const IndexedWall& s = wall_index.segments()[row];
     return s.solid_left && world::distance(centre, s.a, s.b) <= reach;
   });

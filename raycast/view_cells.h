@@ -40,8 +40,8 @@ class ViewCells {
   static std::size_t config_of(const CellKey& key) { return static_cast<std::size_t>(key.config / 2); }
   /// True when viewpoints in the cell lie inside solids.
   static bool in_solid(const CellKey& key) { return key.config % 2 == 1; }
-  /// Records whether a new cell lies on one side of all surfaces. @param query walls round it
-  void classify_cell(const CellKey& key, std::uint32_t slot, const WallIndex::Query& query);
+  /// Records whether a new cell lies on one side of all surfaces. @param near walls round it
+  void classify_cell(const CellKey& key, std::uint32_t slot, std::span<const std::uint32_t> near);
 
  private:
   CellKey key_of(const Viewpoint& view) const;

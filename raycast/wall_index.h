@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "world/wall_grid.h"
+#include "base/box_tree.h"
 #include "world/world.h"
 
 namespace sf::raycast {
@@ -17,46 +17,34 @@ struct IndexedWall {
   bool solid_left;
 };
 
-/// Immutable after construction. Several threads may query it, each with its own `Query`.
+/// Immutable after construction and thread-safe.
 class WallIndex {
  public:
-  /// Indexes the walls visible at height `z` [m]. `world` need not outlive it. @param typical_range [m]
-  WallIndex(const world::World& world, double z, double typical_range);
+  /// Indexes the walls visible at height `z` [m]. `world` need not outlive it.
+  WallIndex(const world::World& world, double z);
 
   const std::vector<IndexedWall>& segments() const { return segments_; }
-  glm::dvec2 low() const { return low_; }  ///< [m] corner of the bounding box
-  glm::dvec2 high() const { return high_; }
 
-  /// Scratch of one thread.
-  struct Query {
-    std::vector<std::uint32_t> found;  ///< indices into `segments()`, each once, in unspecified order
-    std::vector<std::uint32_t> stamps;
-    std::uint32_t stamp = 0;
-  };
-  /// Finds every segment within `radius` [m] of `p`, and possibly more.
-  void near(glm::dvec2 p, double radius, Query& query) const;
+  /// Finds every segment within `radius` [m] of `p`, and possibly more. @param found out: indices into `segments()`,
+  /// each once, in unspecified order
+  void near(glm::dvec2 p, double radius, std::vector<std::uint32_t>& found) const;
 
   /// True when `p` lies in a solid: the winding number of all outlines with a known solid side is not 0. Within
   /// rounding of a surface either result is possible.
   bool inside_solid(glm::dvec2 p) const;
 
  private:
-  struct Span {
-    int x0, y0, x1, y1;
+  /// The segments of solids in an interval of y, for winding numbers.
+  struct Band {
+    std::vector<std::uint32_t> from_left, from_right;  ///< by ascending least x, and by descending largest x
   };
-  Span cells_of(double x0, double y0, double x1, double y1) const;
-  void index_cells(double typical_range);
   void index_bands();
+  std::size_t band_of(double y) const;
 
-  std::vector<IndexedWall> segments_;
-  glm::dvec2 low_, high_;
-  double cell_ = 1.0;
-  int columns_ = 1, rows_ = 1;
-  std::vector<std::uint32_t> cell_first_, cell_items_;  ///< segments by cell
-  double band_ = 1.0;
-  int bands_ = 1;
-  std::vector<std::uint32_t> band_first_;              ///< segments by interval of y, for winding numbers:
-  std::vector<std::uint32_t> from_left_, from_right_;  ///< each band by ascending least x, and by descending largest x
+  std::vector<IndexedWall> segments_;  ///< neighbours stand together
+  base::BoxTree tree_;
+  std::vector<Band> bands_;
+  double band_height_ = 1.0;  ///< [m]
 };
 
 }  // namespace sf::raycast

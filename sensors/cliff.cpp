@@ -1,6 +1,5 @@
 #include "sensors/cliff.h"
 
-#include "sensors/drop_off_index.h"
 #include "sensors/elements.h"
 #include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
@@ -8,6 +7,24 @@
 namespace sf::sensors {
 
 namespace {
+
+base::BoxTree boxes_of(std::span<const world::FloorHole> drops) {
+  std::vector<base::Box> boxes;
+  for (const world::FloorHole& drop : drops) {
+    base::Box box = base::empty_box();
+    for (const glm::dvec2& p : drop.outline) box = base::united(box, {p, p});
+    boxes.push_back(box);
+  }
+  return base::BoxTree(boxes);
+}
+
+/// True when the edge ab passes `p` on the right, along +x. Both ends are taken relative to `p` and in one order, so
+/// that polygons that share the edge decide alike.
+bool passes(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) {
+  if ((a.y <= p.y) == (b.y <= p.y)) return false;
+  if (a.y > b.y) std::swap(a, b);
+  return base::cross(b - a, p - a) > 0.0;
+}
 
 class Cliffs : public HostBackend {
  public:
@@ -51,6 +68,18 @@ constexpr PlainNumber kNumbers[] = {{1.0, 0.0, 1.0}};
 constexpr PlainForm kForm{kCliff, "cliff", kNumbers};
 
 }  // namespace
+
+bool holds(std::span<const glm::dvec2> outline, glm::dvec2 p) {
+  bool inside = false;
+  for (std::size_t i = 0; i < outline.size(); ++i) inside ^= passes(outline[i], outline[(i + 1) % outline.size()], p);
+  return inside;
+}
+
+DropOffIndex::DropOffIndex(std::span<const world::FloorHole> drops) : drop_offs_(drops), boxes_(boxes_of(drops)) {}
+
+bool DropOffIndex::hold(glm::dvec2 p) const {
+  return boxes_.any(base::box_around(p, 0.0), [&](std::uint32_t i) { return holds(drop_offs_[i].outline, p); });
+}
 
 constinit const SensorType cliff_type = plain<kForm>({
     .word = {"cliff", kKeys},

@@ -92,19 +92,16 @@ void GnssVisibility::add_solids(std::span<const Segment> walls) {
   std::map<std::tuple<std::uint32_t, double, double>, std::vector<Segment>> outlines;
   for (const Segment& wall : walls)
     if (wall.solid_left) outlines[{wall.model, wall.z_min, wall.z_max}].push_back(wall);
-  std::vector<Box> boxes;
+  std::vector<base::Box> boxes;
   for (const auto& [key, edges] : outlines) {
-    Box box = world::box_of(edges[0].a, edges[0].b);
-    for (const Segment& e : edges) {
-      box.min = {std::min(box.min.x, e.a.x), std::min(box.min.y, e.a.y)};
-      box.max = {std::max(box.max.x, e.a.x), std::max(box.max.y, e.a.y)};
-    }
+    base::Box box = base::empty_box();
+    for (const Segment& e : edges) box = base::united(box, base::box_of(e.a, e.b));
     const auto first = static_cast<std::uint32_t>(solid_edges_.size());
     solid_edges_.insert(solid_edges_.end(), edges.begin(), edges.end());
     solids_.push_back({first, static_cast<std::uint32_t>(solid_edges_.size()), std::get<1>(key)});
     boxes.push_back(box);
   }
-  boxes_ = BoxTree(boxes);
+  boxes_ = base::BoxTree(boxes);
 }
 
 bool GnssVisibility::crosses(glm::dvec2 p, double z, const Satellite& satellite, const Segment& wall) const {
@@ -129,13 +126,13 @@ bool GnssVisibility::is_visible(glm::dvec2 p, double z, const Satellite& satelli
   if (!(way > 0.0)) return true;
   const glm::dvec2 end = p + way * satellite.horizontal;
   const bool roofed =
-      boxes_.any(world::box_of(p, end), [&](std::uint32_t i) { return under(p, z, satellite, solids_[i]); });
+      boxes_.any(base::box_of(p, end), [&](std::uint32_t i) { return under(p, z, satellite, solids_[i]); });
   if (roofed) return false;
   const int pieces = static_cast<int>(std::min(std::ceil(way / cell_), kMostPieces));
   for (int i = 0; i < pieces; ++i) {
     const glm::dvec2 from = p + way * i / pieces * satellite.horizontal,
                      to = p + way * (i + 1) / pieces * satellite.horizontal;
-    if (walls_.any(world::box_of(from, to), [&](const Segment& wall) { return crosses(p, z, satellite, wall); }))
+    if (walls_.any(base::box_of(from, to), [&](const Segment& wall) { return crosses(p, z, satellite, wall); }))
       return false;
   }
   return true;

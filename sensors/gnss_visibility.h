@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "sensors/box_tree.h"
+#include "base/box_tree.h"
 #include "world/wall_grid.h"
 #include "world/world.h"
 
@@ -65,7 +65,7 @@ class GnssVisibility {
   world::WallGrid walls_;
   std::vector<world::Segment> solid_edges_;
   std::vector<Solid> solids_;
-  BoxTree boxes_;  ///< of the solids
+  base::BoxTree boxes_;  ///< of the solids
 };
 
 }  // namespace sf::sensors

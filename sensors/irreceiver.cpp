@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sensors/box_tree.h"
+#include "base/box_tree.h"
 #include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 #include "world/wall_grid.h"
@@ -22,14 +22,11 @@ constexpr double kOverlap = 0.25;  // fraction of each buoy's beam that overlaps
 /// True when a bearing from the emitter is in a beam of width `fov` about `axis` [rad].
 bool within(double bearing, double axis, double fov) { return std::abs(base::wrap_angle(bearing - axis)) <= 0.5 * fov; }
 
-Box reach_of(const Emitter& emitter) {
-  return world::box_around({emitter.X_WE.x, emitter.X_WE.y}, std::max(emitter.range, emitter.halo));
-}
-
-std::vector<Box> reaches_of(const world::World& world) {
-  std::vector<Box> boxes;
-  for (const Emitter& emitter : world.emitters) boxes.push_back(reach_of(emitter));
-  return boxes;
+base::BoxTree reaches_of(const world::World& world) {
+  std::vector<base::Box> boxes;
+  for (const Emitter& e : world.emitters)
+    boxes.push_back(base::box_around({e.X_WE.x, e.X_WE.y}, std::max(e.range, e.halo)));
+  return base::BoxTree(boxes);
 }
 
 std::vector<Segment> opaque(const world::World& world) {
@@ -48,7 +45,7 @@ class IrReceivers : public HostBackend {
   bool hidden(const Emitter& emitter, glm::dvec2 p, double z) const;
 
   world::WallGrid walls_;
-  BoxTree reaches_;  ///< of the world's emitters
+  base::BoxTree reaches_;  ///< of the world's emitters
 };
 
 std::vector<SensorSpec> specs_of(const world::World& world) {
@@ -67,7 +64,7 @@ IrReceivers::IrReceivers(const SensorContext& context)
 
 bool IrReceivers::hidden(const Emitter& emitter, glm::dvec2 p, double z) const {
   const glm::dvec2 e{emitter.X_WE.x, emitter.X_WE.y};
-  return walls_.any(world::box_of(p, e), [&](const Segment& wall) {
+  return walls_.any(base::box_of(p, e), [&](const Segment& wall) {
     return wall.model != emitter.model && wall.z_min <= z && z < wall.z_max &&
            world::segments_meet(e, p, wall.a, wall.b);
   });
@@ -77,7 +74,7 @@ void IrReceivers::measure(std::span<const HostSample> samples) const {
   for (const HostSample& sample : samples) {
     const glm::dvec2 p{sample.X_WS.x, sample.X_WS.y};
     std::uint32_t walls = 0, docks = 0;
-    reaches_.any(world::box_around(p, 0.0), [&](std::uint32_t i) {
+    reaches_.any(base::box_around(p, 0.0), [&](std::uint32_t i) {
       const Emitter& emitter = world().emitters[i];
       const std::uint32_t light = light_of(emitter, p);
       if (light != 0 && !hidden(emitter, p, sample.X_WS.z))

@@ -78,10 +78,7 @@ struct Region {
 Region grid_over(const WallGrid& walls, const Mover& robot) {
   const glm::dvec2 p{robot.X_WM.x, robot.X_WM.y};
   Box box = box_around(p, kOpenWorld);
-  for (const Segment& w : walls.walls()) {
-    box.min = {std::min({box.min.x, w.a.x, w.b.x}), std::min({box.min.y, w.a.y, w.b.y})};
-    box.max = {std::max({box.max.x, w.a.x, w.b.x}), std::max({box.max.y, w.a.y, w.b.y})};
-  }
+  for (const Segment& w : walls.walls()) box = base::united(box, box_of(w.a, w.b));
   const double radius = clear_radius(robot);
   const Box most = box_around(p, 2.0 * radius * kMaxCells / 2.0);
   box.min = {std::max(box.min.x, most.min.x), std::max(box.min.y, most.min.y)};
@@ -141,12 +138,8 @@ std::uint32_t cell_near(const Region& region, const WallGrid& walls, double radi
 }
 
 Box box_around_all(std::span<const Segment> edges) {
-  Box box{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
-  for (const Segment& edge : edges) {
-    const Box own = box_of(edge.a, edge.b);
-    box.min = {std::min(box.min.x, own.min.x), std::min(box.min.y, own.min.y)};
-    box.max = {std::max(box.max.x, own.max.x), std::max(box.max.y, own.max.y)};
-  }
+  Box box = base::empty_box();
+  for (const Segment& edge : edges) box = base::united(box, box_of(edge.a, edge.b));
   return box;
 }
 

@@ -10,25 +10,15 @@
 #include <span>
 #include <vector>
 
+#include "base/box.h"
 #include "base/pose.h"
 #include "world/world.h"
 
 namespace sf::world {
 
-/// Axis-aligned, closed. [m] world frame
-struct Box {
-  glm::dvec2 min;
-  glm::dvec2 max;
-};
-
-inline Box box_around(glm::dvec2 centre, double reach) {
-  return {{centre.x - reach, centre.y - reach}, {centre.x + reach, centre.y + reach}};
-}
-
-/// Box of two corners, in any order.
-inline Box box_of(glm::dvec2 p, glm::dvec2 q) {
-  return {{std::min(p.x, q.x), std::min(p.y, q.y)}, {std::max(p.x, q.x), std::max(p.y, q.y)}};
-}
+using base::Box;
+using base::box_around;
+using base::box_of;
 
 /// Vector from the segment's nearest point to `p`. [m]
 inline glm::dvec2 from_segment(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
@@ -85,10 +75,7 @@ inline WallGrid::Cells WallGrid::cells_of(const Box& box, double cell) {
   return {cell_of(box.min.x, cell), cell_of(box.min.y, cell), cell_of(box.max.x, cell), cell_of(box.max.y, cell)};
 }
 
-inline bool WallGrid::meet(const Box& box, const Segment& wall) {
-  return std::min(wall.a.x, wall.b.x) <= box.max.x && std::max(wall.a.x, wall.b.x) >= box.min.x &&
-         std::min(wall.a.y, wall.b.y) <= box.max.y && std::max(wall.a.y, wall.b.y) >= box.min.y;
-}
+inline bool WallGrid::meet(const Box& box, const Segment& wall) { return base::meet(box, box_of(wall.a, wall.b)); }
 
 template <class Predicate>
 bool WallGrid::any(const Box& box, Predicate&& predicate) const {

@@ -7,6 +7,8 @@ namespace sf::sensors {
 
 namespace {
 
+using base::Box;
+
 /// A node stands for its magnets when it is smaller than this fraction of its distance or of the query box. The bound
 /// is then too large by some per cent, or by less than the box itself adds.
 constexpr double kOpening = 0.25;
@@ -17,16 +19,19 @@ double gap(double low_a, double high_a, double low_b, double high_b) {
 }
 
 double least_distance(const Box& a, const Box& b) {
-  return std::hypot(gap(a.low.x, a.high.x, b.low.x, b.high.x), gap(a.low.y, a.high.y, b.low.y, b.high.y));
+  return std::hypot(gap(a.min.x, a.max.x, b.min.x, b.max.x), gap(a.min.y, a.max.y, b.min.y, b.max.y));
 }
 
 double greatest_distance(const Box& a, const Box& b) {
-  return std::hypot(std::max(a.high.x - b.low.x, b.high.x - a.low.x), std::max(a.high.y - b.low.y, b.high.y - a.low.y));
+  return std::hypot(std::max(a.max.x - b.min.x, b.max.x - a.min.x), std::max(a.max.y - b.min.y, b.max.y - a.min.y));
 }
 
-Box joined(const Box& a, const Box& b) {
-  return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y)},
-          {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y)}};
+double side_of(const Box& box) { return std::max(box.max.x - box.min.x, box.max.y - box.min.y); }
+
+base::BoxTree tree_of(std::span<const world::Magnet> magnets) {
+  std::vector<Box> boxes;
+  for (const world::Magnet& magnet : magnets) boxes.push_back({magnet.p, magnet.p});
+  return base::BoxTree(boxes);
 }
 
 }  // namespace
@@ -38,55 +43,31 @@ double field_beyond(double k, double along, double above) {
   return k * std::sqrt(along * along + 4.0 * above * above) / (squared * squared);
 }
 
-MagnetTree::MagnetTree(std::span<const world::Magnet> magnets, double height) {
-  std::vector<Item> items;
-  for (const world::Magnet& magnet : magnets)
-    items.push_back({magnet.p, strength_of(magnet), std::abs(height - magnet.z)});
-  nodes_.reserve(2 * items.size());
-  if (!items.empty()) build(items);
-}
-
-void MagnetTree::build(std::span<Item> items) {
-  const std::size_t at = nodes_.size();
-  Node node{{items[0].p, items[0].p}, 0.0, items[0].above, 0, items.size() == 1};
-  for (const Item& item : items) {
-    node.box = joined(node.box, {item.p, item.p});
-    node.strength += item.strength;
-    node.above = std::min(node.above, item.above);
+MagnetTree::MagnetTree(std::span<const world::Magnet> magnets, double height)
+    : tree_(tree_of(magnets)), sums_(tree_.nodes().size()) {
+  for (std::size_t i = sums_.size(); i-- > 0;) {
+    const base::BoxTree::Node& node = tree_.nodes()[i];
+    if (node.count > 0) {
+      const world::Magnet& magnet = magnets[tree_.order()[node.first]];
+      sums_[i] = {strength_of(magnet), std::abs(height - magnet.z)};
+    } else {
+      const Sum &a = sums_[i + 1], &b = sums_[tree_.nodes()[i + 1].end];
+      sums_[i] = {a.strength + b.strength, std::min(a.above, b.above)};
+    }
   }
-  nodes_.push_back(node);
-  if (!node.leaf) {
-    const bool wide = node.box.high.x - node.box.low.x > node.box.high.y - node.box.low.y;
-    const auto middle = items.begin() + static_cast<std::ptrdiff_t>(items.size() / 2);
-    std::nth_element(items.begin(), middle, items.end(),
-                     [&](const Item& a, const Item& b) { return wide ? a.p.x < b.p.x : a.p.y < b.p.y; });
-    build(items.first(items.size() / 2));
-    build(items.subspan(items.size() / 2));
-  }
-  nodes_[at].skip = static_cast<std::uint32_t>(nodes_.size());
 }
 
 double MagnetTree::bound(const Box& box, double cutoff) const {
-  const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
   double sum = 0.0;
-  for (std::uint32_t i = 0; i < nodes_.size();) {
-    const Node& node = nodes_[i];
-    if (greatest_distance(box, node.box) <= cutoff) {
-      i = node.skip;
-      continue;
-    }
+  for (std::size_t i = 0; i < sums_.size();) {
+    const base::BoxTree::Node& node = tree_.nodes()[i];
     const double along = std::max(cutoff, least_distance(box, node.box));
-    const double size = std::max(node.box.high.x - node.box.low.x, node.box.high.y - node.box.low.y);
-    if (node.leaf || size <= std::max(kOpening * along, kOpeningToBox * side)) {
-      sum += field_beyond(node.strength, along, node.above);
-      i = node.skip;
-    } else {
-      ++i;
-    }
+    const bool counts = greatest_distance(box, node.box) > cutoff;
+    const bool whole = node.count > 0 || side_of(node.box) <= std::max(kOpening * along, kOpeningToBox * side_of(box));
+    if (counts && whole) sum += field_beyond(sums_[i].strength, along, sums_[i].above);
+    i = counts && !whole ? i + 1 : node.end;
   }
   return sum;
 }
-
-Box MagnetTree::extent() const { return nodes_.empty() ? Box{} : nodes_.front().box; }
 
 }  // namespace sf::sensors

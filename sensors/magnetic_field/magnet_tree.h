@@ -1,20 +1,14 @@
 #pragma once
 // A tree of magnets that bounds the field of all magnets beyond a distance, for all points of a box.
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "base/pose.h"
+#include "base/box_tree.h"
 #include "sensors/magnetic_field/magnetic_field.h"
 #include "world/world.h"
 
 namespace sf::sensors {
-
-/// Axis-aligned, closed.
-struct Box {
-  glm::dvec2 low, high;  ///< [m]
-};
 
 /// [T m^3] mu0 / 4 pi times the magnitude of the magnet's moment.
 double strength_of(const world::Magnet& magnet);
@@ -29,24 +23,17 @@ class MagnetTree {
   MagnetTree(std::span<const world::Magnet> magnets, double height);
 
   /// [T] upper bound, at any point in `box`, of the sum of the magnitudes of all magnets farther than `cutoff` [m] > 0.
-  double bound(const Box& box, double cutoff) const;
-  Box extent() const;  ///< of the magnets; the origin when there are none
+  double bound(const base::Box& box, double cutoff) const;
+  base::Box extent() const { return tree_.extent(); }  ///< of the magnets, at least one
 
  private:
-  struct Node {
-    Box box;
-    double strength = 0.0;   ///< [T m^3] sum of magnitudes
-    double above = 0.0;      ///< [m] least vertical distance
-    std::uint32_t skip = 0;  ///< node behind this one's subtree
-    bool leaf = false;       ///< one magnet
+  /// The magnets of one node.
+  struct Sum {
+    double strength = 0.0;  ///< [T m^3] sum of magnitudes
+    double above = 0.0;     ///< [m] least vertical distance
   };
-  struct Item {
-    glm::dvec2 p;
-    double strength, above;
-  };
-  void build(std::span<Item> items);
-
-  std::vector<Node> nodes_;  ///< depth first
+  base::BoxTree tree_;     ///< one magnet per leaf
+  std::vector<Sum> sums_;  ///< per node
 };
 
 }  // namespace sf::sensors

@@ -14,6 +14,8 @@ namespace sf::sensors {
 
 namespace {
 
+using base::Box;
+
 constexpr double kRounding = 1.0 + 1e-6;        // rounding of sums, 32-bit moments and decisions at the cut-off
 constexpr double kFinest = 0.25;                // fraction of the cut-off: smaller squares are not halved
 constexpr std::size_t kMostSquares = 1u << 15;  // limit of the refinement
@@ -27,9 +29,8 @@ struct Square {
 /// A box outside of which every magnet is beyond the cut-off, and farther away than from some point on the box's edge.
 Box around(const Box& magnets, double cutoff) {
   const double margin = 1.01 * cutoff;
-  const glm::dvec2 middle = 0.5 * (magnets.low + magnets.high);
-  const double half =
-      margin + 0.5 * std::max(magnets.high.x - magnets.low.x, magnets.high.y - magnets.low.y) * kRounding;
+  const glm::dvec2 middle = 0.5 * (magnets.min + magnets.max);
+  const double half = margin + 0.5 * std::max(magnets.max.x - magnets.min.x, magnets.max.y - magnets.min.y) * kRounding;
   return {middle - glm::dvec2{half, half}, middle + glm::dvec2{half, half}};
 }
 
@@ -40,13 +41,13 @@ double largest(const MagnetTree& tree, double cutoff) {
   squares.push({all, tree.bound(all, cutoff)});
   for (std::size_t seen = 1; seen < kMostSquares; seen += 4) {
     const Square top = squares.top();
-    const double half = 0.5 * (top.box.high.x - top.box.low.x);
+    const double half = 0.5 * (top.box.max.x - top.box.min.x);
     if (2.0 * half <= kFinest * cutoff || !(half > 0.0)) break;
     squares.pop();
-    const glm::dvec2 middle = 0.5 * (top.box.low + top.box.high);
-    for (const Box& quarter : {Box{top.box.low, middle}, Box{middle, top.box.high},
-                               Box{{middle.x, top.box.low.y}, {top.box.high.x, middle.y}},
-                               Box{{top.box.low.x, middle.y}, {middle.x, top.box.high.y}}})
+    const glm::dvec2 middle = 0.5 * (top.box.min + top.box.max);
+    for (const Box& quarter :
+         {Box{top.box.min, middle}, Box{middle, top.box.max}, Box{{middle.x, top.box.min.y}, {top.box.max.x, middle.y}},
+          Box{{top.box.min.x, middle.y}, {middle.x, top.box.max.y}}})
       squares.push({quarter, std::min(top.bound, tree.bound(quarter, cutoff))});
   }
   return squares.top().bound;
@@ -89,8 +90,7 @@ double truncation_bound(const world::World& world, double height) {
 double truncation_bound(const world::World& world, double height, double nominal) {
   if (nominal == 0.0) return 0.0;
   const double cutoff = nominal / kRounding;
-  const MagnetTree fixed_magnets(world.magnets, height);
-  double bound = largest(fixed_magnets, cutoff);
+  double bound = world.magnets.empty() ? 0.0 : largest(MagnetTree(world.magnets, height), cutoff);
   for (const world::Mover& mover : world.movers) {
     // A mover's magnet contributes most at the cut-off distance.
     for (const world::Magnet& magnet : mover.magnets)

@@ -8,23 +8,24 @@
 
 #include "tests/sensors/chance.h"
 #include "tests/sensors/scenes.h"
+#include "world/wall_grid.h"
 
 namespace sf::raycast {
 namespace {
 
 TEST(WallIndex, FindsEverythingNear) {
   const world::World world = scenes::boxes(60, 16.0, 5);
-  const WallIndex wall_index(world, 0.1, 8.0);
-  WallIndex::Query query;
+  const WallIndex wall_index(world, 0.1);
+  std::vector<std::uint32_t> found;
   trial::Chance chance(3);
   for (int i = 0; i < 200; ++i) {
     const glm::dvec2 p = chance.in_square(10.0);
     const double radius = chance.between(0.01, 5.0);
-    wall_index.near(p, radius, query);
+    wall_index.near(p, radius, found);
     for (std::uint32_t k = 0; k < wall_index.segments().size(); ++k) {
       const bool near = world::distance(p, wall_index.segments()[k].a, wall_index.segments()[k].b) <= radius;
-      const auto found = std::count(query.found.begin(), query.found.end(), k);
-      EXPECT_TRUE(found == 1 || (found == 0 && !near));
+      const auto times = std::count(found.begin(), found.end(), k);
+      EXPECT_TRUE(times == 1 || (times == 0 && !near));
     }
   }
 }
@@ -34,7 +35,7 @@ TEST(WallIndex, KnowsInsideFromOutside) {
   scenes::add_room(world, {}, 10.0);
   scenes::add_outline(world, {{0, 0}, {2, 0}, {2, 2}, {0, 2}}, "box");
   scenes::add_outline(world, {{1, 1}, {3, 1}, {3, 3}, {1, 3}}, "overlapping");
-  const WallIndex wall_index(world, 0.1, 8.0);
+  const WallIndex wall_index(world, 0.1);
   EXPECT_TRUE(wall_index.inside_solid({0.5, 0.5}));
   EXPECT_TRUE(wall_index.inside_solid({1.5, 1.5})) << "in both";
   EXPECT_TRUE(wall_index.inside_solid({5.05, 0.0})) << "in the ring of the room";
@@ -42,13 +43,7 @@ TEST(WallIndex, KnowsInsideFromOutside) {
   EXPECT_FALSE(wall_index.inside_solid({2.5, 0.5}));
   EXPECT_FALSE(wall_index.inside_solid({6.0, 0.0})) << "out of the room";
   EXPECT_FALSE(wall_index.inside_solid({1e9, -1e9}));
-  EXPECT_FALSE(WallIndex({}, 0.1, 8.0).inside_solid({0, 0})) << "no walls";
-}
-
-TEST(WallIndex, DistanceToASegment) {
-  EXPECT_DOUBLE_EQ(world::distance({0.5, 2}, {0, 0}, {1, 0}), 2.0);
-  EXPECT_DOUBLE_EQ(world::distance({-3, 4}, {0, 0}, {1, 0}), 5.0) << "before its start";
-  EXPECT_DOUBLE_EQ(world::distance({4, 4}, {0, 0}, {1, 0}), 5.0) << "behind its end";
+  EXPECT_FALSE(WallIndex({}, 0.1).inside_solid({0, 0})) << "no walls";
 }
 
 }  // namespace

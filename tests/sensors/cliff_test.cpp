@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "sensors/drop_off_index.h"
 #include "tests/sensors/host_trial.h"
 
 namespace sf::trial {

@@ -39,12 +39,6 @@ TEST(FromSegment, EndsAndMiddle) {
   EXPECT_EQ(from({3, 4}, {0, 0}, {0, 0}), std::pair(3.0, 4.0)) << "from a point";
 }
 
-TEST(BoxOf, CornersInAnyOrder) {
-  const Box box = box_of({3, -2}, {-1, 5});
-  EXPECT_EQ(std::pair(box.min.x, box.min.y), std::pair(-1.0, -2.0));
-  EXPECT_EQ(std::pair(box.max.x, box.max.y), std::pair(3.0, 5.0));
-}
-
 std::vector<Segment> square(double half, bool counter_clockwise, bool solid_left = true) {
   const glm::dvec2 corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
   std::vector<Segment> edges;
