@@ -4,12 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 
-#include "apps/examples.h"
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
+#include "apps/text.h"
 
 namespace sf::apps {
 
@@ -46,6 +45,7 @@ const CLI::App* add_help(CLI::App& app, std::string& asked) {
   sub->add_option("command", asked, "One of the commands (default: all of them)")
       ->check(one_of(names))
       ->type_name("COMMAND");
+  add_examples(*sub, {"run"});
   return sub;
 }
 
@@ -78,21 +78,19 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   add_test_commands(app, parsed.call);
   std::string asked;
   const CLI::App* help = add_help(app, asked);
-  for (CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
-    sub->footer(examples_of(sub->get_name()));
   try {
     app.parse(argc, argv);
     if (help->parsed()) {
       app.clear();  // else its help would be that of `help`
       const std::string text = asked.empty() ? app.help() : app.get_subcommand(asked)->help("sensorfarm");
-      std::fputs(text.c_str(), stdout);
+      print(text);
       parsed.exit_code = 0;
     }
   } catch (const CLI::ParseError& error) {
     // CLI11 has a code for each mistake; ours is 2 for all of them.
     const bool fine = error.get_exit_code() == 0;
     if (fine) app.exit(error);
-    if (!fine) std::fprintf(stderr, "sensorfarm: %s\n", explain(app, error, argc, argv).c_str());
+    if (!fine) print_message(explain(app, error, argc, argv));
     parsed.exit_code = fine ? 0 : 2;
   }
   return parsed;

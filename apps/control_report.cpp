@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "apps/option_parsers.h"
+#include "apps/text.h"
 #include "control/stop_reason.h"
 
 namespace sf::apps {

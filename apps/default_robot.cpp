@@ -1,9 +1,9 @@
 #include "apps/default_robot.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "apps/report.h"
+#include "apps/text.h"
 #include "world/free_space.h"
 
 namespace sf::apps {
@@ -55,10 +55,10 @@ world::World load_with_robots(const std::string& file, const world::LoadOptions&
   world::World world = world::load_world(file, options);
   const bool added = add_default_robot(world);
   if (added)
-    std::fprintf(stderr,
-                 "sensorfarm: %s has no robot; it is lent 'roomba1' (id 1), a Create with a laser of 361 rays, 180 "
-                 "degrees, 8 m\n",
-                 file.c_str());
+    print_message(
+        "{} has no robot; it is lent 'roomba1' (id 1), a Create with a laser of 361 rays, 180 "
+        "degrees, 8 m",
+        file);
   if (count > 0 || added) world::clone_robots(world, std::max(1u, count), seed, of);
   print_warnings(file, world.warnings);
   return world;

@@ -3,18 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <string_view>
 
+#include "apps/option_parsers.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "world/keys.h"
 
 namespace sf::apps {
 
 control::Setting setting_of(const std::string& text) {
-  const std::size_t at = text.find('=');
-  const std::string key = text.substr(0, at);
-  return {key, control::RawText{text.substr(at + 1)}, fmt::format("--set {}: ", key)};
+  const auto [key, value] = *read_setting(text);
+  return {key, control::RawText{value}, fmt::format("--set {}: ", key)};
 }
 
 control::ControllerConfig controller_config_of(const ControllerOptions& options) {
@@ -33,8 +33,8 @@ std::vector<scenarios::Actor> actors_of_world(const world::World& world, const R
   };
   const auto count = std::count_if(world.movers.begin(), world.movers.end(), own);
   if (count == 0) return {};
-  std::fprintf(stderr, "sensorfarm: %s driven as the world file says (ctrl); --drive NAME drives a robot by '%s'\n",
-               count == 1 ? "1 robot is" : fmt::format("{} robots are", count).c_str(), options.controller.c_str());
+  print_message("{} driven as the world file says (ctrl); --drive NAME drives a robot by '{}'",
+                count == 1 ? "1 robot is" : fmt::format("{} robots are", count), options.controller);
   std::vector<scenarios::Actor> actors;
   for (const world::Mover& mover : world.movers)
     actors.push_back({.plan = mover.is_tag ? control::ControllerConfig{}

@@ -12,6 +12,7 @@
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "scenarios/trial.h"
 
@@ -61,7 +62,7 @@ int experiment(const ExperimentOptions& options) {
   } catch (const scenarios::Interrupted&) {
     throw base::InputError("interrupted: no report was written; " + options.out + " has the trials that were finished");
   }
-  for (const std::string& file : files) std::fprintf(stderr, "sensorfarm: wrote %s\n", file.c_str());
+  for (const std::string& file : files) print_message("wrote {}", file);
   return 0;
 }
 

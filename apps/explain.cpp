@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "apps/commands.h"
 #include "apps/default_robot.h"
-#include "apps/option_parsers.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
+#include "apps/text.h"
 #include "scenarios/explanation.h"
 
 namespace sf::apps {
@@ -47,8 +45,8 @@ std::string work_of(const scenarios::SensorTypeCost& k, double ticks) {
 std::string text_of(const scenarios::SensorTypeCost& k, const scenarios::Explanation& e) {
   std::string text =
       fmt::format("{}: {} on {}, {}\n", k.kind, counted(k.sensors, "sensor"), counted(k.robots, "robot"), rates_of(k));
-  text += row("a tick", fmt::format("{:.3f} ms heard {}, {:.3f} ms more than nobody heard", 1e3 * k.tick,
-                                    k.derived ? "with the lasers" : "alone", 1e3 * (k.tick - e.silent)));
+  text += row("a tick", "{:.3f} ms subscribed {}, {:.3f} ms more than without subscribers", 1e3 * k.tick,
+              k.derived ? "with the lasers" : "alone", 1e3 * (k.tick - e.silent));
   text += row("", work_of(k, static_cast<double>(e.ticks)));
   for (const sensors::AccuracyStatement& s : e.statements)
     if (s.kind->name == k.kind) text += row("accuracy", apps::text_of(s));
@@ -58,7 +56,7 @@ std::string text_of(const scenarios::SensorTypeCost& k, const scenarios::Explana
   std::string tables;
   for (const gpu::DeviceAllocation& h : k.tables)
     tables += fmt::format("{}{} {}", tables.empty() ? "" : ", ", h.name, bytes_text(h.bytes));
-  return text + row("tables", fmt::format("{}: {}", bytes_text(k.bytes), tables));
+  return text + row("tables", "{}: {}", bytes_text(k.bytes), tables);
 }
 
 }  // namespace
@@ -67,16 +65,15 @@ std::string text_of(const scenarios::Explanation& e) {
   std::string text;
   for (const scenarios::SensorTypeCost& kind : e.kinds) text += text_of(kind, e);
   text += "together\n";
-  text +=
-      row("a tick", fmt::format("{:.3f} ms with all heard, {:.4f} ms with nobody heard", 1e3 * e.all, 1e3 * e.silent));
+  text += row("a tick", "{:.3f} ms with all subscribed, {:.4f} ms without subscribers", 1e3 * e.all, 1e3 * e.silent);
   text += row("caster", e.caster);
-  text += row("to start", fmt::format("{:.0f} ms to build, {:.0f} ms the first tick", 1e3 * e.build, 1e3 * e.first));
+  text += row("to start", "{:.0f} ms to build, {:.0f} ms the first tick", 1e3 * e.build, 1e3 * e.first);
   if (e.resident > 0)
     text += row("memory", bytes_text(e.resident) + " resident, the driver and this measurement included");
   for (const scenarios::WallSlice& s : e.slices)
-    text += row("slice", fmt::format("z = {:g} m: {} of {} wall segments can be met by {}", s.z, s.walls, e.walls,
-                                     counted(s.sensors, "laser")));
-  if (!e.absent.empty()) text += row("not built", fmt::format("{}: the world has none", fmt::join(e.absent, ", ")));
+    text += row("slice", "z = {:g} m: {} of {} wall segments can be met by {}", s.z, s.walls, e.walls,
+                counted(s.sensors, "laser"));
+  if (!e.absent.empty()) text += row("not built", "{}: the world has none", fmt::join(e.absent, ", "));
   return text;
 }
 
@@ -89,8 +86,7 @@ int explain(const ExplainOptions& options) {
     explanation =
         scenarios::explain(world, device, options.seed, options.threads, [&](double part) { progress.show(part); });
   }
-  std::fputs((options.json ? with_warnings(json_of(explanation), world.warnings) : text_of(explanation)).c_str(),
-             stdout);
+  print(options.json ? with_warnings(json_of(explanation), world.warnings) : text_of(explanation));
   return 0;
 }
 

@@ -1,7 +1,6 @@
 #include "apps/exposure_warning.h"
 
-#include <cstdio>
-
+#include "apps/text.h"
 #include "netio/endpoint.h"
 
 namespace sf::apps {
@@ -15,10 +14,10 @@ void warn_of_exposure(std::uint32_t address, const std::string& can) {
     for (const std::uint32_t each : netio::own_addresses()) own += (own.empty() ? "" : " or ") + netio::text_of(each);
     reached = own.empty() ? "every interface, of which this machine has none but loopback" : "whoever reaches " + own;
   }
-  std::fprintf(stderr,
-               "sensorfarm: warning: --bind %s opens it to %s: anyone there can %s, since packets are not signed; "
-               "--bind 127.0.0.1 keeps it to this machine\n",
-               bound.c_str(), reached.c_str(), can.c_str());
+  print_message(
+      "warning: --bind {} opens it to {}: anyone there can {}, since packets are not signed; "
+      "--bind 127.0.0.1 keeps it to this machine",
+      bound, reached, can);
 }
 
 }  // namespace sf::apps

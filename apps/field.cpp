@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 
 #include "apps/commands.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "viz/field_figure.h"
 
@@ -45,20 +45,16 @@ int field(const FieldOptions& options) {
   const world::World world = world::load_world(options.world, options.load);
   print_warnings(options.world, world.warnings);
   refuse_without_magnets(world);
-  viz::FieldRequest wish{.height = options.height};
-  if (options.line) wish.line = {{(*options.line)[0], (*options.line)[1]}, {(*options.line)[2], (*options.line)[3]}};
-  if (options.extent)
-    wish.extent = {(*options.extent)[0], (*options.extent)[1], (*options.extent)[2], (*options.extent)[3]};
-  const viz::FieldView view = viz::field_view(world, wish);
+  const viz::FieldView view = viz::field_view(world, {options.height, options.line, options.extent});
 
   gpu::Device device(options.device);
   Progress progress("summing magnets");
   const viz::FieldSamples samples = viz::sample_field(world, device, view, [&](double part) { progress.show(part); });
   viz::draw_field(world, view, samples, options.out);
-  std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());
+  print_message("wrote {}", options.out);
   if (options.csv.empty()) return 0;
   write_csv(options.csv, view, samples);
-  std::fprintf(stderr, "sensorfarm: wrote %s\n", options.csv.c_str());
+  print_message("wrote {}", options.csv);
   return 0;
 }
 

@@ -1,14 +1,13 @@
 // Commands that look without running: devices, check, draw, sense.
 
 #include <algorithm>
-#include <cstdio>
 
 #include "apps/commands.h"
 #include "apps/default_robot.h"
-#include "apps/option_parsers.h"
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
 #include "apps/road_commands.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "sensors/laser_noise.h"
 #include "viz/world_figure.h"
@@ -17,8 +16,6 @@
 namespace sf::apps {
 
 namespace {
-
-void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
 
 /// Whether the mover has a sensor of that kind; 0: of any.
 bool has_kind(const sensors::SensorSet& sensor_set, std::uint8_t kind, std::uint32_t mover) {
@@ -92,9 +89,7 @@ Chosen require_sensor(const world::World& world, const sensors::SensorSet& senso
 
 void warn_of_pose(const world::World& world, const world::Mover& robot, const base::Pose& X_WM) {
   const std::string where = world::placement_problem(world, robot, X_WM);
-  if (!where.empty())
-    std::fprintf(stderr, "sensorfarm: warning: at (%g, %g) '%s' is %s\n", X_WM.x, X_WM.y, robot.name.c_str(),
-                 where.c_str());
+  if (!where.empty()) print_message("warning: at ({:g}, {:g}) '{}' is {}", X_WM.x, X_WM.y, robot.name, where);
 }
 
 }  // namespace
@@ -123,7 +118,7 @@ int draw(const DrawOptions& options) {
   const world::World world = world::load_world(options.world, options.load);
   print_warnings(options.world, world.warnings);
   viz::draw_world(world, options.out);
-  std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());
+  print_message("wrote {}", options.out);
   return 0;
 }
 
@@ -144,7 +139,7 @@ int sense(const SenseOptions& options) {
   std::vector<double> values(reading.values.begin(), reading.values.end());
   if (options.no_return_inf) sensors::mark_no_return(reading, sensor_set.row(reading).limit, values);
   reading.values = values;
-  if (!options.json) std::fprintf(stderr, "sensorfarm: %s\n", place_of(world, sensor_set, reading).c_str());
+  if (!options.json) print_message(place_of(world, sensor_set, reading));
   print(options.json ? with_warnings(json_of(world, sensor_set, reading), world.warnings) : text_of(world, reading));
   return 0;
 }

@@ -1,6 +1,5 @@
 #include "apps/layout_options.h"
-
-#include <cstdio>
+#include "apps/text.h"
 
 namespace sf::apps {
 
@@ -8,7 +7,7 @@ server::StreamLayout stream_layout_of(const world::World& world, const sensors::
                                       const PortOptions& options) {
   server::StreamLayout layout =
       server::stream_layout(world, sensor_set, {options.base_ports, options.ports_per_robot, options.wire});
-  for (const std::string& note : layout.notes) std::fprintf(stderr, "sensorfarm: %s\n", note.c_str());
+  for (const std::string& note : layout.notes) print_message(note);
   return layout;
 }
 

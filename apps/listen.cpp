@@ -1,15 +1,14 @@
 // `listen`: the other end of `run --send`.
 
 #include <cmath>
-#include <cstdio>
 
 #include "apps/commands.h"
 #include "apps/default_robot.h"
 #include "apps/exposure_warning.h"
 #include "apps/layout_options.h"
-#include "apps/option_parsers.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "netio/server/sensor_streams.h"
 
 namespace sf::apps {
@@ -32,11 +31,10 @@ int listen(const ListenOptions& options) {
   netio::StreamMonitor monitor(plan);
   warn_of_exposure(plan.address, "send readings");
   install_stop_handlers();
-  std::fprintf(stderr, "sensorfarm: listening on %s of %s\n", counted(plan.streams.size(), "port").c_str(),
-               options.bind.c_str());
+  print_message("listening on {} of {}", counted(plan.streams.size(), "port"), options.bind);
   monitor.run(stop_requested(), static_cast<int>(1000.0 * options.silence), std::llround(1000.0 * options.duration));
   const netio::StreamSummary summary = monitor.summary();
-  std::fputs((options.json ? with_warnings(json_of(summary), world.warnings) : text_of(summary)).c_str(), stdout);
+  print(options.json ? with_warnings(json_of(summary), world.warnings) : text_of(summary));
   return summary.good > 0 ? 0 : 1;
 }
 

@@ -9,8 +9,8 @@
 
 #include "apps/commands.h"
 #include "apps/exposure_warning.h"
-#include "apps/option_parsers.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "maps/map_assembler.h"
@@ -112,7 +112,7 @@ class Display {
   bool all_whole() const;
   bool any() const;
   void redraw();
-  void print() const;
+  void print_maps() const;
   void save(const std::string& file) const;
   void print_status() const;
 
@@ -173,13 +173,13 @@ void Display::redraw() {
   const int down = std::max(1, (size.ws_row - 1) / static_cast<int>(all.size()));
   std::string text = "\x1b[H\x1b[2J";  // home, and nothing left of the last one
   for (const maps::OccupancyGrid& grid : all) text += maps::text_within(grid, size.ws_col, down);
-  std::fputs(text.c_str(), stdout);
+  print(text);
   std::fflush(stdout);
 }
 
-void Display::print() const {
+void Display::print_maps() const {
   if (on_terminal_) return;
-  for (const maps::OccupancyGrid& grid : pictures()) std::fputs(maps::text_of(grid).c_str(), stdout);
+  for (const maps::OccupancyGrid& grid : pictures()) print(maps::text_of(grid));
 }
 
 void Display::save(const std::string& file) const {
@@ -204,14 +204,11 @@ void Display::save(const std::string& file) const {
 
 void Display::print_status() const {
   for (const Source& source : sources_)
-    std::fprintf(stderr, "sensorfarm: port %u: %llu whole maps, %llu torn, %llu datagrams used and %llu left out%s\n",
-                 unsigned{source.port}, static_cast<unsigned long long>(source.assembler.complete_maps()),
-                 static_cast<unsigned long long>(source.assembler.incomplete_maps()),
-                 static_cast<unsigned long long>(source.used), static_cast<unsigned long long>(source.left_out),
-                 source.assembler.map() != nullptr && source.assembler.true_poses() ? ", made from true poses" : "");
+    print_message("port {}: {} complete maps, {} incomplete, {} datagrams used and {} ignored{}", source.port,
+                  source.assembler.complete_maps(), source.assembler.incomplete_maps(), source.used, source.left_out,
+                  source.assembler.map() != nullptr && source.assembler.true_poses() ? ", made from true poses" : "");
   if (const std::uint64_t drops = port_listener_.kernel_drops(); drops > 0)
-    std::fprintf(stderr, "sensorfarm: %s dropped by the kernel: they came faster than they were taken\n",
-                 counted(drops, "datagram").c_str());
+    print_message("{} dropped by the kernel: they came faster than they were taken", counted(drops, "datagram"));
 }
 
 }  // namespace
@@ -220,8 +217,7 @@ int map(const MapOptions& options) {
   Display display(options);
   warn_of_exposure(netio::resolve(options.bind), "send maps");
   install_stop_handlers();
-  std::fprintf(stderr, "sensorfarm: listening for maps on %s of %s\n",
-               counted(options.map_ports.size(), "port").c_str(), options.bind.c_str());
+  print_message("listening for maps on {} of {}", counted(options.map_ports.size(), "port"), options.bind);
   const auto start = Clock::now();
   auto last = start;
   bool begun = false;
@@ -235,12 +231,12 @@ int map(const MapOptions& options) {
     if (options.duration > 0.0 && base::seconds_since(start) >= options.duration) break;
     if (begun && base::seconds_since(last) >= options.silence) break;
   }
-  display.print();
+  display.print_maps();
   display.print_status();
   if (!display.any()) return 1;
   if (!options.out.empty()) {
     display.save(options.out);
-    std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());
+    print_message("wrote {}", options.out);
   }
   return 0;
 }

@@ -4,88 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
-#include <filesystem>
 
 #include "apps/option_parsers.h"
+#include "apps/text.h"
 #include "control/controllers.h"
 #include "sensors/accuracy.h"
 
 namespace sf::apps {
-
-Validator whole(std::uint64_t first, std::uint64_t last) {
-  return [first, last](const std::string& text) { return check_integer(text, first, last); };
-}
-
-Validator number(double first, double last) {
-  return [first, last](const std::string& text) { return check_number(text, first, last); };
-}
-
-Validator one_of(std::vector<std::string> words) {
-  return [words = std::move(words)](const std::string& text) { return check_choice(text, words); };
-}
-
-Validator not_empty(std::string what) {
-  return [what = std::move(what)](const std::string& text) { return check_not_empty(text, what); };
-}
-
-Validator picture() {
-  return [](const std::string& text) {
-    const std::filesystem::path file(text);
-    const std::string suffix = file.extension().string();
-    if (text.empty() || suffix.empty() || suffix == ".png" || suffix == ".PNG") return check_not_empty(text, "a file");
-    return fmt::format("pictures are PNG files, and '{}' ends in {}; write {}", text, suffix,
-                       std::filesystem::path(file).replace_extension(".png").string());
-  };
-}
-
-namespace {
-
-/// @param fine whether it is what was expected
-Validator expected(const char* what, bool (*fine)(const std::string&)) {
-  return [what, fine](const std::string& text) {
-    return fine(text) ? std::string() : fmt::format("expected {}, got '{}'", what, text);
-  };
-}
-
-}  // namespace
-
-Validator key_and_value() {
-  return expected("KEY=VALUE such as kp=0.5", [](const std::string& text) {
-    const std::size_t at = text.find('=');
-    return at != std::string::npos && at > 0;
-  });
-}
-
-Validator pose() {
-  return expected("X,Y,YAW_DEG such as 1.5,-2,90", [](const std::string& text) { return read_pose(text).has_value(); });
-}
-
-Validator line() {
-  return expected("X0,Y0,X1,Y1 of two points such as -1,0,2,0.5",
-                  [](const std::string& text) { return read_line(text).has_value(); });
-}
-
-Validator extent() {
-  return expected("XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1", [](const std::string& text) {
-    const auto e = read_line(text);
-    return e && (*e)[0] < (*e)[2] && (*e)[1] < (*e)[3];
-  });
-}
-
-Validator ports() {
-  return expected("a port or a range of at most 1024 such as 52000-52008",
-                  [](const std::string& text) { return !read_ports(text).empty(); });
-}
-
-Validator quantity() {
-  return expected("a length or a field with its unit such as 5mm, 0.01m, 2uT or 1mG",
-                  [](const std::string& text) { return read_quantity(text).has_value(); });
-}
-
-Validator rate() {
-  return expected("a rate above zero such as 10Hz",
-                  [](const std::string& text) { return read_rate(text).has_value(); });
-}
 
 void on_parsed(CLI::App& sub, std::function<void()> set, std::function<void()> check) {
   sub.callback([set = std::move(set), check = std::move(check)] {
@@ -94,22 +19,33 @@ void on_parsed(CLI::App& sub, std::function<void()> set, std::function<void()> c
   });
 }
 
+void add_examples(CLI::App& sub, const std::vector<std::string>& arguments) {
+  std::string text = "Examples:";
+  for (const std::string& each : arguments) text += fmt::format("\n  sensorfarm {} {}", sub.get_name(), each);
+  sub.footer(text);
+}
+
+CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
+                        const std::function<void(const std::string&)>& set, const std::string& help) {
+  return app.add_option_function<std::string>(name, set, help)
+      ->check(one_of(words))
+      ->type_name(fmt::format("{}", fmt::join(words, "|")));
+}
+
 void add_json(CLI::App& app, JsonOption& o) {
   app.add_flag("--json", o.json, "Print facts as JSON on standard output");
 }
 
 void add_device(CLI::App& app, DeviceOption& o) {
-  if (const char* device = std::getenv("SENSORFARM_DEVICE")) o.device = device;
-  app.add_option("--device", o.device,
-                 "Vulkan device: its row in `devices`, or part of its name (else $SENSORFARM_DEVICE, else the best)")
+  app.add_option("--device", o.device, "Vulkan device: its row in `devices`, or part of its name (default: the best)")
+      ->envname("SENSORFARM_DEVICE")
       ->type_name("NAME");
   // Farms look it up where they are made (raycast/caster_choice.h).
-  app.add_option_function<std::string>(
-         "--caster", [](const std::string& word) { setenv("SENSORFARM_CASTER", word.c_str(), 1); },
-         "Casts rays by the device's kernels or the host's vectors, to the same bytes (else $SENSORFARM_CASTER, "
-         "else auto: host where the device is software)")
-      ->type_name("auto|vulkan|host")
-      ->check(CLI::IsMember({"auto", "vulkan", "host"}));
+  add_choice(
+      app, "--caster", {"auto", "vulkan", "host"},
+      [](const std::string& word) { setenv("SENSORFARM_CASTER", word.c_str(), 1); },
+      "Casts rays by the device's kernels or the host's vectors, to the same bytes (else $SENSORFARM_CASTER, "
+      "else auto: host where the device is software)");
 }
 
 void add_world(CLI::App& app, WorldOptions& o) {
@@ -146,24 +82,19 @@ void add_accuracy_target(CLI::App& app, AccuracyTargetOptions& o) {
            }
          },
          "Largest error wanted, with its unit: 5mm for what measures lengths, 2uT for fields (may be given for both)")
-      ->check(quantity())
+      ->check(readable(read_quantity, "a length or a field with its unit such as 5mm, 0.01m, 2uT or 1mG"))
       ->allow_extra_args(false)
       ->type_name("ERROR");
-  app.add_option_function<std::string>(
-         "--by",
-         [&o](const std::string& text) {
-           o.accuracy_target.by = text == "median" ? scenarios::ErrorMeasure::median
-                                  : text == "p99"  ? scenarios::ErrorMeasure::p99
-                                                   : scenarios::ErrorMeasure::max;
-         },
-         "Which error is meant: the largest, that of 99 % of all readings, or the median")
-      ->check(one_of({"max", "p99", "median"}))
-      ->type_name("max|p99|median")
+  using scenarios::ErrorMeasure;
+  add_choice<ErrorMeasure, ErrorMeasure>(
+      app, "--by", o.accuracy_target.by,
+      {{"max", ErrorMeasure::max}, {"p99", ErrorMeasure::p99}, {"median", ErrorMeasure::median}},
+      "Which error is meant: the largest, that of 99 % of all readings, or the median")
       ->default_str("max");
   app.add_option_function<std::string>(
          "--min-rate", [&o](const std::string& text) { o.accuracy_target.least_rate = *read_rate(text); },
          "Ticks per second wanted: the most accurate modes that allow it")
-      ->check(rate())
+      ->check(readable(read_rate, "a rate above zero such as 10Hz"))
       ->type_name("HZ");
 }
 
@@ -176,23 +107,16 @@ void add_automatic(CLI::App& app, AccuracyTargetOptions& o) {
 }
 
 void add_no_return(CLI::App& app, NoReturnOption& o) {
-  app.add_option_function<std::string>(
-         "--no-return", [&o](const std::string& text) { o.no_return_inf = text == "inf"; },
-         "What a beam reads that meets nothing: max (range_max) or inf (null in JSON)")
-      ->check(one_of({"max", "inf"}))
-      ->type_name("max|inf")
+  add_choice<bool, bool>(app, "--no-return", o.no_return_inf, {{"max", false}, {"inf", true}},
+                         "Range of a beam without a return: max (range_max) or inf (null in JSON)")
       ->default_str("max");
 }
 
 void add_wire(CLI::App& app, WireOption& o) {
-  app.add_option_function<std::string>(
-         "--wire",
-         [&o](const std::string& text) {
-           o.wire = text == "thesis" ? sensors::WireFormat::thesis : sensors::WireFormat::farm;
-         },
-         "Layout of sensor packets: farm (docs/packets.md) or thesis (plain)")
-      ->check(one_of({"farm", "thesis"}))
-      ->type_name("farm|thesis")
+  using sensors::WireFormat;
+  add_choice<WireFormat, WireFormat>(app, "--wire", o.wire,
+                                     {{"farm", WireFormat::farm}, {"thesis", WireFormat::thesis}},
+                                     "Layout of sensor packets: farm (docs/packets.md) or thesis (plain)")
       ->default_str("farm");
 }
 
@@ -250,17 +174,9 @@ void add_recording(CLI::App& app, RecordingOption& o) {
 }
 
 void add_kind(CLI::App& app, SenseOptions& o) {
-  std::vector<std::string> names;
-  for (const sensors::SensorType* kind : sensors::sensor_types()) names.emplace_back(kind->name);
-  app.add_option_function<std::string>(
-         "--kind",
-         [&o](const std::string& text) {
-           for (const sensors::SensorType* kind : sensors::sensor_types())
-             if (kind->name == text) o.kind = kind->id;
-         },
-         "Kind of its sensor: " + join_or(names) + " (default: the first that it has)")
-      ->check(one_of(names))
-      ->type_name("KIND");
+  std::vector<std::pair<std::string, std::uint8_t>> types;
+  for (const sensors::SensorType* type : sensors::sensor_types()) types.emplace_back(type->name, type->id);
+  add_choice(app, "--kind", o.kind, types, "Kind of its sensor (default: the first that it has)");
 }
 
 void add_seed(CLI::App& app, SeedOption& o, const std::string& what) {
@@ -281,13 +197,13 @@ void add_robots(CLI::App& app, CloneOptions& o) {
 void add_controller(CLI::App& app, ControllerOptions& o) {
   std::vector<std::string> names;
   for (const control::ControllerType* kind : control::controllers()) names.emplace_back(kind->name);
-  app.add_option("--controller", o.controller, "Who drives: " + join_or(names))
+  app.add_option("--controller", o.controller, "Controller of the robots: " + join_or(names))
       ->check(one_of(names))
       ->type_name("NAME")
       ->capture_default_str();
   app.add_option("--set", o.set,
                  "One of the controller's settings (may be repeated): kp=0.5, park=13.4, checkpoints=1,2 or \"[1 2]\"")
-      ->check(key_and_value())
+      ->check(readable(read_setting, "KEY=VALUE such as kp=0.5"))
       ->type_name("KEY=VALUE");
 }
 

@@ -1,37 +1,20 @@
 #pragma once
-// Checks of arguments, for `->check(...)`, and the groups of options that subcommands share.
+// The groups of options that subcommands share.
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/options.h"
 
 namespace CLI {
 class App;
+class Option;
 }  // namespace CLI
 
 namespace sf::apps {
-
-/// The fault of an argument, or "" (apps/option_parsers.h).
-using Validator = std::function<std::string(const std::string&)>;
-
-Validator whole(std::uint64_t first, std::uint64_t last);
-Validator number(double first, double last);
-Validator one_of(std::vector<std::string> words);
-/// @param what was expected, with its article
-Validator not_empty(std::string what);
-/// A file that a picture is written to: there is PNG, and a name without a suffix may stand for it.
-Validator picture();
-Validator key_and_value();
-Validator pose();
-Validator line();
-Validator extent();
-Validator ports();
-Validator quantity();
-Validator rate();
 
 /// A command with its options. Returns the exit code.
 using Call = std::function<int()>;
@@ -47,6 +30,25 @@ CommandOptions& add_command(CLI::App& sub, Call& call, int (*command)(const Comm
   on_parsed(
       sub, [options, &call, command] { call = [options, command] { return command(*options); }; }, std::move(check));
   return *options;
+}
+
+/// The end of the command's help. @param arguments of one call each
+void add_examples(CLI::App& sub, const std::vector<std::string>& arguments);
+
+/// An option whose argument is one of `words`, which is given to `set`.
+CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
+                        const std::function<void(const std::string&)>& set, const std::string& help);
+/// The same where each word stands for a value.
+template <class Target, class Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
+                        const std::vector<std::pair<std::string, Value>>& choices, const std::string& help) {
+  std::vector<std::string> words;
+  for (const auto& [word, value] : choices) words.push_back(word);
+  const auto set = [&target, choices](const std::string& text) {
+    for (const auto& [word, value] : choices)
+      if (word == text) target = value;
+  };
+  return add_choice(app, name, words, set, help);
 }
 
 void add_json(CLI::App& app, JsonOption& o);

@@ -2,7 +2,6 @@
 // The arguments of each command as plain values. Groups that commands share come first; a command has those that it
 // names, and its own.
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "scenarios/plant.h"
 #include "scenarios/tradeoff.h"
 #include "sensors/sensor_type.h"
+#include "viz/canvas.h"
 #include "world/world.h"
 
 namespace sf::apps {
@@ -112,11 +112,11 @@ struct DrawOptions : WorldOptions {
 };
 
 struct FieldOptions : WorldOptions, DeviceOption {
-  std::string out;                              ///< picture
-  double height = 0.0;                          ///< [m] of the figure
-  std::optional<std::array<double, 4>> line;    ///< [m] of its profile: x, y of both ends
-  std::optional<std::array<double, 4>> extent;  ///< [m] of its map: x, y of the lower left and upper right corner
-  std::string csv;                              ///< file for its profile; empty: none
+  std::string out;                      ///< picture
+  double height = 0.0;                  ///< [m] of the figure
+  std::optional<viz::Line> line;        ///< [m] of its profile
+  std::optional<world::Extent> extent;  ///< [m] of its map
+  std::string csv;                      ///< file for its profile; empty: none
 };
 
 struct SenseOptions : WorldOptions, JsonOption, DeviceOption, NoReturnOption {
@@ -189,7 +189,7 @@ struct MapOptions : ReceiveOptions, WireOption, DurationOption {
   std::vector<std::uint16_t> map_ports;  ///< to listen on
   bool merge = false;                    ///< of all of them one map
   std::string out;                       ///< picture; empty: none
-  bool once = false;                     ///< until every port has brought a whole map
+  bool once = false;                     ///< until every port has brought a complete map
 };
 
 struct ExperimentOptions : SeedOption, DeviceOption {

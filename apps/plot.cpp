@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "apps/commands.h"
@@ -11,6 +10,7 @@
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "farm/farm.h"
 #include "record/recording.h"
@@ -100,13 +100,11 @@ int plot(const PlotOptions& options) {
   install_stop_handlers();
   const std::string trajectories = (folder / "trajectories.png").string();
   viz::draw_trajectories(world, tracks_of(recording, world), trajectories);
-  std::fprintf(stderr, "sensorfarm: wrote %s\n", trajectories.c_str());
+  print_message("wrote {}", trajectories);
   go_on();
-  for (const std::string& file : draw_readings(recording, folder.string()))
-    std::fprintf(stderr, "sensorfarm: wrote %s\n", file.c_str());
+  for (const std::string& file : draw_readings(recording, folder.string())) print_message("wrote {}", file);
   go_on();
-  for (const std::string& file : draw_maps(recording, world, folder.string()))
-    std::fprintf(stderr, "sensorfarm: wrote %s\n", file.c_str());
+  for (const std::string& file : draw_maps(recording, world, folder.string())) print_message("wrote {}", file);
   go_on();
 
   gpu::Device device(options.device);
@@ -114,7 +112,7 @@ int plot(const PlotOptions& options) {
   map_scans(recording, world, device, grid);
   const std::string occupancy = (folder / "occupancy.png").string();
   viz::draw_occupancy(world, grid, occupancy);
-  std::fprintf(stderr, "sensorfarm: wrote %s\n", occupancy.c_str());
+  print_message("wrote {}", occupancy);
   return 0;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "apps/option_parsers.h"
+#include "apps/text.h"
 #include "record/reading_messages.h"
 #include "viz/series_figure.h"
 

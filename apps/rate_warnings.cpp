@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 #include <utility>
 
-#include "apps/option_parsers.h"
+#include "apps/text.h"
 #include "farm/schedule.h"
 
 namespace sf::apps {
@@ -58,10 +57,10 @@ void warn_of_fast_sensors(const sensors::SensorSet& sensor_set, double rate) {
     kinds += (kinds.empty() ? "" : ", ") + rate_text(group);
   }
   if (fast > 0)
-    std::fprintf(stderr,
-                 "sensorfarm: --rate %g is too low for %s (%s): they give one reading a tick; leave --rate out, and "
-                 "they are read at their own times, or give at least --rate %g\n",
-                 rate, counted(fast, "sensor").c_str(), kinds.c_str(), most);
+    print_message(
+        "--rate {:g} is too low for {} ({}): they give one reading a tick; leave --rate out, and "
+        "they are read at their own times, or give at least --rate {:g}",
+        rate, counted(fast, "sensor"), kinds, most);
 }
 
 void warn_of_many_times(const sensors::SensorSet& sensor_set) {
@@ -72,10 +71,10 @@ void warn_of_many_times(const sensors::SensorSet& sensor_set) {
   double a_second = 0.0;
   for (const auto& [rate, phase] : times) a_second += rate;
   if (a_second > kManyTimes)
-    std::fprintf(stderr,
-                 "sensorfarm: sensors are due at up to %.0f different times a second, each a batch of its own: this "
-                 "will be slow; lower their rates, or give them one rate and phase\n",
-                 a_second);
+    print_message(
+        "sensors are due at up to {:.0f} different times a second, each a batch of its own: this "
+        "will be slow; lower their rates, or give them one rate and phase",
+        a_second);
 }
 
 }  // namespace sf::apps

@@ -3,25 +3,29 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "apps/text.h"
+
 namespace sf::apps {
 
 void print_warnings(const std::string& file, const std::vector<world::Warning>& warnings) {
   constexpr std::size_t kFirst = 3;
   const std::size_t count = warnings.size();
   if (count == 0) return;
-  std::fprintf(stderr, "sensorfarm: %zu %s%s\n", count, count == 1 ? "warning" : "warnings",
-               count > kFirst ? (", the first 3 here, all with `sensorfarm check " + file + "`:").c_str() : ":");
-  for (std::size_t i = 0; i < std::min(count, kFirst); ++i)
-    std::fprintf(stderr, "%s:%d: warning: %s\n", warnings[i].file.c_str(), warnings[i].line,
-                 warnings[i].message.c_str());
+  print_message("{}{}:", counted(count, "warning"),
+                count > kFirst ? fmt::format(", the first 3 here, all with `sensorfarm check {}`", file) : "");
+  std::fputs(text_of(std::span(warnings).first(std::min(count, kFirst))).c_str(), stderr);
+}
+
+std::string text_of(std::span<const world::Warning> warnings) {
+  std::string text;
+  for (const world::Warning& w : warnings) text += fmt::format("{}:{}: warning: {}\n", w.file, w.line, w.message);
+  return text;
 }
 
 void print_damage(const record::Recording& recording) {
-  for (const std::string& damage : recording.damage)
-    std::fprintf(stderr, "sensorfarm: %s: %s\n", recording.file.c_str(), damage.c_str());
+  for (const std::string& damage : recording.damage) print_message("{}: {}", recording.file, damage);
   if (recording.truncated)
-    std::fprintf(stderr, "sensorfarm: %s was not finished; its %llu whole ticks are taken\n", recording.file.c_str(),
-                 static_cast<unsigned long long>(recording.ticks));
+    print_message("{} was not finished; its {} whole ticks are taken", recording.file, recording.ticks);
 }
 
 std::size_t count_robots(const world::World& world) {

@@ -1,6 +1,7 @@
 #pragma once
 // Reports of commands, as rows of a table or as JSON. nlohmann/json stays in the source.
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,8 @@ struct SelfTestReport {
 /// Says on standard error how many warnings there are, and the first three of them. @param file that `check` lists all
 /// of
 void print_warnings(const std::string& file, const std::vector<world::Warning>& warnings);
+/// "file:line: warning: message", one a line.
+std::string text_of(std::span<const world::Warning> warnings);
 /// The JSON object with the list of all of them at its end.
 std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings);
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/option_parsers.h"
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
+#include "apps/text.h"
 #include "base/hash.h"
 #include "raycast/caster_choice.h"
 #include "sensors/accuracy.h"
@@ -29,7 +29,7 @@ std::string sensors_text(const sensors::SensorSet& sensor_set) {
     std::size_t elements = 0;
     for (const sensors::SensorSpec& sensor : group.rows) elements += sensor.elements;
     const std::string list = group.kind->list.empty() ? "" : fmt::format(" ({} {} in all)", elements, group.kind->list);
-    text += row(group.kind->name, fmt::format("{}{}", group.rows.size(), list));
+    text += row(group.kind->name, "{}{}", group.rows.size(), list);
   }
   return text;
 }
@@ -46,36 +46,34 @@ std::string rates_text(const world::World& world, const sensors::SensorSet& sens
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     rates += (rates.empty() ? "" : ", ") + rate_text(group);
   const std::vector<std::string> between = kinds_between_ticks(sensor_set, world.interval);
-  return row("rates", rates) +
-         (between.empty() ? "" : row("", fmt::format("read between ticks too: {}", fmt::join(between, ", "))));
+  return row("rates", rates) + (between.empty() ? "" : row("", "read between ticks too: {}", fmt::join(between, ", ")));
 }
 
 std::string paint_text(const world::World& world) {
   if (world.lane_markings.empty()) return "";
   const double cell = world.road_resolution;
-  return row("paint", fmt::format("{}, seen {}", counted(world.lane_markings.size(), "stripe"),
-                                  cell > 0.0 ? fmt::format("as a raster of {:g} m", cell) : "exactly"));
+  return row("paint", "{}, seen {}", counted(world.lane_markings.size(), "stripe"),
+             cell > 0.0 ? fmt::format("as a raster of {:g} m", cell) : "exactly");
 }
 
 std::string magnets_text(const world::World& world) {
   const std::size_t magnets = count_magnets(world);
   if (magnets == 0) return "";
-  if (world.magnet_cutoff == 0.0) return row("magnets", fmt::format("{}, all of them felt everywhere", magnets));
+  if (world.magnet_cutoff == 0.0) return row("magnets", "{}, all of them felt everywhere", magnets);
   const sensors::MagnetSummary facts = sensors::summarize_magnets(world);
-  return row("magnets", fmt::format("{}, felt within {:g} m", magnets, facts.cutoff_m)) +
-         row("", fmt::format("what is left out is at most {:.3g} T ({:.3g} Gauss), {:g} m above the ground",
-                             facts.bound_T, 1e4 * facts.bound_T, facts.height_m));
+  return row("magnets", "{}, felt within {:g} m", magnets, facts.cutoff_m) +
+         row("", "what is left out is at most {:.3g} T ({:.3g} Gauss), {:g} m above the ground", facts.bound_T,
+             1e4 * facts.bound_T, facts.height_m);
 }
 
 std::string street_text(const world::World& world) {
   const std::size_t docks = count_docks(world), walls = world.emitters.size() - docks;
   std::string text;
-  if (!world.lights.empty()) text += row("traffic lights", fmt::format("{}", world.lights.size()));
-  if (docks > 0) text += row("docks", fmt::format("{}", docks));
-  if (walls > 0) text += row("virtual walls", fmt::format("{}", walls));
-  if (!world.floor_holes.empty())
-    text += row("holes", fmt::format("{}, seen by cliff sensors only", world.floor_holes.size()));
-  if (!world.paths.empty()) text += row("paths", fmt::format("{}", world.paths.size()));
+  if (!world.lights.empty()) text += row("traffic lights", world.lights.size());
+  if (docks > 0) text += row("docks", docks);
+  if (walls > 0) text += row("virtual walls", walls);
+  if (!world.floor_holes.empty()) text += row("holes", "{}, seen by cliff sensors only", world.floor_holes.size());
+  if (!world.paths.empty()) text += row("paths", world.paths.size());
   return text;
 }
 
@@ -105,22 +103,21 @@ std::string text_of(const gpu::DeviceList& list) {
 std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set) {
   const std::size_t robots = count_robots(world);
   const world::Extent& e = world.extent;
-  std::string text;
-  for (const world::Warning& w : world.warnings) text += fmt::format("{}:{}: warning: {}\n", w.file, w.line, w.message);
+  std::string text = text_of(world.warnings);
   text += fmt::format("{}\n", world.name.empty() ? world.file : world.name);
-  text += row("models", fmt::format("{}", world.models.size()));
-  text += row("robots", fmt::format("{}", robots));
-  if (world.movers.size() > robots) text += row("tags", fmt::format("{}", world.movers.size() - robots));
+  text += row("models", world.models.size());
+  text += row("robots", robots);
+  if (world.movers.size() > robots) text += row("tags", world.movers.size() - robots);
   text += sensor_set.groups().empty()
               ? row("sensors", "none")
               : sensors_text(sensor_set) + rates_text(world, sensor_set) + accuracy_text(world, sensor_set);
-  text += row("wall segments", fmt::format("{}", world.walls.size()));
+  text += row("wall segments", world.walls.size());
   text += paint_text(world) + magnets_text(world) + street_text(world);
-  text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));
-  text += row("tick", fmt::format("{:g} s", world.interval));
-  for (const auto& [type, count] : world.unmodelled) text += row("kept as bodies", fmt::format("{} x {}", count, type));
+  text += row("extent", "x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max);
+  text += row("tick", "{:g} s", world.interval);
+  for (const auto& [type, count] : world.unmodelled) text += row("kept as bodies", "{} x {}", count, type);
   text += row("hash", base::hash_hex(world.hash));
-  text += row("warnings", fmt::format("{}", world.warnings.size()));
+  text += row("warnings", world.warnings.size());
   return text;
 }
 
@@ -131,52 +128,48 @@ std::string work_text(const RunReport& f) {
   const double sensing = f.farm.place_s + f.farm.lists_s + f.farm.device_s + f.farm.collect_s;
   const auto rows = [&](const char* what, std::uint64_t count) {
     const auto per = [&](double seconds) { return rate(seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0); };
-    return row(what, fmt::format("{}, {} of the whole run", count, per(f.wall_s))) +
-           row("", per(sensing) + " while sensing");
+    return row(what, "{}, {} of the whole run", count, per(f.wall_s)) + row("", per(sensing) + " while sensing");
   };
   const sensors::SensorStats& work = f.farm.work;
   std::string text = work.rays > 0 || work.dipoles == 0 ? rows("rays", work.rays) : "";
   if (work.dipoles > 0) text += rows("dipoles", work.dipoles);
   if (f.farm.missed > 0)
-    text += row("missed", fmt::format("{} beside {} readings: newer ones were due at the same tick", f.farm.missed,
-                                      f.farm.readings));
+    text +=
+        row("missed", "{} beside {} readings: newer ones were due at the same tick", f.farm.missed, f.farm.readings);
   if (work.host_scans > 0)
-    text += row("cast on the host",
-                fmt::format("{} scans: too many surfaces around them for the device's lists", work.host_scans));
+    text += row("cast on the host", "{} scans: too many surfaces around them for the device's lists", work.host_scans);
   if (f.farm.reused > 0)
-    text += row("given again", fmt::format("{} of {} readings: nothing had moved", f.farm.reused, f.farm.readings));
+    text += row("given again", "{} of {} readings: nothing had moved", f.farm.reused, f.farm.readings);
   return text;
 }
 
 /// Results of the controllers.
 std::string control_text(const ControlReport& f) {
   if (f.robots == 0) return "";
-  std::string text =
-      row("controller", fmt::format("{}: {} of {} done", f.controller, f.done, counted(f.robots, "robot")));
+  std::string text = row("controller", "{}: {} of {} done", f.controller, f.done, counted(f.robots, "robot"));
   if (f.error.steps > 0) text += row("control error", text_of(f.error));
-  if (f.has_goals) text += row("checkpoints", fmt::format("{} passed", f.checkpoints));
+  if (f.has_goals) text += row("checkpoints", "{} passed", f.checkpoints);
   constexpr std::size_t kLines = 5;
   for (std::size_t i = 0; i < std::min(f.standing.size(), kLines); ++i)
     text += row(i == 0 ? "stand at the end" : "", text_of(f.standing[i]));
   if (f.standing.size() > kLines)
-    text += row("", fmt::format("and robots for {} other reasons (--json has all)", f.standing.size() - kLines));
+    text += row("", "and robots for {} other reasons (--json has all)", f.standing.size() - kLines);
   return text;
 }
 
 /// Of datagrams that no program ever saw.
 std::string drops_text(std::uint64_t drops) {
-  return row("dropped by the kernel", fmt::format("{}: they came faster than they were taken", drops));
+  return row("dropped by the kernel", "{}: they came faster than they were taken", drops);
 }
 
 std::string packets_text(const server::PublisherCounts& publisher) {
   const netio::OutboxCounts& packets = publisher.packets;
   std::string text =
-      row("packets sent", fmt::format("{} ({:.1f} MB)", packets.sent, static_cast<double>(packets.sent_bytes) * 1e-6));
+      row("packets sent", "{} ({:.1f} MB)", packets.sent, static_cast<double>(packets.sent_bytes) * 1e-6);
   if (packets.failed + packets.dropped > 0)
-    text += row("packets not sent",
-                fmt::format("{} failed ({}), {} dropped", packets.failed, packets.first_failure, packets.dropped));
-  if (publisher.not_numbers > 0)
-    text += row("packets not made", fmt::format("{}: not a number in them", publisher.not_numbers));
+    text +=
+        row("packets not sent", "{} failed ({}), {} dropped", packets.failed, packets.first_failure, packets.dropped);
+  if (publisher.not_numbers > 0) text += row("packets not made", "{}: not a number in them", publisher.not_numbers);
   return text;
 }
 
@@ -188,24 +181,24 @@ std::string text_of(const RunReport& f) {
   std::string text = f.interrupted ? "Stopped before the end.\n" : "";
   text += row("device", device_text(f));
   text += row("caster", f.caster);
-  text += row("robots", fmt::format("{}", f.robots));
-  text += row("ticks", fmt::format("{}", f.ticks));
-  text += row("simulated", fmt::format("{:.1f} s in {:.2f} s: {:.1f} x real time", f.simulated_s, f.wall_s,
-                                       f.wall_s > 0.0 ? f.simulated_s / f.wall_s : 0.0));
+  text += row("robots", f.robots);
+  text += row("ticks", f.ticks);
+  text += row("simulated", "{:.1f} s in {:.2f} s: {:.1f} x real time", f.simulated_s, f.wall_s,
+              f.wall_s > 0.0 ? f.simulated_s / f.wall_s : 0.0);
   text += work_text(f);
-  if (f.contacts > 0) text += row("contacts", fmt::format("{} that began", f.contacts));
+  if (f.contacts > 0) text += row("contacts", "{} that began", f.contacts);
   text += control_text(f.control);
   if (f.sent) text += packets_text(f.publisher);
   if (f.received) text += row("packets received", netio::text(f.inbox));
   if (f.kernel_drops > 0) text += drops_text(f.kernel_drops);
   if (f.relayed.states + f.relayed.starts > 0)
-    text += row("packets passed on", fmt::format("{} V2V in {}, {} START", f.relayed.states,
-                                                 counted(f.relayed.datagrams, "datagram"), f.relayed.starts));
+    text += row("packets passed on", "{} V2V in {}, {} START", f.relayed.states,
+                counted(f.relayed.datagrams, "datagram"), f.relayed.starts);
   if (f.relayed.waited > 0)
     text += row("  waited for", counted(f.relayed.waited, "time") + ": more robots ask for V2V than a tick serves");
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (!f.recording.empty())
-    text += row("recording", fmt::format("{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6));
+    text += row("recording", "{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6);
   text += row("time: move", stage(f.move_s));
   text += row("  place movers", stage(f.farm.place_s));
   text += row("  lists, scans", stage(f.farm.lists_s));
@@ -233,15 +226,13 @@ std::string shares_text(const netio::StreamSummary& summary) {
 }  // namespace
 
 std::string text_of(const netio::StreamSummary& s) {
-  std::string text = row(
-      "packets received",
-      fmt::format("{} ({:.1f} MB) on {}", s.datagrams, static_cast<double>(s.bytes) * 1e-6, counted(s.ports, "port")));
-  text += row("packets good", fmt::format("{}{}", s.good, shares_text(s)));
-  text += row("packets lost",
-              fmt::format("{} ({}, {} reordered)", s.lost, counted(s.duplicates, "duplicate"), s.reordered));
+  std::string text = row("packets received", "{} ({:.1f} MB) on {}", s.datagrams, static_cast<double>(s.bytes) * 1e-6,
+                         counted(s.ports, "port"));
+  text += row("packets good", "{}{}", s.good, shares_text(s));
+  text += row("packets lost", "{} ({}, {} reordered)", s.lost, counted(s.duplicates, "duplicate"), s.reordered);
   if (s.counts.dropped() > 0) text += row("by reason", netio::text(s.counts));
   if (s.kernel_drops > 0) text += drops_text(s.kernel_drops);
-  if (s.silent_ports > 0) text += row("silent ports", fmt::format("{}", s.silent_ports));
+  if (s.silent_ports > 0) text += row("silent ports", s.silent_ports);
   return text;
 }
 

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
-#include "apps/option_parsers.h"
 #include "apps/report.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "viz/road_figure.h"
 #include "world/roads/roads.h"
@@ -34,7 +33,7 @@ int check_network(const CheckOptions& options) {
   std::vector<world::Warning> warnings;
   const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
   const RoadReport facts{network, world::lane_markings_of(network).size(), warnings};
-  std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
+  print(options.json ? json_of(facts) : text_of(facts));
   return 0;
 }
 
@@ -47,14 +46,8 @@ int check_mission(const CheckOptions& options) {
     append(warnings, world::check_against(mission, rndf));
   }
   const MissionReport facts{mission, options.rndf, warnings};
-  std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
+  print(options.json ? json_of(facts) : text_of(facts));
   return 0;
-}
-
-std::string text_of(const std::vector<world::Warning>& warnings) {
-  std::string text;
-  for (const world::Warning& w : warnings) text += fmt::format("{}:{}: warning: {}\n", w.file, w.line, w.message);
-  return text;
 }
 
 }  // namespace
@@ -67,18 +60,18 @@ std::string text_of(const RoadReport& facts) {
   for (const world::RoadLane& lane : network.lanes) length += length_of(lane);
   std::string text = text_of(facts.warnings);
   text += fmt::format("{}\n", network.name.empty() ? network.file : network.name);
-  text += row("segments", fmt::format("{}", c.segments));
-  text += row("lanes", fmt::format("{} ({:.1f} m in all)", c.lanes, length));
-  text += row("zones", fmt::format("{}", c.zones));
-  text += row("spots", fmt::format("{}", c.spots));
-  text += row("points", fmt::format("{} ({} of lanes)", c.points, c.lane_waypoints));
-  text += row("exits", fmt::format("{}", c.exits));
-  text += row("stops", fmt::format("{}", c.stops));
-  text += row("checkpoints", fmt::format("{}", c.checkpoints));
-  text += row("painted lines", fmt::format("{}", facts.lane_markings));
-  text += row("scale", fmt::format("{:g}", network.scale));
-  text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));
-  return text + row("warnings", fmt::format("{}", facts.warnings.size()));
+  text += row("segments", c.segments);
+  text += row("lanes", "{} ({:.1f} m in all)", c.lanes, length);
+  text += row("zones", c.zones);
+  text += row("spots", c.spots);
+  text += row("points", "{} ({} of lanes)", c.points, c.lane_waypoints);
+  text += row("exits", c.exits);
+  text += row("stops", c.stops);
+  text += row("checkpoints", c.checkpoints);
+  text += row("painted lines", facts.lane_markings);
+  text += row("scale", "{:g}", network.scale);
+  text += row("extent", "x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max);
+  return text + row("warnings", facts.warnings.size());
 }
 
 std::string text_of(const MissionReport& facts) {
@@ -87,9 +80,9 @@ std::string text_of(const MissionReport& facts) {
   text += fmt::format("{}\n", mission.name.empty() ? mission.file : mission.name);
   text += row("made for", mission.rndf_name.empty() ? "-" : mission.rndf_name);
   text += row("checked against", facts.network.empty() ? "nothing (--rndf FILE)" : facts.network);
-  text += row("checkpoints", fmt::format("{}", mission.checkpoints.size()));
-  text += row("speed limits", fmt::format("{}", mission.speed_limits.size()));
-  return text + row("warnings", fmt::format("{}", facts.warnings.size()));
+  text += row("checkpoints", mission.checkpoints.size());
+  text += row("speed limits", mission.speed_limits.size());
+  return text + row("warnings", facts.warnings.size());
 }
 
 std::optional<int> check_roads(const CheckOptions& options) {
@@ -108,7 +101,7 @@ std::optional<int> draw_roads(const DrawOptions& options) {
   const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
   print_warnings(options.world, warnings);
   viz::draw_roads(network, options.out);
-  std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());
+  print_message("wrote {}", options.out);
   return 0;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "apps/report.h"
 #include "apps/robot_report.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "netio/outbox.h"
 #include "netio/server/robot_client.h"
@@ -72,13 +72,13 @@ int robot(const RobotOptions& options) {
   server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options),
                               client_options(options));
   install_stop_handlers();
-  std::fprintf(stderr, "sensorfarm: %s (id %u) drives by '%s' at %g Hz beside the farm at %s%s; Ctrl-C ends it\n",
-               world.movers[mover].name.c_str(), world.movers[mover].id, options.controller.c_str(), process.rate(),
-               netio::text(process.link().farm()).c_str(),
-               waits_for_start(options) ? ", once it is given the start signal" : "");
+  print_message("{} (id {}) drives by '{}' at {:g} Hz beside the farm at {}{}; Ctrl-C ends it",
+                world.movers[mover].name, world.movers[mover].id, options.controller, process.rate(),
+                netio::text(process.link().farm()),
+                waits_for_start(options) ? ", once it is given the start signal" : "");
   process.run(stop_requested(), options.duration);
   const server::RobotClientStats facts = process.stats();
-  std::fputs((options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts)).c_str(), stdout);
+  print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
   return facts.answered || !facts.listens ? 0 : 1;
 }
 
@@ -98,11 +98,9 @@ int start(const StartOptions& options) {
   }
   if (outbox.counts().sent == 0)
     throw base::InputError("the start signal was not sent: " + outbox.counts().first_failure);
-  std::fprintf(
-      stderr, "sensorfarm: start signal sent to %s for %s, %d times; nobody acknowledges it\n",
-      netio::text(farm).c_str(),
-      options.start_id == netio::kBroadcastId ? "all robots" : ("robot " + std::to_string(options.start_id)).c_str(),
-      kTimes);
+  print_message("start signal sent to {} for {}, {} times; nobody acknowledges it", netio::text(farm),
+                options.start_id == netio::kBroadcastId ? "all robots" : ("robot " + std::to_string(options.start_id)),
+                kTimes);
   return 0;
 }
 

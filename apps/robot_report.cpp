@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "apps/control_report.h"
-#include "apps/option_parsers.h"
+#include "apps/text.h"
 
 namespace sf::apps {
 
@@ -25,13 +25,13 @@ std::string injected_text(const netio::DelayCounts& counts) {
 
 std::string link_text(const server::LinkCounts& link) {
   const netio::ReceiverCounts& in = link.readings;
-  std::string text = row("packets sent", fmt::format("{}", link.sent.sent));
+  std::string text = row("packets sent", link.sent.sent);
   if (link.sent.failed + link.sent.dropped > 0)
-    text += row("packets not sent", fmt::format("{} failed ({}), {} dropped", link.sent.failed, link.sent.first_failure,
-                                                link.sent.dropped));
+    text += row("packets not sent", "{} failed ({}), {} dropped", link.sent.failed, link.sent.first_failure,
+                link.sent.dropped);
   text += row("readings", kinds_text(link));
   text += row("sensor packets", netio::text(in.packets));
-  text += row("", fmt::format("{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost));
+  text += row("", "{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost);
   if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " too far ahead to be believed");
   if (link.kernel_drops > 0) text += row("", counted(link.kernel_drops, "packet") + " dropped by the kernel");
   if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " began anew");
@@ -48,12 +48,12 @@ std::string link_text(const server::LinkCounts& link) {
 std::string text_of(const server::RobotClientStats& f) {
   std::string text = f.answered ? "" : fmt::format("Nothing came from the farm at {}.\n", f.farm);
   if (!f.started) text += "The start signal did not come.\n";
-  text += row("robot", fmt::format("{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : ""));
-  text += row("ran", fmt::format("{:.2f} s, {}", f.wall_s, counted(f.steps, "step")));
+  text += row("robot", "{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : "");
+  text += row("ran", "{:.2f} s, {}", f.wall_s, counted(f.steps, "step"));
   text += link_text(f.link);
-  text += row("driven", fmt::format("{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
-                                    f.pose.yaw * 180.0 / M_PI));
-  text += row("contacts", fmt::format("{} that began", f.contacts));
+  text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
+              f.pose.yaw * 180.0 / M_PI);
+  text += row("contacts", "{} that began", f.contacts);
   if (f.stops > 0) text += row("stood", counted(f.stops, "time") + " for want of readings");
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (f.error.steps > 0) text += row("control error", text_of(f.error));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -20,6 +19,7 @@
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "base/contact_onset.h"
 #include "base/elapsed.h"
 #include "base/error.h"
@@ -193,12 +193,10 @@ int run(const RunOptions& options) {
   outputs.finish(facts);
   std::vector<world::Warning> warnings = world.warnings;
   warnings.insert(warnings.end(), simulation.warnings().begin(), simulation.warnings().end());
-  std::fputs((options.json ? with_warnings(json_of(facts), warnings) : text_of(facts)).c_str(), stdout);
+  print(options.json ? with_warnings(json_of(facts), warnings) : text_of(facts));
   const netio::OutboxCounts& packets = facts.publisher.packets;
   if (packets.failed == 0) return 0;
-  std::fprintf(stderr, "sensorfarm: %llu of %llu packets were not sent: %s\n",
-               static_cast<unsigned long long>(packets.failed), static_cast<unsigned long long>(packets.queued),
-               packets.first_failure.c_str());
+  print_message("{} of {} packets were not sent: {}", packets.failed, packets.queued, packets.first_failure);
   return 1;
 }
 

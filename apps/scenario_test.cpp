@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "apps/commands.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "scenarios/junit.h"
 
@@ -67,7 +67,7 @@ int test_scenarios(const TestOptions& options) {
       Progress progress(scenario.name);
       results.push_back(scenarios::run_scenario(scenario, device, [&](double part) { progress.show(part); }));
     }
-    std::fputs(text_of(results.back()).c_str(), stdout);
+    print(text_of(results.back()));
     passed = passed && results.back().status() != scenarios::ScenarioStatus::failed;
   }
   if (!options.junit.empty()) write_junit(options.junit, results);

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "apps/commands.h"
-#include "apps/option_parsers.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "selftest/suite.h"
 
 namespace sf::apps {
@@ -32,8 +31,7 @@ std::vector<const Case*> chosen(const std::vector<std::string>& names) {
 }
 
 int list_all() {
-  for (const Case& c : selftest::cases())
-    std::fputs(fmt::format("{:<9} {:<27} {}\n", c.group, c.name, c.why).c_str(), stdout);
+  for (const Case& c : selftest::cases()) print(fmt::format("{:<9} {:<27} {}\n", c.group, c.name, c.why));
   return 0;
 }
 
@@ -87,7 +85,7 @@ int selftest(const SelfTestOptions& options) {
       test.seconds += test.cases.back().second.seconds;
     }
   }
-  std::fputs((options.json ? json_of(test) : text_of(test)).c_str(), stdout);
+  print(options.json ? json_of(test) : text_of(test));
   return test.sound() ? 0 : 1;
 }
 

@@ -1,16 +1,14 @@
 // `serve`: robots live elsewhere. Their states come in, readings go back to them.
 
-#include <cstdio>
-
 #include "apps/automatic_accuracy.h"
 #include "apps/commands.h"
 #include "apps/default_robot.h"
 #include "apps/exposure_warning.h"
 #include "apps/layout_options.h"
-#include "apps/option_parsers.h"
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "netio/server/service.h"
 #include "raycast/caster_choice.h"
@@ -68,12 +66,11 @@ int serve(const ServeOptions& options) {
     server::Service service(world, sensor_set, device, layout, chosen);
     warn_of_exposure(chosen.receiver.bind.address, "say where robots are, and be sent readings");
     install_stop_handlers();
-    std::fprintf(stderr, "sensorfarm: serving %s of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n",
-                 counted(service.robots(), "robot").c_str(), world.file.c_str(), options.bind.c_str(), service.port(),
-                 1.0 / service.interval(), device.info().name.c_str());
+    print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; Ctrl-C ends it", counted(service.robots(), "robot"),
+                  world.file, options.bind, service.port(), 1.0 / service.interval(), device.info().name);
     service.run(stop_requested(), options.duration);
     const RunReport facts = report_of(service.stats(), device.info());
-    std::fputs((options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts)).c_str(), stdout);
+    print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
   } catch (const netio::PortInUse&) {
     throw port_in_use(chosen.receiver.bind);
   }

@@ -16,6 +16,7 @@ void add_devices(CLI::App& app, Call& call) {
                                      "List the Vulkan devices: their self-check, which is chosen, and why others are "
                                      "not (exit 3 when none is usable)");
   auto& o = add_command(*sub, call, devices);
+  add_examples(*sub, {"--json"});
   add_json(*sub, o);
   add_device(*sub, o);
 }
@@ -23,6 +24,7 @@ void add_devices(CLI::App& app, Call& call) {
 void add_check(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("check", "Say what was understood of a world, and every warning with its line");
   auto& o = add_command(*sub, call, check);
+  add_examples(*sub, {"worlds/cave.world", "worlds/simville/simville.mdf --rndf worlds/simville/simville.rndf"});
   add_world(*sub, o);
   add_accuracy(*sub, o);
   sub->add_option("--rndf", o.rndf, "Road network that a mission (.mdf) is checked against")
@@ -37,6 +39,7 @@ void add_check(CLI::App& app, Call& call) {
 void add_draw(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("draw", "Draw the world as understood, seen from above");
   auto& o = add_command(*sub, call, draw);
+  add_examples(*sub, {"worlds/simville/simville.world -o simville.png"});
   add_world(*sub, o);
   sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(picture())->type_name("FILE");
 }
@@ -44,6 +47,7 @@ void add_draw(CLI::App& app, Call& call) {
 void add_field(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("field", "Draw the field of a world's magnets at one height, and along a line");
   auto& o = add_command(*sub, call, field);
+  add_examples(*sub, {"worlds/six_magnets.world --height 0.05 -o field.png"});
   add_world(*sub, o);
   add_device(*sub, o);
   sub->add_option("--height", o.height, "Height in the world [m]")
@@ -54,13 +58,13 @@ void add_field(CLI::App& app, Call& call) {
   sub->add_option_function<std::string>(
          "--line", [&o](const std::string& text) { o.line = read_line(text); },
          "Ends of the profile's line [m] (default: along the magnets)")
-      ->check(line())
+      ->check(readable(read_line, "X0,Y0,X1,Y1 of two points such as -1,0,2,0.5"))
       ->type_name("X0,Y0,X1,Y1");
   sub->add_option_function<std::string>(
-         "--extent", [&o](const std::string& text) { o.extent = read_line(text); },
+         "--extent", [&o](const std::string& text) { o.extent = read_extent(text); },
          "What the map must show [m] (default: all magnets)")
-      ->check(extent())
-      ->type_name("X0,Y0,X1,Y1");
+      ->check(readable(read_extent, "XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1"))
+      ->type_name("XMIN,YMIN,XMAX,YMAX");
   sub->add_option("--csv", o.csv, "File to write the profile's numbers to")
       ->check(not_empty("a file"))
       ->type_name("FILE");
@@ -69,6 +73,7 @@ void add_field(CLI::App& app, Call& call) {
 void add_sense(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("sense", "One reading of one sensor, noise off: check your world with a ruler");
   auto& o = add_command(*sub, call, sense);
+  add_examples(*sub, {"worlds/rooms.world --pose 1,2,90", "worlds/rooms.world --robot roomba1 --kind laser --json"});
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_json(*sub, o);
@@ -77,7 +82,7 @@ void add_sense(CLI::App& app, Call& call) {
   sub->add_option_function<std::string>(
          "--pose", [&o](const std::string& text) { o.pose = read_pose(text); },
          "Where the robot stands: X,Y,YAW_DEG [m, degrees]")
-      ->check(pose())
+      ->check(readable(read_pose, "X,Y,YAW_DEG such as 1.5,-2,90"))
       ->type_name("POSE");
   sub->add_option("--robot", o.robot, "Name of the robot (default: the first that has a sensor)")->type_name("NAME");
   add_kind(*sub, o);
@@ -92,6 +97,7 @@ void add_plot(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("plot", "Draw trajectories, an occupancy map and recorded readings from a recorded run");
   auto& o = add_command(*sub, call, plot);
+  add_examples(*sub, {"out/run"});
   add_recording(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
       ->check(not_empty("a folder"))
@@ -103,6 +109,7 @@ void add_explain(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "explain", "Say what a world makes the farm build and do, and what each kind of sensor costs on this machine");
   auto& o = add_command(*sub, call, explain);
+  add_examples(*sub, {"worlds/simville/simville.world"});
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_json(*sub, o);

@@ -15,6 +15,8 @@ void add_run(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("run", "Simulate a fleet in the loop, with every robot's sensors, as fast as it goes");
   auto& o = add_command(*sub, call, run);
+  add_examples(*sub, {"worlds/cave.world --robots 50 --duration 30", "worlds/cave.world --robots 4 --record out/run",
+                      "worlds/cave.world --robots 4 --send 127.0.0.1 --real-time"});
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_automatic(*sub, o);
@@ -57,6 +59,7 @@ void add_serve(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("serve", "Virtual sensors for robots that live elsewhere: V2V packets in, sensor packets out");
   auto& o = add_command(*sub, call, serve);
+  add_examples(*sub, {"worlds/rooms.world", "worlds/rooms.world --bind 0.0.0.0 --port 9001"});
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_automatic(*sub, o);
@@ -116,6 +119,8 @@ void add_robot(CLI::App& app, Call& call) {
       "robot",
       "One simulated robot, a process of its own beside a farm that serves (exit 1 when nothing came from it)");
   auto& o = add_command(*sub, call, robot);
+  add_examples(*sub, {"worlds/testpath/testpath.world --name roomba0 --controller lane-keeping --duration 30",
+                      "worlds/rooms.world --name roomba1 --server 192.168.1.5 --loss 0.1 --delay 0.05"});
   add_world(*sub, o);
   add_json(*sub, o);
   add_controller(*sub, o);
@@ -140,6 +145,7 @@ void add_start(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("start", "Give robots that wait for it the start signal, through the farm (not acknowledged)");
   auto& o = add_command(*sub, call, start);
+  add_examples(*sub, {"--robot 2"});
   add_farm(*sub, o);
   sub->add_option("--robot", o.start_id, "Id of the robot (default: all)")->check(whole(0, 65535))->type_name("ID");
 }
@@ -148,6 +154,7 @@ void add_listen(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "listen", "Take a run's packets on every robot's ports, count and check them (exit 1 when none was good)");
   auto& o = add_command(*sub, call, listen);
+  add_examples(*sub, {"worlds/cave.world --robots 4"});
   add_world(*sub, o);
   add_json(*sub, o);
   add_robots(*sub, o);
@@ -162,15 +169,18 @@ void add_map(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("map", "Show the occupancy maps that robots send, live in a terminal, and draw them");
   auto& o = add_command(*sub, call, map);
+  add_examples(*sub, {"--listen 52008 -o map.png"});
   sub->add_option_function<std::vector<std::string>>(
          "--listen",
          [&o](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts)
-             for (const std::uint16_t port : read_ports(text)) o.map_ports.push_back(port);
+           for (const std::string& text : texts) {
+             const std::vector<std::uint16_t> ports = *read_ports(text);
+             o.map_ports.insert(o.map_ports.end(), ports.begin(), ports.end());
+           }
          },
          "Port of a robot's map, or a range of ports A-B; may be given more than once")
       ->required()
-      ->check(ports())
+      ->check(readable(read_ports, "a port or a range of at most 1024 such as 52000-52008"))
       ->type_name("PORT");
   add_bind(*sub, o);
   add_from(*sub, o);
@@ -179,7 +189,7 @@ void add_map(CLI::App& app, Call& call) {
       ->check(picture())
       ->type_name("FILE");
   add_until(*sub, o, "Stop after this long [s] (0: when told to, or silent)");
-  sub->add_flag("--once", o.once, "Stop when every port has brought a whole map");
+  sub->add_flag("--once", o.once, "Stop when every port has brought a complete map");
   add_silence(*sub, o);
   add_wire(*sub, o);
 }

@@ -7,6 +7,7 @@
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
+#include "apps/text.h"
 #include "scenarios/experiment.h"
 #include "selftest/suite.h"
 
@@ -21,6 +22,7 @@ void add_experiment(CLI::App& app, Call& call) {
     if (sub->count("--list") + sub->count("experiment") == 0)
       throw CLI::RequiredError("the name of an experiment, or --list");
   });
+  add_examples(*sub, {"--list", "mapping -o out/mapping"});
   auto* list = sub->add_flag("--list", o.list, "Name them all");
   std::vector<std::string> names;
   for (const scenarios::ExperimentType* kind : scenarios::experiments()) names.emplace_back(kind->name);
@@ -33,13 +35,11 @@ void add_experiment(CLI::App& app, Call& call) {
       ->type_name("N")
       ->capture_default_str();
   add_seed(*sub, o, "Seed of the first trial");
-  sub->add_option_function<std::string>(
-         "--plant", [&o](const std::string& text) { o.plant = scenarios::plant_of(text); },
-         "What stands between commands and wheels: ideal (nothing) or thesis (Player's driver for the Create). "
-         "Default: "
-         "thesis for what it did with its Creates (paths, sweeps, mapping); ideal for towns and Pioneers")
-      ->check(one_of({"thesis", "ideal"}))
-      ->type_name("thesis|ideal");
+  using scenarios::Plant;
+  add_choice<std::optional<Plant>, Plant>(
+      *sub, "--plant", o.plant, {{"thesis", Plant::thesis}, {"ideal", Plant::ideal}},
+      "Driver model of the robots: ideal (commands are executed unchanged) or thesis (Player's driver for the Create). "
+      "Default: thesis for paths, sweeps and mapping; ideal for towns and Pioneers");
   sub->add_option("--files", o.experiments, "Folder with the experiments' scenario files (default: ours)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
@@ -49,6 +49,7 @@ void add_experiment(CLI::App& app, Call& call) {
 void add_test(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("test", "Run scenarios and hold them to what they expect (exit 1 when one fails)");
   auto& o = add_command(*sub, call, test_scenarios);
+  add_examples(*sub, {"experiments/mapping.toml --junit results.xml"});
   sub->add_option("scenario", o.scenarios, "Scenario files (.toml)")->required()->type_name("FILE");
   sub->add_option("--junit", o.junit, "Write the results as JUnit XML")->check(not_empty("a file"))->type_name("FILE");
   add_device(*sub, o);
@@ -60,6 +61,7 @@ void add_verify(CLI::App& app, Call& call) {
                          "Compute a recorded run again, on this device and in plain C++, and compare bit by "
                          "bit (exit 1 when something differs)");
   auto& o = add_command(*sub, call, verify);
+  add_examples(*sub, {"out/run"});
   add_recording(*sub, o);
   auto* sample =
       sub->add_option("--sample", o.sample, "Laser scans that plain C++ casts again: every k-th of the run's")
@@ -78,6 +80,7 @@ void add_tradeoff(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "tradeoff", "Measure every accuracy mode of a world's sensors on this machine: speed against error");
   auto& o = add_command(*sub, call, tradeoff);
+  add_examples(*sub, {"worlds/cave.world --max-error 5mm"});
   add_world(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for tradeoff.csv and tradeoff.png")
       ->check(not_empty("a folder"))
@@ -103,6 +106,7 @@ void add_selftest(CLI::App& app, Call& call) {
       "Try the farm at the ends of its range on this machine: worlds, beams, magnets, times, numbers (exit 1 when an "
       "answer is wrong)");
   auto& o = add_command(*sub, call, selftest);
+  add_examples(*sub, {"--list"});
   auto* list = sub->add_flag("--list", o.list, "Name all cases, each with its answer");
   sub->add_option("case", o.cases, "Cases or groups of them (default: all)")
       ->check([](const std::string& name) {

@@ -6,15 +6,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "apps/commands.h"
 #include "apps/default_robot.h"
-#include "apps/option_parsers.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "scenarios/experiment.h"
 #include "sensors/accuracy.h"
@@ -119,7 +118,7 @@ void choose_accuracy(world::World& world, gpu::Device& device, const AccuracyTar
   const auto results = measure(world, device, seed, threads);
   if (stop_requested()) return;
   const std::string words = scenarios::accuracy_words(results, scenarios::select_modes(results, target));
-  std::fprintf(stderr, "sensorfarm: measured; %s: --accuracy \"%s\"\n", target_text(target).c_str(), words.c_str());
+  print_message("measured; {}: --accuracy \"{}\"", target_text(target), words);
   sensors::set_accuracy(world, words);
 }
 
@@ -139,7 +138,7 @@ int tradeoff(const TradeoffOptions& options) {
   const std::string text = options.json        ? with_warnings(json_of(results, target), world.warnings)
                            : options.automatic ? words + "\n"
                                                : text_of(results) + advice_text(results, target);
-  std::fputs(text.c_str(), stdout);
+  print(text);
   return 0;
 }
 

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "apps/commands.h"
-#include "apps/option_parsers.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "scenarios/verification.h"
 
 namespace sf::apps {
@@ -20,7 +18,7 @@ std::string line_of(const scenarios::Comparison& c, const std::string& by) {
       c.different > 0   ? fmt::format("{} of {} numbers DIFFER, by up to {:.3g}", c.different, c.values, c.largest)
       : c.largest > 0.0 ? fmt::format("within what their modes may be off by: up to {:.3g}", c.largest)
                         : "the same to the bit";
-  std::string text = row(c.kind, fmt::format("{}, {}, {}", counted(c.readings, "reading"), by, verdict));
+  std::string text = row(c.kind, "{}, {}, {}", counted(c.readings, "reading"), by, verdict);
   if (c.different > 0) text += row("", "first: " + c.first);
   return text;
 }
@@ -32,8 +30,8 @@ std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
   for (const scenarios::Comparison& c : v.recomputed) text += line_of(c, "this device beside the recording");
   text += line_of(v.reference, readings_recorded ? "plain C++ beside the recording" : "plain C++ beside this device");
   if (v.reference.readings < v.scans)
-    text += row("", fmt::format("a sample: {} of {} scans, spread evenly over the run (--all: every one)",
-                                v.reference.readings, v.scans));
+    text += row("", "a sample: {} of {} scans, spread evenly over the run (--all: every one)", v.reference.readings,
+                v.scans);
   if (!readings_recorded)
     text += row("note", "the run kept no readings (run --record-readings): what its poses give here was checked");
   for (const std::string& skipped : v.skipped) text += row("skipped", skipped);
@@ -59,7 +57,7 @@ int verify(const VerifyOptions& options) {
                             }});
   }
   const bool recorded = !recording.scans.empty() || !recording.readings.empty();
-  std::fputs((options.json ? json_of(verification) : text_of(verification, recorded)).c_str(), stdout);
+  print(options.json ? json_of(verification) : text_of(verification, recorded));
   return verification.sound() ? 0 : 1;
 }
 

@@ -69,7 +69,7 @@ TEST(Map, ComesFromARunInBothForms) {
     const Outcome outcome = map.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     expect_map(outcome.out, 20, 16);
-    EXPECT_NE(outcome.err.find("3 whole maps, 0 torn"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("3 complete maps, 0 incomplete"), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.err.find("true poses") != std::string::npos, wire == "farm") << outcome.err;
     scenes::expect_painted(folder.path(wire + ".png"), {{0xFF1748D1u, 16}, {0xFF474B50u, 300}, {0xFFFFFFFFu, 300}});
   }
@@ -79,7 +79,7 @@ TEST(Map, MergesSeveralAndSurvivesNonsense) {
   const Folder folder;
   const std::string world = folder.write("a.world", kWorld);
   const unsigned port = free_ports(120);
-  Program map({"map", "--listen", std::to_string(port), "--listen", std::to_string(port + 8), "--silence", "0.5",
+  Program map({"map", "--listen", std::to_string(port), "--listen", std::to_string(port + 8), "--silence", "3",
                "--merge", "-o", folder.path("both.png")});
   ASSERT_TRUE(map.says("listening for maps on 2 ports"));
   netio::Outbox outbox;
@@ -91,7 +91,7 @@ TEST(Map, MergesSeveralAndSurvivesNonsense) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   // The second map lies 3 m east of the first: 30 cells, rounded up to whole words of four.
   expect_map(outcome.out, 52, 16);
-  EXPECT_NE(outcome.err.find("64 left out"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("64 ignored"), std::string::npos) << outcome.err;
 }
 
 TEST(Map, PacketsAreAsDocumented) {
@@ -139,7 +139,7 @@ TEST(Map, SequencesThatLeapAreLeftOut) {
     send_map(farm, port, 2, 2);
     const Outcome outcome = map.wait();
     EXPECT_EQ(outcome.out.find('1') != std::string::npos, followed) << outcome.out;
-    EXPECT_NE(outcome.err.find(followed ? "3 datagrams used and 2 left out" : "3 datagrams used and 1 left out"),
+    EXPECT_NE(outcome.err.find(followed ? "3 datagrams used and 2 ignored" : "3 datagrams used and 1 ignored"),
               std::string::npos)
         << outcome.err;
     EXPECT_EQ(outcome.err.find("dropped by the kernel"), std::string::npos) << outcome.err;
@@ -197,9 +197,9 @@ TEST(Map, PortsMayBeGivenInAnyOrder) {
   outbox.flush();
   const std::string err = map.wait().err;
   for (const auto& [to, count] : {std::pair{port, "2"}, {port + 1, "1"}})
-    EXPECT_NE(
-        err.find("port " + std::to_string(to) + ": 0 whole maps, 0 torn, 0 datagrams used and " + count + " left"),
-        std::string::npos)
+    EXPECT_NE(err.find("port " + std::to_string(to) + ": 0 complete maps, 0 incomplete, 0 datagrams used and " + count +
+                       " ignored"),
+              std::string::npos)
         << err;
 }
 

@@ -1,0 +1,35 @@
+#include "apps/text.h"
+
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+
+namespace sf::apps {
+
+void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
+void print_message(const std::string& text) { std::fputs(("sensorfarm: " + text + "\n").c_str(), stderr); }
+
+std::string row(std::string_view name, std::string_view value) { return fmt::format("  {:<18} {}\n", name, value); }
+
+std::string counted(std::uint64_t count, std::string_view word) {
+  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
+}
+
+std::string join_or(const std::vector<std::string>& words) {
+  if (words.size() == 1) return words.front();
+  return fmt::format("{} or {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
+}
+
+std::string quantity_text(double value, std::string_view unit) {
+  if (std::isinf(value)) return "-";
+  if (value == 0.0) return "0";
+  if (value < 1e-12) return fmt::format("< 1 p{}", unit);
+  constexpr std::string_view kPrefixes[] = {"p", "n", "u", "m", ""};
+  double scaled = value * 1e12;
+  std::size_t at = 0;
+  while (scaled >= 999.5 && at + 1 < std::size(kPrefixes)) scaled *= 1e-3, ++at;
+  return fmt::format("{:.3g} {}{}", scaled, kPrefixes[at], unit);
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,43 @@
+#pragma once
+// Text for people: messages on standard error, reports on standard output, lines of tables, counts and quantities.
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace sf::apps {
+
+/// To standard output.
+void print(const std::string& text);
+/// To standard error: "sensorfarm: ", `text` and an end of line.
+void print_message(const std::string& text);
+template <class... Args>
+requires(sizeof...(Args) > 0) void print_message(fmt::format_string<Args...> form, Args&&... args) {
+  print_message(fmt::format(form, std::forward<Args>(args)...));
+}
+
+/// One line of a table of facts. @param name empty: more of the line before
+std::string row(std::string_view name, std::string_view value);
+template <class Number>
+requires std::is_arithmetic_v<Number> std::string row(std::string_view name, Number value) {
+  return row(name, fmt::format("{}", value));
+}
+template <class... Args>
+requires(sizeof...(Args) > 0) std::string row(std::string_view name, fmt::format_string<Args...> form, Args&&... args) {
+  return row(name, fmt::format(form, std::forward<Args>(args)...));
+}
+
+/// "1 port", "2 ports". @param word takes an s for several
+std::string counted(std::uint64_t count, std::string_view word);
+/// "a, b or c". @param words at least one
+std::string join_or(const std::vector<std::string>& words);
+/// "5 mm", "2.5 uT", "0", "< 1 pm", "-" for infinity; three digits. @param unit "m", "T" or another, which is put
+/// behind the number
+std::string quantity_text(double value, std::string_view unit);
+
+}  // namespace sf::apps
