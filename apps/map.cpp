@@ -64,22 +64,23 @@ std::string name_of(const Source& source, sensors::WireFormat wire) {
 }
 
 /// The datagram `bytes` that came from `from` at `now` [ns].
-maps::PartStatus take(Source& source, sensors::WireFormat wire, std::span<const std::uint8_t> bytes,
-                      const netio::Endpoint& from, std::int64_t now) {
-  if (!source.farm.allows(from)) return maps::PartStatus::faulty;
+maps::MapPartStatus take(Source& source, sensors::WireFormat wire, std::span<const std::uint8_t> bytes,
+                         const netio::Endpoint& from, std::int64_t now) {
+  if (!source.farm.allows(from)) return maps::MapPartStatus::faulty;
   if (wire == sensors::WireFormat::thesis) {
     maps::PlainPart part;
     const bool sound = maps::read_plain(bytes, part) == maps::PartFault::none;
-    return sound && source.farm.admit(from, 0, now) ? source.assembler.add_plain_part(bytes) : maps::PartStatus::faulty;
+    return sound && source.farm.admit(from, 0, now) ? source.assembler.add_plain_part(bytes)
+                                                    : maps::MapPartStatus::faulty;
   }
   netio::Packet packet;
-  if (netio::decode(bytes, packet) != netio::PacketStatus::accepted) return maps::PartStatus::faulty;
+  if (netio::decode(bytes, packet) != netio::PacketStatus::accepted) return maps::MapPartStatus::faulty;
   const auto* reading = std::get_if<netio::Reading>(&packet.body);
   if (reading == nullptr || static_cast<std::uint8_t>(packet.header.type) != sensors::kOccupancy)
-    return maps::PartStatus::faulty;
+    return maps::MapPartStatus::faulty;
   maps::MapPart part;
-  if (maps::read_part(reading->payload, part) != maps::PartFault::none) return maps::PartStatus::faulty;
-  if (!follow(source, from, packet.header, now)) return maps::PartStatus::faulty;
+  if (maps::read_part(reading->payload, part) != maps::PartFault::none) return maps::MapPartStatus::faulty;
+  if (!follow(source, from, packet.header, now)) return maps::MapPartStatus::faulty;
   source.robot = packet.header.robot;
   return source.assembler.add_part(packet.header.sequence, reading->payload);
 }
@@ -130,10 +131,10 @@ bool Display::drain() {
   const std::int64_t now = (Clock::now() - Clock::time_point{}).count();
   const auto on_datagram = [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& from) {
     Source& source = sources_[i];
-    const maps::PartStatus taken = take(source, options_.wire, bytes, from, now);
-    const bool used = taken == maps::PartStatus::incomplete || taken == maps::PartStatus::complete;
+    const maps::MapPartStatus taken = take(source, options_.wire, bytes, from, now);
+    const bool used = taken == maps::MapPartStatus::incomplete || taken == maps::MapPartStatus::complete;
     ++(used ? source.used : source.left_out);
-    changed_ = changed_ || taken == maps::PartStatus::complete;
+    changed_ = changed_ || taken == maps::MapPartStatus::complete;
   };
   return port_listener_.drain(kPatience, on_datagram) > 0;
 }

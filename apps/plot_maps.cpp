@@ -35,7 +35,7 @@ std::vector<LastMap> last_maps(const record::Recording& recording, const world::
     const std::string& robot = world.movers[map.row.mover].name;
     LastMap found{map.row.sensor == 0 ? robot : fmt::format("{}_{}", robot, map.row.sensor),
                   {robot, world.movers[map.row.mover].X_WM},
-                  maps::OccupancyGrid(map.plan.grid)};
+                  maps::OccupancyGrid(map.settings.grid)};
     std::transform(last->values.begin(), last->values.end(), found.grid.words.begin(),
                    [](double word) { return static_cast<std::uint32_t>(word); });
     const auto& states = recording.states[map.row.mover];

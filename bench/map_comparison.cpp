@@ -42,20 +42,20 @@ std::vector<Round> rounds_of(const Scans& scans, gpu::Device& device) {
   return rounds;
 }
 
-std::vector<sensors::MapPlan> plans_of(const Scans& scans, bool weighs) {
+std::vector<sensors::MapSettings> map_settings_of(const Scans& scans, bool weighs) {
   const auto words = static_cast<std::uint32_t>(std::ceil((2.0 * scans.laser.range_max + 0.5) / (4.0 * kCell)));
   const double half = 2.0 * kCell * words;
-  std::vector<sensors::MapPlan> plans;
+  std::vector<sensors::MapSettings> map_settings;
   for (const base::Pose& X : scans.rounds[0]) {
-    sensors::MapPlan plan;
-    plan.grid = {X.x - half, X.y + half, kCell, words, words};
-    if (weighs) plan.odds = maps::LogOddsUpdate{};
-    plan.fov = scans.laser.fov;
-    plan.samples = scans.laser.samples;
-    plan.range_max = scans.laser.range_max;
-    plans.push_back(plan);
+    sensors::MapSettings settings;
+    settings.grid = {X.x - half, X.y + half, kCell, words, words};
+    if (weighs) settings.odds = maps::LogOddsUpdate{};
+    settings.fov = scans.laser.fov;
+    settings.samples = scans.laser.samples;
+    settings.range_max = scans.laser.range_max;
+    map_settings.push_back(settings);
   }
-  return plans;
+  return map_settings;
 }
 
 class Mapper {
@@ -68,9 +68,9 @@ class Mapper {
 
 class FarmMapper : public Mapper {
  public:
-  FarmMapper(gpu::Device& device, const std::vector<sensors::MapPlan>& plans)
-      : batch_(device, thread_pool_, plans, device.info().software ? sensors::kFarScan : maps::kMaxRangeCells) {
-    for (std::uint32_t i = 0; i < plans.size(); ++i) wanted_.push_back(i);
+  FarmMapper(gpu::Device& device, const std::vector<sensors::MapSettings>& map_settings)
+      : batch_(device, thread_pool_, map_settings, device.info().software ? sensors::kFarScan : maps::kMaxRangeCells) {
+    for (std::uint32_t i = 0; i < map_settings.size(); ++i) wanted_.push_back(i);
   }
   std::string name() const override { return "farm"; }
   void update(const Round& round) override {
@@ -93,21 +93,23 @@ class FarmMapper : public Mapper {
 /// Marks the cells of each beam, on all cores.
 class PlainMapper : public Mapper {
  public:
-  PlainMapper(const std::vector<sensors::MapPlan>& plans, bool weighs) : plans_(plans), weighs_(weighs) {
-    for (const sensors::MapPlan& plan : plans) {
-      grids_.emplace_back(plan.grid);
-      odds_.emplace_back(plan.grid, maps::LogOddsUpdate{});
+  PlainMapper(const std::vector<sensors::MapSettings>& map_settings, bool weighs)
+      : map_settings_(map_settings), weighs_(weighs) {
+    for (const sensors::MapSettings& settings : map_settings) {
+      grids_.emplace_back(settings.grid);
+      odds_.emplace_back(settings.grid, maps::LogOddsUpdate{});
     }
-    beams_ = maps::beam_directions(plans[0].fov, plans[0].samples);
+    beams_ = maps::beam_directions(map_settings[0].fov, map_settings[0].samples);
     ends_.resize(thread_pool_.threads(), std::vector<std::uint32_t>(beams_.size()));
-    covered_.resize(thread_pool_.threads(), maps::OccupancyGrid(plans[0].grid));  // the same size for all
+    covered_.resize(thread_pool_.threads(), maps::OccupancyGrid(map_settings[0].grid));  // the same size for all
   }
   std::string name() const override { return "plain C++ mapper, -O3"; }
   void update(const Round& round) override {
-    thread_pool_.parallel_for(plans_.size(), 4, [&](std::size_t first, std::size_t last, unsigned thread) {
+    thread_pool_.parallel_for(map_settings_.size(), 4, [&](std::size_t first, std::size_t last, unsigned thread) {
       for (std::size_t i = first; i < last; ++i) {
-        const maps::ScanView view{round.X_WS[i], round.ranges[i], beams_, plans_[i].range_min, plans_[i].range_max};
-        const maps::TracedScan scan = maps::trace_scan(plans_[i].grid, view, ends_[thread]);
+        const maps::ScanView view{round.X_WS[i], round.ranges[i], beams_, map_settings_[i].range_min,
+                                  map_settings_[i].range_max};
+        const maps::TracedScan scan = maps::trace_scan(map_settings_[i].grid, view, ends_[thread]);
         if (weighs_) maps::add_traced_scan(odds_[i], scan, ends_[thread], covered_[thread]);
         if (!weighs_) maps::add_traced_scan(grids_[i], scan, ends_[thread]);
       }
@@ -119,7 +121,7 @@ class PlainMapper : public Mapper {
 
  private:
   base::ThreadPool thread_pool_;
-  const std::vector<sensors::MapPlan>& plans_;
+  const std::vector<sensors::MapSettings>& map_settings_;
   bool weighs_;
   std::vector<maps::OccupancyGrid> grids_;
   std::vector<maps::LogOddsGrid> odds_;
@@ -142,10 +144,10 @@ void check_accuracy(const Mapper& mapper, const Mapper& plain, std::size_t robot
 MapComparison compare_maps(gpu::Device& device, std::uint32_t robots, double range, bool weighs, std::size_t repeats) {
   const Scans scans = make_scans("cave", load_cave(), robots, scenes::laser(361, M_PI, range));
   const std::vector<Round> rounds = rounds_of(scans, device);
-  const std::vector<sensors::MapPlan> plans = plans_of(scans, weighs);
+  const std::vector<sensors::MapSettings> map_settings = map_settings_of(scans, weighs);
   std::vector<std::unique_ptr<Mapper>> mappers;
-  mappers.push_back(std::make_unique<FarmMapper>(device, plans));
-  mappers.push_back(std::make_unique<PlainMapper>(plans, weighs));
+  mappers.push_back(std::make_unique<FarmMapper>(device, map_settings));
+  mappers.push_back(std::make_unique<PlainMapper>(map_settings, weighs));
   MapComparison comparison{robots, scans.rays(), range, weighs, {}};
   for (const auto& mapper : mappers) {
     mapper->update(rounds[0]);

@@ -13,19 +13,19 @@ constexpr double kJoined = 0.03;  // [m] endpoints of neighbouring beams within 
 
 }  // namespace
 
-ExplorationMap::ExplorationMap(const maps::GridGeometry& plan, double radius, double reach)
-    : grid_(plan),
+ExplorationMap::ExplorationMap(const maps::GridGeometry& geometry, double radius, double reach)
+    : grid_(geometry),
       radius_(radius),
-      cell_(plan.cell / kFiner),
-      columns_(static_cast<Node>(kFiner * maps::columns(plan))),
-      rows_(static_cast<Node>(kFiner * maps::rows(plan))) {
+      cell_(geometry.cell / kFiner),
+      columns_(static_cast<Node>(kFiner * maps::columns(geometry))),
+      rows_(static_cast<Node>(kFiner * maps::rows(geometry))) {
   const auto count = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   taken_.resize((count * kPointsFiner * kPointsFiner + 7) / 8);
   clearance_.assign(count, static_cast<float>(radius + kMaxClearance));
   occupied_.resize(count);
   explored_.resize(count);
   unknown_.resize(count);
-  driven_.resize(static_cast<std::size_t>(maps::columns(plan) * maps::rows(plan)));
+  driven_.resize(static_cast<std::size_t>(maps::columns(geometry) * maps::rows(geometry)));
 
   // Nodes too near to the map's border always count as unknown.
   const Node rim = static_cast<Node>(std::ceil(std::max(radius, reach) / cell_)) + 2;
@@ -35,28 +35,30 @@ ExplorationMap::ExplorationMap(const maps::GridGeometry& plan, double radius, do
       unknown_[static_cast<std::size_t>(row * columns_ + column)] = inner ? 0 : 1;
     }
   }
-  for (std::int64_t row = 0; row < maps::rows(plan); ++row)
-    for (std::int64_t column = 0; column < maps::columns(plan); ++column)
-      around(maps::middle(plan, {column, row}), radius_,
+  for (std::int64_t row = 0; row < maps::rows(geometry); ++row)
+    for (std::int64_t column = 0; column < maps::columns(geometry); ++column)
+      around(maps::middle(geometry, {column, row}), radius_,
              [&](std::size_t node, double) { unknown_[node] = static_cast<std::uint16_t>(unknown_[node] + 1); });
 }
 
-bool ExplorationMap::contains(glm::dvec2 p) const { return maps::contains(grid_.plan, maps::cell_at(grid_.plan, p)); }
+bool ExplorationMap::contains(glm::dvec2 p) const {
+  return maps::contains(grid_.geometry, maps::cell_at(grid_.geometry, p));
+}
 
 Node ExplorationMap::node_at(glm::dvec2 p) const {
-  const auto column = static_cast<Node>(std::floor((p.x - grid_.plan.left) / cell_));
-  const auto row = static_cast<Node>(std::floor((grid_.plan.top - p.y) / cell_));
+  const auto column = static_cast<Node>(std::floor((p.x - grid_.geometry.left) / cell_));
+  const auto row = static_cast<Node>(std::floor((grid_.geometry.top - p.y) / cell_));
   return std::clamp(row, 0, rows_ - 1) * columns_ + std::clamp(column, 0, columns_ - 1);
 }
 
 glm::dvec2 ExplorationMap::place(Node node) const {
-  return {grid_.plan.left + (node % columns_ + 0.5) * cell_, grid_.plan.top - (node / columns_ + 0.5) * cell_};
+  return {grid_.geometry.left + (node % columns_ + 0.5) * cell_, grid_.geometry.top - (node / columns_ + 0.5) * cell_};
 }
 
 // Visits every node within `radius` of p, with its distance.
 template <typename Visit>
 void ExplorationMap::around(glm::dvec2 p, double radius, Visit visit) {
-  const double column = (p.x - grid_.plan.left) / cell_ - 0.5, row = (grid_.plan.top - p.y) / cell_ - 0.5;
+  const double column = (p.x - grid_.geometry.left) / cell_ - 0.5, row = (grid_.geometry.top - p.y) / cell_ - 0.5;
   const double reach = radius / cell_;
   const auto low = [](double v) { return static_cast<Node>(std::max(0.0, std::ceil(v))); };
   const auto high = [](double v, Node most) { return static_cast<Node>(std::min(most - 1.0, std::floor(v))); };
@@ -69,24 +71,24 @@ void ExplorationMap::around(glm::dvec2 p, double radius, Visit visit) {
 }
 
 void ExplorationMap::explore(maps::CellAt at) {
-  auto& stood = driven_[static_cast<std::size_t>(at.row * maps::columns(grid_.plan) + at.column)];
+  auto& stood = driven_[static_cast<std::size_t>(at.row * maps::columns(grid_.geometry) + at.column)];
   if (stood != 0) return;
   stood = 1;
-  around(maps::middle(grid_.plan, at), radius_,
+  around(maps::middle(grid_.geometry, at), radius_,
          [&](std::size_t node, double) { unknown_[node] = static_cast<std::uint16_t>(unknown_[node] - 1); });
 }
 
 void ExplorationMap::mark_free(glm::dvec2 p, double radius) {
-  for (std::int64_t row = 0; row < maps::rows(grid_.plan); ++row)
-    for (std::int64_t column = 0; column < maps::columns(grid_.plan); ++column)
-      if (glm::length(maps::middle(grid_.plan, {column, row}) - p) <= radius) explore({column, row});
+  for (std::int64_t row = 0; row < maps::rows(grid_.geometry); ++row)
+    for (std::int64_t column = 0; column < maps::columns(grid_.geometry); ++column)
+      if (glm::length(maps::middle(grid_.geometry, {column, row}) - p) <= radius) explore({column, row});
 }
 
 bool ExplorationMap::add_point(glm::dvec2 p) {
   if (!contains(p)) return false;
   const double fine = cell_ / kPointsFiner;
-  const auto column = static_cast<std::size_t>((p.x - grid_.plan.left) / fine);
-  const auto row = static_cast<std::size_t>((grid_.plan.top - p.y) / fine);
+  const auto column = static_cast<std::size_t>((p.x - grid_.geometry.left) / fine);
+  const auto row = static_cast<std::size_t>((grid_.geometry.top - p.y) / fine);
   const std::size_t bit = row * static_cast<std::size_t>(columns_) * kPointsFiner + column;
   const auto flag = static_cast<std::uint8_t>(1u << bit % 8);
   if (bit / 8 >= taken_.size() || (taken_[bit / 8] & flag) != 0) return false;
@@ -114,7 +116,7 @@ bool ExplorationMap::add(const maps::ScanView& scan) {
     for (int i = 0; before[word] != grid_.words[word] && i < 16; ++i) {
       if ((before[word] >> 2 * i & 3u) != SF_CELL_UNEXPLORED || (grid_.words[word] >> 2 * i & 3u) == SF_CELL_UNEXPLORED)
         continue;
-      const auto wide = static_cast<std::int64_t>(grid_.plan.word_columns), at = static_cast<std::int64_t>(word);
+      const auto wide = static_cast<std::int64_t>(grid_.geometry.word_columns), at = static_cast<std::int64_t>(word);
       const maps::CellAt cell{4 * (at % wide) + i % 4, 4 * (at / wide) + i / 4};
       explore(cell);
       for (Node k = 0; k < kFiner * kFiner; ++k)

@@ -21,7 +21,7 @@ class ExplorationMap {
  public:
   /// @param radius [m] of the body
   /// @param reach [m] >= radius, to the farthest point on the body; the whole body stays within the map
-  ExplorationMap(const maps::GridGeometry& plan, double radius, double reach);
+  ExplorationMap(const maps::GridGeometry& geometry, double radius, double reach);
 
   /// Marks a disc as explored and free without a scan, since the robot stands there.
   void mark_free(glm::dvec2 p, double radius);

@@ -43,7 +43,7 @@ double reach_of(const ExploreSettings& settings) {
 
 Explore::Explore(const ExploreSettings& settings)
     : settings_(settings),
-      map_(settings.plan, settings.body.radius, reach_of(settings)),
+      map_(settings.geometry, settings.body.radius, reach_of(settings)),
       search_(map_, settings.body),
       viewpoint_planner_(map_, settings.eye) {}
 

@@ -22,7 +22,7 @@
 namespace sf::control {
 
 struct ExploreSettings {
-  maps::GridGeometry plan;
+  maps::GridGeometry geometry;
   Footprint body;
   ScannerModel eye;
   std::vector<glm::dvec2> beams;  ///< directions in the laser's frame

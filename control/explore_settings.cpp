@@ -17,7 +17,7 @@ constexpr double kMostNodes = 2e6;  // nodes of the lattice: 128 MB for the path
 
 maps::GridGeometry grid_around(const world::World& world, double cell) {
   world::Extent extent = world.extent;
-  maps::GridGeometry plan{.cell = cell};
+  maps::GridGeometry geometry{.cell = cell};
   const auto words = [&](double length) { return std::max(30.0, std::ceil(length / (4.0 * cell) + 2.0)); };
   const double wide = words(extent.x_max - extent.x_min), high = words(extent.y_max - extent.y_min);
   if (!(wide * high * 144.0 <= kMostNodes))
@@ -25,28 +25,28 @@ maps::GridGeometry grid_around(const world::World& world, double cell) {
         fmt::format("'explore': the world is {:.0f} m x {:.0f} m; expected at most {:.0f} square "
                     "metres; give the area as map_left, map_top, map_width and map_height",
                     extent.x_max - extent.x_min, extent.y_max - extent.y_min, kMostNodes / 9.0 * cell * cell));
-  plan.word_columns = static_cast<std::uint32_t>(wide);
-  plan.word_rows = static_cast<std::uint32_t>(high);
-  plan.left = 0.5 * (extent.x_min + extent.x_max) - 2.0 * wide * cell;
-  plan.top = 0.5 * (extent.y_min + extent.y_max) + 2.0 * high * cell;
-  return plan;
+  geometry.word_columns = static_cast<std::uint32_t>(wide);
+  geometry.word_rows = static_cast<std::uint32_t>(high);
+  geometry.left = 0.5 * (extent.x_min + extent.x_max) - 2.0 * wide * cell;
+  geometry.top = 0.5 * (extent.y_min + extent.y_max) + 2.0 * high * cell;
+  return geometry;
 }
 
 namespace {
 
-maps::GridGeometry read_plan(const ControllerContext& context, Settings& settings) {
+maps::GridGeometry read_geometry(const ControllerContext& context, Settings& settings) {
   const double cell = settings.number("cell", 0.03, 0.005, 1.0);
   const bool given = settings.has("map_width") || settings.has("map_height");
   if (!given) return grid_around(context.world, cell);
-  maps::GridGeometry plan{.cell = cell};
-  plan.left = settings.number("map_left", 0.0, -1e6, 1e6);
-  plan.top = settings.number("map_top", 0.0, -1e6, 1e6);
+  maps::GridGeometry geometry{.cell = cell};
+  geometry.left = settings.number("map_left", 0.0, -1e6, 1e6);
+  geometry.top = settings.number("map_top", 0.0, -1e6, 1e6);
   const double wide = std::ceil(settings.number("map_width", 3.6, cell, 1e3) / (4.0 * cell) - 1e-9);
   const double high = std::ceil(settings.number("map_height", 3.6, cell, 1e3) / (4.0 * cell) - 1e-9);
   if (!(wide * high * 144.0 <= kMostNodes)) settings.refuse("map_width", "'map_width' times 'map_height' is too large");
-  plan.word_columns = static_cast<std::uint32_t>(wide);
-  plan.word_rows = static_cast<std::uint32_t>(high);
-  return plan;
+  geometry.word_columns = static_cast<std::uint32_t>(wide);
+  geometry.word_rows = static_cast<std::uint32_t>(high);
+  return geometry;
 }
 
 std::unique_ptr<Controller> make_explore(const ControllerContext& context, Settings& settings) {
@@ -59,7 +59,7 @@ std::unique_ptr<Controller> make_explore(const ControllerContext& context, Setti
         fmt::format("controller 'explore': '{}' is a car; expected a drive that turns in place", mover.name));
   const world::Laser& laser = mover.lasers.front();
   ExploreSettings explore;
-  explore.plan = read_plan(context, settings);
+  explore.geometry = read_geometry(context, settings);
   explore.body = {robots::footprint_of(mover).radius, {laser.X_MS.x, laser.X_MS.y}};
   explore.eye = {laser.X_MS, laser.fov, laser.range_max};
   explore.beams = maps::beam_directions(laser.fov, laser.samples);

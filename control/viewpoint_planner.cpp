@@ -32,7 +32,7 @@ ViewpointPlanner::ViewpointPlanner(const ExplorationMap& map, const ScannerModel
 }
 
 std::int64_t ViewpointPlanner::key(CellAt cell) const {
-  return cell.row * maps::columns(map_.grid().plan) + cell.column;
+  return cell.row * maps::columns(map_.grid().geometry) + cell.column;
 }
 
 bool ViewpointPlanner::is_target(CellAt cell, bool all) const {
@@ -42,7 +42,7 @@ bool ViewpointPlanner::is_target(CellAt cell, bool all) const {
     bool beside = false;
     for (std::int64_t k = 0; k < 9; ++k) {
       const CellAt at{cell.column + k % 3 - 1, cell.row + k / 3 - 1};
-      beside = beside || (maps::contains(grid.plan, at) && grid.at(at) == Cell::free);
+      beside = beside || (maps::contains(grid.geometry, at) && grid.at(at) == Cell::free);
     }
     if (!beside) return false;
   }
@@ -100,9 +100,9 @@ std::size_t ViewpointPlanner::update(bool all, double range, int graze) {
   graze_ = graze;
   std::fill(headings_.begin(), headings_.end(), std::uint16_t{0});
   cells_.clear();
-  const maps::GridGeometry& plan = map_.grid().plan;
-  for (std::int64_t row = 0; row < maps::rows(plan); ++row) {
-    for (std::int64_t column = 0; column < maps::columns(plan); ++column) {
+  const maps::GridGeometry& geometry = map_.grid().geometry;
+  for (std::int64_t row = 0; row < maps::rows(geometry); ++row) {
+    for (std::int64_t column = 0; column < maps::columns(geometry); ++column) {
       if (!is_target({column, row}, all)) continue;
       cells_.push_back({column, row});
       add_target(cells_.back());
@@ -114,7 +114,7 @@ std::size_t ViewpointPlanner::update(bool all, double range, int graze) {
 std::vector<CellAt> ViewpointPlanner::targets(Node sensor, int heading) const {
   std::vector<CellAt> seen;
   for (const CellAt cell : cells_) {
-    const glm::dvec2 d = map_.place(sensor) - maps::middle(map_.grid().plan, cell);
+    const glm::dvec2 d = map_.place(sensor) - maps::middle(map_.grid().geometry, cell);
     if (glm::length(d) > range_ + map_.cell()) continue;
     bool found = false;
     for (std::size_t ray = 0; ray < kRays && !found; ++ray) {

@@ -37,17 +37,18 @@ struct GridGeometry {
   bool operator==(const GridGeometry&) const = default;
 };
 
-inline std::int64_t columns(const GridGeometry& plan) { return 4 * std::int64_t{plan.word_columns}; }
-inline std::int64_t rows(const GridGeometry& plan) { return 4 * std::int64_t{plan.word_rows}; }
-inline std::uint32_t words(const GridGeometry& plan) { return plan.word_columns * plan.word_rows; }
+inline std::int64_t columns(const GridGeometry& geometry) { return 4 * std::int64_t{geometry.word_columns}; }
+inline std::int64_t rows(const GridGeometry& geometry) { return 4 * std::int64_t{geometry.word_rows}; }
+inline std::uint32_t words(const GridGeometry& geometry) { return geometry.word_columns * geometry.word_rows; }
 
 /// True for a finite geometry within the limits above and those of packets. Nothing derived from it can overflow.
-inline bool is_valid(const GridGeometry& plan) {
+inline bool is_valid(const GridGeometry& geometry) {
   constexpr double kFarthest = 1e7;  // [m]
-  const bool placed = std::abs(plan.left) <= kFarthest && std::abs(plan.top) <= kFarthest;
-  const bool sized = plan.word_columns >= 1 && plan.word_columns <= kMaxWordColumns && plan.word_rows >= 1 &&
-                     plan.word_rows <= kMaxWordColumns && plan.word_columns <= kMaxWords / plan.word_rows;
-  return placed && sized && plan.cell >= 1e-4 && plan.cell <= 1e3;
+  const bool placed = std::abs(geometry.left) <= kFarthest && std::abs(geometry.top) <= kFarthest;
+  const bool sized = geometry.word_columns >= 1 && geometry.word_columns <= kMaxWordColumns &&
+                     geometry.word_rows >= 1 && geometry.word_rows <= kMaxWordColumns &&
+                     geometry.word_columns <= kMaxWords / geometry.word_rows;
+  return placed && sized && geometry.cell >= 1e-4 && geometry.cell <= 1e3;
 }
 
 /// True when each cell has one of the three states.
@@ -68,33 +69,33 @@ inline std::int64_t whole_below(double value) {
 
 /// The cell that holds `p` (within 1e15 cells). The one rule for all code: floor((x - left) / cell), floor((top - y) /
 /// cell), in double.
-inline CellAt cell_at(const GridGeometry& plan, glm::dvec2 p) {
-  return {whole_below((p.x - plan.left) / plan.cell), whole_below((plan.top - p.y) / plan.cell)};
+inline CellAt cell_at(const GridGeometry& geometry, glm::dvec2 p) {
+  return {whole_below((p.x - geometry.left) / geometry.cell), whole_below((geometry.top - p.y) / geometry.cell)};
 }
 
-inline bool contains(const GridGeometry& plan, CellAt at) {
-  return at.column >= 0 && at.row >= 0 && at.column < columns(plan) && at.row < rows(plan);
+inline bool contains(const GridGeometry& geometry, CellAt at) {
+  return at.column >= 0 && at.row >= 0 && at.column < columns(geometry) && at.row < rows(geometry);
 }
 
 /// [m] the middle of a cell.
-inline glm::dvec2 middle(const GridGeometry& plan, CellAt at) {
-  return {plan.left + (static_cast<double>(at.column) + 0.5) * plan.cell,
-          plan.top - (static_cast<double>(at.row) + 0.5) * plan.cell};
+inline glm::dvec2 middle(const GridGeometry& geometry, CellAt at) {
+  return {geometry.left + (static_cast<double>(at.column) + 0.5) * geometry.cell,
+          geometry.top - (static_cast<double>(at.row) + 0.5) * geometry.cell};
 }
 
 /// One map.
 struct OccupancyGrid {
-  GridGeometry plan;
+  GridGeometry geometry;
   std::vector<std::uint32_t> words;  ///< word_columns * word_rows
 
-  explicit OccupancyGrid(const GridGeometry& p = {}) : plan(p), words(std::size_t{p.word_columns} * p.word_rows) {}
+  explicit OccupancyGrid(const GridGeometry& p = {}) : geometry(p), words(std::size_t{p.word_columns} * p.word_rows) {}
 
   std::size_t word_of(CellAt at) const {
-    return static_cast<std::size_t>(at.row / 4) * plan.word_columns + static_cast<std::size_t>(at.column / 4);
+    return static_cast<std::size_t>(at.row / 4) * geometry.word_columns + static_cast<std::size_t>(at.column / 4);
   }
   static unsigned shift_of(CellAt at) { return static_cast<unsigned>(2 * (4 * (at.row % 4) + at.column % 4)); }
 
-  /// Rule: `contains(plan, at)`.
+  /// Rule: `contains(geometry, at)`.
   Cell at(CellAt at) const { return static_cast<Cell>((words[word_of(at)] >> shift_of(at)) & 3u); }
   void set(CellAt at, Cell cell) {
     std::uint32_t& word = words[word_of(at)];

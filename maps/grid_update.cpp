@@ -18,7 +18,7 @@ void free_line(OccupancyGrid& grid, CellAt sensor, std::int32_t columns, std::in
   // floor((2 i aside + steps) / (2 steps)), kept as quotient (in `at`) and remainder.
   std::int32_t rest = steps;
   for (std::int32_t i = 0; i <= steps; ++i) {
-    if (inside || contains(grid.plan, at)) grid.set(at, Cell::free);
+    if (inside || contains(grid.geometry, at)) grid.set(at, Cell::free);
     at = {at.column + along.column, at.row + along.row};
     rest += 2 * aside;
     if (rest < 2 * steps) continue;
@@ -30,24 +30,24 @@ void free_line(OccupancyGrid& grid, CellAt sensor, std::int32_t columns, std::in
 }  // namespace
 
 void add_traced_scan(OccupancyGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends) {
-  const CellBox part = intersect(scan.box, cells_of(grid.plan));
+  const CellBox part = intersect(scan.box, cells_of(grid.geometry));
   if (is_empty(part)) return;
   const bool inside = part.low == scan.box.low && part.high == scan.box.high;
   for (const std::uint32_t end : ends) free_line(grid, scan.sensor, columns_of(end), rows_of(end), inside);
   for (const std::uint32_t end : ends) {
     const CellAt at{scan.sensor.column + columns_of(end), scan.sensor.row + rows_of(end)};
-    if (hit_of(end) && (inside || contains(grid.plan, at))) grid.set(at, Cell::occupied);
+    if (hit_of(end) && (inside || contains(grid.geometry, at))) grid.set(at, Cell::occupied);
   }
 }
 
 void add_scan(OccupancyGrid& grid, const ScanView& scan) {
   std::vector<std::uint32_t> ends(scan.ranges.size());
-  add_traced_scan(grid, trace_scan(grid.plan, scan, ends), ends);
+  add_traced_scan(grid, trace_scan(grid.geometry, scan, ends), ends);
 }
 
 void add_traced_scan(LogOddsGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends,
                      OccupancyGrid& covered) {
-  const CellBox part = intersect(scan.box, cells_of(grid.plan));
+  const CellBox part = intersect(scan.box, cells_of(grid.geometry));
   if (is_empty(part)) return;
   add_traced_scan(covered, scan, ends);
   for (std::int64_t row = part.low.row; row < part.high.row; ++row) {
@@ -66,12 +66,12 @@ void add_traced_scan(LogOddsGrid& grid, const TracedScan& scan, std::span<const 
 
 void add_scan(LogOddsGrid& grid, const ScanView& scan) {
   std::vector<std::uint32_t> ends(scan.ranges.size());
-  OccupancyGrid covered(grid.plan);
-  add_traced_scan(grid, trace_scan(grid.plan, scan, ends), ends, covered);
+  OccupancyGrid covered(grid.geometry);
+  add_traced_scan(grid, trace_scan(grid.geometry, scan, ends), ends, covered);
 }
 
 OccupancyGrid to_occupancy(const LogOddsGrid& grid) {
-  OccupancyGrid states(grid.plan);
+  OccupancyGrid states(grid.geometry);
   write_occupancy(grid, states);
   return states;
 }

@@ -35,11 +35,12 @@ struct LogOddsUpdate {
 
 /// A map of log odds per cell, word by word as in OccupancyGrid, within a word in the order of its bits. 0: unknown.
 struct LogOddsGrid {
-  GridGeometry plan;
+  GridGeometry geometry;
   LogOddsUpdate rule;
   std::vector<std::int16_t> cells;  ///< 16 a word
 
-  LogOddsGrid(const GridGeometry& p, const LogOddsUpdate& r) : plan(p), rule(r), cells(16 * std::size_t{words(p)}) {}
+  LogOddsGrid(const GridGeometry& p, const LogOddsUpdate& r)
+      : geometry(p), rule(r), cells(16 * std::size_t{words(p)}) {}
 };
 
 /// Updates each cell that the scan covers once: as occupied, or else as free.

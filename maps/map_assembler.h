@@ -17,7 +17,7 @@
 namespace sf::maps {
 
 /// Result for a datagram.
-enum class PartStatus {
+enum class MapPartStatus {
   incomplete,   ///< used; parts of its map are missing
   complete,     ///< used; all parts of its map have arrived
   duplicate,    ///< a copy of an earlier part
@@ -31,10 +31,10 @@ enum class PartStatus {
 class MapAssembler {
  public:
   /// Adds a payload of the farm's form. @param sequence from its header
-  PartStatus add_part(std::uint32_t sequence, std::span<const std::uint8_t> payload);
+  MapPartStatus add_part(std::uint32_t sequence, std::span<const std::uint8_t> payload);
   /// Adds a datagram of the thesis' form. Its bytes lack the map's position and cell size: left, top and cell of
   /// `place` are used.
-  PartStatus add_plain_part(std::span<const std::uint8_t> datagram, const GridGeometry& place = {});
+  MapPartStatus add_plain_part(std::span<const std::uint8_t> datagram, const GridGeometry& place = {});
 
   /// The newest content of each word; null before the first part.
   const OccupancyGrid* map() const { return map_ ? &*map_ : nullptr; }
@@ -45,10 +45,10 @@ class MapAssembler {
   }  ///< number of maps with lost parts, without the current one
 
  private:
-  void begin(std::uint32_t sequence, const GridGeometry& plan, std::uint32_t parts);
+  void begin(std::uint32_t sequence, const GridGeometry& geometry, std::uint32_t parts);
   /// Assigns a part to the current map, or begins a newer map with it.
-  std::optional<PartStatus> place(std::uint32_t sequence, const GridGeometry& plan, std::uint32_t parts);
-  PartStatus arrived(std::uint32_t part);
+  std::optional<MapPartStatus> place(std::uint32_t sequence, const GridGeometry& geometry, std::uint32_t parts);
+  MapPartStatus arrived(std::uint32_t part);
 
   std::optional<OccupancyGrid> map_;
   std::uint32_t sequence_ = 0;

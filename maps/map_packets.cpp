@@ -23,8 +23,8 @@ bool all_sound(std::span<const std::uint8_t> bytes) {
 
 /// Checks a part against the fixed split of its map: sums of its fields cannot overflow.
 bool fits(const MapPart& part) {
-  if (!is_valid(part.plan) || part.parts != parts_of(part.plan) || part.part >= part.parts) return false;
-  return part.count == std::min(kPartWords, words(part.plan) - part.first) && part.flags <= kTruePoses;
+  if (!is_valid(part.geometry) || part.parts != parts_of(part.geometry) || part.part >= part.parts) return false;
+  return part.count == std::min(kPartWords, words(part.geometry) - part.first) && part.flags <= kTruePoses;
 }
 
 }  // namespace
@@ -41,13 +41,13 @@ std::uint32_t word_of(const PlainPart& part, std::uint32_t i) {
 
 PartFault read_part(std::span<const std::uint8_t> payload, MapPart& part) {
   base::ByteReader reader(payload);
-  part.plan.left = reader.get<double>();
-  part.plan.top = reader.get<double>();
-  part.plan.cell = reader.get<double>();
+  part.geometry.left = reader.get<double>();
+  part.geometry.top = reader.get<double>();
+  part.geometry.cell = reader.get<double>();
   part.part = reader.get<std::uint16_t>();
   part.parts = reader.get<std::uint16_t>();
-  part.plan.word_columns = reader.get<std::uint16_t>();
-  part.plan.word_rows = reader.get<std::uint16_t>();
+  part.geometry.word_columns = reader.get<std::uint16_t>();
+  part.geometry.word_rows = reader.get<std::uint16_t>();
   part.flags = reader.get<std::uint16_t>();
   part.count = reader.get<std::uint16_t>();
   part.first = part.part * kPartWords;

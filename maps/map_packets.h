@@ -19,14 +19,14 @@ inline constexpr std::uint32_t kMaxPlainSide = 255;    ///< word rows and column
 inline constexpr std::uint32_t kTruePoses = 1;         ///< flag: made from true poses, not from an estimate
 
 inline std::uint32_t parts_of(std::uint32_t words) { return (words + kPartWords - 1) / kPartWords; }
-inline std::uint32_t parts_of(const GridGeometry& plan) { return parts_of(words(plan)); }
+inline std::uint32_t parts_of(const GridGeometry& geometry) { return parts_of(words(geometry)); }
 
 /// Words of the first datagram in the thesis' form.
 inline std::uint32_t plain_half(std::uint32_t words) { return (words + 1) / 2; }
 
 /// A receiver's view of a payload of the farm's form.
 struct MapPart {
-  GridGeometry plan;
+  GridGeometry geometry;
   std::uint32_t part = 0;
   std::uint32_t parts = 1;
   std::uint32_t flags = 0;
@@ -45,14 +45,15 @@ PartFault read_part(std::span<const std::uint8_t> payload, MapPart& part);
 
 /// Appends part `part` of a map. `word_at(i)` gives word i. @param flags see kTruePoses
 template <class WordAt>
-void put_part(const GridGeometry& plan, std::uint32_t part, std::uint32_t flags, WordAt&& word_at, base::Bytes& out) {
+void put_part(const GridGeometry& geometry, std::uint32_t part, std::uint32_t flags, WordAt&& word_at,
+              base::Bytes& out) {
   const std::uint32_t first = part * kPartWords;
-  const std::uint32_t count = words(plan) - first < kPartWords ? words(plan) - first : kPartWords;
+  const std::uint32_t count = words(geometry) - first < kPartWords ? words(geometry) - first : kPartWords;
   base::ByteWriter writer(out);
-  writer.put(plan.left);
-  writer.put(plan.top);
-  writer.put(plan.cell);
-  for (const std::uint32_t number : {part, parts_of(plan), plan.word_columns, plan.word_rows, flags, count})
+  writer.put(geometry.left);
+  writer.put(geometry.top);
+  writer.put(geometry.cell);
+  for (const std::uint32_t number : {part, parts_of(geometry), geometry.word_columns, geometry.word_rows, flags, count})
     writer.put(static_cast<std::uint16_t>(number));
   for (std::uint32_t i = 0; i < count; ++i) writer.put(std::uint32_t{word_at(first + i)});
 }

@@ -35,19 +35,19 @@ CellBox intersect(const CellBox& a, const CellBox& b) {
           {std::min(a.high.column, b.high.column), std::min(a.high.row, b.high.row)}};
 }
 
-TracedScan trace_scan(const GridGeometry& plan, const ScanView& scan, std::span<std::uint32_t> ends) {
-  SF_CHECK(scan.range_max <= kMaxRangeCells * plan.cell && scan.range_min >= 0.0,
-           std::to_string(scan.range_max) + " m on cells of " + std::to_string(plan.cell) + " m");
+TracedScan trace_scan(const GridGeometry& geometry, const ScanView& scan, std::span<std::uint32_t> ends) {
+  SF_CHECK(scan.range_max <= kMaxRangeCells * geometry.cell && scan.range_min >= 0.0,
+           std::to_string(scan.range_max) + " m on cells of " + std::to_string(geometry.cell) + " m");
   SF_CHECK(scan.beams.size() == scan.ranges.size() && ends.size() == scan.ranges.size(),
            std::to_string(scan.ranges.size()) + " ranges of " + std::to_string(scan.beams.size()) + " beams");
   TracedScan out;
   const base::Pose& X = scan.X_WS;
-  const glm::dvec2 place{(X.x - plan.left) / plan.cell, (plan.top - X.y) / plan.cell};
+  const glm::dvec2 place{(X.x - geometry.left) / geometry.cell, (geometry.top - X.y) / geometry.cell};
   const double c = std::cos(X.yaw);
   const double s = std::sin(X.yaw);
   // The negation also covers NaN.
   if (!(std::abs(place.x) <= kFarthestCell && std::abs(place.y) <= kFarthestCell && std::abs(c + s) <= 2.0)) return out;
-  out.sensor = cell_at(plan, {X.x, X.y});
+  out.sensor = cell_at(geometry, {X.x, X.y});
   out.within = {place.x - static_cast<double>(out.sensor.column) - 0.5,
                 place.y - static_cast<double>(out.sensor.row) - 0.5};
 
@@ -61,7 +61,7 @@ TracedScan trace_scan(const GridGeometry& plan, const ScanView& scan, std::span<
       const bool hit = range < scan.range_max;
       const double r = hit ? range : scan.range_max;
       const glm::dvec2 b = scan.beams[k];
-      const CellAt end = cell_at(plan, {X.x + r * (c * b.x - s * b.y), X.y + r * (s * b.x + c * b.y)});
+      const CellAt end = cell_at(geometry, {X.x + r * (c * b.x - s * b.y), X.y + r * (s * b.x + c * b.y)});
       const CellAt from{end.column - out.sensor.column, end.row - out.sensor.row};
       grow(box, from);
       said = pack_end(from.column, from.row, hit);

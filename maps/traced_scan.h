@@ -43,7 +43,7 @@ struct CellBox {
 CellBox intersect(const CellBox& a, const CellBox& b);
 inline bool is_empty(const CellBox& box) { return box.low.column >= box.high.column || box.low.row >= box.high.row; }
 /// All cells of a map.
-inline CellBox cells_of(const GridGeometry& plan) { return {{0, 0}, {columns(plan), rows(plan)}}; }
+inline CellBox cells_of(const GridGeometry& geometry) { return {{0, 0}, {columns(geometry), rows(geometry)}}; }
 
 /// A scan on the lattice of a map.
 struct TracedScan {
@@ -54,6 +54,6 @@ struct TracedScan {
 };
 
 /// Writes one end per range into `ends`. An invalid range gets the end of a valid one, which does not change the map.
-TracedScan trace_scan(const GridGeometry& plan, const ScanView& scan, std::span<std::uint32_t> ends);
+TracedScan trace_scan(const GridGeometry& geometry, const ScanView& scan, std::span<std::uint32_t> ends);
 
 }  // namespace sf::maps

@@ -52,7 +52,7 @@ const sensors::SensorType& kind_called(std::string_view name) {
 
 void add_map(VisibleArea& reference, const Trial& trial, double share, Outcome& outcome) {
   const maps::OccupancyGrid& map = trial.maps.front();
-  const maps::OccupancyGrid& seeable = reference.of(trial.mapped.front(), map.plan);
+  const maps::OccupancyGrid& seeable = reference.of(trial.mapped.front(), map.geometry);
   outcome.missed += share * (1.0 - coverage_of(map, seeable).coverage());
   outcome.wrong += share * disagreement(map, seeable);
 }

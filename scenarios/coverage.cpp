@@ -44,7 +44,7 @@ std::vector<world::Segment> walls_where(const world::World& world, bool (*take)(
 }
 
 /// Cells whose centres the robot's origin can reach: clear of walls by its radius and connected to its start.
-std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
+std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry) {
   const world::Mover& robot = world.movers[mover];
   double top = 0.0;
   for (const world::Segment& side : robot.body) top = std::max(top, side.z_max);
@@ -53,18 +53,18 @@ std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, co
           world, [](const world::Segment& w) { return w.stops_robots; }, robot.X_WM.z, robot.X_WM.z + top),
       0.5);
   const auto clear = [&](CellAt at) {
-    const glm::dvec2 p = maps::middle(plan, at);
+    const glm::dvec2 p = maps::middle(geometry, at);
     return !walls.any(world::box_around(p, robot.radius),
                       [&](const world::Segment& w) { return world::distance(p, w.a, w.b) < robot.radius; });
   };
-  maps::OccupancyGrid seen(plan);
-  std::vector<CellAt> found{maps::cell_at(plan, {robot.X_WM.x, robot.X_WM.y})};
-  if (!maps::contains(plan, found[0])) return {};
+  maps::OccupancyGrid seen(geometry);
+  std::vector<CellAt> found{maps::cell_at(geometry, {robot.X_WM.x, robot.X_WM.y})};
+  if (!maps::contains(geometry, found[0])) return {};
   seen.set(found[0], Cell::free);
   for (std::size_t i = 0; i < found.size(); ++i)
     for (const auto& [dc, dr] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
       const CellAt next{found[i].column + dc, found[i].row + dr};
-      if (!maps::contains(plan, next) || seen.at(next) != Cell::unexplored || !clear(next)) continue;
+      if (!maps::contains(geometry, next) || seen.at(next) != Cell::unexplored || !clear(next)) continue;
       seen.set(next, Cell::free);
       found.push_back(next);
     }
@@ -92,7 +92,7 @@ struct Viewpoint {
   std::vector<world::Segment> near;
 };
 
-std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
+std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry) {
   const world::Mover& robot = world.movers[mover];
   const world::Laser& laser = robot.lasers[0];
   const double z = robot.X_WM.z + laser.X_MS.z;
@@ -100,8 +100,8 @@ std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover,
       world, [](const world::Segment& w) { return w.seen_by_laser; }, z, z);
   const double ahead = std::hypot(laser.X_MS.x, laser.X_MS.y);
   std::vector<Viewpoint> viewpoints;
-  for (const CellAt at : reachable(world, mover, plan)) {
-    Viewpoint viewpoint{.p = maps::middle(plan, at)};
+  for (const CellAt at : reachable(world, mover, geometry)) {
+    Viewpoint viewpoint{.p = maps::middle(geometry, at)};
     for (const world::Segment& wall : walls)
       if (world::distance(viewpoint.p, wall.a, wall.b) < laser.range_max + ahead) viewpoint.near.push_back(wall);
     for (int h = 0; h < kHeadings; ++h) {
@@ -116,10 +116,10 @@ std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover,
   return viewpoints;
 }
 
-maps::OccupancyGrid scans_from(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan,
+maps::OccupancyGrid scans_from(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry,
                                const std::vector<Viewpoint>& viewpoints) {
   const world::Laser& laser = world.movers[mover].lasers[0];
-  maps::OccupancyGrid grid(plan);
+  maps::OccupancyGrid grid(geometry);
   std::vector<double> ranges(kBeams);
   const std::vector<glm::dvec2> beams = maps::beam_directions(laser.fov, kBeams);
   for (const Viewpoint& viewpoint : viewpoints)
@@ -147,12 +147,12 @@ void forget_hidden(const world::World& world, std::uint32_t mover, const std::ve
   const world::Laser& laser = world.movers[mover].lasers[0];
   const double reach = laser.range_max + std::hypot(laser.X_MS.x, laser.X_MS.y);
   std::vector<CellAt> open;
-  for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
-    for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
+  for (std::int64_t row = 0; row < maps::rows(grid.geometry); ++row)
+    for (std::int64_t column = 0; column < maps::columns(grid.geometry); ++column)
       if (grid.at({column, row}) == Cell::free) open.push_back({column, row});
   for (const Viewpoint& viewpoint : viewpoints)
     std::erase_if(open, [&](CellAt at) {
-      const glm::dvec2 p = maps::middle(grid.plan, at);
+      const glm::dvec2 p = maps::middle(grid.geometry, at);
       if (glm::length(p - viewpoint.p) >= reach) return false;
       return std::any_of(viewpoint.eyes.begin(), viewpoint.eyes.end(),
                          [&](const Pose& X_WS) { return sees(viewpoint, X_WS, laser, p); });
@@ -182,25 +182,25 @@ void add_scans(std::span<const base::ReadingBlock> readings, std::map<std::uint3
     if (const auto at = maps.find(reading.mover); at != maps.end()) at->second.add(reading);
 }
 
-maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
+maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry) {
   SF_CHECK(!world.movers[mover].lasers.empty(), "nothing is seen without a laser: " + world.movers[mover].name);
-  const std::vector<Viewpoint> viewpoints = stands_of(world, mover, plan);
-  maps::OccupancyGrid grid = scans_from(world, mover, plan, viewpoints);
+  const std::vector<Viewpoint> viewpoints = stands_of(world, mover, geometry);
+  maps::OccupancyGrid grid = scans_from(world, mover, geometry, viewpoints);
   forget_hidden(world, mover, viewpoints, grid);
   return grid;
 }
 
-const maps::OccupancyGrid& VisibleArea::of(std::uint32_t mover, const maps::GridGeometry& plan) {
-  if (!grid_ || mover_ != mover || !(grid_->plan == plan)) grid_ = visible_area(world_, mover, plan);
+const maps::OccupancyGrid& VisibleArea::of(std::uint32_t mover, const maps::GridGeometry& geometry) {
+  if (!grid_ || mover_ != mover || !(grid_->geometry == geometry)) grid_ = visible_area(world_, mover, geometry);
   mover_ = mover;
   return *grid_;
 }
 
 Coverage coverage_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference) {
-  SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");
+  SF_CHECK(map.geometry == reference.geometry, "maps of two plans cannot be compared");
   Coverage seen;
-  for (std::int64_t row = 0; row < maps::rows(map.plan); ++row)
-    for (std::int64_t column = 0; column < maps::columns(map.plan); ++column) {
+  for (std::int64_t row = 0; row < maps::rows(map.geometry); ++row)
+    for (std::int64_t column = 0; column < maps::columns(map.geometry); ++column) {
       if (reference.at({column, row}) != Cell::free) continue;
       ++seen.wanted;
       seen.missed += map.at({column, row}) == Cell::unexplored;
@@ -211,10 +211,10 @@ Coverage coverage_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& 
 std::string text_of(const Coverage& seen) { return fmt::format("{} of {}", seen.missed, seen.wanted); }
 
 double disagreement(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference) {
-  SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");
+  SF_CHECK(map.geometry == reference.geometry, "maps of two plans cannot be compared");
   std::size_t both = 0, apart = 0;
-  for (std::int64_t row = 0; row < maps::rows(map.plan); ++row)
-    for (std::int64_t column = 0; column < maps::columns(map.plan); ++column) {
+  for (std::int64_t row = 0; row < maps::rows(map.geometry); ++row)
+    for (std::int64_t column = 0; column < maps::columns(map.geometry); ++column) {
       const Cell a = map.at({column, row}), b = reference.at({column, row});
       if (a == Cell::unexplored || b == Cell::unexplored) continue;
       ++both;

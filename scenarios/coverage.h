@@ -38,16 +38,16 @@ class RobotMap {
 void add_scans(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, RobotMap>& maps);
 
 /// Reference map: everything that the robot's first laser can see from poses which the robot can reach without touching
-/// a wall. Made of scans from the centres of all cells of `plan` that are connected to the robot's start, with sixteen
-/// headings. Cells whose centre is in view from none of these poses stay unexplored. Movers are ignored.
-maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan);
+/// a wall. Made of scans from the centres of all cells of `geometry` that are connected to the robot's start, with
+/// sixteen headings. Cells whose centre is in view from none of these poses stay unexplored. Movers are ignored.
+maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry);
 
-/// Caches `visible_area` for one world, mover and plan, since it is slow. The world must outlive it.
+/// Caches `visible_area` for one world, mover and geometry, since it is slow. The world must outlive it.
 class VisibleArea {
  public:
   explicit VisibleArea(const world::World& world) : world_(world) {}
   /// The result lives until the next call.
-  const maps::OccupancyGrid& of(std::uint32_t mover, const maps::GridGeometry& plan);
+  const maps::OccupancyGrid& of(std::uint32_t mover, const maps::GridGeometry& geometry);
 
  private:
   const world::World& world_;
@@ -64,7 +64,7 @@ struct Coverage {
     return wanted == 0 ? 1.0 : static_cast<double>(wanted - missed) / static_cast<double>(wanted);
   }
 };
-/// @pre both have the same plan
+/// @pre both have the same geometry
 Coverage coverage_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference);
 /// Missed and wanted cells, such as "3 of 9159".
 std::string text_of(const Coverage& seen);

@@ -110,7 +110,7 @@ void run_with(const ExperimentContext& context, const Entrant& entrant, std::vec
   VisibleArea reference(world);
   for (std::size_t k = 0; k < trials.size(); ++k) {
     const Trial& trial = trials[k];
-    const maps::OccupancyGrid& seeable = reference.of(trial.mapped.front(), trial.maps.front().plan);
+    const maps::OccupancyGrid& seeable = reference.of(trial.mapped.front(), trial.maps.front().geometry);
     rows.push_back(mapped_of(entrant, static_cast<std::uint32_t>(k + 1), trial, seeable));
     tracks.push_back(trial.tracks.front());
     tracks.back().name = fmt::format("trial {}", k + 1);

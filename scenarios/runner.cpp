@@ -119,7 +119,7 @@ class Run {
 
   Coverage seen_by(std::uint32_t mover) const {
     const maps::OccupancyGrid& grid = maps_.at(mover).grid();
-    return coverage_of(grid, visible_area(world_, mover, grid.plan));
+    return coverage_of(grid, visible_area(world_, mover, grid.geometry));
   }
 
   /// The measured value as text, with words for missing values.

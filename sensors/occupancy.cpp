@@ -39,10 +39,10 @@ class Occupancies : public SensorBackend {
   std::vector<double> values_;      ///< of all maps
 };
 
-std::vector<MapPlan> plans_of(const std::vector<Occupancy>& all) {
-  std::vector<MapPlan> plans;
-  for (const Occupancy& map : all) plans.push_back(map.plan);
-  return plans;
+std::vector<MapSettings> map_settings_of(const std::vector<Occupancy>& all) {
+  std::vector<MapSettings> map_settings;
+  for (const Occupancy& map : all) map_settings.push_back(map.settings);
+  return map_settings;
 }
 
 /// [cells] largest range of scans on the device.
@@ -54,7 +54,7 @@ double farthest_on(const SensorContext& context) {
 
 Occupancies::Occupancies(const SensorContext& context)
     : maps_(occupancies_of(context.world)),
-      batch_(context.device, context.thread_pool, plans_of(maps_), farthest_on(context)),
+      batch_(context.device, context.thread_pool, map_settings_of(maps_), farthest_on(context)),
       flags_(context.true_poses ? maps::kTruePoses : 0) {
   std::size_t values = 0;
   for (std::uint32_t i = 0; i < maps_.size(); ++i) {
@@ -89,7 +89,7 @@ void Occupancies::collect(std::vector<base::ReadingBlock>& out) {
     block.mover = map.row.mover;
     block.sensor = map.row.sensor;
     block.kind = kOccupancy;
-    block.X_WS = {map.plan.grid.left, map.plan.grid.top, 0.0, 0.0};
+    block.X_WS = {map.settings.grid.left, map.settings.grid.top, 0.0, 0.0};
     block.values = values;
     block.flags = flags_;
     out.push_back(block);

@@ -25,7 +25,7 @@ inline constexpr std::uint8_t kOccupancy = 12;  ///< wire id
 /// Settings of one map.
 struct Occupancy {
   SensorSpec row;
-  MapPlan plan;
+  MapSettings settings;
   std::uint32_t laser = 0;  ///< index of the mover's laser that fills it
 };
 

@@ -26,24 +26,24 @@ BeamLine line_of(std::uint32_t end) {
 MapRow row_of(const MapLayout& map, const maps::TracedScan& scan, const base::Pose& X_WS) {
   MapRow row{};
   row.words = map.words;
-  row.word_columns = map.plan.grid.word_columns;
-  row.pairs = pairs_of(map.plan);
+  row.word_columns = map.settings.grid.word_columns;
+  row.pairs = pairs_of(map.settings);
   row.lines = map.lines;
   row.column = static_cast<std::int32_t>(scan.sensor.column);
   row.row = static_cast<std::int32_t>(scan.sensor.row);
   row.within_x = static_cast<float>(scan.within.x);
   row.within_y = static_cast<float>(scan.within.y);
   row.heading = static_cast<float>(base::wrap_angle(X_WS.yaw));
-  const double step = map.plan.samples > 1 ? map.plan.fov / (map.plan.samples - 1) : 0.0;
+  const double step = map.settings.samples > 1 ? map.settings.fov / (map.settings.samples - 1) : 0.0;
   const bool spread = step > 1e-6;  // parallel beams are all tested
-  row.half_fov = static_cast<float>(0.5 * map.plan.fov);
+  row.half_fov = static_cast<float>(0.5 * map.settings.fov);
   row.per_radian = spread ? static_cast<float>(0.5 / step) : 1.0f;
   row.slack = spread ? kBearingSlack : 1e6f;
   row.round = static_cast<float>(spread ? M_PI / step : 1e7);
-  if (map.plan.odds) {
-    row.hit = map.plan.odds->hit;
-    row.miss = map.plan.odds->miss;
-    row.limit = map.plan.odds->limit;
+  if (map.settings.odds) {
+    row.hit = map.settings.odds->hit;
+    row.miss = map.settings.odds->miss;
+    row.limit = map.settings.odds->limit;
   }
   return row;
 }
@@ -60,13 +60,14 @@ void MapBatch::Tables::trace() {
   thread_pool.parallel_for(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const MapLayout& map = all[scans[i].map];
-      const maps::ScanView view{scans[i].X_WS, scans[i].ranges, *map.beams, map.plan.range_min, map.plan.range_max};
+      const maps::ScanView view{scans[i].X_WS, scans[i].ranges, *map.beams, map.settings.range_min,
+                                map.settings.range_max};
       ScanWork& share = scan_works[i];
       const std::span<std::uint32_t> own = ends_of(map);
-      share.scan = maps::trace_scan(map.plan.grid, view, own);
+      share.scan = maps::trace_scan(map.settings.grid, view, own);
       const auto table = lines->host<BeamLine>().subspan(2 * std::size_t{map.lines}, own.size());
       std::transform(own.begin(), own.end(), table.begin(), line_of);
-      share.cells = maps::intersect(share.scan.box, maps::cells_of(map.plan.grid));
+      share.cells = maps::intersect(share.scan.box, maps::cells_of(map.settings.grid));
       if (!maps::is_empty(share.cells)) share.cells = in_whole_words(share.cells);
     }
   });
@@ -107,7 +108,7 @@ void MapBatch::Tables::assign_blocks() {
     table[i].box_right = static_cast<std::uint32_t>(share.cells.high.column / 4);
     add_strips(i, share.cells, false, table[i].flat_strips);
     add_strips(i, share.cells, true, table[i].steep_strips);
-    add_words(map.plan.odds ? log_odds_words : plain, i, share);
+    add_words(map.settings.odds ? log_odds_words : plain, i, share);
   }
   for (MapDispatch* dispatch : {&strips, &plain.dispatch, &log_odds_words.dispatch})
     if (dispatch->kernel) close(*dispatch);
@@ -123,7 +124,7 @@ void MapBatch::Tables::mark_hits() {
       const std::int64_t across =
           SF_MAP_BLOCK * units_of(share.cells.high.column - share.cells.low.column, 4 * SF_MAP_BLOCK);
       const std::int64_t down = (share.cells.high.row - share.cells.low.row) / 4;
-      const auto hit_words = (map.plan.odds ? log_odds_words : plain)
+      const auto hit_words = (map.settings.odds ? log_odds_words : plain)
                                  .hit_words->host<std::uint32_t>()
                                  .subspan(SF_MAP_BLOCK * share.first_block, static_cast<std::size_t>(across * down));
       std::fill(hit_words.begin(), hit_words.end(), 0u);
@@ -168,7 +169,7 @@ void MapBatch::Tables::send_scans() {
     const auto [low, high] = std::minmax_element(scans.begin(), scans.end(),
                                                  [](const MapScan& a, const MapScan& b) { return a.map < b.map; });
     const std::size_t first = all[low->map].lines;
-    const std::size_t end = all[high->map].lines + pairs_of(all[high->map].plan);
+    const std::size_t end = all[high->map].lines + pairs_of(all[high->map].settings);
     batch.upload(*rows, 0, scans.size() * sizeof(MapRow));
     batch.upload(*lines, kPair * first, kPair * (end - first));
   }
@@ -189,11 +190,12 @@ void MapBatch::Tables::send() {
     blank = false;
   }
   for (const std::uint32_t map : wanted)
-    batch.download(*words, 4 * std::size_t{all[map].words}, 4 * std::size_t{maps::words(all[map].plan.grid)});
+    batch.download(*words, 4 * std::size_t{all[map].words}, 4 * std::size_t{maps::words(all[map].settings.grid)});
 }
 
-MapBatch::MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapPlan> plans, double farthest)
-    : t_(std::make_unique<Tables>(device, thread_pool, std::move(plans), farthest)) {}
+MapBatch::MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapSettings> map_settings,
+                   double farthest)
+    : t_(std::make_unique<Tables>(device, thread_pool, std::move(map_settings), farthest)) {}
 
 MapBatch::~MapBatch() = default;
 
@@ -217,7 +219,7 @@ void MapBatch::update(std::span<const MapScan> scans, std::span<const std::uint3
 
 std::span<const std::uint32_t> MapBatch::words(std::uint32_t map) const {
   if (t_->on_host.has(map)) return t_->on_host.words(map);
-  return t_->words->host<std::uint32_t>().subspan(t_->all[map].words, maps::words(t_->all[map].plan.grid));
+  return t_->words->host<std::uint32_t>().subspan(t_->all[map].words, maps::words(t_->all[map].settings.grid));
 }
 
 }  // namespace sf::sensors

@@ -20,7 +20,7 @@ namespace sf::sensors {
 inline constexpr std::uint32_t kMostMapBeams = 20'000;  ///< three loops over them stay below 65 535 iterations
 
 /// One map with the settings of its laser.
-struct MapPlan {
+struct MapSettings {
   maps::GridGeometry grid;                  ///< must satisfy is_valid
   std::optional<maps::LogOddsUpdate> odds;  ///< log-odds update; empty: the last scan overwrites
   double fov = 0.0;                         ///< [rad] in [0, 2 pi]
@@ -42,7 +42,7 @@ class MapBatch {
   /// All maps start unexplored.
   /// @param farthest [cells] largest range of scans on the device; the host enters the others
   /// @throws base::DeviceError when the device cannot hold the maps
-  MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapPlan> plans,
+  MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapSettings> map_settings,
            double farthest = maps::kMaxRangeCells);
   ~MapBatch();
 

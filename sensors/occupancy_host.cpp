@@ -2,16 +2,16 @@
 
 namespace sf::sensors {
 
-HostMaps::HostMaps(std::span<const MapPlan> plans, double farthest) : rows_(plans.size(), kNone) {
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    const MapPlan& plan = plans[i];
-    if (plan.range_max <= farthest * plan.grid.cell) continue;
+HostMaps::HostMaps(std::span<const MapSettings> map_settings, double farthest) : rows_(map_settings.size(), kNone) {
+  for (std::size_t i = 0; i < map_settings.size(); ++i) {
+    const MapSettings& settings = map_settings[i];
+    if (settings.range_max <= farthest * settings.grid.cell) continue;
     rows_[i] = static_cast<std::uint32_t>(maps_.size());
-    Map& map = maps_.emplace_back(Map{plan, maps::beam_directions(plan.fov, plan.samples),
-                                      maps::OccupancyGrid(plan.grid), std::nullopt, maps::OccupancyGrid()});
-    if (!plan.odds) continue;
-    map.odds.emplace(plan.grid, *plan.odds);
-    map.covered = maps::OccupancyGrid(plan.grid);
+    Map& map = maps_.emplace_back(Map{settings, maps::beam_directions(settings.fov, settings.samples),
+                                      maps::OccupancyGrid(settings.grid), std::nullopt, maps::OccupancyGrid()});
+    if (!settings.odds) continue;
+    map.odds.emplace(settings.grid, *settings.odds);
+    map.covered = maps::OccupancyGrid(settings.grid);
   }
 }
 
@@ -25,8 +25,9 @@ void HostMaps::update(std::span<const MapScan> scans, std::span<const std::uint3
       Map& map = maps_[rows_[scans[i].map]];
       std::vector<std::uint32_t>& ends = ends_[thread];
       ends.resize(map.beams.size());
-      const maps::ScanView view{scans[i].X_WS, scans[i].ranges, map.beams, map.plan.range_min, map.plan.range_max};
-      const maps::TracedScan scan = maps::trace_scan(map.plan.grid, view, ends);
+      const maps::ScanView view{scans[i].X_WS, scans[i].ranges, map.beams, map.settings.range_min,
+                                map.settings.range_max};
+      const maps::TracedScan scan = maps::trace_scan(map.settings.grid, view, ends);
       if (map.odds) maps::add_traced_scan(*map.odds, scan, ends, map.covered);
       if (!map.odds) maps::add_traced_scan(map.grid, scan, ends);
     }

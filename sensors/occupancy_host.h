@@ -16,8 +16,8 @@ inline constexpr double kFarScan = 60.0;
 /// Not thread-safe.
 class HostMaps {
  public:
-  /// @param plans of all maps  @param farthest [cells] largest range of scans on the device
-  HostMaps(std::span<const MapPlan> plans, double farthest);
+  /// @param map_settings of all maps  @param farthest [cells] largest range of scans on the device
+  HostMaps(std::span<const MapSettings> map_settings, double farthest);
 
   bool has(std::uint32_t map) const { return rows_[map] != kNone; }
   bool empty() const { return maps_.empty(); }
@@ -30,7 +30,7 @@ class HostMaps {
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   struct Map {
-    MapPlan plan;
+    MapSettings settings;
     std::vector<glm::dvec2> beams;
     maps::OccupancyGrid grid;  ///< its words; with log odds, their classification
     std::optional<maps::LogOddsGrid> odds;

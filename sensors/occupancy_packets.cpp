@@ -89,8 +89,9 @@ PayloadPart decode_occupancy(const SensorSpec& sensor, std::span<const std::uint
   maps::MapPart part;
   const maps::PartFault fault = maps::read_part(payload, part);
   if (fault != maps::PartFault::none) return {.fault = fault_of(fault)};
-  const bool mine = sensor.elements == 0 || (maps::words(part.plan) == sensor.elements &&
-                                             part.plan.word_columns == sensor.across && part.plan.cell == sensor.pitch);
+  const bool mine =
+      sensor.elements == 0 || (maps::words(part.geometry) == sensor.elements &&
+                               part.geometry.word_columns == sensor.across && part.geometry.cell == sensor.pitch);
   if (!mine) return {.fault = PayloadError::out_of_range};
   return {PayloadError::none, part.count, part.part, part.parts};
 }

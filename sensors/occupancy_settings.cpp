@@ -25,33 +25,34 @@ std::uint32_t words_along(const world::Sensor& sensor, double count) {
 }
 
 /// Places a map of this size around `place`, aligned to multiples of the cell size, so that maps can be merged exactly.
-void centre(maps::GridGeometry& plan, const Pose& place) {
-  plan.left = plan.cell * std::round(place.x / plan.cell - 0.5 * static_cast<double>(maps::columns(plan)));
-  plan.top = plan.cell * std::round(place.y / plan.cell + 0.5 * static_cast<double>(maps::rows(plan)));
+void centre(maps::GridGeometry& geometry, const Pose& place) {
+  geometry.left =
+      geometry.cell * std::round(place.x / geometry.cell - 0.5 * static_cast<double>(maps::columns(geometry)));
+  geometry.top = geometry.cell * std::round(place.y / geometry.cell + 0.5 * static_cast<double>(maps::rows(geometry)));
 }
 
 maps::GridGeometry grid_of(const world::Sensor& sensor, const Pose& place) {
-  maps::GridGeometry plan;
-  plan.cell = length(sensor, "cell", kDefaultCell, 1e-4, 1e3);
+  maps::GridGeometry geometry;
+  geometry.cell = length(sensor, "cell", kDefaultCell, 1e-4, 1e3);
   if (const auto size = tuple(sensor, "words", 2, "[columns rows]")) {
-    plan.word_columns = words_along(sensor, (*size)[0]);
-    plan.word_rows = words_along(sensor, (*size)[1]);
+    geometry.word_columns = words_along(sensor, (*size)[0]);
+    geometry.word_rows = words_along(sensor, (*size)[1]);
   } else {
-    plan.word_columns = plan.word_rows = kDefaultWords;
+    geometry.word_columns = geometry.word_rows = kDefaultWords;
   }
-  if (plan.word_columns > maps::kMaxWords / plan.word_rows)
+  if (geometry.word_columns > maps::kMaxWords / geometry.word_rows)
     refuse(sensor, "words",
            fmt::format("a map of {} x {} words is too large; expected at most {} words in all: raise 'cell' or give "
                        "each robot a part",
-                       plan.word_columns, plan.word_rows, maps::kMaxWords));
-  centre(plan, place);
+                       geometry.word_columns, geometry.word_rows, maps::kMaxWords));
+  centre(geometry, place);
   if (const auto offset = tuple(sensor, "offset", 2, "[x y]")) {
-    plan.left = -sensor.metres_per_unit * (*offset)[0];
-    plan.top = -sensor.metres_per_unit * (*offset)[1];
+    geometry.left = -sensor.metres_per_unit * (*offset)[0];
+    geometry.top = -sensor.metres_per_unit * (*offset)[1];
   }
-  if (!maps::is_valid(plan))
+  if (!maps::is_valid(geometry))
     refuse(sensor, "offset", fmt::format("a map more than {:g} m from the world's origin; change 'offset'", kFarthest));
-  return plan;
+  return geometry;
 }
 
 std::optional<maps::LogOddsUpdate> odds_of(const world::Sensor& sensor) {
@@ -81,33 +82,33 @@ std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover) {
   refuse(sensor, "laser", fmt::format("'{}' has no laser '{}'; it has {}", mover.name, named->text, names));
 }
 
-void fill_from(const world::Sensor& sensor, const world::Laser& laser, MapPlan& plan) {
-  plan.fov = laser.fov;
-  plan.samples = laser.samples;
-  plan.range_min = laser.range_min;
-  plan.range_max = laser.range_max;
-  if (plan.samples > kMostMapBeams)
-    refuse(
-        sensor, "laser",
-        fmt::format("laser '{}' has {} samples; maps are made of at most {}", laser.name, plan.samples, kMostMapBeams));
-  if (!(plan.range_max <= maps::kMaxRangeCells * plan.grid.cell))
+void fill_from(const world::Sensor& sensor, const world::Laser& laser, MapSettings& settings) {
+  settings.fov = laser.fov;
+  settings.samples = laser.samples;
+  settings.range_min = laser.range_min;
+  settings.range_max = laser.range_max;
+  if (settings.samples > kMostMapBeams)
+    refuse(sensor, "laser",
+           fmt::format("laser '{}' has {} samples; maps are made of at most {}", laser.name, settings.samples,
+                       kMostMapBeams));
+  if (!(settings.range_max <= maps::kMaxRangeCells * settings.grid.cell))
     refuse(sensor, "cell",
            fmt::format("laser '{}' has a range of {:g} m, which is more than {:g} cells of {:g} m; raise 'cell'",
-                       laser.name, plan.range_max, maps::kMaxRangeCells, plan.grid.cell));
+                       laser.name, settings.range_max, maps::kMaxRangeCells, settings.grid.cell));
 }
 
 Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, std::uint32_t m, std::uint32_t number) {
   Occupancy map;
   map.row = common_spec(sensor, m, number);
   map.row.rate = rate_of(sensor, kDefaultRate);
-  map.plan.grid = grid_of(sensor, mover.X_WM);
-  map.plan.odds = odds_of(sensor);
+  map.settings.grid = grid_of(sensor, mover.X_WM);
+  map.settings.odds = odds_of(sensor);
   map.laser = laser_of(sensor, mover);
-  fill_from(sensor, mover.lasers[map.laser], map.plan);
-  map.row.elements = maps::words(map.plan.grid);
+  fill_from(sensor, mover.lasers[map.laser], map.settings);
+  map.row.elements = maps::words(map.settings.grid);
   map.row.limit = 4294967295.0;
-  map.row.across = map.plan.grid.word_columns;
-  map.row.pitch = map.plan.grid.cell;
+  map.row.across = map.settings.grid.word_columns;
+  map.row.pitch = map.settings.grid.cell;
   return map;
 }
 

@@ -17,21 +17,22 @@ using gpu::Texel;
 constexpr std::size_t kMostOfAll = 1u << 27;  ///< words of all maps; pairs of beams of all their lasers
 
 /// Blocks of a map's words, and of its strips, for a scan that covers the whole map.
-std::size_t word_blocks(const maps::GridGeometry& plan) {
-  return std::size_t{units_of(plan.word_columns, SF_MAP_BLOCK)} * plan.word_rows;
+std::size_t word_blocks(const maps::GridGeometry& geometry) {
+  return std::size_t{units_of(geometry.word_columns, SF_MAP_BLOCK)} * geometry.word_rows;
 }
-std::size_t strip_blocks(const maps::GridGeometry& plan) {
+std::size_t strip_blocks(const maps::GridGeometry& geometry) {
   const auto blocks = [](std::int64_t along, std::int64_t across) {
     return std::size_t{units_of(along, SF_MAP_BLOCK)} * units_of(across, SF_STRIP);
   };
-  return blocks(maps::columns(plan), maps::rows(plan)) + blocks(maps::rows(plan), maps::columns(plan));
+  return blocks(maps::columns(geometry), maps::rows(geometry)) + blocks(maps::rows(geometry), maps::columns(geometry));
 }
 
 }  // namespace
 
-MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapPlan> plans, double farthest)
-    : thread_pool(w), on_host(plans, farthest), unified(device.unified()), batch(device) {
-  plan(std::move(plans));
+MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapSettings> map_settings,
+                         double farthest)
+    : thread_pool(w), on_host(map_settings, farthest), unified(device.unified()), batch(device) {
+  lay_out(std::move(map_settings));
   assign_layout();
   rows = std::make_unique<gpu::Buffer>(device, "due maps", Role::upload, Texel::u32x4,
                                        gpu::texels_of<MapRow>(all.size() + 1));
@@ -43,11 +44,11 @@ MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<M
   std::fill_n(words->host<std::uint32_t>().data(), all_words + 1, 0u);
   std::size_t most = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i)
-    if (!on_host.has(i)) most += strip_blocks(all[i].plan.grid);
+    if (!on_host.has(i)) most += strip_blocks(all[i].settings.grid);
   const std::size_t lanes = make_dispatch(device, "strips of a map", strips, occupancy_strips_comp_spv, most);
   covered = std::make_unique<gpu::Buffer>(device, "covered cells", Role::download, Texel::u32, lanes);
   make_words(device, "map", plain, occupancy_comp_spv, false);
-  if (std::any_of(all.begin(), all.end(), [](const MapLayout& map) { return map.plan.odds.has_value(); })) {
+  if (std::any_of(all.begin(), all.end(), [](const MapLayout& map) { return map.settings.odds.has_value(); })) {
     odds = std::make_unique<gpu::Buffer>(device, "log odds", Role::download, Texel::u32x4,
                                          SF_ODDS_TEXELS * (all_words + 1));
     std::fill_n(odds->host<std::uint32_t>().data(), 4 * SF_ODDS_TEXELS * (all_words + 1), 0u);
@@ -56,8 +57,8 @@ MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<M
   record();
 }
 
-void MapBatch::Tables::plan(std::vector<MapPlan> plans) {
-  for (MapPlan& p : plans) {
+void MapBatch::Tables::lay_out(std::vector<MapSettings> map_settings) {
+  for (MapSettings& p : map_settings) {
     SF_CHECK(maps::is_valid(p.grid) && p.samples >= 1 && p.samples <= kMostMapBeams,
              std::to_string(p.samples) + " beams on a map of " + std::to_string(p.grid.cell) + " m cells");
     auto& fan = fans[{p.fov, p.samples}];
@@ -73,8 +74,8 @@ void MapBatch::Tables::assign_layout() {
     MapLayout& map = all[i];
     map.words = static_cast<std::uint32_t>(all_words);
     map.lines = static_cast<std::uint32_t>(all_lines);
-    all_words += maps::words(map.plan.grid);
-    all_lines += pairs_of(map.plan);
+    all_words += maps::words(map.settings.grid);
+    all_lines += pairs_of(map.settings);
     if (all_words >= kMostOfAll || all_lines >= kMostOfAll)
       throw base::DeviceError("the maps of all robots have more than " + std::to_string(kMostOfAll) +
                               " words or beams; use fewer robots or smaller maps");
@@ -98,7 +99,7 @@ void MapBatch::Tables::make_words(gpu::Device& device, const char* name, MapWord
                                   std::span<const std::uint32_t> spirv, bool has_log_odds) {
   std::size_t most = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i)
-    if (!on_host.has(i) && all[i].plan.odds.has_value() == has_log_odds) most += word_blocks(all[i].plan.grid);
+    if (!on_host.has(i) && all[i].settings.odds.has_value() == has_log_odds) most += word_blocks(all[i].settings.grid);
   const std::size_t lanes = make_dispatch(device, name, part.dispatch, spirv, most);
   part.hit_words = std::make_unique<gpu::Buffer>(device, "struck cells", Role::upload, Texel::u32, lanes);
 }

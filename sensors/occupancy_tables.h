@@ -22,7 +22,7 @@ inline constexpr std::uint32_t kMapGroupsAcross = 32'768;  ///< along x of a dis
 
 /// Layout of one map in the tables.
 struct MapLayout {
-  MapPlan plan;
+  MapSettings settings;
   std::uint32_t words = 0;                         ///< index of its first word
   std::uint32_t lines = 0;                         ///< index of its first pair of beams
   const std::vector<glm::dvec2>* beams = nullptr;  ///< shared by lasers with equal beams
@@ -54,7 +54,7 @@ inline std::uint32_t units_of(std::int64_t cells, std::int64_t unit) {
   return static_cast<std::uint32_t>((cells + unit - 1) / unit);
 }
 
-inline std::uint32_t pairs_of(const MapPlan& plan) { return (plan.samples + 1) / 2; }
+inline std::uint32_t pairs_of(const MapSettings& settings) { return (settings.samples + 1) / 2; }
 
 struct MapBatch::Tables {
   base::ThreadPool& thread_pool;
@@ -78,8 +78,8 @@ struct MapBatch::Tables {
   gpu::Batch batch;
   bool blank = true;  ///< maps are not yet on the device
 
-  Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapPlan> plans, double farthest);
-  void plan(std::vector<MapPlan> plans);
+  Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapSettings> map_settings, double farthest);
+  void lay_out(std::vector<MapSettings> map_settings);
   void assign_layout();
   std::size_t make_dispatch(gpu::Device& device, const char* name, MapDispatch& dispatch,
                             std::span<const std::uint32_t> spirv, std::size_t most_blocks);
@@ -87,7 +87,7 @@ struct MapBatch::Tables {
                   bool has_log_odds);
   void record();
   std::span<std::uint32_t> ends_of(const MapLayout& map) {
-    return std::span(ends).subspan(2 * std::size_t{map.lines}, map.plan.samples);
+    return std::span(ends).subspan(2 * std::size_t{map.lines}, map.settings.samples);
   }
   void trace();
   void assign_blocks();

@@ -40,14 +40,14 @@ struct Layout {
   std::vector<LegendPlace> legend;
 };
 
-Layout lay_out(const maps::GridGeometry& plan, std::span<const LegendItem> legend) {
+Layout lay_out(const maps::GridGeometry& geometry, std::span<const LegendItem> legend) {
   Layout l;
-  const std::int64_t longest = std::max(maps::columns(plan), maps::rows(plan));
+  const std::int64_t longest = std::max(maps::columns(geometry), maps::rows(geometry));
   l.grid = longest <= kMaxWithGrid;
   if (!l.grid) l.scale = std::min(static_cast<double>(kPitch), kLongest / static_cast<double>(longest));
   const double line = l.grid ? 1.0 : 0.0;
-  const double wide = std::ceil(l.scale * static_cast<double>(maps::columns(plan))) + line;
-  const double high = std::ceil(l.scale * static_cast<double>(maps::rows(plan))) + line;
+  const double wide = std::ceil(l.scale * static_cast<double>(maps::columns(geometry))) + line;
+  const double high = std::ceil(l.scale * static_cast<double>(maps::rows(geometry))) + line;
   l.width = std::max(kNarrowest, kLeft + wide + kRight);
   l.low = {std::floor(kLeft + 0.5 * (l.width - kLeft - kRight - wide)), kTop};
   l.high = l.low + glm::dvec2{wide, high};
@@ -73,50 +73,50 @@ std::vector<LegendItem> legend_of(const maps::CellCounts& census, const MapFigur
 
 void draw_cells(Canvas& canvas, const maps::OccupancyGrid& grid, const Layout& l) {
   std::vector<std::uint32_t> pixels;
-  for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
-    for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
+  for (std::int64_t row = 0; row < maps::rows(grid.geometry); ++row)
+    for (std::int64_t column = 0; column < maps::columns(grid.geometry); ++column)
       pixels.push_back(theme::kMapStates[static_cast<std::size_t>(grid.at({column, row}))]);
   const glm::dvec2 line = l.grid ? glm::dvec2{1.0, 1.0} : glm::dvec2{};
   canvas.image(l.low + line, l.high,
-               {static_cast<int>(maps::columns(grid.plan)), static_cast<int>(maps::rows(grid.plan)), pixels});
+               {static_cast<int>(maps::columns(grid.geometry)), static_cast<int>(maps::rows(grid.geometry)), pixels});
   if (!l.grid) return;
   // Single pixels, since lines would be anti-aliased.
   const std::vector<std::uint32_t> line_color{theme::kMapGrid};
-  for (std::int64_t i = 0; i <= maps::columns(grid.plan); ++i) {
+  for (std::int64_t i = 0; i <= maps::columns(grid.geometry); ++i) {
     const double x = l.low.x + kPitch * static_cast<double>(i);
     canvas.image({x, l.low.y}, {x + 1.0, l.high.y}, {1, 1, line_color});
   }
-  for (std::int64_t i = 0; i <= maps::rows(grid.plan); ++i) {
+  for (std::int64_t i = 0; i <= maps::rows(grid.geometry); ++i) {
     const double y = l.low.y + kPitch * static_cast<double>(i);
     canvas.image({l.low.x, y}, {l.high.x, y + 1.0}, {1, 1, line_color});
   }
 }
 
 /// [px] of a point of the world.
-glm::dvec2 pixel(const maps::GridGeometry& plan, const Layout& l, glm::dvec2 p_W) {
-  const double scale = l.scale / plan.cell;
-  return l.low + glm::dvec2{(p_W.x - plan.left) * scale, (plan.top - p_W.y) * scale};
+glm::dvec2 pixel(const maps::GridGeometry& geometry, const Layout& l, glm::dvec2 p_W) {
+  const double scale = l.scale / geometry.cell;
+  return l.low + glm::dvec2{(p_W.x - geometry.left) * scale, (geometry.top - p_W.y) * scale};
 }
 
-void draw_axes(Canvas& canvas, const maps::GridGeometry& plan, const Layout& l) {
+void draw_axes(Canvas& canvas, const maps::GridGeometry& geometry, const Layout& l) {
   TextStyle style = small_text();
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  const double right = plan.left + plan.cell * static_cast<double>(maps::columns(plan));
-  const double bottom = plan.top - plan.cell * static_cast<double>(maps::rows(plan));
-  const double metre = l.scale / plan.cell;  // [px]
-  const Ticks xs = make_ticks(plan.left, right, 110.0 / metre);
+  const double right = geometry.left + geometry.cell * static_cast<double>(maps::columns(geometry));
+  const double bottom = geometry.top - geometry.cell * static_cast<double>(maps::rows(geometry));
+  const double metre = l.scale / geometry.cell;  // [px]
+  const Ticks xs = make_ticks(geometry.left, right, 110.0 / metre);
   for (const double x : xs.at) {
-    const double px = std::floor(pixel(plan, l, {x, 0.0}).x) + 0.5;
+    const double px = std::floor(pixel(geometry, l, {x, 0.0}).x) + 0.5;
     canvas.line({px, l.high.y + 1.0}, {px, l.high.y + 6.0}, theme::kHairline, theme::kFrame);
     canvas.text({px, l.high.y + 10.0}, tick_text(x, xs.decimals), style);
   }
   canvas.text({0.5 * (l.low.x + l.high.x), l.high.y + 36.0}, "x [m]", style);
   style.across = Anchor::end;
   style.down = Anchor::middle;
-  const Ticks ys = make_ticks(bottom, plan.top, 70.0 / metre);
+  const Ticks ys = make_ticks(bottom, geometry.top, 70.0 / metre);
   for (const double y : ys.at) {
-    const double py = std::floor(pixel(plan, l, {0.0, y}).y) + 0.5;
+    const double py = std::floor(pixel(geometry, l, {0.0, y}).y) + 0.5;
     canvas.line({l.low.x - 6.0, py}, {l.low.x - 1.0, py}, theme::kHairline, theme::kFrame);
     canvas.text({l.low.x - 10.0, py}, tick_text(y, ys.decimals), style);
   }
@@ -125,14 +125,14 @@ void draw_axes(Canvas& canvas, const maps::GridGeometry& plan, const Layout& l) 
   canvas.text({l.low.x - 66.0, 0.5 * (l.low.y + l.high.y)}, "y [m]", style);
 }
 
-void draw_places(Canvas& canvas, const maps::GridGeometry& plan, const Layout& l, const MapFigure& figure) {
+void draw_places(Canvas& canvas, const maps::GridGeometry& geometry, const Layout& l, const MapFigure& figure) {
   canvas.clip(
       {static_cast<int>(l.low.x), static_cast<int>(l.low.y), static_cast<int>(l.high.x), static_cast<int>(l.high.y)});
   const std::size_t named = std::min(figure.places.size(), kNamedPlaces);
   for (std::size_t i = 0; i < figure.places.size(); ++i) {
     const base::Pose& X = figure.places[i].X_WR;
     const std::uint32_t color = row_color(1 + std::min(i, named - 1), named + 1);
-    const glm::dvec2 p = pixel(plan, l, {X.x, X.y});
+    const glm::dvec2 p = pixel(geometry, l, {X.x, X.y});
     const glm::dvec2 ahead{std::cos(X.yaw), -std::sin(X.yaw)};
     canvas.disc(p, 9.0, with_opacity(color, 0.55));
     canvas.ring(p, 9.0, theme::kCurve, color);
@@ -146,7 +146,7 @@ void draw_places(Canvas& canvas, const maps::GridGeometry& plan, const Layout& l
 void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& png_path) {
   const maps::CellCounts census = maps::count(grid);
   const std::vector<LegendItem> legend = legend_of(census, figure);
-  const Layout l = lay_out(grid.plan, legend);
+  const Layout l = lay_out(grid.geometry, legend);
   Canvas canvas(static_cast<int>(std::ceil(l.width)), static_cast<int>(std::ceil(l.height)), theme::kWhite);
   TextStyle title;
   title.size = 26;
@@ -156,12 +156,12 @@ void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const st
   const double known = 100.0 * static_cast<double>(census.occupied + census.free) / all;
   canvas.text({kRight, 64.0},
               fmt::format("{}{}{} x {} cells of {:g} m, {:.1f} % explored", figure.subtitle,
-                          figure.subtitle.empty() ? "" : ": ", maps::columns(grid.plan), maps::rows(grid.plan),
-                          grid.plan.cell, known),
+                          figure.subtitle.empty() ? "" : ": ", maps::columns(grid.geometry), maps::rows(grid.geometry),
+                          grid.geometry.cell, known),
               small_text());
   draw_cells(canvas, grid, l);
-  draw_places(canvas, grid.plan, l, figure);
-  draw_axes(canvas, grid.plan, l);
+  draw_places(canvas, grid.geometry, l, figure);
+  draw_axes(canvas, grid.geometry, l);
   draw_legend(canvas, {kRight, l.high.y + kLabels}, legend, l.legend);
   canvas.save_png(png_path);
 }

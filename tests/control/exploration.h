@@ -30,10 +30,10 @@ inline constexpr int kTurns = 48;      ///< headings of each
 /// All poses in the map's rectangle, on a lattice of kStep.
 class Reference {
  public:
-  Reference(const world::World& world, const maps::GridGeometry& plan, glm::dvec2 start, const Looker& looker)
-      : world_(world), plan_(plan), looker_(looker) {
-    wide_ = static_cast<int>(std::lround(static_cast<double>(maps::columns(plan)) * plan.cell / kStep));
-    high_ = static_cast<int>(std::lround(static_cast<double>(maps::rows(plan)) * plan.cell / kStep));
+  Reference(const world::World& world, const maps::GridGeometry& geometry, glm::dvec2 start, const Looker& looker)
+      : world_(world), geometry_(geometry), looker_(looker) {
+    wide_ = static_cast<int>(std::lround(static_cast<double>(maps::columns(geometry)) * geometry.cell / kStep));
+    high_ = static_cast<int>(std::lround(static_cast<double>(maps::rows(geometry)) * geometry.cell / kStep));
     reach(start);
     look_from_everywhere();
     flood(start);
@@ -44,15 +44,15 @@ class Reference {
     std::vector<std::uint8_t> seen(connected_.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const auto at = static_cast<std::int64_t>(i);
-      const maps::CellAt cell{at % maps::columns(plan_), at / maps::columns(plan_)};
-      if (connected_[i] != 0) seen[i] = in_view(maps::middle(plan_, cell)) ? 1 : 0;
+      const maps::CellAt cell{at % maps::columns(geometry_), at / maps::columns(geometry_)};
+      if (connected_[i] != 0) seen[i] = in_view(maps::middle(geometry_, cell)) ? 1 : 0;
     }
     return seen;
   }
 
  private:
   glm::dvec2 place(int column, int row) const {
-    return {plan_.left + (column + 0.5) * kStep, plan_.top - (row + 0.5) * kStep};
+    return {geometry_.left + (column + 0.5) * kStep, geometry_.top - (row + 0.5) * kStep};
   }
   bool clear(glm::dvec2 p) const {
     for (const auto& wall : world_.walls)
@@ -68,8 +68,8 @@ class Reference {
   // Positions of the disc that are connected to the start.
   void reach(glm::dvec2 start) {
     reached_.resize(static_cast<std::size_t>(wide_ * high_));
-    std::vector<int> open{static_cast<int>((plan_.top - start.y) / kStep) * wide_ +
-                          static_cast<int>((start.x - plan_.left) / kStep)};
+    std::vector<int> open{static_cast<int>((geometry_.top - start.y) / kStep) * wide_ +
+                          static_cast<int>((start.x - geometry_.left) / kStep)};
     reached_[static_cast<std::size_t>(open[0])] = 1;
     while (!open.empty()) {
       const int at = open.back();
@@ -94,8 +94,8 @@ class Reference {
       for (int k = 0; k < kTurns; ++k) {
         const double yaw = 2.0 * M_PI * k / kTurns;
         const glm::dvec2 s = p + looker_.ahead * glm::dvec2{std::cos(yaw), std::sin(yaw)};
-        const int column = static_cast<int>((s.x - plan_.left) / kStep),
-                  row = static_cast<int>((plan_.top - s.y) / kStep);
+        const int column = static_cast<int>((s.x - geometry_.left) / kStep),
+                  row = static_cast<int>((geometry_.top - s.y) / kStep);
         if (column < 0 || row < 0 || column >= wide_ || row >= high_) continue;
         auto& headings = headings_[static_cast<std::size_t>(row * wide_ + column)];
         if ((headings >> k & 1u) == 0 && !hidden(p, place(column, row))) headings |= std::uint64_t{1} << k;
@@ -105,16 +105,16 @@ class Reference {
 
   // Cells that a point reaches from the start.
   void flood(glm::dvec2 start) {
-    connected_.resize(static_cast<std::size_t>(maps::columns(plan_) * maps::rows(plan_)));
-    std::vector<maps::CellAt> open{maps::cell_at(plan_, start)};
+    connected_.resize(static_cast<std::size_t>(maps::columns(geometry_) * maps::rows(geometry_)));
+    std::vector<maps::CellAt> open{maps::cell_at(geometry_, start)};
     while (!open.empty()) {
       const maps::CellAt at = open.back();
       open.pop_back();
       for (std::int64_t k = 0; k < 9; ++k) {
         const maps::CellAt next{at.column + k % 3 - 1, at.row + k / 3 - 1};
-        if (!maps::contains(plan_, next)) continue;
-        auto& connected = connected_[static_cast<std::size_t>(next.row * maps::columns(plan_) + next.column)];
-        if (connected != 0 || hidden(maps::middle(plan_, at), maps::middle(plan_, next))) continue;
+        if (!maps::contains(geometry_, next)) continue;
+        auto& connected = connected_[static_cast<std::size_t>(next.row * maps::columns(geometry_) + next.column)];
+        if (connected != 0 || hidden(maps::middle(geometry_, at), maps::middle(geometry_, next))) continue;
         connected = 1;
         open.push_back(next);
       }
@@ -123,7 +123,8 @@ class Reference {
 
   bool in_view(glm::dvec2 m) const {
     const int reach = static_cast<int>(looker_.range / kStep) + 1;
-    const int column = static_cast<int>((m.x - plan_.left) / kStep), row = static_cast<int>((plan_.top - m.y) / kStep);
+    const int column = static_cast<int>((m.x - geometry_.left) / kStep),
+              row = static_cast<int>((geometry_.top - m.y) / kStep);
     for (int r = std::max(0, row - reach); r < std::min(high_, row + reach + 1); ++r) {
       for (int c = std::max(0, column - reach); c < std::min(wide_, column + reach + 1); ++c) {
         const std::uint64_t headings = headings_[static_cast<std::size_t>(r * wide_ + c)];
@@ -144,7 +145,7 @@ class Reference {
   }
 
   const world::World& world_;
-  maps::GridGeometry plan_;
+  maps::GridGeometry geometry_;
   Looker looker_;
   int wide_ = 0, high_ = 0;
   std::vector<std::uint8_t> reached_;

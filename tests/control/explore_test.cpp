@@ -35,10 +35,10 @@ Explored explore(const world::World& world, const exploration::Looker& looker = 
 
   const Pose& X = world.movers[0].X_WM;
   const maps::OccupancyGrid& grid = controller->grid();
-  const auto must = exploration::Reference(world, grid.plan, {X.x, X.y}, looker).seen();
+  const auto must = exploration::Reference(world, grid.geometry, {X.x, X.y}, looker).seen();
   for (std::size_t i = 0; i < must.size(); ++i) {
     const auto at = static_cast<std::int64_t>(i);
-    const maps::CellAt cell{at % maps::columns(grid.plan), at / maps::columns(grid.plan)};
+    const maps::CellAt cell{at % maps::columns(grid.geometry), at / maps::columns(grid.geometry)};
     result.must += must[i];
     result.missed += must[i] != 0 && grid.at(cell) == maps::Cell::unexplored;
   }

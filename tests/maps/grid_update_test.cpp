@@ -13,11 +13,11 @@ namespace sf::maps {
 namespace {
 
 /// Cells of 1 m, 12 x 12, the first at the origin.
-GridGeometry plan() { return {0.0, 12.0, 1.0, 3, 3}; }
+GridGeometry geometry() { return {0.0, 12.0, 1.0, 3, 3}; }
 
 /// One beam along +x of the sensor's frame.
 OccupancyGrid one_beam(const base::Pose& X_WS, double range, double range_max, double range_min = 0.0) {
-  OccupancyGrid grid(plan());
+  OccupancyGrid grid(geometry());
   const std::vector<glm::dvec2> beams = beam_directions(0.0, 1);
   const std::vector<double> ranges{range};
   add_scan(grid, {X_WS, ranges, beams, range_min, range_max});
@@ -61,7 +61,7 @@ TEST(MapRule, HalvesGoAwayFromTheSensor) {
 
 TEST(MapRule, WithinAScanOccupiedBeatsFree) {
   // The end of the first beam lies on the second's line; setting the beams in turn would overwrite it.
-  OccupancyGrid grid(plan());
+  OccupancyGrid grid(geometry());
   const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
   const std::vector<double> ranges{3.0, 5.0};
   add_scan(grid, {{2.5, 9.5, 0, 0}, ranges, beams, 0.0, 8.0});
@@ -96,7 +96,7 @@ TEST(MapRule, FarFromTheOriginTheSameCells) {
     std::vector<double> ranges;
     for (int i = 0; i < 91; ++i) ranges.push_back(chance.below(6 * 64) / 64.0);
     const double far = 131072.0;
-    OccupancyGrid here(plan());
+    OccupancyGrid here(geometry());
     OccupancyGrid there(GridGeometry{far, 12.0 - far, 1.0, 3, 3});
     add_scan(here, {X, ranges, beams, 0.0, 5.0});
     add_scan(there, {{X.x + far, X.y - far, 0, X.yaw}, ranges, beams, 0.0, 5.0});
@@ -150,7 +150,7 @@ TEST(MapRule, BearingsEndExactlyAtTheFieldOfView) {
 }
 
 TEST(LogOdds, EachScanWeighsOnceAndStaysWithinLimits) {
-  LogOddsGrid grid(plan(), {85, 40, 200});
+  LogOddsGrid grid(geometry(), {85, 40, 200});
   // Two beams through the same cells: one miss each.
   const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
   const std::vector<double> ranges{3.0, 3.0};
@@ -159,7 +159,7 @@ TEST(LogOdds, EachScanWeighsOnceAndStaysWithinLimits) {
     add_scan(grid, {{2.5, 9.5, 0, 0}, both, beams, 0.0, 8.0});
   };
   const auto at = [&](std::int64_t column) {
-    const OccupancyGrid shape(plan());
+    const OccupancyGrid shape(geometry());
     return grid.cells[16 * shape.word_of({column, 2}) + OccupancyGrid::shift_of({column, 2}) / 2];
   };
   add(3.0);

@@ -11,27 +11,28 @@
 namespace sf::maps {
 namespace {
 
-GridGeometry plan() { return {-1.8, 1.8, 0.03, 30, 30}; }
+GridGeometry geometry() { return {-1.8, 1.8, 0.03, 30, 30}; }
 
 /// A map whose words encode the number of the map and of the word.
-OccupancyGrid numbered(std::uint32_t map, const GridGeometry& p = plan()) {
+OccupancyGrid numbered(std::uint32_t map, const GridGeometry& p = geometry()) {
   OccupancyGrid grid(p);
   for (std::uint32_t i = 0; i < grid.words.size(); ++i) grid.words[i] = (map * 2654435761u + i) & 0x55555555u;
   return grid;
 }
 
 std::vector<base::Bytes> parts_of(const OccupancyGrid& grid, std::uint32_t flags = 0) {
-  std::vector<base::Bytes> parts(maps::parts_of(grid.plan));
+  std::vector<base::Bytes> parts(maps::parts_of(grid.geometry));
   for (std::uint32_t p = 0; p < parts.size(); ++p)
     put_part(
-        grid.plan, p, flags, [&](std::uint32_t i) { return grid.words[i]; }, parts[p]);
+        grid.geometry, p, flags, [&](std::uint32_t i) { return grid.words[i]; }, parts[p]);
   return parts;
 }
 
 std::vector<base::Bytes> plain_parts(const OccupancyGrid& grid) {
   std::vector<base::Bytes> parts(2);
-  const std::uint32_t half = plain_half(words(grid.plan));
-  parts[0] = {static_cast<std::uint8_t>(grid.plan.word_rows), static_cast<std::uint8_t>(grid.plan.word_columns)};
+  const std::uint32_t half = plain_half(words(grid.geometry));
+  parts[0] = {static_cast<std::uint8_t>(grid.geometry.word_rows),
+              static_cast<std::uint8_t>(grid.geometry.word_columns)};
   for (std::uint32_t i = 0; i < grid.words.size(); ++i) base::ByteWriter(parts[i < half ? 0 : 1]).put(grid.words[i]);
   return parts;
 }
@@ -84,13 +85,13 @@ TEST(MapAssembler, PartsInAnyOrderMakeTheMap) {
   EXPECT_EQ(assembler.map(), nullptr);
   const OccupancyGrid grid = numbered(1);
   const auto parts = parts_of(grid, kTruePoses);
-  EXPECT_EQ(assembler.add_part(7, parts[2]), PartStatus::incomplete);
-  EXPECT_EQ(assembler.add_part(7, parts[0]), PartStatus::incomplete);
-  EXPECT_EQ(assembler.add_part(7, parts[0]), PartStatus::duplicate);
-  EXPECT_EQ(assembler.add_part(7, parts[1]), PartStatus::complete);
-  EXPECT_EQ(assembler.add_part(7, parts[1]), PartStatus::duplicate);
+  EXPECT_EQ(assembler.add_part(7, parts[2]), MapPartStatus::incomplete);
+  EXPECT_EQ(assembler.add_part(7, parts[0]), MapPartStatus::incomplete);
+  EXPECT_EQ(assembler.add_part(7, parts[0]), MapPartStatus::duplicate);
+  EXPECT_EQ(assembler.add_part(7, parts[1]), MapPartStatus::complete);
+  EXPECT_EQ(assembler.add_part(7, parts[1]), MapPartStatus::duplicate);
   EXPECT_EQ(assembler.map()->words, grid.words);
-  EXPECT_EQ(assembler.map()->plan, grid.plan);
+  EXPECT_EQ(assembler.map()->geometry, grid.geometry);
   EXPECT_TRUE(assembler.true_poses());
   EXPECT_EQ(assembler.complete_maps(), 1u);
   EXPECT_EQ(assembler.incomplete_maps(), 0u);
@@ -102,7 +103,7 @@ TEST(MapAssembler, LostPartsKeepTheirOldContent) {
   const auto next = parts_of(numbered(2));
   assembler.add_part(2, next[0]);
   assembler.add_part(2, next[2]);
-  EXPECT_EQ(assembler.add_part(3, parts_of(numbered(3))[0]), PartStatus::incomplete) << "a newer map begins";
+  EXPECT_EQ(assembler.add_part(3, parts_of(numbered(3))[0]), MapPartStatus::incomplete) << "a newer map begins";
   EXPECT_EQ(assembler.incomplete_maps(), 1u);
   EXPECT_EQ(assembler.complete_maps(), 1u);
   EXPECT_EQ(assembler.map()->words[0], numbered(3).words[0]);
@@ -115,8 +116,9 @@ TEST(MapAssembler, LatePartsAreLeftOut) {
   const auto old = parts_of(numbered(1));
   assembler.add_part(1, old[0]);
   for (const base::Bytes& part : parts_of(numbered(2))) assembler.add_part(2, part);
-  EXPECT_EQ(assembler.add_part(1, old[1]), PartStatus::late);
-  EXPECT_EQ(assembler.add_part(1, old[2]), PartStatus::late) << "another of the same old map is no sign of a restart";
+  EXPECT_EQ(assembler.add_part(1, old[1]), MapPartStatus::late);
+  EXPECT_EQ(assembler.add_part(1, old[2]), MapPartStatus::late)
+      << "another of the same old map is no sign of a restart";
   EXPECT_EQ(assembler.map()->words, numbered(2).words);
 }
 
@@ -124,22 +126,22 @@ TEST(MapAssembler, ASenderThatStartsAgainIsBelieved) {
   MapAssembler assembler;
   for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(1000, part);
   const auto again = [&](std::uint32_t sequence) {
-    PartStatus last = PartStatus::faulty;
+    MapPartStatus last = MapPartStatus::faulty;
     for (const base::Bytes& part : parts_of(numbered(50 + sequence))) last = assembler.add_part(sequence, part);
     return last;
   };
-  EXPECT_EQ(again(0), PartStatus::late) << "it could be a late one";
-  EXPECT_EQ(again(1), PartStatus::complete);
-  EXPECT_EQ(again(2), PartStatus::complete);
+  EXPECT_EQ(again(0), MapPartStatus::late) << "it could be a late one";
+  EXPECT_EQ(again(1), MapPartStatus::complete);
+  EXPECT_EQ(again(2), MapPartStatus::complete);
   EXPECT_EQ(assembler.map()->words, numbered(52).words);
 }
 
 TEST(MapAssembler, CountersWrap) {
   MapAssembler assembler;
   for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(0xFFFFFFFFu, part);
-  PartStatus last = PartStatus::faulty;
+  MapPartStatus last = MapPartStatus::faulty;
   for (const base::Bytes& part : parts_of(numbered(2))) last = assembler.add_part(0, part);
-  EXPECT_EQ(last, PartStatus::complete);
+  EXPECT_EQ(last, MapPartStatus::complete);
 }
 
 /// Of two numbers half of the range apart, neither is newer.
@@ -149,19 +151,19 @@ TEST(MapAssembler, HalfWayRoundIsNotNewer) {
     for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(first, part);
     return assembler.add_part(next, parts_of(numbered(2))[0]);
   };
-  EXPECT_EQ(after(5, 5 + 0x7FFFFFFFu), PartStatus::incomplete);  // the largest lead
-  EXPECT_EQ(after(5, 5 + 0x80000000u), PartStatus::late);
-  EXPECT_EQ(after(5 + 0x80000000u, 5), PartStatus::late);
-  EXPECT_EQ(after(5, 4), PartStatus::late);
+  EXPECT_EQ(after(5, 5 + 0x7FFFFFFFu), MapPartStatus::incomplete);  // the largest lead
+  EXPECT_EQ(after(5, 5 + 0x80000000u), MapPartStatus::late);
+  EXPECT_EQ(after(5 + 0x80000000u, 5), MapPartStatus::late);
+  EXPECT_EQ(after(5, 4), MapPartStatus::late);
 }
 
 TEST(MapAssembler, AMapThatChangesItsPlanBeginsAnew) {
   MapAssembler assembler;
   for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(1, part);
-  GridGeometry other = plan();
+  GridGeometry other = geometry();
   other.word_rows = 2;
-  EXPECT_EQ(assembler.add_part(1, parts_of(numbered(2, other))[0]), PartStatus::contradicts);
-  EXPECT_EQ(assembler.add_part(2, parts_of(numbered(2, other))[0]), PartStatus::complete);
+  EXPECT_EQ(assembler.add_part(1, parts_of(numbered(2, other))[0]), MapPartStatus::contradicts);
+  EXPECT_EQ(assembler.add_part(2, parts_of(numbered(2, other))[0]), MapPartStatus::complete);
   EXPECT_EQ(assembler.map()->words.size(), 60u);
 }
 
@@ -169,19 +171,19 @@ TEST(MapAssembler, TheThesisFormInTwoDatagrams) {
   MapAssembler assembler;
   const OccupancyGrid grid = numbered(4);
   const auto parts = plain_parts(grid);
-  EXPECT_EQ(assembler.add_plain_part(parts[1]), PartStatus::orphan) << "whose half is it?";
-  EXPECT_EQ(assembler.add_plain_part(parts[0]), PartStatus::incomplete);
-  EXPECT_EQ(assembler.add_plain_part(parts[1]), PartStatus::complete);
+  EXPECT_EQ(assembler.add_plain_part(parts[1]), MapPartStatus::orphan) << "whose half is it?";
+  EXPECT_EQ(assembler.add_plain_part(parts[0]), MapPartStatus::incomplete);
+  EXPECT_EQ(assembler.add_plain_part(parts[1]), MapPartStatus::complete);
   EXPECT_EQ(assembler.map()->words, grid.words);
-  EXPECT_EQ(assembler.add_plain_part(parts[1]), PartStatus::duplicate);
-  GridGeometry odd = plan();
+  EXPECT_EQ(assembler.add_plain_part(parts[1]), MapPartStatus::duplicate);
+  GridGeometry odd = geometry();
   odd.word_columns = 3;
   odd.word_rows = 5;
   for (const base::Bytes& part : plain_parts(numbered(5, odd))) assembler.add_plain_part(part);
   EXPECT_EQ(assembler.map()->words, numbered(5, odd).words) << "8 words and 7";
-  GridGeometry one = plan();
+  GridGeometry one = geometry();
   one.word_columns = one.word_rows = 1;
-  EXPECT_EQ(assembler.add_plain_part(plain_parts(numbered(6, one))[0]), PartStatus::complete)
+  EXPECT_EQ(assembler.add_plain_part(plain_parts(numbered(6, one))[0]), MapPartStatus::complete)
       << "one word is all in the first";
 }
 
@@ -199,12 +201,12 @@ TEST(MapAssembler, AnyBytesAndAnyNetwork) {
     if (harm == 1)
       for (int flips = 0; flips < 3; ++flips)
         bytes[chance.below(40)] ^= static_cast<std::uint8_t>(1u << chance.below(8));
-    const PartStatus taken = assembler.add_part(chance.below(6), bytes);
-    used += taken == PartStatus::incomplete || taken == PartStatus::complete;
+    const MapPartStatus taken = assembler.add_part(chance.below(6), bytes);
+    used += taken == MapPartStatus::incomplete || taken == MapPartStatus::complete;
     plain.add_plain_part(bytes);
     for (const MapAssembler* a : {&assembler, &plain}) {
       if (a->map() == nullptr) continue;
-      ASSERT_TRUE(a == &plain || is_valid(a->map()->plan));
+      ASSERT_TRUE(a == &plain || is_valid(a->map()->geometry));
       ASSERT_LE(a->map()->words.size(), std::size_t{kMaxWords});
     }
   }

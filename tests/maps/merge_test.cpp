@@ -10,24 +10,24 @@
 namespace sf::maps {
 namespace {
 
-OccupancyGrid filled(const GridGeometry& plan, std::uint64_t seed) {
+OccupancyGrid filled(const GridGeometry& geometry, std::uint64_t seed) {
   trial::Chance chance(seed);
-  OccupancyGrid grid(plan);
-  for (std::int64_t row = 0; row < rows(plan); ++row)
-    for (std::int64_t column = 0; column < columns(plan); ++column)
+  OccupancyGrid grid(geometry);
+  for (std::int64_t row = 0; row < rows(geometry); ++row)
+    for (std::int64_t column = 0; column < columns(geometry); ++column)
       grid.set({column, row}, static_cast<Cell>(chance.below(3)));
   return grid;
 }
 
 Cell at_point(const OccupancyGrid& grid, glm::dvec2 p) {
-  const CellAt at = cell_at(grid.plan, p);
-  return contains(grid.plan, at) ? grid.at(at) : Cell::unexplored;
+  const CellAt at = cell_at(grid.geometry, p);
+  return contains(grid.geometry, at) ? grid.at(at) : Cell::unexplored;
 }
 
 TEST(Merge, OneMapStaysWhatItIs) {
   const OccupancyGrid grid = filled({-1.2, 3.4, 0.5, 3, 2}, 1);
   const OccupancyGrid* const one[] = {&grid};
-  EXPECT_EQ(merge(one).plan, grid.plan);
+  EXPECT_EQ(merge(one).geometry, grid.geometry);
   EXPECT_EQ(merge(one).words, grid.words);
 }
 
@@ -45,9 +45,9 @@ TEST(Merge, EveryCellIsThatOfItsMaps) {
     const OccupancyGrid careful = merge(all, MergePolicy::occupied);
     const OccupancyGrid newest = merge(all, MergePolicy::newest);
     CellCounts seen;
-    for (std::int64_t row = 0; row < rows(careful.plan); ++row)
-      for (std::int64_t column = 0; column < columns(careful.plan); ++column) {
-        const glm::dvec2 p = middle(careful.plan, {column, row});
+    for (std::int64_t row = 0; row < rows(careful.geometry); ++row)
+      for (std::int64_t column = 0; column < columns(careful.geometry); ++column) {
+        const glm::dvec2 p = middle(careful.geometry, {column, row});
         bool occupied = false;
         Cell last = Cell::unexplored;
         for (const OccupancyGrid* grid : all) {
@@ -62,8 +62,8 @@ TEST(Merge, EveryCellIsThatOfItsMaps) {
     const CellCounts own = count(careful);
     EXPECT_EQ(own.free + own.occupied, seen.free);
     for (const OccupancyGrid* grid : all) {
-      EXPECT_LE(careful.plan.left, grid->plan.left);
-      EXPECT_GE(careful.plan.top, grid->plan.top);
+      EXPECT_LE(careful.geometry.left, grid->geometry.left);
+      EXPECT_GE(careful.geometry.top, grid->geometry.top);
     }
   }
 }

@@ -42,17 +42,17 @@ TEST(Coverage, IsNeverRoundedUpToAll) {
 /// Other cells would be offset from the explorer's by part of a cell, and could be unknown to it.
 TEST(Coverage, ItsCellsAreTheExplorers) {
   const world::World world = mapping_world();
-  EXPECT_EQ(RobotMap(world, 0).grid().plan, control::grid_around(world));
+  EXPECT_EQ(RobotMap(world, 0).grid().geometry, control::grid_around(world));
 }
 
 /// Rounding of a line may free a cell whose centre is within a wall; such cells are not required.
 TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
   const world::World world = mapping_world();
   const RobotMap map(world, 0);
-  const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().plan);
-  for (std::int64_t row = 0; row < maps::rows(seen.plan); ++row)
-    for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
-      const glm::dvec2 p = maps::middle(seen.plan, {column, row});
+  const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().geometry);
+  for (std::int64_t row = 0; row < maps::rows(seen.geometry); ++row)
+    for (std::int64_t column = 0; column < maps::columns(seen.geometry); ++column) {
+      const glm::dvec2 p = maps::middle(seen.geometry, {column, row});
       const bool in_box = std::abs(p.x + 0.65) < 0.249 && std::abs(p.y - 0.75) < 0.249;
       const bool in_wall = std::max(std::abs(p.x), std::abs(p.y)) > 1.501;
       EXPECT_FALSE((in_box || in_wall) && seen.at({column, row}) == Cell::free) << p.x << " " << p.y;
@@ -63,14 +63,14 @@ TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
 TEST(Coverage, TheVisibleAreaIsTheRoom) {
   const world::World world = mapping_world();
   const RobotMap map(world, 0);
-  const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().plan);
+  const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().geometry);
   double area = 0.0;
-  for (std::int64_t row = 0; row < maps::rows(seen.plan); ++row)
-    for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
+  for (std::int64_t row = 0; row < maps::rows(seen.geometry); ++row)
+    for (std::int64_t column = 0; column < maps::columns(seen.geometry); ++column) {
       if (seen.at({column, row}) != Cell::free) continue;
-      const glm::dvec2 p = maps::middle(seen.plan, {column, row});
+      const glm::dvec2 p = maps::middle(seen.geometry, {column, row});
       EXPECT_LT(std::max(std::abs(p.x), std::abs(p.y)), 1.53) << p.x << " " << p.y;
-      area += seen.plan.cell * seen.plan.cell;
+      area += seen.geometry.cell * seen.geometry.cell;
     }
   EXPECT_NEAR(area, 9.0 - 3 * 0.25 - 0.013, 0.25);
 }
@@ -83,9 +83,9 @@ TEST(Coverage, StopsAtWalls) {
   world.walls.push_back(wall);
   world::update_extent_and_hash(world);
   const RobotMap map(world, 0);
-  const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().plan);
-  for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
-    const maps::CellAt north = maps::cell_at(seen.plan, {maps::middle(seen.plan, {column, 0}).x, 0.2});
+  const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().geometry);
+  for (std::int64_t column = 0; column < maps::columns(seen.geometry); ++column) {
+    const maps::CellAt north = maps::cell_at(seen.geometry, {maps::middle(seen.geometry, {column, 0}).x, 0.2});
     EXPECT_NE(seen.at(north), Cell::free) << column;
   }
 }

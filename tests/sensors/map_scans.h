@@ -12,33 +12,33 @@
 namespace sf::trial {
 
 /// Valid and invalid ranges: irregular walls, no return, zero, beyond range_max, NaN.
-inline std::vector<double> odd_ranges(Chance& chance, const sensors::MapPlan& plan) {
+inline std::vector<double> odd_ranges(Chance& chance, const sensors::MapSettings& settings) {
   std::vector<double> ranges;
-  double wall = chance.between(0.0, 1.2 * plan.range_max);
-  for (std::uint32_t k = 0; k < plan.samples; ++k) {
-    if (chance.below(12) == 0) wall = chance.between(0.0, 1.2 * plan.range_max);
-    wall += chance.between(-0.01, 0.01) * plan.range_max;
+  double wall = chance.between(0.0, 1.2 * settings.range_max);
+  for (std::uint32_t k = 0; k < settings.samples; ++k) {
+    if (chance.below(12) == 0) wall = chance.between(0.0, 1.2 * settings.range_max);
+    wall += chance.between(-0.01, 0.01) * settings.range_max;
     const std::uint32_t odd = chance.below(60);
     ranges.push_back(odd == 0   ? std::nan("")
                      : odd == 1 ? std::numeric_limits<double>::infinity()
                      : odd == 2 ? 0.0
                      : odd == 3 ? -0.3
-                     : odd == 4 ? plan.range_min
-                                : std::clamp(wall, 0.0, plan.range_max));
+                     : odd == 4 ? settings.range_min
+                                : std::clamp(wall, 0.0, settings.range_max));
   }
   return ranges;
 }
 
 /// A robot's pose: anywhere on the map, or up to a range beside it.
-inline base::Pose odd_pose(Chance& chance, const sensors::MapPlan& plan) {
-  const double wide = plan.grid.cell * static_cast<double>(maps::columns(plan.grid));
-  const double high = plan.grid.cell * static_cast<double>(maps::rows(plan.grid));
-  const double reach = chance.below(3) == 0 ? plan.range_max : 0.0;
-  base::Pose X{plan.grid.left + chance.between(-reach, wide + reach),
-               plan.grid.top - chance.between(-reach, high + reach), 0.0, chance.between(-10.0, 10.0)};
+inline base::Pose odd_pose(Chance& chance, const sensors::MapSettings& settings) {
+  const double wide = settings.grid.cell * static_cast<double>(maps::columns(settings.grid));
+  const double high = settings.grid.cell * static_cast<double>(maps::rows(settings.grid));
+  const double reach = chance.below(3) == 0 ? settings.range_max : 0.0;
+  base::Pose X{settings.grid.left + chance.between(-reach, wide + reach),
+               settings.grid.top - chance.between(-reach, high + reach), 0.0, chance.between(-10.0, 10.0)};
   // Occasionally on a cell's corner, facing along its sides.
-  if (chance.below(8) == 0) X.x = plan.grid.left + plan.grid.cell * chance.below(100);
-  if (chance.below(8) == 0) X.y = plan.grid.top - plan.grid.cell * chance.below(100);
+  if (chance.below(8) == 0) X.x = settings.grid.left + settings.grid.cell * chance.below(100);
+  if (chance.below(8) == 0) X.y = settings.grid.top - settings.grid.cell * chance.below(100);
   if (chance.below(8) == 0) X.yaw = 0.25 * M_PI * chance.below(8);
   return X;
 }
@@ -46,25 +46,25 @@ inline base::Pose odd_pose(Chance& chance, const sensors::MapPlan& plan) {
 /// The reference: the update rule itself.
 class PlainMaps {
  public:
-  explicit PlainMaps(const std::vector<sensors::MapPlan>& plans) : plans_(plans) {
-    for (const sensors::MapPlan& plan : plans) {
-      grids_.emplace_back(plan.grid);
-      odds_.emplace_back(plan.grid, plan.odds.value_or(maps::LogOddsUpdate{}));
-      beams_.push_back(maps::beam_directions(plan.fov, plan.samples));
+  explicit PlainMaps(const std::vector<sensors::MapSettings>& map_settings) : map_settings_(map_settings) {
+    for (const sensors::MapSettings& settings : map_settings) {
+      grids_.emplace_back(settings.grid);
+      odds_.emplace_back(settings.grid, settings.odds.value_or(maps::LogOddsUpdate{}));
+      beams_.push_back(maps::beam_directions(settings.fov, settings.samples));
     }
   }
   void update(const sensors::MapScan& scan) {
-    const sensors::MapPlan& plan = plans_[scan.map];
-    const maps::ScanView view{scan.X_WS, scan.ranges, beams_[scan.map], plan.range_min, plan.range_max};
-    if (plan.odds) maps::add_scan(odds_[scan.map], view);
-    if (!plan.odds) maps::add_scan(grids_[scan.map], view);
+    const sensors::MapSettings& settings = map_settings_[scan.map];
+    const maps::ScanView view{scan.X_WS, scan.ranges, beams_[scan.map], settings.range_min, settings.range_max};
+    if (settings.odds) maps::add_scan(odds_[scan.map], view);
+    if (!settings.odds) maps::add_scan(grids_[scan.map], view);
   }
   std::vector<std::uint32_t> words(std::uint32_t map) const {
-    return plans_[map].odds ? maps::to_occupancy(odds_[map]).words : grids_[map].words;
+    return map_settings_[map].odds ? maps::to_occupancy(odds_[map]).words : grids_[map].words;
   }
 
  private:
-  std::vector<sensors::MapPlan> plans_;
+  std::vector<sensors::MapSettings> map_settings_;
   std::vector<maps::OccupancyGrid> grids_;
   std::vector<maps::LogOddsGrid> odds_;
   std::vector<std::vector<glm::dvec2>> beams_;

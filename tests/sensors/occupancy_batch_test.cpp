@@ -16,9 +16,9 @@ gpu::Device& device() {
   return device;
 }
 
-sensors::MapPlan plan(double fov, std::uint32_t samples, double range_max, double cell = 0.03,
-                      glm::dvec2 corner = {0.0, 0.0}) {
-  sensors::MapPlan p;
+sensors::MapSettings map_of(double fov, std::uint32_t samples, double range_max, double cell = 0.03,
+                            glm::dvec2 corner = {0.0, 0.0}) {
+  sensors::MapSettings p;
   p.grid = {corner.x, corner.y, cell, 30, 30};
   p.fov = fov;
   p.samples = samples;
@@ -36,20 +36,21 @@ struct Tally {
 
 /// `rounds` scans into every map, or each time into `some` of them, in both orders; all maps are compared after each
 /// `every`-th scan.
-Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, std::size_t every, std::uint64_t seed,
-              bool some = false, double farthest = maps::kMaxRangeCells) {
+Tally contest(const std::vector<sensors::MapSettings>& map_settings, std::size_t rounds, std::size_t every,
+              std::uint64_t seed, bool some = false, double farthest = maps::kMaxRangeCells) {
   base::ThreadPool thread_pool;
-  sensors::MapBatch batch(device(), thread_pool, plans, farthest);
-  PlainMaps plain(plans);
+  sensors::MapBatch batch(device(), thread_pool, map_settings, farthest);
+  PlainMaps plain(map_settings);
   Chance chance(seed);
   std::vector<std::uint32_t> wanted;
-  for (std::uint32_t i = 0; i < plans.size(); ++i) wanted.push_back(i);
+  for (std::uint32_t i = 0; i < map_settings.size(); ++i) wanted.push_back(i);
   Tally tally;
   for (std::size_t round = 1; round <= rounds; ++round) {
     std::vector<std::vector<double>> ranges;
     std::vector<sensors::MapScan> scans;
-    for (const sensors::MapPlan& p : plans) ranges.push_back(odd_ranges(chance, p));
-    for (std::uint32_t i = 0; i < plans.size(); ++i) scans.push_back({i, odd_pose(chance, plans[i]), ranges[i]});
+    for (const sensors::MapSettings& p : map_settings) ranges.push_back(odd_ranges(chance, p));
+    for (std::uint32_t i = 0; i < map_settings.size(); ++i)
+      scans.push_back({i, odd_pose(chance, map_settings[i]), ranges[i]});
     if (some) {
       std::erase_if(scans, [&](const sensors::MapScan&) { return chance.below(4) != 0; });
       if (round % 2 == 0) std::reverse(scans.begin(), scans.end());
@@ -58,7 +59,7 @@ Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, st
     for (const sensors::MapScan& scan : scans) plain.update(scan);
     tally.scans += scans.size();
     if (round % every != 0) continue;
-    for (std::uint32_t i = 0; i < plans.size(); ++i) {
+    for (std::uint32_t i = 0; i < map_settings.size(); ++i) {
       const auto right = plain.words(i);
       for (std::size_t w = 0; w < right.size(); ++w) {
         tally.different += right[w] != batch.words(i)[w];
@@ -73,22 +74,22 @@ Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, st
   return tally;
 }
 
-/// Many maps of one plan, here and 100 km away.
-std::vector<sensors::MapPlan> spread(const sensors::MapPlan& kind, std::size_t count) {
-  std::vector<sensors::MapPlan> plans;
+/// Many maps of equal settings, here and 100 km away.
+std::vector<sensors::MapSettings> spread(const sensors::MapSettings& kind, std::size_t count) {
+  std::vector<sensors::MapSettings> map_settings;
   Chance chance(count);
   for (std::size_t i = 0; i < count; ++i) {
-    sensors::MapPlan p = kind;
+    sensors::MapSettings p = kind;
     const double far = i % 3 == 2 ? 1e5 : 1.0;
     p.grid.left = chance.between(-far, far);
     p.grid.top = chance.between(-far, far);
-    plans.push_back(p);
+    map_settings.push_back(p);
   }
-  return plans;
+  return map_settings;
 }
 
 TEST(OccupancyBatch, AgreesWithTheRuleOnTheThesisLaser) {
-  const Tally tally = contest(spread(plan(M_PI, 361, 0.75), 50), 40, 5, 1);
+  const Tally tally = contest(spread(map_of(M_PI, 361, 0.75), 50), 40, 5, 1);
   EXPECT_EQ(tally.different, 0u);
   EXPECT_EQ(tally.scans, 2'000u);
   EXPECT_GT(tally.occupied, 20'000u) << "the scans say something";
@@ -97,20 +98,20 @@ TEST(OccupancyBatch, AgreesWithTheRuleOnTheThesisLaser) {
 }
 
 TEST(OccupancyBatch, AgreesWithTheRuleOnOtherLasers) {
-  const std::vector<sensors::MapPlan> kinds{
-      plan(2.0 * M_PI, 720, 2.0),         // all round: candidates wrap at the rear
-      plan(2.0 * M_PI, 7, 3.0),           // few beams, far apart
-      plan(1.9 * M_PI, 100, 1.5),         // a gap at the rear
-      plan(M_PI / 6, 61, 4.0),            // longer than the map
-      plan(0.0, 1, 3.0),                  // one beam
-      plan(0.0, 5, 3.0),                  // five parallel beams
-      plan(1e-9, 9, 3.0),                 // nearly parallel
-      plan(M_PI, 181, 8.0, 0.5),          // coarse cells
-      plan(1.5 * M_PI, 2000, 30.0, 0.1),  // dense and far, beyond the map
-      plan(M_PI, 361, 0.02),              // within one cell
+  const std::vector<sensors::MapSettings> kinds{
+      map_of(2.0 * M_PI, 720, 2.0),         // all round: candidates wrap at the rear
+      map_of(2.0 * M_PI, 7, 3.0),           // few beams, far apart
+      map_of(1.9 * M_PI, 100, 1.5),         // a gap at the rear
+      map_of(M_PI / 6, 61, 4.0),            // longer than the map
+      map_of(0.0, 1, 3.0),                  // one beam
+      map_of(0.0, 5, 3.0),                  // five parallel beams
+      map_of(1e-9, 9, 3.0),                 // nearly parallel
+      map_of(M_PI, 181, 8.0, 0.5),          // coarse cells
+      map_of(1.5 * M_PI, 2000, 30.0, 0.1),  // dense and far, beyond the map
+      map_of(M_PI, 361, 0.02),              // within one cell
   };
   std::uint64_t seed = 10;
-  for (const sensors::MapPlan& kind : kinds) {
+  for (const sensors::MapSettings& kind : kinds) {
     const Tally tally = contest(spread(kind, 12), 12, 4, ++seed);
     EXPECT_EQ(tally.different, 0u) << "fov " << kind.fov << ", " << kind.samples << " beams, " << kind.range_max
                                    << " m";
@@ -119,19 +120,19 @@ TEST(OccupancyBatch, AgreesWithTheRuleOnOtherLasers) {
 }
 
 TEST(OccupancyBatch, AgreesWithTheRuleWhereLasersAreBlindNearby) {
-  sensors::MapPlan kind = plan(M_PI, 181, 1.5);
+  sensors::MapSettings kind = map_of(M_PI, 181, 1.5);
   kind.range_min = 0.2;
   EXPECT_EQ(contest(spread(kind, 20), 10, 2, 30).different, 0u);
 }
 
 TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
-  std::vector<sensors::MapPlan> plans = spread(plan(M_PI, 181, 1.2), 24);
-  for (std::size_t i = 0; i < plans.size(); i += 2) plans[i].odds = maps::LogOddsUpdate{};
-  plans[0].odds = maps::LogOddsUpdate{32767, 32767, 32767};  // the largest
-  plans[2].odds = maps::LogOddsUpdate{1, 1, 1};              // the smallest
-  plans[4].odds = maps::LogOddsUpdate{0, 3, 20};             // never occupied
+  std::vector<sensors::MapSettings> map_settings = spread(map_of(M_PI, 181, 1.2), 24);
+  for (std::size_t i = 0; i < map_settings.size(); i += 2) map_settings[i].odds = maps::LogOddsUpdate{};
+  map_settings[0].odds = maps::LogOddsUpdate{32767, 32767, 32767};  // the largest
+  map_settings[2].odds = maps::LogOddsUpdate{1, 1, 1};              // the smallest
+  map_settings[4].odds = maps::LogOddsUpdate{0, 3, 20};             // never occupied
   for (const double farthest : {0.0, 1e3}) {
-    const Tally tally = contest(plans, 25, 1, 40, false, farthest);
+    const Tally tally = contest(map_settings, 25, 1, 40, false, farthest);
     EXPECT_EQ(tally.different, 0u) << (farthest > 0.0 ? "on the device" : "on the host");
     EXPECT_GT(tally.occupied, 1'000u);
   }
@@ -139,29 +140,30 @@ TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
 
 TEST(OccupancyBatch, TheFarthestEndsAreStillRight) {
   // 1022 cells: the longest lines, with the smallest differences between cells.
-  sensors::MapPlan kind = plan(2.0 * M_PI, 97, 1'022 * 0.01, 0.01);
+  sensors::MapSettings kind = map_of(2.0 * M_PI, 97, 1'022 * 0.01, 0.01);
   kind.grid.word_columns = kind.grid.word_rows = 300;
   EXPECT_EQ(contest(spread(kind, 4), 8, 2, 50).different, 0u);
 }
 
 TEST(OccupancyBatch, MapsOfDifferentShapes) {
-  std::vector<sensors::MapPlan> plans;
+  std::vector<sensors::MapSettings> map_settings;
   Chance chance(60);
   for (int i = 0; i < 30; ++i) {
-    sensors::MapPlan p = plan(chance.between(0.1, 6.2), 1 + chance.below(400), chance.between(0.1, 3.0),
-                              chance.between(0.01, 0.3), chance.in_square(50.0));
+    sensors::MapSettings p = map_of(chance.between(0.1, 6.2), 1 + chance.below(400), chance.between(0.1, 3.0),
+                                    chance.between(0.01, 0.3), chance.in_square(50.0));
     p.grid.word_columns = 1 + chance.below(40);
     p.grid.word_rows = 1 + chance.below(40);
-    plans.push_back(p);
+    map_settings.push_back(p);
   }
-  EXPECT_EQ(contest(plans, 10, 1, 61).different, 0u);
-  EXPECT_EQ(contest(plans, 10, 1, 61, true, 20.0).different, 0u) << "some on the host";
+  EXPECT_EQ(contest(map_settings, 10, 1, 61).different, 0u);
+  EXPECT_EQ(contest(map_settings, 10, 1, 61, true, 20.0).different, 0u) << "some on the host";
 }
 
 TEST(OccupancyBatch, AFewMapsAtATimeInAnyOrder) {
-  std::vector<sensors::MapPlan> plans = spread(plan(M_PI, 61, 1.5), 12);
-  for (std::size_t i = 0; i < plans.size(); ++i) plans[i].samples = 30 + 7 * static_cast<std::uint32_t>(i);
-  const Tally tally = contest(plans, 40, 1, 70, true);
+  std::vector<sensors::MapSettings> map_settings = spread(map_of(M_PI, 61, 1.5), 12);
+  for (std::size_t i = 0; i < map_settings.size(); ++i)
+    map_settings[i].samples = 30 + 7 * static_cast<std::uint32_t>(i);
+  const Tally tally = contest(map_settings, 40, 1, 70, true);
   EXPECT_EQ(tally.different, 0u);
   EXPECT_GT(tally.scans, 60u);
   EXPECT_LT(tally.scans, 200u) << "most stay as they are";
@@ -170,7 +172,7 @@ TEST(OccupancyBatch, AFewMapsAtATimeInAnyOrder) {
 
 TEST(OccupancyBatch, ScansThatSayNothingChangeNothing) {
   base::ThreadPool thread_pool(2);
-  sensors::MapBatch batch(device(), thread_pool, {plan(M_PI, 3, 1.0), plan(M_PI, 3, 1.0)});
+  sensors::MapBatch batch(device(), thread_pool, {map_of(M_PI, 3, 1.0), map_of(M_PI, 3, 1.0)});
   const double nan = std::nan("");
   const std::vector<double> silent{nan, -1.0, nan};
   const std::vector<double> loud{1.0, 0.5, 1.0};
@@ -188,7 +190,7 @@ TEST(OccupancyBatch, ScansThatSayNothingChangeNothing) {
 TEST(OccupancyBatch, OneScanCellByCell) {
   // Cells of 1 m, the sensor in the middle of cell (10, 10). The beam ahead hits at 3 m; one beam to each side has no
   // return within 4 m.
-  sensors::MapPlan p = plan(M_PI, 3, 4.0, 1.0, {0.0, 40.0});
+  sensors::MapSettings p = map_of(M_PI, 3, 4.0, 1.0, {0.0, 40.0});
   p.grid.word_columns = p.grid.word_rows = 10;
   base::ThreadPool thread_pool(1);
   sensors::MapBatch batch(device(), thread_pool, {p});

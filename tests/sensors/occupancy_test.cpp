@@ -64,25 +64,25 @@ TEST(OccupancySettings, Defaults) {
   const sensors::Occupancy map = only(world);
   EXPECT_EQ(map.row.rate, 1.0);
   EXPECT_EQ(map.row.elements, 900u);
-  EXPECT_EQ(map.plan.grid.cell, 0.03);
-  EXPECT_FALSE(map.plan.odds);
-  EXPECT_EQ(map.plan.samples, 181u);
-  EXPECT_EQ(map.plan.range_max, 0.75);
+  EXPECT_EQ(map.settings.grid.cell, 0.03);
+  EXPECT_FALSE(map.settings.odds);
+  EXPECT_EQ(map.settings.samples, 181u);
+  EXPECT_EQ(map.settings.range_max, 0.75);
   const base::Pose& X = world.movers[0].X_WM;
-  EXPECT_NEAR(map.plan.grid.left + 1.8, X.x, 0.0151) << "centred, to the cell";
-  EXPECT_NEAR(map.plan.grid.top - 1.8, X.y, 0.0151);
-  EXPECT_NEAR(std::remainder(map.plan.grid.left, 0.03), 0.0, 1e-9) << "on a lattice that all such maps share";
+  EXPECT_NEAR(map.settings.grid.left + 1.8, X.x, 0.0151) << "centred, to the cell";
+  EXPECT_NEAR(map.settings.grid.top - 1.8, X.y, 0.0151);
+  EXPECT_NEAR(std::remainder(map.settings.grid.left, 0.03), 0.0, 1e-9) << "on a lattice that all such maps share";
 }
 
 TEST(OccupancySettings, AsWritten) {
   const sensors::Occupancy map =
       only(mapped(1, {numbers("cell", {0.05}), numbers("words", {20, 10}), numbers("offset", {0.25, -1.75}),
                       numbers("rate", {2}), numbers("log_odds", {70, 30, 500}), text("laser", "laser")}));
-  EXPECT_EQ(map.plan.grid, (maps::GridGeometry{-0.25, 1.75, 0.05, 20, 10})) << "the thesis' offset";
+  EXPECT_EQ(map.settings.grid, (maps::GridGeometry{-0.25, 1.75, 0.05, 20, 10})) << "the thesis' offset";
   EXPECT_EQ(map.row.rate, 2.0);
-  EXPECT_EQ(*map.plan.odds, (maps::LogOddsUpdate{70, 30, 500}));
-  EXPECT_EQ(*only(mapped(1, {numbers("log_odds", {1})})).plan.odds, maps::LogOddsUpdate{});
-  EXPECT_FALSE(only(mapped(1, {numbers("log_odds", {0})})).plan.odds);
+  EXPECT_EQ(*map.settings.odds, (maps::LogOddsUpdate{70, 30, 500}));
+  EXPECT_EQ(*only(mapped(1, {numbers("log_odds", {1})})).settings.odds, maps::LogOddsUpdate{});
+  EXPECT_FALSE(only(mapped(1, {numbers("log_odds", {0})})).settings.odds);
 }
 
 TEST(OccupancySettings, WrongSettingsAreRefused) {
@@ -123,9 +123,9 @@ std::size_t compare_run(const world::World& world, int ticks) {
   farm::Farm farm(world, device());
   farm.subscribe_all();
   const auto all = sensors::occupancies_of(world);
-  std::vector<sensors::MapPlan> plans;
-  for (const sensors::Occupancy& map : all) plans.push_back(map.plan);
-  PlainMaps plain(plans);
+  std::vector<sensors::MapSettings> map_settings;
+  for (const sensors::Occupancy& map : all) map_settings.push_back(map.settings);
+  PlainMaps plain(map_settings);
   std::size_t compared = 0;
   for (int k = 0; k < ticks; ++k) {
     const auto readings = farm.tick(k * 100'000'000ll, reports_at(world, k));
@@ -137,8 +137,8 @@ std::size_t compare_run(const world::World& world, int ticks) {
       if (r.kind != sensors::kOccupancy) continue;
       const auto right = plain.words(r.mover);
       EXPECT_EQ(std::vector<double>(right.begin(), right.end()), std::vector<double>(r.values.begin(), r.values.end()));
-      EXPECT_EQ(r.X_WS.x, all[r.mover].plan.grid.left);
-      EXPECT_EQ(r.X_WS.y, all[r.mover].plan.grid.top);
+      EXPECT_EQ(r.X_WS.x, all[r.mover].settings.grid.left);
+      EXPECT_EQ(r.X_WS.y, all[r.mover].settings.grid.top);
       EXPECT_EQ(r.flags, maps::kTruePoses);
       ++compared;
     }

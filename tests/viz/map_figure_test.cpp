@@ -18,8 +18,8 @@ std::string out(const std::string& name) { return scenes::own_file(name); }
 /// All cells in turn unexplored, occupied, free.
 maps::OccupancyGrid striped(std::uint32_t columns, std::uint32_t rows) {
   maps::OccupancyGrid grid(maps::GridGeometry{-1.0, 2.0, 0.1, columns, rows});
-  for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
-    for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
+  for (std::int64_t row = 0; row < maps::rows(grid.geometry); ++row)
+    for (std::int64_t column = 0; column < maps::columns(grid.geometry); ++column)
       grid.set({column, row}, static_cast<maps::Cell>((row + column) % 3));
   return grid;
 }
