@@ -45,19 +45,19 @@ int list_all() {
 
 int experiment(const ExperimentOptions& options) {
   if (options.list) return list_all();
-  const scenarios::ExperimentOptions plan{.trials = options.trials,
-                                          .seed = options.seed,
-                                          .plant = options.plant,
-                                          .folder = folder_of(options),
-                                          .out = options.out,
-                                          .warn = print_warnings,
-                                          .stop = [] { return stop_requested().load(); }};
+  const scenarios::ExperimentOptions experiment_options{.trials = options.trials,
+                                                        .seed = options.seed,
+                                                        .plant = options.plant,
+                                                        .folder = folder_of(options),
+                                                        .out = options.out,
+                                                        .warn = print_warnings,
+                                                        .stop = [] { return stop_requested().load(); }};
   gpu::Device device(options.device);
   install_stop_handlers();
   std::vector<std::string> files;
   try {
     Progress progress(options.experiment);
-    files = scenarios::run_experiment(*scenarios::find_experiment(options.experiment), plan, device,
+    files = scenarios::run_experiment(*scenarios::find_experiment(options.experiment), experiment_options, device,
                                       [&](double part, const std::string& note) { progress.show(part, note); });
   } catch (const scenarios::Interrupted&) {
     throw base::InputError("interrupted: no report was written; " + options.out + " has the trials that were finished");

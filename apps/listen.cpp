@@ -18,20 +18,20 @@ int listen(const ListenOptions& options) {
   const sensors::SensorSet sensor_set(world);
   const server::StreamLayout sent = stream_layout_of(world, sensor_set, options);
   const std::vector<server::SensorStream> sources = server::sensor_streams(sensor_set, sent);
-  netio::StreamMonitorOptions plan;
-  plan.address = netio::resolve(options.bind);
-  if (!options.from.empty()) plan.farm = netio::resolve(options.from);
-  plan.headerless = options.wire == sensors::WireFormat::thesis;
-  plan.inspect = [&](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
+  netio::StreamMonitorOptions monitor_options;
+  monitor_options.address = netio::resolve(options.bind);
+  if (!options.from.empty()) monitor_options.farm = netio::resolve(options.from);
+  monitor_options.headerless = options.wire == sensors::WireFormat::thesis;
+  monitor_options.inspect = [&](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
     return server::inspect_payload(sources[i], options.wire, header, payload);
   };
   for (const server::SensorStream& source : sources)
-    plan.streams.push_back({world.movers[source.row->mover].id, source.row->sensor, sent.ports(*source.kind),
-                            std::string(source.kind->name)});
-  netio::StreamMonitor monitor(plan);
-  warn_of_exposure(plan.address, "send readings");
+    monitor_options.streams.push_back({world.movers[source.row->mover].id, source.row->sensor, sent.ports(*source.kind),
+                                       std::string(source.kind->name)});
+  netio::StreamMonitor monitor(monitor_options);
+  warn_of_exposure(monitor_options.address, "send readings");
   install_stop_handlers();
-  print_message("listening on {} of {}", counted(plan.streams.size(), "port"), options.bind);
+  print_message("listening on {} of {}", counted(monitor_options.streams.size(), "port"), options.bind);
   monitor.run(stop_requested(), static_cast<int>(1000.0 * options.silence), std::llround(1000.0 * options.duration));
   const netio::StreamSummary summary = monitor.summary();
   print(options.json ? with_warnings(json_of(summary), world.warnings) : text_of(summary));

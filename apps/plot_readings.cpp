@@ -81,19 +81,19 @@ viz::Panel fields_of(const Channel& channel, std::size_t width) {
 /// A reading's row is |B|, then the vector. Path followers steer by how much stronger the last element's field is than
 /// the first's.
 viz::SeriesOptions fields(const record::Recording& recording, const std::vector<Channel>& channels, std::size_t width) {
-  viz::SeriesOptions plan{"Magnetic field", "", {}};
+  viz::SeriesOptions figure{"Magnetic field", "", {}};
   viz::Panel difference{"last element less the first", "|B| [G]", {}};
   const std::size_t drawn = std::min(channels.size(), kMostMagnetometers);
   for (std::size_t i = 0; i < drawn; ++i) {
-    plan.panels.push_back(fields_of(channels[i], width));
+    figure.panels.push_back(fields_of(channels[i], width));
     difference.series.push_back(series_of(channels[i].name, channels[i], [=](const record::ReadingSample& r) {
       return r.values.size() > width ? kGauss * (r.values[r.values.size() - width] - r.values[0]) : NAN;
     }));
   }
-  plan.panels.push_back(std::move(difference));
-  plan.subtitle = fmt::format("{}: {}", recording.info.world, counted(channels.size(), "sensor"));
-  if (drawn < channels.size()) plan.subtitle += fmt::format(", the first {} shown", drawn);
-  return plan;
+  figure.panels.push_back(std::move(difference));
+  figure.subtitle = fmt::format("{}: {}", recording.info.world, counted(channels.size(), "sensor"));
+  if (drawn < channels.size()) figure.subtitle += fmt::format(", the first {} shown", drawn);
+  return figure;
 }
 
 }  // namespace

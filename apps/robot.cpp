@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/controller_options.h"
 #include "apps/default_robot.h"
-#include "apps/driver_options.h"
 #include "apps/layout_options.h"
 #include "apps/report.h"
 #include "apps/robot_report.h"

@@ -12,8 +12,8 @@
 
 #include "apps/automatic_accuracy.h"
 #include "apps/commands.h"
+#include "apps/controller_options.h"
 #include "apps/default_robot.h"
-#include "apps/driver_options.h"
 #include "apps/layout_options.h"
 #include "apps/progress_line.h"
 #include "apps/rate_warnings.h"
@@ -40,11 +40,11 @@ using Clock = std::chrono::steady_clock;
 class Outputs {
  public:
   Outputs(const world::World& world, const sensors::SensorSet& sensor_set,
-          const std::optional<server::StreamLayout>& plan, const std::string& caster, const RunOptions& options)
+          const std::optional<server::StreamLayout>& layout, const std::string& caster, const RunOptions& options)
       : sensor_set_(sensor_set), no_return_filter_(sensor_set, options.no_return_inf) {
-    if (plan) {
+    if (layout) {
       address_ = netio::resolve(options.send);
-      publisher_.emplace(world, sensor_set, *plan, netio::Outbox(server::outbox_options(sensor_set)));
+      publisher_.emplace(world, sensor_set, *layout, netio::Outbox(server::outbox_options(sensor_set)));
     }
     if (!options.record.empty())
       recorder_.emplace(options.record,
@@ -124,7 +124,7 @@ bool names_one_of_several(const std::string& refusal, const world::World& world,
 scenarios::SimulationOptions simulation_options(const world::World& world, const RunOptions& options) {
   scenarios::SimulationOptions simulation{
       .seed = options.seed, .threads = options.threads, .no_return_inf = options.no_return_inf};
-  simulation.actor.plan = controller_config_of(options);
+  simulation.actor.controller = controller_config_of(options);
   simulation.actors = make_actors(world, options);
   return simulation;
 }
@@ -145,8 +145,8 @@ auto advised(const world::World& world, const RunOptions& options, Act&& act) {
 
 int run(const RunOptions& options) {
   world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
-  std::optional<server::StreamLayout> plan;
-  if (!options.send.empty()) plan = stream_layout_of(world, sensors::SensorSet(world), options);
+  std::optional<server::StreamLayout> layout;
+  if (!options.send.empty()) layout = stream_layout_of(world, sensors::SensorSet(world), options);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options, options.seed, options.threads);
   const sensors::SensorSet sensor_set(world);
@@ -157,7 +157,7 @@ int run(const RunOptions& options) {
   ControlMetrics tally(simulation, world.movers.size(), options.controller);
   std::vector<base::ContactOnset> contacts(world.movers.size());
   const std::string caster = raycast::describe_caster(device.info().software);
-  Outputs outputs(world, sensor_set, plan, caster, options);
+  Outputs outputs(world, sensor_set, layout, caster, options);
   install_stop_handlers();
 
   const auto ticks = static_cast<std::uint64_t>(std::llround(options.duration / world.interval));

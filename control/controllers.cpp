@@ -35,18 +35,18 @@ const ControllerType* find_controller(std::string_view name) {
   return nullptr;
 }
 
-ConfiguredController make_controller(const ControllerContext& context, ControllerConfig plan) {
-  const ControllerType* kind = find_controller(plan.controller);
+ConfiguredController make_controller(const ControllerContext& context, ControllerConfig config) {
+  const ControllerType* kind = find_controller(config.name);
   if (kind == nullptr) {
     std::vector<std::string_view> names;
     for (const ControllerType* known : controllers()) names.push_back(known->name);
     throw base::InputError(
-        fmt::format("there is no controller '{}'; expected one of: {}", plan.controller, fmt::join(names, ", ")));
+        fmt::format("there is no controller '{}'; expected one of: {}", config.name, fmt::join(names, ", ")));
   }
-  const ControlShellSettings shell = read_control_shell_settings(plan.settings, kind->stops_on_bumper);
-  std::unique_ptr<Controller> inner = kind->make(context, plan.settings);
-  plan.settings.require_all_read();
-  return {std::make_unique<ControlShell>(std::move(inner), shell), plan.rate > 0.0 ? plan.rate : kind->rate};
+  const ControlShellSettings shell = read_control_shell_settings(config.settings, kind->stops_on_bumper);
+  std::unique_ptr<Controller> inner = kind->make(context, config.settings);
+  config.settings.require_all_read();
+  return {std::make_unique<ControlShell>(std::move(inner), shell), config.rate > 0.0 ? config.rate : kind->rate};
 }
 
 }  // namespace sf::control

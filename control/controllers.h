@@ -40,7 +40,7 @@ const ControllerType* find_controller(std::string_view name);
 
 /// A controller as configured by the user, run within the control shell.
 struct ControllerConfig {
-  std::string controller;
+  std::string name;
   double rate = 0.0;  ///< [Hz]; 0: the controller's default
   Settings settings;  ///< including the shell's: `start`, `wait_on_bumper`
 };
@@ -51,6 +51,6 @@ struct ConfiguredController {
 };
 
 /// @throws base::InputError for an unknown name (the message lists all names) and for settings that no code has read.
-ConfiguredController make_controller(const ControllerContext& context, ControllerConfig plan);
+ConfiguredController make_controller(const ControllerContext& context, ControllerConfig config);
 
 }  // namespace sf::control

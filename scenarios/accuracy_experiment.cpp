@@ -130,17 +130,17 @@ viz::Panel panel_of(const std::vector<Outcome>& outcomes, const std::string& tes
 }
 
 std::string draw(const ExperimentContext& context, const std::vector<Outcome>& outcomes) {
-  viz::SeriesOptions plan{.title = "Effect of accuracy modes on controllers",
-                          .subtitle = fmt::format("means of {} from seed {}", counted(context.options.trials, "trial"),
-                                                  context.options.seed),
-                          .x_name = "mode, as numbered above each panel",
-                          .from_zero = true};
-  plan.panels = {panel_of(outcomes, "lane-edge-p", "mean |error| [m]", &Outcome::abs_error, 1.0),
-                 panel_of(outcomes, "magnet-p", "mean |error| [Gauss]", &Outcome::abs_error, 1.0),
-                 panel_of(outcomes, "explore", "cells wrong [%]", &Outcome::wrong, 100.0),
-                 panel_of(outcomes, "explore", "time to map [s]", &Outcome::seconds, 1.0)};
+  viz::SeriesOptions figure{.title = "Effect of accuracy modes on controllers",
+                            .subtitle = fmt::format("means of {} from seed {}",
+                                                    counted(context.options.trials, "trial"), context.options.seed),
+                            .x_name = "mode, as numbered above each panel",
+                            .from_zero = true};
+  figure.panels = {panel_of(outcomes, "lane-edge-p", "mean |error| [m]", &Outcome::abs_error, 1.0),
+                   panel_of(outcomes, "magnet-p", "mean |error| [Gauss]", &Outcome::abs_error, 1.0),
+                   panel_of(outcomes, "explore", "cells wrong [%]", &Outcome::wrong, 100.0),
+                   panel_of(outcomes, "explore", "time to map [s]", &Outcome::seconds, 1.0)};
   const std::string file = in_folder(context, "accuracy.png");
-  viz::draw_series(plan, file);
+  viz::draw_series(figure, file);
   return file;
 }
 

@@ -197,7 +197,7 @@ const maps::OccupancyGrid& VisibleArea::of(std::uint32_t mover, const maps::Grid
 }
 
 Coverage coverage_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference) {
-  SF_CHECK(map.geometry == reference.geometry, "maps of two plans cannot be compared");
+  SF_CHECK(map.geometry == reference.geometry, "maps of two geometries cannot be compared");
   Coverage seen;
   for (std::int64_t row = 0; row < maps::rows(map.geometry); ++row)
     for (std::int64_t column = 0; column < maps::columns(map.geometry); ++column) {
@@ -211,7 +211,7 @@ Coverage coverage_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& 
 std::string text_of(const Coverage& seen) { return fmt::format("{} of {}", seen.missed, seen.wanted); }
 
 double disagreement(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference) {
-  SF_CHECK(map.geometry == reference.geometry, "maps of two plans cannot be compared");
+  SF_CHECK(map.geometry == reference.geometry, "maps of two geometries cannot be compared");
   std::size_t both = 0, apart = 0;
   for (std::int64_t row = 0; row < maps::rows(map.geometry); ++row)
     for (std::int64_t column = 0; column < maps::columns(map.geometry); ++column) {

@@ -27,9 +27,9 @@ std::vector<Stays> who_stays(const Scenario& scenario, const world::World& world
   std::vector<Stays> stays;
   for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
     const world::Mover& mover = world.movers[row];
-    for (const RobotSetup& plan : scenario.plans) {
-      if (mover.is_tag || plan.name != mover.name) continue;
-      stays.push_back({row, plan.pose.value_or(mover.X_WM)});
+    for (const RobotSetup& setup : scenario.robot_setups) {
+      if (mover.is_tag || setup.name != mover.name) continue;
+      stays.push_back({row, setup.pose.value_or(mover.X_WM)});
       break;
     }
   }

@@ -20,7 +20,7 @@ constexpr SupervisorSettings kSupervisor{.patience = 5.0};
 /// One method to map the area.
 struct Entrant {
   std::string name;
-  control::ControllerConfig plan;
+  control::ControllerConfig controller;
   SupervisorSettings supervisor;
   bool looks_about = false;  ///< it turns back and forth to look around, which is not a dead end
 };
@@ -100,7 +100,7 @@ Mapped mapped_of(const Entrant& entrant, std::uint32_t number, const Trial& tria
 void run_with(const ExperimentContext& context, const Entrant& entrant, std::vector<Mapped>& rows,
               std::vector<std::string>& files) {
   Scenario scenario = context.scenario;
-  scenario.actor.plan = entrant.plan;
+  scenario.actor.controller = entrant.controller;
   ExperimentOptions options = context.options;
   options.out = in_folder(context, entrant.name);
   const ExperimentContext own{context.kind, scenario, options, context.device, context.progress};
@@ -127,9 +127,9 @@ void run_with(const ExperimentContext& context, const Entrant& entrant, std::vec
 }
 
 std::vector<Entrant> entrants_of(const Scenario& scenario) {
-  const control::ControllerConfig& plan = scenario.actor.plan;
-  return {{plan.controller, plan, {}},
-          {plan.controller + "-supervised", plan, kSupervisor},
+  const control::ControllerConfig& controller = scenario.actor.controller;
+  return {{controller.name, controller, {}},
+          {controller.name + "-supervised", controller, kSupervisor},
           {"explore", {"explore", 0.0, {}}, {}, true}};
 }
 

@@ -35,13 +35,13 @@ std::string draw_paths(const ExperimentContext& context, const std::vector<Trial
 }
 
 std::string draw_errors(const ExperimentContext& context, const std::vector<Trial>& trials, std::string_view unit) {
-  viz::SeriesOptions plan{.title = "Control error: " + context.scenario.name};
+  viz::SeriesOptions figure{.title = "Control error: " + context.scenario.name};
   viz::Panel panel{.y_name = fmt::format("error [{}]", unit)};
   for (std::size_t k = 0; k < trials.size(); ++k)
     panel.series.push_back({fmt::format("trial {}", k + 1), trials[k].times, trials[k].counts.front().errors});
-  plan.panels.push_back(std::move(panel));
+  figure.panels.push_back(std::move(panel));
   const std::string file = in_folder(context, "errors.png");
-  viz::draw_series(plan, file);
+  viz::draw_series(figure, file);
   return file;
 }
 

@@ -43,7 +43,7 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
   const auto rows = rows_of(scenario, world, e);
   const bool of_driven = e.kind == Kind::checkpoints || e.kind == Kind::mean_error || e.kind == Kind::mean_abs_error;
   if (of_driven && std::all_of(rows.begin(), rows.end(),
-                               [&](std::uint32_t row) { return options.actors[row].plan.controller.empty(); }))
+                               [&](std::uint32_t row) { return options.actors[row].controller.name.empty(); }))
     refuse(fmt::format("'{}' of a robot without a controller; give it one", name_of(e.kind)));
   if (e.kind == Kind::map_coverage &&
       std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) { return world.movers[row].lasers.empty(); }))
@@ -55,16 +55,16 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
 
 /// Line of the file that sets the mover's controller.
 int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
-  for (const RobotSetup& plan : scenario.plans)
-    if (plan.actor && plan.name == mover.name) return plan.driver_line;
+  for (const RobotSetup& setup : scenario.robot_setups)
+    if (setup.actor && setup.name == mover.name) return setup.controller_line;
   return scenario.default_line;
 }
 
 /// Errors of controllers without a location get the line that names the controller.
 control::ConfiguredController try_controller(const Scenario& scenario, const control::ControllerContext& site,
-                                             const control::ControllerConfig& plan) {
+                                             const control::ControllerConfig& config) {
   try {
-    return control::make_controller(site, plan);
+    return control::make_controller(site, config);
   } catch (const base::InputError& error) {
     const std::string what = error.what();
     if (what.starts_with(scenario.file + ":")) throw;
@@ -219,9 +219,9 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
   const std::optional<world::RoadNetwork> roads = world::roads_of(world);
   std::vector<control::ConfiguredController> made;  // kept to the end: robots of one shape share their corridors
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    const control::ControllerConfig& plan = options.actors[m].plan;
-    if (!plan.controller.empty())
-      made.push_back(try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, plan));
+    const control::ControllerConfig& config = options.actors[m].controller;
+    if (!config.name.empty())
+      made.push_back(try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, config));
   }
   for (const Expectation& e : scenario.expect) check_expectation(scenario, world, options, e);
   return std::move(world.warnings);

@@ -37,9 +37,9 @@ world::World world_of(const Scenario& scenario) {
     for (world::Mover& mover : world.movers)
       mover.driver_model =
           *scenario.plant == Plant::thesis ? world::DriverModel::player_create : world::DriverModel::direct;
-  for (const RobotSetup& plan : scenario.plans) {
-    world::Mover& mover = world.movers[row_of(scenario, world, plan.name, plan.line)];
-    if (plan.pose) mover.X_WM = {plan.pose->x, plan.pose->y, mover.X_WM.z, plan.pose->yaw};
+  for (const RobotSetup& setup : scenario.robot_setups) {
+    world::Mover& mover = world.movers[row_of(scenario, world, setup.name, setup.line)];
+    if (setup.pose) mover.X_WM = {setup.pose->x, setup.pose->y, mover.X_WM.z, setup.pose->yaw};
   }
   world::update_extent_and_hash(world);
   return world;
@@ -49,12 +49,12 @@ SimulationOptions simulation_of(const Scenario& scenario, const world::World& wo
   SimulationOptions options{.seed = scenario.seed, .start_at = scenario.start_at};
   // Tags stand unless a [[robot]] names them. A robot's controller in the world file overrides the scenario's default.
   for (const world::Mover& mover : world.movers) {
-    Actor& actor = options.actors.emplace_back(mover.is_tag ? Actor{.plan = {.controller = ""}} : scenario.actor);
-    const bool own = !mover.is_tag && !mover.controller.empty() && mover.controller != actor.plan.controller;
-    if (own) actor.plan = {.controller = mover.controller};
+    Actor& actor = options.actors.emplace_back(mover.is_tag ? Actor{.controller = {.name = ""}} : scenario.actor);
+    const bool own = !mover.is_tag && !mover.controller.empty() && mover.controller != actor.controller.name;
+    if (own) actor.controller = {.name = mover.controller};
   }
-  for (const RobotSetup& plan : scenario.plans)
-    if (plan.actor) options.actors[row_of(scenario, world, plan.name, plan.line)] = *plan.actor;
+  for (const RobotSetup& setup : scenario.robot_setups)
+    if (setup.actor) options.actors[row_of(scenario, world, setup.name, setup.line)] = *setup.actor;
   for (Actor& actor : options.actors) actor.link.seed = scenario.seed;
   return options;
 }

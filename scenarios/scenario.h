@@ -22,7 +22,7 @@ struct RobotSetup {
   std::optional<Actor> actor;      ///< controller and link; none: the scenario's
   std::optional<base::Pose> pose;  ///< [m], [rad] start pose; none: the world's
   int line = 0;                    ///< in the file
-  int driver_line = 0;             ///< line of its controller, or of the robot
+  int controller_line = 0;         ///< line of its controller, or of the robot
 };
 
 /// One expectation.
@@ -73,7 +73,7 @@ struct Scenario {
   double start_at = 0.0;       ///< [s] time of the start signal
   Actor actor;                 ///< default of all robots
   int default_line = 0;        ///< line of its controller; 0: not in the file
-  std::vector<RobotSetup> plans;
+  std::vector<RobotSetup> robot_setups;
   std::vector<Expectation> expect;
 };
 

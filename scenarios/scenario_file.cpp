@@ -128,15 +128,14 @@ std::string controller_of(const Reader& reader, const TomlNode& table, const std
 }
 
 /// Without a controller in the table the fallback's applies. Settings are replaced as a whole, not key by key.
-control::ControllerConfig plan_of(const Reader& reader, const TomlNode& table,
-                                  const control::ControllerConfig& fallback) {
-  control::ControllerConfig plan = fallback;
-  plan.controller = controller_of(reader, table, fallback.controller);
-  plan.rate = reader.number(table, "rate", plan.controller == fallback.controller ? fallback.rate : 0.0, 0.01, 1e4);
+control::ControllerConfig controller_config_of(const Reader& reader, const TomlNode& table,
+                                               const control::ControllerConfig& fallback) {
+  control::ControllerConfig config = fallback;
+  config.name = controller_of(reader, table, fallback.name);
+  config.rate = reader.number(table, "rate", config.name == fallback.name ? fallback.rate : 0.0, 0.01, 1e4);
   const TomlNode* settings = reader.table(table, "settings");
-  if (settings != nullptr || plan.controller != fallback.controller)
-    plan.settings = settings_of(reader, settings, plan.controller);
-  return plan;
+  if (settings != nullptr || config.name != fallback.name) config.settings = settings_of(reader, settings, config.name);
+  return config;
 }
 
 netio::LinkModel link_of(const Reader& reader, const TomlNode* table, const netio::LinkModel& fallback) {
@@ -176,21 +175,22 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
   for (const TomlNode& node : list->items) {
     if (node.kind != Kind::table) reader.fail(node, "'robot' expects [[robot]] tables");
     reader.require_known(node, kRobotKeys);
-    RobotSetup plan{.name = reader.text(node, "name", ""), .line = node.line};
-    if (plan.name.empty()) reader.fail(node, "a robot without a name; expected name = \"...\" of a robot of the world");
+    RobotSetup setup{.name = reader.text(node, "name", ""), .line = node.line};
+    if (setup.name.empty())
+      reader.fail(node, "a robot without a name; expected name = \"...\" of a robot of the world");
     const bool told = std::any_of(node.items.begin(), node.items.end(),
                                   [](const TomlNode& item) { return item.key != "name" && item.key != "pose"; });
     if (told)
-      plan.actor = Actor{plan_of(reader, node, scenario.actor.plan),
-                         link_of(reader, reader.table(node, "link"), scenario.actor.link)};
-    if (const TomlNode* pose = world::find(node, "pose")) plan.pose = pose_of(reader, *pose);
+      setup.actor = Actor{controller_config_of(reader, node, scenario.actor.controller),
+                          link_of(reader, reader.table(node, "link"), scenario.actor.link)};
+    if (const TomlNode* pose = world::find(node, "pose")) setup.pose = pose_of(reader, *pose);
     const TomlNode* driver = world::find(node, "controller");
-    plan.driver_line = driver == nullptr ? node.line : driver->line;
-    const auto [other, fresh] = lines.emplace(plan.name, plan.line);
+    setup.controller_line = driver == nullptr ? node.line : driver->line;
+    const auto [other, fresh] = lines.emplace(setup.name, setup.line);
     if (!fresh)
       reader.fail(node, fmt::format("the robot '{}' is configured at line {} already; expected one [[robot]] for each",
-                                    plan.name, other->second));
-    scenario.plans.push_back(std::move(plan));
+                                    setup.name, other->second));
+    scenario.robot_setups.push_back(std::move(setup));
   }
 }
 
@@ -287,7 +287,7 @@ Scenario parse_scenario(const std::string& file, std::string_view text) {
   scenario.actor.link = link_of(reader, reader.table(root, "link"), {});
   if (const TomlNode* table = reader.table(root, "default")) {
     reader.require_known(*table, kDefaultKeys);
-    scenario.actor.plan = plan_of(reader, *table, scenario.actor.plan);
+    scenario.actor.controller = controller_config_of(reader, *table, scenario.actor.controller);
     const TomlNode* driver = world::find(*table, "controller");
     scenario.default_line = driver == nullptr ? table->line : driver->line;
   }

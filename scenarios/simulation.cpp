@@ -55,36 +55,36 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
   SF_CHECK(options.actors.empty() || options.actors.size() == world.movers.size(),
            "actors: expected none or one per mover");
   farm_.subscribe_all();
-  for (std::uint32_t i = 0; i < world.movers.size(); ++i) drivers_.push_back(make_driver(i, options));
-  for (const Driver& driver : drivers_)
-    if (driver.controller) v2v_range_ = std::max(v2v_range_, driver.controller->v2v_range());
+  for (std::uint32_t i = 0; i < world.movers.size(); ++i) controls_.push_back(make_control(i, options));
+  for (const RobotControl& robot : controls_)
+    if (robot.controller) v2v_range_ = std::max(v2v_range_, robot.controller->v2v_range());
   for (auto& others : others_) others.reserve(v2v_range_ > 0.0 ? world.movers.size() : 0);
   sorted_.reserve(farm_.sensor_set().count());
   next_.reserve(first_.size());
 }
 
-Simulation::Driver Simulation::make_driver(std::uint32_t mover, const SimulationOptions& options) {
-  Driver driver;
+Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const SimulationOptions& options) {
+  RobotControl robot;
   const Actor& actor = options.actors.empty() ? options.actor : options.actors[mover];
-  if (actor.plan.controller.empty() || (options.actors.empty() && world_.movers[mover].is_tag)) return driver;
+  if (actor.controller.name.empty() || (options.actors.empty() && world_.movers[mover].is_tag)) return robot;
   std::vector<world::Warning> warnings;
   const control::ControllerContext site{world_, mover, options.seed, roads(), &warnings};
-  control::ConfiguredController made = control::make_controller(site, actor.plan);
+  control::ConfiguredController made = control::make_controller(site, actor.controller);
   if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same settings read the same files
-  driver.controller = std::move(made.controller);
-  driver.rate = made.rate;
+  robot.controller = std::move(made.controller);
+  robot.rate = made.rate;
   // `wander` without a configured rate decides once per scan.
-  driver.by_lasers =
-      actor.plan.controller == "wander" && actor.plan.rate == 0.0 && !world_.movers[mover].lasers.empty();
-  if (!(driver.by_lasers && actor.link.perfect())) driver.mailbox.emplace(actor.link, world_.movers[mover].id);
-  return driver;
+  robot.by_lasers =
+      actor.controller.name == "wander" && actor.controller.rate == 0.0 && !world_.movers[mover].lasers.empty();
+  if (!(robot.by_lasers && actor.link.perfect())) robot.mailbox.emplace(actor.link, world_.movers[mover].id);
+  return robot;
 }
 
 bool Simulation::all_done() const {
-  const auto drives = [](const Driver& d) { return d.controller != nullptr; };
-  return std::any_of(drivers_.begin(), drivers_.end(), drives) &&
-         std::all_of(drivers_.begin(), drivers_.end(),
-                     [&](const Driver& d) { return !drives(d) || d.controller->done(); });
+  const auto drives = [](const RobotControl& d) { return d.controller != nullptr; };
+  return std::any_of(controls_.begin(), controls_.end(), drives) &&
+         std::all_of(controls_.begin(), controls_.end(),
+                     [&](const RobotControl& d) { return !drives(d) || d.controller->done(); });
 }
 
 base::TickRecord Simulation::step() {
@@ -124,7 +124,7 @@ void Simulation::move() {
 }
 
 void Simulation::put(std::uint32_t mover, const base::Pose& X_WM) {
-  SF_CHECK(mover < drivers_.size(), "mover " + std::to_string(mover));
+  SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
   const base::Report report{mover, fleet_.reports()[mover].time, X_WM, {}};
   fleet_.apply({&report, 1});
 }
@@ -149,35 +149,35 @@ void Simulation::decide(std::int64_t time) {
   for (std::size_t i = 0; i < signals_.size(); ++i)
     signals_[i] = world::signal_at(world_.lights[i], 1e-9 * static_cast<double>(time));
   if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
-  thread_pool_.parallel_for(drivers_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
+  thread_pool_.parallel_for(controls_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
     for (std::size_t m = begin; m < end; ++m) decide_one(static_cast<std::uint32_t>(m), time, thread);
   });
   std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());
 }
 
 void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thread) {
-  Driver& driver = drivers_[mover];
-  driver.stepped = false;
-  if (!driver.controller) return;
+  RobotControl& robot = controls_[mover];
+  robot.stepped = false;
+  if (!robot.controller) return;
   const std::uint32_t first = first_[mover], count = first_[mover + 1] - first;
   std::span<const base::ReadingBlock> fresh = by_mover_.subspan(first, count);
-  if (driver.mailbox) {
-    for (const base::ReadingBlock& reading : fresh) driver.mailbox->send(reading, std::min(time, leaves_at(reading)));
+  if (robot.mailbox) {
+    for (const base::ReadingBlock& reading : fresh) robot.mailbox->send(reading, std::min(time, leaves_at(reading)));
   } else if (!readings_.empty()) {
     fresh = newest_of(std::span(sorted_).subspan(first, count));
   }
   const bool contact = fleet_.contacts()[mover] != 0;
-  if (!due(driver, fresh, time, contact)) return;
+  if (!due(robot, fresh, time, contact)) return;
 
   std::vector<control::Neighbour>& others = others_[thread];
   others.clear();
-  const double v2v_range = driver.controller->v2v_range();
+  const double v2v_range = robot.controller->v2v_range();
   if (v2v_range > 0.0) find_others(mover, v2v_range, others);
-  const auto readings = driver.mailbox ? driver.mailbox->receive(time) : fresh;
+  const auto readings = robot.mailbox ? robot.mailbox->receive(time) : fresh;
   commands_[mover] =
-      driver.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
-  next_intents_[mover] = driver.controller->intent();
-  driver.stepped = true;
+      robot.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
+  next_intents_[mover] = robot.controller->intent();
+  robot.stepped = true;
 }
 
 /// [ns] Delivery time of a reading, possibly between two ticks.
@@ -186,18 +186,18 @@ std::int64_t Simulation::leaves_at(const base::ReadingBlock& reading) const {
 }
 
 /// The controller steps at this tick. Otherwise its last command remains in effect.
-bool Simulation::due(Driver& driver, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const {
-  if (driver.by_lasers) {
-    if (driver.mailbox) driver.mailbox->receive(time);
-    const bool looked = driver.mailbox ? driver.mailbox->renewed(base::kLaser)
-                                       : std::any_of(fresh.begin(), fresh.end(), [](const base::ReadingBlock& r) {
-                                           return r.kind == base::kLaser;
-                                         });
+bool Simulation::due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time,
+                     bool contact) const {
+  if (robot.by_lasers) {
+    if (robot.mailbox) robot.mailbox->receive(time);
+    const bool looked = robot.mailbox ? robot.mailbox->renewed(base::kLaser)
+                                      : std::any_of(fresh.begin(), fresh.end(),
+                                                    [](const base::ReadingBlock& r) { return r.kind == base::kLaser; });
     return looked || contact;
   }
-  const std::uint64_t begun = farm::readings_started(time, driver.rate, 0.0);
-  if (begun <= driver.begun) return false;
-  driver.begun = begun;
+  const std::uint64_t begun = farm::readings_started(time, robot.rate, 0.0);
+  if (begun <= robot.begun) return false;
+  robot.begun = begun;
   return true;
 }
 

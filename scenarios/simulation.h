@@ -1,7 +1,7 @@
 #pragma once
 // Simulation of a fleet in closed loop: controllers, motion and sensors.
 //
-//   Simulation simulation(world, device, {.seed = 7, .actor = {.plan = {.controller = "wander"}}});
+//   Simulation simulation(world, device, {.seed = 7, .actor = {.controller = {.name = "wander"}}});
 //   while (running) recorder.write(simulation.step());
 //
 // One tick: motion since the last one, readings, decisions. A command decided at a tick is executed until the next.
@@ -30,7 +30,7 @@ namespace sf::scenarios {
 
 /// Controller of one robot, and the link by which its readings arrive.
 struct Actor {
-  control::ControllerConfig plan{.controller = "wander"};  ///< empty name: the robot stands
+  control::ControllerConfig controller{.name = "wander"};  ///< empty name: the robot stands
   netio::LinkModel link;  ///< of the readings; V2V states and the robot's own state are not delayed
 };
 
@@ -60,9 +60,9 @@ class Simulation {
   double move_seconds() const { return move_s_; }  ///< [s] wall time of controllers and motion
 
   /// The mover's controller; null for movers that stand.
-  const control::Controller* controller(std::uint32_t mover) const { return drivers_[mover].controller.get(); }
+  const control::Controller* controller(std::uint32_t mover) const { return controls_[mover].controller.get(); }
   /// The last tick called the mover's controller.
-  bool stepped(std::uint32_t mover) const { return drivers_[mover].stepped; }
+  bool stepped(std::uint32_t mover) const { return controls_[mover].stepped; }
   /// All controllers are done; false without controllers.
   bool all_done() const;
   const world::RoadNetwork* roads() const { return roads_ ? &*roads_ : nullptr; }
@@ -70,7 +70,7 @@ class Simulation {
   const std::vector<world::Warning>& warnings() const { return warnings_; }
 
  private:
-  struct Driver {
+  struct RobotControl {
     std::unique_ptr<control::Controller> controller;  ///< null: the mover stands
     double rate = 10.0;                               ///< [Hz]
     bool by_lasers = false;                           ///< steps on new scans and on contacts instead of at its rate
@@ -78,14 +78,14 @@ class Simulation {
     std::uint64_t begun = 0;         ///< number of steps at its rate
     std::optional<Mailbox> mailbox;  ///< none: readings arrive immediately
   };
-  Driver make_driver(std::uint32_t mover, const SimulationOptions& options);
+  RobotControl make_control(std::uint32_t mover, const SimulationOptions& options);
   void move();
   std::span<const base::ReadingBlock> sense(std::int64_t time);
   void sort_by_mover(std::span<const base::ReadingBlock> readings);
   void decide(std::int64_t time);
   void decide_one(std::uint32_t mover, std::int64_t time, unsigned thread);
   std::int64_t leaves_at(const base::ReadingBlock& reading) const;
-  bool due(Driver& driver, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
+  bool due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
   void find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const;
 
   const world::World& world_;
@@ -94,7 +94,7 @@ class Simulation {
   farm::Farm farm_;
   robots::Fleet fleet_;
   robots::NeighbourGrid neighbours_;
-  std::vector<Driver> drivers_;  ///< per mover
+  std::vector<RobotControl> controls_;  ///< per mover
   std::vector<base::Twist> commands_;
   std::vector<base::Twist> executed_commands_;  ///< executed in the interval before the recorded tick
   /// Readings of this tick: as returned where already in order, else `sorted_`.

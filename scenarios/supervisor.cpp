@@ -21,12 +21,12 @@ double side_of(std::uint32_t contact_mask) {
 
 }  // namespace
 
-Supervisor::Supervisor(const world::World& world, const SupervisorSettings& plan)
-    : plan_(plan), interval_(world.interval), watched_(world.movers.size()) {}
+Supervisor::Supervisor(const world::World& world, const SupervisorSettings& settings)
+    : settings_(settings), interval_(world.interval), watched_(world.movers.size()) {}
 
 std::span<const Supervisor::Intervention> Supervisor::update(const base::TickRecord& tick) {
   interventions_.clear();
-  if (plan_.patience <= 0.0) return interventions_;
+  if (settings_.patience <= 0.0) return interventions_;
   for (std::uint32_t m = 0; m < watched_.size(); ++m) {
     Watched& watched = watched_[m];
     const base::Report& report = tick.reports[m];
@@ -36,7 +36,7 @@ std::span<const Supervisor::Intervention> Supervisor::update(const base::TickRec
       if (watched.way.size() >= kRemembered) watched.way.erase(watched.way.begin());
       watched.way.push_back(report.X_WM);
     }
-    if (watched.waited < plan_.patience) continue;
+    if (watched.waited < settings_.patience) continue;
     interventions_.push_back({m, place_for(report, watched)});
     watched = {};
   }
@@ -48,9 +48,9 @@ base::Pose Supervisor::place_for(const base::Report& report, const Watched& watc
   for (auto at = watched.way.rbegin(); at != watched.way.rend(); ++at) {
     place.x = at->x;
     place.y = at->y;
-    if (distance(place, report.X_WM) >= plan_.back) break;
+    if (distance(place, report.X_WM) >= settings_.back) break;
   }
-  place.yaw = base::wrap_angle(report.X_WM.yaw - side_of(report.contact_mask) * plan_.turn);
+  place.yaw = base::wrap_angle(report.X_WM.yaw - side_of(report.contact_mask) * settings_.turn);
   return place;
 }
 

@@ -24,7 +24,7 @@ class Supervisor {
     std::uint32_t mover = 0;
     base::Pose X_WM;  ///< new pose
   };
-  Supervisor(const world::World& world, const SupervisorSettings& plan);
+  Supervisor(const world::World& world, const SupervisorSettings& settings);
 
   /// Called after every tick. @return interventions to apply before the next tick; lives until the next call
   std::span<const Intervention> update(const base::TickRecord& tick);
@@ -36,7 +36,7 @@ class Supervisor {
   };
   base::Pose place_for(const base::Report& report, const Watched& watched) const;
 
-  SupervisorSettings plan_;
+  SupervisorSettings settings_;
   double interval_;  ///< [s]
   std::vector<Watched> watched_;
   std::vector<Intervention> interventions_;

@@ -56,10 +56,11 @@ Scenario scenario_of(const ExperimentContext& context, const Setting& setting, s
   scenario.plant = setting.plant;
   scenario.tick = std::min(0.1, 1.0 / setting.rate);
   scenario.actor.link = {.delay = setting.delay, .loss = setting.loss};
-  scenario.actor.plan = {"lane-keeping",
-                         setting.rate,
-                         {"controller 'lane-keeping'",
-                          {{"kp", setting.kp, ""}, {"ki", setting.ki, ""}, {"speed", 0.1, ""}, {"hold", 5.0, ""}}}};
+  scenario.actor.controller = {
+      "lane-keeping",
+      setting.rate,
+      {"controller 'lane-keeping'",
+       {{"kp", setting.kp, ""}, {"ki", setting.ki, ""}, {"speed", 0.1, ""}, {"hold", 5.0, ""}}}};
   return scenario;
 }
 
@@ -134,12 +135,12 @@ std::string csv_of_points(const std::vector<Point>& points) {
 std::string draw(const ExperimentContext& context, const std::vector<Point>& points, const std::string& sweep) {
   constexpr std::array<std::pair<std::size_t, const char*>, 3> kShown{
       {{0, "mean error [m]"}, {4, "mean |error| [m]"}, {7, "largest |error| [m]"}}};
-  viz::SeriesOptions plan{.title = "Lane edge loop: " + sweep,
-                          .subtitle = context.options.trials == 1
-                                          ? fmt::format("seed {}", context.options.seed)
-                                          : fmt::format("means of {} seeds", context.options.trials),
-                          .x_name = kAxes.at(stem_of(sweep)),
-                          .from_zero = true};
+  viz::SeriesOptions figure{.title = "Lane edge loop: " + sweep,
+                            .subtitle = context.options.trials == 1
+                                            ? fmt::format("seed {}", context.options.seed)
+                                            : fmt::format("means of {} seeds", context.options.trials),
+                            .x_name = kAxes.at(stem_of(sweep)),
+                            .from_zero = true};
   for (const auto& [column, name] : kShown) {
     viz::Panel panel{.y_name = name};
     for (const Law& law : kLaws) {
@@ -151,10 +152,10 @@ std::string draw(const ExperimentContext& context, const std::vector<Point>& poi
         }
       panel.series.push_back(std::move(series));
     }
-    plan.panels.push_back(std::move(panel));
+    figure.panels.push_back(std::move(panel));
   }
   const std::string file = in_folder(context, "sweep-" + sweep + ".png");
-  viz::draw_series(plan, file);
+  viz::draw_series(figure, file);
   return file;
 }
 

@@ -124,9 +124,9 @@ world::World disturbed_world(const Scenario& scenario, const Disturbance& distur
 }
 
 Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device& device, const TrialOptions& options) {
-  SimulationOptions plan = simulation_of(scenario, world);
-  plan.threads = options.threads;
-  Simulation simulation(world, device, plan);
+  SimulationOptions simulation_options = simulation_of(scenario, world);
+  simulation_options.threads = options.threads;
+  Simulation simulation(world, device, simulation_options);
   RunMetrics metrics(world, simulation);
   Keeper keeper(world, simulation, options.maps);
   Supervisor supervisor(world, options.supervisor);

@@ -51,7 +51,7 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       started_(!options.wait_for_start),
       reading_timeout_(patience_of(sensor_set, mover, options.stop_after)),
       log_(options.log_descriptor),
-      controller_(options.controller.controller) {
+      controller_(options.controller.name) {
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, options.controller);
 }
 

@@ -103,8 +103,8 @@ TEST(ControlShell, PassesOnWhatTheControllerTells) {
 
 // ---- By name.
 
-ControllerConfig plan_of(std::string name, std::vector<Setting> settings = {}) {
-  return {.controller = name, .rate = 0.0, .settings = Settings("controller '" + name + "'", std::move(settings))};
+ControllerConfig config_of(std::string name, std::vector<Setting> settings = {}) {
+  return {.name = name, .rate = 0.0, .settings = Settings("controller '" + name + "'", std::move(settings))};
 }
 
 world::World small_world() {
@@ -123,8 +123,8 @@ const ControlShell& made_shell(const ConfiguredController& made) {
 
 TEST(MakeController, PutsEveryKindIntoAShellWithItsOwnDefaults) {
   const world::World world = small_world();
-  ConfiguredController wander = make_controller({world}, plan_of("wander"));
-  ConfiguredController avoid = make_controller({world}, plan_of("avoid"));
+  ConfiguredController wander = make_controller({world}, config_of("wander"));
+  ConfiguredController avoid = make_controller({world}, config_of("avoid"));
   const ControllerInput pressed{.state = {.X_WM = {2, 2, 0, 0}}, .contact = true};
   wander.controller->step(pressed);
   avoid.controller->step(pressed);
@@ -134,17 +134,17 @@ TEST(MakeController, PutsEveryKindIntoAShellWithItsOwnDefaults) {
 
 TEST(MakeController, TakesTheSettingsOfTheShell) {
   const world::World world = small_world();
-  ConfiguredController made =
-      make_controller({world}, plan_of("wander", {{"start", std::string("signal"), ""}, {"wait_on_bumper", true, ""}}));
+  ConfiguredController made = make_controller(
+      {world}, config_of("wander", {{"start", std::string("signal"), ""}, {"wait_on_bumper", true, ""}}));
   made.controller->step({.started = false});
   EXPECT_EQ(made_shell(made).state(), kStart);
   made.controller->step({.contact = true, .started = true});
   EXPECT_EQ(made_shell(made).state(), kWait);
 }
 
-std::string refusal(const world::World& world, ControllerConfig plan) {
+std::string refusal(const world::World& world, ControllerConfig config) {
   try {
-    make_controller({world}, std::move(plan));
+    make_controller({world}, std::move(config));
   } catch (const base::InputError& error) {
     return error.what();
   }
@@ -181,13 +181,13 @@ TEST(MakeController, RefusesByName) {
       {"explore", {{"margin", 0.01, at}, {"least_margin", 0.02, at}}, "'least_margin'"},
   };
   for (const Refused& refused : cases) {
-    const std::string says = refusal(world, plan_of(refused.controller, refused.settings));
+    const std::string says = refusal(world, config_of(refused.controller, refused.settings));
     EXPECT_NE(says.find(refused.says), std::string::npos) << refused.controller << ": " << says;
   }
   world::World bare = scenes::boxed_world(4, 4);
   scenes::add_create(bare, {2, 2, 0, 0});
   const auto says = [&](const char* name, std::vector<Setting> settings = {}) {
-    return refusal(bare, plan_of(name, std::move(settings)));
+    return refusal(bare, config_of(name, std::move(settings)));
   };
   EXPECT_NE(says("explore").find("has no laser"), std::string::npos);
   EXPECT_NE(says("avoid").find("has no laser"), std::string::npos);

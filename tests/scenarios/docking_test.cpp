@@ -51,7 +51,7 @@ struct Docked {
 Docked dock(world::World world, const base::Pose& from) {
   world.movers.front().X_WM = from;
   SimulationOptions options;
-  options.actor.plan = {.controller = "docking"};
+  options.actor.controller = {.name = "docking"};
   Simulation simulation(world, device(), std::move(options));
   Docked docked;
   for (int tick = 0; tick < 2000; ++tick) {

@@ -105,7 +105,7 @@ TEST(PathFollowing, ByItsOwnDefaultsTheShippedRobotKeepsTheLane) {
       world::load_world(SF_SOURCE_DIR "/worlds/testpath/testpath.world", {.sensors = sensors::world_file_words()});
   for (const char* controller : {"lane-keeping", "magnet-keeping"}) {
     SimulationOptions options;
-    options.actor.plan.controller = controller;
+    options.actor.controller.name = controller;
     Simulation simulation(world, device(), std::move(options));
     double least = HUGE_VAL;  // [m] from the body to the lane's edge
     int ticks = 0;

@@ -49,7 +49,7 @@ class Town {
   }
   static SimulationOptions nobody() {
     SimulationOptions options;
-    options.actor.plan.controller.clear();
+    options.actor.controller.name.clear();
     return options;
   }
 

@@ -32,7 +32,7 @@ TEST(ScenarioFile, DefaultsOfAFileThatNamesAWorld) {
   EXPECT_TRUE(std::filesystem::exists(s.world)) << s.world;
   EXPECT_EQ(s.duration, 60.0);
   EXPECT_EQ(s.seed, 1u);
-  EXPECT_EQ(s.actor.plan.controller, "wander");
+  EXPECT_EQ(s.actor.controller.name, "wander");
   EXPECT_TRUE(s.actor.link.perfect());
   EXPECT_FALSE(s.plant);
   EXPECT_TRUE(s.expect.empty());
@@ -83,13 +83,13 @@ tick_p99_ms = 10
   EXPECT_EQ(s.fleet.place, FleetSpawn::Placement::lanes);
   EXPECT_EQ(s.plant, Plant::thesis);
   EXPECT_EQ(s.start_at, 2.0);
-  EXPECT_EQ(s.actor.plan.rate, 5.0);
+  EXPECT_EQ(s.actor.controller.rate, 5.0);
   EXPECT_EQ(s.actor.link.jitter, 0.2);
-  ASSERT_EQ(s.plans.size(), 1u);
-  EXPECT_EQ(s.plans[0].actor->plan.controller, "");
-  EXPECT_EQ(s.plans[0].actor->link.delay, 1.0);
-  EXPECT_EQ(s.plans[0].actor->link.loss, 0.0);
-  EXPECT_NEAR(s.plans[0].pose->yaw, M_PI / 2, 1e-15);
+  ASSERT_EQ(s.robot_setups.size(), 1u);
+  EXPECT_EQ(s.robot_setups[0].actor->controller.name, "");
+  EXPECT_EQ(s.robot_setups[0].actor->link.delay, 1.0);
+  EXPECT_EQ(s.robot_setups[0].actor->link.loss, 0.0);
+  EXPECT_NEAR(s.robot_setups[0].pose->yaw, M_PI / 2, 1e-15);
   ASSERT_EQ(s.expect.size(), 11u);
   for (const Expectation& e : s.expect)
     EXPECT_EQ(e.robot, e.kind == Expectation::Kind::mean_abs_error ? "roomba0" : "");
@@ -106,17 +106,17 @@ settings = { kp = 0.7 }
 name = "roomba0"
 settings = { kp = 0.9 }
 )");
-  ASSERT_EQ(s.plans.size(), 1u);
-  control::ControllerConfig plan = s.plans[0].actor->plan;
-  EXPECT_EQ(plan.controller, "lane-keeping");
-  EXPECT_EQ(plan.rate, 20.0);
-  EXPECT_EQ(plan.settings.number("kp", 0.0, 0.0, 10.0), 0.9);
+  ASSERT_EQ(s.robot_setups.size(), 1u);
+  control::ControllerConfig config = s.robot_setups[0].actor->controller;
+  EXPECT_EQ(config.name, "lane-keeping");
+  EXPECT_EQ(config.rate, 20.0);
+  EXPECT_EQ(config.settings.number("kp", 0.0, 0.0, 10.0), 0.9);
 }
 
 TEST(ScenarioFile, RobotsWithAPoseAloneKeepTheDefault) {
   const Scenario s = parse("[[robot]]\nname = \"roomba0\"\npose = [1, 0.1, 5]\n");
-  ASSERT_EQ(s.plans.size(), 1u);
-  EXPECT_FALSE(s.plans[0].actor);
+  ASSERT_EQ(s.robot_setups.size(), 1u);
+  EXPECT_FALSE(s.robot_setups[0].actor);
   const world::World world = world_of(s);
   EXPECT_EQ(world.movers[0].X_WM.x, 1.0);
   EXPECT_NE(world.hash, world_of(parse("")).hash);
@@ -195,7 +195,7 @@ TEST(ScenarioFile, MistakesAgainstTheWorldAreRefusedAtTheirLine) {
     try {
       const world::World world = world_of(scenario);
       SimulationOptions options = simulation_of(scenario, world);
-      control::make_controller({world}, options.actors[0].plan);
+      control::make_controller({world}, options.actors[0].controller);
     } catch (const base::InputError& error) {
       what = error.what();
       what = what.find("test.toml") == std::string::npos ? what : what.substr(what.find("test.toml"));

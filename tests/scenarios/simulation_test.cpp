@@ -35,12 +35,12 @@ std::vector<std::uint32_t> robots_of(const world::World& world) {
 /// All robots stand.
 SimulationOptions nobody(const world::World& world) {
   SimulationOptions options;
-  options.actor.plan.controller.clear();
+  options.actor.controller.name.clear();
   options.actors.assign(world.movers.size(), options.actor);
   return options;
 }
 
-control::ControllerConfig plan(const std::string& name, std::vector<control::Setting> settings = {}) {
+control::ControllerConfig config_of(const std::string& name, std::vector<control::Setting> settings = {}) {
   return {name, 0.0, {"controller '" + name + "'", std::move(settings)}};
 }
 
@@ -81,7 +81,7 @@ TEST(Simulation, AMailboxThatKeepsNothingBackChangesNothing) {
 TEST(Simulation, ARobotWithoutControllerStands) {
   const world::World world = our_world("rooms.world", 3);
   SimulationOptions options;
-  options.actor.plan.controller.clear();
+  options.actor.controller.name.clear();
   Simulation simulation(world, device(), options);
   for (int i = 0; i < 20; ++i) simulation.step();
   const auto tick = simulation.step();
@@ -95,7 +95,7 @@ TEST(Simulation, ARobotWithoutControllerStands) {
 TEST(Simulation, RobotsStartWithTheSignal) {
   const world::World world = our_world("rooms.world", 1);
   SimulationOptions options{.start_at = 1.0};
-  options.actor.plan = plan("wander", {{"start", std::string("signal"), ""}});
+  options.actor.controller = config_of("wander", {{"start", std::string("signal"), ""}});
   Simulation simulation(world, device(), options);
   double moved_at = -1.0;
   for (int i = 0; i < 30 && moved_at < 0.0; ++i) {
@@ -112,8 +112,8 @@ TEST(Simulation, ControllersRunAtTheirOwnRate) {
   world::World world = our_world("testpath/testpath.world");
   world.interval = 0.05;
   SimulationOptions options;
-  options.actor.plan = plan("lane-keeping");
-  options.actor.plan.rate = 4.0;
+  options.actor.controller = config_of("lane-keeping");
+  options.actor.controller.rate = 4.0;
   Simulation simulation(world, device(), options);
   std::vector<int> steps;
   for (int i = 0; i <= 20; ++i) {
@@ -237,7 +237,7 @@ TEST(Simulation, LinksDelayFromWhenAReadingWasMeasured) {
     world::World world = our_world("testpath/testpath.world");
     for (world::Sensor& s : world.movers[0].sensors) s.settings.push_back({"phase", {0.077}, "", 0, ""});
     SimulationOptions options;
-    options.actor.plan = plan("lane-keeping");
+    options.actor.controller = config_of("lane-keeping");
     options.actor.link = {.delay = delay};
     Simulation simulation(world, device(), options);
     int first = -1;
@@ -254,7 +254,7 @@ TEST(Simulation, ADelayedReadingIsSeenThatMuchLater) {
   const world::World world = our_world("testpath/testpath.world");
   for (const double delay : {0.0, 0.5, 1.0}) {
     SimulationOptions options;
-    options.actor.plan = plan("lane-keeping");
+    options.actor.controller = config_of("lane-keeping");
     options.actor.link = {.delay = delay};
     Simulation simulation(world, device(), options);
     int first = -1;
@@ -278,10 +278,10 @@ TEST(Simulation, RobotsHearEachOther) {
   world::update_extent_and_hash(world);
   SimulationOptions options = nobody(world);
   const auto towards = [&](double x) {
-    return plan("patrol", {{"points", std::vector<double>{x, 0.0}, ""}, {"speed", 0.3, ""}});
+    return config_of("patrol", {{"points", std::vector<double>{x, 0.0}, ""}, {"speed", 0.3, ""}});
   };
-  options.actors[rows[0]].plan = towards(3.0);
-  options.actors[rows[1]].plan = towards(0.0);
+  options.actors[rows[0]].controller = towards(3.0);
+  options.actors[rows[1]].controller = towards(0.0);
   Simulation simulation(world, device(), options);
   RunMetrics metrics(world, simulation);
   double gap = 0.0;
@@ -298,9 +298,9 @@ TEST(Simulation, RobotsHearEachOther) {
 TEST(Simulation, UnknownControllersAndSettingsAreRefused) {
   const world::World world = our_world("rooms.world", 1);
   SimulationOptions options;
-  options.actor.plan = plan("wonder");
+  options.actor.controller = config_of("wonder");
   EXPECT_THROW(Simulation(world, device(), options), base::InputError);
-  options.actor.plan = plan("wander", {{"speeed", 1.0, "--set speeed: "}});
+  options.actor.controller = config_of("wander", {{"speeed", 1.0, "--set speeed: "}});
   EXPECT_THROW(Simulation(world, device(), options), base::InputError);
 }
 
@@ -311,8 +311,8 @@ TEST(Simulation, ATickAllocatesNothingAfterWarmUp) {
   options.threads = 1;
   for (const std::uint32_t i : robots_of(world)) {
     options.actors[i].link = {.delay = 0.1, .jitter = 0.2, .loss = 0.1, .seed = 1};
-    options.actors[i].plan =
-        i % 2 == 0 ? plan("patrol", {{"points", std::vector<double>{0.0, 0.0}, ""}}) : plan("wander");
+    options.actors[i].controller =
+        i % 2 == 0 ? config_of("patrol", {{"points", std::vector<double>{0.0, 0.0}, ""}}) : config_of("wander");
   }
   // No robot moves: new places would build cells, which allocates in the farm.
   for (world::Mover& mover : world.movers) mover.max_forward = mover.max_turn = 1e-12;

@@ -20,7 +20,7 @@ struct Ride {
   world::World world = one_mover();
   Supervisor supervisor;
   base::Report report;
-  explicit Ride(const SupervisorSettings& plan, double far = 1.0) : supervisor(world, plan) {
+  explicit Ride(const SupervisorSettings& settings, double far = 1.0) : supervisor(world, settings) {
     report.velocity.forward = 0.1;
     for (; report.X_WM.x < far; report.X_WM.x += 0.01) look(false);
     report.velocity = {};

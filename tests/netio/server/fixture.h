@@ -77,7 +77,7 @@ struct Fixture {
   std::unique_ptr<RobotClient> make_client(std::uint32_t mover) {
     RobotClientOptions options{.wait_for_start = settings.wait_for_start, .log_descriptor = log.descriptor()};
     options.link = {.farm = {netio::kLoopback, service->port()}, .model = {.loss = settings.loss}};
-    options.controller.controller = "wander";
+    options.controller.name = "wander";
     return std::make_unique<RobotClient>(world, sensor_set, mover, layout, options);
   }
   /// Both for some ticks, or the robot alone.

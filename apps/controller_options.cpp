@@ -1,4 +1,4 @@
-#include "apps/driver_options.h"
+#include "apps/controller_options.h"
 
 #include <fmt/format.h>
 
@@ -37,9 +37,9 @@ std::vector<scenarios::Actor> actors_of_world(const world::World& world, const R
                 count == 1 ? "1 robot is" : fmt::format("{} robots are", count), options.controller);
   std::vector<scenarios::Actor> actors;
   for (const world::Mover& mover : world.movers)
-    actors.push_back({.plan = mover.is_tag ? control::ControllerConfig{}
-                              : own(mover) ? control::ControllerConfig{.controller = mover.controller}
-                                           : controller_config_of(options)});
+    actors.push_back({.controller = mover.is_tag ? control::ControllerConfig{}
+                                    : own(mover) ? control::ControllerConfig{.name = mover.controller}
+                                                 : controller_config_of(options)});
   return actors;
 }
 
@@ -49,14 +49,14 @@ std::vector<scenarios::Actor> make_actors(const world::World& world, const RunOp
   if (options.drive.empty()) return actors_of_world(world, options);
   std::vector<std::string_view> names;
   for (const world::Mover& mover : world.movers) names.emplace_back(mover.name);
-  std::vector<scenarios::Actor> actors(world.movers.size(), {.plan = {.controller = ""}});
+  std::vector<scenarios::Actor> actors(world.movers.size(), {.controller = {.name = ""}});
   for (const std::string& name : options.drive) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end())
       throw base::InputError(
           world.file, 0,
           fmt::format("has no robot '{}'{}; --drive expects one of its robots", name, world::suggest(name, names)));
-    actors[static_cast<std::size_t>(found - names.begin())].plan = controller_config_of(options);
+    actors[static_cast<std::size_t>(found - names.begin())].controller = controller_config_of(options);
   }
   return actors;
 }
