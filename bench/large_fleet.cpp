@@ -38,10 +38,10 @@ class Sink {
 
 /// All packets go to one port: stride 0.
 server::StreamLayout plan_for(const sensors::SensorSet& sensor_set, std::uint16_t port) {
-  server::StreamLayout plan;
-  plan.stride = 0;
-  for (const sensors::SensorSet::Group& group : sensor_set.groups()) plan.bases[group.kind->id] = port;
-  return plan;
+  server::StreamLayout layout;
+  layout.stride = 0;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) layout.bases[group.kind->id] = port;
+  return layout;
 }
 
 double percentile(std::vector<double> values, double part) {

@@ -18,7 +18,7 @@ constexpr std::size_t kEvents = 256;
 
 std::vector<SensorPorts> uses_of(std::span<const StreamSpec> streams) {
   std::vector<SensorPorts> uses;
-  for (const StreamSpec& plan : streams) uses.push_back({plan.robot, 1, plan.rule, "", plan.sensor, plan.kind});
+  for (const StreamSpec& spec : streams) uses.push_back({spec.robot, 1, spec.rule, "", spec.sensor, spec.kind});
   return uses;
 }
 
@@ -31,8 +31,8 @@ PortListener::PortListener(std::uint32_t address, std::size_t receive_buffer, st
   epoll_ = Socket(epoll_create1(EPOLL_CLOEXEC));
   if (epoll_.descriptor() < 0) throw base::InputError("no epoll set: " + error_text(errno) + "; raise `ulimit -n`");
 
-  for (const StreamSpec& plan : streams) {
-    const auto own_port = static_cast<std::uint16_t>(port(plan.rule, plan.robot, plan.sensor));
+  for (const StreamSpec& spec : streams) {
+    const auto own_port = static_cast<std::uint16_t>(port(spec.rule, spec.robot, spec.sensor));
     sockets_.push_back(open_udp({address, own_port}, {.receive = receive_buffer}));
     epoll_event readable{};
     readable.events = EPOLLIN;

@@ -8,7 +8,7 @@ Receiver::Receiver(const ReceiverOptions& options)
     : headerless_(options.headerless), inspect_(options.inspect), read_(options.read) {
   SF_CHECK(inspect_ != nullptr && read_ != nullptr, "a receiver without a judge or a reader");
   for (const ReceiverStream& stream : options.streams)
-    streams_.push_back({stream.plan, ReadingAssembler(stream.value_count)});
+    streams_.push_back({stream.spec, ReadingAssembler(stream.value_count)});
 }
 
 void Receiver::set_session(const SessionToken& farm) {
@@ -23,7 +23,7 @@ PartStatus Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, 
   Header header;
   std::span<const std::uint8_t> payload = bytes;
   PayloadInfo info;
-  if (!headerless_) info.status = decode_reading(bytes, stream.plan, header, payload);
+  if (!headerless_) info.status = decode_reading(bytes, stream.spec, header, payload);
   const bool other_session =
       farm_ && !headerless_ && (header.session != farm_->session || header.token != farm_->token);
   if (info.status == PacketStatus::accepted && other_session) info.status = PacketStatus::wrong_source;

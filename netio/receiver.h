@@ -26,7 +26,7 @@ using PayloadReader = std::function<void(std::size_t stream, const Header&, std:
                                          std::span<double> values)>;
 
 struct ReceiverStream {
-  StreamSpec plan;
+  StreamSpec spec;
   std::size_t value_count = 1;  ///< of a complete reading
 };
 
@@ -65,7 +65,7 @@ class Receiver {
 
  private:
   struct Stream {
-    StreamSpec plan;
+    StreamSpec spec;
     ReadingAssembler assembler;
     // Without headers, of the last reading:
     std::uint32_t readings = 0;  ///< readings begun, including it

@@ -29,7 +29,7 @@ void add(SequenceCounts& gaps, const SequenceTracker& tracker) {
 }
 
 struct Stream {
-  StreamSpec plan;
+  StreamSpec spec;
   SequenceTracker tracker;
   std::uint64_t farm = 0;  ///< index of the farm to which the tracker belongs
   SequenceGuard sequences{StreamMonitor::kMaxDropout};
@@ -44,7 +44,7 @@ std::int64_t steady_now() {
 
 }  // namespace
 
-PacketStatus decode_reading(std::span<const std::uint8_t> bytes, const StreamSpec& plan, Header& header,
+PacketStatus decode_reading(std::span<const std::uint8_t> bytes, const StreamSpec& spec, Header& header,
                             std::span<const std::uint8_t>& payload) {
   Packet packet;
   const PacketStatus status = decode(bytes, packet);
@@ -53,7 +53,7 @@ PacketStatus decode_reading(std::span<const std::uint8_t> bytes, const StreamSpe
   if (reading == nullptr) return PacketStatus::wrong_direction;
   header = packet.header;
   payload = reading->payload;
-  return header.robot == plan.robot && header.sensor == plan.sensor ? PacketStatus::accepted
+  return header.robot == spec.robot && header.sensor == spec.sensor ? PacketStatus::accepted
                                                                     : PacketStatus::wrong_source;
 }
 
@@ -63,7 +63,7 @@ struct StreamMonitor::Streams {
         headerless(options.headerless),
         farm(options.farm),
         inspect(options.inspect) {
-    for (const StreamSpec& plan : options.streams) rows.push_back({.plan = plan});
+    for (const StreamSpec& spec : options.streams) rows.push_back({.spec = spec});
   }
 
   PortListener port_listener;
@@ -119,7 +119,7 @@ PacketStatus StreamMonitor::accept(std::size_t i, std::span<const std::uint8_t> 
   PayloadInfo info;
   if (!s.farm.allows(source)) info.status = PacketStatus::wrong_source;
   if (info.status == PacketStatus::accepted && !s.headerless)
-    info.status = decode_reading(bytes, stream.plan, header, payload);
+    info.status = decode_reading(bytes, stream.spec, header, payload);
   if (info.status == PacketStatus::accepted) info = s.inspect(i, header, payload);
   if (info.status == PacketStatus::accepted) info.status = s.check_source(stream, header, source, now);
   s.counts.add(info.status);
@@ -157,7 +157,7 @@ StreamSummary StreamMonitor::summary() const {
   for (const Stream& stream : s.rows) {
     add(gaps, stream.tracker);
     sum.silent_ports += stream.good == 0 ? 1 : 0;
-    StreamSummary::TypeCounts& share = sum.of[stream.plan.kind];
+    StreamSummary::TypeCounts& share = sum.of[stream.spec.kind];
     share.good += stream.good;
     share.elements += stream.elements;
   }

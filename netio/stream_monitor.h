@@ -37,9 +37,9 @@ struct PayloadInfo {
 using PayloadInspector =
     std::function<PayloadInfo(std::size_t stream, const Header&, std::span<const std::uint8_t> payload)>;
 
-/// Splits a reading of the stream `plan` into header and payload (which lives as long as the bytes). Both are filled
+/// Splits a reading of the stream `spec` into header and payload (which lives as long as the bytes). Both are filled
 /// for readings of other streams too.
-PacketStatus decode_reading(std::span<const std::uint8_t> bytes, const StreamSpec& plan, Header& header,
+PacketStatus decode_reading(std::span<const std::uint8_t> bytes, const StreamSpec& spec, Header& header,
                             std::span<const std::uint8_t>& payload);
 
 struct StreamMonitorOptions {

@@ -15,17 +15,18 @@ netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set) {
   return options;
 }
 
-ReadingPublisher::ReadingPublisher(const world::World& world, const sensors::SensorSet& sensor_set, StreamLayout plan,
+ReadingPublisher::ReadingPublisher(const world::World& world, const sensors::SensorSet& sensor_set, StreamLayout layout,
                                    netio::Outbox outbox)
     : world_(world),
       sensor_set_(sensor_set),
-      plan_(std::move(plan)),
+      layout_(std::move(layout)),
       outbox_(std::move(outbox)),
       thread_pool_(sensor_set.count() > kLargeFleet ? 0 : 1),
       memory_(thread_pool_.threads()) {
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
-      streams_[group.kind->id].push_back({0, plan_.sends(*group.kind, row) ? group.kind->parts(row, plan_.wire) : 0});
+      streams_[group.kind->id].push_back(
+          {0, layout_.sends(*group.kind, row) ? group.kind->parts(row, layout_.wire) : 0});
   for (Memory& memory : memory_) {
     memory.payload.reserve(netio::kMaxHeaderlessDatagram);
     memory.packet.reserve(netio::kMaxDatagram);
@@ -51,15 +52,15 @@ std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put
   header.accuracy = netio::encode_accuracy({reading.mode, !reading.quality.empty(), reading.bound});
   header.session = job.addressed.session_token.session;
   header.token = job.addressed.session_token.token;
-  const auto port = static_cast<std::uint16_t>(netio::port(plan_.ports(*job.kind), header.robot, reading.sensor));
+  const auto port = static_cast<std::uint16_t>(netio::port(layout_.ports(*job.kind), header.robot, reading.sensor));
 
   std::uint32_t failed = 0;
   for (std::uint32_t part = 0; part < job.stream->parts; ++part) {
     memory.payload.clear();
-    const std::uint8_t type = job.kind->encode(*job.row, reading, plan_.wire, part, memory.payload);
+    const std::uint8_t type = job.kind->encode(*job.row, reading, layout_.wire, part, memory.payload);
     if (type == 0) {
       ++failed;
-    } else if (plan_.wire == sensors::WireFormat::thesis) {
+    } else if (layout_.wire == sensors::WireFormat::thesis) {
       put(part, netio::Endpoint{job.addressed.address, port}, memory.payload);
     } else {
       netio::encode_reading(header, type, memory.payload, memory.packet);

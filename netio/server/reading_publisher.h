@@ -37,10 +37,11 @@ netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set);
 /// World and roster must outlive it.
 class ReadingPublisher {
  public:
-  ReadingPublisher(const world::World& world, const sensors::SensorSet& sensor_set, StreamLayout plan,
+  ReadingPublisher(const world::World& world, const sensors::SensorSet& sensor_set, StreamLayout layout,
                    netio::Outbox outbox);
 
-  /// Queues each reading's packets to its address, at its sensor's port; none where the plan has none of its sensor's.
+  /// Queues each reading's packets to its address, at its sensor's port; none where the layout has none of its
+  /// sensor's.
   void queue(std::span<const AddressedReading> readings);
   void flush() { outbox_.flush(); }
   PublisherCounts counts() const { return {outbox_.counts(), not_numbers_}; }
@@ -72,7 +73,7 @@ class ReadingPublisher {
 
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
-  StreamLayout plan_;
+  StreamLayout layout_;
   netio::Outbox outbox_;
   base::ThreadPool thread_pool_;
   std::map<std::uint8_t, std::vector<Stream>> streams_;  ///< by kind, per row of its group

@@ -60,7 +60,7 @@ class RobotClient {
  public:
   /// @throws base::InputError for a controller that cannot be had, a port that is taken, a farm's host that is unknown.
   RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-              const StreamLayout& plan, const RobotClientOptions& options);
+              const StreamLayout& layout, const RobotClientOptions& options);
 
   /// Steps at its rate by the machine's clock until `stop` is set, the controller is done, or `duration` [s] have
   /// passed (0: without end); then leaves.

@@ -30,46 +30,46 @@ std::uint32_t listening_address(std::uint32_t farm) { return netio::is_loopback(
 }  // namespace
 
 RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-                     const StreamLayout& plan, const LinkOptions& options, PacketHandler handler)
+                     const StreamLayout& layout, const LinkOptions& options, PacketHandler handler)
     : mover_(mover),
       id_(world.movers[mover].id),
-      streams_(streams_of(sensor_set, plan, mover)),
+      streams_(streams_of(sensor_set, layout, mover)),
       farm_(options.farm),
       v2v_socket_({.farm = farm_, .robot = id_, .others = others_of(world, id_)}),
-      port_listener_(listening_address(farm_.address), std::size_t{1} << 20, plans(plan)),
-      receiver_(receiver_options(plan)),
+      port_listener_(listening_address(farm_.address), std::size_t{1} << 20, specs(layout)),
+      receiver_(receiver_options(layout)),
       out_(options.model),
       in_(options.model),
       handler_(std::move(handler)) {
   receiver_.set_session(v2v_socket_.farm_session_token());
 }
 
-std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
+std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
                                                      std::uint32_t mover) {
   std::vector<Stream> streams;
-  for (const SensorStream& source : sensor_streams(sensor_set, plan, mover))
+  for (const SensorStream& source : sensor_streams(sensor_set, layout, mover))
     if (source.kind->read != nullptr) streams.push_back({source});
   return streams;
 }
 
-std::vector<netio::StreamSpec> RobotLink::plans(const StreamLayout& plan) const {
-  std::vector<netio::StreamSpec> plans;
+std::vector<netio::StreamSpec> RobotLink::specs(const StreamLayout& layout) const {
+  std::vector<netio::StreamSpec> specs;
   for (const Stream& stream : streams_) {
     const sensors::SensorType& kind = *stream.source.kind;
-    plans.push_back({id_, stream.source.row->sensor, plan.ports(kind), std::string(kind.name)});
+    specs.push_back({id_, stream.source.row->sensor, layout.ports(kind), std::string(kind.name)});
   }
-  return plans;
+  return specs;
 }
 
-netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& plan) const {
+netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout) const {
   netio::ReceiverOptions receiver;
-  const std::vector<netio::StreamSpec> all = plans(plan);
+  const std::vector<netio::StreamSpec> all = specs(layout);
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     const SensorStream& source = streams_[i].source;
     receiver.streams.push_back({all[i], source.row->elements * element_width(*source.kind)});
   }
-  receiver.headerless = plan.wire == sensors::WireFormat::thesis;
-  const sensors::WireFormat wire = plan.wire;
+  receiver.headerless = layout.wire == sensors::WireFormat::thesis;
+  const sensors::WireFormat wire = layout.wire;
   receiver.inspect = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
     return inspect_payload(streams_[i].source, wire, header, payload);
   };

@@ -45,7 +45,7 @@ class RobotLink {
 
   /// @throws base::InputError when a port is taken or the farm's host is unknown.
   RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-            const StreamLayout& plan, const LinkOptions& options, PacketHandler handler);
+            const StreamLayout& layout, const LinkOptions& options, PacketHandler handler);
 
   /// Sends a state, and every half a second what it wants to be sent.
   void send_state(const netio::V2v& state, std::int64_t now);
@@ -83,10 +83,10 @@ class RobotLink {
     std::uint64_t piece = 0;     ///< datagrams of it that came before
     std::uint64_t whole = 0;     ///< readings
   };
-  static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
+  static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
                                         std::uint32_t mover);
-  std::vector<netio::StreamSpec> plans(const StreamLayout& plan) const;
-  netio::ReceiverOptions receiver_options(const StreamLayout& plan) const;
+  std::vector<netio::StreamSpec> specs(const StreamLayout& layout) const;
+  netio::ReceiverOptions receiver_options(const StreamLayout& layout) const;
   void send(netio::Type type, std::uint32_t sequence, std::int64_t now);
   /// Sends what is due by then.
   void flush_due(std::int64_t until);

@@ -25,20 +25,20 @@ std::uint8_t type_of(const SensorStream& source, sensors::WireFormat wire, const
 
 }  // namespace
 
-std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& plan) {
+std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& layout) {
   std::vector<SensorStream> sources;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
-      if (plan.sends(*group.kind, row)) sources.push_back({group.kind, &row});
+      if (layout.sends(*group.kind, row)) sources.push_back({group.kind, &row});
   return sources;
 }
 
-std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
+std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
                                          std::uint32_t mover) {
   std::vector<SensorStream> sources;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : sensor_set.of(group.kind->id, mover))
-      if (plan.sends(*group.kind, row)) sources.push_back({group.kind, &row});
+      if (layout.sends(*group.kind, row)) sources.push_back({group.kind, &row});
   return sources;
 }
 

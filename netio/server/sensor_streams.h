@@ -18,9 +18,9 @@ struct SensorStream {
 };
 
 /// All sensors of a world with ports in the layout, ordered by sensor type. Pointers live as long as the sensor set.
-std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& plan);
+std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& layout);
 /// The same for one mover.
-std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
+std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
                                          std::uint32_t mover);
 
 /// Checks the bytes of a payload, which may be any, whose header has the stream's robot and sensor number.

@@ -19,34 +19,34 @@ std::string port_option(const sensors::SensorType& kind) { return "--" + std::st
 
 /// One line for each sensor that the wire cannot carry.
 std::vector<std::string> left_out(const world::World& world, const sensors::SensorSet& sensor_set,
-                                  const StreamLayout& plan) {
+                                  const StreamLayout& layout) {
   std::vector<std::string> lines;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
-      if (const std::string why = group.kind->wire_problem(row, plan.wire); !why.empty())
+      if (const std::string why = group.kind->wire_problem(row, layout.wire); !why.empty())
         lines.push_back(world.movers[row.mover].name + "." + row.name + ": " + why);
   return lines;
 }
 
 /// Notes the sensors that are left out.
 /// @throws base::InputError when no sensor is sent, or one is left out of the farm's own format.
-void note_left_out(const sensors::SensorSet& sensor_set, const std::vector<std::string>& lines, StreamLayout& plan) {
+void note_left_out(const sensors::SensorSet& sensor_set, const std::vector<std::string>& lines, StreamLayout& layout) {
   if (lines.empty()) return;
-  if (plan.wire != sensors::WireFormat::thesis || lines.size() >= sensor_set.count())
+  if (layout.wire != sensors::WireFormat::thesis || lines.size() >= sensor_set.count())
     throw base::InputError(lines.front());
-  for (std::size_t i = 0; i < std::min(lines.size(), kMostNotes); ++i) plan.notes.push_back("left out: " + lines[i]);
+  for (std::size_t i = 0; i < std::min(lines.size(), kMostNotes); ++i) layout.notes.push_back("left out: " + lines[i]);
   if (lines.size() > kMostNotes)
-    plan.notes.push_back(fmt::format("left out: {} more sensors", lines.size() - kMostNotes));
+    layout.notes.push_back(fmt::format("left out: {} more sensors", lines.size() - kMostNotes));
 }
 
 std::vector<netio::SensorPorts> uses_of(const world::World& world, const sensors::SensorSet& sensor_set,
-                                        const StreamLayout& plan) {
+                                        const StreamLayout& layout) {
   std::vector<netio::SensorPorts> uses;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
       const auto rows = sensor_set.of(group.kind->id, m);
       if (rows.empty()) continue;
-      uses.push_back({world.movers[m].id, static_cast<std::uint32_t>(rows.size()), plan.ports(*group.kind),
+      uses.push_back({world.movers[m].id, static_cast<std::uint32_t>(rows.size()), layout.ports(*group.kind),
                       world.movers[m].name, 0, std::string(group.kind->name), port_option(*group.kind)});
     }
   return uses;
@@ -61,22 +61,22 @@ bool StreamLayout::sends_any(const sensors::SensorSet::Group& group) const {
 
 StreamLayout stream_layout(const world::World& world, const sensors::SensorSet& sensor_set,
                            const LayoutOptions& options) {
-  StreamLayout plan{options.base_ports, options.ports_per_robot, options.wire, {}};
-  const bool chosen = plan.stride != 0;
-  if (!chosen) plan.stride = netio::smallest_stride(uses_of(world, sensor_set, plan), kUsualStride);
-  note_left_out(sensor_set, left_out(world, sensor_set, plan), plan);
+  StreamLayout layout{options.base_ports, options.ports_per_robot, options.wire, {}};
+  const bool chosen = layout.stride != 0;
+  if (!chosen) layout.stride = netio::smallest_stride(uses_of(world, sensor_set, layout), kUsualStride);
+  note_left_out(sensor_set, left_out(world, sensor_set, layout), layout);
   std::string bases;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     bases += (bases.empty() ? "" : ", ") + port_option(*group.kind);
   try {
-    netio::require_ports(uses_of(world, sensor_set, plan));
+    netio::require_ports(uses_of(world, sensor_set, layout));
   } catch (const base::InputError& error) {
     throw base::InputError(std::string(error.what()) + " (base: " + bases + "; stride: --ports-per-robot)");
   }
-  if (!chosen && plan.stride != kUsualStride)
-    plan.notes.push_back(
-        fmt::format("{} ports per robot, the least that keeps this world's sensors apart", plan.stride));
-  return plan;
+  if (!chosen && layout.stride != kUsualStride)
+    layout.notes.push_back(
+        fmt::format("{} ports per robot, the least that keeps this world's sensors apart", layout.stride));
+  return layout;
 }
 
 }  // namespace sf::server

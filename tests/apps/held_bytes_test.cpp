@@ -87,11 +87,11 @@ TEST_F(HeldBytes, Packets) {
   gpu::Device device;
   scenarios::Simulation simulation(world, device, {.seed = 1});
   const netio::Socket sink = netio::open_udp({netio::kLoopback, 0}, {.receive = 4u << 20});
-  server::StreamLayout plan;
-  plan.stride = 0;  // all to one port
+  server::StreamLayout layout;
+  layout.stride = 0;  // all to one port
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
-    plan.bases[group.kind->id] = netio::bound_endpoint(sink).port;
-  server::ReadingPublisher post(world, sensor_set, plan, netio::Outbox(server::outbox_options(sensor_set)));
+    layout.bases[group.kind->id] = netio::bound_endpoint(sink).port;
+  server::ReadingPublisher post(world, sensor_set, layout, netio::Outbox(server::outbox_options(sensor_set)));
 
   netio::ReceiveBatch batch(64);
   std::uint64_t hash = 0;

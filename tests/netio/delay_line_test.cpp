@@ -67,9 +67,9 @@ TEST(DelayLine, AllIsLostAtLossOne) {
 
 // With jitter messages arrive at the times of `sample_delay`, in order and once each, whenever they are released.
 TEST(DelayLine, ReleasesInOrderOfArrival) {
-  const LinkModel plan{.delay = 0.01, .jitter = 0.2, .loss = 0.1, .seed = 5};
+  const LinkModel model{.delay = 0.01, .jitter = 0.2, .loss = 0.1, .seed = 5};
   std::mt19937 random(3);  // NOLINT: the same every time
-  DelayLine line(plan);
+  DelayLine line(model);
   std::uint64_t came = 0, lost = 0, overtaken = 0;
   std::int64_t last = -1;
   std::uint32_t last_number = 0;
@@ -77,7 +77,7 @@ TEST(DelayLine, ReleasesInOrderOfArrival) {
   for (std::int64_t now = 0; now < 20'000 * kMilli; now += static_cast<std::int64_t>(random() % 40) * kMilli) {
     const auto n = static_cast<std::uint32_t>(now / kMilli);
     for (const std::uint32_t number : released(line, now)) {
-      const std::int64_t arrival = number * kMilli + *sample_delay(plan, {1, 2, number});
+      const std::int64_t arrival = number * kMilli + *sample_delay(model, {1, 2, number});
       ASSERT_GE(arrival, last);
       ASSERT_LE(arrival, now);
       ASSERT_GT(arrival, before) << "was due when we looked last";
@@ -87,7 +87,7 @@ TEST(DelayLine, ReleasesInOrderOfArrival) {
       ++came;
     }
     before = now;
-    if (!sample_delay(plan, {1, 2, n})) ++lost;
+    if (!sample_delay(model, {1, 2, n})) ++lost;
     send(line, n, now);
   }
   EXPECT_EQ(line.counts().lost, lost);

@@ -42,7 +42,7 @@ PayloadInfo inspect(std::size_t, const Header&, std::span<const std::uint8_t> pa
 std::unique_ptr<StreamMonitor> listen(std::vector<StreamSpec>& streams, bool headerless = false,
                                       const PayloadInspector& judging = inspect) {
   for (std::uint32_t base = 12'000; base < 32'000; base += 200) {
-    for (StreamSpec& plan : streams) plan.rule.base = base;
+    for (StreamSpec& spec : streams) spec.rule.base = base;
     try {
       return std::make_unique<StreamMonitor>(
           StreamMonitorOptions{.headerless = headerless, .streams = streams, .inspect = judging});
@@ -53,8 +53,8 @@ std::unique_ptr<StreamMonitor> listen(std::vector<StreamSpec>& streams, bool hea
   throw base::InputError("no 200 free ports between 12000 and 32000");
 }
 
-Endpoint port_of(const StreamSpec& plan) {
-  return {kLoopback, static_cast<std::uint16_t>(port(plan.rule, plan.robot, plan.sensor))};
+Endpoint port_of(const StreamSpec& spec) {
+  return {kLoopback, static_cast<std::uint16_t>(port(spec.rule, spec.robot, spec.sensor))};
 }
 
 base::Bytes reading(std::uint32_t robot, std::uint32_t sensor, std::uint32_t sequence, const base::Bytes& payload) {
@@ -65,8 +65,8 @@ base::Bytes reading(std::uint32_t robot, std::uint32_t sensor, std::uint32_t seq
   return bytes;
 }
 
-void send(Outbox& outbox, const StreamSpec& plan, std::uint32_t sequence, const base::Bytes& payload) {
-  outbox.queue(port_of(plan), reading(plan.robot, plan.sensor, sequence, payload));
+void send(Outbox& outbox, const StreamSpec& spec, std::uint32_t sequence, const base::Bytes& payload) {
+  outbox.queue(port_of(spec), reading(spec.robot, spec.sensor, sequence, payload));
 }
 
 void drain(StreamMonitor& monitor, std::uint64_t until) {
@@ -82,7 +82,7 @@ TEST(StreamMonitor, AThousandPacketsArrive) {
   payload[0] = 200;
   payload[2] = 1;
   for (std::uint32_t scan = 0; scan < 10; ++scan) {
-    for (const StreamSpec& plan : streams) send(outbox, plan, scan, payload);
+    for (const StreamSpec& spec : streams) send(outbox, spec, scan, payload);
     outbox.flush();
     drain(*monitor, 100 * (scan + 1));
   }

@@ -64,10 +64,10 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
   const sensors::SensorSet sensor_set(world);
   const netio::Socket ears = netio::open_udp({netio::kLoopback, 0}, {.receive = 32u << 20});
   if (netio::receive_buffer(ears) < 2'000 * robots) GTEST_SKIP() << "this user's receive buffers hold too little";
-  StreamLayout plan;
-  plan.stride = 0;  // all to one port
-  plan.bases[base::kLaser] = netio::bound_endpoint(ears).port;
-  ReadingPublisher post(world, sensor_set, plan, netio::Outbox(outbox_options(sensor_set)));
+  StreamLayout layout;
+  layout.stride = 0;  // all to one port
+  layout.bases[base::kLaser] = netio::bound_endpoint(ears).port;
+  ReadingPublisher post(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)));
 
   const Day day(robots, 5);
   const sensors::SensorType& kind = *sensor_set.group(base::kLaser)->kind;
