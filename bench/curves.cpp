@@ -142,10 +142,10 @@ void write_curves(const std::vector<Curve>& curves, const std::string& folder) {
 
 void draw_curves(const std::vector<Curve>& curves, const std::string& folder) {
   if (curves.empty()) return;
-  viz::SeriesOptions plan;
-  plan.title = "Cost of a tick";
-  plan.subtitle = "361 beams to 8 m a robot; a line's slope is the exponent of growth";
-  plan.x_name = "robots or segments, as powers of ten";
+  viz::SeriesOptions options;
+  options.title = "Cost of a tick";
+  options.subtitle = "361 beams to 8 m a robot; a line's slope is the exponent of growth";
+  options.x_name = "robots or segments, as powers of ten";
   viz::Panel time{"", "CPU time [ms], as powers of ten", {}, false},
       memory{"", "memory [MiB], as powers of ten", {}, false};
   for (const Curve& curve : curves) {
@@ -159,8 +159,8 @@ void draw_curves(const std::vector<Curve>& curves, const std::string& folder) {
     time.series.push_back(cost);
     memory.series.push_back(held);
   }
-  plan.panels = {time, memory};
-  viz::draw_series(plan, folder + "/cost.png");
+  options.panels = {time, memory};
+  viz::draw_series(options, folder + "/cost.png");
 }
 
 }  // namespace sf::bench

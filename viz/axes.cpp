@@ -68,16 +68,16 @@ std::string fitted(std::string text, const TextStyle& style, double width) {
   return text + "...";
 }
 
-void draw_names(Canvas& canvas, const FigureLayout& at, const FigureOptions& plan) {
+void draw_names(Canvas& canvas, const FigureLayout& at, const FigureOptions& options) {
   const double room = at.width - at.plot.x_min - 20.0;
   TextStyle style;
   style.size = 28;
   style.bold = true;
-  canvas.text({at.plot.x_min + 0.0, 42.0}, fitted(plan.title, style, room), style);
+  canvas.text({at.plot.x_min + 0.0, 42.0}, fitted(options.title, style, room), style);
   style = small_text();
   style.size = 19;
   style.color = theme::kLabel;
-  canvas.text({at.plot.x_min + 0.0, 77.0}, fitted(plan.subtitle, style, room), style);
+  canvas.text({at.plot.x_min + 0.0, 77.0}, fitted(options.subtitle, style, room), style);
 
   style = small_text();
   style.across = Anchor::middle;
@@ -122,15 +122,15 @@ void draw_bar(Canvas& canvas, const FigureLayout& at, const ColorBar& bar) {
 
 }  // namespace
 
-Axes::Axes(FigureOptions plan)
-    : plan_(std::move(plan)), layout_(lay_out(plan_)), canvas_(layout_.width, layout_.height, theme::kWhite) {
+Axes::Axes(FigureOptions options)
+    : options_(std::move(options)), layout_(lay_out(options_)), canvas_(layout_.width, layout_.height, theme::kWhite) {
   canvas_.clip(layout_.plot);
   const PixelBox& p = layout_.plot;
   const glm::dvec2 corners[] = {{p.x_min + 0.0, p.y_min + 0.0},
                                 {p.x_max + 0.0, p.y_min + 0.0},
                                 {p.x_max + 0.0, p.y_max + 0.0},
                                 {p.x_min + 0.0, p.y_max + 0.0}};
-  canvas_.polygon(corners, plan_.background);
+  canvas_.polygon(corners, options_.background);
   draw_grid(canvas_, layout_);
 }
 
@@ -138,10 +138,10 @@ void Axes::save(const std::string& path) {
   canvas_.unclip();
   draw_frame(canvas_, layout_.plot);
   draw_ticks(canvas_, layout_);
-  draw_names(canvas_, layout_, plan_);
+  draw_names(canvas_, layout_, options_);
   draw_scale_bar(canvas_, layout_);
-  if (plan_.bar) draw_bar(canvas_, layout_, *plan_.bar);
-  draw_legend(canvas_, {layout_.plot.x_min + 0.0, layout_.legend_top}, plan_.legend, layout_.legend);
+  if (options_.bar) draw_bar(canvas_, layout_, *options_.bar);
+  draw_legend(canvas_, {layout_.plot.x_min + 0.0, layout_.legend_top}, options_.legend, layout_.legend);
   canvas_.save_png(path);
 }
 

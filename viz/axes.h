@@ -48,12 +48,12 @@ struct FigureLayout {
   std::vector<LegendPlace> legend;
   double legend_top = 0.0;
 };
-FigureLayout lay_out(const FigureOptions& plan);
+FigureLayout lay_out(const FigureOptions& options);
 
 class Axes {
  public:
   /// Paints background and grid. Until `save`, drawing on the canvas is clipped to the plot.
-  explicit Axes(FigureOptions plan);
+  explicit Axes(FigureOptions options);
 
   Canvas& canvas() { return canvas_; }
   const FigureLayout& layout() const { return layout_; }
@@ -69,7 +69,7 @@ class Axes {
   void save(const std::string& path);
 
  private:
-  FigureOptions plan_;
+  FigureOptions options_;
   FigureLayout layout_;
   Canvas canvas_;
 };

@@ -20,11 +20,11 @@ struct Size {
 };
 
 /// The extent with its margin, never empty.
-world::Extent padded(const FigureOptions& plan) {
-  world::Extent e = plan.extent;
+world::Extent padded(const FigureOptions& options) {
+  world::Extent e = options.extent;
   SF_CHECK(std::isfinite(e.x_min + e.x_max + e.y_min + e.y_max) && e.x_min <= e.x_max && e.y_min <= e.y_max,
            "the extent of a figure must be finite and in order");
-  double pad = plan.margin * std::max(e.x_max - e.x_min, e.y_max - e.y_min);
+  double pad = options.margin * std::max(e.x_max - e.x_min, e.y_max - e.y_min);
   if (e.x_min == e.x_max && e.y_min == e.y_max) pad = 1.0;
   e.x_min -= pad, e.y_min -= pad, e.x_max += pad, e.y_max += pad;
   return e;
@@ -39,10 +39,10 @@ double widest_label(double from, double to, double smallest_step) {
   return widest;
 }
 
-double bar_width(const FigureOptions& plan) {
-  if (!plan.bar) return 0.0;
+double bar_width(const FigureOptions& options) {
+  if (!options.bar) return 0.0;
   const TextStyle style = small_text();
-  const double texts = std::max(text_size(plan.bar->low, style).x, text_size(plan.bar->high, style).x);
+  const double texts = std::max(text_size(options.bar->low, style).x, text_size(options.bar->high, style).x);
   return 84.0 + texts;
 }
 
@@ -55,19 +55,20 @@ void fill_plot(world::Extent& shown, Size plot, double scale) {
 
 }  // namespace
 
-FigureLayout lay_out(const FigureOptions& plan) {
-  SF_CHECK(plan.long_side >= 600 && plan.long_side <= 8000, "long side " + std::to_string(plan.long_side) + " px");
-  const world::Extent wanted = padded(plan);
+FigureLayout lay_out(const FigureOptions& options) {
+  SF_CHECK(options.long_side >= 600 && options.long_side <= 8000,
+           "long side " + std::to_string(options.long_side) + " px");
+  const world::Extent wanted = padded(options);
   const Size extent{std::max(wanted.x_max - wanted.x_min, 1e-9), std::max(wanted.y_max - wanted.y_min, 1e-9)};
-  const double right = kEdge + bar_width(plan);
-  const double header = plan.title.empty() ? kEdge : kEdge + kTitle;
+  const double right = kEdge + bar_width(options);
+  const double header = options.title.empty() ? kEdge : kEdge + kTitle;
 
   // Labels, legend and scale depend on each other; two iterations suffice.
   FigureLayout layout;
   double left = kEdge + kAxisName + 40.0;
   double footer = kTicksBelow + kLegendRow + kEdge;
   for (int round = 0; round < 3; ++round) {
-    const Size room{plan.long_side - left - right, plan.long_side - header - footer};
+    const Size room{options.long_side - left - right, options.long_side - header - footer};
     layout.scale = std::min(room.x / extent.x, room.y / extent.y);
     const Size plot{std::clamp(std::round(extent.x * layout.scale), std::min(kSmallestWide, room.x), room.x),
                     std::clamp(std::round(extent.y * layout.scale), std::min(kSmallestHigh, room.y), room.y)};
@@ -78,7 +79,7 @@ FigureLayout lay_out(const FigureOptions& plan) {
     layout.plot.y_max = layout.plot.y_min + static_cast<int>(plot.y);
 
     // The scale bar is in the row of the axis' name, so the legend has the whole width.
-    layout.legend = place_legend(plan.legend, plot.x);
+    layout.legend = place_legend(options.legend, plot.x);
     const int rows = layout.legend.empty() ? 0 : layout.legend.back().row + 1;
     const double x_label = widest_label(layout.shown.x_min, layout.shown.x_max, layout.tick_spacing / layout.scale);
     layout.tick_spacing = std::max(layout.tick_spacing, x_label + 20.0);

@@ -39,17 +39,17 @@ FigureOptions plan_of(const world::World& world, const ScanHitGrid& grid) {
     return LegendItem{LegendMark::block, theme::kCellStates[static_cast<std::size_t>(state)],
                       fmt::format("{} {:.1f} %", name, 100.0 * share), theme::kFrame};
   };
-  FigureOptions plan;
-  plan.title = "Occupancy";
-  plan.subtitle =
+  FigureOptions options;
+  options.title = "Occupancy";
+  options.subtitle =
       fmt::format("{}{}{:.1f} % explored, {} x {} cells of {:g} m", world.name, world.name.empty() ? "" : ": ",
                   100.0 * (1.0 - part.unexplored), grid.columns(), grid.rows(), grid.cell());
-  plan.extent = grid.extent();
-  plan.margin = 0.0;
-  plan.background = theme::kCellStates[0];
-  plan.legend = {item(CellState::free, "free", part.free), item(CellState::occupied, "occupied", part.occupied),
-                 item(CellState::unexplored, "unexplored", part.unexplored)};
-  return plan;
+  options.extent = grid.extent();
+  options.margin = 0.0;
+  options.background = theme::kCellStates[0];
+  options.legend = {item(CellState::free, "free", part.free), item(CellState::occupied, "occupied", part.occupied),
+                    item(CellState::unexplored, "unexplored", part.unexplored)};
+  return options;
 }
 
 }  // namespace

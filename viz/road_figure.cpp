@@ -183,15 +183,15 @@ std::string subtitle_of(const RoadNetwork& network) {
 }  // namespace
 
 void draw_roads(const RoadNetwork& network, const std::string& png_path) {
-  FigureOptions plan;
-  plan.title =
+  FigureOptions options;
+  options.title =
       printable(network.name.empty() ? std::filesystem::path(network.file).filename().string() : network.name, 120);
-  plan.subtitle = subtitle_of(network);
-  plan.extent = network.extent;
-  plan.background = theme::kRoadGround;
-  plan.legend = legend_of(network);
-  plan.long_side = picture_size(network);
-  Axes axes(std::move(plan));
+  options.subtitle = subtitle_of(network);
+  options.extent = network.extent;
+  options.background = theme::kRoadGround;
+  options.legend = legend_of(network);
+  options.long_side = picture_size(network);
+  Axes axes(std::move(options));
   const FigureLayout& layout = axes.layout();
   const RoadView view{axes.canvas(), layout.plot, {layout.shown.x_min, layout.shown.y_min}, layout.scale};
   draw_network(view, network);

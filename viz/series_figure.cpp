@@ -57,13 +57,13 @@ Span with_zero(Span span) {
   return span;
 }
 
-Span time_span(const SeriesOptions& plan) {
+Span time_span(const SeriesOptions& options) {
   std::optional<Span> span;
-  for (const Panel& panel : plan.panels)
+  for (const Panel& panel : options.panels)
     for (const Series& series : panel.series) widen(span, series.times, [](double t) { return std::isfinite(t); });
   if (!span) return {0.0, 1.0};
   if (!(span->to > span->from)) return {span->from - 0.5, span->to + 0.5};
-  return plan.from_zero ? with_zero(*span) : *span;
+  return options.from_zero ? with_zero(*span) : *span;
 }
 
 /// The span of a panel's values with a margin, never empty.
@@ -97,25 +97,26 @@ double widest_label(const Span& shown, double height) {
 
 double plot_height(std::size_t panels) { return panels == 1 ? 620.0 : panels == 2 ? 420.0 : 300.0; }
 
-std::vector<PlotArea> lay_out(const SeriesOptions& plan) {
-  const double height = plot_height(plan.panels.size());
+std::vector<PlotArea> lay_out(const SeriesOptions& options) {
+  const double height = plot_height(options.panels.size());
   double left = 0.0;
-  for (const Panel& panel : plan.panels) left = std::max(left, widest_label(value_span(panel, plan.from_zero), height));
+  for (const Panel& panel : options.panels)
+    left = std::max(left, widest_label(value_span(panel, options.from_zero), height));
   left += kEdge + kAxisName + 14.0;
 
   std::vector<PlotArea> places;
   double top = kHeader;
-  for (const Panel& panel : plan.panels) {
+  for (const Panel& panel : options.panels) {
     PlotArea& place = places.emplace_back();
-    place.time = time_span(plan);
-    place.shown = value_span(panel, plan.from_zero);
+    place.time = time_span(options);
+    place.shown = value_span(panel, options.from_zero);
     if (!panel.title.empty()) top += kPanelTitle;
-    place.plot = {static_cast<int>(left), static_cast<int>(top), plan.width - static_cast<int>(kEdge),
+    place.plot = {static_cast<int>(left), static_cast<int>(top), options.width - static_cast<int>(kEdge),
                   static_cast<int>(top + height)};
     for (const std::size_t row : named_rows(panel.series.size()))
       place.legend.push_back({LegendMark::line, row_color(row, panel.series.size()), panel.series[row].name});
     place.legend_at = place_legend(place.legend, place.plot.x_max - place.plot.x_min);
-    const bool last = &panel == &plan.panels.back();
+    const bool last = &panel == &options.panels.back();
     place.legend_top = place.plot.y_max + (last ? kTicksBelow + 8.0 : 20.0);
     const int rows = place.legend_at.empty() ? 0 : place.legend_at.back().row + 1;
     top = place.legend_top + rows * kLegendRow + 14.0;
@@ -189,29 +190,29 @@ void draw_panel(Canvas& canvas, const Panel& panel, const PlotArea& at, const st
 
 }  // namespace
 
-void draw_series(const SeriesOptions& plan, const std::string& png_path) {
-  SF_CHECK(!plan.panels.empty() && plan.panels.size() <= 16, std::to_string(plan.panels.size()) + " panels");
-  SF_CHECK(plan.width >= 600 && plan.width <= 8000, "width " + std::to_string(plan.width) + " px");
-  for (const Panel& panel : plan.panels)
+void draw_series(const SeriesOptions& options, const std::string& png_path) {
+  SF_CHECK(!options.panels.empty() && options.panels.size() <= 16, std::to_string(options.panels.size()) + " panels");
+  SF_CHECK(options.width >= 600 && options.width <= 8000, "width " + std::to_string(options.width) + " px");
+  for (const Panel& panel : options.panels)
     for (const Series& series : panel.series)
       SF_CHECK(series.times.size() == series.values.size(), "series " + series.name + " has " +
                                                                 std::to_string(series.times.size()) + " times for " +
                                                                 std::to_string(series.values.size()) + " values");
 
-  const std::vector<PlotArea> places = lay_out(plan);
+  const std::vector<PlotArea> places = lay_out(options);
   const PlotArea& last = places.back();
   const int rows = last.legend_at.empty() ? 0 : last.legend_at.back().row + 1;
-  Canvas canvas(plan.width, static_cast<int>(last.legend_top + rows * kLegendRow + kEdge), theme::kWhite);
+  Canvas canvas(options.width, static_cast<int>(last.legend_top + rows * kLegendRow + kEdge), theme::kWhite);
   TextStyle style;
   style.size = 28;
   style.bold = true;
-  canvas.text({last.plot.x_min + 0.0, 42.0}, plan.title, style);
+  canvas.text({last.plot.x_min + 0.0, 42.0}, options.title, style);
   style = small_text();
   style.size = 19;
   style.color = theme::kLabel;
-  canvas.text({last.plot.x_min + 0.0, 77.0}, plan.subtitle, style);
+  canvas.text({last.plot.x_min + 0.0, 77.0}, options.subtitle, style);
   for (std::size_t i = 0; i < places.size(); ++i)
-    draw_panel(canvas, plan.panels[i], places[i], i + 1 == places.size() ? plan.x_name : "");
+    draw_panel(canvas, options.panels[i], places[i], i + 1 == places.size() ? options.x_name : "");
   canvas.save_png(png_path);
 }
 

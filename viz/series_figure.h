@@ -34,6 +34,6 @@ struct SeriesOptions {
 /// Draws each series in the colour of its row. Up to seven are named below their panel; of more, seven from the first
 /// to the last.
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_series(const SeriesOptions& plan, const std::string& png_path);
+void draw_series(const SeriesOptions& options, const std::string& png_path);
 
 }  // namespace sf::viz

@@ -57,26 +57,26 @@ std::string subtitle_of(const World& world, std::span<const Track> tracks, const
 
 FigureOptions plan_of(const World& world, std::span<const Track> tracks, const TownFinalState& end,
                       const std::vector<Group>& groups) {
-  FigureOptions plan;
-  plan.title = "Town traffic";
-  plan.subtitle = subtitle_of(world, tracks, end);
-  plan.extent = world.extent;
-  plan.legend = wall_legend(world, WallColors::of_models);
-  plan.legend.push_back({LegendMark::block, theme::kAsphaltBand, "street, with its paint"});
+  FigureOptions options;
+  options.title = "Town traffic";
+  options.subtitle = subtitle_of(world, tracks, end);
+  options.extent = world.extent;
+  options.legend = wall_legend(world, WallColors::of_models);
+  options.legend.push_back({LegendMark::block, theme::kAsphaltBand, "street, with its paint"});
   const auto has = [&](Group group) { return std::find(groups.begin(), groups.end(), group) != groups.end(); };
   const auto add = [&](Group group, const char* body, const char* way) {
     if (!has(group)) return;
-    plan.legend.push_back({LegendMark::robot, color_of(group), body});
-    plan.legend.push_back({LegendMark::line, color_of(group), way});
+    options.legend.push_back({LegendMark::robot, color_of(group), body});
+    options.legend.push_back({LegendMark::line, color_of(group), way});
   };
   add(Group::car, "car", "its way");
   add(Group::convoy, "in a convoy", "its way");
-  if (has(Group::convoy)) plan.legend.push_back({LegendMark::line, theme::kInk, "follows"});
-  if (has(Group::other)) plan.legend.push_back({LegendMark::dot, theme::kOtherRobot, "pedestrian"});
-  for (const LegendItem& item : lights_legend(world, end.time)) plan.legend.push_back(item);
+  if (has(Group::convoy)) options.legend.push_back({LegendMark::line, theme::kInk, "follows"});
+  if (has(Group::other)) options.legend.push_back({LegendMark::dot, theme::kOtherRobot, "pedestrian"});
+  for (const LegendItem& item : lights_legend(world, end.time)) options.legend.push_back(item);
   if (std::any_of(tracks.begin(), tracks.end(), [](const Track& t) { return contact_count(t) > 0; }))
-    plan.legend.push_back({LegendMark::cross, theme::kContact, "contact"});
-  return plan;
+    options.legend.push_back({LegendMark::cross, theme::kContact, "contact"});
+  return options;
 }
 
 /// A line from the follower's middle to the edge of the robot ahead, with an arrow head at its end.

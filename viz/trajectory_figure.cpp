@@ -65,26 +65,26 @@ std::string subtitle_of(const World& world, std::span<const Track> tracks, std::
 }
 
 FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::string_view what) {
-  FigureOptions plan;
-  plan.title = "Trajectories";
-  plan.subtitle = subtitle_of(world, tracks, what);
-  plan.extent = extent_of(world, tracks);
-  plan.legend = wall_legend(world, WallColors::quiet);
-  for (const LegendItem& item : road_legend(world)) plan.legend.push_back(item);
+  FigureOptions options;
+  options.title = "Trajectories";
+  options.subtitle = subtitle_of(world, tracks, what);
+  options.extent = extent_of(world, tracks);
+  options.legend = wall_legend(world, WallColors::quiet);
+  for (const LegendItem& item : road_legend(world)) options.legend.push_back(item);
   const std::uint32_t sample = tracks.size() <= kNamedTracks ? theme::kFrame : ramp(0.3);
-  plan.legend.push_back({LegendMark::ring, sample, "start"});
-  plan.legend.push_back({LegendMark::dot, sample, "end"});
-  plan.legend.push_back({LegendMark::cross, theme::kContact, "contact"});
+  options.legend.push_back({LegendMark::ring, sample, "start"});
+  options.legend.push_back({LegendMark::dot, sample, "end"});
+  options.legend.push_back({LegendMark::cross, theme::kContact, "contact"});
   if (tracks.size() <= kNamedTracks) {
     for (std::size_t i = 0; i < tracks.size(); ++i)
-      plan.legend.push_back({LegendMark::line, color_of(tracks, i), tracks[i].name});
-    return plan;
+      options.legend.push_back({LegendMark::line, color_of(tracks, i), tracks[i].name});
+    return options;
   }
   ColorBar bar{std::string(what), tracks.front().name, tracks.back().name, {}};
   const std::size_t steps = std::min<std::size_t>(tracks.size(), 512);
   for (std::size_t k = 0; k < steps; ++k) bar.colors.push_back(color_of(tracks, k * (tracks.size() - 1) / (steps - 1)));
-  plan.bar = std::move(bar);
-  return plan;
+  options.bar = std::move(bar);
+  return options;
 }
 
 }  // namespace

@@ -156,12 +156,12 @@ std::string subtitle_of(const World& world) {
 }  // namespace
 
 void draw_world(const World& world, const std::string& png_path) {
-  FigureOptions plan;
-  plan.title = world.name.empty() ? std::filesystem::path(world.file).filename().string() : world.name;
-  plan.subtitle = subtitle_of(world);
-  plan.extent = world.extent;
-  plan.legend = legend_of(world);
-  Axes axes(std::move(plan));
+  FigureOptions options;
+  options.title = world.name.empty() ? std::filesystem::path(world.file).filename().string() : world.name;
+  options.subtitle = subtitle_of(world);
+  options.extent = world.extent;
+  options.legend = legend_of(world);
+  Axes axes(std::move(options));
   draw_lane_markings(axes, world);
   draw_floor_holes(axes, world);
   draw_magnets(axes, world);

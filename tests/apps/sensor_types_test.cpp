@@ -250,7 +250,7 @@ TEST_F(Kinds, ARobotGetsTheKindsItAsksFor) {
 /// The figure of two magnetometers of two elements each, in Gauss: a panel each, and what the last has more than the
 /// first.
 viz::SeriesOptions fields_of(const record::Recording& recording) {
-  viz::SeriesOptions plan{"Magnetic field", recording.info.world + ": 2 sensors", {}};
+  viz::SeriesOptions options{"Magnetic field", recording.info.world + ": 2 sensors", {}};
   viz::Panel difference{"last element less the first", "|B| [G]", {}};
   for (std::uint32_t mover = 0; mover < 2; ++mover) {
     const std::string& name = recording.info.movers[mover].name;
@@ -262,11 +262,11 @@ viz::SeriesOptions fields_of(const record::Recording& recording) {
       last.values.push_back(1e4 * reading.values[4]);
       more.values.push_back(1e4 * (reading.values[4] - reading.values[0]));
     }
-    plan.panels.push_back({name, "|B| [G]", {first, last}});
+    options.panels.push_back({name, "|B| [G]", {first, last}});
     difference.series.push_back(more);
   }
-  plan.panels.push_back(difference);
-  return plan;
+  options.panels.push_back(difference);
+  return options;
 }
 
 TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {

@@ -53,18 +53,18 @@ struct Shape {
 class LayoutOf : public testing::TestWithParam<Shape> {};
 
 TEST_P(LayoutOf, ShowsEverythingAtOneScale) {
-  FigureOptions plan;
-  plan.title = "a title";
-  plan.subtitle = "and what is below it";
-  plan.extent = GetParam().extent;
-  for (int i = 0; i < 9; ++i) plan.legend.push_back({LegendMark::line, 0xFF000000u, "an item of the legend"});
-  const FigureLayout at = lay_out(plan);
+  FigureOptions options;
+  options.title = "a title";
+  options.subtitle = "and what is below it";
+  options.extent = GetParam().extent;
+  for (int i = 0; i < 9; ++i) options.legend.push_back({LegendMark::line, 0xFF000000u, "an item of the legend"});
+  const FigureLayout at = lay_out(options);
   EXPECT_LE(std::max(at.width, at.height), 1602);
   EXPECT_GE(std::max(at.width, at.height), 1500);
-  EXPECT_LE(at.shown.x_min, plan.extent.x_min);
-  EXPECT_LE(at.shown.y_min, plan.extent.y_min);
-  EXPECT_GE(at.shown.x_max, plan.extent.x_max);
-  EXPECT_GE(at.shown.y_max, plan.extent.y_max);
+  EXPECT_LE(at.shown.x_min, options.extent.x_min);
+  EXPECT_LE(at.shown.y_min, options.extent.y_min);
+  EXPECT_GE(at.shown.x_max, options.extent.x_max);
+  EXPECT_GE(at.shown.y_max, options.extent.y_max);
   EXPECT_NEAR((at.shown.x_max - at.shown.x_min) * at.scale, at.plot.x_max - at.plot.x_min, 1.0);
   EXPECT_NEAR((at.shown.y_max - at.shown.y_min) * at.scale, at.plot.y_max - at.plot.y_min, 1.0);
   EXPECT_LT(at.plot.x_max, at.width);
@@ -85,9 +85,9 @@ INSTANTIATE_TEST_SUITE_P(Shapes, LayoutOf,
 
 TEST(Layout, LabelsDoNotRunIntoEachOther) {  // long numbers are further apart
   for (const double offset : {0.0, 1e5, 1e7}) {
-    FigureOptions plan;
-    plan.extent = {offset, 0, offset + 1.3, 0.7};
-    const FigureLayout at = lay_out(plan);
+    FigureOptions options;
+    options.extent = {offset, 0, offset + 1.3, 0.7};
+    const FigureLayout at = lay_out(options);
     const Ticks ticks = make_ticks(at.shown.x_min, at.shown.x_max, at.tick_spacing / at.scale);
     ASSERT_GE(ticks.at.size(), 2u);
     for (const double value : ticks.at)
@@ -96,10 +96,10 @@ TEST(Layout, LabelsDoNotRunIntoEachOther) {  // long numbers are further apart
 }
 
 TEST(Axes, PixelsAndMetresAgree) {
-  FigureOptions plan;
-  plan.extent = {0, 0, 20, 10};
-  plan.margin = 0.0;
-  const Axes axes(plan);
+  FigureOptions options;
+  options.extent = {0, 0, 20, 10};
+  options.margin = 0.0;
+  const Axes axes(options);
   const PixelBox& plot = axes.layout().plot;
   EXPECT_NEAR(axes.pixel({0, 0}).x, plot.x_min, 1e-9);
   EXPECT_NEAR(axes.pixel({0, 0}).y, plot.y_max, 1.0);
@@ -108,13 +108,13 @@ TEST(Axes, PixelsAndMetresAgree) {
 }
 
 TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // no text is cut off
-  FigureOptions plan;
-  plan.title = std::string(200, 'W');
-  plan.subtitle = std::string(300, 'w');
-  plan.extent = {99999000, -99999000, 99999020, -99998990};
-  plan.legend.assign(12, {LegendMark::block, 0xFF00FF00u, "something to be known", 0xFF000000u});
-  plan.bar = ColorBar{"robot", "the first", "the last of them all", {0xFF000000u, 0xFFFF0000u}};
-  Axes axes(plan);
+  FigureOptions options;
+  options.title = std::string(200, 'W');
+  options.subtitle = std::string(300, 'w');
+  options.extent = {99999000, -99999000, 99999020, -99998990};
+  options.legend.assign(12, {LegendMark::block, 0xFF00FF00u, "something to be known", 0xFF000000u});
+  options.bar = ColorBar{"robot", "the first", "the last of them all", {0xFF000000u, 0xFFFF0000u}};
+  Axes axes(options);
   const std::string path = scenes::own_file("axes.png");
   axes.save(path);
   const scenes::Picture p = scenes::read_png(path);
@@ -128,10 +128,10 @@ TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // no text is cut off
 /// Above the bar's middle only the upper label differs between the pictures, below it only the lower one.
 TEST(Axes, TheBarsLabelsAreAtTheirEnds) {
   const auto draw = [](const char* low, const char* high, const char* name) {
-    FigureOptions plan;
-    plan.extent = {0, 0, 10, 5};
-    plan.bar = ColorBar{"", low, high, {0xFF000000u, 0xFFFF0000u}};
-    Axes axes(plan);
+    FigureOptions options;
+    options.extent = {0, 0, 10, 5};
+    options.bar = ColorBar{"", low, high, {0xFF000000u, 0xFFFF0000u}};
+    Axes axes(options);
     axes.save(scenes::own_file(name));
     return scenes::read_png(scenes::own_file(name));
   };
@@ -151,11 +151,11 @@ TEST(Axes, TheBarsLabelsAreAtTheirEnds) {
 }
 
 TEST(Axes, TitleAndLegendAreThere) {
-  FigureOptions plan;
-  plan.title = "TITLE";
-  plan.extent = {0, 0, 10, 5};
-  plan.legend = {{LegendMark::block, 0xFF00AA00u, "green"}};
-  Axes axes(plan);
+  FigureOptions options;
+  options.title = "TITLE";
+  options.extent = {0, 0, 10, 5};
+  options.legend = {{LegendMark::block, 0xFF00AA00u, "green"}};
+  Axes axes(options);
   const FigureLayout at = axes.layout();
   const std::string path = scenes::own_file("legend.png");
   axes.save(path);

@@ -91,10 +91,10 @@ TEST(PathFigure, AFolderThatIsNotThereIsNamed) {
 
 /// The axis of a sweep has its own name: the pictures differ there, below the plot, and nowhere else.
 TEST(SeriesFigureAxis, SaysWhatWasVaried) {
-  SeriesOptions plan{.title = "T", .panels = {{"", "y", {{"a", {0.0, 1.0}, {1.0, 2.0}}}}}};
-  draw_series(plan, file("axis_a.png"));
-  plan.x_name = "delay of readings [s]";
-  draw_series(plan, file("axis_b.png"));
+  SeriesOptions options{.title = "T", .panels = {{"", "y", {{"a", {0.0, 1.0}, {1.0, 2.0}}}}}};
+  draw_series(options, file("axis_a.png"));
+  options.x_name = "delay of readings [s]";
+  draw_series(options, file("axis_b.png"));
   const scenes::Picture a = scenes::read_png(file("axis_a.png")), b = scenes::read_png(file("axis_b.png"));
   ASSERT_EQ(a.height, b.height);
   int apart = 0;

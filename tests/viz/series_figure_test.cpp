@@ -27,8 +27,8 @@ SeriesOptions one_panel(const std::vector<Series>& series) {
   return {"Title", "subtitle", {{"", "distance [m]", series}}};
 }
 
-scenes::Picture drawn(const SeriesOptions& plan, const char* name) {
-  draw_series(plan, file(name));
+scenes::Picture drawn(const SeriesOptions& options, const char* name) {
+  draw_series(options, file(name));
   return scenes::read_png(file(name));
 }
 
@@ -56,9 +56,9 @@ TEST(SeriesFigure, MissingValuesAreGaps) {
 TEST(SeriesFigure, FromZeroWhereThatDoesNotSquash) {
   const std::uint32_t color = row_color(0, 1);
   const auto first_column = [&](double from, bool zero) {
-    SeriesOptions plan = one_panel({{"a", {from, 2.0}, {1.0, 2.0}}});
-    plan.from_zero = zero;
-    const scenes::Picture p = drawn(plan, "zero.png");
+    SeriesOptions options = one_panel({{"a", {from, 2.0}, {1.0, 2.0}}});
+    options.from_zero = zero;
+    const scenes::Picture p = drawn(options, "zero.png");
     for (int x = 0; x < p.width; ++x)
       if (p.count(color, x, 0, x + 1, p.height * 85 / 100) > 0)  // above the legend
         return static_cast<double>(x) / p.width;
@@ -123,8 +123,8 @@ TEST(SeriesFigure, OddDataIsDrawnAllTheSame) {
 }
 
 TEST(SeriesFigure, ThePictureIsAFunctionOfTheNumbers) {
-  const SeriesOptions plan = one_panel({per_second("a", {1, 2, kNan, 4}), per_second("b", {2, 1, 0, 3})});
-  EXPECT_EQ(drawn(plan, "same1.png").rgb, drawn(plan, "same2.png").rgb);
+  const SeriesOptions options = one_panel({per_second("a", {1, 2, kNan, 4}), per_second("b", {2, 1, 0, 3})});
+  EXPECT_EQ(drawn(options, "same1.png").rgb, drawn(options, "same2.png").rgb);
 }
 
 TEST(SeriesFigure, BrokenContractsAbort) {
