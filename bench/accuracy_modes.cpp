@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <deque>
-#include <fstream>
 
 #include "bench/approximations.h"
 #include "bench/farm_caster.h"
+#include "bench/report.h"
 #include "sensors/accuracy.h"
 #include "sensors/laser_modes.h"
 #include "tests/sensors/scenes.h"
@@ -20,10 +20,7 @@ constexpr double kCells[] = {0.03, 0.1};  // [m] of distance grids
 
 AccuracyModeResult entry_of(const MethodResult& method_result, const Caster& caster, const Caster& exact,
                             const Scans& scans) {
-  AccuracyModeResult entry{.method = method_result.method,
-                           .typical = method_result.typical,
-                           .ratio = method_result.ratio,
-                           .cpu_ratio = method_result.cpu_ratio};
+  AccuracyModeResult entry{method_result};
   std::vector<double> errors;
   for (std::size_t i = 0; i < scans.robots(); ++i)
     for (std::size_t k = 0; k < scans.beams.size(); ++k)
@@ -54,10 +51,10 @@ AccuracyModeComparison compare_accuracy_modes(gpu::Device& device, std::uint32_t
                                            (last + scans.front().rounds.size() - 1) % scans.front().rounds.size()));
 
   const Comparison comparison = compare(scans.front(), casters, "exact", repeats);
-  AccuracyModeComparison dial{robots, range, {}};
+  AccuracyModeComparison result{robots, range, {}};
   for (std::size_t i = 0; i < casters.size(); ++i)
-    dial.entries.push_back(entry_of(comparison.method_results[i], *casters[i], *casters.front(), scans.front()));
-  return dial;
+    result.entries.push_back(entry_of(comparison.method_results[i], *casters[i], *casters.front(), scans.front()));
+  return result;
 }
 
 std::string accuracy_mode_table(const std::vector<AccuracyModeComparison>& comparisons) {
@@ -76,13 +73,13 @@ std::string accuracy_mode_table(const std::vector<AccuracyModeComparison>& compa
 
 void write_accuracy_modes(const std::vector<AccuracyModeComparison>& comparisons, const std::string& folder) {
   if (comparisons.empty()) return;
-  std::ofstream file(folder + "/dial.csv");
-  file << "robots,range_m,method,cpu_ms,wall_ms,cpu_ratio,ratio,median_error_m,p99_error_m,max_error_m\n";
+  std::string text = "robots,range_m,method,cpu_ms,wall_ms,cpu_ratio,ratio,median_error_m,p99_error_m,max_error_m\n";
   for (const AccuracyModeComparison& o : comparisons)
     for (const AccuracyModeResult& e : o.entries)
-      file << fmt::format("{},{:g},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{:.3g},{:.3g}\n", o.robots, o.range_m,
+      text += fmt::format("{},{:g},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{:.3g},{:.3g}\n", o.robots, o.range_m,
                           e.method, 1e3 * e.typical.cpu_s, 1e3 * e.typical.wall_s, e.cpu_ratio, e.ratio, e.median,
                           e.p99, e.max);
+  write(folder + "/accuracy_modes.csv", text);
 }
 
 }  // namespace sf::bench

@@ -10,11 +10,7 @@
 
 namespace sf::bench {
 
-struct AccuracyModeResult {
-  std::string method;
-  Cost typical;
-  double ratio = 0.0;                         ///< [-] wall time of mode exact divided by that of the method
-  double cpu_ratio = 0.0;                     ///< [-] the same of CPU time on all cores
+struct AccuracyModeResult : Timing {
   double median = 0.0, p99 = 0.0, max = 0.0;  ///< [m] errors against mode exact, over all beams of the last turn
 };
 

@@ -40,12 +40,12 @@ constexpr const char* kReference = "embree, 8-ray packets";
 struct Session {
   gpu::Device device;
   Book book;
-  std::map<std::string, Comparison> contests;
+  std::map<std::string, Comparison> comparisons;
   std::vector<FieldComparison> fields;
   std::vector<LaneComparison> lanes;
   std::vector<ConeComparison> cones;
   std::vector<MapComparison> maps;
-  std::vector<AccuracyModeComparison> dials;
+  std::vector<AccuracyModeComparison> accuracy_modes;
   std::vector<LargeFleetResult> large_fleets;
   std::vector<Curve> curves;
 };
@@ -58,10 +58,10 @@ struct ScanCase {
 constexpr ScanCase kScanCases[] = {{1'000, 8.0, 41}, {1'000, 0.75, 41}, {10'000, 8.0, 15}, {10'000, 0.75, 15}};
 constexpr std::size_t kMethods = 6;
 
-const Comparison& contest(Session& session, const ScanCase& c) {
+const Comparison& scan_comparison(Session& session, const ScanCase& c) {
   const std::string name = fmt::format("{}/{}", c.robots, c.range);
-  const auto known = session.contests.find(name);
-  if (known != session.contests.end()) return known->second;
+  const auto known = session.comparisons.find(name);
+  if (known != session.comparisons.end()) return known->second;
   const Scans scans = make_scans("cave", load_cave(), c.robots, scenes::laser(361, M_PI, c.range));
   std::vector<std::unique_ptr<Caster>> casters;
   casters.push_back(make_farm_caster(scans, session.device));
@@ -70,12 +70,12 @@ const Comparison& contest(Session& session, const ScanCase& c) {
   for (const EmbreeUse use : {EmbreeUse{true, false}, EmbreeUse{true, true}, EmbreeUse{false, false}})
     if (auto caster = make_embree_caster(scans, use)) casters.push_back(std::move(caster));
   const Comparison comparison = compare(scans, casters, kReference, c.repeats);
-  session.book.contests.push_back(comparison);
-  return session.contests[name] = comparison;
+  session.book.scans.push_back(comparison);
+  return session.comparisons[name] = comparison;
 }
 
-void tell(benchmark::State& state, const std::vector<Cost>& costs, std::size_t rays, const AccuracyCheck& accuracy,
-          std::uint64_t hash) {
+void report(benchmark::State& state, const std::vector<Cost>& costs, std::size_t rays, const AccuracyCheck& accuracy,
+            std::uint64_t hash) {
   std::size_t k = 0;
   double cpu_s = 0.0;
   for (auto _ : state) {
@@ -89,32 +89,32 @@ void tell(benchmark::State& state, const std::vector<Cost>& costs, std::size_t r
                              base::hash_hex(hash)));
 }
 
-void tell_entrant(benchmark::State& state, Session& session, const ScanCase& c, std::size_t which) {
-  const Comparison& comparison = contest(session, c);
+void report_scan(benchmark::State& state, Session& session, const ScanCase& c, std::size_t which) {
+  const Comparison& comparison = scan_comparison(session, c);
   if (which >= comparison.method_results.size()) return state.SkipWithError("built without Embree");
   const MethodResult& e = comparison.method_results[which];
-  tell(state, e.repeats, comparison.rays, e.accuracy, e.hash);
+  report(state, e.repeats, comparison.rays, e.accuracy, e.hash);
   state.counters["ratio"] = e.ratio;
 }
 
-struct DriveCase {
+struct TickCase {
   std::uint32_t robots;
   double range;
   bool wander;
   std::size_t ticks;
 };
-constexpr DriveCase kDriveCases[] = {{100, 8.0, false, 101},  {100, 8.0, true, 201},  {100, 0.75, true, 201},
-                                     {1'000, 8.0, false, 41}, {1'000, 8.0, true, 61}, {1'000, 0.75, true, 61}};
+constexpr TickCase kTickCases[] = {{100, 8.0, false, 101},  {100, 8.0, true, 201},  {100, 0.75, true, 201},
+                                   {1'000, 8.0, false, 41}, {1'000, 8.0, true, 61}, {1'000, 0.75, true, 61}};
 constexpr std::size_t kWarmUp = 20;
 
-void tell_drive(benchmark::State& state, Session& session, const DriveCase& c) {
+void report_ticks(benchmark::State& state, Session& session, const TickCase& c) {
   // A thousand bodies need more room: a cave of three times the side length, with as many caverns in proportion.
   const bool large = c.robots > 100;
   world::World world = large ? scenes::cave(1500, 48.0, 3) : load_cave();
   scenes::add_robots(world, c.robots, scenes::laser(361, M_PI, c.range), 1);
   const TickResult result = run_ticks(large ? "large cave" : "cave", world, session.device, c.wander, kWarmUp, c.ticks);
-  session.book.drives.push_back(result);
-  tell(state, result.ticks, result.rays, result.accuracy, result.hash);
+  session.book.ticks.push_back(result);
+  report(state, result.ticks, result.rays, result.accuracy, result.hash);
   state.counters["x_real_time"] = result.interval_s / result.typical.wall_s;
 }
 
@@ -127,7 +127,7 @@ constexpr FieldCase kFieldCases[] = {
     {"field/200000_magnets/10000", [] { return sheet_scene(10'000, 200'000, 10.0, 31); }},
     {"field/200000_magnets/100/no_cutoff", [] { return sheet_scene(100, 200'000, 0.0, 11); }}};
 
-void tell_field(benchmark::State& state, Session& session, const FieldCase& c) {
+void report_field(benchmark::State& state, Session& session, const FieldCase& c) {
   for (auto _ : state) session.fields.push_back(compare(c.scene(), session.device));
   for (const FieldMethodResult& e : session.fields.back().method_results)
     state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
@@ -141,7 +141,7 @@ constexpr LaneCase kLaneCases[] = {
     {"laneedge/exact/10000", 0.0}, {"laneedge/raster_5mm/10000", 0.005}, {"laneedge/raster_20mm/10000", 0.02}};
 constexpr std::size_t kLaneTurns = 15;
 
-void tell_lanes(benchmark::State& state, Session& session, const LaneCase& c) {
+void report_lanes(benchmark::State& state, Session& session, const LaneCase& c) {
   const LaneScene scene = make_lane_scene(20, 10'000, c.resolution);
   for (auto _ : state) session.lanes.push_back(compare_lanes(session.device, scene, kLaneTurns));
   for (const LaneMethodResult& e : session.lanes.back().method_results)
@@ -151,7 +151,7 @@ void tell_lanes(benchmark::State& state, Session& session, const LaneCase& c) {
 constexpr std::uint32_t kConeCases[] = {100, 1'000};
 constexpr std::size_t kConeTurns = 31;
 
-void tell_cones(benchmark::State& state, Session& session, std::uint32_t robots) {
+void report_cones(benchmark::State& state, Session& session, std::uint32_t robots) {
   for (auto _ : state) session.cones.push_back(compare_cones(session.device, make_cone_scene(robots), kConeTurns));
   for (const ConeMethodResult& e : session.cones.back().method_results)
     state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
@@ -168,7 +168,7 @@ constexpr MapCase kMapCases[] = {{"maps/1000/0.75m", 1'000, 0.75, false},
                                  {"maps/200/8m", 200, 8.0, false}};
 constexpr std::size_t kMapTurns = 25;
 
-void tell_maps(benchmark::State& state, Session& session, const MapCase& c) {
+void report_maps(benchmark::State& state, Session& session, const MapCase& c) {
   for (auto _ : state) session.maps.push_back(compare_maps(session.device, c.robots, c.range, c.weighs, kMapTurns));
   for (const MapMethodResult& e : session.maps.back().method_results)
     state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
@@ -177,7 +177,7 @@ void tell_maps(benchmark::State& state, Session& session, const MapCase& c) {
 constexpr std::uint32_t kLargeFleet = 10'000;
 constexpr std::size_t kLargeFleetTicks = 60;
 
-void tell_large_fleet(benchmark::State& state, Session& session) {
+void report_large_fleet(benchmark::State& state, Session& session) {
   for (auto _ : state) session.large_fleets.push_back(drive_large_fleet(session.device, kLargeFleet, kLargeFleetTicks));
   state.counters["p50 [ms]"] = 1e3 * session.large_fleets.back().p50_s;
   state.counters["p99 [ms]"] = 1e3 * session.large_fleets.back().p99_s;
@@ -192,23 +192,24 @@ constexpr CurveCase kCurveCases[] = {
     {"curves/wandering", [](gpu::Device& device) { return robots_curve(device, true, 30'000); }},
     {"curves/city", [](gpu::Device& device) { return segments_curve(device, 10'000'000); }}};
 
-void tell_curve(benchmark::State& state, Session& session, const CurveCase& c) {
+void report_curve(benchmark::State& state, Session& session, const CurveCase& c) {
   for (auto _ : state) session.curves.push_back(c.measure(session.device));
   state.counters["exponent"] = session.curves.back().exponent;
 }
 
-constexpr double kDialRanges[] = {8.0, 0.75};
-constexpr std::uint32_t kDialRobots = 1'000;
-constexpr std::size_t kDialTurns = 21;
+constexpr double kModeRanges[] = {8.0, 0.75};
+constexpr std::uint32_t kModeRobots = 1'000;
+constexpr std::size_t kModeTurns = 21;
 
-void tell_dial(benchmark::State& state, Session& session, double range) {
-  for (auto _ : state) session.dials.push_back(compare_accuracy_modes(session.device, kDialRobots, range, kDialTurns));
-  for (const AccuracyModeResult& e : session.dials.back().entries)
+void report_accuracy_modes(benchmark::State& state, Session& session, double range) {
+  for (auto _ : state)
+    session.accuracy_modes.push_back(compare_accuracy_modes(session.device, kModeRobots, range, kModeTurns));
+  for (const AccuracyModeResult& e : session.accuracy_modes.back().entries)
     state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
-void tell_facts(benchmark::State& state, std::vector<Measurement>& facts,
-                const std::function<std::vector<Measurement>()>& measure) {
+void report_measurements(benchmark::State& state, std::vector<Measurement>& facts,
+                         const std::function<std::vector<Measurement>()>& measure) {
   for (auto _ : state)
     for (const Measurement& fact : measure()) {
       state.counters[fact.what] = fact.value;
@@ -226,53 +227,55 @@ void register_all(Session& session) {
   std::vector<Measurement>& facts = session.book.facts;
   std::vector<Measurement>& prices = session.book.prices;
   // Runs first: a child process counts at least its parent's resident memory.
-  once(benchmark::RegisterBenchmark("price/program",
-                                    [&prices](benchmark::State& s) { tell_facts(s, prices, measure_program); }));
+  once(benchmark::RegisterBenchmark(
+      "price/program", [&prices](benchmark::State& s) { report_measurements(s, prices, measure_program); }));
   for (const ScanCase& c : kScanCases)
     for (std::size_t which = 0; which < kMethods; ++which)
       benchmark::RegisterBenchmark(fmt::format("scan/cave/{}/{}m/{}", c.robots, c.range, method_key(which)).c_str(),
-                                   [&session, &c, which](benchmark::State& s) { tell_entrant(s, session, c, which); })
+                                   [&session, &c, which](benchmark::State& s) { report_scan(s, session, c, which); })
           ->UseManualTime()
           ->Unit(benchmark::kMillisecond)
           ->Iterations(static_cast<benchmark::IterationCount>(c.repeats));
-  for (const DriveCase& c : kDriveCases)
+  for (const TickCase& c : kTickCases)
     benchmark::RegisterBenchmark(
         fmt::format("tick/{}/{}m/{}", c.robots, c.range, c.wander ? "wandering" : "standing").c_str(),
-        [&session, &c](benchmark::State& s) { tell_drive(s, session, c); })
+        [&session, &c](benchmark::State& s) { report_ticks(s, session, c); })
         ->UseManualTime()
         ->Unit(benchmark::kMillisecond)
         ->Iterations(static_cast<benchmark::IterationCount>(c.ticks));
   for (const FieldCase& c : kFieldCases)
-    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_field(s, session, c); }));
+    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { report_field(s, session, c); }));
   for (const LaneCase& c : kLaneCases)
-    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_lanes(s, session, c); }));
+    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { report_lanes(s, session, c); }));
   for (const std::uint32_t robots : kConeCases)
     once(benchmark::RegisterBenchmark(fmt::format("sonar/cave/{}", robots).c_str(),
-                                      [&session, robots](benchmark::State& s) { tell_cones(s, session, robots); }));
-  for (const double range : kDialRanges)
-    once(benchmark::RegisterBenchmark(fmt::format("dial/cave/{}/{}m", kDialRobots, range).c_str(),
-                                      [&session, range](benchmark::State& s) { tell_dial(s, session, range); }));
+                                      [&session, robots](benchmark::State& s) { report_cones(s, session, robots); }));
+  for (const double range : kModeRanges)
+    once(benchmark::RegisterBenchmark(
+        fmt::format("accuracy_modes/cave/{}/{}m", kModeRobots, range).c_str(),
+        [&session, range](benchmark::State& s) { report_accuracy_modes(s, session, range); }));
   once(benchmark::RegisterBenchmark(fmt::format("large_fleet/{}", kLargeFleet).c_str(),
-                                    [&session](benchmark::State& s) { tell_large_fleet(s, session); }));
+                                    [&session](benchmark::State& s) { report_large_fleet(s, session); }));
   for (const CurveCase& c : kCurveCases)
-    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_curve(s, session, c); }));
+    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { report_curve(s, session, c); }));
   for (const MapCase& c : kMapCases)
-    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_maps(s, session, c); }));
-  once(benchmark::RegisterBenchmark("start", [&facts](benchmark::State& s) { tell_facts(s, facts, measure_start); }));
+    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { report_maps(s, session, c); }));
+  once(benchmark::RegisterBenchmark("start",
+                                    [&facts](benchmark::State& s) { report_measurements(s, facts, measure_start); }));
   once(benchmark::RegisterBenchmark("price/features", [&](benchmark::State& s) {
-    tell_facts(s, prices, [&session] { return measure_features(session.device); });
+    report_measurements(s, prices, [&session] { return measure_features(session.device); });
   }));
   once(benchmark::RegisterBenchmark("small_ticks", [&](benchmark::State& s) {
-    tell_facts(s, facts, [&session] { return measure_ticks(session.device); });
+    report_measurements(s, facts, [&session] { return measure_ticks(session.device); });
   }));
   once(benchmark::RegisterBenchmark("fleets", [&](benchmark::State& s) {
-    tell_facts(s, facts, [&session] { return measure_fleets(session.device); });
+    report_measurements(s, facts, [&session] { return measure_fleets(session.device); });
   }));
   once(benchmark::RegisterBenchmark("beside_stage", [&](benchmark::State& s) {
-    tell_facts(s, facts, [&session] { return measure_beside_stage(session.device); });
+    report_measurements(s, facts, [&session] { return measure_beside_stage(session.device); });
   }));
   once(benchmark::RegisterBenchmark("lists", [&](benchmark::State& s) {
-    tell_facts(s, facts, [&session] { return measure_lists(session.device); });
+    report_measurements(s, facts, [&session] { return measure_lists(session.device); });
   }));
 }
 
@@ -298,13 +301,13 @@ int run(int argc, char** argv) {
     write_lanes(session.lanes, folder);
     write_cones(session.cones, folder);
     write_maps(session.maps, folder);
-    write_accuracy_modes(session.dials, folder);
+    write_accuracy_modes(session.accuracy_modes, folder);
     write_large_fleet(session.large_fleets, folder);
     write_curves(session.curves, folder);
   }
   if (!pictures.empty()) draw_curves(session.curves, pictures);
   fmt::print("{}{}{}{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
-             cone_table(session.cones), map_table(session.maps), accuracy_mode_table(session.dials),
+             cone_table(session.cones), map_table(session.maps), accuracy_mode_table(session.accuracy_modes),
              large_fleet_table(session.large_fleets), curves_table(session.curves));
   return 0;
 }

@@ -1,7 +1,5 @@
 #include "bench/comparison.h"
 
-#include <algorithm>
-
 #include "base/error.h"
 
 namespace sf::bench {
@@ -19,12 +17,6 @@ Cost cast_once(Caster& caster, std::size_t round) {
   return cost;
 }
 
-void rate(MethodResult& method_result, const MethodResult& reference) {
-  const Cost times = ratio(reference.repeats, method_result.repeats);
-  method_result.ratio = times.wall_s;
-  method_result.cpu_ratio = times.cpu_s;
-}
-
 }  // namespace
 
 Comparison compare(const Scans& scans, const std::vector<std::unique_ptr<Caster>>& casters,
@@ -38,16 +30,8 @@ Comparison compare(const Scans& scans, const std::vector<std::unique_ptr<Caster>
     method_result.hash = caster->hash();
     comparison.method_results.push_back(std::move(method_result));
   }
-  for (std::size_t repeat = 0; repeat < repeats; ++repeat)
-    for (std::size_t k = 0; k < casters.size(); ++k) {
-      const std::size_t who = (repeat + k) % casters.size();
-      comparison.method_results[who].repeats.push_back(cast_once(*casters[who], repeat % scans.rounds.size()));
-    }
-  for (MethodResult& method_result : comparison.method_results) method_result.typical = median(method_result.repeats);
-  const auto known = std::find_if(comparison.method_results.begin(), comparison.method_results.end(),
-                                  [&](const MethodResult& e) { return e.method == reference; });
-  if (known != comparison.method_results.end())
-    for (MethodResult& method_result : comparison.method_results) rate(method_result, *known);
+  take_turns(comparison.method_results, repeats, reference,
+             [&](std::size_t k, std::size_t turn) { return cast_once(*casters[k], turn % scans.rounds.size()); });
   return comparison;
 }
 

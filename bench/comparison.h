@@ -12,12 +12,7 @@
 namespace sf::bench {
 
 /// Result of one caster.
-struct MethodResult {
-  std::string method;
-  std::vector<Cost> repeats;  ///< one per turn
-  Cost typical;               ///< medians of `repeats`
-  double ratio = 0.0;         ///< [-] median over turns of reference time / its own; 0 without a reference
-  double cpu_ratio = 0.0;     ///< [-] the same of CPU time on all cores
+struct MethodResult : Timing {
   AccuracyCheck accuracy;
   std::uint64_t hash = 0;  ///< of all ranges of round 0
 };

@@ -32,7 +32,7 @@ world::Sensor pioneers_ring() {
   return ring;
 }
 
-Cost hear_once(ConeMethod& method, std::size_t round, const ConeComparison& comparison) {
+Cost measure_once(ConeMethod& method, std::size_t round, const ConeComparison& comparison) {
   method.poison();
   const Cost start = now();
   method.measure(round);
@@ -68,15 +68,6 @@ void check_accuracy(const ConeScene& scene, const std::vector<sensors::ConeArray
   }
 }
 
-void rate(std::vector<ConeMethodResult>& method_results) {
-  for (ConeMethodResult& method_result : method_results) {
-    method_result.typical = median(method_result.repeats);
-    const Cost times = ratio(method_results[kPlain].repeats, method_result.repeats);
-    method_result.ratio = times.wall_s;
-    method_result.cpu_ratio = times.cpu_s;
-  }
-}
-
 }  // namespace
 
 ConeScene make_cone_scene(std::uint32_t robots) {
@@ -108,19 +99,15 @@ ConeComparison compare_cones(gpu::Device& device, const ConeScene& scene, std::s
   ConeComparison comparison{
       arrays.size(), cones, cones * arrays[0].rays, kRounds * kJudgedRobots * arrays[0].X_SC.size(), {}};
   for (const auto& method : methods) {
-    comparison.method_results.push_back({method->name(), {}, {}});
+    comparison.method_results.emplace_back().method = method->name();
     for (std::size_t round = kRounds; round-- > 0;) {
-      hear_once(*method, round, comparison);
+      measure_once(*method, round, comparison);
       check_accuracy(scene, arrays, *method, round, comparison.method_results.back());
     }
     comparison.method_results.back().hash = hash_of(*method, arrays.size(), arrays[0].X_SC.size());
   }
-  for (std::size_t repeat = 0; repeat < repeats; ++repeat)
-    for (std::size_t k = 0; k < methods.size(); ++k) {
-      const std::size_t who = (repeat + k) % methods.size();
-      comparison.method_results[who].repeats.push_back(hear_once(*methods[who], repeat % kRounds, comparison));
-    }
-  rate(comparison.method_results);
+  take_turns(comparison.method_results, repeats, methods[kPlain]->name(),
+             [&](std::size_t k, std::size_t turn) { return measure_once(*methods[k], turn % kRounds, comparison); });
   return comparison;
 }
 
@@ -142,12 +129,9 @@ std::string cone_table(const std::vector<ConeComparison>& comparisons) {
   std::string text;
   for (const ConeComparison& o : comparisons) {
     text += fmt::format("\nsonar rings: {} robots, {} cones, {} rays\n", o.robots, o.cones, o.rays);
-    text += fmt::format("{:<36} {:>9} {:>9} {:>9} {:>7} {:>7} {:>10}\n", "method", "wall ms", "cpu ms", "Mrays/s",
-                        "ratio", "cpu", "max err m");
+    text += heading("Mrays/s") + "  max err m\n";
     for (const ConeMethodResult& e : o.method_results)
-      text += fmt::format("{:<36} {:>9.2f} {:>9.2f} {:>9.2f} {:>7.2f} {:>7.2f} {:>10.1e}\n", e.method,
-                          1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
-                          1e-6 * static_cast<double>(o.rays) / e.typical.wall_s, e.ratio, e.cpu_ratio, e.worst);
+      text += row(e, static_cast<double>(o.rays)) + fmt::format(" {:>10.1e}\n", e.worst);
   }
   return text;
 }

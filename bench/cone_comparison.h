@@ -19,12 +19,7 @@ struct ConeScene {
 };
 
 /// Result of one method.
-struct ConeMethodResult {
-  std::string method;
-  std::vector<Cost> repeats;
-  Cost typical;            ///< medians
-  double ratio = 0.0;      ///< [-] median over turns of plain C++'s wall time divided by the method's
-  double cpu_ratio = 0.0;  ///< [-] the same of CPU time on all cores
+struct ConeMethodResult : Timing {
   double worst = 0.0;      ///< [m] largest error against the nearest ray, over a sample of all rounds
   std::uint64_t hash = 0;  ///< of all ranges of round 0
 };
@@ -32,9 +27,9 @@ struct ConeMethodResult {
 struct ConeComparison {
   std::size_t robots = 0;
   std::size_t cones = 0;
-  std::size_t rays = 0;     ///< per turn
-  std::size_t checked = 0;  ///< cones per method
-  std::vector<ConeMethodResult> method_results;
+  std::size_t rays = 0;                          ///< per turn
+  std::size_t checked = 0;                       ///< cones per method
+  std::vector<ConeMethodResult> method_results;  ///< ratios are to plain C++
 };
 
 ConeScene make_cone_scene(std::uint32_t robots);

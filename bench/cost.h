@@ -2,6 +2,8 @@
 // Cost of a computation: wall time, and CPU time on all cores of this process. On a busy machine wall time includes
 // delays by other processes; CPU time does not.
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 namespace sf::bench {
@@ -25,5 +27,34 @@ Cost median(const std::vector<Cost>& costs);
 /// [-] Medians over turns of the reference's cost divided by the other's, separately for both parts. @pre equal numbers
 /// of turns
 Cost ratio(const std::vector<Cost>& reference, const std::vector<Cost>& repeats);
+
+/// One method of a comparison.
+struct Timing {
+  std::string method;
+  std::vector<Cost> repeats;  ///< one per turn
+  Cost typical;               ///< medians of `repeats`
+  double ratio = 0.0;         ///< [-] median over turns of reference time / its own; 0 without a reference
+  double cpu_ratio = 0.0;     ///< [-] the same of CPU time on all cores
+};
+
+/// Runs each method once in every turn, in rotating order, so that changes in machine load affect all alike. `run(k,
+/// turn)` runs method k and returns its cost. Sets the medians, and the ratios to the method called `reference`.
+template <class Result, class Run>
+void take_turns(std::vector<Result>& results, std::size_t turns, const std::string& reference, Run&& run) {
+  for (std::size_t turn = 0; turn < turns; ++turn)
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const std::size_t k = (turn + i) % results.size();
+      results[k].repeats.push_back(run(k, turn));
+    }
+  for (Result& result : results) result.typical = median(result.repeats);
+  const auto known =
+      std::find_if(results.begin(), results.end(), [&](const Result& result) { return result.method == reference; });
+  if (known == results.end()) return;
+  for (Result& result : results) {
+    const Cost times = ratio(known->repeats, result.repeats);
+    result.ratio = times.wall_s;
+    result.cpu_ratio = times.cpu_s;
+  }
+}
 
 }  // namespace sf::bench

@@ -61,17 +61,6 @@ void check_accuracy(const FieldScene& scene, const FieldMethod& method, std::siz
   }
 }
 
-void rate(std::vector<FieldMethodResult>& method_results) {
-  const auto reference = std::find_if(method_results.begin(), method_results.end(),
-                                      [](const FieldMethodResult& e) { return e.method == kReference; });
-  for (FieldMethodResult& method_result : method_results) {
-    method_result.typical = median(method_result.repeats);
-    const Cost times = ratio(reference->repeats, method_result.repeats);
-    method_result.ratio = times.wall_s;
-    method_result.cpu_ratio = times.cpu_s;
-  }
-}
-
 }  // namespace
 
 FieldScene simville_scene(std::uint32_t arrays, std::size_t repeats) {
@@ -93,22 +82,20 @@ FieldComparison compare(const FieldScene& scene, gpu::Device& device) {
       scene.name, scene.world.movers.size(), scene.world.magnets.size(), scene.world.magnet_cutoff, 0.0, {}};
   for (const auto& method : methods) {
     method->sum(scene.repeats);  // warm up
-    comparison.method_results.push_back({method->name(), {}, {}, 0.0, 0.0, 0});
+    comparison.method_results.emplace_back().method = method->name();
   }
   const double before = methods[0]->pairs();
   double largest = 0.0;
-  for (std::size_t repeat = 0; repeat < scene.repeats; ++repeat)
-    for (std::size_t k = 0; k < methods.size(); ++k) {
-      const std::size_t who = (repeat + k) % methods.size();
-      methods[who]->poison();
-      const Cost start = now();
-      methods[who]->sum(repeat);
-      comparison.method_results[who].repeats.push_back(now() - start);
-      check_accuracy(scene, *methods[who], repeat, comparison.method_results[who], largest);
-    }
+  take_turns(comparison.method_results, scene.repeats, kReference, [&](std::size_t k, std::size_t turn) {
+    methods[k]->poison();
+    const Cost start = now();
+    methods[k]->sum(turn);
+    const Cost cost = now() - start;
+    check_accuracy(scene, *methods[k], turn, comparison.method_results[k], largest);
+    return cost;
+  });
   comparison.pairs = (methods[0]->pairs() - before) / static_cast<double>(scene.repeats);
   for (FieldMethodResult& method_result : comparison.method_results) method_result.max_error /= largest;
-  rate(comparison.method_results);
   return comparison;
 }
 
@@ -131,12 +118,9 @@ std::string table(const std::vector<FieldComparison>& comparisons) {
   for (const FieldComparison& o : comparisons) {
     text += fmt::format("\nmagnets, {}: {} arrays of {} over {} magnets, cut-off {:g} m, {:.3g} pairs\n", o.scene,
                         o.arrays, kArrayElements, o.magnets, o.cutoff_m, o.pairs);
-    text += fmt::format("{:<32} {:>9} {:>9} {:>9} {:>7} {:>7} {:>10}\n", "method", "wall ms", "cpu ms", "Gpairs/s",
-                        "ratio", "cpu", "max err");
+    text += heading("Mpairs/s") + "    max err\n";
     for (const FieldMethodResult& e : o.method_results)
-      text += fmt::format("{:<32} {:>9.2f} {:>9.2f} {:>9.3f} {:>7.2f} {:>7.2f} {:>10.1e}\n", e.method,
-                          1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, 1e-9 * o.pairs / e.typical.wall_s, e.ratio,
-                          e.cpu_ratio, e.max_error);
+      text += row(e, o.pairs) + fmt::format(" {:>10.1e}\n", e.max_error);
   }
   return text;
 }

@@ -21,12 +21,7 @@ struct FieldScene {
 };
 
 /// Result of one method.
-struct FieldMethodResult {
-  std::string method;
-  std::vector<Cost> repeats;
-  Cost typical;             ///< medians
-  double ratio = 0.0;       ///< [-] median over turns of plain C++'s wall time divided by the method's
-  double cpu_ratio = 0.0;   ///< [-] the same of CPU time on all cores
+struct FieldMethodResult : Timing {
   double max_error = 0.0;   ///< relative to the largest field, over a sample of all turns
   std::size_t checked = 0;  ///< elements
 };
@@ -36,8 +31,8 @@ struct FieldComparison {
   std::size_t arrays = 0;
   std::size_t magnets = 0;
   double cutoff_m = 0.0;
-  double pairs = 0.0;  ///< of a magnet and an element, summed by the farm per turn
-  std::vector<FieldMethodResult> method_results;
+  double pairs = 0.0;                             ///< of a magnet and an element, summed by the farm per turn
+  std::vector<FieldMethodResult> method_results;  ///< ratios are to plain C++
 };
 
 /// `arrays` over SimVille's magnets, without a cut-off.

@@ -59,13 +59,6 @@ void check_accuracy(const LaneReader& reader, const std::vector<sensors::EdgeRea
   }
 }
 
-void rate(LaneMethodResult& method_result, const LaneMethodResult& plain) {
-  const Cost times = ratio(plain.repeats, method_result.repeats);
-  method_result.ratio = times.wall_s;
-  method_result.cpu_ratio = times.cpu_s;
-  method_result.typical = median(method_result.repeats);
-}
-
 }  // namespace
 
 LaneComparison compare_lanes(gpu::Device& device, const LaneScene& scene, std::size_t repeats) {
@@ -94,13 +87,9 @@ LaneComparison compare_lanes(gpu::Device& device, const LaneScene& scene, std::s
     }
     comparison.method_results.push_back(std::move(method_result));
   }
-  for (std::size_t repeat = 0; repeat < repeats; ++repeat)
-    for (std::size_t k = 0; k < readers.size(); ++k) {
-      const std::size_t who = (repeat + k) % readers.size();
-      comparison.method_results[who].repeats.push_back(read_once(*readers[who], repeat % scene.rounds.size(), sensors));
-    }
-  const LaneMethodResult plain = comparison.method_results[kPlain];
-  for (LaneMethodResult& method_result : comparison.method_results) rate(method_result, plain);
+  take_turns(comparison.method_results, repeats, readers[kPlain]->name(), [&](std::size_t k, std::size_t turn) {
+    return read_once(*readers[k], turn % scene.rounds.size(), sensors);
+  });
   return comparison;
 }
 
@@ -123,10 +112,9 @@ std::string lane_table(const std::vector<LaneComparison>& comparisons) {
   for (const LaneComparison& o : comparisons) {
     text += fmt::format("\n{} lane edge sensors, {} rays, {}: {} see an edge\n", o.sensors, o.rays,
                         o.resolution > 0.0 ? fmt::format("raster of {:g} m", o.resolution) : "exact paint", o.seen);
+    text += heading("Mrays/s") + "  max diff m  alone\n";
     for (const LaneMethodResult& e : o.method_results)
-      text +=
-          fmt::format("  {:26} {:8.2f} ms  {:8.2f} cpu ms  {:5.2f} x  {:5.2f} x cpu  {:.2g} m  {} alone\n", e.method,
-                      1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio, e.cpu_ratio, e.worst, e.alone);
+      text += row(e, static_cast<double>(o.rays)) + fmt::format(" {:>11.1e} {:>6}\n", e.worst, e.alone);
   }
   return text;
 }

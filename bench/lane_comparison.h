@@ -12,23 +12,18 @@
 namespace sf::bench {
 
 /// Result of one method.
-struct LaneMethodResult {
-  std::string method;
-  std::vector<Cost> repeats;  ///< one per turn
-  Cost typical;               ///< medians of `repeats`
-  double ratio = 0.0;         ///< [-] median over turns of the wall time of plain C++ divided by the method's
-  double cpu_ratio = 0.0;     ///< [-] the same of CPU time on all cores
-  double worst = 0.0;         ///< [m] largest difference from the reference, over readings that both have
-  std::size_t alone = 0;      ///< readings that only one of the two has
-  std::uint64_t hash = 0;     ///< of all readings of round 0
+struct LaneMethodResult : Timing {
+  double worst = 0.0;      ///< [m] largest difference from the reference, over readings that both have
+  std::size_t alone = 0;   ///< readings that only one of the two has
+  std::uint64_t hash = 0;  ///< of all readings of round 0
 };
 
 struct LaneComparison {
   std::size_t sensors = 0;
-  std::size_t rays = 0;     ///< per turn
-  double resolution = 0.0;  ///< [m] of the raster; 0: exact markings
-  std::size_t seen = 0;     ///< sensors that see an edge in round 0
-  std::vector<LaneMethodResult> method_results;
+  std::size_t rays = 0;                          ///< per turn
+  double resolution = 0.0;                       ///< [m] of the raster; 0: exact markings
+  std::size_t seen = 0;                          ///< sensors that see an edge in round 0
+  std::vector<LaneMethodResult> method_results;  ///< ratios are to plain C++
 };
 
 /// In every turn each method reads the same round once, in rotating order; results are poisoned before. The reference

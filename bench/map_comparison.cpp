@@ -151,23 +151,15 @@ MapComparison compare_maps(gpu::Device& device, std::uint32_t robots, double ran
   MapComparison comparison{robots, scans.rays(), range, weighs, {}};
   for (const auto& mapper : mappers) {
     mapper->update(rounds[0]);
-    comparison.method_results.push_back({mapper->name(), {}, {}, 0.0, 0.0, 0, 0});
+    comparison.method_results.emplace_back().method = mapper->name();
   }
-  for (std::size_t repeat = 0; repeat < repeats; ++repeat)
-    for (std::size_t k = 0; k < mappers.size(); ++k) {
-      const std::size_t who = (repeat + k) % mappers.size();
-      const Cost start = now();
-      mappers[who]->update(rounds[repeat % rounds.size()]);
-      comparison.method_results[who].repeats.push_back(now() - start);
-    }
-  for (std::size_t k = 0; k < mappers.size(); ++k) {
-    MapMethodResult& method_result = comparison.method_results[k];
-    check_accuracy(*mappers[k], *mappers.back(), robots, method_result);
-    const Cost times = ratio(comparison.method_results.back().repeats, method_result.repeats);
-    method_result.ratio = times.wall_s;
-    method_result.cpu_ratio = times.cpu_s;
-    method_result.typical = median(method_result.repeats);
-  }
+  take_turns(comparison.method_results, repeats, mappers.back()->name(), [&](std::size_t k, std::size_t turn) {
+    const Cost start = now();
+    mappers[k]->update(rounds[turn % rounds.size()]);
+    return now() - start;
+  });
+  for (std::size_t k = 0; k < mappers.size(); ++k)
+    check_accuracy(*mappers[k], *mappers.back(), robots, comparison.method_results[k]);
   return comparison;
 }
 
@@ -189,9 +181,9 @@ std::string map_table(const std::vector<MapComparison>& comparisons) {
   for (const MapComparison& o : comparisons) {
     text += fmt::format("\n{} maps of 3 cm cells, {} beams up to {:g} m{}\n", o.robots, o.beams, o.range_m,
                         o.weighs ? ", log odds" : "");
+    text += heading("Mbeams/s") + "  words that differ\n";
     for (const MapMethodResult& e : o.method_results)
-      text += fmt::format("  {:26} {:8.2f} ms  {:8.2f} cpu ms  {:5.2f} x  {:5.2f} x cpu  {} words differ\n", e.method,
-                          1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio, e.cpu_ratio, e.different);
+      text += row(e, static_cast<double>(o.beams)) + fmt::format(" {:>18}\n", e.different);
   }
   return text;
 }

@@ -11,12 +11,7 @@
 namespace sf::bench {
 
 /// Result of one method.
-struct MapMethodResult {
-  std::string method;
-  std::vector<Cost> repeats;  ///< one per turn
-  Cost typical;               ///< medians of `repeats`
-  double ratio = 0.0;         ///< [-] median over turns of the plain mapper's wall time divided by the method's
-  double cpu_ratio = 0.0;     ///< [-] the same of CPU time on all cores
+struct MapMethodResult : Timing {
   std::size_t different = 0;  ///< words of all maps that differ from the plain mapper's
   std::uint64_t hash = 0;     ///< of all maps after the last turn
 };
@@ -25,8 +20,8 @@ struct MapComparison {
   std::size_t robots = 0;
   std::size_t beams = 0;  ///< per turn
   double range_m = 0.0;
-  bool weighs = false;  ///< log odds instead of three states
-  std::vector<MapMethodResult> method_results;
+  bool weighs = false;                          ///< log odds instead of three states
+  std::vector<MapMethodResult> method_results;  ///< ratios are to plain C++
 };
 
 /// In every turn each method gets the same scans once, in rotating order: robots in the cave, each with its own map of

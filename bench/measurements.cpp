@@ -66,8 +66,8 @@ std::vector<Measurement> measure_start() {
 std::vector<Measurement> measure_ticks(gpu::Device& device) {
   std::vector<Measurement> facts;
   const world::World thousand = make_scans("cave", load_cave(), 1000, scenes::laser()).world;
-  farm::Farm unheard(thousand, device);
-  facts.push_back({"tick of 1000 robots, none heard", 1e6 * tick_cost(unheard).wall_s, "us"});
+  farm::Farm unsubscribed(thousand, device);
+  facts.push_back({"tick of 1000 robots, none subscribed", 1e6 * tick_cost(unsubscribed).wall_s, "us"});
 
   const world::World one = make_scans("cave", load_cave(), 1, scenes::laser(1)).world;
   farm::Farm single(one, device, kAnew);

@@ -65,9 +65,9 @@ constexpr std::int64_t kPeriod = 100'000'000;  ///< [ns] of a sensor
 /// A farm that is ticked in turns with others.
 class Turn {
  public:
-  Turn(const world::World& world, gpu::Device& device, bool heard, std::int64_t interval, bool reuse_unchanged)
+  Turn(const world::World& world, gpu::Device& device, bool subscribed, std::int64_t interval, bool reuse_unchanged)
       : farm_(world, device, {.reuse_unchanged = reuse_unchanged}), interval_(interval) {
-    if (heard) farm_.subscribe_all();
+    if (subscribed) farm_.subscribe_all();
     for (int k = 0; k < 4; ++k) tick();
     costs_.clear();
   }
@@ -91,27 +91,27 @@ void measure_lasers(gpu::Device& device, std::vector<Measurement>& facts) {
   const world::World plain = make_scans("cave", load_cave(), 100, scenes::laser()).world;
   world::World magnets = plain;
   for (int i = 0; i < 10'000; ++i) magnets.magnets.push_back({{0.001 * i - 5.0, 0.0}, 0.0, 1.0, 0.01, 0});
-  Turn looks(plain, device, true, kPeriod, false), beside(magnets, device, true, kPeriod, false);
-  Turn unheard(plain, device, false, kPeriod, false), stands(plain, device, true, kPeriod, true);
+  Turn measured(plain, device, true, kPeriod, false), beside(magnets, device, true, kPeriod, false);
+  Turn unsubscribed(plain, device, false, kPeriod, false), standing(plain, device, true, kPeriod, true);
   Turn idle(plain, device, true, 1000, false);
   for (int k = 0; k < kTurns; ++k)
-    for (Turn* repeat : {&looks, &beside, &unheard, &stands, &idle}) repeat->tick();
-  facts.push_back({"100 lasers of 361 beams that look", looks.ms(), "ms"});
+    for (Turn* repeat : {&measured, &beside, &unsubscribed, &standing, &idle}) repeat->tick();
+  facts.push_back({"100 lasers of 361 beams, measured", measured.ms(), "ms"});
   facts.push_back({"the same, 10 000 magnets in the world and no magnetometer", beside.ms(), "ms"});
-  facts.push_back({"the same, nobody hears them", unheard.ms(), "ms"});
+  facts.push_back({"the same, not subscribed", unsubscribed.ms(), "ms"});
   facts.push_back({"the same, not due", idle.ms(), "ms"});
-  facts.push_back({"the same, standing without noise", stands.ms(), "ms"});
+  facts.push_back({"the same, standing without noise", standing.ms(), "ms"});
   // On a shared machine a tick of half a millisecond varies by as much.
-  SF_CHECK(beside.ms() < 1.5 * looks.ms() + 0.5, "magnets that nobody measures cost something");
-  SF_CHECK(unheard.ms() < 0.1 * looks.ms(), "sensors that nobody hears cost something");
-  SF_CHECK(idle.ms() < 0.1 * looks.ms(), "sensors that are not due cost something");
-  SF_CHECK(stands.ms() < 0.25 * looks.ms(), "sensors that stand cost something");
+  SF_CHECK(beside.ms() < 1.5 * measured.ms() + 0.5, "magnets without magnetometers cost something");
+  SF_CHECK(unsubscribed.ms() < 0.1 * measured.ms(), "sensors without subscribers cost something");
+  SF_CHECK(idle.ms() < 0.1 * measured.ms(), "sensors that are not due cost something");
+  SF_CHECK(standing.ms() < 0.25 * measured.ms(), "sensors that stand cost something");
 }
 
 }  // namespace
 
 std::vector<Measurement> measure_program() {
-  const Process crowd = run_program({"run", simville(), "--robots", "50", "--duration", "60"});
+  const Process fifty = run_program({"run", simville(), "--robots", "50", "--duration", "60"});
   const Process town = run_program({"run", simville(), "--duration", "60"});
   const Process none = run_program({"devices"});
   const Words first{"sense", simville(), "--kind", "laser"}, tick{"run", simville(), "--duration", "0.1"};
@@ -120,9 +120,9 @@ std::vector<Measurement> measure_program() {
   const double all = median_start(tick);
   unsetenv("MESA_SHADER_CACHE_DISABLE");
   const double warm = median_start(first);
-  SF_CHECK(crowd.mib < kMostMiB, fmt::format("SimVille with 50 robots takes {:.0f} MiB", crowd.mib));
+  SF_CHECK(fifty.mib < kMostMiB, fmt::format("SimVille with 50 robots takes {:.0f} MiB", fifty.mib));
   SF_CHECK(cold < kMostSeconds, fmt::format("the first reading takes {:.2f} s", cold));
-  return {{"SimVille, 50 robots, a minute: most resident", crowd.mib, "MiB"},
+  return {{"SimVille, 50 robots, a minute: most resident", fifty.mib, "MiB"},
           {"SimVille, its own 8 robots, a minute: most resident", town.mib, "MiB"},
           {"the driver alone, listing devices: most resident", none.mib, "MiB"},
           {"from exec to the first reading in SimVille and exit, kernel compiled", cold, "s"},
@@ -138,13 +138,13 @@ std::vector<Measurement> measure_features(gpu::Device& device) {
   const scenarios::Explanation e = scenarios::explain(world, device, 1, 0);
   facts.push_back({"SimVille, building the farm", 1e3 * e.build, "ms"});
   facts.push_back({"SimVille, the first tick", 1e3 * e.first, "ms"});
-  facts.push_back({"SimVille, nobody heard", 1e3 * e.silent, "ms a tick"});
+  facts.push_back({"SimVille, none subscribed", 1e3 * e.silent, "ms a tick"});
   for (const scenarios::SensorTypeCost& kind : e.kinds) {
     const std::string name = fmt::format("SimVille, {} x {} alone", kind.sensors, kind.kind);
     facts.push_back({name, 1e3 * kind.tick, "ms a tick"});
     facts.push_back({name + ", tables", static_cast<double>(kind.bytes) / (1 << 20), "MiB"});
   }
-  facts.push_back({"SimVille, all heard", 1e3 * e.all, "ms a tick"});
+  facts.push_back({"SimVille, all subscribed", 1e3 * e.all, "ms a tick"});
   measure_lasers(device, facts);
   return facts;
 }

@@ -2,6 +2,7 @@
 // Results as CSV files and as text tables.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/comparison.h"
@@ -12,11 +13,16 @@ namespace sf::bench {
 
 /// All results.
 struct Book {
-  std::vector<Comparison> contests;
-  std::vector<TickResult> drives;
+  std::vector<Comparison> scans;
+  std::vector<TickResult> ticks;
   std::vector<Measurement> facts;
   std::vector<Measurement> prices;
 };
+
+/// The heading of `row`s. @param rate the unit of the third column
+std::string heading(std::string_view rate);
+/// A method, its times [ms], `count` per second [M/s], and its ratios: without an end of line.
+std::string row(const Timing& timing, double count);
 
 /// Replaces the content of `file` by `text`. @throws base::InputError when it cannot be written
 void write(const std::string& file, const std::string& text);
