@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <sstream>
 
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
@@ -13,6 +14,8 @@
 namespace sf::apps {
 
 namespace {
+
+constexpr std::size_t kNameWidth = 34;  ///< of the column with names of options
 
 std::string names_of(const std::vector<const CLI::App*>& subcommands) {
   std::string names;
@@ -36,15 +39,34 @@ std::string explain_extras(const CLI::App& app, const CLI::App& sub, int argc, c
   return fmt::format("'{}' was not expected{}", word, suggest_option(word, options_of(sub)));
 }
 
+/// Lines of at most `width` characters, since CLI11 breaks no text.
+std::string wrapped(const std::string& text, std::size_t width) {
+  std::istringstream words(text);
+  std::string lines;
+  std::size_t used = 0;
+  for (std::string word; words >> word; used += word.size()) {
+    const bool fits = used + 1 + word.size() <= width;
+    if (used > 0) lines += fits ? ' ' : '\n';
+    used = used > 0 && fits ? used + 1 : 0;
+    lines += word;
+  }
+  return lines;
+}
+
+void wrap_help(CLI::App& app) {
+  constexpr std::size_t kWidth = 100;  // of the terminal
+  app.description(wrapped(app.get_description(), kWidth - kNameWidth));
+  for (CLI::Option* option : app.get_options())
+    option->description(wrapped(option->get_description(), kWidth - kNameWidth));
+}
+
 /// `help` and `help COMMAND`. @param asked is given the command's name
 const CLI::App* add_help(CLI::App& app, std::string& asked) {
-  CLI::App* sub = app.add_subcommand("help", "Say how a command is called, as its --help does");
+  CLI::App* sub = app.add_subcommand("help", "Print the help of a command");
   std::vector<std::string> names;
   for (const CLI::App* each : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(each->get_name());
-  sub->add_option("command", asked, "One of the commands (default: all of them)")
-      ->check(one_of(names))
-      ->type_name("COMMAND");
+  sub->add_option("command", asked, "Command (default: list all commands)")->check(one_of(names))->type_name("COMMAND");
   add_examples(*sub, {"run"});
   return sub;
 }
@@ -69,15 +91,16 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc,
 
 Parsed parse_command_line(int argc, const char* const* argv) {
   Parsed parsed;
-  CLI::App app{"sensorfarm: gives every robot of a fleet the sensors it does not have", "sensorfarm"};
+  CLI::App app{"sensorfarm: 2-D multi-robot simulator and virtual-sensor server", "sensorfarm"};
   app.set_version_flag("--version", std::string("sensorfarm ") + SF_VERSION);
   app.require_subcommand(1);
-  app.get_formatter()->column_width(34);
+  app.get_formatter()->column_width(kNameWidth);
   add_inspect_commands(app, parsed.call);
   add_run_commands(app, parsed.call);
   add_test_commands(app, parsed.call);
   std::string asked;
   const CLI::App* help = add_help(app, asked);
+  for (CLI::App* sub : app.get_subcommands([](CLI::App*) { return true; })) wrap_help(*sub);
   try {
     app.parse(argc, argv);
     if (help->parsed()) {

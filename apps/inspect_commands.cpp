@@ -84,7 +84,7 @@ Chosen require_sensor(const world::World& world, const sensors::SensorSet& senso
   const sensors::SensorType* kind = sensors::find_sensor_type(options.kind);
   throw base::InputError(world.file, 0,
                          robot + " has no " + std::string(kind != nullptr ? kind->name : "sensor") + " " +
-                             std::to_string(options.sensor) + "; it has " + has + " (--kind, --sensor)");
+                             std::to_string(options.sensor) + "; it has " + has + " (--type, --sensor)");
 }
 
 void warn_of_pose(const world::World& world, const world::Mover& robot, const base::Pose& X_WM) {

@@ -12,6 +12,16 @@
 
 namespace sf::apps {
 
+namespace {
+
+// Headings of the help.
+constexpr const char* kWorld = "World file";
+constexpr const char* kAccuracy = "Accuracy";
+constexpr const char* kDevice = "Device";
+constexpr const char* kPorts = "Ports of sensor packets (first + robot id * ports per robot + sensor)";
+
+}  // namespace
+
 void on_parsed(CLI::App& sub, std::function<void()> set, std::function<void()> check) {
   sub.callback([set = std::move(set), check = std::move(check)] {
     if (check) check();
@@ -33,19 +43,21 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::vecto
 }
 
 void add_json(CLI::App& app, JsonOption& o) {
-  app.add_flag("--json", o.json, "Print facts as JSON on standard output");
+  app.add_flag("--json", o.json, "Print the report as JSON on standard output");
 }
 
 void add_device(CLI::App& app, DeviceOption& o) {
   app.add_option("--device", o.device, "Vulkan device: its row in `devices`, or part of its name (default: the best)")
       ->envname("SENSORFARM_DEVICE")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->group(kDevice);
   // Farms look it up where they are made (raycast/caster_choice.h).
   add_choice(
       app, "--caster", {"auto", "vulkan", "host"},
       [](const std::string& word) { setenv("SENSORFARM_CASTER", word.c_str(), 1); },
-      "Casts rays by the device's kernels or the host's vectors, to the same bytes (else $SENSORFARM_CASTER, "
-      "else auto: host where the device is software)");
+      "Ray caster: the device's kernels or the host's vector code, with the same results (default: $SENSORFARM_CASTER, "
+      "else auto: host where the device is software)")
+      ->group(kDevice);
 }
 
 void add_world(CLI::App& app, WorldOptions& o) {
@@ -55,21 +67,25 @@ void add_world(CLI::App& app, WorldOptions& o) {
       ->required()
       ->type_name("FILE");
   app.add_flag("--stage-obstacles", o.load.stage_obstacles,
-               "As in Stage, floor plans with obstacle_return 0 stop nobody");
-  app.add_flag("--stage-noise", o.load.stage_noise, "As in Stage, the first number of `noise` is a variance");
-  app.add_flag("--unknown-is-wall", o.load.unknown_is_wall, "Unknown cells of a ROS map are walls");
+               "As in Stage, floor plans with obstacle_return 0 stop no robot")
+      ->group(kWorld);
+  app.add_flag("--stage-noise", o.load.stage_noise, "As in Stage, the first number of `noise` is a variance")
+      ->group(kWorld);
+  app.add_flag("--unknown-is-wall", o.load.unknown_is_wall, "Unknown cells of a ROS map are walls")->group(kWorld);
   app.add_flag("--strict", o.load.strict_roads,
-               "Refuse road networks and missions at the first slip, even where its meaning is clear");
+               "Refuse road networks and missions with any error, even where its meaning is clear")
+      ->group(kWorld);
 }
 
 void add_accuracy(CLI::App& app, WorldOptions& o) {
   std::vector<std::string> words;
   for (const std::string_view word : sensors::accuracy_words()) words.emplace_back(word);
   app.add_option("--accuracy", o.load.accuracy,
-                 "Accuracy of all sensors, whatever the world says: " + join_or(words) +
-                     "; several for several kinds, as in \"laser:skip2 near3\" (docs/accuracy.md)")
+                 "Accuracy mode of all sensors, in place of the world's: " + join_or(words) +
+                     "; several for several types, as in \"laser:skip2 near3\" (docs/accuracy.md)")
       ->check(not_empty("a word"))
-      ->type_name("WORDS");
+      ->type_name("WORDS")
+      ->group(kAccuracy);
 }
 
 void add_accuracy_target(CLI::App& app, AccuracyTargetOptions& o) {
@@ -81,27 +97,33 @@ void add_accuracy_target(CLI::App& app, AccuracyTargetOptions& o) {
              (q.is_tesla ? o.accuracy_target.tesla : o.accuracy_target.metres) = q.value;
            }
          },
-         "Largest error wanted, with its unit: 5mm for what measures lengths, 2uT for fields (may be given for both)")
+         "Largest error allowed, with its unit: 5mm for lengths, 2uT for magnetic fields (both may be given)")
       ->check(readable(read_quantity, "a length or a field with its unit such as 5mm, 0.01m, 2uT or 1mG"))
       ->allow_extra_args(false)
-      ->type_name("ERROR");
+      ->type_name("ERROR")
+      ->group(kAccuracy);
   using scenarios::ErrorMeasure;
   add_choice<ErrorMeasure, ErrorMeasure>(
       app, "--by", o.accuracy_target.by,
       {{"max", ErrorMeasure::max}, {"p99", ErrorMeasure::p99}, {"median", ErrorMeasure::median}},
-      "Which error is meant: the largest, that of 99 % of all readings, or the median")
-      ->default_str("max");
+      "Error that --max-error limits: the largest, the 99th percentile or the median")
+      ->default_str("max")
+      ->group(kAccuracy);
   app.add_option_function<std::string>(
          "--min-rate", [&o](const std::string& text) { o.accuracy_target.least_rate = *read_rate(text); },
-         "Ticks per second wanted: the most accurate modes that allow it")
+         "Ticks per second to reach; selects the most accurate modes that do")
       ->check(readable(read_rate, "a rate above zero such as 10Hz"))
-      ->type_name("HZ");
+      ->type_name("HZ")
+      ->group(kAccuracy);
 }
 
 void add_automatic(CLI::App& app, AccuracyTargetOptions& o) {
   add_accuracy_target(app, o);
-  auto* automatic = app.add_flag(
-      "--auto", o.automatic, "Measure the modes here first, and take those that --max-error or --min-rate comes to");
+  auto* automatic =
+      app.add_flag(
+             "--auto", o.automatic,
+             "Measure the accuracy modes on this machine first, and use the best that meet --max-error or --min-rate")
+          ->group(kAccuracy);
   for (const char* wish : {"--max-error", "--min-rate", "--by"}) app.get_option(wish)->needs(automatic);
   app.get_option("--accuracy")->excludes(automatic);
 }
@@ -128,14 +150,13 @@ void add_bind(CLI::App& app, BindOption& o) {
 }
 
 void add_from(CLI::App& app, ReceiveOptions& o) {
-  app.add_option("--from", o.from, "Take packets from this host alone (default: from the first farm that sends)")
+  app.add_option("--from", o.from, "Accept packets from this host only (default: from the first farm that sends)")
       ->check(not_empty("a host"))
       ->type_name("HOST");
 }
 
 void add_silence(CLI::App& app, ReceiveOptions& o) {
-  app.add_option("--silence", o.silence,
-                 "End when nothing came for this long [s]; counts from the first packet on, until then it waits")
+  app.add_option("--silence", o.silence, "Stop after this long without packets [s], counted from the first packet on")
       ->check(number(0.1, 1e6))
       ->type_name("S")
       ->capture_default_str();
@@ -146,11 +167,10 @@ void add_until(CLI::App& app, DurationOption& o, const std::string& help) {
 }
 
 void add_ports(CLI::App& app, PortOptions& o) {
-  constexpr const char* kPorts = "Ports of sensor packets: first + robot id * ports per robot + sensor";
-  for (const sensors::SensorType* kind : sensors::sensor_types()) {
-    o.base_ports[kind->id] = kind->base_port;
-    app.add_option(fmt::format("--{}-port", kind->name), o.base_ports[kind->id],
-                   fmt::format("First of the {} ports", kind->name))
+  for (const sensors::SensorType* type : sensors::sensor_types()) {
+    o.base_ports[type->id] = type->base_port;
+    app.add_option(fmt::format("--{}-port", type->name), o.base_ports[type->id],
+                   fmt::format("First of the {} ports", type->name))
         ->check(whole(1, 65535))
         ->type_name("PORT")
         ->capture_default_str()
@@ -164,7 +184,7 @@ void add_ports(CLI::App& app, PortOptions& o) {
 }
 
 void add_threads(CLI::App& app, ThreadsOption& o) {
-  app.add_option("--threads", o.threads, "Threads of the host's part (0: all); never changes a reading")
+  app.add_option("--threads", o.threads, "Threads of the host (0: all); readings do not depend on it")
       ->check(whole(0, 256))
       ->type_name("N");
 }
@@ -176,7 +196,7 @@ void add_recording(CLI::App& app, RecordingOption& o) {
 void add_kind(CLI::App& app, SenseOptions& o) {
   std::vector<std::pair<std::string, std::uint8_t>> types;
   for (const sensors::SensorType* type : sensors::sensor_types()) types.emplace_back(type->name, type->id);
-  add_choice(app, "--kind", o.kind, types, "Kind of its sensor (default: the first that it has)");
+  add_choice(app, "--type", o.kind, types, "Type of its sensor (default: the first that it has)");
 }
 
 void add_seed(CLI::App& app, SeedOption& o, const std::string& what) {
@@ -184,10 +204,10 @@ void add_seed(CLI::App& app, SeedOption& o, const std::string& what) {
 }
 
 void add_robots(CLI::App& app, CloneOptions& o) {
-  auto* robots = app.add_option("--robots", o.robots, "Clone one robot of the world to this many free poses")
+  auto* robots = app.add_option("--robots", o.robots, "Replace the robots by this many copies of one, at free poses")
                      ->check(whole(1, 65535))
                      ->type_name("N");
-  app.add_option("--of", o.of, "The robot that is cloned (default: the first with sensors)")
+  app.add_option("--of", o.of, "Robot to copy (default: the first with sensors)")
       ->check(not_empty("the name of a robot"))
       ->needs(robots)
       ->type_name("NAME");
@@ -201,8 +221,9 @@ void add_controller(CLI::App& app, ControllerOptions& o) {
       ->check(one_of(names))
       ->type_name("NAME")
       ->capture_default_str();
-  app.add_option("--set", o.set,
-                 "One of the controller's settings (may be repeated): kp=0.5, park=13.4, checkpoints=1,2 or \"[1 2]\"")
+  app.add_option(
+         "--set", o.set,
+         "A setting of the controller, such as kp=0.5, park=13.4, checkpoints=1,2 or \"[1 2]\" (may be repeated)")
       ->check(readable(read_setting, "KEY=VALUE such as kp=0.5"))
       ->type_name("KEY=VALUE");
 }

@@ -53,7 +53,7 @@ Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Jso
 Json statements_json(const std::vector<sensors::AccuracyStatement>& statements) {
   Json json = Json::array();
   for (const sensors::AccuracyStatement& s : statements)
-    json.push_back({{"kind", s.kind->name},
+    json.push_back({{"type", s.kind->name},
                     {"sensors", s.sensors},
                     {"mode", sensors::word_of(*s.kind, s.mode)},
                     {"bound", finite_json(s.bound.error)},
@@ -268,7 +268,7 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
   Json head{{"robot", world.movers[reading.mover].name},
             {"sensor", reading.sensor},
             {"sensor_name", sensor_set.row(reading).name},
-            {"kind", kind.name},
+            {"type", kind.name},
             {"pose", pose_json(reading.X_WM)},
             {"sensor_pose", pose_json(reading.X_WS)}};
   if (kind.bound != nullptr) {
@@ -306,7 +306,7 @@ std::string json_of(const server::RobotClientStats& f) {
 
 std::string json_of(const scenarios::Verification& verification) {
   const auto compared = [](const scenarios::Comparison& c) {
-    return Json{{"kind", c.kind},           {"readings", c.readings}, {"numbers", c.values},
+    return Json{{"type", c.kind},           {"readings", c.readings}, {"numbers", c.values},
                 {"different", c.different}, {"largest", c.largest},   {"first", c.first}};
   };
   Json json{{"ticks", verification.ticks},
@@ -348,14 +348,14 @@ std::string json_of(const scenarios::Explanation& e) {
             {"first_tick_s", e.first}, {"silent_tick_s", e.silent},
             {"tick_s", e.all},         {"caster", e.caster},
             {"walls", e.walls},        {"resident_bytes", e.resident},
-            {"absent", e.absent},      {"kinds", Json::array()},
+            {"absent", e.absent},      {"types", Json::array()},
             {"slices", Json::array()}, {"accuracy", statements_json(e.statements)}};
   for (const scenarios::WallSlice& s : e.slices)
     json["slices"].push_back({{"z_m", s.z}, {"sensors", s.sensors}, {"walls", s.walls}});
   for (const scenarios::SensorTypeCost& k : e.kinds) {
     Json tables = Json::array();
     for (const gpu::DeviceAllocation& h : k.tables) tables.push_back({{"name", h.name}, {"bytes", h.bytes}});
-    json["kinds"].push_back({{"kind", k.kind},
+    json["types"].push_back({{"type", k.kind},
                              {"sensors", k.sensors},
                              {"robots", k.robots},
                              {"rate_hz", {k.least_rate, k.most_rate}},

@@ -13,8 +13,8 @@ namespace {
 
 void add_devices(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("devices",
-                                     "List the Vulkan devices: their self-check, which is chosen, and why others are "
-                                     "not (exit 3 when none is usable)");
+                                     "List the Vulkan devices with their self-checks, the chosen one, and why others "
+                                     "are refused (exit 3 when none is usable)");
   auto& o = add_command(*sub, call, devices);
   add_examples(*sub, {"--json"});
   add_json(*sub, o);
@@ -22,7 +22,7 @@ void add_devices(CLI::App& app, Call& call) {
 }
 
 void add_check(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("check", "Say what was understood of a world, and every warning with its line");
+  CLI::App* sub = app.add_subcommand("check", "Summarize a world as read, with the line of every warning");
   auto& o = add_command(*sub, call, check);
   add_examples(*sub, {"worlds/cave.world", "worlds/simville/simville.mdf --rndf worlds/simville/simville.rndf"});
   add_world(*sub, o);
@@ -30,14 +30,14 @@ void add_check(CLI::App& app, Call& call) {
   sub->add_option("--rndf", o.rndf, "Road network that a mission (.mdf) is checked against")
       ->check(not_empty("a file"))
       ->type_name("FILE");
-  sub->add_option("--rate", o.rate, "Ticks per second that `serve --rate` is to have: name the sensors that are faster")
+  sub->add_option("--rate", o.rate, "Ticks per second of a later `serve --rate`: names the sensors that are faster")
       ->check(number(0.1, 10000.0))
       ->type_name("HZ");
   add_json(*sub, o);
 }
 
 void add_draw(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("draw", "Draw the world as understood, seen from above");
+  CLI::App* sub = app.add_subcommand("draw", "Draw a world as read, seen from above");
   auto& o = add_command(*sub, call, draw);
   add_examples(*sub, {"worlds/simville/simville.world -o simville.png"});
   add_world(*sub, o);
@@ -45,7 +45,7 @@ void add_draw(CLI::App& app, Call& call) {
 }
 
 void add_field(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("field", "Draw the field of a world's magnets at one height, and along a line");
+  CLI::App* sub = app.add_subcommand("field", "Draw the magnetic field of a world at one height, and along a line");
   auto& o = add_command(*sub, call, field);
   add_examples(*sub, {"worlds/six_magnets.world --height 0.05 -o field.png"});
   add_world(*sub, o);
@@ -62,18 +62,18 @@ void add_field(CLI::App& app, Call& call) {
       ->type_name("X0,Y0,X1,Y1");
   sub->add_option_function<std::string>(
          "--extent", [&o](const std::string& text) { o.extent = read_extent(text); },
-         "What the map must show [m] (default: all magnets)")
+         "Area that the map must show [m] (default: all magnets)")
       ->check(readable(read_extent, "XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1"))
       ->type_name("XMIN,YMIN,XMAX,YMAX");
-  sub->add_option("--csv", o.csv, "File to write the profile's numbers to")
+  sub->add_option("--csv", o.csv, "CSV file to write with the profile's numbers")
       ->check(not_empty("a file"))
       ->type_name("FILE");
 }
 
 void add_sense(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("sense", "One reading of one sensor, noise off: check your world with a ruler");
+  CLI::App* sub = app.add_subcommand("sense", "Take one reading of one sensor, without noise, to check a world");
   auto& o = add_command(*sub, call, sense);
-  add_examples(*sub, {"worlds/rooms.world --pose 1,2,90", "worlds/rooms.world --robot roomba1 --kind laser --json"});
+  add_examples(*sub, {"worlds/rooms.world --pose 1,2,90", "worlds/rooms.world --robot roomba1 --type laser --json"});
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_json(*sub, o);
@@ -81,13 +81,13 @@ void add_sense(CLI::App& app, Call& call) {
   add_no_return(*sub, o);
   sub->add_option_function<std::string>(
          "--pose", [&o](const std::string& text) { o.pose = read_pose(text); },
-         "Where the robot stands: X,Y,YAW_DEG [m, degrees]")
+         "Pose of the robot [m, degrees] (default: its own)")
       ->check(readable(read_pose, "X,Y,YAW_DEG such as 1.5,-2,90"))
-      ->type_name("POSE");
+      ->type_name("X,Y,YAW_DEG");
   sub->add_option("--robot", o.robot, "Name of the robot (default: the first that has a sensor)")->type_name("NAME");
   add_kind(*sub, o);
   sub->add_option("--sensor", o.sensor,
-                  "Number of its sensor, from 0: of that kind, or through all its kinds where none is named")
+                  "Number of its sensor, from 0: of that type, or through all its types where none is named")
       ->check(whole(0, 65535))
       ->type_name("N")
       ->capture_default_str();
@@ -107,7 +107,8 @@ void add_plot(CLI::App& app, Call& call) {
 
 void add_explain(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
-      "explain", "Say what a world makes the farm build and do, and what each kind of sensor costs on this machine");
+      "explain",
+      "Report what a world makes the farm build and compute, and the cost of each sensor type on this machine");
   auto& o = add_command(*sub, call, explain);
   add_examples(*sub, {"worlds/simville/simville.world"});
   add_world(*sub, o);

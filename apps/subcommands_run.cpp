@@ -1,4 +1,4 @@
-// Subcommands that run: the farm, robots, and who listens to them.
+// Subcommands that run: the farm, robots, receivers.
 
 #include <CLI/CLI.hpp>
 
@@ -12,8 +12,7 @@ namespace sf::apps {
 namespace {
 
 void add_run(CLI::App& app, Call& call) {
-  CLI::App* sub =
-      app.add_subcommand("run", "Simulate a fleet in the loop, with every robot's sensors, as fast as it goes");
+  CLI::App* sub = app.add_subcommand("run", "Simulate a fleet with its sensors and controllers, as fast as possible");
   auto& o = add_command(*sub, call, run);
   add_examples(*sub, {"worlds/cave.world --robots 50 --duration 30", "worlds/cave.world --robots 4 --record out/run",
                       "worlds/cave.world --robots 4 --send 127.0.0.1 --real-time"});
@@ -24,7 +23,7 @@ void add_run(CLI::App& app, Call& call) {
   add_device(*sub, o);
   add_robots(*sub, o);
   add_controller(*sub, o);
-  sub->add_option("--drive", o.drive, "Drive this robot, and none that is not named so (may be repeated)")
+  sub->add_option("--drive", o.drive, "Robot to drive; all others stand (may be repeated; default: every robot)")
       ->check(not_empty("the name of a robot"))
       ->allow_extra_args(false)
       ->type_name("NAME");
@@ -39,25 +38,24 @@ void add_run(CLI::App& app, Call& call) {
                      ->check(not_empty("a folder"))
                      ->type_name("DIR");
   sub->add_flag("--record-readings", o.record_readings,
-                "Record the readings too, not only what they can be computed from")
+                "Record the readings too, not only the states from which they can be computed")
       ->needs(record);
-  sub->add_flag("--real-time", o.real_time, "One simulated second per second");
+  sub->add_flag("--real-time", o.real_time, "Run in real time");
   sub->add_option("--send", o.send, "Send every reading as UDP packets to this host")
       ->check(not_empty("a host"))
       ->type_name("HOST");
 }
 
 void add_forget(CLI::App& app, ForgetOption& o) {
-  app.add_option("--forget", o.forget,
-                 "A robot that is silent for so long, 2 s at least, is no obstacle any more [s] (0: it stays)")
+  app.add_option("--forget", o.forget, "Silence after which a robot is no obstacle any more [s], at least 2 (0: never)")
       ->check(number(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str();
 }
 
 void add_serve(CLI::App& app, Call& call) {
-  CLI::App* sub =
-      app.add_subcommand("serve", "Virtual sensors for robots that live elsewhere: V2V packets in, sensor packets out");
+  CLI::App* sub = app.add_subcommand(
+      "serve", "Serve virtual sensors to robots in other processes: V2V packets in, sensor packets out");
   auto& o = add_command(*sub, call, serve);
   add_examples(*sub, {"worlds/rooms.world", "worlds/rooms.world --bind 0.0.0.0 --port 9001"});
   add_world(*sub, o);
@@ -73,18 +71,17 @@ void add_serve(CLI::App& app, Call& call) {
       ->type_name("PORT")
       ->capture_default_str();
   sub->add_option("--rate", o.rate,
-                  "Ticks per second, and sensors are read at ticks alone (default: the world's interval_sim, and "
+                  "Ticks per second; sensors are then read at ticks only (default: the world's interval_sim, with "
                   "sensors at their own times)")
       ->check(number(0.1, 10000.0))
       ->type_name("HZ");
-  sub->add_option("--radio", o.radio,
-                  "How far robots' V2V reaches: states of others within it are passed on (0: none are) [m]")
+  sub->add_option("--radio", o.radio, "Radio range of V2V [m]: states of robots within it are relayed (0: none)")
       ->check(number(0.0, 1e9))
       ->type_name("M")
       ->capture_default_str();
   add_forget(*sub, o);
   add_seed(*sub, o, "Seed of noise");
-  add_until(*sub, o, "Stop after this long [s] (0: when told to)");
+  add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");
 }
 
 void add_farm(CLI::App& app, FarmOptions& o) {
@@ -92,32 +89,33 @@ void add_farm(CLI::App& app, FarmOptions& o) {
       ->check(not_empty("a host"))
       ->type_name("HOST")
       ->capture_default_str();
-  app.add_option("--port", o.port, "UDP port that it listens on")
+  app.add_option("--port", o.port, "UDP port of the farm")
       ->check(whole(1, 65535))
       ->type_name("PORT")
       ->capture_default_str();
 }
 
 void add_link(CLI::App& app, LinkOptions& o) {
-  constexpr const char* kGroup = "Link, made worse than it is";
+  constexpr const char* kGroup = "Faults injected into the link";
   app.add_option("--delay", o.delay, "Injected delay of every packet, in each direction [s]")
       ->check(number(0.0, 3600.0))
       ->type_name("S")
       ->group(kGroup);
-  app.add_option("--jitter", o.jitter, "More delay, evenly from 0 to this; packets overtake each other [s]")
+  app.add_option("--jitter", o.jitter,
+                 "Additional random delay, uniform from 0 to this; packets may overtake each other [s]")
       ->check(number(0.0, 3600.0))
       ->type_name("S")
       ->group(kGroup);
-  app.add_option("--loss", o.loss, "Part of the packets that never come, in each direction, 0 to 1")
+  app.add_option("--loss", o.loss, "Fraction of packets lost in each direction, 0 to 1")
       ->check(number(0.0, 1.0))
       ->type_name("P")
       ->group(kGroup);
 }
 
 void add_robot(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand(
-      "robot",
-      "One simulated robot, a process of its own beside a farm that serves (exit 1 when nothing came from it)");
+  CLI::App* sub = app.add_subcommand("robot",
+                                     "Run one simulated robot as a process of its own, with sensors from a farm that "
+                                     "serves (exit 1 when nothing came from the farm)");
   auto& o = add_command(*sub, call, robot);
   add_examples(*sub, {"worlds/testpath/testpath.world --name roomba0 --controller lane-keeping --duration 30",
                       "worlds/rooms.world --name roomba1 --server 192.168.1.5 --loss 0.1 --delay 0.05"});
@@ -128,22 +126,22 @@ void add_robot(CLI::App& app, Call& call) {
   add_link(*sub, o);
   add_ports(*sub, o);
   sub->add_option("--name", o.robot, "Name of the robot in the world")->required()->type_name("NAME");
-  sub->add_option("--rate", o.rate, "Decisions, and packets, per second (default: the controller's own)")
+  sub->add_option("--rate", o.rate, "Decisions and packets per second (default: the controller's own)")
       ->check(number(0.1, 1000.0))
       ->type_name("HZ");
-  sub->add_option("--stop-after", o.stop_after, "Stand when no reading came for so long [s] (0: drive on)")
+  sub->add_option("--stop-after", o.stop_after, "Silence of the farm after which the robot stands [s] (0: never)")
       ->check(number(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str();
   add_forget(*sub, o);
-  sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal comes (`sensorfarm start`)");
-  add_seed(*sub, o, "Seed of decisions and of the injected link");
-  add_until(*sub, o, "Stop after this long [s] (0: when done or told to)");
+  sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal arrives (`sensorfarm start`)");
+  add_seed(*sub, o, "Seed of decisions and of injected faults");
+  add_until(*sub, o, "Stop after this long [s] (0: when done, or at Ctrl-C)");
 }
 
 void add_start(CLI::App& app, Call& call) {
   CLI::App* sub =
-      app.add_subcommand("start", "Give robots that wait for it the start signal, through the farm (not acknowledged)");
+      app.add_subcommand("start", "Send the start signal to waiting robots, through the farm (not acknowledged)");
   auto& o = add_command(*sub, call, start);
   add_examples(*sub, {"--robot 2"});
   add_farm(*sub, o);
@@ -152,7 +150,8 @@ void add_start(CLI::App& app, Call& call) {
 
 void add_listen(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
-      "listen", "Take a run's packets on every robot's ports, count and check them (exit 1 when none was good)");
+      "listen",
+      "Receive the packets of `run --send` on every robot's ports, count and check them (exit 1 when none was valid)");
   auto& o = add_command(*sub, call, listen);
   add_examples(*sub, {"worlds/cave.world --robots 4"});
   add_world(*sub, o);
@@ -162,7 +161,7 @@ void add_listen(CLI::App& app, Call& call) {
   add_bind(*sub, o);
   add_from(*sub, o);
   add_silence(*sub, o);
-  add_until(*sub, o, "Stop after this long [s] (0: when told to, or silent)");
+  add_until(*sub, o, "Stop after this long [s] (0: at --silence or Ctrl-C)");
 }
 
 void add_map(CLI::App& app, Call& call) {
@@ -178,18 +177,18 @@ void add_map(CLI::App& app, Call& call) {
              o.map_ports.insert(o.map_ports.end(), ports.begin(), ports.end());
            }
          },
-         "Port of a robot's map, or a range of ports A-B; may be given more than once")
+         "Port of a robot's map, or a range of ports A-B (may be repeated)")
       ->required()
       ->check(readable(read_ports, "a port or a range of at most 1024 such as 52000-52008"))
       ->type_name("PORT");
   add_bind(*sub, o);
   add_from(*sub, o);
-  sub->add_flag("--merge", o.merge, "All maps as one: what any robot saw occupied is occupied");
-  sub->add_option("-o,--out", o.out, "PNG file to write at the end; of several maps that are not merged, one each")
+  sub->add_flag("--merge", o.merge, "Merge all maps: a cell that any robot saw occupied is occupied");
+  sub->add_option("-o,--out", o.out, "PNG file to write at the end; without --merge one per map")
       ->check(picture())
       ->type_name("FILE");
-  add_until(*sub, o, "Stop after this long [s] (0: when told to, or silent)");
-  sub->add_flag("--once", o.once, "Stop when every port has brought a complete map");
+  add_until(*sub, o, "Stop after this long [s] (0: at --silence or Ctrl-C)");
+  sub->add_flag("--once", o.once, "Stop when every port has received a complete map");
   add_silence(*sub, o);
   add_wire(*sub, o);
 }

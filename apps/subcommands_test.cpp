@@ -17,20 +17,20 @@ namespace {
 
 void add_experiment(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
-      "experiment", "Run one of the experiments: trials, statistics beside the thesis', figures, in one folder");
+      "experiment", "Run an experiment: trials, statistics beside the thesis' and figures, in one folder");
   auto& o = add_command(*sub, call, experiment, [sub] {
     if (sub->count("--list") + sub->count("experiment") == 0)
       throw CLI::RequiredError("the name of an experiment, or --list");
   });
   add_examples(*sub, {"--list", "mapping -o out/mapping"});
-  auto* list = sub->add_flag("--list", o.list, "Name them all");
+  auto* list = sub->add_flag("--list", o.list, "List all experiments");
   std::vector<std::string> names;
   for (const scenarios::ExperimentType* kind : scenarios::experiments()) names.emplace_back(kind->name);
   auto* name = sub->add_option("experiment", o.experiment, join_or(names))->check(one_of(names))->type_name("NAME");
   auto* out =
       sub->add_option("-o,--out", o.out, "Folder to write into")->check(not_empty("a folder"))->type_name("DIR");
   name->needs(out)->excludes(list);
-  sub->add_option("--trials", o.trials, "How many, each with a seed of its own")
+  sub->add_option("--trials", o.trials, "Number of trials, each with its own seed")
       ->check(whole(1, 1000))
       ->type_name("N")
       ->capture_default_str();
@@ -40,14 +40,14 @@ void add_experiment(CLI::App& app, Call& call) {
       *sub, "--plant", o.plant, {{"thesis", Plant::thesis}, {"ideal", Plant::ideal}},
       "Driver model of the robots: ideal (commands are executed unchanged) or thesis (Player's driver for the Create). "
       "Default: thesis for paths, sweeps and mapping; ideal for towns and Pioneers");
-  sub->add_option("--files", o.experiments, "Folder with the experiments' scenario files (default: ours)")
+  sub->add_option("--files", o.experiments, "Folder of the experiments' scenario files (default: those of sensorfarm)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
   add_device(*sub, o);
 }
 
 void add_test(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("test", "Run scenarios and hold them to what they expect (exit 1 when one fails)");
+  CLI::App* sub = app.add_subcommand("test", "Run scenarios and check their expectations (exit 1 when one fails)");
   auto& o = add_command(*sub, call, test_scenarios);
   add_examples(*sub, {"experiments/mapping.toml --junit results.xml"});
   sub->add_option("scenario", o.scenarios, "Scenario files (.toml)")->required()->type_name("FILE");
@@ -56,20 +56,19 @@ void add_test(CLI::App& app, Call& call) {
 }
 
 void add_verify(CLI::App& app, Call& call) {
-  CLI::App* sub =
-      app.add_subcommand("verify",
-                         "Compute a recorded run again, on this device and in plain C++, and compare bit by "
-                         "bit (exit 1 when something differs)");
+  CLI::App* sub = app.add_subcommand("verify",
+                                     "Recompute a recorded run, on this device and in plain C++, and compare bit by "
+                                     "bit (exit 1 when something differs)");
   auto& o = add_command(*sub, call, verify);
   add_examples(*sub, {"out/run"});
   add_recording(*sub, o);
-  auto* sample =
-      sub->add_option("--sample", o.sample, "Laser scans that plain C++ casts again: every k-th of the run's")
-          ->check(whole(0, UINT64_MAX))
-          ->type_name("N")
-          ->capture_default_str();
+  auto* sample = sub->add_option("--sample", o.sample,
+                                 "Number of laser scans to recompute in plain C++, spread over the run (0: all)")
+                     ->check(whole(0, UINT64_MAX))
+                     ->type_name("N")
+                     ->capture_default_str();
   sub->add_flag_callback(
-         "--all", [&o] { o.sample = 0; }, "Cast every laser scan again, which may take long")
+         "--all", [&o] { o.sample = 0; }, "Recompute every laser scan in plain C++, which may take long")
       ->excludes(sample);
   add_threads(*sub, o);
   add_json(*sub, o);
@@ -78,7 +77,7 @@ void add_verify(CLI::App& app, Call& call) {
 
 void add_tradeoff(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
-      "tradeoff", "Measure every accuracy mode of a world's sensors on this machine: speed against error");
+      "tradeoff", "Measure speed and error of every accuracy mode of a world's sensors on this machine");
   auto& o = add_command(*sub, call, tradeoff);
   add_examples(*sub, {"worlds/cave.world --max-error 5mm"});
   add_world(*sub, o);
@@ -86,7 +85,7 @@ void add_tradeoff(CLI::App& app, Call& call) {
       ->check(not_empty("a folder"))
       ->type_name("DIR");
   add_accuracy_target(*sub, o);
-  sub->add_flag("--auto", o.automatic, "Print only the words that --accuracy takes, for scripts");
+  sub->add_flag("--auto", o.automatic, "Print only the words for --accuracy, for scripts");
   add_json(*sub, o);
   add_device(*sub, o);
   add_robots(*sub, o);
@@ -101,13 +100,12 @@ bool is_case_or_group(const std::string& name) {
 }
 
 void add_selftest(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand(
-      "selftest",
-      "Try the farm at the ends of its range on this machine: worlds, beams, magnets, times, numbers (exit 1 when an "
-      "answer is wrong)");
+  CLI::App* sub = app.add_subcommand("selftest",
+                                     "Test the farm on this machine at the limits of its range: worlds, beams, "
+                                     "magnets, times, numbers (exit 1 when an answer is wrong)");
   auto& o = add_command(*sub, call, selftest);
   add_examples(*sub, {"--list"});
-  auto* list = sub->add_flag("--list", o.list, "Name all cases, each with its answer");
+  auto* list = sub->add_flag("--list", o.list, "List all cases with their answers");
   sub->add_option("case", o.cases, "Cases or groups of them (default: all)")
       ->check([](const std::string& name) {
         return is_case_or_group(name)

@@ -103,7 +103,7 @@ std::string text_of(const std::vector<scenarios::ModeResult>& results) {
                         g.covered > 0.0 ? quantity_text(g.covered_max, g.unit) : "-", quantity_text(g.bound, g.unit),
                         quantity_text(g.median, g.unit), quantity_text(g.p99, g.unit), quantity_text(g.max, g.unit),
                         g.front ? "*" : "");
-  text += "* no other mode of the kind is as fast with 99 % of errors as small\n";
+  text += "* no other mode of the type is as fast with 99 % of errors as small\n";
   text +=
       "A bound holds for the part that it covers; the others are flagged, and may be off by as much as all are.\n\n";
   for (const scenarios::ModeResult& g : results) text += fmt::format("{:<13} {:<8} {}\n", g.sensor, g.mode, g.what);

@@ -114,7 +114,7 @@ std::vector<Measurement> measure_program() {
   const Process fifty = run_program({"run", simville(), "--robots", "50", "--duration", "60"});
   const Process town = run_program({"run", simville(), "--duration", "60"});
   const Process none = run_program({"devices"});
-  const Words first{"sense", simville(), "--kind", "laser"}, tick{"run", simville(), "--duration", "0.1"};
+  const Words first{"sense", simville(), "--type", "laser"}, tick{"run", simville(), "--duration", "0.1"};
   setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
   const double cold = median_start(first);
   const double all = median_start(tick);

@@ -22,27 +22,27 @@ TEST(Explain, AsJson) {
       run_program({"explain", our_world("rooms.world"), "--robots", "3", "--caster", "vulkan", "--json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json json(outcome.out);
-  ASSERT_EQ(json.size("/kinds"), 1u);
-  EXPECT_EQ(json.text("/kinds/0/kind"), "laser");
-  EXPECT_EQ(json.number("/kinds/0/sensors"), 3);
-  EXPECT_EQ(json.number("/kinds/0/robots"), 3);
-  EXPECT_EQ(json.number("/kinds/0/rate_hz/0"), 10);
-  EXPECT_EQ(json.number("/kinds/0/readings_per_tick"), 3);
-  EXPECT_EQ(json.number("/kinds/0/rays"), 3 * 181 * json.number("/ticks"));
-  EXPECT_GT(json.number("/kinds/0/bytes"), 0);
+  ASSERT_EQ(json.size("/types"), 1u);
+  EXPECT_EQ(json.text("/types/0/type"), "laser");
+  EXPECT_EQ(json.number("/types/0/sensors"), 3);
+  EXPECT_EQ(json.number("/types/0/robots"), 3);
+  EXPECT_EQ(json.number("/types/0/rate_hz/0"), 10);
+  EXPECT_EQ(json.number("/types/0/readings_per_tick"), 3);
+  EXPECT_EQ(json.number("/types/0/rays"), 3 * 181 * json.number("/ticks"));
+  EXPECT_GT(json.number("/types/0/bytes"), 0);
   EXPECT_EQ(json.text("/caster"), "Vulkan kernels");
-  EXPECT_EQ(json.text("/kinds/0/kernels/0"), "laser");
+  EXPECT_EQ(json.text("/types/0/kernels/0"), "laser");
   double held = 0.0;
-  for (std::size_t i = 0; i < json.size("/kinds/0/tables"); ++i)
-    held += json.number("/kinds/0/tables/" + std::to_string(i) + "/bytes");
-  EXPECT_EQ(held, json.number("/kinds/0/bytes")) << "what its tables hold together";
+  for (std::size_t i = 0; i < json.size("/types/0/tables"); ++i)
+    held += json.number("/types/0/tables/" + std::to_string(i) + "/bytes");
+  EXPECT_EQ(held, json.number("/types/0/bytes")) << "what its tables hold together";
   EXPECT_EQ(json.size("/slices"), 1u) << "all at one height";
   EXPECT_EQ(json.number("/slices/0/sensors"), 3);
   EXPECT_GT(json.number("/slices/0/walls"), 0.0);
   EXPECT_LT(json.number("/slices/0/walls"), json.number("/walls")) << "a step of 4 cm is below the beams";
   EXPECT_EQ(json.text("/accuracy/0/mode"), "exact");
   EXPECT_GT(json.number("/tick_s"), 0.0);
-  EXPECT_GT(json.number("/resident_bytes"), json.number("/kinds/0/bytes"));
+  EXPECT_GT(json.number("/resident_bytes"), json.number("/types/0/bytes"));
   EXPECT_GT(json.size("/absent"), 0u);
   EXPECT_NE(outcome.out.find("magnet"), std::string::npos) << "no magnets, so nothing is built for them";
 }
@@ -54,7 +54,7 @@ TEST(Explain, TheCasterIsAsAsked) {
   EXPECT_EQ(host.code, 0) << host.err;
   const Json json(host.out);
   EXPECT_EQ(json.text("/caster").rfind("host, ", 0), 0u);
-  EXPECT_EQ(json.size("/kinds/0/kernels"), 0u);
+  EXPECT_EQ(json.size("/types/0/kernels"), 0u);
   const Outcome wrong = run_program({"explain", our_world("rooms.world"), "--caster", "gpu"});
   EXPECT_EQ(wrong.code, 2);
   EXPECT_NE(wrong.err.find("--caster: expected auto, vulkan or host, got 'gpu'"), std::string::npos) << wrong.err;
@@ -74,7 +74,7 @@ TEST(Explain, SaysHowManyBeamsAreInDoubt) {
   Words as_json = words;
   as_json.push_back("--json");
   const Json json(run_program(as_json).out);
-  const double share = 100.0 * json.number("/kinds/0/doubts") / json.number("/kinds/0/rays");
+  const double share = 100.0 * json.number("/types/0/doubts") / json.number("/types/0/rays");
   ASSERT_GT(share, 0.0);
   const std::string text = run_program(words).out, said = " % of beams decided in 64 bits";
   const std::size_t end = text.find(said), begin = text.rfind(' ', end - 1);

@@ -45,7 +45,7 @@ TEST(Sense, SaysWhoLooksFromWhere) {
   const Json scan = sense({our_world("rooms.world")});
   EXPECT_EQ(scan.text("/robot"), "roomba1");
   EXPECT_EQ(scan.number("/sensor"), 0);
-  EXPECT_EQ(scan.text("/kind"), "laser");
+  EXPECT_EQ(scan.text("/type"), "laser");
   ASSERT_EQ(scan.size("/pose"), 3u);
   EXPECT_EQ(scan.number("/pose/0"), -3);
   EXPECT_EQ(scan.number("/pose/1"), -1.5);

@@ -65,11 +65,11 @@ Words free_bases(unsigned& base) {
 }  // namespace
 
 TEST_F(Kinds, AMagnetometerIsSensedByHand) {
-  const Outcome outcome = run("sense", world, {"--kind", "magnetometer", "--json"});
+  const Outcome outcome = run("sense", world, {"--type", "magnetometer", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Json reading(outcome.out);
   EXPECT_EQ(reading.text("/robot"), "one");
-  EXPECT_EQ(reading.text("/kind"), "magnetometer");
+  EXPECT_EQ(reading.text("/type"), "magnetometer");
   EXPECT_EQ(reading.text("/sensor_name"), "array");
   EXPECT_EQ(reading.size("/sensor_pose"), 3u);
   ASSERT_EQ(reading.size("/sensors"), 2u);
@@ -82,12 +82,12 @@ TEST_F(Kinds, AMagnetometerIsSensedByHand) {
 }
 
 TEST_F(Kinds, PoseMovesAnySensor) {
-  const Json reading(run("sense", world, {"--kind", "magnetometer", "--json", "--pose", "0.5,0,0"}).out);
+  const Json reading(run("sense", world, {"--type", "magnetometer", "--json", "--pose", "0.5,0,0"}).out);
   EXPECT_NEAR(reading.number("/sensors/0/field_T"), 8e-7, 1e-12);
 }
 
 TEST_F(Kinds, CsvHasAColumnPerNumberAndALinePerElement) {
-  const Outcome outcome = run("sense", world, {"--kind", "magnetometer"});
+  const Outcome outcome = run("sense", world, {"--type", "magnetometer"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out.rfind("field_T,vector_T_x,vector_T_y,vector_T_z\n", 0), 0u) << outcome.out;
   EXPECT_EQ(count_lines(outcome.out), 3u);
@@ -95,19 +95,19 @@ TEST_F(Kinds, CsvHasAColumnPerNumberAndALinePerElement) {
 }
 
 TEST_F(Kinds, WithoutAWordTheFirstKindIsMeant) {
-  EXPECT_EQ(Json(run("sense", world, {"--json"}).out).text("/kind"), "laser");
+  EXPECT_EQ(Json(run("sense", world, {"--json"}).out).text("/type"), "laser");
   const std::string only = folder.write("only.world", "position( name \"a\" magnetometer( ) )\n");
-  EXPECT_EQ(Json(run("sense", only, {"--json"}).out).text("/kind"), "magnetometer");
+  EXPECT_EQ(Json(run("sense", only, {"--json"}).out).text("/type"), "magnetometer");
 }
 
 TEST_F(Kinds, WithoutAWordNumbersCountThroughAllKinds) {
   const Json second(run("sense", world, {"--sensor", "1", "--json"}).out);
-  EXPECT_EQ(second.text("/kind"), "magnetometer");
+  EXPECT_EQ(second.text("/type"), "magnetometer");
   EXPECT_EQ(second.number("/sensor"), 0) << "the first of its kind";
   const std::string twice =
       folder.write("twice.world", "position( name \"a\" laser( ) laser( ) magnetometer( ) magnetometer( ) )\n");
   const Json last(run("sense", twice, {"--sensor", "3", "--json"}).out);
-  EXPECT_EQ(last.text("/kind"), "magnetometer") << "behind all lasers, not one";
+  EXPECT_EQ(last.text("/type"), "magnetometer") << "behind all lasers, not one";
   EXPECT_EQ(last.number("/sensor"), 1);
 }
 
@@ -120,12 +120,12 @@ TEST_F(Kinds, AMissingSensorIsRefusedWithTheListOfThoseThere) {
   const std::string none = folder.write("none.world", "position( name \"a\" )\n");
   for (const auto& [arguments, said] : std::vector<Wrong>{
            {{world, "--sensor", "2"}, "one has no sensor 2; it has laser 0, magnetometer 0"},
-           {{world, "--kind", "laser", "--sensor", "1"}, "one has no laser 1; it has laser 0, magnetometer 0"},
-           {{world, "--kind", "magnetometer", "--sensor", "1"}, "one has no magnetometer 1; it has laser 0"},
+           {{world, "--type", "laser", "--sensor", "1"}, "one has no laser 1; it has laser 0, magnetometer 0"},
+           {{world, "--type", "magnetometer", "--sensor", "1"}, "one has no magnetometer 1; it has laser 0"},
            {{world, "--robot", "blind"}, "blind has no sensor"},
-           {{lasers, "--kind", "magnetometer"}, "no robot has such a sensor; give one a magnetometer( )"},
-           {{lasers, "--kind", "magnetometer", "--robot", "a"}, "a has no magnetometer 0; it has laser 0 to 1"},
-           {{lasers, "--kind", "magnetometer", "--robot", "b"}, "no robot 'b'; with sensors it has none"},
+           {{lasers, "--type", "magnetometer"}, "no robot has such a sensor; give one a magnetometer( )"},
+           {{lasers, "--type", "magnetometer", "--robot", "a"}, "a has no magnetometer 0; it has laser 0 to 1"},
+           {{lasers, "--type", "magnetometer", "--robot", "b"}, "no robot 'b'; with sensors it has none"},
            {{none}, "no robot has such a sensor; give one a laser( )"},
        }) {
     Words words{"sense"};
@@ -284,7 +284,7 @@ TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
   const record::ReadingSample& first = recording.readings[0];
   EXPECT_EQ(first.kind, kMagnetometer);
   ASSERT_EQ(first.values.size(), 8u);
-  const Json now(run("sense", world, {"--kind", "magnetometer", "--json"}).out);
+  const Json now(run("sense", world, {"--type", "magnetometer", "--json"}).out);
   EXPECT_EQ(first.values[0], now.number("/sensors/0/field_T"));
   EXPECT_EQ(first.values[7], now.number("/sensors/1/vector_T/2"));
 
@@ -371,7 +371,7 @@ path( pose [-2 0 0 0] pieces 1 straight[0] [4 0.5] left "solid_white" paint_widt
 )");
   for (const std::string& world : {thesis, ours}) {
     const Json reading(run("sense", world, {"--json"}).out);
-    EXPECT_EQ(reading.text("/kind"), "laneedge");
+    EXPECT_EQ(reading.text("/type"), "laneedge");
     EXPECT_NEAR(reading.number("/distance_m"), 0.25, 1e-9) << world;
     EXPECT_EQ(reading.number("/points"), 61) << world;
     EXPECT_LT(reading.number("/residual_m"), 1e-9) << world;
@@ -400,7 +400,7 @@ TEST(LaneEdge, ABoundIsTrueOfItsReadingOrFlagged) {
   if (!has_kind(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const std::string lane = our_world("testpath/testpath.world");
   const auto sense = [&](const std::string& pose) {
-    return Json(run("sense", lane, {"--kind", "laneedge", "--json", "--pose", pose}).out);
+    return Json(run("sense", lane, {"--type", "laneedge", "--json", "--pose", pose}).out);
   };
   const Json bend = sense("3.3,0.4,50");
   EXPECT_EQ(bend.text("/unsure"), "not straight");
@@ -420,15 +420,15 @@ TEST(LaneEdge, GoesThroughEveryCommand) {
   EXPECT_EQ(facts.number("/sensors/laneedge"), 1);
   EXPECT_GT(facts.number("/paint"), 0);
 
-  const Json reading(run("sense", lane, {"--kind", "laneedge", "--json"}).out);
-  EXPECT_EQ(reading.text("/kind"), "laneedge");
+  const Json reading(run("sense", lane, {"--type", "laneedge", "--json"}).out);
+  EXPECT_EQ(reading.text("/type"), "laneedge");
   EXPECT_GT(reading.number("/distance_m"), 0.1);
   EXPECT_GT(reading.number("/points"), 2);
   EXPECT_TRUE(reading.has("/residual_m"));
   // Far from the lane there is no edge.
   EXPECT_TRUE(
-      Json(run("sense", lane, {"--kind", "laneedge", "--json", "--pose", "50,50,0"}).out).is_null("/distance_m"));
-  const std::string csv = run("sense", lane, {"--kind", "laneedge", "--pose", "50,50,0"}).out;
+      Json(run("sense", lane, {"--type", "laneedge", "--json", "--pose", "50,50,0"}).out).is_null("/distance_m"));
+  const std::string csv = run("sense", lane, {"--type", "laneedge", "--pose", "50,50,0"}).out;
   EXPECT_EQ(csv.rfind("distance_m,points,residual_m,sigma_m\n,0,", 0), 0u) << csv;
 
   const Folder folder;

@@ -77,7 +77,7 @@ TEST(Usage, HelpNamesTheOptions) {
       {"devices", {"--json", "--device", "SENSORFARM_DEVICE"}},
       {"check", {"--json", "--stage-noise", "--stage-obstacles"}},
       {"draw", {"-o,--out"}},
-      {"sense", {"--pose", "--robot", "--kind", "--sensor", "--json", "--no-return", "--device"}},
+      {"sense", {"--pose", "--robot", "--type", "--sensor", "--json", "--no-return", "--device"}},
       {"run",
        {"--robots", "--duration", "--seed", "--record", "--record-readings", "--real-time", "--send", "--json",
         "--wire", "--threads", "--stage-obstacles", "--drive"}},
@@ -139,7 +139,7 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
            {{"sense", world, "--sensor", "1"}, "roomba1 has no sensor 1; it has laser 0"},  // past the last
            {{"sense", world, "--sensor", "65535"}, "roomba1 has no sensor 65535"},  // the last that may be asked
            {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},             // there, but blind
-           {{"sense", world, "--kind", "lidar"}, "--kind: expected laser"},         // somebody else's word
+           {{"sense", world, "--type", "lidar"}, "--type: expected laser"},         // somebody else's word
            {{"sense", world, "--robot", "bob"}, "no robot 'bob'; with sensors it has roomba1, roomba2"},
            {{"serve", world, "--rate", "0"}, "from 0.1 to 10000"},  // would never tick
            {{"serve", world, "--port", "65536"}, "from 0 to 65535"},
