@@ -10,18 +10,13 @@
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
 #include "apps/text.h"
+#include "world/keys.h"
 
 namespace sf::apps {
 
 namespace {
 
 constexpr std::size_t kNameWidth = 34;  ///< of the column with names of options
-
-std::string names_of(const std::vector<const CLI::App*>& subcommands) {
-  std::string names;
-  for (const CLI::App* sub : subcommands) names += (names.empty() ? "" : ", ") + sub->get_name();
-  return names;
-}
 
 std::vector<std::string> options_of(const CLI::App& sub) {
   std::vector<std::string> names;
@@ -75,10 +70,13 @@ const CLI::App* add_help(CLI::App& app, std::string& asked) {
 std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc, const char* const* argv) {
   const std::vector<CLI::App*> used = app.get_subcommands();
   if (used.empty()) {
-    const std::string all = names_of(app.get_subcommands([](const CLI::App*) { return true; }));
-    const std::string what = argc > 1 ? fmt::format("'{}' is no subcommand; expected one of {}", argv[1], all)
-                                      : fmt::format("expected a subcommand: {}", all);
-    return what + "; see `sensorfarm --help`";
+    std::vector<std::string_view> names;
+    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
+      names.emplace_back(sub->get_name());
+    const std::string what =
+        argc > 1 ? fmt::format("'{}' is no subcommand{}; expected one of", argv[1], world::suggest(argv[1], names))
+                 : "expected a subcommand:";
+    return fmt::format("{} {}; see `sensorfarm --help`", what, fmt::join(names, ", "));
   }
   std::string what = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) what = explain_extras(app, *used[0], argc, argv);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "apps/option_parsers.h"
+#include "apps/report.h"
 #include "apps/text.h"
 #include "base/error.h"
 #include "world/keys.h"
@@ -55,7 +56,7 @@ std::vector<scenarios::Actor> make_actors(const world::World& world, const RunOp
     if (found == names.end())
       throw base::InputError(
           world.file, 0,
-          fmt::format("has no robot '{}'{}; --drive expects one of its robots", name, world::suggest(name, names)));
+          fmt::format("has no robot '{}'{}; it has {}", name, world::suggest(name, names), names_of_robots(world)));
     actors[static_cast<std::size_t>(found - names.begin())].controller = controller_config_of(options);
   }
   return actors;

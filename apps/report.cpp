@@ -34,6 +34,16 @@ std::size_t count_robots(const world::World& world) {
   return robots;
 }
 
+std::string names_of_robots(const world::World& world) {
+  constexpr std::size_t kMost = 10;
+  const std::size_t count = count_robots(world);
+  std::vector<std::string_view> names;
+  for (const world::Mover& mover : world.movers)
+    if (!mover.is_tag && names.size() < kMost) names.push_back(mover.name);
+  if (names.empty()) return "none";
+  return fmt::format("{}{}", fmt::join(names, ", "), count > kMost ? fmt::format(", ... ({} in all)", count) : "");
+}
+
 std::size_t count_docks(const world::World& world) {
   return static_cast<std::size_t>(
       std::count_if(world.emitters.begin(), world.emitters.end(),

@@ -72,6 +72,8 @@ std::string with_warnings(std::string json, const std::vector<world::Warning>& w
 void print_damage(const record::Recording& recording);
 
 std::size_t count_robots(const world::World& world);
+/// "roomba1, roomba2", at most ten; "none".
+std::string names_of_robots(const world::World& world);
 /// All that stand still or are carried.
 std::size_t count_magnets(const world::World& world);
 /// Of the infrared emitters; the others are virtual walls.

@@ -57,10 +57,9 @@ std::uint32_t find_robot(const world::World& world, const std::string& name) {
     if (world.movers[i].name == name) return i;
     names.emplace_back(world.movers[i].name);
   }
-  const std::string nearest = world::suggest(name, names);
   throw base::InputError(
       world.file, 0,
-      "has no robot '" + name + "'" + (nearest.empty() ? "; `sensorfarm check` lists its models" : nearest));
+      "has no robot '" + name + "'" + world::suggest(name, names) + "; it has " + names_of_robots(world));
 }
 
 }  // namespace

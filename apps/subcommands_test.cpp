@@ -19,8 +19,7 @@ void add_experiment(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "experiment", "Run an experiment: trials, statistics beside the thesis' and figures, in one folder");
   auto& o = add_command(*sub, call, experiment, [sub] {
-    if (sub->count("--list") + sub->count("experiment") == 0)
-      throw CLI::RequiredError("the name of an experiment, or --list");
+    if (sub->count("--list") + sub->count("experiment") == 0) throw CLI::RequiredError("experiment (or --list)");
   });
   add_examples(*sub, {"--list", "mapping -o out/mapping"});
   auto* list = sub->add_flag("--list", o.list, "List all experiments");

@@ -178,7 +178,7 @@ TEST(Robot, WrongWordsAreRefusedWithWhatWasExpected) {
   };
   const Case cases[] = {
       {{"--name", "roomba3"}, "has no robot 'roomba3'; did you mean 'roomba2'?"},  // one slip away
-      {{"--name", "bus"}, "has no robot 'bus'"},
+      {{"--name", "bus"}, "has no robot 'bus'; it has roomba"},
       {{}, "--name"},  // it must be said which
       {{"--name", "roomba2", "--controller", "wonder"}, "got 'wonder'"},
       {{"--name", "roomba2", "--set", "speed"}, "expected KEY=VALUE"},

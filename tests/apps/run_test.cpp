@@ -273,8 +273,8 @@ TEST(Run, ClonesMayBeNamedAndNobodyElse) {
   const std::pair<std::string, std::string> refused[] = {
       {"rooomba1", "has no robot 'rooomba1'; did you mean 'roomba1'?"},
       {"Roomba1", "has no robot 'Roomba1'; did you mean 'roomba1'?"},
-      {"bob", "has no robot 'bob'; --drive expects one of its robots"},
-      {"roomba1,roomba2", "has no robot 'roomba1,roomba2'; --drive"},
+      {"bob", "has no robot 'bob'; it has roomba1, roomba2"},
+      {"roomba1,roomba2", "has no robot 'roomba1,roomba2'; it has roomba1, roomba2"},
       {"", "expected the name of a robot, got ''"},
   };
   for (const auto& [name, said] : refused) {

@@ -141,7 +141,7 @@ TEST(AccuracyOption, ChangesWhatIsReadAndSaysSo) {
 TEST(AccuracyOption, WrongWords) {
   const Outcome unknown = run_program({"check", our_world("rooms.world"), "--accuracy", "fast"});
   EXPECT_EQ(unknown.code, 2);
-  expect_says(unknown, "there is no accuracy \"fast\"; expected one of \"exact\", \"single\"");
+  expect_says(unknown, "--accuracy: there is no accuracy \"fast\"; expected one of \"exact\", \"single\"");
   for (const auto& [wish, value] : {std::pair("--max-error", "5mm"), {"--min-rate", "1"}, {"--by", "p99"}}) {
     const Outcome alone = run_program({"run", our_world("rooms.world"), "--duration", "0", wish, value});
     EXPECT_EQ(alone.code, 2) << wish;

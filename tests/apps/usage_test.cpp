@@ -108,6 +108,7 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
   for (const auto& [arguments, said] : std::vector<Wrong>{
            {{}, "expected a subcommand: devices, check"},  // nothing at all
            {{"frob"}, "'frob' is no subcommand"},          // unknown subcommand
+           {{"runn"}, "did you mean 'run'?"},              // one slip away
            {{"help", "frob"}, "expected devices, check"},  // the same, asked about
            {{"--loss", "1", "run", world}, "'--loss'"},    // the link is a robot's
            {{"run"}, "world is required"},                 // no world
