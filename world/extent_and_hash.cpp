@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/bytes.h"
 #include "base/hash.h"
 #include "world/path_geometry.h"
 #include "world/serialization.h"
-#include "world/world.h"
 
 namespace sf::world {
 
@@ -51,29 +49,35 @@ double radius_of(const Mover& mover) {
   return radius;
 }
 
+/// The order of the hash up to the accuracy is older than the table's.
+constexpr auto kFirstHashed = std::make_tuple(&World::interval, &World::models, &World::walls, &World::road_resolution,
+                                              &World::lane_markings, &World::magnet_cutoff, &World::accuracy);
+
+template <class Member>
+bool is_first_hashed(Member member) {
+  const auto same = [&](auto other) {
+    if constexpr (std::is_same_v<Member, decltype(other)>) return other == member;
+    return false;
+  };
+  return std::apply([&](auto... others) { return (same(others) || ...); }, kFirstHashed);
+}
+
 std::uint64_t hash_of(const World& world) {
   std::vector<std::uint8_t> bytes;
   base::ByteWriter out(bytes);
-  out.put(world.interval);
-  out.put(static_cast<std::uint64_t>(world.models.size()));
-  for (const Model& model : world.models) put(out, model, RowFields::physics);
-  out.put(static_cast<std::uint64_t>(world.walls.size()));
-  for (const Segment& wall : world.walls) put(out, wall);
-  out.put(world.road_resolution);
-  out.put(static_cast<std::uint64_t>(world.lane_markings.size()));
-  for (const LaneMarking& marking : world.lane_markings) put(out, marking, RowFields::physics);
-  out.put(world.magnet_cutoff);
-  put(out, world.accuracy, RowFields::physics);
-  out.put(static_cast<std::uint64_t>(world.magnets.size()));
-  for (const Magnet& magnet : world.magnets) put(out, magnet);
-  out.put(static_cast<std::uint64_t>(world.movers.size()));
-  for (const Mover& mover : world.movers) put(out, mover, RowFields::physics);
-  out.put(static_cast<std::uint64_t>(world.lights.size()));
-  for (const Light& light : world.lights) put(out, light);
-  out.put(static_cast<std::uint64_t>(world.emitters.size()));
-  for (const Emitter& emitter : world.emitters) put(out, emitter);
-  out.put(static_cast<std::uint64_t>(world.floor_holes.size()));
-  for (const FloorHole& hole : world.floor_holes) put(out, hole);
+  RowWriter writer{out, RowFields::physics};
+  const auto put = [&](const auto& value) {
+    if constexpr (requires { value.data(); }) {
+      out.put(static_cast<std::uint64_t>(value.size()));
+      for (const auto& row : value) writer.put(row);
+    } else {
+      writer.put(value);
+    }
+  };
+  std::apply([&](auto... member) { (put(world.*member), ...); }, kFirstHashed);
+  for_each_field<World>([&](const auto& field) {
+    if (field.role == Role::physics && !is_first_hashed(field.member)) put(world.*field.member);
+  });
   return base::hash_bytes(bytes.data(), bytes.size());
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "world/fields.h"
+
 namespace sf::world {
 
 namespace {
@@ -10,23 +12,22 @@ namespace {
 using Words = std::span<const std::string_view>;
 
 // clang-format off
-constexpr auto kWorld = std::to_array<std::string_view>({"name", "interval_sim", "unit_length", "unit_angle",
-  "road_resolution", "magnet_cutoff", "accuracy",
+// Keys with a reader of their own. world/fields.h has all others.
+constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy",
   // known, not modelled
   "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
   "interval_real", "gui_disable", "gui_interval", "ppm"});
 
 constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size", "origin", "color", "color_rgba", "bitmap", "boundary", "stack_children",
-  "noblocks", "obstacle_return", "laser_return", "ranger_return", "magnetic_moment", "magneticmoment",
-  "magnetometer_return", "laneedge_return", "blocks", "block[].points", "block[].point[]", "block[].z",
-  "cliff_return", "ir_emitter", "ir_range", "ir_fov", "ir_halo", "tag_pose",
+  "noblocks", "laser_return", "ranger_return", "magnetic_moment", "magneticmoment", "magnetometer_return", "blocks",
+  "block[].points", "block[].point[]", "block[].z", "cliff_return", "tag_pose",
   // known, not modelled
   "ctrl", "update_interval", "gui_nose", "gui_grid", "gui_outline", "gui_move", "gui_movemask", "gui_boundary",
   "fiducial_return", "fiducial_key", "blob_return", "blobfinder_return", "gripper_return", "puck_return", "mass", "friction",
   "map_resolution", "say", "alwayson", "thread_safe", "joules", "kjoules", "joules_capacity", "watts", "give_watts",
   "take_watts", "trail_length", "trail_interval", "event_queue", "debug", "rebuild_displaylist", "block[].color"});
 
-constexpr auto kPosition = std::to_array<std::string_view>({"drive", "wheelbase", "track", "velocity_bounds", "acceleration_bounds", "command_law",
+constexpr auto kPosition = std::to_array<std::string_view>({
   // known, not modelled
   "velocity", "localization", "localization_origin", "odom_error", "odom"});
 
@@ -40,7 +41,7 @@ constexpr auto kRanger = std::to_array<std::string_view>({"scount", "sview", "sp
   // known, not modelled
   "ssize", "sraycount"});
 
-constexpr auto kLight = std::to_array<std::string_view>({"lamps", "phases", "phase[]", "offset", "stop_lines"});
+constexpr auto kLight = std::to_array<std::string_view>({"lamps", "phases", "phase[]", "stop_lines"});
 
 constexpr auto kSensor = std::to_array<std::string_view>({"pose", "size", "range", "view", "fov", "samples", "color", "color_rgba", "name"});
 
@@ -74,24 +75,42 @@ std::string without_indices(std::string_view key) {
   return plain;
 }
 
+/// The keys of a row's fields.
+template <class Row>
+Words fields_of() {
+  static const std::vector<std::string_view> keys = [] {
+    std::vector<std::string_view> names;
+    for_each_key<Row>([&](const auto& field) { names.push_back(field.key.name); });
+    return names;
+  }();
+  return keys;
+}
+
+/// The keys of every model, and others.
+std::vector<Words> model_and(std::initializer_list<Words> others) {
+  std::vector<Words> words{kModel, fields_of<Segment>(), fields_of<Emitter>()};
+  words.insert(words.end(), others);
+  return words;
+}
+
 std::vector<Words> keys_in(KeyScope where) {
   switch (where) {
     case KeyScope::world:
-      return {kWorld};
+      return {kWorld, fields_of<World>()};
     case KeyScope::position:
-      return {kModel, kPosition};
+      return model_and({kPosition, fields_of<Mover>()});
     case KeyScope::laser:
-      return {kModel, kSensing, kLaser};
+      return model_and({kSensing, kLaser});
     case KeyScope::ranger:
-      return {kModel, kSensing, kRanger};
+      return model_and({kSensing, kRanger});
     case KeyScope::light:
-      return {kModel, kLight};
+      return model_and({kLight, fields_of<Light>()});
     case KeyScope::sensor:
       return {kSensor, kSensing};
     case KeyScope::block:
       return {kBlock};
     case KeyScope::device:
-      return {kModel, kSensing};
+      return model_and({kSensing});
     case KeyScope::sensing:
       return {kSensing};
     case KeyScope::road:
@@ -102,7 +121,7 @@ std::vector<Words> keys_in(KeyScope where) {
     case KeyScope::unmodelled:
       break;
   }
-  return {kModel};
+  return model_and({});
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "world/fields.h"
+
 namespace sf::world {
 
 Signal signal_at(const Light& light, double time) {
@@ -19,22 +21,6 @@ Signal signal_at(const Light& light, double time) {
   return {light.phases.front().state, light.phases.front().duration};
 }
 
-std::string_view name_of(LightState state) {
-  switch (state) {
-    case LightState::red:
-      return "red";
-    case LightState::yellow:
-      return "yellow";
-    case LightState::green:
-      return "green";
-    case LightState::flashing_red:
-      return "flashing red";
-    case LightState::flashing_yellow:
-      return "flashing yellow";
-    case LightState::dark:
-      break;
-  }
-  return "dark";
-}
+std::string_view name_of(LightState state) { return words_of(state).at(static_cast<std::size_t>(state)); }
 
 }  // namespace sf::world

@@ -1,64 +1,171 @@
 #pragma once
-// A world's tables as bytes, row by row. Shared by the hash and the snapshot.
+// Rows of a world as bytes, by the tables of world/fields.h. Shared by the hash and the snapshot.
+//
+// Numbers are little-endian. A flag or a word of an enumeration is one byte; texts and vectors follow their length
+// (u32); a row is its fields in the order of its table.
 
+#include <algorithm>
+#include <filesystem>
+#include <map>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "world/world.h"
+#include "world/fields.h"
 
 namespace sf::world {
-
-inline constexpr std::size_t kMagnetBytes = 44;
-inline constexpr std::size_t kLaneMarkingBytes = 16;  ///< minimum, here and below
-inline constexpr std::size_t kMoverBytes = 119;
-inline constexpr std::size_t kPathBytes = 8;
-inline constexpr std::size_t kLightBytes = 57;
-inline constexpr std::size_t kEmitterBytes = 61;
-inline constexpr std::size_t kFloorHoleBytes = 8;
 
 /// The fields of a row to write: all of them, or those that a reading depends on (no colours).
 enum class RowFields { all, physics };
 
-void put(base::ByteWriter& out, const Pose& pose);
-void put(base::ByteWriter& out, const Segment& segment);
-void put(base::ByteWriter& out, const LaneMarking& marking, RowFields fields);
-void put(base::ByteWriter& out, const Magnet& magnet);
-void put(base::ByteWriter& out, const Model& model, RowFields fields);
-void put(base::ByteWriter& out, const Mover& mover, RowFields fields);
-/// With RowFields::physics an empty word writes nothing, so that the hashes of worlds without an accuracy stay the
-/// same.
-void put(base::ByteWriter& out, const Accuracy& accuracy, RowFields fields);
-void put(base::ByteWriter& out, const Path& path);
-void put(base::ByteWriter& out, const Light& light);
-void put(base::ByteWriter& out, const Emitter& emitter);
-void put(base::ByteWriter& out, const FloorHole& hole);
+// Lasers have functions of their own (world/mover_serialization.cpp).
+inline constexpr std::size_t kLaserBytes = 112;
+void put_laser(base::ByteWriter& out, const Laser& laser, RowFields fields);
+Laser get_laser(base::ByteReader& in);
+bool is_valid(const Laser& laser);
 
-Pose get_pose(base::ByteReader& in);
-Accuracy get_accuracy(base::ByteReader& in);
-Segment get_segment(base::ByteReader& in);
-Magnet get_magnet(base::ByteReader& in);
-Model get_model(base::ByteReader& in);
-/// @throws base::InputError when its count of points exceeds the bytes left.
-LaneMarking get_lane_marking(base::ByteReader& in);
-/// @throws base::InputError when one of its counts of rows exceeds the bytes left.
-Mover get_mover(base::ByteReader& in);
+template <class T>
+inline constexpr bool kIsRow = std::tuple_size_v<std::remove_const_t<decltype(kFields<T>)>> > 0;
 
-Path get_path(base::ByteReader& in);
-Light get_light(base::ByteReader& in);
-Emitter get_emitter(base::ByteReader& in);
-FloorHole get_floor_hole(base::ByteReader& in);
+struct RowWriter {
+  base::ByteWriter& out;
+  RowFields fields = RowFields::all;
+  std::filesystem::path folder = {};  ///< of the world file; files are written relative to it
 
-/// A value of an enumeration. @throws base::InputError for a value above `last`.
-template <class Word>
-Word get_enum(base::ByteReader& in, Word last, const char* what) {
-  const auto word = in.get<std::uint8_t>();
-  if (word > static_cast<std::uint8_t>(last))
-    throw base::InputError(std::string("broken world snapshot: unknown ") + what);
-  return static_cast<Word>(word);
+  template <class T>
+  void put(const T& value, Role role = Role::physics) {
+    if constexpr (std::is_same_v<T, bool> || std::is_enum_v<T>) {
+      out.put(static_cast<std::uint8_t>(value));
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      out.put(value);
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      out.put_string(role == Role::path ? relative(value) : value);
+    } else if constexpr (kIsRow<T>) {
+      put_row(value);
+    } else {
+      out.put(static_cast<std::uint32_t>(value.size()));
+      for (const auto& element : value) put(element, role);
+    }
+  }
+  void put(const std::pair<const std::string, int>& counted, Role role) {
+    put(counted.first, role);
+    put(counted.second, role);
+  }
+  void put(const Laser& laser, Role) {
+    Laser spelt = laser;
+    spelt.accuracy.file = relative(laser.accuracy.file);
+    put_laser(out, spelt, fields);
+  }
+
+ private:
+  template <class Row>
+  void put_row(const Row& row) {
+    // The hashes of worlds without an accuracy are those from before there was one.
+    if constexpr (std::is_same_v<Row, Accuracy>)
+      if (fields == RowFields::physics && row.word.empty()) return;
+    for_each_entry<Row>([&](const auto& entry) {
+      if constexpr (requires { entry.bits; }) {
+        int byte = 0;
+        for (std::size_t i = 0; i < entry.bits.size(); ++i) byte |= (row.*entry.bits[i].member ? 1 : 0) << i;
+        out.put(static_cast<std::uint8_t>(byte));
+      } else if (fields == RowFields::all || entry.role == Role::physics) {
+        put(row.*entry.member, entry.role);
+      }
+    });
+  }
+  std::string relative(const std::string& file) const {
+    const std::string own = std::filesystem::path(file).lexically_normal().lexically_relative(folder).string();
+    return file.empty() || own.empty() ? file : own;
+  }
+};
+
+/// The least number of bytes of a T, for the check of counts.
+template <class T>
+constexpr std::size_t least_bytes() {
+  if constexpr (std::is_same_v<T, bool> || std::is_enum_v<T>) return 1;
+  if constexpr (std::is_arithmetic_v<T>) return sizeof(T);
+  if constexpr (std::is_same_v<T, Laser>) return kLaserBytes;
+  std::size_t sum = kIsRow<T> ? 0 : 4;  // a length
+  for_each_entry<T>([&](const auto& entry) {
+    if constexpr (requires { entry.bits; }) {
+      sum += 1;
+    } else {
+      sum += least_bytes<std::remove_cvref_t<decltype(std::declval<T>().*entry.member)>>();
+    }
+  });
+  return sum;
 }
 
-/// A count of rows of at least `row_size` bytes each. @throws base::InputError when the bytes cannot hold them.
-std::uint32_t get_count(base::ByteReader& in, std::size_t row_size);
+struct RowReader {
+  base::ByteReader& in;
+
+  /// @throws base::InputError for a count beyond the bytes left, and for an unknown word of an enumeration.
+  template <class T>
+  void get(T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      value = in.get<std::uint8_t>() != 0;
+    } else if constexpr (std::is_enum_v<T>) {
+      const auto word = in.get<std::uint8_t>();
+      if (word >= words_of(T{}).size()) throw base::InputError("broken world snapshot: unknown word");
+      value = static_cast<T>(word);
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      value = in.get<T>();
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      value = in.get_string();
+    } else if constexpr (std::is_same_v<T, Laser>) {
+      value = get_laser(in);
+    } else if constexpr (kIsRow<T>) {
+      get_row(value);
+    } else {
+      value.resize(count(least_bytes<typename T::value_type>()));
+      for (auto& element : value) get(element);
+    }
+  }
+  void get(std::map<std::string, int>& counts) {
+    for (std::uint32_t left = count(8); left > 0; --left) {
+      const std::string word = in.get_string();
+      get(counts[word]);
+    }
+  }
+
+ private:
+  template <class Row>
+  void get_row(Row& row) {
+    for_each_entry<Row>([&](const auto& entry) {
+      if constexpr (requires { entry.bits; }) {
+        const auto byte = in.get<std::uint8_t>();
+        for (std::size_t i = 0; i < entry.bits.size(); ++i) row.*entry.bits[i].member = (byte >> i & 1) != 0;
+      } else {
+        get(row.*entry.member);
+      }
+    });
+  }
+  std::uint32_t count(std::size_t row_size) {
+    const auto rows = in.get<std::uint32_t>();
+    if (!in.good() || rows > in.left() / row_size) throw base::InputError("broken world snapshot: cut short");
+    return rows;
+  }
+};
+
+/// Whether all numbers are within the bounds of their fields.
+template <class T>
+bool is_within(const T& value, const Bounds& bounds = {}) {
+  if constexpr (std::is_same_v<T, Laser>) {
+    return is_valid(value);
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    return bounds.contains(static_cast<double>(value));
+  } else if constexpr (kIsRow<T>) {
+    bool good = true;
+    for_each_field<T>([&](const auto& field) { good = good && is_within(value.*field.member, field.bounds); });
+    return good;
+  } else if constexpr (std::is_same_v<T, std::string> || !requires { value.back(); }) {
+    return true;
+  } else {
+    return std::all_of(value.begin(), value.end(), [&](const auto& element) { return is_within(element, bounds); });
+  }
+}
 
 }  // namespace sf::world

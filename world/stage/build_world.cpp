@@ -9,6 +9,7 @@
 #include "world/stage/build_state.h"
 #include "world/stage/light_entities.h"
 #include "world/stage/mover_entities.h"
+#include "world/stage/read_keys.h"
 
 namespace sf::world {
 
@@ -33,19 +34,6 @@ void read_units(StageContext& context, const Entity& root) {
   }
 }
 
-double interval_of(const StageContext& context, const Entity& root) {
-  const double milliseconds = number(context, root, "interval_sim", 100.0);
-  if (milliseconds >= 0.001 && milliseconds <= 1e6) return milliseconds / 1000.0;
-  fail(context, find(root, "interval_sim")->at,
-       fmt::format("'interval_sim' is {}; expected milliseconds from 0.001 to 1000000", milliseconds));
-}
-
-double reach(const StageContext& context, const Entity& root, std::string_view key) {
-  const double value = length(context, root, key, 0.0);
-  if (value < 0.0) fail(context, find(root, key)->at, fmt::format("'{}' is {} m; expected 0 or more", key, value));
-  return value;
-}
-
 void warn_of_placements(BuildState& b) {
   for (std::size_t row = 0; row < b.world.movers.size(); ++row) {
     const Mover& robot = b.world.movers[row];
@@ -67,10 +55,8 @@ World build_world(const std::string& file, const std::string& content, const Loa
   read_units(b.context, document.root);
   check_keys(b.context, document.root, KeyScope::world);
   b.world.file = file;
-  b.world.name = text(b.context, document.root, "name", std::filesystem::path(file).stem().string());
-  b.world.interval = interval_of(b.context, document.root);
-  b.world.road_resolution = reach(b.context, document.root, "road_resolution");
-  b.world.magnet_cutoff = reach(b.context, document.root, "magnet_cutoff");
+  b.world.name = std::filesystem::path(file).stem().string();
+  read_keys(b.context, document.root, b.world);
   b.world.accuracy = accuracy(b.context, options, document.root, {options.accuracy, "", 0});
   Parent nowhere;
   add_children(b, document.root, EntityKind::unknown, nowhere);

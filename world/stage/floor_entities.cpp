@@ -1,9 +1,6 @@
 #include "world/stage/floor_entities.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
+#include "world/stage/read_keys.h"
 
 namespace sf::world {
 
@@ -11,16 +8,8 @@ namespace {
 
 // The beam of a virtual wall reaches 2.4 m (8 feet, the accessory's specification), its halo 0.45 m (18 inches). The
 // width of its beam and all three values of the dock are assumptions.
-constexpr double kWallRange = 2.4, kWallFov = 0.4, kWallHalo = 0.45;  // [m], [rad], [m]
-constexpr double kDockRange = 1.8, kDockFov = 0.7, kDockHalo = 0.6;   // [m], [rad], [m]
-
-Emitter::Kind emitter_kind(const StageContext& context, const Entity& entity) {
-  const std::string word = text(context, entity, "ir_emitter", "");
-  if (word == "virtual_wall") return Emitter::Kind::virtual_wall;
-  if (word == "dock") return Emitter::Kind::dock;
-  fail(context, find(entity, "ir_emitter")->at,
-       fmt::format("'ir_emitter' is \"{}\"; expected \"virtual_wall\" or \"dock\"", word));
-}
+constexpr Emitter kVirtualWall{.range = 2.4, .fov = 0.4, .halo = 0.45};  // [m], [rad], [m]
+constexpr Emitter kDock{.range = 1.8, .fov = 0.7, .halo = 0.6};
 
 bool same(glm::dvec2 p, glm::dvec2 q) { return p.x == q.x && p.y == q.y; }
 
@@ -58,19 +47,12 @@ void add_emitter(BuildState& b, const Entity& entity, const Model& model, const 
   if (property == nullptr) return;
   if (model.mover != kNone)
     fail(context, property->at, "an infrared emitter stands still; expected it outside of moving models");
-  Emitter emitter;
-  emitter.kind = emitter_kind(context, entity);
-  const bool dock = emitter.kind == Emitter::Kind::dock;
+  Emitter emitter = kVirtualWall;
+  read_keys(context, entity, emitter);
+  if (emitter.kind == Emitter::Kind::dock) read_keys(context, entity, emitter = kDock);
   emitter.model = static_cast<std::uint32_t>(b.world.models.size());
   emitter.X_WE = X_B;
   emitter.X_WE.z += 0.5 * size.z;
-  emitter.range = above_zero(context, entity, "ir_range", dock ? kDockRange : kWallRange);
-  emitter.fov = angle(context, entity, "ir_fov", dock ? kDockFov : kWallFov);
-  emitter.halo = length(context, entity, "ir_halo", dock ? kDockHalo : kWallHalo);
-  if (!(emitter.fov > 0.0 && emitter.fov <= 2.0 * M_PI * (1.0 + 1e-12)))
-    fail(context, find(entity, "ir_fov")->at, "'ir_fov' expects an angle above zero, to a whole turn");
-  emitter.fov = std::min(emitter.fov, 2.0 * M_PI);
-  if (!(emitter.halo >= 0.0)) fail(context, find(entity, "ir_halo")->at, "'ir_halo' expects a length of 0 or more");
   b.world.emitters.push_back(emitter);
 }
 

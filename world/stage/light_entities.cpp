@@ -7,8 +7,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "world/lights.h"
 #include "world/roads/rndf_statement_reader.h"
+#include "world/stage/read_keys.h"
 
 namespace sf::world {
 
@@ -17,12 +17,10 @@ namespace {
 constexpr std::uint32_t kMaxPhases = 100;
 constexpr double kMaxSeconds = 1e6;
 
-constexpr std::array kStates{LightState::dark,  LightState::red,          LightState::yellow,
-                             LightState::green, LightState::flashing_red, LightState::flashing_yellow};
-
 LightState state_of(const StageContext& context, const Property& property, const std::string& word) {
-  for (const LightState state : kStates)
-    if (name_of(state) == word) return state;
+  const auto words = words_of(LightState{});
+  const auto found = std::find(words.begin(), words.end(), word);
+  if (found != words.end()) return static_cast<LightState>(found - words.begin());
   fail(context, property.at,
        fmt::format("'{}' is \"{}\"; expected \"green\", \"yellow\", \"red\", \"flashing yellow\", \"flashing red\" or "
                    "\"dark\"",
@@ -85,10 +83,7 @@ void add_light(BuildState& b, const Entity& entity, const Model& model) {
   if (lamps == 2) fail(context, find(entity, "lamps")->at, "'lamps' is 2; expected 1 or 3 a side");
   light.single = lamps == 1;
   light.phases = read_phases(context, entity);
-  light.offset = number(context, entity, "offset", 0.0);
-  if (!(std::abs(light.offset) <= kMaxSeconds))
-    fail(context, find(entity, "offset")->at,
-         fmt::format("'offset' is {} s; expected at most {}", light.offset, kMaxSeconds));
+  read_keys(context, entity, light);
   light.points = read_stop_lines(context, entity);
   const Property* stops = find(entity, "stop_lines");
   b.light_locations.push_back(stops != nullptr ? stops->at : entity.at);

@@ -11,6 +11,7 @@
 #include "world/stage/laser_entities.h"
 #include "world/stage/light_entities.h"
 #include "world/stage/mover_entities.h"
+#include "world/stage/read_keys.h"
 #include "world/stage/road_entities.h"
 
 namespace sf::world {
@@ -87,12 +88,14 @@ Size default_size(EntityKind kind) {
   return kind == EntityKind::laser ? Size{0.15, 0.15, 0.2} : Size{};
 }
 
-Segment placed(const Segment& local, const Pose& X) {
-  Segment segment = local;
+/// `local` at X, with the model and the flags of `surface`.
+Segment placed(const Segment& local, const Pose& X, const Segment& surface) {
+  Segment segment = surface;
   segment.a = transform(X, local.a);
   segment.b = transform(X, local.b);
-  segment.z_min += X.z;
-  segment.z_max += X.z;
+  segment.z_min = local.z_min + X.z;
+  segment.z_max = local.z_max + X.z;
+  segment.solid_left = local.solid_left;
   return segment;
 }
 
@@ -100,20 +103,18 @@ Segment placed(const Segment& local, const Pose& X) {
 void add_body(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
               const Pose& X_B) {
   const StageContext& context = b.context;
-  const bool seen =
+  Segment surface;
+  surface.model = static_cast<std::uint32_t>(b.world.models.size());
+  read_keys(context, entity, surface);
+  surface.seen_by_laser =
       number(context, entity, "laser_return", 1.0) != 0.0 && number(context, entity, "ranger_return", 1.0) >= 0.0;
   const bool is_plan = model.is_bitmap && !b.options.stage_obstacles;
-  const bool seen_as_paint = flag(context, entity, "laneedge_return", true);
-  const bool stops = is_plan || flag(context, entity, "obstacle_return", true);
+  surface.stops_robots |= is_plan;
   auto& segments = model.mover == kNone ? b.world.walls : b.world.movers[model.mover].body;
   for (const Segment& local : shape) {
-    Segment segment = placed(local, X_B);
+    const Segment segment = placed(local, X_B, surface);
     const bool lost_in_rounding = segment.a.x == segment.b.x && segment.a.y == segment.b.y;
     if (lost_in_rounding) continue;
-    segment.model = static_cast<std::uint32_t>(b.world.models.size());
-    segment.seen_by_laser = seen;
-    segment.stops_robots = stops;
-    segment.seen_by_laneedge = seen_as_paint;
     segments.push_back(segment);
   }
 }

@@ -4,8 +4,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <initializer_list>
 #include <map>
+
+#include "world/stage/read_keys.h"
 
 namespace sf::world {
 
@@ -19,51 +20,6 @@ std::optional<std::uint32_t> number_of(std::string_view digits) {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
   return value;
-}
-
-// -------------------------------------------------------------------------------------------------------------
-
-void read_bounds(const StageContext& context, const Entity& entity, Mover& mover) {
-  mover.max_forward = 1.0;  // Stage's default
-  const auto bounds = tuple(context, entity, "velocity_bounds", 2, "[xmin xmax ymin ymax zmin zmax yawmin yawmax]");
-  if (!bounds) return;
-  const SourceLocation at = find(entity, "velocity_bounds")->at;
-  mover.max_forward = to_metres(context, at, (*bounds)[1]);
-  if (bounds->size() >= 8) mover.max_turn = context.radians_per_unit * (*bounds)[7];
-  if (!(mover.max_forward > 0.0) || !(mover.max_turn > 0.0 && mover.max_turn <= 1e6)) {
-    fail(context, at, "'velocity_bounds' expects a robot that can move: xmax (2nd) and yawmax (8th) above zero");
-  }
-}
-
-void read_accelerations(const StageContext& context, const Entity& entity, Mover& mover) {
-  const char* key = "acceleration_bounds";
-  const auto bounds = tuple(context, entity, key, 2, "[xmin xmax ymin ymax zmin zmax yawmin yawmax]");
-  if (!bounds) return;
-  const SourceLocation at = find(entity, key)->at;
-  mover.max_acceleration = to_metres(context, at, (*bounds)[1]);
-  if (bounds->size() >= 8) mover.max_turn_acceleration = context.radians_per_unit * (*bounds)[7];
-  if (!(mover.max_acceleration > 0.0) || !(mover.max_turn_acceleration > 0.0)) {
-    fail(context, at,
-         "'acceleration_bounds' expects a robot that can speed up: xmax (2nd) and yawmax (8th) above zero");
-  }
-}
-
-Drive drive_of(const StageContext& context, const Entity& entity) {
-  const std::string drive = text(context, entity, "drive", "diff");
-  if (drive == "diff") return Drive::differential;
-  if (drive == "omni") return Drive::omni;
-  if (drive == "car") return Drive::car;
-  if (drive == "skid") return Drive::skid;
-  fail(context, find(entity, "drive")->at,
-       fmt::format("'drive' is \"{}\"; expected \"diff\", \"omni\", \"car\" or \"skid\"", drive));
-}
-
-DriverModel driver_model_of(const StageContext& context, const Entity& entity) {
-  const std::string law = text(context, entity, "command_law", "direct");
-  if (law == "direct") return DriverModel::direct;
-  if (law == "player_create") return DriverModel::player_create;
-  fail(context, find(entity, "command_law")->at,
-       fmt::format("'command_law' is \"{}\"; expected \"direct\" or \"player_create\"", law));
 }
 
 }  // namespace
@@ -113,12 +69,8 @@ std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model,
   mover.model = static_cast<std::uint32_t>(b.world.models.size());
   mover.X_WM = model.X_WM;
   mover.is_tag = packet_id && packet_id->is_tag;
-  mover.drive = drive_of(b.context, entity);
-  mover.driver_model = driver_model_of(b.context, entity);
-  mover.wheelbase = above_zero(b.context, entity, "wheelbase", mover.wheelbase);
-  mover.track = above_zero(b.context, entity, "track", mover.track);
-  read_bounds(b.context, entity, mover);
-  read_accelerations(b.context, entity, mover);
+  mover.max_forward = 1.0;  // Stage's default
+  read_keys(b.context, entity, mover);
   b.world.movers.push_back(std::move(mover));
   b.numbers.push_back(packet_id ? std::optional(packet_id->number) : std::nullopt);
   b.locations.push_back(entity.at);

@@ -1,0 +1,116 @@
+#pragma once
+// The fields of a world's rows, one table per type of row. Snapshots, the hash, the checks of snapshots and, for fields
+// with a key, the known keys of Stage files and their reading follow from these tables.
+//
+// The order is that of the snapshot's bytes: a change of it, or a new field, changes `kVersion` in world/snapshot.cpp.
+// Keys with a reader of their own are listed in world/keys.cpp.
+
+#include "world/field.h"
+#include "world/world.h"
+
+namespace sf::world {
+
+// The words of enumerations in world files, in the order of their values.
+
+inline constexpr auto words_of(Drive) { return std::to_array<std::string_view>({"diff", "omni", "car", "skid"}); }
+inline constexpr auto words_of(DriverModel) { return std::to_array<std::string_view>({"direct", "player_create"}); }
+inline constexpr auto words_of(Emitter::Kind) { return std::to_array<std::string_view>({"virtual_wall", "dock"}); }
+inline constexpr auto words_of(LightState) {
+  return std::to_array<std::string_view>({"dark", "red", "yellow", "green", "flashing red", "flashing yellow"});
+}
+
+// clang-format off
+
+// --- Parts of rows
+
+template <> inline constexpr auto kFields<glm::dvec2> = std::make_tuple(field(&glm::dvec2::x), field(&glm::dvec2::y));
+
+template <> inline constexpr auto kFields<Pose> = std::make_tuple(
+    field(&Pose::x), field(&Pose::y), field(&Pose::z), field(&Pose::yaw));
+
+template <> inline constexpr auto kFields<Accuracy> = std::make_tuple(
+    field(&Accuracy::word), label(&Accuracy::line), path(&Accuracy::file));
+
+template <> inline constexpr auto kFields<Setting> = std::make_tuple(
+    field(&Setting::key), field(&Setting::numbers), field(&Setting::text), label(&Setting::line), path(&Setting::file));
+
+template <> inline constexpr auto kFields<Sensor> = std::make_tuple(
+    field(&Sensor::type), field(&Sensor::name), field(&Sensor::X_MS), field(&Sensor::height),
+    field(&Sensor::metres_per_unit), field(&Sensor::radians_per_unit), field(&Sensor::settings),
+    label(&Sensor::line), path(&Sensor::file));
+
+template <> inline constexpr auto kFields<PathPiece> = std::make_tuple(
+    field(&PathPiece::X_WP), field(&PathPiece::length, kAboveZero), field(&PathPiece::curvature),
+    field(&PathPiece::width, kAboveZero));
+
+template <> inline constexpr auto kFields<LightPhase> = std::make_tuple(
+    field(&LightPhase::state), field(&LightPhase::duration, kAboveZero));
+
+// --- Rows
+
+template <> inline constexpr auto kFields<Segment> = std::make_tuple(
+    field(&Segment::a), field(&Segment::b), field(&Segment::z_min), field(&Segment::z_max), field(&Segment::model),
+    flags(field(&Segment::solid_left), field(&Segment::seen_by_laser),
+          field(&Segment::stops_robots, Key{"obstacle_return"}),
+          field(&Segment::seen_by_laneedge, Key{"laneedge_return"})));
+
+template <> inline constexpr auto kFields<Model> = std::make_tuple(
+    field(&Model::name), field(&Model::type), field(&Model::parent), field(&Model::mover), field(&Model::X_WM),
+    field(&Model::size), label(&Model::color), field(&Model::is_bitmap), field(&Model::pixel));
+
+template <> inline constexpr auto kFields<LaneMarking> = std::make_tuple(
+    field(&LaneMarking::line), field(&LaneMarking::width), label(&LaneMarking::color));
+
+template <> inline constexpr auto kFields<Magnet> = std::make_tuple(
+    field(&Magnet::p), field(&Magnet::z), field(&Magnet::moment), field(&Magnet::radius), field(&Magnet::model));
+
+inline constexpr std::string_view kMotionBounds = "[xmin xmax ymin ymax zmin zmax yawmin yawmax]";
+
+template <> inline constexpr auto kFields<Mover> = std::make_tuple(
+    field(&Mover::name), field(&Mover::model), field(&Mover::id), field(&Mover::is_tag),
+    field(&Mover::drive, Key{"drive"}),
+    field(&Mover::X_WM),
+    field(&Mover::driver_model, Key{"command_law"}),
+    field(&Mover::radius),
+    field(&Mover::max_forward, Key{"velocity_bounds", Unit::length, kMotionBounds, 1, 2}, kAboveZero),
+    field(&Mover::max_turn, Key{"velocity_bounds", Unit::angle, kMotionBounds, 7, 2}, Bounds{0.0, 1e6, true}),
+    field(&Mover::max_acceleration, Key{"acceleration_bounds", Unit::length, kMotionBounds, 1, 2}, kAboveZeroOrInfinite),
+    field(&Mover::max_turn_acceleration, Key{"acceleration_bounds", Unit::angle, kMotionBounds, 7, 2}, kAboveZeroOrInfinite),
+    field(&Mover::wheelbase, Key{"wheelbase", Unit::length}, kAboveZero),
+    field(&Mover::track, Key{"track", Unit::length}, kAboveZero),
+    field(&Mover::body), field(&Mover::lasers), field(&Mover::sensors), field(&Mover::magnets));
+
+template <> inline constexpr auto kFields<Path> = std::make_tuple(field(&Path::name), field(&Path::pieces));
+
+template <> inline constexpr auto kFields<Light> = std::make_tuple(
+    field(&Light::name), field(&Light::model), field(&Light::X_WL), field(&Light::single),
+    field(&Light::offset, Key{"offset", Unit::seconds}, Bounds{-1e6, 1e6}),
+    field(&Light::phases), field(&Light::points));
+
+template <> inline constexpr auto kFields<Emitter> = std::make_tuple(
+    field(&Emitter::kind, Key{"ir_emitter"}),
+    field(&Emitter::model), field(&Emitter::X_WE),
+    field(&Emitter::range, Key{"ir_range", Unit::length}, kAboveZero),
+    field(&Emitter::fov, Key{"ir_fov", Unit::angle}, Bounds{0.0, 2.0 * M_PI, true}),
+    field(&Emitter::halo, Key{"ir_halo", Unit::length}, kNotNegative));
+
+template <> inline constexpr auto kFields<FloorHole> = std::make_tuple(
+    field(&FloorHole::model), field(&FloorHole::outline));
+
+template <> inline constexpr auto kFields<Warning> = std::make_tuple(
+    path(&Warning::file), label(&Warning::line), label(&Warning::message));
+
+template <> inline constexpr auto kFields<World> = std::make_tuple(
+    label(&World::name, Key{"name"}), path(&World::file),
+    field(&World::road_resolution, Key{"road_resolution", Unit::length}, kNotNegative),
+    field(&World::magnet_cutoff, Key{"magnet_cutoff", Unit::length}, kNotNegative),
+    field(&World::accuracy),
+    field(&World::interval, Key{"interval_sim", Unit::milliseconds}, Bounds{1e-6, 1e3}),
+    field(&World::models), field(&World::walls), field(&World::lane_markings), field(&World::magnets),
+    field(&World::movers), label(&World::paths), field(&World::lights), field(&World::emitters),
+    field(&World::floor_holes), path(&World::road_files), label(&World::unmodelled), label(&World::warnings),
+    label(&World::hash));
+
+// clang-format on
+
+}  // namespace sf::world

@@ -1,0 +1,45 @@
+#pragma once
+// Keys of the tables in world/fields.h, read into the fields of a row.
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "world/fields.h"
+#include "world/stage/properties.h"
+
+namespace sf::world {
+
+/// The value of `key` in SI units; `value` itself where `entity` lacks the key or the tuple's element.
+/// @throws base::InputError when it is of another kind or out of bounds.
+double read_number(const StageContext& context, const Entity& entity, const Key& key, const Bounds& bounds,
+                   double value);
+
+/// The row in `words` of the text of `key`. @throws base::InputError naming all words.
+std::size_t read_word(const StageContext& context, const Entity& entity, std::string_view key,
+                      std::span<const std::string_view> words);
+
+/// Sets the fields whose keys `entity` has. Other fields keep their values, which are so the keys' defaults.
+template <class Row>
+void read_keys(const StageContext& context, const Entity& entity, Row& row) {
+  for_each_key<Row>([&](const auto& field) {
+    auto& value = row.*field.member;
+    using T = std::remove_reference_t<decltype(value)>;
+    const std::string_view key = field.key.name;
+    if (find(entity, key) == nullptr) return;
+    if constexpr (std::is_same_v<T, bool>) {
+      value = flag(context, entity, key, value);
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      value = text(context, entity, key, value);
+    } else if constexpr (std::is_enum_v<T>) {
+      value = static_cast<T>(read_word(context, entity, key, words_of(value)));
+    } else if constexpr (std::is_same_v<T, std::uint32_t>) {
+      value = whole(context, entity, key, value, static_cast<T>(field.bounds.least), static_cast<T>(field.bounds.most));
+    } else if constexpr (std::is_same_v<T, double>) {
+      value = read_number(context, entity, field.key, field.bounds, value);
+    }
+  });
+}
+
+}  // namespace sf::world
