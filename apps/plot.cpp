@@ -15,7 +15,8 @@
 #include "farm/farm.h"
 #include "record/recording.h"
 #include "scenarios/experiment.h"
-#include "viz/scan_hit_grid.h"
+#include "viz/occupancy_figure.h"
+#include "viz/scan_map.h"
 #include "viz/trajectory_figure.h"
 
 namespace sf::apps {
@@ -36,19 +37,6 @@ std::vector<viz::Track> tracks_of(const record::Recording& recording, const worl
   return tracks;
 }
 
-/// [m] Fine enough to show walls, coarse enough for a page; whole centimetres.
-double cell_for(const world::Extent& extent) {
-  const double longest = std::max(extent.x_max - extent.x_min, extent.y_max - extent.y_min);
-  return std::clamp(std::ceil(longest / 8.0) / 100.0, 0.03, 1.0);
-}
-
-/// Marks beams that ended on something that moves, which belongs on no map.
-void mark_moving(const world::World& world, const base::ReadingBlock& reading, std::vector<std::uint8_t>& moving) {
-  moving.assign(reading.hits.size(), 0);
-  for (std::size_t i = 0; i < moving.size(); ++i)
-    moving[i] = reading.hits[i] != base::kNoHit && world.models[reading.hits[i]].mover != world::kNone;
-}
-
 /// Pictures are written whole: a stop is heeded between two.
 /// @throws base::InputError when one was asked for.
 void go_on() {
@@ -57,15 +45,13 @@ void go_on() {
 }
 
 /// Computes every laser's scan once a simulated second from where its robot was.
-void map_scans(const record::Recording& recording, const world::World& world, gpu::Device& device,
-               viz::ScanHitGrid& grid) {
+void map_scans(const record::Recording& recording, const world::World& world, gpu::Device& device, viz::ScanMap& map) {
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.subscribe(m, 1u << base::kLaser);
   const auto every = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / recording.info.interval)));
   std::vector<base::Report> reports;
-  std::vector<std::uint8_t> moving;
   const std::size_t ticks = recording.states.empty() ? 0 : recording.states[0].size();
   Progress progress("mapping");
   for (std::size_t t = 0; t < ticks; t += every) {
@@ -76,12 +62,7 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
     }
     // Slow sensors look too: each tick is as far from the last as their period.
     const auto now = static_cast<std::int64_t>(t + 1) * 1'000'000'000'000;
-    for (const base::ReadingBlock& r : farm.tick(now, reports)) {
-      const world::Laser& laser = world.movers[r.mover].lasers[r.sensor];
-      mark_moving(world, r, moving);
-      const double step = laser.samples > 1 ? laser.fov / (laser.samples - 1) : 0.0;
-      grid.add_scan(r.X_WS, r.values, world::bearing_of(laser, 0), step, laser.range_max, laser.range_min, moving);
-    }
+    for (const base::ReadingBlock& reading : farm.tick(now, reports)) map.add(world, reading);
     progress.show(static_cast<double>(t) / static_cast<double>(ticks));
     go_on();
   }
@@ -108,10 +89,10 @@ int plot(const PlotOptions& options) {
   go_on();
 
   gpu::Device device(options.device);
-  viz::ScanHitGrid grid(world.extent, cell_for(world.extent));
-  map_scans(recording, world, device, grid);
+  viz::ScanMap map(viz::grid_over(world.extent));
+  map_scans(recording, world, device, map);
   const std::string occupancy = (folder / "occupancy.png").string();
-  viz::draw_occupancy(world, grid, occupancy);
+  viz::draw_occupancy(world, map.states(), occupancy);
   print_message("wrote {}", occupancy);
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace sf::maps {
 
@@ -50,17 +51,16 @@ void add_traced_scan(LogOddsGrid& grid, const TracedScan& scan, std::span<const 
   const CellBox part = intersect(scan.box, cells_of(grid.geometry));
   if (is_empty(part)) return;
   add_traced_scan(covered, scan, ends);
-  for (std::int64_t row = part.low.row; row < part.high.row; ++row) {
-    for (std::int64_t column = part.low.column; column < part.high.column; ++column) {
-      const Cell state = covered.at({column, row});
-      if (state == Cell::unexplored) continue;
-      std::int16_t& odds = grid.cells[16 * covered.word_of({column, row}) + OccupancyGrid::shift_of({column, row}) / 2];
-      const std::int32_t more = state == Cell::occupied ? grid.rule.hit : -grid.rule.miss;
-      odds = static_cast<std::int16_t>(std::clamp(odds + more, -grid.rule.limit, grid.rule.limit));
+  for (std::int64_t row = part.low.row / 4; row <= (part.high.row - 1) / 4; ++row) {
+    for (std::int64_t column = part.low.column / 4; column <= (part.high.column - 1) / 4; ++column) {
+      const std::size_t word = covered.word_of({4 * column, 4 * row});
+      std::int16_t* odds = &grid.cells[16 * word];
+      for (std::uint32_t states = std::exchange(covered.words[word], 0u); states != 0; states >>= 2, ++odds) {
+        if ((states & 3u) == SF_CELL_UNEXPLORED) continue;
+        const std::int32_t more = (states & 3u) == SF_CELL_OCCUPIED ? grid.rule.hit : -grid.rule.miss;
+        *odds = static_cast<std::int16_t>(std::clamp(*odds + more, -grid.rule.limit, grid.rule.limit));
+      }
     }
-    if (row % 4 == 3 || row + 1 == part.high.row)
-      std::fill_n(&covered.words[covered.word_of({part.low.column, row})],
-                  (part.high.column - 1) / 4 - part.low.column / 4 + 1, 0u);
   }
 }
 

@@ -1,9 +1,11 @@
+#include "viz/occupancy_figure.h"
+
 #include <fmt/format.h>
 
 #include <array>
 
+#include "maps/map_text.h"
 #include "viz/axes.h"
-#include "viz/scan_hit_grid.h"
 #include "viz/theme.h"
 
 namespace sf::viz {
@@ -11,56 +13,66 @@ namespace {
 
 constexpr double kGridLinesFrom = 5.0;  // [px] smallest side of a cell with a drawn border
 
-std::vector<std::uint32_t> pixels_of(const ScanHitGrid& grid) {
+world::Extent extent_of(const maps::GridGeometry& geometry) {
+  return {geometry.left, geometry.top - geometry.cell * static_cast<double>(maps::rows(geometry)),
+          geometry.left + geometry.cell * static_cast<double>(maps::columns(geometry)), geometry.top};
+}
+
+std::vector<std::uint32_t> pixels_of(const maps::OccupancyGrid& grid) {
   std::vector<std::uint32_t> pixels;
-  pixels.reserve(static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows()));
-  for (int row = grid.rows() - 1; row >= 0; --row)
-    for (int column = 0; column < grid.columns(); ++column)
-      pixels.push_back(theme::kCellStates[static_cast<std::size_t>(grid.state(column, row))]);
+  for (std::int64_t row = 0; row < maps::rows(grid.geometry); ++row)
+    for (std::int64_t column = 0; column < maps::columns(grid.geometry); ++column)
+      pixels.push_back(theme::kMapStates[static_cast<std::size_t>(grid.at({column, row}))]);
   return pixels;
 }
 
-void draw_cell_borders(Axes& axes, const ScanHitGrid& grid) {
-  if (grid.cell() * axes.scale() < kGridLinesFrom) return;
-  const world::Extent e = grid.extent();
+void draw_cell_borders(Axes& axes, const maps::GridGeometry& geometry) {
+  if (geometry.cell * axes.scale() < kGridLinesFrom) return;
+  const world::Extent e = extent_of(geometry);
   std::vector<Line> lines;
-  for (int i = 0; i <= grid.columns(); ++i)
-    lines.push_back(
-        {axes.pixel({e.x_min + i * grid.cell(), e.y_min}), axes.pixel({e.x_min + i * grid.cell(), e.y_max})});
-  for (int j = 0; j <= grid.rows(); ++j)
-    lines.push_back(
-        {axes.pixel({e.x_min, e.y_min + j * grid.cell()}), axes.pixel({e.x_max, e.y_min + j * grid.cell()})});
+  for (std::int64_t i = 0; i <= maps::columns(geometry); ++i) {
+    const double x = e.x_min + static_cast<double>(i) * geometry.cell;
+    lines.push_back({axes.pixel({x, e.y_min}), axes.pixel({x, e.y_max})});
+  }
+  for (std::int64_t j = 0; j <= maps::rows(geometry); ++j) {
+    const double y = e.y_min + static_cast<double>(j) * geometry.cell;
+    lines.push_back({axes.pixel({e.x_min, y}), axes.pixel({e.x_max, y})});
+  }
   axes.canvas().lines(lines, theme::kHairline, theme::kCellBorder);
 }
 
-FigureOptions plan_of(const world::World& world, const ScanHitGrid& grid) {
-  const AreaShares part = shares(grid);
-  const auto item = [&](CellState state, const char* name, double share) {
-    return LegendItem{LegendMark::block, theme::kCellStates[static_cast<std::size_t>(state)],
-                      fmt::format("{} {:.1f} %", name, 100.0 * share), theme::kFrame};
+FigureOptions options_of(const world::World& world, const maps::OccupancyGrid& grid) {
+  const maps::CellCounts cells = maps::count(grid);
+  const auto percent = [&](std::uint64_t part) {
+    return 100.0 * static_cast<double>(part) / static_cast<double>(cells.all());
+  };
+  const auto item = [&](std::uint32_t state, const char* name, std::uint64_t part) {
+    return LegendItem{LegendMark::block, theme::kMapStates[state], fmt::format("{} {:.1f} %", name, percent(part)),
+                      theme::kFrame};
   };
   FigureOptions options;
   options.title = "Occupancy";
-  options.subtitle =
-      fmt::format("{}{}{:.1f} % explored, {} x {} cells of {:g} m", world.name, world.name.empty() ? "" : ": ",
-                  100.0 * (1.0 - part.unexplored), grid.columns(), grid.rows(), grid.cell());
-  options.extent = grid.extent();
+  options.subtitle = fmt::format("{}{}{:.1f} % explored, {} x {} cells of {:g} m", world.name,
+                                 world.name.empty() ? "" : ": ", percent(cells.free + cells.occupied),
+                                 maps::columns(grid.geometry), maps::rows(grid.geometry), grid.geometry.cell);
+  options.extent = extent_of(grid.geometry);
   options.margin = 0.0;
-  options.background = theme::kCellStates[0];
-  options.legend = {item(CellState::free, "free", part.free), item(CellState::occupied, "occupied", part.occupied),
-                    item(CellState::unexplored, "unexplored", part.unexplored)};
+  options.background = theme::kMapStates[SF_CELL_UNEXPLORED];
+  options.legend = {item(SF_CELL_FREE, "free", cells.free), item(SF_CELL_OCCUPIED, "occupied", cells.occupied),
+                    item(SF_CELL_UNEXPLORED, "unexplored", cells.unexplored)};
   return options;
 }
 
 }  // namespace
 
-void draw_occupancy(const world::World& world, const ScanHitGrid& grid, const std::string& png_path) {
-  Axes axes(plan_of(world, grid));
-  const world::Extent e = grid.extent();
+void draw_occupancy(const world::World& world, const maps::OccupancyGrid& grid, const std::string& png_path) {
+  Axes axes(options_of(world, grid));
+  const world::Extent e = extent_of(grid.geometry);
   const std::vector<std::uint32_t> pixels = pixels_of(grid);
-  axes.canvas().image(axes.pixel({e.x_min, e.y_max}), axes.pixel({e.x_max, e.y_min}),
-                      {grid.columns(), grid.rows(), pixels});
-  draw_cell_borders(axes, grid);
+  axes.canvas().image(
+      axes.pixel({e.x_min, e.y_max}), axes.pixel({e.x_max, e.y_min}),
+      {static_cast<int>(maps::columns(grid.geometry)), static_cast<int>(maps::rows(grid.geometry)), pixels});
+  draw_cell_borders(axes, grid.geometry);
   axes.save(png_path);
 }
 

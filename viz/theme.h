@@ -71,7 +71,6 @@ inline constexpr std::uint32_t kCheckpoint = 0xFF7A1FA2u;
 
 // Occupancy maps: unknown, occupied, free, and conflict where maps contradict each other
 inline constexpr std::array<std::uint32_t, 4> kMapStates{0xFF474B50u, 0xFF1748D1u, 0xFFFFFFFFu, 0xFFFF00FFu};
-inline constexpr std::array<std::uint32_t, 3> kCellStates{kMapStates[0], kMapStates[1], kMapStates[2]};
 inline constexpr std::uint32_t kMapGrid = 0xFFA9AEB5u;
 inline constexpr std::uint32_t kCellBorder = 0xFF8A8F96u;
 

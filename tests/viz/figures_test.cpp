@@ -10,7 +10,7 @@
 #include "tests/viz/scenes.h"
 #include "viz/axes.h"
 #include "viz/color.h"
-#include "viz/scan_hit_grid.h"
+#include "viz/occupancy_figure.h"
 #include "viz/trajectory_figure.h"
 #include "viz/visibility_layer.h"
 #include "viz/world_figure.h"
@@ -401,19 +401,18 @@ TEST(TrajectoryFigureDeathTest, ContactsMustMatchPoses) {
 
 TEST(OccupancyFigure, CellsHaveTheirColours) {
   const world::World world = room();
-  ScanHitGrid grid(world.extent, 0.1);
-  grid.add_scan({3.0, 2.0, 0, 0}, scenes::scan(world, {3.0, 2.0, 0, 0}, 2 * M_PI, 1441, 8.0), -M_PI, 2 * M_PI / 1440,
-                8.0);
+  maps::OccupancyGrid grid({world.extent.x_min, world.extent.y_max, 0.25, 7, 5});
+  grid.set(maps::cell_at(grid.geometry, {3.125, 2.125}), maps::Cell::free);
+  grid.set(maps::cell_at(grid.geometry, {6.125, 2.125}), maps::Cell::occupied);
   draw_occupancy(world, grid, file("grid.png"));
   const Seen seen = see(file("grid.png"), 0.0);
-  EXPECT_EQ(seen.at(3.25, 2.25), kWhite) << "free";
-  EXPECT_EQ(seen.at(-0.35, 2.25), 0xFF474B50u) << "unexplored";
-  const OklabColor wall = to_oklab(seen.at(6.05, 2.05));
-  EXPECT_LT(wall.b, -0.15) << "occupied";
+  EXPECT_EQ(seen.at(3.125, 2.125), kWhite) << "free";
+  EXPECT_EQ(seen.at(-0.375, 2.125), 0xFF474B50u) << "unexplored";
+  EXPECT_EQ(seen.at(6.125, 2.125), 0xFF1748D1u) << "occupied";
 }
 
-TEST(OccupancyFigure, OneCellCanBeDrawn) {
-  draw_occupancy({}, ScanHitGrid({0, 0, 1, 1}, 1.0), file("cell.png"));
+TEST(OccupancyFigure, OneWordCanBeDrawn) {
+  draw_occupancy({}, maps::OccupancyGrid({0, 1, 1.0, 1, 1}), file("cell.png"));
   const scenes::Picture p = scenes::read_png(file("cell.png"));
   EXPECT_GT(p.count(0xFF474B50u), p.width * p.height / 2) << "unexplored";
 }
@@ -430,7 +429,7 @@ TEST(Figures, UnwritablePathIsNamed) {
   };
   EXPECT_TRUE(named([&] { draw_world(room(), path); }));
   EXPECT_TRUE(named([&] { draw_trajectories(room(), {}, path); }));
-  EXPECT_TRUE(named([&] { draw_occupancy(room(), ScanHitGrid({0, 0, 1, 1}, 0.5), path); }));
+  EXPECT_TRUE(named([&] { draw_occupancy(room(), maps::OccupancyGrid({0, 1, 0.5, 1, 1}), path); }));
 }
 
 TEST(Figures, ManyRobotsCanBeDrawn) {  // the large case, once: 1000 robots in a world of 2000 segments

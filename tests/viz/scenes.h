@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "viz/scan_hit_grid.h"
 #include "viz/trajectory_figure.h"
 #include "world/world.h"
 

@@ -1,0 +1,122 @@
+#include "viz/scan_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/viz/scenes.h"
+
+namespace sf::viz {
+namespace {
+
+using maps::Cell;
+
+/// A model that stands, one that moves, and a laser of one beam, 8 m far.
+world::World one_beam() {
+  world::World world;
+  scenes::add_model(world, "wall", 0);
+  world.movers.push_back(scenes::make_robot(world, 0, {}, 0, 8.0));
+  world.models[1].mover = 0;
+  world.movers[0].lasers[0].samples = 1;
+  return world;
+}
+
+/// Cells of 1 m, 12 x 8.
+constexpr maps::GridGeometry kPlan{0.0, 8.0, 1.0, 3, 2};
+
+/// Adds one beam along +x from the middle of cell (0, 2). @param met row of the model
+void add_beam(ScanMap& map, const world::World& world, double range, std::uint32_t met = 0) {
+  base::ReadingBlock scan;
+  scan.X_WS = {0.5, 5.5, 0.0, 0.0};
+  scan.values = {&range, 1};
+  const std::uint32_t hit = range < world.movers[0].lasers[0].range_max ? met : base::kNoHit;
+  scan.hits = {&hit, 1};
+  map.add(world, scan);
+}
+
+TEST(ScanMap, EndIsOccupiedPathIsFree) {
+  ScanMap map(kPlan);
+  add_beam(map, one_beam(), 3.7);
+  const maps::OccupancyGrid grid = map.states();
+  EXPECT_EQ(grid.at({3, 2}), Cell::free);
+  EXPECT_EQ(grid.at({4, 2}), Cell::occupied);
+  EXPECT_EQ(grid.at({5, 2}), Cell::unexplored);
+}
+
+TEST(ScanMap, WallOnABorderLiesBehindIt) {  // with a rounding error of a nanometre
+  for (const double error : {-1e-9, 0.0, 1e-9}) {
+    ScanMap map(kPlan);
+    add_beam(map, one_beam(), 3.5 + error);
+    EXPECT_EQ(map.states().at({3, 2}), Cell::free);
+    EXPECT_EQ(map.states().at({4, 2}), Cell::occupied);
+  }
+}
+
+TEST(ScanMap, EightScansOutvoteAHit) {
+  const world::World world = one_beam();
+  ScanMap map(kPlan);
+  add_beam(map, world, 3.7);
+  for (int k = 0; k < 8; ++k) add_beam(map, world, 8.0);
+  EXPECT_EQ(map.states().at({4, 2}), Cell::occupied) << "eight: not yet";
+  add_beam(map, world, 8.0);
+  EXPECT_EQ(map.states().at({4, 2}), Cell::free);
+}
+
+TEST(ScanMap, MoversLeaveNoMark) {
+  ScanMap map(kPlan);
+  add_beam(map, one_beam(), 3.7, 1);
+  EXPECT_EQ(map.states().at({3, 2}), Cell::free);
+  EXPECT_EQ(map.states().at({4, 2}), Cell::free);
+}
+
+TEST(ScanMap, RangesUpToTheSmallestAreSkipped) {
+  world::World world = one_beam();
+  world.movers[0].lasers[0].range_min = 0.1;
+  ScanMap map(kPlan);
+  add_beam(map, world, 0.1);
+  EXPECT_EQ(map.states().at({0, 2}), Cell::unexplored);
+  world.movers[0].lasers[0].range_min = 0.0;
+  add_beam(map, world, 0.0);  // a sensor on a surface: half a cell behind it begins the next
+  EXPECT_EQ(map.states().at({1, 2}), Cell::occupied);
+}
+
+TEST(ScanMap, RangesBeyondTheMapsLimitHaveNoEcho) {  // 1022 cells
+  world::World world = one_beam();
+  world.movers[0].lasers[0].range_max = 50.0;
+  ScanMap map({0.0, 8.0, 0.02, 300, 40});
+  EXPECT_NO_THROW(add_beam(map, world, 49.0));
+  EXPECT_EQ(map.states().at({1000, 125}), Cell::free);
+}
+
+TEST(ScanMap, FindsTheWallsOfARoom) {
+  world::World room = scenes::make_world(6, 4, 0, 0);
+  room.movers.push_back(scenes::make_robot(room, 0, {}, 0, 8.0));
+  world::Laser& laser = room.movers[0].lasers[0];
+  laser.fov = 2 * M_PI;
+  laser.samples = 1441;
+  ScanMap map(grid_over(room.extent));
+  for (double x = 1.0; x < 6.0; x += 1.0) {
+    const std::vector<double> ranges = scenes::scan(room, {x, 2.0, 0, 0}, laser.fov, 1441, laser.range_max);
+    base::ReadingBlock scan;
+    scan.X_WS = {x, 2.0, 0, 0};
+    scan.values = ranges;
+    map.add(room, scan);
+  }
+  const maps::OccupancyGrid grid = map.states();
+  const auto at = [&](double x, double y) { return grid.at(maps::cell_at(grid.geometry, {x, y})); };
+  for (double x = 0.1; x < 5.9; x += 0.1) {
+    EXPECT_EQ(at(x, 4.01), Cell::occupied) << x;
+    EXPECT_EQ(at(x, -0.01), Cell::occupied) << x;
+    EXPECT_EQ(at(x, 2.02), Cell::free) << x;
+    EXPECT_EQ(at(x, 4.3), Cell::unexplored) << x;
+  }
+}
+
+TEST(ScanMap, GridsOfAllWorldsAreValid) {  // a point, a room, a continent, a strip
+  for (const world::Extent& e : {world::Extent{0, 0, 0, 0}, {0, 0, 6, 4}, {-2e6, -2e6, 2e6, 2e6}, {0, 0, 1e5, 1}})
+    EXPECT_TRUE(is_valid(grid_over(e))) << e.x_max;
+}
+
+}  // namespace
+}  // namespace sf::viz

@@ -1,0 +1,15 @@
+#pragma once
+// A map of scans in the colours of Vernier's thesis (Virtual Sensor System, 2010, figure 44): unexplored dark grey,
+// occupied blue, free white.
+
+#include <string>
+
+#include "maps/grid.h"
+#include "world/world.h"
+
+namespace sf::viz {
+
+/// @throws base::InputError naming the path when it cannot be written.
+void draw_occupancy(const world::World& world, const maps::OccupancyGrid& grid, const std::string& png_path);
+
+}  // namespace sf::viz

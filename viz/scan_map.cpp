@@ -1,0 +1,49 @@
+#include "viz/scan_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::viz {
+
+namespace {
+
+/// Weights whose sum is 0, unexplored, only after hundreds of scans.
+constexpr maps::LogOddsUpdate kRule{.hit = 801, .miss = 100, .limit = 32767};
+
+constexpr double kLongest = 4000.0;  // [cells] a map of 4096 x 4096 cells has the largest number of words
+
+}  // namespace
+
+maps::GridGeometry grid_over(const world::Extent& extent) {
+  const double width = extent.x_max - extent.x_min;
+  const double height = extent.y_max - extent.y_min;
+  const double longest = std::max(width, height);
+  const double cell = std::max(std::clamp(std::ceil(longest / 8.0) / 100.0, 0.03, 1.0), longest / kLongest);
+  const auto words = [&](double length) {
+    return static_cast<std::uint32_t>(std::max(1.0, std::ceil(length / (4.0 * cell) - 1e-6)));
+  };
+  return {extent.x_min, extent.y_max, cell, words(width), words(height)};
+}
+
+ScanMap::ScanMap(const maps::GridGeometry& geometry) : odds_(geometry, kRule), covered_(geometry) {}
+
+void ScanMap::add(const world::World& world, const base::ReadingBlock& scan) {
+  const world::Laser& laser = world.movers[scan.mover].lasers[scan.sensor];
+  const double behind = 0.5 * odds_.geometry.cell;
+  const double range_min = laser.range_min > 0.0 ? laser.range_min + behind : 0.0;
+  const double range_max = std::min(laser.range_max, maps::kMaxRangeCells * odds_.geometry.cell);
+  ranges_.assign(scan.values.begin(), scan.values.end());
+  for (double& range : ranges_) range += behind;
+  ends_.resize(ranges_.size());
+  const auto beams = maps::beam_directions(laser.fov, laser.samples);
+  const auto traced = maps::trace_scan(odds_.geometry, {scan.X_WS, ranges_, beams, range_min, range_max}, ends_);
+  // A range that is not valid has the end of another beam, perhaps of one that ends on a mover.
+  for (std::size_t k = 0; k < scan.hits.size(); ++k) {
+    const bool moves = scan.hits[k] != base::kNoHit && world.models[scan.hits[k]].mover != world::kNone;
+    if (moves || !(ranges_[k] > range_min))
+      ends_[k] = maps::pack_end(maps::columns_of(ends_[k]), maps::rows_of(ends_[k]), false);
+  }
+  maps::add_traced_scan(odds_, traced, ends_, covered_);
+}
+
+}  // namespace sf::viz
