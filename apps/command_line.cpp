@@ -10,7 +10,7 @@
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
 #include "apps/text.h"
-#include "world/keys.h"
+#include "base/suggest.h"
 
 namespace sf::apps {
 
@@ -74,7 +74,7 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc,
     for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
       names.emplace_back(sub->get_name());
     const std::string what =
-        argc > 1 ? fmt::format("'{}' is no subcommand{}; expected one of", argv[1], world::suggest(argv[1], names))
+        argc > 1 ? fmt::format("'{}' is no subcommand{}; expected one of", argv[1], base::suggest(argv[1], names))
                  : "expected a subcommand:";
     return fmt::format("{} {}; see `sensorfarm --help`", what, fmt::join(names, ", "));
   }

@@ -9,7 +9,7 @@
 #include "apps/report.h"
 #include "apps/text.h"
 #include "base/error.h"
-#include "world/keys.h"
+#include "base/suggest.h"
 
 namespace sf::apps {
 
@@ -56,7 +56,7 @@ std::vector<scenarios::Actor> make_actors(const world::World& world, const RunOp
     if (found == names.end())
       throw base::InputError(
           world.file, 0,
-          fmt::format("has no robot '{}'{}; it has {}", name, world::suggest(name, names), names_of_robots(world)));
+          fmt::format("has no robot '{}'{}; it has {}", name, base::suggest(name, names), names_of_robots(world)));
     actors[static_cast<std::size_t>(found - names.begin())].controller = controller_config_of(options);
   }
   return actors;

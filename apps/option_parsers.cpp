@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "apps/text.h"
+#include "base/suggest.h"
 #include "control/raw_text.h"
-#include "world/keys.h"
 
 namespace sf::apps {
 
@@ -147,7 +147,7 @@ std::string suggest_option(const std::string& word, const std::vector<std::strin
   if (word.compare(0, 2, "--") != 0) return "";
   const std::string bare = word.substr(2);
   if (std::count(names.begin(), names.end(), bare) > 0) return "; options stand after the subcommand";
-  std::string found = world::suggest(bare, std::vector<std::string_view>(names.begin(), names.end()));
+  std::string found = base::suggest(bare, std::vector<std::string_view>(names.begin(), names.end()));
   const std::size_t quote = found.find('\'');
   return quote == std::string::npos ? "" : found.insert(quote + 1, "--");
 }

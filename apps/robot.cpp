@@ -15,9 +15,9 @@
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "base/suggest.h"
 #include "netio/outbox.h"
 #include "netio/server/robot_client.h"
-#include "world/keys.h"
 
 namespace sf::apps {
 
@@ -58,8 +58,7 @@ std::uint32_t find_robot(const world::World& world, const std::string& name) {
     names.emplace_back(world.movers[i].name);
   }
   throw base::InputError(
-      world.file, 0,
-      "has no robot '" + name + "'" + world::suggest(name, names) + "; it has " + names_of_robots(world));
+      world.file, 0, "has no robot '" + name + "'" + base::suggest(name, names) + "; it has " + names_of_robots(world));
 }
 
 }  // namespace

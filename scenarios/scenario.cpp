@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "scenarios/fleet_spawn.h"
 #include "sensors/sensor_type.h"
-#include "world/keys.h"
 
 namespace sf::scenarios {
 
@@ -20,7 +20,7 @@ std::uint32_t row_of(const Scenario& scenario, const world::World& world, const 
   }
   throw base::InputError(scenario.file, line,
                          fmt::format("{} has no mover '{}'{}; expected one of its movers", scenario.world, robot,
-                                     world::suggest(robot, names)));
+                                     base::suggest(robot, names)));
 }
 
 world::World world_of(const Scenario& scenario) {

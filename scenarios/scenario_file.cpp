@@ -10,9 +10,9 @@
 #include <span>
 
 #include "base/error.h"
+#include "base/files.h"
+#include "base/suggest.h"
 #include "scenarios/scenario.h"
-#include "world/keys.h"
-#include "world/stage/document.h"
 #include "world/toml.h"
 
 namespace sf::scenarios {
@@ -47,7 +47,7 @@ class Reader {
     for (const TomlNode& item : table.items)
       if (std::find(known.begin(), known.end(), item.key) == known.end())
         fail(item, fmt::format("unknown key '{}'{}; expected one of: {}", item.key,
-                               item.key.size() > 40 ? "" : world::suggest(item.key, known), fmt::join(known, ", ")));
+                               item.key.size() > 40 ? "" : base::suggest(item.key, known), fmt::join(known, ", ")));
   }
 
   double number(const TomlNode& table, std::string_view key, double fallback, double least, double most) const {
@@ -124,7 +124,7 @@ std::string controller_of(const Reader& reader, const TomlNode& table, const std
   std::vector<std::string_view> names{"none"};
   for (const control::ControllerType* kind : control::controllers()) names.push_back(kind->name);
   reader.fail(*world::find(table, "controller"), fmt::format("there is no controller '{}'{}; expected one of: {}", name,
-                                                             world::suggest(name, names), fmt::join(names, ", ")));
+                                                             base::suggest(name, names), fmt::join(names, ", ")));
 }
 
 /// Without a controller in the table the fallback's applies. Settings are replaced as a whole, not key by key.
@@ -296,6 +296,6 @@ Scenario parse_scenario(const std::string& file, std::string_view text) {
   return scenario;
 }
 
-Scenario read_scenario(const std::string& file) { return parse_scenario(file, world::read_text(file)); }
+Scenario read_scenario(const std::string& file) { return parse_scenario(file, base::read_text(file)); }
 
 }  // namespace sf::scenarios

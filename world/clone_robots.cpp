@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "world/free_space.h"
-#include "world/keys.h"
 #include "world/world.h"
 
 namespace sf::world {
@@ -123,7 +123,7 @@ std::uint32_t robot_to_copy(const World& world, const std::string& name) {
   }
   if (found == kNone) throw base::InputError(world.file, 0, "has no robot to copy: add one, such as a position model");
   if (name.empty()) return found;
-  throw base::InputError(world.file, 0, fmt::format("has no robot '{}' to copy{}", name, suggest(name, names)));
+  throw base::InputError(world.file, 0, fmt::format("has no robot '{}' to copy{}", name, base::suggest(name, names)));
 }
 
 void clone_robots(World& world, std::uint32_t count, std::uint64_t seed) { clone_robots(world, count, seed, ""); }

@@ -1,5 +1,5 @@
 #pragma once
-// Words of world files: modelled words, words known but not modelled, and suggestions for misspelt words.
+// Words of world files: modelled words, and words known but not modelled.
 
 #include <cstdint>
 #include <span>
@@ -43,12 +43,5 @@ bool is_known_key(KeyScope where, std::string_view key, std::span<const std::str
 
 /// `; did you mean 'x'?` with the nearest of the keys valid there, or an empty text.
 std::string suggest_key(KeyScope where, std::string_view key, std::span<const std::string_view> own = {});
-
-/// `; did you mean 'x'?` with the nearest candidate at an edit distance of at most 2 (at most 1 for words of up to four
-/// letters), else an empty text.
-std::string suggest(std::string_view word, std::span<const std::string_view> candidates);
-
-/// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.
-std::uint32_t edit_distance(std::string_view a, std::string_view b);
 
 }  // namespace sf::world

@@ -2,8 +2,8 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "world/ros_map.h"
-#include "world/stage/document.h"
 #include "world/stage/stage.h"
 #include "world/world.h"
 
@@ -16,7 +16,7 @@ World load_world(const std::string& file, const LoadOptions& options) {
   if (is_ros_map(file)) return load_ros_map(file, options);
   if (ending == ".rndf" || ending == ".rdf" || ending == ".mdf")
     throw base::InputError(file, 0, "is not a world, but can be part of one: a world file with road( rndf \"FILE\" )");
-  return build_world(file, read_text(file), options);
+  return build_world(file, base::read_text(file), options);
 }
 
 }  // namespace sf::world

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "world/stage/document.h"
+#include "base/files.h"
 
 namespace sf::world {
 
@@ -162,7 +162,7 @@ Picture decode_picture(const std::string& file, const std::string& bytes, Channe
 }
 
 Picture read_picture(const std::string& file, Channel channel) {
-  return decode_picture(file, read_bytes(file, kMaxBytes), channel);
+  return decode_picture(file, base::read_bytes(file, kMaxBytes), channel);
 }
 
 }  // namespace sf::world

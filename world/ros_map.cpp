@@ -9,8 +9,8 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "world/picture.h"
-#include "world/stage/document.h"
 #include "world/stage/model_shape.h"
 #include "world/stage/properties.h"
 
@@ -180,7 +180,7 @@ bool is_ros_map(const std::string& file) {
 }
 
 World load_ros_map(const std::string& file, const LoadOptions& options) {
-  return build_ros_map(file, read_text(file, kMaxYaml), options);
+  return build_ros_map(file, base::read_text(file, kMaxYaml), options);
 }
 
 World build_ros_map(const std::string& file, const std::string& text, const LoadOptions& options) {
@@ -205,7 +205,7 @@ World build_ros_map(const std::string& file, const std::string& text, const Load
 std::vector<Segment> known_free(const World& world) {
   if (!is_ros_map(world.file)) return {};
   std::vector<Warning> said;
-  const Map map = read_map({world.file, parse_yaml(world.file, read_text(world.file, kMaxYaml))}, said);
+  const Map map = read_map({world.file, parse_yaml(world.file, base::read_text(world.file, kMaxYaml))}, said);
   const Picture picture = read_picture(map.image, Channel::mean);
   return outlines_of(map, grid_of(map, picture, [](Ground ground) { return ground == Ground::free; }));
 }

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/random.h"
-#include "world/stage/document.h"
 #include "world/stage/stage.h"
 
 namespace sf::world {
@@ -106,7 +106,7 @@ void run_text(const std::string& file, const std::string& text, std::uint32_t ti
   EXPECT_LT(loaded, times) << "no mutant is refused";
 }
 
-void run(const std::string& file, std::uint32_t times) { run_text(file, read_text(file), times); }
+void run(const std::string& file, std::uint32_t times) { run_text(file, base::read_text(file), times); }
 
 TEST(Mutation, OfWhatStandsInStreets) {
   run_text(SF_SOURCE_DIR "/worlds/test.world", R"(

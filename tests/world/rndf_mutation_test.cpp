@@ -5,11 +5,11 @@
 #include <array>
 #include <filesystem>
 
+#include "base/files.h"
 #include "base/random.h"
 #include "tests/world/rndf_text.h"
 #include "world/roads/mdf.h"
 #include "world/roads/roads.h"
-#include "world/stage/document.h"
 
 namespace sf::world {
 namespace {
@@ -96,8 +96,8 @@ TEST(RndfMutation, OfPublicNetworks) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
   for (const char* file :
        {"darpa_sample/Sample_RNDF_Rev_1.5.rndf", "utexas/swri_site_visit_with_zones.rndf", "utexas/prc_large.rndf"})
-    run(read_text(folder + file), 200, read_all);
-  run(read_text(folder + "darpa_sample/uce_rndf_1_final_event.rndf"), 40, read_all);
+    run(base::read_text(folder + file), 200, read_all);
+  run(base::read_text(folder + "darpa_sample/uce_rndf_1_final_event.rndf"), 40, read_all);
 }
 
 TEST(RndfMutation, OfAMission) {

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "base/error.h"
-#include "world/keys.h"
-#include "world/stage/document.h"
+#include "base/files.h"
+#include "base/suggest.h"
 
 namespace sf::world {
 
@@ -103,7 +103,7 @@ class MdfReader {
       statements_.fail(message);
     }
     if (unknown_.emplace(word).second)
-      warn(now().line, fmt::format("unknown keyword '{}' is ignored{}", word, suggest(word, kKeywords)));
+      warn(now().line, fmt::format("unknown keyword '{}' is ignored{}", word, base::suggest(word, kKeywords)));
   }
 
   void begin(Block block) {
@@ -216,7 +216,7 @@ Mdf parse_mdf(const std::string& file, std::string_view text, bool strict) {
   return MdfReader(file, text, strict).read();
 }
 
-Mdf read_mdf(const std::string& file, bool strict) { return parse_mdf(file, read_text(file), strict); }
+Mdf read_mdf(const std::string& file, bool strict) { return parse_mdf(file, base::read_text(file), strict); }
 
 std::vector<Warning> check_against(const Mdf& mdf, const Rndf& rndf) {
   std::set<int> checkpoints;

@@ -2,8 +2,8 @@
 
 #include <array>
 
+#include "base/files.h"
 #include "world/roads/rndf_reader.h"
-#include "world/stage/document.h"
 
 namespace sf::world {
 
@@ -64,6 +64,6 @@ Rndf parse_rndf(const std::string& file, std::string_view text, bool strict) {
   return RndfReader(file, text, strict).read();
 }
 
-Rndf read_rndf(const std::string& file, bool strict) { return parse_rndf(file, read_text(file), strict); }
+Rndf read_rndf(const std::string& file, bool strict) { return parse_rndf(file, base::read_text(file), strict); }
 
 }  // namespace sf::world

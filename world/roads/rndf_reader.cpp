@@ -6,7 +6,7 @@
 #include <array>
 
 #include "base/error.h"
-#include "world/keys.h"
+#include "base/suggest.h"
 
 namespace sf::world {
 
@@ -190,7 +190,7 @@ void RndfReader::unknown() {
   }
   std::vector<std::string_view> known(kExtension.begin(), kExtension.end());
   for (const auto& [word, rule] : rules()) known.push_back(word);
-  warn_once(keyword, fmt::format("unknown keyword '{}' is ignored{}", keyword, suggest(keyword, known)));
+  warn_once(keyword, fmt::format("unknown keyword '{}' is ignored{}", keyword, base::suggest(keyword, known)));
 }
 
 /// True for a repeated keyword with the same text, and for a repeated count, which is not relied on.

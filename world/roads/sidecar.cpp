@@ -10,8 +10,8 @@
 #include <set>
 
 #include "base/error.h"
-#include "world/keys.h"
-#include "world/stage/document.h"
+#include "base/files.h"
+#include "base/suggest.h"
 #include "world/toml.h"
 
 namespace sf::world {
@@ -40,7 +40,7 @@ struct Reader {
       if (std::find(known.begin(), known.end(), node.key) == known.end())
         warnings.push_back({file, node.line,
                             fmt::format("unknown key '{}' is ignored{}", node.key,
-                                        node.key.size() > 40 ? "" : suggest(node.key, known))});
+                                        node.key.size() > 40 ? "" : base::suggest(node.key, known))});
   }
 
   double number(const TomlNode& node, std::string_view key, double least, double most) const {
@@ -142,7 +142,7 @@ RoadSidecar read_sidecar(const std::string& rndf_file, std::vector<Warning>& war
   const std::string file = std::filesystem::path(rndf_file).replace_extension(".toml").string();
   std::error_code error;
   if (file == rndf_file || !std::filesystem::exists(file, error)) return {};
-  return parse_sidecar(file, read_text(file), warnings);
+  return parse_sidecar(file, base::read_text(file), warnings);
 }
 
 void check_against(const RoadSidecar& sidecar, const Rndf& rndf) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <unordered_set>
 
+#include "base/files.h"
 #include "world/stage/parse_state.h"
 
 namespace sf::world {
@@ -132,7 +133,7 @@ void read_include(ParseState& r) {
   const std::uint32_t outer_file = r.file;
   const std::size_t outer_at = r.at;
   std::vector<Token> outer_tokens = std::move(r.tokens);
-  read_file(r, found, read_text(found));
+  read_file(r, found, base::read_text(found));
   r.tokens = std::move(outer_tokens);
   r.at = outer_at;
   r.file = outer_file;

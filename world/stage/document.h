@@ -58,12 +58,6 @@ Document parse(const std::string& file, const std::string& text);
 /// $STAGEPATH. Empty when none exists.
 std::string find_file(const Document& document, SourceLocation from, const std::string& name);
 
-/// The whole content of a file. @throws base::InputError when the file is missing, not a regular file (a folder, a
-/// device, a pipe), empty, larger than `most` bytes, or not readable to its end.
-std::string read_bytes(const std::string& file, std::size_t most);
-/// Likewise for a text. @throws base::InputError also for a text without content.
-std::string read_text(const std::string& file, std::size_t most = 64u << 20);
-
 /// The property of that exact key, or null. Lives as long as the entity.
 const Property* find(const Entity& entity, std::string_view key);
 

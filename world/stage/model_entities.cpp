@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/suggest.h"
 #include "world/keys.h"
 #include "world/stage/attached_devices.h"
 #include "world/stage/entity_color.h"
@@ -46,7 +47,7 @@ KeyScope key_scope(EntityKind kind) {
 // Suggestions only while there are few unknown types: a file with many of them has no slips of spelling.
 std::string suggested(const BuildState& b, const std::string& type) {
   constexpr std::size_t kMaxSlips = 100;
-  return b.warned_types.size() > kMaxSlips ? "" : suggest(type, b.types);
+  return b.warned_types.size() > kMaxSlips ? "" : base::suggest(type, b.types);
 }
 
 // Types without a model become plain bodies, counted and mentioned once per type.

@@ -1,4 +1,4 @@
-#include "world/stage/document.h"
+#include "base/files.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -7,23 +7,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <sstream>
 
 #include "base/error.h"
 
-namespace sf::world {
-
-namespace fs = std::filesystem;
+namespace sf::base {
 
 namespace {
-
-bool is_file(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
-}
 
 struct Descriptor {
   int number = -1;
@@ -33,43 +23,25 @@ struct Descriptor {
 };
 
 [[noreturn]] void fail_to_read(const std::string& file) {
-  throw base::InputError(file, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
+  throw InputError(file, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
 }
 
 [[noreturn]] void refuse_size(const std::string& file, std::size_t most) {
-  throw base::InputError(file, 0, fmt::format("larger than {} MiB, the limit for such files", most >> 20));
+  throw InputError(file, 0, fmt::format("larger than {} MiB, the limit for such files", most >> 20));
 }
 
 }  // namespace
-
-std::string find_file(const Document& document, SourceLocation from, const std::string& name) {
-  if (name.empty()) return {};
-  const fs::path wanted(name);
-  if (wanted.is_absolute()) return is_file(wanted) ? wanted.lexically_normal().string() : std::string();
-
-  std::vector<fs::path> folders{fs::path(document.files[from.file]).parent_path(),
-                                fs::path(document.files[0]).parent_path()};
-  if (const char* path = std::getenv("STAGEPATH")) {
-    std::istringstream list(path);
-    for (std::string folder; std::getline(list, folder, ':');) folders.emplace_back(folder);
-  }
-  for (const fs::path& folder : folders) {
-    const fs::path candidate = (folder / wanted).lexically_normal();
-    if (is_file(candidate)) return candidate.string();
-  }
-  return {};
-}
 
 std::string read_bytes(const std::string& file, std::size_t most) {
   // O_NONBLOCK: opening a pipe without a writer would block.
   const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (in.number < 0 && (errno == ENOENT || errno == ENOTDIR))
-    throw base::InputError(file, 0, "no such file; give the path of an existing file");
+    throw InputError(file, 0, "no such file; give the path of an existing file");
   if (in.number < 0) fail_to_read(file);
   struct stat status = {};
   if (::fstat(in.number, &status) != 0) fail_to_read(file);
   if (!S_ISREG(status.st_mode))
-    throw base::InputError(file, 0, "not a file but a folder, a device or a pipe; give the path of an existing file");
+    throw InputError(file, 0, "not a file but a folder, a device or a pipe; give the path of an existing file");
   const auto promised = static_cast<std::size_t>(status.st_size);
   if (promised > most) refuse_size(file, most);
 
@@ -85,15 +57,15 @@ std::string read_bytes(const std::string& file, std::size_t most) {
     if (have == bytes.size()) bytes.resize(std::min(2 * have, most + 1));  // the file grew meanwhile
   }
   bytes.resize(have);
-  if (bytes.empty()) throw base::InputError(file, 0, "is empty; was it saved, or copied whole?");
+  if (bytes.empty()) throw InputError(file, 0, "is empty; was it saved, or copied whole?");
   return bytes;
 }
 
 std::string read_text(const std::string& file, std::size_t most) {
   std::string text = read_bytes(file, most);
   if (text.find_first_not_of(" \t\r\n\v\f") == std::string::npos)
-    throw base::InputError(file, 0, "holds nothing but blanks; was it saved, or copied whole?");
+    throw InputError(file, 0, "holds nothing but blanks; was it saved, or copied whole?");
   return text;
 }
 
-}  // namespace sf::world
+}  // namespace sf::base

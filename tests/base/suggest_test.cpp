@@ -1,0 +1,32 @@
+#include "base/suggest.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace sf::base {
+namespace {
+
+TEST(Suggest, EditDistanceCountsSlips) {
+  EXPECT_EQ(edit_distance("", ""), 0u);
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("pose", "pose"), 0u);
+  EXPECT_EQ(edit_distance("pose", "posee"), 1u);       // insertion
+  EXPECT_EQ(edit_distance("pose", "pse"), 1u);         // deletion
+  EXPECT_EQ(edit_distance("pose", "pise"), 1u);        // substitution
+  EXPECT_EQ(edit_distance("samples", "smaples"), 1u);  // swap
+  EXPECT_EQ(edit_distance("range_max", "range_min"), 2u);
+}
+
+TEST(Suggest, ShortWordsAreSuggestedForOneSlipOnly) {
+  const std::vector<std::string_view> words{"fov", "z"};
+  EXPECT_EQ(suggest("fow", words), "; did you mean 'fov'?");
+  EXPECT_EQ(suggest("abc", words), "");
+  const std::vector<std::string_view> longer{"pose", "speed"};  // boundary: four letters, and five
+  EXPECT_EQ(suggest("paxe", longer), "");
+  EXPECT_EQ(suggest("spaad", longer), "; did you mean 'speed'?");
+  EXPECT_EQ(suggest("spaax", longer), "") << "three slips";
+}
+
+}  // namespace
+}  // namespace sf::base
