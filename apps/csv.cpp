@@ -18,32 +18,22 @@ std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string missing_or(double value, bool whole) {
+std::string missing_or(double value, const sensors::Column& column) {
   if (std::isnan(value)) return "";
-  return whole ? fmt::format("{:.0f}", value) : fmt::format("{}", value);
+  return column.whole || column.decimals > 0 ? fmt::format("{:.{}f}", value, column.decimals)
+                                             : fmt::format("{}", value);
 }
 
-std::string beams_csv(const world::World& world, const base::ReadingBlock& reading) {
-  const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
-  std::string text = "bearing_rad,range_m,hit\n";
-  for (std::uint32_t i = 0; i < reading.values.size(); ++i) {
-    const std::uint32_t hit = reading.hits[i];
-    text += fmt::format("{:.12f},{:.9f},{}\n", world::bearing_of(laser, i), reading.values[i],
-                        hit == base::kNoHit ? "" : csv_field(world.models[hit].name));
-  }
-  return text;
-}
-
-/// `distance_m,points`; a vector's columns are `vector_T_x,vector_T_y,vector_T_z`.
+/// `distance_m,points`; a vector's columns are `vector_T_x,vector_T_y,vector_T_z`. Scans have bearings and models too.
 std::string csv_heading(const sensors::SensorType& kind) {
-  std::string text;
+  std::string text = kind.is_scan ? "bearing_rad" : "";
   for (const sensors::Column& column : kind.columns)
     for (std::uint32_t k = 0; k < column.width; ++k) {
       if (!text.empty()) text += ',';
       text += column.name;
       if (column.width > 1) text += column.width <= 3 ? fmt::format("_{}", "xyz"[k]) : fmt::format("_{}", k);
     }
-  return text + "\n";
+  return text + (kind.is_scan ? ",hit\n" : "\n");
 }
 
 }  // namespace
@@ -59,17 +49,20 @@ std::string place_of(const world::World& world, const sensors::SensorSet& sensor
                      S.z, kDegrees * base::wrap_angle(S.yaw));
 }
 
-std::string text_of(const world::World& world, const base::ReadingBlock& reading) {
-  if (reading.kind == base::kLaser) return beams_csv(world, reading);
+std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                    const base::ReadingBlock& reading) {
   const sensors::SensorType& kind = *sensors::find_sensor_type(reading.kind);
   std::string text = csv_heading(kind);
   const std::size_t width = element_width(kind);
-  for (std::size_t first = 0; first + width <= reading.values.size(); first += width) {
-    std::size_t at = first;
+  for (std::uint32_t i = 0; (i + 1) * width <= reading.values.size(); ++i) {
+    std::string line = kind.is_scan ? fmt::format("{:.12f}", bearing_of(sensor_set.row(reading), i)) : "";
+    std::size_t at = i * width;
     for (const sensors::Column& column : kind.columns)
       for (std::uint32_t k = 0; k < column.width; ++k, ++at)
-        text += (at == first ? "" : ",") + missing_or(reading.values[at], column.whole);
-    text += "\n";
+        line += (kind.is_scan || at > i * width ? "," : "") + missing_or(reading.values[at], column);
+    if (kind.is_scan)
+      line += "," + (reading.hits[i] == base::kNoHit ? "" : csv_field(world.models[reading.hits[i]].name));
+    text += line + "\n";
   }
   return text;
 }

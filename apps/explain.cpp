@@ -46,7 +46,7 @@ std::string text_of(const scenarios::SensorTypeCost& k, const scenarios::Explana
   std::string text =
       fmt::format("{}: {} on {}, {}\n", k.kind, counted(k.sensors, "sensor"), counted(k.robots, "robot"), rates_of(k));
   text += row("a tick", "{:.3f} ms subscribed {}, {:.3f} ms more than without subscribers", 1e3 * k.tick,
-              k.derived ? "with the lasers" : "alone", 1e3 * (k.tick - e.silent));
+              k.source.empty() ? "alone" : fmt::format("with the {}s", k.source), 1e3 * (k.tick - e.silent));
   text += row("", work_of(k, static_cast<double>(e.ticks)));
   for (const sensors::AccuracyStatement& s : e.statements)
     if (s.kind->name == k.kind) text += row("accuracy", apps::text_of(s));

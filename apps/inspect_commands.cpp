@@ -140,7 +140,8 @@ int sense(const SenseOptions& options) {
   if (options.no_return_inf) sensors::mark_no_return(reading, sensor_set.row(reading).limit, values);
   reading.values = values;
   if (!options.json) print_message(place_of(world, sensor_set, reading));
-  print(options.json ? with_warnings(json_of(world, sensor_set, reading), world.warnings) : text_of(world, reading));
+  print(options.json ? with_warnings(json_of(world, sensor_set, reading), world.warnings)
+                     : text_of(world, sensor_set, reading));
   return 0;
 }
 

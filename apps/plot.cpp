@@ -15,6 +15,7 @@
 #include "farm/farm.h"
 #include "record/recording.h"
 #include "scenarios/experiment.h"
+#include "sensors/laser.h"
 #include "viz/occupancy_figure.h"
 #include "viz/scan_map.h"
 #include "viz/trajectory_figure.h"
@@ -49,7 +50,7 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.subscribe(m, 1u << base::kLaser);
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.subscribe(m, 1u << sensors::kLaser);
   const auto every = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / recording.info.interval)));
   std::vector<base::Report> reports;
   const std::size_t ticks = recording.states.empty() ? 0 : recording.states[0].size();

@@ -93,7 +93,7 @@ std::string text_of(const RunReport& facts);
 std::string text_of(const sensors::AccuracyStatement& statement);
 std::string text_of(const netio::StreamSummary& summary);
 /// Comma-separated: a heading, then one line per element; what is missing is left out between its commas.
-std::string text_of(const world::World& world, const base::ReadingBlock& reading);
+std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading);
 /// @param recorded the run kept its readings
 std::string text_of(const scenarios::Verification& verification, bool recorded);
 std::string json_of(const scenarios::Verification& verification);

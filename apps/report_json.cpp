@@ -8,6 +8,7 @@
 #include "apps/robot_report.h"
 #include "base/hash.h"
 #include "sensors/accuracy.h"
+#include "sensors/laser.h"
 #include "sensors/magnetic_field/truncation.h"
 
 namespace sf::apps {
@@ -23,8 +24,6 @@ std::string dump(const Json& json, int indent = -1) {
 
 std::string print(const Json& json) { return dump(json, 2) + "\n"; }
 
-std::string metres(double value) { return std::isfinite(value) ? fmt::format("{:.9f}", value) : "null"; }
-
 Json pose_json(const base::Pose& X) { return {X.x, X.y, base::wrap_angle(X.yaw)}; }
 
 Json reasons(const netio::PacketCounts& counts) {
@@ -37,7 +36,7 @@ Json reasons(const netio::PacketCounts& counts) {
 }
 
 std::uint64_t count_rays(const netio::StreamSummary& summary) {
-  const auto lasers = summary.of.find(std::string(sensors::find_sensor_type(base::kLaser)->name));
+  const auto lasers = summary.of.find(std::string(sensors::laser_type.name));
   return lasers == summary.of.end() ? 0 : lasers->second.elements;
 }
 
@@ -67,31 +66,27 @@ Json number_json(double value, bool whole) {
   return value;  // printed as null where it is not finite
 }
 
-/// One element's columns, by name.
-Json element_json(const sensors::SensorType& kind, std::span<const double> values) {
-  Json json = Json::object();
-  std::size_t at = 0;
-  for (const sensors::Column& column : kind.columns) {
-    Json numbers = Json::array();
-    for (std::uint32_t k = 0; k < column.width; ++k) numbers.push_back(number_json(values[at++], column.whole));
-    json[std::string(column.name)] = column.width == 1 ? numbers[0] : numbers;
-  }
-  return json;
-}
-
 std::string_view word_of(base::QualityFlag quality) {
   constexpr std::string_view kWords[] = {"no", "not cast", "grazing", "not straight", "extrapolated"};
   return kWords[static_cast<std::size_t>(quality)];
 }
 
-/// Beams have as many decimals as a ruler will ever need: nlohmann/json prints no fixed number.
-std::string beam_json(const world::World& world, const base::ReadingBlock& reading, std::uint32_t i) {
-  const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
-  const std::uint32_t hit = reading.hits[i];
-  const base::QualityFlag quality = reading.quality.empty() ? base::QualityFlag::none : reading.quality[i];
-  return fmt::format("{{\"bearing_rad\": {:.12f}, \"range_m\": {}, \"hit\": {}{}}}", world::bearing_of(laser, i),
-                     metres(reading.values[i]), hit == base::kNoHit ? "null" : dump(world.models[hit].name),
-                     quality == base::QualityFlag::none ? "" : fmt::format(", \"unsure\": \"{}\"", word_of(quality)));
+/// One element's columns, by name. Beams have their bearing and the model that they met too.
+Json element_json(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading,
+                  std::uint32_t i) {
+  const sensors::SensorType& kind = *sensors::find_sensor_type(reading.kind);
+  Json json = Json::object();
+  if (kind.is_scan) json["bearing_rad"] = bearing_of(sensor_set.row(reading), i);
+  std::size_t at = i * element_width(kind);
+  for (const sensors::Column& column : kind.columns) {
+    Json numbers = Json::array();
+    for (std::uint32_t k = 0; k < column.width; ++k) numbers.push_back(number_json(reading.values[at++], column.whole));
+    json[std::string(column.name)] = column.width == 1 ? numbers[0] : numbers;
+  }
+  if (kind.is_scan) json["hit"] = reading.hits[i] == base::kNoHit ? Json() : Json(world.models[reading.hits[i]].name);
+  if (!kind.list.empty() && !reading.quality.empty() && reading.quality[i] != base::QualityFlag::none)
+    json["unsure"] = word_of(reading.quality[i]);
+  return json;
 }
 
 Json error_json(const control::ErrorSummary& f) {
@@ -277,18 +272,15 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
   }
   if (kind.list.empty() && !reading.quality.empty()) head["unsure"] = word_of(reading.quality.front());
   if (kind.list.empty()) {
-    head.update(element_json(kind, reading.values));
+    head.update(element_json(world, sensor_set, reading, 0));
     return dump(head) + "\n";
   }
   // Elements are lines of their own.
   std::string text = dump(head);
   text.back() = ',';
   text += fmt::format("\n\"{}\": [", kind.list);
-  const std::size_t width = element_width(kind);
-  for (std::size_t i = 0; i < reading.values.size() / width; ++i)
-    text += (i == 0 ? "\n  " : ",\n  ") + (kind.id == base::kLaser
-                                               ? beam_json(world, reading, static_cast<std::uint32_t>(i))
-                                               : dump(element_json(kind, reading.values.subspan(i * width, width))));
+  for (std::uint32_t i = 0; i < reading.values.size() / element_width(kind); ++i)
+    text += (i == 0 ? "\n  " : ",\n  ") + dump(element_json(world, sensor_set, reading, i));
   return text + "\n]}\n";
 }
 

@@ -56,7 +56,7 @@ int verify(const VerifyOptions& options) {
                               return !stop_requested();
                             }});
   }
-  const bool recorded = !recording.scans.empty() || !recording.readings.empty();
+  const bool recorded = !recording.readings.empty();
   print(options.json ? json_of(verification) : text_of(verification, recorded));
   return verification.sound() ? 0 : 1;
 }

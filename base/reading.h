@@ -12,10 +12,6 @@ namespace sf::base {
 /// Hit value of a beam without an echo in range.
 inline constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
 
-/// Wire id of the laser. It is the one sensor type that modules beside `sensors` know by number: controllers drive by
-/// it, and recordings store it as a ROS LaserScan.
-inline constexpr std::uint8_t kLaser = 1;
-
 /// The reason for which an element's error may exceed the error bound of its reading.
 enum class QualityFlag : std::uint8_t {
   none = 0,          ///< the bound holds
@@ -34,9 +30,9 @@ struct ReadingBlock {
   std::int64_t time = 0;           ///< [ns] simulated time of the measurement (not of its delivery)
   Pose X_WM;                       ///< the mover's pose at the measurement
   Pose X_WS;                       ///< the sensor's pose at the measurement
-  std::span<const double> values;  ///< laser: ranges [m], one per sample, in order of bearing from -fov/2 to +fov/2
+  std::span<const double> values;  ///< element by element, in each in order of the sensor type's columns
   std::span<const std::uint32_t>
-      hits;  ///< laser: row of the model that each beam met, or kNoHit; empty where not known (interpolated)
+      hits;                 ///< scans: row of the model that each beam met, or kNoHit; empty for other sensor types
   std::uint32_t flags = 0;  ///< bits defined by the header of the sensor type
   std::uint8_t mode = 0;    ///< accuracy mode of the measurement: row of the sensor type's modes
   /// [unit of the first column] largest error of that column without noise, for elements without a quality flag

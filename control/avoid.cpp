@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "sensors/laser.h"
 
 namespace sf::control {
 
@@ -28,7 +29,7 @@ Thirds thirds_of(std::span<const double> ranges) {
 }
 
 base::Twist Avoid::step(const ControllerInput& input) {
-  const base::ReadingBlock* reading = newest(input, base::kLaser);
+  const base::ReadingBlock* reading = newest(input, sensors::kLaser);
   if (reading == nullptr || reading->values.empty()) return {};
   const Thirds nearest = thirds_of(reading->values);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensors/laser.h"
+
 namespace sf::control {
 
 namespace {
@@ -66,7 +68,7 @@ void ClearanceEstimator::add(const View& view, std::span<const double> ranges, S
 Clearance ClearanceEstimator::estimate(std::span<const base::ReadingBlock> readings) const {
   Sum sum;
   for (const base::ReadingBlock& block : readings) {
-    if (block.kind == base::kLaser && block.sensor < views_.size()) add(views_[block.sensor], block.values, sum);
+    if (block.kind == sensors::kLaser && block.sensor < views_.size()) add(views_[block.sensor], block.values, sum);
   }
   const double left = sum.lefts > 0.0 ? sum.left / sum.lefts : 0.0;
   const double right = sum.rights > 0.0 ? sum.right / sum.rights : 0.0;

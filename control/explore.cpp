@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/drive_to_point.h"
+#include "sensors/laser.h"
 
 namespace sf::control {
 
@@ -71,7 +72,7 @@ Twist Explore::step(const ControllerInput& input) {
 }
 
 bool Explore::update_map(const ControllerInput& input) {
-  const base::ReadingBlock* reading = newest(input, base::kLaser);
+  const base::ReadingBlock* reading = newest(input, sensors::kLaser);
   if (reading == nullptr || reading->values.size() != settings_.beams.size() || sequence_ == reading->sequence)
     return false;
   sequence_ = reading->sequence;

@@ -18,8 +18,14 @@ const TextPairs kLatched = {
      "  lifespan:\n    sec: 0\n    nsec: 0\n  liveliness: 1\n  liveliness_lease_duration:\n"
      "    sec: 0\n    nsec: 0\n  avoid_ros_namespace_conventions: false\n"}};
 
-/// "/robot/laser/scan" -> "robot/laser".
-std::string frame_of(const std::string& topic) { return topic.substr(1, topic.rfind('/') - 1); }
+/// The frame of the topic "/robot/laser/scan" is "robot/laser".
+Scan header_of(const SensorInfo& sensor) {
+  return {.frame = sensor.topic.substr(1, sensor.topic.rfind('/') - 1),
+          .fov = static_cast<float>(sensor.fov),
+          .scan_time = static_cast<float>(1.0 / sensor.rate),
+          .range_min = static_cast<float>(sensor.range_min),
+          .range_max = static_cast<float>(sensor.range_max)};
+}
 
 std::uint16_t add_schema(McapWriter& mcap, std::string_view type) {
   return mcap.add_schema(type, "ros2msg", schema_text(type));
@@ -39,13 +45,11 @@ void add_readings(McapWriter& mcap, const RunInfo& info, Channels& channels) {
   const std::uint16_t scan = add_schema(mcap, kLaserScan);
   std::map<std::uint8_t, std::uint16_t> schemas;  // by sensor type
   for (const SensorTypeInfo& kind : info.sensor_types)
-    schemas[kind.id] = mcap.add_schema(type_of(kind), "ros2msg", schema_text(kind));
+    schemas[kind.id] = kind.is_scan ? scan : mcap.add_schema(type_of(kind), "ros2msg", schema_text(kind));
   for (std::size_t row = 0; row < info.movers.size(); ++row) {
     const MoverInfo& mover = info.movers[row];
-    for (const LaserInfo& laser : mover.lasers)
-      channels.movers[row].scans.push_back(mcap.add_channel(scan, laser.topic, "cdr", kPlain));
     for (std::size_t i = 0; i < mover.sensors.size(); ++i)
-      channels.movers[row].readings[i].channel =
+      channels.movers[row].sensors[i].channel =
           mcap.add_channel(schemas.at(mover.sensors[i].kind), mover.sensors[i].topic, "cdr", kPlain);
   }
 }
@@ -53,9 +57,8 @@ void add_readings(McapWriter& mcap, const RunInfo& info, Channels& channels) {
 void add_frames(const RunInfo& info, Channels& channels) {
   for (const MoverInfo& mover : info.movers) {
     MoverChannels& row = channels.movers.emplace_back();
-    for (const LaserInfo& laser : mover.lasers) row.frames.push_back(frame_of(laser.topic));
     for (const SensorInfo& sensor : mover.sensors)
-      row.readings.push_back({0, frame_of(sensor.topic), find_sensor_type(info, sensor.kind)});
+      row.sensors.push_back({0, find_sensor_type(info, sensor.kind), header_of(sensor)});
   }
 }
 
@@ -63,8 +66,7 @@ void add_frames(const RunInfo& info, Channels& channels) {
 
 std::size_t count_channels(const RunInfo& info) {
   std::size_t count = 4;
-  for (const MoverInfo& mover : info.movers)
-    count += 2 + (info.record_readings ? mover.lasers.size() + mover.sensors.size() : 0);
+  for (const MoverInfo& mover : info.movers) count += 2 + (info.record_readings ? mover.sensors.size() : 0);
   return count;
 }
 

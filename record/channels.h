@@ -2,27 +2,24 @@
 // The topics of a recording, and their channels in the file.
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "record/mcap_writer.h"
+#include "record/ros_messages.h"
 #include "record/run_info.h"
 
 namespace sf::record {
 
-/// A sensor of any type but laser.
 struct SensorChannel {
-  std::uint16_t channel = 0;  ///< 0: readings are not recorded
-  std::string frame;
+  std::uint16_t channel = 0;             ///< 0: readings are not recorded
   const SensorTypeInfo* kind = nullptr;  ///< row of `RunInfo::sensor_types`
+  Scan header;                           ///< `frame` of every type; of scans, all but time and ranges
 };
 
 struct MoverChannels {
   std::uint16_t odometry = 0;  ///< 0: neither odometry nor commands are recorded
   std::uint16_t command = 0;
-  std::vector<std::uint16_t> scans;     ///< one per laser when readings are recorded
-  std::vector<std::string> frames;      ///< one per laser
-  std::vector<SensorChannel> readings;  ///< one per sensor of another type
+  std::vector<SensorChannel> sensors;
 };
 
 struct Channels {

@@ -47,6 +47,7 @@ bool fits(const SensorTypeInfo& kind, std::size_t elements, std::size_t message)
 }  // namespace
 
 std::string type_of(const SensorTypeInfo& kind) {
+  if (kind.is_scan) return std::string(kLaserScan);
   std::string name = kind.name;
   if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   return "sensorfarm_msgs/msg/" + name;

@@ -1,5 +1,5 @@
 #pragma once
-// Readings of all types but laser as messages of their own types: `sensorfarm_msgs/msg/Magnetometer` and so on, derived
+// Readings of all types but scans as messages of their own types: `sensorfarm_msgs/msg/Magnetometer` and so on, derived
 // from the sensor type's columns.
 //
 // A message type has a header and one field per column: float64, float64[width], or uint32 for whole numbers; for a
@@ -17,7 +17,7 @@
 
 namespace sf::record {
 
-/// "sensorfarm_msgs/msg/Magnetometer".
+/// "sensorfarm_msgs/msg/Magnetometer"; for scans "sensor_msgs/msg/LaserScan".
 std::string type_of(const SensorTypeInfo& kind);
 /// Its definition, with all types that it needs, for a file's schema.
 std::string schema_text(const SensorTypeInfo& kind);

@@ -71,12 +71,8 @@ void Recorder::write_sensor_frames() {
   transforms_.clear();
   for (std::size_t row = 0; row < info_.movers.size(); ++row) {
     const MoverInfo& mover = info_.movers[row];
-    for (std::size_t k = 0; k < mover.lasers.size(); ++k) {
-      transforms_.push_back({0, mover.frame, channels_.movers[row].frames[k], mover.lasers[k].X_MS});
-    }
-    for (std::size_t k = 0; k < mover.sensors.size(); ++k) {
-      transforms_.push_back({0, mover.frame, channels_.movers[row].readings[k].frame, mover.sensors[k].X_MS});
-    }
+    for (std::size_t k = 0; k < mover.sensors.size(); ++k)
+      transforms_.push_back({0, mover.frame, channels_.movers[row].sensors[k].header.frame, mover.sensors[k].X_MS});
   }
   message_.clear();
   encode_transforms(transforms_, message_);
@@ -93,10 +89,8 @@ void Recorder::write(const base::TickRecord& record) {
   add(channels_.fleet, ticks_, record.time, record.time);
   write_transforms(record);
   if (info_.odometry_rate > 0.0 && record.time >= next_odometry_) write_odometry(record);
-  for (const base::ReadingBlock& reading : record.readings) {
-    if (!info_.record_readings) break;
-    reading.kind == base::kLaser ? write_scan(reading, record.time) : write_reading(reading, record.time);
-  }
+  if (info_.record_readings)
+    for (const base::ReadingBlock& reading : record.readings) write_reading(reading, record.time);
   flush();
   ++ticks_;
 }
@@ -128,29 +122,15 @@ void Recorder::write_odometry(const base::TickRecord& record) {
   next_odometry_ = (record.time / period + 1) * period;
 }
 
-void Recorder::write_scan(const base::ReadingBlock& reading, std::int64_t time) {
-  SF_CHECK(reading.mover < channels_.movers.size() && reading.sensor < channels_.movers[reading.mover].scans.size(),
-           "mover " + std::to_string(reading.mover) + " sensor " + std::to_string(reading.sensor));
-  const LaserInfo& laser = info_.movers[reading.mover].lasers[reading.sensor];
-  const MoverChannels& channels = channels_.movers[reading.mover];
-  scan_.time = reading.time;
-  scan_.frame = channels.frames[reading.sensor];
-  scan_.fov = static_cast<float>(laser.fov);
-  scan_.scan_time = static_cast<float>(1.0 / laser.rate);
-  scan_.range_min = static_cast<float>(laser.range_min);
-  scan_.range_max = static_cast<float>(laser.range_max);
-  message_.clear();
-  encode_scan(scan_, reading.values, message_);
-  add(channels.scans[reading.sensor], reading.sequence, time, reading.time);
-}
-
 void Recorder::write_reading(const base::ReadingBlock& reading, std::int64_t time) {
   SF_CHECK(reading.mover < channels_.movers.size(), "mover " + std::to_string(reading.mover));
   std::uint32_t before = 0;  // sensors of the same type before this one
-  for (const SensorChannel& sensor : channels_.movers[reading.mover].readings) {
+  for (SensorChannel& sensor : channels_.movers[reading.mover].sensors) {
     if (sensor.kind->id != reading.kind || before++ < reading.sensor) continue;
     message_.clear();
-    encode_reading(*sensor.kind, reading.time, sensor.frame, reading.values, message_);
+    sensor.header.time = reading.time;
+    sensor.kind->is_scan ? encode_scan(sensor.header, reading.values, message_)
+                         : encode_reading(*sensor.kind, reading.time, sensor.header.frame, reading.values, message_);
     add(sensor.channel, reading.sequence, time, reading.time);
     return;
   }

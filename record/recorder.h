@@ -15,7 +15,6 @@
 #include "record/channels.h"
 #include "record/mcap_writer.h"
 #include "record/recording_files.h"
-#include "record/ros_messages.h"
 #include "record/run_info.h"
 
 namespace sf::record {
@@ -30,7 +29,7 @@ class Recorder : public base::Sink {
   /// Calls `finish` if needed and ignores its errors; call `finish` to get them.
   ~Recorder() override;
 
-  /// Rule: every report's mover is a row of `info.movers`, every reading's sensor one of its lasers or sensors; time is
+  /// Rule: every report's mover is a row of `info.movers`, every reading's sensor one of its sensors; time is
   /// non-decreasing.
   /// @throws base::InputError when the tick could not be written whole (a full disk). All earlier ticks are in the
   /// file; the recorder accepts no more.
@@ -46,7 +45,6 @@ class Recorder : public base::Sink {
   void write_sensor_frames();
   void write_transforms(const base::TickRecord& record);
   void write_odometry(const base::TickRecord& record);
-  void write_scan(const base::ReadingBlock& reading, std::int64_t time);
   void write_reading(const base::ReadingBlock& reading, std::int64_t time);
   void add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time, std::int64_t true_time);
   void flush();
@@ -63,7 +61,6 @@ class Recorder : public base::Sink {
   // Members for their capacity only.
   base::Bytes message_;
   std::vector<Transform> transforms_;
-  Scan scan_;
 };
 
 }  // namespace sf::record

@@ -9,6 +9,7 @@
 #include "record/mcap_reader.h"
 #include "record/reading_messages.h"
 #include "record/recording_files.h"
+#include "record/ros_messages.h"
 #include "record/schemas.h"
 
 namespace sf::record {
@@ -18,8 +19,8 @@ namespace {
 /// The sensor of a topic.
 struct SensorTopic {
   std::uint32_t mover = 0;
-  const SensorTypeInfo* kind = nullptr;  ///< null: a laser
-  std::uint32_t sensor = 0;              ///< 0-based among the mover's sensors of its type
+  const SensorTypeInfo* kind = nullptr;
+  std::uint32_t sensor = 0;  ///< 0-based among the mover's sensors of its type
 };
 using Topics = std::map<std::string, SensorTopic>;
 
@@ -59,8 +60,6 @@ void read_info(const McapContents& contents, Recording& recording) {
 Topics sensor_topics(const RunInfo& info) {
   Topics topics;
   for (std::uint32_t mover = 0; mover < info.movers.size(); ++mover) {
-    const auto& lasers = info.movers[mover].lasers;
-    for (std::uint32_t i = 0; i < lasers.size(); ++i) topics[lasers[i].topic] = {mover, nullptr, i};
     std::map<std::uint8_t, std::uint32_t> before;  // by sensor type
     for (const SensorInfo& sensor : info.movers[mover].sensors) {
       const SensorTypeInfo* kind = find_sensor_type(info, sensor.kind);
@@ -83,18 +82,20 @@ bool read_fleet(const McapMessage& message, FleetState& fleet, Recording& record
   return true;
 }
 
-bool read_scan(const McapMessage& message, const SensorTopic& topic, Recording& recording) {
-  std::optional<Scan> scan = decode_scan(message.data);
+bool read_scan(const McapMessage& message, ReadingSample& sample) {
+  const std::optional<Scan> scan = decode_scan(message.data);
   if (!scan) return false;
-  recording.scans.push_back(
-      {topic.mover, topic.sensor, message.sequence, static_cast<std::int64_t>(message.log_time), std::move(*scan)});
+  sample.time = scan->time;
+  sample.values.assign(scan->ranges.begin(), scan->ranges.end());
   return true;
 }
 
 bool read_reading(const McapMessage& message, const SensorTopic& topic, Recording& recording) {
   ReadingSample sample{topic.mover, topic.kind->id, topic.sensor, message.sequence,
                        static_cast<std::int64_t>(message.log_time)};
-  if (!decode_reading(*topic.kind, message.data, sample.time, sample.values)) return false;
+  if (!(topic.kind->is_scan ? read_scan(message, sample)
+                            : decode_reading(*topic.kind, message.data, sample.time, sample.values)))
+    return false;
   recording.readings.push_back(std::move(sample));
   return true;
 }
@@ -104,9 +105,7 @@ bool read_message(const McapMessage& message, std::string_view type, const std::
                   FleetState& fleet, Recording& recording) {
   if (type == kFleet) return read_fleet(message, fleet, recording);
   const auto found = topics.find(name);
-  if (type == kLaserScan)
-    return found != topics.end() && found->second.kind == nullptr && read_scan(message, found->second, recording);
-  if (found == topics.end() || found->second.kind == nullptr) return true;
+  if (found == topics.end()) return type != kLaserScan;
   return type == type_of(*found->second.kind) && read_reading(message, found->second, recording);
 }
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "record/fleet_message.h"
-#include "record/ros_messages.h"
 #include "record/run_info.h"
 
 namespace sf::record {
@@ -22,16 +21,7 @@ struct StateSample {
   base::Twist command;
 };
 
-/// One recorded scan.
-struct ScanSample {
-  std::uint32_t mover = 0;   ///< row in `RunInfo::movers`
-  std::uint32_t sensor = 0;  ///< 0-based among the mover's lasers
-  std::uint32_t sequence = 0;
-  std::int64_t delivered = 0;  ///< [ns] simulated time of the tick of delivery; `scan.time` is that of the measurement
-  Scan scan;
-};
-
-/// One recorded reading of another sensor type.
+/// One recorded reading.
 struct ReadingSample {
   std::uint32_t mover = 0;   ///< row in `RunInfo::movers`
   std::uint8_t kind = 0;     ///< id of a row of `RunInfo::sensor_types`
@@ -39,15 +29,14 @@ struct ReadingSample {
   std::uint32_t sequence = 0;
   std::int64_t delivered = 0;  ///< [ns] simulated time of the tick of delivery
   std::int64_t time = 0;       ///< [ns] of the measurement
-  std::vector<double> values;  ///< element by element, in the order of the sensor type's columns
+  std::vector<double> values;  ///< element by element, in the order of the sensor type's columns; scans in float32
 };
 
 struct Recording {
   std::string file;
   RunInfo info;                                  ///< with the world's snapshot
   std::vector<std::vector<StateSample>> states;  ///< by mover, then by tick
-  std::vector<ScanSample> scans;                 ///< in order of delivery; empty when not recorded
-  std::vector<ReadingSample> readings;           ///< likewise
+  std::vector<ReadingSample> readings;           ///< in order of delivery; empty when not recorded
   std::uint64_t ticks = 0;                       ///< number of ticks in the file
   std::int64_t end_time = 0;                     ///< [ns] simulated time of the last tick
   bool truncated = false;           ///< not finished: killed, or still being written; all whole ticks are here

@@ -22,7 +22,7 @@ struct Transform {
   base::Pose X_PC;
 };
 
-/// One sweep of a laser.
+/// One planar scan.
 struct Scan {
   std::int64_t time = 0;      ///< [ns] of the measurement
   std::string frame;          ///< of the sensor: x along bearing 0

@@ -1,5 +1,6 @@
 #include "record/run_info.h"
 
+#include <algorithm>
 #include <cctype>
 #include <map>
 
@@ -39,29 +40,7 @@ void get_pose(CdrReader& cdr, base::Pose& pose) {
   for (double* value : {&pose.x, &pose.y, &pose.z, &pose.yaw}) *value = cdr.get<double>();
 }
 
-void put_laser(CdrWriter& cdr, const LaserInfo& laser) {
-  cdr.put(std::string_view(laser.name));
-  cdr.put(std::string_view(laser.topic));
-  put_pose(cdr, laser.X_MS);
-  cdr.put(laser.fov);
-  cdr.put(laser.samples);
-  cdr.put(laser.range_min);
-  cdr.put(laser.range_max);
-  cdr.put(laser.rate);
-}
-
-LaserInfo get_laser(CdrReader& cdr) {
-  LaserInfo laser;
-  laser.name = cdr.get_string();
-  laser.topic = cdr.get_string();
-  get_pose(cdr, laser.X_MS);
-  laser.fov = cdr.get<double>();
-  laser.samples = cdr.get<std::uint32_t>();
-  laser.range_min = cdr.get<double>();
-  laser.range_max = cdr.get<double>();
-  laser.rate = cdr.get<double>();
-  return laser;
-}
+const SensorTypeInfo kScans{1, "laser", "beams", {{"range_m"}}, true};
 
 void put_sensor_type(CdrWriter& cdr, const SensorTypeInfo& kind) {
   cdr.put(kind.id);
@@ -90,32 +69,52 @@ SensorTypeInfo get_sensor_type(CdrReader& cdr) {
   return kind;
 }
 
-void put_sensor(CdrWriter& cdr, const SensorInfo& sensor) {
-  cdr.put(sensor.kind);
+void put_sensor(CdrWriter& cdr, const SensorInfo& sensor, bool is_scan) {
+  if (!is_scan) cdr.put(sensor.kind);
   cdr.put(std::string_view(sensor.name));
   cdr.put(std::string_view(sensor.topic));
   put_pose(cdr, sensor.X_MS);
+  if (is_scan) {
+    cdr.put(sensor.fov);
+    cdr.put(sensor.samples);
+    cdr.put(sensor.range_min);
+    cdr.put(sensor.range_max);
+  }
   cdr.put(sensor.rate);
 }
 
-SensorInfo get_sensor(CdrReader& cdr) {
+SensorInfo get_sensor(CdrReader& cdr, bool is_scan) {
   SensorInfo sensor;
-  sensor.kind = cdr.get<std::uint8_t>();
+  sensor.kind = is_scan ? kScans.id : cdr.get<std::uint8_t>();
   sensor.name = cdr.get_string();
   sensor.topic = cdr.get_string();
   get_pose(cdr, sensor.X_MS);
+  if (is_scan) {
+    sensor.fov = cdr.get<double>();
+    sensor.samples = cdr.get<std::uint32_t>();
+    sensor.range_min = cdr.get<double>();
+    sensor.range_max = cdr.get<double>();
+  }
   sensor.rate = cdr.get<double>();
   return sensor;
 }
 
-void put_mover(CdrWriter& cdr, const MoverInfo& mover) {
+const SensorTypeInfo& type_of(const RunInfo& info, const SensorInfo& sensor) {
+  const SensorTypeInfo* kind = find_sensor_type(info, sensor.kind);
+  SF_CHECK(kind != nullptr, "sensor kind " + std::to_string(sensor.kind));
+  return *kind;
+}
+
+void put_mover(CdrWriter& cdr, const RunInfo& info, const MoverInfo& mover) {
   cdr.put(std::string_view(mover.name));
   cdr.put(std::string_view(mover.frame));
   cdr.put(mover.id);
-  cdr.put_count(mover.lasers.size());
-  for (const LaserInfo& laser : mover.lasers) put_laser(cdr, laser);
-  cdr.put_count(mover.sensors.size());
-  for (const SensorInfo& sensor : mover.sensors) put_sensor(cdr, sensor);
+  for (const bool scans : {true, false}) {
+    const auto listed = [&](const SensorInfo& sensor) { return type_of(info, sensor).is_scan == scans; };
+    cdr.put_count(static_cast<std::size_t>(std::count_if(mover.sensors.begin(), mover.sensors.end(), listed)));
+    for (const SensorInfo& sensor : mover.sensors)
+      if (listed(sensor)) put_sensor(cdr, sensor, scans);
+  }
 }
 
 MoverInfo get_mover(CdrReader& cdr) {
@@ -124,10 +123,9 @@ MoverInfo get_mover(CdrReader& cdr) {
   mover.name = cdr.get_string();
   mover.frame = cdr.get_string();
   mover.id = cdr.get<std::uint32_t>();
-  mover.lasers.resize(cdr.get_count(kLeastLaser));
-  for (LaserInfo& laser : mover.lasers) laser = get_laser(cdr);
-  mover.sensors.resize(cdr.get_count(kLeastSensor));
-  for (SensorInfo& sensor : mover.sensors) sensor = get_sensor(cdr);
+  for (const bool scans : {true, false})
+    for (std::size_t left = cdr.get_count(scans ? kLeastLaser : kLeastSensor); left > 0; --left)
+      mover.sensors.push_back(get_sensor(cdr, scans));
   return mover;
 }
 
@@ -144,13 +142,10 @@ void name_frames(RunInfo& info) {
   for (MoverInfo& mover : info.movers) {
     mover.frame = unique(ros_name(mover.name, "robot"), frames);
     Taken sensors = {{"odom", 2}, {"cmd_vel", 2}};
-    for (LaserInfo& laser : mover.lasers) {
-      laser.topic = "/" + mover.frame + "/" + unique(ros_name(laser.name, "laser"), sensors) + "/scan";
-    }
     for (SensorInfo& sensor : mover.sensors) {
-      const SensorTypeInfo* kind = find_sensor_type(info, sensor.kind);
-      SF_CHECK(kind != nullptr, "sensor kind " + std::to_string(sensor.kind));
-      sensor.topic = "/" + mover.frame + "/" + unique(ros_name(sensor.name, kind->name), sensors) + "/" + kind->name;
+      const SensorTypeInfo& kind = type_of(info, sensor);
+      sensor.topic = "/" + mover.frame + "/" + unique(ros_name(sensor.name, kind.name), sensors) + "/" +
+                     (kind.is_scan ? "scan" : kind.name);
     }
   }
 }
@@ -164,10 +159,13 @@ void encode_run_info(const RunInfo& info, base::Bytes& out) {
   cdr.put(info.interval);
   cdr.put(info.record_readings);
   cdr.put(info.odometry_rate);
-  cdr.put_count(info.sensor_types.size());
-  for (const SensorTypeInfo& kind : info.sensor_types) put_sensor_type(cdr, kind);
+  const auto& kinds = info.sensor_types;
+  const auto is_scan = [](const SensorTypeInfo& kind) { return kind.is_scan; };
+  cdr.put_count(kinds.size() - static_cast<std::size_t>(std::count_if(kinds.begin(), kinds.end(), is_scan)));
+  for (const SensorTypeInfo& kind : kinds)
+    if (!kind.is_scan) put_sensor_type(cdr, kind);
   cdr.put_count(info.movers.size());
-  for (const MoverInfo& mover : info.movers) put_mover(cdr, mover);
+  for (const MoverInfo& mover : info.movers) put_mover(cdr, info, mover);
   cdr.put_count(info.options.size());
   for (const auto& [key, value] : info.options) {
     cdr.put(std::string_view(key));
@@ -185,8 +183,11 @@ bool decode_run_info(std::span<const std::uint8_t> message, RunInfo& info) {
   info.interval = cdr.get<double>();
   info.record_readings = cdr.get<bool>();
   info.odometry_rate = cdr.get<double>();
-  info.sensor_types.resize(cdr.get_count(kLeastKind));
-  for (SensorTypeInfo& kind : info.sensor_types) kind = get_sensor_type(cdr);
+  info.sensor_types = {kScans};
+  for (std::size_t left = cdr.get_count(kLeastKind); left > 0; --left) {
+    info.sensor_types.push_back(get_sensor_type(cdr));
+    if (info.sensor_types.back().id == kScans.id) return false;
+  }
   info.movers.resize(cdr.get_count(kLeastMover));
   for (MoverInfo& mover : info.movers) mover = get_mover(cdr);
   info.options.resize(cdr.get_count(kLeastOption));

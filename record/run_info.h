@@ -12,17 +12,6 @@
 
 namespace sf::record {
 
-struct LaserInfo {
-  std::string name;
-  std::string topic;  ///< of its scans; set by the recorder
-  base::Pose X_MS;    ///< sensor in the mover's frame
-  double fov = 0.0;   ///< [rad]
-  std::uint32_t samples = 0;
-  double range_min = 0.0;  ///< [m]
-  double range_max = 0.0;  ///< [m]
-  double rate = 10.0;      ///< [Hz] > 0
-};
-
 /// One column of a sensor type's readings.
 struct ColumnInfo {
   std::string name;         ///< with its unit, e.g. `distance_m`
@@ -30,30 +19,32 @@ struct ColumnInfo {
   bool whole = false;       ///< counts, in [0, 2^32 - 1]
 };
 
-/// A sensor type other than laser: the format of its readings.
+/// A sensor type: the format of its readings.
 struct SensorTypeInfo {
   std::uint8_t id = 0;              ///< `base::ReadingBlock::kind`
   std::string name;                 ///< one word of lower-case letters and digits
   std::string list;                 ///< name of its elements; empty: a reading is one row
   std::vector<ColumnInfo> columns;  ///< the values of a reading are element by element, in each in order of columns
+  bool is_scan = false;             ///< readings are planar scans, recorded as sensor_msgs/LaserScan
 };
 
-/// A sensor of such a type.
 struct SensorInfo {
   std::uint8_t kind = 0;  ///< id of a row of `RunInfo::sensor_types`
   std::string name;
   std::string topic;   ///< of its readings; set by the recorder
   base::Pose X_MS;     ///< sensor in the mover's frame
   double rate = 10.0;  ///< [Hz] > 0
+  double fov = 0.0;    ///< [rad] of scans, as all below
+  std::uint32_t samples = 0;
+  double range_min = 0.0;  ///< [m]
+  double range_max = 0.0;  ///< [m]
 };
 
 struct MoverInfo {
-  std::string name;               ///< as in the world
-  std::string frame;              ///< its name as ROS allows it, unique in the run; set by the recorder
-  std::uint32_t id = 0;           ///< id in packets
-  std::vector<LaserInfo> lasers;  ///< in the order of `base::ReadingBlock::sensor`
-  std::vector<SensorInfo>
-      sensors;  ///< of all other types; those of one type in the order of `base::ReadingBlock::sensor`
+  std::string name;                 ///< as in the world
+  std::string frame;                ///< its name as ROS allows it, unique in the run; set by the recorder
+  std::uint32_t id = 0;             ///< id in packets
+  std::vector<SensorInfo> sensors;  ///< those of one type in the order of `base::ReadingBlock::sensor`
 };
 
 struct RunInfo {
@@ -77,7 +68,8 @@ const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id);
 /// unique.
 void name_frames(RunInfo& info);
 
-/// `sensorfarm_msgs/msg/RunInfo`, without the snapshot.
+/// `sensorfarm_msgs/msg/RunInfo`, without the snapshot. Sensors with scans are its `sensorfarm_msgs/Laser` rows, which
+/// name no type: a run has at most one type of scans, which is read back as type 1, `laser`.
 void encode_run_info(const RunInfo& info, base::Bytes& out);
 /// @returns false when the bytes are not a RunInfo message; `info` is then partly filled.
 bool decode_run_info(std::span<const std::uint8_t> message, RunInfo& info);

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "control/explore.h"
 #include "maps/grid_update.h"
+#include "sensors/laser.h"
 #include "world/wall_grid.h"
 
 namespace sf::scenarios {
@@ -170,7 +171,7 @@ RobotMap::RobotMap(const world::World& world, std::uint32_t mover, double cell)
 }
 
 void RobotMap::add(const base::ReadingBlock& reading) {
-  if (reading.mover != mover_ || reading.kind != base::kLaser || reading.sensor != 0) return;
+  if (reading.mover != mover_ || reading.kind != sensors::kLaser || reading.sensor != 0) return;
   const world::Laser& laser = world_.movers[mover_].lasers[0];
   if (reading.values.size() != beams_.size()) return;
   maps::add_scan(grid_, {reading.X_WS, reading.values, beams_, laser.range_min, laser.range_max});

@@ -101,10 +101,11 @@ void add_held(const std::vector<gpu::DeviceAllocation>& held, SensorTypeCost& ki
                    [](const gpu::DeviceAllocation& a, const gpu::DeviceAllocation& b) { return a.bytes > b.bytes; });
 }
 
-std::vector<WallSlice> slices_of(const world::World& world) {
+std::vector<WallSlice> slices_of(const world::World& world, const sensors::SensorSet& sensor_set) {
   std::map<double, std::uint32_t> heights;
-  for (const world::Mover& mover : world.movers)
-    for (const world::Laser& laser : mover.lasers) ++heights[mover.X_WM.z + laser.X_MS.z];
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : group.rows)
+      if (group.kind->is_scan) ++heights[world.movers[row.mover].X_WM.z + row.X_MS.z];
   std::vector<WallSlice> slices;
   for (const auto& [z, sensors] : heights) {
     const auto seen = std::count_if(world.walls.begin(), world.walls.end(), [z = z](const world::Segment& s) {
@@ -149,8 +150,9 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   for (const sensors::SensorSet::Group& group : farm.sensor_set().groups()) {
     present.insert(group.kind->name);
     SensorTypeCost kind = facts_of(group);
-    kind.derived = group.kind->derived;
-    farm.subscribe(1u << group.kind->id | (kind.derived ? 1u << base::kLaser : 0u));
+    const sensors::SensorType* const source = sensors::find_sensor_type(group.kind->derived_from);
+    if (source != nullptr) kind.source = source->name;
+    farm.subscribe(1u << group.kind->id | (source != nullptr ? 1u << source->id : 0u));
     kind.tick = farm.laps();
     kind.readings = farm.readings();
     kind.reused = farm.again();
@@ -164,7 +166,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   for (SensorTypeCost& kind : e.kinds) add_held(device.allocations(), kind);
   for (const sensors::SensorType* kind : sensors::sensor_types())
     if (!present.contains(kind->name)) e.absent.emplace_back(kind->name);
-  e.slices = slices_of(world);
+  e.slices = slices_of(world, farm.sensor_set());
   e.statements = sensors::accuracy_statements(world, farm.sensor_set());
   e.walls = world.walls.size();
   e.resident = resident_bytes();

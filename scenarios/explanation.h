@@ -21,7 +21,7 @@ struct SensorTypeCost {
   std::vector<std::string> kernels;
   std::vector<gpu::DeviceAllocation> tables;  ///< largest first
   std::size_t bytes = 0;                      ///< of all tables
-  bool derived = false;       ///< computed from the readings of lasers, and subscribed together with them
+  std::string source;         ///< sensor type from whose readings it is computed, subscribed together; empty: none
   double tick = 0.0;          ///< [s] mean wall time of a tick with this type alone
   double readings = 0.0;      ///< mean number per tick
   double reused = 0.0;        ///< mean number of reused readings per tick

@@ -8,19 +8,18 @@ namespace sf::scenarios {
 namespace {
 
 record::SensorTypeInfo kind_info(const sensors::SensorType& kind) {
-  record::SensorTypeInfo info{kind.id, std::string(kind.name), std::string(kind.list), {}};
+  record::SensorTypeInfo info{kind.id, std::string(kind.name), std::string(kind.list), {}, kind.is_scan};
   for (const sensors::Column& column : kind.columns)
     info.columns.push_back({std::string(column.name), column.width, column.whole});
   return info;
 }
 
-/// All sensor types except the laser, which has its own message type and its own entry.
 void add_kinds(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
-    if (group.kind->id == base::kLaser) continue;
     info.sensor_types.push_back(kind_info(*group.kind));
     for (const sensors::SensorSpec& row : group.rows)
-      info.movers[row.mover].sensors.push_back({group.kind->id, row.name, "", row.X_MS, row.rate});
+      info.movers[row.mover].sensors.push_back(
+          {group.kind->id, row.name, "", row.X_MS, row.rate, row.fov, row.elements, row.range_min, row.limit});
   }
 }
 
@@ -36,13 +35,7 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   info.record_readings = settings.record_readings;
   info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}, {"caster", settings.caster}};
   info.snapshot = world::snapshot(world);
-  for (const world::Mover& mover : world.movers) {
-    record::MoverInfo row{mover.name, "", mover.id, {}, {}};
-    for (const world::Laser& laser : mover.lasers)
-      row.lasers.push_back(
-          {laser.name, "", laser.X_MS, laser.fov, laser.samples, laser.range_min, laser.range_max, laser.rate});
-    info.movers.push_back(std::move(row));
-  }
+  for (const world::Mover& mover : world.movers) info.movers.push_back({mover.name, "", mover.id, {}});
   add_kinds(sensor_set, info);
   return info;
 }

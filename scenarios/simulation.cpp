@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "farm/schedule.h"
 #include "scenarios/sampling.h"
+#include "sensors/laser.h"
 #include "world/roads/roads.h"
 
 namespace sf::scenarios {
@@ -190,9 +191,10 @@ bool Simulation::due(RobotControl& robot, std::span<const base::ReadingBlock> fr
                      bool contact) const {
   if (robot.by_lasers) {
     if (robot.mailbox) robot.mailbox->receive(time);
-    const bool looked = robot.mailbox ? robot.mailbox->renewed(base::kLaser)
-                                      : std::any_of(fresh.begin(), fresh.end(),
-                                                    [](const base::ReadingBlock& r) { return r.kind == base::kLaser; });
+    const bool looked = robot.mailbox ? robot.mailbox->renewed(sensors::kLaser)
+                                      : std::any_of(fresh.begin(), fresh.end(), [](const base::ReadingBlock& r) {
+                                          return r.kind == sensors::kLaser;
+                                        });
     return looked || contact;
   }
   const std::uint64_t begun = farm::readings_started(time, robot.rate, 0.0);

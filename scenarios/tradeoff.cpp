@@ -11,6 +11,7 @@
 #include "farm/farm.h"
 #include "scenarios/recorded_paths.h"
 #include "sensors/accuracy.h"
+#include "sensors/laser.h"
 #include "sensors/laser_reference.h"
 
 namespace sf::scenarios {
@@ -109,7 +110,7 @@ std::vector<double> laser_errors(const Entrant& exact, const RecordedPaths& path
                                  const sensors::SensorSet& sensor_set) {
   std::vector<double> errors;
   sensors::LaserReference reference(exact.world(), 0, false);
-  const auto& rows = sensor_set.group(base::kLaser)->rows;
+  const auto& rows = sensor_set.group(sensors::kLaser)->rows;
   // Scans of the first tick: every laser has its first reading there unless it has a phase.
   std::vector<base::Pose> poses;
   for (const base::Report& report : paths.front()) poses.push_back(report.X_WM);
@@ -188,7 +189,7 @@ std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device,
                        .unit = std::string(sensors::unit_of(kind))};
       if (mode == 0) exact = read;
       compare(read, exact, grade);
-      if (mode == 0 && kind.id == base::kLaser)
+      if (mode == 0 && kind.id == sensors::kLaser)
         grade_errors(laser_errors(*entrants[0], paths, read, sensor_set), grade);
       results.push_back(grade);
       if (!go_on()) return {};

@@ -14,6 +14,7 @@
 #include "farm/farm.h"
 #include "scenarios/sampling.h"
 #include "sensors/bumper.h"
+#include "sensors/laser.h"
 #include "sensors/laser_modes.h"
 #include "sensors/laser_noise.h"
 #include "sensors/laser_reference.h"
@@ -29,18 +30,16 @@ using Name = std::tuple<std::uint8_t, std::uint32_t, std::uint32_t, std::uint32_
 constexpr std::size_t kBatch = 256;
 
 /// @param allowed largest allowed difference; 0: bitwise equality
-template <class Real>
-void compare(Real ours, Real theirs, double allowed, Comparison& into) {
+void compare(double ours, double theirs, double allowed, Comparison& into) {
   ++into.values;
   if (std::memcmp(&ours, &theirs, sizeof ours) == 0 || (std::isnan(ours) && std::isnan(theirs))) return;
-  const double apart = std::abs(static_cast<double>(ours) - static_cast<double>(theirs));
+  const double apart = std::abs(ours - theirs);
   into.largest = std::max(into.largest, std::isnan(apart) ? std::numeric_limits<double>::infinity() : apart);
   if (!(apart <= allowed)) ++into.different;
 }
 
 /// Compares one reading. @param where its location for messages
-template <class Real>
-void compare(std::span<const Real> ours, std::span<const Real> theirs, const std::string& where, Comparison& into,
+void compare(std::span<const double> ours, std::span<const double> theirs, const std::string& where, Comparison& into,
              double allowed = 0.0) {
   ++into.readings;
   const std::uint64_t before = into.different;
@@ -55,10 +54,10 @@ void compare(std::span<const Real> ours, std::span<const Real> theirs, const std
 /// A scan to be recomputed by plain C++.
 struct Asked {
   std::uint32_t mover, sensor, sequence;
-  std::size_t tick;           ///< of its measurement, or the next one
-  std::int64_t time;          ///< [ns] of the measurement
-  std::vector<float> ranges;  ///< [m] as recorded, or as computed by this device
-  double allowed;             ///< [m] largest allowed difference; 0: bitwise equality
+  std::size_t tick;            ///< of its measurement, or the next one
+  std::int64_t time;           ///< [ns] of the measurement
+  std::vector<double> ranges;  ///< [m] as recorded, or as computed by this device
+  double allowed;              ///< [m] largest allowed difference; 0: bitwise equality
 };
 
 class Verifier {
@@ -72,10 +71,6 @@ class Verifier {
         thread_pool_(options.threads) {
     for (const auto& [key, value] : recording.info.options)
       infinite_ = infinite_ || (key == "no_return" && value == "inf");
-    for (std::size_t i = 0; i < recording.scans.size(); ++i) {
-      const record::ScanSample& s = recording.scans[i];
-      scans_[{base::kLaser, s.mover, s.sensor, s.sequence}] = i;
-    }
     for (std::size_t i = 0; i < recording.readings.size(); ++i) {
       const record::ReadingSample& r = recording.readings[i];
       readings_[{r.kind, r.mover, r.sensor, r.sequence}] = i;
@@ -97,7 +92,7 @@ class Verifier {
     cast_again();
     result_.interrupted = result_.ticks < ticks;
     result_.scans = seen_;
-    result_.missing = !result_.interrupted ? scans_.size() + readings_.size() : 0;
+    result_.missing = !result_.interrupted ? readings_.size() : 0;
     for (auto& [kind, compared] : again_) result_.recomputed.push_back(std::move(compared));
     if (unfelt_ > 0)
       result_.skipped.push_back(
@@ -138,11 +133,13 @@ class Verifier {
 
   /// Counts all scans, so that a sample is spread evenly.
   void count_scans() {
-    std::size_t all = recording_.scans.size();
-    if (all == 0 && !recording_.states.empty())
-      for (const world::Mover& mover : world_.movers)
-        for (const world::Laser& laser : mover.lasers)
-          all += static_cast<std::size_t>(1.0 + laser.rate * 1e-9 * static_cast<double>(recording_.end_time));
+    const auto is_scan = [](const record::ReadingSample& r) { return r.kind == sensors::kLaser; };
+    auto all = static_cast<std::size_t>(std::count_if(recording_.readings.begin(), recording_.readings.end(), is_scan));
+    recorded_ = all > 0;
+    const auto* const lasers = farm_.sensor_set().group(sensors::kLaser);
+    if (all == 0 && lasers != nullptr)
+      for (const sensors::SensorSpec& laser : lasers->rows)
+        all += static_cast<std::size_t>(1.0 + laser.rate * 1e-9 * static_cast<double>(recording_.end_time));
     stride_ = options_.sample == 0 ? 1 : std::max<std::size_t>(1, all / options_.sample);
   }
 
@@ -159,16 +156,22 @@ class Verifier {
   }
 
   void check_reading(const base::ReadingBlock& reading) {
-    if (reading.kind == base::kLaser) return look_at_scan(reading);
+    const bool is_scan = reading.kind == sensors::kLaser;
+    const std::vector<double> told = is_scan ? told_scan(reading.mover, reading.sensor, reading.values, reading.hits)
+                                             : std::vector(reading.values.begin(), reading.values.end());
     const auto at = readings_.find({reading.kind, reading.mover, reading.sensor, reading.sequence});
-    if (at == readings_.end()) return;
+    if (at == readings_.end()) {
+      if (is_scan && !recorded_) ask(reading, told);
+      return;
+    }
     const std::vector<double>& theirs = recording_.readings[at->second].values;
     readings_.erase(at);
     if (reading.kind == sensors::kBumper) {
       ++unfelt_;
       return;
     }
-    compare(reading.values, std::span<const double>(theirs), place_of(reading), compared(reading.kind));
+    compare(told, theirs, place_of(reading), compared(reading.kind));
+    if (is_scan) ask(reading, theirs);
   }
 
   /// Allowed difference: the bound of 32-bit modes and the precision of recordings. Other modes are recomputed bitwise.
@@ -181,29 +184,20 @@ class Verifier {
   }
 
   /// Ranges with the precision of recorded scans.
-  std::vector<float> told(std::uint32_t mover, std::uint32_t sensor, std::span<const double> ranges,
-                          std::span<const std::uint32_t> hits) const {
-    const double range_max = world_.movers[mover].lasers[sensor].range_max;
-    std::vector<float> all;
+  std::vector<double> told_scan(std::uint32_t mover, std::uint32_t sensor, std::span<const double> ranges,
+                                std::span<const std::uint32_t> hits) const {
+    const double range_max = farm_.sensor_set().of(sensors::kLaser, mover)[sensor].limit;
+    std::vector<double> all;
     for (std::size_t i = 0; i < ranges.size(); ++i)
       all.push_back(static_cast<float>(infinite_ ? sensors::or_infinite(ranges[i], hits[i], range_max) : ranges[i]));
     return all;
   }
 
-  void look_at_scan(const base::ReadingBlock& reading) {
-    std::vector<float> ours = told(reading.mover, reading.sensor, reading.values, reading.hits);
-    const auto at = scans_.find({base::kLaser, reading.mover, reading.sensor, reading.sequence});
-    if (at != scans_.end()) {
-      const std::vector<float>& theirs = recording_.scans[at->second].scan.ranges;
-      scans_.erase(at);
-      compare<float>(ours, theirs, place_of(reading), compared(base::kLaser));
-      ours = theirs;
-    } else if (!recording_.scans.empty()) {
-      return;
-    }
+  /// Puts every `stride_`-th scan on the list for plain C++.
+  void ask(const base::ReadingBlock& reading, const std::vector<double>& ranges) {
     if (seen_++ % stride_ == 0)
-      asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), reading.time,
-                        std::move(ours), allowed_of(reading)});
+      asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), reading.time, ranges,
+                        allowed_of(reading)});
   }
 
   /// Recomputes the collected scans in plain C++, grouped by time, since scans of one time share the movers' poses.
@@ -227,11 +221,9 @@ class Verifier {
   }
 
   void judge(const Asked& asked, const sensors::LaserReference::Scan& scan) {
-    const std::vector<float> ours = told(asked.mover, asked.sensor, scan.ranges, scan.hits);
-    compare<float>(
-        ours, asked.ranges,
-        fmt::format("{}, laser {}, reading {}", world_.movers[asked.mover].name, asked.sensor, asked.sequence),
-        result_.reference, asked.allowed);
+    compare(told_scan(asked.mover, asked.sensor, scan.ranges, scan.hits), asked.ranges,
+            fmt::format("{}, laser {}, reading {}", world_.movers[asked.mover].name, asked.sensor, asked.sequence),
+            result_.reference, asked.allowed);
   }
 
   Comparison& compared(std::uint8_t kind) {
@@ -247,7 +239,8 @@ class Verifier {
   sensors::LaserReference reference_;
   base::ThreadPool thread_pool_;
   bool infinite_ = false;
-  std::map<Name, std::size_t> scans_, readings_;  ///< recorded readings not compared yet
+  bool recorded_ = false;                 ///< the recording has scans
+  std::map<Name, std::size_t> readings_;  ///< recorded readings not compared yet
   std::vector<base::Report> reports_, before_, on_the_way_;
   std::map<std::uint8_t, Comparison> again_;
   std::vector<Asked> asked_;

@@ -135,7 +135,7 @@ base::ReadingBlock Lasers::block_of(std::size_t i) {
   base::ReadingBlock block;
   block.mover = fan.mover;
   block.sensor = fan.sensor;
-  block.kind = base::kLaser;
+  block.kind = kLaser;
   block.X_WS = results.X_WS;
   block.values = row.reworked ? std::span<const double>(values_).subspan(row.samples, samples)
                               : caster_.ranges().host<double>().subspan(first, samples);
@@ -169,23 +169,26 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
     const world::Laser& laser = fan.laser;
     rows.push_back({fan.mover, fan.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
                     laser.samples, laser.range_max, 0, 0.0, lasers[rows.size()].mode});
+    rows.back().fov = laser.fov;
+    rows.back().range_min = laser.range_min;
     rows.back().dependency_radius = laser.range_max;
     rows.back().noisy = laser.noise.has_range() || laser.noise.angle_sigma > 0.0;
   }
   return rows;
 }
 
-constexpr Column kColumns[] = {{"range_m"}};
+constexpr Column kColumns[] = {{"range_m", 1, false, 9}};
 
 }  // namespace
 
 constinit const SensorType laser_type{
-    .id = base::kLaser,
+    .id = kLaser,
     .name = "laser",
     .word = {},  // the module world reads Stage's `laser` and `ranger` itself
     .base_port = 10000,
     .list = "beams",
     .columns = kColumns,
+    .is_scan = true,
     .modes = kLaserModes,
     .bound = bound_of_laser,
     .specs = specs_of,

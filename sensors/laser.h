@@ -6,6 +6,8 @@
 
 namespace sf::sensors {
 
+inline constexpr std::uint8_t kLaser = 1;  ///< wire id
+
 extern const SensorType laser_type;
 
 }  // namespace sf::sensors

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "sensors/laser.h"
 
 namespace sf::sensors {
 
@@ -135,13 +136,13 @@ std::uint8_t encode_laser(const SensorSpec& sensor, const base::ReadingBlock& sc
   } else {
     put_extended(total, part, mine, writer);
   }
-  return plain ? base::kLaser : base::kLaser + kExtended;
+  return plain ? kLaser : kLaser + kExtended;
 }
 
 PayloadPart decode_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                          WireFormat wire) {
-  const bool extended = wire == WireFormat::farm && type == base::kLaser + kExtended;
-  if (!extended && type != base::kLaser) return {.fault = PayloadError::out_of_range};
+  const bool extended = wire == WireFormat::farm && type == kLaser + kExtended;
+  if (!extended && type != kLaser) return {.fault = PayloadError::out_of_range};
   LaserPart scan;
   PayloadPart part{.fault = read_laser(payload, extended, scan)};
   if (part.fault != PayloadError::none) return part;
@@ -157,7 +158,7 @@ PayloadPart decode_laser(const SensorSpec& sensor, std::span<const std::uint8_t>
 void fill_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
                 std::span<double> values) {
   LaserPart scan;
-  const PayloadError fault = read_laser(payload, wire == WireFormat::farm && type == base::kLaser + kExtended, scan);
+  const PayloadError fault = read_laser(payload, wire == WireFormat::farm && type == kLaser + kExtended, scan);
   SF_CHECK(fault == PayloadError::none && scan.first + scan.count <= values.size(),
            "a payload of rays " + std::to_string(scan.first) + " to " + std::to_string(scan.first + scan.count) +
                " for a scan of " + std::to_string(values.size()));

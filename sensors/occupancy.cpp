@@ -5,6 +5,7 @@
 
 #include "maps/map_packets.h"
 #include "raycast/caster_choice.h"
+#include "sensors/laser.h"
 #include "sensors/occupancy_host.h"
 #include "sensors/occupancy_packets.h"
 
@@ -71,7 +72,7 @@ void Occupancies::observe(std::span<const base::ReadingBlock> readings) {
   scans_.clear();
   wanted_.clear();
   for (const base::ReadingBlock& r : readings) {
-    if (r.kind != base::kLaser) continue;
+    if (r.kind != kLaser) continue;
     const auto [first, last] = of_laser_.equal_range({r.mover, r.sensor});
     for (auto it = first; it != last; ++it) scans_.push_back({it->second, r.X_WS, r.values});
   }
@@ -114,7 +115,7 @@ constinit const SensorType occupancy_type{
     .base_port = 52000,
     .list = "words",
     .columns = kColumns,
-    .derived = true,
+    .derived_from = kLaser,
     .specs = specs_of,
     .make = make_backend<Occupancies>,
     .wire_problem = occupancy_wire_problem,

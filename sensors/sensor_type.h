@@ -54,6 +54,8 @@ struct SensorSpec {
   std::uint32_t across = 0;    ///< elements per row of an image; 0: the elements are not an image
   double pitch = 0.0;          ///< [m] side of an image's cell
   std::uint8_t mode = 0;       ///< row of its type's modes
+  double fov = 0.0;            ///< [rad] of a scan (SensorType::is_scan)
+  double range_min = 0.0;      ///< [m] of a scan; its largest range is `limit`
 
   // Dependencies of a reading beside its sequence number, for the farm's reading cache.
   double dependency_radius = 0.0;   ///< [m] > 0: the reading depends only on its own mover's pose and on the poses
@@ -61,6 +63,11 @@ struct SensorSpec {
   bool depends_on_magnets = false;  ///< the reading depends on the poses of all movers with magnets instead
   bool noisy = false;               ///< the reading also depends on noise, unless that is off
 };
+
+/// [rad] Bearing of beam `i` of a scan in the sensor's frame.
+inline double bearing_of(const SensorSpec& sensor, std::uint32_t i) {
+  return world::bearing_of(sensor.fov, sensor.elements, i);
+}
 
 /// All sensors of one type, computed as a batch. Not thread-safe.
 class SensorBackend {
@@ -82,7 +89,7 @@ class SensorBackend {
   /// Adds this tick's copies, to and from the device.
   virtual void add_copies(gpu::Batch& batch) = 0;
   /// Receives this tick's readings of other types, before latency, for sensors that derive theirs from them
-  /// (SensorType::derived). Called before `collect` in every tick with such readings of subscribed movers.
+  /// (SensorType::derived_from). Called before `collect` in every tick with such readings of subscribed movers.
   virtual void observe(std::span<const base::ReadingBlock>) {}
   /// Host work after the batch: appends one block per due sensor, in order. The farm fills in time, sequence and X_WM.
   /// Spans are valid until the next `prepare`.
@@ -97,6 +104,7 @@ struct Column {
   std::string_view name;    ///< name in JSON and CSV, with its unit: `distance_m`
   std::uint32_t width = 1;  ///< numbers: 3 for a vector
   bool whole = false;       ///< an integer count
+  int decimals = 0;         ///< in CSV; 0: as many as the number has
 };
 
 /// Byte layout of readings: docs/packets.md, or the thesis' plain layout.
@@ -123,8 +131,10 @@ struct SensorType {
   std::uint32_t base_port = 0;  ///< default of the first UDP port of its packets
   std::string_view list;        ///< JSON name of the list of elements; empty: a reading is one row
   std::span<const Column> columns;
-  bool derived = false;  ///< computed from readings of other types: `observe` is called, and `collect` runs after
-                         ///< theirs
+  bool is_scan = false;  ///< a reading is a planar scan: elements are beams, the one column is their range [m].
+                         ///< Recorded as a ROS LaserScan, printed with bearings
+  std::uint8_t derived_from = 0;  ///< id of the type from whose readings this one is computed: `observe` is called, and
+                                  ///< `collect` runs after theirs; 0: none
 
   std::span<const AccuracyMode> modes;  ///< the first is `exact`; empty: no other mode
   /// The error bound of one sensor's readings. Null: no bound is stated, neither here nor in readings.

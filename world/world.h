@@ -129,14 +129,15 @@ struct Laser {
   std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the field of view in figures
 };
 
-/// Bearing of sample `i` in the sensor's frame [rad]; exact at both ends of the field of view, and exactly symmetric
-/// about 0.
-inline double bearing_of(const Laser& laser, std::uint32_t i) {
-  if (laser.samples < 2) return 0.0;
-  const double last = laser.samples - 1;
-  const double step = laser.fov / last;
-  return 2.0 * i <= last ? -0.5 * laser.fov + i * step : 0.5 * laser.fov - (last - i) * step;
+/// Bearing of sample `i` of a scan in the sensor's frame [rad]; exact at both ends of the field of view, and exactly
+/// symmetric about 0.
+inline double bearing_of(double fov, std::uint32_t samples, std::uint32_t i) {
+  if (samples < 2) return 0.0;
+  const double last = samples - 1;
+  const double step = fov / last;
+  return 2.0 * i <= last ? -0.5 * fov + i * step : 0.5 * fov - (last - i) * step;
 }
+inline double bearing_of(const Laser& laser, std::uint32_t i) { return bearing_of(laser.fov, laser.samples, i); }
 
 /// Drive types. `skid`: wheels that cannot be steered on both sides (Pioneer 3-AT); they scrub in turns.
 enum class Drive { differential, omni, car, skid };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -256,7 +257,7 @@ viz::SeriesOptions fields_of(const record::Recording& recording) {
     const std::string& name = recording.info.movers[mover].name;
     viz::Series first{"element 0", {}, {}}, last{"element 1", {}, {}}, more{name, {}, {}};
     for (const record::ReadingSample& reading : recording.readings) {
-      if (reading.mover != mover) continue;
+      if (reading.mover != mover || reading.kind != kMagnetometer) continue;
       for (viz::Series* series : {&first, &last, &more}) series->times.push_back(1e-9 * double(reading.time));
       first.values.push_back(1e4 * reading.values[0]);
       last.values.push_back(1e4 * reading.values[4]);
@@ -276,13 +277,14 @@ TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
   ASSERT_EQ(run("run", world, with_readings).code, 0);
   const record::Recording recording = record::open_recording(folder.path("r"));
   EXPECT_TRUE(recording.damage.empty());
-  EXPECT_EQ(recording.scans.size(), 2u * 20u);
-  ASSERT_EQ(recording.readings.size(), 2u * 20u);
-  ASSERT_EQ(recording.info.movers[0].sensors.size(), 1u);
-  EXPECT_EQ(recording.info.movers[0].sensors[0].topic, "/one/array/magnetometer");
+  const auto is_field = [](const record::ReadingSample& r) { return r.kind == kMagnetometer; };
+  const auto& all = recording.readings;
+  EXPECT_EQ(all.size(), 4u * 20u) << "scans and fields";
+  ASSERT_EQ(std::count_if(all.begin(), all.end(), is_field), 2 * 20);
+  ASSERT_EQ(recording.info.movers[0].sensors.size(), 2u);
+  EXPECT_EQ(recording.info.movers[0].sensors[1].topic, "/one/array/magnetometer");
   EXPECT_EQ(recording.info.movers[2].sensors.size(), 0u);
-  const record::ReadingSample& first = recording.readings[0];
-  EXPECT_EQ(first.kind, kMagnetometer);
+  const record::ReadingSample& first = *std::find_if(all.begin(), all.end(), is_field);
   ASSERT_EQ(first.values.size(), 8u);
   const Json now(run("sense", world, {"--type", "magnetometer", "--json"}).out);
   EXPECT_EQ(first.values[0], now.number("/sensors/0/field_T"));

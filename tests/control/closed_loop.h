@@ -8,6 +8,7 @@
 
 #include "control/controllers.h"
 #include "robots/fleet.h"
+#include "sensors/laser.h"
 #include "world/world.h"
 
 namespace sf::loop {
@@ -46,7 +47,7 @@ struct LaserRun {
 
   void tick() {
     const std::int64_t now = fleet.reports()[0].time;
-    const base::ReadingBlock block{.kind = base::kLaser,
+    const base::ReadingBlock block{.kind = sensors::kLaser,
                                    .sequence = sequence,
                                    .time = seen_at,
                                    .X_WM = X_WM,

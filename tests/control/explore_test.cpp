@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensors/laser.h"
 #include "tests/control/closed_loop.h"
 #include "tests/control/exploration.h"
 
@@ -152,7 +153,7 @@ TEST(Explore, OddReadingsDoNoHarm) {
     const std::vector<double> ranges(361, range), few(7, 0.3);
     for (std::uint32_t i = 0; i < 120; ++i) {
       const base::ReadingBlock block{
-          .kind = base::kLaser, .sequence = i, .X_WS = {0.19, 0, 0, 0}, .values = i % 5 == 0 ? few : ranges};
+          .kind = sensors::kLaser, .sequence = i, .X_WS = {0.19, 0, 0, 0}, .values = i % 5 == 0 ? few : ranges};
       const base::Twist twist = controller->step(
           {.time = i * loop::kSecond / 10, .state = {.X_WM = {0, 0, 0, 0.11 * i}}, .readings = {&block, 1}});
       ASSERT_TRUE(std::isfinite(twist.forward) && std::isfinite(twist.turn)) << range;

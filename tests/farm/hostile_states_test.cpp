@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "robots/fleet.h"
+#include "sensors/laser.h"
 #include "sensors/laser_reference.h"
 #include "sensors/sensor_type.h"
 #include "tests/farm/small_farm.h"
@@ -56,7 +57,7 @@ base::Report odd_report(trial::Chance& chance, const world::World& world, std::i
 
 void expect_sound(const sensors::LaserReference& reference, const base::ReadingBlock& reading) {
   for (const double value : reading.values) ASSERT_FALSE(std::isinf(value)) << reading.mover;
-  if (reading.kind != base::kLaser) return;
+  if (reading.kind != sensors::kLaser) return;
   const auto scan = reference.scan(reading.mover, reading.sensor, reading.sequence);
   for (std::size_t i = 0; i < scan.ranges.size(); ++i)
     ASSERT_TRUE(reading.values[i] == scan.ranges[i] && reading.hits[i] == scan.hits[i])

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "sensors/laser.h"
 #include "sensors/magnetometer.h"
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/cone_scenes.h"
@@ -74,7 +75,7 @@ TEST(Price, KindsThatAreHeardLaterReadTheSame) {
     }
     return kept;
   };
-  const std::uint32_t laser = 1u << base::kLaser, magnets = 1u << sensors::kMagnetometer;
+  const std::uint32_t laser = 1u << sensors::kLaser, magnets = 1u << sensors::kMagnetometer;
   const std::vector<Kept> all = readings({kAllSensorTypes, kAllSensorTypes, kAllSensorTypes, kAllSensorTypes});
   EXPECT_EQ(all.size(), 3u * 6u * 3u);
   EXPECT_EQ(readings({laser, 0, laser | magnets, kAllSensorTypes}), all);

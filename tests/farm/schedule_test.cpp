@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "sensors/laser.h"
 #include "tests/farm/small_farm.h"
 
 namespace sf::farm {
@@ -87,7 +88,7 @@ TEST(Schedule, TheNextOneDueIsTheSoonestThatIsHeard) {
   EXPECT_EQ(farm.next_due(), 76'923'077);
   farm.subscribe(0, 1u << 9);
   EXPECT_EQ(farm.next_due(), 76'923'077) << "another kind of it is heard";
-  farm.subscribe(0, 1u << base::kLaser);
+  farm.subscribe(0, 1u << sensors::kLaser);
   EXPECT_EQ(farm.next_due(), 40'000'000) << "0 and 20 ms went by unheard";
   EXPECT_EQ(farm.stats().missed, 0u);
   EXPECT_EQ(farm.stats().ticks, 1u) << "samples are no ticks";

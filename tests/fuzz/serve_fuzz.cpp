@@ -17,6 +17,7 @@
 #include "netio/server/sensor_streams.h"
 #include "netio/server/service.h"
 #include "netio/v2v_socket.h"
+#include "sensors/laser.h"
 #include "tests/robots/scenes.h"
 
 namespace {
@@ -64,7 +65,7 @@ struct Scene {
 
   Scene() {
     layout.stride = 0;
-    layout.bases[base::kLaser] = netio::bound_endpoint(sink).port;
+    layout.bases[sensors::kLaser] = netio::bound_endpoint(sink).port;
     streams = server::sensor_streams(sensor_set, layout);
   }
   static netio::Socket open() { return netio::open_udp({netio::kLoopback, 0}, {.receive = 4u << 20}); }

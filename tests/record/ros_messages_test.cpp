@@ -164,27 +164,36 @@ TEST(Messages, RunInfoComesBack) {
   ASSERT_EQ(back.movers.size(), 2u);
   EXPECT_EQ(back.movers[0].name, "roomba:1");
   EXPECT_EQ(back.movers[1].id, 9u);
-  ASSERT_EQ(back.movers[0].lasers.size(), 2u);
-  const LaserInfo& laser = back.movers[0].lasers[0];
-  EXPECT_EQ(laser.X_MS.yaw, 0.3);
-  EXPECT_EQ(laser.samples, 4u);
-  EXPECT_EQ(back.movers[0].lasers[1].range_min, 0.5);
-  EXPECT_EQ(back.movers[0].lasers[1].rate, 5.0);
-  ASSERT_EQ(back.sensor_types.size(), 2u);
-  EXPECT_EQ(back.sensor_types[0].id, 2);
-  EXPECT_EQ(back.sensor_types[0].list, "");
-  EXPECT_EQ(back.sensor_types[1].name, "array");
-  EXPECT_EQ(back.sensor_types[1].list, "elements");
-  ASSERT_EQ(back.sensor_types[1].columns.size(), 3u);
-  EXPECT_EQ(back.sensor_types[1].columns[1].name, "vector_T");
-  EXPECT_EQ(back.sensor_types[1].columns[1].width, 3u);
-  EXPECT_TRUE(back.sensor_types[1].columns[2].whole);
-  ASSERT_EQ(back.movers[0].sensors.size(), 3u);
-  EXPECT_EQ(back.movers[0].sensors[0].X_MS.x, 0.5);
-  EXPECT_EQ(back.movers[0].sensors[1].kind, 2);
-  EXPECT_EQ(back.movers[0].sensors[1].topic, "/roomba_1/_3rd_edge/edge");
-  EXPECT_EQ(back.movers[0].sensors[1].rate, 4.0);
-  EXPECT_TRUE(back.movers[1].sensors.empty());
+  ASSERT_EQ(back.sensor_types.size(), 3u);
+  EXPECT_TRUE(back.sensor_types[0].is_scan);
+  EXPECT_EQ(back.sensor_types[1].id, 2);
+  EXPECT_EQ(back.sensor_types[1].list, "");
+  EXPECT_EQ(back.sensor_types[2].name, "array");
+  EXPECT_EQ(back.sensor_types[2].list, "elements");
+  ASSERT_EQ(back.sensor_types[2].columns.size(), 3u);
+  EXPECT_EQ(back.sensor_types[2].columns[1].name, "vector_T");
+  EXPECT_EQ(back.sensor_types[2].columns[1].width, 3u);
+  EXPECT_TRUE(back.sensor_types[2].columns[2].whole);
+  ASSERT_EQ(back.movers[0].sensors.size(), 5u);
+  EXPECT_EQ(back.movers[0].sensors[0].kind, 1);
+  EXPECT_EQ(back.movers[0].sensors[0].X_MS.yaw, 0.3);
+  EXPECT_EQ(back.movers[0].sensors[0].samples, 4u);
+  EXPECT_EQ(back.movers[0].sensors[1].range_min, 0.5);
+  EXPECT_EQ(back.movers[0].sensors[1].rate, 5.0);
+  EXPECT_EQ(back.movers[0].sensors[2].X_MS.x, 0.5);
+  EXPECT_EQ(back.movers[0].sensors[3].kind, 2);
+  EXPECT_EQ(back.movers[0].sensors[3].topic, "/roomba_1/_3rd_edge/edge");
+  EXPECT_EQ(back.movers[0].sensors[3].rate, 4.0);
+  EXPECT_EQ(back.movers[1].sensors.size(), 1u);
+}
+
+/// Rows of lasers name no type: with another type 1, values of any size would be taken for its readings.
+TEST(Messages, ARunInfoWithAnotherType1IsRefused) {
+  RunInfo info;
+  info.sensor_types = {{.id = 1, .name = "laneedge", .columns = {{"distance_m"}}}};
+  Bytes out;
+  encode_run_info(info, out);
+  EXPECT_FALSE(decode_run_info(out, info));
 }
 
 TEST(RunInfo, NamesBecomeUniqueROSNames) {
@@ -205,11 +214,12 @@ TEST(RunInfo, NamesBecomeUniqueROSNames) {
 
 TEST(RunInfo, ALaserDoesNotTakeTheTopicsOfItsRobot) {
   RunInfo info;
-  info.movers = {{.name = "r", .lasers = {{.name = "odom"}, {.name = "a b"}, {.name = "a b"}}}};
+  info.sensor_types = {test::scan_kind()};
+  info.movers = {{.name = "r", .sensors = {{1, "odom"}, {1, "a b"}, {1, "a b"}}}};
   name_frames(info);
-  EXPECT_EQ(info.movers[0].lasers[0].topic, "/r/odom_2/scan");
-  EXPECT_EQ(info.movers[0].lasers[1].topic, "/r/a_b/scan");
-  EXPECT_EQ(info.movers[0].lasers[2].topic, "/r/a_b_2/scan");
+  EXPECT_EQ(info.movers[0].sensors[0].topic, "/r/odom_2/scan");
+  EXPECT_EQ(info.movers[0].sensors[1].topic, "/r/a_b/scan");
+  EXPECT_EQ(info.movers[0].sensors[2].topic, "/r/a_b_2/scan");
 }
 
 TEST(Messages, ATimeBeforeZeroIsOurBug) {

@@ -22,6 +22,10 @@ inline SensorTypeInfo array_kind() {
       .id = 3, .name = "array", .list = "elements", .columns = {{"field_T", 1}, {"vector_T", 3}, {"hits", 1, true}}};
 }
 
+inline SensorTypeInfo scan_kind() {
+  return {.id = 1, .name = "laser", .list = "beams", .columns = {{"range_m"}}, .is_scan = true};
+}
+
 inline RunInfo sample_info(bool readings) {
   RunInfo info;
   info.world = "a world";
@@ -30,16 +34,17 @@ inline RunInfo sample_info(bool readings) {
   info.interval = 0.1;
   info.record_readings = readings;
   info.odometry_rate = 5.0;
-  info.sensor_types = {edge_kind(), array_kind()};
+  info.sensor_types = {scan_kind(), edge_kind(), array_kind()};
   info.movers = {
       {.name = "roomba:1",
        .id = 7,
-       .lasers = {{.name = "front", .X_MS = {0.1, 0.0, 0.2, 0.3}, .fov = 3.0, .samples = 4, .range_max = 8.0},
-                  {.name = "front", .fov = 0.0, .samples = 1, .range_min = 0.5, .range_max = 80.0, .rate = 5.0}},
-       .sensors = {{.kind = 3, .name = "front", .X_MS = {0.5, 0.0, 0.1, 0.0}},
-                   {.kind = 2, .name = "3rd edge", .rate = 4.0},
-                   {.kind = 3, .name = "rear"}}},
-      {.name = "roomba.1", .id = 9, .lasers = {{.name = "", .fov = 1.0, .samples = 2, .range_max = 4.0}}}};
+       .sensors =
+           {{.kind = 1, .name = "front", .X_MS = {0.1, 0.0, 0.2, 0.3}, .fov = 3.0, .samples = 4, .range_max = 8.0},
+            {.kind = 1, .name = "front", .rate = 5.0, .samples = 1, .range_min = 0.5, .range_max = 80.0},
+            {.kind = 3, .name = "front", .X_MS = {0.5, 0.0, 0.1, 0.0}},
+            {.kind = 2, .name = "3rd edge", .rate = 4.0},
+            {.kind = 3, .name = "rear"}}},
+      {.name = "roomba.1", .id = 9, .sensors = {{.kind = 1, .fov = 1.0, .samples = 2, .range_max = 4.0}}}};
   info.options = {{"noise", "off"}, {"", "empty key"}};
   info.snapshot = {1, 2, 3, 0, 255};
   return info;

@@ -6,6 +6,7 @@
 #include "farm/schedule.h"
 #include "robots/kinematics.h"
 #include "scenarios/run_metrics.h"
+#include "sensors/laser.h"
 #include "sensors/sensor_type.h"
 #include "tests/counted_new.h"
 #include "tests/sensors/scenes.h"
@@ -170,7 +171,7 @@ TEST(Simulation, SensorsLookAtTheirOwnTimes) {
         driven += r.X_WM.x != before[r.mover].X_WM.x;
       }
       if (r.mover == 5 && r.sequence % 16 != 0) continue;
-      const base::ReadingBlock there = asked.sense(r.mover, base::kLaser, 0, r.X_WM);
+      const base::ReadingBlock there = asked.sense(r.mover, sensors::kLaser, 0, r.X_WM);
       ASSERT_TRUE(std::equal(r.values.begin(), r.values.end(), there.values.begin(), there.values.end()));
     }
     before.assign(tick.reports.begin(), tick.reports.end());

@@ -52,7 +52,7 @@ TEST(Verification, ASoundRun) {
   const Verification v = verify(recorded(true), device(), {});
   EXPECT_TRUE(v.sound()) << v.reference.first;
   ASSERT_EQ(v.recomputed.size(), 1u);
-  EXPECT_EQ(v.recomputed[0].readings, recorded(true).scans.size());
+  EXPECT_EQ(v.recomputed[0].readings, recorded(true).readings.size());
   EXPECT_EQ(v.recomputed[0].values, 61 * v.recomputed[0].readings);
   EXPECT_EQ(v.reference.readings, v.recomputed[0].readings) << "all of them by default";
   EXPECT_EQ(v.ticks, 20u);
@@ -78,10 +78,9 @@ TEST(Verification, ReadingsFromBetweenTicks) {
   EXPECT_TRUE(v.sound()) << v.reference.first << v.recomputed[0].first << v.recomputed[1].first
                          << v.recomputed[2].first;
   EXPECT_EQ(v.missing, 0u);
-  EXPECT_EQ(v.recomputed[0].readings, run.scans.size());
-  EXPECT_GT(run.scans.size(), 6u * 10u * 2u) << "more than one a tick";
-  EXPECT_EQ(v.reference.readings, run.scans.size());
-  EXPECT_EQ(v.recomputed[1].readings + v.recomputed[2].readings, run.readings.size());
+  EXPECT_GT(v.recomputed[0].readings, 6u * 10u * 2u) << "more than one a tick";
+  EXPECT_EQ(v.reference.readings, v.recomputed[0].readings);
+  EXPECT_EQ(v.recomputed[0].readings + v.recomputed[1].readings + v.recomputed[2].readings, run.readings.size());
 
   record::Recording moved = run;
   moved.states[2][5].X_WM.x += 1e-6;
@@ -105,7 +104,7 @@ TEST(Verification, InOtherModes) {
 
 TEST(Verification, A32BitRangeBeyondItsBoundIsFound) {
   record::Recording run = recorded(true, "single");
-  for (record::ScanSample& sample : run.scans) sample.scan.ranges[7] += 2e-3f;
+  for (record::ReadingSample& sample : run.readings) sample.values[7] += 2e-3;
   EXPECT_FALSE(verify(run, device(), {}).sound());
   EXPECT_GT(verify(run, device(), {}).reference.different, 0u);
 }
@@ -123,13 +122,13 @@ TEST(Verification, ASampleIsSpreadOverTheRun) {
   EXPECT_TRUE(v.sound());
   EXPECT_GE(v.reference.readings, 10u);
   EXPECT_LE(v.reference.readings, 12u);
-  EXPECT_EQ(v.recomputed[0].readings, run.scans.size()) << "the device looks at all";
+  EXPECT_EQ(v.recomputed[0].readings, run.readings.size()) << "the device looks at all";
 }
 
 TEST(Verification, OneBitOfOneBeam) {
   record::Recording run = recorded(true);
-  float& range = run.scans[7].scan.ranges[30];
-  range = std::nextafter(range, 0.0F);
+  double& range = run.readings[7].values[30];
+  range = std::nextafter(static_cast<float>(range), 0.0F);
   const Verification v = verify(run, device(), {});
   EXPECT_FALSE(v.sound());
   EXPECT_EQ(v.recomputed[0].different, 1u);
@@ -154,8 +153,8 @@ TEST(Verification, AMovedPose) {
 
 TEST(Verification, AReadingThatNobodyWasDueToMake) {
   record::Recording run = recorded(true);
-  run.scans.push_back(run.scans.back());
-  run.scans.back().sequence = 1000;
+  run.readings.push_back(run.readings.back());
+  run.readings.back().sequence = 1000;
   const Verification v = verify(run, device(), {});
   EXPECT_EQ(v.missing, 1u);
   EXPECT_FALSE(v.sound());

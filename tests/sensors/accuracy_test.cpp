@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "sensors/laser.h"
 #include "sensors/laser_modes.h"
 #include "sensors/magnetometer_modes.h"
 #include "tests/sensors/chance.h"
@@ -344,7 +345,7 @@ TEST(Accuracy, KindsWithoutABoundStateNone) {
   const Glance glance(world);
   EXPECT_EQ(glance.readings.size(), 9u);
   for (const base::ReadingBlock& r : glance.readings)
-    EXPECT_EQ(std::isinf(r.bound), r.kind != base::kLaser) << static_cast<int>(r.kind);
+    EXPECT_EQ(std::isinf(r.bound), r.kind != sensors::kLaser) << static_cast<int>(r.kind);
 }
 
 TEST(Accuracy, AWorldsOwnCutOffStaysTheNearest) {

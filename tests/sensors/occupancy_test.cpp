@@ -1,6 +1,7 @@
 // Occupancy maps as a sensor type: settings, ticks, packets.
 
 #include "sensors/occupancy.h"
+#include "sensors/laser.h"
 
 #include <gtest/gtest.h>
 
@@ -131,7 +132,7 @@ std::size_t compare_run(const world::World& world, int ticks) {
     const auto readings = farm.tick(k * 100'000'000ll, reports_at(world, k));
     for (const base::ReadingBlock& r : readings)
       for (std::uint32_t i = 0; i < all.size(); ++i)
-        if (r.kind == base::kLaser && all[i].row.mover == r.mover && all[i].laser == r.sensor)
+        if (r.kind == sensors::kLaser && all[i].row.mover == r.mover && all[i].laser == r.sensor)
           plain.update({i, r.X_WS, r.values});
     for (const base::ReadingBlock& r : readings) {
       if (r.kind != sensors::kOccupancy) continue;
@@ -166,7 +167,7 @@ TEST(OccupancyTick, AMapThatNobodyHearsStillGrows) {
   const world::World world = mapped(1);
   farm::Farm quiet(world, device()), loud(world, device());
   loud.subscribe_all();
-  quiet.subscribe(0, 1u << base::kLaser);
+  quiet.subscribe(0, 1u << sensors::kLaser);
   for (int k = 0; k < 10; ++k) quiet.tick(k * 100'000'000ll, reports_at(world, k));
   quiet.subscribe_all();
   for (int k = 0; k < 10; ++k) loud.tick(k * 100'000'000ll, reports_at(world, k));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sensors/laneedge.h"
+#include "sensors/laser.h"
 #include "sensors/magnetometer.h"
 #include "sensors/sensor_type.h"
 #include "tests/sensors/chance.h"
@@ -53,7 +54,7 @@ TEST(ReadingBack, PlainScansToTheMillimetre) {
     for (const std::uint32_t samples : {1u, 2u, 360u, 361u}) {
       std::vector<double> ranges;
       for (std::uint32_t i = 0; i < samples; ++i) ranges.push_back(chance.between(0.0, 8.0));
-      const std::vector<double> read = back(base::kLaser, row_of(samples, 8.0), ranges, wire);
+      const std::vector<double> read = back(sensors::kLaser, row_of(samples, 8.0), ranges, wire);
       for (std::uint32_t i = 0; i < samples; ++i) EXPECT_NEAR(read[i], ranges[i], 0.500001e-3);
     }
 }
@@ -63,13 +64,13 @@ TEST(ReadingBack, ExtendedScansPartByPart) {
   for (const std::uint32_t samples : {1u, 310u, 311u, 620u, 1000u}) {
     std::vector<double> ranges;
     for (std::uint32_t i = 0; i < samples; ++i) ranges.push_back(chance.between(0.0, 200.0));
-    const std::vector<double> read = back(base::kLaser, row_of(samples, 200.0), ranges, WireFormat::farm);
+    const std::vector<double> read = back(sensors::kLaser, row_of(samples, 200.0), ranges, WireFormat::farm);
     for (std::uint32_t i = 0; i < samples; ++i) EXPECT_NEAR(read[i], ranges[i], 0.500001e-4) << i;
   }
 }
 
 TEST(ReadingBack, APartLeavesTheOthersAsTheyAre) {
-  const SensorType& kind = *find_sensor_type(base::kLaser);
+  const SensorType& kind = *find_sensor_type(sensors::kLaser);
   const SensorSpec row = row_of(700, 100.0);
   const std::vector<double> ranges(700, 5.0);
   base::ReadingBlock block;
@@ -82,13 +83,13 @@ TEST(ReadingBack, APartLeavesTheOthersAsTheyAre) {
 }
 
 TEST(ReadingBack, NoReturn) {
-  EXPECT_EQ(back(base::kLaser, row_of(1, 100.0), {kInf}, WireFormat::farm)[0], kInf)
+  EXPECT_EQ(back(sensors::kLaser, row_of(1, 100.0), {kInf}, WireFormat::farm)[0], kInf)
       << "the extended form has a word for it";
-  EXPECT_EQ(back(base::kLaser, row_of(1, 8.0), {kInf}, WireFormat::farm)[0], kInf) << "farther than the laser sees";
-  EXPECT_EQ(back(base::kLaser, row_of(1, 8.0), {kInf}, WireFormat::thesis)[0], kInf);
-  EXPECT_EQ(back(base::kLaser, row_of(1, 65.535), {kInf}, WireFormat::farm)[0], 65.535) << "it may be a range";
-  EXPECT_EQ(back(base::kLaser, row_of(1), {kInf}, WireFormat::farm)[0], 65.535) << "nothing is known of the laser";
-  EXPECT_EQ(back(base::kLaser, row_of(1, 8.0), {8.0}, WireFormat::farm)[0], 8.0);
+  EXPECT_EQ(back(sensors::kLaser, row_of(1, 8.0), {kInf}, WireFormat::farm)[0], kInf) << "farther than the laser sees";
+  EXPECT_EQ(back(sensors::kLaser, row_of(1, 8.0), {kInf}, WireFormat::thesis)[0], kInf);
+  EXPECT_EQ(back(sensors::kLaser, row_of(1, 65.535), {kInf}, WireFormat::farm)[0], 65.535) << "it may be a range";
+  EXPECT_EQ(back(sensors::kLaser, row_of(1), {kInf}, WireFormat::farm)[0], 65.535) << "nothing is known of the laser";
+  EXPECT_EQ(back(sensors::kLaser, row_of(1, 8.0), {8.0}, WireFormat::farm)[0], 8.0);
 }
 
 TEST(ReadingBack, LaneEdges) {

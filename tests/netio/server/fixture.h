@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "netio/server/robot_client.h"
 #include "netio/server/service.h"
+#include "sensors/laser.h"
 #include "tests/robots/scenes.h"
 
 namespace sf::server {
@@ -54,7 +55,7 @@ struct Fixture {
     // Reading ports have no option for "any free one": tests that run at once start to look at different places.
     layout.stride = 8;
     for (unsigned attempt = 0; client == nullptr && attempt < 1000; ++attempt) {
-      layout.bases[base::kLaser] = 11'000 + (static_cast<unsigned>(getpid()) + 17 * attempt) * 8 % 20'000;
+      layout.bases[sensors::kLaser] = 11'000 + (static_cast<unsigned>(getpid()) + 17 * attempt) * 8 % 20'000;
       try {
         const netio::Socket free = netio::open_udp({netio::kLoopback, reading_port(1)}),
                             other = netio::open_udp({netio::kLoopback, reading_port(2)});
@@ -66,7 +67,7 @@ struct Fixture {
     }
   }
   std::uint16_t reading_port(std::uint32_t robot) const {
-    return static_cast<std::uint16_t>(layout.bases.at(base::kLaser) + 8 * robot);
+    return static_cast<std::uint16_t>(layout.bases.at(sensors::kLaser) + 8 * robot);
   }
   void make_service() {
     service = std::make_unique<Service>(

@@ -10,6 +10,7 @@
 
 #include "netio/packets.h"
 #include "netio/socket.h"
+#include "sensors/laser.h"
 
 namespace sf::server {
 namespace {
@@ -45,7 +46,7 @@ struct Day {
         if (tick == 2 && m % 97 == 5) ranges[3] = std::numeric_limits<double>::quiet_NaN();
         base::ReadingBlock block;
         block.mover = m;
-        block.kind = base::kLaser;
+        block.kind = sensors::kLaser;
         block.time = tick * 100'000'000ll;
         blocks.push_back(block);
       }
@@ -66,11 +67,11 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
   if (netio::receive_buffer(ears) < 2'000 * robots) GTEST_SKIP() << "this user's receive buffers hold too little";
   StreamLayout layout;
   layout.stride = 0;  // all to one port
-  layout.bases[base::kLaser] = netio::bound_endpoint(ears).port;
+  layout.bases[sensors::kLaser] = netio::bound_endpoint(ears).port;
   ReadingPublisher post(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)));
 
   const Day day(robots, 5);
-  const sensors::SensorType& kind = *sensor_set.group(base::kLaser)->kind;
+  const sensors::SensorType& kind = *sensor_set.group(sensors::kLaser)->kind;
   std::map<std::uint32_t, std::uint32_t> sent;
   netio::ReceiveBatch batch(64);
   std::size_t first = 0, lost = 0;
