@@ -1,6 +1,7 @@
 #pragma once
 // The state of movers, from any source: a simulated robot, a V2V packet or a TAG packet of an overhead camera.
 
+#include <cmath>
 #include <cstdint>
 
 #include "base/pose.h"
@@ -11,10 +12,14 @@ namespace sf::base {
 struct Report {
   std::uint32_t mover = 0;         ///< row in `world::World::movers`
   std::int64_t time = 0;           ///< [ns] simulated time (or the sender's clock) at which the state was true
-  Pose X_WM;                       ///< the mover's frame in the world; finite
+  Pose X_WM;                       ///< the mover's frame in the world; finite, or kAbsent
   Twist velocity;                  ///< in the mover's frame; zero where unknown
   std::uint32_t contact_mask = 0;  ///< bit k: something touches the body in sector k, see kContactSectors
 };
+
+/// The pose of an absent mover, which nothing senses. Never reported from outside.
+inline constexpr Pose kAbsent{NAN, NAN, NAN, NAN};
+inline bool is_absent(const Pose& X_WM) { return std::isnan(X_WM.x); }
 
 /// Sector k of a body covers the bearings from k to k + 1 times 2 pi / kContactSectors, counter-clockwise from the
 /// body's x axis.

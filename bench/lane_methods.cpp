@@ -1,5 +1,6 @@
 #include "bench/lane_methods.h"
 
+#include "robots/fleet.h"
 #include "sensors/lane_markings/filtered_scene.h"
 #include "sensors/laneedge_settings.h"
 
@@ -12,7 +13,8 @@ class FarmLanes final : public LaneReader {
  public:
   FarmLanes(const LaneScene& scene, gpu::Device& device)
       : scene_(scene),
-        context_{scene.world, device, thread_pool_, 0, true, {}},
+        states_(robots::states_at_load(scene.world)),
+        context_{scene.world, device, thread_pool_, states_},
         backend_(sensors::laneedge_type.make(context_)),
         batch_(device) {
     for (std::uint32_t row = 0; row < scene.world.movers.size(); ++row) due_.push_back({row, 0});
@@ -23,9 +25,9 @@ class FarmLanes final : public LaneReader {
     for (const base::ReadingBlock& block : blocks_) const_cast<double&>(block.values[0]) = kPoisonDistance;
   }
   void read(std::size_t round) override {
-    const std::vector<base::Pose>& poses = scene_.rounds[round];
-    backend_->set_poses(poses);
-    if (backend_->prepare(due_, poses)) {
+    for (std::size_t m = 0; m < states_.size(); ++m) states_[m].X_WM = scene_.rounds[round][m];
+    backend_->place_movers();
+    if (backend_->prepare(due_)) {
       batch_.begin();
       backend_->record_measure(batch_);
       batch_.barrier();
@@ -45,6 +47,7 @@ class FarmLanes final : public LaneReader {
  private:
   const LaneScene& scene_;
   base::ThreadPool thread_pool_;
+  std::vector<base::Report> states_;
   sensors::SensorContext context_;
   std::unique_ptr<sensors::SensorBackend> backend_;
   gpu::Batch batch_;

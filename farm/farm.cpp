@@ -14,6 +14,8 @@
 #include "farm/pose_changes.h"
 #include "farm/sensor_pipeline.h"
 #include "gpu/batch.h"
+#include "robots/fleet.h"
+#include "robots/kinematics.h"
 #include "sensors/laser_noise.h"
 
 namespace sf::farm {
@@ -49,8 +51,9 @@ struct Farm::State {
   gpu::Batch batch;
   Delivery delivery;
   PoseChanges pose_changes;               ///< of this tick
-  std::vector<base::Pose> poses;          ///< per mover
-  std::vector<base::Report> states;       ///< per mover
+  std::vector<base::Report> states;       ///< per mover, as sensed in this tick or sample; backends have a view of it
+  std::vector<base::Report> tick_states;  ///< of the last tick, while samples follow it
+  bool between = false;                   ///< `states` are those of a sample
   std::vector<std::uint32_t> subscribed;  ///< per mover: bits of sensor types
   std::vector<std::uint8_t> gone;         ///< per mover
   std::vector<base::ReadingBlock> blocks;
@@ -69,14 +72,11 @@ struct Farm::State {
         batch(device),
         delivery(sensor_set),
         pose_changes(w),
+        states(robots::states_at_load(w)),
         subscribed(w.movers.size(), 0),
         gone(w.movers.size(), 0) {
-    for (const world::Mover& mover : w.movers) {
-      states.push_back({.mover = static_cast<std::uint32_t>(poses.size()), .X_WM = mover.X_WM});
-      poses.push_back(mover.X_WM);
-    }
     const sensors::SensorContext context{
-        w, device, thread_pool, options.seed, options.noise, options.true_poses, options.scene};
+        w, device, thread_pool, states, options.seed, options.noise, options.true_poses, options.scene};
     for (const auto& group : sensor_set.groups()) {
       device.set_owner(group.kind->name);
       pipelines.emplace_back(context, group);
@@ -85,8 +85,9 @@ struct Farm::State {
     hashes.reserve(sensor_set.count());
   }
 
-  void apply_reports(std::span<const base::Report> reports);
-  std::span<const base::ReadingBlock> advance(std::int64_t now, std::span<const base::Report> reports, bool between);
+  void begin_tick(bool is_sample);
+  void apply(const base::Report& report);
+  std::span<const base::ReadingBlock> read(std::int64_t now);
   bool find_due(std::int64_t now);
   void prepare();
   void submit();
@@ -103,29 +104,31 @@ bool Farm::State::find_due(std::int64_t now) {
   return std::any_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return !s.due.empty(); });
 }
 
-void Farm::State::apply_reports(std::span<const base::Report> reports) {
+void Farm::State::begin_tick(bool is_sample) {
+  if (is_sample && !between) tick_states = states;
+  between = is_sample;
   pose_changes.begin();
   for (std::uint32_t m = 0; m < gone.size(); ++m) {
-    if (gone[m] == 0 || is_gone(poses[m])) continue;
-    pose_changes.add(m, poses[m], kGone);
-    poses[m] = kGone;
+    base::Pose& X = states[m].X_WM;
+    if (gone[m] == 0 || base::is_absent(X)) continue;
+    pose_changes.add(m, X, base::kAbsent);
+    X = base::kAbsent;
   }
-  for (const base::Report& report : reports) {
-    if (gone.at(report.mover) != 0) continue;
-    const base::Pose& X = report.X_WM;
-    SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
-    pose_changes.add(report.mover, poses.at(report.mover), X);
-    poses[report.mover] = X;
-    states[report.mover] = report;
-  }
-  for (SensorPipeline& pipeline : pipelines) pipeline.cache.invalidate(pose_changes, poses);
+}
+
+void Farm::State::apply(const base::Report& report) {
+  if (gone.at(report.mover) != 0) return;
+  const base::Pose& X = report.X_WM;
+  SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
+  pose_changes.add(report.mover, states[report.mover].X_WM, X);
+  states[report.mover] = report;
 }
 
 void Farm::State::prepare() {
   bool rerecord = false;
   for (SensorPipeline& pipeline : pipelines) {
     device.set_owner(pipeline.group->kind->name);  // tables may grow
-    rerecord |= pipeline.prepare(poses);
+    rerecord |= pipeline.prepare();
   }
   if (!rerecord) return;
   // A kernel is compiled when it is first recorded, so kernels that were never needed are left out.
@@ -150,7 +153,7 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
   Stopwatch watch;
   for (SensorPipeline& pipeline : pipelines) {
     pipeline.split(reuse);
-    if (!pipeline.to_measure.empty()) pipeline.backend->set_poses(poses);
+    if (!pipeline.to_measure.empty()) pipeline.backend->place_movers();
   }
   watch.lap(stats.place_s);
   prepare();
@@ -180,7 +183,7 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
 }
 
 void Farm::State::collect(SensorPipeline& pipeline, std::int64_t now, bool reuse) {
-  stats.reused += pipeline.collect(now, poses);
+  stats.reused += pipeline.collect(now, states);
   if (reuse) pipeline.store();
 }
 
@@ -212,10 +215,11 @@ void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
   hash = base::hash_bytes(hashes.data(), hashes.size() * sizeof hashes[0], hash);
 }
 
-std::span<const base::ReadingBlock> Farm::State::advance(std::int64_t now, std::span<const base::Report> reports,
-                                                         bool between) {
-  apply_reports(reports);
-  for (SensorPipeline& pipeline : pipelines) pipeline.backend->update_states(states, now, between);
+std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
+  for (SensorPipeline& pipeline : pipelines) {
+    pipeline.cache.invalidate(pose_changes, states);
+    pipeline.backend->accumulate(now, between);
+  }
   blocks.clear();
   if (find_due(now)) measure(now, reuse_unchanged);
   Stopwatch watch;
@@ -244,13 +248,27 @@ const sensors::SensorSet& Farm::sensor_set() const { return s_->sensor_set; }
 
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
   ++s_->stats.ticks;
-  return s_->advance(now, reports, false);
+  s_->begin_tick(false);
+  for (const base::Report& report : reports) s_->apply(report);
+  return s_->read(now);
 }
 
 std::int64_t Farm::next_delivery() const { return s_->delivery.next(); }
 
 std::span<const base::ReadingBlock> Farm::sample(std::int64_t now, std::span<const base::Report> reports) {
-  return s_->advance(now, reports, true);
+  s_->begin_tick(true);
+  for (const base::Report& report : reports) s_->apply(report);
+  return s_->read(now);
+}
+
+std::span<const base::ReadingBlock> Farm::sample_between(std::int64_t now, std::span<const base::Report> next) {
+  SF_CHECK(next.size() == s_->states.size(), std::to_string(next.size()) + " reports");
+  s_->begin_tick(true);
+  for (const base::Report& report : next) {
+    const base::Report& last = s_->tick_states.at(report.mover);
+    s_->apply(base::is_absent(last.X_WM) ? report : robots::interpolate(last, report, now));
+  }
+  return s_->read(now);
 }
 
 std::int64_t Farm::next_due() const {
@@ -270,9 +288,9 @@ base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t kind, std::uint
     });
     if (row != rows.end()) pipeline.due.push_back({static_cast<std::uint32_t>(row - rows.begin()), 0});
   }
-  const base::Pose stands = std::exchange(s.poses[mover], X_WM);
+  const base::Pose stands = std::exchange(s.states[mover].X_WM, X_WM);
   s.measure(0, false);
-  s.poses[mover] = stands;
+  s.states[mover].X_WM = stands;
   SF_CHECK(s.blocks.size() == 1, "mover " + std::to_string(mover) + " has no sensor " + std::to_string(sensor) +
                                      " of kind " + std::to_string(kind));
   return s.blocks.front();

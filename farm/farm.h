@@ -9,7 +9,7 @@
 //
 // Sensors that are due between two ticks are measured at their own times by a call of `sample` for each of these:
 //
-//   while ((due = farm.next_due()) < now) farm.sample(due, reports at that time);
+//   while ((due = farm.next_due()) < now) farm.sample_between(due, reports);
 //
 // No sockets, clocks or windows: the same calls in the same order give the same bytes on one device.
 
@@ -88,6 +88,9 @@ class Farm {
   /// Like `tick`, at a time between two ticks. Accumulating quantities (wheel rotation) are read at `now` but continue
   /// from the last tick: readings at ticks do not depend on samples in between.
   std::span<const base::ReadingBlock> sample(std::int64_t now, std::span<const base::Report> reports);
+  /// `sample` with the states of all movers interpolated between the last tick and the next (robots::interpolate).
+  /// @param next one report per mover, at the time of the next tick, as those of the last tick were at its time
+  std::span<const base::ReadingBlock> sample_between(std::int64_t now, std::span<const base::Report> next);
 
   /// Computes one sensor immediately, due or not, as if its mover stood at `X_WM`. Noise as in the options.
   /// @param kind wire id

@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 
+#include "base/report.h"
+
 namespace sf::farm {
 
 namespace {
@@ -39,7 +41,7 @@ void PoseChanges::add(std::uint32_t mover, const base::Pose& from, const base::P
   magnets_ = magnets_ || !who.magnets.empty();
   if (who.body.empty()) return;
   for (const base::Pose& X : {from, to})
-    if (!is_gone(X)) places_.push_back({X.x, X.y, who.radius});
+    if (!base::is_absent(X)) places_.push_back({X.x, X.y, who.radius});
   sorted_ = false;
 }
 

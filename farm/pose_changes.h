@@ -1,7 +1,6 @@
 #pragma once
 // Pose changes of a tick, and the regions affected.
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -9,10 +8,6 @@
 #include "world/world.h"
 
 namespace sf::farm {
-
-/// The poses of absent movers are NaN.
-inline bool is_gone(const base::Pose& X_WM) { return std::isnan(X_WM.x); }
-inline constexpr base::Pose kGone{NAN, NAN, NAN, NAN};
 
 /// Old and new positions of the movers that moved. Allocates only to grow.
 class PoseChanges {

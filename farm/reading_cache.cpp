@@ -37,13 +37,13 @@ void ReadingCache::invalidate_all(Carrier& carrier) {
   --unchanged_carriers_;
 }
 
-void ReadingCache::invalidate(PoseChanges& pose_changes, std::span<const base::Pose> poses) {
+void ReadingCache::invalidate(PoseChanges& pose_changes, std::span<const base::Report> states) {
   if (unchanged_carriers_ == 0 || !pose_changes.any()) return;
   for (Carrier& carrier : carriers_) {
     if (!carrier.unchanged) continue;
-    const glm::dvec2 p{poses[carrier.mover].x, poses[carrier.mover].y};
+    const base::Pose& X = states[carrier.mover].X_WM;
     if (pose_changes.moved(carrier.mover) ||
-        (carrier.depends_on_magnets ? pose_changes.magnets() : pose_changes.within(p, carrier.reach)))
+        (carrier.depends_on_magnets ? pose_changes.magnets() : pose_changes.within({X.x, X.y}, carrier.reach)))
       invalidate_all(carrier);
   }
 }

@@ -23,8 +23,8 @@ class ReadingCache {
   /// @param rows of the type @param noise whether readings carry noise
   ReadingCache(std::span<const sensors::SensorSpec> rows, bool noise);
 
-  /// Invalidates readings affected by the moves of a tick. Called with the poses after the moves, before the readings.
-  void invalidate(PoseChanges& pose_changes, std::span<const base::Pose> poses);
+  /// Invalidates readings affected by the moves of a tick. Called with the states after the moves, before the readings.
+  void invalidate(PoseChanges& pose_changes, std::span<const base::Report> states);
   /// A valid reading of sensor `row` is stored.
   bool has(std::uint32_t row) const { return validity_[row] == Validity::stored; }
   /// @pre has(row)

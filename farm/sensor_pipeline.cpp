@@ -60,13 +60,13 @@ void SensorPipeline::split(bool reuse) {
     if (!reuse || !cache.has(d.row)) to_measure.push_back(d);
 }
 
-bool SensorPipeline::prepare(std::span<const base::Pose> poses) {
+bool SensorPipeline::prepare() {
   const bool nothing = to_measure.empty();
   if (nothing && idle) return false;
   idle = nothing;
   active = true;
   uploaded = false;
-  return backend->prepare(to_measure, poses);
+  return backend->prepare(to_measure);
 }
 
 void SensorPipeline::add_copies(gpu::Batch& batch) {
@@ -75,7 +75,7 @@ void SensorPipeline::add_copies(gpu::Batch& batch) {
   uploaded = idle;
 }
 
-std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Pose> poses) {
+std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Report> states) {
   blocks.clear();
   backend->collect(blocks);
   // Reused readings are inserted among the measured ones, from the last one backwards.
@@ -90,7 +90,7 @@ std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Pose
     base::ReadingBlock& block = blocks[i];
     block.time = now;
     block.sequence = static_cast<std::uint32_t>(due[i].sequence);
-    block.X_WM = poses[block.mover];
+    block.X_WM = states[block.mover].X_WM;
   }
   return again;
 }

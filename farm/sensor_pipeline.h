@@ -38,12 +38,12 @@ struct SensorPipeline {
   /// Splits the due sensors. @param reuse whether cached readings may be used
   void split(bool reuse);
   /// @return true when the batch must be recorded again.
-  bool prepare(std::span<const base::Pose> poses);
+  bool prepare();
   /// The batch has work for this sensor type.
   bool needs_device() const { return !to_measure.empty() && backend->on_device(); }
   void add_copies(gpu::Batch& batch);
   /// Fills `blocks`. @return number of reused readings
-  std::size_t collect(std::int64_t now, std::span<const base::Pose> poses);
+  std::size_t collect(std::int64_t now, std::span<const base::Report> states);
   /// Offers the measured readings of `blocks` to the cache.
   void store();
 };

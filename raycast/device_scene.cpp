@@ -82,18 +82,18 @@ void DeviceScene::write_outlines() {
   }
 }
 
-void DeviceScene::set_poses(std::span<const Pose> poses) {
-  movers_.set_poses(poses, thread_pool_,
-                    segments_->host<ExactSegment>().subspan(configs_.walls().size(), movers_.segments()));
+void DeviceScene::place_movers(std::span<const base::Report> states) {
+  movers_.place(states, thread_pool_,
+                segments_->host<ExactSegment>().subspan(configs_.walls().size(), movers_.segments()));
   const auto mover_rows = mover_rows_->host<MoverRow>();
   for (std::uint32_t h = 0; h < movers_.heights(); ++h)
-    for (std::size_t m = 0; m < poses.size(); ++m)
-      mover_rows[h * poses.size() + m] = {poses[m].x,
-                                          poses[m].y,
-                                          static_cast<float>(movers_.headings()[m].x),
-                                          static_cast<float>(movers_.headings()[m].y),
-                                          outlines_[h] + kBlockTexels * movers_.outlines(h).of_mover[m].first,
-                                          movers_.first_rows()[m]};
+    for (std::size_t m = 0; m < states.size(); ++m)
+      mover_rows[h * states.size() + m] = {states[m].X_WM.x,
+                                           states[m].X_WM.y,
+                                           static_cast<float>(movers_.headings()[m].x),
+                                           static_cast<float>(movers_.headings()[m].y),
+                                           outlines_[h] + kBlockTexels * movers_.outlines(h).of_mover[m].first,
+                                           movers_.first_rows()[m]};
 }
 
 bool DeviceScene::prepare(std::span<const Viewpoint> views, std::span<RayRow> rows) {

@@ -30,8 +30,8 @@ class DeviceScene {
               const SceneOptions& options, std::uint32_t sensing_movers);
   ~DeviceScene();
 
-  /// Sets this tick's poses, one per mover.
-  void set_poses(std::span<const Pose> poses);
+  /// Moves the movers to this tick's poses. @param states one per mover, unchanged until the next call
+  void place_movers(std::span<const base::Report> states);
 
   /// Builds the lists for all `views` and fills `rows`, one per view: all fields but beams, out and range_min.
   /// @return true when tables were replaced, so that kernels must be bound again

@@ -151,7 +151,7 @@ void DeviceScene::find_front_edges(const Viewpoint& view, NearbyMover& near, Scr
   const std::uint32_t height = config_tables_[view.config].height;
   const OutlineTable& outlines = movers_.outlines(height);
   const OutlineTable::Outline& outline = outlines.of_mover[near.mover];
-  const Pose& X = movers_.poses()[near.mover];
+  const Pose& X = movers_.states()[near.mover].X_WM;
   const glm::dvec2 heading = movers_.headings()[near.mover], p{view.X_WS.x - X.x, view.X_WS.y - X.y};
   const auto x = static_cast<float>(heading.x * p.x + heading.y * p.y);
   const auto y = static_cast<float>(heading.x * p.y - heading.y * p.x);
@@ -178,8 +178,7 @@ void DeviceScene::find_front_edges(const Viewpoint& view, NearbyMover& near, Scr
 
 /// Writes the lists of the scratch's movers for one view, starting at texel `at`.
 void DeviceScene::write_mover_lists(const Viewpoint& view, std::uint32_t at, const Scratch& s) {
-  const auto first_mover_row =
-      static_cast<std::uint32_t>(config_tables_[view.config].height * movers_.poses().size()) + 1;
+  const auto first_mover_row = static_cast<std::uint32_t>(config_tables_[view.config].height * movers_.movers()) + 1;
   std::uint8_t* const lists = lists_->host<std::uint8_t>().data();
   ListHead heads[SF_SECTORS];
   std::uint32_t next = at + SF_SECTORS;

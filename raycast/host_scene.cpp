@@ -79,8 +79,8 @@ HostScene::HostScene(const world::World& world, const ListConfigs& configs, base
 
 HostScene::~HostScene() = default;
 
-void HostScene::set_poses(std::span<const Pose> poses) {
-  movers_.set_poses(poses, thread_pool_, std::span(exact_).subspan(configs_.walls().size()));
+void HostScene::place_movers(std::span<const base::Report> states) {
+  movers_.place(states, thread_pool_, std::span(exact_).subspan(configs_.walls().size()));
 }
 
 /// Appends `found` in order of rings and bearings, with the bounds of each block.
@@ -183,7 +183,7 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   scene.models = models_;
   scene.movers = movers_.segments() > 0 ? &movers_.grid() : nullptr;
   scene.outlines = &movers_.outlines(config.height);
-  scene.poses = movers_.poses();
+  scene.states = movers_.states();
   scene.headings = movers_.headings();
   scene.first_rows = movers_.first_rows();
   scene.self = view.self;

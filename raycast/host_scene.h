@@ -22,8 +22,8 @@ class HostScene {
   HostScene(const world::World& world, const ListConfigs& configs, base::ThreadPool& thread_pool);
   ~HostScene();
 
-  /// Sets this tick's poses, one per mover.
-  void set_poses(std::span<const Pose> poses);
+  /// Moves the movers to this tick's poses. @param states one per mover, unchanged until the next call
+  void place_movers(std::span<const base::Report> states);
   /// Builds the lists of `views`.
   void prepare(std::span<const Viewpoint> views);
   /// Scans from view `i` of the last `prepare`.

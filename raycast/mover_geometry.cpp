@@ -28,7 +28,6 @@ MoverGeometry::MoverGeometry(const world::World& world) : walls_(static_cast<std
   }
   first_rows_.push_back(walls_ + static_cast<std::uint32_t>(local_.size()));
   const std::size_t movers = world.movers.size(), padded = movers + kBlock;
-  poses_.resize(movers);
   headings_.resize(movers);
   cells_.resize(movers);
   grid_.mover.resize(padded);
@@ -73,12 +72,12 @@ OutlineTable MoverGeometry::outlines_at(double z) const {
   return table;
 }
 
-void MoverGeometry::set_poses(std::span<const Pose> poses, base::ThreadPool& thread_pool,
-                              std::span<ExactSegment> exact) {
-  std::copy(poses.begin(), poses.end(), poses_.begin());
-  thread_pool.parallel_for(poses_.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
+void MoverGeometry::place(std::span<const base::Report> states, base::ThreadPool& thread_pool,
+                          std::span<ExactSegment> exact) {
+  states_ = states;
+  thread_pool.parallel_for(states_.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
-      const Pose& X = poses_[i];
+      const Pose& X = states_[i].X_WM;
       headings_[i] = {std::cos(X.yaw), std::sin(X.yaw)};
       for (std::uint32_t row = first_rows_[i] - walls_; row < first_rows_[i + 1] - walls_; ++row) {
         exact[row] = to_world(local_[row].a, local_[row].b, {X.x, X.y}, headings_[i]);
@@ -90,11 +89,11 @@ void MoverGeometry::set_poses(std::span<const Pose> poses, base::ThreadPool& thr
 
 void MoverGeometry::build_grid() {
   glm::dvec2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-  const auto is_present = [this](std::size_t i) { return radii_[i] > 0.0 && !std::isnan(poses_[i].x); };
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
     if (!is_present(i)) continue;
-    low = {std::min(low.x, poses_[i].x), std::min(low.y, poses_[i].y)};
-    high = {std::max(high.x, poses_[i].x), std::max(high.y, poses_[i].y)};
+    const Pose& X = states_[i].X_WM;
+    low = {std::min(low.x, X.x), std::min(low.y, X.y)};
+    high = {std::max(high.x, X.x), std::max(high.y, X.y)};
   }
   if (!(low.x <= high.x)) low = high = {0.0, 0.0};
   const double extent = std::max(high.x - low.x, high.y - low.y);
@@ -105,22 +104,22 @@ void MoverGeometry::build_grid() {
   // Covers the position of a mover, and of a viewer, which may lie outside the grid by its range.
   grid_.error = static_cast<float>(0x1p-21 * (extent + grid_.cell));
   grid_.first.assign(static_cast<std::size_t>(grid_.columns) * static_cast<std::size_t>(grid_.rows) + 1, 0);
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
     cells_[i] = kNoCell;
     if (!is_present(i)) continue;
-    cells_[i] =
-        static_cast<std::uint32_t>((poses_[i].y - low.y) / grid_.cell) * static_cast<std::uint32_t>(grid_.columns) +
-        static_cast<std::uint32_t>((poses_[i].x - low.x) / grid_.cell);
+    const Pose& X = states_[i].X_WM;
+    cells_[i] = static_cast<std::uint32_t>((X.y - low.y) / grid_.cell) * static_cast<std::uint32_t>(grid_.columns) +
+                static_cast<std::uint32_t>((X.x - low.x) / grid_.cell);
     ++grid_.first[cells_[i] + 1];
   }
   for (std::size_t i = 1; i < grid_.first.size(); ++i) grid_.first[i] += grid_.first[i - 1];
   next_.assign(grid_.first.begin(), grid_.first.end() - 1);
-  for (std::uint32_t i = 0; i < poses_.size(); ++i) {
+  for (std::uint32_t i = 0; i < states_.size(); ++i) {
     if (cells_[i] == kNoCell) continue;
     const std::uint32_t at = next_[cells_[i]]++;
     grid_.mover[at] = i;
-    grid_.x[at] = static_cast<float>(poses_[i].x - low.x);
-    grid_.y[at] = static_cast<float>(poses_[i].y - low.y);
+    grid_.x[at] = static_cast<float>(states_[i].X_WM.x - low.x);
+    grid_.y[at] = static_cast<float>(states_[i].X_WM.y - low.y);
     grid_.radius[at] = static_cast<float>(radii_[i]);
   }
 }

@@ -1,10 +1,11 @@
 #pragma once
-// Movers in host scans: outlines at this tick's poses, and a grid of mover positions.
+// Movers as surfaces: outlines at this tick's poses, and a grid of mover positions.
 
 #include <map>
 #include <span>
 #include <vector>
 
+#include "base/report.h"
 #include "base/thread_pool.h"
 #include "raycast/scan_tables.h"
 #include "world/world.h"
@@ -18,12 +19,12 @@ class MoverGeometry {
  public:
   explicit MoverGeometry(const world::World& world);
 
-  /// Registers scans at world height `z` [m]; call before the first `set_poses`. @return index of the height
+  /// Registers scans at world height `z` [m]; call before the first `place`. @return index of the height
   std::uint32_t add_height(double z);
 
-  /// Moves every outline. One pose per mover; a mover whose x is NaN is absent. @param exact out: rows of the movers'
-  /// edges
-  void set_poses(std::span<const Pose> poses, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
+  /// Moves every outline to its mover's pose. @param states one per mover, unchanged until the next call
+  /// @param exact out: rows of the movers' edges
+  void place(std::span<const base::Report> states, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
 
   std::size_t segments() const { return local_.size(); }
   /// `Segment::model` of each edge.
@@ -33,7 +34,8 @@ class MoverGeometry {
   const MoverGrid& grid() const { return grid_; }
   std::uint32_t heights() const { return static_cast<std::uint32_t>(heights_.size()); }
   const OutlineTable& outlines(std::uint32_t height) const { return heights_[height].outlines; }
-  std::span<const Pose> poses() const { return poses_; }
+  std::size_t movers() const { return radii_.size(); }
+  std::span<const base::Report> states() const { return states_; }
   std::span<const glm::dvec2> headings() const { return headings_; }
   /// First exact segment of each mover, followed by the end.
   std::span<const std::uint32_t> first_rows() const { return first_rows_; }
@@ -44,6 +46,7 @@ class MoverGeometry {
     OutlineTable outlines;
   };
   OutlineTable outlines_at(double z) const;
+  bool is_present(std::size_t mover) const { return radii_[mover] > 0.0 && !base::is_absent(states_[mover].X_WM); }
   void build_grid();
 
   std::vector<world::Segment> local_;  ///< mover frame
@@ -53,7 +56,7 @@ class MoverGeometry {
   std::vector<double> load_z_;  ///< [m] heights at load; they do not change (2.5-D world)
   std::uint32_t walls_;
   std::vector<Height> heights_;
-  std::vector<Pose> poses_;
+  std::span<const base::Report> states_;
   std::vector<glm::dvec2> headings_;
   std::vector<std::uint32_t> cells_, next_;
   MoverGrid grid_;

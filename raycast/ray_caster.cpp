@@ -32,19 +32,17 @@ SensorStats RayCaster::stats() const {
   return stats;
 }
 
-void RayCaster::set_poses(std::span<const Pose> poses) {
-  t_->poses.assign(poses.begin(), poses.end());
-  t_->host_has_poses = false;
-  if (t_->scene) t_->scene->set_poses(poses);
+void RayCaster::place_movers() {
+  t_->host_has_movers = false;
+  if (t_->scene) t_->scene->place_movers(t_->states);
 }
 
-bool RayCaster::prepare(std::span<const DueSample> due, std::span<const Pose> poses, bool cast) {
+bool RayCaster::prepare(std::span<const DueSample> due, bool cast) {
   Tables& t = *t_;
   t.due.assign(due.begin(), due.end());
   t.views.resize(due.size());
-  t.thread_pool.parallel_for(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
-    t.compute_viewpoints(first, last, poses);
-  });
+  t.thread_pool.parallel_for(
+      due.size(), 256, [&t](std::size_t first, std::size_t last, unsigned) { t.compute_viewpoints(first, last); });
   for (const DueSample& d : due) t.rays += t.scanner_rows[d.row].plan.samples.size();
   const bool replaced = t.scene && t.prepare();
   t.write_lanes();

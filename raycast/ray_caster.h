@@ -66,10 +66,11 @@ class RayCaster {
   SensorStats stats() const;
   bool on_device() const;  ///< false: scans run on the host, and nothing is recorded
 
-  void set_poses(std::span<const Pose> poses);
+  /// Moves the movers to the poses of `SensorContext::states`, before `prepare`.
+  void place_movers();
   /// @param due rows of scanners  @param cast false: computes only the poses of the sensors
   /// @return true when kernels must be recorded again
-  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses, bool cast = true);
+  bool prepare(std::span<const DueSample> due, bool cast = true);
   void record(gpu::Batch& batch);
   /// @param results copies ranges and hits to the host
   void add_copies(gpu::Batch& batch, bool results);

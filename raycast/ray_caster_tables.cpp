@@ -42,6 +42,7 @@ using BeamTableKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 RayCaster::Tables::Tables(const SensorContext& context, const world::World& world, std::vector<Scanner> f)
     : lanes_per_group(gpu::interface_of(laser_comp_spv).group_size),
       thread_pool(context.thread_pool),
+      states(context.states),
       seed(context.seed),
       noise(context.noise),
       configs(world),
@@ -209,13 +210,13 @@ void RayCaster::Tables::make_pattern(std::size_t i, std::span<const double> angl
 }
 
 /// Poses of the due scanners [first, last): as base::compose, with one sine and cosine per mover.
-void RayCaster::Tables::compute_viewpoints(std::size_t first, std::size_t last, std::span<const Pose> movers) {
+void RayCaster::Tables::compute_viewpoints(std::size_t first, std::size_t last) {
   std::uint32_t mover = kNotShared;
   glm::dvec2 turn;
   for (std::size_t i = first; i < last; ++i) {
     const Scanner& scanner = scanners[due[i].row];
     const ScannerRow& row = scanner_rows[due[i].row];
-    const Pose &X = movers[scanner.mover], &X_MS = scanner.laser.X_MS;
+    const Pose &X = states[scanner.mover].X_WM, &X_MS = scanner.laser.X_MS;
     if (scanner.mover != mover) turn = {std::cos(X.yaw), std::sin(X.yaw)};
     mover = scanner.mover;
     const double yaw = X.yaw + X_MS.yaw;
@@ -259,8 +260,8 @@ void RayCaster::Tables::find_shared_views() {
 
 void RayCaster::Tables::scan_on_host() {
   if (host_due.empty()) return;
-  if (!host_has_poses) host->set_poses(poses);
-  host_has_poses = true;
+  if (!host_has_movers) host->place_movers(states);
+  host_has_movers = true;
   list_scans();
   host->prepare(host_views);
   thread_pool.parallel_for(scans.size(), 8, [this](std::size_t first, std::size_t last, unsigned thread) {

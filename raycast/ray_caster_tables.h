@@ -44,12 +44,13 @@ struct CastDispatch {
 struct RayCaster::Tables {
   std::uint32_t lanes_per_group;  ///< workgroup size of all dispatches over lanes
   base::ThreadPool& thread_pool;
+  std::span<const base::Report> states;  ///< of all movers, in this tick
   std::uint64_t seed;
   bool noise;
   ListConfigs configs;
   std::unique_ptr<DeviceScene> scene;  ///< null where the host computes all scans
   std::unique_ptr<HostScene> host;     ///< for all scans, or for scans that exceed the device's lists
-  bool host_has_poses = false;         ///< in this tick
+  bool host_has_movers = false;        ///< placed in this tick
   std::vector<Scanner> scanners;
   std::vector<ScannerRow> scanner_rows;
   CastDispatch exact;
@@ -58,7 +59,6 @@ struct RayCaster::Tables {
   std::vector<DueSample> due;
   std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, in the current lane tables
   std::vector<Viewpoint> views, host_views;
-  std::vector<Pose> poses;                         ///< of all movers
   std::vector<std::vector<double>> angle_offsets;  ///< scratch per thread
   std::vector<ScanPattern> patterns;               ///< of scanners without angular noise, on the host
   struct Scratch {
@@ -99,7 +99,7 @@ struct RayCaster::Tables {
   void apply_angle_noise(const DueSample& d, unsigned thread);
   void make_pattern(std::size_t i, std::span<const double> angle_noise, Scratch& own, ScanPattern& pattern);
   void find_shared_views();
-  void compute_viewpoints(std::size_t first, std::size_t last, std::span<const Pose> movers);
+  void compute_viewpoints(std::size_t first, std::size_t last);
   bool prepare();
   void scan_on_host();
   void list_scans();

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "base/report.h"
 #include "raycast/intersect.h"
 
 namespace sf::raycast {
@@ -120,7 +121,7 @@ struct ScanScene {
   std::span<const std::uint32_t> models;          ///< `Segment::model` of each
   const MoverGrid* movers = nullptr;
   const OutlineTable* outlines = nullptr;
-  std::span<const base::Pose> poses;          ///< of movers
+  std::span<const base::Report> states;       ///< of movers
   std::span<const glm::dvec2> headings;       ///< of movers: unit vectors
   std::span<const std::uint32_t> first_rows;  ///< first exact segment of each mover, and the end
   std::uint32_t self = 0xFFFFFFFFu;           ///< the mover that carries the sensor: invisible

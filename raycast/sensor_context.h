@@ -2,7 +2,9 @@
 // Inputs of casters and sensor backends: context, due samples, and counters of their work.
 
 #include <cstdint>
+#include <span>
 
+#include "base/report.h"
 #include "base/thread_pool.h"
 #include "gpu/device.h"
 #include "raycast/scene_options.h"
@@ -23,8 +25,9 @@ struct SensorContext {
   const world::World& world;
   gpu::Device& device;
   base::ThreadPool& thread_pool;
-  std::uint64_t seed = 0;  ///< of all noise
-  bool noise = true;       ///< false: no noise, whatever the world file says
+  std::span<const base::Report> states;  ///< one per mover, as sensed in this tick: the farm's own, not a copy
+  std::uint64_t seed = 0;                ///< of all noise
+  bool noise = true;                     ///< false: no noise, whatever the world file says
   bool true_poses = true;  ///< true: simulation, reported poses are true; false: reported poses are estimates
   SceneOptions scene;
 };

@@ -53,21 +53,28 @@ double median_radius(const std::vector<Footprint>& outlines) {
 
 }  // namespace
 
+std::vector<base::Report> states_at_load(const world::World& world) {
+  std::vector<base::Report> states;
+  for (const world::Mover& mover : world.movers)
+    states.push_back({.mover = static_cast<std::uint32_t>(states.size()), .X_WM = mover.X_WM, .velocity = {}});
+  return states;
+}
+
 Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
     : world_(world),
       thread_pool_(thread_pool),
       footprints_(footprints_of(world)),
       walls_(stopping(world), 2.0 * median_radius(footprints_)),
+      reports_(states_at_load(world)),
+      predicted_(reports_),
       rank_(ranks_of(world)),
       scratch_(thread_pool != nullptr ? thread_pool->threads() : 1) {
   const std::size_t count = world.movers.size();
   std::size_t edges = 0;
   for (std::uint32_t row = 0; row < count; ++row) {
-    reports_.push_back({.mover = row, .time = 0, .X_WM = world.movers[row].X_WM, .velocity = {}});
     widest_ = std::max(widest_, footprints_[row].radius);
     edges = std::max(edges, footprints_[row].edges.size());
   }
-  predicted_ = reports_;
   travels_.resize(count);
   progress_.resize(count);
   proposed_.resize(count);

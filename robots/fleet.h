@@ -36,6 +36,9 @@ namespace sf::robots {
 /// [ns] longest extrapolation of a report with its velocity.
 inline constexpr std::int64_t kMaxExtrapolation = 500'000'000;
 
+/// All movers at rest at their poses at load, at time 0; one per mover, in order of rows.
+std::vector<base::Report> states_at_load(const world::World& world);
+
 /// One caller at a time. Allocates nothing after construction, unless more than a thousand walls are near one mover.
 class Fleet {
  public:

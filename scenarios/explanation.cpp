@@ -8,12 +8,12 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "base/elapsed.h"
 #include "farm/farm.h"
 #include "raycast/caster_choice.h"
 #include "scenarios/recorded_paths.h"
-#include "scenarios/sampling.h"
 
 namespace sf::scenarios {
 
@@ -27,18 +27,15 @@ constexpr int kLaps = 4;         ///< measured, after one for warm-up
 /// A farm driven along recorded paths repeatedly, with time going on from lap to lap.
 class Drive {
  public:
-  Drive(const world::World& world, gpu::Device& device, const RecordedPaths& paths, const farm::FarmOptions& options)
-      : farm_(world, device, options), paths_(paths), interval_(std::llround(world.interval * 1e9)) {}
+  Drive(const world::World& world, gpu::Device& device, RecordedPaths paths, const farm::FarmOptions& options)
+      : farm_(world, device, options), paths_(std::move(paths)), interval_(std::llround(world.interval * 1e9)) {}
 
   void subscribe(std::uint32_t kinds) {
     for (std::uint32_t m = 0; m < paths_[0].size(); ++m) farm_.subscribe(m, kinds);
   }
   void tick(std::size_t at) {
-    if (farm_.next_due() < now_) {
-      copy(paths_[(at + paths_.size() - 1) % paths_.size()], now_ - interval_, before_);
-      copy(paths_[at], now_, after_);
-      sample_between(farm_, before_, after_, on_the_way_, [](std::span<const base::ReadingBlock>) {});
-    }
+    for (base::Report& state : paths_[at]) state.time = now_;
+    for (std::int64_t due = farm_.next_due(); due < now_; due = farm_.next_due()) farm_.sample_between(due, paths_[at]);
     farm_.tick(now_, paths_[at]);
     now_ += interval_;
   }
@@ -58,17 +55,12 @@ class Drive {
   const sensors::SensorSet& sensor_set() const { return farm_.sensor_set(); }
 
  private:
-  static void copy(const std::vector<base::Report>& states, std::int64_t time, std::vector<base::Report>& into) {
-    into = states;
-    for (base::Report& state : into) state.time = time;
-  }
   double a_tick(std::uint64_t count) const { return static_cast<double>(count) / static_cast<double>(ticks()); }
 
   farm::Farm farm_;
-  const RecordedPaths& paths_;
+  RecordedPaths paths_;  ///< at the times of the newest lap
   std::int64_t interval_;
   std::int64_t now_ = 0;
-  std::vector<base::Report> before_, after_, on_the_way_;
   farm::FarmStats stats_before_;
 };
 
@@ -132,9 +124,9 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   const auto step = [&](std::size_t kinds) {
     if (progress) progress(++done / static_cast<double>(kinds + 3));
   };
-  const RecordedPaths paths = record_paths(world, device, kDriven, seed, threads);
+  RecordedPaths paths = record_paths(world, device, kDriven, seed, threads);
   const auto start = Clock::now();
-  Drive farm(world, device, paths, {.seed = seed, .threads = threads});
+  Drive farm(world, device, std::move(paths), {.seed = seed, .threads = threads});
   e.build = base::seconds_since(start);
   farm.subscribe(farm::kAllSensorTypes);
   const auto first = Clock::now();

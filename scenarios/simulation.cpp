@@ -7,7 +7,6 @@
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "farm/schedule.h"
-#include "scenarios/sampling.h"
 #include "sensors/laser.h"
 #include "world/roads/roads.h"
 
@@ -100,17 +99,14 @@ base::TickRecord Simulation::step() {
 }
 
 std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
-  const std::span<const base::Report> reports = fleet_.reports();
   std::size_t early = 0;
   readings_.clear();
-  if (!before_.empty())
-    sample_between(farm_, before_, reports, on_the_way_, [&](std::span<const base::ReadingBlock> delivered) {
-      if (early_.size() < early + delivered.size()) early_.resize(early + delivered.size());
-      for (const base::ReadingBlock& reading : delivered) early_[early++].take(reading);
-    });
-  const auto delivered = farm_.tick(time, reports);
-  before_.clear();
-  if (farm_.next_due() < time + interval_) before_.assign(reports.begin(), reports.end());
+  for (std::int64_t due = farm_.next_due(); due < time; due = farm_.next_due()) {
+    const auto delivered = farm_.sample_between(due, fleet_.reports());
+    if (early_.size() < early + delivered.size()) early_.resize(early + delivered.size());
+    for (const base::ReadingBlock& reading : delivered) early_[early++].take(reading);
+  }
+  const auto delivered = farm_.tick(time, fleet_.reports());
   if (early == 0) return delivered;
   for (std::size_t i = 0; i < early; ++i) readings_.push_back(early_[i].block());
   readings_.insert(readings_.end(), delivered.begin(), delivered.end());

@@ -102,9 +102,6 @@ class Simulation {
   std::vector<std::uint32_t> first_;  ///< per mover: index of its first reading; the last entry is the end
   std::vector<std::uint32_t> next_;   ///< scratch
   std::vector<base::ReadingBlock> sorted_;
-  /// Reports of the last tick, kept when a sensor is due before the next; else empty.
-  std::vector<base::Report> before_;
-  std::vector<base::Report> on_the_way_;      ///< interpolated reports
   std::vector<farm::StoredReading> early_;    ///< readings delivered between ticks; slots are reused with their memory
   std::vector<base::ReadingBlock> readings_;  ///< these and the tick's; empty without readings between ticks
   std::vector<base::Intent> intents_;         ///< per mover, as broadcast in this tick

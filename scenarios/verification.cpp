@@ -12,7 +12,7 @@
 
 #include "base/thread_pool.h"
 #include "farm/farm.h"
-#include "scenarios/sampling.h"
+#include "robots/kinematics.h"
 #include "sensors/bumper.h"
 #include "sensors/laser.h"
 #include "sensors/laser_modes.h"
@@ -101,22 +101,19 @@ class Verifier {
   }
 
  private:
-  void reports_at(std::size_t tick, std::vector<base::Report>& reports) const {
-    reports.clear();
+  void look_at_tick(std::size_t tick) {
+    reports_.clear();
     for (std::uint32_t m = 0; m < recording_.states.size(); ++m) {
       const record::StateSample& s = recording_.states[m][tick];
-      reports.push_back({m, s.time, s.X_WM, s.velocity});
+      reports_.push_back({m, s.time, s.X_WM, s.velocity});
     }
-  }
-
-  void look_at_tick(std::size_t tick) {
-    reports_.swap(before_);
-    reports_at(tick, reports_);
+    const std::int64_t time = reports_[0].time;
     const auto look_at = [this](std::span<const base::ReadingBlock> readings) {
       for (const base::ReadingBlock& reading : readings) check_reading(reading);
     };
-    if (tick > 0) sample_between(farm_, before_, reports_, on_the_way_, look_at);
-    look_at(farm_.tick(reports_[0].time, reports_));
+    for (std::int64_t due = farm_.next_due(); tick > 0 && due < time; due = farm_.next_due())
+      look_at(farm_.sample_between(due, reports_));
+    look_at(farm_.tick(time, reports_));
   }
 
   /// Poses of all movers at the time of `asked`.
@@ -241,7 +238,7 @@ class Verifier {
   bool infinite_ = false;
   bool recorded_ = false;                 ///< the recording has scans
   std::map<Name, std::size_t> readings_;  ///< recorded readings not compared yet
-  std::vector<base::Report> reports_, before_, on_the_way_;
+  std::vector<base::Report> reports_;     ///< of one tick
   std::map<std::uint8_t, Comparison> again_;
   std::vector<Asked> asked_;
   std::size_t stride_ = 1, seen_ = 0;

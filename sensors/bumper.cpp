@@ -74,15 +74,10 @@ class Bumpers : public HostBackend {
  public:
   explicit Bumpers(const SensorContext& context);
 
-  void update_states(std::span<const base::Report> states, std::int64_t, bool) override {
-    for (std::size_t m = 0; m < states.size(); ++m) contact_masks_[m] = states[m].contact_mask;
-  }
-
  private:
   void measure(std::span<const HostSample> samples) const override;
 
   std::vector<std::vector<std::uint32_t>> switches_;  ///< per row: the sectors of each switch
-  std::vector<std::uint32_t> contact_masks_;          ///< per mover
 };
 
 std::vector<SensorSpec> specs_of(const world::World& world) {
@@ -95,15 +90,14 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
   return rows;
 }
 
-Bumpers::Bumpers(const SensorContext& context)
-    : HostBackend(context, bumper_type, specs_of(context.world)), contact_masks_(context.world.movers.size(), 0) {
+Bumpers::Bumpers(const SensorContext& context) : HostBackend(context, bumper_type, specs_of(context.world)) {
   for_each_sensor(context.world, bumper_type,
                   [this](const MountedSensor& mounted) { switches_.push_back(read_bumper(mounted.settings)); });
 }
 
 void Bumpers::measure(std::span<const HostSample> samples) const {
   for (const HostSample& sample : samples) {
-    const std::uint32_t contact_mask = contact_masks_[rows()[sample.row].mover];
+    const std::uint32_t contact_mask = states()[rows()[sample.row].mover].contact_mask;
     const auto& switches = switches_[sample.row];
     for (std::size_t i = 0; i < switches.size(); ++i) sample.values[i] = (contact_mask & switches[i]) != 0 ? 1.0 : 0.0;
   }

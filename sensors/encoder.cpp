@@ -35,7 +35,7 @@ class Encoders : public HostBackend {
  public:
   explicit Encoders(const SensorContext& context);
 
-  void update_states(std::span<const base::Report> states, std::int64_t now, bool between) override;
+  void accumulate(std::int64_t now, bool between) override;
 
  private:
   void measure(std::span<const HostSample> samples) const override;
@@ -76,13 +76,14 @@ bool Encoders::drove(const Track& track, const Pose& X_WM, double max_forward, s
   return way <= kAlwaysRolled + 2.0 * max_forward * std::max(0.0, seconds);
 }
 
-void Encoders::update_states(std::span<const base::Report> states, std::int64_t now, bool between) {
+void Encoders::accumulate(std::int64_t now, bool between) {
   between_ = between;
   if (between) ahead_ = wheels_;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const std::uint32_t mover = rows()[i].mover;
-    const Pose& X_WM = states[mover].X_WM;
+    const Pose& X_WM = states()[mover].X_WM;
     Track& track = tracks_[i];
+    if (base::is_absent(X_WM)) continue;
     if (X_WM.x == track.X_WM.x && X_WM.y == track.X_WM.y && X_WM.yaw == track.X_WM.yaw) continue;
     if (drove(track, X_WM, world().movers[mover].max_forward, now)) {
       Wheels& wheels = (between ? ahead_ : wheels_)[i];

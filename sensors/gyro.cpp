@@ -31,15 +31,10 @@ class Gyros : public HostBackend {
  public:
   explicit Gyros(const SensorContext& context);
 
-  void update_states(std::span<const base::Report> states, std::int64_t, bool) override {
-    for (std::size_t m = 0; m < states.size(); ++m) turns_[m] = states[m].velocity.turn;
-  }
-
  private:
   void measure(std::span<const HostSample> samples) const override;
 
-  std::vector<Fixed> gyros_;   ///< per row
-  std::vector<double> turns_;  ///< [rad/s] per mover
+  std::vector<Fixed> gyros_;  ///< per row
 };
 
 std::vector<SensorSpec> specs_of(const world::World& world) {
@@ -51,8 +46,7 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
   return rows;
 }
 
-Gyros::Gyros(const SensorContext& context)
-    : HostBackend(context, gyro_type, specs_of(context.world)), turns_(context.world.movers.size(), 0.0) {
+Gyros::Gyros(const SensorContext& context) : HostBackend(context, gyro_type, specs_of(context.world)) {
   for_each_sensor(context.world, gyro_type, [&](const MountedSensor& mounted) {
     const Gyro gyro = read_gyro(mounted.settings);
     Fixed fixed{.range = gyro.range};
@@ -68,7 +62,7 @@ void Gyros::measure(std::span<const HostSample> samples) const {
   for (const HostSample& sample : samples) {
     const SensorSpec& row = rows()[sample.row];
     const Fixed& gyro = gyros_[sample.row];
-    double rate = gyro.scale * turns_[row.mover] + gyro.bias;
+    double rate = gyro.scale * states()[row.mover].velocity.turn + gyro.bias;
     if (gyro.noise > 0.0) rate += gyro.noise * base::random_normal(draw_of(seed(), row, sample.sequence), kReading)[0];
     sample.values[0] = std::clamp(rate, -gyro.range, gyro.range);
   }

@@ -15,6 +15,7 @@ constexpr std::size_t kPiece = 64;  // readings per piece of work
 HostBackend::HostBackend(const SensorContext& context, const SensorType& kind, std::vector<SensorSpec> rows)
     : world_(context.world),
       thread_pool_(context.thread_pool),
+      states_(context.states),
       seed_(context.seed),
       kind_(kind.id),
       rows_(std::move(rows)) {
@@ -24,11 +25,11 @@ HostBackend::HostBackend(const SensorContext& context, const SensorType& kind, s
   samples_.reserve(rows_.size());
 }
 
-bool HostBackend::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
+bool HostBackend::prepare(std::span<const DueSample> due) {
   samples_.clear();
   for (const DueSample& d : due) {
     const SensorSpec& row = rows_[d.row];
-    Pose X_WS = base::compose(poses[row.mover], row.X_MS);
+    Pose X_WS = base::compose(states_[row.mover].X_WM, row.X_MS);
     X_WS.z = world_.movers[row.mover].X_WM.z + row.X_MS.z;
     const auto values = std::span(values_).subspan(first_[d.row], first_[d.row + 1] - first_[d.row]);
     samples_.push_back({d.row, d.sequence, X_WS, values});

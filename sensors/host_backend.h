@@ -21,7 +21,7 @@ struct HostSample {
 /// All sensors of one type without device work. Not thread-safe.
 class HostBackend : public SensorBackend {
  public:
-  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
+  bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch&) override {}
   void add_copies(gpu::Batch&) override {}
   void collect(std::vector<base::ReadingBlock>& out) override;
@@ -37,11 +37,13 @@ class HostBackend : public SensorBackend {
 
   std::span<const SensorSpec> rows() const { return rows_; }
   const world::World& world() const { return world_; }
+  std::span<const base::Report> states() const { return states_; }
   std::uint64_t seed() const { return seed_; }
 
  private:
   const world::World& world_;
   base::ThreadPool& thread_pool_;
+  std::span<const base::Report> states_;
   std::uint64_t seed_;
   std::uint8_t kind_;
   std::vector<SensorSpec> rows_;

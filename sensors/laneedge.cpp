@@ -40,8 +40,8 @@ class LaneEdges : public SensorBackend {
  public:
   explicit LaneEdges(const SensorContext& context);
 
-  void set_poses(std::span<const Pose> poses) override { caster_.set_poses(poses); }
-  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
+  void place_movers() override { caster_.place_movers(); }
+  bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch& batch) override;
   void record_derive(gpu::Batch& batch) override { fit_.record(batch); }
   void add_copies(gpu::Batch& batch) override;
@@ -86,9 +86,9 @@ void LaneEdges::make_raster_caster(const SensorContext& context) {
   raster_caster_.emplace(context, raster, caster_, scene_.paint_tag, casting_);
 }
 
-bool LaneEdges::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
+bool LaneEdges::prepare(std::span<const DueSample> due) {
   due_.assign(due.begin(), due.end());
-  const bool again = caster_.prepare(due, poses, casting_) || !bound_;
+  const bool again = caster_.prepare(due, casting_) || !bound_;
   lanes_.resize(due.size());
   for (std::size_t i = 0; i < due.size(); ++i) lanes_[i] = caster_.results(i).lane;
   if (raster_caster_) raster_caster_->prepare(due.size());

@@ -41,10 +41,10 @@ class Lasers : public SensorBackend {
  public:
   explicit Lasers(const SensorContext& context) : Lasers(context, lasers_of(context.world)) {}
 
-  void set_poses(std::span<const Pose> poses) override { caster_.set_poses(poses); }
-  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override {
+  void place_movers() override { caster_.place_movers(); }
+  bool prepare(std::span<const DueSample> due) override {
     due_.assign(due.begin(), due.end());
-    return caster_.prepare(due, poses);
+    return caster_.prepare(due);
   }
   void record_measure(gpu::Batch& batch) override { caster_.record(batch); }
   void add_copies(gpu::Batch& batch) override { caster_.add_copies(batch, true); }

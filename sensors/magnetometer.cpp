@@ -67,10 +67,10 @@ class Magnetometers : public SensorBackend {
  public:
   explicit Magnetometers(const SensorContext& context);
 
-  void set_poses(std::span<const Pose> poses) override {
-    for (auto& [mode, wave] : waves_) wave.field.set_poses(poses);
+  void place_movers() override {
+    for (auto& [mode, wave] : waves_) wave.field.place_movers(states_);
   }
-  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
+  bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch& batch) override {
     for (auto& [mode, wave] : waves_) wave.field.record(batch);
   }
@@ -86,6 +86,7 @@ class Magnetometers : public SensorBackend {
   void read(std::size_t i);
 
   base::ThreadPool& thread_pool_;
+  std::span<const base::Report> states_;
   std::uint64_t seed_;
   bool noise_;
   std::vector<Array> arrays_;
@@ -97,7 +98,11 @@ class Magnetometers : public SensorBackend {
 };
 
 Magnetometers::Magnetometers(const SensorContext& context)
-    : thread_pool_(context.thread_pool), seed_(context.seed), noise_(context.noise), arrays_(arrays_of(context.world)) {
+    : thread_pool_(context.thread_pool),
+      states_(context.states),
+      seed_(context.seed),
+      noise_(context.noise),
+      arrays_(arrays_of(context.world)) {
   const bool magnitudes = any_magnitudes(arrays_);
   for (const Array& array : arrays_)
     if (!waves_.contains(array.row.mode))
@@ -140,14 +145,14 @@ void Magnetometers::add_places(const Array& array, const Pose& X_WS) {
   }
 }
 
-bool Magnetometers::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
+bool Magnetometers::prepare(std::span<const DueSample> due) {
   due_.assign(due.begin(), due.end());
   X_WS_.clear();
   groups_.clear();
   for (auto& [mode, wave] : waves_) wave.places.clear(), wave.ends.clear();
   for (const DueSample& d : due_) {
     const Array& array = arrays_[d.row];
-    X_WS_.push_back(base::compose(poses[array.row.mover], array.row.X_MS));
+    X_WS_.push_back(base::compose(states_[array.row.mover].X_WM, array.row.X_MS));
     X_WS_.back().z = array.height;
     add_places(array, X_WS_.back());
   }

@@ -17,7 +17,7 @@ class Occupancies : public SensorBackend {
  public:
   explicit Occupancies(const SensorContext& context);
 
-  bool prepare(std::span<const DueSample> due, std::span<const Pose>) override {
+  bool prepare(std::span<const DueSample> due) override {
     due_.assign(due.begin(), due.end());
     return false;
   }

@@ -69,20 +69,20 @@ inline double bearing_of(const SensorSpec& sensor, std::uint32_t i) {
   return world::bearing_of(sensor.fov, sensor.elements, i);
 }
 
-/// All sensors of one type, computed as a batch. Not thread-safe.
+/// All sensors of one type, computed as a batch. Movers are where `SensorContext::states` has them. Not thread-safe.
 class SensorBackend {
  public:
   virtual ~SensorBackend() = default;
 
-  /// Receives every mover's state, one per mover, each tick, even when nothing is due: for quantities that accumulate
-  /// (wheels) or that the mover reports (contacts).
+  /// Called in each tick with its new `SensorContext::states`, even when nothing is due: for quantities that accumulate
+  /// (wheels).
   /// @param now [ns]  @param between true: a sample between two ticks; the next tick continues from the last one
-  virtual void update_states(std::span<const base::Report>, std::int64_t /*now*/, bool /*between*/) {}
-  /// Sets this tick's poses, one per mover, before `prepare`, when something is due. A mover whose x is NaN is absent
-  /// and invisible.
-  virtual void set_poses(std::span<const Pose>) {}
+  virtual void accumulate(std::int64_t /*now*/, bool /*between*/) {}
+  /// Moves surfaces and magnets of movers to their poses, before `prepare`, when something is due. Absent movers are
+  /// invisible.
+  virtual void place_movers() {}
   /// Host work before the batch, even when nothing is due. @return true when the batch must be recorded again
-  virtual bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) = 0;
+  virtual bool prepare(std::span<const DueSample> due) = 0;
   /// Records the kernels that read the world, then those that read their results. The farm puts a barrier between both.
   virtual void record_measure(gpu::Batch& batch) = 0;
   virtual void record_derive(gpu::Batch&) {}

@@ -98,7 +98,8 @@ void intersect_movers(Scratch& s, const ScanView& view, const ScanScene& scene, 
     find_movers_on_beam(s, view, scene, d, best.range, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
   for (const std::uint32_t mover : s.across) {
     const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
-    const glm::dvec2 place = glm::dvec2{scene.poses[mover].x, scene.poses[mover].y} - view.origin;
+    const base::Pose& X = scene.states[mover].X_WM;
+    const glm::dvec2 place = glm::dvec2{X.x, X.y} - view.origin;
     for (std::uint32_t i = outline.first; i < outline.first + outline.all; ++i)
       intersect_block(view, scene, scene.outlines->blocks[i], place, scene.headings[mover], scene.first_rows[mover], d,
                       best);

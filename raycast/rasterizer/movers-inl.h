@@ -72,7 +72,7 @@ void find_movers_in_view(Scratch& s, const Projection& p, const ScanView& view, 
 void rasterize_mover(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                      const ScanScene& scene, const NearMover& near) {
   const OutlineTable::Outline& outline = scene.outlines->of_mover[near.mover];
-  const base::Pose& X = scene.poses[near.mover];
+  const base::Pose& X = scene.states[near.mover].X_WM;
   const VF c = constant(static_cast<float>(scene.headings[near.mover].x)),
            sn = constant(static_cast<float>(scene.headings[near.mover].y));
   const VF x = constant(static_cast<float>(X.x - view.origin.x)), y = constant(static_cast<float>(X.y - view.origin.y));

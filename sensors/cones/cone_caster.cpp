@@ -58,6 +58,7 @@ ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const Con
 ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const Reflectors& reflectors,
                        const ConeKernel& kernel)
     : thread_pool_(context.thread_pool),
+      states_(context.states),
       first_cones_(plan.first),
       min_cosines_(plan.min_cosines),
       caster_(context, plan.incidence ? reflectors.world : context.world, plan.scanners),
@@ -84,18 +85,18 @@ ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const Ref
   headings_.host<float>()[0] = 1.0F;
 }
 
-void ConeCaster::set_poses(std::span<const Pose> poses) {
-  caster_.set_poses(poses);
+void ConeCaster::place_movers() {
+  caster_.place_movers();
   if (!incidence_) return;
   const auto table = headings_.host<float>();
-  for (std::size_t m = 0; m < poses.size(); ++m) {
-    table[4 * (m + 1)] = static_cast<float>(std::cos(poses[m].yaw));
-    table[4 * (m + 1) + 1] = static_cast<float>(std::sin(poses[m].yaw));
+  for (std::size_t m = 0; m < states_.size(); ++m) {
+    table[4 * (m + 1)] = static_cast<float>(std::cos(states_[m].X_WM.yaw));
+    table[4 * (m + 1) + 1] = static_cast<float>(std::sin(states_[m].X_WM.yaw));
   }
 }
 
-bool ConeCaster::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
-  const bool again = caster_.prepare(due, poses);
+bool ConeCaster::prepare(std::span<const DueSample> due) {
+  const bool again = caster_.prepare(due);
   count_ = due.size();
   if (!on_device()) return again;
   const auto rows = rows_.host<ConeRow>();

@@ -31,9 +31,9 @@ class ConeCaster {
   /// Index of the first cone of an array; the others follow in order.
   std::uint32_t first_cone(std::uint32_t array) const { return first_cones_[array]; }
 
-  void set_poses(std::span<const Pose> poses);
+  void place_movers();
   /// Rows of `due` are cones. @return true when kernels must be recorded again
-  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses);
+  bool prepare(std::span<const DueSample> due);
   void record_measure(gpu::Batch& batch) { caster_.record(batch); }
   void record_derive(gpu::Batch& batch) const {
     if (on_device()) batch.dispatch(kernel_, groups_, 0);
@@ -65,6 +65,7 @@ class ConeCaster {
   bool returns_echo(const ConeRow& row, std::size_t beam, std::uint32_t hit);
 
   base::ThreadPool& thread_pool_;
+  std::span<const base::Report> states_;
   std::vector<std::uint32_t> first_cones_;
   std::vector<float> min_cosines_;
   raycast::RayCaster caster_;

@@ -16,8 +16,8 @@ class Rangers : public SensorBackend {
  public:
   Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& kind);
 
-  void set_poses(std::span<const Pose> poses) override { cones_.set_poses(poses); }
-  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
+  void place_movers() override { cones_.place_movers(); }
+  bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch& batch) override { cones_.record_measure(batch); }
   void record_derive(gpu::Batch& batch) override { cones_.record_derive(batch); }
   void add_copies(gpu::Batch& batch) override { cones_.add_copies(batch); }
@@ -30,6 +30,7 @@ class Rangers : public SensorBackend {
   void write_reading(std::size_t i);
 
   base::ThreadPool& thread_pool_;
+  std::span<const base::Report> states_;
   std::uint64_t seed_;
   bool noise_;
   std::vector<ConeArray> arrays_;
@@ -47,6 +48,7 @@ class Rangers : public SensorBackend {
 
 Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& kind)
     : thread_pool_(context.thread_pool),
+      states_(context.states),
       seed_(context.seed),
       noise_(context.noise),
       arrays_(std::move(arrays)),
@@ -62,19 +64,19 @@ Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, co
   values_.resize(values);
 }
 
-bool Rangers::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
+bool Rangers::prepare(std::span<const DueSample> due) {
   due_.assign(due.begin(), due.end());
   X_WS_.clear();
   due_cones_.clear();
   cones_ends_.clear();
   for (const DueSample& d : due_) {
     const SensorSpec& row = arrays_[d.row].row;
-    X_WS_.push_back(base::compose(poses[row.mover], row.X_MS));
+    X_WS_.push_back(base::compose(states_[row.mover].X_WM, row.X_MS));
     X_WS_.back().z = heights_[d.row];
     fire(d);
     cones_ends_.push_back(due_cones_.size());
   }
-  return cones_.prepare(due_cones_, poses);
+  return cones_.prepare(due_cones_);
 }
 
 void Rangers::fire(const DueSample& due) {

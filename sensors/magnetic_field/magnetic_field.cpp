@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "robots/fleet.h"
 #include "sensors/magnetic_field/tables.h"
 #include "shaders/magnetometer.comp.h"
 
@@ -33,9 +34,7 @@ DipoleRow dipole_row(const world::Magnet& magnet, glm::dvec2 p, double z) {
 MagneticField::MagneticField(const world::World& world, gpu::Device& device, base::ThreadPool& thread_pool,
                              bool magnitudes, double cutoff)
     : t_(std::make_unique<Tables>(world, device, thread_pool, magnitudes, cutoff)) {
-  std::vector<Pose> poses;
-  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
-  set_poses(poses);
+  place_movers(robots::states_at_load(world));
 }
 
 MagneticField::MagneticField(MagneticField&&) noexcept = default;
@@ -75,16 +74,16 @@ void MagneticField::Tables::write_moving() {
   for (std::size_t i = 0; i < moving_rows.size(); ++i) rows[i] = moving_rows[moving_grid.order()[i]];
 }
 
-void MagneticField::set_poses(std::span<const Pose> poses) {
+void MagneticField::place_movers(std::span<const base::Report> states) {
   Tables& t = *t_;
   if (t.moving_magnets == 0) return;
   t.moving_points.clear();
   t.moving_rows.clear();
   for (std::size_t m = 0; m < t.world.movers.size(); ++m) {
     const world::Mover& mover = t.world.movers[m];
-    if (std::isnan(poses[m].x)) continue;  // absent
+    if (base::is_absent(states[m].X_WM)) continue;
     for (const world::Magnet& magnet : mover.magnets) {
-      const glm::dvec2 p = base::transform(poses[m], magnet.p);
+      const glm::dvec2 p = base::transform(states[m].X_WM, magnet.p);
       t.moving_points.push_back(p);
       t.moving_rows.push_back(dipole_row(magnet, p, mover.X_WM.z + magnet.z));
     }

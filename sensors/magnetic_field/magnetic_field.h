@@ -14,6 +14,7 @@
 #include <span>
 
 #include "base/pose.h"
+#include "base/report.h"
 #include "base/thread_pool.h"
 #include "gpu/batch.h"
 #include "gpu/device.h"
@@ -46,8 +47,8 @@ class MagneticField {
   MagneticField(MagneticField&&) noexcept;
   ~MagneticField();
 
-  /// Moves the movers' magnets: one pose per mover; z is ignored (2.5-D world).
-  void set_poses(std::span<const Pose> poses);
+  /// Moves the movers' magnets. @param states one per mover; z is ignored (2.5-D world)
+  void place_movers(std::span<const base::Report> states);
 
   /// Sets the points of the next batch, in groups of up to SF_FIELD_POINTS neighbours.
   /// @param ends index behind the last point of each group, ascending

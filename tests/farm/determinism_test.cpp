@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/hash.h"
+#include "robots/kinematics.h"
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/chance.h"
 
@@ -31,6 +32,31 @@ TEST(Determinism, IndependentOfTheNumberOfThreads) {
   const world::World world = small_world(30, kNoise);
   const std::uint64_t one = run(world, {.seed = 1, .threads = 1});
   for (const unsigned threads : {2u, 3u, 7u}) EXPECT_EQ(run(world, {.seed = 1, .threads = threads}), one) << threads;
+}
+
+/// Samples between two ticks are those at the interpolated states. An absent mover's first report sets its pose.
+TEST(Determinism, SamplesBetweenTicksAreAtInterpolatedStates) {
+  const world::World world = small_world(30);
+  Farm farm(world, device()), by_hand(world, device());
+  farm.subscribe_all(), by_hand.subscribe_all();
+  std::vector<base::Report> before;
+  for (int k = 0; k < 6; ++k) {
+    const std::int64_t now = 250'000'000ll * k;
+    std::vector<base::Report> after = reports_at(world, k);
+    for (base::Report& report : after) report.time = now;
+    for (Farm* each : {&farm, &by_hand}) each->set_absent(7, k == 3);
+    for (std::int64_t due = farm.next_due(); due < now; due = farm.next_due()) {
+      std::vector<base::Report> states;
+      for (std::size_t m = 0; m < after.size(); ++m)
+        states.push_back(m == 7 && k == 4 ? after[m] : robots::interpolate(before[m], after[m], due));
+      EXPECT_EQ(farm.sample_between(due, after).size(), by_hand.sample(due, states).size()) << k;
+      EXPECT_EQ(farm.hash(), by_hand.hash()) << k;
+    }
+    farm.tick(now, after), by_hand.tick(now, after);
+    EXPECT_EQ(farm.hash(), by_hand.hash()) << k;
+    before = after;
+  }
+  EXPECT_GT(farm.stats().readings, 12u * 29u);
 }
 
 /// Sent ranges are infinite without a return; the hash covers the sent values.

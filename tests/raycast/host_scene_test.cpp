@@ -7,6 +7,7 @@
 
 #include <cstring>
 
+#include "robots/fleet.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/scenes.h"
 
@@ -35,18 +36,13 @@ std::vector<double> even_bearings(std::size_t beams, double fov) {
   return bearings;
 }
 
-std::vector<Pose> poses_of(const world::World& world) {
-  std::vector<Pose> poses;
-  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
-  return poses;
-}
-
 Scan scan(const world::World& world, const Pose& X, std::uint32_t self, const ScanPattern& pattern, double range) {
   base::ThreadPool thread_pool(1);
   ListConfigs configs(world);
   const Viewpoint view{configs.add({X.z, range, 0.0, 2.0 * M_PI}), self, X, {std::cos(X.yaw), std::sin(X.yaw)}};
   HostScene scene(world, configs, thread_pool);
-  scene.set_poses(poses_of(world));
+  const std::vector<base::Report> states = robots::states_at_load(world);
+  scene.place_movers(states);
   scene.prepare({&view, 1});
   Scan scan{std::vector<double>(pattern.beams), std::vector<std::uint32_t>(pattern.beams)};
   std::vector<std::uint8_t> grazes(pattern.beams);
@@ -70,7 +66,8 @@ Scan intersect_everything(const world::World& world, const Pose& X, std::uint32_
   base::ThreadPool thread_pool(1);
   MoverGeometry movers(world);
   std::vector<ExactSegment> moved(movers.segments());
-  movers.set_poses(poses_of(world), thread_pool, moved);
+  const std::vector<base::Report> states = robots::states_at_load(world);
+  movers.place(states, thread_pool, moved);
   const auto rows = movers.first_rows();
   for (std::uint32_t row = 0; row < moved.size(); ++row)
     add(moved[row], movers.models()[row], row + rows[0] < rows[self] || row + rows[0] >= rows[self + 1]);
@@ -157,7 +154,8 @@ TEST(HostScene, CellsAreListedOnce) {
   HostScene scene(world, configs, thread_pool);
   const Viewpoint views[] = {
       {config, 0, {0.1, 0.1, 0.1, 0.0}}, {config, 1, {0.9, 0.9, 0.1, 1.0}}, {config, 2, {1.1, 0.1, 0.1, 0.0}}};
-  scene.set_poses(poses_of(world));
+  const std::vector<base::Report> states = robots::states_at_load(world);
+  scene.place_movers(states);
   scene.prepare(views);
   EXPECT_EQ(scene.cells_built(), 2u) << "cells of a metre at 8 m";
   scene.prepare(views);
@@ -183,13 +181,13 @@ TEST(MoverGeometry, MoversThatAreGoneAreNowhere) {
   movers.add_height(0.1);
   base::ThreadPool thread_pool(1);
   std::vector<ExactSegment> exact(movers.segments());
-  std::vector<Pose> poses = poses_of(world);
-  poses[1].x = std::nan("");
-  movers.set_poses(poses, thread_pool, exact);
+  std::vector<base::Report> states = robots::states_at_load(world);
+  states[1].X_WM = base::kAbsent;
+  movers.place(states, thread_pool, exact);
   EXPECT_EQ(movers.grid().first.back(), 2u);
   EXPECT_EQ(movers.grid().low.x, 0.0);
-  for (Pose& X : poses) X.x = std::nan("");
-  movers.set_poses(poses, thread_pool, exact);
+  for (base::Report& state : states) state.X_WM = base::kAbsent;
+  movers.place(states, thread_pool, exact);
   EXPECT_EQ(movers.grid().first.back(), 0u) << "all of them";
 }
 

@@ -281,6 +281,22 @@ TEST(Encoder, ReadingsBetweenTicksMakeNoMoveAJump) {
   EXPECT_EQ(farm.tick(100'000'000, states)[0].values[2], 600.0) << "half a metre, and twice its speed";
 }
 
+/// An absent robot's wheels stand; after its return they go on from its last pose.
+TEST(Encoder, StandWhileTheirRobotIsAbsent) {
+  const world::World world = one_robot({setting("rate", {50})}, 1.0);
+  farm::Farm farm(world, device());
+  farm.subscribe_all();
+  std::vector<base::Report> states = to_occupancy(world);
+  states[0].X_WM.x = 0.1;
+  EXPECT_EQ(farm.tick(100'000'000, states)[0].values[2], 100.0);
+  farm.set_absent(0, true);
+  EXPECT_TRUE(farm.tick(200'000'000, states).empty());
+  farm.set_absent(0, false);
+  farm.subscribe_all();
+  states[0].X_WM.x = 0.2;
+  EXPECT_EQ(farm.tick(300'000'000, states)[0].values[2], 200.0);
+}
+
 /// Fast robots exceed half a metre per tick: twice the distance at their top speed is still driven.
 TEST(Encoder, DrivingFastIsNoJump) {
   for (const double max_forward : {1.0, 10.0, 30.0}) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "robots/fleet.h"
 #include "sensors/laneedge_settings.h"
 #include "tests/sensors/compare.h"
 
@@ -54,6 +55,7 @@ world::LaneMarking arc(glm::dvec2 centre, double radius, double from, double to,
 struct EdgeRig::State {
   world::World world;
   base::ThreadPool thread_pool;
+  std::vector<base::Report> states;
   sensors::SensorContext context;
   std::unique_ptr<sensors::SensorBackend> backend;
   gpu::Batch batch;
@@ -63,7 +65,8 @@ struct EdgeRig::State {
   State(const world::World& w, std::uint64_t seed, unsigned threads, bool noise, gpu::Device& on)
       : world(w),
         thread_pool(threads),
-        context{world, on, thread_pool, seed, noise, {}},
+        states(robots::states_at_load(world)),
+        context{world, on, thread_pool, states, seed, noise},
         backend(sensors::laneedge_type.make(context)),
         batch(on),
         rows(sensors::laneedge_type.specs(world).size()) {}
@@ -77,8 +80,9 @@ EdgeRig::~EdgeRig() = default;
 const std::vector<base::ReadingBlock>& EdgeRig::tick(const std::vector<sensors::DueSample>& due,
                                                      const std::vector<base::Pose>& poses) {
   State& s = *s_;
-  s.backend->set_poses(poses);
-  if (s.backend->prepare(due, poses)) {
+  for (std::size_t m = 0; m < poses.size(); ++m) s.states[m].X_WM = poses[m];
+  s.backend->place_movers();
+  if (s.backend->prepare(due)) {
     s.batch.begin();
     s.backend->record_measure(s.batch);
     s.batch.barrier();
