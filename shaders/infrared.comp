@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 // Infrared proximity: the nearest surface in each cone of all due sensors, in one dispatch.
 
-#include "shaders/sensors/cones/records.glsl"
 #include "shaders/raycast/records.glsl"
 
 layout(local_size_x = 64) in;

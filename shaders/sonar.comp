@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 // Sonar: the nearest surface that returns an echo in each cone, for all firing transducers, in one dispatch.
 
-#include "shaders/sensors/cones/records.glsl"
 #include "shaders/raycast/records.glsl"
 
 layout(local_size_x = 64) in;

@@ -12,6 +12,21 @@ namespace {
 
 constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 
+std::vector<raycast::Cone> cones_of(const std::vector<ConeArray>& arrays) {
+  std::vector<raycast::Cone> cones;
+  for (const ConeArray& array : arrays) {
+    world::Laser beams;
+    beams.fov = array.rays > 1 ? array.fov : 0.0;
+    beams.samples = array.rays;
+    beams.range_max = array.range_max;
+    for (const Pose& X_SC : array.X_SC) {
+      beams.X_MS = base::compose(array.row.X_MS, X_SC);
+      cones.push_back({{beams, array.row.mover, array.row.sensor}, static_cast<float>(array.min_cosine)});
+    }
+  }
+  return cones;
+}
+
 class Rangers : public SensorBackend {
  public:
   Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& kind);
@@ -35,9 +50,10 @@ class Rangers : public SensorBackend {
   bool noise_;
   std::vector<ConeArray> arrays_;
   RangerType kind_;
-  ConeCaster cones_;
-  std::vector<std::uint64_t> last_;  ///< per array: sequence number of its last reading, or kNever
-  std::vector<double> heights_;      ///< [m] per array: world height of its origin
+  raycast::ConeCaster cones_;
+  std::vector<std::uint32_t> first_cones_;  ///< per array
+  std::vector<std::uint64_t> last_;         ///< per array: sequence number of its last reading, or kNever
+  std::vector<double> heights_;             ///< [m] per array: world height of its origin
   std::vector<std::size_t> values_first_;
   std::vector<double> values_;  ///< of all arrays; transducers that do not fire keep theirs
   std::vector<DueSample> due_;
@@ -53,10 +69,13 @@ Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, co
       noise_(context.noise),
       arrays_(std::move(arrays)),
       kind_(kind),
-      cones_(context, arrays_, kind.kernel),
+      cones_(context, cones_of(arrays_), kind.kernel),
       last_(arrays_.size(), kNever) {
   std::size_t values = 0;
+  std::uint32_t cones = 0;
   for (const ConeArray& array : arrays_) {
+    first_cones_.push_back(cones);
+    cones += static_cast<std::uint32_t>(array.X_SC.size());
     heights_.push_back(context.world.movers[array.row.mover].X_WM.z + array.row.X_MS.z);
     values_first_.push_back(values);
     values += kind_.columns * array.X_SC.size();
@@ -83,8 +102,7 @@ void Rangers::fire(const DueSample& due) {
   const ConeArray& array = arrays_[due.row];
   const std::uint64_t last = std::exchange(last_[due.row], due.sequence);
   for (std::uint32_t i = 0; i < array.X_SC.size(); ++i)
-    if (has_fired(i, array.turns, due.sequence, last))
-      due_cones_.push_back({cones_.first_cone(due.row) + i, due.sequence});
+    if (has_fired(i, array.turns, due.sequence, last)) due_cones_.push_back({first_cones_[due.row] + i, due.sequence});
 }
 
 void Rangers::write_reading(std::size_t i) {
@@ -95,8 +113,8 @@ void Rangers::write_reading(std::size_t i) {
   const base::RandomKey draw{seed_, base::RandomStream::range_cone, array.row.mover, name, due.sequence};
   const bool noisy = noise_ && (array.sigma > 0.0 || array.proportional > 0.0);
   for (std::size_t k = i > 0 ? cones_ends_[i - 1] : 0; k < cones_ends_[i]; ++k) {
-    const std::uint32_t transducer = due_cones_[k].row - cones_.first_cone(due.row);
-    const ConeEcho echo = cones_.echo(k);
+    const std::uint32_t transducer = due_cones_[k].row - first_cones_[due.row];
+    const raycast::ConeEcho echo = cones_.echo(k);
     const double deviate = noisy ? base::random_normal(draw, transducer)[0] : 0.0;
     const auto out = std::span(values_).subspan(values_first_[due.row] + kind_.columns * transducer, kind_.columns);
     kind_.write_reading(array, echo.range, echo.hit != SF_NO_HIT, deviate, out);

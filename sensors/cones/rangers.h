@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "sensors/cones/cone_caster.h"
+#include "raycast/cone_caster.h"
+#include "sensors/cones/cone_array.h"
 
 namespace sf::sensors {
 
@@ -13,7 +14,7 @@ namespace sf::sensors {
 struct RangerType {
   std::uint8_t id = 0;        ///< on the wire
   std::uint32_t columns = 1;  ///< numbers per transducer
-  ConeKernel kernel;
+  raycast::ConeKernel kernel;
   /// Writes a transducer's columns.
   /// @param range [m] of the nearest echo; range_max when `met` is false
   /// @param deviate standard normal; 0 without noise

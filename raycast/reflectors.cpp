@@ -1,8 +1,8 @@
-#include "sensors/cones/reflectors.h"
+#include "raycast/reflectors.h"
 
 #include <cmath>
 
-namespace sf::sensors {
+namespace sf::raycast {
 
 Reflectors reflectors_of(const world::World& world) {
   Reflectors reflectors;
@@ -24,4 +24,4 @@ Reflectors reflectors_of(const world::World& world) {
   return reflectors;
 }
 
-}  // namespace sf::sensors
+}  // namespace sf::raycast

@@ -9,10 +9,15 @@
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
 #include "raycast/ray_caster.h"
-#include "sensors/cones/cone_array.h"
-#include "sensors/cones/reflectors.h"
+#include "raycast/reflectors.h"
 
-namespace sf::sensors {
+namespace sf::raycast {
+
+/// One cone.
+struct Cone {
+  Scanner scanner;         ///< its beams
+  float min_cosine = 0.0;  ///< least cosine of an angle of incidence that returns an echo; 0: any angle
+};
 
 /// The kernel that reduces a cone's beams to a reading.
 struct ConeKernel {
@@ -26,10 +31,7 @@ class ConeCaster {
  public:
   /// @throws base::DeviceError when the device cannot hold the tables; base::InputError for more cones than one
   /// dispatch takes
-  ConeCaster(const SensorContext& context, const std::vector<ConeArray>& arrays, const ConeKernel& kernel);
-
-  /// Index of the first cone of an array; the others follow in order.
-  std::uint32_t first_cone(std::uint32_t array) const { return first_cones_[array]; }
+  ConeCaster(const SensorContext& context, std::span<const Cone> cones, const ConeKernel& kernel);
 
   void place_movers();
   /// Rows of `due` are cones. @return true when kernels must be recorded again
@@ -49,15 +51,8 @@ class ConeCaster {
   bool on_device() const { return caster_.on_device(); }
 
  private:
-  struct Plan {
-    std::vector<raycast::Scanner> scanners;
-    std::vector<float> min_cosines;    ///< per cone
-    std::vector<std::uint32_t> first;  ///< per array
-    bool incidence = false;            ///< some array limits the angle of incidence
-  };
-  static Plan plan(const world::World& world, const std::vector<ConeArray>& arrays, std::size_t most_cones);
-  ConeCaster(const SensorContext& context, const Plan& plan, const ConeKernel& kernel);
-  ConeCaster(const SensorContext& context, const Plan& plan, const Reflectors& reflectors, const ConeKernel& kernel);
+  ConeCaster(const SensorContext& context, std::span<const Cone> cones, bool incidence, const Reflectors& reflectors,
+             const ConeKernel& kernel);
   ConeRow row_of(std::size_t i) const;
   /// Same operations in the same order as shaders/lib/cone.glsl.
   ConeEcho nearest_echo(std::size_t i);
@@ -66,14 +61,13 @@ class ConeCaster {
 
   base::ThreadPool& thread_pool_;
   std::span<const base::Report> states_;
-  std::vector<std::uint32_t> first_cones_;
-  std::vector<float> min_cosines_;
-  raycast::RayCaster caster_;
+  std::vector<float> min_cosines_;  ///< per cone
+  RayCaster caster_;
   bool fresh_ = true;      ///< constant tables are not yet on the device
   std::size_t count_ = 0;  ///< number of due cones
   gpu::Kernel kernel_;
   gpu::Buffer rows_, echoes_, groups_, reflectors_, headings_;
-  bool incidence_;
+  bool incidence_;  ///< some cone limits the angle of incidence
 };
 
-}  // namespace sf::sensors
+}  // namespace sf::raycast

@@ -1,4 +1,4 @@
-#include "sensors/cones/cone_caster.h"
+#include "raycast/cone_caster.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace sf::sensors {
+namespace sf::raycast {
 
 namespace {
 
@@ -19,58 +19,41 @@ struct Direction {
 
 Direction turned(Direction by, Direction v) { return {by.x * v.x - by.y * v.y, by.x * v.y + by.y * v.x}; }
 
-raycast::Scanner scanner_of(const ConeArray& array, std::size_t transducer) {
-  world::Laser beams;
-  beams.X_MS = base::compose(array.row.X_MS, array.X_SC[transducer]);
-  beams.fov = array.rays > 1 ? array.fov : 0.0;
-  beams.samples = array.rays;
-  beams.range_max = array.range_max;
-  return {beams, array.row.mover, array.row.sensor};
+bool limit_incidence(std::span<const Cone> cones) {
+  return std::any_of(cones.begin(), cones.end(), [](const Cone& cone) { return cone.min_cosine > 0.0F; });
+}
+
+std::vector<Scanner> scanners_of(const world::World& world, std::span<const Cone> cones, const ConeKernel& kernel) {
+  const std::size_t most_cones = kMostGroups * gpu::interface_of(kernel.spirv).group_size;
+  if (cones.size() > most_cones)
+    throw base::InputError(world.file, 0,
+                           "the world has " + std::to_string(cones.size()) + " transducers of one type; at most " +
+                               std::to_string(most_cones) + " are supported");
+  std::vector<Scanner> scanners;
+  for (const Cone& cone : cones) scanners.push_back(cone.scanner);
+  return scanners;
 }
 
 }  // namespace
 
-ConeCaster::Plan ConeCaster::plan(const world::World& world, const std::vector<ConeArray>& arrays,
-                                  std::size_t most_cones) {
-  Plan plan;
-  for (const ConeArray& array : arrays) {
-    plan.first.push_back(static_cast<std::uint32_t>(plan.scanners.size()));
-    plan.incidence = plan.incidence || array.min_cosine > 0.0;
-    for (std::size_t i = 0; i < array.X_SC.size(); ++i) {
-      plan.scanners.push_back(scanner_of(array, i));
-      plan.min_cosines.push_back(static_cast<float>(array.min_cosine));
-    }
-  }
-  if (plan.scanners.size() > most_cones)
-    throw base::InputError(world.file, 0,
-                           "the world has " + std::to_string(plan.scanners.size()) +
-                               " transducers of one type; at most " + std::to_string(most_cones) + " are supported");
-  return plan;
-}
+ConeCaster::ConeCaster(const SensorContext& context, std::span<const Cone> cones, const ConeKernel& kernel)
+    : ConeCaster(context, cones, limit_incidence(cones),
+                 limit_incidence(cones) ? reflectors_of(context.world) : Reflectors{}, kernel) {}
 
-ConeCaster::ConeCaster(const SensorContext& context, const std::vector<ConeArray>& arrays, const ConeKernel& kernel)
-    : ConeCaster(context, plan(context.world, arrays, kMostGroups * gpu::interface_of(kernel.spirv).group_size),
-                 kernel) {}
-
-ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const ConeKernel& kernel)
-    : ConeCaster(context, plan, plan.incidence ? reflectors_of(context.world) : Reflectors{}, kernel) {}
-
-ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const Reflectors& reflectors,
-                       const ConeKernel& kernel)
+ConeCaster::ConeCaster(const SensorContext& context, std::span<const Cone> cones, bool incidence,
+                       const Reflectors& reflectors, const ConeKernel& kernel)
     : thread_pool_(context.thread_pool),
       states_(context.states),
-      first_cones_(plan.first),
-      min_cosines_(plan.min_cosines),
-      caster_(context, plan.incidence ? reflectors.world : context.world, plan.scanners),
+      caster_(context, incidence ? reflectors.world : context.world, scanners_of(context.world, cones, kernel)),
       kernel_(context.device, kernel.name, kernel.spirv),
       rows_(context.device, "cones", gpu::Role::upload, gpu::Texel::u32x4,
-            gpu::texels_of<ConeRow>(kernel_.padded(plan.scanners.size() + 1))),
-      echoes_(context.device, "echoes", gpu::Role::download, gpu::Texel::u32x4,
-              kernel_.padded(plan.scanners.size() + 1)),
+            gpu::texels_of<ConeRow>(kernel_.padded(cones.size() + 1))),
+      echoes_(context.device, "echoes", gpu::Role::download, gpu::Texel::u32x4, kernel_.padded(cones.size() + 1)),
       groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
       reflectors_(context.device, "faces", gpu::Role::upload, gpu::Texel::u32x4, reflectors.rows.size() + 1),
       headings_(context.device, "headings", gpu::Role::upload, gpu::Texel::f32x4, context.world.movers.size() + 1),
-      incidence_(plan.incidence) {
+      incidence_(incidence) {
+  for (const Cone& cone : cones) min_cosines_.push_back(cone.min_cosine);
   SF_CHECK(kernel.uses_incidence || !incidence_, "this kernel ignores the angle of incidence");
   std::vector<gpu::TableBinding> tables{
       {"cones", &rows_}, {"ranges", &caster_.ranges()}, {"hits", &caster_.hits()}, {"echoes", &echoes_}};
@@ -113,7 +96,7 @@ bool ConeCaster::prepare(std::span<const DueSample> due) {
 }
 
 ConeRow ConeCaster::row_of(std::size_t i) const {
-  const raycast::ScanResult results = caster_.results(i);
+  const ScanResult results = caster_.results(i);
   ConeRow row{};
   row.lane = results.lane;
   row.lanes = results.plan->lanes();
@@ -159,4 +142,4 @@ void ConeCaster::add_copies(gpu::Batch& batch) {
   batch.download(echoes_, 0, count_ * sizeof(ConeEcho));
 }
 
-}  // namespace sf::sensors
+}  // namespace sf::raycast

@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "sensors/cones/records.h"
+#include "raycast/records.h"
 #include "world/world.h"
 
-namespace sf::sensors {
+namespace sf::raycast {
 
 struct Reflectors {
   world::World world;                    ///< walls and movers that echo; `Segment::model` is an index into `rows`
@@ -16,4 +16,4 @@ struct Reflectors {
 
 Reflectors reflectors_of(const world::World& world);
 
-}  // namespace sf::sensors
+}  // namespace sf::raycast
