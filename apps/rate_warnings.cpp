@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/text.h"
+#include "base/time.h"
 #include "farm/schedule.h"
 
 namespace sf::apps {
@@ -37,7 +38,7 @@ std::string rate_text(const sensors::SensorSet::Group& group) {
 
 std::vector<std::string> kinds_between_ticks(const sensors::SensorSet& sensor_set, double interval) {
   std::vector<std::string> kinds;
-  const auto ticks = std::max<std::int64_t>(1, std::llround(interval * 1e9));
+  const auto ticks = std::max<std::int64_t>(1, base::nanoseconds(interval));
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     if (std::any_of(group.rows.begin(), group.rows.end(), [&](const auto& row) { return due_between(row, ticks); }))
       kinds.emplace_back(group.kind->name);
@@ -67,7 +68,7 @@ void warn_of_many_times(const sensors::SensorSet& sensor_set) {
   std::set<std::pair<double, std::int64_t>> times;  // rate, and phase within a period
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
-      times.emplace(row.rate, std::llround(1e9 * std::fmod(row.phase, 1.0 / row.rate)));
+      times.emplace(row.rate, base::nanoseconds(std::fmod(row.phase, 1.0 / row.rate)));
   double a_second = 0.0;
   for (const auto& [rate, phase] : times) a_second += rate;
   if (a_second > kManyTimes)

@@ -23,6 +23,7 @@
 #include "base/contact_onset.h"
 #include "base/elapsed.h"
 #include "base/error.h"
+#include "base/time.h"
 #include "netio/address_token.h"
 #include "netio/server/no_return_filter.h"
 #include "netio/server/reading_publisher.h"
@@ -62,7 +63,7 @@ class Outputs {
     std::int64_t sent_at = tick.time;
     for (const base::ReadingBlock& reading : publisher_ ? tick.readings : std::span<const base::ReadingBlock>{}) {
       const std::int64_t time =
-          std::min<std::int64_t>(tick.time, reading.time + std::llround(1e9 * sensor_set_.row(reading).latency));
+          std::min<std::int64_t>(tick.time, reading.time + base::nanoseconds(sensor_set_.row(reading).latency));
       if (time != std::exchange(sent_at, time)) {
         send();
         const auto before = Clock::now();

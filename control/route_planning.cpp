@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/time.h"
 #include "control/overtaking.h"
 #include "control/route.h"
 
@@ -12,7 +13,6 @@ namespace sf::control {
 
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::size_t kOldLegs = 24;  // passed legs that are kept
 
 }  // namespace
@@ -112,7 +112,7 @@ void Route::search() {
 // A lane that stays full is avoided.
 void Route::reroute(const ControllerInput& input) {
   const std::uint32_t avoid = blocked_way_;
-  const std::int64_t patience = (20 + 2 * (site_.mover % 5)) * kSecond;
+  const std::int64_t patience = (20 + 2 * (site_.mover % 5)) * base::kSecond;
   if (blocked_since_ < 0 || input.time - blocked_since_ < patience || !goals_) return;
   blocked_since_ = input.time;
   if (corridors_->way(plan_.legs[progress_.leg()].way).kind != Way::Kind::lane) return;
@@ -134,7 +134,7 @@ bool Route::plan_goals(RoutePlan& plan, std::uint32_t avoid) const {
 // Two robots that swap lanes could block each other for ever. After a long standstill one returns to its lane.
 void Route::give_up_change(const ControllerInput& input) {
   if (std::abs(input.state.velocity.forward) > 0.005 || still_since_ < 0) still_since_ = input.time;
-  const std::int64_t patience = (8 + 2 * (site_.mover % 5)) * kSecond;
+  const std::int64_t patience = (8 + 2 * (site_.mover % 5)) * base::kSecond;
   if (input.time - still_since_ < patience || convoy_.merges) return;
   const std::uint32_t row = plan_.legs[progress_.leg()].way;
   if (!changes_lanes(*corridors_, row)) return;
@@ -154,7 +154,7 @@ void Route::consider_passing(const ControllerInput& input) {
     return;
   }
   if (slow_since_ < 0) slow_since_ = input.time;
-  if (input.time - slow_since_ < kSecond) return;
+  if (input.time - slow_since_ < base::kSecond) return;
   auto passing =
       plan_passing(*corridors_, plan_, progress_.s(), settings_.speed, ahead_.front(), right_of_way_.road_users());
   if (!passing) return;

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/time.h"
 #include "control/controllers.h"
 
 namespace sf::control {
 
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 /// Bits of `Report::contact_mask` from 90 degrees to the left over the rear to 90 degrees to the right.
 constexpr std::uint32_t kRear = 0x00FFFF00u;
 static_assert(base::kContactSectors == 32);
@@ -106,7 +106,7 @@ void Wander::start_turn(const Clearance& clearance, double least) {
 
 void Wander::start_back(std::int64_t time) {
   mode_ = Mode::back;
-  until_ = time + kSecond * 3 / 10 + static_cast<std::int64_t>(0.5 * kSecond * random());
+  until_ = time + base::kSecond * 3 / 10 + static_cast<std::int64_t>(0.5 * base::kSecond * random());
 }
 
 base::Twist Wander::turn() const {
@@ -117,7 +117,7 @@ base::Twist Wander::turn() const {
 base::Twist Wander::cruise(const Clearance& clearance, std::int64_t time) {
   if (time >= drift_until_) {
     drift_ = 0.25 * settings_.turn * (2.0 * random() - 1.0);
-    drift_until_ = time + static_cast<std::int64_t>((2.0 + 4.0 * random()) * kSecond);
+    drift_until_ = time + static_cast<std::int64_t>((2.0 + 4.0 * random()) * base::kSecond);
   }
   if (clearance_estimator_.range() <= 0.0) return {settings_.speed, 0.0, drift_};
 

@@ -4,21 +4,17 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/time.h"
+
 namespace sf::farm {
-
-namespace {
-
-std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
-
-}  // namespace
 
 Delivery::Delivery(const sensors::SensorSet& sensor_set) : sensor_set_(sensor_set) {
   for (const auto& group : sensor_set.groups())
-    for (const sensors::SensorSpec& row : group.rows) any_ = any_ || nanoseconds(row.latency) > 0;
+    for (const sensors::SensorSpec& row : group.rows) any_ = any_ || base::nanoseconds(row.latency) > 0;
 }
 
 std::int64_t Delivery::latency_of(const base::ReadingBlock& block) const {
-  return nanoseconds(sensor_set_.row(block).latency);
+  return base::nanoseconds(sensor_set_.row(block).latency);
 }
 
 void Delivery::hold(const base::ReadingBlock& block, std::int64_t due) {

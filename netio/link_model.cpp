@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/time.h"
 
 namespace sf::netio {
 
@@ -11,7 +12,7 @@ std::optional<std::int64_t> sample_delay(const LinkModel& model, const MessageId
   const base::RandomKey draw{model.seed, base::RandomStream::link, message.robot, message.stream, message.sequence};
   const auto chance = base::random_uniform(draw, 0);
   if (chance[0] < model.loss) return std::nullopt;
-  return std::llround(1e9 * (model.delay + model.jitter * chance[1]));
+  return base::nanoseconds(model.delay + model.jitter * chance[1]);
 }
 
 }  // namespace sf::netio

@@ -1,13 +1,12 @@
 #include "record/fleet_message.h"
 
 #include "base/error.h"
+#include "base/time.h"
 #include "record/cdr.h"
 
 namespace sf::record {
 
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 void put_twist(CdrWriter& cdr, const base::Twist& twist) {
   for (const double value : {twist.forward, twist.left, twist.turn}) cdr.put(value);
@@ -26,8 +25,8 @@ void encode_fleet(const base::TickRecord& record, base::Bytes& out) {
   SF_CHECK(record.contacts.empty() || record.contacts.size() == count, std::to_string(record.contacts.size()));
 
   CdrWriter cdr(out);
-  cdr.put(static_cast<std::int32_t>(record.time / kSecond));
-  cdr.put(static_cast<std::uint32_t>(record.time % kSecond));
+  cdr.put(static_cast<std::int32_t>(record.time / base::kSecond));
+  cdr.put(static_cast<std::uint32_t>(record.time % base::kSecond));
   cdr.put("world");
   cdr.put(record.tick);
   cdr.put_count(count);
@@ -44,7 +43,7 @@ void encode_fleet(const base::TickRecord& record, base::Bytes& out) {
 bool decode_fleet(std::span<const std::uint8_t> message, FleetState& fleet) {
   constexpr std::size_t kLeastState = 85;  // [byte]
   CdrReader cdr(message);
-  fleet.time = cdr.get<std::int32_t>() * kSecond;
+  fleet.time = cdr.get<std::int32_t>() * base::kSecond;
   fleet.time += cdr.get<std::uint32_t>();
   cdr.get_string();  // frame
   fleet.tick = cdr.get<std::uint64_t>();

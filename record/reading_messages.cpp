@@ -4,14 +4,13 @@
 #include <cctype>
 
 #include "base/error.h"
+#include "base/time.h"
 #include "record/cdr.h"
 #include "record/schemas.h"
 
 namespace sf::record {
 
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
@@ -74,8 +73,8 @@ void encode_reading(const SensorTypeInfo& kind, std::int64_t time, std::string_v
            std::to_string(values.size()) + " values in a reading of kind " + kind.name);
 
   CdrWriter cdr(out);
-  cdr.put(static_cast<std::int32_t>(time / kSecond));
-  cdr.put(static_cast<std::uint32_t>(time % kSecond));
+  cdr.put(static_cast<std::int32_t>(time / base::kSecond));
+  cdr.put(static_cast<std::uint32_t>(time % base::kSecond));
   cdr.put(frame);
   const std::size_t elements = values.size() / width;
   std::size_t first = 0;
@@ -90,7 +89,7 @@ void encode_reading(const SensorTypeInfo& kind, std::int64_t time, std::string_v
 bool decode_reading(const SensorTypeInfo& kind, std::span<const std::uint8_t> message, std::int64_t& time,
                     std::vector<double>& values) {
   CdrReader cdr(message);
-  time = cdr.get<std::int32_t>() * kSecond;
+  time = cdr.get<std::int32_t>() * base::kSecond;
   time += cdr.get<std::uint32_t>();
   cdr.get_string();  // frame
 

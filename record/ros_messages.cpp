@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/time.h"
 #include "record/cdr.h"
 
 namespace sf::record {
@@ -13,12 +14,10 @@ using base::Twist;
 
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-
 void put_header(CdrWriter& cdr, std::int64_t time, std::string_view frame) {
   SF_CHECK(time >= 0, "time " + std::to_string(time) + " ns");
-  cdr.put(static_cast<std::int32_t>(time / kSecond));
-  cdr.put(static_cast<std::uint32_t>(time % kSecond));
+  cdr.put(static_cast<std::int32_t>(time / base::kSecond));
+  cdr.put(static_cast<std::uint32_t>(time % base::kSecond));
   cdr.put(frame);
 }
 
@@ -82,7 +81,7 @@ void encode_scan(const Scan& scan, std::span<const double> ranges, Bytes& out) {
 std::optional<Scan> decode_scan(std::span<const std::uint8_t> message) {
   CdrReader cdr(message);
   Scan scan;
-  scan.time = cdr.get<std::int32_t>() * kSecond;
+  scan.time = cdr.get<std::int32_t>() * base::kSecond;
   scan.time += cdr.get<std::uint32_t>();
   scan.frame = cdr.get_string();
   const auto angle_min = cdr.get<float>();

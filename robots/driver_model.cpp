@@ -4,14 +4,14 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "robots/kinematics.h"
+
 namespace sf::robots {
 
 namespace {
 
 constexpr double kMaxSpeed = 500.0;  // [mm/s] of the Open Interface's drive command
 constexpr int kMaxRadius = 2000;     // [mm]
-
-double finite(double v) { return std::isfinite(v) ? v : 0.0; }
 
 /// Whole [mm/s], within the robot's limits.
 double whole_speed(double metres_per_second) {
@@ -42,7 +42,7 @@ base::Twist apply_create_driver(const world::Mover& mover, double forward, doubl
 }  // namespace
 
 base::Twist apply_driver(const world::Mover& mover, const base::Twist& command) {
-  const base::Twist v{finite(command.forward), finite(command.left), finite(command.turn)};
+  const base::Twist v = finite(command);
   return mover.driver_model == world::DriverModel::player_create ? apply_create_driver(mover, v.forward, v.turn) : v;
 }
 

@@ -7,8 +7,6 @@ namespace sf::robots {
 
 namespace {
 
-double finite(double v) { return std::isfinite(v) ? v : 0.0; }
-
 // sin(x)/x. Below the threshold the next term of the series is under half an ulp.
 double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x; }
 
@@ -29,8 +27,13 @@ base::Twist twist_between(const base::Pose& from, const base::Pose& to, double s
 
 }  // namespace
 
+base::Twist finite(const base::Twist& twist) {
+  const auto or_0 = [](double v) { return std::isfinite(v) ? v : 0.0; };
+  return {or_0(twist.forward), or_0(twist.left), or_0(twist.turn)};
+}
+
 base::Twist limit_kinematics(const world::Mover& mover, const base::Twist& command) {
-  base::Twist v{finite(command.forward), finite(command.left), finite(command.turn)};
+  base::Twist v = finite(command);
   v.turn = std::clamp(v.turn, -mover.max_turn, mover.max_turn);
   if (mover.drive == world::Drive::omni) {
     const double speed = std::hypot(v.forward, v.left);

@@ -13,6 +13,9 @@ namespace sf::robots {
 /// [rad] steering limit of a car.
 inline constexpr double kMaxSteer = M_PI / 6.0;
 
+/// `twist` with 0 for NaN and infinity.
+base::Twist finite(const base::Twist& twist);
+
 /// The nearest twist within the limits of the mover's drive. NaN and infinity become 0.
 /// - all drives: |turn| <= max_turn.
 /// - differential, skid: left = 0, |forward| <= max_forward. The scrub of a skid drive's wheels affects the track that

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/elapsed.h"
+#include "base/time.h"
 #include "farm/farm.h"
 #include "raycast/caster_choice.h"
 #include "scenarios/recorded_paths.h"
@@ -28,7 +29,7 @@ constexpr int kLaps = 4;         ///< measured, after one for warm-up
 class Drive {
  public:
   Drive(const world::World& world, gpu::Device& device, RecordedPaths paths, const farm::FarmOptions& options)
-      : farm_(world, device, options), paths_(std::move(paths)), interval_(std::llround(world.interval * 1e9)) {}
+      : farm_(world, device, options), paths_(std::move(paths)), interval_(base::nanoseconds(world.interval)) {}
 
   void subscribe(std::uint32_t kinds) {
     for (std::uint32_t m = 0; m < paths_[0].size(); ++m) farm_.subscribe(m, kinds);

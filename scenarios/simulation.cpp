@@ -6,6 +6,7 @@
 
 #include "base/elapsed.h"
 #include "base/error.h"
+#include "base/time.h"
 #include "farm/schedule.h"
 #include "sensors/laser.h"
 #include "world/roads/roads.h"
@@ -50,8 +51,8 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       next_intents_(world.movers.size()),
       others_(thread_pool_.threads()),
       signals_(world.lights.size()),
-      start_at_(std::llround(options.start_at * 1e9)),
-      interval_(std::llround(world.interval * 1e9)) {
+      start_at_(base::nanoseconds(options.start_at)),
+      interval_(base::nanoseconds(world.interval)) {
   SF_CHECK(options.actors.empty() || options.actors.size() == world.movers.size(),
            "actors: expected none or one per mover");
   farm_.subscribe_all();
@@ -179,7 +180,7 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
 
 /// [ns] Delivery time of a reading, possibly between two ticks.
 std::int64_t Simulation::leaves_at(const base::ReadingBlock& reading) const {
-  return reading.time + std::llround(farm_.sensor_set().row(reading).latency * 1e9);
+  return reading.time + base::nanoseconds(farm_.sensor_set().row(reading).latency);
 }
 
 /// The controller steps at this tick. Otherwise its last command remains in effect.

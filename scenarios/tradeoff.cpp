@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/elapsed.h"
+#include "base/time.h"
 #include "farm/farm.h"
 #include "scenarios/recorded_paths.h"
 #include "sensors/accuracy.h"
@@ -66,7 +67,7 @@ class Entrant {
 
   template <class Look>
   void lap(Look look) {
-    const std::int64_t interval = std::llround(world_.interval * 1e9);
+    const std::int64_t interval = base::nanoseconds(world_.interval);
     for (const auto& reports : paths_) {
       for (const base::ReadingBlock& block : farm_->tick(now_, reports)) look(block);
       now_ += interval;

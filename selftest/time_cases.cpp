@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/time.h"
 #include "farm/schedule.h"
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
@@ -13,8 +14,7 @@ namespace sf::selftest {
 
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kYear = 31'556'952 * kSecond;
+constexpr std::int64_t kYear = 31'556'952 * base::kSecond;
 constexpr std::uint64_t kSeed = 5;
 
 world::World noisy_room() {
@@ -40,14 +40,14 @@ void read_at(TestFarm& test, Checks& checks, std::int64_t now, std::uint64_t num
 void tick_1e9(Fixture& fixture, Checks& checks) {
   TestFarm test = fixture.measure(noisy_room(), {.seed = kSeed});
   read_at(test, checks, kYear, 315'569'520u, "after a year");
-  read_at(test, checks, 1'000'000'000ll * (kSecond / 10), 1'000'000'000u, "tick 1e9");
-  read_at(test, checks, 1'000'000'001ll * (kSecond / 10), 1'000'000'001u, "the one after");
+  read_at(test, checks, 1'000'000'000ll * (base::kSecond / 10), 1'000'000'000u, "tick 1e9");
+  read_at(test, checks, 1'000'000'001ll * (base::kSecond / 10), 1'000'000'001u, "the one after");
 }
 
 /// Periods of whole nanoseconds, checked with integers.
 void due_for_a_year(Fixture&, Checks& checks) {
   for (const std::int64_t rate : {1, 10, 50, 1000, 1'000'000}) {
-    const std::int64_t period = kSecond / rate;
+    const std::int64_t period = base::kSecond / rate;
     for (std::int64_t i = 0; i < 2000; ++i) {
       const std::int64_t k = kYear / period + 7919 * i;
       const auto what = fmt::format("{} Hz, reading {}", rate, k);
@@ -66,13 +66,13 @@ void microsecond_ticks(Fixture& fixture, Checks& checks) {
     for (const base::ReadingBlock& r : test.farm->tick(tick * kMicrosecond, {})) times.push_back(r.time);
   checks.equal(times.size(), 2u, "readings in 0.2 s");
   for (std::size_t i = 0; i < times.size(); ++i)
-    checks.equal(times[i], static_cast<std::int64_t>(i + 1) * kSecond / 10, "each at its time", i);
+    checks.equal(times[i], static_cast<std::int64_t>(i + 1) * base::kSecond / 10, "each at its time", i);
 }
 
 void ten_second_ticks(Fixture& fixture, Checks& checks) {
   TestFarm test = fixture.measure(noisy_room(), {.seed = kSeed});
   for (std::int64_t tick = 1; tick <= 100; ++tick)
-    read_at(test, checks, tick * 10 * kSecond, static_cast<std::uint64_t>(100 * tick), "every 10 s");
+    read_at(test, checks, tick * 10 * base::kSecond, static_cast<std::uint64_t>(100 * tick), "every 10 s");
 }
 
 /// A circle of 1 m radius at 0.3 m/s, in steps of 1 us for a second and in one step of 10 s. A step rounds a pose three
@@ -93,7 +93,7 @@ void motion(Fixture&, Checks& checks) {
   world::World world;
   add_mover(world, {});
   const base::Twist turning{0.3, 0.0, 0.3};
-  for (const auto& [dt, steps] : {std::pair<std::int64_t, int>{1000, 100'000}, {10 * kSecond, 1}}) {
+  for (const auto& [dt, steps] : {std::pair<std::int64_t, int>{1000, 100'000}, {10 * base::kSecond, 1}}) {
     robots::Fleet fleet(world);
     for (int i = 0; i < steps; ++i) fleet.move({&turning, 1}, dt);
     const Real seconds = static_cast<Real>(dt * steps) * 1e-9L;
@@ -105,7 +105,7 @@ void motion(Fixture&, Checks& checks) {
 void lights(Fixture&, Checks& checks) {
   using State = world::LightState;
   const world::Light light{.phases = {{State::green, 8.0}, {State::yellow, 2.0}, {State::red, 10.0}}, .offset = 3.0};
-  for (std::int64_t second = kYear / kSecond; second < kYear / kSecond + 100; ++second) {
+  for (std::int64_t second = kYear / base::kSecond; second < kYear / base::kSecond + 100; ++second) {
     const std::int64_t into = (second - 3) % 20;
     const world::Signal signal = world::signal_at(light, static_cast<double>(second) + 0.5);
     const State expected = into < 8 ? State::green : into < 10 ? State::yellow : State::red;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/time.h"
 #include "world/roads/roads.h"
 
 namespace sf::server {
@@ -33,7 +34,7 @@ std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mov
   double fastest = 0.0;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : sensor_set.of(group.kind->id, mover)) fastest = std::max(fastest, row.rate);
-  return seconds > 0.0 && fastest > 0.0 ? std::llround(1e9 * std::max(seconds, 2.5 / fastest)) : 0;
+  return seconds > 0.0 && fastest > 0.0 ? base::nanoseconds(std::max(seconds, 2.5 / fastest)) : 0;
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
     : world_(world),
       names_(wire_names(world)),
       mover_(mover),
-      body_(world, mover, std::llround(1e9 * options.forget)),
+      body_(world, mover, base::nanoseconds(options.forget)),
       link_(world, sensor_set, mover, sent, options.link,
             [this](const netio::Packet& packet, std::int64_t now) { on_packet(packet, now); }),
       roads_(world::roads_of(world)),
@@ -78,7 +79,7 @@ void RobotClient::run(const std::atomic<bool>& stop, double duration) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count();
   };
   const std::int64_t period = std::llround(1e9 / rate());
-  const std::int64_t end = duration > 0.0 ? std::llround(1e9 * duration) : INT64_MAX;
+  const std::int64_t end = duration > 0.0 ? base::nanoseconds(duration) : INT64_MAX;
   for (std::int64_t next = 0; !stop && !done(); next = std::max(next + period, clock() - period)) {
     wait_until(std::min(next, end), stop, clock);
     if (stop || clock() >= end) break;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <thread>
 
+#include "base/time.h"
+
 namespace sf::server {
 
 class Service::Clock {
@@ -32,7 +34,7 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
 
 void Service::run(const std::atomic<bool>& stop, double duration) {
   const Clock clock;
-  const std::int64_t step = std::llround(interval_ * 1e9);
+  const std::int64_t step = base::nanoseconds(interval_);
   std::int64_t next = 0;  // [ns] of the tick
   while (!stop) {
     wait_until(clock, std::min(next, next_due()), stop);

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "base/time.h"
+
 namespace sf::server {
 
 StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptions& options)
@@ -16,7 +18,7 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
       relay_(ids_of(names_.robots), {.range = options.radio}),
       fleet_(world),
       forget_(options.forget > 0.0
-                  ? std::max<std::int64_t>(0, std::llround(1e9 * options.forget) - netio::kClientTimeout)
+                  ? std::max<std::int64_t>(0, base::nanoseconds(options.forget) - netio::kClientTimeout)
                   : kNever),
       last_active_(world.movers.size(), kNever),
       log_(options.log_descriptor) {
