@@ -51,7 +51,8 @@ struct Line {
 SF_INLINE Line facing(double px, double py, double tx, double ty, double spread) {
   SF_REAL away = tx * py - ty * px;
   const double side = away < 0.0 ? -1.0 : 1.0;
-  return Line(px, py, tx, ty, -side * ty, side * tx, spread);
+  const Line line = {px, py, tx, ty, -side * ty, side * tx, spread};
+  return line;
 }
 
 /// Points closer together than about 1e-7 of their distance define no line.
@@ -95,7 +96,10 @@ struct LineMoments {
   double lowest, highest;  // [m] of u
 };
 
-SF_INLINE LineMoments no_moments() { return LineMoments(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0); }
+SF_INLINE LineMoments no_moments() {
+  const LineMoments none = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  return none;
+}
 
 SF_INLINE void add_to_moments(SF_INOUT(LineMoments) s, double w, double u, double v) {
   SF_REAL wu = w * u;
@@ -140,7 +144,8 @@ SF_INLINE Parabola parabola_of(LineMoments s) {
   SF_REAL curvature = qv / (is_curved ? qq : 1.0);
   SF_REAL left = s.vv - curvature * qv;
   const double rest = is_curved ? left : s.vv;
-  return Parabola(is_curved ? curvature : 0.0, skew, base, rest > 0.0 ? rest : 0.0);
+  const Parabola parabola = {is_curved ? curvature : 0.0, skew, base, rest > 0.0 ? rest : 0.0};
+  return parabola;
 }
 
 /// [m] largest distance of an edge's points from a line or parabola that their source explains. A grain is a pixel
@@ -167,7 +172,8 @@ struct Hypothesis {
 
 SF_INLINE Hypothesis hypothesis_of(Line line, double allowed) {
   SF_REAL c = line.nx * line.px + line.ny * line.py;
-  return Hypothesis(float(line.nx), float(line.ny), float(c), float(allowed));
+  const Hypothesis hypothesis = {float(line.nx), float(line.ny), float(c), float(allowed)};
+  return hypothesis;
 }
 
 /// The vote of a point: 1 for an inlier, -3 in front of the edge, 0 behind it. The nearest candidate wins whose inliers
@@ -250,7 +256,9 @@ SF_INLINE LineFit fit_at(Line line, LineMoments s, Parabola b, PointError point_
   const bool there =
       line.spread > 0.0 && ahead && crosses && distance >= -9.313225746154785e-10 && distance <= distance_max;
   const double at = here || distance < 0.0 ? 0.0 : distance;
-  return LineFit(at, s.n, residual, here ? sqrt(own / n) : sigma, ahead && between ? gain : SF_NO_GAIN, here || there);
+  const LineFit fitted = {
+      at, s.n, residual, here ? sqrt(own / n) : sigma, ahead && between ? gain : SF_NO_GAIN, here || there};
+  return fitted;
 }
 
 #ifdef __cplusplus
