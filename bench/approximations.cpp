@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/reading.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 namespace sf::bench {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 namespace sf::raycast {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/report.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 namespace sf::robots {
 

@@ -43,14 +43,6 @@ std::vector<std::uint32_t> ranks_of(const world::World& world) {
   return ranks;
 }
 
-double median_radius(const std::vector<Footprint>& outlines) {
-  std::vector<double> radii;
-  for (const Footprint& outline : outlines) radii.push_back(outline.radius);
-  if (radii.empty()) return 1.0;
-  std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
-  return std::clamp(radii[radii.size() / 2], 0.05, 10.0);
-}
-
 }  // namespace
 
 std::vector<base::Report> states_at_load(const world::World& world) {
@@ -64,7 +56,7 @@ Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
     : world_(world),
       thread_pool_(thread_pool),
       footprints_(footprints_of(world)),
-      walls_(stopping(world), 2.0 * median_radius(footprints_)),
+      walls_(stopping(world)),
       reports_(states_at_load(world)),
       predicted_(reports_),
       rank_(ranks_of(world)),

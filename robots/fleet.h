@@ -28,7 +28,7 @@
 #include "robots/contact_sectors.h"
 #include "robots/footprint.h"
 #include "robots/neighbour_grid.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 #include "world/world.h"
 
 namespace sf::robots {
@@ -155,7 +155,7 @@ class Fleet {
   const world::World& world_;
   base::ThreadPool* thread_pool_;
   std::vector<Footprint> footprints_;
-  world::WallGrid walls_;
+  world::WallTree walls_;
   NeighbourGrid neighbours_;
   double widest_ = 0.0;    ///< [m] largest outline radius
   double farthest_ = 0.0;  ///< [m] largest distance of an origin from its position in `neighbours_`

@@ -215,26 +215,29 @@ Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std:
   const glm::dvec2 p = origin(X_WM);
   const double reach = outline.radius + kContactDistance;
   BodyContact touch;
+  std::int64_t x = 0, y = 0;
+  const auto add = [&](std::uint32_t sectors, glm::dvec2 from_surface) {
+    const glm::dvec2 away = kWhole * unit(from_surface);
+    x += std::llround(away.x), y += std::llround(away.y);
+    touch.sectors |= sectors;
+  };
   walls_.any(world::box_around(p, reach), [&](const Segment& wall) {
     const std::uint32_t sectors = contact_sectors(outline, X_WM, wall);
-    if (sectors != 0) touch = {touch.sectors | sectors, touch.away + unit(world::from_segment(p, wall.a, wall.b))};
+    if (sectors != 0) add(sectors, world::from_segment(p, wall.a, wall.b));
     return false;
   });
-  std::int64_t x = 0, y = 0;
   neighbours_.any(p, reach + widest_ + farthest_, [&](std::uint32_t other) {
     const glm::dvec2 from_other = p - origin(reports[other].X_WM);
     const double apart = reach + footprints_[other].radius;
     if (other == row || absent_[other] != 0 || dot(from_other, from_other) > apart * apart) return false;
     const std::uint32_t sectors = contact_sectors(outline, X_WM, footprints_[other], reports[other].X_WM);
     if (sectors == 0) return false;
-    const glm::dvec2 away = kWhole * unit(from_other);
-    x += std::llround(away.x), y += std::llround(away.y);
-    touch.sectors |= sectors;
+    add(sectors, from_other);
     if (!struck.empty()) std::atomic_ref(struck[other]).store(1, std::memory_order_relaxed);
     // A mover placed from outside needs its contact sectors alone; in a crowd at one place all sectors are soon found.
     return reported_[row] != 0 && touch.sectors == kEverywhere;
   });
-  touch.away = touch.away + 1.0 / kWhole * glm::dvec2{static_cast<double>(x), static_cast<double>(y)};
+  touch.away = 1.0 / kWhole * glm::dvec2{static_cast<double>(x), static_cast<double>(y)};
   return touch;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 namespace sf::robots {
 

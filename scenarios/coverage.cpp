@@ -10,7 +10,7 @@
 #include "control/explore.h"
 #include "maps/grid_update.h"
 #include "sensors/laser.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 namespace sf::scenarios {
 
@@ -49,10 +49,8 @@ std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, co
   const world::Mover& robot = world.movers[mover];
   double top = 0.0;
   for (const world::Segment& side : robot.body) top = std::max(top, side.z_max);
-  const world::WallGrid walls(
-      walls_where(
-          world, [](const world::Segment& w) { return w.stops_robots; }, robot.X_WM.z, robot.X_WM.z + top),
-      0.5);
+  const world::WallTree walls(walls_where(
+      world, [](const world::Segment& w) { return w.stops_robots; }, robot.X_WM.z, robot.X_WM.z + top));
   const auto clear = [&](CellAt at) {
     const glm::dvec2 p = maps::middle(geometry, at);
     return !walls.any(world::box_around(p, robot.radius),

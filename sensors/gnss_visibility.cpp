@@ -31,8 +31,8 @@ double top_of(std::span<const Segment> walls) {
   return top;
 }
 
-/// Cell size [m] at which a line to the lowest satellite crosses about ten cells.
-double cell_of(std::span<const Segment> walls) {
+/// Length [m] of which a line to the lowest satellite has about ten.
+double piece_of(std::span<const Segment> walls) {
   double bottom = HUGE_VAL;
   for (const Segment& wall : walls) bottom = std::min(bottom, wall.z_min);
   return walls.empty() ? 1.0 : std::max(0.5, 0.4 * (top_of(walls) - bottom));
@@ -83,7 +83,7 @@ std::optional<Dilution> dilution(std::span<const Satellite> satellites, std::uin
 GnssVisibility::GnssVisibility(const world::World& world) : GnssVisibility(blocking(world)) {}
 
 GnssVisibility::GnssVisibility(std::vector<Segment> walls)
-    : cell_(cell_of(walls)), z_top_(top_of(walls)), walls_(std::move(walls), cell_) {
+    : piece_(piece_of(walls)), z_top_(top_of(walls)), walls_(std::move(walls)) {
   add_solids(walls_.walls());
 }
 
@@ -128,7 +128,7 @@ bool GnssVisibility::is_visible(glm::dvec2 p, double z, const Satellite& satelli
   const bool roofed =
       boxes_.any(base::box_of(p, end), [&](std::uint32_t i) { return under(p, z, satellite, solids_[i]); });
   if (roofed) return false;
-  const int pieces = static_cast<int>(std::min(std::ceil(way / cell_), kMostPieces));
+  const int pieces = static_cast<int>(std::min(std::ceil(way / piece_), kMostPieces));
   for (int i = 0; i < pieces; ++i) {
     const glm::dvec2 from = p + way * i / pieces * satellite.horizontal,
                      to = p + way * (i + 1) / pieces * satellite.horizontal;

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/box_tree.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 #include "world/world.h"
 
 namespace sf::sensors {
@@ -60,9 +60,9 @@ class GnssVisibility {
   bool crosses(glm::dvec2 p, double z, const Satellite& satellite, const world::Segment& wall) const;
   bool under(glm::dvec2 p, double z, const Satellite& satellite, const Solid& solid) const;
 
-  double cell_ = 1.0;
+  double piece_ = 1.0;  ///< [m] of a line of sight that is tested at once
   double z_top_ = 0.0;  ///< [m] largest height of any obstacle
-  world::WallGrid walls_;
+  world::WallTree walls_;
   std::vector<world::Segment> solid_edges_;
   std::vector<Solid> solids_;
   base::BoxTree boxes_;  ///< of the solids

@@ -7,7 +7,7 @@
 #include "base/box_tree.h"
 #include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 namespace sf::sensors {
 
@@ -16,7 +16,6 @@ namespace {
 using world::Emitter;
 using world::Segment;
 
-constexpr double kCell = 1.0;      // [m] of the grid of walls
 constexpr double kOverlap = 0.25;  // fraction of each buoy's beam that overlaps the other's
 
 /// True when a bearing from the emitter is in a beam of width `fov` about `axis` [rad].
@@ -44,7 +43,7 @@ class IrReceivers : public HostBackend {
   void measure(std::span<const HostSample> samples) const override;
   bool hidden(const Emitter& emitter, glm::dvec2 p, double z) const;
 
-  world::WallGrid walls_;
+  world::WallTree walls_;
   base::BoxTree reaches_;  ///< of the world's emitters
 };
 
@@ -59,7 +58,7 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
 
 IrReceivers::IrReceivers(const SensorContext& context)
     : HostBackend(context, irreceiver_type, specs_of(context.world)),
-      walls_(opaque(context.world), kCell),
+      walls_(opaque(context.world)),
       reaches_(reaches_of(context.world)) {}
 
 bool IrReceivers::hidden(const Emitter& emitter, glm::dvec2 p, double z) const {

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "world/ros_map.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 namespace sf::world {
 
@@ -47,15 +47,15 @@ std::vector<Segment> walls_at_height(const World& world, const Mover& robot, std
   return walls;
 }
 
-bool clear_of_walls(const WallGrid& walls, glm::dvec2 p, double radius) {
+bool clear_of_walls(const WallTree& walls, glm::dvec2 p, double radius) {
   return !walls.any(box_around(p, radius), [&](const Segment& w) { return distance(p, w.a, w.b) < radius; });
 }
 
-bool wall_between(const WallGrid& walls, glm::dvec2 p, glm::dvec2 q) {
+bool wall_between(const WallTree& walls, glm::dvec2 p, glm::dvec2 q) {
   return walls.any(box_of(p, q), [&](const Segment& w) { return segments_meet(p, q, w.a, w.b); });
 }
 
-bool in_solid(const WallGrid& walls, glm::dvec2 p) { return winding_number(walls.walls(), p) != 0; }
+bool in_solid(const WallTree& walls, glm::dvec2 p) { return winding_number(walls.walls(), p) != 0; }
 
 bool is_known(std::span<const Segment> known, glm::dvec2 p) { return known.empty() || winding_number(known, p) != 0; }
 
@@ -75,7 +75,7 @@ struct Region {
 
 // Cells of half the robot's circle, larger in large worlds, but never wider than the circle. Two neighbouring clear
 // centres then have no wall between them: each point between is within the circle's radius of one of them.
-Region grid_over(const WallGrid& walls, const Mover& robot) {
+Region grid_over(const WallTree& walls, const Mover& robot) {
   const glm::dvec2 p{robot.X_WM.x, robot.X_WM.y};
   Box box = box_around(p, kOpenWorld);
   for (const Segment& w : walls.walls()) box = base::united(box, box_of(w.a, w.b));
@@ -95,7 +95,7 @@ Region grid_over(const WallGrid& walls, const Mover& robot) {
 enum class Cell : std::uint8_t { unknown, blocked, reached };
 
 // Appends the cells reachable from `first` to region.cells. Cells are tested when the flood fill reaches them.
-void flood(Region& region, std::vector<Cell>& state, const WallGrid& walls, double radius, std::uint32_t first) {
+void flood(Region& region, std::vector<Cell>& state, const WallTree& walls, double radius, std::uint32_t first) {
   std::size_t next = region.cells.size();
   const auto visit = [&](std::uint32_t to) {
     if (state[to] != Cell::unknown) return;
@@ -116,7 +116,7 @@ void flood(Region& region, std::vector<Cell>& state, const WallGrid& walls, doub
 }
 
 // The nearest clear cell without a wall between its centre and p, or kNone.
-std::uint32_t cell_near(const Region& region, const WallGrid& walls, double radius, glm::dvec2 p) {
+std::uint32_t cell_near(const Region& region, const WallTree& walls, double radius, glm::dvec2 p) {
   const double reach = 2.0 * radius + region.cell;
   const auto index = [&](double v, std::uint32_t count) {
     return static_cast<std::uint32_t>(std::clamp(std::floor(v / region.cell), 0.0, count - 1.0));
@@ -156,7 +156,7 @@ bool is_open(const Region& region, const Box& known, double radius) {
 }
 
 // Takes the largest enclosed region, unless an open region is a hundred times as large.
-void take_largest(std::span<const Segment> known, Region& region, std::vector<Cell>& state, const WallGrid& walls,
+void take_largest(std::span<const Segment> known, Region& region, std::vector<Cell>& state, const WallTree& walls,
                   double radius) {
   const Box all_known = box_around_all(known);
   std::vector<std::uint32_t> inside, outside;
@@ -172,7 +172,7 @@ void take_largest(std::span<const Segment> known, Region& region, std::vector<Ce
   region.cells.swap(100 * inside.size() > outside.size() ? inside : outside);
 }
 
-Region reachable(std::span<const Segment> known, const WallGrid& walls, const Mover& robot) {
+Region reachable(std::span<const Segment> known, const WallTree& walls, const Mover& robot) {
   Region region = grid_over(walls, robot);
   const double radius = clear_radius(robot);
   const glm::dvec2 p{robot.X_WM.x, robot.X_WM.y};
@@ -276,7 +276,7 @@ std::string placement_problem(const World& world, const Mover& robot, const Pose
 std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32_t count, std::uint64_t seed) {
   const double radius = clear_radius(robot);
   const std::vector<Segment> known = known_free(world);
-  const WallGrid walls(walls_at_height(world, robot, known), 2.0 * radius);
+  const WallTree walls(walls_at_height(world, robot, known));
   const Region region = reachable(known, walls, robot);
   PlacedRobots crowd(std::min<std::size_t>(count, region.cells.size()), 2.0 * robot.radius + kPlaceMargin);
   std::vector<Pose> poses;

@@ -9,7 +9,7 @@
 #include "base/random.h"
 #include "maps/grid.h"
 #include "tests/robots/scenes.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 #include "world/world.h"
 
 namespace sf::exploration {

@@ -8,7 +8,7 @@
 
 #include "tests/sensors/chance.h"
 #include "tests/sensors/scenes.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 namespace sf::raycast {
 namespace {

@@ -8,7 +8,7 @@
 #include "control/stop_reason.h"
 #include "scenarios/simulation.h"
 #include "sensors/sensor_type.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 namespace sf::scenarios {
 namespace {

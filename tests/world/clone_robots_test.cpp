@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "tests/robots/scenes.h"
 #include "world/free_space.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 #include "world/world.h"
 
 namespace sf::world {

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "tests/robots/scenes.h"
 #include "world/free_space.h"
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 namespace sf::world {
 namespace {

@@ -1,4 +1,4 @@
-#include "world/wall_grid.h"
+#include "world/wall_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -86,13 +86,13 @@ std::vector<Segment> random_walls(std::uint32_t count, glm::dvec2 around, double
 
 // Visits each wall that passes through the box, and no wall outside it.
 void expect_same_as_brute_force(const std::vector<Segment>& walls, glm::dvec2 around, double spread) {
-  const WallGrid grid(walls, 0.5);
+  const WallTree tree(walls);
   for (std::uint32_t i = 0; i < 300; ++i) {
     const auto u = base::random_uniform({.seed = 9, .a = i}, 0);
     const glm::dvec2 p = around + spread * glm::dvec2{u[0] - 0.5, u[1] - 0.5};
     const double reach = 0.1 + 2.0 * base::random_uniform({.seed = 9, .a = i}, 1)[0];
     std::set<std::uint32_t> met;
-    grid.any(box_around(p, reach), [&](const Segment& wall) {
+    tree.any(box_around(p, reach), [&](const Segment& wall) {
       if (distance(p, wall.a, wall.b) <= reach) met.insert(wall.model);
       return false;
     });
@@ -104,31 +104,30 @@ void expect_same_as_brute_force(const std::vector<Segment>& walls, glm::dvec2 ar
   }
 }
 
-TEST(WallGrid, FindsWhatBruteForceFinds) { expect_same_as_brute_force(random_walls(2000, {}, 40, 20), {}, 50); }
+TEST(WallTree, FindsWhatBruteForceFinds) { expect_same_as_brute_force(random_walls(2000, {}, 40, 20), {}, 50); }
 
-/// More buckets than one part.
-TEST(WallGrid, FindsWhatBruteForceFindsAmongMany) {
+TEST(WallTree, FindsWhatBruteForceFindsAmongMany) {
   expect_same_as_brute_force(random_walls(60'000, {}, 300, 5), {}, 160);
 }
 
-TEST(WallGrid, FindsIt100KmAway) {
+TEST(WallTree, FindsIt100KmAway) {
   const glm::dvec2 far{1e5, -1e5};
   expect_same_as_brute_force(random_walls(2000, far, 40, 20), far, 50);
 }
 
-TEST(WallGrid, FindsWallsOf100Km) { expect_same_as_brute_force(random_walls(500, {}, 40, 2e5), {}, 50); }
+TEST(WallTree, FindsWallsOf100Km) { expect_same_as_brute_force(random_walls(500, {}, 40, 2e5), {}, 50); }
 
-TEST(WallGrid, StopsAtTheFirstYes) {
-  const WallGrid grid(random_walls(100, {}, 1, 1), 0.5);
+TEST(WallTree, StopsAtTheFirstYes) {
+  const WallTree tree(random_walls(100, {}, 1, 1));
   int asked = 0;
-  EXPECT_TRUE(grid.any(box_around({}, 1), [&](const Segment&) { return ++asked == 3; }));
+  EXPECT_TRUE(tree.any(box_around({}, 1), [&](const Segment&) { return ++asked == 3; }));
   EXPECT_EQ(asked, 3);
 }
 
-TEST(WallGrid, EmptyAndEnormousQueries) {
-  EXPECT_FALSE(WallGrid({}, 0.5).any(box_around({}, 1e12), [](const Segment&) { return true; }));
-  const WallGrid one({{.a = {0, 0}, .b = {1, 0}}}, 0.5);
-  EXPECT_TRUE(one.any(box_around({}, 1e12), [](const Segment&) { return true; })) << "more cells than walls";
+TEST(WallTree, EmptyAndEnormousQueries) {
+  EXPECT_FALSE(WallTree({}).any(box_around({}, 1e12), [](const Segment&) { return true; }));
+  const WallTree one(std::vector<Segment>{{.a = {0, 0}, .b = {1, 0}}});
+  EXPECT_TRUE(one.any(box_around({}, 1e12), [](const Segment&) { return true; }));
 }
 
 }  // namespace
