@@ -8,6 +8,7 @@
 #include "sensors/laser.h"
 #include "tests/control/closed_loop.h"
 #include "tests/control/exploration.h"
+#include "tests/instrumented.h"
 
 namespace sf::control {
 namespace {
@@ -59,6 +60,7 @@ TEST(Explore, MapsAllOfTheMappingAreaAndTouchesNothing) {
 
 // Slivers along surfaces are visible only by some beams from some places: a few cells in a thousand.
 TEST(Explore, MapsAreasOfBoxesAtAnyAngleAndTouchesNothing) {
+  if (instrumented()) GTEST_SKIP() << "minutes under sanitizers; MapsAllOfTheMappingArea runs the same code";
   for (const std::uint64_t seed : {3, 5}) {
     const world::World world = exploration::boxes(seed, 4 + static_cast<int>(seed));
     const Explored e = explore(world, {.spare = 0.003});
@@ -71,6 +73,7 @@ TEST(Explore, MapsAreasOfBoxesAtAnyAngleAndTouchesNothing) {
 }
 
 TEST(Explore, MissesNothingWhenItIsThorough) {
+  if (instrumented()) GTEST_SKIP() << "a minute under sanitizers; the passages run the same code";
   const Explored e = explore(exploration::boxes(1, 5), {.spare = 0.003}, true);
   EXPECT_TRUE(e.done);
   EXPECT_EQ(e.contacts, 0);

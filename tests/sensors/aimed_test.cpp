@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/instrumented.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"
@@ -9,11 +10,7 @@
 namespace sf::trial {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kEyes = 100;  ///< the brute-force reference is slow under ASan
-#else
-constexpr int kEyes = 400;
-#endif
+const int kEyes = instrumented() ? 100 : 400;
 
 /// Eyes at random points, also inside solids, whose middle beam hits a vertex: nine beams round it, or four within a
 /// nanometre.

@@ -10,6 +10,7 @@
 
 #include "base/thread_pool.h"
 #include "sensors/accuracy.h"
+#include "tests/instrumented.h"
 #include "tests/sensors/brute_force.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
@@ -20,11 +21,7 @@ namespace {
 
 using Wide = long double;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kTicks = 1;
-#else
-constexpr int kTicks = 28;
-#endif
+const int kTicks = instrumented() ? 1 : 28;
 constexpr std::uint32_t kRobots = 100;  // of 361 beams
 
 /// A world with the square in which robots are placed.

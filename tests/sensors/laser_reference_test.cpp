@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/instrumented.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"
@@ -11,11 +12,7 @@
 namespace sf::trial {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr std::uint32_t kRobots = 20;
-#else
-constexpr std::uint32_t kRobots = 200;
-#endif
+const std::uint32_t kRobots = instrumented() ? 20 : 200;
 
 struct Disagreement {
   std::size_t beams = 0;

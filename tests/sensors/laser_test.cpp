@@ -5,17 +5,14 @@
 #include <filesystem>
 
 #include "base/random.h"
+#include "tests/instrumented.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::trial {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr std::uint32_t kRobots = 6;  ///< each beam is checked against every segment in long double: slow under ASan
-#else
-constexpr std::uint32_t kRobots = 24;
-#endif
+const std::uint32_t kRobots = instrumented() ? 6 : 24;  ///< each beam is checked against every segment
 constexpr double kRanges[] = {0.75, 8.0, 30.0, 100.0};
 
 /// Robots with bodies at random free poses, with two of four ranges each time, so that list configs mix.

@@ -9,6 +9,7 @@
 #include "sensors/magnetic_field/magnet_tree.h"
 #include "sensors/magnetic_field/sampling.h"
 #include "sensors/magnetic_field/truncation.h"
+#include "tests/instrumented.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -99,11 +100,7 @@ Measured measure(world::World world, double half, double height, std::uint32_t c
   return result;
 }
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::uint32_t kPlaces = 2'000;
-#else
-constexpr std::uint32_t kPlaces = 25'000;
-#endif
+const std::uint32_t kPlaces = instrumented() ? 2'000 : 25'000;
 
 /// @param most largest permitted ratio of the bound to the largest error found
 void expect_bounded(const std::string& name, const world::World& world, double half, double height, double most) {

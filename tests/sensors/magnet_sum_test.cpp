@@ -9,6 +9,7 @@
 
 #include "sensors/magnetic_field/sampling.h"
 #include "sensors/magnetic_field/tables.h"
+#include "tests/instrumented.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -84,11 +85,7 @@ std::vector<FieldPoint> places_over(const world::World& world, std::uint32_t cou
   return points;
 }
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::uint32_t kMany = 20'000, kPlaces = 50;
-#else
-constexpr std::uint32_t kMany = 200'000, kPlaces = 500;
-#endif
+const std::uint32_t kMany = instrumented() ? 20'000 : 200'000, kPlaces = instrumented() ? 50 : 500;
 
 /// The thesis' components in plain doubles, on all cores.
 std::vector<FieldSum> direct_sums(const world::World& world, std::span<const FieldPoint> points) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/instrumented.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"
@@ -9,11 +10,7 @@
 namespace sf::trial {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kBowls = 4;  ///< the brute-force reference is slow under ASan
-#else
-constexpr int kBowls = 24;
-#endif
+const int kBowls = instrumented() ? 4 : 24;
 constexpr double kBowl = 6.0;    ///< [m] half the side of the room round each soup
 constexpr double kRange = 18.0;  ///< [m] more than its diagonal
 constexpr double kApart = 64.0;  ///< [m] so that soups are invisible to each other
