@@ -242,7 +242,9 @@ void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
   if (gone) s_->subscribed.at(mover) = 0;
 }
-void Farm::subscribe_all() { std::fill(s_->subscribed.begin(), s_->subscribed.end(), kAllSensorTypes); }
+void Farm::subscribe_all() {
+  for (std::uint32_t m = 0; m < s_->subscribed.size(); ++m) subscribe(m, kAllSensorTypes);
+}
 
 const sensors::SensorSet& Farm::sensor_set() const { return s_->sensor_set; }
 

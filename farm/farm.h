@@ -3,11 +3,11 @@
 //
 //   farm.subscribe_all();
 //   while (running) {
-//     readings = farm.tick(now, reports);
+//     readings = farm.tick(now, reports);  // reports: newest states of movers
 //     for (reading : readings) send(reading);
 //   }
 //
-// Sensors that are due between two ticks are measured at their own times by a call of `sample` for each of these:
+// Sensors that are due between two ticks are measured at their own times, before the later tick and with its reports:
 //
 //   while ((due = farm.next_due()) < now) farm.sample_between(due, reports);
 //
@@ -47,7 +47,7 @@ struct FarmStats {
   std::uint64_t batches = 0;  ///< submitted to the device
   sensors::SensorStats work;  ///< of all sensor types
   double place_s = 0.0;       ///< [s] host: outlines of the movers
-  double lists_s = 0.0;       ///< [s] host: lists of candidate walls
+  double lists_s = 0.0;       ///< [s] host: lists of candidate walls, recording of kernels
   double device_s = 0.0;      ///< [s] host: preparation of the submission and the wait for its end
   double collect_s = 0.0;     ///< [s] host: noise, interpolation, delivery
 };
@@ -62,7 +62,7 @@ class Farm {
   Farm(const world::World& world, gpu::Device& device, const FarmOptions& options = {});
   ~Farm();
 
-  /// Selects the sensors of a mover that are computed; initially none.
+  /// Sets the sensors of a mover that are computed; initially none. Absent movers have none.
   /// @param kinds bit k: sensor type with wire id k
   void subscribe(std::uint32_t mover, std::uint32_t kinds);
   void subscribe(std::uint32_t mover, bool) = delete;
@@ -77,7 +77,7 @@ class Farm {
   /// delay a reading). Movers without a report keep their pose. A sensor is due at phase + k / rate for k = 0, 1, ...;
   /// it is measured at most once a tick, at the first tick not before its due time.
   /// @param now [ns] simulated time; does not decrease
-  /// @return blocks that live until the next tick
+  /// @return blocks that live until the next call of `tick`, `sample`, `sample_between` or `sense`
   std::span<const base::ReadingBlock> tick(std::int64_t now, std::span<const base::Report> reports);
 
   /// [ns] When the next subscribed sensor is due: phase + k / rate to the nearest nanosecond. farm::kNever without
@@ -89,7 +89,7 @@ class Farm {
   /// from the last tick: readings at ticks do not depend on samples in between.
   std::span<const base::ReadingBlock> sample(std::int64_t now, std::span<const base::Report> reports);
   /// `sample` with the states of all movers interpolated between the last tick and the next (robots::interpolate).
-  /// @param next one report per mover, at the time of the next tick, as those of the last tick were at its time
+  /// @param next one report per mover, at the time of the next tick
   std::span<const base::ReadingBlock> sample_between(std::int64_t now, std::span<const base::Report> next);
 
   /// Computes one sensor immediately, due or not, as if its mover stood at `X_WM`. Noise as in the options.

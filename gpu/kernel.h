@@ -43,8 +43,8 @@ class Kernel {
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
-  /// Sets the tables of the dispatches recorded next: all tables that the kernel declares, in any order. Of a `buffer`
-  /// larger than the device's limit the first part is bound. Tables must outlive these dispatches.
+  /// Sets the tables of all dispatches of the kernel: call it before they are recorded. All tables that the kernel
+  /// declares, in any order; of a `buffer` larger than the device's limit the first part. Tables must outlive them.
   void bind(const std::vector<TableBinding>& tables);
 
   std::uint32_t group_size() const;  ///< invocations along x per group

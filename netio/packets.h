@@ -4,7 +4,6 @@
 // The payload of a reading is defined by its sensor type; here it is a sequence of bytes behind a header. Decoding
 // accepts any bytes and returns a packet or one PacketStatus. Encoding requires values within the limits: a value that
 // the decoder would reject is a programming error and aborts.
-// that the decoder would refuse is our bug and aborts.
 
 #include <array>
 #include <cstdint>

@@ -14,16 +14,17 @@ namespace sf::raycast {
 
 using base::Pose;
 
-/// Outlines of all movers. Row of an exact segment: number of walls + `first_rows()` of the mover + edge.
+/// Outlines of all movers, without edges that lasers do not see.
 class MoverGeometry {
  public:
   explicit MoverGeometry(const world::World& world);
 
-  /// Registers scans at world height `z` [m]; call before the first `place`. @return index of the height
+  /// Registers scans in the horizontal plane at world height `z` [m]; call before the first `place`. @return index of
+  /// the height
   std::uint32_t add_height(double z);
 
   /// Moves every outline to its mover's pose. @param states one per mover, unchanged until the next call
-  /// @param exact out: rows of the movers' edges
+  /// @param exact out: the movers' edges, mover by mover, `segments()` of them
   void place(std::span<const base::Report> states, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
 
   std::size_t segments() const { return local_.size(); }
@@ -37,7 +38,7 @@ class MoverGeometry {
   std::size_t movers() const { return radii_.size(); }
   std::span<const base::Report> states() const { return states_; }
   std::span<const glm::dvec2> headings() const { return headings_; }
-  /// First exact segment of each mover, followed by the end.
+  /// Row of each mover's first edge in the table of exact segments, where walls come first; then the end.
   std::span<const std::uint32_t> first_rows() const { return first_rows_; }
 
  private:

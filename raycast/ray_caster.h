@@ -53,7 +53,7 @@ struct ScanResult {
   glm::dvec2 heading;                ///< unit vector of its yaw
 };
 
-/// Not thread-safe. `context` must outlive it, except for `context.world`.
+/// Not thread-safe. The device, thread pool and states of `context` must outlive it.
 class RayCaster {
  public:
   /// @param world the visible geometry, which may be a subset of `context.world`; the movers must be the same

@@ -4,7 +4,7 @@
 //   Fleet fleet(world);
 //   fleet.move(commands, interval);            // simulated, or
 //   fleet.apply(reports);                      // from outside
-//   farm.tick(fleet.reports()); ... fleet.contacts();
+//   farm.tick(now, fleet.reports()); ... fleet.contacts();
 //
 // `move` resolves conflicts in at most Fleet::kRounds rounds of two phases:
 //
@@ -14,9 +14,9 @@
 //
 // The next round is for movers that wait or stayed and have a mover near them that moved or stayed. In the last round
 // no mover waits: a mover whose step is still refused stands, and turns where it can. Each round thus has the result of
-// movers that go one after another in order of ids, and no mover overlaps another that it did not overlap before. A
-// mover's result depends only on the movers near it (within kRounds times the ways of both), not on rows, threads or
-// the rest of the fleet.
+// movers that go one after another in order of ids (robots, then tags), and no mover overlaps another that it did not
+// overlap before. A mover's result depends only on the movers near it (within kRounds times the ways of both), not on
+// rows, threads or the rest of the fleet.
 
 #include <cstdint>
 #include <span>

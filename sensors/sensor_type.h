@@ -1,9 +1,9 @@
 #pragma once
 // A sensor type: one table with everything that the farm, the wire, the recorder and the commands need.
 //
-// A new type x takes four files and one line: sensors/x.h (records shared by host and device), sensors/x.cpp (its
-// SensorType), shaders/x.comp (physics), tests/sensors/x_test.cpp, and `farm_sensor(<wire id> x DEVICE)` in
-// sensors/CMakeLists.txt.
+// A new type x takes sensors/x.h, sensors/x.cpp (its SensorType), shaders/x.comp (physics), tests/sensors/x_test.cpp
+// and `farm_sensor(<wire id> x DEVICE)` in sensors/CMakeLists.txt; records of its kernel: their header in
+// shaders/CMakeLists.txt. One without a kernel says HOST and has no shader. Rays are horizontal (raycast/ray_caster.h).
 
 #include <cstdint>
 #include <memory>

@@ -5,7 +5,7 @@
 #include "shaders/sensors/laneedge.glsl"
 #include "shaders/raycast/records.glsl"
 
-layout(local_size_x = SF_LANES_PER_GROUP) in;
+layout(local_size_x = SF_LANES_PER_GROUP) in;  // raycast/records.h
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer edges;       // EdgeRow of each sensor
 layout(binding = 1, rgba32ui) uniform readonly uimageBuffer directions;  // BeamDirection of each beam
 layout(binding = 2, rgba32f) uniform readonly imageBuffer normals;       // one texel per lane: normal deviates

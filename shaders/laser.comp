@@ -4,7 +4,7 @@
 
 #include "shaders/raycast/records.glsl"
 
-layout(local_size_x = SF_LANES_PER_GROUP) in;
+layout(local_size_x = SF_LANES_PER_GROUP) in;  // raycast/records.h
 layout(constant_id = 0) const bool kMovers = true;   // the world has movers
 layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges in 32 bits where these are accurate enough
 layout(constant_id = 2) const bool kTexels = false;  // results exceed the limit of storage buffers, which are faster

@@ -2,7 +2,7 @@
 // The fields of a world's rows, one table per type of row. Snapshots, the hash, the checks of snapshots and, for fields
 // with a key, the known keys of Stage files and their reading follow from these tables.
 //
-// The order is that of the snapshot's bytes: a change of it, or a new field, changes `kVersion` in world/snapshot.cpp.
+// The order is that of the snapshot's bytes: raise `kVersion` in world/snapshot.cpp with each change of a table.
 // Keys with a reader of their own are listed in world/keys.cpp.
 
 #include "world/field.h"
@@ -38,6 +38,15 @@ template <> inline constexpr auto kFields<Sensor> = std::make_tuple(
     field(&Sensor::type), field(&Sensor::name), field(&Sensor::X_MS), field(&Sensor::height),
     field(&Sensor::metres_per_unit), field(&Sensor::radians_per_unit), field(&Sensor::settings),
     label(&Sensor::line), path(&Sensor::file));
+
+template <> inline constexpr auto kFields<LaserNoise> = std::make_tuple(
+    field(&LaserNoise::range_sigma), field(&LaserNoise::range_proportional), field(&LaserNoise::angle_sigma));
+
+template <> inline constexpr auto kFields<Laser> = std::make_tuple(
+    field(&Laser::name), field(&Laser::X_MS), field(&Laser::fov), field(&Laser::range_min),
+    field(&Laser::range_max, kAboveZero), field(&Laser::rate, kAboveZero), field(&Laser::phase), field(&Laser::latency),
+    field(&Laser::noise), field(&Laser::samples, Bounds{1, 1e6}), field(&Laser::resolution, Bounds{1}),
+    label(&Laser::color), field(&Laser::accuracy));
 
 template <> inline constexpr auto kFields<PathPiece> = std::make_tuple(
     field(&PathPiece::X_WP), field(&PathPiece::length, kAboveZero), field(&PathPiece::curvature),

@@ -1,5 +1,5 @@
 #pragma once
-// Words of world files: modelled words, and words known but not modelled.
+// Words of world files: modelled words (keys of one value: world/fields.h), and words known but not modelled.
 
 #include <cstdint>
 #include <span>

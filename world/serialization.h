@@ -21,12 +21,6 @@ namespace sf::world {
 /// The fields of a row to write: all of them, or those that a reading depends on (no colours).
 enum class RowFields { all, physics };
 
-// Lasers have functions of their own (world/mover_serialization.cpp).
-inline constexpr std::size_t kLaserBytes = 112;
-void put_laser(base::ByteWriter& out, const Laser& laser, RowFields fields);
-Laser get_laser(base::ByteReader& in);
-bool is_valid(const Laser& laser);
-
 template <class T>
 inline constexpr bool kIsRow = std::tuple_size_v<std::remove_const_t<decltype(kFields<T>)>> > 0;
 
@@ -53,11 +47,6 @@ struct RowWriter {
   void put(const std::pair<const std::string, int>& counted, Role role) {
     put(counted.first, role);
     put(counted.second, role);
-  }
-  void put(const Laser& laser, Role) {
-    Laser spelt = laser;
-    spelt.accuracy.file = relative(laser.accuracy.file);
-    put_laser(out, spelt, fields);
   }
 
  private:
@@ -87,7 +76,6 @@ template <class T>
 constexpr std::size_t least_bytes() {
   if constexpr (std::is_same_v<T, bool> || std::is_enum_v<T>) return 1;
   if constexpr (std::is_arithmetic_v<T>) return sizeof(T);
-  if constexpr (std::is_same_v<T, Laser>) return kLaserBytes;
   std::size_t sum = kIsRow<T> ? 0 : 4;  // a length
   for_each_entry<T>([&](const auto& entry) {
     if constexpr (requires { entry.bits; }) {
@@ -115,8 +103,6 @@ struct RowReader {
       value = in.get<T>();
     } else if constexpr (std::is_same_v<T, std::string>) {
       value = in.get_string();
-    } else if constexpr (std::is_same_v<T, Laser>) {
-      value = get_laser(in);
     } else if constexpr (kIsRow<T>) {
       get_row(value);
     } else {
@@ -153,9 +139,7 @@ struct RowReader {
 /// Whether all numbers are within the bounds of their fields.
 template <class T>
 bool is_within(const T& value, const Bounds& bounds = {}) {
-  if constexpr (std::is_same_v<T, Laser>) {
-    return is_valid(value);
-  } else if constexpr (std::is_arithmetic_v<T>) {
+  if constexpr (std::is_arithmetic_v<T>) {
     return bounds.contains(static_cast<double>(value));
   } else if constexpr (kIsRow<T>) {
     bool good = true;

@@ -23,7 +23,8 @@ namespace sf::server {
 
 struct ServiceOptions {
   StateReceiverOptions receiver;
-  double rate = 0.0;  ///< [Hz] of ticks, which all sensors are then read at; 0: the world's ticks, sensors at their own
+  double rate =
+      0.0;  ///< [Hz] of ticks, at which all sensors are read; 0: the world's ticks, sensors at their own rates
   std::uint64_t seed = 1;
   bool no_return_inf = false;
 };
@@ -42,7 +43,8 @@ struct ServiceStats {
   std::uint64_t lines_left_out = 0;  ///< of the log
 };
 
-/// Times are of one clock [ns] that begins at 0 and does not go back. What it is given must outlive it. One thread.
+/// Times are of one clock [ns] that begins at 0 and does not go back. World, sensor set, device and layout must outlive
+/// it. One caller at a time.
 class Service {
  public:
   /// @throws netio::PortInUse, base::InputError when the address cannot be bound, and as `farm::Farm`.
@@ -52,12 +54,12 @@ class Service {
   /// Serves by the machine's clock until `stop` is set or `duration` [s] have passed (0: without end).
   void run(const std::atomic<bool>& stop, double duration);
 
-  /// Everything that goes by ticks: reads and sends what is due, and relays.
+  /// Reads and sends all due sensors, and relays states of neighbours.
   void tick(std::int64_t now);
-  /// Reads and sends what is due between two ticks.
+  /// Reads and sends the sensors that are due between two ticks.
   void sample(std::int64_t now) { publish_due(now, true); }
   void receive_pending(std::int64_t now) { receiver_.receive_pending(now); }
-  /// [ns] of the next reading or delivery; farm::kNever: none, or ticks alone count.
+  /// [ns] Time of the next reading or delivery; farm::kNever: none, or `ServiceOptions::rate` is set.
   std::int64_t next_due() const;
 
   double interval() const { return interval_; }  ///< [s] of a tick
