@@ -1,6 +1,6 @@
 #pragma once
 // Kinematics of drives: the nearest twist that a drive can follow, and the pose after a constant twist. Limits are the
-// robot type's: `velocity_bounds` in its world file (worlds/robots.inc, world/stage/mover_entities.cpp).
+// robot type's: `velocity_bounds` in its world file (worlds/robots.inc; key: world/fields.h).
 
 #include <cstdint>
 
