@@ -382,7 +382,7 @@ TEST(Run, ItsMapIsOfOneScanASecond) {
 /// Contacts are counted when they begin, by `run` as by `plot`.
 TEST(Run, CountsContactsAsItsPictureDoes) {
   const Folder folder;
-  const Words words{"--robots", "20", "--duration", "20", "--record", folder.path("r")};
+  const Words words{"--robots", "20", "--duration", "60", "--record", folder.path("r")};
   const Json facts = run("rooms.world", words);
   std::size_t began = 0, touching = 0;
   for (const auto& states : record::open_recording(folder.path("r")).states) {

@@ -133,7 +133,7 @@ TEST(AccuracyOption, ChangesWhatIsReadAndSaysSo) {
   EXPECT_EQ(some.code, 0) << some.err;
   expect_says(exact, "\"accuracy\":\"exact\"");
   expect_says(some, "\"accuracy\":\"skip2\"");
-  expect_says(some, "\"unsure\": \"not cast\"");
+  expect_says(some, "\"unsure\":\"not cast\"");
   EXPECT_EQ(exact.out.find("\"unsure\""), std::string::npos);
   expect_says(run_program({"check", our_world("rooms.world"), "--accuracy", "single"}), "laser single, within 998 um");
 }
