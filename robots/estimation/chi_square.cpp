@@ -1,0 +1,34 @@
+#include "robots/estimation/chi_square.h"
+
+#include <cmath>
+
+namespace sf::estimation {
+
+// Q(k + 2, x) = Q(k, x) + (x/2)^(k/2) e^(-x/2) / Gamma(k/2 + 1), from Q(1, x) = erfc(sqrt(x/2)) and Q(2, x) = e^(-x/2):
+// Abramowitz and Stegun, 26.4.8.
+double chi_square_tail(int degrees, double x) {
+  if (x <= 0.0) return 1.0;
+  const double half = 0.5 * x;
+  int k = degrees % 2 == 1 ? 1 : 2;
+  double tail = k == 1 ? std::erfc(std::sqrt(half)) : std::exp(-half);
+  // The logarithm of the term grows step by step, since the term itself may underflow where later ones do not.
+  double log_term = 0.5 * k * std::log(half) - half - std::log(k == 1 ? 0.5 * std::sqrt(M_PI) : 1.0);
+  for (; k < degrees; k += 2) {
+    tail += std::exp(log_term);
+    log_term += std::log(half / (0.5 * k + 1.0));
+  }
+  return tail;
+}
+
+double chi_square_limit(int degrees, double probability) {
+  double low = 0.0;
+  double high = degrees;
+  while (chi_square_tail(degrees, high) > probability) high *= 2.0;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (chi_square_tail(degrees, middle) > probability ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace sf::estimation

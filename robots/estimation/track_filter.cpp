@@ -1,0 +1,142 @@
+#include "robots/estimation/track_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "robots/estimation/chi_square.h"
+
+namespace sf::estimation {
+
+namespace {
+
+bool has_position(const Measurement& m) { return (m.components & kPositionBits) == kPositionBits; }
+
+double distance(const Measurement& m, const Estimate& e) {
+  const bool x = (m.components & 1u << kX) != 0;
+  const bool y = (m.components & 1u << kY) != 0;
+  return std::hypot(x ? m.X_WM.x - e.X_WM.x : 0.0, y ? m.X_WM.y - e.X_WM.y : 0.0);
+}
+
+}  // namespace
+
+std::string_view name(Verdict verdict) {
+  constexpr std::array<std::string_view, kVerdicts> kNames{"started",  "used",     "outlier", "jump",   "no track",
+                                                           "replayed", "too late", "future",  "invalid"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
+TrackFilter::TrackFilter(const FilterOptions& options) : options_(options), entries_(options.capacity) {
+  for (int degrees = 1; degrees <= static_cast<int>(kComponents); ++degrees)
+    limits_[degrees] = chi_square_limit(degrees, options.gate);
+}
+
+Verdict TrackFilter::take(const Measurement& measurement, std::int64_t now) {
+  if (!is_valid(measurement)) return count(Verdict::invalid);
+  if (measurement.time > now + options_.max_future) return count(Verdict::future);
+
+  const std::int64_t newest = size_ > 0 ? entry(size_ - 1).measurement.time : measurement.time;
+  if (any_left_ && measurement == last_left_) return count(Verdict::replayed);
+  if (measurement.time < newest - options_.window || (any_left_ && measurement < last_left_))
+    return count(Verdict::too_late);
+  for (std::size_t k = size_; k > 0 && measurement.time <= entry(k - 1).measurement.time; --k)
+    if (measurement == entry(k - 1).measurement) return count(Verdict::replayed);
+
+  drop_before(std::max(newest, measurement.time) - options_.window);
+  if (size_ == entries_.size()) {
+    // The ring's oldest leaves, unless the new one is older still.
+    if (measurement < entry(0).measurement) return count(Verdict::too_late);
+    drop_oldest();
+  }
+  const std::size_t place = insert(measurement);
+  replay(place);
+  return entry(place).verdict;
+}
+
+void TrackFilter::drop_oldest() {
+  before_ = entry(0).after;
+  last_left_ = entry(0).measurement;
+  any_left_ = true;
+  first_ = (first_ + 1) % entries_.size();
+  --size_;
+}
+
+void TrackFilter::drop_before(std::int64_t time) {
+  while (size_ > 0 && entry(0).measurement.time < time) drop_oldest();
+}
+
+std::size_t TrackFilter::insert(const Measurement& measurement) {
+  std::size_t place = size_++;
+  for (; place > 0 && measurement < entry(place - 1).measurement; --place) entry(place) = entry(place - 1);
+  entry(place).measurement = measurement;
+  entry(place).verdict = Verdict::used;
+  count(Verdict::used);
+  return place;
+}
+
+void TrackFilter::replay(std::size_t from) {
+  State state = from > 0 ? entry(from - 1).after : before_;
+  for (std::size_t k = from; k < size_; ++k) {
+    Entry& next = entry(k);
+    --counts_[static_cast<std::size_t>(next.verdict)];
+    next.verdict = count(apply(next.measurement, state));
+    next.after = state;
+  }
+}
+
+/// A refused measurement leaves every bit of the state as it was.
+Verdict TrackFilter::apply(const Measurement& m, State& state) const {
+  const auto start = [&] {
+    state = {true, m.time, m.time, first_estimate(options_.model, m)};
+    return Verdict::started;
+  };
+  const bool position = has_position(m);
+  if (!state.known && !position) return Verdict::no_track;
+  if (!state.known || (position && m.time - state.last_used > options_.stale_after)) return start();
+
+  const Estimate predicted = estimation::predict(options_.model, state.estimate, m.time);
+  const Innovation surprise = innovation(predicted, m);
+  const bool far = distance(m, predicted) > options_.max_jump;
+  // `!(a <= b)` refuses NaN as well.
+  if (far || !(surprise.squared <= limits_[surprise.degrees])) {
+    // An object that was carried elsewhere: its positions are refused for stale_after, and then believed.
+    if (position && m.time - state.last_position > options_.stale_after) return start();
+    return far ? Verdict::jump : Verdict::outlier;
+  }
+  state.estimate = correct(predicted, m);
+  state.last_used = m.time;
+  if (position) state.last_position = m.time;
+  return Verdict::used;
+}
+
+Prediction TrackFilter::predict(std::int64_t time) const {
+  const State* state = before_.known ? &before_ : nullptr;
+  for (std::size_t k = 0; k < size_; ++k) {
+    const State& after = entry(k).after;
+    if (after.known && (state == nullptr || after.last_used <= time)) state = &after;
+  }
+  if (state == nullptr) return {};
+
+  Prediction prediction{Prediction::Status::fresh, time - state->last_used,
+                        estimation::predict(options_.model, state->estimate, time)};
+  if (prediction.age <= options_.stale_after) return prediction;
+  const std::int64_t end = state->last_used + options_.stale_after;
+  prediction.status = Prediction::Status::stale;
+  prediction.estimate.X_WM = estimation::predict(options_.model, state->estimate, end).X_WM;
+  prediction.estimate.velocity = {};
+  return prediction;
+}
+
+void TrackFilter::reset() {
+  first_ = 0;
+  size_ = 0;
+  before_ = {};
+  any_left_ = false;
+}
+
+Verdict TrackFilter::count(Verdict verdict) {
+  ++counts_[static_cast<std::size_t>(verdict)];
+  return verdict;
+}
+
+}  // namespace sf::estimation
