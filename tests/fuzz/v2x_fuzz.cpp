@@ -1,0 +1,33 @@
+// libFuzzer target: any bytes as a V2X message frame. What is decoded has an XML form and encodes to a frame with the
+// same content.
+
+#include <cstdint>
+#include <cstdlib>
+
+#include "netio/v2x/xml.h"
+
+namespace {
+
+using namespace sf;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  v2x::Frame frame;
+  const v2x::DecodeResult result = v2x::decode({data, size}, frame);
+  require(result.size <= size);
+  if (!result.ok()) return 0;
+  require(!v2x::xml_of(frame).empty());
+
+  // Lengths that are longer than need be become short: the bytes may differ, the content and their number do not grow.
+  base::Bytes again;
+  v2x::encode(frame, again);
+  require(again.size() <= result.size);
+  v2x::Frame other;
+  require(v2x::decode(again, other).ok() && other == frame);
+  return 0;
+}
