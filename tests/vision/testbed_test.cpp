@@ -1,0 +1,105 @@
+// The testbed file.
+
+#include "vision/testbed.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "tests/vision/cameras.h"
+
+namespace sf::vision {
+
+namespace {
+
+const std::string kCamera =
+    "[[camera]]\nname = \"north\"\nsize = [1280, 1024]\nfocal = [1664, 1663]\nposition = [0, 1, 6.5]\n";
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_testbed("t.toml", text);
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST(Testbed, ReadsCamerasAndTags) {
+  const Testbed testbed = parse_testbed(
+      "t.toml",
+      "dictionary = \"aruco_4x4_50\"\ntag_side = 0.1\ntag_height = 0.3\naddress = \"10.0.0.1:9000\"\nonly_listed = "
+      "true\n" +
+          kCamera + "center = [600, 500]\ndistortion = [-0.1, 0.01, 1e-4, 2e-4, 0]\norientation = [0, 0, 0.6, 0.8]\n" +
+          "rate = 30\nexposure = 0.004\nreadout = 0.02\nsource = \"/dev/video0\"\n" +
+          "[[tag]]\nid = 7\n[[tag]]\nid = 9\nside = 0.2\nheight = 0.4\noffset = [0.1, -0.2, 90]\naddress = \"h:1\"\n");
+  EXPECT_EQ(testbed.dictionary, "aruco_4x4_50");
+  EXPECT_TRUE(testbed.only_listed);
+  ASSERT_EQ(testbed.cameras.size(), 1u);
+  const Camera& camera = testbed.cameras[0].camera;
+  EXPECT_EQ(camera.name, "north");
+  EXPECT_EQ(camera.intrinsics.width, 1280);
+  EXPECT_EQ(camera.intrinsics.focal, glm::dvec2(1664.0, 1663.0));
+  EXPECT_EQ(camera.intrinsics.center, glm::dvec2(600.0, 500.0));
+  EXPECT_EQ(camera.intrinsics.distortion[3], 2e-4);
+  EXPECT_EQ(camera.position, glm::dvec3(0.0, 1.0, 6.5));
+  EXPECT_NEAR(camera.right.y, 0.96, 1e-12);  // turned by 2 acos 0.8 about z
+  EXPECT_EQ(camera.rate, 30.0);
+  EXPECT_EQ(camera.exposure, 0.004);
+  EXPECT_EQ(camera.readout, 0.02);
+  EXPECT_EQ(testbed.cameras[0].source, "/dev/video0");
+  EXPECT_EQ(testbed.mount(7).side, 0.1);
+  EXPECT_EQ(testbed.mount(7).address, "10.0.0.1:9000");
+  EXPECT_EQ(testbed.mount(8).height, 0.3);
+  EXPECT_EQ(testbed.mount(9).side, 0.2);
+  EXPECT_EQ(testbed.mount(9).height, 0.4);
+  EXPECT_EQ(testbed.mount(9).X_OT.y, -0.2);
+  EXPECT_NEAR(testbed.mount(9).X_OT.yaw, M_PI / 2.0, 1e-15);
+  EXPECT_EQ(testbed.mount(9).address, "h:1");
+}
+
+TEST(Testbed, DefaultsToACameraThatLooksDown) {
+  const Testbed testbed = parse_testbed("t.toml", kCamera);
+  EXPECT_EQ(testbed.cameras[0].camera.forward, glm::dvec3(0.0, 0.0, -1.0));
+  EXPECT_EQ(testbed.cameras[0].camera.intrinsics.center, glm::dvec2(639.5, 511.5));
+  EXPECT_FALSE(testbed.only_listed);
+}
+
+TEST(Testbed, NamesFileLineAndRemedy) {
+  struct Case {
+    std::string text, expected;
+  };
+  for (const Case& each : std::vector<Case>{
+           {"tag_side = 0.1\n", "t.toml: has no camera"},
+           {"tag_sise = 0.1\n" + kCamera, "t.toml:1: unknown key 'tag_sise'; did you mean 'tag_side'?"},
+           {"tag_side = 0\n" + kCamera, "t.toml:1: 'tag_side' expects a number from 0.001 to 10"},
+           {"only_listed = 1\n" + kCamera, "t.toml:1: 'only_listed' expects true or false"},
+           {"camera = 3\n", "t.toml:1: 'camera' expects tables, each under [[camera]]"},
+           {"[[camera]]\nname = \"a\"\n", "'size' is missing; expected size = [1280, 1024] in pixels"},
+           {"[[camera]]\nname = \"a\"\nsize = [1280.5, 1024]\n", "t.toml:3: 'size' expects whole numbers"},
+           {"[[camera]]\nname = \"a\"\nsize = [8, 1024]\n", "t.toml:3: 'size' expects whole numbers of pixels from 16"},
+           {"[[camera]]\nname = \"a\"\nsize = [640, 480]\n", "'focal' is missing"},
+           {"[[camera]]\nname = \"a\"\nsize = [640, 480]\nfocal = [0, 700]\n", "t.toml:4: 'focal' expects pixels"},
+           {"[[camera]]\nname = \"a\"\nsize = [640, 480]\nfocal = [700, 700]\n", "'position' is missing"},
+           {kCamera + kCamera, "t.toml:7: two cameras have the name 'north'"},
+           {kCamera + "orientation = [1, 1, 0, 0]\n", "t.toml:6: 'orientation' has the norm 1.414; expected a unit"},
+           {kCamera + "distortion = [-9, 0, 0, 0, 0]\n", "t.toml:6: 'distortion' folds the image"},
+           {kCamera + "distortion = [1, 2]\n", "t.toml:6: 'distortion' expects [k1, k2, p1, p2, k3]"},
+           {kCamera + "position = 3\n", "t.toml"},  // twice the same key
+           {kCamera + "exposure = -1\n", "t.toml:6: 'exposure' expects a number from 0 to 1"},
+           {kCamera + "[[tag]]\nside = 0.1\n", "'id' is missing; expected id = 12"},
+           {kCamera + "[[tag]]\nid = 65536\n", "t.toml:7: 'id' expects a whole number from 0 to 65535"},
+           {kCamera + "[[tag]]\nid = 1\n[[tag]]\nid = 1\n", "t.toml:9: two sections [[tag]] have the id 1"},
+           {kCamera + "[[tag]]\nid = 1\noffset = [1, 2]\n", "t.toml:8: 'offset' expects [x, y, yaw]"}})
+    EXPECT_NE(error_of(each.text).find(each.expected), std::string::npos) << error_of(each.text) << "\n" << each.text;
+}
+
+TEST(Testbed, WritesCamerasThatItReads) {
+  const Camera camera = distorted_camera();
+  const Camera read = parse_testbed("t.toml", camera_section(camera)).cameras[0].camera;
+  EXPECT_EQ(camera_section(read), camera_section(camera));
+  EXPECT_EQ(read.intrinsics.distortion, camera.intrinsics.distortion);
+  EXPECT_NEAR(read.forward.y, camera.forward.y, 1e-11);
+}
+
+}  // namespace sf::vision

@@ -1,0 +1,50 @@
+#pragma once
+// Errors of tracked tags against the truth of a rendered fleet.
+
+#include <cstdint>
+#include <span>
+
+#include "vision/rendered_fleet.h"
+#include "vision/tracker.h"
+
+namespace sf::vision {
+
+struct RmsError {
+  double sum = 0.0, largest = 0.0;
+  std::uint64_t count = 0;
+
+  void add(double error);
+  double rms() const;  ///< 0 without errors
+};
+
+struct Accuracy {
+  RmsError position;  ///< [m]
+  RmsError heading;   ///< [rad]
+  RmsError velocity;  ///< [m/s], from the fifth sighting on
+  RmsError turn;      ///< [rad/s], from the fifth sighting on
+  std::uint64_t seen = 0;
+  std::uint64_t missed = 0;  ///< a camera saw the whole tag, and it was not reported
+  std::uint64_t wrong = 0;   ///< reported more than `kWrong` from its place, or with an id that no tag has
+};
+
+class AccuracyMeter {
+ public:
+  static constexpr double kWrong = 0.05;  ///< [m]
+
+  /// @param testbed, fleet live longer
+  AccuracyMeter(const Testbed& testbed, const RenderedFleet& fleet);
+  /// @param time [s] at which the exposure of the images began
+  void add(double time, std::span<const TrackedTag> tracked);
+  const Accuracy& accuracy() const { return accuracy_; }
+
+ private:
+  void compare(const TrackedTag& tracked, std::size_t tag);
+
+  const Testbed& testbed_;
+  const RenderedFleet& fleet_;
+  std::vector<std::uint32_t> sightings_;  ///< of each tag so far
+  bool first_ = true;
+  Accuracy accuracy_;
+};
+
+}  // namespace sf::vision

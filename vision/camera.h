@@ -1,0 +1,59 @@
+#pragma once
+// Camera model: pinhole with Brown's distortion (D. C. Brown, "Close-range camera calibration", 1971), in OpenCV's
+// parameters, and a pose in the world.
+//
+// Frames: W world, C camera (x right in the image, y down, z forward along the optical axis). "Normalised" image
+// coordinates are x/z and y/z of a point in C, without distortion.
+
+#include <array>
+#include <glm/ext/vector_double2.hpp>
+#include <glm/ext/vector_double3.hpp>
+#include <optional>
+#include <string>
+
+namespace sf::vision {
+
+struct Intrinsics {
+  int width = 0, height = 0;           ///< [px]
+  glm::dvec2 focal;                    ///< [px] > 0, along columns and rows
+  glm::dvec2 center;                   ///< [px] principal point
+  std::array<double, 5> distortion{};  ///< k1, k2 (radial), p1, p2 (tangential), k3 (radial)
+};
+
+struct Camera {
+  std::string name;
+  Intrinsics intrinsics;
+  glm::dvec3 position;                 ///< [m] p_WC
+  glm::dvec3 right{1.0, 0.0, 0.0};     ///< x axis of C in W; the three axes are orthonormal
+  glm::dvec3 down{0.0, -1.0, 0.0};     ///< y axis of C in W
+  glm::dvec3 forward{0.0, 0.0, -1.0};  ///< z axis of C in W; the default looks straight down
+  double rate = 15.0;                  ///< [Hz] of images, > 0
+  double exposure = 0.0;               ///< [s] of one row, >= 0
+  double readout = 0.0;  ///< [s] from the first row's start to the last row's (rolling shutter); 0: global
+};
+
+/// [px] of a point in normalised coordinates.
+glm::dvec2 distort(const Intrinsics& intrinsics, glm::dvec2 normalised);
+/// Normalised coordinates of a pixel: the inverse of `distort`, by Newton's method, to 1e-12 within the image.
+glm::dvec2 undistort(const Intrinsics& intrinsics, glm::dvec2 pixel);
+/// Whether `distort` is invertible over the image and a margin of 5 %: the image of a larger field angle is farther
+/// out.
+bool is_invertible(const Intrinsics& intrinsics);
+
+/// Pixel of a point in the world, inside or outside the image; nothing for points that are not in front of the camera,
+/// more than 80 degrees off its axis, or where the distortion has no inverse.
+std::optional<glm::dvec2> project(const Camera& camera, glm::dvec3 p_W);
+/// [m] Point on the horizontal plane at height `z` that a ray in normalised coordinates meets; nothing where it does
+/// not, or at a depth of more than 1 km.
+std::optional<glm::dvec2> meet_plane(const Camera& camera, glm::dvec2 normalised, double z);
+/// The same for a pixel.
+std::optional<glm::dvec2> to_plane(const Camera& camera, glm::dvec2 pixel, double z);
+
+/// [s] after the start of the exposure of row 0: the middle of the exposure of row `v`.
+double middle_of_exposure(const Camera& camera, double v);
+
+/// Sets the axes from the unit quaternion x, y, z, w of the rotation R_WC.
+void set_orientation(Camera& camera, const std::array<double, 4>& xyzw);
+std::array<double, 4> orientation(const Camera& camera);
+
+}  // namespace sf::vision

@@ -1,0 +1,24 @@
+#pragma once
+// Images in memory. Pixel (u, v) is column u, row v; whole numbers are the centres of pixels, and (0, 0) is the centre
+// of the upper left one (OpenCV's convention).
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace sf::vision {
+
+/// 8 bits a channel, row by row, the top row first.
+struct Image {
+  int width = 0;                     ///< [px]
+  int height = 0;                    ///< [px]
+  int channels = 1;                  ///< 1: grey; 3: blue, green, red
+  std::vector<std::uint8_t> pixels;  ///< width x height x channels
+
+  const std::uint8_t* at(int u, int v) const {
+    return pixels.data() + (static_cast<std::size_t>(v) * width + u) * channels;
+  }
+  std::uint8_t* at(int u, int v) { return pixels.data() + (static_cast<std::size_t>(v) * width + u) * channels; }
+};
+
+}  // namespace sf::vision

@@ -1,0 +1,93 @@
+#pragma once
+// OpenCV's part of the module: fiducial dictionaries, detection, image files, cameras, calibration. OpenCV's libraries
+// take 50 MB and 0.4 s to load, so this part is a plug-in (vision/opencv/, `sensorfarm_opencv.so`) that is loaded with
+// the first use.
+//
+// All functions throw base::InputError for faults of the user's input; none of OpenCV's exceptions passes.
+
+#include <array>
+#include <cstdint>
+#include <glm/ext/vector_double2.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vision/camera.h"
+#include "vision/image.h"
+#include "vision/tag_pattern.h"
+
+namespace sf::vision {
+
+/// A tag found in an image, to about a pixel.
+struct TagOutline {
+  std::uint32_t id = 0;
+  /// [px] outer corners of the black border: upper left, upper right, lower right, lower left of the printed tag
+  std::array<glm::dvec2, 4> corners;
+};
+
+/// Finds the tags of one dictionary. Images may differ in size. One thread at a time.
+class TagFinder {
+ public:
+  virtual ~TagFinder() = default;
+  /// Replaces the content of `found`. @param image grey
+  virtual void find(const Image& image, std::vector<TagOutline>& found) = 0;
+};
+
+/// Images from a device, a video or a folder, in grey. One thread at a time.
+class ImageSource {
+ public:
+  virtual ~ImageSource() = default;
+  /// Waits for the next image of a device. @return false after the last image
+  virtual bool next(Image& out) = 0;
+  virtual bool is_live() const { return false; }
+  /// [Hz] of a video; 0 where it is not known.
+  virtual double rate() const { return 0.0; }
+};
+
+/// Lines and a text in an image.
+struct Mark {
+  std::vector<glm::dvec2> points;              ///< [px] a line through all of them
+  std::string text;                            ///< ASCII; its lower left corner is at the last point
+  std::array<std::uint8_t, 3> color{0, 0, 0};  ///< red, green, blue
+  int width = 1;                               ///< [px] of the line
+};
+
+/// Intrinsics that explain the corners of a chessboard in several images.
+struct Calibration {
+  Intrinsics intrinsics;
+  double residual = 0.0;                         ///< [px] RMS distance of corners from their projections, of all images
+  std::vector<std::optional<double>> residuals;  ///< [px] of each image; nothing where the board was not found
+};
+
+/// A function table, since only data symbols are looked up by name.
+struct OpenCv {
+  /// Names of the dictionaries, such as "apriltag_36h11" and "aruco_4x4_50".
+  std::vector<std::string> (*dictionaries)();
+  /// Number of ids, from 0, of a dictionary.
+  std::uint32_t (*dictionary_size)(const std::string& dictionary);
+  TagPattern (*tag_pattern)(const std::string& dictionary, std::uint32_t id);
+  std::unique_ptr<TagFinder> (*make_tag_finder)(const std::string& dictionary);
+  /// @param channels 1 or 3; files are converted
+  Image (*read_image)(const std::string& file, int channels);
+  /// The file's ending decides the format: .png, .jpg, .pgm, ...
+  void (*write_image)(const std::string& file, const Image& image);
+  /// @param image 3 channels
+  void (*draw)(Image& image, const std::vector<Mark>& marks);
+  /// @param source "/dev/video0", a video file, an image file, or a folder of images, which are read in order of names
+  /// @param width, height, rate requested from a device
+  std::unique_ptr<ImageSource> (*open_source)(const std::string& source, int width, int height, double rate);
+  /// @param columns, rows inner corners of the chessboard, each > 2
+  /// @param square [m] side of its squares
+  /// @throws base::InputError when the board is found in fewer than three images, or their sizes differ
+  Calibration (*calibrate)(const std::vector<Image>& images, int columns, int rows, double square);
+};
+
+/// The name of the plug-in's only symbol: `extern "C" const OpenCv sensorfarm_opencv`.
+inline constexpr const char* kOpenCvSymbol = "sensorfarm_opencv";
+
+/// Loads the plug-in, once, from the folder of the running program or the system's library path.
+/// @throws base::InputError naming the file when it cannot be loaded.
+const OpenCv& opencv();
+
+}  // namespace sf::vision

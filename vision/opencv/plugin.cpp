@@ -1,0 +1,14 @@
+// The plug-in's table.
+
+#include "vision/opencv/calibration.h"
+#include "vision/opencv/images.h"
+#include "vision/opencv/markers.h"
+#include "vision/opencv/sources.h"
+
+extern "C" {
+extern const sf::vision::OpenCv sensorfarm_opencv;
+const sf::vision::OpenCv sensorfarm_opencv{
+    sf::vision::dictionaries, sf::vision::dictionary_size, sf::vision::tag_pattern, sf::vision::make_tag_finder,
+    sf::vision::read_image,   sf::vision::write_image,     sf::vision::draw,        sf::vision::open_source,
+    sf::vision::calibrate};
+}

@@ -1,0 +1,105 @@
+// Devices and videos by OpenCV's videoio, and folders of images.
+
+#include "vision/opencv/sources.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <set>
+
+#include "base/error.h"
+#include "vision/opencv/images.h"
+
+namespace sf::vision {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_image(const fs::path& file) {
+  static const std::set<std::string> kEndings{".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".bmp", ".tif", ".tiff"};
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return kEndings.count(ending) > 0;
+}
+
+class Files : public ImageSource {
+ public:
+  explicit Files(std::vector<std::string> files) : files_(std::move(files)) {}
+  bool next(Image& out) override {
+    if (at_ == files_.size()) return false;
+    out = read_image(files_[at_++], 1);
+    return true;
+  }
+
+ private:
+  std::vector<std::string> files_;
+  std::size_t at_ = 0;
+};
+
+class Video : public ImageSource {
+ public:
+  Video(cv::VideoCapture capture, bool live) : capture_(std::move(capture)), live_(live) {}
+  bool next(Image& out) override {
+    if (!capture_.read(frame_)) return false;
+    if (frame_.channels() == 1) {
+      copy(frame_, out);
+      return true;
+    }
+    cv::cvtColor(frame_, grey_, cv::COLOR_BGR2GRAY);
+    copy(grey_, out);
+    return true;
+  }
+  bool is_live() const override { return live_; }
+  double rate() const override {
+    const double rate = capture_.get(cv::CAP_PROP_FPS);
+    return rate > 0.1 && rate < 1000.0 ? rate : 0.0;
+  }
+
+ private:
+  cv::VideoCapture capture_;
+  bool live_;
+  cv::Mat frame_, grey_;
+};
+
+std::unique_ptr<ImageSource> open_folder(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (is_image(entry.path())) files.push_back(entry.path().string());
+  if (files.empty()) throw base::InputError(folder, 0, "has no images; expected .png, .jpg, .pgm, .tif or .bmp files");
+  std::sort(files.begin(), files.end());
+  return std::make_unique<Files>(std::move(files));
+}
+
+}  // namespace
+
+std::unique_ptr<ImageSource> open_source(const std::string& source, int width, int height, double rate) {
+  std::error_code error;
+  if (fs::is_directory(source, error)) return open_folder(source);
+  if (!fs::exists(source, error))
+    throw base::InputError(source, 0,
+                           "does not exist; expected a device such as /dev/video0, a video, an image or a folder");
+  if (is_image(source)) return std::make_unique<Files>(std::vector{source});
+  const bool live = fs::is_character_file(source, error);
+  // The error below says all; OpenCV would print what each of its readers tried.
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  try {
+    cv::VideoCapture capture(source, live ? cv::CAP_V4L2 : cv::CAP_FFMPEG);
+    if (live) {
+      capture.set(cv::CAP_PROP_FRAME_WIDTH, width);
+      capture.set(cv::CAP_PROP_FRAME_HEIGHT, height);
+      capture.set(cv::CAP_PROP_FPS, rate);
+    }
+    if (capture.isOpened()) return std::make_unique<Video>(std::move(capture), live);
+  } catch (const cv::Exception&) {
+  }
+  throw base::InputError(source, 0,
+                         live
+                             ? "is no camera that can be opened; expected a V4L2 device that no other program uses"
+                             : "cannot be read as a video; expected a device, a video, an image or a folder of images");
+}
+
+}  // namespace sf::vision

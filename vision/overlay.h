@@ -1,0 +1,22 @@
+#pragma once
+// Drawings over a camera's image: tags with their ids and poses, and the outlines of a virtual world.
+
+#include <span>
+#include <vector>
+
+#include "vision/tag_detector.h"
+#include "world/world.h"
+
+namespace sf::vision {
+
+/// The fitted square of each tag projected back into the image, an arrow along its x axis, its id and pose.
+std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sightings);
+
+/// Walls and lane markings of a world, as they would lie in front of the camera; parts that it does not see are left
+/// out.
+std::vector<Mark> world_marks(const Camera& camera, const world::World& world);
+
+/// The grey image with the marks, in colours.
+Image draw_over(const Image& grey, const std::vector<Mark>& marks);
+
+}  // namespace sf::vision

@@ -1,0 +1,71 @@
+#include "vision/positioning.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/thread_pool.h"
+
+namespace sf::vision {
+
+struct Positioning::State {
+  State(const Testbed& of, unsigned threads) : testbed(of), pool(threads) {}
+
+  const Testbed& testbed;
+  base::ThreadPool pool;
+  std::vector<TagDetector> detectors;
+  std::vector<std::vector<Sighting>> sightings;  ///< of each camera
+  std::vector<Sighting> all;
+  std::vector<TrackedTag> tracked;
+  Tracker tracker;
+};
+
+Positioning::Positioning(const Testbed& testbed, unsigned threads) : state_(std::make_unique<State>(testbed, threads)) {
+  for (const TestbedCamera& each : testbed.cameras) state_->detectors.emplace_back(testbed, each.camera);
+  state_->sightings.resize(testbed.cameras.size());
+}
+
+Positioning::~Positioning() = default;
+
+std::span<const TrackedTag> Positioning::update(std::span<const Frame> frames) {
+  State& s = *state_;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Camera& camera = s.testbed.cameras[i].camera;
+    const Image& image = frames[i].image;
+    if (image.pixels.empty()) continue;
+    if (image.width != camera.intrinsics.width || image.height != camera.intrinsics.height)
+      throw base::InputError(
+          s.testbed.file, 0,
+          fmt::format("camera '{}' has size = [{}, {}], and its source gives images of {} x {}; "
+                      "expected the size with which it was calibrated",
+                      camera.name, camera.intrinsics.width, camera.intrinsics.height, image.width, image.height));
+  }
+  s.pool.parallel_for(frames.size(), 1, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) {
+      s.sightings[i].clear();
+      if (!frames[i].image.pixels.empty()) s.detectors[i].detect(frames[i].image, frames[i].time, s.sightings[i]);
+    }
+  });
+  s.all.clear();
+  for (const auto& seen : s.sightings) s.all.insert(s.all.end(), seen.begin(), seen.end());
+  s.tracker.update(s.all, s.tracked);
+  return s.tracked;
+}
+
+std::span<const Sighting> Positioning::sightings(std::size_t camera) const { return state_->sightings[camera]; }
+
+DetectionCounts Positioning::counts() const {
+  DetectionCounts sum;
+  for (const TagDetector& detector : state_->detectors) {
+    const DetectionCounts& c = detector.counts();
+    sum.images += c.images;
+    sum.sightings += c.sightings;
+    sum.unlisted += c.unlisted;
+    sum.unfitted += c.unfitted;
+    sum.misfitted += c.misfitted;
+  }
+  return sum;
+}
+
+std::uint64_t Positioning::refused() const { return state_->tracker.refused(); }
+
+}  // namespace sf::vision

@@ -1,0 +1,64 @@
+#pragma once
+// A simulated testbed for the cameras of a testbed file: tags on circles, each in its own part of the field of view,
+// with clutter on the floor and occluders above. Everything is a function of time, so truth is known exactly.
+
+#include <cstdint>
+#include <vector>
+
+#include "vision/scene.h"
+#include "vision/testbed.h"
+
+namespace sf::vision {
+
+struct FleetOptions {
+  std::uint32_t tags = 30;      ///< ids 1 to this, or those that the testbed file lists first
+  double speed = 0.5;           ///< [m/s] of the fastest; others have 20 to 100 % of it
+  std::uint32_t occluders = 0;  ///< dark discs of 0.3 m, 1 m above the floor, on circles of their own
+  bool clutter = true;          ///< lane markings and framed black squares on the floor
+  std::uint64_t seed = 1;
+};
+
+/// True state of one tag.
+struct TrueTag {
+  std::uint32_t id = 0;
+  base::Pose X_WT;
+  glm::dvec2 velocity;  ///< [m/s]
+  double turn = 0.0;    ///< [rad/s]
+};
+
+class RenderedFleet {
+ public:
+  /// @param testbed lives longer than the fleet
+  /// @throws base::InputError when so many tags do not fit into the field of view, or the dictionary is too small
+  RenderedFleet(const Testbed& testbed, const FleetOptions& options);
+
+  /// Patches move as straight as the tags do at `time` [s].
+  Scene scene_at(double time) const;
+  TrueTag truth(std::size_t tag, double time) const;
+  std::size_t size() const { return tags_.size(); }
+  /// Whether `camera` sees the whole tag with its white border at `time`.
+  bool is_visible(const Camera& camera, std::size_t tag, double time) const;
+
+ private:
+  struct Circle {
+    glm::dvec2 center;
+    double radius = 0.0, speed = 0.0, phase = 0.0;  ///< [m], [m/s] (negative: clockwise), [rad]
+  };
+  struct Tag {
+    std::uint32_t id = 0;
+    Circle circle;
+    double yaw = 0.0;  ///< [rad] relative to the direction of travel
+    TagPattern pattern;
+  };
+  static glm::dvec2 place(const Circle& circle, double time);
+  void add_clutter();
+
+  const Testbed& testbed_;
+  FleetOptions options_;
+  std::vector<Tag> tags_;
+  std::vector<Circle> occluders_;
+  std::vector<Patch> clutter_;
+  double pitch_ = 0.0;  ///< [m] between circles
+};
+
+}  // namespace sf::vision

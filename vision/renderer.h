@@ -1,0 +1,35 @@
+#pragma once
+// Images of a simulated testbed as a camera takes them: perspective, distortion, motion blur, rolling shutter, lens
+// blur, vignetting, uneven light, noise.
+
+#include <cstdint>
+#include <memory>
+
+#include "vision/camera.h"
+#include "vision/image.h"
+#include "vision/scene.h"
+
+namespace sf::vision {
+
+/// Renders what one camera sees. An image is a function of (camera, scene, imaging, seed, frame, time), the same for
+/// any order of calls. Pixels at edges are averages of `kSamples` points of the pixel and times of the exposure, in a
+/// low-discrepancy sequence; even pixels have fewer samples. One thread at a time.
+class Renderer {
+ public:
+  static constexpr int kSamples = 32;
+
+  /// Computes the ray of each pixel.
+  Renderer(const Camera& camera, const Imaging& imaging, std::uint64_t seed);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+
+  /// @param time [s] at which the exposure of the first row starts
+  /// @param frame number of the image, for its noise
+  void render(const Scene& scene, double time, std::uint32_t frame, Image& out);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace sf::vision

@@ -1,0 +1,151 @@
+#include "vision/tag_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace sf::vision {
+
+namespace {
+
+constexpr int kRounds = 6;
+
+/// Outward normals of the sides in the tag's frame, as angles: up, right, down, left.
+constexpr std::array<double, 4> kNormals{M_PI / 2.0, 0.0, -M_PI / 2.0, M_PI};
+
+struct PlanePoint {
+  glm::dvec2 p;  ///< [m]
+  std::size_t side = 0;
+  bool used = true;
+};
+
+/// Unknowns of the fit: position, heading, and half of the side.
+struct Square {
+  glm::dvec2 center;
+  double yaw = 0.0;
+  double half = 0.0;
+};
+
+/// [m] outward from the square's side.
+double distance(const Square& square, const PlanePoint& point) {
+  const double angle = square.yaw + kNormals[point.side];
+  return glm::dot(glm::dvec2{std::cos(angle), std::sin(angle)}, point.p - square.center) - square.half;
+}
+
+/// Solves the symmetric 4 x 4 system by Cholesky; false where it is singular.
+bool solve(std::array<std::array<double, 4>, 4>& a, std::array<double, 4>& b) {
+  for (std::size_t j = 0; j < 4; ++j) {
+    for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
+    if (!(a[j][j] > 1e-12)) return false;
+    a[j][j] = std::sqrt(a[j][j]);
+    for (std::size_t i = j + 1; i < 4; ++i) {
+      for (std::size_t k = 0; k < j; ++k) a[i][j] -= a[i][k] * a[j][k];
+      a[i][j] /= a[j][j];
+    }
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < i; ++k) b[i] -= a[i][k] * b[k];
+    b[i] /= a[i][i];
+  }
+  for (std::size_t i = 4; i-- > 0;) {
+    for (std::size_t k = i + 1; k < 4; ++k) b[i] -= a[k][i] * b[k];
+    b[i] /= a[i][i];
+  }
+  return true;
+}
+
+/// One step of Gauss and Newton, in units of the square's half side so that all unknowns are of one size.
+bool improve(Square& square, std::span<const PlanePoint> points) {
+  std::array<std::array<double, 4>, 4> normal{};
+  std::array<double, 4> right{};
+  for (const PlanePoint& point : points) {
+    if (!point.used) continue;
+    const double angle = square.yaw + kNormals[point.side];
+    const glm::dvec2 n{std::cos(angle), std::sin(angle)};
+    const glm::dvec2 r = (point.p - square.center) / square.half;
+    const std::array<double, 4> row{n.x, n.y, -base::cross(n, r), 1.0};
+    const double error = glm::dot(n, r) - 1.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      right[i] += row[i] * error;
+      for (std::size_t k = 0; k <= i; ++k) normal[i][k] += row[i] * row[k];
+    }
+  }
+  if (!solve(normal, right)) return false;
+  square.center += square.half * glm::dvec2{right[0], right[1]};
+  square.yaw += right[2];
+  square.half *= 1.0 + right[3];
+  return square.half > 0.0 && std::isfinite(square.yaw);
+}
+
+/// Leaves out points far from the square.
+void reject_outliers(const Square& square, std::vector<PlanePoint>& points, double pixel) {
+  std::vector<double> distances;
+  for (const PlanePoint& point : points) distances.push_back(std::abs(distance(square, point)));
+  std::vector<double> sorted = distances;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double most = std::max(3.0 * 1.4826 * *middle, 0.05 * pixel);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].used = distances[i] <= most;
+}
+
+/// The square whose sides run through the means of the points of each side.
+std::optional<Square> first_guess(std::span<const PlanePoint> points) {
+  std::array<glm::dvec2, 4> mean{};
+  std::array<double, 4> count{};
+  for (const PlanePoint& point : points) {
+    mean[point.side] += point.p;
+    count[point.side] += 1.0;
+  }
+  if (std::count_if(count.begin(), count.end(), [](double n) { return n >= 3.0; }) < 3) return std::nullopt;
+  for (std::size_t i = 0; i < 4; ++i) mean[i] /= std::max(1.0, count[i]);
+  // Two opposite sides that both have points give the centre and one axis.
+  const bool upright = count[0] >= 3.0 && count[2] >= 3.0;
+  const glm::dvec2 axis = upright ? mean[0] - mean[2] : mean[1] - mean[3];
+  const glm::dvec2 center = 0.5 * (upright ? mean[0] + mean[2] : mean[1] + mean[3]);
+  const double yaw = std::atan2(axis.y, axis.x) - (upright ? M_PI / 2.0 : 0.0);
+  const double half = 0.5 * glm::length(axis);
+  if (!(half > 0.0)) return std::nullopt;
+  return Square{center, yaw, half};
+}
+
+}  // namespace
+
+std::optional<TagFit> fit_tag(const Camera& camera, std::span<const EdgePoint> points, double height) {
+  std::vector<PlanePoint> on_plane;
+  on_plane.reserve(points.size());
+  for (const EdgePoint& point : points) {
+    const auto p = to_plane(camera, point.pixel, height);
+    if (p) on_plane.push_back({*p, static_cast<std::size_t>(point.side)});
+  }
+  auto square = first_guess(on_plane);
+  if (!square) return std::nullopt;
+
+  // Size of a pixel, from the area of one.
+  const auto middle = project(camera, {square->center.x, square->center.y, height});
+  if (!middle) return std::nullopt;
+  const auto p0 = to_plane(camera, *middle, height), pu = to_plane(camera, *middle + glm::dvec2{1.0, 0.0}, height),
+             pv = to_plane(camera, *middle + glm::dvec2{0.0, 1.0}, height);
+  if (!p0 || !pu || !pv) return std::nullopt;
+  const double pixel = std::sqrt(std::abs(base::cross(*pu - *p0, *pv - *p0)));
+
+  for (int round = 0; round < kRounds; ++round) {
+    if (!improve(*square, on_plane)) return std::nullopt;
+    if (round >= 2 && round < kRounds - 1) reject_outliers(*square, on_plane, pixel);
+  }
+  TagFit fit{{square->center.x, square->center.y, height, base::wrap_angle(square->yaw)},
+             2.0 * square->half,
+             0.0,
+             pixel,
+             middle->y,
+             0};
+  for (const PlanePoint& point : on_plane)
+    if (point.used) {
+      fit.residual += std::pow(distance(*square, point), 2);
+      ++fit.points;
+    }
+  fit.residual = std::sqrt(fit.residual / static_cast<double>(std::max<std::size_t>(1, fit.points)));
+  return fit;
+}
+
+}  // namespace sf::vision

@@ -1,0 +1,152 @@
+#include "vision/testbed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "world/toml_reader.h"
+
+namespace sf::vision {
+
+namespace {
+
+using world::TomlNode;
+using world::TomlReader;
+
+constexpr double kMaxPosition = 1e4;  // [m]
+constexpr double kMaxPixels = 16384;
+constexpr double kDegree = M_PI / 180.0;
+constexpr std::array<std::string_view, 7> kKeys{"dictionary",  "tag_side", "tag_height", "address",
+                                                "only_listed", "camera",   "tag"};
+constexpr std::array<std::string_view, 11> kCameraKeys{"name",       "size",     "focal",       "center",
+                                                       "distortion", "position", "orientation", "rate",
+                                                       "exposure",   "readout",  "source"};
+constexpr std::array<std::string_view, 5> kTagKeys{"id", "side", "height", "offset", "address"};
+
+const TomlNode& required(const TomlReader& reader, const TomlNode& table, std::string_view key,
+                         std::string_view expected) {
+  const TomlNode* node = world::find(table, key);
+  if (node == nullptr) reader.fail(table, fmt::format("'{}' is missing; expected {}", key, expected));
+  return *node;
+}
+
+void read_intrinsics(const TomlReader& reader, const TomlNode& table, Intrinsics& into) {
+  std::array<double, 2> size{}, focal{}, center{};
+  const TomlNode& at = required(reader, table, "size", "size = [1280, 1024] in pixels");
+  reader.numbers(table, "size", size, kMaxPixels, "[columns, rows] in pixels");
+  for (const double n : size)
+    if (n < 16.0 || n != std::floor(n)) reader.fail(at, "'size' expects whole numbers of pixels from 16 to 16384");
+  const TomlNode& length = required(reader, table, "focal", "focal = [1664, 1664] in pixels, from a calibration");
+  reader.numbers(table, "focal", focal, 1e6, "[along columns, along rows] in pixels");
+  if (focal[0] < 1.0 || focal[1] < 1.0) reader.fail(length, "'focal' expects pixels from 1 to 1e6");
+  center = {0.5 * (size[0] - 1.0), 0.5 * (size[1] - 1.0)};
+  reader.numbers(table, "center", center, kMaxPixels, "[column, row] in pixels");
+  reader.numbers(table, "distortion", into.distortion, 1e3, "[k1, k2, p1, p2, k3]");
+  into.width = static_cast<int>(size[0]);
+  into.height = static_cast<int>(size[1]);
+  into.focal = {focal[0], focal[1]};
+  into.center = {center[0], center[1]};
+  if (is_invertible(into)) return;
+  const TomlNode* distortion = world::find(table, "distortion");
+  reader.fail(distortion != nullptr ? *distortion : length,
+              "'distortion' folds the image: two points are at one pixel, or the lens covers more than 80 degrees off "
+              "its axis; expected coefficients from a calibration with points all over the image");
+}
+
+void read_pose(const TomlReader& reader, const TomlNode& table, Camera& into) {
+  std::array<double, 3> position{};
+  required(reader, table, "position", "position = [x, y, z] of the camera in metres");
+  reader.numbers(table, "position", position, kMaxPosition, "[x, y, z] in metres");
+  into.position = {position[0], position[1], position[2]};
+  const TomlNode* node = world::find(table, "orientation");
+  if (node == nullptr) return;
+  std::array<double, 4> q{};
+  reader.numbers(table, "orientation", q, 1.0,
+                 "a unit quaternion [x, y, z, w] of the camera (x right, y down, z forward)");
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (std::abs(norm - 1.0) > 1e-3)
+    reader.fail(*node, fmt::format("'orientation' has the norm {:.4g}; expected a unit quaternion [x, y, z, w]", norm));
+  for (double& component : q) component /= norm;
+  set_orientation(into, q);
+}
+
+TestbedCamera read_camera(const TomlReader& reader, const TomlNode& table, const std::vector<TestbedCamera>& others) {
+  reader.require_known(table, kCameraKeys);
+  TestbedCamera read;
+  Camera& camera = read.camera;
+  required(reader, table, "name", "name = \"north\"");
+  camera.name = reader.text(table, "name", "");
+  for (const TestbedCamera& other : others)
+    if (other.camera.name == camera.name)
+      reader.fail(*world::find(table, "name"), fmt::format("two cameras have the name '{}'", camera.name));
+  read_intrinsics(reader, table, camera.intrinsics);
+  read_pose(reader, table, camera);
+  camera.rate = reader.number(table, "rate", 15.0, 0.1, 1000.0);
+  camera.exposure = reader.number(table, "exposure", 0.0, 0.0, 1.0);
+  camera.readout = reader.number(table, "readout", 0.0, 0.0, 1.0);
+  read.source = reader.text(table, "source", "");
+  return read;
+}
+
+TagMount read_tag(const TomlReader& reader, const TomlNode& table, const TagMount& fallback) {
+  TagMount tag = fallback;
+  tag.side = reader.number(table, "side", tag.side, 1e-3, 10.0);
+  tag.height = reader.number(table, "height", tag.height, -100.0, 100.0);
+  tag.address = reader.text(table, "address", tag.address);
+  std::array<double, 3> offset{};
+  reader.numbers(table, "offset", offset, 1e3, "[x, y, yaw] of the tag on its object in metres and degrees");
+  tag.X_OT = {offset[0], offset[1], 0.0, offset[2] * kDegree};
+  return tag;
+}
+
+}  // namespace
+
+const TagMount& Testbed::mount(std::uint32_t id) const {
+  const auto found = tags.find(id);
+  return found == tags.end() ? tag : found->second;
+}
+
+Testbed parse_testbed(const std::string& file, std::string_view text) {
+  Testbed testbed;
+  testbed.file = file;
+  const TomlNode root = world::parse_toml(file, text);
+  const TomlReader reader(file);
+  reader.require_known(root, kKeys);
+  testbed.dictionary = reader.text(root, "dictionary", testbed.dictionary);
+  testbed.tag.side = reader.number(root, "tag_side", testbed.tag.side, 1e-3, 10.0);
+  testbed.tag.height = reader.number(root, "tag_height", testbed.tag.height, -100.0, 100.0);
+  testbed.tag.address = reader.text(root, "address", "");
+  if (const TomlNode* node = world::find(root, "only_listed")) {
+    if (node->kind != TomlNode::Kind::flag) reader.fail(*node, "'only_listed' expects true or false");
+    testbed.only_listed = node->flag;
+  }
+  for (const TomlNode* table : reader.tables(root, "camera"))
+    testbed.cameras.push_back(read_camera(reader, *table, testbed.cameras));
+  if (testbed.cameras.empty())
+    throw base::InputError(file, 0, "has no camera; expected a section [[camera]] for each, see docs/vps.md");
+  for (const TomlNode* table : reader.tables(root, "tag")) {
+    reader.require_known(*table, kTagKeys);
+    const TomlNode& id = required(reader, *table, "id", "id = 12");
+    const auto number = static_cast<std::uint32_t>(reader.whole(*table, "id", 0, 65535));
+    if (!testbed.tags.emplace(number, read_tag(reader, *table, testbed.tag)).second)
+      reader.fail(id, fmt::format("two sections [[tag]] have the id {}", number));
+  }
+  return testbed;
+}
+
+Testbed read_testbed(const std::string& file) { return parse_testbed(file, base::read_text(file)); }
+
+std::string camera_section(const Camera& camera) {
+  const Intrinsics& i = camera.intrinsics;
+  return fmt::format(
+      "[[camera]]\nname = \"{}\"\nsize = [{}, {}]\nfocal = [{:.9g}, {:.9g}]\ncenter = [{:.9g}, {:.9g}]\n"
+      "distortion = [{:.9g}]\nposition = [{:.9g}, {:.9g}, {:.9g}]\norientation = [{:.12g}]\n",
+      camera.name, i.width, i.height, i.focal.x, i.focal.y, i.center.x, i.center.y, fmt::join(i.distortion, ", "),
+      camera.position.x, camera.position.y, camera.position.z, fmt::join(orientation(camera), ", "));
+}
+
+}  // namespace sf::vision

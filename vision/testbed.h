@@ -1,0 +1,46 @@
+#pragma once
+// The testbed file: cameras with their calibration, and the tags that they look for. docs/vps.md describes its keys.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/pose.h"
+#include "vision/camera.h"
+
+namespace sf::vision {
+
+/// Tags are printed squares; `side` is that of the black border's outline.
+struct TagMount {
+  double side = 0.15;   ///< [m] > 0
+  double height = 0.0;  ///< [m] of the tag above the world's z = 0
+  base::Pose X_OT;      ///< tag in the frame of its object, whose pose is sent; default: the tag's own pose is sent
+  std::string address;  ///< "host:port" that its packets go to; empty: the default
+};
+
+struct TestbedCamera {
+  Camera camera;
+  std::string source;  ///< device, video, image folder or "rendered"; empty: none
+};
+
+struct Testbed {
+  std::string file;
+  std::string dictionary = "apriltag_36h11";
+  TagMount tag;                            ///< of tags without an entry of their own
+  std::map<std::uint32_t, TagMount> tags;  ///< by id
+  bool only_listed = false;                ///< ignore ids without an entry
+  std::vector<TestbedCamera> cameras;      ///< at least one, names distinct
+
+  const TagMount& mount(std::uint32_t id) const;
+};
+
+/// @throws base::InputError with file and line for unknown keys and values out of bounds
+Testbed parse_testbed(const std::string& file, std::string_view text);
+Testbed read_testbed(const std::string& file);
+
+/// The section [[camera]] of one camera.
+std::string camera_section(const Camera& camera);
+
+}  // namespace sf::vision

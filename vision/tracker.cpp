@@ -1,0 +1,129 @@
+#include "vision/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::vision {
+
+void Tracker::predict(Axis& axis, double dt, double acceleration) {
+  const double q = acceleration * acceleration * dt;  // variance of the velocity that an interval adds
+  axis.x += dt * axis.v;
+  axis.xx += dt * (2.0 * axis.xv + dt * axis.vv) + q * dt * dt / 3.0;
+  axis.xv += dt * axis.vv + q * dt / 2.0;
+  axis.vv += q;
+}
+
+void Tracker::correct(Axis& axis, double measured, double sigma) {
+  const double gain = 1.0 / (axis.xx + sigma * sigma);
+  const double kx = axis.xx * gain, kv = axis.xv * gain;
+  const double error = measured - axis.x;
+  axis.x += kx * error;
+  axis.v += kv * error;
+  axis.vv -= kv * axis.xv;
+  axis.xv *= 1.0 - kx;
+  axis.xx *= 1.0 - kx;
+}
+
+/// Views of one tag at one moment as one: at the time of the first, weighted by 1 / pixel^2. Views at another place
+/// than the first (of a known tag: the first near its track) are refused.
+std::optional<Tracker::View> Tracker::merge(const Track* track, std::span<const Sighting> views, int& used) {
+  const auto view_of = [](const Sighting& s) {
+    return View{s.time, s.fit.pixel, {s.fit.X_WT.x, s.fit.X_WT.y, s.fit.X_WT.yaw}};
+  };
+  std::optional<View> first;
+  for (const Sighting& sighting : views) {
+    const View view = view_of(sighting);
+    if (track != nullptr && !is_near(*track, view)) continue;
+    if (!first) first = view;
+  }
+  used = 0;
+  if (!first) return std::nullopt;
+  View sum{first->time, 0.0, {}};
+  double weights = 0.0;
+  for (const Sighting& sighting : views) {
+    const View view = view_of(sighting);
+    const double dt = first->time - view.time;
+    const double apart = std::hypot(view.at[0] - first->at[0], view.at[1] - first->at[1]);
+    if (apart > 0.5 * options_.gate + options_.max_speed * std::abs(dt)) continue;
+    const double weight = 1.0 / (view.pixel * view.pixel);
+    for (std::size_t i = 0; i < 3; ++i) {
+      // Headings relative to the first, so that none is averaged across the jump at pi.
+      const double off = i == 2 ? base::wrap_angle(view.at[2] - first->at[2]) : view.at[i] - first->at[i];
+      sum.at[i] += weight * (off + (track != nullptr ? dt * track->axes[i].v : 0.0));
+    }
+    weights += weight;
+    ++used;
+  }
+  for (std::size_t i = 0; i < 3; ++i) sum.at[i] = first->at[i] + sum.at[i] / weights;
+  sum.pixel = 1.0 / std::sqrt(weights);
+  return sum;
+}
+
+bool Tracker::is_near(const Track& track, const View& view) const {
+  const double dt = view.time - track.time;
+  const double apart = std::hypot(view.at[0] - track.axes[0].x, view.at[1] - track.axes[1].x);
+  return dt > 0.0 && apart <= options_.gate + options_.max_speed * dt;
+}
+
+void Tracker::advance(Track& track, const View& view) const {
+  const double dt = view.time - track.time;
+  const double turned = base::wrap_angle(view.at[2] - track.yaw);
+  const auto turn_velocity = [&track](double angle) {
+    const glm::dvec2 v = base::rotate(angle, {track.axes[0].v, track.axes[1].v});
+    track.axes[0].v = v.x;
+    track.axes[1].v = v.y;
+  };
+  track.time = view.time;
+  track.yaw = view.at[2];
+  turn_velocity(0.5 * turned);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Axis& axis = track.axes[i];
+    predict(axis, dt, i == 2 ? options_.turn_acceleration : options_.acceleration);
+  }
+  turn_velocity(0.5 * turned);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Axis& axis = track.axes[i];
+    const double measured = i == 2 ? axis.x + base::wrap_angle(view.at[2] - axis.x) : view.at[i];
+    correct(axis, measured, i == 2 ? options_.heading_sigma : options_.position_sigma * view.pixel);
+  }
+}
+
+void Tracker::update(std::span<const Sighting> sightings, std::vector<TrackedTag>& out) {
+  out.clear();
+  sorted_.assign(sightings.begin(), sightings.end());
+  std::stable_sort(sorted_.begin(), sorted_.end(), [](const Sighting& a, const Sighting& b) { return a.id < b.id; });
+  for (std::size_t begin = 0, end = 0; begin < sorted_.size(); begin = end) {
+    const std::uint32_t id = sorted_[begin].id;
+    while (end < sorted_.size() && sorted_[end].id == id) ++end;
+    const std::span<const Sighting> views(sorted_.data() + begin, end - begin);
+
+    auto found = tracks_.find(id);
+    if (found != tracks_.end() && views[0].time - found->second.time > options_.forget)
+      found = (tracks_.erase(found), tracks_.end());
+    int used = 0;
+    const auto view = merge(found == tracks_.end() ? nullptr : &found->second, views, used);
+    refused_ += views.size() - static_cast<std::size_t>(used);
+    if (!view) continue;
+
+    if (found == tracks_.end()) {
+      Track track{view->time, view->at[2], {}};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double sigma = i == 2 ? options_.heading_sigma : options_.position_sigma * view->pixel;
+        const double speed = i == 2 ? 2.0 * M_PI : options_.max_speed;
+        track.axes[i] = {view->at[i], 0.0, sigma * sigma, 0.0, speed * speed};
+      }
+      tracks_.emplace(id, track);
+      continue;
+    }
+    Track& track = found->second;
+    advance(track, *view);
+    out.push_back({id,
+                   view->time,
+                   {view->at[0], view->at[1], views[0].fit.X_WT.z, base::wrap_angle(view->at[2])},
+                   {track.axes[0].v, track.axes[1].v},
+                   track.axes[2].v,
+                   used});
+  }
+}
+
+}  // namespace sf::vision
