@@ -14,6 +14,7 @@ int sense(const SenseOptions& options);
 int run(const RunOptions& options);
 int serve(const ServeOptions& options);
 int robot(const RobotOptions& options);
+int light(const LightOptions& options);
 int start(const StartOptions& options);
 int plot(const PlotOptions& options);
 int listen(const ListenOptions& options);
@@ -23,6 +24,9 @@ int map(const MapOptions& options);
 int verify(const VerifyOptions& options);
 int explain(const ExplainOptions& options);
 int tradeoff(const TradeoffOptions& options);
+int v2x_messages(const V2xOptions& options);
 int selftest(const SelfTestOptions& options);
+int vps(const VpsOptions& options);
+int calibrate(const CalibrateOptions& options);
 
 }  // namespace sf::apps

@@ -8,8 +8,6 @@
 #include "apps/option_parsers.h"
 #include "apps/report.h"
 #include "apps/text.h"
-#include "base/error.h"
-#include "base/suggest.h"
 
 namespace sf::apps {
 
@@ -53,10 +51,7 @@ std::vector<scenarios::Actor> make_actors(const world::World& world, const RunOp
   std::vector<scenarios::Actor> actors(world.movers.size(), {.controller = {.name = ""}});
   for (const std::string& name : options.drive) {
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-      throw base::InputError(
-          world.file, 0,
-          fmt::format("has no robot '{}'{}; it has {}", name, base::suggest(name, names), names_of_robots(world)));
+    if (found == names.end()) refuse_robot(world, name, names);
     actors[static_cast<std::size_t>(found - names.begin())].controller = controller_config_of(options);
   }
   return actors;

@@ -25,15 +25,15 @@ std::string missing_or(double value, const sensors::Column& column) {
 }
 
 /// `distance_m,points`; a vector's columns are `vector_T_x,vector_T_y,vector_T_z`. Scans have bearings and models too.
-std::string csv_heading(const sensors::SensorType& kind) {
-  std::string text = kind.is_scan ? "bearing_rad" : "";
-  for (const sensors::Column& column : kind.columns)
+std::string csv_heading(const sensors::SensorType& type) {
+  std::string text = type.is_scan ? "bearing_rad" : "";
+  for (const sensors::Column& column : type.columns)
     for (std::uint32_t k = 0; k < column.width; ++k) {
       if (!text.empty()) text += ',';
       text += column.name;
       if (column.width > 1) text += column.width <= 3 ? fmt::format("_{}", "xyz"[k]) : fmt::format("_{}", k);
     }
-  return text + (kind.is_scan ? ",hit\n" : "\n");
+  return text + (type.is_scan ? ",hit\n" : "\n");
 }
 
 }  // namespace
@@ -51,16 +51,16 @@ std::string place_of(const world::World& world, const sensors::SensorSet& sensor
 
 std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set,
                     const base::ReadingBlock& reading) {
-  const sensors::SensorType& kind = *sensors::find_sensor_type(reading.kind);
-  std::string text = csv_heading(kind);
-  const std::size_t width = element_width(kind);
+  const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
+  std::string text = csv_heading(type);
+  const std::size_t width = element_width(type);
   for (std::uint32_t i = 0; (i + 1) * width <= reading.values.size(); ++i) {
-    std::string line = kind.is_scan ? fmt::format("{:.12f}", bearing_of(sensor_set.row(reading), i)) : "";
+    std::string line = type.is_scan ? fmt::format("{:.12f}", bearing_of(sensor_set.row(reading), i)) : "";
     std::size_t at = i * width;
-    for (const sensors::Column& column : kind.columns)
+    for (const sensors::Column& column : type.columns)
       for (std::uint32_t k = 0; k < column.width; ++k, ++at)
-        line += (kind.is_scan || at > i * width ? "," : "") + missing_or(reading.values[at], column);
-    if (kind.is_scan)
+        line += (type.is_scan || at > i * width ? "," : "") + missing_or(reading.values[at], column);
+    if (type.is_scan)
       line += "," + (reading.hits[i] == base::kNoHit ? "" : csv_field(world.models[reading.hits[i]].name));
     text += line + "\n";
   }

@@ -4,6 +4,7 @@
 
 #include "apps/report.h"
 #include "apps/text.h"
+#include "sensors/laser_settings.h"
 #include "world/free_space.h"
 
 namespace sf::apps {
@@ -25,11 +26,11 @@ world::Mover create_robot(std::uint32_t model) {
     side.model = model;
     robot.body.push_back(side);
   }
-  world::Laser laser;
+  sensors::LaserSettings laser;
   laser.name = "laser";
   laser.X_MS = {0.0, 0.0, 0.05, 0.0};
   laser.samples = 361;
-  robot.lasers.push_back(laser);
+  robot.sensors.push_back(sensors::laser_sensor(laser));
   return robot;
 }
 

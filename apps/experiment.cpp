@@ -36,8 +36,8 @@ std::string folder_of(const ExperimentOptions& options) {
 }
 
 int list_all() {
-  for (const scenarios::ExperimentType* kind : scenarios::experiments())
-    std::fputs(fmt::format("{:<14} {}; plant {}\n", kind->name, kind->summary, name_of(kind->plant)).c_str(), stdout);
+  for (const scenarios::ExperimentType* type : scenarios::experiments())
+    std::fputs(fmt::format("{:<14} {}; plant {}\n", type->name, type->summary, name_of(type->plant)).c_str(), stdout);
   return 0;
 }
 

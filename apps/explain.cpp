@@ -44,12 +44,12 @@ std::string work_of(const scenarios::SensorTypeCost& k, double ticks) {
 
 std::string text_of(const scenarios::SensorTypeCost& k, const scenarios::Explanation& e) {
   std::string text =
-      fmt::format("{}: {} on {}, {}\n", k.kind, counted(k.sensors, "sensor"), counted(k.robots, "robot"), rates_of(k));
+      fmt::format("{}: {} on {}, {}\n", k.type, counted(k.sensors, "sensor"), counted(k.robots, "robot"), rates_of(k));
   text += row("a tick", "{:.3f} ms subscribed {}, {:.3f} ms more than without subscribers", 1e3 * k.tick,
               k.source.empty() ? "alone" : fmt::format("with the {}s", k.source), 1e3 * (k.tick - e.silent));
   text += row("", work_of(k, static_cast<double>(e.ticks)));
   for (const sensors::AccuracyStatement& s : e.statements)
-    if (s.kind->name == k.kind) text += row("accuracy", apps::text_of(s));
+    if (s.type->name == k.type) text += row("accuracy", apps::text_of(s));
   text += row("kernels",
               k.kernels.empty() ? "none: it is read on the host" : fmt::format("{}", fmt::join(k.kernels, ", ")));
   if (k.tables.empty()) return text;
@@ -63,7 +63,7 @@ std::string text_of(const scenarios::SensorTypeCost& k, const scenarios::Explana
 
 std::string text_of(const scenarios::Explanation& e) {
   std::string text;
-  for (const scenarios::SensorTypeCost& kind : e.kinds) text += text_of(kind, e);
+  for (const scenarios::SensorTypeCost& cost : e.types) text += text_of(cost, e);
   text += "together\n";
   text += row("a tick", "{:.3f} ms with all subscribed, {:.4f} ms without subscribers", 1e3 * e.all, 1e3 * e.silent);
   text += row("caster", e.caster);

@@ -17,57 +17,55 @@ namespace sf::apps {
 
 namespace {
 
-/// Whether the mover has a sensor of that kind; 0: of any.
-bool has_kind(const sensors::SensorSet& sensor_set, std::uint8_t kind, std::uint32_t mover) {
-  return kind == 0 ? sensor_set.count_of(mover) > 0 : !sensor_set.of(kind, mover).empty();
+/// Whether the mover has a sensor of that type; 0: of any.
+bool has_type(const sensors::SensorSet& sensor_set, std::uint8_t type, std::uint32_t mover) {
+  return type == 0 ? sensor_set.count_of(mover) > 0 : !sensor_set.of(type, mover).empty();
 }
 
-[[noreturn]] void refuse_blind_world(const world::World& world, std::uint8_t kind) {
+[[noreturn]] void refuse_blind_world(const world::World& world, std::uint8_t type) {
   std::vector<std::string> words;
   for (const sensors::SensorType* known : sensors::sensor_types())
-    if (kind == 0 || known->id == kind) words.push_back("a " + std::string(known->name) + "( )");
+    if (type == 0 || known->id == type) words.push_back("a " + std::string(known->name) + "( )");
   throw base::InputError(world.file, 0, "no robot has such a sensor; give one " + join_or(words));
 }
 
 std::uint32_t find_robot(const world::World& world, const sensors::SensorSet& sensor_set, const SenseOptions& options) {
-  std::string known;
-  std::size_t others = 0;
+  std::vector<std::string_view> names;
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
-    const bool senses = has_kind(sensor_set, options.kind, i);
+    const bool senses = has_type(sensor_set, options.type, i);
     if (options.robot.empty() ? senses : world.movers[i].name == options.robot) return i;
-    if (senses && ++others <= 10) known += (known.empty() ? "" : ", ") + world.movers[i].name;
+    if (senses) names.push_back(world.movers[i].name);
   }
-  if (options.robot.empty()) refuse_blind_world(world, options.kind);
-  if (others > 10) known += ", ... (" + std::to_string(others) + " in all)";
-  throw base::InputError(
-      world.file, 0, "has no robot '" + options.robot + "'; with sensors it has " + (known.empty() ? "none" : known));
+  if (options.robot.empty()) refuse_blind_world(world, options.type);
+  throw base::InputError(world.file, 0,
+                         "has no robot '" + options.robot + "'; with sensors it has " + list_names(names));
 }
 
 /// "laser 0 to 2, magnetometer 0".
 std::string all_sensors_of(const sensors::SensorSet& sensor_set, std::uint32_t mover) {
   std::string text;
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
-    const std::size_t count = sensor_set.of(group.kind->id, mover).size();
+    const std::size_t count = sensor_set.of(group.type->id, mover).size();
     if (count == 0) continue;
-    text += (text.empty() ? "" : ", ") + std::string(group.kind->name) + " 0";
+    text += (text.empty() ? "" : ", ") + std::string(group.type->name) + " 0";
     if (count > 1) text += " to " + std::to_string(count - 1);
   }
   return text;
 }
 
-/// A sensor by its kind and its number among the mover's sensors of that kind.
+/// A sensor by its type and its number among the mover's sensors of that type.
 struct Chosen {
-  const sensors::SensorType* kind = nullptr;
+  const sensors::SensorType* type = nullptr;
   std::uint32_t sensor = 0;
 };
 
-/// Numbers count among one kind where it was named, else through all of the mover's sensors, kind after kind.
+/// Numbers count among one type where it was named, else through all of the mover's sensors, type after type.
 Chosen find_sensor(const sensors::SensorSet& sensor_set, const SenseOptions& options, std::uint32_t mover) {
   std::uint32_t number = options.sensor;
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
-    if (options.kind != 0 && group.kind->id != options.kind) continue;
-    const auto count = static_cast<std::uint32_t>(sensor_set.of(group.kind->id, mover).size());
-    if (number < count) return {group.kind, number};
+    if (options.type != 0 && group.type->id != options.type) continue;
+    const auto count = static_cast<std::uint32_t>(sensor_set.of(group.type->id, mover).size());
+    if (number < count) return {group.type, number};
     number -= count;
   }
   return {};
@@ -77,13 +75,13 @@ Chosen find_sensor(const sensors::SensorSet& sensor_set, const SenseOptions& opt
 Chosen require_sensor(const world::World& world, const sensors::SensorSet& sensor_set, const SenseOptions& options,
                       std::uint32_t mover) {
   const Chosen chosen = find_sensor(sensor_set, options, mover);
-  if (chosen.kind != nullptr) return chosen;
+  if (chosen.type != nullptr) return chosen;
   const std::string has = all_sensors_of(sensor_set, mover);
   const std::string& robot = world.movers[mover].name;
   if (has.empty()) throw base::InputError(world.file, 0, robot + " has no sensor");
-  const sensors::SensorType* kind = sensors::find_sensor_type(options.kind);
+  const sensors::SensorType* type = sensors::find_sensor_type(options.type);
   throw base::InputError(world.file, 0,
-                         robot + " has no " + std::string(kind != nullptr ? kind->name : "sensor") + " " +
+                         robot + " has no " + std::string(type != nullptr ? type->name : "sensor") + " " +
                              std::to_string(options.sensor) + "; it has " + has + " (--type, --sensor)");
 }
 
@@ -135,7 +133,7 @@ int sense(const SenseOptions& options) {
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
-  base::ReadingBlock reading = farm.sense(mover, chosen.kind->id, chosen.sensor, X_WM);
+  base::ReadingBlock reading = farm.sense(mover, chosen.type->id, chosen.sensor, X_WM);
   std::vector<double> values(reading.values.begin(), reading.values.end());
   if (options.no_return_inf) sensors::mark_no_return(reading, sensor_set.row(reading).limit, values);
   reading.values = values;

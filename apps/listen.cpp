@@ -26,8 +26,8 @@ int listen(const ListenOptions& options) {
     return server::inspect_payload(sources[i], options.wire, header, payload);
   };
   for (const server::SensorStream& source : sources)
-    monitor_options.streams.push_back({world.movers[source.row->mover].id, source.row->sensor, sent.ports(*source.kind),
-                                       std::string(source.kind->name)});
+    monitor_options.streams.push_back({world.movers[source.row->mover].id, source.row->sensor, sent.ports(*source.type),
+                                       std::string(source.type->name)});
   netio::StreamMonitor monitor(monitor_options);
   warn_of_exposure(monitor_options.address, "send readings");
   install_stop_handlers();

@@ -166,6 +166,19 @@ void add_until(CLI::App& app, DurationOption& o, const std::string& help) {
   app.add_option("--duration", o.duration, help)->check(number(0.0, 1e9))->type_name("S");
 }
 
+void add_origin(CLI::App& app, OriginOption& o, const std::string& group) {
+  app.add_option("--latitude", o.latitude, "Latitude of the world's origin [degrees]")
+      ->check(number(-89.0, 89.0))
+      ->type_name("DEG")
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--longitude", o.longitude, "Longitude of the world's origin [degrees]")
+      ->check(number(-179.9, 179.9))
+      ->type_name("DEG")
+      ->capture_default_str()
+      ->group(group);
+}
+
 void add_ports(CLI::App& app, PortOptions& o) {
   for (const sensors::SensorType* type : sensors::sensor_types()) {
     o.base_ports[type->id] = type->base_port;
@@ -193,10 +206,10 @@ void add_recording(CLI::App& app, RecordingOption& o) {
   app.add_option("recording", o.recording, "Folder of the recording")->required()->type_name("DIR");
 }
 
-void add_kind(CLI::App& app, SenseOptions& o) {
+void add_sensor_type(CLI::App& app, SenseOptions& o) {
   std::vector<std::pair<std::string, std::uint8_t>> types;
   for (const sensors::SensorType* type : sensors::sensor_types()) types.emplace_back(type->name, type->id);
-  add_choice(app, "--type", o.kind, types, "Type of its sensor (default: the first that it has)");
+  add_choice(app, "--type", o.type, types, "Type of its sensor (default: the first that it has)");
 }
 
 void add_seed(CLI::App& app, SeedOption& o, const std::string& what) {
@@ -216,7 +229,7 @@ void add_robots(CLI::App& app, CloneOptions& o) {
 
 void add_controller(CLI::App& app, ControllerOptions& o) {
   std::vector<std::string> names;
-  for (const control::ControllerType* kind : control::controllers()) names.emplace_back(kind->name);
+  for (const control::ControllerType* type : control::controllers()) names.emplace_back(type->name);
   app.add_option("--controller", o.controller, "Controller of the robots: " + join_or(names))
       ->check(one_of(names))
       ->type_name("NAME")

@@ -68,11 +68,13 @@ void add_from(CLI::App& app, ReceiveOptions& o);
 void add_silence(CLI::App& app, ReceiveOptions& o);
 /// `--duration`, without which the command goes on.
 void add_until(CLI::App& app, DurationOption& o, const std::string& help);
+/// `--latitude` and `--longitude`.
+void add_origin(CLI::App& app, OriginOption& o, const std::string& group = "Options");
 void add_ports(CLI::App& app, PortOptions& o);
 void add_threads(CLI::App& app, ThreadsOption& o);
 /// The folder of a recorded run.
 void add_recording(CLI::App& app, RecordingOption& o);
-void add_kind(CLI::App& app, SenseOptions& o);
+void add_sensor_type(CLI::App& app, SenseOptions& o);
 void add_seed(CLI::App& app, SeedOption& o, const std::string& what);
 void add_robots(CLI::App& app, CloneOptions& o);
 void add_controller(CLI::App& app, ControllerOptions& o);

@@ -11,6 +11,8 @@
 #include "base/pose.h"
 #include "netio/packets.h"
 #include "netio/ports.h"
+#include "robots/estimation/sender_clock.h"
+#include "robots/estimation/track_filter.h"
 #include "scenarios/plant.h"
 #include "scenarios/tradeoff.h"
 #include "sensors/sensor_type.h"
@@ -68,7 +70,7 @@ struct WireOption {
 };
 
 struct PortOptions : WireOption {
-  std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor kind; every kind is in it
+  std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor type; every type is in it
   std::uint32_t ports_per_robot = 0;                 ///< 0: 8, or the least that fits
 };
 
@@ -96,8 +98,23 @@ struct ForgetOption {
   double forget = 10.0;  ///< [s] of silence after which a robot is no obstacle any more; 0: never
 };
 
+/// Of the states that robots and cameras send.
+struct FilterOptions {
+  bool filter = false;
+  estimation::ClockSource clock = estimation::ClockSource::estimated;
+  double link_delay = 0.0;   ///< [s] least delay of the link, for estimated clocks
+  double stale_after = 1.0;  ///< [s] without a used state
+  estimation::StalePolicy stale = estimation::StalePolicy::freeze;
+};
+
 struct DurationOption {
   double duration = 0.0;  ///< [s]; 0: until stopped
+};
+
+/// Place of the world's origin on the Earth.
+struct OriginOption {
+  double latitude = 0.0;   ///< [deg] in [-89, 89]
+  double longitude = 0.0;  ///< [deg] within 180
 };
 
 struct DevicesOptions : JsonOption, DeviceOption {};
@@ -111,6 +128,14 @@ struct DrawOptions : WorldOptions {
   std::string out;  ///< picture
 };
 
+struct V2xOptions : OriginOption {
+  std::string file;  ///< "-": standard input
+  enum class Action { decode, encode, export_world };
+  Action action = Action::decode;
+  bool xml = false;   ///< decode to XML
+  double time = 0.0;  ///< [s] export: simulated
+};
+
 struct FieldOptions : WorldOptions, DeviceOption {
   std::string out;                      ///< picture
   double height = 0.0;                  ///< [m] of the figure
@@ -122,8 +147,8 @@ struct FieldOptions : WorldOptions, DeviceOption {
 struct SenseOptions : WorldOptions, JsonOption, DeviceOption, NoReturnOption {
   std::optional<base::Pose> pose;  ///< of the robot
   std::string robot;               ///< empty: the first that has a sensor
-  std::uint8_t kind = 0;           ///< of its sensor; 0: the first it has
-  std::uint32_t sensor = 0;        ///< among its sensors of that kind
+  std::uint8_t type = 0;           ///< of its sensor; 0: the first it has
+  std::uint32_t sensor = 0;        ///< among its sensors of that type
 };
 
 struct PlotOptions : RecordingOption, DeviceOption {
@@ -157,6 +182,7 @@ struct ServeOptions : WorldOptions,
                       PortOptions,
                       BindOption,
                       ForgetOption,
+                      FilterOptions,
                       SeedOption,
                       DurationOption {
   std::uint32_t port = netio::kInboxPort;  ///< 0: any free one
@@ -177,6 +203,18 @@ struct RobotOptions : WorldOptions,
   double rate = 0.0;        ///< [Hz]; 0: the controller's own
   double stop_after = 0.5;  ///< [s] without a reading after which it stands; 0: never
   bool wait_for_start = false;
+  std::uint16_t spat = 0;  ///< port for SPaT; 0: the lights go by the world's plans
+};
+
+inline constexpr std::uint16_t kSpatPort = 9010;  ///< default port of SPaT and MAP
+
+struct LightOptions : OriginOption, DurationOption {
+  std::string world;
+  std::string send;  ///< host
+  std::vector<std::uint16_t> ports{kSpatPort};
+  double rate = 10.0;            ///< [Hz]
+  double time = 0.0;             ///< [s] simulated, at the start
+  std::vector<std::string> set;  ///< "NAME=STATE", in place of a plan
 };
 
 struct StartOptions : FarmOptions {
@@ -212,6 +250,28 @@ struct VerifyOptions : RecordingOption, ThreadsOption, JsonOption, DeviceOption 
 
 struct TradeoffOptions : WorldOptions, AccuracyTargetOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {
   std::string out;  ///< folder; empty: none
+};
+
+struct VpsOptions : JsonOption, SeedOption, DurationOption {
+  std::string testbed;                                      ///< file
+  std::vector<std::pair<std::string, std::string>> inputs;  ///< camera and its source, in place of the file's
+  std::uint32_t rendered = 0;                               ///< tags of a simulated testbed; 0: none
+  double speed = 0.5;                                       ///< [m/s] of the fastest of them
+  std::uint32_t occluders = 0;                              ///< above them
+  std::uint64_t images = 0;                                 ///< of each camera; 0: all
+  bool real_time = false;                                   ///< at the cameras' rate
+  std::string send;                                         ///< "host:port" of tags without an address; empty: none
+  std::string track;                                        ///< CSV file; empty: none
+  std::string overlay;                                      ///< folder of pictures; empty: none
+  std::string world;                                        ///< drawn over the pictures; empty: none
+};
+
+struct CalibrateOptions {
+  std::string images;         ///< folder or video
+  std::uint32_t columns = 9;  ///< inner corners of the chessboard
+  std::uint32_t rows = 6;
+  double square = 0.025;  ///< [m]
+  std::string name = "camera";
 };
 
 struct SelfTestOptions : JsonOption, DeviceOption {

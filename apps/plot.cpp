@@ -12,6 +12,7 @@
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "base/time.h"
 #include "farm/farm.h"
 #include "record/recording.h"
 #include "scenarios/experiment.h"
@@ -62,7 +63,7 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
       reports.push_back({m, s.time, s.X_WM, s.velocity});
     }
     // Slow sensors look too: each tick is as far from the last as their period.
-    const auto now = static_cast<std::int64_t>(t + 1) * 1'000'000'000'000;
+    const auto now = static_cast<std::int64_t>(t + 1) * 1000 * base::kSecond;
     for (const base::ReadingBlock& reading : farm.tick(now, reports)) map.add(world, reading);
     progress.show(static_cast<double>(t) / static_cast<double>(ticks));
     go_on();

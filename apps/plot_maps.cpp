@@ -22,7 +22,7 @@ struct LastMap {
 const record::ReadingSample* last_of(const record::Recording& recording, const sensors::SensorSpec& row) {
   const auto& all = recording.readings;
   const auto last = std::find_if(all.rbegin(), all.rend(), [&](const record::ReadingSample& r) {
-    return r.kind == sensors::kOccupancy && r.mover == row.mover && r.sensor == row.sensor;
+    return r.type == sensors::kOccupancy && r.mover == row.mover && r.sensor == row.sensor;
   });
   return last != all.rend() && last->values.size() == row.elements ? &*last : nullptr;
 }

@@ -23,16 +23,16 @@ struct Channel {
 };
 
 const record::SensorTypeInfo* find_sensor_type(const record::RunInfo& info, const std::string& name) {
-  for (const record::SensorTypeInfo& kind : info.sensor_types)
-    if (kind.name == name) return &kind;
+  for (const record::SensorTypeInfo& type : info.sensor_types)
+    if (type.name == name) return &type;
   return nullptr;
 }
 
-/// Every sensor of a kind that said something.
-std::vector<Channel> channels_of(const record::Recording& recording, const record::SensorTypeInfo& kind) {
+/// Every sensor of a type that said something.
+std::vector<Channel> channels_of(const record::Recording& recording, const record::SensorTypeInfo& type) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Channel> rows;
   for (const record::ReadingSample& reading : recording.readings)
-    if (reading.kind == kind.id) rows[{reading.mover, reading.sensor}].readings.push_back(&reading);
+    if (reading.type == type.id) rows[{reading.mover, reading.sensor}].readings.push_back(&reading);
   std::vector<Channel> channels;
   for (auto& [key, channel] : rows) {
     channel.name = recording.info.movers[key.first].name;
@@ -101,12 +101,12 @@ viz::SeriesOptions fields(const record::Recording& recording, const std::vector<
 std::vector<std::string> draw_readings(const record::Recording& recording, const std::string& folder) {
   std::vector<std::string> files;
   const auto draw = [&](const std::string& name, const char* file, auto&& plan_of) {
-    const record::SensorTypeInfo* kind = find_sensor_type(recording.info, name);
-    if (kind == nullptr) return;
-    const std::vector<Channel> channels = channels_of(recording, *kind);
+    const record::SensorTypeInfo* type = find_sensor_type(recording.info, name);
+    if (type == nullptr) return;
+    const std::vector<Channel> channels = channels_of(recording, *type);
     if (channels.empty()) return;
     files.push_back(folder + "/" + file);
-    viz::draw_series(plan_of(channels, record::element_width(*kind)), files.back());
+    viz::draw_series(plan_of(channels, record::element_width(*type)), files.back());
   };
   draw("laneedge", "lane_edge.png", [&](const auto& channels, std::size_t) { return lane_edges(recording, channels); });
   draw("magnetometer", "magnetometer.png",

@@ -1,5 +1,5 @@
 #pragma once
-// Recorded readings over time, one figure per kind of sensor that has one.
+// Recorded readings over time, one figure per type of sensor that has one.
 
 #include <string>
 #include <vector>

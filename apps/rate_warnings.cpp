@@ -32,36 +32,36 @@ std::pair<double, double> rates_of(const sensors::SensorSet::Group& group) {
 
 std::string rate_text(const sensors::SensorSet::Group& group) {
   const auto [least, most] = rates_of(group);
-  return least == most ? fmt::format("{} {:g} Hz", group.kind->name, most)
-                       : fmt::format("{} {:g} to {:g} Hz", group.kind->name, least, most);
+  return least == most ? fmt::format("{} {:g} Hz", group.type->name, most)
+                       : fmt::format("{} {:g} to {:g} Hz", group.type->name, least, most);
 }
 
-std::vector<std::string> kinds_between_ticks(const sensors::SensorSet& sensor_set, double interval) {
-  std::vector<std::string> kinds;
+std::vector<std::string> types_between_ticks(const sensors::SensorSet& sensor_set, double interval) {
+  std::vector<std::string> types;
   const auto ticks = std::max<std::int64_t>(1, base::nanoseconds(interval));
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     if (std::any_of(group.rows.begin(), group.rows.end(), [&](const auto& row) { return due_between(row, ticks); }))
-      kinds.emplace_back(group.kind->name);
-  return kinds;
+      types.emplace_back(group.type->name);
+  return types;
 }
 
 void warn_of_fast_sensors(const sensors::SensorSet& sensor_set, double rate) {
   std::size_t fast = 0;
   double most = 0.0;
-  std::string kinds;
+  std::string types;
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
     const auto faster = [&](const sensors::SensorSpec& row) { return row.rate > rate * (1.0 + 1e-9); };
     const auto count = std::count_if(group.rows.begin(), group.rows.end(), faster);
     if (count == 0) continue;
     fast += static_cast<std::size_t>(count);
     most = std::max(most, rates_of(group).second);
-    kinds += (kinds.empty() ? "" : ", ") + rate_text(group);
+    types += (types.empty() ? "" : ", ") + rate_text(group);
   }
   if (fast > 0)
     print_message(
         "--rate {:g} is too low for {} ({}): they give one reading a tick; leave --rate out, and "
         "they are read at their own times, or give at least --rate {:g}",
-        rate, counted(fast, "sensor"), kinds, most);
+        rate, counted(fast, "sensor"), types, most);
 }
 
 void warn_of_many_times(const sensors::SensorSet& sensor_set) {

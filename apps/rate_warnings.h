@@ -9,13 +9,13 @@
 
 namespace sf::apps {
 
-/// [Hz] The least and the largest of one kind.
+/// [Hz] The least and the largest of one type.
 std::pair<double, double> rates_of(const sensors::SensorSet::Group& group);
-/// "laser 10 to 13 Hz", of one kind.
+/// "laser 10 to 13 Hz", of one type.
 std::string rate_text(const sensors::SensorSet::Group& group);
 
-/// Names of the kinds that have sensors which are due between ticks of `interval` [s].
-std::vector<std::string> kinds_between_ticks(const sensors::SensorSet& sensor_set, double interval);
+/// Names of the types that have sensors which are due between ticks of `interval` [s].
+std::vector<std::string> types_between_ticks(const sensors::SensorSet& sensor_set, double interval);
 
 /// Says on standard error which sensors ticks at `rate` [Hz] are too slow for, where they are read at ticks alone.
 void warn_of_fast_sensors(const sensors::SensorSet& sensor_set, double rate);

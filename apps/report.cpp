@@ -4,6 +4,8 @@
 #include <cstdio>
 
 #include "apps/text.h"
+#include "base/error.h"
+#include "base/suggest.h"
 
 namespace sf::apps {
 
@@ -34,14 +36,13 @@ std::size_t count_robots(const world::World& world) {
   return robots;
 }
 
-std::string names_of_robots(const world::World& world) {
-  constexpr std::size_t kMost = 10;
-  const std::size_t count = count_robots(world);
-  std::vector<std::string_view> names;
+void refuse_robot(const world::World& world, const std::string& name, const std::vector<std::string_view>& names) {
+  std::vector<std::string_view> robots;
   for (const world::Mover& mover : world.movers)
-    if (!mover.is_tag && names.size() < kMost) names.push_back(mover.name);
-  if (names.empty()) return "none";
-  return fmt::format("{}{}", fmt::join(names, ", "), count > kMost ? fmt::format(", ... ({} in all)", count) : "");
+    if (!mover.is_tag) robots.push_back(mover.name);
+  throw base::InputError(
+      world.file, 0,
+      fmt::format("has no robot '{}'{}; it has {}", name, base::suggest(name, names), list_names(robots)));
 }
 
 std::size_t count_docks(const world::World& world) {

@@ -12,6 +12,7 @@
 #include "netio/inbox.h"
 #include "netio/relay.h"
 #include "netio/server/reading_publisher.h"
+#include "netio/server/state_filter.h"
 #include "netio/stream_monitor.h"
 #include "scenarios/explanation.h"
 #include "scenarios/tradeoff.h"
@@ -42,8 +43,15 @@ struct RunReport {
   server::PublisherCounts publisher;
   bool received = false;  ///< `inbox` counts
   netio::PacketCounts inbox;
-  std::uint64_t kernel_drops = 0;    ///< datagrams that came while the inbox' buffer was full
-  netio::RelayCounts relayed;        ///< to robots, of others' states and start signals
+  std::uint64_t socket_drops = 0;  ///< datagrams that came while the inbox' buffer was full
+  netio::RelayCounts relayed;      ///< to robots, of others' states and start signals
+  bool filtered = false;           ///< `states` and `clocks` count
+  server::StateFilterCounts states;
+  struct Clock {
+    std::string name;  ///< of the mover
+    estimation::ClockState clock;
+  };
+  std::vector<Clock> clocks;         ///< of senders of states
   std::uint64_t lines_left_out = 0;  ///< of the log
   std::string recording;             ///< file; empty: none
   std::uint64_t recorded_bytes = 0;  ///< its size
@@ -72,8 +80,9 @@ std::string with_warnings(std::string json, const std::vector<world::Warning>& w
 void print_damage(const record::Recording& recording);
 
 std::size_t count_robots(const world::World& world);
-/// "roomba1, roomba2", at most ten; "none".
-std::string names_of_robots(const world::World& world);
+/// Ends with the names of the world's robots. @param names that may be suggested for `name`
+[[noreturn]] void refuse_robot(const world::World& world, const std::string& name,
+                               const std::vector<std::string_view>& names);
 /// All that stand still or are carried.
 std::size_t count_magnets(const world::World& world);
 /// Of the infrared emitters; the others are virtual walls.

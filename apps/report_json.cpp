@@ -52,11 +52,11 @@ Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Jso
 Json statements_json(const std::vector<sensors::AccuracyStatement>& statements) {
   Json json = Json::array();
   for (const sensors::AccuracyStatement& s : statements)
-    json.push_back({{"type", s.kind->name},
+    json.push_back({{"type", s.type->name},
                     {"sensors", s.sensors},
-                    {"mode", sensors::word_of(*s.kind, s.mode)},
+                    {"mode", sensors::word_of(*s.type, s.mode)},
                     {"bound", finite_json(s.bound.error)},
-                    {"unit", sensors::unit_of(*s.kind)},
+                    {"unit", sensors::unit_of(*s.type)},
                     {"condition", s.bound.condition}});
   return json;
 }
@@ -74,17 +74,17 @@ std::string_view word_of(base::QualityFlag quality) {
 /// One element's columns, by name. Beams have their bearing and the model that they met too.
 Json element_json(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading,
                   std::uint32_t i) {
-  const sensors::SensorType& kind = *sensors::find_sensor_type(reading.kind);
+  const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
   Json json = Json::object();
-  if (kind.is_scan) json["bearing_rad"] = bearing_of(sensor_set.row(reading), i);
-  std::size_t at = i * element_width(kind);
-  for (const sensors::Column& column : kind.columns) {
+  if (type.is_scan) json["bearing_rad"] = bearing_of(sensor_set.row(reading), i);
+  std::size_t at = i * element_width(type);
+  for (const sensors::Column& column : type.columns) {
     Json numbers = Json::array();
     for (std::uint32_t k = 0; k < column.width; ++k) numbers.push_back(number_json(reading.values[at++], column.whole));
     json[std::string(column.name)] = column.width == 1 ? numbers[0] : numbers;
   }
-  if (kind.is_scan) json["hit"] = reading.hits[i] == base::kNoHit ? Json() : Json(world.models[reading.hits[i]].name);
-  if (!kind.list.empty() && !reading.quality.empty() && reading.quality[i] != base::QualityFlag::none)
+  if (type.is_scan) json["hit"] = reading.hits[i] == base::kNoHit ? Json() : Json(world.models[reading.hits[i]].name);
+  if (!type.list.empty() && !reading.quality.empty() && reading.quality[i] != base::QualityFlag::none)
     json["unsure"] = word_of(reading.quality[i]);
   return json;
 }
@@ -101,6 +101,23 @@ Json control_json(const ControlReport& f) {
   for (const Standing& s : f.standing)
     json["standing"].push_back(
         {{"reason", s.reason}, {"robots", s.robots}, {"names", s.names}, {"longest_s", s.seconds}});
+  return json;
+}
+
+/// Non-zero counts by verdict, and the senders' clocks.
+Json states_json(const RunReport& f) {
+  Json json{{"by_verdict", Json::object()}, {"by_clock", Json::object()}, {"clocks", Json::array()}};
+  for (std::size_t k = 0; k < f.states.states.size(); ++k)
+    if (f.states.states[k] > 0)
+      json["by_verdict"][std::string(name(static_cast<estimation::Verdict>(k)))] = f.states.states[k];
+  for (std::size_t k = 0; k < f.states.clocks.size(); ++k)
+    if (f.states.clocks[k] > 0)
+      json["by_clock"][std::string(name(static_cast<estimation::ClockVerdict>(k)))] = f.states.clocks[k];
+  for (const RunReport::Clock& each : f.clocks)
+    json["clocks"].push_back({{"name", each.name},
+                              {"offset_s", 1e-9 * static_cast<double>(each.clock.offset)},
+                              {"drift_ppm", each.clock.drift_known ? Json(1e6 * each.clock.drift) : Json()},
+                              {"steps", each.clock.steps}});
   return json;
 }
 
@@ -121,7 +138,7 @@ Json link_json(const server::LinkCounts& link) {
             {"lost", in.lost},
             {"restarts", in.restarts}}},
           {"relayed", {{"packets", link.packets.total()}, {"by_reason", reasons(link.packets)}}},
-          {"kernel_drops", link.kernel_drops},
+          {"socket_drops", link.socket_drops},
           {"injected", {{"out", injected(link.out)}, {"in", injected(link.in)}}}};
 }
 
@@ -145,12 +162,12 @@ std::string json_of(const gpu::DeviceList& list) {
 
 std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set) {
   Json sensors = Json::object(), rates = Json::object();
-  for (const sensors::SensorType* kind : sensors::sensor_types()) {
-    const auto* group = sensor_set.group(kind->id);
-    sensors[std::string(kind->name)] = group == nullptr ? 0 : group->rows.size();
+  for (const sensors::SensorType* type : sensors::sensor_types()) {
+    const auto* group = sensor_set.group(type->id);
+    sensors[std::string(type->name)] = group == nullptr ? 0 : group->rows.size();
     if (group == nullptr) continue;
     const auto [least, most] = rates_of(*group);
-    rates[std::string(kind->name)] = {least, most};
+    rates[std::string(type->name)] = {least, most};
   }
   const sensors::MagnetSummary field = sensors::summarize_magnets(world);
   const std::size_t docks = count_docks(world);
@@ -163,7 +180,7 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
                 {"tags", world.movers.size() - count_robots(world)},
                 {"sensors", sensors},
                 {"rates_hz", rates},
-                {"between_ticks", kinds_between_ticks(sensor_set, world.interval)},
+                {"between_ticks", types_between_ticks(sensor_set, world.interval)},
                 {"segments", world.walls.size()},
                 {"segments_with_movers", segments},
                 {"magnets", count_magnets(world)},
@@ -226,11 +243,12 @@ std::string json_of(const RunReport& f) {
                        {"not_numbers", f.publisher.not_numbers}, {"first_failure", f.publisher.packets.first_failure}};
   if (f.received) {
     json["received"] = reasons(f.inbox);
-    json["kernel_drops"] = f.kernel_drops;
+    json["socket_drops"] = f.socket_drops;
     json["relayed"] = {{"states", f.relayed.states},
                        {"datagrams", f.relayed.datagrams},
                        {"waited", f.relayed.waited},
                        {"starts", f.relayed.starts}};
+    if (f.filtered) json["states"] = states_json(f);
     json["log_lines_left_out"] = f.lines_left_out;
   }
   if (!f.recording.empty()) {
@@ -242,44 +260,45 @@ std::string json_of(const RunReport& f) {
 
 std::string json_of(const netio::StreamSummary& s) {
   Json sensors = Json::object();
-  for (const auto& [kind, share] : s.of) sensors[kind] = {{"good", share.good}, {"elements", share.elements}};
+  for (const auto& [type, share] : s.of) sensors[type] = {{"good", share.good}, {"elements", share.elements}};
   return print({{"packets", s.datagrams},
                 {"bytes", s.bytes},
                 {"good", s.good},
                 {"rays", count_rays(s)},
                 {"sensors", sensors},
+                {"stale_states", s.stale_states},
                 {"lost", s.lost},
                 {"duplicates", s.duplicates},
                 {"reordered", s.reordered},
                 {"ports", s.ports},
                 {"silent_ports", s.silent_ports},
-                {"kernel_drops", s.kernel_drops},
+                {"socket_drops", s.socket_drops},
                 {"by_reason", reasons(s.counts)}});
 }
 
 std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set,
                     const base::ReadingBlock& reading) {
-  const sensors::SensorType& kind = *sensors::find_sensor_type(reading.kind);
+  const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
   Json head{{"robot", world.movers[reading.mover].name},
             {"sensor", reading.sensor},
             {"sensor_name", sensor_set.row(reading).name},
-            {"type", kind.name},
+            {"type", type.name},
             {"pose", pose_json(reading.X_WM)},
             {"sensor_pose", pose_json(reading.X_WS)}};
-  if (kind.bound != nullptr) {
-    head["accuracy"] = sensors::word_of(kind, reading.mode);
+  if (type.bound != nullptr) {
+    head["accuracy"] = sensors::word_of(type, reading.mode);
     head["bound"] = finite_json(reading.bound);
   }
-  if (kind.list.empty() && !reading.quality.empty()) head["unsure"] = word_of(reading.quality.front());
-  if (kind.list.empty()) {
+  if (type.list.empty() && !reading.quality.empty()) head["unsure"] = word_of(reading.quality.front());
+  if (type.list.empty()) {
     head.update(element_json(world, sensor_set, reading, 0));
     return dump(head) + "\n";
   }
   // Elements are lines of their own.
   std::string text = dump(head);
   text.back() = ',';
-  text += fmt::format("\n\"{}\": [", kind.list);
-  for (std::uint32_t i = 0; i < reading.values.size() / element_width(kind); ++i)
+  text += fmt::format("\n\"{}\": [", type.list);
+  for (std::uint32_t i = 0; i < reading.values.size() / element_width(type); ++i)
     text += (i == 0 ? "\n  " : ",\n  ") + dump(element_json(world, sensor_set, reading, i));
   return text + "\n]}\n";
 }
@@ -290,6 +309,11 @@ std::string json_of(const server::RobotClientStats& f) {
             {"started", f.started},   {"done", f.done},     {"answered", f.answered},
             {"contacts", f.contacts}, {"stops", f.stops},   {"log_lines_left_out", f.lines_left_out}};
   json.update(link_json(f.link));
+  if (f.spat)
+    json["spat"] = {{"messages", f.spat->messages},
+                    {"states", f.spat->states},
+                    {"others", f.spat->others},
+                    {"invalid", f.spat->invalid}};
   json["distance_m"] = f.distance_m;
   json["pose"] = pose_json(f.pose);
   if (f.error.steps > 0) json["error"] = error_json(f.error);
@@ -298,7 +322,7 @@ std::string json_of(const server::RobotClientStats& f) {
 
 std::string json_of(const scenarios::Verification& verification) {
   const auto compared = [](const scenarios::Comparison& c) {
-    return Json{{"type", c.kind},           {"readings", c.readings}, {"numbers", c.values},
+    return Json{{"type", c.type},           {"readings", c.readings}, {"numbers", c.values},
                 {"different", c.different}, {"largest", c.largest},   {"first", c.first}};
   };
   Json json{{"ticks", verification.ticks},
@@ -344,10 +368,10 @@ std::string json_of(const scenarios::Explanation& e) {
             {"slices", Json::array()}, {"accuracy", statements_json(e.statements)}};
   for (const scenarios::WallSlice& s : e.slices)
     json["slices"].push_back({{"z_m", s.z}, {"sensors", s.sensors}, {"walls", s.walls}});
-  for (const scenarios::SensorTypeCost& k : e.kinds) {
+  for (const scenarios::SensorTypeCost& k : e.types) {
     Json tables = Json::array();
     for (const gpu::DeviceAllocation& h : k.tables) tables.push_back({{"name", h.name}, {"bytes", h.bytes}});
-    json["types"].push_back({{"type", k.kind},
+    json["types"].push_back({{"type", k.type},
                              {"sensors", k.sensors},
                              {"robots", k.robots},
                              {"rate_hz", {k.least_rate, k.most_rate}},

@@ -28,8 +28,8 @@ std::string sensors_text(const sensors::SensorSet& sensor_set) {
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
     std::size_t elements = 0;
     for (const sensors::SensorSpec& sensor : group.rows) elements += sensor.elements;
-    const std::string list = group.kind->list.empty() ? "" : fmt::format(" ({} {} in all)", elements, group.kind->list);
-    text += row(group.kind->name, "{}{}", group.rows.size(), list);
+    const std::string list = group.type->list.empty() ? "" : fmt::format(" ({} {} in all)", elements, group.type->list);
+    text += row(group.type->name, "{}{}", group.rows.size(), list);
   }
   return text;
 }
@@ -45,7 +45,7 @@ std::string rates_text(const world::World& world, const sensors::SensorSet& sens
   std::string rates;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     rates += (rates.empty() ? "" : ", ") + rate_text(group);
-  const std::vector<std::string> between = kinds_between_ticks(sensor_set, world.interval);
+  const std::vector<std::string> between = types_between_ticks(sensor_set, world.interval);
   return row("rates", rates) + (between.empty() ? "" : row("", "read between ticks too: {}", fmt::join(between, ", ")));
 }
 
@@ -81,8 +81,8 @@ std::string street_text(const world::World& world) {
 
 std::string text_of(const sensors::AccuracyStatement& s) {
   const std::string error =
-      std::isinf(s.bound.error) ? "no bound" : "within " + quantity_text(s.bound.error, sensors::unit_of(*s.kind));
-  return fmt::format("{} {}, {}{}{}", counted(s.sensors, s.kind->name), sensors::word_of(*s.kind, s.mode), error,
+      std::isinf(s.bound.error) ? "no bound" : "within " + quantity_text(s.bound.error, sensors::unit_of(*s.type));
+  return fmt::format("{} {}, {}{}{}", counted(s.sensors, s.type->name), sensors::word_of(*s.type, s.mode), error,
                      s.bound.condition.empty() ? "" : ": ", s.bound.condition);
 }
 
@@ -159,7 +159,7 @@ std::string control_text(const ControlReport& f) {
 
 /// Of datagrams that no program ever saw.
 std::string drops_text(std::uint64_t drops) {
-  return row("dropped by the kernel", "{}: they came faster than they were taken", drops);
+  return row("dropped by the operating system", "{}: they came faster than they were taken", drops);
 }
 
 std::string packets_text(const server::PublisherCounts& publisher) {
@@ -170,6 +170,28 @@ std::string packets_text(const server::PublisherCounts& publisher) {
     text +=
         row("packets not sent", "{} failed ({}), {} dropped", packets.failed, packets.first_failure, packets.dropped);
   if (publisher.not_numbers > 0) text += row("packets not made", "{}: not a number in them", publisher.not_numbers);
+  return text;
+}
+
+/// "used 120, outlier 2", the states that clocks refused, and the clocks themselves.
+std::string states_text(const RunReport& f) {
+  std::string counts;
+  const auto add = [&](std::string_view what, std::uint64_t count) {
+    if (count > 0) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", what, count);
+  };
+  for (std::size_t k = 0; k < f.states.states.size(); ++k)
+    add(name(static_cast<estimation::Verdict>(k)), f.states.states[k]);
+  for (const auto refused : {estimation::ClockVerdict::future, estimation::ClockVerdict::late})
+    add(fmt::format("{} by its clock", name(refused)), f.states.clocks[static_cast<std::size_t>(refused)]);
+  std::string text = row("states", counts.empty() ? "none" : counts);
+  constexpr std::size_t kLines = 5;
+  for (std::size_t i = 0; i < std::min(f.clocks.size(), kLines); ++i) {
+    const auto& [who, clock] = f.clocks[i];
+    text += row(i == 0 ? "clocks" : "", "{} {:+.6f} s{}{}", who, 1e-9 * static_cast<double>(clock.offset),
+                clock.drift_known ? fmt::format(", {:+.1f} ppm", 1e6 * clock.drift) : "",
+                clock.steps > 0 ? ", set " + counted(clock.steps, "time") : "");
+  }
+  if (f.clocks.size() > kLines) text += row("", "and {} more (--json has all)", f.clocks.size() - kLines);
   return text;
 }
 
@@ -190,7 +212,8 @@ std::string text_of(const RunReport& f) {
   text += control_text(f.control);
   if (f.sent) text += packets_text(f.publisher);
   if (f.received) text += row("packets received", netio::text(f.inbox));
-  if (f.kernel_drops > 0) text += drops_text(f.kernel_drops);
+  if (f.socket_drops > 0) text += drops_text(f.socket_drops);
+  if (f.filtered) text += states_text(f);
   if (f.relayed.states + f.relayed.starts > 0)
     text += row("packets passed on", "{} V2V in {}, {} START", f.relayed.states,
                 counted(f.relayed.datagrams, "datagram"), f.relayed.starts);
@@ -214,11 +237,11 @@ namespace {
 /// " (laser 120 with 43320 beams, laneedge 30)".
 std::string shares_text(const netio::StreamSummary& summary) {
   std::string text;
-  for (const sensors::SensorType* kind : sensors::sensor_types()) {
-    const auto found = summary.of.find(std::string(kind->name));
+  for (const sensors::SensorType* type : sensors::sensor_types()) {
+    const auto found = summary.of.find(std::string(type->name));
     if (found == summary.of.end()) continue;
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kind->name, found->second.good);
-    if (!kind->list.empty()) text += fmt::format(" with {} {}", found->second.elements, kind->list);
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", type->name, found->second.good);
+    if (!type->list.empty()) text += fmt::format(" with {} {}", found->second.elements, type->list);
   }
   return text.empty() ? "" : " (" + text + ")";
 }
@@ -230,8 +253,9 @@ std::string text_of(const netio::StreamSummary& s) {
                          counted(s.ports, "port"));
   text += row("packets good", "{}{}", s.good, shares_text(s));
   text += row("packets lost", "{} ({}, {} reordered)", s.lost, counted(s.duplicates, "duplicate"), s.reordered);
+  if (s.stale_states > 0) text += row("stale states", "behind {}", counted(s.stale_states, "good packet"));
   if (s.counts.dropped() > 0) text += row("by reason", netio::text(s.counts));
-  if (s.kernel_drops > 0) text += drops_text(s.kernel_drops);
+  if (s.socket_drops > 0) text += drops_text(s.socket_drops);
   if (s.silent_ports > 0) text += row("silent ports", s.silent_ports);
   return text;
 }

@@ -15,7 +15,6 @@
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
-#include "base/suggest.h"
 #include "netio/outbox.h"
 #include "netio/server/robot_client.h"
 
@@ -47,6 +46,8 @@ server::RobotClientOptions client_options(const RobotOptions& options) {
   client.forget = options.forget;
   client.stop_after = options.stop_after;
   client.wait_for_start = waits_for_start(options);
+  if (options.spat > 0)
+    client.spat = netio::Endpoint{netio::is_loopback(client.link.farm.address) ? netio::kLoopback : 0, options.spat};
   return client;
 }
 
@@ -57,8 +58,7 @@ std::uint32_t find_robot(const world::World& world, const std::string& name) {
     if (world.movers[i].name == name) return i;
     names.emplace_back(world.movers[i].name);
   }
-  throw base::InputError(
-      world.file, 0, "has no robot '" + name + "'" + base::suggest(name, names) + "; it has " + names_of_robots(world));
+  refuse_robot(world, name, names);
 }
 
 }  // namespace
@@ -69,6 +69,11 @@ int robot(const RobotOptions& options) {
   const std::uint32_t mover = find_robot(world, options.robot);
   server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options),
                               client_options(options));
+  if (process.spat() != nullptr && !netio::is_loopback(process.link().farm().address))
+    print_message(
+        "warning: --spat {} takes the states of lights from whoever reaches this machine, since these messages are not "
+        "signed",
+        options.spat);
   install_stop_handlers();
   print_message("{} (id {}) drives by '{}' at {:g} Hz beside the farm at {}{}; Ctrl-C ends it",
                 world.movers[mover].name, world.movers[mover].id, options.controller, process.rate(),

@@ -12,9 +12,9 @@ namespace sf::apps {
 namespace {
 
 /// "laser 120, laneedge 30".
-std::string kinds_text(const server::LinkCounts& link) {
+std::string types_text(const server::LinkCounts& link) {
   std::string text;
-  for (const auto& [kind, count] : link.whole) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kind, count);
+  for (const auto& [type, count] : link.whole) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", type, count);
   return text.empty() ? "it has no sensors" : text;
 }
 
@@ -29,11 +29,11 @@ std::string link_text(const server::LinkCounts& link) {
   if (link.sent.failed + link.sent.dropped > 0)
     text += row("packets not sent", "{} failed ({}), {} dropped", link.sent.failed, link.sent.first_failure,
                 link.sent.dropped);
-  text += row("readings", kinds_text(link));
+  text += row("readings", types_text(link));
   text += row("sensor packets", netio::text(in.packets));
   text += row("", "{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost);
   if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " too far ahead to be believed");
-  if (link.kernel_drops > 0) text += row("", counted(link.kernel_drops, "packet") + " dropped by the kernel");
+  if (link.socket_drops > 0) text += row("", counted(link.socket_drops, "packet") + " dropped by the operating system");
   if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " began anew");
   text += row("V2V and START", netio::text(link.packets));
   if (link.out.lost + link.in.lost > 0) {
@@ -51,6 +51,9 @@ std::string text_of(const server::RobotClientStats& f) {
   text += row("robot", "{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : "");
   text += row("ran", "{:.2f} s, {}", f.wall_s, counted(f.steps, "step"));
   text += link_text(f.link);
+  if (f.spat)
+    text += row("SPaT", "{}, {} of other lights or MAP, {} invalid", counted(f.spat->messages, "message"),
+                f.spat->others, f.spat->invalid);
   text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
               f.pose.yaw * 180.0 / M_PI);
   text += row("contacts", "{} that began", f.contacts);

@@ -10,6 +10,7 @@
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "base/time.h"
 #include "netio/server/service.h"
 #include "raycast/caster_choice.h"
 
@@ -22,6 +23,12 @@ server::ServiceOptions service_options(const ServeOptions& options) {
   service.receiver = {.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
                       .radio = options.radio,
                       .forget = options.forget};
+  server::StateFilterOptions& filter = service.receiver.filter;
+  filter.enabled = options.filter;
+  filter.clock.source = options.clock;
+  filter.clock.least_delay = base::nanoseconds(options.link_delay);
+  filter.stale_after = base::nanoseconds(options.stale_after);
+  filter.policy = options.stale;
   return service;
 }
 
@@ -32,7 +39,15 @@ base::InputError port_in_use(const netio::Endpoint& bind) {
                           "(--port N, or --port 0 for any free one) and tell the robots (robot --port N)");
 }
 
-RunReport report_of(const server::ServiceStats& stats, const gpu::DeviceInfo& device) {
+/// With the names of the movers.
+std::vector<RunReport::Clock> clocks_of(const server::ServiceStats& stats, const world::World& world) {
+  std::vector<RunReport::Clock> clocks;
+  for (const server::SenderClockState& each : stats.clocks)
+    clocks.push_back({world.movers[each.mover].name, each.clock});
+  return clocks;
+}
+
+RunReport report_of(const server::ServiceStats& stats, const world::World& world, const gpu::DeviceInfo& device) {
   RunReport facts;
   facts.device = device.name;
   facts.software = device.software;
@@ -45,8 +60,11 @@ RunReport report_of(const server::ServiceStats& stats, const gpu::DeviceInfo& de
   facts.sent = facts.received = true;
   facts.publisher = stats.publisher;
   facts.inbox = stats.inbox;
-  facts.kernel_drops = stats.kernel_drops;
+  facts.socket_drops = stats.socket_drops;
   facts.relayed = stats.relayed;
+  facts.filtered = stats.filtered;
+  facts.states = stats.states;
+  facts.clocks = clocks_of(stats, world);
   facts.lines_left_out = stats.lines_left_out;
   return facts;
 }
@@ -69,7 +87,7 @@ int serve(const ServeOptions& options) {
     print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; Ctrl-C ends it", counted(service.robots(), "robot"),
                   world.file, options.bind, service.port(), 1.0 / service.interval(), device.info().name);
     service.run(stop_requested(), options.duration);
-    const RunReport facts = report_of(service.stats(), device.info());
+    const RunReport facts = report_of(service.stats(), world, device.info());
     print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
   } catch (const netio::PortInUse&) {
     throw port_in_use(chosen.receiver.bind);

@@ -85,7 +85,7 @@ void add_sense(CLI::App& app, Call& call) {
       ->check(readable(read_pose, "X,Y,YAW_DEG such as 1.5,-2,90"))
       ->type_name("X,Y,YAW_DEG");
   sub->add_option("--robot", o.robot, "Name of the robot (default: the first that has a sensor)")->type_name("NAME");
-  add_kind(*sub, o);
+  add_sensor_type(*sub, o);
   sub->add_option("--sensor", o.sensor,
                   "Number of its sensor, from 0: of that type, or through all its types where none is named")
       ->check(whole(0, 65535))
@@ -103,6 +103,41 @@ void add_plot(CLI::App& app, Call& call) {
       ->check(not_empty("a folder"))
       ->type_name("DIR");
   add_device(*sub, o);
+}
+
+void add_v2x(CLI::App& app, Call& call) {
+  using Action = V2xOptions::Action;
+  CLI::App* sub = app.add_subcommand("v2x",
+                                     "Decode SAE J2735 SPaT and MAP messages (UPER) to JSON or XML, encode JSON, or "
+                                     "export a world's traffic lights as messages");
+  auto& o = add_command(*sub, call, v2x_messages, [sub] {
+    const auto action = sub->get_option("action")->as<std::string>();
+    if (sub->count("--xml") > 0 && action != "decode") throw CLI::ValidationError("--xml", "goes with decode");
+    for (const std::string option : {"--time", "--latitude", "--longitude"})
+      if (sub->count(option) > 0 && action != "export") throw CLI::ValidationError(option, "goes with export");
+  });
+  add_examples(*sub, {"decode spat.hex", "decode --xml map.bin", "encode spat.json > spat.hex",
+                      "export worlds/simville/simville.world --time 9"});
+  const std::vector<std::pair<std::string, Action>> actions{
+      {"decode", Action::decode}, {"encode", Action::encode}, {"export", Action::export_world}};
+  add_choice(*sub, "action", o.action, actions,
+             "decode: frames to one line of JSON each; encode: the reverse; export: MAP and SPaT of each intersection "
+             "of a world in hexadecimal digits")
+      ->required();
+  sub->add_option(
+         "file", o.file,
+         "To decode: hexadecimal digits, one frame a line, or binary, one frame after another; to encode: JSON "
+         "as decode prints it (both: - is standard input); to export: a world file")
+      ->required()
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+  sub->add_flag("--xml", o.xml, "Decode to XML (XER) in place of JSON");
+  sub->add_option("--time", o.time, "Simulated time [s] of the SPaT; time 0 is the year's start in UTC")
+      ->check(number(0.0, 31'536'000.0))
+      ->type_name("S")
+      ->capture_default_str()
+      ->group("Export");
+  add_origin(*sub, o, "Export");
 }
 
 void add_explain(CLI::App& app, Call& call) {
@@ -129,6 +164,7 @@ void add_inspect_commands(CLI::App& app, Call& call) {
   add_sense(app, call);
   add_plot(app, call);
   add_explain(app, call);
+  add_v2x(app, call);
 }
 
 }  // namespace sf::apps

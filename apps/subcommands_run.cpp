@@ -53,6 +53,44 @@ void add_forget(CLI::App& app, ForgetOption& o) {
       ->capture_default_str();
 }
 
+void add_filter(CLI::App& app, FilterOptions& o) {
+  using estimation::ClockSource, estimation::StalePolicy;
+  constexpr const char* kGroup = "States of robots and tags (docs/estimation.md)";
+  app.add_option("--stale-after", o.stale_after,
+                 "Readings say that their robot's state is stale when it is older than this [s]")
+      ->check(number(0.01, 1e6))
+      ->type_name("S")
+      ->capture_default_str()
+      ->group(kGroup);
+  auto* filter = app.add_flag("--filter", o.filter,
+                              "Filter states (extended Kalman filter): late ones count at the time of their timestamp, "
+                              "wrong ones are refused, and each reading has the state predicted to its time")
+                     ->group(kGroup);
+  add_choice<StalePolicy, StalePolicy>(
+      app, "--stale", o.stale,
+      {{"freeze", StalePolicy::freeze}, {"hide", StalePolicy::hide}, {"drop", StalePolicy::drop}},
+      "A stale robot or tag stands (freeze), is out of the world (hide), or likewise with its sender's clock forgotten "
+      "(drop)")
+      ->default_str("freeze")
+      ->needs(filter)
+      ->group(kGroup);
+  add_choice<ClockSource, ClockSource>(
+      app, "--clock", o.clock,
+      {{"estimated", ClockSource::estimated}, {"trusted", ClockSource::trusted}, {"arrival", ClockSource::arrival}},
+      "Time of states: timestamps, on clocks estimated from the packets or trusted (Unix time, by PTP or NTP), or the "
+      "time of arrival")
+      ->default_str("estimated")
+      ->needs(filter)
+      ->group(kGroup);
+  app.add_option("--link-delay", o.link_delay,
+                 "Least delay of packets to the farm [s], which packets cannot show (--clock estimated)")
+      ->check(number(0.0, 10.0))
+      ->needs(filter)
+      ->type_name("S")
+      ->capture_default_str()
+      ->group(kGroup);
+}
+
 void add_serve(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "serve", "Serve virtual sensors to robots in other processes: V2V packets in, sensor packets out");
@@ -80,6 +118,7 @@ void add_serve(CLI::App& app, Call& call) {
       ->type_name("M")
       ->capture_default_str();
   add_forget(*sub, o);
+  add_filter(*sub, o);
   add_seed(*sub, o, "Seed of noise");
   add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");
 }
@@ -134,9 +173,44 @@ void add_robot(CLI::App& app, Call& call) {
       ->type_name("S")
       ->capture_default_str();
   add_forget(*sub, o);
+  sub->add_option("--spat", o.spat,
+                  "UDP port on which to listen for SPaT of traffic lights (`sensorfarm light`, 9010); they replace the "
+                  "world's plans (default: plans)")
+      ->check(whole(1, 65535))
+      ->type_name("PORT");
   sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal arrives (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of injected faults");
   add_until(*sub, o, "Stop after this long [s] (0: when done, or at Ctrl-C)");
+}
+
+void add_light(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("light",
+                                     "Send a world's traffic lights as SAE J2735 messages over UDP, as lights of "
+                                     "streets do: SPaT at a rate, MAP once a second");
+  auto& o = add_command(*sub, call, light);
+  add_examples(*sub, {"worlds/simville/simville.world --send 127.0.0.1",
+                      "worlds/simville/simville.world --send 192.168.1.7 --set 'light1=flashing red'"});
+  sub->add_option("world", o.world, "World file with the lights and their plans")->required()->type_name("FILE");
+  sub->add_option("--send", o.send, "Host to send to")->required()->check(not_empty("a host"))->type_name("HOST");
+  sub->add_option("--port", o.ports, "UDP ports there, one per receiver")
+      ->check(whole(1, 65535))
+      ->type_name("PORT")
+      ->capture_default_str();
+  sub->add_option("--rate", o.rate, "SPaT messages per second of each intersection")
+      ->check(number(0.1, 100.0))
+      ->type_name("HZ")
+      ->capture_default_str();
+  sub->add_option("--time", o.time, "Time of the plans at the start [s]")
+      ->check(number(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+  sub->add_option("--set", o.set,
+                  "Hold a light in one state, in place of its plan: green, yellow, red, flashing red, "
+                  "flashing yellow or dark; may be repeated")
+      ->check(not_empty("NAME=STATE"))
+      ->type_name("NAME=STATE");
+  add_origin(*sub, o);
+  add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");
 }
 
 void add_start(CLI::App& app, Call& call) {
@@ -199,6 +273,7 @@ void add_run_commands(CLI::App& app, Call& call) {
   add_run(app, call);
   add_serve(app, call);
   add_robot(app, call);
+  add_light(app, call);
   add_start(app, call);
   add_listen(app, call);
   add_map(app, call);

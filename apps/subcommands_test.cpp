@@ -24,7 +24,7 @@ void add_experiment(CLI::App& app, Call& call) {
   add_examples(*sub, {"--list", "mapping -o out/mapping"});
   auto* list = sub->add_flag("--list", o.list, "List all experiments");
   std::vector<std::string> names;
-  for (const scenarios::ExperimentType* kind : scenarios::experiments()) names.emplace_back(kind->name);
+  for (const scenarios::ExperimentType* type : scenarios::experiments()) names.emplace_back(type->name);
   auto* name = sub->add_option("experiment", o.experiment, join_or(names))->check(one_of(names))->type_name("NAME");
   auto* out =
       sub->add_option("-o,--out", o.out, "Folder to write into")->check(not_empty("a folder"))->type_name("DIR");
@@ -37,7 +37,8 @@ void add_experiment(CLI::App& app, Call& call) {
   using scenarios::Plant;
   add_choice<std::optional<Plant>, Plant>(
       *sub, "--plant", o.plant, {{"thesis", Plant::thesis}, {"ideal", Plant::ideal}},
-      "Driver model of the robots: ideal (commands are executed unchanged) or thesis (Player's driver for the Create). "
+      "Actuator model of the robots: ideal (commands are executed unchanged) or thesis (Player's driver for the "
+      "Create). "
       "Default: thesis for paths, sweeps and mapping; ideal for towns and Pioneers");
   sub->add_option("--files", o.experiments, "Folder of the experiments' scenario files (default: those of sensorfarm)")
       ->check(not_empty("a folder"))

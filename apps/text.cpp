@@ -1,5 +1,6 @@
 #include "apps/text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
@@ -19,6 +20,14 @@ std::string counted(std::uint64_t count, std::string_view word) {
 std::string join_or(const std::vector<std::string>& words) {
   if (words.size() == 1) return words.front();
   return fmt::format("{} or {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
+}
+
+std::string list_names(const std::vector<std::string_view>& names) {
+  constexpr std::size_t kMost = 10;
+  if (names.empty()) return "none";
+  const std::vector<std::string_view> shown(names.begin(), names.begin() + std::min(names.size(), kMost));
+  return fmt::format("{}{}", fmt::join(shown, ", "),
+                     names.size() > kMost ? fmt::format(", ... ({} in all)", names.size()) : "");
 }
 
 std::string quantity_text(double value, std::string_view unit) {

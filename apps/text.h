@@ -36,6 +36,8 @@ requires(sizeof...(Args) > 0) std::string row(std::string_view name, fmt::format
 std::string counted(std::uint64_t count, std::string_view word);
 /// "a, b or c". @param words at least one
 std::string join_or(const std::vector<std::string>& words);
+/// "a, b"; "a, b, ... (20 in all)" for more than ten; "none".
+std::string list_names(const std::vector<std::string_view>& names);
 /// "5 mm", "2.5 uT", "0", "< 1 pm", "-" for infinity; three digits. @param unit "m", "T" or another, which is put
 /// behind the number
 std::string quantity_text(double value, std::string_view unit);

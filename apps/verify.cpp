@@ -18,7 +18,7 @@ std::string line_of(const scenarios::Comparison& c, const std::string& by) {
       c.different > 0   ? fmt::format("{} of {} numbers DIFFER, by up to {:.3g}", c.different, c.values, c.largest)
       : c.largest > 0.0 ? fmt::format("within what their modes may be off by: up to {:.3g}", c.largest)
                         : "the same to the bit";
-  std::string text = row(c.kind, "{}, {}, {}", counted(c.readings, "reading"), by, verdict);
+  std::string text = row(c.type, "{}, {}, {}", counted(c.readings, "reading"), by, verdict);
   if (c.different > 0) text += row("", "first: " + c.first);
   return text;
 }

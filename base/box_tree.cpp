@@ -4,6 +4,7 @@ namespace sf::base {
 
 BoxTree::BoxTree(std::span<const Box> boxes, std::size_t leaf_boxes) {
   std::vector<Item> items;
+  items.reserve(boxes.size());
   for (const Box& box : boxes) items.push_back({box, static_cast<std::uint32_t>(items.size())});
   order_.reserve(items.size());
   if (!items.empty()) build(items, leaf_boxes);

@@ -25,14 +25,14 @@ enum class QualityFlag : std::uint8_t {
 struct ReadingBlock {
   std::uint32_t mover = 0;         ///< row in `world::World::movers`
   std::uint32_t sensor = 0;        ///< 0-based among the mover's sensors of this type
-  std::uint8_t kind = 0;           ///< wire id of the sensor type
+  std::uint8_t type = 0;           ///< wire id of the sensor type
   std::uint32_t sequence = 0;      ///< number of this sensor's reading, from 0
   std::int64_t time = 0;           ///< [ns] simulated time of the measurement (not of its delivery)
   Pose X_WM;                       ///< the mover's pose at the measurement
   Pose X_WS;                       ///< the sensor's pose at the measurement
   std::span<const double> values;  ///< element by element, in each in order of the sensor type's columns
   std::span<const std::uint32_t>
-      hits;                 ///< scans: row of the model that each beam met, or kNoHit; empty for other sensor types
+      hits;  ///< scans of this process: row of the model that each beam met, or kNoHit; empty for all others
   std::uint32_t flags = 0;  ///< bits defined by the header of the sensor type
   std::uint8_t mode = 0;    ///< accuracy mode of the measurement: row of the sensor type's modes
   /// [unit of the first column] largest error of that column without noise, for elements without a quality flag

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sensors/laser_settings.h"
 #include "tests/sensors/brute_force.h"
 
 namespace sf::bench {
@@ -13,10 +14,10 @@ constexpr double kAtVertex = 1e-5;  ///< [m]
 std::size_t stride(std::size_t all, std::size_t wanted) { return std::max<std::size_t>(1, all / wanted); }
 
 template <class RangeOf>
-void judge_robot(std::span<const world::Segment> surfaces, const base::Pose& X_WS, const world::Laser& laser,
+void judge_robot(std::span<const world::Segment> surfaces, const base::Pose& X_WS, const sensors::LaserSettings& laser,
                  RangeOf range_of, AccuracyCheck& accuracy) {
   for (std::uint32_t i = 0; i < laser.samples; ++i) {
-    const double direction = X_WS.yaw + world::bearing_of(laser, i);
+    const double direction = X_WS.yaw + bearing_of(laser, i);
     const oracle::Answer answer = oracle::cast(surfaces, {X_WS.x, X_WS.y}, direction, laser.range_max);
     ++accuracy.beams;
     if (answer.silhouette < kAtVertex)
@@ -43,7 +44,7 @@ AccuracyCheck check_accuracy(std::span<const base::ReadingBlock> readings, const
   AccuracyCheck accuracy;
   for (std::size_t k = 0; k < readings.size(); k += stride(readings.size(), robots)) {
     const base::ReadingBlock& r = readings[k];
-    const world::Laser& laser = world.movers[r.mover].lasers[r.sensor];
+    const sensors::LaserSettings laser = sensors::lasers_of(world.movers[r.mover])[r.sensor];
     const auto seen = oracle::surfaces(world, poses, r.mover, r.X_WS.z);
     judge_robot(
         seen, r.X_WS, laser, [&](std::size_t i) { return r.values[i]; }, accuracy);

@@ -12,6 +12,7 @@
 #include "bench/scans.h"
 #include "sensors/sonar.h"
 #include "tests/sensors/cone_trial.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::bench {
@@ -77,7 +78,7 @@ ConeScene make_cone_scene(std::uint32_t robots) {
   const world::Sensor ring = pioneers_ring();
   for (world::Mover& mover : scene.world.movers) {
     mover.body.clear();
-    mover.lasers.clear();
+    scenes::remove_lasers(mover);
     mover.sensors.push_back(ring);
   }
   for (std::size_t round = 0; round < kRounds; ++round) {

@@ -33,11 +33,11 @@ class PlainCones final : public ConeMethod {
       : scene_(scene), arrays_(arrays), name_(std::move(name)), walk_(walk), transducers_(arrays[0].X_SC.size()) {
     const sensors::ConeArray& array = arrays_[0];
     grid_ = make_grid(scene.world, scene.world.movers[0].X_WM.z + array.row.X_MS.z, 0.5);
-    world::Laser fan;
+    raycast::ScanSettings fan;
     fan.fov = array.fov;
     fan.samples = array.rays;
     for (std::uint32_t i = 0; i < array.rays; ++i) {
-      const double bearing = world::bearing_of(fan, i);
+      const double bearing = bearing_of(fan, i);
       beams_.push_back({std::cos(bearing), std::sin(bearing)});
     }
     values_.assign(arrays_.size() * transducers_, kNaN);

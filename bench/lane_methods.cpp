@@ -104,10 +104,10 @@ std::unique_ptr<LaneKnowledge> know(const LaneScene& scene) {
     known->rows.push_back(row_of(edge));
     known->X_MS.push_back(edge.fan.X_MS);
   }
-  const world::Laser& fan = edges[0].fan;
+  const raycast::ScanSettings& fan = edges[0].fan;
   LaneJob& job = known->job;
   for (std::uint32_t k = 0; k < fan.samples; ++k) {
-    const double bearing = world::bearing_of(fan, k);
+    const double bearing = bearing_of(fan, k);
     job.beams.push_back({std::cos(bearing), std::sin(bearing)});
     job.directions.insert(job.directions.end(), {std::cos(bearing), std::sin(bearing)});
   }

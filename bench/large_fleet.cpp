@@ -40,7 +40,7 @@ class Sink {
 server::StreamLayout plan_for(const sensors::SensorSet& sensor_set, std::uint16_t port) {
   server::StreamLayout layout;
   layout.stride = 0;
-  for (const sensors::SensorSet::Group& group : sensor_set.groups()) layout.bases[group.kind->id] = port;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) layout.bases[group.type->id] = port;
   return layout;
 }
 

@@ -139,10 +139,10 @@ std::vector<Measurement> measure_features(gpu::Device& device) {
   facts.push_back({"SimVille, building the farm", 1e3 * e.build, "ms"});
   facts.push_back({"SimVille, the first tick", 1e3 * e.first, "ms"});
   facts.push_back({"SimVille, none subscribed", 1e3 * e.silent, "ms a tick"});
-  for (const scenarios::SensorTypeCost& kind : e.kinds) {
-    const std::string name = fmt::format("SimVille, {} x {} alone", kind.sensors, kind.kind);
-    facts.push_back({name, 1e3 * kind.tick, "ms a tick"});
-    facts.push_back({name + ", tables", static_cast<double>(kind.bytes) / (1 << 20), "MiB"});
+  for (const scenarios::SensorTypeCost& cost : e.types) {
+    const std::string name = fmt::format("SimVille, {} x {} alone", cost.sensors, cost.type);
+    facts.push_back({name, 1e3 * cost.tick, "ms a tick"});
+    facts.push_back({name + ", tables", static_cast<double>(cost.bytes) / (1 << 20), "MiB"});
   }
   facts.push_back({"SimVille, all subscribed", 1e3 * e.all, "ms a tick"});
   measure_lasers(device, facts);

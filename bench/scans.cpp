@@ -1,5 +1,6 @@
 #include "bench/scans.h"
 
+#include "sensors/laser_settings.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::bench {
@@ -17,7 +18,8 @@ world::World load_cave() {
   return cave;
 }
 
-Scans make_scans(const std::string& scene, world::World world, std::uint32_t count, const world::Laser& laser) {
+Scans make_scans(const std::string& scene, world::World world, std::uint32_t count,
+                 const sensors::LaserSettings& laser) {
   Scans scans{scene, std::move(world), laser, {}, {}};
   scenes::add_robots(scans.world, count, laser, kSeed);
   for (world::Mover& mover : scans.world.movers) mover.body.clear();
@@ -28,7 +30,7 @@ Scans make_scans(const std::string& scene, world::World world, std::uint32_t cou
       poses.push_back(base::compose(mover.X_WM, {0.002 * round, 0.001 * round, 0.0, 0.1 * round}));
   }
   for (std::uint32_t i = 0; i < laser.samples; ++i) {
-    const double bearing = world::bearing_of(laser, i);
+    const double bearing = bearing_of(laser, i);
     scans.beams.push_back({std::cos(bearing), std::sin(bearing)});
   }
   return scans;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sensors/laser_settings.h"
 #include "world/world.h"
 
 namespace sf::bench {
@@ -13,7 +14,7 @@ namespace sf::bench {
 struct Scans {
   std::string scene;
   world::World world;                           ///< movers carry `laser` and have no bodies
-  world::Laser laser;                           ///< of every robot
+  sensors::LaserSettings laser;                 ///< of every robot
   std::vector<std::vector<base::Pose>> rounds;  ///< X_WM per round and robot; round k is used in turns k, k + n, ...
   std::vector<glm::dvec2> beams;                ///< unit vectors in the sensor's frame, from -fov/2 to +fov/2
 
@@ -26,7 +27,8 @@ struct Scans {
 
 /// `count` robots at random free places of `world`, whose own movers are removed. The robots turn and shift by a few
 /// millimetres from round to round, so that results cannot be reused.
-Scans make_scans(const std::string& scene, world::World world, std::uint32_t count, const world::Laser& laser);
+Scans make_scans(const std::string& scene, world::World world, std::uint32_t count,
+                 const sensors::LaserSettings& laser);
 
 /// The cave of the demo and the tests, `worlds/cave.world`, without its robot.
 world::World load_cave();

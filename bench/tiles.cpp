@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensors/laser_settings.h"
 #include "tests/sensors/laneedge_trial.h"
 #include "tests/sensors/magnet_scenes.h"
 #include "tests/sensors/scenes.h"
@@ -26,7 +27,7 @@ void for_each_tile(std::size_t robots, Visit&& visit) {
 
 }  // namespace
 
-world::World tiled_cave(std::uint32_t robots, const world::Laser& laser) {
+world::World tiled_cave(std::uint32_t robots, const sensors::LaserSettings& laser) {
   world::World tile = scenes::cave(kCells, kTile, kSeed);
   scenes::add_robots(tile, kRobotsPerTile, laser, 1);
   world::World world;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "sensors/laser_settings.h"
 #include "world/world.h"
 
 namespace sf::bench {
@@ -10,7 +11,7 @@ namespace sf::bench {
 inline constexpr std::uint32_t kRobotsPerTile = 100;
 
 /// Tiles are not connected. Robots are discs that see each other, at the same hundred places in each tile, rotated.
-world::World tiled_cave(std::uint32_t robots, const world::Laser& laser);
+world::World tiled_cave(std::uint32_t robots, const sensors::LaserSettings& laser);
 
 /// Adds the other sensors of a testbed with 10 000 robots: markings and magnets in every tile, and on every robot a
 /// lane edge sensor of 61 rays and an array of five magnetometers.

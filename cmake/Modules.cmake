@@ -7,11 +7,20 @@ find_package(Vulkan REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-dev)
 
 # Debian's VTK 9.1 looks for MPI; this project does not use it.
 find_package(MPI QUIET COMPONENTS C)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel RenderingFreeType)
+
+# OpenCV without its CMake package, which Debian has only together with all of OpenCV (libopencv-dev).
+find_path(OPENCV_INCLUDE opencv2/aruco.hpp PATH_SUFFIXES opencv4 REQUIRED)  # libopencv-contrib-dev
+set(OPENCV_LIBRARIES "")
+foreach(part core imgproc imgcodecs videoio calib3d aruco)
+  find_library(OPENCV_${part} opencv_${part} REQUIRED)
+  list(APPEND OPENCV_LIBRARIES ${OPENCV_${part}})
+endforeach()
 
 # Build flags of all targets. Contraction is off so that host and device round alike. g++ 12 warns falsely of
 # overlapping strings (-Wrestrict) and, with precompiled headers, of array bounds.
@@ -67,28 +76,44 @@ if(SENSORFARM_PCH)
   endif()
 endif()
 
-# add_module(NAME [FOLDER folder] [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [PLUGINS names...])
+# Sources of a module marked UNITY are compiled eight at a time where only the result counts: the instrumented copies,
+# and preset odr. Their file-local names differ. All others are compiled one by one, which shows missing includes.
+option(SENSORFARM_UNITY "Compile several sources of a module as one where its file-local names allow it" OFF)
+function(compile_together target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
+
+# add_module(NAME [UNITY] [FOLDER folder] [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [PLUGINS names...])
 # FOLDER: folder of the sources, default NAME; a folder below another module's belongs to this module only. SOURCES:
-# files generated at configure time, in addition to the folder's. PLUGINS: sources NAME/<name>.cpp that are loaded at
-# first use, as sensorfarm_<name>.so beside the program.
+# files generated at configure time, in addition to the folder's. PLUGINS: the source NAME/<name>.cpp or the folder
+# NAME/<name>/ becomes sensorfarm_<name>.so beside the program, which is loaded at first use.
 function(add_module name)
-  cmake_parse_arguments(MODULE "" "FOLDER" "PUBLIC;PRIVATE;SOURCES;PLUGINS" ${ARGN})
+  cmake_parse_arguments(MODULE "UNITY" "FOLDER" "PUBLIC;PRIVATE;SOURCES;PLUGINS" ${ARGN})
   if(NOT MODULE_FOLDER)
     set(MODULE_FOLDER ${name})
   endif()
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${MODULE_FOLDER}/*.cpp)
   if(NOT MODULE_FOLDER MATCHES "/")
-    list(FILTER sources EXCLUDE REGEX "/netio/server/")
+    list(FILTER sources EXCLUDE REGEX "/(netio/server|netio/v2x|robots/estimation)/")
   endif()
   foreach(plugin ${MODULE_PLUGINS})
-    list(REMOVE_ITEM sources ${CMAKE_SOURCE_DIR}/${name}/${plugin}.cpp)
-    add_library(sensorfarm_${plugin} MODULE ${name}/${plugin}.cpp)
+    set(plugin_sources ${CMAKE_SOURCE_DIR}/${name}/${plugin}.cpp)
+    if(IS_DIRECTORY ${CMAKE_SOURCE_DIR}/${name}/${plugin})
+      file(GLOB plugin_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${name}/${plugin}/*.cpp)
+    endif()
+    list(REMOVE_ITEM sources ${plugin_sources})
+    add_library(sensorfarm_${plugin} MODULE ${plugin_sources})
     set_target_properties(sensorfarm_${plugin} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
     target_link_libraries(sensorfarm_${plugin} PRIVATE project_options)
   endforeach()
   add_library(${name} STATIC ${sources} ${MODULE_SOURCES})
   target_link_libraries(${name} PUBLIC project_options Threads::Threads ${MODULE_PUBLIC} PRIVATE ${MODULE_PRIVATE})
   precompiled(${name} common_headers)
+  if(MODULE_UNITY AND SENSORFARM_UNITY)
+    compile_together(${name})
+    # g++ takes types of a source's unnamed namespace for those of a header there.
+    target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
   foreach(plugin ${MODULE_PLUGINS})
     add_dependencies(${name} sensorfarm_${plugin})
   endforeach()
@@ -96,6 +121,9 @@ function(add_module name)
     add_library(${name}_checked OBJECT ${sources} ${MODULE_SOURCES})
     target_link_libraries(${name}_checked PRIVATE project_options Threads::Threads ${MODULE_PUBLIC} ${MODULE_PRIVATE} checked)
     precompiled(${name}_checked common_headers_checked)
+    if(MODULE_UNITY)
+      compile_together(${name}_checked)
+    endif()
     set_property(GLOBAL PROPERTY SENSORFARM_BELOW_${name} ${MODULE_PUBLIC} ${MODULE_PRIVATE})
   endif()
 endfunction()

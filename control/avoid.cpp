@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 
 namespace sf::control {
 
@@ -48,7 +49,7 @@ namespace {
 
 std::unique_ptr<Controller> make_avoid(const ControllerContext& context, Settings& settings) {
   const world::Mover& mover = context.world.movers[context.mover];
-  if (mover.lasers.empty())
+  if (sensors::lasers_of(mover).empty())
     throw base::InputError(
         fmt::format("controller 'avoid': '{}' has no laser; give it one in the world file", mover.name));
   AvoidSettings avoid;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 
 namespace sf::control {
 
@@ -28,7 +29,7 @@ ClearanceEstimator::ClearanceEstimator(const world::Mover& mover) {
   }
   half_width_ = 1.15 * half_width + 0.01;
 
-  for (const world::Laser& laser : mover.lasers) {
+  for (const sensors::LaserSettings& laser : sensors::lasers_of(mover)) {
     View view{{laser.X_MS.x, laser.X_MS.y}, laser.range_max, {}};
     const std::uint32_t stride = (laser.samples + kBeams - 1) / kBeams;
     for (std::uint32_t i = 0; i < laser.samples; i += stride) {
@@ -68,7 +69,7 @@ void ClearanceEstimator::add(const View& view, std::span<const double> ranges, S
 Clearance ClearanceEstimator::estimate(std::span<const base::ReadingBlock> readings) const {
   Sum sum;
   for (const base::ReadingBlock& block : readings) {
-    if (block.kind == sensors::kLaser && block.sensor < views_.size()) add(views_[block.sensor], block.values, sum);
+    if (block.type == sensors::kLaser && block.sensor < views_.size()) add(views_[block.sensor], block.values, sum);
   }
   const double left = sum.lefts > 0.0 ? sum.left / sum.lefts : 0.0;
   const double right = sum.rights > 0.0 ? sum.right / sum.rights : 0.0;

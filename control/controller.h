@@ -1,6 +1,6 @@
 #pragma once
 // Interface of robot controllers: readings in, twist out. The simulation calls a controller in process; `sensorfarm
-// robot` runs the same code over UDP.
+// robot` runs the same code over UDP. Their list, names and settings: control/controllers.h.
 
 #include <cstdint>
 #include <limits>
@@ -16,14 +16,14 @@ namespace sf::control {
 /// Another robot's state from its V2V packet.
 struct Neighbour {
   std::uint32_t id = 0;  ///< id in packets
-  base::Report state;    ///< `mover` is not valid
+  base::Report state;    ///< its `mover` is not for controllers
   base::Intent intent;
 };
 
 /// Inputs of one control step. Spans live for the call.
 struct ControllerInput {
   std::int64_t time = 0;  ///< [ns] simulated time, or the robot's clock; does not decrease
-  base::Report state;     ///< the robot's own estimate of its state
+  base::Report state;     ///< the robot's own state: true in a simulation, its own estimate in `robot`
   /// The newest reading of each of its sensors, whether new since the last call or not; may be empty.
   std::span<const base::ReadingBlock> readings;
   bool contact = false;                      ///< the bumper is pressed, or an obstacle blocked the last motion
@@ -50,9 +50,9 @@ class Controller {
 };
 
 /// The newest reading of one sensor; null without one.
-inline const base::ReadingBlock* newest(const ControllerInput& input, std::uint8_t kind, std::uint32_t sensor = 0) {
+inline const base::ReadingBlock* newest(const ControllerInput& input, std::uint8_t type, std::uint32_t sensor = 0) {
   for (const base::ReadingBlock& reading : input.readings)
-    if (reading.kind == kind && reading.sensor == sensor) return &reading;
+    if (reading.type == type && reading.sensor == sensor) return &reading;
   return nullptr;
 }
 

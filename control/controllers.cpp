@@ -21,32 +21,32 @@ extern const ControllerType route_controller;
 extern const ControllerType wander_controller;
 
 std::span<const ControllerType* const> controllers() {
-  static constexpr const ControllerType* kKinds[] = {
+  static constexpr const ControllerType* kControllers[] = {
       &avoid_controller,   &convoy_controller,       &docking_controller,
       &explore_controller, &lane_keeping_controller, &magnet_keeping_controller,
       &patrol_controller,  &route_controller,        &wander_controller,
   };
-  return kKinds;
+  return kControllers;
 }
 
 const ControllerType* find_controller(std::string_view name) {
-  for (const ControllerType* kind : controllers())
-    if (kind->name == name) return kind;
+  for (const ControllerType* type : controllers())
+    if (type->name == name) return type;
   return nullptr;
 }
 
 ConfiguredController make_controller(const ControllerContext& context, ControllerConfig config) {
-  const ControllerType* kind = find_controller(config.name);
-  if (kind == nullptr) {
+  const ControllerType* type = find_controller(config.name);
+  if (type == nullptr) {
     std::vector<std::string_view> names;
     for (const ControllerType* known : controllers()) names.push_back(known->name);
     throw base::InputError(
         fmt::format("there is no controller '{}'; expected one of: {}", config.name, fmt::join(names, ", ")));
   }
-  const ControlShellSettings shell = read_control_shell_settings(config.settings, kind->stops_on_bumper);
-  std::unique_ptr<Controller> inner = kind->make(context, config.settings);
+  const ControlShellSettings shell = read_control_shell_settings(config.settings, type->stops_on_bumper);
+  std::unique_ptr<Controller> inner = type->make(context, config.settings);
   config.settings.require_all_read();
-  return {std::make_unique<ControlShell>(std::move(inner), shell), config.rate > 0.0 ? config.rate : kind->rate};
+  return {std::make_unique<ControlShell>(std::move(inner), shell), config.rate > 0.0 ? config.rate : type->rate};
 }
 
 }  // namespace sf::control

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "control/explore.h"
 #include "robots/footprint.h"
+#include "sensors/laser_settings.h"
 
 namespace sf::control {
 
@@ -51,13 +52,14 @@ maps::GridGeometry read_geometry(const ControllerContext& context, Settings& set
 
 std::unique_ptr<Controller> make_explore(const ControllerContext& context, Settings& settings) {
   const world::Mover& mover = context.world.movers[context.mover];
-  if (mover.lasers.empty())
+  const std::vector<sensors::LaserSettings> lasers = sensors::lasers_of(mover);
+  if (lasers.empty())
     throw base::InputError(
         fmt::format("controller 'explore': '{}' has no laser; give it one in the world file", mover.name));
   if (mover.drive == world::Drive::car)
     throw base::InputError(
         fmt::format("controller 'explore': '{}' is a car; expected a drive that turns in place", mover.name));
-  const world::Laser& laser = mover.lasers.front();
+  const sensors::LaserSettings& laser = lasers.front();
   ExploreSettings explore;
   explore.geometry = read_geometry(context, settings);
   explore.body = {robots::footprint_of(mover).radius, {laser.X_MS.x, laser.X_MS.y}};

@@ -40,7 +40,7 @@ const world::Sensor* find_sensor(const world::Mover& mover) {
 double damped_gain(const world::Mover& mover, const LaneSettings& lane) {
   const double ahead = std::max(lane.p_MS.x, kLeastAhead);
   const double gain = std::min(2.0 * lane.speed / (ahead * ahead), kMostAhead / ahead);
-  return mover.driver_model == world::DriverModel::player_create ? 0.5 * gain : gain;
+  return mover.actuator_model == world::ActuatorModel::player_create ? 0.5 * gain : gain;
 }
 
 std::unique_ptr<Controller> make_lane_keeping(const ControllerContext& context, Settings& settings) {

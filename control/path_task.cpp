@@ -44,9 +44,9 @@ double SampleHold::update(double now, std::int64_t time) {
   return last_;
 }
 
-PathFollower::PathFollower(std::uint8_t kind, std::string_view sensor, const PiGains& gains, double speed, double hold,
+PathFollower::PathFollower(std::uint8_t type, std::string_view sensor, const PiGains& gains, double speed, double hold,
                            const PathTask& task)
-    : kind_(kind), sensor_(sensor), speed_(speed), task_(task), pi_(gains), hold_(hold) {}
+    : type_(type), sensor_(sensor), speed_(speed), task_(task), pi_(gains), hold_(hold) {}
 
 std::string PathFollower::stop_reason() const {
   if (done_ || std::isfinite(error_)) return {};
@@ -57,7 +57,7 @@ std::string PathFollower::stop_reason() const {
 base::Twist PathFollower::step(const ControllerInput& input) {
   error_ = Controller::error();
   if (done_ || (done_ = task_.ended(input.state.X_WM))) return {};
-  const base::ReadingBlock* reading = newest(input, kind_);
+  const base::ReadingBlock* reading = newest(input, type_);
   fresh_ = hold_.is_fresh(reading, input.time);
   const double now = fresh_ && reading != nullptr ? error_of(*reading, input.state.X_WM) : Controller::error();
   error_ = hold_.update(now, input.time);

@@ -61,8 +61,8 @@ class PathFollower : public Controller, public StatesStopReason {
   std::string stop_reason() const final;
 
  protected:
-  /// @param kind wire id of the sensor type @param sensor name for messages @param speed [m/s] @param hold [s]
-  PathFollower(std::uint8_t kind, std::string_view sensor, const PiGains& gains, double speed, double hold,
+  /// @param type wire id of the sensor type @param sensor name for messages @param speed [m/s] @param hold [s]
+  PathFollower(std::uint8_t type, std::string_view sensor, const PiGains& gains, double speed, double hold,
                const PathTask& task);
   const PathTask& task() const { return task_; }
 
@@ -70,7 +70,7 @@ class PathFollower : public Controller, public StatesStopReason {
   /// Control error from a reading; NaN when the reading gives none.
   virtual double error_of(const base::ReadingBlock& reading, const base::Pose& X_WM) const = 0;
 
-  std::uint8_t kind_;
+  std::uint8_t type_;
   std::string_view sensor_;
   double speed_;
   PathTask task_;

@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/time.h"
 #include "control/controller.h"
 #include "control/lane_corridors.h"
 
@@ -26,7 +27,7 @@ namespace sf::control {
 
 inline constexpr double kApproachDistance = 0.5;               ///< [m] before the waiting line
 inline constexpr std::int64_t kMaxWait = 3'000'000'000;        ///< [ns]
-inline constexpr std::int64_t kLotteryPeriod = 1'000'000'000;  ///< [ns]
+inline constexpr std::int64_t kLotteryPeriod = base::kSecond;  ///< [ns]
 inline constexpr double kHardBraking = 0.6;                    ///< [m/s^2] deceleration that every robot can achieve
 
 /// Rule at a stop line.

@@ -41,8 +41,8 @@ std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::spa
   std::sort(ready_.begin(), ready_.end(), [](const Waiting* p, const Waiting* q) {
     const base::ReadingBlock& a = p->reading.block();
     const base::ReadingBlock& b = q->reading.block();
-    return std::tie(p->due, a.mover, a.kind, a.sensor, a.sequence) <
-           std::tie(q->due, b.mover, b.kind, b.sensor, b.sequence);
+    return std::tie(p->due, a.mover, a.type, a.sensor, a.sequence) <
+           std::tie(q->due, b.mover, b.type, b.sensor, b.sequence);
   });
   for (const Waiting* w : ready_) delivered_.push_back(w->reading.block());
   last_delivered_.swap(ready_);

@@ -78,7 +78,7 @@ struct Farm::State {
     const sensors::SensorContext context{
         w, device, thread_pool, states, options.seed, options.noise, options.true_poses, options.scene};
     for (const auto& group : sensor_set.groups()) {
-      device.set_owner(group.kind->name);
+      device.set_owner(group.type->name);
       pipelines.emplace_back(context, group);
     }
     blocks.reserve(sensor_set.count());
@@ -127,7 +127,7 @@ void Farm::State::apply(const base::Report& report) {
 void Farm::State::prepare() {
   bool rerecord = false;
   for (SensorPipeline& pipeline : pipelines) {
-    device.set_owner(pipeline.group->kind->name);  // tables may grow
+    device.set_owner(pipeline.group->type->name);  // tables may grow
     rerecord |= pipeline.prepare();
   }
   if (!rerecord) return;
@@ -205,7 +205,7 @@ void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
   thread_pool.parallel_for(readings.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
     for (std::size_t i = first; i < last; ++i) {
       const base::ReadingBlock& r = readings[i];
-      const std::uint64_t head[] = {r.mover, r.kind, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
+      const std::uint64_t head[] = {r.mover, r.type, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
       hashes[i] = base::hash_bytes(head, sizeof head);
       const std::span<const double> values = sent(r, thread);
       hashes[i] = base::hash_bytes(values.data(), values.size_bytes(), hashes[i]);
@@ -235,8 +235,8 @@ Farm::Farm(const world::World& world, gpu::Device& device, const FarmOptions& op
 
 Farm::~Farm() = default;
 
-void Farm::subscribe(std::uint32_t mover, std::uint32_t kinds) {
-  s_->subscribed.at(mover) = s_->gone.at(mover) != 0 ? 0 : kinds;
+void Farm::subscribe(std::uint32_t mover, std::uint32_t types) {
+  s_->subscribed.at(mover) = s_->gone.at(mover) != 0 ? 0 : types;
 }
 void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
@@ -279,14 +279,14 @@ std::int64_t Farm::next_due() const {
   return soonest;
 }
 
-base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t kind, std::uint32_t sensor, const base::Pose& X_WM) {
+base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, const base::Pose& X_WM) {
   State& s = *s_;
   s.blocks.clear();
   for (SensorPipeline& pipeline : s.pipelines) {
     pipeline.due.clear();
     const auto& rows = pipeline.group->rows;
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const sensors::SensorSpec& r) {
-      return pipeline.group->kind->id == kind && r.mover == mover && r.sensor == sensor;
+      return pipeline.group->type->id == type && r.mover == mover && r.sensor == sensor;
     });
     if (row != rows.end()) pipeline.due.push_back({static_cast<std::uint32_t>(row - rows.begin()), 0});
   }
@@ -294,7 +294,7 @@ base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t kind, std::uint
   s.measure(0, false);
   s.states[mover].X_WM = stands;
   SF_CHECK(s.blocks.size() == 1, "mover " + std::to_string(mover) + " has no sensor " + std::to_string(sensor) +
-                                     " of kind " + std::to_string(kind));
+                                     " of type " + std::to_string(type));
   return s.blocks.front();
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The sensor farm: reports in, one batch on the device, readings out.
+// The sensor farm: reports in, a batch on the device, readings out.
 //
 //   farm.subscribe_all();
 //   while (running) {
@@ -33,7 +33,8 @@ struct FarmOptions {
   /// Reuses readings for which nothing has changed; false: measures all due sensors. The bytes are the same.
   bool reuse_unchanged = true;
   bool true_poses = true;      ///< reports contain true poses; false: estimated poses
-  bool no_return_inf = false;  ///< beams without a return read infinity in packets and in `hash`
+  bool no_return_inf = false;  ///< `hash` takes beams without a return as infinity, as packets have
+                               ///< them behind server::NoReturnFilter; readings are unchanged
   unsigned threads = 0;        ///< of the host's part; 0: all of the machine. Does not affect readings
   raycast::SceneOptions scene;
 };
@@ -44,12 +45,12 @@ struct FarmStats {
   std::uint64_t readings = 0;
   std::uint64_t missed = 0;   ///< subscribed readings not measured, as newer ones were due at the same tick
   std::uint64_t reused = 0;   ///< cached readings delivered again
-  std::uint64_t batches = 0;  ///< submitted to the device
+  std::uint64_t batches = 0;  ///< submitted to the device, without those of maps
   sensors::SensorStats work;  ///< of all sensor types
   double place_s = 0.0;       ///< [s] host: outlines of the movers
-  double lists_s = 0.0;       ///< [s] host: lists of candidate walls, recording of kernels
+  double lists_s = 0.0;       ///< [s] host: lists of candidate walls, ray casting on the host, recording of kernels
   double device_s = 0.0;      ///< [s] host: preparation of the submission and the wait for its end
-  double collect_s = 0.0;     ///< [s] host: noise, interpolation, delivery
+  double collect_s = 0.0;     ///< [s] host sensors, noise, interpolation, maps with their batch, delivery
 };
 
 inline constexpr std::uint32_t kAllSensorTypes = 0xFFFFFFFFu;
@@ -63,8 +64,8 @@ class Farm {
   ~Farm();
 
   /// Sets the sensors of a mover that are computed; initially none. Absent movers have none.
-  /// @param kinds bit k: sensor type with wire id k
-  void subscribe(std::uint32_t mover, std::uint32_t kinds);
+  /// @param types bit k: sensor type with wire id k
+  void subscribe(std::uint32_t mover, std::uint32_t types);
   void subscribe(std::uint32_t mover, bool) = delete;
   void subscribe_all();
 
@@ -92,11 +93,13 @@ class Farm {
   /// @param next one report per mover, at the time of the next tick
   std::span<const base::ReadingBlock> sample_between(std::int64_t now, std::span<const base::Report> next);
 
-  /// Computes one sensor immediately, due or not, as if its mover stood at `X_WM`. Noise as in the options.
-  /// @param kind wire id
-  base::ReadingBlock sense(std::uint32_t mover, std::uint8_t kind, std::uint32_t sensor, const base::Pose& X_WM);
+  /// Computes one sensor immediately, due or not, as if its mover stood at `X_WM`, with the noise of its
+  /// first reading. Sonars start a new firing cycle with it, and maps take its beams: in a farm that ticks, later
+  /// readings of both differ.
+  /// @param type wire id
+  base::ReadingBlock sense(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, const base::Pose& X_WM);
 
-  /// Hash of all readings delivered so far, in order.
+  /// Hash of the values and hits of all readings delivered so far, call by call: a call without readings counts too.
   std::uint64_t hash() const;
   FarmStats stats() const;
 

@@ -7,7 +7,7 @@
 namespace sf::farm {
 
 SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& g)
-    : group(&g), backend(g.kind->make(context)), cache(g.rows, context.noise), started(g.rows.size(), 0) {
+    : group(&g), backend(g.type->make(context)), cache(g.rows, context.noise), started(g.rows.size(), 0) {
   for (const sensors::SensorSpec& row : g.rows) next.push_back(due_time(0, row.rate, row.phase));
   due.reserve(g.rows.size());
   to_measure.reserve(g.rows.size());
@@ -17,7 +17,7 @@ SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sens
 std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::uint32_t> subscribed) {
   due.clear();
   std::uint64_t missed = 0;
-  const std::uint32_t kind = 1u << group->kind->id;
+  const std::uint32_t type = 1u << group->type->id;
   // Consecutive sensors mostly have the same rate and phase.
   double rate = -1.0, phase = 0.0;
   std::uint64_t ready = 0, counted = 0;
@@ -39,7 +39,7 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::ui
     next[i] = then;
     // Sequence numbers follow due times: a reading without subscription leaves a gap, and its random numbers stay
     // unused.
-    if ((subscribed[row.mover] & kind) == 0) continue;
+    if ((subscribed[row.mover] & type) == 0) continue;
     due.push_back({i, should - 1});
     missed += skipped;
   }
@@ -47,10 +47,10 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::ui
 }
 
 std::int64_t SensorPipeline::next_due(std::span<const std::uint32_t> subscribed) const {
-  const std::uint32_t kind = 1u << group->kind->id;
+  const std::uint32_t type = 1u << group->type->id;
   std::int64_t soonest = kNever;
   for (std::size_t i = 0; i < next.size(); ++i)
-    if (next[i] < soonest && (subscribed[group->rows[i].mover] & kind) != 0) soonest = next[i];
+    if (next[i] < soonest && (subscribed[group->rows[i].mover] & type) != 0) soonest = next[i];
   return soonest;
 }
 

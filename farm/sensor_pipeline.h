@@ -28,7 +28,7 @@ struct SensorPipeline {
   /// @param group must outlive it
   SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& group);
 
-  bool derived() const { return group->kind->derived_from != 0; }
+  bool derived() const { return group->type->derived_from != 0; }
   /// Finds the sensors of this type due at `now` [ns].
   /// @param subscribed per mover: bits of sensor types
   /// @return readings of subscribed sensors that were due before, are superseded at `now` and were never measured

@@ -18,11 +18,12 @@ class Batch {
   Batch(const Batch&) = delete;
   Batch& operator=(const Batch&) = delete;
 
-  /// Starts a new recording. Call it only when kernels or tables were replaced.
+  /// Starts a new recording: before the first `submit`, and when kernels or tables were replaced; not between `submit`
+  /// and `wait`. What is recorded must live until the next `begin`.
   void begin();
   /// Runs `kernel` with the group counts (x, y, z as u32) that `counts` holds at `offset` [bytes] at the time of `run`.
   void dispatch(const Kernel& kernel, const Buffer& counts, std::size_t offset);
-  /// Makes the results of earlier dispatches visible to later ones.
+  /// Makes the results of earlier dispatches visible to the kernels of later ones (not to their group counts).
   void barrier();
   void end();
 
@@ -30,7 +31,8 @@ class Batch {
   void upload(const Buffer& table, std::size_t offset, std::size_t size);
   void download(const Buffer& table, std::size_t offset, std::size_t size);
 
-  /// Submits all copies and kernels once. The host must not touch their tables until `wait` returns.
+  /// Submits the recorded kernels, and the copies named since the last time. The host must not touch their tables until
+  /// `wait` returns.
   void submit();
   /// Waits for the end of the submission; returns at once without one.
   void wait();

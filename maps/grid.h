@@ -29,9 +29,9 @@ enum class Cell : std::uint8_t { unexplored = SF_CELL_UNEXPLORED, occupied = SF_
 /// Position and size of a map.
 /// The thesis' offset (O_x, O_y) (equations 9 and 10) is left = -O_x, top = -O_y.
 struct GridGeometry {
-  double left = 0.0;                ///< [m] x of the first column's left side
-  double top = 0.0;                 ///< [m] y of the first row's upper side
-  double cell = 0.03;               ///< [m] > 0
+  double left = 0.0;                ///< [m] in [-1e7, 1e7]: x of the first column's left side
+  double top = 0.0;                 ///< [m] in [-1e7, 1e7]: y of the first row's upper side
+  double cell = 0.03;               ///< [m] in [1e-4, 1e3]
   std::uint32_t word_columns = 30;  ///< in [1, kMaxWordColumns]: 4 cells each
   std::uint32_t word_rows = 30;     ///< likewise; word_columns * word_rows <= kMaxWords
   bool operator==(const GridGeometry&) const = default;
@@ -41,7 +41,7 @@ inline std::int64_t columns(const GridGeometry& geometry) { return 4 * std::int6
 inline std::int64_t rows(const GridGeometry& geometry) { return 4 * std::int64_t{geometry.word_rows}; }
 inline std::uint32_t words(const GridGeometry& geometry) { return geometry.word_columns * geometry.word_rows; }
 
-/// True for a finite geometry within the limits above and those of packets. Nothing derived from it can overflow.
+/// True for a finite geometry within the limits above. Nothing derived from it can overflow.
 inline bool is_valid(const GridGeometry& geometry) {
   constexpr double kFarthest = 1e7;  // [m]
   const bool placed = std::abs(geometry.left) <= kFarthest && std::abs(geometry.top) <= kFarthest;

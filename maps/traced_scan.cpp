@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/bearing.h"
 #include "base/error.h"
 
 namespace sf::maps {
@@ -21,10 +22,8 @@ void grow(CellBox& box, CellAt at) {
 
 std::vector<glm::dvec2> beam_directions(double fov, std::uint32_t samples) {
   std::vector<glm::dvec2> beams;
-  const double last = samples - 1.0;
   for (std::uint32_t i = 0; i < samples; ++i) {
-    const double step = samples > 1 ? fov / last : 0.0;
-    const double bearing = samples < 2 ? 0.0 : 2.0 * i <= last ? -0.5 * fov + i * step : 0.5 * fov - (last - i) * step;
+    const double bearing = base::bearing_of(fov, samples, i);
     beams.push_back({std::cos(bearing), std::sin(bearing)});
   }
   return beams;
@@ -67,10 +66,10 @@ TracedScan trace_scan(const GridGeometry& geometry, const ScanView& scan, std::s
       said = pack_end(from.column, from.row, hit);
     }
     if (!tells && silent == k) ++silent;
-    ends[k] = said;
+    ends[k] = tells ? said : without_hit(said);
   }
   if (silent == ends.size()) return out;
-  std::fill(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(silent), ends[silent]);
+  std::fill(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(silent), without_hit(ends[silent]));
   out.box = {{box.low.column + out.sensor.column, box.low.row + out.sensor.row},
              {box.high.column + out.sensor.column, box.high.row + out.sensor.row}};
   return out;

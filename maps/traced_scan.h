@@ -20,6 +20,7 @@ inline std::uint32_t pack_end(std::int64_t columns, std::int64_t rows, bool hit)
 inline std::int32_t columns_of(std::uint32_t end) { return static_cast<std::int32_t>(end << 17) >> 17; }
 inline std::int32_t rows_of(std::uint32_t end) { return static_cast<std::int32_t>(end << 2) >> 17; }
 inline bool hit_of(std::uint32_t end) { return (end >> 30 & 1u) != 0; }
+inline std::uint32_t without_hit(std::uint32_t end) { return end & ~(1u << 30); }
 
 /// One scan for the map.
 struct ScanView {
@@ -32,7 +33,7 @@ struct ScanView {
 
 inline constexpr double kMaxRangeCells = 1'022.0;  ///< [cells] 30.6 m for cells of 3 cm
 
-/// Directions of bearings from -fov/2 to +fov/2, as in world::bearing_of. @param fov [rad] @param samples at least 1
+/// Directions of bearings from -fov/2 to +fov/2, as in base::bearing_of. @param fov [rad] @param samples at least 1
 std::vector<glm::dvec2> beam_directions(double fov, std::uint32_t samples);
 
 /// A half-open box of cells, inside the map or outside; empty unless `low` is below `high` on both axes.
@@ -53,7 +54,8 @@ struct TracedScan {
   CellBox box;  ///< of all cells of the scan; empty without a valid range, and for a sensor too far from the map
 };
 
-/// Writes one end per range into `ends`. An invalid range gets the end of a valid one, which does not change the map.
+/// Writes one end per range into `ends`. An invalid range gets the end of a valid one without
+/// its echo, which does not change the map.
 TracedScan trace_scan(const GridGeometry& geometry, const ScanView& scan, std::span<std::uint32_t> ends);
 
 }  // namespace sf::maps

@@ -31,9 +31,10 @@ void require_ids(std::span<const std::uint32_t> ids, std::uint32_t smallest, con
 Inbox::Inbox(const InboxOptions& options)
     : robots_(options.robots),
       tags_(options.tags),
-      kinds_(options.robots.size(), 0),
+      types_(options.robots.size(), 0),
       sessions_(options.robots.size(), 0),
       session_(options.session),
+      take_late_(options.take_late),
       socket_(open_udp(options.bind, {.receive = options.receive_buffer, .send = kSendBuffer})),
       batch_(kBatch) {
   require_ids(options.robots, 0, "robot");
@@ -53,7 +54,7 @@ PacketStatus Inbox::accept(std::span<const std::uint8_t> bytes, const Endpoint& 
   return status;
 }
 
-PacketStatus Inbox::check(const Packet& packet, const Endpoint& source, std::int64_t now) {
+PacketStatus Inbox::check(Packet& packet, const Endpoint& source, std::int64_t now) {
   switch (packet.header.type) {
     case Type::v2v:
     case Type::subscribe:
@@ -64,7 +65,11 @@ PacketStatus Inbox::check(const Packet& packet, const Endpoint& source, std::int
       return robots_.leave(packet.header.robot, source, now);
     case Type::tag:
       if (!tags_.row(packet.header.robot)) return PacketStatus::unknown_tag;
-      return tags_.admit(packet.header.robot, kStateChannel, packet.header.sequence, source, now);
+      {
+        const PacketStatus status =
+            tags_.admit(packet.header.robot, kStateChannel, packet.header.sequence, source, now);
+        return status == PacketStatus::stale ? check_late(tags_, packet, source, now) : status;
+      }
     case Type::start:
       return packet.header.robot == kBroadcastId || robots_.row(packet.header.robot) ? PacketStatus::accepted
                                                                                      : PacketStatus::unknown_robot;
@@ -75,7 +80,7 @@ PacketStatus Inbox::check(const Packet& packet, const Endpoint& source, std::int
   return PacketStatus::wrong_direction;
 }
 
-PacketStatus Inbox::check_robot(const Packet& packet, const Endpoint& source, std::int64_t now) {
+PacketStatus Inbox::check_robot(Packet& packet, const Endpoint& source, std::int64_t now) {
   const std::uint32_t id = packet.header.robot;
   const auto row = robots_.row(id);
   if (!row) return PacketStatus::unknown_robot;
@@ -85,11 +90,19 @@ PacketStatus Inbox::check_robot(const Packet& packet, const Endpoint& source, st
   const auto* request = std::get_if<Subscribe>(&packet.body);
   const PacketStatus status =
       robots_.admit(id, request != nullptr ? kSubscribeChannel : kStateChannel, packet.header.sequence, source, now);
+  if (status == PacketStatus::stale && request == nullptr) return check_late(robots_, packet, source, now);
   if (status != PacketStatus::accepted) return status;
-  if (!was_active) kinds_[*row] = 0;
-  if (request != nullptr) kinds_[*row] = request->kinds;
+  if (!was_active) types_[*row] = 0;
+  if (request != nullptr) types_[*row] = request->types;
   sessions_[*row] = packet.header.session;
   return PacketStatus::accepted;
+}
+
+/// The status of a state that `clients` called stale.
+PacketStatus Inbox::check_late(const ClientRegistry& clients, Packet& packet, const Endpoint& source,
+                               std::int64_t now) const {
+  packet.late = take_late_ && clients.is_bound(packet.header.robot, source, now);
+  return packet.late ? PacketStatus::accepted : PacketStatus::stale;
 }
 
 bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out) {
@@ -114,14 +127,14 @@ SessionToken Inbox::session_token_for(std::uint32_t robot) const {
 }
 
 bool Inbox::wants_neighbours(std::uint32_t robot, std::int64_t now) const {
-  return is_active(robot, now) && (kinds_[*robots_.row(robot)] & kNeighboursBit) != 0;
+  return is_active(robot, now) && (types_[*robots_.row(robot)] & kNeighboursBit) != 0;
 }
 
-bool Inbox::is_subscribed(std::uint32_t robot, std::uint32_t kind, std::int64_t now) const {
-  SF_CHECK(kind < 32, "sensor kind " + std::to_string(kind));
+bool Inbox::is_subscribed(std::uint32_t robot, std::uint32_t type, std::int64_t now) const {
+  SF_CHECK(type < 32, "sensor type " + std::to_string(type));
   if (!is_active(robot, now)) return false;
-  const std::uint32_t kinds = kinds_[*robots_.row(robot)];
-  return kinds == 0 || (kinds >> kind & 1u) != 0;
+  const std::uint32_t types = types_[*robots_.row(robot)];
+  return types == 0 || (types >> type & 1u) != 0;
 }
 
 }  // namespace sf::netio

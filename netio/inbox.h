@@ -4,7 +4,7 @@
 //
 //   Inbox inbox({.robots = ids});
 //   inbox.receive(now, [&](const Packet& packet) { ... });                     // each accepted one
-//   if (inbox.is_active(7, now) && inbox.is_subscribed(7, kind, now)) ...      // send to *inbox.address(7)
+//   if (inbox.is_active(7, now) && inbox.is_subscribed(7, type, now)) ...      // send to *inbox.address(7)
 //
 // Packets of a robot are accepted only with the token that was sent to their source address (netio/address_token.h).
 // Before that the answer is a CHALLENGE, which is no larger than the packet.
@@ -32,6 +32,7 @@ struct InboxOptions {
   std::vector<std::uint32_t> robots;         ///< ids of the world's robots, distinct, each in [0, kMaxId]
   std::vector<std::uint32_t> tags;           ///< ids of the world's tags, distinct, each in [kMinTag, kMaxId]
   std::uint32_t session = random_session();  ///< session of the farm
+  bool take_late = false;  ///< accept states that others of their sender overtook, marked by `Packet::late`
 };
 
 class Inbox {
@@ -82,9 +83,9 @@ class Inbox {
   /// A V2V or SUBSCRIBE of `robot` was accepted less than two seconds before `now`, and no LEAVE since.
   bool is_active(std::uint32_t robot, std::int64_t now) const { return robots_.is_active(robot, now); }
 
-  /// is_active, and the robot's last SUBSCRIBE since then includes sensor kind `kind` in [1, 31]. Without SUBSCRIBE it
-  /// has all kinds.
-  bool is_subscribed(std::uint32_t robot, std::uint32_t kind, std::int64_t now) const;
+  /// is_active, and the robot's last SUBSCRIBE since then includes sensor type `type` in [1, 31]. Without SUBSCRIBE it
+  /// has all types.
+  bool is_subscribed(std::uint32_t robot, std::uint32_t type, std::int64_t now) const;
 
   /// is_active, and the robot's last SUBSCRIBE since then requests the states of other robots.
   bool wants_neighbours(std::uint32_t robot, std::int64_t now) const;
@@ -103,21 +104,24 @@ class Inbox {
 
   std::uint16_t port() const { return bound_endpoint(socket_).port; }
   const PacketCounts& counts() const { return counts_; }
-  std::uint64_t kernel_drops() const { return netio::kernel_drops(socket_); }
+  std::uint64_t socket_drops() const { return netio::socket_drops(socket_); }
   /// The same socket under a second descriptor, so that answers come from the port that the robots send to.
   Socket socket() const { return duplicate(socket_); }
   /// Sleeps until a datagram waits, a signal comes, or `timeout_ms` >= 0 has passed.
   void wait(int timeout_ms) const;
 
  private:
-  PacketStatus check(const Packet& packet, const Endpoint& source, std::int64_t now);
-  PacketStatus check_robot(const Packet& packet, const Endpoint& source, std::int64_t now);
+  PacketStatus check(Packet& packet, const Endpoint& source, std::int64_t now);
+  PacketStatus check_late(const ClientRegistry& clients, Packet& packet, const Endpoint& source,
+                          std::int64_t now) const;
+  PacketStatus check_robot(Packet& packet, const Endpoint& source, std::int64_t now);
 
   ClientRegistry robots_;
   ClientRegistry tags_;
-  std::vector<std::uint32_t> kinds_;     ///< per robot row: mask of its last SUBSCRIBE, 0 for all
+  std::vector<std::uint32_t> types_;     ///< per robot row: mask of its last SUBSCRIBE, 0 for all
   std::vector<std::uint32_t> sessions_;  ///< per robot row: of its last packet
   std::uint32_t session_;
+  bool take_late_;
   AddressTokens tokens_;
   std::int64_t challenge_period_start_ = 0;  ///< [ns]
   std::size_t challenges_ = 0;               ///< in that period

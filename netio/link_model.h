@@ -18,7 +18,7 @@ struct LinkModel {
 /// Identity of one message.
 struct MessageId {
   std::uint32_t robot = 0;
-  std::uint32_t stream = 0;  ///< kind << 16 | sensor, or any other number of the stream
+  std::uint32_t stream = 0;  ///< type << 16 | sensor, or any other number of the stream
   std::uint64_t sequence = 0;
 };
 

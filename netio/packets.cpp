@@ -15,9 +15,9 @@ constexpr std::size_t kTagBytes = 104;
 constexpr std::size_t kSubscribeBytes = 4;
 constexpr std::size_t kChallengeBytes = 4;
 constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] of session and token
-constexpr std::size_t kReservedAt = 32;      ///< [byte] of age and covariance
-constexpr std::size_t kTrailerAt = 60;       ///< [byte] of the trailer's length
 constexpr std::uint32_t kDockingBit = 1;
+constexpr std::uint16_t kStaleBit = 1;
+constexpr std::int64_t kAgeUnit = 1000;  ///< [ns]
 
 PacketStatus check(std::span<const double> values, double limit) {
   for (const double value : values) {
@@ -129,9 +129,16 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
       if (payload.size() > kMaxNeighbours * kV2vBytes) return PacketStatus::too_long;
       return payload.empty() || payload.size() % kV2vBytes != 0 ? PacketStatus::too_short : PacketStatus::accepted;
   }
-  if (kind_of(packet.header.type) == 0) return PacketStatus::unknown_type;
+  if (sensor_type_of(packet.header.type) == 0) return PacketStatus::unknown_type;
   packet.body = Reading{payload};
   return payload.size() <= kMaxPayload ? PacketStatus::accepted : PacketStatus::too_long;
+}
+
+/// A covariance with numbers that none has is left out, not refused: it stood in reserved bytes once.
+void read_covariance(base::ByteReader& reader, std::array<float, 6>& covariance) {
+  for (float& each : covariance) each = reader.get<float>();
+  const bool finite = std::all_of(covariance.begin(), covariance.end(), [](float v) { return std::isfinite(v); });
+  if (!finite || covariance[0] < 0.0f || covariance[3] < 0.0f || covariance[5] < 0.0f) covariance = {};
 }
 
 /// @param trailer [byte] size behind the payload
@@ -148,9 +155,19 @@ PacketStatus read_header(base::ByteReader& reader, Header& header, std::size_t& 
   header.time = reader.get<std::int64_t>();
   header.session = reader.get<std::uint32_t>();
   header.token = reader.get<std::uint32_t>();
-  reader.get_bytes(kTrailerAt - kReservedAt);
+  const auto age = reader.get<std::uint32_t>();
+  StateQuality state{.stated = age > 0, .age = kAgeUnit * age};
+  read_covariance(reader, state.covariance);
   trailer = reader.get<std::uint16_t>();
+  state.stale = (reader.get<std::uint16_t>() & kStaleBit) != 0;
+  header.state = state.stated ? state : StateQuality{};
   return PacketStatus::accepted;
+}
+
+/// At least 1, since 0 states nothing.
+std::uint32_t age_word(std::int64_t age) {
+  constexpr std::int64_t kMost = 0xFFFFFFFF;
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(age / kAgeUnit + (age % kAgeUnit > 0 ? 1 : 0), 1, kMost));
 }
 
 void start(Header header, Type type, base::Bytes& out) {
@@ -206,8 +223,11 @@ void put_header(const Header& header, base::ByteWriter& writer) {
   writer.put(header.time);
   writer.put(header.session);
   writer.put(header.token);
-  constexpr std::array<std::uint8_t, kHeaderBytes - kReservedAt> kReserved{};
-  writer.put_bytes(kReserved.data(), kReserved.size());
+  const StateQuality& state = header.state;
+  writer.put(state.stated ? age_word(state.age) : std::uint32_t{0});
+  for (const float each : state.covariance) writer.put(state.stated ? each : 0.0f);
+  writer.put(std::uint16_t{0});
+  writer.put(state.stated && state.stale ? kStaleBit : std::uint16_t{0});
 }
 
 void write_session_token(std::span<std::uint8_t> packet, const SessionToken& session_token) {
@@ -243,7 +263,7 @@ void encode(const Header& header, const Tag& state, base::Bytes& out) {
 void encode(const Header& header, const Subscribe& request, base::Bytes& out) {
   start(header, Type::subscribe, out);
   base::ByteWriter writer(out);
-  writer.put(request.kinds);
+  writer.put(request.types);
 }
 
 void encode(const Header& header, const Start&, base::Bytes& out) { start(header, Type::start, out); }
@@ -264,7 +284,7 @@ void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out
 }
 
 void encode_reading(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {
-  SF_CHECK(kind_of(Type{type}) != 0, "type " + std::to_string(type) + " is no reading's");
+  SF_CHECK(sensor_type_of(Type{type}) != 0, "type " + std::to_string(type) + " is no reading's");
   SF_CHECK(payload.size() <= kMaxPayload, std::to_string(payload.size()) + " bytes of payload");
   start(header, Type{type}, out);
   out.insert(out.end(), payload.begin(), payload.end());

@@ -45,11 +45,20 @@ enum class Type : std::uint8_t {
   neighbours = 140
 };
 
-/// Wire id in [1, 63] of the sensor type whose readings, in either form, have type `type`; 0 for other types.
-constexpr std::uint8_t kind_of(Type type) {
+/// Wire id (below 64; sensor types end at 31) of the sensor type whose readings, in either form, have type `type`; 0
+/// for other types.
+constexpr std::uint8_t sensor_type_of(Type type) {
   const auto number = static_cast<std::uint8_t>(type);
   return number < 128 ? number % 64 : std::uint8_t{0};
 }
+
+/// The quality of the robot's state behind a reading.
+struct StateQuality {
+  bool stated = false;                ///< false: nothing is known; the other members are 0 and false
+  bool stale = false;                 ///< the state is too old to be relied on
+  std::int64_t age = 0;               ///< [ns] of the state when it was used, rounded up to 1000 in a packet
+  std::array<float, 6> covariance{};  ///< of x, y [m], yaw [rad]: xx, xy, x yaw, yy, y yaw, yaw yaw; 0: not known
+};
 
 struct Header {
   Type type = Type::v2v;
@@ -60,6 +69,7 @@ struct Header {
   std::uint16_t accuracy = 0;  ///< of readings: accuracy word, see below; 0: not stated
   std::uint32_t session = 0;   ///< of the sender: a random number drawn at its start; 0: not stated
   std::uint32_t token = 0;     ///< to the farm: the token of its CHALLENGE; from the farm: the receiver's session
+  StateQuality state;          ///< of readings
 };
 
 /// Accuracy of a reading in 16 bits: mode in bits 0 to 3, `unsure` in bit 4, and in the upper bits k in [1, 2047] for a
@@ -92,7 +102,7 @@ struct Tag {
 
 /// Request for readings that does not set the robot's state.
 struct Subscribe {
-  std::uint32_t kinds = 0;  ///< bit k: sensor type k; bit 0: states of other robots, see kNeighboursBit; 0: all types
+  std::uint32_t types = 0;  ///< bit k: sensor type k; bit 0: states of other robots, see kNeighboursBit; 0: all types
                             ///< without these states
 };
 inline constexpr std::uint32_t kNeighboursBit = 1;  ///< requests the states of other robots
@@ -125,6 +135,7 @@ struct Reading {
 struct Packet {
   Header header;
   std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, Neighbours, Reading> body;
+  bool late = false;  ///< a state whose sequence is not newer than the last of its sender (`InboxOptions::take_late`)
 };
 
 /// Decodes any bytes. Fills `packet` only when the result is PacketStatus::accepted.
@@ -143,7 +154,7 @@ void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out
 /// has at most kMaxPayload bytes
 void encode_reading(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out);
 
-/// Appends the 64 bytes of the header. Age, covariance and trailer are reserved: 0.
+/// Appends the 64 bytes of the header, with a trailer of 0 bytes.
 void put_header(const Header& header, base::ByteWriter& writer);
 
 /// The header fields that differ by receiver.

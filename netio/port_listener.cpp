@@ -18,7 +18,7 @@ constexpr std::size_t kEvents = 256;
 
 std::vector<SensorPorts> uses_of(std::span<const StreamSpec> streams) {
   std::vector<SensorPorts> uses;
-  for (const StreamSpec& spec : streams) uses.push_back({spec.robot, 1, spec.rule, "", spec.sensor, spec.kind});
+  for (const StreamSpec& spec : streams) uses.push_back({spec.robot, 1, spec.rule, "", spec.sensor, spec.type});
   return uses;
 }
 
@@ -50,9 +50,9 @@ void PortListener::wait(int timeout_ms) {
   for (int e = 0; e < ready; ++e) ready_.push_back(events[static_cast<std::size_t>(e)].data.u64);
 }
 
-std::uint64_t PortListener::kernel_drops() const {
+std::uint64_t PortListener::socket_drops() const {
   std::uint64_t drops = 0;
-  for (const Socket& socket : sockets_) drops += netio::kernel_drops(socket);
+  for (const Socket& socket : sockets_) drops += netio::socket_drops(socket);
   return drops;
 }
 

@@ -19,7 +19,7 @@ struct StreamSpec {
   std::uint32_t robot = 0;
   std::uint32_t sensor = 0;
   PortRule rule;
-  std::string kind = "sensor";  ///< for messages about colliding ports
+  std::string type = "sensor";  ///< for messages about colliding ports
 };
 
 /// One thread.
@@ -49,7 +49,7 @@ class PortListener {
   /// Readable while a datagram waits on any port; for wait_readable.
   const Socket& epoll() const { return epoll_; }
   std::size_t receive_buffer_size() const;  ///< [byte] of the first port; 0 without ports
-  std::uint64_t kernel_drops() const;       ///< datagrams lost to full receive buffers
+  std::uint64_t socket_drops() const;       ///< datagrams lost to full receive buffers
 
  private:
   static constexpr std::size_t kMaxPerDrain = 65'536;  ///< bounds the duration under a flood

@@ -19,7 +19,7 @@ struct AssignedPort {
 
 std::string describe(const SensorPorts& use, std::uint32_t sensor) {
   const std::string name = use.name.empty() ? "robot" : "robot '" + use.name + "'";
-  return name + " (id " + std::to_string(use.robot) + ") " + use.kind + " " + std::to_string(sensor);
+  return name + " (id " + std::to_string(use.robot) + ") " + use.type + " " + std::to_string(sensor);
 }
 
 std::string describe(const PortRule& rule) {
@@ -33,13 +33,13 @@ std::string describe(const PortRule& rule) {
 }
 
 /// Name of the base port for messages: its option, if known.
-std::string base_of(const SensorPorts& use) { return use.option.empty() ? "the base port of " + use.kind : use.option; }
+std::string base_of(const SensorPorts& use) { return use.option.empty() ? "the base port of " + use.type : use.option; }
 
 std::string advice_for(const SensorPorts& a, const SensorPorts& b) {
-  const bool same_kind = a.kind == b.kind, same_base = a.rule.base == b.rule.base;
-  if (a.robot == b.robot && same_kind && same_base) return "give each robot its own id";
-  if (!same_kind && same_base) return "change " + base_of(a) + " or " + base_of(b) + ", so that each kind has its own";
-  if (!same_kind) return "move " + base_of(a) + " and " + base_of(b) + " apart";
+  const bool same_type = a.type == b.type, same_base = a.rule.base == b.rule.base;
+  if (a.robot == b.robot && same_type && same_base) return "give each robot its own id";
+  if (!same_type && same_base) return "change " + base_of(a) + " or " + base_of(b) + ", so that each type has its own";
+  if (!same_type) return "move " + base_of(a) + " and " + base_of(b) + " apart";
   return "raise the stride to at least " + std::to_string(std::max(a.sensors, b.sensors));
 }
 

@@ -27,7 +27,7 @@ struct SensorPorts {
   PortRule rule;
   std::string name;  ///< the robot's name in the world file, for messages
   std::uint32_t first = 0;
-  std::string kind = "sensor";  ///< for messages
+  std::string type = "sensor";  ///< for messages
   std::string option;           ///< option that sets the base port, for messages; empty: none
 };
 

@@ -89,7 +89,7 @@ std::size_t receive_buffer(const Socket& socket) {
   return static_cast<std::size_t>(bytes);
 }
 
-std::uint64_t kernel_drops(const Socket& socket) {
+std::uint64_t socket_drops(const Socket& socket) {
   std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
   socklen_t size = sizeof memory;
   if (getsockopt(socket.descriptor(), SOL_SOCKET, SO_MEMINFO, memory.data(), &size) != 0) return 0;

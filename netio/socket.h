@@ -60,8 +60,9 @@ Endpoint bound_endpoint(const Socket& socket);
 /// [byte] granted by the kernel, which counts about 2.3 kB for a laser datagram of 748 B.
 std::size_t receive_buffer(const Socket& socket);
 
-/// Datagrams dropped by the kernel since the socket was opened, mostly for a full buffer; 0 where this is unknown.
-std::uint64_t kernel_drops(const Socket& socket);
+/// Datagrams dropped by the operating system since the socket was opened, mostly for a full buffer; 0 where this is
+/// unknown.
+std::uint64_t socket_drops(const Socket& socket);
 
 /// Raises this process' soft limit of open files to at least `count`; never lowers it.
 /// @throws base::InputError when the hard limit is lower

@@ -77,6 +77,7 @@ struct StreamMonitor::Streams {
   SequenceCounts before;  ///< of the farms selected before
   PacketCounts counts;
   std::uint64_t bytes = 0;
+  std::uint64_t stale_states = 0;
 };
 
 StreamMonitor::StreamMonitor(const StreamMonitorOptions& options) {
@@ -127,6 +128,7 @@ PacketStatus StreamMonitor::accept(std::size_t i, std::span<const std::uint8_t> 
   if (info.status != PacketStatus::accepted) return info.status;
 
   ++stream.good;
+  if (!s.headerless && header.state.stale) ++s.stale_states;
   stream.elements += info.elements;
   if (!s.headerless) count_arrival(stream.tracker, std::uint64_t{header.sequence} * info.parts + info.part);
   return PacketStatus::accepted;
@@ -152,12 +154,13 @@ StreamSummary StreamMonitor::summary() const {
   sum.bytes = s.bytes;
   sum.good = s.counts[PacketStatus::accepted];
   sum.counts = s.counts;
+  sum.stale_states = s.stale_states;
   sum.ports = s.rows.size();
   SequenceCounts gaps = s.before;
   for (const Stream& stream : s.rows) {
     add(gaps, stream.tracker);
     sum.silent_ports += stream.good == 0 ? 1 : 0;
-    StreamSummary::TypeCounts& share = sum.of[stream.spec.kind];
+    StreamSummary::TypeCounts& share = sum.of[stream.spec.type];
     share.good += stream.good;
     share.elements += stream.elements;
   }
@@ -165,7 +168,7 @@ StreamSummary StreamMonitor::summary() const {
   sum.duplicates = gaps.duplicates;
   sum.reordered = gaps.reordered;
   sum.receive_buffer = s.port_listener.receive_buffer_size();
-  sum.kernel_drops = s.port_listener.kernel_drops();
+  sum.socket_drops = s.port_listener.socket_drops();
   return sum;
 }
 

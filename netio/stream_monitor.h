@@ -53,23 +53,24 @@ struct StreamMonitorOptions {
 
 struct StreamSummary {
   std::uint64_t datagrams = 0;
-  std::uint64_t bytes = 0;  ///< UDP payload
-  std::uint64_t good = 0;   ///< valid, plausible, and on the right port
-  PacketCounts counts;      ///< all datagrams by status
-  std::uint64_t lost = 0;   ///< by gaps in sequences from 0; see SequenceTracker
+  std::uint64_t bytes = 0;         ///< UDP payload
+  std::uint64_t good = 0;          ///< valid, plausible, and on the right port
+  PacketCounts counts;             ///< all datagrams by status
+  std::uint64_t stale_states = 0;  ///< good datagrams computed from a stale state of the robot
+  std::uint64_t lost = 0;          ///< by gaps in sequences from 0; see SequenceTracker
   std::uint64_t duplicates = 0;
   std::uint64_t reordered = 0;
   std::uint64_t ports = 0;
   std::uint64_t silent_ports = 0;  ///< ports without a good datagram
   std::size_t receive_buffer = 0;  ///< [byte] granted to the first port
-  std::uint64_t kernel_drops = 0;  ///< datagrams lost to full receive buffers
+  std::uint64_t socket_drops = 0;  ///< datagrams lost to full receive buffers
 
   /// Counts of the streams of one sensor type.
   struct TypeCounts {
     std::uint64_t good = 0;      ///< datagrams
     std::uint64_t elements = 0;  ///< in the good datagrams
   };
-  std::map<std::string, TypeCounts> of;  ///< by `StreamSpec::kind`
+  std::map<std::string, TypeCounts> of;  ///< by `StreamSpec::type`
 };
 
 class StreamMonitor {

@@ -5,29 +5,29 @@
 
 namespace sf::raycast {
 
-BeamPlan plan_beams(const world::Laser& laser, bool with_noise) {
+BeamPlan plan_beams(const ScanSettings& scan, bool with_noise) {
   constexpr double kMaxSpread = 0.5 * (2.0 * M_PI / SF_SECTORS);
   BeamPlan plan;
-  for (std::uint32_t i = 0; i < laser.samples; i += laser.resolution) plan.samples.push_back(i);
-  if (plan.samples.back() != laser.samples - 1) plan.samples.push_back(laser.samples - 1);
+  for (std::uint32_t i = 0; i < scan.samples; i += scan.resolution) plan.samples.push_back(i);
+  if (plan.samples.back() != scan.samples - 1) plan.samples.push_back(scan.samples - 1);
 
-  const double step = laser.samples > 1 ? laser.fov / (laser.samples - 1) : 0.0;
-  const double jitter = with_noise ? kMaxSigmas * laser.noise.angle_sigma : 0.0;
-  const double spread = 0.5 * (SF_BEAMS_PER_LANE - 1) * laser.resolution * step + jitter;
+  const double step = scan.samples > 1 ? scan.fov / (scan.samples - 1) : 0.0;
+  const double jitter = with_noise ? kMaxSigmas * scan.noise.angle_sigma : 0.0;
+  const double spread = 0.5 * (SF_BEAMS_PER_LANE - 1) * scan.resolution * step + jitter;
   plan.packed = spread <= kMaxSpread;
   plan.spread = plan.packed ? spread : 0.0;
   return plan;
 }
 
-void draw_angle_noise(const world::Laser& laser, const BeamPlan& plan, const base::RandomKey& draw,
+void draw_angle_noise(const ScanSettings& scan, const BeamPlan& plan, const base::RandomKey& draw,
                       std::span<double> angle_noise) {
   for (std::size_t k = 0; k < angle_noise.size(); ++k) {
     const double normal = base::random_normal(draw, plan.samples[k])[0];
-    angle_noise[k] = laser.noise.angle_sigma * std::clamp(normal, -kMaxSigmas, kMaxSigmas);
+    angle_noise[k] = scan.noise.angle_sigma * std::clamp(normal, -kMaxSigmas, kMaxSigmas);
   }
 }
 
-void write_beams(const world::Laser& laser, const BeamPlan& plan, const std::vector<double>& angle_noise,
+void write_beams(const ScanSettings& scan, const BeamPlan& plan, const std::vector<double>& angle_noise,
                  const BeamTables& tables) {
   const std::size_t count = plan.samples.size();
   for (std::size_t lane = 0; lane < plan.lanes(); ++lane) {
@@ -36,7 +36,7 @@ void write_beams(const world::Laser& laser, const BeamPlan& plan, const std::vec
     for (std::size_t i = 0; i < SF_BEAMS_PER_LANE; ++i) {
       // Unused places repeat the last beam.
       const std::size_t k = plan.packed ? std::min(SF_BEAMS_PER_LANE * lane + i, count - 1) : lane;
-      const double bearing = world::bearing_of(laser, plan.samples[k]) + (angle_noise.empty() ? 0.0 : angle_noise[k]);
+      const double bearing = bearing_of(scan, plan.samples[k]) + (angle_noise.empty() ? 0.0 : angle_noise[k]);
       low = i == 0 ? bearing : std::min(low, bearing);
       high = i == 0 ? bearing : std::max(high, bearing);
       const double c = std::cos(bearing);

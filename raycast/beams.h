@@ -1,17 +1,46 @@
 #pragma once
-// The beams of a laser: selection, directions and packing into lanes.
+// The beams of a planar scan: settings, selection, directions and packing into lanes.
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "base/bearing.h"
+#include "base/pose.h"
 #include "base/random.h"
 #include "raycast/records.h"
-#include "world/world.h"
 
 namespace sf::raycast {
 
-/// The cast beams of one laser, in lanes of SF_BEAMS_PER_LANE.
+/// Noise of a scan. All zero: none. Range noise applies only to beams with an echo.
+struct ScanNoise {
+  double range_sigma = 0.0;         ///< [m] constant part of the range's standard deviation
+  double range_proportional = 0.0;  ///< [-] part of the standard deviation per metre of range
+  double angle_sigma = 0.0;         ///< [rad] standard deviation of each beam's bearing, applied before the cast
+
+  bool has_range() const { return range_sigma > 0.0 || range_proportional > 0.0; }
+};
+
+/// Settings of a planar scan. Bearings run from -fov/2 to +fov/2, both ends cast exactly; a single sample has bearing
+/// 0.
+struct ScanSettings {
+  std::string name;              ///< of the sensor, for messages
+  base::Pose X_MS;               ///< sensor in the mover's frame; z is the height above the mover's origin
+  double fov = M_PI;             ///< [rad] in [0, 2 pi]
+  std::uint32_t samples = 180;   ///< in [1, 1'000'000]
+  double range_min = 0.0;        ///< [m] closer echoes read range_min
+  double range_max = 8.0;        ///< [m] > 0; the reading of a beam without an echo
+  std::uint32_t resolution = 1;  ///< only every n-th beam and the last are cast
+  ScanNoise noise;               ///< ray casting applies its angular part only
+};
+
+/// As base::bearing_of.
+inline double bearing_of(const ScanSettings& scan, std::uint32_t i) {
+  return base::bearing_of(scan.fov, scan.samples, i);
+}
+
+/// The cast beams of one scan, in lanes of SF_BEAMS_PER_LANE.
 struct BeamPlan {
   std::vector<std::uint32_t> samples;  ///< numbers of the samples that are cast, ascending
   bool packed = true;                  ///< adjacent beams share a lane; false: one beam per lane, in its first place
@@ -25,22 +54,22 @@ struct BeamPlan {
   std::size_t place(std::size_t k) const { return packed ? k : SF_BEAMS_PER_LANE * k; }
 };
 
-BeamPlan plan_beams(const world::Laser& laser, bool with_noise);
+BeamPlan plan_beams(const ScanSettings& scan, bool with_noise);
 
 /// Draws the angular noise of each cast beam.
 /// @param draw key of `base::RandomStream::angle_noise`
 /// @param angle_noise [rad] out: one value per cast beam
-void draw_angle_noise(const world::Laser& laser, const BeamPlan& plan, const base::RandomKey& draw,
+void draw_angle_noise(const ScanSettings& scan, const BeamPlan& plan, const base::RandomKey& draw,
                       std::span<double> angle_noise);
 
-/// The part of the device's beam tables that belongs to one laser. Pointers to its first lane.
+/// The part of the device's beam tables that belongs to one scan. Pointers to its first lane.
 struct BeamTables {
   float* mid_bearings;   ///< [sectors] one per lane
   double* directions64;  ///< 8 per lane: cosine and sine of each beam
 };
 
 /// Writes the tables of `plan`. Beam k is turned by `angle_noise[k]` [rad]; an empty vector means no noise.
-void write_beams(const world::Laser& laser, const BeamPlan& plan, const std::vector<double>& angle_noise,
+void write_beams(const ScanSettings& scan, const BeamPlan& plan, const std::vector<double>& angle_noise,
                  const BeamTables& tables);
 
 /// Truncation of angular noise, in standard deviations. A bounded angle keeps the lists of walls complete.

@@ -5,12 +5,11 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "gpu/group_counts.h"
 
 namespace sf::raycast {
 
 namespace {
-
-constexpr std::size_t kMostGroups = 32'768;
 
 /// Approximately a unit vector.
 struct Direction {
@@ -24,7 +23,7 @@ bool limit_incidence(std::span<const Cone> cones) {
 }
 
 std::vector<Scanner> scanners_of(const world::World& world, std::span<const Cone> cones, const ConeKernel& kernel) {
-  const std::size_t most_cones = kMostGroups * gpu::interface_of(kernel.spirv).group_size;
+  const std::size_t most_cones = std::size_t{gpu::kMostGroupsAcross} * gpu::interface_of(kernel.spirv).group_size;
   if (cones.size() > most_cones)
     throw base::InputError(world.file, 0,
                            "the world has " + std::to_string(cones.size()) + " transducers of one type; at most " +
@@ -89,9 +88,7 @@ bool ConeCaster::prepare(std::span<const DueSample> due) {
   // Padding repeats one cone; its echoes are written behind all others.
   if (count_ > 0)
     std::fill_n(rows.begin() + static_cast<std::ptrdiff_t>(count_), kernel_.padded(count_) - count_, rows[count_ - 1]);
-  const auto counts = groups_.host<std::uint32_t>();
-  counts[0] = static_cast<std::uint32_t>(kernel_.padded(count_) / kernel_.group_size());
-  counts[1] = counts[2] = count_ > 0 ? 1 : 0;
+  gpu::write_counts(gpu::groups_for(count_, kernel_.group_size()), groups_);
   return again;
 }
 
@@ -104,7 +101,7 @@ ConeRow ConeCaster::row_of(std::size_t i) const {
   row.min_cosine = min_cosines_[results.row];
   row.heading_cos = static_cast<float>(results.heading.x);
   row.heading_sin = static_cast<float>(results.heading.y);
-  row.range_max = results.scanner->laser.range_max;
+  row.range_max = results.scanner->scan.range_max;
   return row;
 }
 

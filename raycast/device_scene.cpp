@@ -18,7 +18,7 @@ constexpr std::uint32_t kPageChunks = 8;
 
 /// Side of a cell [m]. Small cells have short lists, but each costs memory and building time. A 32nd of the range suits
 /// a scanner of some hundred beams; few beams use larger cells (docs/performance.md).
-double cell_size(double range, std::uint32_t beams) {
+double device_cell_size(double range, std::uint32_t beams) {
   const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 6.0);
   return std::clamp(fewer * range / 32.0, 1e-3, 4.0);
 }
@@ -33,7 +33,7 @@ DeviceScene::DeviceScene(const world::World& world, const ListConfigs& configs, 
       options_{.pool_chunks = 0, .pool_cells = 0},
       configs_(configs),
       movers_(world),
-      cells_(configs, cell_size, CellCache(0, 0, kPageChunks)) {
+      cells_(configs, device_cell_size, CellCache(0, 0, kPageChunks)) {
   for (unsigned i = 0; i < thread_pool.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());
   for (std::size_t i = 0; i < configs.size(); ++i)
     config_tables_.push_back(
@@ -46,10 +46,10 @@ DeviceScene::DeviceScene(const world::World& world, const ListConfigs& configs, 
   const std::vector<world::Segment>& walls = configs.walls();
   const std::size_t count = walls.size() + movers_.segments();
   segments_ = std::make_unique<gpu::Buffer>(device, "walls and movers in 64 bits", gpu::Role::upload, gpu::Texel::u32x4,
-                                            2 * count + 2);
+                                            gpu::texels_of<ExactSegment>(count + 1));
   models_ = std::make_unique<gpu::Buffer>(device, "whose walls", gpu::Role::upload, gpu::Texel::u32, count + 1);
   mover_rows_ = std::make_unique<gpu::Buffer>(device, "places of movers", gpu::Role::upload, gpu::Texel::u32x4,
-                                              2 * movers_.heights() * world.movers.size() + 2);
+                                              gpu::texels_of<MoverRow>(movers_.heights() * world.movers.size() + 1));
   const auto exact = segments_->host<ExactSegment>();
   const auto models = models_->host<std::uint32_t>();
   for (std::size_t i = 0; i < walls.size(); ++i) {

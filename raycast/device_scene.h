@@ -30,7 +30,7 @@ class DeviceScene {
               const SceneOptions& options, std::uint32_t sensing_movers);
   ~DeviceScene();
 
-  /// Moves the movers to this tick's poses. @param states one per mover, unchanged until the next call
+  /// Moves the movers to this tick's poses. @param states one per mover; where they change, call again before `prepare`
   void place_movers(std::span<const base::Report> states);
 
   /// Builds the lists for all `views` and fills `rows`, one per view: all fields but beams, out and range_min.

@@ -178,7 +178,8 @@ void DeviceScene::find_front_edges(const Viewpoint& view, NearbyMover& near, Scr
 
 /// Writes the lists of the scratch's movers for one view, starting at texel `at`.
 void DeviceScene::write_mover_lists(const Viewpoint& view, std::uint32_t at, const Scratch& s) {
-  const auto first_mover_row = static_cast<std::uint32_t>(config_tables_[view.config].height * movers_.movers()) + 1;
+  const auto first_mover_row =
+      static_cast<std::uint32_t>(config_tables_[view.config].height * movers_.states().size()) + 1;
   std::uint8_t* const lists = lists_->host<std::uint8_t>().data();
   ListHead heads[SF_SECTORS];
   std::uint32_t next = at + SF_SECTORS;

@@ -23,7 +23,7 @@ std::uint32_t most_blocks() {
 
 /// Side of a cell [m]: an eighth of the range for a scanner of some hundred beams, more for fewer beams, and at least
 /// min(0.25 m, range). Smaller cells cost more to build than they save for moving robots.
-double cell_size(double range, std::uint32_t beams) {
+double host_cell_size(double range, std::uint32_t beams) {
   const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 4.0);
   return std::clamp(fewer * range / 8.0, std::clamp(range, 1e-3, 0.25), 4.0);
 }
@@ -60,7 +60,7 @@ HostScene::HostScene(const world::World& world, const ListConfigs& configs, base
     : thread_pool_(thread_pool),
       configs_(configs),
       movers_(world),
-      cells_(configs, cell_size, CellCache(kFirstCells, kFirstBlocks, kPageBlocks)),
+      cells_(configs, host_cell_size, CellCache(kFirstCells, kFirstBlocks, kPageBlocks)),
       lists_(kFirstCells),
       block_masks_(kFirstCells),
       blocks_(kFirstBlocks) {

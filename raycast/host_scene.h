@@ -22,7 +22,7 @@ class HostScene {
   HostScene(const world::World& world, const ListConfigs& configs, base::ThreadPool& thread_pool);
   ~HostScene();
 
-  /// Moves the movers to this tick's poses. @param states one per mover, unchanged until the next call
+  /// Moves the movers to this tick's poses. @param states one per mover; where they change, call again before `prepare`
   void place_movers(std::span<const base::Report> states);
   /// Builds the lists of `views`.
   void prepare(std::span<const Viewpoint> views);

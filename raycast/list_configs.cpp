@@ -25,11 +25,7 @@ std::uint32_t ListConfigs::add(const ListConfig& config) {
   const auto interval =
       static_cast<std::size_t>(std::upper_bound(breaks_.begin(), breaks_.end(), config.z) - breaks_.begin());
   auto& wall_index = wall_indices_[interval];
-  if (!wall_index) {
-    world::World view;
-    view.walls = walls_;
-    wall_index = std::make_unique<WallIndex>(view, config.z);
-  }
+  if (!wall_index) wall_index = std::make_unique<WallIndex>(walls_, config.z);
   for (std::uint32_t i = 0; i < rows_.size(); ++i) {
     ListConfig& known = rows_[i].config;
     if (rows_[i].wall_index != wall_index.get() || known.range != config.range || known.z != config.z) continue;

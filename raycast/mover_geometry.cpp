@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/box.h"
+
 namespace sf::raycast {
 
 namespace {
@@ -88,14 +90,14 @@ void MoverGeometry::place(std::span<const base::Report> states, base::ThreadPool
 }
 
 void MoverGeometry::build_grid() {
-  glm::dvec2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+  base::Box all = base::empty_box();
   for (std::size_t i = 0; i < states_.size(); ++i) {
     if (!is_present(i)) continue;
     const Pose& X = states_[i].X_WM;
-    low = {std::min(low.x, X.x), std::min(low.y, X.y)};
-    high = {std::max(high.x, X.x), std::max(high.y, X.y)};
+    all = base::united(all, base::box_of({X.x, X.y}, {X.x, X.y}));
   }
-  if (!(low.x <= high.x)) low = high = {0.0, 0.0};
+  if (!(all.min.x <= all.max.x)) all = {};
+  const auto [low, high] = all;
   const double extent = std::max(high.x - low.x, high.y - low.y);
   grid_.low = low;
   grid_.cell = std::max({4.0 * grid_.largest_radius, extent / (kMaxCells - 1), 1e-6});

@@ -23,7 +23,7 @@ class MoverGeometry {
   /// the height
   std::uint32_t add_height(double z);
 
-  /// Moves every outline to its mover's pose. @param states one per mover, unchanged until the next call
+  /// Moves every outline to its mover's pose. @param states one per mover, as long as they are used
   /// @param exact out: the movers' edges, mover by mover, `segments()` of them
   void place(std::span<const base::Report> states, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
 
@@ -35,7 +35,6 @@ class MoverGeometry {
   const MoverGrid& grid() const { return grid_; }
   std::uint32_t heights() const { return static_cast<std::uint32_t>(heights_.size()); }
   const OutlineTable& outlines(std::uint32_t height) const { return heights_[height].outlines; }
-  std::size_t movers() const { return radii_.size(); }
   std::span<const base::Report> states() const { return states_; }
   std::span<const glm::dvec2> headings() const { return headings_; }
   /// Row of each mover's first edge in the table of exact segments, where walls come first; then the end.

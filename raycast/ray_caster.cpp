@@ -70,7 +70,7 @@ void RayCaster::add_copies(gpu::Batch& batch, bool results) {
   if (t.scene) batch.upload(*t.rows, 0, t.due.size() * sizeof(RayRow));
   const auto send = [&](const CastDispatch& pass) {
     const auto counts = pass.groups->host<std::uint32_t>();
-    batch.upload(*pass.lanes, 0, sizeof(Lane) * t.lanes_per_group * counts[0] * counts[1]);
+    batch.upload(*pass.lanes, 0, sizeof(Lane) * SF_LANES_PER_GROUP * counts[0] * counts[1]);
     batch.upload(*pass.groups, 0, pass.groups->bytes());
   };
   send(t.exact);
@@ -78,13 +78,14 @@ void RayCaster::add_copies(gpu::Batch& batch, bool results) {
   if (t.beams_changed) {
     batch.upload(*t.mid_bearings, 0, t.mid_bearings->bytes());
     batch.upload(*t.directions64, 0, t.directions64->bytes());
-  }
-  for (const DueSample& d : t.due) {
-    const ScannerRow& row = t.scanner_rows[d.row];
-    if (t.beams_changed || !row.angle_noise) continue;
-    batch.upload(*t.mid_bearings, sizeof(float) * row.beams, sizeof(float) * row.plan.lanes());
-    const std::size_t lane = SF_BEAMS_PER_LANE * sizeof(BeamDirection);
-    batch.upload(*t.directions64, lane * row.beams, lane * row.plan.lanes());
+  } else {
+    for (const DueSample& d : t.due) {
+      const ScannerRow& row = t.scanner_rows[d.row];
+      if (!row.angle_noise) continue;
+      batch.upload(*t.mid_bearings, sizeof(float) * row.beams, sizeof(float) * row.plan.lanes());
+      const std::size_t lane = SF_BEAMS_PER_LANE * sizeof(BeamDirection);
+      batch.upload(*t.directions64, lane * row.beams, lane * row.plan.lanes());
+    }
   }
   t.beams_changed = false;
   for (const std::uint32_t i : t.host_due) {
@@ -130,6 +131,5 @@ gpu::Buffer& RayCaster::directions64() { return *t_->directions64; }
 gpu::Buffer& RayCaster::beam_flags() { return *t_->beam_flags; }
 gpu::Buffer& RayCaster::lanes() { return *t_->exact.lanes; }
 gpu::Buffer& RayCaster::groups() { return *t_->exact.groups; }
-std::uint32_t RayCaster::group_size() const { return t_->lanes_per_group; }
 
 }  // namespace sf::raycast

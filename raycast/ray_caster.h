@@ -1,8 +1,10 @@
 #pragma once
-// Casts the beams of many scanners at once, for the laser and the lane edge sensor.
+// Casts the beams of many scanners at once, for lasers, lane edge sensors and cones (ConeCaster). Beams lie in the
+// horizontal plane of their sensor.
 //
 // Ranges are exact: the nearest surface along each beam, from either side, decided in 64 bits against the segments of
-// the world, within `exact_bound` of real arithmetic. A beam without a hit within range_max reads range_max. A surface
+// the world, within `exact_bound` of real arithmetic except for beams that graze a surface; scanners that are `single`
+// add `single_bound`. A beam without a hit within range_max reads range_max. A surface
 // that touches the sensor (within SF_CONTACT_DISTANCE along the beam) stops beams that enter it, which read 0, and
 // passes beams that leave it. A sensor inside a solid reads the distance to its boundary. The mover that carries the
 // sensor is invisible to it.
@@ -36,7 +38,7 @@ inline double single_bound(double range_max) { return range_max * (0.51 * SF_SIN
 
 /// The beams of one sensor.
 struct Scanner {
-  world::Laser laser;        ///< settings; angular noise is applied here, range noise is not
+  ScanSettings scan;
   std::uint32_t mover = 0;   ///< mover that carries it
   std::uint32_t sensor = 0;  ///< key of its noise
   bool single = false;       ///< ranges in 32 bits where these are accurate enough: within `single_bound`
@@ -68,7 +70,7 @@ class RayCaster {
 
   /// Moves the movers to the poses of `SensorContext::states`, before `prepare`.
   void place_movers();
-  /// @param due rows of scanners  @param cast false: computes only the poses of the sensors
+  /// @param due rows of scanners  @param cast false: no scan on the host; the caller records no cast
   /// @return true when kernels must be recorded again
   bool prepare(std::span<const DueSample> due, bool cast = true);
   void record(gpu::Batch& batch);
@@ -76,7 +78,7 @@ class RayCaster {
   void add_copies(gpu::Batch& batch, bool results);
   /// Results of the i-th due scanner, valid after `prepare`.
   ScanResult results(std::size_t i) const;
-  /// Adds the batch's work to `stats`. Call once after each batch.
+  /// Adds the device's uncertain beams to `stats`. Call once after each batch.
   void count();
 
   // Result tables, on the device and (when copied) on the host, and the beams' directions in the sensor frame.
@@ -86,7 +88,6 @@ class RayCaster {
   gpu::Buffer& directions64();  ///< SF_BEAMS_PER_LANE pairs of doubles per lane: cosine and sine of the bearing
   gpu::Buffer& lanes();         ///< Lane per invocation: the due scanner and its lane; without `single` scanners
   gpu::Buffer& groups();        ///< group counts of the dispatch over `lanes`
-  std::uint32_t group_size() const;
 
  private:
   struct Tables;

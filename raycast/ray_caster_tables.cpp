@@ -7,14 +7,12 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "gpu/group_counts.h"
 #include "shaders/laser.comp.h"
 
 namespace sf::raycast {
 
 namespace {
-
-/// Groups along x of a dispatch; further groups follow along y. Vulkan guarantees 65 535.
-constexpr std::uint32_t kGroupsAcross = 32'768;
 
 /// Scanners are sorted by mover.
 std::uint32_t count_sensing_movers(const std::vector<Scanner>& scanners) {
@@ -28,7 +26,7 @@ ScanView scan_view_of(const Scanner& scanner, const Viewpoint& from) {
   ScanView view;
   view.heading = from.heading;
   view.yaw = from.X_WS.yaw;
-  view.range_min = scanner.laser.range_min;
+  view.range_min = scanner.scan.range_min;
   view.min_sine = kMinSine;
   view.single = scanner.single;
   return view;
@@ -40,8 +38,7 @@ using BeamTableKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 }  // namespace
 
 RayCaster::Tables::Tables(const SensorContext& context, const world::World& world, std::vector<Scanner> f)
-    : lanes_per_group(gpu::interface_of(laser_comp_spv).group_size),
-      thread_pool(context.thread_pool),
+    : thread_pool(context.thread_pool),
       states(context.states),
       seed(context.seed),
       noise(context.noise),
@@ -61,7 +58,7 @@ RayCaster::Tables::Tables(const SensorContext& context, const world::World& worl
   std::map<BeamTableKey, Shared> shared;
   for (std::size_t i = 0; i < scanners.size(); ++i) {
     ScannerRow& row = scanner_rows[i];
-    const BeamTableKey key{scanners[i].laser.fov, scanners[i].laser.samples, scanners[i].laser.resolution};
+    const BeamTableKey key{scanners[i].scan.fov, scanners[i].scan.samples, scanners[i].scan.resolution};
     const auto known = shared.find(key);
     if (!row.angle_noise && known != shared.end()) {
       row.beams = known->second.beams;
@@ -86,16 +83,16 @@ RayCaster::Tables::Tables(const SensorContext& context, const world::World& worl
 
 void RayCaster::Tables::plan(const world::World& world) {
   std::vector<std::size_t> beams(world.movers.size(), 0);
-  for (const Scanner& scanner : scanners) beams[scanner.mover] += scanner.laser.samples / scanner.laser.resolution;
+  for (const Scanner& scanner : scanners) beams[scanner.mover] += scanner.scan.samples / scanner.scan.resolution;
   for (const Scanner& scanner : scanners) {
     ScannerRow row;
-    row.plan = plan_beams(scanner.laser, noise);
-    row.height = world.movers[scanner.mover].X_WM.z + scanner.laser.X_MS.z;
-    const double turn = noise ? kMaxSigmas * scanner.laser.noise.angle_sigma : 0.0;
-    const ListConfig config{row.height, scanner.laser.range_max, row.plan.spread, scanner.laser.fov + 2.0 * turn,
+    row.plan = plan_beams(scanner.scan, noise);
+    row.height = world.movers[scanner.mover].X_WM.z + scanner.scan.X_MS.z;
+    const double turn = noise ? kMaxSigmas * scanner.scan.noise.angle_sigma : 0.0;
+    const ListConfig config{row.height, scanner.scan.range_max, row.plan.spread, scanner.scan.fov + 2.0 * turn,
                             static_cast<std::uint32_t>(std::min<std::size_t>(beams[scanner.mover], 1'000'000))};
     row.config = configs.add(config);
-    row.angle_noise = noise && scanner.laser.noise.angle_sigma > 0.0;
+    row.angle_noise = noise && scanner.scan.noise.angle_sigma > 0.0;
     any_angle_noise = any_angle_noise || row.angle_noise;
     row.out = out_lanes;
     out_lanes += row.plan.lanes();
@@ -113,11 +110,13 @@ void RayCaster::Tables::make_tables(gpu::Device& device, std::size_t largest_buf
         std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, gpu::texels_of<RayRow>(count));
   mid_bearings =
       std::make_unique<gpu::Buffer>(device, "middles of lanes", Role::upload, Texel::f32, std::size_t{beam_lanes} + 1);
-  directions64 = std::make_unique<gpu::Buffer>(device, "beams in 64 bits", Role::upload, Texel::u32x4,
-                                               4 * std::size_t{beam_lanes} + 4);
+  directions64 =
+      std::make_unique<gpu::Buffer>(device, "beams in 64 bits", Role::upload, Texel::u32x4,
+                                    gpu::texels_of<BeamDirection>(SF_BEAMS_PER_LANE * (std::size_t{beam_lanes} + 1)));
   const std::size_t results = std::size_t{out_lanes} + std::max(spare_lanes, 1u);
-  ranges = std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4, 2 * results);
-  hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, results);
+  ranges = std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4,
+                                         gpu::texels_of<LaneRanges>(results));
+  hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, gpu::texels_of<LaneHits>(results));
   beam_flags = std::make_unique<gpu::Buffer>(device, "verdicts", Role::download, Texel::u32, results);
   texel_results = !ranges->fits_storage_buffer() || ranges->bytes() > largest_buffer;
   make_pass(device, exact, false);
@@ -129,9 +128,7 @@ void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool 
   using gpu::Role;
   using gpu::Texel;
   // Lanes are padded to whole groups, and large numbers of groups to whole rows of groups.
-  const std::size_t most_groups = out_lanes / lanes_per_group + 1;
-  const std::size_t padded =
-      (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * lanes_per_group;
+  const std::size_t padded = gpu::most_groups_for(out_lanes, SF_LANES_PER_GROUP) * SF_LANES_PER_GROUP;
   pass.lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
   pass.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
   if (!scene) return;
@@ -146,7 +143,7 @@ void RayCaster::Tables::write_all_beams() {
   for (std::size_t i = 0; i < scanners.size(); ++i) {
     const ScannerRow& row = scanner_rows[i];
     if (row.beams < written) continue;
-    write_beams(scanners[i].laser, row.plan, {}, beam_tables(row.beams));
+    write_beams(scanners[i].scan, row.plan, {}, beam_tables(row.beams));
     written += row.plan.lanes();
   }
 }
@@ -156,9 +153,9 @@ void RayCaster::Tables::apply_angle_noise(const DueSample& d, unsigned thread) {
   const ScannerRow& row = scanner_rows[d.row];
   std::vector<double>& angle_noise = angle_offsets[thread];
   angle_noise.resize(row.plan.samples.size());
-  draw_angle_noise(scanner.laser, row.plan,
+  draw_angle_noise(scanner.scan, row.plan,
                    {seed, base::RandomStream::angle_noise, scanner.mover, scanner.sensor, d.sequence}, angle_noise);
-  write_beams(scanner.laser, row.plan, angle_noise, beam_tables(row.beams));
+  write_beams(scanner.scan, row.plan, angle_noise, beam_tables(row.beams));
 }
 
 void RayCaster::Tables::write_lanes() {
@@ -180,33 +177,25 @@ void RayCaster::Tables::write_lanes(CastDispatch& pass, bool is_single) {
     if (scanners[due[i].row].single != is_single) continue;
     for (std::uint32_t lane = 0; lane < scanner_rows[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
   }
-  const auto due_lanes = static_cast<std::uint32_t>(at);
-  const std::uint32_t group = lanes_per_group;
-  const std::uint32_t needed = (due_lanes + group - 1) / group;
-  const std::uint32_t across = std::min(needed, kGroupsAcross);
-  const std::uint32_t down = across > 0 ? (needed + across - 1) / across : 0;
+  const gpu::GroupCounts groups = gpu::groups_for(at, SF_LANES_PER_GROUP);
   // Padding repeats the last lane; its results are written repeatedly with equal values.
   const Lane last = at > 0 ? table[at - 1] : Lane{0, 0};
-  std::fill(table.begin() + static_cast<std::ptrdiff_t>(at), table.begin() + std::ptrdiff_t{across} * down * group,
-            last);
-  const auto counts = pass.groups->host<std::uint32_t>();
-  counts[0] = across;
-  counts[1] = down;
-  counts[2] = across > 0 ? 1 : 0;
+  std::fill(table.begin() + static_cast<std::ptrdiff_t>(at),
+            table.begin() + static_cast<std::ptrdiff_t>(SF_LANES_PER_GROUP * groups.all()), last);
+  gpu::write_counts(groups, *pass.groups);
 }
 
 /// Makes the pattern of scanner `i` from its beam tables. @param angle_noise [rad] of each cast beam; empty: none
 void RayCaster::Tables::make_pattern(std::size_t i, std::span<const double> angle_noise, Scratch& own,
                                      ScanPattern& pattern) {
-  const world::Laser& laser = scanners[i].laser;
+  const ScanSettings& scan = scanners[i].scan;
   const ScannerRow& row = scanner_rows[i];
   const std::vector<std::uint32_t>& samples = row.plan.samples;
   own.bearings.resize(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k)
-    own.bearings[k] = world::bearing_of(laser, samples[k]) + (angle_noise.empty() ? 0.0 : angle_noise[k]);
+    own.bearings[k] = bearing_of(scan, samples[k]) + (angle_noise.empty() ? 0.0 : angle_noise[k]);
   pattern.assign(own.bearings, {beam_tables(row.beams).directions64, 8 * std::size_t{row.plan.lanes()}},
-                 world::bearing_of(laser, samples.front()), world::bearing_of(laser, samples.back()),
-                 row.plan.place(1));
+                 bearing_of(scan, samples.front()), bearing_of(scan, samples.back()), row.plan.place(1));
 }
 
 /// Poses of the due scanners [first, last): as base::compose, with one sine and cosine per mover.
@@ -216,7 +205,7 @@ void RayCaster::Tables::compute_viewpoints(std::size_t first, std::size_t last) 
   for (std::size_t i = first; i < last; ++i) {
     const Scanner& scanner = scanners[due[i].row];
     const ScannerRow& row = scanner_rows[due[i].row];
-    const Pose &X = states[scanner.mover].X_WM, &X_MS = scanner.laser.X_MS;
+    const Pose &X = states[scanner.mover].X_WM, &X_MS = scanner.scan.X_MS;
     if (scanner.mover != mover) turn = {std::cos(X.yaw), std::sin(X.yaw)};
     mover = scanner.mover;
     const double yaw = X.yaw + X_MS.yaw;
@@ -236,7 +225,7 @@ bool RayCaster::Tables::prepare() {
       const ScannerRow& row = scanner_rows[due[i].row];
       ray_rows[i].beams = row.beams;
       ray_rows[i].results = row.out;
-      ray_rows[i].range_min = scanners[due[i].row].laser.range_min;
+      ray_rows[i].range_min = scanners[due[i].row].scan.range_min;
     }
   });
   return replaced;

@@ -42,7 +42,6 @@ struct CastDispatch {
 };
 
 struct RayCaster::Tables {
-  std::uint32_t lanes_per_group;  ///< workgroup size of all dispatches over lanes
   base::ThreadPool& thread_pool;
   std::span<const base::Report> states;  ///< of all movers, in this tick
   std::uint64_t seed;

@@ -21,7 +21,7 @@ SharedPattern merge(std::span<const Scanner> scanners, std::span<const BeamPlan*
     const std::vector<std::uint32_t>& samples = plans[f]->samples;
     for (std::uint32_t k = 0; k < samples.size(); ++k) {
       const double bearing =
-          scanners[f].laser.X_MS.yaw - scanners[0].laser.X_MS.yaw + world::bearing_of(scanners[f].laser, samples[k]);
+          scanners[f].scan.X_MS.yaw - scanners[0].scan.X_MS.yaw + bearing_of(scanners[f].scan, samples[k]);
       beams.push_back({base::wrap_angle(bearing), {f, k, static_cast<std::uint32_t>(beams.size())}});
     }
   }
@@ -42,7 +42,7 @@ SharedPattern merge(std::span<const Scanner> scanners, std::span<const BeamPlan*
 }  // namespace
 
 bool same_viewpoint(const Scanner& p, const Scanner& q) {
-  const world::Laser &a = p.laser, &b = q.laser;
+  const ScanSettings &a = p.scan, &b = q.scan;
   return p.mover == q.mover && p.single == q.single && a.X_MS.x == b.X_MS.x && a.X_MS.y == b.X_MS.y &&
          a.X_MS.z == b.X_MS.z && a.range_max == b.range_max && a.range_min == b.range_min;
 }
@@ -50,8 +50,8 @@ bool same_viewpoint(const Scanner& p, const Scanner& q) {
 bool SharedViews::add(std::uint32_t first, std::span<const Scanner> scanners, std::span<const BeamPlan* const> plans) {
   std::vector<double> key;
   for (const Scanner& scanner : scanners)
-    key.insert(key.end(), {scanner.laser.X_MS.yaw, scanner.laser.fov, static_cast<double>(scanner.laser.samples),
-                           static_cast<double>(scanner.laser.resolution)});
+    key.insert(key.end(), {scanner.scan.X_MS.yaw, scanner.scan.fov, static_cast<double>(scanner.scan.samples),
+                           static_cast<double>(scanner.scan.resolution)});
   const auto [known, fresh] = known_.try_emplace(std::move(key), static_cast<std::uint32_t>(patterns_.size()));
   if (fresh) patterns_.push_back(merge(scanners, plans));
   if (patterns_[known->second].beams.slack > kMaxSlack) return false;

@@ -16,11 +16,11 @@ double largest_x(const IndexedWall& s) { return std::max(s.a.x, s.b.x); }
 
 }  // namespace
 
-WallIndex::WallIndex(const world::World& world, double z) {
+WallIndex::WallIndex(std::span<const world::Segment> walls, double z) {
   std::vector<IndexedWall> visible;
   std::vector<base::Box> boxes;
-  for (std::uint32_t row = 0; row < world.walls.size(); ++row) {
-    const world::Segment& s = world.walls[row];
+  for (std::uint32_t row = 0; row < walls.size(); ++row) {
+    const world::Segment& s = walls[row];
     if (!s.seen_by_laser || z < s.z_min || z >= s.z_max) continue;
     visible.push_back({s.a, s.b, row, s.solid_left});
     boxes.push_back(base::box_of(s.a, s.b));

@@ -2,6 +2,7 @@
 // Spatial index of the walls that beams at one height can meet.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/box_tree.h"
@@ -9,7 +10,7 @@
 
 namespace sf::raycast {
 
-/// A visible segment; `row` is its row in `World::walls`.
+/// A visible segment; `row` is its row among all walls.
 struct IndexedWall {
   glm::dvec2 a;
   glm::dvec2 b;
@@ -20,8 +21,8 @@ struct IndexedWall {
 /// Immutable after construction and thread-safe.
 class WallIndex {
  public:
-  /// Indexes the walls visible at height `z` [m]. `world` need not outlive it.
-  WallIndex(const world::World& world, double z);
+  /// Indexes the walls visible at height `z` [m]. They need not outlive it.
+  WallIndex(std::span<const world::Segment> walls, double z);
 
   const std::vector<IndexedWall>& segments() const { return segments_; }
 

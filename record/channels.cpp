@@ -44,13 +44,13 @@ void add_motion(McapWriter& mcap, const RunInfo& info, Channels& channels) {
 void add_readings(McapWriter& mcap, const RunInfo& info, Channels& channels) {
   const std::uint16_t scan = add_schema(mcap, kLaserScan);
   std::map<std::uint8_t, std::uint16_t> schemas;  // by sensor type
-  for (const SensorTypeInfo& kind : info.sensor_types)
-    schemas[kind.id] = kind.is_scan ? scan : mcap.add_schema(type_of(kind), "ros2msg", schema_text(kind));
+  for (const SensorTypeInfo& type : info.sensor_types)
+    schemas[type.id] = type.is_scan ? scan : mcap.add_schema(type_of(type), "ros2msg", schema_text(type));
   for (std::size_t row = 0; row < info.movers.size(); ++row) {
     const MoverInfo& mover = info.movers[row];
     for (std::size_t i = 0; i < mover.sensors.size(); ++i)
       channels.movers[row].sensors[i].channel =
-          mcap.add_channel(schemas.at(mover.sensors[i].kind), mover.sensors[i].topic, "cdr", kPlain);
+          mcap.add_channel(schemas.at(mover.sensors[i].type), mover.sensors[i].topic, "cdr", kPlain);
   }
 }
 
@@ -58,7 +58,7 @@ void add_frames(const RunInfo& info, Channels& channels) {
   for (const MoverInfo& mover : info.movers) {
     MoverChannels& row = channels.movers.emplace_back();
     for (const SensorInfo& sensor : mover.sensors)
-      row.sensors.push_back({0, find_sensor_type(info, sensor.kind), header_of(sensor)});
+      row.sensors.push_back({0, find_sensor_type(info, sensor.type), header_of(sensor)});
   }
 }
 

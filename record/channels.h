@@ -12,7 +12,7 @@ namespace sf::record {
 
 struct SensorChannel {
   std::uint16_t channel = 0;             ///< 0: readings are not recorded
-  const SensorTypeInfo* kind = nullptr;  ///< row of `RunInfo::sensor_types`
+  const SensorTypeInfo* type = nullptr;  ///< row of `RunInfo::sensor_types`
   Scan header;                           ///< `frame` of every type; of scans, all but time and ranges
 };
 

@@ -1,8 +1,8 @@
 #include "record/fleet_message.h"
 
 #include "base/error.h"
-#include "base/time.h"
 #include "record/cdr.h"
+#include "record/ros_messages.h"
 
 namespace sf::record {
 
@@ -19,15 +19,12 @@ void get_twist(CdrReader& cdr, base::Twist& twist) {
 }  // namespace
 
 void encode_fleet(const base::TickRecord& record, base::Bytes& out) {
-  SF_CHECK(record.time >= 0, "time " + std::to_string(record.time) + " ns");
   const std::size_t count = record.reports.size();
   SF_CHECK(record.commands.empty() || record.commands.size() == count, std::to_string(record.commands.size()));
   SF_CHECK(record.contacts.empty() || record.contacts.size() == count, std::to_string(record.contacts.size()));
 
   CdrWriter cdr(out);
-  cdr.put(static_cast<std::int32_t>(record.time / base::kSecond));
-  cdr.put(static_cast<std::uint32_t>(record.time % base::kSecond));
-  cdr.put("world");
+  put_header(cdr, record.time, "world");
   cdr.put(record.tick);
   cdr.put_count(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -43,9 +40,7 @@ void encode_fleet(const base::TickRecord& record, base::Bytes& out) {
 bool decode_fleet(std::span<const std::uint8_t> message, FleetState& fleet) {
   constexpr std::size_t kLeastState = 85;  // [byte]
   CdrReader cdr(message);
-  fleet.time = cdr.get<std::int32_t>() * base::kSecond;
-  fleet.time += cdr.get<std::uint32_t>();
-  cdr.get_string();  // frame
+  get_header(cdr, fleet.time);
   fleet.tick = cdr.get<std::uint64_t>();
   fleet.states.resize(cdr.get_count(kLeastState));
   for (MoverState& state : fleet.states) {

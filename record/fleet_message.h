@@ -7,7 +7,7 @@
 
 #include "base/bytes.h"
 #include "base/pose.h"
-#include "base/sink.h"
+#include "base/tick_record.h"
 
 namespace sf::record {
 

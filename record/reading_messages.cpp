@@ -4,8 +4,8 @@
 #include <cctype>
 
 #include "base/error.h"
-#include "base/time.h"
 #include "record/cdr.h"
+#include "record/ros_messages.h"
 #include "record/schemas.h"
 
 namespace sf::record {
@@ -14,11 +14,11 @@ namespace {
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-std::string field_of(const SensorTypeInfo& kind, const ColumnInfo& column) {
+std::string field_of(const SensorTypeInfo& sensor_type, const ColumnInfo& column) {
   std::string name = column.name;
   std::transform(name.begin(), name.end(), name.begin(), lower);
   std::string type = column.whole ? "uint32" : "float64";
-  if (!kind.list.empty()) {
+  if (!sensor_type.list.empty()) {
     type += "[]";
   } else if (column.width > 1) {
     type += "[" + std::to_string(column.width) + "]";
@@ -39,67 +39,63 @@ void put_number(CdrWriter& cdr, const ColumnInfo& column, double value) {
 }
 
 /// Whether a message can hold that many elements: a number takes at least four bytes.
-bool fits(const SensorTypeInfo& kind, std::size_t elements, std::size_t message) {
-  return elements <= message && element_width(kind) * elements <= message / 4;
+bool fits(const SensorTypeInfo& sensor_type, std::size_t elements, std::size_t message) {
+  return elements <= message && element_width(sensor_type) * elements <= message / 4;
 }
 
 }  // namespace
 
-std::string type_of(const SensorTypeInfo& kind) {
-  if (kind.is_scan) return std::string(kLaserScan);
-  std::string name = kind.name;
+std::string type_of(const SensorTypeInfo& sensor_type) {
+  if (sensor_type.is_scan) return std::string(kLaserScan);
+  std::string name = sensor_type.name;
   if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   return "sensorfarm_msgs/msg/" + name;
 }
 
-std::string schema_text(const SensorTypeInfo& kind) {
+std::string schema_text(const SensorTypeInfo& sensor_type) {
   std::string fields = "std_msgs/Header header\n";
-  for (const ColumnInfo& column : kind.columns) fields += field_of(kind, column);
+  for (const ColumnInfo& column : sensor_type.columns) fields += field_of(sensor_type, column);
   return with_dependencies(fields);
 }
 
-std::size_t element_width(const SensorTypeInfo& kind) {
+std::size_t element_width(const SensorTypeInfo& sensor_type) {
   std::size_t width = 0;
-  for (const ColumnInfo& column : kind.columns) width += column.width;
+  for (const ColumnInfo& column : sensor_type.columns) width += column.width;
   return width;
 }
 
-void encode_reading(const SensorTypeInfo& kind, std::int64_t time, std::string_view frame,
+void encode_reading(const SensorTypeInfo& sensor_type, std::int64_t time, std::string_view frame,
                     std::span<const double> values, base::Bytes& out) {
-  SF_CHECK(time >= 0, "time " + std::to_string(time) + " ns");
-  const std::size_t width = element_width(kind);
+  const std::size_t width = element_width(sensor_type);
   const bool whole = width > 0 && values.size() % width == 0;
-  SF_CHECK(whole && (!kind.list.empty() || values.size() == width),
-           std::to_string(values.size()) + " values in a reading of kind " + kind.name);
+  SF_CHECK(whole && (!sensor_type.list.empty() || values.size() == width),
+           std::to_string(values.size()) + " values in a reading of type " + sensor_type.name);
 
   CdrWriter cdr(out);
-  cdr.put(static_cast<std::int32_t>(time / base::kSecond));
-  cdr.put(static_cast<std::uint32_t>(time % base::kSecond));
-  cdr.put(frame);
+  put_header(cdr, time, frame);
   const std::size_t elements = values.size() / width;
   std::size_t first = 0;
-  for (const ColumnInfo& column : kind.columns) {
-    if (!kind.list.empty()) cdr.put_count(elements * column.width);
+  for (const ColumnInfo& column : sensor_type.columns) {
+    if (!sensor_type.list.empty()) cdr.put_count(elements * column.width);
     for (std::size_t i = 0; i < elements; ++i)
       for (std::size_t k = 0; k < column.width; ++k) put_number(cdr, column, values[width * i + first + k]);
     first += column.width;
   }
 }
 
-bool decode_reading(const SensorTypeInfo& kind, std::span<const std::uint8_t> message, std::int64_t& time,
+bool decode_reading(const SensorTypeInfo& sensor_type, std::span<const std::uint8_t> message, std::int64_t& time,
                     std::vector<double>& values) {
   CdrReader cdr(message);
-  time = cdr.get<std::int32_t>() * base::kSecond;
-  time += cdr.get<std::uint32_t>();
-  cdr.get_string();  // frame
+  get_header(cdr, time);
 
-  const std::size_t width = element_width(kind);
+  const std::size_t width = element_width(sensor_type);
   std::size_t elements = 1;  // with a list: the length of its first array
   std::size_t first = 0;
-  for (const ColumnInfo& column : kind.columns) {
-    const std::size_t numbers = kind.list.empty() ? column.width : cdr.get_count(sizeof(std::uint32_t));
+  for (const ColumnInfo& column : sensor_type.columns) {
+    const std::size_t numbers = sensor_type.list.empty() ? column.width : cdr.get_count(sizeof(std::uint32_t));
     if (first == 0 && column.width > 0) elements = numbers / column.width;
-    if (column.width == 0 || numbers != elements * column.width || !fits(kind, elements, message.size())) return false;
+    if (column.width == 0 || numbers != elements * column.width || !fits(sensor_type, elements, message.size()))
+      return false;
     values.resize(elements * width);
     for (std::size_t i = 0; i < elements; ++i)
       for (std::size_t k = 0; k < column.width; ++k)

@@ -126,15 +126,15 @@ void Recorder::write_reading(const base::ReadingBlock& reading, std::int64_t tim
   SF_CHECK(reading.mover < channels_.movers.size(), "mover " + std::to_string(reading.mover));
   std::uint32_t before = 0;  // sensors of the same type before this one
   for (SensorChannel& sensor : channels_.movers[reading.mover].sensors) {
-    if (sensor.kind->id != reading.kind || before++ < reading.sensor) continue;
+    if (sensor.type->id != reading.type || before++ < reading.sensor) continue;
     message_.clear();
     sensor.header.time = reading.time;
-    sensor.kind->is_scan ? encode_scan(sensor.header, reading.values, message_)
-                         : encode_reading(*sensor.kind, reading.time, sensor.header.frame, reading.values, message_);
+    sensor.type->is_scan ? encode_scan(sensor.header, reading.values, message_)
+                         : encode_reading(*sensor.type, reading.time, sensor.header.frame, reading.values, message_);
     add(sensor.channel, reading.sequence, time, reading.time);
     return;
   }
-  SF_CHECK(false, "mover " + std::to_string(reading.mover) + " kind " + std::to_string(reading.kind) + " sensor " +
+  SF_CHECK(false, "mover " + std::to_string(reading.mover) + " type " + std::to_string(reading.type) + " sensor " +
                       std::to_string(reading.sensor));
 }
 

@@ -3,7 +3,7 @@
 //
 //   Recorder recorder(dir, info);           // world and run info are in the file, which has its final name
 //   for (...) recorder.write(tick_record);  // one chunk, one write(2)
-//   recorder.finish();                      // summary and indexes; throws when the disk failed
+//   recorder.finish();                      // summary and indexes
 //
 // A process killed at any time leaves a file with all ticks whose `write` returned.
 
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "base/sink.h"
+#include "base/tick_record.h"
 #include "record/channels.h"
 #include "record/mcap_writer.h"
 #include "record/recording_files.h"
@@ -22,7 +22,8 @@ namespace sf::record {
 /// One thread. A recording already in the directory is replaced in one step, once the new one contains its world.
 class Recorder : public base::Sink {
  public:
-  /// Creates the directory. Rule: `info.snapshot` is not empty; rates and interval are positive.
+  /// Creates the directory. Rule: `info.snapshot` is not empty; the interval and the rates of sensors are
+  /// positive; a rate of odometry of 0 leaves odometry out.
   /// @throws base::InputError when the directory cannot be written, another run is being recorded there, or the fleet
   /// has more topics than a file can hold.
   Recorder(const std::string& directory, RunInfo info);
@@ -34,7 +35,8 @@ class Recorder : public base::Sink {
   /// @throws base::InputError when the tick could not be written whole (a full disk). All earlier ticks are in the
   /// file; the recorder accepts no more.
   void write(const base::TickRecord& record) override;
-  /// Seals the file. Further calls do nothing. @throws base::InputError when that fails.
+  /// Seals the file. Further calls, and a call after a failed `write`, do nothing. @throws base::InputError when that
+  /// fails.
   void finish();
 
   const std::string& path() const { return file_.path(); }

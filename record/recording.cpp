@@ -19,7 +19,7 @@ namespace {
 /// The sensor of a topic.
 struct SensorTopic {
   std::uint32_t mover = 0;
-  const SensorTypeInfo* kind = nullptr;
+  const SensorTypeInfo* type = nullptr;
   std::uint32_t sensor = 0;  ///< 0-based among the mover's sensors of its type
 };
 using Topics = std::map<std::string, SensorTopic>;
@@ -62,8 +62,8 @@ Topics sensor_topics(const RunInfo& info) {
   for (std::uint32_t mover = 0; mover < info.movers.size(); ++mover) {
     std::map<std::uint8_t, std::uint32_t> before;  // by sensor type
     for (const SensorInfo& sensor : info.movers[mover].sensors) {
-      const SensorTypeInfo* kind = find_sensor_type(info, sensor.kind);
-      if (kind != nullptr) topics[sensor.topic] = {mover, kind, before[sensor.kind]++};
+      const SensorTypeInfo* type = find_sensor_type(info, sensor.type);
+      if (type != nullptr) topics[sensor.topic] = {mover, type, before[sensor.type]++};
     }
   }
   return topics;
@@ -91,10 +91,10 @@ bool read_scan(const McapMessage& message, ReadingSample& sample) {
 }
 
 bool read_reading(const McapMessage& message, const SensorTopic& topic, Recording& recording) {
-  ReadingSample sample{topic.mover, topic.kind->id, topic.sensor, message.sequence,
+  ReadingSample sample{topic.mover, topic.type->id, topic.sensor, message.sequence,
                        static_cast<std::int64_t>(message.log_time)};
-  if (!(topic.kind->is_scan ? read_scan(message, sample)
-                            : decode_reading(*topic.kind, message.data, sample.time, sample.values)))
+  if (!(topic.type->is_scan ? read_scan(message, sample)
+                            : decode_reading(*topic.type, message.data, sample.time, sample.values)))
     return false;
   recording.readings.push_back(std::move(sample));
   return true;
@@ -106,7 +106,7 @@ bool read_message(const McapMessage& message, std::string_view type, const std::
   if (type == kFleet) return read_fleet(message, fleet, recording);
   const auto found = topics.find(name);
   if (found == topics.end()) return type != kLaserScan;
-  return type == type_of(*found->second.kind) && read_reading(message, found->second, recording);
+  return type == type_of(*found->second.type) && read_reading(message, found->second, recording);
 }
 
 void read_messages(const McapContents& contents, Recording& recording) {

@@ -24,7 +24,7 @@ struct StateSample {
 /// One recorded reading.
 struct ReadingSample {
   std::uint32_t mover = 0;   ///< row in `RunInfo::movers`
-  std::uint8_t kind = 0;     ///< id of a row of `RunInfo::sensor_types`
+  std::uint8_t type = 0;     ///< id of a row of `RunInfo::sensor_types`
   std::uint32_t sensor = 0;  ///< 0-based among the mover's sensors of this type
   std::uint32_t sequence = 0;
   std::int64_t delivered = 0;  ///< [ns] simulated time of the tick of delivery

@@ -12,14 +12,20 @@ using base::Bytes;
 using base::Pose;
 using base::Twist;
 
-namespace {
-
 void put_header(CdrWriter& cdr, std::int64_t time, std::string_view frame) {
   SF_CHECK(time >= 0, "time " + std::to_string(time) + " ns");
   cdr.put(static_cast<std::int32_t>(time / base::kSecond));
   cdr.put(static_cast<std::uint32_t>(time % base::kSecond));
   cdr.put(frame);
 }
+
+std::string get_header(CdrReader& cdr, std::int64_t& time) {
+  time = cdr.get<std::int32_t>() * base::kSecond;
+  time += cdr.get<std::uint32_t>();
+  return cdr.get_string();
+}
+
+namespace {
 
 /// Position and the quaternion (x, y, z, w) of a turn about +z.
 void put_pose(CdrWriter& cdr, const Pose& pose) {
@@ -81,9 +87,7 @@ void encode_scan(const Scan& scan, std::span<const double> ranges, Bytes& out) {
 std::optional<Scan> decode_scan(std::span<const std::uint8_t> message) {
   CdrReader cdr(message);
   Scan scan;
-  scan.time = cdr.get<std::int32_t>() * base::kSecond;
-  scan.time += cdr.get<std::uint32_t>();
-  scan.frame = cdr.get_string();
+  scan.frame = get_header(cdr, scan.time);
   const auto angle_min = cdr.get<float>();
   scan.fov = cdr.get<float>() - angle_min;
   cdr.get<float>();  // angle_increment

@@ -11,8 +11,14 @@
 
 #include "base/bytes.h"
 #include "base/pose.h"
+#include "record/cdr.h"
 
 namespace sf::record {
+
+/// Time stamp and frame, the first fields of every message. @param time [ns] >= 0
+void put_header(CdrWriter& cdr, std::int64_t time, std::string_view frame);
+/// @param time out: [ns] @return the frame
+std::string get_header(CdrReader& cdr, std::int64_t& time);
 
 /// Pose of one frame in another.
 struct Transform {

@@ -42,12 +42,12 @@ void get_pose(CdrReader& cdr, base::Pose& pose) {
 
 const SensorTypeInfo kScans{1, "laser", "beams", {{"range_m"}}, true};
 
-void put_sensor_type(CdrWriter& cdr, const SensorTypeInfo& kind) {
-  cdr.put(kind.id);
-  cdr.put(std::string_view(kind.name));
-  cdr.put(std::string_view(kind.list));
-  cdr.put_count(kind.columns.size());
-  for (const ColumnInfo& column : kind.columns) {
+void put_sensor_type(CdrWriter& cdr, const SensorTypeInfo& type) {
+  cdr.put(type.id);
+  cdr.put(std::string_view(type.name));
+  cdr.put(std::string_view(type.list));
+  cdr.put_count(type.columns.size());
+  for (const ColumnInfo& column : type.columns) {
     cdr.put(std::string_view(column.name));
     cdr.put(column.width);
     cdr.put(column.whole);
@@ -56,21 +56,21 @@ void put_sensor_type(CdrWriter& cdr, const SensorTypeInfo& kind) {
 
 SensorTypeInfo get_sensor_type(CdrReader& cdr) {
   constexpr std::size_t kLeastColumn = 10;  // [byte]
-  SensorTypeInfo kind;
-  kind.id = cdr.get<std::uint8_t>();
-  kind.name = cdr.get_string();
-  kind.list = cdr.get_string();
-  kind.columns.resize(cdr.get_count(kLeastColumn));
-  for (ColumnInfo& column : kind.columns) {
+  SensorTypeInfo type;
+  type.id = cdr.get<std::uint8_t>();
+  type.name = cdr.get_string();
+  type.list = cdr.get_string();
+  type.columns.resize(cdr.get_count(kLeastColumn));
+  for (ColumnInfo& column : type.columns) {
     column.name = cdr.get_string();
     column.width = cdr.get<std::uint32_t>();
     column.whole = cdr.get<bool>();
   }
-  return kind;
+  return type;
 }
 
 void put_sensor(CdrWriter& cdr, const SensorInfo& sensor, bool is_scan) {
-  if (!is_scan) cdr.put(sensor.kind);
+  if (!is_scan) cdr.put(sensor.type);
   cdr.put(std::string_view(sensor.name));
   cdr.put(std::string_view(sensor.topic));
   put_pose(cdr, sensor.X_MS);
@@ -85,7 +85,7 @@ void put_sensor(CdrWriter& cdr, const SensorInfo& sensor, bool is_scan) {
 
 SensorInfo get_sensor(CdrReader& cdr, bool is_scan) {
   SensorInfo sensor;
-  sensor.kind = is_scan ? kScans.id : cdr.get<std::uint8_t>();
+  sensor.type = is_scan ? kScans.id : cdr.get<std::uint8_t>();
   sensor.name = cdr.get_string();
   sensor.topic = cdr.get_string();
   get_pose(cdr, sensor.X_MS);
@@ -100,9 +100,9 @@ SensorInfo get_sensor(CdrReader& cdr, bool is_scan) {
 }
 
 const SensorTypeInfo& type_of(const RunInfo& info, const SensorInfo& sensor) {
-  const SensorTypeInfo* kind = find_sensor_type(info, sensor.kind);
-  SF_CHECK(kind != nullptr, "sensor kind " + std::to_string(sensor.kind));
-  return *kind;
+  const SensorTypeInfo* type = find_sensor_type(info, sensor.type);
+  SF_CHECK(type != nullptr, "sensor type " + std::to_string(sensor.type));
+  return *type;
 }
 
 void put_mover(CdrWriter& cdr, const RunInfo& info, const MoverInfo& mover) {
@@ -132,8 +132,8 @@ MoverInfo get_mover(CdrReader& cdr) {
 }  // namespace
 
 const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id) {
-  for (const SensorTypeInfo& kind : info.sensor_types)
-    if (kind.id == id) return &kind;
+  for (const SensorTypeInfo& type : info.sensor_types)
+    if (type.id == id) return &type;
   return nullptr;
 }
 
@@ -143,9 +143,9 @@ void name_frames(RunInfo& info) {
     mover.frame = unique(ros_name(mover.name, "robot"), frames);
     Taken sensors = {{"odom", 2}, {"cmd_vel", 2}};
     for (SensorInfo& sensor : mover.sensors) {
-      const SensorTypeInfo& kind = type_of(info, sensor);
-      sensor.topic = "/" + mover.frame + "/" + unique(ros_name(sensor.name, kind.name), sensors) + "/" +
-                     (kind.is_scan ? "scan" : kind.name);
+      const SensorTypeInfo& type = type_of(info, sensor);
+      sensor.topic = "/" + mover.frame + "/" + unique(ros_name(sensor.name, type.name), sensors) + "/" +
+                     (type.is_scan ? "scan" : type.name);
     }
   }
 }
@@ -159,11 +159,11 @@ void encode_run_info(const RunInfo& info, base::Bytes& out) {
   cdr.put(info.interval);
   cdr.put(info.record_readings);
   cdr.put(info.odometry_rate);
-  const auto& kinds = info.sensor_types;
-  const auto is_scan = [](const SensorTypeInfo& kind) { return kind.is_scan; };
-  cdr.put_count(kinds.size() - static_cast<std::size_t>(std::count_if(kinds.begin(), kinds.end(), is_scan)));
-  for (const SensorTypeInfo& kind : kinds)
-    if (!kind.is_scan) put_sensor_type(cdr, kind);
+  const auto& types = info.sensor_types;
+  const auto is_scan = [](const SensorTypeInfo& type) { return type.is_scan; };
+  cdr.put_count(types.size() - static_cast<std::size_t>(std::count_if(types.begin(), types.end(), is_scan)));
+  for (const SensorTypeInfo& type : types)
+    if (!type.is_scan) put_sensor_type(cdr, type);
   cdr.put_count(info.movers.size());
   for (const MoverInfo& mover : info.movers) put_mover(cdr, info, mover);
   cdr.put_count(info.options.size());

@@ -21,7 +21,7 @@ struct ColumnInfo {
 
 /// A sensor type: the format of its readings.
 struct SensorTypeInfo {
-  std::uint8_t id = 0;              ///< `base::ReadingBlock::kind`
+  std::uint8_t id = 0;              ///< `base::ReadingBlock::type`
   std::string name;                 ///< one word of lower-case letters and digits
   std::string list;                 ///< name of its elements; empty: a reading is one row
   std::vector<ColumnInfo> columns;  ///< the values of a reading are element by element, in each in order of columns
@@ -29,7 +29,7 @@ struct SensorTypeInfo {
 };
 
 struct SensorInfo {
-  std::uint8_t kind = 0;  ///< id of a row of `RunInfo::sensor_types`
+  std::uint8_t type = 0;  ///< id of a row of `RunInfo::sensor_types`
   std::string name;
   std::string topic;   ///< of its readings; set by the recorder
   base::Pose X_MS;     ///< sensor in the mover's frame

@@ -3,8 +3,9 @@
 //
 //   Fleet fleet(world);
 //   fleet.move(commands, interval);            // simulated, or
-//   fleet.apply(reports);                      // from outside
 //   farm.tick(now, fleet.reports()); ... fleet.contacts();
+//   fleet.apply(reports);                      // from outside
+//   farm.tick(now, fleet.predict(now));
 //
 // `move` resolves conflicts in at most Fleet::kRounds rounds of two phases:
 //
@@ -12,7 +13,7 @@
 //              begin of the round. In front of a mover that may still go on it waits with the rest of its way.
 //   2 resolve  A mover whose proposed way meets the proposed place of a mover with a smaller id stays where it was.
 //
-// The next round is for movers that wait or stayed and have a mover near them that moved or stayed. In the last round
+// The next round is for movers that wait or stayed where they or a mover near them moved or stayed. In the last round
 // no mover waits: a mover whose step is still refused stands, and turns where it can. Each round thus has the result of
 // movers that go one after another in order of ids (robots, then tags), and no mover overlaps another that it did not
 // overlap before. A mover's result depends only on the movers near it (within kRounds times the ways of both), not on
@@ -48,7 +49,7 @@ class Fleet {
   /// @param thread_pool shares the work of `move` and `predict`, with the same results; null: the caller's thread alone
   explicit Fleet(const world::World& world, base::ThreadPool* thread_pool = nullptr);
 
-  /// Simulates `dt` [ns] > 0. A command passes the mover's driver model, then the limits of its drive and of its
+  /// Simulates `dt` [ns] > 0. A command passes the mover's actuator model, then the limits of its drive and of its
   /// accelerations from its current velocity. Motion is tested in substeps no longer than `Footprint::step`. A substep
   /// that would make the outline touch a wall or another mover is refused: the mover goes only to within 0.5 mm of the
   /// contact and then stops. A stopped mover may still turn in place (a car may not), and for that may push itself off
@@ -68,7 +69,7 @@ class Fleet {
   /// @return number of accepted reports
   std::size_t apply(std::span<const base::Report> reports);
 
-  /// An absent mover touches no other mover until it is set present again.
+  /// Until it is set present again, no mover meets an absent one, and `predict` gives it no contacts.
   void set_absent(std::uint32_t row, bool gone) { absent_[row] = gone ? 1 : 0; }
 
   /// One per mover, in order of rows: the newest state. Yaw is in [-pi, pi] after `move`, as reported after `apply`.

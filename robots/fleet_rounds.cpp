@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "robots/driver_model.h"
+#include "robots/actuator_model.h"
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
 
@@ -21,7 +21,7 @@ bool moves(const Twist& v) { return v.forward != 0.0 || v.left != 0.0 || v.turn 
 void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scratch& scratch) {
   const world::Mover& mover = world_.movers[row];
   const Footprint& outline = footprints_[row];
-  const Twist wanted = limit_kinematics(mover, apply_driver(mover, command));
+  const Twist wanted = limit_kinematics(mover, apply_actuator_model(mover, command));
   const Twist v = limit_acceleration(mover, reports_[row].velocity, wanted, seconds);
   progress_[row] = proposed_[row] = {reports_[row].X_WM, v, moves(v) ? seconds : 0.0, false};
   waiting_[row] = moves(v) ? 1 : 0;

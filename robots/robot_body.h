@@ -47,8 +47,8 @@ class RobotBody {
   };
   const TrailPoint& trail_point(std::size_t back) const { return trail_[(moves_ - back) % trail_.size()]; }
 
-  world::World world_;  ///< a copy: other robots move with their reported velocities, without driver model or limits of
-                        ///< acceleration
+  world::World world_;  ///< a copy: other robots move with their reported velocities, without actuator model or limits
+                        ///< of acceleration
   Fleet fleet_;
   std::uint32_t mover_;
   std::int64_t forget_;                ///< [ns]; 0: never

@@ -43,10 +43,10 @@ const std::vector<Test>& tests() {
   return kTests;
 }
 
-const sensors::SensorType& kind_called(std::string_view name) {
-  const auto kinds = sensors::sensor_types();
-  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const auto* kind) { return kind->name == name; });
-  SF_CHECK(found != kinds.end(), "no kind " + std::string(name));
+const sensors::SensorType& type_called(std::string_view name) {
+  const auto types = sensors::sensor_types();
+  const auto found = std::find_if(types.begin(), types.end(), [&](const auto* type) { return type->name == name; });
+  SF_CHECK(found != types.end(), "no type " + std::string(name));
   return **found;
 }
 
@@ -110,7 +110,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Outcom
     text += maps ? fmt::format("| {} | {:.3f} % | {:.3f} % | {}", o.mode, 100.0 * o.missed, 100.0 * o.wrong, end)
                  : fmt::format("| {} | {:.4f} | {:.4f} | {}", o.mode, o.abs_error, o.max_error, end);
   }
-  return text + fmt::format("\n## What it shows\n\n{}\n", context.kind.reasons);
+  return text + fmt::format("\n## What it shows\n\n{}\n", context.type.reasons);
 }
 
 /// A panel of one test, with the modes along the axis in their order.
@@ -154,7 +154,7 @@ std::vector<std::string> run_accuracy(const ExperimentContext& context) {
     scenario.plant = context.scenario.plant;
     const world::World world = world_of(scenario);
     VisibleArea reference(world);
-    const auto modes = kind_called(test.sensor).modes;
+    const auto modes = type_called(test.sensor).modes;
     for (const sensors::AccuracyMode& mode : modes) {
       if (context.progress) context.progress(done, fmt::format("{}, {}", test.name, mode.word));
       outcomes.push_back(measure(context, test, scenario, mode.word, reference));

@@ -10,6 +10,7 @@
 #include "control/explore.h"
 #include "maps/grid_update.h"
 #include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 #include "world/wall_tree.h"
 
 namespace sf::scenarios {
@@ -19,6 +20,8 @@ namespace {
 using base::Pose;
 using maps::Cell;
 using maps::CellAt;
+using sensors::lasers_of;
+using sensors::LaserSettings;
 
 constexpr int kHeadings = 16;
 constexpr std::uint32_t kBeams = 361;
@@ -93,7 +96,7 @@ struct Viewpoint {
 
 std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry) {
   const world::Mover& robot = world.movers[mover];
-  const world::Laser& laser = robot.lasers[0];
+  const LaserSettings laser = lasers_of(robot)[0];
   const double z = robot.X_WM.z + laser.X_MS.z;
   const auto walls = walls_where(
       world, [](const world::Segment& w) { return w.seen_by_laser; }, z, z);
@@ -117,7 +120,7 @@ std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover,
 
 maps::OccupancyGrid scans_from(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry,
                                const std::vector<Viewpoint>& viewpoints) {
-  const world::Laser& laser = world.movers[mover].lasers[0];
+  const LaserSettings laser = lasers_of(world.movers[mover])[0];
   maps::OccupancyGrid grid(geometry);
   std::vector<double> ranges(kBeams);
   const std::vector<glm::dvec2> beams = maps::beam_directions(laser.fov, kBeams);
@@ -131,7 +134,7 @@ maps::OccupancyGrid scans_from(const world::World& world, std::uint32_t mover, c
 }
 
 /// The point is in range and field of view of the laser and not occluded.
-bool sees(const Viewpoint& viewpoint, const Pose& X_WS, const world::Laser& laser, glm::dvec2 p) {
+bool sees(const Viewpoint& viewpoint, const Pose& X_WS, const LaserSettings& laser, glm::dvec2 p) {
   const glm::dvec2 d = base::rotate(-X_WS.yaw, p - glm::dvec2{X_WS.x, X_WS.y});
   const double far = glm::length(d);
   if (far >= laser.range_max || std::abs(std::atan2(d.y, d.x)) > 0.5 * laser.fov) return false;
@@ -143,7 +146,7 @@ bool sees(const Viewpoint& viewpoint, const Pose& X_WS, const world::Laser& lase
 /// Free cells whose centre is visible from no pose become unexplored: their line was rounded past a corner.
 void forget_hidden(const world::World& world, std::uint32_t mover, const std::vector<Viewpoint>& viewpoints,
                    maps::OccupancyGrid& grid) {
-  const world::Laser& laser = world.movers[mover].lasers[0];
+  const LaserSettings laser = lasers_of(world.movers[mover])[0];
   const double reach = laser.range_max + std::hypot(laser.X_MS.x, laser.X_MS.y);
   std::vector<CellAt> open;
   for (std::int64_t row = 0; row < maps::rows(grid.geometry); ++row)
@@ -162,17 +165,18 @@ void forget_hidden(const world::World& world, std::uint32_t mover, const std::ve
 }  // namespace
 
 RobotMap::RobotMap(const world::World& world, std::uint32_t mover, double cell)
-    : world_(world), mover_(mover), grid_(plan_over(world, cell)) {
-  SF_CHECK(!world.movers[mover].lasers.empty(), "a map needs a laser: " + world.movers[mover].name);
-  const world::Laser& laser = world.movers[mover].lasers[0];
-  beams_ = maps::beam_directions(laser.fov, laser.samples);
+    : mover_(mover), grid_(plan_over(world, cell)) {
+  const std::vector<LaserSettings> lasers = lasers_of(world.movers[mover]);
+  SF_CHECK(!lasers.empty(), "a map needs a laser: " + world.movers[mover].name);
+  beams_ = maps::beam_directions(lasers[0].fov, lasers[0].samples);
+  range_min_ = lasers[0].range_min;
+  range_max_ = lasers[0].range_max;
 }
 
 void RobotMap::add(const base::ReadingBlock& reading) {
-  if (reading.mover != mover_ || reading.kind != sensors::kLaser || reading.sensor != 0) return;
-  const world::Laser& laser = world_.movers[mover_].lasers[0];
+  if (reading.mover != mover_ || reading.type != sensors::kLaser || reading.sensor != 0) return;
   if (reading.values.size() != beams_.size()) return;
-  maps::add_scan(grid_, {reading.X_WS, reading.values, beams_, laser.range_min, laser.range_max});
+  maps::add_scan(grid_, {reading.X_WS, reading.values, beams_, range_min_, range_max_});
 }
 
 void add_scans(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, RobotMap>& maps) {
@@ -182,7 +186,7 @@ void add_scans(std::span<const base::ReadingBlock> readings, std::map<std::uint3
 }
 
 maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry) {
-  SF_CHECK(!world.movers[mover].lasers.empty(), "nothing is seen without a laser: " + world.movers[mover].name);
+  SF_CHECK(!lasers_of(world.movers[mover]).empty(), "nothing is seen without a laser: " + world.movers[mover].name);
   const std::vector<Viewpoint> viewpoints = stands_of(world, mover, geometry);
   maps::OccupancyGrid grid = scans_from(world, mover, geometry, viewpoints);
   forget_hidden(world, mover, viewpoints, grid);

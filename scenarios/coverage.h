@@ -28,10 +28,10 @@ class RobotMap {
   const maps::OccupancyGrid& grid() const { return grid_; }
 
  private:
-  const world::World& world_;
   std::uint32_t mover_;
   maps::OccupancyGrid grid_;
   std::vector<glm::dvec2> beams_;
+  double range_min_ = 0.0, range_max_ = 0.0;  ///< [m]
 };
 
 /// Adds each scan to the map of its mover, if there is one. @param maps by row of the mover

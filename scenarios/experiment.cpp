@@ -32,22 +32,22 @@ std::span<const ExperimentType* const> experiments() {
 }
 
 const ExperimentType* find_experiment(std::string_view name) {
-  for (const ExperimentType* kind : experiments())
-    if (kind->name == name) return kind;
+  for (const ExperimentType* type : experiments())
+    if (type->name == name) return type;
   return nullptr;
 }
 
-std::vector<std::string> run_experiment(const ExperimentType& kind, const ExperimentOptions& options,
+std::vector<std::string> run_experiment(const ExperimentType& type, const ExperimentOptions& options,
                                         gpu::Device& device,
                                         const std::function<void(double, const std::string&)>& progress) {
   Scenario scenario = read_scenario((std::filesystem::path(options.folder) /
-                                     (std::string(kind.scenario.empty() ? kind.name : kind.scenario) + ".toml"))
+                                     (std::string(type.scenario.empty() ? type.name : type.scenario) + ".toml"))
                                         .string());
-  scenario.plant = options.plant ? *options.plant : scenario.plant ? *scenario.plant : kind.plant;
+  scenario.plant = options.plant ? *options.plant : scenario.plant ? *scenario.plant : type.plant;
   make_folder(options.out);
   const std::vector<world::Warning> warnings = check_scenario(scenario);
   if (options.warn) options.warn(scenario.world, warnings);
-  return kind.run({kind, scenario, options, device, progress});
+  return type.run({type, scenario, options, device, progress});
 }
 
 std::vector<Trial> run_trials(const ExperimentContext& context, const TrialOptions& options) {

@@ -30,7 +30,7 @@ struct ExperimentType;
 
 /// Inputs of one experiment.
 struct ExperimentContext {
-  const ExperimentType& kind;
+  const ExperimentType& type;
   const Scenario& scenario;
   const ExperimentOptions& options;
   gpu::Device& device;
@@ -57,7 +57,7 @@ const ExperimentType* find_experiment(std::string_view name);
 /// @throws base::InputError for a folder that cannot be written or an invalid scenario
 /// @throws Interrupted when `options.stop` returns true; the recordings of complete trials remain, and no other file is
 /// written
-std::vector<std::string> run_experiment(const ExperimentType& kind, const ExperimentOptions& options,
+std::vector<std::string> run_experiment(const ExperimentType& type, const ExperimentOptions& options,
                                         gpu::Device& device,
                                         const std::function<void(double, const std::string&)>& progress);
 

@@ -31,8 +31,8 @@ class Drive {
   Drive(const world::World& world, gpu::Device& device, RecordedPaths paths, const farm::FarmOptions& options)
       : farm_(world, device, options), paths_(std::move(paths)), interval_(base::nanoseconds(world.interval)) {}
 
-  void subscribe(std::uint32_t kinds) {
-    for (std::uint32_t m = 0; m < paths_[0].size(); ++m) farm_.subscribe(m, kinds);
+  void subscribe(std::uint32_t types) {
+    for (std::uint32_t m = 0; m < paths_[0].size(); ++m) farm_.subscribe(m, types);
   }
   void tick(std::size_t at) {
     for (base::Report& state : paths_[at]) state.time = now_;
@@ -66,31 +66,31 @@ class Drive {
 };
 
 SensorTypeCost facts_of(const sensors::SensorSet::Group& group) {
-  SensorTypeCost kind;
-  kind.kind = group.kind->name;
-  kind.sensors = static_cast<std::uint32_t>(group.rows.size());
-  kind.least_rate = HUGE_VAL;
+  SensorTypeCost cost;
+  cost.type = group.type->name;
+  cost.sensors = static_cast<std::uint32_t>(group.rows.size());
+  cost.least_rate = HUGE_VAL;
   std::set<std::uint32_t> carriers;
   for (const sensors::SensorSpec& row : group.rows) {
     carriers.insert(row.mover);
-    kind.least_rate = std::min(kind.least_rate, row.rate);
-    kind.most_rate = std::max(kind.most_rate, row.rate);
+    cost.least_rate = std::min(cost.least_rate, row.rate);
+    cost.most_rate = std::max(cost.most_rate, row.rate);
   }
-  kind.robots = static_cast<std::uint32_t>(carriers.size());
-  return kind;
+  cost.robots = static_cast<std::uint32_t>(carriers.size());
+  return cost;
 }
 
-void add_held(const std::vector<gpu::DeviceAllocation>& held, SensorTypeCost& kind) {
+void add_held(const std::vector<gpu::DeviceAllocation>& held, SensorTypeCost& cost) {
   for (const gpu::DeviceAllocation& h : held) {
-    if (h.owner != kind.kind) continue;
+    if (h.owner != cost.type) continue;
     if (h.is_kernel) {
-      kind.kernels.push_back(h.name);
+      cost.kernels.push_back(h.name);
       continue;
     }
-    kind.tables.push_back(h);
-    kind.bytes += h.bytes;
+    cost.tables.push_back(h);
+    cost.bytes += h.bytes;
   }
-  std::stable_sort(kind.tables.begin(), kind.tables.end(),
+  std::stable_sort(cost.tables.begin(), cost.tables.end(),
                    [](const gpu::DeviceAllocation& a, const gpu::DeviceAllocation& b) { return a.bytes > b.bytes; });
 }
 
@@ -98,7 +98,7 @@ std::vector<WallSlice> slices_of(const world::World& world, const sensors::Senso
   std::map<double, std::uint32_t> heights;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
-      if (group.kind->is_scan) ++heights[world.movers[row.mover].X_WM.z + row.X_MS.z];
+      if (group.type->is_scan) ++heights[world.movers[row.mover].X_WM.z + row.X_MS.z];
   std::vector<WallSlice> slices;
   for (const auto& [z, sensors] : heights) {
     const auto seen = std::count_if(world.walls.begin(), world.walls.end(), [z = z](const world::Segment& s) {
@@ -122,8 +122,8 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   Explanation e;
   e.caster = raycast::describe_caster(device.info().software);
   double done = 0.0;
-  const auto step = [&](std::size_t kinds) {
-    if (progress) progress(++done / static_cast<double>(kinds + 3));
+  const auto step = [&](std::size_t types) {
+    if (progress) progress(++done / static_cast<double>(types + 3));
   };
   RecordedPaths paths = record_paths(world, device, kDriven, seed, threads);
   const auto start = Clock::now();
@@ -135,30 +135,30 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   e.first = base::seconds_since(first);
 
   farm.subscribe(0);
-  const std::size_t kinds = farm.sensor_set().groups().size();
-  step(kinds);
+  const std::size_t types = farm.sensor_set().groups().size();
+  step(types);
   e.silent = farm.laps();
-  step(kinds);
+  step(types);
   std::set<std::string_view> present;
   for (const sensors::SensorSet::Group& group : farm.sensor_set().groups()) {
-    present.insert(group.kind->name);
-    SensorTypeCost kind = facts_of(group);
-    const sensors::SensorType* const source = sensors::find_sensor_type(group.kind->derived_from);
-    if (source != nullptr) kind.source = source->name;
-    farm.subscribe(1u << group.kind->id | (source != nullptr ? 1u << source->id : 0u));
-    kind.tick = farm.laps();
-    kind.readings = farm.readings();
-    kind.reused = farm.again();
-    kind.work = farm.work();
-    e.kinds.push_back(std::move(kind));
-    step(kinds);
+    present.insert(group.type->name);
+    SensorTypeCost cost = facts_of(group);
+    const sensors::SensorType* const source = sensors::find_sensor_type(group.type->derived_from);
+    if (source != nullptr) cost.source = source->name;
+    farm.subscribe(1u << group.type->id | (source != nullptr ? 1u << source->id : 0u));
+    cost.tick = farm.laps();
+    cost.readings = farm.readings();
+    cost.reused = farm.again();
+    cost.work = farm.work();
+    e.types.push_back(std::move(cost));
+    step(types);
   }
   farm.subscribe(farm::kAllSensorTypes);
   e.all = farm.laps();
   e.ticks = farm.ticks();
-  for (SensorTypeCost& kind : e.kinds) add_held(device.allocations(), kind);
-  for (const sensors::SensorType* kind : sensors::sensor_types())
-    if (!present.contains(kind->name)) e.absent.emplace_back(kind->name);
+  for (SensorTypeCost& cost : e.types) add_held(device.allocations(), cost);
+  for (const sensors::SensorType* type : sensors::sensor_types())
+    if (!present.contains(type->name)) e.absent.emplace_back(type->name);
   e.slices = slices_of(world, farm.sensor_set());
   e.statements = sensors::accuracy_statements(world, farm.sensor_set());
   e.walls = world.walls.size();

@@ -14,7 +14,7 @@ namespace sf::scenarios {
 
 /// Cost of one sensor type of the world.
 struct SensorTypeCost {
-  std::string kind;
+  std::string type;
   std::uint32_t sensors = 0;
   std::uint32_t robots = 0;                  ///< number of robots with such sensors
   double least_rate = 0.0, most_rate = 0.0;  ///< [Hz]
@@ -37,7 +37,7 @@ struct WallSlice {
 
 struct Explanation {
   std::string caster;  ///< description of the ray caster
-  std::vector<SensorTypeCost> kinds;
+  std::vector<SensorTypeCost> types;
   std::vector<std::string> absent;                     ///< sensor types that the world does not have
   std::vector<WallSlice> slices;                       ///< by height of the lasers
   std::size_t walls = 0;                               ///< of the world

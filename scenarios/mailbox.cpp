@@ -7,16 +7,16 @@ namespace sf::scenarios {
 
 Mailbox::Slot& Mailbox::slot_of(const base::ReadingBlock& reading) {
   for (Slot& slot : slots_)
-    if (slot.kind == reading.kind && slot.sensor == reading.sensor) return slot;
+    if (slot.type == reading.type && slot.sensor == reading.sensor) return slot;
   Slot& slot = slots_.emplace_back();
-  slot.kind = reading.kind;
+  slot.type = reading.type;
   slot.sensor = reading.sensor;
   open_.reserve(slots_.size());
   return slot;
 }
 
 void Mailbox::send(const base::ReadingBlock& reading, std::int64_t now) {
-  const std::uint32_t stream = std::uint32_t{reading.kind} << 16 | reading.sensor;
+  const std::uint32_t stream = std::uint32_t{reading.type} << 16 | reading.sensor;
   const auto later = netio::sample_delay(link_, {robot_, stream, reading.sequence});
   if (!later) return;
   Slot& slot = slot_of(reading);
@@ -54,8 +54,8 @@ std::span<const base::ReadingBlock> Mailbox::receive(std::int64_t now) {
   return open_;
 }
 
-bool Mailbox::renewed(std::uint8_t kind) const {
-  return std::any_of(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.kind == kind && s.renewed; });
+bool Mailbox::renewed(std::uint8_t type) const {
+  return std::any_of(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.type == type && s.renewed; });
 }
 
 }  // namespace sf::scenarios

@@ -23,8 +23,8 @@ class Mailbox {
   /// overtaken by newer ones are dropped. Lives until the next call of `send` or `receive`.
   std::span<const base::ReadingBlock> receive(std::int64_t now);
 
-  /// True when the last `receive` delivered a reading of this kind that the previous call had not.
-  bool renewed(std::uint8_t kind) const;
+  /// True when the last `receive` delivered a reading of this type that the previous call had not.
+  bool renewed(std::uint8_t type) const;
 
  private:
   struct Kept {
@@ -35,7 +35,7 @@ class Mailbox {
     std::vector<std::uint32_t> hits;
   };
   struct Slot {
-    std::uint8_t kind = 0;
+    std::uint8_t type = 0;
     std::uint32_t sensor = 0;
     bool renewed = false;
     bool has = false;  ///< `shown` holds a reading

@@ -76,7 +76,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Mapped
     text += fmt::format("| {} | {} | {:.0f} | {} | {} | {} | {} | {:.0f} | {:.1f} | {} | {:.2f} % |\n", m.entrant,
                         m.trial, m.simulated, m.done ? "yes" : "no", m.contacts, m.interventions,
                         text_of(m.dead_ends, "-"), m.stuck, m.travelled, text_of(m.seen), 100.0 * m.wrong);
-  return text + fmt::format("\n## Beside the thesis\n\n{}\n", context.kind.reasons);
+  return text + fmt::format("\n## Beside the thesis\n\n{}\n", context.type.reasons);
 }
 
 Mapped mapped_of(const Entrant& entrant, std::uint32_t number, const Trial& trial,
@@ -103,7 +103,7 @@ void run_with(const ExperimentContext& context, const Entrant& entrant, std::vec
   scenario.actor.controller = entrant.controller;
   ExperimentOptions options = context.options;
   options.out = in_folder(context, entrant.name);
-  const ExperimentContext own{context.kind, scenario, options, context.device, context.progress};
+  const ExperimentContext own{context.type, scenario, options, context.device, context.progress};
   const std::vector<Trial> trials = run_trials(own, {.maps = true, .supervisor = entrant.supervisor});
   const world::World world = world_of(scenario);
   std::vector<viz::Track> tracks;

@@ -18,13 +18,13 @@ double allowed(const ModeResult& grade, const AccuracyTarget& target) {
 }
 
 /// Rows of `results` by sensor type, in order.
-std::vector<std::vector<std::size_t>> by_kind(const std::vector<ModeResult>& results) {
-  std::vector<std::vector<std::size_t>> kinds;
+std::vector<std::vector<std::size_t>> by_type(const std::vector<ModeResult>& results) {
+  std::vector<std::vector<std::size_t>> types;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    if (i == 0 || results[i].sensor != results[i - 1].sensor) kinds.emplace_back();
-    kinds.back().push_back(i);
+    if (i == 0 || results[i].sensor != results[i - 1].sensor) types.emplace_back();
+    types.back().push_back(i);
   }
-  return kinds;
+  return types;
 }
 
 /// The fastest mode within the error limit; `exact`, the first row, always qualifies.
@@ -50,16 +50,16 @@ std::size_t rank_of(const std::vector<ModeResult>& results, const std::vector<st
 struct Choice {
   std::vector<std::size_t> rows;
   double tick = 0.0;      ///< [s]
-  std::size_t ranks = 0;  ///< sum over kinds
+  std::size_t ranks = 0;  ///< sum over types
 };
 
 /// The most accurate combination that is fast enough, else the fastest one. Searches all combinations, at most a few
 /// hundred.
 std::vector<std::size_t> most_accurate(const std::vector<ModeResult>& results,
-                                       const std::vector<std::vector<std::size_t>>& kinds,
+                                       const std::vector<std::vector<std::size_t>>& types,
                                        const AccuracyTarget& target) {
   std::vector<Choice> choices(1);
-  for (const auto& rows : kinds) {
+  for (const auto& rows : types) {
     std::vector<Choice> longer;
     for (const Choice& choice : choices)
       for (const std::size_t row : rows) {
@@ -82,10 +82,10 @@ std::vector<std::size_t> most_accurate(const std::vector<ModeResult>& results,
 }  // namespace
 
 std::vector<std::size_t> select_modes(const std::vector<ModeResult>& results, const AccuracyTarget& target) {
-  const auto kinds = by_kind(results);
+  const auto types = by_type(results);
   std::vector<std::size_t> chosen;
-  for (const auto& rows : kinds) chosen.push_back(fastest_within(results, rows, target));
-  if (target.least_rate > 0.0) chosen = most_accurate(results, kinds, target);
+  for (const auto& rows : types) chosen.push_back(fastest_within(results, rows, target));
+  if (target.least_rate > 0.0) chosen = most_accurate(results, types, target);
   return chosen;
 }
 

@@ -76,7 +76,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Trial>
       "## Why ours and the thesis' differ\n\n{}\n\nMore in docs/experiments.md. `statistics.csv` has the numbers, "
       "`trial-<k>/` each run whole (`sensorfarm plot`).\n",
       context.scenario.name, setup_of(context, {}), table.number, table_of(statistics, table), ends,
-      context.kind.reasons);
+      context.type.reasons);
 }
 
 std::vector<std::string> run_path(const ExperimentContext& context) {

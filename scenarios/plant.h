@@ -1,5 +1,5 @@
 #pragma once
-// Driver models of an experiment.
+// Actuator models of an experiment.
 
 #include <cstdint>
 #include <optional>
@@ -7,10 +7,10 @@
 
 namespace sf::scenarios {
 
-/// Driver model between commands and wheels. See docs/experiments.md.
+/// Actuator model between commands and wheels. See docs/experiments.md.
 enum class Plant : std::uint8_t {
-  ideal,  ///< commands are executed unchanged (world::DriverModel::direct)
-  thesis  ///< Player's driver for the Create (world::DriverModel::player_create)
+  ideal,  ///< commands are executed unchanged (world::ActuatorModel::direct)
+  thesis  ///< Player's driver for the Create (world::ActuatorModel::player_create)
 };
 std::string_view name_of(Plant plant);
 std::optional<Plant> plant_of(std::string_view name);

@@ -7,19 +7,19 @@ namespace sf::scenarios {
 
 namespace {
 
-record::SensorTypeInfo kind_info(const sensors::SensorType& kind) {
-  record::SensorTypeInfo info{kind.id, std::string(kind.name), std::string(kind.list), {}, kind.is_scan};
-  for (const sensors::Column& column : kind.columns)
+record::SensorTypeInfo sensor_type_info(const sensors::SensorType& type) {
+  record::SensorTypeInfo info{type.id, std::string(type.name), std::string(type.list), {}, type.is_scan};
+  for (const sensors::Column& column : type.columns)
     info.columns.push_back({std::string(column.name), column.width, column.whole});
   return info;
 }
 
-void add_kinds(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
+void add_type(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
-    info.sensor_types.push_back(kind_info(*group.kind));
+    info.sensor_types.push_back(sensor_type_info(*group.type));
     for (const sensors::SensorSpec& row : group.rows)
       info.movers[row.mover].sensors.push_back(
-          {group.kind->id, row.name, "", row.X_MS, row.rate, row.fov, row.elements, row.range_min, row.limit});
+          {group.type->id, row.name, "", row.X_MS, row.rate, row.fov, row.elements, row.range_min, row.limit});
   }
 }
 
@@ -36,7 +36,7 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}, {"caster", settings.caster}};
   info.snapshot = world::snapshot(world);
   for (const world::Mover& mover : world.movers) info.movers.push_back({mover.name, "", mover.id, {}});
-  add_kinds(sensor_set, info);
+  add_type(sensor_set, info);
   return info;
 }
 

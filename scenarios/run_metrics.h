@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/contact_onset.h"
-#include "base/sink.h"
+#include "base/tick_record.h"
 #include "scenarios/simulation.h"
 
 namespace sf::scenarios {

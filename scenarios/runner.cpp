@@ -13,6 +13,7 @@
 #include "scenarios/coverage.h"
 #include "scenarios/run_metrics.h"
 #include "scenarios/statistics.h"
+#include "sensors/laser_settings.h"
 #include "world/roads/roads.h"
 
 namespace sf::scenarios {
@@ -45,8 +46,9 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
   if (of_driven && std::all_of(rows.begin(), rows.end(),
                                [&](std::uint32_t row) { return options.actors[row].controller.name.empty(); }))
     refuse(fmt::format("'{}' of a robot without a controller; give it one", name_of(e.kind)));
-  if (e.kind == Kind::map_coverage &&
-      std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) { return world.movers[row].lasers.empty(); }))
+  if (e.kind == Kind::map_coverage && std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) {
+        return sensors::lasers_of(world.movers[row]).empty();
+      }))
     refuse(e.robot.empty() ? "no robot has a laser to make a map with; give one a laser"
                            : fmt::format("'{}' has no laser to make a map with; give it one", e.robot));
   if (e.kind == Kind::lights_obeyed && world.lights.empty())
@@ -83,7 +85,7 @@ class Run {
     for (const Expectation& e : scenario.expect)
       if (e.kind == Kind::map_coverage)
         for (const std::uint32_t row : rows_of(scenario, world_, e))
-          if (!world_.movers[row].lasers.empty()) maps_.try_emplace(row, world_, row);
+          if (!sensors::lasers_of(world_.movers[row]).empty()) maps_.try_emplace(row, world_, row);
   }
 
   void go(const std::function<void(double)>& progress, ScenarioResult& result) {

@@ -35,8 +35,8 @@ world::World world_of(const Scenario& scenario) {
   if (scenario.tick > 0.0) world.interval = scenario.tick;
   if (scenario.plant)
     for (world::Mover& mover : world.movers)
-      mover.driver_model =
-          *scenario.plant == Plant::thesis ? world::DriverModel::player_create : world::DriverModel::direct;
+      mover.actuator_model =
+          *scenario.plant == Plant::thesis ? world::ActuatorModel::player_create : world::ActuatorModel::direct;
   for (const RobotSetup& setup : scenario.robot_setups) {
     world::Mover& mover = world.movers[row_of(scenario, world, setup.name, setup.line)];
     if (setup.pose) mover.X_WM = {setup.pose->x, setup.pose->y, mover.X_WM.z, setup.pose->yaw};
@@ -46,7 +46,8 @@ world::World world_of(const Scenario& scenario) {
 }
 
 SimulationOptions simulation_of(const Scenario& scenario, const world::World& world) {
-  SimulationOptions options{.seed = scenario.seed, .start_at = scenario.start_at};
+  SimulationOptions options{.seed = scenario.seed, .start_at = scenario.start_at, .states = scenario.states};
+  if (options.states) options.states->link.seed = scenario.seed;
   // Tags stand unless a [[robot]] names them. A robot's controller in the world file overrides the scenario's default.
   for (const world::Mover& mover : world.movers) {
     Actor& actor = options.actors.emplace_back(mover.is_tag ? Actor{.controller = {.name = ""}} : scenario.actor);

@@ -67,12 +67,13 @@ struct Scenario {
   /// [s] simulated, at most; with the expectation `done` the run ends when all controllers have finished.
   double duration = 60.0;
   std::uint64_t seed = 1;
-  double tick = 0.0;           ///< [s]; 0: the world's
-  FleetSpawn fleet;            ///< replaces the world's robots
-  std::optional<Plant> plant;  ///< of every robot; none: as the world file says
-  double start_at = 0.0;       ///< [s] time of the start signal
-  Actor actor;                 ///< default of all robots
-  int default_line = 0;        ///< line of its controller; 0: not in the file
+  double tick = 0.0;                       ///< [s]; 0: the world's
+  FleetSpawn fleet;                        ///< replaces the world's robots
+  std::optional<Plant> plant;              ///< of every robot; none: as the world file says
+  double start_at = 0.0;                   ///< [s] time of the start signal
+  std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; none: it knows the true ones
+  Actor actor;                             ///< default of all robots
+  int default_line = 0;                    ///< line of its controller; 0: not in the file
   std::vector<RobotSetup> robot_setups;
   std::vector<Expectation> expect;
 };

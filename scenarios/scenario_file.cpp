@@ -13,7 +13,7 @@
 #include "base/files.h"
 #include "base/suggest.h"
 #include "scenarios/scenario.h"
-#include "world/toml.h"
+#include "world/toml_reader.h"
 
 namespace sf::scenarios {
 
@@ -21,71 +21,22 @@ namespace {
 
 using world::TomlNode;
 using Kind = TomlNode::Kind;
-using Keys = std::span<const std::string_view>;
 
 constexpr double kLongest = 1e9;          // [s]
 constexpr double kMostWhole = 9.0e15;     // whole numbers that a double represents exactly
 constexpr double kMostPosition = 1e7;     // [m]
 constexpr double kLongestDelay = 3600.0;  // [s]
 
-constexpr std::array<std::string_view, 14> kKeys{"name",  "world", "duration", "seed",    "tick", "robots", "of",
-                                                 "place", "plant", "start_at", "default", "link", "robot",  "expect"};
+constexpr std::array<std::string_view, 15> kKeys{"name",    "world",  "duration", "seed",  "tick",
+                                                 "robots",  "of",     "place",    "plant", "start_at",
+                                                 "default", "states", "link",     "robot", "expect"};
 constexpr std::array<std::string_view, 3> kDefaultKeys{"controller", "rate", "settings"};
 constexpr std::array<std::string_view, 6> kRobotKeys{"name", "controller", "rate", "settings", "link", "pose"};
+constexpr std::array<std::string_view, 7> kStatesKeys{"rate",   "delay",          "jitter",   "loss",
+                                                      "filter", "position_sigma", "yaw_sigma"};
 constexpr std::array<std::string_view, 3> kLinkKeys{"delay", "jitter", "loss"};
 
-class Reader {
- public:
-  explicit Reader(const std::string& file) : file_(file) {}
-
-  [[noreturn]] void fail(const TomlNode& node, const std::string& message) const {
-    throw base::InputError(file_, node.line, message);
-  }
-
-  /// Rejects keys that are not in `known`.
-  void require_known(const TomlNode& table, Keys known) const {
-    for (const TomlNode& item : table.items)
-      if (std::find(known.begin(), known.end(), item.key) == known.end())
-        fail(item, fmt::format("unknown key '{}'{}; expected one of: {}", item.key,
-                               item.key.size() > 40 ? "" : base::suggest(item.key, known), fmt::join(known, ", ")));
-  }
-
-  double number(const TomlNode& table, std::string_view key, double fallback, double least, double most) const {
-    const TomlNode* node = world::find(table, key);
-    return node == nullptr ? fallback : number(*node, key, least, most);
-  }
-  double number(const TomlNode& node, std::string_view key, double least, double most) const {
-    if (node.kind == Kind::number && node.number >= least && node.number <= most) return node.number;
-    fail(node, fmt::format("'{}' expects a number from {:g} to {:g}", key, least, most));
-  }
-
-  std::uint64_t whole(const TomlNode& table, std::string_view key, std::uint64_t fallback, double most) const {
-    const TomlNode* node = world::find(table, key);
-    if (node == nullptr) return fallback;
-    const bool fine = node->kind == Kind::number && node->number >= 0.0 && node->number <= most &&
-                      node->number == std::floor(node->number);
-    if (!fine) fail(*node, fmt::format("'{}' expects a whole number from 0 to {:.0f}", key, most));
-    return static_cast<std::uint64_t>(node->number);
-  }
-
-  std::string text(const TomlNode& table, std::string_view key, const std::string& fallback) const {
-    const TomlNode* node = world::find(table, key);
-    if (node == nullptr) return fallback;
-    if (node->kind != Kind::text || node->text.empty()) fail(*node, fmt::format("'{}' expects a text in quotes", key));
-    return node->text;
-  }
-
-  const TomlNode* table(const TomlNode& in, std::string_view key) const {
-    const TomlNode* node = world::find(in, key);
-    if (node != nullptr && node->kind != Kind::table) fail(*node, fmt::format("'{}' expects a table", key));
-    return node;
-  }
-
-  const std::string& file() const { return file_; }
-
- private:
-  const std::string& file_;
-};
+using Reader = world::TomlReader;
 
 control::Value value_of(const Reader& reader, const TomlNode& node) {
   const auto all = [&](Kind kind) {
@@ -122,7 +73,7 @@ std::string controller_of(const Reader& reader, const TomlNode& table, const std
   if (name == "none" || name.empty()) return "";
   if (control::find_controller(name) != nullptr) return name;
   std::vector<std::string_view> names{"none"};
-  for (const control::ControllerType* kind : control::controllers()) names.push_back(kind->name);
+  for (const control::ControllerType* type : control::controllers()) names.push_back(type->name);
   reader.fail(*world::find(table, "controller"), fmt::format("there is no controller '{}'{}; expected one of: {}", name,
                                                              base::suggest(name, names), fmt::join(names, ", ")));
 }
@@ -143,6 +94,20 @@ netio::LinkModel link_of(const Reader& reader, const TomlNode* table, const neti
   reader.require_known(*table, kLinkKeys);
   return {reader.number(*table, "delay", 0.0, 0.0, kLongestDelay),
           reader.number(*table, "jitter", 0.0, 0.0, kLongestDelay), reader.number(*table, "loss", 0.0, 0.0, 1.0)};
+}
+
+std::optional<StateLinkOptions> states_of(const Reader& reader, const TomlNode* table) {
+  if (table == nullptr) return std::nullopt;
+  reader.require_known(*table, kStatesKeys);
+  StateLinkOptions states;
+  states.rate = reader.number(*table, "rate", states.rate, 0.01, 1e4);
+  states.link = {reader.number(*table, "delay", 0.0, 0.0, kLongestDelay),
+                 reader.number(*table, "jitter", 0.0, 0.0, kLongestDelay),
+                 reader.number(*table, "loss", 0.0, 0.0, 1.0)};
+  states.filter = reader.flag(*table, "filter");
+  states.position_sigma = reader.number(*table, "position_sigma", 0.0, 0.0, 1.0);
+  states.yaw_sigma = reader.number(*table, "yaw_sigma", 0.0, 0.0, 1.0);
+  return states;
 }
 
 base::Pose pose_of(const Reader& reader, const TomlNode& node) {
@@ -284,6 +249,7 @@ Scenario parse_scenario(const std::string& file, std::string_view text) {
   scenario.fleet = crowd_of(reader, root);
   scenario.start_at = reader.number(root, "start_at", 0.0, 0.0, kLongest);
   read_plant(reader, root, scenario);
+  scenario.states = states_of(reader, reader.table(root, "states"));
   scenario.actor.link = link_of(reader, reader.table(root, "link"), {});
   if (const TomlNode* table = reader.table(root, "default")) {
     reader.require_known(*table, kDefaultKeys);

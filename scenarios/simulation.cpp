@@ -9,6 +9,7 @@
 #include "base/time.h"
 #include "farm/schedule.h"
 #include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 #include "world/roads/roads.h"
 
 namespace sf::scenarios {
@@ -20,6 +21,7 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   farm.seed = options.seed;
   farm.threads = options.threads;
   farm.no_return_inf = options.no_return_inf;
+  farm.true_poses = !options.states;
   return farm;
 }
 
@@ -29,7 +31,7 @@ std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) 
   for (std::size_t i = 0; i < readings.size(); ++i) {
     const auto newer = readings.subspan(i + 1);
     if (std::none_of(newer.begin(), newer.end(), [&](const base::ReadingBlock& r) {
-          return r.kind == readings[i].kind && r.sensor == readings[i].sensor;
+          return r.type == readings[i].type && r.sensor == readings[i].sensor;
         }))
       readings[kept++] = readings[i];
   }
@@ -55,6 +57,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       interval_(base::nanoseconds(world.interval)) {
   SF_CHECK(options.actors.empty() || options.actors.size() == world.movers.size(),
            "actors: expected none or one per mover");
+  if (options.states) states_.emplace(world, *options.states);
   farm_.subscribe_all();
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) controls_.push_back(make_control(i, options));
   for (const RobotControl& robot : controls_)
@@ -75,8 +78,8 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Sim
   robot.controller = std::move(made.controller);
   robot.rate = made.rate;
   // `wander` without a configured rate decides once per scan.
-  robot.by_lasers =
-      actor.controller.name == "wander" && actor.controller.rate == 0.0 && !world_.movers[mover].lasers.empty();
+  robot.by_lasers = actor.controller.name == "wander" && actor.controller.rate == 0.0 &&
+                    !sensors::lasers_of(world_.movers[mover]).empty();
   if (!(robot.by_lasers && actor.link.perfect())) robot.mailbox.emplace(actor.link, world_.movers[mover].id);
   return robot;
 }
@@ -102,12 +105,13 @@ base::TickRecord Simulation::step() {
 std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
   std::size_t early = 0;
   readings_.clear();
+  const auto states = states_ ? states_->pass(time, fleet_.reports()) : fleet_.reports();
   for (std::int64_t due = farm_.next_due(); due < time; due = farm_.next_due()) {
-    const auto delivered = farm_.sample_between(due, fleet_.reports());
+    const auto delivered = farm_.sample_between(due, states);
     if (early_.size() < early + delivered.size()) early_.resize(early + delivered.size());
     for (const base::ReadingBlock& reading : delivered) early_[early++].take(reading);
   }
-  const auto delivered = farm_.tick(time, fleet_.reports());
+  const auto delivered = farm_.tick(time, states);
   if (early == 0) return delivered;
   for (std::size_t i = 0; i < early; ++i) readings_.push_back(early_[i].block());
   readings_.insert(readings_.end(), delivered.begin(), delivered.end());
@@ -190,7 +194,7 @@ bool Simulation::due(RobotControl& robot, std::span<const base::ReadingBlock> fr
     if (robot.mailbox) robot.mailbox->receive(time);
     const bool looked = robot.mailbox ? robot.mailbox->renewed(sensors::kLaser)
                                       : std::any_of(fresh.begin(), fresh.end(), [](const base::ReadingBlock& r) {
-                                          return r.kind == sensors::kLaser;
+                                          return r.type == sensors::kLaser;
                                         });
     return looked || contact;
   }

@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
-#include "base/sink.h"
 #include "base/thread_pool.h"
+#include "base/tick_record.h"
 #include "control/controllers.h"
 #include "farm/farm.h"
 #include "farm/stored_reading.h"
@@ -22,6 +22,7 @@
 #include "robots/fleet.h"
 #include "robots/neighbour_grid.h"
 #include "scenarios/mailbox.h"
+#include "scenarios/state_link.h"
 #include "world/lights.h"
 #include "world/roads/network.h"
 #include "world/world.h"
@@ -35,12 +36,13 @@ struct Actor {
 };
 
 struct SimulationOptions {
-  std::uint64_t seed = 1;      ///< of noise and of the controllers' random choices
-  unsigned threads = 0;        ///< of the host's part; 0: all. Does not affect results
-  Actor actor;                 ///< default of all robots
-  std::vector<Actor> actors;   ///< per mover by row, tags included; empty: `actor` for all robots, and tags stand
-  double start_at = 0.0;       ///< [s] time of the start signal
-  bool no_return_inf = false;  ///< see farm::FarmOptions
+  std::uint64_t seed = 1;     ///< of noise and of the controllers' random choices
+  unsigned threads = 0;       ///< of the host's part; 0: all. Does not affect results
+  Actor actor;                ///< default of all robots
+  std::vector<Actor> actors;  ///< per mover by row, tags included; empty: `actor` for all robots, and tags stand
+  double start_at = 0.0;      ///< [s] time of the start signal
+  std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; none: the farm knows the true ones
+  bool no_return_inf = false;              ///< see farm::FarmOptions
 };
 
 /// `world` and `device` must outlive it. One thread at a time. Ticks allocate nothing after warm-up.
@@ -93,6 +95,7 @@ class Simulation {
   base::ThreadPool thread_pool_;
   farm::Farm farm_;
   robots::Fleet fleet_;
+  std::optional<StateLink> states_;  ///< none: the farm knows the true states
   robots::NeighbourGrid neighbours_;
   std::vector<RobotControl> controls_;  ///< per mover
   std::vector<base::Twist> commands_;

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "base/sink.h"
+#include "base/tick_record.h"
 #include "world/world.h"
 
 namespace sf::scenarios {

@@ -177,7 +177,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Point>
     text += fmt::format("| {:g} | {} | {:.4f} | {:.4f} | {:.4f} | {:.3f} | {:.1f} | {} |\n", p.x, p.law, p.mean[0],
                         p.owed(), p.mean[4], p.mean[7], p.seconds, p.all_done ? "yes" : "no");
   }
-  return text + fmt::format("\n## What it shows\n\n{}\n", context.kind.reasons);
+  return text + fmt::format("\n## What it shows\n\n{}\n", context.type.reasons);
 }
 
 std::vector<std::string> run_sweeps(const ExperimentContext& context) {

@@ -33,14 +33,14 @@ struct Read {
 /// A farm with one subscribed sensor type in one mode.
 class Entrant {
  public:
-  Entrant(const world::World& world, gpu::Device& device, const sensors::SensorType& kind, std::uint8_t mode,
+  Entrant(const world::World& world, gpu::Device& device, const sensors::SensorType& type, std::uint8_t mode,
           const RecordedPaths& paths, const TradeoffOptions& options)
-      : kind_(kind), mode_(mode), world_(world), paths_(paths) {
-    sensors::set_accuracy(world_, std::string(sensors::word_of(kind, mode)));
+      : type_(type), mode_(mode), world_(world), paths_(paths) {
+    sensors::set_accuracy(world_, std::string(sensors::word_of(type, mode)));
     farm_ = std::make_unique<farm::Farm>(
         world_, device,
         farm::FarmOptions{.seed = options.seed, .noise = false, .reuse_unchanged = false, .threads = options.threads});
-    for (std::uint32_t m = 0; m < world_.movers.size(); ++m) farm_->subscribe(m, 1u << kind.id);
+    for (std::uint32_t m = 0; m < world_.movers.size(); ++m) farm_->subscribe(m, 1u << type.id);
   }
 
   /// First lap: collects the readings and warms up.
@@ -63,7 +63,7 @@ class Entrant {
   const world::World& world() const { return world_; }
 
  private:
-  std::size_t width() const { return sensors::element_width(kind_); }
+  std::size_t width() const { return sensors::element_width(type_); }
 
   template <class Look>
   void lap(Look look) {
@@ -90,7 +90,7 @@ class Entrant {
     return sorted[sorted.size() / 2];
   }
 
-  const sensors::SensorType& kind_;
+  const sensors::SensorType& type_;
   std::uint8_t mode_;
   world::World world_;
   const RecordedPaths& paths_;
@@ -171,26 +171,26 @@ std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device,
   const sensors::SensorSet sensor_set(world);
   const RecordedPaths paths = record_paths(world, device, kDriven, options.seed, options.threads);
   double all = 0.0, done = 0.0;
-  for (const auto& group : sensor_set.groups()) all += static_cast<double>(group.kind->modes.size() * (1 + kRounds));
+  for (const auto& group : sensor_set.groups()) all += static_cast<double>(group.type->modes.size() * (1 + kRounds));
   const auto go_on = [&] { return !options.progress || options.progress(++done / all); };
 
   std::vector<ModeResult> results;
   for (const auto& group : sensor_set.groups()) {
-    const sensors::SensorType& kind = *group.kind;
-    if (kind.modes.empty()) continue;
+    const sensors::SensorType& type = *group.type;
+    if (type.modes.empty()) continue;
     std::vector<std::unique_ptr<Entrant>> entrants;
     const std::size_t first = results.size();
     Read exact;
-    for (std::uint8_t mode = 0; mode < kind.modes.size(); ++mode) {
-      entrants.push_back(std::make_unique<Entrant>(world, device, kind, mode, paths, options));
+    for (std::uint8_t mode = 0; mode < type.modes.size(); ++mode) {
+      entrants.push_back(std::make_unique<Entrant>(world, device, type, mode, paths, options));
       const Read read = entrants.back()->read();
-      ModeResult grade{.sensor = std::string(kind.name),
-                       .mode = std::string(kind.modes[mode].word),
-                       .what = std::string(kind.modes[mode].what),
-                       .unit = std::string(sensors::unit_of(kind))};
+      ModeResult grade{.sensor = std::string(type.name),
+                       .mode = std::string(type.modes[mode].word),
+                       .what = std::string(type.modes[mode].what),
+                       .unit = std::string(sensors::unit_of(type))};
       if (mode == 0) exact = read;
       compare(read, exact, grade);
-      if (mode == 0 && kind.id == sensors::kLaser)
+      if (mode == 0 && type.id == sensors::kLaser)
         grade_errors(laser_errors(*entrants[0], paths, read, sensor_set), grade);
       results.push_back(grade);
       if (!go_on()) return {};

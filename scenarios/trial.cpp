@@ -12,6 +12,7 @@
 #include "record/recorder.h"
 #include "scenarios/coverage.h"
 #include "scenarios/run_info.h"
+#include "sensors/laser_settings.h"
 
 namespace sf::scenarios {
 
@@ -30,9 +31,11 @@ void add_noise(world::Mover& mover, const Disturbance& d) {
           {"noise", {d.edge_noise / sensor.metres_per_unit, 0.0, 0.0}, "", sensor.line, sensor.file});
     if (sensor.type == "magnetometer" && d.field_noise > 0.0)
       sensor.settings.push_back({"noise", {d.field_noise}, "", sensor.line, sensor.file});
+    const bool is_laser = sensor.type == sensors::kLaserWord.type || sensor.type == sensors::kRangerWord.type;
+    if (is_laser && d.scan_noise > 0.0)
+      sensor.settings.push_back(
+          {"noise", {d.scan_noise / sensor.metres_per_unit, 0.0, 0.0}, "", sensor.line, sensor.file});
   }
-  for (world::Laser& laser : mover.lasers)
-    if (laser.noise.range_sigma == 0.0) laser.noise.range_sigma = d.scan_noise;
 }
 
 /// Collects the tracks of all movers with a controller.
@@ -45,7 +48,7 @@ class Keeper {
       tracks_.push_back({.name = world.movers[row].name});
       dead_end_detectors_.emplace_back(2.0 * world.movers[row].radius, world.interval);
       helped_.push_back(0);
-      if (maps && !world.movers[row].lasers.empty()) maps_.try_emplace(row, world, row);
+      if (maps && !sensors::lasers_of(world.movers[row]).empty()) maps_.try_emplace(row, world, row);
     }
   }
 

@@ -18,12 +18,13 @@
 #include "sensors/laser_modes.h"
 #include "sensors/laser_noise.h"
 #include "sensors/laser_reference.h"
+#include "sensors/laser_settings.h"
 
 namespace sf::scenarios {
 
 namespace {
 
-/// Identity of a reading: kind, mover, sensor, sequence.
+/// Identity of a reading: type, mover, sensor, sequence.
 using Name = std::tuple<std::uint8_t, std::uint32_t, std::uint32_t, std::uint32_t>;
 
 /// Scans recomputed in parallel at a time.
@@ -73,13 +74,13 @@ class Verifier {
       infinite_ = infinite_ || (key == "no_return" && value == "inf");
     for (std::size_t i = 0; i < recording.readings.size(); ++i) {
       const record::ReadingSample& r = recording.readings[i];
-      readings_[{r.kind, r.mover, r.sensor, r.sequence}] = i;
+      readings_[{r.type, r.mover, r.sensor, r.sequence}] = i;
     }
     farm_.subscribe_all();
   }
 
   Verification run() {
-    result_.reference.kind = "laser";
+    result_.reference.type = "laser";
     result_.damage = recording_.damage;
     count_scans();
     const std::size_t ticks = recording_.states.empty() ? 0 : recording_.states[0].size();
@@ -93,7 +94,7 @@ class Verifier {
     result_.interrupted = result_.ticks < ticks;
     result_.scans = seen_;
     result_.missing = !result_.interrupted ? readings_.size() : 0;
-    for (auto& [kind, compared] : again_) result_.recomputed.push_back(std::move(compared));
+    for (auto& [type, compared] : again_) result_.recomputed.push_back(std::move(compared));
     if (unfelt_ > 0)
       result_.skipped.push_back(
           fmt::format("{} readings of bumpers: where a robot was touched is not recorded", unfelt_));
@@ -130,7 +131,7 @@ class Verifier {
 
   /// Counts all scans, so that a sample is spread evenly.
   void count_scans() {
-    const auto is_scan = [](const record::ReadingSample& r) { return r.kind == sensors::kLaser; };
+    const auto is_scan = [](const record::ReadingSample& r) { return r.type == sensors::kLaser; };
     auto all = static_cast<std::size_t>(std::count_if(recording_.readings.begin(), recording_.readings.end(), is_scan));
     recorded_ = all > 0;
     const auto* const lasers = farm_.sensor_set().group(sensors::kLaser);
@@ -153,27 +154,27 @@ class Verifier {
   }
 
   void check_reading(const base::ReadingBlock& reading) {
-    const bool is_scan = reading.kind == sensors::kLaser;
-    const std::vector<double> told = is_scan ? told_scan(reading.mover, reading.sensor, reading.values, reading.hits)
-                                             : std::vector(reading.values.begin(), reading.values.end());
-    const auto at = readings_.find({reading.kind, reading.mover, reading.sensor, reading.sequence});
+    const bool is_scan = reading.type == sensors::kLaser;
+    const auto at = readings_.find({reading.type, reading.mover, reading.sensor, reading.sequence});
     if (at == readings_.end()) {
-      if (is_scan && !recorded_) ask(reading, told);
+      if (is_scan && !recorded_) ask(reading, told_scan(reading.mover, reading.sensor, reading.values, reading.hits));
       return;
     }
     const std::vector<double>& theirs = recording_.readings[at->second].values;
     readings_.erase(at);
-    if (reading.kind == sensors::kBumper) {
+    if (reading.type == sensors::kBumper) {
       ++unfelt_;
       return;
     }
-    compare(told, theirs, place_of(reading), compared(reading.kind));
-    if (is_scan) ask(reading, theirs);
+    if (!is_scan) return compare(reading.values, theirs, place_of(reading), compared(reading.type));
+    const std::vector<double> told = told_scan(reading.mover, reading.sensor, reading.values, reading.hits);
+    compare(told, theirs, place_of(reading), compared(reading.type));
+    ask(reading, theirs);
   }
 
   /// Allowed difference: the bound of 32-bit modes and the precision of recordings. Other modes are recomputed bitwise.
   double allowed_of(const base::ReadingBlock& reading) const {
-    const auto& laser = world_.movers[reading.mover].lasers[reading.sensor];
+    const sensors::LaserSettings laser = sensors::lasers_of(world_.movers[reading.mover])[reading.sensor];
     const bool single = sensors::cast_laser(world_, laser).single;
     // Noise proportional to the range scales with the error of the range.
     const double stretch = 1.0 + 8.0 * laser.noise.range_proportional;
@@ -223,9 +224,9 @@ class Verifier {
             result_.reference, asked.allowed);
   }
 
-  Comparison& compared(std::uint8_t kind) {
-    Comparison& into = again_[kind];
-    if (into.kind.empty()) into.kind = sensors::find_sensor_type(kind)->name;
+  Comparison& compared(std::uint8_t type) {
+    Comparison& into = again_[type];
+    if (into.type.empty()) into.type = sensors::find_sensor_type(type)->name;
     return into;
   }
 

@@ -15,7 +15,7 @@ namespace sf::scenarios {
 /// Readings of one sensor type, compared bit by bit. Scans of a 32-bit mode are compared with plain C++ within their
 /// bound.
 struct Comparison {
-  std::string kind;
+  std::string type;
   std::uint64_t readings = 0;
   std::uint64_t values = 0;     ///< number of compared values
   std::uint64_t different = 0;  ///< of these, bitwise unequal or beyond the bound; any NaN equals any other

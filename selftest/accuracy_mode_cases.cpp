@@ -47,7 +47,7 @@ void stated_bounds(Fixture& fixture, Checks& checks) {
         for (const base::ReadingBlock& r : test.readings)
           for (std::uint32_t i = 0; i < r.values.size(); ++i) {
             if (quality_of(r, i) != QualityFlag::none) continue;
-            const world::Laser& laser = test.world->movers[r.mover].lasers[0];
+            const sensors::LaserSettings laser = sensors::lasers_of(test.world->movers[r.mover])[0];
             const Hit met = nearest_hit(test.world->walls, beam_of(r.X_WS, laser, i), laser.range_max);
             if (met.ambiguous) continue;
             checks.near(r.values[i], met.range, r.bound, fmt::format("{}, {:g} m wide, {:g} m away", mode, width, far),

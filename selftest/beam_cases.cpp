@@ -13,7 +13,7 @@ constexpr double kTurn = 2.0 * M_PI;
 
 /// A laser beside the start of a 100 m wall hits it half way at a grazing angle; another wall stands behind.
 void grazing(Fixture& fixture, Checks& checks) {
-  const world::Laser eye = laser(1, 0.0, 1000.0);
+  const sensors::LaserSettings eye = laser(1, 0.0, 1000.0);
   for (double angle = 1e-1; angle > 0.5e-9; angle *= 0.1) {
     double off = 0.0, allowed = 0.0;
     for (const double far : {0.0, 1e5})

@@ -19,7 +19,7 @@ double random(std::uint32_t index) {
 }
 
 /// Blocks at any angle with robots between and upon them, `far` from the origin.
-world::World crowd(double far, const world::Laser& laser) {
+world::World crowd(double far, const sensors::LaserSettings& laser) {
   world::World world;
   const glm::dvec2 away{far, -far};
   add_room(world, away - glm::dvec2{8.0, 8.0}, 16.0);
@@ -77,9 +77,9 @@ void beside(Fixture& fixture, Checks& checks, const world::World& world, const s
 
 void plain_cpp(Fixture& fixture, Checks& checks) {
   Disagreements all;
-  world::Laser noisy = laser(91, 4.0, 6.0);
+  sensors::LaserSettings noisy = laser(91, 4.0, 6.0);
   noisy.noise = {.range_sigma = 0.01, .range_proportional = 0.02, .angle_sigma = 0.005};
-  world::Laser sparse = laser(361, M_PI, 8.0);
+  sensors::LaserSettings sparse = laser(361, M_PI, 8.0);
   sparse.resolution = 7;
   sparse.range_min = 0.3;
   for (const double far : {0.0, 1e5, 1e7})

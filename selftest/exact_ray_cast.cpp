@@ -22,7 +22,7 @@ bool is_closed(std::span<const world::Segment> surfaces, const Beam& beam, glm::
 
 }  // namespace
 
-Beam beam_of(const base::Pose& X_WS, const world::Laser& laser, std::uint32_t sample) {
+Beam beam_of(const base::Pose& X_WS, const sensors::LaserSettings& laser, std::uint32_t sample) {
   const Real part = laser.samples < 2 ? 0.5L : static_cast<Real>(sample) / static_cast<Real>(laser.samples - 1);
   const Real bearing = static_cast<Real>(laser.fov) * (part - 0.5L);
   const Real yaw = X_WS.yaw, c = std::cos(yaw), s = std::sin(yaw), d = std::cos(bearing), e = std::sin(bearing);
@@ -61,7 +61,7 @@ double rounding(const Hit& m) { return static_cast<double>(2e-15L * (m.arm + m.r
 
 void check_scan(const world::World& world, const base::ReadingBlock& reading, Checks& checks, std::string_view what,
                 std::uint32_t stride) {
-  const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
+  const sensors::LaserSettings laser = sensors::lasers_of(world.movers[reading.mover])[reading.sensor];
   checks.equal(reading.values.size(), laser.samples, fmt::format("{}: samples", what));
   std::uint64_t hairs = 0;
   for (std::uint32_t i = 0; i < reading.values.size(); i += stride) {

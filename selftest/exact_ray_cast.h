@@ -6,6 +6,7 @@
 
 #include "base/reading.h"
 #include "selftest/case.h"
+#include "sensors/laser_settings.h"
 #include "world/world.h"
 
 namespace sf::selftest {
@@ -24,7 +25,7 @@ struct Beam {
   glm::dvec2 origin;
   Real x = 1, y = 0;
 };
-Beam beam_of(const base::Pose& X_WS, const world::Laser& laser, std::uint32_t sample);
+Beam beam_of(const base::Pose& X_WS, const sensors::LaserSettings& laser, std::uint32_t sample);
 
 /// The nearest surface along the beam, hit from either side.
 Hit nearest_hit(std::span<const world::Segment> surfaces, const Beam& beam, double range_max);

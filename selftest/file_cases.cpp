@@ -77,8 +77,8 @@ void snapshots(Fixture&, Checks& checks) {
       double* const places[] = {&world.walls[0].a.x,
                                 &world.walls[0].b.y,
                                 &world.movers[0].X_WM.yaw,
-                                &world.movers[0].lasers[0].range_max,
-                                &world.movers[0].lasers[0].fov,
+                                &world.movers[0].sensors[0].X_MS.z,
+                                &world.movers[0].sensors[0].settings[0].numbers[0],
                                 &world.magnets[0].moment,
                                 &world.lane_markings[0].width,
                                 &world.lane_markings[0].line[1].x};

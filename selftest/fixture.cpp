@@ -57,8 +57,8 @@ void add_block(world::World& world, glm::dvec2 low, glm::dvec2 high) {
   add_outline(world, {low, {high.x, low.y}, high, {low.x, high.y}});
 }
 
-world::Laser laser(std::uint32_t samples, double fov, double range_max) {
-  world::Laser laser;
+sensors::LaserSettings laser(std::uint32_t samples, double fov, double range_max) {
+  sensors::LaserSettings laser;
   laser.name = "eye";
   laser.X_MS.z = 0.1;
   laser.samples = samples;
@@ -79,9 +79,9 @@ std::uint32_t add_mover(world::World& world, const Pose& X_WM) {
   return row;
 }
 
-std::uint32_t add_laser_mover(world::World& world, const Pose& X_WM, const world::Laser& laser) {
+std::uint32_t add_laser_mover(world::World& world, const Pose& X_WM, const sensors::LaserSettings& laser) {
   const std::uint32_t row = add_mover(world, X_WM);
-  world.movers[row].lasers.push_back(laser);
+  world.movers[row].sensors.push_back(sensors::laser_sensor(laser));
   return row;
 }
 

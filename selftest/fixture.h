@@ -9,6 +9,7 @@
 
 #include "farm/farm.h"
 #include "gpu/device.h"
+#include "sensors/laser_settings.h"
 #include "world/world.h"
 
 namespace sf::selftest {
@@ -45,9 +46,9 @@ void add_room(world::World& world, glm::dvec2 low, double width);
 void add_block(world::World& world, glm::dvec2 low, glm::dvec2 high);
 
 /// A laser at its mover's origin, 0.1 m high, with yaw 0.
-world::Laser laser(std::uint32_t samples, double fov, double range_max);
+sensors::LaserSettings laser(std::uint32_t samples, double fov, double range_max);
 /// Adds a mover without a body. @return its row
-std::uint32_t add_laser_mover(world::World& world, const Pose& X_WM, const world::Laser& laser);
+std::uint32_t add_laser_mover(world::World& world, const Pose& X_WM, const sensors::LaserSettings& laser);
 std::uint32_t add_mover(world::World& world, const Pose& X_WM);
 /// Gives a mover a square body with half side length `half` [m].
 void add_body(world::World& world, std::uint32_t mover, double half);

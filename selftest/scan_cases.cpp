@@ -26,7 +26,7 @@ void check_scans(Fixture& fixture, Checks& checks, std::span<const std::uint32_t
       add_laser_mover(world, {0.21, -0.13, 0.0, 0.5}, laser(count, fov * kDegree, 20.0));
   const TestFarm test = fixture.measure(world);
   for (const base::ReadingBlock& r : test.readings) {
-    const world::Laser& laser = test.world->movers[r.mover].lasers[0];
+    const sensors::LaserSettings laser = sensors::lasers_of(test.world->movers[r.mover])[0];
     const auto what = fmt::format("{} samples in {:g} degrees", laser.samples, laser.fov / kDegree);
     check_scan(*test.world, r, checks, what, stride);
     if (laser.fov == 0.0)

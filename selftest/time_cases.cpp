@@ -20,7 +20,7 @@ constexpr std::uint64_t kSeed = 5;
 world::World noisy_room() {
   world::World world;
   add_room(world, {-2.0, -2.0}, 4.0);
-  world::Laser eye = laser(61, 3.0, 8.0);
+  sensors::LaserSettings eye = laser(61, 3.0, 8.0);
   eye.noise = {.range_sigma = 0.01, .angle_sigma = 0.001};
   add_laser_mover(world, {0.2, 0.1, 0.0, 0.0}, eye);
   return world;

@@ -21,17 +21,18 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHuge = std::numeric_limits<double>::max();
 
 /// The received values after encoding and decoding; empty when nothing is sent.
-std::vector<double> decoded(const SensorType& kind, const SensorSpec& row, const std::vector<double>& values,
+std::vector<double> decoded(const SensorType& sensor_type, const SensorSpec& row, const std::vector<double>& values,
                             Checks& checks) {
   base::ReadingBlock reading;
   reading.values = values;
   base::Bytes payload;
-  const std::uint8_t type = kind.encode(row, reading, WireFormat::farm, 0, payload);
+  const std::uint8_t type = sensor_type.encode(row, reading, WireFormat::farm, 0, payload);
   if (type == 0) return {};
-  const sensors::PayloadPart part = kind.decode(row, payload, type, WireFormat::farm);
-  checks.holds(part.fault == sensors::PayloadError::none, fmt::format("{}: the sent payload is accepted", kind.name));
+  const sensors::PayloadPart part = sensor_type.decode(row, payload, type, WireFormat::farm);
+  checks.holds(part.fault == sensors::PayloadError::none,
+               fmt::format("{}: the sent payload is accepted", sensor_type.name));
   std::vector<double> got(values.size());
-  if (part.fault == sensors::PayloadError::none) kind.read(row, payload, type, WireFormat::farm, got);
+  if (part.fault == sensors::PayloadError::none) sensor_type.read(row, payload, type, WireFormat::farm, got);
   return got;
 }
 
@@ -40,13 +41,13 @@ struct Sent {
 };
 
 /// Checks one number of a reading; the other numbers stay fixed.
-void expect(Checks& checks, const SensorType& kind, const SensorSpec& row, std::span<const Sent> sent, std::size_t at,
-            std::size_t width) {
+void expect(Checks& checks, const SensorType& sensor_type, const SensorSpec& row, std::span<const Sent> sent,
+            std::size_t at, std::size_t width) {
   for (const Sent& s : sent) {
     std::vector<double> values(width, 0.0);
     values[at] = s.value;
-    const auto got = decoded(kind, row, values, checks);
-    const auto what = fmt::format("{} number {}: {:.17g}", kind.name, at, s.value);
+    const auto got = decoded(sensor_type, row, values, checks);
+    const auto what = fmt::format("{} number {}: {:.17g}", sensor_type.name, at, s.value);
     if (got.size() == width)
       checks.same(got[at], s.told, what);
     else
@@ -121,22 +122,22 @@ void fields(Fixture&, Checks& checks) {
 }
 
 /// Numbers of every sensor type from -1e300 to 1e300: order and sign are preserved.
-void all_kinds(Fixture&, Checks& checks) {
+void all_types(Fixture&, Checks& checks) {
   expect(checks, sensors::gyro_type, row_of(1, 0.0), kTurn, 0, 1);
-  for (const SensorType* kind : sensors::sensor_types()) {
-    if (kind->id == sensors::kLaneEdge || kind->name == "occupancy") continue;
+  for (const SensorType* sensor_type : sensors::sensor_types()) {
+    if (sensor_type->id == sensors::kLaneEdge || sensor_type->name == "occupancy") continue;
     double before = -kInfinity;
     for (const double value : {-kInfinity, -1e300, -1e18, -4294967296.0, -2147483648.0, -1.0, 0.0, 1.0, 65'536.0,
                                2147483647.0, 2147483648.0, 4294967296.0, 1e18, 1e300, kInfinity}) {
       base::ReadingBlock reading;
-      const std::vector<double> values(sensors::element_width(*kind), value);
+      const std::vector<double> values(sensors::element_width(*sensor_type), value);
       reading.values = values;
       base::Bytes payload;
-      const std::uint8_t type = kind->encode(row_of(1, 0.0), reading, WireFormat::farm, 0, payload);
+      const std::uint8_t type = sensor_type->encode(row_of(1, 0.0), reading, WireFormat::farm, 0, payload);
       std::vector<double> got(values.size());
-      kind->read(row_of(1, 0.0), payload, type, WireFormat::farm, got);
+      sensor_type->read(row_of(1, 0.0), payload, type, WireFormat::farm, got);
       checks.holds(got[0] >= before && (value <= 0.0 ? got[0] <= 0.0 : got[0] >= 0.0),
-                   fmt::format("{}: {:g} is decoded as {:g}", kind->name, value, got[0]));
+                   fmt::format("{}: {:g} is decoded as {:g}", sensor_type->name, value, got[0]));
       before = got[0];
     }
   }
@@ -147,8 +148,8 @@ constexpr Case kCases[] = {
      "u16 millimetres and u32 tenths at and past their ends: saturated, no return flagged, NaN not sent", lasers},
     {"wires", "lane-edge-words", "m", "u16 and u32 of lane edges: saturated below the flag, none flagged", lane_edges},
     {"wires", "field-words", "T", "i32 of 1e-8 T at and past both ends: saturated, NaN not sent", fields},
-    {"wires", "all-kinds", "", "numbers of every sensor type from -infinity to infinity: order and sign preserved",
-     all_kinds},
+    {"wires", "all-types", "", "numbers of every sensor type from -infinity to infinity: order and sign preserved",
+     all_types},
 };
 
 }  // namespace

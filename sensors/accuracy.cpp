@@ -18,10 +18,10 @@ namespace {
 
 constexpr std::string_view kExact = "exact";
 
-/// The mode of the sensor type `kind` called `word`, which may have a prefix "type:"; null: none.
-const AccuracyMode* find_mode(std::string_view kind, std::span<const AccuracyMode> modes, std::string_view word) {
+/// The mode of the sensor type `type` called `word`, which may have a prefix "type:"; null: none.
+const AccuracyMode* find_mode(std::string_view type, std::span<const AccuracyMode> modes, std::string_view word) {
   const std::size_t colon = word.find(':');
-  if (colon != std::string_view::npos && word.substr(0, colon) != kind) return nullptr;
+  if (colon != std::string_view::npos && word.substr(0, colon) != type) return nullptr;
   const std::string_view own = colon == std::string_view::npos ? word : word.substr(colon + 1);
   const auto found =
       std::find_if(modes.begin(), modes.end(), [&](const AccuracyMode& mode) { return mode.word == own; });
@@ -46,11 +46,11 @@ std::string listed(const std::vector<std::string_view>& words) {
 
 }  // namespace
 
-std::uint8_t mode_of(std::string_view kind, std::span<const AccuracyMode> modes, const world::Accuracy& own,
+std::uint8_t mode_of(std::string_view type, std::span<const AccuracyMode> modes, const world::Accuracy& own,
                      const world::World& world) {
   const world::Accuracy& asked = own.word.empty() ? world.accuracy : own;
   for (const std::string& word : words_in(asked.word))
-    if (const AccuracyMode* const mode = find_mode(kind, modes, word))
+    if (const AccuracyMode* const mode = find_mode(type, modes, word))
       return static_cast<std::uint8_t>(mode - modes.data());
   if (own.word.empty() || own.word == kExact) return 0;
   std::vector<std::string_view> words;
@@ -70,15 +70,15 @@ namespace {
 
 void check_word(const world::World& world, std::span<const SensorType* const> present, const std::string& word) {
   if (word == kExact) return;
-  const auto knows = [&](const SensorType* kind) { return find_mode(kind->name, kind->modes, word) != nullptr; };
+  const auto knows = [&](const SensorType* type) { return find_mode(type->name, type->modes, word) != nullptr; };
   if (std::any_of(present.begin(), present.end(), knows)) return;
   const auto all = sensor_types();
   if (std::none_of(all.begin(), all.end(), knows))
     refuse(world.accuracy,
            fmt::format("there is no accuracy \"{}\"; expected one of {}", word, listed(accuracy_words())));
   std::string who;
-  for (const SensorType* kind : all)
-    if (knows(kind)) who += fmt::format("{}{}", who.empty() ? "" : ", ", kind->name);
+  for (const SensorType* type : all)
+    if (knows(type)) who += fmt::format("{}{}", who.empty() ? "" : ", ", type->name);
   refuse(world.accuracy,
          fmt::format("accuracy \"{}\" is for {}, and the world has no such sensor; leave it out", word, who));
 }
@@ -86,8 +86,8 @@ void check_word(const world::World& world, std::span<const SensorType* const> pr
 /// Types with modes check their sensors' words in `mode_of`; the other types accept only `exact`.
 void check_sensor(const world::World& world, const world::Sensor& sensor) {
   const auto all = sensor_types();
-  const auto kind = std::find_if(all.begin(), all.end(), [&](const auto* k) { return k->word.type == sensor.type; });
-  if (kind != all.end() && (*kind)->modes.empty()) mode_of((*kind)->name, {}, accuracy_of(sensor), world);
+  const auto type = std::find_if(all.begin(), all.end(), [&](const auto* k) { return k->word.type == sensor.type; });
+  if (type != all.end() && (*type)->modes.empty()) mode_of((*type)->name, {}, accuracy_of(sensor), world);
 }
 
 }  // namespace
@@ -100,18 +100,16 @@ void check_accuracy(const world::World& world, std::span<const SensorType* const
 
 void set_accuracy(world::World& world, const std::string& words) {
   world.accuracy = {words, "", 0};
-  for (world::Mover& mover : world.movers) {
-    for (world::Laser& laser : mover.lasers) laser.accuracy = {};
+  for (world::Mover& mover : world.movers)
     for (world::Sensor& sensor : mover.sensors)
       std::erase_if(sensor.settings, [](const world::Setting& setting) { return setting.key == "accuracy"; });
-  }
   world::update_extent_and_hash(world);
 }
 
 std::vector<std::string_view> accuracy_words() {
   std::vector<std::string_view> words{kExact};
-  for (const SensorType* kind : sensor_types())
-    for (const AccuracyMode& mode : kind->modes)
+  for (const SensorType* type : sensor_types())
+    for (const AccuracyMode& mode : type->modes)
       if (std::find(words.begin(), words.end(), mode.word) == words.end()) words.push_back(mode.word);
   return words;
 }
@@ -122,11 +120,11 @@ namespace {
 using Alike = std::tuple<std::uint8_t, bool, double, double, std::uint32_t>;
 
 /// @param known bounds computed before
-const ErrorBound& bound_of(const world::World& world, const SensorType& kind, const SensorSpec& row,
+const ErrorBound& bound_of(const world::World& world, const SensorType& type, const SensorSpec& row,
                            std::map<Alike, ErrorBound>& known) {
   const auto [at, is_new] = known.try_emplace(
       Alike{row.mode, row.noisy, row.limit, world.movers[row.mover].X_WM.z + row.X_MS.z, row.elements}, ErrorBound{});
-  if (is_new) at->second = kind.bound(world, row);
+  if (is_new) at->second = type.bound(world, row);
   return at->second;
 }
 
@@ -135,18 +133,18 @@ const ErrorBound& bound_of(const world::World& world, const SensorType& kind, co
 std::vector<AccuracyStatement> accuracy_statements(const world::World& world, const SensorSet& sensor_set) {
   std::vector<AccuracyStatement> statements;
   for (const SensorSet::Group& group : sensor_set.groups()) {
-    if (group.kind->bound == nullptr) continue;
+    if (group.type->bound == nullptr) continue;
     const std::size_t first = statements.size();
     std::map<Alike, ErrorBound> known;
     for (const SensorSpec& row : group.rows) {
-      const ErrorBound& bound = bound_of(world, *group.kind, row, known);
+      const ErrorBound& bound = bound_of(world, *group.type, row, known);
       const auto same =
           std::find_if(statements.begin() + static_cast<std::ptrdiff_t>(first), statements.end(),
                        [&](const AccuracyStatement& s) { return s.mode == row.mode && s.bound.error == bound.error; });
       if (same != statements.end())
         ++same->sensors;
       else
-        statements.push_back({group.kind, row.mode, 1, bound});
+        statements.push_back({group.type, row.mode, 1, bound});
     }
   }
   return statements;
@@ -159,18 +157,18 @@ std::string modes_of(const SensorSet& sensor_set) {
     for (const SensorSpec& row : group.rows)
       if (row.mode > 0) modes.insert(row.mode);
     for (const std::uint8_t mode : modes)
-      text += fmt::format("{}{}:{}", text.empty() ? "" : " ", group.kind->name, word_of(*group.kind, mode));
+      text += fmt::format("{}{}:{}", text.empty() ? "" : " ", group.type->name, word_of(*group.type, mode));
   }
   return text.empty() ? std::string(kExact) : text;
 }
 
-std::string_view unit_of(const SensorType& kind) {
-  const std::string_view column = kind.columns.front().name;
+std::string_view unit_of(const SensorType& type) {
+  const std::string_view column = type.columns.front().name;
   return column.ends_with("_m") ? "m" : column.ends_with("_T") ? "T" : "";
 }
 
-std::string_view word_of(const SensorType& kind, std::uint8_t mode) {
-  return kind.modes.empty() ? kExact : kind.modes[mode].word;
+std::string_view word_of(const SensorType& type, std::uint8_t mode) {
+  return type.modes.empty() ? kExact : type.modes[mode].word;
 }
 
 }  // namespace sf::sensors

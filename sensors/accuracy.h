@@ -15,10 +15,10 @@
 
 namespace sf::sensors {
 
-/// Row of `modes`, the modes of the sensor type `kind`, for one sensor.
+/// Row of `modes`, the modes of the sensor type `type`, for one sensor.
 /// @param own the sensor's own setting in the world file
 /// @throws base::InputError at that setting for an unknown word
-std::uint8_t mode_of(std::string_view kind, std::span<const AccuracyMode> modes, const world::Accuracy& own,
+std::uint8_t mode_of(std::string_view type, std::span<const AccuracyMode> modes, const world::Accuracy& own,
                      const world::World& world);
 
 /// The `accuracy "word"` setting of a sensor.
@@ -36,7 +36,7 @@ std::vector<std::string_view> accuracy_words();
 
 /// The bounds that a world's sensors state before a run: one row per type, mode and bound.
 struct AccuracyStatement {
-  const SensorType* kind = nullptr;
+  const SensorType* type = nullptr;
   std::uint8_t mode = 0;
   std::uint32_t sensors = 0;  ///< number of sensors with this bound
   ErrorBound bound;
@@ -48,9 +48,9 @@ std::vector<AccuracyStatement> accuracy_statements(const world::World& world, co
 std::string modes_of(const SensorSet& sensor_set);
 
 /// Unit of a type's first column, "m" or "T", from the suffix of its name; otherwise "".
-std::string_view unit_of(const SensorType& kind);
+std::string_view unit_of(const SensorType& type);
 
 /// The word of a mode; `exact` for types without modes.
-std::string_view word_of(const SensorType& kind, std::uint8_t mode);
+std::string_view word_of(const SensorType& type, std::uint8_t mode);
 
 }  // namespace sf::sensors

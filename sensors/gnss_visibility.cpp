@@ -94,12 +94,10 @@ void GnssVisibility::add_solids(std::span<const Segment> walls) {
     if (wall.solid_left) outlines[{wall.model, wall.z_min, wall.z_max}].push_back(wall);
   std::vector<base::Box> boxes;
   for (const auto& [key, edges] : outlines) {
-    base::Box box = base::empty_box();
-    for (const Segment& e : edges) box = base::united(box, base::box_of(e.a, e.b));
     const auto first = static_cast<std::uint32_t>(solid_edges_.size());
     solid_edges_.insert(solid_edges_.end(), edges.begin(), edges.end());
     solids_.push_back({first, static_cast<std::uint32_t>(solid_edges_.size()), std::get<1>(key)});
-    boxes.push_back(box);
+    boxes.push_back(world::box_of(edges));
   }
   boxes_ = base::BoxTree(boxes);
 }

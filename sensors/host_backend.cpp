@@ -12,15 +12,15 @@ constexpr std::size_t kPiece = 64;  // readings per piece of work
 
 }  // namespace
 
-HostBackend::HostBackend(const SensorContext& context, const SensorType& kind, std::vector<SensorSpec> rows)
+HostBackend::HostBackend(const SensorContext& context, const SensorType& type, std::vector<SensorSpec> rows)
     : world_(context.world),
       thread_pool_(context.thread_pool),
       states_(context.states),
       seed_(context.seed),
-      kind_(kind.id),
+      type_(type.id),
       rows_(std::move(rows)) {
   first_.push_back(0);
-  for (const SensorSpec& row : rows_) first_.push_back(first_.back() + std::size_t{row.elements} * element_width(kind));
+  for (const SensorSpec& row : rows_) first_.push_back(first_.back() + std::size_t{row.elements} * element_width(type));
   values_.resize(first_.back());
   samples_.reserve(rows_.size());
 }
@@ -45,13 +45,13 @@ void HostBackend::collect(std::vector<base::ReadingBlock>& out) {
   for (const HostSample& sample : samples_) {
     const SensorSpec& row = rows_[sample.row];
     out.push_back(
-        {.mover = row.mover, .sensor = row.sensor, .kind = kind_, .X_WS = sample.X_WS, .values = sample.values});
+        {.mover = row.mover, .sensor = row.sensor, .type = type_, .X_WS = sample.X_WS, .values = sample.values});
   }
 }
 
-void for_each_sensor(const world::World& world, const SensorType& kind,
+void for_each_sensor(const world::World& world, const SensorType& type,
                      const std::function<void(MountedSensor)>& body) {
-  for_each_of(world, kind.word.type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
+  for_each_of(world, type.word.type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
     body({sensor, common_spec(sensor, mover, number)});
   });
 }

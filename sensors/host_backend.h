@@ -30,7 +30,7 @@ class HostBackend : public SensorBackend {
 
  protected:
   /// @param rows the specs of the type's sensors
-  HostBackend(const SensorContext& context, const SensorType& kind, std::vector<SensorSpec> rows);
+  HostBackend(const SensorContext& context, const SensorType& type, std::vector<SensorSpec> rows);
 
   /// Fills in readings. Called by several pool threads at once, each reading exactly once.
   virtual void measure(std::span<const HostSample> samples) const = 0;
@@ -45,7 +45,7 @@ class HostBackend : public SensorBackend {
   base::ThreadPool& thread_pool_;
   std::span<const base::Report> states_;
   std::uint64_t seed_;
-  std::uint8_t kind_;
+  std::uint8_t type_;
   std::vector<SensorSpec> rows_;
   std::vector<std::size_t> first_;  ///< per row and one more: index of its first value
   std::vector<double> values_;
@@ -59,8 +59,8 @@ struct MountedSensor {
   SensorSpec row;  ///< the settings common to all types
 };
 
-/// Calls `body` for every sensor of `kind`, by mover and in file order.
+/// Calls `body` for every sensor of `type`, by mover and in file order.
 /// @throws base::InputError for invalid common settings, and exceptions of `body`
-void for_each_sensor(const world::World& world, const SensorType& kind, const std::function<void(MountedSensor)>& body);
+void for_each_sensor(const world::World& world, const SensorType& type, const std::function<void(MountedSensor)>& body);
 
 }  // namespace sf::sensors

@@ -21,7 +21,7 @@ inline constexpr double kMostResponse = 1023.0;       ///< 10 bits
 inline constexpr std::uint32_t kInfraredColumns = 2;  ///< per element: range [m], response
 
 /// @throws base::InputError with file and line.
-ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
+ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type);
 
 extern const SensorType infrared_type;
 

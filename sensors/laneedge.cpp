@@ -143,7 +143,7 @@ void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
     base::ReadingBlock block;
     block.mover = edge.row.mover;
     block.sensor = edge.row.sensor;
-    block.kind = kLaneEdge;
+    block.type = kLaneEdge;
     block.X_WS = caster_.results(i).X_WS;
     block.values = fit_.values(i);
     block.mode = edge.row.mode;

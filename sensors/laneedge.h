@@ -38,7 +38,7 @@ struct EdgeRow {
   double perpendicular_y;
   double range_limit;         ///< [m] ranges from this value on are "near the maximum": no points
   double range_min;           ///< [m] ranges up to this value are no points, unless it is 0
-  double range_sigma;         ///< [m] noise, as in world::LaserNoise
+  double range_sigma;         ///< [m] noise, as in raycast::ScanNoise
   double range_proportional;  ///< [-]
   double angle_sigma;         ///< [rad]
   double distance_max;        ///< [m] a farther edge is out of sight

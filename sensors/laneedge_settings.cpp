@@ -9,6 +9,7 @@
 #include "sensors/lane_markings/filtered_scene.h"
 #include "sensors/lane_markings/line_fit.h"
 #include "sensors/laser_modes.h"
+#include "sensors/laser_settings.h"
 #include "sensors/settings.h"
 
 namespace sf::sensors {
@@ -17,18 +18,6 @@ namespace {
 
 constexpr double kDegrees = M_PI / 180.0;
 constexpr double kLongest = 1e4;  // [m] of range_max
-
-world::LaserNoise noise_of(const world::Sensor& sensor) {
-  const auto values = tuple(sensor, "noise", 3, "[constant proportional angular]");
-  if (!values) return {};
-  const auto& v = *values;
-  if (!(v[0] >= 0.0 && v[1] >= 0.0 && v[2] >= 0.0))
-    refuse(sensor, "noise", "'noise' expects numbers that are not negative");
-  const world::LaserNoise noise{sensor.metres_per_unit * v[0], v[1], sensor.radians_per_unit * v[2]};
-  if (!(noise.range_sigma <= kLongest && noise.range_proportional <= 1e3 && noise.angle_sigma <= 2.0 * M_PI))
-    refuse(sensor, "noise", "'noise' is out of range; expected [metres, metres per metre, angle]");
-  return noise;
-}
 
 /// The robot's axis nearest to the middle bearing of the beams; ties prefer the sides to front and back.
 double nearest_axis(double yaw) {
@@ -50,10 +39,10 @@ void thin_out(LaneEdge& edge, std::uint32_t every) {
 
 }  // namespace
 
-LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind) {
+LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type) {
   LaneEdge edge;
-  edge.row = common_spec(sensor, mover, number_of_kind);
-  world::Laser& fan = edge.fan;
+  edge.row = common_spec(sensor, mover, number_of_type);
+  raycast::ScanSettings& fan = edge.fan;
   fan.samples = whole(sensor, "samples", 61, 1, kMostEdgeSamples);
   fan.fov = angle(sensor, "fov", 30.0 * kDegrees, 0.0, 2.0 * M_PI);
   fan.range_max = length(sensor, "range_max", 1.0, 1e-6, kLongest);
@@ -65,8 +54,7 @@ LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uin
   fan.name = sensor.name;
   fan.X_MS = sensor.X_MS;
   fan.X_MS.z += 0.5 * sensor.height;
-  fan.rate = edge.row.rate;
-  fan.noise = noise_of(sensor);
+  fan.noise = scan_noise_of(sensor);
   const double bearing = angle(sensor, "perpendicular", nearest_axis(fan.X_MS.yaw), -4.0 * M_PI, 4.0 * M_PI);
   edge.perpendicular = base::rotate(bearing - fan.X_MS.yaw, {1.0, 0.0});
   edge.distance_max = kFarthest * fan.range_max;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "raycast/beams.h"
 #include "sensors/laneedge.h"
 #include "sensors/sensor_type.h"
 
@@ -11,7 +12,7 @@ namespace sf::sensors {
 /// Settings of one lane edge sensor.
 struct LaneEdge {
   SensorSpec row;
-  world::Laser fan;           ///< its beams; X_MS at half the model's height
+  raycast::ScanSettings fan;  ///< its beams; X_MS at half the model's height
   glm::dvec2 perpendicular;   ///< unit vector in the sensor frame: the direction of the distance
   bool single = false;        ///< one or two beams: the first one's range is the reading
   double distance_max = 0.0;  ///< [m] a farther edge is out of sight

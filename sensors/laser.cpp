@@ -20,26 +20,27 @@ struct Row {
   bool grazing = false;     ///< some beam of its last scan grazes
 };
 
-std::vector<CastLaser> lasers_of(const world::World& world) {
+/// The lasers of a world and their scanners, by mover and in file order.
+struct Fleet {
   std::vector<CastLaser> lasers;
-  for (const world::Mover& mover : world.movers)
-    for (const world::Laser& laser : mover.lasers) lasers.push_back(cast_laser(world, laser));
-  return lasers;
-}
-
-std::vector<raycast::Scanner> scanners_of(const world::World& world, std::span<const CastLaser> lasers) {
   std::vector<raycast::Scanner> scanners;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m)
-    for (std::uint32_t i = 0; i < world.movers[m].lasers.size(); ++i) {
-      const CastLaser& cast = lasers[scanners.size()];
-      scanners.push_back({cast.laser, m, i, cast.single});
+};
+
+Fleet fleet_of(const world::World& world) {
+  Fleet fleet;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    std::uint32_t number = 0;
+    for (const LaserSettings& laser : lasers_of(world.movers[m])) {
+      const CastLaser& cast = fleet.lasers.emplace_back(cast_laser(world, laser));
+      fleet.scanners.push_back({cast.laser, m, number++, cast.single});
     }
-  return scanners;
+  }
+  return fleet;
 }
 
 class Lasers : public SensorBackend {
  public:
-  explicit Lasers(const SensorContext& context) : Lasers(context, lasers_of(context.world)) {}
+  explicit Lasers(const SensorContext& context) : Lasers(context, fleet_of(context.world)) {}
 
   void place_movers() override { caster_.place_movers(); }
   bool prepare(std::span<const DueSample> due) override {
@@ -53,7 +54,7 @@ class Lasers : public SensorBackend {
   bool on_device() const override { return caster_.on_device(); }
 
  private:
-  Lasers(const SensorContext& context, const std::vector<CastLaser>& lasers);
+  Lasers(const SensorContext& context, Fleet&& fleet);
 
   void shape(std::size_t i);
   void mark(std::size_t i);
@@ -71,25 +72,25 @@ class Lasers : public SensorBackend {
   std::vector<base::QualityFlag> quality_;  ///< of all lasers' samples
 };
 
-Lasers::Lasers(const SensorContext& context, const std::vector<CastLaser>& lasers)
+Lasers::Lasers(const SensorContext& context, Fleet&& fleet)
     : thread_pool_(context.thread_pool),
       seed_(context.seed),
       noise_(context.noise),
       longest_(reaches_of(context.world).longest),
-      caster_(context, context.world, scanners_of(context.world, lasers)) {
+      caster_(context, context.world, std::move(fleet.scanners)) {
   std::size_t samples = 0;
   bool any = false;
-  for (std::uint32_t i = 0; i < lasers.size(); ++i) {
-    const world::Laser& laser = lasers[i].laser;
+  for (std::uint32_t i = 0; i < fleet.lasers.size(); ++i) {
+    const LaserSettings& laser = fleet.lasers[i].laser;
     const bool reworked = laser.resolution > 1 || !caster_.plan(i).packed || (noise_ && laser.noise.has_range());
-    rows_.push_back({lasers[i], reworked, samples});
+    rows_.push_back({fleet.lasers[i], reworked, samples});
     samples += laser.samples;
     any = any || reworked;
   }
   values_.resize(any ? samples : 0);
   met_.resize(any ? samples : 0);
   quality_.assign(samples, base::QualityFlag::not_cast);
-  for (std::uint32_t i = 0; i < lasers.size(); ++i)
+  for (std::uint32_t i = 0; i < rows_.size(); ++i)
     for (const std::uint32_t sample : caster_.plan(i).samples)
       quality_[rows_[i].samples + sample] = base::QualityFlag::none;
 }
@@ -106,7 +107,7 @@ void Lasers::shape(std::size_t i) {
   double* const out = values_.data() + row.samples;
   std::uint32_t* const out_hits = met_.data() + row.samples;
   finish_scan(row.cast, plan, {seed_, base::RandomStream::range_noise, fan.mover, fan.sensor, due.sequence}, noise_,
-              {cast, cast_hits}, {out, fan.laser.samples}, {out_hits, fan.laser.samples});
+              {cast, cast_hits}, {out, fan.scan.samples}, {out_hits, fan.scan.samples});
 }
 
 /// Sets the quality flags of a scan. Flags of samples that are never cast were set at construction; grazing changes.
@@ -130,12 +131,12 @@ base::ReadingBlock Lasers::block_of(std::size_t i) {
   const Row& row = rows_[due_[i].row];
   const raycast::Scanner& fan = caster_.scanners()[due_[i].row];
   const raycast::ScanResult results = caster_.results(i);
-  const std::size_t samples = fan.laser.samples;
+  const std::size_t samples = fan.scan.samples;
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
   base::ReadingBlock block;
   block.mover = fan.mover;
   block.sensor = fan.sensor;
-  block.kind = kLaser;
+  block.type = kLaser;
   block.X_WS = results.X_WS;
   block.values = row.reworked ? std::span<const double>(values_).subspan(row.samples, samples)
                               : caster_.ranges().host<double>().subspan(first, samples);
@@ -143,7 +144,7 @@ base::ReadingBlock Lasers::block_of(std::size_t i) {
                             : caster_.hits().host<std::uint32_t>().subspan(first, samples);
   block.mode = row.cast.mode;
   const double away = std::max(std::abs(results.X_WS.x), std::abs(results.X_WS.y));
-  block.bound = laser_bound(row.cast, longest_, away + fan.laser.range_max);
+  block.bound = laser_bound(row.cast, longest_, away + fan.scan.range_max);
   if (row.grazing || row.cast.laser.resolution > 1)
     block.quality = std::span<const base::QualityFlag>(quality_).subspan(row.samples, samples);
   return block;
@@ -164,11 +165,12 @@ void Lasers::collect(std::vector<base::ReadingBlock>& out) {
 
 std::vector<SensorSpec> specs_of(const world::World& world) {
   std::vector<SensorSpec> rows;
-  const std::vector<CastLaser> lasers = lasers_of(world);
-  for (const raycast::Scanner& fan : scanners_of(world, lasers)) {
-    const world::Laser& laser = fan.laser;
-    rows.push_back({fan.mover, fan.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
-                    laser.samples, laser.range_max, 0, 0.0, lasers[rows.size()].mode});
+  const Fleet fleet = fleet_of(world);
+  for (const CastLaser& cast : fleet.lasers) {
+    const LaserSettings& laser = cast.laser;
+    const raycast::Scanner& scanner = fleet.scanners[rows.size()];
+    rows.push_back({scanner.mover, scanner.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
+                    laser.samples, laser.range_max, 0, 0.0, cast.mode});
     rows.back().fov = laser.fov;
     rows.back().range_min = laser.range_min;
     rows.back().dependency_radius = laser.range_max;
@@ -184,7 +186,8 @@ constexpr Column kColumns[] = {{"range_m", 1, false, 9}};
 constinit const SensorType laser_type{
     .id = kLaser,
     .name = "laser",
-    .word = {},  // the module world reads Stage's `laser` and `ranger` itself
+    .word = kLaserWord,
+    .other_word = kRangerWord,
     .base_port = 10000,
     .list = "beams",
     .columns = kColumns,

@@ -12,22 +12,22 @@ namespace sf::sensors {
 namespace {
 
 /// Settings of each mode.
-struct Making {
+struct ModeSettings {
   std::uint32_t skip = 1;  ///< one of this many beams is cast
   bool single = false;
 };
-constexpr Making kMakings[] = {{1}, {1, true}, {2}, {4}, {8}};
-static_assert(std::size(kMakings) == std::size(kLaserModes));
+constexpr ModeSettings kModeSettings[] = {{1}, {1, true}, {2}, {4}, {8}};
+static_assert(std::size(kModeSettings) == std::size(kLaserModes));
 
 }  // namespace
 
-CastLaser cast_laser(const world::World& world, const world::Laser& laser) {
+CastLaser cast_laser(const world::World& world, const LaserSettings& laser) {
   const std::uint8_t row = mode_of("laser", kLaserModes, laser.accuracy, world);
-  const Making& making = kMakings[row];
-  CastLaser cast{laser, making.single, row, {}};
-  cast.laser.resolution = std::min(laser.resolution * making.skip, std::max(1u, laser.samples - 1));
+  const ModeSettings& mode_settings = kModeSettings[row];
+  CastLaser cast{laser, mode_settings.single, row, {}};
+  cast.laser.resolution = std::min(laser.resolution * mode_settings.skip, std::max(1u, laser.samples - 1));
   const double step = laser.samples > 1 ? laser.fov / (laser.samples - 1) : 0.0;
-  for (std::uint32_t k = 0; making.skip > 1 && k <= cast.laser.resolution; ++k)
+  for (std::uint32_t k = 0; mode_settings.skip > 1 && k <= cast.laser.resolution; ++k)
     cast.sines.push_back(std::sin(k * step));
   return cast;
 }
@@ -48,7 +48,7 @@ double laser_bound(const CastLaser& cast, double longest, double farthest) {
 }
 
 ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor) {
-  const CastLaser cast = cast_laser(world, world.movers[sensor.mover].lasers[sensor.sensor]);
+  const CastLaser cast = cast_laser(world, lasers_of(world.movers[sensor.mover])[sensor.sensor]);
   const Reaches reaches = reaches_of(world);
   return {laser_bound(cast, reaches.longest, reaches.farthest + cast.laser.range_max),
           "cast beams that do not graze; the others are flagged"};

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sensors/sensor_type.h"
+#include "sensors/laser_settings.h"
 
 namespace sf::sensors {
 
@@ -17,13 +17,13 @@ inline constexpr AccuracyMode kLaserModes[] = {
 
 /// A laser with the settings that are cast.
 struct CastLaser {
-  world::Laser laser;         ///< `resolution` includes that of its mode
+  LaserSettings laser;        ///< `resolution` includes that of its mode
   bool single = false;        ///< raycast::Scanner::single
   std::uint8_t mode = 0;      ///< row of `kLaserModes`
   std::vector<double> sines;  ///< of 0, 1, ... `resolution` sample steps, to interpolate along straight lines between
                               ///< hits; empty: ranges are interpolated linearly
 };
-CastLaser cast_laser(const world::World& world, const world::Laser& laser);
+CastLaser cast_laser(const world::World& world, const LaserSettings& laser);
 
 /// Largest dimensions of a world, movers included.
 struct Reaches {

@@ -16,7 +16,7 @@ struct Cast {
 
 /// Interpolates the samples between two cast beams.
 void fill_chords(const CastLaser& shape, const Cast& a, const Cast& b, std::span<double> ranges) {
-  const world::Laser& laser = shape.laser;
+  const LaserSettings& laser = shape.laser;
   const std::vector<double>& sines = shape.sines;
   const std::uint32_t gap = b.sample - a.sample;
   const bool same = a.hit == b.hit;
@@ -40,7 +40,7 @@ void fill_lines(const Cast& a, const Cast& b, std::span<double> ranges) {
 
 void finish_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::RandomKey& draw, bool noise,
                  const CastScan& cast, std::span<double> ranges, std::span<std::uint32_t> hits) {
-  const world::Laser& laser = shape.laser;
+  const LaserSettings& laser = shape.laser;
   const bool noisy = noise && laser.noise.has_range();
   Cast before{};
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {

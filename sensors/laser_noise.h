@@ -9,7 +9,6 @@
 #include "base/reading.h"
 #include "raycast/beams.h"
 #include "sensors/laser_modes.h"
-#include "world/world.h"
 
 namespace sf::sensors {
 

@@ -7,8 +7,6 @@
 
 namespace sf::sensors {
 
-namespace {}  // namespace
-
 LaserReference::LaserReference(const world::World& world, std::uint64_t seed, bool noise)
     : world_(world), seed_(seed), noise_(noise) {
   for (const world::Mover& mover : world.movers) poses_.push_back(mover.X_WM);
@@ -42,8 +40,8 @@ std::vector<LaserReference::Seen> LaserReference::in_sight(std::uint32_t self, c
 }
 
 LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t laser, std::uint64_t sequence) const {
-  const CastLaser cast = cast_laser(world_, world_.movers[mover].lasers[laser]);
-  const world::Laser& l = cast.laser;
+  const CastLaser cast = cast_laser(world_, lasers_of(world_.movers[mover])[laser]);
+  const LaserSettings& l = cast.laser;
   const raycast::BeamPlan plan = raycast::plan_beams(l, noise_);
   Scan scan{base::compose(poses_[mover], l.X_MS), std::vector<double>(l.samples),
             std::vector<std::uint32_t>(l.samples)};
@@ -56,7 +54,7 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
   std::vector<double> ranges(SF_BEAMS_PER_LANE * std::size_t{plan.lanes()});
   std::vector<std::uint32_t> hits(ranges.size());
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {
-    const double bearing = world::bearing_of(l, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
+    const double bearing = bearing_of(l, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
     const glm::dvec2 beam{std::cos(bearing), std::sin(bearing)};
     const glm::dvec2 d{heading.x * beam.x - heading.y * beam.y, heading.y * beam.x + heading.x * beam.y};
     raycast::ClosestHit nearest{l.range_max};

@@ -196,7 +196,7 @@ void Magnetometers::collect(std::vector<base::ReadingBlock>& out) {
     base::ReadingBlock block;
     block.mover = array.row.mover;
     block.sensor = array.row.sensor;
-    block.kind = kMagnetometer;
+    block.type = kMagnetometer;
     block.X_WS = X_WS_[i];
     block.values =
         std::span<const double>(values_).subspan(array.values, kMagnetometerColumns * array.settings.X_SE.size());

@@ -72,7 +72,7 @@ void Occupancies::observe(std::span<const base::ReadingBlock> readings) {
   scans_.clear();
   wanted_.clear();
   for (const base::ReadingBlock& r : readings) {
-    if (r.kind != kLaser) continue;
+    if (r.type != kLaser) continue;
     const auto [first, last] = of_laser_.equal_range({r.mover, r.sensor});
     for (auto it = first; it != last; ++it) scans_.push_back({it->second, r.X_WS, r.values});
   }
@@ -89,7 +89,7 @@ void Occupancies::collect(std::vector<base::ReadingBlock>& out) {
     base::ReadingBlock block;
     block.mover = map.row.mover;
     block.sensor = map.row.sensor;
-    block.kind = kOccupancy;
+    block.type = kOccupancy;
     block.X_WS = {map.settings.grid.left, map.settings.grid.top, 0.0, 0.0};
     block.values = values;
     block.flags = flags_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "gpu/group_counts.h"
 #include "sensors/occupancy_tables.h"
 
 namespace sf::sensors {
@@ -144,19 +145,14 @@ void MapBatch::Tables::mark_hits() {
 
 void MapBatch::Tables::close(MapDispatch& dispatch) {
   const std::size_t group = dispatch.kernel->group_size() / SF_MAP_BLOCK;
-  const auto needed = static_cast<std::uint32_t>((dispatch.count + group - 1) / group);
-  const std::uint32_t across = std::min(needed, kMapGroupsAcross);
-  const std::uint32_t down = across > 0 ? (needed + across - 1) / across : 0;
+  const gpu::GroupCounts groups = gpu::groups_for(dispatch.count, group);
   const auto blocks = dispatch.blocks->host<MapBlock>();
-  const std::size_t padded = std::size_t{across} * down * group;
+  const std::size_t padded = groups.all() * group;
   const MapBlock nobody{static_cast<std::uint32_t>(all.size()), 0};
   std::fill(blocks.begin() + static_cast<std::ptrdiff_t>(dispatch.count),
             blocks.begin() + static_cast<std::ptrdiff_t>(padded), nobody);
   dispatch.count = padded;
-  const auto counts = dispatch.groups->host<std::uint32_t>();
-  counts[0] = across;
-  counts[1] = down;
-  counts[2] = across > 0 ? 1 : 0;
+  gpu::write_counts(groups, *dispatch.groups);
 }
 
 /// Uploads rows and lines: all of them at first, with the row for lanes without work; then those of this update.

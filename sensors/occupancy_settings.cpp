@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensors/laser_settings.h"
 #include "sensors/occupancy.h"
 #include "sensors/settings.h"
 
@@ -69,20 +70,22 @@ std::optional<maps::LogOddsUpdate> odds_of(const world::Sensor& sensor) {
                              static_cast<std::int32_t>(v[2])};
 }
 
-std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover) {
-  if (mover.lasers.empty())
+/// Number of the laser that the map is made with.
+std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover,
+                       const std::vector<LaserSettings>& lasers) {
+  if (lasers.empty())
     refuse(sensor, "laser", "a map needs a laser on the same robot; give it a laser( ) or remove the map");
   const world::Setting* named = find(sensor, "laser");
   if (named == nullptr) return 0;
-  const auto found = std::find_if(mover.lasers.begin(), mover.lasers.end(),
-                                  [&](const world::Laser& laser) { return laser.name == named->text; });
-  if (found != mover.lasers.end()) return static_cast<std::uint32_t>(found - mover.lasers.begin());
+  const auto found =
+      std::find_if(lasers.begin(), lasers.end(), [&](const LaserSettings& laser) { return laser.name == named->text; });
+  if (found != lasers.end()) return static_cast<std::uint32_t>(found - lasers.begin());
   std::string names;
-  for (const world::Laser& laser : mover.lasers) names += (names.empty() ? "" : ", ") + laser.name;
+  for (const LaserSettings& laser : lasers) names += (names.empty() ? "" : ", ") + laser.name;
   refuse(sensor, "laser", fmt::format("'{}' has no laser '{}'; it has {}", mover.name, named->text, names));
 }
 
-void fill_from(const world::Sensor& sensor, const world::Laser& laser, MapSettings& settings) {
+void fill_from(const world::Sensor& sensor, const LaserSettings& laser, MapSettings& settings) {
   settings.fov = laser.fov;
   settings.samples = laser.samples;
   settings.range_min = laser.range_min;
@@ -103,8 +106,9 @@ Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, s
   map.row.rate = rate_of(sensor, kDefaultRate);
   map.settings.grid = grid_of(sensor, mover.X_WM);
   map.settings.odds = odds_of(sensor);
-  map.laser = laser_of(sensor, mover);
-  fill_from(sensor, mover.lasers[map.laser], map.settings);
+  const std::vector<LaserSettings> lasers = lasers_of(mover);
+  map.laser = laser_of(sensor, mover, lasers);
+  fill_from(sensor, lasers[map.laser], map.settings);
   map.row.elements = maps::words(map.settings.grid);
   map.row.limit = 4294967295.0;
   map.row.across = map.settings.grid.word_columns;

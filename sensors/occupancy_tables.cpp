@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "gpu/group_counts.h"
 #include "shaders/occupancy.comp.h"
 #include "shaders/occupancy_odds.comp.h"
 #include "shaders/occupancy_strips.comp.h"
@@ -88,8 +89,7 @@ std::size_t MapBatch::Tables::make_dispatch(gpu::Device& device, const char* nam
   dispatch.kernel = std::make_unique<gpu::Kernel>(device, name, spirv);
   // Padded to whole groups, and to whole rows of groups where there are many.
   const std::size_t group = dispatch.kernel->group_size() / SF_MAP_BLOCK;
-  const std::size_t groups = most_blocks / group + 1;
-  const std::size_t padded = (groups > kMapGroupsAcross ? groups + kMapGroupsAcross : groups) * group;
+  const std::size_t padded = gpu::most_groups_for(most_blocks, group) * group;
   dispatch.blocks = std::make_unique<gpu::Buffer>(device, "blocks of work", Role::upload, Texel::u32, 2 * padded);
   dispatch.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
   return SF_MAP_BLOCK * padded;

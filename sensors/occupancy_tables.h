@@ -18,8 +18,6 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint32_t kMapGroupsAcross = 32'768;  ///< along x of a dispatch; Vulkan guarantees 65 535
-
 /// Layout of one map in the tables.
 struct MapLayout {
   MapSettings settings;

@@ -47,20 +47,20 @@ PayloadPart decode_plain(const PlainForm& form, const SensorSpec& sensor, std::s
                          std::uint8_t type, WireFormat wire);
 void read_plain(const PlainForm& form, std::span<const std::uint8_t> payload, std::span<double> values);
 
-/// `kind` with the id, name and wire part of kForm.
+/// `type` with the id, name and wire part of kForm.
 template <const PlainForm& kForm>
-consteval SensorType plain(SensorType kind) {
-  kind.id = kForm.id;
-  kind.name = kForm.name;
-  kind.wire_problem = [](const SensorSpec&, WireFormat wire) { return plain_wire_problem(kForm, wire); };
-  kind.parts = [](const SensorSpec&, WireFormat) -> std::uint32_t { return 1; };
-  kind.encode = [](const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat, std::uint32_t,
-                   base::Bytes& out) { return encode_plain(kForm, sensor, reading, out); };
-  kind.decode = [](const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
-                   WireFormat wire) { return decode_plain(kForm, sensor, payload, type, wire); };
-  kind.read = [](const SensorSpec&, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat,
-                 std::span<double> values) { read_plain(kForm, payload, values); };
-  return kind;
+consteval SensorType plain(SensorType sensor_type) {
+  sensor_type.id = kForm.id;
+  sensor_type.name = kForm.name;
+  sensor_type.wire_problem = [](const SensorSpec&, WireFormat wire) { return plain_wire_problem(kForm, wire); };
+  sensor_type.parts = [](const SensorSpec&, WireFormat) -> std::uint32_t { return 1; };
+  sensor_type.encode = [](const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat, std::uint32_t,
+                          base::Bytes& out) { return encode_plain(kForm, sensor, reading, out); };
+  sensor_type.decode = [](const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                          WireFormat wire) { return decode_plain(kForm, sensor, payload, type, wire); };
+  sensor_type.read = [](const SensorSpec&, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat,
+                        std::span<double> values) { read_plain(kForm, payload, values); };
+  return sensor_type;
 }
 
 }  // namespace sf::sensors

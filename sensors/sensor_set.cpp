@@ -8,8 +8,8 @@
 namespace sf::sensors {
 
 SensorSet::SensorSet(const world::World& world) {
-  for (const SensorType* kind : sensor_types()) {
-    Group group{kind, kind->specs(world), {}};
+  for (const SensorType* type : sensor_types()) {
+    Group group{type, type->specs(world), {}};
     if (group.rows.empty()) continue;
     std::uint32_t at = 0;
     for (std::uint32_t m = 0; m <= world.movers.size(); ++m) {
@@ -19,24 +19,24 @@ SensorSet::SensorSet(const world::World& world) {
     groups_.push_back(std::move(group));
   }
   std::vector<const SensorType*> present;
-  for (const Group& group : groups_) present.push_back(group.kind);
+  for (const Group& group : groups_) present.push_back(group.type);
   check_accuracy(world, present);
 }
 
-const SensorSet::Group* SensorSet::group(std::uint8_t kind) const {
-  const auto found = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.kind->id == kind; });
+const SensorSet::Group* SensorSet::group(std::uint8_t type) const {
+  const auto found = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.type->id == type; });
   return found == groups_.end() ? nullptr : &*found;
 }
 
-std::span<const SensorSpec> SensorSet::of(std::uint8_t kind, std::uint32_t mover) const {
-  const Group* found = group(kind);
+std::span<const SensorSpec> SensorSet::of(std::uint8_t type, std::uint32_t mover) const {
+  const Group* found = group(type);
   if (found == nullptr || mover + 1 >= found->first.size()) return {};
   return std::span(found->rows).subspan(found->first[mover], found->first[mover + 1] - found->first[mover]);
 }
 
 const SensorSpec& SensorSet::row(const base::ReadingBlock& reading) const {
-  const auto rows = of(reading.kind, reading.mover);
-  SF_CHECK(reading.sensor < rows.size(), "kind " + std::to_string(reading.kind) + " of mover " +
+  const auto rows = of(reading.type, reading.mover);
+  SF_CHECK(reading.sensor < rows.size(), "type " + std::to_string(reading.type) + " of mover " +
                                              std::to_string(reading.mover) + " has no sensor " +
                                              std::to_string(reading.sensor));
   return rows[reading.sensor];
@@ -50,7 +50,7 @@ std::size_t SensorSet::count() const {
 
 std::size_t SensorSet::count_of(std::uint32_t mover) const {
   std::size_t sum = 0;
-  for (const Group& group : groups_) sum += of(group.kind->id, mover).size();
+  for (const Group& group : groups_) sum += of(group.type->id, mover).size();
   return sum;
 }
 

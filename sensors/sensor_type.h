@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/bearing.h"
 #include "base/bytes.h"
 #include "base/reading.h"
 #include "base/report.h"
@@ -49,7 +50,7 @@ struct SensorSpec {
   double rate = 10.0;          ///< [Hz] > 0
   double phase = 0.0;          ///< [s] time of the first reading
   double latency = 0.0;        ///< [s] from measurement to delivery
-  std::uint32_t elements = 1;  ///< rows of a reading: beams of a laser, elements of an array, else 1
+  std::uint32_t elements = 1;  ///< rows of a reading: beams of a laser, elements of an array, words of a map, else 1
   double limit = 0.0;          ///< largest value of an element, in the unit of its first column
   std::uint32_t across = 0;    ///< elements per row of an image; 0: the elements are not an image
   double pitch = 0.0;          ///< [m] side of an image's cell
@@ -66,7 +67,7 @@ struct SensorSpec {
 
 /// [rad] Bearing of beam `i` of a scan in the sensor's frame.
 inline double bearing_of(const SensorSpec& sensor, std::uint32_t i) {
-  return world::bearing_of(sensor.fov, sensor.elements, i);
+  return base::bearing_of(sensor.fov, sensor.elements, i);
 }
 
 /// All sensors of one type, computed as a batch. Movers are where `SensorContext::states` has them. Not thread-safe.
@@ -78,8 +79,8 @@ class SensorBackend {
   /// (wheels).
   /// @param now [ns]  @param between true: a sample between two ticks; the next tick continues from the last one
   virtual void accumulate(std::int64_t /*now*/, bool /*between*/) {}
-  /// Moves surfaces and magnets of movers to their poses, before `prepare`, when something is due. Absent movers are
-  /// invisible.
+  /// Moves surfaces and magnets of movers to their poses, before `prepare`, when a sensor is measured. Absent movers
+  /// are invisible.
   virtual void place_movers() {}
   /// Host work before the batch, even when nothing is due. @return true when the batch must be recorded again
   virtual bool prepare(std::span<const DueSample> due) = 0;
@@ -88,8 +89,8 @@ class SensorBackend {
   virtual void record_derive(gpu::Batch&) {}
   /// Adds this tick's copies, to and from the device.
   virtual void add_copies(gpu::Batch& batch) = 0;
-  /// Receives this tick's readings of other types, before latency, for sensors that derive theirs from them
-  /// (SensorType::derived_from). Called before `collect` in every tick with such readings of subscribed movers.
+  /// Receives this tick's readings of all types that are not derived, before latency, for sensors that derive theirs
+  /// from some of them (SensorType::derived_from). Called before `collect` whenever a sensor is due; may be empty.
   virtual void observe(std::span<const base::ReadingBlock>) {}
   /// Host work after the batch: appends one block per due sensor, in order. The farm fills in time, sequence and X_WM.
   /// Spans are valid until the next `prepare`.
@@ -125,11 +126,12 @@ struct PayloadPart {
 inline constexpr std::uint8_t kExtended = 64;
 
 struct SensorType {
-  std::uint8_t id = 0;          ///< wire id, in [1, 31]
-  std::string_view name;        ///< name in commands, JSON and files, such as "laser"
-  world::SensorKeyword word;    ///< keyword in world files; empty for a type that the module world reads itself
-  std::uint32_t base_port = 0;  ///< default of the first UDP port of its packets
-  std::string_view list;        ///< JSON name of the list of elements; empty: a reading is one row
+  std::uint8_t id = 0;                   ///< wire id, in [1, 31]
+  std::string_view name;                 ///< name in commands, JSON and files, such as "laser"
+  world::SensorKeyword word;             ///< keyword in world files
+  world::SensorKeyword other_word = {};  ///< a second keyword; empty: none
+  std::uint32_t base_port = 0;           ///< default of the first UDP port of its packets
+  std::string_view list;                 ///< JSON name of the list of elements; empty: a reading is one row
   std::span<const Column> columns;
   bool is_scan = false;  ///< a reading is a planar scan: elements are beams, the one column is their range [m].
                          ///< Recorded as a ROS LaserScan, printed with bearings
@@ -164,9 +166,9 @@ struct SensorType {
 };
 
 /// Numbers per element of a reading.
-inline std::size_t element_width(const SensorType& kind) {
+inline std::size_t element_width(const SensorType& type) {
   std::size_t width = 0;
-  for (const Column& column : kind.columns) width += column.width;
+  for (const Column& column : type.columns) width += column.width;
   return width;
 }
 

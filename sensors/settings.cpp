@@ -30,7 +30,8 @@ double scaled(const world::Sensor& sensor, std::string_view key, double fallback
   const double value = unit * numbers(sensor, *setting, 1, "a number").front();
   if (value >= least && value <= most) return value;
   refuse(sensor, key,
-         fmt::format("'{}' is {:g}; expected {:g} to {:g}{}", key, value / unit, least / unit, most / unit, name));
+         fmt::format("'{}' is {:.10g}; expected {:.10g} to {:.10g}{}", key, value / unit, least / unit, most / unit,
+                     name));
 }
 
 }  // namespace
@@ -104,10 +105,10 @@ double rate_of(const world::Sensor& sensor, double fallback) {
   return fallback;
 }
 
-SensorSpec common_spec(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind) {
+SensorSpec common_spec(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type) {
   SensorSpec row;
   row.mover = mover;
-  row.sensor = number_of_kind;
+  row.sensor = number_of_type;
   row.name = sensor.name;
   row.X_MS = sensor.X_MS;
   row.rate = rate_of(sensor, row.rate);
@@ -119,9 +120,9 @@ SensorSpec common_spec(const world::Sensor& sensor, std::uint32_t mover, std::ui
 void for_each_of(const world::World& world, std::string_view type,
                  const std::function<void(const world::Sensor&, std::uint32_t, std::uint32_t)>& body) {
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    std::uint32_t number_of_kind = 0;
+    std::uint32_t number_of_type = 0;
     for (const world::Sensor& sensor : world.movers[m].sensors)
-      if (sensor.type == type) body(sensor, m, number_of_kind++);
+      if (sensor.type == type) body(sensor, m, number_of_type++);
   }
 }
 

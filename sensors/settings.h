@@ -45,7 +45,7 @@ void refuse_beyond(const world::Sensor& sensor, std::string_view prefix, std::st
                    std::uint32_t most);
 
 /// The common settings: name, rate (or update_interval), phase and latency; one element.
-SensorSpec common_spec(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
+SensorSpec common_spec(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type);
 
 /// Calls `body` for every sensor called `type`, by mover and in file order. @param number 0-based per mover
 void for_each_of(

@@ -63,8 +63,8 @@ constexpr PlainForm kForm{kSonar, "sonar", kNumbers};
 
 }  // namespace
 
-ConeArray read_sonar(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind) {
-  ConeArray array = read_cones(sensor, mover, number_of_kind, {25.0 * kDegrees, 0.10, 4.0, 25.0});
+ConeArray read_sonar(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type) {
+  ConeArray array = read_cones(sensor, mover, number_of_type, {25.0 * kDegrees, 0.10, 4.0, 25.0});
   array.turns = read_turns(sensor, array.row.elements);
   const double incidence = angle(sensor, "incidence", 0.5 * M_PI, 1e-3 * kDegrees, 0.5 * M_PI);
   array.min_cosine = incidence < 0.5 * M_PI * (1.0 - 1e-12) ? std::cos(incidence) : 0.0;

@@ -19,7 +19,7 @@ namespace sf::sensors {
 inline constexpr std::uint8_t kSonar = 4;  ///< wire id
 
 /// @throws base::InputError with file and line.
-ConeArray read_sonar(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
+ConeArray read_sonar(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type);
 
 extern const SensorType sonar_type;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Colours as 0xAARRGGBB, and the palettes of the figures.
+// Colours as 0xAARRGGBB, and the scales of values of figures; all named colours: viz/theme.h.
 
 #include <cstddef>
 #include <cstdint>

@@ -42,6 +42,13 @@ void draw_sample(Canvas& canvas, glm::dvec2 left, const LegendItem& item) {
       canvas.disc(middle, 9.0, with_opacity(item.color, 0.45));
       canvas.ring(middle, 9.0, theme::kOutline, item.color);
       return canvas.line(middle, middle + glm::dvec2{9.0, 0.0}, theme::kCurve, item.color);
+    case LegendMark::outlined_dot:
+    case LegendMark::square:
+    case LegendMark::diamond:
+    case LegendMark::hollow_square:
+    case LegendMark::hollow_diamond:
+    case LegendMark::crossed_dot:
+      return draw_signal(canvas, middle, 6.0, item.sample, item.color);
   }
 }
 
@@ -79,6 +86,25 @@ void draw_cross(Canvas& canvas, glm::dvec2 at, double reach, double line_width, 
   const std::array<Line, 2> strokes{Line{at - glm::dvec2{reach, reach}, at + glm::dvec2{reach, reach}},
                                     Line{at - glm::dvec2{reach, -reach}, at + glm::dvec2{reach, -reach}}};
   canvas.lines(strokes, line_width, color);
+}
+
+void draw_signal(Canvas& canvas, glm::dvec2 at, double radius, LegendMark mark, std::uint32_t color) {
+  constexpr double kEdge = 1.5;
+  const bool square = mark == LegendMark::square || mark == LegendMark::hollow_square;
+  const bool diamond = mark == LegendMark::diamond || mark == LegendMark::hollow_diamond;
+  const auto fill = [&](double r, std::uint32_t with) {
+    if (!square && !diamond) return canvas.disc(at, r, with);
+    const double half = 0.5 * std::sqrt(M_PI) * r, corner = std::sqrt(2.0) * half;
+    const std::array<glm::dvec2, 4> box{at + glm::dvec2{-half, -half}, at + glm::dvec2{half, -half},
+                                        at + glm::dvec2{half, half}, at + glm::dvec2{-half, half}};
+    const std::array<glm::dvec2, 4> tip{at + glm::dvec2{-corner, 0}, at + glm::dvec2{0, -corner},
+                                        at + glm::dvec2{corner, 0}, at + glm::dvec2{0, corner}};
+    canvas.polygon(square ? box : tip, with);
+  };
+  fill(radius + kEdge, theme::kInk);
+  fill(radius, color);
+  if (mark == LegendMark::hollow_square || mark == LegendMark::hollow_diamond) fill(0.5 * radius, theme::kWhite);
+  if (mark == LegendMark::crossed_dot) draw_cross(canvas, at, 0.5 * radius, kEdge, theme::kWhite);
 }
 
 void draw_dashes(Canvas& canvas, std::span<const Line> lines, double line_width, double on, double off,

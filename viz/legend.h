@@ -11,7 +11,23 @@
 
 namespace sf::viz {
 
-enum class LegendMark { block, line, dashed, dotted, dot, ring, cross, robot };
+/// Squares, diamonds, outlined and crossed dots are the states of traffic lights (viz/signal_layer.h).
+enum class LegendMark {
+  block,
+  line,
+  dashed,
+  dotted,
+  dot,
+  ring,
+  cross,
+  robot,
+  square,
+  diamond,
+  hollow_square,
+  hollow_diamond,
+  outlined_dot,
+  crossed_dot
+};
 
 struct LegendItem {
   LegendMark sample = LegendMark::line;
@@ -38,6 +54,9 @@ void draw_legend(Canvas& canvas, glm::dvec2 at, std::span<const LegendItem> item
 
 /// A cross of two strokes, the mark of a contact. @param reach [px] from its middle to its ends, along x and y
 void draw_cross(Canvas& canvas, glm::dvec2 at, double reach, double line_width, std::uint32_t color);
+
+/// The mark of a traffic light, with a dark outline. @param radius [px] of the dot; all have its area
+void draw_signal(Canvas& canvas, glm::dvec2 at, double radius, LegendMark mark, std::uint32_t color);
 
 /// A polyline in dashes. @param on, off [px] lengths of dash and gap
 void draw_dashes(Canvas& canvas, std::span<const Line> lines, double line_width, double on, double off,

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "maps/map_text.h"
 #include "viz/canvas.h"
 #include "viz/color.h"
 #include "viz/legend.h"
+#include "viz/map_cells.h"
 #include "viz/theme.h"
 #include "viz/ticks.h"
 
@@ -57,14 +57,7 @@ Layout lay_out(const maps::GridGeometry& geometry, std::span<const LegendItem> l
 }
 
 std::vector<LegendItem> legend_of(const maps::CellCounts& census, const MapFigure& figure) {
-  const auto all = static_cast<double>(census.all());
-  const auto item = [&](std::uint32_t state, const char* name, std::uint64_t cells) {
-    return LegendItem{LegendMark::block, theme::kMapStates[state],
-                      fmt::format("{} {:.1f} %", name, 100.0 * static_cast<double>(cells) / all), theme::kFrame};
-  };
-  std::vector<LegendItem> items{item(SF_CELL_FREE, "free", census.free),
-                                item(SF_CELL_OCCUPIED, "occupied", census.occupied),
-                                item(SF_CELL_UNEXPLORED, "unexplored", census.unexplored)};
+  std::vector<LegendItem> items = state_legend(census);
   const std::size_t named = std::min(figure.places.size(), kNamedPlaces);
   for (std::size_t i = 0; i < named; ++i)
     items.push_back({LegendMark::robot, row_color(i + 1, named + 1), figure.places[i].name});
@@ -72,10 +65,7 @@ std::vector<LegendItem> legend_of(const maps::CellCounts& census, const MapFigur
 }
 
 void draw_cells(Canvas& canvas, const maps::OccupancyGrid& grid, const Layout& l) {
-  std::vector<std::uint32_t> pixels;
-  for (std::int64_t row = 0; row < maps::rows(grid.geometry); ++row)
-    for (std::int64_t column = 0; column < maps::columns(grid.geometry); ++column)
-      pixels.push_back(theme::kMapStates[static_cast<std::size_t>(grid.at({column, row}))]);
+  const std::vector<std::uint32_t> pixels = pixels_of(grid);
   const glm::dvec2 line = l.grid ? glm::dvec2{1.0, 1.0} : glm::dvec2{};
   canvas.image(l.low + line, l.high,
                {static_cast<int>(maps::columns(grid.geometry)), static_cast<int>(maps::rows(grid.geometry)), pixels});

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
-#include "maps/map_text.h"
 #include "viz/axes.h"
+#include "viz/map_cells.h"
 #include "viz/theme.h"
 
 namespace sf::viz {
@@ -16,14 +14,6 @@ constexpr double kGridLinesFrom = 5.0;  // [px] smallest side of a cell with a d
 world::Extent extent_of(const maps::GridGeometry& geometry) {
   return {geometry.left, geometry.top - geometry.cell * static_cast<double>(maps::rows(geometry)),
           geometry.left + geometry.cell * static_cast<double>(maps::columns(geometry)), geometry.top};
-}
-
-std::vector<std::uint32_t> pixels_of(const maps::OccupancyGrid& grid) {
-  std::vector<std::uint32_t> pixels;
-  for (std::int64_t row = 0; row < maps::rows(grid.geometry); ++row)
-    for (std::int64_t column = 0; column < maps::columns(grid.geometry); ++column)
-      pixels.push_back(theme::kMapStates[static_cast<std::size_t>(grid.at({column, row}))]);
-  return pixels;
 }
 
 void draw_cell_borders(Axes& axes, const maps::GridGeometry& geometry) {
@@ -43,23 +33,16 @@ void draw_cell_borders(Axes& axes, const maps::GridGeometry& geometry) {
 
 FigureOptions options_of(const world::World& world, const maps::OccupancyGrid& grid) {
   const maps::CellCounts cells = maps::count(grid);
-  const auto percent = [&](std::uint64_t part) {
-    return 100.0 * static_cast<double>(part) / static_cast<double>(cells.all());
-  };
-  const auto item = [&](std::uint32_t state, const char* name, std::uint64_t part) {
-    return LegendItem{LegendMark::block, theme::kMapStates[state], fmt::format("{} {:.1f} %", name, percent(part)),
-                      theme::kFrame};
-  };
+  const double explored = 100.0 * static_cast<double>(cells.free + cells.occupied) / static_cast<double>(cells.all());
   FigureOptions options;
   options.title = "Occupancy";
-  options.subtitle = fmt::format("{}{}{:.1f} % explored, {} x {} cells of {:g} m", world.name,
-                                 world.name.empty() ? "" : ": ", percent(cells.free + cells.occupied),
-                                 maps::columns(grid.geometry), maps::rows(grid.geometry), grid.geometry.cell);
+  options.subtitle =
+      fmt::format("{}{}{:.1f} % explored, {} x {} cells of {:g} m", world.name, world.name.empty() ? "" : ": ",
+                  explored, maps::columns(grid.geometry), maps::rows(grid.geometry), grid.geometry.cell);
   options.extent = extent_of(grid.geometry);
   options.margin = 0.0;
   options.background = theme::kMapStates[SF_CELL_UNEXPLORED];
-  options.legend = {item(SF_CELL_FREE, "free", cells.free), item(SF_CELL_OCCUPIED, "occupied", cells.occupied),
-                    item(SF_CELL_UNEXPLORED, "unexplored", cells.unexplored)};
+  options.legend = state_legend(cells);
   return options;
 }
 

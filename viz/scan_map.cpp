@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensors/laser_settings.h"
+
 namespace sf::viz {
 
 namespace {
@@ -28,20 +30,19 @@ maps::GridGeometry grid_over(const world::Extent& extent) {
 ScanMap::ScanMap(const maps::GridGeometry& geometry) : odds_(geometry, kRule), covered_(geometry) {}
 
 void ScanMap::add(const world::World& world, const base::ReadingBlock& scan) {
-  const world::Laser& laser = world.movers[scan.mover].lasers[scan.sensor];
+  const sensors::LaserSettings laser = sensors::lasers_of(world.movers[scan.mover])[scan.sensor];
   const double behind = 0.5 * odds_.geometry.cell;
   const double range_min = laser.range_min > 0.0 ? laser.range_min + behind : 0.0;
   const double range_max = std::min(laser.range_max, maps::kMaxRangeCells * odds_.geometry.cell);
   ranges_.assign(scan.values.begin(), scan.values.end());
   for (double& range : ranges_) range += behind;
   ends_.resize(ranges_.size());
-  const auto beams = maps::beam_directions(laser.fov, laser.samples);
+  std::vector<glm::dvec2>& beams = beams_[{laser.fov, laser.samples}];
+  if (beams.empty()) beams = maps::beam_directions(laser.fov, laser.samples);
   const auto traced = maps::trace_scan(odds_.geometry, {scan.X_WS, ranges_, beams, range_min, range_max}, ends_);
-  // A range that is not valid has the end of another beam, perhaps of one that ends on a mover.
   for (std::size_t k = 0; k < scan.hits.size(); ++k) {
     const bool moves = scan.hits[k] != base::kNoHit && world.models[scan.hits[k]].mover != world::kNone;
-    if (moves || !(ranges_[k] > range_min))
-      ends_[k] = maps::pack_end(maps::columns_of(ends_[k]), maps::rows_of(ends_[k]), false);
+    if (moves) ends_[k] = maps::without_hit(ends_[k]);
   }
   maps::add_traced_scan(odds_, traced, ends_, covered_);
 }

@@ -4,6 +4,8 @@
 // One hit weighs as much as eight scans that pass: a wall persists although beams graze it, and an obstacle that is
 // gone disappears.
 
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "base/reading.h"
@@ -30,6 +32,7 @@ class ScanMap {
  private:
   maps::LogOddsGrid odds_;
   maps::OccupancyGrid covered_;
+  std::map<std::pair<double, std::uint32_t>, std::vector<glm::dvec2>> beams_;  ///< by field of view and samples
   std::vector<double> ranges_;
   std::vector<std::uint32_t> ends_;
 };

@@ -1,6 +1,9 @@
 #include "viz/signal_layer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "viz/color.h"
@@ -21,20 +24,22 @@ constexpr SectorStyle kGreenBuoy{theme::kGreenBuoy, 0.14, 0.55};
 constexpr SectorStyle kField{theme::kForceField, 0.14, 0.55};
 constexpr double kLightRadius = 6.0;  // [px]
 
-std::uint32_t color_of(LightState state) {
-  switch (state) {
-    case LightState::red:
-    case LightState::flashing_red:
-      return theme::kLightRed;
-    case LightState::yellow:
-    case LightState::flashing_yellow:
-      return theme::kLightYellow;
-    case LightState::green:
-      return theme::kLightGreen;
-    case LightState::dark:
-      break;
-  }
-  return theme::kLightOff;
+/// A state by colour and shape, so that it is known without colours too.
+struct LightMark {
+  LightState state;
+  LegendMark mark;
+  std::uint32_t color;
+};
+constexpr std::array<LightMark, 6> kLightMarks{
+    {{LightState::green, LegendMark::outlined_dot, theme::kLightGreen},
+     {LightState::yellow, LegendMark::diamond, theme::kLightYellow},
+     {LightState::flashing_yellow, LegendMark::hollow_diamond, theme::kLightYellow},
+     {LightState::red, LegendMark::square, theme::kLightRed},
+     {LightState::flashing_red, LegendMark::hollow_square, theme::kLightRed},
+     {LightState::dark, LegendMark::crossed_dot, theme::kLightOff}}};
+
+const LightMark& mark_of(LightState state) {
+  return *std::find_if(kLightMarks.begin(), kLightMarks.end(), [&](const LightMark& m) { return m.state == state; });
 }
 
 void draw_emitter(Axes& axes, const Emitter& emitter) {
@@ -71,30 +76,24 @@ void draw_lights(Axes& axes, const world::World& world, double time) {
   for (const world::Light& light : world.lights) {
     const glm::dvec2 at = axes.pixel({light.X_WL.x, light.X_WL.y});
     axes.canvas().line(at, at + base::rotate(-light.X_WL.yaw, {2.2 * kLightRadius, 0.0}), theme::kBold, theme::kInk);
-    axes.canvas().disc(at, kLightRadius + 1.5, theme::kInk);
-    axes.canvas().disc(at, kLightRadius, color_of(signal_at(light, time).state));
+    const LightMark& shown = mark_of(signal_at(light, time).state);
+    draw_signal(axes.canvas(), at, kLightRadius, shown.mark, shown.color);
   }
 }
 
 std::vector<LegendItem> lights_legend(const world::World& world, double time) {
   std::vector<LegendItem> items;
-  const auto add = [&](LightState state, const char* text) {
-    const std::uint32_t color = color_of(state);
-    if (std::any_of(world.lights.begin(), world.lights.end(),
-                    [&](const world::Light& light) { return color_of(signal_at(light, time).state) == color; }))
-      items.push_back({LegendMark::dot, color, text});
-  };
-  add(LightState::green, "light, green");
-  add(LightState::yellow, "light, yellow");
-  add(LightState::red, "light, red");
-  add(LightState::dark, "light, dark");
+  for (const LightMark& m : kLightMarks) {
+    const bool shown = std::any_of(world.lights.begin(), world.lights.end(),
+                                   [&](const world::Light& light) { return signal_at(light, time).state == m.state; });
+    if (shown) items.push_back({m.mark, m.color, fmt::format("light, {}", name_of(m.state))});
+  }
   return items;
 }
 
 std::vector<LegendItem> signals_legend(const world::World& world) {
   std::vector<LegendItem> items;
-  if (!world.lights.empty())
-    items.push_back({LegendMark::dot, color_of(LightState::green), "traffic light, at the start"});
+  for (const LegendItem& item : lights_legend(world, 0.0)) items.push_back(item);
   if (has(world, Emitter::Kind::virtual_wall))
     items.push_back({LegendMark::block, with_opacity(kWallBeam.color, kWallBeam.inside), "virtual wall",
                      with_opacity(kWallBeam.color, kWallBeam.border)});

@@ -15,12 +15,13 @@ void draw_floor_holes(Axes& axes, const world::World& world);
 /// The beams and halos of virtual walls and docks, faint, without occlusion by walls.
 void draw_emitters(Axes& axes, const world::World& world);
 
-/// One disc per light, in its colour at `time` [s], with a short line in the direction of its lamps.
+/// One mark per light in its state at `time` [s]: a dot for green, a diamond for yellow, a square for red, hollow ones
+/// for flashing, a crossed dot for dark; with a short line in the direction of its lamps.
 void draw_lights(Axes& axes, const world::World& world, double time = 0.0);
 
-/// Items for the parts of this layer in the world.
+/// Items for the parts of this layer in the world; lights as at time 0.
 std::vector<LegendItem> signals_legend(const world::World& world);
-/// Items for lights alone, one per colour shown at `time` [s].
+/// Items for lights alone, one per state shown at `time` [s].
 std::vector<LegendItem> lights_legend(const world::World& world, double time);
 
 }  // namespace sf::viz

@@ -1,6 +1,6 @@
 #pragma once
 // Colours and line widths of figures; scales of values: viz/color.h. Colours are ARGB; curves take the colours of Okabe
-// and Ito (2008), which remain distinct for colour-blind readers.
+// and Ito (2002), which remain distinct for colour-blind readers.
 
 #include <array>
 #include <cstdint>

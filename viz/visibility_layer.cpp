@@ -42,15 +42,15 @@ double range_along(const std::vector<Wall>& walls, glm::dvec2 d, double range_ma
 
 }  // namespace
 
-std::vector<glm::dvec2> visible_points(const world::World& world, const base::Pose& X_WS, const world::Laser& laser,
-                                       int beams) {
-  const std::vector<Wall> walls = walls_near(world, X_WS, laser.range_max);
+std::vector<glm::dvec2> visible_points(const world::World& world, const base::Pose& X_WS,
+                                       const raycast::ScanSettings& scan, int beams) {
+  const std::vector<Wall> walls = walls_near(world, X_WS, scan.range_max);
   std::vector<glm::dvec2> ends;
   ends.reserve(static_cast<std::size_t>(beams));
   for (int k = 0; k < beams; ++k) {
-    const double bearing = laser.fov * (static_cast<double>(k) / (beams - 1) - 0.5);
+    const double bearing = scan.fov * (static_cast<double>(k) / (beams - 1) - 0.5);
     const glm::dvec2 d = base::rotate(X_WS.yaw + bearing, {1.0, 0.0});
-    ends.push_back(glm::dvec2{X_WS.x, X_WS.y} + range_along(walls, d, laser.range_max) * d);
+    ends.push_back(glm::dvec2{X_WS.x, X_WS.y} + range_along(walls, d, scan.range_max) * d);
   }
   return ends;
 }

@@ -3,13 +3,14 @@
 
 #include <vector>
 
+#include "raycast/beams.h"
 #include "world/world.h"
 
 namespace sf::viz {
 
 /// The ends of `beams` >= 2 beams spread over the field of view, in order of bearing, each at the first wall at the
 /// sensor's height or at range_max. Movers are ignored. [m] world frame
-std::vector<glm::dvec2> visible_points(const world::World& world, const base::Pose& X_WS, const world::Laser& laser,
-                                       int beams);
+std::vector<glm::dvec2> visible_points(const world::World& world, const base::Pose& X_WS,
+                                       const raycast::ScanSettings& scan, int beams);
 
 }  // namespace sf::viz

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "sensors/laser_settings.h"
 #include "viz/axes.h"
 #include "viz/color.h"
 #include "viz/mover_layer.h"
@@ -23,7 +24,8 @@ namespace sf::viz {
 namespace {
 
 using base::Pose;
-using world::Laser;
+using sensors::lasers_of;
+using sensors::LaserSettings;
 using world::Mover;
 using world::World;
 
@@ -37,7 +39,8 @@ std::uint32_t color_of(const World& world, const Mover& mover) {
 }
 
 /// [px] The outline of a laser's visible area, counter-clockwise in the world; a full turn has no corner at the sensor.
-std::vector<glm::dvec2> view_outline(const Axes& axes, const World& world, const Pose& X_WS, const Laser& laser) {
+std::vector<glm::dvec2> view_outline(const Axes& axes, const World& world, const Pose& X_WS,
+                                     const LaserSettings& laser) {
   std::vector<glm::dvec2> points;
   const bool whole_turn = laser.fov > 2.0 * M_PI - 1e-3;
   if (!whole_turn) points.push_back(axes.pixel({X_WS.x, X_WS.y}));
@@ -53,7 +56,7 @@ void draw_views(Axes& axes, const World& world) {
   const bool many = crowded(world);
   std::map<std::uint32_t, std::vector<Line>> unions;
   for (const Mover& mover : world.movers) {
-    for (const Laser& laser : mover.lasers) {
+    for (const LaserSettings& laser : lasers_of(mover)) {
       std::vector<glm::dvec2> outline = view_outline(axes, world, compose(mover.X_WM, laser.X_MS), laser);
       const std::uint32_t edge = mix(laser.color, theme::kFrame, 0.3);
       if (!many) axes.canvas().polygon(outline, with_opacity(laser.color, 0.13));
@@ -99,7 +102,7 @@ std::vector<LegendItem> view_legend(const World& world) {
   };
   std::map<std::uint32_t, Seen> by_color;
   for (const Mover& mover : world.movers)
-    for (const Laser& laser : mover.lasers) {
+    for (const LaserSettings& laser : lasers_of(mover)) {
       Seen& seen = by_color[laser.color | theme::kBlack];
       seen.fovs.insert(std::round(laser.fov * 1800.0 / M_PI) / 10.0);
       seen.ranges.insert(laser.range_max);
@@ -141,7 +144,7 @@ std::string subtitle_of(const World& world) {
   const auto tags = static_cast<std::size_t>(
       std::count_if(world.movers.begin(), world.movers.end(), [](const Mover& m) { return m.is_tag; }));
   std::size_t lasers = 0;
-  for (const Mover& mover : world.movers) lasers += mover.lasers.size();
+  for (const Mover& mover : world.movers) lasers += lasers_of(mover).size();
   std::string text = count(world.movers.size() - tags, "robot") + ", ";
   if (lasers > 0) text += count(lasers, "laser") + ", ";
   if (tags > 0) text += count(tags, "tag") + ", ";

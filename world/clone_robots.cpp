@@ -116,7 +116,7 @@ std::uint32_t robot_to_copy(const World& world, const std::string& name) {
     if (mover.is_tag) continue;
     if (!name.empty() && mover.name == name) return row;
     names.emplace_back(mover.name);
-    const bool has = !mover.lasers.empty() || !mover.sensors.empty();
+    const bool has = !mover.sensors.empty();
     if (found != kNone && (senses || !has)) continue;
     found = row;
     senses = has;

@@ -1,6 +1,7 @@
 #pragma once
-// The fields of a world's rows, one table per type of row. Snapshots, the hash, the checks of snapshots and, for fields
-// with a key, the known keys of Stage files and their reading follow from these tables.
+// The fields of a world's rows, one table per type of row. Snapshots, their bounds, the hash and, for fields with a
+// key, the known keys of Stage files and their reading follow from these tables. Links between rows are checked in
+// world/snapshot.cpp.
 //
 // The order is that of the snapshot's bytes: raise `kVersion` in world/snapshot.cpp with each change of a table.
 // Keys with a reader of their own are listed in world/keys.cpp.
@@ -13,7 +14,7 @@ namespace sf::world {
 // The words of enumerations in world files, in the order of their values.
 
 inline constexpr auto words_of(Drive) { return std::to_array<std::string_view>({"diff", "omni", "car", "skid"}); }
-inline constexpr auto words_of(DriverModel) { return std::to_array<std::string_view>({"direct", "player_create"}); }
+inline constexpr auto words_of(ActuatorModel) { return std::to_array<std::string_view>({"direct", "player_create"}); }
 inline constexpr auto words_of(Emitter::Kind) { return std::to_array<std::string_view>({"virtual_wall", "dock"}); }
 inline constexpr auto words_of(LightState) {
   return std::to_array<std::string_view>({"dark", "red", "yellow", "green", "flashing red", "flashing yellow"});
@@ -37,16 +38,7 @@ template <> inline constexpr auto kFields<Setting> = std::make_tuple(
 template <> inline constexpr auto kFields<Sensor> = std::make_tuple(
     field(&Sensor::type), field(&Sensor::name), field(&Sensor::X_MS), field(&Sensor::height),
     field(&Sensor::metres_per_unit), field(&Sensor::radians_per_unit), field(&Sensor::settings),
-    label(&Sensor::line), path(&Sensor::file));
-
-template <> inline constexpr auto kFields<LaserNoise> = std::make_tuple(
-    field(&LaserNoise::range_sigma), field(&LaserNoise::range_proportional), field(&LaserNoise::angle_sigma));
-
-template <> inline constexpr auto kFields<Laser> = std::make_tuple(
-    field(&Laser::name), field(&Laser::X_MS), field(&Laser::fov), field(&Laser::range_min),
-    field(&Laser::range_max, kAboveZero), field(&Laser::rate, kAboveZero), field(&Laser::phase), field(&Laser::latency),
-    field(&Laser::noise), field(&Laser::samples, Bounds{1, 1e6}), field(&Laser::resolution, Bounds{1}),
-    label(&Laser::color), field(&Laser::accuracy));
+    label(&Sensor::line), path(&Sensor::file), label(&Sensor::color));
 
 template <> inline constexpr auto kFields<PathPiece> = std::make_tuple(
     field(&PathPiece::X_WP), field(&PathPiece::length, kAboveZero), field(&PathPiece::curvature),
@@ -73,13 +65,13 @@ template <> inline constexpr auto kFields<LaneMarking> = std::make_tuple(
 template <> inline constexpr auto kFields<Magnet> = std::make_tuple(
     field(&Magnet::p), field(&Magnet::z), field(&Magnet::moment), field(&Magnet::radius), field(&Magnet::model));
 
-inline constexpr std::string_view kMotionBounds = "[xmin xmax ymin ymax zmin zmax yawmin yawmax]";
+inline constexpr std::string_view kMotionBounds = "[xmin xmax ymin ymax zmin zmax amin amax]";
 
 template <> inline constexpr auto kFields<Mover> = std::make_tuple(
     field(&Mover::name), field(&Mover::model), field(&Mover::id), field(&Mover::is_tag),
     field(&Mover::drive, Key{"drive"}),
     field(&Mover::X_WM),
-    field(&Mover::driver_model, Key{"command_law"}),
+    field(&Mover::actuator_model, Key{"command_law"}),
     field(&Mover::radius),
     field(&Mover::max_forward, Key{"velocity_bounds", Unit::length, kMotionBounds, 1, 2}, kAboveZero),
     field(&Mover::max_turn, Key{"velocity_bounds", Unit::angle, kMotionBounds, 7, 2}, Bounds{0.0, 1e6, true}),
@@ -87,7 +79,7 @@ template <> inline constexpr auto kFields<Mover> = std::make_tuple(
     field(&Mover::max_turn_acceleration, Key{"acceleration_bounds", Unit::angle, kMotionBounds, 7, 2}, kAboveZeroOrInfinite),
     field(&Mover::wheelbase, Key{"wheelbase", Unit::length}, kAboveZero),
     field(&Mover::track, Key{"track", Unit::length}, kAboveZero),
-    field(&Mover::body), field(&Mover::lasers), field(&Mover::sensors), field(&Mover::magnets));
+    field(&Mover::body), field(&Mover::sensors), field(&Mover::magnets));
 
 template <> inline constexpr auto kFields<Path> = std::make_tuple(field(&Path::name), field(&Path::pieces));
 

@@ -77,8 +77,7 @@ struct Region {
 // centres then have no wall between them: each point between is within the circle's radius of one of them.
 Region grid_over(const WallTree& walls, const Mover& robot) {
   const glm::dvec2 p{robot.X_WM.x, robot.X_WM.y};
-  Box box = box_around(p, kOpenWorld);
-  for (const Segment& w : walls.walls()) box = base::united(box, box_of(w.a, w.b));
+  Box box = base::united(box_around(p, kOpenWorld), walls.extent());
   const double radius = clear_radius(robot);
   const Box most = box_around(p, 2.0 * radius * kMaxCells / 2.0);
   box.min = {std::max(box.min.x, most.min.x), std::max(box.min.y, most.min.y)};
@@ -137,12 +136,6 @@ std::uint32_t cell_near(const Region& region, const WallTree& walls, double radi
   return nearest;
 }
 
-Box box_around_all(std::span<const Segment> edges) {
-  Box box = base::empty_box();
-  for (const Segment& edge : edges) box = base::united(box, box_of(edge.a, edge.b));
-  return box;
-}
-
 // True for a region that is not enclosed: it reaches the border of the searched area or of a map's known area.
 bool is_open(const Region& region, const Box& known, double radius) {
   const double reach = radius + 1.5 * region.cell;
@@ -158,7 +151,7 @@ bool is_open(const Region& region, const Box& known, double radius) {
 // Takes the largest enclosed region, unless an open region is a hundred times as large.
 void take_largest(std::span<const Segment> known, Region& region, std::vector<Cell>& state, const WallTree& walls,
                   double radius) {
-  const Box all_known = box_around_all(known);
+  const Box all_known = box_of(known);
   std::vector<std::uint32_t> inside, outside;
   for (std::uint32_t at = 0; at < state.size(); ++at) {
     if (state[at] != Cell::unknown) continue;
@@ -231,7 +224,7 @@ bool clear_of_tags(const World& world, glm::dvec2 p, double radius) {
 
 // The floor plan or map: a picture whose area is at least half of the walls' extent. Null: none.
 const Model* plan_of(const World& world) {
-  const Box box = box_around_all(world.walls);
+  const Box box = box_of(world.walls);
   const glm::dvec2 size = box.max - box.min;
   for (const Model& model : world.models)
     if (model.is_bitmap && model.mover == kNone && 2.0 * model.size.x * model.size.y >= size.x * size.y) return &model;

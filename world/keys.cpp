@@ -34,17 +34,9 @@ constexpr auto kPosition = std::to_array<std::string_view>({
 
 constexpr auto kSensing = std::to_array<std::string_view>({"noise", "resolution", "rate", "phase", "latency", "update_interval", "accuracy"});
 
-constexpr auto kLaser = std::to_array<std::string_view>({"fov", "samples", "range_min", "range_max", "laser_color",
-  // Stage's older name of `resolution`, of the same meaning
-  "laser_sample_skip"});
-
-constexpr auto kRanger = std::to_array<std::string_view>({"scount", "sview", "spose[]", "spose3[]",
-  // known, not modelled
-  "ssize", "sraycount"});
-
 constexpr auto kLight = std::to_array<std::string_view>({"lamps", "phases", "phase[]", "stop_lines"});
 
-constexpr auto kSensor = std::to_array<std::string_view>({"pose", "size", "range", "view", "fov", "samples", "color", "color_rgba", "name"});
+constexpr auto kBlockSensor = std::to_array<std::string_view>({"pose", "size", "color", "color_rgba", "name"});
 
 constexpr auto kBlock = std::to_array<std::string_view>({"points", "point[]", "z",
   // known, not modelled
@@ -56,7 +48,7 @@ constexpr auto kPath = std::to_array<std::string_view>({"name", "pose", "pieces"
   "magnetic_moment", "magnet_spacing", "magnet_size", "magnet_top"});
 
 constexpr auto kUnmodelledTypes = std::to_array<std::string_view>({"actuator", "blinkenlight", "blobfinder", "bumper", "camera", "charger", "fiducial", "gripper",
-  "laneedge", "lightindicator", "magnetometer", "map", "powerpack", "puck", "sonar", "speech", "wifi"});
+  "laneedge", "laser", "lightindicator", "magnetometer", "map", "powerpack", "puck", "ranger", "sonar", "speech", "wifi"});
 constexpr auto kNoBodyTypes = std::to_array<std::string_view>({"blobfinder", "bumper", "fiducial", "laneedge", "magnetometer", "powerpack", "ranger", "sonar",
   "speech", "wifi"});
 constexpr auto kIgnoredTypes = std::to_array<std::string_view>({"window", "gui", "menu"});
@@ -100,14 +92,10 @@ std::vector<Words> keys_in(KeyScope where) {
       return {kWorld, fields_of<World>()};
     case KeyScope::position:
       return model_and({kPosition, fields_of<Mover>()});
-    case KeyScope::laser:
-      return model_and({kSensing, kLaser});
-    case KeyScope::ranger:
-      return model_and({kSensing, kRanger});
     case KeyScope::light:
       return model_and({kLight, fields_of<Light>()});
     case KeyScope::sensor:
-      return {kSensor, kSensing};
+      return {kBlockSensor, kSensing};
     case KeyScope::block:
       return {kBlock};
     case KeyScope::device:
@@ -130,8 +118,6 @@ std::vector<Words> keys_in(KeyScope where) {
 EntityKind entity_kind(std::string_view type) {
   if (type == "model") return EntityKind::model;
   if (type == "position") return EntityKind::position;
-  if (type == "laser") return EntityKind::laser;
-  if (type == "ranger") return EntityKind::ranger;
   if (type == "light") return EntityKind::light;
   if (type == "road") return EntityKind::road;
   if (type == "path") return EntityKind::path;
@@ -142,8 +128,7 @@ EntityKind entity_kind(std::string_view type) {
 bool has_no_body(std::string_view type) { return has(kNoBodyTypes, type); }
 
 std::vector<std::string_view> known_types() {
-  std::vector<std::string_view> types{"model",  "position", "laser", "ranger", "light",
-                                      "sensor", "block",    "road",  "path"};
+  std::vector<std::string_view> types{"model", "position", "light", "sensor", "block", "road", "path"};
   types.insert(types.end(), kUnmodelledTypes.begin(), kUnmodelledTypes.end());
   types.insert(types.end(), kIgnoredTypes.begin(), kIgnoredTypes.end());
   return types;

@@ -10,24 +10,10 @@
 namespace sf::world {
 
 /// The entity in which a property stands.
-enum class KeyScope {
-  world,
-  model,
-  position,
-  laser,
-  ranger,
-  light,
-  sensor,
-  block,
-  device,
-  sensing,
-  road,
-  path,
-  unmodelled
-};
+enum class KeyScope { world, model, position, light, sensor, block, device, sensing, road, path, unmodelled };
 
 /// Treatment of a type of the world file.
-enum class EntityKind { model, position, laser, ranger, light, road, path, unmodelled, ignored, unknown };
+enum class EntityKind { model, position, light, road, path, unmodelled, ignored, unknown };
 
 EntityKind entity_kind(std::string_view type);
 

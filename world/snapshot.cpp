@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -8,7 +10,7 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 4;
+constexpr std::uint16_t kVersion = 5;
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("broken world snapshot: " + reason); }
 
@@ -57,7 +59,9 @@ World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   base::ByteReader in(bytes);
   if (in.get<std::uint32_t>() != kMagic) refuse("these bytes are no world");
   const auto version = in.get<std::uint16_t>();
-  if (version != kVersion) refuse("version " + std::to_string(version) + "; expected " + std::to_string(kVersion));
+  if (version != kVersion)
+    throw base::InputError(
+        fmt::format("this world snapshot has version {}; this sensorfarm reads version {}", version, kVersion));
 
   World world;
   RowReader{in}.get(world);

@@ -1,7 +1,5 @@
 #include "world/wall_tree.h"
 
-#include <utility>
-
 namespace sf::world {
 
 namespace {
@@ -13,6 +11,12 @@ double side(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) { return base::cross(b - a
 bool within(double p, double a, double b) { return std::min(a, b) <= p && p <= std::max(a, b); }
 
 }  // namespace
+
+Box box_of(std::span<const Segment> segments) {
+  Box box = base::empty_box();
+  for (const Segment& segment : segments) box = united(box, box_of(segment.a, segment.b));
+  return box;
+}
 
 double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) { return length(from_segment(p, a, b)); }
 
@@ -46,6 +50,8 @@ int winding_number(std::span<const Segment> edges, glm::dvec2 p) {
 
 WallTree::WallTree(std::span<const Segment> walls) {
   std::vector<Box> boxes;
+  boxes.reserve(walls.size());
+  walls_.reserve(walls.size());
   for (const Segment& wall : walls) boxes.push_back(box_of(wall.a, wall.b));
   tree_ = base::BoxTree(boxes, kLeafWalls);
   for (const std::uint32_t row : tree_.order()) walls_.push_back(walls[row]);

@@ -16,6 +16,9 @@ using base::Box;
 using base::box_around;
 using base::box_of;
 
+/// Box of all segments; the box of no point without any.
+Box box_of(std::span<const Segment> segments);
+
 /// Vector from the segment's nearest point to `p`. [m]
 inline glm::dvec2 from_segment(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
   const glm::dvec2 along = b - a;
@@ -50,6 +53,7 @@ class WallTree {
   }
 
   std::span<const Segment> walls() const { return walls_; }
+  Box extent() const { return tree_.extent(); }  ///< the box of no point without walls
 
  private:
   std::vector<Segment> walls_;  ///< neighbours stand together

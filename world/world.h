@@ -78,15 +78,16 @@ struct Setting {
 /// A sensor that a mover carries, as described in the world file. The settings are interpreted by the sensor type
 /// (sensors/<type>.cpp).
 struct Sensor {
-  std::string type;     ///< the sensor type's word, e.g. `magnetometer`
-  std::string name;     ///< unique among the mover's sensors
+  std::string type;     ///< a word of the sensor type, e.g. `magnetometer`
+  std::string name;     ///< of the model; equal only for the `sensor( )` blocks of one model
   Pose X_MS;            ///< the model's frame in the mover's frame, its origin included; z is the foot of the model
-  double height = 0.0;  ///< [m] of the model
+  double height = 0.0;  ///< [m] of the model; 0 for a `sensor( )` block, whose z is its middle
   double metres_per_unit = 1.0;   ///< [m] per unit of length of the file
   double radians_per_unit = 1.0;  ///< [rad] per unit of angle of the file
   std::vector<Setting> settings;
   int line = 0;  ///< 1-based, of the model in `file`
   std::string file;
+  std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the field of view in figures
 };
 
 /// A sensor type's word in world files, and its properties beside those of every model and of every sensor (rate,
@@ -94,15 +95,8 @@ struct Sensor {
 struct SensorKeyword {
   std::string_view type;
   std::span<const std::string_view> keys;  ///< without indices: `spose[]`
-};
-
-/// Noise of a laser. All zero: none. Range noise applies only to beams with an echo.
-struct LaserNoise {
-  double range_sigma = 0.0;         ///< [m] constant part of the range's standard deviation
-  double range_proportional = 0.0;  ///< [-] part of the standard deviation per metre of range
-  double angle_sigma = 0.0;         ///< [rad] standard deviation of each beam's bearing, applied before the cast
-
-  bool has_range() const { return range_sigma > 0.0 || range_proportional > 0.0; }
+  /// Properties of its `sensor( )` blocks, each of which is a sensor of this type; empty: it has no blocks.
+  std::span<const std::string_view> block_keys = {};
 };
 
 /// The requested accuracy of one sensor or of all sensors: a word defined by the sensor type (sensors/accuracy.h).
@@ -112,38 +106,11 @@ struct Accuracy {
   int line = 0;  ///< 1-based, in `file`
 };
 
-/// A scanning range finder. Bearings run from -fov/2 to +fov/2, both ends cast exactly; a single sample has bearing 0.
-struct Laser {
-  std::string name;              ///< unique among the mover's sensors
-  Pose X_MS;                     ///< sensor in the mover's frame; z is the height above the mover's origin
-  double fov = M_PI;             ///< [rad] in [0, 2 pi]
-  std::uint32_t samples = 180;   ///< in [1, 1'000'000]
-  double range_min = 0.0;        ///< [m] closer echoes read range_min
-  double range_max = 8.0;        ///< [m] > 0; the reading of a beam without an echo
-  std::uint32_t resolution = 1;  ///< only every n-th beam and the last are cast; the others are interpolated
-  double rate = 10.0;            ///< [Hz] > 0
-  double phase = 0.0;            ///< [s] time of the first reading
-  double latency = 0.0;          ///< [s] from measurement to delivery
-  LaserNoise noise;
-  Accuracy accuracy;
-  std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the field of view in figures
-};
-
-/// Bearing of sample `i` of a scan in the sensor's frame [rad]; exact at both ends of the field of view, and exactly
-/// symmetric about 0.
-inline double bearing_of(double fov, std::uint32_t samples, std::uint32_t i) {
-  if (samples < 2) return 0.0;
-  const double last = samples - 1;
-  const double step = fov / last;
-  return 2.0 * i <= last ? -0.5 * fov + i * step : 0.5 * fov - (last - i) * step;
-}
-inline double bearing_of(const Laser& laser, std::uint32_t i) { return bearing_of(laser.fov, laser.samples, i); }
-
 /// Drive types. `skid`: wheels that cannot be steered on both sides (Pioneer 3-AT); they scrub in turns.
 enum class Drive { differential, omni, car, skid };
 
-/// Transformation between a commanded twist and the wheels (robots/driver_model.h).
-enum class DriverModel : std::uint8_t {
+/// Transformation between a commanded twist and the wheels (robots/actuator_model.h).
+enum class ActuatorModel : std::uint8_t {
   direct,        ///< none
   player_create  ///< Player's driver for the iRobot Create: whole millimetres, half the radius, at most 2 m
 };
@@ -165,10 +132,9 @@ struct Mover {
   double max_turn_acceleration = HUGE_VAL;  ///< [rad/s^2] > 0
   double wheelbase = 1.0;                   ///< [m] between the axles of a car
   double track = 0.3;                       ///< [m] > 0, between left and right wheels, as measured by encoders
-  DriverModel driver_model = DriverModel::direct;
-  std::string controller;  ///< default controller; empty: the file names no known controller
-  std::vector<Laser> lasers;
-  std::vector<Sensor> sensors;  ///< of all other sensor types, in file order
+  ActuatorModel actuator_model = ActuatorModel::direct;
+  std::string controller;       ///< default controller; empty: the file names no known controller
+  std::vector<Sensor> sensors;  ///< in file order
   std::vector<Magnet> magnets;  ///< carried magnets, in the mover's frame
 };
 

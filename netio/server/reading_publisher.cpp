@@ -25,8 +25,8 @@ ReadingPublisher::ReadingPublisher(const world::World& world, const sensors::Sen
       memory_(thread_pool_.threads()) {
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
-      streams_[group.kind->id].push_back(
-          {0, layout_.sends(*group.kind, row) ? group.kind->parts(row, layout_.wire) : 0});
+      streams_[group.type->id].push_back(
+          {0, layout_.sends(*group.type, row) ? group.type->parts(row, layout_.wire) : 0});
   for (Memory& memory : memory_) {
     memory.payload.reserve(netio::kMaxHeaderlessDatagram);
     memory.packet.reserve(netio::kMaxDatagram);
@@ -34,10 +34,10 @@ ReadingPublisher::ReadingPublisher(const world::World& world, const sensors::Sen
 }
 
 ReadingPublisher::Job ReadingPublisher::make_job(const AddressedReading& addressed) {
-  const sensors::SensorSet::Group& group = *sensor_set_.group(addressed.reading->kind);
+  const sensors::SensorSet::Group& group = *sensor_set_.group(addressed.reading->type);
   const sensors::SensorSpec& row = sensor_set_.row(*addressed.reading);
-  Stream& stream = streams_.at(addressed.reading->kind)[static_cast<std::size_t>(&row - group.rows.data())];
-  return {addressed, group.kind, &row, &stream, stream.sent, 0, true};
+  Stream& stream = streams_.at(addressed.reading->type)[static_cast<std::size_t>(&row - group.rows.data())];
+  return {addressed, group.type, &row, &stream, stream.sent, 0, true};
 }
 
 /// @return how many parts could not be made; each of the others is put: (part, endpoint, bytes).
@@ -52,12 +52,13 @@ std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put
   header.accuracy = netio::encode_accuracy({reading.mode, !reading.quality.empty(), reading.bound});
   header.session = job.addressed.session_token.session;
   header.token = job.addressed.session_token.token;
-  const auto port = static_cast<std::uint16_t>(netio::port(layout_.ports(*job.kind), header.robot, reading.sensor));
+  header.state = job.addressed.state;
+  const auto port = static_cast<std::uint16_t>(netio::port(layout_.ports(*job.type), header.robot, reading.sensor));
 
   std::uint32_t failed = 0;
   for (std::uint32_t part = 0; part < job.stream->parts; ++part) {
     memory.payload.clear();
-    const std::uint8_t type = job.kind->encode(*job.row, reading, layout_.wire, part, memory.payload);
+    const std::uint8_t type = job.type->encode(*job.row, reading, layout_.wire, part, memory.payload);
     if (type == 0) {
       ++failed;
     } else if (layout_.wire == sensors::WireFormat::thesis) {

@@ -25,6 +25,7 @@ struct AddressedReading {
   const base::ReadingBlock* reading = nullptr;
   std::uint32_t address = 0;
   netio::SessionToken session_token;
+  netio::StateQuality state;
 };
 
 /// Fleets of more sensors than this are encoded on all cores, and sent by a thread of their own.
@@ -55,7 +56,7 @@ class ReadingPublisher {
   /// A reading that is being encoded.
   struct Job {
     AddressedReading addressed;
-    const sensors::SensorType* kind = nullptr;
+    const sensors::SensorType* type = nullptr;
     const sensors::SensorSpec* row = nullptr;
     Stream* stream = nullptr;
     std::uint32_t sequence = 0;
@@ -76,7 +77,7 @@ class ReadingPublisher {
   StreamLayout layout_;
   netio::Outbox outbox_;
   base::ThreadPool thread_pool_;
-  std::map<std::uint8_t, std::vector<Stream>> streams_;  ///< by kind, per row of its group
+  std::map<std::uint8_t, std::vector<Stream>> streams_;  ///< by type, per row of its group
   std::vector<Job> jobs_;
   std::vector<Memory> memory_;  ///< per thread
   std::uint64_t not_numbers_ = 0;

@@ -33,8 +33,14 @@ netio::V2v state_of(const base::Report& report, const base::Intent& intent) {
 std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mover, double seconds) {
   double fastest = 0.0;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
-    for (const sensors::SensorSpec& row : sensor_set.of(group.kind->id, mover)) fastest = std::max(fastest, row.rate);
+    for (const sensors::SensorSpec& row : sensor_set.of(group.type->id, mover)) fastest = std::max(fastest, row.rate);
   return seconds > 0.0 && fastest > 0.0 ? base::nanoseconds(std::max(seconds, 2.5 / fastest)) : 0;
+}
+
+/// [ms] since 1970
+std::int64_t utc_now() {
+  const auto since = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(since).count();
 }
 
 }  // namespace
@@ -52,7 +58,9 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       started_(!options.wait_for_start),
       reading_timeout_(patience_of(sensor_set, mover, options.stop_after)),
       log_(options.log_descriptor),
-      controller_(options.controller.name) {
+      controller_(options.controller.name),
+      utc_(options.utc ? options.utc : utc_now) {
+  if (options.spat) spat_.emplace(world, roads_ ? &*roads_ : nullptr, *options.spat);
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, options.controller);
 }
 
@@ -106,6 +114,7 @@ RobotClientStats RobotClient::stats() const {
   stats.distance_m = body_.distance();
   stats.pose = body_.state().X_WM;
   stats.error = error_;
+  if (spat_) stats.spat = spat_->counts();
   stats.stops = stops_;
   stats.lines_left_out = log_.left_out();
   return stats;
@@ -156,11 +165,14 @@ void RobotClient::gather_others(std::int64_t now) {
   }
 }
 
-/// Lights go by the farm's clock.
+/// Lights go by the farm's clock, and by what they say.
 void RobotClient::gather_signals(std::int64_t now) {
   const double time = 1e-9 * static_cast<double>(link_.clock().to_farm(now));
   signals_.clear();
   for (const world::Light& light : world_.lights) signals_.push_back(world::signal_at(light, time));
+  if (!spat_) return;
+  spat_->receive(now, utc_());
+  spat_->apply(now, signals_);
 }
 
 bool RobotClient::readings_timed_out(std::int64_t now) const {

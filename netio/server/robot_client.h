@@ -14,6 +14,7 @@
 #include "control/error_summary.h"
 #include "netio/rate_limited_log.h"
 #include "netio/server/robot_link.h"
+#include "netio/server/spat_listener.h"
 #include "netio/server/wire_ids.h"
 #include "robots/robot_body.h"
 #include "sensors/sensor_set.h"
@@ -27,10 +28,12 @@ struct RobotClientOptions {
   LinkOptions link;
   control::ControllerConfig controller;
   std::uint64_t seed = 1;
-  double forget = 10.0;         ///< [s] of silence after which another robot is no obstacle any more; 0: never
-  double stop_after = 0.5;      ///< [s] without a reading after which it stands; 0: never
-  bool wait_for_start = false;  ///< it stands until the start signal comes
-  int log_descriptor = 2;       ///< of its log's lines; -1: none
+  double forget = 10.0;                 ///< [s] of silence after which another robot is no obstacle any more; 0: never
+  double stop_after = 0.5;              ///< [s] without a reading after which it stands; 0: never
+  bool wait_for_start = false;          ///< it stands until the start signal comes
+  int log_descriptor = 2;               ///< of its log's lines; -1: none
+  std::optional<netio::Endpoint> spat;  ///< where it listens for SPaT of traffic lights; nullopt: plans of the world
+  std::function<std::int64_t()> utc;    ///< [ms] since 1970; empty: the machine's clock
 };
 
 /// How a robot's process went.
@@ -52,6 +55,7 @@ struct RobotClientStats {
   double distance_m = 0.0;           ///< driven
   base::Pose pose;                   ///< at the end
   control::ErrorSummary error;
+  std::optional<SpatCounts> spat;  ///< nullopt: it does not listen
 };
 
 /// Times are of the robot's own clock [ns], which begins at 0 and does not go back. World and sensor set must outlive
@@ -78,6 +82,7 @@ class RobotClient {
   double rate() const { return made_.rate; }  ///< [Hz] of turns
   bool done() const { return started_ && made_.controller->done(); }
   const RobotLink& link() const { return link_; }
+  const SpatListener* spat() const { return spat_ ? &*spat_ : nullptr; }  ///< null: it does not listen
   RobotClientStats stats() const;
 
  private:
@@ -116,6 +121,8 @@ class RobotClient {
   std::vector<base::ReadingBlock> readings_;
   std::vector<control::Neighbour> others_;
   std::vector<world::Signal> signals_;
+  std::optional<SpatListener> spat_;
+  std::function<std::int64_t()> utc_;
 };
 
 }  // namespace sf::server

@@ -48,15 +48,15 @@ std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& s
                                                      std::uint32_t mover) {
   std::vector<Stream> streams;
   for (const SensorStream& source : sensor_streams(sensor_set, layout, mover))
-    if (source.kind->read != nullptr) streams.push_back({source});
+    if (source.type->read != nullptr) streams.push_back({source});
   return streams;
 }
 
 std::vector<netio::StreamSpec> RobotLink::specs(const StreamLayout& layout) const {
   std::vector<netio::StreamSpec> specs;
   for (const Stream& stream : streams_) {
-    const sensors::SensorType& kind = *stream.source.kind;
-    specs.push_back({id_, stream.source.row->sensor, layout.ports(kind), std::string(kind.name)});
+    const sensors::SensorType& type = *stream.source.type;
+    specs.push_back({id_, stream.source.row->sensor, layout.ports(type), std::string(type.name)});
   }
   return specs;
 }
@@ -66,7 +66,7 @@ netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout) c
   const std::vector<netio::StreamSpec> all = specs(layout);
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     const SensorStream& source = streams_[i].source;
-    receiver.streams.push_back({all[i], source.row->elements * element_width(*source.kind)});
+    receiver.streams.push_back({all[i], source.row->elements * element_width(*source.type)});
   }
   receiver.headerless = layout.wire == sensors::WireFormat::thesis;
   const sensors::WireFormat wire = layout.wire;
@@ -86,7 +86,7 @@ void RobotLink::send_state(const netio::V2v& state, std::int64_t now) {
   header.time = now;
   if (now >= next_request_) {
     netio::Subscribe request{netio::kNeighboursBit};
-    for (const Stream& stream : streams_) request.kinds |= 1u << stream.source.kind->id;
+    for (const Stream& stream : streams_) request.types |= 1u << stream.source.type->id;
     header.sequence = requests_;
     netio::encode(header, request, packet_);
     send(netio::Type::subscribe, requests_++, now);
@@ -142,7 +142,7 @@ netio::MessageId RobotLink::reading_id(Stream& stream, std::span<const std::uint
     stream.piece = 0;
   }
   const std::uint32_t low = stream.source.row->sensor;
-  return {id_, std::uint32_t{stream.source.kind->id} << 16 | low, stream.piece++ << 32 | stream.sequence};
+  return {id_, std::uint32_t{stream.source.type->id} << 16 | low, stream.piece++ << 32 | stream.sequence};
 }
 
 netio::MessageId RobotLink::packet_id(std::span<const std::uint8_t> bytes) {
@@ -191,7 +191,7 @@ std::span<RobotLink::Newest> RobotLink::readings() {
     newest.row = source.row;
     newest.block.mover = mover_;
     newest.block.sensor = source.row->sensor;
-    newest.block.kind = source.kind->id;
+    newest.block.type = source.type->id;
     newest.block.sequence = whole->sequence;
     newest.block.time = clock_.to_own(whole->time);
     newest.block.values = whole->values;
@@ -201,8 +201,8 @@ std::span<RobotLink::Newest> RobotLink::readings() {
 
 LinkCounts RobotLink::counts() const {
   LinkCounts counts{v2v_socket_.sent(), out_.counts(), in_.counts(), receiver_.counts(), v2v_socket_.counts(), 0, {}};
-  counts.kernel_drops = port_listener_.kernel_drops() + netio::kernel_drops(v2v_socket_.socket());
-  for (const Stream& stream : streams_) counts.whole[std::string(stream.source.kind->name)] += stream.whole;
+  counts.socket_drops = port_listener_.socket_drops() + netio::socket_drops(v2v_socket_.socket());
+  for (const Stream& stream : streams_) counts.whole[std::string(stream.source.type->name)] += stream.whole;
   return counts;
 }
 

@@ -33,8 +33,8 @@ struct LinkCounts {
   netio::DelayCounts in;
   netio::ReceiverCounts readings;
   netio::PacketCounts packets;                 ///< what came to the socket it speaks from
-  std::uint64_t kernel_drops = 0;              ///< datagrams that came while a socket's buffer was full
-  std::map<std::string, std::uint64_t> whole;  ///< readings, by kind
+  std::uint64_t socket_drops = 0;              ///< datagrams that came while a socket's buffer was full
+  std::map<std::string, std::uint64_t> whole;  ///< readings, by type
 };
 
 /// Times are of the robot's own clock [ns], which does not go back. World and sensor set must outlive it. One thread.

@@ -20,7 +20,7 @@ netio::PacketStatus reason_of(sensors::PayloadError fault) {
 
 /// The thesis' datagrams do not tell their type: the port does.
 std::uint8_t type_of(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header) {
-  return wire == sensors::WireFormat::farm ? static_cast<std::uint8_t>(header.type) : source.kind->id;
+  return wire == sensors::WireFormat::farm ? static_cast<std::uint8_t>(header.type) : source.type->id;
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, c
   std::vector<SensorStream> sources;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
-      if (layout.sends(*group.kind, row)) sources.push_back({group.kind, &row});
+      if (layout.sends(*group.type, row)) sources.push_back({group.type, &row});
   return sources;
 }
 
@@ -37,22 +37,22 @@ std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, c
                                          std::uint32_t mover) {
   std::vector<SensorStream> sources;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
-    for (const sensors::SensorSpec& row : sensor_set.of(group.kind->id, mover))
-      if (layout.sends(*group.kind, row)) sources.push_back({group.kind, &row});
+    for (const sensors::SensorSpec& row : sensor_set.of(group.type->id, mover))
+      if (layout.sends(*group.type, row)) sources.push_back({group.type, &row});
   return sources;
 }
 
 netio::PayloadInfo inspect_payload(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header,
                                    std::span<const std::uint8_t> payload) {
-  if (wire == sensors::WireFormat::farm && netio::kind_of(header.type) != source.kind->id)
+  if (wire == sensors::WireFormat::farm && netio::sensor_type_of(header.type) != source.type->id)
     return {netio::PacketStatus::wrong_source};
-  const sensors::PayloadPart part = source.kind->decode(*source.row, payload, type_of(source, wire, header), wire);
+  const sensors::PayloadPart part = source.type->decode(*source.row, payload, type_of(source, wire, header), wire);
   return {reason_of(part.fault), part.elements, part.part, part.parts};
 }
 
 void decode_payload(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header,
                     std::span<const std::uint8_t> payload, std::span<double> values) {
-  source.kind->read(*source.row, payload, type_of(source, wire, header), wire, values);
+  source.type->read(*source.row, payload, type_of(source, wire, header), wire, values);
 }
 
 }  // namespace sf::server

@@ -13,7 +13,7 @@ namespace sf::server {
 
 /// The sensor behind one port.
 struct SensorStream {
-  const sensors::SensorType* kind = nullptr;
+  const sensors::SensorType* type = nullptr;
   const sensors::SensorSpec* row = nullptr;
 };
 

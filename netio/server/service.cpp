@@ -9,6 +9,16 @@
 
 namespace sf::server {
 
+namespace {
+
+/// [ns] since 1970.
+std::int64_t unix_time() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
 class Service::Clock {
  public:
   std::int64_t now() const {
@@ -28,12 +38,15 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
       publisher_(world, sensor_set, layout, netio::Outbox(receiver_.inbox().socket(), outbox_options(sensor_set))),
       farm_(world, device,
             farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
+      quality_(world.movers.size()),
       no_return_filter_(sensor_set, options.no_return_inf),
       interval_(options.rate > 0.0 ? 1.0 / options.rate : world.interval),
-      capped_(options.rate > 0.0) {}
+      filtered_(options.receiver.filter.enabled),
+      only_at_ticks_(options.rate > 0.0) {}
 
 void Service::run(const std::atomic<bool>& stop, double duration) {
   const Clock clock;
+  receiver_.filter().set_epoch(unix_time());
   const std::int64_t step = base::nanoseconds(interval_);
   std::int64_t next = 0;  // [ns] of the tick
   while (!stop) {
@@ -66,7 +79,7 @@ void Service::wait_until(const Clock& clock, std::int64_t when, const std::atomi
 }
 
 std::int64_t Service::next_due() const {
-  return capped_ ? farm::kNever : std::min(farm_.next_due(), farm_.next_delivery());
+  return only_at_ticks_ ? farm::kNever : std::min(farm_.next_due(), farm_.next_delivery());
 }
 
 void Service::tick(std::int64_t now) {
@@ -77,17 +90,22 @@ void Service::tick(std::int64_t now) {
 
 void Service::publish_due(std::int64_t now, bool between) {
   receive_pending(now);
+  receiver_.predict(now);
   for (const auto& [id, row] : receiver_.robots()) {
     farm_.set_absent(row, receiver_.update_absent(id, now));
     farm_.subscribe(row, subscribed_types(id, now));
+    note_quality(row, now);
   }
+  for (const auto& [id, row] : receiver_.tags()) farm_.set_absent(row, receiver_.update_absent_tag(row));
   const auto states = receiver_.states(now);
   const auto readings = no_return_filter_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
   for (const base::ReadingBlock& reading : readings) {
     // A delayed reading of a robot that left meanwhile has no address.
     const std::uint32_t id = world_.movers[reading.mover].id;
     const auto to = receiver_.inbox().address(id);
-    if (to) addressed_readings_.push_back({&reading, to->address, receiver_.inbox().session_token_for(id)});
+    if (to)
+      addressed_readings_.push_back(
+          {&reading, to->address, receiver_.inbox().session_token_for(id), quality_at(reading.mover, reading.time)});
   }
   publisher_.queue(addressed_readings_);
   publisher_.flush();
@@ -95,19 +113,32 @@ void Service::publish_due(std::int64_t now, bool between) {
   warn_of_missed(now);
 }
 
+void Service::note_quality(std::uint32_t row, std::int64_t now) {
+  QualityLog& log = quality_[row];
+  log.entries[log.next] = {now, receiver_.quality(row, now)};
+  log.next = (log.next + 1) % log.entries.size();
+}
+
+/// Not stated for readings that were held longer than the log reaches.
+netio::StateQuality Service::quality_at(std::uint32_t row, std::int64_t time) const {
+  for (const QualityLog::Entry& entry : quality_[row].entries)
+    if (entry.time == time) return entry.quality;
+  return {};
+}
+
 /// Bit k: robot `id` is active, and wants its sensors of type k.
 std::uint32_t Service::subscribed_types(std::uint32_t id, std::int64_t now) const {
   std::uint32_t types = 0;
   for (const sensors::SensorSet::Group& group : sensor_set_.groups())
-    if (receiver_.inbox().is_subscribed(id, group.kind->id, now) && layout_.sends_any(group))
-      types |= 1u << group.kind->id;
+    if (receiver_.inbox().is_subscribed(id, group.type->id, now) && layout_.sends_any(group))
+      types |= 1u << group.type->id;
   return types;
 }
 
 /// Once, when more than one reading in twenty is missed.
 void Service::warn_of_missed(std::int64_t now) {
   const farm::FarmStats stats = farm_.stats();
-  if (warned_of_missed_ || capped_ || stats.missed < 20 || 20 * stats.missed < stats.readings) return;
+  if (warned_of_missed_ || only_at_ticks_ || stats.missed < 20 || 20 * stats.missed < stats.readings) return;
   warned_of_missed_ = true;
   receiver_.log().write(
       "this machine is too slow for the sensors' rates: readings are missed; lower the rates, or let fewer robots ask "
@@ -124,10 +155,13 @@ ServiceStats Service::stats() const {
   stats.hash = farm_.hash();
   stats.publisher = publisher_.counts();
   stats.inbox = receiver_.inbox().counts();
-  stats.kernel_drops = receiver_.inbox().kernel_drops();
+  stats.socket_drops = receiver_.inbox().socket_drops();
   stats.relayed = receiver_.relayed();
   stats.answers = receiver_.answered();
   stats.lines_left_out = receiver_.log().left_out();
+  stats.filtered = filtered_;
+  stats.states = receiver_.filter().counts();
+  stats.clocks = receiver_.filter().clocks();
   return stats;
 }
 

@@ -6,6 +6,7 @@
 //   service.receive_pending(now);
 //   service.tick(now);
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <vector>
@@ -23,24 +24,27 @@ namespace sf::server {
 
 struct ServiceOptions {
   StateReceiverOptions receiver;
-  double rate =
-      0.0;  ///< [Hz] of ticks, at which all sensors are read; 0: the world's ticks, sensors at their own rates
+  /// [Hz] of ticks, at which sensors are read when due; 0: the world's ticks, sensors at their own rates.
+  double rate = 0.0;
   std::uint64_t seed = 1;
   bool no_return_inf = false;
 };
 
 struct ServiceStats {
-  std::uint32_t robots = 0;
+  std::uint32_t robots = 0;  ///< of the world, connected or not
   std::uint64_t ticks = 0;
-  double wall_s = 0.0;
+  double wall_s = 0.0;  ///< [s] of `run`
   farm::FarmStats farm;
   std::uint64_t hash = 0;
   PublisherCounts publisher;
   netio::PacketCounts inbox;
-  std::uint64_t kernel_drops = 0;  ///< datagrams that came while the inbox' buffer was full
+  std::uint64_t socket_drops = 0;  ///< datagrams that came while the inbox' buffer was full
   netio::RelayCounts relayed;
   netio::OutboxCounts answers;       ///< challenges, and datagrams of the relay
   std::uint64_t lines_left_out = 0;  ///< of the log
+  bool filtered = false;             ///< `states` and `clocks` count
+  StateFilterCounts states;
+  std::vector<SenderClockState> clocks;
 };
 
 /// Times are of one clock [ns] that begins at 0 and does not go back. World, sensor set, device and layout must outlive
@@ -51,7 +55,8 @@ class Service {
   Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
           const StreamLayout& layout, const ServiceOptions& options);
 
-  /// Serves by the machine's clock until `stop` is set or `duration` [s] have passed (0: without end).
+  /// Serves by the machine's clock, which begins at 0, until `stop` is set or `duration` [s] have passed (0: without
+  /// end). Once only, and not after `tick`.
   void run(const std::atomic<bool>& stop, double duration);
 
   /// Reads and sends all due sensors, and relays states of neighbours.
@@ -74,6 +79,18 @@ class Service {
   void publish_due(std::int64_t now, bool between);
   std::uint32_t subscribed_types(std::uint32_t id, std::int64_t now) const;
   void warn_of_missed(std::int64_t now);
+  void note_quality(std::uint32_t row, std::int64_t now);
+  netio::StateQuality quality_at(std::uint32_t row, std::int64_t time) const;
+
+  /// The quality of one mover's state at its last samples: readings are delivered up to their latency later.
+  struct QualityLog {
+    struct Entry {
+      std::int64_t time = -1;  ///< [ns]
+      netio::StateQuality quality;
+    };
+    std::array<Entry, 32> entries;
+    std::size_t next = 0;
+  };
 
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
@@ -81,10 +98,12 @@ class Service {
   StateReceiver receiver_;
   ReadingPublisher publisher_;
   farm::Farm farm_;
+  std::vector<QualityLog> quality_;  ///< per mover
   NoReturnFilter no_return_filter_;
   std::vector<AddressedReading> addressed_readings_;  ///< of one tick
   double interval_;
-  bool capped_;  ///< sensors are read at ticks alone
+  bool filtered_;
+  bool only_at_ticks_;  ///< `ServiceOptions::rate` is set
   bool warned_of_missed_ = false;
   std::uint64_t ticks_ = 0;
   double wall_s_ = 0.0;

@@ -13,14 +13,20 @@ namespace sf::server {
 StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptions& options)
     : world_(world),
       names_(wire_names(world)),
-      inbox_({.bind = options.bind, .robots = ids_of(names_.robots), .tags = ids_of(names_.tags)}),
+      inbox_({.bind = options.bind,
+              .robots = ids_of(names_.robots),
+              .tags = ids_of(names_.tags),
+              .take_late = options.filter.enabled}),
       answers_(inbox_.socket()),
       relay_(ids_of(names_.robots), {.range = options.radio}),
       fleet_(world),
+      filter_options_(options.filter),
+      filter_(world, options.filter),
       forget_(options.forget > 0.0
                   ? std::max<std::int64_t>(0, base::nanoseconds(options.forget) - netio::kClientTimeout)
                   : kNever),
       last_active_(world.movers.size(), kNever),
+      last_state_(world.movers.size(), kNever),
       log_(options.log_descriptor) {
   reports_.reserve(netio::Inbox::kMaxPerReceive);
 }
@@ -38,17 +44,32 @@ void StateReceiver::receive_pending(std::int64_t now) {
 }
 
 void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
-  relay_.take(packet);
+  if (!packet.late) relay_.take(packet);
+  base::Report report;
   if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
-    reports_.push_back(netio::report(packet.header, *state, names_.robots.at(packet.header.robot)));
+    report = netio::report(packet.header, *state, names_.robots.at(packet.header.robot));
   } else if (const auto* tag = std::get_if<netio::Tag>(&packet.body)) {
     const std::uint32_t row = names_.tags.at(packet.header.robot);
-    reports_.push_back(netio::report(packet.header, *tag, row, world_.movers[row].X_MT));
+    report = netio::report(packet.header, *tag, row, world_.movers[row].X_MT);
   } else {
     return;
   }
+  last_state_[report.mover] = now;
+  if (filter_options_.enabled) return filter_.take(report, packet.header, now);
   // Senders' clocks are their own: a state is true when it arrives.
-  reports_.back().time = now;
+  report.time = now;
+  reports_.push_back(report);
+}
+
+void StateReceiver::predict(std::int64_t now) {
+  if (filter_options_.enabled) fleet_.apply(filter_.predict(now));
+}
+
+netio::StateQuality StateReceiver::quality(std::uint32_t row, std::int64_t now) const {
+  if (filter_options_.enabled) return filter_.quality(row);
+  if (last_state_[row] == kNever) return {};
+  const std::int64_t age = now - last_state_[row];
+  return {.stated = true, .stale = age > filter_options_.stale_after, .age = age};
 }
 
 void StateReceiver::relay(std::int64_t now) {
@@ -60,8 +81,15 @@ bool StateReceiver::update_absent(std::uint32_t id, std::int64_t now) {
   const std::uint32_t row = names_.robots.at(id);
   std::int64_t& last = last_active_[row];
   const bool active = inbox_.is_active(id, now);
-  const bool absent = !active && forget_ != kNever && last != kNever && now - last >= forget_;
+  const bool forgotten = !active && forget_ != kNever && last != kNever && now - last >= forget_;
+  const bool absent = forgotten || (filter_options_.enabled && filter_.is_gone(row));
   if (active) last = now;
+  fleet_.set_absent(row, absent);
+  return absent;
+}
+
+bool StateReceiver::update_absent_tag(std::uint32_t row) {
+  const bool absent = filter_options_.enabled && filter_.is_gone(row);
   fleet_.set_absent(row, absent);
   return absent;
 }

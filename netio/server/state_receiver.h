@@ -12,6 +12,7 @@
 #include "netio/outbox.h"
 #include "netio/rate_limited_log.h"
 #include "netio/relay.h"
+#include "netio/server/state_filter.h"
 #include "netio/server/wire_ids.h"
 #include "robots/fleet.h"
 #include "world/world.h"
@@ -23,6 +24,7 @@ struct StateReceiverOptions {
   double radio = netio::kV2vRange;  ///< [m] farther away, states are not relayed; 0: none is
   double forget = 10.0;             ///< [s] of silence after which a robot is no obstacle any more; 0: never
   int log_descriptor = 2;           ///< -1: no log
+  StateFilterOptions filter;
 };
 
 /// Times are of one clock [ns] that does not go back. The world must outlive it. One thread.
@@ -35,13 +37,22 @@ class StateReceiver {
   void receive_pending(std::int64_t now);
   /// Passes on what came since the last time, to robots that asked for it.
   void relay(std::int64_t now);
-  /// Whether a robot spoke once and has been silent since for as long as `forget`: it is out of the world until it
-  /// speaks again. To be asked at each tick.
+  /// Predicts the states to `now`, for the calls below.
+  void predict(std::int64_t now);
+  /// Whether a robot spoke once and has been silent since for as long as `forget`, or its state is stale and the policy
+  /// takes it out of the world: until it speaks again. To be asked at each tick.
   bool update_absent(std::uint32_t id, std::int64_t now);
-  /// The newest states, predicted to `now`. They live until the next call.
+  /// Likewise of a tag, whose silence alone does not matter.
+  bool update_absent_tag(std::uint32_t row);
+  /// The newest states at `now`. They live until the next call.
   std::span<const base::Report> states(std::int64_t now) { return fleet_.predict(now); }
+  /// Of a mover's state at `now`. Unfiltered states are as old as their arrival, of unknown covariance.
+  netio::StateQuality quality(std::uint32_t row, std::int64_t now) const;
 
   const std::map<std::uint32_t, std::uint32_t>& robots() const { return names_.robots; }  ///< rows by id
+  const std::map<std::uint32_t, std::uint32_t>& tags() const { return names_.tags; }      ///< likewise
+  const StateFilter& filter() const { return filter_; }
+  StateFilter& filter() { return filter_; }
   const netio::Inbox& inbox() const { return inbox_; }
   const netio::RelayCounts& relayed() const { return relay_.counts(); }
   netio::OutboxCounts answered() const { return answers_.counts(); }  ///< challenges, and relayed packets
@@ -60,10 +71,13 @@ class StateReceiver {
   netio::Outbox answers_;  ///< from the port that the robots send to
   netio::Relay relay_;
   robots::Fleet fleet_;
+  StateFilterOptions filter_options_;
+  StateFilter filter_;
   std::vector<base::Report> reports_;
   base::Bytes challenge_;
   std::int64_t forget_;                    ///< [ns] since it was last active, or kNever
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover
+  std::vector<std::int64_t> last_state_;   ///< [ns] arrival, per mover, or kNever
   netio::RateLimitedLog log_;
   // By id: the bound address whose other senders are in the log already.
   std::map<std::uint32_t, std::optional<netio::Endpoint>> logged_robots_;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kUsualStride = 8;
 constexpr std::size_t kMostNotes = 20;  ///< about sensors that are left out
 
-std::string port_option(const sensors::SensorType& kind) { return "--" + std::string(kind.name) + "-port"; }
+std::string port_option(const sensors::SensorType& type) { return "--" + std::string(type.name) + "-port"; }
 
 /// One line for each sensor that the wire cannot carry.
 std::vector<std::string> left_out(const world::World& world, const sensors::SensorSet& sensor_set,
@@ -23,7 +23,7 @@ std::vector<std::string> left_out(const world::World& world, const sensors::Sens
   std::vector<std::string> lines;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
-      if (const std::string why = group.kind->wire_problem(row, layout.wire); !why.empty())
+      if (const std::string why = group.type->wire_problem(row, layout.wire); !why.empty())
         lines.push_back(world.movers[row.mover].name + "." + row.name + ": " + why);
   return lines;
 }
@@ -44,10 +44,10 @@ std::vector<netio::SensorPorts> uses_of(const world::World& world, const sensors
   std::vector<netio::SensorPorts> uses;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-      const auto rows = sensor_set.of(group.kind->id, m);
+      const auto rows = sensor_set.of(group.type->id, m);
       if (rows.empty()) continue;
-      uses.push_back({world.movers[m].id, static_cast<std::uint32_t>(rows.size()), layout.ports(*group.kind),
-                      world.movers[m].name, 0, std::string(group.kind->name), port_option(*group.kind)});
+      uses.push_back({world.movers[m].id, static_cast<std::uint32_t>(rows.size()), layout.ports(*group.type),
+                      world.movers[m].name, 0, std::string(group.type->name), port_option(*group.type)});
     }
   return uses;
 }
@@ -56,7 +56,7 @@ std::vector<netio::SensorPorts> uses_of(const world::World& world, const sensors
 
 bool StreamLayout::sends_any(const sensors::SensorSet::Group& group) const {
   return std::any_of(group.rows.begin(), group.rows.end(),
-                     [&](const sensors::SensorSpec& row) { return sends(*group.kind, row); });
+                     [&](const sensors::SensorSpec& row) { return sends(*group.type, row); });
 }
 
 StreamLayout stream_layout(const world::World& world, const sensors::SensorSet& sensor_set,
@@ -67,7 +67,7 @@ StreamLayout stream_layout(const world::World& world, const sensors::SensorSet& 
   note_left_out(sensor_set, left_out(world, sensor_set, layout), layout);
   std::string bases;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
-    bases += (bases.empty() ? "" : ", ") + port_option(*group.kind);
+    bases += (bases.empty() ? "" : ", ") + port_option(*group.type);
   try {
     netio::require_ports(uses_of(world, sensor_set, layout));
   } catch (const base::InputError& error) {

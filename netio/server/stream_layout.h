@@ -13,21 +13,21 @@
 namespace sf::server {
 
 struct LayoutOptions {
-  std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor kind; every kind of the world is in it
+  std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor type; every type of the world is in it
   std::uint32_t ports_per_robot = 0;                 ///< 0: 8, or the least that fits
   sensors::WireFormat wire = sensors::WireFormat::farm;
 };
 
 struct StreamLayout {
-  std::map<std::uint8_t, std::uint32_t> bases;  ///< by sensor kind
+  std::map<std::uint8_t, std::uint32_t> bases;  ///< by sensor type
   std::uint32_t stride = 8;                     ///< ports per robot
   sensors::WireFormat wire = sensors::WireFormat::farm;
   std::vector<std::string> notes;  ///< for the user: sensors left out, and another stride than 8
 
-  netio::PortRule ports(const sensors::SensorType& kind) const { return {bases.at(kind.id), stride}; }
+  netio::PortRule ports(const sensors::SensorType& type) const { return {bases.at(type.id), stride}; }
   /// False for sensors without a layout in the thesis' wire format: they are neither sent nor awaited.
-  bool sends(const sensors::SensorType& kind, const sensors::SensorSpec& sensor) const {
-    return kind.wire_problem(sensor, wire).empty();
+  bool sends(const sensors::SensorType& type, const sensors::SensorSpec& sensor) const {
+    return type.wire_problem(sensor, wire).empty();
   }
   bool sends_any(const sensors::SensorSet::Group& group) const;
 };

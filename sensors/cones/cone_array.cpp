@@ -47,10 +47,10 @@ std::uint32_t read_rays(const world::Sensor& sensor, double fov) {
 
 }  // namespace
 
-ConeArray read_cones(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind,
+ConeArray read_cones(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type,
                      const ConeDefaults& defaults) {
   ConeArray array;
-  array.row = common_spec(sensor, mover, number_of_kind);
+  array.row = common_spec(sensor, mover, number_of_type);
   array.row.X_MS.z += 0.5 * sensor.height;
   array.row.rate = rate_of(sensor, defaults.rate);
   array.X_SC = read_elements(sensor, kMostTransducers);

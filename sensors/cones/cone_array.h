@@ -39,11 +39,11 @@ struct ConeDefaults {
 
 /// Reads all settings except turns, incidence and noise.
 /// @throws base::InputError with file and line.
-ConeArray read_cones(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind,
+ConeArray read_cones(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type,
                      const ConeDefaults& defaults);
 
 /// All sensors of `type` in a world, by mover and in file order, each read by `read`.
-using ReadConeArray = ConeArray (*)(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
+using ReadConeArray = ConeArray (*)(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type);
 std::vector<ConeArray> cone_arrays_of(const world::World& world, std::string_view type, ReadConeArray read);
 
 }  // namespace sf::sensors

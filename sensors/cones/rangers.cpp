@@ -15,7 +15,7 @@ constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 std::vector<raycast::Cone> cones_of(const std::vector<ConeArray>& arrays) {
   std::vector<raycast::Cone> cones;
   for (const ConeArray& array : arrays) {
-    world::Laser beams;
+    raycast::ScanSettings beams;
     beams.fov = array.rays > 1 ? array.fov : 0.0;
     beams.samples = array.rays;
     beams.range_max = array.range_max;
@@ -29,7 +29,7 @@ std::vector<raycast::Cone> cones_of(const std::vector<ConeArray>& arrays) {
 
 class Rangers : public SensorBackend {
  public:
-  Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& kind);
+  Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& type);
 
   void place_movers() override { cones_.place_movers(); }
   bool prepare(std::span<const DueSample> due) override;
@@ -49,38 +49,34 @@ class Rangers : public SensorBackend {
   std::uint64_t seed_;
   bool noise_;
   std::vector<ConeArray> arrays_;
-  RangerType kind_;
+  RangerType type_;
   raycast::ConeCaster cones_;
   std::vector<std::uint32_t> first_cones_;  ///< per array
   std::vector<std::uint64_t> last_;         ///< per array: sequence number of its last reading, or kNever
   std::vector<double> heights_;             ///< [m] per array: world height of its origin
-  std::vector<std::size_t> values_first_;
-  std::vector<double> values_;  ///< of all arrays; transducers that do not fire keep theirs
+  std::vector<double> values_;              ///< of all arrays; transducers that do not fire keep theirs
   std::vector<DueSample> due_;
   std::vector<Pose> X_WS_;               ///< per due array
   std::vector<DueSample> due_cones_;     ///< transducers that fire
   std::vector<std::size_t> cones_ends_;  ///< per due array: end of its cones
 };
 
-Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& kind)
+Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& type)
     : thread_pool_(context.thread_pool),
       states_(context.states),
       seed_(context.seed),
       noise_(context.noise),
       arrays_(std::move(arrays)),
-      kind_(kind),
-      cones_(context, cones_of(arrays_), kind.kernel),
+      type_(type),
+      cones_(context, cones_of(arrays_), type.kernel),
       last_(arrays_.size(), kNever) {
-  std::size_t values = 0;
   std::uint32_t cones = 0;
   for (const ConeArray& array : arrays_) {
     first_cones_.push_back(cones);
     cones += static_cast<std::uint32_t>(array.X_SC.size());
     heights_.push_back(context.world.movers[array.row.mover].X_WM.z + array.row.X_MS.z);
-    values_first_.push_back(values);
-    values += kind_.columns * array.X_SC.size();
   }
-  values_.resize(values);
+  values_.resize(type_.columns * std::size_t{cones});
 }
 
 bool Rangers::prepare(std::span<const DueSample> due) {
@@ -109,15 +105,15 @@ void Rangers::write_reading(std::size_t i) {
   const DueSample& due = due_[i];
   const ConeArray& array = arrays_[due.row];
   // Sonar and infrared share a stream and sensor numbers; a draw keeps 24 bits of this name.
-  const std::uint32_t name = (std::uint32_t{kind_.id} << 16) | array.row.sensor;
+  const std::uint32_t name = (std::uint32_t{type_.id} << 16) | array.row.sensor;
   const base::RandomKey draw{seed_, base::RandomStream::range_cone, array.row.mover, name, due.sequence};
   const bool noisy = noise_ && (array.sigma > 0.0 || array.proportional > 0.0);
   for (std::size_t k = i > 0 ? cones_ends_[i - 1] : 0; k < cones_ends_[i]; ++k) {
     const std::uint32_t transducer = due_cones_[k].row - first_cones_[due.row];
     const raycast::ConeEcho echo = cones_.echo(k);
     const double deviate = noisy ? base::random_normal(draw, transducer)[0] : 0.0;
-    const auto out = std::span(values_).subspan(values_first_[due.row] + kind_.columns * transducer, kind_.columns);
-    kind_.write_reading(array, echo.range, echo.hit != SF_NO_HIT, deviate, out);
+    const auto out = std::span(values_).subspan(type_.columns * std::size_t{due_cones_[k].row}, type_.columns);
+    type_.write_reading(array, echo.range, echo.hit != SF_NO_HIT, deviate, out);
   }
 }
 
@@ -131,10 +127,10 @@ void Rangers::collect(std::vector<base::ReadingBlock>& out) {
     base::ReadingBlock block;
     block.mover = array.row.mover;
     block.sensor = array.row.sensor;
-    block.kind = kind_.id;
+    block.type = type_.id;
     block.X_WS = X_WS_[i];
-    block.values =
-        std::span<const double>(values_).subspan(values_first_[due_[i].row], kind_.columns * array.X_SC.size());
+    block.values = std::span<const double>(values_).subspan(type_.columns * std::size_t{first_cones_[due_[i].row]},
+                                                            type_.columns * array.X_SC.size());
     out.push_back(block);
   }
 }
@@ -156,8 +152,8 @@ std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays) {
 }
 
 std::unique_ptr<SensorBackend> make_ranger_backend(const SensorContext& context, std::vector<ConeArray> arrays,
-                                                   const RangerType& kind) {
-  return std::make_unique<Rangers>(context, std::move(arrays), kind);
+                                                   const RangerType& type) {
+  return std::make_unique<Rangers>(context, std::move(arrays), type);
 }
 
 bool has_fired(std::uint32_t number, std::uint32_t turns, std::uint64_t sequence, std::uint64_t last) {

@@ -27,7 +27,7 @@ std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays);
 /// A reading updates the transducers that fired since its sensor's last reading: all of them after a whole cycle or for
 /// the first reading. The others keep their values.
 std::unique_ptr<SensorBackend> make_ranger_backend(const SensorContext& context, std::vector<ConeArray> arrays,
-                                                   const RangerType& kind);
+                                                   const RangerType& type);
 
 /// True when transducer `number` fires in a reading after `last`, up to and including `sequence`. Both are sequence
 /// numbers, which also count skipped readings. @param turns readings per cycle

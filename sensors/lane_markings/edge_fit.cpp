@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "gpu/group_counts.h"
 #include "shaders/laneedge.comp.h"
 #include "shaders/laneedge_points.comp.h"
 
@@ -15,10 +16,8 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::size_t kMostGroups = 32'768;
-
 /// The constant part of a sensor's row. The places in shared tables are filled in later.
-EdgeRow row_of(const LaneEdge& edge, const raycast::BeamPlan& plan, const world::LaserNoise& noise) {
+EdgeRow row_of(const LaneEdge& edge, const raycast::BeamPlan& plan, const raycast::ScanNoise& noise) {
   EdgeRow row{};
   row.beams = edge.fan.samples;
   row.flags = (plan.packed ? SF_EDGE_PACKED : 0u) | (edge.single ? SF_EDGE_SINGLE : 0u);
@@ -39,7 +38,7 @@ EdgeRow row_of(const LaneEdge& edge, const raycast::BeamPlan& plan, const world:
 std::uint32_t edge_noise_id(std::uint32_t sensor) { return (std::uint32_t{kLaneEdge} << 16) | sensor; }
 
 EdgeFit::Plan EdgeFit::plan(const SensorContext& context, const std::vector<LaneEdge>& edges) {
-  const std::size_t most = kMostGroups * gpu::interface_of(laneedge_comp_spv).group_size;
+  const std::size_t most = std::size_t{gpu::kMostGroupsAcross} * gpu::interface_of(laneedge_comp_spv).group_size;
   if (edges.size() > most)
     throw base::InputError(context.world.file, 0,
                            "the world has " + std::to_string(edges.size()) + " lane edge sensors; at most " +
@@ -50,7 +49,7 @@ EdgeFit::Plan EdgeFit::plan(const SensorContext& context, const std::vector<Lane
   plan.noise_lanes = kMostEdgeSamples;
   for (const LaneEdge& edge : edges) {
     const raycast::BeamPlan beams = raycast::plan_beams(edge.fan, context.noise);
-    const world::LaserNoise noise = context.noise ? edge.fan.noise : world::LaserNoise{};
+    const raycast::ScanNoise noise = context.noise ? edge.fan.noise : raycast::ScanNoise{};
     EdgeRow row = row_of(edge, beams, noise);
     const auto [known, is_new] =
         shared.try_emplace({edge.fan.fov, edge.fan.samples, beams.packed}, plan.direction_lanes);
@@ -104,11 +103,11 @@ EdgeFit::EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edge
 void EdgeFit::write_directions() {
   const auto table = directions_.host<double>();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const world::Laser& fan = edges_[i].fan;
+    const raycast::ScanSettings& fan = edges_[i].fan;
     const raycast::BeamPlan& beams = plan_.beams[i];
     for (std::uint32_t slot = 0; slot < SF_BEAMS_PER_LANE * beams.lanes(); ++slot) {
       const std::uint32_t beam = std::min(beams.packed ? slot : slot / SF_BEAMS_PER_LANE, fan.samples - 1);
-      const double bearing = world::bearing_of(fan, beam);
+      const double bearing = bearing_of(fan, beam);
       const std::size_t at = 2 * (SF_BEAMS_PER_LANE * std::size_t{plan_.rows[i].directions} + slot);
       table[at] = std::cos(bearing);
       table[at + 1] = std::sin(bearing);
@@ -143,10 +142,7 @@ bool EdgeFit::write_rows(std::span<const std::uint32_t> lanes) {
     rows[i].reading = static_cast<std::uint32_t>(i);
     written_.push_back(due_[i].row);
   }
-  const auto counts = groups_.host<std::uint32_t>();
-  counts[0] = static_cast<std::uint32_t>(kernel_.padded(due_.size()) / kernel_.group_size());
-  counts[1] = 1;
-  counts[2] = 1;
+  gpu::write_counts(gpu::groups_for(due_.size(), kernel_.group_size()), groups_);
   return false;
 }
 
@@ -197,12 +193,13 @@ void EdgeFit::bind(gpu::Buffer& lanes, gpu::Buffer& ranges, gpu::Buffer& hits) {
 void EdgeFit::add_copies(gpu::Batch& batch) {
   batch.upload(rows_, 0, kernel_.padded(due_.size()) * sizeof(EdgeRow));
   batch.upload(groups_, 0, groups_.bytes());
-  if (fresh_) batch.upload(directions_, 0, directions_.bytes());
-  if (fresh_) batch.upload(grains_, 0, grains_.bytes());
-  if (fresh_) batch.upload(normals_, 0, normals_.bytes());
-  for (const DueSample& d : due_)
-    if (!fresh_ && plan_.rows[d.row].noise_share != 0.0F)
-      batch.upload(normals_, 16 * std::size_t{plan_.rows[d.row].noise}, 16 * std::size_t{plan_.beams[d.row].lanes()});
+  if (fresh_) {
+    for (const gpu::Buffer* table : {&directions_, &grains_, &normals_}) batch.upload(*table, 0, table->bytes());
+  } else if (plan_.any_noise) {
+    for (const DueSample& d : due_)
+      if (plan_.rows[d.row].noise_share != 0.0F)
+        batch.upload(normals_, 16 * std::size_t{plan_.rows[d.row].noise}, 16 * std::size_t{plan_.beams[d.row].lanes()});
+  }
   fresh_ = false;
   batch.upload(order_, 0, kernel_.padded(due_.size()) * sizeof(std::uint32_t));
   batch.download(mixtures_, 0, due_.size() * sizeof(std::uint32_t));

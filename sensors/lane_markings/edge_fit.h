@@ -39,7 +39,6 @@ class EdgeFit {
   void record_points(gpu::Batch& batch, const gpu::Buffer& lane_groups) const {
     batch.dispatch(maker_, lane_groups, 0);
   }
-  std::uint32_t group_size() const { return maker_.group_size(); }  ///< of `record_points`, in lanes
   void record(gpu::Batch& batch) const { batch.dispatch(kernel_, groups_, 0); }
   void add_copies(gpu::Batch& batch);
 

@@ -7,24 +7,13 @@
 #include <iterator>
 #include <limits>
 
+#include "base/box.h"
 #include "base/error.h"
 #include "sensors/lane_markings/outline.h"
 
 namespace sf::sensors {
 
 namespace {
-
-struct Box {
-  double x_min = std::numeric_limits<double>::infinity(), y_min = x_min;
-  double x_max = -x_min, y_max = -x_min;  ///< [m]
-
-  void add(glm::dvec2 p) {
-    x_min = std::min(x_min, p.x);
-    y_min = std::min(y_min, p.y);
-    x_max = std::max(x_max, p.x);
-    y_max = std::max(y_max, p.y);
-  }
-};
 
 /// The crossing of an edge and a row of cell centres: place and winding direction.
 struct Crossing {
@@ -83,18 +72,17 @@ bool near_end(const std::vector<OutlineEdge>& ends, glm::dvec2 p, double cell) {
 MarkingRaster::MarkingRaster(const std::vector<world::LaneMarking>& lane_markings, double cell, double margin,
                              const std::string& file, std::size_t most_bytes)
     : cell_(cell) {
-  Box box;
+  base::Box box = base::empty_box();
   double length_of_all = 0.0;
   for (const world::LaneMarking& s : lane_markings) {
     for (std::size_t i = 0; i < s.line.size(); ++i) {
-      box.add({s.line[i].x - s.width, s.line[i].y - s.width});
-      box.add({s.line[i].x + s.width, s.line[i].y + s.width});
+      box = base::united(box, base::box_around(s.line[i], s.width));
       if (i > 0) length_of_all += length(s.line[i] - s.line[i - 1]) * (s.width / (kBlock * cell) + 2.0);
     }
   }
   const double block = kBlock * cell;
-  const double across = (box.x_max - box.x_min + 2.0 * margin) / block + 3.0;
-  const double down = (box.y_max - box.y_min + 2.0 * margin) / block + 3.0;
+  const double across = (box.max.x - box.min.x + 2.0 * margin) / block + 3.0;
+  const double down = (box.max.y - box.min.y + 2.0 * margin) / block + 3.0;
   const double bytes = 4.0 * across * down + 16.0 * length_of_all / block;
   if (!lane_markings.empty() && !(bytes <= static_cast<double>(most_bytes)))
     throw base::InputError(
@@ -107,8 +95,8 @@ MarkingRaster::MarkingRaster(const std::vector<world::LaneMarking>& lane_marking
     directory_.assign(1, std::numeric_limits<std::uint32_t>::max() >> 1);
     return;
   }
-  column_ = kBlock * (static_cast<std::int64_t>(std::floor((box.x_min - margin) / block)) - 1);
-  row_ = kBlock * (static_cast<std::int64_t>(std::floor((box.y_min - margin) / block)) - 1);
+  column_ = kBlock * (static_cast<std::int64_t>(std::floor((box.min.x - margin) / block)) - 1);
+  row_ = kBlock * (static_cast<std::int64_t>(std::floor((box.min.y - margin) / block)) - 1);
   columns_ = static_cast<std::uint32_t>(across) + 1;
   rows_ = static_cast<std::uint32_t>(down) + 1;
   directory_.assign(std::size_t{columns_} * rows_, 0);
@@ -139,17 +127,16 @@ void MarkingRaster::paint(const world::LaneMarking& marking) {
   add_outline(marking, faces);
   // Relative to the raster, for equal precision far from the origin.
   const glm::dvec2 corner{static_cast<double>(column_) * cell_, static_cast<double>(row_) * cell_};
-  Box box;
+  base::Box box = base::empty_box();
   for (OutlineEdge& f : faces) {
     f.a = f.a - corner;
     f.b = f.b - corner;
-    box.add(f.a);
-    box.add(f.b);
+    box = base::united(box, base::box_of(f.a, f.b));
   }
   std::vector<OutlineEdge> ends;
   std::copy_if(faces.begin(), faces.end(), std::back_inserter(ends), [](const OutlineEdge& f) { return f.is_end; });
   Sweep sweep(std::move(faces));
-  for (std::int64_t y = first_centre(box.y_min, cell_); (static_cast<double>(y) + 0.5) * cell_ <= box.y_max; ++y) {
+  for (std::int64_t y = first_centre(box.min.y, cell_); (static_cast<double>(y) + 0.5) * cell_ <= box.max.y; ++y) {
     const double centre = (static_cast<double>(y) + 0.5) * cell_;
     const std::vector<Crossing>& crossings = sweep.cross(centre);
     int inside = 0;

@@ -19,12 +19,12 @@ constexpr double kLongestRay = 8192.0;
 
 void refuse_long_rays(const SensorContext& context, const raycast::RayCaster& caster, double cell) {
   for (const raycast::Scanner& fan : caster.scanners()) {
-    if (fan.laser.range_max <= kLongestRay * cell) continue;
+    if (fan.scan.range_max <= kLongestRay * cell) continue;
     throw base::InputError(
         context.world.file, 0,
         fmt::format("road_resolution {:g} m is too fine for the lane edge sensor '{}', whose range_max is {:g} m; "
                     "expected at most {:g} pixels along a ray; use at least {:g} m, or 0 for exact paint",
-                    cell, fan.laser.name, fan.laser.range_max, kLongestRay, fan.laser.range_max / kLongestRay));
+                    cell, fan.scan.name, fan.scan.range_max, kLongestRay, fan.scan.range_max / kLongestRay));
   }
 }
 
@@ -50,14 +50,14 @@ RasterCaster::RasterCaster(const SensorContext& context, const MarkingRaster& ra
       directory_(context.device, "blocks of the raster", gpu::Role::upload, gpu::Texel::u32, raster.directory().size()),
       blocks_(context.device, "raster of the paint", gpu::Role::upload, gpu::Texel::u32, raster.blocks().size() + 4) {
   refuse_long_rays(context, caster, cell_);
-  SF_CHECK(kernel_.group_size() == caster.group_size(), "the raster's rays are the cast's lanes, beam by beam");
+  SF_CHECK(kernel_.group_size() == SF_LANES_PER_GROUP, "the raster's rays are the cast's lanes, beam by beam");
   std::memcpy(directory_.host<std::uint32_t>().data(), raster.directory().data(), 4 * raster.directory().size());
   std::memcpy(blocks_.host<std::uint32_t>().data(), raster.blocks().data(), 4 * raster.blocks().size());
 }
 
 RasterRow RasterCaster::row_of(std::size_t i) const {
   const raycast::ScanResult results = caster_.results(i);
-  const double range_max = results.scanner->laser.range_max;
+  const double range_max = results.scanner->scan.range_max;
   const double x = results.X_WS.x / cell_;
   const double y = results.X_WS.y / cell_;
   const double column = std::floor(x) - first_column_;

@@ -51,7 +51,8 @@ MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Threa
                                          magnetometer_comp_spv, constants);
   // An unrolled iteration may load rows behind the last magnet; they have moment 0.
   const std::size_t rows = std::size_t{fixed_magnets} + moving_magnets + SF_FIELD_UNROLL;
-  dipoles = std::make_unique<gpu::Buffer>(device, "magnets", Role::upload, Texel::u32x4, 2 * rows);
+  dipoles =
+      std::make_unique<gpu::Buffer>(device, "magnets", Role::upload, Texel::u32x4, gpu::texels_of<DipoleRow>(rows));
   groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
   std::ranges::fill(dipoles->host<std::uint32_t>(), 0u);
   write_fixed();

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "gpu/group_counts.h"
 #include "sensors/magnetic_field/tables.h"
 
 namespace sf::sensors {
@@ -16,9 +17,6 @@ using gpu::Role;
 using gpu::Texel;
 
 constexpr double kNoCutoff = 1e300;  // [m^2]
-
-/// Groups along x of a dispatch; further groups follow along y. Vulkan guarantees 65 535.
-constexpr std::uint32_t kGroupsAcross = 32'768;
 
 /// Loop iterations per bucket of the sort.
 constexpr std::uint32_t kTurnsApart = kMostItemMagnets / 1024;
@@ -74,7 +72,7 @@ void MagneticField::Tables::gather(std::span<const FieldPoint> at, std::span<con
   stride = std::max(1u, fixed_grid.most_spans(farthest) + moving_grid.most_spans(farthest) +
                             (fixed_magnets + moving_magnets) / kMostItemMagnets);
   bound &= !hold(points, device, "places", Role::upload, Texel::u32x4,
-                 2 * SF_FIELD_POINTS * std::max<std::size_t>(1, ends.size()));
+                 gpu::texels_of<FieldPointRow>(SF_FIELD_POINTS * std::max<std::size_t>(1, ends.size())));
   // A lane that has summed its last span still reads the next one.
   bound &= !hold(spans, device, "spans of magnets", Role::upload, Texel::u32, 2 * (ends.size() * stride + 1));
 }
@@ -141,12 +139,11 @@ void MagneticField::Tables::write_items() {
   const auto count = static_cast<std::uint32_t>(planned.size());
   const std::uint32_t size = kernel->group_size();
   const std::uint32_t needed = ceiling(count, size);
-  const std::uint32_t across = std::min(needed, kGroupsAcross);
-  const std::uint32_t down = across > 0 ? ceiling(needed, across) : 0;
-  const std::size_t lanes = std::size_t{across} * down * size;
+  const gpu::GroupCounts dispatched = gpu::groups_for(count, size);
+  const std::size_t lanes = dispatched.all() * size;
   bound &= !hold(items, device, "items of work", Role::upload, Texel::u32x4, std::max<std::size_t>(1, lanes));
-  bound &=
-      !hold(results, device, "fields", Role::download, Texel::u32x4, 2 * SF_FIELD_POINTS * (std::size_t{count} + 1));
+  bound &= !hold(results, device, "fields", Role::download, Texel::u32x4,
+                 gpu::texels_of<FieldSum>(SF_FIELD_POINTS * (std::size_t{count} + 1)));
 
   const auto table = items->host<FieldItem>();
   // Lanes without work sum nothing into a result of their own.
@@ -157,10 +154,7 @@ void MagneticField::Tables::write_items() {
     const std::uint64_t dealt = std::uint64_t{i / size} * step % needed;
     table[dealt * size + i % size] = planned[sorted[i]].item;
   }
-  const auto counts = groups->host<std::uint32_t>();
-  counts[0] = across;
-  counts[1] = down;
-  counts[2] = across > 0 ? 1 : 0;
+  gpu::write_counts(dispatched, *groups);
 }
 
 void MagneticField::Tables::bind() {

@@ -103,13 +103,13 @@ TEST(Map, PacketsAreAsDocumented) {
   reading.X_WS = {1.0, -2.0, 0.0, 0.0};
   reading.values = words;
   reading.flags = maps::kTruePoses;
-  const sensors::SensorType& kind = sensors::occupancy_type;
+  const sensors::SensorType& type = sensors::occupancy_type;
   base::Bytes payload, packet, first, second;
-  kind.encode(row, reading, sensors::WireFormat::farm, 0, payload);
-  netio::encode_reading({.robot = 7, .sequence = 30, .time = 3'000'000'000}, kind.id, payload, packet);
+  type.encode(row, reading, sensors::WireFormat::farm, 0, payload);
+  netio::encode_reading({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type.id, payload, packet);
   EXPECT_EQ(packet, test::documented("occupancy"));
-  kind.encode(row, reading, sensors::WireFormat::thesis, 0, first);
-  kind.encode(row, reading, sensors::WireFormat::thesis, 1, second);
+  type.encode(row, reading, sensors::WireFormat::thesis, 0, first);
+  type.encode(row, reading, sensors::WireFormat::thesis, 1, second);
   EXPECT_EQ(first, test::documented("thesis_occupancy"));
   EXPECT_EQ(second, test::documented("thesis_occupancy_rest"));
 }
@@ -142,7 +142,7 @@ TEST(Map, SequencesThatLeapAreLeftOut) {
     EXPECT_NE(outcome.err.find(followed ? "3 datagrams used and 2 ignored" : "3 datagrams used and 1 ignored"),
               std::string::npos)
         << outcome.err;
-    EXPECT_EQ(outcome.err.find("dropped by the kernel"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("dropped by the operating system"), std::string::npos) << outcome.err;
   }
 }
 
@@ -157,7 +157,7 @@ TEST(Map, DatagramsDroppedByTheKernelAreReported) {
   farm.flush();
   map.signal(SIGCONT);
   const Outcome outcome = map.wait();
-  EXPECT_NE(outcome.err.find("datagrams dropped by the kernel"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("datagrams dropped by the operating system"), std::string::npos) << outcome.err;
 }
 
 TEST(Map, NothingCame) {

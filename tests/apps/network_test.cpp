@@ -105,7 +105,7 @@ TEST(SendAndListen, LostAndReorderedPacketsAreReported) {
   EXPECT_EQ(in.number("/lost"), 3);
   EXPECT_EQ(in.number("/duplicates"), 1);
   EXPECT_EQ(in.number("/reordered"), 1);
-  EXPECT_EQ(in.number("/kernel_drops"), 0);
+  EXPECT_EQ(in.number("/socket_drops"), 0);
   EXPECT_EQ(in.number("/by_reason/wrong source"), 2);
   EXPECT_EQ(in.number("/by_reason/out of range"), 1);
 }

@@ -1,4 +1,4 @@
-// Every kind of sensor through every command: the same words, files and packets for all of them.
+// Every type of sensor through every command: the same words, files and packets for all of them.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ namespace {
 constexpr std::uint8_t kLaneEdge = 2;
 constexpr std::uint8_t kMagnetometer = 3;
 
-bool has_kind(std::uint8_t id) { return sensors::find_sensor_type(id) != nullptr; }
+bool has_type(std::uint8_t id) { return sensors::find_sensor_type(id) != nullptr; }
 
 // A magnet of 1 A m^2, and robots that carry a laser and two elements 0.5 m and 1 m ahead, as high as the magnet.
 const char* const kWorld = R"(
@@ -44,10 +44,10 @@ model( name "magnet" pose [1.5 0 0 0] size [0.1 0.1 0.1] magnetic_moment 10000 )
 
 struct Kinds : testing::Test {
   void SetUp() override {
-    if (!has_kind(kMagnetometer)) GTEST_SKIP() << "built without the magnetometer";
+    if (!has_type(kMagnetometer)) GTEST_SKIP() << "built without the magnetometer";
   }
   Folder folder;
-  std::string world = folder.write("kinds.world", kWorld);
+  std::string world = folder.write("types.world", kWorld);
 };
 
 /// `words` after a subcommand, its world and what all of these tests want.
@@ -57,7 +57,7 @@ Outcome run(const std::string& command, const std::string& world, const Words& m
   return run_program(words);
 }
 
-/// Two kinds of ports that nobody has.
+/// Two types of ports that nobody has.
 Words free_bases(unsigned& base) {
   base = free_ports(80);
   return {"--laser-port", std::to_string(base), "--magnetometer-port", std::to_string(base + 40)};
@@ -104,7 +104,7 @@ TEST_F(Kinds, WithoutAWordTheFirstKindIsMeant) {
 TEST_F(Kinds, WithoutAWordNumbersCountThroughAllKinds) {
   const Json second(run("sense", world, {"--sensor", "1", "--json"}).out);
   EXPECT_EQ(second.text("/type"), "magnetometer");
-  EXPECT_EQ(second.number("/sensor"), 0) << "the first of its kind";
+  EXPECT_EQ(second.number("/sensor"), 0) << "the first of its type";
   const std::string twice =
       folder.write("twice.world", "position( name \"a\" laser( ) laser( ) magnetometer( ) magnetometer( ) )\n");
   const Json last(run("sense", twice, {"--sensor", "3", "--json"}).out);
@@ -142,7 +142,7 @@ TEST_F(Kinds, CheckCountsThem) {
   const Json facts(run("check", world, {"--json"}).out);
   EXPECT_EQ(facts.number("/sensors/laser"), 2);
   EXPECT_EQ(facts.number("/sensors/magnetometer"), 2);
-  EXPECT_EQ(facts.size("/sensors"), sensors::sensor_types().size()) << "kinds that are not there are 0";
+  EXPECT_EQ(facts.size("/sensors"), sensors::sensor_types().size()) << "types that are not there are 0";
   EXPECT_EQ(facts.number("/magnets"), 1);
   EXPECT_EQ(facts.number("/magnet_cutoff_m"), 0);
   EXPECT_EQ(facts.number("/paint"), 0);
@@ -235,7 +235,7 @@ TEST_F(Kinds, ARobotGetsTheKindsItAsksFor) {
     for (std::size_t i = 0; i < count; ++i) {
       netio::Packet packet;
       ASSERT_EQ(netio::decode(batch.bytes(i), packet), netio::PacketStatus::accepted);
-      EXPECT_EQ(netio::kind_of(packet.header.type), kMagnetometer);
+      EXPECT_EQ(netio::sensor_type_of(packet.header.type), kMagnetometer);
       EXPECT_EQ(batch.bytes(i).size(), 64u + 4u + 2u * 16u);
     }
     heard += count;
@@ -257,7 +257,7 @@ viz::SeriesOptions fields_of(const record::Recording& recording) {
     const std::string& name = recording.info.movers[mover].name;
     viz::Series first{"element 0", {}, {}}, last{"element 1", {}, {}}, more{name, {}, {}};
     for (const record::ReadingSample& reading : recording.readings) {
-      if (reading.mover != mover || reading.kind != kMagnetometer) continue;
+      if (reading.mover != mover || reading.type != kMagnetometer) continue;
       for (viz::Series* series : {&first, &last, &more}) series->times.push_back(1e-9 * double(reading.time));
       first.values.push_back(1e4 * reading.values[0]);
       last.values.push_back(1e4 * reading.values[4]);
@@ -277,7 +277,7 @@ TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
   ASSERT_EQ(run("run", world, with_readings).code, 0);
   const record::Recording recording = record::open_recording(folder.path("r"));
   EXPECT_TRUE(recording.damage.empty());
-  const auto is_field = [](const record::ReadingSample& r) { return r.kind == kMagnetometer; };
+  const auto is_field = [](const record::ReadingSample& r) { return r.type == kMagnetometer; };
   const auto& all = recording.readings;
   EXPECT_EQ(all.size(), 4u * 20u) << "scans and fields";
   ASSERT_EQ(std::count_if(all.begin(), all.end(), is_field), 2 * 20);
@@ -322,43 +322,43 @@ TEST_F(Kinds, AnUnusedSensorChangesNoPath) {
 }
 
 TEST(WireFormat, MagnetometersSendTheDocumentedBytes) {
-  const sensors::SensorType* kind = sensors::find_sensor_type(kMagnetometer);
-  if (kind == nullptr) GTEST_SKIP() << "built without the magnetometer";
+  const sensors::SensorType* type = sensors::find_sensor_type(kMagnetometer);
+  if (type == nullptr) GTEST_SKIP() << "built without the magnetometer";
   const std::vector<double> values{1.3e-4, 0, -0.5e-4, 1.2e-4, 0.25e-4, 0, 0, -0.25e-4};
   sensors::SensorSpec row;
   row.elements = 2;
   row.limit = 1.0;
   base::Bytes payload, packet, plain;
-  const std::uint8_t type =
-      kind->encode(row, {.kind = kind->id, .values = values}, sensors::WireFormat::farm, 0, payload);
-  netio::encode_reading({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type, payload, packet);
+  const std::uint8_t packet_type =
+      type->encode(row, {.type = type->id, .values = values}, sensors::WireFormat::farm, 0, payload);
+  netio::encode_reading({.robot = 7, .sequence = 30, .time = 3'000'000'000}, packet_type, payload, packet);
   EXPECT_EQ(packet, test::documented("magnetometer"));
-  EXPECT_NE(kind->encode(row, {.kind = kind->id, .values = values}, sensors::WireFormat::thesis, 0, plain), 0);
+  EXPECT_NE(type->encode(row, {.type = type->id, .values = values}, sensors::WireFormat::thesis, 0, plain), 0);
   EXPECT_EQ(plain, test::documented("thesis_magnetometer"));
 }
 
 TEST(WireFormat, LaneEdgesSendTheDocumentedBytes) {
-  const sensors::SensorType* kind = sensors::find_sensor_type(kLaneEdge);
-  if (kind == nullptr) GTEST_SKIP() << "built without the lane edge sensor";
+  const sensors::SensorType* type = sensors::find_sensor_type(kLaneEdge);
+  if (type == nullptr) GTEST_SKIP() << "built without the lane edge sensor";
   const std::vector<double> values{0.25, 61, 12e-6, 1.5e-3};
   base::Bytes payload, packet, plain;
-  const std::uint8_t type =
-      kind->encode({}, {.kind = kind->id, .values = values}, sensors::WireFormat::farm, 0, payload);
-  netio::encode_reading({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type, payload, packet);
+  const std::uint8_t packet_type =
+      type->encode({}, {.type = type->id, .values = values}, sensors::WireFormat::farm, 0, payload);
+  netio::encode_reading({.robot = 7, .sequence = 30, .time = 3'000'000'000}, packet_type, payload, packet);
   EXPECT_EQ(packet, test::documented("lane_edge"));
-  EXPECT_NE(kind->encode({}, {.kind = kind->id, .values = values}, sensors::WireFormat::thesis, 0, plain), 0);
+  EXPECT_NE(type->encode({}, {.type = type->id, .values = values}, sensors::WireFormat::thesis, 0, plain), 0);
   EXPECT_EQ(plain, test::documented("thesis_lane_edge"));
   // No edge in sight.
   const std::vector<double> none{NAN, 0, NAN, NAN};
   plain.clear();
-  kind->encode({}, {.kind = kind->id, .values = none}, sensors::WireFormat::thesis, 0, plain);
+  type->encode({}, {.type = type->id, .values = none}, sensors::WireFormat::thesis, 0, plain);
   EXPECT_EQ(plain, (base::Bytes{0xff, 0xff}));
 }
 
 /// The thesis' listing: its robot faces -y, its `laser` of that name looks along its own +x, the road is a thin model.
 /// Ours faces +x and looks to its left. Both are 0.25 m from the paint's face.
 TEST(LaneEdge, TheThesisListingAndOursReadTheSame) {
-  if (!has_kind(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
+  if (!has_type(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const Folder folder;
   const std::string thesis = folder.write("thesis.world", R"(
 define roombalaneedge laser( range_max 0.5 fov 30.0 samples 61 size [0.06 0.03 0.01] name "laneedge" )
@@ -382,7 +382,7 @@ path( pose [-2 0 0 0] pieces 1 straight[0] [4 0.5] left "solid_white" paint_widt
 
 /// The road as a picture, as the thesis brought it: 5 mm a pixel, seen as it is drawn.
 TEST(LaneEdge, ARoadMayBeAPicture) {
-  if (!has_kind(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
+  if (!has_type(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const Folder folder;
   std::string picture = "P5\n200 200\n255\n";
   for (int row = 0; row < 200; ++row)
@@ -399,7 +399,7 @@ model( name "road" bitmap "road.pgm" size [1 1 0.01] )
 
 /// On the straight a reading states a bound and keeps to it; in the bend it says that none holds.
 TEST(LaneEdge, ABoundIsTrueOfItsReadingOrFlagged) {
-  if (!has_kind(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
+  if (!has_type(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const std::string lane = our_world("testpath/testpath.world");
   const auto sense = [&](const std::string& pose) {
     return Json(run("sense", lane, {"--type", "laneedge", "--json", "--pose", pose}).out);
@@ -416,7 +416,7 @@ TEST(LaneEdge, ABoundIsTrueOfItsReadingOrFlagged) {
 }
 
 TEST(LaneEdge, GoesThroughEveryCommand) {
-  if (!has_kind(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
+  if (!has_type(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
   const std::string lane = our_world("testpath/testpath.world");
   const Json facts(run("check", lane, {"--json"}).out);
   EXPECT_EQ(facts.number("/sensors/laneedge"), 1);

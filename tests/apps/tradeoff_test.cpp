@@ -72,7 +72,7 @@ TEST(Tradeoff, ATableAFileAndAPicture) {
 
   const scenes::Picture picture = scenes::read_png(folder.path("t/tradeoff.png"));
   EXPECT_EQ(picture.width, 1400);
-  EXPECT_GT(picture.count(0xFF0072B2u), 3 * 80) << "a disc for the best of each kind";
+  EXPECT_GT(picture.count(0xFF0072B2u), 3 * 80) << "a disc for the best of each type";
   EXPECT_GT(picture.count(0xFFD55E00u), 3 * 10) << "and the ring of a bound";
 }
 

@@ -14,7 +14,7 @@
 namespace sf {
 namespace {
 
-/// Records two seconds of a world with sensors of many kinds.
+/// Records two seconds of a world with sensors of many types.
 std::string record(const Folder& folder, const Words& more = {}) {
   Words words{"run", our_world("minimagic/minimagic.world"), "--duration", "2", "--record", folder.path("run")};
   words.insert(words.end(), more.begin(), more.end());

@@ -52,7 +52,7 @@ TEST(Avoid, GoesThroughTheStatesOfTheThesis) {
     std::vector<double> ranges(9, m.right);
     std::fill(ranges.begin() + 2, ranges.end(), m.front);
     std::fill(ranges.begin() + 7, ranges.end(), m.left);
-    const base::ReadingBlock block{.kind = sensors::kLaser, .values = ranges};
+    const base::ReadingBlock block{.type = sensors::kLaser, .values = ranges};
     const base::Twist twist = avoid.step({.readings = {&block, 1}});
     EXPECT_EQ(avoid.state(), m.state) << m.why;
     EXPECT_EQ(twist.forward, m.forward) << m.why;
@@ -64,7 +64,7 @@ TEST(Avoid, TurnsUntilAsFarAsItWasTold) {
   Avoid avoid({.clear = 0.4});
   for (const auto& [front, turns] : {std::pair{0.19, true}, {0.39, true}, {0.41, false}, {0.39, false}}) {
     const std::vector<double> ranges(9, front);
-    const base::ReadingBlock block{.kind = sensors::kLaser, .values = ranges};
+    const base::ReadingBlock block{.type = sensors::kLaser, .values = ranges};
     EXPECT_EQ(avoid.step({.readings = {&block, 1}}).turn != 0.0, turns) << front;
   }
 }

@@ -9,6 +9,7 @@
 #include "control/controllers.h"
 #include "robots/fleet.h"
 #include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 #include "world/world.h"
 
 namespace sf::loop {
@@ -19,7 +20,7 @@ using base::Twist;
 inline constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Ranges of a laser on walls only.
-inline std::vector<double> scan(const world::World& world, const world::Laser& laser, const Pose& X_WS) {
+inline std::vector<double> scan(const world::World& world, const sensors::LaserSettings& laser, const Pose& X_WS) {
   // Walls out of range are excluded once for all beams.
   std::vector<const world::Segment*> near;
   for (const auto& wall : world.walls)
@@ -28,7 +29,7 @@ inline std::vector<double> scan(const world::World& world, const world::Laser& l
       near.push_back(&wall);
   std::vector<double> ranges;
   for (std::uint32_t i = 0; i < laser.samples; ++i) {
-    const double bearing = X_WS.yaw + world::bearing_of(laser, i);
+    const double bearing = X_WS.yaw + bearing_of(laser, i);
     const glm::dvec2 u{std::cos(bearing), std::sin(bearing)}, p{X_WS.x, X_WS.y};
     double range = laser.range_max;
     for (const world::Segment* wall : near) {
@@ -47,18 +48,18 @@ struct LaserRun {
 
   void tick() {
     const std::int64_t now = fleet.reports()[0].time;
-    const base::ReadingBlock block{.kind = sensors::kLaser,
+    const base::ReadingBlock block{.type = sensors::kLaser,
                                    .sequence = sequence,
                                    .time = seen_at,
                                    .X_WM = X_WM,
-                                   .X_WS = compose(X_WM, world.movers[0].lasers[0].X_MS),
+                                   .X_WS = compose(X_WM, sensors::lasers_of(world.movers[0])[0].X_MS),
                                    .values = ranges};
     const Twist twist = controller.step(
         {.time = now, .state = fleet.reports()[0], .readings = {&block, 1}, .contact = fleet.contacts()[0] != 0});
     finite = finite && std::isfinite(twist.forward) && std::isfinite(twist.turn);
     // Readings fall between ticks.
     constexpr std::int64_t kTick = kSecond / 10;
-    const auto period = static_cast<std::int64_t>(1e9 / world.movers[0].lasers[0].rate);
+    const auto period = static_cast<std::int64_t>(1e9 / sensors::lasers_of(world.movers[0])[0].rate);
     for (std::int64_t left = kTick; left > 0;) {
       const std::int64_t part = std::min(left, seen_at + period - fleet.reports()[0].time);
       const Twist command[] = {twist};
@@ -70,7 +71,7 @@ struct LaserRun {
     distance += std::abs(fleet.reports()[0].velocity.forward) * 0.1;
   }
   void look() {
-    const world::Laser& laser = world.movers[0].lasers[0];
+    const sensors::LaserSettings laser = sensors::lasers_of(world.movers[0])[0];
     X_WM = fleet.reports()[0].X_WM;
     ranges = scan(world, laser, compose(X_WM, laser.X_MS));
     seen_at = fleet.reports()[0].time;

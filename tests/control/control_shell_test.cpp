@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "sensors/laser_settings.h"
 #include "tests/robots/scenes.h"
 
 namespace sf::control {
@@ -110,7 +111,7 @@ ControllerConfig config_of(std::string name, std::vector<Setting> settings = {})
 world::World small_world() {
   world::World world = scenes::boxed_world(4, 4);
   world::Mover& robot = scenes::add_create(world, {2, 2, 0, 0});
-  robot.lasers.push_back({});
+  robot.sensors.push_back(sensors::laser_sensor({}));
   robot.sensors.push_back({.type = "laneedge"});
   robot.sensors.push_back({.type = "irreceiver"});
   robot.sensors.push_back(scenes::magnetometers(2));

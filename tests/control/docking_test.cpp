@@ -50,7 +50,7 @@ Docked dock(const Pose& X_WD, const Pose& from, bool solid) {
   for (int i = 0; i < 2400 && !controller->done(); ++i) {
     const base::Report& state = fleet.reports()[0];
     const std::vector<double> values{0.0, byte_at(X_WD, {state.X_WM.x, state.X_WM.y})};
-    const base::ReadingBlock block{.kind = 11, .values = values};
+    const base::ReadingBlock block{.type = 11, .values = values};
     const base::Twist command[] = {controller->step(
         {.time = i * kTick, .state = state, .readings = {&block, 1}, .contact = fleet.contacts()[0] != 0})};
     EXPECT_TRUE(controller->intent().docking);
@@ -96,10 +96,10 @@ TEST(Docking, FollowsTheLineBetweenTheBuoys) {
                         Seen{246, -1, 0.03 * std::cos(0.7), "green, in the field"}}) {
     Docking docking({.X_WD = X_WD});
     const std::vector<double> both{0.0, 252.0};
-    const base::ReadingBlock before{.kind = 11, .values = both};
+    const base::ReadingBlock before{.type = 11, .values = both};
     docking.step({.state = {.X_WM = {1.2, 0, 0, M_PI}}, .readings = {&before, 1}});
     const std::vector<double> values{0.0, s.byte};
-    const base::ReadingBlock block{.kind = 11, .values = values};
+    const base::ReadingBlock block{.type = 11, .values = values};
     const base::Twist twist = docking.step({.state = {.X_WM = {1.0, 0, 0, M_PI}}, .readings = {&block, 1}});
     EXPECT_NEAR(twist.forward, s.forward, 1e-12) << s.why;
     EXPECT_EQ(std::abs(twist.turn) < 1e-9 ? 0.0 : std::copysign(1.0, twist.turn), s.turn) << s.why;
@@ -110,7 +110,7 @@ TEST(Docking, WithoutLightItGoesToAPlaceBeforeTheDock) {
   for (const double byte : {255.0, 242.0, 240.0, 130.0, std::nan("")}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
     const std::vector<double> values{0.0, byte};
-    const base::ReadingBlock block{.kind = 11, .values = values};
+    const base::ReadingBlock block{.type = 11, .values = values};
     const base::Twist twist = docking.step({.state = {.X_WM = {1.0, 2.0, 0, -M_PI / 2}}, .readings = {&block, 1}});
     EXPECT_EQ(twist.forward, 0.1) << byte;
     EXPECT_NEAR(twist.turn, 0.0, 1e-9) << byte;
@@ -145,7 +145,7 @@ TEST(Docking, WithOneBuoyAloneItGoesToThatPlaceUntilItHasSeenBoth) {
   for (const double byte : {248.0, 250.0}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
     const std::vector<double> values{0.0, byte};
-    const base::ReadingBlock block{.kind = 11, .values = values};
+    const base::ReadingBlock block{.type = 11, .values = values};
     const base::Twist twist = docking.step({.state = {.X_WM = {0.4, 0.2, 0, 0}}, .readings = {&block, 1}});
     EXPECT_LT(twist.turn, 0.0) << "to (1, 0), away from the dock";
     EXPECT_NEAR(twist.turn, 3.0 * std::atan2(-0.2, 0.6), 1e-9);
@@ -158,7 +158,7 @@ TEST(Docking, ATurnInPlaceGoesOnTheSameWayRound) {
   Docking docking({.X_WD = {}});
   const auto step = [&](double yaw, double byte) {
     const std::vector<double> values{0.0, byte};
-    const base::ReadingBlock block{.kind = 11, .values = values};
+    const base::ReadingBlock block{.type = 11, .values = values};
     return docking.step({.state = {.X_WM = {1.0, 0.0, 0, yaw}}, .readings = {&block, 1}});
   };
   EXPECT_GT(step(0.1, 252.0).turn, 0.5) << "to the dock's heading, pi, by the left";
@@ -172,7 +172,7 @@ TEST(Docking, BlindForAMomentItGoesOnThenBackToItsPlace) {
   Docking docking({.X_WD = {}, .stage = 1.0});
   const auto step = [&](double seconds, double byte) {
     const std::vector<double> values{0.0, byte};
-    const base::ReadingBlock block{.kind = 11, .values = values};
+    const base::ReadingBlock block{.type = 11, .values = values};
     return docking.step({.time = static_cast<std::int64_t>(1e9 * seconds),
                          .state = {.X_WM = {0.8, 0.0, 0, M_PI}},
                          .readings = {&block, 1}});
@@ -204,7 +204,7 @@ TEST(Docking, AfterSuchATouchItDrivesOutOfTheForceFieldFirst) {
   Docking docking({.X_WD = {}, .stage = 1.0});
   const auto step = [&](const Pose& X, double byte, bool contact) {
     const std::vector<double> values{0.0, byte};
-    const base::ReadingBlock block{.kind = 11, .values = values};
+    const base::ReadingBlock block{.type = 11, .values = values};
     return docking.step({.state = {.X_WM = X}, .readings = {&block, 1}, .contact = contact});
   };
   step({0.3, 0.0, 0, M_PI - 1.0}, 254, true);

@@ -8,6 +8,7 @@
 
 #include "base/random.h"
 #include "maps/grid.h"
+#include "sensors/laser_settings.h"
 #include "tests/robots/scenes.h"
 #include "world/wall_tree.h"
 #include "world/world.h"
@@ -175,13 +176,13 @@ inline world::World boxes(std::uint64_t seed, int count) {
     for (const auto& wall : world.walls) crossings += world::segments_meet(p, {p.x + 9.0, p.y + 1e-3}, wall.a, wall.b);
     if (!free || crossings % 2 == 0) continue;
     world::Mover& create = scenes::add_create(world, {p.x, p.y, 0.0, 2.0 * M_PI * place[0]});
-    world::Laser laser;
+    sensors::LaserSettings laser;
     laser.X_MS = {0.19, 0.0, 0.17, 0.0};
     laser.fov = M_PI;
     laser.samples = 361;
     laser.range_max = 0.75;
     laser.rate = 13.0;
-    create.lasers.push_back(laser);
+    create.sensors.push_back(sensors::laser_sensor(laser));
   }
   world.extent = {-1.5, -1.5, 1.5, 1.5};
   return world;

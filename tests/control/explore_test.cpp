@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 #include "tests/control/closed_loop.h"
 #include "tests/control/exploration.h"
 #include "tests/instrumented.h"
@@ -48,7 +49,8 @@ Explored explore(const world::World& world, const exploration::Looker& looker = 
 }
 
 TEST(Explore, MapsAllOfTheMappingAreaAndTouchesNothing) {
-  const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/mapping/mapping.world");
+  const world::World world =
+      world::load_world(SF_SOURCE_DIR "/worlds/mapping/mapping.world", {.sensors = sensors::world_file_words()});
   const Explored e = explore(world);
   EXPECT_TRUE(e.done);
   EXPECT_TRUE(e.finite);
@@ -126,7 +128,8 @@ TEST(Explore, DoesNotTryAPassageNarrowerThanTheBody) {
 TEST(Explore, StandsWhenItIsDone) {
   world::World world = scenes::boxed_world(0.8, 0.8);
   scenes::add_create(world, {0.4, 0.4, 0, 0})
-      .lasers.push_back({.X_MS = {0.1, 0, 0.1, 0}, .fov = M_PI, .samples = 181, .range_max = 2.0});
+      .sensors.push_back(
+          sensors::laser_sensor({{.X_MS = {0.1, 0, 0.1, 0}, .fov = M_PI, .samples = 181, .range_max = 2.0}}));
   const auto controller = make_explore(world);
   loop::LaserRun run(world, *controller);
   for (int i = 0; i < 3000 && !controller->done(); ++i) run.tick();
@@ -156,7 +159,7 @@ TEST(Explore, OddReadingsDoNoHarm) {
     const std::vector<double> ranges(361, range), few(7, 0.3);
     for (std::uint32_t i = 0; i < 120; ++i) {
       const base::ReadingBlock block{
-          .kind = sensors::kLaser, .sequence = i, .X_WS = {0.19, 0, 0, 0}, .values = i % 5 == 0 ? few : ranges};
+          .type = sensors::kLaser, .sequence = i, .X_WS = {0.19, 0, 0, 0}, .values = i % 5 == 0 ? few : ranges};
       const base::Twist twist = controller->step(
           {.time = i * loop::kSecond / 10, .state = {.X_WM = {0, 0, 0, 0.11 * i}}, .readings = {&block, 1}});
       ASSERT_TRUE(std::isfinite(twist.forward) && std::isfinite(twist.turn)) << range;

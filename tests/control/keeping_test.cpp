@@ -36,10 +36,10 @@ world::World path_world(double yaw = M_PI / 2) {
   return world;
 }
 
-std::unique_ptr<Controller> make(const world::World& world, const ControllerType& kind,
+std::unique_ptr<Controller> make(const world::World& world, const ControllerType& type,
                                  std::vector<Setting> numbers = {}) {
   Settings settings("controller", std::move(numbers));
-  return kind.make({world}, settings);
+  return type.make({world}, settings);
 }
 
 Setting set(const char* key, double value) { return {key, value, ""}; }
@@ -77,14 +77,14 @@ struct Drive {
   double end = 0.0;                                  // [m] along the path
 };
 
-Drive drive(const world::World& world, Controller& controller, std::uint8_t kind,
+Drive drive(const world::World& world, Controller& controller, std::uint8_t type,
             const std::function<std::vector<double>(const Pose&)>& sense, Plant plant, Pose X_WM = {}) {
   Drive result;
   int steps = 0;
   for (std::int64_t time = 0; time < 1000 * kTick; time += kTick) {
     const std::vector<double> values = sense(X_WM);
     const base::ReadingBlock block{
-        .kind = kind, .sequence = static_cast<std::uint32_t>(time / kTick), .time = time, .values = values};
+        .type = type, .sequence = static_cast<std::uint32_t>(time / kTick), .time = time, .values = values};
     const Twist twist = controller.step({.time = time, .state = {.X_WM = X_WM}, .readings = {&block, 1}});
     if (controller.done()) break;
     ++steps;
@@ -159,7 +159,7 @@ void step_through(Controller& controller, const std::vector<Step>& steps) {
   std::uint32_t sequence = 0;
   for (const Step& step : steps) {
     const std::vector<double> values{step.z, 61, 0, 0};
-    const base::ReadingBlock block{.kind = sensors::kLaneEdge, .sequence = sequence++, .values = values};
+    const base::ReadingBlock block{.type = sensors::kLaneEdge, .sequence = sequence++, .values = values};
     const Twist twist = controller.step({.time = time, .state = {.X_WM = {0.5, 0, 0, 0}}, .readings = {&block, 1}});
     if (std::isnan(step.error)) {
       EXPECT_TRUE(std::isnan(controller.error())) << step.why;
@@ -209,7 +209,7 @@ TEST(LaneKeeping, ItsOwnGainKeepsTheLane) {
   for (const auto plant : {&ideal, &player_create})
     for (const double speed : {0.1, 0.2, 0.4}) {
       world::World world = path_world();
-      if (plant == &player_create) world.movers[0].driver_model = world::DriverModel::player_create;
+      if (plant == &player_create) world.movers[0].actuator_model = world::ActuatorModel::player_create;
       const auto controller = make(world, lane_keeping_controller, {set("speed", speed)});
       const Drive d = drive(
           world, *controller, sensors::kLaneEdge, [&](const Pose& X) { return edge_from(world, X); }, *plant);
@@ -219,18 +219,18 @@ TEST(LaneKeeping, ItsOwnGainKeepsTheLane) {
 }
 
 TEST(LaneKeeping, ItsOwnGainFollowsFromSpeedAndSensor) {
-  const auto gain = [](double speed, double ahead, world::DriverModel law = world::DriverModel::direct) {
+  const auto gain = [](double speed, double ahead, world::ActuatorModel law = world::ActuatorModel::direct) {
     world::World world = path_world();
     world.movers[0].sensors[0].X_MS.x = ahead;
-    world.movers[0].driver_model = law;
+    world.movers[0].actuator_model = law;
     const auto controller = make(world, lane_keeping_controller, {set("speed", speed), set("half_width", 0.25)});
     const std::vector<double> values{0.35};
-    const base::ReadingBlock block{.kind = sensors::kLaneEdge, .values = values};
+    const base::ReadingBlock block{.type = sensors::kLaneEdge, .values = values};
     return controller->step({.readings = {&block, 1}}).turn / 0.1;
   };
   EXPECT_NEAR(gain(0.1, 0.2), 5.0, 1e-9) << "2 v / l^2";
   EXPECT_NEAR(gain(0.05, 0.2), 2.5, 1e-9);
-  EXPECT_NEAR(gain(0.1, 0.2, world::DriverModel::player_create), 2.5, 1e-9) << "its driver doubles it";
+  EXPECT_NEAR(gain(0.1, 0.2, world::ActuatorModel::player_create), 2.5, 1e-9) << "its driver doubles it";
   EXPECT_NEAR(gain(0.4, 0.2), 10.0, 1e-9) << "2 rad/s / l, for steps at 10 Hz";
   EXPECT_NEAR(gain(0.1, -0.1), 20.0, 1e-9) << "as if 0.1 m ahead";
 }
@@ -241,11 +241,11 @@ TEST(LaneKeeping, SaysWhyItStands) {
   controller->step({});
   EXPECT_EQ(stop_reason_of(*controller), "no new reading comes from its lane edge sensor");
   const std::vector<double> none{kNaN};
-  const base::ReadingBlock blind{.kind = sensors::kLaneEdge, .values = none};
+  const base::ReadingBlock blind{.type = sensors::kLaneEdge, .values = none};
   controller->step({.readings = {&blind, 1}});
   EXPECT_EQ(stop_reason_of(*controller), "its lane edge sensor sees nothing to follow");
   const std::vector<double> edge{0.3};
-  const base::ReadingBlock seen{.kind = sensors::kLaneEdge, .sequence = 1, .values = edge};
+  const base::ReadingBlock seen{.type = sensors::kLaneEdge, .sequence = 1, .values = edge};
   controller->step({.time = kTick, .readings = {&seen, 1}});
   EXPECT_EQ(stop_reason_of(*controller), "") << "it drives";
   controller->step({.time = 10 * kTick, .readings = {&seen, 1}});
@@ -274,7 +274,7 @@ TEST(LaneKeeping, TheSameReadingAgainCountsUntilTheSensorIsSilentForLong) {
   const world::World world = path_world();
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5), set("kp", 0.5), set("ki", 1.0)});
   const std::vector<double> values{0.35, 61, 0, 0};
-  const base::ReadingBlock block{.kind = sensors::kLaneEdge, .sequence = 9, .values = values};
+  const base::ReadingBlock block{.type = sensors::kLaneEdge, .sequence = 9, .values = values};
   int moving = 0;
   double last = 0.0;
   for (int i = 0; i < 20; ++i) {
@@ -292,7 +292,7 @@ TEST(LaneKeeping, StandsWithoutAnyReading) {
   const auto controller = make(world, lane_keeping_controller);
   EXPECT_EQ(controller->step({}).forward, 0.0);
   const std::vector<double> nothing;
-  const base::ReadingBlock empty{.kind = sensors::kLaneEdge, .values = nothing};
+  const base::ReadingBlock empty{.type = sensors::kLaneEdge, .values = nothing};
   EXPECT_EQ(controller->step({.readings = {&empty, 1}}).forward, 0.0);
 }
 
@@ -320,7 +320,7 @@ TEST(MagnetKeeping, TakesTheOutermostElementsInGauss) {
   const world::World world = path_world();
   const auto controller = make(world, magnet_keeping_controller, {set("kp", 0.5)});
   const std::vector<double> values{0.2e-4, 9, 9, 9, 7, 9, 9, 9, 0.8e-4, 9, 9, 9};  // [T], three elements
-  const base::ReadingBlock block{.kind = sensors::kMagnetometer, .values = values};
+  const base::ReadingBlock block{.type = sensors::kMagnetometer, .values = values};
   EXPECT_NEAR(controller->step({.readings = {&block, 1}}).turn, 0.3, 1e-12);
   EXPECT_NEAR(controller->error(), 0.6, 1e-12);
 }
@@ -328,7 +328,7 @@ TEST(MagnetKeeping, TakesTheOutermostElementsInGauss) {
 TEST(MagnetKeeping, OneElementOrNoneIsNoArray) {
   const world::World world = path_world();
   const std::vector<double> one{1e-4, 0, 0, 0};
-  const base::ReadingBlock block{.kind = sensors::kMagnetometer, .values = one};
+  const base::ReadingBlock block{.type = sensors::kMagnetometer, .values = one};
   const auto controller = make(world, magnet_keeping_controller);
   EXPECT_EQ(controller->step({.readings = {&block, 1}}).forward, 0.0);
   EXPECT_TRUE(std::isnan(controller->error()));

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "robots/fleet.h"
+#include "sensors/laser_settings.h"
 #include "tests/robots/scenes.h"
 
 namespace sf::control {
@@ -19,8 +20,8 @@ using base::Twist;
 
 constexpr std::int64_t kTick = 100'000'000;
 
-world::Laser laser(double fov, std::uint32_t samples, double range_max, const Pose& X_MS = {}) {
-  world::Laser l;
+sensors::LaserSettings laser(double fov, std::uint32_t samples, double range_max, const Pose& X_MS = {}) {
+  sensors::LaserSettings l;
   l.X_MS = X_MS;
   l.fov = fov;
   l.samples = samples;
@@ -56,7 +57,7 @@ struct Walk {
     std::vector<Twist> commands;
     for (std::uint32_t row = 0; row < wanderers.size(); ++row) {
       const base::Report& state = fleet.reports()[row];
-      const auto& lasers = world.movers[row].lasers;
+      const std::vector<sensors::LaserSettings> lasers = sensors::lasers_of(world.movers[row]);
       std::vector<std::vector<double>> ranges(lasers.size());
       std::vector<ReadingBlock> blocks;
       for (std::uint32_t i = 0; i < lasers.size(); ++i) {
@@ -66,7 +67,7 @@ struct Walk {
           ranges[i].push_back(cast(world, fleet.reports(), row, {X_WS.x, X_WS.y}, X_WS.yaw + along * lasers[i].fov,
                                    lasers[i].range_max));
         }
-        blocks.push_back({.mover = row, .sensor = i, .kind = 1, .values = ranges[i]});
+        blocks.push_back({.mover = row, .sensor = i, .type = 1, .values = ranges[i]});
       }
       commands.push_back(wanderers[row].step({state.time, state, blocks, fleet.contacts()[row] != 0}));
     }
@@ -118,7 +119,8 @@ world::World arena() {
 TEST(Wander, WithAScannerCoversGroundAndMeetsNothing) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     world::World world = arena();
-    scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 181, 8.0, {0.1, 0, 0, 0}));
+    scenes::add_create(world, {2, 2, 0, 0.3})
+        .sensors.push_back(sensors::laser_sensor(laser(M_PI, 181, 8.0, {0.1, 0, 0, 0})));
     const Walked w = walk(world, 60, seed);
     EXPECT_GT(w.distance, 10.0) << "seed " << seed;
     EXPECT_GT(w.cells, 12u) << "seed " << seed;
@@ -130,11 +132,11 @@ TEST(Wander, WithAScannerCoversGroundAndMeetsNothing) {
 // Touched only from behind the robot drives forward where there is room, else turns. Touched elsewhere it backs off.
 TEST(Wander, LeavesWhatPressesFromBehind) {
   world::World world = arena();
-  scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 181, 8.0));
+  scenes::add_create(world, {2, 2, 0, 0.3}).sensors.push_back(sensors::laser_sensor(laser(M_PI, 181, 8.0)));
   const auto first_twist = [&](double range, std::uint32_t contact_mask) {
     Wander wander(world.movers[0], 0, 1);
     const std::vector<double> ranges(181, range);
-    const ReadingBlock block{.mover = 0, .sensor = 0, .kind = 1, .values = ranges};
+    const ReadingBlock block{.mover = 0, .sensor = 0, .type = 1, .values = ranges};
     base::Report state{.X_WM = world.movers[0].X_WM, .contact_mask = contact_mask};
     return wander.step({0, state, {&block, 1}, true});
   };
@@ -154,7 +156,8 @@ TEST(Wander, WithTwelveSingleBeamsKeepsMoving) {
   world::Mover& mover = scenes::add_create(world, {2, 2, 0, 0.3});
   for (int i = 0; i < 12; ++i) {
     const double yaw = M_PI * i / 6;
-    mover.lasers.push_back(laser(0, 1, 0.5, {0.16 * std::cos(yaw), 0.16 * std::sin(yaw), 0, yaw}));
+    mover.sensors.push_back(
+        sensors::laser_sensor(laser(0, 1, 0.5, {0.16 * std::cos(yaw), 0.16 * std::sin(yaw), 0, yaw})));
   }
   const Walked w = walk(world, 120);
   EXPECT_GT(w.distance, 12.0);
@@ -178,7 +181,8 @@ TEST(Wander, ATinyRobotWithShortSight) {
   for (int i = 0; i < 12; ++i) corners.push_back(0.035 * glm::dvec2{std::cos(M_PI * i / 6), std::sin(M_PI * i / 6)});
   world::Mover& mover = scenes::add_mover(world, {0.5, 0.5, 0, 1}, corners);
   mover.max_forward = 0.3;
-  for (int i = -2; i <= 2; ++i) mover.lasers.push_back(laser(0, 1, 0.1, {0.035, 0, 0, 0.5 * i}));
+  for (int i = -2; i <= 2; ++i)
+    mover.sensors.push_back(sensors::laser_sensor(laser(0, 1, 0.1, {0.035, 0, 0, 0.5 * i})));
   EXPECT_GT(walk(world, 60).distance, 3.0);
 }
 
@@ -187,7 +191,7 @@ TEST(Wander, ACarKeepsMoving) {
   world::Mover& mover = scenes::add_square(world, {2, 2, 0, 0.3});
   mover.drive = world::Drive::car;
   mover.wheelbase = 0.3;
-  mover.lasers.push_back(laser(M_PI, 61, 8.0));
+  mover.sensors.push_back(sensors::laser_sensor(laser(M_PI, 61, 8.0)));
   const Walked w = walk(world, 120);
   EXPECT_GT(w.distance, 12.0);
   EXPECT_GT(w.cells, 6u);
@@ -196,7 +200,8 @@ TEST(Wander, ACarKeepsMoving) {
 TEST(Wander, ACrowdKeepsMoving) {
   world::World world = arena();
   for (int i = 0; i < 12; ++i) {
-    scenes::add_create(world, {1.0 + i % 4, 1.0 + i / 4, 0, 0.5 * i}).lasers.push_back(laser(M_PI, 61, 8.0));
+    scenes::add_create(world, {1.0 + i % 4, 1.0 + i / 4, 0, 0.5 * i})
+        .sensors.push_back(sensors::laser_sensor(laser(M_PI, 61, 8.0)));
   }
   Walk w(world);
   std::vector<double> distance(12);
@@ -209,7 +214,7 @@ TEST(Wander, ACrowdKeepsMoving) {
 
 TEST(Wander, TheSameWalkAgainAndAnotherWithAnotherSeed) {
   world::World world = arena();
-  scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 61, 8.0));
+  scenes::add_create(world, {2, 2, 0, 0.3}).sensors.push_back(sensors::laser_sensor(laser(M_PI, 61, 8.0)));
   Walk a(world, 1), b(world, 1), c(world, 2);
   for (int i = 0; i < 300; ++i) a.tick(), b.tick(), c.tick();
   EXPECT_EQ(a.fleet.reports()[0].X_WM.x, b.fleet.reports()[0].X_WM.x);
@@ -221,12 +226,12 @@ TEST(Wander, TheSameWalkAgainAndAnotherWithAnotherSeed) {
 TEST(Wander, StaysFiniteWhateverItReads) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_create(world, {});
-  mover.lasers.push_back(laser(M_PI, 37, 8.0));
+  mover.sensors.push_back(sensors::laser_sensor(laser(M_PI, 37, 8.0)));
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const double range : {0.0, 1e-300, 0.3, 8.0, inf, -inf, -1.0, nan}) {
     Wander wander(mover, 0, 1);
     const std::vector<double> ranges(37, range);
-    const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
+    const std::vector<ReadingBlock> blocks{{.type = 1, .values = ranges}};
     for (int i = 0; i < 200; ++i) {
       const Twist v = wander.step({i * kTick, {.X_WM = {0, 0, 0, 0.1 * i}}, blocks, i % 17 == 0});
       ASSERT_TRUE(std::isfinite(v.forward) && std::isfinite(v.left) && std::isfinite(v.turn)) << range;
@@ -239,11 +244,11 @@ TEST(Wander, StaysFiniteWhateverItReads) {
 TEST(Wander, IgnoresReadingsThatAreNotItsOwnLasers) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_create(world, {});
-  mover.lasers.push_back(laser(M_PI, 3, 8.0));
+  mover.sensors.push_back(sensors::laser_sensor(laser(M_PI, 3, 8.0)));
   const std::vector<double> zeros(3, 0.0), few;
   Wander wander(mover, 0, 1);
   const std::vector<ReadingBlock> blocks{
-      {.sensor = 7, .kind = 1, .values = zeros}, {.kind = 9, .values = zeros}, {.kind = 1, .values = few}};
+      {.sensor = 7, .type = 1, .values = zeros}, {.type = 9, .values = zeros}, {.type = 1, .values = few}};
   EXPECT_GT(wander.step({0, {}, blocks, false}).forward, 0.3);
 }
 
@@ -285,7 +290,7 @@ TEST(Wander, ItsDistancesFollowFromTheBodyItsSpeedAndItsSight) {
 
 struct Eyes {
   Eyes() {
-    scenes::add_create(world, {}).lasers.push_back(laser(M_PI, 181, 8.0));
+    scenes::add_create(world, {}).sensors.push_back(sensors::laser_sensor(laser(M_PI, 181, 8.0)));
     wander.emplace(world.movers[0], 0, 1);
   }
   /// @param front [m] range of the 3 middle beams, 0.165 m of it to the body's front
@@ -294,7 +299,7 @@ struct Eyes {
     std::vector<double> ranges(181, right);
     std::fill(ranges.begin() + 89, ranges.end(), front);
     std::fill(ranges.begin() + 92, ranges.end(), left);
-    const ReadingBlock block{.kind = 1, .values = ranges};
+    const ReadingBlock block{.type = 1, .values = ranges};
     return wander->step({static_cast<std::int64_t>(1e9 * seconds), {.X_WM = {0, 0, 0, yaw}}, {&block, 1}, contact});
   }
   world::World world = scenes::empty_world();
@@ -380,13 +385,13 @@ struct Look {
 TEST(ClearanceEstimator, AheadIsMeasuredFromTheFrontInTheLane) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
-  mover.lasers.push_back(laser(0, 1, 2.0, {0.1, 0, 0, 0}));
+  mover.sensors.push_back(sensors::laser_sensor(laser(0, 1, 2.0, {0.1, 0, 0, 0})));
   const ClearanceEstimator estimator(mover);
   EXPECT_NEAR(estimator.range(), 1.9, 1e-12);
   for (const Look& look : {Look{1.1, 1.0, "0.1 on the body, 0.2 to its front"}, Look{2.0, 1.9, "nothing in range"},
                            Look{5.0, 1.9, "beyond range"}, Look{0.0, 0.0, "within the body"}}) {
     const std::vector<double> ranges{look.range};
-    const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
+    const std::vector<ReadingBlock> blocks{{.type = 1, .values = ranges}};
     EXPECT_NEAR(estimator.estimate(blocks).ahead, look.ahead, 1e-6) << look.why;
   }
 }
@@ -396,9 +401,9 @@ TEST(ClearanceEstimator, TheLaneIsALittleWiderThanTheBody) {
   for (const auto& [aside, ahead] : {std::pair{0.0, 1.0}, {0.235, 1.0}, {-0.235, 1.0}, {0.245, 1.9}, {-0.245, 1.9}}) {
     world::World world = scenes::empty_world();
     world::Mover mover = scenes::add_square(world, {});
-    mover.lasers.push_back(laser(0, 1, 2.0, {0.1, aside, 0, 0}));
+    mover.sensors.push_back(sensors::laser_sensor(laser(0, 1, 2.0, {0.1, aside, 0, 0})));
     const std::vector<double> ranges{1.1};
-    const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
+    const std::vector<ReadingBlock> blocks{{.type = 1, .values = ranges}};
     EXPECT_NEAR(ClearanceEstimator(mover).estimate(blocks).ahead, ahead, 1e-6) << aside;
   }
 }
@@ -406,9 +411,9 @@ TEST(ClearanceEstimator, TheLaneIsALittleWiderThanTheBody) {
 TEST(ClearanceEstimator, ThingsBesideTheLaneAreNotAhead) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
-  mover.lasers.push_back(laser(M_PI, 3, 4.0));
+  mover.sensors.push_back(sensors::laser_sensor(laser(M_PI, 3, 4.0)));
   const std::vector<double> ranges{0.5, 3.0, 1.5};  // right, ahead, left
-  const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
+  const std::vector<ReadingBlock> blocks{{.type = 1, .values = ranges}};
   const Clearance c = ClearanceEstimator(mover).estimate(blocks);
   EXPECT_NEAR(c.ahead, 2.8, 1e-6);
   EXPECT_NEAR(c.left, 1.5, 1e-6);

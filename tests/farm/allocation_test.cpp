@@ -6,6 +6,7 @@
 #include "tests/counted_new.h"
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/cone_scenes.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/host_trial.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -41,7 +42,7 @@ TEST(Allocation, NoneInATickAfterWarmUp) {
 
 TEST(Allocation, NoneWithNoiseAndLatencyEither) {
   world::World world = small_world(20, {.range_sigma = 0.01, .angle_sigma = 0.001});
-  for (world::Mover& mover : world.movers) mover.lasers[0].latency = 0.25;
+  for (world::Mover& mover : world.movers) scenes::edit_laser(mover)->latency = 0.25;
   EXPECT_EQ(allocations_per_lap(world, {.threads = 2}), 0u);
 }
 

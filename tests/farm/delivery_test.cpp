@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/farm/small_farm.h"
+#include "tests/sensors/edit_laser.h"
 
 namespace sf::farm {
 namespace {
@@ -13,9 +14,9 @@ constexpr std::int64_t kTick = 20'000'000;
 
 TEST(Latency, AReadingComesLaterAndUnchanged) {
   world::World prompt = small_world(2);
-  prompt.movers[1].lasers[0].accuracy.word = "skip2";  // with quality flags of skipped beams
+  scenes::edit_laser(prompt.movers[1])->accuracy.word = "skip2";  // with quality flags of skipped beams
   world::World late = prompt;
-  late.movers[1].lasers[0].latency = 0.05;
+  scenes::edit_laser(late.movers[1])->latency = 0.05;
   Farm now(prompt, device());
   Farm later(late, device());
   now.subscribe_all();
@@ -46,7 +47,7 @@ TEST(Latency, OfWholeTicks) {
   const std::int64_t tick = 100'000'000;
   for (const auto& [latency, ticks] : {std::pair{0.1, 1}, {0.2, 2}, {0.100000001, 2}, {0.099999999, 1}, {1e-9, 1}}) {
     world::World world = small_world(1);
-    world.movers[0].lasers[0].latency = latency;
+    scenes::edit_laser(world.movers[0])->latency = latency;
     Farm farm(world, device());
     farm.subscribe_all();
     for (int k = 0; k < 6; ++k) {
@@ -60,7 +61,7 @@ TEST(Latency, OfWholeTicks) {
 /// The other sensors have no latency.
 TEST(Latency, OfTheFirstSensorAlone) {
   world::World world = small_world(2);
-  world.movers[0].lasers[0].latency = 0.05;
+  scenes::edit_laser(world.movers[0])->latency = 0.05;
   Farm farm(world, device());
   farm.subscribe_all();
   const auto readings = farm.tick(0, {});
@@ -71,8 +72,8 @@ TEST(Latency, OfTheFirstSensorAlone) {
 /// The farm reports the time of the next delivery. A sample at that time, between two ticks, is punctual.
 TEST(Latency, DeliveredBetweenTicks) {
   world::World world = small_world(2);
-  world.movers[1].lasers[0].latency = 0.03;
-  world.movers[1].lasers[0].rate = 20.0;
+  scenes::edit_laser(world.movers[1])->latency = 0.03;
+  scenes::edit_laser(world.movers[1])->rate = 20.0;
   Farm farm(world, device());
   EXPECT_EQ(farm.next_delivery(), kNever);
   farm.subscribe_all();
@@ -90,7 +91,7 @@ TEST(Latency, DeliveredBetweenTicks) {
 /// Latency above the period: several readings wait at once and are delivered in order.
 TEST(Latency, LongerThanThePeriod) {
   world::World world = small_world(3);
-  for (world::Mover& mover : world.movers) mover.lasers[0].latency = 0.35;
+  for (world::Mover& mover : world.movers) scenes::edit_laser(mover)->latency = 0.35;
   Farm farm(world, device());
   farm.subscribe_all();
   std::uint32_t next[3] = {0, 0, 0};
@@ -105,8 +106,8 @@ TEST(Latency, LongerThanThePeriod) {
 /// Readings delivered in one tick are ordered by age, oldest first; those without latency come last.
 TEST(Latency, OldestFirst) {
   world::World world = small_world(2);
-  world.movers[0].lasers[0].latency = 0.0;
-  world.movers[1].lasers[0].latency = 0.15;
+  scenes::edit_laser(world.movers[0])->latency = 0.0;
+  scenes::edit_laser(world.movers[1])->latency = 0.15;
   Farm farm(world, device());
   farm.subscribe_all();
   farm.tick(0, {});
@@ -122,8 +123,8 @@ TEST(Latency, OldestFirst) {
 /// Readings of one delivery are ordered by robot, not by time of measurement.
 TEST(Latency, RobotByRobot) {
   world::World world = small_world(2);
-  world.movers[0].lasers[0].latency = 0.1;
-  world.movers[1].lasers[0].latency = 0.2;
+  scenes::edit_laser(world.movers[0])->latency = 0.1;
+  scenes::edit_laser(world.movers[1])->latency = 0.2;
   Farm farm(world, device());
   farm.subscribe_all();
   farm.tick(0, {});

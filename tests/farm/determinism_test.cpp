@@ -8,11 +8,12 @@
 #include "robots/kinematics.h"
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/chance.h"
+#include "tests/sensors/edit_laser.h"
 
 namespace sf::farm {
 namespace {
 
-constexpr world::LaserNoise kNoise{.range_sigma = 0.01, .range_proportional = 0.005, .angle_sigma = 0.003};
+constexpr raycast::ScanNoise kNoise{.range_sigma = 0.01, .range_proportional = 0.005, .angle_sigma = 0.003};
 
 std::uint64_t run(const world::World& world, const FarmOptions& options, int ticks = 12) {
   Farm farm(world, device(), options);
@@ -74,7 +75,7 @@ TEST(Determinism, TheHashIsOfWhatIsSent) {
       std::vector<double> sent(r.values.begin(), r.values.end());
       for (std::size_t i = 0; i < sent.size(); ++i)
         if (r.hits[i] == base::kNoHit) sent[i] = HUGE_VAL, ++infinite;
-      const std::uint64_t head[] = {r.mover, r.kind, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
+      const std::uint64_t head[] = {r.mover, r.type, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
       std::uint64_t hash = base::hash_bytes(head, sizeof head);
       hash = base::hash_bytes(sent.data(), sent.size() * sizeof(double), hash);
       hashes.push_back(base::hash_bytes(r.hits.data(), r.hits.size_bytes(), hash));
@@ -130,7 +131,7 @@ TEST(Determinism, RobotsThatCannotBeSensedChangeNothing) {
   world::World alone;
   scenes::add_room(alone, {}, 6.0);
   scenes::add_outline(alone, {{1, -1}, {2, -1}, {2, 1}, {1, 1}}, "box");
-  world::Laser laser = scenes::laser(kBeams, 2.0 * M_PI, 8.0);
+  sensors::LaserSettings laser = scenes::laser(kBeams, 2.0 * M_PI, 8.0);
   laser.noise = kNoise;
   scenes::add_robot(alone, {-1, 0, 0, 0}, laser);
   const std::vector<Kept> expected = of_first(alone, false);
@@ -152,7 +153,7 @@ TEST(Determinism, IndependentOfTheBatch) {
   const std::vector<Kept> alone = of_first(world, false);
   EXPECT_EQ(of_first(world, true), alone);
   for (std::size_t i = 1; i < world.movers.size(); ++i)
-    world.movers[i].lasers[0].rate = 1.0 + 2.0 * static_cast<double>(i);
+    scenes::edit_laser(world.movers[i])->rate = 1.0 + 2.0 * static_cast<double>(i);
   EXPECT_EQ(of_first(world, true), alone);
 }
 
@@ -186,7 +187,7 @@ TEST(Determinism, GoldenHash) {
     scenes::add_outline(world, {p, p + glm::dvec2{0.75, 0.25}, p + glm::dvec2{0.5, 1.0}}, "wedge");
   }
   for (int i = 0; i < 24; ++i) {
-    const world::Laser laser = scenes::laser(17, 2.0 * M_PI, 8.0);
+    const sensors::LaserSettings laser = scenes::laser(17, 2.0 * M_PI, 8.0);
     scenes::add_robot(world, {-5.0 + 0.375 * i, 5.0 - 0.25 * (7 * i % 40), 0.0, i * M_PI / 8}, laser);
   }
   EXPECT_EQ(base::hash_hex(run(world, {}, 3)), "22964ebfdaa9e86a");

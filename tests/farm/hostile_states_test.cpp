@@ -57,7 +57,7 @@ base::Report odd_report(trial::Chance& chance, const world::World& world, std::i
 
 void expect_sound(const sensors::LaserReference& reference, const base::ReadingBlock& reading) {
   for (const double value : reading.values) ASSERT_FALSE(std::isinf(value)) << reading.mover;
-  if (reading.kind != sensors::kLaser) return;
+  if (reading.type != sensors::kLaser) return;
   const auto scan = reference.scan(reading.mover, reading.sensor, reading.sequence);
   for (std::size_t i = 0; i < scan.ranges.size(); ++i)
     ASSERT_TRUE(reading.values[i] == scan.ranges[i] && reading.hits[i] == scan.hits[i])

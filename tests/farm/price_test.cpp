@@ -27,7 +27,7 @@ std::map<std::string, std::vector<std::pair<std::string, std::size_t>>> held_for
 
 std::size_t bytes_of(const world::World& world) {
   std::size_t bytes = 0;
-  for (const auto& [kind, tables] : held_for(world))
+  for (const auto& [type, tables] : held_for(world))
     for (const auto& [name, size] : tables) bytes += size;
   return bytes;
 }
@@ -44,7 +44,7 @@ TEST(Price, KindsThatAreAbsentHoldNothing) {
 
   world.movers[0].sensors.push_back(scenes::five());
   const auto both = held_for(world);
-  EXPECT_EQ(both.at("laser"), lasers.at("laser")) << "another kind costs the lasers nothing";
+  EXPECT_EQ(both.at("laser"), lasers.at("laser")) << "another type costs the lasers nothing";
   EXPECT_TRUE(both.contains("magnetometer"));
   EXPECT_FALSE(both.contains("laneedge"));
 }

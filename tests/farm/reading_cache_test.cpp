@@ -10,6 +10,7 @@
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/cone_scenes.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/host_trial.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -25,12 +26,12 @@ void equip(world::Mover& mover, trial::Chance& chance) {
     sensor.settings.push_back(scenes::setting("rate", {rates[chance.below(3)]}));
     mover.sensors.push_back(std::move(sensor));
   };
-  for (world::Laser& laser : mover.lasers) laser.rate = rates[chance.below(3)];
-  if (chance.below(3) == 0) mover.lasers[0].latency = 0.15;
-  if (chance.below(4) == 0) mover.lasers[0].noise.range_sigma = 0.01;
-  if (chance.below(4) == 0) mover.lasers[0].resolution = 3;
+  scenes::edit_lasers(mover, [&](auto& laser) { laser.rate = rates[chance.below(3)]; });
+  if (chance.below(3) == 0) scenes::edit_laser(mover)->latency = 0.15;
+  if (chance.below(4) == 0) scenes::edit_laser(mover)->noise.range_sigma = 0.01;
+  if (chance.below(4) == 0) scenes::edit_laser(mover)->resolution = 3;
   constexpr const char* kAccuracies[] = {"", "single", "skip2", "skip4"};
-  mover.lasers[0].accuracy.word = kAccuracies[chance.below(4)];
+  scenes::edit_laser(mover)->accuracy.word = kAccuracies[chance.below(4)];
   if (chance.below(2) == 0) with_rate(trial::fitted("laneedge", {scenes::setting("range_max", {1.5})}));
   if (chance.below(2) == 0) with_rate(scenes::five());
   if (chance.below(2) == 0 && !mover.sensors.empty() && mover.sensors.back().type == "magnetometer")
@@ -90,7 +91,7 @@ void expect_same(const base::ReadingBlock& p, const base::ReadingBlock& q) {
   const auto poses = [](const base::ReadingBlock& r) {
     return std::vector<double>{r.X_WM.x, r.X_WM.y, r.X_WM.z, r.X_WM.yaw, r.X_WS.x, r.X_WS.y, r.X_WS.z, r.X_WS.yaw};
   };
-  ASSERT_EQ(p.kind, q.kind);
+  ASSERT_EQ(p.type, q.type);
   ASSERT_EQ(p.flags, q.flags);
   ASSERT_EQ(p.mode, q.mode);
   ASSERT_EQ(p.bound, q.bound);
@@ -99,7 +100,7 @@ void expect_same(const base::ReadingBlock& p, const base::ReadingBlock& q) {
   ASSERT_EQ(keep(p).hits, keep(q).hits);
   for (std::size_t i = 0; i < p.values.size(); ++i)
     ASSERT_EQ(std::bit_cast<std::uint64_t>(p.values[i]), std::bit_cast<std::uint64_t>(q.values[i]))
-        << "kind " << int{p.kind} << " mover " << p.mover << " value " << i << ": " << p.values[i] << ", "
+        << "type " << int{p.type} << " mover " << p.mover << " value " << i << ": " << p.values[i] << ", "
         << q.values[i];
 }
 
@@ -118,8 +119,8 @@ std::uint64_t compare(const world::World& world, std::uint64_t seed, int ticks) 
   for (int k = 0; k < ticks; ++k) {
     const std::vector<base::Report> reports = day.next();
     const std::uint32_t deaf = chance.below(static_cast<std::uint32_t>(world.movers.size()));
-    const std::uint32_t kinds = chance.below(4) == 0 ? chance.below(1u << 12) : kAllSensorTypes;
-    for (Farm* farm : {&again, &anew}) farm->subscribe(deaf, kinds);
+    const std::uint32_t types = chance.below(4) == 0 ? chance.below(1u << 12) : kAllSensorTypes;
+    for (Farm* farm : {&again, &anew}) farm->subscribe(deaf, types);
     for (std::int64_t due = again.next_due(); due < k * kTick / 2; due = again.next_due()) {
       const std::vector<base::Report> on_the_way = day.next();
       expect_same(again.sample(due, on_the_way), anew.sample(due, on_the_way));
@@ -153,7 +154,7 @@ struct Pair {
     scenes::add_room(world, {}, 20.0);
     scenes::add_robot(world, {}, scenes::laser(kBeams, 2.0 * M_PI, 2.0));
     scenes::add_robot(world, {5.0, 0.0, 0.0, 0.0}, scenes::laser(1));
-    world.movers[1].lasers.clear();
+    scenes::remove_lasers(world.movers[1]);
     if (change) change(world);
     return world;
   }
@@ -223,7 +224,7 @@ TEST(ReadingCache, OthersCountWhereTheyWereAndWhereTheyAre) {
 
 /// The range counts from the sensor, which may be off its robot's centre.
 TEST(ReadingCache, RangesCountFromTheSensor) {
-  Pair pair([](world::World& world) { world.movers[0].lasers[0].X_MS = {-1.0, 0.0, 0.1, 0.0}; });
+  Pair pair([](world::World& world) { scenes::edit_laser(world.movers[0])->X_MS = {-1.0, 0.0, 0.1, 0.0}; });
   pair.settle({5.0, 0.0, 0.0, 0.0});
   EXPECT_FALSE(pair.again_with({-2.9, 0.0, 0.0, 0.0}));
 }
@@ -232,8 +233,8 @@ TEST(ReadingCache, RangesCountFromTheSensor) {
 TEST(ReadingCache, TheFarthestOfARobotsSensorsCounts) {
   for (const std::size_t farthest : {0u, 1u}) {
     Pair pair([&](world::World& world) {
-      world.movers[0].lasers.push_back(world.movers[0].lasers[0]);
-      world.movers[0].lasers[farthest].range_max = 4.0;
+      world.movers[0].sensors.push_back(sensors::laser_sensor(sensors::lasers_of(world.movers[0])[0]));
+      scenes::edit_laser(world.movers[0], farthest)->range_max = 4.0;
     });
     pair.settle({8.0, 0.0, 0.0, 0.0});
     EXPECT_FALSE(pair.again_with({3.5, 0.0, 0.0, 0.0})) << farthest;
@@ -244,7 +245,7 @@ TEST(ReadingCache, TheFarthestOfARobotsSensorsCounts) {
 
 /// A mover that comes and goes between two readings leaves no trace, but its motion still invalidates.
 TEST(ReadingCache, BetweenReadingsToo) {
-  Pair pair([](world::World& world) { world.movers[0].lasers[0].rate = 5.0; });
+  Pair pair([](world::World& world) { scenes::edit_laser(world.movers[0])->rate = 5.0; });
   const std::vector<base::Report> far{{1, 0, {5.0, 0.0, 0.0, 0.0}, {}}}, near{{1, 0, {1.0, 0.0, 0.0, 0.0}, {}}};
   for (int k = 0; k < 6; ++k) pair.farm.tick(k * kTick, far);
   EXPECT_EQ(pair.farm.stats().reused, 1u);
@@ -256,9 +257,9 @@ TEST(ReadingCache, BetweenReadingsToo) {
 }
 
 TEST(ReadingCache, NoiseIsNeverGivenAgain) {
-  for (const world::LaserNoise noise :
-       {world::LaserNoise{.range_sigma = 0.01}, {.range_proportional = 0.01}, {.angle_sigma = 0.01}}) {
-    Pair pair([&](world::World& world) { world.movers[0].lasers[0].noise = noise; });
+  for (const raycast::ScanNoise noise :
+       {raycast::ScanNoise{.range_sigma = 0.01}, {.range_proportional = 0.01}, {.angle_sigma = 0.01}}) {
+    Pair pair([&](world::World& world) { scenes::edit_laser(world.movers[0])->noise = noise; });
     for (int k = 0; k < 4; ++k) EXPECT_FALSE(pair.again_with({5.0, 0.0, 0.0, 0.0}));
   }
 }
@@ -275,7 +276,7 @@ TEST(ReadingCache, UnlessNoiseIsOff) {
 TEST(ReadingCache, MagnetometersMindMagnetsAlone) {
   for (const bool carries : {false, true}) {
     Pair pair([&](world::World& world) {
-      world.movers[0].lasers.clear();
+      scenes::remove_lasers(world.movers[0]);
       world.movers[0].sensors.push_back(scenes::five());
       world.magnets.push_back(scenes::magnet({0.3, 0.0}));
       world.magnet_cutoff = 0.5;
@@ -322,8 +323,8 @@ TEST(ReadingCache, AFleetThatDrivesKeepsNothing) {
 
 TEST(ReadingCache, NothingIsSubmittedWhereTheHostAloneLooks) {
   world::World world = small_world(2);
-  world.movers[0].lasers[0].rate = 1.0;
-  world.movers[1].lasers[0].rate = 1.0;
+  scenes::edit_laser(world.movers[0])->rate = 1.0;
+  scenes::edit_laser(world.movers[1])->rate = 1.0;
   world.movers[0].sensors.push_back(trial::fitted("bumper"));
   Farm farm(world, device(), kOnDevice);
   farm.subscribe_all();

@@ -8,6 +8,7 @@
 
 #include "sensors/laser.h"
 #include "tests/farm/small_farm.h"
+#include "tests/sensors/edit_laser.h"
 
 namespace sf::farm {
 namespace {
@@ -72,10 +73,10 @@ TEST(Schedule, DueTimesAreWhenReadingsBegin) {
 
 TEST(Schedule, TheNextOneDueIsTheSoonestThatIsHeard) {
   world::World world = small_world(3);
-  world.movers[0].lasers[0].rate = 50.0;
-  world.movers[1].lasers[0].rate = 13.0;
-  world.movers[2].lasers[0].rate = 10.0;
-  world.movers[2].lasers[0].phase = 0.03;
+  scenes::edit_laser(world.movers[0])->rate = 50.0;
+  scenes::edit_laser(world.movers[1])->rate = 13.0;
+  scenes::edit_laser(world.movers[2])->rate = 10.0;
+  scenes::edit_laser(world.movers[2])->phase = 0.03;
   Farm farm(world, device());
   EXPECT_EQ(farm.next_due(), kNever) << "nobody is heard";
   farm.subscribe(2, kAllSensorTypes);
@@ -87,7 +88,7 @@ TEST(Schedule, TheNextOneDueIsTheSoonestThatIsHeard) {
   EXPECT_EQ(farm.sample(30'000'000, {}).size(), 1u);
   EXPECT_EQ(farm.next_due(), 76'923'077);
   farm.subscribe(0, 1u << 9);
-  EXPECT_EQ(farm.next_due(), 76'923'077) << "another kind of it is heard";
+  EXPECT_EQ(farm.next_due(), 76'923'077) << "another type of it is heard";
   farm.subscribe(0, 1u << sensors::kLaser);
   EXPECT_EQ(farm.next_due(), 40'000'000) << "0 and 20 ms went by unheard";
   EXPECT_EQ(farm.stats().missed, 0u);
@@ -99,7 +100,7 @@ TEST(Schedule, TheNextOneDueIsTheSoonestThatIsHeard) {
 TEST(Schedule, FasterThanTheTicks) {
   world::World world = small_world(3);
   const double rates[] = {13.0, 25.0, 50.0};
-  for (std::size_t i = 0; i < 3; ++i) world.movers[i].lasers[0].rate = rates[i];
+  for (std::size_t i = 0; i < 3; ++i) scenes::edit_laser(world.movers[i])->rate = rates[i];
   Farm farm(world, device());
   farm.subscribe_all();
   std::vector<std::uint32_t> counts(3);
@@ -120,7 +121,7 @@ TEST(Schedule, FasterThanTheTicks) {
 /// A tick of a third of a second is early by rounding: sensors due within a nanosecond are read.
 TEST(Schedule, ATickThatIsANanosecondEarly) {
   world::World world = small_world(1);
-  world.movers[0].lasers[0].rate = 3.0;
+  scenes::edit_laser(world.movers[0])->rate = 3.0;
   Farm farm(world, device());
   farm.subscribe_all();
   for (std::int64_t k = 0; k < 3; ++k) {
@@ -135,7 +136,7 @@ TEST(Schedule, ATickThatIsANanosecondEarly) {
 /// Without samples between ticks they give one reading per tick, and the farm counts the missed ones.
 TEST(Schedule, MissedReadingsAreCounted) {
   world::World world = small_world(2);
-  world.movers[0].lasers[0].rate = 50.0;
+  scenes::edit_laser(world.movers[0])->rate = 50.0;
   Farm farm(world, device());
   farm.subscribe_all();
   for (int k = 0; k <= 10; ++k) EXPECT_EQ(farm.tick(k * kSecond / 10, {}).size(), 2u);
@@ -147,10 +148,10 @@ TEST(Schedule, MissedReadingsAreCounted) {
 
 TEST(Schedule, RatesAndPhasesInAFarm) {
   world::World world = small_world(3);
-  world.movers[0].lasers[0].rate = 10.0;
-  world.movers[1].lasers[0].rate = 2.0;
-  world.movers[2].lasers[0].rate = 10.0;
-  world.movers[2].lasers[0].phase = 0.05;
+  scenes::edit_laser(world.movers[0])->rate = 10.0;
+  scenes::edit_laser(world.movers[1])->rate = 2.0;
+  scenes::edit_laser(world.movers[2])->rate = 10.0;
+  scenes::edit_laser(world.movers[2])->phase = 0.05;
   Farm farm(world, device());
   farm.subscribe_all();
   std::vector<int> counts(3, 0);
@@ -158,8 +159,8 @@ TEST(Schedule, RatesAndPhasesInAFarm) {
     for (const auto& r : farm.tick(k * 20'000'000ll, {})) {
       EXPECT_EQ(r.sequence, static_cast<std::uint32_t>(counts[r.mover]++));
       EXPECT_EQ(r.time, k * 20'000'000ll);
-      const double late = 1e-9 * static_cast<double>(r.time) - world.movers[r.mover].lasers[0].phase -
-                          r.sequence / world.movers[r.mover].lasers[0].rate;
+      const double late = 1e-9 * static_cast<double>(r.time) - sensors::lasers_of(world.movers[r.mover])[0].phase -
+                          r.sequence / sensors::lasers_of(world.movers[r.mover])[0].rate;
       EXPECT_GE(late, -1e-9);
       EXPECT_LT(late, 0.02);
     }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "farm/farm.h"
+#include "sensors/laser_settings.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::farm {
@@ -19,9 +20,9 @@ inline gpu::Device& device() {
 inline constexpr FarmOptions kOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
 
 /// `robots` robots among boxes, each with one laser at 10 Hz.
-inline world::World small_world(std::uint32_t robots, const world::LaserNoise& noise = {}) {
+inline world::World small_world(std::uint32_t robots, const raycast::ScanNoise& noise = {}) {
   world::World world = scenes::boxes(20, 12.0, 3);
-  world::Laser laser = scenes::laser(kBeams, M_PI, 8.0);
+  sensors::LaserSettings laser = scenes::laser(kBeams, M_PI, 8.0);
   laser.noise = noise;
   scenes::add_robots(world, robots, laser, 5);
   return world;

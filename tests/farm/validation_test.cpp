@@ -18,8 +18,8 @@ TEST(Validation, TheLayerIsSilent) {
       GTEST_SKIP() << "the validation layer is not installed";
     world::World world = small_world(20, {.range_sigma = 0.01, .angle_sigma = 0.001});
     for (world::Mover& mover : world.movers)
-      for (const char* kind : {"sonar", "infrared"})
-        mover.sensors.push_back(trial::cones(kind, trial::ring(8, 0.1), {trial::cone_setting("range", {0, 1})}));
+      for (const char* type : {"sonar", "infrared"})
+        mover.sensors.push_back(trial::cones(type, trial::ring(8, 0.1), {trial::cone_setting("range", {0, 1})}));
     Farm farm(world, device,
               {.scene = {.caster = raycast::CasterChoice::vulkan,
                          .pool_chunks = 1024,

@@ -19,6 +19,7 @@
 #include "netio/v2v_socket.h"
 #include "sensors/laser.h"
 #include "tests/robots/scenes.h"
+#include "tests/sensors/edit_laser.h"
 
 namespace {
 
@@ -43,10 +44,11 @@ world::World make_world() {
   world::World world = scenes::boxed_world(8.0, 6.0, {-4.0, -3.0});
   for (std::uint32_t i = 0; i < kRobots; ++i) {
     world::Mover& robot = scenes::add_create(world, {2.0 * i - 2.0, 0.0, 0.0, 0.0});
-    robot.lasers.push_back({.name = "laser", .X_MS = {0.0, 0.0, 0.05, 0.0}, .samples = 7, .rate = 10.0 * (i + 1)});
+    robot.sensors.push_back(
+        sensors::laser_sensor({{.name = "laser", .X_MS = {0.0, 0.0, 0.05, 0.0}, .samples = 7}, 10.0 * (i + 1)}));
   }
-  world.movers[1].lasers[0].latency = 0.15;
-  world.movers[2].lasers[0].noise.range_sigma = 0.01;
+  scenes::edit_laser(world.movers[1])->latency = 0.15;
+  scenes::edit_laser(world.movers[2])->noise.range_sigma = 0.01;
   world::Mover& tag = scenes::add_square(world, {0.0, 2.0, 0.0, 0.0});
   tag.is_tag = true;
   tag.id = kTag;
@@ -212,7 +214,7 @@ class Harness {
   void receive() {
     service_.receive_pending(now_);
     const server::ServiceStats stats = service_.stats();
-    REQUIRE(stats.inbox.total() + stats.kernel_drops == sent_);
+    REQUIRE(stats.inbox.total() + stats.socket_drops == sent_);
     drain(true);
   }
   void tick(std::int64_t step) {

@@ -13,6 +13,10 @@ namespace {
 
 using namespace sf;
 
+constexpr std::string_view kKeys[] = {"fov", "samples", "range_min", "range_max", "scount", "spose[]"};
+constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "samples"};
+constexpr world::SensorKeyword kWords[] = {{"laser", kKeys}, {"ranger", kKeys, kBlockKeys}};
+
 void require(bool holds) {
   if (!holds) std::abort();
 }
@@ -23,8 +27,9 @@ void examine(const world::World& world) {
   for (const world::LaneMarking& stripe : world.lane_markings) require(stripe.line.size() >= 2 && stripe.width > 0.0);
   for (const world::Mover& mover : world.movers) {
     require(mover.model < world.models.size() && std::isfinite(mover.radius) && mover.max_forward > 0.0);
-    for (const world::Laser& laser : mover.lasers)
-      require(laser.samples >= 1 && laser.range_max > 0.0 && laser.range_min <= laser.range_max && laser.rate > 0.0);
+    for (const world::Sensor& sensor : mover.sensors)
+      for (const world::Setting& setting : sensor.settings)
+        for (const double number : setting.numbers) require(std::isfinite(number));
   }
   for (const world::Path& path : world.paths) require(!path.pieces.empty());
   require(world::from_snapshot(world::snapshot(world)).hash == world.hash);
@@ -35,7 +40,7 @@ void examine(const world::World& world) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr const char* kFile = "/nowhere/fuzz.world";
   try {
-    examine(world::build_world(kFile, std::string(reinterpret_cast<const char*>(data), size), {}));
+    examine(world::build_world(kFile, std::string(reinterpret_cast<const char*>(data), size), {.sensors = kWords}));
   } catch (const base::InputError& error) {
     require(std::string_view(error.what()).starts_with(kFile));
   }

@@ -9,7 +9,7 @@
 
 namespace sf::netio {
 
-/// A reading of kind 1 in its first form. Its payload is arbitrary here: a count and three words.
+/// A reading of type 1 in its first form. Its payload is arbitrary here: a count and three words.
 inline base::Bytes reading_example() {
   const std::uint8_t payload[] = {0x03, 0x00, 0xe8, 0x03, 0xfa, 0x00, 0x40, 0x1f};
   base::Bytes out;
@@ -18,7 +18,7 @@ inline base::Bytes reading_example() {
   return out;
 }
 
-/// The second form of the same kind.
+/// The second form of the same type.
 inline base::Bytes extended_example() {
   const std::uint8_t payload[] = {0x38, 0x01, 0x00, 0x00, 0x36, 0x01, 0x00, 0x00, 0x01, 0x00, 0x02, 0x00,
                                   0x02, 0x00, 0x00, 0x00, 0xe7, 0x7f, 0x0c, 0x00, 0xff, 0xff, 0xff, 0xff};

@@ -26,9 +26,9 @@ base::Bytes v2v(std::uint16_t robot, std::uint32_t sequence) {
   return out;
 }
 
-base::Bytes subscribe(std::uint32_t sequence, std::uint32_t kinds) {
+base::Bytes subscribe(std::uint32_t sequence, std::uint32_t types) {
   base::Bytes out;
-  encode({.robot = 7, .sequence = sequence}, Subscribe{kinds}, out);
+  encode({.robot = 7, .sequence = sequence}, Subscribe{types}, out);
   return out;
 }
 
@@ -41,6 +41,34 @@ struct InboxTest : testing::Test {
     return inbox.accept(bytes, who, now, packet);
   }
 };
+
+TEST(Inbox, OvertakenStatesAreTakenOnRequest) {
+  InboxOptions chosen = options();
+  chosen.take_late = true;
+  Inbox inbox(chosen);
+  Packet packet;
+  const auto say = [&](base::Bytes bytes, std::int64_t now, const Endpoint& who = kAlice) {
+    write_session_token(bytes, {kSession, inbox.token(who)});
+    return inbox.accept(bytes, who, now, packet);
+  };
+  EXPECT_EQ(say(v2v(7, 5), 0), PacketStatus::accepted);
+  EXPECT_FALSE(packet.late);
+  EXPECT_EQ(say(v2v(7, 4), 1), PacketStatus::accepted);
+  EXPECT_TRUE(packet.late);
+  EXPECT_EQ(say(v2v(7, 5), 2), PacketStatus::accepted) << "a replay, which the filter refuses";
+  EXPECT_TRUE(packet.late);
+  EXPECT_EQ(say(v2v(7, 4), 3, kBob), PacketStatus::wrong_source);
+  EXPECT_EQ(say(subscribe(9, 0), 4), PacketStatus::accepted);
+  EXPECT_EQ(say(subscribe(8, 0), 5), PacketStatus::stale) << "only states have a time of their own";
+  base::Bytes leave;
+  encode({.robot = 7}, Leave{}, leave);
+  EXPECT_EQ(say(leave, 6), PacketStatus::accepted);
+  EXPECT_EQ(say(v2v(7, 6), 7), PacketStatus::stale) << "after a LEAVE";
+  // A late state does not extend the binding: two seconds after the last one in order the id is free.
+  EXPECT_EQ(say(v2v(3, 5), 10), PacketStatus::accepted);
+  EXPECT_EQ(say(v2v(3, 4), kSecond), PacketStatus::accepted);
+  EXPECT_FALSE(inbox.is_active(3, 2 * kSecond + 10));
+}
 
 TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   base::Bytes long_packet = v2v_example();
@@ -95,7 +123,7 @@ TEST_F(InboxTest, ALeaveEndsTheBindingAndTheChoice) {
   EXPECT_FALSE(inbox.is_active(7, 1));
   EXPECT_FALSE(inbox.address(7));
   EXPECT_EQ(say(v2v(7, 0), 2, kBob), PacketStatus::accepted);
-  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2));  // all kinds, not the subscription of the sender before
+  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2));  // all types, not the subscription of the sender before
   EXPECT_EQ(inbox.address(7), kBob);
 }
 
@@ -199,12 +227,12 @@ TEST_F(InboxTest, StrangersCannotChoose) {
 
 TEST_F(InboxTest, OthersStatesMustBeAskedFor) {
   say(v2v(7, 0), 0);
-  EXPECT_FALSE(inbox.wants_neighbours(7, 0));  // states of robots are not included in "all kinds"
+  EXPECT_FALSE(inbox.wants_neighbours(7, 0));  // states of robots are not included in "all types"
   say(subscribe(0, 0), 0);
   EXPECT_FALSE(inbox.wants_neighbours(7, 0));
   say(subscribe(1, kNeighboursBit), 0);
   EXPECT_TRUE(inbox.wants_neighbours(7, 0));
-  EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));  // no other kind was requested
+  EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));  // no other type was requested
   say(subscribe(2, kNeighboursBit | 1u << kLaser), 0);
   EXPECT_TRUE(inbox.wants_neighbours(7, 0) && inbox.is_subscribed(7, kLaser, 0));
   EXPECT_FALSE(inbox.wants_neighbours(7, 2 * kSecond));  // silent

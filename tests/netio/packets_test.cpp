@@ -60,6 +60,42 @@ TEST(Packets, HeaderComesBack) {
   EXPECT_EQ(packet.header.token, 1u);
 }
 
+/// The state of a reading whose header has `sent`.
+StateQuality received(const StateQuality& sent) {
+  base::Bytes bytes;
+  encode_reading({.robot = 7, .state = sent}, 1, {}, bytes);
+  Packet packet;
+  EXPECT_EQ(decode(bytes, packet), PacketStatus::accepted);
+  return packet.header.state;
+}
+
+TEST(Packets, StateOfAReadingComesBack) {
+  const StateQuality got =
+      received({.stated = true, .stale = true, .age = 80'000'000, .covariance = {1, 2, 3, 4, 5, 6}});
+  EXPECT_TRUE(got.stated);
+  EXPECT_TRUE(got.stale);
+  EXPECT_EQ(got.age, 80'000'000);
+  EXPECT_EQ(got.covariance, (std::array<float, 6>{1, 2, 3, 4, 5, 6}));
+  EXPECT_FALSE(received({.stated = true}).stale);
+  EXPECT_FALSE(received({.stale = true, .age = 5, .covariance = {1}}).stated);
+}
+
+TEST(Packets, AgeIsRoundedUpAndNeverZero) {
+  EXPECT_EQ(received({.stated = true, .age = 0}).age, 1000);   // 0 would state nothing
+  EXPECT_EQ(received({.stated = true, .age = -5}).age, 1000);  // a state of after the reading
+  EXPECT_EQ(received({.stated = true, .age = 1001}).age, 2000);
+  EXPECT_EQ(received({.stated = true, .age = kMaxTime}).age, 4'294'967'295'000);
+}
+
+TEST(Packets, CovarianceThatIsNoneIsLeftOut) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  for (const std::array<float, 6>& bad :
+       {std::array<float, 6>{-1, 0, 0, 1, 0, 1}, {1, kNone, 0, 1, 0, 1}, {1, 0, 0, 1, 0, -1}}) {
+    EXPECT_EQ(received({.stated = true, .age = 5000, .covariance = bad}).covariance, (std::array<float, 6>{}));
+    EXPECT_EQ(received({.stated = true, .age = 5000, .covariance = bad}).age, 5000);
+  }
+}
+
 TEST(Packets, V2vComesBack) {
   base::Bytes bytes;
   const V2v sent{.X_WR = {-kMaxPosition, kMaxPosition, 0.1, -kMaxYaw},
@@ -95,7 +131,7 @@ TEST(Packets, TagComesBack) {
   EXPECT_EQ(got.angular, (std::array<double, 3>{0, 0, 0.25}));
 }
 
-TEST(Packets, SubscribeComesBack) { EXPECT_EQ(body_of<Subscribe>(subscribe_example()).kinds, 2u); }
+TEST(Packets, SubscribeComesBack) { EXPECT_EQ(body_of<Subscribe>(subscribe_example()).types, 2u); }
 
 TEST(Packets, StartIsItsHeaderAlone) {
   base::Bytes bytes;
@@ -153,8 +189,8 @@ TEST(Packets, ATrailerIsLeftOut) {
       bytes.resize(bytes.size() + size, 0xAB);
       EXPECT_EQ(reason_of(bytes), PacketStatus::accepted) << size;
       bytes.push_back(0);
-      const bool any_size = kind_of(Type{example[5]}) != 0;       // the length of a reading is defined by its kind
-      const bool several = Type{example[5]} == Type::neighbours;  // further bytes begin another V2V
+      const bool any_size = sensor_type_of(Type{example[5]}) != 0;  // the length of a reading is defined by its type
+      const bool several = Type{example[5]} == Type::neighbours;    // further bytes begin another V2V
       EXPECT_EQ(reason_of(bytes), any_size  ? PacketStatus::accepted
                                   : several ? PacketStatus::too_short
                                             : PacketStatus::too_long)
@@ -189,7 +225,7 @@ TEST(Packets, EveryShorterPrefixIsTooShort) {
     }
   };
   for (const base::Bytes& state : states()) check(state, state.size());
-  check(reading_example(), kHeaderBytes);  // the length of a reading is defined by its kind
+  check(reading_example(), kHeaderBytes);  // the length of a reading is defined by its type
 }
 
 TEST(Packets, OneByteMoreIsTooLong) {
@@ -208,7 +244,7 @@ TEST(Packets, AReadingsPayloadIsWhatLiesBehindItsHeader) {
   const base::Bytes bytes = reading_example();
   Packet packet;
   ASSERT_EQ(decode(bytes, packet), PacketStatus::accepted);
-  EXPECT_EQ(kind_of(packet.header.type), 1);
+  EXPECT_EQ(sensor_type_of(packet.header.type), 1);
   EXPECT_EQ(packet.header.robot, 7);
   EXPECT_EQ(packet.header.sequence, 258u);
   EXPECT_EQ(packet.header.time, 1'500'000'000);
@@ -226,8 +262,8 @@ TEST(Packets, AReadingMayBeEmpty) {
 
 TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
   for (int type = 0; type < 256; ++type) {
-    const bool is_reading = type < 128 && type % 64 != 0;  // kind 0 does not exist
-    EXPECT_EQ(kind_of(Type(type)), is_reading ? type % 64 : 0) << type;
+    const bool is_reading = type < 128 && type % 64 != 0;  // type 0 does not exist
+    EXPECT_EQ(sensor_type_of(Type(type)), is_reading ? type % 64 : 0) << type;
     const bool is_state = (type >= 128 && type <= 133) || type == 140;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
@@ -317,7 +353,7 @@ TEST(Packets, OurOwnBadNumbersAbort) {
   EXPECT_DEATH(encode({.time = -1}, Subscribe{}, out), "timestamp -1");
   EXPECT_DEATH(encode({.robot = 0}, Tag{}, out), "tag id 0");
   EXPECT_DEATH(encode_reading({}, 0, {}, out), "type 0 is no reading's");
-  EXPECT_DEATH(encode_reading({}, 64, {}, out), "type 64 is no reading's");    // kind 0's second form
+  EXPECT_DEATH(encode_reading({}, 64, {}, out), "type 64 is no reading's");    // type 0's second form
   EXPECT_DEATH(encode_reading({}, 128, {}, out), "type 128 is no reading's");  // a state's
   EXPECT_DEATH(encode_reading({}, 1, base::Bytes(kMaxPayload + 1), out), "1257 bytes of payload");
 }

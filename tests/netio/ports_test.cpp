@@ -64,9 +64,9 @@ TEST(Ports, TheLeastStrideThatFits) {
   const std::vector<SensorPorts> large{use(0, 1), use(8000, 2)};  // with stride 8 the port exceeds 65535
   EXPECT_EQ(smallest_stride(large, 8), 1u);
   const SensorPorts other{1, 1, {10010, 8}, "tug", 0, "sonar"};
-  const std::vector<SensorPorts> kinds{use(1, 3), use(2, 3),
+  const std::vector<SensorPorts> types{use(1, 3), use(2, 3),
                                        other};                // sonar at 10010 + stride, lasers at 10000 + stride ...
-  EXPECT_EQ(smallest_stride(kinds, 8), 3u);                   // 8: robot 2's third laser is where the sonar is
+  EXPECT_EQ(smallest_stride(types, 8), 3u);                   // 8: robot 2's third laser is where the sonar is
   const std::vector<SensorPorts> none{use(4, 1), use(4, 1)};  // no stride helps
   EXPECT_EQ(smallest_stride(none, 8), 8u);
 }
@@ -80,7 +80,7 @@ TEST(Ports, TwoKindsAreToldApart) {
             std::string::npos)
       << text;
   EXPECT_NE(text.find("change the base port of laser or the base port of magnetometer"), std::string::npos) << text;
-  // Two kinds of one robot on one base port: the message does not blame its id.
+  // Two types of one robot on one base port: the message does not blame its id.
   SensorPorts scan{1, 1, {52000, 8}, "roomba", 0, "laser", "--laser-port"};
   const SensorPorts map{1, 1, {52000, 8}, "roomba", 0, "occupancy", "--occupancy-port"};
   const std::string both = refusal({scan, map});

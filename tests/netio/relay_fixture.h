@@ -45,7 +45,7 @@ struct RelayFixture {
     relay.take(packet);
   }
   void say(std::uint32_t id, glm::dvec2 p) { take(id, V2v{.X_WR = {p.x, p.y, 0, 0}}); }
-  void ask(std::uint32_t id, std::uint32_t kinds = kNeighboursBit) { take(id, Subscribe{kinds}); }
+  void ask(std::uint32_t id, std::uint32_t types = kNeighboursBit) { take(id, Subscribe{types}); }
   void all_ask() {
     for (const std::uint32_t id : ids) ask(id);
   }

@@ -43,9 +43,9 @@ struct RelayTest : testing::Test {
     v2v_socket(id).send(bytes);
     take();
   }
-  void ask(std::uint32_t id, std::uint32_t kinds) {
+  void ask(std::uint32_t id, std::uint32_t types) {
     base::Bytes bytes;
-    encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++}, Subscribe{kinds}, bytes);
+    encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++}, Subscribe{types}, bytes);
     v2v_socket(id).send(bytes);
     take();
   }

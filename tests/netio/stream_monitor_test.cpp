@@ -156,8 +156,8 @@ TEST(StreamMonitor, WithoutHeadersDatagramsArePayloads) {
 
 TEST(StreamMonitor, KindsAreCountedApart) {
   auto streams = plans(3);
-  streams[0].kind = streams[2].kind = "laser";
-  streams[1].kind = "magnetometer";
+  streams[0].type = streams[2].type = "laser";
+  streams[1].type = "magnetometer";
   const auto monitor = listen(streams);
   EXPECT_EQ(monitor->accept(0, reading(0, 0, 0, {10, 0, 1}), kFarm, 0), PacketStatus::accepted);
   EXPECT_EQ(monitor->accept(1, reading(1, 0, 0, {4, 0, 1}), kFarm, 0), PacketStatus::accepted);
@@ -182,7 +182,7 @@ TEST(StreamMonitor, TheJudgeIsToldTheStreamAndTheHeader) {
   });
   EXPECT_EQ(monitor->accept(1, reading(1, 0, 6, {1}), kFarm, 0), PacketStatus::out_of_range);
   EXPECT_EQ(asked, 1u);
-  EXPECT_EQ(kind_of(told.type), 5);
+  EXPECT_EQ(sensor_type_of(told.type), 5);
   EXPECT_EQ(told.robot, 1u);
   EXPECT_EQ(told.sequence, 6u);
 }
@@ -392,7 +392,7 @@ TEST(Outbox, DatagramsGivenBackAreForgotten) {
 TEST(Socket, TellsWhatTheKernelDropped) {
   const Socket ears = open_udp({kLoopback, 0}, {.receive = 1});  // the minimum of the kernel
   const Endpoint to{kLoopback, bound_endpoint(ears).port};
-  EXPECT_EQ(kernel_drops(ears), 0u);
+  EXPECT_EQ(socket_drops(ears), 0u);
   Outbox outbox;
   for (int i = 0; i < 100; ++i) outbox.queue(to, base::Bytes(1000));
   outbox.flush();
@@ -400,7 +400,7 @@ TEST(Socket, TellsWhatTheKernelDropped) {
   std::size_t taken = 0;
   for (std::size_t n = 1; n > 0; taken += n) n = batch.fill(ears);
   EXPECT_LT(taken, 100u);
-  EXPECT_EQ(kernel_drops(ears), 100u - taken);
+  EXPECT_EQ(socket_drops(ears), 100u - taken);
 }
 
 TEST(Outbox, AFullOneFlushesItself) {

@@ -23,7 +23,7 @@ std::uint32_t first_wall(const std::vector<world::Segment>& walls, glm::dvec2 p,
 
 void every_hit_is_listed(world::World world, double range, double size, std::uint64_t seed) {
   for (std::uint32_t row = 0; row < world.walls.size(); ++row) world.walls[row].model = row;
-  const WallIndex wall_index(world, 0.1);
+  const WallIndex wall_index(world.walls, 0.1);
   const CellShape shape{size, range};
   CandidateWalls walls;
   trial::Chance chance(seed);
@@ -64,7 +64,7 @@ TEST(Sectors, EveryWallABeamMeetsIsListed) {
 /// Lists must be far shorter than the set of all walls.
 TEST(Sectors, ListsAreShort) {
   const world::World world = scenes::cave(300, 16.0, 3);
-  const WallIndex wall_index(world, 0.1);
+  const WallIndex wall_index(world.walls, 0.1);
   CandidateWalls walls;
   find_candidate_walls(wall_index, {0.25, 8.0}, {}, false, walls);
   SectorLists lists;

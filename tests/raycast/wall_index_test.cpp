@@ -15,7 +15,7 @@ namespace {
 
 TEST(WallIndex, FindsEverythingNear) {
   const world::World world = scenes::boxes(60, 16.0, 5);
-  const WallIndex wall_index(world, 0.1);
+  const WallIndex wall_index(world.walls, 0.1);
   std::vector<std::uint32_t> found;
   trial::Chance chance(3);
   for (int i = 0; i < 200; ++i) {
@@ -35,7 +35,7 @@ TEST(WallIndex, KnowsInsideFromOutside) {
   scenes::add_room(world, {}, 10.0);
   scenes::add_outline(world, {{0, 0}, {2, 0}, {2, 2}, {0, 2}}, "box");
   scenes::add_outline(world, {{1, 1}, {3, 1}, {3, 3}, {1, 3}}, "overlapping");
-  const WallIndex wall_index(world, 0.1);
+  const WallIndex wall_index(world.walls, 0.1);
   EXPECT_TRUE(wall_index.inside_solid({0.5, 0.5}));
   EXPECT_TRUE(wall_index.inside_solid({1.5, 1.5})) << "in both";
   EXPECT_TRUE(wall_index.inside_solid({5.05, 0.0})) << "in the ring of the room";

@@ -277,19 +277,19 @@ TEST(Recorder, BrokenContractsAbortWithTheValues) {
     tick.readings[2].sensor = 1;
     Recorder(directory, sample_info(true)).write(tick.record);
   };
-  EXPECT_DEATH(wrong_sensor(), "mover 1 kind 1 sensor 1");
-  const auto wrong_kind = [&](std::uint8_t kind, std::uint32_t sensor) {
+  EXPECT_DEATH(wrong_sensor(), "mover 1 type 1 sensor 1");
+  const auto wrong_type = [&](std::uint8_t type, std::uint32_t sensor) {
     SampleTick tick(0);
-    tick.readings[3].kind = kind;
+    tick.readings[3].type = type;
     tick.readings[3].sensor = sensor;
     Recorder(directory, sample_info(true)).write(tick.record);
   };
-  EXPECT_DEATH(wrong_kind(4, 0), "mover 0 kind 4 sensor 0");  // no such sensor type
-  EXPECT_DEATH(wrong_kind(3, 2), "mover 0 kind 3 sensor 2");  // only two of them
-  EXPECT_DEATH(wrong_kind(2, 0), "10 values in a reading of kind edge");
-  RunInfo kindless = sample_info(true);
-  kindless.sensor_types.pop_back();
-  EXPECT_DEATH(Recorder(directory, kindless), "sensor kind 3");
+  EXPECT_DEATH(wrong_type(4, 0), "mover 0 type 4 sensor 0");  // no such sensor type
+  EXPECT_DEATH(wrong_type(3, 2), "mover 0 type 3 sensor 2");  // only two of them
+  EXPECT_DEATH(wrong_type(2, 0), "10 values in a reading of type edge");
+  RunInfo typeless = sample_info(true);
+  typeless.sensor_types.pop_back();
+  EXPECT_DEATH(Recorder(directory, typeless), "sensor type 3");
 }
 
 // The size for a hundred robots: the figures in docs/recordings.md.
@@ -298,7 +298,7 @@ TEST(Recorder, BytesPerTickOfAHundredRobots) {
   info.odometry_rate = 1.0;
   info.movers.clear();
   for (std::uint32_t i = 0; i < 100; ++i) {
-    info.movers.push_back({.name = "robot" + std::to_string(i), .id = i, .sensors = {{.kind = 1, .name = "laser0"}}});
+    info.movers.push_back({.name = "robot" + std::to_string(i), .id = i, .sensors = {{.type = 1, .name = "laser0"}}});
   }
   Recorder recorder(fresh_directory("hundred"), info);
   const auto start = recorder.size();

@@ -52,7 +52,7 @@ bool same(const StateSample& a, const StateSample& b) {
 }
 
 bool same(const ReadingSample& a, const ReadingSample& b) {
-  return a.mover == b.mover && a.kind == b.kind && a.sensor == b.sensor && a.sequence == b.sequence &&
+  return a.mover == b.mover && a.type == b.type && a.sensor == b.sensor && a.sequence == b.sequence &&
          a.delivered == b.delivered && a.time == b.time && a.values == b.values;
 }
 
@@ -100,13 +100,13 @@ TEST(Recording, ReadingsComeBackToTheBitAndScansAsFloat32) {
     const SampleTick given(i / 6);
     const base::ReadingBlock& reading = given.readings[i % 6];
     ReadingSample expected{reading.mover,
-                           reading.kind,
+                           reading.type,
                            reading.sensor,
                            reading.sequence,
                            given.record.time,
                            reading.time,
                            {reading.values.begin(), reading.values.end()}};
-    if (reading.kind == 1)
+    if (reading.type == 1)
       for (double& range : expected.values) range = static_cast<float>(range);
     EXPECT_TRUE(same(recording.readings[i], expected)) << i;
   }
@@ -227,7 +227,7 @@ TEST(Recording, AReadingThatItsKindDoesNotExplainIsLeftOutAndTold) {
   RunInfo info = test::sample_info(true);
   name_frames(info);
   add_run_info(writer, info);
-  const SensorTypeInfo edge = test::edge_kind();
+  const SensorTypeInfo edge = test::edge_type();
   Bytes message;
   encode_reading(edge, 0, "f", std::vector<double>{1, 2, 3, 4, 5}, message);
   const auto schema = writer.add_schema(type_of(edge), "ros2msg", schema_text(edge));

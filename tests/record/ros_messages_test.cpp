@@ -175,13 +175,13 @@ TEST(Messages, RunInfoComesBack) {
   EXPECT_EQ(back.sensor_types[2].columns[1].width, 3u);
   EXPECT_TRUE(back.sensor_types[2].columns[2].whole);
   ASSERT_EQ(back.movers[0].sensors.size(), 5u);
-  EXPECT_EQ(back.movers[0].sensors[0].kind, 1);
+  EXPECT_EQ(back.movers[0].sensors[0].type, 1);
   EXPECT_EQ(back.movers[0].sensors[0].X_MS.yaw, 0.3);
   EXPECT_EQ(back.movers[0].sensors[0].samples, 4u);
   EXPECT_EQ(back.movers[0].sensors[1].range_min, 0.5);
   EXPECT_EQ(back.movers[0].sensors[1].rate, 5.0);
   EXPECT_EQ(back.movers[0].sensors[2].X_MS.x, 0.5);
-  EXPECT_EQ(back.movers[0].sensors[3].kind, 2);
+  EXPECT_EQ(back.movers[0].sensors[3].type, 2);
   EXPECT_EQ(back.movers[0].sensors[3].topic, "/roomba_1/_3rd_edge/edge");
   EXPECT_EQ(back.movers[0].sensors[3].rate, 4.0);
   EXPECT_EQ(back.movers[1].sensors.size(), 1u);
@@ -214,7 +214,7 @@ TEST(RunInfo, NamesBecomeUniqueROSNames) {
 
 TEST(RunInfo, ALaserDoesNotTakeTheTopicsOfItsRobot) {
   RunInfo info;
-  info.sensor_types = {test::scan_kind()};
+  info.sensor_types = {test::scan_type()};
   info.movers = {{.name = "r", .sensors = {{1, "odom"}, {1, "a b"}, {1, "a b"}}}};
   name_frames(info);
   EXPECT_EQ(info.movers[0].sensors[0].topic, "/r/odom_2/scan");

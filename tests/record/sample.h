@@ -12,17 +12,17 @@
 namespace sf::record::test {
 
 /// One row of a number, a count and a vector.
-inline SensorTypeInfo edge_kind() {
+inline SensorTypeInfo edge_type() {
   return {.id = 2, .name = "edge", .columns = {{"distance_m", 1}, {"points", 1, true}, {"normal_W", 3}}};
 }
 
 /// Elements of a number, a vector and a count.
-inline SensorTypeInfo array_kind() {
+inline SensorTypeInfo array_type() {
   return {
       .id = 3, .name = "array", .list = "elements", .columns = {{"field_T", 1}, {"vector_T", 3}, {"hits", 1, true}}};
 }
 
-inline SensorTypeInfo scan_kind() {
+inline SensorTypeInfo scan_type() {
   return {.id = 1, .name = "laser", .list = "beams", .columns = {{"range_m"}}, .is_scan = true};
 }
 
@@ -34,17 +34,17 @@ inline RunInfo sample_info(bool readings) {
   info.interval = 0.1;
   info.record_readings = readings;
   info.odometry_rate = 5.0;
-  info.sensor_types = {scan_kind(), edge_kind(), array_kind()};
+  info.sensor_types = {scan_type(), edge_type(), array_type()};
   info.movers = {
       {.name = "roomba:1",
        .id = 7,
        .sensors =
-           {{.kind = 1, .name = "front", .X_MS = {0.1, 0.0, 0.2, 0.3}, .fov = 3.0, .samples = 4, .range_max = 8.0},
-            {.kind = 1, .name = "front", .rate = 5.0, .samples = 1, .range_min = 0.5, .range_max = 80.0},
-            {.kind = 3, .name = "front", .X_MS = {0.5, 0.0, 0.1, 0.0}},
-            {.kind = 2, .name = "3rd edge", .rate = 4.0},
-            {.kind = 3, .name = "rear"}}},
-      {.name = "roomba.1", .id = 9, .sensors = {{.kind = 1, .fov = 1.0, .samples = 2, .range_max = 4.0}}}};
+           {{.type = 1, .name = "front", .X_MS = {0.1, 0.0, 0.2, 0.3}, .fov = 3.0, .samples = 4, .range_max = 8.0},
+            {.type = 1, .name = "front", .rate = 5.0, .samples = 1, .range_min = 0.5, .range_max = 80.0},
+            {.type = 3, .name = "front", .X_MS = {0.5, 0.0, 0.1, 0.0}},
+            {.type = 2, .name = "3rd edge", .rate = 4.0},
+            {.type = 3, .name = "rear"}}},
+      {.name = "roomba.1", .id = 9, .sensors = {{.type = 1, .fov = 1.0, .samples = 2, .range_max = 4.0}}}};
   info.options = {{"noise", "off"}, {"", "empty key"}};
   info.snapshot = {1, 2, 3, 0, 255};
   return info;
@@ -73,12 +73,12 @@ struct SampleTick {
               {t, 1.0, 2.0, 3.0, 4.0, -t, -1.0, -2.0, -3.0, 5.0},  // two elements
               {t / 7.0, 61.0, 0.1, 0.2, 0.3},
               {1.0 / t, 1.0, 2.0, 3.0, 0.0}};
-    readings = {{.mover = 0, .sensor = 0, .kind = 1, .sequence = 5, .time = time / 2, .values = ranges[0]},
-                {.mover = 0, .sensor = 1, .kind = 1, .sequence = 6, .time = time, .values = ranges[1]},
-                {.mover = 1, .sensor = 0, .kind = 1, .sequence = 7, .time = time, .values = ranges[2]},
-                {.mover = 0, .sensor = 0, .kind = 3, .sequence = 8, .time = time / 2, .values = ranges[3]},
-                {.mover = 0, .sensor = 0, .kind = 2, .sequence = 9, .time = time, .values = ranges[4]},
-                {.mover = 0, .sensor = 1, .kind = 3, .sequence = 10, .time = time, .values = ranges[5]}};
+    readings = {{.mover = 0, .sensor = 0, .type = 1, .sequence = 5, .time = time / 2, .values = ranges[0]},
+                {.mover = 0, .sensor = 1, .type = 1, .sequence = 6, .time = time, .values = ranges[1]},
+                {.mover = 1, .sensor = 0, .type = 1, .sequence = 7, .time = time, .values = ranges[2]},
+                {.mover = 0, .sensor = 0, .type = 3, .sequence = 8, .time = time / 2, .values = ranges[3]},
+                {.mover = 0, .sensor = 0, .type = 2, .sequence = 9, .time = time, .values = ranges[4]},
+                {.mover = 0, .sensor = 1, .type = 3, .sequence = 10, .time = time, .values = ranges[5]}};
     record = {tick, time, reports, commands, contacts, readings};
   }
   SampleTick(const SampleTick&) = delete;

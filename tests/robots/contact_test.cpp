@@ -149,11 +149,11 @@ TEST(Contact, AccelerationsLimitDrivingButNotBeingStopped) {
   EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.forward, -0.1) << "and leaves from standing";
 }
 
-TEST(Contact, TheDriverModelComesFirst) {
+TEST(Contact, TheActuatorModelComesFirst) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_create(world, {0, 0, 0, 0});
   mover.track = 0.258;
-  mover.driver_model = world::DriverModel::player_create;
+  mover.actuator_model = world::ActuatorModel::player_create;
   Fleet fleet(world);
   drive(fleet, {{0.1, 0, 0.1}});
   EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.turn, 0.2);

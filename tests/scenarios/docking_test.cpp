@@ -8,6 +8,7 @@
 #include "control/stop_reason.h"
 #include "scenarios/simulation.h"
 #include "sensors/sensor_type.h"
+#include "tests/sensors/edit_laser.h"
 #include "world/wall_tree.h"
 
 namespace sf::scenarios {
@@ -27,7 +28,7 @@ world::World car_park() {
   const base::Pose at[] = {robot->X_WM};
   world::copy_robots(world, static_cast<std::uint32_t>(robot - world.movers.begin()), at, {});
   world::Mover& mover = world.movers.front();
-  mover.lasers.clear();
+  scenes::remove_lasers(mover);
   std::erase_if(mover.sensors, [](const world::Sensor& sensor) { return sensor.type != "irreceiver"; });
   world.road_files.clear();
   world.magnets.clear();

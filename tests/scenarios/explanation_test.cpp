@@ -31,9 +31,9 @@ world::World lasers(std::uint32_t robots) {
 TEST(Explanation, CountsWhatThereIs) {
   const world::World world = lasers(6);
   const Explanation e = explain(world, device(), 1, 1);
-  ASSERT_EQ(e.kinds.size(), 1u);
-  const SensorTypeCost& k = e.kinds[0];
-  EXPECT_EQ(k.kind, "laser");
+  ASSERT_EQ(e.types.size(), 1u);
+  const SensorTypeCost& k = e.types[0];
+  EXPECT_EQ(k.type, "laser");
   EXPECT_EQ(k.sensors, 6u);
   EXPECT_EQ(k.robots, 6u);
   EXPECT_EQ(k.most_rate, 10.0);
@@ -56,10 +56,10 @@ TEST(Explanation, ReusedReadingsAreCounted) {
   scenes::add_robot(world, {}, scenes::laser(61, M_PI, 4.0));
   world.movers[0].is_tag = true;
   const Explanation e = explain(world, device(), 1, 1);
-  ASSERT_EQ(e.kinds.size(), 1u);
-  EXPECT_EQ(e.kinds[0].readings, 1.0);
-  EXPECT_EQ(e.kinds[0].reused, 1.0);
-  EXPECT_EQ(e.kinds[0].work.rays, 0u);
+  ASSERT_EQ(e.types.size(), 1u);
+  EXPECT_EQ(e.types[0].readings, 1.0);
+  EXPECT_EQ(e.types[0].reused, 1.0);
+  EXPECT_EQ(e.types[0].work.rays, 0u);
 }
 
 /// Six robots in a row look along it: each sees its neighbours, which hide the others.

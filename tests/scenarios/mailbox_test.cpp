@@ -12,14 +12,14 @@ constexpr std::int64_t kMs = 1'000'000;
 /// Reading `sequence` of a sensor; its only value is its sequence.
 class Sender {
  public:
-  explicit Sender(std::uint8_t kind = 1, std::uint32_t sensor = 0) : kind_(kind), sensor_(sensor) {}
+  explicit Sender(std::uint8_t type = 1, std::uint32_t sensor = 0) : type_(type), sensor_(sensor) {}
   base::ReadingBlock reading(std::uint32_t sequence) {
     value_ = {static_cast<double>(sequence)};
-    return {.sensor = sensor_, .kind = kind_, .sequence = sequence, .values = value_};
+    return {.sensor = sensor_, .type = type_, .sequence = sequence, .values = value_};
   }
 
  private:
-  std::uint8_t kind_;
+  std::uint8_t type_;
   std::uint32_t sensor_;
   std::array<double, 1> value_{};
 };
@@ -99,7 +99,7 @@ TEST(Mailbox, SensorsAndKindsAreApart) {
   ASSERT_EQ(open.size(), 3u);
   EXPECT_EQ(open[0].values[0], 5.0);
   EXPECT_EQ(open[1].values[0], 6.0);
-  EXPECT_EQ(open[2].kind, 3);
+  EXPECT_EQ(open[2].type, 3);
   box.send(c.reading(8), 1);
   box.receive(1);
   EXPECT_TRUE(box.renewed(3));

@@ -122,15 +122,32 @@ TEST(ScenarioFile, RobotsWithAPoseAloneKeepTheDefault) {
   EXPECT_NE(world.hash, world_of(parse("")).hash);
 }
 
-TEST(ScenarioFile, ThePlantIsEveryMoversDriverModel) {
-  EXPECT_EQ(world_of(parse("")).movers[0].driver_model, world::DriverModel::direct);
-  EXPECT_EQ(world_of(parse("plant = \"thesis\"")).movers[0].driver_model, world::DriverModel::player_create);
-  EXPECT_EQ(world_of(parse("plant = \"ideal\"")).movers[0].driver_model, world::DriverModel::direct);
+TEST(ScenarioFile, ThePlantIsEveryMoversActuatorModel) {
+  EXPECT_EQ(world_of(parse("")).movers[0].actuator_model, world::ActuatorModel::direct);
+  EXPECT_EQ(world_of(parse("plant = \"thesis\"")).movers[0].actuator_model, world::ActuatorModel::player_create);
+  EXPECT_EQ(world_of(parse("plant = \"ideal\"")).movers[0].actuator_model, world::ActuatorModel::direct);
 }
 
 TEST(ScenarioFile, LinksHaveTheScenariosSeed) {
   const Scenario s = parse("seed = 9\n[link]\ndelay = 0.5\n");
   EXPECT_EQ(simulation_of(s, world_of(s)).actors[0].link.seed, 9u);
+}
+
+TEST(ScenarioFile, StatesHaveALinkOnRequest) {
+  EXPECT_FALSE(parse("").states);
+  const Scenario s = parse(
+      "seed = 9\n[states]\nrate = 5\ndelay = 0.5\njitter = 0.1\nloss = 0.2\nfilter = true\nposition_sigma = "
+      "0.01\nyaw_sigma = 0.02\n");
+  const StateLinkOptions states = *simulation_of(s, world_of(s)).states;
+  EXPECT_EQ(states.rate, 5.0);
+  EXPECT_EQ(states.link.delay, 0.5);
+  EXPECT_EQ(states.link.jitter, 0.1);
+  EXPECT_EQ(states.link.loss, 0.2);
+  EXPECT_EQ(states.link.seed, 9u);
+  EXPECT_TRUE(states.filter);
+  EXPECT_EQ(states.position_sigma, 0.01);
+  EXPECT_EQ(states.yaw_sigma, 0.02);
+  EXPECT_FALSE(parse("[states]\n").states->filter);
 }
 
 /// One mistake each, with its message.
@@ -153,6 +170,9 @@ TEST(ScenarioFile, MistakesAreRefusedAtTheirLine) {
       {w + "link = 3\n", "test.toml:2: 'link' expects a table"},
       {w + "[link]\nloss = 1.1\n", "test.toml:3: 'loss' expects a number from 0 to 1"},
       {w + "[link]\nlag = 1\n", "test.toml:3: unknown key 'lag'"},
+      {w + "[states]\nfilter = 1\n", "test.toml:3: 'filter' expects true or false"},
+      {w + "[states]\nrate = 0\n", "test.toml:3: 'rate' expects a number from 0.01"},
+      {w + "[states]\nlag = 1\n", "test.toml:3: unknown key 'lag'"},
       {w + "[default]\ncontroller = \"wandr\"\n",
        "test.toml:3: there is no controller 'wandr'; did you mean 'wander'?"},
       {w + "[default]\nrate = 0\n", "test.toml:3: 'rate' expects a number from 0.01"},

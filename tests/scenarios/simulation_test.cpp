@@ -9,6 +9,7 @@
 #include "sensors/laser.h"
 #include "sensors/sensor_type.h"
 #include "tests/counted_new.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::scenarios {
@@ -135,13 +136,13 @@ world::Sensor sensor(const std::string& type, double rate) {
 }
 
 /// Robots among boxes with one laser each, invisible to each other.
-world::World fast_world(const std::vector<double>& rates, const world::LaserNoise& noise = {}) {
+world::World fast_world(const std::vector<double>& rates, const raycast::ScanNoise& noise = {}) {
   world::World world = scenes::boxes(15, 12.0, 3);
-  world::Laser laser = scenes::laser(31, M_PI, 6.0);
+  sensors::LaserSettings laser = scenes::laser(31, M_PI, 6.0);
   laser.noise = noise;
   scenes::add_robots(world, static_cast<std::uint32_t>(rates.size()), laser, 5);
   for (std::size_t m = 0; m < rates.size(); ++m) {
-    world.movers[m].lasers[0].rate = rates[m];
+    scenes::edit_laser(world.movers[m])->rate = rates[m];
     for (world::Segment& side : world.movers[m].body) side.seen_by_laser = false;
   }
   world::update_extent_and_hash(world);
@@ -186,8 +187,8 @@ std::vector<std::vector<double>> read_by_first(const world::World& world, std::u
   std::vector<std::vector<double>> all;
   for (int i = 0; i < 60; ++i)
     for (const base::ReadingBlock& r : simulation.step().readings) {
-      if (r.mover != 0 || r.kind == but) continue;
-      all.push_back({double(r.kind), double(r.sequence), double(r.time)});
+      if (r.mover != 0 || r.type == but) continue;
+      all.push_back({double(r.type), double(r.sequence), double(r.time)});
       all.back().insert(all.back().end(), r.values.begin(), r.values.end());
     }
   return all;
@@ -195,10 +196,10 @@ std::vector<std::vector<double>> read_by_first(const world::World& world, std::u
 
 /// Other sensors' samples between ticks affect neither readings nor accumulated wheel rotations.
 TEST(Simulation, OthersRatesChangeNothing) {
-  const world::LaserNoise noise{.range_sigma = 0.01, .range_proportional = 0.0, .angle_sigma = 0.002};
+  const raycast::ScanNoise noise{.range_sigma = 0.01, .range_proportional = 0.0, .angle_sigma = 0.002};
   for (const double rate : {10.0, 13.0}) {
     world::World alone = fast_world({rate}, noise);
-    alone.movers[0].sensors = {sensor("encoder", 10.0)};
+    alone.movers[0].sensors.push_back(sensor("encoder", 10.0));
     world::update_extent_and_hash(alone);
     const auto expected = read_by_first(alone);
     EXPECT_GT(expected.size(), rate == 10.0 ? 119u : 130u);

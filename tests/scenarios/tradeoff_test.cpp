@@ -1,6 +1,7 @@
 // Measurement of all modes, and selection of modes.
 
 #include "scenarios/tradeoff.h"
+#include "tests/sensors/edit_laser.h"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +59,7 @@ TEST(Tradeoff, NoBoundIsStatedWhereNoneHolds) {
   for (int i = 0; i <= 600; ++i) bend.line.push_back(base::rotate(0.01 * i, {0.68, 0.0}));
   world.lane_markings.push_back(bend);
   scenes::add_robot(world, {0.3, 0.0, 0.0, 0.0}, scenes::laser(3));
-  world.movers[0].lasers.clear();
+  scenes::remove_lasers(world.movers[0]);
   world.movers[0].sensors.push_back({"laneedge", "e", {}, 0.01, 1.0, M_PI / 180.0, {}, 0, ""});
   world::update_extent_and_hash(world);
   for (const ModeResult& g : tradeoff(world, device(), {})) {

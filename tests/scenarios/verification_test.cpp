@@ -13,6 +13,7 @@
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 #include "sensors/accuracy.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::scenarios {
@@ -25,7 +26,7 @@ gpu::Device& device() {
 
 world::World small_world() {
   world::World world = scenes::boxes(20, 8.0, 3);
-  world::Laser laser = scenes::laser(61, M_PI, 4.0);
+  sensors::LaserSettings laser = scenes::laser(61, M_PI, 4.0);
   laser.noise = {.range_sigma = 0.01, .range_proportional = 0.0, .angle_sigma = 0.002};
   laser.latency = 0.15;
   scenes::add_robots(world, 6, laser, 5);
@@ -63,7 +64,7 @@ TEST(Verification, ASoundRun) {
 TEST(Verification, ReadingsFromBetweenTicks) {
   world::World world = small_world();
   for (std::size_t m = 0; m < world.movers.size(); ++m) {
-    world.movers[m].lasers[0].rate = 13.0 + 12.0 * static_cast<double>(m);
+    scenes::edit_laser(world.movers[m])->rate = 13.0 + 12.0 * static_cast<double>(m);
     for (const char* type : {"encoder", "gyro"}) {
       world::Sensor sensor;
       sensor.type = sensor.name = type;

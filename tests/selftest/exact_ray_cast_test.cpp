@@ -6,6 +6,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "selftest/fixture.h"
+#include "sensors/laser_settings.h"
 #include "sensors/magnetic_field/sampling.h"
 #include "tests/sensors/chance.h"
 
@@ -34,7 +35,7 @@ struct Met {
 };
 
 /// Tests every wall, with signs and quotients in 50 digits.
-Met nearest_hit(const world::World& world, const Pose& eye, const world::Laser& laser, std::uint32_t sample) {
+Met nearest_hit(const world::World& world, const Pose& eye, const sensors::LaserSettings& laser, std::uint32_t sample) {
   Digits50 part = laser.samples < 2 ? Digits50(0) : Digits50(sample) / Digits50(laser.samples - 1) - Digits50(0.5);
   const Digits50 angle = Digits50(eye.yaw) + Digits50(laser.fov) * part;
   const Digits50 dx = cos(angle), dy = sin(angle);
@@ -82,7 +83,8 @@ TEST(Oracle, LaserRangesInRandomScenes) {
     const glm::dvec2 at = base::rotate(chance.between(-3.0, 3.0), {far, 0.0});
     world::World world = scene(chance, at, size);
     const double turn = chance.below(4) == 0 ? 1e6 : 4.0;
-    const world::Laser eye = laser(1 + chance.below(40), chance.between(0.0, 2.0 * M_PI), std::min(size, 1e5));
+    const sensors::LaserSettings eye =
+        laser(1 + chance.below(40), chance.between(0.0, 2.0 * M_PI), std::min(size, 1e5));
     add_laser_mover(world, {at.x, at.y, 0.0, chance.between(-turn, turn)}, eye);
     const TestFarm test = fixture().measure(world);
     for (std::uint32_t i = 0; i < eye.samples; ++i, ++beams) {
@@ -192,7 +194,7 @@ TEST(Oracle, DistancesToRandomEdges) {
 TEST(Oracle, SeesAWallThatIsElsewhere) {
   world::World world;
   add_wall(world, {2.0, -1.0}, {2.5, 1.0});
-  const world::Laser eye = laser(1, 0.0, 8.0);
+  const sensors::LaserSettings eye = laser(1, 0.0, 8.0);
   add_laser_mover(world, {0.0, 0.0, 0.0, 0.1}, eye);
   const TestFarm test = fixture().measure(world);
   const Met there = nearest_hit(world, test.readings[0].X_WS, eye, 0);

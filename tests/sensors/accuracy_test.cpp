@@ -15,6 +15,7 @@
 #include "sensors/magnetometer_modes.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/laneedge_trial.h"
 #include "tests/sensors/magnet_scenes.h"
 #include "tests/sensors/scenes.h"
@@ -201,14 +202,14 @@ TEST(Accuracy, In32BitsHitsAreTheSameAndRangesWithinTheBound) {
 TEST(Accuracy, ModesOfOneWorldDoNotDisturbEachOther) {
   world::World mixed = crowd(61);
   for (std::size_t m = 0; m < mixed.movers.size(); ++m)
-    mixed.movers[m].lasers[0].accuracy.word = m % 3 == 0 ? "single" : m % 3 == 1 ? "skip2" : "exact";
+    scenes::edit_laser(mixed.movers[m])->accuracy.word = m % 3 == 0 ? "single" : m % 3 == 1 ? "skip2" : "exact";
   const Glance glance(mixed, {.noise = false});
   for (const char* mode : {"exact", "single", "skip2"}) {
     world::World world = crowd(61);
     sensors::set_accuracy(world, mode);
     const Glance alone(world, {.noise = false});
     for (std::size_t m = 0; m < mixed.movers.size(); ++m) {
-      if (mixed.movers[m].lasers[0].accuracy.word != mode) continue;
+      if (sensors::lasers_of(mixed.movers[m])[0].accuracy.word != mode) continue;
       EXPECT_TRUE(std::ranges::equal(glance.readings[m].values, alone.readings[m].values)) << mode << ", mover " << m;
     }
   }
@@ -218,7 +219,7 @@ TEST(Accuracy, ModesOfOneWorldDoNotDisturbEachOther) {
 TEST(Accuracy, GrazingBeamsAreFlagged) {
   world::World world;
   scenes::add_outline(world, {{0.0, -1.0}, {10.0, -1.0}, {10.0, -1e-4}, {0.0, -1e-4}}, "floor");
-  const world::Laser laser = eye(5, 8e-4, 8.0);  // bearings -4e-4, -2e-4, 0, 2e-4, 4e-4
+  const sensors::LaserSettings laser = eye(5, 8e-4, 8.0);  // bearings -4e-4, -2e-4, 0, 2e-4, 4e-4
   add_eye(world, {0.0, 0.0, 0.0, -0.0}, laser);
   add_eye(world, {0.0, 0.0, 0.0, -0.1}, laser);
   world::update_extent_and_hash(world);
@@ -256,7 +257,7 @@ TEST(Accuracy, NearMagnetsAloneStayWithinTheBound) {
   for (int i = 0; i < 200; ++i) {
     const glm::dvec2 p = chance.in_square(15.0);
     const std::uint32_t m = scenes::add_robot(world, {p.x, p.y, 0.0, chance.between(-3.0, 3.0)}, scenes::laser(3));
-    world.movers[m].lasers.clear();
+    scenes::remove_lasers(world.movers[m]);
     world.movers[m].sensors.push_back({"magnetometer", "m", {0.1, 0.0, 0.0, 0.0}, 0.1, 1.0, 1.0, {}, 0, ""});
   }
   world::update_extent_and_hash(world);
@@ -345,7 +346,7 @@ TEST(Accuracy, KindsWithoutABoundStateNone) {
   const Glance glance(world);
   EXPECT_EQ(glance.readings.size(), 9u);
   for (const base::ReadingBlock& r : glance.readings)
-    EXPECT_EQ(std::isinf(r.bound), r.kind != sensors::kLaser) << static_cast<int>(r.kind);
+    EXPECT_EQ(std::isinf(r.bound), r.type != sensors::kLaser) << static_cast<int>(r.type);
 }
 
 TEST(Accuracy, AWorldsOwnCutOffStaysTheNearest) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sensors/laser_settings.h"
 #include "tests/instrumented.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
@@ -18,7 +19,7 @@ void aim_at_vertices(world::World& world, double half, double range, std::uint64
   Chance chance(seed);
   for (int i = 0; i < kEyes; ++i) {
     const world::Segment& s = world.walls[chance.below(static_cast<std::uint32_t>(world.walls.size()))];
-    const world::Laser laser = i % 2 ? eye(9, 1e-6, range) : eye(5, 4e-10, range);
+    const sensors::LaserSettings laser = i % 2 ? eye(9, 1e-6, range) : eye(5, 4e-10, range);
     glm::dvec2 from = chance.in_square(half);
     if (i % 3) from = s.a + (0.1 * range / half) * from;  // most of them close by, so that the beam reaches the vertex
     aim(world, from, chance.below(2) ? s.a : s.b, laser);

@@ -90,7 +90,7 @@ TEST(Bumper, ReadsWhatPressesNow) {
     states[1].contact_mask = k == 3 ? 0xFFFFFFFFu : 0u;
     const auto readings = farm.tick(k * 100'000'000ll, states);
     ASSERT_EQ(readings.size(), 2u);
-    EXPECT_EQ(readings[0].kind, sensors::kBumper);
+    EXPECT_EQ(readings[0].type, sensors::kBumper);
     EXPECT_EQ(values_of(readings[0]), (std::vector<double>{k < 8 ? 1.0 : 0.0, k >= 24 ? 1.0 : 0.0})) << k;
     EXPECT_EQ(readings[1].values[0], k == 3 ? 1.0 : 0.0) << "released with the next tick";
   }

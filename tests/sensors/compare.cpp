@@ -8,6 +8,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "sensors/laser_settings.h"
 #include "tests/sensors/brute_force.h"
 
 namespace sf::trial {
@@ -42,7 +43,7 @@ std::string text(const Tally& t) {
 namespace {
 
 /// Bearings by definition: both ends are exactly at the ends of the field of view.
-long double bearing(const world::Laser& laser, std::size_t i) {
+long double bearing(const sensors::LaserSettings& laser, std::size_t i) {
   if (laser.samples < 2) return 0.0L;
   return static_cast<long double>(laser.fov) *
          (static_cast<long double>(i) / static_cast<long double>(laser.samples - 1) - 0.5L);
@@ -94,7 +95,7 @@ void compare_beam(const oracle::Truth& truth, const Said& said, Tally& tally) {
 Tally compare(const world::World& world, std::span<const Pose> poses, std::span<const base::ReadingBlock> readings) {
   Tally tally;
   for (const base::ReadingBlock& r : readings) {
-    const world::Laser& laser = world.movers[r.mover].lasers[r.sensor];
+    const sensors::LaserSettings laser = sensors::lasers_of(world.movers[r.mover])[r.sensor];
     const glm::dvec2 origin{r.X_WS.x, r.X_WS.y};
     const auto all = oracle::surfaces(world, poses, r.mover, r.X_WS.z);
     const auto near = oracle::within(all, origin, laser.range_max);
@@ -153,8 +154,8 @@ void expect_exact(const std::string& name, const Tally& tally, double most) {
   EXPECT_LE(tally.worst, most) << name;
 }
 
-world::Laser eye(std::uint32_t samples, double fov, double range_max) {
-  world::Laser laser;
+sensors::LaserSettings eye(std::uint32_t samples, double fov, double range_max) {
+  sensors::LaserSettings laser;
   laser.name = "eye";
   laser.X_MS = {0.0, 0.0, 0.1, 0.0};
   laser.samples = samples;
@@ -163,7 +164,7 @@ world::Laser eye(std::uint32_t samples, double fov, double range_max) {
   return laser;
 }
 
-std::uint32_t add_eye(world::World& world, const Pose& pose, const world::Laser& laser) {
+std::uint32_t add_eye(world::World& world, const Pose& pose, const sensors::LaserSettings& laser) {
   world::Mover mover;
   const auto number = static_cast<std::uint32_t>(world.movers.size());
   mover.name = "eye" + std::to_string(number);
@@ -172,12 +173,12 @@ std::uint32_t add_eye(world::World& world, const Pose& pose, const world::Laser&
   mover.X_WM = pose;
   world.models.push_back({mover.name, "position"});
   world.models.back().mover = number;
-  mover.lasers.push_back(laser);
+  mover.sensors.push_back(sensors::laser_sensor(laser));
   world.movers.push_back(mover);
   return number;
 }
 
-std::uint32_t aim(world::World& world, glm::dvec2 from, glm::dvec2 target, const world::Laser& laser) {
+std::uint32_t aim(world::World& world, glm::dvec2 from, glm::dvec2 target, const sensors::LaserSettings& laser) {
   const double yaw = std::atan2(target.y - from.y, target.x - from.x);
   return add_eye(world, {from.x, from.y, 0.0, yaw}, laser);
 }

@@ -7,6 +7,7 @@
 
 #include "base/reading.h"
 #include "farm/farm.h"
+#include "sensors/laser_settings.h"
 #include "world/world.h"
 
 namespace sf::trial {
@@ -46,13 +47,13 @@ Tally sweep(const world::World& world, const farm::FarmOptions& options = {});
 void expect_exact(const std::string& name, const Tally& tally, double most = 1e-9);
 
 /// Adds a sensor without a body at exactly `pose`, at a height of 0.1 m. @return the mover's row
-std::uint32_t add_eye(world::World& world, const base::Pose& pose, const world::Laser& laser);
+std::uint32_t add_eye(world::World& world, const base::Pose& pose, const sensors::LaserSettings& laser);
 
 /// A laser at its mover's origin.
-world::Laser eye(std::uint32_t samples, double fov, double range_max);
+sensors::LaserSettings eye(std::uint32_t samples, double fov, double range_max);
 
 /// Adds an eye whose middle beam is aimed at `target` in double precision.
-std::uint32_t aim(world::World& world, glm::dvec2 from, glm::dvec2 target, const world::Laser& laser);
+std::uint32_t aim(world::World& world, glm::dvec2 from, glm::dvec2 target, const sensors::LaserSettings& laser);
 
 /// One tick at time 0 of a farm with all robots subscribed; the farm outlives the readings.
 struct Glance {

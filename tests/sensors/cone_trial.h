@@ -12,6 +12,7 @@
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/cone_scenes.h"
+#include "tests/sensors/edit_laser.h"
 #include "world/world.h"
 
 namespace sf::trial {
@@ -20,7 +21,7 @@ namespace sf::trial {
 inline std::uint32_t add_ranger(world::World& world, const base::Pose& pose, const world::Sensor& sensor,
                                 double radius = 0.0) {
   const std::uint32_t mover = add_eye(world, pose, {});
-  world.movers[mover].lasers.clear();
+  scenes::remove_lasers(world.movers[mover]);
   world.movers[mover].sensors.push_back(sensor);
   for (int i = 0; radius > 0.0 && i < 12; ++i) {
     const auto at = [&](int k) { return base::rotate(k * M_PI / 6.0, {radius, 0.0}); };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sensors/laser_settings.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"
 
@@ -21,7 +22,7 @@ void add_box(world::World& world, double z_min, double z_max, bool seen = true) 
 
 /// Range of a beam straight ahead at height `z` [m].
 double look(world::World world, double z) {
-  world::Laser laser = eye(1, 0.0, 8.0);
+  sensors::LaserSettings laser = eye(1, 0.0, 8.0);
   laser.X_MS.z = z;
   add_eye(world, {}, laser);
   return Glance(world).readings[0].values[0];
@@ -58,7 +59,7 @@ TEST(Heights, OverALowBoxASensorIsNotInside) {
   world::World world;
   add_box(world, 0.0, 0.05);
   scenes::add_outline(world, {{5, -1}, {6, -1}, {6, 1}, {5, 1}}, "behind");
-  world::Laser laser = eye(1, 0.0, 8.0);
+  sensors::LaserSettings laser = eye(1, 0.0, 8.0);
   add_eye(world, {2.5, 0, 0, 0}, laser);
   EXPECT_NEAR(Glance(world).readings[0].values[0], 2.5, 1e-12);
 }
@@ -67,12 +68,12 @@ TEST(Heights, SensorsOfManyHeightsAndRangesShareAWorld) {
   world::World world = scenes::boxes(40, 16.0, 4);
   for (std::size_t i = 0; i < world.walls.size(); ++i) world.walls[i].z_max = 0.02 * static_cast<double>(i / 4 % 12);
   for (int i = 0; i < 12; ++i) {
-    world::Laser laser = eye(181, 6.0, i % 2 ? 8.0 : 3.0);
+    sensors::LaserSettings laser = eye(181, 6.0, i % 2 ? 8.0 : 3.0);
     laser.X_MS.z = 0.02 * i;
     add_eye(world, {0.01 * i, 0.0, 0.01 * i, 0.3 * i}, laser);
     laser.range_max = 30.0;
     laser.X_MS.z += 0.013;
-    world.movers.back().lasers.push_back(laser);
+    world.movers.back().sensors.push_back(sensors::laser_sensor(laser));
   }
   expect_exact("heights and ranges", sweep(world));
 }
@@ -81,7 +82,7 @@ TEST(Heights, SensorsOfManyHeightsAndRangesShareAWorld) {
 TEST(Heights, TheSensorsPoseIsComposedWithTheMovers) {
   world::World world;
   add_box(world, 0.4, 0.6);
-  world::Laser laser = eye(1, 0.0, 8.0);
+  sensors::LaserSettings laser = eye(1, 0.0, 8.0);
   laser.X_MS = {0.25, 0.5, 0.3, -M_PI / 2};
   add_eye(world, {0.5, -0.25, 0.2, M_PI / 2}, laser);
   const Glance glance(world);

@@ -8,6 +8,7 @@
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/cone_trial.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/laneedge_trial.h"
 #include "tests/sensors/scenes.h"
 
@@ -27,7 +28,7 @@ bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
   const auto same = [](auto a, auto b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
   };
-  return p.mover == q.mover && p.kind == q.kind && p.bound == q.bound && same(p.values, q.values) &&
+  return p.mover == q.mover && p.type == q.type && p.bound == q.bound && same(p.values, q.values) &&
          same(p.hits, q.hits) && same(p.quality, q.quality);
 }
 
@@ -74,7 +75,7 @@ TEST(DeviceCast, ResultsThatNoBufferHoldsAreTheSame) {
 /// Angular noise turns beams, `resolution` skips some, range_min raises ranges.
 TEST(HostCast, LasersWithNoiseAndResolution) {
   world::World world = scenes::boxes(60, 16.0, 4);
-  world::Laser laser = scenes::laser(91, 2.0 * M_PI, 5.0);
+  sensors::LaserSettings laser = scenes::laser(91, 2.0 * M_PI, 5.0);
   laser.noise = {.range_sigma = 0.01, .angle_sigma = 0.01};
   laser.range_min = 0.3;
   scenes::add_robots(world, 10, laser, 4);
@@ -165,9 +166,9 @@ TEST(SharedLists, AWallThatOneOfTwoLasersSeesIsSeen) {
   for (const double y : {0.3, -0.3}) {
     world::World world;
     const std::uint32_t m = add_eye(world, {}, eye(361, M_PI, 8.0));
-    world.movers[m].lasers[0].X_MS.y = 0.15;
-    world.movers[m].lasers.push_back(world.movers[m].lasers[0]);
-    world.movers[m].lasers[1].X_MS.y = -0.15;
+    scenes::edit_laser(world.movers[m])->X_MS.y = 0.15;
+    world.movers[m].sensors.push_back(sensors::laser_sensor(sensors::lasers_of(world.movers[m])[0]));
+    scenes::edit_laser(world.movers[m], 1)->X_MS.y = -0.15;
     scenes::add_robot(world, {1.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 1.0));
     const std::uint32_t behind = scenes::add_robot(world, {2.5, y, 0.0, 0.0}, eye(1, 0.0, 1.0));
     const Glance glance(world);
@@ -183,10 +184,10 @@ TEST(SharedLists, CrowdsOfRobotsWithTwoLasers) {
     world::World world = scenes::boxes(12, 6.0, seed);
     scenes::add_robots(world, 25, scenes::laser(181, 2.0 * M_PI, 5.0), seed);
     for (world::Mover& mover : world.movers) {
-      mover.lasers.push_back(mover.lasers[0]);
-      mover.lasers[0].X_MS.y += 0.15;
-      mover.lasers[1].X_MS.y -= 0.12;
-      mover.lasers[1].X_MS.x += 0.05;
+      mover.sensors.push_back(sensors::laser_sensor(sensors::lasers_of(mover)[0]));
+      scenes::edit_laser(mover)->X_MS.y += 0.15;
+      scenes::edit_laser(mover, 1)->X_MS.y -= 0.12;
+      scenes::edit_laser(mover, 1)->X_MS.x += 0.05;
     }
     expect_exact("two lasers each", sweep(world));
   }

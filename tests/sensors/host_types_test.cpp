@@ -81,7 +81,7 @@ TEST(HostKinds, OthersChangeNothing) {
 TEST(HostKinds, AreSensedByHandAnywhere) {
   const world::World world = everything(2);
   farm::Farm farm(world, device());
-  const auto sense = [&](std::uint8_t kind) { return farm.sense(1, kind, 0, {100, 100, 0, 1}); };
+  const auto sense = [&](std::uint8_t type) { return farm.sense(1, type, 0, {100, 100, 0, 1}); };
   EXPECT_EQ(sense(sensors::kGps).values[3], 8.0);
   EXPECT_EQ(sense(sensors::kEncoder).values[2], 0.0);
   EXPECT_EQ(sense(sensors::kBumper).values[0], 0.0);
@@ -90,11 +90,11 @@ TEST(HostKinds, AreSensedByHandAnywhere) {
 }
 
 /// Readings of robot `mover` of one sensor type, by sensor.
-std::vector<std::vector<double>> of(std::span<const base::ReadingBlock> readings, std::uint8_t kind,
+std::vector<std::vector<double>> of(std::span<const base::ReadingBlock> readings, std::uint8_t type,
                                     std::uint32_t mover) {
   std::vector<std::vector<double>> all;
   for (const base::ReadingBlock& r : readings)
-    if (r.kind == kind && r.mover == mover) all.push_back(values_of(r));
+    if (r.type == type && r.mover == mover) all.push_back(values_of(r));
   return all;
 }
 
@@ -168,11 +168,11 @@ TEST(HostKinds, TwoOfAKindDrawByThemselves) {
   std::vector<base::Report> states = to_occupancy(world);
   states[0].X_WM.x = 0.3;
   const auto readings = farm.tick(1'000'000'000, states);
-  for (const std::uint8_t kind : {sensors::kGyro, sensors::kGps, sensors::kEncoder}) {
-    const auto pair = of(readings, kind, 0);
+  for (const std::uint8_t type : {sensors::kGyro, sensors::kGps, sensors::kEncoder}) {
+    const auto pair = of(readings, type, 0);
     ASSERT_EQ(pair.size(), 2u);
-    EXPECT_NE(pair[0][0], pair[1][0]) << int{kind};
-    EXPECT_GT(std::abs(pair[0][0] - pair[1][0]), 1e-5) << int{kind};
+    EXPECT_NE(pair[0][0], pair[1][0]) << int{type};
+    EXPECT_GT(std::abs(pair[0][0] - pair[1][0]), 1e-5) << int{type};
   }
 }
 

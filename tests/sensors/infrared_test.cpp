@@ -22,7 +22,7 @@ Response see(double gap, std::vector<world::Setting> more = {}) {
   scenes::add_outline(world, {{gap, -1}, {gap + 1, -1}, {gap + 1, 1}, {gap, 1}}, "wall");
   add_ranger(world, {}, cones("infrared", {Pose{}}, std::move(more)));
   const Glance run(world);
-  EXPECT_EQ(run.readings[0].kind, sensors::kInfrared);
+  EXPECT_EQ(run.readings[0].type, sensors::kInfrared);
   EXPECT_EQ(run.readings[0].values.size(), 2u);
   return {run.readings[0].values[0], run.readings[0].values[1]};
 }

@@ -112,17 +112,17 @@ class FitRig {
 };
 
 /// Every beam meets the line x = `x` of the sensor frame.
-Shot wall_ahead(const world::Laser& fan, double x) {
+Shot wall_ahead(const raycast::ScanSettings& fan, double x) {
   Shot shot;
   for (std::uint32_t k = 0; k < fan.samples; ++k) {
-    shot.ranges.push_back(x / std::cos(world::bearing_of(fan, k)));
+    shot.ranges.push_back(x / std::cos(bearing_of(fan, k)));
     shot.tags.push_back(0);
   }
   return shot;
 }
 
 /// No hits.
-Shot nothing(const world::Laser& fan) {
+Shot nothing(const raycast::ScanSettings& fan) {
   return {std::vector<double>(fan.samples, fan.range_max), std::vector<std::uint32_t>(fan.samples, SF_NO_HIT)};
 }
 
@@ -133,7 +133,9 @@ EdgeReading read_one(const Settings& settings, const Shot& shot) {
 
 const Settings kAhead{{"perpendicular", {0}}};
 
-world::Laser fan_of(const Settings& settings) { return sensors::lane_edge_of(edge_sensor(settings), 0, 0).fan; }
+raycast::ScanSettings fan_of(const Settings& settings) {
+  return sensors::lane_edge_of(edge_sensor(settings), 0, 0).fan;
+}
 
 /// No edge, with defined values in all columns.
 void expect_none(const EdgeReading& r, double points) {
@@ -289,14 +291,14 @@ TEST(LaneEdgeFit, ASingleRayIsItsOwnReading) {
 }
 
 /// Random input: edges, corners, arcs, noise, no hits, in scans of any size.
-Shot anything(const world::Laser& fan, Chance& chance) {
+Shot anything(const raycast::ScanSettings& fan, Chance& chance) {
   Shot shot = nothing(fan);
   const std::uint32_t what = chance.below(5);
   const double d = chance.between(0.01, 0.8) * fan.range_max;
   const double tilt = chance.between(-1.4, 1.4);
   const double share = chance.between(0.0, 1.0);
   for (std::uint32_t k = 0; k < fan.samples; ++k) {
-    const double bearing = world::bearing_of(fan, k);
+    const double bearing = bearing_of(fan, k);
     double r = d * std::cos(tilt) / std::cos(bearing - tilt);
     if (what == 1 && chance.between(0.0, 1.0) < share) r *= 1.3;
     if (what == 2) r = chance.between(0.0, 1.0) * fan.range_max;

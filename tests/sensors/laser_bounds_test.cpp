@@ -10,6 +10,7 @@
 
 #include "base/thread_pool.h"
 #include "sensors/accuracy.h"
+#include "sensors/laser_settings.h"
 #include "tests/instrumented.h"
 #include "tests/sensors/brute_force.h"
 #include "tests/sensors/chance.h"
@@ -60,12 +61,12 @@ Wide cast(std::span<const world::Segment> surfaces, glm::dvec2 o, Wide direction
 }
 
 void look(const Scene& scene, std::span<const base::Pose> poses, const base::ReadingBlock& reading, Seen& seen) {
-  const world::Laser& laser = scene.world.movers[reading.mover].lasers[0];
+  const sensors::LaserSettings laser = sensors::lasers_of(scene.world.movers[reading.mover])[0];
   const auto all = oracle::surfaces(scene.world, poses, reading.mover, reading.X_WS.z);
   const auto near = oracle::within(all, {reading.X_WS.x, reading.X_WS.y}, laser.range_max);
   seen.bound = std::max(seen.bound, reading.bound);
   for (std::uint32_t i = 0; i < laser.samples; ++i) {
-    const Wide direction = static_cast<Wide>(reading.X_WS.yaw) + world::bearing_of(laser, i);
+    const Wide direction = static_cast<Wide>(reading.X_WS.yaw) + bearing_of(laser, i);
     const Wide truth = cast(near, {reading.X_WS.x, reading.X_WS.y}, direction, laser.range_max);
     const double error = std::abs(static_cast<double>(reading.values[i] - truth));
     ++seen.beams;

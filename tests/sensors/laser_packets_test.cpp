@@ -28,7 +28,7 @@ SensorSpec laser(std::uint32_t samples, double range_max) {
   return row;
 }
 
-base::ReadingBlock scan_of(const std::vector<double>& ranges) { return {.kind = 1, .values = ranges}; }
+base::ReadingBlock scan_of(const std::vector<double>& ranges) { return {.type = 1, .values = ranges}; }
 
 base::Bytes encoded(const std::vector<double>& ranges, double range_max, std::uint32_t part = 0,
                     WireFormat wire = WireFormat::farm) {

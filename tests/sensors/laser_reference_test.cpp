@@ -7,6 +7,7 @@
 #include "tests/instrumented.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::trial {
@@ -62,7 +63,7 @@ void expect_same_bits(const std::string& name, const Disagreement& d) {
   EXPECT_EQ(d.hits, 0u) << name;
 }
 
-world::World crowd(const world::Laser& laser, std::uint64_t seed) {
+world::World crowd(const sensors::LaserSettings& laser, std::uint64_t seed) {
   world::World world = scenes::boxes(60, 16.0, seed);
   scenes::add_robots(world, kRobots, laser, seed);
   return world;
@@ -73,7 +74,7 @@ TEST(LaserReference, AmongBoxesAndRobots) { expect_same_bits("boxes", disagreeme
 TEST(LaserReference, InModesThatSkip) {
   world::World world = crowd(scenes::laser(), 2);
   for (std::size_t m = 0; m < world.movers.size(); ++m)
-    world.movers[m].lasers[0].accuracy.word = m % 2 == 0 ? "skip2" : "skip8";
+    scenes::edit_laser(world.movers[m])->accuracy.word = m % 2 == 0 ? "skip2" : "skip8";
   expect_same_bits("skip2 and skip8", disagreement(world, 1));
 }
 
@@ -84,14 +85,14 @@ TEST(LaserReference, InACave) {
 }
 
 TEST(LaserReference, WithNoise) {
-  world::Laser laser = scenes::laser(181, 2.0 * M_PI, 6.0);
+  sensors::LaserSettings laser = scenes::laser(181, 2.0 * M_PI, 6.0);
   laser.noise = {.range_sigma = 0.01, .range_proportional = 0.02, .angle_sigma = 0.005};
   expect_same_bits("noise", disagreement(crowd(laser, 2), 7));
   expect_same_bits("noise left out", disagreement(crowd(laser, 2), 7, false));
 }
 
 TEST(LaserReference, WithBeamsLeftOut) {
-  world::Laser laser = scenes::laser(361, M_PI, 8.0);
+  sensors::LaserSettings laser = scenes::laser(361, M_PI, 8.0);
   laser.resolution = 7;
   laser.range_min = 0.4;
   expect_same_bits("resolution 7", disagreement(crowd(laser, 4), 1));
@@ -114,7 +115,7 @@ TEST(LaserReference, FarFromTheOrigin) {
 
 /// The comparison detects differences: another seed gives other noise.
 TEST(LaserReference, SeesAnotherSeed) {
-  world::Laser laser = scenes::laser(61);
+  sensors::LaserSettings laser = scenes::laser(61);
   laser.noise.range_sigma = 0.01;
   const world::World world = crowd(laser, 2);
   farm::Farm farm(world, device(), {.seed = 2});

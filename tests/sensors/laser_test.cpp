@@ -5,8 +5,10 @@
 #include <filesystem>
 
 #include "base/random.h"
+#include "sensors/laser_settings.h"
 #include "tests/instrumented.h"
 #include "tests/sensors/compare.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::trial {
@@ -58,16 +60,16 @@ TEST(Exact, OverlappingBoxesAtAnyAngle) {
 /// World files: robots with the file's first laser at random free poses.
 void file_test(const std::string& file) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
-  world::World world = world::load_world(file);
-  const bool robots = !world.movers.empty() && !world.movers[0].lasers.empty() && !world.movers[0].is_tag;
+  world::World world = world::load_world(file, {.sensors = sensors::world_file_words()});
+  const bool robots = !world.movers.empty() && !sensors::lasers_of(world.movers[0]).empty() && !world.movers[0].is_tag;
   if (robots) {
     world::clone_robots(world, kRobots, 7);
     for (world::Mover& mover : world.movers)
-      for (world::Laser& laser : mover.lasers) {
+      scenes::edit_lasers(mover, [](auto& laser) {
         laser.noise = {};
         laser.range_min = 0.0;
         laser.resolution = 1;
-      }
+      });
   } else {
     world.movers.clear();
     scenes::add_robots(world, kRobots, scenes::laser(181, 2.0 * M_PI, 30.0), 7);

@@ -4,6 +4,7 @@
 
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::trial {
@@ -52,7 +53,7 @@ TEST(Limits, WallsAndMoversTogetherStayWithinTheLoopsBudget) {
   world::World world = rails(5'500);
   const std::uint32_t m = add_eye(world, {6.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 8.0));
   world::Mover& mover = world.movers[m];
-  mover.lasers.clear();
+  scenes::remove_lasers(mover);
   for (int i = 0; i < 1'950; ++i) {
     const double y = (i % 2 ? 1.0 : -1.0) * 4e-6;
     add_thin(mover.body, {1.5e-4 * i, y}, {1.5e-4 * i + 1e-5, y}, mover.model);

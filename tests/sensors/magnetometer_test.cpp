@@ -34,7 +34,7 @@ TEST(Magnetometer, ReadsOneGaussRightAboveAMagnet) {
   const Glance run = over_one({0.8, 0, 0, 0}, scenes::five(kHigh), world);
   ASSERT_EQ(run.readings.size(), 1u);
   const base::ReadingBlock& r = run.readings[0];
-  EXPECT_EQ(r.kind, sensors::kMagnetometer);
+  EXPECT_EQ(r.type, sensors::kMagnetometer);
   ASSERT_EQ(r.values.size(), 20u);
   const Element middle = element(r, 2);
   EXPECT_NEAR(middle.field / kGauss, 1.024, 1e-6);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sensors/laser_settings.h"
 #include "tests/sensors/brute_force.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
@@ -144,7 +145,7 @@ TEST(Movers, ADenseCrowd) {
     Chance chance(7);
     for (int i = 0; i < 90; ++i) {
       const glm::dvec2 p = chance.in_square(3.3);
-      world::Laser laser = scenes::laser(91, i % 3 ? 2.0 * M_PI : 2.0, i % 2 ? 8.0 : 0.75);
+      sensors::LaserSettings laser = scenes::laser(91, i % 3 ? 2.0 * M_PI : 2.0, i % 2 ? 8.0 : 0.75);
       scenes::add_robot(world, {p.x, p.y, 0.0, chance.between(-4.0, 4.0)}, laser);
     }
     world::translate(world, far, -far);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensors/laser_settings.h"
 #include "tests/sensors/compare.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 #include "tests/sensors/statistics.h"
 
@@ -34,15 +36,15 @@ double correlation(const std::vector<double>& p, const std::vector<double>& q) {
 }
 
 /// Robots before a long slanted wall y = 2 + x / 2, each with two equal sensors.
-world::World slanted(const world::LaserNoise& noise, double range_max = 30.0) {
+world::World slanted(const raycast::ScanNoise& noise, double range_max = 30.0) {
   world::World world;
   scenes::add_outline(world, {{-100, -48}, {100, 52}, {100, 60}, {-100, -40}}, "wall");
-  world::Laser laser = eye(kBeams, 1.0, range_max);
+  sensors::LaserSettings laser = eye(kBeams, 1.0, range_max);
   laser.X_MS.yaw = M_PI / 2 + 0.3;
   laser.noise = noise;
   for (int i = 0; i < kRobots; ++i) {
     add_eye(world, {0.1 * i, 0.0, 0.0, 0.01 * i}, laser);
-    world.movers.back().lasers.push_back(laser);
+    world.movers.back().sensors.push_back(sensors::laser_sensor(laser));
   }
   return world;
 }
@@ -115,10 +117,10 @@ double bearing_at(const base::Pose& X_WS, double range) {
 TEST(Noise, AngularNoiseTurnsTheBeamBeforeItIsCast) {
   world::World world = slanted({.angle_sigma = 0.002});
   for (world::Mover& mover : world.movers)
-    for (world::Laser& laser : mover.lasers) {
+    scenes::edit_lasers(mover, [](auto& laser) {
       laser.fov = 0.5;
       laser.X_MS.yaw = M_PI / 2 + 0.47 + 0.6;
-    }
+    });
   const auto all = draws(world, 4, [](const auto& reading, std::uint32_t i, double) {
     const double bearing = -0.25 + 0.5 * i / (kBeams - 1);
     return (bearing_at(reading.X_WS, reading.values[i]) - bearing) / 0.002;
@@ -131,10 +133,10 @@ TEST(Noise, AngularNoiseTurnsTheBeamBeforeItIsCast) {
 TEST(Noise, LargeAngularNoise) {
   world::World world = slanted({.angle_sigma = 0.03});
   for (world::Mover& mover : world.movers)
-    for (world::Laser& laser : mover.lasers) {
+    scenes::edit_lasers(mover, [](auto& laser) {
       laser.fov = 0.1;
       laser.X_MS.yaw = M_PI / 2 + 0.47 + 0.6;
-    }
+    });
   expect_standard_normal(draws(world, 5, [](const auto& reading, std::uint32_t i, double) {
     const double bearing = -0.05 + 0.1 * i / (kBeams - 1);
     return (bearing_at(reading.X_WS, reading.values[i]) - bearing) / 0.03;
@@ -150,8 +152,7 @@ TEST(Noise, MissesAreNotDisturbed) {
 
 TEST(Noise, StaysWithinRangeMinAndRangeMax) {
   world::World world = slanted({.range_sigma = 5.0}, 6.0);
-  for (world::Mover& mover : world.movers)
-    for (world::Laser& laser : mover.lasers) laser.range_min = 1.5;
+  for (world::Mover& mover : world.movers) scenes::edit_lasers(mover, [](auto& laser) { laser.range_min = 1.5; });
   const Glance glance(world, {.seed = 7});
   std::size_t low = 0, high = 0;
   for (const auto& reading : glance.readings)

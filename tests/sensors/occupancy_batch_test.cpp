@@ -75,11 +75,11 @@ Tally contest(const std::vector<sensors::MapSettings>& map_settings, std::size_t
 }
 
 /// Many maps of equal settings, here and 100 km away.
-std::vector<sensors::MapSettings> spread(const sensors::MapSettings& kind, std::size_t count) {
+std::vector<sensors::MapSettings> spread(const sensors::MapSettings& common, std::size_t count) {
   std::vector<sensors::MapSettings> map_settings;
   Chance chance(count);
   for (std::size_t i = 0; i < count; ++i) {
-    sensors::MapSettings p = kind;
+    sensors::MapSettings p = common;
     const double far = i % 3 == 2 ? 1e5 : 1.0;
     p.grid.left = chance.between(-far, far);
     p.grid.top = chance.between(-far, far);
@@ -98,7 +98,7 @@ TEST(OccupancyBatch, AgreesWithTheRuleOnTheThesisLaser) {
 }
 
 TEST(OccupancyBatch, AgreesWithTheRuleOnOtherLasers) {
-  const std::vector<sensors::MapSettings> kinds{
+  const std::vector<sensors::MapSettings> cases{
       map_of(2.0 * M_PI, 720, 2.0),         // all round: candidates wrap at the rear
       map_of(2.0 * M_PI, 7, 3.0),           // few beams, far apart
       map_of(1.9 * M_PI, 100, 1.5),         // a gap at the rear
@@ -111,18 +111,18 @@ TEST(OccupancyBatch, AgreesWithTheRuleOnOtherLasers) {
       map_of(M_PI, 361, 0.02),              // within one cell
   };
   std::uint64_t seed = 10;
-  for (const sensors::MapSettings& kind : kinds) {
-    const Tally tally = contest(spread(kind, 12), 12, 4, ++seed);
-    EXPECT_EQ(tally.different, 0u) << "fov " << kind.fov << ", " << kind.samples << " beams, " << kind.range_max
-                                   << " m";
+  for (const sensors::MapSettings& settings : cases) {
+    const Tally tally = contest(spread(settings, 12), 12, 4, ++seed);
+    EXPECT_EQ(tally.different, 0u) << "fov " << settings.fov << ", " << settings.samples << " beams, "
+                                   << settings.range_max << " m";
     EXPECT_GT(tally.free + tally.occupied, 0u);
   }
 }
 
 TEST(OccupancyBatch, AgreesWithTheRuleWhereLasersAreBlindNearby) {
-  sensors::MapSettings kind = map_of(M_PI, 181, 1.5);
-  kind.range_min = 0.2;
-  EXPECT_EQ(contest(spread(kind, 20), 10, 2, 30).different, 0u);
+  sensors::MapSettings type = map_of(M_PI, 181, 1.5);
+  type.range_min = 0.2;
+  EXPECT_EQ(contest(spread(type, 20), 10, 2, 30).different, 0u);
 }
 
 TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
@@ -140,9 +140,9 @@ TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
 
 TEST(OccupancyBatch, TheFarthestEndsAreStillRight) {
   // 1022 cells: the longest lines, with the smallest differences between cells.
-  sensors::MapSettings kind = map_of(2.0 * M_PI, 97, 1'022 * 0.01, 0.01);
-  kind.grid.word_columns = kind.grid.word_rows = 300;
-  EXPECT_EQ(contest(spread(kind, 4), 8, 2, 50).different, 0u);
+  sensors::MapSettings type = map_of(2.0 * M_PI, 97, 1'022 * 0.01, 0.01);
+  type.grid.word_columns = type.grid.word_rows = 300;
+  EXPECT_EQ(contest(spread(type, 4), 8, 2, 50).different, 0u);
 }
 
 TEST(OccupancyBatch, MapsOfDifferentShapes) {

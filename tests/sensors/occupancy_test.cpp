@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "farm/farm.h"
 #include "maps/map_packets.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/map_scans.h"
 #include "tests/sensors/scenes.h"
 
@@ -40,7 +41,7 @@ world::Setting text(const std::string& key, const std::string& value) { return {
 /// Robots among boxes with the thesis' laser at 13 Hz, each with a map.
 world::World mapped(std::uint32_t robots, const std::vector<world::Setting>& settings = {}) {
   world::World world = scenes::boxes(20, 12.0, 3);
-  world::Laser laser = scenes::laser(181, M_PI, 0.75);
+  sensors::LaserSettings laser = scenes::laser(181, M_PI, 0.75);
   laser.name = "laser";
   laser.rate = 10.0;
   scenes::add_robots(world, robots, laser, 5);
@@ -101,10 +102,10 @@ TEST(OccupancySettings, WrongSettingsAreRefused) {
   expect_refused({numbers("log_odds", {85, 40, 40000})}, "'log_odds' expects");
   expect_refused({numbers("log_odds", {85, 40, 0})}, "'log_odds' expects");
   world::World blind = mapped(1);
-  blind.movers[0].lasers.clear();
+  scenes::remove_lasers(blind.movers[0]);
   EXPECT_THROW(sensors::occupancies_of(blind), base::InputError);
   world::World dense = mapped(1);
-  dense.movers[0].lasers[0].samples = 20'001;
+  scenes::edit_laser(dense.movers[0])->samples = 20'001;
   EXPECT_THROW(sensors::occupancies_of(dense), base::InputError);
 }
 
@@ -132,10 +133,10 @@ std::size_t compare_run(const world::World& world, int ticks) {
     const auto readings = farm.tick(k * 100'000'000ll, reports_at(world, k));
     for (const base::ReadingBlock& r : readings)
       for (std::uint32_t i = 0; i < all.size(); ++i)
-        if (r.kind == sensors::kLaser && all[i].row.mover == r.mover && all[i].laser == r.sensor)
+        if (r.type == sensors::kLaser && all[i].row.mover == r.mover && all[i].laser == r.sensor)
           plain.update({i, r.X_WS, r.values});
     for (const base::ReadingBlock& r : readings) {
-      if (r.kind != sensors::kOccupancy) continue;
+      if (r.type != sensors::kOccupancy) continue;
       const auto right = plain.words(r.mover);
       EXPECT_EQ(std::vector<double>(right.begin(), right.end()), std::vector<double>(r.values.begin(), r.values.end()));
       EXPECT_EQ(r.X_WS.x, all[r.mover].settings.grid.left);
@@ -159,7 +160,7 @@ TEST(OccupancyTick, TheWordIsSaidWherePosesAreEstimates) {
   farm.subscribe_all();
   std::size_t seen = 0;
   for (const base::ReadingBlock& r : farm.tick(0, {}))
-    if (r.kind == sensors::kOccupancy) seen += r.flags == 0;
+    if (r.type == sensors::kOccupancy) seen += r.flags == 0;
   EXPECT_EQ(seen, 1u);
 }
 
@@ -174,7 +175,7 @@ TEST(OccupancyTick, AMapThatNobodyHearsStillGrows) {
   const auto map_of = [](std::span<const base::ReadingBlock> readings) {
     std::vector<double> words;
     for (const base::ReadingBlock& r : readings)
-      if (r.kind == sensors::kOccupancy) words.assign(r.values.begin(), r.values.end());
+      if (r.type == sensors::kOccupancy) words.assign(r.values.begin(), r.values.end());
     return words;
   };
   const auto heard = map_of(loud.tick(1'000'000'000, reports_at(world, 10)));
@@ -204,7 +205,7 @@ TEST(OccupancyTick, TheValidationLayerIsSilent) {
     if (own.validation_messages().find("not installed") != std::string::npos)
       GTEST_SKIP() << "the validation layer is not installed";
     world::World world = mapped(6);
-    world.movers[2].sensors[0].settings.push_back(numbers("log_odds", {1}));
+    world.movers[2].sensors.back().settings.push_back(numbers("log_odds", {1}));
     farm::Farm farm(world, own);
     for (int k = 0; k < 12; ++k) {
       for (std::uint32_t m = 0; m < 6; ++m) farm.subscribe(m, static_cast<int>(m) < k ? farm::kAllSensorTypes : 0u);
@@ -237,7 +238,7 @@ std::vector<double> any_words(std::uint32_t count, std::uint64_t seed) {
 }
 
 TEST(OccupancyPackets, GoThereAndBackInBothForms) {
-  const sensors::SensorType& kind = sensors::occupancy_type;
+  const sensors::SensorType& type = sensors::occupancy_type;
   for (const auto& [columns, rows] : {std::pair{30u, 30u}, {1u, 1u}, {67u, 5u}, {7u, 146u}}) {
     const sensors::SensorSpec row = row_of(columns, rows);
     const auto words = any_words(row.elements, columns);
@@ -245,18 +246,18 @@ TEST(OccupancyPackets, GoThereAndBackInBothForms) {
     reading.values = words;
     reading.flags = maps::kTruePoses;
     for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis}) {
-      ASSERT_EQ(kind.wire_problem(row, wire), "");
+      ASSERT_EQ(type.wire_problem(row, wire), "");
       std::vector<double> back(words.size(), -1.0);
-      const std::uint32_t parts = kind.parts(row, wire);
+      const std::uint32_t parts = type.parts(row, wire);
       for (std::uint32_t p = 0; p < parts; ++p) {
         base::Bytes bytes;
-        ASSERT_EQ(kind.encode(row, reading, wire, p, bytes), kind.id);
+        ASSERT_EQ(type.encode(row, reading, wire, p, bytes), type.id);
         ASSERT_LE(bytes.size(), wire == WireFormat::farm ? 1376u : 2046u);
-        const sensors::PayloadPart part = kind.decode(row, bytes, kind.id, wire);
+        const sensors::PayloadPart part = type.decode(row, bytes, type.id, wire);
         ASSERT_EQ(part.fault, sensors::PayloadError::none);
         ASSERT_EQ(part.part, p);
         ASSERT_EQ(part.parts, parts);
-        kind.read(row, bytes, kind.id, wire, back);
+        type.read(row, bytes, type.id, wire, back);
       }
       ASSERT_EQ(back, words) << columns << " x " << rows;
     }
@@ -264,29 +265,29 @@ TEST(OccupancyPackets, GoThereAndBackInBothForms) {
 }
 
 TEST(OccupancyPackets, OthersMapsAreRefused) {
-  const sensors::SensorType& kind = sensors::occupancy_type;
+  const sensors::SensorType& type = sensors::occupancy_type;
   const auto words = any_words(900, 3);
   base::ReadingBlock reading;
   reading.values = words;
   base::Bytes bytes;
-  kind.encode(row_of(30, 30), reading, WireFormat::farm, 0, bytes);
-  EXPECT_EQ(kind.decode(row_of(30, 30), bytes, kind.id, WireFormat::farm).fault, sensors::PayloadError::none);
-  EXPECT_EQ(kind.decode(row_of(25, 36), bytes, kind.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
-  EXPECT_EQ(kind.decode(row_of(30, 29), bytes, kind.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
-  EXPECT_EQ(kind.decode(row_of(30, 30), bytes, 3, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
-  EXPECT_EQ(kind.decode(row_of(0, 0), bytes, kind.id, WireFormat::farm).fault, sensors::PayloadError::none)
+  type.encode(row_of(30, 30), reading, WireFormat::farm, 0, bytes);
+  EXPECT_EQ(type.decode(row_of(30, 30), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::none);
+  EXPECT_EQ(type.decode(row_of(25, 36), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
+  EXPECT_EQ(type.decode(row_of(30, 29), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
+  EXPECT_EQ(type.decode(row_of(30, 30), bytes, 3, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
+  EXPECT_EQ(type.decode(row_of(0, 0), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::none)
       << "nothing is known of it";
   base::Bytes plain;
-  kind.encode(row_of(30, 30), reading, WireFormat::thesis, 0, plain);
-  EXPECT_EQ(kind.decode(row_of(25, 36), plain, kind.id, WireFormat::thesis).fault, sensors::PayloadError::out_of_range);
+  type.encode(row_of(30, 30), reading, WireFormat::thesis, 0, plain);
+  EXPECT_EQ(type.decode(row_of(25, 36), plain, type.id, WireFormat::thesis).fault, sensors::PayloadError::out_of_range);
 }
 
 TEST(OccupancyPackets, TheThesisFormIsForSmallMaps) {
-  const sensors::SensorType& kind = sensors::occupancy_type;
-  EXPECT_EQ(kind.wire_problem(row_of(7, 146), WireFormat::thesis), "") << "1022 words";
-  EXPECT_NE(kind.wire_problem(row_of(32, 32), WireFormat::thesis), "");
-  EXPECT_NE(kind.wire_problem(row_of(256, 1), WireFormat::thesis), "");
-  EXPECT_EQ(kind.wire_problem(row_of(1024, 1024), WireFormat::farm), "");
+  const sensors::SensorType& type = sensors::occupancy_type;
+  EXPECT_EQ(type.wire_problem(row_of(7, 146), WireFormat::thesis), "") << "1022 words";
+  EXPECT_NE(type.wire_problem(row_of(32, 32), WireFormat::thesis), "");
+  EXPECT_NE(type.wire_problem(row_of(256, 1), WireFormat::thesis), "");
+  EXPECT_EQ(type.wire_problem(row_of(1024, 1024), WireFormat::farm), "");
 }
 
 }  // namespace

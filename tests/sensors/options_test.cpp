@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "raycast/beams.h"
+#include "sensors/laser_settings.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"
 
@@ -16,7 +17,7 @@ world::World one_wall() {
   return world;
 }
 
-std::vector<double> read(const world::Laser& laser) {
+std::vector<double> read(const sensors::LaserSettings& laser) {
   world::World world = one_wall();
   add_eye(world, {}, laser);
   const Glance glance(world);
@@ -24,7 +25,7 @@ std::vector<double> read(const world::Laser& laser) {
 }
 
 TEST(Options, NearEchoesReadRangeMin) {
-  world::Laser laser = eye(3, 0.2, 8.0);
+  sensors::LaserSettings laser = eye(3, 0.2, 8.0);
   laser.range_min = 2.005;
   const auto ranges = read(laser);
   EXPECT_NEAR(ranges[0], 2.0 / std::cos(0.1), 1e-12);
@@ -44,8 +45,8 @@ TEST(Options, RangeMaxIsWhereEchoesEnd) {
 /// Every n-th sample and the last are cast; the others are interpolated linearly.
 TEST(Options, ResolutionCastsEveryNthBeam) {
   world::World world = one_wall();
-  const world::Laser fine = eye(10, 1.2, 8.0);
-  world::Laser coarse = fine;
+  const sensors::LaserSettings fine = eye(10, 1.2, 8.0);
+  sensors::LaserSettings coarse = fine;
   coarse.resolution = 4;
   add_eye(world, {}, fine);
   add_eye(world, {}, coarse);
@@ -63,7 +64,7 @@ TEST(Options, ResolutionCastsEveryNthBeam) {
 TEST(Options, InterpolatedBeamsNameWhatBothNeighboursMet) {
   world::World world;
   scenes::add_outline(world, {{2, -50}, {3, -50}, {3, 0.001}, {2, 0.001}}, "right half");
-  world::Laser laser = eye(9, 1.2, 8.0);
+  sensors::LaserSettings laser = eye(9, 1.2, 8.0);
   laser.resolution = 4;
   add_eye(world, {}, laser);
   const Glance glance(world);
@@ -73,7 +74,7 @@ TEST(Options, InterpolatedBeamsNameWhatBothNeighboursMet) {
 }
 
 TEST(Options, AResolutionBeyondTheSamplesCastsBothEnds) {
-  world::Laser laser = eye(9, 1.2, 8.0);
+  sensors::LaserSettings laser = eye(9, 1.2, 8.0);
   laser.resolution = 1000;
   const raycast::BeamPlan plan = raycast::plan_beams(laser, false);
   EXPECT_EQ(plan.samples, (std::vector<std::uint32_t>{0, 8}));
@@ -83,19 +84,19 @@ TEST(Options, AResolutionBeyondTheSamplesCastsBothEnds) {
 
 /// Bearings: both ends exact, the middle 0, mirrored to the bit. Four beams share a lane until they spread too far.
 TEST(Options, BearingsAndLanes) {
-  const world::Laser fan = eye(361, M_PI, 8.0);
-  EXPECT_EQ(world::bearing_of(fan, 0), -M_PI / 2);
-  EXPECT_EQ(world::bearing_of(fan, 360), M_PI / 2);
-  EXPECT_EQ(world::bearing_of(fan, 180), 0.0);
-  for (std::uint32_t i = 0; i < 361; ++i) EXPECT_EQ(world::bearing_of(fan, i), -world::bearing_of(fan, 360 - i)) << i;
-  EXPECT_EQ(world::bearing_of(eye(1, 3.0, 8.0), 0), 0.0);
+  const sensors::LaserSettings fan = eye(361, M_PI, 8.0);
+  EXPECT_EQ(bearing_of(fan, 0), -M_PI / 2);
+  EXPECT_EQ(bearing_of(fan, 360), M_PI / 2);
+  EXPECT_EQ(bearing_of(fan, 180), 0.0);
+  for (std::uint32_t i = 0; i < 361; ++i) EXPECT_EQ(bearing_of(fan, i), -bearing_of(fan, 360 - i)) << i;
+  EXPECT_EQ(bearing_of(eye(1, 3.0, 8.0), 0), 0.0);
 
   EXPECT_TRUE(raycast::plan_beams(fan, false).packed);
   EXPECT_EQ(raycast::plan_beams(fan, false).lanes(), 91u);
   const raycast::BeamPlan wide = raycast::plan_beams(eye(16, 2.0 * M_PI, 8.0), false);
   EXPECT_FALSE(wide.packed) << "24 degrees apart";
   EXPECT_EQ(wide.lanes(), 16u);
-  world::Laser noisy = fan;
+  sensors::LaserSettings noisy = fan;
   noisy.noise.angle_sigma = 0.05;
   EXPECT_FALSE(raycast::plan_beams(noisy, true).packed) << "noise may turn beams of a lane far apart";
   EXPECT_TRUE(raycast::plan_beams(noisy, false).packed);
@@ -103,7 +104,7 @@ TEST(Options, BearingsAndLanes) {
 
 /// Unused places of a lane repeat its last beam.
 TEST(Options, TheLastLaneIsFilledUp) {
-  const world::Laser laser = eye(5, 0.2, 8.0);
+  const sensors::LaserSettings laser = eye(5, 0.2, 8.0);
   const raycast::BeamPlan plan = raycast::plan_beams(laser, false);
   ASSERT_EQ(plan.lanes(), 2u);
   std::vector<float> middles(2);

@@ -65,7 +65,7 @@ TEST(PlainPackets, JudgesWhatCannotBe) {
   EXPECT_EQ(fault(good, 2), PayloadError::none);
   EXPECT_EQ(fault(good, 0), PayloadError::none) << "of any number of rows";
   EXPECT_EQ(fault(good, 1), PayloadError::out_of_range) << "of another sensor";
-  EXPECT_EQ(fault(good, 2, 28), PayloadError::out_of_range) << "of another kind";
+  EXPECT_EQ(fault(good, 2, 28), PayloadError::out_of_range) << "of another type";
   EXPECT_EQ(fault(good, 2, 29 + kExtended), PayloadError::out_of_range) << "there is no second form";
   EXPECT_EQ(fault(good, 2, 29, WireFormat::thesis), PayloadError::out_of_range);
   EXPECT_EQ(fault({0, 0, 0, 0}, 0), PayloadError::out_of_range) << "no rows";
@@ -109,8 +109,8 @@ TEST(PlainPackets, AnyBytesAreJudged) {
     for (std::uint8_t& b : bytes)
       b = static_cast<std::uint8_t>(i % 3 == 0 && chance.below(9) > 0 ? 0 : chance.below(256));
     if (bytes.size() > 3 && i % 2 == 0) bytes[0] = static_cast<std::uint8_t>((bytes.size() - 4) / 8), bytes[1] = 0;
-    for (const SensorType* kind : sensor_types()) {
-      const PayloadPart part = kind->decode(row_of(0), bytes, kind->id, WireFormat::farm);
+    for (const SensorType* type : sensor_types()) {
+      const PayloadPart part = type->decode(row_of(0), bytes, type->id, WireFormat::farm);
       EXPECT_TRUE(part.fault != PayloadError::none || part.elements >= 1u);
     }
     const PayloadPart part = kTrial.decode(row_of(0), bytes, 29, WireFormat::farm);
@@ -140,19 +140,19 @@ TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
              {"gps", 10, 1, {kNan, kNan, kNan, 3}},
              {"irreceiver", 11, 1, {1, 252}}};
   for (const auto& [example, id, rows, values] : all) {
-    const SensorType* kind = find_sensor_type(id);
-    ASSERT_NE(kind, nullptr) << example;
-    EXPECT_EQ(kind->name, example);
+    const SensorType* type = find_sensor_type(id);
+    ASSERT_NE(type, nullptr) << example;
+    EXPECT_EQ(type->name, example);
     base::ReadingBlock block;
     block.values = values;
     base::Bytes bytes;
-    EXPECT_EQ(kind->encode(row_of(rows), block, WireFormat::farm, 0, bytes), id);
+    EXPECT_EQ(type->encode(row_of(rows), block, WireFormat::farm, 0, bytes), id);
     const base::Bytes packet = test::documented(example);
     ASSERT_GT(packet.size(), 64u) << example;
     EXPECT_EQ(packet[5], id);
     EXPECT_EQ(base::Bytes(packet.begin() + 64, packet.end()), bytes) << example;
-    EXPECT_EQ(kind->decode(row_of(rows), bytes, id, WireFormat::farm).fault, PayloadError::none) << example;
-    EXPECT_NE(kind->wire_problem(row_of(rows), WireFormat::thesis), "") << example;
+    EXPECT_EQ(type->decode(row_of(rows), bytes, id, WireFormat::farm).fault, PayloadError::none) << example;
+    EXPECT_NE(type->wire_problem(row_of(rows), WireFormat::thesis), "") << example;
   }
 }
 

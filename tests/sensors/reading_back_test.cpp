@@ -27,25 +27,25 @@ SensorSpec row_of(std::uint32_t elements, double limit = 0.0) {
 
 /// A receiver's values after every part of `values`.
 std::vector<double> back(std::uint8_t id, const SensorSpec& row, const std::vector<double>& values, WireFormat wire) {
-  const SensorType& kind = *find_sensor_type(id);
+  const SensorType& type = *find_sensor_type(id);
   base::ReadingBlock block;
-  block.kind = id;
+  block.type = id;
   block.values = values;
   std::vector<double> read(values.size(), kNan);
-  for (std::uint32_t part = 0; part < kind.parts(row, wire); ++part) {
+  for (std::uint32_t part = 0; part < type.parts(row, wire); ++part) {
     base::Bytes bytes;
-    const std::uint8_t type = kind.encode(row, block, wire, part, bytes);
-    EXPECT_NE(type, 0);
-    const PayloadPart judged = kind.decode(row, bytes, type, wire);
+    const std::uint8_t packet_type = type.encode(row, block, wire, part, bytes);
+    EXPECT_NE(packet_type, 0);
+    const PayloadPart judged = type.decode(row, bytes, packet_type, wire);
     EXPECT_EQ(judged.fault, PayloadError::none);
     EXPECT_EQ(judged.part, part);
-    kind.read(row, bytes, type, wire, read);
+    type.read(row, bytes, packet_type, wire, read);
   }
   return read;
 }
 
 TEST(ReadingBack, EveryKindReads) {
-  for (const SensorType* kind : sensor_types()) EXPECT_NE(kind->read, nullptr) << kind->name;
+  for (const SensorType* type : sensor_types()) EXPECT_NE(type->read, nullptr) << type->name;
 }
 
 TEST(ReadingBack, PlainScansToTheMillimetre) {
@@ -70,15 +70,15 @@ TEST(ReadingBack, ExtendedScansPartByPart) {
 }
 
 TEST(ReadingBack, APartLeavesTheOthersAsTheyAre) {
-  const SensorType& kind = *find_sensor_type(sensors::kLaser);
+  const SensorType& type = *find_sensor_type(sensors::kLaser);
   const SensorSpec row = row_of(700, 100.0);
   const std::vector<double> ranges(700, 5.0);
   base::ReadingBlock block;
   block.values = ranges;
   base::Bytes bytes;
-  const std::uint8_t type = kind.encode(row, block, WireFormat::farm, 1, bytes);
+  const std::uint8_t packet_type = type.encode(row, block, WireFormat::farm, 1, bytes);
   std::vector<double> read(700, kNan);
-  kind.read(row, bytes, type, WireFormat::farm, read);
+  type.read(row, bytes, packet_type, WireFormat::farm, read);
   for (std::size_t i = 0; i < 700; ++i) EXPECT_EQ(std::isnan(read[i]), i < 310 || i >= 620) << i;
 }
 

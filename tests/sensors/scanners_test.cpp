@@ -6,8 +6,10 @@
 
 #include "raycast/beams.h"
 #include "sensors/accuracy.h"
+#include "sensors/laser_settings.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::trial {
@@ -49,14 +51,13 @@ TEST(Fans, EveryHeading) {
 /// A robot whose lasers share one point, like infrared spots in Stage. @param fans (samples, fov, heading) of each
 void add_spots(world::World& world, const base::Pose& pose, const std::vector<std::array<double, 3>>& fans) {
   const std::uint32_t mover = scenes::add_robot(world, pose, eye(1, 0.0, 4.0));
-  std::vector<world::Laser>& lasers = world.movers[mover].lasers;
-  const world::Laser first = lasers[0];
-  lasers.clear();
+  sensors::LaserSettings laser = sensors::lasers_of(world.movers[mover])[0];
+  scenes::remove_lasers(world.movers[mover]);
   for (const auto& [samples, fov, heading] : fans) {
-    lasers.push_back(first);
-    lasers.back().samples = static_cast<std::uint32_t>(samples);
-    lasers.back().fov = fov;
-    lasers.back().X_MS.yaw = heading;
+    laser.samples = static_cast<std::uint32_t>(samples);
+    laser.fov = fov;
+    laser.X_MS.yaw = heading;
+    world.movers[mover].sensors.push_back(sensors::laser_sensor(laser));
   }
 }
 
@@ -89,8 +90,8 @@ TEST(Fans, OfOneRobotInThirtyTwoBits) {
 TEST(Fans, OfOneRobotWithRatesOfTheirOwn) {
   world::World world = spots();
   for (world::Mover& mover : world.movers) {
-    mover.lasers.back().rate = 5.0;
-    mover.lasers.front().range_min = 0.5;
+    scenes::edit_laser(mover, sensors::lasers_of(mover).size() - 1)->rate = 5.0;
+    scenes::edit_laser(mover)->range_min = 0.5;
   }
   std::uint64_t hashes[2];
   for (const bool host : {false, true}) {

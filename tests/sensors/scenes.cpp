@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "sensors/laser_settings.h"
 
 namespace sf::scenes {
 
@@ -117,8 +118,8 @@ world::World boxes(std::uint32_t count, double size, std::uint64_t seed) {
   return world;
 }
 
-world::Laser laser(std::uint32_t samples, double fov, double range_max) {
-  world::Laser laser;
+sensors::LaserSettings laser(std::uint32_t samples, double fov, double range_max) {
+  sensors::LaserSettings laser;
   laser.name = "laser";
   laser.X_MS = {0.1, 0.0, 0.1, 0.0};
   laser.samples = samples;
@@ -127,7 +128,7 @@ world::Laser laser(std::uint32_t samples, double fov, double range_max) {
   return laser;
 }
 
-std::uint32_t add_robot(world::World& world, const base::Pose& pose, const world::Laser& laser) {
+std::uint32_t add_robot(world::World& world, const base::Pose& pose, const sensors::LaserSettings& laser) {
   world::Mover mover;
   const auto number = static_cast<std::uint32_t>(world.movers.size());
   mover.name = "roomba" + std::to_string(number + 1);
@@ -146,7 +147,7 @@ std::uint32_t add_robot(world::World& world, const base::Pose& pose, const world
     mover.body.push_back(s);
   }
   for (std::size_t i = 0; i < mover.body.size(); ++i) mover.body[i].b = mover.body[(i + 1) % mover.body.size()].a;
-  mover.lasers.push_back(laser);
+  mover.sensors.push_back(sensors::laser_sensor(laser));
   world.movers.push_back(mover);
   return number;
 }
@@ -170,7 +171,7 @@ bool is_free(const world::World& world, glm::dvec2 p, double radius, double apar
 
 }  // namespace
 
-void add_robots(world::World& world, std::uint32_t count, const world::Laser& laser, std::uint64_t seed) {
+void add_robots(world::World& world, std::uint32_t count, const sensors::LaserSettings& laser, std::uint64_t seed) {
   const double width = world.extent.x_max - world.extent.x_min;
   const double height = world.extent.y_max - world.extent.y_min;
   double apart = 0.5;

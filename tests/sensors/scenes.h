@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "sensors/laser_settings.h"
 #include "world/world.h"
 
 namespace sf::scenes {
@@ -15,13 +16,13 @@ world::World cave(std::uint32_t n, double size, std::uint64_t seed);
 world::World boxes(std::uint32_t count, double size, std::uint64_t seed);
 
 /// A laser like the SICK LMS-200 in its 361-ray mode.
-world::Laser laser(std::uint32_t samples = 361, double fov = M_PI, double range_max = 8.0);
+sensors::LaserSettings laser(std::uint32_t samples = 361, double fov = M_PI, double range_max = 8.0);
 
 /// Adds a robot: a 16-sided disc of 0.165 m radius with `laser`. @return its row
-std::uint32_t add_robot(world::World& world, const base::Pose& pose, const world::Laser& laser);
+std::uint32_t add_robot(world::World& world, const base::Pose& pose, const sensors::LaserSettings& laser);
 
 /// Adds `count` such robots at free positions, at least half a metre apart where there is room.
-void add_robots(world::World& world, std::uint32_t count, const world::Laser& laser, std::uint64_t seed);
+void add_robots(world::World& world, std::uint32_t count, const sensors::LaserSettings& laser, std::uint64_t seed);
 
 /// Adds a square ring of walls round `centre`, `size` [m] on the inside: an outline round a hole.
 void add_room(world::World& world, glm::dvec2 centre, double size);

@@ -250,7 +250,7 @@ TEST(SonarHash, StrangersChangeNothing) {
     std::size_t found = 0;
     for (const auto& p : one)
       for (const auto& q : two)
-        if (p.mover == q.mover && p.kind == q.kind) {
+        if (p.mover == q.mover && p.type == q.type) {
           ++found;
           EXPECT_TRUE(std::equal(p.values.begin(), p.values.end(), q.values.begin(), q.values.end()));
         }

@@ -223,23 +223,23 @@ TEST(SonarSettings, TheKheperasEight) {
 // --- Payloads.
 
 /// A decoded reading equals the encoded one, to the wire's unit.
-void expect_there_and_back(const SensorType& kind, const std::vector<double>& values, std::uint32_t elements,
+void expect_there_and_back(const SensorType& type, const std::vector<double>& values, std::uint32_t elements,
                            double unit) {
   SensorSpec row;
   row.elements = elements;
   base::ReadingBlock block;
   block.values = values;
   base::Bytes bytes;
-  ASSERT_EQ(kind.encode(row, block, WireFormat::farm, 0, bytes), kind.id);
-  const PayloadPart part = kind.decode(row, bytes, kind.id, WireFormat::farm);
+  ASSERT_EQ(type.encode(row, block, WireFormat::farm, 0, bytes), type.id);
+  const PayloadPart part = type.decode(row, bytes, type.id, WireFormat::farm);
   EXPECT_EQ(part.fault, PayloadError::none);
   EXPECT_EQ(part.elements, elements);
   std::vector<double> back(values.size(), -1.0);
-  kind.read(row, bytes, kind.id, WireFormat::farm, back);
+  type.read(row, bytes, type.id, WireFormat::farm, back);
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(back[i], values[i], 0.5000001 * unit) << i;
   bytes.pop_back();
-  EXPECT_EQ(kind.decode(row, bytes, kind.id, WireFormat::farm).fault, PayloadError::too_short);
-  EXPECT_FALSE(kind.wire_problem(row, WireFormat::thesis).empty()) << "the thesis has no such message";
+  EXPECT_EQ(type.decode(row, bytes, type.id, WireFormat::farm).fault, PayloadError::too_short);
+  EXPECT_FALSE(type.wire_problem(row, WireFormat::thesis).empty()) << "the thesis has no such message";
 }
 
 TEST(SonarPackets, ThereAndBack) {

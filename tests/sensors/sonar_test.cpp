@@ -8,6 +8,7 @@
 
 #include "sensors/cones/rangers.h"
 #include "tests/sensors/cone_trial.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::trial {
@@ -27,7 +28,7 @@ world::Sensor sonar(const std::vector<Pose>& poses, std::vector<world::Setting> 
 double hear(world::World world, const Pose& X_WM, std::vector<world::Setting> more = {}) {
   add_ranger(world, X_WM, sonar({Pose{}}, std::move(more)));
   const Glance run(world);
-  EXPECT_EQ(run.readings.back().kind, sensors::kSonar);
+  EXPECT_EQ(run.readings.back().type, sensors::kSonar);
   return run.readings.back().values[0];
 }
 
@@ -218,7 +219,7 @@ TEST(Sonar, RobotsTurnTheirSmoothSides) {
     world::World world;
     add_ranger(world, {}, sonar({Pose{}}, {cone_setting("incidence", {0.05}), cone_setting("rays", {1.0})}));
     const std::uint32_t other = add_eye(world, {2.0, 0.0, 0.0, yaw}, {});
-    world.movers[other].lasers.clear();
+    scenes::remove_lasers(world.movers[other]);
     const glm::dvec2 corners[] = {{-0.3, -0.3}, {0.3, -0.3}, {0.3, 0.3}, {-0.3, 0.3}};
     for (int i = 0; i < 4; ++i) {
       world::Segment side;

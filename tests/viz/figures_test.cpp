@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "tests/sensors/edit_laser.h"
 #include "tests/viz/png.h"
 #include "tests/viz/scenes.h"
 #include "viz/axes.h"
@@ -238,7 +239,7 @@ TEST(WorldFigure, OddWorldsCanBeDrawn) {  // an empty world; no model rows; a na
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 3.0));
   world.movers[0].body.clear();
   world.movers[0].is_tag = true;
-  world.movers[0].lasers[0].fov = 0.0;
+  scenes::edit_laser(world.movers[0])->fov = 0.0;
   world.models.clear();
   draw_world(world, file("odd.png"));
   const Seen seen = see(file("odd.png"), 0.03);
@@ -270,7 +271,7 @@ TEST(WorldFigure, FarFromTheOriginIsTheSamePlot) {  // 100 km away: the labels d
 
 TEST(VisiblePoints, BeamsEndAtTheFirstWallOrAtRangeMax) {
   const world::World world = room();
-  world::Laser laser;
+  sensors::LaserSettings laser;
   laser.fov = M_PI;
   laser.range_max = 3.0;
   const auto ends = visible_points(world, {5.0, 2.0, 0.5, 0}, laser, 3);
@@ -283,7 +284,7 @@ TEST(VisiblePoints, BeamsEndAtTheFirstWallOrAtRangeMax) {
 
 TEST(VisiblePoints, SeesOnlyWhatSpansItsHeight) {  // z_min <= z < z_max, the rule of world::Segment
   const world::World world = room();
-  world::Laser laser;
+  sensors::LaserSettings laser;
   laser.fov = 0.1;
   laser.range_max = 30.0;
   EXPECT_NEAR(visible_points(world, {5.0, 2.0, 0.0, 0}, laser, 3)[1].x, 6.0, 1e-9);

@@ -73,6 +73,27 @@ TEST(Cross, HasFourArms) {
   EXPECT_EQ(canvas.pixel(34, 34), kWhite) << "beyond them";
 }
 
+/// The states of traffic lights differ by shape: what is painted beside the middle tells them apart.
+TEST(Signals, ShapesDiffer) {
+  struct Case {
+    LegendMark mark;
+    bool middle, corner, side;  ///< painted in colour at (0, 0), (8, 8) and (11, 0) for a radius of 10
+  };
+  for (const Case& c : std::vector<Case>{{LegendMark::outlined_dot, true, false, false},
+                                         {LegendMark::square, true, true, false},
+                                         {LegendMark::hollow_square, false, true, false},
+                                         {LegendMark::diamond, true, false, true},
+                                         {LegendMark::hollow_diamond, false, false, true},
+                                         {LegendMark::crossed_dot, false, false, false}}) {
+    constexpr std::uint32_t kColor = 0xFF00FF00u;
+    Canvas canvas(40, 40, kWhite);
+    draw_signal(canvas, {20.5, 20.5}, 10.0, c.mark, kColor);
+    EXPECT_EQ(canvas.pixel(20, 20) == kColor, c.middle) << static_cast<int>(c.mark);
+    EXPECT_EQ(canvas.pixel(28, 28) == kColor, c.corner) << static_cast<int>(c.mark);
+    EXPECT_EQ(canvas.pixel(31, 20) == kColor, c.side) << static_cast<int>(c.mark);
+  }
+}
+
 /// Each sample is drawn in its own colour, in its own row, left of its text.
 TEST(Legend, SamplesStandInTheirPlaces) {
   const std::vector<LegendItem> items{{LegendMark::block, 0xFFFF0000u, "a", 0},

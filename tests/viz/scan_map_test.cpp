@@ -1,4 +1,5 @@
 #include "viz/scan_map.h"
+#include "tests/sensors/edit_laser.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ world::World one_beam() {
   scenes::add_model(world, "wall", 0);
   world.movers.push_back(scenes::make_robot(world, 0, {}, 0, 8.0));
   world.models[1].mover = 0;
-  world.movers[0].lasers[0].samples = 1;
+  scenes::edit_laser(world.movers[0])->samples = 1;
   return world;
 }
 
@@ -30,7 +31,7 @@ void add_beam(ScanMap& map, const world::World& world, double range, std::uint32
   base::ReadingBlock scan;
   scan.X_WS = {0.5, 5.5, 0.0, 0.0};
   scan.values = {&range, 1};
-  const std::uint32_t hit = range < world.movers[0].lasers[0].range_max ? met : base::kNoHit;
+  const std::uint32_t hit = range < sensors::lasers_of(world.movers[0])[0].range_max ? met : base::kNoHit;
   scan.hits = {&hit, 1};
   map.add(world, scan);
 }
@@ -72,18 +73,18 @@ TEST(ScanMap, MoversLeaveNoMark) {
 
 TEST(ScanMap, RangesUpToTheSmallestAreSkipped) {
   world::World world = one_beam();
-  world.movers[0].lasers[0].range_min = 0.1;
+  scenes::edit_laser(world.movers[0])->range_min = 0.1;
   ScanMap map(kPlan);
   add_beam(map, world, 0.1);
   EXPECT_EQ(map.states().at({0, 2}), Cell::unexplored);
-  world.movers[0].lasers[0].range_min = 0.0;
+  scenes::edit_laser(world.movers[0])->range_min = 0.0;
   add_beam(map, world, 0.0);  // a sensor on a surface: half a cell behind it begins the next
   EXPECT_EQ(map.states().at({1, 2}), Cell::occupied);
 }
 
 TEST(ScanMap, RangesBeyondTheMapsLimitHaveNoEcho) {  // 1022 cells
   world::World world = one_beam();
-  world.movers[0].lasers[0].range_max = 50.0;
+  scenes::edit_laser(world.movers[0])->range_max = 50.0;
   ScanMap map({0.0, 8.0, 0.02, 300, 40});
   EXPECT_NO_THROW(add_beam(map, world, 49.0));
   EXPECT_EQ(map.states().at({1000, 125}), Cell::free);
@@ -92,9 +93,9 @@ TEST(ScanMap, RangesBeyondTheMapsLimitHaveNoEcho) {  // 1022 cells
 TEST(ScanMap, FindsTheWallsOfARoom) {
   world::World room = scenes::make_world(6, 4, 0, 0);
   room.movers.push_back(scenes::make_robot(room, 0, {}, 0, 8.0));
-  world::Laser& laser = room.movers[0].lasers[0];
-  laser.fov = 2 * M_PI;
-  laser.samples = 1441;
+  scenes::edit_laser(room.movers[0])->fov = 2 * M_PI;
+  scenes::edit_laser(room.movers[0])->samples = 1441;
+  const sensors::LaserSettings laser = sensors::lasers_of(room.movers[0])[0];
   ScanMap map(grid_over(room.extent));
   for (double x = 1.0; x < 6.0; x += 1.0) {
     const std::vector<double> ranges = scenes::scan(room, {x, 2.0, 0, 0}, laser.fov, 1441, laser.range_max);

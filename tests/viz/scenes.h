@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "sensors/laser_settings.h"
 #include "viz/trajectory_figure.h"
 #include "world/world.h"
 
@@ -47,11 +48,11 @@ inline world::Mover make_robot(world::World& world, std::uint32_t id, const Pose
   for (int i = 0; i < 16; ++i)
     mover.body.push_back({base::rotate(i * M_PI / 8, {0.165, 0.0}), base::rotate((i + 1) * M_PI / 8, {0.165, 0.0}), 0.0,
                           0.1, mover.model, true, true, true});
-  world::Laser laser;
+  sensors::LaserSettings laser;
   laser.X_MS = {0.1, 0.0, 0.1, 0.0};
   laser.range_max = range_max;
   laser.fov = 1.5 * M_PI;
-  mover.lasers.push_back(laser);
+  mover.sensors.push_back(sensors::laser_sensor(laser));
   return mover;
 }
 

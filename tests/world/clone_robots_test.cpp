@@ -120,7 +120,7 @@ World with_a_dummy() {
   scenes::add_create(world, {1, 1, 0, 0}).is_tag = true;
   scenes::add_create(world, {2, 2, 0, 0}).name = "dummy";
   scenes::add_create(world, {4, 4, 0, 0}).sensors.push_back(scenes::magnetometers(5));
-  scenes::add_create(world, {6, 6, 0, 0}).lasers.resize(1);
+  scenes::add_create(world, {6, 6, 0, 0}).sensors.push_back({.type = "laser"});
   return world;
 }
 
@@ -130,8 +130,8 @@ TEST(CloneRobots, TheFirstWithSensorsIsCopiedOrWhoIsNamed) {
   EXPECT_EQ(robot_to_copy(with_a_dummy(), "robot4"), 3u);
   World world = with_a_dummy();
   world.movers[2].sensors.clear();
-  EXPECT_EQ(robot_to_copy(world), 3u) << "a laser is a sensor";
-  world.movers[3].lasers.clear();
+  EXPECT_EQ(robot_to_copy(world), 3u);
+  world.movers[3].sensors.clear();
   EXPECT_EQ(robot_to_copy(world), 1u) << "none has any: the first";
   World copies = with_a_dummy();
   clone_robots(copies, 5, 1);

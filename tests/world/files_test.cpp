@@ -17,15 +17,15 @@ const std::string kShared = SF_SOURCE_DIR "/../shared/data";
 
 std::size_t count_lasers(const World& world) {
   std::size_t count = 0;
-  for (const Mover& mover : world.movers) count += mover.lasers.size();
+  for (const Mover& mover : world.movers) count += mover.sensors.size();
   return count;
 }
 
 /// Each laser must be at a height at which there are walls, or the world is of no use.
 void expect_lasers_see_walls(const World& world) {
   for (const Mover& mover : world.movers) {
-    for (const Laser& laser : mover.lasers) {
-      const double z = mover.X_WM.z + laser.X_MS.z;
+    for (const Sensor& laser : mover.sensors) {
+      const double z = mover.X_WM.z + laser.X_MS.z + 0.5 * laser.height;
       const auto spans = [&](const Segment& wall) { return wall.seen_by_laser && wall.z_min <= z && z < wall.z_max; };
       EXPECT_TRUE(std::any_of(world.walls.begin(), world.walls.end(), spans))
           << mover.name << " " << laser.name << " " << z;
@@ -45,16 +45,15 @@ void expect_closed(const World& world) {
 }
 
 TEST(WorldFiles, OurCave) {
-  const World world = load_world(SF_SOURCE_DIR "/worlds/cave.world");
+  const World world = load_world(SF_SOURCE_DIR "/worlds/cave.world", kWithLasers);
   EXPECT_TRUE(world.warnings.empty()) << warnings_of(world);
   ASSERT_EQ(world.movers.size(), 1u);
   const Mover& robot = world.movers[0];
   EXPECT_EQ(robot.name, "roomba1");
   EXPECT_EQ(robot.id, 1u);
   EXPECT_NEAR(robot.radius, 0.165, 1e-5);
-  ASSERT_EQ(robot.lasers.size(), 1u);
-  EXPECT_EQ(robot.lasers[0].samples, 361u);
-  EXPECT_EQ(robot.lasers[0].range_max, 8.0);
+  ASSERT_EQ(robot.sensors.size(), 1u);
+  EXPECT_EQ(robot.sensors[0].settings[0].numbers, std::vector<double>{361});
   EXPECT_GT(world.walls.size(), 500u);
   EXPECT_LT(world.walls.size(), 1500u);
   EXPECT_EQ(world.extent.x_min, -8.0);
@@ -64,7 +63,7 @@ TEST(WorldFiles, OurCave) {
 }
 
 TEST(WorldFiles, OurRooms) {
-  const World world = load_world(SF_SOURCE_DIR "/worlds/rooms.world");
+  const World world = load_world(SF_SOURCE_DIR "/worlds/rooms.world", kWithLasers);
   EXPECT_TRUE(world.warnings.empty()) << warnings_of(world);
   EXPECT_EQ(world.movers.size(), 3u);
   EXPECT_EQ(count_lasers(world), 4u);
@@ -73,14 +72,14 @@ TEST(WorldFiles, OurRooms) {
 
 TEST(WorldFiles, SimpleHasTwoPioneersWithSonarAndLaser) {
   NEED_SHARED();
-  const World world = load_world(kShared + "/stage/simple.world");
+  const World world = load_world(kShared + "/stage/simple.world", kWithLasers);
   EXPECT_TRUE(world.warnings.empty()) << warnings_of(world);
   EXPECT_EQ(world.movers.size(), 2u);
   EXPECT_EQ(count_lasers(world), 2u * 17u);
   EXPECT_EQ(world.movers[0].name, "r0");
   EXPECT_EQ(world.movers[0].controller, "wander");
   EXPECT_EQ(world.movers[0].max_forward, 0.5);
-  EXPECT_NEAR(world.movers[0].lasers.back().X_MS.z, 0.22 + 0.1 + 0.01, 1e-12);
+  EXPECT_NEAR(world.movers[0].sensors.back().X_MS.z, 0.22 + 0.1 + 0.01, 1e-12);
   EXPECT_TRUE(world.walls[0].stops_robots);
   expect_lasers_see_walls(world);
   expect_closed(world);
@@ -88,7 +87,7 @@ TEST(WorldFiles, SimpleHasTwoPioneersWithSonarAndLaser) {
 
 TEST(WorldFiles, RoombaHasABumperThatIsKept) {
   NEED_SHARED();
-  const World world = load_world(kShared + "/stage/roomba.world");
+  const World world = load_world(kShared + "/stage/roomba.world", kWithLasers);
   EXPECT_EQ(world.movers.size(), 1u);
   EXPECT_EQ(world.unmodelled, (std::map<std::string, int>{{"bumper", 1}}));
   EXPECT_EQ(world.warnings.size(), 1u) << warnings_of(world);
@@ -98,7 +97,7 @@ TEST(WorldFiles, RoombaHasABumperThatIsKept) {
 
 TEST(WorldFiles, CaveHasAHundredRobots) {
   NEED_SHARED();
-  const World world = load_world(kShared + "/stage/benchmark/cave.world");
+  const World world = load_world(kShared + "/stage/benchmark/cave.world", kWithLasers);
   EXPECT_EQ(world.movers.size(), 100u);
   EXPECT_EQ(count_lasers(world), 100u * 17u);
   EXPECT_EQ(world.models.size(), 1u + 100u * 3u);
@@ -109,7 +108,7 @@ TEST(WorldFiles, CaveHasAHundredRobots) {
 
 TEST(WorldFiles, HospitalHasAThousandRobotsOfTwelveSensors) {
   NEED_SHARED();
-  const World world = load_world(kShared + "/stage/benchmark/hospital.world");
+  const World world = load_world(kShared + "/stage/benchmark/hospital.world", kWithLasers);
   EXPECT_EQ(world.warnings.size(), 1u) << warnings_of(world);  // Stage's plug-in as the controller
   EXPECT_EQ(world.movers.size(), 1000u);
   EXPECT_EQ(count_lasers(world), 12'000u);
@@ -124,7 +123,7 @@ TEST(WorldFiles, EveryIncludeOfStageLoadsAndEveryDefinitionInItToo) {
   std::string all;
   for (const char* name :
        {"beacons", "chatterbox", "hokuyo", "irobot", "map", "objects", "pantilt", "pioneer", "sick", "ubot", "walle"}) {
-    EXPECT_NO_THROW(load_world(kShared + "/stage/" + name + ".inc")) << name;
+    EXPECT_NO_THROW(load_world(kShared + "/stage/" + name + ".inc", kWithLasers)) << name;
     all += "include \"" + kShared + "/stage/" + name + ".inc\"\n";
   }
   const World world =

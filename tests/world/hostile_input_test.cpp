@@ -115,12 +115,12 @@ TEST(HostileWorlds, DashesThatNobodyWrote) {
             "[length gap]");
 }
 
-TEST(HostileWorlds, BeamsOfAllLasersAreBoundedTogether) {
+TEST(HostileWorlds, SamplesOfAllSensorsAreBoundedTogether) {
   std::string text = "define eye laser( samples 1000000 )\nposition(\n";
   EXPECT_EQ(error_of(text + "eye() )"), "");
   for (int i = 0; i < 11; ++i) text += "eye()\n";
   EXPECT_EQ(error_of(text + ")"),
-            "test.world:1: this makes 11000000 beams of lasers of the world; expected at most 10000000: give fewer "
+            "test.world:1: this makes 11000000 samples of sensors of the world; expected at most 10000000: give fewer "
             "'samples'");
 }
 

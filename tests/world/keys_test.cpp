@@ -15,9 +15,10 @@ TEST(Keys, IndicesDoNotMatter) {
 }
 
 TEST(Keys, KeysAreKnownWhereTheyAreRead) {
-  EXPECT_TRUE(is_known_key(KeyScope::laser, "samples"));
+  constexpr std::string_view own[] = {"samples"};
+  EXPECT_TRUE(is_known_key(KeyScope::device, "samples", own));
   EXPECT_FALSE(is_known_key(KeyScope::model, "samples"));
-  EXPECT_TRUE(is_known_key(KeyScope::ranger, "pose"));
+  EXPECT_TRUE(is_known_key(KeyScope::device, "pose"));
   EXPECT_FALSE(is_known_key(KeyScope::world, "pose"));
 }
 

@@ -8,7 +8,13 @@
 
 namespace sf::world {
 
-inline World read_world(const std::string& text, const LoadOptions& options = {}) {
+inline constexpr std::string_view kLaserKeys[] = {"fov", "samples", "range_min", "range_max", "laser_color"};
+inline constexpr std::string_view kRangerKeys[] = {"scount", "sview", "spose[]"};
+inline constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "samples"};
+inline constexpr SensorKeyword kLaserWords[] = {{"laser", kLaserKeys}, {"ranger", kRangerKeys, kBlockKeys}};
+inline const LoadOptions kWithLasers{.sensors = kLaserWords};
+
+inline World read_world(const std::string& text, const LoadOptions& options = kWithLasers) {
   return build_world(SF_SOURCE_DIR "/worlds/test.world", text, options);
 }
 

@@ -21,10 +21,10 @@ World shipped(const std::string& name) {
   static constexpr std::string_view kFelt[] = {"zones", "zone[]", "scount", "spose[]",     "per_count", "track",
                                                "slip",  "scrub",  "bias",   "scale_error", "range",     "satellites"};
   static constexpr std::string_view kCones[] = {"scount", "spose[]", "fov", "range", "firing", "arrays"};
-  static constexpr SensorKeyword kWords[] = {{"laneedge", kAny},    {"magnetometer", kAny}, {"occupancy", kMap},
-                                             {"bumper", kFelt},     {"cliff", kFelt},       {"encoder", kFelt},
-                                             {"irreceiver", kFelt}, {"gyro", kFelt},        {"gps", kFelt},
-                                             {"sonar", kCones},     {"infrared", kCones}};
+  static constexpr SensorKeyword kWords[] = {
+      kLaserWords[0],    kLaserWords[1],    {"laneedge", kAny},  {"magnetometer", kAny}, {"occupancy", kMap},
+      {"bumper", kFelt}, {"cliff", kFelt},  {"encoder", kFelt},  {"irreceiver", kFelt},  {"gyro", kFelt},
+      {"gps", kFelt},    {"sonar", kCones}, {"infrared", kCones}};
   LoadOptions options;
   options.sensors = kWords;
   return load_world(SF_SOURCE_DIR "/worlds/" + name, options);
@@ -117,7 +117,7 @@ TEST(Shipped, RobotsAreWhatTheirDataSheetsSay) {
   EXPECT_EQ(create.id, 3u);
   EXPECT_EQ(create.max_forward, 0.5);
   EXPECT_EQ(create.track, 0.258);
-  EXPECT_EQ(create.driver_model, DriverModel::direct);
+  EXPECT_EQ(create.actuator_model, ActuatorModel::direct);
   EXPECT_LT(create.max_acceleration, HUGE_VAL);
   const Mover& pioneer = world.movers.at(1);
   EXPECT_EQ(pioneer.id, 4u);

@@ -145,9 +145,9 @@ TEST(Position, SaysHowItMoves) {
   EXPECT_EQ(skid.track, 0.4);
   EXPECT_EQ(skid.max_acceleration, 2.0);
   EXPECT_DOUBLE_EQ(skid.max_turn_acceleration, M_PI);
-  EXPECT_EQ(skid.driver_model, DriverModel::player_create);
+  EXPECT_EQ(skid.actuator_model, ActuatorModel::player_create);
   EXPECT_EQ(world.movers.at(1).max_acceleration, HUGE_VAL) << "nothing said: no limit";
-  EXPECT_EQ(world.movers.at(1).driver_model, DriverModel::direct);
+  EXPECT_EQ(world.movers.at(1).actuator_model, ActuatorModel::direct);
   EXPECT_EQ(world.movers.at(2).max_acceleration, 2.0);
   EXPECT_EQ(world.movers.at(2).max_turn_acceleration, HUGE_VAL);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "world/keys.h"
+#include "world/stage/entity_color.h"
 
 namespace sf::world {
 
@@ -15,35 +16,76 @@ const SensorKeyword* find_sensor_keyword(const BuildState& b, std::string_view t
   return word == words.end() || type.empty() ? nullptr : &*word;
 }
 
-void add_sensor(BuildState& b, const Entity& entity, const Model& model, const SensorKeyword& word, const Pose& X_MB,
-                double height, const std::string& name) {
+namespace {
+
+constexpr double kBlockHeight = 0.02;  // [m] of a `sensor( )` block without a size
+constexpr double kMaxSamples = 1e7;
+
+/// The value of a setting that stands in for others: `rate` and `update_interval` are one.
+std::string_view meaning_of(std::string_view key) { return key == "update_interval" ? "rate" : key; }
+
+/// Adds the settings of `entity`, except those that `sensor` has. General properties of models are handled elsewhere
+/// and do not affect the measurement.
+void add_settings(BuildState& b, const Entity& entity, std::span<const std::string_view> own, Sensor& sensor) {
+  const std::vector<Setting> before = sensor.settings;
+  for (const Property& property : entity.properties) {
+    if (!is_known_key(KeyScope::sensing, property.key, own)) continue;
+    const bool overridden = property.key == "accuracy" && !b.options.accuracy.empty();
+    if (overridden || property.key == "laser_color") continue;
+    const auto same = [&](const Setting& s) { return meaning_of(s.key) == meaning_of(property.key); };
+    if (std::any_of(before.begin(), before.end(), same)) continue;
+    Setting setting{property.key, {}, "", property.at.line, b.context.document.files[property.at.file]};
+    for (const Value& value : property.values) {
+      if (!value.is_text) setting.numbers.push_back(value.number);
+      if (value.is_text) setting.text = value.text;
+    }
+    if (setting.key == "samples" && !setting.numbers.empty())
+      charge(b.context, property.at, b.context.usage.samples, std::max(0.0, setting.numbers[0]), kMaxSamples,
+             "samples of sensors", "give fewer 'samples'");
+    // Stage uses the first number of a laser's noise as a variance; settings are standard deviations.
+    const bool is_variance = b.options.stage_noise && (sensor.type == "laser" || sensor.type == "ranger");
+    if (is_variance && setting.key == "noise" && !setting.numbers.empty() && setting.numbers[0] > 0.0)
+      setting.numbers[0] = std::sqrt(setting.numbers[0] / b.context.metres_per_unit);
+    sensor.settings.push_back(std::move(setting));
+  }
+}
+
+}  // namespace
+
+void add_sensors(BuildState& b, const Entity& entity, const Model& model, const SensorKeyword& word, const Pose& X_MB,
+                 double height, const std::string& name) {
   if (model.mover == kNone) {
     warn(b.context, entity.at,
          fmt::format("'{}' is carried by no robot: kept as a body that measures nothing", entity.word));
     return;
   }
-  const auto& files = b.context.document.files;
-  Sensor sensor{std::string(word.type),
-                name,
-                X_MB,
-                height,
-                b.context.metres_per_unit,
-                b.context.radians_per_unit,
-                {},
-                entity.at.line,
-                files[entity.at.file]};
-  for (const Property& property : entity.properties) {
-    // General properties of models are handled elsewhere and do not affect the measurement.
-    if (!is_known_key(KeyScope::sensing, property.key, word.keys)) continue;
-    if (property.key == "accuracy" && !b.options.accuracy.empty()) continue;
-    Setting setting{property.key, {}, "", property.at.line, files[property.at.file]};
-    for (const Value& value : property.values) {
-      if (!value.is_text) setting.numbers.push_back(value.number);
-      if (value.is_text) setting.text = value.text;
-    }
-    sensor.settings.push_back(std::move(setting));
+  auto& sensors = b.world.movers[model.mover].sensors;
+  const std::size_t before = sensors.size();
+  const auto add = [&](const Entity& from, const Pose& X_MS, double high, std::string_view color) -> Sensor& {
+    sensors.push_back({std::string(word.type),
+                       name,
+                       X_MS,
+                       high,
+                       b.context.metres_per_unit,
+                       b.context.radians_per_unit,
+                       {},
+                       from.at.line,
+                       b.context.document.files[from.at.file]});
+    sensors.back().color = entity_color(b.context, from, color, sensors.back().color, 0);
+    return sensors.back();
+  };
+  if (word.block_keys.empty() || find(entity, "scount") != nullptr)
+    add_settings(b, entity, word.keys, add(entity, X_MB, height, "laser_color"));
+  for (const Entity& block : entity.children) {
+    if (block.type != "sensor" || word.block_keys.empty()) continue;
+    Pose X_BS = pose(b.context, block, "pose");
+    X_BS.z += size_of(b.context, block, {kBlockHeight, kBlockHeight, kBlockHeight}).z / 2.0;
+    Sensor& sensor = add(block, compose(X_MB, X_BS), 0.0, "color");
+    add_settings(b, block, word.block_keys, sensor);
+    add_settings(b, entity, {}, sensor);
   }
-  b.world.movers[model.mover].sensors.push_back(std::move(sensor));
+  if (sensors.size() == before)
+    warn(b.context, entity.at, fmt::format("'{}' measures nothing: no sensor( ) and no scount in it", entity.word));
 }
 
 void add_magnet(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B) {

@@ -1,5 +1,5 @@
 #pragma once
-// Devices attached to models: sensors of types that are not read here, and magnets.
+// Devices attached to models: sensors, with their settings as written, and magnets.
 
 #include <string>
 #include <string_view>
@@ -15,11 +15,12 @@ inline constexpr double kMaxMoment = 1e16;   ///< as written; equals 1e12 A m^2
 /// The keyword of the sensor type with the word `type`, or null. Lives as long as the options' list.
 const SensorKeyword* find_sensor_keyword(const BuildState& b, std::string_view type);
 
-/// Adds a sensor with the settings of `entity` to the mover of `model`; warns when no mover carries the model.
+/// Adds a sensor with the settings of `entity` to the mover of `model`, or, for types with `sensor( )` blocks, one per
+/// block with its settings and those that every sensor has of `entity`. Warns when no mover carries the model.
 /// @param X_MB the model's body frame (its origin included) in the mover's frame.
 /// @param name of the model without its mover's name.
-void add_sensor(BuildState& b, const Entity& entity, const Model& model, const SensorKeyword& word, const Pose& X_MB,
-                double height, const std::string& name);
+void add_sensors(BuildState& b, const Entity& entity, const Model& model, const SensorKeyword& word, const Pose& X_MB,
+                 double height, const std::string& name);
 
 /// Adds a magnet when `entity` has a moment: to the mover of `model`, which becomes the next row of the models, or to
 /// the world.

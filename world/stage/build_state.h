@@ -24,6 +24,7 @@ struct Parent {
   std::string name;
   std::string name_in_mover;                     ///< empty for the mover itself
   std::map<std::string, std::uint32_t> unnamed;  ///< per word: number of children without a name
+  const SensorKeyword* sensor = nullptr;         ///< the parent's sensor type; null: no sensor
 };
 
 struct BuildState {
@@ -44,10 +45,10 @@ struct BuildState {
 /// `wanted`, or `wanted#2`, `wanted#3`, ...: a name that no other model has.
 std::string free_name(BuildState& b, const std::string& wanted);
 
-/// Adds the children of `entity`, of kind `kind`, and their descendants as models; warns about entities in the wrong
+/// Adds the children of `entity` and their descendants as models; warns about entities in the wrong
 /// place.
 /// @throws base::InputError with file and line.
-void add_children(BuildState& b, const Entity& entity, EntityKind kind, Parent& parent);
+void add_children(BuildState& b, const Entity& entity, Parent& parent);
 
 /// Warns about properties that are unknown in `where`, with the nearest known key.
 /// @param own further keys known there.

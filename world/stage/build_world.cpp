@@ -59,7 +59,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   read_keys(b.context, document.root, b.world);
   b.world.accuracy = accuracy(b.context, options, document.root, {options.accuracy, "", 0});
   Parent nowhere;
-  add_children(b, document.root, EntityKind::unknown, nowhere);
+  add_children(b, document.root, nowhere);
   number_movers(b);
   check_stop_lines(b);
 

@@ -17,16 +17,6 @@ namespace {
 constexpr std::uint32_t kMaxPhases = 100;
 constexpr double kMaxSeconds = 1e6;
 
-LightState state_of(const StageContext& context, const Property& property, const std::string& word) {
-  const auto words = words_of(LightState{});
-  const auto found = std::find(words.begin(), words.end(), word);
-  if (found != words.end()) return static_cast<LightState>(found - words.begin());
-  fail(context, property.at,
-       fmt::format("'{}' is \"{}\"; expected \"green\", \"yellow\", \"red\", \"flashing yellow\", \"flashing red\" or "
-                   "\"dark\"",
-                   property.key, word));
-}
-
 LightPhase read_phase(const StageContext& context, const Entity& entity, std::uint32_t i, std::uint32_t count) {
   const std::string key = fmt::format("phase[{}]", i);
   const Property* property = find(entity, key);
@@ -38,7 +28,8 @@ LightPhase read_phase(const StageContext& context, const Entity& entity, std::ui
   if (!(v[1].number > 0.0 && v[1].number <= kMaxSeconds))
     fail(context, property->at,
          fmt::format("'{}' lasts {} s; expected more than 0, to {}", key, v[1].number, kMaxSeconds));
-  return {state_of(context, *property, v[0].text), v[1].number};
+  const std::size_t state = word_row(context, property->at, key, v[0].text, words_of(LightState{}));
+  return {static_cast<LightState>(state), v[1].number};
 }
 
 std::vector<LightPhase> read_phases(StageContext& context, const Entity& entity) {

@@ -9,7 +9,6 @@
 #include "world/stage/attached_devices.h"
 #include "world/stage/entity_color.h"
 #include "world/stage/floor_entities.h"
-#include "world/stage/laser_entities.h"
 #include "world/stage/light_entities.h"
 #include "world/stage/mover_entities.h"
 #include "world/stage/read_keys.h"
@@ -21,7 +20,6 @@ namespace {
 
 constexpr std::size_t kMaxSuggestions = 1'000;
 constexpr double kMaxModels = 500'000;
-constexpr double kMaxBeams = 1e7;                 // of all lasers
 constexpr std::uint32_t kStageRed = 0xFFFF0000u;  // of a model without a colour
 
 // --- Words
@@ -33,10 +31,6 @@ KeyScope key_scope(EntityKind kind) {
       return KeyScope::model;
     case EntityKind::position:
       return KeyScope::position;
-    case EntityKind::laser:
-      return KeyScope::laser;
-    case EntityKind::ranger:
-      return KeyScope::ranger;
     case EntityKind::light:
       return KeyScope::light;
     default:
@@ -84,9 +78,9 @@ std::string joined(const std::string& parent, const std::string& name) {
 // --- Models
 // -------------------------------------------------------------------------------------------------------------
 
-Size default_size(EntityKind kind) {
-  if (kind == EntityKind::light) return {0.12, 0.12, 0.6};
-  return kind == EntityKind::laser ? Size{0.15, 0.15, 0.2} : Size{};
+Size default_size(const Entity& entity) {
+  if (entity.type == "light") return {0.12, 0.12, 0.6};
+  return entity.type == "laser" ? Size{0.15, 0.15, 0.2} : Size{};
 }
 
 /// `local` at X, with the model and the flags of `surface`.
@@ -120,26 +114,10 @@ void add_body(BuildState& b, const Entity& entity, const Model& model, const std
   }
 }
 
-void add_lasers(BuildState& b, const Entity& entity, const Model& model, const Pose& X_MB, double height,
-                const std::string& name) {
-  if (model.mover == kNone) {
-    warn(b.context, entity.at,
-         fmt::format("'{}' is carried by no robot: kept as a body that measures nothing", entity.word));
-    return;
-  }
-  auto& lasers = b.world.movers[model.mover].lasers;
-  auto added = lasers_of(b.context, b.options, entity, X_MB, height, name);
-  for (const Laser& laser : added)
-    charge(b.context, location_of(entity, "samples"), b.context.usage.beams, laser.samples, kMaxBeams,
-           "beams of lasers", "give fewer 'samples'");
-  std::move(added.begin(), added.end(), std::back_inserter(lasers));
-}
-
 /// Properties of a model as written, before anything is derived from them.
 struct ModelProperties {
   EntityKind kind = EntityKind::model;
-  bool is_lane_edge = false;  ///< a laser with a lane edge sensor's name: measures the edge of the lane, no ranges
-  const SensorKeyword* sensor = nullptr;  ///< the sensor type of the model; null: no sensor, or one that is read here
+  const SensorKeyword* sensor = nullptr;  ///< the sensor type of the model; null: no sensor
   std::string name;                       ///< as written, or generated
   Pose X_PB;                              ///< default: on top of the parent
   Size size;
@@ -149,27 +127,27 @@ ModelProperties read_model_properties(BuildState& b, const Entity& entity, Paren
   ModelProperties said;
   said.kind = entity_kind(entity.type);
   said.name = own_name(b, entity, parent);
-  said.is_lane_edge = said.kind == EntityKind::laser && (said.name == "laneedge" || said.name == "/laneedge");
   said.X_PB = pose(b.context, entity, "pose");
   said.X_PB.z += parent.lift;
-  said.size = size_of(b.context, entity, default_size(said.kind));
+  said.size = size_of(b.context, entity, default_size(entity));
 
-  said.sensor = find_sensor_keyword(b, said.is_lane_edge ? "laneedge" : entity.type);
+  // A laser with a lane edge sensor's name measures the edge of the lane, no ranges.
+  const bool is_lane_edge = entity.type == "laser" && (said.name == "laneedge" || said.name == "/laneedge");
+  const std::string type = is_lane_edge ? "laneedge" : entity.type;
+  said.sensor = find_sensor_keyword(b, type);
   if (said.sensor != nullptr) {
     check_keys(b.context, entity, KeyScope::device, said.sensor->keys);
     return said;
   }
   check_keys(b.context, entity, key_scope(said.kind));
-  if (said.is_lane_edge) count_unmodelled(b, entity, "laneedge", true);
   if (said.kind == EntityKind::unmodelled || said.kind == EntityKind::unknown)
-    count_unmodelled(b, entity, entity.type, said.kind == EntityKind::unmodelled);
+    count_unmodelled(b, entity, type, said.kind == EntityKind::unmodelled);
   return said;
 }
 
 std::vector<Segment> shape_of_model(BuildState& b, const Entity& entity, const ModelProperties& said) {
   const bool is_light = said.kind == EntityKind::light;
-  const bool is_box =
-      !is_light && !has_no_body(entity.type) && (said.sensor == nullptr || said.kind == EntityKind::laser);
+  const bool is_box = !is_light && !has_no_body(entity.type) && (said.sensor == nullptr || entity.type == "laser");
   std::vector<Segment> shape = shape_of(b.context, b.bitmaps, entity, said.size, is_box);
   if (is_light && shape.empty() && !flag(b.context, entity, "noblocks", false))
     return light_shape(said.size, number(b.context, entity, "lamps", 3.0) == 1.0);
@@ -229,19 +207,16 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   add_magnet(b, entity, model, said.size, X_B);
   add_emitter(b, entity, model, said.size, X_B);
   if (said.kind == EntityKind::light) add_light(b, entity, model);
-  if (said.sensor != nullptr) {
-    add_sensor(b, entity, model, *said.sensor, X_B, said.size.z, own.name_in_mover);
-  } else if ((said.kind == EntityKind::laser && !said.is_lane_edge) || said.kind == EntityKind::ranger) {
-    add_lasers(b, entity, model, X_B, said.size.z, own.name_in_mover);
-  }
+  if (said.sensor != nullptr) add_sensors(b, entity, model, *said.sensor, X_B, said.size.z, own.name_in_mover);
 
   own.model = static_cast<std::uint32_t>(b.world.models.size());
   own.mover = model.mover;
   own.X_WP = model.X_WM;
   own.lift = flag(b.context, entity, "stack_children", true) ? said.size.z : 0.0;
   own.name = model.name;
+  own.sensor = said.sensor;
   b.world.models.push_back(std::move(model));
-  add_children(b, entity, said.kind, own);
+  add_children(b, entity, own);
 }
 
 }  // namespace
@@ -268,13 +243,13 @@ void check_keys(StageContext& context, const Entity& entity, KeyScope where, std
   }
 }
 
-void add_children(BuildState& b, const Entity& entity, EntityKind kind, Parent& parent) {
+void add_children(BuildState& b, const Entity& entity, Parent& parent) {
   for (const Entity& child : entity.children) {
     if (entity_kind(child.type) == EntityKind::ignored) continue;
     if (child.type == "block" && parent.model != kNone) {
       check_keys(b.context, child, KeyScope::block);
-    } else if (child.type == "sensor" && kind == EntityKind::ranger) {
-      check_keys(b.context, child, KeyScope::sensor);
+    } else if (child.type == "sensor" && parent.sensor != nullptr && !parent.sensor->block_keys.empty()) {
+      check_keys(b.context, child, KeyScope::sensor, parent.sensor->block_keys);
     } else if (child.type == "block" || child.type == "sensor") {
       const char* home = child.type == "block" ? "a model" : "a ranger";
       warn(b.context, child.at, fmt::format("'{}' is ignored here; expected it inside {}", child.word, home));

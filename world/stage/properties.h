@@ -20,7 +20,7 @@ struct ResourceUsage {
   double segments = 0.0;
   double corner_pairs = 0.0;  ///< pairs of corners compared in the checks of blocks' outlines
   double paint_points = 0.0;
-  double beams = 0.0;
+  double samples = 0.0;
   double roads = 0.0;
 };
 

@@ -73,15 +73,19 @@ double read_number(const StageContext& context, const Entity& entity, const Key&
                    text_of(bounds, unit.shown)));
 }
 
-std::size_t read_word(const StageContext& context, const Entity& entity, std::string_view key,
-                      std::span<const std::string_view> words) {
-  const std::string written = text(context, entity, key, "");
+std::size_t word_row(const StageContext& context, SourceLocation at, std::string_view key, std::string_view written,
+                     std::span<const std::string_view> words) {
   const auto word = std::find(words.begin(), words.end(), written);
   if (word != words.end()) return static_cast<std::size_t>(word - words.begin());
   std::string expected;
   for (std::size_t i = 0; i < words.size(); ++i)
     expected += fmt::format("{}\"{}\"", i == 0 ? "" : i + 1 < words.size() ? ", " : " or ", words[i]);
-  fail(context, find(entity, key)->at, fmt::format("'{}' is \"{}\"; expected {}", key, written, expected));
+  fail(context, at, fmt::format("'{}' is \"{}\"; expected {}", key, written, expected));
+}
+
+std::size_t read_word(const StageContext& context, const Entity& entity, std::string_view key,
+                      std::span<const std::string_view> words) {
+  return word_row(context, find(entity, key)->at, key, text(context, entity, key, ""), words);
 }
 
 }  // namespace sf::world

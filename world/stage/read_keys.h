@@ -16,6 +16,10 @@ namespace sf::world {
 double read_number(const StageContext& context, const Entity& entity, const Key& key, const Bounds& bounds,
                    double value);
 
+/// The row of `written`, the text of `key`, in `words`. @throws base::InputError at `at`, naming all words.
+std::size_t word_row(const StageContext& context, SourceLocation at, std::string_view key, std::string_view written,
+                     std::span<const std::string_view> words);
+
 /// The row in `words` of the text of `key`. @throws base::InputError naming all words.
 std::size_t read_word(const StageContext& context, const Entity& entity, std::string_view key,
                       std::span<const std::string_view> words);
@@ -34,8 +38,6 @@ void read_keys(const StageContext& context, const Entity& entity, Row& row) {
       value = text(context, entity, key, value);
     } else if constexpr (std::is_enum_v<T>) {
       value = static_cast<T>(read_word(context, entity, key, words_of(value)));
-    } else if constexpr (std::is_same_v<T, std::uint32_t>) {
-      value = whole(context, entity, key, value, static_cast<T>(field.bounds.least), static_cast<T>(field.bounds.most));
     } else if constexpr (std::is_same_v<T, double>) {
       value = read_number(context, entity, field.key, field.bounds, value);
     }

@@ -14,6 +14,7 @@
 #include "netio/server/robot_client.h"
 #include "netio/server/service.h"
 #include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 #include "tests/robots/scenes.h"
 
 namespace sf::server {
@@ -39,7 +40,8 @@ inline world::World room(double rate = 10.0) {
   world::World world = scenes::boxed_world(6.0, 4.0, {-3.0, -2.0});
   for (const base::Pose& X_WM : {base::Pose{-2.0, 0.0, 0.0, 0.0}, base::Pose{2.0, 1.0, 0.0, 0.0}})
     scenes::add_mover(world, X_WM, scenes::rectangle({0.0, 0.0}, 0.3, 0.3))
-        .lasers.push_back({.name = "laser", .X_MS = {0.1, 0.0, 0.04, 0.0}, .samples = 91, .rate = rate});
+        .sensors.push_back(
+            sensors::laser_sensor({{.name = "laser", .X_MS = {0.1, 0.0, 0.04, 0.0}, .samples = 91}, rate}));
   return world;
 }
 
@@ -48,6 +50,7 @@ struct Settings {
   double loss = 0.0;          ///< [-] of the injected link
   bool wait_for_start = false;
   double radio = netio::kV2vRange;  ///< [m]
+  StateFilterOptions filter;
 };
 
 struct Fixture {
@@ -70,10 +73,11 @@ struct Fixture {
     return static_cast<std::uint16_t>(layout.bases.at(sensors::kLaser) + 8 * robot);
   }
   void make_service() {
-    service = std::make_unique<Service>(
-        world, sensor_set, device(), layout,
-        ServiceOptions{
-            .receiver = {.bind = {netio::kLoopback, 0}, .radio = settings.radio, .log_descriptor = log.descriptor()}});
+    service = std::make_unique<Service>(world, sensor_set, device(), layout,
+                                        ServiceOptions{.receiver = {.bind = {netio::kLoopback, 0},
+                                                                    .radio = settings.radio,
+                                                                    .log_descriptor = log.descriptor(),
+                                                                    .filter = settings.filter}});
   }
   std::unique_ptr<RobotClient> make_client(std::uint32_t mover) {
     RobotClientOptions options{.wait_for_start = settings.wait_for_start, .log_descriptor = log.descriptor()};

@@ -11,6 +11,7 @@
 #include "netio/packets.h"
 #include "netio/socket.h"
 #include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 
 namespace sf::server {
 namespace {
@@ -25,7 +26,7 @@ world::World fleet(std::uint32_t robots) {
     mover.name = "robot" + std::to_string(i + 1);
     mover.id = i + 1;
     mover.model = i;
-    mover.lasers.push_back({.name = "laser", .samples = kBeams});
+    mover.sensors.push_back(sensors::laser_sensor({{.name = "laser", .samples = kBeams}}));
     world.models.push_back({mover.name, "position"});
     world.movers.push_back(mover);
   }
@@ -46,7 +47,7 @@ struct Day {
         if (tick == 2 && m % 97 == 5) ranges[3] = std::numeric_limits<double>::quiet_NaN();
         base::ReadingBlock block;
         block.mover = m;
-        block.kind = sensors::kLaser;
+        block.type = sensors::kLaser;
         block.time = tick * 100'000'000ll;
         blocks.push_back(block);
       }
@@ -71,7 +72,7 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
   ReadingPublisher post(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)));
 
   const Day day(robots, 5);
-  const sensors::SensorType& kind = *sensor_set.group(sensors::kLaser)->kind;
+  const sensors::SensorType& type = *sensor_set.group(sensors::kLaser)->type;
   std::map<std::uint32_t, std::uint32_t> sent;
   netio::ReceiveBatch batch(64);
   std::size_t first = 0, lost = 0;
@@ -80,10 +81,11 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
     std::vector<base::Bytes> expected;
     for (std::size_t i = first; i < end; ++i) {
       const base::ReadingBlock& block = day.blocks[i];
-      letters.push_back({&block, netio::kLoopback, {7, 9}});
+      const netio::StateQuality state{.stated = true, .stale = i % 2 == 1, .age = 80'000'000, .covariance = {1e-4f}};
+      letters.push_back({&block, netio::kLoopback, {7, 9}, state});
       base::Bytes payload, packet;
-      const std::uint8_t type = kind.encode(sensor_set.row(block), block, sensors::WireFormat::farm, 0, payload);
-      if (type == 0) continue;
+      const std::uint8_t packet_type = type.encode(sensor_set.row(block), block, sensors::WireFormat::farm, 0, payload);
+      if (packet_type == 0) continue;
       netio::Header header;
       header.robot = static_cast<std::uint16_t>(block.mover + 1);
       header.sequence = sent[block.mover]++;
@@ -91,7 +93,8 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
       header.accuracy = netio::encode_accuracy({block.mode, false, block.bound});
       header.session = 7;
       header.token = 9;
-      netio::encode_reading(header, type, payload, packet);
+      header.state = state;
+      netio::encode_reading(header, packet_type, payload, packet);
       expected.push_back(packet);
     }
     lost += letters.size() - expected.size();

@@ -104,6 +104,47 @@ TEST(Service, ReadsBetweenTicksWhatIsDueThere) {
   EXPECT_EQ(f.service->stats().ticks, 10u);
 }
 
+TEST(Service, StatesHaveAnAgeWithAndWithoutFilter) {
+  for (const bool filtered : {false, true}) {
+    Fixture f({.filter = {.enabled = filtered}});
+    EXPECT_FALSE(f.service->receiver().quality(0, f.now).stated) << "nothing came yet";
+    f.run(10);
+    const auto quality = [&] { return f.service->receiver().quality(0, f.now - kTick); };
+    EXPECT_TRUE(quality().stated);
+    EXPECT_EQ(quality().age, 0);
+    EXPECT_FALSE(quality().stale);
+    EXPECT_EQ(quality().covariance[0] > 0.0f, filtered);
+    EXPECT_FALSE(f.service->receiver().quality(1, f.now).stated) << "the other robot is silent";
+    for (int i = 0; i < 15; ++i, f.now += kTick) f.service->tick(f.now);
+    EXPECT_TRUE(quality().stale);
+    EXPECT_EQ(quality().age, 15 * kTick);
+  }
+}
+
+TEST(Service, ARobotDrivesByReadingsOfItsFilteredState) {
+  Fixture f({.filter = {.enabled = true}});
+  f.run(40);
+  EXPECT_GT(f.client->stats().distance_m, 0.05);
+  const ServiceStats stats = f.service->stats();
+  EXPECT_TRUE(stats.filtered);
+  EXPECT_EQ(stats.states.states[static_cast<std::size_t>(estimation::Verdict::started)], 1u);
+  EXPECT_GE(stats.states.states[static_cast<std::size_t>(estimation::Verdict::used)], 37u);
+  ASSERT_EQ(stats.clocks.size(), 1u);
+  EXPECT_EQ(stats.clocks[0].clock.offset, 0) << "both have the test's clock";
+}
+
+TEST(Service, AStaleRobotIsOutOfTheWorldOnRequest) {
+  for (const auto policy : {estimation::StalePolicy::freeze, estimation::StalePolicy::hide}) {
+    Fixture f({.filter = {.enabled = true, .policy = policy}});
+    f.run(10);
+    EXPECT_FALSE(f.service->receiver().update_absent(1, f.now));
+    for (int i = 0; i < 15; ++i, f.now += kTick) f.service->tick(f.now);
+    EXPECT_EQ(f.service->receiver().update_absent(1, f.now), policy == estimation::StalePolicy::hide);
+    f.run(1);
+    EXPECT_FALSE(f.service->receiver().update_absent(1, f.now)) << "it is measured again";
+  }
+}
+
 TEST(Service, RunEndsByItsDurationAndByAStop) {
   Fixture f;
   std::atomic<bool> stop = false;

@@ -1,5 +1,5 @@
 #pragma once
-// Interface of recorders. The farm and the simulation depend on this interface alone.
+// Results of a tick, and the interface of recorders: what the farm and the simulation know of them.
 
 #include <span>
 

@@ -1,4 +1,4 @@
-#include "robots/driver_model.h"
+#include "robots/actuator_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 constexpr double kMaxSpeed = 500.0;  // [mm/s] of the Open Interface's drive command
 constexpr int kMaxRadius = 2000;     // [mm]
 
-/// Whole [mm/s], within the robot's limits.
+/// Whole [mm/s], within kMaxSpeed.
 double whole_speed(double metres_per_second) {
   return std::clamp(std::rint(1e3 * metres_per_second), -kMaxSpeed, kMaxSpeed);
 }
@@ -41,9 +41,10 @@ base::Twist apply_create_driver(const world::Mover& mover, double forward, doubl
 
 }  // namespace
 
-base::Twist apply_driver(const world::Mover& mover, const base::Twist& command) {
+base::Twist apply_actuator_model(const world::Mover& mover, const base::Twist& command) {
   const base::Twist v = finite(command);
-  return mover.driver_model == world::DriverModel::player_create ? apply_create_driver(mover, v.forward, v.turn) : v;
+  return mover.actuator_model == world::ActuatorModel::player_create ? apply_create_driver(mover, v.forward, v.turn)
+                                                                     : v;
 }
 
 }  // namespace sf::robots

@@ -1,0 +1,66 @@
+#include "apps/tag_sender.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "netio/address_token.h"
+
+namespace sf::apps {
+
+namespace {
+
+/// @param file of the address, for errors; empty: the command line's
+netio::Endpoint read_address(const std::string& text, const std::string& file) {
+  const std::size_t colon = text.rfind(':');
+  std::uint16_t port = 0;
+  if (colon != std::string::npos && colon > 0) {
+    const auto [end, error] = std::from_chars(text.data() + colon + 1, text.data() + text.size(), port);
+    if (error != std::errc() || end != text.data() + text.size()) port = 0;
+  }
+  const std::string message = fmt::format("'{}' is no address; expected HOST:PORT such as 192.168.1.5:9000", text);
+  if (port == 0) throw file.empty() ? base::InputError("--send: " + message) : base::InputError(file, 0, message);
+  return {netio::resolve(text.substr(0, colon)), port};
+}
+
+}  // namespace
+
+netio::Tag object_state(const vision::TrackedTag& tag, const vision::TagMount& mount) {
+  const double yaw = tag.X_WT.yaw - mount.X_OT.yaw;
+  const glm::dvec2 arm = base::rotate(yaw, {mount.X_OT.x, mount.X_OT.y});  // from the object's origin to the tag
+  netio::Tag state;
+  state.position = {tag.X_WT.x - arm.x, tag.X_WT.y - arm.y, tag.X_WT.z};
+  state.orientation = {0.0, 0.0, std::sin(0.5 * yaw), std::cos(0.5 * yaw)};
+  state.linear = {tag.velocity.x + tag.turn * arm.y, tag.velocity.y - tag.turn * arm.x, 0.0};
+  state.angular = {0.0, 0.0, tag.turn};
+  return state;
+}
+
+TagSender::TagSender(const vision::Testbed& testbed, const std::string& fallback) : testbed_(testbed) {
+  header_.session = netio::random_session();
+  if (!testbed.tag.address.empty()) fallback_ = read_address(testbed.tag.address, testbed.file);
+  if (!fallback.empty() && !fallback_) fallback_ = read_address(fallback, "");
+  for (const auto& [id, mount] : testbed.tags)
+    if (!mount.address.empty()) addresses_[id] = read_address(mount.address, testbed.file);
+}
+
+void TagSender::send(std::span<const vision::TrackedTag> tags, std::int64_t epoch) {
+  for (const vision::TrackedTag& tag : tags) {
+    const auto own = addresses_.find(tag.id);
+    const auto to = own != addresses_.end() ? own->second : fallback_;
+    if (!to || tag.id < netio::kMinTag) {
+      ++unaddressed_;
+      continue;
+    }
+    header_.robot = static_cast<std::uint16_t>(tag.id);
+    header_.sequence = sequences_[tag.id]++;
+    header_.time = epoch + std::llround(1e9 * tag.time);
+    netio::encode(header_, object_state(tag, testbed_.mount(tag.id)), packet_);
+    outbox_.queue(*to, packet_);
+  }
+  outbox_.flush();
+}
+
+}  // namespace sf::apps

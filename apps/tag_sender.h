@@ -1,0 +1,45 @@
+#pragma once
+// TAG packets of tracked tags.
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "netio/outbox.h"
+#include "netio/packets.h"
+#include "vision/testbed.h"
+#include "vision/tracker.h"
+
+namespace sf::apps {
+
+/// The state of the object that carries the tag, in the world frame.
+netio::Tag object_state(const vision::TrackedTag& tag, const vision::TagMount& mount);
+
+/// Sends one datagram for each tag, to the address in its section of the testbed file, else to the file's, else to
+/// `fallback`. Tags without any are not sent, nor is id 0, which packets do not have.
+class TagSender {
+ public:
+  /// @param fallback "host:port" or empty
+  /// @throws base::InputError for addresses of another form, and unknown hosts
+  TagSender(const vision::Testbed& testbed, const std::string& fallback);
+
+  /// @param epoch [ns] time of packets at time 0 of the tags
+  void send(std::span<const vision::TrackedTag> tags, std::int64_t epoch);
+
+  bool has_addresses() const { return fallback_ || !addresses_.empty(); }
+  std::uint64_t unaddressed() const { return unaddressed_; }
+  netio::OutboxCounts counts() const { return outbox_.counts(); }
+
+ private:
+  const vision::Testbed& testbed_;
+  std::optional<netio::Endpoint> fallback_;
+  std::map<std::uint32_t, netio::Endpoint> addresses_;
+  std::map<std::uint32_t, std::uint32_t> sequences_;
+  netio::Header header_;
+  netio::Outbox outbox_;
+  base::Bytes packet_;
+  std::uint64_t unaddressed_ = 0;
+};
+
+}  // namespace sf::apps

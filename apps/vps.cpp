@@ -1,0 +1,144 @@
+// `vps`: the virtual positioning system.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "apps/camera_inputs.h"
+#include "apps/commands.h"
+#include "apps/stop_signals.h"
+#include "apps/tag_sender.h"
+#include "apps/text.h"
+#include "apps/vps_report.h"
+#include "base/error.h"
+#include "base/time.h"
+#include "vision/overlay.h"
+
+namespace sf::apps {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kRenderedImages = 30;  // without another limit
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+/// The file of `--track`.
+class TrackFile {
+ public:
+  explicit TrackFile(const std::string& path) : path_(path) {
+    if (path.empty()) return;
+    file_.open(path);
+    file_ << "time_s,tag,x_m,y_m,yaw_rad,vx_m_s,vy_m_s,turn_rad_s,cameras\n";
+  }
+  void write(std::span<const vision::TrackedTag> tags) {
+    if (path_.empty()) return;
+    for (const vision::TrackedTag& t : tags)
+      file_ << fmt::format("{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{}\n", t.time, t.id, t.X_WT.x, t.X_WT.y,
+                           t.X_WT.yaw, t.velocity.x, t.velocity.y, t.turn, t.cameras);
+    if (!file_.flush()) throw base::InputError(path_, 0, "cannot be written");
+  }
+
+ private:
+  std::string path_;
+  std::ofstream file_;
+};
+
+/// The pictures of `--overlay`.
+class Overlay {
+ public:
+  Overlay(const VpsOptions& options, const vision::Testbed& testbed) : testbed_(testbed), folder_(options.overlay) {
+    if (folder_.empty()) return;
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw base::InputError(folder_, 0, "cannot be made: " + error.message());
+    if (options.world.empty()) return;
+    const world::World world = world::load_world(options.world);
+    for (const vision::TestbedCamera& each : testbed.cameras)
+      world_marks_.push_back(vision::world_marks(each.camera, world));
+  }
+
+  void write(const vision::Positioning& positioning, std::span<const vision::Frame> frames,
+             std::uint64_t number) const {
+    if (folder_.empty()) return;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const vision::Camera& camera = testbed_.cameras[i].camera;
+      std::vector<vision::Mark> marks = vision::tag_marks(camera, positioning.sightings(i));
+      if (!world_marks_.empty()) marks.insert(marks.begin(), world_marks_[i].begin(), world_marks_[i].end());
+      vision::opencv().write_image(fmt::format("{}/{}-{:06}.png", folder_, camera.name, number),
+                                   vision::draw_over(frames[i].image, marks));
+    }
+  }
+
+ private:
+  const vision::Testbed& testbed_;
+  std::string folder_;
+  std::vector<std::vector<vision::Mark>> world_marks_;  ///< of each camera
+};
+
+}  // namespace
+
+int vps(const VpsOptions& options) {
+  const vision::Testbed testbed = vision::read_testbed(options.testbed);
+  TagSender sender(testbed, options.send);
+  std::optional<vision::RenderedFleet> fleet;
+  std::optional<vision::AccuracyMeter> meter;
+  if (options.rendered > 0) {
+    fleet.emplace(testbed,
+                  vision::FleetOptions{options.rendered, options.speed, options.occluders, true, options.seed});
+    meter.emplace(testbed, *fleet);
+  }
+  const auto inputs = fleet ? rendered_inputs(testbed, *fleet, options.seed) : open_inputs(testbed, options.inputs);
+  vision::Positioning positioning(testbed);
+  TrackFile track(options.track);
+  const Overlay overlay(options, testbed);
+  install_stop_handlers();
+  // Rendered images have no end.
+  const bool limited = options.images > 0 || options.duration > 0.0 || options.real_time;
+  const std::uint64_t most = fleet && !limited ? kRenderedImages : options.images;
+
+  VpsReport report;
+  report.cameras = testbed.cameras.size();
+  std::vector<vision::Frame> frames;
+  const std::int64_t epoch = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+  const Clock::time_point start = Clock::now();
+  for (std::uint64_t n = 0; !stop_requested() && (most == 0 || n < most) && inputs->next(frames); ++n) {
+    if (options.duration > 0.0 && frames[0].time >= options.duration) break;
+    if (options.real_time && !inputs->is_live())
+      std::this_thread::sleep_until(start + std::chrono::nanoseconds(base::nanoseconds(frames[0].time)));
+    const Clock::time_point before = Clock::now();
+    const double cpu_before = cpu_seconds();
+    const auto tags = positioning.update(frames);
+    report.processing_s += seconds(Clock::now() - before);
+    report.processing_cpu_s += cpu_seconds() - cpu_before;
+
+    sender.send(tags, epoch);
+    track.write(tags);
+    overlay.write(positioning, frames, n);
+    if (meter) meter->add(frames[0].time, tags);
+    for (const vision::TrackedTag& tag : tags) {
+      report.tags[tag.id] = tag;
+      ++report.reported[tag.id];
+    }
+  }
+  report.counts = positioning.counts();
+  report.refused = positioning.refused();
+  if (meter) report.accuracy = meter->accuracy();
+  if (sender.has_addresses()) report.sent = sender.counts();
+  report.unaddressed = sender.unaddressed();
+  print(options.json ? json_of(report) : text_of(report));
+  return report.counts.sightings > 0 ? 0 : 1;
+}
+
+}  // namespace sf::apps

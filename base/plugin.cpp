@@ -1,0 +1,28 @@
+#include "base/plugin.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string>
+
+#include "base/error.h"
+
+namespace sf::base {
+
+const void* load_plugin(const char* name, const char* without, const char* library) {
+  const std::string file = std::string(name) + ".so";
+  std::error_code ignored;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  const std::string beside = (program.parent_path() / file).string();
+  void* module =
+      dlopen(std::filesystem::exists(beside, ignored) ? beside.c_str() : file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  const void* symbol = module != nullptr ? dlsym(module, name) : nullptr;
+  if (symbol != nullptr) return symbol;
+  const char* const why = dlerror();
+  throw InputError(beside, 0,
+                   fmt::format("cannot be loaded, so {} ({}): keep it beside the program, and {} installed", without,
+                               why != nullptr ? why : "?", library));
+}
+
+}  // namespace sf::base

@@ -1,0 +1,85 @@
+#pragma once
+// The states of movers from their packets, filtered: one track and one sender's clock per mover.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/report.h"
+#include "netio/packets.h"
+#include "robots/estimation/sender_clock.h"
+#include "robots/estimation/track_filter.h"
+#include "world/world.h"
+
+namespace sf::server {
+
+struct StateFilterOptions {
+  bool enabled = false;  ///< false: the newest state counts, from its arrival on
+  estimation::ClockOptions clock;
+  std::int64_t stale_after = 1'000'000'000;  ///< [ns] > 0
+  estimation::StalePolicy policy = estimation::StalePolicy::freeze;
+  /// [ns] on the senders' common clock at time 0 of the receiver's, for estimation::ClockSource::trusted.
+  std::int64_t epoch = 0;
+  // Standard deviations of reported states, which packets do not contain.
+  double position_sigma = 0.01;  ///< [m] > 0
+  double yaw_sigma = 0.02;       ///< [rad] > 0
+  double speed_sigma = 0.05;     ///< [m/s] > 0
+  double turn_sigma = 0.1;       ///< [rad/s] > 0
+};
+
+struct StateFilterCounts {
+  estimation::VerdictCounts states{};     ///< whose clock was accepted, by verdict
+  std::array<std::uint64_t, 4> clocks{};  ///< all states, by estimation::ClockVerdict
+};
+
+/// The clock of one mover's sender.
+struct SenderClockState {
+  std::uint32_t mover = 0;
+  estimation::ClockState clock;
+};
+
+/// Times are of one clock [ns] that does not go back. The world must outlive it. Allocates at a mover's first state
+/// only. One thread.
+class StateFilter {
+ public:
+  StateFilter(const world::World& world, const StateFilterOptions& options);
+
+  /// Takes a mover's state, late ones too. @param report at the sender's time `header.time`
+  void take(const base::Report& report, const netio::Header& header, std::int64_t now);
+
+  /// Predicts all movers with a state to `now`.
+  /// @return their reports, of that time; they live until the next call
+  const std::vector<base::Report>& predict(std::int64_t now);
+
+  // As of the last `predict`.
+  const netio::StateQuality& quality(std::uint32_t row) const { return movers_[row].quality; }
+  /// Stale, and out of the world by the policy.
+  bool is_gone(std::uint32_t row) const { return movers_[row].gone; }
+
+  /// Sets `StateFilterOptions::epoch`.
+  void set_epoch(std::int64_t epoch) { options_.epoch = epoch; }
+
+  StateFilterCounts counts() const;
+  std::vector<SenderClockState> clocks() const;  ///< of senders with a known clock
+
+ private:
+  struct MoverState {
+    std::optional<estimation::TrackFilter> track;
+    estimation::SenderClock clock;
+    std::uint32_t session = 0;
+    netio::StateQuality quality;
+    bool gone = false;
+  };
+  estimation::Measurement measurement(const base::Report& report, const netio::Header& header) const;
+  std::int64_t epoch() const;
+  void forget(MoverState& mover);
+
+  const world::World& world_;
+  StateFilterOptions options_;
+  std::vector<MoverState> movers_;
+  std::vector<base::Report> reports_;
+  std::array<std::uint64_t, 4> clock_counts_{};
+};
+
+}  // namespace sf::server

@@ -1,0 +1,47 @@
+#pragma once
+// World-file settings of lasers, in both dialects of Stage:
+//
+//   laser( samples 180 fov 180 range_min 0 range_max 8 )
+//   ranger( sensor( samples 1 fov 6 range [0 5] ) ... )      each block is a laser
+//   ranger( scount N spose[i] [x y yaw] ... sview [0 5 fov] )   each transducer is a laser of one beam
+
+#include <cstdint>
+#include <vector>
+
+#include "raycast/beams.h"
+#include "sensors/sensor_type.h"
+
+namespace sf::sensors {
+
+/// Settings of one laser.
+struct LaserSettings : raycast::ScanSettings {
+  double rate = 10.0;    ///< [Hz] > 0
+  double phase = 0.0;    ///< [s] time of the first reading
+  double latency = 0.0;  ///< [s] from measurement to delivery
+  world::Accuracy accuracy;
+  std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the field of view in figures
+};
+
+/// Keys of a laser, in addition to those of every sensor.
+inline constexpr std::string_view kLaserKeys[] = {"fov", "samples", "range_min", "range_max", "laser_color",
+                                                  // Stage's older name of `resolution`, of the same meaning
+                                                  "laser_sample_skip"};
+inline constexpr std::string_view kRangerKeys[] = {"scount", "sview", "spose[]", "spose3[]",
+                                                   // known, not modelled
+                                                   "ssize", "sraycount"};
+inline constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "samples"};
+inline constexpr world::SensorKeyword kLaserWord{"laser", kLaserKeys};
+inline constexpr world::SensorKeyword kRangerWord{"ranger", kRangerKeys, kBlockKeys};
+
+/// The lasers of a mover in file order, numbered as in readings. Neighbours of one name, such as the lasers of
+/// a ranger, are called `name[k]`.
+/// @throws base::InputError with file and line for an invalid setting
+std::vector<LaserSettings> lasers_of(const world::Mover& mover);
+
+/// A laser as a sensor of a world that is made in code. `lasers_of` gives the same settings back.
+world::Sensor laser_sensor(const LaserSettings& laser);
+
+/// `noise [constant proportional angular]`; none where it is absent.
+raycast::ScanNoise scan_noise_of(const world::Sensor& sensor);
+
+}  // namespace sf::sensors

@@ -1,0 +1,135 @@
+// `vps`: from images to packets.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "netio/packets.h"
+#include "netio/socket.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+
+namespace {
+
+constexpr const char* kTestbed =
+    "dictionary = \"aruco_4x4_50\"\n"
+    "tag_side = 0.15\n"
+    "tag_height = 0.2\n"
+    "[[camera]]\n"
+    "name = \"a\"\n"
+    "size = [320, 240]\n"
+    "focal = [400, 400]\n"
+    "position = [0, 0, 2.2]\n"
+    "[[tag]]\n"
+    "id = 1\n"
+    "[[tag]]\n"
+    "id = 2\n"
+    "offset = [0.1, 0, 90]\n";
+
+}  // namespace
+
+TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  const netio::Socket socket = netio::open_udp({netio::kLoopback, 0});
+  const std::string address = netio::text(netio::bound_endpoint(socket));
+  const Outcome outcome = run_program({"vps", testbed, "--rendered", "2", "--images", "4", "--send", address, "--track",
+                                       folder.path("track.csv"), "--overlay", folder.path("pictures")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("0, 0 of 6 reported"), std::string::npos) << outcome.out;  // missed, false
+  EXPECT_NE(outcome.out.find("6 sent, 0 failed"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(std::filesystem::exists(folder.path("pictures/a-000003.png")));
+
+  // Two tags in each image but the first.
+  std::map<std::uint16_t, std::uint32_t> count;
+  std::map<std::uint16_t, netio::Packet> last;
+  netio::ReceiveBatch batch(16);
+  const std::size_t received = batch.fill(socket);
+  ASSERT_EQ(received, 6u);
+  for (std::size_t i = 0; i < received; ++i) {
+    netio::Packet packet;
+    ASSERT_EQ(netio::decode(batch.bytes(i), packet), netio::PacketStatus::accepted);
+    ASSERT_EQ(packet.header.type, netio::Type::tag);
+    EXPECT_EQ(packet.header.sequence, count[packet.header.robot]++);
+    EXPECT_NE(packet.header.session, 0u);
+    last[packet.header.robot] = packet;
+  }
+  EXPECT_EQ(count[1], 3u);
+  EXPECT_EQ(count[2], 3u);
+  EXPECT_NEAR(static_cast<double>(last[1].header.time - last[2].header.time), 0.0, 1e9);
+
+  // The packet of tag 1 is the last line of the track about it; that of tag 2 is its object's pose.
+  std::istringstream lines(read_file(folder.path("track.csv")));
+  std::string line;
+  std::map<int, std::array<double, 3>> poses;
+  while (std::getline(lines, line)) {
+    double time = 0.0, x = 0.0, y = 0.0, yaw = 0.0;
+    int id = 0;
+    if (std::sscanf(line.c_str(), "%lf,%d,%lf,%lf,%lf", &time, &id, &x, &y, &yaw) == 5) poses[id] = {x, y, yaw};
+  }
+  const auto& one = std::get<netio::Tag>(last[1].body);
+  EXPECT_NEAR(one.position[0], poses[1][0], 1e-6);
+  EXPECT_NEAR(one.position[1], poses[1][1], 1e-6);
+  EXPECT_NEAR(one.orientation[2], std::sin(0.5 * poses[1][2]), 1e-6);
+  const auto& two = std::get<netio::Tag>(last[2].body);
+  const double yaw = poses[2][2] - M_PI / 2.0;
+  EXPECT_NEAR(two.position[0], poses[2][0] - 0.1 * std::cos(yaw), 1e-5);
+  EXPECT_NEAR(two.position[1], poses[2][1] - 0.1 * std::sin(yaw), 1e-5);
+  EXPECT_NEAR(std::abs(two.orientation[3]), std::abs(std::cos(0.5 * yaw)), 1e-5);
+}
+
+TEST(Vps, ReadsItsOwnPictures) {
+  // Rendered pictures with marks beside the tags, as a folder of photographs.
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  ASSERT_EQ(
+      run_program({"vps", testbed, "--rendered", "2", "--images", "3", "--speed", "0", "--overlay", folder.path("p")})
+          .code,
+      0);
+  const Outcome outcome = run_program({"vps", testbed, "--input", "a=" + folder.path("p"), "--json"});
+  EXPECT_NE(outcome.out.find("\"images\": 3"), std::string::npos) << outcome.out << outcome.err;
+}
+
+TEST(Calibrate, NamesWhatIsWrong) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  ASSERT_EQ(run_program({"vps", testbed, "--rendered", "1", "--images", "2", "--overlay", folder.path("p")}).code, 0);
+  const Outcome none = run_program({"calibrate", folder.path("p"), "--columns", "7", "--rows", "5"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.err.find("a chessboard with 7 x 5 inner corners was found in 0 of 2 images"), std::string::npos)
+      << none.err;
+  const Outcome device = run_program({"calibrate", folder.path("none")});
+  EXPECT_EQ(device.code, 2);
+  EXPECT_NE(device.err.find("does not exist"), std::string::npos) << device.err;
+}
+
+TEST(Vps, NamesWhatIsWrong) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  const std::string text = folder.write("text.avi", "no video");
+  struct Case {
+    Words arguments;
+    std::string expected;
+  };
+  for (const Case& each : std::vector<Case>{
+           {{testbed}, "camera 'a' has no source; expected source = \"/dev/video0\""},
+           {{testbed, "--input", "b=x"}, "has no camera 'b'"},
+           {{testbed, "--input", "a=" + folder.path("none")}, "does not exist"},
+           {{testbed, "--input", "a=" + folder.path("")}, "has no images"},
+           {{testbed, "--input", "a=" + text}, "cannot be read as a video"},
+           {{testbed, "--input", "a=/dev/null"}, "is no camera that can be opened"},
+           {{testbed, "--rendered", "2", "--send", "127.0.0.1"}, "'127.0.0.1' is no address; expected HOST:PORT"},
+           {{testbed, "--rendered", "500"}, "500 tags do not fit"},
+           {{folder.path("none.toml")}, "none.toml"}}) {
+    Words words{"vps"};
+    words.insert(words.end(), each.arguments.begin(), each.arguments.end());
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 2) << each.expected;
+    EXPECT_NE(outcome.err.find(each.expected), std::string::npos) << outcome.err;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  }
+}
+
+}  // namespace sf

@@ -1,0 +1,244 @@
+#include "netio/server/signal_messages.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "netio/v2x/frame.h"
+#include "world/roads/roads.h"
+
+namespace sf::server {
+namespace {
+
+using world::LightState;
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr std::int64_t kNewYear2026 = 1'767'225'600'000;  ///< [ms]
+
+world::Light light(const std::vector<world::LightPhase>& phases, double offset = 0.0) {
+  world::Light made;
+  made.phases = phases;
+  made.offset = offset;
+  return made;
+}
+
+/// One light of 8 s green, 2 s yellow, 14 s red; one that stays dark.
+world::World two_lights() {
+  world::World world;
+  world.lights.push_back(light({{LightState::green, 8.0}, {LightState::yellow, 2.0}, {LightState::red, 14.0}}));
+  world.lights.push_back(light({{LightState::dark, 1.0}}));
+  return world;
+}
+
+/// Sets the states that a message has.
+std::size_t read(const v2x::Spat& spat, std::span<const Intersection> all, std::int64_t utc,
+                 std::vector<world::Signal>& signals) {
+  return read_spat(spat, all, utc, [&](std::uint32_t row, const world::Signal& signal) { signals.at(row) = signal; });
+}
+
+struct Town {
+  world::World world = world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world");
+  world::RoadNetwork roads = *world::roads_of(world);
+  std::vector<Intersection> intersections = intersections_of(world, &roads);
+};
+
+const v2x::MovementEvent& event(const v2x::Spat& spat, std::size_t row) {
+  return spat.intersections.at(0).states.at(0).events.at(row);
+}
+
+/// Nodes of a lane in the world, from the intersection's middle [m].
+std::vector<glm::dvec2> points_of(const v2x::GenericLane& lane) {
+  std::vector<glm::dvec2> points;
+  glm::dvec2 p;
+  for (const v2x::Node& node : lane.nodes.nodes) {
+    p += 0.01 * glm::dvec2(node.delta.xy.x, node.delta.xy.y);
+    points.push_back(p);
+  }
+  return points;
+}
+
+v2x::Frame round_trip(const v2x::MapData& map) {
+  v2x::Frame frame, again;
+  frame.message = map;
+  base::Bytes bytes;
+  v2x::encode(frame, bytes);
+  EXPECT_TRUE(v2x::decode(bytes, again).ok());
+  EXPECT_TRUE(frame == again);
+  return again;
+}
+
+TEST(SignalMessages, LightsWithoutRoadsAreIntersectionsOfTheirOwn) {
+  const auto all = intersections_of(two_lights(), nullptr);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[1].id, 2);
+  EXPECT_EQ(all[1].lights, (std::vector<std::uint32_t>{1}));
+}
+
+TEST(SignalMessages, SpatHasTheStateAndTheNextOne) {
+  const world::World world = two_lights();
+  const auto all = intersections_of(world, nullptr);
+  const v2x::Spat spat = spat_of(world, all[0], 3.0, kNewYear2026 + 61'250);
+  EXPECT_EQ(spat.intersections[0].minute, 1u);
+  EXPECT_EQ(spat.intersections[0].milliseconds, 1250);
+  EXPECT_EQ(event(spat, 0).state, v2x::PhaseState::permissive_movement_allowed);
+  EXPECT_EQ(event(spat, 0).timing->min_end, 663);  // 61.25 s + 5 s, rounded up
+  EXPECT_EQ(event(spat, 0).timing->max_end, 663);
+  EXPECT_EQ(event(spat, 1).state, v2x::PhaseState::permissive_clearance);
+  EXPECT_EQ(event(spat, 1).timing->start, 663);
+  EXPECT_EQ(event(spat, 1).timing->min_end, 683);
+}
+
+TEST(SignalMessages, MarksAtTheirBorders) {
+  world::World world = two_lights();
+  const auto all = intersections_of(world, nullptr);
+  // Across the hour: 3599 s + 5 s are 4 s of the next one.
+  EXPECT_EQ(event(spat_of(world, all[0], 3.0, kNewYear2026 + 3'599'000), 0).timing->min_end, 40);
+  // A state without end has no time, and no state follows.
+  const v2x::Spat dark = spat_of(world, all[1], 3.0, kNewYear2026);
+  EXPECT_EQ(event(dark, 0).timing->min_end, v2x::kUnknownTime);
+  EXPECT_EQ(dark.intersections[0].states[0].events.size(), 1u);
+  // More than an hour ahead.
+  world.lights[0] = light({{LightState::red, 3601.0}, {LightState::green, 1.0}});
+  EXPECT_EQ(event(spat_of(world, all[0], 0.0, kNewYear2026), 0).timing->min_end, v2x::kMoreThanAnHour);
+  // The last minute of a leap year.
+  const std::int64_t last = kNewYear2026 + (365 + 365 + 366) * 86'400'000LL - 1;
+  EXPECT_EQ(spat_of(world, all[0], 0.0, last).intersections[0].minute, 366u * 1440u - 1u);
+}
+
+TEST(SignalMessages, StatesComeBackAtAnyTime) {
+  const Town town;
+  for (double time = 0.05; time < 30.0; time += 0.37) {
+    const std::int64_t utc = kNewYear2026 + 3'590'000 + std::llround(1e3 * time);  // across an hour
+    std::vector<world::Signal> signals(town.world.lights.size(), {LightState::dark, -1.0});
+    std::size_t set = 0;
+    for (const Intersection& one : town.intersections)
+      set += read(spat_of(town.world, one, time, utc), town.intersections, utc, signals);
+    EXPECT_EQ(set, town.world.lights.size());
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      const world::Signal truth = signal_at(town.world.lights[i], time);
+      EXPECT_EQ(signals[i].state, truth.state) << town.world.lights[i].name << " at " << time;
+      EXPECT_NEAR(signals[i].left, truth.left, 0.0501);
+    }
+  }
+}
+
+TEST(SignalMessages, ReadingIgnoresTheUnknown) {
+  const world::World world = two_lights();
+  const auto all = intersections_of(world, nullptr);
+  std::vector<world::Signal> signals(2, {LightState::green, 7.0});
+  v2x::Spat spat = spat_of(world, all[1], 0.0, kNewYear2026);
+  spat.intersections[0].states[0].signal_group = 2;  // the light is group 1
+  EXPECT_EQ(read(spat, all, kNewYear2026, signals), 0u);
+  spat.intersections[0].states[0].signal_group = 0;  // unknown
+  EXPECT_EQ(read(spat, all, kNewYear2026, signals), 0u);
+  spat.intersections[0].states[0].signal_group = 1;
+  spat.intersections[0].id.id = 3;  // another town's
+  EXPECT_EQ(read(spat, all, kNewYear2026, signals), 0u);
+  EXPECT_EQ(signals[1].state, LightState::green);
+  spat.intersections[0].id.id = 2;
+  spat.intersections[0].states[0].events[0].timing.reset();
+  EXPECT_EQ(read(spat, all, kNewYear2026, signals), 1u);
+  EXPECT_EQ(signals[1].state, LightState::dark);
+  EXPECT_EQ(signals[1].left, kForever);
+}
+
+TEST(SignalMessages, ALateChangeIsDueNow) {
+  const world::World world = two_lights();
+  const auto all = intersections_of(world, nullptr);
+  std::vector<world::Signal> signals(2);
+  v2x::Spat spat = spat_of(world, all[0], 0.0, kNewYear2026);
+  read(spat, all, kNewYear2026 + 8'300, signals);
+  EXPECT_NEAR(signals[0].left, 8.0, 1e-9) << "by the message's own time";
+  spat.intersections[0].milliseconds.reset();
+  read(spat, all, kNewYear2026 + 8'300, signals);  // from 8.3 s ago, its change 0.3 s ago
+  EXPECT_EQ(signals[0].left, 0.0);
+}
+
+TEST(SignalMessages, EachStateOfALightHasItsPhase) {
+  std::set<v2x::PhaseState> phases;
+  for (const LightState state : {LightState::dark, LightState::red, LightState::yellow, LightState::green,
+                                 LightState::flashing_red, LightState::flashing_yellow}) {
+    EXPECT_EQ(light_of(phase_of(state)), state);
+    phases.insert(phase_of(state));
+  }
+  EXPECT_EQ(phases.size(), 6u);
+  EXPECT_EQ(light_of(v2x::PhaseState::unavailable), LightState::dark);
+  EXPECT_EQ(light_of(v2x::PhaseState::pre_movement), LightState::red);
+  EXPECT_EQ(light_of(v2x::PhaseState::protected_movement_allowed), LightState::green);
+  EXPECT_EQ(light_of(v2x::PhaseState::protected_clearance), LightState::yellow);
+}
+
+TEST(MapMessage, SimVilleHasTwoIntersections) {
+  const Town town;
+  ASSERT_EQ(town.intersections.size(), 2u);
+  EXPECT_EQ(town.intersections[0].lights, (std::vector<std::uint32_t>{0, 1, 2, 3}));
+  EXPECT_EQ(town.intersections[1].lights, (std::vector<std::uint32_t>{4, 5, 6}));
+  EXPECT_EQ(town.intersections[0].stops.size(), 4u);
+}
+
+TEST(MapMessage, LanesBeginAtStopLinesAndEntries) {
+  const Town town;
+  for (const Intersection& one : town.intersections) {
+    const auto map = map_of(town.roads, one, {40.0, -83.0});
+    ASSERT_TRUE(map);
+    round_trip(*map);
+    const v2x::IntersectionGeometry& geometry = map->intersections.at(0);
+    glm::dvec2 middle;
+    for (const world::PointRef& stop : one.stops) middle += position_of(town.roads, stop);
+    middle /= static_cast<double>(one.stops.size());
+    for (std::size_t i = 0; i < one.stops.size(); ++i) {
+      const v2x::GenericLane& lane = geometry.lanes[i];
+      EXPECT_EQ(lane.attributes.direction, 2);
+      const auto points = points_of(lane);
+      ASSERT_GE(points.size(), 2u);
+      // The stop line, and upstream of it the way-points of the lane, each within half a centimetre.
+      const auto& waypoints = town.roads.lanes[one.stops[i].row].points;
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        const glm::dvec2 p = waypoints[one.stops[i].index - k].p - middle;
+        EXPECT_LE(std::abs(points[k].x - p.x), 0.00501);
+        EXPECT_LE(std::abs(points[k].y - p.y), 0.00501);
+      }
+      EXPECT_FALSE(lane.connections.empty());
+      for (const v2x::Connection& to : lane.connections) {
+        EXPECT_EQ(to.signal_group, one.groups[i]);
+        EXPECT_EQ(geometry.lanes.at(to.to.lane - 1u).id, to.to.lane);
+        EXPECT_EQ(geometry.lanes.at(to.to.lane - 1u).attributes.direction, 1);
+      }
+    }
+  }
+}
+
+TEST(MapMessage, ManeuversFollowTheTurn) {
+  // West Street northwards over First Street: straight on to 7.1, left into 10.1 or right into 11.2 by their
+  // directions.
+  const Town town;
+  const auto map = map_of(town.roads, town.intersections[0], {});
+  const v2x::GenericLane& lane = map->intersections[0].lanes[0];
+  ASSERT_EQ(lane.connections.size(), 3u);
+  EXPECT_EQ(lane.connections[0].to.maneuver, 0b1000'0000'0000);
+  std::set<unsigned> turns{*lane.connections[1].to.maneuver, *lane.connections[2].to.maneuver};
+  EXPECT_EQ(turns, (std::set<unsigned>{0b0100'0000'0000, 0b0010'0000'0000}));
+  EXPECT_EQ(lane.maneuvers, 0b1110'0000'0000);
+}
+
+TEST(MapMessage, TheReferencePointIsInThePlaneOfTheOrigin) {
+  const Town town;
+  for (const world::Geodetic origin : {world::Geodetic{0.0, 0.0}, {40.0, -83.0}, {-89.0, 179.0}, {70.0, 20.0}}) {
+    const auto map = map_of(town.roads, town.intersections[0], origin);
+    const v2x::Position& at = map->intersections[0].reference;
+    const glm::dvec2 p = world::LocalPlane(origin).east_north({1e-7 * at.latitude, 1e-7 * at.longitude});
+    glm::dvec2 middle;
+    for (const world::PointRef& stop : town.intersections[0].stops) middle += 0.25 * position_of(town.roads, stop);
+    EXPECT_NEAR(p.x, middle.x, 0.006);  // 5e-8 degrees
+    EXPECT_NEAR(p.y, middle.y, 0.006);
+  }
+}
+
+TEST(MapMessage, AnIntersectionWithoutStopLinesHasNone) {
+  const Town town;
+  EXPECT_FALSE(map_of(town.roads, {.id = 1, .lights = {0}, .stops = {}, .groups = {}}, {}));
+}
+
+}  // namespace
+}  // namespace sf::server

@@ -1,0 +1,44 @@
+#pragma once
+// Lasers of movers in hand-made worlds, changed in place.
+
+#include <algorithm>
+
+#include "sensors/laser_settings.h"
+#include "world/world.h"
+
+namespace sf::scenes {
+
+inline bool is_laser(const world::Sensor& sensor) {
+  return sensor.type == sensors::kLaserWord.type || sensor.type == sensors::kRangerWord.type;
+}
+
+/// The settings of one laser, written back to its sensor at the end of its life.
+class LaserEdit {
+ public:
+  LaserEdit(world::Sensor& sensor, const sensors::LaserSettings& laser) : sensor_(sensor), laser_(laser) {}
+  LaserEdit(const LaserEdit&) = delete;
+  LaserEdit& operator=(const LaserEdit&) = delete;
+  ~LaserEdit() { sensor_ = sensors::laser_sensor(laser_); }
+  sensors::LaserSettings* operator->() { return &laser_; }
+
+ private:
+  world::Sensor& sensor_;
+  sensors::LaserSettings laser_;
+};
+
+/// The i-th laser of a mover without arrays of transducers, as in `edit_laser(mover)->rate = 5.0;`
+inline LaserEdit edit_laser(world::Mover& mover, std::size_t i = 0) {
+  auto at = std::find_if(mover.sensors.begin(), mover.sensors.end(), is_laser);
+  for (std::size_t k = 0; k < i; ++k) at = std::find_if(at + 1, mover.sensors.end(), is_laser);
+  return {*at, sensors::lasers_of(mover).at(i)};
+}
+
+/// `change(laser)` for each laser of the mover.
+template <class Change>
+void edit_lasers(world::Mover& mover, Change&& change) {
+  for (std::size_t i = 0; i < sensors::lasers_of(mover).size(); ++i) change(*edit_laser(mover, i).operator->());
+}
+
+inline void remove_lasers(world::Mover& mover) { std::erase_if(mover.sensors, is_laser); }
+
+}  // namespace sf::scenes

@@ -1,0 +1,44 @@
+#pragma once
+// Values of a TOML file with their bounds. Every error names the file, the line, and the expected value.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "world/toml.h"
+
+namespace sf::world {
+
+/// Functions with a key return the fallback, or null, where `table` does not have it. @throws base::InputError
+class TomlReader {
+ public:
+  /// @param file for errors; lives longer than the reader
+  explicit TomlReader(const std::string& file) : file_(file) {}
+
+  const std::string& file() const { return file_; }
+  [[noreturn]] void fail(const TomlNode& node, const std::string& message) const;
+
+  /// Refuses keys that are not in `known`, with a suggestion.
+  void require_known(const TomlNode& table, std::span<const std::string_view> known) const;
+
+  double number(const TomlNode& table, std::string_view key, double fallback, double least, double most) const;
+  double number(const TomlNode& node, std::string_view key, double least, double most) const;
+  std::uint64_t whole(const TomlNode& table, std::string_view key, std::uint64_t fallback, double most) const;
+  std::string text(const TomlNode& table, std::string_view key, const std::string& fallback) const;
+  /// False where `table` does not have the key.
+  bool flag(const TomlNode& table, std::string_view key) const;
+  const TomlNode* table(const TomlNode& in, std::string_view key) const;
+  /// The items of `[[key]]`.
+  std::vector<const TomlNode*> tables(const TomlNode& in, std::string_view key) const;
+  /// Replaces `into`, whose size is the number of values; each is within +-`most`.
+  /// @param expected for errors, e.g. "[x, y, z] in metres"
+  void numbers(const TomlNode& table, std::string_view key, std::span<double> into, double most,
+               std::string_view expected) const;
+
+ private:
+  const std::string& file_;
+};
+
+}  // namespace sf::world
