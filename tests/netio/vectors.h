@@ -1,0 +1,50 @@
+#pragma once
+// The golden packets in tests/netio/vectors/, to which the farm and the clients in examples/clients/ are held.
+//
+// A file has the packets of one type, separated by empty lines: comments (#), `key = value` lines and, below `hex =`,
+// the bytes. Numbers have ten significant digits. In statuses.txt the only key is the packet's status.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "base/bytes.h"
+
+namespace sf::test {
+
+struct PacketVector {
+  std::string file;
+  std::string text;  ///< the lines of keys and values
+  base::Bytes bytes;
+};
+
+/// Paths of all files, in order.
+inline std::vector<std::string> vector_files() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(SF_SOURCE_DIR "/tests/netio/vectors"))
+    files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+inline std::vector<PacketVector> read_vectors(const std::string& path) {
+  std::vector<PacketVector> vectors;
+  std::ifstream file(path);
+  bool open = false;  // a packet is being read
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty()) open = false;
+    if (line.empty() || line[0] == '#' || line == "hex =") continue;
+    if (!open) vectors.push_back({path, "", {}});
+    open = true;
+    std::istringstream row(line);
+    if (line[0] != ' ') vectors.back().text += line + "\n";
+    if (line[0] == ' ')
+      for (unsigned byte = 0; row >> std::hex >> byte;) vectors.back().bytes.push_back(static_cast<std::uint8_t>(byte));
+  }
+  return vectors;
+}
+
+}  // namespace sf::test
