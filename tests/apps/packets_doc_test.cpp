@@ -25,7 +25,7 @@ std::string python_of_the_page() {
   return code;
 }
 
-bool have_python() { return std::system("python3 -c 'import socket, struct, select' >/dev/null 2>&1") == 0; }
+bool have_python() { return succeeds("python3 -c 'import socket, struct, select'"); }
 
 /// The output of `script`.
 std::string printed(const Folder& folder, const std::string& script) {

@@ -85,9 +85,10 @@ std::string Folder::write(const std::string& name, const std::string& text) cons
   return path(name);
 }
 
-Program::Program(const Words& arguments, const Environment& environment, const std::string& out, const std::string& err)
+Program::Program(const Words& arguments, const Environment& environment, const std::string& out, const std::string& err,
+                 const std::string& program)
     : out_(out.empty() ? folder_.path("out") : out), err_(err.empty() ? folder_.path("err") : err) {
-  Words words{program_path()};
+  Words words{program.empty() ? program_path() : program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> variables = environment_of(environment);
   posix_spawn_file_actions_t files;
@@ -96,9 +97,9 @@ Program::Program(const Words& arguments, const Environment& environment, const s
   posix_spawn_file_actions_addopen(&files, 1, out_.c_str(), O_WRONLY | O_CREAT, 0600);
   posix_spawn_file_actions_addopen(&files, 2, err_.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
   const int failed =
-      posix_spawn(&pid_, program_path(), &files, nullptr, pointers(words).data(), pointers(variables).data());
+      posix_spawnp(&pid_, words[0].c_str(), &files, nullptr, pointers(words).data(), pointers(variables).data());
   posix_spawn_file_actions_destroy(&files);
-  if (failed != 0) ADD_FAILURE() << "cannot start " << program_path();
+  if (failed != 0) ADD_FAILURE() << "cannot start " << words[0];
   ended_ = failed != 0;
 }
 
@@ -146,6 +147,8 @@ Outcome Program::wait() {
 Outcome run_program(const Words& arguments, const Environment& environment) {
   return Program(arguments, environment).wait();
 }
+
+bool succeeds(const std::string& command) { return std::system((command + " >/dev/null 2>&1").c_str()) == 0; }
 
 Environment no_device() { return {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}}; }
 

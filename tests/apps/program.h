@@ -41,8 +41,9 @@ class Program {
  public:
   /// @param environment added to the test's own
   /// @param out, err files that its streams are written to, other than its own
+  /// @param program another than the built one, found in PATH
   explicit Program(const Words& arguments, const Environment& environment = {}, const std::string& out = "",
-                   const std::string& err = "");
+                   const std::string& err = "", const std::string& program = "");
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -66,6 +67,9 @@ class Program {
 
 /// Runs it to its end.
 Outcome run_program(const Words& arguments, const Environment& environment = {});
+
+/// This machine's shell runs `command` without an error.
+bool succeeds(const std::string& command);
 
 /// Environment without drivers: Vulkan finds no device.
 Environment no_device();

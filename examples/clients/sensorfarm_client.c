@@ -1,0 +1,576 @@
+// A robot's side of the sensor farm in C11 and POSIX. docs/packets.md specifies every byte.
+//
+// As a program: robot 7 reports its pose (x, y [m], yaw [degrees]) ten times a second and prints its readings.
+//
+//   cc -std=c11 -O2 -o sensorfarm_client sensorfarm_client.c -lm
+//   ./sensorfarm_client --robot 7 --farm 127.0.0.1:9000 --pose 1.5,-2.25,30 --sensor laser --sensor gps.0
+//
+// As a library: with -DSENSORFARM_CLIENT_NO_MAIN. Parts of large scans and maps are delivered one by one, each with its
+// place in the whole. One thread per client.
+
+#define _POSIX_C_SOURCE 200809L
+#include <arpa/inet.h>
+#include <math.h>
+#include <netdb.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { SF_LASER = 1, SF_LANE_EDGE = 2, SF_MAGNETOMETER = 3, SF_OCCUPANCY = 12, SF_LASER_EXTENDED = 65 };
+enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_NEIGHBOURS = 140 };
+enum { SF_HEADER = 64, SF_V2V_BYTES = 132, SF_TAG_BYTES = 168, SF_MAX_VALUES = 361, SF_MAX_SENSORS = 32 };
+#define SF_NONE 0xFFFFFFFFu  // V2V: no leader, no checkpoint
+
+// Name, base of the ports, names of the integers, and columns of a row: name, numbers, unit on the wire.
+typedef struct {
+  uint8_t type;
+  const char* name;
+  uint16_t port;
+  const char* words[6];
+  struct {
+    const char* name;
+    unsigned width;
+    double unit;
+  } columns[5];
+} sf_type;
+static const sf_type sf_types[] = {
+    {1, "laser", 10000, {0}, {{"range_m", 1, 1e-3}}},
+    {2,
+     "laneedge",
+     20000,
+     {0},
+     {{"distance_m", 1, 1e-3}, {"points", 1, 1}, {"residual_m", 1, 1e-6}, {"sigma_m", 1, 1e-6}}},
+    {3, "magnetometer", 30000, {0}, {{"field_T", 1, 1e-8}, {"vector_T", 3, 1e-8}}},
+    {4, "sonar", 36000, {0}, {{"range_m", 1, 1e-3}}},
+    {5, "infrared", 38000, {0}, {{"range_m", 1, 1e-6}, {"value", 1, 1}}},
+    {6, "bumper", 40000, {0}, {{"pressed", 1, 1}}},
+    {7, "cliff", 42000, {0}, {{"cliff", 1, 1}}},
+    {8,
+     "encoder",
+     44000,
+     {0},
+     {{"left_m", 1, 1e-5}, {"right_m", 1, 1e-5}, {"left_counts", 1, 1}, {"right_counts", 1, 1}}},
+    {9, "gyro", 46000, {0}, {{"rate_rad_s", 1, 1e-6}}},
+    {10, "gps", 48000, {0}, {{"x_m", 1, 5e-3}, {"y_m", 1, 5e-3}, {"hdop", 1, 1e-3}, {"satellites", 1, 1}}},
+    {11, "irreceiver", 50000, {0}, {{"virtual_wall", 1, 1}, {"ir_byte", 1, 1}}},
+    {12, "occupancy", 52000, {"part", "parts", "word_columns", "word_rows", "flags"}, {{"word", 1, 1}}},
+    {65, "laser", 0, {"total", "first", "part", "parts"}, {{"range_m", 1, 1e-4}}},
+    {128, "V2V", 0, {"follows", "checkpoint", "docking"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
+    {129, "TAG", 0, {0}, {{"position", 3, 1}, {"orientation", 4, 1}, {"linear", 3, 1}, {"angular", 3, 1}}},
+    {130, "SUBSCRIBE", 0, {"types"}, {{0}}},
+    {131, "START", 0, {0}, {{0}}},
+    {132, "LEAVE", 0, {0}, {{0}}},
+    {133, "CHALLENGE", 0, {"challenge"}, {{0}}},
+    {140, "NEIGHBOURS", 0, {0}, {{0}}}};
+
+typedef struct {
+  uint8_t type;
+  uint16_t robot, sensor;
+  uint32_t sequence;
+  int64_t time_ns;  // of the measurement
+  uint32_t session, token;
+  unsigned mode, unsure;         // readings: accuracy mode; 1: the bound does not hold for every element
+  double bound;                  // of the error, in the unit of the first column; NAN: not stated
+  uint32_t age_us;               // of the robot's state behind the reading; 0: not stated
+  unsigned stale;                // 1: that state is too old to be relied on
+  float covariance[6];           // of that state, x, y [m], yaw [rad]: xx, xy, x yaw, yy, y yaw, yaw yaw; 0: not known
+  uint32_t words[5];             // the integers that sf_types names
+  double corner[3];              // OCCUPANCY: left, top, cell [m]
+  unsigned count;                // values. NEIGHBOURS: V2V packets
+  double values[SF_MAX_VALUES];  // SI, row by row as in sf_types; NAN: no number; INFINITY: no return
+  const uint8_t* states;         // NEIGHBOURS: V2V packets one after another; live as long as the datagram
+} sf_packet;
+
+static uint64_t get(const uint8_t* bytes, unsigned size) {
+  uint64_t value = 0;
+  for (unsigned i = 0; i < size; ++i) value |= (uint64_t)bytes[i] << 8 * i;
+  return value;
+}
+static void put(uint8_t* bytes, unsigned size, uint64_t value) {
+  for (unsigned i = 0; i < size; ++i) bytes[i] = (uint8_t)(value >> 8 * i);
+}
+static double get_f64(const uint8_t* bytes) {
+  const uint64_t word = get(bytes, 8);
+  double value;
+  memcpy(&value, &word, 8);
+  return value;
+}
+static void put_f64(uint8_t* bytes, double value) {
+  uint64_t word;
+  memcpy(&word, &value, 8);
+  put(bytes, 8, word);
+}
+
+static const sf_type* sf_find_type(uint8_t type) {
+  for (size_t i = 0; i < sizeof sf_types / sizeof *sf_types; ++i)
+    if (sf_types[i].type == type) return &sf_types[i];
+  return NULL;
+}
+static unsigned sf_row_width(const sf_type* type) {
+  unsigned width = 0;
+  for (unsigned c = 0; type->columns[c].name; ++c) width += type->columns[c].width;
+  return width;
+}
+
+static const char* check_size(size_t size, size_t expected) {
+  return size < expected ? "too short" : size > expected ? "too long" : NULL;
+}
+static const char* check_numbers(const double* values, unsigned count, double limit) {
+  bool within = true;
+  for (unsigned i = 0; i < count; ++i) {
+    if (!isfinite(values[i])) return "not finite";
+    within = within && fabs(values[i]) <= limit;
+  }
+  return within ? NULL : "out of range";
+}
+static const char* in_range(bool fine) { return fine ? NULL : "out of range"; }
+
+static const char* decode_laser(sf_packet* p, const uint8_t* b, size_t size) {
+  const bool extended = p->type == SF_LASER_EXTENDED;
+  const unsigned head = extended ? 16 : 2, word = extended ? 4 : 2;
+  if (size < head) return "too short";
+  p->count = (unsigned)get(b + (extended ? 12 : 0), 2);
+  const char* const sized = check_size(size, head + (size_t)word * p->count);
+  if (sized) return sized;
+  uint32_t* const w = p->words;  // total, first, part, parts
+  for (unsigned i = 0; extended && i < 4; ++i) w[i] = (uint32_t)get(b + (i < 2 ? 4 * i : 4 + 2 * i), i < 2 ? 4 : 2);
+  if (extended && (w[0] < 1 || w[0] > 1000000 || w[3] != (w[0] + 309) / 310 || w[2] >= w[3] || w[1] != 310 * w[2] ||
+                   p->count != (w[0] - w[1] < 310 ? w[0] - w[1] : 310)))
+    return "out of range";
+  if (p->count < 1 || p->count > SF_MAX_VALUES) return "out of range";
+  for (unsigned i = 0; i < p->count; ++i) {
+    const uint32_t units = (uint32_t)get(b + head + word * i, word);
+    p->values[i] = extended && units == UINT32_MAX ? INFINITY : units / (extended ? 1e4 : 1e3);
+  }
+  return NULL;
+}
+
+static const char* decode_lane_edge(sf_packet* p, const uint8_t* b, size_t size) {
+  if (size != 12) return check_size(size, 12);
+  const uint64_t distance = get(b, 2), residual = get(b + 4, 4), sigma = get(b + 8, 4);
+  p->count = 4;
+  p->values[0] = distance == 65535 ? NAN : (double)distance / 1e3;
+  p->values[1] = (double)get(b + 2, 2);
+  p->values[2] = residual == UINT32_MAX ? NAN : (double)residual / 1e6;
+  p->values[3] = sigma == UINT32_MAX ? NAN : (double)sigma / 1e6;
+  return NULL;
+}
+
+static const char* decode_rows(sf_packet* p, const sf_type* type, const uint8_t* b, size_t size) {
+  if (size < 4) return "too short";
+  const unsigned rows = (unsigned)get(b, 2), width = sf_row_width(type);
+  const char* const sized = check_size(size, 4 + (size_t)4 * rows * width);
+  if (sized) return sized;
+  if (rows < 1 || rows * width > 313 || (p->type == SF_MAGNETOMETER && rows > 16)) return "out of range";
+  for (unsigned r = 0; r < rows; ++r)
+    for (unsigned c = 0; type->columns[c].name; ++c)
+      for (unsigned k = 0; k < type->columns[c].width; ++k, ++p->count) {
+        const int32_t word = (int32_t)(uint32_t)get(b + 4 + 4 * p->count, 4);
+        const bool missing = word == INT32_MIN && p->type != SF_MAGNETOMETER;
+        p->values[p->count] = missing ? NAN : word * type->columns[c].unit;
+      }
+  return NULL;
+}
+
+static const char* decode_occupancy(sf_packet* p, const uint8_t* b, size_t size) {
+  if (size < 36) return "too short";
+  uint32_t* const w = p->words;  // part, parts, word columns, word rows, flags
+  for (unsigned i = 0; i < 3; ++i) p->corner[i] = get_f64(b + 8 * i);
+  for (unsigned i = 0; i < 5; ++i) w[i] = (uint32_t)get(b + 24 + 2 * i, 2);
+  p->count = (unsigned)get(b + 34, 2);
+  const char* const sized = check_size(size, 36 + (size_t)4 * p->count);
+  if (sized) return sized;
+  const uint32_t all = w[2] * w[3], left = all > 305 * w[0] ? all - 305 * w[0] : 0;
+  const bool placed =
+      fabs(p->corner[0]) <= 1e7 && fabs(p->corner[1]) <= 1e7 && p->corner[2] >= 1e-4 && p->corner[2] <= 1e3;
+  const bool shaped = w[2] >= 1 && w[2] <= 4096 && w[3] >= 1 && w[3] <= 4096 && all <= 1u << 20 && w[4] <= 1;
+  if (!placed || !shaped || w[1] != (all + 304) / 305 || w[0] >= w[1] || p->count != (left < 305 ? left : 305))
+    return "out of range";
+  for (unsigned i = 0; i < p->count; ++i) {
+    const uint32_t word = (uint32_t)get(b + 36 + 4 * i, 4);
+    if (word & word >> 1 & 0x55555555u) return "out of range";
+    p->values[i] = word;
+  }
+  return NULL;
+}
+
+const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet);
+
+static const char* decode_neighbours(sf_packet* p, const uint8_t* b, size_t size) {
+  if (size > 9 * SF_V2V_BYTES) return "too long";
+  if (size == 0 || size % SF_V2V_BYTES != 0) return "too short";
+  p->states = b;
+  for (p->count = 0; p->count < size / SF_V2V_BYTES; ++p->count) {
+    static _Thread_local sf_packet state;
+    const char* const status = sf_decode(b + SF_V2V_BYTES * p->count, SF_V2V_BYTES, &state);
+    if (status || state.type != SF_V2V) return status ? status : "wrong direction";
+  }
+  return NULL;
+}
+
+static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t* b, size_t size) {
+  unsigned words = 0;
+  while (type->words[words]) ++words;
+  p->count = sf_row_width(type);
+  if (size != 8 * p->count + 4 * words) return check_size(size, 8 * p->count + 4 * words);
+  for (unsigned i = 0; i < p->count; ++i) p->values[i] = get_f64(b + 8 * i);
+  for (unsigned i = 0; i < words; ++i) p->words[i] = (uint32_t)get(b + 8 * p->count + 4 * i, 4);
+  const double* const v = p->values;
+  if (check_numbers(v, p->count, HUGE_VAL) != NULL) return "not finite";
+  if (p->type == SF_V2V)
+    return in_range(!check_numbers(v, 3, 1e7) && fabs(v[3]) <= 1e6 && !check_numbers(v + 4, 3, 1e3) &&
+                    p->words[2] <= 1 && (p->words[0] <= 65535 || p->words[0] == SF_NONE));
+  if (p->type == SF_TAG)
+    return in_range(!check_numbers(v, 3, 1e7) && !check_numbers(v + 7, 6, 1e3) && p->robot > 0 &&
+                    fabs(hypot(hypot(v[3], v[4]), hypot(v[5], v[6])) - 1.0) <= 1e-3);
+  return NULL;
+}
+
+static void decode_quality(sf_packet* p, const uint8_t* b) {
+  const unsigned accuracy = (unsigned)get(b + 10, 2);
+  p->mode = accuracy & 15;
+  p->unsure = accuracy >> 4 & 1;
+  p->bound = accuracy < 32 ? NAN : exp2(((double)(accuracy >> 5) - 1024) / 16);
+  p->age_us = (uint32_t)get(b + 32, 4);
+  if (p->age_us == 0) return;
+  p->stale = b[62] & 1;
+  bool known = true;
+  for (unsigned i = 0; i < 6; ++i) {
+    const uint32_t word = (uint32_t)get(b + 36 + 4 * i, 4);
+    memcpy(&p->covariance[i], &word, 4);
+    known = known && isfinite(p->covariance[i]) && ((i != 0 && i != 3 && i != 5) || p->covariance[i] >= 0);
+  }
+  if (!known) memset(p->covariance, 0, sizeof p->covariance);
+}
+
+// Decodes any bytes. Returns NULL, or the reason for which they are dropped.
+const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
+  memset(packet, 0, sizeof *packet);
+  if (size < SF_HEADER) return "too short";
+  if (memcmp(bytes, "SFPK", 4) != 0) return "bad magic";
+  if (bytes[4] != 2) return "unknown version";
+  packet->type = bytes[5];
+  packet->robot = (uint16_t)get(bytes + 6, 2);
+  packet->sensor = (uint16_t)get(bytes + 8, 2);
+  packet->sequence = (uint32_t)get(bytes + 12, 4);
+  packet->time_ns = (int64_t)get(bytes + 16, 8);
+  packet->session = (uint32_t)get(bytes + 24, 4);
+  packet->token = (uint32_t)get(bytes + 28, 4);
+  const size_t trailer = get(bytes + 60, 2);
+  if (size < SF_HEADER + trailer) return "too short";
+  const sf_type* const type = sf_find_type(packet->type);
+  if (!type) return "unknown type";
+  const uint8_t* const b = bytes + SF_HEADER;
+  size -= SF_HEADER + trailer;
+  if (size > 1256) return "too long";
+  if (packet->type < 128) decode_quality(packet, bytes);
+  const char* const status = packet->type == SF_LASER || packet->type == SF_LASER_EXTENDED
+                                 ? decode_laser(packet, b, size)
+                             : packet->type == SF_LANE_EDGE  ? decode_lane_edge(packet, b, size)
+                             : packet->type == SF_OCCUPANCY  ? decode_occupancy(packet, b, size)
+                             : packet->type == SF_NEIGHBOURS ? decode_neighbours(packet, b, size)
+                             : packet->type >= 128           ? decode_state(packet, type, b, size)
+                                                             : decode_rows(packet, type, b, size);
+  if (status) return status;
+  return in_range(packet->time_ns >= 0 && packet->time_ns <= INT64_C(1) << 62 && trailer <= 80);
+}
+
+// Encodes a V2V, TAG, SUBSCRIBE, START or LEAVE from type, robot, sequence, time_ns, session, token, words and values.
+// Returns its size, at most SF_TAG_BYTES; 0 for numbers that the farm would drop.
+size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
+  const sf_type* const type = sf_find_type(packet->type);
+  if (!type || packet->type < SF_V2V || packet->type > SF_LEAVE) return 0;
+  memset(bytes, 0, SF_TAG_BYTES);
+  memcpy(bytes, "SFPK\2", 5);
+  bytes[5] = packet->type;
+  put(bytes + 6, 2, packet->robot);
+  put(bytes + 12, 4, packet->sequence);
+  put(bytes + 16, 8, (uint64_t)packet->time_ns);
+  put(bytes + 24, 4, packet->session);
+  put(bytes + 28, 4, packet->token);
+  size_t size = SF_HEADER;
+  for (unsigned i = 0; i < sf_row_width(type); ++i, size += 8) put_f64(bytes + size, packet->values[i]);
+  for (unsigned i = 0; type->words[i]; ++i, size += 4) put(bytes + size, 4, packet->words[i]);
+  static _Thread_local sf_packet back;
+  return sf_decode(bytes, size, &back) == NULL ? size : 0;
+}
+
+// The names and values of a packet behind its header, each as `before`, "range_m = 1 0.25 8" and `after`.
+void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char* after) {
+  static const char* const corner[] = {"left_m", "top_m", "cell_m"};
+  const sf_type* const type = sf_find_type(p->type);
+  for (unsigned i = 0; p->type == SF_OCCUPANCY && i < 3; ++i)
+    fprintf(out, "%s%s = %.10g%s", before, corner[i], p->corner[i], after);
+  for (unsigned i = 0; type->words[i]; ++i) {
+    char number[12] = "none";
+    if (p->type != SF_V2V || p->words[i] != SF_NONE) snprintf(number, sizeof number, "%lu", (unsigned long)p->words[i]);
+    fprintf(out, "%s%s = %s%s", before, type->words[i], number, after);
+  }
+  for (unsigned c = 0, first = 0; type->columns[c].name; first += type->columns[c++].width) {
+    fprintf(out, "%s%s =", before, type->columns[c].name);
+    for (unsigned row = 0; row < p->count; row += sf_row_width(type))
+      for (unsigned k = 0; k < type->columns[c].width; ++k)
+        fprintf(out, isnan(p->values[row + first + k]) ? " none" : " %.10g", p->values[row + first + k]);
+    fputs(after, out);
+  }
+}
+
+// One line about a packet; NEIGHBOURS: one for each state.
+void sf_print(FILE* out, const sf_packet* p) {
+  for (unsigned i = 0; p->type == SF_NEIGHBOURS && i < p->count; ++i) {
+    static _Thread_local sf_packet state;
+    if (sf_decode(p->states + SF_V2V_BYTES * i, SF_V2V_BYTES, &state) == NULL) sf_print(out, &state);
+  }
+  if (p->type == SF_NEIGHBOURS) return;
+  fprintf(out, "%s %u of robot %u at %.3f s", sf_find_type(p->type)->name, p->sensor, p->robot,
+          (double)p->time_ns * 1e-9);
+  sf_print_body(out, p, "; ", "");
+  if (p->type < 128) fprintf(out, "; mode %u%s", p->mode, p->unsure ? ", not for every element" : "");
+  if (p->type < 128 && !isnan(p->bound)) fprintf(out, "; error up to %.3g", p->bound);
+  if (p->age_us > 0) fprintf(out, "; state %.1f ms old%s", p->age_us * 1e-3, p->stale ? ", stale" : "");
+  if (p->covariance[0] + p->covariance[3] + p->covariance[5] > 0)
+    fprintf(out, ", sigma %.3g m, %.3g m, %.3g rad", sqrt(p->covariance[0]), sqrt(p->covariance[3]),
+            sqrt(p->covariance[5]));
+  fputc('\n', out);
+}
+
+// A robot beside the farm. Its first socket sends; that one's address and port are what binds the robot's id.
+typedef struct {
+  uint16_t robot;
+  struct sockaddr_in farm;
+  uint32_t session, token, farm_session, types, states, requests;
+  double next_request;  // [s] by the monotonic clock
+  unsigned sockets;
+  struct pollfd polled[1 + SF_MAX_SENSORS];
+  struct {
+    uint64_t stream;
+    uint32_t sequence;
+    double when;
+  } newest[64];  // when 0: not in use
+  struct {
+    const char* status;
+    unsigned long packets;
+  } counts[12];  // accepted, and dropped by reason
+} sf_client;
+
+static double now_s(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void count_status(sf_client* c, const char* status) {
+  unsigned i = 0;
+  while (i < 11 && c->counts[i].status && strcmp(c->counts[i].status, status) != 0) ++i;
+  c->counts[i].status = status;
+  ++c->counts[i].packets;
+}
+
+// Binds a port, 0: any. A farm on this machine is heard on loopback alone. Returns false, with errno.
+static bool open_port(sf_client* c, uint16_t port) {
+  if (c->sockets > SF_MAX_SENSORS) return false;
+  const bool local = ntohl(c->farm.sin_addr.s_addr) >> 24 == 127;
+  struct sockaddr_in own = {.sin_family = AF_INET, .sin_port = htons(port)};
+  own.sin_addr.s_addr = htonl(local ? INADDR_LOOPBACK : INADDR_ANY);
+  const int opened = socket(AF_INET, SOCK_DGRAM, 0);
+  c->polled[c->sockets++] = (struct pollfd){.fd = opened, .events = POLLIN};
+  return opened >= 0 && bind(opened, (const struct sockaddr*)&own, sizeof own) == 0;
+}
+
+// Opens the socket that sends. @param neighbours asks for the states of others, too
+bool sf_open(sf_client* c, uint16_t robot, const char* host, const char* port, bool neighbours) {
+  memset(c, 0, sizeof *c);
+  struct addrinfo wanted = {.ai_family = AF_INET, .ai_socktype = SOCK_DGRAM}, *found = NULL;
+  FILE* const random = fopen("/dev/urandom", "rb");
+  const bool drawn = random && fread(&c->session, sizeof c->session, 1, random) == 1;
+  if (random) fclose(random);
+  if (!drawn || getaddrinfo(host, port, &wanted, &found) != 0) return false;
+  memcpy(&c->farm, found->ai_addr, sizeof c->farm);
+  freeaddrinfo(found);
+  c->robot = robot;
+  c->session |= 1;  // 0 would say that there is none
+  c->types = neighbours;
+  return open_port(c, 0);
+}
+
+// Listens for one sensor, numbered from 0 among those of its type. @param port 0: the farm's default
+bool sf_add_sensor(sf_client* c, const sf_type* type, unsigned number, unsigned port) {
+  if (port == 0) port = type->port + 8u * c->robot + number;
+  c->types |= 1u << type->type;
+  return port <= 65535 && open_port(c, (uint16_t)port);
+}
+
+static void send_packet(sf_client* c, sf_packet* p) {
+  uint8_t bytes[SF_TAG_BYTES];
+  p->robot = c->robot;
+  p->time_ns = (int64_t)(now_s() * 1e9);
+  p->session = c->session;
+  p->token = c->token;
+  const size_t size = sf_encode(p, bytes);
+  const struct sockaddr* const farm = (const struct sockaddr*)&c->farm;
+  if (size == 0 || sendto(c->polled[0].fd, bytes, size, 0, farm, sizeof c->farm) < 0) count_status(c, "not sent");
+}
+
+// V2V, and twice a second SUBSCRIBE. state: x, y, z [m], yaw [rad] in the world frame, forward, left [m/s], turn
+// [rad/s].
+void sf_send_state(sf_client* c, const double state[7], uint32_t follows, uint32_t checkpoint, bool docking) {
+  if (now_s() >= c->next_request) {
+    send_packet(c, &(sf_packet){.type = SF_SUBSCRIBE, .sequence = c->requests++, .words = {c->types}});
+    c->next_request = now_s() + 0.5;
+  }
+  sf_packet packet = {.type = SF_V2V, .sequence = c->states++, .words = {follows, checkpoint, docking}};
+  memcpy(packet.values, state, 7 * sizeof *state);
+  send_packet(c, &packet);
+}
+
+void sf_leave(sf_client* c) {
+  send_packet(c, &(sf_packet){.type = SF_LEAVE});
+  for (unsigned i = 0; i < c->sockets; ++i) close(c->polled[i].fd);
+}
+
+// By its sequence, which the parts of one reading share; after two seconds of silence any packet is new.
+static bool is_newer(sf_client* c, const sf_packet* p) {
+  const uint64_t stream = (uint64_t)p->type << 32 | (uint32_t)p->robot << 16 | p->sensor;
+  unsigned at = 0, oldest = 0;
+  for (at = 0; at < 64 && (c->newest[at].stream != stream || c->newest[at].when == 0); ++at)
+    if (c->newest[at].when < c->newest[oldest].when) oldest = at;
+  const uint32_t ahead = at < 64 ? p->sequence - c->newest[at].sequence : 1;
+  const bool repeated = ahead == 0 && (p->type == SF_LASER_EXTENDED || p->type == SF_OCCUPANCY);
+  if (at < 64 && now_s() - c->newest[at].when <= 2.0 && !repeated && (ahead == 0 || ahead >= 1u << 31)) return false;
+  at = at < 64 ? at : oldest;
+  c->newest[at].stream = stream;
+  c->newest[at].sequence = p->sequence;
+  c->newest[at].when = now_s();
+  return true;
+}
+
+static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size, const struct sockaddr_in* from,
+                                 sf_packet* p) {
+  if (from->sin_addr.s_addr != c->farm.sin_addr.s_addr || from->sin_port != c->farm.sin_port) return "wrong source";
+  const char* const status = sf_decode(bytes, size, p);
+  if (status) return status;
+  if (p->token != c->session || (p->type != SF_CHALLENGE && p->session != c->farm_session)) return "wrong source";
+  if (p->type >= SF_V2V && p->type != SF_START && p->type != SF_CHALLENGE && p->type != SF_NEIGHBOURS)
+    return "wrong direction";
+  if (p->robot != c->robot && (p->type != SF_START || p->robot != 65535)) return "unknown robot";
+  if (p->type == SF_CHALLENGE) {
+    c->token = p->words[0];
+    c->farm_session = p->session;
+    c->next_request = 0;
+    return NULL;
+  }
+  return p->type == SF_START || is_newer(c, p) ? NULL : "stale";
+}
+
+// Waits at most `timeout` [s], then hands over accepted readings, NEIGHBOURS and START, 64 from each port at most.
+void sf_receive(sf_client* c, double timeout, void (*handle)(const sf_packet*, void*), void* context) {
+  if (poll(c->polled, c->sockets, timeout > 0 ? (int)ceil(1e3 * timeout) : 0) <= 0) return;
+  for (unsigned i = 0; i < c->sockets; ++i)
+    for (unsigned n = 0; n < 64 && c->polled[i].revents & POLLIN; ++n) {
+      static _Thread_local sf_packet packet;
+      uint8_t bytes[2048];
+      struct sockaddr_in from = {0};
+      socklen_t length = sizeof from;
+      const ssize_t size =
+          recvfrom(c->polled[i].fd, bytes, sizeof bytes, MSG_DONTWAIT, (struct sockaddr*)&from, &length);
+      if (size < 0) break;
+      const char* const status = accept_packet(c, bytes, (size_t)size, &from, &packet);
+      count_status(c, status ? status : "accepted");
+      if (!status && packet.type != SF_CHALLENGE) handle(&packet, context);
+    }
+}
+
+#ifndef SENSORFARM_CLIENT_NO_MAIN
+
+static volatile sig_atomic_t stopped;
+static void stop(int number) { stopped = number; }
+
+static int fail(const char* text, const char* about) {
+  fprintf(stderr, "sensorfarm_client: %s%s\n", text, about);
+  return 2;
+}
+
+static void print_packet(const sf_packet* packet, void* out) {
+  sf_print(out, packet);
+  fflush(out);
+}
+
+// TYPE[.NUMBER][=PORT]
+static bool add_sensor(sf_client* c, const char* word) {
+  char name[16] = "";
+  unsigned number = 0, port = 0;
+  const size_t length = strcspn(word, ".=");
+  memcpy(name, word, length < 15 ? length : 15);
+  if (word[length] == '.' && sscanf(word + length, ".%5u=%5u", &number, &port) < 1) return false;
+  if (word[length] == '=' && sscanf(word + length, "=%5u", &port) != 1) return false;
+  for (size_t i = 0; i < sizeof sf_types / sizeof *sf_types; ++i)
+    if (sf_types[i].port != 0 && strcmp(sf_types[i].name, name) == 0)
+      return sf_add_sensor(c, &sf_types[i], number, port);
+  return false;
+}
+
+int main(int argc, char** argv) {
+  static sf_client c;
+  char host[256] = "127.0.0.1", port[6] = "9000";
+  double state[7] = {0}, degrees = 0, rate = 10;
+  int robot = -1, sensors = 0;
+  bool neighbours = false;
+  for (int i = 1; i < argc; ++i) {
+    const char *const word = argv[i], *const value = i + 1 < argc ? argv[i + 1] : "";
+    bool fine = true;
+    if (strcmp(word, "--neighbours") == 0)
+      neighbours = true, --i;
+    else if (strcmp(word, "--robot") == 0)
+      fine = sscanf(value, "%5d", &robot) == 1;
+    else if (strcmp(word, "--farm") == 0)
+      fine = sscanf(value, "%255[^:]:%5[0-9]", host, port) == 2;
+    else if (strcmp(word, "--pose") == 0)
+      fine = sscanf(value, "%lf,%lf,%lf", &state[0], &state[1], &degrees) == 3;
+    else if (strcmp(word, "--rate") == 0)
+      fine = sscanf(value, "%lf", &rate) == 1;
+    else if (strcmp(word, "--sensor") == 0)
+      ++sensors;
+    else
+      fine = false;
+    if (!fine)
+      return fail(
+          "--robot N [--farm HOST:PORT] [--pose X,Y,DEGREES] [--rate HZ] [--sensor TYPE[.NUMBER][=PORT]]... "
+          "[--neighbours]; not ",
+          word);
+    ++i;
+  }
+  if (robot < 0 || robot > 65535 || !(rate >= 1 && rate <= 1000))
+    return fail("--robot takes 0 to 65535, --rate 1 to 1000", "");
+  state[3] = degrees * acos(-1.0) / 180;
+  if (!sf_open(&c, (uint16_t)robot, host, port, neighbours)) return fail("no way to ", host);
+  for (int i = 1; i + 1 < argc; ++i)
+    if (strcmp(argv[i], "--sensor") == 0 && !add_sensor(&c, argv[i + 1]))
+      return fail("no such sensor, or its port is taken: ", argv[i + 1]);
+  if (sensors == 0 && !add_sensor(&c, "laser")) return fail("the port of laser 0 is taken", "");
+
+  const struct sigaction action = {.sa_handler = stop};
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  signal(SIGPIPE, SIG_IGN);
+  for (double due = now_s(); !stopped && !ferror(stdout);) {
+    if (now_s() >= due) {
+      sf_send_state(&c, state, SF_NONE, SF_NONE, false);
+      due = fmax(due + 1 / rate, now_s());
+    }
+    sf_receive(&c, due - now_s(), print_packet, stdout);
+  }
+  sf_leave(&c);
+  for (unsigned i = 0; i < 12 && c.counts[i].status; ++i)
+    fprintf(stderr, "%s%s %lu", i ? ", " : "", c.counts[i].status, c.counts[i].packets);
+  fputs(c.counts[0].status ? "\n" : "nothing received\n", stderr);
+  return 0;
+}
+
+#endif

@@ -1,0 +1,382 @@
+#!/usr/bin/env python3
+"""A robot's side of the sensor farm, with Python's standard library alone. docs/packets.md specifies every byte.
+
+As a program: robot 7 reports its pose (x, y [m], yaw [degrees]) ten times a second and prints its readings.
+
+    python3 sensorfarm_client.py --robot 7 --farm 127.0.0.1:9000 --pose 1.5,-2.25,30 --sensor laser --sensor gps.0
+
+As a module:
+
+    client = Client(7, ("127.0.0.1", 9000), [("laser", 0)])
+    client.send_state((1.5, -2.25, 0.0, 0.5))   # at least once a second
+    for packet in client.receive(0.1): ...      # dictionaries of `decode`
+    client.leave()
+
+Parts of large scans and maps are delivered one by one, each with its place in the whole.
+"""
+
+import argparse
+import collections
+import math
+import os
+import select
+import signal
+import socket
+import struct
+import sys
+import time
+
+LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
+V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 140
+NONE = 2**32 - 1  # V2V: no leader, no checkpoint
+EVERY_ROBOT = 65535  # START: recipient
+HEADER_BYTES, V2V_BYTES, MAX_PAYLOAD = 64, 132, 1256
+HEADER = struct.Struct("<4sBBHHHIqIII6fHH")
+STATES = {V2V: "<7d3I", TAG: "<13d", SUBSCRIBE: "<I", START: "<", LEAVE: "<", CHALLENGE: "<I"}  # payloads
+
+# Sensor types: name, base of the ports, columns of a row with the unit of each number on the wire.
+SENSORS = {
+    1: ("laser", 10000, [("range_m", 1e-3)]),
+    2: ("laneedge", 20000, []),
+    3: ("magnetometer", 30000, [("field_T", 1e-8), ("vector_T", 1e-8), ("vector_T", 1e-8), ("vector_T", 1e-8)]),
+    4: ("sonar", 36000, [("range_m", 1e-3)]),
+    5: ("infrared", 38000, [("range_m", 1e-6), ("value", 1)]),
+    6: ("bumper", 40000, [("pressed", 1)]),
+    7: ("cliff", 42000, [("cliff", 1)]),
+    8: ("encoder", 44000, [("left_m", 1e-5), ("right_m", 1e-5), ("left_counts", 1), ("right_counts", 1)]),
+    9: ("gyro", 46000, [("rate_rad_s", 1e-6)]),
+    10: ("gps", 48000, [("x_m", 5e-3), ("y_m", 5e-3), ("hdop", 1e-3), ("satellites", 1)]),
+    11: ("irreceiver", 50000, [("virtual_wall", 1), ("ir_byte", 1)]),
+    12: ("occupancy", 52000, []),
+}
+TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
+              131: "START", 132: "LEAVE", 133: "CHALLENGE", 140: "NEIGHBOURS"}
+
+
+class Malformed(ValueError):
+    """A datagram that is dropped; its text is the reason in the words of docs/packets.md."""
+
+
+def require(fine, reason="out of range"):
+    if not fine:
+        raise Malformed(reason)
+
+
+def unpack(form, payload):
+    """The numbers of a payload of exactly this form."""
+    size = struct.calcsize(form)
+    require(len(payload) >= size, "too short")
+    require(len(payload) <= size, "too long")
+    return struct.unpack(form, payload)
+
+
+def unpack_rows(form, word, payload):
+    """The numbers of a payload's head, of which the last is the count of the words behind it, and these words."""
+    size = struct.calcsize(form)
+    require(len(payload) >= size, "too short")
+    head = struct.unpack_from(form, payload)
+    return head, unpack("<%d%s" % (head[-1], word), payload[size:])
+
+
+def require_numbers(numbers, limit):
+    require(all(math.isfinite(number) for number in numbers), "not finite")
+    require(all(abs(number) <= limit for number in numbers))
+
+
+def decode_laser(extended, payload):
+    if not extended:
+        (count,), words = unpack_rows("<H", "H", payload)
+        require(1 <= count <= 361)
+        return {"range_m": [word / 1e3 for word in words]}
+    require(len(payload) >= 16, "too short")
+    (total, first, part, parts, count), words = unpack_rows("<IIHHH", "I", payload[:14] + payload[16:])
+    require(1 <= total <= 1000000 and parts == -(-total // 310) and part < parts)
+    require(first == 310 * part and count == min(310, total - first))
+    ranges = [math.inf if word == 2**32 - 1 else word / 1e4 for word in words]
+    return {"total": total, "first": first, "part": part, "parts": parts, "range_m": ranges}
+
+
+def decode_lane_edge(payload):
+    distance, points, residual, sigma = unpack("<HHII", payload)
+    metres = lambda word: None if word == 2**32 - 1 else word / 1e6
+    return {"distance_m": None if distance == 65535 else distance / 1e3, "points": points,
+            "residual_m": metres(residual), "sigma_m": metres(sigma)}
+
+
+def decode_rows(type, payload):
+    columns = SENSORS[type][2]
+    require(len(payload) >= 4, "too short")
+    count = struct.unpack_from("<H", payload)[0]
+    words = unpack("<%di" % (count * len(columns)), payload[4:])
+    require(1 <= count and len(words) <= 313 and (type != MAGNETOMETER or count <= 16))
+    body = {}
+    for word, (name, unit) in zip(words, columns * count):
+        missing = word == -2**31 and type != MAGNETOMETER
+        body.setdefault(name, []).append(None if missing else word * unit)
+    return body
+
+
+def decode_occupancy(payload):
+    names = ("left_m", "top_m", "cell_m", "part", "parts", "word_columns", "word_rows", "flags")
+    head, words = unpack_rows("<3d6H", "I", payload)
+    left, top, cell, part, parts, columns, rows, flags, count = head
+    all_words = columns * rows
+    require(abs(left) <= 1e7 and abs(top) <= 1e7 and 1e-4 <= cell <= 1e3 and flags <= 1)
+    require(1 <= columns <= 4096 and 1 <= rows <= 4096 and all_words <= 2**20)
+    require(parts == -(-all_words // 305) and part < parts and count == min(305, all_words - 305 * part))
+    require(all(word & word >> 1 & 0x55555555 == 0 for word in words))
+    return {**dict(zip(names, head)), "word": list(words)}
+
+
+def decode_state(type, robot, payload):
+    if type == NEIGHBOURS:
+        require(len(payload) <= 9 * V2V_BYTES, "too long")
+        require(len(payload) > 0 and len(payload) % V2V_BYTES == 0, "too short")
+        states = [decode(payload[at:at + V2V_BYTES]) for at in range(0, len(payload), V2V_BYTES)]
+        require(all(state["type"] == V2V for state in states), "wrong direction")
+        return {"states": states}
+    numbers = unpack(STATES[type], payload)
+    if type == V2V:
+        require(all(map(math.isfinite, numbers[:7])), "not finite")
+        for part, limit in ((numbers[:3], 1e7), (numbers[3:4], 1e6), (numbers[4:7], 1e3)):
+            require_numbers(part, limit)
+        require((numbers[7] <= 65535 or numbers[7] == NONE) and numbers[9] <= 1)
+        follows, checkpoint = (None if number == NONE else number for number in numbers[7:9])
+        return {"follows": follows, "checkpoint": checkpoint, "docking": numbers[9], "pose": list(numbers[:4]),
+                "velocity": list(numbers[4:7])}
+    if type == TAG:
+        require_numbers(numbers, 1e7)
+        require_numbers(numbers[7:], 1e3)
+        require(abs(math.hypot(*numbers[3:7]) - 1) <= 1e-3 and robot > 0)
+        return {"position": list(numbers[:3]), "orientation": list(numbers[3:7]), "linear": list(numbers[7:10]),
+                "angular": list(numbers[10:])}
+    return {"types" if type == SUBSCRIBE else "challenge": number for number in numbers}
+
+
+def decode(data):
+    """Any bytes as a dictionary, in SI units: None is no number. Raises Malformed."""
+    require(len(data) >= HEADER_BYTES, "too short")
+    fields = HEADER.unpack_from(data)
+    magic, version, type, robot, sensor, accuracy, sequence, time_ns, session, token, age = fields[:11]
+    covariance, trailer, flags = fields[11:17], fields[17], fields[18]
+    require(magic == b"SFPK", "bad magic")
+    require(version == 2, "unknown version")
+    require(len(data) >= HEADER_BYTES + trailer, "too short")
+    require(type in TYPE_NAMES, "unknown type")
+    payload = data[HEADER_BYTES:len(data) - trailer]
+    require(len(payload) <= MAX_PAYLOAD, "too long")
+    packet = {"type": type, "robot": robot, "sensor": sensor, "sequence": sequence, "time_ns": time_ns,
+              "session": session, "token": token}
+    if type < 128:
+        known = all(map(math.isfinite, covariance)) and min(covariance[0], covariance[3], covariance[5]) >= 0
+        bound = None if accuracy < 32 else 2.0**(((accuracy >> 5) - 1024) / 16)
+        packet.update(mode=accuracy & 15, unsure=accuracy >> 4 & 1, bound=bound, age_us=age,
+                      stale=flags & 1 if age else 0, covariance=list(covariance) if age and known else [0.0] * 6)
+    if type >= 128:
+        packet.update(decode_state(type, robot, payload))
+    elif type in (LASER, LASER_EXTENDED):
+        packet.update(decode_laser(type == LASER_EXTENDED, payload))
+    elif type == LANE_EDGE:
+        packet.update(decode_lane_edge(payload))
+    elif type == OCCUPANCY:
+        packet.update(decode_occupancy(payload))
+    else:
+        packet.update(decode_rows(type, payload))
+    require(0 <= time_ns <= 2**62 and trailer <= 80)
+    return packet
+
+
+def encode(type, payload=b"", robot=0, sequence=0, time_ns=0, session=0, token=0):
+    """A packet to the farm; START and LEAVE have no payload. Raises Malformed for numbers that the farm would drop."""
+    head = HEADER.pack(b"SFPK", 2, type, robot, 0, 0, sequence, time_ns, session, token, 0, *[0.0] * 6, 0, 0)
+    decode(head + payload)
+    return head + payload
+
+
+def encode_v2v(pose, velocity=(0.0, 0.0, 0.0), follows=None, checkpoint=None, docking=0, **header):
+    """A robot's state. pose: x, y, z [m], yaw [rad] in the world frame; velocity: forward, left [m/s], turn [rad/s]."""
+    ids = [NONE if number is None else number for number in (follows, checkpoint)]
+    return encode(V2V, struct.pack(STATES[V2V], *pose, *velocity, *ids, docking), **header)
+
+
+def encode_tag(position, orientation, linear=(0.0, 0.0, 0.0), angular=(0.0, 0.0, 0.0), **header):
+    """The state of tag number `robot` in the world frame [m, m/s, rad/s]. orientation: quaternion x, y, z, w."""
+    return encode(TAG, struct.pack(STATES[TAG], *position, *orientation, *linear, *angular), **header)
+
+
+def encode_subscribe(types=0, **header):
+    """types: bit k for sensor type k, bit 0 for states of others; 0: all sensor types."""
+    return encode(SUBSCRIBE, struct.pack("<I", types), **header)
+
+
+class Client:
+    """One robot beside the farm. `counts` has the number of packets accepted, and dropped by reason."""
+
+    def __init__(self, robot, farm, sensors, neighbours=False):
+        """farm: host, port. sensors: (type's name, number[, own port]) of each. neighbours: states of others, too."""
+        self.robot, self.farm = robot, (socket.gethostbyname(farm[0]), farm[1])
+        self.session, self.token, self.farm_session = int.from_bytes(os.urandom(4), "little") | 1, 0, 0
+        self.types, self.sent, self.next_request = int(neighbours), collections.Counter(), 0.0
+        self.newest, self.counts = {}, collections.Counter()
+        self.sockets = [self._open(0)]  # the first sends: its address and port are what binds the id
+        for name, number, *port in sensors:
+            type = next(type for type in SENSORS if SENSORS[type][0] == name)
+            self.types |= 1 << type
+            self.sockets.append(self._open(port[0] if port else SENSORS[type][1] + 8 * robot + number))
+
+    def _open(self, port):
+        opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        opened.bind(("127.0.0.1" if self.farm[0].startswith("127.") else "", port))
+        opened.setblocking(False)
+        return opened
+
+    def _header(self, type):
+        self.sent[type] += 1
+        return {"robot": self.robot, "sequence": (self.sent[type] - 1) % 2**32, "time_ns": time.monotonic_ns(),
+                "session": self.session, "token": self.token}
+
+    def _send(self, data):
+        try:
+            self.sockets[0].sendto(data, self.farm)
+        except OSError:
+            self.counts["not sent"] += 1
+
+    def send_state(self, pose, velocity=(0.0, 0.0, 0.0), **state):
+        """V2V, and twice a second SUBSCRIBE."""
+        if time.monotonic() >= self.next_request:
+            self._send(encode_subscribe(self.types, **self._header(SUBSCRIBE)))
+            self.next_request = time.monotonic() + 0.5
+        self._send(encode_v2v(pose, velocity, **state, **self._header(V2V)))
+
+    def leave(self):
+        self._send(encode(LEAVE, **self._header(LEAVE)))
+        for opened in self.sockets:
+            opened.close()
+
+    def receive(self, timeout):
+        """Accepted readings, NEIGHBOURS and START that came within `timeout` [s]; bounded in number."""
+        packets = []
+        for opened in select.select(self.sockets, [], [], max(0.0, timeout))[0]:
+            for _ in range(64):
+                try:
+                    data, sender = opened.recvfrom(2048)
+                except OSError:
+                    break
+                try:
+                    packet = self._accept(data, sender)
+                    self.counts["accepted"] += 1
+                    packets += [packet] if packet["type"] != CHALLENGE else []
+                except Malformed as reason:
+                    self.counts[str(reason)] += 1
+        return packets
+
+    def _accept(self, data, sender):
+        require(sender == self.farm, "wrong source")
+        packet = decode(data)
+        require(packet["token"] == self.session, "wrong source")
+        if packet["type"] == CHALLENGE:
+            self.token, self.farm_session, self.next_request = packet["challenge"], packet["session"], 0.0
+            return packet
+        require(packet["session"] == self.farm_session, "wrong source")
+        require(packet["type"] < 128 or packet["type"] in (START, NEIGHBOURS), "wrong direction")
+        require(packet["robot"] in (self.robot, EVERY_ROBOT), "unknown robot")
+        require(packet["type"] == START or self._is_newer(packet), "stale")
+        if packet["type"] == NEIGHBOURS:
+            packet["states"] = [state for state in packet["states"] if self._is_newer(state)]
+        return packet
+
+    def _is_newer(self, packet):
+        """By its sequence; parts of one reading share theirs, and after two seconds of silence any is."""
+        key, now = (packet["type"], packet["robot"], packet["sensor"]), time.monotonic()
+        sequence, when = self.newest.get(key, (0, -math.inf))
+        first = 0 if "part" in packet else 1
+        newer = now - when > 2.0 or first <= (packet["sequence"] - sequence) % 2**32 < 2**31
+        if newer:
+            self.newest[key] = packet["sequence"], now
+        return newer
+
+
+def text(value):
+    if isinstance(value, list):
+        return " ".join(map(text, value))
+    return "none" if value is None else "%d" % value if isinstance(value, int) else "%.10g" % value
+
+
+def fields(packet):
+    """The keys and values of `decode` as text, in order."""
+    pairs = {key: text(value) for key, value in packet.items() if key != "states"}
+    for i, state in enumerate(packet.get("states", [])):
+        pairs.update(("%d.%s" % (i, key), value) for key, value in fields(state).items())
+    return pairs
+
+
+def words(packet):
+    """One line about a packet; NEIGHBOURS: one for each state."""
+    if packet["type"] == NEIGHBOURS:
+        return "\n".join(map(words, packet["states"]))
+    line = "%s %d of robot %d" % (TYPE_NAMES[packet["type"]], packet["sensor"], packet["robot"])
+    body = list(fields(packet).items())[13 if packet["type"] < 128 else 7:]
+    line += " at %.3f s" % (packet["time_ns"] * 1e-9) + "".join("; %s = %s" % pair for pair in body)
+    if packet["type"] < 128:
+        line += "; mode %d" % packet["mode"] + (", not for every element" if packet["unsure"] else "")
+        line += "; error up to %.3g" % packet["bound"] if packet["bound"] else ""
+    if packet.get("age_us"):
+        line += "; state %.1f ms old" % (packet["age_us"] * 1e-3) + (", stale" if packet["stale"] else "")
+        sigmas = [math.sqrt(packet["covariance"][i]) for i in (0, 3, 5)]
+        line += ", sigma %.3g m, %.3g m, %.3g rad" % tuple(sigmas) if any(sigmas) else ""
+    return line
+
+
+def read_sensor(word):
+    """TYPE[.NUMBER][=PORT]"""
+    name, _, port = word.partition("=")
+    name, _, number = name.partition(".")
+    if name not in [sensor[0] for sensor in SENSORS.values()]:
+        raise argparse.ArgumentTypeError("'%s' is no sensor type" % name)
+    return (name, int(number or 0)) + ((int(port),) if port else ())
+
+
+def read_pose(word):
+    x, y, degrees = map(float, word.split(","))
+    return x, y, 0.0, math.radians(degrees)
+
+
+def read_farm(word):
+    host, _, port = word.rpartition(":")
+    return host or "127.0.0.1", int(port)
+
+
+def main():
+    parser = argparse.ArgumentParser(description="A robot beside a sensor farm: sends its pose, prints its readings.")
+    parser.add_argument("--robot", type=int, required=True, help="id, 0 to 65535")
+    parser.add_argument("--farm", type=read_farm, default=("127.0.0.1", 9000), metavar="HOST:PORT")
+    parser.add_argument("--pose", type=read_pose, default=(0.0, 0.0, 0.0, 0.0), metavar="X,Y,DEGREES")
+    parser.add_argument("--rate", type=float, default=10.0, metavar="HZ", help="states per second, 1 to 1000")
+    parser.add_argument("--sensor", type=read_sensor, action="append", metavar="TYPE[.NUMBER][=PORT]")
+    parser.add_argument("--neighbours", action="store_true", help="print the states of other robots, too")
+    # -1,0.5,30 is a value of --pose, not an option.
+    options = parser.parse_args("\0".join(sys.argv[1:]).replace("--pose\0", "--pose=").split("\0"))
+    if not (0 <= options.robot <= 65535 and 1.0 <= options.rate <= 1000.0):
+        parser.error("--robot takes 0 to 65535, --rate 1 to 1000")
+    try:
+        client = Client(options.robot, options.farm, options.sensor or [("laser", 0)], options.neighbours)
+    except (OSError, OverflowError) as error:
+        parser.error(str(error))
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        due = time.monotonic()
+        while True:
+            if time.monotonic() >= due:
+                client.send_state(options.pose)
+                due = max(due + 1.0 / options.rate, time.monotonic())
+            for packet in client.receive(due - time.monotonic()):
+                print(words(packet), flush=True)
+    except (KeyboardInterrupt, BrokenPipeError):
+        pass
+    finally:
+        client.leave()
+        print(", ".join("%s %d" % pair for pair in client.counts.items()) or "nothing received", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

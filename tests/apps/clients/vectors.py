@@ -1,0 +1,56 @@
+"""Holds sensorfarm_client.py to tests/netio/vectors: decoding gives their text, encoding their bytes.
+
+Usage: vectors.py FOLDER_OF_THE_CLIENT FILE...
+"""
+
+import pathlib
+import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import sensorfarm_client as client
+
+
+def vectors(path):
+    """(lines of text, bytes) of each packet of a file."""
+    for block in pathlib.Path(path).read_text().strip().split("\n\n"):
+        lines = [line for line in block.splitlines() if not line.startswith("#")]
+        at = lines.index("hex =")
+        yield lines[:at], bytes.fromhex("".join(lines[at + 1:]))
+
+
+def decoded(data):
+    try:
+        return client.decode(data), "accepted"
+    except client.Malformed as reason:
+        return None, str(reason)
+
+
+def encoded(packet):
+    """A packet to the farm, encoded again."""
+    header = {key: packet.pop(key) for key in ("robot", "sequence", "time_ns", "session", "token")}
+    type = packet.pop("type")
+    del packet["sensor"]
+    make = {client.V2V: client.encode_v2v, client.TAG: client.encode_tag, client.SUBSCRIBE: client.encode_subscribe}
+    return make[type](**packet, **header) if type in make else client.encode(type, **header)
+
+
+def judge(lines, data):
+    packet, status = decoded(data)
+    if lines[0].startswith("status = "):
+        return lines == ["status = " + status]
+    text = ["%s = %s" % pair for pair in client.fields(packet).items()] if packet else [status]
+    if text != lines:
+        print("\n".join(text))
+        return False
+    sent = client.V2V <= packet["type"] <= client.LEAVE
+    return encoded(packet) == data if sent else True
+
+
+count = 0
+for path in sys.argv[2:]:
+    for lines, data in vectors(path):
+        count += 1
+        if not judge(lines, data):
+            sys.exit("%s: packet of %s" % (path, lines))
+print("%d packets" % count)

@@ -1,0 +1,164 @@
+// The clients in examples/clients/: on the golden packets, and as processes beside `serve`.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "tests/apps/remote_robot.h"
+#include "tests/netio/vectors.h"
+
+namespace sf {
+
+namespace {
+
+const std::string kClients = SF_SOURCE_DIR "/examples/clients";
+const std::string kPythonClient = kClients + "/sensorfarm_client.py";
+const std::string kCClient = kClients + "/sensorfarm_client.c";
+constexpr const char* kNoPython = "this machine has no python3";
+constexpr const char* kNoCompiler = "this machine has no C compiler called cc";
+
+bool have_python() { return succeeds("python3 -c 'import argparse, socket, struct'"); }
+bool have_compiler() { return succeeds("cc --version"); }
+
+/// Without a warning. @return path of the program
+std::string compiled(const Folder& folder, const std::string& source) {
+  const std::string program = folder.path("compiled"), log = folder.path("log");
+  const std::string command = "cc -std=c11 -O0 -Wall -Wextra -Werror -I" SF_SOURCE_DIR " -o " + program + " " + source;
+  EXPECT_EQ(std::system((command + " -lm >" + log + " 2>&1").c_str()), 0) << read_file(log);
+  return program;
+}
+
+std::size_t count_vectors() {
+  std::size_t count = 0;
+  for (const std::string& file : test::vector_files()) count += test::read_vectors(file).size();
+  return count;
+}
+
+/// The judge reads all vectors and says how many.
+void expect_agreement(const std::string& judge, Words words) {
+  for (const std::string& file : test::vector_files()) words.push_back(file);
+  const Outcome outcome = Program(words, {}, "", "", judge).wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.out, std::to_string(count_vectors()) + " packets\n");
+}
+
+const char* const kSensors = R"(
+model( name "room" size [6 4 1] boundary 1 noblocks 0 color "gray" )
+position( name "roomba1" pose [-2 0 0 0] size [0.3 0.3 0.1]
+  laser( samples 91 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] )
+  sonar( scount 2 spose[0] [0.1 0 0] spose[1] [0 0.1 90] )
+  gps( rate 20 ) )
+)";
+
+/// What `sense` reads of one type. @param list of elements; empty: none
+std::vector<double> read_sense(const std::string& world, const std::string& type, const std::string& list,
+                               const Words& columns) {
+  const Json json(
+      run_program({"sense", world, "--robot", "roomba1", "--type", type, "--pose", "-1,0.5,30", "--json"}).out);
+  std::vector<double> values;
+  for (const std::string& column : columns)
+    for (std::size_t i = 0; i < (list.empty() ? 1 : json.size("/" + list)); ++i)
+      values.push_back(json.number((list.empty() ? "" : "/" + list + "/" + std::to_string(i)) + "/" + column));
+  return values;
+}
+
+/// The numbers of `columns` in the newest line about sensor 0 of a type.
+std::vector<double> printed(const std::string& text, const std::string& type, const Words& columns) {
+  std::vector<double> values;
+  const std::size_t at = text.rfind(type + " 0 of robot 1 at ");
+  if (at == std::string::npos || text.find('\n', at) == std::string::npos) return values;
+  const std::string line = text.substr(at, text.find('\n', at) - at);
+  for (const std::string& column : columns) {
+    const std::size_t begin = line.find("; " + column + " = ");
+    if (begin == std::string::npos) return {};
+    std::istringstream numbers(line.substr(line.find('=', begin) + 1));
+    for (double value = 0.0; numbers >> value;) values.push_back(value);
+  }
+  return values;
+}
+
+bool near(const std::vector<double>& found, const std::vector<double>& expected, double error) {
+  if (found.size() != expected.size() || found.empty()) return false;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (!(std::abs(found[i] - expected[i]) <= error)) return false;
+  return true;
+}
+
+/// One of the clients as robot 1 beside a service, until it has printed what `sense` reads; then it leaves.
+void expect_readings(Service& service, unsigned ports, const std::string& program, const Words& first) {
+  const auto scan = read_sense(service.world, "laser", "beams", {"range_m"});
+  const auto echoes = read_sense(service.world, "sonar", "transducers", {"range_m"});
+  const auto place = read_sense(service.world, "gps", "", {"x_m", "y_m"});
+  Words words = first;
+  for (const std::string& word :
+       Words{"--robot", "1", "--farm", "127.0.0.1:" + std::to_string(service.port), "--pose", "-1,0.5,30", "--rate",
+             "50", "--sensor", "laser=" + std::to_string(service.hears(1)), "--sensor",
+             "sonar.0=" + std::to_string(ports + 8), "--sensor", "gps.0=" + std::to_string(ports + 24)})
+    words.push_back(word);
+  const Folder folder;
+  const std::string out = folder.path("out");
+  Program client(words, {}, out, "", program);
+  std::string text;
+  EXPECT_TRUE(until([&] {
+    text = read_file(out);
+    const bool agreed = near(printed(text, "laser", {"range_m"}), scan, 0.000501) &&
+                        near(printed(text, "sonar", {"range_m"}), echoes, 0.000501) &&
+                        near(printed(text, "gps", {"x_m", "y_m"}), place, 0.002501);
+    return agreed || !client.running();
+  }));
+  EXPECT_TRUE(client.running()) << client.err();
+  EXPECT_NE(text.find(" ms old\n"), std::string::npos) << text;
+  client.signal(SIGINT);
+  const Outcome outcome = client.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("accepted "), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+
+TEST(Clients, PythonReadsAndWritesTheVectors) {
+  if (!have_python()) GTEST_SKIP() << kNoPython;
+  expect_agreement("python3", {SF_SOURCE_DIR "/tests/apps/clients/vectors.py", kClients});
+}
+
+TEST(Clients, CReadsAndWritesTheVectors) {
+  if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
+  const Folder folder;
+  expect_agreement(compiled(folder, SF_SOURCE_DIR "/tests/apps/clients/vectors.c"), {});
+}
+
+/// One after the other as the same robot: the second is accepted because the first said that it leaves.
+TEST(Clients, BothPrintWhatSenseReads) {
+  if (!have_python()) GTEST_SKIP() << kNoPython;
+  if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
+  const unsigned ports = free_ports(32);
+  Service service(kSensors,
+                  {"--rate", "50", "--sonar-port", std::to_string(ports), "--gps-port", std::to_string(ports + 16)});
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  expect_readings(service, ports, "python3", {kPythonClient});
+  expect_readings(service, ports, compiled(service.folder, kCClient), {});
+  service.program.signal(SIGINT);
+  const Json facts(service.program.wait().out);
+  EXPECT_GE(facts.number("/received/accepted"), 6) << "of each a request, a state and its last";
+  EXPECT_FALSE(facts.has("/received/wrong source"));
+  EXPECT_FALSE(facts.has("/received/stale"));
+}
+
+TEST(Clients, WrongWordsAreRefused) {
+  if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
+  const Folder folder;
+  const std::string client = compiled(folder, kCClient);
+  for (const Words& words : std::vector<Words>{{},
+                                               {"--robot", "65536"},
+                                               {"--robot", "1", "--rate", "0"},
+                                               {"--robot", "1", "--farm", "127.0.0.1"},
+                                               {"--robot", "1", "--sensor", "eye"},
+                                               {"--robot", "1", "--sensor", "laser=65536"},
+                                               {"--robot"}}) {
+    const Outcome outcome = Program(words, {}, "", "", client).wait();
+    EXPECT_EQ(outcome.code, 2) << testing::PrintToString(words);
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  }
+}
+
+}  // namespace sf
