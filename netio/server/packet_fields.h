@@ -1,0 +1,35 @@
+#pragma once
+// Packets as names and values, in SI units: the keys of tests/netio/vectors and of `dump --json`.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "netio/packets.h"
+
+namespace sf::server {
+
+/// A list has the numbers of a column of a reading, or of a vector. NaN: no number; infinity: no return of a laser.
+struct PacketField {
+  std::string name;
+  std::variant<std::int64_t, double, std::vector<double>> value;
+};
+
+/// "3", "0.25", "1 none inf": numbers of ten digits.
+std::string text_of(const PacketField& field);
+
+/// A datagram, as any receiver of such packets judges it.
+struct PacketDescription {
+  netio::PacketStatus status = netio::PacketStatus::too_short;  ///< the rest is filled in where it is accepted
+  netio::Header header;
+  std::string name;                 ///< "laser", "V2V", ...
+  std::vector<PacketField> fields;  ///< of the header, then those of the payload
+  std::size_t header_fields = 0;    ///< of `fields`
+};
+
+/// Accepts any bytes.
+PacketDescription describe_packet(std::span<const std::uint8_t> bytes);
+
+}  // namespace sf::server
