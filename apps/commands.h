@@ -18,6 +18,7 @@ int light(const LightOptions& options);
 int start(const StartOptions& options);
 int plot(const PlotOptions& options);
 int listen(const ListenOptions& options);
+int dump(const DumpOptions& options);
 int experiment(const ExperimentOptions& options);
 int test_scenarios(const TestOptions& options);
 int map(const MapOptions& options);

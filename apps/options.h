@@ -223,6 +223,12 @@ struct StartOptions : FarmOptions {
 
 struct ListenOptions : WorldOptions, JsonOption, CloneOptions, PortOptions, ReceiveOptions, DurationOption {};
 
+struct DumpOptions : JsonOption, BindOption, DurationOption {
+  std::string file;                  ///< capture; empty: live
+  std::vector<std::uint16_t> ports;  ///< to listen on
+  std::uint64_t count = 0;           ///< of datagrams after which it ends; 0: any
+};
+
 struct MapOptions : ReceiveOptions, WireOption, DurationOption {
   std::vector<std::uint16_t> map_ports;  ///< to listen on
   bool merge = false;                    ///< of all of them one map

@@ -238,23 +238,48 @@ void add_listen(CLI::App& app, Call& call) {
   add_until(*sub, o, "Stop after this long [s] (0: at --silence or Ctrl-C)");
 }
 
+CLI::Option* add_ports_to_bind(CLI::App& app, const std::string& name, std::vector<std::uint16_t>& ports,
+                               const std::string& help) {
+  const auto read = [&ports](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      const std::vector<std::uint16_t> some = *read_ports(text);
+      ports.insert(ports.end(), some.begin(), some.end());
+    }
+  };
+  return app.add_option_function<std::vector<std::string>>(name, read, help)
+      ->check(readable(read_ports, "a port or a range of at most 1024 such as 52000-52008"))
+      ->type_name("PORT");
+}
+
+void add_dump(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "dump",
+      "Print packets in words, one line each: those of a capture file (tcpdump -w) or those that come to ports "
+      "(exit 1 when none was valid)");
+  auto& o = add_command(*sub, call, dump, [sub] {
+    if (sub->count("file") + sub->count("--port") == 0) throw CLI::RequiredError("file (or --port)");
+    for (const std::string option : {"--bind", "--duration"})
+      if (sub->count("file") > 0 && sub->count(option) > 0) throw CLI::ValidationError(option, "goes with --port");
+  });
+  add_examples(*sub, {"traffic.pcap", "--port 9000 --json"});
+  auto* file = sub->add_option("file", o.file, "Capture file in the classic pcap format")->type_name("FILE");
+  add_ports_to_bind(*sub, "--port", o.ports, "UDP port to listen on, or a range of ports A-B (may be repeated)")
+      ->excludes(file);
+  add_json(*sub, o);
+  add_bind(*sub, o);
+  sub->add_option("--count", o.count, "Stop after this number of datagrams (0: never)")
+      ->check(whole(0, 1'000'000'000'000))
+      ->type_name("N");
+  add_until(*sub, o, "Stop listening after this long [s] (0: at Ctrl-C)");
+}
+
 void add_map(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("map", "Show the occupancy maps that robots send, live in a terminal, and draw them");
   auto& o = add_command(*sub, call, map);
   add_examples(*sub, {"--listen 52008 -o map.png"});
-  sub->add_option_function<std::vector<std::string>>(
-         "--listen",
-         [&o](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts) {
-             const std::vector<std::uint16_t> ports = *read_ports(text);
-             o.map_ports.insert(o.map_ports.end(), ports.begin(), ports.end());
-           }
-         },
-         "Port of a robot's map, or a range of ports A-B (may be repeated)")
-      ->required()
-      ->check(readable(read_ports, "a port or a range of at most 1024 such as 52000-52008"))
-      ->type_name("PORT");
+  add_ports_to_bind(*sub, "--listen", o.map_ports, "Port of a robot's map, or a range of ports A-B (may be repeated)")
+      ->required();
   add_bind(*sub, o);
   add_from(*sub, o);
   sub->add_flag("--merge", o.merge, "Merge all maps: a cell that any robot saw occupied is occupied");
@@ -276,6 +301,7 @@ void add_run_commands(CLI::App& app, Call& call) {
   add_light(app, call);
   add_start(app, call);
   add_listen(app, call);
+  add_dump(app, call);
   add_map(app, call);
 }
 

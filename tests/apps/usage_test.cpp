@@ -12,9 +12,9 @@ namespace sf {
 
 namespace {
 
-const Words kSubcommands{"devices",    "check", "draw",   "sense",    "run", "serve",    "robot",
-                         "start",      "plot",  "listen", "field",    "map", "selftest", "explain",
-                         "experiment", "test",  "verify", "tradeoff", "help"};
+const Words kSubcommands{"devices", "check",      "draw",   "sense",  "run",      "serve", "robot",
+                         "start",   "plot",       "listen", "dump",   "field",    "map",   "selftest",
+                         "explain", "experiment", "test",   "verify", "tradeoff", "help"};
 
 struct Wrong {
   Words arguments;

@@ -1,0 +1,190 @@
+// `dump`: one line for each datagram that comes to a port, or stands in a capture file.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/commands.h"
+#include "apps/exposure_warning.h"
+#include "apps/stop_signals.h"
+#include "apps/text.h"
+#include "base/elapsed.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "netio/pcap.h"
+#include "netio/port_listener.h"
+#include "netio/server/packet_fields.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr std::size_t kMaxFile = 512u << 20;      ///< [byte]
+constexpr std::size_t kReceiveBuffer = 1u << 22;  ///< [byte] asked of the kernel
+constexpr std::size_t kMaxNumbers = 8;            ///< of a list in words; longer ones are summed up
+constexpr int kPatience = 100;                    ///< [ms]
+
+/// The thing that a packet is about.
+std::string subject_of(const server::PacketDescription& packet) {
+  const netio::Header& header = packet.header;
+  switch (header.type) {
+    case netio::Type::tag:
+      return fmt::format("TAG of tag {}", header.robot);
+    case netio::Type::start:
+      if (header.robot == netio::kBroadcastId) return "START to all robots";
+      [[fallthrough]];
+    case netio::Type::challenge:
+    case netio::Type::neighbours:
+      return fmt::format("{} to robot {}", packet.name, header.robot);
+    default:
+      break;
+  }
+  if (netio::sensor_type_of(header.type) == 0) return fmt::format("{} of robot {}", packet.name, header.robot);
+  return fmt::format("{} {} of robot {}", packet.name, header.sensor, header.robot);
+}
+
+/// "range_m = 1 0.25 8"; of a long list its number of numbers and their extremes.
+std::string words_of(const server::PacketField& field) {
+  const auto* list = std::get_if<std::vector<double>>(&field.value);
+  if (list == nullptr || list->size() <= kMaxNumbers) return field.name + " = " + text_of(field);
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (const double number : *list) least = std::fmin(least, number), most = std::fmax(most, number);
+  return fmt::format("{} = {} numbers, {:.10g} to {:.10g}", field.name, list->size(), least, most);
+}
+
+/// Accuracy of a reading and quality of the state behind it.
+std::string quality_words(const netio::Header& header) {
+  if (netio::sensor_type_of(header.type) == 0) return "";
+  const netio::Accuracy accuracy = netio::decode_accuracy(header.accuracy);
+  std::string text = fmt::format("; mode {}", accuracy.mode);
+  if (!std::isinf(accuracy.bound)) text += fmt::format(", error up to {:.3g}", accuracy.bound);
+  if (accuracy.unsure) text += ", not for every element";
+  const netio::StateQuality& state = header.state;
+  if (!state.stated) return text;
+  text += fmt::format("; state {:.1f} ms old{}", 1e-6 * static_cast<double>(state.age), state.stale ? ", stale" : "");
+  const auto& c = state.covariance;
+  if (c[0] + c[3] + c[5] > 0.0f)
+    text += fmt::format(", sigma {:.3g} m, {:.3g} m, {:.3g} rad", std::sqrt(c[0]), std::sqrt(c[3]), std::sqrt(c[5]));
+  return text;
+}
+
+/// In the header of a state that NEIGHBOURS contains, the same for all of them.
+bool is_repeated(const std::string& name) {
+  return name.ends_with(".type") || name.ends_with(".sensor") || name.ends_with(".session") || name.ends_with(".token");
+}
+
+std::string words_of(const server::PacketDescription& packet) {
+  std::string text = fmt::format("{}, sequence {}, {:.3f} s", subject_of(packet), packet.header.sequence,
+                                 1e-9 * static_cast<double>(packet.header.time));
+  for (const server::PacketField& field : std::span(packet.fields).subspan(packet.header_fields))
+    if (!is_repeated(field.name)) text += "; " + words_of(field);
+  return text + quality_words(packet.header);
+}
+
+std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+
+std::string json_value(const server::PacketField& field) {
+  if (const auto* whole = std::get_if<std::int64_t>(&field.value)) return std::to_string(*whole);
+  if (const auto* number = std::get_if<double>(&field.value)) return json_number(*number);
+  std::string text;
+  for (const double number : std::get<std::vector<double>>(field.value))
+    text += (text.empty() ? "" : ",") + json_number(number);
+  return "[" + text + "]";
+}
+
+class Printer {
+ public:
+  explicit Printer(bool json) : json_(json) {}
+
+  void print(const netio::CapturedDatagram& datagram) {
+    server::PacketDescription packet;
+    const bool cut = datagram.sent_bytes > datagram.payload.size();
+    if (!cut) packet = server::describe_packet(datagram.payload);
+    const bool good = !cut && packet.status == netio::PacketStatus::accepted;
+    cut ? void(++cut_) : counts_.add(packet.status);
+    const std::string status = cut ? "cut off by the capture" : std::string(netio::name(packet.status));
+    apps::print(json_ ? json_line(datagram, packet, status, good) : words_line(datagram, packet, status, good));
+  }
+  std::uint64_t datagrams() const { return counts_.total() + cut_; }
+  bool any_good() const { return counts_[netio::PacketStatus::accepted] > 0; }
+  std::string summary() const {
+    return netio::text(counts_) + (cut_ > 0 ? fmt::format(", cut off by the capture {}", cut_) : "");
+  }
+
+ private:
+  static std::string words_line(const netio::CapturedDatagram& datagram, const server::PacketDescription& packet,
+                                const std::string& status, bool good) {
+    const std::string text = good ? words_of(packet) : fmt::format("{}, {} bytes", status, datagram.payload.size());
+    return fmt::format("{}.{:06} {} > {}: {}\n", datagram.time / 1'000'000'000, datagram.time % 1'000'000'000 / 1000,
+                       datagram.source, datagram.destination, text);
+  }
+  static std::string json_line(const netio::CapturedDatagram& datagram, const server::PacketDescription& packet,
+                               const std::string& status, bool good) {
+    std::string text = fmt::format(R"({{"received_ns":{},"from":"{}","to":"{}","bytes":{},"status":"{}")",
+                                   datagram.time, datagram.source, datagram.destination, datagram.sent_bytes, status);
+    if (good) text += fmt::format(R"(,"name":"{}")", packet.name);
+    if (good)
+      for (const server::PacketField& field : packet.fields)
+        text += fmt::format(R"(,"{}":{})", field.name, json_value(field));
+    return text + "}\n";
+  }
+
+  bool json_;
+  netio::PacketCounts counts_;
+  std::uint64_t cut_ = 0;
+};
+
+void dump_file(const DumpOptions& options, Printer& printer) {
+  const std::string content = base::read_bytes(options.file, kMaxFile);
+  netio::PcapReader reader({reinterpret_cast<const std::uint8_t*>(content.data()), content.size()}, options.file);
+  install_stop_handlers();
+  netio::CapturedDatagram datagram;
+  while (!stop_requested() && (options.count == 0 || printer.datagrams() < options.count) && reader.next(datagram))
+    printer.print(datagram);
+  if (reader.other_records() > 0)
+    print_message("{} without a whole UDP datagram", counted(reader.other_records(), "record"));
+  if (reader.is_damaged()) print_message("{}: damaged after {}", options.file, counted(reader.records(), "record"));
+}
+
+void dump_ports(const DumpOptions& options, Printer& printer) {
+  std::vector<std::uint16_t> ports = options.ports;
+  std::sort(ports.begin(), ports.end());
+  ports.erase(std::unique(ports.begin(), ports.end()), ports.end());
+  std::vector<netio::StreamSpec> streams;
+  for (const std::uint16_t port : ports) streams.push_back({0, 0, netio::PortRule{port, 1}, "datagram"});
+  const std::uint32_t address = netio::resolve(options.bind);
+  netio::PortListener listener(address, kReceiveBuffer, streams);
+  warn_of_exposure(address, "send packets");
+  install_stop_handlers();
+  print_message("listening on {} of {}", counted(ports.size(), "port"), options.bind);
+  const auto start = std::chrono::steady_clock::now();
+  const auto is_over = [&] {
+    return stop_requested() || (options.count > 0 && printer.datagrams() >= options.count) ||
+           (options.duration > 0.0 && base::seconds_since(start) >= options.duration);
+  };
+  while (!is_over()) {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    listener.drain(kPatience, [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& source) {
+      if (options.count > 0 && printer.datagrams() >= options.count) return;
+      printer.print({std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(), netio::text(source),
+                     netio::text(netio::Endpoint{address, ports[i]}), static_cast<std::uint32_t>(bytes.size()), bytes});
+    });
+    std::fflush(stdout);
+  }
+  if (const std::uint64_t drops = listener.socket_drops(); drops > 0)
+    print_message("{} dropped by the operating system", counted(drops, "datagram"));
+}
+
+}  // namespace
+
+int dump(const DumpOptions& options) {
+  Printer printer(options.json);
+  options.file.empty() ? dump_ports(options, printer) : dump_file(options, printer);
+  print_message("{}: {}", counted(printer.datagrams(), "datagram"), printer.summary());
+  return printer.any_good() ? 0 : 1;
+}
+
+}  // namespace sf::apps
