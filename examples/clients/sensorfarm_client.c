@@ -461,6 +461,7 @@ static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size
     return "wrong direction";
   if (p->robot != c->robot && (p->type != SF_START || p->robot != 65535)) return "unknown robot";
   if (p->type == SF_CHALLENGE) {
+    if (p->session != c->farm_session) memset(c->newest, 0, sizeof c->newest);  // another farm
     c->token = p->words[0];
     c->farm_session = p->session;
     c->next_request = 0;
@@ -506,11 +507,12 @@ static void print_packet(const sf_packet* packet, void* out) {
 static bool add_sensor(sf_client* c, const char* word) {
   char name[16] = "";
   unsigned number = 0, port = 0;
-  const size_t length = strcspn(word, ".=");
-  memcpy(name, word, length < 15 ? length : 15);
-  if (word[length] == '.' && sscanf(word + length, ".%5u=%5u", &number, &port) < 1) return false;
-  if (word[length] == '=' && sscanf(word + length, "=%5u", &port) != 1) return false;
-  for (size_t i = 0; i < sizeof sf_types / sizeof *sf_types; ++i)
+  int length = 0, more = 0;
+  sscanf(word, "%15[a-z]%n.%5u%n", name, &length, &number, &more);
+  word += more > length ? more : length;
+  length = 0;
+  if (*word == '=') sscanf(word, "=%6u%n", &port, &length);
+  for (size_t i = 0; word[length] == 0 && i < sizeof sf_types / sizeof *sf_types; ++i)
     if (sf_types[i].port != 0 && strcmp(sf_types[i].name, name) == 0)
       return sf_add_sensor(c, &sf_types[i], number, port);
   return false;
@@ -518,42 +520,39 @@ static bool add_sensor(sf_client* c, const char* word) {
 
 int main(int argc, char** argv) {
   static sf_client c;
-  char host[256] = "127.0.0.1", port[6] = "9000";
-  double state[7] = {0}, degrees = 0, rate = 10;
-  int robot = -1, sensors = 0;
+  const char *const names[] = {"--robot", "--farm", "--pose", "--rate"}, *sensors[SF_MAX_SENSORS] = {"laser"};
+  const char* values[] = {"", "127.0.0.1:9000", "0,0,0", "10"};
+  unsigned count = 0, robot = 0;
   bool neighbours = false;
   for (int i = 1; i < argc; ++i) {
-    const char *const word = argv[i], *const value = i + 1 < argc ? argv[i + 1] : "";
-    bool fine = true;
-    if (strcmp(word, "--neighbours") == 0)
-      neighbours = true, --i;
-    else if (strcmp(word, "--robot") == 0)
-      fine = sscanf(value, "%5d", &robot) == 1;
-    else if (strcmp(word, "--farm") == 0)
-      fine = sscanf(value, "%255[^:]:%5[0-9]", host, port) == 2;
-    else if (strcmp(word, "--pose") == 0)
-      fine = sscanf(value, "%lf,%lf,%lf", &state[0], &state[1], &degrees) == 3;
-    else if (strcmp(word, "--rate") == 0)
-      fine = sscanf(value, "%lf", &rate) == 1;
-    else if (strcmp(word, "--sensor") == 0)
-      ++sensors;
-    else
-      fine = false;
-    if (!fine)
+    unsigned k = 0;
+    while (k < 4 && strcmp(argv[i], names[k]) != 0) ++k;
+    const bool is_sensor = strcmp(argv[i], "--sensor") == 0 && count < SF_MAX_SENSORS;
+    if (strcmp(argv[i], "--neighbours") == 0)
+      neighbours = true;
+    else if (i + 1 == argc || (k == 4 && !is_sensor))
       return fail(
-          "--robot N [--farm HOST:PORT] [--pose X,Y,DEGREES] [--rate HZ] [--sensor TYPE[.NUMBER][=PORT]]... "
-          "[--neighbours]; not ",
-          word);
-    ++i;
+          "--robot N [--farm HOST:PORT] [--pose X,Y,DEGREES] [--rate HZ] [--neighbours] "
+          "[--sensor TYPE[.NUMBER][=PORT]]...; not ",
+          argv[i]);
+    else
+      *(is_sensor ? &sensors[count++] : &values[k]) = argv[i + 1], ++i;
   }
-  if (robot < 0 || robot > 65535 || !(rate >= 1 && rate <= 1000))
-    return fail("--robot takes 0 to 65535, --rate 1 to 1000", "");
+  char host[256], port[6], rest;
+  double state[7] = {0}, degrees, rate;
+  if (sscanf(values[0], "%6u%c", &robot, &rest) != 1 || robot > 65535)
+    return fail("--robot takes an id from 0 to 65535, not ", values[0]);
+  if (sscanf(values[1], "%255[^:]:%5[0-9]%c", host, port, &rest) != 2)
+    return fail("--farm takes HOST:PORT, not ", values[1]);
+  if (sscanf(values[2], "%lf,%lf,%lf%c", &state[0], &state[1], &degrees, &rest) != 3 || check_numbers(state, 2, 1e7) ||
+      !(fabs(degrees) <= 1e6))
+    return fail("--pose takes X,Y,DEGREES, not ", values[2]);
+  if (sscanf(values[3], "%lf%c", &rate, &rest) != 1 || !(rate >= 1 && rate <= 1000))
+    return fail("--rate takes 1 to 1000 states per second, not ", values[3]);
   state[3] = degrees * acos(-1.0) / 180;
-  if (!sf_open(&c, (uint16_t)robot, host, port, neighbours)) return fail("no way to ", host);
-  for (int i = 1; i + 1 < argc; ++i)
-    if (strcmp(argv[i], "--sensor") == 0 && !add_sensor(&c, argv[i + 1]))
-      return fail("no such sensor, or its port is taken: ", argv[i + 1]);
-  if (sensors == 0 && !add_sensor(&c, "laser")) return fail("the port of laser 0 is taken", "");
+  if (!sf_open(&c, (uint16_t)robot, host, port, neighbours)) return fail("no such host: ", host);
+  for (unsigned i = 0; i == 0 || i < count; ++i)
+    if (!add_sensor(&c, sensors[i])) return fail("no such sensor, or its port is taken: ", sensors[i]);
 
   const struct sigaction action = {.sa_handler = stop};
   sigaction(SIGINT, &action, NULL);

@@ -275,14 +275,14 @@ class Client:
         packet = decode(data)
         require(packet["token"] == self.session, "wrong source")
         if packet["type"] == CHALLENGE:
+            if packet["session"] != self.farm_session:
+                self.newest.clear()  # another farm
             self.token, self.farm_session, self.next_request = packet["challenge"], packet["session"], 0.0
             return packet
         require(packet["session"] == self.farm_session, "wrong source")
         require(packet["type"] < 128 or packet["type"] in (START, NEIGHBOURS), "wrong direction")
         require(packet["robot"] in (self.robot, EVERY_ROBOT), "unknown robot")
         require(packet["type"] == START or self._is_newer(packet), "stale")
-        if packet["type"] == NEIGHBOURS:
-            packet["states"] = [state for state in packet["states"] if self._is_newer(state)]
         return packet
 
     def _is_newer(self, packet):
@@ -359,10 +359,12 @@ def main():
     if not (0 <= options.robot <= 65535 and 1.0 <= options.rate <= 1000.0):
         parser.error("--robot takes 0 to 65535, --rate 1 to 1000")
     try:
+        encode_v2v(options.pose)
         client = Client(options.robot, options.farm, options.sensor or [("laser", 0)], options.neighbours)
-    except (OSError, OverflowError) as error:
+    except (OSError, OverflowError, Malformed) as error:
         parser.error(str(error))
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
     try:
         due = time.monotonic()
         while True:

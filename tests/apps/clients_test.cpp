@@ -4,6 +4,7 @@
 
 #include <csignal>
 
+#include "netio/outbox.h"
 #include "tests/apps/remote_robot.h"
 #include "tests/netio/vectors.h"
 
@@ -84,6 +85,12 @@ bool near(const std::vector<double>& found, const std::vector<double>& expected,
   return true;
 }
 
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
 /// One of the clients as robot 1 beside a service, until it has printed what `sense` reads; then it leaves.
 void expect_readings(Service& service, unsigned ports, const std::string& program, const Words& first) {
   const auto scan = read_sense(service.world, "laser", "beams", {"range_m"});
@@ -108,10 +115,20 @@ void expect_readings(Service& service, unsigned ports, const std::string& progra
   }));
   EXPECT_TRUE(client.running()) << client.err();
   EXPECT_NE(text.find(" ms old\n"), std::string::npos) << text;
+
+  // A stranger's scan at the same port is counted and dropped: it was taken when two scans came after it.
+  netio::Outbox stranger;
+  stranger.queue({netio::kLoopback, static_cast<std::uint16_t>(service.hears(1))},
+                 test::read_vectors(SF_SOURCE_DIR "/tests/netio/vectors/laser.txt").at(0).bytes);
+  stranger.flush();
+  const auto scans = [&] { return count_of(read_file(out), "laser 0 of robot 1 at "); };
+  const std::size_t before = scans();
+  EXPECT_TRUE(until([&] { return scans() >= before + 2 || !client.running(); }));
   client.signal(SIGINT);
   const Outcome outcome = client.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("accepted "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("wrong source 1"), std::string::npos) << outcome.err;
 }
 
 }  // namespace
@@ -150,7 +167,15 @@ TEST(Clients, WrongWordsAreRefused) {
   const std::string client = compiled(folder, kCClient);
   for (const Words& words : std::vector<Words>{{},
                                                {"--robot", "65536"},
+                                               {"--robot", "100000"},
+                                               {"--robot", "-1"},
+                                               {"--robot", "7x"},
                                                {"--robot", "1", "--rate", "0"},
+                                               {"--robot", "1", "--pose", "1,2"},
+                                               {"--robot", "1", "--pose", "nan,0,0"},
+                                               {"--robot", "1", "--pose", "10000001,0,0"},
+                                               {"--robot", "1", "--sensor", "laser.0=11000x"},
+                                               {"--robot", "1", "--sensor", "laser."},
                                                {"--robot", "1", "--farm", "127.0.0.1"},
                                                {"--robot", "1", "--sensor", "eye"},
                                                {"--robot", "1", "--sensor", "laser=65536"},
