@@ -23,6 +23,12 @@ std::string text_of(const PacketDescription& packet) {
   return text;
 }
 
+/// False for readings of a sensor type that this build lacks.
+bool is_built(const base::Bytes& bytes) {
+  const std::uint8_t id = bytes.size() > 5 ? netio::sensor_type_of(netio::Type{bytes[5]}) : std::uint8_t{0};
+  return id == 0 || sensors::find_sensor_type(id) != nullptr;
+}
+
 /// A reading as the farm has it, before it is encoded.
 struct Decoded {
   const sensors::SensorType* type = nullptr;
@@ -91,6 +97,7 @@ TEST(PacketVectors, AreTheFarmsOwnPacketsInBothDirections) {
   for (const std::string& file : test::vector_files()) {
     if (file.ends_with("statuses.txt")) continue;
     for (const test::PacketVector& vector : test::read_vectors(file)) {
+      if (!is_built(vector.bytes)) continue;
       EXPECT_EQ(text_of(describe_packet(vector.bytes)), vector.text) << file;
       netio::Packet packet;
       ASSERT_EQ(netio::decode(vector.bytes, packet), PacketStatus::accepted) << file;
@@ -107,9 +114,11 @@ TEST(PacketVectors, AreTheFarmsOwnPacketsInBothDirections) {
 TEST(PacketVectors, HaveTheFarmsStatuses) {
   const auto vectors = test::read_vectors(SF_SOURCE_DIR "/tests/netio/vectors/statuses.txt");
   EXPECT_GT(vectors.size(), 30u);
-  for (const test::PacketVector& vector : vectors)
+  for (const test::PacketVector& vector : vectors) {
+    if (!is_built(vector.bytes)) continue;
     EXPECT_EQ("status = " + std::string(netio::name(describe_packet(vector.bytes).status)) + "\n", vector.text)
         << testing::PrintToString(vector.bytes);
+  }
 }
 
 }  // namespace
