@@ -27,7 +27,7 @@ constexpr std::size_t kReceiveBuffer = 1u << 22;  ///< [byte] asked of the kerne
 constexpr std::size_t kMaxNumbers = 8;            ///< of a list in words; longer ones are summed up
 constexpr int kPatience = 100;                    ///< [ms]
 
-/// The thing that a packet is about.
+/// Type of a packet, its sensor and its robot.
 std::string subject_of(const server::PacketDescription& packet) {
   const netio::Header& header = packet.header;
   switch (header.type) {

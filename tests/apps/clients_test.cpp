@@ -51,7 +51,7 @@ position( name "roomba1" pose [-2 0 0 0] size [0.3 0.3 0.1]
   gps( rate 20 ) )
 )";
 
-/// What `sense` reads of one type. @param list of elements; empty: none
+/// Values of one type by `sense`. @param list of elements; empty: none
 std::vector<double> read_sense(const std::string& world, const std::string& type, const std::string& list,
                                const Words& columns) {
   const Json json(
@@ -91,7 +91,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// One of the clients as robot 1 beside a service, until it has printed what `sense` reads; then it leaves.
+/// One of the clients as robot 1 beside a service, until it has printed the readings of `sense`; then it leaves.
 void expect_readings(Service& service, unsigned ports, const std::string& program, const Words& first) {
   const auto scan = read_sense(service.world, "laser", "beams", {"range_m"});
   const auto echoes = read_sense(service.world, "sonar", "transducers", {"range_m"});
@@ -145,7 +145,7 @@ TEST(Clients, CReadsAndWritesTheVectors) {
 }
 
 /// One after the other as the same robot: the second is accepted because the first said that it leaves.
-TEST(Clients, BothPrintWhatSenseReads) {
+TEST(Clients, BothPrintTheReadingsOfSense) {
   if (!have_python()) GTEST_SKIP() << kNoPython;
   if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
   const unsigned ports = free_ports(32);

@@ -1,4 +1,4 @@
-// Capture files: every form that is read, and everything that is not.
+// Capture files in every form that is read, damaged and of other kinds.
 
 #include "netio/pcap.h"
 
@@ -97,7 +97,7 @@ TEST(Pcap, ExtensionHeadersAreSkipped) {
   expect_datagram(file_of(101, ipv6(kUdp, joined(hop_by_hop, destination), 0)), "[2001:db8::1]:9000", "[::1]:10056");
 }
 
-TEST(Pcap, WhatIsNoWholeUdpDatagramIsCounted) {
+TEST(Pcap, RecordsWithoutAWholeUdpDatagramAreCounted) {
   PcapFile file;
   file.add(ethernet(ipv4(kUdp)));
   file.add(ethernet(ipv4(kUdp, 0x2000)));                // the first fragment
