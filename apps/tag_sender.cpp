@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "netio/address_book.h"
 #include "netio/address_token.h"
 
 namespace sf::apps {
@@ -13,16 +13,10 @@ namespace sf::apps {
 namespace {
 
 /// @param file of the address, for errors; empty: the command line's
-netio::Endpoint read_address(const std::string& text, const std::string& file) {
-  const std::size_t colon = text.rfind(':');
-  std::uint16_t port = 0;
-  if (colon != std::string::npos && colon > 0) {
-    const auto [end, error] = std::from_chars(text.data() + colon + 1, text.data() + text.size(), port);
-    if (error != std::errc() || end != text.data() + text.size()) port = 0;
-  }
+netio::Endpoint read_address(netio::AddressBook& book, const std::string& text, const std::string& file) {
+  if (const auto endpoint = book.find(text)) return *endpoint;
   const std::string message = fmt::format("'{}' is no address; expected HOST:PORT such as 192.168.1.5:9000", text);
-  if (port == 0) throw file.empty() ? base::InputError("--send: " + message) : base::InputError(file, 0, message);
-  return {netio::resolve(text.substr(0, colon)), port};
+  throw file.empty() ? base::InputError("--send: " + message) : base::InputError(file, 0, message);
 }
 
 }  // namespace
@@ -40,10 +34,11 @@ netio::Tag object_state(const vision::TrackedTag& tag, const vision::TagMount& m
 
 TagSender::TagSender(const vision::Testbed& testbed, const std::string& fallback) : testbed_(testbed) {
   header_.session = netio::random_session();
-  if (!testbed.tag.address.empty()) fallback_ = read_address(testbed.tag.address, testbed.file);
-  if (!fallback.empty() && !fallback_) fallback_ = read_address(fallback, "");
+  netio::AddressBook book;
+  if (!testbed.tag.address.empty()) fallback_ = read_address(book, testbed.tag.address, testbed.file);
+  if (!fallback.empty() && !fallback_) fallback_ = read_address(book, fallback, "");
   for (const auto& [id, mount] : testbed.tags)
-    if (!mount.address.empty()) addresses_[id] = read_address(mount.address, testbed.file);
+    if (!mount.address.empty()) addresses_[id] = read_address(book, mount.address, testbed.file);
 }
 
 void TagSender::send(std::span<const vision::TrackedTag> tags, std::int64_t epoch) {
