@@ -6,6 +6,9 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <map>
+
+#include "base/box.h"
 
 namespace sf::vision {
 
@@ -15,25 +18,90 @@ using Color = std::array<std::uint8_t, 3>;
 constexpr Color kTag{86, 224, 120}, kAxis{255, 160, 40}, kWall{240, 90, 90}, kMarking{110, 190, 255};
 constexpr double kPiece = 0.05;  // [m] straight pieces of lines, which lenses bend
 
-/// A line on a horizontal plane, in pieces; several marks where parts of it are not seen.
-void add_line(const Camera& camera, std::span<const glm::dvec2> points, double z, Color color, int width,
-              std::vector<Mark>& out) {
-  Mark mark{{}, "", color, width};
-  const auto flush = [&] {
-    if (mark.points.size() > 1) out.push_back(mark);
-    mark.points.clear();
-  };
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const double length = glm::distance(points[i], points[i + 1]);
-    const int pieces = static_cast<int>(std::clamp(std::ceil(length / kPiece), 1.0, 4096.0));
-    for (int k = i == 0 ? 0 : 1; k <= pieces; ++k) {
-      const glm::dvec2 p = glm::mix(points[i], points[i + 1], static_cast<double>(k) / pieces);
-      const auto pixel = project(camera, {p.x, p.y, z});
-      pixel ? mark.points.push_back(*pixel) : flush();
-    }
+/// Box of what the camera sees of the plane at height `z`; that of all points where it sees the plane's horizon.
+base::Box seen_box(const Camera& camera, double z) {
+  constexpr int kSteps = 16;  // along each border, which lenses bend between the points
+  const glm::dvec2 last{camera.intrinsics.width - 1, camera.intrinsics.height - 1};
+  base::Box box = base::empty_box();
+  for (int k = 0; k < 4 * kSteps; ++k) {
+    const double along = static_cast<double>(k % kSteps) / kSteps;
+    const glm::dvec2 corner = k / kSteps == 0   ? glm::dvec2{along, 0.0}
+                              : k / kSteps == 1 ? glm::dvec2{1.0, along}
+                              : k / kSteps == 2 ? glm::dvec2{1.0 - along, 1.0}
+                                                : glm::dvec2{0.0, 1.0 - along};
+    const auto p = to_plane(camera, corner * last, z);
+    if (!p) return {glm::dvec2{-HUGE_VAL}, glm::dvec2{HUGE_VAL}};
+    box = base::united(box, {*p, *p});
   }
-  flush();
+  const glm::dvec2 margin = 0.1 * (box.max - box.min);
+  return {box.min - margin, box.max + margin};
 }
+
+/// The part of the line from a to b within a box, as fractions of it (Liang and Barsky); empty: first > second.
+std::pair<double, double> clip(const base::Box& box, glm::dvec2 a, glm::dvec2 b) {
+  double first = 0.0, last = 1.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double d = b[axis] - a[axis];
+    if (d == 0.0 && (a[axis] < box.min[axis] || a[axis] > box.max[axis])) return {1.0, 0.0};
+    if (d == 0.0) continue;
+    const double u = (box.min[axis] - a[axis]) / d, v = (box.max[axis] - a[axis]) / d;
+    first = std::max(first, std::min(u, v));
+    last = std::min(last, std::max(u, v));
+  }
+  return {first, last};
+}
+
+/// Lines on a horizontal plane as marks, clipped to the picture.
+class LineMarks {
+ public:
+  /// @param box of the plane that is in sight, or more
+  LineMarks(const Camera& camera, double z, const base::Box& box, const Mark& style, std::vector<Mark>& out)
+      : camera_(camera), z_(z), box_(box), mark_(style), out_(out) {}
+
+  void add(std::span<const glm::dvec2> line) {
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+      const auto [first, last] = clip(box_, line[i], line[i + 1]);
+      if (first > 0.0 || first > last) end();
+      const glm::dvec2 a = glm::mix(line[i], line[i + 1], first), b = glm::mix(line[i], line[i + 1], last);
+      const int pieces = static_cast<int>(std::clamp(std::ceil(glm::distance(a, b) / kPiece), 1.0, 4096.0));
+      for (int k = last_ ? 1 : 0; k <= pieces && first <= last; ++k)
+        add(glm::mix(a, b, static_cast<double>(k) / pieces));
+    }
+    end();
+  }
+
+ private:
+  /// Continues the line to `p`. Pieces outside the picture are left out.
+  void add(glm::dvec2 p) {
+    const auto pixel = project(camera_, {p.x, p.y, z_});
+    if (!pixel) return end();
+    const auto margin = static_cast<double>(mark_.width);
+    const base::Box picture{glm::dvec2{-margin},
+                            glm::dvec2{camera_.intrinsics.width, camera_.intrinsics.height} + margin};
+    if (last_ && base::meet(picture, base::box_of(*last_, *pixel))) {
+      if (mark_.points.empty()) mark_.points.push_back(*last_);
+      mark_.points.push_back(*pixel);
+    } else {
+      flush();
+    }
+    last_ = pixel;
+  }
+  void flush() {
+    if (!mark_.points.empty()) out_.push_back(mark_);
+    mark_.points.clear();
+  }
+  void end() {
+    flush();
+    last_.reset();
+  }
+
+  const Camera& camera_;
+  double z_;
+  base::Box box_;
+  Mark mark_;  ///< the visible line so far
+  std::vector<Mark>& out_;
+  std::optional<glm::dvec2> last_;  ///< [px] end of the last piece, in the picture or not
+};
 
 }  // namespace
 
@@ -43,11 +111,12 @@ std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sigh
     const base::Pose& X = sighting.fit.X_WT;
     const double h = 0.5 * sighting.fit.side;
     const auto at = [&](double x, double y) { return base::transform(X, {x, y}); };
+    const base::Box near = base::box_around({X.x, X.y}, 4.0 * h);
     const std::vector<glm::dvec2> square{at(-h, -h), at(h, -h), at(h, h), at(-h, h), at(-h, -h)};
-    add_line(camera, square, X.z, kTag, 2, marks);
+    LineMarks(camera, X.z, near, {{}, "", kTag, 2}, marks).add(square);
     const std::vector<glm::dvec2> arrow{at(0.0, 0.0), at(2.0 * h, 0.0), at(1.6 * h, 0.25 * h), at(2.0 * h, 0.0),
                                         at(1.6 * h, -0.25 * h)};
-    add_line(camera, arrow, X.z, kAxis, 2, marks);
+    LineMarks(camera, X.z, near, {{}, "", kAxis, 2}, marks).add(arrow);
     const auto middle = project(camera, {X.x, X.y, X.z});
     if (!middle) continue;
     const glm::dvec2 below = *middle + glm::dvec2{-40.0, 1.1 * sighting.fit.side / sighting.fit.pixel};
@@ -59,11 +128,17 @@ std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sigh
 
 std::vector<Mark> world_marks(const Camera& camera, const world::World& world) {
   std::vector<Mark> marks;
-  for (const world::LaneMarking& marking : world.lane_markings) add_line(camera, marking.line, 0.0, kMarking, 2, marks);
+  std::map<double, base::Box> boxes;  // by height, which many walls share
+  const auto add = [&](std::span<const glm::dvec2> line, double z, Color color, int width) {
+    const auto [box, is_new] = boxes.try_emplace(z);
+    if (is_new) box->second = seen_box(camera, z);
+    LineMarks(camera, z, box->second, {{}, "", color, width}, marks).add(line);
+  };
+  for (const world::LaneMarking& marking : world.lane_markings) add(marking.line, 0.0, kMarking, 2);
   for (const world::Segment& wall : world.walls) {
-    const std::vector<glm::dvec2> line{wall.a, wall.b};
-    add_line(camera, line, wall.z_min, kWall, 1, marks);
-    add_line(camera, line, wall.z_max, kWall, 2, marks);
+    const std::array<glm::dvec2, 2> line{wall.a, wall.b};
+    add(line, wall.z_min, kWall, 1);
+    add(line, wall.z_max, kWall, 2);
   }
   return marks;
 }

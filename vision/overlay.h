@@ -12,8 +12,7 @@ namespace sf::vision {
 /// The fitted square of each tag projected back into the image, an arrow along its x axis, its id and pose.
 std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sightings);
 
-/// Walls and lane markings of a world, as they would lie in front of the camera; parts that it does not see are left
-/// out.
+/// Walls and lane markings of a world, as they would lie in front of the camera, clipped to its picture.
 std::vector<Mark> world_marks(const Camera& camera, const world::World& world);
 
 /// The grey image with the marks, in colours.
