@@ -106,6 +106,13 @@ std::unique_ptr<CameraInputs> open_inputs(const vision::Testbed& testbed,
 
 std::unique_ptr<CameraInputs> rendered_inputs(const vision::Testbed& testbed, const vision::RenderedFleet& fleet,
                                               std::uint64_t seed) {
+  std::int64_t pixels = 0;
+  for (const vision::TestbedCamera& each : testbed.cameras)
+    pixels += std::int64_t{each.camera.intrinsics.width} * each.camera.intrinsics.height;
+  if (pixels > vision::kMaxImagePixels)
+    throw base::InputError(testbed.file, 0,
+                           fmt::format("'size' of all cameras is {} Mpx together; --rendered expects at most {} Mpx",
+                                       pixels >> 20, vision::kMaxImagePixels >> 20));
   return std::make_unique<RenderedInputs>(testbed, fleet, seed);
 }
 

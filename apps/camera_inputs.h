@@ -27,6 +27,7 @@ std::unique_ptr<CameraInputs> open_inputs(const vision::Testbed& testbed,
                                           const std::vector<std::pair<std::string, std::string>>& chosen);
 
 /// @param fleet lives longer
+/// @throws base::InputError for cameras of more than 64 Mpx together, since a renderer has 32 bytes for each
 std::unique_ptr<CameraInputs> rendered_inputs(const vision::Testbed& testbed, const vision::RenderedFleet& fleet,
                                               std::uint64_t seed);
 

@@ -6,6 +6,7 @@
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
+#include "vision/camera.h"
 
 namespace sf::apps {
 
@@ -95,7 +96,7 @@ void add_calibrate(CLI::App& app, Call& call) {
       ->type_name("M")
       ->capture_default_str();
   sub->add_option("--name", o.name, "Name of the camera")
-      ->check(not_empty("a name"))
+      ->check(readable(vision::is_camera_name, vision::kCameraNameForm))
       ->type_name("NAME")
       ->capture_default_str();
 }

@@ -34,6 +34,14 @@ Jacobian jacobian(const std::array<double, 5>& d, glm::dvec2 n) {
 
 }  // namespace
 
+bool is_camera_name(std::string_view name) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  };
+  return !name.empty() && name.size() <= 64 && is_plain(name[0]) &&
+         std::all_of(name.begin(), name.end(), [&](char c) { return is_plain(c) || c == '_' || c == '-'; });
+}
+
 glm::dvec2 distort(const Intrinsics& intrinsics, glm::dvec2 normalised) {
   return intrinsics.center + intrinsics.focal * bend(intrinsics.distortion, normalised);
 }

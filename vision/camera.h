@@ -10,6 +10,7 @@
 #include <glm/ext/vector_double3.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace sf::vision {
 
@@ -31,6 +32,12 @@ struct Camera {
   double exposure = 0.0;               ///< [s] of one row, >= 0
   double readout = 0.0;  ///< [s] from the first row's start to the last row's (rolling shutter); 0: global
 };
+
+/// A camera's name is a word of `--input NAME=SOURCE` and the stem of its files: 1 to 64 letters, digits, '_' and '-',
+/// the first a letter or a digit.
+bool is_camera_name(std::string_view name);
+inline constexpr const char* kCameraNameForm =
+    "a name of letters, digits, '_' and '-', which begins with a letter or a digit, of at most 64";
 
 /// [px] of a point in normalised coordinates.
 glm::dvec2 distort(const Intrinsics& intrinsics, glm::dvec2 normalised);

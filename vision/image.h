@@ -8,6 +8,10 @@
 
 namespace sf::vision {
 
+/// Pixels of the largest image: 64 Mpx. Larger ones are refused, so that their number fits OpenCV's int with room for
+/// three channels, and memory is bounded.
+inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 26;
+
 /// 8 bits a channel, row by row, the top row first.
 struct Image {
   int width = 0;                     ///< [px]

@@ -40,6 +40,9 @@ void read_intrinsics(const TomlReader& reader, const TomlNode& table, Intrinsics
   reader.numbers(table, "size", size, kMaxPixels, "[columns, rows] in pixels");
   for (const double n : size)
     if (n < 16.0 || n != std::floor(n)) reader.fail(at, "'size' expects whole numbers of pixels from 16 to 16384");
+  if (size[0] * size[1] > kMaxImagePixels)
+    reader.fail(at, fmt::format("'size' is {:.0f} x {:.0f} pixels; expected at most {} Mpx", size[0], size[1],
+                                kMaxImagePixels >> 20));
   const TomlNode& length = required(reader, table, "focal", "focal = [1664, 1664] in pixels, from a calibration");
   reader.numbers(table, "focal", focal, 1e6, "[along columns, along rows] in pixels");
   if (focal[0] < 1.0 || focal[1] < 1.0) reader.fail(length, "'focal' expects pixels from 1 to 1e6");
@@ -80,6 +83,8 @@ TestbedCamera read_camera(const TomlReader& reader, const TomlNode& table, const
   Camera& camera = read.camera;
   required(reader, table, "name", "name = \"north\"");
   camera.name = reader.text(table, "name", "");
+  if (!is_camera_name(camera.name))
+    reader.fail(*world::find(table, "name"), fmt::format("'name' expects {}", kCameraNameForm));
   for (const TestbedCamera& other : others)
     if (other.camera.name == camera.name)
       reader.fail(*world::find(table, "name"), fmt::format("two cameras have the name '{}'", camera.name));
@@ -90,6 +95,26 @@ TestbedCamera read_camera(const TomlReader& reader, const TomlNode& table, const
   camera.readout = reader.number(table, "readout", 0.0, 0.0, 1.0);
   read.source = reader.text(table, "source", "");
   return read;
+}
+
+std::vector<TestbedCamera> read_cameras(const TomlReader& reader, const TomlNode& root) {
+  const auto tables = reader.tables(root, "camera");
+  if (tables.empty())
+    throw base::InputError(reader.file(), 0, "has no camera; expected a section [[camera]] for each, see docs/vps.md");
+  if (tables.size() > kMaxCameras)
+    reader.fail(*tables[kMaxCameras],
+                fmt::format("'camera' has {} sections; expected at most {}", tables.size(), kMaxCameras));
+  std::vector<TestbedCamera> cameras;
+  std::int64_t pixels = 0;
+  for (const TomlNode* table : tables) {
+    cameras.push_back(read_camera(reader, *table, cameras));
+    const Intrinsics& i = cameras.back().camera.intrinsics;
+    pixels += std::int64_t{i.width} * i.height;
+    if (pixels > kMaxTestbedPixels)
+      reader.fail(*world::find(*table, "size"),
+                  fmt::format("'size' of all cameras is more than {} Mpx together", kMaxTestbedPixels >> 20));
+  }
+  return cameras;
 }
 
 TagMount read_tag(const TomlReader& reader, const TomlNode& table, const TagMount& fallback) {
@@ -120,14 +145,8 @@ Testbed parse_testbed(const std::string& file, std::string_view text) {
   testbed.tag.side = reader.number(root, "tag_side", testbed.tag.side, 1e-3, 10.0);
   testbed.tag.height = reader.number(root, "tag_height", testbed.tag.height, -100.0, 100.0);
   testbed.tag.address = reader.text(root, "address", "");
-  if (const TomlNode* node = world::find(root, "only_listed")) {
-    if (node->kind != TomlNode::Kind::flag) reader.fail(*node, "'only_listed' expects true or false");
-    testbed.only_listed = node->flag;
-  }
-  for (const TomlNode* table : reader.tables(root, "camera"))
-    testbed.cameras.push_back(read_camera(reader, *table, testbed.cameras));
-  if (testbed.cameras.empty())
-    throw base::InputError(file, 0, "has no camera; expected a section [[camera]] for each, see docs/vps.md");
+  testbed.only_listed = reader.flag(root, "only_listed");
+  testbed.cameras = read_cameras(reader, root);
   for (const TomlNode* table : reader.tables(root, "tag")) {
     reader.require_known(*table, kTagKeys);
     const TomlNode& id = required(reader, *table, "id", "id = 12");

@@ -9,8 +9,13 @@
 
 #include "base/pose.h"
 #include "vision/camera.h"
+#include "vision/image.h"
 
 namespace sf::vision {
+
+inline constexpr std::size_t kMaxCameras = 64;
+/// Of the images of all cameras together: 256 Mpx.
+inline constexpr std::int64_t kMaxTestbedPixels = 4 * kMaxImagePixels;
 
 /// Tags are printed squares; `side` is that of the black border's outline.
 struct TagMount {
@@ -31,7 +36,7 @@ struct Testbed {
   TagMount tag;                            ///< of tags without an entry of their own
   std::map<std::uint32_t, TagMount> tags;  ///< by id
   bool only_listed = false;                ///< ignore ids without an entry
-  std::vector<TestbedCamera> cameras;      ///< at least one, names distinct
+  std::vector<TestbedCamera> cameras;      ///< 1 to `kMaxCameras`, names distinct
 
   const TagMount& mount(std::uint32_t id) const;
 };

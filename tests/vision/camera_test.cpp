@@ -105,4 +105,15 @@ TEST(Camera, TimesRows) {
   EXPECT_NEAR(middle_of_exposure(camera, 1023.0), 0.022, 1e-15);
 }
 
+TEST(Camera, NamesAreKeysAndStems) {
+  for (const char* name : {"north", "N", "7", "a_b-c", "2nd"}) EXPECT_TRUE(is_camera_name(name)) << name;
+  EXPECT_TRUE(is_camera_name(std::string(64, 'a')));
+  EXPECT_FALSE(is_camera_name(std::string(65, 'a')));  // longer than any that a file name needs
+  for (const std::string& name :
+       std::vector<std::string>{"", "..", "a/b", "../a",     // other folders
+                                "a=b", "a b", "-a", "a\"b",  // other words of a command line or of the file
+                                "_a", "a.b", "a\n", "\xC3\xB6", std::string("a\0b", 3)})
+    EXPECT_FALSE(is_camera_name(name)) << name;
+}
+
 }  // namespace sf::vision

@@ -2,6 +2,7 @@
 
 #include "vision/testbed.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -77,10 +78,12 @@ TEST(Testbed, NamesFileLineAndRemedy) {
            {"camera = 3\n", "t.toml:1: 'camera' expects tables, each under [[camera]]"},
            {"[[camera]]\nname = \"a\"\n", "'size' is missing; expected size = [1280, 1024] in pixels"},
            {"[[camera]]\nname = \"a\"\nsize = [1280.5, 1024]\n", "t.toml:3: 'size' expects whole numbers"},
+           {"[[camera]]\nname = \"a\"\nsize = [-640, 480]\n", "t.toml:3: 'size' expects whole numbers of pixels"},
            {"[[camera]]\nname = \"a\"\nsize = [8, 1024]\n", "t.toml:3: 'size' expects whole numbers of pixels from 16"},
            {"[[camera]]\nname = \"a\"\nsize = [640, 480]\n", "'focal' is missing"},
            {"[[camera]]\nname = \"a\"\nsize = [640, 480]\nfocal = [0, 700]\n", "t.toml:4: 'focal' expects pixels"},
            {"[[camera]]\nname = \"a\"\nsize = [640, 480]\nfocal = [700, 700]\n", "'position' is missing"},
+           {"[[camera]]\nname = \"../x\"\n", "t.toml:2: 'name' expects a name of letters, digits"},
            {kCamera + kCamera, "t.toml:7: two cameras have the name 'north'"},
            {kCamera + "orientation = [1, 1, 0, 0]\n", "t.toml:6: 'orientation' has the norm 1.414; expected a unit"},
            {kCamera + "distortion = [-9, 0, 0, 0, 0]\n", "t.toml:6: 'distortion' folds the image"},
@@ -92,6 +95,60 @@ TEST(Testbed, NamesFileLineAndRemedy) {
            {kCamera + "[[tag]]\nid = 1\n[[tag]]\nid = 1\n", "t.toml:9: two sections [[tag]] have the id 1"},
            {kCamera + "[[tag]]\nid = 1\noffset = [1, 2]\n", "t.toml:8: 'offset' expects [x, y, yaw]"}})
     EXPECT_NE(error_of(each.text).find(each.expected), std::string::npos) << error_of(each.text) << "\n" << each.text;
+}
+
+TEST(Testbed, BoundsSizesAndNumbers) {
+  const auto camera = [](int i, const std::string& size) {
+    return "[[camera]]\nname = \"c" + std::to_string(i) + "\"\nsize = " + size +
+           "\nfocal = [9000, 9000]\nposition = [0, 1, 6.5]\n";
+  };
+  EXPECT_EQ(error_of(camera(0, "[8192, 8192]")), "no error");  // exactly 64 Mpx
+  EXPECT_EQ(error_of(camera(0, "[8193, 8192]")), "t.toml:3: 'size' is 8193 x 8192 pixels; expected at most 64 Mpx");
+  EXPECT_EQ(error_of(camera(0, "[16385, 16]")).substr(0, 16), "t.toml:3: 'size'");
+  std::string many, large;
+  for (int i = 0; i < 64; ++i) many += camera(i, "[640, 480]");
+  EXPECT_EQ(error_of(many), "no error");
+  EXPECT_EQ(error_of(many + camera(64, "[640, 480]")), "t.toml:321: 'camera' has 65 sections; expected at most 64");
+  for (int i = 0; i < 4; ++i) large += camera(i, "[8192, 8192]");
+  EXPECT_EQ(error_of(large), "no error");  // exactly 256 Mpx
+  EXPECT_EQ(error_of(large + camera(4, "[16, 16]")), "t.toml:23: 'size' of all cameras is more than 256 Mpx together");
+}
+
+TEST(Testbed, RefusesValuesOfEveryWrongForm) {
+  // Each key with each of the forms that are not its own, beside values that are no finite numbers.
+  const std::vector<std::string> forms{"true",       "\"\"",      "''",         "nan",       "-inf",
+                                       "1e999",      "-1",        "[]",         "[1]",       "[nan, nan]",
+                                       "[[1], [2]]", "{ a = 1 }", "2026-01-01", "[1, \"2\"]"};
+  std::size_t count = 0;
+  const auto refuses = [&](const std::string& text) {
+    EXPECT_TRUE(error_of(text).starts_with("t.toml")) << text << error_of(text);
+    ++count;
+  };
+  for (const std::string& form : forms) {
+    for (const char* key : {"dictionary", "tag_side", "address"})
+      refuses(fmt::format("{} = {}\n", key, form) + kCamera);
+    for (const char* key : {"center", "distortion", "orientation", "rate", "exposure", "source"})
+      refuses(kCamera + fmt::format("{} = {}\n", key, form));
+    for (const char* key : {"side", "offset", "address"})
+      refuses(kCamera + fmt::format("[[tag]]\nid = 1\n{} = {}\n", key, form));
+    refuses(kCamera + fmt::format("[[tag]]\nid = {}\n", form));
+    for (const char* key : {"name", "size", "focal", "position"}) {
+      std::string text = kCamera;
+      const std::size_t at = text.find(key), end = text.find('\n', at);
+      refuses(text.replace(at, end - at, fmt::format("{} = {}", key, form)));
+    }
+  }
+  EXPECT_EQ(count, forms.size() * 17);
+}
+
+TEST(Testbed, RefusesWhatIsNoTestbed) {
+  std::string deep = "a";
+  for (int i = 0; i < 200'000; ++i) deep += ".a";
+  for (const std::string& text : {std::string(), std::string("\0", 1), deep + " = 1\n", "[" + deep + "]\n",
+                                  std::string(200'000, '['), "camera = " + std::string(200'000, '['),
+                                  "[[camera]]\n" + deep + " = 1\n", std::string("[camera]\nname = \"a\""),
+                                  std::string("[[camera]\n"), kCamera + "[tag]\nid = 1\n", kCamera + "\xFF = 1\n"})
+    EXPECT_TRUE(error_of(text).starts_with("t.toml")) << text.substr(0, 80) << error_of(text);
 }
 
 TEST(Testbed, WritesCamerasThatItReads) {
