@@ -1,36 +1,32 @@
 // `calibrate`: a camera's intrinsics from images of a chessboard.
 
+#include "vision/calibration.h"
+
 #include <fmt/format.h>
 
 #include "apps/commands.h"
+#include "apps/progress_line.h"
 #include "apps/text.h"
-#include "base/error.h"
-#include "vision/opencv.h"
 #include "vision/testbed.h"
 
 namespace sf::apps {
 
 namespace {
 
-constexpr std::size_t kMostImages = 200;  // bounds memory and time; more add little
-
-std::vector<vision::Image> read_images(const std::string& from) {
-  const auto source = vision::opencv().open_source(from, 0, 0, 0.0);
-  if (source->is_live()) throw base::InputError(from, 0, "is a device; expected a folder of images or a video");
-  std::vector<vision::Image> images;
-  for (vision::Image image; source->next(image); images.push_back(image))
-    if (images.size() == kMostImages)
-      throw base::InputError(from, 0,
-                             fmt::format("has more than {} images; expected fewer, all different", kMostImages));
-  return images;
+vision::Calibration calibrate_shown(const CalibrateOptions& options) {
+  const auto source = vision::opencv().open_source(options.images, 0, 0, 0.0);
+  // The number of a video's images is not known before its end.
+  const double images = static_cast<double>(source->size() > 0 ? source->size() : vision::kMaxCalibrationImages);
+  Progress progress("calibrating");
+  return vision::calibrate(
+      *source, options.images, {static_cast<int>(options.columns), static_cast<int>(options.rows), options.square},
+      [&](std::size_t done) { progress.show(static_cast<double>(done) / images, counted(done, "image")); });
 }
 
 }  // namespace
 
 int calibrate(const CalibrateOptions& options) {
-  const std::vector<vision::Image> images = read_images(options.images);
-  const vision::Calibration found = vision::opencv().calibrate(images, static_cast<int>(options.columns),
-                                                               static_cast<int>(options.rows), options.square);
+  const vision::Calibration found = calibrate_shown(options);
   vision::Camera camera;
   camera.name = options.name;
   camera.intrinsics = found.intrinsics;

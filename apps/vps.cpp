@@ -73,6 +73,7 @@ class Overlay {
              std::uint64_t number) const {
     if (folder_.empty()) return;
     for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (frames[i].image.pixels.empty()) continue;
       const vision::Camera& camera = testbed_.cameras[i].camera;
       std::vector<vision::Mark> marks = vision::tag_marks(camera, positioning.sightings(i));
       if (!world_marks_.empty()) marks.insert(marks.begin(), world_marks_[i].begin(), world_marks_[i].end());

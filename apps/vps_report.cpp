@@ -30,6 +30,7 @@ std::string accuracy_text(const vision::Accuracy& a) {
 std::string text_of(const VpsReport& r) {
   const auto images = static_cast<double>(r.counts.images);
   std::string text = row("cameras", r.cameras) + row("images", r.counts.images);
+  if (r.counts.unreadable > 0) text += row("", "{} of them unreadable", r.counts.unreadable);
   if (r.counts.images > 0)
     text += row("processing", "{:.1f} images/s, {:.1f} ms of CPU time an image", images / r.processing_s,
                 1e3 * r.processing_cpu_s / images);

@@ -9,6 +9,7 @@ using Json = nlohmann::ordered_json;
 std::string json_of(const VpsReport& r) {
   Json json = {{"cameras", r.cameras},
                {"images", r.counts.images},
+               {"unreadable", r.counts.unreadable},
                {"processing_s", r.processing_s},
                {"processing_cpu_s", r.processing_cpu_s},
                {"sightings", r.counts.sightings},

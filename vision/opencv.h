@@ -31,16 +31,21 @@ class TagFinder {
  public:
   virtual ~TagFinder() = default;
   /// Replaces the content of `found`. @param image grey
-  virtual void find(const Image& image, std::vector<TagOutline>& found) = 0;
+  /// @return false where the image has no pixels, or OpenCV fails on it; `found` is then empty
+  virtual bool find(const Image& image, std::vector<TagOutline>& found) = 0;
 };
 
 /// Images from a device, a video or a folder, in grey. One thread at a time.
 class ImageSource {
  public:
   virtual ~ImageSource() = default;
-  /// Waits for the next image of a device. @return false after the last image
+  /// Waits for the next image of a device. A file that cannot be read gives an image without pixels.
+  /// @return false after the last image
+  /// @throws base::InputError for an image of more than `kMaxImagePixels`, and where a device or a video fails
   virtual bool next(Image& out) = 0;
   virtual bool is_live() const { return false; }
+  /// Number of images; 0 where it is not known.
+  virtual std::size_t size() const { return 0; }
   /// [Hz] of a video; 0 where it is not known.
   virtual double rate() const { return 0.0; }
 };
@@ -53,6 +58,12 @@ struct Mark {
   int width = 1;                               ///< [px] of the line
 };
 
+/// A printed chessboard.
+struct Chessboard {
+  int columns = 9, rows = 6;  ///< inner corners along a row and a column, each > 2
+  double square = 0.025;      ///< [m] side of its squares
+};
+
 /// Intrinsics that explain the corners of a chessboard in several images.
 struct Calibration {
   Intrinsics intrinsics;
@@ -62,25 +73,23 @@ struct Calibration {
 
 /// A function table, since only data symbols are looked up by name.
 struct OpenCv {
-  /// Names of the dictionaries, such as "apriltag_36h11" and "aruco_4x4_50".
-  std::vector<std::string> (*dictionaries)();
-  /// Number of ids, from 0, of a dictionary.
-  std::uint32_t (*dictionary_size)(const std::string& dictionary);
+  /// @param dictionary such as "apriltag_36h11" or "aruco_4x4_50"
   TagPattern (*tag_pattern)(const std::string& dictionary, std::uint32_t id);
   std::unique_ptr<TagFinder> (*make_tag_finder)(const std::string& dictionary);
-  /// @param channels 1 or 3; files are converted
-  Image (*read_image)(const std::string& file, int channels);
   /// The file's ending decides the format: .png, .jpg, .pgm, ...
   void (*write_image)(const std::string& file, const Image& image);
   /// @param image 3 channels
   void (*draw)(Image& image, const std::vector<Mark>& marks);
-  /// @param source "/dev/video0", a video file, an image file, or a folder of images, which are read in order of names
+  /// @param source "/dev/video0", a video file, an image file, or a folder of images, which are read in order of names;
+  /// pipes, sockets and other special files of a folder are left out, and refused as a source
   /// @param width, height, rate requested from a device
   std::unique_ptr<ImageSource> (*open_source)(const std::string& source, int width, int height, double rate);
-  /// @param columns, rows inner corners of the chessboard, each > 2
-  /// @param square [m] side of its squares
-  /// @throws base::InputError when the board is found in fewer than three images, or their sizes differ
-  Calibration (*calibrate)(const std::vector<Image>& images, int columns, int rows, double square);
+  /// [px] Inner corners of the chessboard, row by row, to about 0.05 px; empty where it is not found. @param image grey
+  std::vector<glm::dvec2> (*find_board)(const Image& image, const Chessboard& board);
+  /// @param corners of each image, as found  @param width, height [px] of all images
+  /// @throws base::InputError when the board was found in fewer than three images
+  Calibration (*calibrate)(const std::vector<std::vector<glm::dvec2>>& corners, const Chessboard& board, int width,
+                           int height);
 };
 
 /// The name of the plug-in's only symbol: `extern "C" const OpenCv sensorfarm_opencv`.

@@ -40,10 +40,7 @@ std::span<const TrackedTag> Positioning::update(std::span<const Frame> frames) {
                       camera.name, camera.intrinsics.width, camera.intrinsics.height, image.width, image.height));
   }
   s.pool.parallel_for(frames.size(), 1, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) {
-      s.sightings[i].clear();
-      if (!frames[i].image.pixels.empty()) s.detectors[i].detect(frames[i].image, frames[i].time, s.sightings[i]);
-    }
+    for (std::size_t i = first; i < last; ++i) s.detectors[i].detect(frames[i].image, frames[i].time, s.sightings[i]);
   });
   s.all.clear();
   for (const auto& seen : s.sightings) s.all.insert(s.all.end(), seen.begin(), seen.end());
@@ -58,6 +55,7 @@ DetectionCounts Positioning::counts() const {
   for (const TagDetector& detector : state_->detectors) {
     const DetectionCounts& c = detector.counts();
     sum.images += c.images;
+    sum.unreadable += c.unreadable;
     sum.sightings += c.sightings;
     sum.unlisted += c.unlisted;
     sum.unfitted += c.unfitted;

@@ -12,7 +12,7 @@ namespace sf::vision {
 
 /// The image of one camera at one moment.
 struct Frame {
-  Image image;        ///< grey, of the camera's size; empty: none this time
+  Image image;        ///< grey, of the camera's size; empty: unreadable
   double time = 0.0;  ///< [s] at which the exposure of the first row started
 };
 

@@ -19,6 +19,7 @@ constexpr double kMargin = 4.0;           // [px] between a visible tag and the 
 constexpr double kOccluderHeight = 1.0;   // [m]
 constexpr double kOccluderRadius = 0.15;  // [m]
 constexpr double kBodyRadius = 1.1;       // [sides of the tag]
+constexpr double kMaxPlaces = 20'000;     // of a grid, in sight or not
 
 /// Half of a tag's diagonal with its white border.
 double reach_of(const TagMount& mount, int cells) { return M_SQRT1_2 * mount.side * (cells + 2.0 * kBorder) / cells; }
@@ -37,10 +38,11 @@ bool sees_disc(const Camera& camera, glm::dvec2 center, double radius, double he
   return true;
 }
 
-/// Centres of a square grid of pitch `pitch` whose discs some camera sees.
+/// Centres of a square grid of pitch `pitch` whose discs some camera sees; none of a grid of more than `kMaxPlaces`.
 std::vector<glm::dvec2> seen_grid(const Testbed& testbed, glm::dvec2 low, glm::dvec2 high, double pitch) {
   std::vector<glm::dvec2> seen;
   const glm::dvec2 counts = glm::floor((high - low) / pitch);
+  if (!(counts.x >= 1.0 && counts.y >= 1.0 && counts.x * counts.y <= kMaxPlaces)) return seen;
   const glm::dvec2 first = 0.5 * (low + high) - 0.5 * pitch * (counts - 1.0);
   for (int j = 0; j < static_cast<int>(counts.y); ++j)
     for (int i = 0; i < static_cast<int>(counts.x); ++i) {
@@ -92,14 +94,17 @@ RenderedFleet::RenderedFleet(const Testbed& testbed, const FleetOptions& options
   double least = 0.0;
   for (const std::uint32_t id : ids) least = std::max(least, 2.2 * kBodyRadius * testbed.mount(id).side);
   std::vector<glm::dvec2> grid;
-  for (pitch_ = 2.0; pitch_ >= least && grid.size() < ids.size(); pitch_ *= 0.98)
+  std::size_t most = 0;
+  for (pitch_ = 2.0; pitch_ >= least && grid.size() < ids.size(); pitch_ *= 0.98) {
     grid = seen_grid(testbed, low, high, pitch_);
+    most = std::max(most, grid.size());
+  }
   pitch_ /= 0.98;
   if (grid.size() < ids.size())
     throw base::InputError(testbed.file, 0,
                            fmt::format("{} tags do not fit into the cameras' field of view at a height of {} m; "
                                        "expected at most {}",
-                                       ids.size(), testbed.tag.height, grid.size()));
+                                       ids.size(), testbed.tag.height, most));
 
   const auto uniform = [&](std::size_t tag, std::uint32_t draw) {
     return base::random_uniform({options.seed, base::RandomStream::placement, static_cast<std::uint32_t>(tag)}, draw);

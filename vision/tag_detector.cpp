@@ -39,7 +39,7 @@ bool TagDetector::measure(const Image& image, const TagOutline& outline, Sightin
 void TagDetector::detect(const Image& image, double time, std::vector<Sighting>& out) {
   out.clear();
   ++counts_.images;
-  finder_->find(image, outlines_);
+  if (!finder_->find(image, outlines_)) ++counts_.unreadable;
   for (const TagOutline& outline : outlines_) {
     Sighting sighting;
     if (!measure(image, outline, sighting)) continue;

@@ -22,6 +22,7 @@ struct Sighting {
 /// Counts of images, of sightings and, by reason, of refused outlines.
 struct DetectionCounts {
   std::uint64_t images = 0;
+  std::uint64_t unreadable = 0;  ///< of these: without pixels, or OpenCV failed on it
   std::uint64_t sightings = 0;
   std::uint64_t unlisted = 0;   ///< `only_listed` is set, and the file has no [[tag]] with this id
   std::uint64_t unfitted = 0;   ///< fewer than three sides with an edge, or points that make no square
@@ -43,7 +44,7 @@ class TagDetector {
 
   /// Replaces the content of `out`, in ascending order of ids; of two sightings with one id the one with the smaller
   /// side error stays.
-  /// @param image grey, of the camera's size
+  /// @param image grey, of the camera's size; without pixels it counts as unreadable
   /// @param time [s] at which the exposure of the first row started
   void detect(const Image& image, double time, std::vector<Sighting>& out);
 

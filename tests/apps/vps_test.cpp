@@ -1,8 +1,11 @@
 // `vps`: from images to packets.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
+#include <fstream>
 #include <map>
 
 #include "netio/packets.h"
@@ -92,6 +95,22 @@ TEST(Vps, ReadsItsOwnPictures) {
   EXPECT_NE(outcome.out.find("\"images\": 3"), std::string::npos) << outcome.out << outcome.err;
 }
 
+TEST(Vps, CountsPicturesThatCannotBeRead) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  ASSERT_EQ(
+      run_program({"vps", testbed, "--rendered", "2", "--images", "3", "--speed", "0", "--overlay", folder.path("p")})
+          .code,
+      0);
+  std::ofstream(folder.path("p/a-000001.png"), std::ios::trunc) << "no image";
+  ASSERT_EQ(mkfifo(folder.path("p/a-000009.png").c_str(), 0600), 0);  // not read, which would wait
+  const Outcome outcome =
+      run_program({"vps", testbed, "--input", "a=" + folder.path("p"), "--overlay", folder.path("q"), "--json"});
+  EXPECT_NE(outcome.out.find("\"images\": 3,\n  \"unreadable\": 1"), std::string::npos) << outcome.out << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path("q/a-000001.png")));
+  EXPECT_TRUE(std::filesystem::exists(folder.path("q/a-000002.png")));
+}
+
 TEST(Calibrate, NamesWhatIsWrong) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", kTestbed);
@@ -103,12 +122,19 @@ TEST(Calibrate, NamesWhatIsWrong) {
   const Outcome device = run_program({"calibrate", folder.path("none")});
   EXPECT_EQ(device.code, 2);
   EXPECT_NE(device.err.find("does not exist"), std::string::npos) << device.err;
+  for (const char* name : {"a/b", "-a", "a b"}) {
+    const Outcome named = run_program({"calibrate", folder.path("p"), fmt::format("--name={}", name)});
+    EXPECT_NE(named.code, 0) << name;
+    EXPECT_NE(named.err.find("expected a name of letters, digits"), std::string::npos) << named.err;
+  }
 }
 
 TEST(Vps, NamesWhatIsWrong) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", kTestbed);
   const std::string text = folder.write("text.avi", "no video");
+  const std::string camera = "[[camera]]\nsize = [8192, 8192]\nfocal = [9000, 9000]\nposition = [0, 0, 6]\nname = ";
+  const std::string large = folder.write("large.toml", camera + "\"a\"\n" + camera + "\"b\"\n");
   struct Case {
     Words arguments;
     std::string expected;
@@ -122,6 +148,7 @@ TEST(Vps, NamesWhatIsWrong) {
            {{testbed, "--input", "a=/dev/null"}, "is no camera that can be opened"},
            {{testbed, "--rendered", "2", "--send", "127.0.0.1"}, "'127.0.0.1' is no address; expected HOST:PORT"},
            {{testbed, "--rendered", "500"}, "500 tags do not fit"},
+           {{large, "--rendered", "1"}, "'size' of all cameras is 128 Mpx together; --rendered expects at most 64 Mpx"},
            {{folder.path("none.toml")}, "none.toml"}}) {
     Words words{"vps"};
     words.insert(words.end(), each.arguments.begin(), each.arguments.end());

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "tests/vision/cameras.h"
-#include "vision/opencv.h"
+#include "vision/calibration.h"
 #include "vision/renderer.h"
 
 namespace sf::vision {
@@ -43,6 +43,47 @@ Scene chessboard() {
   return scene;
 }
 
+constexpr Chessboard kBoard{kSquares - 1, kSquares - 1, kSquare};
+
+/// Images in memory.
+class Album : public ImageSource {
+ public:
+  explicit Album(std::vector<Image> images) : images_(std::move(images)) {}
+  bool next(Image& out) override {
+    if (at_ == images_.size()) return false;
+    out = images_[at_++];
+    return true;
+  }
+
+ private:
+  std::vector<Image> images_;
+  std::size_t at_ = 0;
+};
+
+/// A source that claims a number of images, and has none.
+class Claim : public ImageSource {
+ public:
+  explicit Claim(std::size_t size) : size_(size) {}
+  bool next(Image&) override { return ADD_FAILURE() << "nothing is to be read", false; }
+  std::size_t size() const override { return size_; }
+
+ private:
+  std::size_t size_;
+};
+
+Image grey_image(int width, int height) {
+  return {width, height, 1, std::vector<std::uint8_t>(static_cast<std::size_t>(width) * height, 99)};
+}
+
+std::string error_of(ImageSource&& images) {
+  try {
+    calibrate(images, "album", kBoard, {});
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
 }  // namespace
 
 TEST(Calibration, FindsTheIntrinsicsOfTheImages) {
@@ -58,14 +99,21 @@ TEST(Calibration, FindsTheIntrinsicsOfTheImages) {
     Renderer(camera, Imaging{}, images.size()).render(chessboard(), 0.0, 0, image);
     images.push_back(image);
   }
-  images.emplace_back(Image{640, 480, 1, std::vector<std::uint8_t>(640 * 480, 99)});  // without a board
-  const Calibration c = opencv().calibrate(images, kSquares - 1, kSquares - 1, kSquare);
+  images.push_back(grey_image(640, 480));  // without a board
+  images.emplace_back();                   // a file that cannot be read
+  std::vector<std::size_t> progress;
+  Album album(images);
+  const Calibration c = calibrate(album, "album", kBoard, [&](std::size_t done) { progress.push_back(done); });
   EXPECT_LT(c.residual, 0.1);
   EXPECT_GT(c.residual, 0.001);
-  ASSERT_EQ(c.residuals.size(), 7u);
+  ASSERT_EQ(c.residuals.size(), 8u);
   EXPECT_TRUE(c.residuals[0]);
   EXPECT_FALSE(c.residuals[6]);
+  EXPECT_FALSE(c.residuals[7]);
+  EXPECT_EQ(progress, (std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8}));
   const Intrinsics truth = camera_at({0.0, 0.0, 1.0}, 0.0, 0.0).intrinsics;
+  EXPECT_EQ(c.intrinsics.width, 640);
+  EXPECT_EQ(c.intrinsics.height, 480);
   EXPECT_NEAR(c.intrinsics.focal.x, truth.focal.x, 2.0);
   EXPECT_NEAR(c.intrinsics.focal.y, truth.focal.y, 2.0);
   EXPECT_NEAR(c.intrinsics.center.x, truth.center.x, 2.0);
@@ -73,14 +121,24 @@ TEST(Calibration, FindsTheIntrinsicsOfTheImages) {
   EXPECT_NEAR(c.intrinsics.distortion[0], truth.distortion[0], 0.02);
 }
 
-TEST(Calibration, NeedsThreeImages) {
-  const std::vector<Image> images(4, Image{64, 48, 1, std::vector<std::uint8_t>(64 * 48, 99)});
-  try {
-    opencv().calibrate(images, 9, 9, 0.05);
-    FAIL();
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("found in 0 of 4 images; expected at least 3"), std::string::npos);
-  }
+TEST(Calibration, NamesWhatIsMissing) {
+  EXPECT_NE(
+      error_of(Album(std::vector<Image>(4, grey_image(64, 48)))).find("found in 0 of 4 images; expected at least 3"),
+      std::string::npos);
+  EXPECT_NE(error_of(Album({})).find("found in 0 of 0 images"), std::string::npos);
+  EXPECT_EQ(error_of(Album({grey_image(64, 48), grey_image(48, 64)})),
+            "album: image 2 is 48 x 64, and the first is 64 x 48; expected images of one camera");
 }
+
+TEST(Calibration, BoundsItsWork) {
+  const char* const kMany = "album: has more than 200 images; expected fewer, all different";
+  EXPECT_EQ(error_of(Claim(201)), kMany);                                            // known before any is read
+  EXPECT_EQ(error_of(Album(std::vector<Image>(201, Image{16, 16, 1, {}}))), kMany);  // as of a video
+  Image large{1 << 20, 1 << 11, 1, {0}};  // 2^31 pixels, which are never looked at
+  large.width += 1;
+  EXPECT_EQ(error_of(Album({large})), "album: has images of more than 2048 Mpx in all; expected fewer or smaller ones");
+}
+
+TEST(Calibration, FailsWithoutPixels) { EXPECT_THROW(opencv().find_board(Image{}, kBoard), base::InputError); }
 
 }  // namespace sf::vision

@@ -8,6 +8,7 @@
 #include "tests/instrumented.h"
 #include "tests/vision/cameras.h"
 #include "vision/accuracy.h"
+#include "vision/positioning.h"
 #include "vision/renderer.h"
 
 namespace sf::vision {
@@ -163,12 +164,33 @@ TEST(Detection, EmptyImagesHaveNoTags) {
   }
 }
 
+TEST(Detection, CountsImagesWithoutPixels) {
+  // A file that cannot be read, at which OpenCV throws; on the threads of Positioning nothing may.
+  const Testbed testbed = testbed_with({plain_camera(), plain_camera()});
+  Positioning positioning(testbed, 2);
+  EXPECT_TRUE(positioning.update(std::vector<Frame>(2)).empty());
+  EXPECT_EQ(positioning.counts().images, 2u);
+  EXPECT_EQ(positioning.counts().unreadable, 2u);
+}
+
 TEST(Dictionaries, KnowTheirTags) {
-  EXPECT_EQ(opencv().dictionary_size("apriltag_36h11"), 587u);
-  EXPECT_EQ(opencv().tag_pattern("apriltag_36h11", 0).cells, 8);
+  EXPECT_EQ(opencv().tag_pattern("apriltag_36h11", 586).cells, 8);
+  EXPECT_THROW(opencv().tag_pattern("apriltag_36h11", 587), base::InputError);
   EXPECT_EQ(opencv().tag_pattern("aruco_4x4_50", 49).cells, 6);
   EXPECT_THROW(opencv().tag_pattern("aruco_4x4_50", 50), base::InputError);
   EXPECT_THROW(opencv().make_tag_finder("apriltag_36h12"), base::InputError);
+}
+
+TEST(RenderedFleet, BoundsItsGrid) {
+  // Tags of 1 mm, and a camera that sees 1 cm of the floor: grids as fine as the tags would have 10^9 places.
+  Testbed testbed = testbed_with({plain_camera(), plain_camera()});
+  testbed.tag = {1e-3, 0.0, {}, ""};
+  testbed.cameras[0].camera.position = {-49.0, -49.0, 0.01};
+  testbed.cameras[1].camera.position = {49.0, 49.0, 0.01};
+  EXPECT_THROW(RenderedFleet(testbed, {1000, 0.5, 0, false, 1}), base::InputError);
+  // No camera sees the plane of the tags: there is no field of view.
+  for (TestbedCamera& each : testbed.cameras) each.camera.position.z = -1.0;
+  EXPECT_THROW(RenderedFleet(testbed, {1, 0.5, 0, false, 1}), base::InputError);
 }
 
 TEST(RenderedFleet, RefusesMoreTagsThanFit) {

@@ -17,64 +17,67 @@ namespace {
 
 constexpr std::size_t kFewest = 3;  // images that determine all intrinsics
 
-/// Corners to about 0.05 px; empty where the board is not found.
-std::vector<cv::Point2f> find_board(const cv::Mat& image, cv::Size board) {
-  std::vector<cv::Point2f> corners;
-  // The fast check spares the search, which takes seconds in large images without a board.
-  constexpr int kFlags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
-  if (!cv::findChessboardCorners(image, board, corners, kFlags)) return {};
-  const cv::TermCriteria enough(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 1e-3);
-  cv::cornerSubPix(image, corners, {5, 5}, {-1, -1}, enough);
+std::vector<cv::Point3f> corners_of(const Chessboard& board) {
+  std::vector<cv::Point3f> corners;
+  for (int j = 0; j < board.rows; ++j)
+    for (int i = 0; i < board.columns; ++i)
+      corners.emplace_back(static_cast<float>(i * board.square), static_cast<float>(j * board.square), 0.0f);
   return corners;
 }
 
-std::vector<cv::Point3f> corners_of(cv::Size board, double square) {
-  std::vector<cv::Point3f> corners;
-  for (int j = 0; j < board.height; ++j)
-    for (int i = 0; i < board.width; ++i)
-      corners.emplace_back(static_cast<float>(i * square), static_cast<float>(j * square), 0.0f);
-  return corners;
+Intrinsics intrinsics_of(const cv::Mat& matrix, const cv::Mat& distortion, int width, int height) {
+  Intrinsics out{width,
+                 height,
+                 {matrix.at<double>(0, 0), matrix.at<double>(1, 1)},
+                 {matrix.at<double>(0, 2), matrix.at<double>(1, 2)},
+                 {}};
+  for (int k = 0; k < 5; ++k) out.distortion[static_cast<std::size_t>(k)] = distortion.at<double>(k);
+  return out;
 }
 
 }  // namespace
 
-Calibration calibrate(const std::vector<Image>& images, int columns, int rows, double square) {
-  const cv::Size board(columns, rows);
-  Calibration result;
-  result.residuals.resize(images.size());
+std::vector<glm::dvec2> find_board(const Image& image, const Chessboard& board) {
+  // The fast check spares the search, which takes seconds in large images without a board.
+  constexpr int kFlags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
+  std::vector<cv::Point2f> found;
+  attempt("search for a chessboard", [&] {
+    const cv::Mat grey = wrap(image);
+    if (!cv::findChessboardCorners(grey, {board.columns, board.rows}, found, kFlags)) return found.clear();
+    const cv::TermCriteria enough(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 1e-3);
+    cv::cornerSubPix(grey, found, {5, 5}, {-1, -1}, enough);
+  });
+  std::vector<glm::dvec2> corners;
+  for (const cv::Point2f& p : found) corners.emplace_back(p.x, p.y);
+  return corners;
+}
+
+Calibration calibrate(const std::vector<std::vector<glm::dvec2>>& corners, const Chessboard& board, int width,
+                      int height) {
   std::vector<std::vector<cv::Point2f>> found;
   std::vector<std::size_t> of;
-  for (std::size_t i = 0; i < images.size(); ++i)
-    if (images[i].width != images[0].width || images[i].height != images[0].height)
-      throw base::InputError(fmt::format("image {} is {} x {}, and the first is {} x {}; expected images of one camera",
-                                         i + 1, images[i].width, images[i].height, images[0].width, images[0].height));
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    auto corners = find_board(wrap(images[i]), board);
-    if (corners.empty()) continue;
-    found.push_back(std::move(corners));
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (corners[i].empty()) continue;
     of.push_back(i);
+    for (auto& points = found.emplace_back(); const glm::dvec2& p : corners[i])
+      points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
   }
   if (found.size() < kFewest)
     throw base::InputError(
         fmt::format("a chessboard with {} x {} inner corners was found in {} of {} images; expected at "
                     "least {}, with the board tilted in different directions",
-                    columns, rows, found.size(), images.size(), kFewest));
-  const std::vector<std::vector<cv::Point3f>> boards(found.size(), corners_of(board, square));
+                    board.columns, board.rows, found.size(), corners.size(), kFewest));
+  Calibration result;
+  result.residuals.resize(corners.size());
+  const std::vector<std::vector<cv::Point3f>> boards(found.size(), corners_of(board));
   cv::Mat matrix, distortion, errors;
   std::vector<cv::Mat> rotations, translations;
-  try {
-    result.residual = cv::calibrateCamera(boards, found, {images[0].width, images[0].height}, matrix, distortion,
-                                          rotations, translations, cv::noArray(), cv::noArray(), errors);
-  } catch (const cv::Exception& error) {
-    throw base::InputError("the calibration failed: " + error.err);
-  }
+  attempt("calibration", [&] {
+    result.residual = cv::calibrateCamera(boards, found, {width, height}, matrix, distortion, rotations, translations,
+                                          cv::noArray(), cv::noArray(), errors);
+  });
   for (std::size_t k = 0; k < of.size(); ++k) result.residuals[of[k]] = errors.at<double>(static_cast<int>(k));
-  result.intrinsics = {images[0].width,
-                       images[0].height,
-                       {matrix.at<double>(0, 0), matrix.at<double>(1, 1)},
-                       {matrix.at<double>(0, 2), matrix.at<double>(1, 2)},
-                       {}};
-  for (int k = 0; k < 5; ++k) result.intrinsics.distortion[static_cast<std::size_t>(k)] = distortion.at<double>(k);
+  result.intrinsics = intrinsics_of(matrix, distortion, width, height);
   return result;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
-// The function of vision/opencv.h about calibration.
+// The functions of vision/opencv.h about calibration.
 
 #include "vision/opencv.h"
 
 namespace sf::vision {
 
-Calibration calibrate(const std::vector<Image>& images, int columns, int rows, double square);
+std::vector<glm::dvec2> find_board(const Image& image, const Chessboard& board);
+Calibration calibrate(const std::vector<std::vector<glm::dvec2>>& corners, const Chessboard& board, int width,
+                      int height);
 
 }  // namespace sf::vision

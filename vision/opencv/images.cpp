@@ -2,6 +2,8 @@
 
 #include "vision/opencv/images.h"
 
+#include <fmt/format.h>
+
 #include <glm/common.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -15,20 +17,31 @@ cv::Mat wrap(const Image& image) {
           const_cast<std::uint8_t*>(image.pixels.data())};
 }
 
-Image read_image(const std::string& file, int channels) {
+void attempt(const std::string& what, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const cv::Exception& error) {
+    throw base::InputError(fmt::format("the {} failed: {}", what, error.err));
+  }
+}
+
+Image read_image(const std::string& file) {
   cv::Mat read;
   try {
-    read = cv::imread(file, channels == 1 ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR);
+    read = cv::imread(file, cv::IMREAD_GRAYSCALE);
   } catch (const cv::Exception&) {
     read.release();
   }
-  if (read.empty()) throw base::InputError(file, 0, "cannot be read as an image; expected PNG, JPEG, PGM, TIFF or BMP");
   Image image;
-  copy(read, image);
+  copy(read, file, image);
   return image;
 }
 
-void copy(const cv::Mat& from, Image& to) {
+void copy(const cv::Mat& from, const std::string& source, Image& to) {
+  if (std::int64_t{from.cols} * from.rows > kMaxImagePixels)
+    throw base::InputError(source, 0,
+                           fmt::format("has an image of {} x {} pixels; expected at most {} Mpx", from.cols, from.rows,
+                                       kMaxImagePixels >> 20));
   to.width = from.cols;
   to.height = from.rows;
   to.channels = from.channels();
@@ -37,23 +50,31 @@ void copy(const cv::Mat& from, Image& to) {
     to.pixels.insert(to.pixels.end(), from.ptr(v), from.ptr(v) + static_cast<std::ptrdiff_t>(from.cols) * to.channels);
 }
 
-void draw(Image& image, const std::vector<Mark>& marks) {
+namespace {
+
+void draw(cv::Mat& picture, const Mark& mark) {
   constexpr int kShift = 4;  // sub-pixel bits
-  cv::Mat picture = wrap(image);
-  for (const Mark& mark : marks) {
-    const cv::Scalar color(mark.color[2], mark.color[1], mark.color[0]);
-    std::vector<cv::Point> points;
-    for (const glm::dvec2& p : mark.points) {
-      const glm::dvec2 q = 16.0 * glm::clamp(p, glm::dvec2{-1e4}, glm::dvec2{1e4});
-      points.emplace_back(static_cast<int>(q.x), static_cast<int>(q.y));
-    }
-    if (points.empty()) continue;
-    if (points.size() > 1) cv::polylines(picture, points, false, color, mark.width, cv::LINE_AA, kShift);
-    if (mark.text.empty()) continue;
-    const cv::Point at(points.back().x / 16, points.back().y / 16);
-    cv::putText(picture, mark.text, at, cv::FONT_HERSHEY_SIMPLEX, 0.45, {0, 0, 0}, 3, cv::LINE_AA);
-    cv::putText(picture, mark.text, at, cv::FONT_HERSHEY_SIMPLEX, 0.45, color, 1, cv::LINE_AA);
+  const cv::Scalar color(mark.color[2], mark.color[1], mark.color[0]);
+  std::vector<cv::Point> points;
+  for (const glm::dvec2& p : mark.points) {
+    const glm::dvec2 q = 16.0 * glm::clamp(p, glm::dvec2{-1e5}, glm::dvec2{1e5});
+    points.emplace_back(static_cast<int>(q.x), static_cast<int>(q.y));
   }
+  if (points.empty()) return;
+  if (points.size() > 1) cv::polylines(picture, points, false, color, mark.width, cv::LINE_AA, kShift);
+  if (mark.text.empty()) return;
+  const cv::Point at(points.back().x / 16, points.back().y / 16);
+  cv::putText(picture, mark.text, at, cv::FONT_HERSHEY_SIMPLEX, 0.45, {0, 0, 0}, 3, cv::LINE_AA);
+  cv::putText(picture, mark.text, at, cv::FONT_HERSHEY_SIMPLEX, 0.45, color, 1, cv::LINE_AA);
+}
+
+}  // namespace
+
+void draw(Image& image, const std::vector<Mark>& marks) {
+  attempt("drawing", [&] {
+    cv::Mat picture = wrap(image);
+    for (const Mark& mark : marks) draw(picture, mark);
+  });
 }
 
 void write_image(const std::string& file, const Image& image) {

@@ -29,10 +29,13 @@ constexpr std::array<std::pair<std::string_view, PREDEFINED_DICTIONARY_NAME>, 21
      {"aruco_7x7_1000", cv::aruco::DICT_7X7_1000}}};
 
 cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
-  for (const auto& [word, value] : kDictionaries)
+  std::vector<std::string_view> words;
+  for (const auto& [word, value] : kDictionaries) {
     if (word == name) return cv::aruco::getPredefinedDictionary(value);
+    words.push_back(word);
+  }
   throw base::InputError(
-      fmt::format("'{}' is no dictionary of tags; expected one of: {}", name, fmt::join(dictionaries(), ", ")));
+      fmt::format("'{}' is no dictionary of tags; expected one of: {}", name, fmt::join(words, ", ")));
 }
 
 class ArucoFinder : public TagFinder {
@@ -47,14 +50,19 @@ class ArucoFinder : public TagFinder {
     settings_->minMarkerDistanceRate = 0.01;
   }
 
-  void find(const Image& image, std::vector<TagOutline>& found) override {
+  bool find(const Image& image, std::vector<TagOutline>& found) override {
     found.clear();
-    cv::aruco::detectMarkers(wrap(image), dictionary_, corners_, ids_, settings_);
+    try {
+      cv::aruco::detectMarkers(wrap(image), dictionary_, corners_, ids_, settings_);
+    } catch (const cv::Exception&) {
+      return false;
+    }
     for (std::size_t i = 0; i < ids_.size(); ++i) {
       TagOutline outline{static_cast<std::uint32_t>(ids_[i]), {}};
       for (std::size_t k = 0; k < 4; ++k) outline.corners[k] = {corners_[i][k].x, corners_[i][k].y};
       found.push_back(outline);
     }
+    return true;
   }
 
  private:
@@ -65,16 +73,6 @@ class ArucoFinder : public TagFinder {
 };
 
 }  // namespace
-
-std::vector<std::string> dictionaries() {
-  std::vector<std::string> names;
-  for (const auto& [word, value] : kDictionaries) names.emplace_back(word);
-  return names;
-}
-
-std::uint32_t dictionary_size(const std::string& dictionary) {
-  return static_cast<std::uint32_t>(dictionary_of(dictionary)->bytesList.rows);
-}
 
 TagPattern tag_pattern(const std::string& dictionary, std::uint32_t id) {
   const auto tags = dictionary_of(dictionary);

@@ -5,8 +5,6 @@
 
 namespace sf::vision {
 
-std::vector<std::string> dictionaries();
-std::uint32_t dictionary_size(const std::string& dictionary);
 TagPattern tag_pattern(const std::string& dictionary, std::uint32_t id);
 std::unique_ptr<TagFinder> make_tag_finder(const std::string& dictionary);
 

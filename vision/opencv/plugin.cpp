@@ -8,7 +8,6 @@
 extern "C" {
 extern const sf::vision::OpenCv sensorfarm_opencv;
 const sf::vision::OpenCv sensorfarm_opencv{
-    sf::vision::dictionaries, sf::vision::dictionary_size, sf::vision::tag_pattern, sf::vision::make_tag_finder,
-    sf::vision::read_image,   sf::vision::write_image,     sf::vision::draw,        sf::vision::open_source,
-    sf::vision::calibrate};
+    sf::vision::tag_pattern, sf::vision::make_tag_finder, sf::vision::write_image, sf::vision::draw,
+    sf::vision::open_source, sf::vision::find_board,      sf::vision::calibrate};
 }

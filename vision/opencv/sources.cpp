@@ -30,9 +30,10 @@ class Files : public ImageSource {
   explicit Files(std::vector<std::string> files) : files_(std::move(files)) {}
   bool next(Image& out) override {
     if (at_ == files_.size()) return false;
-    out = read_image(files_[at_++], 1);
+    out = read_image(files_[at_++]);
     return true;
   }
+  std::size_t size() const override { return files_.size(); }
 
  private:
   std::vector<std::string> files_;
@@ -41,16 +42,16 @@ class Files : public ImageSource {
 
 class Video : public ImageSource {
  public:
-  Video(cv::VideoCapture capture, bool live) : capture_(std::move(capture)), live_(live) {}
+  Video(cv::VideoCapture capture, std::string source, bool live)
+      : capture_(std::move(capture)), source_(std::move(source)), live_(live) {}
   bool next(Image& out) override {
-    if (!capture_.read(frame_)) return false;
-    if (frame_.channels() == 1) {
-      copy(frame_, out);
-      return true;
-    }
-    cv::cvtColor(frame_, grey_, cv::COLOR_BGR2GRAY);
-    copy(grey_, out);
-    return true;
+    bool more = false;
+    attempt("reading of " + source_, [&] {
+      more = capture_.read(frame_);
+      if (more && frame_.channels() != 1) cv::cvtColor(frame_, grey_, cv::COLOR_BGR2GRAY);
+    });
+    if (more) copy(frame_.channels() == 1 ? frame_ : grey_, source_, out);
+    return more;
   }
   bool is_live() const override { return live_; }
   double rate() const override {
@@ -60,6 +61,7 @@ class Video : public ImageSource {
 
  private:
   cv::VideoCapture capture_;
+  std::string source_;
   bool live_;
   cv::Mat frame_, grey_;
 };
@@ -67,8 +69,10 @@ class Video : public ImageSource {
 std::unique_ptr<ImageSource> open_folder(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (is_image(entry.path())) files.push_back(entry.path().string());
+  std::error_code none;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (is_image(at->path()) && at->is_regular_file(none)) files.push_back(at->path().string());
+  if (error) throw base::InputError(folder, 0, "cannot be read: " + error.message());
   if (files.empty()) throw base::InputError(folder, 0, "has no images; expected .png, .jpg, .pgm, .tif or .bmp files");
   std::sort(files.begin(), files.end());
   return std::make_unique<Files>(std::move(files));
@@ -82,8 +86,11 @@ std::unique_ptr<ImageSource> open_source(const std::string& source, int width, i
   if (!fs::exists(source, error))
     throw base::InputError(source, 0,
                            "does not exist; expected a device such as /dev/video0, a video, an image or a folder");
-  if (is_image(source)) return std::make_unique<Files>(std::vector{source});
   const bool live = fs::is_character_file(source, error);
+  if (!live && !fs::is_regular_file(source, error))
+    throw base::InputError(source, 0,
+                           "is a pipe, a socket or a block device; expected a camera, a video, an image or a folder");
+  if (!live && is_image(source)) return std::make_unique<Files>(std::vector{source});
   // The error below says all; OpenCV would print what each of its readers tried.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   try {
@@ -93,7 +100,7 @@ std::unique_ptr<ImageSource> open_source(const std::string& source, int width, i
       capture.set(cv::CAP_PROP_FRAME_HEIGHT, height);
       capture.set(cv::CAP_PROP_FPS, rate);
     }
-    if (capture.isOpened()) return std::make_unique<Video>(std::move(capture), live);
+    if (capture.isOpened()) return std::make_unique<Video>(std::move(capture), source, live);
   } catch (const cv::Exception&) {
   }
   throw base::InputError(source, 0,
