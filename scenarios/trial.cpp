@@ -1,6 +1,5 @@
 #include "scenarios/trial.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -13,6 +12,7 @@
 #include "scenarios/coverage.h"
 #include "scenarios/run_info.h"
 #include "sensors/laser_settings.h"
+#include "sensors/settings.h"
 
 namespace sf::scenarios {
 
@@ -21,20 +21,19 @@ namespace {
 /// Key of the draws of `place`, distinct from those of cloned fleets.
 constexpr std::uint32_t kStart = 0x57A27u;
 
+/// The trial's value of `noise`, in the file's units; empty: none.
+std::vector<double> noise_for(const world::Sensor& sensor, const Disturbance& d) {
+  if (sensor.type == "laneedge" && d.edge_noise > 0.0) return {d.edge_noise / sensor.metres_per_unit, 0.0, 0.0};
+  if (sensor.type == "magnetometer" && d.field_noise > 0.0) return {d.field_noise};
+  if (sensors::is_laser(sensor.type) && d.scan_noise > 0.0) return {d.scan_noise / sensor.metres_per_unit, 0.0, 0.0};
+  return {};
+}
+
 void add_noise(world::Mover& mover, const Disturbance& d) {
   for (world::Sensor& sensor : mover.sensors) {
-    const bool noisy = std::any_of(sensor.settings.begin(), sensor.settings.end(),
-                                   [](const world::Setting& s) { return s.key == "noise"; });
-    if (noisy) continue;
-    if (sensor.type == "laneedge" && d.edge_noise > 0.0)
-      sensor.settings.push_back(
-          {"noise", {d.edge_noise / sensor.metres_per_unit, 0.0, 0.0}, "", sensor.line, sensor.file});
-    if (sensor.type == "magnetometer" && d.field_noise > 0.0)
-      sensor.settings.push_back({"noise", {d.field_noise}, "", sensor.line, sensor.file});
-    const bool is_laser = sensor.type == sensors::kLaserWord.type || sensor.type == sensors::kRangerWord.type;
-    if (is_laser && d.scan_noise > 0.0)
-      sensor.settings.push_back(
-          {"noise", {d.scan_noise / sensor.metres_per_unit, 0.0, 0.0}, "", sensor.line, sensor.file});
+    if (sensors::find(sensor, "noise") != nullptr) continue;
+    const std::vector<double> noise = noise_for(sensor, d);
+    if (!noise.empty()) sensor.settings.push_back({"noise", noise, "", sensor.line, sensor.file});
   }
 }
 

@@ -19,13 +19,14 @@
 namespace sf::scenarios {
 
 /// Random differences between trials: normally distributed, drawn from the trial's seed. The thesis mentions several
-/// nondeterministic factors without numbers; these values are our choice.
+/// nondeterministic factors without numbers; these values are our choice. A sensor whose world file has the key `noise`
+/// keeps exactly that noise, be it 0 or of another kind, such as angular noise alone.
 struct Disturbance {
   double place = 0.01;         ///< [m] standard deviation of the start position, along and across
   double heading = 0.02;       ///< [rad] standard deviation of the start heading
-  double edge_noise = 0.002;   ///< [m] per ray of a lane edge sensor, if the world gives it no noise
-  double field_noise = 0.002;  ///< [Gauss] per component of a magnetometer, likewise
-  double scan_noise = 0.003;   ///< [m] per beam of a laser, likewise
+  double edge_noise = 0.002;   ///< [m] per ray of a lane edge sensor
+  double field_noise = 0.002;  ///< [Gauss] per component of a magnetometer
+  double scan_noise = 0.003;   ///< [m] per beam of a laser
 };
 
 /// Results of one run.

@@ -94,8 +94,8 @@ void add_ranger(const world::Sensor& sensor, std::vector<LaserSettings>& lasers)
   }
 }
 
-/// Numbers lasers of one name.
-void number_names(std::vector<LaserSettings>& lasers) {
+/// Neighbours of one name become name[0], name[1], ...
+void number_equal_names(std::vector<LaserSettings>& lasers) {
   for (std::size_t first = 0, end; first < lasers.size(); first = end) {
     const std::string name = lasers[first].name;
     for (end = first + 1; end < lasers.size() && lasers[end].name == name; ++end) {
@@ -113,7 +113,7 @@ std::vector<LaserSettings> lasers_of(const world::Mover& mover) {
     if (sensor.type == kLaserWord.type) lasers.push_back(read_laser(sensor, {}));
     if (sensor.type == kRangerWord.type) add_ranger(sensor, lasers);
   }
-  number_names(lasers);
+  number_equal_names(lasers);
   return lasers;
 }
 

@@ -33,6 +33,9 @@ inline constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "sampl
 inline constexpr world::SensorKeyword kLaserWord{"laser", kLaserKeys};
 inline constexpr world::SensorKeyword kRangerWord{"ranger", kRangerKeys, kBlockKeys};
 
+/// @param type of a world::Sensor
+inline bool is_laser(std::string_view type) { return type == kLaserWord.type || type == kRangerWord.type; }
+
 /// The lasers of a mover in file order, numbered as in readings. Neighbours of one name, such as the lasers of
 /// a ranger, are called `name[k]`.
 /// @throws base::InputError with file and line for an invalid setting
