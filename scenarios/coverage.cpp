@@ -94,10 +94,9 @@ struct Viewpoint {
   std::vector<world::Segment> near;
 };
 
-std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry) {
-  const world::Mover& robot = world.movers[mover];
-  const LaserSettings laser = lasers_of(robot)[0];
-  const double z = robot.X_WM.z + laser.X_MS.z;
+std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover, const LaserSettings& laser,
+                                 const maps::GridGeometry& geometry) {
+  const double z = world.movers[mover].X_WM.z + laser.X_MS.z;
   const auto walls = walls_where(
       world, [](const world::Segment& w) { return w.seen_by_laser; }, z, z);
   const double ahead = std::hypot(laser.X_MS.x, laser.X_MS.y);
@@ -118,9 +117,8 @@ std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover,
   return viewpoints;
 }
 
-maps::OccupancyGrid scans_from(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry,
+maps::OccupancyGrid scans_from(const LaserSettings& laser, const maps::GridGeometry& geometry,
                                const std::vector<Viewpoint>& viewpoints) {
-  const LaserSettings laser = lasers_of(world.movers[mover])[0];
   maps::OccupancyGrid grid(geometry);
   std::vector<double> ranges(kBeams);
   const std::vector<glm::dvec2> beams = maps::beam_directions(laser.fov, kBeams);
@@ -144,9 +142,7 @@ bool sees(const Viewpoint& viewpoint, const Pose& X_WS, const LaserSettings& las
 }
 
 /// Free cells whose centre is visible from no pose become unexplored: their line was rounded past a corner.
-void forget_hidden(const world::World& world, std::uint32_t mover, const std::vector<Viewpoint>& viewpoints,
-                   maps::OccupancyGrid& grid) {
-  const LaserSettings laser = lasers_of(world.movers[mover])[0];
+void forget_hidden(const LaserSettings& laser, const std::vector<Viewpoint>& viewpoints, maps::OccupancyGrid& grid) {
   const double reach = laser.range_max + std::hypot(laser.X_MS.x, laser.X_MS.y);
   std::vector<CellAt> open;
   for (std::int64_t row = 0; row < maps::rows(grid.geometry); ++row)
@@ -186,10 +182,11 @@ void add_scans(std::span<const base::ReadingBlock> readings, std::map<std::uint3
 }
 
 maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry) {
-  SF_CHECK(!lasers_of(world.movers[mover]).empty(), "nothing is seen without a laser: " + world.movers[mover].name);
-  const std::vector<Viewpoint> viewpoints = stands_of(world, mover, geometry);
-  maps::OccupancyGrid grid = scans_from(world, mover, geometry, viewpoints);
-  forget_hidden(world, mover, viewpoints, grid);
+  const std::vector<LaserSettings> lasers = lasers_of(world.movers[mover]);
+  SF_CHECK(!lasers.empty(), "nothing is seen without a laser: " + world.movers[mover].name);
+  const std::vector<Viewpoint> viewpoints = stands_of(world, mover, lasers[0], geometry);
+  maps::OccupancyGrid grid = scans_from(lasers[0], geometry, viewpoints);
+  forget_hidden(lasers[0], viewpoints, grid);
   return grid;
 }
 

@@ -15,10 +15,8 @@
 #include "robots/kinematics.h"
 #include "sensors/bumper.h"
 #include "sensors/laser.h"
-#include "sensors/laser_modes.h"
 #include "sensors/laser_noise.h"
 #include "sensors/laser_reference.h"
-#include "sensors/laser_settings.h"
 
 namespace sf::scenarios {
 
@@ -174,11 +172,10 @@ class Verifier {
 
   /// Allowed difference: the bound of 32-bit modes and the precision of recordings. Other modes are recomputed bitwise.
   double allowed_of(const base::ReadingBlock& reading) const {
-    const sensors::LaserSettings laser = sensors::lasers_of(world_.movers[reading.mover])[reading.sensor];
-    const bool single = sensors::cast_laser(world_, laser).single;
+    const sensors::CastLaser& cast = reference_.laser(reading.mover, reading.sensor);
     // Noise proportional to the range scales with the error of the range.
-    const double stretch = 1.0 + 8.0 * laser.noise.range_proportional;
-    return single ? stretch * reading.bound + laser.range_max * 0x1p-24 : 0.0;
+    const double stretch = 1.0 + 8.0 * cast.laser.noise.range_proportional;
+    return cast.single ? stretch * reading.bound + cast.laser.range_max * 0x1p-24 : 0.0;
   }
 
   /// Ranges with the precision of recorded scans.

@@ -44,15 +44,15 @@ void stated_bounds(Fixture& fixture, Checks& checks) {
         world::World world = room(far, width, 361);
         sensors::set_accuracy(world, mode);
         const TestFarm test = fixture.measure(std::move(world));
-        for (const base::ReadingBlock& r : test.readings)
+        const auto what = fmt::format("{}, {:g} m wide, {:g} m away", mode, width, far);
+        for (const base::ReadingBlock& r : test.readings) {
+          const sensors::LaserSettings laser = sensors::lasers_of(test.world->movers[r.mover])[0];
           for (std::uint32_t i = 0; i < r.values.size(); ++i) {
             if (quality_of(r, i) != QualityFlag::none) continue;
-            const sensors::LaserSettings laser = sensors::lasers_of(test.world->movers[r.mover])[0];
             const Hit met = nearest_hit(test.world->walls, beam_of(r.X_WS, laser, i), laser.range_max);
-            if (met.ambiguous) continue;
-            checks.near(r.values[i], met.range, r.bound, fmt::format("{}, {:g} m wide, {:g} m away", mode, width, far),
-                        i);
+            if (!met.ambiguous) checks.near(r.values[i], met.range, r.bound, what, i);
           }
+        }
       }
 }
 

@@ -21,26 +21,26 @@ struct Row {
 };
 
 /// The lasers of a world and their scanners, by mover and in file order.
-struct Fleet {
+struct LaserTables {
   std::vector<CastLaser> lasers;
   std::vector<raycast::Scanner> scanners;
 };
 
-Fleet fleet_of(const world::World& world) {
-  Fleet fleet;
+LaserTables lasers_in(const world::World& world) {
+  LaserTables tables;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
     std::uint32_t number = 0;
     for (const LaserSettings& laser : lasers_of(world.movers[m])) {
-      const CastLaser& cast = fleet.lasers.emplace_back(cast_laser(world, laser));
-      fleet.scanners.push_back({cast.laser, m, number++, cast.single});
+      const CastLaser& cast = tables.lasers.emplace_back(cast_laser(world, laser));
+      tables.scanners.push_back({cast.laser, m, number++, cast.single});
     }
   }
-  return fleet;
+  return tables;
 }
 
 class Lasers : public SensorBackend {
  public:
-  explicit Lasers(const SensorContext& context) : Lasers(context, fleet_of(context.world)) {}
+  explicit Lasers(const SensorContext& context) : Lasers(context, lasers_in(context.world)) {}
 
   void place_movers() override { caster_.place_movers(); }
   bool prepare(std::span<const DueSample> due) override {
@@ -54,7 +54,7 @@ class Lasers : public SensorBackend {
   bool on_device() const override { return caster_.on_device(); }
 
  private:
-  Lasers(const SensorContext& context, Fleet&& fleet);
+  Lasers(const SensorContext& context, LaserTables tables);
 
   void shape(std::size_t i);
   void mark(std::size_t i);
@@ -72,20 +72,21 @@ class Lasers : public SensorBackend {
   std::vector<base::QualityFlag> quality_;  ///< of all lasers' samples
 };
 
-Lasers::Lasers(const SensorContext& context, Fleet&& fleet)
+Lasers::Lasers(const SensorContext& context, LaserTables tables)
     : thread_pool_(context.thread_pool),
       seed_(context.seed),
       noise_(context.noise),
       longest_(reaches_of(context.world).longest),
-      caster_(context, context.world, std::move(fleet.scanners)) {
+      caster_(context, context.world, std::move(tables.scanners)) {
   std::size_t samples = 0;
   bool any = false;
-  for (std::uint32_t i = 0; i < fleet.lasers.size(); ++i) {
-    const LaserSettings& laser = fleet.lasers[i].laser;
-    const bool reworked = laser.resolution > 1 || !caster_.plan(i).packed || (noise_ && laser.noise.has_range());
-    rows_.push_back({fleet.lasers[i], reworked, samples});
+  for (CastLaser& cast : tables.lasers) {
+    Row& row = rows_.emplace_back(Row{std::move(cast), false, samples});
+    const LaserSettings& laser = row.cast.laser;
+    const auto i = static_cast<std::uint32_t>(rows_.size() - 1);
+    row.reworked = laser.resolution > 1 || !caster_.plan(i).packed || (noise_ && laser.noise.has_range());
     samples += laser.samples;
-    any = any || reworked;
+    any = any || row.reworked;
   }
   values_.resize(any ? samples : 0);
   met_.resize(any ? samples : 0);
@@ -165,10 +166,10 @@ void Lasers::collect(std::vector<base::ReadingBlock>& out) {
 
 std::vector<SensorSpec> specs_of(const world::World& world) {
   std::vector<SensorSpec> rows;
-  const Fleet fleet = fleet_of(world);
-  for (const CastLaser& cast : fleet.lasers) {
+  const LaserTables tables = lasers_in(world);
+  for (const CastLaser& cast : tables.lasers) {
     const LaserSettings& laser = cast.laser;
-    const raycast::Scanner& scanner = fleet.scanners[rows.size()];
+    const raycast::Scanner& scanner = tables.scanners[rows.size()];
     rows.push_back({scanner.mover, scanner.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
                     laser.samples, laser.range_max, 0, 0.0, cast.mode});
     rows.back().fov = laser.fov;

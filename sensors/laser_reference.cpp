@@ -9,7 +9,11 @@ namespace sf::sensors {
 
 LaserReference::LaserReference(const world::World& world, std::uint64_t seed, bool noise)
     : world_(world), seed_(seed), noise_(noise) {
-  for (const world::Mover& mover : world.movers) poses_.push_back(mover.X_WM);
+  for (const world::Mover& mover : world.movers) {
+    poses_.push_back(mover.X_WM);
+    auto& lasers = lasers_.emplace_back();
+    for (const LaserSettings& each : lasers_of(mover)) lasers.push_back(cast_laser(world, each));
+  }
 }
 
 void LaserReference::set_poses(std::span<const Pose> poses) { poses_.assign(poses.begin(), poses.end()); }
@@ -39,15 +43,15 @@ std::vector<LaserReference::Seen> LaserReference::in_sight(std::uint32_t self, c
   return surfaces;
 }
 
-LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t laser, std::uint64_t sequence) const {
-  const CastLaser cast = cast_laser(world_, lasers_of(world_.movers[mover])[laser]);
+LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t number, std::uint64_t sequence) const {
+  const CastLaser& cast = laser(mover, number);
   const LaserSettings& l = cast.laser;
   const raycast::BeamPlan plan = raycast::plan_beams(l, noise_);
   Scan scan{base::compose(poses_[mover], l.X_MS), std::vector<double>(l.samples),
             std::vector<std::uint32_t>(l.samples)};
   scan.X_WS.z = world_.movers[mover].X_WM.z + l.X_MS.z;
   std::vector<double> turns(noise_ && l.noise.angle_sigma > 0.0 ? plan.samples.size() : 0);
-  draw_angle_noise(l, plan, {seed_, base::RandomStream::angle_noise, mover, laser, sequence}, turns);
+  draw_angle_noise(l, plan, {seed_, base::RandomStream::angle_noise, mover, number, sequence}, turns);
 
   const std::vector<Seen> surfaces = in_sight(mover, scan.X_WS, l.range_max);
   const glm::dvec2 heading{std::cos(scan.X_WS.yaw), std::sin(scan.X_WS.yaw)};
@@ -67,7 +71,7 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
     ranges[plan.place(k)] = std::max(nearest.range, l.range_min);
     hits[plan.place(k)] = model;
   }
-  finish_scan(cast, plan, {seed_, base::RandomStream::range_noise, mover, laser, sequence}, noise_,
+  finish_scan(cast, plan, {seed_, base::RandomStream::range_noise, mover, number, sequence}, noise_,
               {ranges.data(), hits.data()}, scan.ranges, scan.hits);
   return scan;
 }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "raycast/intersect.h"
-#include "sensors/sensor_type.h"
+#include "sensors/laser_modes.h"
 
 namespace sf::sensors {
 
@@ -19,7 +19,11 @@ namespace sf::sensors {
 class LaserReference {
  public:
   /// @param noise false: no noise, whatever the world file says
+  /// @throws base::InputError for a laser with invalid settings
   LaserReference(const world::World& world, std::uint64_t seed, bool noise = true);
+
+  /// A mover's laser with the settings that are cast.
+  const CastLaser& laser(std::uint32_t mover, std::uint32_t number) const { return lasers_[mover][number]; }
 
   /// Sets the pose of every mover. Initially movers are at their poses at load.
   void set_poses(std::span<const Pose> poses);
@@ -30,7 +34,7 @@ class LaserReference {
     std::vector<std::uint32_t> hits;  ///< model per sample, as in base::ReadingBlock
   };
   /// One reading of a mover's laser. @param sequence key of its noise
-  Scan scan(std::uint32_t mover, std::uint32_t laser, std::uint64_t sequence) const;
+  Scan scan(std::uint32_t mover, std::uint32_t number, std::uint64_t sequence) const;
 
  private:
   struct Seen {
@@ -43,6 +47,7 @@ class LaserReference {
   std::uint64_t seed_;
   bool noise_;
   std::vector<Pose> poses_;
+  std::vector<std::vector<CastLaser>> lasers_;  ///< of each mover
 };
 
 }  // namespace sf::sensors

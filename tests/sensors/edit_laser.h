@@ -8,9 +8,7 @@
 
 namespace sf::scenes {
 
-inline bool is_laser(const world::Sensor& sensor) {
-  return sensor.type == sensors::kLaserWord.type || sensor.type == sensors::kRangerWord.type;
-}
+inline bool is_laser(const world::Sensor& sensor) { return sensors::is_laser(sensor.type); }
 
 /// The settings of one laser, written back to its sensor at the end of its life.
 class LaserEdit {
@@ -36,7 +34,13 @@ inline LaserEdit edit_laser(world::Mover& mover, std::size_t i = 0) {
 /// `change(laser)` for each laser of the mover.
 template <class Change>
 void edit_lasers(world::Mover& mover, Change&& change) {
-  for (std::size_t i = 0; i < sensors::lasers_of(mover).size(); ++i) change(*edit_laser(mover, i).operator->());
+  std::vector<sensors::LaserSettings> lasers = sensors::lasers_of(mover);
+  auto laser = lasers.begin();
+  for (world::Sensor& sensor : mover.sensors) {
+    if (!is_laser(sensor)) continue;
+    change(*laser);
+    sensor = sensors::laser_sensor(*laser++);
+  }
 }
 
 inline void remove_lasers(world::Mover& mover) { std::erase_if(mover.sensors, is_laser); }
