@@ -18,21 +18,21 @@
 namespace sf::record {
 
 /// "sensorfarm_msgs/msg/Magnetometer"; for scans "sensor_msgs/msg/LaserScan".
-std::string type_of(const SensorTypeInfo& type);
+std::string type_of(const SensorTypeInfo& sensor_type);
 /// Its definition, with all types that it needs, for a file's schema.
-std::string schema_text(const SensorTypeInfo& type);
+std::string schema_text(const SensorTypeInfo& sensor_type);
 
 /// Numbers in one element of a reading; at least 1 in a valid sensor type.
-std::size_t element_width(const SensorTypeInfo& type);
+std::size_t element_width(const SensorTypeInfo& sensor_type);
 
 /// Appends one message. Rule: `values` are whole elements, and exactly one element for a sensor type without a list.
 /// @param time [ns] of the measurement
-void encode_reading(const SensorTypeInfo& type, std::int64_t time, std::string_view frame,
+void encode_reading(const SensorTypeInfo& sensor_type, std::int64_t time, std::string_view frame,
                     std::span<const double> values, base::Bytes& out);
 
 /// @param values element by element, as in the reading; its capacity is reused
 /// @returns false when the bytes are not a reading of that type; the outputs are then partly filled.
-bool decode_reading(const SensorTypeInfo& type, std::span<const std::uint8_t> message, std::int64_t& time,
+bool decode_reading(const SensorTypeInfo& sensor_type, std::span<const std::uint8_t> message, std::int64_t& time,
                     std::vector<double>& values);
 
 }  // namespace sf::record

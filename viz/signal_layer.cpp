@@ -91,7 +91,7 @@ std::vector<LegendItem> lights_legend(const world::World& world, double time) {
   return items;
 }
 
-std::vector<LegendItem> signals_legend(const world::World& world) {
+std::vector<LegendItem> signal_layer_legend(const world::World& world) {
   std::vector<LegendItem> items;
   for (const LegendItem& item : lights_legend(world, 0.0)) items.push_back(item);
   if (has(world, Emitter::Kind::virtual_wall))

@@ -20,7 +20,7 @@ void draw_emitters(Axes& axes, const world::World& world);
 void draw_lights(Axes& axes, const world::World& world, double time = 0.0);
 
 /// Items for the parts of this layer in the world; lights as at time 0.
-std::vector<LegendItem> signals_legend(const world::World& world);
+std::vector<LegendItem> signal_layer_legend(const world::World& world);
 /// Items for lights alone, one per state shown at `time` [s].
 std::vector<LegendItem> lights_legend(const world::World& world, double time);
 

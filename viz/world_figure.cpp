@@ -123,7 +123,7 @@ std::vector<LegendItem> legend_of(const World& world) {
   std::vector<LegendItem> items = wall_legend(world, WallColors::of_models);
   const auto ground = road_legend(world);
   items.insert(items.end(), ground.begin(), ground.end());
-  const auto signals = signals_legend(world);
+  const auto signals = signal_layer_legend(world);
   items.insert(items.end(), signals.begin(), signals.end());
   const auto first = [&](bool tag) {
     return std::find_if(world.movers.begin(), world.movers.end(), [&](const Mover& m) { return m.is_tag == tag; });

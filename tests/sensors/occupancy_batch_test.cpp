@@ -120,9 +120,9 @@ TEST(OccupancyBatch, AgreesWithTheRuleOnOtherLasers) {
 }
 
 TEST(OccupancyBatch, AgreesWithTheRuleWhereLasersAreBlindNearby) {
-  sensors::MapSettings type = map_of(M_PI, 181, 1.5);
-  type.range_min = 0.2;
-  EXPECT_EQ(contest(spread(type, 20), 10, 2, 30).different, 0u);
+  sensors::MapSettings settings = map_of(M_PI, 181, 1.5);
+  settings.range_min = 0.2;
+  EXPECT_EQ(contest(spread(settings, 20), 10, 2, 30).different, 0u);
 }
 
 TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
@@ -138,14 +138,14 @@ TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
   }
 }
 
-TEST(OccupancyBatch, TheFarthestEndsAreStillRight) {
+TEST(OccupancyBatch, AgreesWithTheRuleAtTheFarthestEnds) {
   // 1022 cells: the longest lines, with the smallest differences between cells.
-  sensors::MapSettings type = map_of(2.0 * M_PI, 97, 1'022 * 0.01, 0.01);
-  type.grid.word_columns = type.grid.word_rows = 300;
-  EXPECT_EQ(contest(spread(type, 4), 8, 2, 50).different, 0u);
+  sensors::MapSettings settings = map_of(2.0 * M_PI, 97, 1'022 * 0.01, 0.01);
+  settings.grid.word_columns = settings.grid.word_rows = 300;
+  EXPECT_EQ(contest(spread(settings, 4), 8, 2, 50).different, 0u);
 }
 
-TEST(OccupancyBatch, MapsOfDifferentShapes) {
+TEST(OccupancyBatch, AgreesWithTheRuleOnMapsOfDifferentShapes) {
   std::vector<sensors::MapSettings> map_settings;
   Chance chance(60);
   for (int i = 0; i < 30; ++i) {
@@ -159,7 +159,7 @@ TEST(OccupancyBatch, MapsOfDifferentShapes) {
   EXPECT_EQ(contest(map_settings, 10, 1, 61, true, 20.0).different, 0u) << "some on the host";
 }
 
-TEST(OccupancyBatch, AFewMapsAtATimeInAnyOrder) {
+TEST(OccupancyBatch, UpdatesAFewMapsAtATimeInAnyOrder) {
   std::vector<sensors::MapSettings> map_settings = spread(map_of(M_PI, 61, 1.5), 12);
   for (std::size_t i = 0; i < map_settings.size(); ++i)
     map_settings[i].samples = 30 + 7 * static_cast<std::uint32_t>(i);
@@ -187,7 +187,7 @@ TEST(OccupancyBatch, ScansThatSayNothingChangeNothing) {
   for (const std::uint32_t word : batch.words(1)) ASSERT_EQ(word, 0u);
 }
 
-TEST(OccupancyBatch, OneScanCellByCell) {
+TEST(OccupancyBatch, DrawsOneScanCellByCell) {
   // Cells of 1 m, the sensor in the middle of cell (10, 10). The beam ahead hits at 3 m; one beam to each side has no
   // return within 4 m.
   sensors::MapSettings p = map_of(M_PI, 3, 4.0, 1.0, {0.0, 40.0});

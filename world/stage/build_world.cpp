@@ -57,7 +57,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   b.world.file = file;
   b.world.name = std::filesystem::path(file).stem().string();
   read_keys(b.context, document.root, b.world);
-  b.world.accuracy = accuracy(b.context, options, document.root, {options.accuracy, "", 0});
+  b.world.accuracy = accuracy(b.context, options, document.root);
   Parent nowhere;
   add_children(b, document.root, nowhere);
   number_movers(b);

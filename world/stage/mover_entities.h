@@ -26,7 +26,7 @@ std::string controller_of(BuildState& b, const Entity& entity);
 Pose tag_pose_of(StageContext& context, const Entity& entity, bool is_tag);
 
 /// Adds a mover for `model`, which becomes the next row of the models, and returns its row.
-/// @throws base::InputError for bounds, a drive, a actuator model or lengths out of range.
+/// @throws base::InputError for bounds, a drive, an actuator model or lengths out of range.
 std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model, std::optional<PacketId> packet_id);
 
 /// Gives each mover its id: first the ids in names; then each other robot gets the smallest free id from 0, in file

@@ -81,11 +81,6 @@ double above_zero(const StageContext& context, const Entity& entity, std::string
   return value;
 }
 
-double angle(const StageContext& context, const Entity& entity, std::string_view key, double fallback) {
-  const Property* property = find(entity, key);
-  return property == nullptr ? fallback : context.radians_per_unit * single(context, *property, false).number;
-}
-
 bool flag(const StageContext& context, const Entity& entity, std::string_view key, bool fallback) {
   const Property* property = find(entity, key);
   return property == nullptr ? fallback : single(context, *property, false).number != 0.0;
@@ -96,10 +91,9 @@ std::string text(const StageContext& context, const Entity& entity, std::string_
   return property == nullptr ? fallback : single(context, *property, true).text;
 }
 
-Accuracy accuracy(const StageContext& context, const LoadOptions& options, const Entity& entity,
-                  const Accuracy& fallback) {
+Accuracy accuracy(const StageContext& context, const LoadOptions& options, const Entity& entity) {
   const Property* property = find(entity, "accuracy");
-  if (property == nullptr || !options.accuracy.empty()) return fallback;
+  if (property == nullptr || !options.accuracy.empty()) return {options.accuracy, "", 0};
   return {single(context, *property, true).text, context.document.files[property->at.file], property->at.line};
 }
 

@@ -54,13 +54,11 @@ double number(const StageContext& context, const Entity& entity, std::string_vie
 double length(const StageContext& context, const Entity& entity, std::string_view key, double fallback);
 /// A length above zero.
 double above_zero(const StageContext& context, const Entity& entity, std::string_view key, double fallback);
-double angle(const StageContext& context, const Entity& entity, std::string_view key, double fallback);
 bool flag(const StageContext& context, const Entity& entity, std::string_view key, bool fallback);
 std::string text(const StageContext& context, const Entity& entity, std::string_view key, const std::string& fallback);
 
-/// `accuracy "word"`, or the fallback when it is absent. `LoadOptions::accuracy` takes precedence over both.
-Accuracy accuracy(const StageContext& context, const LoadOptions& options, const Entity& entity,
-                  const Accuracy& fallback);
+/// `LoadOptions::accuracy`, else `accuracy "word"`, else no request.
+Accuracy accuracy(const StageContext& context, const LoadOptions& options, const Entity& entity);
 
 /// A whole number in [least, most].
 std::uint32_t whole(const StageContext& context, const Entity& entity, std::string_view key, std::uint32_t fallback,
