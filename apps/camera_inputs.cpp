@@ -32,7 +32,6 @@ class OpenedInputs : public CameraInputs {
     return true;
   }
   bool is_live() const override { return live_; }
-  double rate() const override { return rate_; }
 
  private:
   static double now() {
@@ -56,7 +55,7 @@ class RenderedInputs : public CameraInputs {
 
   bool next(std::vector<vision::Frame>& frames) override {
     frames.resize(renderers_.size());
-    const double time = count_ / rate();
+    const double time = count_ / testbed_.cameras[0].camera.rate;
     pool_.parallel_for(renderers_.size(), 1, [&](std::size_t first, std::size_t last, unsigned) {
       for (std::size_t i = first; i < last; ++i) {
         const vision::Camera& camera = testbed_.cameras[i].camera;
@@ -68,7 +67,6 @@ class RenderedInputs : public CameraInputs {
     ++count_;
     return true;
   }
-  double rate() const override { return testbed_.cameras[0].camera.rate; }
 
  private:
   const vision::Testbed& testbed_;

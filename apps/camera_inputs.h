@@ -18,7 +18,6 @@ class CameraInputs {
   /// The next image of each camera, waiting for devices. @return false when any source has ended
   virtual bool next(std::vector<vision::Frame>& frames) = 0;
   virtual bool is_live() const { return false; }
-  virtual double rate() const = 0;  ///< [Hz] of images
 };
 
 /// @param chosen camera and source, in place of the file's

@@ -22,7 +22,7 @@ std::string accuracy_text(const vision::Accuracy& a) {
          error_row("heading error", a.heading, kDegrees, "degrees") +
          error_row("velocity error", a.velocity, 1e3, "mm/s") +
          error_row("turn rate error", a.turn, kDegrees, "degrees/s") +
-         row("missed, false", "{}, {} of {} reported", a.missed, a.wrong, a.seen + a.wrong);
+         row("missed, false", "{}, {} of {} reported", a.missed, a.wrong, a.position.count + a.wrong);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ std::string json_of(const VpsReport& r) {
                         {"heading_rad", error(a.heading)},
                         {"velocity_m_s", error(a.velocity)},
                         {"turn_rad_s", error(a.turn)},
-                        {"reported", a.seen + a.wrong},
+                        {"reported", a.position.count + a.wrong},
                         {"missed", a.missed},
                         {"false", a.wrong}};
   }

@@ -26,7 +26,6 @@ void AccuracyMeter::compare(const TrackedTag& tracked, std::size_t tag) {
   }
   accuracy_.position.add(off);
   accuracy_.heading.add(base::wrap_angle(tracked.X_WT.yaw - truth.X_WT.yaw));
-  ++accuracy_.seen;
   if (++sightings_[tag] < 5) return;
   accuracy_.velocity.add(glm::distance(tracked.velocity, truth.velocity));
   accuracy_.turn.add(tracked.turn - truth.turn);

@@ -18,11 +18,10 @@ struct RmsError {
 };
 
 struct Accuracy {
-  RmsError position;  ///< [m]
-  RmsError heading;   ///< [rad]
-  RmsError velocity;  ///< [m/s], from the fifth sighting on
-  RmsError turn;      ///< [rad/s], from the fifth sighting on
-  std::uint64_t seen = 0;
+  RmsError position;         ///< [m]
+  RmsError heading;          ///< [rad]
+  RmsError velocity;         ///< [m/s], from the fifth sighting on
+  RmsError turn;             ///< [rad/s], from the fifth sighting on
   std::uint64_t missed = 0;  ///< a camera saw the whole tag, and it was not reported
   std::uint64_t wrong = 0;   ///< reported more than `kWrong` from its place, or with an id that no tag has
 };

@@ -32,7 +32,6 @@ bool TagDetector::measure(const Image& image, const TagOutline& outline, Sightin
   }
   out.id = outline.id;
   out.fit = *fit;
-  out.outline = outline;
   return true;
 }
 

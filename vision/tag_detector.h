@@ -16,7 +16,6 @@ struct Sighting {
   std::uint32_t id = 0;
   double time = 0.0;  ///< [s] the middle of the exposure of the tag's rows
   TagFit fit;
-  TagOutline outline;
 };
 
 /// Counts of images, of sightings and, by reason, of refused outlines.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "vision/median.h"
 #include "vision/tag_fit.h"
 
 namespace sf::vision {
@@ -23,12 +24,6 @@ double grey_at(const Image& image, glm::dvec2 p) {
   const std::uint8_t* top = image.at(u0, v0);
   const std::uint8_t* low = image.at(u0, v0 + 1);
   return (1.0 - b) * ((1.0 - a) * top[0] + a * top[1]) + b * ((1.0 - a) * low[0] + a * low[1]);
-}
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// One side of a tag, and grey values across it.

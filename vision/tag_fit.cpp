@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "vision/median.h"
+
 namespace sf::vision {
 
 namespace {
@@ -83,9 +85,7 @@ void reject_outliers(const Square& square, std::vector<PlanePoint>& points, doub
   std::vector<double> distances;
   for (const PlanePoint& point : points) distances.push_back(std::abs(distance(square, point)));
   std::vector<double> sorted = distances;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double most = std::max(3.0 * 1.4826 * *middle, 0.05 * pixel);
+  const double most = std::max(3.0 * 1.4826 * median(sorted), 0.05 * pixel);
   for (std::size_t i = 0; i < points.size(); ++i) points[i].used = distances[i] <= most;
 }
 
@@ -133,19 +133,17 @@ std::optional<TagFit> fit_tag(const Camera& camera, std::span<const EdgePoint> p
     if (!improve(*square, on_plane)) return std::nullopt;
     if (round >= 2 && round < kRounds - 1) reject_outliers(*square, on_plane, pixel);
   }
-  TagFit fit{{square->center.x, square->center.y, height, base::wrap_angle(square->yaw)},
-             2.0 * square->half,
-             0.0,
-             pixel,
-             middle->y,
-             0};
-  for (const PlanePoint& point : on_plane)
-    if (point.used) {
-      fit.residual += std::pow(distance(*square, point), 2);
-      ++fit.points;
-    }
-  fit.residual = std::sqrt(fit.residual / static_cast<double>(std::max<std::size_t>(1, fit.points)));
-  return fit;
+  double squares = 0.0, used = 0.0;
+  for (const PlanePoint& point : on_plane) {
+    if (!point.used) continue;
+    squares += std::pow(distance(*square, point), 2);
+    used += 1.0;
+  }
+  return TagFit{{square->center.x, square->center.y, height, base::wrap_angle(square->yaw)},
+                2.0 * square->half,
+                std::sqrt(squares / std::max(1.0, used)),
+                pixel,
+                middle->y};
 }
 
 }  // namespace sf::vision

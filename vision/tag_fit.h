@@ -34,7 +34,6 @@ struct TagFit {
   double residual = 0.0;  ///< [m] RMS distance of the edge points from the square
   double pixel = 0.0;     ///< [m] size of a pixel on the plane
   double row = 0.0;       ///< [px] of the tag's centre in the image
-  std::size_t points = 0;
 };
 
 /// Fits a square to edge points; points more than three times the median distance off are left out.

@@ -5,6 +5,18 @@
 
 namespace sf::vision {
 
+namespace {
+
+constexpr double kAcceleration = 2.0;       // [m/s2/sqrt(Hz)] white acceleration of the tags
+constexpr double kTurnAcceleration = 10.0;  // [rad/s2/sqrt(Hz)]
+constexpr double kPositionSigma = 0.05;     // [px] of a measured position
+constexpr double kHeadingSigma = 2e-3;      // [rad] of a measured heading
+constexpr double kGate = 0.3;               // [m] beyond the motion that the speed allows: another tag, or a false one
+constexpr double kMaxSpeed = 5.0;           // [m/s]
+constexpr double kForget = 1.0;             // [s] unseen, after which a tag starts anew
+
+}  // namespace
+
 void Tracker::predict(Axis& axis, double dt, double acceleration) {
   const double q = acceleration * acceleration * dt;  // variance of the velocity that an interval adds
   axis.x += dt * axis.v;
@@ -44,7 +56,7 @@ std::optional<Tracker::View> Tracker::merge(const Track* track, std::span<const 
     const View view = view_of(sighting);
     const double dt = first->time - view.time;
     const double apart = std::hypot(view.at[0] - first->at[0], view.at[1] - first->at[1]);
-    if (apart > 0.5 * options_.gate + options_.max_speed * std::abs(dt)) continue;
+    if (apart > 0.5 * kGate + kMaxSpeed * std::abs(dt)) continue;
     const double weight = 1.0 / (view.pixel * view.pixel);
     for (std::size_t i = 0; i < 3; ++i) {
       // Headings relative to the first, so that none is averaged across the jump at pi.
@@ -59,13 +71,13 @@ std::optional<Tracker::View> Tracker::merge(const Track* track, std::span<const 
   return sum;
 }
 
-bool Tracker::is_near(const Track& track, const View& view) const {
+bool Tracker::is_near(const Track& track, const View& view) {
   const double dt = view.time - track.time;
   const double apart = std::hypot(view.at[0] - track.axes[0].x, view.at[1] - track.axes[1].x);
-  return dt > 0.0 && apart <= options_.gate + options_.max_speed * dt;
+  return dt > 0.0 && apart <= kGate + kMaxSpeed * dt;
 }
 
-void Tracker::advance(Track& track, const View& view) const {
+void Tracker::advance(Track& track, const View& view) {
   const double dt = view.time - track.time;
   const double turned = base::wrap_angle(view.at[2] - track.yaw);
   const auto turn_velocity = [&track](double angle) {
@@ -78,13 +90,13 @@ void Tracker::advance(Track& track, const View& view) const {
   turn_velocity(0.5 * turned);
   for (std::size_t i = 0; i < 3; ++i) {
     Axis& axis = track.axes[i];
-    predict(axis, dt, i == 2 ? options_.turn_acceleration : options_.acceleration);
+    predict(axis, dt, i == 2 ? kTurnAcceleration : kAcceleration);
   }
   turn_velocity(0.5 * turned);
   for (std::size_t i = 0; i < 3; ++i) {
     Axis& axis = track.axes[i];
     const double measured = i == 2 ? axis.x + base::wrap_angle(view.at[2] - axis.x) : view.at[i];
-    correct(axis, measured, i == 2 ? options_.heading_sigma : options_.position_sigma * view.pixel);
+    correct(axis, measured, i == 2 ? kHeadingSigma : kPositionSigma * view.pixel);
   }
 }
 
@@ -98,7 +110,7 @@ void Tracker::update(std::span<const Sighting> sightings, std::vector<TrackedTag
     const std::span<const Sighting> views(sorted_.data() + begin, end - begin);
 
     auto found = tracks_.find(id);
-    if (found != tracks_.end() && views[0].time - found->second.time > options_.forget)
+    if (found != tracks_.end() && views[0].time - found->second.time > kForget)
       found = (tracks_.erase(found), tracks_.end());
     int used = 0;
     const auto view = merge(found == tracks_.end() ? nullptr : &found->second, views, used);
@@ -108,8 +120,8 @@ void Tracker::update(std::span<const Sighting> sightings, std::vector<TrackedTag
     if (found == tracks_.end()) {
       Track track{view->time, view->at[2], {}};
       for (std::size_t i = 0; i < 3; ++i) {
-        const double sigma = i == 2 ? options_.heading_sigma : options_.position_sigma * view->pixel;
-        const double speed = i == 2 ? 2.0 * M_PI : options_.max_speed;
+        const double sigma = i == 2 ? kHeadingSigma : kPositionSigma * view->pixel;
+        const double speed = i == 2 ? 2.0 * M_PI : kMaxSpeed;
         track.axes[i] = {view->at[i], 0.0, sigma * sigma, 0.0, speed * speed};
       }
       tracks_.emplace(id, track);

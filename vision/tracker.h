@@ -22,16 +22,6 @@ struct TrackedTag {
   int cameras = 0;      ///< that saw it this time
 };
 
-struct TrackerOptions {
-  double acceleration = 2.0;        ///< [m/s2/sqrt(Hz)] white acceleration of the tags
-  double turn_acceleration = 10.0;  ///< [rad/s2/sqrt(Hz)]
-  double position_sigma = 0.05;     ///< [px] of a measured position
-  double heading_sigma = 2e-3;      ///< [rad] of a measured heading
-  double gate = 0.3;                ///< [m] beyond the motion that `max_speed` allows: another tag, or a false one
-  double max_speed = 5.0;           ///< [m/s]
-  double forget = 1.0;              ///< [s] unseen, after which a tag starts anew
-};
-
 /// One filter for each tag and axis (x, y, heading), with constant velocity and white acceleration (Bar-Shalom, Li,
 /// Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, section 6.2.2). The velocity turns
 /// with the measured heading, as that of a wheeled robot does, so that it does not lag behind in curves.
@@ -41,8 +31,6 @@ struct TrackerOptions {
 /// their pixels.
 class Tracker {
  public:
-  explicit Tracker(const TrackerOptions& options = {}) : options_(options) {}
-
   /// Takes the sightings of all cameras of one moment, those of one camera after those of another. Replaces the content
   /// of `out` by the tags seen, in ascending order of ids.
   void update(std::span<const Sighting> sightings, std::vector<TrackedTag>& out);
@@ -68,11 +56,10 @@ class Tracker {
 
   static void predict(Axis& axis, double dt, double acceleration);
   static void correct(Axis& axis, double measured, double sigma);
-  std::optional<View> merge(const Track* track, std::span<const Sighting> views, int& used);
-  bool is_near(const Track& track, const View& view) const;
-  void advance(Track& track, const View& view) const;
+  static std::optional<View> merge(const Track* track, std::span<const Sighting> views, int& used);
+  static bool is_near(const Track& track, const View& view);
+  static void advance(Track& track, const View& view);
 
-  TrackerOptions options_;
   std::map<std::uint32_t, Track> tracks_;
   std::vector<Sighting> sorted_;
   std::uint64_t refused_ = 0;

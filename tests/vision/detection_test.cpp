@@ -25,38 +25,28 @@ Testbed testbed_with(const std::vector<Camera>& cameras) {
 
 struct Trial {
   Accuracy accuracy;
-  DetectionCounts counts;  ///< of the first camera
-  int most_cameras = 0;    ///< that saw one tag at a time
+  int most_cameras = 0;  ///< that saw one tag at a time
 };
 
 Trial run(const Testbed& testbed, const FleetOptions& options, int images) {
   const RenderedFleet fleet(testbed, options);
   AccuracyMeter meter(testbed, fleet);
-  Tracker tracker;
+  Positioning positioning(testbed);
   std::vector<Renderer> renderers;
-  std::vector<TagDetector> detectors;
-  for (const TestbedCamera& each : testbed.cameras) {
-    renderers.emplace_back(each.camera, Imaging{}, options.seed);
-    detectors.emplace_back(testbed, each.camera);
-  }
-  Image image;
-  std::vector<Sighting> seen, all;
-  std::vector<TrackedTag> tracked;
+  for (const TestbedCamera& each : testbed.cameras) renderers.emplace_back(each.camera, Imaging{}, options.seed);
+  std::vector<Frame> frames(renderers.size());
   Trial result;
   for (int i = 0; i < images; ++i) {
     const double time = i / 15.0;
-    all.clear();
     for (std::size_t k = 0; k < renderers.size(); ++k) {
-      renderers[k].render(fleet.scene_at(time + 0.01), time, static_cast<std::uint32_t>(i), image);
-      detectors[k].detect(image, time, seen);
-      all.insert(all.end(), seen.begin(), seen.end());
+      renderers[k].render(fleet.scene_at(time + 0.01), time, static_cast<std::uint32_t>(i), frames[k].image);
+      frames[k].time = time;
     }
-    tracker.update(all, tracked);
+    const auto tracked = positioning.update(frames);
     for (const TrackedTag& tag : tracked) result.most_cameras = std::max(result.most_cameras, tag.cameras);
     meter.add(time, tracked);
   }
   result.accuracy = meter.accuracy();
-  result.counts = detectors[0].counts();
   return result;
 }
 
@@ -73,7 +63,7 @@ TEST(Detection, ThirtyTagsFromSixAndAHalfMetres) {
   EXPECT_LT(r.accuracy.velocity.rms(), 8e-3);
   EXPECT_LT(r.accuracy.turn.rms(), 4.0 * kDegree);
   EXPECT_EQ(r.accuracy.wrong, 0u);
-  EXPECT_GE(r.accuracy.seen, 149u);
+  EXPECT_GE(r.accuracy.position.count, 149u);
   EXPECT_LE(r.accuracy.missed, 1u);
 }
 

@@ -1,0 +1,16 @@
+#pragma once
+// Medians.
+
+#include <algorithm>
+#include <vector>
+
+namespace sf::vision {
+
+/// The upper one of two in the middle. @param values not empty; their order changes
+inline double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace sf::vision
