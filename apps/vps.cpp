@@ -16,7 +16,9 @@
 #include "apps/vps_report.h"
 #include "base/error.h"
 #include "base/time.h"
+#include "scenarios/experiment.h"
 #include "vision/overlay.h"
+#include "viz/png.h"
 
 namespace sf::apps {
 
@@ -60,9 +62,7 @@ class Overlay {
  public:
   Overlay(const VpsOptions& options, const vision::Testbed& testbed) : testbed_(testbed), folder_(options.overlay) {
     if (folder_.empty()) return;
-    std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error) throw base::InputError(folder_, 0, "cannot be made: " + error.message());
+    scenarios::make_folder(folder_);
     if (options.world.empty()) return;
     const world::World world = world::load_world(options.world);
     for (const vision::TestbedCamera& each : testbed.cameras)
@@ -77,8 +77,9 @@ class Overlay {
       const vision::Camera& camera = testbed_.cameras[i].camera;
       std::vector<vision::Mark> marks = vision::tag_marks(camera, positioning.sightings(i));
       if (!world_marks_.empty()) marks.insert(marks.begin(), world_marks_[i].begin(), world_marks_[i].end());
-      vision::opencv().write_image(fmt::format("{}/{}-{:06}.png", folder_, camera.name, number),
-                                   vision::draw_over(frames[i].image, marks));
+      const vision::Image picture = vision::draw_over(frames[i].image, marks);
+      viz::write_png(fmt::format("{}/{}-{:06}.png", folder_, camera.name, number), picture.pixels.data(), picture.width,
+                     picture.height, viz::PngContent::photograph);
     }
   }
 

@@ -81,7 +81,7 @@ void make_folder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
   if (error)
-    throw base::InputError(path, 0, "cannot be created as a folder: " + error.message() + "; name another with -o");
+    throw base::InputError(path, 0, "cannot be created as a folder: " + error.message() + "; name another");
 }
 
 void write_text(const std::string& path, const std::string& text) {

@@ -16,7 +16,7 @@ inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 26;
 struct Image {
   int width = 0;                     ///< [px]
   int height = 0;                    ///< [px]
-  int channels = 1;                  ///< 1: grey; 3: blue, green, red
+  int channels = 1;                  ///< 1: grey; 3: red, green, blue
   std::vector<std::uint8_t> pixels;  ///< width x height x channels
 
   const std::uint8_t* at(int u, int v) const {

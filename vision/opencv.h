@@ -76,8 +76,6 @@ struct OpenCv {
   /// @param dictionary such as "apriltag_36h11" or "aruco_4x4_50"
   TagPattern (*tag_pattern)(const std::string& dictionary, std::uint32_t id);
   std::unique_ptr<TagFinder> (*make_tag_finder)(const std::string& dictionary);
-  /// The file's ending decides the format: .png, .jpg, .pgm, ...
-  void (*write_image)(const std::string& file, const Image& image);
   /// @param image 3 channels
   void (*draw)(Image& image, const std::vector<Mark>& marks);
   /// @param source "/dev/video0", a video file, an image file, or a folder of images, which are read in order of names;

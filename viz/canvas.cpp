@@ -1,11 +1,8 @@
 #include "viz/canvas.h"
 
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include "base/error.h"
@@ -62,8 +59,6 @@ std::vector<glm::dvec2> circle(glm::dvec2 center, double radius) {
   for (int i = 0; i < corners; ++i) points.push_back(center + base::rotate(2.0 * M_PI * i / corners, {radius, 0.0}));
   return points;
 }
-
-std::string why(int error) { return error != 0 ? std::strerror(error) : "unknown reason"; }
 
 }  // namespace
 
@@ -213,18 +208,6 @@ std::uint32_t Canvas::pixel(int x, int y) const {
   return 0xFF000000u | static_cast<std::uint32_t>(p[0]) << 16 | static_cast<std::uint32_t>(p[1]) << 8 | p[2];
 }
 
-void Canvas::save_png(const std::string& path) const {
-  const std::vector<std::uint8_t> png = encode_png(surface_->pixels.data(), width(), height());
-  SF_CHECK(!png.empty(), "spng made no PNG");
-
-  errno = 0;
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  if (file) file.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
-  if (file) file.close();
-  if (!file)
-    throw base::InputError(path, 0,
-                           "cannot write the picture (" + why(errno) +
-                               "): name a file in a folder that exists, can be written and has room");
-}
+void Canvas::save_png(const std::string& path) const { write_png(path, surface_->pixels.data(), width(), height()); }
 
 }  // namespace sf::viz

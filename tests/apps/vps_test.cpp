@@ -11,6 +11,7 @@
 #include "netio/packets.h"
 #include "netio/socket.h"
 #include "tests/apps/program.h"
+#include "tests/viz/png.h"
 
 namespace sf {
 
@@ -43,7 +44,7 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("0, 0 of 6 reported"), std::string::npos) << outcome.out;  // missed, false
   EXPECT_NE(outcome.out.find("6 sent, 0 failed"), std::string::npos) << outcome.out;
-  EXPECT_TRUE(std::filesystem::exists(folder.path("pictures/a-000003.png")));
+  scenes::expect_painted(folder.path("pictures/a-000003.png"), {{0xFF56E078u, 20}, {0xFFFFA028u, 5}});  // tags, x axes
 
   // Two tags in each image but the first.
   std::map<std::uint16_t, std::uint32_t> count;

@@ -54,7 +54,7 @@ namespace {
 
 void draw(cv::Mat& picture, const Mark& mark) {
   constexpr int kShift = 4;  // sub-pixel bits
-  const cv::Scalar color(mark.color[2], mark.color[1], mark.color[0]);
+  const cv::Scalar color(mark.color[0], mark.color[1], mark.color[2]);
   std::vector<cv::Point> points;
   for (const glm::dvec2& p : mark.points) {
     const glm::dvec2 q = 16.0 * glm::clamp(p, glm::dvec2{-1e5}, glm::dvec2{1e5});
@@ -75,16 +75,6 @@ void draw(Image& image, const std::vector<Mark>& marks) {
     cv::Mat picture = wrap(image);
     for (const Mark& mark : marks) draw(picture, mark);
   });
-}
-
-void write_image(const std::string& file, const Image& image) {
-  bool written = false;
-  try {
-    written = cv::imwrite(file, wrap(image));
-  } catch (const cv::Exception&) {
-    written = false;
-  }
-  if (!written) throw base::InputError(file, 0, "cannot be written; expected a path that ends in .png, .jpg or .pgm");
 }
 
 }  // namespace sf::vision

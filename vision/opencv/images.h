@@ -19,7 +19,6 @@ void attempt(const std::string& what, const std::function<void()>& work);
 
 /// In grey; without pixels where the file cannot be read. @throws base::InputError as ImageSource::next
 Image read_image(const std::string& file);
-void write_image(const std::string& file, const Image& image);
 void draw(Image& image, const std::vector<Mark>& marks);
 /// Copies OpenCV's matrix, which has 8 bits a channel and the image's channels.
 /// @param source of the image. @throws base::InputError for more than `kMaxImagePixels`

@@ -7,7 +7,6 @@
 
 extern "C" {
 extern const sf::vision::OpenCv sensorfarm_opencv;
-const sf::vision::OpenCv sensorfarm_opencv{
-    sf::vision::tag_pattern, sf::vision::make_tag_finder, sf::vision::write_image, sf::vision::draw,
-    sf::vision::open_source, sf::vision::find_board,      sf::vision::calibrate};
+const sf::vision::OpenCv sensorfarm_opencv{sf::vision::tag_pattern, sf::vision::make_tag_finder, sf::vision::draw,
+                                           sf::vision::open_source, sf::vision::find_board,      sf::vision::calibrate};
 }
