@@ -16,6 +16,7 @@ struct Box {
 /// The box of no point: `united` with it changes nothing, and it meets no other.
 inline Box empty_box() { return {{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}}; }
 
+/// The square of side 2 `reach` [m].
 inline Box box_around(glm::dvec2 centre, double reach) {
   return {{centre.x - reach, centre.y - reach}, {centre.x + reach, centre.y + reach}};
 }

@@ -80,8 +80,7 @@ std::string in_folder(const ExperimentContext& context, const std::string& name)
 void make_folder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error)
-    throw base::InputError(path, 0, "cannot be created as a folder: " + error.message() + "; name another");
+  if (error) throw base::InputError(path, 0, "cannot be created as a folder: " + error.message() + "; name another");
 }
 
 void write_text(const std::string& path, const std::string& text) {

@@ -48,6 +48,8 @@ void read_intrinsics(const TomlReader& reader, const TomlNode& table, Intrinsics
   if (focal[0] < 1.0 || focal[1] < 1.0) reader.fail(length, "'focal' expects pixels from 1 to 1e6");
   center = {0.5 * (size[0] - 1.0), 0.5 * (size[1] - 1.0)};
   reader.numbers(table, "center", center, kMaxPixels, "[column, row] in pixels");
+  if (center[0] < 0.0 || center[1] < 0.0 || center[0] > size[0] - 1.0 || center[1] > size[1] - 1.0)
+    reader.fail(*world::find(table, "center"), "'center' is outside the image; expected a pixel near its middle");
   reader.numbers(table, "distortion", into.distortion, 1e3, "[k1, k2, p1, p2, k3]");
   into.width = static_cast<int>(size[0]);
   into.height = static_cast<int>(size[1]);

@@ -87,6 +87,8 @@ TEST(Testbed, NamesFileLineAndRemedy) {
            {kCamera + kCamera, "t.toml:7: two cameras have the name 'north'"},
            {kCamera + "orientation = [1, 1, 0, 0]\n", "t.toml:6: 'orientation' has the norm 1.414; expected a unit"},
            {kCamera + "distortion = [-9, 0, 0, 0, 0]\n", "t.toml:6: 'distortion' folds the image"},
+           {kCamera + "center = [-1, 500]\n", "t.toml:6: 'center' is outside the image"},
+           {kCamera + "center = [600, 1024]\n", "t.toml:6: 'center' is outside the image"},
            {kCamera + "distortion = [1, 2]\n", "t.toml:6: 'distortion' expects [k1, k2, p1, p2, k3]"},
            {kCamera + "position = 3\n", "t.toml"},  // twice the same key
            {kCamera + "exposure = -1\n", "t.toml:6: 'exposure' expects a number from 0 to 1"},
