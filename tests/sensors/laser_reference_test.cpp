@@ -113,6 +113,20 @@ TEST(LaserReference, FarFromTheOrigin) {
   expect_same_bits("far away", disagreement(world, 1));
 }
 
+TEST(LaserReference, HasTheLasersOfEachRobotAsTheyAreCast) {
+  world::World world = crowd(scenes::laser(181), 2);
+  scenes::remove_lasers(world.movers[0]);
+  world.movers[1].sensors.push_back(sensors::laser_sensor(scenes::laser(9, 1.0, 3.0)));
+  scenes::edit_laser(world.movers[1], 1)->accuracy.word = "skip4";
+  scenes::edit_laser(world.movers[2])->accuracy.word = "single";
+  const sensors::LaserReference reference(world, 1);
+  EXPECT_EQ(reference.laser(1, 0).laser.samples, 181u);
+  EXPECT_EQ(reference.laser(1, 1).laser.samples, 9u);
+  EXPECT_EQ(reference.laser(1, 1).laser.resolution, 4u);
+  EXPECT_FALSE(reference.laser(1, 1).single);
+  EXPECT_TRUE(reference.laser(2, 0).single);
+}
+
 /// The comparison detects differences: another seed gives other noise.
 TEST(LaserReference, SeesAnotherSeed) {
   sensors::LaserSettings laser = scenes::laser(61);
