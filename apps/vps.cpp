@@ -89,6 +89,21 @@ class Overlay {
   std::vector<std::vector<vision::Mark>> world_marks_;  ///< of each camera
 };
 
+/// Finds and tracks, with its times and its tags in the report.
+std::span<const vision::TrackedTag> process(std::span<const vision::Frame> frames, vision::Positioning& positioning,
+                                            VpsReport& report) {
+  const Clock::time_point before = Clock::now();
+  const double cpu_before = cpu_seconds();
+  const auto tags = positioning.update(frames);
+  report.processing_s += seconds(Clock::now() - before);
+  report.processing_cpu_s += cpu_seconds() - cpu_before;
+  for (const vision::TrackedTag& tag : tags) {
+    report.tags[tag.id] = tag;
+    ++report.reported[tag.id];
+  }
+  return tags;
+}
+
 }  // namespace
 
 int vps(const VpsOptions& options) {
@@ -119,20 +134,11 @@ int vps(const VpsOptions& options) {
     if (options.duration > 0.0 && frames[0].time >= options.duration) break;
     if (options.real_time && !inputs->is_live())
       std::this_thread::sleep_until(start + std::chrono::nanoseconds(base::nanoseconds(frames[0].time)));
-    const Clock::time_point before = Clock::now();
-    const double cpu_before = cpu_seconds();
-    const auto tags = positioning.update(frames);
-    report.processing_s += seconds(Clock::now() - before);
-    report.processing_cpu_s += cpu_seconds() - cpu_before;
-
+    const auto tags = process(frames, positioning, report);
     sender.send(tags, epoch);
     track.write(tags);
     overlay.write(positioning, frames, n);
     if (meter) meter->add(frames[0].time, tags);
-    for (const vision::TrackedTag& tag : tags) {
-      report.tags[tag.id] = tag;
-      ++report.reported[tag.id];
-    }
   }
   report.counts = positioning.counts();
   report.refused = positioning.refused();
