@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/elapsed.h"
 #include "base/time.h"
 #include "world/roads/roads.h"
 
@@ -38,10 +39,7 @@ std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mov
 }
 
 /// [ms] since 1970
-std::int64_t utc_now() {
-  const auto since = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::milliseconds>(since).count();
-}
+std::int64_t utc_now() { return base::unix_time() / 1'000'000; }
 
 }  // namespace
 
