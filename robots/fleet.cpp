@@ -146,14 +146,7 @@ std::size_t Fleet::apply(std::span<const base::Report> reports) {
 }
 
 std::span<const base::Report> Fleet::predict(std::int64_t time) {
-  for (std::size_t row = 0; row < reports_.size(); ++row) {
-    const base::Report& known = reports_[row];
-    predicted_[row] = known;
-    const std::int64_t ahead = std::clamp<std::int64_t>(time - known.time, 0, kMaxExtrapolation);
-    if (ahead == 0) continue;
-    predicted_[row].time = known.time + ahead;
-    predicted_[row].X_WM = advance(known.X_WM, known.velocity, 1e-9 * static_cast<double>(ahead));
-  }
+  for (std::size_t row = 0; row < reports_.size(); ++row) predicted_[row] = extrapolate(reports_[row], time);
   update_reported_contacts();
   return predicted_;
 }

@@ -34,9 +34,6 @@
 
 namespace sf::robots {
 
-/// [ns] longest extrapolation of a report with its velocity.
-inline constexpr std::int64_t kMaxExtrapolation = 500'000'000;
-
 /// All movers at rest at their poses at load, at time 0; one per mover, in order of rows.
 std::vector<base::Report> states_at_load(const world::World& world);
 
@@ -76,7 +73,7 @@ class Fleet {
   /// The velocity of a simulated mover is the one at the end of the tick, 0 after a stop. Valid as long as the fleet.
   std::span<const base::Report> reports() const { return reports_; }
 
-  /// `reports()` extrapolated to `time` [ns] with constant twists, by kMaxExtrapolation at most, never backwards.
+  /// `reports()` at `time` [ns] (robots::extrapolate).
   /// Contacts of movers with reports from outside are computed at these poses and added to the contacts in the reports.
   /// Valid until the next call.
   std::span<const base::Report> predict(std::int64_t time);

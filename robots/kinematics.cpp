@@ -76,6 +76,15 @@ base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double d
   return {X_WM.x + d.x, X_WM.y + d.y, X_WM.z, base::wrap_angle(X_WM.yaw + velocity.turn * dt)};
 }
 
+base::Report extrapolate(const base::Report& known, std::int64_t time) {
+  const std::int64_t ahead = std::clamp<std::int64_t>(time - known.time, 0, kMaxExtrapolation);
+  base::Report report = known;
+  if (ahead == 0) return report;  // bitwise equal, whatever its yaw
+  report.time += ahead;
+  report.X_WM = advance(known.X_WM, known.velocity, 1e-9 * static_cast<double>(ahead));
+  return report;
+}
+
 base::Report interpolate(const base::Report& before, const base::Report& after, std::int64_t time) {
   const base::Pose &from = before.X_WM, &to = after.X_WM;
   base::Report report = before;

@@ -34,6 +34,13 @@ base::Twist limit_acceleration(const world::Mover& mover, const base::Twist& now
 /// is in [-pi, pi].
 base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double dt);
 
+/// [ns] longest extrapolation of a report with its velocity.
+inline constexpr std::int64_t kMaxExtrapolation = 500'000'000;
+
+/// The state after `known` with its constant twist: at `time` [ns], or as far as kMaxExtrapolation reaches. Never
+/// earlier than `known`.
+base::Report extrapolate(const base::Report& known, std::int64_t time);
+
 /// State of one mover at `time`, between two of its states: on the arc of the later velocity when it connects the two
 /// poses, which holds for a mover that nothing stopped; else on the arc of constant twist between the poses, by the
 /// smaller turn. Contacts are those of `before`. A function of the two states alone.

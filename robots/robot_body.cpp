@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robots/kinematics.h"
+
 namespace sf::robots {
 
 namespace {

@@ -89,11 +89,15 @@ control::ControllerConfig controller_config_of(const Reader& reader, const TomlN
   return config;
 }
 
+netio::LinkModel read_link(const Reader& reader, const TomlNode& table) {
+  return {reader.number(table, "delay", 0.0, 0.0, kLongestDelay),
+          reader.number(table, "jitter", 0.0, 0.0, kLongestDelay), reader.number(table, "loss", 0.0, 0.0, 1.0)};
+}
+
 netio::LinkModel link_of(const Reader& reader, const TomlNode* table, const netio::LinkModel& fallback) {
   if (table == nullptr) return fallback;
   reader.require_known(*table, kLinkKeys);
-  return {reader.number(*table, "delay", 0.0, 0.0, kLongestDelay),
-          reader.number(*table, "jitter", 0.0, 0.0, kLongestDelay), reader.number(*table, "loss", 0.0, 0.0, 1.0)};
+  return read_link(reader, *table);
 }
 
 std::optional<StateLinkOptions> states_of(const Reader& reader, const TomlNode* table) {
@@ -101,9 +105,7 @@ std::optional<StateLinkOptions> states_of(const Reader& reader, const TomlNode* 
   reader.require_known(*table, kStatesKeys);
   StateLinkOptions states;
   states.rate = reader.number(*table, "rate", states.rate, 0.01, 1e4);
-  states.link = {reader.number(*table, "delay", 0.0, 0.0, kLongestDelay),
-                 reader.number(*table, "jitter", 0.0, 0.0, kLongestDelay),
-                 reader.number(*table, "loss", 0.0, 0.0, 1.0)};
+  states.link = read_link(reader, *table);
   states.filter = reader.flag(*table, "filter");
   states.position_sigma = reader.number(*table, "position_sigma", 0.0, 0.0, 1.0);
   states.yaw_sigma = reader.number(*table, "yaw_sigma", 0.0, 0.0, 1.0);

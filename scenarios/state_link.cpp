@@ -44,18 +44,16 @@ std::span<const base::Report> StateLink::pass(std::int64_t time, std::span<const
   on_the_way_.erase(on_the_way_.begin(), arrived);
 
   known_.assign(truth.begin(), truth.end());
+  const auto use = [&](const base::Report& state) {
+    known_[state.mover].X_WM = state.X_WM;
+    known_[state.mover].velocity = state.velocity;
+  };
   for (base::Report& report : known_) {
     if (world_.movers[report.mover].is_tag) continue;
-    const base::Report& newest = newest_[report.mover];
-    const std::int64_t ahead = std::clamp<std::int64_t>(time - newest.time, 0, robots::kMaxExtrapolation);
-    report.X_WM = robots::advance(newest.X_WM, newest.velocity, 1e-9 * static_cast<double>(ahead));
-    report.velocity = newest.velocity;
+    use(robots::extrapolate(newest_[report.mover], time));
   }
   if (options_.filter)
-    for (const base::Report& report : filter_.predict(time)) {
-      known_[report.mover].X_WM = report.X_WM;
-      known_[report.mover].velocity = report.velocity;
-    }
+    for (const base::Report& report : filter_.predict(time)) use(report);
   return known_;
 }
 
