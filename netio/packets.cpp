@@ -160,7 +160,7 @@ PacketStatus read_header(base::ByteReader& reader, Header& header, std::size_t& 
   read_covariance(reader, state.covariance);
   trailer = reader.get<std::uint16_t>();
   state.stale = (reader.get<std::uint16_t>() & kStaleBit) != 0;
-  header.state = state.stated ? state : StateQuality{};
+  if (state.stated && sensor_type_of(header.type) != 0) header.state = state;
   return PacketStatus::accepted;
 }
 

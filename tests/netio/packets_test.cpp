@@ -96,6 +96,16 @@ TEST(Packets, CovarianceThatIsNoneIsLeftOut) {
   }
 }
 
+/// Those of a state are reserved: a relay would pass them on.
+TEST(Packets, AgeAndCovarianceOfAStateAreIgnored) {
+  base::Bytes bytes;
+  encode({.robot = 7, .state = {.stated = true, .age = 5000, .covariance = {1, 0, 0, 1, 0, 1}}}, V2v{}, bytes);
+  Packet packet;
+  EXPECT_EQ(decode(bytes, packet), PacketStatus::accepted);
+  EXPECT_FALSE(packet.header.state.stated);
+  EXPECT_EQ(packet.header.state.covariance[0], 0.0f);
+}
+
 TEST(Packets, V2vComesBack) {
   base::Bytes bytes;
   const V2v sent{.X_WR = {-kMaxPosition, kMaxPosition, 0.1, -kMaxYaw},
