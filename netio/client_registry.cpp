@@ -66,11 +66,6 @@ bool ClientRegistry::is_active(std::uint32_t id, std::int64_t now) const {
   return at && is_recent(clients_[*at].last, now);
 }
 
-bool ClientRegistry::is_bound(std::uint32_t id, const Endpoint& who, std::int64_t now) const {
-  const auto at = row(id);
-  return at && is_recent(clients_[*at].last, now) && clients_[*at].source == who;
-}
-
 std::optional<Endpoint> ClientRegistry::source(std::uint32_t id) const {
   const auto at = row(id);
   if (!at || !clients_[*at].last) return std::nullopt;

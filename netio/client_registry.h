@@ -43,9 +43,6 @@ class ClientRegistry {
   /// A packet of `id` was accepted less than two seconds before `now`. False for unknown ids.
   bool is_active(std::uint32_t id, std::int64_t now) const;
 
-  /// `id`, which is known, is bound to `source`: a packet from there was accepted less than two seconds before `now`.
-  bool is_bound(std::uint32_t id, const Endpoint& source, std::int64_t now) const;
-
   /// The last sender for `id`, even if silent since; nullopt if there was none or it has left.
   std::optional<Endpoint> source(std::uint32_t id) const;
 

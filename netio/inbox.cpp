@@ -65,11 +65,7 @@ PacketStatus Inbox::check(Packet& packet, const Endpoint& source, std::int64_t n
       return robots_.leave(packet.header.robot, source, now);
     case Type::tag:
       if (!tags_.row(packet.header.robot)) return PacketStatus::unknown_tag;
-      {
-        const PacketStatus status =
-            tags_.admit(packet.header.robot, kStateChannel, packet.header.sequence, source, now);
-        return status == PacketStatus::stale ? check_late(tags_, packet, source, now) : status;
-      }
+      return admit_state(tags_, packet, source, now);
     case Type::start:
       return packet.header.robot == kBroadcastId || robots_.row(packet.header.robot) ? PacketStatus::accepted
                                                                                      : PacketStatus::unknown_robot;
@@ -88,21 +84,23 @@ PacketStatus Inbox::check_robot(Packet& packet, const Endpoint& source, std::int
 
   const bool was_active = robots_.is_active(id, now);
   const auto* request = std::get_if<Subscribe>(&packet.body);
-  const PacketStatus status =
-      robots_.admit(id, request != nullptr ? kSubscribeChannel : kStateChannel, packet.header.sequence, source, now);
-  if (status == PacketStatus::stale && request == nullptr) return check_late(robots_, packet, source, now);
-  if (status != PacketStatus::accepted) return status;
+  const PacketStatus status = request != nullptr
+                                  ? robots_.admit(id, kSubscribeChannel, packet.header.sequence, source, now)
+                                  : admit_state(robots_, packet, source, now);
+  if (status != PacketStatus::accepted || packet.late) return status;
   if (!was_active) types_[*row] = 0;
   if (request != nullptr) types_[*row] = request->types;
   sessions_[*row] = packet.header.session;
   return PacketStatus::accepted;
 }
 
-/// The status of a state that `clients` called stale.
-PacketStatus Inbox::check_late(const ClientRegistry& clients, Packet& packet, const Endpoint& source,
-                               std::int64_t now) const {
-  packet.late = take_late_ && clients.is_bound(packet.header.robot, source, now);
-  return packet.late ? PacketStatus::accepted : PacketStatus::stale;
+/// Marks a state that others of its bound sender overtook, where these are accepted.
+PacketStatus Inbox::admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source,
+                                std::int64_t now) const {
+  const std::uint32_t id = packet.header.robot;
+  const PacketStatus status = clients.admit(id, kStateChannel, packet.header.sequence, source, now);
+  packet.late = take_late_ && status == PacketStatus::stale && clients.is_active(id, now);  // else it has left
+  return packet.late ? PacketStatus::accepted : status;
 }
 
 bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out) {

@@ -51,20 +51,12 @@ class Inbox {
   /// @return number of datagrams read
   template <class Take, class OnRejected>
   std::size_t receive(std::int64_t now, Take&& take, OnRejected&& on_rejected) {
-    std::size_t taken = 0;
     Packet packet;
-    while (taken < kMaxPerReceive) {
-      const std::size_t n = batch_.fill(socket_);
-      if (n == 0) break;
-      for (std::size_t i = 0; i < n; ++i) {
-        const PacketStatus status = accept(batch_.bytes(i), batch_.source(i), now, packet);
-        if (status == PacketStatus::accepted) take(packet);
-        if (status == PacketStatus::unproven || status == PacketStatus::wrong_source)
-          on_rejected(status, packet, batch_.source(i));
-      }
-      taken += n;
-    }
-    return taken;
+    return batch_.drain(socket_, kMaxPerReceive, [&](std::span<const std::uint8_t> bytes, const Endpoint& source) {
+      const PacketStatus status = accept(bytes, source, now, packet);
+      if (status == PacketStatus::accepted) take(packet);
+      if (status == PacketStatus::unproven || status == PacketStatus::wrong_source) on_rejected(status, packet, source);
+    });
   }
 
   template <class Take>
@@ -112,8 +104,7 @@ class Inbox {
 
  private:
   PacketStatus check(Packet& packet, const Endpoint& source, std::int64_t now);
-  PacketStatus check_late(const ClientRegistry& clients, Packet& packet, const Endpoint& source,
-                          std::int64_t now) const;
+  PacketStatus admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source, std::int64_t now) const;
   PacketStatus check_robot(Packet& packet, const Endpoint& source, std::int64_t now);
 
   ClientRegistry robots_;

@@ -37,11 +37,10 @@ class PortListener {
   std::size_t drain(int timeout_ms, Take&& take) {
     std::size_t taken = 0;
     for (wait(timeout_ms); !ready_.empty() && taken < kMaxPerDrain; wait(0)) {
-      for (const std::size_t stream : ready_) {
-        const std::size_t n = batch_.fill(sockets_[stream]);
-        for (std::size_t i = 0; i < n; ++i) take(stream, batch_.bytes(i), batch_.source(i));
-        taken += n;
-      }
+      for (const std::size_t stream : ready_)  // one batch each, so that none keeps the others waiting
+        taken += batch_.drain(sockets_[stream], 1, [&](std::span<const std::uint8_t> bytes, const Endpoint& source) {
+          take(stream, bytes, source);
+        });
     }
     return taken;
   }

@@ -81,6 +81,18 @@ class ReceiveBatch {
   /// Receives at most `capacity` waiting datagrams. @return their number
   std::size_t fill(const Socket& socket);
 
+  /// Passes waiting datagrams to `take(std::span<const std::uint8_t> bytes, const Endpoint& source)`, batch by batch,
+  /// until none waits or at least `most` were passed. @return their number
+  template <class Take>
+  std::size_t drain(const Socket& socket, std::size_t most, Take&& take) {
+    std::size_t taken = 0;
+    for (std::size_t n = 1; n > 0 && taken < most; taken += n) {
+      n = fill(socket);
+      for (std::size_t i = 0; i < n; ++i) take(bytes(i), source(i));
+    }
+    return taken;
+  }
+
   /// A datagram of the last `fill`; lives until the next.
   std::span<const std::uint8_t> bytes(std::size_t i) const;
   Endpoint source(std::size_t i) const;

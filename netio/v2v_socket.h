@@ -52,15 +52,12 @@ class V2vSocket {
   template <class Take>
   void receive(Take&& take) {
     constexpr std::size_t kMost = 65'536;
-    for (std::size_t taken = 0, n = 1; n > 0 && taken < kMost; taken += n) {
-      n = batch_.fill(socket_);
-      for (std::size_t i = 0; i < n; ++i) {
-        if (batch_.source(i) == options_.farm)
-          for_each_state(batch_.bytes(i), take);
-        else
-          counts_.add(PacketStatus::wrong_source);
-      }
-    }
+    batch_.drain(socket_, kMost, [&](std::span<const std::uint8_t> bytes, const Endpoint& source) {
+      if (source == options_.farm)
+        for_each_state(bytes, take);
+      else
+        counts_.add(PacketStatus::wrong_source);
+    });
   }
 
   /// Checks any bytes from the farm, received at `now` [ns]. V2V of other robots, and START and CHALLENGE for this

@@ -22,10 +22,8 @@ SpatListener::SpatListener(const world::World& world, const world::RoadNetwork* 
       batch_(kBatch) {}
 
 void SpatListener::receive(std::int64_t now, std::int64_t utc) {
-  for (std::size_t taken = 0, n = 1; n > 0 && taken < kMost; taken += n) {
-    n = batch_.fill(socket_);
-    for (std::size_t i = 0; i < n; ++i) accept(batch_.bytes(i), now, utc);
-  }
+  batch_.drain(socket_, kMost,
+               [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) { accept(bytes, now, utc); });
 }
 
 void SpatListener::accept(std::span<const std::uint8_t> bytes, std::int64_t now, std::int64_t utc) {
