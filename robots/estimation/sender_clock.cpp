@@ -41,7 +41,6 @@ ClockVerdict SenderClock::take(std::int64_t sent, std::int64_t arrival) {
   if (options_.source == ClockSource::arrival) return ClockVerdict::used;
   const std::int64_t gap = arrival - sent;
   if (options_.source == ClockSource::trusted) {
-    state_.synchronised = true;
     if (gap < -options_.max_future) return ClockVerdict::future;
     return gap > options_.max_delay ? ClockVerdict::late : ClockVerdict::used;
   }
@@ -128,11 +127,6 @@ void SenderClock::fit() {
   for (std::size_t k = 0; k < count; ++k) least = std::min(least, points[k].gap - drift * points[k].sent);
   state_.drift = drift;
   state_.offset += std::llround(least) - options_.least_delay;
-}
-
-std::int64_t SenderClock::to_own(std::int64_t sent) const {
-  if (options_.source != ClockSource::estimated) return sent;
-  return sent + state_.offset + std::llround(state_.drift * static_cast<double>(sent - newest_));
 }
 
 std::int64_t SenderClock::to_sender(std::int64_t own) const {

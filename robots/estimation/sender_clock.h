@@ -37,7 +37,7 @@ enum class ClockVerdict : std::uint8_t {
 struct ClockState {
   std::int64_t offset = 0;    ///< [ns] receiver's time minus sender's, at the newest timestamp
   double drift = 0.0;         ///< [s/s] of that offset, within kMaxDrift; 0 until kDriftSpan of timestamps are known
-  bool synchronised = false;  ///< the offset is known
+  bool synchronised = false;  ///< the offset is known, from packets: never with `trusted` and `arrival`
   bool drift_known = false;
   std::uint64_t steps = 0;  ///< of the sender's clock
 };
@@ -56,11 +56,7 @@ class SenderClock {
   /// Takes a packet's timestamp `sent` on the sender's clock and its arrival on the receiver's, both in [0, 2^62] ns.
   ClockVerdict take(std::int64_t sent, std::int64_t arrival);
 
-  /// [ns] The receiver's time at the sender's time `sent`; within the same 146 years. `arrival`: not for a time but for
-  /// a packet, whose arrival is its time.
-  std::int64_t to_own(std::int64_t sent) const;
-
-  /// [ns] The sender's time at the receiver's time `own` in [0, 2^61]: the inverse. `trusted`, `arrival`: `own`.
+  /// [ns] The sender's time at the receiver's time `own` in [0, 2^61]. `trusted`, `arrival`: `own`.
   std::int64_t to_sender(std::int64_t own) const;
 
   const ClockState& state() const { return state_; }

@@ -26,9 +26,11 @@ std::string_view name(Verdict verdict) {
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
-TrackFilter::TrackFilter(const FilterOptions& options) : options_(options), entries_(options.capacity) {
+GateLimits gate_limits(double gate) {
+  GateLimits limits{};
   for (int degrees = 1; degrees <= static_cast<int>(kComponents); ++degrees)
-    limits_[degrees] = chi_square_limit(degrees, options.gate);
+    limits[degrees] = chi_square_limit(degrees, gate);
+  return limits;
 }
 
 Verdict TrackFilter::take(const Measurement& measurement, std::int64_t now) {
@@ -87,12 +89,12 @@ void TrackFilter::replay(std::size_t from) {
 /// A refused measurement leaves every bit of the state as it was.
 Verdict TrackFilter::apply(const Measurement& m, State& state) const {
   const auto start = [&] {
-    state = {true, m.time, m.time, first_estimate(options_.model, m)};
+    state = {true, m.time, first_estimate(options_.model, m)};
     return Verdict::started;
   };
   const bool position = has_position(m);
   if (!state.known && !position) return Verdict::no_track;
-  if (!state.known || (position && m.time - state.last_used > options_.stale_after)) return start();
+  if (!state.known || (position && m.time - state.estimate.time > options_.stale_after)) return start();
 
   const Estimate predicted = estimation::predict(options_.model, state.estimate, m.time);
   const Innovation surprise = innovation(predicted, m);
@@ -104,7 +106,6 @@ Verdict TrackFilter::apply(const Measurement& m, State& state) const {
     return far ? Verdict::jump : Verdict::outlier;
   }
   state.estimate = correct(predicted, m);
-  state.last_used = m.time;
   if (position) state.last_position = m.time;
   return Verdict::used;
 }
@@ -113,14 +114,14 @@ Prediction TrackFilter::predict(std::int64_t time) const {
   const State* state = before_.known ? &before_ : nullptr;
   for (std::size_t k = 0; k < size_; ++k) {
     const State& after = entry(k).after;
-    if (after.known && (state == nullptr || after.last_used <= time)) state = &after;
+    if (after.known && (state == nullptr || after.estimate.time <= time)) state = &after;
   }
   if (state == nullptr) return {};
 
-  Prediction prediction{Prediction::Status::fresh, time - state->last_used,
+  Prediction prediction{Prediction::Status::fresh, time - state->estimate.time,
                         estimation::predict(options_.model, state->estimate, time)};
   if (prediction.age <= options_.stale_after) return prediction;
-  const std::int64_t end = state->last_used + options_.stale_after;
+  const std::int64_t end = state->estimate.time + options_.stale_after;
   prediction.status = Prediction::Status::stale;
   prediction.estimate.X_WM = estimation::predict(options_.model, state->estimate, end).X_WM;
   prediction.estimate.velocity = {};

@@ -68,10 +68,18 @@ struct Prediction {
   Estimate estimate;     ///< at the time asked for; the covariance grows with age, stale or not
 };
 
+/// Of the squared innovation, by degrees of freedom from 1 on.
+using GateLimits = std::array<double, kComponents + 1>;
+/// @param gate as in FilterOptions
+GateLimits gate_limits(double gate);
+
 /// Allocates in the constructor alone. One thread.
 class TrackFilter {
  public:
-  explicit TrackFilter(const FilterOptions& options);
+  explicit TrackFilter(const FilterOptions& options) : TrackFilter(options, gate_limits(options.gate)) {}
+  /// @param limits of `options.gate`, computed once for several filters
+  TrackFilter(const FilterOptions& options, const GateLimits& limits)
+      : options_(options), limits_(limits), entries_(options.capacity) {}
 
   /// @param now [ns] on the clock of the measurements' times
   /// @return the measurement's verdict at its place in the window
@@ -84,14 +92,12 @@ class TrackFilter {
   void reset();
 
   const VerdictCounts& counts() const { return counts_; }
-  const FilterOptions& options() const { return options_; }
 
  private:
   struct State {
     bool known = false;
-    std::int64_t last_used = 0;      ///< [ns] time of the last used measurement
     std::int64_t last_position = 0;  ///< [ns] of the last used one with a position
-    Estimate estimate;               ///< at last_used
+    Estimate estimate;               ///< at the last used measurement
   };
   struct Entry {
     Measurement measurement;
@@ -109,8 +115,8 @@ class TrackFilter {
   Verdict count(Verdict verdict);
 
   FilterOptions options_;
-  std::array<double, kComponents + 1> limits_{};  ///< of the squared innovation, by degrees of freedom
-  std::vector<Entry> entries_;                    ///< ring of `capacity`, sorted from first_ on
+  GateLimits limits_;
+  std::vector<Entry> entries_;  ///< ring of `capacity`, sorted from first_ on
   std::size_t first_ = 0;
   std::size_t size_ = 0;
   State before_;           ///< after the measurements that left the ring
