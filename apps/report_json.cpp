@@ -104,9 +104,12 @@ Json control_json(const ControlReport& f) {
   return json;
 }
 
-/// Non-zero counts by verdict, and the senders' clocks.
+/// Non-zero counts by verdict, states beyond the limit of a tick, and the senders' clocks.
 Json states_json(const RunReport& f) {
-  Json json{{"by_verdict", Json::object()}, {"by_clock", Json::object()}, {"clocks", Json::array()}};
+  Json json{{"by_verdict", Json::object()},
+            {"by_clock", Json::object()},
+            {"beyond_limit", f.states.flooded},
+            {"clocks", Json::array()}};
   for (std::size_t k = 0; k < f.states.states.size(); ++k)
     if (f.states.states[k] > 0)
       json["by_verdict"][std::string(name(static_cast<estimation::Verdict>(k)))] = f.states.states[k];

@@ -183,6 +183,7 @@ std::string states_text(const RunReport& f) {
     add(name(static_cast<estimation::Verdict>(k)), f.states.states[k]);
   for (const auto refused : {estimation::ClockVerdict::future, estimation::ClockVerdict::late})
     add(fmt::format("{} by its clock", name(refused)), f.states.clocks[static_cast<std::size_t>(refused)]);
+  add("beyond the limit of a tick", f.states.flooded);
   std::string text = row("states", counts.empty() ? "none" : counts);
   constexpr std::size_t kLines = 5;
   for (std::size_t i = 0; i < std::min(f.clocks.size(), kLines); ++i) {

@@ -5,19 +5,10 @@
 #include <cmath>
 #include <thread>
 
+#include "base/elapsed.h"
 #include "base/time.h"
 
 namespace sf::server {
-
-namespace {
-
-/// [ns] since 1970.
-std::int64_t unix_time() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-}  // namespace
 
 class Service::Clock {
  public:
@@ -38,15 +29,17 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
       publisher_(world, sensor_set, layout, netio::Outbox(receiver_.inbox().socket(), outbox_options(sensor_set))),
       farm_(world, device,
             farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
-      quality_(world.movers.size()),
       no_return_filter_(sensor_set, options.no_return_inf),
       interval_(options.rate > 0.0 ? 1.0 / options.rate : world.interval),
-      filtered_(options.receiver.filter.enabled),
-      only_at_ticks_(options.rate > 0.0) {}
+      only_at_ticks_(options.rate > 0.0) {
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : group.rows)
+      if (base::nanoseconds(row.latency) > 0) quality_log_[row.mover];
+}
 
 void Service::run(const std::atomic<bool>& stop, double duration) {
   const Clock clock;
-  receiver_.filter().set_epoch(unix_time());
+  receiver_.filter().set_epoch(base::unix_time());
   const std::int64_t step = base::nanoseconds(interval_);
   std::int64_t next = 0;  // [ns] of the tick
   while (!stop) {
@@ -94,8 +87,8 @@ void Service::publish_due(std::int64_t now, bool between) {
   for (const auto& [id, row] : receiver_.robots()) {
     farm_.set_absent(row, receiver_.update_absent(id, now));
     farm_.subscribe(row, subscribed_types(id, now));
-    note_quality(row, now);
   }
+  log_quality(now);
   for (const auto& [id, row] : receiver_.tags()) farm_.set_absent(row, receiver_.update_absent_tag(row));
   const auto states = receiver_.states(now);
   const auto readings = no_return_filter_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
@@ -104,8 +97,8 @@ void Service::publish_due(std::int64_t now, bool between) {
     const std::uint32_t id = world_.movers[reading.mover].id;
     const auto to = receiver_.inbox().address(id);
     if (to)
-      addressed_readings_.push_back(
-          {&reading, to->address, receiver_.inbox().session_token_for(id), quality_at(reading.mover, reading.time)});
+      addressed_readings_.push_back({&reading, to->address, receiver_.inbox().session_token_for(id),
+                                     quality_at(reading.mover, reading.time, now)});
   }
   publisher_.queue(addressed_readings_);
   publisher_.flush();
@@ -113,17 +106,20 @@ void Service::publish_due(std::int64_t now, bool between) {
   warn_of_missed(now);
 }
 
-void Service::note_quality(std::uint32_t row, std::int64_t now) {
-  QualityLog& log = quality_[row];
-  log.entries[log.next] = {now, receiver_.quality(row, now)};
-  log.next = (log.next + 1) % log.entries.size();
+void Service::log_quality(std::int64_t now) {
+  for (auto& [row, log] : quality_log_) {
+    log.push_back({now, receiver_.quality(row, now)});
+    if (log.size() > kMaxLogged) log.pop_front();
+  }
 }
 
 /// Not stated for readings that were held longer than the log reaches.
-netio::StateQuality Service::quality_at(std::uint32_t row, std::int64_t time) const {
-  for (const QualityLog::Entry& entry : quality_[row].entries)
-    if (entry.time == time) return entry.quality;
-  return {};
+netio::StateQuality Service::quality_at(std::uint32_t row, std::int64_t time, std::int64_t now) const {
+  if (time == now) return receiver_.quality(row, now);
+  const auto& log = quality_log_.at(row);
+  const auto found = std::lower_bound(log.begin(), log.end(), time,
+                                      [](const LoggedQuality& logged, std::int64_t at) { return logged.time < at; });
+  return found != log.end() && found->time == time ? found->quality : netio::StateQuality{};
 }
 
 /// Bit k: robot `id` is active, and wants its sensors of type k.
@@ -159,7 +155,7 @@ ServiceStats Service::stats() const {
   stats.relayed = receiver_.relayed();
   stats.answers = receiver_.answered();
   stats.lines_left_out = receiver_.log().left_out();
-  stats.filtered = filtered_;
+  stats.filtered = receiver_.filter().options().enabled;
   stats.states = receiver_.filter().counts();
   stats.clocks = receiver_.filter().clocks();
   return stats;

@@ -6,9 +6,10 @@
 //   service.receive_pending(now);
 //   service.tick(now);
 
-#include <array>
 #include <atomic>
 #include <cstdint>
+#include <deque>
+#include <map>
 #include <vector>
 
 #include "farm/farm.h"
@@ -79,18 +80,15 @@ class Service {
   void publish_due(std::int64_t now, bool between);
   std::uint32_t subscribed_types(std::uint32_t id, std::int64_t now) const;
   void warn_of_missed(std::int64_t now);
-  void note_quality(std::uint32_t row, std::int64_t now);
-  netio::StateQuality quality_at(std::uint32_t row, std::int64_t time) const;
+  void log_quality(std::int64_t now);
+  netio::StateQuality quality_at(std::uint32_t row, std::int64_t time, std::int64_t now) const;
 
-  /// The quality of one mover's state at its last samples: readings are delivered up to their latency later.
-  struct QualityLog {
-    struct Entry {
-      std::int64_t time = -1;  ///< [ns]
-      netio::StateQuality quality;
-    };
-    std::array<Entry, 32> entries;
-    std::size_t next = 0;
+  /// The quality of a mover's state at one of its last samples.
+  struct LoggedQuality {
+    std::int64_t time = 0;  ///< [ns]
+    netio::StateQuality quality;
   };
+  static constexpr std::size_t kMaxLogged = 1'024;  ///< samples of a mover
 
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
@@ -98,11 +96,10 @@ class Service {
   StateReceiver receiver_;
   ReadingPublisher publisher_;
   farm::Farm farm_;
-  std::vector<QualityLog> quality_;  ///< per mover
+  std::map<std::uint32_t, std::deque<LoggedQuality>> quality_log_;  ///< by row, of movers with delayed readings
   NoReturnFilter no_return_filter_;
   std::vector<AddressedReading> addressed_readings_;  ///< of one tick
   double interval_;
-  bool filtered_;
   bool only_at_ticks_;  ///< `ServiceOptions::rate` is set
   bool warned_of_missed_ = false;
   std::uint64_t ticks_ = 0;

@@ -34,10 +34,15 @@ StateFilter::StateFilter(const world::World& world, const StateFilterOptions& op
 void StateFilter::take(const base::Report& report, const netio::Header& header, std::int64_t now) {
   using estimation::ClockSource, estimation::ClockVerdict;
   MoverState& mover = movers_[report.mover];
+  if (++mover.taken > kMostBetweenPredictions) {
+    ++flooded_;
+    return;
+  }
   if (!mover.track)
     mover.track.emplace(estimation::FilterOptions{.model = motion_model(world_.movers[report.mover]),
                                                   .stale_after = options_.stale_after,
-                                                  .max_future = options_.clock.max_future});
+                                                  .max_future = options_.clock.max_future},
+                        gate_limits_);
   if (header.session != mover.session) forget(mover);  // its sender restarted
   mover.session = header.session;
 
@@ -72,6 +77,7 @@ const std::vector<base::Report>& StateFilter::predict(std::int64_t now) {
   reports_.clear();
   for (std::uint32_t row = 0; row < movers_.size(); ++row) {
     MoverState& mover = movers_[row];
+    mover.taken = 0;
     if (!mover.track) continue;
     const estimation::Prediction prediction = mover.track->predict(mover.clock.to_sender(now + epoch()));
     if (prediction.status == Status::none) continue;
@@ -94,7 +100,7 @@ void StateFilter::forget(MoverState& mover) {
 }
 
 StateFilterCounts StateFilter::counts() const {
-  StateFilterCounts counts{.clocks = clock_counts_};
+  StateFilterCounts counts{.clocks = clock_counts_, .flooded = flooded_};
   for (const MoverState& mover : movers_)
     for (std::size_t k = 0; mover.track && k < estimation::kVerdicts; ++k) counts.states[k] += mover.track->counts()[k];
   return counts;

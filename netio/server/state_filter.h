@@ -30,7 +30,8 @@ struct StateFilterOptions {
 
 struct StateFilterCounts {
   estimation::VerdictCounts states{};     ///< whose clock was accepted, by verdict
-  std::array<std::uint64_t, 4> clocks{};  ///< all states, by estimation::ClockVerdict
+  std::array<std::uint64_t, 4> clocks{};  ///< all states but the flooded ones, by estimation::ClockVerdict
+  std::uint64_t flooded = 0;              ///< left out, beyond StateFilter::kMostBetweenPredictions
 };
 
 /// The clock of one mover's sender.
@@ -43,6 +44,9 @@ struct SenderClockState {
 /// only. One thread.
 class StateFilter {
  public:
+  /// States of one mover that are taken between two predictions: each may apply a window of measurements again.
+  static constexpr std::size_t kMostBetweenPredictions = 64;
+
   StateFilter(const world::World& world, const StateFilterOptions& options);
 
   /// Takes a mover's state, late ones too. @param report at the sender's time `header.time`
@@ -57,6 +61,7 @@ class StateFilter {
   /// Stale, and out of the world by the policy.
   bool is_gone(std::uint32_t row) const { return movers_[row].gone; }
 
+  const StateFilterOptions& options() const { return options_; }
   /// Sets `StateFilterOptions::epoch`.
   void set_epoch(std::int64_t epoch) { options_.epoch = epoch; }
 
@@ -68,6 +73,7 @@ class StateFilter {
     std::optional<estimation::TrackFilter> track;
     estimation::SenderClock clock;
     std::uint32_t session = 0;
+    std::size_t taken = 0;  ///< since the last prediction
     netio::StateQuality quality;
     bool gone = false;
   };
@@ -77,9 +83,11 @@ class StateFilter {
 
   const world::World& world_;
   StateFilterOptions options_;
+  estimation::GateLimits gate_limits_ = estimation::gate_limits(estimation::FilterOptions{}.gate);
   std::vector<MoverState> movers_;
   std::vector<base::Report> reports_;
   std::array<std::uint64_t, 4> clock_counts_{};
+  std::uint64_t flooded_ = 0;
 };
 
 }  // namespace sf::server

@@ -10,17 +10,25 @@
 
 namespace sf::server {
 
+namespace {
+
+/// By time of arrival no state is late: an overtaken one would count as the newest.
+bool takes_late(const StateFilterOptions& filter) {
+  return filter.enabled && filter.clock.source != estimation::ClockSource::arrival;
+}
+
+}  // namespace
+
 StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptions& options)
     : world_(world),
       names_(wire_names(world)),
       inbox_({.bind = options.bind,
               .robots = ids_of(names_.robots),
               .tags = ids_of(names_.tags),
-              .take_late = options.filter.enabled}),
+              .take_late = takes_late(options.filter)}),
       answers_(inbox_.socket()),
       relay_(ids_of(names_.robots), {.range = options.radio}),
       fleet_(world),
-      filter_options_(options.filter),
       filter_(world, options.filter),
       forget_(options.forget > 0.0
                   ? std::max<std::int64_t>(0, base::nanoseconds(options.forget) - netio::kClientTimeout)
@@ -55,21 +63,21 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
     return;
   }
   last_state_[report.mover] = now;
-  if (filter_options_.enabled) return filter_.take(report, packet.header, now);
+  if (filter_.options().enabled) return filter_.take(report, packet.header, now);
   // Senders' clocks are their own: a state is true when it arrives.
   report.time = now;
   reports_.push_back(report);
 }
 
 void StateReceiver::predict(std::int64_t now) {
-  if (filter_options_.enabled) fleet_.apply(filter_.predict(now));
+  if (filter_.options().enabled) fleet_.apply(filter_.predict(now));
 }
 
 netio::StateQuality StateReceiver::quality(std::uint32_t row, std::int64_t now) const {
-  if (filter_options_.enabled) return filter_.quality(row);
+  if (filter_.options().enabled) return filter_.quality(row);
   if (last_state_[row] == kNever) return {};
   const std::int64_t age = now - last_state_[row];
-  return {.stated = true, .stale = age > filter_options_.stale_after, .age = age};
+  return {.stated = true, .stale = age > filter_.options().stale_after, .age = age};
 }
 
 void StateReceiver::relay(std::int64_t now) {
@@ -82,14 +90,14 @@ bool StateReceiver::update_absent(std::uint32_t id, std::int64_t now) {
   std::int64_t& last = last_active_[row];
   const bool active = inbox_.is_active(id, now);
   const bool forgotten = !active && forget_ != kNever && last != kNever && now - last >= forget_;
-  const bool absent = forgotten || (filter_options_.enabled && filter_.is_gone(row));
+  const bool absent = forgotten || (filter_.options().enabled && filter_.is_gone(row));
   if (active) last = now;
   fleet_.set_absent(row, absent);
   return absent;
 }
 
 bool StateReceiver::update_absent_tag(std::uint32_t row) {
-  const bool absent = filter_options_.enabled && filter_.is_gone(row);
+  const bool absent = filter_.options().enabled && filter_.is_gone(row);
   fleet_.set_absent(row, absent);
   return absent;
 }

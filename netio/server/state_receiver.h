@@ -71,7 +71,6 @@ class StateReceiver {
   netio::Outbox answers_;  ///< from the port that the robots send to
   netio::Relay relay_;
   robots::Fleet fleet_;
-  StateFilterOptions filter_options_;
   StateFilter filter_;
   std::vector<base::Report> reports_;
   base::Bytes challenge_;

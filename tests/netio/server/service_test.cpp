@@ -121,6 +121,53 @@ TEST(Service, StatesHaveAnAgeWithAndWithoutFilter) {
   }
 }
 
+/// States of robot 2, in any order of sequence.
+struct Speaker {
+  explicit Speaker(Fixture& fixture) : f(fixture), outbox(netio::open_udp({netio::kLoopback, 0})) {}
+  void say(std::uint32_t sequence) {
+    base::Bytes packet;
+    netio::encode({.robot = 2, .sequence = sequence, .time = f.now}, netio::V2v{}, packet);
+    const std::uint32_t token = f.service->receiver().inbox().token(outbox.endpoint());
+    outbox.queue({netio::kLoopback, f.service->port()}, packet, {1, token});
+    outbox.flush();
+  }
+  Fixture& f;
+  netio::Outbox outbox;
+};
+
+TEST(Service, OvertakenStatesAreTakenUnlessTheirArrivalCounts) {
+  using estimation::ClockSource;
+  for (const ClockSource source : {ClockSource::estimated, ClockSource::trusted, ClockSource::arrival}) {
+    Fixture f({.filter = {.enabled = true, .clock = {.source = source}}});
+    Speaker robot(f);
+    for (const std::uint32_t sequence : {5u, 4u}) robot.say(sequence);
+    f.service->receive_pending(0);
+    const netio::PacketCounts inbox = f.service->stats().inbox;
+    EXPECT_EQ(inbox.total(), 2u);
+    EXPECT_EQ(inbox[netio::PacketStatus::stale], source == ClockSource::arrival ? 1u : 0u);
+  }
+}
+
+/// Readings are held for 40 samples; each has the age of its own sample's state.
+TEST(Service, ReadingsOfALongLatencyStateAnAge) {
+  Fixture f({.latency = 4.0});
+  const netio::Socket port = netio::open_udp({netio::kLoopback, f.reading_port(2)});
+  Speaker robot(f);
+  for (std::uint32_t tick = 0; tick < 45; ++tick, f.now += kTick) {
+    if (tick % 2 == 0) robot.say(tick);
+    f.service->tick(f.now);
+  }
+  std::vector<std::int64_t> ages;
+  netio::ReceiveBatch batch(64);
+  batch.drain(port, 64, [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) {
+    netio::Packet packet;
+    EXPECT_EQ(netio::decode(bytes, packet), netio::PacketStatus::accepted);
+    EXPECT_TRUE(packet.header.state.stated);
+    ages.push_back(packet.header.state.age);
+  });
+  EXPECT_EQ(ages, (std::vector<std::int64_t>{1000, kTick, 1000, kTick, 1000})) << "0 is sent as 1 us";
+}
+
 TEST(Service, ARobotDrivesByReadingsOfItsFilteredState) {
   Fixture f({.filter = {.enabled = true}});
   f.run(40);

@@ -144,6 +144,20 @@ TEST(StateFilter, TrustedStampsCountFromTheEpoch) {
   EXPECT_NEAR(f.filter->predict(1080 * kMs).at(0).X_WM.x, 0.54, 1e-9);
   f.take(3000 * kMs, 1100 * kMs);
   EXPECT_EQ(f.count(ClockVerdict::future), 1u);
+  EXPECT_TRUE(f.filter->clocks().empty()) << "no offset was estimated";
+}
+
+/// Each late state applies a window of states again: their number bounds the work of a tick.
+TEST(StateFilter, AFloodBetweenTwoPredictionsIsLeftOutAndCounted) {
+  Fixture f;
+  constexpr std::int64_t kMost = StateFilter::kMostBetweenPredictions;
+  for (std::int64_t k = 0; k < kMost + 10; ++k) f.take(1000 * kMs + k * kMs, 1005 * kMs + k * kMs);
+  EXPECT_EQ(f.filter->counts().flooded, 10u);
+  EXPECT_EQ(f.count(ClockVerdict::used), static_cast<std::uint64_t>(kMost));
+  f.filter->predict(1100 * kMs);
+  f.take(1100 * kMs, 1105 * kMs);
+  EXPECT_EQ(f.filter->counts().flooded, 10u) << "the next tick takes as many";
+  EXPECT_EQ(f.count(ClockVerdict::used), static_cast<std::uint64_t>(kMost) + 1);
 }
 
 TEST(StateFilter, MoverWithoutAStateHasNoReport) {
