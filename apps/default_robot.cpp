@@ -4,6 +4,7 @@
 
 #include "apps/report.h"
 #include "apps/text.h"
+#include "base/error.h"
 #include "sensors/laser_settings.h"
 #include "world/free_space.h"
 
@@ -62,6 +63,12 @@ world::World load_with_robots(const std::string& file, const world::LoadOptions&
         file);
   if (count > 0 || added) world::clone_robots(world, std::max(1u, count), seed, of);
   print_warnings(file, world.warnings);
+  return world;
+}
+
+world::World load_lights(const std::string& file) {
+  world::World world = world::load_world(file, {.sensors = sensors::world_file_words()});
+  if (world.lights.empty()) throw base::InputError(file, 0, "no traffic lights in this world; see docs/worlds.md");
   return world;
 }
 

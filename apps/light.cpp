@@ -3,18 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <thread>
 
 #include "apps/commands.h"
+#include "apps/default_robot.h"
+#include "apps/option_parsers.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
+#include "base/elapsed.h"
 #include "base/error.h"
 #include "base/suggest.h"
 #include "netio/outbox.h"
 #include "netio/server/signal_messages.h"
 #include "netio/v2x/frame.h"
-#include "sensors/sensor_type.h"
 #include "world/fields.h"
 #include "world/roads/roads.h"
 
@@ -22,17 +22,9 @@ namespace sf::apps {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-std::int64_t utc_now() {
-  const auto since = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::milliseconds>(since).count();
-}
-
 /// "light1=flashing red" in place of that light's plan.
 void hold_state(world::World& world, const std::string& setting) {
-  const std::string name = setting.substr(0, setting.find('='));
-  const std::string word = setting.substr(std::min(setting.size(), name.size() + 1));
+  const auto [name, word] = *read_setting(setting);
   std::vector<std::string_view> names;
   world::Light* found = nullptr;
   for (world::Light& light : world.lights) {
@@ -100,18 +92,14 @@ class Sender {
 }  // namespace
 
 int light(const LightOptions& options) {
-  world::LoadOptions load;
-  load.sensors = sensors::world_file_words();
-  world::World world = world::load_world(options.world, load);
-  if (world.lights.empty())
-    throw base::InputError(options.world, 0, "no traffic lights in this world; see docs/worlds.md");
+  world::World world = load_lights(options.world);
   for (const std::string& setting : options.set) hold_state(world, setting);
   Sender sender(options, world);
   install_stop_handlers();
   print_message("{} of {} to {} at {:g} Hz; Ctrl-C ends it", counted(world.lights.size(), "light"),
                 counted(sender.intersections().size(), "intersection"), sender.to(), options.rate);
 
-  const auto start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   std::uint64_t ticks = 0;
   std::int64_t next_map = 0;  // [s]
   for (double at = 0.0; !stop_requested() && (options.duration <= 0.0 || at < options.duration); ++ticks) {
@@ -119,11 +107,9 @@ int light(const LightOptions& options) {
       sender.send_maps();
       ++next_map;
     }
-    const double elapsed = std::chrono::duration<double>(Clock::now() - start).count();
-    sender.send_states(options.time + elapsed, utc_now());
+    sender.send_states(options.time + base::seconds_since(start), base::unix_time() / 1'000'000);
     at = static_cast<double>(ticks + 1) / options.rate;
-    std::this_thread::sleep_until(start +
-                                  std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(at)));
+    keep_pace(start, at);
   }
   const netio::OutboxCounts counts = sender.counts();
   if (counts.sent == 0) throw base::InputError("nothing was sent: " + counts.first_failure);

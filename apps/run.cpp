@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -105,14 +104,6 @@ class Outputs {
   std::optional<record::Recorder> recorder_;
   double seconds_ = 0.0;
 };
-
-/// Waits until `simulated` [s] have passed since `start`, not at all when it is late already, nor longer than it is
-/// wanted.
-void keep_pace(Clock::time_point start, double simulated) {
-  const auto due = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(simulated));
-  while (Clock::now() < due && !stop_requested())
-    std::this_thread::sleep_until(std::min(due, Clock::now() + std::chrono::milliseconds(100)));
-}
 
 /// `refusal` of a controller names one of several robots that are driven.
 bool names_one_of_several(const std::string& refusal, const world::World& world, const RunOptions& options) {

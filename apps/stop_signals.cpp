@@ -1,6 +1,8 @@
 #include "apps/stop_signals.h"
 
+#include <algorithm>
 #include <csignal>
+#include <thread>
 
 namespace sf::apps {
 
@@ -25,6 +27,13 @@ void install_stop_handlers() {
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);
   if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // else `nohup` said not to
+}
+
+void keep_pace(std::chrono::steady_clock::time_point start, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto due = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  while (Clock::now() < due && !stop_requested())
+    std::this_thread::sleep_until(std::min(due, Clock::now() + std::chrono::milliseconds(50)));
 }
 
 }  // namespace sf::apps

@@ -192,8 +192,9 @@ void add_light(CLI::App& app, Call& call) {
                       "worlds/simville/simville.world --send 192.168.1.7 --set 'light1=flashing red'"});
   sub->add_option("world", o.world, "World file with the lights and their plans")->required()->type_name("FILE");
   sub->add_option("--send", o.send, "Host to send to")->required()->check(not_empty("a host"))->type_name("HOST");
-  sub->add_option("--port", o.ports, "UDP ports there, one per receiver")
+  sub->add_option("--port", o.ports, "UDP port there; may be repeated, one per receiver")
       ->check(whole(1, 65535))
+      ->allow_extra_args(false)
       ->type_name("PORT")
       ->capture_default_str();
   sub->add_option("--rate", o.rate, "SPaT messages per second of each intersection")
@@ -207,7 +208,8 @@ void add_light(CLI::App& app, Call& call) {
   sub->add_option("--set", o.set,
                   "Hold a light in one state, in place of its plan: green, yellow, red, flashing red, "
                   "flashing yellow or dark; may be repeated")
-      ->check(not_empty("NAME=STATE"))
+      ->check(readable(read_setting, "NAME=STATE such as 'light1=flashing red'"))
+      ->allow_extra_args(false)
       ->type_name("NAME=STATE");
   add_origin(*sub, o);
   add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");

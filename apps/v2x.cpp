@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "apps/commands.h"
+#include "apps/default_robot.h"
 #include "apps/text.h"
 #include "apps/v2x_json.h"
 #include "base/error.h"
@@ -13,7 +14,6 @@
 #include "netio/server/signal_messages.h"
 #include "netio/v2x/text_forms.h"
 #include "netio/v2x/xml.h"
-#include "sensors/sensor_type.h"
 #include "world/roads/roads.h"
 
 namespace sf::apps {
@@ -76,7 +76,7 @@ class Decoder {
  private:
   /// The first bytes of a message frame with SPaT or MAP.
   static bool is_frame(std::span<const std::uint8_t> bytes) {
-    return bytes.size() > 3 && bytes[0] == 0 &&
+    return bytes.size() > 3 && (bytes[0] & 0x7F) == 0 &&  // the first bit: extended
            (bytes[1] == v2x::Spat::kMessageId || bytes[1] == v2x::MapData::kMessageId);
   }
   std::string place(int line) const {
@@ -159,11 +159,7 @@ void print_frame(Message message) {
 
 /// MAP and SPaT of each intersection. Simulated time begins with the year.
 int export_world(const V2xOptions& options) {
-  world::LoadOptions load;
-  load.sensors = sensors::world_file_words();
-  const world::World world = world::load_world(options.file, load);
-  if (world.lights.empty())
-    throw base::InputError(options.file, 0, "no traffic lights in this world; see docs/worlds.md");
+  const world::World world = load_lights(options.file);
   const auto roads = world::roads_of(world);
   for (const server::Intersection& one : server::intersections_of(world, roads ? &*roads : nullptr)) {
     std::vector<std::string> names;

@@ -6,7 +6,6 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 
 #include "apps/camera_inputs.h"
 #include "apps/commands.h"
@@ -14,8 +13,8 @@
 #include "apps/tag_sender.h"
 #include "apps/text.h"
 #include "apps/vps_report.h"
+#include "base/elapsed.h"
 #include "base/error.h"
-#include "base/time.h"
 #include "scenarios/experiment.h"
 #include "vision/overlay.h"
 #include "viz/png.h"
@@ -33,8 +32,6 @@ double cpu_seconds() {
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
-
-double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
 /// The file of `--track`.
 class TrackFile {
@@ -95,7 +92,7 @@ std::span<const vision::TrackedTag> process(std::span<const vision::Frame> frame
   const Clock::time_point before = Clock::now();
   const double cpu_before = cpu_seconds();
   const auto tags = positioning.update(frames);
-  report.processing_s += seconds(Clock::now() - before);
+  report.processing_s += base::seconds_since(before);
   report.processing_cpu_s += cpu_seconds() - cpu_before;
   for (const vision::TrackedTag& tag : tags) {
     report.tags[tag.id] = tag;
@@ -128,12 +125,12 @@ int vps(const VpsOptions& options) {
   VpsReport report;
   report.cameras = testbed.cameras.size();
   std::vector<vision::Frame> frames;
-  const std::int64_t epoch = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+  const std::int64_t epoch = base::unix_time();
   const Clock::time_point start = Clock::now();
   for (std::uint64_t n = 0; !stop_requested() && (most == 0 || n < most) && inputs->next(frames); ++n) {
     if (options.duration > 0.0 && frames[0].time >= options.duration) break;
-    if (options.real_time && !inputs->is_live())
-      std::this_thread::sleep_until(start + std::chrono::nanoseconds(base::nanoseconds(frames[0].time)));
+    if (options.real_time && !inputs->is_live()) keep_pace(start, frames[0].time);
+    if (stop_requested()) break;
     const auto tags = process(frames, positioning, report);
     sender.send(tags, epoch);
     track.write(tags);

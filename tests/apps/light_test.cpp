@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
+
+#include "base/elapsed.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 
@@ -29,6 +32,17 @@ TEST(Light, EndsAfterItsDuration) {
   EXPECT_NE(outcome.err.find("sent "), std::string::npos) << outcome.err;
 }
 
+/// Far from the next message, which is due in ten seconds.
+TEST(Light, CtrlCEndsItAtOnce) {
+  Program light({"light", our_world("simville/simville.world"), "--send", "127.0.0.1", "--port",
+                 std::to_string(free_ports(1)), "--rate", "0.1"});
+  ASSERT_TRUE(light.says("Ctrl-C ends it"));
+  const auto start = std::chrono::steady_clock::now();
+  light.signal(SIGINT);
+  EXPECT_EQ(light.wait().code, 0);
+  EXPECT_LT(base::seconds_since(start), 5.0) << "0.05 s on an idle machine";
+}
+
 TEST(Light, WrongArgumentsAreExplained) {
   const std::string world = our_world("simville/simville.world");
   struct Case {
@@ -41,7 +55,8 @@ TEST(Light, WrongArgumentsAreExplained) {
            {{"light", world, "--send", "127.0.0.1", "--set", "ligth1=red"}, "did you mean 'light1'?"},
            {{"light", world, "--send", "127.0.0.1", "--set", "light1=blue"},
             "expected NAME=STATE with one of dark, red"},
-           {{"light", world, "--send", "127.0.0.1", "--set", "light1"}, "expected NAME=STATE with one of dark, red"},
+           {{"light", world, "--send", "127.0.0.1", "--set", "light1"}, "--set: expected NAME=STATE"},
+           {{"light", "--send", "127.0.0.1", "--port", "9010", "9011", world}, "was not expected"},
            {{"light", world, "--send", "127.0.0.1", "--port", "0"}, "--port"},
            {{"light", world, "--send", "127.0.0.1", "--rate", "0"}, "--rate"}}) {
     const Outcome outcome = run_program(c.words);

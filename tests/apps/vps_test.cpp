@@ -5,9 +5,12 @@
 #include <sys/stat.h>
 
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <map>
+#include <thread>
 
+#include "base/elapsed.h"
 #include "netio/packets.h"
 #include "netio/socket.h"
 #include "tests/apps/program.h"
@@ -110,6 +113,20 @@ TEST(Vps, CountsPicturesThatCannotBeRead) {
   EXPECT_NE(outcome.out.find("\"images\": 3,\n  \"unreadable\": 1"), std::string::npos) << outcome.out << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path("q/a-000001.png")));
   EXPECT_TRUE(std::filesystem::exists(folder.path("q/a-000002.png")));
+}
+
+/// Far from the next image, which is due in ten seconds.
+TEST(Vps, CtrlCEndsItAtOnce) {
+  const Folder folder;
+  std::string slow = kTestbed;
+  slow.insert(slow.find("position"), "rate = 0.1\n");
+  Program vps({"vps", folder.write("t.toml", slow), "--rendered", "1", "--real-time", "--overlay", folder.path("p")});
+  while (vps.running() && !std::filesystem::exists(folder.path("p/a-000000.png")))
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto start = std::chrono::steady_clock::now();
+  vps.signal(SIGINT);
+  EXPECT_NE(vps.wait().code, -1);
+  EXPECT_LT(base::seconds_since(start), 5.0) << "0.05 s on an idle machine";
 }
 
 TEST(Calibrate, NamesWhatIsWrong) {
