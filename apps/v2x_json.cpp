@@ -83,19 +83,30 @@ Json to_json(const T& value, Described) {
   return object;
 }
 
+/// What is read. Not ordered: ordered objects copy their values as they grow, as deep as these are nested.
+using Input = nlohmann::json;
+
+/// A value in a message. Lists and objects are not printed: printing and copying them would recurse as deep as they are
+/// nested.
+std::string shown(const Input& json) {
+  if (json.is_array()) return fmt::format("a list of {}", json.size());
+  if (json.is_object()) return "an object";
+  const std::string text = json.dump(-1, ' ', false, Input::error_handler_t::replace);
+  return text.size() > 40 ? text.substr(0, 37) + "..." : text;
+}
+
 /// Values from JSON. Faults name the component, as "SPAT.intersections[0].states[2].signalGroup".
 class Reader {
  public:
   Reader(const std::string& file, int line) : file_(file), line_(line) {}
 
-  Frame frame(const Json& json) {
+  Frame frame(const Input& json) {
     Frame frame;
     Members members{*this, object(json)};
-    Json id;
-    members("messageId", id, Described{});
+    const Input& id = members.required("messageId");
     if (id != Spat::kMessageId && id != MapData::kMessageId)
-      fail(fmt::format("messageId is {}; 19 (SPaT) or 18 (MAP) expected", id.dump()));
-    const Json& value = members.required("value");
+      fail(fmt::format("messageId is {}; 19 (SPaT) or 18 (MAP) expected", shown(id)));
+    const Input& value = members.required("value");
     within("value", [&] {
       if (id == Spat::kMessageId) {
         message(object(value), frame.message.emplace<Spat>());
@@ -114,10 +125,10 @@ class Reader {
   /// The members of one object. Keeps their names, to know those that do not belong there.
   struct Members {
     Reader& reader;
-    const Json& json;
+    const Input& json;
     std::vector<std::string_view> known{};
 
-    const Json& required(std::string_view name) {
+    const Input& required(std::string_view name) {
       known.push_back(name);
       const auto found = json.find(std::string(name));
       if (found == json.end()) reader.fail(fmt::format("'{}' is missing", name));
@@ -125,7 +136,7 @@ class Reader {
     }
     template <class T, class Type>
     void operator()(std::string_view name, T& value, const Type& type) {
-      const Json& member = required(name);
+      const Input& member = required(name);
       reader.within(std::string(name), [&] { reader.read(member, value, type); });
     }
     template <class T, class Type>
@@ -143,10 +154,8 @@ class Reader {
   [[noreturn]] void fail(const std::string& reason) const {
     throw base::InputError(file_, line_, place_.empty() ? reason : fmt::format("{}: {}", place_, reason));
   }
-  [[noreturn]] void refuse(const Json& json, const std::string& expected) const {
-    std::string found = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (found.size() > 40) found = found.substr(0, 37) + "...";
-    fail(fmt::format("found {}; expected {}", found, expected));
+  [[noreturn]] void refuse(const Input& json, const std::string& expected) const {
+    fail(fmt::format("found {}; expected {}", shown(json), expected));
   }
   template <class Inner>
   void within(const std::string& component, Inner&& inner) {
@@ -155,15 +164,15 @@ class Reader {
     inner();
     place_.resize(size);
   }
-  const Json& object(const Json& json) const {
+  const Input& object(const Input& json) const {
     if (!json.is_object()) refuse(json, "an object");
     return json;
   }
-  std::string text(const Json& json, const std::string& expected) const {
+  std::string text(const Input& json, const std::string& expected) const {
     if (!json.is_string()) refuse(json, expected);
     return json.get<std::string>();
   }
-  std::uint64_t bits(const Json& json, std::size_t size, const std::string& expected) const {
+  std::uint64_t bits(const Input& json, std::size_t size, const std::string& expected) const {
     const std::string digits = text(json, expected);
     if (digits.size() != size || digits.find_first_not_of("01") != std::string::npos) refuse(json, expected);
     std::uint64_t value = 0;
@@ -172,15 +181,14 @@ class Reader {
   }
 
   template <class Message>
-  void message(const Json& value, Message& message) {
+  void message(const Input& value, Message& message) {
     Members members{*this, value};
     members(Message::kTag, message, Described{});
     members.refuse_others();
   }
-  void read(const Json& json, Json& value, Described) { value = json; }
 
   template <class T>
-  void read(const Json& json, T& value, const Whole& range) {
+  void read(const Input& json, T& value, const Whole& range) {
     const std::string expected = fmt::format("a whole number from {} to {}", range.min, range.max);
     const bool fits = json.is_number_integer() && (!json.is_number_unsigned() ||
                                                    json.get<std::uint64_t>() <= static_cast<std::uint64_t>(INT64_MAX));
@@ -190,39 +198,39 @@ class Reader {
     value = static_cast<T>(number);
   }
   template <class T>
-  void read(const Json& json, T& value, const Named& type) {
+  void read(const Input& json, T& value, const Named& type) {
     const std::string word = text(json, "a name");
     const auto row = read_row(type.names, type.extensible, word);
     if (!row) refuse(json, fmt::format("one of {}{}", fmt::join(type.names, ", "), base::suggest(word, type.names)));
     value = static_cast<T>(*row);
   }
   template <class T>
-  void read(const Json& json, T& value, const BitString& type) {
+  void read(const Input& json, T& value, const BitString& type) {
     value = static_cast<T>(bits(json, type.size, fmt::format("a text of {} digits 0 and 1", type.size)));
   }
-  void read(const Json& json, ExtensibleBits& value, const BitString&) {
+  void read(const Input& json, ExtensibleBits& value, const BitString&) {
     const std::string expected = "a text of 8, at most 64, digits 0 and 1";
     const std::size_t size = text(json, expected).size();
     if (size > 64) refuse(json, expected);
     value = {bits(json, size, expected), static_cast<std::uint8_t>(size)};
   }
-  void read(const Json& json, std::string& value, const Text& type) {
+  void read(const Input& json, std::string& value, const Text& type) {
     const std::string expected = fmt::format("a text of 1 to {} ASCII characters", type.max);
     value = text(json, expected);
     const bool is_ascii = std::all_of(value.begin(), value.end(), [](char c) { return (c & 0x80) == 0; });
     if (value.empty() || value.size() > type.max || !is_ascii) refuse(json, expected);
   }
-  void read(const Json& json, bool& value, const Flag&) {
+  void read(const Input& json, bool& value, const Flag&) {
     if (!json.is_boolean()) refuse(json, "true or false");
     value = json.get<bool>();
   }
-  void read(const Json& json, base::Bytes& value, const Octets&) {
+  void read(const Input& json, base::Bytes& value, const Octets&) {
     const std::string expected = "a text of hexadecimal digits, two for each octet";
     const auto octets = read_hex(text(json, expected));
     if (!octets || octets->size() > kMaxFrame) refuse(json, expected);
     value = *octets;
   }
-  void read(const Json& json, std::vector<std::optional<base::Bytes>>& values, Described) {
+  void read(const Input& json, std::vector<std::optional<base::Bytes>>& values, Described) {
     if (!json.is_array() || json.empty() || json.size() > Additions::kMax)
       refuse(json, fmt::format("a list of 1 to {} extensions", Additions::kMax));
     for (std::size_t i = 0; i < json.size(); ++i) {
@@ -231,14 +239,14 @@ class Reader {
     }
   }
   template <class T, class Item>
-  void read(const Json& json, std::vector<T>& list, const ListOf<Item>& type) {
+  void read(const Input& json, std::vector<T>& list, const ListOf<Item>& type) {
     if (!json.is_array() || json.size() < type.min || json.size() > type.max)
       refuse(json, fmt::format("a list of {} to {}", type.min, type.max));
     for (std::size_t i = 0; i < json.size(); ++i)
       within(fmt::format("[{}]", i), [&] { read(json[i], list.emplace_back(), type.item); });
   }
   template <class T>
-  void read(const Json& json, T& value, Described) {
+  void read(const Input& json, T& value, Described) {
     if constexpr (Choice<T>) {
       choice(object(json), value);
     } else {
@@ -249,7 +257,7 @@ class Reader {
     }
   }
   template <class T>
-  void choice(const Json& json, T& value) {
+  void choice(const Input& json, T& value) {
     const std::string expected = fmt::format("one of {} with its value", fmt::join(T::kAlternatives, ", "));
     if (json.size() != 1) refuse(json, expected);
     const std::string name = json.begin().key();
@@ -294,16 +302,16 @@ void read_frames(const std::string& file, const std::string& text, const std::fu
     const auto at = static_cast<std::size_t>(stream.tellg());
     line += static_cast<int>(std::count(text.begin() + counted, text.begin() + at, '\n'));
     counted = at;
-    Json json;
+    Input json;
     try {
       stream >> json;
-    } catch (const Json::exception& error) {
+    } catch (const Input::exception& error) {
       const std::string what = error.what();
       throw base::InputError(file, line, "no JSON from here on: " + what.substr(what.find("] ") + 2));
     }
-    const auto read = [&](const Json& one) { take(Reader(file, line).frame(one)); };
+    const auto read = [&](const Input& one) { take(Reader(file, line).frame(one)); };
     if (json.is_array()) {
-      for (const Json& one : json) read(one);
+      for (const Input& one : json) read(one);
     } else {
       read(json);
     }

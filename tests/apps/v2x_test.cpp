@@ -77,6 +77,22 @@ TEST(V2x, BinaryFilesHoldFramesOneAfterAnother) {
   EXPECT_EQ(of_binary.out, of_hex.out);
 }
 
+/// Its first bit says that there are extensions.
+TEST(V2x, AFrameWithExtensionsMayFollowAnother) {
+  const Folder folder;
+  std::string json = kJson;
+  json.replace(json.rfind('}'), 1, ", \"extensions\": [\"0A\"]}");
+  const Outcome encoded = run_program({"v2x", "encode", folder.write("two.json", kJson + json)});
+  ASSERT_EQ(count_lines(encoded.out), 2u) << encoded.err;
+  const std::size_t end = encoded.out.find('\n');
+  EXPECT_EQ(encoded.out.substr(end + 1, 4), "8013");
+  const std::string bytes = binary(encoded.out.substr(0, end)) + binary(encoded.out.substr(end + 1));
+  const Outcome decoded = run_program({"v2x", "decode", folder.write("two.bin", bytes)});
+  EXPECT_EQ(decoded.code, 0) << decoded.err;
+  EXPECT_EQ(count_lines(decoded.out), 2u) << decoded.out;
+  EXPECT_EQ(decoded.out.find("padding"), std::string::npos);
+}
+
 TEST(V2x, JsonHasTheNamesOfTheStandard) {
   const Folder folder;
   const Outcome encoded = run_program({"v2x", "encode", folder.write("spat.json", kJson)});
@@ -164,6 +180,18 @@ TEST(V2x, FaultsInJsonNameTheirComponent) {
   EXPECT_EQ(refusal("\"messageId\": 19", "\"messageId\": 20"), "messageId is 20; 19 (SPaT) or 18 (MAP) expected");
   EXPECT_EQ(refusal("[{\n", "7, [{\n").find("no JSON from here on: "), 0u);
   EXPECT_EQ(refusal("}]}]}]}}}", "}]}]}]}}").find("no JSON from here on: "), 0u);
+}
+
+/// In the place of a frame, of its id and of a component: nothing may recurse as deep as a stranger nests lists.
+TEST(V2x, JsonOfAnyDepthIsRefused) {
+  const std::string open(200'000, '['), closed = open + std::string(200'000, ']');
+  EXPECT_EQ(refusal(kJson, closed), "found a list of 1; expected an object");
+  EXPECT_EQ(refusal("19", closed), "messageId is a list of 1; 19 (SPaT) or 18 (MAP) expected");
+  EXPECT_EQ(refusal("35176", closed),
+            "value.SPAT.intersections[0].timeStamp: found a list of 1; expected a whole number from 0 to 65535");
+  EXPECT_EQ(refusal("\"revision\"", "\"x\": " + closed + ", \"revision\""),
+            "value.SPAT.intersections[0]: 'x' is no component here");
+  EXPECT_EQ(refusal(kJson, open).find("no JSON from here on: "), 0u);
 }
 
 TEST(V2x, TheLightsOfAWorldAreMessages) {
