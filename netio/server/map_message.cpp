@@ -20,6 +20,8 @@ constexpr std::size_t kMaxLanes = 255, kMaxNodes = 63, kMaxConnections = 16;
 constexpr std::uint8_t kIngress = 0b10, kEgress = 0b01;
 constexpr std::array<std::int32_t, 6> kReach{511, 1023, 2047, 4095, 8191, 32'767};  ///< [cm] of node-XY1 to node-XY6
 
+constexpr double kNodeReach = 327.0;  ///< [m] in each direction, of node-XY6
+
 std::int32_t centimetres(double metres) { return static_cast<std::int32_t>(std::lround(100.0 * metres)); }
 
 /// The reverse of LocalPlane::east_north, by Newton's method; below 1e-9 degrees after five steps.
@@ -36,13 +38,20 @@ world::Geodetic geodetic_of(glm::dvec2 p, world::Geodetic origin) {
   return at;
 }
 
+/// [1e-7 degrees] above -180 degrees, up to 180.
+std::int32_t wrapped_longitude(double degrees) {
+  constexpr std::int64_t kTurn = 3'600'000'000;
+  const std::int64_t units = std::llround(1e7 * degrees) % kTurn;
+  if (units > kTurn / 2) return static_cast<std::int32_t>(units - kTurn);
+  return static_cast<std::int32_t>(units <= -kTurn / 2 ? units + kTurn : units);
+}
+
 /// The points, and more between those that are farther apart than a node's offset reaches.
 std::vector<glm::dvec2> within_reach(std::span<const glm::dvec2> points) {
-  constexpr double kStep = 300.0;  // [m]
   std::vector<glm::dvec2> all;
   for (const glm::dvec2& p : points) {
     const glm::dvec2 from = all.empty() ? p : all.back();
-    const double steps = std::ceil(glm::length(p - from) / kStep);
+    const double steps = std::ceil(glm::length(p - from) / kNodeReach);
     for (double i = 1.0; i < steps && all.size() < kMaxNodes; ++i) all.push_back(from + i / steps * (p - from));
     all.push_back(p);
   }
@@ -102,7 +111,7 @@ class MapBuilder {
     geometry.id.id = intersection_.id;
     const world::Geodetic at = geodetic_of(reference_, origin);
     geometry.reference.latitude = static_cast<std::int32_t>(std::lround(1e7 * at.latitude));
-    geometry.reference.longitude = static_cast<std::int32_t>(std::lround(1e7 * at.longitude));
+    geometry.reference.longitude = wrapped_longitude(at.longitude);
     const double width = roads_.lanes[intersection_.stops[0].row].width;
     geometry.lane_width = static_cast<std::uint16_t>(std::clamp(centimetres(width), 0, 32'767));
     for (std::size_t i = 0; i < intersection_.stops.size(); ++i) add_ingress(i);
@@ -121,11 +130,11 @@ class MapBuilder {
     lane.id = static_cast<std::uint8_t>(id);
     lane.attributes.direction = direction;
     const glm::dvec2 p = position_of(roads_, from) - reference_;
-    if (std::max(std::abs(p.x), std::abs(p.y)) > 327.0)
+    if (std::max(std::abs(p.x), std::abs(p.y)) > kNodeReach)
       throw base::InputError(roads_.file, 0,
-                             fmt::format("lanes of intersection {} are more than 327 m from its middle, "
+                             fmt::format("lanes of intersection {} are more than {} m from its middle, "
                                          "as far as a MAP message reaches",
-                                         intersection_.id));
+                                         intersection_.id, kNodeReach));
     lane.nodes.nodes = nodes_of(way_of(roads_, from, direction == kEgress), reference_);
     return lane;
   }
@@ -142,7 +151,7 @@ class MapBuilder {
       connection.to.lane = static_cast<std::uint8_t>(egress_lane(exit.to));
       connection.to.maneuver = maneuver_of(yaw_of(roads_, exit.to).value_or(0.0) - yaw_of(roads_, stop).value_or(0.0));
       connection.signal_group = static_cast<std::uint8_t>(intersection_.groups[row]);
-      connection.id = static_cast<std::uint8_t>(++connections_);
+      if (connections_ < 255) connection.id = ++connections_;
       maneuvers |= *connection.to.maneuver;
     }
     lane.maneuvers = maneuvers;
@@ -161,7 +170,7 @@ class MapBuilder {
   glm::dvec2 reference_;
   std::vector<v2x::GenericLane> lanes_;
   std::vector<std::pair<PointRef, std::size_t>> egress_;
-  unsigned connections_ = 0;
+  std::uint8_t connections_ = 0;  ///< with an id
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "world/roads/rndf_statement_reader.h"
 #include "world/wall_tree.h"
 
 namespace sf::server {
@@ -23,26 +24,37 @@ using world::RoadNetwork;
 constexpr std::int64_t kMinute = 60'000, kHour = 3'600'000;  ///< [ms]
 constexpr std::size_t kMaxGroups = 254;                      ///< signal groups 0 and 255 are reserved
 
-/// A way-point's stop line and the light that governs it.
+/// The way into a lane behind a stop line.
+struct ExitPath {
+  PointRef to;
+  std::vector<glm::dvec2> points;  ///< [m]
+};
+
+/// A way-point's stop line, the light that governs it and the ways behind it.
 struct LightStop {
   std::uint32_t light = 0;
   PointRef at;
+  std::vector<ExitPath> exits;
 };
+
+std::vector<ExitPath> exits_of(const RoadNetwork& roads, PointRef from) {
+  std::vector<ExitPath> exits;
+  for (const world::RoadExit& exit : roads.exits)
+    if (exit.from == from && exit.to.kind == PointRef::Kind::lane)
+      exits.push_back({exit.to, exit_curve(roads, exit).points});
+  return exits;
+}
 
 std::vector<LightStop> stops_of(const world::World& world, const RoadNetwork& roads) {
   std::vector<LightStop> stops;
   for (std::uint32_t light = 0; light < world.lights.size(); ++light)
-    for (const std::string& name : world.lights[light].points)
+    for (const std::string& name : world.lights[light].points) {
+      const auto id = world::read_point_id(name);
+      const auto at = id ? find_point(roads, *id) : std::nullopt;
       for (const world::StopLine& stop : roads.stops)
-        if (text_of(id_of(roads, stop.at)) == name) stops.push_back({light, stop.at});
+        if (stop.at == at) stops.push_back({light, stop.at, exits_of(roads, stop.at)});
+    }
   return stops;
-}
-
-std::vector<const world::RoadExit*> exits_of(const RoadNetwork& roads, PointRef from) {
-  std::vector<const world::RoadExit*> exits;
-  for (const world::RoadExit& exit : roads.exits)
-    if (exit.from == from && exit.to.kind == PointRef::Kind::lane) exits.push_back(&exit);
-  return exits;
 }
 
 bool meet(const std::vector<glm::dvec2>& a, const std::vector<glm::dvec2>& b) {
@@ -52,22 +64,21 @@ bool meet(const std::vector<glm::dvec2>& a, const std::vector<glm::dvec2>& b) {
   return false;
 }
 
-bool share_a_crossing(const RoadNetwork& roads, PointRef a, PointRef b) {
-  for (const world::RoadExit* of_a : exits_of(roads, a))
-    for (const world::RoadExit* of_b : exits_of(roads, b))
-      if (of_a->to == of_b->to || meet(exit_curve(roads, *of_a).points, exit_curve(roads, *of_b).points)) return true;
+bool share_a_crossing(const LightStop& a, const LightStop& b) {
+  for (const ExitPath& of_a : a.exits)
+    for (const ExitPath& of_b : b.exits)
+      if (of_a.to == of_b.to || meet(of_a.points, of_b.points)) return true;
   return false;
 }
 
 /// Per light: the first light of its intersection.
-std::vector<std::uint32_t> first_lights(std::size_t lights, const RoadNetwork* roads,
-                                        std::span<const LightStop> stops) {
+std::vector<std::uint32_t> first_lights(std::size_t lights, std::span<const LightStop> stops) {
   std::vector<std::uint32_t> first(lights);
   std::iota(first.begin(), first.end(), 0u);
   for (std::size_t i = 0; i < stops.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const std::uint32_t a = first[stops[i].light], b = first[stops[j].light];
-      if (a == b || !(stops[i].light == stops[j].light || share_a_crossing(*roads, stops[i].at, stops[j].at))) continue;
+      if (a == b || !(stops[i].light == stops[j].light || share_a_crossing(stops[i], stops[j]))) continue;
       std::replace(first.begin(), first.end(), std::max(a, b), std::min(a, b));
     }
   return first;
@@ -91,7 +102,8 @@ v2x::MovementEvent event_of(const world::Signal& signal, std::int64_t utc) {
 
 /// [ms] in the year; nothing where the message has no time.
 std::optional<std::int64_t> time_of(const v2x::IntersectionState& state) {
-  if (!state.minute || !state.milliseconds || *state.milliseconds >= kMinute) return std::nullopt;
+  if (!state.minute || *state.minute == v2x::kInvalidMinute) return std::nullopt;
+  if (!state.milliseconds || *state.milliseconds >= kMinute) return std::nullopt;
   return *state.minute * kMinute + *state.milliseconds;
 }
 
@@ -146,7 +158,7 @@ LightState light_of(PhaseState phase) {
 
 std::vector<Intersection> intersections_of(const world::World& world, const RoadNetwork* roads) {
   const std::vector<LightStop> stops = roads != nullptr ? stops_of(world, *roads) : std::vector<LightStop>{};
-  const std::vector<std::uint32_t> first = first_lights(world.lights.size(), roads, stops);
+  const std::vector<std::uint32_t> first = first_lights(world.lights.size(), stops);
   std::vector<Intersection> all;
   for (std::uint32_t light = 0; light < first.size(); ++light) {
     if (first[light] != light) continue;

@@ -26,8 +26,9 @@ inline constexpr std::int32_t kUnknownLatitude = 900'000'001;
 inline constexpr std::int32_t kUnknownLongitude = 1'800'000'001;
 
 // Constraints.
-inline constexpr Whole kMinuteOfYear{0, 527'040};  ///< 527040: invalid
-inline constexpr Whole kMilliseconds{0, 65'535};   ///< in the minute; 65535: unavailable
+inline constexpr std::uint32_t kInvalidMinute = 527'040;
+inline constexpr Whole kMinuteOfYear{0, kInvalidMinute};
+inline constexpr Whole kMilliseconds{0, 65'535};  ///< in the minute; 65535: unavailable
 inline constexpr Whole kRevision{0, 127};
 inline constexpr Whole kByte{0, 255};
 inline constexpr Whole kWord{0, 65'535};

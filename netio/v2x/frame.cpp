@@ -54,26 +54,24 @@ std::string_view name_of(std::uint64_t id) {
   }
 }
 
-std::string decode_value(std::uint64_t id, const base::Bytes& value, Frame& frame) {
-  if (id == Spat::kMessageId) return decode_message<Spat>(value, frame);
-  if (id == MapData::kMessageId) return decode_message<MapData>(value, frame);
-  return fmt::format("messageId: {}{} is neither SPaT (19) nor MAP (18)", id, name_of(id));
-}
-
 }  // namespace
 
 DecodeResult decode(std::span<const std::uint8_t> bytes, Frame& frame) {
   BitReader in(bytes.first(std::min(bytes.size(), kMaxFrame)));
   const bool is_extended = in.bit();
   const std::uint64_t id = in.bits(15);
+  if (!in.good()) return {0, in.fault()};
+  // Before its length: what is no frame at all seldom has a valid one.
+  const bool is_spat = id == Spat::kMessageId;
+  if (!is_spat && id != MapData::kMessageId)
+    return {0, fmt::format("messageId: {}{} is neither SPaT (19) nor MAP (18)", id, name_of(id))};
   const base::Bytes value = in.octets();
   frame.additions.values.clear();
   frame.padding.clear();
   if (is_extended && in.good()) uper::decode(in, frame.additions);
-  // The message's id comes first: what is no frame at all seldom has a valid length.
-  const bool known = id == Spat::kMessageId || id == MapData::kMessageId;
-  if (!in.good() && (known || bytes.size() < 2)) return {0, in.fault()};
-  return {(in.position() + 7) / 8, decode_value(id, value, frame)};
+  if (!in.good()) return {0, in.fault()};
+  return {(in.position() + 7) / 8,
+          is_spat ? decode_message<Spat>(value, frame) : decode_message<MapData>(value, frame)};
 }
 
 void encode(const Frame& frame, base::Bytes& out) {

@@ -82,7 +82,7 @@ struct IntersectionState {
   IntersectionReference id;
   std::uint8_t revision = 0;                  ///< in [0, 127]; changes with the MAP's
   std::uint16_t status = 0;                   ///< bit 0, manual control, is the most significant
-  std::optional<std::uint32_t> minute;        ///< of the year, see kMinuteOfYear
+  std::optional<std::uint32_t> minute;        ///< of the year; kInvalidMinute: none
   std::optional<std::uint16_t> milliseconds;  ///< in the minute
   std::vector<std::uint8_t> enabled_lanes;    ///< revocable lanes that are open, at most 16
   std::vector<MovementState> states;          ///< 1 to 255

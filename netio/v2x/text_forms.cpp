@@ -12,13 +12,6 @@ namespace {
 constexpr std::string_view kAddition = "extension-";
 constexpr std::uint8_t kMaxAddition = 63;
 
-std::optional<std::uint8_t> digit_of(char c) {
-  if (c >= '0' && c <= '9') return static_cast<std::uint8_t>(c - '0');
-  if (c >= 'a' && c <= 'f') return static_cast<std::uint8_t>(c - 'a' + 10);
-  if (c >= 'A' && c <= 'F') return static_cast<std::uint8_t>(c - 'A' + 10);
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::string bits_text(std::uint64_t bits, unsigned size) {
@@ -27,19 +20,14 @@ std::string bits_text(std::uint64_t bits, unsigned size) {
   return text;
 }
 
-std::string hex_text(std::span<const std::uint8_t> octets) {
-  std::string text;
-  for (const std::uint8_t octet : octets) fmt::format_to(std::back_inserter(text), "{:02X}", octet);
-  return text;
-}
+std::string hex_text(std::span<const std::uint8_t> octets) { return fmt::format("{:02X}", fmt::join(octets, "")); }
 
 std::optional<base::Bytes> read_hex(std::string_view text) {
   if (text.size() % 2 != 0) return std::nullopt;
-  base::Bytes octets;
-  for (std::size_t i = 0; i < text.size(); i += 2) {
-    const auto high = digit_of(text[i]), low = digit_of(text[i + 1]);
-    if (!high || !low) return std::nullopt;
-    octets.push_back(static_cast<std::uint8_t>(*high << 4 | *low));
+  base::Bytes octets(text.size() / 2);
+  for (std::size_t i = 0; i < octets.size(); ++i) {
+    const char* const digits = text.data() + 2 * i;
+    if (std::from_chars(digits, digits + 2, octets[i], 16).ptr != digits + 2) return std::nullopt;
   }
   return octets;
 }

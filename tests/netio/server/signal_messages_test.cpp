@@ -150,6 +150,10 @@ TEST(SignalMessages, ALateChangeIsDueNow) {
   v2x::Spat spat = spat_of(world, all[0], 0.0, kNewYear2026);
   read(spat, all, kNewYear2026 + 8'300, signals);
   EXPECT_NEAR(signals[0].left, 8.0, 1e-9) << "by the message's own time";
+  spat.intersections[0].minute = v2x::kInvalidMinute;
+  read(spat, all, kNewYear2026 + 8'300, signals);
+  EXPECT_EQ(signals[0].left, 0.0) << "a message without a valid minute is from now";
+  spat.intersections[0].minute = 0;
   spat.intersections[0].milliseconds.reset();
   read(spat, all, kNewYear2026 + 8'300, signals);  // from 8.3 s ago, its change 0.3 s ago
   EXPECT_EQ(signals[0].left, 0.0);
@@ -224,15 +228,47 @@ TEST(MapMessage, ManeuversFollowTheTurn) {
 
 TEST(MapMessage, TheReferencePointIsInThePlaneOfTheOrigin) {
   const Town town;
-  for (const world::Geodetic origin : {world::Geodetic{0.0, 0.0}, {40.0, -83.0}, {-89.0, 179.0}, {70.0, 20.0}}) {
+  for (const world::Geodetic origin :
+       {world::Geodetic{0.0, 0.0}, {40.0, -83.0}, {-89.0, 179.0}, {70.0, 20.0}, {0.0, 179.99999}, {0.0, -179.99999}}) {
     const auto map = map_of(town.roads, town.intersections[0], origin);
     const v2x::Position& at = map->intersections[0].reference;
+    EXPECT_GT(at.longitude, -1'800'000'000);
+    EXPECT_LE(at.longitude, 1'800'000'000);
     const glm::dvec2 p = world::LocalPlane(origin).east_north({1e-7 * at.latitude, 1e-7 * at.longitude});
     glm::dvec2 middle;
     for (const world::PointRef& stop : town.intersections[0].stops) middle += 0.25 * position_of(town.roads, stop);
     EXPECT_NEAR(p.x, middle.x, 0.006);  // 5e-8 degrees
     EXPECT_NEAR(p.y, middle.y, 0.006);
   }
+}
+
+/// 17 lanes with 16 connections each, of one network whose exits all lead from each lane to each of 16 others.
+TEST(MapMessage, IdsOfConnectionsAreUniqueOrAbsent) {
+  world::RoadNetwork roads;
+  Intersection one{.id = 1, .lights = {0}, .stops = {}, .groups = {}};
+  for (std::uint32_t row = 0; row < 33; ++row) {
+    world::RoadLane& lane = roads.lanes.emplace_back();
+    lane.width = 3.0;
+    lane.points.push_back({.id = {}, .p = {static_cast<double>(row), row < 17 ? 0.0 : 20.0}, .s = 0.0, .yaw = 0.0});
+    if (row >= 17) continue;
+    one.stops.push_back({world::PointRef::Kind::lane, row, 0});
+    one.groups.push_back(1);
+    for (std::uint32_t to = 17; to < 33; ++to)
+      roads.exits.push_back({one.stops.back(), {world::PointRef::Kind::lane, to, 0}});
+  }
+  const auto map = map_of(roads, one, {});
+  ASSERT_TRUE(map);
+  std::set<std::uint8_t> ids;
+  std::size_t connections = 0, without = 0;
+  for (const v2x::GenericLane& lane : map->intersections.at(0).lanes)
+    for (const v2x::Connection& to : lane.connections) {
+      ++connections;
+      without += !to.id;
+      EXPECT_TRUE(!to.id || ids.insert(*to.id).second);
+    }
+  EXPECT_EQ(connections, 17u * 16u);
+  EXPECT_EQ(without, 17u * 16u - 255u);
+  round_trip(*map);
 }
 
 TEST(MapMessage, AnIntersectionWithoutStopLinesHasNone) {
