@@ -257,6 +257,17 @@ TEST(Serve, ARateTooLowForASensorIsSaid) {
   EXPECT_GE(Json(service.program.wait().out).number("/missed"), 4 * 4);
 }
 
+/// 200 states within two ticks at most.
+TEST(Serve, FilteredStatesBeyondTheLimitOfATickAreCounted) {
+  Service service(kRoom, {"--rate", "0.1", "--filter"});
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  Robot one(1, service.port, service.hears(1));
+  ASSERT_TRUE(prove(one));
+  for (int i = 0; i < 200; ++i) one.say({-1.0, 0.5, 0.0, 0.0});
+  service.program.signal(SIGINT);
+  EXPECT_GE(Json(service.program.wait().out).number("/states/beyond_limit"), 200 - 2 * 64);
+}
+
 TEST(Serve, RobotsSeeEachOther) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();

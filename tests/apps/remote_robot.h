@@ -81,35 +81,31 @@ class Robot {
   /// A reading for `other` waits where this one hears.
   bool overhears(const Robot& other) {
     bool found = false;
-    while (const std::size_t count = batch_.fill(socket_)) {
-      for (std::size_t i = 0; i < count; ++i) {
-        netio::Packet packet;
-        EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::PacketStatus::accepted);
-        found = found || packet.header.token == other.v2v_socket_.farm_session_token().token;
-      }
-    }
+    batch_.drain(socket_, kMost, [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) {
+      netio::Packet packet;
+      EXPECT_EQ(netio::decode(bytes, packet), netio::PacketStatus::accepted);
+      found = found || packet.header.token == other.v2v_socket_.farm_session_token().token;
+    });
     return found;
   }
 
   /// Ranges of the newest scan that waits; empty when none does.
   std::vector<double> hear() {
     std::vector<double> ranges;
-    while (const std::size_t count = batch_.fill(socket_)) {
-      for (std::size_t i = 0; i < count; ++i) {
-        netio::Packet packet;
-        EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::PacketStatus::accepted);
-        EXPECT_EQ(packet.header.robot, id_);
-        EXPECT_EQ(packet.header.sensor, 0u);
-        stamps_.push_back(packet.header.time);
-        EXPECT_EQ(packet.header.session, v2v_socket_.farm_session_token().session);
-        EXPECT_EQ(packet.header.token, v2v_socket_.farm_session_token().token);
-        sensors::LaserPart scan;
-        EXPECT_EQ(sensors::read_laser(std::get<netio::Reading>(packet.body).payload, false, scan),
-                  sensors::PayloadError::none);
-        ranges.clear();
-        for (std::uint32_t k = 0; k < scan.count; ++k) ranges.push_back(sensors::range_of(scan, k));
-      }
-    }
+    batch_.drain(socket_, kMost, [&](std::span<const std::uint8_t> datagram, const netio::Endpoint&) {
+      netio::Packet packet;
+      EXPECT_EQ(netio::decode(datagram, packet), netio::PacketStatus::accepted);
+      EXPECT_EQ(packet.header.robot, id_);
+      EXPECT_EQ(packet.header.sensor, 0u);
+      stamps_.push_back(packet.header.time);
+      EXPECT_EQ(packet.header.session, v2v_socket_.farm_session_token().session);
+      EXPECT_EQ(packet.header.token, v2v_socket_.farm_session_token().token);
+      sensors::LaserPart scan;
+      EXPECT_EQ(sensors::read_laser(std::get<netio::Reading>(packet.body).payload, false, scan),
+                sensors::PayloadError::none);
+      ranges.clear();
+      for (std::uint32_t k = 0; k < scan.count; ++k) ranges.push_back(sensors::range_of(scan, k));
+    });
     return ranges;
   }
 
@@ -117,6 +113,8 @@ class Robot {
   const std::vector<std::int64_t>& stamps() const { return stamps_; }
 
  private:
+  static constexpr std::size_t kMost = 65'536;  ///< datagrams at once
+
   std::vector<std::int64_t> stamps_;
   std::uint16_t id_;
   netio::V2vSocket v2v_socket_;
