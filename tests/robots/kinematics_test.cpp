@@ -55,6 +55,21 @@ constexpr std::int64_t kTick = 100'000'000;
 base::Report at(std::int64_t time, const Pose& X_WM, const Twist& velocity) { return {0, time, X_WM, velocity, 0}; }
 
 /// A mover that nothing stops is on its arc at any part of the tick.
+/// Before and at its own time, within reach, and beyond: half a second.
+TEST(Extrapolate, FollowsTheTwistAsFarAsItReaches) {
+  const base::Report known{.mover = 3, .time = 100, .X_WM = {1.0, 0.0, 0.1, 4.0 * M_PI}, .velocity = {2.0, 0.0, 0.0}};
+  for (const std::int64_t time : {0, 100}) {
+    EXPECT_EQ(extrapolate(known, time).X_WM.x, 1.0);
+    EXPECT_EQ(extrapolate(known, time).X_WM.yaw, 4.0 * M_PI) << "bitwise the same";
+    EXPECT_EQ(extrapolate(known, time).time, 100);
+  }
+  EXPECT_NEAR(extrapolate(known, 100 + kMaxExtrapolation / 2).X_WM.x, 1.5, 1e-12);
+  for (const std::int64_t beyond : {0, 1, 1'000'000'000}) {
+    EXPECT_NEAR(extrapolate(known, 100 + kMaxExtrapolation + beyond).X_WM.x, 2.0, 1e-12);
+    EXPECT_EQ(extrapolate(known, 100 + kMaxExtrapolation + beyond).time, 100 + kMaxExtrapolation);
+  }
+}
+
 TEST(Interpolate, UnhinderedItIsOnItsArc) {
   const Twist velocities[] = {{0.7, 0, 0}, {0.7, 0, 1.5}, {0.4, -0.3, -2}, {0, 0, 3}, {-0.2, 0, 1e-9}, {1.0, 0, 50.0}};
   for (const Twist& v : velocities) {
