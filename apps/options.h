@@ -188,6 +188,7 @@ struct ServeOptions : WorldOptions,
   std::uint32_t port = netio::kInboxPort;  ///< 0: any free one
   double rate = 0.0;                       ///< [Hz]; 0: the world's own
   double radio = netio::kV2vRange;         ///< [m] farther away, states are not relayed; 0: none is
+  std::string record;                      ///< folder; empty: not recorded
 };
 
 struct RobotOptions : WorldOptions,

@@ -31,6 +31,7 @@ std::vector<viz::Track> tracks_of(const record::Recording& recording, const worl
     if (world.movers[m].is_tag) continue;
     viz::Track track{world.movers[m].name, std::nullopt, {}, {}, 1e-9 * static_cast<double>(recording.end_time)};
     for (const record::StateSample& s : recording.states[m]) {
+      if (base::is_absent(s.X_WM)) continue;
       track.poses.push_back(s.X_WM);
       track.contacts.push_back(s.contact);
     }
@@ -51,7 +52,6 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.subscribe(m, 1u << sensors::kLaser);
   const auto every = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / recording.info.interval)));
   std::vector<base::Report> reports;
   const std::size_t ticks = recording.states.empty() ? 0 : recording.states[0].size();
@@ -60,6 +60,8 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
     reports.clear();
     for (std::uint32_t m = 0; m < recording.states.size(); ++m) {
       const record::StateSample& s = recording.states[m][t];
+      farm.set_absent(m, base::is_absent(s.X_WM));
+      farm.subscribe(m, 1u << sensors::kLaser);
       reports.push_back({m, s.time, s.X_WM, s.velocity});
     }
     // Slow sensors look too: each tick is as far from the last as their period.

@@ -38,8 +38,8 @@ std::vector<LastMap> last_maps(const record::Recording& recording, const world::
                   maps::OccupancyGrid(map.settings.grid)};
     std::transform(last->values.begin(), last->values.end(), found.grid.words.begin(),
                    [](double word) { return static_cast<std::uint32_t>(word); });
-    const auto& states = recording.states[map.row.mover];
-    if (!states.empty()) found.place.X_WR = states.back().X_WM;
+    for (const record::StateSample& s : recording.states[map.row.mover])
+      if (!base::is_absent(s.X_WM)) found.place.X_WR = s.X_WM;
     all.push_back(std::move(found));
   }
   return all;

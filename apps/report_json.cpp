@@ -270,6 +270,7 @@ std::string json_of(const netio::StreamSummary& s) {
                 {"rays", count_rays(s)},
                 {"sensors", sensors},
                 {"stale_states", s.stale_states},
+                {"oldest_state_s", 1e-9 * static_cast<double>(s.oldest_state)},
                 {"lost", s.lost},
                 {"duplicates", s.duplicates},
                 {"reordered", s.reordered},

@@ -255,6 +255,7 @@ std::string text_of(const netio::StreamSummary& s) {
   text += row("packets good", "{}{}", s.good, shares_text(s));
   text += row("packets lost", "{} ({}, {} reordered)", s.lost, counted(s.duplicates, "duplicate"), s.reordered);
   if (s.stale_states > 0) text += row("stale states", "behind {}", counted(s.stale_states, "good packet"));
+  if (s.oldest_state > 0) text += row("oldest state", "{:.3g} s", 1e-9 * static_cast<double>(s.oldest_state));
   if (s.counts.dropped() > 0) text += row("by reason", netio::text(s.counts));
   if (s.socket_drops > 0) text += drops_text(s.socket_drops);
   if (s.silent_ports > 0) text += row("silent ports", s.silent_ports);

@@ -1,5 +1,7 @@
 // `serve`: robots live elsewhere. Their states come in, readings go back to them.
 
+#include <optional>
+
 #include "apps/automatic_accuracy.h"
 #include "apps/commands.h"
 #include "apps/default_robot.h"
@@ -13,6 +15,8 @@
 #include "base/time.h"
 #include "netio/server/service.h"
 #include "raycast/caster_choice.h"
+#include "record/recorder.h"
+#include "scenarios/run_info.h"
 
 namespace sf::apps {
 
@@ -30,6 +34,19 @@ server::ServiceOptions service_options(const ServeOptions& options) {
   filter.stale_after = base::nanoseconds(options.stale_after);
   filter.policy = options.stale;
   return service;
+}
+
+/// The recording of a service: its states are estimates, its ticks and samples are at times of its clock.
+record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const ServeOptions& options,
+                         bool software) {
+  record::RunInfo info = scenarios::run_info(world, sensor_set,
+                                             {.seed = options.seed,
+                                              .record_readings = true,
+                                              .no_return_inf = options.no_return_inf,
+                                              .caster = raycast::describe_caster(software),
+                                              .estimated = true});
+  if (options.rate > 0.0) info.interval = 1.0 / options.rate;
+  return info;
 }
 
 /// The error with its remedy, which is an option of the command line.
@@ -80,14 +97,24 @@ int serve(const ServeOptions& options) {
   if (options.rate > 0.0) warn_of_fast_sensors(sensor_set, options.rate);
   if (options.rate == 0.0) warn_of_many_times(sensor_set);
   const server::ServiceOptions chosen = service_options(options);
+  std::optional<record::Recorder> recorder;
   try {
     server::Service service(world, sensor_set, device, layout, chosen);
     warn_of_exposure(chosen.receiver.bind.address, "say where robots are, and be sent readings");
+    if (!options.record.empty()) {
+      recorder.emplace(options.record, run_info(world, sensor_set, options, device.info().software));
+      service.record_to(*recorder);
+    }
     install_stop_handlers();
     print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; Ctrl-C ends it", counted(service.robots(), "robot"),
                   world.file, options.bind, service.port(), 1.0 / service.interval(), device.info().name);
     service.run(stop_requested(), options.duration);
-    const RunReport facts = report_of(service.stats(), world, device.info());
+    RunReport facts = report_of(service.stats(), world, device.info());
+    if (recorder) {
+      recorder->finish();
+      facts.recording = recorder->path();
+      facts.recorded_bytes = recorder->size();
+    }
     print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
   } catch (const netio::PortInUse&) {
     throw port_in_use(chosen.receiver.bind);

@@ -95,7 +95,8 @@ void add_serve(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "serve", "Serve virtual sensors to robots in other processes: V2V packets in, sensor packets out");
   auto& o = add_command(*sub, call, serve);
-  add_examples(*sub, {"worlds/rooms.world", "worlds/rooms.world --bind 0.0.0.0 --port 9001"});
+  add_examples(*sub, {"worlds/rooms.world", "worlds/rooms.world --bind 0.0.0.0 --port 9001",
+                      "worlds/rooms.world --filter --record out/service"});
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_automatic(*sub, o);
@@ -119,6 +120,9 @@ void add_serve(CLI::App& app, Call& call) {
       ->capture_default_str();
   add_forget(*sub, o);
   add_filter(*sub, o);
+  sub->add_option("--record", o.record, "Folder to record states, their quality, and readings into (run.mcap)")
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
   add_seed(*sub, o, "Seed of noise");
   add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");
 }

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/pose.h"
+#include "base/state_quality.h"
 
 namespace sf::base {
 
@@ -39,6 +40,7 @@ struct ReadingBlock {
   /// (sensors/accuracy.h); infinite: no bound is stated.
   double bound = std::numeric_limits<double>::infinity();
   std::span<const QualityFlag> quality;  ///< one per element; empty: the bound holds for all
+  StateQuality state;  ///< of the mover's state at the measurement; not stated where the state is exact
 };
 
 }  // namespace sf::base

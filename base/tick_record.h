@@ -5,17 +5,19 @@
 
 #include "base/reading.h"
 #include "base/report.h"
+#include "base/state_quality.h"
 
 namespace sf::base {
 
 /// Results of one tick. The spans are valid during the call.
 struct TickRecord {
   std::uint64_t tick = 0;
-  std::int64_t time = 0;                   ///< [ns] simulated
-  std::span<const Report> reports;         ///< every mover's true state
-  std::span<const Twist> commands;         ///< one per report: the twist that the controller commanded
-  std::span<const std::uint8_t> contacts;  ///< one per report: 1 where a wall or a robot stopped the mover
-  std::span<const ReadingBlock> readings;  ///< delivered this tick
+  std::int64_t time = 0;                    ///< [ns] simulated
+  std::span<const Report> reports;          ///< every mover's true state, or its estimate; absent movers: kAbsent
+  std::span<const Twist> commands;          ///< one per report: the twist that the controller commanded
+  std::span<const std::uint8_t> contacts;   ///< one per report: 1 where a wall or a robot stopped the mover
+  std::span<const ReadingBlock> readings;   ///< delivered this tick
+  std::span<const StateQuality> qualities;  ///< one per report; empty: the states are true
 };
 
 class Sink {

@@ -56,6 +56,7 @@ struct Farm::State {
   bool between = false;                   ///< `states` are those of a sample
   std::vector<std::uint32_t> subscribed;  ///< per mover: bits of sensor types
   std::vector<std::uint8_t> gone;         ///< per mover
+  std::vector<base::StateQuality> qualities;  ///< per mover; empty: none was set
   std::vector<base::ReadingBlock> blocks;
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
   FarmStats stats;
@@ -222,6 +223,8 @@ std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
   }
   blocks.clear();
   if (find_due(now)) measure(now, reuse_unchanged);
+  if (!qualities.empty())
+    for (base::ReadingBlock& block : blocks) block.state = qualities[block.mover];
   Stopwatch watch;
   const auto delivered = delivery.deliver(now, blocks);
   add_to_hash(delivered);
@@ -241,6 +244,10 @@ void Farm::subscribe(std::uint32_t mover, std::uint32_t types) {
 void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
   if (gone) s_->subscribed.at(mover) = 0;
+}
+void Farm::set_state_quality(std::uint32_t mover, const base::StateQuality& quality) {
+  s_->qualities.resize(s_->gone.size());
+  s_->qualities.at(mover) = quality;
 }
 void Farm::subscribe_all() {
   for (std::uint32_t m = 0; m < s_->subscribed.size(); ++m) subscribe(m, kAllSensorTypes);

@@ -72,6 +72,9 @@ class Farm {
   /// An absent mover is not sensed and loses its subscription. The first report after its return sets its pose.
   void set_absent(std::uint32_t mover, bool gone);
 
+  /// Sets what the readings of a mover state from now on of the state that they are computed from; initially nothing.
+  void set_state_quality(std::uint32_t mover, const base::StateQuality& quality);
+
   const sensors::SensorSet& sensor_set() const;
 
   /// Computes every subscribed sensor that is due at `now` and returns the readings delivered at `now` (latency may

@@ -13,6 +13,7 @@
 #include "base/bytes.h"
 #include "base/pose.h"
 #include "base/report.h"
+#include "base/state_quality.h"
 #include "netio/packet_status.h"
 
 namespace sf::netio {
@@ -52,13 +53,7 @@ constexpr std::uint8_t sensor_type_of(Type type) {
   return number < 128 ? number % 64 : std::uint8_t{0};
 }
 
-/// The quality of the robot's state behind a reading.
-struct StateQuality {
-  bool stated = false;                ///< false: nothing is known; the other members are 0 and false
-  bool stale = false;                 ///< the state is too old to be relied on
-  std::int64_t age = 0;               ///< [ns] of the state when it was used, rounded up to 1000 in a packet
-  std::array<float, 6> covariance{};  ///< of x, y [m], yaw [rad]: xx, xy, x yaw, yy, y yaw, yaw yaw; 0: not known
-};
+using base::StateQuality;
 
 struct Header {
   Type type = Type::v2v;

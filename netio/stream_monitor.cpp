@@ -78,6 +78,7 @@ struct StreamMonitor::Streams {
   PacketCounts counts;
   std::uint64_t bytes = 0;
   std::uint64_t stale_states = 0;
+  std::int64_t oldest_state = 0;  ///< [ns]
 };
 
 StreamMonitor::StreamMonitor(const StreamMonitorOptions& options) {
@@ -129,6 +130,7 @@ PacketStatus StreamMonitor::accept(std::size_t i, std::span<const std::uint8_t> 
 
   ++stream.good;
   if (!s.headerless && header.state.stale) ++s.stale_states;
+  if (!s.headerless) s.oldest_state = std::max(s.oldest_state, header.state.age);
   stream.elements += info.elements;
   if (!s.headerless) count_arrival(stream.tracker, std::uint64_t{header.sequence} * info.parts + info.part);
   return PacketStatus::accepted;
@@ -155,6 +157,7 @@ StreamSummary StreamMonitor::summary() const {
   sum.good = s.counts[PacketStatus::accepted];
   sum.counts = s.counts;
   sum.stale_states = s.stale_states;
+  sum.oldest_state = s.oldest_state;
   sum.ports = s.rows.size();
   SequenceCounts gaps = s.before;
   for (const Stream& stream : s.rows) {

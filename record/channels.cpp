@@ -41,6 +41,13 @@ void add_motion(McapWriter& mcap, const RunInfo& info, Channels& channels) {
   }
 }
 
+void add_qualities(McapWriter& mcap, const RunInfo& info, Channels& channels) {
+  const std::uint16_t quality = add_schema(mcap, kStateQuality);
+  for (std::size_t row = 0; row < info.movers.size(); ++row)
+    channels.movers[row].quality =
+        mcap.add_channel(quality, "/" + info.movers[row].frame + "/state_quality", "cdr", kPlain);
+}
+
 void add_readings(McapWriter& mcap, const RunInfo& info, Channels& channels) {
   const std::uint16_t scan = add_schema(mcap, kLaserScan);
   std::map<std::uint8_t, std::uint16_t> schemas;  // by sensor type
@@ -66,7 +73,8 @@ void add_frames(const RunInfo& info, Channels& channels) {
 
 std::size_t count_channels(const RunInfo& info) {
   std::size_t count = 4;
-  for (const MoverInfo& mover : info.movers) count += 2 + (info.record_readings ? mover.sensors.size() : 0);
+  for (const MoverInfo& mover : info.movers)
+    count += 2 + (info.estimated ? 1 : 0) + (info.record_readings ? mover.sensors.size() : 0);
   return count;
 }
 
@@ -79,6 +87,7 @@ Channels add_channels(McapWriter& mcap, const RunInfo& info) {
   channels.statics = mcap.add_channel(transforms, "/tf_static", "cdr", kLatched);
   add_frames(info, channels);
   if (info.odometry_rate > 0.0) add_motion(mcap, info, channels);
+  if (info.estimated) add_qualities(mcap, info, channels);
   if (info.record_readings) add_readings(mcap, info, channels);
   return channels;
 }

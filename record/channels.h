@@ -19,6 +19,7 @@ struct SensorChannel {
 struct MoverChannels {
   std::uint16_t odometry = 0;  ///< 0: neither odometry nor commands are recorded
   std::uint16_t command = 0;
+  std::uint16_t quality = 0;  ///< 0: states are true
   std::vector<SensorChannel> sensors;
 };
 

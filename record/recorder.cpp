@@ -89,6 +89,7 @@ void Recorder::write(const base::TickRecord& record) {
   add(channels_.fleet, ticks_, record.time, record.time);
   write_transforms(record);
   if (info_.odometry_rate > 0.0 && record.time >= next_odometry_) write_odometry(record);
+  if (info_.estimated) write_qualities(record);
   if (info_.record_readings)
     for (const base::ReadingBlock& reading : record.readings) write_reading(reading, record.time);
   flush();
@@ -98,6 +99,7 @@ void Recorder::write(const base::TickRecord& record) {
 void Recorder::write_transforms(const base::TickRecord& record) {
   transforms_.clear();
   for (const base::Report& report : record.reports) {
+    if (base::is_absent(report.X_WM)) continue;
     transforms_.push_back({record.time, "world", info_.movers[report.mover].frame, report.X_WM});
   }
   message_.clear();
@@ -105,9 +107,21 @@ void Recorder::write_transforms(const base::TickRecord& record) {
   add(channels_.transforms, ticks_, record.time, record.time);
 }
 
+void Recorder::write_qualities(const base::TickRecord& record) {
+  SF_CHECK(record.qualities.size() == record.reports.size(), std::to_string(record.qualities.size()));
+  for (std::size_t i = 0; i < record.reports.size(); ++i) {
+    if (!record.qualities[i].stated) continue;
+    const std::uint32_t mover = record.reports[i].mover;
+    message_.clear();
+    encode_state_quality(record.time, info_.movers[mover].frame, record.qualities[i], message_);
+    add(channels_.movers[mover].quality, ticks_, record.time, record.time);
+  }
+}
+
 void Recorder::write_odometry(const base::TickRecord& record) {
   for (std::size_t i = 0; i < record.reports.size(); ++i) {
     const base::Report& report = record.reports[i];
+    if (base::is_absent(report.X_WM)) continue;
     const std::string& frame = info_.movers[report.mover].frame;
     message_.clear();
     encode_odometry({record.time, "world", frame, report.X_WM}, report.velocity, message_);

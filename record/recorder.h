@@ -30,8 +30,8 @@ class Recorder : public base::Sink {
   /// Calls `finish` if needed and ignores its errors; call `finish` to get them.
   ~Recorder() override;
 
-  /// Rule: every report's mover is a row of `info.movers`, every reading's sensor one of its sensors; time is
-  /// non-decreasing.
+  /// Rule: every report's mover is a row of `info.movers`, its quality is there if `info.estimated`, every reading's
+  /// sensor one of its sensors; time is non-decreasing.
   /// @throws base::InputError when the tick could not be written whole (a full disk). All earlier ticks are in the
   /// file; the recorder accepts no more.
   void write(const base::TickRecord& record) override;
@@ -46,6 +46,7 @@ class Recorder : public base::Sink {
   void write_run_info();
   void write_sensor_frames();
   void write_transforms(const base::TickRecord& record);
+  void write_qualities(const base::TickRecord& record);
   void write_odometry(const base::TickRecord& record);
   void write_reading(const base::ReadingBlock& reading, std::int64_t time);
   void add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time, std::int64_t true_time);

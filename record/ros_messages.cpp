@@ -84,6 +84,14 @@ void encode_scan(const Scan& scan, std::span<const double> ranges, Bytes& out) {
   cdr.put_count(0);
 }
 
+void encode_state_quality(std::int64_t time, std::string_view frame, const base::StateQuality& quality, Bytes& out) {
+  CdrWriter cdr(out);
+  put_header(cdr, time, frame);
+  cdr.put(quality.stale);
+  cdr.put(1e-9 * static_cast<double>(quality.age));
+  for (const float value : quality.covariance) cdr.put(value);
+}
+
 std::optional<Scan> decode_scan(std::span<const std::uint8_t> message) {
   CdrReader cdr(message);
   Scan scan;

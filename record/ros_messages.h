@@ -11,6 +11,7 @@
 
 #include "base/bytes.h"
 #include "base/pose.h"
+#include "base/state_quality.h"
 #include "record/cdr.h"
 
 namespace sf::record {
@@ -49,6 +50,11 @@ void encode_transforms(std::span<const Transform> transforms, base::Bytes& out);
 
 /// @param ranges [m] rounded to float32; `scan.ranges` is not used.
 void encode_scan(const Scan& scan, std::span<const double> ranges, base::Bytes& out);
+
+/// Of a mover's state at `time`: its age in s, and the covariance of x, y [m] and yaw [rad] as in base::StateQuality.
+/// @param frame of the mover
+void encode_state_quality(std::int64_t time, std::string_view frame, const base::StateQuality& quality,
+                          base::Bytes& out);
 
 /// @returns nullopt when the bytes are not a LaserScan.
 std::optional<Scan> decode_scan(std::span<const std::uint8_t> message);

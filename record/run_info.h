@@ -54,6 +54,7 @@ struct RunInfo {
   std::string mode = "exact";
   double interval = 0.1;  ///< [s] simulated time per tick
   bool record_readings = false;
+  bool estimated = false;      ///< states are estimates from messages, recorded with their quality
   double odometry_rate = 1.0;  ///< [Hz] of the Odometry and TwistStamped messages; 0: none; states come every tick
   std::vector<SensorTypeInfo> sensor_types;                  ///< types of the movers' sensors
   std::vector<MoverInfo> movers;                             ///< in the rows of `base::Report::mover`

@@ -44,6 +44,8 @@ constexpr std::array kDefinitions = {
                "uint32 mover\nbool contact\nsensorfarm_msgs/Pose pose\n"
                "sensorfarm_msgs/Twist velocity\nsensorfarm_msgs/Twist command\n"},
     Definition{"sensorfarm_msgs/Fleet", "std_msgs/Header header\nuint64 tick\nsensorfarm_msgs/State[] states\n"},
+    Definition{"sensorfarm_msgs/StateQuality",
+               "std_msgs/Header header\nbool stale\nfloat64 age\nfloat32[6] covariance\n"},
     Definition{"sensorfarm_msgs/Laser",
                "string name\nstring topic\nsensorfarm_msgs/Pose pose\nfloat64 fov\nuint32 samples\n"
                "float64 range_min\nfloat64 range_max\nfloat64 rate\n"},

@@ -15,6 +15,7 @@ struct RunSettings {
   bool record_readings = false;
   bool no_return_inf = false;  ///< beams without a return read infinity
   std::string caster;          ///< description of the ray caster, from `raycast::describe_caster`
+  bool estimated = false;      ///< states are estimates, recorded with their quality
 };
 
 record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const RunSettings& settings);

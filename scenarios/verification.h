@@ -33,7 +33,7 @@ struct Verification {
   std::vector<std::string> damage;   ///< of the recording, as reported by its reader
   bool interrupted = false;          ///< not all ticks were compared
   bool sound() const;  ///< no difference, missing reading or damage, and something was compared unless the recording
-                       ///< has no ticks
+                       ///< has no ticks or only what is `skipped`
 };
 
 struct VerifyOptions {

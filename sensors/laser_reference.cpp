@@ -35,7 +35,7 @@ std::vector<LaserReference::Seen> LaserReference::in_sight(std::uint32_t self, c
     const double height = X_WS.z - world_.movers[m].X_WM.z;  // as loaded (2.5-D world)
     for (const world::Segment& s : world_.movers[m].body) {
       if (!s.seen_by_laser) continue;
-      if (m != self && s.z_min <= height && height < s.z_max)
+      if (m != self && !base::is_absent(poses_[m]) && s.z_min <= height && height < s.z_max)
         add(base::transform(poses_[m], s.a), base::transform(poses_[m], s.b), id, s.model);
       ++id;
     }

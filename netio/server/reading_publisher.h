@@ -25,7 +25,6 @@ struct AddressedReading {
   const base::ReadingBlock* reading = nullptr;
   std::uint32_t address = 0;
   netio::SessionToken session_token;
-  netio::StateQuality state;
 };
 
 /// Fleets of more sensors than this are encoded on all cores, and sent by a thread of their own.

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <thread>
 
+#include <fmt/format.h>
+
 #include "base/elapsed.h"
+#include "base/error.h"
 #include "base/time.h"
 
 namespace sf::server {
@@ -29,13 +32,10 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
       publisher_(world, sensor_set, layout, netio::Outbox(receiver_.inbox().socket(), outbox_options(sensor_set))),
       farm_(world, device,
             farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
+      absent_(world.movers.size(), false),
       no_return_filter_(sensor_set, options.no_return_inf),
       interval_(options.rate > 0.0 ? 1.0 / options.rate : world.interval),
-      only_at_ticks_(options.rate > 0.0) {
-  for (const sensors::SensorSet::Group& group : sensor_set.groups())
-    for (const sensors::SensorSpec& row : group.rows)
-      if (base::nanoseconds(row.latency) > 0) quality_log_[row.mover];
-}
+      only_at_ticks_(options.rate > 0.0) {}
 
 void Service::run(const std::atomic<bool>& stop, double duration) {
   const Clock clock;
@@ -84,42 +84,54 @@ void Service::tick(std::int64_t now) {
 void Service::publish_due(std::int64_t now, bool between) {
   receive_pending(now);
   receiver_.predict(now);
-  for (const auto& [id, row] : receiver_.robots()) {
-    farm_.set_absent(row, receiver_.update_absent(id, now));
-    farm_.subscribe(row, subscribed_types(id, now));
-  }
-  log_quality(now);
-  for (const auto& [id, row] : receiver_.tags()) farm_.set_absent(row, receiver_.update_absent_tag(row));
-  const auto states = receiver_.states(now);
+  const auto states = update_movers(now);
   const auto readings = no_return_filter_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
+  address(readings);
+  publisher_.queue(addressed_readings_);
+  publisher_.flush();
+  addressed_readings_.clear();
+  if (sink_ != nullptr) record(now, states, readings);
+  warn_of_missed(now);
+}
+
+/// Takes movers in and out of the world, with what they ask for. @return the newest states
+std::span<const base::Report> Service::update_movers(std::int64_t now) {
+  for (const auto& [id, row] : receiver_.robots()) {
+    absent_[row] = receiver_.update_absent(id, now);
+    farm_.set_absent(row, absent_[row]);
+    farm_.subscribe(row, subscribed_types(id, now));
+    farm_.set_state_quality(row, receiver_.quality(row, now));
+  }
+  for (const auto& [id, row] : receiver_.tags()) {
+    absent_[row] = receiver_.update_absent_tag(row);
+    farm_.set_absent(row, absent_[row]);
+  }
+  return receiver_.states(now);
+}
+
+void Service::address(std::span<const base::ReadingBlock> readings) {
   for (const base::ReadingBlock& reading : readings) {
     // A delayed reading of a robot that left meanwhile has no address.
     const std::uint32_t id = world_.movers[reading.mover].id;
     const auto to = receiver_.inbox().address(id);
-    if (to)
-      addressed_readings_.push_back({&reading, to->address, receiver_.inbox().session_token_for(id),
-                                     quality_at(reading.mover, reading.time, now)});
-  }
-  publisher_.queue(addressed_readings_);
-  publisher_.flush();
-  addressed_readings_.clear();
-  warn_of_missed(now);
-}
-
-void Service::log_quality(std::int64_t now) {
-  for (auto& [row, log] : quality_log_) {
-    log.push_back({now, receiver_.quality(row, now)});
-    if (log.size() > kMaxLogged) log.pop_front();
+    if (to) addressed_readings_.push_back({&reading, to->address, receiver_.inbox().session_token_for(id)});
   }
 }
 
-/// Not stated for readings that were held longer than the log reaches.
-netio::StateQuality Service::quality_at(std::uint32_t row, std::int64_t time, std::int64_t now) const {
-  if (time == now) return receiver_.quality(row, now);
-  const auto& log = quality_log_.at(row);
-  const auto found = std::lower_bound(log.begin(), log.end(), time,
-                                      [](const LoggedQuality& logged, std::int64_t at) { return logged.time < at; });
-  return found != log.end() && found->time == time ? found->quality : netio::StateQuality{};
+void Service::record(std::int64_t now, std::span<const base::Report> states,
+                     std::span<const base::ReadingBlock> readings) {
+  states_.assign(states.begin(), states.end());
+  qualities_.clear();
+  for (base::Report& state : states_) {
+    if (absent_[state.mover]) state.X_WM = base::kAbsent;
+    qualities_.push_back(receiver_.quality(state.mover, now));
+  }
+  try {
+    sink_->write({.tick = records_++, .time = now, .reports = states_, .readings = readings, .qualities = qualities_});
+  } catch (const base::InputError& error) {
+    sink_ = nullptr;
+    receiver_.log().write(fmt::format("recording ends here: {}", error.what()), now);
+  }
 }
 
 /// Bit k: robot `id` is active, and wants its sensors of type k.

@@ -8,10 +8,10 @@
 
 #include <atomic>
 #include <cstdint>
-#include <deque>
-#include <map>
+#include <span>
 #include <vector>
 
+#include "base/tick_record.h"
 #include "farm/farm.h"
 #include "gpu/device.h"
 #include "netio/server/no_return_filter.h"
@@ -56,6 +56,10 @@ class Service {
   Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
           const StreamLayout& layout, const ServiceOptions& options);
 
+  /// From now on `sink`, which must outlive the service, takes each tick, and each sample between two ticks as a tick
+  /// of its own. Once it throws base::InputError, which is logged, it takes no more; robots are served all the same.
+  void record_to(base::Sink& sink) { sink_ = &sink; }
+
   /// Serves by the machine's clock, which begins at 0, until `stop` is set or `duration` [s] have passed (0: without
   /// end). Once only, and not after `tick`.
   void run(const std::atomic<bool>& stop, double duration);
@@ -80,15 +84,9 @@ class Service {
   void publish_due(std::int64_t now, bool between);
   std::uint32_t subscribed_types(std::uint32_t id, std::int64_t now) const;
   void warn_of_missed(std::int64_t now);
-  void log_quality(std::int64_t now);
-  netio::StateQuality quality_at(std::uint32_t row, std::int64_t time, std::int64_t now) const;
-
-  /// The quality of a mover's state at one of its last samples.
-  struct LoggedQuality {
-    std::int64_t time = 0;  ///< [ns]
-    netio::StateQuality quality;
-  };
-  static constexpr std::size_t kMaxLogged = 1'024;  ///< samples of a mover
+  std::span<const base::Report> update_movers(std::int64_t now);
+  void address(std::span<const base::ReadingBlock> readings);
+  void record(std::int64_t now, std::span<const base::Report> states, std::span<const base::ReadingBlock> readings);
 
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
@@ -96,7 +94,11 @@ class Service {
   StateReceiver receiver_;
   ReadingPublisher publisher_;
   farm::Farm farm_;
-  std::map<std::uint32_t, std::deque<LoggedQuality>> quality_log_;  ///< by row, of movers with delayed readings
+  base::Sink* sink_ = nullptr;
+  std::vector<base::Report> states_;           ///< per mover, of one tick or sample
+  std::vector<base::StateQuality> qualities_;  ///< likewise
+  std::vector<bool> absent_;                   ///< per mover
+  std::uint64_t records_ = 0;                  ///< written to `sink_`
   NoReturnFilter no_return_filter_;
   std::vector<AddressedReading> addressed_readings_;  ///< of one tick
   double interval_;

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "record/mcap_reader.h"
 #include "record/recording.h"
+#include "record/ros_messages.h"
 #include "tests/record/sample.h"
 
 namespace sf::record {
@@ -100,6 +101,41 @@ TEST(Recorder, TopicsAreAsDocumented) {
       {"/roomba_1_2/laser/scan", 10},
   };
   EXPECT_EQ(topics, expected);
+}
+
+TEST(Recorder, EstimatedStatesHaveTheirQuality) {
+  const std::string directory = fresh_directory("estimated");
+  RunInfo info = sample_info(false);
+  info.estimated = true;
+  info.odometry_rate = 0.0;
+  Recorder recorder(directory, info);
+  SampleTick tick(0);
+  // The first mover has a state of 1/4 s, the second none that is known; then the first is out of the world.
+  const std::vector<base::StateQuality> qualities = {
+      {.stated = true, .stale = true, .age = 250'000'000, .covariance = {1, 2, 3, 4, 5, 6}}, {}};
+  tick.record.qualities = qualities;
+  recorder.write(tick.record);
+  tick.reports[0].X_WM = base::kAbsent;
+  recorder.write(tick.record);
+  recorder.finish();
+  const base::Bytes bytes = bytes_of(recorder.path());
+  EXPECT_EQ(topics_of(bytes).at("/roomba_1/state_quality"), 2u);
+  EXPECT_FALSE(topics_of(bytes).contains("/roomba_1_2/state_quality"));
+  const McapContents contents = read_mcap(bytes, "run.mcap");
+  for (const McapMessage& message : contents.messages) {
+    if (contents.channels.at(message.channel).topic != "/roomba_1/state_quality") continue;
+    CdrReader cdr(message.data);
+    std::int64_t time = 0;
+    EXPECT_EQ(get_header(cdr, time), "roomba_1");
+    EXPECT_TRUE(cdr.get<bool>());
+    EXPECT_EQ(cdr.get<double>(), 0.25);
+    for (int i = 1; i <= 6; ++i) EXPECT_EQ(cdr.get<float>(), static_cast<float>(i));
+    EXPECT_TRUE(cdr.good());
+  }
+  const Recording recording = read_recording(bytes, "run.mcap");
+  EXPECT_TRUE(recording.damage.empty()) << recording.damage[0];
+  EXPECT_TRUE(base::is_absent(recording.states[0][1].X_WM));
+  EXPECT_FALSE(base::is_absent(recording.states[1][1].X_WM));
 }
 
 TEST(Recorder, WithoutReadingsAndOdometryOnlyTheExactStatesAndFramesRemain) {

@@ -71,7 +71,7 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
   layout.bases[sensors::kLaser] = netio::bound_endpoint(ears).port;
   ReadingPublisher post(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)));
 
-  const Day day(robots, 5);
+  Day day(robots, 5);
   const sensors::SensorType& type = *sensor_set.group(sensors::kLaser)->type;
   std::map<std::uint32_t, std::uint32_t> sent;
   netio::ReceiveBatch batch(64);
@@ -80,9 +80,9 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
     std::vector<AddressedReading> letters;
     std::vector<base::Bytes> expected;
     for (std::size_t i = first; i < end; ++i) {
-      const base::ReadingBlock& block = day.blocks[i];
-      const netio::StateQuality state{.stated = true, .stale = i % 2 == 1, .age = 80'000'000, .covariance = {1e-4f}};
-      letters.push_back({&block, netio::kLoopback, {7, 9}, state});
+      base::ReadingBlock& block = day.blocks[i];
+      block.state = {.stated = true, .stale = i % 2 == 1, .age = 80'000'000, .covariance = {1e-4f}};
+      letters.push_back({&block, netio::kLoopback, {7, 9}});
       base::Bytes payload, packet;
       const std::uint8_t packet_type = type.encode(sensor_set.row(block), block, sensors::WireFormat::farm, 0, payload);
       if (packet_type == 0) continue;
@@ -93,7 +93,7 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
       header.accuracy = netio::encode_accuracy({block.mode, false, block.bound});
       header.session = 7;
       header.token = 9;
-      header.state = state;
+      header.state = block.state;
       netio::encode_reading(header, packet_type, payload, packet);
       expected.push_back(packet);
     }

@@ -192,6 +192,59 @@ TEST(Service, AStaleRobotIsOutOfTheWorldOnRequest) {
   }
 }
 
+/// Keeps the newest of what it takes; can be full.
+struct TestSink : base::Sink {
+  bool full = false;
+  std::vector<std::int64_t> times;
+  std::vector<base::Report> reports;
+  std::vector<base::StateQuality> qualities;
+  std::size_t readings = 0;
+  void write(const base::TickRecord& record) override {
+    if (full) throw base::InputError("run.mcap", 0, "no space left");
+    times.push_back(record.time);
+    reports.assign(record.reports.begin(), record.reports.end());
+    qualities.assign(record.qualities.begin(), record.qualities.end());
+    for (const base::ReadingBlock& reading : record.readings) {
+      ++readings;
+      EXPECT_TRUE(reading.state.stated);
+      EXPECT_EQ(reading.state.age, qualities[reading.mover].age);
+    }
+  }
+};
+
+TEST(Service, ASinkTakesStatesTheirQualityAndReadings) {
+  Fixture f({.filter = {.enabled = true, .policy = estimation::StalePolicy::hide}});
+  TestSink sink;
+  f.service->record_to(sink);
+  f.run(10);
+  ASSERT_EQ(sink.times.size(), 10u);
+  EXPECT_EQ(sink.times.back(), f.now - kTick);
+  EXPECT_GE(sink.readings, 8u);
+  ASSERT_EQ(sink.reports.size(), 2u);
+  ASSERT_EQ(sink.qualities.size(), 2u);
+  EXPECT_TRUE(sink.qualities[0].stated);
+  EXPECT_GT(sink.qualities[0].covariance[0], 0.0f);
+  EXPECT_FALSE(sink.qualities[1].stated) << "the other robot is silent";
+  EXPECT_FALSE(base::is_absent(sink.reports[1].X_WM)) << "it stands where the world has it";
+  for (int i = 0; i < 15; ++i, f.now += kTick) f.service->tick(f.now);
+  EXPECT_TRUE(sink.qualities[0].stale);
+  EXPECT_TRUE(base::is_absent(sink.reports[0].X_WM)) << "out of the world";
+}
+
+TEST(Service, AFullDiskEndsTheRecordingOnly) {
+  Fixture f;
+  TestSink sink;
+  f.service->record_to(sink);
+  f.run(5);
+  sink.full = true;
+  f.run(5);
+  sink.full = false;
+  f.run(5);
+  EXPECT_EQ(sink.times.size(), 5u);
+  EXPECT_EQ(count_of(f.log.read_all(), "recording ends here: run.mcap"), 1u);
+  EXPECT_GE(f.client->stats().link.whole.at("laser"), 13u);
+}
+
 TEST(Service, RunEndsByItsDurationAndByAStop) {
   Fixture f;
   std::atomic<bool> stop = false;

@@ -1,0 +1,57 @@
+// A service records what it knows: its scans can be computed again from the estimated states, and drawn.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "record/recorder.h"
+#include "record/recording.h"
+#include "scenarios/run_info.h"
+#include "scenarios/verification.h"
+#include "tests/netio/server/fixture.h"
+
+namespace sf::scenarios {
+namespace {
+
+/// Two robots drive, with samples between ticks; one falls silent and is out of the world before the end.
+record::Recording recorded() {
+  server::Fixture f({.sensor_rate = 13.0, .filter = {.enabled = true, .policy = estimation::StalePolicy::hide}});
+  const std::string folder = (std::filesystem::temp_directory_path() / "service_recording").string();
+  record::Recorder recorder(folder,
+                            run_info(f.world, f.sensor_set, {.seed = 1, .record_readings = true, .estimated = true}));
+  f.service->record_to(recorder);
+  const auto other = f.make_client(1);
+  for (int i = 0; i < 60; ++i, f.now += server::kTick) {
+    for (server::RobotClient* robot : {f.client.get(), other.get()}) {
+      robot->receive(f.now);
+      if (robot != other.get() || i < 30) robot->step(f.now);
+    }
+    f.service->tick(f.now);
+    const std::int64_t due = f.service->next_due();
+    if (due < f.now + server::kTick) f.service->sample(due);
+  }
+  recorder.finish();
+  return record::open_recording(folder);
+}
+
+TEST(ServiceRecording, ItsScansAreThoseOfPlainCpp) {
+  const record::Recording recording = recorded();
+  ASSERT_EQ(recording.states.size(), 2u);
+  EXPECT_GT(recording.ticks, 80u) << "60 ticks, and samples between them";
+  EXPECT_TRUE(base::is_absent(recording.states[1].back().X_WM)) << "silent for 3 s";
+  EXPECT_FALSE(base::is_absent(recording.states[0].back().X_WM));
+  EXPECT_TRUE(recording.damage.empty());
+  const Verification v = verify(recording, server::Fixture::device(), {});
+  EXPECT_TRUE(v.sound()) << v.reference.first;
+  EXPECT_GT(v.reference.readings, 90u);
+  EXPECT_EQ(v.reference.readings, recording.readings.size());
+}
+
+TEST(ServiceRecording, AWrongRangeIsFound) {
+  record::Recording recording = recorded();
+  recording.readings[20].values[7] += 1e-6;
+  EXPECT_FALSE(verify(recording, server::Fixture::device(), {}).sound());
+}
+
+}  // namespace
+}  // namespace sf::scenarios
