@@ -89,9 +89,11 @@ struct FarmOptions {
 };
 
 struct LinkOptions {
-  double delay = 0.0;   ///< [s] injected in each direction
-  double jitter = 0.0;  ///< [s]
-  double loss = 0.0;    ///< [-] in [0, 1]
+  double delay = 0.0;      ///< [s] injected in each direction
+  double jitter = 0.0;     ///< [s]
+  double loss = 0.0;       ///< [-] in [0, 1]
+  double duplicate = 0.0;  ///< [-] in [0, 1]
+  double corrupt = 0.0;    ///< [-] in [0, 1]
 };
 
 struct ForgetOption {

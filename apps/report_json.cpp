@@ -125,7 +125,11 @@ Json states_json(const RunReport& f) {
 }
 
 Json injected(const netio::DelayCounts& counts) {
-  return {{"passed", counts.passed}, {"lost", counts.lost}, {"full", counts.full}};
+  return {{"passed", counts.passed},
+          {"lost", counts.lost},
+          {"full", counts.full},
+          {"duplicated", counts.duplicated},
+          {"corrupted", counts.corrupted}};
 }
 
 Json link_json(const server::LinkCounts& link) {

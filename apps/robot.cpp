@@ -39,7 +39,12 @@ netio::Endpoint farm_of(const FarmOptions& options) {
 server::RobotClientOptions client_options(const RobotOptions& options) {
   server::RobotClientOptions client;
   client.link.farm = farm_of(options);
-  client.link.model = {.delay = options.delay, .jitter = options.jitter, .loss = options.loss, .seed = options.seed};
+  client.link.model = {.delay = options.delay,
+                       .jitter = options.jitter,
+                       .loss = options.loss,
+                       .seed = options.seed,
+                       .duplicate = options.duplicate,
+                       .corrupt = options.corrupt};
   client.controller = controller_config_of(options);
   client.controller.rate = options.rate;
   client.seed = options.seed;

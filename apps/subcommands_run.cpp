@@ -149,10 +149,12 @@ void add_link(CLI::App& app, LinkOptions& o) {
       ->check(number(0.0, 3600.0))
       ->type_name("S")
       ->group(kGroup);
-  app.add_option("--loss", o.loss, "Fraction of packets lost in each direction, 0 to 1")
-      ->check(number(0.0, 1.0))
-      ->type_name("P")
-      ->group(kGroup);
+  const auto add_fraction = [&](const char* name, double& value, const char* text) {
+    app.add_option(name, value, text)->check(number(0.0, 1.0))->type_name("P")->group(kGroup);
+  };
+  add_fraction("--loss", o.loss, "Fraction of packets lost in each direction, 0 to 1");
+  add_fraction("--duplicate", o.duplicate, "Fraction of packets that come twice, 0 to 1");
+  add_fraction("--corrupt", o.corrupt, "Fraction of packets of which one bit is flipped, 0 to 1");
 }
 
 void add_robot(CLI::App& app, Call& call) {

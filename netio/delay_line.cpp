@@ -16,6 +16,15 @@ void DelayLine::send(const MessageId& message, std::int64_t now, std::size_t tag
     ++counts_.lost;
     return;
   }
+  const MessageFaults faults = sample_faults(model_, message);
+  queue(now + *delay, tag, bytes, faults.flipped_bit);
+  if (faults.again) queue(now + *faults.again, tag, bytes, faults.flipped_bit);
+  counts_.duplicated += faults.again.has_value();
+  counts_.corrupted += faults.flipped_bit.has_value();
+}
+
+void DelayLine::queue(std::int64_t arrival, std::size_t tag, std::span<const std::uint8_t> bytes,
+                      const std::optional<double>& flipped_bit) {
   if (waiting_.size() == kCapacity) {
     ++counts_.full;
     return;
@@ -27,7 +36,11 @@ void DelayLine::send(const MessageId& message, std::int64_t now, std::size_t tag
   const std::size_t slot = free_.back();
   free_.pop_back();
   memory_[slot].assign(bytes.begin(), bytes.end());
-  waiting_.push_back({now + *delay, order_++, tag, slot});
+  if (flipped_bit && !bytes.empty()) {
+    const auto bit = static_cast<std::size_t>(*flipped_bit * 8.0 * static_cast<double>(bytes.size()));
+    memory_[slot][bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
+  }
+  waiting_.push_back({arrival, order_++, tag, slot});
   std::push_heap(waiting_.begin(), waiting_.end(), later);
 }
 

@@ -2,6 +2,7 @@
 // Simulated network delay and loss: messages are queued until their arrival, or dropped.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,9 +12,11 @@
 namespace sf::netio {
 
 struct DelayCounts {
-  std::uint64_t passed = 0;  ///< released
-  std::uint64_t lost = 0;    ///< lost according to the model
-  std::uint64_t full = 0;    ///< dropped because kCapacity messages waited
+  std::uint64_t passed = 0;      ///< released
+  std::uint64_t lost = 0;        ///< lost according to the model
+  std::uint64_t full = 0;        ///< dropped because kCapacity messages waited
+  std::uint64_t duplicated = 0;  ///< second copies, counted in the others too
+  std::uint64_t corrupted = 0;   ///< messages with a flipped bit, in all their copies
 };
 
 /// One thread. The memory of messages is reused.
@@ -23,7 +26,7 @@ class DelayLine {
 
   explicit DelayLine(const LinkModel& model) : model_(model) {}
 
-  /// Queues a copy of a message sent at `now` [ns], or drops it.
+  /// Queues a copy of a message sent at `now` [ns], with the faults of the model, or drops it.
   /// @param tag passed on to `take`
   void send(const MessageId& message, std::int64_t now, std::size_t tag, std::span<const std::uint8_t> bytes);
 
@@ -51,6 +54,8 @@ class DelayLine {
   };
   static bool later(const QueuedMessage& one, const QueuedMessage& other);
   QueuedMessage pop();
+  void queue(std::int64_t arrival, std::size_t tag, std::span<const std::uint8_t> bytes,
+             const std::optional<double>& flipped_bit);
 
   LinkModel model_;
   DelayCounts counts_;

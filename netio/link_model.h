@@ -12,7 +12,9 @@ struct LinkModel {
   double jitter = 0.0;  ///< [s] in [0, 3600] additional delay, uniform in [0, jitter]; messages may be reordered
   double loss = 0.0;    ///< [-] in [0, 1] probability of loss
   std::uint64_t seed = 0;
-  bool perfect() const { return delay == 0.0 && jitter == 0.0 && loss == 0.0; }
+  double duplicate = 0.0;  ///< [-] in [0, 1] probability that a message that is not lost comes twice
+  double corrupt = 0.0;    ///< [-] in [0, 1] probability that one bit of a message that is not lost is flipped
+  bool perfect() const { return delay == 0.0 && jitter == 0.0 && loss == 0.0 && duplicate == 0.0 && corrupt == 0.0; }
 };
 
 /// Identity of one message.
@@ -24,5 +26,12 @@ struct MessageId {
 
 /// [ns] Delay of the message; nullopt: lost. A function of model and message alone.
 std::optional<std::int64_t> sample_delay(const LinkModel& model, const MessageId& message);
+
+/// Further faults of a message that is not lost: a function of model and message, too.
+struct MessageFaults {
+  std::optional<std::int64_t> again;  ///< [ns] delay of its second copy
+  std::optional<double> flipped_bit;  ///< in [0, 1): place of the flipped bit among those of the message
+};
+MessageFaults sample_faults(const LinkModel& model, const MessageId& message);
 
 }  // namespace sf::netio

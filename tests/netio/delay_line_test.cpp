@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
 #include <random>
 
 namespace sf::netio {
@@ -94,6 +95,46 @@ TEST(DelayLine, ReleasesInOrderOfArrival) {
   EXPECT_EQ(line.counts().passed, came);
   EXPECT_GT(lost, 50u);
   EXPECT_GT(overtaken, 50u);
+}
+
+// Faults come as often as asked for, within five standard deviations of 2000 messages.
+TEST(DelayLine, MessagesComeTwiceOrWithAFlippedBit) {
+  constexpr int kMessages = 2000;
+  DelayLine line({.delay = 0.01, .jitter = 0.1, .seed = 3, .duplicate = 0.25, .corrupt = 0.1});
+  for (std::uint32_t n = 0; n < kMessages; ++n) send(line, n, n * kMilli);
+  std::vector<int> copies(kMessages, 0);
+  std::uint64_t odd = 0;
+  line.release(1'000'000 * kMilli, [&](std::size_t, std::span<const std::uint8_t> bytes) {
+    const auto number = base::ByteReader(bytes).get<std::uint32_t>();
+    if (number < kMessages) ++copies[number];
+    // A flipped bit makes some other number, seldom one that is in use: its copies are then too many.
+    odd += number >= kMessages;
+  });
+  const DelayCounts& counts = line.counts();
+  EXPECT_NEAR(static_cast<double>(counts.duplicated), 500.0, 97.0);
+  EXPECT_NEAR(static_cast<double>(counts.corrupted), 200.0, 67.0);
+  EXPECT_EQ(counts.passed, kMessages + counts.duplicated);
+  EXPECT_EQ(counts.lost, 0u);
+  EXPECT_GT(odd, counts.corrupted / 2) << "21 of 32 bits lead beyond 2000";
+  EXPECT_EQ(static_cast<std::uint64_t>(std::accumulate(copies.begin(), copies.end(), 0)) + odd, counts.passed);
+}
+
+TEST(DelayLine, FaultsAreFunctionsOfTheMessage) {
+  const LinkModel model{.seed = 3, .duplicate = 0.5, .corrupt = 0.5};
+  for (std::uint64_t n = 0; n < 50; ++n) {
+    const MessageFaults one = sample_faults(model, {1, 2, n}), other = sample_faults(model, {1, 2, n});
+    EXPECT_EQ(one.again, other.again);
+    EXPECT_EQ(one.flipped_bit, other.flipped_bit);
+  }
+  const MessageFaults none = sample_faults({.loss = 0.5}, {1, 2, 3});
+  EXPECT_FALSE(none.again || none.flipped_bit);
+}
+
+TEST(DelayLine, AnEmptyMessageHasNoBitToFlip) {
+  DelayLine line({.corrupt = 1.0});
+  line.send({1, 2, 3}, 0, 0, {});
+  line.release(0, [](std::size_t, std::span<const std::uint8_t> bytes) { EXPECT_TRUE(bytes.empty()); });
+  EXPECT_EQ(line.counts().passed, 1u);
 }
 
 TEST(DelayLine, AFloodIsBounded) {
