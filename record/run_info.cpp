@@ -32,11 +32,11 @@ std::string unique(const std::string& name, Taken& taken) {
   return candidate;
 }
 
-void put_pose(CdrWriter& cdr, const base::Pose& pose) {
+void put_plain_pose(CdrWriter& cdr, const base::Pose& pose) {
   for (const double value : {pose.x, pose.y, pose.z, pose.yaw}) cdr.put(value);
 }
 
-void get_pose(CdrReader& cdr, base::Pose& pose) {
+void get_plain_pose(CdrReader& cdr, base::Pose& pose) {
   for (double* value : {&pose.x, &pose.y, &pose.z, &pose.yaw}) *value = cdr.get<double>();
 }
 
@@ -73,7 +73,7 @@ void put_sensor(CdrWriter& cdr, const SensorInfo& sensor, bool is_scan) {
   if (!is_scan) cdr.put(sensor.type);
   cdr.put(std::string_view(sensor.name));
   cdr.put(std::string_view(sensor.topic));
-  put_pose(cdr, sensor.X_MS);
+  put_plain_pose(cdr, sensor.X_MS);
   if (is_scan) {
     cdr.put(sensor.fov);
     cdr.put(sensor.samples);
@@ -88,7 +88,7 @@ SensorInfo get_sensor(CdrReader& cdr, bool is_scan) {
   sensor.type = is_scan ? kScans.id : cdr.get<std::uint8_t>();
   sensor.name = cdr.get_string();
   sensor.topic = cdr.get_string();
-  get_pose(cdr, sensor.X_MS);
+  get_plain_pose(cdr, sensor.X_MS);
   if (is_scan) {
     sensor.fov = cdr.get<double>();
     sensor.samples = cdr.get<std::uint32_t>();

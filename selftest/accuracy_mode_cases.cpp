@@ -94,7 +94,7 @@ void near_magnets(Fixture& fixture, Checks& checks) {
   }
 }
 
-constexpr Case kCases[] = {
+constexpr Case kAccuracyModeCases[] = {
     {"modes", "stated-bounds", "m", "scans in 64 and in 32 bits, 1 mm to 1 000 km wide: within the stated bounds",
      stated_bounds},
     {"modes", "skipped-beams", "", "cast beams equal those of exact scans to the bit, the others are flagged",
@@ -104,6 +104,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> accuracy_mode_cases() { return kCases; }
+std::span<const Case> accuracy_mode_cases() { return kAccuracyModeCases; }
 
 }  // namespace sf::selftest

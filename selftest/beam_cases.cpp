@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include "selftest/exact_ray_cast.h"
+#include "selftest/fixture.h"
 #include "selftest/suite.h"
 
 namespace sf::selftest {
 
 namespace {
-
-constexpr double kTurn = 2.0 * M_PI;
 
 /// A laser beside the start of a 100 m wall hits it half way at a grazing angle; another wall stands behind.
 void grazing(Fixture& fixture, Checks& checks) {
@@ -122,7 +121,7 @@ void from_inside(Fixture& fixture, Checks& checks) {
   }
 }
 
-constexpr Case kCases[] = {
+constexpr Case kBeamCases[] = {
     {"beams", "grazing", "m", "walls met at 0.1 to 1e-9 rad: rounding of 64 bits divided by the sine, 2e-4 m at 1e-9",
      grazing},
     {"beams", "parallel", "m",
@@ -138,6 +137,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> beam_cases() { return kCases; }
+std::span<const Case> beam_cases() { return kBeamCases; }
 
 }  // namespace sf::selftest

@@ -14,7 +14,7 @@ namespace {
 constexpr double kCount = 1e-4;  ///< [m] resolution of the laser's wire format
 constexpr std::uint64_t kSeed = 11;
 
-double random(std::uint32_t index) {
+double random_place(std::uint32_t index) {
   return base::random_uniform({kSeed, base::RandomStream::placement, 0, 0, index}, 0)[0];
 }
 
@@ -24,7 +24,7 @@ world::World crowd(double far, const sensors::LaserSettings& laser) {
   const glm::dvec2 away{far, -far};
   add_room(world, away - glm::dvec2{8.0, 8.0}, 16.0);
   std::uint32_t draw = 0;
-  const auto next = [&] { return random(draw++); };
+  const auto next = [&] { return random_place(draw++); };
   for (int i = 0; i < 60; ++i) {
     const Pose X{15.0 * next() - 7.5, 15.0 * next() - 7.5, 0.0, 7.0 * next()};
     const double x = 0.1 + next(), y = 0.1 + 0.5 * next();
@@ -106,7 +106,8 @@ void where_32_bits_break(Fixture& fixture, Checks& checks) {
     world::World world;
     add_wall(world, {far + 2.1, far - 5.3}, {far + 3.7, far + 5.9});
     for (std::uint32_t i = 0; i < 100; ++i)
-      add_laser_mover(world, {far + random(2 * i), far + random(2 * i + 1), 0.0, 0.1 * random(i)}, laser(1, 0.0, 8.0));
+      add_laser_mover(world, {far + random_place(2 * i), far + random_place(2 * i + 1), 0.0, 0.1 * random_place(i)},
+                      laser(1, 0.0, 8.0));
     const TestFarm test = fixture.measure(world);
     Real ours = 0, theirs = 0;
     for (const base::ReadingBlock& r : test.readings) {
@@ -122,7 +123,7 @@ void where_32_bits_break(Fixture& fixture, Checks& checks) {
   }
 }
 
-constexpr Case kCases[] = {
+constexpr Case kDeviceCases[] = {
     {"devices", "plain-c++", "m",
      "scans of seven fleets compared with plain C++: bitwise in software, one count of the wire elsewhere", plain_cpp},
     {"devices", "where-32-bits-break", "m",
@@ -131,6 +132,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> device_cases() { return kCases; }
+std::span<const Case> device_cases() { return kDeviceCases; }
 
 }  // namespace sf::selftest

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "selftest/fixture.h"
 #include "selftest/suite.h"
 #include "world/roads/rndf.h"
 #include "world/stage/stage.h"
@@ -9,9 +10,6 @@
 namespace sf::selftest {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 void world_files(Fixture& fixture, Checks& checks) {
   const auto world_with = [](const std::string& x) {
@@ -87,7 +85,7 @@ void snapshots(Fixture&, Checks& checks) {
     }
 }
 
-constexpr Case kCases[] = {
+constexpr Case kFileCases[] = {
     {"files", "in-world-files", "m", "NaN and infinity refused with file and line; denormals are numbers", world_files},
     {"files", "in-road-files", "", "NaN, infinity and degrees beyond 90 refused with file and line", road_files},
     {"files", "in-recordings", "", "NaN and infinity in a recording's world are refused", snapshots},
@@ -95,6 +93,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> file_cases() { return kCases; }
+std::span<const Case> file_cases() { return kFileCases; }
 
 }  // namespace sf::selftest

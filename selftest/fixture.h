@@ -1,6 +1,8 @@
 #pragma once
 // Helpers of the cases: worlds made in memory, and farms that are ticked once.
 
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,6 +17,12 @@
 namespace sf::selftest {
 
 using base::Pose;
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kHuge = std::numeric_limits<double>::max();
+inline constexpr double kTurn = 2.0 * M_PI;      ///< [rad]
+inline constexpr double kDegree = M_PI / 180.0;  ///< [rad]
 
 /// A farm on its own world, with all sensors subscribed.
 struct TestFarm {

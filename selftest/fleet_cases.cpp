@@ -56,7 +56,7 @@ void a_hundred_thousand(Fixture& fixture, Checks& checks) {
   }
 }
 
-constexpr Case kCases[] = {
+constexpr Case kFleetCases[] = {
     {"fleets", "nobody", "", "a world without robots, with walls and without: no readings, no error", nobody},
     {"fleets", "coincident", "m", "100 robots in one place: each other's outlines within rounding, equal to the bit",
      coincident},
@@ -66,6 +66,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> fleet_cases() { return kCases; }
+std::span<const Case> fleet_cases() { return kFleetCases; }
 
 }  // namespace sf::selftest

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "selftest/fixture.h"
 #include "selftest/suite.h"
 #include "sensors/laneedge.h"
 
@@ -9,7 +10,6 @@ namespace sf::selftest {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct LaneEdgeReading {
@@ -146,7 +146,7 @@ void out_of_sight(Fixture& fixture, Checks& checks) {
   checks.same(read(fixture, marking_ahead({}, 0.99, 0.0), {}).distance, kNone, "an edge near the range's end");
 }
 
-constexpr Case kCases[] = {
+constexpr Case kLaneEdgeCases[] = {
     {"edges", "edge-angles", "m",
      "vertical, horizontal and tilted, 0 to 1e7 m away: four roundings of the paint's corners over cos^2", angles},
     {"edges", "through-the-sensor", "m", "an edge through the sensor: 0, within the touch of 1 nm", through_the_sensor},
@@ -162,6 +162,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> lane_edge_cases() { return kCases; }
+std::span<const Case> lane_edge_cases() { return kLaneEdgeCases; }
 
 }  // namespace sf::selftest

@@ -137,7 +137,7 @@ void saturated(Fixture& fixture, Checks& checks) {
   }
 }
 
-constexpr Case kCases[] = {
+constexpr Case kMagnetCases[] = {
     {"magnets", "moments-and-distances", "of |B|",
      "1e-12 to 1e12 A m^2 at 1e-6 to 1e6 m: a root of 32 bits squared by Newton, 1e-13, and 4e-18 m over r",
      one_magnet},
@@ -153,6 +153,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> magnet_cases() { return kCases; }
+std::span<const Case> magnet_cases() { return kMagnetCases; }
 
 }  // namespace sf::selftest

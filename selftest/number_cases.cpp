@@ -6,6 +6,7 @@
 
 #include "netio/packets.h"
 #include "robots/fleet.h"
+#include "selftest/fixture.h"
 #include "selftest/suite.h"
 
 namespace sf::selftest {
@@ -14,10 +15,7 @@ namespace {
 
 using netio::PacketStatus;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
-constexpr double kHuge = std::numeric_limits<double>::max();
 
 base::Bytes with(base::Bytes bytes, std::size_t at, double value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
@@ -97,7 +95,7 @@ void commands(Fixture&, Checks& checks) {
   }
 }
 
-constexpr Case kCases[] = {
+constexpr Case kNumberCases[] = {
     {"numbers", "in-packets", "", "each number of V2V and TAG: NaN and infinity dropped, limits exact to the last bit",
      packets},
     {"numbers", "in-poses", "m", "denormal and largest poses from bytes to readings: sums are exact, so no bit is off",
@@ -108,6 +106,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> number_cases() { return kCases; }
+std::span<const Case> number_cases() { return kNumberCases; }
 
 }  // namespace sf::selftest

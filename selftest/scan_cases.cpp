@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include "selftest/exact_ray_cast.h"
+#include "selftest/fixture.h"
 #include "selftest/suite.h"
 
 namespace sf::selftest {
 
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 world::World room_with_blocks() {
   world::World world;
@@ -64,7 +63,7 @@ void headings(Fixture& fixture, Checks& checks) {
     check_scan(*test.world, r, checks, fmt::format("heading {:g}", r.X_WS.yaw));
 }
 
-constexpr Case kCases[] = {
+constexpr Case kScanCases[] = {
     {"fans", "samples-and-widths", "m", "1 to 1 001 samples in 0, 1e-6 to 360 degrees: every beam within rounding",
      few_and_many},
     {"fans", "a-hundred-thousand-samples", "m",
@@ -76,6 +75,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> scan_cases() { return kCases; }
+std::span<const Case> scan_cases() { return kScanCases; }
 
 }  // namespace sf::selftest

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include "selftest/exact_ray_cast.h"
+#include "selftest/fixture.h"
 #include "selftest/suite.h"
 #include "world/stage/stage.h"
 
 namespace sf::selftest {
 
 namespace {
-
-constexpr double kTurn = 2.0 * M_PI;
 
 /// Corners repeated two and three times, as drawing programs write them.
 void points_given_twice(Fixture& fixture, Checks& checks) {
@@ -108,7 +107,7 @@ void a_million(Fixture& fixture, Checks& checks) {
   check_scan(*longest.world, longest.readings[0], checks, "a quarter of a million in one direction of one cell");
 }
 
-constexpr Case kCases[] = {
+constexpr Case kSegmentCases[] = {
     {"segments", "points-given-twice", "m",
      "outlines with repeated corners: no wall of zero length is made, the rest is exact", points_given_twice},
     {"segments", "zero-length", "m", "walls of zero length are never hit: the others, within rounding", zero_length},
@@ -121,6 +120,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> segment_cases() { return kCases; }
+std::span<const Case> segment_cases() { return kSegmentCases; }
 
 }  // namespace sf::selftest

@@ -115,7 +115,7 @@ void lights(Fixture&, Checks& checks) {
   }
 }
 
-constexpr Case kCases[] = {
+constexpr Case kTimeCases[] = {
     {"times", "tick-1e9", "m", "readings after a year and at tick 1e9, with noise: plain C++'s to the bit", tick_1e9},
     {"times", "due-for-a-year", "", "readings due after a year at 1 Hz to 1 MHz: counted in integers, to 2 ns",
      due_for_a_year},
@@ -131,6 +131,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> time_cases() { return kCases; }
+std::span<const Case> time_cases() { return kTimeCases; }
 
 }  // namespace sf::selftest

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "selftest/fixture.h"
 #include "selftest/suite.h"
 #include "sensors/gyro.h"
 #include "sensors/laneedge_settings.h"
@@ -15,10 +16,6 @@ namespace {
 using sensors::SensorSpec;
 using sensors::SensorType;
 using sensors::WireFormat;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kHuge = std::numeric_limits<double>::max();
 
 /// The received values after encoding and decoding; empty when nothing is sent.
 std::vector<double> decoded(const SensorType& sensor_type, const SensorSpec& row, const std::vector<double>& values,
@@ -97,11 +94,11 @@ constexpr Sent kPoints[] = {
     {65'534.0, 65'534.0}, {65'535.0, 65'535.0}, {65'536.0, 65'535.0}, {131'072.0, 65'535.0}, {-1.0, 0.0}};
 constexpr Sent kSigma[] = {{4294.967294, 4294.967294}, {4294.967295, kNan}, {4294.967296, kNan}, {8589.934592, kNan},
                            {kInfinity, kNan},          {kNan, kNan},        {-1.0, 0.0}};
-constexpr Sent kTurn[] = {{2147.483647, 2147.483647},   {2147.483648, 2147.483647},
-                          {-2147.483647, -2147.483647}, {-2147.483648, -2147.483647},
-                          {-2147.483649, -2147.483647}, {4294.967296, 2147.483647},
-                          {kInfinity, 2147.483647},     {-kInfinity, -2147.483647},
-                          {kHuge, 2147.483647},         {kNan, kNan}};
+constexpr Sent kTurnRates[] = {{2147.483647, 2147.483647},   {2147.483648, 2147.483647},
+                               {-2147.483647, -2147.483647}, {-2147.483648, -2147.483647},
+                               {-2147.483649, -2147.483647}, {4294.967296, 2147.483647},
+                               {kInfinity, 2147.483647},     {-kInfinity, -2147.483647},
+                               {kHuge, 2147.483647},         {kNan, kNan}};
 
 void lasers(Fixture&, Checks& checks) {
   expect(checks, sensors::laser_type, row_of(1, 65.535), kPlainLaser, 0, 1);
@@ -123,7 +120,7 @@ void fields(Fixture&, Checks& checks) {
 
 /// Numbers of every sensor type from -1e300 to 1e300: order and sign are preserved.
 void all_types(Fixture&, Checks& checks) {
-  expect(checks, sensors::gyro_type, row_of(1, 0.0), kTurn, 0, 1);
+  expect(checks, sensors::gyro_type, row_of(1, 0.0), kTurnRates, 0, 1);
   for (const SensorType* sensor_type : sensors::sensor_types()) {
     if (sensor_type->id == sensors::kLaneEdge || sensor_type->name == "occupancy") continue;
     double before = -kInfinity;
@@ -143,7 +140,7 @@ void all_types(Fixture&, Checks& checks) {
   }
 }
 
-constexpr Case kCases[] = {
+constexpr Case kWireFormatCases[] = {
     {"wires", "laser-words", "m",
      "u16 millimetres and u32 tenths at and past their ends: saturated, no return flagged, NaN not sent", lasers},
     {"wires", "lane-edge-words", "m", "u16 and u32 of lane edges: saturated below the flag, none flagged", lane_edges},
@@ -154,6 +151,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> wire_format_cases() { return kCases; }
+std::span<const Case> wire_format_cases() { return kWireFormatCases; }
 
 }  // namespace sf::selftest

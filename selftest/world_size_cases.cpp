@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "selftest/exact_ray_cast.h"
+#include "selftest/fixture.h"
 #include "selftest/suite.h"
 
 namespace sf::selftest {
@@ -11,7 +12,6 @@ namespace {
 
 constexpr double kFar[] = {0.0, 1e5, 1e7};           ///< [m] offset from the origin, along both axes
 constexpr double kWidths[] = {1e-3, 1.0, 1e3, 1e6};  ///< [m]
-constexpr double kTurn = 2.0 * M_PI;
 
 /// A square room and a laser inside it that sees all of its walls.
 void check_full_turn(Fixture& fixture, Checks& checks, double far, double width, std::uint32_t samples) {
@@ -83,7 +83,7 @@ void far_and_small(Fixture& fixture, Checks& checks) {
   }
 }
 
-constexpr Case kCases[] = {
+constexpr Case kWorldSizeCases[] = {
     {"places", "world-widths", "m", "rooms 1 mm to 1 000 km wide: exact walls, within rounding of 64 bits", widths},
     {"places", "far-origins", "m", "rooms of all widths 0, 1e5 and 1e7 m away: the walls as doubles have them",
      distances},
@@ -97,6 +97,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> world_size_cases() { return kCases; }
+std::span<const Case> world_size_cases() { return kWorldSizeCases; }
 
 }  // namespace sf::selftest

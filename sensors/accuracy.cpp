@@ -40,7 +40,7 @@ std::string listed(const std::vector<std::string_view>& words) {
 }
 
 /// Error at a line of the file, or of the command line.
-[[noreturn]] void refuse(const world::Accuracy& at, const std::string& message) {
+[[noreturn]] void refuse_mode(const world::Accuracy& at, const std::string& message) {
   throw base::InputError(at.file.empty() ? "--accuracy" : at.file, at.line, message);
 }
 
@@ -56,7 +56,7 @@ std::uint8_t mode_of(std::string_view type, std::span<const AccuracyMode> modes,
   std::vector<std::string_view> words;
   for (const AccuracyMode& known : modes) words.push_back(known.word);
   if (words.empty()) words.push_back(kExact);
-  refuse(own, fmt::format("'accuracy' is \"{}\"; this sensor supports {}", own.word, listed(words)));
+  refuse_mode(own, fmt::format("'accuracy' is \"{}\"; this sensor supports {}", own.word, listed(words)));
 }
 
 world::Accuracy accuracy_of(const world::Sensor& sensor) {
@@ -74,13 +74,13 @@ void check_word(const world::World& world, std::span<const SensorType* const> pr
   if (std::any_of(present.begin(), present.end(), knows)) return;
   const auto all = sensor_types();
   if (std::none_of(all.begin(), all.end(), knows))
-    refuse(world.accuracy,
-           fmt::format("there is no accuracy \"{}\"; expected one of {}", word, listed(accuracy_words())));
+    refuse_mode(world.accuracy,
+                fmt::format("there is no accuracy \"{}\"; expected one of {}", word, listed(accuracy_words())));
   std::string who;
   for (const SensorType* type : all)
     if (knows(type)) who += fmt::format("{}{}", who.empty() ? "" : ", ", type->name);
-  refuse(world.accuracy,
-         fmt::format("accuracy \"{}\" is for {}, and the world has no such sensor; leave it out", word, who));
+  refuse_mode(world.accuracy,
+              fmt::format("accuracy \"{}\" is for {}, and the world has no such sensor; leave it out", word, who));
 }
 
 /// Types with modes check their sensors' words in `mode_of`; the other types accept only `exact`.

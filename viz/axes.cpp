@@ -16,9 +16,6 @@ namespace {
 Ticks ticks_x(const FigureLayout& at) { return make_ticks(at.shown.x_min, at.shown.x_max, at.tick_spacing / at.scale); }
 Ticks ticks_y(const FigureLayout& at) { return make_ticks(at.shown.y_min, at.shown.y_max, at.tick_spacing / at.scale); }
 
-/// [px] coordinate of the middle of the nearest pixel, for crisp one-pixel lines.
-double crisp(double pixel) { return std::floor(pixel) + 0.5; }
-
 void draw_grid(Canvas& canvas, const FigureLayout& at) {
   std::vector<Line> lines;
   for (const double x : ticks_x(at).at) {

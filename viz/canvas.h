@@ -6,6 +6,7 @@
 // is the opacity of the whole shape, however often it overlaps itself. Points that are not finite are skipped. One
 // thread at a time may draw, on any canvas: VTK's font cache is shared.
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -23,6 +24,9 @@ struct Line {
   glm::dvec2 a;
   glm::dvec2 b;
 };
+
+/// [px] coordinate of the middle of the nearest pixel, for crisp one-pixel lines.
+inline double crisp(double pixel) { return std::floor(pixel) + 0.5; }
 
 /// Position of the given point on the text's box.
 enum class Anchor { start, middle, end };

@@ -24,7 +24,7 @@ constexpr double kRoomForMarks = 9.0;  // per magnet; in denser places marks wou
 constexpr double kGap = 96.0;          // from the map to the profile
 constexpr double kProfileHeight = 300.0;
 constexpr double kLegendBelow = 72.0;  // the profile's labels
-constexpr double kEdge = 18.0;
+constexpr double kFieldEdge = 18.0;
 constexpr double kRight = 150.0;  // the colour bar
 
 /// A plot: its box of pixels and the values at its edges.
@@ -37,9 +37,6 @@ struct Plot {
             box.y_max - (p.y - y0) / (y1 - y0) * (box.y_max - box.y_min)};
   }
 };
-
-/// [px] coordinate of the middle of the nearest pixel, for crisp one-pixel lines.
-double crisp(double pixel) { return std::floor(pixel) + 0.5; }
 
 void draw_box(Canvas& canvas, const PixelBox& b) {
   const double x0 = b.x_min - 0.5, y0 = b.y_min - 0.5, x1 = b.x_max + 0.5, y1 = b.y_max + 0.5;
@@ -230,7 +227,7 @@ void draw_field(const world::World& world, const FieldView& view, const FieldSam
   const Plot profile{
       {view.map.x_min, static_cast<int>(top), view.map.x_max, static_cast<int>(top + kProfileHeight)}, 0, 1, 0, 1};
   const int rows = place_legend(kCurves, view.map.x_max - view.map.x_min).back().row + 1;
-  const double high = top + kProfileHeight + kLegendBelow + rows * kLegendRow + kEdge;
+  const double high = top + kProfileHeight + kLegendBelow + rows * kLegendRow + kFieldEdge;
   Canvas canvas(view.map.x_max + static_cast<int>(kRight), static_cast<int>(high), theme::kWhite);
   draw_names(canvas, world, view, samples);
   draw_map(canvas, world, view, samples, map);

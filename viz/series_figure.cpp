@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kNamed = 7;
 
 // [px]
-constexpr double kEdge = 26.0;
+constexpr double kSeriesEdge = 26.0;
 constexpr double kHeader = 100.0;     ///< title and subtitle
 constexpr double kPanelTitle = 34.0;  ///< above each plot
 constexpr double kTicksBelow = 68.0;  ///< labels and the axis' name, below the last plot
@@ -102,7 +102,7 @@ std::vector<PlotArea> lay_out(const SeriesOptions& options) {
   double left = 0.0;
   for (const Panel& panel : options.panels)
     left = std::max(left, widest_label(value_span(panel, options.from_zero), height));
-  left += kEdge + kAxisName + 14.0;
+  left += kSeriesEdge + kAxisName + 14.0;
 
   std::vector<PlotArea> places;
   double top = kHeader;
@@ -111,7 +111,7 @@ std::vector<PlotArea> lay_out(const SeriesOptions& options) {
     place.time = time_span(options);
     place.shown = value_span(panel, options.from_zero);
     if (!panel.title.empty()) top += kPanelTitle;
-    place.plot = {static_cast<int>(left), static_cast<int>(top), options.width - static_cast<int>(kEdge),
+    place.plot = {static_cast<int>(left), static_cast<int>(top), options.width - static_cast<int>(kSeriesEdge),
                   static_cast<int>(top + height)};
     for (const std::size_t row : named_rows(panel.series.size()))
       place.legend.push_back({LegendMark::line, row_color(row, panel.series.size()), panel.series[row].name});
@@ -123,9 +123,6 @@ std::vector<PlotArea> lay_out(const SeriesOptions& options) {
   }
   return places;
 }
-
-/// [px] coordinate of the middle of the nearest pixel, for crisp one-pixel lines.
-double crisp(double pixel) { return std::floor(pixel) + 0.5; }
 
 Ticks ticks_of(const Span& span, double pixels, double smallest) {
   return make_ticks(span.from, span.to, smallest / pixels * (span.to - span.from));
@@ -202,7 +199,7 @@ void draw_series(const SeriesOptions& options, const std::string& png_path) {
   const std::vector<PlotArea> places = lay_out(options);
   const PlotArea& last = places.back();
   const int rows = last.legend_at.empty() ? 0 : last.legend_at.back().row + 1;
-  Canvas canvas(options.width, static_cast<int>(last.legend_top + rows * kLegendRow + kEdge), theme::kWhite);
+  Canvas canvas(options.width, static_cast<int>(last.legend_top + rows * kLegendRow + kSeriesEdge), theme::kWhite);
   TextStyle style;
   style.size = 28;
   style.bold = true;

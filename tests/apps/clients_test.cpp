@@ -18,7 +18,6 @@ const std::string kCClient = kClients + "/sensorfarm_client.c";
 constexpr const char* kNoPython = "this machine has no python3";
 constexpr const char* kNoCompiler = "this machine has no C compiler called cc";
 
-bool have_python() { return succeeds("python3 -c 'import argparse, socket, struct'"); }
 bool have_compiler() { return succeeds("cc --version"); }
 
 /// Without a warning. @return path of the program

@@ -16,7 +16,7 @@
 namespace sf {
 namespace {
 
-const char* const kWorld = R"(
+const char* const kMapWorld = R"(
 define bot position
 (
   size [0.3 0.3 0.1]
@@ -60,7 +60,7 @@ void expect_map(const std::string& text, std::size_t columns, std::size_t rows) 
 
 TEST(Map, ComesFromARunInBothForms) {
   const Folder folder;
-  const std::string world = folder.write("a.world", kWorld);
+  const std::string world = folder.write("a.world", kMapWorld);
   for (const std::string wire : {"farm", "thesis"}) {
     const unsigned port = free_ports(120);
     Program map(listen(port, {"--wire", wire, "-o", folder.path(wire + ".png")}));
@@ -77,7 +77,7 @@ TEST(Map, ComesFromARunInBothForms) {
 
 TEST(Map, MergesSeveralAndSurvivesNonsense) {
   const Folder folder;
-  const std::string world = folder.write("a.world", kWorld);
+  const std::string world = folder.write("a.world", kMapWorld);
   const unsigned port = free_ports(120);
   Program map({"map", "--listen", std::to_string(port), "--listen", std::to_string(port + 8), "--silence", "3",
                "--merge", "-o", folder.path("both.png")});
@@ -219,7 +219,7 @@ TEST(Map, TakesMorePortsThanFilesAreAllowedAtFirst) {
 
 TEST(Map, IsDrawnFromARecording) {
   const Folder folder;
-  const std::string world = folder.write("a.world", kWorld);
+  const std::string world = folder.write("a.world", kMapWorld);
   ASSERT_EQ(run_program({"run", world, "--duration", "3", "--record", folder.path("r"), "--record-readings"}).code, 0);
   const Outcome outcome = run_program({"plot", folder.path("r")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;

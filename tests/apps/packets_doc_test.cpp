@@ -25,8 +25,6 @@ std::string python_of_the_page() {
   return code;
 }
 
-bool have_python() { return succeeds("python3 -c 'import socket, struct, select'"); }
-
 /// The output of `script`.
 std::string printed(const Folder& folder, const std::string& script) {
   const std::string file = folder.write("page.py", script);

@@ -70,6 +70,8 @@ Outcome run_program(const Words& arguments, const Environment& environment = {})
 
 /// This machine's shell runs `command` without an error.
 bool succeeds(const std::string& command);
+/// With the modules that clients need.
+inline bool have_python() { return succeeds("python3 -c 'import argparse, select, socket, struct'"); }
 
 /// Environment without drivers: Vulkan finds no device.
 Environment no_device();

@@ -31,14 +31,14 @@ position( name "roomba2" pose [2 1 0 0] size [0.3 0.3 0.1]
   laser( samples 91 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] ) )
 )";
 
-struct Service {
+struct FarmService {
   Folder folder;
   std::string world;
   std::string lasers = std::to_string(free_ports(48));
   Program program;
   std::string port;
 
-  explicit Service(const std::string& wire = "farm")
+  explicit FarmService(const std::string& wire = "farm")
       : world(folder.write("room.world", wire == "farm" ? kRoom : kSmallRoom)),
         program({"serve", world, "--port", "0", "--json", "--wire", wire, "--laser-port", lasers}) {
     if (!program.says("; Ctrl-C ends it")) return;
@@ -96,7 +96,7 @@ std::unique_ptr<Program> RobotsTest::silent;
 }  // namespace
 
 TEST_F(RobotsTest, DriveByTheirReadingsBesideEachOther) {
-  Service service;
+  FarmService service;
   ASSERT_FALSE(service.port.empty()) << service.program.err();
   const auto one = service.robot("roomba1", {"--duration", "2"});
   const auto two = service.robot("roomba2", {"--duration", "2", "--wait-for-start"});
@@ -146,7 +146,7 @@ TEST_F(RobotsTest, DriveByTheirReadingsBesideEachOther) {
 }
 
 TEST_F(RobotsTest, ReadTheThesisLayoutToo) {
-  Service service("thesis");
+  FarmService service("thesis");
   ASSERT_FALSE(service.port.empty()) << service.program.err();
   const Json facts = facts_of(service.robot("roomba2", {"--duration", "1", "--wire", "thesis"}));
   expect_sums(facts);
@@ -156,7 +156,7 @@ TEST_F(RobotsTest, ReadTheThesisLayoutToo) {
 
 /// One process after another with one name: each is heard from its first packet on.
 TEST_F(RobotsTest, OneAfterAnotherIsHeardAtOnce) {
-  Service service;
+  FarmService service;
   ASSERT_FALSE(service.port.empty()) << service.program.err();
   double sent = 0.0;
   for (int i = 0; i < 3; ++i) {

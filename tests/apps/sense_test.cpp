@@ -7,12 +7,12 @@
 
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
+#include "tests/units.h"
 
 namespace sf {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kExact = 1e-5;  ///< [m] what the farm promises
 constexpr double kRuler = 1e-8;  ///< [m] what it does where rays are steep: nine decimals are printed
 

@@ -29,7 +29,7 @@ constexpr std::uint8_t kMagnetometer = 3;
 bool has_type(std::uint8_t id) { return sensors::find_sensor_type(id) != nullptr; }
 
 // A magnet of 1 A m^2, and robots that carry a laser and two elements 0.5 m and 1 m ahead, as high as the magnet.
-const char* const kWorld = R"(
+const char* const kTypesWorld = R"(
 define bot position
 (
   size [0.3 0.3 0.1]
@@ -47,7 +47,7 @@ struct Kinds : testing::Test {
     if (!has_type(kMagnetometer)) GTEST_SKIP() << "built without the magnetometer";
   }
   Folder folder;
-  std::string world = folder.write("types.world", kWorld);
+  std::string world = folder.write("types.world", kTypesWorld);
 };
 
 /// `words` after a subcommand, its world and what all of these tests want.
@@ -153,7 +153,7 @@ TEST_F(Kinds, CheckCountsThem) {
 }
 
 TEST_F(Kinds, CheckSaysWhatACutOffLeavesOut) {
-  const std::string cut = folder.write("cut.world", "magnet_cutoff 2\n" + std::string(kWorld));
+  const std::string cut = folder.write("cut.world", "magnet_cutoff 2\n" + std::string(kTypesWorld));
   const Json facts(run("check", cut, {"--json"}).out);
   EXPECT_EQ(facts.number("/magnet_cutoff_m"), 2);
   // 1 A m^2 at 2 m, as high as the elements: 1e-7 / 2^3 T.

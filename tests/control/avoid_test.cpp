@@ -8,11 +8,10 @@
 #include "sensors/laser.h"
 #include "tests/control/closed_loop.h"
 #include "tests/control/exploration.h"
+#include "tests/units.h"
 
 namespace sf::control {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Thirds, OfTheFieldOfView) {
   std::vector<double> ranges(361, 0.75);

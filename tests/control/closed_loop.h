@@ -10,14 +10,13 @@
 #include "robots/fleet.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
+#include "tests/units.h"
 #include "world/world.h"
 
 namespace sf::loop {
 
 using base::Pose;
 using base::Twist;
-
-inline constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Ranges of a laser on walls only.
 inline std::vector<double> scan(const world::World& world, const sensors::LaserSettings& laser, const Pose& X_WS) {
@@ -58,7 +57,6 @@ struct LaserRun {
         {.time = now, .state = fleet.reports()[0], .readings = {&block, 1}, .contact = fleet.contacts()[0] != 0});
     finite = finite && std::isfinite(twist.forward) && std::isfinite(twist.turn);
     // Readings fall between ticks.
-    constexpr std::int64_t kTick = kSecond / 10;
     const auto period = static_cast<std::int64_t>(1e9 / sensors::lasers_of(world.movers[0])[0].rate);
     for (std::int64_t left = kTick; left > 0;) {
       const std::int64_t part = std::min(left, seen_at + period - fleet.reports()[0].time);

@@ -24,19 +24,19 @@ class Counting final : public Controller {
   int& count_;
 };
 
-struct Moment {
+struct ShellMoment {
   bool contact, started;
   ControlShellState state;
   bool moves;
   const char* why;
 };
 
-void live(const ControlShellSettings& settings, std::initializer_list<Moment> moments, int steps = 100) {
+void live(const ControlShellSettings& settings, std::initializer_list<ShellMoment> moments, int steps = 100) {
   int count = 0;
   ControlShell shell(std::make_unique<Counting>(steps, count), settings);
   EXPECT_EQ(shell.state(), ControlShellState::start);
   std::int64_t time = 0;
-  for (const Moment& m : moments) {
+  for (const ShellMoment& m : moments) {
     const int before = count;
     const base::Twist twist = shell.step({.time = time += 100, .contact = m.contact, .started = m.started});
     EXPECT_EQ(shell.state(), m.state) << m.why;
@@ -108,7 +108,7 @@ ControllerConfig config_of(std::string name, std::vector<Setting> settings = {})
   return {.name = name, .rate = 0.0, .settings = Settings("controller '" + name + "'", std::move(settings))};
 }
 
-world::World small_world() {
+world::World shell_world() {
   world::World world = scenes::boxed_world(4, 4);
   world::Mover& robot = scenes::add_create(world, {2, 2, 0, 0});
   robot.sensors.push_back(sensors::laser_sensor({}));
@@ -123,7 +123,7 @@ const ControlShell& made_shell(const ConfiguredController& made) {
 }
 
 TEST(MakeController, PutsEveryKindIntoAShellWithItsOwnDefaults) {
-  const world::World world = small_world();
+  const world::World world = shell_world();
   ConfiguredController wander = make_controller({world}, config_of("wander"));
   ConfiguredController avoid = make_controller({world}, config_of("avoid"));
   const ControllerInput pressed{.state = {.X_WM = {2, 2, 0, 0}}, .contact = true};
@@ -134,7 +134,7 @@ TEST(MakeController, PutsEveryKindIntoAShellWithItsOwnDefaults) {
 }
 
 TEST(MakeController, TakesTheSettingsOfTheShell) {
-  const world::World world = small_world();
+  const world::World world = shell_world();
   ConfiguredController made = make_controller(
       {world}, config_of("wander", {{"start", std::string("signal"), ""}, {"wait_on_bumper", true, ""}}));
   made.controller->step({.started = false});
@@ -159,7 +159,7 @@ struct Refused {
 };
 
 TEST(MakeController, RefusesByName) {
-  const world::World world = small_world();
+  const world::World world = shell_world();
   const std::string at = "s.toml:3: ";
   const std::vector<Refused> cases = {
       {"wanter", {}, "docking, explore, lane-keeping, magnet-keeping, patrol"},

@@ -7,13 +7,13 @@
 #include "base/random.h"
 #include "robots/fleet.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 
 namespace sf::control {
 namespace {
 
 using base::Pose;
 
-constexpr std::int64_t kTick = 100'000'000;
 constexpr double kRange = 1.8, kFov = 0.7, kHalo = 0.6;
 
 // The dock's light by formula, at a receiver in the robot's centre: the red buoy's beam on the left, the green one's on

@@ -160,8 +160,8 @@ TEST(Explore, OddReadingsDoNoHarm) {
     for (std::uint32_t i = 0; i < 120; ++i) {
       const base::ReadingBlock block{
           .type = sensors::kLaser, .sequence = i, .X_WS = {0.19, 0, 0, 0}, .values = i % 5 == 0 ? few : ranges};
-      const base::Twist twist = controller->step(
-          {.time = i * loop::kSecond / 10, .state = {.X_WM = {0, 0, 0, 0.11 * i}}, .readings = {&block, 1}});
+      const base::Twist twist =
+          controller->step({.time = i * kSecond / 10, .state = {.X_WM = {0, 0, 0, 0.11 * i}}, .readings = {&block, 1}});
       ASSERT_TRUE(std::isfinite(twist.forward) && std::isfinite(twist.turn)) << range;
       ASSERT_LE(std::abs(twist.forward), 0.1);
     }

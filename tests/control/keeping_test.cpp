@@ -13,6 +13,7 @@
 #include "sensors/laneedge.h"
 #include "sensors/magnetometer.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 #include "world/path_geometry.h"
 
 namespace sf::control {
@@ -20,9 +21,6 @@ namespace {
 
 using base::Pose;
 using base::Twist;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::int64_t kTick = 100'000'000;
 
 world::World path_world(double yaw = M_PI / 2) {
   world::World world = scenes::empty_world();

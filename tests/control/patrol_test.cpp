@@ -6,13 +6,12 @@
 
 #include "robots/kinematics.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 
 namespace sf::control {
 namespace {
 
 using base::Pose;
-
-constexpr std::int64_t kTick = 100'000'000;
 
 struct Walk {
   std::vector<std::size_t> targets;  // one after another

@@ -11,6 +11,7 @@
 #include "control/route_plan.h"
 #include "robots/fleet.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 #include "world/roads/roads.h"
 
 namespace sf::traffic {
@@ -18,8 +19,6 @@ namespace sf::traffic {
 using base::Pose;
 using base::Twist;
 using control::Setting;
-
-inline constexpr std::int64_t kTick = 100'000'000;
 
 inline world::RoadNetwork simville() {
   std::vector<world::Warning> warnings;

@@ -10,6 +10,7 @@
 #include "robots/fleet.h"
 #include "sensors/laser_settings.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 
 namespace sf::control {
 namespace {
@@ -17,8 +18,6 @@ namespace {
 using base::Pose;
 using base::ReadingBlock;
 using base::Twist;
-
-constexpr std::int64_t kTick = 100'000'000;
 
 sensors::LaserSettings laser(double fov, std::uint32_t samples, double range_max, const Pose& X_MS = {}) {
   sensors::LaserSettings l;
@@ -49,8 +48,8 @@ double cast(const world::World& world, std::span<const base::Report> reports, st
 }
 
 // A fleet with `wander` and ideal lasers.
-struct Walk {
-  explicit Walk(const world::World& w, std::uint64_t seed = 1) : world(w), fleet(world) {
+struct WanderWalk {
+  explicit WanderWalk(const world::World& w, std::uint64_t seed = 1) : world(w), fleet(world) {
     for (std::uint32_t row = 0; row < world.movers.size(); ++row) wanderers.emplace_back(world.movers[row], row, seed);
   }
   void tick() {
@@ -89,7 +88,7 @@ struct Walked {
 };
 
 Walked walk(const world::World& world, double seconds, std::uint64_t seed = 1) {
-  Walk w(world, seed);
+  WanderWalk w(world, seed);
   Walked result;
   std::set<std::pair<int, int>> cells;
   Pose last = w.fleet.reports()[0].X_WM, anchor = last;
@@ -203,7 +202,7 @@ TEST(Wander, ACrowdKeepsMoving) {
     scenes::add_create(world, {1.0 + i % 4, 1.0 + i / 4, 0, 0.5 * i})
         .sensors.push_back(sensors::laser_sensor(laser(M_PI, 61, 8.0)));
   }
-  Walk w(world);
+  WanderWalk w(world);
   std::vector<double> distance(12);
   for (int i = 0; i < 600; ++i) {
     w.tick();
@@ -215,7 +214,7 @@ TEST(Wander, ACrowdKeepsMoving) {
 TEST(Wander, TheSameWalkAgainAndAnotherWithAnotherSeed) {
   world::World world = arena();
   scenes::add_create(world, {2, 2, 0, 0.3}).sensors.push_back(sensors::laser_sensor(laser(M_PI, 61, 8.0)));
-  Walk a(world, 1), b(world, 1), c(world, 2);
+  WanderWalk a(world, 1), b(world, 1), c(world, 2);
   for (int i = 0; i < 300; ++i) a.tick(), b.tick(), c.tick();
   EXPECT_EQ(a.fleet.reports()[0].X_WM.x, b.fleet.reports()[0].X_WM.x);
   EXPECT_NE(a.fleet.reports()[0].X_WM.x, c.fleet.reports()[0].X_WM.x);

@@ -13,11 +13,10 @@
 #include "tests/sensors/edit_laser.h"
 #include "tests/sensors/host_trial.h"
 #include "tests/sensors/magnet_scenes.h"
+#include "tests/units.h"
 
 namespace sf::farm {
 namespace {
-
-constexpr std::int64_t kTick = 100'000'000;  // [ns]
 
 /// All sensors that depend on poses only, and some with further dependencies, at different rates.
 void equip(world::Mover& mover, trial::Chance& chance) {

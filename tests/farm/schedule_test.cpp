@@ -9,11 +9,10 @@
 #include "sensors/laser.h"
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/edit_laser.h"
+#include "tests/units.h"
 
 namespace sf::farm {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(Schedule, DueAtPhasePlusWholePeriods) {
   EXPECT_EQ(readings_started(-1, 10.0, 0.0), 0u) << "before time began";

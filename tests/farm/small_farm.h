@@ -5,16 +5,12 @@
 
 #include "farm/farm.h"
 #include "sensors/laser_settings.h"
+#include "tests/device.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::farm {
 
 inline constexpr std::uint32_t kBeams = 61;
-
-inline gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
 
 /// Lasers on the device's kernels, even on a software device.
 inline constexpr FarmOptions kOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};

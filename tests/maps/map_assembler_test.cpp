@@ -11,10 +11,10 @@
 namespace sf::maps {
 namespace {
 
-GridGeometry geometry() { return {-1.8, 1.8, 0.03, 30, 30}; }
+GridGeometry map_geometry() { return {-1.8, 1.8, 0.03, 30, 30}; }
 
 /// A map whose words encode the number of the map and of the word.
-OccupancyGrid numbered(std::uint32_t map, const GridGeometry& p = geometry()) {
+OccupancyGrid numbered(std::uint32_t map, const GridGeometry& p = map_geometry()) {
   OccupancyGrid grid(p);
   for (std::uint32_t i = 0; i < grid.words.size(); ++i) grid.words[i] = (map * 2654435761u + i) & 0x55555555u;
   return grid;
@@ -160,7 +160,7 @@ TEST(MapAssembler, HalfWayRoundIsNotNewer) {
 TEST(MapAssembler, AMapThatChangesItsPlanBeginsAnew) {
   MapAssembler assembler;
   for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(1, part);
-  GridGeometry other = geometry();
+  GridGeometry other = map_geometry();
   other.word_rows = 2;
   EXPECT_EQ(assembler.add_part(1, parts_of(numbered(2, other))[0]), MapPartStatus::contradicts);
   EXPECT_EQ(assembler.add_part(2, parts_of(numbered(2, other))[0]), MapPartStatus::complete);
@@ -176,12 +176,12 @@ TEST(MapAssembler, TheThesisFormInTwoDatagrams) {
   EXPECT_EQ(assembler.add_plain_part(parts[1]), MapPartStatus::complete);
   EXPECT_EQ(assembler.map()->words, grid.words);
   EXPECT_EQ(assembler.add_plain_part(parts[1]), MapPartStatus::duplicate);
-  GridGeometry odd = geometry();
+  GridGeometry odd = map_geometry();
   odd.word_columns = 3;
   odd.word_rows = 5;
   for (const base::Bytes& part : plain_parts(numbered(5, odd))) assembler.add_plain_part(part);
   EXPECT_EQ(assembler.map()->words, numbered(5, odd).words) << "8 words and 7";
-  GridGeometry one = geometry();
+  GridGeometry one = map_geometry();
   one.word_columns = one.word_rows = 1;
   EXPECT_EQ(assembler.add_plain_part(plain_parts(numbered(6, one))[0]), MapPartStatus::complete)
       << "one word is all in the first";

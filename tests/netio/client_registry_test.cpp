@@ -1,4 +1,5 @@
 #include "netio/client_registry.h"
+#include "tests/units.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,6 @@
 namespace sf::netio {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr Endpoint kAlice{kLoopback, 5001};
 constexpr Endpoint kBob{kLoopback, 5002};
 constexpr Endpoint kAliceElsewhere{kLoopback + 1, 5001};

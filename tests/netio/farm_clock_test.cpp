@@ -1,11 +1,10 @@
 #include "netio/farm_clock.h"
+#include "tests/units.h"
 
 #include <gtest/gtest.h>
 
 namespace sf::netio {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(FarmClock, IsTheRobotsOwnUntilSomethingCame) {
   const FarmClock clock;

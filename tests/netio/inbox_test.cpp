@@ -8,13 +8,13 @@
 #include "base/error.h"
 #include "netio/outbox.h"
 #include "tests/netio/examples.h"
+#include "tests/units.h"
 
 namespace sf::netio {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr Endpoint kAlice{kLoopback, 5001};
-constexpr Endpoint kBob{kLoopback, 5002};
+constexpr Endpoint kSender{kLoopback, 5001};
+constexpr Endpoint kOtherSender{kLoopback, 5002};
 constexpr std::uint32_t kLaser = 1;
 constexpr std::uint32_t kSession = 77;  ///< of all robots here
 
@@ -36,7 +36,7 @@ struct InboxTest : testing::Test {
   Inbox inbox{options()};
   Packet packet;
   /// Receives a packet with the token of its source.
-  PacketStatus say(base::Bytes bytes, std::int64_t now = 0, const Endpoint& who = kAlice) {
+  PacketStatus say(base::Bytes bytes, std::int64_t now = 0, const Endpoint& who = kSender) {
     if (bytes.size() >= kHeaderBytes) write_session_token(bytes, {kSession, inbox.token(who)});
     return inbox.accept(bytes, who, now, packet);
   }
@@ -47,7 +47,7 @@ TEST(Inbox, OvertakenStatesAreTakenOnRequest) {
   chosen.take_late = true;
   Inbox inbox(chosen);
   Packet packet;
-  const auto say = [&](base::Bytes bytes, std::int64_t now, const Endpoint& who = kAlice) {
+  const auto say = [&](base::Bytes bytes, std::int64_t now, const Endpoint& who = kSender) {
     write_session_token(bytes, {kSession, inbox.token(who)});
     return inbox.accept(bytes, who, now, packet);
   };
@@ -57,7 +57,7 @@ TEST(Inbox, OvertakenStatesAreTakenOnRequest) {
   EXPECT_TRUE(packet.late);
   EXPECT_EQ(say(v2v(7, 5), 2), PacketStatus::accepted) << "a replay, which the filter refuses";
   EXPECT_TRUE(packet.late);
-  EXPECT_EQ(say(v2v(7, 4), 3, kBob), PacketStatus::wrong_source);
+  EXPECT_EQ(say(v2v(7, 4), 3, kOtherSender), PacketStatus::wrong_source);
   EXPECT_EQ(say(subscribe(9, 0), 4), PacketStatus::accepted);
   EXPECT_EQ(say(subscribe(8, 0), 5), PacketStatus::stale) << "only states have a time of their own";
   base::Bytes leave;
@@ -84,9 +84,9 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   EXPECT_EQ(say(v2v(8, 0)), PacketStatus::unknown_robot);
   EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)),
             PacketStatus::unknown_tag);  // robots and tags have separate ids
-  EXPECT_EQ(inbox.accept(v2v_example(), kAlice, 0, packet), PacketStatus::unproven);
+  EXPECT_EQ(inbox.accept(v2v_example(), kSender, 0, packet), PacketStatus::unproven);
   EXPECT_EQ(say(v2v_example()), PacketStatus::accepted);
-  EXPECT_EQ(say(v2v(7, 10), 0, kBob), PacketStatus::wrong_source);
+  EXPECT_EQ(say(v2v(7, 10), 0, kOtherSender), PacketStatus::wrong_source);
   EXPECT_EQ(say(v2v_example()), PacketStatus::stale);
   for (std::size_t i = 0; i < kPacketStatuses; ++i)
     EXPECT_EQ(inbox.counts().of[i], 1u) << name(static_cast<PacketStatus>(i));
@@ -108,7 +108,7 @@ TEST_F(InboxTest, EitherPacketIsHeardForTwoSeconds) {
   EXPECT_TRUE(inbox.is_active(7, 5 * kSecond - 1));
   EXPECT_FALSE(inbox.is_active(7, 5 * kSecond));
   EXPECT_FALSE(inbox.is_active(3, 0));
-  EXPECT_EQ(inbox.address(7), kAlice);
+  EXPECT_EQ(inbox.address(7), kSender);
 }
 
 TEST_F(InboxTest, ALeaveEndsTheBindingAndTheChoice) {
@@ -117,19 +117,19 @@ TEST_F(InboxTest, ALeaveEndsTheBindingAndTheChoice) {
   EXPECT_EQ(say(leave(7)), PacketStatus::stale);  // without a state before
   say(v2v(7, 5));
   say(subscribe(0, 1u << 2));
-  EXPECT_EQ(say(leave(7), 1, kBob), PacketStatus::wrong_source);
+  EXPECT_EQ(say(leave(7), 1, kOtherSender), PacketStatus::wrong_source);
   EXPECT_TRUE(inbox.is_active(7, 1));
   EXPECT_EQ(say(leave(7), 1), PacketStatus::accepted);
   EXPECT_FALSE(inbox.is_active(7, 1));
   EXPECT_FALSE(inbox.address(7));
-  EXPECT_EQ(say(v2v(7, 0), 2, kBob), PacketStatus::accepted);
+  EXPECT_EQ(say(v2v(7, 0), 2, kOtherSender), PacketStatus::accepted);
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2));  // all types, not the subscription of the sender before
-  EXPECT_EQ(inbox.address(7), kBob);
+  EXPECT_EQ(inbox.address(7), kOtherSender);
 }
 
 TEST_F(InboxTest, StrangersPacketsSayWhoseIdTheyUse) {
   say(v2v(7, 0));
-  EXPECT_EQ(say(v2v(7, 1), 0, kBob), PacketStatus::wrong_source);
+  EXPECT_EQ(say(v2v(7, 1), 0, kOtherSender), PacketStatus::wrong_source);
   EXPECT_EQ(packet.header.robot, 7);
   EXPECT_EQ(packet.header.sequence, 1u);
 }
@@ -138,9 +138,9 @@ TEST_F(InboxTest, AnAddressIsHeardOnceItSendsItsTokenBack) {
   base::Bytes answer;
   base::Bytes request = subscribe(0, 1u << kLaser);
   write_session_token(request, {kSession, 0});
-  EXPECT_EQ(inbox.accept(request, kAlice, 0, packet), PacketStatus::unproven);
+  EXPECT_EQ(inbox.accept(request, kSender, 0, packet), PacketStatus::unproven);
   EXPECT_FALSE(inbox.is_active(7, 0) || inbox.address(7));  // no packets are sent there
-  ASSERT_TRUE(inbox.challenge(packet, kAlice, 0, answer));
+  ASSERT_TRUE(inbox.challenge(packet, kSender, 0, answer));
   EXPECT_LE(answer.size(), request.size());  // not larger than the request
   Packet challenge;
   ASSERT_EQ(decode(answer, challenge), PacketStatus::accepted);
@@ -148,53 +148,53 @@ TEST_F(InboxTest, AnAddressIsHeardOnceItSendsItsTokenBack) {
   EXPECT_EQ(challenge.header.token, kSession);  // identifies the challenged robot
   const std::uint32_t token = std::get<Challenge>(challenge.body).token;
   write_session_token(request, {kSession, token});
-  EXPECT_EQ(inbox.accept(request, kBob, 0, packet), PacketStatus::unproven);  // valid for one address only
-  EXPECT_EQ(inbox.accept(request, {kLoopback + 1, kAlice.port}, 0, packet), PacketStatus::unproven);
-  EXPECT_EQ(inbox.accept(request, kAlice, 0, packet), PacketStatus::accepted);
+  EXPECT_EQ(inbox.accept(request, kOtherSender, 0, packet), PacketStatus::unproven);  // valid for one address only
+  EXPECT_EQ(inbox.accept(request, {kLoopback + 1, kSender.port}, 0, packet), PacketStatus::unproven);
+  EXPECT_EQ(inbox.accept(request, kSender, 0, packet), PacketStatus::accepted);
   EXPECT_EQ(inbox.session_token_for(7).token, kSession);
   EXPECT_EQ(inbox.session_token_for(7).session, challenge.header.session);
-  EXPECT_EQ(Inbox(options()).accept(request, kAlice, 0, packet),
+  EXPECT_EQ(Inbox(options()).accept(request, kSender, 0, packet),
             PacketStatus::unproven);  // a restarted farm
 }
 
 /// Forged sources bind no id, block no id and end no binding.
 TEST_F(InboxTest, ForgedAddressesDoNothing) {
   base::Bytes forged = v2v(7, 5);
-  EXPECT_EQ(inbox.accept(forged, kBob, 0, packet), PacketStatus::unproven);
+  EXPECT_EQ(inbox.accept(forged, kOtherSender, 0, packet), PacketStatus::unproven);
   EXPECT_EQ(say(v2v(7, 0)), PacketStatus::accepted);
-  EXPECT_EQ(inbox.accept(forged, kAlice, 1, packet),
+  EXPECT_EQ(inbox.accept(forged, kSender, 1, packet),
             PacketStatus::unproven);  // without a token Alice's id gets no state
   base::Bytes leave = leave_example();
-  write_session_token(leave, {kSession, inbox.token(kBob)});
-  EXPECT_EQ(inbox.accept(leave, kAlice, 1, packet), PacketStatus::unproven);
+  write_session_token(leave, {kSession, inbox.token(kOtherSender)});
+  EXPECT_EQ(inbox.accept(leave, kSender, 1, packet), PacketStatus::unproven);
   base::Bytes none;
-  EXPECT_FALSE(inbox.challenge(packet, kAlice, 1, none));  // a LEAVE gets no challenge
+  EXPECT_FALSE(inbox.challenge(packet, kSender, 1, none));  // a LEAVE gets no challenge
   EXPECT_TRUE(inbox.is_active(7, 1));
   // After LEAVE, and after two seconds, the next sender has to prove its address, too.
   say(leave_example(), 2);
-  EXPECT_EQ(inbox.accept(v2v(7, 9), kBob, 3, packet), PacketStatus::unproven);
-  EXPECT_EQ(inbox.accept(v2v(7, 9), kBob, 5 * kSecond, packet), PacketStatus::unproven);
+  EXPECT_EQ(inbox.accept(v2v(7, 9), kOtherSender, 3, packet), PacketStatus::unproven);
+  EXPECT_EQ(inbox.accept(v2v(7, 9), kOtherSender, 5 * kSecond, packet), PacketStatus::unproven);
   EXPECT_FALSE(inbox.address(7));
-  EXPECT_EQ(say(v2v(7, 9), 5 * kSecond, kBob), PacketStatus::accepted);
+  EXPECT_EQ(say(v2v(7, 9), 5 * kSecond, kOtherSender), PacketStatus::accepted);
 }
 
 TEST_F(InboxTest, OnlySoManyChallengesInATenthOfASecond) {
   base::Bytes out;
-  inbox.accept(v2v(7, 0), kBob, 0, packet);
+  inbox.accept(v2v(7, 0), kOtherSender, 0, packet);
   std::size_t answered = 0;
-  for (int i = 0; i < 3000; ++i) answered += inbox.challenge(packet, kBob, kSecond, out);
+  for (int i = 0; i < 3000; ++i) answered += inbox.challenge(packet, kOtherSender, kSecond, out);
   EXPECT_EQ(answered, Inbox::kMaxChallenges);
-  EXPECT_FALSE(inbox.challenge(packet, kBob, kSecond + kSecond / 10 - 1, out));
-  EXPECT_TRUE(inbox.challenge(packet, kBob, kSecond + kSecond / 10, out));
+  EXPECT_FALSE(inbox.challenge(packet, kOtherSender, kSecond + kSecond / 10 - 1, out));
+  EXPECT_TRUE(inbox.challenge(packet, kOtherSender, kSecond + kSecond / 10, out));
 }
 
 TEST_F(InboxTest, TagsMakeNoRobotHeard) {
   Inbox both({.bind = {kLoopback, 0}, .robots = {12}, .tags = {12}});
-  EXPECT_EQ(both.accept(tag_example(), kAlice, 0, packet), PacketStatus::accepted);
+  EXPECT_EQ(both.accept(tag_example(), kSender, 0, packet), PacketStatus::accepted);
   EXPECT_FALSE(both.is_active(12, 0));
   base::Bytes state = v2v(12, 0);
-  write_session_token(state, {0, both.token(kBob)});
-  EXPECT_EQ(both.accept(state, kBob, 0, packet),
+  write_session_token(state, {0, both.token(kOtherSender)});
+  EXPECT_EQ(both.accept(state, kOtherSender, 0, packet),
             PacketStatus::accepted);  // ids of tags are bound separately from those of robots
 }
 
@@ -221,7 +221,7 @@ TEST_F(InboxTest, SilenceForgetsTheChoice) {
 
 TEST_F(InboxTest, StrangersCannotChoose) {
   say(v2v(7, 0), 0);
-  EXPECT_EQ(say(subscribe(0, 1u << 2), 0, kBob), PacketStatus::wrong_source);
+  EXPECT_EQ(say(subscribe(0, 1u << 2), 0, kOtherSender), PacketStatus::wrong_source);
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 0));
 }
 
@@ -242,12 +242,12 @@ TEST_F(InboxTest, OthersStatesMustBeAskedFor) {
 
 TEST_F(InboxTest, AnybodyMayStartRobots) {
   say(v2v(7, 0), 0);
-  EXPECT_EQ(say(start_example(), 0, kBob), PacketStatus::accepted);  // from any source
-  EXPECT_EQ(say(start_example(), 0, kBob), PacketStatus::accepted);  // and again
-  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 3), 0, kBob), PacketStatus::accepted);
-  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 8), 0, kBob), PacketStatus::unknown_robot);
+  EXPECT_EQ(say(start_example(), 0, kOtherSender), PacketStatus::accepted);  // from any source
+  EXPECT_EQ(say(start_example(), 0, kOtherSender), PacketStatus::accepted);  // and again
+  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 3), 0, kOtherSender), PacketStatus::accepted);
+  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 8), 0, kOtherSender), PacketStatus::unknown_robot);
   EXPECT_FALSE(inbox.is_active(3, 0));  // START does not activate the robot
-  EXPECT_EQ(inbox.address(7), kAlice);
+  EXPECT_EQ(inbox.address(7), kSender);
 }
 
 TEST_F(InboxTest, AMillionRandomAndMutatedDatagrams) {

@@ -56,7 +56,7 @@ Bytes file_of(std::uint32_t link, const Bytes& frame) {
   return file.bytes();
 }
 
-std::string refusal(const Bytes& file) {
+std::string pcap_refusal(const Bytes& file) {
   try {
     PcapReader(file, "file");
   } catch (const base::InputError& error) {
@@ -151,13 +151,13 @@ TEST(Pcap, ADamagedFileIsReadUpToTheDamage) {
 }
 
 TEST(Pcap, OtherFilesAreRefusedByName) {
-  EXPECT_EQ(refusal(PcapFile().bytes()), "");
-  EXPECT_NE(refusal({}).find("is no pcap file"), std::string::npos);
-  EXPECT_NE(refusal(Bytes(24, 0)).find("is no pcap file"), std::string::npos);
+  EXPECT_EQ(pcap_refusal(PcapFile().bytes()), "");
+  EXPECT_NE(pcap_refusal({}).find("is no pcap file"), std::string::npos);
+  EXPECT_NE(pcap_refusal(Bytes(24, 0)).find("is no pcap file"), std::string::npos);
   const Bytes header = PcapFile().bytes();
-  EXPECT_NE(refusal({header.begin(), header.end() - 1}).find("is no pcap file"), std::string::npos);
-  EXPECT_NE(refusal(joined({0x0A, 0x0D, 0x0D, 0x0A}, Bytes(24, 0))).find("pcapng"), std::string::npos);
-  EXPECT_NE(refusal(PcapFile({.link = 105}).bytes()).find("type 105"), std::string::npos);
+  EXPECT_NE(pcap_refusal({header.begin(), header.end() - 1}).find("is no pcap file"), std::string::npos);
+  EXPECT_NE(pcap_refusal(joined({0x0A, 0x0D, 0x0D, 0x0A}, Bytes(24, 0))).find("pcapng"), std::string::npos);
+  EXPECT_NE(pcap_refusal(PcapFile({.link = 105}).bytes()).find("type 105"), std::string::npos);
 }
 
 /// With damage anywhere, nothing outside of the file is read (the sanitizers look).

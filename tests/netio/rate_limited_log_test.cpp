@@ -1,6 +1,7 @@
 // Log lines of a running service: never blocking, limited in rate.
 
 #include "netio/rate_limited_log.h"
+#include "tests/units.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -12,8 +13,6 @@
 
 namespace sf::netio {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 struct Pipe {
   std::array<int, 2> ends{};

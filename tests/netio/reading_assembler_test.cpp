@@ -9,11 +9,10 @@
 #include <set>
 
 #include "netio/client_registry.h"
+#include "tests/units.h"
 
 namespace sf::netio {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Readings of three parts with two numbers each: 10 * sequence + part, twice.
 struct Parts {
@@ -151,7 +150,6 @@ TEST(ReadingAssembler, AfterSilenceNewerOnesAreNoRestart) {
 
 /// A forged datagram must not make the following ones late.
 TEST(ReadingAssembler, LeapsAreLeftOut) {
-  constexpr std::int64_t kTick = kSecond / 10;
   Plain p;
   std::uint64_t whole = 0;
   for (std::uint32_t i = 0; i < 72; ++i) {

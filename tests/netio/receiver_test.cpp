@@ -21,7 +21,7 @@ void read(std::size_t stream, const Header&, std::span<const std::uint8_t> paylo
   values[payload[0]] = 1000.0 * static_cast<double>(stream) + payload[2];
 }
 
-ReceiverOptions options(bool headerless = false) {
+ReceiverOptions receiver_options(bool headerless = false) {
   return {.streams = {{{.robot = 7, .sensor = 0}, 2}, {{.robot = 7, .sensor = 1}, 2}},
           .headerless = headerless,
           .inspect = inspect,
@@ -37,7 +37,7 @@ base::Bytes part(std::uint16_t sensor, std::uint32_t sequence, std::uint8_t numb
 }
 
 TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
-  Receiver receiver(options());
+  Receiver receiver(receiver_options());
   EXPECT_FALSE(receiver.newest(0));
   EXPECT_EQ(receiver.accept(0, part(0, 4, 1, 11), 5), PartStatus::incomplete);
   EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 10), 6), PartStatus::complete);
@@ -52,7 +52,7 @@ TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
 }
 
 TEST(Receiver, CountsWhatItDoesNotUse) {
-  Receiver receiver(options());
+  Receiver receiver(receiver_options());
   EXPECT_EQ(receiver.accept(0, part(1, 4, 0, 1), 0), PartStatus::rejected);  // another sensor's port
   EXPECT_EQ(receiver.accept(0, v2v_example(), 0), PartStatus::rejected);
   EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 255), 0), PartStatus::rejected);
@@ -72,7 +72,7 @@ TEST(Receiver, CountsWhatItDoesNotUse) {
 }
 
 TEST(Receiver, HeaderlessReadingsCountInOrderOfArrival) {
-  ReceiverOptions plain = options(true);
+  ReceiverOptions plain = receiver_options(true);
   plain.inspect = [](std::size_t, const Header&, std::span<const std::uint8_t> payload) -> PayloadInfo {
     return {payload.size() == 1 ? PacketStatus::accepted : PacketStatus::too_short, 1, 0, 1};
   };
@@ -90,7 +90,7 @@ TEST(Receiver, HeaderlessReadingsCountInOrderOfArrival) {
 }
 
 TEST(Receiver, HeaderlessPartsBelongToTheReadingThatTheyFollow) {
-  Receiver receiver(options(true));
+  Receiver receiver(receiver_options(true));
   const auto say = [&](std::uint8_t part, std::uint8_t value, std::int64_t now) {
     return receiver.accept(0, base::Bytes{part, 2, value}, now);
   };
@@ -106,7 +106,7 @@ TEST(Receiver, HeaderlessPartsBelongToTheReadingThatTheyFollow) {
 
 TEST(Receiver, AMillionRandomAndMutatedDatagrams) {
   std::mt19937 random(20260102);  // NOLINT: the same datagrams every time
-  Receiver receiver(options());
+  Receiver receiver(receiver_options());
   base::Bytes bytes;
   std::uint64_t wholes = 0;
   for (int i = 0; i < 1'000'000; ++i) {
@@ -133,7 +133,7 @@ TEST(Receiver, TakesPacketsOfItsFarmAlone) {
     return bytes;
   };
   constexpr SessionToken kFarm{0xFA23, 7}, kForged{0xFA23, 8}, kOther{0xFA24, 7};
-  Receiver receiver(options());
+  Receiver receiver(receiver_options());
   receiver.set_session({0, 7});  // before any challenge
   receiver.set_session(kFarm);
   EXPECT_EQ(receiver.counts().restarts, 0u);
@@ -155,7 +155,7 @@ TEST(Receiver, TakesPacketsOfItsFarmAlone) {
 }
 
 TEST(Receiver, CountsLeaps) {
-  Receiver receiver(options());
+  Receiver receiver(receiver_options());
   for (const std::uint8_t number : {std::uint8_t{0}, std::uint8_t{1}}) receiver.accept(0, part(0, 5, number, 1), 0);
   EXPECT_EQ(receiver.accept(0, part(0, 50'000, 0, 1), 0), PartStatus::jump);
   EXPECT_EQ(receiver.counts().jumps, 1u);

@@ -4,11 +4,10 @@
 
 #include "netio/v2v_socket.h"
 #include "tests/netio/examples.h"
+#include "tests/units.h"
 
 namespace sf::netio {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// A farm with three robots; each test sends for them.
 struct RelayTest : testing::Test {

@@ -15,13 +15,14 @@
 #include "netio/outbox.h"
 #include "netio/posix.h"
 #include "tests/netio/examples.h"
+#include "tests/units.h"
 
 namespace sf::netio {
 namespace {
 
 constexpr int kPatience = 5000;  ///< [ms] longest wait for datagrams that loopback already has
 
-constexpr Endpoint kFarm{kLoopback, 9000};
+constexpr Endpoint kMonitoredFarm{kLoopback, 9000};
 
 /// One sensor on each of `robots`, at two ports a robot.
 std::vector<StreamSpec> plans(std::uint32_t robots) {
@@ -31,7 +32,7 @@ std::vector<StreamSpec> plans(std::uint32_t robots) {
 }
 
 /// Payloads of a test sensor type: number of elements, part, parts; 255 elements are invalid.
-PayloadInfo inspect(std::size_t, const Header&, std::span<const std::uint8_t> payload) {
+PayloadInfo inspect_stream(std::size_t, const Header&, std::span<const std::uint8_t> payload) {
   if (payload.size() < 3) return {PacketStatus::too_short};
   if (payload[0] == 255) return {PacketStatus::out_of_range};
   return {PacketStatus::accepted, payload[0], payload[1], payload[2]};
@@ -40,7 +41,7 @@ PayloadInfo inspect(std::size_t, const Header&, std::span<const std::uint8_t> pa
 /// A monitor at the first free base port below Linux's ephemeral ports, since other tests run in parallel. Moves
 /// `streams` there.
 std::unique_ptr<StreamMonitor> listen(std::vector<StreamSpec>& streams, bool headerless = false,
-                                      const PayloadInspector& judging = inspect) {
+                                      const PayloadInspector& judging = inspect_stream) {
   for (std::uint32_t base = 12'000; base < 32'000; base += 200) {
     for (StreamSpec& spec : streams) spec.rule.base = base;
     try {
@@ -159,10 +160,10 @@ TEST(StreamMonitor, KindsAreCountedApart) {
   streams[0].type = streams[2].type = "laser";
   streams[1].type = "magnetometer";
   const auto monitor = listen(streams);
-  EXPECT_EQ(monitor->accept(0, reading(0, 0, 0, {10, 0, 1}), kFarm, 0), PacketStatus::accepted);
-  EXPECT_EQ(monitor->accept(1, reading(1, 0, 0, {4, 0, 1}), kFarm, 0), PacketStatus::accepted);
-  EXPECT_EQ(monitor->accept(2, reading(2, 0, 0, {20, 0, 1}), kFarm, 0), PacketStatus::accepted);
-  EXPECT_EQ(monitor->accept(2, reading(2, 0, 1, {255, 0, 1}), kFarm, 0), PacketStatus::out_of_range);
+  EXPECT_EQ(monitor->accept(0, reading(0, 0, 0, {10, 0, 1}), kMonitoredFarm, 0), PacketStatus::accepted);
+  EXPECT_EQ(monitor->accept(1, reading(1, 0, 0, {4, 0, 1}), kMonitoredFarm, 0), PacketStatus::accepted);
+  EXPECT_EQ(monitor->accept(2, reading(2, 0, 0, {20, 0, 1}), kMonitoredFarm, 0), PacketStatus::accepted);
+  EXPECT_EQ(monitor->accept(2, reading(2, 0, 1, {255, 0, 1}), kMonitoredFarm, 0), PacketStatus::out_of_range);
   const StreamSummary sum = monitor->summary();
   ASSERT_EQ(sum.of.size(), 2u);
   EXPECT_EQ(sum.of.at("laser").good, 2u);
@@ -180,7 +181,7 @@ TEST(StreamMonitor, TheJudgeIsToldTheStreamAndTheHeader) {
     told = header;
     return PayloadInfo{PacketStatus::out_of_range};
   });
-  EXPECT_EQ(monitor->accept(1, reading(1, 0, 6, {1}), kFarm, 0), PacketStatus::out_of_range);
+  EXPECT_EQ(monitor->accept(1, reading(1, 0, 6, {1}), kMonitoredFarm, 0), PacketStatus::out_of_range);
   EXPECT_EQ(asked, 1u);
   EXPECT_EQ(sensor_type_of(told.type), 5);
   EXPECT_EQ(told.robot, 1u);
@@ -191,7 +192,7 @@ struct OnePort : testing::Test {
   std::vector<StreamSpec> streams = plans(2);
   std::unique_ptr<StreamMonitor> monitor = listen(streams);
   PacketStatus say(std::uint32_t robot, std::uint32_t sensor, std::uint32_t sequence, const base::Bytes& payload) {
-    return monitor->accept(1, reading(robot, sensor, sequence, payload), kFarm, 0);
+    return monitor->accept(1, reading(robot, sensor, sequence, payload), kMonitoredFarm, 0);
   }
 };
 
@@ -201,8 +202,8 @@ TEST_F(OnePort, ChecksWhatItCarries) {
   EXPECT_EQ(say(1, 0, 2, {}), PacketStatus::too_short);              // likewise
   EXPECT_EQ(say(0, 0, 4, {3, 0, 1}), PacketStatus::wrong_source);    // another robot's
   EXPECT_EQ(say(1, 1, 5, {3, 0, 1}), PacketStatus::wrong_source);    // another sensor's
-  EXPECT_EQ(monitor->accept(1, v2v_example(), kFarm, 0), PacketStatus::wrong_direction);
-  EXPECT_EQ(monitor->accept(1, base::Bytes{1, 2}, kFarm, 0), PacketStatus::too_short);
+  EXPECT_EQ(monitor->accept(1, v2v_example(), kMonitoredFarm, 0), PacketStatus::wrong_direction);
+  EXPECT_EQ(monitor->accept(1, base::Bytes{1, 2}, kMonitoredFarm, 0), PacketStatus::too_short);
   const StreamSummary sum = monitor->summary();
   EXPECT_EQ(sum.datagrams, 7u);
   EXPECT_EQ(sum.good, 1u);
@@ -221,21 +222,20 @@ TEST_F(OnePort, SeesLossDuplicatesAndReordering) {
 
 /// Two farms on one host, or a farm and a forger.
 TEST_F(OnePort, ListensToOneFarmAtATime) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
   const auto from = [&](std::uint32_t session, const Endpoint& who, std::uint32_t sequence, std::int64_t now) {
     base::Bytes bytes = reading(1, 0, sequence, {3, 0, 1});
     write_session_token(bytes, {session, 0});
     return monitor->accept(1, bytes, who, now);
   };
   constexpr Endpoint kElsewhere{kLoopback, 9001};
-  EXPECT_EQ(from(1, kFarm, 0, 0), PacketStatus::accepted);
+  EXPECT_EQ(from(1, kMonitoredFarm, 0, 0), PacketStatus::accepted);
   EXPECT_EQ(from(2, kElsewhere, 0, 1), PacketStatus::wrong_source);
-  EXPECT_EQ(from(2, kFarm, 9, 1), PacketStatus::wrong_source);       // another session from the farm's address
-  EXPECT_EQ(from(1, kElsewhere, 9, 1), PacketStatus::wrong_source);  // the farm's session from another address
-  EXPECT_EQ(from(1, kFarm, 2, 1), PacketStatus::accepted);
+  EXPECT_EQ(from(2, kMonitoredFarm, 9, 1), PacketStatus::wrong_source);  // another session from the farm's address
+  EXPECT_EQ(from(1, kElsewhere, 9, 1), PacketStatus::wrong_source);      // the farm's session from another address
+  EXPECT_EQ(from(1, kMonitoredFarm, 2, 1), PacketStatus::accepted);
   EXPECT_EQ(from(2, kElsewhere, 5, 2 * kSecond), PacketStatus::wrong_source);  // one nanosecond early
   EXPECT_EQ(from(2, kElsewhere, 1, 1 + 2 * kSecond), PacketStatus::accepted);
-  EXPECT_EQ(from(1, kFarm, 3, 1 + 2 * kSecond), PacketStatus::wrong_source);
+  EXPECT_EQ(from(1, kMonitoredFarm, 3, 1 + 2 * kSecond), PacketStatus::wrong_source);
   const StreamSummary sum = monitor->summary();
   EXPECT_EQ(sum.good, 3u);
   EXPECT_EQ(sum.lost, 2u);  // 1 of the first, 0 of the second
@@ -254,13 +254,13 @@ TEST(StreamMonitor, MayTakePacketsOfOneHostAlone) {
     streams[0].rule.base = base;
     try {
       monitor = std::make_unique<StreamMonitor>(
-          StreamMonitorOptions{.farm = resolve("192.0.2.1"), .streams = streams, .inspect = inspect});
+          StreamMonitorOptions{.farm = resolve("192.0.2.1"), .streams = streams, .inspect = inspect_stream});
     } catch (const base::InputError&) {
       continue;  // taken
     }
   }
   const base::Bytes bytes = reading(0, 0, 0, {3, 0, 1});
-  EXPECT_EQ(monitor->accept(0, bytes, kFarm, 0), PacketStatus::wrong_source);
+  EXPECT_EQ(monitor->accept(0, bytes, kMonitoredFarm, 0), PacketStatus::wrong_source);
   EXPECT_EQ(monitor->accept(0, bytes, {resolve("192.0.2.1"), 1}, 0), PacketStatus::accepted);
 }
 
@@ -280,13 +280,13 @@ TEST_F(OnePort, LeapsAreNotBelievedAlone) {
 TEST(StreamMonitor, CollidingPortsAreRefused) {
   std::vector<StreamSpec> streams = plans(2);
   streams.push_back({0, 2, {12'000, 2}});  // sensor 2 uses a port of robot 1
-  EXPECT_THROW(StreamMonitor({.streams = streams, .inspect = inspect}), base::InputError);
+  EXPECT_THROW(StreamMonitor({.streams = streams, .inspect = inspect_stream}), base::InputError);
 }
 
 TEST(StreamMonitor, ATakenPortIsRefused) {
   auto streams = plans(1);
   const auto first = listen(streams);
-  EXPECT_THROW(StreamMonitor({.streams = streams, .inspect = inspect}), base::InputError);
+  EXPECT_THROW(StreamMonitor({.streams = streams, .inspect = inspect_stream}), base::InputError);
 }
 
 TEST(Outbox, RefusedDatagramsAreCountedWithTheFirstReason) {

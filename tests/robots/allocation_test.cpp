@@ -8,6 +8,7 @@
 
 #include "robots/fleet.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -23,8 +24,6 @@ std::atomic<long> allocations{0};
 
 namespace sf::robots {
 namespace {
-
-constexpr std::int64_t kTick = 100'000'000;
 
 TEST(Allocation, CountsAtAll) {
   const long before = allocations;

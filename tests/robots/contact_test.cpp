@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "robots/fleet.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 
 namespace sf::robots {
 namespace {
@@ -15,9 +16,7 @@ using base::Pose;
 using base::Report;
 using base::Twist;
 
-constexpr std::int64_t kTick = 100'000'000;
-
-std::uint32_t bit(int k) { return 1u << ((k + 32) % 32); }
+std::uint32_t sector_bit(int k) { return 1u << ((k + 32) % 32); }
 
 void drive(Fleet& fleet, std::vector<Twist> commands, int ticks = 1) {
   for (int i = 0; i < ticks; ++i) fleet.move(commands, kTick);
@@ -54,7 +53,8 @@ TEST(Contact, ARobotStopsWithinHalfAMillimetreOfAnyObstacle) {
 }
 
 TEST(Contact, IsFeltWhereItPresses) {
-  for (const auto& [yaw, sectors] : {std::pair{0.0, bit(0) | bit(-1)}, {M_PI / 2, bit(7) | bit(8)}}) {
+  for (const auto& [yaw, sectors] :
+       {std::pair{0.0, sector_bit(0) | sector_bit(-1)}, {M_PI / 2, sector_bit(7) | sector_bit(8)}}) {
     world::World world = scenes::empty_world();
     scenes::add_wall(world, {0.5, -1}, {0.5, 1});
     scenes::add_create(world, {0, 0, 0, 0}).drive = world::Drive::omni;
@@ -105,12 +105,12 @@ TEST(Contact, BothRobotsFeelAContact) {
   drive(fleet, {{}, {0.5, 0, 0}, {}}, 20);
   EXPECT_EQ(fleet.contacts()[0], 1);
   EXPECT_EQ(fleet.contacts()[1], 1);
-  EXPECT_NE(fleet.reports()[0].contact_mask & (bit(15) | bit(16)), 0u) << "behind";
-  EXPECT_NE(fleet.reports()[1].contact_mask & (bit(0) | bit(-1)), 0u) << "ahead";
+  EXPECT_NE(fleet.reports()[0].contact_mask & (sector_bit(15) | sector_bit(16)), 0u) << "behind";
+  EXPECT_NE(fleet.reports()[1].contact_mask & (sector_bit(0) | sector_bit(-1)), 0u) << "ahead";
   EXPECT_EQ(fleet.contacts()[2], 0) << "nobody ran into the third";
   drive(fleet, {{}, {-0.5, 0, 0}, {}}, 1);
   EXPECT_EQ(fleet.contacts()[1], 0);
-  EXPECT_EQ(fleet.reports()[0].contact_mask & (bit(15) | bit(16)), 0u) << "released on that side";
+  EXPECT_EQ(fleet.reports()[0].contact_mask & (sector_bit(15) | sector_bit(16)), 0u) << "released on that side";
 }
 
 TEST(Contact, ARoundRobotThatPressesCanTurnWhateverSideItPressesWith) {
@@ -171,7 +171,8 @@ TEST(Contact, ARobotThatIsToldPressesOnVirtualThings) {
   tell(kTick, 0.2);
   EXPECT_EQ(fleet.predict(kTick)[0].contact_mask, 0u);
   EXPECT_EQ(fleet.contacts()[0], 0);
-  EXPECT_NE(fleet.predict(4 * kTick)[0].contact_mask & (bit(0) | bit(-1)), 0u) << "carried on into the wall";
+  EXPECT_NE(fleet.predict(4 * kTick)[0].contact_mask & (sector_bit(0) | sector_bit(-1)), 0u)
+      << "carried on into the wall";
   EXPECT_EQ(fleet.contacts()[0], 1);
   EXPECT_EQ(fleet.predict(kTick)[0].contact_mask, 0u) << "where it is at that time";
   tell(5 * kTick, 0.45);
@@ -183,13 +184,16 @@ TEST(Contact, AReportedContactOfARealBumperStays) {
   world::World world = scenes::empty_world();
   scenes::add_create(world, {0, 0, 0, 0});
   Fleet fleet(world);
-  fleet.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .contact_mask = bit(3)}});
-  EXPECT_EQ(fleet.predict(kTick)[0].contact_mask, bit(3));
+  fleet.apply(
+      std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .contact_mask = sector_bit(3)}});
+  EXPECT_EQ(fleet.predict(kTick)[0].contact_mask, sector_bit(3));
   EXPECT_EQ(fleet.contacts()[0], 1);
   scenes::add_wall(world, {0.1655, -1}, {0.1655, 1});
   Fleet beside(world);
-  beside.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .contact_mask = bit(3)}});
-  EXPECT_EQ(beside.predict(kTick)[0].contact_mask, bit(3) | bit(0) | bit(-1)) << "beside what the virtual world adds";
+  beside.apply(
+      std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .contact_mask = sector_bit(3)}});
+  EXPECT_EQ(beside.predict(kTick)[0].contact_mask, sector_bit(3) | sector_bit(0) | sector_bit(-1))
+      << "beside what the virtual world adds";
 }
 
 TEST(Contact, RobotsThatAreToldPressOnEachOther) {
@@ -200,8 +204,8 @@ TEST(Contact, RobotsThatAreToldPressOnEachOther) {
   fleet.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}},
                                   {.mover = 1, .time = kTick, .X_WM = {0.4, 0, 0, 0}}});
   const auto reports = fleet.predict(kTick);
-  EXPECT_NE(reports[0].contact_mask & (bit(0) | bit(-1)), 0u);
-  EXPECT_NE(reports[1].contact_mask & (bit(15) | bit(16)), 0u);
+  EXPECT_NE(reports[0].contact_mask & (sector_bit(0) | sector_bit(-1)), 0u);
+  EXPECT_NE(reports[1].contact_mask & (sector_bit(15) | sector_bit(16)), 0u);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "robots/fleet.h"
 #include "tests/instrumented.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 
 namespace sf::robots {
 namespace {
@@ -20,8 +21,6 @@ namespace {
 using base::Pose;
 using base::Report;
 using base::Twist;
-
-constexpr std::int64_t kTick = 100'000'000;
 
 world::World crowd() {
   world::World world = scenes::empty_world();

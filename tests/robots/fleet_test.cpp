@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 
 namespace sf::robots {
 namespace {
@@ -12,8 +13,6 @@ namespace {
 using base::Pose;
 using base::Report;
 using base::Twist;
-
-constexpr std::int64_t kTick = 100'000'000;
 
 // State of a world's only robot after `ticks` of one command.
 struct Driven {

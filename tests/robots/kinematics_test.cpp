@@ -1,4 +1,5 @@
 #include "robots/kinematics.h"
+#include "tests/units.h"
 
 #include <gtest/gtest.h>
 
@@ -49,8 +50,6 @@ TEST(Advance, TinyTurnsAgreeWithTheStraightLine) {
 TEST(Advance, YawIsWrapped) { EXPECT_LE(std::abs(advance({0, 0, 0, 3}, {0, 0, 1}, 20.0).yaw), M_PI); }
 
 // --- Between two ticks.
-
-constexpr std::int64_t kTick = 100'000'000;
 
 base::Report at(std::int64_t time, const Pose& X_WM, const Twist& velocity) { return {0, time, X_WM, velocity, 0}; }
 

@@ -5,8 +5,8 @@
 namespace sf::scenarios {
 namespace {
 
-constexpr double kLength = 0.33;  // [m]
-constexpr double kTick = 0.1;     // [s]
+constexpr double kLength = 0.33;       // [m]
+constexpr double kDetectorTick = 0.1;  // [s]
 
 base::Report at(double x, double forward, double turn) {
   return {.X_WM = {x, 0.0, 0.0, 0.0}, .velocity = {forward, 0.0, turn}};
@@ -14,7 +14,7 @@ base::Report at(double x, double forward, double turn) {
 
 /// Turns to alternating sides, one second each, at x, x + step, ...
 DeadEndDetector after_turns(int turns, double step) {
-  DeadEndDetector ends(kLength, kTick);
+  DeadEndDetector ends(kLength, kDetectorTick);
   for (int k = 0; k < turns; ++k)
     for (int i = 0; i < 10; ++i) ends.update(at(k * step, 0.0, k % 2 == 0 ? 0.5 : -0.5), false);
   return ends;
@@ -43,15 +43,15 @@ TEST(DeadEndDetector, EndsABodysLengthAway) {
   DeadEndDetector ends = after_turns(7, 0.0);
   const double stuck = ends.stuck();
   ends.update(at(0.32, 0.1, 0.0), false);
-  EXPECT_NEAR(ends.stuck(), stuck + kTick, 1e-9);
+  EXPECT_NEAR(ends.stuck(), stuck + kDetectorTick, 1e-9);
   ends.update(at(0.34, 0.1, 0.0), false);
   ends.update(at(0.0, 0.1, 0.0), false);
-  EXPECT_NEAR(ends.stuck(), stuck + kTick, 1e-9);
+  EXPECT_NEAR(ends.stuck(), stuck + kDetectorTick, 1e-9);
 }
 
 /// Turns by a supervisor in the same passage do not end a dead end.
 TEST(DeadEndDetector, TurnsByHandCount) {
-  DeadEndDetector ends(kLength, kTick);
+  DeadEndDetector ends(kLength, kDetectorTick);
   for (int k = 0; k < 7; ++k) {
     for (int i = 0; i < 10; ++i) ends.update(at(0.0, 0.0, 0.0), true);
     ends.turned_by_hand(at(0.0, 0.0, 0.0), k % 2 == 0 ? 0.7 : -0.7);
@@ -63,7 +63,7 @@ TEST(DeadEndDetector, TurnsByHandCount) {
 
 /// Turns to one side do not count, nor do curves.
 TEST(DeadEndDetector, OnlyReversalsOfTurnsInPlaceCount) {
-  DeadEndDetector ends(kLength, kTick);
+  DeadEndDetector ends(kLength, kDetectorTick);
   for (int i = 0; i < 500; ++i) ends.update(at(0.0, 0.0, 0.5), false);
   for (int i = 0; i < 500; ++i) ends.update(at(0.0, 0.01, i % 2 == 0 ? 0.5 : -0.5), false);
   EXPECT_EQ(ends.count(), 0u);
@@ -71,7 +71,7 @@ TEST(DeadEndDetector, OnlyReversalsOfTurnsInPlaceCount) {
 }
 
 TEST(DeadEndDetector, StandingInContactIsStuckButNoDeadEnd) {
-  DeadEndDetector ends(kLength, kTick);
+  DeadEndDetector ends(kLength, kDetectorTick);
   for (int i = 0; i < 50; ++i) ends.update(at(0.0, 0.0, 0.0), true);
   for (int i = 0; i < 50; ++i) ends.update(at(0.0, 0.0, 0.0), false);
   EXPECT_EQ(ends.count(), 0u);
@@ -80,15 +80,15 @@ TEST(DeadEndDetector, StandingInContactIsStuckButNoDeadEnd) {
 
 /// Waiting between reversals is counted once.
 TEST(DeadEndDetector, NothingIsCountedTwice) {
-  DeadEndDetector ends(kLength, kTick);
+  DeadEndDetector ends(kLength, kDetectorTick);
   int ticks = 0;
   for (int k = 0; k < 8; ++k) {
     for (int i = 0; i < 10; ++i, ++ticks) ends.update(at(0.0, 0.0, k % 2 == 0 ? 0.5 : -0.5), false);
     for (int i = 0; i < 10; ++i, ++ticks) ends.update(at(0.0, 0.0, 0.0), true);
   }
   EXPECT_EQ(ends.count(), 1u);
-  EXPECT_LE(ends.stuck(), ticks * kTick + 1e-9);
-  EXPECT_GE(ends.stuck(), (ticks - 20) * kTick - 1e-9);
+  EXPECT_LE(ends.stuck(), ticks * kDetectorTick + 1e-9);
+  EXPECT_GE(ends.stuck(), (ticks - 20) * kDetectorTick - 1e-9);
 }
 
 }  // namespace

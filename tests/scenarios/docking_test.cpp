@@ -8,16 +8,12 @@
 #include "control/stop_reason.h"
 #include "scenarios/simulation.h"
 #include "sensors/sensor_type.h"
+#include "tests/device.h"
 #include "tests/sensors/edit_laser.h"
 #include "world/wall_tree.h"
 
 namespace sf::scenarios {
 namespace {
-
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
 
 /// SimVille with roomba5 only, which carries nothing but its receiver.
 world::World car_park() {

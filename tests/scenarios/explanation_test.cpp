@@ -8,15 +8,11 @@
 #include <cmath>
 
 #include "farm/farm.h"
+#include "tests/device.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::scenarios {
 namespace {
-
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
 
 world::World lasers(std::uint32_t robots) {
   world::World world = scenes::boxes(20, 8.0, 3);

@@ -12,10 +12,10 @@
 namespace sf::scenarios {
 namespace {
 
-constexpr const char* kFile = SF_SOURCE_DIR "/experiments/test.toml";
+constexpr const char* kSpawnFile = SF_SOURCE_DIR "/experiments/test.toml";
 const std::string kTown = "world = \"../worlds/simville/simville.world\"\n";
 
-Scenario parse(const std::string& text) { return parse_scenario(kFile, text); }
+Scenario parse(const std::string& text) { return parse_scenario(kSpawnFile, text); }
 world::World town(const std::string& text) { return world_of(parse(kTown + text)); }
 
 constexpr const char* kTen = R"(

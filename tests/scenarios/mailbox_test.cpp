@@ -1,4 +1,5 @@
 #include "scenarios/mailbox.h"
+#include "tests/units.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +7,6 @@
 
 namespace sf::scenarios {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 /// Reading `sequence` of a sensor; its only value is its sequence.
 class Sender {

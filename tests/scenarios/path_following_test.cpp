@@ -9,15 +9,11 @@
 #include "scenarios/simulation.h"
 #include "scenarios/trial.h"
 #include "sensors/sensor_type.h"
+#include "tests/device.h"
 #include "world/path_geometry.h"
 
 namespace sf::scenarios {
 namespace {
-
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
 
 Scenario experiment(const std::string& name, Plant plant) {
   Scenario scenario = read_scenario(SF_SOURCE_DIR "/experiments/" + name + ".toml");

@@ -5,16 +5,12 @@
 #include <cmath>
 
 #include "sensors/sensor_type.h"
+#include "tests/device.h"
 #include "world/lights.h"
 #include "world/roads/network.h"
 
 namespace sf::scenarios {
 namespace {
-
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
 
 /// SimVille with standing robots, and a record of it that tests fill by hand.
 class Town {

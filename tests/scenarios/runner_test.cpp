@@ -12,14 +12,14 @@
 namespace sf::scenarios {
 namespace {
 
-constexpr const char* kFile = SF_SOURCE_DIR "/experiments/test.toml";
+constexpr const char* kRunFile = SF_SOURCE_DIR "/experiments/test.toml";
 constexpr const char* kRooms = "world = \"../worlds/rooms.world\"\n";
 constexpr const char* kPath = "world = \"../worlds/testpath/testpath.world\"\n";
 
 /// Message of the check from the file's name on; empty without an error.
-std::string refusal(const std::string& text) {
+std::string run_refusal(const std::string& text) {
   try {
-    check_scenario(parse_scenario(kFile, text));
+    check_scenario(parse_scenario(kRunFile, text));
   } catch (const base::InputError& error) {
     const std::string what = error.what();
     const auto at = what.find("test.toml");
@@ -44,12 +44,13 @@ TEST(CheckScenario, ErrorsOfARunAreFoundAtTheirLines) {
       {path + "[default]\ncontroller = \"none\"\n[expect]\nmean_error = 1\n",
        "test.toml:5: 'mean_error' of a robot without a controller"},
   };
-  for (const auto& [text, said] : kCorpus) EXPECT_EQ(refusal(text).substr(0, said.size()), said) << text;
+  for (const auto& [text, said] : kCorpus) EXPECT_EQ(run_refusal(text).substr(0, said.size()), said) << text;
 }
 
 TEST(CheckScenario, AValidScenarioPasses) {
-  EXPECT_EQ(refusal(std::string(kRooms) + "robots = 2\n"), "");
-  EXPECT_EQ(refusal(std::string(kPath) + "[default]\ncontroller = \"lane-keeping\"\n[expect]\nmean_error = 1\n"), "");
+  EXPECT_EQ(run_refusal(std::string(kRooms) + "robots = 2\n"), "");
+  EXPECT_EQ(run_refusal(std::string(kPath) + "[default]\ncontroller = \"lane-keeping\"\n[expect]\nmean_error = 1\n"),
+            "");
 }
 
 TEST(ScenarioStatus, NothingExpectedIsNeitherPassedNorFailed) {
@@ -65,7 +66,8 @@ TEST(ScenarioStatus, NothingExpectedIsNeitherPassedNorFailed) {
 TEST(RunScenario, SaysWhatCannotBeMeasured) {
   gpu::Device device;
   const ScenarioResult result = run_scenario(
-      parse_scenario(kFile, std::string(kRooms) + "robots = 2\nduration = 1\n[expect]\nmean_abs_error = 1\n"), device);
+      parse_scenario(kRunFile, std::string(kRooms) + "robots = 2\nduration = 1\n[expect]\nmean_abs_error = 1\n"),
+      device);
   ASSERT_EQ(result.outcomes.size(), 1u);
   EXPECT_FALSE(result.outcomes[0].met);
   EXPECT_EQ(result.outcomes[0].measured, "no robot with a control error");
@@ -74,10 +76,11 @@ TEST(RunScenario, SaysWhatCannotBeMeasured) {
 /// The smallest distance of several robots counts: the second one stands.
 TEST(RunScenario, DistanceIsThatOfTheLeast) {
   gpu::Device device;
-  const ScenarioResult result = run_scenario(
-      parse_scenario(kFile, std::string(kRooms) + "duration = 1\n[[robot]]\nname = \"roomba2\"\ncontroller = \"none\"\n"
-                                                  "[expect]\ndistance = 0.01\n"),
-      device);
+  const ScenarioResult result =
+      run_scenario(parse_scenario(kRunFile, std::string(kRooms) +
+                                                "duration = 1\n[[robot]]\nname = \"roomba2\"\ncontroller = \"none\"\n"
+                                                "[expect]\ndistance = 0.01\n"),
+                   device);
   ASSERT_EQ(result.outcomes.size(), 1u);
   EXPECT_EQ(result.outcomes[0].measured, "0");
   EXPECT_FALSE(result.outcomes[0].met);
@@ -92,10 +95,10 @@ TEST(RunScenario, TheControlErrorIsTheWorstOnes) {
   gpu::Device device;
   const auto measured = [&](const std::string& what) {
     const ScenarioResult result =
-        run_scenario(parse_scenario(kFile, "world = \"" + world +
-                                               "\"\nduration = 10\n[default]\ncontroller = \"lane-keeping\"\n"
-                                               "settings = { kp = 3.0, speed = 0.1 }\n[expect]\n" +
-                                               what + "\n"),
+        run_scenario(parse_scenario(kRunFile, "world = \"" + world +
+                                                  "\"\nduration = 10\n[default]\ncontroller = \"lane-keeping\"\n"
+                                                  "settings = { kp = 3.0, speed = 0.1 }\n[expect]\n" +
+                                                  what + "\n"),
                      device);
     return std::stod(result.outcomes.at(0).measured);
   };
@@ -112,7 +115,7 @@ TEST(RunScenario, TheControlErrorIsTheWorstOnes) {
 TEST(RunScenario, MapCoverageIsNotRoundedUp) {
   gpu::Device device;
   const ScenarioResult result =
-      run_scenario(parse_scenario(kFile,
+      run_scenario(parse_scenario(kRunFile,
                                   "world = \"../worlds/mapping/mapping.world\"\nduration = 1\n[default]\n"
                                   "controller = \"none\"\n[expect]\nmap_coverage = 0.9\n"),
                    device);

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* kFile = SF_SOURCE_DIR "/experiments/test.toml";
 constexpr const char* kWorld = "world = \"../worlds/testpath/testpath.world\"\n";
 
-Scenario parse(const std::string& text) { return parse_scenario(kFile, kWorld + text); }
+Scenario parse_text(const std::string& text) { return parse_scenario(kFile, kWorld + text); }
 
 /// Message of the error from the file's name on; empty without an error.
 std::string refusal(const std::string& text, bool make = false) {
@@ -27,7 +27,7 @@ std::string refusal(const std::string& text, bool make = false) {
 }
 
 TEST(ScenarioFile, DefaultsOfAFileThatNamesAWorld) {
-  const Scenario s = parse("");
+  const Scenario s = parse_text("");
   EXPECT_EQ(s.name, "test");
   EXPECT_TRUE(std::filesystem::exists(s.world)) << s.world;
   EXPECT_EQ(s.duration, 60.0);
@@ -39,7 +39,7 @@ TEST(ScenarioFile, DefaultsOfAFileThatNamesAWorld) {
 }
 
 TEST(ScenarioFile, EveryKeyArrives) {
-  const Scenario s = parse(R"(
+  const Scenario s = parse_text(R"(
 name = "all keys"
 duration = 12.5
 seed = 77
@@ -97,7 +97,7 @@ tick_p99_ms = 10
 
 /// A robot with settings only keeps the default's controller; one with another controller starts without settings.
 TEST(ScenarioFile, RobotsInheritWhatTheyDoNotSay) {
-  const Scenario s = parse(R"(
+  const Scenario s = parse_text(R"(
 [default]
 controller = "lane-keeping"
 rate = 20
@@ -114,28 +114,28 @@ settings = { kp = 0.9 }
 }
 
 TEST(ScenarioFile, RobotsWithAPoseAloneKeepTheDefault) {
-  const Scenario s = parse("[[robot]]\nname = \"roomba0\"\npose = [1, 0.1, 5]\n");
+  const Scenario s = parse_text("[[robot]]\nname = \"roomba0\"\npose = [1, 0.1, 5]\n");
   ASSERT_EQ(s.robot_setups.size(), 1u);
   EXPECT_FALSE(s.robot_setups[0].actor);
   const world::World world = world_of(s);
   EXPECT_EQ(world.movers[0].X_WM.x, 1.0);
-  EXPECT_NE(world.hash, world_of(parse("")).hash);
+  EXPECT_NE(world.hash, world_of(parse_text("")).hash);
 }
 
 TEST(ScenarioFile, ThePlantIsEveryMoversActuatorModel) {
-  EXPECT_EQ(world_of(parse("")).movers[0].actuator_model, world::ActuatorModel::direct);
-  EXPECT_EQ(world_of(parse("plant = \"thesis\"")).movers[0].actuator_model, world::ActuatorModel::player_create);
-  EXPECT_EQ(world_of(parse("plant = \"ideal\"")).movers[0].actuator_model, world::ActuatorModel::direct);
+  EXPECT_EQ(world_of(parse_text("")).movers[0].actuator_model, world::ActuatorModel::direct);
+  EXPECT_EQ(world_of(parse_text("plant = \"thesis\"")).movers[0].actuator_model, world::ActuatorModel::player_create);
+  EXPECT_EQ(world_of(parse_text("plant = \"ideal\"")).movers[0].actuator_model, world::ActuatorModel::direct);
 }
 
 TEST(ScenarioFile, LinksHaveTheScenariosSeed) {
-  const Scenario s = parse("seed = 9\n[link]\ndelay = 0.5\n");
+  const Scenario s = parse_text("seed = 9\n[link]\ndelay = 0.5\n");
   EXPECT_EQ(simulation_of(s, world_of(s)).actors[0].link.seed, 9u);
 }
 
 TEST(ScenarioFile, StatesHaveALinkOnRequest) {
-  EXPECT_FALSE(parse("").states);
-  const Scenario s = parse(
+  EXPECT_FALSE(parse_text("").states);
+  const Scenario s = parse_text(
       "seed = 9\n[states]\nrate = 5\ndelay = 0.5\njitter = 0.1\nloss = 0.2\nfilter = true\nposition_sigma = "
       "0.01\nyaw_sigma = 0.02\n");
   const StateLinkOptions states = *simulation_of(s, world_of(s)).states;
@@ -147,7 +147,7 @@ TEST(ScenarioFile, StatesHaveALinkOnRequest) {
   EXPECT_TRUE(states.filter);
   EXPECT_EQ(states.position_sigma, 0.01);
   EXPECT_EQ(states.yaw_sigma, 0.02);
-  EXPECT_FALSE(parse("[states]\n").states->filter);
+  EXPECT_FALSE(parse_text("[states]\n").states->filter);
 }
 
 /// One mistake each, with its message.

@@ -9,16 +9,12 @@
 #include "sensors/laser.h"
 #include "sensors/sensor_type.h"
 #include "tests/counted_new.h"
+#include "tests/device.h"
 #include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::scenarios {
 namespace {
-
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
 
 world::World our_world(const std::string& name, std::uint32_t robots = 0) {
   world::World world = world::load_world(SF_SOURCE_DIR "/worlds/" + name, {.sensors = sensors::world_file_words()});

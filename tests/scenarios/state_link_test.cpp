@@ -15,14 +15,15 @@
 #include "robots/kinematics.h"
 #include "scenarios/scenario.h"
 #include "scenarios/simulation.h"
+#include "tests/device.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 #include "world/path_geometry.h"
 
 namespace sf::scenarios {
 namespace {
 
 using base::kSecond;
-constexpr std::int64_t kTick = kSecond / 10;
 
 /// A robot on a circle of 1 m at 0.5 m/s, as the farm knows it.
 struct Circle {
@@ -67,11 +68,6 @@ TEST(StateLink, StatesComeAtTheirRate) {
   EXPECT_LT(Circle({.rate = 2.0}).worst(0, 50), 1e-9);
   Circle silent({.link = {.loss = 1.0}});
   EXPECT_NEAR(silent.worst(0, 20), 2.0 * std::sin(0.5 * 0.95), 1e-9) << "it stands where it was at load";
-}
-
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
 }
 
 struct Driving {

@@ -8,15 +8,11 @@
 #include <cmath>
 #include <map>
 
+#include "tests/device.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::scenarios {
 namespace {
-
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
 
 world::World small_world() {
   world::World world = scenes::boxes(20, 8.0, 3);

@@ -13,18 +13,14 @@
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 #include "sensors/accuracy.h"
+#include "tests/device.h"
 #include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::scenarios {
 namespace {
 
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
-
-world::World small_world() {
+world::World recorded_world() {
   world::World world = scenes::boxes(20, 8.0, 3);
   sensors::LaserSettings laser = scenes::laser(61, M_PI, 4.0);
   laser.noise = {.range_sigma = 0.01, .range_proportional = 0.0, .angle_sigma = 0.002};
@@ -35,7 +31,7 @@ world::World small_world() {
 }
 
 /// Two seconds of wandering.
-record::Recording recorded(bool readings, const std::string& mode = "exact", world::World world = small_world()) {
+record::Recording recorded(bool readings, const std::string& mode = "exact", world::World world = recorded_world()) {
   const auto folder = std::filesystem::temp_directory_path() / ("sf_verification_" + std::to_string(::getpid()));
   sensors::set_accuracy(world, mode);
   {
@@ -62,7 +58,7 @@ TEST(Verification, ASoundRun) {
 
 /// Readings between ticks: their poses are recomputed bitwise from those of the ticks.
 TEST(Verification, ReadingsFromBetweenTicks) {
-  world::World world = small_world();
+  world::World world = recorded_world();
   for (std::size_t m = 0; m < world.movers.size(); ++m) {
     scenes::edit_laser(world.movers[m])->rate = 13.0 + 12.0 * static_cast<double>(m);
     for (const char* type : {"encoder", "gyro"}) {

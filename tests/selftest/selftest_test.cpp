@@ -14,10 +14,10 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 namespace {
 
-Fixture& fixture() {
+Fixture& all_fixture() {
   static gpu::Device device;
-  static Fixture fixture(device);
-  return fixture;
+  static Fixture all_fixture(device);
+  return all_fixture;
 }
 
 std::string test_name(const testing::TestParamInfo<Case>& info) {
@@ -29,7 +29,7 @@ std::string test_name(const testing::TestParamInfo<Case>& info) {
 class Extremes : public testing::TestWithParam<Case> {};
 
 TEST_P(Extremes, Holds) {
-  const Outcome o = run(GetParam(), fixture());
+  const Outcome o = run(GetParam(), all_fixture());
   std::printf("[ measured ] %s: %llu checks, closest call %.3g of %.3g allowed, %.2f s\n",
               std::string(GetParam().name).c_str(), static_cast<unsigned long long>(o.checks), o.error, o.allowed,
               o.seconds);
@@ -50,7 +50,7 @@ TEST(Suite, NamesAreUniqueAndReasonsAreGiven) {
   EXPECT_EQ(find_case("no-such-case"), nullptr);
 }
 
-Outcome outcome_of(void (*body)(Fixture&, Checks&)) { return run({"made", "made", "m", "made", body}, fixture()); }
+Outcome outcome_of(void (*body)(Fixture&, Checks&)) { return run({"made", "made", "m", "made", body}, all_fixture()); }
 
 /// A wrong result is reported with the failed check and its error.
 TEST(Suite, AWrongAnswerFails) {
@@ -99,7 +99,7 @@ TEST(Suite, TheNearestToItsToleranceIsTold) {
 TEST(SuiteDeathTest, APoseThatIsNoNumberStopsTheFarm) {
   world::World world;
   add_laser_mover(world, {}, laser(1, 0.0, 8.0));
-  const TestFarm test = fixture().measure(world);
+  const TestFarm test = all_fixture().measure(world);
   const base::Report report{.mover = 0, .X_WM = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0}};
   EXPECT_DEATH(test.farm->tick(1, {&report, 1}), "the pose of mover 0 is not finite");
 }

@@ -9,16 +9,12 @@
 #include <sstream>
 
 #include "sensors/laser_settings.h"
+#include "tests/device.h"
 #include "tests/sensors/brute_force.h"
 
 namespace sf::trial {
 
 using base::Pose;
-
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
 
 Tally& Tally::operator+=(const Tally& other) {
   beams += other.beams;

@@ -8,12 +8,10 @@
 #include "base/reading.h"
 #include "farm/farm.h"
 #include "sensors/laser_settings.h"
+#include "tests/device.h"
 #include "world/world.h"
 
 namespace sf::trial {
-
-/// The device shared by all tests of a program.
-gpu::Device& device();
 
 struct Tally {
   std::size_t beams = 0;

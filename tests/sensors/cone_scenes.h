@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/units.h"
 #include "world/world.h"
 
 namespace sf::trial {
-
-inline constexpr double kDegree = M_PI / 180.0;
 
 inline world::Setting cone_setting(const std::string& key, std::vector<double> numbers, const std::string& text = "") {
   return {key, std::move(numbers), text, 42, "made.world"};

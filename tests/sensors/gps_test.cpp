@@ -21,8 +21,6 @@ using sensors::Satellite;
 
 constexpr std::uint64_t kAll = 0xFF;
 
-std::vector<double> read(const world::World& world) { return values_of(Glance(world).readings[0]); }
-
 /// Due east, 45 degrees up.
 constexpr Satellite kEast{{1, 0}, 1.0};
 
@@ -216,7 +214,7 @@ TEST(Gps, SightAgreesWithWalkingAlongTheLine) {
 TEST(Gps, InTheOpenItReadsItsAntennasPlace) {
   world::Sensor sensor = fitted("gps");
   sensor.X_MS = {0.5, 0, 0.1, 0};
-  const std::vector<double> r = read(carriers(sensor, {{10, 20, 0, M_PI / 2}}));
+  const std::vector<double> r = read_once(carriers(sensor, {{10, 20, 0, M_PI / 2}}));
   ASSERT_EQ(r.size(), 4u);
   EXPECT_NEAR(r[0], 10.0, 1e-12);
   EXPECT_NEAR(r[1], 20.5, 1e-12);

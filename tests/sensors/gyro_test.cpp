@@ -8,11 +8,10 @@
 
 #include "tests/sensors/host_trial.h"
 #include "tests/sensors/statistics.h"
+#include "tests/units.h"
 
 namespace sf::trial {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 /// Readings of `robots` gyros over `ticks`, all turning at `turn` [rad/s], robot by robot.
 std::vector<std::vector<double>> turning(const world::World& world, double turn, int ticks,

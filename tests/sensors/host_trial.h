@@ -49,6 +49,9 @@ inline std::vector<double> values_of(const base::ReadingBlock& reading) {
   return {reading.values.begin(), reading.values.end()};
 }
 
+/// Values of the world's first reading.
+inline std::vector<double> read_once(const world::World& world) { return values_of(Glance(world).readings[0]); }
+
 /// Adds a static outline, solid inside, from `z_min` to `z_max` [m]; corners counter-clockwise.
 inline void add_solid(world::World& world, const std::vector<glm::dvec2>& corners, double z_min, double z_max) {
   const auto model = static_cast<std::uint32_t>(world.models.size());

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/sensors/host_trial.h"
+#include "tests/units.h"
 
 namespace sf::trial {
 namespace {
@@ -15,8 +16,6 @@ using base::Pose;
 using sensors::light_of;
 using world::Emitter;
 
-constexpr double kDegree = M_PI / 180.0;
-
 Emitter virtual_wall(const Pose& X_WE = {}) {
   return {Emitter::Kind::virtual_wall, world::kNone, X_WE, 2.0, 20 * kDegree, 0.4};
 }
@@ -24,8 +23,6 @@ Emitter virtual_wall(const Pose& X_WE = {}) {
 Emitter dock(const Pose& X_WE = {}) { return {Emitter::Kind::dock, world::kNone, X_WE, 2.0, 40 * kDegree, 0.5}; }
 
 glm::dvec2 at(double distance, double degrees) { return base::rotate(degrees * kDegree, {distance, 0.0}); }
-
-std::vector<double> read(const world::World& world) { return values_of(Glance(world).readings[0]); }
 
 world::World one_receiver(std::vector<Emitter> emitters, const Pose& X_WM = {}) {
   world::World world = carriers(fitted("irreceiver"), {X_WM});
@@ -63,8 +60,8 @@ TEST(IrReceiver, HalosOfAnySize) {
   Emitter wide = virtual_wall(), none = dock();
   wide.halo = 3.0;
   none.halo = 0.0;
-  EXPECT_EQ(read(one_receiver({wide}, {-2.9, 0, 0, 0}))[0], 1.0);
-  EXPECT_EQ(read(one_receiver({wide}, {-3.1, 0, 0, 0}))[0], 0.0);
+  EXPECT_EQ(read_once(one_receiver({wide}, {-2.9, 0, 0, 0}))[0], 1.0);
+  EXPECT_EQ(read_once(one_receiver({wide}, {-3.1, 0, 0, 0}))[0], 0.0);
   EXPECT_EQ(light_of(none, {0, 0}) & 2u, 0u);
 }
 
@@ -82,7 +79,7 @@ TEST(IrReceiver, LightTurnsWithItsEmitter) {
 // --- Readings.
 
 TEST(IrReceiver, BytesOfTheOpenInterface) {
-  const auto byte = [](const glm::dvec2& p) { return read(one_receiver({dock()}, {p.x, p.y, 0, 1}))[1]; };
+  const auto byte = [](const glm::dvec2& p) { return read_once(one_receiver({dock()}, {p.x, p.y, 0, 1}))[1]; };
   EXPECT_EQ(byte(at(3, 0)), 255.0) << "none";
   EXPECT_EQ(byte(at(1.5, 20)), 248.0) << "red buoy";
   EXPECT_EQ(byte(at(1.5, -20)), 244.0) << "green buoy";
@@ -94,12 +91,13 @@ TEST(IrReceiver, BytesOfTheOpenInterface) {
 }
 
 TEST(IrReceiver, WallsAndDocksAreToldApart) {
-  EXPECT_EQ(read(one_receiver({virtual_wall({-1, 0, 0, 0})})), (std::vector<double>{1, 255}));
-  EXPECT_EQ(read(one_receiver({dock({-1, 0, 0, 0})})), (std::vector<double>{0, 252}));
-  EXPECT_EQ(read(one_receiver({virtual_wall({-1, 0, 0, 0}), dock({0, 1, 0, -1.2})})), (std::vector<double>{1, 244}));
-  EXPECT_EQ(read(one_receiver({dock({0, 0.4, 0, 1}), dock({0, 1, 0, -M_PI / 2})})), (std::vector<double>{0, 254}))
+  EXPECT_EQ(read_once(one_receiver({virtual_wall({-1, 0, 0, 0})})), (std::vector<double>{1, 255}));
+  EXPECT_EQ(read_once(one_receiver({dock({-1, 0, 0, 0})})), (std::vector<double>{0, 252}));
+  EXPECT_EQ(read_once(one_receiver({virtual_wall({-1, 0, 0, 0}), dock({0, 1, 0, -1.2})})),
+            (std::vector<double>{1, 244}));
+  EXPECT_EQ(read_once(one_receiver({dock({0, 0.4, 0, 1}), dock({0, 1, 0, -M_PI / 2})})), (std::vector<double>{0, 254}))
       << "of two docks, what is seen of either";
-  EXPECT_EQ(read(one_receiver({})), (std::vector<double>{0, 255})) << "no emitters";
+  EXPECT_EQ(read_once(one_receiver({})), (std::vector<double>{0, 255})) << "no emitters";
 }
 
 TEST(IrReceiver, LightIsHiddenByWallsAtItsHeight) {
@@ -107,7 +105,7 @@ TEST(IrReceiver, LightIsHiddenByWallsAtItsHeight) {
   world.movers[0].sensors[0].X_MS.z = 0.1;
   const auto wall = [&](double z_min, double z_max, std::uint32_t model = 7) {
     world.walls = {{.a = {-0.5, -1}, .b = {-0.5, 1}, .z_min = z_min, .z_max = z_max, .model = model}};
-    return read(world)[0];
+    return read_once(world)[0];
   };
   EXPECT_EQ(wall(0, 1), 0.0);
   EXPECT_EQ(wall(0, 0.1), 1.0) << "just too low";
@@ -117,9 +115,9 @@ TEST(IrReceiver, LightIsHiddenByWallsAtItsHeight) {
   EXPECT_EQ(wall(0, 1, 3), 1.0) << "the emitter's own body";
   EXPECT_EQ(wall(0, 1, 4), 0.0);
   world.walls[0].seen_by_laser = false;
-  EXPECT_EQ(read(world)[0], 1.0) << "glass";
+  EXPECT_EQ(read_once(world)[0], 1.0) << "glass";
   world.walls[0] = {.a = {0.5, -1}, .b = {0.5, 1}, .z_min = 0, .z_max = 1};
-  EXPECT_EQ(read(world)[0], 1.0) << "a wall behind the receiver";
+  EXPECT_EQ(read_once(world)[0], 1.0) << "a wall behind the receiver";
 }
 
 /// Many emitters: the tree against a test of each.

@@ -12,6 +12,7 @@
 #include "raycast/records.h"
 #include "sensors/lane_markings/line_fit.h"
 #include "sensors/laneedge.h"
+#include "tests/units.h"
 
 namespace sf::mirror {
 
@@ -130,8 +131,7 @@ static inline double noise_across(const Line& line, const EdgeRow& row) {
 }
 
 static inline EdgeReading single_ray(const EdgeRow& row, const Points& p, double grain) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  if (p.w[0] == 0.0) return {kNan, 0.0, 0.0, kNan, 1.0, 0.0};
+  if (p.w[0] == 0.0) return {kNaN, 0.0, 0.0, kNaN, 1.0, 0.0};
   const double first = std::sqrt(p.x[0] * p.x[0] + p.y[0] * p.y[0]);
   const double spread = row.range_proportional * first;
   return {first, 1.0, 0.0, std::sqrt(row.range_sigma * row.range_sigma + spread * spread + grain * grain / 12.0),
@@ -160,9 +160,8 @@ static inline EdgeReading read_edge(const EdgeRow& row, const Points& p, std::sp
   const PointError point_error = PointError(grain, noise > kFloor ? noise : kFloor);
   const LineFit f =
       fit_at(line, trend, curvature, point_error, row.perpendicular_x, row.perpendicular_y, row.distance_max);
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const double others = all.n - f.points;
-  return {f.seen ? f.distance : kNan, f.points, f.seen ? f.residual : 0.0, f.seen ? f.sigma : kNan, f.gain, others};
+  return {f.seen ? f.distance : kNaN, f.points, f.seen ? f.residual : 0.0, f.seen ? f.sigma : kNaN, f.gain, others};
 }
 
 }  // namespace sf::mirror

@@ -7,13 +7,12 @@
 #include <cmath>
 
 #include "tests/sensors/laneedge_trial.h"
+#include "tests/units.h"
 
 namespace sf::trial {
 namespace {
 
 using sensors::EdgeReading;
-
-constexpr double kDegrees = M_PI / 180.0;
 
 /// `count` sensors before one straight edge, 0.4 m ahead, at angles of up to 40 degrees.
 world::World noisy_world(std::size_t count, const std::vector<double>& noise) {
@@ -21,7 +20,7 @@ world::World noisy_world(std::size_t count, const std::vector<double>& noise) {
   world.lane_markings.push_back(marking({30.0, 0.45}, {-30.0, 0.45}, 0.1));
   for (std::size_t i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count);
-    add_edge_eye(world, {-20.0 + 40.0 * share, 0.0, 0.0, (50.0 + 80.0 * share) * kDegrees},
+    add_edge_eye(world, {-20.0 + 40.0 * share, 0.0, 0.0, (50.0 + 80.0 * share) * kDegree},
                  {{"perpendicular", {0}}, {"noise", noise}});
   }
   return world;

@@ -7,6 +7,7 @@
 
 #include "sensors/laneedge.h"
 #include "sensors/laneedge_packets.h"
+#include "tests/units.h"
 
 namespace sf::sensors {
 namespace {
@@ -43,8 +44,7 @@ TEST(LaneEdgePackets, RoundsToNearestAndSaturates) {
 }
 
 TEST(LaneEdgePackets, NoEdgeInSightKeepsItsPoints) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(encoded({kNan, 1, 0, kNan}, WireFormat::farm),
+  EXPECT_EQ(encoded({kNaN, 1, 0, kNaN}, WireFormat::farm),
             (base::Bytes{0xFF, 0xFF, 1, 0, 0, 0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF}));
   EXPECT_EQ(encoded({0.1, 1e9, 1e9, 1e9}, WireFormat::farm),
             (base::Bytes{100, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}));

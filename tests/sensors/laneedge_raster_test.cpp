@@ -14,6 +14,7 @@
 #include "tests/sensors/compare.h"
 #include "tests/sensors/laneedge_trial.h"
 #include "tests/sensors/scenes.h"
+#include "tests/units.h"
 
 namespace sf::trial {
 namespace {
@@ -22,7 +23,6 @@ using base::Pose;
 using sensors::EdgeReading;
 using sensors::MarkingRaster;
 
-constexpr double kDegrees = M_PI / 180.0;
 constexpr double kPixels[] = {0.002, 0.005, 0.01, 0.02};
 
 // --- The walk -----------------------------------------------------------------------------------------------------
@@ -197,7 +197,7 @@ Trial straight(double h, std::size_t count, double from_degrees, double to_degre
   Trial trial;
   trial.world.road_resolution = h;
   Chance chance(31);
-  constexpr double kWidth = 0.05;
+  constexpr double kRasterWidth = 0.05;
   constexpr std::size_t kStripes = 60;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t k = i % kStripes;
@@ -205,12 +205,13 @@ Trial straight(double h, std::size_t count, double from_degrees, double to_degre
     const glm::dvec2 o{5.0 * static_cast<double>(k % 10), 5.0 * static_cast<double>(k / 10) + 0.0037 * a};
     const glm::dvec2 t{std::cos(a), std::sin(a)};
     const glm::dvec2 n{-t.y, t.x};
-    if (i < kStripes && paint > 0.0) add_dashes(trial.world, o - 2.4 * t, o + 2.4 * t, kWidth, paint, gap);
-    if (i < kStripes && paint == 0.0) trial.world.lane_markings.push_back(marking(o - 2.4 * t, o + 2.4 * t, kWidth));
+    if (i < kStripes && paint > 0.0) add_dashes(trial.world, o - 2.4 * t, o + 2.4 * t, kRasterWidth, paint, gap);
+    if (i < kStripes && paint == 0.0)
+      trial.world.lane_markings.push_back(marking(o - 2.4 * t, o + 2.4 * t, kRasterWidth));
     const double side = chance.below(2) == 0 ? 1.0 : -1.0;
-    const double tilt = side * chance.between(from_degrees, to_degrees) * kDegrees;
+    const double tilt = side * chance.between(from_degrees, to_degrees) * kDegree;
     const double d = chance.between(nearest, farthest);
-    const glm::dvec2 p = o + chance.between(-1.0, 1.0) * t + (0.5 * kWidth + d) * n;
+    const glm::dvec2 p = o + chance.between(-1.0, 1.0) * t + (0.5 * kRasterWidth + d) * n;
     add_edge_eye(trial.world, {p.x, p.y, 0.0, std::atan2(-n.y, -n.x) + tilt}, {{"perpendicular", {0}}});
     trial.truth.push_back(d / std::cos(tilt));
   }
@@ -251,17 +252,17 @@ Trial turn(double h, bool inside, double look) {
   trial.world.road_resolution = h;
   Chance chance(41);
   constexpr double kRadius = 0.68;
-  constexpr double kWidth = 0.03;
+  constexpr double kRasterWidth = 0.03;
   for (std::size_t i = 0; i < 800; ++i) {
     const std::size_t k = i % 16;
     const glm::dvec2 o{3.0 * static_cast<double>(k % 4) + 0.0037 * static_cast<double>(k),
                        3.0 * static_cast<double>(k / 4)};
-    if (i < 16) trial.world.lane_markings.push_back(arc(o, kRadius, 0.0, 2.0 * M_PI - 0.01, kWidth, 1e-5));
+    if (i < 16) trial.world.lane_markings.push_back(arc(o, kRadius, 0.0, 2.0 * M_PI - 0.01, kRasterWidth, 1e-5));
     const double d = chance.between(0.05, 0.4);
     const double at = chance.between(1.0, 5.0);
-    const double face = inside ? kRadius - 0.5 * kWidth : kRadius + 0.5 * kWidth;
+    const double face = inside ? kRadius - 0.5 * kRasterWidth : kRadius + 0.5 * kRasterWidth;
     const double from = inside ? face - d : face + d;
-    const double yaw = (inside ? at : at + M_PI) + look * kDegrees;
+    const double yaw = (inside ? at : at + M_PI) + look * kDegree;
     add_edge_eye(trial.world, {o.x + from * std::cos(at), o.y + from * std::sin(at), 0.0, yaw},
                  {{"perpendicular", {-look}}});
     trial.truth.push_back(d);

@@ -9,6 +9,7 @@
 #include "tests/sensors/chance.h"
 #include "tests/sensors/laneedge_trial.h"
 #include "tests/sensors/scenes.h"
+#include "tests/units.h"
 
 namespace sf::trial {
 namespace {
@@ -16,8 +17,7 @@ namespace {
 using base::Pose;
 using sensors::EdgeReading;
 
-constexpr double kDegrees = M_PI / 180.0;
-constexpr double kWidth = 0.1;
+constexpr double kLineWidth = 0.1;
 
 /// Distance from `X_WS` along `bearing` [rad, sensor frame] to the left edge of a straight marking, by its formula.
 long double face_distance(const world::LaneMarking& s, const Pose& X_WS, double bearing) {
@@ -35,9 +35,9 @@ long double face_distance(const world::LaneMarking& s, const Pose& X_WS, double 
 /// A marking along +x with its near edge `d` [m] ahead of a sensor at the origin, at an angle of `degrees`.
 EdgeReading askew(double d, double degrees, const Settings& settings = {{"perpendicular", {0}}}) {
   world::World world;
-  world.lane_markings.push_back(marking({20.0, 0.0}, {-20.0, 0.0}, kWidth));
+  world.lane_markings.push_back(marking({20.0, 0.0}, {-20.0, 0.0}, kLineWidth));
   // The marking's left side is -y.
-  add_edge_eye(world, {0.0, -d - 0.5 * kWidth, 0.0, (90.0 + degrees) * kDegrees}, settings);
+  add_edge_eye(world, {0.0, -d - 0.5 * kLineWidth, 0.0, (90.0 + degrees) * kDegree}, settings);
   return read_edges(world)[0];
 }
 
@@ -45,7 +45,7 @@ TEST(LaneEdge, ReadsTheDistanceToTheFaceAtAnyAngle) {
   for (const double degrees : {0.0, 1.0, 30.0, 45.0, 60.0, 80.0, 89.0, -1.0, -30.0, -45.0, -60.0, -80.0, -89.0}) {
     const double d = std::fabs(degrees) > 70.0 ? 0.02 : 0.25;
     const EdgeReading r = askew(d, degrees);
-    EXPECT_NEAR(r.distance, d / std::cos(degrees * kDegrees), 1e-10) << degrees;
+    EXPECT_NEAR(r.distance, d / std::cos(degrees * kDegree), 1e-10) << degrees;
     EXPECT_GE(r.points, 10) << degrees;
     EXPECT_LT(r.residual, 1e-12) << degrees;
     EXPECT_LT(r.sigma, 1e-5) << degrees;
@@ -63,7 +63,7 @@ TEST(LaneEdge, AnEdgeParallelToThePerpendicularIsOutOfSight) {
 /// border.
 TEST(LaneEdge, OnTheEdgeItselfAndOnPaint) {
   EXPECT_NEAR(askew(0.0, 10.0).distance, 0.0, 1e-9);
-  EXPECT_NEAR(askew(1e-6, 10.0).distance, 1e-6 / std::cos(10.0 * kDegrees), 1e-12);
+  EXPECT_NEAR(askew(1e-6, 10.0).distance, 1e-6 / std::cos(10.0 * kDegree), 1e-12);
   EXPECT_NEAR(askew(-0.04, 0.0).distance, 0.06, 1e-10) << "the far face, 0.1 m beyond the near one";
 }
 
@@ -107,7 +107,7 @@ TEST(LaneEdge, DashesAreOneEdge) {
 
 /// As in the thesis: of two samples the first ray's range is the reading, not its projection.
 TEST(LaneEdge, ASingleRayReadsItsRange) {
-  EXPECT_NEAR(askew(0.25, 0.0, {{"samples", {2}}, {"fov", {60}}}).distance, 0.25 / std::cos(30.0 * kDegrees), 1e-12);
+  EXPECT_NEAR(askew(0.25, 0.0, {{"samples", {2}}, {"fov", {60}}}).distance, 0.25 / std::cos(30.0 * kDegree), 1e-12);
   EXPECT_NEAR(askew(0.25, 0.0, {{"samples", {1}}}).distance, 0.25, 1e-12);
   EXPECT_EQ(askew(0.25, 0.0, {{"samples", {1}}}).points, 1);
   EXPECT_TRUE(std::isnan(askew(1.5, 0.0, {{"samples", {1}}}).distance));
@@ -117,10 +117,10 @@ TEST(LaneEdge, ASingleRayReadsItsRange) {
 /// Both see the same edge, by default perpendicular to the robot.
 TEST(LaneEdge, TheThesisFrameAndOurs) {
   world::World world;
-  world.lane_markings.push_back(marking({5.0, 0.5}, {-5.0, 0.5}, kWidth));
+  world.lane_markings.push_back(marking({5.0, 0.5}, {-5.0, 0.5}, kLineWidth));
   for (const double tilt : {0.0, 20.0, -20.0}) {
     world::Mover ours;
-    ours.X_WM = {0.0, 0.0, 0.0, tilt * kDegrees};
+    ours.X_WM = {0.0, 0.0, 0.0, tilt * kDegree};
     ours.sensors.push_back(edge_sensor({}, {0.0, 0.225, 0.0, 0.5 * M_PI}));
     world::Mover thesis = ours;
     thesis.X_WM.yaw += 0.5 * M_PI;
@@ -130,7 +130,7 @@ TEST(LaneEdge, TheThesisFrameAndOurs) {
   }
   const auto readings = read_edges(world);
   for (std::size_t i = 0; i < readings.size(); i += 2) {
-    const double tilt = 20.0 * kDegrees * (i == 0 ? 0.0 : 1.0);
+    const double tilt = 20.0 * kDegree * (i == 0 ? 0.0 : 1.0);
     EXPECT_NEAR(readings[i].distance, 0.45 / std::cos(tilt) - 0.225, 1e-12) << i;
     EXPECT_NEAR(readings[i].distance, readings[i + 1].distance, 1e-12) << i;
   }
@@ -142,10 +142,10 @@ TEST(LaneEdge, ThePerpendicularIsTheRobotsAxisNearestToTheView) {
   };
   for (const Case c : {Case{0, 0}, Case{44, 0}, Case{45, 90}, Case{46, 90}, Case{90, 90}, Case{135, 90}, Case{136, 180},
                        Case{180, 180}, Case{-135, -90}, Case{-90, -90}, Case{-45, -90}, Case{-44, 0}}) {
-    const auto edge = sensors::lane_edge_of(edge_sensor({}, {0, 0, 0, c.yaw * kDegrees}), 0, 0);
-    const glm::dvec2 in_robot = base::rotate(c.yaw * kDegrees, edge.perpendicular);
-    EXPECT_NEAR(in_robot.x, std::cos(c.expected * kDegrees), 1e-12) << c.yaw;
-    EXPECT_NEAR(in_robot.y, std::sin(c.expected * kDegrees), 1e-12) << c.yaw;
+    const auto edge = sensors::lane_edge_of(edge_sensor({}, {0, 0, 0, c.yaw * kDegree}), 0, 0);
+    const glm::dvec2 in_robot = base::rotate(c.yaw * kDegree, edge.perpendicular);
+    EXPECT_NEAR(in_robot.x, std::cos(c.expected * kDegree), 1e-12) << c.yaw;
+    EXPECT_NEAR(in_robot.y, std::sin(c.expected * kDegree), 1e-12) << c.yaw;
   }
 }
 
@@ -176,7 +176,7 @@ TEST(LaneEdge, SettingsThatMakeNoSenseAreRefusedWhereTheyStand) {
 TEST(LaneEdge, DefaultsAreThoseOfTheThesis) {
   const auto edge = sensors::lane_edge_of(edge_sensor({}, {0, 0, 0.02, 0}), 0, 0);
   EXPECT_EQ(edge.fan.samples, 61u);
-  EXPECT_NEAR(edge.fan.fov, 30.0 * kDegrees, 1e-15);
+  EXPECT_NEAR(edge.fan.fov, 30.0 * kDegree, 1e-15);
   EXPECT_EQ(edge.fan.range_max, 1.0);
   EXPECT_EQ(edge.fan.range_min, 0.0);
   EXPECT_FALSE(edge.single);
@@ -186,7 +186,7 @@ TEST(LaneEdge, DefaultsAreThoseOfTheThesis) {
 /// Movers hide markings and are no edges; the sensor's own robot hides nothing.
 TEST(LaneEdge, AMoverInTheWayIsNoEdge) {
   world::World world;
-  world.lane_markings.push_back(marking({5.0, 0.0}, {-5.0, 0.0}, kWidth));
+  world.lane_markings.push_back(marking({5.0, 0.0}, {-5.0, 0.0}, kLineWidth));
   add_edge_eye(world, {0.0, -0.55, 0.0, 0.5 * M_PI});
   EXPECT_EQ(read_edges(world)[0].points, 61);
   scenes::add_robot(world, {0.2, -0.25, 0.0, 0.0}, scenes::laser());
@@ -232,10 +232,10 @@ Scene straight_scene(std::uint32_t sensors_wanted, double most_degrees, std::uin
     const glm::dvec2 o = offset + glm::dvec2{7.0 * (k % 8), 7.0 * (k / 8.0)};
     const glm::dvec2 t{std::cos(a), std::sin(a)};
     const glm::dvec2 n{-t.y, t.x};
-    if (i < kStripes) scene.world.lane_markings.push_back(marking(o - 3.0 * t, o + 3.0 * t, kWidth));
-    const double tilt = chance.between(-most_degrees, most_degrees) * kDegrees;
-    const double d = chance.between(0.02, std::fabs(tilt) > 60.0 * kDegrees ? 0.1 : 0.6);
-    const glm::dvec2 p = o + chance.between(-0.5, 0.5) * t + (0.5 * kWidth + d) * n;
+    if (i < kStripes) scene.world.lane_markings.push_back(marking(o - 3.0 * t, o + 3.0 * t, kLineWidth));
+    const double tilt = chance.between(-most_degrees, most_degrees) * kDegree;
+    const double d = chance.between(0.02, std::fabs(tilt) > 60.0 * kDegree ? 0.1 : 0.6);
+    const glm::dvec2 p = o + chance.between(-0.5, 0.5) * t + (0.5 * kLineWidth + d) * n;
     const Pose X_WS{p.x, p.y, 0.0, std::atan2(-n.y, -n.x) + tilt};
     add_edge_eye(scene.world, X_WS, {{"perpendicular", {0}}});
     scene.truth.push_back(face_distance(scene.world.lane_markings[k], X_WS, 0.0));

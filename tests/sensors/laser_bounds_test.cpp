@@ -23,17 +23,17 @@ namespace {
 using Wide = long double;
 
 const int kTicks = instrumented() ? 1 : 28;
-constexpr std::uint32_t kRobots = 100;  // of 361 beams
+constexpr std::uint32_t kBoundRobots = 100;  // of 361 beams
 
 /// A world with the square in which robots are placed.
-struct Scene {
+struct BoundScene {
   std::string name;
   world::World world;
   glm::dvec2 middle;
   double half = 1.0;  ///< [m] half the side of that square
 };
 
-struct Seen {
+struct BoundTally {
   std::size_t beams = 0, flagged = 0, beyond = 0;
   double worst = 0.0;        ///< [m] of beams without a flag
   double worst_share = 0.0;  ///< as a fraction of the bound
@@ -60,7 +60,8 @@ Wide cast(std::span<const world::Segment> surfaces, glm::dvec2 o, Wide direction
   return best;
 }
 
-void look(const Scene& scene, std::span<const base::Pose> poses, const base::ReadingBlock& reading, Seen& seen) {
+void look(const BoundScene& scene, std::span<const base::Pose> poses, const base::ReadingBlock& reading,
+          BoundTally& seen) {
   const sensors::LaserSettings laser = sensors::lasers_of(scene.world.movers[reading.mover])[0];
   const auto all = oracle::surfaces(scene.world, poses, reading.mover, reading.X_WS.z);
   const auto near = oracle::within(all, {reading.X_WS.x, reading.X_WS.y}, laser.range_max);
@@ -84,7 +85,7 @@ void look(const Scene& scene, std::span<const base::Pose> poses, const base::Rea
   }
 }
 
-void add(const Seen& part, Seen& sum) {
+void add(const BoundTally& part, BoundTally& sum) {
   sum.beams += part.beams;
   sum.flagged += part.flagged;
   sum.beyond += part.beyond;
@@ -95,13 +96,13 @@ void add(const Seen& part, Seen& sum) {
   if (sum.example.empty()) sum.example = part.example;
 }
 
-Seen measure(Scene& scene, const std::string& mode) {
+BoundTally measure(BoundScene& scene, const std::string& mode) {
   sensors::set_accuracy(scene.world, mode);
   farm::Farm farm(scene.world, device());
   farm.subscribe_all();
   base::ThreadPool thread_pool(0);
   Chance chance(11);
-  Seen sum;
+  BoundTally sum;
   for (int tick = 0; tick < kTicks; ++tick) {
     std::vector<base::Pose> poses;
     std::vector<base::Report> reports;
@@ -111,25 +112,25 @@ Seen measure(Scene& scene, const std::string& mode) {
       reports.push_back({m, 0, poses.back(), {}});
     }
     const auto readings = farm.tick(tick * 1'000'000'000ll, reports);
-    std::vector<Seen> parts(readings.size());
+    std::vector<BoundTally> parts(readings.size());
     thread_pool.parallel_for(readings.size(), 1, [&](std::size_t first, std::size_t last, unsigned) {
       for (std::size_t i = first; i < last; ++i) look(scene, poses, readings[i], parts[i]);
     });
-    for (const Seen& part : parts) add(part, sum);
+    for (const BoundTally& part : parts) add(part, sum);
   }
   return sum;
 }
 
-Scene with_robots(std::string name, world::World world, double half, double range, glm::dvec2 middle = {}) {
-  for (std::uint32_t i = 0; i < kRobots; ++i)
+BoundScene with_robots(std::string name, world::World world, double half, double range, glm::dvec2 middle = {}) {
+  for (std::uint32_t i = 0; i < kBoundRobots; ++i)
     scenes::add_robot(world, {middle.x, middle.y, 0.0, 0.0}, scenes::laser(361, M_PI, range));
   world::update_extent_and_hash(world);
   return {std::move(name), std::move(world), middle, half};
 }
 
 /// Robots without bodies: only walls are visible.
-Scene with_eyes(std::string name, world::World world, double half, double range, glm::dvec2 middle = {}) {
-  for (std::uint32_t i = 0; i < kRobots; ++i)
+BoundScene with_eyes(std::string name, world::World world, double half, double range, glm::dvec2 middle = {}) {
+  for (std::uint32_t i = 0; i < kBoundRobots; ++i)
     add_eye(world, {middle.x, middle.y, 0.0, 0.0}, eye(361, 2.0 * M_PI, range));
   world::update_extent_and_hash(world);
   return {std::move(name), std::move(world), middle, half};
@@ -187,9 +188,9 @@ world::World shrunk(world::World world, double by) {
   return world;
 }
 
-void expect_within_bounds(const char* mode, const std::function<Scene()>& make) {
-  Scene scene = make();
-  const Seen s = measure(scene, mode);
+void expect_within_bounds(const char* mode, const std::function<BoundScene()>& make) {
+  BoundScene scene = make();
+  const BoundTally s = measure(scene, mode);
   std::printf(
       "[ measured ] %s, %s: %zu beams, worst %.2g m, %.3g of the bound (up to %.2g m); %zu flagged, worst %.2g m\n",
       scene.name.c_str(), mode, s.beams, s.worst, s.worst_share, s.bound, s.flagged, s.flagged_worst);

@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "tests/netio/documented.h"
+#include "tests/units.h"
 
 namespace sf::sensors {
 namespace {
 
 using test::documented;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::uint8_t kPlain = 1;
 constexpr std::uint8_t kSecond = 65;
 constexpr std::size_t kHeader = 64;     ///< [byte] before every payload on the wire
@@ -97,19 +96,19 @@ TEST(LaserPackets, ExtendedRangesRoundAndSaturate) {
 
 TEST(LaserPackets, NanIsNeverSent) {
   for (const double range_max : {8.0, 80.0}) {
-    for (const auto& ranges : {std::vector{1.0, kNan}, std::vector{kNan, 1.0}}) {
+    for (const auto& ranges : {std::vector{1.0, kNaN}, std::vector{kNaN, 1.0}}) {
       base::Bytes out = {1, 2, 3};
       EXPECT_EQ(encode_laser(laser(2, range_max), scan_of(ranges), WireFormat::farm, 0, out), 0);
       EXPECT_EQ(out, (base::Bytes{1, 2, 3}));  // nothing appended
     }
   }
   base::Bytes out;
-  EXPECT_EQ(encode_laser(laser(1, 8.0), scan_of({kNan}), WireFormat::thesis, 0, out), 0);
+  EXPECT_EQ(encode_laser(laser(1, 8.0), scan_of({kNaN}), WireFormat::thesis, 0, out), 0);
 }
 
 TEST(LaserPackets, ANanStopsItsOwnPartOnly) {
   std::vector<double> ranges(311, 1.0);
-  ranges[310] = kNan;
+  ranges[310] = kNaN;
   base::Bytes out;
   EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), WireFormat::farm, 0, out), kSecond);
   EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), WireFormat::farm, 1, out), 0);

@@ -1,4 +1,4 @@
-// Properties of any scan in any world: translated, rotated, mirrored, with objects added, sampled more densely.
+// Properties of any scan in any world: translated, rotated, mirrored_point, with objects added, sampled more densely.
 // Counterexamples are shrunk to small worlds.
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ double snap(double x) { return std::round(x * 1048576.0) / 1048576.0; }
 using Map = glm::dvec2 (*)(glm::dvec2);
 glm::dvec2 same(glm::dvec2 p) { return p; }
 /// Keeps the solid on the left by reversing the order of corners.
-glm::dvec2 mirrored(glm::dvec2 p) { return {p.x, -p.y}; }
+glm::dvec2 mirrored_point(glm::dvec2 p) { return {p.x, -p.y}; }
 
 world::World build(const Blocks& blocks, Map map = same, bool reverse = false) {
   world::World world;
@@ -149,7 +149,7 @@ RC_GTEST_PROP(LaserProperties, AMirroredWorldGivesMirroredScans, (const Blocks& 
   std::vector<Pose> there = poses_of(stands);
   for (Pose& pose : there) pose.y = -pose.y, pose.yaw = -pose.yaw;
   expect_alike(build(blocks), poses_of(stands), look(build(blocks), poses_of(stands)),
-               look(build(blocks, mirrored, true), there), true);
+               look(build(blocks, mirrored_point, true), there), true);
 }
 
 RC_GTEST_PROP(LaserProperties, AnotherObstacleLengthensNoRange, (const Blocks& blocks, const Block& another)) {

@@ -13,7 +13,7 @@
 namespace sf::trial {
 namespace {
 
-const std::uint32_t kRobots = instrumented() ? 20 : 200;
+const std::uint32_t kReferenceRobots = instrumented() ? 20 : 200;
 
 struct Disagreement {
   std::size_t beams = 0;
@@ -65,7 +65,7 @@ void expect_same_bits(const std::string& name, const Disagreement& d) {
 
 world::World crowd(const sensors::LaserSettings& laser, std::uint64_t seed) {
   world::World world = scenes::boxes(60, 16.0, seed);
-  scenes::add_robots(world, kRobots, laser, seed);
+  scenes::add_robots(world, kReferenceRobots, laser, seed);
   return world;
 }
 
@@ -80,7 +80,7 @@ TEST(LaserReference, InModesThatSkip) {
 
 TEST(LaserReference, InACave) {
   world::World world = scenes::cave(100, 16.0, 3);
-  scenes::add_robots(world, kRobots / 4, scenes::laser(), 3);
+  scenes::add_robots(world, kReferenceRobots / 4, scenes::laser(), 3);
   expect_same_bits("cave", disagreement(world, 1));
 }
 

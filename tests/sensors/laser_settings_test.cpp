@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "sensors/sensor_set.h"
+#include "tests/units.h"
 #include "tests/world/read_world.h"
 
 namespace sf::sensors {
@@ -22,8 +23,6 @@ World read(const std::string& text, LoadOptions options = {}) {
   options.sensors = world_file_words();
   return world::read_world(text, options);
 }
-
-constexpr double kDegree = M_PI / 180.0;
 
 std::vector<LaserSettings> lasers(const std::string& inside, const LoadOptions& options = {}) {
   return lasers_of(read("position( size [0.4 0.4 0.1] " + inside + " )", options).movers.at(0));

@@ -14,12 +14,12 @@
 namespace sf::trial {
 namespace {
 
-const std::uint32_t kRobots = instrumented() ? 6 : 24;  ///< each beam is checked against every segment
+const std::uint32_t kLaserRobots = instrumented() ? 6 : 24;  ///< each beam is checked against every segment
 constexpr double kRanges[] = {0.75, 8.0, 30.0, 100.0};
 
 /// Robots with bodies at random free poses, with two of four ranges each time, so that list configs mix.
 world::World with_robots(world::World world, double range, std::uint64_t seed) {
-  scenes::add_robots(world, kRobots, scenes::laser(181, M_PI, range), seed);
+  scenes::add_robots(world, kLaserRobots, scenes::laser(181, M_PI, range), seed);
   return world;
 }
 
@@ -63,7 +63,7 @@ void file_test(const std::string& file) {
   world::World world = world::load_world(file, {.sensors = sensors::world_file_words()});
   const bool robots = !world.movers.empty() && !sensors::lasers_of(world.movers[0]).empty() && !world.movers[0].is_tag;
   if (robots) {
-    world::clone_robots(world, kRobots, 7);
+    world::clone_robots(world, kLaserRobots, 7);
     for (world::Mover& mover : world.movers)
       scenes::edit_lasers(mover, [](auto& laser) {
         laser.noise = {};
@@ -72,7 +72,7 @@ void file_test(const std::string& file) {
       });
   } else {
     world.movers.clear();
-    scenes::add_robots(world, kRobots, scenes::laser(181, 2.0 * M_PI, 30.0), 7);
+    scenes::add_robots(world, kLaserRobots, scenes::laser(181, 2.0 * M_PI, 30.0), 7);
   }
   const Tally tally = sweep(world);
   expect_exact(std::filesystem::path(file).filename().string(), tally);

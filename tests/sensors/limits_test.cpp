@@ -10,7 +10,7 @@
 namespace sf::trial {
 namespace {
 
-const farm::FarmOptions kOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
+const farm::FarmOptions kLimitsOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
 
 void add_thin(std::vector<world::Segment>& out, glm::dvec2 a, glm::dvec2 b, std::uint32_t model) {
   world::Segment s;
@@ -41,7 +41,7 @@ world::World rails(int count) {
 /// Thin rails are listed twice, once per side visible from the cell: 5 500 of them are 11 000 entries.
 TEST(Limits, ListsNearlyAsLongAsTheBoundAreReadToTheEnd) {
   const world::World world = rails(5'500);
-  const Glance glance(world, kOnDevice);
+  const Glance glance(world, kLimitsOnDevice);
   EXPECT_NEAR(glance.readings[0].values[0], 7.0, 1e-12) << "the last of the list is what the first beam meets";
   EXPECT_EQ(glance.readings[0].hits[0], 1u);
   EXPECT_GT(glance.farm.stats().work.uncertain, 0u) << "the test is meant to send every entry to the 64-bit decision";
@@ -69,13 +69,13 @@ TEST(Limits, WallsAndMoversTogetherStayWithinTheLoopsBudget) {
 TEST(Limits, MoreWallsInOneSectorThanTheBoundAreCastOnTheHost) {
   for (const int count : {5'601, 12'500}) {
     const world::World world = rails(count);
-    const Glance glance(world, kOnDevice);
+    const Glance glance(world, kLimitsOnDevice);
     EXPECT_NEAR(glance.readings[0].values[0], 7.0, 1e-12);
     EXPECT_EQ(glance.readings[0].hits[0], 1u);
     EXPECT_EQ(glance.farm.stats().work.host_scans, 1u) << count;
     expect_exact("rails", sweep(world));
   }
-  EXPECT_EQ(Glance(rails(5'500), kOnDevice).farm.stats().work.host_scans, 0u);
+  EXPECT_EQ(Glance(rails(5'500), kLimitsOnDevice).farm.stats().work.host_scans, 0u);
 }
 
 TEST(Limits, MoreOfMoversInOneSectorThanTheBoundAreCastOnTheHost) {
@@ -85,7 +85,7 @@ TEST(Limits, MoreOfMoversInOneSectorThanTheBoundAreCastOnTheHost) {
   const auto at = [](int i) { return glm::dvec2{0.0, 1e-4 * i - 0.625}; };
   for (int i = 0; i < 12'500; ++i) add_thin(world.movers[m].body, at(i), at(i + 1), 0);
   world.movers[m].radius = 0.63;
-  const Glance glance(world, kOnDevice);
+  const Glance glance(world, kLimitsOnDevice);
   EXPECT_NEAR(glance.readings[0].values[0], 7.0, 1e-12);
   EXPECT_EQ(glance.farm.stats().work.host_scans, 1u);
 }

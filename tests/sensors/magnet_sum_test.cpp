@@ -21,9 +21,9 @@ using scenes::magnitude;
 using sensors::FieldPoint;
 using sensors::FieldSum;
 
-constexpr double kGauss = 1e-4;
+constexpr double kSumGauss = 1e-4;
 
-FieldSum field(const world::World& world, const FieldPoint& point) {
+FieldSum summed_field(const world::World& world, const FieldPoint& point) {
   return sensors::sample_field(world, device(), {&point, 1}, {.magnitudes = true})[0];
 }
 
@@ -33,7 +33,7 @@ TEST(MagnetSum, TheSumOfMagnitudesIsThat) {
   for (int i = 0; i < 50; ++i) {
     const FieldPoint point{chance.between(-2, 2), chance.between(-2, 2), chance.between(0.03, 0.5)};
     const scenes::Exact truth = scenes::exact(world, point);
-    const FieldSum b = field(world, point);
+    const FieldSum b = summed_field(world, point);
     EXPECT_NEAR(b.magnitudes, static_cast<double>(truth.magnitudes), 1e-7 * static_cast<double>(truth.magnitudes));
     EXPECT_LE(magnitude(b), b.magnitudes * (1 + 1e-12)) << "the vectors' sum is never longer";
   }
@@ -53,14 +53,14 @@ TEST(MagnetSum, MagnitudesDoNotChangeVectors) {
   }
 }
 
-struct Errors {
+struct SumErrors {
   double worst = 0.0;    ///< [T]
   double largest = 0.0;  ///< [T] |B| of the points
 };
 
-Errors errors(const world::World& world, std::span<const FieldPoint> points) {
+SumErrors errors(const world::World& world, std::span<const FieldPoint> points) {
   const auto sums = sensors::sample_field(world, device(), points, {.magnitudes = true});
-  Errors e;
+  SumErrors e;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const scenes::Exact truth = scenes::exact(world, points[i]);
     e.worst = std::max(e.worst, scenes::apart(truth, sums[i]));
@@ -71,7 +71,7 @@ Errors errors(const world::World& world, std::span<const FieldPoint> points) {
   return e;
 }
 
-/// `count` points at `height` [m], some of them directly above a magnet, where the field is largest.
+/// `count` points at `height` [m], some of them directly above a magnet, where the summed_field is largest.
 std::vector<FieldPoint> places_over(const world::World& world, std::uint32_t count, double half, double height) {
   Chance chance(11);
   std::vector<FieldPoint> points;
@@ -85,7 +85,7 @@ std::vector<FieldPoint> places_over(const world::World& world, std::uint32_t cou
   return points;
 }
 
-const std::uint32_t kMany = instrumented() ? 20'000 : 200'000, kPlaces = instrumented() ? 50 : 500;
+const std::uint32_t kMany = instrumented() ? 20'000 : 200'000, kSumPlaces = instrumented() ? 50 : 500;
 
 /// The thesis' components in plain doubles, on all cores.
 std::vector<FieldSum> direct_sums(const world::World& world, std::span<const FieldPoint> points) {
@@ -111,7 +111,7 @@ TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
     for (const double height : {0.1, 1.0}) {
       world::World world = scenes::sheet(kMany, 400.0, 7);
       for (world::Magnet& m : world.magnets) m.p = m.p + glm::dvec2{offset, -offset};
-      const auto points = places_over(world, kPlaces, 100.0, height);
+      const auto points = places_over(world, kSumPlaces, 100.0, height);
       const auto sums = sensors::sample_field(world, device(), points);
       const auto truths = direct_sums(world, points);
       double worst = 0.0, largest = 0.0;
@@ -121,7 +121,7 @@ TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
         largest = std::max(largest, magnitude(b));
       }
       std::cout << "[ measured ] " << kMany << " magnets, " << offset / 1e3 << " km off, " << height
-                << " m up: worst error " << worst / largest << " of the largest field, " << largest / kGauss
+                << " m up: worst error " << worst / largest << " of the largest summed_field, " << largest / kSumGauss
                 << " Gauss\n";
       EXPECT_LE(worst, 1e-9 * largest) << "1e-6 is asked for";
     }
@@ -134,7 +134,7 @@ TEST(MagnetSum, TwoHundredThousandMagnetsInOneSpot) {
     world::World world;
     for (std::uint32_t i = 0; i < 200'000; ++i) world.magnets.push_back(magnet({1.0, 2.0}, 0.0, 1e-6));
     world.magnet_cutoff = cutoff;
-    const FieldSum b = field(world, {1.0, 2.0, 0.25});
+    const FieldSum b = summed_field(world, {1.0, 2.0, 0.25});
     const double truth = 0.2 * 2e-7 / std::pow(0.25, 3);
     EXPECT_NEAR(b.z, truth, 1e-7 * truth) << cutoff;
     EXPECT_NEAR(b.magnitudes, truth, 1e-7 * truth) << cutoff;
@@ -149,7 +149,7 @@ TEST(MagnetSum, EveryNumberOfMagnetsAndPlaces) {
     const world::World world = scenes::sheet(magnets, 3.0, magnets);
     for (const std::uint32_t count : {1u, 4u, 5u, 6u, 159u, 160u, 161u}) {
       if (magnets > 5 && count > 6) continue;
-      const Errors e = errors(world, places_over(world, count, 1.0, 0.1));
+      const SumErrors e = errors(world, places_over(world, count, 1.0, 0.1));
       EXPECT_LE(e.worst, 1e-7 * e.largest) << magnets << " magnets, " << count << " points";
     }
   }
@@ -210,7 +210,7 @@ TEST(MagnetSum, ThreadsAndCompanyChangeNothing) {
 
 // --- Properties.
 
-/// The field of two worlds together is the sum of both.
+/// The summed_field of two worlds together is the sum of both.
 TEST(MagnetSum, IsLinear) {
   Chance chance(12);
   const world::World one_world = scenes::sheet(40, 2.0, 20, true), other = scenes::sheet(30, 2.0, 21, true);
@@ -218,13 +218,13 @@ TEST(MagnetSum, IsLinear) {
   both.magnets.insert(both.magnets.end(), other.magnets.begin(), other.magnets.end());
   for (int i = 0; i < 30; ++i) {
     const FieldPoint point{chance.between(-1, 1), chance.between(-1, 1), chance.between(0.05, 0.4)};
-    const FieldSum a = field(one_world, point), b = field(other, point), c = field(both, point);
+    const FieldSum a = summed_field(one_world, point), b = summed_field(other, point), c = summed_field(both, point);
     EXPECT_NEAR(a.x + b.x, c.x, 1e-14 * (a.magnitudes + b.magnitudes));
     EXPECT_NEAR(a.z + b.z, c.z, 1e-14 * (a.magnitudes + b.magnitudes));
   }
 }
 
-/// A rotated and translated world has the rotated field; mirrored in the plane x = 0, the mirrored field.
+/// A rotated and translated world has the rotated summed_field; mirrored in the plane x = 0, the mirrored summed_field.
 TEST(MagnetSum, TurnsAndMirrorsWithTheWorld) {
   Chance chance(13);
   const world::World world = scenes::sheet(60, 2.0, 22, true);
@@ -235,7 +235,8 @@ TEST(MagnetSum, TurnsAndMirrorsWithTheWorld) {
     for (world::Magnet& m : turned.magnets) m.p = base::transform(X, m.p);
     for (world::Magnet& m : mirrored_world.magnets) m.p.x = -m.p.x;
     const glm::dvec2 q = base::transform(X, {p.x, p.y});
-    const FieldSum b = field(world, p), t = field(turned, {q.x, q.y, p.z}), s = field(mirrored_world, {-p.x, p.y, p.z});
+    const FieldSum b = summed_field(world, p), t = summed_field(turned, {q.x, q.y, p.z}),
+                   s = summed_field(mirrored_world, {-p.x, p.y, p.z});
     const glm::dvec2 expected = base::rotate(X.yaw, {b.x, b.y});
     const double some = 1e-10 * b.magnitudes;
     EXPECT_NEAR(t.x, expected.x, some);

@@ -16,8 +16,6 @@ namespace {
 using scenes::Element;
 using scenes::element;
 
-constexpr double kGauss = sensors::kGauss;
-
 struct NoiseDraws {
   std::vector<double> of[4];  ///< field (of the sum of magnitudes), x, y, z, in sigmas
   std::size_t lengths_wrong = 0;
@@ -41,7 +39,7 @@ NoiseDraws draw_noise(bool magnitudes) {
     for (std::size_t r = 0; r < with.size(); ++r)
       for (std::size_t e = 0; e < 5; ++e) {
         const Element n = element(with[r], e), q = element(without[r], e);
-        const double unit = kSigma * kGauss;
+        const double unit = kSigma * sensors::kGauss;
         const double all[] = {(n.field - q.field) / unit, (n.x - q.x) / unit, (n.y - q.y) / unit, (n.z - q.z) / unit};
         for (std::size_t k = 0; k < 4; ++k) draws.of[k].push_back(all[k]);
         draws.lengths_wrong += std::fabs(n.field - std::hypot(n.x, n.y, n.z)) > 1e-15;
@@ -80,10 +78,10 @@ TEST(MagnetometerNoise, ComesBeforeSaturation) {
   std::size_t low = 0, high = 0;
   for (const base::ReadingBlock& r : run.readings)
     for (const double tesla : r.values) {
-      ASSERT_GE(tesla, -0.5 * kGauss);
-      ASSERT_LE(tesla, 0.5 * kGauss);
-      low += tesla == -0.5 * kGauss;
-      high += tesla == 0.5 * kGauss;
+      ASSERT_GE(tesla, -0.5 * sensors::kGauss);
+      ASSERT_LE(tesla, 0.5 * sensors::kGauss);
+      low += tesla == -0.5 * sensors::kGauss;
+      high += tesla == 0.5 * sensors::kGauss;
     }
   EXPECT_GT(low, 50u);
   EXPECT_GT(high, 50u);

@@ -19,7 +19,6 @@ using scenes::Element;
 using scenes::element;
 using scenes::magnet;
 
-constexpr double kGauss = sensors::kGauss;
 constexpr double kHigh = 0.125;  // [m] height of the thesis' sensors above the magnets' centres
 
 /// A robot at `X_WM` with `sensor` over one magnet of 1 A m^2 at (1, 0).
@@ -37,8 +36,8 @@ TEST(Magnetometer, ReadsOneGaussRightAboveAMagnet) {
   EXPECT_EQ(r.type, sensors::kMagnetometer);
   ASSERT_EQ(r.values.size(), 20u);
   const Element middle = element(r, 2);
-  EXPECT_NEAR(middle.field / kGauss, 1.024, 1e-6);
-  EXPECT_NEAR(middle.z / kGauss, 1.024, 1e-6);
+  EXPECT_NEAR(middle.field / sensors::kGauss, 1.024, 1e-6);
+  EXPECT_NEAR(middle.z / sensors::kGauss, 1.024, 1e-6);
   EXPECT_NEAR(std::hypot(middle.x, middle.y), 0.0, 1e-17);
 }
 
@@ -128,14 +127,14 @@ TEST(Magnetometer, SaturatesAtBothEnds) {
   sensor.settings.push_back(scenes::setting("ssensitivity", {-0.3, 0.8}));
   world::World high, low;
   const Element most = element(over_one({1, 0, 0, 0}, sensor, high).readings[0], 0);
-  EXPECT_EQ(most.field, 0.8 * kGauss);
-  EXPECT_EQ(most.z, 0.8 * kGauss);
+  EXPECT_EQ(most.field, 0.8 * sensors::kGauss);
+  EXPECT_EQ(most.z, 0.8 * sensors::kGauss);
   low.magnets.push_back(magnet({1, 0}, 0, -1.0));
   scenes::add_carrier(low, {1, 0, 0, 0}, sensor);
   const Glance run(low);
   const Element least = element(run.readings[0], 0);
-  EXPECT_EQ(least.z, -0.3 * kGauss);
-  EXPECT_EQ(least.field, 0.8 * kGauss) << "the field has no sign";
+  EXPECT_EQ(least.z, -0.3 * sensors::kGauss);
+  EXPECT_EQ(least.field, 0.8 * sensors::kGauss) << "the field has no sign";
 }
 
 TEST(Magnetometer, InTheMiddleOfAMagnetItSaturates) {
@@ -143,7 +142,7 @@ TEST(Magnetometer, InTheMiddleOfAMagnetItSaturates) {
   sensor.settings.push_back(scenes::setting("ssensitivity", {-100, 100}));
   world::World world;
   const Element e = element(over_one({1, 0, 0, 0}, sensor, world).readings[0], 0);
-  EXPECT_EQ(e.field, 100 * kGauss) << "it is 1024 Gauss";
+  EXPECT_EQ(e.field, 100 * sensors::kGauss) << "it is 1024 Gauss";
 }
 
 TEST(Magnetometer, TheSensitivitysDefaultIsWhatTheWireHolds) {

@@ -14,9 +14,9 @@
 namespace sf::trial {
 namespace {
 
-constexpr int kRobots = 8;
+constexpr int kNoisyRobots = 8;
 constexpr std::uint32_t kBeams = 181;
-constexpr int kTicks = 12;
+constexpr int kNoisyTicks = 12;
 
 /// Chi-square of `draws` over 40 bins of equal probability: 39 degrees of freedom, above 72 once in a thousand runs.
 double chi_square(const std::vector<double>& draws) {
@@ -42,7 +42,7 @@ world::World slanted(const raycast::ScanNoise& noise, double range_max = 30.0) {
   sensors::LaserSettings laser = eye(kBeams, 1.0, range_max);
   laser.X_MS.yaw = M_PI / 2 + 0.3;
   laser.noise = noise;
-  for (int i = 0; i < kRobots; ++i) {
+  for (int i = 0; i < kNoisyRobots; ++i) {
     add_eye(world, {0.1 * i, 0.0, 0.0, 0.01 * i}, laser);
     world.movers.back().sensors.push_back(sensors::laser_sensor(laser));
   }
@@ -57,13 +57,13 @@ std::vector<double> draws(const world::World& world, std::uint64_t seed, Of of) 
   noisy.subscribe_all();
   quiet.subscribe_all();
   std::vector<double> all;
-  for (int k = 0; k < kTicks; ++k) {
+  for (int k = 0; k < kNoisyTicks; ++k) {
     const auto with = noisy.tick(k * 100'000'000ll, {});
     const auto without = quiet.tick(k * 100'000'000ll, {});
     for (std::size_t r = 0; r < with.size(); ++r)
       for (std::uint32_t i = 0; i < kBeams; ++i) all.push_back(of(with[r], i, without[r].values[i]));
   }
-  EXPECT_EQ(all.size(), static_cast<std::size_t>(kTicks * kRobots * 2) * kBeams);
+  EXPECT_EQ(all.size(), static_cast<std::size_t>(kNoisyTicks * kNoisyRobots * 2) * kBeams);
   return all;
 }
 
@@ -74,7 +74,7 @@ void expect_standard_normal(const std::vector<double>& all) {
 
 /// Neighbouring beams, sensors, robots and ticks are uncorrelated, within 4 standard deviations.
 void expect_independent(const std::vector<double>& all) {
-  const std::size_t per_tick = static_cast<std::size_t>(kRobots) * 2 * kBeams;
+  const std::size_t per_tick = static_cast<std::size_t>(kNoisyRobots) * 2 * kBeams;
   for (const std::size_t lag :
        {std::size_t{1}, std::size_t{2}, std::size_t{kBeams}, std::size_t{2 * kBeams}, per_tick}) {
     const std::vector<double> p(all.begin(), all.end() - static_cast<std::ptrdiff_t>(lag));

@@ -6,15 +6,11 @@
 
 #include <algorithm>
 
+#include "tests/device.h"
 #include "tests/sensors/map_scans.h"
 
 namespace sf::trial {
 namespace {
-
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
 
 sensors::MapSettings map_of(double fov, std::uint32_t samples, double range_max, double cell = 0.03,
                             glm::dvec2 corner = {0.0, 0.0}) {
@@ -26,7 +22,7 @@ sensors::MapSettings map_of(double fov, std::uint32_t samples, double range_max,
   return p;
 }
 
-struct Tally {
+struct CellTally {
   std::size_t scans = 0;
   std::size_t cells = 0;      ///< compared
   std::size_t occupied = 0;   ///< of these
@@ -36,15 +32,15 @@ struct Tally {
 
 /// `rounds` scans into every map, or each time into `some` of them, in both orders; all maps are compared after each
 /// `every`-th scan.
-Tally contest(const std::vector<sensors::MapSettings>& map_settings, std::size_t rounds, std::size_t every,
-              std::uint64_t seed, bool some = false, double farthest = maps::kMaxRangeCells) {
+CellTally contest(const std::vector<sensors::MapSettings>& map_settings, std::size_t rounds, std::size_t every,
+                  std::uint64_t seed, bool some = false, double farthest = maps::kMaxRangeCells) {
   base::ThreadPool thread_pool;
   sensors::MapBatch batch(device(), thread_pool, map_settings, farthest);
   PlainMaps plain(map_settings);
   Chance chance(seed);
   std::vector<std::uint32_t> wanted;
   for (std::uint32_t i = 0; i < map_settings.size(); ++i) wanted.push_back(i);
-  Tally tally;
+  CellTally tally;
   for (std::size_t round = 1; round <= rounds; ++round) {
     std::vector<std::vector<double>> ranges;
     std::vector<sensors::MapScan> scans;
@@ -89,7 +85,7 @@ std::vector<sensors::MapSettings> spread(const sensors::MapSettings& common, std
 }
 
 TEST(OccupancyBatch, AgreesWithTheRuleOnTheThesisLaser) {
-  const Tally tally = contest(spread(map_of(M_PI, 361, 0.75), 50), 40, 5, 1);
+  const CellTally tally = contest(spread(map_of(M_PI, 361, 0.75), 50), 40, 5, 1);
   EXPECT_EQ(tally.different, 0u);
   EXPECT_EQ(tally.scans, 2'000u);
   EXPECT_GT(tally.occupied, 20'000u) << "the scans say something";
@@ -112,7 +108,7 @@ TEST(OccupancyBatch, AgreesWithTheRuleOnOtherLasers) {
   };
   std::uint64_t seed = 10;
   for (const sensors::MapSettings& settings : cases) {
-    const Tally tally = contest(spread(settings, 12), 12, 4, ++seed);
+    const CellTally tally = contest(spread(settings, 12), 12, 4, ++seed);
     EXPECT_EQ(tally.different, 0u) << "fov " << settings.fov << ", " << settings.samples << " beams, "
                                    << settings.range_max << " m";
     EXPECT_GT(tally.free + tally.occupied, 0u);
@@ -132,7 +128,7 @@ TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
   map_settings[2].odds = maps::LogOddsUpdate{1, 1, 1};              // the smallest
   map_settings[4].odds = maps::LogOddsUpdate{0, 3, 20};             // never occupied
   for (const double farthest : {0.0, 1e3}) {
-    const Tally tally = contest(map_settings, 25, 1, 40, false, farthest);
+    const CellTally tally = contest(map_settings, 25, 1, 40, false, farthest);
     EXPECT_EQ(tally.different, 0u) << (farthest > 0.0 ? "on the device" : "on the host");
     EXPECT_GT(tally.occupied, 1'000u);
   }
@@ -163,7 +159,7 @@ TEST(OccupancyBatch, UpdatesAFewMapsAtATimeInAnyOrder) {
   std::vector<sensors::MapSettings> map_settings = spread(map_of(M_PI, 61, 1.5), 12);
   for (std::size_t i = 0; i < map_settings.size(); ++i)
     map_settings[i].samples = 30 + 7 * static_cast<std::uint32_t>(i);
-  const Tally tally = contest(map_settings, 40, 1, 70, true);
+  const CellTally tally = contest(map_settings, 40, 1, 70, true);
   EXPECT_EQ(tally.different, 0u);
   EXPECT_GT(tally.scans, 60u);
   EXPECT_LT(tally.scans, 200u) << "most stay as they are";

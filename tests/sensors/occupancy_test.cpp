@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "farm/farm.h"
 #include "maps/map_packets.h"
+#include "tests/device.h"
 #include "tests/sensors/edit_laser.h"
 #include "tests/sensors/map_scans.h"
 #include "tests/sensors/scenes.h"
@@ -16,11 +17,6 @@ namespace sf::trial {
 namespace {
 
 using sensors::WireFormat;
-
-gpu::Device& device() {
-  static gpu::Device device;
-  return device;
-}
 
 world::Sensor map_sensor(std::vector<world::Setting> settings = {}) {
   world::Sensor sensor;
@@ -109,7 +105,7 @@ TEST(OccupancySettings, WrongSettingsAreRefused) {
   EXPECT_THROW(sensors::occupancies_of(dense), base::InputError);
 }
 
-std::vector<base::Report> reports_at(const world::World& world, int tick) {
+std::vector<base::Report> map_reports_at(const world::World& world, int tick) {
   std::vector<base::Report> reports;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
     base::Pose X = world.movers[m].X_WM;
@@ -130,7 +126,7 @@ std::size_t compare_run(const world::World& world, int ticks) {
   PlainMaps plain(map_settings);
   std::size_t compared = 0;
   for (int k = 0; k < ticks; ++k) {
-    const auto readings = farm.tick(k * 100'000'000ll, reports_at(world, k));
+    const auto readings = farm.tick(k * 100'000'000ll, map_reports_at(world, k));
     for (const base::ReadingBlock& r : readings)
       for (std::uint32_t i = 0; i < all.size(); ++i)
         if (r.type == sensors::kLaser && all[i].row.mover == r.mover && all[i].laser == r.sensor)
@@ -169,17 +165,17 @@ TEST(OccupancyTick, AMapThatNobodyHearsStillGrows) {
   farm::Farm quiet(world, device()), loud(world, device());
   loud.subscribe_all();
   quiet.subscribe(0, 1u << sensors::kLaser);
-  for (int k = 0; k < 10; ++k) quiet.tick(k * 100'000'000ll, reports_at(world, k));
+  for (int k = 0; k < 10; ++k) quiet.tick(k * 100'000'000ll, map_reports_at(world, k));
   quiet.subscribe_all();
-  for (int k = 0; k < 10; ++k) loud.tick(k * 100'000'000ll, reports_at(world, k));
+  for (int k = 0; k < 10; ++k) loud.tick(k * 100'000'000ll, map_reports_at(world, k));
   const auto map_of = [](std::span<const base::ReadingBlock> readings) {
     std::vector<double> words;
     for (const base::ReadingBlock& r : readings)
       if (r.type == sensors::kOccupancy) words.assign(r.values.begin(), r.values.end());
     return words;
   };
-  const auto heard = map_of(loud.tick(1'000'000'000, reports_at(world, 10)));
-  const auto unheard = map_of(quiet.tick(1'000'000'000, reports_at(world, 10)));
+  const auto heard = map_of(loud.tick(1'000'000'000, map_reports_at(world, 10)));
+  const auto unheard = map_of(quiet.tick(1'000'000'000, map_reports_at(world, 10)));
   EXPECT_FALSE(heard.empty());
   EXPECT_EQ(heard, unheard);
 }
@@ -192,7 +188,7 @@ TEST(OccupancyTick, ThreadsChangeNothing) {
     options.threads = threads;
     farm::Farm farm(world, device(), options);
     farm.subscribe_all();
-    for (int k = 0; k < 11; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
+    for (int k = 0; k < 11; ++k) farm.tick(k * 100'000'000ll, map_reports_at(world, k));
     hashes[threads == 1 ? 0 : 1] = farm.hash();
   }
   EXPECT_EQ(hashes[0], hashes[1]);
@@ -209,7 +205,7 @@ TEST(OccupancyTick, TheValidationLayerIsSilent) {
     farm::Farm farm(world, own);
     for (int k = 0; k < 12; ++k) {
       for (std::uint32_t m = 0; m < 6; ++m) farm.subscribe(m, static_cast<int>(m) < k ? farm::kAllSensorTypes : 0u);
-      farm.tick(k * 100'000'000ll, reports_at(world, k));
+      farm.tick(k * 100'000'000ll, map_reports_at(world, k));
     }
     EXPECT_EQ(own.validation_messages(), "");
   }
@@ -218,7 +214,7 @@ TEST(OccupancyTick, TheValidationLayerIsSilent) {
 
 // As packets.
 
-sensors::SensorSpec row_of(std::uint32_t columns, std::uint32_t rows) {
+sensors::SensorSpec map_row(std::uint32_t columns, std::uint32_t rows) {
   sensors::SensorSpec row;
   row.elements = columns * rows;
   row.across = columns;
@@ -240,7 +236,7 @@ std::vector<double> any_words(std::uint32_t count, std::uint64_t seed) {
 TEST(OccupancyPackets, GoThereAndBackInBothForms) {
   const sensors::SensorType& type = sensors::occupancy_type;
   for (const auto& [columns, rows] : {std::pair{30u, 30u}, {1u, 1u}, {67u, 5u}, {7u, 146u}}) {
-    const sensors::SensorSpec row = row_of(columns, rows);
+    const sensors::SensorSpec row = map_row(columns, rows);
     const auto words = any_words(row.elements, columns);
     base::ReadingBlock reading;
     reading.values = words;
@@ -270,24 +266,25 @@ TEST(OccupancyPackets, OthersMapsAreRefused) {
   base::ReadingBlock reading;
   reading.values = words;
   base::Bytes bytes;
-  type.encode(row_of(30, 30), reading, WireFormat::farm, 0, bytes);
-  EXPECT_EQ(type.decode(row_of(30, 30), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::none);
-  EXPECT_EQ(type.decode(row_of(25, 36), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
-  EXPECT_EQ(type.decode(row_of(30, 29), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
-  EXPECT_EQ(type.decode(row_of(30, 30), bytes, 3, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
-  EXPECT_EQ(type.decode(row_of(0, 0), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::none)
+  type.encode(map_row(30, 30), reading, WireFormat::farm, 0, bytes);
+  EXPECT_EQ(type.decode(map_row(30, 30), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::none);
+  EXPECT_EQ(type.decode(map_row(25, 36), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
+  EXPECT_EQ(type.decode(map_row(30, 29), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
+  EXPECT_EQ(type.decode(map_row(30, 30), bytes, 3, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
+  EXPECT_EQ(type.decode(map_row(0, 0), bytes, type.id, WireFormat::farm).fault, sensors::PayloadError::none)
       << "nothing is known of it";
   base::Bytes plain;
-  type.encode(row_of(30, 30), reading, WireFormat::thesis, 0, plain);
-  EXPECT_EQ(type.decode(row_of(25, 36), plain, type.id, WireFormat::thesis).fault, sensors::PayloadError::out_of_range);
+  type.encode(map_row(30, 30), reading, WireFormat::thesis, 0, plain);
+  EXPECT_EQ(type.decode(map_row(25, 36), plain, type.id, WireFormat::thesis).fault,
+            sensors::PayloadError::out_of_range);
 }
 
 TEST(OccupancyPackets, TheThesisFormIsForSmallMaps) {
   const sensors::SensorType& type = sensors::occupancy_type;
-  EXPECT_EQ(type.wire_problem(row_of(7, 146), WireFormat::thesis), "") << "1022 words";
-  EXPECT_NE(type.wire_problem(row_of(32, 32), WireFormat::thesis), "");
-  EXPECT_NE(type.wire_problem(row_of(256, 1), WireFormat::thesis), "");
-  EXPECT_EQ(type.wire_problem(row_of(1024, 1024), WireFormat::farm), "");
+  EXPECT_EQ(type.wire_problem(map_row(7, 146), WireFormat::thesis), "") << "1022 words";
+  EXPECT_NE(type.wire_problem(map_row(32, 32), WireFormat::thesis), "");
+  EXPECT_NE(type.wire_problem(map_row(256, 1), WireFormat::thesis), "");
+  EXPECT_EQ(type.wire_problem(map_row(1024, 1024), WireFormat::farm), "");
 }
 
 }  // namespace

@@ -8,17 +8,16 @@
 
 #include "tests/netio/documented.h"
 #include "tests/sensors/chance.h"
+#include "tests/units.h"
 
 namespace sf::sensors {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr PlainNumber kNumbers[] = {{1e-3}, {1.0, 0.0, 5.0}};
 constexpr PlainForm kForm{29, "trial", kNumbers};
 constexpr SensorType kTrial = plain<kForm>({});
 
-SensorSpec row_of(std::uint32_t elements) {
+SensorSpec plain_row(std::uint32_t elements) {
   SensorSpec row;
   row.elements = elements;
   return row;
@@ -28,19 +27,20 @@ base::Bytes bytes_of(const std::vector<double>& values) {
   base::ReadingBlock block;
   block.values = values;
   base::Bytes out;
-  EXPECT_EQ(kTrial.encode(row_of(static_cast<std::uint32_t>(values.size() / 2)), block, WireFormat::farm, 0, out), 29);
+  EXPECT_EQ(kTrial.encode(plain_row(static_cast<std::uint32_t>(values.size() / 2)), block, WireFormat::farm, 0, out),
+            29);
   return out;
 }
 
 std::vector<double> back(const std::vector<double>& values) {
   const base::Bytes bytes = bytes_of(values);
   std::vector<double> read(values.size(), 77.0);
-  kTrial.read(row_of(static_cast<std::uint32_t>(values.size() / 2)), bytes, 29, WireFormat::farm, read);
+  kTrial.read(plain_row(static_cast<std::uint32_t>(values.size() / 2)), bytes, 29, WireFormat::farm, read);
   return read;
 }
 
 TEST(PlainPackets, EveryByte) {
-  EXPECT_EQ(bytes_of({1.0, 2.0, -0.001, kNan}), (base::Bytes{2,    0,    0,    0,    0xE8, 3, 0, 0,   2, 0, 0, 0,  //
+  EXPECT_EQ(bytes_of({1.0, 2.0, -0.001, kNaN}), (base::Bytes{2,    0,    0,    0,    0xE8, 3, 0, 0,   2, 0, 0, 0,  //
                                                              0xFF, 0xFF, 0xFF, 0xFF, 0,    0, 0, 0x80}));
 }
 
@@ -53,14 +53,14 @@ TEST(PlainPackets, RoundsToNearestAndSaturates) {
   EXPECT_DOUBLE_EQ(back({kInf, 0})[0], 2'147'483.647);
   EXPECT_DOUBLE_EQ(back({-2'147'483.648, 0})[0], -2'147'483.647) << "the word below says that there is no number";
   EXPECT_DOUBLE_EQ(back({-kInf, 0})[0], -2'147'483.647);
-  EXPECT_TRUE(std::isnan(back({kNan, 0})[0]));
+  EXPECT_TRUE(std::isnan(back({kNaN, 0})[0]));
 }
 
 TEST(PlainPackets, JudgesWhatCannotBe) {
   const base::Bytes good = bytes_of({1, 2, 3, 4});
   const auto fault = [&](base::Bytes bytes, std::uint32_t rows, std::uint8_t type = 29,
                          WireFormat wire = WireFormat::farm) {
-    return kTrial.decode(row_of(rows), bytes, type, wire).fault;
+    return kTrial.decode(plain_row(rows), bytes, type, wire).fault;
   };
   EXPECT_EQ(fault(good, 2), PayloadError::none);
   EXPECT_EQ(fault(good, 0), PayloadError::none) << "of any number of rows";
@@ -77,7 +77,7 @@ TEST(PlainPackets, JudgesWhatCannotBe) {
   EXPECT_EQ(fault(longer, 2), PayloadError::too_long);
   EXPECT_EQ(fault(bytes_of({1, 6}), 1), PayloadError::out_of_range) << "more than its column has";
   EXPECT_EQ(fault(bytes_of({1, -1}), 1), PayloadError::out_of_range) << "less than its column has";
-  EXPECT_EQ(fault(bytes_of({1, kNan}), 1), PayloadError::none) << "no number is no nonsense";
+  EXPECT_EQ(fault(bytes_of({1, kNaN}), 1), PayloadError::none) << "no number is no nonsense";
   EXPECT_EQ(fault(bytes_of({1e9, 0}), 1), PayloadError::none) << "saturated says more";
 }
 
@@ -86,10 +86,10 @@ TEST(PlainPackets, AsManyNumbersAsADatagramHolds) {
   const base::Bytes bytes = bytes_of(most);
   EXPECT_EQ(bytes.size(), 4 + 4 * 312u);
   EXPECT_LE(bytes.size() + 64 + 80, 1400u);
-  EXPECT_EQ(kTrial.decode(row_of(0), bytes, 29, WireFormat::farm).fault, PayloadError::none);
+  EXPECT_EQ(kTrial.decode(plain_row(0), bytes, 29, WireFormat::farm).fault, PayloadError::none);
   base::Bytes more(4 + 4 * 314, 0);
   more[0] = 157;
-  EXPECT_EQ(kTrial.decode(row_of(0), more, 29, WireFormat::farm).fault, PayloadError::out_of_range);
+  EXPECT_EQ(kTrial.decode(plain_row(0), more, 29, WireFormat::farm).fault, PayloadError::out_of_range);
 }
 
 TEST(PlainPackets, TheThesisHasNoLayoutForThem) {
@@ -110,14 +110,14 @@ TEST(PlainPackets, AnyBytesAreJudged) {
       b = static_cast<std::uint8_t>(i % 3 == 0 && chance.below(9) > 0 ? 0 : chance.below(256));
     if (bytes.size() > 3 && i % 2 == 0) bytes[0] = static_cast<std::uint8_t>((bytes.size() - 4) / 8), bytes[1] = 0;
     for (const SensorType* type : sensor_types()) {
-      const PayloadPart part = type->decode(row_of(0), bytes, type->id, WireFormat::farm);
+      const PayloadPart part = type->decode(plain_row(0), bytes, type->id, WireFormat::farm);
       EXPECT_TRUE(part.fault != PayloadError::none || part.elements >= 1u);
     }
-    const PayloadPart part = kTrial.decode(row_of(0), bytes, 29, WireFormat::farm);
+    const PayloadPart part = kTrial.decode(plain_row(0), bytes, 29, WireFormat::farm);
     if (part.fault != PayloadError::none) continue;
     ++taken;
     std::vector<double> values(2 * part.elements);
-    kTrial.read(row_of(0), bytes, 29, WireFormat::farm, values);
+    kTrial.read(plain_row(0), bytes, 29, WireFormat::farm, values);
     for (std::size_t k = 0; k < part.elements; ++k)
       EXPECT_TRUE(std::isnan(values[2 * k + 1]) || (values[2 * k + 1] >= 0.0 && values[2 * k + 1] <= 5.0));
   }
@@ -137,7 +137,7 @@ TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
              {"cliff", 7, 4, {0, 0, 1, 1}},
              {"encoder", 8, 1, {1.234, -0.5, 1234, -500}},
              {"gyro", 9, 1, {-0.25}},
-             {"gps", 10, 1, {kNan, kNan, kNan, 3}},
+             {"gps", 10, 1, {kNaN, kNaN, kNaN, 3}},
              {"irreceiver", 11, 1, {1, 252}}};
   for (const auto& [example, id, rows, values] : all) {
     const SensorType* type = find_sensor_type(id);
@@ -146,13 +146,13 @@ TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
     base::ReadingBlock block;
     block.values = values;
     base::Bytes bytes;
-    EXPECT_EQ(type->encode(row_of(rows), block, WireFormat::farm, 0, bytes), id);
+    EXPECT_EQ(type->encode(plain_row(rows), block, WireFormat::farm, 0, bytes), id);
     const base::Bytes packet = test::documented(example);
     ASSERT_GT(packet.size(), 64u) << example;
     EXPECT_EQ(packet[5], id);
     EXPECT_EQ(base::Bytes(packet.begin() + 64, packet.end()), bytes) << example;
-    EXPECT_EQ(type->decode(row_of(rows), bytes, id, WireFormat::farm).fault, PayloadError::none) << example;
-    EXPECT_NE(type->wire_problem(row_of(rows), WireFormat::thesis), "") << example;
+    EXPECT_EQ(type->decode(plain_row(rows), bytes, id, WireFormat::farm).fault, PayloadError::none) << example;
+    EXPECT_NE(type->wire_problem(plain_row(rows), WireFormat::thesis), "") << example;
   }
 }
 

@@ -11,11 +11,10 @@
 #include "tests/sensors/compare.h"
 #include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
+#include "tests/units.h"
 
 namespace sf::trial {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 TEST(Fans, EveryWidthAndCount) {
   world::World world = scenes::boxes(30, 16.0, 2);

@@ -13,15 +13,15 @@ namespace {
 
 using base::Pose;
 
-constexpr int kRobots = 8;
+constexpr int kRings = 8;
 constexpr std::size_t kTransducers = 16;
-constexpr int kTicks = 40;
+constexpr int kRingTicks = 40;
 
 /// Robots before a long slanted wall y = 2 + x / 2, each with two equal rings that face it.
 world::World slanted(const world::Sensor& sensor) {
   world::World world;
   scenes::add_outline(world, {{-100, -48}, {100, 52}, {100, 60}, {-100, -40}}, "wall");
-  for (int i = 0; i < kRobots; ++i) {
+  for (int i = 0; i < kRings; ++i) {
     const std::uint32_t m = add_ranger(world, {0.1 * i, 0.0, 0.0, M_PI / 2}, sensor);
     world.movers[m].sensors.push_back(sensor);
   }
@@ -44,21 +44,21 @@ std::vector<double> draws(const world::World& world, std::size_t columns, std::i
   noisy.subscribe_all();
   quiet.subscribe_all();
   std::vector<double> all;
-  for (int k = 0; k < kTicks; ++k) {
+  for (int k = 0; k < kRingTicks; ++k) {
     const auto with = noisy.tick(k * interval, {});
     const auto without = quiet.tick(k * interval, {});
     for (std::size_t r = 0; r < with.size(); ++r)
       for (std::size_t i = 0; i < with[r].values.size(); i += columns)
         all.push_back(of(with[r].values[i], without[r].values[i]));
   }
-  EXPECT_EQ(all.size(), kTicks * kRobots * 2 * kTransducers);
+  EXPECT_EQ(all.size(), kRingTicks * kRings * 2 * kTransducers);
   return all;
 }
 
 /// Neighbouring transducers, sensors, robots and ticks are uncorrelated, within 4 standard deviations.
-void expect_independent(const std::vector<double>& all) {
+void expect_independent_rings(const std::vector<double>& all) {
   for (const std::size_t lag :
-       {std::size_t{1}, std::size_t{2}, kTransducers, 2 * kTransducers, kRobots * 2 * kTransducers}) {
+       {std::size_t{1}, std::size_t{2}, kTransducers, 2 * kTransducers, kRings * 2 * kTransducers}) {
     double sum = 0.0;
     for (std::size_t i = lag; i < all.size(); ++i) sum += all[i] * all[i - lag];
     const double n = static_cast<double>(all.size() - lag);
@@ -70,7 +70,7 @@ TEST(SonarNoise, ConstantNoiseIsNormalAndEveryDrawItsOwn) {
   const auto all = draws(slanted(noisy_sonar(0.02, 0.0)), 1, 40'000'000,
                          [](double noisy, double quiet) { return (noisy - quiet) / 0.02; });
   EXPECT_LT(ks(all), 1.95);
-  expect_independent(all);
+  expect_independent_rings(all);
 }
 
 TEST(SonarNoise, BothPartsAddAsVariances) {
@@ -136,7 +136,7 @@ TEST(InfraredNoise, IsRelativeToTheResponseAndGrowsWithTheRange) {
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < kTransducers; ++i) poses.push_back({0.001 * static_cast<double>(i), 0.0, 0.0, 0.0});
   const world::Sensor sensor = cones("infrared", poses, {cone_setting("noise", {0.04}), cone_setting("rays", {1})});
-  for (int i = 0; i < kRobots; ++i) {
+  for (int i = 0; i < kRings; ++i) {
     const std::uint32_t m = add_ranger(world, {0.1 * i, 0.0, 0.0, M_PI / 2}, sensor);
     world.movers[m].sensors.push_back(sensor);
   }
@@ -145,7 +145,7 @@ TEST(InfraredNoise, IsRelativeToTheResponseAndGrowsWithTheRange) {
     return (1.0 - noisy / 0.05 - response) / (response * 0.04 * quiet / 0.05);
   });
   EXPECT_LT(ks(all), 1.95);
-  expect_independent(all);
+  expect_independent_rings(all);
 }
 
 TEST(InfraredNoise, TheValueIsTheDisturbedResponse) {
@@ -215,7 +215,7 @@ std::vector<base::Report> reports_of(const world::World& world, int tick) {
   return reports;
 }
 
-std::uint64_t hash_of(const world::World& world, const farm::FarmOptions& options) {
+std::uint64_t hash_of_rings(const world::World& world, const farm::FarmOptions& options) {
   farm::Farm farm(world, device(), options);
   farm.subscribe_all();
   for (int k = 0; k < 12; ++k) farm.tick(k * 40'000'000ll, reports_of(world, k));
@@ -224,15 +224,16 @@ std::uint64_t hash_of(const world::World& world, const farm::FarmOptions& option
 
 TEST(SonarHash, NoThreadCountNoRoomAndNoRunChangesAReading) {
   const world::World world = busy_world(40);
-  const std::uint64_t one = hash_of(world, {.seed = 4, .threads = 1});
-  EXPECT_EQ(hash_of(world, {.seed = 4, .threads = 1}), one);
-  EXPECT_EQ(hash_of(world, {.seed = 4, .threads = 2}), one);
-  EXPECT_EQ(hash_of(world, {.seed = 4, .threads = 5}), one);
-  EXPECT_EQ(hash_of(world, {.seed = 4,
+  const std::uint64_t one = hash_of_rings(world, {.seed = 4, .threads = 1});
+  EXPECT_EQ(hash_of_rings(world, {.seed = 4, .threads = 1}), one);
+  EXPECT_EQ(hash_of_rings(world, {.seed = 4, .threads = 2}), one);
+  EXPECT_EQ(hash_of_rings(world, {.seed = 4, .threads = 5}), one);
+  EXPECT_EQ(
+      hash_of_rings(world, {.seed = 4,
                             .threads = 2,
                             .scene = {.caster = raycast::CasterChoice::vulkan, .pool_chunks = 4096, .pool_cells = 64}}),
-            one);
-  EXPECT_NE(hash_of(world, {.seed = 5, .threads = 2}), one);
+      one);
+  EXPECT_NE(hash_of_rings(world, {.seed = 5, .threads = 2}), one);
 }
 
 /// Robots out of range change nothing.

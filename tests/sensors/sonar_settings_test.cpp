@@ -16,22 +16,21 @@ namespace sf::sensors {
 namespace {
 
 using trial::cone_setting;
-using trial::kDegree;
 
-world::Sensor bare(const std::string& type = "sonar") {
+world::Sensor bare_sonar(const std::string& type = "sonar") {
   world::Sensor sensor = trial::cones(type, {Pose{}});
   sensor.settings.clear();
   return sensor;
 }
 
 world::Sensor with(std::vector<world::Setting> settings, const std::string& type = "sonar") {
-  world::Sensor sensor = bare(type);
+  world::Sensor sensor = bare_sonar(type);
   sensor.settings = std::move(settings);
   return sensor;
 }
 
 TEST(SonarSettings, NothingSaidIsOneTransducerOfAPioneer) {
-  const ConeArray s = read_sonar(bare(), 3, 1);
+  const ConeArray s = read_sonar(bare_sonar(), 3, 1);
   EXPECT_EQ(s.row.mover, 3u);
   EXPECT_EQ(s.row.sensor, 1u);
   EXPECT_EQ(s.row.elements, 1u);
@@ -48,7 +47,7 @@ TEST(SonarSettings, NothingSaidIsOneTransducerOfAPioneer) {
 }
 
 TEST(SonarSettings, NothingSaidIsOneElementOfAKhepera) {
-  const ConeArray s = read_infrared(bare("infrared"), 0, 0);
+  const ConeArray s = read_infrared(bare_sonar("infrared"), 0, 0);
   EXPECT_EQ(s.row.elements, 1u);
   EXPECT_EQ(s.row.limit, 0.05);
   EXPECT_EQ(s.row.rate, 50.0);
@@ -109,7 +108,7 @@ TEST(SonarSettings, OneRayLooksAlongTheAxis) {
   EXPECT_EQ(read_sonar(with({cone_setting("incidence", {M_PI / 2})}), 0, 0).min_cosine, 0.0) << "off";
 }
 
-struct Wrong {
+struct WrongSonar {
   const char* key;
   std::vector<double> numbers;
   const char* text;
@@ -118,7 +117,7 @@ struct Wrong {
 };
 
 TEST(SonarSettings, WrongSettingsAreRefusedWithFileAndLine) {
-  const std::vector<Wrong> corpus = {
+  const std::vector<WrongSonar> corpus = {
       {"scount", {0}, "", "'scount' is 0; expected 1 to 64"},
       {"scount", {65}, "", "'scount' is 65; expected 1 to 64"},
       {"scount", {2}, "", "'spose[0]' is missing"},
@@ -150,7 +149,7 @@ TEST(SonarSettings, WrongSettingsAreRefusedWithFileAndLine) {
       {"noise", {-1}, "", "'noise' is -1; expected 0 to 1000", "infrared"},
       {"range", {0.05, 0.01}, "", "'range' is [0.05 0.01] m", "infrared"},
   };
-  for (const Wrong& wrong : corpus) {
+  for (const WrongSonar& wrong : corpus) {
     const world::Sensor sensor = with({cone_setting(wrong.key, wrong.numbers, wrong.text)}, wrong.type);
     try {
       const bool sonar = sensor.type == "sonar";

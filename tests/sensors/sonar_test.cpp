@@ -17,7 +17,7 @@ namespace {
 using base::Pose;
 using sensors::ConeArray;
 
-constexpr double kFov = 25.0 * kDegree;
+constexpr double kSonarFov = 25.0 * kDegree;
 
 world::Sensor sonar(const std::vector<Pose>& poses, std::vector<world::Setting> more = {}) {
   more.push_back(cone_setting("firing", {}, "all"));
@@ -48,7 +48,7 @@ TEST(Sonar, AWallIsHeardByTheRayNearestToItsNormal) {
   for (int k = -40; k <= 40; ++k) {
     const double yaw = k * kDegree;
     double expected = 4.0;
-    for (int i = -5; i <= 5; ++i) expected = std::min(expected, 2.0 / std::cos(yaw + i * 0.1 * kFov));
+    for (int i = -5; i <= 5; ++i) expected = std::min(expected, 2.0 / std::cos(yaw + i * 0.1 * kSonarFov));
     EXPECT_NEAR(hear(wall_at(2.0), {0, 0, 0, yaw}), expected, 1e-12) << k << " degrees";
   }
 }
@@ -58,13 +58,13 @@ TEST(Sonar, ACornerIsAsFarAsItsNearerWall) {
   scenes::add_outline(world, {{-50, 0.5}, {50, 0.5}, {50, 1.5}, {-50, 1.5}}, "side");
   EXPECT_NEAR(hear(world, {0, 0, 0, 0}), 1.0, 1e-12) << "along the side wall it is ahead";
   EXPECT_NEAR(hear(world, {0, 0, 0, M_PI / 2}), 0.5, 1e-12);
-  const double edge = 0.25 * M_PI + 0.5 * kFov;  // the outermost ray on the left, facing into the corner
+  const double edge = 0.25 * M_PI + 0.5 * kSonarFov;  // the outermost ray on the left, facing into the corner
   EXPECT_NEAR(hear(world, {0, 0, 0, 0.25 * M_PI}), 0.5 / std::sin(edge), 1e-12);
 }
 
 /// A wall that begins just within the outermost ray returns an echo, one just outside does not.
 TEST(Sonar, TheConeEndsWhereItsFieldOfViewDoes) {
-  for (const double fov : {5.0 * kDegree, kFov, 60.0 * kDegree})
+  for (const double fov : {5.0 * kDegree, kSonarFov, 60.0 * kDegree})
     for (const double sign : {-1.0, 1.0}) {
       const double y = 2.0 * std::tan(0.5 * fov);
       const auto look = [&](double from) {

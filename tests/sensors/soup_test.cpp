@@ -11,9 +11,9 @@ namespace sf::trial {
 namespace {
 
 const int kBowls = instrumented() ? 4 : 24;
-constexpr double kBowl = 6.0;    ///< [m] half the side of the room round each soup
-constexpr double kRange = 18.0;  ///< [m] more than its diagonal
-constexpr double kApart = 64.0;  ///< [m] so that soups are invisible to each other
+constexpr double kBowl = 6.0;        ///< [m] half the side of the room round each soup
+constexpr double kSoupRange = 18.0;  ///< [m] more than its diagonal
+constexpr double kApart = 64.0;      ///< [m] so that soups are invisible to each other
 
 std::vector<glm::dvec2> star(Chance& chance) {
   const std::uint32_t corners = 3 + chance.below(7);
@@ -67,12 +67,12 @@ void cook(world::World& world, glm::dvec2 centre, std::uint64_t seed) {
   scenes::add_room(world, centre, 2.0 * kBowl);
   for (int i = 0; i < 20; ++i) {
     const glm::dvec2 p = centre + chance.in_square(0.99 * kBowl);
-    add_eye(world, {p.x, p.y, 0.0, chance.between(-M_PI, M_PI)}, eye(91, 2.0 * M_PI, kRange));
+    add_eye(world, {p.x, p.y, 0.0, chance.between(-M_PI, M_PI)}, eye(91, 2.0 * M_PI, kSoupRange));
     for (int k = 0; k < 8; ++k) {
       const glm::dvec2 corner = corners[chance.below(static_cast<std::uint32_t>(corners.size()))];
       const glm::dvec2 from = k < 6 ? p : snap(p);
       if (from.x != corner.x || from.y != corner.y)
-        aim(world, from, corner, eye(k % 2 ? 1 : 5, k % 2 ? 0.0 : 1e-8, kRange));
+        aim(world, from, corner, eye(k % 2 ? 1 : 5, k % 2 ? 0.0 : 1e-8, kSoupRange));
     }
   }
 }

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "tests/instrumented.h"
+#include "tests/units.h"
 #include "tests/vision/cameras.h"
 #include "vision/accuracy.h"
 #include "vision/positioning.h"
@@ -49,8 +50,6 @@ Trial run(const Testbed& testbed, const FleetOptions& options, int images) {
   result.accuracy = meter.accuracy();
   return result;
 }
-
-constexpr double kDegree = M_PI / 180.0;
 
 }  // namespace
 

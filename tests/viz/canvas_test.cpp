@@ -8,15 +8,12 @@
 #include <string>
 
 #include "base/error.h"
+#include "tests/units.h"
 #include "tests/viz/png.h"
 #include "viz/legend.h"
 
 namespace sf::viz {
 namespace {
-
-constexpr std::uint32_t kWhite = 0xFFFFFFFFu;
-constexpr std::uint32_t kBlack = 0xFF000000u;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 int darkness(const Canvas& canvas) {
   int sum = 0;

@@ -22,8 +22,6 @@ world::World six() {
   return world;
 }
 
-std::string file(const char* name) { return scenes::own_file(name); }
-
 /// A synthetic field: |B| rises from zero on the left to 2 Gauss on the right.
 FieldSamples slope(const FieldView& view) {
   FieldSamples samples{100, 50, {}, {}};
@@ -84,15 +82,15 @@ TEST(FieldFigure, OddWorldsHaveAView) {
     EXPECT_LT(view.extent.x_min, 10.1);
     EXPECT_GT(view.extent.x_max, 10.0);
     EXPECT_GT(glm::length(view.line.b - view.line.a), 0.0);
-    draw_field(world, view, slope(view), file("odd.png"));
-    EXPECT_GT(colours_of_the_map(view, file("odd.png")), 50u) << height << ": from nothing to all";
+    draw_field(world, view, slope(view), scenes::own_file("odd.png"));
+    EXPECT_GT(colours_of_the_map(view, scenes::own_file("odd.png")), 50u) << height << ": from nothing to all";
   }
 }
 
 TEST(FieldFigure, MoreFieldIsLighterAllAlong) {
   const FieldView view = field_view(six(), {.height = 0.075, .extent = world::Extent{1, 1, 3, 2}});
-  draw_field(six(), view, slope(view), file("slope.png"));
-  const scenes::Picture picture = scenes::read_png(file("slope.png"));
+  draw_field(six(), view, slope(view), scenes::own_file("slope.png"));
+  const scenes::Picture picture = scenes::read_png(scenes::own_file("slope.png"));
   double before = 0.0, steps_most = 0.0, steps_least = 1.0;
   const int y = view.map.y_min + 20;
   for (int i = 0; i <= 20; ++i) {
@@ -111,13 +109,13 @@ TEST(FieldFigure, NoFieldAtAllCanBeDrawn) {
   FieldSamples none = slope(view);
   std::fill(none.map.begin(), none.map.end(), 0.0);
   for (ProfilePoint& p : none.profile) p.field = {};
-  draw_field(six(), view, none, file("none.png"));
-  EXPECT_EQ(colours_of_the_map(view, file("none.png")), 1u);
+  draw_field(six(), view, none, scenes::own_file("none.png"));
+  EXPECT_EQ(colours_of_the_map(view, scenes::own_file("none.png")), 1u);
 }
 
 TEST(FieldFigure, AFileThatCannotBeWrittenIsNamed) {
   const FieldView view = field_view(six(), {.height = 0.075});
-  EXPECT_THROW(draw_field(six(), view, slope(view), file("no/such/folder/x.png")), base::InputError);
+  EXPECT_THROW(draw_field(six(), view, slope(view), scenes::own_file("no/such/folder/x.png")), base::InputError);
 }
 
 /// Figure 37 of the thesis: six magnets, 7.5 cm above their tops, are nearly one.

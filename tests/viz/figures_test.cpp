@@ -21,10 +21,6 @@ namespace {
 
 using base::Pose;
 
-constexpr std::uint32_t kWhite = 0xFFFFFFFFu;
-
-std::string file(const char* name) { return scenes::own_file(name); }
-
 /// An empty room of 6 m x 4 m in walls of 0.5 m.
 world::World room() { return scenes::make_world(6, 4, 0, 0); }
 
@@ -68,8 +64,8 @@ TEST(WorldFigure, LightsShowWhatTheyShowAtTheStart) {
   };
   add(1.0, 0.0);
   add(3.0, 1.0);  // one second before the start of its plan
-  draw_world(world, file("lights.png"));
-  const Seen seen = see(file("lights.png"), 0.03);
+  draw_world(world, scenes::own_file("lights.png"));
+  const Seen seen = see(scenes::own_file("lights.png"), 0.03);
   EXPECT_EQ(seen.at(1.0, 2.0), 0xFF43A047u);
   EXPECT_EQ(seen.at(3.0, 2.0), 0xFFE53935u);
 }
@@ -78,8 +74,8 @@ TEST(WorldFigure, LightsPointWhereTheyFace) {
   world::World world = room();
   world.lights.push_back(
       {.name = "light", .X_WL = {3.0, 2.0, 0.0, M_PI / 2}, .phases = {{world::LightState::green, 8.0}}});
-  draw_world(world, file("facing.png"));
-  const Seen seen = see(file("facing.png"), 0.03);
+  draw_world(world, scenes::own_file("facing.png"));
+  const Seen seen = see(scenes::own_file("facing.png"), 0.03);
   EXPECT_LT(to_oklab(seen.at(3.0, 2.055)).lightness, 0.6) << "a stroke to the north";
   EXPECT_GT(to_oklab(seen.at(3.0, 1.945)).lightness, 0.9) << "and none to the south";
 }
@@ -88,11 +84,11 @@ TEST(WorldFigure, LightsPointWhereTheyFace) {
 TEST(WorldFigure, TagsAreNoRobotsInItsSubtitle) {
   world::World world = room();
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.0, 0, 0}, 0xFF2E7D32u, 1.0));
-  draw_world(world, file("robot_alone.png"));
+  draw_world(world, scenes::own_file("robot_alone.png"));
   world.movers.push_back({.name = "tag", .model = 0, .is_tag = true, .X_WM = {4.0, 2.0, 0, 0}});
-  draw_world(world, file("robot_and_tag.png"));
-  const scenes::Picture one = scenes::read_png(file("robot_alone.png")),
-                        two = scenes::read_png(file("robot_and_tag.png"));
+  draw_world(world, scenes::own_file("robot_and_tag.png"));
+  const scenes::Picture one = scenes::read_png(scenes::own_file("robot_alone.png")),
+                        two = scenes::read_png(scenes::own_file("robot_and_tag.png"));
   int dark = 0, apart = 0;
   for (int y = 65; y < 92; ++y)
     for (int x = 0; x < 180; ++x) {
@@ -108,8 +104,8 @@ TEST(WorldFigure, HolesAreDarkAndBeamsAreFaint) {
   world.floor_holes.push_back({{{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {1.0, 2.0}}, 0});
   world.emitters.push_back({world::Emitter::Kind::virtual_wall, 0, {3.0, 1.0, 0.0, M_PI / 2}, 2.0, 0.4, 0.3});
   world.emitters.push_back({world::Emitter::Kind::dock, 0, {5.8, 3.0, 0.0, M_PI}, 1.5, 0.7, 0.0});
-  draw_world(world, file("signals.png"));
-  const Seen seen = see(file("signals.png"), 0.03);
+  draw_world(world, scenes::own_file("signals.png"));
+  const Seen seen = see(scenes::own_file("signals.png"), 0.03);
   const auto green_of = [&](double x, double y) { return seen.at(x, y) >> 8 & 0xFF; };
   EXPECT_LT(green_of(1.52, 1.53), 0x60u) << "the hole";
   EXPECT_EQ(seen.at(2.53, 2.53), kWhite) << "beside the beam";
@@ -124,8 +120,8 @@ TEST(WorldFigure, HolesAreDarkAndBeamsAreFaint) {
 }
 
 TEST(WorldFigure, WallsAreWhereTheyShouldBe) {
-  draw_world(room(), file("room.png"));
-  const Seen seen = see(file("room.png"), 0.03);
+  draw_world(room(), scenes::own_file("room.png"));
+  const Seen seen = see(scenes::own_file("room.png"), 0.03);
   EXPECT_EQ(seen.at(3.27, 2.27), kWhite) << "inside the room";
   EXPECT_EQ(seen.at(-0.6, 2.27), kWhite) << "outside of the walls";
   for (const auto& [x, y] : {std::pair{-0.25, 2.2}, {6.25, 2.2}, {3.2, -0.25}, {3.2, 4.25}, {-0.25, -0.25}})
@@ -138,8 +134,8 @@ TEST(WorldFigure, PaintAndMagnetsAreThere) {
   world.lane_markings.push_back({{{1.0, 2.25}, {5.0, 2.25}}, 0.3, 0xFFF2B800u});
   world.magnets.push_back({{3.0, 1.0}, 0.0, 1.0, 0.05, 0});
   world.magnets.push_back({{4.0, 1.0}, 0.0, -1.0, 0.05, 0});
-  draw_world(world, file("paint.png"));
-  const Seen seen = see(file("paint.png"), 0.03);
+  draw_world(world, scenes::own_file("paint.png"));
+  const Seen seen = see(scenes::own_file("paint.png"), 0.03);
   EXPECT_EQ(seen.at(3.27, 2.27), 0xFFF2B800u) << "in its colour";
   EXPECT_NE(seen.at(3.27, 2.42), kWhite) << "on asphalt";
   EXPECT_EQ(seen.at(5.6, 2.27), kWhite) << "which ends with it";
@@ -153,8 +149,8 @@ TEST(WorldFigure, SensorsOfOtherKindsAreThere) {
   robot.sensors.push_back({"laneedge", "e", {0.0, 0.0, 0.0, M_PI / 2}, 0.01, 1.0, M_PI / 180.0, {}, 1, "x.world"});
   robot.sensors.push_back({"magnetometer", "m", {1.0, -1.0, 0.0, 0.0}, 0.01, 1.0, M_PI / 180.0, {}, 2, "x.world"});
   world.movers.push_back(robot);
-  draw_world(world, file("carried.png"));
-  const Seen seen = see(file("carried.png"), 0.03);
+  draw_world(world, scenes::own_file("carried.png"));
+  const Seen seen = see(scenes::own_file("carried.png"), 0.03);
   EXPECT_NE(seen.at(2.03, 2.7), kWhite) << "a fan of 1 m to the left";
   EXPECT_EQ(seen.at(2.53, 2.7), kWhite) << "of 30 degrees";
   EXPECT_EQ(seen.at(2.03, 3.2), kWhite) << "and no longer";
@@ -164,8 +160,8 @@ TEST(WorldFigure, SensorsOfOtherKindsAreThere) {
 TEST(WorldFigure, RobotAndItsViewAreThere) {
   world::World world = room();
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 3.0));
-  draw_world(world, file("robot.png"));
-  const Seen seen = see(file("robot.png"), 0.03);
+  draw_world(world, scenes::own_file("robot.png"));
+  const Seen seen = see(scenes::own_file("robot.png"), 0.03);
   const OklabColor body = to_oklab(seen.at(1.92, 2.25));
   EXPECT_LT(body.a, -0.03) << "a green body";
   const OklabColor view = to_oklab(seen.at(4.27, 2.27));
@@ -178,16 +174,16 @@ TEST(WorldFigure, RobotAndItsViewAreThere) {
 TEST(WorldFigure, HeadingIsDrawn) {
   world::World world = room();
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.0, 0, M_PI / 2}, 0xFF2E7D32u, 0.2));
-  draw_world(world, file("heading.png"));
-  const Seen seen = see(file("heading.png"), 0.03);
+  draw_world(world, scenes::own_file("heading.png"));
+  const Seen seen = see(scenes::own_file("heading.png"), 0.03);
   EXPECT_LT(to_oklab(seen.at(2.0, 2.08)).lightness, to_oklab(seen.at(2.0, 1.92)).lightness - 0.1) << "to the north";
 }
 
 TEST(WorldFigure, ViewStopsAtWalls) {
   world::World world = room();
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 30.0));
-  draw_world(world, file("view.png"));
-  const Seen seen = see(file("view.png"), 0.03);
+  draw_world(world, scenes::own_file("view.png"));
+  const Seen seen = see(scenes::own_file("view.png"), 0.03);
   EXPECT_NE(seen.at(5.27, 2.27), kWhite);
   EXPECT_EQ(seen.at(6.62, 2.27), kWhite);
 }
@@ -200,8 +196,8 @@ TEST(WorldFigure, EveryCombinationOfWallFlagsIsDrawn) {  // all combinations of 
       s.seen_by_laser = flags & 2;
       s.stops_robots = flags & 4;
     }
-    draw_world(world, file("flags.png"));
-    const Seen seen = see(file("flags.png"), 0.03);
+    draw_world(world, scenes::own_file("flags.png"));
+    const Seen seen = see(scenes::own_file("flags.png"), 0.03);
     int dark = 0;
     for (double x = 0.5; x < 5.5; x += 0.01) dark += to_oklab(seen.at(x, 0.0)).lightness < 0.8 ? 1 : 0;
     EXPECT_GT(dark, 60) << flags;
@@ -211,8 +207,8 @@ TEST(WorldFigure, EveryCombinationOfWallFlagsIsDrawn) {  // all combinations of 
 /// Two walls at one place: the one visible to lasers covers the dots of the other, in either order.
 TEST(WorldFigure, WallsThatLasersSeeLieOnTop) {
   const auto lightest = [](const world::World& world) {
-    draw_world(world, file("top.png"));
-    const Seen seen = see(file("top.png"), 0.03);
+    draw_world(world, scenes::own_file("top.png"));
+    const Seen seen = see(scenes::own_file("top.png"), 0.03);
     double most = 0.0;
     for (double x = 0.5; x < 5.5; x += 0.01) most = std::max(most, to_oklab(seen.at(x, 0.0)).lightness);
     return most;
@@ -229,8 +225,8 @@ TEST(WorldFigure, WallsThatLasersSeeLieOnTop) {
 TEST(WorldFigure, OddWorldsCanBeDrawn) {  // an empty world; no model rows; a name from the file; a robot without a body
   world::World empty;
   empty.extent = {0, 0, 0, 0};
-  draw_world(empty, file("empty.png"));
-  const scenes::Picture nothing = scenes::read_png(file("empty.png"));
+  draw_world(empty, scenes::own_file("empty.png"));
+  const scenes::Picture nothing = scenes::read_png(scenes::own_file("empty.png"));
   EXPECT_GT(nothing.count(kWhite), 9 * nothing.width * nothing.height / 10) << "paper, a frame and its numbers";
   EXPECT_GT(nothing.count(0xFF404040u), 2 * 500) << "the frame";
   world::World world = room();
@@ -241,17 +237,17 @@ TEST(WorldFigure, OddWorldsCanBeDrawn) {  // an empty world; no model rows; a na
   world.movers[0].is_tag = true;
   scenes::edit_laser(world.movers[0])->fov = 0.0;
   world.models.clear();
-  draw_world(world, file("odd.png"));
-  const Seen seen = see(file("odd.png"), 0.03);
+  draw_world(world, scenes::own_file("odd.png"));
+  const Seen seen = see(scenes::own_file("odd.png"), 0.03);
   EXPECT_LT(to_oklab(seen.at(3.2, 0.0)).lightness, 0.6) << "walls of models that are not known";
   EXPECT_EQ(seen.at(4.27, 2.27), kWhite) << "a view of no width";
 }
 
 TEST(WorldFigure, SameWorldSamePicture) {
   const world::World world = scenes::make_world(24, 16, 40, 30);
-  draw_world(world, file("once.png"));
-  draw_world(world, file("twice.png"));
-  EXPECT_EQ(scenes::read_png(file("once.png")).rgb, scenes::read_png(file("twice.png")).rgb);
+  draw_world(world, scenes::own_file("once.png"));
+  draw_world(world, scenes::own_file("twice.png"));
+  EXPECT_EQ(scenes::read_png(scenes::own_file("once.png")).rgb, scenes::read_png(scenes::own_file("twice.png")).rgb);
 }
 
 TEST(WorldFigure, FarFromTheOriginIsTheSamePlot) {  // 100 km away: the labels differ, walls and robots do not
@@ -261,10 +257,10 @@ TEST(WorldFigure, FarFromTheOriginIsTheSamePlot) {  // 100 km away: the labels d
   for (world::Segment& s : far.walls) s.a = s.a + glm::dvec2{100000, 100000}, s.b = s.b + glm::dvec2{100000, 100000};
   far.movers[0].X_WM.x += 100000, far.movers[0].X_WM.y += 100000;
   far.extent = {99999.5, 99999.5, 100006.5, 100004.5};
-  draw_world(near, file("near.png"));
-  draw_world(far, file("far.png"));
-  const Seen a = see(file("near.png"), 0.03);
-  const Seen b = see(file("far.png"), 0.03);
+  draw_world(near, scenes::own_file("near.png"));
+  draw_world(far, scenes::own_file("far.png"));
+  const Seen a = see(scenes::own_file("near.png"), 0.03);
+  const Seen b = see(scenes::own_file("far.png"), 0.03);
   for (const auto& [x, y] : {std::pair{1.92, 2.25}, {4.27, 2.27}, {0.77, 2.27}, {-0.25, 2.2}, {6.62, 2.27}})
     EXPECT_EQ(a.at(x, y), b.at(x, y)) << x << ", " << y;
 }
@@ -303,8 +299,8 @@ Track straight() {
 TEST(TrajectoryFigure, LineHasItsColour) {
   Track track = straight();
   track.color = 0xFFFF00FFu;
-  draw_trajectories(room(), {&track, 1}, file("track.png"));
-  const Seen seen = see(file("track.png"), 0.03);
+  draw_trajectories(room(), {&track, 1}, scenes::own_file("track.png"));
+  const Seen seen = see(scenes::own_file("track.png"), 0.03);
   EXPECT_EQ(seen.at(3.03, 2.0), 0xFFFF00FFu);
   EXPECT_EQ(seen.at(3.03, 2.1), kWhite);
   EXPECT_EQ(seen.at(0.8, 2.1), kWhite);
@@ -314,12 +310,12 @@ TEST(TrajectoryFigure, LineHasItsColour) {
 
 TEST(TrajectoryFigure, ContactIsMarked) {
   Track track = straight();
-  draw_trajectories(room(), {&track, 1}, file("free.png"));
+  draw_trajectories(room(), {&track, 1}, scenes::own_file("free.png"));
   track.contacts.assign(track.poses.size(), 0);
   track.contacts[20] = track.contacts[21] = 1;
-  draw_trajectories(room(), {&track, 1}, file("stopped.png"));
-  const Seen before = see(file("free.png"), 0.03);
-  const Seen after = see(file("stopped.png"), 0.03);
+  draw_trajectories(room(), {&track, 1}, scenes::own_file("stopped.png"));
+  const Seen before = see(scenes::own_file("free.png"), 0.03);
+  const Seen after = see(scenes::own_file("stopped.png"), 0.03);
   EXPECT_NE(before.at(3.0, 2.0), after.at(3.0, 2.0));
   EXPECT_EQ(before.at(3.3, 2.0), after.at(3.3, 2.0)) << "the line beside it";
 }
@@ -330,11 +326,11 @@ TEST(TrajectoryFigure, ContactAtTheEndIsSeenOnItsDot) {
   track.color = 0xFFD4351Cu;  // the colour of the cross
   track.contacts.assign(track.poses.size(), 0);
   track.contacts.back() = 1;
-  draw_trajectories(room(), {&track, 1}, file("at_the_end.png"));
+  draw_trajectories(room(), {&track, 1}, scenes::own_file("at_the_end.png"));
   track.contacts.back() = 0;
-  draw_trajectories(room(), {&track, 1}, file("free_end.png"));
-  const scenes::Picture with = scenes::read_png(file("at_the_end.png")),
-                        without = scenes::read_png(file("free_end.png"));
+  draw_trajectories(room(), {&track, 1}, scenes::own_file("free_end.png"));
+  const scenes::Picture with = scenes::read_png(scenes::own_file("at_the_end.png")),
+                        without = scenes::read_png(scenes::own_file("free_end.png"));
   int apart = 0;
   for (int y = without.height / 8; y < without.height; ++y)
     for (int x = 0; x < without.width; ++x) apart += with.at(x, y) != without.at(x, y) ? 1 : 0;
@@ -345,8 +341,8 @@ TEST(TrajectoryFigure, PoseThatIsNotFiniteBreaksTheLine) {
   Track track = straight();
   track.color = 0xFFFF00FFu;
   for (std::size_t i = 18; i < 23; ++i) track.poses[i].x = std::numeric_limits<double>::quiet_NaN();
-  draw_trajectories(room(), {&track, 1}, file("broken.png"));
-  const Seen seen = see(file("broken.png"), 0.03);
+  draw_trajectories(room(), {&track, 1}, scenes::own_file("broken.png"));
+  const Seen seen = see(scenes::own_file("broken.png"), 0.03);
   EXPECT_EQ(seen.at(3.03, 2.0), kWhite);
   EXPECT_EQ(seen.at(2.33, 2.0), 0xFFFF00FFu);
 }
@@ -365,22 +361,22 @@ TEST(TrajectoryFigure, LaterTracksLieOnTop) {
   Track tracks[] = {straight(), straight()};
   tracks[0].color = 0xFFFF0000u;
   tracks[1].color = 0xFF0000FFu;
-  draw_trajectories(room(), tracks, file("over.png"));
-  EXPECT_EQ(see(file("over.png"), 0.03).at(3.03, 2.0), 0xFF0000FFu);
+  draw_trajectories(room(), tracks, scenes::own_file("over.png"));
+  EXPECT_EQ(see(scenes::own_file("over.png"), 0.03).at(3.03, 2.0), 0xFF0000FFu);
 }
 
 TEST(TrajectoryFigure, TracksBeyondTheWorldAreShown) {  // the figure grows with the tracks
   Track track = straight();
   track.poses.push_back({60.0, 2.0, 0, 0});
-  draw_trajectories(room(), {&track, 1}, file("away.png"));
-  const scenes::Picture p = scenes::read_png(file("away.png"));
+  draw_trajectories(room(), {&track, 1}, scenes::own_file("away.png"));
+  const scenes::Picture p = scenes::read_png(scenes::own_file("away.png"));
   EXPECT_GT(p.width, 2 * p.height);
 }
 
 TEST(TrajectoryFigure, NoTrackAndEmptyTracksCanBeDrawn) {
   const auto is_bare = [&](std::span<const Track> tracks) {
-    draw_trajectories(room(), tracks, file("none.png"));
-    const Seen seen = see(file("none.png"), 0.03);
+    draw_trajectories(room(), tracks, scenes::own_file("none.png"));
+    const Seen seen = see(scenes::own_file("none.png"), 0.03);
     int other = 0;
     for (double x = 0.5; x < 5.5; x += 0.02)
       for (double y = 0.5; y < 3.5; y += 0.02) {
@@ -397,7 +393,7 @@ TEST(TrajectoryFigure, NoTrackAndEmptyTracksCanBeDrawn) {
 TEST(TrajectoryFigureDeathTest, ContactsMustMatchPoses) {
   Track track = straight();
   track.contacts.assign(3, 0);
-  EXPECT_DEATH(draw_trajectories(room(), {&track, 1}, file("never.png")), "3 contacts for 41 poses");
+  EXPECT_DEATH(draw_trajectories(room(), {&track, 1}, scenes::own_file("never.png")), "3 contacts for 41 poses");
 }
 
 TEST(OccupancyFigure, CellsHaveTheirColours) {
@@ -405,21 +401,21 @@ TEST(OccupancyFigure, CellsHaveTheirColours) {
   maps::OccupancyGrid grid({world.extent.x_min, world.extent.y_max, 0.25, 7, 5});
   grid.set(maps::cell_at(grid.geometry, {3.125, 2.125}), maps::Cell::free);
   grid.set(maps::cell_at(grid.geometry, {6.125, 2.125}), maps::Cell::occupied);
-  draw_occupancy(world, grid, file("grid.png"));
-  const Seen seen = see(file("grid.png"), 0.0);
+  draw_occupancy(world, grid, scenes::own_file("grid.png"));
+  const Seen seen = see(scenes::own_file("grid.png"), 0.0);
   EXPECT_EQ(seen.at(3.125, 2.125), kWhite) << "free";
   EXPECT_EQ(seen.at(-0.375, 2.125), 0xFF474B50u) << "unexplored";
   EXPECT_EQ(seen.at(6.125, 2.125), 0xFF1748D1u) << "occupied";
 }
 
 TEST(OccupancyFigure, OneWordCanBeDrawn) {
-  draw_occupancy({}, maps::OccupancyGrid({0, 1, 1.0, 1, 1}), file("cell.png"));
-  const scenes::Picture p = scenes::read_png(file("cell.png"));
+  draw_occupancy({}, maps::OccupancyGrid({0, 1, 1.0, 1, 1}), scenes::own_file("cell.png"));
+  const scenes::Picture p = scenes::read_png(scenes::own_file("cell.png"));
   EXPECT_GT(p.count(0xFF474B50u), p.width * p.height / 2) << "unexplored";
 }
 
 TEST(Figures, UnwritablePathIsNamed) {
-  const std::string path = file("no/such/folder/x.png");
+  const std::string path = scenes::own_file("no/such/folder/x.png");
   const auto named = [&](auto&& draw) {
     try {
       draw();
@@ -435,8 +431,8 @@ TEST(Figures, UnwritablePathIsNamed) {
 
 TEST(Figures, ManyRobotsCanBeDrawn) {  // the large case, once: 1000 robots in a world of 2000 segments
   const world::World world = scenes::make_world(80, 40, 500, 1000, 8.0);
-  draw_world(world, file("many.png"));
-  const scenes::Picture p = scenes::read_png(file("many.png"));
+  draw_world(world, scenes::own_file("many.png"));
+  const scenes::Picture p = scenes::read_png(scenes::own_file("many.png"));
   EXPECT_EQ(p.width, 1600);
   EXPECT_GT(p.count(0xFF2E7D32u), 5 * 1000) << "of each robot's body a few pixels";
 }

@@ -1,6 +1,7 @@
 // Dashes, crosses and legend samples, by their pixels.
 
 #include "viz/legend.h"
+#include "tests/viz/png.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +10,6 @@
 
 namespace sf::viz {
 namespace {
-
-constexpr std::uint32_t kWhite = 0xFFFFFFFFu, kBlack = 0xFF000000u;
 
 /// Pixels of one row, left to right: '#' where a line 2 px thick covers them fully.
 std::string row_of(const Canvas& canvas, int y) {

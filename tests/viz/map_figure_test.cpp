@@ -11,7 +11,7 @@
 namespace sf::viz {
 namespace {
 
-constexpr std::uint32_t kDark = 0xFF474B50u, kBlue = 0xFF1748D1u, kWhite = 0xFFFFFFFFu;
+constexpr std::uint32_t kDark = 0xFF474B50u, kBlue = 0xFF1748D1u;
 
 std::string out(const std::string& name) { return scenes::own_file(name); }
 

@@ -11,8 +11,6 @@
 namespace sf::viz {
 namespace {
 
-std::string file(const char* name) { return scenes::own_file(name); }
-
 /// A straight lane of 4 m along x.
 world::World lane() {
   world::World world;
@@ -29,8 +27,8 @@ Track track(double aside) {
 }
 
 scenes::Picture drawn(const std::vector<Track>& tracks) {
-  draw_along_paths(lane(), tracks, "Title", "subtitle", file("path.png"));
-  return scenes::read_png(file("path.png"));
+  draw_along_paths(lane(), tracks, "Title", "subtitle", scenes::own_file("path.png"));
+  return scenes::read_png(scenes::own_file("path.png"));
 }
 
 int colored(const scenes::Picture& p, std::uint32_t color) { return p.count(color, 0, 0, p.width, p.height); }
@@ -61,19 +59,20 @@ TEST(PathFigure, LeftIsAboveRight) {
 TEST(PathFigure, TheMiddleIsDrawnWhereThereIsAPath) {
   world::World without = lane();
   without.paths.clear();
-  draw_along_paths(without, {}, "Title", "subtitle", file("no_path.png"));
-  EXPECT_GT(colored(drawn({}), 0xFF808080u), 30 + colored(scenes::read_png(file("no_path.png")), 0xFF808080u));
+  draw_along_paths(without, {}, "Title", "subtitle", scenes::own_file("no_path.png"));
+  EXPECT_GT(colored(drawn({}), 0xFF808080u),
+            30 + colored(scenes::read_png(scenes::own_file("no_path.png")), 0xFF808080u));
 }
 
 /// Between its markings a lane is asphalt, not two separate bands.
 TEST(PathFigure, ALaneIsFilledFromEdgeToEdge) {
   world::World world = lane();
   for (const double y : {0.25, -0.25}) world.lane_markings.push_back({{{0.0, y}, {4.0, y}}, 0.02});
-  draw_along_paths(world, {}, "Title", "subtitle", file("lane.png"));
-  const int filled = colored(scenes::read_png(file("lane.png")), theme::kAsphaltBand);
+  draw_along_paths(world, {}, "Title", "subtitle", scenes::own_file("lane.png"));
+  const int filled = colored(scenes::read_png(scenes::own_file("lane.png")), theme::kAsphaltBand);
   world.paths.clear();
-  draw_along_paths(world, {}, "Title", "subtitle", file("bands.png"));
-  const scenes::Picture bands = scenes::read_png(file("bands.png"));
+  draw_along_paths(world, {}, "Title", "subtitle", scenes::own_file("bands.png"));
+  const scenes::Picture bands = scenes::read_png(scenes::own_file("bands.png"));
   // The lane is half as high as the plot, and nearly as wide as the picture.
   EXPECT_GT(filled, 3 * colored(bands, theme::kAsphaltBand));
   EXPECT_GT(filled, bands.width * bands.width / 4 / 4);
@@ -92,10 +91,11 @@ TEST(PathFigure, AFolderThatIsNotThereIsNamed) {
 /// The axis of a sweep has its own name: the pictures differ there, below the plot, and nowhere else.
 TEST(SeriesFigureAxis, SaysWhatWasVaried) {
   SeriesOptions options{.title = "T", .panels = {{"", "y", {{"a", {0.0, 1.0}, {1.0, 2.0}}}}}};
-  draw_series(options, file("axis_a.png"));
+  draw_series(options, scenes::own_file("axis_a.png"));
   options.x_name = "delay of readings [s]";
-  draw_series(options, file("axis_b.png"));
-  const scenes::Picture a = scenes::read_png(file("axis_a.png")), b = scenes::read_png(file("axis_b.png"));
+  draw_series(options, scenes::own_file("axis_b.png"));
+  const scenes::Picture a = scenes::read_png(scenes::own_file("axis_a.png")),
+                        b = scenes::read_png(scenes::own_file("axis_b.png"));
   ASSERT_EQ(a.height, b.height);
   int apart = 0;
   for (int y = 0; y < a.height; ++y)

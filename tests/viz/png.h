@@ -7,6 +7,11 @@
 #include <string>
 #include <vector>
 
+namespace sf {
+inline constexpr std::uint32_t kWhite = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kBlack = 0xFF000000u;
+}  // namespace sf
+
 namespace sf::scenes {
 
 struct Picture {

@@ -20,8 +20,6 @@ namespace {
 
 using scenes::Picture;
 
-std::string file(const char* name) { return scenes::own_file(name); }
-
 // Two straight lanes, 3 m wide and 60 m long, a stop line and a zone with a spot.
 world::RoadNetwork small() {
   const char* const text = R"(RNDF_name small
@@ -86,8 +84,8 @@ std::size_t count(const Picture& picture, std::uint32_t color) {
 }
 
 TEST(RoadFigure, ShowsWhatThereIs) {
-  draw_roads(small(), file("roads.png"));
-  const Picture picture = scenes::read_png(file("roads.png"));
+  draw_roads(small(), scenes::own_file("roads.png"));
+  const Picture picture = scenes::read_png(scenes::own_file("roads.png"));
   EXPECT_GE(picture.width, 1000);
   // About 15 px/m: 2 lanes of 60 m x 3 m are 80 000 pixels, less the markings on them.
   EXPECT_GT(count(picture, theme::kAsphalt), 20000u);
@@ -147,9 +145,10 @@ TEST(RoadFigure, NamesOfAnyBytes) {
       "e \xFF\xFE";
   network.segments[0].name = std::string(100000, '\xE9');
   network.zones[0].name = "";
-  draw_roads(network, file("bytes.png"));
-  draw_roads(small(), file("plain.png"));
-  const Picture bytes = scenes::read_png(file("bytes.png")), plain = scenes::read_png(file("plain.png"));
+  draw_roads(network, scenes::own_file("bytes.png"));
+  draw_roads(small(), scenes::own_file("plain.png"));
+  const Picture bytes = scenes::read_png(scenes::own_file("bytes.png")),
+                plain = scenes::read_png(scenes::own_file("plain.png"));
   EXPECT_NEAR(bytes.count(theme::kStop), plain.count(theme::kStop), 2) << "the same roads under other names";
   EXPECT_NEAR(bytes.count(theme::kSpot), plain.count(theme::kSpot), plain.count(theme::kSpot) / 4);
   EXPECT_EQ(printable("a\xDFz\n", 10), "a?z?");
@@ -166,8 +165,8 @@ TEST(RoadFigure, OnePointIsEnough) {
   network.lanes[0].centre = world::smooth_curve(std::vector<glm::dvec2>{{0, 0}}, {});
   network.lanes[0].left_edge.clear(), network.lanes[0].right_edge.clear();
   network.extent = {0, 0, 0, 0};
-  draw_roads(network, file("point.png"));
-  const Picture picture = scenes::read_png(file("point.png"));
+  draw_roads(network, scenes::own_file("point.png"));
+  const Picture picture = scenes::read_png(scenes::own_file("point.png"));
   EXPECT_EQ(picture.count(theme::kZone) + picture.count(theme::kSpot) + picture.count(theme::kStop), 0)
       << "none of what was taken away";
   EXPECT_GT(picture.count(0xFFFFFFFFu), picture.width * picture.height / 10);
@@ -217,8 +216,8 @@ TEST(RoadFigureFiles, TheFinalIsDrawn) {
   const std::string rndf = SF_SOURCE_DIR "/../shared/data/rndf/darpa_sample/uce_rndf_1_final_event.rndf";
   if (!std::filesystem::exists(rndf)) GTEST_SKIP() << "no shared data beside the sources";
   std::vector<world::Warning> warnings;
-  draw_roads(world::load_roads(rndf, warnings), file("final.png"));
-  const Picture picture = scenes::read_png(file("final.png"));
+  draw_roads(world::load_roads(rndf, warnings), scenes::own_file("final.png"));
+  const Picture picture = scenes::read_png(scenes::own_file("final.png"));
   EXPECT_EQ(std::max(picture.width, picture.height), 4000);
   EXPECT_GT(count(picture, theme::kAsphalt), 100000u);
   EXPECT_GT(count(picture, theme::kCheckpoint), 170u * 20u);

@@ -14,8 +14,6 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::string file(const char* name) { return scenes::own_file(name); }
-
 /// A series of one value per second.
 Series per_second(const std::string& name, const std::vector<double>& values) {
   Series series{name, {}, values};
@@ -28,8 +26,8 @@ SeriesOptions one_panel(const std::vector<Series>& series) {
 }
 
 scenes::Picture drawn(const SeriesOptions& options, const char* name) {
-  draw_series(options, file(name));
-  return scenes::read_png(file(name));
+  draw_series(options, scenes::own_file(name));
+  return scenes::read_png(scenes::own_file(name));
 }
 
 /// Pixels of `color` in columns [from, to) parts of the picture's width.
@@ -128,8 +126,9 @@ TEST(SeriesFigure, ThePictureIsAFunctionOfTheNumbers) {
 }
 
 TEST(SeriesFigure, BrokenContractsAbort) {
-  EXPECT_DEATH(draw_series({"t", "s", {}}, file("x.png")), "0 panels");
-  EXPECT_DEATH(draw_series(one_panel({Series{"a", {1, 2}, {1}}}), file("x.png")), "series a has 2 times for 1 values");
+  EXPECT_DEATH(draw_series({"t", "s", {}}, scenes::own_file("x.png")), "0 panels");
+  EXPECT_DEATH(draw_series(one_panel({Series{"a", {1, 2}, {1}}}), scenes::own_file("x.png")),
+               "series a has 2 times for 1 values");
 }
 
 TEST(SeriesFigure, APlaceThatCannotBeWrittenIsNamed) {

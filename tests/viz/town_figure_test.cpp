@@ -11,8 +11,6 @@ namespace {
 
 constexpr std::uint32_t kGreen = 0xFF43A047u, kRed = 0xFFE53935u, kYellow = 0xFFFDD835u;
 
-std::string file(const char* name) { return scenes::own_file(name); }
-
 const world::World& town() {
   static const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world");
   return world;
@@ -30,8 +28,8 @@ struct Scene {
     }
   }
   scenes::Picture draw(const char* name) const {
-    draw_town(town(), tracks, end, file(name));
-    return scenes::read_png(file(name));
+    draw_town(town(), tracks, end, scenes::own_file(name));
+    return scenes::read_png(scenes::own_file(name));
   }
   std::vector<Track> tracks;
   TownFinalState end;

@@ -13,16 +13,14 @@ namespace {
 
 constexpr std::uint32_t kFront = 0xFF0072B2u, kBeaten = 0xFF909090u, kCovered = 0xFFD55E00u;
 
-std::string file(const char* name) { return scenes::own_file(name); }
-
 TradeoffPoint point(const char* name, double rate, double error, bool front) {
   return {name, rate, error / 10.0, error, 10.0 * error, front, {}};
 }
 
 scenes::Picture drawn(const std::vector<TradeoffPoint>& points) {
   const TradeoffPanel panel{"laser", "rays per second", "error [m]", points};
-  draw_tradeoff("Title", "subtitle", {&panel, 1}, file("tradeoff.png"));
-  return scenes::read_png(file("tradeoff.png"));
+  draw_tradeoff("Title", "subtitle", {&panel, 1}, scenes::own_file("tradeoff.png"));
+  return scenes::read_png(scenes::own_file("tradeoff.png"));
 }
 
 /// Middle of all pixels of one colour.

@@ -11,7 +11,7 @@
 namespace sf::world {
 namespace {
 
-using Key = std::tuple<int, int, int, int>;
+using EdgeKey = std::tuple<int, int, int, int>;
 
 /// Rows from the top; `#` is solid.
 Bitmap grid_of(const std::vector<std::string>& rows) {
@@ -28,8 +28,8 @@ bool solid(const Bitmap& grid, int i, int j) {
 }
 
 /// All unit boundaries between two cells, solid on the left, found cell by cell without the code under test.
-std::set<Key> unit_edges(const Bitmap& grid) {
-  std::set<Key> edges;
+std::set<EdgeKey> unit_edges(const Bitmap& grid) {
+  std::set<EdgeKey> edges;
   for (int j = 0; j < static_cast<int>(grid.height); ++j) {
     for (int i = 0; i < static_cast<int>(grid.width); ++i) {
       if (!solid(grid, i, j)) continue;
@@ -42,8 +42,8 @@ std::set<Key> unit_edges(const Bitmap& grid) {
   return edges;
 }
 
-std::set<Key> cut(const std::vector<BoundaryRun>& runs) {
-  std::set<Key> edges;
+std::set<EdgeKey> cut(const std::vector<BoundaryRun>& runs) {
+  std::set<EdgeKey> edges;
   for (const BoundaryRun& run : runs) {
     const int di = (run.b.i > run.a.i) - (run.b.i < run.a.i), dj = (run.b.j > run.a.j) - (run.b.j < run.a.j);
     int i = static_cast<int>(run.a.i), j = static_cast<int>(run.a.j);
@@ -57,7 +57,7 @@ std::set<Key> cut(const std::vector<BoundaryRun>& runs) {
 }
 
 /// The smallest number of runs: one for each unit edge that does not continue another one in a straight line.
-std::size_t fewest(const std::set<Key>& edges) {
+std::size_t fewest(const std::set<EdgeKey>& edges) {
   std::size_t count = 0;
   for (const auto& [ai, aj, bi, bj] : edges) count += edges.contains({2 * ai - bi, 2 * aj - bj, ai, aj}) ? 0 : 1;
   return count;

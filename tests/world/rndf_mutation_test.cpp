@@ -27,9 +27,9 @@ std::vector<std::string> lines_of_text(const std::string& text) {
 }
 
 /// One to three changes: a flipped byte, a line dropped, doubled or swapped with another, or a changed number.
-std::string mutated(const std::string& text, std::uint32_t k) {
-  constexpr std::array<std::string_view, 10> kPieces{"/*",    "*/",  "1.1.1",      "32769", "-0",
-                                                     "1e308", "nan", "end_lane\n", "\r",    "\xFF"};
+std::string mutated_rndf(const std::string& text, std::uint32_t k) {
+  constexpr std::array<std::string_view, 10> kStatements{"/*",    "*/",  "1.1.1",      "32769", "-0",
+                                                         "1e308", "nan", "end_lane\n", "\r",    "\xFF"};
   std::string changed = text;
   const auto count = 1 + base::random_words({9, RandomStream::placement, k, 0, 0}, 999)[0] % 3;
   for (std::uint32_t change = 0; change < count && !changed.empty(); ++change) {
@@ -40,7 +40,7 @@ std::string mutated(const std::string& text, std::uint32_t k) {
       continue;
     }
     if (words[1] % 5 == 1) {
-      changed.insert(at, kPieces[words[2] % kPieces.size()]);
+      changed.insert(at, kStatements[words[2] % kStatements.size()]);
       continue;
     }
     auto lines = lines_of_text(changed);
@@ -72,7 +72,7 @@ void run(const std::string& text, std::uint32_t times, Read&& read) {
   std::uint32_t fine = 0;
   for (std::uint32_t k = 0; k < times; ++k) {
     try {
-      read(mutated(text, k));
+      read(mutated_rndf(text, k));
       ++fine;
     } catch (const base::InputError& error) {
       EXPECT_NE(std::string(error.what()).find(':'), std::string::npos);

@@ -17,12 +17,12 @@ namespace {
 World shipped(const std::string& name) {
   static constexpr std::string_view kAny[] = {"fov",     "samples",      "range_max", "range_min",    "scount",
                                               "spose[]", "ssensitivity", "sum",       "perpendicular"};
-  static constexpr std::string_view kMap[] = {"cell", "words", "offset"};
+  static constexpr std::string_view kShippedMap[] = {"cell", "words", "offset"};
   static constexpr std::string_view kFelt[] = {"zones", "zone[]", "scount", "spose[]",     "per_count", "track",
                                                "slip",  "scrub",  "bias",   "scale_error", "range",     "satellites"};
   static constexpr std::string_view kCones[] = {"scount", "spose[]", "fov", "range", "firing", "arrays"};
   static constexpr SensorKeyword kWords[] = {
-      kLaserWords[0],    kLaserWords[1],    {"laneedge", kAny},  {"magnetometer", kAny}, {"occupancy", kMap},
+      kLaserWords[0],    kLaserWords[1],    {"laneedge", kAny},  {"magnetometer", kAny}, {"occupancy", kShippedMap},
       {"bumper", kFelt}, {"cliff", kFelt},  {"encoder", kFelt},  {"irreceiver", kFelt},  {"gyro", kFelt},
       {"gps", kFelt},    {"sonar", kCones}, {"infrared", kCones}};
   LoadOptions options;

@@ -5,12 +5,11 @@
 
 #include <cmath>
 
+#include "tests/units.h"
 #include "tests/world/read_world.h"
 
 namespace sf::world {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 const Mover& only_mover(const World& world) {
   EXPECT_EQ(world.movers.size(), 1u);

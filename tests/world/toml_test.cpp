@@ -9,7 +9,7 @@
 namespace sf::world {
 namespace {
 
-std::string refusal(const std::string& text) {
+std::string toml_refusal(const std::string& text) {
   try {
     parse_toml("f.toml", text);
   } catch (const base::InputError& error) {
@@ -60,17 +60,17 @@ a = 2
 TEST(Toml, AnEmptyTextIsAnEmptyTable) { EXPECT_TRUE(parse_toml("f.toml", "").items.empty()); }
 
 TEST(Toml, InvalidTomlIsRefusedAtItsLine) {
-  EXPECT_EQ(refusal("a = 1\nb = \n").substr(0, 18), "f.toml:2: not TOML");
-  EXPECT_EQ(refusal("a = 1\na = 2\n").substr(0, 18), "f.toml:2: not TOML");
-  EXPECT_EQ(refusal("a = \"\xC3\xA9\"\n").substr(0, 9), "f.toml:1:");
-  EXPECT_EQ(refusal("# \xC3\xA9\na = 1\n"), "");
+  EXPECT_EQ(toml_refusal("a = 1\nb = \n").substr(0, 18), "f.toml:2: not TOML");
+  EXPECT_EQ(toml_refusal("a = 1\na = 2\n").substr(0, 18), "f.toml:2: not TOML");
+  EXPECT_EQ(toml_refusal("a = \"\xC3\xA9\"\n").substr(0, 9), "f.toml:1:");
+  EXPECT_EQ(toml_refusal("# \xC3\xA9\na = 1\n"), "");
 }
 
 TEST(Toml, NestsAsDeepAsItMay) {
   std::string deep;
   for (int i = 0; i < 32; ++i) deep += i == 0 ? "[a" : ".a";
-  EXPECT_EQ(refusal(deep + "]\n"), "");
-  EXPECT_NE(refusal(deep + ".a.a]\n").find("nested too deep"), std::string::npos);
+  EXPECT_EQ(toml_refusal(deep + "]\n"), "");
+  EXPECT_NE(toml_refusal(deep + ".a.a]\n").find("nested too deep"), std::string::npos);
 }
 
 }  // namespace

@@ -24,9 +24,9 @@ TEST(SegmentsMeet, CaseByCase) {
 }
 
 TEST(Distance, EndsAndMiddle) {
-  EXPECT_EQ(distance({0, 1}, {-1, 0}, {1, 0}), 1.0);
-  EXPECT_EQ(distance({4, 4}, {-1, 0}, {1, 0}), 5.0);
-  EXPECT_EQ(distance({3, 4}, {0, 0}, {0, 0}), 5.0) << "a point";
+  EXPECT_EQ(world::distance({0, 1}, {-1, 0}, {1, 0}), 1.0);
+  EXPECT_EQ(world::distance({4, 4}, {-1, 0}, {1, 0}), 5.0);
+  EXPECT_EQ(world::distance({3, 4}, {0, 0}, {0, 0}), 5.0) << "a point";
 }
 
 TEST(FromSegment, EndsAndMiddle) {
@@ -93,12 +93,12 @@ void expect_same_as_brute_force(const std::vector<Segment>& walls, glm::dvec2 ar
     const double reach = 0.1 + 2.0 * base::random_uniform({.seed = 9, .a = i}, 1)[0];
     std::set<std::uint32_t> met;
     tree.any(box_around(p, reach), [&](const Segment& wall) {
-      if (distance(p, wall.a, wall.b) <= reach) met.insert(wall.model);
+      if (world::distance(p, wall.a, wall.b) <= reach) met.insert(wall.model);
       return false;
     });
     std::set<std::uint32_t> expected;
     for (const Segment& wall : walls) {
-      if (distance(p, wall.a, wall.b) <= reach) expected.insert(wall.model);
+      if (world::distance(p, wall.a, wall.b) <= reach) expected.insert(wall.model);
     }
     ASSERT_EQ(met, expected) << "query " << i;
   }

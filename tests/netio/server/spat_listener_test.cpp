@@ -5,6 +5,7 @@
 #include "netio/outbox.h"
 #include "netio/v2x/frame.h"
 #include "tests/netio/server/fixture.h"
+#include "tests/units.h"
 
 namespace sf::server {
 namespace {
@@ -12,10 +13,9 @@ namespace {
 using world::LightState;
 
 constexpr std::int64_t kUtc = 1'767'225'600'000;  ///< [ms]
-constexpr std::int64_t kSecond = 1'000'000'000;   ///< [ns]
 
 /// Two lights, each an intersection of its own: 8 s of green before yellow, and red for ever.
-world::World two_lights() {
+world::World lights_of_messages() {
   world::World world;
   world.lights.resize(2);
   world.lights[0].phases = {{LightState::green, 8.0}, {LightState::yellow, 2.0}};
@@ -32,7 +32,7 @@ base::Bytes spat(const world::World& world, std::uint32_t intersection, double t
 }
 
 struct Listening {
-  world::World world = two_lights();
+  world::World world = lights_of_messages();
   SpatListener listener{world, nullptr, {netio::kLoopback, 0}};
 
   /// Where the plan has dark for both.
@@ -80,7 +80,7 @@ TEST(SpatListener, OtherDatagramsAreCounted) {
   base::Bytes bytes = spat(l.world, 0);
   l.listener.accept(std::span(bytes).first(bytes.size() - 1), 0, kUtc);
   l.listener.accept({}, 0, kUtc);
-  world::World other = two_lights();
+  world::World other = lights_of_messages();
   other.lights.resize(3, other.lights[1]);
   l.listener.accept(spat(other, 2), 0, kUtc);
   v2x::Frame map;
@@ -106,7 +106,7 @@ TEST(SpatListener, HearsDatagrams) {
 
 TEST(RobotClient, CountsTheLightsThatItHears) {
   Fixture f;
-  f.world.lights = two_lights().lights;
+  f.world.lights = lights_of_messages().lights;
   RobotClientOptions options{.log_descriptor = f.log.descriptor()};
   options.link.farm = {netio::kLoopback, f.service->port()};
   options.controller.name = "wander";

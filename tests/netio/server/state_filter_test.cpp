@@ -6,6 +6,7 @@
 
 #include "base/time.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 
 namespace sf::server {
 namespace {
@@ -14,7 +15,6 @@ using base::kSecond;
 using estimation::ClockVerdict;
 using estimation::StalePolicy;
 using estimation::Verdict;
-constexpr std::int64_t kMs = 1'000'000;
 
 /// One robot whose sender's clock is an hour ahead, driving along x at 0.5 m/s.
 struct Fixture {

@@ -8,6 +8,7 @@
 
 #include "base/time.h"
 #include "tests/robots/estimation/reference.h"
+#include "tests/units.h"
 
 namespace sf::estimation {
 namespace {
@@ -255,7 +256,6 @@ TEST(Extremes, TinyAndHugeTimes) {
 }
 
 TEST(Measurements, BadNumbersAreInvalid) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(is_valid({}));
   EXPECT_TRUE(is_valid({.time = std::int64_t{1} << 62}));
   EXPECT_FALSE(is_valid({.time = -1}));

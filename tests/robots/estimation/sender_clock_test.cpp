@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "base/time.h"
+#include "tests/units.h"
 
 namespace sf::estimation {
 namespace {
 
 using base::kSecond;
-constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kLatest = std::int64_t{1} << 62;
 
 /// A sender whose clock differs, and a link with a least delay and exponential jitter.

@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "base/time.h"
+#include "tests/units.h"
 
 namespace sf::estimation {
 namespace {
 
 using Status = Prediction::Status;
-constexpr std::int64_t kMs = 1'000'000;
 
 FilterOptions options() {
   FilterOptions o;
