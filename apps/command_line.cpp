@@ -67,7 +67,7 @@ const CLI::App* add_help(CLI::App& app, std::string& asked) {
 }
 
 /// The error in the arguments, as one line that ends with the help command.
-std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc, const char* const* argv) {
+std::string explain_refusal(const CLI::App& app, const CLI::ParseError& error, int argc, const char* const* argv) {
   const std::vector<CLI::App*> used = app.get_subcommands();
   if (used.empty()) {
     std::vector<std::string_view> names;
@@ -112,7 +112,7 @@ Parsed parse_command_line(int argc, const char* const* argv) {
     // CLI11 has a code for each mistake; ours is 2 for all of them.
     const bool fine = error.get_exit_code() == 0;
     if (fine) app.exit(error);
-    if (!fine) print_message(explain(app, error, argc, argv));
+    if (!fine) print_message(explain_refusal(app, error, argc, argv));
     parsed.exit_code = fine ? 0 : 2;
   }
   return parsed;

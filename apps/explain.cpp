@@ -42,7 +42,7 @@ std::string work_of(const scenarios::SensorTypeCost& k, double ticks) {
   return text;
 }
 
-std::string text_of(const scenarios::SensorTypeCost& k, const scenarios::Explanation& e) {
+std::string costs_of(const scenarios::SensorTypeCost& k, const scenarios::Explanation& e) {
   std::string text =
       fmt::format("{}: {} on {}, {}\n", k.type, counted(k.sensors, "sensor"), counted(k.robots, "robot"), rates_of(k));
   text += row("a tick", "{:.3f} ms subscribed {}, {:.3f} ms more than without subscribers", 1e3 * k.tick,
@@ -63,7 +63,7 @@ std::string text_of(const scenarios::SensorTypeCost& k, const scenarios::Explana
 
 std::string text_of(const scenarios::Explanation& e) {
   std::string text;
-  for (const scenarios::SensorTypeCost& cost : e.types) text += text_of(cost, e);
+  for (const scenarios::SensorTypeCost& cost : e.types) text += costs_of(cost, e);
   text += "together\n";
   text += row("a tick", "{:.3f} ms with all subscribed, {:.4f} ms without subscribers", 1e3 * e.all, 1e3 * e.silent);
   text += row("caster", e.caster);

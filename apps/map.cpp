@@ -31,8 +31,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kPatience = 10;                     ///< [ms] to wait for something to come
-constexpr std::size_t kReceiveBuffer = 1u << 22;  ///< [byte] asked of the kernel: large maps come in bursts
+constexpr int kMapPatience = 10;                     ///< [ms] to wait for something to come
+constexpr std::size_t kMapReceiveBuffer = 1u << 22;  ///< [byte] asked of the kernel: large maps come in bursts
 
 /// One port: a robot's map.
 struct Source {
@@ -102,7 +102,7 @@ class Display {
  public:
   explicit Display(const MapOptions& options)
       : options_(options),
-        port_listener_(netio::resolve(options.bind), kReceiveBuffer, plans_of(options.map_ports)),
+        port_listener_(netio::resolve(options.bind), kMapReceiveBuffer, plans_of(options.map_ports)),
         on_terminal_(isatty(STDOUT_FILENO) != 0) {
     const std::uint32_t host = options.from.empty() ? 0 : netio::resolve(options.from);
     for (const std::uint16_t port : options.map_ports) sources_.emplace_back(port, host);
@@ -136,7 +136,7 @@ bool Display::drain() {
     ++(used ? source.used : source.left_out);
     changed_ = changed_ || taken == maps::MapPartStatus::complete;
   };
-  return port_listener_.drain(kPatience, on_datagram) > 0;
+  return port_listener_.drain(kMapPatience, on_datagram) > 0;
 }
 
 bool Display::all_whole() const {

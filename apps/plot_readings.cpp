@@ -13,7 +13,7 @@ namespace sf::apps {
 
 namespace {
 
-constexpr double kGauss = 1e4;                 ///< per tesla
+constexpr double kPlottedGauss = 1e4;          ///< per tesla
 constexpr std::size_t kMostMagnetometers = 4;  ///< panels of their own
 
 /// Readings of one sensor, in order of time.
@@ -73,7 +73,7 @@ viz::Panel fields_of(const Channel& channel, std::size_t width) {
   const std::size_t elements = channel.readings.front()->values.size() / width;
   for (std::size_t e = 0; e < elements; ++e)
     panel.series.push_back(series_of(fmt::format("element {}", e), channel, [=](const record::ReadingSample& r) {
-      return e * width < r.values.size() ? kGauss * r.values[e * width] : NAN;
+      return e * width < r.values.size() ? kPlottedGauss * r.values[e * width] : NAN;
     }));
   return panel;
 }
@@ -87,7 +87,7 @@ viz::SeriesOptions fields(const record::Recording& recording, const std::vector<
   for (std::size_t i = 0; i < drawn; ++i) {
     figure.panels.push_back(fields_of(channels[i], width));
     difference.series.push_back(series_of(channels[i].name, channels[i], [=](const record::ReadingSample& r) {
-      return r.values.size() > width ? kGauss * (r.values[r.values.size() - width] - r.values[0]) : NAN;
+      return r.values.size() > width ? kPlottedGauss * (r.values[r.values.size() - width] - r.values[0]) : NAN;
     }));
   }
   figure.panels.push_back(std::move(difference));

@@ -18,11 +18,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Names are whatever bytes a world file holds: what is no UTF-8 is replaced.
-std::string dump(const Json& json, int indent = -1) {
+std::string dump_json(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string print(const Json& json) { return dump(json, 2) + "\n"; }
+std::string print(const Json& json) { return dump_json(json, 2) + "\n"; }
 
 Json pose_json(const base::Pose& X) { return {X.x, X.y, base::wrap_angle(X.yaw)}; }
 
@@ -211,7 +211,7 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
 
 std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings) {
   const std::size_t end = json.find_last_not_of(" \n", json.rfind('}') - 1) + 1;
-  return json.insert(end, ",\n  \"warnings\": " + dump(warnings_json(warnings)));
+  return json.insert(end, ",\n  \"warnings\": " + dump_json(warnings_json(warnings)));
 }
 
 std::string json_of(const RunReport& f) {
@@ -300,14 +300,14 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
   if (type.list.empty() && !reading.quality.empty()) head["unsure"] = word_of(reading.quality.front());
   if (type.list.empty()) {
     head.update(element_json(world, sensor_set, reading, 0));
-    return dump(head) + "\n";
+    return dump_json(head) + "\n";
   }
   // Elements are lines of their own.
-  std::string text = dump(head);
+  std::string text = dump_json(head);
   text.back() = ',';
   text += fmt::format("\n\"{}\": [", type.list);
   for (std::uint32_t i = 0; i < reading.values.size() / element_width(type); ++i)
-    text += (i == 0 ? "\n  " : ",\n  ") + dump(element_json(world, sensor_set, reading, i));
+    text += (i == 0 ? "\n  " : ",\n  ") + dump_json(element_json(world, sensor_set, reading, i));
   return text + "\n]}\n";
 }
 

@@ -30,7 +30,7 @@ std::vector<const Case*> chosen(const std::vector<std::string>& names) {
   return some;
 }
 
-int list_all() {
+int list_cases() {
   for (const Case& c : selftest::cases()) print(fmt::format("{:<9} {:<27} {}\n", c.group, c.name, c.why));
   return 0;
 }
@@ -71,7 +71,7 @@ std::string text_of(const SelfTestReport& test) {
 }
 
 int selftest(const SelfTestOptions& options) {
-  if (options.list) return list_all();
+  if (options.list) return list_cases();
   gpu::Device device(options.device);
   selftest::Fixture fixture(device);
   const std::vector<const Case*> some = chosen(options.cases);

@@ -20,18 +20,18 @@ namespace sf::apps {
 
 namespace {
 
-constexpr std::size_t kMaxFile = 64u << 20;  ///< [byte]
+constexpr std::size_t kMaxFrameFile = 64u << 20;  ///< [byte]
 constexpr std::size_t kMaxComplaints = 10;
 const std::string kXml = "<?xml version=\"1.0\"?>\n";
 
 /// The file's content; of `-`, standard input's.
 std::string content_of(const std::string& file) {
-  if (file != "-") return base::read_bytes(file, kMaxFile);
+  if (file != "-") return base::read_bytes(file, kMaxFrameFile);
   std::string text;
   std::vector<char> part(1u << 16);
   while (std::cin.read(part.data(), static_cast<std::streamsize>(part.size())), std::cin.gcount() > 0) {
     text.append(part.data(), static_cast<std::size_t>(std::cin.gcount()));
-    if (text.size() > kMaxFile) throw base::InputError("-", 0, fmt::format("more than {} bytes", kMaxFile));
+    if (text.size() > kMaxFrameFile) throw base::InputError("-", 0, fmt::format("more than {} bytes", kMaxFrameFile));
   }
   if (text.empty()) throw base::InputError("-", 0, "standard input is empty; frames expected");
   return text;

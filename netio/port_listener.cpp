@@ -12,7 +12,7 @@ namespace sf::netio {
 
 namespace {
 
-constexpr std::size_t kBatch = 64;
+constexpr std::size_t kPortBatch = 64;
 constexpr std::size_t kSpareFiles = 64;  ///< descriptors left for the rest of the process
 constexpr std::size_t kEvents = 256;
 
@@ -25,7 +25,7 @@ std::vector<SensorPorts> uses_of(std::span<const StreamSpec> streams) {
 }  // namespace
 
 PortListener::PortListener(std::uint32_t address, std::size_t receive_buffer, std::span<const StreamSpec> streams)
-    : batch_(kBatch) {
+    : batch_(kPortBatch) {
   require_ports(uses_of(streams));
   raise_open_file_limit(streams.size() + kSpareFiles);
   epoll_ = Socket(epoll_create1(EPOLL_CLOEXEC));

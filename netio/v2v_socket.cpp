@@ -6,18 +6,18 @@ namespace sf::netio {
 
 namespace {
 
-constexpr std::size_t kBatch = 64;
-constexpr std::size_t kStateChannel = 0;
-constexpr std::size_t kSendBuffer = 1u << 18;  ///< [byte]
+constexpr std::size_t kV2vBatch = 64;
+constexpr std::size_t kV2vChannel = 0;
+constexpr std::size_t kV2vSendBuffer = 1u << 18;  ///< [byte]
 
 }  // namespace
 
 V2vSocket::V2vSocket(const V2vSocketOptions& options)
     : options_(options),
-      socket_(open_udp({0, 0}, {.receive = options.receive_buffer, .send = kSendBuffer})),
+      socket_(open_udp({0, 0}, {.receive = options.receive_buffer, .send = kV2vSendBuffer})),
       outbox_(duplicate(socket_), {.capacity = 4}),
       others_(options.others),
-      batch_(kBatch) {}
+      batch_(kV2vBatch) {}
 
 void V2vSocket::send(std::span<const std::uint8_t> bytes) {
   outbox_.queue(options_.farm, bytes, {options_.session, token_});
@@ -44,7 +44,7 @@ PacketStatus V2vSocket::check(const Packet& packet, std::int64_t now) {
   if (!start && !std::holds_alternative<V2v>(packet.body)) return PacketStatus::wrong_direction;
   if (start && id != kBroadcastId && id != options_.robot) return PacketStatus::unknown_robot;
   if (!start && !others_.row(id)) return PacketStatus::unknown_robot;
-  return start ? PacketStatus::accepted : others_.admit(id, kStateChannel, packet.header.sequence, options_.farm, now);
+  return start ? PacketStatus::accepted : others_.admit(id, kV2vChannel, packet.header.sequence, options_.farm, now);
 }
 
 }  // namespace sf::netio
