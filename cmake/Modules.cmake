@@ -8,6 +8,7 @@ find_package(ZLIB REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_library(SODIUM sodium REQUIRED)  # libsodium-dev
 find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-dev)
 
 # Debian's VTK 9.1 looks for MPI; this project does not use it.

@@ -26,6 +26,12 @@ std::uint32_t resolve(const std::string& host) {
   return address;
 }
 
+std::optional<std::uint32_t> parse_address(const std::string& text) {
+  in_addr address{};
+  if (inet_pton(AF_INET, text.c_str(), &address) != 1) return std::nullopt;
+  return ntohl(address.s_addr);
+}
+
 std::vector<std::uint32_t> own_addresses() {
   std::vector<std::uint32_t> addresses;
   ifaddrs* all = nullptr;

@@ -2,6 +2,7 @@
 // Source or destination of datagrams. IPv4 only, which the testbed's robots, loopback and containers all support.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct Endpoint {
 /// @throws base::InputError naming `host` on failure
 /// @throws base::InputError naming `host` when there is none.
 std::uint32_t resolve(const std::string& host);
+
+/// IPv4 address of a dotted quad; nullopt for anything else.
+std::optional<std::uint32_t> parse_address(const std::string& text);
 
 /// 127.0.0.0/8, reachable only from this machine.
 inline bool is_loopback(std::uint32_t address) { return address >> 24 == 127; }

@@ -31,6 +31,7 @@ void require_ids(std::span<const std::uint32_t> ids, std::uint32_t smallest, con
 Inbox::Inbox(const InboxOptions& options)
     : robots_(options.robots),
       tags_(options.tags),
+      peers_(options.peers),
       types_(options.robots.size(), 0),
       sessions_(options.robots.size(), 0),
       session_(options.session),
@@ -49,26 +50,25 @@ void Inbox::wait(int timeout_ms) const {
 PacketStatus Inbox::accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now,
                            Packet& packet) {
   PacketStatus status = decode(bytes, packet);
-  if (status == PacketStatus::accepted) status = check(packet, source, now);
+  if (status == PacketStatus::accepted) status = check_id(packet.header);
+  if (status == PacketStatus::accepted) status = peers_.check(claim_of(packet.header), bytes, source);
+  if (status == PacketStatus::accepted) status = check_sender(packet, source, now);
   counts_.add(status);
   return status;
 }
 
-PacketStatus Inbox::check(Packet& packet, const Endpoint& source, std::int64_t now) {
-  switch (packet.header.type) {
+/// Whether such a packet can concern the farm at all.
+PacketStatus Inbox::check_id(const Header& header) const {
+  const auto known = [&](bool is_known) { return is_known ? PacketStatus::accepted : PacketStatus::unknown_robot; };
+  switch (header.type) {
     case Type::v2v:
     case Type::subscribe:
-      return check_robot(packet, source, now);
     case Type::leave:
-      if (!robots_.row(packet.header.robot)) return PacketStatus::unknown_robot;
-      if (packet.header.token != tokens_.of(source)) return PacketStatus::unproven;
-      return robots_.leave(packet.header.robot, source, now);
-    case Type::tag:
-      if (!tags_.row(packet.header.robot)) return PacketStatus::unknown_tag;
-      return admit_state(tags_, packet, source, now);
+      return known(robots_.row(header.robot).has_value());
     case Type::start:
-      return packet.header.robot == kBroadcastId || robots_.row(packet.header.robot) ? PacketStatus::accepted
-                                                                                     : PacketStatus::unknown_robot;
+      return known(header.robot == kBroadcastId || robots_.row(header.robot));
+    case Type::tag:
+      return tags_.row(header.robot) ? PacketStatus::accepted : PacketStatus::unknown_tag;
     case Type::challenge:
     case Type::neighbours:
       break;
@@ -76,21 +76,26 @@ PacketStatus Inbox::check(Packet& packet, const Endpoint& source, std::int64_t n
   return PacketStatus::wrong_direction;
 }
 
-PacketStatus Inbox::check_robot(Packet& packet, const Endpoint& source, std::int64_t now) {
-  const std::uint32_t id = packet.header.robot;
-  const auto row = robots_.row(id);
-  if (!row) return PacketStatus::unknown_robot;
+PacketStatus Inbox::check_sender(Packet& packet, const Endpoint& source, std::int64_t now) {
+  if (packet.header.type == Type::start) return PacketStatus::accepted;
+  if (packet.header.type == Type::tag) return admit_state(tags_, packet, source, now);
   if (packet.header.token != tokens_.of(source)) return PacketStatus::unproven;
+  if (packet.header.type == Type::leave) return robots_.leave(packet.header.robot, source, now);
+  return admit_robot(packet, source, now);
+}
 
+PacketStatus Inbox::admit_robot(Packet& packet, const Endpoint& source, std::int64_t now) {
+  const std::uint32_t id = packet.header.robot;
+  const std::size_t row = *robots_.row(id);
   const bool was_active = robots_.is_active(id, now);
   const auto* request = std::get_if<Subscribe>(&packet.body);
   const PacketStatus status = request != nullptr
                                   ? robots_.admit(id, kSubscribeChannel, packet.header.sequence, source, now)
                                   : admit_state(robots_, packet, source, now);
   if (status != PacketStatus::accepted || packet.late) return status;
-  if (!was_active) types_[*row] = 0;
-  if (request != nullptr) types_[*row] = request->types;
-  sessions_[*row] = packet.header.session;
+  if (!was_active) types_[row] = 0;
+  if (request != nullptr) types_[row] = request->types;
+  sessions_[row] = packet.header.session;
   return PacketStatus::accepted;
 }
 
@@ -116,6 +121,7 @@ bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t no
   header.session = session_;
   header.token = packet.header.session;
   encode(header, Challenge{tokens_.of(who)}, out);
+  if (PacketSigner* own = signer(packet.header.robot)) own->sign(out);
   return true;
 }
 

@@ -7,7 +7,8 @@
 //   if (inbox.is_active(7, now) && inbox.is_subscribed(7, type, now)) ...      // send to *inbox.address(7)
 //
 // Packets of a robot are accepted only with the token that was sent to their source address (netio/address_token.h).
-// Before that the answer is a CHALLENGE, which is no larger than the packet.
+// Before that the answer is a CHALLENGE, which is no larger than the packet. Peers with a key have to sign as well, and
+// are sent signed packets.
 //
 // One thread. No clock is read: `now` is any clock in ns that does not decrease.
 
@@ -21,6 +22,7 @@
 #include "netio/endpoint.h"
 #include "netio/packet_status.h"
 #include "netio/packets.h"
+#include "netio/peers.h"
 #include "netio/ports.h"
 #include "netio/socket.h"
 
@@ -32,6 +34,7 @@ struct InboxOptions {
   std::vector<std::uint32_t> robots;         ///< ids of the world's robots, distinct, each in [0, kMaxId]
   std::vector<std::uint32_t> tags;           ///< ids of the world's tags, distinct, each in [kMinTag, kMaxId]
   std::uint32_t session = random_session();  ///< session of the farm
+  std::vector<Peer> peers;                   ///< of these robots, tags, and START; each once
   bool take_late = false;  ///< accept states that others of their sender overtook, marked by `Packet::late`
 };
 
@@ -90,6 +93,8 @@ class Inbox {
   std::uint32_t token(const Endpoint& who) const { return tokens_.of(who); }
   /// For packets to `robot`: the farm's session, and the robot's last session.
   SessionToken session_token_for(std::uint32_t robot) const;
+  /// Signs packets to `robot`; null where it has no key. Lives as long as the inbox.
+  PacketSigner* signer(std::uint32_t robot) { return peers_.signer(robot); }
 
   /// Address from which the states of tag `tag` come.
   std::optional<Endpoint> tag_address(std::uint32_t tag) const { return tags_.source(tag); }
@@ -103,12 +108,14 @@ class Inbox {
   void wait(int timeout_ms) const;
 
  private:
-  PacketStatus check(Packet& packet, const Endpoint& source, std::int64_t now);
+  PacketStatus check_id(const Header& header) const;
+  PacketStatus check_sender(Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source, std::int64_t now) const;
-  PacketStatus check_robot(Packet& packet, const Endpoint& source, std::int64_t now);
+  PacketStatus admit_robot(Packet& packet, const Endpoint& source, std::int64_t now);
 
   ClientRegistry robots_;
   ClientRegistry tags_;
+  PeerTable peers_;
   std::vector<std::uint32_t> types_;     ///< per robot row: mask of its last SUBSCRIBE, 0 for all
   std::vector<std::uint32_t> sessions_;  ///< per robot row: of its last packet
   std::uint32_t session_;

@@ -179,11 +179,16 @@ void Outbox::give_back(std::size_t count) {
 
 void Outbox::queue(const Endpoint& to, std::span<const std::uint8_t> bytes) { put(claim(1), to, bytes); }
 
-void Outbox::queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const SessionToken& session_token) {
+void Outbox::queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const SessionToken& session_token,
+                   PacketSigner* signer) {
   const std::size_t place = claim(1);
   put(place, to, bytes);
-  netio::write_session_token({static_cast<std::uint8_t*>(storage_->filling->vectors[place].iov_base), bytes.size()},
-                             session_token);
+  iovec& slot = storage_->filling->vectors[place];
+  if (signer != nullptr) slot.iov_len += kSignatureBytes;
+  SF_CHECK(slot.iov_len <= kMaxHeaderlessDatagram, std::to_string(slot.iov_len) + " bytes in one datagram");
+  const std::span<std::uint8_t> packet{static_cast<std::uint8_t*>(slot.iov_base), slot.iov_len};
+  netio::write_session_token(packet, session_token);
+  if (signer != nullptr) write_signature(packet, signer->key(), signer->take());
 }
 
 void Outbox::flush() {

@@ -14,6 +14,7 @@
 
 #include "netio/endpoint.h"
 #include "netio/packets.h"
+#include "netio/signature.h"
 #include "netio/socket.h"
 
 namespace sf::netio {
@@ -50,8 +51,10 @@ class Outbox {
 
   /// Copies at most kMaxHeaderlessDatagram bytes for the next flush.
   void queue(const Endpoint& to, std::span<const std::uint8_t> bytes);
-  /// The same for an encoded packet, with `session_token` written into the copy.
-  void queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const SessionToken& session_token);
+  /// The same for an encoded packet, with `session_token` written into the copy, which `signer` (null: none) then
+  /// signs.
+  void queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const SessionToken& session_token,
+             PacketSigner* signer = nullptr);
 
   /// Reserves consecutive slots for `count` <= capacity datagrams; flushes first if there is not enough room. Before
   /// any other call every slot must be filled with `put`, from any thread, or all be returned with `give_back`.

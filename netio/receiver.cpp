@@ -7,8 +7,11 @@ namespace sf::netio {
 Receiver::Receiver(const ReceiverOptions& options)
     : headerless_(options.headerless), inspect_(options.inspect), read_(options.read) {
   SF_CHECK(inspect_ != nullptr && read_ != nullptr, "a receiver without a judge or a reader");
-  for (const ReceiverStream& stream : options.streams)
-    streams_.push_back({stream.spec, ReadingAssembler(stream.value_count)});
+  SF_CHECK(!options.key || !headerless_, "signatures without headers");
+  for (const ReceiverStream& stream : options.streams) {
+    streams_.push_back({stream.spec, ReadingAssembler(stream.value_count), {}});
+    if (options.key) streams_.back().checker.emplace(*options.key);
+  }
 }
 
 void Receiver::set_session(const SessionToken& farm) {
@@ -27,6 +30,7 @@ PartStatus Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, 
   const bool other_session =
       farm_ && !headerless_ && (header.session != farm_->session || header.token != farm_->token);
   if (info.status == PacketStatus::accepted && other_session) info.status = PacketStatus::wrong_source;
+  if (info.status == PacketStatus::accepted && stream.checker) info.status = stream.checker->check(bytes);
   if (info.status == PacketStatus::accepted) info = inspect_(i, header, payload);
   counts_.packets.add(info.status);
   if (info.status != PacketStatus::accepted) return PartStatus::rejected;

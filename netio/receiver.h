@@ -17,6 +17,7 @@
 #include "netio/packet_status.h"
 #include "netio/port_listener.h"
 #include "netio/reading_assembler.h"
+#include "netio/signature.h"
 #include "netio/stream_monitor.h"
 
 namespace sf::netio {
@@ -35,6 +36,7 @@ struct ReceiverOptions {
   bool headerless = false;              ///< datagrams are payloads only; a part out of order begins a new reading
   PayloadInspector inspect;             ///< not empty; receives payloads of the stream's robot and sensor only
   PayloadReader read;                   ///< not empty
+  std::optional<SigningKey> key;        ///< has to sign all packets; not without headers
 };
 
 struct ReceiverCounts {
@@ -67,6 +69,7 @@ class Receiver {
   struct Stream {
     StreamSpec spec;
     ReadingAssembler assembler;
+    std::optional<SignatureChecker> checker;  ///< of each port: packets of different ports overtake each other
     // Without headers, of the last reading:
     std::uint32_t readings = 0;  ///< readings begun, including it
     std::uint32_t part = 0;

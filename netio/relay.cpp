@@ -44,7 +44,7 @@ void Relay::take(const Packet& packet) {
   }
 }
 
-void Relay::forward(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
+void Relay::forward(Inbox& inbox, std::int64_t now, Outbox& outbox) {
   send_starts(inbox, now, outbox);
   if (options_.range > 0.0) {
     find_recipients(inbox, now);
@@ -54,10 +54,11 @@ void Relay::forward(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
     if (robot.age < std::numeric_limits<std::uint32_t>::max()) ++robot.age;
 }
 
-void Relay::send_starts(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
+void Relay::send_starts(Inbox& inbox, std::int64_t now, Outbox& outbox) {
   for (Robot& robot : robots_) {
     if ((robot.started || start_pending_) && inbox.is_active(robot.id, now)) {
-      outbox.queue(*inbox.address(robot.id), robot.started ? robot.start : start_, inbox.session_token_for(robot.id));
+      outbox.queue(*inbox.address(robot.id), robot.started ? robot.start : start_, inbox.session_token_for(robot.id),
+                   inbox.signer(robot.id));
       ++counts_.starts;
     }
     robot.started = false;
@@ -85,7 +86,7 @@ void Relay::find_recipients(const Inbox& inbox, std::int64_t now) {
 }
 
 /// Serves subscribers from the first one passed over last time, as far as the budget allows.
-void Relay::send_states(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
+void Relay::send_states(Inbox& inbox, std::int64_t now, Outbox& outbox) {
   if (updated_.empty()) return;
   const std::size_t share = std::clamp(options_.budget / recipients_.size(), kMinShare, options_.most);
   const auto first = std::lower_bound(recipients_.begin(), recipients_.end(), turn_) - recipients_.begin();
@@ -100,7 +101,7 @@ void Relay::send_states(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
   }
 }
 
-std::size_t Relay::send_others(Robot& to, std::size_t most, const Inbox& inbox, std::int64_t now, Outbox& outbox) {
+std::size_t Relay::send_others(Robot& to, std::size_t most, Inbox& inbox, std::int64_t now, Outbox& outbox) {
   const SessionToken session_token = inbox.session_token_for(to.id);
   const auto own = static_cast<std::uint32_t>(&to - robots_.data());
   const auto rows =
@@ -113,7 +114,7 @@ std::size_t Relay::send_others(Robot& to, std::size_t most, const Inbox& inbox, 
     }
     encode({.robot = static_cast<std::uint16_t>(to.id), .sequence = to.sent++, .time = now}, Neighbours{states_},
            packet_);
-    outbox.queue(*inbox.address(to.id), packet_, session_token);
+    outbox.queue(*inbox.address(to.id), packet_, session_token, inbox.signer(to.id));
     ++counts_.datagrams;
   }
   to.waits = 0;

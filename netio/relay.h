@@ -47,7 +47,7 @@ class Relay {
 
   /// Queues the new states for each subscriber that is active at `now` [ns], to the address that it sends from. A robot
   /// does not get its own state. Unused states are dropped.
-  void forward(const Inbox& inbox, std::int64_t now, Outbox& outbox);
+  void forward(Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   const RelayCounts& counts() const { return counts_; }
   /// Number of places visited by the neighbour search.
@@ -65,10 +65,10 @@ class Relay {
     base::Bytes start;
   };
   Robot* find(std::uint32_t id);
-  void send_starts(const Inbox& inbox, std::int64_t now, Outbox& outbox);
+  void send_starts(Inbox& inbox, std::int64_t now, Outbox& outbox);
   void find_recipients(const Inbox& inbox, std::int64_t now);
-  void send_states(const Inbox& inbox, std::int64_t now, Outbox& outbox);
-  std::size_t send_others(Robot& to, std::size_t most, const Inbox& inbox, std::int64_t now, Outbox& outbox);
+  void send_states(Inbox& inbox, std::int64_t now, Outbox& outbox);
+  std::size_t send_others(Robot& to, std::size_t most, Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   RelayOptions options_;
   std::vector<Robot> robots_;                  ///< sorted by id

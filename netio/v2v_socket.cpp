@@ -17,11 +17,25 @@ V2vSocket::V2vSocket(const V2vSocketOptions& options)
       socket_(open_udp({0, 0}, {.receive = options.receive_buffer, .send = kV2vSendBuffer})),
       outbox_(duplicate(socket_), {.capacity = 4}),
       others_(options.others),
-      batch_(kV2vBatch) {}
+      batch_(kV2vBatch) {
+  if (!options.key) return;
+  signer_.emplace(*options.key);
+  checker_.emplace(*options.key);
+}
 
 void V2vSocket::send(std::span<const std::uint8_t> bytes) {
-  outbox_.queue(options_.farm, bytes, {options_.session, token_});
+  outbox_.queue(options_.farm, bytes, {options_.session, token_}, signer_ ? &*signer_ : nullptr);
   outbox_.flush();
+}
+
+/// Of the whole datagram: the states in a NEIGHBOURS packet have no signatures of their own. Packets without this
+/// robot's session come first: its own, sent back to it, have valid signatures, and counters of another clock.
+PacketStatus V2vSocket::check_signature(std::span<const std::uint8_t> bytes) {
+  if (!checker_) return PacketStatus::accepted;
+  Packet packet;
+  const PacketStatus status = decode(bytes, packet);
+  if (status != PacketStatus::accepted) return status;
+  return packet.header.token == options_.session ? checker_->check(bytes) : PacketStatus::wrong_source;
 }
 
 PacketStatus V2vSocket::accept(std::span<const std::uint8_t> bytes, std::int64_t now, Packet& packet) {

@@ -8,6 +8,7 @@
 // One thread. No clock is read.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "netio/outbox.h"
 #include "netio/packet_status.h"
 #include "netio/packets.h"
+#include "netio/signature.h"
 #include "netio/socket.h"
 
 namespace sf::netio {
@@ -28,6 +30,7 @@ struct V2vSocketOptions {
   std::vector<std::uint32_t> others;  ///< ids of the world's other robots
   std::uint32_t session = random_session();
   std::size_t receive_buffer = 1u << 20;
+  std::optional<SigningKey> key;  ///< signs what it sends, and has to sign what comes
 };
 
 class V2vSocket {
@@ -35,7 +38,7 @@ class V2vSocket {
   /// @throws base::InputError when no socket can be opened.
   explicit V2vSocket(const V2vSocketOptions& options);
 
-  /// Sends a packet to the farm immediately, with the newest token.
+  /// Sends a packet to the farm immediately, with the newest token, and signed where it has a key.
   void send(std::span<const std::uint8_t> bytes);
 
   /// Passes each V2V of a NEIGHBOURS packet to `take`, and any other datagram unchanged.
@@ -48,15 +51,16 @@ class V2vSocket {
   }
 
   /// Passes all waiting datagrams from the farm, up to a limit, through `for_each_state` to `take(std::span<const
-  /// std::uint8_t> bytes)`. Others are counted as PacketStatus::wrong_source.
+  /// std::uint8_t> bytes)`. Others are counted as PacketStatus::wrong_source, or by the fault of their signature.
   template <class Take>
   void receive(Take&& take) {
     constexpr std::size_t kMost = 65'536;
     batch_.drain(socket_, kMost, [&](std::span<const std::uint8_t> bytes, const Endpoint& source) {
-      if (source == options_.farm)
+      const PacketStatus status = source == options_.farm ? check_signature(bytes) : PacketStatus::wrong_source;
+      if (status == PacketStatus::accepted)
         for_each_state(bytes, take);
       else
-        counts_.add(PacketStatus::wrong_source);
+        counts_.add(status);
     });
   }
 
@@ -77,6 +81,7 @@ class V2vSocket {
 
  private:
   PacketStatus check(const Packet& packet, std::int64_t now);
+  PacketStatus check_signature(std::span<const std::uint8_t> bytes);
 
   V2vSocketOptions options_;
   Socket socket_;
@@ -86,6 +91,8 @@ class V2vSocket {
   std::uint32_t token_ = 0;
   PacketCounts counts_;
   ReceiveBatch batch_;
+  std::optional<PacketSigner> signer_;
+  std::optional<SignatureChecker> checker_;
 };
 
 }  // namespace sf::netio

@@ -54,10 +54,12 @@ struct Heavy {
   std::string module;  ///< empty: any
   std::size_t sources = 1;
 };
-const std::vector<Heavy> kHeavy{{"CLI/", "apps", 6},       {"nlohmann/", "apps", 4}, {"vtk", "viz"},
-                                {"opencv2/", "vision", 4}, {"asio", "netio"},        {"spng.h", "", 2},
-                                {"yaml-cpp/", ""},         {"toml++/", ""},          {"Eigen/", "robots/estimation"},
-                                {"spdlog/", "base"},       {"embree", "bench"}};
+const std::vector<Heavy> kHeavy{{"CLI/", "apps", 6}, {"nlohmann/", "apps", 4},
+                                {"vtk", "viz"},      {"opencv2/", "vision", 4},
+                                {"asio", "netio"},   {"sodium", "netio"},
+                                {"spng.h", "", 2},   {"yaml-cpp/", ""},
+                                {"toml++/", ""},     {"Eigen/", "robots/estimation"},
+                                {"spdlog/", "base"}, {"embree", "bench"}};
 
 // The machine's sockets, which only netio opens.
 const std::vector<std::string> kSockets{"sys/socket.h", "netinet/", "arpa/",     "netdb.h",

@@ -102,7 +102,10 @@ void receive(std::size_t stream, std::span<const std::uint8_t> bytes, std::int64
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static netio::Inbox inbox({.bind = {netio::kLoopback, 0}, .robots = {0, 7, 40'000}, .tags = {1, 12}});
+  static netio::Inbox inbox({.bind = {netio::kLoopback, 0},
+                             .robots = {0, 7, 40'000},
+                             .tags = {1, 12},
+                             .peers = {{netio::PeerKind::tag, 1, std::nullopt, netio::SigningKey{}}}});
   static const std::uint32_t free_base =
       20'000 + static_cast<std::uint32_t>(getpid()) % 5'000 * 2;  // for fuzzers side by side
   static netio::StreamMonitor monitor(

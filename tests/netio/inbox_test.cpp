@@ -18,7 +18,15 @@ constexpr Endpoint kOtherSender{kLoopback, 5002};
 constexpr std::uint32_t kLaser = 1;
 constexpr std::uint32_t kSession = 77;  ///< of all robots here
 
-InboxOptions options() { return {.bind = {kLoopback, 0}, .robots = {7, 3}, .tags = {12}}; }
+constexpr std::uint16_t kKeyed = 5;  ///< id of the robot with a key
+constexpr SigningKey kKey{1};
+
+InboxOptions options() {
+  return {.bind = {kLoopback, 0},
+          .robots = {7, 3, kKeyed},
+          .tags = {12},
+          .peers = {{PeerKind::robot, kKeyed, std::nullopt, kKey}}};
+}
 
 base::Bytes v2v(std::uint16_t robot, std::uint32_t sequence) {
   base::Bytes out;
@@ -30,6 +38,14 @@ base::Bytes subscribe(std::uint32_t sequence, std::uint32_t types) {
   base::Bytes out;
   encode({.robot = 7, .sequence = sequence}, Subscribe{types}, out);
   return out;
+}
+
+base::Bytes leave_of_keyed() { return patched(leave_example(), 6, kKeyed); }
+
+base::Bytes signed_leave() {
+  base::Bytes bytes = leave_of_keyed();
+  sign(bytes, kKey, 1);
+  return bytes;
 }
 
 struct InboxTest : testing::Test {
@@ -84,7 +100,10 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   EXPECT_EQ(say(v2v(8, 0)), PacketStatus::unknown_robot);
   EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)),
             PacketStatus::unknown_tag);  // robots and tags have separate ids
-  EXPECT_EQ(inbox.accept(v2v_example(), kSender, 0, packet), PacketStatus::unproven);
+  EXPECT_EQ(say(leave_of_keyed()), PacketStatus::not_signed);
+  EXPECT_EQ(say(signed_leave()), PacketStatus::wrong_signature);  // changed by its token
+  EXPECT_EQ(inbox.accept(signed_leave(), kSender, 0, packet), PacketStatus::unproven);
+  EXPECT_EQ(inbox.accept(signed_leave(), kSender, 0, packet), PacketStatus::replayed);
   EXPECT_EQ(say(v2v_example()), PacketStatus::accepted);
   EXPECT_EQ(say(v2v(7, 10), 0, kOtherSender), PacketStatus::wrong_source);
   EXPECT_EQ(say(v2v_example()), PacketStatus::stale);
@@ -252,7 +271,9 @@ TEST_F(InboxTest, AnybodyMayStartRobots) {
 
 TEST_F(InboxTest, AMillionRandomAndMutatedDatagrams) {
   std::mt19937 random(20260101);  // NOLINT: the same datagrams every time
-  const std::vector<base::Bytes> seeds = examples();
+  std::vector<base::Bytes> seeds = examples();
+  seeds.push_back(leave_of_keyed());
+  seeds.push_back(signed_leave());
   std::uint64_t accepted = 0;
   base::Bytes bytes;
   for (int i = 0; i < 1'000'000; ++i) {

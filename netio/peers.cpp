@@ -1,0 +1,50 @@
+#include "netio/peers.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace sf::netio {
+
+const Peer* find(std::span<const Peer> peers, PeerKind kind, std::uint32_t id) {
+  const auto at = std::find_if(peers.begin(), peers.end(), [&](const Peer& p) { return p.kind == kind && p.id == id; });
+  return at == peers.end() ? nullptr : &*at;
+}
+
+Claim claim_of(const Header& header) {
+  if (header.type == Type::start) return {PeerKind::start, 0};
+  return {header.type == Type::tag ? PeerKind::tag : PeerKind::robot, header.robot};
+}
+
+PeerTable::PeerTable(std::span<const Peer> peers, std::uint64_t first_counter) {
+  for (const Peer& peer : peers) {
+    Row& row = rows_.emplace_back(Row{peer, std::nullopt, std::nullopt});
+    if (!peer.key) continue;
+    row.checker.emplace(*peer.key);
+    row.signer.emplace(*peer.key, first_counter);
+  }
+  std::sort(rows_.begin(), rows_.end(), [](const Row& a, const Row& b) {
+    return std::pair(a.peer.kind, a.peer.id) < std::pair(b.peer.kind, b.peer.id);
+  });
+}
+
+PeerTable::Row* PeerTable::find_row(const Claim& claim) {
+  const std::pair key(claim.kind, claim.id);
+  const auto at = std::lower_bound(rows_.begin(), rows_.end(), key, [](const Row& row, const auto& wanted) {
+    return std::pair(row.peer.kind, row.peer.id) < wanted;
+  });
+  return at == rows_.end() || std::pair(at->peer.kind, at->peer.id) != key ? nullptr : &*at;
+}
+
+PacketStatus PeerTable::check(const Claim& claim, std::span<const std::uint8_t> bytes, const Endpoint& source) {
+  Row* row = find_row(claim);
+  if (row == nullptr) return PacketStatus::accepted;
+  if (row->peer.address && *row->peer.address != source.address) return PacketStatus::wrong_source;
+  return row->checker ? row->checker->check(bytes) : PacketStatus::accepted;
+}
+
+PacketSigner* PeerTable::signer(std::uint32_t robot) {
+  Row* row = find_row({PeerKind::robot, robot});
+  return row != nullptr && row->signer ? &*row->signer : nullptr;
+}
+
+}  // namespace sf::netio

@@ -1,0 +1,75 @@
+#pragma once
+// Signatures of packets: a counter and a truncated HMAC in the trailer, after the message signing of MAVLink 2.
+// docs/packets.md specifies the bytes.
+//
+//   PacketSigner signer(key);
+//   signer.sign(packet);                                             // an encoded packet
+//   SignatureChecker checker(key);
+//   if (checker.check(bytes) == PacketStatus::accepted) ...          // once; repeated, it is `replayed`
+//
+// One thread per object.
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "base/bytes.h"
+#include "netio/packet_status.h"
+
+namespace sf::netio {
+
+inline constexpr std::size_t kKeyBytes = 32;
+inline constexpr std::size_t kSignatureBytes = 24;  ///< [byte] u64 counter, and 16 bytes of HMAC
+using SigningKey = std::array<std::uint8_t, kKeyBytes>;
+using TruncatedHmac = std::array<std::uint8_t, 16>;
+
+/// First 16 bytes of HMAC-SHA-256 (RFC 2104; truncated by its section 5). @param key of any length
+TruncatedHmac hmac_sha256(std::span<const std::uint8_t> key, std::span<const std::uint8_t> bytes);
+
+/// [us] since 1970, at which senders start to count: a sender that starts again counts on where its clock went on.
+std::uint64_t unix_microseconds();
+
+/// Signs an encoded packet whose last kSignatureBytes are free: writes them, and their number into the header.
+void write_signature(std::span<std::uint8_t> packet, const SigningKey& key, std::uint64_t counter);
+/// The same for a packet without a trailer, which grows by kSignatureBytes.
+void sign(base::Bytes& packet, const SigningKey& key, std::uint64_t counter);
+
+/// Counters that came (RFC 4303, section 3.4.3): each is new once, in any order within the newest kSize.
+class ReplayWindow {
+ public:
+  static constexpr std::uint64_t kSize = 64;
+  /// Takes the counter of a valid signature. @return false if it came before, or is kSize or more behind the newest
+  bool admit(std::uint64_t counter);
+
+ private:
+  std::uint64_t newest_ = 0;
+  std::uint64_t seen_ = 0;  ///< bit k: counter newest_ - k came
+};
+
+/// A key with the counter of its next packet.
+class PacketSigner {
+ public:
+  explicit PacketSigner(const SigningKey& key, std::uint64_t first = unix_microseconds()) : key_(key), next_(first) {}
+  const SigningKey& key() const { return key_; }
+  /// Reserves `count` counters. @return the first of them
+  std::uint64_t take(std::uint64_t count = 1) { return (next_ += count) - count; }
+  void sign(base::Bytes& packet) { netio::sign(packet, key_, take()); }
+
+ private:
+  SigningKey key_;
+  std::uint64_t next_;
+};
+
+/// A key with the counters that came under it.
+class SignatureChecker {
+ public:
+  explicit SignatureChecker(const SigningKey& key) : key_(key) {}
+  /// Checks a packet that `decode` accepts. @return accepted, not_signed, wrong_signature or replayed
+  PacketStatus check(std::span<const std::uint8_t> packet);
+
+ private:
+  SigningKey key_;
+  ReplayWindow window_;
+};
+
+}  // namespace sf::netio

@@ -1,0 +1,213 @@
+// Peers of an inbox: addresses and keys that it was told.
+
+#include "netio/peers.h"
+
+#include <gtest/gtest.h>
+
+#include "netio/inbox.h"
+#include "netio/outbox.h"
+#include "netio/v2v_socket.h"
+#include "tests/netio/examples.h"
+
+namespace sf::netio {
+namespace {
+
+constexpr Endpoint kAlice{kLoopback, 5001};
+constexpr Endpoint kElsewhere{kLoopback + 1, 5001};
+constexpr SigningKey kRobotKey{1}, kTagKey{2}, kStartKey{3};
+
+/// Robots 7 (with a key), 3 (without one) and 5 (with an address), and a tag and START with keys.
+InboxOptions options() {
+  return {.bind = {kLoopback, 0},
+          .robots = {7, 3, 5},
+          .tags = {12},
+          .peers = {{PeerKind::robot, 7, std::nullopt, kRobotKey},
+                    {PeerKind::start, 0, std::nullopt, kStartKey},
+                    {PeerKind::tag, 12, std::nullopt, kTagKey},
+                    {PeerKind::robot, 5, kLoopback, std::nullopt}}};
+}
+
+base::Bytes v2v(std::uint16_t robot, std::uint32_t sequence) {
+  base::Bytes out;
+  encode({.robot = robot, .sequence = sequence}, V2v{}, out);
+  return out;
+}
+
+struct PeersTest : testing::Test {
+  Inbox inbox{options()};
+  PacketSigner robot{kRobotKey, 1000};
+  Packet packet;
+  /// With the token of its source, and signed by `signer`.
+  base::Bytes ready(base::Bytes bytes, PacketSigner* signer, const Endpoint& who = kAlice) {
+    write_session_token(bytes, {77, inbox.token(who)});
+    if (signer != nullptr) signer->sign(bytes);
+    return bytes;
+  }
+  PacketStatus accept(const base::Bytes& bytes, const Endpoint& who = kAlice) {
+    return inbox.accept(bytes, who, 0, packet);
+  }
+  PacketStatus say(const base::Bytes& bytes, PacketSigner* signer, const Endpoint& who = kAlice) {
+    return accept(ready(bytes, signer, who), who);
+  }
+};
+
+TEST_F(PeersTest, ARobotWithAKeySigns) {
+  PacketSigner forger(kTagKey, 1'000'000);
+  EXPECT_EQ(say(v2v(7, 0), nullptr), PacketStatus::not_signed);
+  EXPECT_EQ(say(v2v(7, 0), &forger), PacketStatus::wrong_signature);
+  EXPECT_FALSE(inbox.is_active(7, 0));
+  const base::Bytes first = ready(v2v(7, 0), &robot), second = ready(v2v(7, 1), &robot);
+  EXPECT_EQ(accept(second), PacketStatus::accepted);
+  EXPECT_EQ(accept(second), PacketStatus::replayed);
+  EXPECT_EQ(accept(first), PacketStatus::stale) << "overtaken: signed and new, but an older state";
+  EXPECT_EQ(accept(first), PacketStatus::replayed);
+  EXPECT_EQ(say(subscribe_example(), &robot), PacketStatus::accepted);
+  EXPECT_EQ(say(leave_example(), nullptr), PacketStatus::not_signed) << "nobody else ends its participation";
+  EXPECT_TRUE(inbox.is_active(7, 0));
+  EXPECT_EQ(say(leave_example(), &robot), PacketStatus::accepted);
+  EXPECT_EQ(inbox.counts()[PacketStatus::not_signed], 2u);
+  EXPECT_EQ(inbox.counts()[PacketStatus::wrong_signature], 1u);
+  EXPECT_EQ(inbox.counts()[PacketStatus::replayed], 2u);
+}
+
+TEST_F(PeersTest, ARobotWithoutAKeyNeedsNone) {
+  EXPECT_EQ(say(v2v(3, 0), nullptr), PacketStatus::accepted);
+  EXPECT_EQ(say(v2v(3, 1), &robot), PacketStatus::accepted) << "its trailer is dropped";
+  EXPECT_EQ(inbox.signer(3), nullptr);
+  EXPECT_EQ(inbox.signer(99), nullptr);
+}
+
+TEST_F(PeersTest, ATagWithAKeySigns) {
+  PacketSigner camera(kTagKey, 0);
+  EXPECT_EQ(say(tag_example(), nullptr), PacketStatus::not_signed);
+  EXPECT_EQ(say(tag_example(), &robot), PacketStatus::wrong_signature);
+  const base::Bytes tag = ready(tag_example(), &camera);
+  EXPECT_EQ(accept(tag), PacketStatus::accepted);
+  EXPECT_EQ(accept(tag), PacketStatus::replayed);
+}
+
+/// START to one robot and to all have the same sender.
+TEST_F(PeersTest, StartIsSignedByItsSenderAlone) {
+  PacketSigner user(kStartKey, 1);
+  const base::Bytes to_one = patched<std::uint16_t>(start_example(), 6, 7);
+  EXPECT_EQ(say(start_example(), nullptr), PacketStatus::not_signed);
+  EXPECT_EQ(say(to_one, &robot), PacketStatus::wrong_signature) << "the robot's own key starts nobody";
+  EXPECT_EQ(say(to_one, &user), PacketStatus::accepted);
+  const base::Bytes to_all = ready(start_example(), &user);
+  EXPECT_EQ(accept(to_all), PacketStatus::accepted);
+  EXPECT_EQ(accept(to_all), PacketStatus::replayed);
+}
+
+/// Boundary: another port of the same address, and an address one higher.
+TEST_F(PeersTest, AnAddressIsTheOnlyOne) {
+  EXPECT_EQ(say(v2v(5, 0), nullptr, kElsewhere), PacketStatus::wrong_source);
+  EXPECT_FALSE(inbox.is_active(5, 0));
+  EXPECT_EQ(say(v2v(5, 0), nullptr, {kLoopback, 5999}), PacketStatus::accepted);
+  EXPECT_EQ(say(v2v(5, 1), nullptr, kAlice), PacketStatus::wrong_source) << "bound by its first sender as without";
+}
+
+/// Without the token too: an unproven request is signed, and so is the answer, which is no larger.
+TEST_F(PeersTest, ChallengesAreSignedAndNoLarger) {
+  base::Bytes request = subscribe_example(), answer;
+  write_session_token(request, {77, 0});
+  EXPECT_EQ(accept(request), PacketStatus::not_signed) << "no answer to strangers";
+  robot.sign(request);
+  ASSERT_EQ(accept(request), PacketStatus::unproven);
+  ASSERT_TRUE(inbox.challenge(packet, kAlice, 0, answer));
+  EXPECT_EQ(answer.size(), request.size());
+  EXPECT_EQ(SignatureChecker(kRobotKey).check(answer), PacketStatus::accepted);
+  ASSERT_EQ(decode(answer, packet), PacketStatus::accepted);
+  EXPECT_EQ(std::get<Challenge>(packet.body).token, inbox.token(kAlice));
+}
+
+TEST_F(PeersTest, UnknownIdsComeFirst) {
+  EXPECT_EQ(say(v2v(8, 0), nullptr), PacketStatus::unknown_robot);
+  EXPECT_EQ(say(reading_example(), nullptr), PacketStatus::wrong_direction);
+}
+
+/// The window holds late states for the filter.
+TEST(Peers, OvertakenStatesAreLateNotReplayed) {
+  InboxOptions chosen = options();
+  chosen.take_late = true;
+  Inbox inbox(chosen);
+  Packet packet;
+  const auto say = [&](std::uint32_t sequence) {
+    base::Bytes bytes = v2v(7, sequence);
+    write_session_token(bytes, {77, inbox.token(kAlice)});
+    sign(bytes, kRobotKey, 1000 + sequence);
+    return inbox.accept(bytes, kAlice, 0, packet);
+  };
+  EXPECT_EQ(say(100), PacketStatus::accepted);
+  EXPECT_EQ(say(37), PacketStatus::accepted) << "63 behind";
+  EXPECT_TRUE(packet.late);
+  EXPECT_EQ(say(36), PacketStatus::replayed) << "64 behind";
+}
+
+constexpr std::uint32_t kFarm = 11, kOwn = 22;  ///< sessions
+
+/// A robot's socket, beside a farm of the test's own.
+struct SignedSocketTest : testing::Test {
+  Outbox farm{OutboxOptions{.bind = {kLoopback, 0}}};
+  V2vSocket socket{{.farm = farm.endpoint(), .robot = 7, .others = {3}, .session = kOwn, .key = kRobotKey}};
+  PacketSigner signer{kRobotKey, 1000};
+  Packet packet;
+  void SetUp() override {
+    base::Bytes challenge;
+    encode({.robot = 7}, Challenge{3}, challenge);
+    ASSERT_EQ(hear(challenge, {kFarm, kOwn}, &signer), 1u);
+  }
+  /// @return number of states and other packets that pass
+  std::size_t hear(const base::Bytes& bytes, const SessionToken& session_token, PacketSigner* by) {
+    farm.queue({kLoopback, bound_endpoint(socket.socket()).port}, bytes, session_token, by);
+    farm.flush();
+    wait_readable(socket.socket(), socket.socket(), 1000);
+    std::size_t accepted = 0;
+    socket.receive([&](std::span<const std::uint8_t> one) {
+      accepted += socket.accept(one, 0, packet) == PacketStatus::accepted ? 1 : 0;
+    });
+    return accepted;
+  }
+};
+
+base::Bytes neighbours() {
+  base::Bytes state, out;
+  encode({.robot = 3, .session = kFarm, .token = kOwn}, V2v{}, state);
+  encode({.robot = 7}, Neighbours{state}, out);
+  return out;
+}
+
+TEST_F(SignedSocketTest, HearsSignedPacketsOnce) {
+  EXPECT_EQ(hear(neighbours(), {kFarm, kOwn}, nullptr), 0u);
+  EXPECT_EQ(socket.counts()[PacketStatus::not_signed], 1u);
+  PacketSigner forger(kTagKey, 1'000'000);
+  EXPECT_EQ(hear(start_example(), {kFarm, kOwn}, &forger), 0u);
+  EXPECT_EQ(socket.counts()[PacketStatus::wrong_signature], 1u);
+  EXPECT_EQ(hear(neighbours(), {kFarm, kOwn}, &signer), 1u);
+  EXPECT_EQ(hear(start_example(), {kFarm, kOwn}, &signer), 1u);
+  PacketSigner again(kRobotKey, 1000);
+  EXPECT_EQ(hear(start_example(), {kFarm, kOwn}, &again), 0u);
+  EXPECT_EQ(socket.counts()[PacketStatus::replayed], 1u);
+}
+
+/// Boundary: the robot's clock is ahead of the farm's, so its own counters are.
+TEST_F(SignedSocketTest, OwnPacketsSentBackDoNotMoveTheWindow) {
+  PacketSigner own(kRobotKey, 1'000'000);
+  EXPECT_EQ(hear(v2v_example(), {kOwn, 3}, &own), 0u);
+  EXPECT_EQ(socket.counts()[PacketStatus::wrong_source], 1u);
+  EXPECT_EQ(hear(neighbours(), {kFarm, kOwn}, &signer), 1u);
+}
+
+TEST_F(SignedSocketTest, SendsSignedPackets) {
+  const Socket ears = open_udp({kLoopback, 0});
+  V2vSocket client({.farm = {kLoopback, bound_endpoint(ears).port}, .robot = 7, .key = kRobotKey});
+  SignatureChecker checker(kRobotKey);
+  ReceiveBatch batch(1);
+  for (int i = 0; i < 2; ++i) {
+    client.send(v2v_example());
+    while (batch.fill(ears) == 0) wait_readable(ears, ears, 1000);
+    EXPECT_EQ(checker.check(batch.bytes(0)), PacketStatus::accepted) << "each with its own counter";
+  }
+}
+
+}  // namespace
+}  // namespace sf::netio
