@@ -37,7 +37,7 @@ ReadingPublisher::Job ReadingPublisher::make_job(const AddressedReading& address
   const sensors::SensorSet::Group& group = *sensor_set_.group(addressed.reading->type);
   const sensors::SensorSpec& row = sensor_set_.row(*addressed.reading);
   Stream& stream = streams_.at(addressed.reading->type)[static_cast<std::size_t>(&row - group.rows.data())];
-  return {addressed, group.type, &row, &stream, stream.sent, 0, true};
+  return {addressed, group.type, &row, &stream, stream.sent, 0, 0, true};
 }
 
 /// @return how many parts could not be made; each of the others is put: (part, endpoint, bytes).
@@ -65,6 +65,8 @@ std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put
       put(part, netio::Endpoint{job.addressed.address, port}, memory.payload);
     } else {
       netio::encode_reading(header, type, memory.payload, memory.packet);
+      const netio::PacketSigner* signer = job.addressed.signer;
+      if (signer != nullptr) netio::sign(memory.packet, signer->key(), job.counter + part);
       put(part, netio::Endpoint{job.addressed.address, port}, memory.packet);
     }
   }
@@ -82,6 +84,8 @@ void ReadingPublisher::queue(std::span<const AddressedReading> readings) {
       datagrams = 0;
     }
     job.place = datagrams;
+    // Before the threads begin: signatures do not depend on their order.
+    if (job.addressed.signer != nullptr) job.counter = job.addressed.signer->take(job.stream->parts);
     datagrams += job.stream->parts;
     ++job.stream->sent;
     jobs_.push_back(job);

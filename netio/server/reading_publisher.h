@@ -25,6 +25,7 @@ struct AddressedReading {
   const base::ReadingBlock* reading = nullptr;
   std::uint32_t address = 0;
   netio::SessionToken session_token;
+  netio::PacketSigner* signer = nullptr;  ///< of the robot; null: not signed
 };
 
 /// Fleets of more sensors than this are encoded on all cores, and sent by a thread of their own.
@@ -59,8 +60,9 @@ class ReadingPublisher {
     const sensors::SensorSpec* row = nullptr;
     Stream* stream = nullptr;
     std::uint32_t sequence = 0;
-    std::size_t place = 0;  ///< of its first datagram
-    bool whole = true;      ///< every part is numbers
+    std::size_t place = 0;      ///< of its first datagram
+    std::uint64_t counter = 0;  ///< of its first datagram's signature
+    bool whole = true;          ///< every part is numbers
   };
   struct Memory {
     base::Bytes payload, packet;

@@ -35,9 +35,9 @@ RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor
       id_(world.movers[mover].id),
       streams_(streams_of(sensor_set, layout, mover)),
       farm_(options.farm),
-      v2v_socket_({.farm = farm_, .robot = id_, .others = others_of(world, id_)}),
+      v2v_socket_({.farm = farm_, .robot = id_, .others = others_of(world, id_), .key = options.key}),
       port_listener_(listening_address(farm_.address), std::size_t{1} << 20, specs(layout)),
-      receiver_(receiver_options(layout)),
+      receiver_(receiver_options(layout, options)),
       out_(options.model),
       in_(options.model),
       handler_(std::move(handler)) {
@@ -61,8 +61,9 @@ std::vector<netio::StreamSpec> RobotLink::specs(const StreamLayout& layout) cons
   return specs;
 }
 
-netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout) const {
+netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout, const LinkOptions& options) const {
   netio::ReceiverOptions receiver;
+  receiver.key = options.key;
   const std::vector<netio::StreamSpec> all = specs(layout);
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     const SensorStream& source = streams_[i].source;

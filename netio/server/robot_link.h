@@ -24,7 +24,8 @@ namespace sf::server {
 
 struct LinkOptions {
   netio::Endpoint farm;
-  netio::LinkModel model;  ///< injected, in each direction
+  netio::LinkModel model;                ///< injected, in each direction
+  std::optional<netio::SigningKey> key;  ///< the robot's own; signs its packets and the farm's
 };
 
 struct LinkCounts {
@@ -86,7 +87,7 @@ class RobotLink {
   static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
                                         std::uint32_t mover);
   std::vector<netio::StreamSpec> specs(const StreamLayout& layout) const;
-  netio::ReceiverOptions receiver_options(const StreamLayout& layout) const;
+  netio::ReceiverOptions receiver_options(const StreamLayout& layout, const LinkOptions& options) const;
   void send(netio::Type type, std::uint32_t sequence, std::int64_t now);
   /// Sends what is due by then.
   void flush_due(std::int64_t until);

@@ -114,7 +114,9 @@ void Service::address(std::span<const base::ReadingBlock> readings) {
     // A delayed reading of a robot that left meanwhile has no address.
     const std::uint32_t id = world_.movers[reading.mover].id;
     const auto to = receiver_.inbox().address(id);
-    if (to) addressed_readings_.push_back({&reading, to->address, receiver_.inbox().session_token_for(id)});
+    if (to)
+      addressed_readings_.push_back(
+          {&reading, to->address, receiver_.inbox().session_token_for(id), receiver_.inbox().signer(id)});
   }
 }
 

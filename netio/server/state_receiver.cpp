@@ -25,7 +25,9 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
       inbox_({.bind = options.bind,
               .robots = ids_of(names_.robots),
               .tags = ids_of(names_.tags),
+              .peers = options.peers,
               .take_late = takes_late(options.filter)}),
+      peers_(options.peers),
       answers_(inbox_.socket()),
       relay_(ids_of(names_.robots), {.range = options.radio}),
       fleet_(world),
@@ -102,18 +104,25 @@ bool StateReceiver::update_absent_tag(std::uint32_t row) {
   return absent;
 }
 
-/// Once per binding.
+/// Once per binding, or once for the address in the table of peers.
 void StateReceiver::log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now) {
-  const bool tag = std::holds_alternative<netio::Tag>(packet.body);
-  const std::uint32_t id = packet.header.robot;
-  const netio::Endpoint bound = *(tag ? inbox_.tag_address(id) : inbox_.address(id));
-  auto& logged = (tag ? logged_tags_ : logged_robots_)[id];
-  if (logged == bound) return;
-  logged = bound;
-  log_.write(fmt::format("{} ({} {}) is heard from {}; what {} says as the same is dropped until that one leaves or is "
-                         "silent for 2 s",
-                         world_.movers[(tag ? names_.tags : names_.robots).at(id)].name, tag ? "tag" : "id", id,
-                         netio::text(bound), netio::text(who)),
+  if (std::holds_alternative<netio::Start>(packet.body)) return;  // of no mover
+  const netio::Claim claim = netio::claim_of(packet.header);
+  const bool tag = claim.kind == netio::PeerKind::tag;
+  const std::string& name = world_.movers[(tag ? names_.tags : names_.robots).at(claim.id)].name;
+  const netio::Peer* peer = netio::find(peers_, claim.kind, claim.id);
+  const bool refused = peer != nullptr && peer->address && *peer->address != who.address;
+  const netio::Endpoint expected =
+      refused ? netio::Endpoint{*peer->address, 0} : *(tag ? inbox_.tag_address(claim.id) : inbox_.address(claim.id));
+  auto& logged = (tag ? logged_tags_ : logged_robots_)[claim.id];
+  if (logged == expected) return;
+  logged = expected;
+  const std::string_view space = tag ? "tag" : "id";
+  log_.write(refused ? fmt::format("{} ({} {}) is at {} by the table of peers; what {} says as the same is dropped",
+                                   name, space, claim.id, netio::text_of(expected.address), netio::text(who))
+                     : fmt::format("{} ({} {}) is heard from {}; what {} says as the same is dropped until that one "
+                                   "leaves or is silent for 2 s",
+                                   name, space, claim.id, netio::text(expected), netio::text(who)),
              now);
 }
 

@@ -25,6 +25,7 @@ struct StateReceiverOptions {
   double forget = 10.0;             ///< [s] of silence after which a robot is no obstacle any more; 0: never
   int log_descriptor = 2;           ///< -1: no log
   StateFilterOptions filter;
+  std::vector<netio::Peer> peers;  ///< of the world's robots and tags, and START
 };
 
 /// Times are of one clock [ns] that does not go back. The world must outlive it. One thread.
@@ -54,6 +55,7 @@ class StateReceiver {
   const StateFilter& filter() const { return filter_; }
   StateFilter& filter() { return filter_; }
   const netio::Inbox& inbox() const { return inbox_; }
+  netio::Inbox& inbox() { return inbox_; }
   const netio::RelayCounts& relayed() const { return relay_.counts(); }
   netio::OutboxCounts answered() const { return answers_.counts(); }  ///< challenges, and relayed packets
   netio::RateLimitedLog& log() { return log_; }
@@ -68,6 +70,7 @@ class StateReceiver {
   const world::World& world_;
   WireNames names_;
   netio::Inbox inbox_;
+  std::vector<netio::Peer> peers_;
   netio::Outbox answers_;  ///< from the port that the robots send to
   netio::Relay relay_;
   robots::Fleet fleet_;

@@ -52,6 +52,7 @@ struct Settings {
   double radio = netio::kV2vRange;  ///< [m]
   StateFilterOptions filter;
   double latency = 0.0;  ///< [s] of sensors
+  std::vector<netio::Peer> peers;
 };
 
 struct Fixture {
@@ -79,11 +80,17 @@ struct Fixture {
                                         ServiceOptions{.receiver = {.bind = {netio::kLoopback, 0},
                                                                     .radio = settings.radio,
                                                                     .log_descriptor = log.descriptor(),
-                                                                    .filter = settings.filter}});
+                                                                    .filter = settings.filter,
+                                                                    .peers = settings.peers}});
   }
+  /// Of the robot, with its key in the table of peers or with another.
   std::unique_ptr<RobotClient> make_client(std::uint32_t mover) {
+    const netio::Peer* peer = netio::find(settings.peers, netio::PeerKind::robot, world.movers[mover].id);
+    return make_client(mover, peer != nullptr ? peer->key : std::nullopt);
+  }
+  std::unique_ptr<RobotClient> make_client(std::uint32_t mover, const std::optional<netio::SigningKey>& key) {
     RobotClientOptions options{.wait_for_start = settings.wait_for_start, .log_descriptor = log.descriptor()};
-    options.link = {.farm = {netio::kLoopback, service->port()}, .model = {.loss = settings.loss}};
+    options.link = {.farm = {netio::kLoopback, service->port()}, .model = {.loss = settings.loss}, .key = key};
     options.controller.name = "wander";
     return std::make_unique<RobotClient>(world, sensor_set, mover, layout, options);
   }

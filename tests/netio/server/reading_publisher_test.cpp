@@ -74,6 +74,11 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
   Day day(robots, 5);
   const sensors::SensorType& type = *sensor_set.group(sensors::kLaser)->type;
   std::map<std::uint32_t, std::uint32_t> sent;
+  // Every third robot has a key. A reading that is not sent leaves out its counter.
+  std::map<std::uint32_t, netio::PacketSigner> signers;
+  std::map<std::uint32_t, std::uint64_t> counters;
+  for (std::uint32_t robot = 0; robot < robots; robot += 3)
+    signers.emplace(robot, netio::PacketSigner(netio::SigningKey{static_cast<std::uint8_t>(robot)}, 1000));
   netio::ReceiveBatch batch(64);
   std::size_t first = 0, lost = 0;
   for (const std::size_t end : day.ticks) {
@@ -82,7 +87,9 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
     for (std::size_t i = first; i < end; ++i) {
       base::ReadingBlock& block = day.blocks[i];
       block.state = {.stated = true, .stale = i % 2 == 1, .age = 80'000'000, .covariance = {1e-4f}};
-      letters.push_back({&block, netio::kLoopback, {7, 9}});
+      const auto signer = signers.find(block.mover);
+      const std::uint64_t counter = 1000 + counters[block.mover]++;
+      letters.push_back({&block, netio::kLoopback, {7, 9}, signer != signers.end() ? &signer->second : nullptr});
       base::Bytes payload, packet;
       const std::uint8_t packet_type = type.encode(sensor_set.row(block), block, sensors::WireFormat::farm, 0, payload);
       if (packet_type == 0) continue;
@@ -95,6 +102,7 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
       header.token = 9;
       header.state = block.state;
       netio::encode_reading(header, packet_type, payload, packet);
+      if (signer != signers.end()) netio::sign(packet, signer->second.key(), counter);
       expected.push_back(packet);
     }
     lost += letters.size() - expected.size();

@@ -121,6 +121,70 @@ TEST(Service, StatesHaveAnAgeWithAndWithoutFilter) {
   }
 }
 
+netio::Peer peer_of(std::uint32_t robot, std::uint8_t key) {
+  return {netio::PeerKind::robot, robot, std::nullopt, netio::SigningKey{key}};
+}
+
+/// Readings, challenges, states of each other and the start signal, in both directions.
+TEST(Service, ARobotWithAKeyDrivesBesideOneWithout) {
+  Fixture f({.wait_for_start = true, .peers = {peer_of(1, 7)}});
+  const auto other = f.make_client(1);
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      other->step(f.now);
+      f.run(1);
+      other->receive(f.now);
+    }
+  };
+  run(10);
+  netio::Outbox user;
+  base::Bytes packet;
+  netio::encode({.robot = netio::kBroadcastId}, netio::Start{}, packet);
+  user.queue({netio::kLoopback, f.service->port()}, packet);
+  user.flush();
+  run(30);
+  for (const RobotClient* robot : {&*f.client, &*other}) {
+    const RobotClientStats stats = robot->stats();
+    EXPECT_TRUE(stats.started);
+    EXPECT_GT(stats.distance_m, 0.05);
+    EXPECT_GE(stats.link.whole.at("laser"), 38u) << stats.id;
+    EXPECT_EQ(stats.link.readings.packets.dropped(), 0u) << text(stats.link.readings.packets);
+    EXPECT_TRUE(robot->link().is_active(3 - stats.id, f.now)) << "each is sent the other's states";
+  }
+  const netio::PacketCounts inbox = f.service->stats().inbox;
+  EXPECT_EQ(inbox.dropped(), inbox[netio::PacketStatus::unproven]) << text(inbox);
+}
+
+/// Boundary: no key, another key, and a key that the farm does not know.
+TEST(Service, ARobotIsServedWithItsKeyAlone) {
+  using netio::PacketStatus;
+  for (const std::optional<std::uint8_t> key : {std::optional<std::uint8_t>{}, std::optional<std::uint8_t>{8}}) {
+    Fixture f({.peers = {peer_of(1, 7)}});
+    f.client.reset();
+    f.client = f.make_client(0, key ? std::optional(netio::SigningKey{*key}) : std::nullopt);
+    f.run(10);
+    EXPECT_FALSE(f.client->stats().answered);
+    const netio::PacketCounts inbox = f.service->stats().inbox;
+    EXPECT_GE(inbox[key ? PacketStatus::wrong_signature : PacketStatus::not_signed], 10u) << text(inbox);
+    EXPECT_EQ(inbox.dropped(), inbox.total());
+    EXPECT_EQ(f.service->stats().answers.queued, 0u) << "no challenge";
+  }
+  Fixture f;
+  f.client.reset();
+  f.client = f.make_client(0, netio::SigningKey{7});
+  f.run(10);
+  EXPECT_FALSE(f.client->stats().answered) << "the farm does not sign";
+  EXPECT_GE(f.client->stats().link.packets[PacketStatus::not_signed], 10u);
+}
+
+TEST(Service, ARobotOfAnotherAddressIsRefusedAndLoggedOnce) {
+  Fixture f({.peers = {{netio::PeerKind::robot, 1, netio::kLoopback + 1, std::nullopt}}});
+  f.run(10);
+  EXPECT_FALSE(f.client->stats().answered);
+  EXPECT_EQ(f.service->stats().inbox.dropped(), f.service->stats().inbox[netio::PacketStatus::wrong_source]);
+  EXPECT_EQ(count_of(f.log.read_all(), "robot1 (id 1) is at 127.0.0.2 by the table of peers"), 1u);
+}
+
 /// States of robot 2, in any order of sequence.
 struct Speaker {
   explicit Speaker(Fixture& fixture) : f(fixture), outbox(netio::open_udp({netio::kLoopback, 0})) {}
