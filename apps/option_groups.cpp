@@ -142,6 +142,13 @@ void add_wire(CLI::App& app, WireOption& o) {
       ->default_str("farm");
 }
 
+void add_peers(CLI::App& app, PeersOption& o) {
+  app.add_option("--peers", o.peers,
+                 "File of addresses and keys, by which packets are checked and signed (docs/robots.md)")
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+}
+
 void add_bind(CLI::App& app, BindOption& o) {
   app.add_option("--bind", o.bind, "Address to listen on (0.0.0.0: every interface)")
       ->check(not_empty("an address"))

@@ -63,6 +63,8 @@ void add_automatic(CLI::App& app, AccuracyTargetOptions& o);
 void add_no_return(CLI::App& app, NoReturnOption& o);
 void add_wire(CLI::App& app, WireOption& o);
 void add_bind(CLI::App& app, BindOption& o);
+/// `--peers`: the table of addresses and keys.
+void add_peers(CLI::App& app, PeersOption& o);
 /// `--from`: the host that packets are taken from.
 void add_from(CLI::App& app, ReceiveOptions& o);
 void add_silence(CLI::App& app, ReceiveOptions& o);

@@ -109,6 +109,10 @@ struct FilterOptions {
   estimation::StalePolicy stale = estimation::StalePolicy::freeze;
 };
 
+struct PeersOption {
+  std::string peers;  ///< file of addresses and keys; empty: none
+};
+
 struct DurationOption {
   double duration = 0.0;  ///< [s]; 0: until stopped
 };
@@ -184,6 +188,7 @@ struct ServeOptions : WorldOptions,
                       PortOptions,
                       BindOption,
                       ForgetOption,
+                      PeersOption,
                       FilterOptions,
                       SeedOption,
                       DurationOption {
@@ -200,6 +205,7 @@ struct RobotOptions : WorldOptions,
                       LinkOptions,
                       PortOptions,
                       ForgetOption,
+                      PeersOption,
                       SeedOption,
                       DurationOption {
   std::string robot;        ///< its name
@@ -220,7 +226,7 @@ struct LightOptions : OriginOption, DurationOption {
   std::vector<std::string> set;  ///< "NAME=STATE", in place of a plan
 };
 
-struct StartOptions : FarmOptions {
+struct StartOptions : FarmOptions, PeersOption {
   std::uint32_t start_id = netio::kBroadcastId;  ///< robot to be started
 };
 
@@ -261,7 +267,7 @@ struct TradeoffOptions : WorldOptions, AccuracyTargetOptions, JsonOption, Device
   std::string out;  ///< folder; empty: none
 };
 
-struct VpsOptions : JsonOption, SeedOption, DurationOption {
+struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption {
   std::string testbed;                                      ///< file
   std::vector<std::pair<std::string, std::string>> inputs;  ///< camera and its source, in place of the file's
   std::uint32_t rendered = 0;                               ///< tags of a simulated testbed; 0: none

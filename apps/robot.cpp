@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "apps/controller_options.h"
 #include "apps/default_robot.h"
 #include "apps/layout_options.h"
+#include "apps/peers_option.h"
 #include "apps/report.h"
 #include "apps/robot_report.h"
 #include "apps/stop_signals.h"
@@ -36,9 +38,24 @@ netio::Endpoint farm_of(const FarmOptions& options) {
   return {netio::resolve(options.server), static_cast<std::uint16_t>(options.port)};
 }
 
-server::RobotClientOptions client_options(const RobotOptions& options) {
+/// The robot's own; warns where the table has none.
+std::optional<netio::SigningKey> key_of(const RobotOptions& options, const world::World& world,
+                                        const world::Mover& mover) {
+  const std::vector<netio::Peer> peers = peers_of(options, &world);
+  const netio::Peer* own = netio::find(peers, netio::PeerKind::robot, mover.id);
+  const std::optional<netio::SigningKey> key = own != nullptr ? own->key : std::nullopt;
+  if (key) require_signable({*own}, options.wire);
+  if (!options.peers.empty() && !key)
+    print_message("warning: {} has no key of {} (id {}): its packets are not signed", options.peers, mover.name,
+                  mover.id);
+  return key;
+}
+
+server::RobotClientOptions client_options(const RobotOptions& options, const world::World& world,
+                                          const world::Mover& mover) {
   server::RobotClientOptions client;
   client.link.farm = farm_of(options);
+  client.link.key = key_of(options, world, mover);
   client.link.model = {.delay = options.delay,
                        .jitter = options.jitter,
                        .loss = options.loss,
@@ -54,6 +71,17 @@ server::RobotClientOptions client_options(const RobotOptions& options) {
   if (options.spat > 0)
     client.spat = netio::Endpoint{netio::is_loopback(client.link.farm.address) ? netio::kLoopback : 0, options.spat};
   return client;
+}
+
+/// @throws base::InputError for a table without a key: the farm that has one would drop the signal
+std::optional<netio::PacketSigner> start_signer(const StartOptions& options) {
+  if (options.peers.empty()) return std::nullopt;
+  const std::vector<netio::Peer> peers = peers_of(options, nullptr);
+  const netio::Peer* own = netio::find(peers, netio::PeerKind::start, 0);
+  if (own == nullptr || !own->key)
+    throw base::InputError(options.peers, 0,
+                           "has no key for START; expected a section [[peer]] with start = true and key");
+  return netio::PacketSigner(*own->key);
 }
 
 std::uint32_t find_robot(const world::World& world, const std::string& name) {
@@ -73,7 +101,7 @@ int robot(const RobotOptions& options) {
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, options.robot);
   server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options),
-                              client_options(options));
+                              client_options(options, world, world.movers[mover]));
   if (process.spat() != nullptr && !netio::is_loopback(process.link().farm().address))
     print_message(
         "warning: --spat {} takes the states of lights from whoever reaches this machine, since these messages are not "
@@ -97,10 +125,12 @@ int start(const StartOptions& options) {
   header.robot = static_cast<std::uint16_t>(options.start_id);
   netio::Outbox outbox;
   base::Bytes packet;
+  std::optional<netio::PacketSigner> signer = start_signer(options);
   for (int i = 0; i < kTimes; ++i) {
     if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     header.sequence = static_cast<std::uint32_t>(i);
     netio::encode(header, netio::Start{}, packet);
+    if (signer) signer->sign(packet);
     outbox.queue(farm, packet);
     outbox.flush();
   }

@@ -1,12 +1,15 @@
 // `serve`: robots live elsewhere. Their states come in, readings go back to them.
 
+#include <algorithm>
 #include <optional>
+#include <span>
 
 #include "apps/automatic_accuracy.h"
 #include "apps/commands.h"
 #include "apps/default_robot.h"
 #include "apps/exposure_warning.h"
 #include "apps/layout_options.h"
+#include "apps/peers_option.h"
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
@@ -22,11 +25,13 @@ namespace sf::apps {
 
 namespace {
 
-server::ServiceOptions service_options(const ServeOptions& options) {
+server::ServiceOptions service_options(const ServeOptions& options, const world::World& world) {
   server::ServiceOptions service{.rate = options.rate, .seed = options.seed, .no_return_inf = options.no_return_inf};
   service.receiver = {.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
                       .radio = options.radio,
                       .forget = options.forget};
+  service.receiver.peers = peers_of(options, &world);
+  require_signable(service.receiver.peers, options.wire);
   server::StateFilterOptions& filter = service.receiver.filter;
   filter.enabled = options.filter;
   filter.clock.source = options.clock;
@@ -34,6 +39,18 @@ server::ServiceOptions service_options(const ServeOptions& options) {
   filter.stale_after = base::nanoseconds(options.stale_after);
   filter.policy = options.stale;
   return service;
+}
+
+/// Every robot and tag, and START, has a key.
+bool signs_all(std::span<const netio::Peer> peers, const world::World& world) {
+  const auto has_key = [&](netio::PeerKind kind, std::uint32_t id) {
+    const netio::Peer* peer = netio::find(peers, kind, id);
+    return peer != nullptr && peer->key;
+  };
+  return has_key(netio::PeerKind::start, 0) &&
+         std::all_of(world.movers.begin(), world.movers.end(), [&](const world::Mover& mover) {
+           return has_key(mover.is_tag ? netio::PeerKind::tag : netio::PeerKind::robot, mover.id);
+         });
 }
 
 /// The recording of a service: its states are estimates, its ticks and samples are at times of its clock.
@@ -91,16 +108,17 @@ RunReport report_of(const server::ServiceStats& stats, const world::World& world
 int serve(const ServeOptions& options) {
   world::World world = load_with_robots(options.world, options.load);
   const server::StreamLayout layout = stream_layout_of(world, sensors::SensorSet(world), options);
+  const server::ServiceOptions chosen = service_options(options, world);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options, options.seed, 0);
   const sensors::SensorSet sensor_set(world);
   if (options.rate > 0.0) warn_of_fast_sensors(sensor_set, options.rate);
   if (options.rate == 0.0) warn_of_many_times(sensor_set);
-  const server::ServiceOptions chosen = service_options(options);
   std::optional<record::Recorder> recorder;
   try {
     server::Service service(world, sensor_set, device, layout, chosen);
-    warn_of_exposure(chosen.receiver.bind.address, "say where robots are, and be sent readings");
+    if (!signs_all(chosen.receiver.peers, world))
+      warn_of_exposure(chosen.receiver.bind.address, "say where robots are, and be sent readings");
     if (!options.record.empty()) {
       recorder.emplace(options.record, run_info(world, sensor_set, options, device.info().software));
       service.record_to(*recorder);

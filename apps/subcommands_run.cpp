@@ -119,6 +119,7 @@ void add_serve(CLI::App& app, Call& call) {
       ->type_name("M")
       ->capture_default_str();
   add_forget(*sub, o);
+  add_peers(*sub, o);
   add_filter(*sub, o);
   sub->add_option("--record", o.record, "Folder to record states, their quality, and readings into (run.mcap)")
       ->check(not_empty("a folder"))
@@ -179,6 +180,7 @@ void add_robot(CLI::App& app, Call& call) {
       ->type_name("S")
       ->capture_default_str();
   add_forget(*sub, o);
+  add_peers(*sub, o);
   sub->add_option("--spat", o.spat,
                   "UDP port on which to listen for SPaT of traffic lights (`sensorfarm light`, 9010); they replace the "
                   "world's plans (default: plans)")
@@ -227,6 +229,7 @@ void add_start(CLI::App& app, Call& call) {
   auto& o = add_command(*sub, call, start);
   add_examples(*sub, {"--robot 2"});
   add_farm(*sub, o);
+  add_peers(*sub, o);
   sub->add_option("--robot", o.start_id, "Id of the robot (default: all)")->check(whole(0, 65535))->type_name("ID");
 }
 

@@ -63,6 +63,7 @@ void add_vps(CLI::App& app, Call& call) {
   sub->add_option("--send", o.send, "Address of the TAG packets of tags without an address in the file")
       ->check(not_empty("HOST:PORT"))
       ->type_name("HOST:PORT");
+  add_peers(*sub, o);
   sub->add_option("--track", o.track, "CSV file to write every pose and velocity to")
       ->check(not_empty("a file"))
       ->type_name("FILE");

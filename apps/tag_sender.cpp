@@ -32,13 +32,16 @@ netio::Tag object_state(const vision::TrackedTag& tag, const vision::TagMount& m
   return state;
 }
 
-TagSender::TagSender(const vision::Testbed& testbed, const std::string& fallback) : testbed_(testbed) {
+TagSender::TagSender(const vision::Testbed& testbed, const std::string& fallback, std::span<const netio::Peer> peers)
+    : testbed_(testbed) {
   header_.session = netio::random_session();
   netio::AddressBook book;
   if (!testbed.tag.address.empty()) fallback_ = read_address(book, testbed.tag.address, testbed.file);
   if (!fallback.empty() && !fallback_) fallback_ = read_address(book, fallback, "");
   for (const auto& [id, mount] : testbed.tags)
     if (!mount.address.empty()) addresses_[id] = read_address(book, mount.address, testbed.file);
+  for (const netio::Peer& peer : peers)
+    if (peer.kind == netio::PeerKind::tag && peer.key) signers_.emplace(peer.id, *peer.key);
 }
 
 void TagSender::send(std::span<const vision::TrackedTag> tags, std::int64_t epoch) {
@@ -53,6 +56,8 @@ void TagSender::send(std::span<const vision::TrackedTag> tags, std::int64_t epoc
     header_.sequence = sequences_[tag.id]++;
     header_.time = epoch + std::llround(1e9 * tag.time);
     netio::encode(header_, object_state(tag, testbed_.mount(tag.id)), packet_);
+    const auto signer = signers_.find(tag.id);
+    if (signer != signers_.end()) signer->second.sign(packet_);
     outbox_.queue(*to, packet_);
   }
   outbox_.flush();

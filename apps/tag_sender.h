@@ -8,6 +8,7 @@
 
 #include "netio/outbox.h"
 #include "netio/packets.h"
+#include "netio/peers.h"
 #include "vision/testbed.h"
 #include "vision/tracker.h"
 
@@ -21,8 +22,9 @@ netio::Tag object_state(const vision::TrackedTag& tag, const vision::TagMount& m
 class TagSender {
  public:
   /// @param fallback "host:port" or empty
+  /// @param peers tags in it that have a key get signed packets
   /// @throws base::InputError for addresses of another form, and unknown hosts
-  TagSender(const vision::Testbed& testbed, const std::string& fallback);
+  TagSender(const vision::Testbed& testbed, const std::string& fallback, std::span<const netio::Peer> peers);
 
   /// @param epoch [ns] time of packets at time 0 of the tags
   void send(std::span<const vision::TrackedTag> tags, std::int64_t epoch);
@@ -36,6 +38,7 @@ class TagSender {
   std::optional<netio::Endpoint> fallback_;
   std::map<std::uint32_t, netio::Endpoint> addresses_;
   std::map<std::uint32_t, std::uint32_t> sequences_;
+  std::map<std::uint32_t, netio::PacketSigner> signers_;
   netio::Header header_;
   netio::Outbox outbox_;
   base::Bytes packet_;

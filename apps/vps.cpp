@@ -9,6 +9,7 @@
 
 #include "apps/camera_inputs.h"
 #include "apps/commands.h"
+#include "apps/peers_option.h"
 #include "apps/stop_signals.h"
 #include "apps/tag_sender.h"
 #include "apps/text.h"
@@ -105,7 +106,7 @@ std::span<const vision::TrackedTag> process(std::span<const vision::Frame> frame
 
 int vps(const VpsOptions& options) {
   const vision::Testbed testbed = vision::read_testbed(options.testbed);
-  TagSender sender(testbed, options.send);
+  TagSender sender(testbed, options.send, peers_of(options, nullptr));
   std::optional<vision::RenderedFleet> fleet;
   std::optional<vision::AccuracyMeter> meter;
   if (options.rendered > 0) {

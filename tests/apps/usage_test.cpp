@@ -81,7 +81,7 @@ TEST(Usage, HelpNamesTheOptions) {
       {"run",
        {"--robots", "--duration", "--seed", "--record", "--record-readings", "--real-time", "--send", "--json",
         "--wire", "--threads", "--stage-obstacles", "--drive"}},
-      {"serve", {"--bind", "--rate", "--radio", "--port", "--laser-port", "--wire", "--json"}},
+      {"serve", {"--bind", "--rate", "--radio", "--peers", "--port", "--laser-port", "--wire", "--json"}},
       {"robot",
        {"--name", "--controller", "--set", "--server", "--port", "--delay", "--jitter", "--loss", "--seed", "--rate",
         "--duration", "--wait-for-start", "--json", "--wire"}},

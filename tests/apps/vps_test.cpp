@@ -12,6 +12,7 @@
 
 #include "base/elapsed.h"
 #include "netio/packets.h"
+#include "netio/signature.h"
 #include "netio/socket.h"
 #include "tests/apps/program.h"
 #include "tests/viz/png.h"
@@ -42,8 +43,10 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   const std::string testbed = folder.write("t.toml", kTestbed);
   const netio::Socket socket = netio::open_udp({netio::kLoopback, 0});
   const std::string address = netio::text(netio::bound_endpoint(socket));
-  const Outcome outcome = run_program({"vps", testbed, "--rendered", "2", "--images", "4", "--send", address, "--track",
-                                       folder.path("track.csv"), "--overlay", folder.path("pictures")});
+  const std::string peers = folder.write("peers.toml", "[[peer]]\ntag = 2\nkey = \"" + std::string(64, '5') + "\"\n");
+  const Outcome outcome =
+      run_program({"vps", testbed, "--rendered", "2", "--images", "4", "--send", address, "--track",
+                   folder.path("track.csv"), "--overlay", folder.path("pictures"), "--peers", peers});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("0, 0 of 6 reported"), std::string::npos) << outcome.out;  // missed, false
   EXPECT_NE(outcome.out.find("6 sent, 0 failed"), std::string::npos) << outcome.out;
@@ -52,6 +55,9 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   // Two tags in each image but the first.
   std::map<std::uint16_t, std::uint32_t> count;
   std::map<std::uint16_t, netio::Packet> last;
+  netio::SigningKey key;
+  key.fill(0x55);
+  netio::SignatureChecker checker(key);
   netio::ReceiveBatch batch(16);
   const std::size_t received = batch.fill(socket);
   ASSERT_EQ(received, 6u);
@@ -61,6 +67,8 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
     ASSERT_EQ(packet.header.type, netio::Type::tag);
     EXPECT_EQ(packet.header.sequence, count[packet.header.robot]++);
     EXPECT_NE(packet.header.session, 0u);
+    EXPECT_EQ(checker.check(batch.bytes(i)),
+              packet.header.robot == 2 ? netio::PacketStatus::accepted : netio::PacketStatus::not_signed);
     last[packet.header.robot] = packet;
   }
   EXPECT_EQ(count[1], 3u);

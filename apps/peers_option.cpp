@@ -1,0 +1,31 @@
+#include "apps/peers_option.h"
+
+#include <algorithm>
+
+#include "apps/text.h"
+#include "base/error.h"
+#include "netio/server/peer_file.h"
+
+namespace sf::apps {
+
+std::vector<netio::Peer> peers_of(const PeersOption& options, const world::World* world) {
+  if (options.peers.empty()) return {};
+  std::vector<netio::Peer> peers = server::read_peers(options.peers, world);
+  const bool keys =
+      std::any_of(peers.begin(), peers.end(), [](const netio::Peer& peer) { return peer.key.has_value(); });
+  if (keys && server::is_open_to_others(options.peers))
+    print_message("warning: {} has keys, and others may read or change it; `chmod 600 {}` keeps it to its owner",
+                  options.peers, options.peers);
+  return peers;
+}
+
+void require_signable(const std::vector<netio::Peer>& peers, sensors::WireFormat wire) {
+  if (wire != sensors::WireFormat::thesis) return;
+  for (const netio::Peer& peer : peers)
+    if (peer.kind == netio::PeerKind::robot && peer.key)
+      throw base::InputError(
+          "readings of --wire thesis cannot be signed, but --peers has a key of a robot: leave out "
+          "one of them");
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,54 @@
+// `--peers`: tables that commands refuse or warn of. What a table does is tested in tests/netio.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/apps/program.h"
+
+namespace sf::apps {
+namespace {
+
+constexpr const char* kWorld = SF_SOURCE_DIR "/worlds/rooms.world";
+
+std::string peer(const std::string& what) { return "[[peer]]\n" + what + "\nkey = \"" + std::string(64, 'a') + "\"\n"; }
+
+TEST(Peers, AStartSignalNeedsTheKeyOfItsTable) {
+  const Folder folder;
+  const std::string file = folder.write("peers.toml", peer("robot = 1"));
+  const Outcome refused = run_program({"start", "--peers", file});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("has no key for START; expected a section [[peer]] with start = true"), std::string::npos)
+      << refused.err;
+  EXPECT_EQ(run_program({"start", "--peers", folder.write("start.toml", peer("start = true"))}).code, 0);
+}
+
+TEST(Peers, AFileOfKeysThatOthersReadIsWarnedOf) {
+  const Folder folder;
+  const std::string file = folder.write("peers.toml", peer("start = true"));
+  using std::filesystem::perms;
+  for (const perms others : {perms::none, perms::group_read}) {
+    std::filesystem::permissions(file, perms::owner_read | perms::owner_write | others);
+    const Outcome outcome = run_program({"start", "--peers", file});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(outcome.err.find("warning: " + file + " has keys, and others") != std::string::npos,
+              others != perms::none)
+        << outcome.err;
+    EXPECT_EQ(outcome.err.find("aaaa"), std::string::npos) << "keys are never printed";
+  }
+}
+
+TEST(Peers, AServiceRefusesIdsOfNoneAndReadingsWithoutSignatures) {
+  const Folder folder;
+  const Outcome unknown = run_program({"serve", kWorld, "--peers", folder.write("a.toml", peer("robot = 77"))});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.err.find("a.toml:2: the world has no robot with the id 77; it has 1, 2"), std::string::npos)
+      << unknown.err;
+  const Outcome thesis =
+      run_program({"serve", kWorld, "--wire", "thesis", "--peers", folder.write("b.toml", peer("robot = 1"))});
+  EXPECT_EQ(thesis.code, 2);
+  EXPECT_NE(thesis.err.find("readings of --wire thesis cannot be signed"), std::string::npos) << thesis.err;
+}
+
+}  // namespace
+}  // namespace sf::apps
