@@ -51,6 +51,31 @@ TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
   EXPECT_FALSE(receiver.newest(1));
 }
 
+/// Counters are those of each port: the second port's are far behind the first's when its packets are read.
+TEST(Receiver, WithAKeyReadingsAreSigned) {
+  constexpr SigningKey kKey{1};
+  ReceiverOptions chosen = options();
+  chosen.key = kKey;
+  Receiver receiver(chosen);
+  receiver.set_session({11, 22});
+  const auto take = [&](std::uint16_t sensor, std::uint8_t number, std::uint64_t counter, std::uint32_t session = 11) {
+    base::Bytes bytes = part(sensor, 4, number, 1);
+    write_session_token(bytes, {session, 22});
+    if (counter > 0) sign(bytes, kKey, counter);
+    return receiver.accept(sensor, bytes, 0);
+  };
+  EXPECT_EQ(take(0, 0, 0), PartStatus::rejected);
+  EXPECT_EQ(take(0, 0, 5'000, 12), PartStatus::rejected) << "another session does not move the window";
+  EXPECT_EQ(take(0, 0, 1'000), PartStatus::incomplete);
+  EXPECT_EQ(take(0, 1, 1'000), PartStatus::rejected);
+  EXPECT_EQ(take(0, 1, 1'001), PartStatus::complete);
+  EXPECT_EQ(take(1, 0, 1), PartStatus::incomplete);
+  const PacketCounts counts = receiver.counts().packets;
+  EXPECT_EQ(counts[PacketStatus::not_signed], 1u);
+  EXPECT_EQ(counts[PacketStatus::wrong_source], 1u);
+  EXPECT_EQ(counts[PacketStatus::replayed], 1u);
+}
+
 TEST(Receiver, CountsWhatItDoesNotUse) {
   Receiver receiver(receiver_options());
   EXPECT_EQ(receiver.accept(0, part(1, 4, 0, 1), 0), PartStatus::rejected);  // another sensor's port

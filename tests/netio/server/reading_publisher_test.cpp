@@ -19,14 +19,14 @@ namespace {
 constexpr std::uint32_t kBeams = 31;
 
 /// Robots with one laser each, nothing else.
-world::World fleet(std::uint32_t robots) {
+world::World fleet(std::uint32_t robots, std::uint32_t beams = kBeams) {
   world::World world;
   for (std::uint32_t i = 0; i < robots; ++i) {
     world::Mover mover;
     mover.name = "robot" + std::to_string(i + 1);
     mover.id = i + 1;
     mover.model = i;
-    mover.sensors.push_back(sensors::laser_sensor({{.name = "laser", .samples = kBeams}}));
+    mover.sensors.push_back(sensors::laser_sensor({{.name = "laser", .samples = beams}}));
     world.models.push_back({mover.name, "position"});
     world.movers.push_back(mover);
   }
@@ -121,6 +121,32 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
     first = end;
   }
   EXPECT_EQ(lost > 0, robots > 5);
+}
+
+/// Boundary: 400 beams are two datagrams of a reading.
+TEST(ReadingPublisher, EachPartHasACounterOfItsOwn) {
+  const world::World world = fleet(1, 400);
+  const sensors::SensorSet sensor_set(world);
+  const netio::Socket ears = netio::open_udp({netio::kLoopback, 0});
+  StreamLayout layout;
+  layout.stride = 0;
+  layout.bases[sensors::kLaser] = netio::bound_endpoint(ears).port;
+  ReadingPublisher publisher(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)));
+  netio::PacketSigner signer(netio::SigningKey{1}, 5);
+  const std::vector<double> ranges(400, 1.0);
+  base::ReadingBlock block;
+  block.type = sensors::kLaser;
+  block.values = ranges;
+  const AddressedReading addressed{&block, netio::kLoopback, {7, 9}, &signer};
+  for (int reading = 0; reading < 2; ++reading) {
+    publisher.queue({&addressed, 1});
+    publisher.flush();
+  }
+  netio::SignatureChecker checker(netio::SigningKey{1});
+  netio::ReceiveBatch batch(8);
+  ASSERT_EQ(batch.fill(ears), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(checker.check(batch.bytes(i)), netio::PacketStatus::accepted) << i;
+  EXPECT_EQ(signer.take(), 9u) << "as many as datagrams";
 }
 
 INSTANTIATE_TEST_SUITE_P(Fleets, PostTest, testing::Values(3u, 256u, 257u, 2500u));
