@@ -21,13 +21,14 @@ extern const ExperimentType minimagic_experiment;
 extern const ExperimentType simville_experiment;
 extern const ExperimentType simville_merge_experiment;
 extern const ExperimentType sweeps_experiment;
+extern const ExperimentType late_states_experiment;
 extern const ExperimentType accuracy_experiment;
 
 std::span<const ExperimentType* const> experiments() {
   static constexpr const ExperimentType* kKinds[] = {
       &lane_edge_p_experiment, &lane_edge_pi_experiment, &magnet_p_experiment,       &magnet_pi_experiment,
       &mapping_experiment,     &simville_experiment,     &simville_merge_experiment, &minimagic_experiment,
-      &sweeps_experiment,      &accuracy_experiment};
+      &sweeps_experiment,      &late_states_experiment,  &accuracy_experiment};
   return kKinds;
 }
 

@@ -11,7 +11,7 @@
 namespace sf::netio {
 namespace {
 
-using test::documented;
+using sf::test::documented;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();

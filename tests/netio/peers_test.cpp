@@ -12,12 +12,12 @@
 namespace sf::netio {
 namespace {
 
-constexpr Endpoint kAlice{kLoopback, 5001};
+constexpr Endpoint kPeerSource{kLoopback, 5001};
 constexpr Endpoint kElsewhere{kLoopback + 1, 5001};
 constexpr SigningKey kRobotKey{1}, kTagKey{2}, kStartKey{3};
 
 /// Robots 7 (with a key), 3 (without one) and 5 (with an address), and a tag and START with keys.
-InboxOptions options() {
+InboxOptions peer_options() {
   return {.bind = {kLoopback, 0},
           .robots = {7, 3, 5},
           .tags = {12},
@@ -27,36 +27,36 @@ InboxOptions options() {
                     {PeerKind::robot, 5, kLoopback, std::nullopt}}};
 }
 
-base::Bytes v2v(std::uint16_t robot, std::uint32_t sequence) {
+base::Bytes peer_v2v(std::uint16_t robot, std::uint32_t sequence) {
   base::Bytes out;
   encode({.robot = robot, .sequence = sequence}, V2v{}, out);
   return out;
 }
 
 struct PeersTest : testing::Test {
-  Inbox inbox{options()};
+  Inbox inbox{peer_options()};
   PacketSigner robot{kRobotKey, 1000};
   Packet packet;
   /// With the token of its source, and signed by `signer`.
-  base::Bytes ready(base::Bytes bytes, PacketSigner* signer, const Endpoint& who = kAlice) {
+  base::Bytes ready(base::Bytes bytes, PacketSigner* signer, const Endpoint& who = kPeerSource) {
     write_session_token(bytes, {77, inbox.token(who)});
     if (signer != nullptr) signer->sign(bytes);
     return bytes;
   }
-  PacketStatus accept(const base::Bytes& bytes, const Endpoint& who = kAlice) {
+  PacketStatus accept(const base::Bytes& bytes, const Endpoint& who = kPeerSource) {
     return inbox.accept(bytes, who, 0, packet);
   }
-  PacketStatus say(const base::Bytes& bytes, PacketSigner* signer, const Endpoint& who = kAlice) {
+  PacketStatus say(const base::Bytes& bytes, PacketSigner* signer, const Endpoint& who = kPeerSource) {
     return accept(ready(bytes, signer, who), who);
   }
 };
 
 TEST_F(PeersTest, ARobotWithAKeySigns) {
   PacketSigner forger(kTagKey, 1'000'000);
-  EXPECT_EQ(say(v2v(7, 0), nullptr), PacketStatus::not_signed);
-  EXPECT_EQ(say(v2v(7, 0), &forger), PacketStatus::wrong_signature);
+  EXPECT_EQ(say(peer_v2v(7, 0), nullptr), PacketStatus::not_signed);
+  EXPECT_EQ(say(peer_v2v(7, 0), &forger), PacketStatus::wrong_signature);
   EXPECT_FALSE(inbox.is_active(7, 0));
-  const base::Bytes first = ready(v2v(7, 0), &robot), second = ready(v2v(7, 1), &robot);
+  const base::Bytes first = ready(peer_v2v(7, 0), &robot), second = ready(peer_v2v(7, 1), &robot);
   EXPECT_EQ(accept(second), PacketStatus::accepted);
   EXPECT_EQ(accept(second), PacketStatus::replayed);
   EXPECT_EQ(accept(first), PacketStatus::stale) << "overtaken: signed and new, but an older state";
@@ -71,8 +71,8 @@ TEST_F(PeersTest, ARobotWithAKeySigns) {
 }
 
 TEST_F(PeersTest, ARobotWithoutAKeyNeedsNone) {
-  EXPECT_EQ(say(v2v(3, 0), nullptr), PacketStatus::accepted);
-  EXPECT_EQ(say(v2v(3, 1), &robot), PacketStatus::accepted) << "its trailer is dropped";
+  EXPECT_EQ(say(peer_v2v(3, 0), nullptr), PacketStatus::accepted);
+  EXPECT_EQ(say(peer_v2v(3, 1), &robot), PacketStatus::accepted) << "its trailer is dropped";
   EXPECT_EQ(inbox.signer(3), nullptr);
   EXPECT_EQ(inbox.signer(99), nullptr);
 }
@@ -100,10 +100,10 @@ TEST_F(PeersTest, StartIsSignedByItsSenderAlone) {
 
 /// Boundary: another port of the same address, and an address one higher.
 TEST_F(PeersTest, AnAddressIsTheOnlyOne) {
-  EXPECT_EQ(say(v2v(5, 0), nullptr, kElsewhere), PacketStatus::wrong_source);
+  EXPECT_EQ(say(peer_v2v(5, 0), nullptr, kElsewhere), PacketStatus::wrong_source);
   EXPECT_FALSE(inbox.is_active(5, 0));
-  EXPECT_EQ(say(v2v(5, 0), nullptr, {kLoopback, 5999}), PacketStatus::accepted);
-  EXPECT_EQ(say(v2v(5, 1), nullptr, kAlice), PacketStatus::wrong_source) << "bound by its first sender as without";
+  EXPECT_EQ(say(peer_v2v(5, 0), nullptr, {kLoopback, 5999}), PacketStatus::accepted);
+  EXPECT_EQ(say(peer_v2v(5, 1), nullptr, kPeerSource), PacketStatus::wrong_source) << "bound by its first sender as without";
 }
 
 /// Without the token too: an unproven request is signed, and so is the answer, which is no larger.
@@ -113,29 +113,29 @@ TEST_F(PeersTest, ChallengesAreSignedAndNoLarger) {
   EXPECT_EQ(accept(request), PacketStatus::not_signed) << "no answer to strangers";
   robot.sign(request);
   ASSERT_EQ(accept(request), PacketStatus::unproven);
-  ASSERT_TRUE(inbox.challenge(packet, kAlice, 0, answer));
+  ASSERT_TRUE(inbox.challenge(packet, kPeerSource, 0, answer));
   EXPECT_EQ(answer.size(), request.size());
   EXPECT_EQ(SignatureChecker(kRobotKey).check(answer), PacketStatus::accepted);
   ASSERT_EQ(decode(answer, packet), PacketStatus::accepted);
-  EXPECT_EQ(std::get<Challenge>(packet.body).token, inbox.token(kAlice));
+  EXPECT_EQ(std::get<Challenge>(packet.body).token, inbox.token(kPeerSource));
 }
 
 TEST_F(PeersTest, UnknownIdsComeFirst) {
-  EXPECT_EQ(say(v2v(8, 0), nullptr), PacketStatus::unknown_robot);
+  EXPECT_EQ(say(peer_v2v(8, 0), nullptr), PacketStatus::unknown_robot);
   EXPECT_EQ(say(reading_example(), nullptr), PacketStatus::wrong_direction);
 }
 
 /// The window holds late states for the filter.
 TEST(Peers, OvertakenStatesAreLateNotReplayed) {
-  InboxOptions chosen = options();
+  InboxOptions chosen = peer_options();
   chosen.take_late = true;
   Inbox inbox(chosen);
   Packet packet;
   const auto say = [&](std::uint32_t sequence) {
-    base::Bytes bytes = v2v(7, sequence);
-    write_session_token(bytes, {77, inbox.token(kAlice)});
+    base::Bytes bytes = peer_v2v(7, sequence);
+    write_session_token(bytes, {77, inbox.token(kPeerSource)});
     sign(bytes, kRobotKey, 1000 + sequence);
-    return inbox.accept(bytes, kAlice, 0, packet);
+    return inbox.accept(bytes, kPeerSource, 0, packet);
   };
   EXPECT_EQ(say(100), PacketStatus::accepted);
   EXPECT_EQ(say(37), PacketStatus::accepted) << "63 behind";

@@ -53,15 +53,15 @@ TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
 
 /// Counters are those of each port: the second port's are far behind the first's when its packets are read.
 TEST(Receiver, WithAKeyReadingsAreSigned) {
-  constexpr SigningKey kKey{1};
+  constexpr SigningKey kReceiverKey{1};
   ReceiverOptions chosen = options();
-  chosen.key = kKey;
+  chosen.key = kReceiverKey;
   Receiver receiver(chosen);
   receiver.set_session({11, 22});
   const auto take = [&](std::uint16_t sensor, std::uint8_t number, std::uint64_t counter, std::uint32_t session = 11) {
     base::Bytes bytes = part(sensor, 4, number, 1);
     write_session_token(bytes, {session, 22});
-    if (counter > 0) sign(bytes, kKey, counter);
+    if (counter > 0) sign(bytes, kReceiverKey, counter);
     return receiver.accept(sensor, bytes, 0);
   };
   EXPECT_EQ(take(0, 0, 0), PartStatus::rejected);
@@ -157,25 +157,25 @@ TEST(Receiver, TakesPacketsOfItsFarmAlone) {
     write_session_token(bytes, farm);
     return bytes;
   };
-  constexpr SessionToken kFarm{0xFA23, 7}, kForged{0xFA23, 8}, kOther{0xFA24, 7};
+  constexpr SessionToken kReceivedFarm{0xFA23, 7}, kForged{0xFA23, 8}, kOther{0xFA24, 7};
   Receiver receiver(receiver_options());
   receiver.set_session({0, 7});  // before any challenge
-  receiver.set_session(kFarm);
+  receiver.set_session(kReceivedFarm);
   EXPECT_EQ(receiver.counts().restarts, 0u);
-  EXPECT_EQ(receiver.accept(0, from(kFarm, 100, 0), 0), PartStatus::incomplete);
+  EXPECT_EQ(receiver.accept(0, from(kReceivedFarm, 100, 0), 0), PartStatus::incomplete);
   EXPECT_EQ(receiver.accept(0, from(kForged, 100, 1), 0), PartStatus::rejected);
   EXPECT_EQ(receiver.accept(0, from(kOther, 100, 1), 0), PartStatus::rejected);
-  EXPECT_EQ(receiver.accept(0, from(kFarm, 100, 1), 0), PartStatus::complete);
+  EXPECT_EQ(receiver.accept(0, from(kReceivedFarm, 100, 1), 0), PartStatus::complete);
   receiver.reject_source();
   EXPECT_EQ(receiver.counts().packets[PacketStatus::wrong_source], 3u);
-  receiver.set_session(kFarm);  // a repeated challenge changes nothing
+  receiver.set_session(kReceivedFarm);  // a repeated challenge changes nothing
   EXPECT_TRUE(receiver.newest(0));
   // The farm has restarted and counts from 0.
   receiver.set_session(kOther);
   EXPECT_FALSE(receiver.newest(0));
   EXPECT_EQ(receiver.accept(0, from(kOther, 0, 0), 1), PartStatus::incomplete);
   EXPECT_EQ(receiver.accept(0, from(kOther, 0, 1), 1), PartStatus::complete);
-  EXPECT_EQ(receiver.accept(0, from(kFarm, 101, 0), 1), PartStatus::rejected);
+  EXPECT_EQ(receiver.accept(0, from(kReceivedFarm, 101, 0), 1), PartStatus::rejected);
   EXPECT_EQ(receiver.counts().restarts, 2u);  // of two streams
 }
 

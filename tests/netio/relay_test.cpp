@@ -175,16 +175,16 @@ TEST_F(RelayTest, TagsAndRequestsAreNotPassedOn) {
   EXPECT_EQ(relay.counts().states + relay.counts().starts, 0u);
 }
 
-constexpr std::uint32_t kFarm = 0xFA23;  ///< session
-constexpr std::uint32_t kOwn = 0x0707;   ///< session
+constexpr std::uint32_t kRelayFarm = 0xFA23;  ///< session
+constexpr std::uint32_t kRelayOwn = 0x0707;   ///< session
 
 struct V2vSocketTest : testing::Test {
   Outbox farm{OutboxOptions{.bind = {kLoopback, 0}}};
-  V2vSocket v2v_socket{{.farm = farm.endpoint(), .robot = 7, .others = {3, 9}, .session = kOwn}};
+  V2vSocket v2v_socket{{.farm = farm.endpoint(), .robot = 7, .others = {3, 9}, .session = kRelayOwn}};
   Packet packet;
   V2vSocketTest() {
     base::Bytes bytes;
-    encode({.session = kFarm, .token = kOwn}, Challenge{3}, bytes);
+    encode({.session = kRelayFarm, .token = kRelayOwn}, Challenge{3}, bytes);
     v2v_socket.accept(bytes, 0, packet);
   }
   Endpoint to() const { return {kLoopback, bound_endpoint(v2v_socket.socket()).port}; }
@@ -192,11 +192,11 @@ struct V2vSocketTest : testing::Test {
 
 base::Bytes v2v_of(std::uint16_t robot, std::uint32_t sequence) {
   base::Bytes bytes;
-  encode({.robot = robot, .sequence = sequence, .session = kFarm, .token = kOwn}, V2v{}, bytes);
+  encode({.robot = robot, .sequence = sequence, .session = kRelayFarm, .token = kRelayOwn}, V2v{}, bytes);
   return bytes;
 }
 
-base::Bytes stamped(base::Bytes bytes, const SessionToken& stamp = {kFarm, kOwn}) {
+base::Bytes stamped(base::Bytes bytes, const SessionToken& stamp = {kRelayFarm, kRelayOwn}) {
   netio::write_session_token(bytes, stamp);
   return bytes;
 }
@@ -221,7 +221,7 @@ TEST_F(V2vSocketTest, NeighboursAreTakenApart) {
   base::Bytes states, bytes;
   for (const base::Bytes& state : {v2v_of(3, 5), v2v_of(9, 0), v2v_of(3, 4), stamped(v2v_of(9, 1), {})})
     states.insert(states.end(), state.begin(), state.end());
-  encode({.robot = 7, .session = kFarm, .token = kOwn}, Neighbours{states}, bytes);
+  encode({.robot = 7, .session = kRelayFarm, .token = kRelayOwn}, Neighbours{states}, bytes);
   farm.queue(to(), bytes);
   farm.queue(to(), stamped(start_example()));
   farm.flush();
@@ -258,32 +258,32 @@ TEST_F(V2vSocketTest, OnlyWhatCarriesItsSessionIsMeantForIt) {
     encode({.session = stamp.session, .token = stamp.token}, Challenge{token}, bytes);
     return bytes;
   };
-  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kFarm, kOwn + 1}), 0, packet), PacketStatus::wrong_source);
-  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kFarm + 1, kOwn}), 0, packet), PacketStatus::wrong_source);
+  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kRelayFarm, kRelayOwn + 1}), 0, packet), PacketStatus::wrong_source);
+  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kRelayFarm + 1, kRelayOwn}), 0, packet), PacketStatus::wrong_source);
   EXPECT_EQ(v2v_socket.accept(stamped(start_example(), {}), 0, packet), PacketStatus::wrong_source);
-  EXPECT_EQ(v2v_socket.accept(challenge(9, {kFarm + 1, 0}), 0, packet), PacketStatus::wrong_source);
-  EXPECT_EQ(v2v_socket.farm_session_token().session, kFarm);
+  EXPECT_EQ(v2v_socket.accept(challenge(9, {kRelayFarm + 1, 0}), 0, packet), PacketStatus::wrong_source);
+  EXPECT_EQ(v2v_socket.farm_session_token().session, kRelayFarm);
   // A restarted farm has another session, and packets of the old session are stale.
-  EXPECT_EQ(v2v_socket.accept(challenge(9, {kFarm + 1, kOwn}), 0, packet), PacketStatus::accepted);
-  EXPECT_EQ(v2v_socket.farm_session_token().session, kFarm + 1);
+  EXPECT_EQ(v2v_socket.accept(challenge(9, {kRelayFarm + 1, kRelayOwn}), 0, packet), PacketStatus::accepted);
+  EXPECT_EQ(v2v_socket.farm_session_token().session, kRelayFarm + 1);
   EXPECT_EQ(v2v_socket.accept(v2v_of(3, 0), 0, packet), PacketStatus::wrong_source);
-  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kFarm + 1, kOwn}), 0, packet), PacketStatus::accepted);
+  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kRelayFarm + 1, kRelayOwn}), 0, packet), PacketStatus::accepted);
 }
 
 TEST_F(V2vSocketTest, SendsWithTheNewestToken) {
   const Socket ears = open_udp({kLoopback, 0});
-  V2vSocket client({.farm = {kLoopback, bound_endpoint(ears).port}, .robot = 7, .others = {}, .session = kOwn});
+  V2vSocket client({.farm = {kLoopback, bound_endpoint(ears).port}, .robot = 7, .others = {}, .session = kRelayOwn});
   ReceiveBatch batch(1);
   for (const std::uint32_t token : {0u, 9u, 10u}) {
     base::Bytes bytes;
-    encode({.session = kFarm, .token = kOwn}, Challenge{token}, bytes);
+    encode({.session = kRelayFarm, .token = kRelayOwn}, Challenge{token}, bytes);
     if (token != 0) {
       ASSERT_EQ(client.accept(bytes, 0, packet), PacketStatus::accepted);
     }
     client.send(v2v_example());
     while (batch.fill(ears) == 0) wait_readable(ears, ears, 1000);
     ASSERT_EQ(decode(batch.bytes(0), packet), PacketStatus::accepted);
-    EXPECT_EQ(packet.header.session, kOwn);
+    EXPECT_EQ(packet.header.session, kRelayOwn);
     EXPECT_EQ(packet.header.token, token);
   }
 }

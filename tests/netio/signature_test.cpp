@@ -11,7 +11,7 @@
 namespace sf::netio {
 namespace {
 
-using test::documented;
+using sf::test::documented;
 
 /// 00 01 02 ... 1f
 SigningKey counting_key() {

@@ -227,14 +227,14 @@ TEST_F(OnePort, ListensToOneFarmAtATime) {
     write_session_token(bytes, {session, 0});
     return monitor->accept(1, bytes, who, now);
   };
-  constexpr Endpoint kElsewhere{kLoopback, 9001};
+  constexpr Endpoint kOtherHost{kLoopback, 9001};
   EXPECT_EQ(from(1, kMonitoredFarm, 0, 0), PacketStatus::accepted);
-  EXPECT_EQ(from(2, kElsewhere, 0, 1), PacketStatus::wrong_source);
+  EXPECT_EQ(from(2, kOtherHost, 0, 1), PacketStatus::wrong_source);
   EXPECT_EQ(from(2, kMonitoredFarm, 9, 1), PacketStatus::wrong_source);  // another session from the farm's address
-  EXPECT_EQ(from(1, kElsewhere, 9, 1), PacketStatus::wrong_source);      // the farm's session from another address
+  EXPECT_EQ(from(1, kOtherHost, 9, 1), PacketStatus::wrong_source);      // the farm's session from another address
   EXPECT_EQ(from(1, kMonitoredFarm, 2, 1), PacketStatus::accepted);
-  EXPECT_EQ(from(2, kElsewhere, 5, 2 * kSecond), PacketStatus::wrong_source);  // one nanosecond early
-  EXPECT_EQ(from(2, kElsewhere, 1, 1 + 2 * kSecond), PacketStatus::accepted);
+  EXPECT_EQ(from(2, kOtherHost, 5, 2 * kSecond), PacketStatus::wrong_source);  // one nanosecond early
+  EXPECT_EQ(from(2, kOtherHost, 1, 1 + 2 * kSecond), PacketStatus::accepted);
   EXPECT_EQ(from(1, kMonitoredFarm, 3, 1 + 2 * kSecond), PacketStatus::wrong_source);
   const StreamSummary sum = monitor->summary();
   EXPECT_EQ(sum.good, 3u);

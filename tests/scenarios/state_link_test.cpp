@@ -7,18 +7,16 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string>
-#include <utility>
 
 #include "base/time.h"
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
+#include "scenarios/lane_errors.h"
 #include "scenarios/scenario.h"
-#include "scenarios/simulation.h"
+#include "scenarios/trial.h"
 #include "tests/device.h"
 #include "tests/robots/scenes.h"
 #include "tests/units.h"
-#include "world/path_geometry.h"
 
 namespace sf::scenarios {
 namespace {
@@ -70,42 +68,24 @@ TEST(StateLink, StatesComeAtTheirRate) {
   EXPECT_NEAR(silent.worst(0, 20), 2.0 * std::sin(0.5 * 0.95), 1e-9) << "it stands where it was at load";
 }
 
-struct Driving {
-  double mean_abs = 0.0;   ///< [m] of the true distance to the lane's centre line
-  double amplitude = 0.0;  ///< [m] of the oscillation: sqrt(2) times the standard deviation of that distance
-  bool done = false;
-};
-
-constexpr const char* kLate = "[states]\nrate = 10\ndelay = 0.08\njitter = 0.02\nloss = 0.05\n";
-
-/// The test path's robot, which starts 5 cm off the lane's centre. Numbers are means over three seeds.
-Driving drive(double speed, const std::string& states) {
-  Driving mean;
-  mean.done = true;
-  for (int seed = 1; seed <= 3; ++seed) {
-    const Scenario scenario = parse_scenario(
-        SF_SOURCE_DIR "/experiments/late.toml",
-        fmt::format(
-            "world = \"../worlds/testpath/testpath.world\"\nseed = {}\nduration = 120\n[default]\ncontroller = "
-            "\"lane-keeping\"\nsettings = {{ speed = {} }}\n{}[[robot]]\nname = \"roomba0\"\npose = [0.2, 0.05, 0]\n",
-            seed, speed, states));
-    const world::World world = world_of(scenario);
-    Simulation simulation(world, device(), simulation_of(scenario, world));
-    double count = 0.0, sum = 0.0, sum_abs = 0.0, squares = 0.0, total = 0.0;
-    for (base::TickRecord tick = simulation.step(); tick.time < 120 * kSecond && !simulation.all_done();
-         tick = simulation.step()) {
-      const base::Pose& X = tick.reports[0].X_WM;
-      const world::PathProjection at = world::project_onto(world.paths[0], {X.x, X.y});
-      sum_abs += std::abs(at.offset);
-      ++total;
-      if (at.s < 1.0 || at.s > 2.6) continue;  // behind the start, before the bend
-      ++count;
-      sum += at.offset;
-      squares += at.offset * at.offset;
-    }
-    mean.done = mean.done && simulation.all_done();
-    mean.mean_abs += sum_abs / total / 3.0;
-    mean.amplitude += std::sqrt(2.0 * std::max(0.0, squares / count - sum * sum / (count * count))) / 3.0;
+/// Means of three runs of experiments/late-states.toml. @param filter none: true states
+LaneErrors drive(double speed, std::optional<bool> filter) {
+  LaneErrors mean;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Scenario scenario = read_scenario(SF_SOURCE_DIR "/experiments/late-states.toml");
+    scenario.seed = seed;
+    scenario.actor.controller.settings = {"controller 'lane-keeping'", {{"speed", speed, ""}}};
+    if (filter)
+      scenario.states->filter = *filter;
+    else
+      scenario.states.reset();
+    const world::World world = disturbed_world(scenario, {});
+    const Trial trial = run_trial(scenario, world, device(), {});
+    EXPECT_TRUE(trial.done);
+    const LaneErrors errors = lane_errors(trial.tracks.front(), world.paths.front());
+    EXPECT_FALSE(errors.left_lane);
+    mean.mean_abs += errors.mean_abs / 3.0;
+    mean.amplitude += errors.amplitude / 3.0;
   }
   return mean;
 }
@@ -113,18 +93,28 @@ Driving drive(double speed, const std::string& states) {
 // The figures of docs/experiments.md.
 TEST(LateStates, FilterKeepsTheLaneAsTrueStatesDo) {
   for (const double speed : {0.1, 0.5}) {
-    const Driving truth = drive(speed, "");
-    const Driving newest = drive(speed, kLate);
-    const Driving filtered = drive(speed, std::string(kLate) + "filter = true\n");
-    const std::string figures = fmt::format(
-        "{} m/s: mean |e| {:.4f}, {:.4f}, {:.4f} m; amplitude {:.4f}, {:.4f}, {:.4f} m", speed, truth.mean_abs,
-        newest.mean_abs, filtered.mean_abs, truth.amplitude, newest.amplitude, filtered.amplitude);
-    SCOPED_TRACE(figures);
-    EXPECT_TRUE(truth.done && newest.done && filtered.done);
+    const LaneErrors truth = drive(speed, {}), newest = drive(speed, false), filtered = drive(speed, true);
+    SCOPED_TRACE(fmt::format("{} m/s: mean |e| {:.4f}, {:.4f}, {:.4f} m; amplitude {:.4f}, {:.4f}, {:.4f} m", speed,
+                             truth.mean_abs, newest.mean_abs, filtered.mean_abs, truth.amplitude, newest.amplitude,
+                             filtered.amplitude));
     EXPECT_LT(std::abs(filtered.mean_abs - truth.mean_abs), std::abs(newest.mean_abs - truth.mean_abs));
     EXPECT_LT(filtered.amplitude, newest.amplitude);
     EXPECT_LT(filtered.mean_abs, truth.mean_abs + 5e-4);
   }
+}
+
+TEST(LaneErrors, AmplitudeIsThatOfASineOnTheStraight) {
+  const world::Path path{"lane", {{{}, 4.0, 0.0, 0.5}}};
+  viz::Track track;
+  for (int i = 0; i <= 400; ++i) track.poses.push_back({0.01 * i, 0.1 + 0.05 * std::sin(0.01 * i * 2.0 * M_PI / 0.4)});
+  const LaneErrors errors = lane_errors(track, path);
+  EXPECT_NEAR(errors.amplitude, 0.05, 5e-4) << "four periods";
+  EXPECT_NEAR(errors.mean_abs, 0.1, 1e-3);
+  EXPECT_NEAR(errors.max_abs, 0.15, 1e-9);
+  EXPECT_FALSE(errors.left_lane);
+  track.poses.push_back({1.0, -0.251});
+  EXPECT_TRUE(lane_errors(track, path).left_lane);
+  EXPECT_EQ(lane_errors({}, path).amplitude, 0.0) << "no poses";
 }
 
 }  // namespace
