@@ -1,0 +1,67 @@
+#include "robots/estimation/localization.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/time.h"
+
+namespace sf::estimation {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBias = 0.01;  // [rad/s]
+constexpr std::int64_t kTick = base::kSecond / 10;
+
+/// Stands for `stand` readings, then drives straight on at 0.2 m/s for 600, with a biased gyro.
+base::Pose reckoned(Localization& localization, int stand) {
+  for (int k = 0; k <= stand + 600; ++k) {
+    const double rolled = 0.02 * std::max(0, k - stand);
+    localization.add_encoder(k * kTick, rolled, rolled);
+    localization.add_gyro(k * kTick, kBias);
+  }
+  return localization.predict((stand + 600) * kTick).estimate.X_WM;
+}
+
+TEST(Localization, GyroBiasIsLearntFromTheWheels) {
+  Localization none({}, {}, 0), after_stand({}, {}, 0);
+  EXPECT_NEAR(reckoned(after_stand, 20).x, 12.0, 0.02);
+  EXPECT_NEAR(reckoned(after_stand, 20).y, 0.0, 0.2) << "two seconds at rest";
+  EXPECT_LT(std::abs(reckoned(none, 0).y), 0.5 * 12.0 * 60.0 * kBias / 2.0) << "while driving, less than half is left";
+}
+
+TEST(Localization, ReadingsThatAreNotNumbersChangeNothing) {
+  Localization localization({}, {1.0, 2.0, 0.0, 0.5}, 0);
+  localization.add_encoder(kTick, 0.0, 0.0);
+  localization.add_encoder(2 * kTick, kNan, 0.0);
+  localization.add_encoder(3 * kTick, std::numeric_limits<double>::max(), -std::numeric_limits<double>::max());
+  localization.add_gyro(3 * kTick, std::numeric_limits<double>::infinity());
+  localization.add_gyro(3 * kTick, 1e9);  // a spike must not become the bias
+  localization.add_gps(3 * kTick, kNan, kNan, kNan);
+  localization.add_gps(3 * kTick, 1.0, 2.0, kNan);
+  const Prediction now = localization.predict(3 * kTick);
+  EXPECT_NEAR(now.estimate.X_WM.x, 1.0, 1e-9);
+  EXPECT_NEAR(now.estimate.X_WM.yaw, 0.5, 1e-9);
+  localization.add_gyro(4 * kTick, 0.0);
+  EXPECT_NEAR(localization.predict(4 * kTick).estimate.velocity.turn, 0.0, 1e-6);
+}
+
+TEST(Localization, LatePositionsPullAtTheirOwnTime) {
+  // 0.2 m/s; the fix of half a second ago says that the start was 1 m farther left.
+  Localization on_time({.gps_noise = 1e-3, .start_position = 1.0}, {}, 0);
+  Localization late({.gps_noise = 1e-3, .start_position = 1.0}, {}, 0);
+  for (int k = 0; k <= 20; ++k) {
+    for (Localization* each : {&on_time, &late}) each->add_encoder(k * kTick, 0.02 * k, 0.02 * k);
+    if (k == 15) on_time.add_gps(k * kTick, 0.3, 1.0, 1.0);
+  }
+  late.add_gps(15 * kTick, 0.3, 1.0, 1.0);
+  const base::Pose a = on_time.predict(20 * kTick).estimate.X_WM, b = late.predict(20 * kTick).estimate.X_WM;
+  EXPECT_NEAR(a.x, 0.4, 0.01);
+  EXPECT_NEAR(a.y, 1.0, 0.01);
+  EXPECT_NEAR(a.x, b.x, 1e-12);
+  EXPECT_NEAR(a.y, b.y, 1e-12);
+}
+
+}  // namespace
+}  // namespace sf::estimation
