@@ -126,7 +126,7 @@ std::vector<std::string> run_late_states(const ExperimentContext& context) {
   return files;
 }
 
-constexpr std::string_view kReasons =
+constexpr std::string_view kLateReasons =
     "A tenth of a second does not stop a robot at 0.5 m/s: with its own gain it keeps its lane by the newest states as "
     "by the true ones, since extrapolation from the arrival errs along the path, and the distance to the edge hardly "
     "depends on that. The filter removes a part of the oscillation that late states add. "
@@ -145,7 +145,7 @@ constinit const ExperimentType late_states_experiment{
     .name = "late-states",
     .summary = "lane keeping at 0.1 and 0.5 m/s by true, late and filtered states",
     .plant = Plant::thesis,
-    .reasons = kReasons,
+    .reasons = kLateReasons,
     .run = run_late_states,
 };
 

@@ -142,7 +142,7 @@ std::vector<std::string> run_mapping(const ExperimentContext& context) {
   return files;
 }
 
-constexpr std::string_view kReasons =
+constexpr std::string_view kMappingReasons =
     "The thesis gives no numbers of its mapping; its maps are figures 44 and 45. "
     "Its avoidance as described looks at the front third of its view alone: a point 0.10 to 0.165 m off the axis "
     "leaves that third before the disc of the robot has passed, so it scrapes. "
@@ -162,7 +162,7 @@ constinit const ExperimentType mapping_experiment{
     .name = "mapping",
     .summary = "mapping an area by laser, with the thesis' obstacle avoidance and with an explorer (figures 44, 45)",
     .plant = Plant::thesis,
-    .reasons = kReasons,
+    .reasons = kMappingReasons,
     .run = run_mapping,
 };
 

@@ -20,7 +20,7 @@ namespace sf::scenarios {
 namespace {
 
 using world::TomlNode;
-using Kind = TomlNode::Kind;
+using NodeKind = TomlNode::Kind;
 
 constexpr double kLongest = 1e9;          // [s]
 constexpr double kMostWhole = 9.0e15;     // whole numbers that a double represents exactly
@@ -39,18 +39,18 @@ constexpr std::array<std::string_view, 3> kLinkKeys{"delay", "jitter", "loss"};
 using Reader = world::TomlReader;
 
 control::Value value_of(const Reader& reader, const TomlNode& node) {
-  const auto all = [&](Kind kind) {
+  const auto all = [&](NodeKind kind) {
     return std::all_of(node.items.begin(), node.items.end(), [&](const TomlNode& item) { return item.kind == kind; });
   };
-  if (node.kind == Kind::flag) return node.flag;
-  if (node.kind == Kind::number) return node.number;
-  if (node.kind == Kind::text) return node.text;
-  if (node.kind == Kind::list && all(Kind::number)) {
+  if (node.kind == NodeKind::flag) return node.flag;
+  if (node.kind == NodeKind::number) return node.number;
+  if (node.kind == NodeKind::text) return node.text;
+  if (node.kind == NodeKind::list && all(NodeKind::number)) {
     std::vector<double> numbers;
     for (const TomlNode& item : node.items) numbers.push_back(item.number);
     return numbers;
   }
-  if (node.kind == Kind::list && all(Kind::text)) {
+  if (node.kind == NodeKind::list && all(NodeKind::text)) {
     std::vector<std::string> texts;
     for (const TomlNode& item : node.items) texts.push_back(item.text);
     return texts;
@@ -113,7 +113,7 @@ std::optional<StateLinkOptions> states_of(const Reader& reader, const TomlNode* 
 }
 
 base::Pose pose_of(const Reader& reader, const TomlNode& node) {
-  if (node.kind != Kind::list || node.items.size() != 3)
+  if (node.kind != NodeKind::list || node.items.size() != 3)
     reader.fail(node, "'pose' expects [x, y, yaw] in metres and degrees");
   const auto at = [&](std::size_t i, double most) { return reader.number(node.items[i], "pose", -most, most); };
   return {at(0, kMostPosition), at(1, kMostPosition), 0.0, at(2, 1e6) * M_PI / 180.0};
@@ -137,10 +137,10 @@ FleetSpawn crowd_of(const Reader& reader, const TomlNode& root) {
 void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario) {
   const TomlNode* list = world::find(root, "robot");
   if (list == nullptr) return;
-  if (list->kind != Kind::list) reader.fail(*list, "'robot' expects [[robot]] tables");
+  if (list->kind != NodeKind::list) reader.fail(*list, "'robot' expects [[robot]] tables");
   std::map<std::string, int> lines;  // line by robot
   for (const TomlNode& node : list->items) {
-    if (node.kind != Kind::table) reader.fail(node, "'robot' expects [[robot]] tables");
+    if (node.kind != NodeKind::table) reader.fail(node, "'robot' expects [[robot]] tables");
     reader.require_known(node, kRobotKeys);
     RobotSetup setup{.name = reader.text(node, "name", ""), .line = node.line};
     if (setup.name.empty())
@@ -182,11 +182,11 @@ constexpr std::array<Rule, 11> kRules{{{Expectation::Kind::no_collision, true, 0
 /// Reads `key = value`, for the worst of all robots, or `key = { robot = value, ... }`.
 void read_expectation(const Reader& reader, const TomlNode& node, const Rule& rule, Scenario& scenario) {
   if (rule.is_flag) {
-    if (node.kind != Kind::flag || !node.flag) reader.fail(node, fmt::format("'{}' expects true", node.key));
+    if (node.kind != NodeKind::flag || !node.flag) reader.fail(node, fmt::format("'{}' expects true", node.key));
     scenario.expect.push_back({rule.kind, "", 0.0, node.line});
     return;
   }
-  if (node.kind != Kind::table) {
+  if (node.kind != NodeKind::table) {
     scenario.expect.push_back({rule.kind, "", reader.number(node, node.key, 0.0, rule.most), node.line});
     return;
   }

@@ -198,7 +198,7 @@ std::vector<std::string> run_sweeps(const ExperimentContext& context) {
   return files;
 }
 
-constexpr std::string_view kReasons =
+constexpr std::string_view kSweepReasons =
     "The thesis has no such sweeps; it blames delays and updates at 10 Hz for its oscillation, and the linear fit of "
     "the edge for the over- and undershoot in the bend. "
     "Here the overshoot stays without delay and with the exact edge: to turn at v / R a P law must have an error of "
@@ -216,7 +216,7 @@ constinit const ExperimentType sweeps_experiment{
     .summary =
         "the lane edge loop over delay, loss, rate and gain, each also with an exact edge in place of the line fit",
     .plant = Plant::thesis,
-    .reasons = kReasons,
+    .reasons = kSweepReasons,
     .run = run_sweeps,
 };
 

@@ -19,7 +19,7 @@ namespace sf::scenarios {
 
 namespace {
 
-constexpr double kDriven = 2.0;                 // [s] simulated
+constexpr double kTradeoffDriven = 2.0;         // [s] simulated
 constexpr std::size_t kMostValues = 4'000'000;  // elements of one mode whose errors are evaluated
 constexpr int kRounds = 5;                      // timed laps; modes take turns
 constexpr std::size_t kReferenceScans = 64;
@@ -31,10 +31,10 @@ struct Read {
 };
 
 /// A farm with one subscribed sensor type in one mode.
-class Entrant {
+class ModeEntrant {
  public:
-  Entrant(const world::World& world, gpu::Device& device, const sensors::SensorType& type, std::uint8_t mode,
-          const RecordedPaths& paths, const TradeoffOptions& options)
+  ModeEntrant(const world::World& world, gpu::Device& device, const sensors::SensorType& type, std::uint8_t mode,
+              const RecordedPaths& paths, const TradeoffOptions& options)
       : type_(type), mode_(mode), world_(world), paths_(paths) {
     sensors::set_accuracy(world_, std::string(sensors::word_of(type, mode)));
     farm_ = std::make_unique<farm::Farm>(
@@ -107,7 +107,7 @@ double apart(double ours, double theirs) {
 }
 
 /// [m] Errors of a sample of scans in mode `exact` against the plain C++ reference, which is independent of the device.
-std::vector<double> laser_errors(const Entrant& exact, const RecordedPaths& paths, const Read& read,
+std::vector<double> laser_errors(const ModeEntrant& exact, const RecordedPaths& paths, const Read& read,
                                  const sensors::SensorSet& sensor_set) {
   std::vector<double> errors;
   sensors::LaserReference reference(exact.world(), 0, false);
@@ -169,7 +169,7 @@ void find_front(std::vector<ModeResult>& results, std::size_t first) {
 
 std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options) {
   const sensors::SensorSet sensor_set(world);
-  const RecordedPaths paths = record_paths(world, device, kDriven, options.seed, options.threads);
+  const RecordedPaths paths = record_paths(world, device, kTradeoffDriven, options.seed, options.threads);
   double all = 0.0, done = 0.0;
   for (const auto& group : sensor_set.groups()) all += static_cast<double>(group.type->modes.size() * (1 + kRounds));
   const auto go_on = [&] { return !options.progress || options.progress(++done / all); };
@@ -178,11 +178,11 @@ std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device,
   for (const auto& group : sensor_set.groups()) {
     const sensors::SensorType& type = *group.type;
     if (type.modes.empty()) continue;
-    std::vector<std::unique_ptr<Entrant>> entrants;
+    std::vector<std::unique_ptr<ModeEntrant>> entrants;
     const std::size_t first = results.size();
     Read exact;
     for (std::uint8_t mode = 0; mode < type.modes.size(); ++mode) {
-      entrants.push_back(std::make_unique<Entrant>(world, device, type, mode, paths, options));
+      entrants.push_back(std::make_unique<ModeEntrant>(world, device, type, mode, paths, options));
       const Read read = entrants.back()->read();
       ModeResult grade{.sensor = std::string(type.name),
                        .mode = std::string(type.modes[mode].word),

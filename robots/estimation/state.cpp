@@ -19,10 +19,10 @@ Numbers numbers_of(const Measurement& m) {
 }
 
 constexpr double kMostState = 1e9;
-constexpr double kLeastVariance = 1e-18;
+constexpr double kLeastStateVariance = 1e-18;
 constexpr double kMostVariance = 1e18;
 
-bool is_variance(double v) { return v >= kLeastVariance && v <= kMostVariance; }
+bool is_variance(double v) { return v >= kLeastStateVariance && v <= kMostVariance; }
 
 /// Sylvester's criterion, on correlations so that units do not matter. Correlations of 1 - 1e-9 and more are refused.
 bool is_positive_definite(const std::array<double, 6>& c) {

@@ -54,7 +54,7 @@ TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
 /// Counters are those of each port: the second port's are far behind the first's when its packets are read.
 TEST(Receiver, WithAKeyReadingsAreSigned) {
   constexpr SigningKey kReceiverKey{1};
-  ReceiverOptions chosen = options();
+  ReceiverOptions chosen = receiver_options();
   chosen.key = kReceiverKey;
   Receiver receiver(chosen);
   receiver.set_session({11, 22});
