@@ -24,8 +24,6 @@ function(farm_sensor id name where)
     endif()
   endforeach()
   set_property(GLOBAL APPEND PROPERTY SENSOR_TYPES ${id}/${name})
-  # Sensor types have the same file-local names.
-  set_source_files_properties(${CMAKE_SOURCE_DIR}/sensors/${name}.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 # write_sensor_types(FILE): writes a source that defines sensors::sensor_types(), all sensor types by id.

@@ -10,7 +10,7 @@
 namespace sf::farm {
 namespace {
 
-constexpr std::int64_t kTick = 20'000'000;
+constexpr std::int64_t kShortTick = 20'000'000;
 
 TEST(Latency, AReadingComesLaterAndUnchanged) {
   world::World prompt = small_world(2);
@@ -23,16 +23,16 @@ TEST(Latency, AReadingComesLaterAndUnchanged) {
   later.subscribe_all();
   std::vector<Kept> expected, delivered;
   for (int k = 0; k < 30; ++k) {
-    for (const auto& r : now.tick(k * kTick, reports_at(prompt, k)))
+    for (const auto& r : now.tick(k * kShortTick, reports_at(prompt, k)))
       if (r.mover == 1) expected.push_back(keep(r));
-    for (const auto& r : later.tick(k * kTick, reports_at(late, k))) {
+    for (const auto& r : later.tick(k * kShortTick, reports_at(late, k))) {
       if (r.mover == 0) {
-        EXPECT_EQ(r.time, k * kTick) << "no latency: at once";
+        EXPECT_EQ(r.time, k * kShortTick) << "no latency: at once";
         continue;
       }
       delivered.push_back(keep(r));
-      EXPECT_GE(k * kTick, r.time + 50'000'000) << "not early";
-      EXPECT_LT(k * kTick, r.time + 50'000'000 + kTick) << "in the first tick after";
+      EXPECT_GE(k * kShortTick, r.time + 50'000'000) << "not early";
+      EXPECT_LT(k * kShortTick, r.time + 50'000'000 + kShortTick) << "in the first tick after";
     }
   }
   ASSERT_EQ(delivered.size(), 6u);
@@ -96,7 +96,7 @@ TEST(Latency, LongerThanThePeriod) {
   farm.subscribe_all();
   std::uint32_t next[3] = {0, 0, 0};
   for (int k = 0; k < 100; ++k)
-    for (const auto& r : farm.tick(k * kTick, {})) {
+    for (const auto& r : farm.tick(k * kShortTick, {})) {
       EXPECT_EQ(r.sequence, next[r.mover]++);
       EXPECT_EQ(r.values.size(), kBeams);
     }

@@ -7,6 +7,7 @@
 
 #include "tests/netio/documented.h"
 #include "tests/netio/examples.h"
+#include "tests/units.h"
 
 namespace sf::netio {
 namespace {
@@ -14,7 +15,6 @@ namespace {
 using sf::test::documented;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 PacketStatus reason_of(const base::Bytes& bytes) {
   Packet packet;

@@ -20,6 +20,7 @@
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 
 namespace sf::scenarios {
 namespace {
@@ -54,7 +55,6 @@ struct Car {
 
 // Receivers and gyros of worlds/robots.inc; ranges at the town's scale of 1/7.
 constexpr double kRange = 1.5 / 7.0;
-constexpr double kDegree = M_PI / 180.0;
 constexpr std::int64_t kEnd = 120 * base::kSecond;
 
 std::string text(const Rms& e) { return fmt::format("{:.3f} m, {:.2f} degrees", e.position(), e.heading() / kDegree); }

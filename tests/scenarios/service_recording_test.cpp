@@ -16,19 +16,20 @@ namespace {
 /// Two robots drive, with samples between ticks; one falls silent and is out of the world before the end.
 record::Recording recorded() {
   server::Fixture f({.sensor_rate = 13.0, .filter = {.enabled = true, .policy = estimation::StalePolicy::hide}});
+  world::update_extent_and_hash(f.world);
   const std::string folder = (std::filesystem::temp_directory_path() / "service_recording").string();
   record::Recorder recorder(folder,
                             run_info(f.world, f.sensor_set, {.seed = 1, .record_readings = true, .estimated = true}));
   f.service->record_to(recorder);
   const auto other = f.make_client(1);
-  for (int i = 0; i < 60; ++i, f.now += server::kTick) {
+  for (int i = 0; i < 60; ++i, f.now += kTick) {
     for (server::RobotClient* robot : {f.client.get(), other.get()}) {
       robot->receive(f.now);
       if (robot != other.get() || i < 30) robot->step(f.now);
     }
     f.service->tick(f.now);
     const std::int64_t due = f.service->next_due();
-    if (due < f.now + server::kTick) f.service->sample(due);
+    if (due < f.now + kTick) f.service->sample(due);
   }
   recorder.finish();
   return record::open_recording(folder);

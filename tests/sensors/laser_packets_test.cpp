@@ -16,7 +16,7 @@ namespace {
 using test::documented;
 
 constexpr std::uint8_t kPlain = 1;
-constexpr std::uint8_t kSecond = 65;
+constexpr std::uint8_t kExtendedType = 65;
 constexpr std::size_t kHeader = 64;     ///< [byte] before every payload on the wire
 constexpr std::size_t kSignature = 80;  ///< [byte] behind it
 
@@ -60,7 +60,7 @@ TEST(LaserPackets, PayloadsAreTheDocumentedOnes) {
   EXPECT_EQ(encoded(parts, 100.0, 1), payload_of(documented("laser_extended")));
   EXPECT_EQ(encoded({1.0, 0.25, 8.0}, 8.0, 0, WireFormat::thesis), documented("thesis"));
   EXPECT_EQ(documented("laser").at(5), kPlain);
-  EXPECT_EQ(documented("laser_extended").at(5), kSecond);
+  EXPECT_EQ(documented("laser_extended").at(5), kExtendedType);
 }
 
 TEST(LaserPackets, PlainRangesRoundAndSaturate) {
@@ -110,7 +110,7 @@ TEST(LaserPackets, ANanStopsItsOwnPartOnly) {
   std::vector<double> ranges(311, 1.0);
   ranges[310] = kNaN;
   base::Bytes out;
-  EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), WireFormat::farm, 0, out), kSecond);
+  EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), WireFormat::farm, 0, out), kExtendedType);
   EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), WireFormat::farm, 1, out), 0);
 }
 
@@ -127,9 +127,9 @@ TEST(LaserPackets, TheFormFollowsFromTheSensor) {
     return encode_laser(laser(samples, range_max), scan_of(ranges), WireFormat::farm, 0, out);
   };
   EXPECT_EQ(type(361, 65.535), kPlain);
-  EXPECT_EQ(type(362, 8.0), kSecond);
-  EXPECT_EQ(type(1, 65.536), kSecond);
-  EXPECT_EQ(type(1, kInf), kSecond);
+  EXPECT_EQ(type(362, 8.0), kExtendedType);
+  EXPECT_EQ(type(1, 65.536), kExtendedType);
+  EXPECT_EQ(type(1, kInf), kExtendedType);
   EXPECT_EQ(laser_parts(laser(361, 8.0), WireFormat::farm), 1u);
   EXPECT_EQ(laser_parts(laser(362, 8.0), WireFormat::farm), 2u);
   EXPECT_EQ(laser_parts(laser(310, 80.0), WireFormat::farm), 1u);  // exactly one full part
@@ -150,7 +150,7 @@ TEST(LaserPackets, ScansOfAnySizeComeBackWhole) {
         const std::uint8_t type = encode_laser(row, scan_of(sent), WireFormat::farm, part, bytes);
         ASSERT_LE(kHeader + bytes.size() + kSignature, 1400u);
         LaserPart scan;
-        ASSERT_EQ(read_laser(bytes, type == kSecond, scan), PayloadError::none) << samples << " part " << part;
+        ASSERT_EQ(read_laser(bytes, type == kExtendedType, scan), PayloadError::none) << samples << " part " << part;
         ASSERT_EQ(scan.total, samples);
         ASSERT_EQ(scan.first, got.size());
         ASSERT_EQ(scan.parts, parts);
@@ -224,7 +224,7 @@ TEST(LaserPackets, EveryShorterPrefixIsTooShortAndOneByteMoreTooLong) {
 TEST(LaserPackets, AScanIsWhatItsSensorMayHaveSent) {
   const auto judged = [](const std::vector<double>& ranges, double said, const SensorSpec& row) {
     const base::Bytes bytes = encoded(ranges, said);
-    const std::uint8_t type = said > kPlainRange ? kSecond : kPlain;
+    const std::uint8_t type = said > kPlainRange ? kExtendedType : kPlain;
     return decode_laser(row, bytes, type, WireFormat::farm).fault;
   };
   EXPECT_EQ(judged({0, 8, 8.001}, 8.0, laser(3, 8.0)), PayloadError::none);          // rounding may add one unit
@@ -278,7 +278,7 @@ TEST(LaserPackets, AnyBytesAreJudged) {
       for (std::uint32_t ray = 0; ray < scan.count; ++ray) ASSERT_GE(range_of(scan, ray), 0.0);
     }
     for (const SensorSpec& row : rows)
-      good += decode_laser(row, bytes, extended ? kSecond : kPlain, WireFormat::farm).fault == PayloadError::none;
+      good += decode_laser(row, bytes, extended ? kExtendedType : kPlain, WireFormat::farm).fault == PayloadError::none;
   }
   EXPECT_GT(good, 10'000u);
   EXPECT_LT(good, 590'000u);

@@ -16,10 +16,9 @@
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "tests/robots/scenes.h"
+#include "tests/units.h"
 
 namespace sf::server {
-
-constexpr std::int64_t kTick = 100'000'000;  ///< [ns]
 
 /// Lines of a log.
 struct LogPipe {

@@ -6,13 +6,13 @@
 #include <limits>
 
 #include "base/time.h"
+#include "tests/units.h"
 
 namespace sf::estimation {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBias = 0.01;  // [rad/s]
-constexpr std::int64_t kTick = base::kSecond / 10;
 
 /// Stands for `stand` readings, then drives straight on at 0.2 m/s for 600, with a biased gyro.
 base::Pose reckoned(Localization& localization, int stand) {
