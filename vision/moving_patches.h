@@ -18,7 +18,8 @@ class MovingPatches {
 
   /// Patches that may be seen in the pixel or near it, the highest first.
   const std::vector<std::uint32_t>& near(int u, int v) const {
-    return tiles_[static_cast<std::size_t>(v / kTile * columns_ + u / kTile)];
+    return tiles_[static_cast<std::size_t>(v / kTile) * static_cast<std::size_t>(columns_) +
+                  static_cast<std::size_t>(u / kTile)];
   }
   double height(std::uint32_t i) const { return patches_[i].patch->X_WP.z; }  ///< [m]
   /// Albedo at point `p` [m] of the patch's plane, `dt` [s] after the middle of the exposure; negative outside it.
