@@ -22,7 +22,7 @@ std::string dump_json(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string print(const Json& json) { return dump_json(json, 2) + "\n"; }
+std::string indented(const Json& json) { return dump_json(json, 2) + "\n"; }
 
 Json pose_json(const base::Pose& X) { return {X.x, X.y, base::wrap_angle(X.yaw)}; }
 
@@ -164,7 +164,7 @@ std::string json_of(const gpu::DeviceList& list) {
                     {"reason", d.reason}});
   Json json{{"devices", rows}};
   if (!list.problem.empty()) json["problem"] = list.problem;
-  return print(json);
+  return indented(json);
 }
 
 std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set) {
@@ -181,7 +181,7 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
   std::size_t segments = world.walls.size();
   for (const world::Mover& mover : world.movers) segments += mover.body.size();
   const world::Extent& e = world.extent;
-  return print({{"world", world.name},
+  return indented({{"world", world.name},
                 {"models", world.models.size()},
                 {"robots", count_robots(world)},
                 {"tags", world.movers.size() - count_robots(world)},
@@ -262,13 +262,13 @@ std::string json_of(const RunReport& f) {
     json["recording"] = f.recording;
     json["recording_bytes"] = f.recorded_bytes;
   }
-  return print(json);
+  return indented(json);
 }
 
 std::string json_of(const netio::StreamSummary& s) {
   Json sensors = Json::object();
   for (const auto& [type, share] : s.of) sensors[type] = {{"good", share.good}, {"elements", share.elements}};
-  return print({{"packets", s.datagrams},
+  return indented({{"packets", s.datagrams},
                 {"bytes", s.bytes},
                 {"good", s.good},
                 {"rays", count_rays(s)},
@@ -325,7 +325,7 @@ std::string json_of(const server::RobotClientStats& f) {
   json["distance_m"] = f.distance_m;
   json["pose"] = pose_json(f.pose);
   if (f.error.steps > 0) json["error"] = error_json(f.error);
-  return print(json);
+  return indented(json);
 }
 
 std::string json_of(const scenarios::Verification& verification) {
@@ -343,7 +343,7 @@ std::string json_of(const scenarios::Verification& verification) {
             {"reference", compared(verification.reference)}};
   json["again"] = Json::array();
   for (const scenarios::Comparison& c : verification.recomputed) json["again"].push_back(compared(c));
-  return print(json);
+  return indented(json);
 }
 
 std::string json_of(const SelfTestReport& test) {
@@ -364,7 +364,7 @@ std::string json_of(const SelfTestReport& test) {
                              {"failure", o.failure},
                              {"notes", o.notes},
                              {"seconds", o.seconds}});
-  return print(json);
+  return indented(json);
 }
 
 std::string json_of(const scenarios::Explanation& e) {
@@ -397,7 +397,7 @@ std::string json_of(const scenarios::Explanation& e) {
                              {"bytes", k.bytes},
                              {"tables", tables}});
   }
-  return print(json);
+  return indented(json);
 }
 
 std::string json_of(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target) {
@@ -416,7 +416,7 @@ std::string json_of(const std::vector<scenarios::ModeResult>& results, const sce
                              {"all_p99_error", finite_json(g.p99)},
                              {"all_max_error", finite_json(g.max)},
                              {"pareto", g.front}});
-  return print(json);
+  return indented(json);
 }
 
 }  // namespace sf::apps
