@@ -166,11 +166,10 @@ void dump_ports(const DumpOptions& options, Printer& printer) {
            (options.duration > 0.0 && base::seconds_since(start) >= options.duration);
   };
   while (!is_over()) {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
     listener.drain(kPatience, [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& source) {
       if (options.count > 0 && printer.datagrams() >= options.count) return;
-      printer.print({std::chrono::duration_cast<std::chrono::nanoseconds>(now).count(), netio::text(source),
-                     netio::text(netio::Endpoint{address, ports[i]}), static_cast<std::uint32_t>(bytes.size()), bytes});
+      printer.print({base::unix_time(), netio::text(source), netio::text(netio::Endpoint{address, ports[i]}),
+                     static_cast<std::uint32_t>(bytes.size()), bytes});
     });
     std::fflush(stdout);
   }

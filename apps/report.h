@@ -55,6 +55,7 @@ struct RunReport {
   std::uint64_t lines_left_out = 0;  ///< of the log
   std::string recording;             ///< file; empty: none
   std::uint64_t recorded_bytes = 0;  ///< its size
+  std::string recording_error;       ///< why it ends before the run; empty: it does not
 };
 
 /// Results of `selftest`.

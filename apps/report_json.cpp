@@ -182,31 +182,31 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
   for (const world::Mover& mover : world.movers) segments += mover.body.size();
   const world::Extent& e = world.extent;
   return indented({{"world", world.name},
-                {"models", world.models.size()},
-                {"robots", count_robots(world)},
-                {"tags", world.movers.size() - count_robots(world)},
-                {"sensors", sensors},
-                {"rates_hz", rates},
-                {"between_ticks", types_between_ticks(sensor_set, world.interval)},
-                {"segments", world.walls.size()},
-                {"segments_with_movers", segments},
-                {"magnets", count_magnets(world)},
-                {"magnet_cutoff_m", field.cutoff_m},
-                {"field_truncation_T", field.bound_T},
-                {"field_truncation_height_m", field.height_m},
-                {"paint", world.lane_markings.size()},
-                {"lights", world.lights.size()},
-                {"docks", docks},
-                {"virtual_walls", world.emitters.size() - docks},
-                {"drops", world.floor_holes.size()},
-                {"paths", world.paths.size()},
-                {"road_resolution_m", world.road_resolution},
-                {"extent", {e.x_min, e.y_min, e.x_max, e.y_max}},
-                {"interval_s", world.interval},
-                {"accuracy", statements_json(sensors::accuracy_statements(world, sensor_set))},
-                {"kept", world.unmodelled},
-                {"hash", base::hash_hex(world.hash)},
-                {"warnings", warnings_json(world.warnings)}});
+                   {"models", world.models.size()},
+                   {"robots", count_robots(world)},
+                   {"tags", world.movers.size() - count_robots(world)},
+                   {"sensors", sensors},
+                   {"rates_hz", rates},
+                   {"between_ticks", types_between_ticks(sensor_set, world.interval)},
+                   {"segments", world.walls.size()},
+                   {"segments_with_movers", segments},
+                   {"magnets", count_magnets(world)},
+                   {"magnet_cutoff_m", field.cutoff_m},
+                   {"field_truncation_T", field.bound_T},
+                   {"field_truncation_height_m", field.height_m},
+                   {"paint", world.lane_markings.size()},
+                   {"lights", world.lights.size()},
+                   {"docks", docks},
+                   {"virtual_walls", world.emitters.size() - docks},
+                   {"drops", world.floor_holes.size()},
+                   {"paths", world.paths.size()},
+                   {"road_resolution_m", world.road_resolution},
+                   {"extent", {e.x_min, e.y_min, e.x_max, e.y_max}},
+                   {"interval_s", world.interval},
+                   {"accuracy", statements_json(sensors::accuracy_statements(world, sensor_set))},
+                   {"kept", world.unmodelled},
+                   {"hash", base::hash_hex(world.hash)},
+                   {"warnings", warnings_json(world.warnings)}});
 }
 
 std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings) {
@@ -261,6 +261,7 @@ std::string json_of(const RunReport& f) {
   if (!f.recording.empty()) {
     json["recording"] = f.recording;
     json["recording_bytes"] = f.recorded_bytes;
+    if (!f.recording_error.empty()) json["recording_error"] = f.recording_error;
   }
   return indented(json);
 }
@@ -269,19 +270,19 @@ std::string json_of(const netio::StreamSummary& s) {
   Json sensors = Json::object();
   for (const auto& [type, share] : s.of) sensors[type] = {{"good", share.good}, {"elements", share.elements}};
   return indented({{"packets", s.datagrams},
-                {"bytes", s.bytes},
-                {"good", s.good},
-                {"rays", count_rays(s)},
-                {"sensors", sensors},
-                {"stale_states", s.stale_states},
-                {"oldest_state_s", 1e-9 * static_cast<double>(s.oldest_state)},
-                {"lost", s.lost},
-                {"duplicates", s.duplicates},
-                {"reordered", s.reordered},
-                {"ports", s.ports},
-                {"silent_ports", s.silent_ports},
-                {"socket_drops", s.socket_drops},
-                {"by_reason", reasons(s.counts)}});
+                   {"bytes", s.bytes},
+                   {"good", s.good},
+                   {"rays", count_rays(s)},
+                   {"sensors", sensors},
+                   {"stale_states", s.stale_states},
+                   {"oldest_state_s", 1e-9 * static_cast<double>(s.oldest_state)},
+                   {"lost", s.lost},
+                   {"duplicates", s.duplicates},
+                   {"reordered", s.reordered},
+                   {"ports", s.ports},
+                   {"silent_ports", s.silent_ports},
+                   {"socket_drops", s.socket_drops},
+                   {"by_reason", reasons(s.counts)}});
 }
 
 std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set,

@@ -132,12 +132,13 @@ int serve(const ServeOptions& options) {
       recorder->finish();
       facts.recording = recorder->path();
       facts.recorded_bytes = recorder->size();
+      facts.recording_error = service.stats().recording_error;
     }
     print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
+    return facts.recording_error.empty() ? 0 : 1;
   } catch (const netio::PortInUse&) {
     throw port_in_use(chosen.receiver.bind);
   }
-  return 0;
 }
 
 }  // namespace sf::apps

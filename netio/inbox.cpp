@@ -12,8 +12,8 @@ namespace sf::netio {
 namespace {
 
 constexpr std::size_t kBatch = 64;
-constexpr std::size_t kSendBuffer = 1u << 20;           ///< [byte] for packets sent through a duplicate of the socket
-constexpr std::int64_t kChallengePeriod = 100'000'000;  ///< [ns]
+constexpr std::size_t kSendBuffer = 1u << 20;  ///< [byte] for packets sent through a duplicate of the socket
+constexpr std::int64_t kPeriod = 100'000'000;  ///< [ns] of bounds on what strangers can ask for
 constexpr std::size_t kStateChannel = 0;
 constexpr std::size_t kSubscribeChannel = 1;
 
@@ -51,7 +51,7 @@ PacketStatus Inbox::accept(std::span<const std::uint8_t> bytes, const Endpoint& 
                            Packet& packet) {
   PacketStatus status = decode(bytes, packet);
   if (status == PacketStatus::accepted) status = check_id(packet.header);
-  if (status == PacketStatus::accepted) status = peers_.check(claim_of(packet.header), bytes, source);
+  if (status == PacketStatus::accepted) status = check_peer(packet.header, bytes, source, now);
   if (status == PacketStatus::accepted) status = check_sender(packet, source, now);
   counts_.add(status);
   return status;
@@ -76,10 +76,29 @@ PacketStatus Inbox::check_id(const Header& header) const {
   return PacketStatus::wrong_direction;
 }
 
+/// The token of its address; START and TAG have none.
+bool Inbox::is_proven(const Header& header, const Endpoint& source) const {
+  return header.type == Type::start || header.type == Type::tag || header.token == tokens_.of(source);
+}
+
+/// Signatures of robots at proven addresses are always checked. Others cost no more than a part of a tick's time, and
+/// those of unproven packets move no counters: a copy that comes first, from elsewhere, does not stop the genuine one.
+PacketStatus Inbox::check_peer(const Header& header, std::span<const std::uint8_t> bytes, const Endpoint& source,
+                               std::int64_t now) {
+  const Claim claim = claim_of(header);
+  const bool proven = is_proven(header, source);
+  const bool bounded = peers_.has_key(claim) && (!proven || claim.kind != PeerKind::robot);
+  if (bounded) begin_period(now);
+  if (bounded && doubtful_signatures_ == kMaxDoubtfulSignatures) return PacketStatus::wrong_signature;
+  const PacketStatus status = peers_.check(claim, bytes, source, proven);
+  if (bounded && (!proven || status == PacketStatus::wrong_signature)) ++doubtful_signatures_;
+  return status;
+}
+
 PacketStatus Inbox::check_sender(Packet& packet, const Endpoint& source, std::int64_t now) {
   if (packet.header.type == Type::start) return PacketStatus::accepted;
   if (packet.header.type == Type::tag) return admit_state(tags_, packet, source, now);
-  if (packet.header.token != tokens_.of(source)) return PacketStatus::unproven;
+  if (!is_proven(packet.header, source)) return PacketStatus::unproven;
   if (packet.header.type == Type::leave) return robots_.leave(packet.header.robot, source, now);
   return admit_robot(packet, source, now);
 }
@@ -110,19 +129,25 @@ PacketStatus Inbox::admit_state(ClientRegistry& clients, Packet& packet, const E
 
 bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out) {
   if (packet.header.type == Type::leave) return false;
-  if (now - challenge_period_start_ >= kChallengePeriod) {
-    challenge_period_start_ = now;
-    challenges_ = 0;
-  }
-  if (challenges_ == kMaxChallenges) return false;
-  ++challenges_;
+  begin_period(now);
+  PacketSigner* const own = signer(packet.header.robot);
+  std::size_t& challenges = challenges_[own != nullptr ? 1 : 0];
+  if (challenges == kMaxChallenges) return false;
+  ++challenges;
   Header header;
   header.robot = packet.header.robot;
   header.session = session_;
   header.token = packet.header.session;
   encode(header, Challenge{tokens_.of(who)}, out);
-  if (PacketSigner* own = signer(packet.header.robot)) own->sign(out);
+  if (own != nullptr) own->sign(out);
   return true;
+}
+
+void Inbox::begin_period(std::int64_t now) {
+  if (now - period_start_ < kPeriod) return;
+  period_start_ = now;
+  challenges_ = {};
+  doubtful_signatures_ = 0;
 }
 
 SessionToken Inbox::session_token_for(std::uint32_t robot) const {

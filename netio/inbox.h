@@ -12,6 +12,7 @@
 //
 // One thread. No clock is read: `now` is any clock in ns that does not decrease.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -42,8 +43,12 @@ class Inbox {
  public:
   /// Maximum number of datagrams per `receive`, which bounds its duration under a flood.
   static constexpr std::size_t kMaxPerReceive = 65'536;
-  /// Maximum number of CHALLENGE packets in 0.1 s. Further requests are not answered.
+  /// Maximum number of CHALLENGE packets in 0.1 s to robots without a key, and to those with one. Further requests are
+  /// not answered.
   static constexpr std::size_t kMaxChallenges = 1000;
+  /// Maximum number of signatures checked in 0.1 s that are of unproven robots, or wrong ones of tags and of START.
+  /// Further packets of tags, START and unproven robots with keys are dropped as wrong_signature.
+  static constexpr std::size_t kMaxDoubtfulSignatures = 10'000;
 
   /// @throws base::InputError when the address cannot be bound or an id does not fit a packet
   explicit Inbox(const InboxOptions& options);
@@ -109,6 +114,10 @@ class Inbox {
 
  private:
   PacketStatus check_id(const Header& header) const;
+  bool is_proven(const Header& header, const Endpoint& source) const;
+  PacketStatus check_peer(const Header& header, std::span<const std::uint8_t> bytes, const Endpoint& source,
+                          std::int64_t now);
+  void begin_period(std::int64_t now);
   PacketStatus check_sender(Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source, std::int64_t now) const;
   PacketStatus admit_robot(Packet& packet, const Endpoint& source, std::int64_t now);
@@ -121,8 +130,9 @@ class Inbox {
   std::uint32_t session_;
   bool take_late_;
   AddressTokens tokens_;
-  std::int64_t challenge_period_start_ = 0;  ///< [ns]
-  std::size_t challenges_ = 0;               ///< in that period
+  std::int64_t period_start_ = 0;            ///< [ns]
+  std::array<std::size_t, 2> challenges_{};  ///< in that period, without and with a key
+  std::size_t doubtful_signatures_ = 0;      ///< in that period
   PacketCounts counts_;
   Socket socket_;
   ReceiveBatch batch_;

@@ -35,11 +35,18 @@ PeerTable::Row* PeerTable::find_row(const Claim& claim) {
   return at == rows_.end() || std::pair(at->peer.kind, at->peer.id) != key ? nullptr : &*at;
 }
 
-PacketStatus PeerTable::check(const Claim& claim, std::span<const std::uint8_t> bytes, const Endpoint& source) {
+bool PeerTable::has_key(const Claim& claim) {
+  const Row* row = find_row(claim);
+  return row != nullptr && row->checker;
+}
+
+PacketStatus PeerTable::check(const Claim& claim, std::span<const std::uint8_t> bytes, const Endpoint& source,
+                              bool proven) {
   Row* row = find_row(claim);
   if (row == nullptr) return PacketStatus::accepted;
   if (row->peer.address && *row->peer.address != source.address) return PacketStatus::wrong_source;
-  return row->checker ? row->checker->check(bytes) : PacketStatus::accepted;
+  if (!row->checker) return PacketStatus::accepted;
+  return proven ? row->checker->check(bytes) : row->checker->verify(bytes);
 }
 
 PacketSigner* PeerTable::signer(std::uint32_t robot) {

@@ -39,9 +39,11 @@ class PeerTable {
   /// @param first_counter of packets to robots
   explicit PeerTable(std::span<const Peer> peers, std::uint64_t first_counter = unix_microseconds());
 
+  bool has_key(const Claim& claim);
   /// Checks a decoded packet that came from `source`. Peers that are not in the table are accepted.
+  /// @param proven false: the packet's counter neither counts nor is checked
   /// @return accepted, wrong_source, not_signed, wrong_signature or replayed
-  PacketStatus check(const Claim& claim, std::span<const std::uint8_t> bytes, const Endpoint& source);
+  PacketStatus check(const Claim& claim, std::span<const std::uint8_t> bytes, const Endpoint& source, bool proven);
 
   /// Signs packets to `robot`; null without a key. Lives as long as the table.
   PacketSigner* signer(std::uint32_t robot);

@@ -59,7 +59,7 @@ bool ReplayWindow::admit(std::uint64_t counter) {
   return true;
 }
 
-PacketStatus SignatureChecker::check(std::span<const std::uint8_t> packet) {
+PacketStatus SignatureChecker::verify(std::span<const std::uint8_t> packet) const {
   std::uint16_t trailer = 0;
   if (packet.size() < kHeaderBytes + kSignatureBytes) return PacketStatus::not_signed;
   std::memcpy(&trailer, packet.data() + kTrailerAt, sizeof trailer);
@@ -69,6 +69,12 @@ PacketStatus SignatureChecker::check(std::span<const std::uint8_t> packet) {
   const TruncatedHmac expected = hmac_sha256(key_, packet.first(covered));
   if (sodium_memcmp(expected.data(), packet.data() + covered, expected.size()) != 0)
     return PacketStatus::wrong_signature;
+  return PacketStatus::accepted;
+}
+
+PacketStatus SignatureChecker::check(std::span<const std::uint8_t> packet) {
+  const PacketStatus status = verify(packet);
+  if (status != PacketStatus::accepted) return status;
   std::uint64_t counter = 0;
   std::memcpy(&counter, packet.data() + packet.size() - kSignatureBytes, sizeof counter);
   return window_.admit(counter) ? PacketStatus::accepted : PacketStatus::replayed;

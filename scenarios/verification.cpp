@@ -82,6 +82,10 @@ class Verifier {
   Verification run() {
     result_.reference.type = "laser";
     result_.damage = recording_.damage;
+    if (!has_all_states()) {
+      result_.damage.push_back("ticks without the states of all movers: nothing was compared");
+      return std::move(result_);
+    }
     count_scans();
     if (estimated_) {
       verify_estimated();
@@ -113,12 +117,14 @@ class Verifier {
   /// Readings of a service are those that robots asked for, at times of its clock: scans, and nothing else, can be
   /// computed again, each from the states of its own time.
   void verify_estimated() {
-    std::uint64_t others = 0, single = 0;
+    std::uint64_t others = 0, single = 0, lost = 0;
     for (const record::ReadingSample& r : recording_.readings) {
       if (r.type != sensors::kLaser) {
         ++others;
       } else if (reference_.laser(r.mover, r.sensor).single) {
         ++single;
+      } else if (!has_states_at(r.time)) {
+        ++lost;
       } else if (seen_++ % stride_ == 0) {
         asked_.push_back({r.mover, r.sensor, r.sequence, tick_at(r.time), r.time, r.values, 0.0});
       }
@@ -131,6 +137,9 @@ class Verifier {
     }
     cast_again();
     result_.ticks = recording_.ticks;
+    if (recording_.readings.empty()) result_.skipped.push_back("no robot asked for readings");
+    if (lost > 0)
+      result_.skipped.push_back(fmt::format("{} scans: the states at their times are missing or damaged", lost));
     if (single > 0)
       result_.skipped.push_back(fmt::format("{} scans of 32-bit modes: their bounds are not recorded", single));
     if (others > 0)
@@ -175,6 +184,18 @@ class Verifier {
       for (const sensors::SensorSpec& laser : lasers->rows)
         all += static_cast<std::size_t>(1.0 + laser.rate * 1e-9 * static_cast<double>(recording_.end_time));
     stride_ = options_.sample == 0 ? 1 : std::max<std::size_t>(1, all / options_.sample);
+  }
+
+  /// Each tick has the states of all movers.
+  bool has_all_states() const {
+    const auto& all = recording_.states;
+    return std::all_of(all.begin(), all.end(), [&](const auto& s) { return s.size() == all[0].size(); });
+  }
+
+  /// One of the recorded ticks has exactly this time.
+  bool has_states_at(std::int64_t time) const {
+    const auto& all = recording_.states;
+    return !all.empty() && !all[0].empty() && all[0][tick_at(time)].time == time;
   }
 
   std::size_t tick_at(std::int64_t time) const {

@@ -508,6 +508,7 @@ static bool add_sensor(sf_client* c, const char* word) {
   char name[16] = "";
   unsigned number = 0, port = 0;
   int length = 0, more = 0;
+  if (strchr(word, '-') != NULL) return false;  // numbers with a sign
   sscanf(word, "%15[a-z]%n.%5u%n", name, &length, &number, &more);
   word += more > length ? more : length;
   length = 0;

@@ -132,6 +132,7 @@ void Service::record(std::int64_t now, std::span<const base::Report> states,
     sink_->write({.tick = records_++, .time = now, .reports = states_, .readings = readings, .qualities = qualities_});
   } catch (const base::InputError& error) {
     sink_ = nullptr;
+    recording_error_ = error.what();
     receiver_.log().write(fmt::format("recording ends here: {}", error.what()), now);
   }
 }
@@ -172,6 +173,7 @@ ServiceStats Service::stats() const {
   stats.filtered = receiver_.filter().options().enabled;
   stats.states = receiver_.filter().counts();
   stats.clocks = receiver_.filter().clocks();
+  stats.recording_error = recording_error_;
   return stats;
 }
 

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/tick_record.h"
@@ -46,6 +47,7 @@ struct ServiceStats {
   bool filtered = false;             ///< `states` and `clocks` count
   StateFilterCounts states;
   std::vector<SenderClockState> clocks;
+  std::string recording_error;  ///< why the recording ends before the service; empty: it does not
 };
 
 /// Times are of one clock [ns] that begins at 0 and does not go back. World, sensor set, device and layout must outlive
@@ -98,7 +100,8 @@ class Service {
   std::vector<base::Report> states_;           ///< per mover, of one tick or sample
   std::vector<base::StateQuality> qualities_;  ///< likewise
   std::vector<bool> absent_;                   ///< per mover
-  std::uint64_t records_ = 0;                  ///< written to `sink_`
+  std::string recording_error_;
+  std::uint64_t records_ = 0;  ///< written to `sink_`
   NoReturnFilter no_return_filter_;
   std::vector<AddressedReading> addressed_readings_;  ///< of one tick
   double interval_;
