@@ -8,12 +8,17 @@ namespace sf::estimation {
 namespace {
 
 constexpr double kLeastVariance = 1e-12;
+constexpr std::int64_t kStand = 1'000'000'000;    // [ns] without a count; shorter ones are part of slow turns
+constexpr std::int64_t kBiasApart = 200'000'000;  // [ns] of gyro and wheels, at most
+constexpr double kBiasGate = 16.0;                // squared, of 4 standard deviations
 
 FilterOptions filter_options() {
   FilterOptions options{.model = differential_drive()};
   // A position that comes after a long time under a bridge and that the gate refuses must not start the track anew,
   // without a heading.
   options.stale_after = 60'000'000'000;
+  // The window of one second at 250 Hz each of encoder and gyro, and GPS.
+  options.capacity = 512;
   return options;
 }
 
@@ -37,9 +42,13 @@ void Localization::add_encoder(std::int64_t time, double left, double right) {
   if (!std::isfinite(left) || !std::isfinite(right) || (last_ && time <= last_->time)) return;
   const std::optional<Rolled> before = last_;
   last_ = {time, left, right};
-  if (!before) return;
+  if (!before) {
+    last_count_ = time;
+    return;
+  }
   const double dt = 1e-9 * static_cast<double>(time - before->time);
   const double dl = left - before->left, dr = right - before->right;
+  if (dl != 0.0 || dr != 0.0) last_count_ = time;
 
   // Two rounded counts and the slip of each wheel's way.
   const auto variance = [&](double way) {
@@ -52,8 +61,10 @@ void Localization::add_encoder(std::int64_t time, double left, double right) {
   speeds.velocity = {0.5 * (dl + dr) / dt, 0.0, (dr - dl) / (track * dt)};
   speeds.twist_variance = {0.25 * both / (dt * dt), 1.0, both / (track * track * dt * dt)};
   if (take(1, speeds) != Verdict::used) return;
-  const bool standing = dl == 0.0 && dr == 0.0;
-  wheels_turn_ = {speeds.velocity.turn, standing ? 0.0 : speeds.twist_variance[2]};
+  wheels_turn_ = {speeds.time, speeds.velocity.turn, speeds.twist_variance[2]};
+  if (time - last_count_ < kStand) return;
+  const double still = track * 1e-9 * static_cast<double>(time - last_count_);
+  wheels_turn_ = {time, 0.0, 2.0 * variance(0.0) / (still * still)};
 }
 
 void Localization::add_gyro(std::int64_t time, double rate) {
@@ -62,11 +73,18 @@ void Localization::add_gyro(std::int64_t time, double rate) {
   Measurement turn{.time = time, .components = 1u << kTurn};
   turn.velocity.turn = rate - bias_;
   turn.twist_variance[2] = noise + bias_variance_;
-  if (take(2, turn) != Verdict::used || !wheels_turn_) return;
-  const double gain = bias_variance_ / (bias_variance_ + noise + wheels_turn_->variance);
-  bias_ += gain * (rate - wheels_turn_->rate - bias_);
-  bias_variance_ *= 1.0 - gain;
+  if (take(2, turn) == Verdict::used) learn_bias(time, rate, noise);
+}
+
+void Localization::learn_bias(std::int64_t time, double rate, double noise) {
+  if (!wheels_turn_) return;
+  const Turn wheels = *wheels_turn_;
   wheels_turn_.reset();
+  const double surprise = rate - wheels.rate - bias_, variance = bias_variance_ + noise + wheels.variance;
+  if (std::abs(time - wheels.time) > kBiasApart || surprise * surprise > kBiasGate * variance) return;
+  const double gain = bias_variance_ / variance;
+  bias_ += gain * surprise;
+  bias_variance_ *= 1.0 - gain;
 }
 
 void Localization::add_gps(std::int64_t time, double x, double y, double hdop) {

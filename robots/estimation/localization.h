@@ -7,7 +7,7 @@
 //   localization.predict(time).estimate.X_WM
 //
 // Encoders and gyro go on where satellites are out of sight. The gyro's bias is its mean difference from the
-// encoders' turn rate, best known after a stand.
+// encoders' turn rate, best known after a stand of more than a second.
 
 #include <cstdint>
 #include <optional>
@@ -37,8 +37,8 @@ class Localization {
  public:
   Localization(const LocalizationOptions& options, const base::Pose& X_WM, std::int64_t time);
 
-  // One reading at its own time [ns], each sensor's in order, GPS up to one second late. Readings that are not numbers
-  // are ignored, outliers counted and refused.
+  // One reading at its own time [ns], each sensor's in order, GPS up to one second late where all sensors together have
+  // at most 500 readings a second. Readings that are not numbers are ignored, outliers counted and refused.
   /// @param left, right [m] rolled since the start. The speeds since the last reading count at the middle of the time
   void add_encoder(std::int64_t time, double left, double right);
   /// @param rate [rad/s]
@@ -57,14 +57,17 @@ class Localization {
     double right = 0.0;     ///< [m]
   };
   struct Turn {
+    std::int64_t time = 0;  ///< [ns]
     double rate = 0.0;      ///< [rad/s]
     double variance = 0.0;  ///< [rad^2/s^2]
   };
   Verdict take(std::uint32_t source, Measurement measurement);
+  void learn_bias(std::int64_t time, double rate, double noise);
 
   LocalizationOptions options_;
   TrackFilter filter_;
   std::optional<Rolled> last_;
+  std::int64_t last_count_ = 0;      ///< [ns] of the last reading that differs from the one before, or the first
   std::optional<Turn> wheels_turn_;  ///< since the last reading of the gyro
   double bias_ = 0.0;                ///< [rad/s] of the gyro
   double bias_variance_;             ///< [rad^2/s^2]

@@ -47,6 +47,47 @@ TEST(Localization, ReadingsThatAreNotNumbersChangeNothing) {
   EXPECT_NEAR(localization.predict(4 * kTick).estimate.velocity.turn, 0.0, 1e-6);
 }
 
+TEST(Localization, TurnsBetweenTwoCountsAreNoBias) {
+  // 0.02 rad/s on the spot: a count of each wheel in four readings.
+  Localization localization({}, {}, 0);
+  for (int k = 0; k <= 600; ++k) {
+    const double rolled = 1e-3 * std::round(0.02 * 0.1 * k * 0.258 / 2.0 / 1e-3);
+    localization.add_encoder(k * kTick, -rolled, rolled);
+    localization.add_gyro(k * kTick, 0.02);
+  }
+  EXPECT_NEAR(localization.predict(600 * kTick).estimate.X_WM.yaw, 1.2, 0.1)
+      << "slip gives counts a little less weight than none";
+}
+
+TEST(Localization, StandsBeforeALossOfTheEncodersTeachNoLaterBias) {
+  // At rest until 0.1 s, without any reading until 3.1 s, and then at 1 rad/s, with the gyro alone.
+  Localization localization({}, {}, 0);
+  for (int k = 0; k <= 1; ++k) localization.add_encoder(k * kTick, 0.0, 0.0);
+  for (int k = 31; k <= 60; ++k) localization.add_gyro(k * kTick, 1.0);
+  EXPECT_NEAR(localization.predict(60 * kTick).estimate.velocity.turn, 1.0, 0.01);
+}
+
+TEST(Localization, TurnsRightAfterAStandAreNoBias) {
+  // The gyro's reading comes first: it is compared with the stand a tick before.
+  Localization localization({}, {}, 0);
+  for (int k = 0; k <= 60; ++k) {
+    const double turned = 0.1 * std::max(0, k - 30);
+    localization.add_gyro(k * kTick, k > 30 ? 1.0 : 0.0);
+    localization.add_encoder(k * kTick, -0.129 * turned, 0.129 * turned);
+  }
+  EXPECT_NEAR(localization.predict(60 * kTick).estimate.velocity.turn, 1.0, 0.01);
+}
+
+TEST(Localization, PositionsMayBeASecondLateAtHighRates) {
+  Localization localization({}, {}, 0);
+  for (int k = 0; k <= 500; ++k) {
+    localization.add_encoder(k * 4 * kMs, 0.0, 0.0);
+    localization.add_gyro(k * 4 * kMs, 0.0);
+  }
+  localization.add_gps(kSecond, 0.0, 0.0, 1.0);
+  EXPECT_EQ(localization.counts()[static_cast<std::size_t>(Verdict::too_late)], 0u);
+}
+
 TEST(Localization, LatePositionsPullAtTheirOwnTime) {
   // 0.2 m/s; the fix of half a second ago says that the start was 1 m farther left.
   Localization on_time({.gps_noise = 1e-3, .start_position = 1.0}, {}, 0);
