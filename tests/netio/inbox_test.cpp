@@ -51,6 +51,13 @@ base::Bytes signed_leave() {
 struct InboxTest : testing::Test {
   Inbox inbox{options()};
   Packet packet;
+  /// Signed, with the token of `who`.
+  base::Bytes proven_leave(const Endpoint& who) {
+    base::Bytes bytes = leave_of_keyed();
+    write_session_token(bytes, {kSession, inbox.token(who)});
+    sign(bytes, kKey, 1);
+    return bytes;
+  }
   /// Receives a packet with the token of its source.
   PacketStatus say(base::Bytes bytes, std::int64_t now = 0, const Endpoint& who = kSender) {
     if (bytes.size() >= kHeaderBytes) write_session_token(bytes, {kSession, inbox.token(who)});
@@ -103,11 +110,9 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   EXPECT_EQ(say(leave_of_keyed()), PacketStatus::not_signed);
   EXPECT_EQ(say(signed_leave()), PacketStatus::wrong_signature);  // changed by its token
   EXPECT_EQ(inbox.accept(signed_leave(), kSender, 0, packet), PacketStatus::unproven);
-  base::Bytes proven = leave_of_keyed();
-  write_session_token(proven, {kSession, inbox.token(kSender)});
-  sign(proven, kKey, 1);  // the counter of the unproven packet did not count
-  EXPECT_EQ(inbox.accept(proven, kSender, 0, packet), PacketStatus::stale);  // a LEAVE of one that never spoke
-  EXPECT_EQ(inbox.accept(proven, kSender, 0, packet), PacketStatus::replayed);
+  // The counter of the unproven packet did not count; it is a LEAVE of one that never spoke.
+  EXPECT_EQ(inbox.accept(proven_leave(kSender), kSender, 0, packet), PacketStatus::stale);
+  EXPECT_EQ(inbox.accept(proven_leave(kSender), kSender, 0, packet), PacketStatus::replayed);
   EXPECT_EQ(say(v2v_example()), PacketStatus::accepted);
   EXPECT_EQ(say(v2v(7, 10), 0, kOtherSender), PacketStatus::wrong_source);
   for (std::size_t i = 0; i < kPacketStatuses; ++i)
@@ -277,6 +282,7 @@ TEST_F(InboxTest, AMillionRandomAndMutatedDatagrams) {
   std::vector<base::Bytes> seeds = examples();
   seeds.push_back(leave_of_keyed());
   seeds.push_back(signed_leave());
+  seeds.push_back(proven_leave({kLoopback, 1}));
   std::uint64_t accepted = 0;
   base::Bytes bytes;
   for (int i = 0; i < 1'000'000; ++i) {

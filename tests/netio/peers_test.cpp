@@ -8,6 +8,7 @@
 #include "netio/outbox.h"
 #include "netio/v2v_socket.h"
 #include "tests/netio/examples.h"
+#include "tests/units.h"
 
 namespace sf::netio {
 namespace {
@@ -70,6 +71,30 @@ TEST_F(PeersTest, ARobotWithAKeySigns) {
   EXPECT_EQ(inbox.counts()[PacketStatus::replayed], 2u);
 }
 
+/// One on the way copies a packet, and is first with it, from an address of its own.
+TEST_F(PeersTest, ACopyFromElsewhereDoesNotStopTheGenuinePacket) {
+  const base::Bytes genuine = ready(peer_v2v(7, 0), &robot);
+  EXPECT_EQ(accept(genuine, kElsewhere), PacketStatus::unproven) << "the token is another address'";
+  EXPECT_EQ(accept(genuine, kElsewhere), PacketStatus::unproven) << "its counter did not count";
+  EXPECT_EQ(accept(genuine), PacketStatus::accepted);
+}
+
+/// Boundary: the last signature of a stranger that is checked in 0.1 s, and the first that is not.
+TEST_F(PeersTest, StrangersSignaturesCostABoundedTime) {
+  base::Bytes request = peer_v2v(7, 0);
+  write_session_token(request, {77, 0});
+  base::Bytes forged = request;
+  PacketSigner forger(kTagKey, 1);
+  forger.sign(forged);
+  robot.sign(request);
+  for (std::size_t i = 1; i < Inbox::kMaxDoubtfulSignatures; ++i)
+    ASSERT_EQ(accept(forged), PacketStatus::wrong_signature);
+  EXPECT_EQ(accept(request), PacketStatus::unproven) << "the last that is checked: a CHALLENGE is its answer";
+  EXPECT_EQ(accept(request), PacketStatus::wrong_signature) << "not checked";
+  EXPECT_EQ(say(peer_v2v(7, 1), &robot), PacketStatus::accepted) << "robots at proven addresses are not concerned";
+  EXPECT_EQ(inbox.accept(request, kPeerSource, kSecond, packet), PacketStatus::unproven) << "later";
+}
+
 TEST_F(PeersTest, ARobotWithoutAKeyNeedsNone) {
   EXPECT_EQ(say(peer_v2v(3, 0), nullptr), PacketStatus::accepted);
   EXPECT_EQ(say(peer_v2v(3, 1), &robot), PacketStatus::accepted) << "its trailer is dropped";
@@ -103,7 +128,8 @@ TEST_F(PeersTest, AnAddressIsTheOnlyOne) {
   EXPECT_EQ(say(peer_v2v(5, 0), nullptr, kElsewhere), PacketStatus::wrong_source);
   EXPECT_FALSE(inbox.is_active(5, 0));
   EXPECT_EQ(say(peer_v2v(5, 0), nullptr, {kLoopback, 5999}), PacketStatus::accepted);
-  EXPECT_EQ(say(peer_v2v(5, 1), nullptr, kPeerSource), PacketStatus::wrong_source) << "bound by its first sender as without";
+  EXPECT_EQ(say(peer_v2v(5, 1), nullptr, kPeerSource), PacketStatus::wrong_source)
+      << "bound by its first sender as without";
 }
 
 /// Without the token too: an unproven request is signed, and so is the answer, which is no larger.

@@ -258,8 +258,10 @@ TEST_F(V2vSocketTest, OnlyWhatCarriesItsSessionIsMeantForIt) {
     encode({.session = stamp.session, .token = stamp.token}, Challenge{token}, bytes);
     return bytes;
   };
-  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kRelayFarm, kRelayOwn + 1}), 0, packet), PacketStatus::wrong_source);
-  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kRelayFarm + 1, kRelayOwn}), 0, packet), PacketStatus::wrong_source);
+  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kRelayFarm, kRelayOwn + 1}), 0, packet),
+            PacketStatus::wrong_source);
+  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kRelayFarm + 1, kRelayOwn}), 0, packet),
+            PacketStatus::wrong_source);
   EXPECT_EQ(v2v_socket.accept(stamped(start_example(), {}), 0, packet), PacketStatus::wrong_source);
   EXPECT_EQ(v2v_socket.accept(challenge(9, {kRelayFarm + 1, 0}), 0, packet), PacketStatus::wrong_source);
   EXPECT_EQ(v2v_socket.farm_session_token().session, kRelayFarm);
