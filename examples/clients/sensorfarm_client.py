@@ -17,6 +17,7 @@ Parts of large scans and maps are delivered one by one, each with its place in t
 
 import argparse
 import collections
+import hmac
 import math
 import os
 import select
@@ -30,7 +31,7 @@ LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
 V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 140
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
-HEADER_BYTES, V2V_BYTES, MAX_PAYLOAD = 64, 132, 1256
+HEADER_BYTES, V2V_BYTES, MAX_PAYLOAD, SIGNATURE_BYTES = 64, 132, 1256, 24
 HEADER = struct.Struct("<4sBBHHHIqIII6fHH")
 STATES = {V2V: "<7d3I", TAG: "<13d", SUBSCRIBE: "<I", START: "<", LEAVE: "<", CHALLENGE: "<I"}  # payloads
 
@@ -209,11 +210,37 @@ def encode_subscribe(types=0, **header):
     return encode(SUBSCRIBE, struct.pack("<I", types), **header)
 
 
+def sign(data, key, counter):
+    """The packet with a signature behind it: a counter, and half the HMAC-SHA-256 of all before."""
+    head = data[:60] + struct.pack("<H", SIGNATURE_BYTES) + data[62:] + struct.pack("<Q", counter)
+    return head + hmac.digest(key, head, "sha256")[:16]
+
+
+class Window:
+    """Counters of signatures that came: each is new once, in any order within the newest 64."""
+
+    def __init__(self):
+        self.newest, self.seen = 0, 0  # bit k of seen: newest - k came
+
+    def check(self, data, key):
+        require(data[60:62] == struct.pack("<H", SIGNATURE_BYTES), "not signed")
+        require(hmac.compare_digest(hmac.digest(key, data[:-16], "sha256")[:16], data[-16:]), "wrong signature")
+        counter = struct.unpack("<Q", data[-24:-16])[0]
+        if counter > self.newest:
+            self.seen <<= min(counter - self.newest, 64)
+            self.newest = counter
+        bit = 1 << min(self.newest - counter, 64)
+        require(bit < 2**64 and not self.seen & bit, "replayed")
+        self.seen = (self.seen | bit) % 2**64
+
+
 class Client:
     """One robot beside the farm. `counts` has the number of packets accepted, and dropped by reason."""
 
-    def __init__(self, robot, farm, sensors, neighbours=False):
-        """farm: host, port. sensors: (type's name, number[, own port]) of each. neighbours: states of others, too."""
+    def __init__(self, robot, farm, sensors, neighbours=False, key=None):
+        """farm: host, port. sensors: (type's name, number[, own port]) of each. neighbours: states of others, too.
+        key: 32 bytes that the farm has for this robot (docs/packets.md, Signatures); None: nothing is signed."""
+        self.key, self.counter = key, time.time_ns() // 1000
         self.robot, self.farm = robot, (socket.gethostbyname(farm[0]), farm[1])
         self.session, self.token, self.farm_session = int.from_bytes(os.urandom(4), "little") | 1, 0, 0
         self.types, self.sent, self.next_request = int(neighbours), collections.Counter(), 0.0
@@ -223,6 +250,7 @@ class Client:
             type = next(type for type in SENSORS if SENSORS[type][0] == name)
             self.types |= 1 << type
             self.sockets.append(self._open(port[0] if port else SENSORS[type][1] + 8 * robot + number))
+        self.windows = {opened: Window() for opened in self.sockets}
 
     def _open(self, port):
         opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -236,6 +264,8 @@ class Client:
                 "session": self.session, "token": self.token}
 
     def _send(self, data):
+        if self.key:
+            data, self.counter = sign(data, self.key, self.counter), self.counter + 1
         try:
             self.sockets[0].sendto(data, self.farm)
         except OSError:
@@ -263,23 +293,25 @@ class Client:
                 except OSError:
                     break
                 try:
-                    packet = self._accept(data, sender)
+                    packet = self._accept(data, sender, self.windows[opened])
                     self.counts["accepted"] += 1
                     packets += [packet] if packet["type"] != CHALLENGE else []
                 except Malformed as reason:
                     self.counts[str(reason)] += 1
         return packets
 
-    def _accept(self, data, sender):
+    def _accept(self, data, sender, window):
         require(sender == self.farm, "wrong source")
         packet = decode(data)
         require(packet["token"] == self.session, "wrong source")
+        require(packet["type"] == CHALLENGE or packet["session"] == self.farm_session, "wrong source")
+        if self.key:
+            window.check(data, self.key)
         if packet["type"] == CHALLENGE:
             if packet["session"] != self.farm_session:
                 self.newest.clear()  # another farm
             self.token, self.farm_session, self.next_request = packet["challenge"], packet["session"], 0.0
             return packet
-        require(packet["session"] == self.farm_session, "wrong source")
         require(packet["type"] < 128 or packet["type"] in (START, NEIGHBOURS), "wrong direction")
         require(packet["robot"] in (self.robot, EVERY_ROBOT), "unknown robot")
         require(packet["type"] == START or self._is_newer(packet), "stale")
@@ -341,6 +373,14 @@ def read_pose(word):
     return x, y, 0.0, math.radians(degrees)
 
 
+def read_key(file):
+    with open(file) as opened:
+        key = bytes.fromhex(opened.read(1000).strip())
+    if len(key) != 32:
+        raise argparse.ArgumentTypeError("%s holds %d bytes of 32" % (file, len(key)))
+    return key
+
+
 def read_farm(word):
     host, _, port = word.rpartition(":")
     return host or "127.0.0.1", int(port)
@@ -353,6 +393,7 @@ def main():
     parser.add_argument("--pose", type=read_pose, default=(0.0, 0.0, 0.0, 0.0), metavar="X,Y,DEGREES")
     parser.add_argument("--rate", type=float, default=10.0, metavar="HZ", help="states per second, 1 to 1000")
     parser.add_argument("--sensor", type=read_sensor, action="append", metavar="TYPE[.NUMBER][=PORT]")
+    parser.add_argument("--key", type=read_key, metavar="FILE", help="64 hexadecimal digits: sign, and check signatures")
     parser.add_argument("--neighbours", action="store_true", help="print the states of other robots, too")
     # -1,0.5,30 is a value of --pose, not an option.
     options = parser.parse_args("\0".join(sys.argv[1:]).replace("--pose\0", "--pose=").split("\0"))
@@ -360,7 +401,8 @@ def main():
         parser.error("--robot takes 0 to 65535, --rate 1 to 1000")
     try:
         encode_v2v(options.pose)
-        client = Client(options.robot, options.farm, options.sensor or [("laser", 0)], options.neighbours)
+        client = Client(options.robot, options.farm, options.sensor or [("laser", 0)], options.neighbours,
+                        options.key)
     except (OSError, OverflowError, Malformed) as error:
         parser.error(str(error))
     for number in (signal.SIGINT, signal.SIGTERM):

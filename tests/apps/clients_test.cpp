@@ -160,6 +160,32 @@ TEST(Clients, BothPrintTheReadingsOfSense) {
   EXPECT_FALSE(facts.has("/received/stale"));
 }
 
+TEST(Clients, PythonSignsAndChecksSignatures) {
+  if (!have_python()) GTEST_SKIP() << kNoPython;
+  const unsigned ports = free_ports(32);
+  const Folder folder;
+  const std::string key(64, 'a'), file = folder.write("key", key + "\n");
+  const std::string peers = folder.write("peers.toml", "[[peer]]\nrobot = 1\nkey = \"" + key + "\"\n");
+  Service service(kSensors, {"--rate", "50", "--sonar-port", std::to_string(ports), "--gps-port",
+                             std::to_string(ports + 16), "--peers", peers});
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  expect_readings(service, ports, "python3", {kPythonClient, "--key", file});
+  service.program.signal(SIGINT);
+  const Json facts(service.program.wait().out);
+  EXPECT_GE(facts.number("/received/accepted"), 3);
+  for (const char* reason : {"not signed", "wrong signature", "replayed"})
+    EXPECT_FALSE(facts.has(std::string("/received/") + reason)) << reason;
+}
+
+/// The counters at the window's edges, as `ReplayWindow` has them, a flipped bit and another key.
+TEST(Clients, PythonRefusesWhatTheFarmRefuses) {
+  if (!have_python()) GTEST_SKIP() << kNoPython;
+  const Outcome outcome =
+      Program({SF_SOURCE_DIR "/tests/apps/clients/signatures.py", kClients}, {}, "", "", "python3").wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.out, "sound\n");
+}
+
 TEST(Clients, WrongWordsAreRefused) {
   if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
   const Folder folder;
