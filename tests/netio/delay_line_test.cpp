@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -117,6 +118,17 @@ TEST(DelayLine, MessagesComeTwiceOrWithAFlippedBit) {
   EXPECT_EQ(counts.lost, 0u);
   EXPECT_GT(odd, counts.corrupted / 2) << "21 of 32 bits lead beyond 2000";
   EXPECT_EQ(static_cast<std::uint64_t>(std::accumulate(copies.begin(), copies.end(), 0)) + odd, counts.passed);
+}
+
+TEST(DelayLine, BothCopiesHaveTheSameFlippedBit) {
+  DelayLine line({.seed = 3, .duplicate = 1.0, .corrupt = 1.0});
+  for (std::uint32_t n = 0; n < 20; ++n) {
+    send(line, n, 0);
+    const std::vector<std::uint32_t> copies = released(line, 0);
+    ASSERT_EQ(copies.size(), 2u);
+    EXPECT_EQ(copies[0], copies[1]);
+    EXPECT_EQ(std::popcount(copies[0] ^ n), 1);
+  }
 }
 
 TEST(DelayLine, FaultsAreFunctionsOfTheMessage) {

@@ -204,6 +204,11 @@ TEST(Recording, OtherRecordingsAreRefusedWithTheReason) {
   McapWriter worldless("ros2", "sensorfarm");
   add_run_info(worldless, {});
   EXPECT_NE(refusal(finished(worldless)).find("no complete world inside"), std::string::npos);
+
+  McapWriter empty_world("ros2", "sensorfarm");
+  empty_world.add_attachment({.name = "world.bin", .data = {}});
+  add_run_info(empty_world, {});
+  EXPECT_NE(refusal(finished(empty_world)).find("no complete world inside"), std::string::npos);
 }
 
 TEST(Recording, AStateOfAMoverThatIsNotThereIsLeftOutAndTold) {

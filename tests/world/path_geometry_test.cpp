@@ -57,6 +57,18 @@ TEST(Nearest, BesideThePathIsTheOffset) {
     }
 }
 
+/// Boundary: the bearing opposite the middle of an arc's remaining turn, 225 degrees from the start of a quarter turn.
+TEST(Nearest, BehindAnArcIsItsNearerEnd) {
+  const Path path = read_world("path( pieces 1 arc[0] [1 90 0.5] )").paths.at(0);
+  const auto at = [&](double degrees) {  // 2 m from the arc's middle, which is at (0, 1)
+    const double angle = degrees * M_PI / 180.0;
+    return project_onto(path, {2.0 * std::sin(angle), 1.0 - 2.0 * std::cos(angle)}).s;
+  };
+  EXPECT_NEAR(at(224.9), length_of(path), 1e-12);
+  EXPECT_NEAR(at(225.1), 0.0, 1e-12);
+  EXPECT_NEAR(at(260.0), 0.0, 1e-12);
+}
+
 TEST(Nearest, BeyondTheEndsAreTheEnds) {
   const Path path = lane();
   EXPECT_EQ(project_onto(path, transform(pose_at(path, 0.0), {-1.0, 0.3})).s, 0.0);

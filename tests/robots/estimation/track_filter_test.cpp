@@ -262,6 +262,16 @@ TEST(TrackFilter, CovarianceGrowsThroughLossUntilTheStateIsStale) {
   EXPECT_EQ(later.age, 59'000 * kMs);
 }
 
+/// One of the turn rate alone has no pose to start at.
+TEST(TrackFilter, OnlyAPositionStartsAnewAfterAStaleTime) {
+  TrackFilter filter(options());
+  for (int ms = 0; ms <= 1000; ms += 100) filter.take(along_x(ms), ms * kMs);
+  Measurement turn{.time = 3000 * kMs, .sequence = 1, .components = 1u << kTurn};
+  filter.take(turn, turn.time);
+  EXPECT_EQ(count(filter, Verdict::started), 1u);
+  EXPECT_GT(filter.predict(turn.time).estimate.X_WM.x, 0.9) << "where it was last, or farther";
+}
+
 TEST(TrackFilter, FirstMeasurementAfterAStaleTimeStartsAnew) {
   TrackFilter filter(options());
   filter.take(along_x(0), 0);
