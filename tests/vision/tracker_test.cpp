@@ -78,6 +78,18 @@ TEST(Tracker, MovesViewsToOneTime) {
   EXPECT_NEAR(tracked[0].X_WT.x, 1.0, 1e-4);
 }
 
+/// At 4 m/s it is 0.2 m farther for the camera that looks 50 ms later, or earlier.
+TEST(Tracker, MergesViewsOfAFastTag) {
+  for (const double later : {0.05, -0.05}) {
+    Tracker tracker;
+    update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
+    const auto tracked =
+        update(tracker, {sighting(0.1, 0.4, 0.0, 0.0), sighting(0.1 + later, 0.4 + 4.0 * later, 0.0, 0.0)});
+    ASSERT_EQ(tracked.size(), 1u);
+    EXPECT_EQ(tracked[0].cameras, 2) << later;
+  }
+}
+
 TEST(Tracker, RefusesASecondPlace) {
   Tracker tracker;
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
