@@ -36,6 +36,22 @@ TEST(Parking, StopsWithItsFrontAtTheEndOfEverySpot) {
   }
 }
 
+/// Boundary: half a radius outside the zone, all along its perimeter.
+TEST(Parking, AZoneReachesHalfARadiusFarther) {
+  Streets t;
+  const control::LaneCorridors corridors(t.roads, t.world, {.radius = 0.2});
+  const control::LaneCorridors narrow(t.roads, t.world, {.radius = 0.02});
+  const auto& perimeter = t.roads.zones[0].perimeter;
+  for (std::size_t i = 0, j = perimeter.size() - 1; i < perimeter.size(); j = i++) {
+    const glm::dvec2 middle = 0.5 * (perimeter[i].p + perimeter[j].p),
+                     along = normalize(perimeter[i].p - perimeter[j].p);
+    glm::dvec2 out{along.y, -along.x};
+    if (narrow.inside(0, middle + 0.02 * out)) out = -out;
+    EXPECT_TRUE(corridors.inside(0, middle + 0.099 * out)) << i;
+    EXPECT_FALSE(corridors.inside(0, middle + 0.101 * out)) << i;
+  }
+}
+
 // Five robots leave their spots while a sixth arrives. They take turns, although all start at once.
 TEST(Parking, AFullCarParkEmptiesWhileAnotherComesIn) {
   Streets t;
