@@ -95,25 +95,26 @@ TEST(Vps, RenderedImagesGivePosesPicturesAndPackets) {
   EXPECT_NEAR(std::abs(two.orientation[3]), std::abs(std::cos(0.5 * yaw)), 1e-5);
 }
 
-TEST(Vps, ReadsItsOwnPictures) {
-  // Rendered pictures with marks beside the tags, as a folder of photographs.
-  const Folder folder;
+/// Three rendered pictures with marks beside the tags, as a folder of photographs. @return the testbed's file
+static std::string write_pictures(const Folder& folder) {
   const std::string testbed = folder.write("t.toml", kTestbed);
-  ASSERT_EQ(
+  EXPECT_EQ(
       run_program({"vps", testbed, "--rendered", "2", "--images", "3", "--speed", "0", "--overlay", folder.path("p")})
           .code,
       0);
+  return testbed;
+}
+
+TEST(Vps, ReadsItsOwnPictures) {
+  const Folder folder;
+  const std::string testbed = write_pictures(folder);
   const Outcome outcome = run_program({"vps", testbed, "--input", "a=" + folder.path("p"), "--json"});
   EXPECT_NE(outcome.out.find("\"images\": 3"), std::string::npos) << outcome.out << outcome.err;
 }
 
 TEST(Vps, CountsPicturesThatCannotBeRead) {
   const Folder folder;
-  const std::string testbed = folder.write("t.toml", kTestbed);
-  ASSERT_EQ(
-      run_program({"vps", testbed, "--rendered", "2", "--images", "3", "--speed", "0", "--overlay", folder.path("p")})
-          .code,
-      0);
+  const std::string testbed = write_pictures(folder);
   std::ofstream(folder.path("p/a-000001.png"), std::ios::trunc) << "no image";
   ASSERT_EQ(mkfifo(folder.path("p/a-000009.png").c_str(), 0600), 0);  // not read, which would wait
   const Outcome outcome =
