@@ -50,11 +50,19 @@ void Inbox::wait(int timeout_ms) const {
 PacketStatus Inbox::accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now,
                            Packet& packet) {
   PacketStatus status = decode(bytes, packet);
-  if (status == PacketStatus::accepted) status = check_id(packet.header);
-  if (status == PacketStatus::accepted) status = check_peer(packet.header, bytes, source, now);
-  if (status == PacketStatus::accepted) status = check_sender(packet, source, now);
+  if (status == PacketStatus::accepted) status = check(packet, bytes, source, now);
   counts_.add(status);
   return status;
+}
+
+PacketStatus Inbox::check(Packet& packet, std::span<const std::uint8_t> bytes, const Endpoint& source,
+                          std::int64_t now) {
+  PacketStatus status = check_id(packet.header);
+  if (status != PacketStatus::accepted) return status;
+  const bool proven = is_proven(packet.header, source);
+  status = check_peer(packet.header, bytes, source, proven, now);
+  if (status != PacketStatus::accepted) return status;
+  return proven ? admit(packet, source, now) : PacketStatus::unproven;
 }
 
 /// Whether such a packet can concern the farm at all.
@@ -84,9 +92,8 @@ bool Inbox::is_proven(const Header& header, const Endpoint& source) const {
 /// Signatures of robots at proven addresses are always checked. Others cost no more than a part of a tick's time, and
 /// those of unproven packets move no counters: a copy that comes first, from elsewhere, does not stop the genuine one.
 PacketStatus Inbox::check_peer(const Header& header, std::span<const std::uint8_t> bytes, const Endpoint& source,
-                               std::int64_t now) {
+                               bool proven, std::int64_t now) {
   const Claim claim = claim_of(header);
-  const bool proven = is_proven(header, source);
   const bool bounded = peers_.has_key(claim) && (!proven || claim.kind != PeerKind::robot);
   if (bounded) begin_period(now);
   if (bounded && doubtful_signatures_ == kMaxDoubtfulSignatures) return PacketStatus::wrong_signature;
@@ -95,10 +102,9 @@ PacketStatus Inbox::check_peer(const Header& header, std::span<const std::uint8_
   return status;
 }
 
-PacketStatus Inbox::check_sender(Packet& packet, const Endpoint& source, std::int64_t now) {
+PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t now) {
   if (packet.header.type == Type::start) return PacketStatus::accepted;
   if (packet.header.type == Type::tag) return admit_state(tags_, packet, source, now);
-  if (!is_proven(packet.header, source)) return PacketStatus::unproven;
   if (packet.header.type == Type::leave) return robots_.leave(packet.header.robot, source, now);
   return admit_robot(packet, source, now);
 }

@@ -113,12 +113,13 @@ class Inbox {
   void wait(int timeout_ms) const;
 
  private:
+  PacketStatus check(Packet& packet, std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now);
   PacketStatus check_id(const Header& header) const;
   bool is_proven(const Header& header, const Endpoint& source) const;
   PacketStatus check_peer(const Header& header, std::span<const std::uint8_t> bytes, const Endpoint& source,
-                          std::int64_t now);
+                          bool proven, std::int64_t now);
   void begin_period(std::int64_t now);
-  PacketStatus check_sender(Packet& packet, const Endpoint& source, std::int64_t now);
+  PacketStatus admit(Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source, std::int64_t now) const;
   PacketStatus admit_robot(Packet& packet, const Endpoint& source, std::int64_t now);
 
