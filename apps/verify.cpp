@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <string>
-#include <utility>
-
 #include "apps/commands.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
@@ -60,10 +56,7 @@ int verify(const VerifyOptions& options) {
                               return !stop_requested();
                             }});
   }
-  const auto& options_of_run = recording.info.options;
-  const bool of_service = std::find(options_of_run.begin(), options_of_run.end(),
-                                    std::pair<std::string, std::string>("states", "estimated")) != options_of_run.end();
-  const bool recorded = of_service || !recording.readings.empty();
+  const bool recorded = recording.info.estimated || !recording.readings.empty();
   print(options.json ? json_of(verification) : text_of(verification, recorded));
   return verification.sound() ? 0 : 1;
 }

@@ -17,6 +17,7 @@ RunInfo named(RunInfo info) {
   SF_CHECK(!info.snapshot.empty(), "a recording without its world");
   SF_CHECK(info.interval > 0.0 && info.odometry_rate >= 0.0, std::to_string(info.interval));
   name_frames(info);
+  if (info.estimated) info.options.emplace_back("states", "estimated");  // read back by decode_run_info
   return info;
 }
 

@@ -194,6 +194,7 @@ bool decode_run_info(std::span<const std::uint8_t> message, RunInfo& info) {
   for (auto& [key, value] : info.options) {
     key = cdr.get_string();
     value = cdr.get_string();
+    info.estimated = info.estimated || (key == "states" && value == "estimated");
   }
   return cdr.good();
 }

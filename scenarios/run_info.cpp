@@ -35,7 +35,6 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   info.record_readings = settings.record_readings;
   info.estimated = settings.estimated;
   info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}, {"caster", settings.caster}};
-  if (settings.estimated) info.options.emplace_back("states", "estimated");
   info.snapshot = world::snapshot(world);
   for (const world::Mover& mover : world.movers) info.movers.push_back({mover.name, "", mover.id, {}});
   add_type(sensor_set, info);

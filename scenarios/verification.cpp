@@ -68,10 +68,8 @@ class Verifier {
         farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads}),
         reference_(world_, recording.info.seed),
         thread_pool_(options.threads) {
-    for (const auto& [key, value] : recording.info.options) {
+    for (const auto& [key, value] : recording.info.options)
       infinite_ = infinite_ || (key == "no_return" && value == "inf");
-      estimated_ = estimated_ || (key == "states" && value == "estimated");
-    }
     for (std::size_t i = 0; i < recording.readings.size(); ++i) {
       const record::ReadingSample& r = recording.readings[i];
       readings_[{r.type, r.mover, r.sensor, r.sequence}] = i;
@@ -87,7 +85,7 @@ class Verifier {
       return std::move(result_);
     }
     count_scans();
-    if (estimated_) {
+    if (recording_.info.estimated) {
       verify_estimated();
     } else {
       verify_simulated();
@@ -293,7 +291,6 @@ class Verifier {
   sensors::LaserReference reference_;
   base::ThreadPool thread_pool_;
   bool infinite_ = false;
-  bool estimated_ = false;                ///< states and readings are those of a service
   bool recorded_ = false;                 ///< the recording has scans
   std::map<Name, std::size_t> readings_;  ///< recorded readings not compared yet
   std::vector<base::Report> reports_;     ///< of one tick
