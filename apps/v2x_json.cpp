@@ -83,7 +83,7 @@ Json to_json(const T& value, Described) {
   return object;
 }
 
-/// What is read. Not ordered: ordered objects copy their values as they grow, as deep as these are nested.
+/// Type of the input. Not ordered: ordered objects copy their values as they grow, as deep as these are nested.
 using Input = nlohmann::json;
 
 /// A value in a message. Lists and objects are not printed: printing and copying them would recurse as deep as they are

@@ -96,7 +96,7 @@ TEST(Packets, CovarianceThatIsNoneIsLeftOut) {
   }
 }
 
-/// Those of a state are reserved: a relay would pass them on.
+/// In a state these fields are reserved: a relay would pass them on.
 TEST(Packets, AgeAndCovarianceOfAStateAreIgnored) {
   base::Bytes bytes;
   encode({.robot = 7, .state = {.stated = true, .age = 5000, .covariance = {1, 0, 0, 1, 0, 1}}}, V2v{}, bytes);
