@@ -238,14 +238,20 @@ void fields(T& v, F&& f) {
   f("zone", v.zone, Described{});
 }
 
-template <Is<IntersectionGeometry> T, class F>
-void fields(T& v, F&& f) {
+/// The components with which intersections and road segments begin.
+template <class T, class F>
+void place_fields(T& v, F& f) {
   f.optional("name", v.name, kName);
   f("id", v.id, Described{});
   f("revision", v.revision, kRevision);
   f("refPoint", v.reference, Described{});
   f.optional("laneWidth", v.lane_width, kWidth);
   f.optional("speedLimits", v.speed_limits, kSpeedLimitList);
+}
+
+template <Is<IntersectionGeometry> T, class F>
+void fields(T& v, F&& f) {
+  place_fields(v, f);
   f("laneSet", v.lanes, kLaneList);
   f.optional("preemptPriorityData", v.zones, ListOf<>{"SignalControlZone", 1, 32});
   f.optional("regional", v.regional, regional("Reg-IntersectionGeometry"));
@@ -253,12 +259,7 @@ void fields(T& v, F&& f) {
 
 template <Is<RoadSegment> T, class F>
 void fields(T& v, F&& f) {
-  f.optional("name", v.name, kName);
-  f("id", v.id, Described{});
-  f("revision", v.revision, kRevision);
-  f("refPoint", v.reference, Described{});
-  f.optional("laneWidth", v.lane_width, kWidth);
-  f.optional("speedLimits", v.speed_limits, kSpeedLimitList);
+  place_fields(v, f);
   f("roadLaneSet", v.lanes, kLaneList);
   f.optional("regional", v.regional, regional("Reg-RoadSegment"));
 }
