@@ -2,10 +2,12 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "apps/command_line.h"
 #include "base/error.h"
+#include "control/own_controllers.h"
 
 namespace {
 
@@ -20,6 +22,7 @@ int main(int argc, char** argv) {
   // A file that may not grow any more is an error with a message, as a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
+    if (const char* const plugins = std::getenv("SENSORFARM_PLUGINS")) sf::control::load_plugin_list(plugins);
     const sf::apps::Parsed parsed = sf::apps::parse_command_line(argc, argv);
     const int code = parsed.exit_code ? *parsed.exit_code : parsed.call();
     // A full disk must not pass for an answer.

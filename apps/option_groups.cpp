@@ -7,7 +7,7 @@
 
 #include "apps/option_parsers.h"
 #include "apps/text.h"
-#include "control/controllers.h"
+#include "control/own_controllers.h"
 #include "sensors/accuracy.h"
 
 namespace sf::apps {
@@ -237,8 +237,10 @@ void add_robots(CLI::App& app, CloneOptions& o) {
 void add_controller(CLI::App& app, ControllerOptions& o) {
   std::vector<std::string> names;
   for (const control::ControllerType* type : control::controllers()) names.emplace_back(type->name);
-  app.add_option("--controller", o.controller, "Controller of the robots: " + join_or(names))
-      ->check(one_of(names))
+  const Validator known = one_of(names);
+  app.add_option("--controller", o.controller,
+                 "Controller of the robots: " + join_or(names) + ", or a plug-in's file (./libmine.so)")
+      ->check([=](const std::string& name) { return control::names_a_file(name) ? std::string() : known(name); })
       ->type_name("NAME")
       ->capture_default_str();
   app.add_option(

@@ -10,8 +10,8 @@ namespace sf::control {
 
 namespace {
 
-constexpr std::uint32_t kBeams = 512;  // beams used of one laser, at most
-constexpr double kSideways = 1.8;      // [rad] beams farther from straight ahead are not used
+constexpr std::uint32_t kBeams = 512;     // beams used of one laser, at most
+constexpr double kFarthestBearing = 1.8;  // [rad] beams farther from straight ahead are not used
 
 }  // namespace
 
@@ -35,7 +35,7 @@ ClearanceEstimator::ClearanceEstimator(const world::Mover& mover) {
     for (std::uint32_t i = 0; i < laser.samples; i += stride) {
       const double along = laser.samples > 1 ? static_cast<double>(i) / (laser.samples - 1) - 0.5 : 0.0;
       const double bearing = base::wrap_angle(laser.X_MS.yaw + along * laser.fov);
-      if (std::abs(bearing) > kSideways) continue;
+      if (std::abs(bearing) > kFarthestBearing) continue;
       view.beams.push_back({i, static_cast<float>(std::cos(bearing)), static_cast<float>(std::sin(bearing))});
       if (std::abs(bearing) < 0.6) range_ = std::max(range_, laser.X_MS.x + laser.range_max - front_);
     }

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "control/control_shell.h"
+#include "control/own_controllers.h"
 
 namespace sf::control {
 
@@ -20,16 +21,25 @@ extern const ControllerType patrol_controller;
 extern const ControllerType route_controller;
 extern const ControllerType wander_controller;
 
-std::span<const ControllerType* const> controllers() {
-  static constexpr const ControllerType* kControllers[] = {
+namespace {
+
+std::vector<const ControllerType*>& all() {
+  static std::vector<const ControllerType*> types{
       &avoid_controller,   &convoy_controller,       &docking_controller,
       &explore_controller, &lane_keeping_controller, &magnet_keeping_controller,
       &patrol_controller,  &route_controller,        &wander_controller,
   };
-  return kControllers;
+  return types;
 }
 
+}  // namespace
+
+std::span<const ControllerType* const> controllers() { return all(); }
+
+void add_controller(const ControllerType* type) { all().push_back(type); }
+
 const ControllerType* find_controller(std::string_view name) {
+  if (names_a_file(name)) return load_controller(std::string(name));
   for (const ControllerType* type : controllers())
     if (type->name == name) return type;
   return nullptr;
@@ -44,7 +54,9 @@ ConfiguredController make_controller(const ControllerContext& context, Controlle
         fmt::format("there is no controller '{}'; expected one of: {}", config.name, fmt::join(names, ", ")));
   }
   const ControlShellSettings shell = read_control_shell_settings(config.settings, type->stops_on_bumper);
-  std::unique_ptr<Controller> inner = type->make(context, config.settings);
+  ControllerContext own = context;
+  own.type = type;
+  std::unique_ptr<Controller> inner = type->make(own, config.settings);
   config.settings.require_all_read();
   return {std::make_unique<ControlShell>(std::move(inner), shell), config.rate > 0.0 ? config.rate : type->rate};
 }

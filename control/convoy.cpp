@@ -9,8 +9,8 @@ namespace sf::control {
 
 namespace {
 
-constexpr double kNear = 2.5;    // [m] distance of a newcomer at which the gap is opened
-constexpr double kBehind = 1.2;  // [m] distance at which a follower has fallen behind
+constexpr double kNewcomerDistance = 2.5;  // [m] distance of a newcomer at which the gap is opened
+constexpr double kBehind = 1.2;            // [m] distance at which a follower has fallen behind
 
 /// Row of another follower of the same leader.
 std::optional<std::uint32_t> newcomer(const ConvoyState& convoy, const std::vector<RoadUser>& road_users) {
@@ -65,7 +65,7 @@ double opened_gap(const ConvoyState& convoy, const LaneCorridors& corridors, con
   if (!row) return 0.0;
   const Pose& a = road_users[0].X_WM;
   const Pose& b = road_users[*row].X_WM;
-  return std::hypot(a.x - b.x, a.y - b.y) < kNear ? 2.0 * corridors.body().radius + 0.3 : 0.0;
+  return std::hypot(a.x - b.x, a.y - b.y) < kNewcomerDistance ? 2.0 * corridors.body().radius + 0.3 : 0.0;
 }
 
 bool follower_lags(const std::vector<RoadUser>& road_users) {

@@ -13,11 +13,11 @@ namespace {
 using base::Pose;
 using base::Twist;
 
-constexpr double kStart = 0.02;      // [m] initially free ground beyond the body and the parts on it
-constexpr double kHere = 0.002;      // [m] tolerance at which a place is reached
-constexpr double kAligned = 0.01;    // [rad] tolerance at which a heading is reached
-constexpr double kTouch = 5e-4;      // [m] minimum distance to a surface
-constexpr double kNearRange = 0.85;  // part of the laser's range used in the first stage
+constexpr double kFreeAtStart = 0.02;  // [m] initially free ground beyond the body and the parts on it
+constexpr double kHere = 0.002;        // [m] tolerance at which a place is reached
+constexpr double kAligned = 0.01;      // [rad] tolerance at which a heading is reached
+constexpr double kTouch = 5e-4;        // [m] minimum distance to a surface
+constexpr double kNearRange = 0.85;    // part of the laser's range used in the first stage
 constexpr double kFarRange = 1.0;
 constexpr int kGraze = 2;  // nodes
 
@@ -52,7 +52,7 @@ Twist Explore::step(const ControllerInput& input) {
   const Pose& X_WM = input.state.X_WM;
   const bool news = update_map(input);
   if (!started_) {
-    map_.mark_free(origin(X_WM), reach_of(settings_) + kStart);
+    map_.mark_free(origin(X_WM), reach_of(settings_) + kFreeAtStart);
     last_yaw_ = X_WM.yaw;
     last_time_ = input.time;
     started_ = true;

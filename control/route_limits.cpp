@@ -12,7 +12,7 @@ namespace {
 constexpr double kBraking = 0.3;             // [m/s^2] comfortable deceleration
 constexpr double kSideways = 0.1;            // [m/s^2] lateral acceleration in curves
 constexpr double kWaiting = 0.5;             // factor of the speed while a follower has fallen behind
-constexpr double kStanding = 0.02;           // [m/s] below this a robot counts as standing
+constexpr double kStandstill = 0.02;         // [m/s] below this a robot counts as standing
 constexpr std::int64_t kStop = 300'000'000;  // [ns] duration of a full stop
 
 }  // namespace
@@ -154,7 +154,7 @@ void Route::limit_by_others(Limit& limit) const {
     const double most = free > 1e-3 ? free / settings_.headway : 0.0;
     if (most >= limit.speed) continue;
     limit.speed = most;
-    limit.why = std::abs(other.speed) < kStanding ? "stands in its way" : "is in its way";
+    limit.why = std::abs(other.speed) < kStandstill ? "stands in its way" : "is in its way";
     limit.who = right_of_way_.road_users()[other.row].id;
   }
 }

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/suggest.h"
+#include "control/own_controllers.h"
 #include "scenarios/scenario.h"
 #include "world/toml_reader.h"
 
@@ -67,15 +68,29 @@ control::Settings settings_of(const Reader& reader, const TomlNode* table, const
   return {fmt::format("controller '{}'", controller), std::move(settings)};
 }
 
+/// A plug-in's file, relative to the scenario's.
+std::string plugin_of(const Reader& reader, const TomlNode& node, const std::string& name) {
+  const std::string file = (std::filesystem::path(reader.file()).parent_path() / name).string();
+  try {
+    control::find_controller(file);
+  } catch (const base::InputError& error) {
+    reader.fail(node, error.what());
+  }
+  return file;
+}
+
 /// Name of the controller; empty for "none".
 std::string controller_of(const Reader& reader, const TomlNode& table, const std::string& fallback) {
-  const std::string name = reader.text(table, "controller", fallback);
+  const TomlNode* const node = world::find(table, "controller");
+  if (node == nullptr) return fallback;
+  const std::string name = reader.text(table, "controller", "");
   if (name == "none" || name.empty()) return "";
+  if (control::names_a_file(name)) return plugin_of(reader, *node, name);
   if (control::find_controller(name) != nullptr) return name;
   std::vector<std::string_view> names{"none"};
   for (const control::ControllerType* type : control::controllers()) names.push_back(type->name);
-  reader.fail(*world::find(table, "controller"), fmt::format("there is no controller '{}'{}; expected one of: {}", name,
-                                                             base::suggest(name, names), fmt::join(names, ", ")));
+  reader.fail(*node, fmt::format("there is no controller '{}'{}; expected one of: {}", name, base::suggest(name, names),
+                                 fmt::join(names, ", ")));
 }
 
 /// Without a controller in the table the fallback's applies. Settings are replaced as a whole, not key by key.

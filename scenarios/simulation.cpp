@@ -72,7 +72,7 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Sim
   const Actor& actor = options.actors.empty() ? options.actor : options.actors[mover];
   if (actor.controller.name.empty() || (options.actors.empty() && world_.movers[mover].is_tag)) return robot;
   std::vector<world::Warning> warnings;
-  const control::ControllerContext site{world_, mover, options.seed, roads(), &warnings};
+  const control::ControllerContext site{world_, mover, options.seed, roads(), &warnings, &farm_.sensor_set()};
   control::ConfiguredController made = control::make_controller(site, actor.controller);
   if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same settings read the same files
   robot.controller = std::move(made.controller);
@@ -125,6 +125,12 @@ void Simulation::move() {
   move_s_ += base::seconds_since(start);
 }
 
+void Simulation::command(std::span<const base::Twist> commands) {
+  SF_CHECK(commands.size() == commands_.size(), "commands: expected one per mover");
+  for (std::size_t m = 0; m < commands.size(); ++m)
+    if (!controls_[m].controller) commands_[m] = commands[m];
+}
+
 void Simulation::put(std::uint32_t mover, const base::Pose& X_WM) {
   SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
   const base::Report report{mover, fleet_.reports()[mover].time, X_WM, {}};
@@ -152,9 +158,22 @@ void Simulation::decide(std::int64_t time) {
     signals_[i] = world::signal_at(world_.lights[i], 1e-9 * static_cast<double>(time));
   if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
   thread_pool_.parallel_for(controls_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
-    for (std::size_t m = begin; m < end; ++m) decide_one(static_cast<std::uint32_t>(m), time, thread);
+    for (std::size_t m = begin; m < end; ++m) try_to_decide(static_cast<std::uint32_t>(m), time, thread);
   });
+  if (failure_) std::rethrow_exception(failure_);
   std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());
+}
+
+/// `decide_one`; keeps the error of the first mover that fails, since none may leave a thread of the pool.
+void Simulation::try_to_decide(std::uint32_t mover, std::int64_t time, unsigned thread) {
+  try {
+    decide_one(mover, time, thread);
+  } catch (...) {
+    const std::scoped_lock guard(failure_lock_);
+    if (mover >= failed_) return;
+    failed_ = mover;
+    failure_ = std::current_exception();
+  }
 }
 
 void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thread) {

@@ -8,7 +8,9 @@
 // Sensors measure at their own due times, also between ticks.
 
 #include <cstdint>
+#include <exception>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -53,7 +55,12 @@ class Simulation {
 
   /// Performs one tick of `world.interval`; the first one measures at time 0 without motion. Returns the readings
   /// delivered since the last tick, in order of delivery. Spans live until the next call.
+  /// @throws base::InputError where a controller fails; the first robot's error
   base::TickRecord step();
+
+  /// Sets the commands of movers without a controller, to be executed from the next step on until they are set again.
+  /// @param commands one per mover, finite; those of other movers are ignored
+  void command(std::span<const base::Twist> commands);
 
   /// Places the mover at a pose, at rest. Called between two steps.
   void put(std::uint32_t mover, const base::Pose& X_WM);
@@ -86,6 +93,7 @@ class Simulation {
   void sort_by_mover(std::span<const base::ReadingBlock> readings);
   void decide(std::int64_t time);
   void decide_one(std::uint32_t mover, std::int64_t time, unsigned thread);
+  void try_to_decide(std::uint32_t mover, std::int64_t time, unsigned thread);
   std::int64_t leaves_at(const base::ReadingBlock& reading) const;
   bool due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
   void find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const;
@@ -112,7 +120,10 @@ class Simulation {
   std::vector<std::vector<control::Neighbour>> others_;  ///< per thread
   std::vector<world::Signal> signals_;
   std::vector<world::Warning> warnings_;
-  double v2v_range_ = 0.0;  ///< [m] largest of all controllers
+  std::mutex failure_lock_;
+  std::exception_ptr failure_;           ///< of a controller in this tick
+  std::uint32_t failed_ = world::kNone;  ///< its mover, the first that failed
+  double v2v_range_ = 0.0;               ///< [m] largest of all controllers
   std::int64_t start_at_;
   std::int64_t interval_;  ///< [ns]
   std::uint64_t tick_ = 0;

@@ -1,0 +1,154 @@
+#include "control/own_controller.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "base/error.h"
+#include "sensorfarm/controller.h"
+
+namespace sf::control {
+
+namespace {
+
+static_assert(static_cast<int>(sensorfarm::LightState::flashing_yellow) ==
+              static_cast<int>(world::LightState::flashing_yellow));
+static_assert(sensorfarm::kNone == base::kNoHit && sensorfarm::kNone == base::kNoId);
+
+sensorfarm::Pose pose_of(const base::Pose& X) { return {X.x, X.y, X.z, X.yaw}; }
+sensorfarm::Twist twist_of(const base::Twist& twist) { return {twist.forward, twist.left, twist.turn}; }
+
+/// The farm's settings behind the public interface.
+class PublicSettings final : public sensorfarm::Settings {
+ public:
+  explicit PublicSettings(control::Settings& settings) : settings_(settings) {}
+  double number(std::string_view key, double fallback, double least, double most) override {
+    return settings_.number(key, fallback, least, most);
+  }
+  bool flag(std::string_view key, bool fallback) override { return settings_.flag(key, fallback); }
+  std::string text(std::string_view key, const std::string& fallback) override { return settings_.text(key, fallback); }
+  std::vector<double> numbers(std::string_view key, const std::vector<double>& fallback) override {
+    return settings_.numbers(key, fallback);
+  }
+
+ private:
+  control::Settings& settings_;
+};
+
+sensorfarm::SensorInfo info_of(const sensors::SensorType& type, const sensors::SensorSpec& spec) {
+  sensorfarm::SensorInfo info{
+      std::string(type.name), spec.sensor, spec.name, pose_of(spec.X_MS), spec.rate, spec.elements, {}, spec.limit, {}};
+  for (const sensors::Column& column : type.columns)
+    for (std::uint32_t k = 0; k < column.width; ++k)
+      info.columns.push_back(column.width == 1 ? std::string(column.name) : fmt::format("{}[{}]", column.name, k));
+  for (std::uint32_t i = 0; type.is_scan && i < spec.elements; ++i) info.bearings.push_back(bearing_of(spec, i));
+  return info;
+}
+
+sensorfarm::Robot robot_of(const ControllerContext& context) {
+  const world::Mover& mover = context.world.movers[context.mover];
+  sensorfarm::Robot robot{mover.name,     mover.id, context.mover, pose_of(mover.X_WM), mover.radius, mover.max_forward,
+                          mover.max_turn, {},       context.seed,  context.world.file};
+  std::optional<sensors::SensorSet> made;
+  const sensors::SensorSet& all = context.sensor_set != nullptr ? *context.sensor_set : made.emplace(context.world);
+  for (const sensors::SensorSet::Group& group : all.groups())
+    for (const sensors::SensorSpec& spec : all.of(group.type->id, context.mover))
+      robot.sensors.push_back(info_of(*group.type, spec));
+  return robot;
+}
+
+class OwnController final : public Controller {
+  void translate(const ControllerInput& input);
+  [[noreturn]] void fail(const std::string& why) const {
+    throw base::InputError(fmt::format("controller '{}' of robot '{}' failed at {:.3f} s: {}", name_,
+                                       world_.movers[robot_].name, time_, why));
+  }
+  template <class Call>
+  auto guarded(Call&& call) const {
+    try {
+      return call();
+    } catch (const std::exception& error) {
+      fail(error.what());
+    } catch (...) {
+      fail("it threw something that is no std::exception");
+    }
+  }
+
+ public:
+  OwnController(const ControllerContext& context, std::unique_ptr<sensorfarm::Controller> inner)
+      : world_(context.world),
+        robot_(context.mover),
+        name_(context.type->name),
+        inner_(std::move(inner)),
+        range_(guarded([&] { return inner_->radio_range(); })) {}
+
+  base::Twist step(const ControllerInput& input) override;
+  base::Intent intent() const override { return {}; }
+  double v2v_range() const override { return range_; }
+  bool done() const override {
+    return guarded([&] { return inner_->done(); });
+  }
+  double error() const override {
+    return guarded([&] { return inner_->error(); });
+  }
+
+ private:
+  const world::World& world_;
+  std::uint32_t robot_;
+  std::string_view name_;
+  std::unique_ptr<sensorfarm::Controller> inner_;
+  double time_ = 0.0;  ///< [s] of the last step
+  double range_;
+  std::vector<sensorfarm::Reading> readings_;
+  std::vector<sensorfarm::Neighbour> others_;
+  std::vector<sensorfarm::Light> lights_;
+};
+
+void OwnController::translate(const ControllerInput& input) {
+  readings_.clear(), others_.clear(), lights_.clear();
+  for (const base::ReadingBlock& r : input.readings)
+    readings_.push_back({sensors::find_sensor_type(r.type)->name, r.sensor, 1e-9 * static_cast<double>(r.time),
+                         pose_of(r.X_WS), r.values, r.hits, r.bound});
+  for (const Neighbour& other : input.others)
+    others_.push_back({other.id, pose_of(other.state.X_WM), twist_of(other.state.velocity), other.intent.follows});
+  for (std::size_t i = 0; i < input.signals.size(); ++i)
+    lights_.push_back({world_.lights[i].name, pose_of(world_.lights[i].X_WL),
+                       static_cast<sensorfarm::LightState>(input.signals[i].state), input.signals[i].left});
+}
+
+base::Twist OwnController::step(const ControllerInput& input) {
+  time_ = 1e-9 * static_cast<double>(input.time);
+  translate(input);
+  const sensorfarm::Twist twist = guarded([&] {
+    return inner_->step({time_, pose_of(input.state.X_WM), twist_of(input.state.velocity), readings_, input.contact,
+                         input.started, others_, lights_});
+  });
+  if (!std::isfinite(twist.forward) || !std::isfinite(twist.left) || !std::isfinite(twist.turn))
+    fail(fmt::format("its twist is ({}, {}, {}); expected finite numbers", twist.forward, twist.left, twist.turn));
+  return {twist.forward, twist.left, twist.turn};
+}
+
+}  // namespace
+
+std::unique_ptr<Controller> make_own_controller(const ControllerContext& context, Settings& settings) {
+  const sensorfarm::ControllerEntry& entry = *context.type->entry;
+  PublicSettings keys(settings);
+  const auto refuse = [&](const char* why) {
+    throw base::InputError(fmt::format("controller '{}' refuses robot '{}': {}", entry.name,
+                                       context.world.movers[context.mover].name, why));
+  };
+  std::unique_ptr<sensorfarm::Controller> inner;
+  try {
+    inner = entry.make(robot_of(context), keys);
+  } catch (const base::InputError&) {
+    throw;  // a setting
+  } catch (const std::exception& error) {
+    refuse(error.what());
+  }
+  if (inner == nullptr) refuse("it made none");
+  return std::make_unique<OwnController>(context, std::move(inner));
+}
+
+}  // namespace sf::control

@@ -1,0 +1,109 @@
+// Plug-ins as files: each is loaded once.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "base/error.h"
+#include "base/plugin.h"
+#include "control/own_controllers.h"
+
+namespace sf::control {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Controllers of the files loaded so far, by canonical path.
+using Loaded = std::map<std::string, std::vector<const ControllerType*>>;
+Loaded& loaded() {
+  static Loaded files;
+  return files;
+}
+
+bool ends_with(std::string_view text, std::string_view end) { return text.ends_with(end); }
+
+/// The file and, behind a colon, the controller of "libmine.so:name"; an empty name without one.
+std::pair<std::string, std::string> parts_of(const std::string& name) {
+  const std::size_t slash = name.rfind('/');
+  const std::size_t colon = name.find(':', slash == std::string::npos ? 0 : slash);
+  if (colon == std::string::npos) return {name, ""};
+  return {name.substr(0, colon), name.substr(colon + 1)};
+}
+
+std::vector<const ControllerType*> load(const std::string& file) {
+  const base::SharedLibrary library(file);
+  const auto interface = reinterpret_cast<int (*)()>(library.find("sensorfarm_plugin_interface"));
+  const auto fill = reinterpret_cast<void (*)(sensorfarm::Plugin&)>(library.find("sensorfarm_plugin"));
+  if (interface == nullptr || fill == nullptr)
+    throw base::InputError(file, 0, "is no plug-in: it has no SENSORFARM_PLUGIN (sensorfarm/plugin.h)");
+  if (interface() != sensorfarm::kPluginInterface)
+    throw base::InputError(file, 0,
+                           fmt::format("was built for plug-in interface {}, and this program has {}: build it again "
+                                       "with this version's headers",
+                                       interface(), sensorfarm::kPluginInterface));
+  sensorfarm::Plugin plugin;
+  try {
+    fill(plugin);
+  } catch (const std::exception& error) {
+    throw base::InputError(file, 0, fmt::format("its SENSORFARM_PLUGIN failed: {}", error.what()));
+  }
+  std::vector<const ControllerType*> types;
+  for (sensorfarm::ControllerEntry& entry : plugin.controllers)
+    types.push_back(add_own_controller(std::move(entry), file));
+  return types;
+}
+
+const std::vector<const ControllerType*>& controllers_in(const std::string& file) {
+  std::error_code error;
+  const std::string whole = fs::canonical(file, error).string();
+  if (error) throw base::InputError(file, 0, "cannot be opened: " + error.message());
+  const auto known = loaded().find(whole);
+  return known != loaded().end() ? known->second : loaded().emplace(whole, load(file)).first->second;
+}
+
+}  // namespace
+
+bool names_a_file(std::string_view name) {
+  return name.find('/') != std::string_view::npos || ends_with(parts_of(std::string(name)).first, ".so");
+}
+
+const ControllerType* load_controller(const std::string& name) {
+  const auto [file, wanted] = parts_of(name);
+  const auto& types = controllers_in(file);
+  if (types.empty()) throw base::InputError(file, 0, "has no controller");
+  if (wanted.empty() && types.size() == 1) return types.front();
+  const auto found = std::find_if(types.begin(), types.end(), [&](const auto* type) { return type->name == wanted; });
+  if (found != types.end()) return *found;
+  std::string names;
+  for (const ControllerType* type : types) names += fmt::format("{}{}:{}", names.empty() ? "" : ", ", file, type->name);
+  throw base::InputError(
+      file, 0,
+      fmt::format("has {}; expected one of: {}",
+                  wanted.empty() ? "several controllers" : fmt::format("no controller '{}'", wanted), names));
+}
+
+void load_plugin_file(const std::string& file) { controllers_in(file); }
+
+void load_plugin_list(const std::string& list) {
+  for (std::size_t at = 0; at <= list.size();) {
+    const std::size_t end = std::min(list.find(':', at), list.size());
+    const std::string entry = list.substr(at, end - at);
+    at = end + 1;
+    if (entry.empty()) continue;
+    if (!fs::is_directory(entry)) {
+      load_plugin_file(entry);
+      continue;
+    }
+    std::vector<std::string> files;
+    for (const fs::directory_entry& file : fs::directory_iterator(entry))
+      if (file.path().extension() == ".so") files.push_back(file.path().string());
+    std::sort(files.begin(), files.end());
+    for (const std::string& file : files) load_plugin_file(file);
+  }
+}
+
+}  // namespace sf::control

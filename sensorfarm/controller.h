@@ -1,0 +1,144 @@
+#pragma once
+// Controllers of your own, in your own library: readings in, twist out (docs/own_controller.md).
+//
+//   #include <sensorfarm/plugin.h>
+//
+//   class Straight : public sensorfarm::Controller {
+//    public:
+//     Straight(const sensorfarm::Robot&, sensorfarm::Settings& settings) : speed_(settings.number("speed", 0.2, 0, 2))
+//     {} sensorfarm::Twist step(const sensorfarm::Input& input) override { return {input.contact ? 0.0 : speed_}; }
+//
+//    private:
+//     double speed_;
+//   };
+//
+//   SENSORFARM_PLUGIN(plugin) { plugin.add_controller<Straight>("straight", "drives straight on"); }
+//
+// Such a library is loaded by `sensorfarm run WORLD --controller ./libstraight.so --set speed=0.3`.
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sensorfarm/types.h"
+
+namespace sensorfarm {
+
+/// One sensor of a robot.
+struct SensorInfo {
+  std::string type;                  ///< such as "laser"
+  std::uint32_t number = 0;          ///< 0-based among the robot's sensors of this type
+  std::string name;                  ///< unique among the robot's sensors
+  Pose X_RS;                         ///< the sensor in the robot's frame
+  double rate = 0.0;                 ///< [Hz]
+  std::uint32_t elements = 1;        ///< rows of a reading: beams of a laser, cones of a sonar ring, else 1
+  std::vector<std::string> columns;  ///< of a row, with units: "range_m"; a vector of three is three columns
+  double limit = 0.0;                ///< largest value of a row's first column: a laser's range [m]
+  std::vector<double> bearings;      ///< [rad] of a laser's beams in the sensor's frame; empty for other types
+};
+
+/// The robot that a controller drives, as it is when the controller is made.
+struct Robot {
+  std::string name;          ///< of the world file
+  std::uint32_t id = 0;      ///< number in packets
+  std::uint32_t row = 0;     ///< among all robots and tags of the world
+  Pose pose;                 ///< at the start
+  double radius = 0.0;       ///< [m] of the circle about its origin that holds its body
+  double max_forward = 0.0;  ///< [m/s]
+  double max_turn = 0.0;     ///< [rad/s]
+  std::vector<SensorInfo> sensors;
+  std::uint64_t seed = 0;  ///< of random choices; the same for all robots of a run
+  std::string world;       ///< path of the world file, as given by the user
+};
+
+/// One reading of one sensor.
+struct Reading {
+  std::string_view type;           ///< such as "laser"
+  std::uint32_t number = 0;        ///< 0-based among the robot's sensors of this type
+  double time = 0.0;               ///< [s] of the measurement
+  Pose X_WS;                       ///< the sensor at the measurement
+  std::span<const double> values;  ///< row by row, in each the type's columns; a range without a return is the limit
+  std::span<const std::uint32_t> hits;  ///< lasers in a simulation: number of the model met by each beam, or kNone
+  double bound = std::numeric_limits<double>::infinity();  ///< largest error of the first column without noise
+};
+
+/// Another robot, as it broadcasts itself (V2V).
+struct Neighbour {
+  std::uint32_t id = 0;
+  Pose pose;
+  Twist velocity;
+  std::uint32_t follows = kNone;  ///< id of the robot that it follows, or kNone
+};
+
+enum class LightState : std::uint8_t { dark, red, yellow, green, flashing_red, flashing_yellow };
+
+/// One traffic light of the world.
+struct Light {
+  std::string_view name;
+  Pose pose;  ///< its lamps face along x
+  LightState state = LightState::dark;
+  double left = 0.0;  ///< [s] until its next change; infinity: never
+};
+
+/// What a robot knows when its controller is called. Spans live for the call.
+struct Input {
+  double time = 0.0;  ///< [s] simulated, or the robot's clock; does not decrease
+  Pose pose;          ///< the robot's own: true in a simulation, estimated in `sensorfarm robot`
+  Twist velocity;
+  std::span<const Reading> readings;  ///< the newest of each of its sensors, new since the last call or not
+  bool contact = false;               ///< the bumper is pressed, or an obstacle blocked the last motion
+  bool started = true;                ///< the start signal was given
+  std::span<const Neighbour> others;  ///< robots within `Controller::radio_range`, in order of id
+  std::span<const Light> lights;      ///< all of the world
+
+  /// The newest reading of a sensor; null without one.
+  const Reading* newest(std::string_view type, std::uint32_t number = 0) const {
+    for (const Reading& reading : readings)
+      if (reading.number == number && reading.type == type) return &reading;
+    return nullptr;
+  }
+};
+
+/// One object per robot. Calls of one object come one after another; those of different objects may run in parallel.
+/// An exception ends the run with its message.
+class Controller {
+ public:
+  virtual ~Controller() = default;
+  /// @return the twist to drive until the next call; finite
+  virtual Twist step(const Input& input) = 0;
+  /// [m] Within which other robots are heard; read once. 0: none.
+  virtual double radio_range() const { return 0.0; }
+  /// The task is finished. The robot stands from then on, and a run ends when all are done.
+  virtual bool done() const { return false; }
+  /// Control error of the last step in a unit of your own, for statistics and scenarios; NaN: none.
+  virtual double error() const { return std::numeric_limits<double>::quiet_NaN(); }
+};
+
+/// Settings by key, from `--set KEY=VALUE` or a scenario's `[robots.settings]`. Each function returns the fallback
+/// where the key is absent. Values of another kind or outside [least, most], and keys that nothing has read when the
+/// controller is made, are errors with their place.
+class Settings {
+ public:
+  virtual ~Settings() = default;
+  virtual double number(std::string_view key, double fallback, double least, double most) = 0;
+  virtual bool flag(std::string_view key, bool fallback) = 0;
+  virtual std::string text(std::string_view key, const std::string& fallback) = 0;
+  virtual std::vector<double> numbers(std::string_view key, const std::vector<double>& fallback) = 0;
+};
+
+/// A kind of controller: its name, and how one is made.
+struct ControllerEntry {
+  std::string name;             ///< by which users choose it
+  std::string summary;          ///< one line
+  double rate = 10.0;           ///< [Hz] of its calls, in (0, 10000]
+  bool stops_on_bumper = true;  ///< it is not called, and the robot stands, while `Input::contact` (the user's setting
+                                ///< `wait_on_bumper` decides)
+  /// An exception refuses the robot, with its message.
+  std::function<std::unique_ptr<Controller>(const Robot&, Settings&)> make;
+};
+
+}  // namespace sensorfarm

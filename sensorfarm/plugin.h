@@ -1,0 +1,37 @@
+#pragma once
+// A plug-in: a shared library with controllers of your own. It needs these headers only, and no library of the farm.
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sensorfarm/controller.h"
+
+namespace sensorfarm {
+
+/// Raised with every change of these headers that changes the layout of a type. A library with another number is
+/// refused.
+inline constexpr int kPluginInterface = 1;
+
+/// What a plug-in offers.
+struct Plugin {
+  std::vector<ControllerEntry> controllers;
+
+  /// `Made` is constructed from (const Robot&, Settings&).
+  template <class Made>
+  ControllerEntry& add_controller(std::string name, std::string summary, double rate = 10.0) {
+    return controllers.emplace_back(ControllerEntry{
+        std::move(name), std::move(summary), rate, true,
+        [](const Robot& robot, Settings& settings) { return std::make_unique<Made>(robot, settings); }});
+  }
+};
+
+}  // namespace sensorfarm
+
+/// Opens the function that fills in `plugin`; once per library.
+#define SENSORFARM_PLUGIN(plugin)                                                       \
+  extern "C" __attribute__((visibility("default"))) int sensorfarm_plugin_interface() { \
+    return sensorfarm::kPluginInterface;                                                \
+  }                                                                                     \
+  extern "C" __attribute__((visibility("default"))) void sensorfarm_plugin(sensorfarm::Plugin& plugin)

@@ -1,0 +1,26 @@
+#pragma once
+// Plain types of the public interface: metres, radians, seconds. Headers of this folder include the standard library
+// alone.
+
+#include <cstdint>
+
+namespace sensorfarm {
+
+/// A planar pose with a height, in the world frame unless said otherwise: x forward, y left, z up.
+struct Pose {
+  double x = 0.0;    ///< [m]
+  double y = 0.0;    ///< [m]
+  double z = 0.0;    ///< [m]
+  double yaw = 0.0;  ///< [rad] counter-clockwise, any value
+};
+
+/// A velocity in the robot's own frame.
+struct Twist {
+  double forward = 0.0;  ///< [m/s] along the robot's x
+  double left = 0.0;     ///< [m/s] along the robot's y; 0 for robots that cannot move sideways
+  double turn = 0.0;     ///< [rad/s] counter-clockwise
+};
+
+inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;  ///< no id; as a hit: the beam met nothing within range
+
+}  // namespace sensorfarm
