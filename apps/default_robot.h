@@ -6,10 +6,6 @@
 
 namespace sf::apps {
 
-/// When `world` has no robot: adds `roomba1`, a Create (disc of 0.33 m) with a laser of 361 rays over 180 degrees and 8
-/// m, at the origin, and says so in a warning. @return true when it did.
-bool add_default_robot(world::World& world);
-
 /// Loads the world, lends it a robot where it has none, clones robots when `count` > 0, and tells of its warnings.
 world::World load_with_robots(const std::string& file, const world::LoadOptions& options, std::uint32_t count = 0,
                               std::uint64_t seed = 1, const std::string& of = "");

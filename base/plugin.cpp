@@ -7,14 +7,14 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/installation.h"
 
 namespace sf::base {
 
 const void* load_plugin(const char* name, const char* without, const char* library) {
   const std::string file = std::string(name) + ".so";
   std::error_code ignored;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  const std::string beside = (program.parent_path() / file).string();
+  const std::string beside = (std::filesystem::path(own_folder()) / file).string();
   void* module =
       dlopen(std::filesystem::exists(beside, ignored) ? beside.c_str() : file.c_str(), RTLD_NOW | RTLD_LOCAL);
   const void* symbol = module != nullptr ? dlsym(module, name) : nullptr;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "sensorfarm/controller.h"
 
 namespace sf::control {
 
@@ -47,6 +46,8 @@ sensorfarm::SensorInfo info_of(const sensors::SensorType& type, const sensors::S
   return info;
 }
 
+}  // namespace
+
 sensorfarm::Robot robot_of(const ControllerContext& context) {
   const world::Mover& mover = context.world.movers[context.mover];
   sensorfarm::Robot robot{mover.name,     mover.id, context.mover, pose_of(mover.X_WM), mover.radius, mover.max_forward,
@@ -58,6 +59,8 @@ sensorfarm::Robot robot_of(const ControllerContext& context) {
       robot.sensors.push_back(info_of(*group.type, spec));
   return robot;
 }
+
+namespace {
 
 class OwnController final : public Controller {
   void translate(const ControllerInput& input);

@@ -5,10 +5,14 @@
 #include <memory>
 
 #include "control/controllers.h"
+#include "sensorfarm/controller.h"
 
 namespace sf::control {
 
 /// `ControllerType::make` of all types with an entry.
 std::unique_ptr<Controller> make_own_controller(const ControllerContext& context, Settings& settings);
+
+/// The robot as its controller is told of it. @throws base::InputError for a sensor with invalid settings
+sensorfarm::Robot robot_of(const ControllerContext& context);
 
 }  // namespace sf::control

@@ -22,6 +22,8 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   farm.threads = options.threads;
   farm.no_return_inf = options.no_return_inf;
   farm.true_poses = !options.states;
+  farm.noise = options.noise;
+  farm.scene.caster = options.caster;
   return farm;
 }
 

@@ -45,6 +45,8 @@ struct SimulationOptions {
   double start_at = 0.0;      ///< [s] time of the start signal
   std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; none: the farm knows the true ones
   bool no_return_inf = false;              ///< see farm::FarmOptions
+  bool noise = true;                       ///< likewise
+  raycast::CasterChoice caster = raycast::CasterChoice::automatic;
 };
 
 /// `world` and `device` must outlive it. One thread at a time. Ticks allocate nothing after warm-up.

@@ -1,0 +1,58 @@
+#include "library/loading.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <mutex>
+
+#include "base/error.h"
+#include "base/installation.h"
+#include "scenarios/default_robot.h"
+#include "sensors/sensor_type.h"
+#include "world/free_space.h"
+#include "world/stage/stage.h"
+
+namespace sf::library {
+
+std::string found(const std::string& file) { return base::installed_file(file); }
+
+world::World load(const WorldSource& source, const sensorfarm::Options& options) {
+  world::LoadOptions load;
+  load.accuracy = options.accuracy;
+  load.sensors = sensors::world_file_words();
+  world::World world =
+      source.text.empty() ? world::load_world(source.file, load) : world::build_world(source.file, source.text, load);
+  const bool lent = scenarios::add_default_robot(world);
+  if (options.robots > 0 || lent) world::clone_robots(world, std::max(1u, options.robots), options.seed, options.of);
+  return world;
+}
+
+std::shared_ptr<gpu::Device> shared_device(const std::string& wanted) {
+  static std::mutex lock;
+  static std::map<std::string, std::weak_ptr<gpu::Device>> open;
+  const std::scoped_lock guard(lock);
+  std::weak_ptr<gpu::Device>& known = open[wanted];
+  if (auto device = known.lock()) return device;
+  auto device = std::make_shared<gpu::Device>(wanted);
+  known = device;
+  return device;
+}
+
+raycast::CasterChoice caster_of(const std::string& word) {
+  if (word == "auto") return raycast::CasterChoice::automatic;
+  if (word == "vulkan") return raycast::CasterChoice::vulkan;
+  if (word == "host") return raycast::CasterChoice::host;
+  throw base::InputError(fmt::format("there is no caster '{}'; expected auto, vulkan or host", word));
+}
+
+control::ControllerConfig controller_of(const sensorfarm::Options& options) {
+  std::vector<control::Setting> settings;
+  for (const auto& [key, value] : options.settings)
+    settings.push_back({key, control::RawText{value}, fmt::format("setting {}: ", key)});
+  return {options.controller, 0.0,
+          control::Settings(fmt::format("controller '{}'", options.controller), std::move(settings))};
+}
+
+}  // namespace sf::library

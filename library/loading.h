@@ -1,0 +1,35 @@
+#pragma once
+// What a simulation of the public interface is made from.
+
+#include <memory>
+#include <string>
+
+#include "control/controllers.h"
+#include "gpu/device.h"
+#include "raycast/caster_choice.h"
+#include "sensorfarm/simulation.h"
+#include "world/world.h"
+
+namespace sf::library {
+
+/// A world file, or a world's text with a name for it.
+struct WorldSource {
+  std::string file;
+  std::string text;  ///< empty: that of `file`
+};
+
+/// `file`, or the installed file of that relative path where it does not exist here.
+std::string found(const std::string& file);
+
+/// Loads, lends a robot to a world without one, and clones. @throws base::InputError
+world::World load(const WorldSource& source, const sensorfarm::Options& options);
+
+/// The open device that matches `wanted`, shared by all that ask while one of them lives. @throws base::DeviceError
+std::shared_ptr<gpu::Device> shared_device(const std::string& wanted);
+
+/// @throws base::InputError for a word that is no caster
+raycast::CasterChoice caster_of(const std::string& word);
+
+control::ControllerConfig controller_of(const sensorfarm::Options& options);
+
+}  // namespace sf::library

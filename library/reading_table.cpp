@@ -1,0 +1,104 @@
+#include "library/reading_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sf::library {
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+bool at_every_tick(const sensors::SensorSpec& row, double interval) {
+  return std::abs(row.rate * interval - 1.0) < 1e-9 && row.phase == 0.0 && row.latency == 0.0;
+}
+
+}  // namespace
+
+ReadingTable::ReadingTable(const sensors::SensorSet::Group& group, double interval) : group_(group) {
+  const std::vector<sensors::SensorSpec>& rows = group.rows;
+  every_tick_ = std::all_of(rows.begin(), rows.end(), [&](const auto& row) {
+    return at_every_tick(row, interval) && row.elements == rows.front().elements;
+  });
+  for (const sensors::SensorSpec& row : rows) {
+    view_.elements = std::max<std::size_t>(view_.elements, row.elements);
+    robots_.push_back(row.mover);
+  }
+  view_.type = group.type->name;
+  view_.sensors = rows.size();
+  view_.columns = sensors::element_width(*group.type);
+  times_.assign(rows.size(), kNan);
+  bounds_.assign(rows.size(), std::numeric_limits<double>::infinity());
+  fresh_.assign(rows.size(), 0);
+  flagged_.assign(rows.size(), 0);
+  flags_.assign(rows.size() * view_.elements, 0);
+  view_.robots = robots_, view_.times = times_, view_.bounds = bounds_, view_.fresh = fresh_, view_.flags = flags_;
+}
+
+std::size_t ReadingTable::row_of(const base::ReadingBlock& reading) const {
+  return group_.first[reading.mover] + reading.sensor;
+}
+
+/// The farm's buffer has these readings as rows of equal distance.
+bool ReadingTable::is_one_table(std::span<const base::ReadingBlock> readings) const {
+  if (!every_tick_ || readings.size() != view_.sensors) return false;
+  const auto step = readings.size() > 1 ? readings[1].values.data() - readings[0].values.data() : 0;
+  const auto hit_step = readings.size() > 1 ? readings[1].hits.data() - readings[0].hits.data() : 0;
+  if (readings.size() > 1 && step < static_cast<std::ptrdiff_t>(view_.elements * view_.columns)) return false;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const auto k = static_cast<std::ptrdiff_t>(i);
+    if (row_of(readings[i]) != i || readings[i].values.data() != readings[0].values.data() + k * step ||
+        readings[i].hits.data() != readings[0].hits.data() + k * hit_step)
+      return false;
+  }
+  return true;
+}
+
+void ReadingTable::point_at(std::span<const base::ReadingBlock> readings) {
+  const bool several = readings.size() > 1;
+  const std::size_t length = view_.elements * view_.columns;
+  view_.values = readings[0].values.data();
+  view_.hits = group_.type->is_scan ? readings[0].hits.data() : nullptr;
+  view_.stride = several ? static_cast<std::size_t>(readings[1].values.data() - view_.values) : length;
+  view_.hit_stride =
+      several ? static_cast<std::size_t>(readings[1].hits.data() - readings[0].hits.data()) : view_.elements;
+}
+
+void ReadingTable::copy(std::span<const base::ReadingBlock> readings) {
+  const std::size_t length = view_.elements * view_.columns;
+  values_.resize(view_.sensors * length, kNan);
+  if (group_.type->is_scan) hits_.resize(view_.sensors * view_.elements, base::kNoHit);
+  for (const base::ReadingBlock& reading : readings) {
+    const std::size_t row = row_of(reading);
+    std::copy(reading.values.begin(), reading.values.end(),
+              values_.begin() + static_cast<std::ptrdiff_t>(row * length));
+    if (!hits_.empty())
+      std::copy(reading.hits.begin(), reading.hits.end(),
+                hits_.begin() + static_cast<std::ptrdiff_t>(row * view_.elements));
+  }
+  view_.values = values_.data(), view_.stride = length;
+  view_.hits = hits_.empty() ? nullptr : hits_.data(), view_.hit_stride = view_.elements;
+}
+
+void ReadingTable::note(const base::ReadingBlock& reading) {
+  const std::size_t row = row_of(reading);
+  times_[row] = 1e-9 * static_cast<double>(reading.time);
+  bounds_[row] = reading.bound;
+  fresh_[row] = 1;
+  const auto flags = std::span(flags_).subspan(row * view_.elements, view_.elements);
+  if (flagged_[row] != 0) std::fill(flags.begin(), flags.end(), std::uint8_t{0});
+  flagged_[row] = !reading.quality.empty();
+  for (std::size_t i = 0; i < reading.quality.size(); ++i) flags[i] = static_cast<std::uint8_t>(reading.quality[i]);
+}
+
+void ReadingTable::take(std::span<const base::ReadingBlock> readings) {
+  std::fill(fresh_.begin(), fresh_.end(), std::uint8_t{0});
+  for (const base::ReadingBlock& reading : readings) note(reading);
+  if (is_one_table(readings))
+    point_at(readings);
+  else
+    copy(readings);
+}
+
+}  // namespace sf::library

@@ -1,0 +1,47 @@
+#pragma once
+// The newest readings of all sensors of one type as one table.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/reading.h"
+#include "sensorfarm/simulation.h"
+#include "sensors/sensor_set.h"
+
+namespace sf::library {
+
+/// Where all sensors of the type are read at every tick and nowhere else, and the farm's buffer has them row by row,
+/// the table is that buffer; else readings are copied.
+class ReadingTable {
+ public:
+  /// @param interval [s] of a tick
+  ReadingTable(const sensors::SensorSet::Group& group, double interval);
+
+  /// Takes a tick's readings of this type, in order of delivery. Their memory must last until the next call.
+  void take(std::span<const base::ReadingBlock> readings);
+
+  std::uint8_t type() const { return group_.type->id; }
+  sensorfarm::Readings view() const { return view_; }
+
+ private:
+  std::size_t row_of(const base::ReadingBlock& reading) const;
+  bool is_one_table(std::span<const base::ReadingBlock> readings) const;
+  void point_at(std::span<const base::ReadingBlock> readings);
+  void copy(std::span<const base::ReadingBlock> readings);
+  void note(const base::ReadingBlock& reading);
+
+  const sensors::SensorSet::Group& group_;
+  bool every_tick_;  ///< each sensor is read at every tick and nowhere else
+  sensorfarm::Readings view_;
+  std::vector<double> values_;
+  std::vector<std::uint32_t> hits_;
+  std::vector<std::uint32_t> robots_;
+  std::vector<double> times_;
+  std::vector<double> bounds_;
+  std::vector<std::uint8_t> fresh_;
+  std::vector<std::uint8_t> flags_;
+  std::vector<std::uint8_t> flagged_;  ///< per row: some flag is set
+};
+
+}  // namespace sf::library

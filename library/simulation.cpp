@@ -1,0 +1,231 @@
+#include "sensorfarm/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "base/error.h"
+#include "control/own_controller.h"
+#include "control/own_controllers.h"
+#include "library/errors.h"
+#include "library/loading.h"
+#include "library/reading_table.h"
+#include "raycast/caster_choice.h"
+#include "record/recorder.h"
+#include "scenarios/run_info.h"
+#include "scenarios/simulation.h"
+
+namespace sensorfarm {
+
+using namespace sf;
+
+namespace {
+
+scenarios::SimulationOptions simulation_options(const Options& options, std::uint64_t seed) {
+  scenarios::SimulationOptions simulation{.seed = seed, .threads = options.threads};
+  simulation.noise = options.noise;
+  simulation.caster = library::caster_of(options.caster);
+  simulation.actor.controller = library::controller_of(options);
+  return simulation;
+}
+
+}  // namespace
+
+/// World, simulation and tables of readings, at one address.
+struct Simulation::State {
+  State(library::WorldSource source, const Options& given);
+  void begin(std::uint64_t seed);
+  void step(std::span<const Twist> commands);
+  void put(std::size_t row, const Pose& pose);
+  void take(const base::TickRecord& tick);
+  const library::ReadingTable& table(std::string_view type) const;
+
+  library::WorldSource source;
+  Options options;
+  std::shared_ptr<gpu::Device> device;
+  world::World world;
+  std::optional<scenarios::Simulation> simulation;
+  std::vector<library::ReadingTable> tables;
+  std::optional<record::Recorder> recorder;
+  std::vector<Robot> robots;
+  std::vector<std::string> models;
+  std::vector<std::string> warnings;
+  std::vector<base::Twist> commands;
+  std::vector<Pose> poses;
+  std::vector<Twist> velocities;
+  std::vector<std::uint8_t> contacts, done;
+  std::vector<base::ReadingBlock> of_type;  ///< scratch
+  std::uint64_t tick = 0;
+  double time = 0.0;
+};
+
+Simulation::State::State(library::WorldSource from, const Options& given)
+    : source(std::move(from)), options(given), device(library::shared_device(given.device)) {
+  begin(options.seed);
+}
+
+void Simulation::State::begin(std::uint64_t seed) {
+  recorder.reset(), tables.clear(), simulation.reset();
+  options.seed = seed;
+  world = library::load(source, options);
+  simulation.emplace(world, *device, simulation_options(options, seed));
+  const sensors::SensorSet& sensor_set = simulation->farm().sensor_set();
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) tables.emplace_back(group, world.interval);
+  robots.clear(), models.clear(), warnings.clear();
+  for (std::uint32_t row = 0; row < world.movers.size(); ++row)
+    robots.push_back(control::robot_of({world, row, seed, nullptr, nullptr, &sensor_set}));
+  for (const world::Model& model : world.models) models.push_back(model.name);
+  for (const world::Warning& w : world.warnings)
+    warnings.push_back(fmt::format("{}:{}: {}", w.file, w.line, w.message));
+  commands.assign(world.movers.size(), {});
+  poses.resize(world.movers.size()), velocities.resize(poses.size());
+  contacts.resize(poses.size()), done.resize(poses.size());
+  if (!options.record.empty())
+    recorder.emplace(options.record, scenarios::run_info(world, sensor_set,
+                                                         {seed, options.record_readings, false,
+                                                          raycast::describe_caster(device->info().software)}));
+  take(simulation->step());
+}
+
+void Simulation::State::step(std::span<const Twist> given) {
+  if (!given.empty()) {
+    if (given.size() != commands.size())
+      throw base::InputError(
+          fmt::format("{} commands for {} robots; expected one per row", given.size(), commands.size()));
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      const Twist& twist = given[i];
+      if (!std::isfinite(twist.forward) || !std::isfinite(twist.left) || !std::isfinite(twist.turn))
+        throw base::InputError(fmt::format("the command of '{}' is ({}, {}, {}); expected finite numbers",
+                                           robots[i].name, twist.forward, twist.left, twist.turn));
+      commands[i] = {twist.forward, twist.left, twist.turn};
+    }
+    simulation->command(commands);
+  }
+  take(simulation->step());
+}
+
+void Simulation::State::put(std::size_t row, const Pose& pose) {
+  if (row >= poses.size())
+    throw base::InputError(fmt::format("there is no row {}; expected less than {}", row, poses.size()));
+  if (!std::isfinite(pose.x + pose.y + pose.z + pose.yaw))
+    throw base::InputError(fmt::format("the pose of '{}' is not finite", robots[row].name));
+  simulation->put(static_cast<std::uint32_t>(row), {pose.x, pose.y, pose.z, pose.yaw});
+  poses[row] = pose, velocities[row] = {};
+}
+
+void Simulation::State::take(const base::TickRecord& record) {
+  tick = record.tick, time = 1e-9 * static_cast<double>(record.time);
+  for (std::size_t i = 0; i < record.reports.size(); ++i) {
+    const base::Report& report = record.reports[i];
+    poses[i] = {report.X_WM.x, report.X_WM.y, report.X_WM.z, report.X_WM.yaw};
+    velocities[i] = {report.velocity.forward, report.velocity.left, report.velocity.turn};
+    contacts[i] = record.contacts[i];
+    const control::Controller* controller = simulation->controller(static_cast<std::uint32_t>(i));
+    done[i] = controller != nullptr && controller->done();
+  }
+  for (library::ReadingTable& table : tables) {
+    of_type.clear();
+    for (const base::ReadingBlock& reading : record.readings)
+      if (reading.type == table.type()) of_type.push_back(reading);
+    table.take(of_type);
+  }
+  if (recorder) recorder->write(record);
+}
+
+const library::ReadingTable& Simulation::State::table(std::string_view type) const {
+  std::string known;
+  for (const library::ReadingTable& table : tables) {
+    if (table.view().type == type) return table;
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", table.view().type);
+  }
+  throw base::InputError(fmt::format("{} has no sensor of type '{}'; expected one of: {}", world.file, type,
+                                     known.empty() ? "none" : known));
+}
+
+Simulation::Simulation(const std::string& world, const Options& options)
+    : state_(library::translated([&] {
+        return std::make_shared<State>(library::WorldSource{library::found(world), ""}, options);
+      })) {}
+
+Simulation::Simulation(std::shared_ptr<State> state) : state_(std::move(state)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+Simulation Simulation::from_text(const std::string& text, const Options& options, const std::string& name) {
+  return library::translated([&] {
+    return Simulation(std::make_shared<State>(library::WorldSource{name, text}, options));
+  });
+}
+
+void Simulation::step() { step({}); }
+void Simulation::step(std::span<const Twist> commands) {
+  library::translated([&] { state_->step(commands); });
+}
+
+void Simulation::reset() { reset(state_->options.seed); }
+void Simulation::reset(std::uint64_t seed) {
+  // Views of the old run keep its memory.
+  state_ = library::translated([&] {
+    Options options = state_->options;
+    options.seed = seed;
+    return std::make_shared<State>(state_->source, options);
+  });
+}
+
+void Simulation::put(std::size_t row, const Pose& pose) {
+  library::translated([&] { state_->put(row, pose); });
+}
+
+std::size_t Simulation::size() const { return state_->poses.size(); }
+const std::vector<Robot>& Simulation::robots() const { return state_->robots; }
+std::span<const Pose> Simulation::poses() const { return state_->poses; }
+std::span<const Twist> Simulation::velocities() const { return state_->velocities; }
+std::span<const std::uint8_t> Simulation::contacts() const { return state_->contacts; }
+std::span<const std::uint8_t> Simulation::done() const { return state_->done; }
+
+std::vector<std::string> Simulation::types() const {
+  std::vector<std::string> names;
+  for (const library::ReadingTable& table : state_->tables) names.emplace_back(table.view().type);
+  return names;
+}
+
+Readings Simulation::readings(std::string_view type) const {
+  return library::translated([&] { return state_->table(type).view(); });
+}
+
+const std::vector<std::string>& Simulation::models() const { return state_->models; }
+double Simulation::interval() const { return state_->world.interval; }
+double Simulation::time() const { return state_->time; }
+std::uint64_t Simulation::tick() const { return state_->tick; }
+std::uint64_t Simulation::hash() const { return state_->simulation->farm().hash(); }
+
+std::string Simulation::description() const {
+  const gpu::DeviceInfo& info = state_->device->info();
+  const auto caster = raycast::choose_caster(info.software, library::caster_of(state_->options.caster));
+  return fmt::format("{}, rays cast by {}", info.name,
+                     caster == raycast::CasterChoice::host ? "the host" : "Vulkan kernels");
+}
+
+const std::vector<std::string>& Simulation::warnings() const { return state_->warnings; }
+
+void Simulation::finish_recording() {
+  library::translated([&] {
+    if (state_->recorder) state_->recorder->finish();
+  });
+}
+
+std::shared_ptr<const void> Simulation::memory() const { return state_; }
+
+void add_controller(ControllerEntry entry) {
+  library::translated([&] { control::add_own_controller(std::move(entry), "add_controller"); });
+}
+
+void load_plugin(const std::string& file) {
+  library::translated([&] { control::load_plugin_file(file); });
+}
+
+}  // namespace sensorfarm

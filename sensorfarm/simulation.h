@@ -1,0 +1,137 @@
+#pragma once
+// A simulated fleet, stepped by your program:
+//
+//   sensorfarm::Simulation simulation("worlds/cave.world", {.robots = 50});
+//   std::vector<sensorfarm::Twist> commands(simulation.size());
+//   for (int tick = 0; tick < 100; ++tick) {
+//     const sensorfarm::Readings scans = simulation.readings("laser");
+//     for (std::size_t i = 0; i < scans.sensors; ++i) commands[scans.robots[i]] = drive(scans.row(i));
+//     simulation.step(commands);
+//   }
+//
+// Link with libsensorfarm (CMake: find_package(sensorfarm), sensorfarm::sensorfarm).
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sensorfarm/controller.h"
+
+#define SENSORFARM_API __attribute__((visibility("default")))
+
+namespace sensorfarm {
+
+/// A fault that the user can correct: one line, with file and line where there are some.
+class SENSORFARM_API Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// No usable Vulkan device; one line with every device and the reason for its refusal.
+class SENSORFARM_API DeviceError : public Error {
+ public:
+  using Error::Error;
+};
+
+struct Options {
+  std::uint32_t robots = 0;  ///< clones of one robot at free poses, in place of the world's robots; 0: the world's own
+  std::string of;            ///< robot that is cloned; empty: the first with sensors
+  std::uint64_t seed = 1;    ///< of poses, noise and controllers
+  unsigned threads = 0;      ///< 0: all cores. Results are the same for any number
+  bool noise = true;         ///< false: no noise, whatever the world file says
+  std::string accuracy;      ///< accuracy mode of all sensors (docs/accuracy.md); empty: as the world says
+  std::string device;        ///< row or part of the name of a Vulkan device; empty: the best
+  std::string caster = "auto";  ///< "auto", "vulkan" or "host" (docs/performance.md); the bytes are the same
+  std::string controller;       ///< of all robots, by name or file; empty: commands drive them
+  std::vector<std::pair<std::string, std::string>> settings;  ///< of that controller
+  std::string record;                                         ///< folder of a recording (run.mcap); empty: none
+  bool record_readings = false;  ///< record readings too, not only the states from which they can be computed
+};
+
+/// The newest readings of all sensors of one type, as one table with a row per sensor. A view: valid until the next
+/// step, put or reset of its simulation; memory that it points to is kept as long as Simulation::memory.
+struct Readings {
+  std::string_view type;
+  std::size_t sensors = 0;              ///< rows: by robot, and in the order of the world file
+  std::size_t elements = 0;             ///< of the longest reading: beams of a laser; shorter ones are followed by NaN
+  std::size_t columns = 1;              ///< numbers per element
+  const double* values = nullptr;       ///< element by element, in each element column by column
+  std::size_t stride = 0;               ///< from row to row, in numbers; >= elements * columns
+  const std::uint32_t* hits = nullptr;  ///< numbers of the models that beams met, or kNone; null for other types
+  std::size_t hit_stride = 0;           ///< from row to row
+  std::span<const std::uint32_t> robots;  ///< per row: its robot's row among Simulation::poses
+  std::span<const double> times;          ///< [s] per row: of the measurement; NaN before the first
+  std::span<const double> bounds;         ///< per row: largest error of the first column, as in Reading::bound
+  std::span<const std::uint8_t> fresh;    ///< per row: 1 where it was delivered in the last step
+  std::span<const std::uint8_t> flags;    ///< sensors * elements: 0 where the bound holds (docs/accuracy.md)
+
+  std::span<const double> row(std::size_t i) const { return {values + i * stride, elements * columns}; }
+  std::span<const std::uint32_t> hits_of(std::size_t i) const { return {hits + i * hit_stride, elements}; }
+};
+
+/// One thread at a time, also for several simulations of one process, which share their device. Time 0 is simulated at
+/// construction, so there are readings at once.
+class SENSORFARM_API Simulation {
+ public:
+  /// @param world world file, or a ROS map (.yaml). A relative path that does not exist here is looked for among the
+  /// installed worlds.
+  /// @throws Error, DeviceError
+  explicit Simulation(const std::string& world, const Options& options = {});
+  /// A world given as text. @param name for messages; files that it includes are looked for in this name's folder
+  static Simulation from_text(const std::string& text, const Options& options = {},
+                              const std::string& name = "given.world");
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
+
+  /// Advances by one tick: robots execute their commands, then sensors that are due are read. Without an argument
+  /// commands stay as they are.
+  /// @param commands one per row; rows with a controller ignore theirs
+  /// @throws Error for another number of commands, numbers that are not finite, and a controller that fails
+  void step();
+  void step(std::span<const Twist> commands);
+  /// Begins anew at time 0, with another seed where one is given: poses of clones, noise, controllers.
+  void reset();
+  void reset(std::uint64_t seed);
+  /// Places a robot or tag, at rest, between two steps. Its sensors see it from the next step on.
+  void put(std::size_t row, const Pose& pose);
+
+  std::size_t size() const;                        ///< rows: robots, and tags if the world has some
+  const std::vector<Robot>& robots() const;        ///< per row
+  std::span<const Pose> poses() const;             ///< per row, of the last tick
+  std::span<const Twist> velocities() const;       ///< per row
+  std::span<const std::uint8_t> contacts() const;  ///< per row: 1 where a wall or a robot stopped it
+  std::span<const std::uint8_t> done() const;      ///< per row: 1 where its controller is done
+
+  std::vector<std::string> types() const;          ///< sensor types of this world: "laser", ...
+  Readings readings(std::string_view type) const;  ///< @throws Error for a type that the world does not have
+  const std::vector<std::string>& models() const;  ///< names, by the numbers in `hits`
+
+  double interval() const;                           ///< [s] of a tick
+  double time() const;                               ///< [s] of the last tick
+  std::uint64_t tick() const;                        ///< its number, from 0
+  std::uint64_t hash() const;                        ///< of all readings so far; that of `sensorfarm run`
+  std::string description() const;                   ///< device and caster, in one line
+  const std::vector<std::string>& warnings() const;  ///< of the world file
+  /// Ends the recording, with its index. @throws Error when it cannot be written
+  void finish_recording();
+  /// Keeps the memory behind spans and readings, whose content changes with the next step, beyond the simulation.
+  std::shared_ptr<const void> memory() const;
+
+ private:
+  struct State;
+  explicit Simulation(std::shared_ptr<State> state);
+  std::shared_ptr<State> state_;
+};
+
+/// Adds a controller of your own for the rest of the program: `Options::controller` can name it. @throws Error
+SENSORFARM_API void add_controller(ControllerEntry entry);
+/// Loads a plug-in: its controllers can be named. @throws Error
+SENSORFARM_API void load_plugin(const std::string& file);
+
+}  // namespace sensorfarm
