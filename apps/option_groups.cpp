@@ -7,6 +7,7 @@
 
 #include "apps/option_parsers.h"
 #include "apps/text.h"
+#include "base/installation.h"
 #include "control/own_controllers.h"
 #include "sensors/accuracy.h"
 
@@ -65,6 +66,7 @@ void add_world(CLI::App& app, WorldOptions& o) {
   app.add_option("world", o.world,
                  "World file: Stage .world (3.x or 4.x), or ROS map .yaml; check and draw also take .rndf, check .mdf")
       ->required()
+      ->transform(base::installed_file)
       ->type_name("FILE");
   app.add_flag("--stage-obstacles", o.load.stage_obstacles,
                "As in Stage, floor plans with obstacle_return 0 stop no robot")

@@ -4,30 +4,50 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace sf::base {
 
+namespace {
+
 namespace fs = std::filesystem;
 
-std::string own_folder() {
+/// Folder of the program or shared library with this code.
+fs::path own_folder() {
   Dl_info info = {};
   std::error_code ignored;
+  const bool known = dladdr(reinterpret_cast<const void*>(&plugin_file), &info) != 0 && info.dli_fname != nullptr;
   // The program's own name may be relative to a folder that it has left.
-  const bool known = dladdr(reinterpret_cast<const void*>(&own_folder), &info) != 0 && info.dli_fname != nullptr;
-  const fs::path file = known && std::string_view(info.dli_fname).find(".so") != std::string_view::npos
-                            ? fs::canonical(info.dli_fname, ignored)
-                            : fs::read_symlink("/proc/self/exe", ignored);
-  return file.parent_path().string();
+  const bool is_library = known && std::string_view(info.dli_fname).find(".so") != std::string_view::npos;
+  return (is_library ? fs::canonical(info.dli_fname, ignored) : fs::read_symlink("/proc/self/exe", ignored))
+      .parent_path();
+}
+
+/// Of the installation: own_folder() without `bin` or the folder of libraries; empty in a build folder.
+fs::path prefix() {
+  const fs::path own = own_folder();
+  if (own.filename() == "bin") return own.parent_path();
+  const std::string end = "/" SF_LIBDIR, text = own.string();
+  return text.ends_with(end) ? fs::path(text.substr(0, text.size() - end.size())) : fs::path();
+}
+
+}  // namespace
+
+std::string plugin_file(const std::string& name) {
+  std::error_code ignored;
+  const std::string file = name + ".so";
+  for (const fs::path& folder : {own_folder(), prefix() / SF_LIBDIR / "sensorfarm"})
+    if (fs::exists(folder / file, ignored)) return (folder / file).string();
+  return file;
 }
 
 std::string installed_file(const std::string& file) {
   std::error_code ignored;
   if (fs::path(file).is_absolute() || fs::exists(file, ignored)) return file;
   const char* const data = std::getenv("SENSORFARM_DATA");
-  for (const fs::path& folder :
-       {fs::path(data != nullptr ? data : ""), fs::path(own_folder()) / ".." / "share" / "sensorfarm"})
-    if (!folder.empty() && fs::exists(folder / file, ignored)) return (folder / file).lexically_normal().string();
+  for (const fs::path& folder : {fs::path(data != nullptr ? data : ""), prefix() / "share" / "sensorfarm"})
+    if (folder.is_absolute() && fs::exists(folder / file, ignored)) return (folder / file).string();
   return file;
 }
 

@@ -5,8 +5,9 @@
 
 namespace sf::base {
 
-/// Folder of the program or shared library that contains the farm's code.
-std::string own_folder();
+/// The plug-in's file of that name: beside the program or shared library that contains the farm's code, or in the
+/// installation's folder of plug-ins; else the name alone, which the system's library path may find.
+std::string plugin_file(const std::string& name);
 
 /// `file` where it exists or is absolute; else that file below SENSORFARM_DATA, or below share/sensorfarm/ of the
 /// installation, if it exists there; else `file`.

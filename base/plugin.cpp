@@ -12,15 +12,12 @@
 namespace sf::base {
 
 const void* load_plugin(const char* name, const char* without, const char* library) {
-  const std::string file = std::string(name) + ".so";
-  std::error_code ignored;
-  const std::string beside = (std::filesystem::path(own_folder()) / file).string();
-  void* module =
-      dlopen(std::filesystem::exists(beside, ignored) ? beside.c_str() : file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  const std::string file = plugin_file(name);
+  void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   const void* symbol = module != nullptr ? dlsym(module, name) : nullptr;
   if (symbol != nullptr) return symbol;
   const char* const why = dlerror();
-  throw InputError(beside, 0,
+  throw InputError(file, 0,
                    fmt::format("cannot be loaded, so {} ({}): keep it beside the program, and {} installed", without,
                                why != nullptr ? why : "?", library));
 }

@@ -5,8 +5,8 @@
 
 namespace sf::base {
 
-/// Loads `<name>.so`, a part of the program with libraries that load slowly, at its first use, from the folder of the
-/// program or library or, where it is not there, from the system's library path, and looks up its symbol `name`.
+/// Loads `<name>.so`, a part of the program with libraries that load slowly, at its first use (base/installation.h),
+/// and looks up its symbol `name`.
 /// @param without consequence for the user of a missing plug-in, e.g. "nothing can be drawn"
 /// @param library that the plug-in needs, e.g. "VTK 9.1"
 /// @throws InputError naming the file, the reason and the remedy

@@ -20,7 +20,8 @@ enum class RandomStream : std::uint32_t {
   gyro = 8,
   satellites = 9,
   link = 10,     ///< delay and loss between a robot and the farm
-  decision = 11  ///< random decisions of controllers
+  decision = 11,    ///< random decisions of controllers
+  own_sensors = 12  ///< of users' own sensor types
 };
 
 /// Identifies one draw. All five fields matter.

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/plugin.h"
 #include "control/own_controllers.h"
+#include "sensors/own_sensors.h"
 
 namespace sf::control {
 
@@ -54,6 +55,7 @@ std::vector<const ControllerType*> load(const std::string& file) {
   std::vector<const ControllerType*> types;
   for (sensorfarm::ControllerEntry& entry : plugin.controllers)
     types.push_back(add_own_controller(std::move(entry), file));
+  for (sensorfarm::SensorEntry& entry : plugin.sensors) sensors::add_own_sensor(std::move(entry), file);
   return types;
 }
 

@@ -17,6 +17,7 @@
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
+#include "sensors/own_sensors.h"
 
 namespace sensorfarm {
 
@@ -222,6 +223,10 @@ std::shared_ptr<const void> Simulation::memory() const { return state_; }
 
 void add_controller(ControllerEntry entry) {
   library::translated([&] { control::add_own_controller(std::move(entry), "add_controller"); });
+}
+
+void add_sensor(SensorEntry entry) {
+  library::translated([&] { sensors::add_own_sensor(std::move(entry), "add_sensor"); });
 }
 
 void load_plugin(const std::string& file) {

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/installation.h"
 #include "base/suggest.h"
 #include "control/own_controllers.h"
 #include "scenarios/scenario.h"
@@ -229,10 +230,13 @@ void read_plant(const Reader& reader, const TomlNode& root, Scenario& scenario) 
   if (!scenario.plant) reader.fail(*node, "'plant' expects \"thesis\" or \"ideal\"");
 }
 
+/// Relative to the scenario's file; else among the installed worlds.
 std::string world_file(const Reader& reader, const TomlNode& root) {
   const std::string file = reader.text(root, "world", "");
   if (file.empty()) throw base::InputError(reader.file(), 0, "has no world; expected world = \"FILE\"");
-  return (std::filesystem::path(reader.file()).parent_path() / file).lexically_normal().string();
+  const std::filesystem::path beside = std::filesystem::path(reader.file()).parent_path() / file;
+  const std::string installed = base::installed_file(file);
+  return installed != file && !std::filesystem::exists(beside) ? installed : beside.lexically_normal().string();
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
-// A plug-in: a shared library with controllers of your own. It needs these headers only, and no library of the farm.
+// A plug-in: a shared library with controllers and sensors of your own. It needs these headers only, and no library of
+// the farm.
 
 #include <memory>
 #include <string>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "sensorfarm/controller.h"
+#include "sensorfarm/sensor.h"
 
 namespace sensorfarm {
 
@@ -17,6 +19,7 @@ inline constexpr int kPluginInterface = 1;
 /// What a plug-in offers.
 struct Plugin {
   std::vector<ControllerEntry> controllers;
+  std::vector<SensorEntry> sensors;
 
   /// `Made` is constructed from (const Robot&, Settings&).
   template <class Made>
@@ -24,6 +27,15 @@ struct Plugin {
     return controllers.emplace_back(ControllerEntry{
         std::move(name), std::move(summary), rate, true,
         [](const Robot& robot, Settings& settings) { return std::make_unique<Made>(robot, settings); }});
+  }
+
+  /// `Made` is constructed from (const SensorSite&, const SensorSettings&). @param entry without `make`
+  template <class Made>
+  SensorEntry& add_sensor(SensorEntry entry) {
+    entry.make = [](const SensorSite& site, const SensorSettings& settings) {
+      return std::make_unique<Made>(site, settings);
+    };
+    return sensors.emplace_back(std::move(entry));
   }
 };
 

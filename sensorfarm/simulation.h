@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "sensorfarm/controller.h"
+#include "sensorfarm/sensor.h"
 
 #define SENSORFARM_API __attribute__((visibility("default")))
 
@@ -131,7 +132,10 @@ class SENSORFARM_API Simulation {
 
 /// Adds a controller of your own for the rest of the program: `Options::controller` can name it. @throws Error
 SENSORFARM_API void add_controller(ControllerEntry entry);
-/// Loads a plug-in: its controllers can be named. @throws Error
+/// Adds a sensor type of your own for the rest of the program: worlds loaded from now on may have such sensors. A
+/// kernel's file is relative to the working directory. @throws Error
+SENSORFARM_API void add_sensor(SensorEntry entry);
+/// Loads a plug-in: its controllers can be named, its sensors stand in worlds. @throws Error
 SENSORFARM_API void load_plugin(const std::string& file);
 
 }  // namespace sensorfarm

@@ -10,15 +10,37 @@ const SensorType* find_sensor_type(std::uint8_t id) {
   return found == all.end() ? nullptr : *found;
 }
 
-std::span<const world::SensorKeyword> world_file_words() {
-  static const std::vector<world::SensorKeyword> words = [] {
-    std::vector<world::SensorKeyword> all;
-    for (const SensorType* type : sensor_types())
-      for (const world::SensorKeyword& word : {type->word, type->other_word})
-        if (!word.type.empty()) all.push_back(word);
-    return all;
-  }();
+namespace {
+
+std::vector<const SensorType*>& all_types() {
+  static std::vector<const SensorType*> types(built_in_sensor_types().begin(), built_in_sensor_types().end());
+  return types;
+}
+
+std::vector<world::SensorKeyword> words_of_all() {
+  std::vector<world::SensorKeyword> words;
+  for (const SensorType* type : sensor_types())
+    for (const world::SensorKeyword& word : {type->word, type->other_word})
+      if (!word.type.empty()) words.push_back(word);
   return words;
 }
+
+std::vector<world::SensorKeyword>& all_words() {
+  static std::vector<world::SensorKeyword> words = words_of_all();
+  return words;
+}
+
+}  // namespace
+
+std::span<const SensorType* const> sensor_types() { return all_types(); }
+
+void add_sensor_type(const SensorType* type) {
+  const auto after =
+      std::find_if(all_types().begin(), all_types().end(), [&](const auto* t) { return t->id > type->id; });
+  all_types().insert(after, type);
+  all_words() = words_of_all();
+}
+
+std::span<const world::SensorKeyword> world_file_words() { return all_words(); }
 
 }  // namespace sf::sensors

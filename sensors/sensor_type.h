@@ -178,8 +178,13 @@ std::unique_ptr<SensorBackend> make_backend(const SensorContext& context) {
   return std::make_unique<Made>(context);
 }
 
-/// All sensor types, by id: generated from sensors/CMakeLists.txt.
+/// The farm's own sensor types, by id: generated from sensors/CMakeLists.txt.
+std::span<const SensorType* const> built_in_sensor_types();
+/// These and those that were added, by id.
 std::span<const SensorType* const> sensor_types();
+/// Adds a type for the rest of the program (sensors/own_sensors.h); not while types are looked up on another thread.
+/// @param type lives as long as the program; its id is not that of another type
+void add_sensor_type(const SensorType* type);
 /// @return null when no type has that id
 const SensorType* find_sensor_type(std::uint8_t id);
 /// Sensor keywords of world files, for world::LoadOptions.

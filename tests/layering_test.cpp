@@ -28,7 +28,7 @@ const std::map<std::string, Modules> kMayInclude{
     {"robots/estimation", {"robots", "world", "base"}},
     {"maps", {"base"}},
     {"raycast", {"world", "gpu", "base", "shaders"}},
-    {"sensors", {"raycast", "maps", "robots", "world", "gpu", "base", "shaders"}},
+    {"sensors", {"sensorfarm", "raycast", "maps", "robots", "world", "gpu", "base", "shaders"}},
     {"sensorfarm", {}},
     {"control", {"sensorfarm", "sensors", "maps", "robots", "world", "base"}},
     {"shaders", {"raycast", "sensors", "maps", "base"}},
@@ -46,7 +46,7 @@ const std::map<std::string, Modules> kMayInclude{
      {"selftest", "viz", "netio/server", "netio", "record", "farm", "control", "sensors", "raycast", "maps", "robots",
       "world", "gpu", "base"}},
 };
-const Modules kMayIncludeAnything{"apps", "library", "bench", "tests"};
+const Modules kMayIncludeAnything{"apps", "examples", "library", "bench", "tests"};
 
 // Libraries that cost seconds per file that includes them: never in a header, in one source each unless said here, some
 // in one module only.

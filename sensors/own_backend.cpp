@@ -1,0 +1,194 @@
+#include "sensors/own_backend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <mutex>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "sensors/own_kernel.h"
+#include "sensors/settings.h"
+#include "sensors/surroundings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+class PublicSensorSettings final : public sensorfarm::SensorSettings {
+ public:
+  explicit PublicSensorSettings(const world::Sensor& sensor) : sensor_(sensor) {}
+  double number(std::string_view key, double fallback, double least, double most) const override {
+    return sensors::number(sensor_, key, fallback, least, most);
+  }
+  double length(std::string_view key, double fallback, double least, double most) const override {
+    return sensors::length(sensor_, key, fallback, least, most);
+  }
+  double angle(std::string_view key, double fallback, double least, double most) const override {
+    return sensors::angle(sensor_, key, fallback, least, most);
+  }
+  std::string text(std::string_view key, const std::string& fallback) const override {
+    const world::Setting* const setting = find(sensor_, key);
+    return setting == nullptr ? fallback : setting->text;
+  }
+  void refuse(std::string_view key, const std::string& message) const override {
+    sensors::refuse(sensor_, key, message);
+  }
+
+ private:
+  const world::Sensor& sensor_;
+};
+
+/// One measurement's view of the scene.
+class SensorSurroundings final : public sensorfarm::Surroundings {
+ public:
+  SensorSurroundings(const Scene& scene, const base::RandomKey& key, bool noise)
+      : scene_(scene), key_(key), noise_(noise) {}
+  sensorfarm::Hit cast(double x, double y, double z, double bearing, double range) const override {
+    return scene_.cast(key_.a, {x, y, z, bearing}, range);
+  }
+  std::size_t robots() const override { return scene_.states().size(); }
+  sensorfarm::Pose pose(std::size_t row) const override {
+    const base::Pose& X = scene_.states()[row].X_WM;
+    return {X.x, X.y, X.z, X.yaw};
+  }
+  sensorfarm::Twist velocity(std::size_t row) const override {
+    const base::Twist& twist = scene_.states()[row].velocity;
+    return {twist.forward, twist.left, twist.turn};
+  }
+  std::array<double, 2> normal(std::uint32_t draw) const override {
+    return noise_ ? base::random_normal(key_, draw) : std::array<double, 2>{};
+  }
+
+ private:
+  const Scene& scene_;
+  base::RandomKey key_;
+  bool noise_;
+};
+
+class OwnSensors final : public SensorBackend {
+ public:
+  OwnSensors(const SensorContext& context, const OwnType& type)
+      : context_(context), type_(type), sensors_(own_sensors(context.world, type)), scene_(context) {
+    std::size_t most = 1;
+    for (const OwnSensor& each : sensors_) most = std::max<std::size_t>(most, each.spec.elements);
+    stride_ = most * type.columns.size();
+    if (!type.spirv.empty()) kernel_ = std::make_unique<OwnKernel>(context, type, sensors_.size(), most);
+    values_.resize(sensors_.size() * stride_);
+  }
+
+  void accumulate(std::int64_t now, bool) override { now_ = now; }
+  void place_movers() override {
+    scene_.place_movers();
+    if (kernel_) kernel_->place_movers();
+  }
+  bool prepare(std::span<const DueSample> due) override;
+  void record_measure(gpu::Batch& batch) override {
+    if (kernel_) kernel_->record(batch);
+  }
+  void add_copies(gpu::Batch& batch) override {
+    if (kernel_) kernel_->add_copies(batch);
+  }
+  void collect(std::vector<base::ReadingBlock>& out) override;
+  SensorStats stats() const override { return {}; }
+  bool on_device() const override { return kernel_ != nullptr; }
+
+ private:
+  void measure(std::size_t i);
+
+  SensorContext context_;
+  const OwnType& type_;
+  std::vector<OwnSensor> sensors_;
+  Scene scene_;
+  std::unique_ptr<OwnKernel> kernel_;  ///< null: measured on the host alone
+  std::size_t stride_;                 ///< values of the longest reading
+  std::vector<double> values_;         ///< per due sensor
+  std::vector<DueSample> due_;
+  std::vector<Pose> X_WS_;  ///< per due sensor
+  std::int64_t now_ = 0;    ///< [ns]
+  bool recorded_ = false;
+  std::mutex failure_lock_;
+  std::string failure_;  ///< of a measurement
+};
+
+bool OwnSensors::prepare(std::span<const DueSample> due) {
+  due_.assign(due.begin(), due.end());
+  X_WS_.clear();
+  for (const DueSample& d : due_) {
+    const SensorSpec& spec = sensors_[d.row].spec;
+    Pose& X_WS = X_WS_.emplace_back(base::compose(context_.states[spec.mover].X_WM, spec.X_MS));
+    X_WS.z = context_.world.movers[spec.mover].X_WM.z + spec.X_MS.z;
+    if (kernel_) kernel_->add(X_WS_.size() - 1, spec, X_WS, sensors_[d.row].sensor->parameters(), d.sequence);
+  }
+  if (kernel_) kernel_->close(due_.size());
+  return !std::exchange(recorded_, true);
+}
+
+void OwnSensors::measure(std::size_t i) {
+  const DueSample& due = due_[i];
+  const OwnSensor& own = sensors_[due.row];
+  const auto values = std::span(values_).subspan(i * stride_, own.spec.elements * type_.columns.size());
+  if (kernel_)
+    std::copy_n(kernel_->values(i).begin(), values.size(), values.begin());
+  else
+    std::fill(values.begin(), values.end(), 0.0);
+  const base::RandomKey key{context_.seed, base::RandomStream::own_sensors, own.spec.mover,
+                            own.spec.sensor | std::uint32_t{type_.entry.id} << 24, due.sequence};
+  const SensorSurroundings around(scene_, key, context_.noise);
+  const Pose& X = X_WS_[i];
+  try {
+    own.sensor->read({1e-9 * static_cast<double>(now_), {X.x, X.y, X.z, X.yaw}, around}, values);
+  } catch (const std::exception& error) {
+    const std::scoped_lock guard(failure_lock_);
+    failure_ = fmt::format("sensor '{}' ({}) failed at {:.3f} s: {}", own.spec.name, type_.entry.name,
+                           1e-9 * static_cast<double>(now_), error.what());
+  }
+}
+
+void OwnSensors::collect(std::vector<base::ReadingBlock>& out) {
+  context_.thread_pool.parallel_for(due_.size(), 16, [this](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) measure(i);
+  });
+  if (!failure_.empty()) throw base::InputError(failure_);
+  for (std::size_t i = 0; i < due_.size(); ++i) {
+    const SensorSpec& spec = sensors_[due_[i].row].spec;
+    out.push_back(
+        {.mover = spec.mover,
+         .sensor = spec.sensor,
+         .type = type_.entry.id,
+         .X_WS = X_WS_[i],
+         .values = std::span<const double>(values_).subspan(i * stride_, spec.elements * type_.columns.size())});
+  }
+}
+
+}  // namespace
+
+std::vector<OwnSensor> own_sensors(const world::World& world, const OwnType& type) {
+  std::vector<OwnSensor> found;
+  for_each_of(world, type.entry.name, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
+    OwnSensor own{common_spec(sensor, mover, number), nullptr};
+    own.spec.rate = rate_of(sensor, type.entry.rate);
+    own.spec.noisy = true;
+    const Pose& X = own.spec.X_MS;
+    try {
+      own.sensor = type.entry.make({own.spec.name, mover, number, {X.x, X.y, X.z, X.yaw}, sensor.height},
+                                   PublicSensorSettings(sensor));
+    } catch (const base::InputError&) {
+      throw;  // a setting
+    } catch (const std::exception& error) {
+      refuse(sensor, "", error.what());
+    }
+    if (own.sensor == nullptr) refuse(sensor, "", fmt::format("sensor type '{}' made none", type.entry.name));
+    own.spec.elements = std::clamp(own.sensor->elements(), 1u, 1u << 20);
+    found.push_back(std::move(own));
+  });
+  return found;
+}
+
+std::unique_ptr<SensorBackend> make_own_backend(const SensorContext& context, const OwnType& type) {
+  return std::make_unique<OwnSensors>(context, type);
+}
+
+}  // namespace sf::sensors

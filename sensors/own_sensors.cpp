@@ -1,0 +1,133 @@
+#include "sensors/own_sensors.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "sensors/own_backend.h"
+#include "sensors/plain_packets.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::uint32_t kSpirvMagic = 0x07230203u;
+constexpr std::size_t kMostSpirv = 16u << 20;  // [bytes]
+
+/// An added type with the layout of its packets.
+struct Added : OwnType {
+  std::vector<PlainNumber> numbers;
+  PlainForm form;
+};
+
+/// Added types by id, at one address for the rest of the program.
+std::array<std::unique_ptr<Added>, kLastOwnId + 1> added;
+
+std::vector<SensorSpec> specs_in(const world::World& world, const OwnType& type) {
+  std::vector<SensorSpec> rows;
+  for (const OwnSensor& each : own_sensors(world, type)) rows.push_back(each.spec);
+  return rows;
+}
+
+std::string wire_problem_of(const Added& type, const SensorSpec& sensor, WireFormat wire) {
+  const std::size_t numbers = sensor.elements * type.numbers.size();
+  if (numbers > kMaxPlainWords)
+    return fmt::format("{} numbers do not fit into a packet of {} ({} at most): it can be recorded, but not sent",
+                       numbers, type.entry.name, kMaxPlainWords);
+  return plain_wire_problem(type.form, wire);
+}
+
+/// The functions of SensorType are plain pointers: each id has its own.
+template <std::uint8_t kId>
+SensorType functions_of() {
+  SensorType type;
+  type.specs = [](const world::World& world) { return specs_in(world, *added[kId]); };
+  type.make = [](const SensorContext& context) { return make_own_backend(context, *added[kId]); };
+  type.wire_problem = [](const SensorSpec& sensor, WireFormat wire) {
+    return wire_problem_of(*added[kId], sensor, wire);
+  };
+  type.parts = [](const SensorSpec&, WireFormat) -> std::uint32_t { return 1; };
+  type.encode = [](const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat, std::uint32_t,
+                   base::Bytes& out) { return encode_plain(added[kId]->form, sensor, reading, out); };
+  type.decode = [](const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t packet,
+                   WireFormat wire) { return decode_plain(added[kId]->form, sensor, payload, packet, wire); };
+  type.read = [](const SensorSpec&, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat,
+                 std::span<double> values) { read_plain(added[kId]->form, payload, values); };
+  return type;
+}
+
+template <std::size_t... kIds>
+SensorType functions_of(std::uint8_t id, std::index_sequence<kIds...>) {
+  SensorType type;
+  ((id == kFirstOwnId + kIds ? (type = functions_of<kFirstOwnId + kIds>(), true) : false) || ...);
+  return type;
+}
+
+bool is_word(const std::string& name) {
+  return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos &&
+         (name[0] < '0' || name[0] > '9');
+}
+
+void check_entry(const sensorfarm::SensorEntry& entry, const std::string& from) {
+  const auto refuse = [&](const std::string& why) { throw base::InputError(from, 0, why); };
+  if (!is_word(entry.name))
+    refuse(fmt::format("a sensor type cannot be called '{}': expected small letters, digits and _", entry.name));
+  if (entry.id < kFirstOwnId || entry.id > kLastOwnId)
+    refuse(fmt::format("sensor type '{}' has id {}; expected {} to {}", entry.name, entry.id, kFirstOwnId, kLastOwnId));
+  for (const SensorType* type : sensor_types())
+    if (type->id == entry.id || type->name == entry.name || type->word.type == entry.name ||
+        type->other_word.type == entry.name)
+      refuse(fmt::format("sensor type '{}' with id {}: there is '{}' with id {} already; choose another", entry.name,
+                         entry.id, type->name, type->id));
+  if (entry.columns.empty()) refuse(fmt::format("sensor type '{}' has no column", entry.name));
+  for (const sensorfarm::SensorColumn& column : entry.columns)
+    if (!is_word(column.name) || !(column.unit > 0.0))
+      refuse(fmt::format("sensor type '{}': column '{}' with unit {}; expected a word and a unit above 0", entry.name,
+                         column.name, column.unit));
+  if (!(entry.rate > 0.0 && entry.rate <= 1e6))
+    refuse(
+        fmt::format("sensor type '{}' has a rate of {} Hz; expected more than 0, at most 1e6", entry.name, entry.rate));
+  if (!entry.make) refuse(fmt::format("sensor type '{}' has no function that makes sensors", entry.name));
+}
+
+std::vector<std::uint32_t> read_kernel(const std::string& file) {
+  const std::string bytes = base::read_bytes(file, kMostSpirv);
+  std::vector<std::uint32_t> words(bytes.size() / 4);
+  std::memcpy(words.data(), bytes.data(), 4 * words.size());
+  if (bytes.size() % 4 != 0 || words.size() < 5 || words[0] != kSpirvMagic)
+    throw base::InputError(file, 0, "is no SPIR-V module: compile the kernel with glslangValidator -V");
+  return words;
+}
+
+}  // namespace
+
+void add_own_sensor(sensorfarm::SensorEntry entry, const std::string& from) {
+  check_entry(entry, from);
+  const std::uint8_t id = entry.id;
+  auto type = std::make_unique<Added>();
+  type->entry = std::move(entry);
+  if (!type->entry.kernel.empty())
+    type->spirv = read_kernel((std::filesystem::path(from).parent_path() / type->entry.kernel).string());
+  for (const std::string& key : type->entry.keys) type->keys.emplace_back(key);
+  for (const sensorfarm::SensorColumn& column : type->entry.columns) {
+    type->columns.push_back({column.name});
+    type->numbers.push_back({column.unit});
+  }
+  type->form = {id, type->entry.name, type->numbers};
+  type->type = functions_of(id, std::make_index_sequence<kLastOwnId - kFirstOwnId + 1>());
+  type->type.id = id;
+  type->type.name = type->entry.name;
+  type->type.word = {type->entry.name, type->keys};
+  type->type.base_port = 20000 + 1000u * id;
+  type->type.list = "rows";
+  type->type.columns = type->columns;
+  added[id] = std::move(type);
+  add_sensor_type(&added[id]->type);
+}
+
+}  // namespace sf::sensors

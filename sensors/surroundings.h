@@ -1,0 +1,40 @@
+#pragma once
+// What users' own sensors may ask about their surroundings.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/reading.h"
+#include "raycast/intersect.h"
+#include "raycast/sensor_context.h"
+#include "robots/neighbour_grid.h"
+#include "sensorfarm/sensor.h"
+#include "world/wall_tree.h"
+
+namespace sf::sensors {
+
+/// Walls and robots of one tick. Queries may run on any thread, but not during `place_movers`.
+class Scene {
+ public:
+  explicit Scene(const raycast::SensorContext& context);
+
+  /// Indexes the robots at their poses.
+  void place_movers();
+  /// See sensorfarm::Surroundings::cast. @param self row of the robot that is not seen
+  sensorfarm::Hit cast(std::uint32_t self, const base::Pose& from, double range) const;
+  std::span<const base::Report> states() const { return states_; }
+
+ private:
+  struct Nearest;
+  void meet_walls(Nearest& nearest, double from, double to) const;
+  void meet_movers(Nearest& nearest) const;
+
+  const world::World& world_;
+  std::span<const base::Report> states_;
+  world::WallTree walls_;  ///< those that lasers see
+  robots::NeighbourGrid grid_;
+  double largest_ = 0.0;  ///< [m] radius of a robot
+};
+
+}  // namespace sf::sensors
