@@ -19,7 +19,7 @@ enum class RandomStream : std::uint32_t {
   range_cone = 7,  ///< sonar and infrared rangers
   gyro = 8,
   satellites = 9,
-  link = 10,     ///< delay and loss between a robot and the farm
+  link = 10,        ///< delay and loss between a robot and the farm
   decision = 11,    ///< random decisions of controllers
   own_sensors = 12  ///< of users' own sensor types
 };

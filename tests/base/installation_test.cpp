@@ -1,0 +1,40 @@
+#include "base/installation.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace sf::base {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Installation, FilesThatExistAreTakenAsTheyAre) {
+  const fs::path data = fs::temp_directory_path() / "sensorfarm_installation_test";
+  fs::create_directories(data / "tests");
+  std::ofstream(data / "tests" / "units.h") << "another";
+  std::ofstream(data / "there.world") << "x";
+  setenv("SENSORFARM_DATA", data.c_str(), 1);
+  const fs::path before = fs::current_path();
+  fs::current_path(SF_SOURCE_DIR);
+  EXPECT_EQ(installed_file("tests/units.h"), "tests/units.h");  // here, though it is installed as well
+  EXPECT_EQ(installed_file("there.world"), (data / "there.world").string());
+  EXPECT_EQ(installed_file("nowhere.world"), "nowhere.world");  // the message names what the user wrote
+  EXPECT_EQ(installed_file("/there.world"), "/there.world");
+  setenv("SENSORFARM_DATA", "relative", 1);  // would depend on the folder
+  EXPECT_EQ(installed_file("there.world"), "there.world");
+  unsetenv("SENSORFARM_DATA");
+  EXPECT_EQ(installed_file("there.world"), "there.world");
+  fs::current_path(before);
+  fs::remove_all(data);
+}
+
+TEST(Installation, PluginsStandBesideTheProgram) {
+  EXPECT_EQ(plugin_file("sensorfarm_opencv"), SF_BINARY_DIR "/sensorfarm_opencv.so");
+  EXPECT_EQ(plugin_file("sensorfarm_nothing"), "sensorfarm_nothing.so");
+}
+
+}  // namespace
+}  // namespace sf::base

@@ -1,0 +1,196 @@
+// The public interface, as a program of a user sees it.
+
+#include "sensorfarm/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace sensorfarm {
+namespace {
+
+const std::string kCave = SF_SOURCE_DIR "/worlds/cave.world";
+
+Twist avoid(std::span<const double> ranges) {
+  const std::size_t third = ranges.size() / 3;
+  const double ahead = *std::min_element(ranges.begin() + third, ranges.end() - third);
+  return ahead > 0.5 ? Twist{0.3, 0.0, 0.0} : Twist{0.0, 0.0, 1.0};
+}
+
+void drive(Simulation& simulation, int ticks) {
+  std::vector<Twist> commands(simulation.size());
+  for (int tick = 0; tick < ticks; ++tick) {
+    const Readings scans = simulation.readings("laser");
+    for (std::size_t i = 0; i < scans.sensors; ++i) commands[scans.robots[i]] = avoid(scans.row(i));
+    simulation.step(commands);
+  }
+}
+
+struct Avoid : Controller {
+  Twist step(const Input& input) override { return avoid(input.newest("laser")->values); }
+};
+
+template <class Act>
+std::string refusal_of(Act&& act) {
+  try {
+    act();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_in(const std::string& part, const std::string& text) {
+  EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
+}
+
+TEST(Library, CommandsAndControllersGiveOneHash) {
+  add_controller(
+      {"test-avoid", "turns away", 10.0, false, [](const Robot&, Settings&) { return std::make_unique<Avoid>(); }});
+  Simulation commanded(kCave, {.robots = 30, .seed = 4});
+  drive(commanded, 50);
+  Simulation driven(kCave, {.robots = 30, .seed = 4, .controller = "test-avoid"});
+  for (int i = 0; i < 50; ++i) driven.step();
+  EXPECT_EQ(commanded.hash(), driven.hash());
+  EXPECT_EQ(commanded.tick(), 50u);
+  EXPECT_NEAR(commanded.time(), 5.0, 1e-12);
+  Simulation other(kCave, {.robots = 30, .seed = 5});
+  drive(other, 50);
+  EXPECT_NE(other.hash(), commanded.hash());
+}
+
+TEST(Library, ReadingsAreTheFarmsOwnTable) {
+  Simulation simulation(kCave, {.robots = 8});
+  const Readings first = simulation.readings("laser");
+  EXPECT_EQ(first.sensors, 8u);
+  EXPECT_EQ(first.elements, 361u);
+  EXPECT_EQ(first.columns, 1u);
+  EXPECT_GE(first.stride, 361u);
+  EXPECT_TRUE(std::all_of(first.fresh.begin(), first.fresh.end(), [](auto f) { return f == 1; }));
+  EXPECT_LT(first.bounds[0], 2e-9);
+  const double before = first.row(7)[180];
+  drive(simulation, 3);
+  const Readings second = simulation.readings("laser");
+  EXPECT_EQ(first.values, second.values) << "nothing was copied";
+  EXPECT_NE(second.row(7)[180], before);
+  // Hits name models.
+  EXPECT_LT(second.hits_of(0)[180], simulation.models().size());
+}
+
+TEST(Library, SensorsThatAreNotReadAtEveryTickKeepTheirNewestReading) {
+  const std::string text = R"(
+    name "slow"
+    interval_sim 100
+    model( name "wall" pose [2 0 0 0] size [0.1 4 1] )
+    position( name "r0" size [0.3 0.3 0.1]
+      laser( samples 3 fov 90 rate 5 ) )
+  )";
+  Simulation simulation = Simulation::from_text(text);
+  EXPECT_EQ(simulation.readings("laser").fresh[0], 1);
+  const double at_start = simulation.readings("laser").row(0)[1];
+  EXPECT_NEAR(at_start, 1.95, 0.2);
+  const std::vector<Twist> forward{{0.5, 0.0, 0.0}};
+  simulation.step(forward);
+  EXPECT_EQ(simulation.readings("laser").fresh[0], 0);
+  EXPECT_EQ(simulation.readings("laser").row(0)[1], at_start);
+  EXPECT_EQ(simulation.readings("laser").times[0], 0.0);
+  simulation.step();
+  EXPECT_EQ(simulation.readings("laser").fresh[0], 1);
+  EXPECT_NEAR(simulation.readings("laser").row(0)[1], at_start - 0.1, 1e-9);
+  EXPECT_NEAR(simulation.poses()[0].x, 0.1, 1e-9);
+  EXPECT_NEAR(simulation.velocities()[0].forward, 0.5, 1e-9);
+}
+
+TEST(Library, ResetBeginsAnew) {
+  Simulation simulation(kCave, {.robots = 5, .seed = 3});
+  drive(simulation, 10);
+  const std::uint64_t hash = simulation.hash();
+  const Pose pose = simulation.poses()[4];
+  simulation.reset();
+  EXPECT_EQ(simulation.tick(), 0u);
+  drive(simulation, 10);
+  EXPECT_EQ(simulation.hash(), hash);
+  EXPECT_EQ(simulation.poses()[4].x, pose.x);
+  simulation.reset(8);
+  drive(simulation, 10);
+  EXPECT_NE(simulation.hash(), hash);
+}
+
+TEST(Library, MemoryOutlivesTheSimulation) {
+  std::shared_ptr<const void> memory;
+  Readings scans;
+  {
+    Simulation simulation(kCave, {.robots = 2});
+    scans = simulation.readings("laser");
+    memory = simulation.memory();
+  }
+  EXPECT_GT(scans.row(1)[0], 0.0);  // read after the end under AddressSanitizer
+}
+
+TEST(Library, PlacesRobots) {
+  Simulation simulation(kCave, {.robots = 2});
+  const Pose pose = simulation.poses()[1];
+  simulation.put(0, {pose.x, pose.y + 3.0, pose.z, 1.0});
+  EXPECT_EQ(simulation.poses()[0].yaw, 1.0);
+  simulation.step();
+  EXPECT_NEAR(simulation.poses()[0].y, pose.y + 3.0, 1e-12);
+  expect_in("there is no row 2", refusal_of([&] { simulation.put(2, {}); }));
+  expect_in("is not finite", refusal_of([&] { simulation.put(0, {NAN}); }));
+}
+
+TEST(Library, BadInputIsRefusedAndChangesNothing) {
+  Simulation simulation(kCave, {.robots = 2});
+  std::vector<Twist> commands(2);
+  simulation.step(commands);
+  const std::uint64_t hash = simulation.hash();
+  expect_in("1 commands for 2 robots", refusal_of([&] { simulation.step(std::span(commands).first(1)); }));
+  commands[1].turn = INFINITY;
+  expect_in("expected finite numbers", refusal_of([&] { simulation.step(commands); }));
+  expect_in("has no sensor of type 'lidar'; expected one of: laser", refusal_of([&] { simulation.readings("lidar"); }));
+  EXPECT_EQ(simulation.hash(), hash);
+  EXPECT_EQ(simulation.tick(), 1u);
+}
+
+TEST(Library, ErrorsHaveFileAndLine) {
+  expect_in("nowhere.world: no such file", refusal_of([] { Simulation simulation("nowhere.world"); }));
+  expect_in("mine.world:2: ", refusal_of([] { Simulation::from_text("\nposition( size [1\n", {}, "mine.world"); }));
+  expect_in("there is no controller 'nobody'",
+            refusal_of([] { Simulation simulation(kCave, {.controller = "nobody"}); }));
+  expect_in("there is no caster 'gpu'", refusal_of([] { Simulation simulation(kCave, {.caster = "gpu"}); }));
+  EXPECT_THROW(Simulation(kCave, {.device = "no such device"}), DeviceError);
+}
+
+TEST(Library, CastersGiveTheSameBytes) {
+  Simulation host(kCave, {.robots = 4, .caster = "host"}), vulkan(kCave, {.robots = 4, .caster = "vulkan"});
+  drive(host, 5), drive(vulkan, 5);
+  EXPECT_EQ(host.hash(), vulkan.hash());
+  EXPECT_NE(host.description(), vulkan.description());
+}
+
+TEST(Library, Records) {
+  const auto folder = std::filesystem::temp_directory_path() / "sensorfarm_library_record";
+  std::filesystem::remove_all(folder);
+  Simulation simulation(kCave, {.robots = 2, .record = folder.string(), .record_readings = true});
+  drive(simulation, 3);
+  simulation.finish_recording();
+  EXPECT_GT(std::filesystem::file_size(folder / "run.mcap"), 10'000u);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Library, AControllerThatFailsEndsTheStepWithTheFirstRobotsName) {
+  struct Fails : Controller {
+    Twist step(const Input& input) override {
+      if (input.time > 0.15) throw std::runtime_error("had enough");
+      return {};
+    }
+  };
+  add_controller({"test-fails", "", 10.0, false, [](const Robot&, Settings&) { return std::make_unique<Fails>(); }});
+  Simulation simulation(kCave, {.robots = 40, .threads = 2, .controller = "test-fails"});
+  simulation.step();
+  expect_in("of robot 'roomba1' failed at 0.200 s: had enough", refusal_of([&] { simulation.step(); }));
+}
+
+}  // namespace
+}  // namespace sensorfarm
