@@ -1,4 +1,4 @@
-// Plug-ins as files: each is loaded once.
+// Plug-ins as files, shared libraries or Python: each is loaded once.
 
 #include <fmt/format.h>
 
@@ -35,7 +35,21 @@ std::pair<std::string, std::string> parts_of(const std::string& name) {
   return {name.substr(0, colon), name.substr(colon + 1)};
 }
 
-std::vector<const ControllerType*> load(const std::string& file) {
+bool is_python(const std::string& file) { return ends_with(file, ".py"); }
+
+/// The classes of a Python file (python/interpreter.cpp). @param whole its canonical path
+void fill_from_python(const std::string& file, const std::string& whole, sensorfarm::Plugin& plugin) {
+  const void* const symbol =
+      base::load_plugin("sensorfarm_python", "controllers in Python cannot run", "libpython3 and NumPy");
+  const auto fill = reinterpret_cast<void (*)(const char*, sensorfarm::Plugin&)>(const_cast<void*>(symbol));
+  try {
+    fill(whole.c_str(), plugin);
+  } catch (const std::exception& error) {
+    throw base::InputError(file, 0, fmt::format("cannot be loaded: {}", error.what()));
+  }
+}
+
+void fill_from_library(const std::string& file, sensorfarm::Plugin& plugin) {
   const base::SharedLibrary library(file);
   const auto interface = reinterpret_cast<int (*)()>(library.find("sensorfarm_plugin_interface"));
   const auto fill = reinterpret_cast<void (*)(sensorfarm::Plugin&)>(library.find("sensorfarm_plugin"));
@@ -46,12 +60,19 @@ std::vector<const ControllerType*> load(const std::string& file) {
                            fmt::format("was built for plug-in interface {}, and this program has {}: build it again "
                                        "with this version's headers",
                                        interface(), sensorfarm::kPluginInterface));
-  sensorfarm::Plugin plugin;
   try {
     fill(plugin);
   } catch (const std::exception& error) {
     throw base::InputError(file, 0, fmt::format("its SENSORFARM_PLUGIN failed: {}", error.what()));
   }
+}
+
+std::vector<const ControllerType*> load(const std::string& file, const std::string& whole) {
+  sensorfarm::Plugin plugin;
+  if (is_python(file))
+    fill_from_python(file, whole, plugin);
+  else
+    fill_from_library(file, plugin);
   std::vector<const ControllerType*> types;
   for (sensorfarm::ControllerEntry& entry : plugin.controllers)
     types.push_back(add_own_controller(std::move(entry), file));
@@ -64,13 +85,14 @@ const std::vector<const ControllerType*>& controllers_in(const std::string& file
   const std::string whole = fs::canonical(file, error).string();
   if (error) throw base::InputError(file, 0, "cannot be opened: " + error.message());
   const auto known = loaded().find(whole);
-  return known != loaded().end() ? known->second : loaded().emplace(whole, load(file)).first->second;
+  return known != loaded().end() ? known->second : loaded().emplace(whole, load(file, whole)).first->second;
 }
 
 }  // namespace
 
 bool names_a_file(std::string_view name) {
-  return name.find('/') != std::string_view::npos || ends_with(parts_of(std::string(name)).first, ".so");
+  const std::string file = parts_of(std::string(name)).first;
+  return name.find('/') != std::string_view::npos || ends_with(file, ".so") || is_python(file);
 }
 
 const ControllerType* load_controller(const std::string& name) {

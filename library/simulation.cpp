@@ -18,6 +18,7 @@
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 #include "sensors/own_sensors.h"
+#include "viz/world_figure.h"
 
 namespace sensorfarm {
 
@@ -217,6 +218,15 @@ void Simulation::finish_recording() {
   library::translated([&] {
     if (state_->recorder) state_->recorder->finish();
   });
+}
+
+void Simulation::draw(const std::string& file) const {
+  world::World now = state_->world;
+  for (std::size_t i = 0; i < now.movers.size(); ++i) {
+    const Pose& pose = state_->poses[i];
+    now.movers[i].X_WM = {pose.x, pose.y, pose.z, pose.yaw};
+  }
+  library::translated([&] { viz::draw_world(now, file); });
 }
 
 std::shared_ptr<const void> Simulation::memory() const { return state_; }

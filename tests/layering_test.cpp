@@ -30,6 +30,7 @@ const std::map<std::string, Modules> kMayInclude{
     {"raycast", {"world", "gpu", "base", "shaders"}},
     {"sensors", {"sensorfarm", "raycast", "maps", "robots", "world", "gpu", "base", "shaders"}},
     {"sensorfarm", {}},
+    {"python", {"sensorfarm"}},
     {"control", {"sensorfarm", "sensors", "maps", "robots", "world", "base"}},
     {"shaders", {"raycast", "sensors", "maps", "base"}},
     {"farm", {"sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
@@ -101,6 +102,7 @@ std::string complain_of_angled(const Source& source, const std::string& target) 
   const std::string module = module_of(source.path);
   if (module == "tests") return "";
   if (starts_with(target, "vulkan/") && module != "gpu") return "is for gpu only";
+  if (starts_with(target, "pybind11/") && module != "python") return "is for python only";
   for (const std::string& sockets : kSockets)
     if (starts_with(target, sockets) && module != "netio") return "is for netio only";
   for (const Heavy& heavy : kHeavy) {
@@ -273,6 +275,8 @@ TEST(LayeringJudge, FindsEachBrokenRule) {
            {"world/a.cpp", "#include <CLI/App.hpp>"},                       // the command line is the program's
            {"apps/a.cpp", "#include <poll.h>"},                             // sockets are netio's
            {"robots/a.cpp", "#include <netinet/in.h>"},                     // sockets are netio's
+           {"control/a.cpp", "#include <pybind11/embed.h>"},                // Python's headers
+           {"python/a.cpp", "#include \"farm/farm.h\""},                    // Python knows the public interface only
            {"base/a.cpp", "#include HEADER"}})                              // cannot be judged
     EXPECT_EQ(complaints(broken).size(), 1u) << broken.path << ": " << broken.text;
 }

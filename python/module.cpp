@@ -1,0 +1,260 @@
+// sensorfarm._sensorfarm: sensorfarm/simulation.h for Python. Arrays are views of the farm's memory, which they keep.
+
+#include <atomic>
+#include <map>
+
+#include "python/controllers.h"
+#include "python/types.h"
+#include "sensorfarm/simulation.h"
+
+namespace sensorfarm::python {
+
+namespace py = pybind11;
+
+namespace {
+
+using Text = const std::string&;
+
+/// The farm is in use: one thread at a time, for all simulations of the process. A second one is refused, not queued,
+/// so that a controller that steps a simulation cannot wait for itself.
+class Use {
+ public:
+  Use() {
+    if (busy().exchange(true))
+      throw Error(
+          "another call of a simulation has not ended; expected one thread at a time, and none by a controller");
+  }
+  ~Use() { busy() = false; }
+  Use(const Use&) = delete;
+  Use& operator=(const Use&) = delete;
+
+ private:
+  static std::atomic<bool>& busy() {
+    static std::atomic<bool> flag{false};
+    return flag;
+  }
+};
+
+/// Calls without the GIL.
+template <class Call>
+auto in_farm(Call&& call) {
+  const py::gil_scoped_release no_gil;
+  const Use use;
+  return call();
+}
+
+struct PySimulation {
+  Simulation farm;
+  bool writable;  ///< arrays can be written to
+};
+
+/// Options of the constructor by keyword, checked as Python checks them.
+class Keywords {
+ public:
+  explicit Keywords(const py::kwargs& given) : left_(py::dict(given)) {}
+  template <class Value>
+  void read(const char* key, Value& value) {
+    if (!left_.contains(key)) return;
+    try {
+      value = left_.attr("pop")(key).template cast<Value>();
+    } catch (const py::cast_error&) {
+      throw py::type_error(std::string("'") + key + "' has a value of another type; see help(sensorfarm.Simulation)");
+    }
+  }
+  void read_settings(std::vector<std::pair<std::string, std::string>>& settings) {
+    py::dict given;
+    read("settings", given);
+    for (const auto& [key, value] : given) {
+      const std::string text = py::str(value);
+      settings.emplace_back(py::str(key), PyBool_Check(value.ptr()) ? (text == "True" ? "true" : "false") : text);
+    }
+  }
+  void finish() const {
+    for (const auto& [key, value] : left_)
+      throw py::type_error("'" + std::string(py::str(key)) +
+                           "' is no option of a simulation; see help(sensorfarm.Simulation)");
+  }
+
+ private:
+  py::dict left_;
+};
+
+std::string controller_name(py::handle type);
+
+Options options_of(Keywords& given) {
+  Options options;
+  py::object controller = py::str("");
+  given.read("robots", options.robots), given.read("of", options.of), given.read("seed", options.seed);
+  given.read("threads", options.threads), given.read("noise", options.noise);
+  given.read("accuracy", options.accuracy), given.read("device", options.device), given.read("caster", options.caster);
+  given.read("controller", controller), given.read_settings(options.settings);
+  given.read("record", options.record), given.read("record_readings", options.record_readings);
+  options.controller = controller_name(controller);
+  return options;
+}
+
+template <class Make>
+PySimulation made(const py::kwargs& keywords, Make&& make) {
+  Keywords given(keywords);
+  const Options options = options_of(given);
+  bool writable = false;
+  given.read("writable", writable);
+  given.finish();
+  return in_farm([&] { return PySimulation{make(options), writable}; });
+}
+
+/// The name by which a simulation can use a class, "module.Class", with a number where another class has it.
+std::string controller_name(py::handle controller) {
+  if (PyType_Check(controller.ptr()) == 0) return py::str(controller);
+  static std::map<PyObject*, std::string> names;  // classes are kept by their entries
+  static std::map<std::string, int> uses;
+  const auto known = names.find(controller.ptr());
+  if (known != names.end()) return known->second;
+  ControllerEntry entry = entry_of(controller);
+  entry.name = std::string(py::str(controller.attr("__module__"))) + "." + entry.name;
+  if (const int number = ++uses[entry.name]; number > 1) entry.name += "#" + std::to_string(number);
+  const std::string name = entry.name;
+  add_controller(std::move(entry));
+  return names[controller.ptr()] = name;
+}
+
+/// A view, of which each row begins `stride` bytes after the one before.
+py::array view(const PySimulation& s, const py::dtype& type, const void* data, std::vector<py::ssize_t> shape,
+               std::size_t stride) {
+  std::vector<py::ssize_t> strides(shape.size());
+  py::ssize_t next = type.itemsize();
+  for (std::size_t i = shape.size(); i-- > 1; next *= shape[i]) strides[i] = next;
+  strides[0] = static_cast<py::ssize_t>(stride);
+  auto* const kept = new std::shared_ptr<const void>(s.farm.memory());
+  const py::capsule owner(kept, [](void* memory) { delete static_cast<std::shared_ptr<const void>*>(memory); });
+  py::array array(type, std::move(shape), std::move(strides), data, owner);
+  if (!s.writable) array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+py::ssize_t count(std::size_t n) { return static_cast<py::ssize_t>(n); }
+
+template <class Row>
+py::array rows(const PySimulation& s, std::span<const Row> data) {
+  constexpr std::size_t kNumbers = sizeof(Row) / sizeof(double);
+  return view(s, py::dtype::of<double>(), data.data(), {count(data.size()), count(kNumbers)}, sizeof(Row));
+}
+
+template <class Value>
+py::array column(const PySimulation& s, std::span<const Value> data) {
+  return view(s, py::dtype::of<Value>(), data.data(), {count(data.size())}, sizeof(Value));
+}
+
+py::array truth(const PySimulation& s, std::span<const std::uint8_t> data) {
+  return view(s, py::dtype::of<bool>(), data.data(), {count(data.size())}, 1);
+}
+
+py::array values(const PySimulation& s, Text type) {
+  const Readings r = s.farm.readings(type);
+  std::vector<py::ssize_t> shape{count(r.sensors), count(r.elements)};
+  if (r.columns > 1) shape.push_back(count(r.columns));
+  return view(s, py::dtype::of<double>(), r.values, shape, r.stride * sizeof(double));
+}
+
+py::array hits(const PySimulation& s, Text type) {
+  const Readings r = s.farm.readings(type);
+  if (r.hits == nullptr)
+    throw Error("a reading of type '" + type + "' has no hits; expected a type whose elements are beams");
+  return view(s, py::dtype::of<std::uint32_t>(), r.hits, {count(r.sensors), count(r.elements)},
+              r.hit_stride * sizeof(std::uint32_t));
+}
+
+py::array flags(const PySimulation& s, Text type) {
+  const Readings r = s.farm.readings(type);
+  return view(s, py::dtype::of<std::uint8_t>(), r.flags.data(), {count(r.sensors), count(r.elements)}, r.elements);
+}
+
+using Commands = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+void step(PySimulation& s, const py::object& twists) {
+  if (twists.is_none()) return in_farm([&] { s.farm.step(); });
+  const Commands commands = Commands::ensure(twists);
+  if (!commands || commands.ndim() != 2 || commands.shape(1) != 3 || commands.shape(0) != count(s.farm.size()))
+    throw py::value_error("twists have " +
+                          (commands ? "the shape " + std::string(py::str(commands.attr("shape")))
+                                    : std::string("elements that are no numbers")) +
+                          "; expected (" + std::to_string(s.farm.size()) +
+                          ", 3): forward [m/s], left [m/s], turn [rad/s] per row");
+  static_assert(sizeof(Twist) == 3 * sizeof(double));
+  const auto* const first = reinterpret_cast<const Twist*>(commands.data());
+  in_farm([&] { s.farm.step({first, s.farm.size()}); });
+}
+
+void add_state(py::class_<PySimulation>& c) {
+  c.def_property_readonly("poses", [](const PySimulation& s) { return rows(s, s.farm.poses()); })
+      .def_property_readonly("velocities", [](const PySimulation& s) { return rows(s, s.farm.velocities()); })
+      .def_property_readonly("contacts", [](const PySimulation& s) { return truth(s, s.farm.contacts()); })
+      .def_property_readonly("done", [](const PySimulation& s) { return truth(s, s.farm.done()); })
+      .def_property_readonly("robots", [](const PySimulation& s) { return s.farm.robots(); })
+      .def_property_readonly("types", [](const PySimulation& s) { return s.farm.types(); })
+      .def_property_readonly("models", [](const PySimulation& s) { return s.farm.models(); })
+      .def_property_readonly("interval", [](const PySimulation& s) { return s.farm.interval(); })
+      .def_property_readonly("time", [](const PySimulation& s) { return s.farm.time(); })
+      .def_property_readonly("tick", [](const PySimulation& s) { return s.farm.tick(); })
+      .def_property_readonly("hash", [](const PySimulation& s) { return s.farm.hash(); })
+      .def_property_readonly("description", [](const PySimulation& s) { return s.farm.description(); })
+      .def_property_readonly("warnings", [](const PySimulation& s) { return s.farm.warnings(); })
+      .def("__len__", [](const PySimulation& s) { return s.farm.size(); });
+}
+
+void add_readings(py::class_<PySimulation>& c) {
+  const py::arg type("type");
+  c.def("readings", &values, type)
+      .def("hits", &hits, type)
+      .def("flags", &flags, type)
+      .def(
+          "bounds", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).bounds); }, type)
+      .def(
+          "times", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).times); }, type)
+      .def(
+          "rows", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).robots); }, type)
+      .def(
+          "fresh", [](const PySimulation& s, Text t) { return truth(s, s.farm.readings(t).fresh); }, type);
+}
+
+void add_simulation(py::module_& module) {
+  py::class_<PySimulation> c(module, "Simulation");
+  c.def(py::init([](Text world, const py::kwargs& options) {
+          return made(options, [&](const Options& given) { return Simulation(world, given); });
+        }),
+        py::arg("world"))
+      .def_static(
+          "from_text",
+          [](Text text, Text name, const py::kwargs& options) {
+            return made(options, [&](const Options& given) { return Simulation::from_text(text, given, name); });
+          },
+          py::arg("text"), py::arg("name") = "given.world")
+      .def("step", &step, py::arg("twists") = py::none())
+      .def(
+          "reset",
+          [](PySimulation& s, std::optional<std::uint64_t> seed) {
+            in_farm([&] { seed ? s.farm.reset(*seed) : s.farm.reset(); });
+          },
+          py::arg("seed") = py::none())
+      .def(
+          "put", [](PySimulation& s, std::size_t row, const Pose& pose) { in_farm([&] { s.farm.put(row, pose); }); },
+          py::arg("row"), py::arg("pose"))
+      .def(
+          "draw", [](const PySimulation& s, Text file) { in_farm([&] { s.farm.draw(file); }); }, py::arg("file"))
+      .def("finish_recording", [](PySimulation& s) { in_farm([&] { s.farm.finish_recording(); }); });
+  add_state(c), add_readings(c);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_sensorfarm, module) {
+  py::register_exception<Error>(module, "Error", PyExc_RuntimeError);
+  py::register_exception<DeviceError>(module, "DeviceError", module.attr("Error"));
+  module.attr("NONE") = kNone;
+  add_controller_types(module);
+  add_simulation(module);
+  module.def(
+      "load_plugin", [](Text file) { in_farm([&] { load_plugin(file); }); }, py::arg("file"));
+}
+
+}  // namespace sensorfarm::python

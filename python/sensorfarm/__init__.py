@@ -1,0 +1,40 @@
+"""A 2-D multi-robot simulator with virtual sensors, stepped by your program (docs/python.md).
+
+    import numpy, sensorfarm
+    sim = sensorfarm.Simulation("worlds/cave.world", robots=50, seed=1)
+    twists = numpy.zeros((len(sim), 3))              # forward [m/s], left [m/s], turn [rad/s]
+    for _ in range(100):
+        ranges = sim.readings("laser")               # [m] (sensors, beams): a view, without a copy
+        twists[sim.rows("laser"), 0] = 0.3 * (ranges.min(axis=1) > 0.5)
+        sim.step(twists)
+"""
+
+import os as _os
+import tempfile as _tempfile
+
+import numpy as _numpy
+
+from ._sensorfarm import (NONE, DeviceError, Error, Input, Light, Neighbour, Pose, Reading, Robot, SensorInfo,
+                          Settings, Simulation, Twist, load_plugin)
+
+__all__ = ["NONE", "DeviceError", "Error", "Input", "Light", "Neighbour", "Pose", "Reading", "Robot", "SensorInfo",
+           "Settings", "Simulation", "Twist", "load_plugin"]
+
+
+def _valid(self, type):
+    """A new bool array (sensors, elements): the element was measured, and its error bound holds."""
+    values = self.readings(type)
+    measured = _numpy.isfinite(values) if values.ndim == 2 else _numpy.isfinite(values).all(axis=2)
+    return measured & (self.flags(type) == 0) & _numpy.isfinite(self.times(type))[:, None]
+
+
+def _png(self):
+    """The picture that `draw` makes, as bytes of a PNG file; a notebook shows it."""
+    with _tempfile.TemporaryDirectory() as folder:
+        file = _os.path.join(folder, "now.png")
+        self.draw(file)
+        with open(file, "rb") as picture:
+            return picture.read()
+
+
+Simulation.valid, Simulation._repr_png_ = _valid, _png

@@ -1,0 +1,59 @@
+"""Controllers for tests."""
+
+
+class Careful:
+    """Turns where something is near."""
+
+    def __init__(self, robot, settings):
+        self.near = settings.number("near", 0.6, 0, 10)
+        self.turn = settings.number("turn", 0.5, -2, 2)
+
+    def step(self, input):
+        least = input.newest("laser").values.min()
+        return (0, 0, self.turn) if least < self.near else (0.1 * least, 0, 0)
+
+
+class Divides:
+    """Fails on its third call: robot 7 alone."""
+
+    def __init__(self, robot, settings):
+        self.left = 2 if robot.row == 7 else 1000
+
+    def step(self, input):
+        self.left -= 1
+        return 1 / (self.left + 1), 0, 0
+
+
+class Returns:
+    """Returns what the setting says."""
+
+    def __init__(self, robot, settings):
+        self.what = {"none": None, "two": (0, 0), "nan": (float("nan"), 0, 0), "text": "abc"}[settings.text("what", "two")]
+
+    def step(self, input):
+        return self.what
+
+
+class Prints:
+    """Prints at the end of the program, and has an error."""
+
+    def __init__(self, robot, settings):
+        import atexit
+        if robot.row == 0:
+            atexit.register(print, "farewell")
+        self.calls = 0
+
+    def step(self, input):
+        self.calls += 1
+        return 0, 0, 0
+
+    def error(self):
+        return float(self.calls)
+
+    def done(self):
+        return self.calls >= 3
+
+
+class _Hidden:
+    def step(self, input):
+        return 0, 0, 0

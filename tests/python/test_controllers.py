@@ -1,0 +1,220 @@
+"""Controllers in Python: in a simulation, from a file, and in the program."""
+
+import json
+import os
+import subprocess
+import tempfile
+import threading
+import unittest
+
+import numpy
+import sensorfarm
+
+from controllers import Careful, Divides
+
+PROGRAM = os.environ["SENSORFARM_PROGRAM"]
+FILE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "controllers.py")
+CAVE = "worlds/cave.world"
+
+
+def run(*arguments):
+    """Exit code, output and errors of `sensorfarm run` with 20 robots for 2 s."""
+    done = subprocess.run([PROGRAM, "run", CAVE, "--robots", "20", "--duration", "2", *arguments],
+                          capture_output=True, text=True)
+    return done.returncode, done.stdout, done.stderr
+
+
+def simulated(**options):
+    sim = sensorfarm.Simulation(CAVE, robots=20, **options)
+    for _ in range(19):
+        sim.step()
+    return sim.hash
+
+
+class OneHash(unittest.TestCase):
+    """A controller drives alike wherever it runs."""
+
+    def setUp(self):
+        self.expected = json.loads(run("--controller", os.environ["SENSORFARM_CAREFUL"] + ":careful", "--json")[1])["hash"]
+
+    def test_by_step(self):
+        sim = sensorfarm.Simulation(CAVE, robots=20)
+        twists = numpy.zeros((20, 3))
+        for _ in range(19):
+            least = sim.readings("laser").min(axis=1)
+            near = least < 0.6
+            twists[:, 0] = numpy.where(near, 0, 0.1 * least)
+            twists[:, 2] = numpy.where(near, 0.5, 0)
+            twists[sim.contacts] = 0  # `wait_on_bumper`
+            sim.step(twists)
+        self.assertEqual(f"{sim.hash:016x}", self.expected)
+        self.assertGreater(len({tuple(twist) for twist in twists}), 5, "all robots do the same")
+
+    def test_class(self):
+        self.assertEqual(f"{simulated(controller=Careful):016x}", self.expected)
+
+    def test_file(self):
+        self.assertEqual(f"{simulated(controller=FILE + ':Careful'):016x}", self.expected)
+
+    def test_plugin(self):
+        self.assertEqual(f"{simulated(controller=os.environ['SENSORFARM_CAREFUL']):016x}", self.expected)
+
+    def test_program(self):
+        code, out, errors = run("--controller", FILE + ":Careful", "--json")
+        self.assertEqual((code, json.loads(out)["hash"]), (0, self.expected), errors)
+
+    def test_threads(self):
+        for threads in (1, 3):
+            self.assertEqual(f"{simulated(controller=Careful, threads=threads):016x}", self.expected)
+
+    def test_settings_matter(self):
+        self.assertNotEqual(f"{simulated(controller=Careful, settings={'near': 2.5}):016x}", self.expected)
+
+
+class Program(unittest.TestCase):
+    def fails(self, *arguments):
+        code, _, errors = run(*arguments)
+        self.assertNotEqual(code, 0)
+        self.assertNotIn("Traceback", errors)
+        return errors
+
+    def test_exception_ends_the_run(self):
+        errors = self.fails("--controller", FILE + ":Divides")
+        line = 1 + open(FILE).read().split("return 1 / (")[0].count("\n")
+        self.assertIn("robot 'roomba8' failed at 0.200 s", errors)
+        self.assertIn(f"{FILE}:{line}: ZeroDivisionError: division by zero", errors)
+
+    def test_return_values(self):
+        for what, said in (("none", "None"), ("two", "(0, 0)"), ("text", "'abc'"), ("nan", "nan")):
+            errors = self.fails("--controller", FILE + ":Returns", "--set", "what=" + what)
+            self.assertIn(said, errors)
+            self.assertIn("expected", errors)
+
+    def test_settings(self):
+        self.assertIn("expects a number from 0 to 10; got '11'", self.fails("--controller", FILE + ":Careful", "--set", "near=11"))
+        self.assertIn("has no setting 'far'", self.fails("--controller", FILE + ":Careful", "--set", "far=1"))
+
+    def test_names(self):
+        self.assertIn("no controller 'Nobody'", self.fails("--controller", FILE + ":Nobody"))
+        self.assertIn("several controllers", self.fails("--controller", FILE))
+        self.assertNotIn("_Hidden", self.fails("--controller", FILE))
+        self.assertIn("No such file", self.fails("--controller", "nowhere.py:Careful"))
+
+    def test_bad_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for text, said in (("def f(:\n", ":1: SyntaxError"), ("x = 1\n", "no class with a method step"),
+                               ("\nimport nowhere\n", ":2: ModuleNotFoundError"), ("\0", "null bytes"),
+                               ("class A:\n  rate = 'x'\n  def step(self, i): pass\n", "'rate' of class A is 'x'"),
+                               ("class A:\n  rate = -1\n  def step(self, i): pass\n", "rate of -1 Hz")):
+                file = os.path.join(folder, "bad.py")
+                with open(file, "w") as out:
+                    out.write(text)
+                self.assertIn(said, self.fails("--controller", file))
+
+    def test_python_ends_in_order(self):
+        code, out, errors = run("--controller", FILE + ":Prints")
+        self.assertEqual(code, 0, errors)
+        self.assertTrue(out.endswith("farewell\n"), out[-200:])
+
+    def test_scenario(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scenario = os.path.join(folder, "scenario.toml")
+            with open(scenario, "w") as out:
+                out.write(f'world = "{os.path.abspath(CAVE)}"\nduration = 2\nrobots = 20\n'
+                          f'[default]\ncontroller = "{FILE}:Careful"\nsettings = {{ near = 0.7 }}\n'
+                          '[expect]\ncontacts = 0\n')
+            done = subprocess.run([PROGRAM, "test", scenario], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
+class InProcess(unittest.TestCase):
+    def test_exception(self):
+        with self.assertRaisesRegex(sensorfarm.Error, r"'roomba8' failed at 0.200 s: .*controllers.py:\d+: ZeroDivisionError"):
+            simulated(controller=Divides)
+
+    def test_inputs(self):
+        seen = {}
+
+        class Looks:
+            rate = 5.0
+            stops_on_bumper = False
+
+            def __init__(self, robot, settings):
+                seen[robot.row] = self
+                self.robot, self.settings, self.inputs = robot, settings, []
+
+            def radio_range(self):
+                return 100.0
+
+            def step(self, input):
+                self.inputs.append(input)
+                return input.velocity if False else (0.1, 0, 0)
+
+        sim = sensorfarm.Simulation(CAVE, robots=20, controller=Looks)
+        kept = sim.poses.copy()
+        for _ in range(4):
+            sim.step()
+        looks = seen[3]
+        self.assertEqual([round(i.time, 6) for i in looks.inputs], [0.0, 0.2, 0.4])
+        first = looks.inputs[0]
+        self.assertEqual(tuple(first.pose), tuple(kept[3]))
+        self.assertEqual(first.newest("laser").values.shape, (361,))
+        self.assertIsNone(first.newest("laser", 1))
+        self.assertIsNone(first.newest("sonar"))
+        self.assertEqual(len(first.others), 19)
+        self.assertAlmostEqual(looks.inputs[2].velocity.forward, 0.1)
+        self.assertEqual(looks.robot.sensors[0].columns, ["range_m"])
+        with self.assertRaisesRegex(ValueError, "__init__ only"):
+            looks.settings.number("late", 1)
+
+    def test_calls_run_in_threads_of_the_farm(self):
+        """Two calls wait for each other, so each thread must let go of the interpreter."""
+        both = threading.Barrier(2, timeout=60)
+
+        class Meets:
+            def __init__(self, robot, settings):
+                self.meets = robot.row in (0, 63)  # in different shares of the thread pool
+
+            def step(self, input):
+                if self.meets:
+                    both.wait()
+                return 0, 0, 0
+
+        sim = sensorfarm.Simulation(CAVE, robots=64, controller=Meets, threads=2)
+        sim.step()
+        self.assertEqual(both.broken, False)
+
+    def test_no_step_within_a_step(self):
+        class Nests:
+            sim = None
+
+            def __init__(self, robot, settings):
+                pass
+
+            def step(self, input):
+                if Nests.sim is not None:
+                    Nests.sim.step()
+                return 0, 0, 0
+
+        sim = sensorfarm.Simulation(CAVE, robots=2, controller=Nests)
+        Nests.sim = sim
+        with self.assertRaisesRegex(sensorfarm.Error, "another call of a simulation has not ended"):
+            sim.step()
+        Nests.sim = None
+
+    def test_classes_of_one_name(self):
+        def make(speed):
+            class Same:
+                def __init__(self, robot, settings):
+                    pass
+
+                def step(self, input):
+                    return speed, 0, 0
+            return Same
+        fast, slow = make(0.3), make(0.1)
+        self.assertNotEqual(simulated(controller=fast), simulated(controller=slow))
+        self.assertEqual(simulated(controller=fast), simulated(controller=fast))
+
+
+if __name__ == "__main__":
+    unittest.main()

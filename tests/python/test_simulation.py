@@ -1,0 +1,212 @@
+"""sensorfarm.Simulation: arrays, options, errors."""
+
+import os
+import sys
+import tempfile
+import threading
+import unittest
+
+import numpy
+import sensorfarm
+
+CAVE = "worlds/cave.world"
+ROOM = """
+resolution 0.02
+model( name "walls" size [4 4 1] boundary 1 obstacle_return 1 )
+define body position
+( size [0.3 0.3 0.2] drive "omni" block( points 4 point[0] [0 0] point[1] [1 0] point[2] [1 1] point[3] [0 1] z [0 0.2] ) )
+body( name "lead" pose [-1 0 0 0] laser( pose [0 0 -0.15 0] samples 5 fov 90 range_max 3 ) )
+body( name "next" pose [1 0 0 0] laser( pose [0 0 -0.15 0] samples 3 fov 90 range_max 3 rate 5 ) gps() sonar( scount 2 spose[0] [0 0 0] spose[1] [0 0 90] ) )
+"""
+
+
+def address(array):
+    return array.__array_interface__["data"][0]
+
+
+def room(**options):
+    return sensorfarm.Simulation.from_text(ROOM, noise=False, **options)
+
+
+class Arrays(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.sim = sensorfarm.Simulation(CAVE, robots=20, seed=3)
+
+    def test_shapes_and_types(self):
+        sim, n, beams = self.sim, 20, 361
+        for array, shape, kind in ((sim.poses, (n, 4), "f8"), (sim.velocities, (n, 3), "f8"), (sim.contacts, (n,), "?"),
+                                   (sim.done, (n,), "?"), (sim.readings("laser"), (n, beams), "f8"),
+                                   (sim.hits("laser"), (n, beams), "u4"), (sim.flags("laser"), (n, beams), "u1"),
+                                   (sim.bounds("laser"), (n,), "f8"), (sim.times("laser"), (n,), "f8"),
+                                   (sim.rows("laser"), (n,), "u4"), (sim.fresh("laser"), (n,), "?")):
+            self.assertEqual((array.shape, array.dtype), (shape, numpy.dtype(kind)))
+            self.assertFalse(array.flags.owndata)
+            self.assertFalse(array.flags.writeable)
+
+    def test_views_share_memory(self):
+        """A view shows the newest tick: its address stays, its content changes."""
+        sim = sensorfarm.Simulation(CAVE, robots=20, seed=3)
+        names = ("poses", "velocities", "contacts")
+        of_type = ("readings", "hits", "bounds", "times", "fresh", "flags")
+
+        def all_views():
+            return [getattr(sim, name) for name in names] + [getattr(sim, name)("laser") for name in of_type]
+        before = all_views()
+        old = [view.copy() for view in before]
+        sim.step(numpy.full((20, 3), 0.2))
+        self.assertEqual([address(view) for view in before], [address(view) for view in all_views()])
+        for i in (0, 3):  # poses, readings
+            self.assertTrue((before[i] != old[i]).any())
+
+    def test_views_outlive_the_simulation(self):
+        sim = sensorfarm.Simulation(CAVE, robots=20, seed=3)
+        view, kept = sim.readings("laser"), sim.readings("laser").copy()
+        sim.reset(4)
+        self.assertTrue((view == kept).all())
+        self.assertTrue((sim.readings("laser") != kept).any())
+        del sim
+        self.assertTrue((view == kept).all())
+
+    def test_dlpack(self):
+        sim = room(writable=True)
+        for array in (sim.poses, sim.readings("laser"), sim.bounds("laser")):
+            shared = numpy.from_dlpack(array)
+            self.assertEqual(address(shared), address(array))
+            numpy.testing.assert_array_equal(shared, array)
+        before = numpy.from_dlpack(sim.poses)
+        sim.put(0, (0.5, 0.5, 0, 1))
+        sim.step()
+        numpy.testing.assert_allclose(before[0], (0.5, 0.5, 0, 1))
+
+    def test_the_interpreter_runs_during_a_step(self):
+        """With an endless switch interval another thread runs only when a step lets go of the interpreter."""
+        go, ran = threading.Event(), []
+
+        def wait():
+            go.wait()
+            ran.append(True)
+        other = threading.Thread(target=wait)
+        other.start()
+        interval = sys.getswitchinterval()
+        sys.setswitchinterval(1000)
+        try:
+            go.set()
+            for _ in range(2000):
+                if ran:
+                    break
+                self.sim.step()
+        finally:
+            sys.setswitchinterval(interval)
+            was_run = bool(ran)
+            other.join()
+        self.assertTrue(was_run)
+
+
+class Readings(unittest.TestCase):
+    def test_shorter_rows_end_in_nan(self):
+        sim = room()
+        ranges = sim.readings("laser")
+        self.assertEqual(ranges.shape, (2, 5))
+        self.assertTrue(numpy.isnan(ranges[1, 3:]).all())
+        numpy.testing.assert_array_equal(sim.valid("laser"), [[True] * 5, [True] * 3 + [False] * 2])
+
+    def test_ranges(self):
+        """From (-1, 0) the other robot's side is 1.85 m ahead, and the wall (1 cm thick) 1.99 m to the left."""
+        sim = room()
+        ranges, hits = sim.readings("laser"), sim.hits("laser")
+        self.assertAlmostEqual(ranges[0, 2], 1.85, delta=1e-6)
+        self.assertAlmostEqual(ranges[0, 4], 1.99 * 2 ** 0.5, delta=1e-6)
+        self.assertEqual(sim.models[hits[0, 2]], "next")
+        self.assertEqual(sim.models[hits[0, 4]], "walls")
+
+    def test_columns(self):
+        sim = room()
+        self.assertEqual(set(sim.types), {"laser", "gps", "sonar"})
+        for name in sim.types:
+            info = [s for r in sim.robots for s in r.sensors if s.type == name]
+            columns = len(info[0].columns)
+            elements = max(s.elements for s in info)
+            expected = (len(info), elements) + ((columns,) if columns > 1 else ())
+            self.assertEqual(sim.readings(name).shape, expected, name)
+            self.assertEqual(sim.valid(name).shape, expected[:2], name)
+
+    def test_rates(self):
+        """The second laser is read at every other tick."""
+        sim = room()
+        self.assertEqual(sim.fresh("laser").tolist(), [True, True])
+        sim.step()
+        self.assertEqual(sim.fresh("laser").tolist(), [True, False])
+        numpy.testing.assert_allclose(sim.times("laser"), [0.1, 0.0])
+        numpy.testing.assert_array_equal(sim.rows("laser"), [0, 1])
+
+
+class Steps(unittest.TestCase):
+    def test_twists_move_robots(self):
+        sim = room()
+        sim.step([[0.1, 0.2, 0.3], [0, 0, 0]])
+        numpy.testing.assert_allclose(sim.velocities[0], (0.1, 0.2, 0.3), atol=1e-12)
+        numpy.testing.assert_allclose(sim.poses[0, 3], 0.03, atol=1e-12)
+        sim.step()  # commands stay as they are
+        numpy.testing.assert_allclose(sim.poses[0, 3], 0.06, atol=1e-12)
+        self.assertEqual((sim.tick, round(sim.time, 9)), (2, 0.2))
+
+    def test_same_seed_same_hash(self):
+        hashes = []
+        for seed in (1, 1, 2):
+            sim = sensorfarm.Simulation(CAVE, robots=5, seed=seed, accuracy="")
+            sim.step()
+            hashes.append(sim.hash)
+        self.assertEqual(hashes[0], hashes[1])
+        self.assertNotEqual(hashes[0], hashes[2])
+        sim.reset(1)
+        sim.step()
+        self.assertEqual(sim.hash, hashes[0])
+
+    def test_recording(self):
+        with tempfile.TemporaryDirectory() as folder:
+            sim = room(record=os.path.join(folder, "run"), record_readings=True)
+            sim.step()
+            sim.finish_recording()
+            self.assertGreater(os.path.getsize(os.path.join(folder, "run", "run.mcap")), 1000)
+
+    def test_picture(self):
+        picture = room()._repr_png_()
+        self.assertEqual(picture[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertGreater(len(picture), 5000)
+
+
+class Faults(unittest.TestCase):
+    def test_messages(self):
+        sim = room()
+        for error, said, call in (
+                (sensorfarm.Error, "given.world:2: ", lambda: sensorfarm.Simulation.from_text('name "x"\nlaser(\n')),
+                (sensorfarm.Error, "mine.world:1: ", lambda: sensorfarm.Simulation.from_text("laser(", name="mine.world")),
+                (sensorfarm.Error, "nowhere.world: no such file", lambda: sensorfarm.Simulation("nowhere.world")),
+                (sensorfarm.Error, "expected one of: ", lambda: sim.readings("lazer")),
+                (sensorfarm.Error, "no hits", lambda: sim.hits("gps")),
+                (sensorfarm.Error, "there is no caster 'gpu'", lambda: room(caster="gpu")),
+                (sensorfarm.Error, "there is no controller", lambda: room(controller="nobody")),
+                (sensorfarm.Error, "is not finite", lambda: sim.put(0, (0, 0, 0, float("inf")))),
+                (sensorfarm.Error, "there is no row 2", lambda: sim.put(2, (0, 0, 0, 0))),
+                (sensorfarm.Error, "expected finite numbers", lambda: sim.step([[0, 0, float("nan")], [0, 0, 0]])),
+                (sensorfarm.DeviceError, "does not match 'nonsuch'", lambda: room(device="nonsuch")),
+                (TypeError, "'robotz' is no option", lambda: room(robotz=1)),
+                (TypeError, "'robots' has a value of another type", lambda: room(robots=-1)),
+                (TypeError, "put", lambda: sim.put(0, (0, 0))),
+                (TypeError, "", lambda: sim.put(-1, (0, 0, 0, 0))),
+                (ValueError, r"the shape \(3, 3\); expected \(2, 3\)", lambda: sim.step(numpy.zeros((3, 3)))),
+                (ValueError, r"the shape \(6,\)", lambda: sim.step(numpy.zeros(6))),
+                (ValueError, "no numbers", lambda: sim.step("ahead")),
+                (ValueError, "read-only", lambda: sim.poses.__setitem__((0, 0), 1.0))):
+            with self.assertRaisesRegex(error, said):
+                call()
+        sim.step(numpy.zeros((2, 3)))  # none of these has harmed it
+
+    def test_errors_are_of_one_family(self):
+        self.assertTrue(issubclass(sensorfarm.DeviceError, sensorfarm.Error))
+        self.assertTrue(issubclass(sensorfarm.Error, RuntimeError))
+
+
+if __name__ == "__main__":
+    unittest.main()
