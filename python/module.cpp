@@ -186,50 +186,77 @@ void step(PySimulation& s, const py::object& twists) {
 }
 
 void add_state(py::class_<PySimulation>& c) {
-  c.def_property_readonly("poses", [](const PySimulation& s) { return rows(s, s.farm.poses()); })
-      .def_property_readonly("velocities", [](const PySimulation& s) { return rows(s, s.farm.velocities()); })
-      .def_property_readonly("contacts", [](const PySimulation& s) { return truth(s, s.farm.contacts()); })
-      .def_property_readonly("done", [](const PySimulation& s) { return truth(s, s.farm.done()); })
-      .def_property_readonly("robots", [](const PySimulation& s) { return s.farm.robots(); })
-      .def_property_readonly("types", [](const PySimulation& s) { return s.farm.types(); })
-      .def_property_readonly("models", [](const PySimulation& s) { return s.farm.models(); })
-      .def_property_readonly("interval", [](const PySimulation& s) { return s.farm.interval(); })
-      .def_property_readonly("time", [](const PySimulation& s) { return s.farm.time(); })
-      .def_property_readonly("tick", [](const PySimulation& s) { return s.farm.tick(); })
-      .def_property_readonly("hash", [](const PySimulation& s) { return s.farm.hash(); })
-      .def_property_readonly("description", [](const PySimulation& s) { return s.farm.description(); })
-      .def_property_readonly("warnings", [](const PySimulation& s) { return s.farm.warnings(); })
+  c.def_property_readonly(
+       "poses", [](const PySimulation& s) { return rows(s, s.farm.poses()); },
+       "(robots, 4): x, y, z [m], yaw [rad] of the last tick.")
+      .def_property_readonly(
+          "velocities", [](const PySimulation& s) { return rows(s, s.farm.velocities()); },
+          "(robots, 3): forward, left [m/s], turn [rad/s].")
+      .def_property_readonly(
+          "contacts", [](const PySimulation& s) { return truth(s, s.farm.contacts()); },
+          "(robots,): a wall or a robot stopped it.")
+      .def_property_readonly(
+          "done", [](const PySimulation& s) { return truth(s, s.farm.done()); }, "(robots,): its controller is done.")
+      .def_property_readonly(
+          "robots", [](const PySimulation& s) { return s.farm.robots(); }, "Of each row, as at the start.")
+      .def_property_readonly(
+          "types", [](const PySimulation& s) { return s.farm.types(); }, "Sensor types of this world.")
+      .def_property_readonly(
+          "models", [](const PySimulation& s) { return s.farm.models(); }, "Names, by the numbers in hits().")
+      .def_property_readonly(
+          "interval", [](const PySimulation& s) { return s.farm.interval(); }, "[s] of a tick.")
+      .def_property_readonly(
+          "time", [](const PySimulation& s) { return s.farm.time(); }, "[s] of the last tick.")
+      .def_property_readonly(
+          "tick", [](const PySimulation& s) { return s.farm.tick(); }, "Number of the last tick, from 0.")
+      .def_property_readonly(
+          "hash", [](const PySimulation& s) { return s.farm.hash(); },
+          "Of all readings so far: that of `sensorfarm run`.")
+      .def_property_readonly(
+          "description", [](const PySimulation& s) { return s.farm.description(); }, "Device and caster, in one line.")
+      .def_property_readonly(
+          "warnings", [](const PySimulation& s) { return s.farm.warnings(); }, "Of the world file.")
       .def("__len__", [](const PySimulation& s) { return s.farm.size(); });
 }
 
 void add_readings(py::class_<PySimulation>& c) {
   const py::arg type("type");
-  c.def("readings", &values, type)
-      .def("hits", &hits, type)
-      .def("flags", &flags, type)
+  c.def("readings", &values, type,
+        "(sensors, elements[, columns]): the newest reading of each sensor; shorter ones end in NaN.")
+      .def("hits", &hits, type, "(sensors, beams): number of the model that each beam met, or NONE.")
+      .def("flags", &flags, type, "(sensors, elements): 0 where the bound holds.")
       .def(
-          "bounds", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).bounds); }, type)
+          "bounds", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).bounds); }, type,
+          "(sensors,): largest error of the first column without noise.")
       .def(
-          "times", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).times); }, type)
+          "times", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).times); }, type,
+          "(sensors,) [s] of the measurement; NaN before the first.")
       .def(
-          "rows", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).robots); }, type)
+          "rows", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).robots); }, type,
+          "(sensors,): row of the sensor's robot.")
       .def(
-          "fresh", [](const PySimulation& s, Text t) { return truth(s, s.farm.readings(t).fresh); }, type);
+          "fresh", [](const PySimulation& s, Text t) { return truth(s, s.farm.readings(t).fresh); }, type,
+          "(sensors,): delivered in the last step.");
 }
 
 void add_simulation(py::module_& module) {
-  py::class_<PySimulation> c(module, "Simulation");
-  c.def(py::init([](Text world, const py::kwargs& options) {
-          return made(options, [&](const Options& given) { return Simulation(world, given); });
-        }),
-        py::arg("world"))
+  py::class_<PySimulation> c(module, "Simulation",
+                             "A simulated fleet. Arrays are views, valid until the next step, put or reset.");
+  c.def(
+       py::init([](Text world, const py::kwargs& options) {
+         return made(options, [&](const Options& given) { return Simulation(world, given); });
+       }),
+       py::arg("world"),
+       "world: a file; options: robots=0, of='', seed=1, threads=0, noise=True, accuracy='', device='', caster='auto', "
+       "controller='', settings={}, record='', record_readings=False, writable=False (docs/python.md)")
       .def_static(
           "from_text",
           [](Text text, Text name, const py::kwargs& options) {
             return made(options, [&](const Options& given) { return Simulation::from_text(text, given, name); });
           },
           py::arg("text"), py::arg("name") = "given.world")
-      .def("step", &step, py::arg("twists") = py::none())
+      .def("step", &step, py::arg("twists") = py::none(),
+           "One tick. twists: (robots, 3) of forward, left [m/s], turn [rad/s]; None: as they are.")
       .def(
           "reset",
           [](PySimulation& s, std::optional<std::uint64_t> seed) {
@@ -238,9 +265,10 @@ void add_simulation(py::module_& module) {
           py::arg("seed") = py::none())
       .def(
           "put", [](PySimulation& s, std::size_t row, const Pose& pose) { in_farm([&] { s.farm.put(row, pose); }); },
-          py::arg("row"), py::arg("pose"))
+          py::arg("row"), py::arg("pose"), "Places a robot at (x, y, z [m], yaw [rad]), at rest.")
       .def(
-          "draw", [](const PySimulation& s, Text file) { in_farm([&] { s.farm.draw(file); }); }, py::arg("file"))
+          "draw", [](const PySimulation& s, Text file) { in_farm([&] { s.farm.draw(file); }); }, py::arg("file"),
+          "Writes a PNG of the world at this time.")
       .def("finish_recording", [](PySimulation& s) { in_farm([&] { s.farm.finish_recording(); }); });
   add_state(c), add_readings(c);
 }

@@ -1,0 +1,46 @@
+// Seconds per step of libsensorfarm, for bench/python_step.py: library_step WORLD ROBOTS STEPS. The first line of input
+// starts the measurement, and each further one repeats it.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "sensorfarm/simulation.h"
+
+int main(int argc, char** argv) {
+  if (argc != 4) return std::fputs("usage: library_step WORLD ROBOTS STEPS\n", stderr), 2;
+  const long steps = std::atol(argv[3]);
+  try {
+    sensorfarm::Simulation simulation(argv[1], {.robots = static_cast<std::uint32_t>(std::atol(argv[2]))});
+    std::vector<sensorfarm::Twist> twists(simulation.size());
+    const auto drive = [&] {
+      const sensorfarm::Readings scans = simulation.readings("laser");
+      for (std::size_t i = 0; i < scans.sensors; ++i) {
+        const auto ranges = scans.row(i);
+        const bool near = *std::min_element(ranges.begin(), ranges.end()) < 0.5;
+        twists[scans.robots[i]] = near ? sensorfarm::Twist{0.0, 0.0, 0.8} : sensorfarm::Twist{0.3, 0.0, 0.0};
+      }
+    };
+    for (std::string line; std::getline(std::cin, line);) {
+      simulation.reset(1);
+      double spent = 0.0;
+      for (long i = 0; i < steps; ++i) {
+        drive();
+        const auto start = std::chrono::steady_clock::now();
+        simulation.step(twists);
+        static_cast<void>(simulation.readings("laser"));
+        spent += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      }
+      std::printf("%.9f %016llx\n", spent / static_cast<double>(steps),
+                  static_cast<unsigned long long>(simulation.hash()));
+      std::fflush(stdout);
+    }
+  } catch (const sensorfarm::Error& error) {
+    std::fprintf(stderr, "library_step: %s\n", error.what());
+    return 1;
+  }
+}
