@@ -38,6 +38,7 @@ std::string subject_of(const server::PacketDescription& packet) {
       [[fallthrough]];
     case netio::Type::challenge:
     case netio::Type::neighbours:
+    case netio::Type::state:
       return fmt::format("{} to robot {}", packet.name, header.robot);
     default:
       break;

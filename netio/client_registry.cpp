@@ -49,6 +49,16 @@ PacketStatus ClientRegistry::admit(std::uint32_t id, std::size_t channel, std::u
   return PacketStatus::accepted;
 }
 
+PacketStatus ClientRegistry::renew(std::uint32_t id, const Endpoint& source, std::int64_t now) {
+  const auto at = row(id);
+  SF_CHECK(at, "id " + std::to_string(id));
+  Client& client = clients_[*at];
+  if (!client.last) return PacketStatus::stale;
+  if (client.source != source) return is_recent(client.last, now) ? PacketStatus::wrong_source : PacketStatus::stale;
+  client.last = now;
+  return PacketStatus::accepted;
+}
+
 PacketStatus ClientRegistry::leave(std::uint32_t id, const Endpoint& source, std::int64_t now) {
   const auto at = row(id);
   SF_CHECK(at, "id " + std::to_string(id));

@@ -35,6 +35,10 @@ class ClientRegistry {
   PacketStatus admit(std::uint32_t id, std::size_t channel, std::uint32_t sequence, const Endpoint& source,
                      std::int64_t now);
 
+  /// Renews the binding of `id` by a packet that needs no order. Returns accepted where `source` was the last sender,
+  /// also after a silence; wrong_source while `id` is bound to another; else stale. @pre as `admit`
+  PacketStatus renew(std::uint32_t id, const Endpoint& source, std::int64_t now);
+
   /// Ends the binding of `id` to `source`. Returns accepted if it existed (the id is free at once), wrong_source if
   /// `id` is bound to another sender, else stale. Packets from `source` in the next two seconds are stale, since they
   /// were sent before.

@@ -36,6 +36,7 @@ Inbox::Inbox(const InboxOptions& options)
       sessions_(options.robots.size(), 0),
       session_(options.session),
       take_late_(options.take_late),
+      lockstep_(options.lockstep),
       socket_(open_udp(options.bind, {.receive = options.receive_buffer, .send = kSendBuffer})),
       batch_(kBatch) {
   require_ids(options.robots, 0, "robot");
@@ -68,17 +69,29 @@ PacketStatus Inbox::check(Packet& packet, std::span<const std::uint8_t> bytes, c
 /// Whether such a packet can concern the farm at all.
 PacketStatus Inbox::check_id(const Header& header) const {
   const auto known = [&](bool is_known) { return is_known ? PacketStatus::accepted : PacketStatus::unknown_robot; };
+  const auto robot_if = [&](bool is_taken) {
+    return is_taken ? known(robots_.row(header.robot).has_value()) : PacketStatus::wrong_direction;
+  };
   switch (header.type) {
-    case Type::v2v:
     case Type::subscribe:
     case Type::leave:
-      return known(robots_.row(header.robot).has_value());
+      return robot_if(true);
+    case Type::v2v:
+      return robot_if(!lockstep_);
+    case Type::command:
+    case Type::step:
+    case Type::fetch:
+      return robot_if(lockstep_);
     case Type::start:
+      if (lockstep_) break;
       return known(header.robot == kBroadcastId || robots_.row(header.robot));
     case Type::tag:
+      if (lockstep_) break;
       return tags_.row(header.robot) ? PacketStatus::accepted : PacketStatus::unknown_tag;
     case Type::challenge:
     case Type::neighbours:
+    case Type::state:
+    case Type::values:
       break;
   }
   return PacketStatus::wrong_direction;
@@ -106,7 +119,15 @@ PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t n
   if (packet.header.type == Type::start) return PacketStatus::accepted;
   if (packet.header.type == Type::tag) return admit_state(tags_, packet, source, now);
   if (packet.header.type == Type::leave) return robots_.leave(packet.header.robot, source, now);
-  return admit_robot(packet, source, now);
+  if (packet.header.type == Type::v2v || packet.header.type == Type::subscribe) return admit_robot(packet, source, now);
+  return admit_driver(packet, source, now);
+}
+
+/// COMMAND, STEP and FETCH name their tick and need no order; their process has subscribed before.
+PacketStatus Inbox::admit_driver(const Packet& packet, const Endpoint& source, std::int64_t now) {
+  const Header& header = packet.header;
+  if (sessions_[*robots_.row(header.robot)] != header.session) return PacketStatus::stale;
+  return robots_.renew(header.robot, source, now);
 }
 
 PacketStatus Inbox::admit_robot(Packet& packet, const Endpoint& source, std::int64_t now) {

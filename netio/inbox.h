@@ -37,6 +37,7 @@ struct InboxOptions {
   std::uint32_t session = random_session();  ///< session of the farm
   std::vector<Peer> peers;                   ///< of these robots, tags, and START; each once
   bool take_late = false;  ///< accept states that others of their sender overtook, marked by `Packet::late`
+  bool lockstep = false;   ///< accept COMMAND, STEP and FETCH in place of V2V, TAG and START
 };
 
 class Inbox {
@@ -76,7 +77,10 @@ class Inbox {
   /// wrong_source (undefined otherwise). `receive` calls this for each datagram of the socket.
   PacketStatus accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet);
 
-  /// Encodes the CHALLENGE for an unproven V2V or SUBSCRIBE from `who`.
+  /// Renews the binding of `robot` to its last sender, where `source` is that one.
+  void renew(std::uint32_t robot, const Endpoint& source, std::int64_t now) { robots_.renew(robot, source, now); }
+
+  /// Encodes the CHALLENGE for an unproven packet of a robot, except LEAVE, from `who`.
   /// @return false if none is due or the limit of challenges is reached
   bool challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out);
 
@@ -109,6 +113,7 @@ class Inbox {
   std::uint64_t socket_drops() const { return netio::socket_drops(socket_); }
   /// The same socket under a second descriptor, so that answers come from the port that the robots send to.
   Socket socket() const { return duplicate(socket_); }
+  std::uint32_t session() const { return session_; }  ///< of the farm
   /// Sleeps until a datagram waits, a signal comes, or `timeout_ms` >= 0 has passed.
   void wait(int timeout_ms) const;
 
@@ -121,6 +126,7 @@ class Inbox {
   void begin_period(std::int64_t now);
   PacketStatus admit(Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source, std::int64_t now) const;
+  PacketStatus admit_driver(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_robot(Packet& packet, const Endpoint& source, std::int64_t now);
 
   ClientRegistry robots_;
@@ -130,6 +136,7 @@ class Inbox {
   std::vector<std::uint32_t> sessions_;  ///< per robot row: of its last packet
   std::uint32_t session_;
   bool take_late_;
+  bool lockstep_;
   AddressTokens tokens_;
   std::int64_t period_start_ = 0;            ///< [ns]
   std::array<std::size_t, 2> challenges_{};  ///< in that period, without and with a key

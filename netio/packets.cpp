@@ -102,6 +102,14 @@ PacketStatus read_tag(base::ByteReader& reader, Packet& packet) {
   return packet.header.robot >= kMinTag ? PacketStatus::accepted : PacketStatus::out_of_range;
 }
 
+template <class Body>
+PacketStatus read_lockstep(std::span<const std::uint8_t> payload, Packet& packet) {
+  Body body;
+  const PacketStatus status = read_payload(payload, body);
+  packet.body = body;
+  return status;
+}
+
 PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
   base::ByteReader reader(payload);
   PacketStatus status = PacketStatus::accepted;
@@ -128,6 +136,16 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
       packet.body = Neighbours{payload};
       if (payload.size() > kMaxNeighbours * kV2vBytes) return PacketStatus::too_long;
       return payload.empty() || payload.size() % kV2vBytes != 0 ? PacketStatus::too_short : PacketStatus::accepted;
+    case Type::command:
+      return read_lockstep<Command>(payload, packet);
+    case Type::step:
+      return read_lockstep<Step>(payload, packet);
+    case Type::fetch:
+      return read_lockstep<Fetch>(payload, packet);
+    case Type::state:
+      return read_lockstep<State>(payload, packet);
+    case Type::values:
+      return read_lockstep<Values>(payload, packet);
   }
   if (sensor_type_of(packet.header.type) == 0) return PacketStatus::unknown_type;
   packet.body = Reading{payload};
@@ -281,6 +299,38 @@ void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out
            std::to_string(size) + " bytes of V2V");
   start(header, Type::neighbours, out);
   out.insert(out.end(), neighbours.states.begin(), neighbours.states.end());
+}
+
+namespace {
+
+/// What is encoded is also accepted.
+template <class Body>
+void encode_lockstep(const Header& header, Type type, const Body& body, base::Bytes& out) {
+  start(header, type, out);
+  base::ByteWriter writer(out);
+  write_payload(body, writer);
+  Body again;
+  const PacketStatus status = read_payload(std::span(out).subspan(kHeaderBytes), again);
+  SF_CHECK(status == PacketStatus::accepted, "type " + std::to_string(static_cast<int>(type)) + " of robot " +
+                                                 std::to_string(header.robot) + ": " + std::string(name(status)));
+}
+
+}  // namespace
+
+void encode(const Header& header, const Command& command, base::Bytes& out) {
+  encode_lockstep(header, Type::command, command, out);
+}
+void encode(const Header& header, const Step& step, base::Bytes& out) {
+  encode_lockstep(header, Type::step, step, out);
+}
+void encode(const Header& header, const Fetch& fetch, base::Bytes& out) {
+  encode_lockstep(header, Type::fetch, fetch, out);
+}
+void encode(const Header& header, const State& state, base::Bytes& out) {
+  encode_lockstep(header, Type::state, state, out);
+}
+void encode(const Header& header, const Values& values, base::Bytes& out) {
+  encode_lockstep(header, Type::values, values, out);
 }
 
 void encode_reading(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {

@@ -14,6 +14,7 @@
 #include "base/pose.h"
 #include "base/report.h"
 #include "base/state_quality.h"
+#include "netio/lockstep_packets.h"
 #include "netio/packet_status.h"
 
 namespace sf::netio {
@@ -35,8 +36,8 @@ inline constexpr double kMaxYaw = 1e6;                       ///< [rad] covers h
 inline constexpr double kMaxSpeed = 1e3;                     ///< [m/s], and [rad/s]
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years; differences cannot overflow
 
-/// From 128: states and requests sent to the farm, of which it forwards V2V and START. Below 64: a reading of the
-/// sensor type with this wire id; the same plus 64: its second form.
+/// From 128: states and requests sent to the farm, of which it forwards V2V and START; from 140: its answers. Below 64:
+/// a reading of the sensor type with this wire id; the same plus 64: its second form.
 enum class Type : std::uint8_t {
   v2v = 128,
   tag = 129,
@@ -44,7 +45,12 @@ enum class Type : std::uint8_t {
   start = 131,
   leave = 132,
   challenge = 133,
-  neighbours = 140
+  command = 134,
+  step = 135,
+  fetch = 136,
+  neighbours = 140,
+  state = 141,
+  values = 142
 };
 
 /// Wire id (below 64; sensor types end at 31) of the sensor type whose readings, in either form, have type `type`; 0
@@ -130,7 +136,8 @@ struct Reading {
 
 struct Packet {
   Header header;
-  std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, Neighbours, Reading> body;
+  std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, Neighbours, Reading, Command, Step, Fetch, State, Values>
+      body;
   bool late = false;  ///< a state whose sequence is not newer than the last of its sender (`InboxOptions::take_late`)
 };
 
@@ -145,6 +152,11 @@ void encode(const Header& header, const Start& signal, base::Bytes& out);
 void encode(const Header& header, const Leave& word, base::Bytes& out);
 void encode(const Header& header, const Challenge& challenge, base::Bytes& out);
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out);
+void encode(const Header& header, const Command& command, base::Bytes& out);
+void encode(const Header& header, const Step& step, base::Bytes& out);
+void encode(const Header& header, const Fetch& fetch, base::Bytes& out);
+void encode(const Header& header, const State& state, base::Bytes& out);
+void encode(const Header& header, const Values& values, base::Bytes& out);
 
 /// Encodes a reading of type `type`, one of the two of a sensor type; replaces the content of `out`. @pre the payload
 /// has at most kMaxPayload bytes

@@ -73,6 +73,52 @@ void add_body(const netio::Start&, Fields&) {}
 void add_body(const netio::Leave&, Fields&) {}
 void add_body(const netio::Challenge& challenge, Fields& out) { add(out, "challenge", challenge.token); }
 
+/// Lists by robot, and per robot forward, left, turn.
+void add_body(const netio::Command& command, Fields& out) {
+  std::vector<double> robots, twists;
+  for (std::size_t i = 0; i < netio::count_rows(command); ++i) {
+    const netio::CommandRow row = netio::row_of(command, i);
+    robots.push_back(row.robot);
+    twists.insert(twists.end(), {row.twist.forward, row.twist.left, row.twist.turn});
+  }
+  add(out, "tick", command.tick);
+  add(out, "robots", robots);
+  add(out, "twists", twists);
+}
+void add_body(const netio::Step& step, Fields& out) {
+  add(out, "tick", step.tick);
+  add(out, "ticks", step.ticks);
+  add(out, "commands", step.commands);
+}
+void add_body(const netio::Fetch& fetch, Fields& out) {
+  add(out, "tick", fetch.tick);
+  add(out, "first", fetch.first);
+  add(out, "count", fetch.count);
+}
+void add_part(const netio::AnswerPart& part, Fields& out) {
+  add(out, "tick", part.tick);
+  add(out, "index", part.index);
+  add(out, "datagrams", part.datagrams);
+}
+void add_body(const netio::State& state, Fields& out) {
+  add_part(state.part, out);
+  add(out, "contact", state.contact);
+  add(out, "flags", state.flags);
+  add(out, "pose", std::array{state.X_WR.x, state.X_WR.y, state.X_WR.z, state.X_WR.yaw});
+  add(out, "velocity", std::array{state.velocity.forward, state.velocity.left, state.velocity.turn});
+}
+void add_body(const netio::Values& values, Fields& out) {
+  add_part(values.part, out);
+  add(out, "values_type", values.type);
+  add(out, "total", values.total);
+  add(out, "first", values.first);
+  add(out, "sensor_pose", std::array{values.X_WS.x, values.X_WS.y, values.X_WS.z, values.X_WS.yaw});
+  add(out, "error", std::isinf(values.bound) ? kNan : values.bound);
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < values.values.size() / sizeof(double); ++i) numbers.push_back(netio::value_of(values, i));
+  add(out, "value", numbers);
+}
+
 /// The states by their place: "0.robot", ... Those that are no V2V are left out.
 void add_body(const netio::Neighbours& neighbours, Fields& out) {
   for (std::size_t i = 0; i < neighbours.states.size() / netio::kV2vBytes; ++i) {
@@ -166,6 +212,16 @@ std::string name_of(netio::Type type) {
       return "CHALLENGE";
     case netio::Type::neighbours:
       return "NEIGHBOURS";
+    case netio::Type::command:
+      return "COMMAND";
+    case netio::Type::step:
+      return "STEP";
+    case netio::Type::fetch:
+      return "FETCH";
+    case netio::Type::state:
+      return "STATE";
+    case netio::Type::values:
+      return "VALUES";
   }
   return std::string(sensors::find_sensor_type(netio::sensor_type_of(type))->name);
 }

@@ -1,0 +1,101 @@
+#pragma once
+// Packets of lockstep, by which other processes drive simulated robots tick by tick, and the checks of their payloads.
+// docs/packets.md specifies every byte. `netio/packets.h` encodes and decodes whole packets.
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "base/bytes.h"
+#include "base/pose.h"
+#include "netio/packet_status.h"
+
+namespace sf::netio {
+
+inline constexpr std::size_t kMaxCommands = 38;           ///< rows of one COMMAND
+inline constexpr std::uint32_t kMaxTicks = 1000;          ///< of one STEP
+inline constexpr std::uint32_t kMaxFetched = 64;          ///< datagrams that one FETCH asks for
+inline constexpr std::size_t kMaxValues = 148;            ///< of one VALUES
+inline constexpr std::uint32_t kMaxTotal = 1u << 24;      ///< values of a reading
+inline constexpr std::size_t kCommandRowBytes = 32;       ///< of one row
+inline constexpr std::uint32_t kDriverLostBit = 1;        ///< STATE: a driving process timed out before this tick
+inline constexpr std::uint32_t kMaxStepCommands = 65536;  ///< one for each id
+
+/// What one robot executes from tick `Command::tick` on, until its next command.
+struct CommandRow {
+  std::uint32_t robot = 0;  ///< id in [0, kMaxId]
+  base::Twist twist;        ///< in the robot's frame; each number within kMaxSpeed
+};
+
+/// To the farm: commands for robots that are bound to the sender.
+struct Command {
+  std::uint64_t tick = 0;              ///< last tick whose answer the sender has
+  std::span<const std::uint8_t> rows;  ///< 1 to kMaxCommands of kCommandRowBytes; live like the datagram
+};
+inline std::size_t count_rows(const Command& command) { return command.rows.size() / kCommandRowBytes; }
+/// @pre i < count_rows(command)
+CommandRow row_of(const Command& command, std::size_t i);
+/// Appends an encoded row.
+void add_row(const CommandRow& row, base::Bytes& rows);
+
+/// To the farm: simulate from `tick` to `tick + ticks`.
+struct Step {
+  std::uint64_t tick = 0;
+  std::uint32_t ticks = 1;     ///< in [1, kMaxTicks]
+  std::uint32_t commands = 0;  ///< robots for which the sender has sent a COMMAND of this tick; all must have arrived
+};
+
+/// To the farm: send datagrams of a tick's answer (again).
+struct Fetch {
+  std::uint64_t tick = 0;
+  std::uint32_t first = 0;  ///< index of the first
+  std::uint32_t count = 1;  ///< in [1, kMaxFetched]
+};
+
+/// Place of a datagram among those by which the farm answers a process after a tick.
+struct AnswerPart {
+  std::uint64_t tick = 0;
+  std::uint32_t index = 0;      ///< in [0, datagrams - 1]
+  std::uint32_t datagrams = 1;  ///< of the whole answer
+};
+
+/// From the farm: the true state of one robot.
+struct State {
+  AnswerPart part;
+  base::Pose X_WR;
+  base::Twist velocity;       ///< in the robot's frame
+  std::uint32_t contact = 0;  ///< 1 where a wall or a robot stopped it
+  std::uint32_t flags = 0;    ///< kDriverLostBit
+};
+
+/// From the farm: a reading, or a part of one, without rounding.
+struct Values {
+  AnswerPart part;
+  std::uint8_t type = 0;    ///< wire id of the sensor type, in [1, 31]
+  std::uint32_t total = 0;  ///< values of the whole reading, in [1, kMaxTotal]
+  std::uint32_t first = 0;  ///< value that this part begins with: a multiple of kMaxValues
+  base::Pose X_WS;          ///< of the sensor at the measurement
+  double bound = std::numeric_limits<double>::infinity();  ///< of the error, see base::ReadingBlock
+  std::span<const std::uint8_t> values;                    ///< f64 each; any numbers; live like the datagram
+};
+double value_of(const Values& values, std::size_t i);
+/// Values in the part that begins with `first`.
+inline std::size_t count_values(std::uint32_t total, std::uint32_t first) {
+  return total - first < kMaxValues ? total - first : kMaxValues;
+}
+
+/// Read a payload of any bytes; the result is complete where the status is `accepted`.
+PacketStatus read_payload(std::span<const std::uint8_t> payload, Command& out);
+PacketStatus read_payload(std::span<const std::uint8_t> payload, Step& out);
+PacketStatus read_payload(std::span<const std::uint8_t> payload, Fetch& out);
+PacketStatus read_payload(std::span<const std::uint8_t> payload, State& out);
+PacketStatus read_payload(std::span<const std::uint8_t> payload, Values& out);
+
+/// Append a payload.
+void write_payload(const Command& command, base::ByteWriter& writer);
+void write_payload(const Step& step, base::ByteWriter& writer);
+void write_payload(const Fetch& fetch, base::ByteWriter& writer);
+void write_payload(const State& state, base::ByteWriter& writer);
+void write_payload(const Values& values, base::ByteWriter& writer);
+
+}  // namespace sf::netio
