@@ -1,0 +1,312 @@
+#include "scenarios/lockstep_service.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "control/own_controllers.h"
+#include "sensors/laser.h"
+#include "sensors/sensor_type.h"
+#include "tests/netio/server/fixture.h"
+#include "tests/scenarios/lockstep_driver.h"
+#include "world/free_space.h"
+
+namespace sf::scenarios {
+namespace {
+
+constexpr std::uint64_t kSeed = 5;
+constexpr int kTicks = 40;
+
+/// A controller whose command depends on every number that it is given, and on what it was given before.
+struct Chaos {
+  double memory = 0.0;
+  base::Twist drive(double x, double yaw, double forward, bool contact, std::span<const double> ranges) {
+    double nearest = 8.0, sum = 0.0;
+    for (const double range : ranges) nearest = std::min(nearest, range), sum += range;
+    memory = 0.5 * memory + (contact ? 1.0 : 0.0);
+    const double turn = std::sin(1e3 * sum + x + yaw) + memory;
+    return {0.1 * nearest - 0.01 * forward, 0.0, turn};
+  }
+};
+
+class ChaosController final : public sensorfarm::Controller {
+ public:
+  sensorfarm::Twist step(const sensorfarm::Input& input) override {
+    const base::Twist twist = chaos_.drive(input.pose.x, input.pose.yaw, input.velocity.forward, input.contact,
+                                           input.newest("laser")->values);
+    return {twist.forward, twist.left, twist.turn};
+  }
+
+ private:
+  Chaos chaos_;
+};
+
+gpu::Device& lockstep_device() {
+  static gpu::Device device;
+  return device;
+}
+
+/// A cave with noisy scans of more datagrams than one, at the ticks.
+world::World lockstep_world(std::uint32_t robots) {
+  world::World world = world::load_world(SF_SOURCE_DIR "/worlds/cave.world", {.sensors = sensors::world_file_words()});
+  world::clone_robots(world, robots, kSeed);
+  return world;
+}
+
+std::uint64_t hash_in_process(const world::World& world, const std::string& controller = "chaos") {
+  static const bool added = [] {
+    sensorfarm::ControllerEntry entry{
+        "chaos", "of a test", 10.0, false,
+        [](const sensorfarm::Robot&, sensorfarm::Settings&) { return std::make_unique<ChaosController>(); }};
+    control::add_own_controller(std::move(entry), "test");
+    return true;
+  }();
+  EXPECT_TRUE(added);
+  Simulation simulation(world, lockstep_device(), {.seed = kSeed, .actor = {.controller = {.name = controller}}});
+  for (int tick = 0; tick <= kTicks; ++tick) simulation.step();
+  return simulation.farm().hash();
+}
+
+struct Fixture {
+  explicit Fixture(std::uint32_t robots, std::uint32_t wait_for = 1, double timeout = 0.0)
+      : world(lockstep_world(robots)),
+        service(world, lockstep_device(),
+                {.lockstep = {.bind = {netio::kLoopback, 0},
+                              .robots = wait_for,
+                              .timeout = timeout,
+                              .log_descriptor = log.descriptor()},
+                 .seed = kSeed}) {}
+  std::uint16_t port() { return service.lockstep().inbox().port(); }
+  std::uint64_t tick() const { return service.ticks() - 1; }
+  std::uint64_t hash() const { return service.simulation().farm().hash(); }
+
+  server::LogPipe log;
+  world::World world;
+  LockstepService service;
+  std::int64_t now = 0;
+};
+
+std::vector<std::uint32_t> ids(std::uint32_t first, std::uint32_t count) {
+  std::vector<std::uint32_t> all(count);
+  for (std::uint32_t i = 0; i < count; ++i) all[i] = first + i;
+  return all;
+}
+
+/// Robots of one process, and their controllers.
+struct Crew {
+  Crew(Fixture& fixture, std::uint32_t first, std::uint32_t count, const Faults& faults = {})
+      : robots(ids(first, count)), driver(fixture.port(), robots, faults) {}
+  std::map<std::uint32_t, base::Twist> decide() {
+    std::map<std::uint32_t, base::Twist> commands;
+    for (const std::uint32_t id : robots) {
+      const Driven& robot = driver.robot(id);
+      commands[id] = minds[id].drive(robot.state.X_WR.x, robot.state.X_WR.yaw, robot.state.velocity.forward,
+                                     robot.state.contact != 0, robot.readings.at(sensors::kLaser));
+    }
+    return commands;
+  }
+  std::vector<std::uint32_t> robots;
+  std::map<std::uint32_t, Chaos> minds;
+  Driver driver;
+};
+
+/// Runs all until `done`; false where nothing comes of it.
+bool play(Fixture& fixture, const std::vector<Driver*>& drivers, const std::function<bool()>& done) {
+  for (int round = 0; round < 100'000 && !done(); ++round, fixture.now += 1'000'000) {
+    fixture.service.advance(fixture.now);
+    for (Driver* driver : drivers) driver->receive();
+    if (done()) return true;
+    // What was sent a moment ago is repeated often: that must not matter.
+    for (Driver* driver : drivers)
+      if (!driver->is_complete()) driver->repeat();
+  }
+  return done();
+}
+
+/// Drives to the last tick. @return hash of all readings
+std::uint64_t hash_over_udp(Fixture& fixture, const std::vector<Crew*>& crews) {
+  std::vector<Driver*> drivers;
+  for (Crew* crew : crews) drivers.push_back(&crew->driver);
+  const auto complete = [&] {
+    return std::all_of(drivers.begin(), drivers.end(), [](const Driver* driver) { return driver->is_complete(); });
+  };
+  for (int tick = 0; tick < kTicks; ++tick) {
+    EXPECT_TRUE(play(fixture, drivers, complete)) << "tick " << tick;
+    for (Crew* crew : crews) crew->driver.step(crew->decide());
+  }
+  EXPECT_TRUE(play(fixture, drivers, complete));
+  EXPECT_EQ(fixture.tick(), static_cast<std::uint64_t>(kTicks));
+  return fixture.hash();
+}
+
+TEST(LockstepService, OneProcessDrivesLikeAControllerInProcess) {
+  Fixture fixture(5);
+  Crew crew(fixture, 1, 5);
+  const std::uint64_t hash = hash_over_udp(fixture, {&crew});
+  EXPECT_EQ(hash, hash_in_process(fixture.world));
+  EXPECT_NE(hash, hash_in_process(fixture.world, "")) << "robots that stand see something else";
+  EXPECT_EQ(fixture.service.lockstep().counts().commands, 5u * kTicks);
+  EXPECT_EQ(fixture.service.lockstep().counts().refused, 0u);
+}
+
+/// A third of all datagrams is lost, a third comes twice, a third late and in reverse order, in both directions.
+TEST(LockstepService, LossCopiesAndOrderChangeNothing) {
+  const std::uint64_t expected = hash_in_process(lockstep_world(5));
+  for (unsigned seed : {1u, 2u, 3u}) {
+    Fixture fixture(5);
+    const Faults faults{0.33, 0.33, 0.33, seed};
+    Crew crew(fixture, 1, 5, faults);
+    EXPECT_EQ(hash_over_udp(fixture, {&crew}), expected) << seed;
+    EXPECT_GT(fixture.service.lockstep().counts().repeated, 100u) << "the faults did happen";
+  }
+}
+
+TEST(LockstepService, SeveralProcessesDriveLikeOne) {
+  Fixture fixture(5, 5);
+  Crew one(fixture, 1, 2, {0.2, 0.2, 0.2, 4}), other(fixture, 3, 2), third(fixture, 5, 1, {0.0, 0.0, 0.5, 5});
+  EXPECT_EQ(hash_over_udp(fixture, {&one, &other, &third}), hash_in_process(fixture.world));
+}
+
+/// 80 robots: states and scans are far more datagrams than are sent at once.
+TEST(LockstepService, LargeAnswersAreFetched) {
+  Fixture fixture(80);
+  Driver driver(fixture.port(), ids(1, 80), {0.1, 0.0, 0.1, 6});
+  const auto complete = [&] { return driver.is_complete(); };
+  ASSERT_TRUE(play(fixture, {&driver}, complete));
+  EXPECT_GT(driver.datagrams(), 2u * server::Lockstep::kPushed);
+  driver.step({}, 3);
+  ASSERT_TRUE(play(fixture, {&driver}, complete));
+  EXPECT_EQ(fixture.tick(), 3u);
+  EXPECT_EQ(driver.robot(80).readings.at(sensors::kLaser).size(), driver.robot(1).readings.at(sensors::kLaser).size());
+}
+
+/// The farm simulates as far as all have asked: 1 + 1 + 1 ticks of one process are 3 of the other.
+TEST(LockstepService, AProcessMayAskForSeveralTicks) {
+  Fixture fixture(2, 2);
+  Driver one(fixture.port(), {1}), other(fixture.port(), {2});
+  const auto both = [&] { return one.is_complete() && other.is_complete(); };
+  ASSERT_TRUE(play(fixture, {&one, &other}, both));
+  one.step({{1, {0.2, 0.0, 0.0}}}, 3);
+  for (std::uint64_t tick = 1; tick <= 3; ++tick) {
+    EXPECT_FALSE(one.is_complete());
+    other.step({});
+    ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return other.is_complete(); }));
+    EXPECT_EQ(fixture.tick(), tick) << "no farther than the slower one asked for";
+  }
+  ASSERT_TRUE(play(fixture, {&one, &other}, both));
+  EXPECT_EQ(one.tick(), 3u);
+  EXPECT_DOUBLE_EQ(one.robot(1).state.velocity.forward, 0.2) << "the command held for all three";
+}
+
+/// A STEP that says two commands waits for the second one, whatever is repeated meanwhile.
+TEST(LockstepService, AStepWaitsForItsCommands) {
+  Fixture fixture(2);
+  Driver driver(fixture.port(), {1, 2});
+  ASSERT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
+  const auto command = [&](std::uint32_t robot, double forward) {
+    base::Bytes rows;
+    netio::add_row({robot, {forward, 0.0, 0.0}}, rows);
+    driver.send(netio::Command{0, rows});
+  };
+  for (int i = 0; i < 3; ++i) {
+    driver.send(netio::Step{0, 1, 2});
+    command(1, 0.1 + i);  // the first counts
+    driver.flush();
+    fixture.service.advance(0);
+    EXPECT_EQ(fixture.tick(), 0u);
+  }
+  command(2, 0.0);
+  driver.flush();
+  EXPECT_TRUE(fixture.service.advance(0));
+  EXPECT_EQ(fixture.service.lockstep().commands()[0].forward, 0.1);
+  EXPECT_FALSE(fixture.service.advance(0)) << "one STEP, one tick";
+}
+
+/// Ticks that are not the current one, robots of others, a STEP before any SUBSCRIBE: nothing moves.
+TEST(LockstepService, PacketsOutOfPlaceAreCounted) {
+  Fixture fixture(2, 2);
+  Driver one(fixture.port(), {1}), other(fixture.port(), {2});
+  one.send(netio::Step{0, 1, 0});
+  one.flush();
+  EXPECT_FALSE(fixture.service.advance(0));
+  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  base::Bytes rows;
+  netio::add_row({2, {1.0, 0.0, 0.0}}, rows);       // another process' robot
+  netio::add_row({40'000, {1.0, 0.0, 0.0}}, rows);  // no robot
+  one.send(netio::Command{0, rows});
+  rows.clear();
+  netio::add_row({1, {1.0, 0.0, 0.0}}, rows);
+  one.send(netio::Command{1, rows});  // of the tick after
+  one.send(netio::Step{1, 1, 0});
+  one.send(netio::Fetch{7, 0, 64});
+  one.send(netio::Fetch{0, 1'000'000, 64});
+  one.flush();
+  other.send(netio::Step{0, 1, 0});
+  other.flush();
+  EXPECT_FALSE(fixture.service.advance(1));
+  EXPECT_EQ(fixture.service.lockstep().counts().refused, 2u);
+  EXPECT_EQ(fixture.service.lockstep().counts().commands, 0u);
+  EXPECT_EQ(fixture.service.lockstep().commands()[0].forward, 0.0);
+  EXPECT_EQ(fixture.service.lockstep().commands()[1].forward, 0.0);
+}
+
+TEST(LockstepService, AHungProcessIsLeftOutByName) {
+  Fixture fixture(3, 3, 2.0);
+  Driver one(fixture.port(), {1}), other(fixture.port(), {2, 3});
+  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  one.step({});
+  const std::int64_t begun = fixture.now;
+  ASSERT_TRUE(play(fixture, {&one}, [&] { return fixture.now >= begun + 1'900'000'000; }));
+  EXPECT_EQ(fixture.tick(), 0u) << "0.1 s before the limit all still wait";
+  ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); }));
+  EXPECT_EQ(one.robot(1).state.flags, netio::kDriverLostBit);
+  EXPECT_EQ(fixture.service.lockstep().counts().lost_robots, 2u);
+  const std::string said = fixture.log.read_all();
+  EXPECT_NE(said.find("tick 0: no command or STEP for 2 s from " + fixture.world.movers[1].name + " (id 2), "),
+            std::string::npos)
+      << said;
+  one.step({});
+  ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); })) << "the others go on";
+}
+
+/// Nobody waits for a process that is alone: it is named once a tick, and keeps its robots.
+TEST(LockstepService, ASilentProcessAloneIsWaitedFor) {
+  Fixture fixture(1, 1, 2.0);
+  Driver driver(fixture.port(), {1});
+  ASSERT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
+  const std::int64_t begun = fixture.now;
+  play(fixture, {}, [&] { return fixture.now >= begun + 6'000'000'000; });
+  const std::string said = fixture.log.read_all(), name = fixture.world.movers[0].name;
+  EXPECT_EQ(said, "sensorfarm: tick 0: waiting for 2 s for the commands or STEP of " + name + " (id 1)\n");
+  driver.step({});
+  EXPECT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
+  EXPECT_EQ(fixture.service.lockstep().counts().lost_robots, 0u);
+}
+
+TEST(LockstepService, WhoLeavesIsNotWaitedFor) {
+  Fixture fixture(2, 2);
+  Driver one(fixture.port(), {1}), other(fixture.port(), {2});
+  const auto both = [&] { return one.is_complete() && other.is_complete(); };
+  ASSERT_TRUE(play(fixture, {&one, &other}, both));
+  one.step({}), other.step({{2, {0.2, 0.0, 0.0}}});
+  ASSERT_TRUE(play(fixture, {&one, &other}, both));
+  other.leave();
+  one.step({});
+  ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); }));
+  EXPECT_EQ(fixture.service.lockstep().commands()[1].forward, 0.0) << "its robot stands";
+}
+
+/// Bit 0 of a SUBSCRIBE: the states of all, exact as its own.
+TEST(LockstepService, StatesOfOthersComeOnRequest) {
+  Fixture fixture(3, 2);
+  Driver one(fixture.port(), {1}, {}, netio::kNeighboursBit), other(fixture.port(), {2});
+  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  EXPECT_EQ(one.datagrams(), 3u) << "no sensor type was asked for";
+  for (std::uint32_t id : {1u, 2u, 3u}) EXPECT_EQ(one.robot(id).state.X_WR.x, fixture.world.movers[id - 1].X_WM.x);
+  EXPECT_THROW(other.robot(1), std::out_of_range);
+}
+
+}  // namespace
+}  // namespace sf::scenarios
