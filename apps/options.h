@@ -190,12 +190,15 @@ struct ServeOptions : WorldOptions,
                       ForgetOption,
                       PeersOption,
                       FilterOptions,
-                      SeedOption,
+                      CloneOptions,
                       DurationOption {
   std::uint32_t port = netio::kInboxPort;  ///< 0: any free one
   double rate = 0.0;                       ///< [Hz]; 0: the world's own
   double radio = netio::kV2vRange;         ///< [m] farther away, states are not relayed; 0: none is
   std::string record;                      ///< folder; empty: not recorded
+  bool lockstep = false;                   ///< clients command the robots tick by tick
+  double lockstep_timeout = 5.0;           ///< [s] that clients wait for another; 0: without end
+  std::uint32_t wait_for = 1;              ///< robots that are subscribed before the first tick
 };
 
 struct RobotOptions : WorldOptions,

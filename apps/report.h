@@ -1,6 +1,7 @@
 #pragma once
 // Reports of commands, as rows of a table or as JSON. nlohmann/json stays in the source.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "gpu/device.h"
 #include "netio/inbox.h"
 #include "netio/relay.h"
+#include "netio/server/lockstep.h"
 #include "netio/server/reading_publisher.h"
 #include "netio/server/state_filter.h"
 #include "netio/stream_monitor.h"
@@ -51,11 +53,12 @@ struct RunReport {
     std::string name;  ///< of the mover
     estimation::ClockState clock;
   };
-  std::vector<Clock> clocks;         ///< of senders of states
-  std::uint64_t lines_left_out = 0;  ///< of the log
-  std::string recording;             ///< file; empty: none
-  std::uint64_t recorded_bytes = 0;  ///< its size
-  std::string recording_error;       ///< why it ends before the run; empty: it does not
+  std::vector<Clock> clocks;                       ///< of senders of states
+  std::uint64_t lines_left_out = 0;                ///< of the log
+  std::string recording;                           ///< file; empty: none
+  std::uint64_t recorded_bytes = 0;                ///< its size
+  std::string recording_error;                     ///< why it ends before the run; empty: it does not
+  std::optional<server::LockstepCounts> lockstep;  ///< of a service in lockstep
 };
 
 /// Results of `selftest`.

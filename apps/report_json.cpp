@@ -258,6 +258,12 @@ std::string json_of(const RunReport& f) {
     if (f.filtered) json["states"] = states_json(f);
     json["log_lines_left_out"] = f.lines_left_out;
   }
+  if (f.lockstep)
+    json["lockstep"] = {{"commands", f.lockstep->commands},
+                        {"repeated", f.lockstep->repeated},
+                        {"refused", f.lockstep->refused},
+                        {"fetched", f.lockstep->fetched},
+                        {"lost_robots", f.lockstep->lost_robots}};
   if (!f.recording.empty()) {
     json["recording"] = f.recording;
     json["recording_bytes"] = f.recorded_bytes;

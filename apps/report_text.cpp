@@ -196,6 +196,14 @@ std::string states_text(const RunReport& f) {
   return text;
 }
 
+std::string lockstep_text(const server::LockstepCounts& counts) {
+  std::string text = row("commands", "{}; {} repeated, {} refused", counts.commands, counts.repeated, counts.refused);
+  if (counts.fetched > 0) text += row("  datagrams", "{} sent on request", counts.fetched);
+  if (counts.lost_robots > 0)
+    text += row("  LEFT OUT", "{}, whose client timed out", counted(counts.lost_robots, "robot"));
+  return text;
+}
+
 }  // namespace
 
 std::string text_of(const RunReport& f) {
@@ -213,6 +221,7 @@ std::string text_of(const RunReport& f) {
   text += control_text(f.control);
   if (f.sent) text += packets_text(f.publisher);
   if (f.received) text += row("packets received", netio::text(f.inbox));
+  if (f.lockstep) text += lockstep_text(*f.lockstep);
   if (f.socket_drops > 0) text += drops_text(f.socket_drops);
   if (f.filtered) text += states_text(f);
   if (f.relayed.states + f.relayed.starts > 0)

@@ -9,6 +9,7 @@
 #include "apps/default_robot.h"
 #include "apps/exposure_warning.h"
 #include "apps/layout_options.h"
+#include "apps/lockstep.h"
 #include "apps/peers_option.h"
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
@@ -106,7 +107,8 @@ RunReport report_of(const server::ServiceStats& stats, const world::World& world
 }  // namespace
 
 int serve(const ServeOptions& options) {
-  world::World world = load_with_robots(options.world, options.load);
+  if (options.lockstep) return serve_lockstep(options);
+  world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   const server::StreamLayout layout = stream_layout_of(world, sensors::SensorSet(world), options);
   const server::ServiceOptions chosen = service_options(options, world);
   gpu::Device device(options.device);

@@ -91,12 +91,47 @@ void add_filter(CLI::App& app, FilterOptions& o) {
       ->group(kGroup);
 }
 
+/// Options of `serve` without a meaning where the farm itself moves the robots.
+void refuse_with_lockstep(const CLI::App& sub) {
+  if (sub.count("--lockstep") == 0) return;
+  for (const CLI::Option* option : sub.get_options()) {
+    const std::string name = option->get_name();
+    const bool of_ports =
+        (name != "--port" && name.ends_with("-port")) || name == "--ports-per-robot" || name == "--wire";
+    if (option->count() > 0 && (of_ports || name == "--rate" || name == "--radio" || name == "--forget" ||
+                                name == "--filter" || name == "--stale-after"))
+      throw CLI::ValidationError(name, "does not go with --lockstep");
+  }
+}
+
+void add_lockstep(CLI::App& app, ServeOptions& o) {
+  constexpr const char* kGroup = "Lockstep (docs/packets.md)";
+  auto* lockstep = app.add_flag("--lockstep", o.lockstep,
+                                "Move the robots: clients command them tick by tick (COMMAND, STEP), as fast as the "
+                                "machine allows, with the same readings in each run")
+                       ->group(kGroup);
+  app.add_option("--wait-for", o.wait_for, "Robots that clients have subscribed before the first tick")
+      ->check(whole(1, 65536))
+      ->needs(lockstep)
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(kGroup);
+  app.add_option("--lockstep-timeout", o.lockstep_timeout,
+                 "Time that clients wait for another [s]; then its robots are left out and stand, the others go on, "
+                 "and the exit code is 1 (0: without end)")
+      ->check(number(0.0, 1e6))
+      ->needs(lockstep)
+      ->type_name("S")
+      ->capture_default_str()
+      ->group(kGroup);
+}
+
 void add_serve(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "serve", "Serve virtual sensors to robots in other processes: V2V packets in, sensor packets out");
-  auto& o = add_command(*sub, call, serve);
+  auto& o = add_command(*sub, call, serve, [sub] { refuse_with_lockstep(*sub); });
   add_examples(*sub, {"worlds/rooms.world", "worlds/rooms.world --bind 0.0.0.0 --port 9001",
-                      "worlds/rooms.world --filter --record out/service"});
+                      "worlds/rooms.world --filter --record out/service", "worlds/cave.world --lockstep --robots 50"});
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_automatic(*sub, o);
@@ -120,11 +155,12 @@ void add_serve(CLI::App& app, Call& call) {
       ->capture_default_str();
   add_forget(*sub, o);
   add_peers(*sub, o);
+  add_lockstep(*sub, o);
   add_filter(*sub, o);
   sub->add_option("--record", o.record, "Folder to record states, their quality, and readings into (run.mcap)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
-  add_seed(*sub, o, "Seed of noise");
+  add_robots(*sub, o);
   add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");
 }
 
