@@ -215,7 +215,11 @@ struct RobotOptions : WorldOptions,
   double rate = 0.0;        ///< [Hz]; 0: the controller's own
   double stop_after = 0.5;  ///< [s] without a reading after which it stands; 0: never
   bool wait_for_start = false;
-  std::uint16_t spat = 0;  ///< port for SPaT; 0: the lights go by the world's plans
+  std::uint16_t spat = 0;     ///< port for SPaT; 0: the lights go by the world's plans
+  std::uint16_t cameras = 0;  ///< port for TAG packets; 0: it knows its true pose
+  estimation::ClockSource camera_clock = estimation::ClockSource::estimated;
+  std::uint32_t tag = 0;  ///< that it carries; 0: the one with its id
+  std::string truth;      ///< "host:port" that its true state goes to; empty: none
 };
 
 inline constexpr std::uint16_t kSpatPort = 9010;  ///< default port of SPaT and MAP
@@ -270,12 +274,13 @@ struct TradeoffOptions : WorldOptions, AccuracyTargetOptions, JsonOption, Device
   std::string out;  ///< folder; empty: none
 };
 
-struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption {
+struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption, BindOption {
   std::string testbed;                                      ///< file
   std::vector<std::pair<std::string, std::string>> inputs;  ///< camera and its source, in place of the file's
   std::uint32_t rendered = 0;                               ///< tags of a simulated testbed; 0: none
   double speed = 0.5;                                       ///< [m/s] of the fastest of them
   std::uint32_t occluders = 0;                              ///< above them
+  std::uint16_t robots = 0;                                 ///< port for robots' true states; 0: none are rendered
   std::uint64_t images = 0;                                 ///< of each camera; 0: all
   bool real_time = false;                                   ///< at the cameras' rate
   std::string send;                                         ///< "host:port" of tags without an address; empty: none

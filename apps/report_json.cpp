@@ -136,6 +136,7 @@ Json link_json(const server::LinkCounts& link) {
   const netio::ReceiverCounts& in = link.readings;
   return {{"sent", {{"packets", link.sent.sent}, {"failed", link.sent.failed}, {"dropped", link.sent.dropped}}},
           {"readings", link.whole},
+          {"stale_readings", link.stale},
           {"sensor_packets",
            {{"packets", in.packets.total()},
             {"by_reason", reasons(in.packets)},
@@ -329,6 +330,15 @@ std::string json_of(const server::RobotClientStats& f) {
                     {"states", f.spat->states},
                     {"others", f.spat->others},
                     {"invalid", f.spat->invalid}};
+  if (f.cameras) {
+    const server::PositionErrors& e = f.cameras->errors;
+    json["positions"] = {{"packets", f.cameras->packets.total()},
+                         {"by_reason", reasons(f.cameras->packets)},
+                         {"compared", e.count},
+                         {"rms_m", e.rms()},
+                         {"largest_m", e.largest},
+                         {"largest_rad", e.largest_heading}};
+  }
   json["distance_m"] = f.distance_m;
   json["pose"] = pose_json(f.pose);
   if (f.error.steps > 0) json["error"] = error_json(f.error);

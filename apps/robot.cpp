@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "apps/address.h"
 #include "apps/commands.h"
 #include "apps/controller_options.h"
 #include "apps/default_robot.h"
@@ -17,6 +18,7 @@
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "base/time.h"
 #include "netio/outbox.h"
 #include "netio/server/robot_client.h"
 
@@ -39,9 +41,8 @@ netio::Endpoint farm_of(const FarmOptions& options) {
 }
 
 /// The robot's own; warns where the table has none.
-std::optional<netio::SigningKey> key_of(const RobotOptions& options, const world::World& world,
+std::optional<netio::SigningKey> key_of(const RobotOptions& options, const std::vector<netio::Peer>& peers,
                                         const world::Mover& mover) {
-  const std::vector<netio::Peer> peers = peers_of(options, &world);
   const netio::Peer* own = netio::find(peers, netio::PeerKind::robot, mover.id);
   const std::optional<netio::SigningKey> key = own != nullptr ? own->key : std::nullopt;
   if (key) require_signable({*own}, options.wire);
@@ -51,11 +52,25 @@ std::optional<netio::SigningKey> key_of(const RobotOptions& options, const world
   return key;
 }
 
+server::CameraPositionsOptions cameras_of(const RobotOptions& options, const netio::Endpoint& farm,
+                                          const std::vector<netio::Peer>& peers, const world::Mover& mover) {
+  constexpr double kForEver = 1e9;  // [s]
+  server::CameraPositionsOptions cameras;
+  cameras.bind = {netio::is_loopback(farm.address) ? netio::kLoopback : 0, options.cameras};
+  cameras.filter.clock.source = options.camera_clock;
+  cameras.filter.stale_after = base::nanoseconds(options.stop_after > 0.0 ? options.stop_after : kForEver);
+  const std::uint32_t id = options.tag > 0 ? options.tag : mover.id;
+  if (const netio::Peer* tag = netio::find(peers, netio::PeerKind::tag, id)) cameras.peers = {*tag};
+  return cameras;
+}
+
 server::RobotClientOptions client_options(const RobotOptions& options, const world::World& world,
                                           const world::Mover& mover) {
   server::RobotClientOptions client;
   client.link.farm = farm_of(options);
-  client.link.key = key_of(options, world, mover);
+  // The tag of a robot is none of the world's.
+  const std::vector<netio::Peer> peers = peers_of(options, options.cameras > 0 ? nullptr : &world);
+  client.link.key = key_of(options, peers, mover);
   client.link.model = {.delay = options.delay,
                        .jitter = options.jitter,
                        .loss = options.loss,
@@ -70,6 +85,10 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
   client.wait_for_start = waits_for_start(options);
   if (options.spat > 0)
     client.spat = netio::Endpoint{netio::is_loopback(client.link.farm.address) ? netio::kLoopback : 0, options.spat};
+  client.tag = options.tag;
+  if (options.cameras > 0) client.cameras = cameras_of(options, client.link.farm, peers, mover);
+  netio::AddressBook book;
+  if (!options.truth.empty()) client.truth = read_address(book, options.truth, "--truth");
   return client;
 }
 

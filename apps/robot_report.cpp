@@ -31,6 +31,7 @@ std::string link_text(const server::LinkCounts& link) {
                 link.sent.dropped);
   text += row("readings", types_text(link));
   text += row("sensor packets", netio::text(in.packets));
+  if (link.stale > 0) text += row("", counted(link.stale, "reading") + " of a stale state");
   text += row("", "{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost);
   if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " too far ahead to be believed");
   if (link.socket_drops > 0) text += row("", counted(link.socket_drops, "packet") + " dropped by the operating system");
@@ -56,8 +57,16 @@ std::string text_of(const server::RobotClientStats& f) {
                 f.spat->others, f.spat->invalid);
   text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
               f.pose.yaw * 180.0 / M_PI);
+  if (f.cameras) {
+    text += row("positions", "{} by TAG packets, of which {} used", netio::text(f.cameras->packets),
+                f.cameras->states.states[static_cast<std::size_t>(estimation::Verdict::used)]);
+    const server::PositionErrors& e = f.cameras->errors;
+    if (e.count > 0)
+      text += row("position error", "{:.1f} mm RMS, {:.1f} mm and {:.2f} degrees largest", 1e3 * e.rms(),
+                  1e3 * e.largest, e.largest_heading * 180.0 / M_PI);
+  }
   text += row("contacts", "{} that began", f.contacts);
-  if (f.stops > 0) text += row("stood", counted(f.stops, "time") + " for want of readings");
+  if (f.stops > 0) text += row("stood", counted(f.stops, "time") + " for want of readings or positions");
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (f.error.steps > 0) text += row("control error", text_of(f.error));
   return text;

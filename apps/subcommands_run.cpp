@@ -53,8 +53,20 @@ void add_forget(CLI::App& app, ForgetOption& o) {
       ->capture_default_str();
 }
 
+CLI::Option* add_clock(CLI::App& app, const std::string& name, estimation::ClockSource& clock) {
+  using estimation::ClockSource;
+  return add_choice<ClockSource, ClockSource>(
+             app, name, clock,
+             {{"estimated", ClockSource::estimated},
+              {"trusted", ClockSource::trusted},
+              {"arrival", ClockSource::arrival}},
+             "Time of states: timestamps, on clocks estimated from the packets or trusted (Unix time, by PTP or NTP), "
+             "or the time of arrival")
+      ->default_str("estimated");
+}
+
 void add_filter(CLI::App& app, FilterOptions& o) {
-  using estimation::ClockSource, estimation::StalePolicy;
+  using estimation::StalePolicy;
   constexpr const char* kGroup = "States of robots and tags (docs/estimation.md)";
   app.add_option("--stale-after", o.stale_after,
                  "Readings say that their robot's state is stale when it is older than this [s]")
@@ -74,14 +86,7 @@ void add_filter(CLI::App& app, FilterOptions& o) {
       ->default_str("freeze")
       ->needs(filter)
       ->group(kGroup);
-  add_choice<ClockSource, ClockSource>(
-      app, "--clock", o.clock,
-      {{"estimated", ClockSource::estimated}, {"trusted", ClockSource::trusted}, {"arrival", ClockSource::arrival}},
-      "Time of states: timestamps, on clocks estimated from the packets or trusted (Unix time, by PTP or NTP), or the "
-      "time of arrival")
-      ->default_str("estimated")
-      ->needs(filter)
-      ->group(kGroup);
+  add_clock(app, "--clock", o.clock)->needs(filter)->group(kGroup);
   app.add_option("--link-delay", o.link_delay,
                  "Least delay of packets to the farm [s], which packets cannot show (--clock estimated)")
       ->check(number(0.0, 10.0))
@@ -194,6 +199,29 @@ void add_link(CLI::App& app, LinkOptions& o) {
   add_fraction("--corrupt", o.corrupt, "Fraction of packets of which one bit is flipped, 0 to 1");
 }
 
+void add_cameras(CLI::App& app, RobotOptions& o) {
+  constexpr const char* kGroup = "Positions from cameras (docs/vps.md)";
+  auto* cameras =
+      app.add_option("--cameras", o.cameras,
+                     "Know its own pose by TAG packets to this UDP port alone (`sensorfarm vps --send`), and "
+                     "stand while they fail; what it says to the farm is this pose, filtered")
+          ->check(whole(1, 65535))
+          ->type_name("PORT")
+          ->group(kGroup);
+  add_clock(app, "--clock", o.camera_clock)->needs(cameras)->group(kGroup);
+  app.add_option("--tag", o.tag, "Id of the tag that it carries (default: the robot's id)")
+      ->check(whole(1, 65535))
+      ->type_name("ID")
+      ->group(kGroup);
+  app.add_option(
+         "--truth", o.truth,
+         "Report its true state, as the light that cameras see, to a renderer (`sensorfarm vps --robots PORT`); "
+         "clocks of both machines must agree")
+      ->check(not_empty("HOST:PORT"))
+      ->type_name("HOST:PORT")
+      ->group(kGroup);
+}
+
 void add_robot(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("robot",
                                      "Run one simulated robot as a process of its own, with sensors from a farm that "
@@ -222,6 +250,7 @@ void add_robot(CLI::App& app, Call& call) {
                   "world's plans (default: plans)")
       ->check(whole(1, 65535))
       ->type_name("PORT");
+  add_cameras(*sub, o);
   sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal arrives (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of injected faults");
   add_until(*sub, o, "Stop after this long [s] (0: when done, or at Ctrl-C)");

@@ -30,6 +30,19 @@ void add_rendered(CLI::App& app, VpsOptions& o) {
       ->type_name("N")
       ->needs(rendered)
       ->group(kGroup);
+  auto* robots = app.add_option("--robots", o.robots,
+                                "Render images, in real time, of robots that report their true states to this UDP port "
+                                "(`sensorfarm robot --truth`)")
+                     ->check(whole(1, 65535))
+                     ->type_name("PORT")
+                     ->excludes(rendered)
+                     ->group(kGroup);
+  app.add_option("--bind", o.bind, "Address to listen on for --robots (0.0.0.0: every interface)")
+      ->check(not_empty("an address"))
+      ->type_name("ADDR")
+      ->capture_default_str()
+      ->needs(robots)
+      ->group(kGroup);
 }
 
 void add_vps(CLI::App& app, Call& call) {
@@ -38,7 +51,8 @@ void add_vps(CLI::App& app, Call& call) {
   auto& o = add_command(*sub, call, vps);
   add_examples(*sub, {"worlds/testbed.toml --rendered 30 --images 20",
                       "lab.toml --input north=/dev/video0 --input south=/dev/video1 --send 192.168.1.5:9000",
-                      "lab.toml --input north=photographs --overlay out/pictures"});
+                      "lab.toml --input north=photographs --overlay out/pictures",
+                      "worlds/testbed.toml --robots 9200 --send 127.0.0.1:9100"});
   sub->add_option("testbed", o.testbed, "Testbed file: cameras and tags (docs/vps.md)")->required()->type_name("FILE");
   add_json(*sub, o);
   sub->add_option_function<std::vector<std::string>>(

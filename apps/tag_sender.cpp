@@ -1,25 +1,11 @@
 #include "apps/tag_sender.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
-#include "base/error.h"
-#include "netio/address_book.h"
+#include "apps/address.h"
 #include "netio/address_token.h"
 
 namespace sf::apps {
-
-namespace {
-
-/// @param file of the address, for errors; empty: the command line's
-netio::Endpoint read_address(netio::AddressBook& book, const std::string& text, const std::string& file) {
-  if (const auto endpoint = book.find(text)) return *endpoint;
-  const std::string message = fmt::format("'{}' is no address; expected HOST:PORT such as 192.168.1.5:9000", text);
-  throw file.empty() ? base::InputError("--send: " + message) : base::InputError(file, 0, message);
-}
-
-}  // namespace
 
 netio::Tag object_state(const vision::TrackedTag& tag, const vision::TagMount& mount) {
   const double yaw = tag.X_WT.yaw - mount.X_OT.yaw;
@@ -36,10 +22,10 @@ TagSender::TagSender(const vision::Testbed& testbed, const std::string& fallback
     : testbed_(testbed) {
   header_.session = netio::random_session();
   netio::AddressBook book;
-  if (!testbed.tag.address.empty()) fallback_ = read_address(book, testbed.tag.address, testbed.file);
-  if (!fallback.empty() && !fallback_) fallback_ = read_address(book, fallback, "");
+  if (!testbed.tag.address.empty()) fallback_ = read_address(book, testbed.tag.address, "", testbed.file);
+  if (!fallback.empty() && !fallback_) fallback_ = read_address(book, fallback, "--send");
   for (const auto& [id, mount] : testbed.tags)
-    if (!mount.address.empty()) addresses_[id] = read_address(book, mount.address, testbed.file);
+    if (!mount.address.empty()) addresses_[id] = read_address(book, mount.address, "", testbed.file);
   for (const netio::Peer& peer : peers)
     if (peer.kind == netio::PeerKind::tag && peer.key) signers_.emplace(peer.id, *peer.key);
 }

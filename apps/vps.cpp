@@ -102,6 +102,19 @@ std::span<const vision::TrackedTag> process(std::span<const vision::Frame> frame
   return tags;
 }
 
+/// @param robots set to the inputs where they are live robots'
+std::unique_ptr<CameraInputs> open(const VpsOptions& options, const vision::Testbed& testbed,
+                                   const vision::RenderedFleet* fleet, const RobotInputs*& robots) {
+  if (fleet != nullptr) return rendered_inputs(testbed, *fleet, options.seed);
+  if (options.robots == 0) return open_inputs(testbed, options.inputs);
+  const netio::Endpoint listen{netio::resolve(options.bind), options.robots};
+  auto inputs = robot_inputs(testbed, listen, options.seed, stop_requested());
+  robots = &*inputs;
+  print_message("renders robots that report their true states to {} (robot --truth {}); Ctrl-C ends it",
+                netio::text(listen), netio::text(listen));
+  return inputs;
+}
+
 }  // namespace
 
 int vps(const VpsOptions& options) {
@@ -114,8 +127,9 @@ int vps(const VpsOptions& options) {
                   vision::FleetOptions{options.rendered, options.speed, options.occluders, true, options.seed});
     meter.emplace(testbed, *fleet);
   }
-  const auto inputs = fleet ? rendered_inputs(testbed, *fleet, options.seed) : open_inputs(testbed, options.inputs);
-  vision::Positioning positioning(testbed);
+  const RobotInputs* robots = nullptr;
+  const auto inputs = open(options, testbed, fleet ? &*fleet : nullptr, robots);
+  vision::Positioning positioning(testbed, 0, inputs->is_live());
   TrackFile track(options.track);
   const Overlay overlay(options, testbed);
   install_stop_handlers();
@@ -143,6 +157,7 @@ int vps(const VpsOptions& options) {
   if (meter) report.accuracy = meter->accuracy();
   if (sender.has_addresses()) report.sent = sender.counts();
   report.unaddressed = sender.unaddressed();
+  if (robots != nullptr) report.truth = robots->truth();
   print(options.json ? json_of(report) : text_of(report));
   return report.counts.sightings > 0 ? 0 : 1;
 }

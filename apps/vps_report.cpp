@@ -31,6 +31,13 @@ std::string text_of(const VpsReport& r) {
   const auto images = static_cast<double>(r.counts.images);
   std::string text = row("cameras", r.cameras) + row("images", r.counts.images);
   if (r.counts.unreadable > 0) text += row("", "{} of them unreadable", r.counts.unreadable);
+  if (r.counts.frozen > 0)
+    text += row("", "{} of them the same as the one before: a camera is frozen", r.counts.frozen);
+  if (r.truth) {
+    text += row("robots", "{} rendered, by {}", r.truth->robots, counted(r.truth->accepted, "packet"));
+    if (r.truth->refused > 0)
+      text += row("", "{} refused: no V2V, or of a robot without a tag in the dictionary", r.truth->refused);
+  }
   if (r.counts.images > 0)
     text += row("processing", "{:.1f} images/s, {:.1f} ms of CPU time an image", images / r.processing_s,
                 1e3 * r.processing_cpu_s / images);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/camera_inputs.h"
 #include "netio/outbox.h"
 #include "vision/accuracy.h"
 
@@ -21,6 +22,7 @@ struct VpsReport {
   std::optional<vision::Accuracy> accuracy;          ///< of rendered images
   std::optional<netio::OutboxCounts> sent;
   std::uint64_t unaddressed = 0;
+  std::optional<TruthCounts> truth;  ///< of rendered robots
 };
 
 std::string text_of(const VpsReport& report);

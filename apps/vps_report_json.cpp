@@ -10,6 +10,7 @@ std::string json_of(const VpsReport& r) {
   Json json = {{"cameras", r.cameras},
                {"images", r.counts.images},
                {"unreadable", r.counts.unreadable},
+               {"frozen", r.counts.frozen},
                {"processing_s", r.processing_s},
                {"processing_cpu_s", r.processing_cpu_s},
                {"sightings", r.counts.sightings},
@@ -29,6 +30,8 @@ std::string json_of(const VpsReport& r) {
                         {"missed", a.missed},
                         {"false", a.wrong}};
   }
+  if (r.truth)
+    json["truth"] = {{"robots", r.truth->robots}, {"accepted", r.truth->accepted}, {"refused", r.truth->refused}};
   if (r.sent)
     json["packets"] = {
         {"sent", r.sent->sent}, {"failed", r.sent->failed + r.sent->dropped}, {"unaddressed", r.unaddressed}};

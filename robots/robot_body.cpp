@@ -9,11 +9,6 @@ namespace sf::robots {
 
 namespace {
 
-base::Pose between(const base::Pose& a, const base::Pose& b, double part) {
-  return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y), a.z + part * (b.z - a.z),
-          base::wrap_angle(a.yaw + part * base::wrap_angle(b.yaw - a.yaw))};
-}
-
 world::World with_free_others(world::World world, std::uint32_t mover) {
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
     if (m == mover) continue;
@@ -31,9 +26,8 @@ RobotBody::RobotBody(const world::World& world, std::uint32_t mover, std::int64_
       mover_(mover),
       forget_(forget),
       others_(world.movers.size()),
-      commands_(world.movers.size()) {
-  trail_[0].X_WM = state().X_WM;
-}
+      commands_(world.movers.size()),
+      trail_(state().X_WM) {}
 
 void RobotBody::update_other(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity,
                              std::int64_t now) {
@@ -57,20 +51,7 @@ void RobotBody::move(const base::Twist& command, std::int64_t now) {
   fleet_.move(commands_, dt);
   const base::Pose after = state().X_WM;
   distance_ += std::hypot(after.x - before.x, after.y - before.y);
-  trail_[++moves_ % trail_.size()] = {now, after};
-}
-
-base::Pose RobotBody::pose_at(std::int64_t time) const {
-  const std::size_t kept = std::min(moves_ + 1, trail_.size());
-  if (time >= trail_point(0).time) return trail_point(0).X_WM;
-  for (std::size_t back = 1; back < kept; ++back) {
-    const TrailPoint& earlier = trail_point(back);
-    const TrailPoint& later = trail_point(back - 1);
-    if (earlier.time > time) continue;
-    const auto part = static_cast<double>(time - earlier.time) / static_cast<double>(later.time - earlier.time);
-    return between(earlier.X_WM, later.X_WM, part);
-  }
-  return trail_point(kept - 1).X_WM;
+  trail_.add(now, after);
 }
 
 }  // namespace sf::robots

@@ -2,13 +2,13 @@
 // One simulated robot in a process of its own. It moves among the world's walls and the other robots, as far as their
 // states are known from packets.
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "base/report.h"
 #include "robots/fleet.h"
+#include "robots/pose_trail.h"
 #include "world/world.h"
 
 namespace sf::robots {
@@ -32,7 +32,7 @@ class RobotBody {
   bool contact() const { return fleet_.contacts()[mover_] != 0; }
   double distance() const { return distance_; }  ///< [m] driven
   /// Pose at `time`, interpolated between the last 256 moves; before these, the oldest pose.
-  base::Pose pose_at(std::int64_t time) const;
+  base::Pose pose_at(std::int64_t time) const { return trail_.at(time); }
 
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
@@ -41,11 +41,6 @@ class RobotBody {
     std::int64_t until = 0;      ///< [ns]
     std::int64_t gone = kNever;  ///< [ns] time at which it becomes absent
   };
-  struct TrailPoint {
-    std::int64_t time = 0;  ///< [ns]
-    base::Pose X_WM;
-  };
-  const TrailPoint& trail_point(std::size_t back) const { return trail_[(moves_ - back) % trail_.size()]; }
 
   world::World world_;  ///< a copy: other robots move with their reported velocities, without actuator model or limits
                         ///< of acceleration
@@ -54,8 +49,7 @@ class RobotBody {
   std::int64_t forget_;                ///< [ns]; 0: never
   std::vector<OtherRobot> others_;     ///< per mover
   std::vector<base::Twist> commands_;  ///< per mover
-  std::array<TrailPoint, 256> trail_;
-  std::size_t moves_ = 0;  ///< index of the last one, modulo the size
+  PoseTrail trail_;
   std::int64_t time_ = 0;
   double distance_ = 0.0;
 };

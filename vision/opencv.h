@@ -75,6 +75,7 @@ struct Calibration {
 struct OpenCv {
   /// @param dictionary such as "apriltag_36h11" or "aruco_4x4_50"
   TagPattern (*tag_pattern)(const std::string& dictionary, std::uint32_t id);
+  std::uint32_t (*tag_count)(const std::string& dictionary);
   std::unique_ptr<TagFinder> (*make_tag_finder)(const std::string& dictionary);
   /// @param image 3 channels
   void (*draw)(Image& image, const std::vector<Mark>& marks);

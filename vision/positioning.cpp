@@ -14,14 +14,20 @@ struct Positioning::State {
   base::ThreadPool pool;
   std::vector<TagDetector> detectors;
   std::vector<std::vector<Sighting>> sightings;  ///< of each camera
+  bool live = false;
+  std::vector<std::vector<std::uint8_t>> last;  ///< pixels of each camera's last image, where they are live
+  std::uint64_t frozen = 0;
   std::vector<Sighting> all;
   std::vector<TrackedTag> tracked;
   Tracker tracker;
 };
 
-Positioning::Positioning(const Testbed& testbed, unsigned threads) : state_(std::make_unique<State>(testbed, threads)) {
+Positioning::Positioning(const Testbed& testbed, unsigned threads, bool live)
+    : state_(std::make_unique<State>(testbed, threads)) {
   for (const TestbedCamera& each : testbed.cameras) state_->detectors.emplace_back(testbed, each.camera);
   state_->sightings.resize(testbed.cameras.size());
+  state_->last.resize(testbed.cameras.size());
+  state_->live = live;
 }
 
 Positioning::~Positioning() = default;
@@ -39,8 +45,19 @@ std::span<const TrackedTag> Positioning::update(std::span<const Frame> frames) {
                       "expected the size with which it was calibrated",
                       camera.name, camera.intrinsics.width, camera.intrinsics.height, image.width, image.height));
   }
+  std::vector<std::uint8_t> frozen(frames.size(), 0);  // bool of std::vector is not safe to share
+  for (std::size_t i = 0; s.live && i < frames.size(); ++i) {
+    const std::vector<std::uint8_t>& pixels = frames[i].image.pixels;
+    frozen[i] = !pixels.empty() && pixels == s.last[i] ? 1 : 0;
+    s.frozen += frozen[i];
+    s.last[i] = pixels;
+  }
   s.pool.parallel_for(frames.size(), 1, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) s.detectors[i].detect(frames[i].image, frames[i].time, s.sightings[i]);
+    for (std::size_t i = first; i < last; ++i)
+      if (frozen[i] == 0)
+        s.detectors[i].detect(frames[i].image, frames[i].time, s.sightings[i]);
+      else
+        s.sightings[i].clear();
   });
   s.all.clear();
   for (const auto& seen : s.sightings) s.all.insert(s.all.end(), seen.begin(), seen.end());
@@ -61,6 +78,8 @@ DetectionCounts Positioning::counts() const {
     sum.unfitted += c.unfitted;
     sum.misfitted += c.misfitted;
   }
+  sum.images += state_->frozen;
+  sum.frozen = state_->frozen;
   return sum;
 }
 

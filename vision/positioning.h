@@ -21,7 +21,9 @@ class Positioning {
  public:
   /// @param testbed lives longer
   /// @param threads 0: one for each core
-  explicit Positioning(const Testbed& testbed, unsigned threads = 0);
+  /// @param live from devices, whose noise makes each image differ: one that is the same as the last of its camera is
+  /// counted as frozen, and no tag is sought in it
+  explicit Positioning(const Testbed& testbed, unsigned threads = 0, bool live = false);
   ~Positioning();
 
   /// @param frames one of each camera of the testbed file, in its order

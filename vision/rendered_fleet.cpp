@@ -14,15 +14,15 @@ namespace sf::vision {
 
 namespace {
 
-constexpr double kBorder = 1.0;           // [cells] white round a tag
 constexpr double kMargin = 4.0;           // [px] between a visible tag and the image's border
 constexpr double kOccluderHeight = 1.0;   // [m]
 constexpr double kOccluderRadius = 0.15;  // [m]
-constexpr double kBodyRadius = 1.1;       // [sides of the tag]
 constexpr double kMaxPlaces = 20'000;     // of a grid, in sight or not
 
 /// Half of a tag's diagonal with its white border.
-double reach_of(const TagMount& mount, int cells) { return M_SQRT1_2 * mount.side * (cells + 2.0 * kBorder) / cells; }
+double reach_of(const TagMount& mount, int cells) {
+  return M_SQRT1_2 * mount.side * (cells + 2.0 * kTagBorder) / cells;
+}
 
 bool sees(const Camera& camera, glm::dvec3 p) {
   const auto pixel = project(camera, p);
@@ -54,23 +54,6 @@ std::vector<glm::dvec2> seen_grid(const Testbed& testbed, glm::dvec2 low, glm::d
         }
     }
   return seen;
-}
-
-/// The box round all corners of all images on the plane of the tags.
-void field_of_view(const Testbed& testbed, glm::dvec2& low, glm::dvec2& high) {
-  low = glm::dvec2{1e9};
-  high = -low;
-  for (const TestbedCamera& each : testbed.cameras)
-    for (const double u : {0.0, 0.5, 1.0})
-      for (const double v : {0.0, 0.5, 1.0}) {
-        const Intrinsics& i = each.camera.intrinsics;
-        const auto p = to_plane(each.camera, {u * (i.width - 1), v * (i.height - 1)}, testbed.tag.height);
-        if (!p) continue;
-        low = glm::min(low, *p);
-        high = glm::max(high, *p);
-      }
-  low = glm::max(low, glm::dvec2{-50.0});
-  high = glm::min(high, glm::dvec2{50.0});
 }
 
 }  // namespace
@@ -126,35 +109,7 @@ RenderedFleet::RenderedFleet(const Testbed& testbed, const FleetOptions& options
     const auto [c, d] = uniform(1000000 + i, 1);
     occluders_.push_back({glm::mix(low, high, glm::dvec2{a, b}), 0.3 + 0.5 * c, 0.5, 2.0 * M_PI * d});
   }
-  if (options.clutter) add_clutter();
-}
-
-/// Two crossing pairs of lane markings, and black squares in white frames, which are tags without a code.
-void RenderedFleet::add_clutter() {
-  glm::dvec2 low, high;
-  field_of_view(testbed_, low, high);
-  for (const double at : {-0.25, 0.25}) {
-    Patch line;
-    line.albedo = 0.85;
-    line.size = {20.0, 0.03};
-    line.X_WP = {0.5 * (low.x + high.x), 0.5 * (low.y + high.y) + at, 0.0, 0.0};
-    clutter_.push_back(line);
-    line.X_WP = {0.5 * (low.x + high.x) + at, 0.5 * (low.y + high.y), 0.0, M_PI / 2.0};
-    clutter_.push_back(line);
-  }
-  for (std::uint32_t i = 0; i < 20; ++i) {
-    const base::RandomKey key{options_.seed, base::RandomStream::placement, 2000000 + i};
-    const auto [a, b] = base::random_uniform(key, 0);
-    const auto [c, d] = base::random_uniform(key, 1);
-    Patch frame;
-    frame.albedo = 0.85;
-    frame.size = glm::dvec2{1.3 * testbed_.tag.side * (0.5 + c)};
-    frame.X_WP = {low.x + a * (high.x - low.x), low.y + b * (high.y - low.y), 0.0, 2.0 * M_PI * d};
-    clutter_.push_back(frame);
-    frame.albedo = 0.05;
-    frame.size *= 1.0 / 1.3;
-    clutter_.push_back(frame);
-  }
+  if (options.clutter) clutter_ = clutter(testbed, options.seed);
 }
 
 TrueTag RenderedFleet::truth(std::size_t tag, double time) const {
@@ -172,17 +127,7 @@ Scene RenderedFleet::scene_at(double time) const {
   scene.patches = clutter_;
   for (std::size_t i = 0; i < tags_.size(); ++i) {
     const TrueTag state = truth(i, time);
-    const double side = testbed_.mount(state.id).side;
-    Patch body{Patch::Shape::disc, state.X_WT, time, state.velocity, state.turn};
-    body.X_WP.z -= 0.02;
-    body.size = glm::dvec2{2.0 * kBodyRadius * side};
-    body.albedo = 0.2;
-    scene.patches.push_back(body);
-    Patch tag{Patch::Shape::tag, state.X_WT, time, state.velocity, state.turn};
-    tag.size = glm::dvec2{side};
-    tag.pattern = tags_[i].pattern;
-    tag.border = kBorder;
-    scene.patches.push_back(tag);
+    add_tag(scene, state, time, testbed_.mount(state.id).side, tags_[i].pattern);
   }
   for (const Circle& circle : occluders_) {
     const glm::dvec2 p = place(circle, time);

@@ -5,8 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vision/scene.h"
-#include "vision/testbed.h"
+#include "vision/testbed_patches.h"
 
 namespace sf::vision {
 
@@ -16,14 +15,6 @@ struct FleetOptions {
   std::uint32_t occluders = 0;  ///< dark discs of 0.3 m, 1 m above the floor, on circles of their own
   bool clutter = true;          ///< lane markings and framed black squares on the floor
   std::uint64_t seed = 1;
-};
-
-/// True state of one tag.
-struct TrueTag {
-  std::uint32_t id = 0;
-  base::Pose X_WT;
-  glm::dvec2 velocity;  ///< [m/s]
-  double turn = 0.0;    ///< [rad/s]
 };
 
 class RenderedFleet {
@@ -51,7 +42,6 @@ class RenderedFleet {
     TagPattern pattern;
   };
   static glm::dvec2 place(const Circle& circle, double time);
-  void add_clutter();
 
   const Testbed& testbed_;
   FleetOptions options_;

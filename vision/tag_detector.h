@@ -26,6 +26,7 @@ struct DetectionCounts {
   std::uint64_t unlisted = 0;   ///< `only_listed` is set, and the file has no [[tag]] with this id
   std::uint64_t unfitted = 0;   ///< fewer than three sides with an edge, or points that make no square
   std::uint64_t misfitted = 0;  ///< side or residual beyond the limits below: clutter, or a wrong height
+  std::uint64_t frozen = 0;     ///< images left out: each the same as the one before, to the bit
 };
 
 /// One thread at a time; use one detector for each camera.

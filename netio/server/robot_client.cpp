@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/elapsed.h"
+#include "base/error.h"
 #include "base/time.h"
 #include "world/roads/roads.h"
 
@@ -16,26 +17,21 @@ namespace {
 
 constexpr std::int64_t kAnswerIn = 3'000'000'000;  ///< [ns] without one, the user is told
 
-/// Bounded by what a packet may hold, whatever the world file lets a robot do.
-netio::V2v state_of(const base::Report& report, const base::Intent& intent) {
-  const auto bound = [](double value, double most) { return std::clamp(value, -most, most); };
-  netio::V2v state;
-  state.X_WR = {bound(report.X_WM.x, netio::kMaxPosition), bound(report.X_WM.y, netio::kMaxPosition),
-                bound(report.X_WM.z, netio::kMaxPosition), base::wrap_angle(report.X_WM.yaw)};
-  state.velocity = {bound(report.velocity.forward, netio::kMaxSpeed), bound(report.velocity.left, netio::kMaxSpeed),
-                    bound(report.velocity.turn, netio::kMaxSpeed)};
-  state.follows = intent.follows <= netio::kMaxId ? intent.follows : netio::kNone;
-  state.checkpoint = intent.checkpoint;
-  state.docking = intent.docking;
-  return state;
-}
-
 /// [ns] Never shorter than two and a half periods of the fastest sensor, so that one lost reading stops nobody.
 std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mover, double seconds) {
   double fastest = 0.0;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : sensor_set.of(group.type->id, mover)) fastest = std::max(fastest, row.rate);
   return seconds > 0.0 && fastest > 0.0 ? base::nanoseconds(std::max(seconds, 2.5 / fastest)) : 0;
+}
+
+std::uint32_t tag_of(const RobotClientOptions& options, const world::Mover& mover) {
+  const std::uint32_t tag = options.tag > 0 ? options.tag : mover.id;
+  if (tag >= netio::kMinTag && tag <= netio::kMaxId) return tag;
+  throw base::InputError(
+      fmt::format("{} has the id {}, which no tag has; expected the id of the tag that it carries (robot --tag), from "
+                  "{} to {}",
+                  mover.name, mover.id, netio::kMinTag, netio::kMaxId));
 }
 
 /// [ms] since 1970
@@ -59,23 +55,44 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       controller_(options.controller.name),
       utc_(options.utc ? options.utc : utc_now) {
   if (options.spat) spat_.emplace(world, roads_ ? &*roads_ : nullptr, *options.spat);
+  if (options.cameras) cameras_.emplace(world, mover, tag_of(options, world.movers[mover]), *options.cameras);
+  if (options.truth) truth_.emplace(*options.truth, tag_of(options, world.movers[mover]));
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, options.controller);
 }
 
-void RobotClient::step(std::int64_t now) {
+void RobotClient::receive(std::int64_t now) {
+  link_.run(now);
+  if (cameras_) cameras_->receive(now);
+}
+
+void RobotClient::move(std::int64_t now) {
   body_.move(command_, now);
   contacts_ += contact_.begins(body_.contact());
+  if (truth_) truth_->send(body_.state(), now, epoch_);
+}
+
+void RobotClient::step(std::int64_t now) {
+  move(now);
+  if (cameras_) cameras_->predict(now);
+  if (cameras_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
   command_ = {};
-  if (started_ && !readings_timed_out(now)) decide(now);
-  link_.send_state(state_of(body_.state(), made_.controller->intent()), now);
+  if (started_ && !is_lost() && !readings_timed_out(now)) decide(now);
+  send_state(now);
   log_problems(now);
 }
 
+/// A robot that does not know where it is does not say so: the farm's state of it grows stale, as do its readings.
+void RobotClient::send_state(std::int64_t now) {
+  if (is_lost()) return link_.send_request(now);
+  link_.send_state(v2v_of(own_state(), made_.controller->intent()), now);
+}
+
 void RobotClient::wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock) {
-  link_.run(clock());
+  receive(clock());
   for (std::int64_t time = clock(); time < until && !stop; time = clock()) {
-    link_.wait(time, until);
-    link_.run(clock());
+    if (truth_ && truth_->is_due(time)) move(time);
+    link_.wait(time, truth_ ? std::min(until, truth_->due()) : until);
+    receive(clock());
   }
 }
 
@@ -84,6 +101,8 @@ void RobotClient::run(const std::atomic<bool>& stop, double duration) {
   const Clock clock = [start] {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count();
   };
+  epoch_ = base::unix_time();
+  if (cameras_) cameras_->set_epoch(epoch_);
   const std::int64_t period = std::llround(1e9 / rate());
   const std::int64_t end = duration > 0.0 ? base::nanoseconds(duration) : INT64_MAX;
   for (std::int64_t next = 0; !stop && !done(); next = std::max(next + period, clock() - period)) {
@@ -113,6 +132,7 @@ RobotClientStats RobotClient::stats() const {
   stats.pose = body_.state().X_WM;
   stats.error = error_;
   if (spat_) stats.spat = spat_->counts();
+  if (cameras_) stats.cameras = {cameras_->packets(), cameras_->states(), position_errors_};
   stats.stops = stops_;
   stats.lines_left_out = log_.left_out();
   return stats;
@@ -133,7 +153,7 @@ void RobotClient::decide(std::int64_t now) {
   gather_readings();
   gather_others(now);
   gather_signals(now);
-  control::ControllerInput input{now, body_.state(), readings_, body_.contact(), started_, others_, signals_};
+  control::ControllerInput input{now, own_state(), readings_, body_.contact(), started_, others_, signals_};
   input.state.time = now;
   command_ = made_.controller->step(input);
   ++steps_;
@@ -145,7 +165,7 @@ void RobotClient::gather_readings() {
   readings_.clear();
   for (RobotLink::Newest& newest : link_.readings()) {
     base::ReadingBlock& block = readings_.emplace_back(newest.block);
-    block.X_WM = body_.pose_at(block.time);
+    block.X_WM = cameras_ ? cameras_->pose_at(block.time) : body_.pose_at(block.time);
     block.X_WS = base::compose(block.X_WM, newest.row->X_MS);
   }
 }
@@ -154,7 +174,7 @@ void RobotClient::gather_others(std::int64_t now) {
   others_.clear();
   const double radio = made_.controller->v2v_range();
   if (radio <= 0.0) return;
-  const base::Pose& own = body_.state().X_WM;
+  const base::Pose& own = own_state().X_WM;
   for (const auto& [id, row] : names_.robots) {
     if (row == mover_ || !link_.is_active(id, now)) continue;
     base::Report state = body_.state(row);
@@ -188,12 +208,20 @@ void RobotClient::log_problems(std::int64_t now) {
                            farm, reading_timeout_ > 0 ? "Standing until readings come" : "Going on"),
                now);
   }
+  const std::string& name = world_.movers[mover_].name;
+  if (cameras_ && was_lost_ != is_lost()) {
+    was_lost_ = is_lost();
+    stops_ += was_lost_ ? 1 : 0;
+    log_.write(was_lost_ ? fmt::format("no camera sees {} any more: it stands until one does", name)
+                         : fmt::format("cameras see {}", name),
+               now);
+  }
   if (stands_ == readings_timed_out(now) || !link_.last_reading()) return;
   stands_ = !stands_;
   stops_ += stands_ ? 1 : 0;
   log_.write(stands_ ? fmt::format("no reading came from the farm at {} for {:g} s: {} stands until one comes", farm,
-                                   1e-9 * static_cast<double>(reading_timeout_), world_.movers[mover_].name)
-                     : fmt::format("readings come: {} goes on", world_.movers[mover_].name),
+                                   1e-9 * static_cast<double>(reading_timeout_), name)
+                     : fmt::format("readings come: {} goes on", name),
              now);
 }
 

@@ -13,8 +13,10 @@
 #include "control/controllers.h"
 #include "control/error_summary.h"
 #include "netio/rate_limited_log.h"
+#include "netio/server/camera_positions.h"
 #include "netio/server/robot_link.h"
 #include "netio/server/spat_listener.h"
+#include "netio/server/truth_report.h"
 #include "netio/server/wire_ids.h"
 #include "robots/robot_body.h"
 #include "sensors/sensor_set.h"
@@ -34,6 +36,19 @@ struct RobotClientOptions {
   int log_descriptor = 2;               ///< of its log's lines; -1: none
   std::optional<netio::Endpoint> spat;  ///< where it listens for SPaT of traffic lights; nullopt: plans of the world
   std::function<std::int64_t()> utc;    ///< [ms] since 1970; empty: the machine's clock
+  std::uint32_t tag = 0;                ///< that it carries, below cameras; 0: the one with the robot's id
+  /// Its own pose, and that in its packets to the farm, come from cameras alone; nullopt: it knows its true pose.
+  std::optional<CameraPositionsOptions> cameras;
+  /// Where it reports its true state as V2V packets with its tag's id, 50 a second, stamped with Unix time; nullopt:
+  /// nowhere. It stands for the light that cameras see.
+  std::optional<netio::Endpoint> truth;
+};
+
+/// Positions from cameras.
+struct CameraPositionsStats {
+  netio::PacketCounts packets;
+  StateFilterCounts states;
+  PositionErrors errors;  ///< of its own fresh states at its steps
 };
 
 /// How a robot's process went.
@@ -50,19 +65,21 @@ struct RobotClientStats {
   bool listens = true;      ///< it has sensors, so that something should have come
   LinkCounts link;
   std::uint64_t contacts = 0;        ///< that began
-  std::uint64_t stops = 0;           ///< times that it stood for want of readings
+  std::uint64_t stops = 0;           ///< times that it stood for want of readings or positions
   std::uint64_t lines_left_out = 0;  ///< of its log
   double distance_m = 0.0;           ///< driven
   base::Pose pose;                   ///< at the end
   control::ErrorSummary error;
-  std::optional<SpatCounts> spat;  ///< nullopt: it does not listen
+  std::optional<SpatCounts> spat;               ///< nullopt: it does not listen
+  std::optional<CameraPositionsStats> cameras;  ///< nullopt: it knows its true pose
 };
 
 /// Times are of the robot's own clock [ns], which begins at 0 and does not go back. World and sensor set must outlive
 /// it. One thread.
 class RobotClient {
  public:
-  /// @throws base::InputError for a controller that cannot be had, a port that is taken, a farm's host that is unknown.
+  /// @throws base::InputError for a controller that cannot be had, a tag without an id, a port that is taken, a farm's
+  /// host that is unknown.
   RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
               const StreamLayout& layout, const RobotClientOptions& options);
 
@@ -71,8 +88,10 @@ class RobotClient {
   void run(const std::atomic<bool>& stop, double duration);
 
   /// Takes what came, and lets go what is due in both directions.
-  void receive(std::int64_t now) { link_.run(now); }
+  void receive(std::int64_t now);
 
+  /// Moves as it decided last, and reports the truth. `step` does it too; between steps it makes the truth finer.
+  void move(std::int64_t now);
   /// Moves as it decided last, decides anew, and says where it is.
   void step(std::int64_t now);
 
@@ -82,7 +101,9 @@ class RobotClient {
   double rate() const { return made_.rate; }  ///< [Hz] of turns
   bool done() const { return started_ && made_.controller->done(); }
   const RobotLink& link() const { return link_; }
-  const SpatListener* spat() const { return spat_ ? &*spat_ : nullptr; }  ///< null: it does not listen
+  const SpatListener* spat() const { return spat_ ? &*spat_ : nullptr; }              ///< null: it does not listen
+  const CameraPositions* cameras() const { return cameras_ ? &*cameras_ : nullptr; }  ///< null: it has none
+  const base::Report& true_state() const { return body_.state(); }
   RobotClientStats stats() const;
 
  private:
@@ -90,11 +111,16 @@ class RobotClient {
   void wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock);
   void on_packet(const netio::Packet& packet, std::int64_t now);
   void decide(std::int64_t now);
+  void send_state(std::int64_t now);
+  /// As it knows it.
+  const base::Report& own_state() const { return cameras_ ? cameras_->state() : body_.state(); }
   void gather_readings();
   void gather_others(std::int64_t now);
   void gather_signals(std::int64_t now);
   /// No reading came for so long that the last one is no ground to drive by.
   bool readings_timed_out(std::int64_t now) const;
+  /// No camera saw it for so long that its state is no ground to drive by.
+  bool is_lost() const { return cameras_ && !cameras_->is_fresh(); }
   void log_problems(std::int64_t now);
 
   const world::World& world_;
@@ -109,7 +135,7 @@ class RobotClient {
   bool started_;
   std::int64_t reading_timeout_;  ///< [ns] without a reading; 0: for ever
   bool problem_logged_ = false;
-  bool stands_ = false;      ///< for want of readings
+  bool stands_ = false;      ///< for want of readings or positions
   std::uint64_t stops_ = 0;  ///< times that it came to that
   netio::RateLimitedLog log_;
   std::uint64_t steps_ = 0;
@@ -123,6 +149,11 @@ class RobotClient {
   std::vector<world::Signal> signals_;
   std::optional<SpatListener> spat_;
   std::function<std::int64_t()> utc_;
+  std::optional<CameraPositions> cameras_;
+  bool was_lost_ = true;  ///< at the last step; no camera has seen it at the start
+  PositionErrors position_errors_;
+  std::optional<TruthReport> truth_;
+  std::int64_t epoch_ = 0;  ///< [ns] Unix time at time 0 of its clock, in `run`
 };
 
 }  // namespace sf::server

@@ -61,7 +61,7 @@ std::vector<netio::StreamSpec> RobotLink::specs(const StreamLayout& layout) cons
   return specs;
 }
 
-netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout, const LinkOptions& options) const {
+netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout, const LinkOptions& options) {
   netio::ReceiverOptions receiver;
   receiver.key = options.key;
   const std::vector<netio::StreamSpec> all = specs(layout);
@@ -76,23 +76,26 @@ netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout, c
   };
   receiver.read = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload,
                                std::span<double> values) {
+    part_is_stale_ = header.state.stated && header.state.stale;
     decode_payload(streams_[i].source, wire, header, payload, values);
   };
   return receiver;
 }
 
+void RobotLink::send_request(std::int64_t now) {
+  if (now < next_request_) return;
+  netio::Subscribe request{netio::kNeighboursBit};
+  for (const Stream& stream : streams_) request.types |= 1u << stream.source.type->id;
+  netio::encode({.robot = static_cast<std::uint16_t>(id_), .sequence = requests_, .time = now}, request, packet_);
+  send(netio::Type::subscribe, requests_++, now);
+  next_request_ = now + kRequest;
+}
+
 void RobotLink::send_state(const netio::V2v& state, std::int64_t now) {
+  send_request(now);
   netio::Header header;
   header.robot = static_cast<std::uint16_t>(id_);
   header.time = now;
-  if (now >= next_request_) {
-    netio::Subscribe request{netio::kNeighboursBit};
-    for (const Stream& stream : streams_) request.types |= 1u << stream.source.type->id;
-    header.sequence = requests_;
-    netio::encode(header, request, packet_);
-    send(netio::Type::subscribe, requests_++, now);
-    next_request_ = now + kRequest;
-  }
   header.sequence = states_;
   netio::encode(header, state, packet_);
   send(netio::Type::v2v, states_++, now);
@@ -108,7 +111,7 @@ void RobotLink::flush_due(std::int64_t until) {
 }
 
 void RobotLink::leave(std::int64_t now) {
-  if (states_ == 0) return;
+  if (states_ + requests_ == 0) return;
   netio::Header header;
   header.robot = static_cast<std::uint16_t>(id_);
   header.time = now;
@@ -162,6 +165,7 @@ void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::
   if (part_status != netio::PartStatus::complete) return;
   last_reading_ = now;
   ++streams_[tag].whole;
+  stale_ += part_is_stale_ ? 1 : 0;
   clock_.update(receiver_.newest(tag)->time, now);
 }
 
@@ -201,7 +205,8 @@ std::span<RobotLink::Newest> RobotLink::readings() {
 }
 
 LinkCounts RobotLink::counts() const {
-  LinkCounts counts{v2v_socket_.sent(), out_.counts(), in_.counts(), receiver_.counts(), v2v_socket_.counts(), 0, {}};
+  LinkCounts counts{
+      v2v_socket_.sent(), out_.counts(), in_.counts(), receiver_.counts(), v2v_socket_.counts(), 0, {}, stale_};
   counts.socket_drops = port_listener_.socket_drops() + netio::socket_drops(v2v_socket_.socket());
   for (const Stream& stream : streams_) counts.whole[std::string(stream.source.type->name)] += stream.whole;
   return counts;

@@ -36,6 +36,7 @@ struct LinkCounts {
   netio::PacketCounts packets;                 ///< what came to the socket it speaks from
   std::uint64_t socket_drops = 0;              ///< datagrams that came while a socket's buffer was full
   std::map<std::string, std::uint64_t> whole;  ///< readings, by type
+  std::uint64_t stale = 0;                     ///< readings of a state of the robot that is stale, as the farm says
 };
 
 /// Times are of the robot's own clock [ns], which does not go back. World and sensor set must outlive it. One thread.
@@ -48,7 +49,9 @@ class RobotLink {
   RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
             const StreamLayout& layout, const LinkOptions& options, PacketHandler handler);
 
-  /// Sends a state, and every half a second what it wants to be sent.
+  /// Every half a second, sends what it wants to be sent.
+  void send_request(std::int64_t now);
+  /// The same, and a state.
   void send_state(const netio::V2v& state, std::int64_t now);
   /// Says that it said its last, unless it said nothing: at once, and what still waits in the injected link with it.
   void leave(std::int64_t now);
@@ -87,7 +90,7 @@ class RobotLink {
   static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
                                         std::uint32_t mover);
   std::vector<netio::StreamSpec> specs(const StreamLayout& layout) const;
-  netio::ReceiverOptions receiver_options(const StreamLayout& layout, const LinkOptions& options) const;
+  netio::ReceiverOptions receiver_options(const StreamLayout& layout, const LinkOptions& options);
   void send(netio::Type type, std::uint32_t sequence, std::int64_t now);
   /// Sends what is due by then.
   void flush_due(std::int64_t until);
@@ -115,6 +118,8 @@ class RobotLink {
   std::optional<std::int64_t> last_answer_, last_reading_;
   std::vector<Newest> newest_;
   base::Bytes packet_;
+  bool part_is_stale_ = false;  ///< of the last part
+  std::uint64_t stale_ = 0;     ///< readings
 };
 
 }  // namespace sf::server

@@ -14,6 +14,7 @@
 #include "netio/packets.h"
 #include "netio/signature.h"
 #include "netio/socket.h"
+#include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/viz/png.h"
 
@@ -138,6 +139,69 @@ TEST(Vps, CtrlCEndsItAtOnce) {
   EXPECT_LT(base::seconds_since(start), 5.0) << "0.05 s on an idle machine";
 }
 
+namespace {
+
+std::size_t times_said(const Program& program, const std::string& text) {
+  const std::string said = program.err();
+  std::size_t count = 0;
+  for (std::size_t at = said.find(text); at != std::string::npos; at = said.find(text, at + 1)) ++count;
+  return count;
+}
+
+/// Polls for up to a minute.
+bool says_often(const Program& program, const std::string& text, std::size_t count) {
+  for (int i = 0; i < 3000 && times_said(program, text) < count; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  return times_said(program, text) >= count;
+}
+
+}  // namespace
+
+/// The three programs in real time, of which nothing is asked but that they understand each other: a robot that knows
+/// its pose by cameras alone, which stall for a while. Accuracy: ClosedLoop of tests/vision.
+TEST(Vps, ARobotDrivesByItsPackets) {
+  const Folder folder;
+  std::string testbed = kTestbed;
+  testbed.replace(testbed.find("2.2]"), 4, "6.0]").replace(testbed.find("0.15"), 4, "0.6");
+  const std::string world = folder.write(
+      "room.world",
+      "position( name \"roomba1\" size [0.3 0.3 0.1] laser( samples 91 fov 180 range_max 8 pose [0.1 0 0 0] ) )\n");
+  const std::string lasers = std::to_string(free_ports(24));
+  const unsigned ports = free_ports(3);
+  const std::string farm = std::to_string(ports), cameras = std::to_string(ports + 1),
+                    truth = std::to_string(ports + 2);
+  Program serve({"serve", world, "--port", farm, "--laser-port", lasers, "--filter", "--json"});
+  Program vps({"vps", folder.write("t.toml", testbed), "--robots", truth, "--send", "127.0.0.1:" + cameras, "--json"});
+  ASSERT_TRUE(serve.says("; Ctrl-C ends it")) << serve.err();
+  ASSERT_TRUE(vps.says("; Ctrl-C ends it")) << vps.err();
+  Program robot({"robot",        world,
+                 "--name",       "roomba1",
+                 "--port",       farm,
+                 "--laser-port", lasers,
+                 "--cameras",    cameras,
+                 "--clock",      "trusted",
+                 "--truth",      "127.0.0.1:" + truth,
+                 "--stop-after", "2",
+                 "--controller", "patrol",
+                 "--set",        "points=[0 0 0.3 0]",
+                 "--json"});
+  ASSERT_TRUE(robot.says("cameras see roomba1")) << robot.err();
+  vps.signal(SIGSTOP);
+  EXPECT_TRUE(robot.says("no camera sees roomba1 any more")) << robot.err();
+  const std::size_t seen = times_said(robot, "cameras see roomba1");
+  vps.signal(SIGCONT);
+  EXPECT_TRUE(says_often(robot, "cameras see roomba1", seen + 1)) << robot.err();
+  for (Program* each : {&robot, &vps, &serve}) each->signal(SIGINT);
+  const Json drove(robot.wait().out), looked(vps.wait().out), served(serve.wait().out);
+  EXPECT_GE(drove.number("/stops"), 1);
+  EXPECT_GT(drove.number("/positions/by_reason/accepted"), 0);
+  EXPECT_GT(drove.number("/positions/compared"), 0);
+  EXPECT_GT(drove.number("/readings/laser"), 0);
+  EXPECT_EQ(looked.number("/truth/robots"), 1);
+  EXPECT_EQ(looked.number("/truth/refused"), 0);
+  EXPECT_GT(served.number("/received/accepted"), 0);
+}
+
 TEST(Calibrate, NamesWhatIsWrong) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", kTestbed);
@@ -175,7 +239,9 @@ TEST(Vps, NamesWhatIsWrong) {
            {{testbed, "--input", "a=/dev/null"}, "is no camera that can be opened"},
            {{testbed, "--rendered", "2", "--send", "127.0.0.1"}, "'127.0.0.1' is no address; expected HOST:PORT"},
            {{testbed, "--rendered", "500"}, "500 tags do not fit"},
-           {{large, "--rendered", "1"}, "'size' of all cameras is 128 Mpx together; --rendered expects at most 64 Mpx"},
+           {{large, "--rendered", "1"},
+            "'size' of all cameras is 128 Mpx together; rendered images (--rendered, --robots) have at most "
+            "64 Mpx"},
            {{folder.path("none.toml")}, "none.toml"}}) {
     Words words{"vps"};
     words.insert(words.end(), each.arguments.begin(), each.arguments.end());

@@ -74,6 +74,10 @@ class ArucoFinder : public TagFinder {
 
 }  // namespace
 
+std::uint32_t tag_count(const std::string& dictionary) {
+  return static_cast<std::uint32_t>(dictionary_of(dictionary)->bytesList.rows);
+}
+
 TagPattern tag_pattern(const std::string& dictionary, std::uint32_t id) {
   const auto tags = dictionary_of(dictionary);
   if (id >= static_cast<std::uint32_t>(tags->bytesList.rows))

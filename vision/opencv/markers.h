@@ -6,6 +6,7 @@
 namespace sf::vision {
 
 TagPattern tag_pattern(const std::string& dictionary, std::uint32_t id);
+std::uint32_t tag_count(const std::string& dictionary);
 std::unique_ptr<TagFinder> make_tag_finder(const std::string& dictionary);
 
 }  // namespace sf::vision

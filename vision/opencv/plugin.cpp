@@ -7,6 +7,13 @@
 
 extern "C" {
 extern const sf::vision::OpenCv sensorfarm_opencv;
-const sf::vision::OpenCv sensorfarm_opencv{sf::vision::tag_pattern, sf::vision::make_tag_finder, sf::vision::draw,
-                                           sf::vision::open_source, sf::vision::find_board,      sf::vision::calibrate};
+const sf::vision::OpenCv sensorfarm_opencv{
+    .tag_pattern = sf::vision::tag_pattern,
+    .tag_count = sf::vision::tag_count,
+    .make_tag_finder = sf::vision::make_tag_finder,
+    .draw = sf::vision::draw,
+    .open_source = sf::vision::open_source,
+    .find_board = sf::vision::find_board,
+    .calibrate = sf::vision::calibrate,
+};
 }

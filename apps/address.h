@@ -1,0 +1,15 @@
+#pragma once
+// Addresses in arguments and files.
+
+#include <string>
+
+#include "netio/address_book.h"
+
+namespace sf::apps {
+
+/// @param option of the address, such as "--send", for errors  @param file that has it instead; empty: none
+/// @throws base::InputError for another form than HOST:PORT, and for unknown hosts
+netio::Endpoint read_address(netio::AddressBook& book, const std::string& text, const std::string& option,
+                             const std::string& file = "");
+
+}  // namespace sf::apps

@@ -1,0 +1,36 @@
+#pragma once
+// A simulated robot's true state, for those that render what cameras see of it (`sensorfarm vps --robots`).
+
+#include <cstdint>
+
+#include "base/report.h"
+#include "netio/outbox.h"
+#include "netio/packets.h"
+
+namespace sf::server {
+
+/// V2V of a state, bounded by what a packet may hold, whatever the world file lets a robot do.
+netio::V2v v2v_of(const base::Report& report, const base::Intent& intent = {});
+
+/// One thread.
+class TruthReport {
+ public:
+  static constexpr std::int64_t kPeriod = 20'000'000;  ///< [ns] between two of `is_due`
+
+  /// @throws base::InputError when no socket can be opened
+  TruthReport(const netio::Endpoint& to, std::uint32_t tag);
+
+  bool is_due(std::int64_t now) const { return now >= due_; }
+  std::int64_t due() const { return due_; }  ///< [ns]
+  /// @param epoch [ns] Unix time at time 0
+  void send(const base::Report& state, std::int64_t now, std::int64_t epoch);
+
+ private:
+  netio::Endpoint to_;
+  netio::Header header_;
+  netio::Outbox outbox_;
+  base::Bytes packet_;
+  std::int64_t due_ = 0;
+};
+
+}  // namespace sf::server

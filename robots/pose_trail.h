@@ -1,0 +1,32 @@
+#pragma once
+// The last poses of one mover, by time.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "base/pose.h"
+
+namespace sf::robots {
+
+/// Times [ns] are non-decreasing. Before the first `add` its one pose is `start`, at time 0.
+class PoseTrail {
+ public:
+  explicit PoseTrail(const base::Pose& start = {}) { points_[0].X_WM = start; }
+
+  void add(std::int64_t time, const base::Pose& X_WM) { points_[++added_ % points_.size()] = {time, X_WM}; }
+  /// Interpolated between the last 256 poses; before these the oldest, after them the newest.
+  base::Pose at(std::int64_t time) const;
+
+ private:
+  struct Point {
+    std::int64_t time = 0;
+    base::Pose X_WM;
+  };
+  const Point& point(std::size_t back) const { return points_[(added_ - back) % points_.size()]; }
+
+  std::array<Point, 256> points_;
+  std::size_t added_ = 0;
+};
+
+}  // namespace sf::robots
