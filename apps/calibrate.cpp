@@ -7,20 +7,29 @@
 #include "apps/commands.h"
 #include "apps/progress_line.h"
 #include "apps/text.h"
+#include "base/error.h"
 #include "vision/testbed.h"
 
 namespace sf::apps {
 
 namespace {
 
+vision::Chessboard board_of(const CalibrateOptions& options) {
+  if (!options.charuco.empty() && options.marker >= options.square)
+    throw base::InputError(fmt::format("--marker {:g} is no tag inside a square of --square {:g}; expected less",
+                                       options.marker, options.square));
+  return {static_cast<int>(options.columns), static_cast<int>(options.rows), options.square, options.charuco,
+          options.marker};
+}
+
 vision::Calibration calibrate_shown(const CalibrateOptions& options) {
   const auto source = vision::opencv().open_source(options.images, 0, 0, 0.0);
   // The number of a video's images is not known before its end.
   const double images = static_cast<double>(source->size() > 0 ? source->size() : vision::kMaxCalibrationImages);
   Progress progress("calibrating");
-  return vision::calibrate(
-      *source, options.images, {static_cast<int>(options.columns), static_cast<int>(options.rows), options.square},
-      [&](std::size_t done) { progress.show(static_cast<double>(done) / images, counted(done, "image")); });
+  return vision::calibrate(*source, options.images, board_of(options), [&](std::size_t done) {
+    progress.show(static_cast<double>(done) / images, counted(done, "image"));
+  });
 }
 
 }  // namespace

@@ -294,6 +294,8 @@ struct CalibrateOptions {
   std::uint32_t columns = 9;  ///< inner corners of the chessboard
   std::uint32_t rows = 6;
   double square = 0.025;  ///< [m]
+  std::string charuco;    ///< dictionary of the board's tags; empty: a plain chessboard
+  double marker = 0.0;    ///< [m] their side
   std::string name = "camera";
 };
 

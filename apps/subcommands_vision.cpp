@@ -94,7 +94,8 @@ void add_calibrate(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "calibrate", "Print the [[camera]] section of a testbed file from images of a chessboard, with the residual");
   auto& o = add_command(*sub, call, calibrate);
-  add_examples(*sub, {"photographs --columns 9 --rows 6 --square 0.025 --name north > lab.toml"});
+  add_examples(*sub, {"photographs --columns 9 --rows 6 --square 0.025 --name north > lab.toml",
+                      "photographs --columns 6 --rows 4 --square 0.04 --charuco aruco_4x4_50 --marker 0.03"});
   sub->add_option("images", o.images, "Folder of images, or a video, of the chessboard in different places and tilts")
       ->required()
       ->type_name("SOURCE");
@@ -110,6 +111,16 @@ void add_calibrate(CLI::App& app, Call& call) {
       ->check(number(1e-4, 10.0))
       ->type_name("M")
       ->capture_default_str();
+  auto* charuco = sub->add_option("--charuco", o.charuco,
+                                  "The board has tags of this dictionary, such as aruco_4x4_50, in its white squares "
+                                  "(ChArUco): images of a part of it count too")
+                      ->check(not_empty("a dictionary"))
+                      ->type_name("DICTIONARY");
+  auto* marker = sub->add_option("--marker", o.marker, "Side of these tags [m]")
+                     ->check(number(1e-4, 10.0))
+                     ->type_name("M")
+                     ->needs(charuco);
+  charuco->needs(marker);
   sub->add_option("--name", o.name, "Name of the camera")
       ->check(readable(vision::is_camera_name, vision::kCameraNameForm))
       ->type_name("NAME")

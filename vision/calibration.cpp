@@ -49,10 +49,10 @@ Calibration calibrate(ImageSource& images, const std::string& from, const Chessb
   if (images.is_live()) throw base::InputError(from, 0, "is a device; expected a folder of images or a video");
   Extent extent{from};
   extent.check_images(images.size());
-  std::vector<std::vector<glm::dvec2>> corners;
+  std::vector<std::vector<BoardCorner>> corners;
   for (Image image; images.next(image);) {
     extent.count(image);
-    corners.push_back(image.pixels.empty() ? std::vector<glm::dvec2>() : opencv().find_board(image, board));
+    corners.push_back(image.pixels.empty() ? std::vector<BoardCorner>() : opencv().find_board(image, board));
     extent.count_corners(corners.back().size());
     if (progress) progress(corners.size());
   }

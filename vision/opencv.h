@@ -58,10 +58,19 @@ struct Mark {
   int width = 1;                               ///< [px] of the line
 };
 
-/// A printed chessboard.
+/// A printed chessboard, plain or with a tag in each white square (ChArUco, as OpenCV from 4.6 on prints it: the upper
+/// left square is black, and ids count along the rows).
 struct Chessboard {
   int columns = 9, rows = 6;  ///< inner corners along a row and a column, each > 2
   double square = 0.025;      ///< [m] side of its squares
+  std::string dictionary;     ///< of its tags; empty: a plain board
+  double marker = 0.0;        ///< [m] side of its tags, below `square`
+};
+
+/// A corner of a board in an image.
+struct BoardCorner {
+  int index = 0;  ///< row by row over the inner corners, from 0
+  glm::dvec2 pixel;
 };
 
 /// Intrinsics that explain the corners of a chessboard in several images.
@@ -83,11 +92,13 @@ struct OpenCv {
   /// pipes, sockets and other special files of a folder are left out, and refused as a source
   /// @param width, height, rate requested from a device
   std::unique_ptr<ImageSource> (*open_source)(const std::string& source, int width, int height, double rate);
-  /// [px] Inner corners of the chessboard, row by row, to about 0.05 px; empty where it is not found. @param image grey
-  std::vector<glm::dvec2> (*find_board)(const Image& image, const Chessboard& board);
+  /// Inner corners of the chessboard to about 0.05 px, of a plain one all or none; of a board with tags those in sight,
+  /// none where fewer than six were found, or all are in one line. @param image grey
+  /// @throws base::InputError for a board with more tags than its dictionary
+  std::vector<BoardCorner> (*find_board)(const Image& image, const Chessboard& board);
   /// @param corners of each image, as found  @param width, height [px] of all images
   /// @throws base::InputError when the board was found in fewer than three images
-  Calibration (*calibrate)(const std::vector<std::vector<glm::dvec2>>& corners, const Chessboard& board, int width,
+  Calibration (*calibrate)(const std::vector<std::vector<BoardCorner>>& corners, const Chessboard& board, int width,
                            int height);
 };
 

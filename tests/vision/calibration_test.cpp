@@ -46,6 +46,35 @@ Scene chessboard() {
 
 constexpr Chessboard kBoard{kSquares - 1, kSquares - 1, kSquare};
 
+constexpr int kTagSquares = 8,
+              kCells = 8;  // squares along a side; cells of a square, of which a tag has the middle six
+const Chessboard kBoardWithTags{kTagSquares - 1, kTagSquares - 1, 0.08, "aruco_4x4_50", 0.06};
+
+/// Larger than the pictures of it.
+Scene board_with_tags() {
+  Scene scene;
+  scene.texture = 0.0;
+  Patch board;
+  board.shape = Patch::Shape::tag;
+  board.size = glm::dvec2{kTagSquares * kBoardWithTags.square};
+  const int cells = kTagSquares * kCells;
+  board.pattern = {cells, std::vector<std::uint8_t>(static_cast<std::size_t>(cells * cells), 0)};
+  std::uint32_t id = 0;
+  for (int row = 0; row < kTagSquares; ++row)
+    for (int column = 0; column < kTagSquares; ++column) {
+      if ((row + column) % 2 == 0) continue;
+      const TagPattern tag = opencv().tag_pattern(kBoardWithTags.dictionary, id++);
+      for (int j = 0; j < kCells; ++j)
+        for (int i = 0; i < kCells; ++i) {
+          const bool inside = i > 0 && j > 0 && i < kCells - 1 && j < kCells - 1;
+          board.pattern.white[static_cast<std::size_t>((row * kCells + j) * cells + column * kCells + i)] =
+              inside ? tag.white[static_cast<std::size_t>((j - 1) * tag.cells + i - 1)] : std::uint8_t{1};
+        }
+    }
+  scene.patches.push_back(board);
+  return scene;
+}
+
 /// Images in memory.
 class Album : public ImageSource {
  public:
@@ -120,6 +149,49 @@ TEST(Calibration, FindsTheIntrinsicsOfTheImages) {
   EXPECT_NEAR(c.intrinsics.center.x, truth.center.x, 2.0);
   EXPECT_NEAR(c.intrinsics.center.y, truth.center.y, 2.0);
   EXPECT_NEAR(c.intrinsics.distortion[0], truth.distortion[0], 0.02);
+}
+
+TEST(Calibration, FindsTheIntrinsicsByPartsOfABoardWithTags) {
+  std::vector<Image> images;
+  for (const glm::dvec3& position : {glm::dvec3{0.0, 0.0, 0.5},
+                                     {0.35, 0.1, 0.45},
+                                     {-0.35, 0.15, 0.45},
+                                     {0.1, -0.4, 0.45},
+                                     {-0.1, 0.4, 0.45},
+                                     {0.3, 0.3, 0.5}}) {
+    Image image;
+    const Camera camera = camera_at(position, 0.2 * position.x, 0.1 * position.y);
+    Renderer(camera, Imaging{}, images.size()).render(board_with_tags(), 0.0, 0, image);
+    images.push_back(image);
+  }
+  images.push_back(grey_image(640, 480));  // without a board
+  const auto seen = opencv().find_board(images[0], kBoardWithTags);
+  EXPECT_GT(seen.size(), 6u);
+  EXPECT_LT(seen.size(), 49u) << "the board is larger than the picture";
+  Album album(images);
+  const Calibration c = calibrate(album, "album", kBoardWithTags, {});
+  EXPECT_LT(c.residual, 0.15);
+  EXPECT_GT(c.residual, 0.001);
+  ASSERT_EQ(c.residuals.size(), 7u);
+  EXPECT_FALSE(c.residuals[6]);
+  const Intrinsics truth = camera_at({0.0, 0.0, 1.0}, 0.0, 0.0).intrinsics;
+  EXPECT_NEAR(c.intrinsics.focal.x, truth.focal.x, 3.0);
+  EXPECT_NEAR(c.intrinsics.focal.y, truth.focal.y, 3.0);
+  EXPECT_NEAR(c.intrinsics.center.x, truth.center.x, 3.0);
+  EXPECT_NEAR(c.intrinsics.center.y, truth.center.y, 3.0);
+  EXPECT_NEAR(c.intrinsics.distortion[0], truth.distortion[0], 0.03);
+}
+
+/// Boundary: 8 x 8 squares have 32 tags; a dictionary of 30.
+TEST(Calibration, RefusesABoardWithMoreTagsThanItsDictionary) {
+  Chessboard board = kBoardWithTags;
+  board.dictionary = "apriltag_16h5";
+  try {
+    opencv().find_board(grey_image(64, 48), board);
+    ADD_FAILURE();
+  } catch (const base::InputError& error) {
+    EXPECT_STREQ(error.what(), "a board with 7 x 7 inner corners has 32 tags, and 'apriltag_16h5' has 30");
+  }
 }
 
 TEST(Calibration, NamesWhatIsMissing) {

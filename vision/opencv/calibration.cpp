@@ -1,15 +1,18 @@
-// Calibration with a chessboard (Z. Zhang, "A flexible new technique for camera calibration", 2000) by OpenCV's
-// calib3d.
+// Calibration with a chessboard (Z. Zhang, "A flexible new technique for camera calibration", 2000) by OpenCV's calib3d
+// and, for boards with tags, aruco.
 
 #include "vision/opencv/calibration.h"
 
 #include <fmt/format.h>
 
+#include <glm/ext/vector_int2.hpp>
+#include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
 #include "vision/opencv/images.h"
+#include "vision/opencv/markers.h"
 
 namespace sf::vision {
 
@@ -17,11 +20,57 @@ namespace {
 
 constexpr std::size_t kFewest = 3;  // images that determine all intrinsics
 
-std::vector<cv::Point3f> corners_of(const Chessboard& board) {
-  std::vector<cv::Point3f> corners;
-  for (int j = 0; j < board.rows; ++j)
-    for (int i = 0; i < board.columns; ++i)
-      corners.emplace_back(static_cast<float>(i * board.square), static_cast<float>(j * board.square), 0.0f);
+constexpr std::size_t kFewestCorners = 6;  // of a board that is seen in part
+
+cv::Point3f place_of(const Chessboard& board, int corner) {
+  return {static_cast<float>(corner % board.columns * board.square),
+          static_cast<float>(corner / board.columns * board.square), 0.0f};
+}
+
+/// Corners of one row, one column or one diagonal determine no pose.
+bool are_spread(const std::vector<BoardCorner>& corners, const Chessboard& board) {
+  if (corners.size() < kFewestCorners) return false;
+  const auto cell = [&](std::size_t i) {
+    return glm::ivec2{corners[i].index % board.columns, corners[i].index / board.columns};
+  };
+  const glm::ivec2 along = cell(1) - cell(0);
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    const glm::ivec2 other = cell(i) - cell(0);
+    if (along.x * other.y != along.y * other.x) return true;
+  }
+  return false;
+}
+
+std::vector<BoardCorner> find_plain(const cv::Mat& grey, const Chessboard& board) {
+  // A. Duda, U. Frese, "Accurate detection and localization of checkerboard corners for calibration", 2018. Its time is
+  // linear in the pixels; OpenCV's other search takes 20 s of an image with some tags and no board.
+  std::vector<cv::Point2f> found;
+  std::vector<BoardCorner> corners;
+  if (!cv::findChessboardCornersSB(grey, {board.columns, board.rows}, found, cv::CALIB_CB_NORMALIZE_IMAGE))
+    return corners;
+  const cv::TermCriteria enough(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 1e-3);
+  cv::cornerSubPix(grey, found, {5, 5}, {-1, -1}, enough);
+  for (const cv::Point2f& p : found) corners.push_back({static_cast<int>(corners.size()), {p.x, p.y}});
+  return corners;
+}
+
+std::vector<BoardCorner> find_with_tags(const cv::Mat& grey, const Chessboard& board) {
+  const auto dictionary = dictionary_of(board.dictionary);
+  const int tags = (board.columns + 1) * (board.rows + 1) / 2;
+  if (tags > dictionary->bytesList.rows)
+    throw base::InputError(fmt::format("a board with {} x {} inner corners has {} tags, and '{}' has {}", board.columns,
+                                       board.rows, tags, board.dictionary, dictionary->bytesList.rows));
+  const auto printed =
+      cv::aruco::CharucoBoard::create(board.columns + 1, board.rows + 1, static_cast<float>(board.square),
+                                      static_cast<float>(board.marker), dictionary);
+  std::vector<std::vector<cv::Point2f>> outlines;
+  std::vector<int> ids, indices;
+  std::vector<cv::Point2f> found;
+  cv::aruco::detectMarkers(grey, dictionary, outlines, ids);
+  if (!ids.empty()) cv::aruco::interpolateCornersCharuco(outlines, ids, grey, printed, found, indices);
+  std::vector<BoardCorner> corners;
+  for (std::size_t i = 0; i < found.size(); ++i) corners.push_back({indices[i], {found[i].x, found[i].y}});
+  if (!are_spread(corners, board)) corners.clear();
   return corners;
 }
 
@@ -37,41 +86,38 @@ Intrinsics intrinsics_of(const cv::Mat& matrix, const cv::Mat& distortion, int w
 
 }  // namespace
 
-std::vector<glm::dvec2> find_board(const Image& image, const Chessboard& board) {
-  // A. Duda, U. Frese, "Accurate detection and localization of checkerboard corners for calibration", 2018. Its time is
-  // linear in the pixels; OpenCV's other search takes 20 s of an image with some tags and no board.
-  std::vector<cv::Point2f> found;
+std::vector<BoardCorner> find_board(const Image& image, const Chessboard& board) {
+  std::vector<BoardCorner> corners;
   attempt("search for a chessboard", [&] {
     const cv::Mat grey = wrap(image);
-    const bool is_found =
-        cv::findChessboardCornersSB(grey, {board.columns, board.rows}, found, cv::CALIB_CB_NORMALIZE_IMAGE);
-    if (!is_found) return found.clear();
-    const cv::TermCriteria enough(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 50, 1e-3);
-    cv::cornerSubPix(grey, found, {5, 5}, {-1, -1}, enough);
+    corners = board.dictionary.empty() ? find_plain(grey, board) : find_with_tags(grey, board);
   });
-  std::vector<glm::dvec2> corners;
-  for (const cv::Point2f& p : found) corners.emplace_back(p.x, p.y);
   return corners;
 }
 
-Calibration calibrate(const std::vector<std::vector<glm::dvec2>>& corners, const Chessboard& board, int width,
+Calibration calibrate(const std::vector<std::vector<BoardCorner>>& corners, const Chessboard& board, int width,
                       int height) {
   std::vector<std::vector<cv::Point2f>> found;
+  std::vector<std::vector<cv::Point3f>> boards;
   std::vector<std::size_t> of;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (corners[i].empty()) continue;
     of.push_back(i);
-    for (auto& points = found.emplace_back(); const glm::dvec2& p : corners[i])
-      points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
+    auto& points = found.emplace_back();
+    auto& places = boards.emplace_back();
+    for (const BoardCorner& corner : corners[i]) {
+      points.emplace_back(static_cast<float>(corner.pixel.x), static_cast<float>(corner.pixel.y));
+      places.push_back(place_of(board, corner.index));
+    }
   }
   if (found.size() < kFewest)
     throw base::InputError(
-        fmt::format("a chessboard with {} x {} inner corners was found in {} of {} images; expected at "
+        fmt::format("a {} with {} x {} inner corners was found in {} of {} images; expected at "
                     "least {}, with the board tilted in different directions",
-                    board.columns, board.rows, found.size(), corners.size(), kFewest));
+                    board.dictionary.empty() ? "chessboard" : "ChArUco board", board.columns, board.rows, found.size(),
+                    corners.size(), kFewest));
   Calibration result;
   result.residuals.resize(corners.size());
-  const std::vector<std::vector<cv::Point3f>> boards(found.size(), corners_of(board));
   cv::Mat matrix, distortion, errors;
   std::vector<cv::Mat> rotations, translations;
   attempt("calibration", [&] {

@@ -5,8 +5,8 @@
 
 namespace sf::vision {
 
-std::vector<glm::dvec2> find_board(const Image& image, const Chessboard& board);
-Calibration calibrate(const std::vector<std::vector<glm::dvec2>>& corners, const Chessboard& board, int width,
+std::vector<BoardCorner> find_board(const Image& image, const Chessboard& board);
+Calibration calibrate(const std::vector<std::vector<BoardCorner>>& corners, const Chessboard& board, int width,
                       int height);
 
 }  // namespace sf::vision

@@ -28,6 +28,8 @@ constexpr std::array<std::pair<std::string_view, PREDEFINED_DICTIONARY_NAME>, 21
      {"aruco_7x7_100", cv::aruco::DICT_7X7_100},         {"aruco_7x7_250", cv::aruco::DICT_7X7_250},
      {"aruco_7x7_1000", cv::aruco::DICT_7X7_1000}}};
 
+}  // namespace
+
 cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
   std::vector<std::string_view> words;
   for (const auto& [word, value] : kDictionaries) {
@@ -37,6 +39,8 @@ cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
   throw base::InputError(
       fmt::format("'{}' is no dictionary of tags; expected one of: {}", name, fmt::join(words, ", ")));
 }
+
+namespace {
 
 class ArucoFinder : public TagFinder {
  public:

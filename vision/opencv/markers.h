@@ -1,9 +1,18 @@
 #pragma once
 // The functions of vision/opencv.h about tags.
 
+#include <opencv2/core/cvstd_wrapper.hpp>
+
 #include "vision/opencv.h"
 
+namespace cv::aruco {
+class Dictionary;
+}  // namespace cv::aruco
+
 namespace sf::vision {
+
+/// @throws base::InputError for an unknown name
+cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name);
 
 TagPattern tag_pattern(const std::string& dictionary, std::uint32_t id);
 std::uint32_t tag_count(const std::string& dictionary);
