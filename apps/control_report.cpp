@@ -16,6 +16,11 @@ std::string text_of(const control::ErrorSummary& facts) {
                      counted(facts.steps, "step"));
 }
 
+std::string text_of(const control::LocalizationError& facts) {
+  return fmt::format("rms {:.3f} m and {:.2f} degrees, largest {:.3f} m, of {}", facts.rms(),
+                     facts.yaw_rms() * 180.0 / M_PI, facts.max, counted(facts.steps, "step"));
+}
+
 ControlMetrics::ControlMetrics(const scenarios::Simulation& simulation, std::size_t movers, std::string controller)
     : simulation_(simulation), goals_(movers), rests_(movers) {
   facts_.controller = std::move(controller);
@@ -74,6 +79,8 @@ ControlReport ControlMetrics::facts(const world::World& world) const {
     facts.done += controller != nullptr && controller->done();
     facts.has_goals = facts.has_goals || goals_[m].any;
     facts.checkpoints += goals_[m].passed;
+    const control::OwnLocalization* own = controller == nullptr ? nullptr : control::localization_of(*controller);
+    if (own != nullptr) facts.localization.add(own->error());
   }
   facts.standing = standing(world);
   return facts;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "control/error_summary.h"
+#include "control/own_localization.h"
 #include "scenarios/run_metrics.h"
 #include "scenarios/simulation.h"
 
@@ -13,6 +14,7 @@ namespace sf::apps {
 
 /// For people.
 std::string text_of(const control::ErrorSummary& facts);
+std::string text_of(const control::LocalizationError& facts);
 
 /// Robots that stand at the end for one reason.
 struct Standing {
@@ -27,13 +29,14 @@ std::string text_of(const Standing& standing);
 
 /// Of a run's robots that have a controller, all together.
 struct ControlReport {
-  std::string controller;          ///< its name
-  std::uint64_t robots = 0;        ///< that it drives
-  std::uint64_t done = 0;          ///< of these, at the end
-  control::ErrorSummary error;     ///< of all steps of all of them
-  bool has_goals = false;          ///< one of them headed for a checkpoint
-  std::uint64_t checkpoints = 0;   ///< that they no longer head for, since the next or none is due
-  std::vector<Standing> standing;  ///< not done, and without motion for kStill or longer: most robots first
+  std::string controller;                   ///< its name
+  std::uint64_t robots = 0;                 ///< that it drives
+  std::uint64_t done = 0;                   ///< of these, at the end
+  control::ErrorSummary error;              ///< of all steps of all of them
+  bool has_goals = false;                   ///< one of them headed for a checkpoint
+  std::uint64_t checkpoints = 0;            ///< that they no longer head for, since the next or none is due
+  control::LocalizationError localization;  ///< of those that localize themselves, beside their true poses
+  std::vector<Standing> standing;           ///< not done, and without motion for kStill or longer: most robots first
 };
 
 /// Robots that have not moved for so long stand. [s]

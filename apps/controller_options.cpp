@@ -19,6 +19,7 @@ control::Setting setting_of(const std::string& text) {
 control::ControllerConfig controller_config_of(const ControllerOptions& options) {
   std::vector<control::Setting> settings;
   for (const std::string& text : options.set) settings.push_back(setting_of(text));
+  if (options.localize) settings.push_back({"localize", true, "--localize: "});
   return {options.controller, 0.0,
           control::Settings(fmt::format("controller '{}'", options.controller), std::move(settings))};
 }

@@ -250,6 +250,9 @@ void add_controller(CLI::App& app, ControllerOptions& o) {
          "A setting of the controller, such as kp=0.5, park=13.4, checkpoints=1,2 or \"[1 2]\" (may be repeated)")
       ->check(readable(read_setting, "KEY=VALUE such as kp=0.5"))
       ->type_name("KEY=VALUE");
+  app.add_flag("--localize", o.localize,
+               "The controller drives by the pose that the robot's own encoders, gyro and GPS receiver tell "
+               "(same as --set localize=true)");
 }
 
 }  // namespace sf::apps

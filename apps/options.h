@@ -63,6 +63,7 @@ struct AccuracyTargetOptions {
 struct ControllerOptions {
   std::string controller = "wander";
   std::vector<std::string> set;  ///< its settings, "key=value" each
+  bool localize = false;         ///< as the setting of this name
 };
 
 struct WireOption {

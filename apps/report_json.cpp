@@ -93,9 +93,14 @@ Json error_json(const control::ErrorSummary& f) {
   return {{"steps", f.steps}, {"mean", f.mean}, {"abs_mean", f.abs_mean}};
 }
 
+Json localization_json(const control::LocalizationError& f) {
+  return {{"steps", f.steps}, {"rms_m", f.rms()}, {"rms_deg", f.yaw_rms() * 180.0 / M_PI}, {"largest_m", f.max}};
+}
+
 Json control_json(const ControlReport& f) {
   Json json{{"controller", f.controller}, {"robots", f.robots}, {"done", f.done}};
   if (f.error.steps > 0) json["error"] = error_json(f.error);
+  if (f.localization.steps > 0) json["localization"] = localization_json(f.localization);
   if (f.has_goals) json["checkpoints"] = f.checkpoints;
   json["standing"] = Json::array();
   for (const Standing& s : f.standing)
@@ -342,6 +347,7 @@ std::string json_of(const server::RobotClientStats& f) {
   json["distance_m"] = f.distance_m;
   json["pose"] = pose_json(f.pose);
   if (f.error.steps > 0) json["error"] = error_json(f.error);
+  if (f.localization.steps > 0) json["localization"] = localization_json(f.localization);
   return indented(json);
 }
 

@@ -148,6 +148,7 @@ std::string control_text(const ControlReport& f) {
   if (f.robots == 0) return "";
   std::string text = row("controller", "{}: {} of {} done", f.controller, f.done, counted(f.robots, "robot"));
   if (f.error.steps > 0) text += row("control error", text_of(f.error));
+  if (f.localization.steps > 0) text += row("localization error", text_of(f.localization));
   if (f.has_goals) text += row("checkpoints", "{} passed", f.checkpoints);
   constexpr std::size_t kLines = 5;
   for (std::size_t i = 0; i < std::min(f.standing.size(), kLines); ++i)

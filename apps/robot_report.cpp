@@ -69,6 +69,7 @@ std::string text_of(const server::RobotClientStats& f) {
   if (f.stops > 0) text += row("stood", counted(f.stops, "time") + " for want of readings or positions");
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (f.error.steps > 0) text += row("control error", text_of(f.error));
+  if (f.localization.steps > 0) text += row("localization error", text_of(f.localization));
   return text;
 }
 

@@ -10,15 +10,18 @@ ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_
   ControlShellSettings read;
   read.on_signal = settings.choice("start", "at-once", {"at-once", "signal"}) == "signal";
   read.wait_on_bumper = settings.flag("wait_on_bumper", stops_on_bumper);
+  read.localize = settings.flag("localize", false);
   return read;
 }
 
-ControlShell::ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings)
-    : inner_(std::move(inner)), settings_(settings) {
+ControlShell::ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings,
+                           std::optional<OwnLocalization> localization)
+    : inner_(std::move(inner)), settings_(settings), localization_(std::move(localization)) {
   SF_CHECK(inner_ != nullptr, "a shell without a controller");
 }
 
-base::Twist ControlShell::step(const ControllerInput& input) {
+base::Twist ControlShell::step(const ControllerInput& given) {
+  const ControllerInput input = localization_ ? localization_->localize(given) : given;
   change(input);
   stepped_ = state_ == ControlShellState::control;
   if (!stepped_) return {};
@@ -39,6 +42,11 @@ std::string ControlShell::stop_reason() const {
 std::string stop_reason_of(const Controller& controller) {
   const auto* states = dynamic_cast<const StatesStopReason*>(&controller);
   return states == nullptr ? std::string() : states->stop_reason();
+}
+
+const OwnLocalization* localization_of(const Controller& controller) {
+  const auto* shell = dynamic_cast<const ControlShell*>(&controller);
+  return shell == nullptr ? nullptr : shell->localization();
 }
 
 void ControlShell::change(const ControllerInput& input) {

@@ -4,11 +4,14 @@
 //   Start --(at once, or the start signal)--> Control <--(bumper released / pressed)--> Wait
 //                                             Control --(the controller is done)--> Stop
 //
-// Settings: `start`, "at-once" or "signal"; `wait_on_bumper`, default `ControllerType::stops_on_bumper`.
+// Settings: `start`, "at-once" or "signal"; `wait_on_bumper`, default `ControllerType::stops_on_bumper`; `localize`,
+// default false: the controller is given the state that the robot's own sensors tell.
 
 #include <memory>
+#include <optional>
 
 #include "control/controllers.h"
+#include "control/own_localization.h"
 #include "control/stop_reason.h"
 
 namespace sf::control {
@@ -19,6 +22,7 @@ enum class ControlShellState { start, control, wait, stop };
 struct ControlShellSettings {
   bool on_signal = false;      ///< Start lasts until `ControllerInput::started`
   bool wait_on_bumper = true;  ///< Control becomes Wait while `ControllerInput::contact`
+  bool localize = false;       ///< estimates in place of `ControllerInput::state`, in every state of the shell
 };
 
 /// @throws base::InputError for an unknown value of `start`.
@@ -27,11 +31,12 @@ ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_
 class ControlShell final : public Controller, public StatesStopReason {
  public:
   /// @param inner not null
-  ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings);
+  ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings,
+               std::optional<OwnLocalization> localization = std::nullopt);
 
   /// Returns a zero twist in Start, Wait and Stop. The inner controller is not called in these states, so its time
   /// jumps over a Wait.
-  base::Twist step(const ControllerInput& input) override;
+  base::Twist step(const ControllerInput& given) override;
 
   base::Intent intent() const override { return inner_->intent(); }
   double v2v_range() const override { return inner_->v2v_range(); }
@@ -42,12 +47,14 @@ class ControlShell final : public Controller, public StatesStopReason {
 
   ControlShellState state() const { return state_; }
   const Controller& inner() const { return *inner_; }
+  const OwnLocalization* localization() const { return localization_ ? &*localization_ : nullptr; }
 
  private:
   void change(const ControllerInput& input);
 
   std::unique_ptr<Controller> inner_;
   ControlShellSettings settings_;
+  std::optional<OwnLocalization> localization_;  ///< none: the state of the input
   ControlShellState state_ = ControlShellState::start;
   bool stepped_ = false;  ///< the last step called the inner controller
 };

@@ -23,7 +23,8 @@ struct Neighbour {
 /// Inputs of one control step. Spans live for the call.
 struct ControllerInput {
   std::int64_t time = 0;  ///< [ns] simulated time, or the robot's clock; does not decrease
-  base::Report state;     ///< the robot's own state: true in a simulation, its own estimate in `robot`
+  base::Report state;     ///< the robot's own state: true in a simulation, that of its motion model in `robot`,
+                          ///< with the setting `localize` the estimate by its own sensors
   /// The newest reading of each of its sensors, whether new since the last call or not; may be empty.
   std::span<const base::ReadingBlock> readings;
   bool contact = false;                      ///< the bumper is pressed, or an obstacle blocked the last motion

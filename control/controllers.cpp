@@ -58,7 +58,10 @@ ConfiguredController make_controller(const ControllerContext& context, Controlle
   own.type = type;
   std::unique_ptr<Controller> inner = type->make(own, config.settings);
   config.settings.require_all_read();
-  return {std::make_unique<ControlShell>(std::move(inner), shell), config.rate > 0.0 ? config.rate : type->rate};
+  std::optional<OwnLocalization> localization;
+  if (shell.localize) localization.emplace(context.world.movers[context.mover]);
+  return {std::make_unique<ControlShell>(std::move(inner), shell, std::move(localization)),
+          config.rate > 0.0 ? config.rate : type->rate};
 }
 
 }  // namespace sf::control

@@ -59,7 +59,7 @@ void add_controller(const ControllerType* type);
 struct ControllerConfig {
   std::string name;
   double rate = 0.0;  ///< [Hz]; 0: the controller's default
-  Settings settings;  ///< including the shell's: `start`, `wait_on_bumper`
+  Settings settings;  ///< including the shell's: `start`, `wait_on_bumper`, `localize`
 };
 
 struct ConfiguredController {

@@ -32,6 +32,7 @@ const std::map<std::string, Modules> kMayInclude{
     {"sensorfarm", {}},
     {"python", {"sensorfarm"}},
     {"control", {"sensorfarm", "sensors", "maps", "robots", "world", "base"}},
+    {"control", {"sensorfarm", "sensors", "maps", "robots/estimation", "robots", "world", "base"}},
     {"shaders", {"raycast", "sensors", "maps", "base"}},
     {"farm", {"sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"record", {"base"}},

@@ -131,6 +131,8 @@ RobotClientStats RobotClient::stats() const {
   stats.distance_m = body_.distance();
   stats.pose = body_.state().X_WM;
   stats.error = error_;
+  if (const control::OwnLocalization* own = control::localization_of(*made_.controller))
+    stats.localization = own->error();
   if (spat_) stats.spat = spat_->counts();
   if (cameras_) stats.cameras = {cameras_->packets(), cameras_->states(), position_errors_};
   stats.stops = stops_;

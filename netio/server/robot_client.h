@@ -12,6 +12,7 @@
 #include "base/pose.h"
 #include "control/controllers.h"
 #include "control/error_summary.h"
+#include "control/own_localization.h"
 #include "netio/rate_limited_log.h"
 #include "netio/server/camera_positions.h"
 #include "netio/server/robot_link.h"
@@ -72,6 +73,8 @@ struct RobotClientStats {
   control::ErrorSummary error;
   std::optional<SpatCounts> spat;               ///< nullopt: it does not listen
   std::optional<CameraPositionsStats> cameras;  ///< nullopt: it knows its true pose
+  std::optional<SpatCounts> spat;           ///< nullopt: it does not listen
+  control::LocalizationError localization;  ///< beside the poses of its motion model
 };
 
 /// Times are of the robot's own clock [ns], which begins at 0 and does not go back. World and sensor set must outlive

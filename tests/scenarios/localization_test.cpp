@@ -14,6 +14,9 @@
 #include <vector>
 
 #include "base/time.h"
+#include "control/lane_corridors.h"
+#include "control/own_localization.h"
+#include "scenarios/run_metrics.h"
 #include "scenarios/scenario.h"
 #include "scenarios/simulation.h"
 #include "sensors/encoder.h"
@@ -53,31 +56,19 @@ struct Car {
   std::int64_t fixed = 0;  ///< [ns] of the last fix
 };
 
-// Receivers and gyros of worlds/robots.inc; ranges at the town's scale of 1/7.
-constexpr double kRange = 1.5 / 7.0;
+// As worlds/simville/simville.world has them.
+constexpr double kRange = 0.214;
 constexpr std::int64_t kEnd = 120 * base::kSecond;
 
 std::string text(const Rms& e) { return fmt::format("{:.3f} m, {:.2f} degrees", e.position(), e.heading() / kDegree); }
 
-world::World town(const Scenario& scenario) {
-  world::World world = world_of(scenario);
-  for (world::Mover& mover : world.movers) {
-    if (mover.name.rfind("roomba", 0) != 0) continue;
-    const auto add = [&](const char* type, std::vector<world::Setting> settings) {
-      world::Sensor sensor;
-      sensor.type = type;
-      sensor.name = type;
-      sensor.radians_per_unit = kDegree;
-      sensor.settings = std::move(settings);
-      std::erase_if(mover.sensors, [&](const world::Sensor& s) { return s.type == sensor.type; });
-      mover.sensors.push_back(sensor);
-    };
-    add("encoder", {{"track", {0.258}, "", 0, ""}, {"slip", {0.005}, "", 0, ""}});
-    add("gyro", {{"bias", {0.5}, "", 0, ""}, {"noise", {0.1}, "", 0, ""}, {"scale_error", {0.01}, "", 0, ""}});
-    add("gps", {{"noise", {kRange}, "", 0, ""}, {"latency", {0.1}, "", 0, ""}});
-  }
-  world::update_extent_and_hash(world);
-  return world;
+Scenario town(std::uint64_t seed, const char* localize) {
+  return parse_scenario(
+      SF_SOURCE_DIR "/experiments/localization.toml",
+      fmt::format("world = \"../worlds/simville/simville.world\"\nseed = {}\n[default]\ncontroller = \"route\"\n"
+                  "settings = {{ tour = true, gap = 0.1, localize = {} }}\n[[robot]]\nname = \"khepera6\"\n"
+                  "controller = \"none\"\n[[robot]]\nname = \"khepera7\"\ncontroller = \"none\"\n",
+                  seed, localize));
 }
 
 void add(const base::ReadingBlock& reading, Car& car) {
@@ -104,13 +95,8 @@ void compare(const base::TickRecord& tick, const std::map<std::uint32_t, Car>& c
 }
 
 void drive(std::uint64_t seed, gpu::Device& device, Errors& errors) {
-  const Scenario scenario = parse_scenario(
-      SF_SOURCE_DIR "/experiments/localization.toml",
-      fmt::format("world = \"../worlds/simville/simville.world\"\nseed = {}\n[default]\ncontroller = \"route\"\n"
-                  "settings = {{ tour = true, gap = 0.1 }}\n[[robot]]\nname = \"khepera6\"\ncontroller = \"none\"\n"
-                  "[[robot]]\nname = \"khepera7\"\ncontroller = \"none\"\n",
-                  seed));
-  const world::World world = town(scenario);
+  const Scenario scenario = town(seed, "false");
+  const world::World world = world_of(scenario);
   Simulation simulation(world, device, simulation_of(scenario, world));
   const estimation::LocalizationOptions options{.gyro = {0.1 * kDegree, 0.5 * kDegree}, .gps_noise = kRange};
   std::map<std::uint32_t, Car> cars;
@@ -147,6 +133,59 @@ TEST(Localization, FusesSatellitesWheelsAndGyroInSimVille) {
     EXPECT_LT(e.squares, 1.3 * e.stated);
     EXPECT_LT(e.yaw_squares, 1.3 * e.yaw_stated);
   }
+}
+
+/// Six cars together.
+struct Driving {
+  double travelled = 0.0;  ///< [m]
+  double squares = 0.0;    ///< [m^2] of true distances from the middle of the nearest way
+  double moving = 0.0;     ///< ticks in motion
+  control::LocalizationError error;
+  double lane_rms() const { return std::sqrt(squares / std::max(moving, 1.0)); }
+};
+
+Driving drive_by(const char* localize, std::uint64_t seed, gpu::Device& device) {
+  Driving driving;
+  const Scenario scenario = town(seed, localize);
+  const world::World world = world_of(scenario);
+  Simulation simulation(world, device, simulation_of(scenario, world));
+  RunMetrics metrics(world, simulation);
+  const control::LaneCorridors corridors(*simulation.roads(), world, control::footprint_of(world.movers[0]));
+  for (std::int64_t time = 0; time < kEnd / 2;) {
+    const base::TickRecord tick = simulation.step();
+    time = tick.time;
+    metrics.update(tick);
+    for (const base::Report& report : tick.reports) {
+      if (std::abs(report.velocity.forward) < kDriving) continue;
+      const control::RoadPositions positions = corridors.positions(report.X_WM, 1.0);
+      if (positions.count == 0) continue;
+      const double offset = positions.begin()->offset;
+      driving.squares += offset * offset;
+      ++driving.moving;
+    }
+  }
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    driving.travelled += metrics.of(m).travelled;
+    if (const control::Controller* controller = simulation.controller(m))
+      if (const control::OwnLocalization* own = control::localization_of(*controller)) driving.error.add(own->error());
+  }
+  return driving;
+}
+
+// The two rows of docs/estimation.md, over one minute of one seed; there two minutes of eight. Bounds are loose, since
+// one car that waits for another changes all that follows.
+TEST(Localization, DrivesRoutesByTheEstimate) {
+  gpu::Device device;
+  const Driving truth = drive_by("false", 3, device), own = drive_by("true", 3, device);
+  EXPECT_EQ(truth.error.steps, 0u);
+  EXPECT_LT(truth.lane_rms(), 0.005);
+  EXPECT_EQ(own.error.steps, 6 * 10 * 60u + 6) << "each step of each car";
+  EXPECT_LT(own.error.rms(), 0.12);
+  EXPECT_GT(own.error.rms(), 0.02) << "as good as the truth: it is the truth";
+  EXPECT_LT(own.error.yaw_rms(), 5.0 * kDegree);
+  EXPECT_LT(own.lane_rms(), 0.15) << "off the middle of its lane by its own error";
+  EXPECT_GT(own.lane_rms(), 5.0 * truth.lane_rms());
+  EXPECT_GT(own.travelled, 0.3 * truth.travelled);
 }
 
 }  // namespace

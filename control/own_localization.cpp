@@ -1,0 +1,113 @@
+#include "control/own_localization.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "sensors/encoder.h"
+#include "sensors/gps.h"
+#include "sensors/gyro.h"
+
+namespace sf::control {
+
+namespace {
+
+const world::Sensor* first_sensor(const world::Mover& mover, std::string_view type) {
+  const auto found =
+      std::find_if(mover.sensors.begin(), mover.sensors.end(), [&](const auto& sensor) { return sensor.type == type; });
+  return found == mover.sensors.end() ? nullptr : &*found;
+}
+
+estimation::LocalizationOptions options_of(const world::Mover& mover) {
+  estimation::LocalizationOptions options;
+  const world::Sensor* encoder = first_sensor(mover, "encoder");
+  if (encoder == nullptr)
+    throw base::InputError("'localize' estimates a robot's pose by its own sensors, and '" + mover.name +
+                           "' has no encoders; expected encoder( ... ) in its definition, and gyro( ... ) and "
+                           "gps( ... ) for a pose that does not drift");
+  const sensors::Encoder wheels = sensors::read_encoder(*encoder, mover);
+  options.encoder = {wheels.per_count, wheels.slip, wheels.track};
+  if (const world::Sensor* sensor = first_sensor(mover, "gyro")) {
+    const sensors::Gyro gyro = sensors::read_gyro(*sensor);
+    options.gyro = {gyro.noise, gyro.bias};
+  }
+  // Receivers without noise still have the error of their latency and of rounding.
+  if (const world::Sensor* sensor = first_sensor(mover, "gps"))
+    options.gps_noise = std::max(sensors::read_gps(*sensor).noise, 1e-3);
+  return options;
+}
+
+/// X_BC from X_AB and X_AC.
+base::Pose relative(const base::Pose& X_AB, const base::Pose& X_AC) {
+  const glm::dvec2 p = base::rotate(-X_AB.yaw, {X_AC.x - X_AB.x, X_AC.y - X_AB.y});
+  return {p.x, p.y, X_AC.z - X_AB.z, X_AC.yaw - X_AB.yaw};
+}
+
+}  // namespace
+
+void LocalizationError::add(const base::Pose& estimated, const base::Pose& truth) {
+  const double distance = std::hypot(estimated.x - truth.x, estimated.y - truth.y);
+  const double turned = base::wrap_angle(estimated.yaw - truth.yaw);
+  add({1, distance * distance, turned * turned, distance});
+}
+
+void LocalizationError::add(const LocalizationError& other) {
+  steps += other.steps;
+  squares += other.squares;
+  yaw_squares += other.yaw_squares;
+  max = std::max(max, other.max);
+}
+
+double LocalizationError::rms() const {
+  return std::sqrt(squares / static_cast<double>(std::max<std::uint64_t>(steps, 1)));
+}
+
+double LocalizationError::yaw_rms() const {
+  return std::sqrt(yaw_squares / static_cast<double>(std::max<std::uint64_t>(steps, 1)));
+}
+
+OwnLocalization::OwnLocalization(const world::Mover& mover) : options_(options_of(mover)) {
+  last_.fill(std::numeric_limits<std::int64_t>::min());
+}
+
+ControllerInput OwnLocalization::localize(const ControllerInput& input) {
+  if (!localization_) localization_.emplace(options_, input.state.X_WM, std::max<std::int64_t>(input.time, 0));
+  for (const base::ReadingBlock& reading : input.readings)
+    if (reading.sensor == 0) take(reading);
+
+  ControllerInput seen = input;
+  const estimation::Estimate now = localization_->predict(input.time).estimate;
+  const auto at_height = [&](base::Pose X_WM) {
+    X_WM.z = input.state.X_WM.z;
+    return X_WM;
+  };
+  seen.state.X_WM = at_height(now.X_WM);
+  seen.state.velocity = now.velocity;
+  readings_.assign(input.readings.begin(), input.readings.end());
+  for (base::ReadingBlock& reading : readings_) {
+    const base::Pose X_MS = relative(reading.X_WM, reading.X_WS);
+    reading.X_WM = at_height(localization_->predict(reading.time).estimate.X_WM);
+    reading.X_WS = base::compose(reading.X_WM, X_MS);
+  }
+  seen.readings = readings_;
+  error_.add(now.X_WM, input.state.X_WM);
+  return seen;
+}
+
+void OwnLocalization::take(const base::ReadingBlock& reading) {
+  if (reading.time <= last_[reading.type]) return;  // given before
+  const std::span<const double> v = reading.values;
+  if (reading.type == sensors::kEncoder && v.size() >= 2) localization_->add_encoder(reading.time, v[0], v[1]);
+  if (reading.type == sensors::kGyro && !v.empty()) localization_->add_gyro(reading.time, v[0]);
+  if (reading.type == sensors::kGps && v.size() >= 3) {
+    // The antenna is where the robot carries it: turned by the estimated heading.
+    const base::Pose X_MS = relative(reading.X_WM, reading.X_WS);
+    const double yaw = localization_->predict(reading.time).estimate.X_WM.yaw;
+    const glm::dvec2 arm = base::rotate(yaw, {X_MS.x, X_MS.y});
+    localization_->add_gps(reading.time, v[0] - arm.x, v[1] - arm.y, v[2]);
+  }
+  last_[reading.type] = reading.time;
+}
+
+}  // namespace sf::control

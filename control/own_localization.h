@@ -1,0 +1,55 @@
+#pragma once
+// A controller's state by the robot's own encoders, gyro and GPS receiver, in place of its true one (the shell's
+// setting `localize`).
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "control/controller.h"
+#include "robots/estimation/localization.h"
+#include "world/world.h"
+
+namespace sf::control {
+
+/// Errors of a robot's estimated poses beside its true ones, at the steps of its controller.
+struct LocalizationError {
+  std::uint64_t steps = 0;
+  double squares = 0.0;      ///< [m^2] sum of squared distances
+  double yaw_squares = 0.0;  ///< [rad^2] sum
+  double max = 0.0;          ///< [m] largest distance
+
+  void add(const base::Pose& estimated, const base::Pose& truth);
+  void add(const LocalizationError& other);
+  double rms() const;      ///< [m]; 0 without steps
+  double yaw_rms() const;  ///< [rad]
+};
+
+/// Called once a step. The first sensor of each type counts, with the errors that its settings state.
+class OwnLocalization {
+ public:
+  /// @throws base::InputError for a robot without encoders, or with invalid settings of these sensors
+  explicit OwnLocalization(const world::Mover& mover);
+
+  /// `input` with the estimate as the robot's pose and twist, and as the poses of its readings at their times. The
+  /// first call's pose is the start, which is known. Spans live until the next call.
+  ControllerInput localize(const ControllerInput& input);
+
+  /// Beside the poses of the inputs.
+  const LocalizationError& error() const { return error_; }
+
+ private:
+  void take(const base::ReadingBlock& reading);
+
+  estimation::LocalizationOptions options_;
+  std::optional<estimation::Localization> localization_;  ///< from the first step on
+  std::array<std::int64_t, 256> last_;                    ///< [ns] by sensor type: time of the last reading
+  std::vector<base::ReadingBlock> readings_;
+  LocalizationError error_;
+};
+
+/// Of a controller made by `make_controller`; null where it is given other states.
+const OwnLocalization* localization_of(const Controller& controller);
+
+}  // namespace sf::control
