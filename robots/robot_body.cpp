@@ -38,7 +38,15 @@ void RobotBody::update_other(std::uint32_t mover, const base::Pose& X_WM, const 
   others_[mover] = {velocity, now + kMaxExtrapolation, forget_ > 0 ? now + forget_ : kNever};
 }
 
-void RobotBody::move(const base::Twist& command, std::int64_t now) {
+void RobotBody::move(const base::Twist& command, std::int64_t now) { advance(command, nullptr, now); }
+
+void RobotBody::follow(const base::Pose& X_WM, const base::Twist& velocity, bool contact, std::int64_t now) {
+  followed_contact_ = contact;
+  const base::Report followed{mover_, 0, X_WM, velocity};
+  advance({}, &followed, now);
+}
+
+void RobotBody::advance(const base::Twist& command, const base::Report* followed, std::int64_t now) {
   const std::int64_t dt = std::min(now - time_, kMaxExtrapolation);
   time_ = now;
   if (dt <= 0) return;
@@ -49,6 +57,11 @@ void RobotBody::move(const base::Twist& command, std::int64_t now) {
   commands_[mover_] = command;
   const base::Pose before = state().X_WM;
   fleet_.move(commands_, dt);
+  if (followed != nullptr) {
+    base::Report report = *followed;
+    report.time = fleet_.reports()[mover_].time;
+    fleet_.apply({&report, 1});
+  }
   const base::Pose after = state().X_WM;
   distance_ += std::hypot(after.x - before.x, after.y - before.y);
   trail_.add(now, after);

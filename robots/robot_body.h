@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "base/report.h"
@@ -26,10 +27,13 @@ class RobotBody {
   /// Moves until `now`, by half a second at most (a suspended process did not move). Other robots continue with their
   /// last velocity for half a second, then stop.
   void move(const base::Twist& command, std::int64_t now);
+  /// In place of `move`: the body is where a real robot says that it is.
+  /// @param contact the real robot's bumper is pressed
+  void follow(const base::Pose& X_WM, const base::Twist& velocity, bool contact, std::int64_t now);
 
   const base::Report& state() const { return fleet_.reports()[mover_]; }
   const base::Report& state(std::uint32_t mover) const { return fleet_.reports()[mover]; }
-  bool contact() const { return fleet_.contacts()[mover_] != 0; }
+  bool contact() const { return followed_contact_.value_or(fleet_.contacts()[mover_] != 0); }
   double distance() const { return distance_; }  ///< [m] driven
   /// Pose at `time`, interpolated between the last 256 moves; before these, the oldest pose.
   base::Pose pose_at(std::int64_t time) const { return trail_.at(time); }
@@ -41,6 +45,12 @@ class RobotBody {
     std::int64_t until = 0;      ///< [ns]
     std::int64_t gone = kNever;  ///< [ns] time at which it becomes absent
   };
+  struct TrailPoint {
+    std::int64_t time = 0;  ///< [ns]
+    base::Pose X_WM;
+  };
+  void advance(const base::Twist& command, const base::Report* followed, std::int64_t now);
+  const TrailPoint& trail_point(std::size_t back) const { return trail_[(moves_ - back) % trail_.size()]; }
 
   world::World world_;  ///< a copy: other robots move with their reported velocities, without actuator model or limits
                         ///< of acceleration
@@ -51,6 +61,7 @@ class RobotBody {
   std::vector<base::Twist> commands_;  ///< per mover
   PoseTrail trail_;
   std::int64_t time_ = 0;
+  std::optional<bool> followed_contact_;  ///< of a real robot; none: of the model
   double distance_ = 0.0;
 };
 

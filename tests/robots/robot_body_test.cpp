@@ -45,6 +45,20 @@ TEST_F(BodyTest, WallsStopIt) {
   EXPECT_LT(body.distance(), 1.0);
 }
 
+TEST_F(BodyTest, FollowsARealRobot) {
+  body.update_other(1, {1.0, 1.0, 0.0, 0.0}, {0.1, 0.0, 0.0}, 0);
+  body.follow({-1.5, 0.5, 0.0, 1.0}, {0.2, 0.0, 0.3}, true, 200 * kMilli);
+  EXPECT_EQ(body.state().X_WM.x, -1.5);
+  EXPECT_EQ(body.state().velocity.turn, 0.3);
+  EXPECT_TRUE(body.contact()) << "its bumper, with nothing near it in the world";
+  EXPECT_NEAR(body.state(1).X_WM.x, 1.02, 1e-9) << "the others go on";
+  body.follow({-2.95, 0.5, 0.0, 1.0}, {}, false, 400 * kMilli);
+  EXPECT_FALSE(body.contact()) << "in a wall of the world file, and free";
+  EXPECT_EQ(body.state().X_WM.x, -2.95);
+  EXPECT_NEAR(body.distance(), std::hypot(0.5, 0.5) + 1.45, 1e-9);
+  EXPECT_NEAR(body.pose_at(300 * kMilli).x, -2.225, 1e-9);
+}
+
 /// The other robot reports a pose in the way, and then is silent.
 TEST_F(BodyTest, ALongSilentRobotIsNoObstacle) {
   for (const std::int64_t forget : {std::int64_t{0}, 2000 * kMilli}) {

@@ -86,8 +86,7 @@ TEST(FleetSpawn, PlacesDependOnTheSeedAndNotOnTheCount) {
 }
 
 TEST(FleetSpawn, CopiesAreOfTheFirstOrTheNamedRobot) {
-  EXPECT_EQ(town("robots = 2\n").movers[1].sensors.size(), 6u)
-      << "laser, lane edge, magnetometer, encoder, gyro, gps";
+  EXPECT_EQ(town("robots = 2\n").movers[1].sensors.size(), 6u) << "laser, lane edge, magnetometer, encoder, gyro, gps";
   EXPECT_EQ(town("robots = 2\nof = \"khepera6\"\n").movers[1].name, "khepera2");
   EXPECT_EQ(town("robots = 2\nplace = \"lanes\"\nof = \"khepera6\"\n").movers[1].name, "khepera2");
 }

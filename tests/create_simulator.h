@@ -1,0 +1,169 @@
+#pragma once
+// An iRobot Create at the other end of a pseudo-terminal: parses the Open Interface byte by byte, moves, and answers.
+// Written from the specification, without the code that it tests. It has no clock: `run` is 15 ms of its time.
+
+#include <fcntl.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/pose.h"
+
+namespace sf {
+
+class CreateSimulator {
+ public:
+  using Bytes = std::vector<std::uint8_t>;
+  enum Mode { off, passive, safe, full };
+  static constexpr double kStep = 0.015;  ///< [s]
+
+  CreateSimulator() : computer_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+    if (computer_ < 0 || grantpt(computer_) != 0 || unlockpt(computer_) != 0) return;
+    device_ = ptsname(computer_);
+    line_ = open(device_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  }
+  ~CreateSimulator() { hang_up(); }
+  CreateSimulator(const CreateSimulator&) = delete;
+  CreateSimulator& operator=(const CreateSimulator&) = delete;
+
+  const std::string& device() const { return device_; }
+  void hang_up() {
+    for (int* end : {&computer_, &line_})
+      if (*end >= 0) close(std::exchange(*end, -1));
+  }
+
+  /// Takes commands until `count` drive commands came in all; false after ten seconds.
+  bool driven(std::uint64_t count) {
+    return awaited([&] { return drives >= count; });
+  }
+  /// Takes commands until it is in that mode.
+  bool comes_to(Mode wanted) {
+    return awaited([&] { return mode == wanted; });
+  }
+
+  /// Takes commands until it is asked for its stream.
+  bool streaming() {
+    return awaited([&] { return !streams.empty(); });
+  }
+
+  /// Frames of its stream, each after 15 ms of motion.
+  void run(int frames) {
+    for (int k = 0; k < frames; ++k) {
+      move();
+      if (!streams.empty()) send(frame());
+    }
+  }
+  void send(const Bytes& bytes) {
+    const int before = waiting();
+    if (write(computer_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) return;
+    for (int k = 0; alone && k < 10'000 && waiting() < before + static_cast<int>(bytes.size()); ++k)
+      poll(nullptr, 0, 1);
+  }
+  /// Of its state now, and what it rolled since the last one.
+  Bytes frame() {
+    Bytes bytes{19, 0};
+    for (const std::uint8_t id : streams) {
+      bytes.push_back(id);
+      if (id == 7) bytes.push_back(static_cast<std::uint8_t>(bumps | drops << 2));
+      if (id == 19) put(take_whole(distance_), bytes);
+      if (id == 20) put(take_whole(angle_), bytes);
+      if (id == 35) bytes.push_back(static_cast<std::uint8_t>(mode));
+    }
+    bytes[1] = static_cast<std::uint8_t>(bytes.size() - 2);
+    std::uint8_t sum = 0;
+    for (const std::uint8_t byte : bytes) sum = static_cast<std::uint8_t>(sum + byte);
+    bytes.push_back(static_cast<std::uint8_t>(256 - sum));
+    return bytes;
+  }
+  /// Switched off and on.
+  void restart() {
+    mode = off;
+    streams.clear();
+    right = left = 0;
+  }
+
+  Mode mode = off;
+  base::Pose X;              ///< where it is
+  int right = 0, left = 0;   ///< [mm/s]
+  int bumps = 0, drops = 0;  ///< bits as in packet 7
+  std::uint64_t drives = 0;  ///< commands, refused ones too
+  std::uint64_t unknown = 0;
+  Bytes streams;      ///< ids
+  bool alone = true;  ///< nobody reads while it sends: what is sent is awaited at the computer's end
+
+ private:
+  template <class Done>
+  bool awaited(Done done) {
+    for (int k = 0; k < 10'000 && !done(); ++k) {
+      pollfd end{computer_, POLLIN, 0};
+      poll(&end, 1, 1);
+      std::uint8_t byte;
+      while (!done() && read(computer_, &byte, 1) == 1) take(byte);
+    }
+    return done();
+  }
+  int waiting() const {
+    int bytes = 0;
+    ioctl(line_, FIONREAD, &bytes);
+    return bytes;
+  }
+
+  void take(std::uint8_t byte) {
+    command_.push_back(byte);
+    const std::uint8_t code = command_[0];
+    const std::size_t count = command_.size();
+    if (code == 148 && (count < 2 || count < 2u + command_[1])) return;
+    if ((code == 145 && count < 5) || (code == 150 && count < 2)) return;
+    obey(code);
+    command_.clear();
+  }
+  void obey(std::uint8_t code) {
+    if (code == 128) return set_mode(passive);
+    if (mode == off) return;
+    if (code == 131) return drops == 0 ? set_mode(safe) : void();
+    if (code == 148) return streams.assign(command_.begin() + 2, command_.end());
+    if (code == 150) return command_[1] == 0 ? streams.clear() : void();
+    if (code != 145) return void(++unknown);
+    ++drives;
+    if (mode < safe) return;
+    right = speed(1);
+    left = speed(3);
+  }
+  void set_mode(Mode next) {
+    mode = next;
+    if (next == passive) right = left = 0;
+  }
+  int speed(std::size_t at) const { return static_cast<std::int16_t>(command_[at] << 8 | command_[at + 1]); }
+
+  void move() {
+    if (drops != 0 && mode == safe) set_mode(passive);
+    const double way = 0.5e-3 * (right + left) * kStep, turn = 1e-3 * (right - left) / 0.258 * kStep;
+    X.x += way * std::cos(X.yaw + 0.5 * turn);
+    X.y += way * std::sin(X.yaw + 0.5 * turn);
+    X.yaw += turn;
+    distance_ += 1e3 * way;
+    angle_ += turn * 180.0 / M_PI;
+  }
+  static int take_whole(double& sum) {
+    const double whole = std::trunc(sum);
+    sum -= whole;
+    return static_cast<int>(whole);
+  }
+  static void put(int number, Bytes& bytes) {
+    bytes.push_back(static_cast<std::uint8_t>(number >> 8 & 0xFF));
+    bytes.push_back(static_cast<std::uint8_t>(number & 0xFF));
+  }
+
+  int computer_, line_ = -1;
+  std::string device_;
+  Bytes command_;
+  double distance_ = 0.0, angle_ = 0.0;  ///< [mm], [degree] not sent yet
+};
+
+}  // namespace sf

@@ -1,0 +1,117 @@
+#include "robots/open_interface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace sf::robots {
+namespace {
+
+TEST(OpenInterface, SaturatesWheelsAlongTheArc) {
+  struct Case {
+    base::Twist twist;
+    int right, left;
+    const char* why;
+  };
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const Case& c : std::vector<Case>{{{0.1, 0, 0}, 100, 100, "straight"},
+                                         {{0, 0, 1}, 129, -129, "in place: half a track each"},
+                                         {{0.5, 0, 0}, 500, 500, "at the limit"},
+                                         {{-0.7, 0, 0}, -500, -500, "beyond it, backwards"},
+                                         {{0.5, 0, 1}, 500, 295, "the slower wheel slows down alike"},
+                                         {{0.2, 0.3, 0}, 200, 200, "it cannot drive sideways"},
+                                         {{NAN, 0, 1}, 0, 0, "no number"},
+                                         {{0.1, 0, inf}, 0, 0, "infinite"},
+                                         {{1e308, 0, 1e308}, 0, 0, "the wheels' speed overflows"}}) {
+    const CreateWheels wheels = create_wheels(c.twist, 0.258);
+    EXPECT_EQ(wheels.right, c.right) << c.why;
+    EXPECT_EQ(wheels.left, c.left) << c.why;
+  }
+}
+
+TEST(OpenInterface, EncodesCommandsAsSpecified) {
+  EXPECT_EQ(create_drive({-200, 500}), (base::Bytes{145, 0xFF, 0x38, 0x01, 0xF4}));
+  EXPECT_EQ(create_start(), (base::Bytes{128, 131, 145, 0, 0, 0, 0, 148, 4, 7, 19, 20, 35}));
+  EXPECT_EQ(create_stop(), (base::Bytes{145, 0, 0, 0, 0, 150, 0, 128}));
+}
+
+/// Bumped right, 12 mm backwards, 3 degrees to the right, safe.
+const base::Bytes kFrame{19, 10, 7, 1, 19, 0xFF, 0xF4, 20, 0xFF, 0xFD, 35, 2, 0xA0};
+
+std::vector<CreateFrame> taken(CreateStream& stream, std::initializer_list<base::Bytes> all) {
+  std::vector<CreateFrame> frames;
+  for (const base::Bytes& bytes : all)
+    for (const std::uint8_t byte : bytes)
+      if (const auto frame = stream.take(byte)) frames.push_back(*frame);
+  return frames;
+}
+
+TEST(CreateStream, ReadsAFrame) {
+  CreateStream stream;
+  const std::vector<CreateFrame> frames = taken(stream, {kFrame});
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_TRUE(frames[0].bumped);
+  EXPECT_FALSE(frames[0].wheel_drop);
+  EXPECT_EQ(frames[0].distance, -12);
+  EXPECT_EQ(frames[0].angle, -3);
+  EXPECT_EQ(frames[0].mode, CreateFrame::safe);
+  EXPECT_EQ(stream.skipped(), 0u);
+}
+
+base::Bytes with(std::size_t at, std::uint8_t byte) {
+  base::Bytes bytes = kFrame;
+  bytes[at] = byte;
+  return bytes;
+}
+base::Bytes without(std::size_t at) {
+  base::Bytes bytes = kFrame;
+  bytes.erase(bytes.begin() + at);
+  return bytes;
+}
+
+TEST(CreateStream, GoesOnBehindDamage) {
+  struct Case {
+    base::Bytes damage;
+    std::uint64_t wrong_checksums;
+    const char* why;
+  };
+  std::vector<Case> cases{{{'b', 'l', ' ', 'v', '1', '\n'}, 0, "text of its start"},
+                          {{19}, 0, "a header alone"},
+                          {{19, 19, 10, 19, 10, 7}, 0, "headers one upon another"},
+                          {with(12, 0xA1), 1, "a wrong checksum"},
+                          {with(5, 0x7F), 1, "a wrong number"},
+                          {with(7, 21), 0, "a packet that was not asked for"},
+                          {with(1, 200), 0, "a length that is none"}};
+  for (std::size_t at = 0; at < kFrame.size(); ++at) cases.push_back({without(at), 0, "a lost byte"});
+  for (const Case& c : cases) {
+    CreateStream stream;
+    // The byte after a frame with a lost one may complete it by its length alone.
+    const std::size_t frames = taken(stream, {kFrame, c.damage, kFrame, kFrame}).size();
+    EXPECT_EQ(frames, 3u) << c.why;
+    EXPECT_EQ(stream.frames(), frames);
+    EXPECT_EQ(stream.skipped(), c.damage.size()) << c.why;
+    EXPECT_GE(stream.wrong_checksums(), c.wrong_checksums) << c.why;
+  }
+}
+
+/// A lost last byte: the next frame's header stands in for the checksum, and that frame must not be lost with it.
+TEST(CreateStream, FindsTheFrameThatBeginsInABrokenOne) {
+  CreateStream stream;
+  EXPECT_EQ(taken(stream, {without(12), kFrame}).size(), 1u);
+  EXPECT_EQ(stream.wrong_checksums(), 1u);
+}
+
+TEST(CreateStream, TakesAnyBytes) {
+  CreateStream stream;
+  std::mt19937 random(7);
+  std::uint64_t bytes = 0;
+  for (; bytes < 100'000; ++bytes) stream.take(static_cast<std::uint8_t>(random() % 4 == 0 ? 19 : random()));
+  EXPECT_LE(stream.skipped() + CreateStream::kFrameBytes * stream.frames(), bytes);
+  EXPECT_EQ(taken(stream, {kFrame, kFrame}).back().distance, -12);
+}
+
+}  // namespace
+}  // namespace sf::robots
