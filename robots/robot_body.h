@@ -45,12 +45,7 @@ class RobotBody {
     std::int64_t until = 0;      ///< [ns]
     std::int64_t gone = kNever;  ///< [ns] time at which it becomes absent
   };
-  struct TrailPoint {
-    std::int64_t time = 0;  ///< [ns]
-    base::Pose X_WM;
-  };
   void advance(const base::Twist& command, const base::Report* followed, std::int64_t now);
-  const TrailPoint& trail_point(std::size_t back) const { return trail_[(moves_ - back) % trail_.size()]; }
 
   world::World world_;  ///< a copy: other robots move with their reported velocities, without actuator model or limits
                         ///< of acceleration

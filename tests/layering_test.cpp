@@ -31,7 +31,6 @@ const std::map<std::string, Modules> kMayInclude{
     {"sensors", {"sensorfarm", "raycast", "maps", "robots", "world", "gpu", "base", "shaders"}},
     {"sensorfarm", {}},
     {"python", {"sensorfarm"}},
-    {"control", {"sensorfarm", "sensors", "maps", "robots", "world", "base"}},
     {"control", {"sensorfarm", "sensors", "maps", "robots/estimation", "robots", "world", "base"}},
     {"shaders", {"raycast", "sensors", "maps", "base"}},
     {"farm", {"sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},

@@ -73,7 +73,6 @@ struct RobotClientStats {
   control::ErrorSummary error;
   std::optional<SpatCounts> spat;               ///< nullopt: it does not listen
   std::optional<CameraPositionsStats> cameras;  ///< nullopt: it knows its true pose
-  std::optional<SpatCounts> spat;           ///< nullopt: it does not listen
   control::LocalizationError localization;  ///< beside the poses of its motion model
 };
 
