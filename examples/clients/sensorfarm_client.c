@@ -5,6 +5,9 @@
 //   cc -std=c11 -O2 -o sensorfarm_client sensorfarm_client.c -lm
 //   ./sensorfarm_client --robot 7 --farm 127.0.0.1:9000 --pose 1.5,-2.25,30 --sensor laser --sensor gps.0
 //
+// --key FILE (64 hexadecimal digits, as the farm's table of peers has them) signs what is sent, and drops what the farm
+// did not sign.
+//
 // As a library: with -DSENSORFARM_CLIENT_NO_MAIN. Parts of large scans and maps are delivered one by one, each with its
 // place in the whole. One thread per client.
 
@@ -25,7 +28,14 @@
 
 enum { SF_LASER = 1, SF_LANE_EDGE = 2, SF_MAGNETOMETER = 3, SF_OCCUPANCY = 12, SF_LASER_EXTENDED = 65 };
 enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_NEIGHBOURS = 140 };
-enum { SF_HEADER = 64, SF_V2V_BYTES = 132, SF_TAG_BYTES = 168, SF_MAX_VALUES = 361, SF_MAX_SENSORS = 32 };
+enum {
+  SF_HEADER = 64,
+  SF_V2V_BYTES = 132,
+  SF_TAG_BYTES = 168,
+  SF_MAX_VALUES = 361,
+  SF_MAX_SENSORS = 32,
+  SF_SIGNATURE = 24
+};
 #define SF_NONE 0xFFFFFFFFu  // V2V: no leader, no checkpoint
 
 // Name, base of the ports, names of the integers, and columns of a row: name, numbers, unit on the wire.
@@ -341,6 +351,126 @@ void sf_print(FILE* out, const sf_packet* p) {
   fputc('\n', out);
 }
 
+// Signatures: HMAC-SHA-256 (RFC 2104, FIPS 180-4). A packet's trailer is a counter and the first half of its HMAC.
+
+typedef struct {
+  uint32_t words[8];
+  uint64_t size;  // bytes so far
+  uint8_t block[64];
+} sf_sha256;
+
+static uint32_t rotate_right(uint32_t word, unsigned bits) { return word >> bits | word << (32 - bits); }
+static uint32_t get_big_endian(const uint8_t* b) {
+  return (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
+}
+
+static void sha256_block(sf_sha256* s) {
+  static const uint32_t constants[64] = {
+      0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
+      0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
+      0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
+      0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
+      0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
+      0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
+      0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
+      0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
+  uint32_t w[64], v[8];
+  for (unsigned i = 0; i < 16; ++i) w[i] = get_big_endian(s->block + 4 * i);
+  for (unsigned i = 16; i < 64; ++i) {
+    const uint32_t a = w[i - 15], b = w[i - 2];
+    w[i] = w[i - 16] + (rotate_right(a, 7) ^ rotate_right(a, 18) ^ a >> 3) + w[i - 7] +
+           (rotate_right(b, 17) ^ rotate_right(b, 19) ^ b >> 10);
+  }
+  memcpy(v, s->words, sizeof v);
+  for (unsigned i = 0; i < 64; ++i) {
+    const uint32_t a = v[0], e = v[4];
+    const uint32_t t1 = v[7] + (rotate_right(e, 6) ^ rotate_right(e, 11) ^ rotate_right(e, 25)) +
+                        ((e & v[5]) ^ (~e & v[6])) + constants[i] + w[i];
+    const uint32_t t2 =
+        (rotate_right(a, 2) ^ rotate_right(a, 13) ^ rotate_right(a, 22)) + ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
+    memmove(v + 1, v, 7 * sizeof *v);
+    v[4] += t1;
+    v[0] = t1 + t2;
+  }
+  for (unsigned i = 0; i < 8; ++i) s->words[i] += v[i];
+}
+
+static void sha256_begin(sf_sha256* s) {
+  *s = (sf_sha256){
+      .words = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19}};
+}
+static void sha256_add(sf_sha256* s, const uint8_t* bytes, size_t size) {
+  for (size_t i = 0; i < size; ++i) {
+    s->block[s->size++ % 64] = bytes[i];
+    if (s->size % 64 == 0) sha256_block(s);
+  }
+}
+static void sha256_end(sf_sha256* s, uint8_t hash[32]) {
+  const uint64_t bits = 8 * s->size;
+  const uint8_t one = 0x80, zero = 0;
+  sha256_add(s, &one, 1);
+  while (s->size % 64 != 56) sha256_add(s, &zero, 1);
+  for (unsigned i = 0; i < 8; ++i) sha256_add(s, &(uint8_t){(uint8_t)(bits >> (56 - 8 * i))}, 1);
+  for (unsigned i = 0; i < 32; ++i) hash[i] = (uint8_t)(s->words[i / 4] >> (24 - 8 * (i % 4)));
+}
+
+// key: at most 64 bytes; longer ones are hashed first.
+void sf_hmac_sha256(const uint8_t* key, size_t key_size, const uint8_t* bytes, size_t size, uint8_t code[32]) {
+  uint8_t padded[64] = {0}, inner[32];
+  sf_sha256 s;
+  if (key_size > 64) {
+    sha256_begin(&s);
+    sha256_add(&s, key, key_size);
+    sha256_end(&s, padded);
+  } else if (key_size > 0) {
+    memcpy(padded, key, key_size);
+  }
+  for (unsigned i = 0; i < 64; ++i) padded[i] ^= 0x36;
+  sha256_begin(&s);
+  sha256_add(&s, padded, 64);
+  sha256_add(&s, bytes, size);
+  sha256_end(&s, inner);
+  for (unsigned i = 0; i < 64; ++i) padded[i] ^= 0x36 ^ 0x5c;
+  sha256_begin(&s);
+  sha256_add(&s, padded, 64);
+  sha256_add(&s, inner, 32);
+  sha256_end(&s, code);
+}
+
+// Puts a trailer behind a packet without one, in a buffer with SF_SIGNATURE more bytes. Returns the size with it.
+size_t sf_sign(uint8_t* bytes, size_t size, const uint8_t key[32], uint64_t counter) {
+  uint8_t code[32];
+  put(bytes + 60, 2, SF_SIGNATURE);
+  put(bytes + size, 8, counter);
+  sf_hmac_sha256(key, 32, bytes, size + 8, code);
+  memcpy(bytes + size + 8, code, 16);
+  return size + SF_SIGNATURE;
+}
+
+// Counters of signatures that came: each is new once, in any order within the newest 64.
+typedef struct {
+  uint64_t newest, seen;  // bit k of seen: newest - k came
+} sf_window;
+
+// Of a packet that sf_decode has accepted. Returns NULL, or the reason for which it is dropped.
+const char* sf_check_signature(sf_window* window, const uint8_t* bytes, size_t size, const uint8_t key[32]) {
+  uint8_t code[32], differs = 0;
+  if (size < SF_HEADER + SF_SIGNATURE || get(bytes + 60, 2) != SF_SIGNATURE) return "not signed";
+  sf_hmac_sha256(key, 32, bytes, size - 16, code);
+  for (unsigned i = 0; i < 16; ++i) differs |= code[i] ^ bytes[size - 16 + i];
+  if (differs) return "wrong signature";
+  const uint64_t counter = get(bytes + size - SF_SIGNATURE, 8);
+  if (counter > window->newest) {
+    const uint64_t ahead = counter - window->newest;
+    window->seen = ahead < 64 ? window->seen << ahead : 0;
+    window->newest = counter;
+  }
+  const uint64_t behind = window->newest - counter;
+  if (behind >= 64 || window->seen >> behind & 1) return "replayed";
+  window->seen |= UINT64_C(1) << behind;
+  return NULL;
+}
+
 // A robot beside the farm. Its first socket sends; that one's address and port are what binds the robot's id.
 typedef struct {
   uint16_t robot;
@@ -349,6 +479,10 @@ typedef struct {
   double next_request;  // [s] by the monotonic clock
   unsigned sockets;
   struct pollfd polled[1 + SF_MAX_SENSORS];
+  sf_window windows[1 + SF_MAX_SENSORS];  // of the farm's signatures, by socket
+  uint8_t key[32];                        // that the farm has for this robot (docs/packets.md, Signatures)
+  bool has_key;                           // false: nothing is signed
+  uint64_t counter;                       // of the next signature
   struct {
     uint64_t stream;
     uint32_t sequence;
@@ -357,7 +491,7 @@ typedef struct {
   struct {
     const char* status;
     unsigned long packets;
-  } counts[12];  // accepted, and dropped by reason
+  } counts[16];  // accepted, and dropped by reason
 } sf_client;
 
 static double now_s(void) {
@@ -368,7 +502,7 @@ static double now_s(void) {
 
 static void count_status(sf_client* c, const char* status) {
   unsigned i = 0;
-  while (i < 11 && c->counts[i].status && strcmp(c->counts[i].status, status) != 0) ++i;
+  while (i < 15 && c->counts[i].status && strcmp(c->counts[i].status, status) != 0) ++i;
   c->counts[i].status = status;
   ++c->counts[i].packets;
 }
@@ -397,7 +531,24 @@ bool sf_open(sf_client* c, uint16_t robot, const char* host, const char* port, b
   c->robot = robot;
   c->session |= 1;  // 0 would say that there is none
   c->types = neighbours;
+  struct timespec now;
+  clock_gettime(CLOCK_REALTIME, &now);
+  c->counter = (uint64_t)now.tv_sec * 1000000 + (uint64_t)now.tv_nsec / 1000;
   return open_port(c, 0);
+}
+
+// Signs what is sent, and drops what the farm did not sign. file: 64 hexadecimal digits. Returns false for another one.
+bool sf_read_key(sf_client* c, const char* file) {
+  char digits[66] = "";
+  FILE* const opened = fopen(file, "r");
+  const bool read = opened && fscanf(opened, " %65[0-9a-fA-F]", digits) == 1;
+  if (opened) fclose(opened);
+  for (unsigned i = 0; i < 32 && read && strlen(digits) == 64; ++i) {
+    unsigned byte;
+    c->has_key = sscanf(digits + 2 * i, "%2x", &byte) == 1;
+    c->key[i] = (uint8_t)byte;
+  }
+  return c->has_key;
 }
 
 // Listens for one sensor, numbered from 0 among those of its type. @param port 0: the farm's default
@@ -408,12 +559,13 @@ bool sf_add_sensor(sf_client* c, const sf_type* type, unsigned number, unsigned 
 }
 
 static void send_packet(sf_client* c, sf_packet* p) {
-  uint8_t bytes[SF_TAG_BYTES];
+  uint8_t bytes[SF_TAG_BYTES + SF_SIGNATURE];
   p->robot = c->robot;
   p->time_ns = (int64_t)(now_s() * 1e9);
   p->session = c->session;
   p->token = c->token;
-  const size_t size = sf_encode(p, bytes);
+  size_t size = sf_encode(p, bytes);
+  if (size > 0 && c->has_key) size = sf_sign(bytes, size, c->key, c->counter++);
   const struct sockaddr* const farm = (const struct sockaddr*)&c->farm;
   if (size == 0 || sendto(c->polled[0].fd, bytes, size, 0, farm, sizeof c->farm) < 0) count_status(c, "not sent");
 }
@@ -452,11 +604,13 @@ static bool is_newer(sf_client* c, const sf_packet* p) {
 }
 
 static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size, const struct sockaddr_in* from,
-                                 sf_packet* p) {
+                                 sf_window* window, sf_packet* p) {
   if (from->sin_addr.s_addr != c->farm.sin_addr.s_addr || from->sin_port != c->farm.sin_port) return "wrong source";
   const char* const status = sf_decode(bytes, size, p);
   if (status) return status;
   if (p->token != c->session || (p->type != SF_CHALLENGE && p->session != c->farm_session)) return "wrong source";
+  const char* const forged = c->has_key ? sf_check_signature(window, bytes, size, c->key) : NULL;
+  if (forged) return forged;
   if (p->type >= SF_V2V && p->type != SF_START && p->type != SF_CHALLENGE && p->type != SF_NEIGHBOURS)
     return "wrong direction";
   if (p->robot != c->robot && (p->type != SF_START || p->robot != 65535)) return "unknown robot";
@@ -482,7 +636,7 @@ void sf_receive(sf_client* c, double timeout, void (*handle)(const sf_packet*, v
       const ssize_t size =
           recvfrom(c->polled[i].fd, bytes, sizeof bytes, MSG_DONTWAIT, (struct sockaddr*)&from, &length);
       if (size < 0) break;
-      const char* const status = accept_packet(c, bytes, (size_t)size, &from, &packet);
+      const char* const status = accept_packet(c, bytes, (size_t)size, &from, &c->windows[i], &packet);
       count_status(c, status ? status : "accepted");
       if (!status && packet.type != SF_CHALLENGE) handle(&packet, context);
     }
@@ -521,19 +675,19 @@ static bool add_sensor(sf_client* c, const char* word) {
 
 int main(int argc, char** argv) {
   static sf_client c;
-  const char *const names[] = {"--robot", "--farm", "--pose", "--rate"}, *sensors[SF_MAX_SENSORS] = {"laser"};
-  const char* values[] = {"", "127.0.0.1:9000", "0,0,0", "10"};
+  const char *const names[] = {"--robot", "--farm", "--pose", "--rate", "--key"}, *sensors[SF_MAX_SENSORS] = {"laser"};
+  const char* values[] = {"", "127.0.0.1:9000", "0,0,0", "10", ""};
   unsigned count = 0, robot = 0;
   bool neighbours = false;
   for (int i = 1; i < argc; ++i) {
     unsigned k = 0;
-    while (k < 4 && strcmp(argv[i], names[k]) != 0) ++k;
+    while (k < 5 && strcmp(argv[i], names[k]) != 0) ++k;
     const bool is_sensor = strcmp(argv[i], "--sensor") == 0 && count < SF_MAX_SENSORS;
     if (strcmp(argv[i], "--neighbours") == 0)
       neighbours = true;
-    else if (i + 1 == argc || (k == 4 && !is_sensor))
+    else if (i + 1 == argc || (k == 5 && !is_sensor))
       return fail(
-          "--robot N [--farm HOST:PORT] [--pose X,Y,DEGREES] [--rate HZ] [--neighbours] "
+          "--robot N [--farm HOST:PORT] [--pose X,Y,DEGREES] [--rate HZ] [--neighbours] [--key FILE] "
           "[--sensor TYPE[.NUMBER][=PORT]]...; not ",
           argv[i]);
     else
@@ -552,6 +706,8 @@ int main(int argc, char** argv) {
     return fail("--rate takes 1 to 1000 states per second, not ", values[3]);
   state[3] = degrees * acos(-1.0) / 180;
   if (!sf_open(&c, (uint16_t)robot, host, port, neighbours)) return fail("no such host: ", host);
+  if (values[4][0] && !sf_read_key(&c, values[4]))
+    return fail("--key takes a file of 64 hexadecimal digits, not ", values[4]);
   for (unsigned i = 0; i == 0 || i < count; ++i)
     if (!add_sensor(&c, sensors[i])) return fail("no such sensor, or its port is taken: ", sensors[i]);
 
@@ -567,7 +723,7 @@ int main(int argc, char** argv) {
     sf_receive(&c, due - now_s(), print_packet, stdout);
   }
   sf_leave(&c);
-  for (unsigned i = 0; i < 12 && c.counts[i].status; ++i)
+  for (unsigned i = 0; i < 16 && c.counts[i].status; ++i)
     fprintf(stderr, "%s%s %lu", i ? ", " : "", c.counts[i].status, c.counts[i].packets);
   fputs(c.counts[0].status ? "\n" : "nothing received\n", stderr);
   return 0;

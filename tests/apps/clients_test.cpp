@@ -160,8 +160,9 @@ TEST(Clients, BothPrintTheReadingsOfSense) {
   EXPECT_FALSE(facts.has("/received/stale"));
 }
 
-TEST(Clients, PythonSignsAndChecksSignatures) {
+TEST(Clients, BothSignAndCheckSignatures) {
   if (!have_python()) GTEST_SKIP() << kNoPython;
+  if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
   const unsigned ports = free_ports(32);
   const Folder folder;
   const std::string key(64, 'a'), file = folder.write("key", key + "\n");
@@ -170,11 +171,22 @@ TEST(Clients, PythonSignsAndChecksSignatures) {
                              std::to_string(ports + 16), "--peers", peers});
   ASSERT_NE(service.port, 0u) << service.program.err();
   expect_readings(service, ports, "python3", {kPythonClient, "--key", file});
+  expect_readings(service, ports, compiled(service.folder, kCClient), {"--key", file});
   service.program.signal(SIGINT);
   const Json facts(service.program.wait().out);
-  EXPECT_GE(facts.number("/received/accepted"), 3);
+  EXPECT_GE(facts.number("/received/accepted"), 6);
   for (const char* reason : {"not signed", "wrong signature", "replayed"})
     EXPECT_FALSE(facts.has(std::string("/received/") + reason)) << reason;
+}
+
+/// RFC 4231, lengths around a block, the example of docs/packets.md, and all of the test below.
+TEST(Clients, CSignsAsSpecified) {
+  if (!have_compiler()) GTEST_SKIP() << kNoCompiler;
+  const Folder folder;
+  const Outcome outcome =
+      Program({}, {}, "", "", compiled(folder, SF_SOURCE_DIR "/tests/apps/clients/signatures.c")).wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "sound\n");
 }
 
 /// The counters at the window's edges, as `ReplayWindow` has them, a flipped bit and another key.
@@ -196,6 +208,8 @@ TEST(Clients, WrongWordsAreRefused) {
                                                {"--robot", "-1"},
                                                {"--robot", "7x"},
                                                {"--robot", "1", "--rate", "0"},
+                                               {"--robot", "1", "--key", "/dev/null"},
+                                               {"--robot", "1", "--key", "no such file"},
                                                {"--robot", "1", "--pose", "1,2"},
                                                {"--robot", "1", "--pose", "nan,0,0"},
                                                {"--robot", "1", "--pose", "10000001,0,0"},
