@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
 #include "netio/inbox.h"
 #include "netio/receiver.h"
@@ -20,14 +19,11 @@
 #include "netio/stream_monitor.h"
 #include "netio/v2v_socket.h"
 #include "sensors/laser_packets.h"
+#include "tests/fuzz/require.h"
 
 namespace {
 
 using namespace sf;
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
 
 void examine(const netio::Packet& packet) {
   require(packet.header.time >= 0 && packet.header.time <= netio::kMaxTime);

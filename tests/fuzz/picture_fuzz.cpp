@@ -1,22 +1,14 @@
 // libFuzzer target: any bytes as a PNG or PGM picture, traced as a floor plan.
 
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 #include "base/error.h"
+#include "tests/fuzz/require.h"
 #include "world/picture.h"
 #include "world/stage/model_shape.h"
 
-namespace {
-
 using namespace sf;
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kMost = 1u << 20;  // pixels: larger ones are sound, and slow

@@ -4,20 +4,16 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include "base/error.h"
+#include "tests/fuzz/require.h"
 #include "world/roads/mdf.h"
 #include "world/roads/roads.h"
 
 namespace {
 
 using namespace sf;
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
 
 void check_network(std::string_view text, bool strict) {
   const world::Rndf rndf = world::parse_rndf("fuzz.rndf", text, strict);

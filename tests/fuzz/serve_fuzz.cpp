@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <optional>
 
@@ -18,6 +17,7 @@
 #include "netio/server/service.h"
 #include "netio/v2v_socket.h"
 #include "sensors/laser.h"
+#include "tests/fuzz/require.h"
 #include "tests/robots/scenes.h"
 #include "tests/sensors/edit_laser.h"
 
@@ -30,14 +30,6 @@ constexpr std::uint32_t kTag = 12;
 constexpr std::int64_t kMilli = 1'000'000;  ///< [ns]
 constexpr std::int64_t kSteps[] = {
     0, 1, kMilli, 20 * kMilli, 100 * kMilli, 700 * kMilli, 2'100 * kMilli, 12'000 * kMilli};
-
-// A macro, so that a finding names its condition and line.
-#define REQUIRE(holds) require(holds, #holds, __LINE__)
-void require(bool holds, const char* text, int line) {
-  if (holds) return;
-  std::fprintf(stderr, "serve_fuzz.cpp:%d: does not hold: %s\n", line, text);
-  std::abort();
-}
 
 /// Three robots with a laser each, one of them delayed and one noisy, and a tag.
 world::World make_world() {
@@ -110,9 +102,9 @@ class Harness {
     tick(100 * kMilli);
     tick(300 * kMilli);
     const server::ServiceStats stats = service_.stats();
-    REQUIRE(stats.publisher.not_numbers == 0);
-    REQUIRE(stats.publisher.packets.sent <= stats.farm.readings);
-    REQUIRE(stats.farm.readings >= stats.farm.reused);
+    require(stats.publisher.not_numbers == 0);
+    require(stats.publisher.packets.sent <= stats.farm.readings);
+    require(stats.farm.readings >= stats.farm.reused);
   }
 
  private:
@@ -214,7 +206,7 @@ class Harness {
   void receive() {
     service_.receive_pending(now_);
     const server::ServiceStats stats = service_.stats();
-    REQUIRE(stats.inbox.total() + stats.socket_drops == sent_);
+    require(stats.inbox.total() + stats.socket_drops == sent_);
     drain(true);
   }
   void tick(std::int64_t step) {
@@ -224,8 +216,8 @@ class Harness {
     service_.tick(now_);
     const server::ServiceStats after = service_.stats();
     // A robot is passed the others in one datagram, and signals for it and for all.
-    REQUIRE(after.relayed.datagrams - before.relayed.datagrams <= kRobots);
-    REQUIRE(after.relayed.starts - before.relayed.starts <= 2 * kRobots);
+    require(after.relayed.datagrams - before.relayed.datagrams <= kRobots);
+    require(after.relayed.starts - before.relayed.starts <= 2 * kRobots);
     check();
   }
   void sample(std::int64_t step) {
@@ -239,12 +231,12 @@ class Harness {
   void check() {
     drain(true);
     const server::ServiceStats stats = service_.stats();
-    REQUIRE(stats.publisher.packets.sent + stats.answers.sent == received_);
-    REQUIRE(stats.publisher.packets.failed + stats.answers.failed == 0);
+    require(stats.publisher.packets.sent + stats.answers.sent == received_);
+    require(stats.publisher.packets.failed + stats.answers.failed == 0);
     for (const base::Report& state : service_.receiver().states(now_)) {
-      REQUIRE(std::isfinite(state.X_WM.x) && std::isfinite(state.X_WM.y) && std::isfinite(state.X_WM.yaw));
-      REQUIRE(std::abs(state.X_WM.x) < 2.0 * netio::kMaxPosition && std::abs(state.X_WM.y) < 2.0 * netio::kMaxPosition);
-      REQUIRE(state.time <= now_);
+      require(std::isfinite(state.X_WM.x) && std::isfinite(state.X_WM.y) && std::isfinite(state.X_WM.yaw));
+      require(std::abs(state.X_WM.x) < 2.0 * netio::kMaxPosition && std::abs(state.X_WM.y) < 2.0 * netio::kMaxPosition);
+      require(state.time <= now_);
     }
   }
 
@@ -257,34 +249,34 @@ class Harness {
     drain_one(scene_.sink, [&](std::span<const std::uint8_t> bytes) { examine_reading(bytes); });
     for (Sender& sender : senders_) {
       drain_one(*sender.socket, [&](std::span<const std::uint8_t> bytes) { examine_answer(sender, bytes); });
-      REQUIRE(sender.answers || sender.received <= sender.sent);
+      require(sender.answers || sender.received <= sender.sent);
     }
   }
   void examine_reading(std::span<const std::uint8_t> bytes) {
     netio::Packet packet;
-    REQUIRE(netio::decode(bytes, packet) == netio::PacketStatus::accepted);
-    REQUIRE(packet.header.robot >= 1 && packet.header.robot <= kRobots && packet.header.sensor == 0);
-    REQUIRE(packet.header.time <= now_);
+    require(netio::decode(bytes, packet) == netio::PacketStatus::accepted);
+    require(packet.header.robot >= 1 && packet.header.robot <= kRobots && packet.header.sensor == 0);
+    require(packet.header.time <= now_);
     const auto payload = std::get<netio::Reading>(packet.body).payload;
     const server::SensorStream& stream = scene_.streams[packet.header.robot - 1u];
-    REQUIRE(server::inspect_payload(stream, sensors::WireFormat::farm, packet.header, payload).status ==
+    require(server::inspect_payload(stream, sensors::WireFormat::farm, packet.header, payload).status ==
             netio::PacketStatus::accepted);
     double ranges[7] = {};
     server::decode_payload(stream, sensors::WireFormat::farm, packet.header, payload, ranges);
-    for (const double range : ranges) REQUIRE(range >= 0.0 && range <= 8.0);
+    for (const double range : ranges) require(range >= 0.0 && range <= 8.0);
   }
   void examine_answer(Sender& sender, std::span<const std::uint8_t> bytes) {
     sender.received += bytes.size();
     netio::V2vSocket::for_each_state(bytes, [&](std::span<const std::uint8_t> one) {
       netio::Packet packet;
-      REQUIRE(netio::decode(one, packet) == netio::PacketStatus::accepted);
+      require(netio::decode(one, packet) == netio::PacketStatus::accepted);
       if (const auto* challenge = std::get_if<netio::Challenge>(&packet.body)) {
         if (sender.answers) sender.session_token.token = challenge->token;
         return;
       }
-      REQUIRE(packet.header.type == netio::Type::v2v || packet.header.type == netio::Type::start);
+      require(packet.header.type == netio::Type::v2v || packet.header.type == netio::Type::start);
       const bool known = packet.header.robot >= 1 && packet.header.robot <= kRobots;
-      REQUIRE(known || packet.header.robot == netio::kBroadcastId);
+      require(known || packet.header.robot == netio::kBroadcastId);
     });
   }
 

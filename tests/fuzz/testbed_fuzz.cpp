@@ -1,20 +1,12 @@
 // libFuzzer target: any bytes as a testbed file.
 
 #include <cmath>
-#include <cstdlib>
 
 #include "base/error.h"
+#include "tests/fuzz/require.h"
 #include "vision/testbed.h"
 
-namespace {
-
 using namespace sf;
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

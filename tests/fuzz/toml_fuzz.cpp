@@ -1,19 +1,15 @@
 // libFuzzer target: any bytes as TOML, as scenario files and sidecars of road networks are read.
 
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include "base/error.h"
+#include "tests/fuzz/require.h"
 #include "world/toml.h"
 
 namespace {
 
 using namespace sf;
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
 
 int depth_of(const world::TomlNode& node) {
   int deepest = 0;

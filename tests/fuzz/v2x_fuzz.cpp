@@ -2,19 +2,11 @@
 // same content.
 
 #include <cstdint>
-#include <cstdlib>
 
 #include "netio/v2x/xml.h"
-
-namespace {
+#include "tests/fuzz/require.h"
 
 using namespace sf;
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   v2x::Frame frame;

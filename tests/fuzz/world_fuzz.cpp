@@ -3,10 +3,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 #include "base/error.h"
+#include "tests/fuzz/require.h"
 #include "world/stage/stage.h"
 
 namespace {
@@ -16,10 +16,6 @@ using namespace sf;
 constexpr std::string_view kKeys[] = {"fov", "samples", "range_min", "range_max", "scount", "spose[]"};
 constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "samples"};
 constexpr world::SensorKeyword kWords[] = {{"laser", kKeys}, {"ranger", kKeys, kBlockKeys}};
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
 
 void examine(const world::World& world) {
   for (const world::Segment& wall : world.walls)
