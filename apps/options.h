@@ -221,6 +221,10 @@ struct RobotOptions : WorldOptions,
   estimation::ClockSource camera_clock = estimation::ClockSource::estimated;
   std::uint32_t tag = 0;  ///< that it carries; 0: the one with its id
   std::string truth;      ///< "host:port" that its true state goes to; empty: none
+  std::uint16_t spat = 0;  ///< port for SPaT; 0: the lights go by the world's plans
+  std::string map;         ///< "host:port" that its own map is sent to; empty: none
+  std::string serial;      ///< device of a real Create; empty: none
+  unsigned baud = 57600;
 };
 
 inline constexpr std::uint16_t kSpatPort = 9010;  ///< default port of SPaT and MAP

@@ -344,6 +344,19 @@ std::string json_of(const server::RobotClientStats& f) {
                          {"largest_m", e.largest},
                          {"largest_rad", e.largest_heading}};
   }
+  if (f.map)
+    json["own_map"] = {{"scans", f.map->scans},
+                       {"maps", f.map->maps},
+                       {"packets", f.map->sent.sent},
+                       {"failed", f.map->sent.failed},
+                       {"dropped", f.map->sent.dropped}};
+  if (f.create)
+    json["create"] = {{"frames", f.create->frames},
+                      {"wrong_checksums", f.create->wrong_checksums},
+                      {"skipped_bytes", f.create->skipped_bytes},
+                      {"starts", f.create->starts},
+                      {"lines", f.create->lines},
+                      {"refused", f.create->refused}};
   json["distance_m"] = f.distance_m;
   json["pose"] = pose_json(f.pose);
   if (f.error.steps > 0) json["error"] = error_json(f.error);

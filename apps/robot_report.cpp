@@ -55,6 +55,16 @@ std::string text_of(const server::RobotClientStats& f) {
   if (f.spat)
     text += row("SPaT", "{}, {} of other lights or MAP, {} invalid", counted(f.spat->messages, "message"),
                 f.spat->others, f.spat->invalid);
+  if (f.map) {
+    text += row("own map", "{} entered, {} sent in {}", counted(f.map->scans, "scan"), counted(f.map->maps, "map"),
+                counted(f.map->sent.sent, "packet"));
+    if (f.map->sent.failed + f.map->sent.dropped > 0)
+      text += row("", "{} failed ({}), {} dropped", f.map->sent.failed, f.map->sent.first_failure, f.map->sent.dropped);
+  }
+  if (f.create)
+    text += row("Create", "{}, {} with a wrong checksum, {} outside of frames; started {}, line opened {}",
+                counted(f.create->frames, "frame"), f.create->wrong_checksums, counted(f.create->skipped_bytes, "byte"),
+                counted(f.create->starts, "time"), counted(f.create->lines, "time"));
   text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
               f.pose.yaw * 180.0 / M_PI);
   if (f.cameras) {

@@ -251,6 +251,19 @@ void add_robot(CLI::App& app, Call& call) {
       ->check(whole(1, 65535))
       ->type_name("PORT");
   add_cameras(*sub, o);
+  sub->add_option("--map", o.map,
+                  "Make a map of the robot's own scans and send it there (`sensorfarm map --listen PORT`)")
+      ->check(not_empty("HOST:PORT"))
+      ->type_name("HOST:PORT");
+  auto* serial = sub->add_option("--serial", o.serial,
+                                 "Serial line of a real iRobot Create, which drives in place of the simulated robot")
+                     ->check(not_empty("a device such as /dev/ttyUSB0"))
+                     ->type_name("DEVICE");
+  sub->add_option("--baud", o.baud, "Speed of the serial line: 57600 (Create) or 115200 (Create 2)")
+      ->check(one_of({"9600", "19200", "38400", "57600", "115200"}))
+      ->needs(serial)
+      ->type_name("BAUD")
+      ->capture_default_str();
   sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal arrives (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of injected faults");
   add_until(*sub, o, "Stop after this long [s] (0: when done, or at Ctrl-C)");

@@ -36,6 +36,8 @@ class OwnLocalization {
   /// first call's pose is the start, which is known. Spans live until the next call.
   ControllerInput localize(const ControllerInput& input);
 
+  /// [ns] of the last second or later. Rule: after a step; z is 0
+  base::Pose pose_at(std::int64_t time) const { return localization_->predict(time).estimate.X_WM; }
   /// Beside the poses of the inputs.
   const LocalizationError& error() const { return error_; }
 

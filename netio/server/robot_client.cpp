@@ -67,6 +67,18 @@ void RobotClient::receive(std::int64_t now) {
 
 void RobotClient::move(std::int64_t now) {
   body_.move(command_, now);
+  if (options.map) map_.emplace(world, mover, *options.map);
+  if (options.create) create_.emplace(*options.create, world.movers[mover].X_WM, world.movers[mover].track);
+  made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, options.controller);
+}
+
+void RobotClient::step(std::int64_t now) {
+  if (create_) {
+    create_->update(now);
+    body_.follow(create_->state().X_WM, create_->state().velocity, create_->contact(), now);
+  } else {
+    body_.move(command_, now);
+  }
   contacts_ += contact_.begins(body_.contact());
   if (truth_) truth_->send(body_.state(), now, epoch_);
 }
@@ -78,7 +90,16 @@ void RobotClient::step(std::int64_t now) {
   command_ = {};
   if (started_ && !is_lost() && !readings_timed_out(now)) decide(now);
   send_state(now);
+  if (started_ && !readings_timed_out(now) && (!create_ || create_->ready(now))) decide(now);
+  if (create_) create_->drive(command_, now);
+  link_.send_state(state_of(body_.state(), made_.controller->intent()), now);
   log_problems(now);
+  if (create_) log_create(now);
+}
+
+void RobotClient::leave(std::int64_t now) {
+  if (create_) create_->stop();
+  link_.leave(now);
 }
 
 /// A robot that does not know where it is does not say so: the farm's state of it grows stale, as do its readings.
@@ -133,6 +154,8 @@ RobotClientStats RobotClient::stats() const {
   stats.error = error_;
   if (const control::OwnLocalization* own = control::localization_of(*made_.controller))
     stats.localization = own->error();
+  if (map_) stats.map = map_->counts();
+  if (create_) stats.create = create_->counts();
   if (spat_) stats.spat = spat_->counts();
   if (cameras_) stats.cameras = {cameras_->packets(), cameras_->states(), position_errors_};
   stats.stops = stops_;
@@ -160,6 +183,15 @@ void RobotClient::decide(std::int64_t now) {
   command_ = made_.controller->step(input);
   ++steps_;
   control::add(error_, made_.controller->error());
+  if (map_) draw_map(now);
+}
+
+/// From the poses that the controller drives by.
+void RobotClient::draw_map(std::int64_t now) {
+  const control::OwnLocalization* own = control::localization_of(*made_.controller);
+  for (const base::ReadingBlock& reading : readings_)
+    map_->add(reading, own != nullptr ? own->pose_at(reading.time) : reading.X_WM);
+  map_->send(now, own == nullptr && !create_);
 }
 
 /// Packets do not state the pose that the farm read from: the robot takes its own at that time.
@@ -224,6 +256,17 @@ void RobotClient::log_problems(std::int64_t now) {
   log_.write(stands_ ? fmt::format("no reading came from the farm at {} for {:g} s: {} stands until one comes", farm,
                                    1e-9 * static_cast<double>(reading_timeout_), name)
                      : fmt::format("readings come: {} goes on", name),
+             now);
+}
+
+/// What keeps the real robot from driving, each time that it changes; not the silence before its first answer is due.
+void RobotClient::log_create(std::int64_t now) {
+  const std::string problem = create_->problem(now);
+  if (problem == create_problem_ || (create_->counts().frames == 0 && now < kAnswerIn)) return;
+  create_problem_ = problem;
+  const std::string& name = world_.movers[mover_].name;
+  log_.write(problem.empty() ? fmt::format("the Create is ready: {} goes on", name)
+                             : fmt::format("{}: {} stands", problem, name),
              now);
 }
 

@@ -15,6 +15,8 @@
 #include "control/own_localization.h"
 #include "netio/rate_limited_log.h"
 #include "netio/server/camera_positions.h"
+#include "netio/server/create_drive.h"
+#include "netio/server/own_map.h"
 #include "netio/server/robot_link.h"
 #include "netio/server/spat_listener.h"
 #include "netio/server/truth_report.h"
@@ -50,6 +52,8 @@ struct CameraPositionsStats {
   netio::PacketCounts packets;
   StateFilterCounts states;
   PositionErrors errors;  ///< of its own fresh states at its steps
+  std::optional<CreateOptions> create;  ///< a real robot, which moves in place of the model; nullopt: none
+  std::optional<OwnMapOptions> map;     ///< where it sends its own map; nullopt: it makes none
 };
 
 /// How a robot's process went.
@@ -74,6 +78,8 @@ struct RobotClientStats {
   std::optional<SpatCounts> spat;               ///< nullopt: it does not listen
   std::optional<CameraPositionsStats> cameras;  ///< nullopt: it knows its true pose
   control::LocalizationError localization;  ///< beside the poses of its motion model
+  std::optional<CreateCounts> create;       ///< nullopt: no real robot
+  std::optional<OwnMapCounts> map;          ///< nullopt: it makes none
 };
 
 /// Times are of the robot's own clock [ns], which begins at 0 and does not go back. World and sensor set must outlive
@@ -98,7 +104,7 @@ class RobotClient {
   void step(std::int64_t now);
 
   /// The last packet, after which the farm accepts another process with this id at once.
-  void leave(std::int64_t now) { link_.leave(now); }
+  void leave(std::int64_t now);
 
   double rate() const { return made_.rate; }  ///< [Hz] of turns
   bool done() const { return started_ && made_.controller->done(); }
@@ -124,6 +130,8 @@ class RobotClient {
   /// No camera saw it for so long that its state is no ground to drive by.
   bool is_lost() const { return cameras_ && !cameras_->is_fresh(); }
   void log_problems(std::int64_t now);
+  void draw_map(std::int64_t now);
+  void log_create(std::int64_t now);
 
   const world::World& world_;
   WireNames names_;
@@ -156,6 +164,9 @@ class RobotClient {
   PositionErrors position_errors_;
   std::optional<TruthReport> truth_;
   std::int64_t epoch_ = 0;  ///< [ns] Unix time at time 0 of its clock, in `run`
+  std::optional<CreateDrive> create_;  ///< none: the body is a model
+  std::optional<OwnMap> map_;          ///< none: it makes no map
+  std::string create_problem_;         ///< as logged last
 };
 
 }  // namespace sf::server

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <memory>
 
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
+#include "tests/create_simulator.h"
 
 namespace sf {
 
@@ -154,6 +156,28 @@ TEST_F(RobotsTest, ReadTheThesisLayoutToo) {
   EXPECT_GT(facts.number("/distance_m"), 0.0);
 }
 
+/// Two robots' own maps as one: each sees a wall that the other does not reach.
+TEST_F(RobotsTest, SendTheirOwnMaps) {
+  FarmService service;
+  ASSERT_FALSE(service.port.empty()) << service.program.err();
+  const unsigned ports = free_ports(2);
+  Program map({"map", "--listen", std::to_string(ports), "--listen", std::to_string(ports + 1), "--merge", "--once",
+               "--silence", "60"});
+  const auto robot = [&](const std::string& name, unsigned port) {
+    return service.robot(name, {"--duration", "2", "--map", "127.0.0.1:" + std::to_string(port)});
+  };
+  const auto two = robot("roomba2", ports), four = robot("roomba4", ports + 1);
+  for (const Json& facts : {facts_of(two), facts_of(four)}) {
+    EXPECT_GT(facts.number("/own_map/scans"), 0);
+    EXPECT_GT(facts.number("/own_map/maps"), 0);
+  }
+  map.signal(SIGINT);
+  const Outcome outcome = map.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_GT(std::count(outcome.out.begin(), outcome.out.end(), '1'), 0) << outcome.out;
+  EXPECT_GT(std::count(outcome.out.begin(), outcome.out.end(), ' '), 20) << outcome.out;
+}
+
 /// One process after another with one name: each is heard from its first packet on.
 TEST_F(RobotsTest, OneAfterAnotherIsHeardAtOnce) {
   FarmService service;
@@ -186,6 +210,12 @@ TEST(Robot, WrongWordsAreRefusedWithWhatWasExpected) {
       {{"--name", "roomba2", "--loss", "1.5"}, "expected a number from 0 to 1"},
       {{"--name", "roomba2", "--delay", "-1"}, "expected a number from 0 to 3600"},
       {{"--name", "roomba2", "--port", "0"}, "expected a whole number from 1 to 65535"},
+      {{"--name", "roomba2", "--map", "52000"}, "expected HOST:PORT"},
+      {{"--name", "roomba2", "--map", "127.0.0.1:0"}, "expected HOST:PORT"},
+      {{"--name", "roomba2", "--serial", "/dev/ttyNONE0"}, "`ls /dev/ttyUSB* /dev/ttyACM*`"},
+      {{"--name", "roomba2", "--serial", "/dev/null"}, "is no serial line"},
+      {{"--name", "roomba2", "--serial", "/dev/null", "--baud", "1200"}, "57600"},
+      {{"--name", "roomba2", "--baud", "57600"}, "--serial"},
       {{"--name", "roomba2", "--server", "no.such.host.invalid"}, "no.such.host.invalid"},
   };
   for (const Case& each : cases) {
@@ -206,6 +236,32 @@ TEST(Robot, WithoutSensorsItNeedsNoFarm) {
       {"robot", world, "--name", "blind", "--port", std::to_string(free_ports(1)), "--duration", "0.3", "--json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_GT(Json(outcome.out).number("/distance_m"), 0.0);
+}
+
+/// A controller that drives by its pose alone, on the odometry of a simulated Create.
+TEST(Robot, DrivesACreateOnASerialLine) {
+  const Folder folder;
+  const std::string world =
+      folder.write("floor.world", "position( name \"create\" size [0.3 0.3 0.1] track 0.258 pose [0 0 0 90] )\n");
+  CreateSimulator create;
+  create.X.yaw = M_PI / 2;
+  create.alone = false;
+  Program robot({"robot", world, "--name", "create", "--port", std::to_string(free_ports(1)), "--controller", "patrol",
+                 "--set", "points=0,0,0,0.2", "--set", "speed=0.4", "--serial", create.device(), "--json"});
+  ASSERT_TRUE(create.streaming()) << robot.err();
+  for (std::uint64_t steps = 1; create.X.y < 0.15 && steps < 300; ++steps) {
+    create.run(7);
+    ASSERT_TRUE(create.driven(steps)) << robot.err();
+  }
+  robot.signal(SIGINT);
+  EXPECT_TRUE(create.comes_to(CreateSimulator::passive));
+  EXPECT_EQ(create.right, 0);
+  const Outcome outcome = robot.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_GT(facts.number("/create/frames"), 7);
+  EXPECT_NEAR(facts.number("/pose/1"), create.X.y, 0.05);
+  EXPECT_NEAR(facts.number("/pose/0"), 0.0, 0.05);
 }
 
 TEST(Robot, AStartForNoRobotOfAPacketIsRefused) {

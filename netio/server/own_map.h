@@ -1,0 +1,66 @@
+#pragma once
+// The occupancy map that a robot makes of its own scans (thesis, 4.4), and its packets.
+//
+//   OwnMap map(world, mover, {.receiver = {address, 52008}});
+//   map.add(scan, X_WS);      // each reading of its laser
+//   map.send(now);            // once a step
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/reading.h"
+#include "base/thread_pool.h"
+#include "netio/outbox.h"
+#include "sensors/occupancy.h"
+#include "sensors/occupancy_host.h"
+#include "world/world.h"
+
+namespace sf::server {
+
+struct OwnMapOptions {
+  netio::Endpoint receiver;
+  sensors::WireFormat wire = sensors::WireFormat::farm;
+};
+
+struct OwnMapCounts {
+  std::uint64_t scans = 0;  ///< entered
+  std::uint64_t maps = 0;   ///< sent, all their parts
+  netio::OutboxCounts sent;
+};
+
+/// One thread.
+class OwnMap {
+ public:
+  /// With the settings of the robot's first `occupancy( )`; without one over all of the world, of laser 0, in cells of
+  /// 3 cm or as many times two as its range and the largest map need, once a second.
+  /// @throws base::InputError for a robot without lasers, invalid settings, and a map that the wire cannot carry
+  OwnMap(const world::World& world, std::uint32_t mover, const OwnMapOptions& options);
+
+  /// Enters a reading of the map's laser that is newer than the last; all others are ignored.
+  /// @param X_WM of the robot at the reading's time
+  void add(const base::ReadingBlock& reading, const base::Pose& X_WM);
+  /// Sends the map when it is due. @param now [ns] of the packets' timestamps @param true_poses it was made from these
+  void send(std::int64_t now, bool true_poses);
+
+  const sensors::Occupancy& settings() const { return settings_; }
+  OwnMapCounts counts() const;
+
+ private:
+  sensors::Occupancy settings_;
+  base::Pose X_ML_;  ///< laser in the robot's frame
+  OwnMapOptions options_;
+  std::uint16_t robot_;
+  std::uint32_t session_;
+  base::ThreadPool thread_pool_{1};
+  sensors::HostMaps map_;
+  std::optional<std::int64_t> last_scan_;  ///< [ns]
+  std::int64_t next_ = 0;                  ///< [ns]
+  std::uint32_t sequence_ = 0;
+  std::uint64_t scans_ = 0;
+  std::vector<double> words_;
+  base::Bytes payload_, packet_;
+  netio::Outbox outbox_;
+};
+
+}  // namespace sf::server
