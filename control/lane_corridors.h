@@ -109,9 +109,13 @@ struct Edge {
   double cost = 0.0;                ///< [m]
 };
 
+/// Of all ways of a network together, four in a body's radius: some 400 MB.
+inline constexpr double kMaxWayPoints = 4e6;
+
 /// Immutable after construction; callable from any number of threads. The network and the world must outlive it.
 class LaneCorridors {
  public:
+  /// @throws base::InputError for a body so small that the lines would have more than kMaxWayPoints points
   LaneCorridors(const world::RoadNetwork& roads, const world::World& world, const RoadFootprint& body);
 
   const world::RoadNetwork& roads() const { return roads_; }
@@ -151,6 +155,7 @@ class LaneCorridors {
   RoadFootprint body_;
   double clearance_;
   double step_;
+  double points_ = 0.0;  ///< of all ways
   std::vector<Way> ways_;
   std::vector<std::vector<Edge>> edges_;
 

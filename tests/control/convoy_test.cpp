@@ -36,6 +36,20 @@ TEST(Parking, StopsWithItsFrontAtTheEndOfEverySpot) {
   }
 }
 
+/// Refused before the work: lines of a body that small have billions of points. 0.02 m is a tenth of a Create's radius.
+TEST(LaneCorridors, RefuseBodiesTooSmallForTheirRoads) {
+  Streets t;
+  for (const double radius : {1e-9, 1e-5, 5e-324}) {
+    try {
+      const control::LaneCorridors corridors(t.roads, t.world, {.radius = radius});
+      ADD_FAILURE() << radius;
+    } catch (const base::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("is too small for these roads"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_NO_THROW(control::LaneCorridors(t.roads, t.world, {.radius = 0.02}));
+}
+
 /// Boundary: half a radius outside the zone, all along its perimeter.
 TEST(Parking, AZoneReachesHalfARadiusFarther) {
   Streets t;

@@ -57,6 +57,30 @@ TEST(Dashes, GoOnOverTheCornersOfAPath) {
   EXPECT_EQ(apart.substr(41, 8).find_first_not_of('.'), std::string::npos) << apart;
 }
 
+/// The corner is 4 px into a dash: its other 4 px stand on the second leg, and a gap of 12 px behind them. Legs that
+/// only share one coordinate with the end before are new lines.
+TEST(Dashes, TurnCorners) {
+  const auto column_of = [](const Canvas& canvas, int x) {
+    std::string column;
+    for (int y = 0; y < canvas.height(); ++y) column += canvas.pixel(x, y) == kBlack ? '#' : '.';
+    return column;
+  };
+  const auto second_leg = [&](glm::dvec2 begin) {
+    Canvas canvas(60, 60, kWhite);
+    const std::vector<Line> legs{{{5, 4}, {29, 4}}, {begin, {begin.x, begin.y + 40}}};
+    draw_dashes(canvas, legs, 2.0, 8.0, 12.0, kBlack);
+    return column_of(canvas, static_cast<int>(begin.x));
+  };
+  const std::string corner = second_leg({29, 4});
+  EXPECT_EQ(corner.substr(4, 3), "###") << corner;
+  EXPECT_EQ(corner.substr(10, 8).find('#'), std::string::npos) << corner;
+  EXPECT_EQ(corner.substr(20, 7), "#######") << "the next dash, 16 px behind the corner: " << corner;
+  const std::string below = second_leg({29, 5});  // the same x, another y
+  EXPECT_EQ(below.substr(5, 7), "#######") << "a new line begins with a dash: " << below;
+  const std::string beside = second_leg({40, 4});  // the same y, another x
+  EXPECT_EQ(beside.substr(4, 7), "#######") << beside;
+}
+
 TEST(Dashes, LinesWithoutLengthAreLeftOut) {
   EXPECT_EQ(painted(dashes({{{5, 4}, {5, 4}}, {{NAN, 4}, {9, 4}}, {{0, 4}, {1e9, 4}}}, 8.0, 12.0)), 0u);
 }
