@@ -1,6 +1,7 @@
 #pragma once
 // Results of a tick, and the interface of recorders: what the farm and the simulation know of them.
 
+#include <cstdint>
 #include <span>
 
 #include "base/reading.h"
@@ -8,6 +9,14 @@
 #include "base/state_quality.h"
 
 namespace sf::base {
+
+/// A traffic light.
+struct LightStatus {
+  std::uint8_t state = 0;  ///< 0 dark, 1 red, 2 yellow, 3 green, 4 flashing red, 5 flashing yellow
+  double left = 0.0;       ///< [s] until the next change; infinity: none is known
+
+  friend bool operator==(const LightStatus&, const LightStatus&) = default;
+};
 
 /// Results of one tick. The spans are valid during the call.
 struct TickRecord {
@@ -18,6 +27,7 @@ struct TickRecord {
   std::span<const std::uint8_t> contacts;   ///< one per report: 1 where a wall or a robot stopped the mover
   std::span<const ReadingBlock> readings;   ///< delivered this tick
   std::span<const StateQuality> qualities;  ///< one per report; empty: the states are true
+  std::span<const LightStatus> lights;      ///< one per traffic light of the world; empty: not recorded
 };
 
 class Sink {

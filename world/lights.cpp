@@ -21,6 +21,22 @@ Signal signal_at(const Light& light, double time) {
   return {light.phases.front().state, light.phases.front().duration};
 }
 
+SignalForecast forecast_at(const Light& light, double time) {
+  constexpr double kInto = 5e-4;  // [s] into the next phase, beyond rounding
+  SignalForecast forecast{signal_at(light, time), 0.0, std::nullopt};
+  forecast.latest = forecast.now.left;
+  if (!std::isfinite(forecast.now.left)) return forecast;
+  forecast.next = signal_at(light, time + forecast.now.left + kInto);
+  forecast.next->left += forecast.now.left + kInto;
+  return forecast;
+}
+
+std::vector<SignalForecast> forecasts_at(const World& world, double time) {
+  std::vector<SignalForecast> forecasts;
+  for (const Light& light : world.lights) forecasts.push_back(forecast_at(light, time));
+  return forecasts;
+}
+
 std::string_view name_of(LightState state) { return words_of(state).at(static_cast<std::size_t>(state)); }
 
 }  // namespace sf::world

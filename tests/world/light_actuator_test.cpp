@@ -1,0 +1,160 @@
+// Actuated programs: calls, gaps, yellow, and what the forecasts promise.
+
+#include "world/light_actuator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+
+namespace sf::world {
+namespace {
+
+/// Light a is green for 5 to 20 s while robots come, b on call.
+struct Crossing {
+  World world;
+  LightPlan plan;
+
+  Crossing() {
+    for (const char* name : {"a", "b"}) {
+      world.lights.emplace_back().name = name;
+      world.lights.back().phases = {{LightState::dark, 1.0}};
+    }
+    plan = parse_light_plan("p.toml", R"(
+[[detector]]
+name = "at a"
+at = [0, 0]
+radius = 1
+[[detector]]
+name = "at b"
+at = [10, 0]
+radius = 1
+calls = [[100, 101]]
+[[program]]
+lights = ["a", "b"]
+[[program.stage]]
+states = { a = "green" }
+min = 5
+max = 20
+gap = 2
+detectors = ["at a"]
+[[program.stage]]
+states = { b = "green" }
+min = 4
+max = 10
+gap = 2
+detectors = ["at b"]
+on_call = true
+)",
+                            world);
+  }
+};
+
+constexpr glm::dvec2 kAtA{0.5, 0.0}, kAtB{10.0, -1.0}, kElsewhere{5.0, 0.0};
+
+/// Runs the lights in steps of 0.1 s, with robots at places for some time.
+struct Drive : Crossing {
+  LightActuator lights{world, plan};
+  double time = 0.0;
+
+  void until(double end, std::initializer_list<glm::dvec2> robots = {}) {
+    for (; time < end - 1e-9; time += 0.1) {
+      for (const glm::dvec2& p : robots) lights.detect(p, time);
+      lights.step(time);
+    }
+  }
+  LightState a() const { return lights.forecasts(time)[0].now.state; }
+  LightState b() const { return lights.forecasts(time)[1].now.state; }
+};
+
+TEST(LightActuator, RestsInGreenWithoutACall) {
+  Drive d;
+  d.until(60.0, {kAtA, kElsewhere});
+  EXPECT_EQ(d.a(), LightState::green);
+  EXPECT_EQ(d.lights.forecasts(d.time)[0].now.left, HUGE_VAL) << "nobody knows";
+  EXPECT_EQ(d.b(), LightState::red);
+}
+
+TEST(LightActuator, ACallEndsTheOthersGreenWhereNobodyComes) {
+  Drive d;
+  d.until(30.0);
+  d.until(30.3, {kAtB});
+  EXPECT_EQ(d.a(), LightState::yellow);
+  EXPECT_EQ(d.b(), LightState::red);
+  d.until(32.5, {kAtB});
+  EXPECT_EQ(d.a(), LightState::red);
+  EXPECT_EQ(d.b(), LightState::red) << "clear time";
+  d.until(33.5, {kAtB});
+  EXPECT_EQ(d.b(), LightState::green);
+  // The robot has left: 4 s of green and a gap later it ends, and the call is forgotten.
+  d.until(36.9);
+  EXPECT_EQ(d.b(), LightState::green);
+  d.until(37.6);
+  EXPECT_EQ(d.b(), LightState::yellow);
+  d.until(70.0);
+  EXPECT_EQ(d.a(), LightState::green);
+}
+
+TEST(LightActuator, RobotsProlongGreenUpToItsMaximum) {
+  Drive d;
+  d.until(19.8, {kAtA, kAtB});
+  EXPECT_EQ(d.a(), LightState::green);
+  d.until(20.3, {kAtA, kAtB});
+  EXPECT_EQ(d.a(), LightState::yellow);
+  Drive gap;
+  gap.until(10.0, {kAtA, kAtB});
+  gap.until(12.2, {kAtB});
+  EXPECT_EQ(gap.a(), LightState::green) << "a state counts for 0.5 s, then the gap of 2 s";
+  gap.until(12.8, {kAtB});
+  EXPECT_EQ(gap.a(), LightState::yellow);
+}
+
+TEST(LightActuator, CallsOfTheFileCountAsRobots) {
+  Drive d;
+  d.until(99.9);
+  EXPECT_EQ(d.a(), LightState::green);
+  d.until(100.3);
+  EXPECT_EQ(d.a(), LightState::yellow);
+}
+
+/// After a stop of the process: whatever was due, yellow is shown in full.
+TEST(LightActuator, ALateStepShortensNoYellow) {
+  Drive d;
+  d.until(10.0);
+  d.time = 50.0;
+  d.until(51.9, {kAtB});
+  EXPECT_EQ(d.a(), LightState::yellow);
+  d.until(52.3, {kAtB});
+  EXPECT_EQ(d.a(), LightState::red);
+}
+
+/// Random robots for half an hour: never two greens, yellow between green and red, and no change before its forecast.
+TEST(LightActuator, ForecastsAndYellowHold) {
+  Drive d;
+  std::vector<SignalForecast> before = d.lights.forecasts(0.0);
+  double sooner[2] = {0.0, 0.0};  // [s] time before which no change was promised
+  int greens = 0;
+  for (std::uint32_t k = 0; k < 18'000; ++k) {
+    const auto u = base::random_uniform({.seed = 5, .stream = base::RandomStream::placement, .a = k / 40}, 0);
+    if (u[0] < 0.4) d.lights.detect(kAtA, d.time);
+    if (u[1] < 0.4) d.lights.detect(kAtB, d.time);
+    d.lights.step(d.time);
+    const std::vector<SignalForecast> now = d.lights.forecasts(d.time);
+    EXPECT_FALSE(now[0].now.state != LightState::red && now[1].now.state != LightState::red) << d.time;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const LightState was = before[i].now.state, is = now[i].now.state;
+      EXPECT_FALSE(was == LightState::green && is == LightState::red) << "without yellow at " << d.time;
+      EXPECT_TRUE(was == is || d.time >= sooner[i] - 1e-6) << "light " << i << " changed early at " << d.time;
+      if (was != is && is == LightState::green) ++greens;
+      EXPECT_GE(now[i].latest, now[i].now.left);
+      sooner[i] = std::isfinite(now[i].now.left) ? d.time + now[i].now.left : 0.0;
+    }
+    before = now;
+    d.time += 0.1;
+  }
+  EXPECT_GT(greens, 60) << "the lights work";
+}
+
+}  // namespace
+}  // namespace sf::world
