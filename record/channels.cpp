@@ -72,7 +72,7 @@ void add_frames(const RunInfo& info, Channels& channels) {
 }  // namespace
 
 std::size_t count_channels(const RunInfo& info) {
-  std::size_t count = 4;
+  std::size_t count = info.lights.empty() ? 4 : 5;
   for (const MoverInfo& mover : info.movers)
     count += 2 + (info.estimated ? 1 : 0) + (info.record_readings ? mover.sensors.size() : 0);
   return count;
@@ -85,6 +85,7 @@ Channels add_channels(McapWriter& mcap, const RunInfo& info) {
   const std::uint16_t transforms = add_schema(mcap, kTransforms);
   channels.transforms = mcap.add_channel(transforms, "/tf", "cdr", kPlain);
   channels.statics = mcap.add_channel(transforms, "/tf_static", "cdr", kLatched);
+  if (!info.lights.empty()) channels.lights = mcap.add_channel(add_schema(mcap, kLights), "/lights", "cdr", kPlain);
   add_frames(info, channels);
   if (info.odometry_rate > 0.0) add_motion(mcap, info, channels);
   if (info.estimated) add_qualities(mcap, info, channels);

@@ -25,6 +25,7 @@ struct MoverChannels {
 
 struct Channels {
   std::uint16_t info = 0, fleet = 0, transforms = 0, statics = 0;
+  std::uint16_t lights = 0;  ///< 0: the world has none
   std::vector<MoverChannels> movers;
 };
 

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "record/fleet_message.h"
+#include "record/lights_message.h"
 #include "record/reading_messages.h"
 
 namespace sf::record {
@@ -89,6 +90,7 @@ void Recorder::write(const base::TickRecord& record) {
   encode_fleet(record, message_);
   add(channels_.fleet, ticks_, record.time, record.time);
   write_transforms(record);
+  if (!record.lights.empty()) write_lights(record);
   if (info_.odometry_rate > 0.0 && record.time >= next_odometry_) write_odometry(record);
   if (info_.estimated) write_qualities(record);
   if (info_.record_readings)
@@ -106,6 +108,12 @@ void Recorder::write_transforms(const base::TickRecord& record) {
   message_.clear();
   encode_transforms(transforms_, message_);
   add(channels_.transforms, ticks_, record.time, record.time);
+}
+
+void Recorder::write_lights(const base::TickRecord& record) {
+  message_.clear();
+  encode_lights(record.time, info_.lights, record.lights, message_);
+  add(channels_.lights, ticks_, record.time, record.time);
 }
 
 void Recorder::write_qualities(const base::TickRecord& record) {

@@ -46,6 +46,7 @@ class Recorder : public base::Sink {
   void write_run_info();
   void write_sensor_frames();
   void write_transforms(const base::TickRecord& record);
+  void write_lights(const base::TickRecord& record);
   void write_qualities(const base::TickRecord& record);
   void write_odometry(const base::TickRecord& record);
   void write_reading(const base::ReadingBlock& reading, std::int64_t time);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "record/lights_message.h"
 #include "record/mcap_reader.h"
 #include "record/reading_messages.h"
 #include "record/recording_files.h"
@@ -104,6 +105,12 @@ bool read_reading(const McapMessage& message, const SensorTopic& topic, Recordin
 bool read_message(const McapMessage& message, std::string_view type, const std::string& name, const Topics& topics,
                   FleetState& fleet, Recording& recording) {
   if (type == kFleet) return read_fleet(message, fleet, recording);
+  if (type == kLights) {
+    LightsSample& sample = recording.lights.emplace_back();
+    const bool good = decode_lights(message.data, sample.time, sample.lights);
+    if (!good) recording.lights.pop_back();
+    return good;
+  }
   const auto found = topics.find(name);
   if (found == topics.end()) return type != kLaserScan;
   return type == type_of(*found->second.type) && read_reading(message, found->second, recording);

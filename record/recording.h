@@ -32,11 +32,18 @@ struct ReadingSample {
   std::vector<double> values;  ///< element by element, in the order of the sensor type's columns; scans in float32
 };
 
+/// All traffic lights at one tick.
+struct LightsSample {
+  std::int64_t time = 0;                  ///< [ns] simulated
+  std::vector<base::LightStatus> lights;  ///< one per light of the world
+};
+
 struct Recording {
   std::string file;
   RunInfo info;                                  ///< with the world's snapshot
   std::vector<std::vector<StateSample>> states;  ///< by mover, then by tick
   std::vector<ReadingSample> readings;           ///< in order of delivery; empty when not recorded
+  std::vector<LightsSample> lights;              ///< by tick; empty when the world has none
   std::uint64_t ticks = 0;                       ///< number of ticks in the file
   std::int64_t end_time = 0;                     ///< [ns] simulated time of the last tick
   bool truncated = false;           ///< not finished: killed, or still being written; all whole ticks are here

@@ -60,6 +60,7 @@ struct RunInfo {
   std::vector<MoverInfo> movers;                             ///< in the rows of `base::Report::mover`
   std::vector<std::pair<std::string, std::string>> options;  ///< further options of the run
   base::Bytes snapshot;                                      ///< the world, not empty
+  std::vector<std::string> lights;  ///< names of the world's traffic lights; not read back, since the world has them
 };
 
 /// @return null when the run has no sensors of that type.

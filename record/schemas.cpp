@@ -44,6 +44,10 @@ constexpr std::array kDefinitions = {
                "uint32 mover\nbool contact\nsensorfarm_msgs/Pose pose\n"
                "sensorfarm_msgs/Twist velocity\nsensorfarm_msgs/Twist command\n"},
     Definition{"sensorfarm_msgs/Fleet", "std_msgs/Header header\nuint64 tick\nsensorfarm_msgs/State[] states\n"},
+    Definition{"sensorfarm_msgs/Light",
+               "uint8 DARK=0\nuint8 RED=1\nuint8 YELLOW=2\nuint8 GREEN=3\nuint8 FLASHING_RED=4\n"
+               "uint8 FLASHING_YELLOW=5\nstring name\nuint8 state\nfloat64 left\n"},
+    Definition{"sensorfarm_msgs/Lights", "std_msgs/Header header\nsensorfarm_msgs/Light[] lights\n"},
     Definition{"sensorfarm_msgs/StateQuality",
                "std_msgs/Header header\nbool stale\nfloat64 age\nfloat32[6] covariance\n"},
     Definition{"sensorfarm_msgs/Laser",

@@ -11,6 +11,7 @@ inline constexpr std::string_view kLaserScan = "sensor_msgs/msg/LaserScan";
 inline constexpr std::string_view kTwistStamped = "geometry_msgs/msg/TwistStamped";
 inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
 inline constexpr std::string_view kStateQuality = "sensorfarm_msgs/msg/StateQuality";
+inline constexpr std::string_view kLights = "sensorfarm_msgs/msg/Lights";
 inline constexpr std::string_view kFleet = "sensorfarm_msgs/msg/Fleet";
 inline constexpr std::string_view kRunInfo = "sensorfarm_msgs/msg/RunInfo";
 

@@ -37,6 +37,7 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}, {"caster", settings.caster}};
   info.snapshot = world::snapshot(world);
   for (const world::Mover& mover : world.movers) info.movers.push_back({mover.name, "", mover.id, {}});
+  for (const world::Light& light : world.lights) info.lights.push_back(light.name);
   add_type(sensor_set, info);
   return info;
 }
