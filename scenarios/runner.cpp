@@ -55,6 +55,18 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
     refuse(world.file + " has no lights to be obeyed; leave this out");
 }
 
+/// Row of an event's object. @throws base::InputError for a mover that senses or drives: a robot cannot vanish from its
+/// controller
+std::uint32_t object_of(const Scenario& scenario, const world::World& world, const SimulationOptions& options,
+                        const ObjectEvent& event) {
+  const std::uint32_t row = row_of(scenario, world, event.object, event.line);
+  if (world.movers[row].sensors.empty() && options.actors[row].controller.name.empty()) return row;
+  throw base::InputError(scenario.file, event.line,
+                         fmt::format("'{}' has sensors or a controller; expected an object without, such as a model "
+                                     "named tag1",
+                                     event.object));
+}
+
 /// Line of the file that sets the mover's controller.
 int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
   for (const RobotSetup& setup : scenario.robot_setups)
@@ -82,6 +94,8 @@ class Run {
         world_(world_of(scenario)),
         simulation_(world_, device, simulation_of(scenario, world_)),
         metrics_(world_, simulation_) {
+    const SimulationOptions options = simulation_of(scenario, world_);
+    for (const ObjectEvent& event : scenario.events) objects_.push_back(object_of(scenario, world_, options, event));
     for (const Expectation& e : scenario.expect)
       if (e.kind == Kind::map_coverage)
         for (const std::uint32_t row : rows_of(scenario, world_, e))
@@ -93,6 +107,7 @@ class Run {
     const bool until_done = expects(scenario_, Kind::done);
     const auto start = Clock::now();
     for (; result.ticks < ticks && !(until_done && simulation_.all_done()); ++result.ticks) {
+      change_objects(static_cast<double>(result.ticks) * world_.interval);
       const auto begin = Clock::now();
       const base::TickRecord tick = simulation_.step();
       tick_ms_.push_back(1e3 * base::seconds_since(begin));
@@ -107,6 +122,12 @@ class Run {
   }
 
  private:
+  /// Events that are due at `time` [s], to half a nanosecond.
+  void change_objects(double time) {
+    for (; next_event_ < objects_.size() && scenario_.events[next_event_].at <= time + 5e-10; ++next_event_)
+      simulation_.set_absent(objects_[next_event_], !scenario_.events[next_event_].present);
+  }
+
   /// Worst value of a measure over the expectation's robots, ignoring NaN; NaN without a value.
   template <class Measure>
   double worst(const Expectation& e, bool least, Measure&& measure) const {
@@ -201,6 +222,8 @@ class Run {
 
   const Scenario& scenario_;
   world::World world_;
+  std::vector<std::uint32_t> objects_;  ///< per event: its mover
+  std::size_t next_event_ = 0;
   Simulation simulation_;
   RunMetrics metrics_;
   std::map<std::uint32_t, RobotMap> maps_;  ///< by row of the mover
@@ -226,6 +249,7 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
       made.push_back(try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, config));
   }
   for (const Expectation& e : scenario.expect) check_expectation(scenario, world, options, e);
+  for (const ObjectEvent& event : scenario.events) object_of(scenario, world, options, event);
   return std::move(world.warnings);
 }
 

@@ -59,6 +59,14 @@ struct FleetSpawn {
   int line = 0;  ///< of `robots` in the file
 };
 
+/// A change of an object during the run.
+struct ObjectEvent {
+  std::string object;   ///< name of a mover without sensors and controller
+  double at = 0.0;      ///< [s] simulated; from the first tick not before it on
+  bool present = true;  ///< in the world
+  int line = 0;
+};
+
 struct Scenario {
   std::string name;    ///< default: the file's name without extension
   std::string file;    ///< empty: made in memory
@@ -76,6 +84,7 @@ struct Scenario {
   int default_line = 0;                    ///< line of its controller; 0: not in the file
   std::vector<RobotSetup> robot_setups;
   std::vector<Expectation> expect;
+  std::vector<ObjectEvent> events;  ///< by time
 };
 
 /// The path of the world is relative to the scenario's folder.

@@ -29,9 +29,10 @@ constexpr double kMostWhole = 9.0e15;     // whole numbers that a double represe
 constexpr double kMostPosition = 1e7;     // [m]
 constexpr double kLongestDelay = 3600.0;  // [s]
 
-constexpr std::array<std::string_view, 15> kKeys{"name",    "world",  "duration", "seed",  "tick",
-                                                 "robots",  "of",     "place",    "plant", "start_at",
-                                                 "default", "states", "link",     "robot", "expect"};
+constexpr std::array<std::string_view, 16> kKeys{"name", "world", "duration", "seed",     "tick",    "robots",
+                                                 "of",   "place", "plant",    "start_at", "default", "states",
+                                                 "link", "robot", "expect",   "event"};
+constexpr std::array<std::string_view, 3> kEventKeys{"at", "object", "present"};
 constexpr std::array<std::string_view, 3> kDefaultKeys{"controller", "rate", "settings"};
 constexpr std::array<std::string_view, 6> kRobotKeys{"name", "controller", "rate", "settings", "link", "pose"};
 constexpr std::array<std::string_view, 7> kStatesKeys{"rate",   "delay",          "jitter",   "loss",
@@ -231,6 +232,21 @@ void read_plant(const Reader& reader, const TomlNode& root, Scenario& scenario) 
 }
 
 /// Relative to the scenario's file; else among the installed worlds.
+void read_events(const Reader& reader, const TomlNode& root, Scenario& scenario) {
+  for (const TomlNode* table : reader.tables(root, "event")) {
+    reader.require_known(*table, kEventKeys);
+    for (const std::string_view key : kEventKeys)
+      if (world::find(*table, key) == nullptr)
+        reader.fail(*table, fmt::format("'{}' is missing; an event has at = SECONDS, object = \"NAME\" and present = "
+                                        "true or false",
+                                        key));
+    scenario.events.push_back({reader.text(*table, "object", ""), reader.number(*table, "at", 0.0, 0.0, kLongest),
+                               reader.flag(*table, "present"), table->line});
+  }
+  std::stable_sort(scenario.events.begin(), scenario.events.end(),
+                   [](const ObjectEvent& a, const ObjectEvent& b) { return a.at < b.at; });
+}
+
 std::string world_file(const Reader& reader, const TomlNode& root) {
   const std::string file = reader.text(root, "world", "");
   if (file.empty()) throw base::InputError(reader.file(), 0, "has no world; expected world = \"FILE\"");
@@ -280,6 +296,7 @@ Scenario parse_scenario(const std::string& file, std::string_view text) {
   }
   read_robots(reader, root, scenario);
   read_expectations(reader, root, scenario);
+  read_events(reader, root, scenario);
   return scenario;
 }
 

@@ -55,6 +55,8 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       next_intents_(world.movers.size()),
       others_(thread_pool_.threads()),
       signals_(world.lights.size()),
+      light_states_(world.lights.size()),
+      absent_(world.movers.size(), false),
       start_at_(base::nanoseconds(options.start_at)),
       interval_(base::nanoseconds(world.interval)) {
   SF_CHECK(options.actors.empty() || options.actors.size() == world.movers.size(),
@@ -101,7 +103,22 @@ base::TickRecord Simulation::step() {
   sort_by_mover(readings);
   decide(time);
   move_s_ += base::seconds_since(start);
-  return {tick_++, time, fleet_.reports(), executed_commands_, fleet_.contacts(), readings};
+  return {tick_++, time, recorded_reports(), executed_commands_, fleet_.contacts(), readings, {}, light_states_};
+}
+
+std::span<const base::Report> Simulation::recorded_reports() {
+  if (std::find(absent_.begin(), absent_.end(), true) == absent_.end()) return fleet_.reports();
+  present_.assign(fleet_.reports().begin(), fleet_.reports().end());
+  for (base::Report& report : present_)
+    if (absent_[report.mover]) report.X_WM = base::kAbsent;
+  return present_;
+}
+
+void Simulation::set_absent(std::uint32_t mover, bool gone) {
+  SF_CHECK(mover < absent_.size() && world_.movers[mover].sensors.empty(), "mover " + std::to_string(mover));
+  absent_[mover] = gone;
+  fleet_.set_absent(mover, gone);
+  farm_.set_absent(mover, gone);
 }
 
 std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
@@ -156,8 +173,10 @@ void Simulation::sort_by_mover(std::span<const base::ReadingBlock> readings) {
 }
 
 void Simulation::decide(std::int64_t time) {
-  for (std::size_t i = 0; i < signals_.size(); ++i)
+  for (std::size_t i = 0; i < signals_.size(); ++i) {
     signals_[i] = world::signal_at(world_.lights[i], 1e-9 * static_cast<double>(time));
+    light_states_[i] = world::status_of(signals_[i]);
+  }
   if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
   thread_pool_.parallel_for(controls_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
     for (std::size_t m = begin; m < end; ++m) try_to_decide(static_cast<std::uint32_t>(m), time, thread);

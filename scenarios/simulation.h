@@ -67,6 +67,10 @@ class Simulation {
   /// Places the mover at a pose, at rest. Called between two steps.
   void put(std::uint32_t mover, const base::Pose& X_WM);
 
+  /// Takes a mover without sensors out of the world, or puts it back where it was. Called between two steps: sensors
+  /// see the change from the last step on.
+  void set_absent(std::uint32_t mover, bool gone);
+
   const farm::Farm& farm() const { return farm_; }
   double move_seconds() const { return move_s_; }  ///< [s] wall time of controllers and motion
 
@@ -93,6 +97,7 @@ class Simulation {
   void move();
   std::span<const base::ReadingBlock> sense(std::int64_t time);
   void sort_by_mover(std::span<const base::ReadingBlock> readings);
+  std::span<const base::Report> recorded_reports();
   void decide(std::int64_t time);
   void decide_one(std::uint32_t mover, std::int64_t time, unsigned thread);
   void try_to_decide(std::uint32_t mover, std::int64_t time, unsigned thread);
@@ -121,6 +126,9 @@ class Simulation {
   std::vector<base::Intent> next_intents_;    ///< as broadcast from the next tick on
   std::vector<std::vector<control::Neighbour>> others_;  ///< per thread
   std::vector<world::Signal> signals_;
+  std::vector<base::LightStatus> light_states_;  ///< likewise, of the recorded tick
+  std::vector<bool> absent_;                     ///< per mover
+  std::vector<base::Report> present_;            ///< reports with kAbsent, of one tick; empty: all are present
   std::vector<world::Warning> warnings_;
   std::mutex failure_lock_;
   std::exception_ptr failure_;           ///< of a controller in this tick

@@ -150,6 +150,7 @@ class Verifier {
     for (std::uint32_t m = 0; m < recording_.states.size(); ++m) {
       const record::StateSample& s = recording_.states[m][tick];
       reports_.push_back({m, s.time, s.X_WM, s.velocity});
+      farm_.set_absent(m, base::is_absent(s.X_WM));
     }
     const std::int64_t time = reports_[0].time;
     const auto look_at = [this](std::span<const base::ReadingBlock> readings) {
@@ -168,7 +169,8 @@ class Verifier {
       const base::Report after{0, s.time, s.X_WM, s.velocity};
       const record::StateSample& p = states[asked.tick - (asked.time < s.time ? 1 : 0)];
       const base::Report before{0, p.time, p.X_WM, p.velocity};
-      poses.push_back(asked.time < s.time ? robots::interpolate(before, after, asked.time).X_WM : s.X_WM);
+      const bool between = asked.time < s.time && !base::is_absent(p.X_WM) && !base::is_absent(s.X_WM);
+      poses.push_back(between ? robots::interpolate(before, after, asked.time).X_WM : s.X_WM);
     }
   }
 

@@ -1,0 +1,135 @@
+// Doors: objects that come and go while a scenario runs.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.h"
+#include "record/recorder.h"
+#include "record/recording.h"
+#include "scenarios/run_info.h"
+#include "scenarios/runner.h"
+#include "scenarios/simulation.h"
+#include "scenarios/verification.h"
+#include "sensors/laser_settings.h"
+#include "tests/device.h"
+#include "tests/robots/scenes.h"
+
+namespace sf::scenarios {
+namespace {
+
+/// A robot with a laser in a box, and a door across its way, 1 m ahead.
+world::World corridor(bool with_door = true) {
+  world::World world = scenes::boxed_world(6.0, 2.0, {-1.0, -1.0});
+  world.interval = 0.1;
+  scenes::add_mover(world, {}, scenes::rectangle({0.0, 0.0}, 0.2, 0.2))
+      .sensors.push_back(
+          sensors::laser_sensor({{.name = "laser", .X_MS = {0.0, 0.0, 0.04, 0.0}, .samples = 31}, 13.0}));
+  if (!with_door) return world;
+  world::Mover& door = scenes::add_mover(world, {1.0, 0.0, 0.0, 0.0}, scenes::rectangle({0.0, 0.0}, 0.05, 2.0));
+  door.name = "tag1";
+  door.is_tag = true;
+  door.id = 1;
+  world::update_extent_and_hash(world);
+  return world;
+}
+
+SimulationOptions standing(const world::World& world) {
+  return {.actors = std::vector<Actor>(world.movers.size(), Actor{.controller = {.name = ""}})};
+}
+
+std::vector<double> ranges_of(const base::TickRecord& tick) {
+  std::vector<double> all;
+  for (const base::ReadingBlock& reading : tick.readings)
+    all.insert(all.end(), reading.values.begin(), reading.values.end());
+  return all;
+}
+
+/// With the door open every reading is, to the bit, that of a world without a door; and back.
+TEST(ObjectEvent, AnOpenDoorIsNoDoor) {
+  for (const char* caster : {"host", "vulkan"}) {
+    setenv("SENSORFARM_CASTER", caster, 1);
+    const world::World with = corridor(), without = corridor(false);
+    Simulation door(with, device(), standing(with)), none(without, device(), standing(without));
+    int open = 0, closed = 0;
+    for (int tick = 0; tick < 30; ++tick) {
+      if (tick == 10) door.set_absent(1, true);
+      if (tick == 20) door.set_absent(1, false);
+      const std::vector<double> seen = ranges_of(door.step()), empty = ranges_of(none.step());
+      const bool is_open = tick >= 10 && tick < 20;
+      if (seen.empty()) continue;
+      EXPECT_EQ(seen == empty, is_open) << caster << ", tick " << tick;
+      ++(is_open ? open : closed);
+    }
+    EXPECT_GT(open, 5);
+    EXPECT_GT(closed, 10);
+  }
+  unsetenv("SENSORFARM_CASTER");
+}
+
+TEST(ObjectEvent, ARobotDrivesThroughAnOpenDoorOnly) {
+  for (const bool open : {false, true}) {
+    const world::World world = corridor();
+    Simulation simulation(world, device(), standing(world));
+    simulation.set_absent(1, open);
+    const std::vector<base::Twist> ahead{{0.5, 0.0, 0.0}, {}};
+    double x = 0.0;
+    bool contact = false;
+    for (int tick = 0; tick < 60; ++tick) {
+      simulation.command(ahead);
+      const base::TickRecord record = simulation.step();
+      x = record.reports[0].X_WM.x;
+      contact = contact || record.contacts[0] != 0;
+      EXPECT_EQ(base::is_absent(record.reports[1].X_WM), open);
+    }
+    EXPECT_EQ(contact, !open);
+    EXPECT_GT(x, open ? 2.0 : 0.8);
+    EXPECT_LT(x, open ? 4.9 : 0.9);
+  }
+}
+
+/// The recording knows when the door was open: every scan is computed again, also those between two ticks.
+TEST(ObjectEvent, RecordingsAreVerified) {
+  const world::World world = corridor();
+  const std::string folder = (std::filesystem::temp_directory_path() / "object_event").string();
+  {
+    const sensors::SensorSet sensor_set(world);
+    record::Recorder recorder(folder, run_info(world, sensor_set, {.record_readings = true}));
+    Simulation simulation(world, device(), standing(world));
+    for (int tick = 0; tick < 40; ++tick) {
+      if (tick % 10 == 5) simulation.set_absent(1, tick % 20 == 5);
+      recorder.write(simulation.step());
+    }
+  }
+  const Verification v = verify(record::open_recording(folder), device(), {.sample = 0});
+  EXPECT_TRUE(v.sound()) << v.reference.first;
+  EXPECT_GT(v.reference.readings, 40u);
+}
+
+std::string event_refusal(const std::string& event) {
+  try {
+    check_scenario(parse_scenario(SF_SOURCE_DIR "/experiments/test.toml",
+                                  "world = \"../worlds/minimagic/minimagic.world\"\n[[event]]\n" + event));
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    return what.substr(what.find("test.toml"));
+  }
+  return {};
+}
+
+TEST(ObjectEvent, ErrorsNameLineAndRemedy) {
+  EXPECT_EQ(event_refusal("at = 1\nobject = \"tag1\"\npresent = false\n"), "");
+  const std::pair<std::string, std::string> kCorpus[] = {
+      {"at = 1\nobject = \"tag1\"\n", "test.toml:2: 'present' is missing"},
+      {"at = -1\nobject = \"tag1\"\npresent = true\n", "test.toml:3: 'at' expects a number from 0"},
+      {"at = 1\nobject = \"tag9\"\npresent = true\n", "test.toml:2: "},
+      {"at = 1\nobject = \"tag1\"\npresent = 1\n", "test.toml:5: 'present' expects true or false"},
+      {"at = 1\nobjekt = \"tag1\"\npresent = true\n", "test.toml:4: unknown key 'objekt'; did you mean 'object'?"},
+      {"at = 1\nobject = \"pioneer1\"\npresent = false\n", "test.toml:2: 'pioneer1' has sensors or a controller"},
+  };
+  for (const auto& [text, said] : kCorpus) EXPECT_EQ(event_refusal(text).substr(0, said.size()), said) << text;
+}
+
+}  // namespace
+}  // namespace sf::scenarios
