@@ -31,9 +31,12 @@ void require_ids(std::span<const std::uint32_t> ids, std::uint32_t smallest, con
 Inbox::Inbox(const InboxOptions& options)
     : robots_(options.robots),
       tags_(options.tags),
+      objects_(options.tags),
+      lights_(options.lights),
       peers_(options.peers),
       types_(options.robots.size(), 0),
       sessions_(options.robots.size(), 0),
+      light_sessions_(options.lights.size(), 0),
       session_(options.session),
       take_late_(options.take_late),
       lockstep_(options.lockstep),
@@ -41,6 +44,7 @@ Inbox::Inbox(const InboxOptions& options)
       batch_(kBatch) {
   require_ids(options.robots, 0, "robot");
   require_ids(options.tags, kMinTag, "tag");
+  require_ids(options.lights, 0, "intersection");
 }
 
 void Inbox::wait(int timeout_ms) const {
@@ -87,7 +91,10 @@ PacketStatus Inbox::check_id(const Header& header) const {
       return known(header.robot == kBroadcastId || robots_.row(header.robot));
     case Type::tag:
       if (lockstep_) break;
+    case Type::object:
       return tags_.row(header.robot) ? PacketStatus::accepted : PacketStatus::unknown_tag;
+    case Type::v2i:
+      return lights_.row(header.robot) ? PacketStatus::accepted : PacketStatus::unknown_light;
     case Type::challenge:
     case Type::neighbours:
     case Type::state:
@@ -97,17 +104,20 @@ PacketStatus Inbox::check_id(const Header& header) const {
   return PacketStatus::wrong_direction;
 }
 
-/// The token of its address; START and TAG have none.
+/// The token of its address; START, TAG and OBJECT have none.
 bool Inbox::is_proven(const Header& header, const Endpoint& source) const {
-  return header.type == Type::start || header.type == Type::tag || header.token == tokens_.of(source);
+  const PeerKind kind = claim_of(header).kind;
+  return kind == PeerKind::start || kind == PeerKind::tag || header.token == tokens_.of(source);
 }
 
-/// Signatures of robots at proven addresses are always checked. Others cost no more than a part of a tick's time, and
-/// those of unproven packets move no counters: a copy that comes first, from elsewhere, does not stop the genuine one.
+/// Signatures of robots and lights at proven addresses are always checked. Others cost no more than a part of a tick's
+/// time, and those of unproven packets move no counters: a copy that comes first, from elsewhere, does not stop the
+/// genuine one.
 PacketStatus Inbox::check_peer(const Header& header, std::span<const std::uint8_t> bytes, const Endpoint& source,
                                bool proven, std::int64_t now) {
   const Claim claim = claim_of(header);
-  const bool bounded = peers_.has_key(claim) && (!proven || claim.kind != PeerKind::robot);
+  const bool answered = claim.kind == PeerKind::robot || claim.kind == PeerKind::light;
+  const bool bounded = peers_.has_key(claim) && !(proven && answered);
   if (bounded) begin_period(now);
   if (bounded && doubtful_signatures_ == kMaxDoubtfulSignatures) return PacketStatus::wrong_signature;
   const PacketStatus status = peers_.check(claim, bytes, source, proven);
@@ -118,6 +128,9 @@ PacketStatus Inbox::check_peer(const Header& header, std::span<const std::uint8_
 PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t now) {
   if (packet.header.type == Type::start) return PacketStatus::accepted;
   if (packet.header.type == Type::tag) return admit_state(tags_, packet, source, now);
+  if (packet.header.type == Type::object)
+    return objects_.admit(packet.header.robot, kStateChannel, packet.header.sequence, source, now);
+  if (packet.header.type == Type::v2i) return admit_light(packet, source, now);
   if (packet.header.type == Type::leave) return robots_.leave(packet.header.robot, source, now);
   if (packet.header.type == Type::v2v || packet.header.type == Type::subscribe) return admit_robot(packet, source, now);
   return admit_driver(packet, source, now);
@@ -145,6 +158,13 @@ PacketStatus Inbox::admit_robot(Packet& packet, const Endpoint& source, std::int
   return PacketStatus::accepted;
 }
 
+PacketStatus Inbox::admit_light(const Packet& packet, const Endpoint& source, std::int64_t now) {
+  const std::uint32_t id = packet.header.robot;
+  const PacketStatus status = lights_.admit(id, kStateChannel, packet.header.sequence, source, now);
+  if (status == PacketStatus::accepted) light_sessions_[*lights_.row(id)] = packet.header.session;
+  return status;
+}
+
 /// Marks a state that others of its bound sender overtook, where these are accepted.
 PacketStatus Inbox::admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source,
                                 std::int64_t now) const {
@@ -157,7 +177,7 @@ PacketStatus Inbox::admit_state(ClientRegistry& clients, Packet& packet, const E
 bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out) {
   if (packet.header.type == Type::leave) return false;
   begin_period(now);
-  PacketSigner* const own = signer(packet.header.robot);
+  PacketSigner* const own = peers_.signer(claim_of(packet.header));
   std::size_t& challenges = challenges_[own != nullptr ? 1 : 0];
   if (challenges == kMaxChallenges) return false;
   ++challenges;
@@ -180,6 +200,15 @@ void Inbox::begin_period(std::int64_t now) {
 SessionToken Inbox::session_token_for(std::uint32_t robot) const {
   const auto row = robots_.row(robot);
   return {session_, row ? sessions_[*row] : 0};
+}
+
+std::optional<Endpoint> Inbox::light_address(std::uint32_t light, std::int64_t now) const {
+  return lights_.is_active(light, now) ? lights_.source(light) : std::nullopt;
+}
+
+SessionToken Inbox::light_session_token(std::uint32_t light) const {
+  const auto row = lights_.row(light);
+  return {session_, row ? light_sessions_[*row] : 0};
 }
 
 bool Inbox::wants_neighbours(std::uint32_t robot, std::int64_t now) const {

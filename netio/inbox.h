@@ -38,6 +38,8 @@ struct InboxOptions {
   std::vector<Peer> peers;                   ///< of these robots, tags, and START; each once
   bool take_late = false;  ///< accept states that others of their sender overtook, marked by `Packet::late`
   bool lockstep = false;   ///< accept COMMAND, STEP and FETCH in place of V2V, TAG and START
+  bool take_late = false;             ///< accept states that others of their sender overtook, marked by `Packet::late`
+  std::vector<std::uint32_t> lights;  ///< ids of the world's intersections, distinct, each in [0, kMaxId]
 };
 
 class Inbox {
@@ -103,10 +105,16 @@ class Inbox {
   /// For packets to `robot`: the farm's session, and the robot's last session.
   SessionToken session_token_for(std::uint32_t robot) const;
   /// Signs packets to `robot`; null where it has no key. Lives as long as the inbox.
-  PacketSigner* signer(std::uint32_t robot) { return peers_.signer(robot); }
+  PacketSigner* signer(std::uint32_t robot) { return peers_.signer({PeerKind::robot, robot}); }
+  PacketSigner* light_signer(std::uint32_t light) { return peers_.signer({PeerKind::light, light}); }
 
-  /// Address from which the states of tag `tag` come.
+  /// Address from which the states of tag `tag` come, or from which its object is switched.
   std::optional<Endpoint> tag_address(std::uint32_t tag) const { return tags_.source(tag); }
+  std::optional<Endpoint> object_address(std::uint32_t tag) const { return objects_.source(tag); }
+  /// Address of the sender of V2I of intersection `light`; nullopt: none was accepted in the last two seconds.
+  std::optional<Endpoint> light_address(std::uint32_t light, std::int64_t now) const;
+  /// For packets to that sender, as `session_token_for`.
+  SessionToken light_session_token(std::uint32_t light) const;
 
   std::uint16_t port() const { return bound_endpoint(socket_).port; }
   const PacketCounts& counts() const { return counts_; }
@@ -127,13 +135,17 @@ class Inbox {
   PacketStatus admit(Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_state(ClientRegistry& clients, Packet& packet, const Endpoint& source, std::int64_t now) const;
   PacketStatus admit_driver(const Packet& packet, const Endpoint& source, std::int64_t now);
+  PacketStatus admit_light(const Packet& packet, const Endpoint& source, std::int64_t now);
   PacketStatus admit_robot(Packet& packet, const Endpoint& source, std::int64_t now);
 
   ClientRegistry robots_;
   ClientRegistry tags_;
+  ClientRegistry objects_;  ///< by tag
+  ClientRegistry lights_;
   PeerTable peers_;
-  std::vector<std::uint32_t> types_;     ///< per robot row: mask of its last SUBSCRIBE, 0 for all
-  std::vector<std::uint32_t> sessions_;  ///< per robot row: of its last packet
+  std::vector<std::uint32_t> types_;           ///< per robot row: mask of its last SUBSCRIBE, 0 for all
+  std::vector<std::uint32_t> sessions_;        ///< per robot row: of its last packet
+  std::vector<std::uint32_t> light_sessions_;  ///< likewise, per row of lights
   std::uint32_t session_;
   bool take_late_;
   bool lockstep_;

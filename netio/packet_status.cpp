@@ -7,9 +7,9 @@ namespace sf::netio {
 namespace {
 
 constexpr std::array<std::string_view, kPacketStatuses> kNames = {
-    "accepted",        "too short",    "bad magic",       "unknown version", "unknown type", "too long",
-    "not finite",      "out of range", "wrong direction", "unknown robot",   "unknown tag",  "not signed",
-    "wrong signature", "replayed",     "unproven",        "wrong source",    "stale"};
+    "accepted",   "too short",       "bad magic",       "unknown version", "unknown type", "too long",
+    "not finite", "out of range",    "wrong direction", "unknown robot",   "unknown tag",  "unknown light",
+    "not signed", "wrong signature", "replayed",        "unproven",        "wrong source", "stale"};
 
 }  // namespace
 

@@ -22,6 +22,7 @@ enum class PacketStatus : std::uint8_t {
   wrong_direction,  ///< a reading sent to the farm, or a state sent to a receiver of readings
   unknown_robot,    ///< a robot id that the world does not have
   unknown_tag,      ///< a tag id that the world does not have
+  unknown_light,    ///< an intersection id that the world does not have
   not_signed,       ///< without a signature, where the table of peers has a key
   wrong_signature,  ///< signed with another key, or changed on its way
   replayed,         ///< its signature is valid and came before, or is too old
@@ -30,7 +31,7 @@ enum class PacketStatus : std::uint8_t {
                  ///< not from the selected farm
   stale,         ///< its sequence is not newer than the last accepted one
 };
-inline constexpr std::size_t kPacketStatuses = 17;
+inline constexpr std::size_t kPacketStatuses = 18;
 
 /// Text for tables and summaries: "too short", "bad magic", ...
 std::string_view name(PacketStatus status);

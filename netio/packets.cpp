@@ -14,8 +14,10 @@ namespace {
 constexpr std::size_t kTagBytes = 104;
 constexpr std::size_t kSubscribeBytes = 4;
 constexpr std::size_t kChallengeBytes = 4;
+constexpr std::size_t kObjectBytes = 4;
 constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] of session and token
 constexpr std::uint32_t kDockingBit = 1;
+constexpr std::uint32_t kPresentBit = 1;
 constexpr std::uint16_t kStaleBit = 1;
 constexpr std::int64_t kAgeUnit = 1000;  ///< [ns]
 
@@ -108,6 +110,10 @@ PacketStatus read_lockstep(std::span<const std::uint8_t> payload, Packet& packet
   const PacketStatus status = read_payload(payload, body);
   packet.body = body;
   return status;
+PacketStatus read_object(base::ByteReader& reader, Packet& packet) {
+  const auto flags = reader.get<std::uint32_t>();
+  packet.body = Object{flags == kPresentBit};
+  return flags <= kPresentBit && packet.header.robot >= kMinTag ? PacketStatus::accepted : PacketStatus::out_of_range;
 }
 
 PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
@@ -132,6 +138,15 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
     case Type::challenge:
       packet.body = Challenge{reader.get<std::uint32_t>()};
       return check_size(payload.size(), kChallengeBytes);
+    case Type::v2i: {
+      V2i signals;
+      status = read_v2i(payload, signals);
+      packet.body = signals;
+      return status;
+    }
+    case Type::object:
+      status = check_size(payload.size(), kObjectBytes);
+      return status == PacketStatus::accepted ? read_object(reader, packet) : status;
     case Type::neighbours:
       packet.body = Neighbours{payload};
       if (payload.size() > kMaxNeighbours * kV2vBytes) return PacketStatus::too_long;
@@ -291,6 +306,20 @@ void encode(const Header& header, const Challenge& challenge, base::Bytes& out) 
   start(header, Type::challenge, out);
   base::ByteWriter writer(out);
   writer.put(challenge.token);
+}
+
+void encode(const Header& header, const V2i& signals, base::Bytes& out) {
+  SF_CHECK(check(signals) == PacketStatus::accepted,
+           "V2I " + std::to_string(header.robot) + ": " + std::string(name(check(signals))));
+  start(header, Type::v2i, out);
+  put_v2i(signals, out);
+}
+
+void encode(const Header& header, const Object& object, base::Bytes& out) {
+  SF_CHECK(header.robot >= kMinTag, "object of tag 0 in a packet");
+  start(header, Type::object, out);
+  base::ByteWriter writer(out);
+  writer.put(object.present ? kPresentBit : std::uint32_t{0});
 }
 
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out) {

@@ -16,6 +16,7 @@
 #include "base/state_quality.h"
 #include "netio/lockstep_packets.h"
 #include "netio/packet_status.h"
+#include "netio/v2i.h"
 
 namespace sf::netio {
 
@@ -37,6 +38,7 @@ inline constexpr double kMaxSpeed = 1e3;                     ///< [m/s], and [ra
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years; differences cannot overflow
 
 /// From 128: states and requests sent to the farm, of which it forwards V2V and START; from 140: its answers. Below 64:
+/// From 128: states and requests sent to the farm, of which it forwards V2V and START; it sends V2I as well. Below 64:
 /// a reading of the sensor type with this wire id; the same plus 64: its second form.
 enum class Type : std::uint8_t {
   v2v = 128,
@@ -51,6 +53,9 @@ enum class Type : std::uint8_t {
   neighbours = 140,
   state = 141,
   values = 142
+  v2i = 134,
+  object = 135,
+  neighbours = 140
 };
 
 /// Wire id (below 64; sensor types end at 31) of the sensor type whose readings, in either form, have type `type`; 0
@@ -64,7 +69,7 @@ using base::StateQuality;
 
 struct Header {
   Type type = Type::v2v;
-  std::uint16_t robot = 0;     ///< of the reading or state; in TAG: the tag's id
+  std::uint16_t robot = 0;     ///< of the reading or state; TAG, OBJECT: the tag's id; V2I: the intersection's
   std::uint16_t sensor = 0;    ///< 0-based among the robot's sensors of this type; 0 in states
   std::uint32_t sequence = 0;  ///< counter of messages of this type (and sensor), wraps to 0
   std::int64_t time = 0;       ///< [ns] in [0, kMaxTime]: time of measurement, not of sending
@@ -115,6 +120,11 @@ struct Start {};
 /// Ends a robot's participation; its id is free afterwards.
 struct Leave {};
 
+/// Whether an object, named by the id of its tag, is in the world.
+struct Object {
+  bool present = true;
+};
+
 /// Answer of the farm to an unproven address: packets from there are accepted once they carry the token.
 struct Challenge {
   std::uint32_t token = 0;
@@ -138,6 +148,7 @@ struct Packet {
   Header header;
   std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, Neighbours, Reading, Command, Step, Fetch, State, Values>
       body;
+  std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, V2i, Object, Neighbours, Reading> body;
   bool late = false;  ///< a state whose sequence is not newer than the last of its sender (`InboxOptions::take_late`)
 };
 
@@ -151,6 +162,8 @@ void encode(const Header& header, const Subscribe& request, base::Bytes& out);
 void encode(const Header& header, const Start& signal, base::Bytes& out);
 void encode(const Header& header, const Leave& word, base::Bytes& out);
 void encode(const Header& header, const Challenge& challenge, base::Bytes& out);
+void encode(const Header& header, const V2i& signals, base::Bytes& out);
+void encode(const Header& header, const Object& object, base::Bytes& out);
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out);
 void encode(const Header& header, const Command& command, base::Bytes& out);
 void encode(const Header& header, const Step& step, base::Bytes& out);

@@ -12,7 +12,9 @@ const Peer* find(std::span<const Peer> peers, PeerKind kind, std::uint32_t id) {
 
 Claim claim_of(const Header& header) {
   if (header.type == Type::start) return {PeerKind::start, 0};
-  return {header.type == Type::tag ? PeerKind::tag : PeerKind::robot, header.robot};
+  if (header.type == Type::v2i) return {PeerKind::light, header.robot};
+  const bool tag = header.type == Type::tag || header.type == Type::object;
+  return {tag ? PeerKind::tag : PeerKind::robot, header.robot};
 }
 
 PeerTable::PeerTable(std::span<const Peer> peers, std::uint64_t first_counter) {
@@ -49,8 +51,8 @@ PacketStatus PeerTable::check(const Claim& claim, std::span<const std::uint8_t> 
   return proven ? row->checker->check(bytes) : row->checker->verify(bytes);
 }
 
-PacketSigner* PeerTable::signer(std::uint32_t robot) {
-  Row* row = find_row({PeerKind::robot, robot});
+PacketSigner* PeerTable::signer(const Claim& claim) {
+  Row* row = find_row(claim);
   return row != nullptr && row->signer ? &*row->signer : nullptr;
 }
 

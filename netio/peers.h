@@ -13,11 +13,11 @@
 
 namespace sf::netio {
 
-enum class PeerKind : std::uint8_t { robot, tag, start };
+enum class PeerKind : std::uint8_t { robot, tag, start, light };
 
 struct Peer {
-  PeerKind kind = PeerKind::robot;       ///< start: the sender of START
-  std::uint32_t id = 0;                  ///< of the robot or tag; 0 for start
+  PeerKind kind = PeerKind::robot;       ///< start: the sender of START; light: the sender of V2I and SPaT
+  std::uint32_t id = 0;                  ///< of the robot, tag or intersection; 0 for start
   std::optional<std::uint32_t> address;  ///< IPv4, host byte order; nullopt: any
   std::optional<SigningKey> key;         ///< nullopt: packets need no signature
 };
@@ -45,8 +45,8 @@ class PeerTable {
   /// @return accepted, wrong_source, not_signed, wrong_signature or replayed
   PacketStatus check(const Claim& claim, std::span<const std::uint8_t> bytes, const Endpoint& source, bool proven);
 
-  /// Signs packets to `robot`; null without a key. Lives as long as the table.
-  PacketSigner* signer(std::uint32_t robot);
+  /// Signs packets to a peer; null without a key. Lives as long as the table.
+  PacketSigner* signer(const Claim& claim);
 
  private:
   struct Row {

@@ -7,11 +7,12 @@
 
 namespace sf::netio {
 
-Relay::Relay(std::span<const std::uint32_t> robots, const RelayOptions& options)
+Relay::Relay(std::span<const std::uint32_t> robots, const RelayOptions& options, std::span<const std::uint32_t> lights)
     : options_(options), robots_(robots.size()), neighbour_tree_(robots.size()) {
   SF_CHECK(options.most >= kMinShare && options.budget >= kMinShare, "a relay that passes nothing on");
   for (std::size_t i = 0; i < robots.size(); ++i) robots_[i].id = robots[i];
   std::sort(robots_.begin(), robots_.end(), [](const Robot& a, const Robot& b) { return a.id < b.id; });
+  for (const std::uint32_t id : lights) lights_.push_back({.id = id});
   updated_.reserve(robots.size());
   recipients_.reserve(robots.size());
   states_.reserve(kMaxDatagram);
@@ -30,6 +31,12 @@ Relay::Robot* Relay::find(std::uint32_t id) {
 }
 
 void Relay::take(const Packet& packet) {
+  if (const auto* signals = std::get_if<V2i>(&packet.body)) {
+    const base::Pose X_WL = approach_at(*signals, 0).X_WL;
+    for (Light& light : lights_)
+      if (light.id == packet.header.robot) light.p = {X_WL.x, X_WL.y};
+    return;
+  }
   Robot* robot = find(packet.header.robot);
   if (const auto* state = std::get_if<V2v>(&packet.body)) {
     if (robot == nullptr) return;
@@ -49,6 +56,7 @@ void Relay::forward(Inbox& inbox, std::int64_t now, Outbox& outbox) {
   if (options_.range > 0.0) {
     find_recipients(inbox, now);
     send_states(inbox, now, outbox);
+    send_to_lights(inbox, now, outbox);
   }
   for (Robot& robot : robots_)
     if (robot.age < std::numeric_limits<std::uint32_t>::max()) ++robot.age;
@@ -80,14 +88,15 @@ void Relay::find_recipients(const Inbox& inbox, std::int64_t now) {
     recipients_.push_back(row);
     longest = std::max(longest, robot.waits);
   }
-  for (std::uint32_t row = 0; row < robots_.size() && !recipients_.empty(); ++row)
+  const bool needed = !recipients_.empty() || !lights_.empty();
+  for (std::uint32_t row = 0; row < robots_.size() && needed; ++row)
     if (robots_[row].age <= longest) updated_.push_back({*robots_[row].p, row, robots_[row].age});
   neighbour_tree_.build(updated_);
 }
 
 /// Serves subscribers from the first one passed over last time, as far as the budget allows.
 void Relay::send_states(Inbox& inbox, std::int64_t now, Outbox& outbox) {
-  if (updated_.empty()) return;
+  if (updated_.empty() || recipients_.empty()) return;
   const std::size_t share = std::clamp(options_.budget / recipients_.size(), kMinShare, options_.most);
   const auto first = std::lower_bound(recipients_.begin(), recipients_.end(), turn_) - recipients_.begin();
   std::rotate(recipients_.begin(), recipients_.begin() + first, recipients_.end());
@@ -102,24 +111,41 @@ void Relay::send_states(Inbox& inbox, std::int64_t now, Outbox& outbox) {
 }
 
 std::size_t Relay::send_others(Robot& to, std::size_t most, Inbox& inbox, std::int64_t now, Outbox& outbox) {
-  const SessionToken session_token = inbox.session_token_for(to.id);
   const auto own = static_cast<std::uint32_t>(&to - robots_.data());
   const auto rows =
       neighbour_tree_.find({.p = to.p, .own = own, .range = options_.range, .max_count = most, .max_age = to.waits});
+  send_rows(rows, {to.id, *inbox.address(to.id), inbox.session_token_for(to.id), inbox.signer(to.id)}, to.sent, now,
+            outbox);
+  to.waits = 0;
+  return rows.size();
+}
+
+/// Lights are few and without a share of the budget: each is told the nearest robots at every tick.
+void Relay::send_to_lights(Inbox& inbox, std::int64_t now, Outbox& outbox) {
+  const auto none = static_cast<std::uint32_t>(robots_.size());
+  for (Light& light : lights_) {
+    const std::optional<Endpoint> address = inbox.light_address(light.id, now);
+    if (!address) continue;
+    const auto rows = neighbour_tree_.find(
+        {.p = light.p, .own = none, .range = options_.range, .max_count = options_.most, .max_age = 0});
+    send_rows(rows, {light.id, *address, inbox.light_session_token(light.id), inbox.light_signer(light.id)}, light.sent,
+              now, outbox);
+  }
+}
+
+void Relay::send_rows(std::span<const std::uint32_t> rows, const Recipient& to, std::uint32_t& sent, std::int64_t now,
+                      Outbox& outbox) {
   for (std::size_t first = 0; first < rows.size(); first += kMaxNeighbours) {
     states_.clear();
     for (const std::uint32_t row : rows.subspan(first, std::min(kMaxNeighbours, rows.size() - first))) {
       states_.insert(states_.end(), robots_[row].state.begin(), robots_[row].state.end());
-      netio::write_session_token(std::span(states_).last(kV2vBytes), session_token);
+      netio::write_session_token(std::span(states_).last(kV2vBytes), to.session_token);
     }
-    encode({.robot = static_cast<std::uint16_t>(to.id), .sequence = to.sent++, .time = now}, Neighbours{states_},
-           packet_);
-    outbox.queue(*inbox.address(to.id), packet_, session_token, inbox.signer(to.id));
+    encode({.robot = static_cast<std::uint16_t>(to.id), .sequence = sent++, .time = now}, Neighbours{states_}, packet_);
+    outbox.queue(to.address, packet_, to.session_token, to.signer);
     ++counts_.datagrams;
   }
-  to.waits = 0;
   counts_.states += rows.size();
-  return rows.size();
 }
 
 }  // namespace sf::netio

@@ -1,7 +1,7 @@
 #pragma once
-// Forwards states and signals from the farm to robots: the newest V2V states of nearby robots to robots that subscribe
-// to them, and START to the robots named in it. Once per tick, several states per datagram, within a budget, so that
-// outgoing traffic does not grow with incoming traffic.
+// Forwards states and signals from the farm: the newest V2V states of nearby robots to robots that subscribe to them
+// and to senders of V2I, and START to the robots named in it. Once per tick, several states per datagram, within a
+// budget, so that outgoing traffic does not grow with incoming traffic.
 //
 //   relay.take(packet);                        // each packet that the inbox accepted
 //   relay.forward(inbox, now, outbox);         // each tick; then outbox.flush()
@@ -40,13 +40,16 @@ class Relay {
   static constexpr std::size_t kMinShare = 4;
 
   /// @param robots ids of the world's robots
-  explicit Relay(std::span<const std::uint32_t> robots, const RelayOptions& options = {});
+  /// @param lights ids of the world's intersections
+  explicit Relay(std::span<const std::uint32_t> robots, const RelayOptions& options = {},
+                 std::span<const std::uint32_t> lights = {});
 
-  /// Keeps the newest V2V of each robot, or a START, until the next `forward`. Other packets are ignored.
+  /// Keeps the newest V2V of each robot, or a START, until the next `forward`, and where lights are. Other packets are
+  /// ignored.
   void take(const Packet& packet);
 
-  /// Queues the new states for each subscriber that is active at `now` [ns], to the address that it sends from. A robot
-  /// does not get its own state. Unused states are dropped.
+  /// Queues the new states for each subscriber and each light that is active at `now` [ns], to the address that it
+  /// sends from. A robot does not get its own state. Unused states are dropped.
   void forward(Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   const RelayCounts& counts() const { return counts_; }
@@ -64,14 +67,31 @@ class Relay {
     base::Bytes state;
     base::Bytes start;
   };
+  /// Of an intersection, which is told the states near its first light.
+  struct Light {
+    std::uint32_t id = 0;
+    glm::dvec2 p{};  ///< [m]
+    std::uint32_t sent = 0;
+  };
+  /// To whom NEIGHBOURS go.
+  struct Recipient {
+    std::uint32_t id = 0;
+    Endpoint address;
+    SessionToken session_token;
+    PacketSigner* signer = nullptr;
+  };
   Robot* find(std::uint32_t id);
   void send_starts(Inbox& inbox, std::int64_t now, Outbox& outbox);
   void find_recipients(const Inbox& inbox, std::int64_t now);
   void send_states(Inbox& inbox, std::int64_t now, Outbox& outbox);
+  void send_to_lights(Inbox& inbox, std::int64_t now, Outbox& outbox);
+  void send_rows(std::span<const std::uint32_t> rows, const Recipient& to, std::uint32_t& sent, std::int64_t now,
+                 Outbox& outbox);
   std::size_t send_others(Robot& to, std::size_t most, Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   RelayOptions options_;
-  std::vector<Robot> robots_;                  ///< sorted by id
+  std::vector<Robot> robots_;  ///< sorted by id
+  std::vector<Light> lights_;
   std::vector<NeighbourTree::Place> updated_;  ///< in one pass
   std::vector<std::uint32_t> recipients_;      ///< rows, in one pass
   NeighbourTree neighbour_tree_;

@@ -17,6 +17,7 @@ V2vSocket::V2vSocket(const V2vSocketOptions& options)
       socket_(open_udp({0, 0}, {.receive = options.receive_buffer, .send = kV2vSendBuffer})),
       outbox_(duplicate(socket_), {.capacity = 4}),
       others_(options.others),
+      lights_(options.lights),
       batch_(kV2vBatch) {
   if (!options.key) return;
   signer_.emplace(*options.key);
@@ -54,6 +55,10 @@ PacketStatus V2vSocket::check(const Packet& packet, std::int64_t now) {
     return PacketStatus::accepted;
   }
   if (packet.header.session != farm_session_) return PacketStatus::wrong_source;
+  if (std::holds_alternative<V2i>(packet.body)) {
+    if (!lights_.row(id)) return PacketStatus::unknown_light;
+    return lights_.admit(id, kV2vChannel, packet.header.sequence, options_.farm, now);
+  }
   const bool start = std::holds_alternative<Start>(packet.body);
   if (!start && !std::holds_alternative<V2v>(packet.body)) return PacketStatus::wrong_direction;
   if (start && id != kBroadcastId && id != options_.robot) return PacketStatus::unknown_robot;

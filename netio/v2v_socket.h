@@ -30,7 +30,8 @@ struct V2vSocketOptions {
   std::vector<std::uint32_t> others;  ///< ids of the world's other robots
   std::uint32_t session = random_session();
   std::size_t receive_buffer = 1u << 20;
-  std::optional<SigningKey> key;  ///< signs what it sends, and has to sign what comes
+  std::optional<SigningKey> key;      ///< signs what it sends, and has to sign what comes
+  std::vector<std::uint32_t> lights;  ///< ids of the world's intersections
 };
 
 class V2vSocket {
@@ -64,9 +65,10 @@ class V2vSocket {
     });
   }
 
-  /// Checks any bytes from the farm, received at `now` [ns]. V2V of other robots, and START and CHALLENGE for this
-  /// robot are accepted and fill `packet`. Packets without this robot's session, or with another session of the farm
-  /// than the last challenge's, are wrong_source. Packets for other robots are unknown_robot; old states are stale.
+  /// Checks any bytes from the farm, received at `now` [ns]. V2V of other robots, V2I, and START and CHALLENGE for
+  /// this robot are accepted and fill `packet`. Packets without this robot's session, or with another session of the
+  /// farm than the last challenge's, are wrong_source. Packets for other robots are unknown_robot, V2I of other
+  /// intersections unknown_light; old states are stale.
   PacketStatus accept(std::span<const std::uint8_t> bytes, std::int64_t now, Packet& packet);
 
   /// A state of `robot` was accepted less than two seconds before `now`.
@@ -87,6 +89,7 @@ class V2vSocket {
   Socket socket_;
   Outbox outbox_;
   ClientRegistry others_;
+  ClientRegistry lights_;
   std::uint32_t farm_session_ = 0;
   std::uint32_t token_ = 0;
   PacketCounts counts_;

@@ -36,6 +36,9 @@ enum {
   SF_MAX_SENSORS = 32,
   SF_SIGNATURE = 24
 };
+enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_V2I, SF_OBJECT, SF_NEIGHBOURS = 140 };
+enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
+enum { SF_HEADER = 64, SF_V2V_BYTES = 132, SF_TAG_BYTES = 168, SF_MAX_VALUES = 361, SF_MAX_SENSORS = 32 };
 #define SF_NONE 0xFFFFFFFFu  // V2V: no leader, no checkpoint
 
 // Name, base of the ports, names of the integers, and columns of a row: name, numbers, unit on the wire.
@@ -48,7 +51,7 @@ typedef struct {
     const char* name;
     unsigned width;
     double unit;
-  } columns[5];
+  } columns[6];
 } sf_type;
 static const sf_type sf_types[] = {
     {1, "laser", 10000, {0}, {{"range_m", 1, 1e-3}}},
@@ -78,7 +81,11 @@ static const sf_type sf_types[] = {
     {131, "START", 0, {0}, {{0}}},
     {132, "LEAVE", 0, {0}, {{0}}},
     {133, "CHALLENGE", 0, {"challenge"}, {{0}}},
-    {140, "NEIGHBOURS", 0, {0}, {{0}}}};
+    // Rows of eight numbers: approaches, and behind them the stop lines of SF_STOP_LINE.
+    {134, "V2I", 0, {0}, {{"group", 1, 1}, {"state", 1, 1}, {"next", 1, 1}, {"left_s", 1, 1e-3}, {"light", 4, 1}}},
+    {135, "OBJECT", 0, {"present"}, {{0}}},
+    {140, "NEIGHBOURS", 0, {0}, {{0}}},
+    {255, "", 0, {0}, {{"stop_group", 1, 1}, {"stop_point", 3, 1}, {"stop_line", 4, 1}}}};
 
 typedef struct {
   uint8_t type;
@@ -94,6 +101,7 @@ typedef struct {
   uint32_t words[5];             // the integers that sf_types names
   double corner[3];              // OCCUPANCY: left, top, cell [m]
   unsigned count;                // values. NEIGHBOURS: V2V packets
+  unsigned approaches;           // V2I: rows of eight values that are approaches; the others are stop lines
   double values[SF_MAX_VALUES];  // SI, row by row as in sf_types; NAN: no number; INFINITY: no return
   const uint8_t* states;         // NEIGHBOURS: V2V packets one after another; live as long as the datagram
 } sf_packet;
@@ -225,6 +233,41 @@ static const char* decode_neighbours(sf_packet* p, const uint8_t* b, size_t size
   return NULL;
 }
 
+static double get_f32(const uint8_t* bytes) {
+  const uint32_t word = (uint32_t)get(bytes, 4);
+  float value;
+  memcpy(&value, &word, 4);
+  return value;
+}
+
+// The eight numbers of a row: group, then state, next and time left, or way-point; then place.
+static const char* decode_v2i_row(const uint8_t* b, bool approach, double* v) {
+  const uint64_t left = get(b + 4, 4);
+  v[0] = b[0];
+  v[1] = approach ? b[1] : (double)get(b + 2, 2);
+  v[2] = !approach ? (double)get(b + 4, 2) : b[2] == 255 ? NAN : b[2];
+  v[3] = !approach ? (double)get(b + 6, 2) : left == UINT32_MAX ? NAN : (double)left / 1e3;
+  for (unsigned i = 0; i < 2; ++i) v[4 + i] = get_f64(b + 8 + 8 * i), v[6 + i] = get_f32(b + 24 + 4 * i);
+  if (check_numbers(v + 4, 4, HUGE_VAL)) return "not finite";
+  const bool placed = fabs(v[4]) <= 1e7 && fabs(v[5]) <= 1e7 && b[0] >= 1 && b[0] <= 254;
+  return in_range(placed && (approach ? b[1] < 6 && (b[2] < 6 || b[2] == 255) && fabs(v[6]) <= 1e7 && fabs(v[7]) <= 1e6
+                                      : fabs(v[6]) <= 1e6 && v[7] >= 0 && v[7] <= 1e7));
+}
+
+static const char* decode_v2i(sf_packet* p, const uint8_t* b, size_t size) {
+  if (size < 8) return "too short";
+  p->approaches = (unsigned)get(b, 2);
+  const unsigned rows = p->approaches + (unsigned)get(b + 2, 2);
+  const char* status = check_size(size, 8 + (size_t)32 * rows);
+  if (status) return status;
+  status = in_range(p->approaches > 0);
+  for (unsigned i = 0; i < rows; ++i, p->count += 8) {
+    const char* const row = decode_v2i_row(b + 8 + 32 * i, i < p->approaches, p->values + p->count);
+    if (row && (!status || strcmp(row, "not finite") == 0)) status = row;
+  }
+  return status;
+}
+
 static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t* b, size_t size) {
   unsigned words = 0;
   while (type->words[words]) ++words;
@@ -240,6 +283,7 @@ static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t
   if (p->type == SF_TAG)
     return in_range(!check_numbers(v, 3, 1e7) && !check_numbers(v + 7, 6, 1e3) && p->robot > 0 &&
                     fabs(hypot(hypot(v[3], v[4]), hypot(v[5], v[6])) - 1.0) <= 1e-3);
+  if (p->type == SF_OBJECT) return in_range(p->words[0] <= 1 && p->robot > 0);
   return NULL;
 }
 
@@ -276,7 +320,7 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   const size_t trailer = get(bytes + 60, 2);
   if (size < SF_HEADER + trailer) return "too short";
   const sf_type* const type = sf_find_type(packet->type);
-  if (!type) return "unknown type";
+  if (!type || packet->type == SF_STOP_LINE) return "unknown type";
   const uint8_t* const b = bytes + SF_HEADER;
   size -= SF_HEADER + trailer;
   if (size > 1256) return "too long";
@@ -286,17 +330,18 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
                              : packet->type == SF_LANE_EDGE  ? decode_lane_edge(packet, b, size)
                              : packet->type == SF_OCCUPANCY  ? decode_occupancy(packet, b, size)
                              : packet->type == SF_NEIGHBOURS ? decode_neighbours(packet, b, size)
+                             : packet->type == SF_V2I        ? decode_v2i(packet, b, size)
                              : packet->type >= 128           ? decode_state(packet, type, b, size)
                                                              : decode_rows(packet, type, b, size);
   if (status) return status;
   return in_range(packet->time_ns >= 0 && packet->time_ns <= INT64_C(1) << 62 && trailer <= 80);
 }
 
-// Encodes a V2V, TAG, SUBSCRIBE, START or LEAVE from type, robot, sequence, time_ns, session, token, words and values.
+// Encodes a V2V, TAG, SUBSCRIBE, START, LEAVE or OBJECT from type, robot, sequence, time_ns, session, token, words and values.
 // Returns its size, at most SF_TAG_BYTES; 0 for numbers that the farm would drop.
 size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   const sf_type* const type = sf_find_type(packet->type);
-  if (!type || packet->type < SF_V2V || packet->type > SF_LEAVE) return 0;
+  if (!type || packet->type < SF_V2V || (packet->type > SF_LEAVE && packet->type != SF_OBJECT)) return 0;
   memset(bytes, 0, SF_TAG_BYTES);
   memcpy(bytes, "SFPK\2", 5);
   bytes[5] = packet->type;
@@ -312,6 +357,18 @@ size_t sf_encode(const sf_packet* packet, uint8_t* bytes) {
   return sf_decode(bytes, size, &back) == NULL ? size : 0;
 }
 
+static void print_columns(FILE* out, const sf_type* type, const double* values, unsigned count, const char* before,
+                          const char* after) {
+  for (unsigned c = 0, first = 0; type->columns[c].name; first += type->columns[c++].width) {
+    fprintf(out, "%s%s =", before, type->columns[c].name);
+    for (unsigned row = 0; row < count; row += sf_row_width(type))
+      for (unsigned k = 0; k < type->columns[c].width; ++k)
+        fprintf(out, isnan(values[row + first + k]) ? " none" : " %.10g", values[row + first + k]);
+    if (count == 0) fputc(' ', out);
+    fputs(after, out);
+  }
+}
+
 // The names and values of a packet behind its header, each as `before`, "range_m = 1 0.25 8" and `after`.
 void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char* after) {
   static const char* const corner[] = {"left_m", "top_m", "cell_m"};
@@ -323,13 +380,10 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     if (p->type != SF_V2V || p->words[i] != SF_NONE) snprintf(number, sizeof number, "%lu", (unsigned long)p->words[i]);
     fprintf(out, "%s%s = %s%s", before, type->words[i], number, after);
   }
-  for (unsigned c = 0, first = 0; type->columns[c].name; first += type->columns[c++].width) {
-    fprintf(out, "%s%s =", before, type->columns[c].name);
-    for (unsigned row = 0; row < p->count; row += sf_row_width(type))
-      for (unsigned k = 0; k < type->columns[c].width; ++k)
-        fprintf(out, isnan(p->values[row + first + k]) ? " none" : " %.10g", p->values[row + first + k]);
-    fputs(after, out);
-  }
+  const unsigned approaches = p->type == SF_V2I ? 8 * p->approaches : p->count;
+  print_columns(out, type, p->values, approaches, before, after);
+  if (p->type == SF_V2I)
+    print_columns(out, sf_find_type(SF_STOP_LINE), p->values + approaches, p->count - approaches, before, after);
 }
 
 // One line about a packet; NEIGHBOURS: one for each state.
@@ -339,7 +393,8 @@ void sf_print(FILE* out, const sf_packet* p) {
     if (sf_decode(p->states + SF_V2V_BYTES * i, SF_V2V_BYTES, &state) == NULL) sf_print(out, &state);
   }
   if (p->type == SF_NEIGHBOURS) return;
-  fprintf(out, "%s %u of robot %u at %.3f s", sf_find_type(p->type)->name, p->sensor, p->robot,
+  const char* const whose = p->type == SF_V2I ? "intersection" : p->type == SF_OBJECT ? "tag" : "robot";
+  fprintf(out, "%s %u of %s %u at %.3f s", sf_find_type(p->type)->name, p->sensor, whose, p->robot,
           (double)p->time_ns * 1e-9);
   sf_print_body(out, p, "; ", "");
   if (p->type < 128) fprintf(out, "; mode %u%s", p->mode, p->unsure ? ", not for every element" : "");
@@ -612,8 +667,10 @@ static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size
   const char* const forged = c->has_key ? sf_check_signature(window, bytes, size, c->key) : NULL;
   if (forged) return forged;
   if (p->type >= SF_V2V && p->type != SF_START && p->type != SF_CHALLENGE && p->type != SF_NEIGHBOURS)
+  if (p->type >= SF_V2V && p->type != SF_START && p->type != SF_CHALLENGE && p->type != SF_NEIGHBOURS &&
+      p->type != SF_V2I)
     return "wrong direction";
-  if (p->robot != c->robot && (p->type != SF_START || p->robot != 65535)) return "unknown robot";
+  if (p->robot != c->robot && p->type != SF_V2I && (p->type != SF_START || p->robot != 65535)) return "unknown robot";
   if (p->type == SF_CHALLENGE) {
     if (p->session != c->farm_session) memset(c->newest, 0, sizeof c->newest);  // another farm
     c->token = p->words[0];
@@ -624,7 +681,7 @@ static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size
   return p->type == SF_START || is_newer(c, p) ? NULL : "stale";
 }
 
-// Waits at most `timeout` [s], then hands over accepted readings, NEIGHBOURS and START, 64 from each port at most.
+// Waits at most `timeout` [s], then hands over accepted readings, NEIGHBOURS, V2I and START, 64 from each port at most.
 void sf_receive(sf_client* c, double timeout, void (*handle)(const sf_packet*, void*), void* context) {
   if (poll(c->polled, c->sockets, timeout > 0 ? (int)ceil(1e3 * timeout) : 0) <= 0) return;
   for (unsigned i = 0; i < c->sockets; ++i)

@@ -28,12 +28,13 @@ import sys
 import time
 
 LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
-V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 140
+V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 134, 135, 140
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
 HEADER_BYTES, V2V_BYTES, MAX_PAYLOAD, SIGNATURE_BYTES = 64, 132, 1256, 24
 HEADER = struct.Struct("<4sBBHHHIqIII6fHH")
-STATES = {V2V: "<7d3I", TAG: "<13d", SUBSCRIBE: "<I", START: "<", LEAVE: "<", CHALLENGE: "<I"}  # payloads
+STATES = {V2V: "<7d3I", TAG: "<13d", SUBSCRIBE: "<I", START: "<", LEAVE: "<", CHALLENGE: "<I",
+          OBJECT: "<I"}  # payloads
 
 # Sensor types: name, base of the ports, columns of a row with the unit of each number on the wire.
 SENSORS = {
@@ -51,7 +52,8 @@ SENSORS = {
     12: ("occupancy", 52000, []),
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
-              131: "START", 132: "LEAVE", 133: "CHALLENGE", 140: "NEIGHBOURS"}
+              131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "V2I", 135: "OBJECT", 140: "NEIGHBOURS"}
+LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
 
 
 class Malformed(ValueError):
@@ -129,7 +131,35 @@ def decode_occupancy(payload):
     return {**dict(zip(names, head)), "word": list(words)}
 
 
+def decode_v2i(payload):
+    """States of an intersection's lights: per approach its group, its state and the next one (rows of LIGHT_STATES),
+    the seconds until the change, and the light's x, y, z [m], yaw [rad]; per stop line the group of its approach, its
+    way-point and its middle's x, y [m], heading [rad], width of the lane [m]."""
+    require(len(payload) >= 8, "too short")
+    approaches, stops = struct.unpack_from("<HH", payload)
+    size = 8 + 32 * (approaches + stops)
+    require(len(payload) >= size, "too short")
+    require(len(payload) <= size, "too long")
+    rows = list(struct.iter_unpack("<BBBxI2d2f", payload[8:8 + 32 * approaches]))
+    lines = list(struct.iter_unpack("<Bx3H2d2f", payload[8 + 32 * approaches:]))
+    require(all(map(math.isfinite, (n for row in rows + lines for n in row[4:]))), "not finite")
+    require(rows and all(1 <= row[0] <= 254 for row in rows + lines))
+    require(all(row[1] < 6 and (row[2] < 6 or row[2] == 255) for row in rows))
+    for row in rows + lines:
+        require_numbers(row[4:6], 1e7)
+    require(all(abs(row[6]) <= 1e7 and abs(row[7]) <= 1e6 for row in rows))
+    require(all(abs(row[6]) <= 1e6 and 0 <= row[7] <= 1e7 for row in lines))
+    flat = lambda parts: [number for part in parts for number in part]
+    return {"group": [row[0] for row in rows], "state": [row[1] for row in rows],
+            "next": [None if row[2] == 255 else row[2] for row in rows],
+            "left_s": [None if row[3] == NONE else row[3] / 1e3 for row in rows], "light": flat(row[4:] for row in rows),
+            "stop_group": [row[0] for row in lines], "stop_point": flat(row[1:4] for row in lines),
+            "stop_line": flat(row[4:] for row in lines)}
+
+
 def decode_state(type, robot, payload):
+    if type == V2I:
+        return decode_v2i(payload)
     if type == NEIGHBOURS:
         require(len(payload) <= 9 * V2V_BYTES, "too long")
         require(len(payload) > 0 and len(payload) % V2V_BYTES == 0, "too short")
@@ -151,7 +181,9 @@ def decode_state(type, robot, payload):
         require(abs(math.hypot(*numbers[3:7]) - 1) <= 1e-3 and robot > 0)
         return {"position": list(numbers[:3]), "orientation": list(numbers[3:7]), "linear": list(numbers[7:10]),
                 "angular": list(numbers[10:])}
-    return {"types" if type == SUBSCRIBE else "challenge": number for number in numbers}
+    require(type != OBJECT or numbers[0] <= 1 and robot > 0)
+    name = {SUBSCRIBE: "types", OBJECT: "present"}.get(type, "challenge")
+    return {name: number for number in numbers}
 
 
 def decode(data):
@@ -203,6 +235,11 @@ def encode_v2v(pose, velocity=(0.0, 0.0, 0.0), follows=None, checkpoint=None, do
 def encode_tag(position, orientation, linear=(0.0, 0.0, 0.0), angular=(0.0, 0.0, 0.0), **header):
     """The state of tag number `robot` in the world frame [m, m/s, rad/s]. orientation: quaternion x, y, z, w."""
     return encode(TAG, struct.pack(STATES[TAG], *position, *orientation, *linear, *angular), **header)
+
+
+def encode_object(present, **header):
+    """Takes the object of tag number `robot` out of the world, or puts it back."""
+    return encode(OBJECT, struct.pack("<I", present), **header)
 
 
 def encode_subscribe(types=0, **header):
@@ -284,7 +321,7 @@ class Client:
             opened.close()
 
     def receive(self, timeout):
-        """Accepted readings, NEIGHBOURS and START that came within `timeout` [s]; bounded in number."""
+        """Accepted readings, NEIGHBOURS, V2I and START that came within `timeout` [s]; bounded in number."""
         packets = []
         for opened in select.select(self.sockets, [], [], max(0.0, timeout))[0]:
             for _ in range(64):
@@ -312,8 +349,8 @@ class Client:
                 self.newest.clear()  # another farm
             self.token, self.farm_session, self.next_request = packet["challenge"], packet["session"], 0.0
             return packet
-        require(packet["type"] < 128 or packet["type"] in (START, NEIGHBOURS), "wrong direction")
-        require(packet["robot"] in (self.robot, EVERY_ROBOT), "unknown robot")
+        require(packet["type"] < 128 or packet["type"] in (START, NEIGHBOURS, V2I), "wrong direction")
+        require(packet["type"] == V2I or packet["robot"] in (self.robot, EVERY_ROBOT), "unknown robot")
         require(packet["type"] == START or self._is_newer(packet), "stale")
         return packet
 
@@ -346,7 +383,8 @@ def words(packet):
     """One line about a packet; NEIGHBOURS: one for each state."""
     if packet["type"] == NEIGHBOURS:
         return "\n".join(map(words, packet["states"]))
-    line = "%s %d of robot %d" % (TYPE_NAMES[packet["type"]], packet["sensor"], packet["robot"])
+    whose = {V2I: "intersection", OBJECT: "tag"}.get(packet["type"], "robot")
+    line = "%s %d of %s %d" % (TYPE_NAMES[packet["type"]], packet["sensor"], whose, packet["robot"])
     body = list(fields(packet).items())[13 if packet["type"] < 128 else 7:]
     line += " at %.3f s" % (packet["time_ns"] * 1e-9) + "".join("; %s = %s" % pair for pair in body)
     if packet["type"] < 128:

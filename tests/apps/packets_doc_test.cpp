@@ -47,16 +47,16 @@ TEST(PacketsPage, ItsDecoderReadsItsExamples) {
   std::string script = python_of_the_page();
   script = script.substr(0, script.find("import os, select"));
   for (const std::string name : {"laser", "laser_extended", "lane_edge", "magnetometer", "infrared", "gps", "occupancy",
-                                 "challenge", "subscribe", "neighbours"})
+                                 "challenge", "subscribe", "v2i", "neighbours"})
     script += "print('" + name + "', decode(bytes.fromhex('" + hex(test::documented(name)) + "')))\n";
   const std::string out = printed(folder, script);
   for (const std::string said :
        {"laser {'type': 1, 'robot': 7, 'sensor': 0, 'sequence': 258, 'time_s': 1.5, 'from': 287454020, 'to': "
         "1432778632, 'ranges': [1.0, 0.25, 8.0]}",
         "'total': 312, 'first': 310, 'part': 1, 'parts': 2, 'ranges': [81.9175, inf]", "'distance_m': 0.25", ", 767)]",
-        "'rows': [(None, None, None, 3)]", "'words': (1, 2315255808)", "'to': 1432778632, 'token': 195948557",
-        "neighbours {'type': 140, 'robot': 3, ", "'pose': (1.5, -2.25, 0.0, 0.5)", "'robot': 9, ",
-        "'pose': (3.0, 0.0, "})
+        "'rows': [(None, None, None, 3)]", "'left_ms': 6500", "'lane': 1, 'point': 11", "'words': (1, 2315255808)",
+        "'to': 1432778632, 'token': 195948557", "neighbours {'type': 140, 'robot': 3, ",
+        "'pose': (1.5, -2.25, 0.0, 0.5)", "'robot': 9, ", "'pose': (3.0, 0.0, "})
     EXPECT_NE(out.find(said), std::string::npos) << said << " is not in\n" << out;
 }
 

@@ -43,9 +43,14 @@ void round_trip(const netio::Packet& packet, std::span<const std::uint8_t> bytes
   if (const auto* request = std::get_if<netio::Subscribe>(&packet.body)) netio::encode(packet.header, *request, again);
   if (const auto* signal = std::get_if<netio::Start>(&packet.body)) netio::encode(packet.header, *signal, again);
   if (const auto* word = std::get_if<netio::Leave>(&packet.body)) netio::encode(packet.header, *word, again);
+  if (const auto* signals = std::get_if<netio::V2i>(&packet.body)) netio::encode(packet.header, *signals, again);
+  if (const auto* object = std::get_if<netio::Object>(&packet.body)) netio::encode(packet.header, *object, again);
   const std::size_t trailer = bytes[60] | std::size_t{bytes[61]} << 8;
   require(trailer <= netio::kMaxTrailer && again.size() + trailer == bytes.size());
-  const auto reserved = [](std::size_t i) { return i == 10 || i == 11 || (i >= 32 && i < netio::kHeaderBytes); };
+  const bool v2i = packet.header.type == netio::Type::v2i;
+  const auto reserved = [&](std::size_t i) {
+    return i == 10 || i == 11 || (i >= 32 && i < netio::kHeaderBytes) || (v2i && i >= 68 && i < 72);
+  };
   for (std::size_t i = 0; i < again.size(); ++i) require(again[i] == bytes[i] || reserved(i));
 }
 
@@ -101,15 +106,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static netio::Inbox inbox({.bind = {netio::kLoopback, 0},
                              .robots = {0, 7, 40'000},
                              .tags = {1, 12},
-                             .peers = {{netio::PeerKind::tag, 1, std::nullopt, netio::SigningKey{}}}});
+                             .peers = {{netio::PeerKind::tag, 1, std::nullopt, netio::SigningKey{}}},
+                             .lights = {2}});
   static const std::uint32_t free_base =
       20'000 + static_cast<std::uint32_t>(getpid()) % 5'000 * 2;  // for fuzzers side by side
   static netio::StreamMonitor monitor(
       {.streams = {{.robot = 7, .rule = {free_base, 8}}, {.robot = 7, .sensor = 1, .rule = {free_base, 8}}},
        .inspect = inspect_scan});
-  static netio::Relay relay(std::vector<std::uint32_t>{0, 7, 40'000});
+  static netio::Relay relay(std::vector<std::uint32_t>{0, 7, 40'000}, {}, std::vector<std::uint32_t>{2});
   static netio::Outbox nowhere({.patience_ms = 0});
-  static netio::V2vSocket v2v_socket({.robot = 7, .others = {0, 40'000}, .session = 7});
+  static netio::V2vSocket v2v_socket({.robot = 7, .others = {0, 40'000}, .session = 7, .lights = {2}});
   static std::int64_t now = 0;
 
   base::ByteReader reader({data, size});

@@ -50,8 +50,8 @@ base::Bytes state_of_another(std::uint32_t token) {
 }
 
 TEST(Allocation, NoneOnTheWayInOrOut) {
-  Inbox inbox({.bind = {kLoopback, 0}, .robots = {7, 9}, .tags = {12}});
-  Relay relay(std::vector<std::uint32_t>{7, 9});
+  Inbox inbox({.bind = {kLoopback, 0}, .robots = {7, 9}, .tags = {12}, .lights = {2}});
+  Relay relay(std::vector<std::uint32_t>{7, 9}, {}, std::vector<std::uint32_t>{2});
   Outbox answers(inbox.socket());
   Outbox outbox;
   const Endpoint to{kLoopback, inbox.port()};
@@ -61,10 +61,13 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
   std::vector<base::Bytes> packets = examples();
   const std::uint32_t token = inbox.token({kLoopback, outbox.endpoint().port});
   for (base::Bytes& packet : packets) write_session_token(packet, {1, token});
-  packets.resize(packets.size() - 2);        // packets from the farm
+  packets.pop_back();                                                      // a packet from the farm, as the challenge
+  const std::vector<base::Bytes> fixed(packets.end() - 2, packets.end());  // a light and an object
+  packets.resize(packets.size() - 3);
   const base::Bytes leave = packets.back();  // after it the robot gets no packets
   packets.back() = subscribe_to_others(token);
   packets.push_back(state_of_another(token));
+  packets.insert(packets.end(), fixed.begin(), fixed.end());
   base::Bytes answer;
   answer.reserve(kMaxDatagram);
   Packet unproven;
@@ -90,7 +93,7 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
   EXPECT_GT(taken, 0u);
   EXPECT_GT(relay.counts().starts, 0u);
   EXPECT_GT(relay.counts().states, 0u);
-  EXPECT_EQ(outbox.counts().sent, 20u * 9u + 1u);
+  EXPECT_EQ(outbox.counts().sent, 20u * 11u + 1u);
 }
 
 }  // namespace

@@ -66,6 +66,22 @@ inline base::Bytes challenge_example() {
   return out;
 }
 
+/// One light and its stop line.
+inline base::Bytes v2i_example() {
+  base::Bytes approaches, stops, out;
+  put(SignalApproach{.group = 1, .state = 3, .next = 2, .left = 6.5, .X_WL = {1.5, -2.25, 0.25, 0.5}}, approaches);
+  put(SignalStop{.group = 1, .segment = 3, .lane = 1, .point = 11, .x = 1.25, .y = -3.0, .heading = 1.5, .width = 0.5},
+      stops);
+  encode({.robot = 2, .sequence = 17, .time = 9'500'000'000}, V2i{approaches, stops}, out);
+  return out;
+}
+
+inline base::Bytes object_example() {
+  base::Bytes out;
+  encode({.robot = 12, .sequence = 3, .time = 30'000'000'000}, Object{false}, out);
+  return out;
+}
+
 /// Forwarded states of two other robots.
 inline base::Bytes neighbours_example() {
   base::Bytes first = v2v_example(), second, out;
@@ -80,13 +96,14 @@ inline base::Bytes neighbours_example() {
 
 /// States and requests that are sent to the farm.
 inline std::vector<base::Bytes> states() {
-  return {v2v_example(), tag_example(), subscribe_example(), start_example(), leave_example()};
+  return {v2v_example(),   tag_example(), subscribe_example(), start_example(),
+          leave_example(), v2i_example(), object_example()};
 }
 
 /// Packets from the farm, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(), extended_example(), v2v_example(),       tag_example(),       subscribe_example(),
-          start_example(),   leave_example(),    challenge_example(), neighbours_example()};
+  return {reading_example(), extended_example(),  v2v_example(), tag_example(),    subscribe_example(), start_example(),
+          leave_example(),   challenge_example(), v2i_example(), object_example(), neighbours_example()};
 }
 
 /// Overwrites the value at `offset`.

@@ -107,6 +107,7 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   EXPECT_EQ(say(v2v(8, 0)), PacketStatus::unknown_robot);
   EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)),
             PacketStatus::unknown_tag);  // robots and tags have separate ids
+  EXPECT_EQ(say(v2i_example()), PacketStatus::unknown_light);
   EXPECT_EQ(say(leave_of_keyed()), PacketStatus::not_signed);
   EXPECT_EQ(say(signed_leave()), PacketStatus::wrong_signature);  // changed by its token
   EXPECT_EQ(inbox.accept(signed_leave(), kSender, 0, packet), PacketStatus::unproven);
@@ -265,6 +266,27 @@ TEST_F(InboxTest, OthersStatesMustBeAskedFor) {
   EXPECT_FALSE(inbox.wants_neighbours(7, 2 * kSecond));  // silent
   EXPECT_FALSE(inbox.wants_neighbours(3, 0));            // no packet yet
   EXPECT_FALSE(inbox.wants_neighbours(99, 0));           // unknown
+}
+
+/// A light hears robots where it says it is, so it has to prove that; the sender of an object hears nothing.
+TEST_F(InboxTest, LightsProveTheirAddressAndObjectsDoNot) {
+  InboxOptions lit = options();
+  lit.lights = {2};
+  Inbox crossing(lit);
+  const auto say_as = [&](base::Bytes bytes, std::uint32_t token) {
+    write_session_token(bytes, {kSession, token});
+    return crossing.accept(bytes, kSender, 0, packet);
+  };
+  EXPECT_EQ(say_as(v2i_example(), 0), PacketStatus::unproven);
+  EXPECT_FALSE(crossing.light_address(2, 0));
+  EXPECT_EQ(say_as(v2i_example(), crossing.token(kSender)), PacketStatus::accepted);
+  EXPECT_EQ(crossing.light_address(2, kClientTimeout - 1), kSender);
+  EXPECT_FALSE(crossing.light_address(2, kClientTimeout)) << "silent";
+  EXPECT_EQ(crossing.light_session_token(2).token, kSession);
+  EXPECT_EQ(say_as(object_example(), 0), PacketStatus::accepted);
+  EXPECT_EQ(say_as(object_example(), 0), PacketStatus::stale);
+  EXPECT_EQ(say_as(tag_example(), 0), PacketStatus::accepted) << "a tag's camera is another sender";
+  EXPECT_EQ(crossing.object_address(12), kSender);
 }
 
 TEST_F(InboxTest, AnybodyMayStartRobots) {

@@ -37,6 +37,8 @@ TEST(Packets, BytesAreTheDocumentedOnes) {
   EXPECT_EQ(start_example(), documented("start"));
   EXPECT_EQ(leave_example(), documented("leave"));
   EXPECT_EQ(challenge_example(), documented("challenge"));
+  EXPECT_EQ(v2i_example(), documented("v2i"));
+  EXPECT_EQ(object_example(), documented("object"));
   EXPECT_EQ(neighbours_example(), documented("neighbours"));
 }
 
@@ -274,7 +276,7 @@ TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
   for (int type = 0; type < 256; ++type) {
     const bool is_reading = type < 128 && type % 64 != 0;  // type 0 does not exist
     EXPECT_EQ(sensor_type_of(Type(type)), is_reading ? type % 64 : 0) << type;
-    const bool is_state = (type >= 128 && type <= 133) || type == 140;
+    const bool is_state = (type >= 128 && type <= 135) || type == 140;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
               is_reading ? PacketStatus::accepted : PacketStatus::unknown_type)

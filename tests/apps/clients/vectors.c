@@ -44,7 +44,7 @@ static bool judge(const char* text, const uint8_t* bytes, size_t size) {
   if (!same) printf("expected:\n%sfound:\n%s", text, found);
   free(found);
   uint8_t again[SF_TAG_BYTES];
-  if (same && !of_status && packet.type >= SF_V2V && packet.type <= SF_LEAVE)
+  if (same && !of_status && packet.type >= SF_V2V && (packet.type <= SF_LEAVE || packet.type == SF_OBJECT))
     same = sf_encode(&packet, again) == size && memcmp(again, bytes, size) == 0;
   return same;
 }

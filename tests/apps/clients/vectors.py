@@ -31,7 +31,8 @@ def encoded(packet):
     header = {key: packet.pop(key) for key in ("robot", "sequence", "time_ns", "session", "token")}
     type = packet.pop("type")
     del packet["sensor"]
-    make = {client.V2V: client.encode_v2v, client.TAG: client.encode_tag, client.SUBSCRIBE: client.encode_subscribe}
+    make = {client.V2V: client.encode_v2v, client.TAG: client.encode_tag, client.SUBSCRIBE: client.encode_subscribe,
+            client.OBJECT: client.encode_object}
     return make[type](**packet, **header) if type in make else client.encode(type, **header)
 
 
@@ -43,7 +44,7 @@ def judge(lines, data):
     if text != lines:
         print("\n".join(text))
         return False
-    sent = client.V2V <= packet["type"] <= client.LEAVE
+    sent = client.V2V <= packet["type"] <= client.LEAVE or packet["type"] == client.OBJECT
     return encoded(packet) == data if sent else True
 
 
