@@ -16,6 +16,7 @@ int serve(const ServeOptions& options);
 int robot(const RobotOptions& options);
 int light(const LightOptions& options);
 int start(const StartOptions& options);
+int object(const ObjectOptions& options);
 int plot(const PlotOptions& options);
 int listen(const ListenOptions& options);
 int dump(const DumpOptions& options);

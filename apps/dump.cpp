@@ -32,7 +32,10 @@ std::string subject_of(const server::PacketDescription& packet) {
   const netio::Header& header = packet.header;
   switch (header.type) {
     case netio::Type::tag:
-      return fmt::format("TAG of tag {}", header.robot);
+    case netio::Type::object:
+      return fmt::format("{} of tag {}", packet.name, header.robot);
+    case netio::Type::v2i:
+      return fmt::format("V2I of intersection {}", header.robot);
     case netio::Type::start:
       if (header.robot == netio::kBroadcastId) return "START to all robots";
       [[fallthrough]];

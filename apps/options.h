@@ -11,6 +11,7 @@
 #include "base/pose.h"
 #include "netio/packets.h"
 #include "netio/ports.h"
+#include "netio/server/light_listener.h"
 #include "robots/estimation/sender_clock.h"
 #include "robots/estimation/track_filter.h"
 #include "scenarios/plant.h"
@@ -200,6 +201,8 @@ struct ServeOptions : WorldOptions,
   bool lockstep = false;                   ///< clients command the robots tick by tick
   double lockstep_timeout = 5.0;           ///< [s] that clients wait for another; 0: without end
   std::uint32_t wait_for = 1;              ///< robots that are subscribed before the first tick
+  std::uint16_t spat = 0;                  ///< port for SPaT; 0: none is heard
+  server::StaleLights stale_lights = server::StaleLights::dark;
 };
 
 struct RobotOptions : WorldOptions,
@@ -225,13 +228,15 @@ struct RobotOptions : WorldOptions,
   std::string map;         ///< "host:port" that its own map is sent to; empty: none
   std::string serial;      ///< device of a real Create; empty: none
   unsigned baud = 57600;
+  std::uint16_t spat = 0;  ///< port for SPaT; 0: the lights are the farm's
 };
 
 inline constexpr std::uint16_t kSpatPort = 9010;  ///< default port of SPaT and MAP
 
-struct LightOptions : OriginOption, DurationOption {
-  std::string world;
-  std::string send;  ///< host
+struct LightOptions : OriginOption, DurationOption, PeersOption {
+  std::string file;  ///< world, or plan that names its world
+  std::string send;  ///< host; empty: none
+  std::string farm;  ///< "HOST:PORT" that V2I go to; empty: none
   std::vector<std::uint16_t> ports{kSpatPort};
   double rate = 10.0;            ///< [Hz]
   double time = 0.0;             ///< [s] simulated, at the start
@@ -240,6 +245,12 @@ struct LightOptions : OriginOption, DurationOption {
 
 struct StartOptions : FarmOptions, PeersOption {
   std::uint32_t start_id = netio::kBroadcastId;  ///< robot to be started
+};
+
+struct ObjectOptions : FarmOptions, PeersOption {
+  std::uint32_t tag = 1;  ///< id of the object's tag
+  enum class State { present, absent };
+  State state = State::present;
 };
 
 struct ListenOptions : WorldOptions, JsonOption, CloneOptions, PortOptions, ReceiveOptions, DurationOption {};

@@ -13,6 +13,7 @@
 #include "netio/inbox.h"
 #include "netio/relay.h"
 #include "netio/server/lockstep.h"
+#include "netio/server/light_service.h"
 #include "netio/server/reading_publisher.h"
 #include "netio/server/state_filter.h"
 #include "netio/stream_monitor.h"
@@ -47,7 +48,8 @@ struct RunReport {
   netio::PacketCounts inbox;
   std::uint64_t socket_drops = 0;  ///< datagrams that came while the inbox' buffer was full
   netio::RelayCounts relayed;      ///< to robots, of others' states and start signals
-  bool filtered = false;           ///< `states` and `clocks` count
+  server::LightServiceCounts lights;
+  bool filtered = false;  ///< `states` and `clocks` count
   server::StateFilterCounts states;
   struct Clock {
     std::string name;  ///< of the mover

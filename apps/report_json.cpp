@@ -35,6 +35,14 @@ Json reasons(const netio::PacketCounts& counts) {
   return json;
 }
 
+Json spat_json(const server::LightCounts& heard) {
+  return {{"messages", heard.messages},
+          {"states", heard.states},
+          {"others", heard.others},
+          {"invalid", heard.invalid},
+          {"refused", heard.refused}};
+}
+
 std::uint64_t count_rays(const netio::StreamSummary& summary) {
   const auto lasers = summary.of.find(std::string(sensors::laser_type.name));
   return lasers == summary.of.end() ? 0 : lasers->second.elements;
@@ -257,6 +265,12 @@ std::string json_of(const RunReport& f) {
   if (f.received) {
     json["received"] = reasons(f.inbox);
     json["socket_drops"] = f.socket_drops;
+    const server::LightCounts& heard = f.lights.heard;
+    json["lights"] = {{"packets", heard.packets},
+                      {"states", heard.states},
+                      {"spat", spat_json(heard)},
+                      {"silences", heard.silences},
+                      {"sent", f.lights.sent}};
     json["relayed"] = {{"states", f.relayed.states},
                        {"datagrams", f.relayed.datagrams},
                        {"waited", f.relayed.waited},
@@ -357,6 +371,8 @@ std::string json_of(const server::RobotClientStats& f) {
                       {"starts", f.create->starts},
                       {"lines", f.create->lines},
                       {"refused", f.create->refused}};
+  if (f.listens_for_spat) json["spat"] = spat_json(f.lights);
+  json["lights"] = {{"packets", f.lights.packets}, {"states", f.lights.states}, {"silences", f.lights.silences}};
   json["distance_m"] = f.distance_m;
   json["pose"] = pose_json(f.pose);
   if (f.error.steps > 0) json["error"] = error_json(f.error);

@@ -225,6 +225,12 @@ std::string text_of(const RunReport& f) {
   if (f.lockstep) text += lockstep_text(*f.lockstep);
   if (f.socket_drops > 0) text += drops_text(f.socket_drops);
   if (f.filtered) text += states_text(f);
+  const server::LightCounts& heard = f.lights.heard;
+  if (heard.packets + heard.messages + heard.others + heard.invalid + heard.refused > 0)
+    text += row("lights heard", "{} V2I, {} SPaT; {} of others or MAP, {} invalid, {} refused", heard.packets,
+                heard.messages, heard.others, heard.invalid, heard.refused);
+  if (heard.silences > 0) text += row("  silent", counted(heard.silences, "time") + " a light that was heard");
+  if (f.lights.sent > 0) text += row("lights sent", counted(f.lights.sent, "packet"));
   if (f.relayed.states + f.relayed.starts > 0)
     text += row("packets passed on", "{} V2V in {}, {} START", f.relayed.states,
                 counted(f.relayed.datagrams, "datagram"), f.relayed.starts);

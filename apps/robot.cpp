@@ -1,16 +1,15 @@
-// `robot`: one simulated robot as a process of its own, beside a farm that serves. `start`: the signal to begin.
+// `robot`: one simulated robot as a process of its own, beside a farm that serves.
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "apps/address.h"
 #include "apps/commands.h"
 #include "apps/controller_options.h"
 #include "apps/default_robot.h"
+#include "apps/farm_endpoint.h"
 #include "apps/layout_options.h"
 #include "apps/peers_option.h"
 #include "apps/report.h"
@@ -35,10 +34,6 @@ bool waits_for_start(const RobotOptions& options) {
            return text.compare(0, kStart.size(), kStart) == 0 &&
                   control::read_text(std::string_view(text).substr(kStart.size())) == "signal";
          });
-}
-
-netio::Endpoint farm_of(const FarmOptions& options) {
-  return {netio::resolve(options.server), static_cast<std::uint16_t>(options.port)};
 }
 
 /// The robot's own; warns where the table has none.
@@ -99,17 +94,6 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
   return client;
 }
 
-/// @throws base::InputError for a table without a key: the farm that has one would drop the signal
-std::optional<netio::PacketSigner> start_signer(const StartOptions& options) {
-  if (options.peers.empty()) return std::nullopt;
-  const std::vector<netio::Peer> peers = peers_of(options, nullptr);
-  const netio::Peer* own = netio::find(peers, netio::PeerKind::start, 0);
-  if (own == nullptr || !own->key)
-    throw base::InputError(options.peers, 0,
-                           "has no key for START; expected a section [[peer]] with start = true and key");
-  return netio::PacketSigner(*own->key);
-}
-
 std::uint32_t find_robot(const world::World& world, const std::string& name) {
   std::vector<std::string_view> names;
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
@@ -128,7 +112,7 @@ int robot(const RobotOptions& options) {
   const std::uint32_t mover = find_robot(world, options.robot);
   server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options),
                               client_options(options, world, world.movers[mover]));
-  if (process.spat() != nullptr && !netio::is_loopback(process.link().farm().address))
+  if (options.spat > 0 && !netio::is_loopback(process.link().farm().address))
     print_message(
         "warning: --spat {} takes the states of lights from whoever reaches this machine, since these messages are not "
         "signed",
@@ -142,30 +126,6 @@ int robot(const RobotOptions& options) {
   const server::RobotClientStats facts = process.stats();
   print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
   return facts.answered || !facts.listens ? 0 : 1;
-}
-
-int start(const StartOptions& options) {
-  constexpr int kTimes = 3;  // one may be lost on the way
-  const netio::Endpoint farm = farm_of(options);
-  netio::Header header;
-  header.robot = static_cast<std::uint16_t>(options.start_id);
-  netio::Outbox outbox;
-  base::Bytes packet;
-  std::optional<netio::PacketSigner> signer = start_signer(options);
-  for (int i = 0; i < kTimes; ++i) {
-    if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    header.sequence = static_cast<std::uint32_t>(i);
-    netio::encode(header, netio::Start{}, packet);
-    if (signer) signer->sign(packet);
-    outbox.queue(farm, packet);
-    outbox.flush();
-  }
-  if (outbox.counts().sent == 0)
-    throw base::InputError("the start signal was not sent: " + outbox.counts().first_failure);
-  print_message("start signal sent to {} for {}, {} times; nobody acknowledges it", netio::text(farm),
-                options.start_id == netio::kBroadcastId ? "all robots" : ("robot " + std::to_string(options.start_id)),
-                kTimes);
-  return 0;
 }
 
 }  // namespace sf::apps

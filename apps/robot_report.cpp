@@ -65,6 +65,11 @@ std::string text_of(const server::RobotClientStats& f) {
     text += row("Create", "{}, {} with a wrong checksum, {} outside of frames; started {}, line opened {}",
                 counted(f.create->frames, "frame"), f.create->wrong_checksums, counted(f.create->skipped_bytes, "byte"),
                 counted(f.create->starts, "time"), counted(f.create->lines, "time"));
+  if (f.listens_for_spat)
+    text += row("SPaT", "{}, {} of other lights or MAP, {} invalid", counted(f.lights.messages, "message"),
+                f.lights.others, f.lights.invalid);
+  if (f.lights.packets > 0) text += row("V2I", "{} of lights", counted(f.lights.packets, "packet"));
+  if (f.lights.silences > 0) text += row("  silent", counted(f.lights.silences, "time") + " a light that was heard");
   text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
               f.pose.yaw * 180.0 / M_PI);
   if (f.cameras) {

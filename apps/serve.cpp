@@ -1,5 +1,7 @@
 // `serve`: robots live elsewhere. Their states come in, readings go back to them.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -33,6 +35,8 @@ server::ServiceOptions service_options(const ServeOptions& options, const world:
                       .forget = options.forget};
   service.receiver.peers = peers_of(options, &world);
   require_signable(service.receiver.peers, options.wire);
+  if (options.spat > 0) service.spat = netio::Endpoint{service.receiver.bind.address, options.spat};
+  service.stale_lights = options.stale_lights;
   server::StateFilterOptions& filter = service.receiver.filter;
   filter.enabled = options.filter;
   filter.clock.source = options.clock;
@@ -42,16 +46,28 @@ server::ServiceOptions service_options(const ServeOptions& options, const world:
   return service;
 }
 
-/// Every robot and tag, and START, has a key.
-bool signs_all(std::span<const netio::Peer> peers, const world::World& world) {
+/// Every robot, tag and intersection, and START, has a key; SPaT cannot be signed.
+bool signs_all(std::span<const netio::Peer> peers, const world::World& world, std::span<const std::uint32_t> lights) {
   const auto has_key = [&](netio::PeerKind kind, std::uint32_t id) {
     const netio::Peer* peer = netio::find(peers, kind, id);
     return peer != nullptr && peer->key;
   };
   return has_key(netio::PeerKind::start, 0) &&
+         std::all_of(lights.begin(), lights.end(),
+                     [&](std::uint32_t id) { return has_key(netio::PeerKind::light, id); }) &&
          std::all_of(world.movers.begin(), world.movers.end(), [&](const world::Mover& mover) {
            return has_key(mover.is_tag ? netio::PeerKind::tag : netio::PeerKind::robot, mover.id);
          });
+}
+
+/// @throws base::InputError for an intersection that the world does not have
+void require_lights(const ServeOptions& options, std::span<const netio::Peer> peers,
+                    std::span<const std::uint32_t> lights) {
+  for (const netio::Peer& peer : peers)
+    if (peer.kind == netio::PeerKind::light && std::find(lights.begin(), lights.end(), peer.id) == lights.end())
+      throw base::InputError(options.peers, 0,
+                             fmt::format("the world has no intersection with the id {}; it has {}", peer.id,
+                                         lights.empty() ? "none" : fmt::format("{}", fmt::join(lights, ", "))));
 }
 
 /// The recording of a service: its states are estimates, its ticks and samples are at times of its clock.
@@ -97,6 +113,7 @@ RunReport report_of(const server::ServiceStats& stats, const world::World& world
   facts.inbox = stats.inbox;
   facts.socket_drops = stats.socket_drops;
   facts.relayed = stats.relayed;
+  facts.lights = stats.lights;
   facts.filtered = stats.filtered;
   facts.states = stats.states;
   facts.clocks = clocks_of(stats, world);
@@ -119,7 +136,8 @@ int serve(const ServeOptions& options) {
   std::optional<record::Recorder> recorder;
   try {
     server::Service service(world, sensor_set, device, layout, chosen);
-    if (!signs_all(chosen.receiver.peers, world))
+    require_lights(options, chosen.receiver.peers, service.lights().ids());
+    if (!signs_all(chosen.receiver.peers, world, service.lights().ids()))
       warn_of_exposure(chosen.receiver.bind.address, "say where robots are, and be sent readings");
     if (!options.record.empty()) {
       recorder.emplace(options.record, run_info(world, sensor_set, options, device.info().software));

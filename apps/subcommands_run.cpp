@@ -162,6 +162,17 @@ void add_serve(CLI::App& app, Call& call) {
   add_peers(*sub, o);
   add_lockstep(*sub, o);
   add_filter(*sub, o);
+  sub->add_option("--spat", o.spat,
+                  "UDP port on which to listen for SPaT of traffic lights, which replace the world's plans, as V2I at "
+                  "the farm's port do")
+      ->check(whole(1, 65535))
+      ->type_name("PORT");
+  using server::StaleLights;
+  add_choice<StaleLights, StaleLights>(
+      *sub, "--stale-lights", o.stale_lights, {{"dark", StaleLights::dark}, {"plan", StaleLights::plan}},
+      "A light that was heard and is silent for 2 s is dark, which robots treat as a stop sign, or follows the world's "
+      "plan")
+      ->default_str("dark");
   sub->add_option("--record", o.record, "Folder to record states, their quality, and readings into (run.mcap)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
@@ -246,8 +257,8 @@ void add_robot(CLI::App& app, Call& call) {
   add_forget(*sub, o);
   add_peers(*sub, o);
   sub->add_option("--spat", o.spat,
-                  "UDP port on which to listen for SPaT of traffic lights (`sensorfarm light`, 9010); they replace the "
-                  "world's plans (default: plans)")
+                  "UDP port on which to listen for SPaT of traffic lights (`sensorfarm light`, 9010), in place of the "
+                  "farm's lights")
       ->check(whole(1, 65535))
       ->type_name("PORT");
   add_cameras(*sub, o);
@@ -271,19 +282,27 @@ void add_robot(CLI::App& app, Call& call) {
 
 void add_light(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("light",
-                                     "Send a world's traffic lights as SAE J2735 messages over UDP, as lights of "
-                                     "streets do: SPaT at a rate, MAP once a second");
+                                     "Send traffic lights, of a world or a plan, as SAE J2735 messages over UDP, as "
+                                     "lights of streets do (SPaT at a rate, MAP once a second), and as V2I to a farm");
   auto& o = add_command(*sub, call, light);
   add_examples(*sub, {"worlds/simville/simville.world --send 127.0.0.1",
-                      "worlds/simville/simville.world --send 192.168.1.7 --set 'light1=flashing red'"});
-  sub->add_option("world", o.world, "World file with the lights and their plans")->required()->type_name("FILE");
-  sub->add_option("--send", o.send, "Host to send to")->required()->check(not_empty("a host"))->type_name("HOST");
+                      "worlds/simville/simville.world --send 192.168.1.7 --set 'light1=flashing red'",
+                      "worlds/simville/lights.toml --farm 127.0.0.1:9000"});
+  sub->add_option("file", o.file, "World file with the lights and their plans, or a plan (.toml) that names its world")
+      ->required()
+      ->type_name("FILE");
+  sub->add_option("--send", o.send, "Host to send SPaT and MAP to")->check(not_empty("a host"))->type_name("HOST");
+  sub->add_option("--farm", o.farm,
+                  "Farm (`sensorfarm serve`) to send V2I to, and to hear robots from for the plan's detectors")
+      ->check(not_empty("HOST:PORT"))
+      ->type_name("HOST:PORT");
+  add_peers(*sub, o);
   sub->add_option("--port", o.ports, "UDP port there; may be repeated, one per receiver")
       ->check(whole(1, 65535))
       ->allow_extra_args(false)
       ->type_name("PORT")
       ->capture_default_str();
-  sub->add_option("--rate", o.rate, "SPaT messages per second of each intersection")
+  sub->add_option("--rate", o.rate, "SPaT and V2I per second of each intersection")
       ->check(number(0.1, 100.0))
       ->type_name("HZ")
       ->capture_default_str();
@@ -309,6 +328,23 @@ void add_start(CLI::App& app, Call& call) {
   add_farm(*sub, o);
   add_peers(*sub, o);
   sub->add_option("--robot", o.start_id, "Id of the robot (default: all)")->check(whole(0, 65535))->type_name("ID");
+}
+
+void add_object(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "object", "Open and close doors: take an object out of a farm's world, or put it back (not acknowledged)");
+  auto& o = add_command(*sub, call, object);
+  add_examples(*sub, {"absent --tag 3", "present --tag 3 --server 192.168.1.5"});
+  add_farm(*sub, o);
+  add_peers(*sub, o);
+  using State = ObjectOptions::State;
+  add_choice<State, State>(*sub, "state", o.state, {{"present", State::present}, {"absent", State::absent}},
+                           "What the object is to be")
+      ->required();
+  sub->add_option("--tag", o.tag, "Id of the object's tag (tag<ID> in the world file)")
+      ->required()
+      ->check(whole(netio::kMinTag, netio::kMaxId))
+      ->type_name("ID");
 }
 
 void add_listen(CLI::App& app, Call& call) {
@@ -389,6 +425,7 @@ void add_run_commands(CLI::App& app, Call& call) {
   add_robot(app, call);
   add_light(app, call);
   add_start(app, call);
+  add_object(app, call);
   add_listen(app, call);
   add_dump(app, call);
   add_map(app, call);

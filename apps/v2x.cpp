@@ -167,7 +167,7 @@ int export_world(const V2xOptions& options) {
     print_message("intersection {}: {}; {}", one.id, fmt::join(names, ", "), counted(one.stops.size(), "stop line"));
     if (roads)
       if (auto map = map_of(*roads, one, {options.latitude, options.longitude})) print_frame(std::move(*map));
-    print_frame(spat_of(world, one, options.time, std::llround(1e3 * options.time)));
+    print_frame(spat_of(one, world::forecasts_at(world, options.time), std::llround(1e3 * options.time)));
   }
   return 0;
 }

@@ -118,6 +118,33 @@ void add_body(const netio::Values& values, Fields& out) {
   for (std::size_t i = 0; i < values.values.size() / sizeof(double); ++i) numbers.push_back(netio::value_of(values, i));
   add(out, "value", numbers);
 }
+/// Approaches, then stop lines, each column by itself.
+void add_body(const netio::V2i& signals, Fields& out) {
+  std::vector<double> group, state, next, left, light, stop_group, stop_point, stop_line;
+  for (std::size_t k = 0; k < netio::count(signals.approaches); ++k) {
+    const netio::SignalApproach a = netio::approach_at(signals, k);
+    group.push_back(a.group);
+    state.push_back(a.state);
+    next.push_back(a.next == netio::kNoSignalState ? kNan : a.next);
+    left.push_back(std::isinf(a.left) ? kNan : a.left);
+    light.insert(light.end(), {a.X_WL.x, a.X_WL.y, a.X_WL.z, a.X_WL.yaw});
+  }
+  for (std::size_t k = 0; k < netio::count(signals.stops); ++k) {
+    const netio::SignalStop s = netio::stop_at(signals, k);
+    stop_group.push_back(s.group);
+    for (const std::uint16_t id : {s.segment, s.lane, s.point}) stop_point.push_back(id);
+    stop_line.insert(stop_line.end(), {s.x, s.y, s.heading, s.width});
+  }
+  add(out, "group", group);
+  add(out, "state", state);
+  add(out, "next", next);
+  add(out, "left_s", left);
+  add(out, "light", light);
+  add(out, "stop_group", stop_group);
+  add(out, "stop_point", stop_point);
+  add(out, "stop_line", stop_line);
+}
+void add_body(const netio::Object& object, Fields& out) { add(out, "present", object.present); }
 
 /// The states by their place: "0.robot", ... Those that are no V2V are left out.
 void add_body(const netio::Neighbours& neighbours, Fields& out) {
@@ -210,6 +237,10 @@ std::string name_of(netio::Type type) {
       return "LEAVE";
     case netio::Type::challenge:
       return "CHALLENGE";
+    case netio::Type::v2i:
+      return "V2I";
+    case netio::Type::object:
+      return "OBJECT";
     case netio::Type::neighbours:
       return "NEIGHBOURS";
     case netio::Type::command:

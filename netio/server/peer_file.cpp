@@ -25,8 +25,8 @@ using world::TomlNode;
 using world::TomlReader;
 
 constexpr std::array<std::string_view, 1> kKeys{"peer"};
-constexpr std::array<std::string_view, 5> kPeerKeys{"robot", "tag", "start", "address", "key"};
-constexpr std::array<std::string_view, 3> kKindKeys{"robot", "tag", "start"};
+constexpr std::array<std::string_view, 6> kPeerKeys{"robot", "tag", "start", "light", "address", "key"};
+constexpr std::array<std::string_view, 4> kKindKeys{"robot", "tag", "start", "light"};
 
 /// The one key of `table` that says whose packets it is about.
 const TomlNode& kind_node(const TomlReader& reader, const TomlNode& table) {
@@ -37,7 +37,7 @@ const TomlNode& kind_node(const TomlReader& reader, const TomlNode& table) {
     if (found != nullptr) reader.fail(*node, fmt::format("a peer has '{}' or '{}', not both", found->key, key));
     found = node;
   }
-  if (found == nullptr) reader.fail(table, "a peer needs robot = ID, tag = ID, or start = true");
+  if (found == nullptr) reader.fail(table, "a peer needs robot = ID, tag = ID, light = ID, or start = true");
   return *found;
 }
 
@@ -58,6 +58,11 @@ void read_identity(const TomlReader& reader, const TomlNode& table, const WireNa
   if (node.key == "start") {
     peer.kind = PeerKind::start;
     if (!reader.flag(table, "start")) reader.fail(node, "'start' expects true");
+    return;
+  }
+  if (node.key == "light") {
+    peer.kind = PeerKind::light;
+    peer.id = static_cast<std::uint32_t>(reader.whole(table, node.key, 0, netio::kMaxId));
     return;
   }
   const bool tag = node.key == "tag";

@@ -32,6 +32,9 @@ std::uint32_t tag_of(const RobotClientOptions& options, const world::Mover& move
       fmt::format("{} has the id {}, which no tag has; expected the id of the tag that it carries (robot --tag), from "
                   "{} to {}",
                   mover.name, mover.id, netio::kMinTag, netio::kMaxId));
+LinkOptions with_lights(LinkOptions link, std::span<const Intersection> intersections) {
+  for (const Intersection& one : intersections) link.lights.push_back(one.id);
+  return link;
 }
 
 /// [ms] since 1970
@@ -45,9 +48,10 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       names_(wire_names(world)),
       mover_(mover),
       body_(world, mover, base::nanoseconds(options.forget)),
-      link_(world, sensor_set, mover, sent, options.link,
-            [this](const netio::Packet& packet, std::int64_t now) { on_packet(packet, now); }),
       roads_(world::roads_of(world)),
+      lights_(world, roads_ ? &*roads_ : nullptr, {.spat = options.spat}),
+      link_(world, sensor_set, mover, sent, with_lights(options.link, lights_.intersections()),
+            [this](const netio::Packet& packet, std::int64_t now) { on_packet(packet, now); }),
       intents_(world.movers.size()),
       started_(!options.wait_for_start),
       reading_timeout_(patience_of(sensor_set, mover, options.stop_after)),
@@ -158,12 +162,18 @@ RobotClientStats RobotClient::stats() const {
   if (create_) stats.create = create_->counts();
   if (spat_) stats.spat = spat_->counts();
   if (cameras_) stats.cameras = {cameras_->packets(), cameras_->states(), position_errors_};
+  stats.listens_for_spat = lights_.listens();
+  stats.lights = lights_.counts();
   stats.stops = stops_;
   stats.lines_left_out = log_.left_out();
   return stats;
 }
 
 void RobotClient::on_packet(const netio::Packet& packet, std::int64_t now) {
+  if (const auto* signals = std::get_if<netio::V2i>(&packet.body)) {
+    if (!lights_.listens()) lights_.accept(packet.header, *signals, now);
+    return;
+  }
   const auto* state = std::get_if<netio::V2v>(&packet.body);
   if (state == nullptr) {
     started_ = true;
@@ -222,9 +232,8 @@ void RobotClient::gather_signals(std::int64_t now) {
   const double time = 1e-9 * static_cast<double>(link_.clock().to_farm(now));
   signals_.clear();
   for (const world::Light& light : world_.lights) signals_.push_back(world::signal_at(light, time));
-  if (!spat_) return;
-  spat_->receive(now, utc_());
-  spat_->apply(now, signals_);
+  if (lights_.listens()) lights_.receive(now, utc_());
+  lights_.apply(now, signals_);
 }
 
 bool RobotClient::readings_timed_out(std::int64_t now) const {

@@ -20,6 +20,8 @@
 #include "netio/server/robot_link.h"
 #include "netio/server/spat_listener.h"
 #include "netio/server/truth_report.h"
+#include "netio/server/light_listener.h"
+#include "netio/server/robot_link.h"
 #include "netio/server/wire_ids.h"
 #include "robots/robot_body.h"
 #include "sensors/sensor_set.h"
@@ -37,7 +39,7 @@ struct RobotClientOptions {
   double stop_after = 0.5;              ///< [s] without a reading after which it stands; 0: never
   bool wait_for_start = false;          ///< it stands until the start signal comes
   int log_descriptor = 2;               ///< of its log's lines; -1: none
-  std::optional<netio::Endpoint> spat;  ///< where it listens for SPaT of traffic lights; nullopt: plans of the world
+  std::optional<netio::Endpoint> spat;  ///< where it listens for SPaT of traffic lights, in place of the farm's V2I
   std::function<std::int64_t()> utc;    ///< [ms] since 1970; empty: the machine's clock
   std::uint32_t tag = 0;                ///< that it carries, below cameras; 0: the one with the robot's id
   /// Its own pose, and that in its packets to the farm, come from cameras alone; nullopt: it knows its true pose.
@@ -80,6 +82,8 @@ struct RobotClientStats {
   control::LocalizationError localization;  ///< beside the poses of its motion model
   std::optional<CreateCounts> create;       ///< nullopt: no real robot
   std::optional<OwnMapCounts> map;          ///< nullopt: it makes none
+  bool listens_for_spat = false;
+  LightCounts lights;
 };
 
 /// Times are of the robot's own clock [ns], which begins at 0 and does not go back. World and sensor set must outlive
@@ -112,6 +116,7 @@ class RobotClient {
   const SpatListener* spat() const { return spat_ ? &*spat_ : nullptr; }              ///< null: it does not listen
   const CameraPositions* cameras() const { return cameras_ ? &*cameras_ : nullptr; }  ///< null: it has none
   const base::Report& true_state() const { return body_.state(); }
+  const LightListener& lights() const { return lights_; }
   RobotClientStats stats() const;
 
  private:
@@ -137,8 +142,9 @@ class RobotClient {
   WireNames names_;
   std::uint32_t mover_;
   robots::RobotBody body_;
-  RobotLink link_;
   std::optional<world::RoadNetwork> roads_;
+  LightListener lights_;
+  RobotLink link_;
   control::ConfiguredController made_;
   std::vector<base::Intent> intents_;  ///< per mover, as told
   base::Twist command_;
@@ -157,7 +163,6 @@ class RobotClient {
   std::vector<base::ReadingBlock> readings_;
   std::vector<control::Neighbour> others_;
   std::vector<world::Signal> signals_;
-  std::optional<SpatListener> spat_;
   std::function<std::int64_t()> utc_;
   std::optional<CameraPositions> cameras_;
   bool was_lost_ = true;  ///< at the last step; no camera has seen it at the start

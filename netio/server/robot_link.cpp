@@ -35,7 +35,8 @@ RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor
       id_(world.movers[mover].id),
       streams_(streams_of(sensor_set, layout, mover)),
       farm_(options.farm),
-      v2v_socket_({.farm = farm_, .robot = id_, .others = others_of(world, id_), .key = options.key}),
+      v2v_socket_(
+          {.farm = farm_, .robot = id_, .others = others_of(world, id_), .key = options.key, .lights = options.lights}),
       port_listener_(listening_address(farm_.address), std::size_t{1} << 20, specs(layout)),
       receiver_(receiver_options(layout, options)),
       out_(options.model),

@@ -26,6 +26,7 @@ struct LinkOptions {
   netio::Endpoint farm;
   netio::LinkModel model;                ///< injected, in each direction
   std::optional<netio::SigningKey> key;  ///< the robot's own; signs its packets and the farm's
+  std::vector<std::uint32_t> lights;     ///< ids of intersections whose V2I is heard
 };
 
 struct LinkCounts {
@@ -42,7 +43,7 @@ struct LinkCounts {
 /// Times are of the robot's own clock [ns], which does not go back. World and sensor set must outlive it. One thread.
 class RobotLink {
  public:
-  /// Is given each relayed state and start signal.
+  /// Is given each relayed state, V2I and start signal.
   using PacketHandler = std::function<void(const netio::Packet&, std::int64_t now)>;
 
   /// @throws base::InputError when a port is taken or the farm's host is unknown.

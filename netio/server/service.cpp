@@ -23,19 +23,34 @@ class Service::Clock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+namespace {
+
+StateReceiverOptions with_lights(StateReceiverOptions options, std::vector<std::uint32_t> ids) {
+  options.lights = std::move(ids);
+  return options;
+}
+
+}  // namespace
+
 Service::Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
                  const StreamLayout& layout, const ServiceOptions& options)
     : world_(world),
       sensor_set_(sensor_set),
       layout_(layout),
-      receiver_(world, options.receiver),
+      lights_(world, {.spat = options.spat, .stale = options.stale_lights, .peers = options.receiver.peers},
+              options.receiver.radio),
+      receiver_(world, with_lights(options.receiver, lights_.ids())),
       publisher_(world, sensor_set, layout, netio::Outbox(receiver_.inbox().socket(), outbox_options(sensor_set))),
       farm_(world, device,
             farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
       absent_(world.movers.size(), false),
       no_return_filter_(sensor_set, options.no_return_inf),
       interval_(options.rate > 0.0 ? 1.0 / options.rate : world.interval),
-      only_at_ticks_(options.rate > 0.0) {}
+      only_at_ticks_(options.rate > 0.0) {
+  receiver_.set_light_handler([this](const netio::Header& header, const netio::V2i& signals, std::int64_t now) {
+    lights_.accept(header, signals, now);
+  });
+}
 
 void Service::run(const std::atomic<bool>& stop, double duration) {
   const Clock clock;
@@ -77,12 +92,14 @@ std::int64_t Service::next_due() const {
 
 void Service::tick(std::int64_t now) {
   publish_due(now, false);
+  lights_.publish(now, receiver_);
   receiver_.relay(now);
   ++ticks_;
 }
 
 void Service::publish_due(std::int64_t now, bool between) {
   receive_pending(now);
+  lights_.update(now);
   receiver_.predict(now);
   const auto states = update_movers(now);
   const auto readings = no_return_filter_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
@@ -128,8 +145,15 @@ void Service::record(std::int64_t now, std::span<const base::Report> states,
     if (absent_[state.mover]) state.X_WM = base::kAbsent;
     qualities_.push_back(receiver_.quality(state.mover, now));
   }
+  light_states_.clear();
+  for (const world::Signal& signal : lights_.signals()) light_states_.push_back(world::status_of(signal));
   try {
-    sink_->write({.tick = records_++, .time = now, .reports = states_, .readings = readings, .qualities = qualities_});
+    sink_->write({.tick = records_++,
+                  .time = now,
+                  .reports = states_,
+                  .readings = readings,
+                  .qualities = qualities_,
+                  .lights = light_states_});
   } catch (const base::InputError& error) {
     sink_ = nullptr;
     recording_error_ = error.what();
@@ -168,6 +192,7 @@ ServiceStats Service::stats() const {
   stats.inbox = receiver_.inbox().counts();
   stats.socket_drops = receiver_.inbox().socket_drops();
   stats.relayed = receiver_.relayed();
+  stats.lights = lights_.counts();
   stats.answers = receiver_.answered();
   stats.lines_left_out = receiver_.log().left_out();
   stats.filtered = receiver_.filter().options().enabled;

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "base/tick_record.h"
 #include "farm/farm.h"
 #include "gpu/device.h"
+#include "netio/server/light_service.h"
 #include "netio/server/no_return_filter.h"
 #include "netio/server/reading_publisher.h"
 #include "netio/server/state_receiver.h"
@@ -30,6 +32,9 @@ struct ServiceOptions {
   double rate = 0.0;
   std::uint64_t seed = 1;
   bool no_return_inf = false;
+  /// Lights of the world; peers are those of `receiver`.
+  std::optional<netio::Endpoint> spat;  ///< where to listen for SPaT; nullopt: nowhere
+  StaleLights stale_lights = StaleLights::dark;
 };
 
 struct ServiceStats {
@@ -42,6 +47,7 @@ struct ServiceStats {
   netio::PacketCounts inbox;
   std::uint64_t socket_drops = 0;  ///< datagrams that came while the inbox' buffer was full
   netio::RelayCounts relayed;
+  LightServiceCounts lights;
   netio::OutboxCounts answers;       ///< challenges, and datagrams of the relay
   std::uint64_t lines_left_out = 0;  ///< of the log
   bool filtered = false;             ///< `states` and `clocks` count
@@ -78,6 +84,7 @@ class Service {
   std::uint16_t port() const { return receiver_.inbox().port(); }
   std::size_t robots() const { return receiver_.robots().size(); }
   StateReceiver& receiver() { return receiver_; }
+  const LightService& lights() const { return lights_; }
   ServiceStats stats() const;
 
  private:
@@ -93,13 +100,15 @@ class Service {
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
   const StreamLayout& layout_;
+  LightService lights_;
   StateReceiver receiver_;
   ReadingPublisher publisher_;
   farm::Farm farm_;
   base::Sink* sink_ = nullptr;
-  std::vector<base::Report> states_;           ///< per mover, of one tick or sample
-  std::vector<base::StateQuality> qualities_;  ///< likewise
-  std::vector<bool> absent_;                   ///< per mover
+  std::vector<base::Report> states_;             ///< per mover, of one tick or sample
+  std::vector<base::StateQuality> qualities_;    ///< likewise
+  std::vector<bool> absent_;                     ///< per mover
+  std::vector<base::LightStatus> light_states_;  ///< per light, of one tick or sample
   std::string recording_error_;
   std::uint64_t records_ = 0;  ///< written to `sink_`
   NoReturnFilter no_return_filter_;

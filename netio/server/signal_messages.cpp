@@ -91,12 +91,11 @@ v2x::TimeMark mark_of(std::int64_t utc, double left) {
   return static_cast<v2x::TimeMark>(std::llround(ms / 100.0) % (kHour / 100));
 }
 
-v2x::MovementEvent event_of(const world::Signal& signal, std::int64_t utc) {
+v2x::MovementEvent event_of(const world::Signal& signal, double latest, std::int64_t utc) {
   v2x::MovementEvent event;
   event.state = phase_of(signal.state);
-  const v2x::TimeMark end = mark_of(utc, signal.left);
-  event.timing.emplace().min_end = end;
-  event.timing->max_end = end;
+  event.timing.emplace().min_end = mark_of(utc, signal.left);
+  event.timing->max_end = mark_of(utc, latest);
   return event;
 }
 
@@ -181,7 +180,8 @@ std::vector<Intersection> intersections_of(const world::World& world, const Road
   return all;
 }
 
-v2x::Spat spat_of(const world::World& world, const Intersection& intersection, double time, std::int64_t utc) {
+v2x::Spat spat_of(const Intersection& intersection, std::span<const world::SignalForecast> forecasts,
+                  std::int64_t utc) {
   v2x::Spat spat;
   v2x::IntersectionState& state = spat.intersections.emplace_back();
   state.id.id = intersection.id;
@@ -191,16 +191,12 @@ v2x::Spat spat_of(const world::World& world, const Intersection& intersection, d
   state.minute = static_cast<std::uint32_t>(std::chrono::floor<std::chrono::minutes>(since - year).count());
   state.milliseconds = static_cast<std::uint16_t>(utc % kMinute);
   for (std::size_t i = 0; i < intersection.lights.size(); ++i) {
-    const world::Light& light = world.lights[intersection.lights[i]];
+    const world::SignalForecast& light = forecasts[intersection.lights[i]];
     v2x::MovementState& group = state.states.emplace_back();
     group.signal_group = static_cast<std::uint8_t>(i + 1);
-    const world::Signal now = signal_at(light, time);
-    group.events.push_back(event_of(now, utc));
-    if (!std::isfinite(now.left)) continue;
-    // Half a millisecond into the next phase, beyond rounding.
-    world::Signal next = signal_at(light, time + now.left + 5e-4);
-    next.left += now.left + 5e-4;
-    group.events.push_back(event_of(next, utc));
+    group.events.push_back(event_of(light.now, light.latest, utc));
+    if (!light.next) continue;
+    group.events.push_back(event_of(*light.next, light.next->left, utc));
     group.events.back().timing->start = group.events.front().timing->min_end;
   }
   return spat;

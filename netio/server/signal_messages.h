@@ -2,7 +2,7 @@
 // The traffic lights of a world as SPaT and MAP messages, and SPaT messages as states of lights.
 //
 //   for (const Intersection& each : intersections_of(world, roads)) {
-//     Spat spat = spat_of(world, each, time, utc);             // the states at `time`
+//     Spat spat = spat_of(each, forecasts, utc);               // the states of all lights
 //     auto map = map_of(*roads, each, origin);                 // stop lines and lanes; never changes
 //   }
 //   read_spat(spat, intersections, utc, take);                 // the reverse
@@ -36,8 +36,8 @@ struct Intersection {
 std::vector<Intersection> intersections_of(const world::World& world, const world::RoadNetwork* roads);
 
 /// The present state of each light with the time of its change, and the state after that.
-/// @param time [s] simulated @param utc [ms] since 1970 at that time
-v2x::Spat spat_of(const world::World& world, const Intersection& intersection, double time, std::int64_t utc);
+/// @param forecasts one per row of `World::lights` @param utc [ms] since 1970 at their time
+v2x::Spat spat_of(const Intersection& intersection, std::span<const world::SignalForecast> forecasts, std::int64_t utc);
 
 /// A lane that ends at each stop line, a lane that begins at each of their exits' ends, and the connections between
 /// them. Offsets are those of the world, x east and y north. Nothing where the intersection has no stop line.

@@ -26,15 +26,17 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
               .robots = ids_of(names_.robots),
               .tags = ids_of(names_.tags),
               .peers = options.peers,
-              .take_late = takes_late(options.filter)}),
+              .take_late = takes_late(options.filter),
+              .lights = options.lights}),
       peers_(options.peers),
       answers_(inbox_.socket()),
-      relay_(ids_of(names_.robots), {.range = options.radio}),
+      relay_(ids_of(names_.robots), {.range = options.radio}, options.lights),
       fleet_(world),
       filter_(world, options.filter),
       forget_(options.forget > 0.0
                   ? std::max<std::int64_t>(0, base::nanoseconds(options.forget) - netio::kClientTimeout)
                   : kNever),
+      removed_(world.movers.size(), false),
       last_active_(world.movers.size(), kNever),
       last_state_(world.movers.size(), kNever),
       log_(options.log_descriptor) {
@@ -55,6 +57,14 @@ void StateReceiver::receive_pending(std::int64_t now) {
 
 void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
   if (!packet.late) relay_.take(packet);
+  if (const auto* signals = std::get_if<netio::V2i>(&packet.body)) {
+    if (light_handler_) light_handler_(packet.header, *signals, now);
+    return;
+  }
+  if (const auto* object = std::get_if<netio::Object>(&packet.body)) {
+    removed_[names_.tags.at(packet.header.robot)] = !object->present;
+    return;
+  }
   base::Report report;
   if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
     report = netio::report(packet.header, *state, names_.robots.at(packet.header.robot));
@@ -82,6 +92,10 @@ netio::StateQuality StateReceiver::quality(std::uint32_t row, std::int64_t now) 
   return {.stated = true, .stale = age > filter_.options().stale_after, .age = age};
 }
 
+void StateReceiver::queue(std::uint32_t id, std::span<const std::uint8_t> packet) {
+  answers_.queue(*inbox_.address(id), packet, inbox_.session_token_for(id), inbox_.signer(id));
+}
+
 void StateReceiver::relay(std::int64_t now) {
   relay_.forward(inbox_, now, answers_);
   answers_.flush();
@@ -99,21 +113,23 @@ bool StateReceiver::update_absent(std::uint32_t id, std::int64_t now) {
 }
 
 bool StateReceiver::update_absent_tag(std::uint32_t row) {
-  const bool absent = filter_.options().enabled && filter_.is_gone(row);
+  const bool absent = removed_[row] || (filter_.options().enabled && filter_.is_gone(row));
   fleet_.set_absent(row, absent);
   return absent;
 }
 
 /// Once per binding, or once for the address in the table of peers.
 void StateReceiver::log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now) {
-  if (std::holds_alternative<netio::Start>(packet.body)) return;  // of no mover
   const netio::Claim claim = netio::claim_of(packet.header);
   const bool tag = claim.kind == netio::PeerKind::tag;
+  if (!tag && claim.kind != netio::PeerKind::robot) return;  // of no mover
   const std::string& name = world_.movers[(tag ? names_.tags : names_.robots).at(claim.id)].name;
   const netio::Peer* peer = netio::find(peers_, claim.kind, claim.id);
   const bool refused = peer != nullptr && peer->address && *peer->address != who.address;
-  const netio::Endpoint expected =
-      refused ? netio::Endpoint{*peer->address, 0} : *(tag ? inbox_.tag_address(claim.id) : inbox_.address(claim.id));
+  const auto bound = packet.header.type == netio::Type::object ? inbox_.object_address(claim.id)
+                     : tag                                     ? inbox_.tag_address(claim.id)
+                                                               : inbox_.address(claim.id);
+  const netio::Endpoint expected = refused ? netio::Endpoint{*peer->address, 0} : *bound;
   auto& logged = (tag ? logged_tags_ : logged_robots_)[claim.id];
   if (logged == expected) return;
   logged = expected;

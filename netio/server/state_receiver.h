@@ -2,6 +2,7 @@
 // The incoming side of `serve`: states for the fleet, packets for the relay, challenges for unproven addresses.
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -25,7 +26,8 @@ struct StateReceiverOptions {
   double forget = 10.0;             ///< [s] of silence after which a robot is no obstacle any more; 0: never
   int log_descriptor = 2;           ///< -1: no log
   StateFilterOptions filter;
-  std::vector<netio::Peer> peers;  ///< of the world's robots and tags, and START
+  std::vector<netio::Peer> peers;     ///< of the world's robots, tags and intersections, and START
+  std::vector<std::uint32_t> lights;  ///< ids of intersections whose V2I are taken
 };
 
 /// Times are of one clock [ns] that does not go back. The world must outlive it. One thread.
@@ -34,8 +36,14 @@ class StateReceiver {
   /// @throws netio::PortInUse, or base::InputError when the address cannot be bound.
   StateReceiver(const world::World& world, const StateReceiverOptions& options);
 
+  /// From now on `handler` is given accepted V2I.
+  using LightHandler = std::function<void(const netio::Header&, const netio::V2i&, std::int64_t now)>;
+  void set_light_handler(LightHandler handler) { light_handler_ = std::move(handler); }
+
   /// Takes every datagram that waits.
   void receive_pending(std::int64_t now);
+  /// Queues a packet for robot `id`, which is active, with its session and signature; it leaves with `relay`.
+  void queue(std::uint32_t id, std::span<const std::uint8_t> packet);
   /// Passes on what came since the last time, to robots that asked for it.
   void relay(std::int64_t now);
   /// Predicts the states to `now`, for the calls below.
@@ -43,7 +51,7 @@ class StateReceiver {
   /// Whether a robot spoke once and has been silent since for as long as `forget`, or its state is stale and the policy
   /// takes it out of the world: until it speaks again. To be asked at each tick.
   bool update_absent(std::uint32_t id, std::int64_t now);
-  /// Likewise of a tag, whose silence alone does not matter.
+  /// Likewise of a tag, whose silence alone does not matter, and which an OBJECT can take out of the world.
   bool update_absent_tag(std::uint32_t row);
   /// The newest states at `now`. They live until the next call.
   std::span<const base::Report> states(std::int64_t now) { return fleet_.predict(now); }
@@ -77,7 +85,9 @@ class StateReceiver {
   StateFilter filter_;
   std::vector<base::Report> reports_;
   base::Bytes challenge_;
-  std::int64_t forget_;                    ///< [ns] since it was last active, or kNever
+  std::int64_t forget_;  ///< [ns] since it was last active, or kNever
+  LightHandler light_handler_;
+  std::vector<bool> removed_;              ///< per mover, by OBJECT
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover
   std::vector<std::int64_t> last_state_;   ///< [ns] arrival, per mover, or kNever
   netio::RateLimitedLog log_;

@@ -1,11 +1,13 @@
-// Processes on loopback with one of them killed, stopped, or behind a bad link. Each test waits for messages, not for
-// times: a process that does not recover fails it after a minute.
+// Processes on loopback with one of them killed, stopped, behind a bad link, or with a clock that jumps. Each test
+// waits for messages, not for times: a process that does not recover fails it after a minute.
 
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
+#include <thread>
 
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
@@ -20,7 +22,13 @@ define bot position( size [0.3 0.3 0.1]
   laser( samples 91 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] ) )
 bot( name "roomba1" pose [-2 0 0 0] )
 bot( name "roomba2" pose [2 1 0 180] )
+light( name "lamp" pose [0 2 0 0] size [0.1 0.1 0.5] phases 1 phase[0] ["red" 1] )
+model( name "tag1" pose [0 -2 0 0] size [0.3 0.3 0.5] )
 )";
+
+const char* const kOverhead =
+    "dictionary = \"aruco_4x4_50\"\ntag_side = 0.15\ntag_height = 0.2\n[[camera]]\nname = \"a\"\nsize = [320, 240]\n"
+    "focal = [400, 400]\nposition = [0, 0, 2.2]\n[[tag]]\nid = 1\n";
 
 constexpr const char* kStands = "stands until one comes";
 constexpr const char* kGoesOn = "goes on";
@@ -45,8 +53,8 @@ struct Hall {
     return std::make_unique<Program>(words);
   }
   /// Long enough for the others, which began before, to be served.
-  void drive_for_a_while(const std::string& name) const {
-    const Outcome outcome = robot(name, {"--duration", "2"})->wait();
+  void drive_for_a_while(const std::string& name, const std::string& seconds = "2") const {
+    const Outcome outcome = robot(name, {"--duration", seconds})->wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
   }
 };
@@ -100,6 +108,77 @@ TEST(Faults, ARestartedRobotIsHeardAgain) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_GE(Json(outcome.out).number("/readings/laser"), 5.0) << outcome.out;
   ended(*farm);
+}
+
+/// Its successor binds the light's id two seconds after the last packet of the one that was killed, and hears robots.
+TEST(Faults, ARestartedLightIsHeardAgain) {
+  const Hall hall;
+  const auto farm = hall.serve();
+  const auto robot = hall.robot("roomba1");
+  const Words words{"light", hall.world, "--farm", "127.0.0.1:" + hall.port, "--set", "lamp=green"};
+  auto light = std::make_unique<Program>(words);
+  hall.drive_for_a_while("roomba2", "0.8");
+  light->signal(SIGKILL);
+  EXPECT_EQ(light->wait().signal, SIGKILL);
+  Words again = words;
+  for (const char* word : {"--duration", "3"}) again.emplace_back(word);
+  const Outcome outcome = run_program(again);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("heard 0"), std::string::npos) << outcome.err;
+  const Json told = ended(*robot), service = ended(*farm);
+  EXPECT_GE(told.number("/lights/packets"), 10.0) << "without a pause in what the farm says";
+  EXPECT_GE(service.number("/lights/packets"), 10.0);
+  EXPECT_EQ(service.number("/lights/silences"), 1.0) << "between the two it was dark, not green";
+  EXPECT_GE(service.number("/received/wrong source"), 1.0) << "the second was refused while the first was bound";
+}
+
+TEST(Faults, ARestartedCameraIsHeardAgain) {
+  const Hall hall;
+  const auto farm = hall.serve();
+  const std::string testbed = hall.folder.write("overhead.toml", kOverhead);
+  const Words words{"vps", testbed, "--rendered", "1", "--real-time", "--send", "127.0.0.1:" + hall.port};
+  auto camera = std::make_unique<Program>(words);
+  hall.drive_for_a_while("roomba2", "0.8");
+  camera->signal(SIGKILL);
+  EXPECT_EQ(camera->wait().signal, SIGKILL);
+  Words again = words;
+  for (const char* word : {"--duration", "3"}) again.emplace_back(word);
+  const Outcome outcome = run_program(again);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json service = ended(*farm);
+  EXPECT_GE(service.number("/received/accepted"), 20.0);
+  EXPECT_GE(service.number("/received/wrong source"), 1.0);
+}
+
+/// Only the wall clock moves: the clocks of ticks do not, and signatures count on.
+TEST(Faults, AClockThatJumpsByAnHourStopsNobody) {
+  const std::string library = "/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1";
+  if (!std::filesystem::exists(library)) GTEST_SKIP() << "this machine has no libfaketime (script/setup check)";
+  const Hall hall;
+  const std::string jump = hall.folder.write("jump", "+0");
+  const Environment moved{{"LD_PRELOAD", library},
+                          {"FAKETIME_TIMESTAMP_FILE", jump},
+                          {"FAKETIME_NO_CACHE", "1"},
+                          {"DONT_FAKE_MONOTONIC", "1"}};
+  const std::string peers =
+      hall.folder.write("peers.toml", "[[peer]]\nrobot = 1\nkey = \"" + std::string(64, '7') + "\"\n");
+  Program farm(
+      {"serve", hall.world, "--port", hall.port, "--json", "--laser-port", hall.lasers, "--filter", "--peers", peers},
+      moved);
+  ASSERT_TRUE(farm.says("; Ctrl-C ends it")) << farm.err();
+  Program robot({"robot", hall.world, "--name", "roomba1", "--port", hall.port, "--laser-port", hall.lasers, "--json",
+                 "--peers", peers},
+                moved);
+  for (const char* hours : {"+3600", "-3600", "+0"}) {
+    hall.folder.write("jump", hours);
+    hall.drive_for_a_while("roomba2", "0.8");
+  }
+  const Json driven = ended(robot);
+  EXPECT_EQ(driven.number("/stops"), 0.0) << "its readings never paused";
+  EXPECT_GE(driven.number("/readings/laser"), 30.0);
+  const Json service = ended(farm);
+  EXPECT_EQ(service.has("/received/replayed"), false) << "counters go on";
+  EXPECT_EQ(service.has("/states/by_verdict/future"), false);
 }
 
 TEST(Faults, ABadLinkIsCountedOnBothSides) {

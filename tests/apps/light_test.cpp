@@ -32,6 +32,28 @@ TEST(Light, EndsAfterItsDuration) {
   EXPECT_NE(outcome.err.find("sent "), std::string::npos) << outcome.err;
 }
 
+/// Two seconds of a plan by detectors, beside a farm whose robot stands where one is.
+TEST(Light, APlanIsRunBesideAFarm) {
+  const std::string lasers = std::to_string(free_ports(48)), port = std::to_string(free_ports(1));
+  Program farm({"serve", our_world("simville/simville.world"), "--port", port, "--laser-port", lasers, "--json"});
+  ASSERT_TRUE(farm.says("Ctrl-C ends it")) << farm.err();
+  Program robot({"robot", our_world("simville/simville.world"), "--name", "roomba0", "--controller", "route", "--set",
+                 "tour=true", "--stop-after", "0", "--port", port, "--laser-port", lasers, "--json"});
+  const Outcome light = run_program(
+      {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--rate", "20", "--duration", "2"});
+  EXPECT_EQ(light.code, 0) << light.err;
+  EXPECT_NE(light.err.find("7 lights of 2 intersections to 127.0.0.1:" + port + " (V2I) at 20 Hz"), std::string::npos);
+  EXPECT_EQ(light.err.find("nothing came"), std::string::npos) << light.err;
+  robot.signal(SIGINT);
+  const Json told(robot.wait().out);
+  EXPECT_GE(told.number("/lights/packets"), 4.0);
+  farm.signal(SIGINT);
+  const Json facts(farm.wait().out);
+  EXPECT_GE(facts.number("/lights/packets"), 20.0) << "of both intersections";
+  EXPECT_GE(facts.number("/lights/sent"), 4.0);
+  EXPECT_FALSE(facts.has("/received/stale"));
+}
+
 /// Far from the next message, which is due in ten seconds.
 TEST(Light, CtrlCEndsItAtOnce) {
   Program light({"light", our_world("simville/simville.world"), "--send", "127.0.0.1", "--port",
@@ -45,12 +67,18 @@ TEST(Light, CtrlCEndsItAtOnce) {
 
 TEST(Light, WrongArgumentsAreExplained) {
   const std::string world = our_world("simville/simville.world");
+  const Folder folder;
   struct Case {
     Words words;
     const char* said;
   };
   for (const Case& c : std::vector<Case>{
-           {{"light", world}, "--send is required"},
+           {{"light", world}, "expected a receiver: --send HOST for SPaT and MAP, --farm HOST:PORT for V2I, or both"},
+           {{"light", world, "--farm", "127.0.0.1"}, "--farm: expected HOST:PORT, got '127.0.0.1'"},
+           {{"light", folder.write("p.toml", "world = \"" + world + "\"\n[[program]]\nlights = [\"ligth1\"]\n"),
+             "--send", "127.0.0.1"},
+            "p.toml:3: no light of the world is called 'ligth1'; did you mean 'light1'?"},
+           {{"light", folder.write("q.toml", "[[program]]\n"), "--send", "127.0.0.1"}, "q.toml:"},
            {{"light", our_world("rooms.world"), "--send", "127.0.0.1"}, "no traffic lights in this world"},
            {{"light", world, "--send", "127.0.0.1", "--set", "ligth1=red"}, "did you mean 'light1'?"},
            {{"light", world, "--send", "127.0.0.1", "--set", "light1=blue"},

@@ -86,6 +86,8 @@ TEST(Usage, HelpNamesTheOptions) {
        {"--name", "--controller", "--set", "--server", "--port", "--delay", "--jitter", "--loss", "--seed", "--rate",
         "--duration", "--wait-for-start", "--json", "--wire"}},
       {"start", {"--robot", "--server", "--port"}},
+      {"object", {"--tag", "--server", "--port", "--peers"}},
+      {"light", {"--send", "--farm", "--peers", "--set"}},
       {"plot", {"-o,--out"}},
       {"field", {"--height", "-o,--out", "--line", "--extent", "--csv", "--device"}},
       {"map", {"--listen", "--bind", "--merge", "-o,--out", "--duration", "--once", "--silence", "--wire"}},

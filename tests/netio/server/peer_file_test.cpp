@@ -64,7 +64,7 @@ TEST(PeerFile, ErrorsNameTheirLine) {
   expect("", "peers.toml", "has no peer");
   expect("peers = 1", "peers.toml:1", "unknown key 'peers'");
   expect("peer = 1", "peers.toml:1", "each under [[peer]]");
-  expect("[[peer]]\naddress = \"10.0.0.1\"", "peers.toml:1", "robot = ID, tag = ID, or start = true");
+  expect("[[peer]]\naddress = \"10.0.0.1\"", "peers.toml:1", "robot = ID, tag = ID, light = ID, or start = true");
   expect("[[peer]]\nrobot = 1\ntag = 3", "peers.toml:3", "'robot' or 'tag', not both");
   expect("[[peer]]\nrobot = 1\nstart = true", "peers.toml:3", "not both");
   expect("[[peer]]\nrobot = 3", "peers.toml:2", "no robot with the id 3; it has 1, 2");

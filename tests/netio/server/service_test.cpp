@@ -295,6 +295,36 @@ TEST(Service, ASinkTakesStatesTheirQualityAndReadings) {
   EXPECT_TRUE(base::is_absent(sink.reports[0].X_WM)) << "out of the world";
 }
 
+/// Readings state how old what they know is; fresh ones come within a second of the end of the pause.
+TEST(Service, APauseOfFiveSecondsIsStatedAndEndsAtOnce) {
+  for (const bool filtered : {false, true}) {
+    for (const bool farm_pauses : {false, true}) {
+      Fixture f({.filter = {.enabled = filtered}});
+      TestSink sink;
+      f.service->record_to(sink);
+      f.run(10);
+      const std::int64_t last = f.now - kTick;
+      for (int i = 0; i < 50; ++i, f.now += kTick) {
+        if (farm_pauses) continue;
+        f.service->tick(f.now);
+        EXPECT_EQ(sink.qualities[0].age, f.now - last);
+        EXPECT_EQ(sink.qualities[0].stale, f.now - last > kSecond) << i;
+      }
+      if (farm_pauses) {
+        f.service->tick(f.now);
+        EXPECT_TRUE(sink.qualities[0].stale) << "nothing was sent meanwhile either";
+        EXPECT_EQ(sink.qualities[0].age, 50 * kTick + kTick);
+        f.now += kTick;
+      }
+      const std::size_t before = sink.readings;
+      f.run(10);
+      EXPECT_FALSE(sink.qualities[0].stale) << filtered;
+      EXPECT_LE(sink.qualities[0].age, kTick);
+      EXPECT_GE(sink.readings, before + 5);
+    }
+  }
+}
+
 TEST(Service, AFullDiskEndsTheRecordingOnly) {
   Fixture f;
   TestSink sink;

@@ -78,7 +78,7 @@ TEST(SignalMessages, LightsWithoutRoadsAreIntersectionsOfTheirOwn) {
 TEST(SignalMessages, SpatHasTheStateAndTheNextOne) {
   const world::World world = two_lights();
   const auto all = intersections_of(world, nullptr);
-  const v2x::Spat spat = spat_of(world, all[0], 3.0, kNewYear2026 + 61'250);
+  const v2x::Spat spat = spat_of(all[0], world::forecasts_at(world, 3.0), kNewYear2026 + 61'250);
   EXPECT_EQ(spat.intersections[0].minute, 1u);
   EXPECT_EQ(spat.intersections[0].milliseconds, 1250);
   EXPECT_EQ(event(spat, 0).state, v2x::PhaseState::permissive_movement_allowed);
@@ -93,17 +93,18 @@ TEST(SignalMessages, MarksAtTheirBorders) {
   world::World world = two_lights();
   const auto all = intersections_of(world, nullptr);
   // Across the hour: 3599 s + 5 s are 4 s of the next one.
-  EXPECT_EQ(event(spat_of(world, all[0], 3.0, kNewYear2026 + 3'599'000), 0).timing->min_end, 40);
+  EXPECT_EQ(event(spat_of(all[0], world::forecasts_at(world, 3.0), kNewYear2026 + 3'599'000), 0).timing->min_end, 40);
   // A state without end has no time, and no state follows.
-  const v2x::Spat dark = spat_of(world, all[1], 3.0, kNewYear2026);
+  const v2x::Spat dark = spat_of(all[1], world::forecasts_at(world, 3.0), kNewYear2026);
   EXPECT_EQ(event(dark, 0).timing->min_end, v2x::kUnknownTime);
   EXPECT_EQ(dark.intersections[0].states[0].events.size(), 1u);
   // More than an hour ahead.
   world.lights[0] = light({{LightState::red, 3601.0}, {LightState::green, 1.0}});
-  EXPECT_EQ(event(spat_of(world, all[0], 0.0, kNewYear2026), 0).timing->min_end, v2x::kMoreThanAnHour);
+  EXPECT_EQ(event(spat_of(all[0], world::forecasts_at(world, 0.0), kNewYear2026), 0).timing->min_end,
+            v2x::kMoreThanAnHour);
   // The last minute of a leap year.
   const std::int64_t last = kNewYear2026 + (365 + 365 + 366) * 86'400'000LL - 1;
-  EXPECT_EQ(spat_of(world, all[0], 0.0, last).intersections[0].minute, 366u * 1440u - 1u);
+  EXPECT_EQ(spat_of(all[0], world::forecasts_at(world, 0.0), last).intersections[0].minute, 366u * 1440u - 1u);
 }
 
 TEST(SignalMessages, StatesComeBackAtAnyTime) {
@@ -113,7 +114,7 @@ TEST(SignalMessages, StatesComeBackAtAnyTime) {
     std::vector<world::Signal> signals(town.world.lights.size(), {LightState::dark, -1.0});
     std::size_t set = 0;
     for (const Intersection& one : town.intersections)
-      set += read(spat_of(town.world, one, time, utc), town.intersections, utc, signals);
+      set += read(spat_of(one, world::forecasts_at(town.world, time), utc), town.intersections, utc, signals);
     EXPECT_EQ(set, town.world.lights.size());
     for (std::size_t i = 0; i < signals.size(); ++i) {
       const world::Signal truth = signal_at(town.world.lights[i], time);
@@ -127,7 +128,7 @@ TEST(SignalMessages, ReadingIgnoresTheUnknown) {
   const world::World world = two_lights();
   const auto all = intersections_of(world, nullptr);
   std::vector<world::Signal> signals(2, {LightState::green, 7.0});
-  v2x::Spat spat = spat_of(world, all[1], 0.0, kNewYear2026);
+  v2x::Spat spat = spat_of(all[1], world::forecasts_at(world, 0.0), kNewYear2026);
   spat.intersections[0].states[0].signal_group = 2;  // the light is group 1
   EXPECT_EQ(read(spat, all, kNewYear2026, signals), 0u);
   spat.intersections[0].states[0].signal_group = 0;  // unknown
@@ -147,7 +148,7 @@ TEST(SignalMessages, ALateChangeIsDueNow) {
   const world::World world = two_lights();
   const auto all = intersections_of(world, nullptr);
   std::vector<world::Signal> signals(2);
-  v2x::Spat spat = spat_of(world, all[0], 0.0, kNewYear2026);
+  v2x::Spat spat = spat_of(all[0], world::forecasts_at(world, 0.0), kNewYear2026);
   read(spat, all, kNewYear2026 + 8'300, signals);
   EXPECT_NEAR(signals[0].left, 8.0, 1e-9) << "by the message's own time";
   spat.intersections[0].minute = v2x::kInvalidMinute;

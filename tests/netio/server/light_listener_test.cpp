@@ -1,4 +1,4 @@
-#include "netio/server/spat_listener.h"
+#include "netio/server/light_listener.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ world::World lights_of_messages() {
 
 base::Bytes spat(const world::World& world, std::uint32_t intersection, double time = 0.0) {
   v2x::Frame frame;
-  frame.message = spat_of(world, intersections_of(world, nullptr).at(intersection), time, kUtc);
+  frame.message = spat_of(intersections_of(world, nullptr).at(intersection), world::forecasts_at(world, time), kUtc);
   base::Bytes bytes;
   v2x::encode(frame, bytes);
   return bytes;
@@ -33,67 +33,67 @@ base::Bytes spat(const world::World& world, std::uint32_t intersection, double t
 
 struct Listening {
   world::World world = lights_of_messages();
-  SpatListener listener{world, nullptr, {netio::kLoopback, 0}};
+  LightListener listener{world, nullptr, {.spat = netio::Endpoint{netio::kLoopback, 0}}};
 
   /// Where the plan has dark for both.
-  std::vector<world::Signal> at(std::int64_t now) const {
+  std::vector<world::Signal> at(std::int64_t now) {
     std::vector<world::Signal> signals(2, {LightState::flashing_yellow, 1.0});
     listener.apply(now, signals);
     return signals;
   }
 };
 
-TEST(SpatListener, OnlyHeardLightsAreReplaced) {
+TEST(LightListener, OnlyHeardLightsAreReplaced) {
   Listening l;
-  l.listener.accept(spat(l.world, 0), 0, kUtc);
+  l.listener.accept(spat(l.world, 0), {}, 0, kUtc);
   const auto signals = l.at(kSecond);
   EXPECT_EQ(signals[0].state, LightState::green);
   EXPECT_NEAR(signals[0].left, 7.0, 1e-9) << "8 s, of which one has passed";
   EXPECT_EQ(signals[1].state, LightState::flashing_yellow) << "by its plan";
 }
 
-TEST(SpatListener, ASilentLightIsDarkUntilItSpeaks) {
+TEST(LightListener, ASilentLightIsDarkUntilItSpeaks) {
   Listening l;
-  l.listener.accept(spat(l.world, 1), 0, kUtc);
-  EXPECT_EQ(l.at(SpatListener::kSilence - 1)[1].state, LightState::red);
-  EXPECT_EQ(l.at(SpatListener::kSilence)[1].state, LightState::dark);
-  l.listener.accept(spat(l.world, 1), 3 * kSecond, kUtc);
+  l.listener.accept(spat(l.world, 1), {}, 0, kUtc);
+  EXPECT_EQ(l.at(LightListener::kSilence - 1)[1].state, LightState::red);
+  EXPECT_EQ(l.at(LightListener::kSilence)[1].state, LightState::dark);
+  l.listener.accept(spat(l.world, 1), {}, 3 * kSecond, kUtc);
   EXPECT_EQ(l.at(3 * kSecond)[1].state, LightState::red);
 }
 
-TEST(SpatListener, TheTimeLeftEndsAtZero) {
+TEST(LightListener, TheTimeLeftEndsAtZero) {
   Listening l;
-  l.listener.accept(spat(l.world, 0, 7.5), 0, kUtc);
+  l.listener.accept(spat(l.world, 0, 7.5), {}, 0, kUtc);
   EXPECT_NEAR(l.at(0)[0].left, 0.5, 1e-9);
   EXPECT_EQ(l.at(kSecond)[0].left, 0.0);
 }
 
-TEST(SpatListener, AWrongClockOfTheSenderDoesNotMatter) {
+TEST(LightListener, AWrongClockOfTheSenderDoesNotMatter) {
   // Times are differences to the message's own time.
   Listening l;
-  l.listener.accept(spat(l.world, 0), 0, kUtc + 1'234'567);
+  l.listener.accept(spat(l.world, 0), {}, 0, kUtc + 1'234'567);
   EXPECT_NEAR(l.at(0)[0].left, 8.0, 1e-9);
 }
 
-TEST(SpatListener, OtherDatagramsAreCounted) {
+TEST(LightListener, OtherDatagramsAreCounted) {
   Listening l;
   base::Bytes bytes = spat(l.world, 0);
-  l.listener.accept(std::span(bytes).first(bytes.size() - 1), 0, kUtc);
-  l.listener.accept({}, 0, kUtc);
+  l.listener.accept(std::span(bytes).first(bytes.size() - 1), {}, 0, kUtc);
+  l.listener.accept({}, {}, 0, kUtc);
   world::World other = lights_of_messages();
   other.lights.resize(3, other.lights[1]);
-  l.listener.accept(spat(other, 2), 0, kUtc);
+  l.listener.accept(spat(other, 2), {}, 0, kUtc);
   v2x::Frame map;
   map.message = v2x::MapData{};
   v2x::encode(map, bytes);
-  l.listener.accept(bytes, 0, kUtc);
+  l.listener.accept(bytes, {}, 0, kUtc);
   EXPECT_EQ(l.listener.counts().invalid, 2u);
   EXPECT_EQ(l.listener.counts().others, 2u);
   EXPECT_EQ(l.listener.counts().messages, 0u);
   EXPECT_EQ(l.at(0)[0].state, LightState::flashing_yellow);
 }
 
-TEST(SpatListener, HearsDatagrams) {
+TEST(LightListener, HearsDatagrams) {
   Listening l;
   netio::Outbox outbox;
   outbox.queue({netio::kLoopback, l.listener.port()}, spat(l.world, 0));
@@ -114,10 +114,10 @@ TEST(RobotClient, CountsTheLightsThatItHears) {
   options.utc = [] { return kUtc; };
   RobotClient robot(f.world, f.sensor_set, 1, f.layout, options);
   netio::Outbox outbox;
-  outbox.queue({netio::kLoopback, robot.spat()->port()}, spat(f.world, 0));
+  outbox.queue({netio::kLoopback, robot.lights().port()}, spat(f.world, 0));
   outbox.flush();
   robot.step(0);
-  EXPECT_EQ(robot.stats().spat->messages, 1u);
+  EXPECT_EQ(robot.stats().lights.messages, 1u);
 }
 
 }  // namespace
