@@ -107,6 +107,18 @@ TEST(ObjectEvent, RecordingsAreVerified) {
   EXPECT_GT(v.reference.readings, 40u);
 }
 
+/// Recorded ticks have the lights of their time.
+TEST(Simulation, RecordsTheLights) {
+  world::World world = corridor();
+  world.lights.emplace_back().phases = {{world::LightState::green, 0.25}, {world::LightState::red, 1.0}};
+  Simulation simulation(world, device(), standing(world));
+  for (int tick = 0; tick < 5; ++tick) {
+    const base::TickRecord record = simulation.step();
+    ASSERT_EQ(record.lights.size(), 1u);
+    EXPECT_EQ(record.lights[0], world::status_of(world::signal_at(world.lights[0], 0.1 * tick))) << tick;
+  }
+}
+
 std::string event_refusal(const std::string& event) {
   try {
     check_scenario(parse_scenario(SF_SOURCE_DIR "/experiments/test.toml",

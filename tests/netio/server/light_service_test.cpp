@@ -142,6 +142,21 @@ TEST(LightService, AHeardLightReplacesThePlanAndIsPassedOn) {
   EXPECT_EQ(room.service->stats().lights.heard.packets, 1u);
 }
 
+/// As robots are told: planned and heard ones, at each tick.
+TEST(LightService, ARecordingHasTheStates) {
+  struct Lights : base::Sink {
+    std::vector<base::LightStatus> newest;
+    void write(const base::TickRecord& record) override { newest.assign(record.lights.begin(), record.lights.end()); }
+  } sink;
+  LitRoom room;
+  room.service->record_to(sink);
+  Sender light{room.radio(kSecondLight), kSecondLight};
+  light.prove(room);
+  light.send(LightState::flashing_yellow, 4.0);
+  room.service->tick(kSecond);
+  EXPECT_EQ(sink.newest, (std::vector<base::LightStatus>{{3, 7.0}, {5, 4.0}}));
+}
+
 TEST(LightService, ASilentLightIsDarkOrFollowsItsPlan) {
   for (const StaleLights stale : {StaleLights::dark, StaleLights::plan}) {
     LitRoom room({}, stale);
