@@ -313,6 +313,7 @@ struct CalibrateOptions {
   std::string charuco;    ///< dictionary of the board's tags; empty: a plain chessboard
   double marker = 0.0;    ///< [m] their side
   std::string name = "camera";
+  std::string testbed;  ///< file with the camera's intrinsics and surveyed tags; empty: intrinsics are sought
 };
 
 struct SelfTestOptions : JsonOption, DeviceOption {

@@ -92,10 +92,13 @@ void add_vps(CLI::App& app, Call& call) {
 
 void add_calibrate(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
-      "calibrate", "Print the [[camera]] section of a testbed file from images of a chessboard, with the residual");
+      "calibrate",
+      "Print the [[camera]] section of a testbed file, with the residual: the intrinsics from images of a chessboard, "
+      "or the pose from images of surveyed tags");
   auto& o = add_command(*sub, call, calibrate);
   add_examples(*sub, {"photographs --columns 9 --rows 6 --square 0.025 --name north > lab.toml",
-                      "photographs --columns 6 --rows 4 --square 0.04 --charuco aruco_4x4_50 --marker 0.03"});
+                      "photographs --columns 6 --rows 4 --square 0.04 --charuco aruco_4x4_50 --marker 0.03",
+                      "/dev/video0 --survey lab.toml --name north"});
   sub->add_option("images", o.images, "Folder of images, or a video, of the chessboard in different places and tilts")
       ->required()
       ->type_name("SOURCE");
@@ -121,6 +124,13 @@ void add_calibrate(CLI::App& app, Call& call) {
                      ->type_name("M")
                      ->needs(charuco);
   charuco->needs(marker);
+  sub->add_option(
+         "--survey", o.testbed,
+         "Find the camera's pose instead: testbed file with its intrinsics and sections [[survey]], whose tags "
+         "the images show")
+      ->check(not_empty("a testbed file"))
+      ->excludes(charuco)
+      ->type_name("FILE");
   sub->add_option("--name", o.name, "Name of the camera")
       ->check(readable(vision::is_camera_name, vision::kCameraNameForm))
       ->type_name("NAME")

@@ -100,6 +100,8 @@ struct OpenCv {
   /// @throws base::InputError when the board was found in fewer than three images
   Calibration (*calibrate)(const std::vector<std::vector<BoardCorner>>& corners, const Chessboard& board, int width,
                            int height);
+  /// Sets a camera's pose in the world from at least four points, not on one line, and their pixels.
+  void (*place)(const std::vector<glm::dvec3>& places, const std::vector<glm::dvec2>& pixels, Camera& camera);
 };
 
 /// The name of the plug-in's only symbol: `extern "C" const OpenCv sensorfarm_opencv`.

@@ -20,11 +20,12 @@ using world::TomlReader;
 constexpr double kMaxPosition = 1e4;  // [m]
 constexpr double kMaxPixels = 16384;
 constexpr double kDegree = M_PI / 180.0;
-constexpr std::array<std::string_view, 7> kKeys{"dictionary",  "tag_side", "tag_height", "address",
-                                                "only_listed", "camera",   "tag"};
+constexpr std::array<std::string_view, 8> kKeys{"dictionary",  "tag_side", "tag_height", "address",
+                                                "only_listed", "camera",   "tag",        "survey"};
 constexpr std::array<std::string_view, 11> kCameraKeys{"name",       "size",     "focal",       "center",
                                                        "distortion", "position", "orientation", "rate",
                                                        "exposure",   "readout",  "source"};
+constexpr std::array<std::string_view, 3> kSurveyKeys{"id", "position", "heading"};
 constexpr std::array<std::string_view, 5> kTagKeys{"id", "side", "height", "offset", "address"};
 
 const TomlNode& required(const TomlReader& reader, const TomlNode& table, std::string_view key,
@@ -130,6 +131,26 @@ TagMount read_tag(const TomlReader& reader, const TomlNode& table, const TagMoun
   return tag;
 }
 
+void read_survey(const TomlReader& reader, const TomlNode& root, std::map<std::uint32_t, SurveyedTag>& into) {
+  const auto tables = reader.tables(root, "survey");
+  if (tables.size() > kMaxSurveyed)
+    reader.fail(*tables[kMaxSurveyed],
+                fmt::format("'survey' has {} sections; expected at most {}", tables.size(), kMaxSurveyed));
+  for (const TomlNode* table : tables) {
+    reader.require_known(*table, kSurveyKeys);
+    const TomlNode& id = required(reader, *table, "id", "id = 12");
+    required(reader, *table, "position", "position = [x, y, z] of the tag's centre in metres");
+    std::array<double, 3> position{};
+    reader.numbers(*table, "position", position, kMaxPosition, "[x, y, z] in metres");
+    SurveyedTag tag{{position[0], position[1], position[2]}, std::nullopt};
+    if (world::find(*table, "heading") != nullptr)
+      tag.heading = reader.number(*table, "heading", 0.0, -360.0, 360.0) * kDegree;
+    const auto number = static_cast<std::uint32_t>(reader.whole(*table, "id", 0, 65535));
+    if (!into.emplace(number, tag).second)
+      reader.fail(id, fmt::format("two sections [[survey]] have the id {}", number));
+  }
+}
+
 }  // namespace
 
 const TagMount& Testbed::mount(std::uint32_t id) const {
@@ -156,6 +177,7 @@ Testbed parse_testbed(const std::string& file, std::string_view text) {
     if (!testbed.tags.emplace(number, read_tag(reader, *table, testbed.tag)).second)
       reader.fail(id, fmt::format("two sections [[tag]] have the id {}", number));
   }
+  read_survey(reader, root, testbed.surveyed);
   return testbed;
 }
 

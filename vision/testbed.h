@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,13 @@ struct TagMount {
   std::string address;  ///< "host:port" that its packets go to; empty: the default
 };
 
+/// A tag at a known place, by which cameras are placed (vision/placement.h). It lies flat.
+struct SurveyedTag {
+  glm::dvec3 position;            ///< [m] of its centre in the world
+  std::optional<double> heading;  ///< [rad] of its x axis; nullopt: not known
+};
+inline constexpr std::size_t kMaxSurveyed = 1000;
+
 struct TestbedCamera {
   Camera camera;
   std::string source;  ///< device, video, image folder or "rendered"; empty: none
@@ -33,10 +41,11 @@ struct TestbedCamera {
 struct Testbed {
   std::string file;
   std::string dictionary = "apriltag_36h11";
-  TagMount tag;                            ///< of tags without an entry of their own
-  std::map<std::uint32_t, TagMount> tags;  ///< by id
-  bool only_listed = false;                ///< ignore ids without an entry
-  std::vector<TestbedCamera> cameras;      ///< 1 to `kMaxCameras`, names distinct
+  TagMount tag;                                   ///< of tags without an entry of their own
+  std::map<std::uint32_t, TagMount> tags;         ///< by id
+  bool only_listed = false;                       ///< ignore ids without an entry
+  std::vector<TestbedCamera> cameras;             ///< 1 to `kMaxCameras`, names distinct
+  std::map<std::uint32_t, SurveyedTag> surveyed;  ///< by id, at most `kMaxSurveyed`
 
   const TagMount& mount(std::uint32_t id) const;
 };

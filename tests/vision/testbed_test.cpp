@@ -153,6 +153,33 @@ TEST(Testbed, RefusesWhatIsNoTestbed) {
     EXPECT_TRUE(error_of(text).starts_with("t.toml")) << text.substr(0, 80) << error_of(text);
 }
 
+TEST(Testbed, ReadsSurveyedTags) {
+  const std::string camera = "[[camera]]\nname = \"a\"\nsize = [64, 48]\nfocal = [60, 60]\nposition = [0, 0, 3]\n";
+  const Testbed testbed = parse_testbed(
+      "t.toml",
+      camera + "[[survey]]\nid = 3\nposition = [1, 2, 0.5]\nheading = 90\n[[survey]]\nid = 4\nposition = [0, 0, 0]\n");
+  ASSERT_EQ(testbed.surveyed.size(), 2u);
+  EXPECT_EQ(testbed.surveyed.at(3).position, glm::dvec3(1.0, 2.0, 0.5));
+  EXPECT_NEAR(*testbed.surveyed.at(3).heading, M_PI / 2.0, 1e-12);
+  EXPECT_FALSE(testbed.surveyed.at(4).heading);
+  const auto refusal = [&](const std::string& text) -> std::string {
+    try {
+      parse_testbed("t.toml", camera + text);
+    } catch (const base::InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(refusal("[[survey]]\nid = 3\n"),
+            "t.toml:6: 'position' is missing; expected position = [x, y, z] of the tag's centre in metres");
+  EXPECT_EQ(refusal("[[survey]]\nid = 3\nposition = [1, 2, 3]\n[[survey]]\nid = 3\nposition = [1, 2, 3]\n"),
+            "t.toml:10: two sections [[survey]] have the id 3");
+  std::string many;
+  for (std::size_t i = 0; i <= kMaxSurveyed; ++i)
+    many += "[[survey]]\nid = " + std::to_string(i) + "\nposition = [1, 2, 3]\n";
+  EXPECT_NE(refusal(many).find("'survey' has 1001 sections; expected at most 1000"), std::string::npos);
+}
+
 TEST(Testbed, WritesCamerasThatItReads) {
   const Camera camera = distorted_camera();
   const Camera read = parse_testbed("t.toml", camera_section(camera)).cameras[0].camera;

@@ -3,6 +3,7 @@
 #include "vision/opencv/calibration.h"
 #include "vision/opencv/images.h"
 #include "vision/opencv/markers.h"
+#include "vision/opencv/placement.h"
 #include "vision/opencv/sources.h"
 
 extern "C" {
@@ -15,5 +16,6 @@ const sf::vision::OpenCv sensorfarm_opencv{
     .open_source = sf::vision::open_source,
     .find_board = sf::vision::find_board,
     .calibrate = sf::vision::calibrate,
+    .place = sf::vision::place,
 };
 }

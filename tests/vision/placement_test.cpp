@@ -1,0 +1,133 @@
+// Poses of cameras from rendered images of surveyed tags.
+
+#include "vision/placement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "base/error.h"
+#include "tests/vision/cameras.h"
+#include "vision/renderer.h"
+#include "vision/testbed_patches.h"
+
+namespace sf::vision {
+
+namespace {
+
+Camera truth() {
+  Camera camera = distorted_camera();
+  camera.intrinsics = {640, 512, {832.0, 832.0}, {322.0, 254.0}, {-0.18, 0.06, 0.0005, -0.0004, 0.0}};
+  camera.position = {0.4, -0.3, 4.0};
+  camera.exposure = camera.readout = 0.0;
+  return camera;
+}
+
+/// Tags 1 to 5 at different heights; the fifth is out of sight.
+Testbed survey(bool headings) {
+  Testbed testbed;
+  testbed.file = "lab.toml";
+  testbed.dictionary = "aruco_4x4_50";
+  testbed.tag.side = 0.15;
+  testbed.cameras.push_back({truth(), ""});
+  const std::array<glm::dvec3, 5> places{
+      {{-0.6, -1.0, 0.0}, {1.3, -0.9, 0.3}, {1.2, 0.5, 0.0}, {-0.5, 0.4, 0.2}, {9.0, 0.0, 0.0}}};
+  for (std::uint32_t id = 1; id <= places.size(); ++id)
+    testbed.surveyed[id] = {places[id - 1], headings ? std::optional(0.5 * id) : std::nullopt};
+  return testbed;
+}
+
+/// Images in memory.
+class Pictures : public ImageSource {
+ public:
+  explicit Pictures(std::vector<Image> images) : images_(std::move(images)) {}
+  bool next(Image& out) override {
+    if (at_ == images_.size()) return false;
+    out = images_[at_++];
+    return true;
+  }
+
+ private:
+  std::vector<Image> images_;
+  std::size_t at_ = 0;
+};
+
+Pictures pictures(const Testbed& testbed, std::size_t tags = 5) {
+  Scene scene;
+  for (const auto& [id, tag] : testbed.surveyed)
+    if (id <= tags)
+      add_tag(scene, {id, {tag.position.x, tag.position.y, tag.position.z, 0.5 * id}, {}, 0.0}, 0.0,
+              testbed.mount(id).side, opencv().tag_pattern(testbed.dictionary, id));
+  std::vector<Image> images(2);
+  Renderer renderer(truth(), Imaging{}, 1);
+  for (std::uint32_t i = 0; i < images.size(); ++i) renderer.render(scene, 0.0, i, images[i]);
+  images.emplace_back();  // a file that cannot be read
+  return Pictures(std::move(images));
+}
+
+Camera unplaced() {
+  Camera camera = truth();
+  camera.position = {0.0, 0.0, 0.0};
+  set_orientation(camera, {1.0, 0.0, 0.0, 0.0});
+  return camera;
+}
+
+std::string refusal(const Testbed& testbed, Pictures images) {
+  try {
+    place_camera(testbed, unplaced(), images, "album");
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST(Placement, FindsTheCameraBySurveyedTags) {
+  for (const bool headings : {true, false}) {
+    const Testbed testbed = survey(headings);
+    Pictures images = pictures(testbed);
+    const Placement found = place_camera(testbed, unplaced(), images, "album");
+    EXPECT_LT(found.residual, 0.1);
+    EXPECT_LT(glm::distance(found.camera.position, truth().position), 0.005);
+    EXPECT_GT(glm::dot(found.camera.forward, truth().forward), std::cos(0.001));
+    EXPECT_GT(glm::dot(found.camera.right, truth().right), std::cos(0.001));
+    ASSERT_EQ(found.tags.size(), 4u);
+    EXPECT_EQ(found.tags[0].images, 2u);
+    EXPECT_LT(found.tags[3].metres, 0.001);
+    EXPECT_EQ(found.unseen, std::vector<std::uint32_t>{5});
+  }
+}
+
+TEST(Placement, AWrongPlaceShowsInItsResidual) {
+  Testbed testbed = survey(true);
+  Pictures images = pictures(testbed);
+  testbed.surveyed[2].position.x += 0.10;
+  const Placement found = place_camera(testbed, unplaced(), images, "album");
+  EXPECT_GT(found.residual, 3.0);
+  for (const TagResidual& tag : found.tags) ASSERT_TRUE(tag.without);
+  EXPECT_LT(*found.tags[1].without, 0.1);
+  for (const std::size_t other : {0u, 2u, 3u}) EXPECT_GT(*found.tags[other].without, 1.0);
+}
+
+/// Boundaries: no survey, no image, a point too few, points on a line; the least that suffices.
+TEST(Placement, SaysWhatIsMissing) {
+  Testbed testbed = survey(false);
+  EXPECT_EQ(
+      refusal(testbed, Pictures({})),
+      "album: of the 5 surveyed tags of lab.toml, camera 'distorted' saw 0, with 0 points: too few; expected four "
+      "points that are not on one line: four tags, or one whose section [[survey]] has a heading. Not seen: 1, 2, "
+      "3, 4, 5");
+  EXPECT_NE(refusal(testbed, pictures(testbed, 3)).find("saw 3 (1, 2, 3), with 3 points: too few"), std::string::npos);
+  EXPECT_NE(refusal(testbed, Pictures({Image{64, 48, 1, std::vector<std::uint8_t>(64 * 48, 9)}})).find("is 64 x 48"),
+            std::string::npos);
+  EXPECT_EQ(refusal(survey(true), pictures(survey(true), 1)), "no error");
+  Testbed line = testbed;
+  for (auto& [id, tag] : line.surveyed) tag.position = {0.7 * id - 1.5, 0.1 * id, 0.0};
+  EXPECT_NE(refusal(line, pictures(line)).find("nearly on one line"), std::string::npos);
+  testbed.surveyed.clear();
+  EXPECT_NE(refusal(testbed, Pictures({})).find("lab.toml: has no surveyed tags"), std::string::npos);
+}
+
+}  // namespace sf::vision

@@ -1,0 +1,10 @@
+#pragma once
+// The function of vision/opencv.h about a camera's pose.
+
+#include "vision/opencv.h"
+
+namespace sf::vision {
+
+void place(const std::vector<glm::dvec3>& places, const std::vector<glm::dvec2>& pixels, Camera& camera);
+
+}  // namespace sf::vision
