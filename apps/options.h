@@ -301,7 +301,8 @@ struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption, BindOpt
   bool real_time = false;                                   ///< at the cameras' rate
   std::string send;                                         ///< "host:port" of tags without an address; empty: none
   std::string track;                                        ///< CSV file; empty: none
-  std::string overlay;                                      ///< folder of pictures; empty: none
+  std::string overlay;                                      ///< folder of pictures, or video; empty: none
+  std::uint32_t every = 1;                                  ///< image of each camera that is drawn over
   std::string world;                                        ///< drawn over the pictures; empty: none
 };
 

@@ -81,9 +81,17 @@ void add_vps(CLI::App& app, Call& call) {
   sub->add_option("--track", o.track, "CSV file to write every pose and velocity to")
       ->check(not_empty("a file"))
       ->type_name("FILE");
-  auto* overlay = sub->add_option("--overlay", o.overlay, "Folder for pictures of all images with ids and poses")
-                      ->check(not_empty("a folder"))
-                      ->type_name("DIR");
+  auto* overlay =
+      sub->add_option("--overlay", o.overlay,
+                      "Folder for pictures of all images with ids and poses, or a video (*.avi) of them; at "
+                      "most 20000 of each camera")
+          ->check(not_empty("a folder or a video"))
+          ->type_name("PATH");
+  sub->add_option("--every", o.every, "Draw over one image in N only")
+      ->check(whole(1, 1'000'000))
+      ->needs(overlay)
+      ->type_name("N")
+      ->capture_default_str();
   sub->add_option("--world", o.world, "World whose walls and lane markings are drawn over the pictures")
       ->check(not_empty("a world"))
       ->needs(overlay)

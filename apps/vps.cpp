@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <filesystem>
@@ -58,32 +59,55 @@ class TrackFile {
 /// The pictures of `--overlay`.
 class Overlay {
  public:
-  Overlay(const VpsOptions& options, const vision::Testbed& testbed) : testbed_(testbed), folder_(options.overlay) {
-    if (folder_.empty()) return;
-    scenarios::make_folder(folder_);
+  static constexpr std::uint64_t kMostPictures = 20'000;  ///< of each camera, which bounds the disk
+
+  Overlay(const VpsOptions& options, const vision::Testbed& testbed)
+      : testbed_(testbed), path_(options.overlay), every_(options.every) {
+    if (path_.empty()) return;
+    if (std::filesystem::path(path_).extension() == ".avi")
+      open_videos();
+    else
+      scenarios::make_folder(path_);
     if (options.world.empty()) return;
     const world::World world = world::load_world(options.world);
     for (const vision::TestbedCamera& each : testbed.cameras)
       world_marks_.push_back(vision::world_marks(each.camera, world));
   }
 
-  void write(const vision::Positioning& positioning, std::span<const vision::Frame> frames,
-             std::uint64_t number) const {
-    if (folder_.empty()) return;
+  void write(const vision::Positioning& positioning, std::span<const vision::Frame> frames, std::uint64_t number) {
+    if (path_.empty() || number % every_ != 0 || pictures_ > kMostPictures) return;
+    if (pictures_++ == kMostPictures)
+      return print_message("--overlay ends after {} pictures of each camera; --every N draws fewer", kMostPictures);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (frames[i].image.pixels.empty()) continue;
       const vision::Camera& camera = testbed_.cameras[i].camera;
       std::vector<vision::Mark> marks = vision::tag_marks(camera, positioning.sightings(i));
       if (!world_marks_.empty()) marks.insert(marks.begin(), world_marks_[i].begin(), world_marks_[i].end());
       const vision::Image picture = vision::draw_over(frames[i].image, marks);
-      viz::write_png(fmt::format("{}/{}-{:06}.png", folder_, camera.name, number), picture.pixels.data(), picture.width,
-                     picture.height, viz::PngContent::photograph);
+      if (!videos_.empty())
+        videos_[i]->write(picture);
+      else
+        viz::write_png(fmt::format("{}/{}-{:06}.png", path_, camera.name, number), picture.pixels.data(), picture.width,
+                       picture.height, viz::PngContent::photograph);
     }
   }
 
  private:
+  /// One of each camera: tags.avi, or with several tags-north.avi and so on.
+  void open_videos() {
+    const std::string stem = path_.substr(0, path_.size() - 4);
+    for (const vision::TestbedCamera& each : testbed_.cameras) {
+      const std::string file = testbed_.cameras.size() == 1 ? path_ : fmt::format("{}-{}.avi", stem, each.camera.name);
+      const vision::Intrinsics& i = each.camera.intrinsics;
+      videos_.push_back(vision::opencv().open_video(file, i.width, i.height, std::max(1.0, each.camera.rate / every_)));
+    }
+  }
+
   const vision::Testbed& testbed_;
-  std::string folder_;
+  std::string path_;
+  std::uint32_t every_;
+  std::uint64_t pictures_ = 0;
+  std::vector<std::unique_ptr<vision::VideoFile>> videos_;
   std::vector<std::vector<vision::Mark>> world_marks_;  ///< of each camera
 };
 
@@ -131,7 +155,7 @@ int vps(const VpsOptions& options) {
   const auto inputs = open(options, testbed, fleet ? &*fleet : nullptr, robots);
   vision::Positioning positioning(testbed, 0, inputs->is_live());
   TrackFile track(options.track);
-  const Overlay overlay(options, testbed);
+  Overlay overlay(options, testbed);
   install_stop_handlers();
   // Rendered images have no end.
   const bool limited = options.images > 0 || options.duration > 0.0 || options.real_time;

@@ -50,6 +50,14 @@ class ImageSource {
   virtual double rate() const { return 0.0; }
 };
 
+/// A video that is being written; complete when it is destroyed. One thread at a time.
+class VideoFile {
+ public:
+  virtual ~VideoFile() = default;
+  /// @param image 3 channels, of the video's size
+  virtual void write(const Image& image) = 0;
+};
+
 /// Lines and a text in an image.
 struct Mark {
   std::vector<glm::dvec2> points;              ///< [px] a line through all of them
@@ -92,6 +100,8 @@ struct OpenCv {
   /// pipes, sockets and other special files of a folder are left out, and refused as a source
   /// @param width, height, rate requested from a device
   std::unique_ptr<ImageSource> (*open_source)(const std::string& source, int width, int height, double rate);
+  /// Motion JPEG. @param file "*.avi"  @param rate [Hz]
+  std::unique_ptr<VideoFile> (*open_video)(const std::string& file, int width, int height, double rate);
   /// Inner corners of the chessboard to about 0.05 px, of a plain one all or none; of a board with tags those in sight,
   /// none where fewer than six were found, or all are in one line. @param image grey
   /// @throws base::InputError for a board with more tags than its dictionary

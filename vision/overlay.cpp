@@ -103,6 +103,24 @@ class LineMarks {
   std::optional<glm::dvec2> last_;  ///< [px] end of the last piece, in the picture or not
 };
 
+/// Id, heading and position in two lines below the tag, inside the picture.
+void add_label(const Camera& camera, const Sighting& sighting, std::vector<Mark>& marks) {
+  constexpr double kLetter = 8.5, kLine = 16.0;  // [px] of OpenCV's font as Mark has it
+  const base::Pose& X = sighting.fit.X_WT;
+  const auto middle = project(camera, {X.x, X.y, X.z});
+  if (!middle) return;
+  const std::array<std::string, 2> lines{fmt::format("{}: {:.0f} deg", sighting.id, X.yaw * 180.0 / M_PI),
+                                         fmt::format("{:.2f} {:.2f} m", X.x, X.y)};
+  const double width = kLetter * static_cast<double>(std::max(lines[0].size(), lines[1].size()));
+  glm::dvec2 at = *middle + glm::dvec2{-0.5 * width, 1.1 * sighting.fit.side / sighting.fit.pixel + 0.5 * kLine};
+  const glm::dvec2 last{camera.intrinsics.width - width, camera.intrinsics.height - kLine - 6.0};
+  at = glm::max(glm::min(at, last), glm::dvec2{2.0, kLine});
+  for (const std::string& line : lines) {
+    marks.push_back({{at}, line, kTag, 1});
+    at.y += kLine;
+  }
+}
+
 }  // namespace
 
 std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sightings) {
@@ -117,11 +135,7 @@ std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sigh
     const std::vector<glm::dvec2> arrow{at(0.0, 0.0), at(2.0 * h, 0.0), at(1.6 * h, 0.25 * h), at(2.0 * h, 0.0),
                                         at(1.6 * h, -0.25 * h)};
     LineMarks(camera, X.z, near, {{}, "", kAxis, 2}, marks).add(arrow);
-    const auto middle = project(camera, {X.x, X.y, X.z});
-    if (!middle) continue;
-    const glm::dvec2 below = *middle + glm::dvec2{-40.0, 1.1 * sighting.fit.side / sighting.fit.pixel};
-    marks.push_back(
-        {{below}, fmt::format("{}: {:.2f} {:.2f} m {:.0f} deg", sighting.id, X.x, X.y, X.yaw * 180.0 / M_PI), kTag, 1});
+    add_label(camera, sighting, marks);
   }
   return marks;
 }

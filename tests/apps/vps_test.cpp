@@ -113,6 +113,23 @@ TEST(Vps, ReadsItsOwnPictures) {
   EXPECT_NE(outcome.out.find("\"images\": 3"), std::string::npos) << outcome.out << outcome.err;
 }
 
+/// Boundary: 5 images, of which each second is drawn over: 0, 2 and 4.
+TEST(Vps, DrawsEachSecondImage) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", kTestbed);
+  const Words words{"vps", testbed, "--rendered", "2", "--images", "5", "--every", "2", "--overlay"};
+  Words to_folder = words, to_video = words;
+  to_folder.push_back(folder.path("p"));
+  to_video.push_back(folder.path("tags.avi"));
+  ASSERT_EQ(run_program(to_folder).code, 0);
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(std::filesystem::exists(folder.path(fmt::format("p/a-00000{}.png", i))), i % 2 == 0) << i;
+  const Outcome video = run_program(to_video);
+  ASSERT_EQ(video.code, 0) << video.err;
+  const Outcome read = run_program({"vps", testbed, "--input", "a=" + folder.path("tags.avi"), "--json"});
+  EXPECT_NE(read.out.find("\"images\": 3,\n  \"unreadable\": 0"), std::string::npos) << read.out << read.err;
+}
+
 TEST(Vps, CountsPicturesThatCannotBeRead) {
   const Folder folder;
   const std::string testbed = write_pictures(folder);
@@ -238,6 +255,7 @@ TEST(Vps, NamesWhatIsWrong) {
            {{testbed, "--input", "a=" + text}, "cannot be read as a video"},
            {{testbed, "--input", "a=/dev/null"}, "is no camera that can be opened"},
            {{testbed, "--rendered", "2", "--send", "127.0.0.1"}, "'127.0.0.1' is no address; expected HOST:PORT"},
+           {{testbed, "--rendered", "2", "--overlay", folder.path("none/tags.avi")}, "cannot be written as a video"},
            {{testbed, "--rendered", "500"}, "500 tags do not fit"},
            {{large, "--rendered", "1"},
             "'size' of all cameras is 128 Mpx together; rendered images (--rendered, --robots) have at most "

@@ -5,6 +5,7 @@
 #include "vision/opencv/markers.h"
 #include "vision/opencv/placement.h"
 #include "vision/opencv/sources.h"
+#include "vision/opencv/video.h"
 
 extern "C" {
 extern const sf::vision::OpenCv sensorfarm_opencv;
@@ -14,6 +15,7 @@ const sf::vision::OpenCv sensorfarm_opencv{
     .make_tag_finder = sf::vision::make_tag_finder,
     .draw = sf::vision::draw,
     .open_source = sf::vision::open_source,
+    .open_video = sf::vision::open_video,
     .find_board = sf::vision::find_board,
     .calibrate = sf::vision::calibrate,
     .place = sf::vision::place,

@@ -1,0 +1,10 @@
+#pragma once
+// The function of vision/opencv.h about video files.
+
+#include "vision/opencv.h"
+
+namespace sf::vision {
+
+std::unique_ptr<VideoFile> open_video(const std::string& file, int width, int height, double rate);
+
+}  // namespace sf::vision
