@@ -219,16 +219,14 @@ struct RobotOptions : WorldOptions,
   double rate = 0.0;        ///< [Hz]; 0: the controller's own
   double stop_after = 0.5;  ///< [s] without a reading after which it stands; 0: never
   bool wait_for_start = false;
-  std::uint16_t spat = 0;     ///< port for SPaT; 0: the lights go by the world's plans
+  std::uint16_t spat = 0;     ///< port for SPaT; 0: the lights are the farm's
   std::uint16_t cameras = 0;  ///< port for TAG packets; 0: it knows its true pose
   estimation::ClockSource camera_clock = estimation::ClockSource::estimated;
   std::uint32_t tag = 0;  ///< that it carries; 0: the one with its id
   std::string truth;      ///< "host:port" that its true state goes to; empty: none
-  std::uint16_t spat = 0;  ///< port for SPaT; 0: the lights go by the world's plans
-  std::string map;         ///< "host:port" that its own map is sent to; empty: none
-  std::string serial;      ///< device of a real Create; empty: none
+  std::string map;        ///< "host:port" that its own map is sent to; empty: none
+  std::string serial;     ///< device of a real Create; empty: none
   unsigned baud = 57600;
-  std::uint16_t spat = 0;  ///< port for SPaT; 0: the lights are the farm's
 };
 
 inline constexpr std::uint16_t kSpatPort = 9010;  ///< default port of SPaT and MAP

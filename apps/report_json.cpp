@@ -344,11 +344,6 @@ std::string json_of(const server::RobotClientStats& f) {
             {"started", f.started},   {"done", f.done},     {"answered", f.answered},
             {"contacts", f.contacts}, {"stops", f.stops},   {"log_lines_left_out", f.lines_left_out}};
   json.update(link_json(f.link));
-  if (f.spat)
-    json["spat"] = {{"messages", f.spat->messages},
-                    {"states", f.spat->states},
-                    {"others", f.spat->others},
-                    {"invalid", f.spat->invalid}};
   if (f.cameras) {
     const server::PositionErrors& e = f.cameras->errors;
     json["positions"] = {{"packets", f.cameras->packets.total()},

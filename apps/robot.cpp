@@ -58,10 +58,6 @@ server::CameraPositionsOptions cameras_of(const RobotOptions& options, const net
   const std::uint32_t id = options.tag > 0 ? options.tag : mover.id;
   if (const netio::Peer* tag = netio::find(peers, netio::PeerKind::tag, id)) cameras.peers = {*tag};
   return cameras;
-netio::Endpoint map_receiver(const std::string& text) {
-  netio::AddressBook book;
-  if (const auto receiver = book.find(text)) return *receiver;
-  throw base::InputError("--map: '" + text + "' is no address; expected HOST:PORT such as 127.0.0.1:52000");
 }
 
 server::RobotClientOptions client_options(const RobotOptions& options, const world::World& world,
@@ -89,7 +85,7 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
   if (options.cameras > 0) client.cameras = cameras_of(options, client.link.farm, peers, mover);
   netio::AddressBook book;
   if (!options.truth.empty()) client.truth = read_address(book, options.truth, "--truth");
-  if (!options.map.empty()) client.map = server::OwnMapOptions{map_receiver(options.map), options.wire};
+  if (!options.map.empty()) client.map = server::OwnMapOptions{read_address(book, options.map, "--map"), options.wire};
   if (!options.serial.empty()) client.create = server::CreateOptions{options.serial, options.baud};
   return client;
 }

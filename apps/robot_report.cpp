@@ -52,9 +52,6 @@ std::string text_of(const server::RobotClientStats& f) {
   text += row("robot", "{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : "");
   text += row("ran", "{:.2f} s, {}", f.wall_s, counted(f.steps, "step"));
   text += link_text(f.link);
-  if (f.spat)
-    text += row("SPaT", "{}, {} of other lights or MAP, {} invalid", counted(f.spat->messages, "message"),
-                f.spat->others, f.spat->invalid);
   if (f.map) {
     text += row("own map", "{} entered, {} sent in {}", counted(f.map->scans, "scan"), counted(f.map->maps, "map"),
                 counted(f.map->sent.sent, "packet"));

@@ -90,10 +90,11 @@ PacketStatus Inbox::check_id(const Header& header) const {
       if (lockstep_) break;
       return known(header.robot == kBroadcastId || robots_.row(header.robot));
     case Type::tag:
-      if (lockstep_) break;
     case Type::object:
+      if (lockstep_) break;
       return tags_.row(header.robot) ? PacketStatus::accepted : PacketStatus::unknown_tag;
     case Type::v2i:
+      if (lockstep_) break;
       return lights_.row(header.robot) ? PacketStatus::accepted : PacketStatus::unknown_light;
     case Type::challenge:
     case Type::neighbours:

@@ -36,9 +36,8 @@ struct InboxOptions {
   std::vector<std::uint32_t> tags;           ///< ids of the world's tags, distinct, each in [kMinTag, kMaxId]
   std::uint32_t session = random_session();  ///< session of the farm
   std::vector<Peer> peers;                   ///< of these robots, tags, and START; each once
-  bool take_late = false;  ///< accept states that others of their sender overtook, marked by `Packet::late`
-  bool lockstep = false;   ///< accept COMMAND, STEP and FETCH in place of V2V, TAG and START
   bool take_late = false;             ///< accept states that others of their sender overtook, marked by `Packet::late`
+  bool lockstep = false;              ///< accept COMMAND, STEP and FETCH in place of V2V, TAG, START, V2I and OBJECT
   std::vector<std::uint32_t> lights;  ///< ids of the world's intersections, distinct, each in [0, kMaxId]
 };
 

@@ -110,6 +110,8 @@ PacketStatus read_lockstep(std::span<const std::uint8_t> payload, Packet& packet
   const PacketStatus status = read_payload(payload, body);
   packet.body = body;
   return status;
+}
+
 PacketStatus read_object(base::ByteReader& reader, Packet& packet) {
   const auto flags = reader.get<std::uint32_t>();
   packet.body = Object{flags == kPresentBit};

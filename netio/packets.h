@@ -37,9 +37,8 @@ inline constexpr double kMaxYaw = 1e6;                       ///< [rad] covers h
 inline constexpr double kMaxSpeed = 1e3;                     ///< [m/s], and [rad/s]
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years; differences cannot overflow
 
-/// From 128: states and requests sent to the farm, of which it forwards V2V and START; from 140: its answers. Below 64:
-/// From 128: states and requests sent to the farm, of which it forwards V2V and START; it sends V2I as well. Below 64:
-/// a reading of the sensor type with this wire id; the same plus 64: its second form.
+/// From 128: states and requests sent to the farm, of which it forwards V2V and START and sends V2I as well; from 140:
+/// its answers. Below 64: a reading of the sensor type with this wire id; the same plus 64: its second form.
 enum class Type : std::uint8_t {
   v2v = 128,
   tag = 129,
@@ -50,12 +49,11 @@ enum class Type : std::uint8_t {
   command = 134,
   step = 135,
   fetch = 136,
+  v2i = 137,
+  object = 138,
   neighbours = 140,
   state = 141,
   values = 142
-  v2i = 134,
-  object = 135,
-  neighbours = 140
 };
 
 /// Wire id (below 64; sensor types end at 31) of the sensor type whose readings, in either form, have type `type`; 0
@@ -146,9 +144,9 @@ struct Reading {
 
 struct Packet {
   Header header;
-  std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, Neighbours, Reading, Command, Step, Fetch, State, Values>
+  std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, V2i, Object, Neighbours, Reading, Command, Step, Fetch,
+               State, Values>
       body;
-  std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, V2i, Object, Neighbours, Reading> body;
   bool late = false;  ///< a state whose sequence is not newer than the last of its sender (`InboxOptions::take_late`)
 };
 

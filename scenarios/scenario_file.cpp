@@ -231,7 +231,6 @@ void read_plant(const Reader& reader, const TomlNode& root, Scenario& scenario) 
   if (!scenario.plant) reader.fail(*node, "'plant' expects \"thesis\" or \"ideal\"");
 }
 
-/// Relative to the scenario's file; else among the installed worlds.
 void read_events(const Reader& reader, const TomlNode& root, Scenario& scenario) {
   for (const TomlNode* table : reader.tables(root, "event")) {
     reader.require_known(*table, kEventKeys);
@@ -247,6 +246,7 @@ void read_events(const Reader& reader, const TomlNode& root, Scenario& scenario)
                    [](const ObjectEvent& a, const ObjectEvent& b) { return a.at < b.at; });
 }
 
+/// Relative to the scenario's file; else among the installed worlds.
 std::string world_file(const Reader& reader, const TomlNode& root) {
   const std::string file = reader.text(root, "world", "");
   if (file.empty()) throw base::InputError(reader.file(), 0, "has no world; expected world = \"FILE\"");

@@ -27,7 +27,6 @@
 #include <unistd.h>
 
 enum { SF_LASER = 1, SF_LANE_EDGE = 2, SF_MAGNETOMETER = 3, SF_OCCUPANCY = 12, SF_LASER_EXTENDED = 65 };
-enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_NEIGHBOURS = 140 };
 enum {
   SF_HEADER = 64,
   SF_V2V_BYTES = 132,
@@ -36,9 +35,8 @@ enum {
   SF_MAX_SENSORS = 32,
   SF_SIGNATURE = 24
 };
-enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_V2I, SF_OBJECT, SF_NEIGHBOURS = 140 };
+enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_V2I = 137, SF_OBJECT, SF_NEIGHBOURS = 140 };
 enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
-enum { SF_HEADER = 64, SF_V2V_BYTES = 132, SF_TAG_BYTES = 168, SF_MAX_VALUES = 361, SF_MAX_SENSORS = 32 };
 #define SF_NONE 0xFFFFFFFFu  // V2V: no leader, no checkpoint
 
 // Name, base of the ports, names of the integers, and columns of a row: name, numbers, unit on the wire.
@@ -666,7 +664,6 @@ static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size
   if (p->token != c->session || (p->type != SF_CHALLENGE && p->session != c->farm_session)) return "wrong source";
   const char* const forged = c->has_key ? sf_check_signature(window, bytes, size, c->key) : NULL;
   if (forged) return forged;
-  if (p->type >= SF_V2V && p->type != SF_START && p->type != SF_CHALLENGE && p->type != SF_NEIGHBOURS)
   if (p->type >= SF_V2V && p->type != SF_START && p->type != SF_CHALLENGE && p->type != SF_NEIGHBOURS &&
       p->type != SF_V2I)
     return "wrong direction";

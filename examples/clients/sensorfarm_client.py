@@ -28,7 +28,7 @@ import sys
 import time
 
 LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
-V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 134, 135, 140
+V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 137, 138, 140
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
 HEADER_BYTES, V2V_BYTES, MAX_PAYLOAD, SIGNATURE_BYTES = 64, 132, 1256, 24
@@ -52,7 +52,7 @@ SENSORS = {
     12: ("occupancy", 52000, []),
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
-              131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "V2I", 135: "OBJECT", 140: "NEIGHBOURS"}
+              131: "START", 132: "LEAVE", 133: "CHALLENGE", 137: "V2I", 138: "OBJECT", 140: "NEIGHBOURS"}
 LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
 
 

@@ -118,6 +118,7 @@ void add_body(const netio::Values& values, Fields& out) {
   for (std::size_t i = 0; i < values.values.size() / sizeof(double); ++i) numbers.push_back(netio::value_of(values, i));
   add(out, "value", numbers);
 }
+
 /// Approaches, then stop lines, each column by itself.
 void add_body(const netio::V2i& signals, Fields& out) {
   std::vector<double> group, state, next, left, light, stop_group, stop_point, stop_line;

@@ -32,6 +32,8 @@ std::uint32_t tag_of(const RobotClientOptions& options, const world::Mover& move
       fmt::format("{} has the id {}, which no tag has; expected the id of the tag that it carries (robot --tag), from "
                   "{} to {}",
                   mover.name, mover.id, netio::kMinTag, netio::kMaxId));
+}
+
 LinkOptions with_lights(LinkOptions link, std::span<const Intersection> intersections) {
   for (const Intersection& one : intersections) link.lights.push_back(one.id);
   return link;
@@ -58,9 +60,10 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
       log_(options.log_descriptor),
       controller_(options.controller.name),
       utc_(options.utc ? options.utc : utc_now) {
-  if (options.spat) spat_.emplace(world, roads_ ? &*roads_ : nullptr, *options.spat);
   if (options.cameras) cameras_.emplace(world, mover, tag_of(options, world.movers[mover]), *options.cameras);
   if (options.truth) truth_.emplace(*options.truth, tag_of(options, world.movers[mover]));
+  if (options.map) map_.emplace(world, mover, *options.map);
+  if (options.create) create_.emplace(*options.create, world.movers[mover].X_WM, world.movers[mover].track);
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, options.controller);
 }
 
@@ -70,13 +73,6 @@ void RobotClient::receive(std::int64_t now) {
 }
 
 void RobotClient::move(std::int64_t now) {
-  body_.move(command_, now);
-  if (options.map) map_.emplace(world, mover, *options.map);
-  if (options.create) create_.emplace(*options.create, world.movers[mover].X_WM, world.movers[mover].track);
-  made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, options.controller);
-}
-
-void RobotClient::step(std::int64_t now) {
   if (create_) {
     create_->update(now);
     body_.follow(create_->state().X_WM, create_->state().velocity, create_->contact(), now);
@@ -92,11 +88,9 @@ void RobotClient::step(std::int64_t now) {
   if (cameras_) cameras_->predict(now);
   if (cameras_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
   command_ = {};
-  if (started_ && !is_lost() && !readings_timed_out(now)) decide(now);
-  send_state(now);
-  if (started_ && !readings_timed_out(now) && (!create_ || create_->ready(now))) decide(now);
+  if (started_ && !is_lost() && !readings_timed_out(now) && (!create_ || create_->ready(now))) decide(now);
   if (create_) create_->drive(command_, now);
-  link_.send_state(state_of(body_.state(), made_.controller->intent()), now);
+  send_state(now);
   log_problems(now);
   if (create_) log_create(now);
 }
@@ -160,7 +154,6 @@ RobotClientStats RobotClient::stats() const {
     stats.localization = own->error();
   if (map_) stats.map = map_->counts();
   if (create_) stats.create = create_->counts();
-  if (spat_) stats.spat = spat_->counts();
   if (cameras_) stats.cameras = {cameras_->packets(), cameras_->states(), position_errors_};
   stats.listens_for_spat = lights_.listens();
   stats.lights = lights_.counts();

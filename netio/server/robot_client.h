@@ -16,12 +16,10 @@
 #include "netio/rate_limited_log.h"
 #include "netio/server/camera_positions.h"
 #include "netio/server/create_drive.h"
+#include "netio/server/light_listener.h"
 #include "netio/server/own_map.h"
 #include "netio/server/robot_link.h"
-#include "netio/server/spat_listener.h"
 #include "netio/server/truth_report.h"
-#include "netio/server/light_listener.h"
-#include "netio/server/robot_link.h"
 #include "netio/server/wire_ids.h"
 #include "robots/robot_body.h"
 #include "sensors/sensor_set.h"
@@ -47,6 +45,8 @@ struct RobotClientOptions {
   /// Where it reports its true state as V2V packets with its tag's id, 50 a second, stamped with Unix time; nullopt:
   /// nowhere. It stands for the light that cameras see.
   std::optional<netio::Endpoint> truth;
+  std::optional<CreateOptions> create;  ///< a real robot, which moves in place of the model; nullopt: none
+  std::optional<OwnMapOptions> map;     ///< where it sends its own map; nullopt: it makes none
 };
 
 /// Positions from cameras.
@@ -54,8 +54,6 @@ struct CameraPositionsStats {
   netio::PacketCounts packets;
   StateFilterCounts states;
   PositionErrors errors;  ///< of its own fresh states at its steps
-  std::optional<CreateOptions> create;  ///< a real robot, which moves in place of the model; nullopt: none
-  std::optional<OwnMapOptions> map;     ///< where it sends its own map; nullopt: it makes none
 };
 
 /// How a robot's process went.
@@ -77,11 +75,10 @@ struct RobotClientStats {
   double distance_m = 0.0;           ///< driven
   base::Pose pose;                   ///< at the end
   control::ErrorSummary error;
-  std::optional<SpatCounts> spat;               ///< nullopt: it does not listen
   std::optional<CameraPositionsStats> cameras;  ///< nullopt: it knows its true pose
-  control::LocalizationError localization;  ///< beside the poses of its motion model
-  std::optional<CreateCounts> create;       ///< nullopt: no real robot
-  std::optional<OwnMapCounts> map;          ///< nullopt: it makes none
+  control::LocalizationError localization;      ///< beside the poses of its motion model
+  std::optional<CreateCounts> create;           ///< nullopt: no real robot
+  std::optional<OwnMapCounts> map;              ///< nullopt: it makes none
   bool listens_for_spat = false;
   LightCounts lights;
 };
@@ -113,7 +110,6 @@ class RobotClient {
   double rate() const { return made_.rate; }  ///< [Hz] of turns
   bool done() const { return started_ && made_.controller->done(); }
   const RobotLink& link() const { return link_; }
-  const SpatListener* spat() const { return spat_ ? &*spat_ : nullptr; }              ///< null: it does not listen
   const CameraPositions* cameras() const { return cameras_ ? &*cameras_ : nullptr; }  ///< null: it has none
   const base::Report& true_state() const { return body_.state(); }
   const LightListener& lights() const { return lights_; }
@@ -168,7 +164,7 @@ class RobotClient {
   bool was_lost_ = true;  ///< at the last step; no camera has seen it at the start
   PositionErrors position_errors_;
   std::optional<TruthReport> truth_;
-  std::int64_t epoch_ = 0;  ///< [ns] Unix time at time 0 of its clock, in `run`
+  std::int64_t epoch_ = 0;             ///< [ns] Unix time at time 0 of its clock, in `run`
   std::optional<CreateDrive> create_;  ///< none: the body is a model
   std::optional<OwnMap> map_;          ///< none: it makes no map
   std::string create_problem_;         ///< as logged last

@@ -3,15 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <string_view>
-
-#include "base/error.h"
-#include "tests/fuzz/require.h"
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
 #include "base/error.h"
+#include "tests/fuzz/require.h"
 #include "world/light_actuator.h"
 #include "world/light_plan.h"
 #include "world/toml.h"
