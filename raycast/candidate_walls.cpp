@@ -9,10 +9,6 @@ namespace sf::raycast {
 
 namespace {
 
-/// Distance rings per doubling. Segments of one ring are sorted by bearing, so that blocks are narrow and can be
-/// occluded.
-constexpr int kRings = 2;
-
 /// [rad] error bound of the bearings below.
 constexpr double kSlack = 1e-5;
 
@@ -37,13 +33,6 @@ double asin_bound(double v) {
   return v * (1.0 + vv * (1.0 / 6.0 + vv * (0.075 + vv * 0.2)));
 }
 
-/// Index of the logarithmic distance ring. @param times ratio of distances, at least 1
-int distance_ring_of(double times) {
-  int exponent = 0;
-  const double part = std::frexp(times, &exponent);  // in [0.5, 1)
-  return kRings * (exponent - 1) + (part >= M_SQRT1_2 ? 1 : 0);
-}
-
 /// @param radius [m] of the disc that holds all viewers
 CandidateWall found(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius) {
   CandidateWall f{a, b, row, std::max(0.0, world::distance({}, a, b) - radius), 0.0, 2.0 * M_PI, -1};
@@ -52,7 +41,7 @@ CandidateWall found(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius
   const double bearing_a = fast_bearing(a), turn = base::wrap_angle(fast_bearing(b) - bearing_a);
   const double wide_a = asin_bound(share_a) + kSlack, wide_b = asin_bound(share_b) + kSlack;
   const double low = std::min(-wide_a, turn - wide_b), high = std::max(wide_a, turn + wide_b);
-  f.distance_ring = distance_ring_of((f.nearest + radius) / radius);
+  f.distance_ring = std::ilogb((f.nearest + radius) / radius);
   if (std::abs(turn) > M_PI - kSlack) return f;
   f.half = 0.5 * (high - low);
   f.bearing = base::wrap_angle(bearing_a + 0.5 * (low + high));

@@ -28,7 +28,7 @@ struct CandidateWall {
   std::uint32_t row;     ///< row of the exact segment
   double nearest;        ///< [m] least distance to any viewer in the cell
   double bearing, half;  ///< [rad] viewers see it within `half` of `bearing`; half > pi: in all directions
-  int distance_ring;     ///< index of its logarithmic distance ring
+  int distance_ring;     ///< doublings of the cell's radius to its nearest point; -1: it touches the cell
 };
 
 /// Walls round one cell. Keeps its memory between uses.

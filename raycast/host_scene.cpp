@@ -28,21 +28,6 @@ double host_cell_size(double range, std::uint32_t beams) {
   return std::clamp(fewer * range / 8.0, std::clamp(range, 1e-3, 0.25), 4.0);
 }
 
-/// Largest number of blocks of a cell with masks per sector.
-constexpr std::size_t kMaxMaskedBlocks = 64;
-
-SectorBlockMasks sector_block_masks(std::span<const SegmentBlock> blocks) {
-  constexpr double kPerRadian = kSectors / (2.0 * M_PI);
-  SectorBlockMasks ahead{};
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const double middle = static_cast<double>(blocks[b].bearing) * kPerRadian;
-    const double wide = std::min(static_cast<double>(blocks[b].half) * kPerRadian + 1e-3, 0.5 * kSectors);
-    const auto first = static_cast<int>(std::floor(middle - wide)), last = static_cast<int>(std::floor(middle + wide));
-    for (int i = first; i <= last; ++i) ahead[static_cast<std::size_t>(i & (kSectors - 1))] |= std::uint64_t{1} << b;
-  }
-  return ahead;
-}
-
 }  // namespace
 
 struct HostScene::ConfigTables {
@@ -54,6 +39,7 @@ struct HostScene::Thread {
   Rasterizer rasterizer;
   CandidateWalls walls;
   std::vector<SegmentBlock> blocks;
+  std::vector<BlockBounds> bounds;
 };
 
 HostScene::HostScene(const world::World& world, const ListConfigs& configs, base::ThreadPool& thread_pool)
@@ -62,8 +48,8 @@ HostScene::HostScene(const world::World& world, const ListConfigs& configs, base
       movers_(world),
       cells_(configs, host_cell_size, CellCache(kFirstCells, kFirstBlocks, kPageBlocks)),
       lists_(kFirstCells),
-      block_masks_(kFirstCells),
-      blocks_(kFirstBlocks) {
+      blocks_(kFirstBlocks),
+      bounds_(kFirstBlocks + kBlock) {
   for (std::size_t i = 0; i < configs.size(); ++i) {
     const ListConfig& config = configs[i];
     config_tables_.push_back({{cells_.size_of(i), config.range}, movers_.add_height(config.z)});
@@ -80,18 +66,18 @@ HostScene::HostScene(const world::World& world, const ListConfigs& configs, base
 HostScene::~HostScene() = default;
 
 void HostScene::place_movers(std::span<const base::Report> states) {
-  movers_.place(states, thread_pool_, std::span(exact_).subspan(configs_.walls().size()));
+  if (movers_.segments() > 0) movers_.place(states, thread_pool_, std::span(exact_).subspan(configs_.walls().size()));
 }
 
 /// Appends `found` in order of rings and bearings, with the bounds of each block.
-void HostScene::add_blocks(std::vector<CandidateWall>& found, std::vector<SegmentBlock>& blocks) {
+void HostScene::add_blocks(std::vector<CandidateWall>& found, Thread& t) {
   std::sort(found.begin(), found.end(), [](const CandidateWall& p, const CandidateWall& q) {
     return std::tie(p.distance_ring, p.bearing, p.row, p.a.x, p.a.y) <
            std::tie(q.distance_ring, q.bearing, q.row, q.a.x, q.a.y);
   });
   std::uint32_t used = kBlock;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    append(blocks, used, found[i].a, found[i].b, found[i].row);
+    append(t.blocks, used, found[i].a, found[i].b, found[i].row);
     if (used < kBlock && i + 1 < found.size()) continue;
     const std::span<const CandidateWall> own = std::span(found).subspan(i + 1 - used, used);
     double low = 0.0, high = 0.0, nearest = own[0].nearest;
@@ -100,10 +86,9 @@ void HostScene::add_blocks(std::vector<CandidateWall>& found, std::vector<Segmen
       low = std::min(low, offset - f.half), high = std::max(high, offset + f.half);
       nearest = std::min(nearest, f.nearest);
     }
-    SegmentBlock& block = blocks.back();
-    block.nearest = std::nextafter(static_cast<float>(nearest), 0.0f);
-    block.bearing = static_cast<float>(own[0].bearing + 0.5 * (low + high));
-    block.half = static_cast<float>(0.5 * (high - low));
+    t.bounds.push_back({std::nextafter(static_cast<float>(nearest), 0.0f),
+                        static_cast<float>(own[0].bearing + 0.5 * (low + high)),
+                        static_cast<float>(0.5 * (high - low))});
   }
 }
 
@@ -113,11 +98,12 @@ HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
   find_candidate_walls(configs_.wall_index(config), config_tables_[config].shape, cells_.centre_of(key),
                        ViewCells::in_solid(key), t.walls);
   Cell cell;
-  t.blocks.clear();
-  add_blocks(t.walls.front_facing, t.blocks);
+  t.blocks.clear(), t.bounds.clear();
+  add_blocks(t.walls.front_facing, t);
   cell.front_facing = static_cast<std::uint32_t>(t.blocks.size());
-  add_blocks(t.walls.back_facing, t.blocks);
+  add_blocks(t.walls.back_facing, t);
   cell.all = static_cast<std::uint32_t>(t.blocks.size());
+  t.bounds.resize(cell.all + kBlock);
   return cell;
 }
 
@@ -140,9 +126,9 @@ void HostScene::build_missing_cells() {
       }
       cell.first = cells_.cache().first_chunk(slot);
       lists_[slot] = cell;
-      if (cell.all <= kMaxMaskedBlocks) block_masks_[slot] = sector_block_masks(t.blocks);
       cells_.classify_cell(key, slot, t.walls.near);
-      std::copy(t.blocks.begin(), t.blocks.end(), blocks_.begin() + static_cast<std::ptrdiff_t>(cell.first));
+      std::copy_n(t.blocks.begin(), cell.all, blocks_.begin() + static_cast<std::ptrdiff_t>(cell.first));
+      std::copy_n(t.bounds.begin(), cell.all, bounds_.begin() + static_cast<std::ptrdiff_t>(cell.first));
     }
   });
   cells_.drop_cached();
@@ -154,10 +140,20 @@ void HostScene::prepare(std::span<const Viewpoint> views) {
   static const std::uint32_t most = most_blocks();
   for (build_missing_cells(); !cells_.missing().empty() && blocks_.size() < most; build_missing_cells()) {
     lists_.resize(2 * lists_.size());
-    block_masks_.resize(lists_.size());
     blocks_.resize(2 * blocks_.size());
+    bounds_.resize(blocks_.size() + kBlock);
     cells_.grow(static_cast<std::uint32_t>(lists_.size()), static_cast<std::uint32_t>(blocks_.size()));
   }
+}
+
+/// Prefetches the cell of view `i`, which is mostly scanned next.
+void HostScene::prefetch(std::size_t i) const {
+  if (i + 1 >= views_.size()) return;
+  if (cells_.slot(i + 1) != CellCache::kNone) __builtin_prefetch(&lists_[cells_.slot(i + 1)]);
+  if (cells_.slot(i) == CellCache::kNone) return;
+  const std::uint32_t first = lists_[cells_.slot(i)].first;
+  __builtin_prefetch(&bounds_[first]);
+  raycast::prefetch(blocks_[first]);
 }
 
 bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, unsigned thread, const ScanOutput& out) {
@@ -169,6 +165,7 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   const Cell cell = listed ? lists_[slot] : collect(cells_.key(i), t);
   const std::span<const SegmentBlock> blocks =
       listed ? std::span<const SegmentBlock>(blocks_).subspan(cell.first, cell.all) : t.blocks;
+  prefetch(i + 1);
   const glm::dvec2 centre = cells_.centre_of(cells_.key(i));
   const glm::dvec2 origin{view.X_WS.x, view.X_WS.y};
   from.origin = origin;
@@ -178,7 +175,7 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   ScanScene scene;
   scene.walls = blocks;
   scene.front_facing = cell.front_facing;
-  if (listed && cell.all <= kMaxMaskedBlocks) scene.block_masks = &block_masks_[slot];
+  scene.bounds = listed ? &bounds_[cell.first] : t.bounds.data();
   scene.exact = exact_;
   scene.models = models_;
   scene.movers = movers_.segments() > 0 ? &movers_.grid() : nullptr;

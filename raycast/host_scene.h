@@ -43,7 +43,8 @@ class HostScene {
     std::uint32_t first = 0, front_facing = 0, all = 0;
   };
   void build_missing_cells();
-  static void add_blocks(std::vector<CandidateWall>& found, std::vector<SegmentBlock>& blocks);
+  static void add_blocks(std::vector<CandidateWall>& found, Thread& thread);
+  void prefetch(std::size_t i) const;
   Cell collect(const CellKey& key, Thread& thread) const;
 
   base::ThreadPool& thread_pool_;
@@ -53,9 +54,9 @@ class HostScene {
   std::vector<ExactSegment> exact_;  ///< walls, then movers
   std::vector<std::uint32_t> models_;
   ViewCells cells_;
-  std::vector<Cell> lists_;                    ///< per slot
-  std::vector<SectorBlockMasks> block_masks_;  ///< per slot
-  std::vector<SegmentBlock> blocks_;           ///< of all cells
+  std::vector<Cell> lists_;           ///< per slot
+  std::vector<SegmentBlock> blocks_;  ///< of all cells
+  std::vector<BlockBounds> bounds_;   ///< of each block, padded by kBlock
   std::vector<Viewpoint> views_;
   std::vector<std::unique_ptr<Thread>> threads_;
 };

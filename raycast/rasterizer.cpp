@@ -23,7 +23,7 @@ void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const Sc
     store(constant(inverse * (1.0f - 1e-6f)), &s.near_low[j]);
     store(constant(inverse * (1.0f + 1e-6f)), &s.near_high[j]);
     store(constant(0.0f), &s.others[j]);
-    hn::StoreU(hn::Set(kI, -1), kI, &s.nearest_segment[j]);
+    hn::StoreU(hn::Set(kI, -1), kI, &s.nearest_row[j]);
   }
   const Projection p = projection_of(view, pattern);
   rasterize_walls(s, p, view, pattern, scene);
@@ -52,21 +52,10 @@ HWY_EXPORT(instructions);
 void Rasterizer::Scratch::begin(std::uint32_t beams) {
   const std::size_t padded = std::size_t{beams} + 2 * kBlock;
   if (near_low.size() < padded) {
-    near_low.resize(padded), near_high.resize(padded), others.resize(padded), nearest_segment.resize(padded);
+    near_low.resize(padded), near_high.resize(padded), others.resize(padded), nearest_row.resize(padded);
   }
   ends.resize(beams / 64 + 1);
   uncertain.resize(beams / 64 + 1);
-  live.clear();
-  used = 0;
-}
-
-void Rasterizer::Scratch::reserve(std::uint32_t more) {
-  const std::size_t needed = std::size_t{used} + more;
-  if (a.size() >= needed) return;
-  const std::size_t room = 2 * needed + 256;
-  for (std::vector<float>* v : {&a, &b, &error, &low_possible, &high_possible, &low_certain, &high_certain})
-    v->resize(room);
-  first.resize(room), last.resize(room), row.resize(room);
 }
 
 Rasterizer::Rasterizer() : scratch_(std::make_unique<Scratch>()) {}

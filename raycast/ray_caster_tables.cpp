@@ -212,7 +212,7 @@ void RayCaster::Tables::compute_viewpoints(std::size_t first, std::size_t last) 
     views[i] = {row.config,
                 mover,
                 {X.x + (turn.x * X_MS.x - turn.y * X_MS.y), X.y + (turn.y * X_MS.x + turn.x * X_MS.y), row.height, yaw},
-                {std::cos(yaw), std::sin(yaw)}};
+                yaw == X.yaw ? turn : glm::dvec2{std::cos(yaw), std::sin(yaw)}};
   }
 }
 

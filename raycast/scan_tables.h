@@ -3,7 +3,6 @@
 // instructions.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -19,15 +18,23 @@ inline constexpr std::uint32_t kBlock = 16;
 
 /// Segments seen from their right, in the frame of a cell or a mover. Unused places hold a segment that faces away from
 /// every viewer.
-struct SegmentBlock {
-  // Bounds of the whole block for any viewer in the cell.
-  float nearest = 0.0f;          ///< [m] lower bound
-  float bearing = 0.0f;          ///< [rad] in the world
-  float half = 4.0f;             ///< [rad] to either side of `bearing`; > pi: all directions
+struct alignas(64) SegmentBlock {
   float ax[kBlock], ay[kBlock];  ///< [m] start
   float ex[kBlock], ey[kBlock];  ///< [m] extent
   std::uint32_t row[kBlock];     ///< exact segment, relative to the first of the cell or the mover
 };
+
+/// Bounds of all segments of a block for any viewer in its cell.
+struct BlockBounds {
+  float nearest;  ///< [m] lower bound
+  float bearing;  ///< [rad] in the world
+  float half;     ///< [rad] to either side of `bearing`; > pi: all directions
+};
+
+inline void prefetch(const SegmentBlock& block) {
+  for (std::size_t byte = 0; byte < sizeof block; byte += 64)
+    __builtin_prefetch(reinterpret_cast<const char*>(&block) + byte);
+}
 
 /// Appends one segment. `used` counts the places used in the last block.
 void append(std::vector<SegmentBlock>& blocks, std::uint32_t& used, glm::dvec2 a, glm::dvec2 b, std::uint32_t row);
@@ -105,20 +112,14 @@ struct ScanView {
 /// instructions, whatever the value of -ffp-contract.
 glm::dvec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i);
 
-/// Sectors per turn of `SectorBlockMasks`.
-inline constexpr int kSectors = 32;
-
-/// The blocks (at most 64) of a cell in each sector of directions: one bit each.
-using SectorBlockMasks = std::array<std::uint64_t, kSectors>;
-
 /// All surfaces of a scan. Exact segments: walls first, then movers.
 struct ScanScene {
   /// First the walls that face the cell, near to far; then back-facing walls, which decide only ties at corners.
   std::span<const SegmentBlock> walls;
-  std::size_t front_facing = 0;                   ///< [blocks]
-  const SectorBlockMasks* block_masks = nullptr;  ///< of `walls`; null for more than 64 blocks
-  std::span<const ExactSegment> exact;            ///< walls, then movers
-  std::span<const std::uint32_t> models;          ///< `Segment::model` of each
+  std::uint32_t front_facing = 0;         ///< [blocks]
+  const BlockBounds* bounds = nullptr;    ///< of `walls`, padded by kBlock
+  std::span<const ExactSegment> exact;    ///< walls, then movers
+  std::span<const std::uint32_t> models;  ///< `Segment::model` of each
   const MoverGrid* movers = nullptr;
   const OutlineTable* outlines = nullptr;
   std::span<const base::Report> states;       ///< of movers

@@ -47,22 +47,19 @@ void intersect_block(const ScanView& view, const ScanScene& scene, const Segment
 
 void intersect_walls(const ScanView& view, const ScanScene& scene, glm::dvec2 d, ClosestHit& best) {
   VF unused;
-  const float bearing =
-      hn::GetLane(bearing_of(constant(static_cast<float>(d.y)), constant(static_cast<float>(d.x)), unused));
-  const auto visit_block = [&](const SegmentBlock& block) {
-    const float turned = std::abs(block.bearing - bearing);
-    const float apart = std::min(turned, std::abs(6.2831853f - turned));
-    if (apart > block.half + 1e-5f || static_cast<double>(block.nearest) > best.range) return;
-    intersect_block(view, scene, block, -1.0 * view.offset, {1.0, 0.0}, 0, d, best);
-  };
-  if (scene.block_masks == nullptr) {
-    for (const SegmentBlock& block : scene.walls) visit_block(block);
-    return;
+  const VF bearing = bearing_of(constant(static_cast<float>(d.y)), constant(static_cast<float>(d.x)), unused);
+  for (std::size_t first = 0; first < scene.walls.size(); first += lanes()) {
+    VF nearest, middle, half;
+    hn::LoadInterleaved3(kF, &scene.bounds[first].nearest, nearest, middle, half);
+    const VF turned = hn::Abs(middle - bearing), apart = hn::Min(turned, hn::Abs(constant(6.2831853f) - turned));
+    std::uint32_t pending = bits_of(apart <= half + constant(1e-5f));
+    if (scene.walls.size() - first < lanes()) pending &= (1u << (scene.walls.size() - first)) - 1;
+    for (; pending != 0; pending &= pending - 1) {
+      const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(pending));
+      if (static_cast<double>(scene.bounds[i].nearest) > best.range) continue;
+      intersect_block(view, scene, scene.walls[i], -1.0 * view.offset, {1.0, 0.0}, 0, d, best);
+    }
   }
-  const auto sector = static_cast<int>(std::floor(bearing * (kSectors / 6.2831853f))) & (kSectors - 1);
-  for (std::uint64_t pending = (*scene.block_masks)[static_cast<std::size_t>(sector)]; pending != 0;
-       pending &= pending - 1)
-    visit_block(scene.walls[static_cast<std::size_t>(__builtin_ctzll(pending))]);
 }
 
 /// Lists the movers in grid entries [from, end) whose discs beam `d` may cross within `range`.

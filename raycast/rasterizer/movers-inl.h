@@ -53,7 +53,7 @@ void find_movers_in_row(Scratch& s, const Projection& p, const ScanView& view, c
       if (grid.mover[at + i] == scene.self) continue;
       ++s.counts.movers_in_range;
       const NearMover near{nearest[i], grid.mover[at + i], lows[i], highs[i]};
-      if (may_be_visible(s, p, pattern, near)) s.near.push_back(near);
+      if (may_be_visible(s, pattern, p.full, near)) s.near.push_back(near);
     }
   }
 }
@@ -77,16 +77,16 @@ void rasterize_mover(Scratch& s, const Projection& p, const ScanView& view, cons
            sn = constant(static_cast<float>(scene.headings[near.mover].y));
   const VF x = constant(static_cast<float>(X.x - view.origin.x)), y = constant(static_cast<float>(X.y - view.origin.y));
   const std::uint32_t count = near.distance > 1e-4f ? outline.outward : outline.all;
-  const std::size_t first_live = s.live.size();
   for (std::uint32_t i = outline.first; i < outline.first + count; ++i) {
     const SegmentBlock& block = scene.outlines->blocks[i];
+    ProjectedBlock projected;
     for (std::uint32_t k = 0; k < kBlock; k += lanes()) {
       const VF ax = load(block.ax + k), ay = load(block.ay + k), ex = load(block.ex + k), ey = load(block.ey + k);
-      project(s, p, x + (c * ax - sn * ay), y + (sn * ax + c * ay), c * ex - sn * ey, sn * ex + c * ey, block.row + k,
-              scene.first_rows[near.mover]);
+      project(projected, p, x + (c * ax - sn * ay), y + (sn * ax + c * ay), c * ex - sn * ey, sn * ex + c * ey,
+              block.row + k, scene.first_rows[near.mover]);
     }
+    rasterize(s, pattern, projected);
   }
-  rasterize_from(s, pattern, first_live);
 }
 
 void rasterize_movers(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
@@ -102,7 +102,7 @@ void rasterize_movers(Scratch& s, const Projection& p, const ScanView& view, con
   std::sort(s.order.begin(), s.order.end());
   for (const std::uint64_t key : s.order) {
     const NearMover& near = s.near[key & 0xFFFFFFFFu];
-    if (!may_be_visible(s, p, pattern, near)) continue;
+    if (!may_be_visible(s, pattern, p.full, near)) continue;
     ++s.counts.movers_visible;
     rasterize_mover(s, p, view, pattern, scene, near);
   }

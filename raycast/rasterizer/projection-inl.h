@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-#include "raycast/rasterizer/vectors-inl.h"
+#include "raycast/rasterizer/intervals-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
@@ -42,28 +42,31 @@ Projection projection_of(const ScanView& view, const ScanPattern& pattern) {
           constant(pattern.edge_sin)};
 }
 
-/// Appends the intervals of `mask` that contain beams.
-inline void append_interval(Scratch& s, const Projection& p, MF mask, VF low_possible, VF high_possible, VF low_certain,
-                            VF high_certain, VF a, VF b, VF error, const std::uint32_t* rows, std::uint32_t first_row) {
+/// The segments of one block, projected. A segment may cover beams at both ends of the view.
+struct ProjectedBlock {
+  Intervals parts[3 * kBlock / hn::MaxLanes(kF)];
+  std::uint32_t count = 0;  ///< of parts in use
+};
+
+/// Appends the segments of `mask` whose intervals contain beams.
+HWY_INLINE void append_intervals(ProjectedBlock& out, const Projection& p, MF mask, VF low_possible, VF high_possible,
+                                 VF low_certain, VF high_certain, VF a, VF b, VF error, hn::Vec<decltype(kI)> row) {
   const VF first = hn::Max(hn::Floor(low_possible - p.slack), constant(0.0f));
   const VF last = hn::Min(hn::Ceil(high_possible + p.slack), constant(p.last));
-  std::uint32_t pending = bits_of(hn::And(mask, first <= last));
-  if (pending == 0) return;
-  const std::uint32_t at = s.used;
-  store(a, &s.a[at]), store(b, &s.b[at]), store(error, &s.error[at]);
-  store(low_possible, &s.low_possible[at]), store(high_possible, &s.high_possible[at]);
-  store(low_certain, &s.low_certain[at]), store(high_certain, &s.high_certain[at]);
-  // The conversion needs values below 2^31; no beam has so large an index.
-  hn::StoreU(hn::ConvertTo(kI, hn::Min(first, constant(1e9f))), kI, &s.first[at]);
-  hn::StoreU(hn::ConvertTo(kI, hn::Max(last, constant(-1.0f))), kI, &s.last[at]);
-  hn::StoreU(hn::LoadU(kU, rows) + hn::Set(kU, first_row), kU, &s.row[at]);
-  for (; pending != 0; pending &= pending - 1)
-    s.live.push_back(at + static_cast<std::uint32_t>(__builtin_ctz(pending)));
-  s.used += lanes();
+  const MF in_view = hn::And(mask, first <= last);
+  if (hn::AllFalse(kF, in_view)) return;
+  Intervals& g = out.parts[out.count++];
+  hn::Store(a, kF, g.a), hn::Store(b, kF, g.b), hn::Store(error, kF, g.error), hn::Store(row, kI, g.row);
+  hn::Store(low_possible, kF, g.low_possible), hn::Store(high_possible, kF, g.high_possible);
+  hn::Store(low_certain, kF, g.low_certain), hn::Store(high_certain, kF, g.high_certain);
+  const VF from = hn::IfThenElse(in_view, first, constant(1e9f)), end = hn::IfThenElse(in_view, last, constant(-1.0f));
+  hn::Store(from, kF, g.first), hn::Store(end, kF, g.last);
+  g.from = static_cast<std::uint32_t>(hn::GetLane(hn::MinOfLanes(kF, from)));
+  g.end = static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(kF, end)));
 }
 
 /// Projects segments that start at (wx, wy) from the viewer and extend by (gx, gy), in world directions.
-inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy, const std::uint32_t* rows,
+inline void project(ProjectedBlock& out, const Projection& p, VF wx, VF wy, VF gx, VF gy, const std::uint32_t* rows,
                     std::uint32_t first_row) {
   const VF length = hn::Abs(gx) + hn::Abs(gy);
   const VF error_margin = p.band * length;
@@ -111,17 +114,21 @@ inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy,
   const VF high_possible = hn::IfThenElse(anywhere, constant(1e30f), high + margin_high);
   const VF low_certain = hn::IfThenElse(blind, constant(1e30f), low + margin_low);
   const VF high_certain = high - margin_high;
-  s.reserve(3 * lanes());
-  append_interval(s, p, seen, low_possible, high_possible, low_certain, high_certain, a, b, error, rows, first_row);
+  const auto row = hn::BitCast(kI, hn::LoadU(kU, rows) + hn::Set(kU, first_row));
+  append_intervals(out, p, seen, low_possible, high_possible, low_certain, high_certain, a, b, error, row);
   // A segment across the rear also covers beams at the other end of the view.
   const MF wrapped = hn::And(seen, hn::AndNot(anywhere, high_possible + p.slack >= p.turn));
   if (!hn::AllFalse(kF, wrapped))
-    append_interval(s, p, wrapped, low_possible - p.turn, high_possible - p.turn, low_certain - p.turn,
-                    high_certain - p.turn, a, b, error, rows, first_row);
+    append_intervals(out, p, wrapped, low_possible - p.turn, high_possible - p.turn, low_certain - p.turn,
+                     high_certain - p.turn, a, b, error, row);
   const MF before = hn::And(seen, hn::AndNot(anywhere, low_possible - p.slack <= constant(p.last - p.full)));
   if (!hn::AllFalse(kF, before))
-    append_interval(s, p, before, low_possible + p.turn, high_possible + p.turn, low_certain + p.turn,
-                    high_certain + p.turn, a, b, error, rows, first_row);
+    append_intervals(out, p, before, low_possible + p.turn, high_possible + p.turn, low_certain + p.turn,
+                     high_certain + p.turn, a, b, error, row);
+}
+
+inline void rasterize(Scratch& s, const ScanPattern& pattern, const ProjectedBlock& block) {
+  for (std::uint32_t i = 0; i < block.count; ++i) rasterize(s, pattern, block.parts[i]);
 }
 
 }  // namespace sf::raycast::HWY_NAMESPACE

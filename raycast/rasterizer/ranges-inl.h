@@ -20,10 +20,10 @@ namespace sf::raycast::HWY_NAMESPACE {
 bool find_runs(Scratch& s, std::uint32_t beams) {
   std::fill(s.ends.begin(), s.ends.end(), 0);
   std::fill(s.uncertain.begin(), s.uncertain.end(), 0);
-  s.nearest_segment[beams] = -2;
+  s.nearest_row[beams] = -2;
   bool any_uncertain = false;
   for (std::uint32_t j = 0; j < beams; j += lanes()) {
-    const auto changes = hn::LoadU(kI, &s.nearest_segment[j]) != hn::LoadU(kI, &s.nearest_segment[j + 1]);
+    const auto changes = hn::LoadU(kI, &s.nearest_row[j]) != hn::LoadU(kI, &s.nearest_row[j + 1]);
     s.ends[j >> 6] |= std::uint64_t{bits_of(hn::RebindMask(kF, changes))} << (j & 63);
     const std::uint32_t uncertain = bits_of(load(&s.near_low[j]) <= load(&s.others[j]));
     s.uncertain[j >> 6] |= std::uint64_t{uncertain} << (j & 63);
@@ -37,32 +37,42 @@ bool find_runs(Scratch& s, std::uint32_t beams) {
   return any_uncertain;
 }
 
+/// Calls `range_of(j)` for vectors of beams that begin at `j`, and writes what it returns, and `model`, for the beams
+/// [first, end). The next run overwrites places behind `end`.
+template <class Range>
+HWY_INLINE void write_run(const ScanPattern& pattern, const ScanOutput& out, std::uint32_t first, std::uint32_t end,
+                          std::uint32_t model, Range range_of) {
+  const auto step = static_cast<std::uint32_t>(hn::Lanes(kD));
+  const auto models = hn::Set(kModels, model);
+  std::uint32_t j = first;
+  for (; j < end && j + step <= pattern.beams; j += step) {
+    hn::StoreU(range_of(j), kD, &out.ranges[j]);
+    hn::StoreU(models, kModels, &out.models[j]);
+  }
+  if (j >= end) return;
+  HWY_ALIGN double last[kBlock];
+  hn::Store(range_of(j), kD, last);
+  std::copy(last, last + (pattern.beams - j), &out.ranges[j]);
+  std::fill(&out.models[j], &out.models[pattern.beams], model);
+}
+
 /// Ranges of beams [first, end) that meet `g`, by the operations of `intersect`.
-inline void exact_ranges(const ScanView& view, const ScanPattern& pattern, const ExactSegment& g, std::uint32_t first,
-                         std::uint32_t end, double* ranges) {
+HWY_INLINE void write_exact_ranges(const ScanView& view, const ScanPattern& pattern, const ExactSegment& g,
+                                   std::uint32_t first, std::uint32_t end, std::uint32_t model, const ScanOutput& out) {
   const double wx = g.ax - view.origin.x, wy = g.ay - view.origin.y;
   const double ex = g.bx - g.ax, ey = g.by - g.ay;
   const VD numerator = hn::Set(kD, ex * wy - ey * wx), dx = hn::Set(kD, ex), dy = hn::Set(kD, ey);
   const VD c = hn::Set(kD, view.heading.x), sn = hn::Set(kD, view.heading.y);
   const VD least = hn::Set(kD, std::max(view.range_min, 0.0));
-  const auto step = static_cast<std::uint32_t>(hn::Lanes(kD));
-  for (std::uint32_t j = first; j < end; j += step) {
-    VD x, y;
-    if (view.x != nullptr) {
-      x = hn::LoadU(kD, &view.x[j]), y = hn::LoadU(kD, &view.y[j]);
-    } else {
+  const auto range_of = [&](VD x, VD y) HWY_ATTR { return hn::Max(numerator / (dx * y - dy * x), least); };
+  if (view.x != nullptr)
+    write_run(pattern, out, first, end, model,
+              [&](std::uint32_t j) HWY_ATTR { return range_of(hn::LoadU(kD, &view.x[j]), hn::LoadU(kD, &view.y[j])); });
+  else
+    write_run(pattern, out, first, end, model, [&](std::uint32_t j) HWY_ATTR {
       const VD bc = hn::LoadU(kD, &pattern.cos64[j]), bs = hn::LoadU(kD, &pattern.sin64[j]);
-      x = c * bc - sn * bs, y = c * bs + sn * bc;
-    }
-    const VD range = hn::Max(numerator / (dx * y - dy * x), least);
-    if (j + step <= pattern.beams) {
-      hn::StoreU(range, kD, &ranges[j]);  // the next run overwrites places behind `end`
-    } else {
-      HWY_ALIGN double last[kBlock];
-      hn::Store(range, kD, last);
-      std::copy(last, last + (pattern.beams - j), &ranges[j]);
-    }
-  }
+      return range_of(c * bc - sn * bs, c * bs + sn * bc);
+    });
 }
 
 /// The same ranges in 32 bits, where these are accurate enough.
@@ -81,7 +91,7 @@ HWY_INLINE void each_run(const Scratch& s, Visit visit) {
   for (std::size_t w = 0; w < s.ends.size(); ++w)
     for (std::uint64_t pending = s.ends[w]; pending != 0; pending &= pending - 1) {
       const auto end = static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(__builtin_ctzll(pending)) + 1;
-      visit(first, end, s.nearest_segment[first]);
+      visit(first, end, s.nearest_row[first]);
       first = end;
     }
 }
@@ -90,16 +100,17 @@ bool write_certain_ranges(Scratch& s, const ScanView& view, const ScanPattern& p
                           const ScanOutput& out) {
   const bool any_uncertain = find_runs(s, pattern.beams);
   each_run(s, [&](std::uint32_t, std::uint32_t, std::int32_t k) {
-    if (k >= 0) __builtin_prefetch(&scene.exact[s.row[static_cast<std::uint32_t>(k)]]);
+    if (k >= 0) __builtin_prefetch(&scene.exact[static_cast<std::uint32_t>(k)]);
   });
-  each_run(s, [&](std::uint32_t first, std::uint32_t end, std::int32_t k) {
-    const std::uint32_t row = k < 0 ? SF_NO_HIT : s.row[static_cast<std::uint32_t>(k)];
-    if (k < 0)
-      std::fill(&out.ranges[first], &out.ranges[end], std::max(view.range_max, view.range_min));
-    else
-      exact_ranges(view, pattern, scene.exact[row], first, end, out.ranges);
-    if (k >= 0 && view.single) measure_in_32_bits(view, pattern, scene.exact[row], first, end, out.ranges);
-    std::fill(&out.models[first], &out.models[end], k < 0 ? SF_NO_HIT : scene.models[row]);
+  const VD none = hn::Set(kD, std::max(view.range_max, view.range_min));
+  each_run(s, [&](std::uint32_t first, std::uint32_t end, std::int32_t k) HWY_ATTR {
+    if (k < 0) {
+      write_run(pattern, out, first, end, SF_NO_HIT, [&](std::uint32_t) HWY_ATTR { return none; });
+      return;
+    }
+    const auto row = static_cast<std::uint32_t>(k);
+    write_exact_ranges(view, pattern, scene.exact[row], first, end, scene.models[row], out);
+    if (view.single) measure_in_32_bits(view, pattern, scene.exact[row], first, end, out.ranges);
   });
   return any_uncertain;
 }

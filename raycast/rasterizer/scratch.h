@@ -16,18 +16,9 @@ struct NearMover {
 };
 
 struct Rasterizer::Scratch {
-  // Projected segments, in whole vectors: only the indices in `live` are in use.
-  std::vector<float> a, b, error;  ///< 1 / t = a cos + b sin, within error [1/m]
-  std::vector<float> low_possible, high_possible, low_certain,
-      high_certain;                       ///< places of beams that the segment may cover, and certainly covers
-  std::vector<std::int32_t> first, last;  ///< interval of beams to test
-  std::vector<std::uint32_t> row;         ///< row of the exact segment
-  std::vector<std::uint32_t> live;        ///< indices in use
-  std::uint32_t used = 0;
-
   // Beams.
   std::vector<float> near_low, near_high, others;  ///< [1/m] bounds of the nearest so far; largest bound of all others
-  std::vector<std::int32_t> nearest_segment;       ///< index of the segment, or -1
+  std::vector<std::int32_t> nearest_row;           ///< exact segment, or -1
   std::vector<std::uint64_t> ends, uncertain;      ///< one bit per beam
 
   // Movers.
@@ -38,8 +29,6 @@ struct Rasterizer::Scratch {
   ScanCounts counts;
 
   void begin(std::uint32_t beams);
-  /// Makes room for `more` segments behind those in use.
-  void reserve(std::uint32_t more);
 };
 
 }  // namespace sf::raycast

@@ -26,6 +26,7 @@ constexpr hn::RebindToSigned<F> kI;
 constexpr hn::RebindToUnsigned<F> kU;
 constexpr hn::ScalableTag<double> kD;
 using VD = hn::Vec<decltype(kD)>;
+constexpr hn::Rebind<std::uint32_t, decltype(kD)> kModels;  // one per range
 
 inline std::uint32_t lanes() { return static_cast<std::uint32_t>(hn::Lanes(kF)); }
 inline VF constant(float value) { return hn::Set(kF, value); }
@@ -39,7 +40,7 @@ inline std::uint32_t bits_of(MF mask) {
 }
 
 /// Bearing [rad] of (x, y), to 1e-6, and the inverse of max(|x|, |y|). Abramowitz and Stegun 4.4.49.
-inline VF bearing_of(VF y, VF x, VF& inverse) {
+HWY_INLINE VF bearing_of(VF y, VF x, VF& inverse) {
   const VF across = hn::Abs(y), along = hn::Abs(x);
   const VF larger = hn::Max(hn::Max(along, across), constant(1e-30f));
   inverse = constant(1.0f) / larger;

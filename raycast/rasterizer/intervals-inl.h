@@ -1,0 +1,85 @@
+// Intervals of beams: the nearest segments within one, and whether one is hidden.
+// Compiled once per instruction set (hwy/foreach_target.h).
+
+#if defined(SF_RAYCAST_INTERVALS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SF_RAYCAST_INTERVALS_INL_H
+#undef SF_RAYCAST_INTERVALS_INL_H
+#else
+#define SF_RAYCAST_INTERVALS_INL_H
+#endif
+
+#include <algorithm>
+#include <cmath>
+
+#include "raycast/rasterizer/vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sf::raycast::HWY_NAMESPACE {
+
+/// Segments of one vector, projected to the beams that they cover.
+struct Intervals {
+  HWY_ALIGN float a[kBlock], b[kBlock], error[kBlock];  ///< 1 / t = a cos + b sin, within error [1/m]
+  HWY_ALIGN float low_possible[kBlock], high_possible[kBlock], low_certain[kBlock],
+      high_certain[kBlock];                     ///< places of beams that each may cover, and certainly covers
+  HWY_ALIGN float first[kBlock], last[kBlock];  ///< indices of beams to test; last < first: none
+  HWY_ALIGN std::int32_t row[kBlock];           ///< of the exact segment
+  std::uint32_t from, end;                      ///< beams to test for all of them
+};
+
+/// Updates the bounds of all beams that `g` may cover. The bounds of a vector of beams stay in registers while its
+/// segments, one after the other, are compared with them.
+inline void rasterize(Scratch& s, const ScanPattern& pattern, const Intervals& g) {
+  const std::uint32_t step = lanes();
+  const VF first = hn::Load(kF, g.first), last = hn::Load(kF, g.last);
+  for (std::uint32_t j = g.from & ~(step - 1); j <= g.end; j += step) {
+    const VF begin = constant(static_cast<float>(j)), end = constant(static_cast<float>(j + step - 1));
+    std::uint32_t pending = bits_of(hn::And(first <= end, last >= begin));
+    if (pending == 0) continue;
+    const VF place = load(&pattern.place[j]), cosine = load(&pattern.cos32[j]), sine = load(&pattern.sin32[j]);
+    VF near_low = load(&s.near_low[j]), near_high = load(&s.near_high[j]), others = load(&s.others[j]);
+    auto nearest_row = hn::LoadU(kI, &s.nearest_row[j]);
+    for (; pending != 0; pending &= pending - 1) {
+      const auto k = static_cast<std::uint32_t>(__builtin_ctz(pending));
+      const MF possible = hn::And(place >= constant(g.low_possible[k]), place <= constant(g.high_possible[k]));
+      const MF certain = hn::And(place >= constant(g.low_certain[k]), place <= constant(g.high_certain[k]));
+      const VF inverse = constant(g.a[k]) * cosine + constant(g.b[k]) * sine, error = constant(g.error[k]);
+      const VF high = inverse + error, low = hn::IfThenElseZero(certain, inverse - error);
+      const MF nearer = low > near_low;
+      others = hn::Max(others, hn::IfThenElse(nearer, near_high, hn::IfThenElseZero(possible, high)));
+      near_low = hn::Max(near_low, low);
+      near_high = hn::IfThenElse(nearer, high, near_high);
+      nearest_row = hn::IfThenElse(hn::RebindMask(kI, nearer), hn::Set(kI, g.row[k]), nearest_row);
+    }
+    store(near_low, &s.near_low[j]), store(near_high, &s.near_high[j]), store(others, &s.others[j]);
+    hn::StoreU(nearest_row, kI, &s.nearest_row[j]);
+  }
+}
+
+/// False when every beam in [low, high] certainly meets something nearer than `distance`.
+HWY_INLINE bool may_be_visible(const Scratch& s, const ScanPattern& pattern, float low, float high, float distance) {
+  const auto last = static_cast<float>(pattern.beams - 1);
+  if (high < 0.0f || low > last) return false;
+  const auto step = static_cast<std::int32_t>(lanes());
+  const auto from = static_cast<std::int32_t>(std::max(low, 0.0f)) & ~(step - 1);
+  const auto to = static_cast<std::int32_t>(std::min(std::ceil(high), last));
+  const VF inverse = constant(distance > 1e-6f ? 1.0001f / distance : 1e30f);
+  const VF first = constant(low), end = constant(high);
+  for (std::int32_t j = from; j <= to; j += step) {
+    const VF place = load(&pattern.place[j]);
+    const MF touched = hn::And(place >= first, place <= end);
+    if (!hn::AllFalse(kF, hn::And(touched, load(&s.near_low[j]) < inverse))) return true;
+  }
+  return false;
+}
+
+/// False when what covers the beams of `near` is hidden from all of them.
+inline bool may_be_visible(const Scratch& s, const ScanPattern& pattern, float turn, const NearMover& near) {
+  return may_be_visible(s, pattern, near.low, near.high, near.distance) ||
+         may_be_visible(s, pattern, near.low - turn, near.high - turn, near.distance) ||
+         may_be_visible(s, pattern, near.low + turn, near.high + turn, near.distance);
+}
+
+}  // namespace sf::raycast::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
