@@ -241,7 +241,8 @@ void add_controller(CLI::App& app, ControllerOptions& o) {
   for (const control::ControllerType* type : control::controllers()) names.emplace_back(type->name);
   const Validator known = one_of(names);
   app.add_option("--controller", o.controller,
-                 "Controller of the robots: " + join_or(names) + ", or a plug-in's file (./libmine.so)")
+                 "Controller of the robots: " + join_or(names) +
+                     ", or a file: a plug-in (./libmine.so) or a Python class (mine.py:MyClass)")
       ->check([=](const std::string& name) { return control::names_a_file(name) ? std::string() : known(name); })
       ->type_name("NAME")
       ->capture_default_str();

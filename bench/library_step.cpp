@@ -1,10 +1,11 @@
-// Seconds per step of libsensorfarm, for bench/python_step.py: library_step WORLD ROBOTS STEPS. The first line of input
-// starts the measurement, and each further one repeats it.
+// Seconds per step of libsensorfarm, on the wall clock and of all threads, for bench/python_step.py: library_step WORLD
+// ROBOTS STEPS. The first line of input starts the measurement, and each further one repeats it.
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -27,15 +28,17 @@ int main(int argc, char** argv) {
     };
     for (std::string line; std::getline(std::cin, line);) {
       simulation.reset(1);
-      double spent = 0.0;
+      double spent = 0.0, cpu = 0.0;
       for (long i = 0; i < steps; ++i) {
         drive();
+        const std::clock_t cpu_start = std::clock();
         const auto start = std::chrono::steady_clock::now();
         simulation.step(twists);
         static_cast<void>(simulation.readings("laser"));
         spent += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        cpu += static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
       }
-      std::printf("%.9f %016llx\n", spent / static_cast<double>(steps),
+      std::printf("%.9f %.9f %016llx\n", spent / static_cast<double>(steps), cpu / static_cast<double>(steps),
                   static_cast<unsigned long long>(simulation.hash()));
       std::fflush(stdout);
     }

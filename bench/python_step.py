@@ -8,7 +8,6 @@ Methods run in turns; hashes and ranges of both are compared.
 
 import argparse
 import os
-import statistics
 import subprocess
 import tempfile
 import time
@@ -25,34 +24,37 @@ def drive(sim, twists):
 
 
 def steps_in_python(sim, steps):
-    """Seconds per step with its readings and poses, and the hash."""
+    """Seconds per step, with its readings and poses, on the wall clock and of all threads; and the hash."""
     sim.reset(1)
-    twists, spent = numpy.zeros((len(sim), 3)), 0.0
+    twists, spent, cpu = numpy.zeros((len(sim), 3)), 0.0, 0.0
     for _ in range(steps):
         drive(sim, twists)
-        start = time.perf_counter()
+        cpu_start, start = time.process_time(), time.perf_counter()
         sim.step(twists)
         sim.readings("laser"), sim.poses, sim.contacts
         spent += time.perf_counter() - start
-    return spent / steps, sim.hash
+        cpu += time.process_time() - cpu_start
+    return (spent / steps, cpu / steps), sim.hash
 
 
 def overhead(program, world, robots, steps, rounds):
     sim = sensorfarm.Simulation(world, robots=robots)
     other = subprocess.Popen([program, world, str(robots), str(steps)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    ratios, mine, theirs = [], [], []
+    mine, theirs = [], []
     for _ in range(rounds):
         other.stdin.write("\n")
         other.stdin.flush()
-        seconds, code = other.stdout.readline().split()
+        *seconds, code = other.stdout.readline().split()
         own, own_code = steps_in_python(sim, steps)
         assert int(code, 16) == own_code, "C++ and Python differ"
-        mine.append(own), theirs.append(float(seconds)), ratios.append(own / float(seconds))
+        mine.append(own), theirs.append([float(s) for s in seconds])
     other.stdin.close()
     other.wait()
-    print(f"{robots} robots, {steps} steps, {rounds} rounds in turns: {1e3 * min(theirs):.3f} ms a step in C++, "
-          f"{1e3 * min(mine):.3f} ms in Python (least); ratio {min(mine) / min(theirs):.3f} of the least, "
-          f"{statistics.median(ratios):.3f} median of rounds")
+    print(f"{robots} robots, {steps} steps, {rounds} rounds in turns:")
+    for k, clock in enumerate(("wall clock", "time of all threads")):
+        python, cpp = numpy.array(mine)[:, k], numpy.array(theirs)[:, k]
+        print(f"  {clock}: {1e3 * cpp.min():.3f} ms a step in C++, {1e3 * python.min():.3f} ms in Python (least); ratio "
+              f"{python.min() / cpp.min():.3f} of the least, {numpy.median(python / cpp):.3f} median of rounds")
 
 
 def views(world):

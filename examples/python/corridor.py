@@ -4,7 +4,7 @@
     PYTHONPATH=build/release/python examples/python/corridor.py --out out/corridor
 
 Needs NumPy only. The policy is a network of one hidden layer: ranges and speeds in, forward and turning speed out. It is
-trained by an evolution strategy with mirrored samples and ranked returns (Salimans et al., "Evolution Strategies as a
+trained by an evolution strategy with mirrored samples (Salimans et al., "Evolution Strategies as a
 Scalable Alternative to Reinforcement Learning", 2017). All candidates drive at once in one world: each on a floor of its
 own, at its own height, between walls as high as all floors, so that they neither meet nor see each other.
 """
@@ -106,15 +106,14 @@ def train(env, generations, steps, seed, say=print):
     generator = numpy.random.default_rng(seed)
     size = (env.single_observation_space.shape[0] + 1) * HIDDEN + 2 * HIDDEN
     policy, momentum, curve = numpy.zeros(size), numpy.zeros(size), []
-    sigma, rate = 0.3, 0.35
-    ranks = numpy.linspace(-0.5, 0.5, env.num_envs)
     for generation in range(generations):
+        calm = 1.0 - 0.8 * generation / generations  # ever smaller steps
+        sigma, rate = 0.3 * calm, 0.12 * calm
         half = generator.standard_normal((env.num_envs // 2, size))
         noise = numpy.concatenate([half, -half])
         metres, free = episodes(env, policy + sigma * noise, steps)
-        weights = numpy.empty(env.num_envs)
-        weights[numpy.argsort(metres)] = ranks
-        momentum = 0.8 * momentum + weights @ noise / (env.num_envs * sigma)
+        weights = (metres - metres.mean()) / (metres.std() + 1e-9)
+        momentum = 0.8 * momentum + weights @ noise / (env.num_envs * 0.3)
         policy = policy + rate * momentum
         curve.append((metres.max(), metres.mean(), metres.min(), free.mean()))
         say(f"generation {generation + 1:3}: {metres.mean():6.2f} m on average, best {metres.max():6.2f} m, "
@@ -170,7 +169,7 @@ def main():
     env = sensorfarm.gym.VectorEnv(world, num_envs=None, max_steps=steps + 1, task=Rounds, seed=given.seed)
     began = time.time()
     policy, curve = train(env, given.generations, steps, given.seed)
-    print(f"trained in {time.time() - began:.0f} s on {env.simulations[0].description}")
+    print(f"trained in {time.time() - began:.0f} s ({time.process_time():.0f} s of all cores) on {env.simulations[0].description}")
     metres, free = episodes(env, numpy.tile(policy, (env.num_envs, 1)), steps)
     print(f"policy: {metres.mean():.2f} m in {given.seconds:g} s, {free.sum()} of {env.num_envs} starts without contact")
     numpy.save(os.path.join(given.out, "policy.npy"), policy)

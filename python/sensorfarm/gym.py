@@ -123,7 +123,7 @@ class VectorEnv(_Base):
                 one.restart(agent, self.np_random)
             one.step(actions[share], begins[share])
             rewards[share], terminations[share] = one.reward(), one.terminated()
-        rewards[begins], terminations[begins] = 0.0, False
+        rewards[begins], terminations[begins] = 0.0, False  # whatever the task says of the way to the start
         self._ages = numpy.where(begins, 0, self._ages + 1)
         truncations = (self._ages >= self.max_steps) & ~terminations
         self._ended = terminations | truncations

@@ -97,6 +97,51 @@ class Vector(unittest.TestCase):
         seen = [env.step(stand)[3].all() for _ in range(8)]
         self.assertEqual(seen, [False, False, True, False, False, False, True, False])
 
+    def test_the_step_of_a_reset_has_no_reward(self):
+        """Not even where the task rewards standing, or ends an episode there."""
+        class Stand(Task):
+            def reward(self):
+                return numpy.ones(len(self))
+
+            def terminated(self):
+                return numpy.full(len(self), self.sim.tick % 2 == 0)
+        env = vector(task=Stand)
+        env.reset()
+        answers = [env.step(numpy.zeros((6, 2))) for _ in range(4)]
+        self.assertEqual([a[1].sum() for a in answers], [6, 6, 0, 6])
+        self.assertEqual([a[2].all() for a in answers], [False, True, False, True])
+
+    def test_speeds_are_observed(self):
+        env = vector(num_envs=1)
+        env.reset()
+        observations = env.step(numpy.array([[0.2, 0.4]]))[0]
+        numpy.testing.assert_allclose(observations[0, -2:], [0.2, 0.4], atol=1e-6)
+
+    def test_a_start_must_be_free(self):
+        """Of two robots one stands at the other's start: the other restarts elsewhere, at the first one's."""
+        env = vector(num_envs=2)
+        env.reset(seed=1)
+        task, sim = env.tasks[0], env.simulations[0]
+        sim.put(1, task.starts[0])
+        for _ in range(8):
+            task.restart(0, env.np_random)
+            numpy.testing.assert_array_equal(sim.poses[0], task.starts[1])
+
+    def test_a_contact_at_the_last_step_is_no_truncation(self):
+        class Late(Task):
+            def terminated(self):
+                return numpy.full(len(self), self.sim.tick == 3)
+        env = vector(task=Late, max_steps=3)
+        env.reset()
+        for _ in range(3):
+            _, _, terminations, truncations, _ = env.step(numpy.zeros((6, 2)))
+        self.assertEqual((terminations.all(), truncations.any()), (True, False))
+        parallel = sensorfarm.pettingzoo.ParallelEnv(CAVE, robots=2, task=Late, max_steps=3)
+        parallel.reset()
+        for _ in range(3):
+            _, _, terminations, truncations, _ = parallel.step({a: numpy.zeros(2) for a in parallel.agents})
+        self.assertEqual((all(terminations.values()), any(truncations.values()), parallel.agents), (True, False, []))
+
     def test_own_task(self):
         class Turn(Task):
             def observe(self):

@@ -111,6 +111,17 @@ class Readings(unittest.TestCase):
         self.assertTrue(numpy.isnan(ranges[1, 3:]).all())
         numpy.testing.assert_array_equal(sim.valid("laser"), [[True] * 5, [True] * 3 + [False] * 2])
 
+    def test_late_and_uncertain_elements_are_invalid(self):
+        """Before a sensor's first reading all is invalid; where a beam grazes a wall its bound does not hold."""
+        sim = sensorfarm.Simulation.from_text(ROOM.replace("rate 5", "rate 5 phase 0.1"), noise=False)
+        numpy.testing.assert_array_equal(sim.valid("laser")[1], [False] * 5)
+        self.assertTrue(numpy.isnan(sim.times("laser")[1]))
+        sim.step()
+        self.assertTrue(sim.valid("laser")[1, :3].all())
+        sim.put(0, (-1.5, 1.99 - 1e-4, 0, 1e-4))  # the middle beam meets the wall 1 m ahead, at 0.1 mrad
+        sim.step()
+        numpy.testing.assert_array_equal(sim.valid("laser")[0], [True, True, False, True, True])
+
     def test_ranges(self):
         """From (-1, 0) the other robot's side is 1.85 m ahead, and the wall (1 cm thick) 1.99 m to the left."""
         sim = room()
