@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "vision/opencv/images.h"
 #include "vision/opencv/markers.h"
+#include "vision/opencv/placement.h"
 
 namespace sf::vision {
 
@@ -127,6 +128,29 @@ Calibration calibrate(const std::vector<std::vector<BoardCorner>>& corners, cons
   for (std::size_t k = 0; k < of.size(); ++k) result.residuals[of[k]] = errors.at<double>(static_cast<int>(k));
   result.intrinsics = intrinsics_of(matrix, distortion, width, height);
   return result;
+}
+
+void place(const std::vector<glm::dvec3>& places, const std::vector<glm::dvec2>& pixels, Camera& camera) {
+  const Intrinsics& i = camera.intrinsics;
+  const cv::Matx33d matrix(i.focal.x, 0.0, i.center.x, 0.0, i.focal.y, i.center.y, 0.0, 0.0, 1.0);
+  const std::vector<double> distortion(i.distortion.begin(), i.distortion.end());
+  std::vector<cv::Point3d> world;
+  std::vector<cv::Point2d> image;
+  for (const glm::dvec3& p : places) world.emplace_back(p.x, p.y, p.z);
+  for (const glm::dvec2& p : pixels) image.emplace_back(p.x, p.y);
+  cv::Mat turn, shift;
+  cv::Matx33d R_CW;
+  attempt("search for the camera's pose", [&] {
+    cv::solvePnP(world, image, matrix, distortion, turn, shift, false, cv::SOLVEPNP_SQPNP);
+    cv::solvePnPRefineLM(world, image, matrix, distortion, turn, shift);
+    cv::Rodrigues(turn, R_CW);
+  });
+  const glm::dvec3 t{shift.at<double>(0), shift.at<double>(1), shift.at<double>(2)};
+  const auto axis = [&](int row) { return glm::dvec3{R_CW(row, 0), R_CW(row, 1), R_CW(row, 2)}; };
+  camera.right = axis(0);
+  camera.down = axis(1);
+  camera.forward = axis(2);
+  camera.position = -(t.x * camera.right + t.y * camera.down + t.z * camera.forward);
 }
 
 }  // namespace sf::vision

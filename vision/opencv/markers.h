@@ -1,10 +1,12 @@
 #pragma once
 // The functions of vision/opencv.h about tags.
 
-#include <opencv2/core/cvstd_wrapper.hpp>
-
 #include "vision/opencv.h"
 
+namespace cv {
+template <typename T>
+struct Ptr;
+}  // namespace cv
 namespace cv::aruco {
 class Dictionary;
 }  // namespace cv::aruco

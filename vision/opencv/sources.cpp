@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "vision/opencv/images.h"
+#include "vision/opencv/video.h"
 
 namespace sf::vision {
 
@@ -107,6 +108,35 @@ std::unique_ptr<ImageSource> open_source(const std::string& source, int width, i
                          live
                              ? "is no camera that can be opened; expected a V4L2 device that no other program uses"
                              : "cannot be read as a video; expected a device, a video, an image or a folder of images");
+}
+
+namespace {
+
+class AviFile : public VideoFile {
+ public:
+  AviFile(const std::string& file, int width, int height, double rate) : file_(file) {
+    attempt("writing of " + file, [&] {
+      writer_.open(file, cv::CAP_OPENCV_MJPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), rate, {width, height});
+    });
+    if (!writer_.isOpened()) throw base::InputError(file, 0, "cannot be written as a video");
+  }
+  void write(const Image& image) override {
+    attempt("writing of " + file_, [&] {
+      cv::cvtColor(wrap(image), frame_, cv::COLOR_RGB2BGR);
+      writer_.write(frame_);
+    });
+  }
+
+ private:
+  std::string file_;
+  cv::VideoWriter writer_;
+  cv::Mat frame_;
+};
+
+}  // namespace
+
+std::unique_ptr<VideoFile> open_video(const std::string& file, int width, int height, double rate) {
+  return std::make_unique<AviFile>(file, width, height, rate);
 }
 
 }  // namespace sf::vision
