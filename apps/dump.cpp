@@ -39,6 +39,8 @@ std::string subject_of(const server::PacketDescription& packet) {
     case netio::Type::start:
       if (header.robot == netio::kBroadcastId) return "START to all robots";
       [[fallthrough]];
+    case netio::Type::values:
+      return fmt::format("VALUES of sensor {} to robot {}", header.sensor, header.robot);
     case netio::Type::challenge:
     case netio::Type::neighbours:
     case netio::Type::state:

@@ -133,6 +133,11 @@ PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t n
     return objects_.admit(packet.header.robot, kStateChannel, packet.header.sequence, source, now);
   if (packet.header.type == Type::v2i) return admit_light(packet, source, now);
   if (packet.header.type == Type::leave) return robots_.leave(packet.header.robot, source, now);
+  if (packet.header.type == Type::leave) {
+    // A process in lockstep may have been silent for long: it leaves all the same.
+    if (lockstep_) admit_driver(packet, source, now);
+    return robots_.leave(packet.header.robot, source, now);
+  }
   if (packet.header.type == Type::v2v || packet.header.type == Type::subscribe) return admit_robot(packet, source, now);
   return admit_driver(packet, source, now);
 }

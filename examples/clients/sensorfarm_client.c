@@ -37,6 +37,10 @@ enum {
 };
 enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_V2I = 137, SF_OBJECT, SF_NEIGHBOURS = 140 };
 enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
+enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_NEIGHBOURS = 140 };
+enum { SF_COMMAND = 134, SF_STEP, SF_FETCH, SF_STATE = 141, SF_VALUES };  // lockstep
+enum { SF_MAX_COMMANDS = 38, SF_MAX_PART = 148, SF_MAX_DATAGRAM = 1400 };
+enum { SF_HEADER = 64, SF_V2V_BYTES = 132, SF_TAG_BYTES = 168, SF_MAX_VALUES = 361, SF_MAX_SENSORS = 32 };
 #define SF_NONE 0xFFFFFFFFu  // V2V: no leader, no checkpoint
 
 // Name, base of the ports, names of the integers, and columns of a row: name, numbers, unit on the wire.
@@ -84,6 +88,12 @@ static const sf_type sf_types[] = {
     {135, "OBJECT", 0, {"present"}, {{0}}},
     {140, "NEIGHBOURS", 0, {0}, {{0}}},
     {255, "", 0, {0}, {{"stop_group", 1, 1}, {"stop_point", 3, 1}, {"stop_line", 4, 1}}}};
+    {134, "COMMAND", 0, {0}, {{"robots", 1, 1}, {"twists", 3, 1}}},
+    {135, "STEP", 0, {"ticks", "commands"}, {{0}}},
+    {136, "FETCH", 0, {"first", "count"}, {{0}}},
+    {140, "NEIGHBOURS", 0, {0}, {{0}}},
+    {141, "STATE", 0, {"index", "datagrams", "contact", "flags"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
+    {142, "VALUES", 0, {"index", "datagrams", "values_type", "total", "first"}, {{"value", 1, 1}}}};
 
 typedef struct {
   uint8_t type;
@@ -102,6 +112,8 @@ typedef struct {
   unsigned approaches;           // V2I: rows of eight values that are approaches; the others are stop lines
   double values[SF_MAX_VALUES];  // SI, row by row as in sf_types; NAN: no number; INFINITY: no return
   const uint8_t* states;         // NEIGHBOURS: V2V packets one after another; live as long as the datagram
+  uint64_t tick;                 // lockstep
+  double sensor_pose[4], error;  // VALUES: x, y, z [m], yaw [rad] in the world frame; error bound, INFINITY: not stated
 } sf_packet;
 
 static uint64_t get(const uint8_t* bytes, unsigned size) {
@@ -285,6 +297,59 @@ static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t
   return NULL;
 }
 
+static bool is_lockstep(uint8_t type) {
+  return (type >= SF_COMMAND && type <= SF_FETCH) || type == SF_STATE || type == SF_VALUES;
+}
+
+// Rows of robot, forward, left, turn.
+static const char* decode_command(sf_packet* p, const uint8_t* b, size_t size) {
+  const size_t count = size < 16 ? 0 : get(b + 8, 4);
+  if (size < 16 || size != 16 + 32 * count) return size < 16 ? "too short" : check_size(size, 16 + 32 * count);
+  if (count < 1 || count > SF_MAX_COMMANDS) return "out of range";
+  bool within = true;
+  for (const uint8_t* row = b + 16; p->count < 4 * count; row += 32, p->count += 4) {
+    double* const v = p->values + p->count;
+    v[0] = (double)get(row + 24, 4);
+    for (unsigned i = 0; i < 3; ++i) v[1 + i] = get_f64(row + 8 * i);
+    if (check_numbers(v + 1, 3, HUGE_VAL)) return "not finite";
+    within = within && v[0] <= 65535 && !check_numbers(v + 1, 3, 1e3);
+  }
+  return in_range(within);
+}
+
+static const char* decode_values(sf_packet* p, const uint8_t* b, size_t size) {
+  if (size < 72) return "too short";
+  uint32_t* const w = p->words;  // index, datagrams, type, total, first
+  w[0] = (uint32_t)get(b + 8, 4), w[1] = (uint32_t)get(b + 12, 4), w[2] = (uint32_t)get(b + 16, 2);
+  w[3] = (uint32_t)get(b + 20, 4), w[4] = (uint32_t)get(b + 24, 4);
+  p->count = (unsigned)get(b + 18, 2);
+  if (size != 72 + 8 * (size_t)p->count) return check_size(size, 72 + 8 * (size_t)p->count);
+  for (unsigned i = 0; i < 4; ++i) p->sensor_pose[i] = get_f64(b + 32 + 8 * i);
+  p->error = get_f64(b + 64);
+  if (check_numbers(p->sensor_pose, 4, HUGE_VAL) || isnan(p->error)) return "not finite";
+  if (w[3] < 1 || w[3] > 1u << 24 || w[4] >= w[3] || w[4] % SF_MAX_PART != 0 ||
+      p->count != (w[3] - w[4] < SF_MAX_PART ? w[3] - w[4] : SF_MAX_PART) || w[2] < 1 || w[2] > 31 || w[0] >= w[1] ||
+      !(p->error >= 0))
+    return "out of range";
+  for (unsigned i = 0; i < p->count; ++i) p->values[i] = get_f64(b + 72 + 8 * i);
+  return NULL;
+}
+
+static const char* decode_lockstep(sf_packet* p, const uint8_t* b, size_t size) {
+  if (size >= 8) p->tick = get(b, 8);
+  if (p->type == SF_COMMAND) return decode_command(p, b, size);
+  if (p->type == SF_VALUES) return decode_values(p, b, size);
+  const size_t expected = p->type == SF_STATE ? 80 : 16;
+  if (size != expected) return check_size(size, expected);
+  for (unsigned i = 0; i < 2; ++i) p->words[i] = (uint32_t)get(b + 8 + 4 * i, 4);
+  if (p->type == SF_STEP) return in_range(p->words[0] >= 1 && p->words[0] <= 1000 && p->words[1] <= 65536);
+  if (p->type == SF_FETCH) return in_range(p->words[1] >= 1 && p->words[1] <= 64);
+  for (; p->count < 7; ++p->count) p->values[p->count] = get_f64(b + 16 + 8 * p->count);
+  for (unsigned i = 2; i < 4; ++i) p->words[i] = (uint32_t)get(b + 64 + 4 * i, 4);
+  if (check_numbers(p->values, 7, HUGE_VAL)) return "not finite";
+  return in_range(p->words[0] < p->words[1] && p->words[2] <= 1 && p->words[3] <= 1);
+}
+
 static void decode_quality(sf_packet* p, const uint8_t* b) {
   const unsigned accuracy = (unsigned)get(b + 10, 2);
   p->mode = accuracy & 15;
@@ -329,6 +394,7 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
                              : packet->type == SF_OCCUPANCY  ? decode_occupancy(packet, b, size)
                              : packet->type == SF_NEIGHBOURS ? decode_neighbours(packet, b, size)
                              : packet->type == SF_V2I        ? decode_v2i(packet, b, size)
+                             : is_lockstep(packet->type)     ? decode_lockstep(packet, b, size)
                              : packet->type >= 128           ? decode_state(packet, type, b, size)
                                                              : decode_rows(packet, type, b, size);
   if (status) return status;
@@ -365,6 +431,30 @@ static void print_columns(FILE* out, const sf_type* type, const double* values, 
     if (count == 0) fputc(' ', out);
     fputs(after, out);
   }
+// Encodes a COMMAND, STEP or FETCH likewise, of at most SF_MAX_DATAGRAM bytes. COMMAND: values are rows of robot,
+// forward, left [m/s], turn [rad/s], `count` numbers in all.
+size_t sf_encode_lockstep(const sf_packet* packet, uint8_t* bytes) {
+  const sf_packet head = {.type = SF_LEAVE,
+                          .robot = packet->robot,
+                          .sequence = packet->sequence,
+                          .time_ns = packet->time_ns,
+                          .session = packet->session,
+                          .token = packet->token};
+  const bool command = packet->type == SF_COMMAND;
+  if (packet->type < SF_COMMAND || packet->type > SF_FETCH || packet->count > 4 * SF_MAX_COMMANDS ||
+      sf_encode(&head, bytes) == 0)
+    return 0;
+  bytes[5] = packet->type;
+  put(bytes + SF_HEADER, 8, packet->tick);
+  put(bytes + SF_HEADER + 8, 4, command ? packet->count / 4 : packet->words[0]);
+  put(bytes + SF_HEADER + 12, 4, command ? 0 : packet->words[1]);
+  uint8_t* row = bytes + SF_HEADER + 16;
+  for (unsigned i = 0; command && i + 3 < packet->count; i += 4, row += 32) {
+    for (unsigned k = 0; k < 3; ++k) put_f64(row + 8 * k, packet->values[i + 1 + k]);
+    put(row + 24, 8, (uint64_t)packet->values[i]);
+  }
+  static _Thread_local sf_packet back;
+  return sf_decode(bytes, (size_t)(row - bytes), &back) == NULL ? (size_t)(row - bytes) : 0;
 }
 
 // The names and values of a packet behind its header, each as `before`, "range_m = 1 0.25 8" and `after`.
@@ -373,6 +463,7 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
   const sf_type* const type = sf_find_type(p->type);
   for (unsigned i = 0; p->type == SF_OCCUPANCY && i < 3; ++i)
     fprintf(out, "%s%s = %.10g%s", before, corner[i], p->corner[i], after);
+  if (is_lockstep(p->type)) fprintf(out, "%stick = %llu%s", before, (unsigned long long)p->tick, after);
   for (unsigned i = 0; type->words[i]; ++i) {
     char number[12] = "none";
     if (p->type != SF_V2V || p->words[i] != SF_NONE) snprintf(number, sizeof number, "%lu", (unsigned long)p->words[i]);
@@ -382,6 +473,20 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
   print_columns(out, type, p->values, approaches, before, after);
   if (p->type == SF_V2I)
     print_columns(out, sf_find_type(SF_STOP_LINE), p->values + approaches, p->count - approaches, before, after);
+  if (p->type == SF_VALUES) {
+    fprintf(out, "%ssensor_pose =", before);
+    for (unsigned i = 0; i < 4; ++i) fprintf(out, " %.10g", p->sensor_pose[i]);
+    fprintf(out, "%s%serror = ", after, before);
+    fprintf(out, isinf(p->error) ? "none" : "%.10g", p->error);
+    fputs(after, out);
+  }
+  for (unsigned c = 0, first = 0; type->columns[c].name; first += type->columns[c++].width) {
+    fprintf(out, "%s%s =", before, type->columns[c].name);
+    for (unsigned row = 0; row < p->count; row += sf_row_width(type))
+      for (unsigned k = 0; k < type->columns[c].width; ++k)
+        fprintf(out, isnan(p->values[row + first + k]) ? " none" : " %.10g", p->values[row + first + k]);
+    fputs(after, out);
+  }
 }
 
 // One line about a packet; NEIGHBOURS: one for each state.

@@ -29,6 +29,8 @@ import time
 
 LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
 V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 137, 138, 140
+V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 140
+COMMAND, STEP, FETCH, STATE, VALUES = 134, 135, 136, 141, 142  # lockstep
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
 HEADER_BYTES, V2V_BYTES, MAX_PAYLOAD, SIGNATURE_BYTES = 64, 132, 1256, 24
@@ -54,6 +56,8 @@ SENSORS = {
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 137: "V2I", 138: "OBJECT", 140: "NEIGHBOURS"}
 LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
+              131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
+              140: "NEIGHBOURS", 141: "STATE", 142: "VALUES"}
 
 
 class Malformed(ValueError):
@@ -155,6 +159,45 @@ def decode_v2i(payload):
             "left_s": [None if row[3] == NONE else row[3] / 1e3 for row in rows], "light": flat(row[4:] for row in rows),
             "stop_group": [row[0] for row in lines], "stop_point": flat(row[1:4] for row in lines),
             "stop_line": flat(row[4:] for row in lines)}
+def decode_command(payload):
+    require(len(payload) >= 16, "too short")
+    tick, count = struct.unpack_from("<QI", payload)
+    require(len(payload) >= 16 + 32 * count, "too short")
+    require(len(payload) == 16 + 32 * count, "too long")
+    rows = struct.unpack("<" + "3d2I" * count, payload[16:])
+    twists = [number for i in range(0, len(rows), 5) for number in rows[i:i + 3]]
+    require(1 <= count <= 38)
+    require(all(map(math.isfinite, twists)), "not finite")
+    require(all(abs(number) <= 1e3 for number in twists) and max(rows[3::5]) <= 65535)
+    return {"tick": tick, "robots": list(rows[3::5]), "twists": twists}
+
+
+def decode_values(payload):
+    require(len(payload) >= 72, "too short")
+    tick, index, datagrams, type, count, total, first = struct.unpack_from("<QIIHHII", payload)
+    x, y, z, yaw, error = struct.unpack_from("<5d", payload, 32)
+    values = unpack("<%dd" % count, payload[72:])
+    require(all(map(math.isfinite, (x, y, z, yaw))) and not math.isnan(error), "not finite")
+    require(1 <= total <= 2**24 and first < total and first % 148 == 0 and count == min(148, total - first))
+    require(1 <= type <= 31 and index < datagrams and error >= 0)
+    return {"tick": tick, "index": index, "datagrams": datagrams, "values_type": type, "total": total, "first": first,
+            "sensor_pose": [x, y, z, yaw], "error": None if math.isinf(error) else error, "value": list(values)}
+
+
+def decode_lockstep(type, payload):
+    if type == COMMAND:
+        return decode_command(payload)
+    if type == VALUES:
+        return decode_values(payload)
+    if type == STATE:
+        tick, index, datagrams, *numbers, contact, flags = unpack("<QII7dII", payload)
+        require(all(map(math.isfinite, numbers)), "not finite")
+        require(index < datagrams and contact <= 1 and flags <= 1)
+        return {"tick": tick, "index": index, "datagrams": datagrams, "contact": contact, "flags": flags,
+                "pose": numbers[:4], "velocity": numbers[4:]}
+    tick, first, second = unpack("<QII", payload)
+    require(1 <= first <= 1000 and second <= 65536 if type == STEP else 1 <= second <= 64)
+    return dict(zip(("tick", "ticks", "commands") if type == STEP else ("tick", "first", "count"), (tick, first, second)))
 
 
 def decode_state(type, robot, payload):
@@ -205,7 +248,9 @@ def decode(data):
         bound = None if accuracy < 32 else 2.0**(((accuracy >> 5) - 1024) / 16)
         packet.update(mode=accuracy & 15, unsure=accuracy >> 4 & 1, bound=bound, age_us=age,
                       stale=flags & 1 if age else 0, covariance=list(covariance) if age and known else [0.0] * 6)
-    if type >= 128:
+    if type in (COMMAND, STEP, FETCH, STATE, VALUES):
+        packet.update(decode_lockstep(type, payload))
+    elif type >= 128:
         packet.update(decode_state(type, robot, payload))
     elif type in (LASER, LASER_EXTENDED):
         packet.update(decode_laser(type == LASER_EXTENDED, payload))
@@ -245,6 +290,23 @@ def encode_object(present, **header):
 def encode_subscribe(types=0, **header):
     """types: bit k for sensor type k, bit 0 for states of others; 0: all sensor types."""
     return encode(SUBSCRIBE, struct.pack("<I", types), **header)
+
+
+def encode_command(tick, robots, twists, **header):
+    """Lockstep: what robots do from this tick on. robots: 1 to 38 ids; twists: forward, left [m/s], turn [rad/s] of each,
+    one after another."""
+    rows = [struct.pack("<3d2I", *twists[3 * i:3 * i + 3], robot, 0) for i, robot in enumerate(robots)]
+    return encode(COMMAND, struct.pack("<QII", tick, len(rows), 0) + b"".join(rows), **header)
+
+
+def encode_step(tick, ticks=1, commands=0, **header):
+    """Lockstep: simulate `ticks` more. commands: robots for which this process has sent a COMMAND of this tick."""
+    return encode(STEP, struct.pack("<QII", tick, ticks, commands), **header)
+
+
+def encode_fetch(tick, first, count, **header):
+    """Lockstep: send `count` datagrams of this tick's answer, from number `first` on."""
+    return encode(FETCH, struct.pack("<QII", tick, first, count), **header)
 
 
 def sign(data, key, counter):
@@ -368,7 +430,7 @@ class Client:
 def text(value):
     if isinstance(value, list):
         return " ".join(map(text, value))
-    return "none" if value is None else "%d" % value if isinstance(value, int) else "%.10g" % value
+    return "none" if value is None or value != value else "%d" % value if isinstance(value, int) else "%.10g" % value
 
 
 def fields(packet):

@@ -140,18 +140,22 @@ TEST(Dump, WrongFilesAndWordsAreRefused) {
 
 TEST(Dump, DatagramsThatComeArePrinted) {
   const unsigned port = free_ports(2);
-  Program dump({"dump", "--port", std::to_string(port) + "-" + std::to_string(port + 1), "--count", "3"});
+  Program dump({"dump", "--port", std::to_string(port) + "-" + std::to_string(port + 1), "--count", "5"});
   ASSERT_TRUE(dump.says("listening on 2 ports")) << dump.err();
   netio::Outbox outbox;
-  for (const base::Bytes& packet : {vector_of("leave"), vector_of("challenge"), base::Bytes(1500, 1)}) {
+  for (const base::Bytes& packet :
+       {vector_of("leave"), vector_of("challenge"), base::Bytes(1500, 1), vector_of("command"), vector_of("values")}) {
     outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, packet);
     outbox.flush();
   }
   const Outcome outcome = dump.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(count_lines(outcome.out), 3u) << outcome.out;
+  EXPECT_EQ(count_lines(outcome.out), 5u) << outcome.out;
   const std::string to = " > 127.0.0.1:" + std::to_string(port) + ": ";
-  for (const std::string line : {"LEAVE of robot 7, ", "CHALLENGE to robot 7, ", "bad magic, 1500 bytes"})
+  for (const std::string line :
+       {"LEAVE of robot 7, ", "CHALLENGE to robot 7, ", "bad magic, 1500 bytes",
+        "COMMAND of robot 7, sequence 240, 0.000 s; tick = 120; robots = 7 9; twists = 0.25 0 ",
+        "VALUES of sensor 0 to robot 7, "})
     EXPECT_NE(outcome.out.find(to + line), std::string::npos) << outcome.out;
 }
 

@@ -130,6 +130,19 @@ TEST_F(ClientRegistryTest, OnlyTheBoundOneLeaves) {
   EXPECT_EQ(registry.leave(7, kBob, 4 + 2 * kSecond), PacketStatus::stale);  // silent already
 }
 
+TEST_F(ClientRegistryTest, TheLastSenderRenewsWithoutOrder) {
+  EXPECT_EQ(registry.renew(7, kAlice, 0), PacketStatus::stale);  // never bound
+  say(kAlice, 10, 0);
+  EXPECT_EQ(registry.renew(7, kBob, kSecond), PacketStatus::wrong_source);
+  EXPECT_EQ(registry.renew(7, kAlice, kSecond), PacketStatus::accepted);
+  EXPECT_TRUE(registry.is_active(7, 3 * kSecond - 1));
+  EXPECT_EQ(registry.renew(7, kBob, 3 * kSecond), PacketStatus::stale);       // silent, but not bound to this one
+  EXPECT_EQ(registry.renew(7, kAlice, 9 * kSecond), PacketStatus::accepted);  // after a silence
+  EXPECT_EQ(say(kAlice, 11, 9 * kSecond), PacketStatus::accepted);            // counts go on
+  registry.leave(7, kAlice, 9 * kSecond);
+  EXPECT_EQ(registry.renew(7, kAlice, 9 * kSecond), PacketStatus::stale);
+}
+
 TEST_F(ClientRegistryTest, AClockAtItsEndsDoesNotMatter) {
   EXPECT_EQ(say(kAlice, 0, INT64_MAX - 1), PacketStatus::accepted);
   EXPECT_TRUE(registry.is_active(7, INT64_MAX));

@@ -1,6 +1,7 @@
 #pragma once
 // One valid packet of each type: the worked examples of docs/packets.md.
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -104,6 +105,54 @@ inline std::vector<base::Bytes> states() {
 inline std::vector<base::Bytes> examples() {
   return {reading_example(), extended_example(),  v2v_example(), tag_example(),    subscribe_example(), start_example(),
           leave_example(),   challenge_example(), v2i_example(), object_example(), neighbours_example()};
+}
+
+inline base::Bytes command_example() {
+  base::Bytes rows, out;
+  add_row({7, {0.25, 0.0, -0.125}}, rows);
+  add_row({9, {0.5, 0.0, 0.0}}, rows);
+  encode({.robot = 7, .sequence = 240, .session = 0x55667788, .token = 0x0BADF00D}, Command{120, rows}, out);
+  return out;
+}
+
+inline base::Bytes step_example() {
+  base::Bytes out;
+  encode({.robot = 7, .sequence = 120, .session = 0x55667788, .token = 0x0BADF00D}, Step{120, 1, 2}, out);
+  return out;
+}
+
+inline base::Bytes fetch_example() {
+  base::Bytes out;
+  encode({.robot = 7, .sequence = 3, .session = 0x55667788, .token = 0x0BADF00D}, Fetch{121, 64, 64}, out);
+  return out;
+}
+
+inline base::Bytes state_example() {
+  base::Bytes out;
+  encode({.robot = 7, .sequence = 121, .time = 12'100'000'000, .session = 0x11223344, .token = 0x55667788},
+         State{{121, 0, 3}, {1.5, -2.25, 0.0, 0.5}, {0.25, 0.0, -0.125}, 1, 0}, out);
+  return out;
+}
+
+inline base::Bytes values_example() {
+  const std::array ranges{1.0, 0.2503, HUGE_VAL};
+  base::Bytes bytes, out;
+  base::ByteWriter writer(bytes);
+  for (const double range : ranges) writer.put(range);
+  encode({.robot = 7, .sequence = 240, .time = 12'000'000'000, .session = 0x11223344, .token = 0x55667788},
+         Values{{121, 1, 3}, 1, 3, 0, {1.6, -2.2, 0.05, 0.5}, 1e-9, bytes}, out);
+  return out;
+}
+
+/// Packets of lockstep.
+inline std::vector<base::Bytes> lockstep_examples() {
+  return {command_example(), step_example(), fetch_example(), state_example(), values_example()};
+}
+
+inline std::vector<base::Bytes> all_examples() {
+  std::vector<base::Bytes> all = examples();
+  for (const base::Bytes& each : lockstep_examples()) all.push_back(each);
+  return all;
 }
 
 /// Overwrites the value at `offset`.

@@ -93,6 +93,40 @@ TEST(Inbox, OvertakenStatesAreTakenOnRequest) {
   EXPECT_FALSE(inbox.is_active(3, 2 * kSecond + 10));
 }
 
+/// Packets of lockstep, of the robot's session, after its SUBSCRIBE; the others have no meaning there.
+TEST(Inbox, LockstepHasItsOwnPackets) {
+  InboxOptions chosen = options();
+  chosen.lockstep = true;
+  Inbox inbox(chosen), plain(options());
+  Packet packet;
+  const auto say = [&](Inbox& to, base::Bytes bytes, std::int64_t now, std::uint32_t session = kSession,
+                       const Endpoint& who = kSender) {
+    write_session_token(bytes, {session, to.token(who)});
+    return to.accept(bytes, who, now, packet);
+  };
+  for (const base::Bytes& bytes : {command_example(), step_example(), fetch_example()}) {
+    EXPECT_EQ(say(plain, bytes, 0), PacketStatus::wrong_direction);
+    EXPECT_EQ(say(inbox, bytes, 0), PacketStatus::stale) << "nobody has subscribed";
+  }
+  EXPECT_EQ(say(inbox, subscribe(0, 0), 0), PacketStatus::accepted);
+  for (const base::Bytes& bytes : {command_example(), step_example(), fetch_example()}) {
+    EXPECT_EQ(say(inbox, bytes, 1), PacketStatus::accepted);
+    EXPECT_EQ(say(inbox, bytes, 1), PacketStatus::accepted) << "repeated";
+    EXPECT_EQ(say(inbox, bytes, 1, kSession + 1), PacketStatus::stale) << "of a process before";
+    EXPECT_EQ(say(inbox, bytes, 1, kSession, kOtherSender), PacketStatus::wrong_source);
+    EXPECT_EQ(say(inbox, patched<std::uint16_t>(bytes, 6, 9), 1), PacketStatus::unknown_robot);
+  }
+  for (const base::Bytes& bytes : {state_example(), values_example(), v2v(7, 9), tag_example(), start_example()})
+    EXPECT_EQ(say(inbox, bytes, 2), PacketStatus::wrong_direction);
+  EXPECT_EQ(say(inbox, leave_example(), 60 * kSecond), PacketStatus::accepted) << "after a long silence, too";
+  EXPECT_FALSE(inbox.address(7));
+  EXPECT_EQ(inbox.accept(step_example(), kSender, 0, packet), PacketStatus::unproven);
+  base::Bytes challenge;
+  ASSERT_TRUE(inbox.challenge(packet, kSender, 0, challenge));
+  for (const base::Bytes& bytes : {command_example(), step_example(), fetch_example()})
+    EXPECT_LE(challenge.size(), bytes.size()) << "nothing is amplified";
+}
+
 TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   base::Bytes long_packet = v2v_example();
   long_packet.push_back(0);
@@ -301,7 +335,7 @@ TEST_F(InboxTest, AnybodyMayStartRobots) {
 
 TEST_F(InboxTest, AMillionRandomAndMutatedDatagrams) {
   std::mt19937 random(20260101);  // NOLINT: the same datagrams every time
-  std::vector<base::Bytes> seeds = examples();
+  std::vector<base::Bytes> seeds = all_examples();
   seeds.push_back(leave_of_keyed());
   seeds.push_back(signed_leave());
   seeds.push_back(proven_leave({kLoopback, 1}));

@@ -49,7 +49,7 @@ TEST(Signature, IsThatOfTheDocument) {
 
 /// The trailer does not change what a packet says, of any type.
 TEST(Signature, LeavesThePacketReadable) {
-  for (const base::Bytes& example : examples()) {
+  for (const base::Bytes& example : all_examples()) {
     base::Bytes packet = example;
     sign(packet, counting_key(), 1);
     EXPECT_EQ(packet.size(), example.size() + kSignatureBytes);
@@ -63,7 +63,7 @@ TEST(Signature, LeavesThePacketReadable) {
 }
 
 TEST(Signature, NoFlippedBitIsAccepted) {
-  for (const base::Bytes& example : examples()) {
+  for (const base::Bytes& example : all_examples()) {
     base::Bytes packet = example;
     sign(packet, counting_key(), 1'000'000);
     SignatureChecker checker(counting_key());

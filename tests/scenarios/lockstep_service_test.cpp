@@ -71,7 +71,9 @@ std::uint64_t hash_in_process(const world::World& world, const std::string& cont
 
 struct Fixture {
   explicit Fixture(std::uint32_t robots, std::uint32_t wait_for = 1, double timeout = 0.0)
-      : world(lockstep_world(robots)),
+      : Fixture(lockstep_world(robots), wait_for, timeout) {}
+  explicit Fixture(world::World given, std::uint32_t wait_for = 1, double timeout = 0.0)
+      : world(std::move(given)),
         service(world, lockstep_device(),
                 {.lockstep = {.bind = {netio::kLoopback, 0},
                               .robots = wait_for,
@@ -200,6 +202,20 @@ TEST(LockstepService, AProcessMayAskForSeveralTicks) {
   EXPECT_DOUBLE_EQ(one.robot(1).state.velocity.forward, 0.2) << "the command held for all three";
 }
 
+/// Lasers of 5 Hz at 10 ticks a second: every other answer has a scan, and one of two ticks has it too.
+TEST(LockstepService, AnAnswerHasTheReadingsSinceTheOneBefore) {
+  Fixture fixture(server::room(5.0));
+  Driver driver(fixture.port(), {1});
+  const auto complete = [&] { return driver.is_complete(); };
+  std::vector<std::size_t> datagrams;
+  for (const std::uint32_t ticks : {1u, 1u, 1u, 2u, 2u, 1u}) {
+    ASSERT_TRUE(play(fixture, {&driver}, complete));
+    datagrams.push_back(driver.datagrams());
+    driver.step({}, ticks);
+  }
+  EXPECT_EQ(datagrams, (std::vector<std::size_t>{2, 1, 2, 1, 2, 2})) << "at ticks 0, 1, 2, 3, 5 and 7";
+}
+
 /// A STEP that says two commands waits for the second one, whatever is repeated meanwhile.
 TEST(LockstepService, AStepWaitsForItsCommands) {
   Fixture fixture(2);
@@ -296,6 +312,52 @@ TEST(LockstepService, WhoLeavesIsNotWaitedFor) {
   one.step({});
   ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); }));
   EXPECT_EQ(fixture.service.lockstep().commands()[1].forward, 0.0) << "its robot stands";
+}
+
+/// Four processes that say anything at any time: the farm goes on, and then serves one that keeps to the rules.
+TEST(LockstepService, NonsenseStopsNothing) {
+  Fixture fixture(3, 1, 1.0);
+  std::mt19937 random(7);  // NOLINT: the same packets every time
+  std::vector<std::unique_ptr<Driver>> drivers;
+  for (std::uint32_t robot : {1u, 2u, 3u, 1u})
+    drivers.push_back(std::make_unique<Driver>(fixture.port(), std::vector{robot}));
+  base::Bytes rows;
+  for (int i = 0; i < 20'000; ++i) {
+    Driver& driver = *drivers[random() % drivers.size()];
+    const std::uint32_t robot = random() % 4 + 1;
+    const std::uint64_t tick = fixture.tick() + random() % 3 - 1;
+    rows.clear();
+    netio::add_row({robot, {0.1, 0.0, 1.0}}, rows);
+    switch (random() % 6) {
+      case 0:
+        driver.send(netio::Subscribe{random()}, robot, random() % 8);
+        break;
+      case 1:
+        driver.send(netio::Command{tick, rows}, robot);
+        break;
+      case 2:
+        driver.send(netio::Step{tick, random() % 1000 + 1, random() % 3}, robot);
+        break;
+      case 3:
+        driver.send(netio::Fetch{tick, random() % 8, random() % 64 + 1}, robot);
+        break;
+      case 4:
+        driver.receive();
+        break;
+      default:
+        if (random() % 16 == 0) driver.send(netio::Leave{}, robot);
+    }
+    driver.flush();
+    if (random() % 4 == 0) fixture.service.advance(fixture.now += random() % 200'000'000);
+  }
+  EXPECT_GT(fixture.tick(), 10u);
+  EXPECT_GT(fixture.service.lockstep().counts().refused, 10u);
+  fixture.now += 10'000'000'000;
+  Driver driver(fixture.port(), {1, 2, 3});
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
+    driver.step({});
+  }
 }
 
 /// Bit 0 of a SUBSCRIBE: the states of all, exact as its own.

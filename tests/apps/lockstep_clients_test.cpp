@@ -1,0 +1,162 @@
+// Lockstep as users have it: `serve --lockstep` and the clients in examples/clients/, each a process.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <memory>
+
+#include "base/hash.h"
+#include "control/own_controllers.h"
+#include "scenarios/simulation.h"
+#include "sensors/sensor_type.h"
+#include "tests/apps/remote_robot.h"
+#include "world/free_space.h"
+
+namespace sf {
+
+namespace {
+
+const std::string kLockstepClients = SF_SOURCE_DIR "/examples/clients/sensorfarm_lockstep";
+constexpr int kLockstepTicks = 60;
+
+/// What both clients do, in process.
+class Avoid final : public sensorfarm::Controller {
+ public:
+  sensorfarm::Twist step(const sensorfarm::Input& input) override {
+    const std::span<const double> ranges = input.newest("laser")->values;
+    const double nearest = *std::min_element(ranges.begin(), ranges.end());
+    const double turn = 0.125 * (ranges.back() - ranges.front());
+    return {0.25 * std::min(nearest, 2.0), 0.0, nearest < 0.6 ? 1.0 : turn};
+  }
+};
+
+std::string hash_of_avoid() {
+  control::add_own_controller(
+      {"avoid-test", "", 10.0, false,
+       [](const sensorfarm::Robot&, sensorfarm::Settings&) { return std::make_unique<Avoid>(); }},
+      "test");
+  world::World world = world::load_world(our_world("cave.world"), {.sensors = sensors::world_file_words()});
+  world::clone_robots(world, 3, 1, "");
+  gpu::Device device;
+  scenarios::Simulation simulation(world, device, {.actor = {.controller = {.name = "avoid-test"}}});
+  for (int tick = 0; tick <= kLockstepTicks; ++tick) simulation.step();
+  return base::hash_hex(simulation.farm().hash());
+}
+
+/// Three copies of the cave's robot, served in lockstep.
+struct LockstepServer {
+  explicit LockstepServer(const Words& more) : program(words(more)) {
+    if (!program.says("; Ctrl-C ends it")) return;
+    const std::string said = program.err();
+    port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
+  }
+  static Words words(const Words& more) {
+    Words all{"serve", our_world("cave.world"), "--lockstep", "--robots", "3", "--port", "0", "--json"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  Json end() {
+    program.signal(SIGINT);
+    const Outcome outcome = program.wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Json(outcome.out);
+  }
+
+  Program program;
+  unsigned port = 0;
+};
+
+Words client_words(unsigned port, const std::string& robots, const Words& first = {}) {
+  Words all = first;
+  for (const std::string& word : Words{"--robots", robots, "--farm", "127.0.0.1:" + std::to_string(port), "--ticks",
+                                       std::to_string(kLockstepTicks), "--timeout", "60"})
+    all.push_back(word);
+  return all;
+}
+
+Words python_words(unsigned port, const std::string& robots) {
+  return client_words(port, robots, {kLockstepClients + ".py"});
+}
+
+std::string compiled_lockstep(const Folder& folder) {
+  const std::string program = folder.path("compiled"), log = folder.path("log");
+  const std::string command =
+      "cc -std=c11 -O0 -ffp-contract=off -Wall -Wextra -Werror -o " + program + " " + kLockstepClients + ".c";
+  EXPECT_EQ(std::system((command + " -lm >" + log + " 2>&1").c_str()), 0) << read_file(log);
+  return program;
+}
+
+/// One client after the other drives robots of a service of its own; then both of them one service.
+TEST(LockstepClients, DriveLikeTheSameControllerInProcess) {
+  if (!have_python()) GTEST_SKIP() << "this machine has no python3";
+  if (!succeeds("cc --version")) GTEST_SKIP() << "this machine has no C compiler called cc";
+  const Folder folder;
+  const std::string expected = hash_of_avoid(), c_client = compiled_lockstep(folder);
+  std::vector<std::string> places;
+  for (const bool python : {true, false}) {
+    LockstepServer server({});
+    ASSERT_NE(server.port, 0u) << server.program.err();
+    const Words words = python ? python_words(server.port, "1-3") : client_words(server.port, "1-3");
+    const Outcome client = Program(words, {}, "", "", python ? "python3" : c_client).wait();
+    EXPECT_EQ(client.code, 0) << client.err;
+    EXPECT_EQ(count_lines(client.out), 3u);
+    places.push_back(client.out);
+    const Json facts = server.end();
+    EXPECT_EQ(facts.text("/hash"), expected) << (python ? "Python" : "C");
+    EXPECT_EQ(facts.number("/ticks"), kLockstepTicks + 1);
+  }
+  EXPECT_EQ(places[0], places[1]) << "to the last digit";
+
+  LockstepServer both({"--wait-for", "3"});
+  ASSERT_NE(both.port, 0u) << both.program.err();
+  Program one(python_words(both.port, "1-2"), {}, "", "", "python3");
+  EXPECT_EQ(Program(client_words(both.port, "3"), {}, "", "", c_client).wait().code, 0);
+  EXPECT_EQ(one.wait().code, 0);
+  EXPECT_EQ(both.end().text("/hash"), expected);
+}
+
+TEST(LockstepClients, PythonDrivesRobotsWithKeys) {
+  if (!have_python()) GTEST_SKIP() << "this machine has no python3";
+  const Folder folder;
+  std::string peers;
+  Words keys;
+  for (const char digit : {'1', '2'}) {  // robot 3 has none
+    const std::string key(64, digit), robot(1, digit);
+    peers += "[[peer]]\nrobot = " + robot + "\nkey = \"" + key + "\"\n";
+    keys.push_back("--key"), keys.push_back(robot + "=" + folder.write("key" + robot, key + "\n"));
+  }
+  LockstepServer server({"--peers", folder.write("peers.toml", peers)});
+  ASSERT_NE(server.port, 0u) << server.program.err();
+  Words words = python_words(server.port, "1-3");
+  const Outcome unsigned_client =
+      Program({words[0], "--robots", "1", "--farm", words[4], "--timeout", "0.2"}, {}, "", "", "python3").wait();
+  EXPECT_EQ(unsigned_client.code, 1);
+  EXPECT_NE(unsigned_client.err.find("no farm in lockstep answers"), std::string::npos) << unsigned_client.err;
+  words.insert(words.end(), keys.begin(), keys.end());
+  const Outcome client = Program(words, {}, "", "", "python3").wait();
+  EXPECT_EQ(client.code, 0) << client.err;
+  const Json facts = server.end();
+  EXPECT_EQ(facts.number("/ticks"), kLockstepTicks + 1);
+  EXPECT_EQ(facts.number("/lockstep/commands"), 3 * kLockstepTicks);
+  EXPECT_GE(facts.number("/received/not signed"), 1);
+  EXPECT_FALSE(facts.has("/received/replayed"));
+}
+
+TEST(LockstepClients, WhatDoesNotGoWithLockstepIsRefused) {
+  for (const Words& more : std::vector<Words>{{"--rate", "5"},
+                                              {"--filter"},
+                                              {"--laser-port", "12000"},
+                                              {"--wire", "thesis"},
+                                              {"--wait-for", "4"},
+                                              {"--forget", "3"}}) {
+    const Outcome outcome = run_program(LockstepServer::words(more));
+    EXPECT_NE(outcome.code, 0) << more.front();
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  }
+  EXPECT_NE(run_program({"serve", our_world("cave.world"), "--wait-for", "1"}).code, 0);
+}
+
+}  // namespace
+
+}  // namespace sf
