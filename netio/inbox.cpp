@@ -132,7 +132,6 @@ PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t n
   if (packet.header.type == Type::object)
     return objects_.admit(packet.header.robot, kStateChannel, packet.header.sequence, source, now);
   if (packet.header.type == Type::v2i) return admit_light(packet, source, now);
-  if (packet.header.type == Type::leave) return robots_.leave(packet.header.robot, source, now);
   if (packet.header.type == Type::leave) {
     // A process in lockstep may have been silent for long: it leaves all the same.
     if (lockstep_) admit_driver(packet, source, now);

@@ -37,10 +37,8 @@ enum {
 };
 enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_V2I = 137, SF_OBJECT, SF_NEIGHBOURS = 140 };
 enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
-enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_NEIGHBOURS = 140 };
 enum { SF_COMMAND = 134, SF_STEP, SF_FETCH, SF_STATE = 141, SF_VALUES };  // lockstep
 enum { SF_MAX_COMMANDS = 38, SF_MAX_PART = 148, SF_MAX_DATAGRAM = 1400 };
-enum { SF_HEADER = 64, SF_V2V_BYTES = 132, SF_TAG_BYTES = 168, SF_MAX_VALUES = 361, SF_MAX_SENSORS = 32 };
 #define SF_NONE 0xFFFFFFFFu  // V2V: no leader, no checkpoint
 
 // Name, base of the ports, names of the integers, and columns of a row: name, numbers, unit on the wire.
@@ -83,17 +81,16 @@ static const sf_type sf_types[] = {
     {131, "START", 0, {0}, {{0}}},
     {132, "LEAVE", 0, {0}, {{0}}},
     {133, "CHALLENGE", 0, {"challenge"}, {{0}}},
-    // Rows of eight numbers: approaches, and behind them the stop lines of SF_STOP_LINE.
-    {134, "V2I", 0, {0}, {{"group", 1, 1}, {"state", 1, 1}, {"next", 1, 1}, {"left_s", 1, 1e-3}, {"light", 4, 1}}},
-    {135, "OBJECT", 0, {"present"}, {{0}}},
-    {140, "NEIGHBOURS", 0, {0}, {{0}}},
-    {255, "", 0, {0}, {{"stop_group", 1, 1}, {"stop_point", 3, 1}, {"stop_line", 4, 1}}}};
     {134, "COMMAND", 0, {0}, {{"robots", 1, 1}, {"twists", 3, 1}}},
     {135, "STEP", 0, {"ticks", "commands"}, {{0}}},
     {136, "FETCH", 0, {"first", "count"}, {{0}}},
+    // Rows of eight numbers: approaches, and behind them the stop lines of SF_STOP_LINE.
+    {137, "V2I", 0, {0}, {{"group", 1, 1}, {"state", 1, 1}, {"next", 1, 1}, {"left_s", 1, 1e-3}, {"light", 4, 1}}},
+    {138, "OBJECT", 0, {"present"}, {{0}}},
     {140, "NEIGHBOURS", 0, {0}, {{0}}},
     {141, "STATE", 0, {"index", "datagrams", "contact", "flags"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
-    {142, "VALUES", 0, {"index", "datagrams", "values_type", "total", "first"}, {{"value", 1, 1}}}};
+    {142, "VALUES", 0, {"index", "datagrams", "values_type", "total", "first"}, {{"value", 1, 1}}},
+    {255, "", 0, {0}, {{"stop_group", 1, 1}, {"stop_point", 3, 1}, {"stop_line", 4, 1}}}};
 
 typedef struct {
   uint8_t type;
@@ -431,6 +428,8 @@ static void print_columns(FILE* out, const sf_type* type, const double* values, 
     if (count == 0) fputc(' ', out);
     fputs(after, out);
   }
+}
+
 // Encodes a COMMAND, STEP or FETCH likewise, of at most SF_MAX_DATAGRAM bytes. COMMAND: values are rows of robot,
 // forward, left [m/s], turn [rad/s], `count` numbers in all.
 size_t sf_encode_lockstep(const sf_packet* packet, uint8_t* bytes) {
@@ -469,10 +468,6 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     if (p->type != SF_V2V || p->words[i] != SF_NONE) snprintf(number, sizeof number, "%lu", (unsigned long)p->words[i]);
     fprintf(out, "%s%s = %s%s", before, type->words[i], number, after);
   }
-  const unsigned approaches = p->type == SF_V2I ? 8 * p->approaches : p->count;
-  print_columns(out, type, p->values, approaches, before, after);
-  if (p->type == SF_V2I)
-    print_columns(out, sf_find_type(SF_STOP_LINE), p->values + approaches, p->count - approaches, before, after);
   if (p->type == SF_VALUES) {
     fprintf(out, "%ssensor_pose =", before);
     for (unsigned i = 0; i < 4; ++i) fprintf(out, " %.10g", p->sensor_pose[i]);
@@ -480,13 +475,10 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     fprintf(out, isinf(p->error) ? "none" : "%.10g", p->error);
     fputs(after, out);
   }
-  for (unsigned c = 0, first = 0; type->columns[c].name; first += type->columns[c++].width) {
-    fprintf(out, "%s%s =", before, type->columns[c].name);
-    for (unsigned row = 0; row < p->count; row += sf_row_width(type))
-      for (unsigned k = 0; k < type->columns[c].width; ++k)
-        fprintf(out, isnan(p->values[row + first + k]) ? " none" : " %.10g", p->values[row + first + k]);
-    fputs(after, out);
-  }
+  const unsigned approaches = p->type == SF_V2I ? 8 * p->approaches : p->count;
+  print_columns(out, type, p->values, approaches, before, after);
+  if (p->type == SF_V2I)
+    print_columns(out, sf_find_type(SF_STOP_LINE), p->values + approaches, p->count - approaches, before, after);
 }
 
 // One line about a packet; NEIGHBOURS: one for each state.

@@ -29,7 +29,6 @@ import time
 
 LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
 V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 137, 138, 140
-V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 140
 COMMAND, STEP, FETCH, STATE, VALUES = 134, 135, 136, 141, 142  # lockstep
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
@@ -54,10 +53,9 @@ SENSORS = {
     12: ("occupancy", 52000, []),
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
-              131: "START", 132: "LEAVE", 133: "CHALLENGE", 137: "V2I", 138: "OBJECT", 140: "NEIGHBOURS"}
-LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
-              140: "NEIGHBOURS", 141: "STATE", 142: "VALUES"}
+              137: "V2I", 138: "OBJECT", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES"}
+LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
 
 
 class Malformed(ValueError):
@@ -159,6 +157,8 @@ def decode_v2i(payload):
             "left_s": [None if row[3] == NONE else row[3] / 1e3 for row in rows], "light": flat(row[4:] for row in rows),
             "stop_group": [row[0] for row in lines], "stop_point": flat(row[1:4] for row in lines),
             "stop_line": flat(row[4:] for row in lines)}
+
+
 def decode_command(payload):
     require(len(payload) >= 16, "too short")
     tick, count = struct.unpack_from("<QI", payload)

@@ -43,10 +43,8 @@ static bool judge(const char* text, const uint8_t* bytes, size_t size) {
   bool same = strcmp(found, text) == 0;
   if (!same) printf("expected:\n%sfound:\n%s", text, found);
   free(found);
-  uint8_t again[SF_TAG_BYTES];
-  if (same && !of_status && packet.type >= SF_V2V && (packet.type <= SF_LEAVE || packet.type == SF_OBJECT))
   uint8_t again[SF_MAX_DATAGRAM];
-  if (same && !of_status && packet.type >= SF_V2V && packet.type <= SF_LEAVE)
+  if (same && !of_status && packet.type >= SF_V2V && (packet.type <= SF_LEAVE || packet.type == SF_OBJECT))
     same = sf_encode(&packet, again) == size && memcmp(again, bytes, size) == 0;
   if (same && !of_status && packet.type >= SF_COMMAND && packet.type <= SF_FETCH)
     same = sf_encode_lockstep(&packet, again) == size && memcmp(again, bytes, size) == 0;

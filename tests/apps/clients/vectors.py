@@ -32,7 +32,7 @@ def encoded(packet):
     type = packet.pop("type")
     del packet["sensor"]
     make = {client.V2V: client.encode_v2v, client.TAG: client.encode_tag, client.SUBSCRIBE: client.encode_subscribe,
-            client.OBJECT: client.encode_object}
+            client.OBJECT: client.encode_object,
             client.COMMAND: client.encode_command, client.STEP: client.encode_step, client.FETCH: client.encode_fetch}
     return make[type](**packet, **header) if type in make else client.encode(type, **header)
 
@@ -45,9 +45,8 @@ def judge(lines, data):
     if text != lines:
         print("\n".join(text))
         return False
-    sent = client.V2V <= packet["type"] <= client.LEAVE or packet["type"] == client.OBJECT
-    sent = packet["type"] in (client.V2V, client.TAG, client.SUBSCRIBE, client.START, client.LEAVE, client.COMMAND,
-                              client.STEP, client.FETCH)
+    sent = packet["type"] in (client.V2V, client.TAG, client.SUBSCRIBE, client.START, client.LEAVE, client.OBJECT,
+                              client.COMMAND, client.STEP, client.FETCH)
     return encoded(packet) == data if sent else True
 
 
