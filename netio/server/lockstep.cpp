@@ -34,6 +34,7 @@ Lockstep::Lockstep(const world::World& world, const sensors::SensorSet& sensor_s
       log_(options.log_descriptor),
       driver_(world.movers.size(), nullptr),
       types_(world.movers.size(), 0),
+      told_(world.movers.size()),
       since_(world.movers.size()),
       commanded_(world.movers.size()),
       commands_(world.movers.size()) {
@@ -122,6 +123,7 @@ void Lockstep::subscribe(const netio::Header& header, std::uint32_t types, std::
   if (added) {
     driver_[mover] = &process;
     ++driven_;
+    told_[mover] = answerable(process) ? std::optional(tick_) : std::nullopt;
     since_[mover].reset();
     commanded_[mover].reset();
     const auto by_id = [&](std::uint32_t a, std::uint32_t b) { return world_.movers[a].id < world_.movers[b].id; };

@@ -134,7 +134,8 @@ class Lockstep {
   std::map<Key, Process> processes_;
   std::vector<Process*> driver_;                         ///< per mover; null: nobody drives it
   std::vector<std::uint32_t> types_;                     ///< per mover: mask of its SUBSCRIBE
-  std::vector<std::optional<std::uint64_t>> since_;      ///< per mover: tick of the answer before; none: none before
+  std::vector<std::optional<std::uint64_t>> told_;       ///< per mover: tick of its newest answer; none: none yet
+  std::vector<std::optional<std::uint64_t>> since_;      ///< per mover: tick of the answer before that one
   std::vector<std::optional<std::uint64_t>> commanded_;  ///< per mover: tick of its last command
   std::vector<base::Twist> commands_;                    ///< per mover
   std::vector<std::uint32_t> first_reading_;             ///< per group of sensors: its first row in `newest_`

@@ -35,7 +35,7 @@ std::uint32_t Lockstep::row_of(const base::ReadingBlock& reading) const {
 }
 
 void Lockstep::grant(Process& process) {
-  for (const std::uint32_t mover : process.movers) since_[mover] = process.answered;
+  for (const std::uint32_t mover : process.movers) since_[mover] = std::exchange(told_[mover], tick_);
   process.answered = tick_;
   process.step.reset();
   process.commands = 0;

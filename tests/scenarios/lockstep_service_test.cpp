@@ -317,38 +317,39 @@ TEST(LockstepService, WhoLeavesIsNotWaitedFor) {
 /// Four processes that say anything at any time: the farm goes on, and then serves one that keeps to the rules.
 TEST(LockstepService, NonsenseStopsNothing) {
   Fixture fixture(3, 1, 1.0);
-  std::mt19937 random(7);  // NOLINT: the same packets every time
+  std::mt19937 generator(7);  // NOLINT: the same packets every time
+  const auto random = [&](std::uint32_t end) { return static_cast<std::uint32_t>(generator()) % end; };
   std::vector<std::unique_ptr<Driver>> drivers;
   for (std::uint32_t robot : {1u, 2u, 3u, 1u})
     drivers.push_back(std::make_unique<Driver>(fixture.port(), std::vector{robot}));
   base::Bytes rows;
   for (int i = 0; i < 20'000; ++i) {
-    Driver& driver = *drivers[random() % drivers.size()];
-    const std::uint32_t robot = random() % 4 + 1;
-    const std::uint64_t tick = fixture.tick() + random() % 3 - 1;
+    Driver& driver = *drivers[random(4)];
+    const std::uint32_t robot = random(4) + 1;
+    const std::uint64_t tick = fixture.tick() + random(3) - 1;
     rows.clear();
     netio::add_row({robot, {0.1, 0.0, 1.0}}, rows);
-    switch (random() % 6) {
+    switch (random(6)) {
       case 0:
-        driver.send(netio::Subscribe{random()}, robot, random() % 8);
+        driver.send(netio::Subscribe{random(~0u)}, robot, random(8));
         break;
       case 1:
         driver.send(netio::Command{tick, rows}, robot);
         break;
       case 2:
-        driver.send(netio::Step{tick, random() % 1000 + 1, random() % 3}, robot);
+        driver.send(netio::Step{tick, random(1000) + 1, random(3)}, robot);
         break;
       case 3:
-        driver.send(netio::Fetch{tick, random() % 8, random() % 64 + 1}, robot);
+        driver.send(netio::Fetch{tick, random(8), random(64) + 1}, robot);
         break;
       case 4:
         driver.receive();
         break;
       default:
-        if (random() % 16 == 0) driver.send(netio::Leave{}, robot);
+        if (random(16) == 0) driver.send(netio::Leave{}, robot);
     }
     driver.flush();
-    if (random() % 4 == 0) fixture.service.advance(fixture.now += random() % 200'000'000);
+    if (random(4) == 0) fixture.service.advance(fixture.now += random(200'000'000));
   }
   EXPECT_GT(fixture.tick(), 10u);
   EXPECT_GT(fixture.service.lockstep().counts().refused, 10u);
@@ -358,6 +359,24 @@ TEST(LockstepService, NonsenseStopsNothing) {
     ASSERT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
     driver.step({});
   }
+}
+
+/// What it has not seen is new to a robot that joins while its process waits for others.
+TEST(LockstepService, ARobotThatJoinsLateIsToldEverything) {
+  world::World world = server::room(1.0);
+  const world::Mover first = world.movers[0];
+  scenes::add_mover(world, {0.0, 0.0, 0.0, 0.0}, scenes::rectangle({0.0, 0.0}, 0.3, 0.3)).sensors = first.sensors;
+  Fixture fixture(std::move(world), 2);
+  Driver one(fixture.port(), {1}), other(fixture.port(), {2});
+  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  one.step({}, 2), other.step({});
+  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return other.is_complete(); }));
+  one.send(netio::Subscribe{0}, 3);
+  one.flush();
+  other.step({});
+  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete(); }));
+  EXPECT_EQ(one.datagrams(), 3u) << "two states, and the scan of tick 0 of robot 3 alone";
+  EXPECT_EQ(one.robot(3).readings.at(sensors::kLaser).size(), 91u);
 }
 
 /// Bit 0 of a SUBSCRIBE: the states of all, exact as its own.
