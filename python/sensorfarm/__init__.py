@@ -25,7 +25,7 @@ def _valid(self, type):
     """A new bool array (sensors, elements): the element was measured, and its error bound holds."""
     values = self.readings(type)
     measured = _numpy.isfinite(values) if values.ndim == 2 else _numpy.isfinite(values).all(axis=2)
-    return measured & (self.flags(type) == 0) & _numpy.isfinite(self.times(type))[:, None]
+    return measured & (self.flags(type) == 0)
 
 
 def _png(self):

@@ -34,6 +34,17 @@ class Returns:
         return self.what
 
 
+class Reads:
+    """Fails in a module of Python's own."""
+
+    def __init__(self, robot, settings):
+        pass
+
+    def step(self, input):
+        import json
+        return json.loads("]")
+
+
 class Prints:
     """Prints at the end of the program, and has an error."""
 

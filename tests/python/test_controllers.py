@@ -24,6 +24,12 @@ def run(*arguments):
     return done.returncode, done.stdout, done.stderr
 
 
+def line_of(text):
+    """Number of the line of controllers.py with `text`."""
+    with open(FILE) as file:
+        return 1 + file.read().split(text)[0].count("\n")
+
+
 def simulated(**options):
     sim = sensorfarm.Simulation(CAVE, robots=20, **options)
     for _ in range(19):
@@ -80,9 +86,13 @@ class Program(unittest.TestCase):
 
     def test_exception_ends_the_run(self):
         errors = self.fails("--controller", FILE + ":Divides")
-        line = 1 + open(FILE).read().split("return 1 / (")[0].count("\n")
+        line = line_of("return 1 / (")
         self.assertIn("robot 'roomba8' failed at 0.200 s", errors)
         self.assertIn(f"{FILE}:{line}: ZeroDivisionError: division by zero", errors)
+
+    def test_the_line_is_of_the_controllers_file(self):
+        line = line_of("return json.loads")
+        self.assertIn(f"{FILE}:{line}: json.decoder.JSONDecodeError", self.fails("--controller", FILE + ":Reads"))
 
     def test_return_values(self):
         for what, said in (("none", "None"), ("two", "(0, 0)"), ("text", "'abc'"), ("nan", "nan")):
@@ -166,6 +176,23 @@ class InProcess(unittest.TestCase):
         self.assertEqual(looks.robot.sensors[0].columns, ["range_m"])
         with self.assertRaisesRegex(ValueError, "__init__ only"):
             looks.settings.number("late", 1)
+
+    def test_done(self):
+        class Ends:
+            def __init__(self, robot, settings):
+                self.calls, self.row = 0, robot.row
+
+            def step(self, input):
+                self.calls += 1
+                return 0.1, 0, 0
+
+            def done(self):
+                return self.calls > self.row
+
+        sim = sensorfarm.Simulation(CAVE, robots=4, controller=Ends)
+        for expected in ([1, 0, 0, 0], [1, 1, 0, 0], [1, 1, 1, 0]):
+            self.assertEqual(sim.done.tolist(), [bool(e) for e in expected])
+            sim.step()
 
     def test_calls_run_in_threads_of_the_farm(self):
         """Two calls wait for each other, so each thread must let go of the interpreter."""
