@@ -20,7 +20,7 @@ import sensorfarm.gym
 FLOOR = 0.2  # [m] height of a floor
 WIDTH = 1.3  # [m] of the corridor
 HIDDEN = 8
-FAR = 0.04  # [m] per step: 80 % of what a robot can drive
+FAR = 0.04  # [m] per step round the ring; a robot drives 0.05 m
 
 
 def radius(angle):
@@ -63,7 +63,7 @@ def corridor(floors, sides=120):
 
 
 class Rounds(sensorfarm.gym.Task):
-    """Reward: metres along the corridor's middle."""
+    """Reward: metres round the ring, the angle times the radius of the corridor's middle."""
 
     def begin(self):
         super().begin()
@@ -143,13 +143,12 @@ def draw(curve, file):
     for metres in numpy.arange(low, top + 1, 5):
         parts.append(f'<path d="M{margin} {y(metres):.1f}H{width - margin}" stroke="#ddd"/>'
                      f'<text x="{margin - 8}" y="{y(metres) + 4:.1f}" text-anchor="end">{metres:.0f}</text>')
-    for generation in range(0, len(curve) + 1, 10):
-        at = x[max(0, generation - 1)]
-        parts.append(f'<text x="{at:.1f}" y="{height - margin + 20}" text-anchor="middle">{max(1, generation)}</text>')
+    for generation in range(0, len(curve), max(1, len(curve) // 10)):
+        parts.append(f'<text x="{x[generation]:.1f}" y="{height - margin + 20}" text-anchor="middle">{generation + 1}</text>')
     band = points(numpy.concatenate([x, x[::-1]]), y(numpy.concatenate([curve[:, 0], curve[::-1, 2]])))
     parts += [f'<polygon points="{band}" fill="#0072b2" opacity="0.18"/>',
               f'<polyline points="{points(x, y(curve[:, 1]))}" fill="none" stroke="#0072b2" stroke-width="2"/>',
-              f'<text x="{margin}" y="28" font-size="16">Metres along the corridor until the first contact: mean of all '
+              f'<text x="{margin}" y="28" font-size="16">Metres round the ring until the first contact: mean of all '
               'candidates, best and worst</text>',
               f'<text x="{width / 2}" y="{height - 12}" text-anchor="middle">generation</text></svg>']
     with open(file, "w") as out:

@@ -10,9 +10,8 @@ Gymnasium is not needed. Where it can be imported, VectorEnv is one of its vecto
 
 import numpy
 
-from . import Simulation
 from .spaces import batched
-from .task import Task
+from .task import Task, simulation
 
 try:
     import gymnasium
@@ -31,7 +30,7 @@ class VectorEnv(_Base):
     An episode ends where `Task.terminated` says so, or is truncated after `max_steps`. In the step after that its action
     is ignored, its reward is 0 and its robot stands at a free start (autoreset in the next step). Other robots go on.
 
-    world: a world file. num_envs: robots of all worlds together; None: the world's own robots. worlds: number of
+    world: a world file, or a name for the world that `text` is. num_envs: robots of all worlds together; None: the world's own robots. worlds: number of
     simulations, with seeds that follow each other. task: a subclass of Task. Further options are those of Simulation.
     """
 
@@ -43,14 +42,14 @@ class VectorEnv(_Base):
     _np_random_seed = None
 
     def __init__(self, world="worlds/cave.world", num_envs=16, worlds=1, sensor="laser", max_steps=1000, task=Task,
-                 seed=1, render_mode=None, **options):
+                 seed=1, render_mode=None, text=None, **options):
         if render_mode is not None:
             raise ValueError(f"render_mode is {render_mode!r}; expected None: show `simulations[0]` instead")
         if worlds < 1 or max_steps < 1 or (num_envs is not None and (num_envs < 1 or num_envs % worlds)):
             raise ValueError(f"num_envs = {num_envs}, worlds = {worlds}, max_steps = {max_steps}; expected positive "
                              "numbers, and as many robots in each world")
         robots = 0 if num_envs is None else num_envs // worlds
-        self.simulations = [Simulation(world, robots=robots, seed=seed + k, **options) for k in range(worlds)]
+        self.simulations = [simulation(world, text, robots=robots, seed=seed + k, **options) for k in range(worlds)]
         self.tasks = [task(sim, sensor) for sim in self.simulations]
         sizes = [len(one) for one in self.tasks]
         ends = numpy.cumsum(sizes)

@@ -11,8 +11,7 @@ PettingZoo is not needed. Where it can be imported, ParallelEnv is one of its en
 
 import numpy
 
-from . import Simulation
-from .task import Task
+from .task import Task, simulation
 
 try:
     from pettingzoo import ParallelEnv as _Base
@@ -27,8 +26,9 @@ class ParallelEnv(_Base):
     metadata = {"name": "sensorfarm_drive_v0", "render_modes": [], "is_parallelizable": True}
     render_mode = None
 
-    def __init__(self, world="worlds/cave.world", robots=0, sensor="laser", max_steps=1000, task=Task, seed=1, **options):
-        self.simulation = Simulation(world, robots=robots, seed=seed, **options)
+    def __init__(self, world="worlds/cave.world", robots=0, sensor="laser", max_steps=1000, task=Task, seed=1, text=None,
+                 **options):
+        self.simulation = simulation(world, text, robots=robots, seed=seed, **options)
         self.task = task(self.simulation, sensor)
         self.possible_agents = list(self.task.names)
         self.agents = []

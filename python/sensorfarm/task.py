@@ -2,10 +2,15 @@
 
 import numpy
 
-from . import Error
+from . import Error, Simulation
 from .spaces import Box
 
 _STANDS_APART = 1.05  # of the sum of two radii
+
+
+def simulation(world, text, **options):
+    """That of a world file, or of a world's text, which `world` then names."""
+    return Simulation(world, **options) if text is None else Simulation.from_text(text, world, **options)
 
 
 class Task:
