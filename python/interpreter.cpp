@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Python of an active virtual environment, else the one that the plug-in was built with: its modules are found.
+/// Python of an active virtual environment of this version, else the one that the plug-in was built with: its modules
+/// are found.
 std::string interpreter_file() {
   const char* const environment = std::getenv("VIRTUAL_ENV");
   std::error_code ignored;

@@ -26,7 +26,8 @@ class Task:
         self.rows = owners.astype(int)
         if len(set(counts)) != 1:
             raise Error(f"robots have {min(counts)} to {max(counts)} sensors of type '{sensor}'; expected the same number")
-        robots = [sim.robots[row] for row in self.rows]
+        robots = sim.robots
+        robots = [robots[row] for row in self.rows]
         self.names = [robot.name for robot in robots]
         self.limits = numpy.array([[s.limit for s in robot.sensors if s.type == sensor] for robot in robots])
         self.speeds = numpy.array([[robot.max_forward, robot.max_turn] for robot in robots])  # [m/s], [rad/s]

@@ -3,9 +3,11 @@
 import json
 import os
 import subprocess
+import sys
 import tempfile
 import threading
 import unittest
+import venv
 
 import numpy
 import sensorfarm
@@ -125,6 +127,27 @@ class Program(unittest.TestCase):
         code, out, errors = run("--controller", FILE + ":Prints")
         self.assertEqual(code, 0, errors)
         self.assertTrue(out.endswith("farewell\n"), out[-200:])
+
+    def test_virtual_environment(self):
+        """Modules of an active environment of this version are found; one of another version is left alone."""
+        with tempfile.TemporaryDirectory() as folder:
+            own = os.path.join(folder, "own")
+            venv.create(own, system_site_packages=True, with_pip=False, symlinks=True)
+            version = "python%d.%d" % sys.version_info[:2]
+            with open(os.path.join(own, "lib", version, "site-packages", "only_here.py"), "w") as out:
+                out.write("speed = 0.25\n")
+            file = os.path.join(folder, "uses.py")
+            with open(file, "w") as out:
+                out.write("import only_here\nclass Uses:\n  def __init__(self, robot, settings): pass\n"
+                          "  def step(self, input): return only_here.speed, 0, 0\n")
+            environment = dict(os.environ, VIRTUAL_ENV=own)
+            done = subprocess.run([PROGRAM, "run", CAVE, "--duration", "1", "--controller", file], env=environment,
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            environment["VIRTUAL_ENV"] = folder
+            done = subprocess.run([PROGRAM, "run", CAVE, "--duration", "1", "--controller", file], env=environment,
+                                  capture_output=True, text=True)
+            self.assertIn("No module named 'only_here'", done.stderr)
 
     def test_scenario(self):
         with tempfile.TemporaryDirectory() as folder:

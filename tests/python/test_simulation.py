@@ -162,6 +162,19 @@ class Steps(unittest.TestCase):
         numpy.testing.assert_allclose(sim.poses[0, 3], 0.06, atol=1e-12)
         self.assertEqual((sim.tick, round(sim.time, 9)), (2, 0.2))
 
+    def test_twists_of_other_layouts(self):
+        """Integers, columns first, a part of a wider array: all are the same twists."""
+        hashes = set()
+        twists = numpy.array([[0, 0, 1], [1, 0, 0]])
+        wide = numpy.zeros((2, 6))
+        wide[:, ::2] = twists
+        for given in (twists, twists.astype(float), numpy.asfortranarray(twists, float), wide[:, ::2], twists.tolist()):
+            sim = room()
+            sim.step(given)
+            hashes.add(sim.hash)
+            numpy.testing.assert_allclose(sim.poses[0, 3], 0.1, atol=1e-9)
+        self.assertEqual(len(hashes), 1)
+
     def test_same_seed_same_hash(self):
         hashes = []
         for seed in (1, 1, 2):
