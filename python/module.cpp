@@ -90,6 +90,8 @@ Options options_of(Keywords& given) {
   given.read("controller", controller), given.read_settings(options.settings);
   given.read("record", options.record), given.read("record_readings", options.record_readings);
   options.controller = controller_name(controller);
+  if (options.controller.empty() && !options.settings.empty())
+    throw py::value_error("'settings' are given without a controller");
   return options;
 }
 
@@ -110,6 +112,9 @@ std::string controller_name(py::handle controller) {
   static std::map<std::string, int> uses;
   const auto known = names.find(controller.ptr());
   if (known != names.end()) return known->second;
+  if (!py::hasattr(controller, "step"))
+    throw py::type_error("'" + std::string(py::str(controller.attr("__name__"))) +
+                         "' is no controller: it has no method step(self, input)");
   ControllerEntry entry = entry_of(controller);
   entry.name = std::string(py::str(controller.attr("__module__"))) + "." + entry.name;
   if (const int number = ++uses[entry.name]; number > 1) entry.name += "#" + std::to_string(number);

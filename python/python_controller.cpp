@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 
@@ -21,12 +22,24 @@ auto in_python(const std::string& file, Call&& call) {
   }
 }
 
-Twist twist_of(const py::object& result, const std::string& file) {
-  py::detail::make_caster<Twist> twist;
-  if (!twist.load(result, true))
-    throw std::runtime_error(file + ": step() returned " + py::repr(result).cast<std::string>() +
-                             "; expected three numbers (forward, left, turn) in m/s, m/s and rad/s");
-  return static_cast<Twist&>(twist);
+/// One line, whatever the text.
+std::string text_of(py::handle text) {
+  std::string line = py::bytes(py::str(text).attr("encode")("utf-8", "backslashreplace"));
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return line;
+}
+
+constexpr const char* expected_of(const Twist&) { return "three numbers (forward, left, turn) in m/s, m/s and rad/s"; }
+constexpr const char* expected_of(bool) { return "True or False"; }
+constexpr const char* expected_of(double) { return "a number"; }
+
+/// @param from with its file, such as "mine.py: step() returned "
+template <class Value>
+Value value_of(const py::object& given, const std::string& from) {
+  py::detail::make_caster<Value> value;
+  if (!value.load(given, true))
+    throw std::runtime_error(from + text_of(py::repr(given)) + "; expected " + expected_of(Value{}));
+  return py::detail::cast_op<Value&>(value);
 }
 
 class PythonController final : public Controller {
@@ -49,21 +62,25 @@ class PythonController final : public Controller {
   }
 
   Twist step(const Input& input) override {
-    return in_python(file_, [&] { return twist_of(object_.attr("step")(input_of(input, robot_)), file_); });
+    return in_python(file_, [&] { return returned<Twist>("step", input_of(input, robot_)); });
   }
   double radio_range() const override {
-    return in_python(file_, [&] {
-      return py::hasattr(object_, "radio_range") ? object_.attr("radio_range")().cast<double>() : 0.0;
-    });
+    return in_python(file_,
+                     [&] { return py::hasattr(object_, "radio_range") ? returned<double>("radio_range") : 0.0; });
   }
   bool done() const override {
-    return has_done_ && in_python(file_, [&] { return object_.attr("done")().cast<bool>(); });
+    return has_done_ && in_python(file_, [&] { return returned<bool>("done"); });
   }
   double error() const override {
-    return has_error_ ? in_python(file_, [&] { return object_.attr("error")().cast<double>(); }) : Controller::error();
+    return has_error_ ? in_python(file_, [&] { return returned<double>("error"); }) : Controller::error();
   }
 
  private:
+  template <class Value, class... Arguments>
+  Value returned(const char* method, const Arguments&... arguments) const {
+    return value_of<Value>(object_.attr(method)(arguments...), file_ + ": " + method + "() returned ");
+  }
+
   std::string file_;
   Robot robot_;
   py::object object_;
@@ -77,13 +94,9 @@ std::string file_of(py::handle type) {
 
 template <class Value>
 Value attribute(py::handle type, const char* name, Value fallback) {
-  try {
-    return py::hasattr(type, name) ? type.attr(name).cast<Value>() : fallback;
-  } catch (const py::cast_error&) {
-    throw std::runtime_error(std::string("'") + name + "' of class " + type.attr("__name__").cast<std::string>() +
-                             " is " + py::repr(type.attr(name)).cast<std::string>() +
-                             (std::is_same_v<Value, bool> ? "; expected True or False" : "; expected a number"));
-  }
+  if (!py::hasattr(type, name)) return fallback;
+  return value_of<Value>(type.attr(name),
+                         std::string("'") + name + "' of class " + text_of(type.attr("__name__")) + " is ");
 }
 
 std::string first_line(py::handle text) {
@@ -108,7 +121,7 @@ std::string last_line(py::error_already_set& error, const std::string& file) {
   if (is_syntax && !error.value().attr("filename").is_none())
     place = py::str("{}:{}: ").format(error.value().attr("filename"), error.value().attr("lineno"));
   const py::list lines = traceback.attr("format_exception_only")(error.type(), error.value());
-  return place + py::str(lines[lines.size() - 1].attr("strip")()).cast<std::string>();
+  return place + text_of(lines[lines.size() - 1].attr("strip")());
 }
 
 ControllerEntry entry_of(py::handle type) {

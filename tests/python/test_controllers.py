@@ -165,6 +165,29 @@ class InProcess(unittest.TestCase):
         with self.assertRaisesRegex(sensorfarm.Error, r"'roomba8' failed at 0.200 s: .*controllers.py:\d+: ZeroDivisionError"):
             simulated(controller=Divides)
 
+    def test_faults_of_classes(self):
+        """Answers of another type, texts that are no UTF-8, lines that are several, and classes that drive nothing."""
+        def made(**members):
+            return type("Made", (), {"__init__": lambda self, robot, settings: None, "step": lambda self, input: (0, 0, 0),
+                                     **members})
+
+        def fail(self, input):
+            raise ValueError("\udcff in\ntwo lines")
+
+        def leave(self, input):
+            raise SystemExit(3)
+        for members, said in ((dict(done=lambda self: "x"), r"done\(\) returned 'x'; expected True or False"),
+                              (dict(radio_range=lambda self: "far"), r"radio_range\(\) returned 'far'; expected a number"),
+                              (dict(step=fail), r"ValueError: \\udcff in two lines$"),
+                              (dict(step=leave), "SystemExit: 3"),
+                              (dict(step=lambda self, input: "\udcff"), r"returned '\\udcff'; expected three numbers")):
+            with self.assertRaisesRegex(sensorfarm.Error, said):
+                simulated(controller=made(**members))
+        with self.assertRaisesRegex(TypeError, "'int' is no controller"):
+            simulated(controller=int)
+        with self.assertRaisesRegex(ValueError, "without a controller"):
+            simulated(settings={"near": 1})
+
     def test_inputs(self):
         seen = {}
 
