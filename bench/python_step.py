@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Costs of Python: a step from Python beside one from C++, and the farm beside ray casting in NumPy.
 
-    PYTHONPATH=build/bench/python bench/python_step.py --program build/bench/library_step
+    script/build bench library_step python_package
+    PYTHONPATH=build/bench/python /usr/bin/python3 bench/python_step.py --program build/bench/library_step
 
 Methods run in turns; hashes and ranges of both are compared.
 """

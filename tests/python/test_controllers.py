@@ -42,8 +42,9 @@ def simulated(**options):
 class OneHash(unittest.TestCase):
     """A controller drives alike wherever it runs."""
 
-    def setUp(self):
-        self.expected = json.loads(run("--controller", os.environ["SENSORFARM_CAREFUL"] + ":careful", "--json")[1])["hash"]
+    @classmethod
+    def setUpClass(cls):
+        cls.expected = json.loads(run("--controller", os.environ["SENSORFARM_CAREFUL"] + ":careful", "--json")[1])["hash"]
 
     def test_by_step(self):
         sim = sensorfarm.Simulation(CAVE, robots=20)

@@ -1,9 +1,13 @@
 """The worked example runs, and its parts do what they say."""
 
+import contextlib
+import io
 import os
+import re
 import subprocess
 import sys
 import tempfile
+import textwrap
 import unittest
 
 import numpy
@@ -43,6 +47,18 @@ class Corridor(unittest.TestCase):
         _, rewards, terminations, *_ = env.step(numpy.tile([1.0, 0.0], (6, 1)))
         self.assertFalse(terminations.any())
         self.assertTrue(((rewards[2:] > 0.03) & (rewards[2:] < 0.0501)).all(), rewards)  # 0.05 m, across in part
+
+
+class Documentation(unittest.TestCase):
+    def test_blocks_run(self):
+        """Those of docs/python.md, and the one of the package's own description."""
+        with open("docs/python.md") as page:
+            blocks = re.findall(r"```python\n(.*?)```", page.read(), re.S)
+        self.assertEqual(len(blocks), 3)
+        blocks.append(textwrap.dedent(sensorfarm.__doc__.split("\n\n", 1)[1]))
+        for block in blocks:
+            with contextlib.redirect_stdout(io.StringIO()):
+                exec(block, {})
 
 
 if __name__ == "__main__":
