@@ -39,6 +39,7 @@ TEST(Light, APlanIsRunBesideAFarm) {
   ASSERT_TRUE(farm.says("Ctrl-C ends it")) << farm.err();
   Program robot({"robot", our_world("simville/simville.world"), "--name", "roomba0", "--controller", "route", "--set",
                  "tour=true", "--stop-after", "0", "--port", port, "--laser-port", lasers, "--json"});
+  ASSERT_TRUE(robot.says("Ctrl-C ends it")) << robot.err();
   const Outcome light = run_program(
       {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--rate", "20", "--duration", "2"});
   EXPECT_EQ(light.code, 0) << light.err;
