@@ -1,5 +1,5 @@
 # What `cmake --install` puts in place: the program, its plug-ins, the public headers and library with a CMake package, the
-# worlds, and the GLSL that kernels of own sensors include. And a Debian package of all that (cpack in the build folder).
+# worlds, examples, and the GLSL that kernels of own sensors include. And a Debian package of all that (cpack in the build folder).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -18,7 +18,7 @@ install(TARGETS sensorfarm_text_renderer sensorfarm_opencv LIBRARY DESTINATION $
 install(TARGETS sensorfarm_library sensorfarm_headers EXPORT sensorfarm LIBRARY NAMELINK_SKIP)
 install(TARGETS sensorfarm_library LIBRARY NAMELINK_ONLY)
 install(DIRECTORY sensorfarm TYPE INCLUDE FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY worlds experiments DESTINATION ${SENSORFARM_DATA})
+install(DIRECTORY worlds experiments examples DESTINATION ${SENSORFARM_DATA} PATTERN __pycache__ EXCLUDE)
 install(FILES shaders/lib/own_sensor.glsl DESTINATION ${SENSORFARM_DATA}/shaders/shaders/lib)
 install(FILES sensors/own_sensor_records.h DESTINATION ${SENSORFARM_DATA}/shaders/sensors)
 install(FILES ${CMAKE_BINARY_DIR}/generated/shaders/sensors/own_sensor_records.glsl DESTINATION ${SENSORFARM_DATA}/shaders/shaders/sensors)
