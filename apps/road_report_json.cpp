@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Names are the bytes of a file: invalid UTF-8 is replaced.
-std::string print(const Json& json, const std::vector<world::Warning>& warnings) {
+std::string with_road_warnings(const Json& json, const std::vector<world::Warning>& warnings) {
   return with_warnings(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", warnings);
 }
 
@@ -24,7 +24,7 @@ std::string json_of(const RoadReport& facts) {
   const world::Extent& e = facts.network.extent;
   double length = 0.0;
   for (const world::RoadLane& lane : facts.network.lanes) length += length_of(lane);
-  return print(
+  return with_road_warnings(
       {{"network", facts.network.name},
        {"roads",
         {{"segments", c.segments},
@@ -48,12 +48,12 @@ std::string json_of(const MissionReport& facts) {
   for (const auto& checkpoint : facts.mission.checkpoints) checkpoints.push_back(checkpoint.id);
   for (const world::SpeedLimit& limit : facts.mission.speed_limits)
     limits.push_back({{"id", limit.id}, {"least_mph", limit.least_mph}, {"most_mph", limit.most_mph}});
-  return print({{"mission", facts.mission.name},
-                {"rndf", facts.mission.rndf_name},
-                {"checked_against", facts.network.empty() ? Json() : Json(facts.network)},
-                {"checkpoints", checkpoints},
-                {"speed_limits", limits}},
-               facts.warnings);
+  return with_road_warnings({{"mission", facts.mission.name},
+                             {"rndf", facts.mission.rndf_name},
+                             {"checked_against", facts.network.empty() ? Json() : Json(facts.network)},
+                             {"checkpoints", checkpoints},
+                             {"speed_limits", limits}},
+                            facts.warnings);
 }
 
 }  // namespace sf::apps
