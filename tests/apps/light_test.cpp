@@ -10,15 +10,35 @@
 
 namespace sf {
 
+namespace {
+
+/// Ports of SimVille's sensor packets that no other test has, for `serve` and `robot`.
+Words town_ports() {
+  Words words;
+  for (const std::string type : {"laser", "laneedge", "magnetometer", "encoder", "gyro", "gps"}) {
+    words.push_back("--" + type + "-port");
+    words.push_back(std::to_string(free_ports(64)));
+  }
+  return words;
+}
+
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+}  // namespace
+
 TEST(Light, ARobotHearsIt) {
   const std::string world = our_world("simville/simville.world");
-  const std::string lasers = std::to_string(free_ports(48)), spat = std::to_string(free_ports(1));
+  const std::string spat = std::to_string(free_ports(1));
   Program light({"light", world, "--send", "127.0.0.1", "--port", spat, "--set", "light1=flashing red"});
   ASSERT_TRUE(light.says("7 lights of 2 intersections to 127.0.0.1:" + spat + " at 10 Hz"));
   // There is no farm: the robot has no readings, and hears the lights all the same.
   const Outcome robot =
-      run_program({"robot", world, "--name", "roomba0", "--controller", "route", "--set", "tour=true", "--stop-after",
-                   "0", "--duration", "2.5", "--spat", spat, "--laser-port", lasers, "--json"});
+      run_program(with({"robot", world, "--name", "roomba0", "--controller", "route", "--set", "tour=true",
+                        "--stop-after", "0", "--duration", "2.5", "--spat", spat, "--json"},
+                       town_ports()));
   const Json facts(robot.out);
   EXPECT_GE(facts.number("/spat/messages"), 2.0) << robot.err;
   EXPECT_EQ(facts.number("/spat/invalid"), 0.0);
@@ -34,11 +54,13 @@ TEST(Light, EndsAfterItsDuration) {
 
 /// Two seconds of a plan by detectors, beside a farm whose robot stands where one is.
 TEST(Light, APlanIsRunBesideAFarm) {
-  const std::string lasers = std::to_string(free_ports(48)), port = std::to_string(free_ports(1));
-  Program farm({"serve", our_world("simville/simville.world"), "--port", port, "--laser-port", lasers, "--json"});
+  const std::string port = std::to_string(free_ports(1));
+  const Words ports = town_ports();
+  Program farm(with({"serve", our_world("simville/simville.world"), "--port", port, "--json"}, ports));
   ASSERT_TRUE(farm.says("Ctrl-C ends it")) << farm.err();
-  Program robot({"robot", our_world("simville/simville.world"), "--name", "roomba0", "--controller", "route", "--set",
-                 "tour=true", "--stop-after", "0", "--port", port, "--laser-port", lasers, "--json"});
+  Program robot(with({"robot", our_world("simville/simville.world"), "--name", "roomba0", "--controller", "route",
+                      "--set", "tour=true", "--stop-after", "0", "--port", port, "--json"},
+                     ports));
   ASSERT_TRUE(robot.says("Ctrl-C ends it")) << robot.err();
   const Outcome light = run_program(
       {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--rate", "20", "--duration", "2"});
