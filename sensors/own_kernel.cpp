@@ -52,8 +52,9 @@ OwnKernel::OwnKernel(const SensorContext& context, const OwnType& type, std::siz
       value_table_(context.device, "values", gpu::Role::download, gpu::Texel::u32,
                    2 * columns_ * kGroup * gpu::most_groups_for(sensors * elements, kGroup)),
       counts_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4) {
+  const gpu::KernelInterface interface = gpu::interface_of(type.spirv);  // names in `tables` are views of its own
   std::vector<gpu::TableBinding> tables;
-  for (const gpu::KernelTable& table : gpu::interface_of(type.spirv).tables)
+  for (const gpu::KernelTable& table : interface.tables)
     tables.push_back({table.name, table.name == "samples"    ? &sample_table_
                                   : table.name == "surfaces" ? &surface_table_
                                                              : &value_table_});
