@@ -1,16 +1,15 @@
 #pragma once
-// What must hold for any input of a fuzz target.
+// The check of fuzz targets.
 
 #include <cstdio>
 #include <cstdlib>
-#include <source_location>
 
 namespace sf {
 
-/// Ends the target with file and line where it does not hold.
-inline void require(bool holds, std::source_location at = std::source_location::current()) {
-  if (holds) return;
-  std::fprintf(stderr, "%s:%u: does not hold\n", at.file_name(), static_cast<unsigned>(at.line()));
+/// Ends the fuzzer, which keeps the input, where `condition` is false. clang 14 has no std::source_location.
+inline void require(bool condition, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+  if (condition) return;
+  std::fprintf(stderr, "%s:%d: does not hold\n", file, line);
   std::abort();
 }
 
