@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "tests/refusal.h"
 
 namespace sf::control {
 namespace {
@@ -39,21 +40,6 @@ std::unique_ptr<Controller> scripted(const world::World& world, const std::strin
          [decide](const sensorfarm::Robot&, sensorfarm::Settings&) { return std::make_unique<Scripted>(decide); }},
         "test");
   return make_controller({world}, {.name = name}).controller;
-}
-
-/// The message of the error that `act` ends with; empty without one.
-template <class Act>
-std::string refusal_of(Act&& act) {
-  try {
-    act();
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-void expect_in(const std::string& part, const std::string& text) {
-  EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
 }
 
 TEST(OwnController, ComesFromAPluginWithItsRateAndSettings) {

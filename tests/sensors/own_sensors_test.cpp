@@ -13,6 +13,7 @@
 #include "sensors/laser.h"
 #include "shaders/test_openness.comp.h"
 #include "tests/device.h"
+#include "tests/refusal.h"
 #include "world/stage/stage.h"
 
 namespace sf::sensors {
@@ -61,20 +62,6 @@ model( name "low" pose [0 2 0 0] size [4 0.1 0.02] )
 position( name "r0" size [0.3 0.3 0.1]
 )" + sensor + " )",
                             {.sensors = world_file_words()});
-}
-
-template <class Act>
-std::string refusal_of(Act&& act) {
-  try {
-    act();
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-void expect_in(const std::string& part, const std::string& text) {
-  EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
 }
 
 std::vector<base::Report> standing(const world::World& world) {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "tests/vision/cameras.h"
+#include "tests/vision/images_in_memory.h"
 #include "vision/calibration.h"
 #include "vision/rendered_fleet.h"
 #include "vision/renderer.h"
@@ -75,21 +76,6 @@ Scene board_with_tags() {
   return scene;
 }
 
-/// Images in memory.
-class Album : public ImageSource {
- public:
-  explicit Album(std::vector<Image> images) : images_(std::move(images)) {}
-  bool next(Image& out) override {
-    if (at_ == images_.size()) return false;
-    out = images_[at_++];
-    return true;
-  }
-
- private:
-  std::vector<Image> images_;
-  std::size_t at_ = 0;
-};
-
 /// A source that claims a number of images, and has none.
 class Claim : public ImageSource {
  public:
@@ -132,7 +118,7 @@ TEST(Calibration, FindsTheIntrinsicsOfTheImages) {
   images.push_back(grey_image(640, 480));  // without a board
   images.emplace_back();                   // a file that cannot be read
   std::vector<std::size_t> progress;
-  Album album(images);
+  ImagesInMemory album(images);
   const Calibration c = calibrate(album, "album", kBoard, [&](std::size_t done) { progress.push_back(done); });
   EXPECT_LT(c.residual, 0.1);
   EXPECT_GT(c.residual, 0.001);
@@ -168,7 +154,7 @@ TEST(Calibration, FindsTheIntrinsicsByPartsOfABoardWithTags) {
   const auto seen = opencv().find_board(images[0], kBoardWithTags);
   EXPECT_GT(seen.size(), 6u);
   EXPECT_LT(seen.size(), 49u) << "the board is larger than the picture";
-  Album album(images);
+  ImagesInMemory album(images);
   const Calibration c = calibrate(album, "album", kBoardWithTags, {});
   EXPECT_LT(c.residual, 0.15);
   EXPECT_GT(c.residual, 0.001);
@@ -195,21 +181,22 @@ TEST(Calibration, RefusesABoardWithMoreTagsThanItsDictionary) {
 }
 
 TEST(Calibration, NamesWhatIsMissing) {
-  EXPECT_NE(
-      error_of(Album(std::vector<Image>(4, grey_image(64, 48)))).find("found in 0 of 4 images; expected at least 3"),
-      std::string::npos);
-  EXPECT_NE(error_of(Album({})).find("found in 0 of 0 images"), std::string::npos);
-  EXPECT_EQ(error_of(Album({grey_image(64, 48), grey_image(48, 64)})),
+  EXPECT_NE(error_of(ImagesInMemory(std::vector<Image>(4, grey_image(64, 48))))
+                .find("found in 0 of 4 images; expected at least 3"),
+            std::string::npos);
+  EXPECT_NE(error_of(ImagesInMemory({})).find("found in 0 of 0 images"), std::string::npos);
+  EXPECT_EQ(error_of(ImagesInMemory({grey_image(64, 48), grey_image(48, 64)})),
             "album: image 2 is 48 x 64, and the first is 64 x 48; expected images of one camera");
 }
 
 TEST(Calibration, BoundsItsWork) {
   const char* const kMany = "album: has more than 200 images; expected fewer, all different";
-  EXPECT_EQ(error_of(Claim(201)), kMany);                                            // known before any is read
-  EXPECT_EQ(error_of(Album(std::vector<Image>(201, Image{16, 16, 1, {}}))), kMany);  // as of a video
+  EXPECT_EQ(error_of(Claim(201)), kMany);  // known before any is read
+  EXPECT_EQ(error_of(ImagesInMemory(std::vector<Image>(201, Image{16, 16, 1, {}}))), kMany);  // as of a video
   Image large{1 << 20, 1 << 11, 1, {0}};  // 2^31 pixels, which are never looked at
   large.width += 1;
-  EXPECT_EQ(error_of(Album({large})), "album: has images of more than 2048 Mpx in all; expected fewer or smaller ones");
+  EXPECT_EQ(error_of(ImagesInMemory({large})),
+            "album: has images of more than 2048 Mpx in all; expected fewer or smaller ones");
 }
 
 TEST(Calibration, SearchesImagesOfTagsWithoutStalling) {

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "tests/vision/cameras.h"
+#include "tests/vision/images_in_memory.h"
 #include "vision/renderer.h"
 #include "vision/testbed_patches.h"
 
@@ -38,22 +39,7 @@ Testbed survey(bool headings) {
   return testbed;
 }
 
-/// Images in memory.
-class Pictures : public ImageSource {
- public:
-  explicit Pictures(std::vector<Image> images) : images_(std::move(images)) {}
-  bool next(Image& out) override {
-    if (at_ == images_.size()) return false;
-    out = images_[at_++];
-    return true;
-  }
-
- private:
-  std::vector<Image> images_;
-  std::size_t at_ = 0;
-};
-
-Pictures pictures(const Testbed& testbed, std::size_t tags = 5) {
+ImagesInMemory pictures(const Testbed& testbed, std::size_t tags = 5) {
   Scene scene;
   for (const auto& [id, tag] : testbed.surveyed)
     if (id <= tags)
@@ -63,7 +49,7 @@ Pictures pictures(const Testbed& testbed, std::size_t tags = 5) {
   Renderer renderer(truth(), Imaging{}, 1);
   for (std::uint32_t i = 0; i < images.size(); ++i) renderer.render(scene, 0.0, i, images[i]);
   images.emplace_back();  // a file that cannot be read
-  return Pictures(std::move(images));
+  return ImagesInMemory(std::move(images));
 }
 
 Camera unplaced() {
@@ -73,7 +59,7 @@ Camera unplaced() {
   return camera;
 }
 
-std::string refusal(const Testbed& testbed, Pictures images) {
+std::string refusal(const Testbed& testbed, ImagesInMemory images) {
   try {
     place_camera(testbed, unplaced(), images, "album");
   } catch (const base::InputError& error) {
@@ -87,7 +73,7 @@ std::string refusal(const Testbed& testbed, Pictures images) {
 TEST(Placement, FindsTheCameraBySurveyedTags) {
   for (const bool headings : {true, false}) {
     const Testbed testbed = survey(headings);
-    Pictures images = pictures(testbed);
+    ImagesInMemory images = pictures(testbed);
     const Placement found = place_camera(testbed, unplaced(), images, "album");
     EXPECT_LT(found.residual, 0.1);
     EXPECT_LT(glm::distance(found.camera.position, truth().position), 0.005);
@@ -102,7 +88,7 @@ TEST(Placement, FindsTheCameraBySurveyedTags) {
 
 TEST(Placement, AWrongPlaceShowsInItsResidual) {
   Testbed testbed = survey(true);
-  Pictures images = pictures(testbed);
+  ImagesInMemory images = pictures(testbed);
   testbed.surveyed[2].position.x += 0.10;
   const Placement found = place_camera(testbed, unplaced(), images, "album");
   EXPECT_GT(found.residual, 3.0);
@@ -115,19 +101,20 @@ TEST(Placement, AWrongPlaceShowsInItsResidual) {
 TEST(Placement, SaysWhatIsMissing) {
   Testbed testbed = survey(false);
   EXPECT_EQ(
-      refusal(testbed, Pictures({})),
+      refusal(testbed, ImagesInMemory({})),
       "album: of the 5 surveyed tags of lab.toml, camera 'distorted' saw 0, with 0 points: too few; expected four "
       "points that are not on one line: four tags, or one whose section [[survey]] has a heading. Not seen: 1, 2, "
       "3, 4, 5");
   EXPECT_NE(refusal(testbed, pictures(testbed, 3)).find("saw 3 (1, 2, 3), with 3 points: too few"), std::string::npos);
-  EXPECT_NE(refusal(testbed, Pictures({Image{64, 48, 1, std::vector<std::uint8_t>(64 * 48, 9)}})).find("is 64 x 48"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(testbed, ImagesInMemory({Image{64, 48, 1, std::vector<std::uint8_t>(64 * 48, 9)}})).find("is 64 x 48"),
+      std::string::npos);
   EXPECT_EQ(refusal(survey(true), pictures(survey(true), 1)), "no error");
   Testbed line = testbed;
   for (auto& [id, tag] : line.surveyed) tag.position = {0.7 * id - 1.5, 0.1 * id, 0.0};
   EXPECT_NE(refusal(line, pictures(line)).find("nearly on one line"), std::string::npos);
   testbed.surveyed.clear();
-  EXPECT_NE(refusal(testbed, Pictures({})).find("lab.toml: has no surveyed tags"), std::string::npos);
+  EXPECT_NE(refusal(testbed, ImagesInMemory({})).find("lab.toml: has no surveyed tags"), std::string::npos);
 }
 
 }  // namespace sf::vision
