@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/installation.h"
+#include "raycast/rasterizer.h"
 #include "scenarios/default_robot.h"
 #include "sensors/sensor_type.h"
 #include "world/free_space.h"
@@ -45,6 +46,11 @@ raycast::CasterChoice caster_of(const std::string& word) {
   if (word == "vulkan") return raycast::CasterChoice::vulkan;
   if (word == "host") return raycast::CasterChoice::host;
   throw base::InputError(fmt::format("there is no caster '{}'; expected auto, vulkan or host", word));
+}
+
+std::string describe_caster(bool software, const std::string& word) {
+  const bool host = raycast::choose_caster(software, caster_of(word)) == raycast::CasterChoice::host;
+  return host ? std::string("host, ") + raycast::vector_instructions() : "Vulkan kernels";
 }
 
 control::ControllerConfig controller_of(const sensorfarm::Options& options) {

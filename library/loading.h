@@ -1,5 +1,5 @@
 #pragma once
-// What a simulation of the public interface is made from.
+// The inputs of a simulation of the public interface.
 
 #include <memory>
 #include <string>
@@ -29,6 +29,9 @@ std::shared_ptr<gpu::Device> shared_device(const std::string& wanted);
 
 /// @throws base::InputError for a word that is no caster
 raycast::CasterChoice caster_of(const std::string& word);
+
+/// As raycast::describe_caster, of the caster that `word` asks for.
+std::string describe_caster(bool software, const std::string& word);
 
 control::ControllerConfig controller_of(const sensorfarm::Options& options);
 

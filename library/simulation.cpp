@@ -13,7 +13,6 @@
 #include "library/errors.h"
 #include "library/loading.h"
 #include "library/reading_table.h"
-#include "raycast/caster_choice.h"
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
@@ -26,8 +25,8 @@ using namespace sf;
 
 namespace {
 
-scenarios::SimulationOptions simulation_options(const Options& options, std::uint64_t seed) {
-  scenarios::SimulationOptions simulation{.seed = seed, .threads = options.threads};
+scenarios::SimulationOptions simulation_options(const Options& options) {
+  scenarios::SimulationOptions simulation{.seed = options.seed, .threads = options.threads};
   simulation.noise = options.noise;
   simulation.caster = library::caster_of(options.caster);
   simulation.actor.controller = library::controller_of(options);
@@ -39,7 +38,6 @@ scenarios::SimulationOptions simulation_options(const Options& options, std::uin
 /// World, simulation and tables of readings, at one address.
 struct Simulation::State {
   State(library::WorldSource source, const Options& given);
-  void begin(std::uint64_t seed);
   void step(std::span<const Twist> commands);
   void put(std::size_t row, const Pose& pose);
   void take(const base::TickRecord& tick);
@@ -65,20 +63,15 @@ struct Simulation::State {
 };
 
 Simulation::State::State(library::WorldSource from, const Options& given)
-    : source(std::move(from)), options(given), device(library::shared_device(given.device)) {
-  begin(options.seed);
-}
-
-void Simulation::State::begin(std::uint64_t seed) {
-  recorder.reset(), tables.clear(), simulation.reset();
-  options.seed = seed;
-  world = library::load(source, options);
-  simulation.emplace(world, *device, simulation_options(options, seed));
+    : source(std::move(from)),
+      options(given),
+      device(library::shared_device(given.device)),
+      world(library::load(source, options)) {
+  simulation.emplace(world, *device, simulation_options(options));
   const sensors::SensorSet& sensor_set = simulation->farm().sensor_set();
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) tables.emplace_back(group, world.interval);
-  robots.clear(), models.clear(), warnings.clear();
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)
-    robots.push_back(control::robot_of({world, row, seed, nullptr, nullptr, &sensor_set}));
+    robots.push_back(control::robot_of({world, row, options.seed, nullptr, nullptr, &sensor_set}));
   for (const world::Model& model : world.models) models.push_back(model.name);
   for (const world::Warning& w : world.warnings)
     warnings.push_back(fmt::format("{}:{}: {}", w.file, w.line, w.message));
@@ -86,9 +79,10 @@ void Simulation::State::begin(std::uint64_t seed) {
   poses.resize(world.movers.size()), velocities.resize(poses.size());
   contacts.resize(poses.size()), done.resize(poses.size());
   if (!options.record.empty())
-    recorder.emplace(options.record, scenarios::run_info(world, sensor_set,
-                                                         {seed, options.record_readings, false,
-                                                          raycast::describe_caster(device->info().software)}));
+    recorder.emplace(options.record,
+                     scenarios::run_info(world, sensor_set,
+                                         {options.seed, options.record_readings, false,
+                                          library::describe_caster(device->info().software, options.caster)}));
   take(simulation->step());
 }
 
@@ -170,7 +164,9 @@ void Simulation::step(std::span<const Twist> commands) {
 
 void Simulation::reset() { reset(state_->options.seed); }
 void Simulation::reset(std::uint64_t seed) {
-  // Views of the old run keep its memory.
+  // Views of the old run keep its memory, but not its recording, whose folder the new one takes.
+  finish_recording();
+  state_->recorder.reset();
   state_ = library::translated([&] {
     Options options = state_->options;
     options.seed = seed;
@@ -207,9 +203,8 @@ std::uint64_t Simulation::hash() const { return state_->simulation->farm().hash(
 
 std::string Simulation::description() const {
   const gpu::DeviceInfo& info = state_->device->info();
-  const auto caster = raycast::choose_caster(info.software, library::caster_of(state_->options.caster));
-  return fmt::format("{}, rays cast by {}", info.name,
-                     caster == raycast::CasterChoice::host ? "the host" : "Vulkan kernels");
+  return fmt::format("{}, rays cast by: {}", info.name,
+                     library::describe_caster(info.software, state_->options.caster));
 }
 
 const std::vector<std::string>& Simulation::warnings() const { return state_->warnings; }

@@ -8,8 +8,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tests/refusal.h"
+
 namespace sensorfarm {
 namespace {
+
+using sf::expect_in, sf::refusal_of;
 
 const std::string kCave = SF_SOURCE_DIR "/worlds/cave.world";
 
@@ -31,20 +35,6 @@ void drive(Simulation& simulation, int ticks) {
 struct Avoid : Controller {
   Twist step(const Input& input) override { return avoid(input.newest("laser")->values); }
 };
-
-template <class Act>
-std::string refusal_of(Act&& act) {
-  try {
-    act();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
-void expect_in(const std::string& part, const std::string& text) {
-  EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
-}
 
 TEST(Library, CommandsAndControllersGiveOneHash) {
   add_controller(
@@ -136,8 +126,8 @@ TEST(Library, PlacesRobots) {
   EXPECT_EQ(simulation.poses()[0].yaw, 1.0);
   simulation.step();
   EXPECT_NEAR(simulation.poses()[0].y, pose.y + 3.0, 1e-12);
-  expect_in("there is no row 2", refusal_of([&] { simulation.put(2, {}); }));
-  expect_in("is not finite", refusal_of([&] { simulation.put(0, {NAN}); }));
+  expect_in("there is no row 2", refusal_of<Error>([&] { simulation.put(2, {}); }));
+  expect_in("is not finite", refusal_of<Error>([&] { simulation.put(0, {NAN}); }));
 }
 
 TEST(Library, BadInputIsRefusedAndChangesNothing) {
@@ -145,20 +135,22 @@ TEST(Library, BadInputIsRefusedAndChangesNothing) {
   std::vector<Twist> commands(2);
   simulation.step(commands);
   const std::uint64_t hash = simulation.hash();
-  expect_in("1 commands for 2 robots", refusal_of([&] { simulation.step(std::span(commands).first(1)); }));
+  expect_in("1 commands for 2 robots", refusal_of<Error>([&] { simulation.step(std::span(commands).first(1)); }));
   commands[1].turn = INFINITY;
-  expect_in("expected finite numbers", refusal_of([&] { simulation.step(commands); }));
-  expect_in("has no sensor of type 'lidar'; expected one of: laser", refusal_of([&] { simulation.readings("lidar"); }));
+  expect_in("expected finite numbers", refusal_of<Error>([&] { simulation.step(commands); }));
+  expect_in("has no sensor of type 'lidar'; expected one of: laser",
+            refusal_of<Error>([&] { simulation.readings("lidar"); }));
   EXPECT_EQ(simulation.hash(), hash);
   EXPECT_EQ(simulation.tick(), 1u);
 }
 
 TEST(Library, ErrorsHaveFileAndLine) {
-  expect_in("nowhere.world: no such file", refusal_of([] { Simulation simulation("nowhere.world"); }));
-  expect_in("mine.world:2: ", refusal_of([] { Simulation::from_text("\nposition( size [1\n", {}, "mine.world"); }));
+  expect_in("nowhere.world: no such file", refusal_of<Error>([] { Simulation simulation("nowhere.world"); }));
+  expect_in("mine.world:2: ",
+            refusal_of<Error>([] { Simulation::from_text("\nposition( size [1\n", {}, "mine.world"); }));
   expect_in("there is no controller 'nobody'",
-            refusal_of([] { Simulation simulation(kCave, {.controller = "nobody"}); }));
-  expect_in("there is no caster 'gpu'", refusal_of([] { Simulation simulation(kCave, {.caster = "gpu"}); }));
+            refusal_of<Error>([] { Simulation simulation(kCave, {.controller = "nobody"}); }));
+  expect_in("there is no caster 'gpu'", refusal_of<Error>([] { Simulation simulation(kCave, {.caster = "gpu"}); }));
   EXPECT_THROW(Simulation(kCave, {.device = "no such device"}), DeviceError);
 }
 
@@ -176,6 +168,10 @@ TEST(Library, Records) {
   drive(simulation, 3);
   simulation.finish_recording();
   EXPECT_GT(std::filesystem::file_size(folder / "run.mcap"), 10'000u);
+  simulation.reset();  // begins the recording anew
+  drive(simulation, 3);
+  simulation.finish_recording();
+  EXPECT_GT(std::filesystem::file_size(folder / "run.mcap"), 10'000u);
   std::filesystem::remove_all(folder);
 }
 
@@ -189,7 +185,7 @@ TEST(Library, AControllerThatFailsEndsTheStepWithTheFirstRobotsName) {
   add_controller({"test-fails", "", 10.0, false, [](const Robot&, Settings&) { return std::make_unique<Fails>(); }});
   Simulation simulation(kCave, {.robots = 40, .threads = 2, .controller = "test-fails"});
   simulation.step();
-  expect_in("of robot 'roomba1' failed at 0.200 s: had enough", refusal_of([&] { simulation.step(); }));
+  expect_in("of robot 'roomba1' failed at 0.200 s: had enough", refusal_of<Error>([&] { simulation.step(); }));
 }
 
 }  // namespace
