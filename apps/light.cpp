@@ -139,7 +139,7 @@ void run(const LightOptions& options, Sender& sender, LightRadio* radio, world::
     }
     sender.send_states(forecasts, base::unix_time() / 1'000'000);
     if (radio != nullptr) radio->send(forecasts, now);
-    // What a process that was stopped missed is not sent late.
+    // After a pause of the process, missed messages are not sent late.
     at = std::max(at + 1.0 / options.rate, base::seconds_since(start));
     keep_pace(start, at);
   }

@@ -25,8 +25,6 @@ Loaded& loaded() {
   return files;
 }
 
-bool ends_with(std::string_view text, std::string_view end) { return text.ends_with(end); }
-
 /// The file and, behind a colon, the controller of "libmine.so:name"; an empty name without one.
 std::pair<std::string, std::string> parts_of(const std::string& name) {
   const std::size_t slash = name.rfind('/');
@@ -35,7 +33,7 @@ std::pair<std::string, std::string> parts_of(const std::string& name) {
   return {name.substr(0, colon), name.substr(colon + 1)};
 }
 
-bool is_python(const std::string& file) { return ends_with(file, ".py"); }
+bool is_python(const std::string& file) { return file.ends_with(".py"); }
 
 /// The classes of a Python file (python/interpreter.cpp). @param whole its canonical path
 void fill_from_python(const std::string& file, const std::string& whole, sensorfarm::Plugin& plugin) {
@@ -92,7 +90,7 @@ const std::vector<const ControllerType*>& controllers_in(const std::string& file
 
 bool names_a_file(std::string_view name) {
   const std::string file = parts_of(std::string(name)).first;
-  return name.find('/') != std::string_view::npos || ends_with(file, ".so") || is_python(file);
+  return name.find('/') != std::string_view::npos || file.ends_with(".so") || is_python(file);
 }
 
 const ControllerType* load_controller(const std::string& name) {

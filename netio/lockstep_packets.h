@@ -21,7 +21,7 @@ inline constexpr std::size_t kCommandRowBytes = 32;       ///< of one row
 inline constexpr std::uint32_t kDriverLostBit = 1;        ///< STATE: a driving process timed out before this tick
 inline constexpr std::uint32_t kMaxStepCommands = 65536;  ///< one for each id
 
-/// What one robot executes from tick `Command::tick` on, until its next command.
+/// The command that one robot executes from tick `Command::tick` on, until its next command.
 struct CommandRow {
   std::uint32_t robot = 0;  ///< id in [0, kMaxId]
   base::Twist twist;        ///< in the robot's frame; each number within kMaxSpeed

@@ -334,7 +334,7 @@ void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out
 
 namespace {
 
-/// What is encoded is also accepted.
+/// Packets that are encoded are also accepted.
 template <class Body>
 void encode_lockstep(const Header& header, Type type, const Body& body, base::Bytes& out) {
   start(header, type, out);

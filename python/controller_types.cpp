@@ -134,7 +134,7 @@ void add_input(py::module_& module) {
       .def_readonly("pose", &OwnedLight::pose)
       .def_readonly("state", &OwnedLight::state)
       .def_readonly("left", &OwnedLight::left);
-  py::class_<OwnedInput>(module, "Input", py::module_local(), "What a robot knows when its controller is called.")
+  py::class_<OwnedInput>(module, "Input", py::module_local(), "The knowledge of a robot when its controller is called.")
       .def_readonly("time", &OwnedInput::time)
       .def_readonly("pose", &OwnedInput::pose)
       .def_readonly("velocity", &OwnedInput::velocity)

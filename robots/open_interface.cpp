@@ -64,7 +64,7 @@ base::Bytes create_stop() {
 
 std::optional<CreateFrame> CreateStream::take(std::uint8_t byte) {
   bytes_[size_++] = byte;
-  // What cannot begin a frame goes, and the rest may: a frame may begin within a broken one.
+  // Bytes that cannot begin a frame are dropped, one by one: a frame may begin within a broken one.
   const auto may_be_one = [&] {
     return std::all_of(kFixed.begin(), kFixed.end(),
                        [&](const auto& fixed) { return fixed.first >= size_ || bytes_[fixed.first] == fixed.second; });

@@ -84,7 +84,7 @@ struct Light {
   double left = 0.0;  ///< [s] until its next change; infinity: never
 };
 
-/// What a robot knows when its controller is called. Spans live for the call.
+/// The knowledge of a robot when its controller is called. Spans live for the call.
 struct Input {
   double time = 0.0;  ///< [s] simulated, or the robot's clock; does not decrease
   Pose pose;          ///< the robot's own: true in a simulation, estimated in `sensorfarm robot`

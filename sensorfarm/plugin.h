@@ -16,7 +16,7 @@ namespace sensorfarm {
 /// refused.
 inline constexpr int kPluginInterface = 1;
 
-/// What a plug-in offers.
+/// The controllers and sensors of a plug-in.
 struct Plugin {
   std::vector<ControllerEntry> controllers;
   std::vector<SensorEntry> sensors;

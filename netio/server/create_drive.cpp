@@ -69,7 +69,7 @@ void CreateDrive::take(const robots::CreateFrame& frame) {
   state_.X_WM.x += way * std::cos(middle);
   state_.X_WM.y += way * std::sin(middle);
   state_.X_WM.yaw = base::wrap_angle(state_.X_WM.yaw + turn);
-  // Whoever lifts the robot puts it down again where it may drive. At a cliff it waits for people.
+  // A lifted robot is put down again by people, where it may drive. At a cliff it waits for them.
   lifted_ = (lifted_ || frame.wheel_drop) && frame.mode != robots::CreateFrame::safe;
   if (lifted_ && !frame.wheel_drop && frame.mode == robots::CreateFrame::passive && line_)
     line_->write(robots::create_safe());

@@ -23,7 +23,7 @@
 
 namespace sf::server {
 
-/// What a light is that was heard and is silent.
+/// State of a light that was heard and is silent.
 enum class StaleLights : std::uint8_t { dark, plan };
 
 struct LightListenerOptions {

@@ -1,4 +1,4 @@
-// What lockstep sends: the answer of a tick as numbered datagrams, encoded when they are sent.
+// Packets that lockstep sends: the answer of a tick as numbered datagrams, encoded when they are sent.
 
 #include <algorithm>
 #include <utility>

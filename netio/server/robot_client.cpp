@@ -261,7 +261,8 @@ void RobotClient::log_problems(std::int64_t now) {
              now);
 }
 
-/// What keeps the real robot from driving, each time that it changes; not the silence before its first answer is due.
+/// Logs the reason for which the real robot does not drive, each time that it changes; not the silence before its first
+/// answer is due.
 void RobotClient::log_create(std::int64_t now) {
   const std::string problem = create_->problem(now);
   if (problem == create_problem_ || (create_->counts().frames == 0 && now < kAnswerIn)) return;
