@@ -40,6 +40,7 @@ const std::map<std::string, Modules> kMayInclude{
     {"netio/server",
      {"netio", "netio/v2x", "control", "farm", "record", "sensors", "raycast", "maps", "robots/estimation", "robots",
       "world", "gpu", "base"}},
+    {"netio/bridges", {"netio", "record", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"selftest", {"netio", "record", "farm", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"vision", {"world", "base"}},
     {"viz", {"farm", "record", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
@@ -56,12 +57,19 @@ struct Heavy {
   std::string module;  ///< empty: any
   std::size_t sources = 1;
 };
-const std::vector<Heavy> kHeavy{{"CLI/", "apps", 6}, {"nlohmann/", "apps", 4},
-                                {"vtk", "viz"},      {"opencv2/", "vision", 4},
-                                {"asio", "netio"},   {"sodium", "netio"},
-                                {"spng.h", "", 2},   {"yaml-cpp/", ""},
-                                {"toml++/", ""},     {"Eigen/", "robots/estimation"},
-                                {"spdlog/", "base"}, {"embree", "bench"}};
+const std::vector<Heavy> kHeavy{{"CLI/", "apps", 6},
+                                {"nlohmann/", "apps", 4},
+                                {"vtk", "viz"},
+                                {"opencv2/", "vision", 4},
+                                {"boost/asio", "netio/bridges", 2},
+                                {"boost/beast", "netio/bridges"},
+                                {"sodium", "netio"},
+                                {"spng.h", "", 2},
+                                {"yaml-cpp/", ""},
+                                {"toml++/", ""},
+                                {"Eigen/", "robots/estimation"},
+                                {"spdlog/", "base"},
+                                {"embree", "bench"}};
 
 // The machine's sockets, which only netio opens.
 const std::vector<std::string> kSockets{"sys/socket.h", "netinet/", "arpa/",     "netdb.h",
