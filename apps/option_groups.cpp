@@ -205,6 +205,8 @@ void add_ports(CLI::App& app, PortOptions& o) {
   add_wire(app, o);
 }
 
+void add_bridges(CLI::App&, BridgeOptions&) {}
+
 void add_threads(CLI::App& app, ThreadsOption& o) {
   app.add_option("--threads", o.threads, "Threads of the host (0: all); readings do not depend on it")
       ->check(whole(0, 256))

@@ -74,6 +74,9 @@ void add_until(CLI::App& app, DurationOption& o, const std::string& help);
 void add_origin(CLI::App& app, OriginOption& o, const std::string& group = "Options");
 void add_ports(CLI::App& app, PortOptions& o);
 void add_threads(CLI::App& app, ThreadsOption& o);
+/// Other programs beside `run` and `serve`, as options of this group.
+inline constexpr const char* kBridgeGroup = "Bridges to other programs (docs/bridges.md)";
+void add_bridges(CLI::App& app, BridgeOptions& o);
 /// The folder of a recorded run.
 void add_recording(CLI::App& app, RecordingOption& o);
 void add_sensor_type(CLI::App& app, SenseOptions& o);

@@ -165,6 +165,11 @@ struct PlotOptions : RecordingOption, DeviceOption {
 
 struct ExplainOptions : WorldOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {};
 
+/// Connections to other programs (netio/bridges); each is an address, or a number, as its option's help says.
+struct BridgeOptions {
+  bool any() const { return false; }
+};
+
 struct RunOptions : WorldOptions,
                     AccuracyTargetOptions,
                     JsonOption,
@@ -173,12 +178,13 @@ struct RunOptions : WorldOptions,
                     ControllerOptions,
                     NoReturnOption,
                     PortOptions,
-                    ThreadsOption {
+                    ThreadsOption,
+                    BridgeOptions {
   std::vector<std::string> drive;  ///< robots that the controller drives, by name; empty: every robot
-  double duration = 60.0;          ///< [s]
+  std::optional<double> duration;  ///< [s]; nullopt: 60, and without end beside bridges
+  std::optional<double> speed;     ///< [1] simulated over real time, 0: no limit; nullopt: none, and 1 beside bridges
   std::string record;              ///< folder; empty: no recording
   bool record_readings = false;
-  bool real_time = false;
   std::string send;  ///< host; empty: none
 };
 
@@ -193,7 +199,8 @@ struct ServeOptions : WorldOptions,
                       PeersOption,
                       FilterOptions,
                       CloneOptions,
-                      DurationOption {
+                      DurationOption,
+                      BridgeOptions {
   std::uint32_t port = netio::kInboxPort;  ///< 0: any free one
   double rate = 0.0;                       ///< [Hz]; 0: the world's own
   double radio = netio::kV2vRange;         ///< [m] farther away, states are not relayed; 0: none is

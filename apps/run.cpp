@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "apps/automatic_accuracy.h"
+#include "apps/bridge_options.h"
 #include "apps/commands.h"
 #include "apps/controller_options.h"
 #include "apps/default_robot.h"
@@ -17,93 +18,19 @@
 #include "apps/progress_line.h"
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
+#include "apps/run_outputs.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/contact_onset.h"
 #include "base/elapsed.h"
 #include "base/error.h"
-#include "base/time.h"
-#include "netio/address_token.h"
-#include "netio/server/no_return_filter.h"
-#include "netio/server/reading_publisher.h"
 #include "raycast/caster_choice.h"
-#include "scenarios/run_info.h"
+#include "scenarios/operator.h"
 #include "scenarios/simulation.h"
 
 namespace sf::apps {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Where readings go: a recording, the network, both or neither.
-class Outputs {
- public:
-  Outputs(const world::World& world, const sensors::SensorSet& sensor_set,
-          const std::optional<server::StreamLayout>& layout, const std::string& caster, const RunOptions& options)
-      : sensor_set_(sensor_set), no_return_filter_(sensor_set, options.no_return_inf) {
-    if (layout) {
-      address_ = netio::resolve(options.send);
-      publisher_.emplace(world, sensor_set, *layout, netio::Outbox(server::outbox_options(sensor_set)));
-    }
-    if (!options.record.empty())
-      recorder_.emplace(options.record,
-                        scenarios::run_info(world, sensor_set,
-                                            {options.seed, options.record_readings, options.no_return_inf, caster}));
-  }
-
-  /// @param wait called with the time [ns] at which a reading is delivered, before it is sent: the tick's, or one
-  /// before it
-  template <class Wait>
-  void write(base::TickRecord tick, Wait&& wait) {
-    const auto start = Clock::now();
-    tick.readings = no_return_filter_.apply(tick.readings);
-    double waited = 0.0;
-    std::int64_t sent_at = tick.time;
-    for (const base::ReadingBlock& reading : publisher_ ? tick.readings : std::span<const base::ReadingBlock>{}) {
-      const std::int64_t time =
-          std::min<std::int64_t>(tick.time, reading.time + base::nanoseconds(sensor_set_.row(reading).latency));
-      if (time != std::exchange(sent_at, time)) {
-        send();
-        const auto before = Clock::now();
-        wait(time);
-        waited += base::seconds_since(before);
-      }
-      addressed_readings_.push_back({&reading, address_, session_token_});
-    }
-    if (publisher_) send();
-    if (recorder_) recorder_->write(tick);
-    seconds_ += base::seconds_since(start) - waited;
-  }
-
-  void finish(RunReport& facts) {
-    facts.out_s = seconds_;
-    if (publisher_) {
-      facts.sent = true;
-      facts.publisher = publisher_->counts();
-    }
-    if (!recorder_) return;
-    recorder_->finish();
-    facts.recording = recorder_->path();
-    facts.recorded_bytes = recorder_->size();
-  }
-
- private:
-  void send() {
-    publisher_->queue(addressed_readings_);
-    publisher_->flush();
-    addressed_readings_.clear();
-  }
-
-  const sensors::SensorSet& sensor_set_;
-  server::NoReturnFilter no_return_filter_;
-  std::vector<server::AddressedReading> addressed_readings_;  ///< that go at one time
-  std::uint32_t address_ = 0;
-  netio::SessionToken session_token_{netio::random_session(), 0};
-  std::optional<server::ReadingPublisher> publisher_;
-  std::optional<record::Recorder> recorder_;
-  double seconds_ = 0.0;
-};
 
 /// `refusal` of a controller names one of several robots that are driven.
 bool names_one_of_several(const std::string& refusal, const world::World& world, const RunOptions& options) {
@@ -133,6 +60,61 @@ auto advised(const world::World& world, const RunOptions& options, Act&& act) {
   }
 }
 
+/// A fleet from time 0 on, with what follows it.
+struct Course {
+  scenarios::Simulation simulation;
+  ControlMetrics tally;
+  std::vector<base::ContactOnset> contacts;
+  RunOutputs outputs;
+  std::uint64_t ticks = 0;
+  std::uint64_t contacts_begun = 0;
+
+  Course(const world::World& world, gpu::Device& device, const sensors::SensorSet& sensor_set,
+         const std::optional<server::StreamLayout>& layout, const std::string& caster, const RunOptions& options,
+         const std::string& record)
+      : simulation(world, device, simulation_options(world, options)),
+        tally(simulation, world.movers.size(), options.controller),
+        contacts(world.movers.size()),
+        outputs(world, sensor_set, layout, caster, options, record) {}
+
+  double simulated(const world::World& world) const { return static_cast<double>(ticks) * world.interval; }
+
+  /// Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
+  void step(const world::World& world, scenarios::Operator& users) {
+    const base::TickRecord tick = simulation.step();
+    tally.update(tick);
+    users.publish(tick);
+    outputs.write(tick, [&](std::int64_t time) { users.keep_pace(1e-9 * static_cast<double>(time) + world.interval); });
+    for (std::size_t m = 0; m < contacts.size(); ++m)
+      contacts_begun += !world.movers[m].is_tag && contacts[m].begins(tick.contacts[m] != 0);
+    ++ticks;
+  }
+
+  void report(const world::World& world, RunReport& facts) {
+    facts.ticks = ticks;
+    facts.simulated_s = simulated(world);
+    facts.contacts = contacts_begun;
+    facts.control = tally.facts(world);
+    facts.move_s = simulation.move_seconds();
+    facts.farm = simulation.farm().stats();
+    facts.hash = simulation.farm().hash();
+    outputs.finish(facts);
+  }
+};
+
+constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
+
+/// [1] Simulated over real time. @param watched by users of bridges
+double speed_of(const RunOptions& options, bool watched) {
+  const double speed = options.speed.value_or(watched ? 1.0 : 0.0);
+  return speed > 0.0 ? speed : std::numeric_limits<double>::infinity();
+}
+
+/// Folder of the recording after `resets`: each begins one of its own.
+std::string recording_folder(const RunOptions& options, std::uint32_t resets) {
+  return options.record.empty() || resets == 0 ? options.record : fmt::format("{}-{}", options.record, resets + 1);
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
@@ -143,48 +125,52 @@ int run(const RunOptions& options) {
   choose_accuracy(world, device, options, options.seed, options.threads);
   const sensors::SensorSet sensor_set(world);
   warn_of_many_times(sensor_set);
-  scenarios::Simulation simulation =
-      advised(world, options, [&] { return scenarios::Simulation(world, device, simulation_options(world, options)); });
-  if (!simulation.warnings().empty()) print_warnings(simulation.warnings().front().file, simulation.warnings());
-  ControlMetrics tally(simulation, world.movers.size(), options.controller);
-  std::vector<base::ContactOnset> contacts(world.movers.size());
   const std::string caster = raycast::describe_caster(device.info().software);
-  Outputs outputs(world, sensor_set, layout, caster, options);
+  std::optional<Course> course;
+  const auto begin = [&](std::uint32_t resets) {
+    course.reset();
+    advised(world, options, [&] {
+      course.emplace(world, device, sensor_set, layout, caster, options, recording_folder(options, resets));
+    });
+  };
+  begin(0);
+  const std::vector<world::Warning> heard = course->simulation.warnings();
+  if (!heard.empty()) print_warnings(heard.front().file, heard);
+  LiveBridges live(options, world, sensor_set, {options.seed, true, options.no_return_inf, caster}, true);
+  scenarios::Operator users(live.bridges(), stop_requested(), speed_of(options, !live.empty()));
   install_stop_handlers();
 
-  const auto ticks = static_cast<std::uint64_t>(std::llround(options.duration / world.interval));
+  const double duration = options.duration.value_or(live.empty() ? 60.0 : kWithoutEnd);
+  const double ticks = std::round(duration / world.interval);
   RunReport facts;
-  const auto start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   {
     Progress progress("simulating");
-    for (; facts.ticks < ticks && !stop_requested(); ++facts.ticks) {
-      const base::TickRecord tick = advised(world, options, [&] { return simulation.step(); });
-      tally.update(tick);
-      // Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
-      outputs.write(tick, [&](std::int64_t time) {
-        if (options.real_time) keep_pace(start, 1e-9 * static_cast<double>(time) + world.interval);
-      });
-      for (std::size_t m = 0; m < contacts.size(); ++m)
-        facts.contacts += !world.movers[m].is_tag && contacts[m].begins(tick.contacts[m] != 0);
-      const double simulated = static_cast<double>(facts.ticks + 1) * world.interval;
-      progress.show(simulated / options.duration, fmt::format("{:.0f} s of {:g} s", simulated, options.duration));
-      if (options.real_time) keep_pace(start, simulated);
+    auto next = scenarios::Operator::Next::tick;
+    while (static_cast<double>(course->ticks) < ticks) {
+      next = users.wait(course->simulation, course->simulated(world));
+      if (next == scenarios::Operator::Next::stop) break;
+      if (next == scenarios::Operator::Next::reset) {
+        users.begin_again();
+        begin(users.resets());
+        continue;
+      }
+      advised(world, options, [&] { course->step(world, users); });
+      const double simulated = course->simulated(world);
+      if (duration < kWithoutEnd)
+        progress.show(simulated / duration, fmt::format("{:.0f} s of {:g} s", simulated, duration));
     }
+    facts.interrupted = next == scenarios::Operator::Next::stop;
+    users.keep_pace(course->simulated(world));  // a tick lasts until the next one would begin
   }
   facts.wall_s = base::seconds_since(start);
-  facts.simulated_s = static_cast<double>(facts.ticks) * world.interval;
-  facts.interrupted = facts.ticks < ticks;
   facts.device = device.info().name;
   facts.software = device.info().software;
   facts.caster = caster;
   facts.robots = static_cast<std::uint32_t>(count_robots(world));
-  facts.control = tally.facts(world);
-  facts.move_s = simulation.move_seconds();
-  facts.farm = simulation.farm().stats();
-  facts.hash = simulation.farm().hash();
-  outputs.finish(facts);
+  course->report(world, facts);
   std::vector<world::Warning> warnings = world.warnings;
-  warnings.insert(warnings.end(), simulation.warnings().begin(), simulation.warnings().end());
+  warnings.insert(warnings.end(), heard.begin(), heard.end());
   print(options.json ? with_warnings(json_of(facts), warnings) : text_of(facts));
   const netio::OutboxCounts& packets = facts.publisher.packets;
   if (packets.failed == 0) return 0;

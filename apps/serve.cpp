@@ -7,6 +7,7 @@
 #include <span>
 
 #include "apps/automatic_accuracy.h"
+#include "apps/bridge_options.h"
 #include "apps/commands.h"
 #include "apps/default_robot.h"
 #include "apps/exposure_warning.h"
@@ -70,15 +71,18 @@ void require_lights(const ServeOptions& options, std::span<const netio::Peer> pe
                                          lights.empty() ? "none" : fmt::format("{}", fmt::join(lights, ", "))));
 }
 
+scenarios::RunSettings run_settings(const ServeOptions& options, bool software) {
+  return {.seed = options.seed,
+          .record_readings = true,
+          .no_return_inf = options.no_return_inf,
+          .caster = raycast::describe_caster(software),
+          .estimated = true};
+}
+
 /// The recording of a service: its states are estimates, its ticks and samples are at times of its clock.
 record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const ServeOptions& options,
                          bool software) {
-  record::RunInfo info = scenarios::run_info(world, sensor_set,
-                                             {.seed = options.seed,
-                                              .record_readings = true,
-                                              .no_return_inf = options.no_return_inf,
-                                              .caster = raycast::describe_caster(software),
-                                              .estimated = true});
+  record::RunInfo info = scenarios::run_info(world, sensor_set, run_settings(options, software));
   if (options.rate > 0.0) info.interval = 1.0 / options.rate;
   return info;
 }
@@ -143,6 +147,8 @@ int serve(const ServeOptions& options) {
       recorder.emplace(options.record, run_info(world, sensor_set, options, device.info().software));
       service.record_to(*recorder);
     }
+    LiveBridges live(options, world, sensor_set, run_settings(options, device.info().software), false);
+    if (!live.empty()) service.record_to(live);
     install_stop_handlers();
     print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; Ctrl-C ends it", counted(service.robots(), "robot"),
                   world.file, options.bind, service.port(), 1.0 / service.interval(), device.info().name);

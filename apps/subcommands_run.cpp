@@ -29,10 +29,9 @@ void add_run(CLI::App& app, Call& call) {
       ->type_name("NAME");
   add_no_return(*sub, o);
   add_ports(*sub, o);
-  sub->add_option("--duration", o.duration, "Simulated time [s]")
+  sub->add_option("--duration", o.duration, "Simulated time [s] (default: 60; without end beside bridges)")
       ->check(number(0.0, 1e9))
-      ->type_name("S")
-      ->capture_default_str();
+      ->type_name("S");
   add_threads(*sub, o);
   auto* record = sub->add_option("--record", o.record, "Folder to record the run into (run.mcap)")
                      ->check(not_empty("a folder"))
@@ -40,7 +39,14 @@ void add_run(CLI::App& app, Call& call) {
   sub->add_flag("--record-readings", o.record_readings,
                 "Record the readings too, not only the states from which they can be computed")
       ->needs(record);
-  sub->add_flag("--real-time", o.real_time, "Run in real time");
+  auto* speed = sub->add_option("--speed", o.speed,
+                                "Simulated over real time (0: as fast as possible; default: 0, and 1 beside bridges)")
+                    ->check(number(0.0, 1e6))
+                    ->type_name("X");
+  sub->add_flag_callback(
+         "--real-time", [&o] { o.speed = 1.0; }, "Run in real time: --speed 1")
+      ->excludes(speed);
+  add_bridges(*sub, o);
   sub->add_option("--send", o.send, "Send every reading as UDP packets to this host")
       ->check(not_empty("a host"))
       ->type_name("HOST");
@@ -104,7 +110,7 @@ void refuse_with_lockstep(const CLI::App& sub) {
     const bool of_ports =
         (name != "--port" && name.ends_with("-port")) || name == "--ports-per-robot" || name == "--wire";
     if (option->count() > 0 && (of_ports || name == "--rate" || name == "--radio" || name == "--forget" ||
-                                name == "--filter" || name == "--stale-after"))
+                                name == "--filter" || name == "--stale-after" || option->get_group() == kBridgeGroup))
       throw CLI::ValidationError(name, "does not go with --lockstep");
   }
 }
@@ -177,6 +183,7 @@ void add_serve(CLI::App& app, Call& call) {
       ->check(not_empty("a folder"))
       ->type_name("DIR");
   add_robots(*sub, o);
+  add_bridges(*sub, o);
   add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");
 }
 

@@ -89,7 +89,7 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Sim
 }
 
 bool Simulation::all_done() const {
-  const auto drives = [](const RobotControl& d) { return d.controller != nullptr; };
+  const auto drives = [](const RobotControl& d) { return d.controller != nullptr && !d.driven; };
   return std::any_of(controls_.begin(), controls_.end(), drives) &&
          std::all_of(controls_.begin(), controls_.end(),
                      [&](const RobotControl& d) { return !drives(d) || d.controller->done(); });
@@ -150,6 +150,12 @@ void Simulation::command(std::span<const base::Twist> commands) {
     if (!controls_[m].controller) commands_[m] = commands[m];
 }
 
+void Simulation::drive(std::uint32_t mover, const base::Twist& command) {
+  SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
+  controls_[mover].driven = true;
+  commands_[mover] = command;
+}
+
 void Simulation::put(std::uint32_t mover, const base::Pose& X_WM) {
   SF_CHECK(mover < controls_.size(), "mover " + std::to_string(mover));
   const base::Report report{mover, fleet_.reports()[mover].time, X_WM, {}};
@@ -200,7 +206,7 @@ void Simulation::try_to_decide(std::uint32_t mover, std::int64_t time, unsigned 
 void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thread) {
   RobotControl& robot = controls_[mover];
   robot.stepped = false;
-  if (!robot.controller) return;
+  if (!robot.controller || robot.driven) return;
   const std::uint32_t first = first_[mover], count = first_[mover + 1] - first;
   std::span<const base::ReadingBlock> fresh = by_mover_.subspan(first, count);
   if (robot.mailbox) {

@@ -64,6 +64,10 @@ class Simulation {
   /// @param commands one per mover, finite; those of other movers are ignored
   void command(std::span<const base::Twist> commands);
 
+  /// From the next step on the mover executes this command until it is given another, and its controller, if it has
+  /// one, decides no more. @param command finite
+  void drive(std::uint32_t mover, const base::Twist& command);
+
   /// Places the mover at a pose, at rest. Called between two steps.
   void put(std::uint32_t mover, const base::Pose& X_WM);
 
@@ -78,7 +82,7 @@ class Simulation {
   const control::Controller* controller(std::uint32_t mover) const { return controls_[mover].controller.get(); }
   /// The last tick called the mover's controller.
   bool stepped(std::uint32_t mover) const { return controls_[mover].stepped; }
-  /// All controllers are done; false without controllers.
+  /// All controllers that decide are done; false without any.
   bool all_done() const;
   const world::RoadNetwork* roads() const { return roads_ ? &*roads_ : nullptr; }
   /// Warnings of the first files that a controller has read (a mission).
@@ -90,6 +94,7 @@ class Simulation {
     double rate = 10.0;                               ///< [Hz]
     bool by_lasers = false;                           ///< steps on new scans and on contacts instead of at its rate
     bool stepped = false;
+    bool driven = false;             ///< from outside (`drive`)
     std::uint64_t begun = 0;         ///< number of steps at its rate
     std::optional<Mailbox> mailbox;  ///< none: readings arrive immediately
   };

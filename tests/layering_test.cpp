@@ -45,8 +45,8 @@ const std::map<std::string, Modules> kMayInclude{
     {"vision", {"world", "base"}},
     {"viz", {"farm", "record", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"scenarios",
-     {"selftest", "viz", "netio/server", "netio", "record", "farm", "control", "sensors", "raycast", "maps", "robots",
-      "world", "gpu", "base"}},
+     {"selftest", "viz", "netio/server", "netio/bridges", "netio", "record", "farm", "control", "sensors", "raycast",
+      "maps", "robots", "world", "gpu", "base"}},
 };
 const Modules kMayIncludeAnything{"apps", "examples", "library", "bench", "tests"};
 

@@ -107,7 +107,7 @@ void Service::publish_due(std::int64_t now, bool between) {
   publisher_.queue(addressed_readings_);
   publisher_.flush();
   addressed_readings_.clear();
-  if (sink_ != nullptr) record(now, states, readings);
+  if (!sinks_.empty()) record(now, states, readings);
   warn_of_missed(now);
 }
 
@@ -147,17 +147,24 @@ void Service::record(std::int64_t now, std::span<const base::Report> states,
   }
   light_states_.clear();
   for (const world::Signal& signal : lights_.signals()) light_states_.push_back(world::status_of(signal));
+  const base::TickRecord tick{.tick = records_++,
+                              .time = now,
+                              .reports = states_,
+                              .readings = readings,
+                              .qualities = qualities_,
+                              .lights = light_states_};
+  std::erase_if(sinks_, [&](base::Sink* sink) { return !write(*sink, tick); });
+}
+
+/// @return false: the sink takes no more
+bool Service::write(base::Sink& sink, const base::TickRecord& record) {
   try {
-    sink_->write({.tick = records_++,
-                  .time = now,
-                  .reports = states_,
-                  .readings = readings,
-                  .qualities = qualities_,
-                  .lights = light_states_});
+    sink.write(record);
+    return true;
   } catch (const base::InputError& error) {
-    sink_ = nullptr;
     recording_error_ = error.what();
-    receiver_.log().write(fmt::format("recording ends here: {}", error.what()), now);
+    receiver_.log().write(fmt::format("recording ends here: {}", error.what()), record.time);
+    return false;
   }
 }
 

@@ -64,9 +64,9 @@ class Service {
   Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
           const StreamLayout& layout, const ServiceOptions& options);
 
-  /// From now on `sink`, which must outlive the service, takes each tick, and each sample between two ticks as a tick
-  /// of its own. Once it throws base::InputError, which is logged, it takes no more; robots are served all the same.
-  void record_to(base::Sink& sink) { sink_ = &sink; }
+  /// From now on `sink`, too, takes each tick, and each sample between two ticks as a tick of its own. It must outlive
+  /// the service. Once it throws base::InputError, which is logged, it takes no more; robots are served all the same.
+  void record_to(base::Sink& sink) { sinks_.push_back(&sink); }
 
   /// Serves by the machine's clock, which begins at 0, until `stop` is set or `duration` [s] have passed (0: without
   /// end). Once only, and not after `tick`.
@@ -96,6 +96,7 @@ class Service {
   std::span<const base::Report> update_movers(std::int64_t now);
   void address(std::span<const base::ReadingBlock> readings);
   void record(std::int64_t now, std::span<const base::Report> states, std::span<const base::ReadingBlock> readings);
+  bool write(base::Sink& sink, const base::TickRecord& record);
 
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
@@ -104,13 +105,13 @@ class Service {
   StateReceiver receiver_;
   ReadingPublisher publisher_;
   farm::Farm farm_;
-  base::Sink* sink_ = nullptr;
+  std::vector<base::Sink*> sinks_;
   std::vector<base::Report> states_;             ///< per mover, of one tick or sample
   std::vector<base::StateQuality> qualities_;    ///< likewise
   std::vector<bool> absent_;                     ///< per mover
   std::vector<base::LightStatus> light_states_;  ///< per light, of one tick or sample
   std::string recording_error_;
-  std::uint64_t records_ = 0;  ///< written to `sink_`
+  std::uint64_t records_ = 0;  ///< written to the sinks
   NoReturnFilter no_return_filter_;
   std::vector<AddressedReading> addressed_readings_;  ///< of one tick
   double interval_;

@@ -1,0 +1,47 @@
+#pragma once
+// Where a run's ticks go: a recording, the network, both or neither.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/options.h"
+#include "apps/report.h"
+#include "netio/server/no_return_filter.h"
+#include "netio/server/reading_publisher.h"
+#include "record/recorder.h"
+
+namespace sf::apps {
+
+class RunOutputs {
+ public:
+  /// World, sensor set and layout must outlive it.
+  /// @param layout of the packets; nullopt: none are sent. @param caster description of the ray caster
+  /// @param record folder of the recording; empty: none. @throws base::InputError where it cannot be written
+  RunOutputs(const world::World& world, const sensors::SensorSet& sensor_set,
+             const std::optional<server::StreamLayout>& layout, const std::string& caster, const RunOptions& options,
+             const std::string& record);
+
+  /// @param wait called with the time [ns] at which a reading is delivered, before it is sent: the tick's, or one
+  /// before it
+  void write(base::TickRecord tick, const std::function<void(std::int64_t)>& wait);
+  /// Ends the recording. @param facts out: what was sent and recorded
+  void finish(RunReport& facts);
+
+ private:
+  void send();
+
+  const sensors::SensorSet& sensor_set_;
+  server::NoReturnFilter no_return_filter_;
+  std::vector<server::AddressedReading> addressed_readings_;  ///< that go at one time
+  std::uint32_t address_ = 0;
+  netio::SessionToken session_token_;
+  std::optional<server::ReadingPublisher> publisher_;
+  std::optional<record::Recorder> recorder_;
+  double seconds_ = 0.0;
+};
+
+}  // namespace sf::apps

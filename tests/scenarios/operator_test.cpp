@@ -1,0 +1,174 @@
+// Users of bridges pause, step, reset, drive and place. Nothing here depends on how fast the machine is: a run without
+// a limit on its speed never waits, and a paused one goes on when it is asked to.
+
+#include "scenarios/operator.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "tests/device.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::scenarios {
+namespace {
+
+/// Two robots in the middle of four walls.
+world::World room() {
+  world::World world;
+  scenes::add_room(world, {0.0, 0.0}, 8.0);
+  scenes::add_robot(world, {-1.0, 0.0, 0.0, 0.0}, scenes::laser());
+  scenes::add_robot(world, {1.0, 0.0, 0.0, 0.0}, scenes::laser());
+  return world;
+}
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+/// A bridge whose user does what a test says each time that it is asked.
+struct Script : bridges::Bridge {
+  void publish(const base::TickRecord&, const bridges::RunState& state) override { ++ticks, last = state; }
+  void publish(const bridges::RunState& state) override { ++looks, last = state; }
+  void take(bridges::Requests& requests) override { act(requests); }
+  std::string describe() const override { return "script"; }
+
+  std::function<void(bridges::Requests&)> act = [](bridges::Requests&) {};
+  int ticks = 0, looks = 0;
+  bridges::RunState last;
+};
+
+struct OperatorTest : testing::Test {
+  OperatorTest() {
+    auto made = std::make_unique<Script>();
+    script = made.get();
+    bridges.add(std::move(made));
+  }
+  Operator::Next wait() { return users.wait(simulation, 0.1 * static_cast<double>(ticks)); }
+  void tick() {
+    const base::TickRecord record = simulation.step();
+    users.publish(record);
+    reports.assign(record.reports.begin(), record.reports.end());
+    ++ticks;
+  }
+
+  const world::World world = room();
+  Simulation simulation{world, device(), {.seed = 1}};
+  bridges::Bridges bridges;
+  std::atomic<bool> stop{false};
+  Script* script = nullptr;
+  Operator users{bridges, stop, kNoLimit};
+  std::vector<base::Report> reports;  ///< of the last tick
+  int ticks = 0;
+};
+
+TEST_F(OperatorTest, WithoutRequestsTicksFollow) {
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(wait(), Operator::Next::tick);
+    tick();
+  }
+  EXPECT_EQ(script->ticks, 3);
+  EXPECT_EQ(script->looks, 0);
+}
+
+TEST_F(OperatorTest, APausedRunMakesTheTicksThatItIsAskedFor) {
+  int asked = 0;
+  script->act = [&](bridges::Requests& requests) {
+    if (asked == 0) requests.paused = true;
+    if (asked == 2) requests.steps = 2;
+    if (asked == 6) requests.paused = false;
+    ++asked;
+  };
+  for (int i = 0; i < 2; ++i, tick()) ASSERT_EQ(wait(), Operator::Next::tick);
+  EXPECT_TRUE(script->last.paused);
+  EXPECT_EQ(script->looks, 2) << "two looks before the steps were asked for";
+  EXPECT_EQ(wait(), Operator::Next::tick);  // goes on
+  tick();
+  EXPECT_FALSE(script->last.paused);
+}
+
+TEST_F(OperatorTest, StepsOfARunThatIsNotPausedAreForgotten) {
+  int asked = 0;
+  script->act = [&](bridges::Requests& requests) {
+    if (asked == 0) requests.steps = 5;
+    if (asked == 1) requests.paused = true;
+    if (asked == 4) stop = true;
+    ++asked;
+  };
+  EXPECT_EQ(wait(), Operator::Next::tick);
+  EXPECT_EQ(wait(), Operator::Next::stop) << "the steps of before must not count now";
+}
+
+TEST_F(OperatorTest, AResetComesOnce) {
+  int asked = 0;
+  script->act = [&](bridges::Requests& requests) { requests.reset = asked++ == 1; };
+  EXPECT_EQ(wait(), Operator::Next::tick);
+  EXPECT_EQ(wait(), Operator::Next::reset);
+  users.begin_again();
+  EXPECT_EQ(users.resets(), 1u);
+  EXPECT_EQ(wait(), Operator::Next::tick);
+  tick();
+  EXPECT_EQ(script->last.runs, 1u);
+}
+
+TEST_F(OperatorTest, AResetOfAPausedRunComesAtOnce) {
+  script->act = [&](bridges::Requests& requests) {
+    requests.paused = true;
+    requests.reset = true;
+  };
+  EXPECT_EQ(wait(), Operator::Next::reset);
+}
+
+TEST_F(OperatorTest, StopEndsAllWaiting) {
+  stop = true;
+  EXPECT_EQ(wait(), Operator::Next::stop);
+  Operator slow(bridges, stop, 1e-6);
+  EXPECT_EQ(slow.wait(simulation, 1e6), Operator::Next::stop);
+  slow.keep_pace(1e6);
+}
+
+TEST_F(OperatorTest, ADrivenRobotObeysUntilItIsGivenAnother) {
+  script->act = [&](bridges::Requests& requests) {
+    if (ticks == 1) requests.commands.push_back({0, {0.0, 0.0, 0.5}});
+    if (ticks == 4) requests.commands.push_back({0, {}});
+  };
+  double yaw[6] = {};
+  for (double& each : yaw) {
+    ASSERT_EQ(wait(), Operator::Next::tick);
+    tick();
+    each = reports[0].X_WM.yaw;
+  }
+  EXPECT_GT(yaw[2], yaw[1]);
+  EXPECT_NEAR(yaw[3] - yaw[2], 0.05, 1e-12) << "half a radian per second, for a tick";
+  EXPECT_EQ(yaw[5], yaw[4]) << "a zero command stands; the controller is not asked again";
+}
+
+TEST_F(OperatorTest, PlacedRobotsAreWhereTheyWerePut) {
+  script->act = [&](bridges::Requests& requests) { requests.placements.push_back({1, {0.5, 0.25, 0.0, 1.0}}); };
+  ASSERT_EQ(wait(), Operator::Next::tick);
+  tick();
+  const base::Pose& X_WM = reports[1].X_WM;
+  EXPECT_EQ(X_WM.x, 0.5);
+  EXPECT_EQ(X_WM.y, 0.25);
+}
+
+TEST_F(OperatorTest, ASpeedHoldsFromThenOn) {
+  script->act = [&](bridges::Requests& requests) {
+    if (ticks == 0) requests.speed = 2.0;
+  };
+  ASSERT_EQ(wait(), Operator::Next::tick) << "what was simulated before is not waited for";
+  tick();
+  EXPECT_EQ(script->last.speed, 2.0);
+}
+
+TEST(Operator, WithoutBridgesARunNeverWaits) {
+  const world::World world = room();
+  Simulation simulation(world, device(), {.seed = 1});
+  bridges::Bridges none;
+  const std::atomic<bool> stop{false};
+  Operator users(none, stop, kNoLimit);
+  EXPECT_EQ(users.wait(simulation, 1e9), Operator::Next::tick);
+}
+
+}  // namespace
+}  // namespace sf::scenarios
