@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "base/tick_record.h"
-#include "record/channels.h"
 #include "record/mcap_writer.h"
 #include "record/recording_files.h"
 #include "record/run_info.h"
+#include "record/tick_messages.h"
 
 namespace sf::record {
 
@@ -43,28 +43,15 @@ class Recorder : public base::Sink {
   std::uint64_t size() const { return file_.size(); }  ///< [byte] in the file
 
  private:
-  void write_run_info();
-  void write_sensor_frames();
-  void write_transforms(const base::TickRecord& record);
-  void write_lights(const base::TickRecord& record);
-  void write_qualities(const base::TickRecord& record);
-  void write_odometry(const base::TickRecord& record);
-  void write_reading(const base::ReadingBlock& reading, std::int64_t time);
-  void add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time, std::int64_t true_time);
+  void add(const TopicMessage& message);
   void flush();
 
   RunInfo info_;
   GrowingFile file_;
   McapWriter mcap_;
-  Channels channels_;
-  std::int64_t next_odometry_ = 0;  ///< [ns]
-  std::uint32_t ticks_ = 0;         ///< number of ticks written
-  std::uint32_t odometries_ = 0;
+  TickMessages messages_;
+  std::vector<std::uint16_t> channels_;  ///< per topic
   bool finished_ = false;
-
-  // Members for their capacity only.
-  base::Bytes message_;
-  std::vector<Transform> transforms_;
 };
 
 }  // namespace sf::record

@@ -1,6 +1,7 @@
 #include "record/recording.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -83,18 +84,24 @@ bool read_fleet(const McapMessage& message, FleetState& fleet, Recording& record
   return true;
 }
 
-bool read_scan(const McapMessage& message, ReadingSample& sample) {
+/// Beams without a return are infinite in messages; in the run they may have been `range_max`.
+bool read_scan(const McapMessage& message, const RunInfo& info, ReadingSample& sample) {
   const std::optional<Scan> scan = decode_scan(message.data);
   if (!scan) return false;
+  const bool infinite = std::find(info.options.begin(), info.options.end(),
+                                  std::pair<std::string, std::string>("no_return", "inf")) != info.options.end();
   sample.time = scan->time;
   sample.values.assign(scan->ranges.begin(), scan->ranges.end());
+  if (!infinite)
+    for (double& range : sample.values)
+      if (std::isinf(range)) range = scan->range_max;
   return true;
 }
 
 bool read_reading(const McapMessage& message, const SensorTopic& topic, Recording& recording) {
   ReadingSample sample{topic.mover, topic.type->id, topic.sensor, message.sequence,
                        static_cast<std::int64_t>(message.log_time)};
-  if (!(topic.type->is_scan ? read_scan(message, sample)
+  if (!(topic.type->is_scan ? read_scan(message, recording.info, sample)
                             : decode_reading(*topic.type, message.data, sample.time, sample.values)))
     return false;
   recording.readings.push_back(std::move(sample));

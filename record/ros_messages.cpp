@@ -1,6 +1,7 @@
 #include "record/ros_messages.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "base/time.h"
@@ -25,20 +26,19 @@ std::string get_header(CdrReader& cdr, std::int64_t& time) {
   return cdr.get_string();
 }
 
-namespace {
-
-/// Position and the quaternion (x, y, z, w) of a turn about +z.
 void put_pose(CdrWriter& cdr, const Pose& pose) {
   const double half = 0.5 * pose.yaw;
   for (const double value : {pose.x, pose.y, pose.z, 0.0, 0.0, std::sin(half), std::cos(half)}) cdr.put(value);
 }
 
-void put_twist(CdrWriter& cdr, const Twist& twist) {
-  for (const double value : {twist.forward, twist.left, 0.0, 0.0, 0.0, twist.turn}) cdr.put(value);
+void put_zeros(CdrWriter& cdr, int count) {
+  for (int i = 0; i < count; ++i) cdr.put(0.0);
 }
 
-void put_covariance(CdrWriter& cdr) {
-  for (int i = 0; i < 36; ++i) cdr.put(0.0);
+namespace {
+
+void put_twist(CdrWriter& cdr, const Twist& twist) {
+  for (const double value : {twist.forward, twist.left, 0.0, 0.0, 0.0, twist.turn}) cdr.put(value);
 }
 
 }  // namespace
@@ -48,9 +48,9 @@ void encode_odometry(const Transform& transform, const Twist& velocity, Bytes& o
   put_header(cdr, transform.time, transform.parent);
   cdr.put(transform.child);
   put_pose(cdr, transform.X_PC);
-  put_covariance(cdr);
+  put_zeros(cdr, 36);
   put_twist(cdr, velocity);
-  put_covariance(cdr);
+  put_zeros(cdr, 36);
 }
 
 void encode_twist(std::int64_t time, std::string_view frame, const Twist& twist, Bytes& out) {
@@ -80,8 +80,17 @@ void encode_scan(const Scan& scan, std::span<const double> ranges, Bytes& out) {
   cdr.put(scan.range_min);
   cdr.put(scan.range_max);
   cdr.put_count(ranges.size());
-  for (const double range : ranges) cdr.put(static_cast<float>(range));
+  for (const double range : ranges) {
+    const auto value = static_cast<float>(range);
+    cdr.put(value >= scan.range_max ? std::numeric_limits<float>::infinity() : value);
+  }
   cdr.put_count(0);
+}
+
+void encode_clock(std::int64_t time, Bytes& out) {
+  CdrWriter cdr(out);
+  cdr.put(static_cast<std::int32_t>(time / base::kSecond));
+  cdr.put(static_cast<std::uint32_t>(time % base::kSecond));
 }
 
 void encode_state_quality(std::int64_t time, std::string_view frame, const base::StateQuality& quality, Bytes& out) {

@@ -37,8 +37,13 @@ struct Scan {
   float scan_time = 0.0F;     ///< [s] from one scan to the next
   float range_min = 0.0F;     ///< [m]
   float range_max = 0.0F;     ///< [m]
-  std::vector<float> ranges;  ///< [m] one per sample; range_max or infinity without an echo
+  std::vector<float> ranges;  ///< [m] one per sample; infinity without an echo
 };
+
+/// Position and the quaternion (x, y, z, w) of a turn about +z.
+void put_pose(CdrWriter& cdr, const base::Pose& pose);
+/// `count` zeros, as of a covariance that is zero or unknown.
+void put_zeros(CdrWriter& cdr, int count);
 
 /// True state, not wheel odometry: the covariances are zero.
 /// @param velocity in the child frame.
@@ -48,8 +53,12 @@ void encode_twist(std::int64_t time, std::string_view frame, const base::Twist& 
 
 void encode_transforms(std::span<const Transform> transforms, base::Bytes& out);
 
-/// @param ranges [m] rounded to float32; `scan.ranges` is not used.
+/// @param ranges [m] rounded to float32; a beam without a return (range_max or infinity) is infinity, as REP 117 says.
+/// `scan.ranges` is not used.
 void encode_scan(const Scan& scan, std::span<const double> ranges, base::Bytes& out);
+
+/// The simulated time, for nodes that use it.
+void encode_clock(std::int64_t time, base::Bytes& out);
 
 /// Of a mover's state at `time`: its age in s, and the covariance of x, y [m] and yaw [rad] as in base::StateQuality.
 /// @param frame of the mover

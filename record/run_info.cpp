@@ -99,6 +99,34 @@ SensorInfo get_sensor(CdrReader& cdr, bool is_scan) {
   return sensor;
 }
 
+const char* name_of(StandardTopic::Message message) {
+  switch (message) {
+    case StandardTopic::Message::range:
+      return "range";
+    case StandardTopic::Message::magnetic_field:
+      return "field";
+    case StandardTopic::Message::fix:
+      return "fix";
+    case StandardTopic::Message::imu:
+      return "imu";
+    case StandardTopic::Message::map:
+      return "map";
+  }
+  return "";
+}
+
+/// "/robot/sonar/range_3" and the frame "robot/sonar/range_3"; of a sensor of one element "/robot/gps/fix" in the frame
+/// "robot/gps".
+void name_standard_topics(SensorInfo& sensor) {
+  const std::string frame = frame_of(sensor);
+  for (StandardTopic& each : sensor.standard) {
+    const std::string name = name_of(each.message);
+    const bool single = sensor.standard.size() == 1;
+    each.frame = single ? frame : frame + "/" + name + "_" + std::to_string(each.element);
+    each.topic = "/" + (single ? frame + "/" + name : each.frame);
+  }
+}
+
 const SensorTypeInfo& type_of(const RunInfo& info, const SensorInfo& sensor) {
   const SensorTypeInfo* type = find_sensor_type(info, sensor.type);
   SF_CHECK(type != nullptr, "sensor type " + std::to_string(sensor.type));
@@ -131,6 +159,8 @@ MoverInfo get_mover(CdrReader& cdr) {
 
 }  // namespace
 
+std::string frame_of(const SensorInfo& sensor) { return sensor.topic.substr(1, sensor.topic.rfind('/') - 1); }
+
 const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id) {
   for (const SensorTypeInfo& type : info.sensor_types)
     if (type.id == id) return &type;
@@ -138,7 +168,7 @@ const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id) {
 }
 
 void name_frames(RunInfo& info) {
-  Taken frames = {{"world", 2}};
+  Taken frames = {{"world", 2}, {"run", 2}, {"fleet", 2}, {"clock", 2}, {"map", 2}, {"walls", 2}, {"bodies", 2}};
   for (MoverInfo& mover : info.movers) {
     mover.frame = unique(ros_name(mover.name, "robot"), frames);
     Taken sensors = {{"odom", 2}, {"cmd_vel", 2}};
@@ -146,6 +176,7 @@ void name_frames(RunInfo& info) {
       const SensorTypeInfo& type = type_of(info, sensor);
       sensor.topic = "/" + mover.frame + "/" + unique(ros_name(sensor.name, type.name), sensors) + "/" +
                      (type.is_scan ? "scan" : type.name);
+      name_standard_topics(sensor);
     }
   }
 }

@@ -9,6 +9,7 @@
 
 #include "base/bytes.h"
 #include "base/pose.h"
+#include "maps/grid.h"
 
 namespace sf::record {
 
@@ -28,6 +29,24 @@ struct SensorTypeInfo {
   bool is_scan = false;             ///< readings are planar scans, recorded as sensor_msgs/LaserScan
 };
 
+/// An element of a sensor whose readings are told as a standard ROS message, too, which viewers and drivers know.
+struct StandardTopic {
+  enum class Message : std::uint8_t { range, magnetic_field, fix, imu, map };
+  Message message = Message::range;
+  std::uint32_t element = 0;  ///< of the reading
+  std::string topic;          ///< set by `name_frames`, as `frame`
+  std::string frame;          ///< equal to the sensor's for a sensor of one element
+  base::Pose X_SE;            ///< element in the sensor's frame
+
+  // Ranges.
+  bool infrared = false;   ///< false: ultrasound
+  double fov = 0.0;        ///< [rad] aperture of the cone
+  double range_min = 0.0;  ///< [m]
+  double range_max = 0.0;  ///< [m]
+
+  maps::GridGeometry grid;  ///< of maps
+};
+
 struct SensorInfo {
   std::uint8_t type = 0;  ///< id of a row of `RunInfo::sensor_types`
   std::string name;
@@ -36,8 +55,26 @@ struct SensorInfo {
   double rate = 10.0;  ///< [Hz] > 0
   double fov = 0.0;    ///< [rad] of scans, as all below
   std::uint32_t samples = 0;
-  double range_min = 0.0;  ///< [m]
-  double range_max = 0.0;  ///< [m]
+  double range_min = 0.0;               ///< [m]
+  double range_max = 0.0;               ///< [m]
+  std::vector<StandardTopic> standard;  ///< not read back, since the world has them
+};
+
+/// Surfaces as lines at their upper ends, in one colour.
+struct Outline {
+  std::string name;
+  std::uint32_t color = 0xFF808080u;  ///< 0xAARRGGBB
+  std::vector<glm::dvec3> ends;       ///< [m] two per segment
+};
+
+/// Walls as viewers show them; not read back, since the world has them.
+struct WorldShape {
+  std::vector<Outline> walls;  ///< by model, in the world frame; empty: too many to be shown, or none
+  double cell = 0.05;          ///< [m] of `occupied`
+  glm::dvec2 corner;           ///< [m] lower left of its first cell
+  std::uint32_t columns = 0;   ///< along x; 0: no map
+  std::uint32_t rows = 0;      ///< along y
+  std::vector<bool> occupied;  ///< cells that a wall passes, row by row from the corner
 };
 
 struct MoverInfo {
@@ -45,6 +82,7 @@ struct MoverInfo {
   std::string frame;                ///< its name as ROS allows it, unique in the run; set by the recorder
   std::uint32_t id = 0;             ///< id in packets
   std::vector<SensorInfo> sensors;  ///< those of one type in the order of `base::ReadingBlock::sensor`
+  std::vector<Outline> body;        ///< in its frame; not read back, since the world has it
 };
 
 struct RunInfo {
@@ -60,14 +98,18 @@ struct RunInfo {
   std::vector<MoverInfo> movers;                             ///< in the rows of `base::Report::mover`
   std::vector<std::pair<std::string, std::string>> options;  ///< further options of the run
   base::Bytes snapshot;                                      ///< the world, not empty
+  WorldShape shape;
   std::vector<std::string> lights;  ///< names of the world's traffic lights; not read back, since the world has them
 };
 
 /// @return null when the run has no sensors of that type.
 const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id);
 
-/// Gives every mover a frame and every sensor a topic: names with all characters but [A-Za-z0-9_] replaced by '_', made
-/// unique.
+/// The frame of a sensor with the topic "/robot/laser/scan" is "robot/laser".
+std::string frame_of(const SensorInfo& sensor);
+
+/// Gives every mover a frame, and every sensor and its standard topics theirs: names with all characters but
+/// [A-Za-z0-9_] replaced by '_', made unique.
 void name_frames(RunInfo& info);
 
 /// `sensorfarm_msgs/msg/RunInfo`, without the snapshot. Sensors with scans are its `sensorfarm_msgs/Laser` rows, which

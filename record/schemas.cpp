@@ -38,6 +38,45 @@ constexpr std::array kDefinitions = {
     Definition{"geometry_msgs/TwistStamped", "std_msgs/Header header\ngeometry_msgs/Twist twist\n"},
     Definition{"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
 
+    Definition{"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
+    Definition{"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"},
+    Definition{"rosgraph_msgs/Clock", "builtin_interfaces/Time clock\n"},
+    Definition{"nav_msgs/MapMetaData",
+               "builtin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\nuint32 height\n"
+               "geometry_msgs/Pose origin\n"},
+    Definition{"nav_msgs/OccupancyGrid", "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n"},
+    Definition{"sensor_msgs/CompressedImage", "std_msgs/Header header\nstring format\nuint8[] data\n"},
+    Definition{"sensor_msgs/Range",
+               "uint8 ULTRASOUND=0\nuint8 INFRARED=1\nstd_msgs/Header header\nuint8 radiation_type\n"
+               "float32 field_of_view\nfloat32 min_range\nfloat32 max_range\nfloat32 range\nfloat32 variance\n"},
+    Definition{"sensor_msgs/MagneticField",
+               "std_msgs/Header header\ngeometry_msgs/Vector3 magnetic_field\n"
+               "float64[9] magnetic_field_covariance\n"},
+    Definition{"sensor_msgs/NavSatStatus",
+               "int8 STATUS_UNKNOWN=-2\nint8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nint8 STATUS_SBAS_FIX=1\n"
+               "int8 STATUS_GBAS_FIX=2\nint8 status -2\nuint16 SERVICE_UNKNOWN=0\nuint16 SERVICE_GPS=1\n"
+               "uint16 SERVICE_GLONASS=2\nuint16 SERVICE_COMPASS=4\nuint16 SERVICE_GALILEO=8\nuint16 service\n"},
+    Definition{"sensor_msgs/NavSatFix",
+               "std_msgs/Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\n"
+               "float64 altitude\nfloat64[9] position_covariance\nuint8 COVARIANCE_TYPE_UNKNOWN=0\n"
+               "uint8 COVARIANCE_TYPE_APPROXIMATED=1\nuint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\n"
+               "uint8 COVARIANCE_TYPE_KNOWN=3\nuint8 position_covariance_type\n"},
+    Definition{"sensor_msgs/Imu",
+               "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
+               "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
+               "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n"
+               "float64[9] linear_acceleration_covariance\n"},
+    Definition{"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"},
+    Definition{"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
+    Definition{"visualization_msgs/Marker",
+               "int32 LINE_LIST=5\nint32 ADD=0\nstd_msgs/Header header\nstring ns\nint32 id\nint32 type\n"
+               "int32 action\ngeometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\n"
+               "builtin_interfaces/Duration lifetime\nbool frame_locked\ngeometry_msgs/Point[] points\n"
+               "std_msgs/ColorRGBA[] colors\nstring texture_resource\nsensor_msgs/CompressedImage texture\n"
+               "visualization_msgs/UVCoordinate[] uv_coordinates\nstring text\nstring mesh_resource\n"
+               "visualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n"},
+    Definition{"visualization_msgs/MarkerArray", "visualization_msgs/Marker[] markers\n"},
+
     Definition{"sensorfarm_msgs/Pose", "float64 x\nfloat64 y\nfloat64 z\nfloat64 yaw\n"},
     Definition{"sensorfarm_msgs/Twist", "float64 forward\nfloat64 left\nfloat64 turn\n"},
     Definition{"sensorfarm_msgs/State",

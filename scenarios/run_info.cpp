@@ -2,7 +2,10 @@
 
 #include <filesystem>
 
+#include "scenarios/standard_topics.h"
+#include "scenarios/world_shape.h"
 #include "sensors/accuracy.h"
+
 namespace sf::scenarios {
 
 namespace {
@@ -33,12 +36,16 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   info.mode = sensors::modes_of(sensor_set);
   info.interval = world.interval;
   info.record_readings = settings.record_readings;
+  if (settings.record_readings) info.odometry_rate = 1.0 / world.interval;  // every tick, as viewers draw them
   info.estimated = settings.estimated;
   info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}, {"caster", settings.caster}};
   info.snapshot = world::snapshot(world);
-  for (const world::Mover& mover : world.movers) info.movers.push_back({mover.name, "", mover.id, {}});
+  for (const world::Mover& mover : world.movers)
+    info.movers.push_back({mover.name, "", mover.id, {}, body_of(world, mover)});
+  info.shape = shape_of(world);
   for (const world::Light& light : world.lights) info.lights.push_back(light.name);
   add_type(sensor_set, info);
+  add_standard_topics(world, info);
   return info;
 }
 

@@ -34,7 +34,7 @@ const std::map<std::string, Modules> kMayInclude{
     {"control", {"sensorfarm", "sensors", "maps", "robots/estimation", "robots", "world", "base"}},
     {"shaders", {"raycast", "sensors", "maps", "base"}},
     {"farm", {"sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
-    {"record", {"base"}},
+    {"record", {"maps", "base"}},
     {"netio", {"base"}},
     {"netio/v2x", {"base"}},
     {"netio/server",

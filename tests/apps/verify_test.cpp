@@ -33,7 +33,7 @@ std::string altered(const Folder& folder, std::uint64_t tick) {
     base::TickRecord record = simulation.step();
     std::vector<base::ReadingBlock> readings(record.readings.begin(), record.readings.end());
     std::vector<double> values(readings.front().values.begin(), readings.front().values.end());
-    values[values.size() / 2] += 1e-3;
+    values[values.size() / 2] -= 1e-3;  // nearer: what is farther than the limit is no return
     if (t == tick) readings.front().values = values;
     record.readings = readings;
     recorder.write(record);

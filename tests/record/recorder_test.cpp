@@ -87,8 +87,10 @@ TEST(Recorder, TopicsAreAsDocumented) {
   const std::map<std::string, std::size_t> expected = {
       {"/run", 1},
       {"/tf_static", 1},
+      {"/bodies", 1},
       {"/fleet", 10},
       {"/tf", 10},
+      {"/clock", 10},
       {"/roomba_1/odom", 5},  // 5 Hz of 10
       {"/roomba_1/cmd_vel", 5},
       {"/roomba_1/front/scan", 10},
@@ -145,7 +147,8 @@ TEST(Recorder, WithoutReadingsAndOdometryOnlyTheExactStatesAndFramesRemain) {
   Recorder recorder(directory, info);
   write_ticks(recorder, 0, 3);
   recorder.finish();
-  const std::map<std::string, std::size_t> expected = {{"/run", 1}, {"/tf_static", 1}, {"/fleet", 3}, {"/tf", 3}};
+  const std::map<std::string, std::size_t> expected = {{"/run", 1},   {"/tf_static", 1}, {"/bodies", 1},
+                                                       {"/fleet", 3}, {"/tf", 3},        {"/clock", 3}};
   EXPECT_EQ(topics_of(bytes_of(recorder.path())), expected);
 }
 
@@ -221,7 +224,7 @@ TEST(Recorder, ARecordingThatCannotBeginLeavesTheOlderOne) {
   }
   RunInfo info = sample_info(false);
   info.movers.resize(40'000);  // two topics each
-  EXPECT_NE(message_of([&] { Recorder(directory, info); }).find("needs 80004 topics"), std::string::npos);
+  EXPECT_NE(message_of([&] { Recorder(directory, info); }).find("needs 80008 topics"), std::string::npos);
   EXPECT_EQ(open_recording(directory).ticks, 5u);
   EXPECT_FALSE(fs::exists(directory + "/run.mcap.new"));
 }

@@ -40,7 +40,7 @@ TEST(Messages, AScanLiesWhereROSExpectsIt) {
   EXPECT_EQ(at<float>(out, 44), 8.0F);
   EXPECT_EQ(at<std::uint32_t>(out, 48), 3u);
   EXPECT_EQ(at<float>(out, 52), static_cast<float>(1.0 / 3.0));
-  EXPECT_EQ(at<float>(out, 56), 8.0F);
+  EXPECT_EQ(at<float>(out, 56), std::numeric_limits<float>::infinity());  // the largest range: no return (REP 117)
   EXPECT_EQ(at<float>(out, 60), std::numeric_limits<float>::infinity());
   EXPECT_EQ(at<std::uint32_t>(out, 64), 0u);  // no intensities
   EXPECT_EQ(out.size(), 68u);
@@ -54,13 +54,13 @@ TEST(Messages, AScanOfOneBeamHasNoIncrement) {
 
 TEST(Messages, AScanComesBack) {
   Bytes out;
-  encode_scan(sample_scan(), std::vector<double>{0.5, 8.0}, out);
+  encode_scan(sample_scan(), std::vector<double>{0.5, 7.75}, out);
   const auto scan = decode_scan(out);
   ASSERT_TRUE(scan);
   EXPECT_EQ(scan->time, 12'000'000'034);
   EXPECT_EQ(scan->frame, "r/l");
   EXPECT_EQ(scan->fov, 2.0F);
-  EXPECT_EQ(scan->ranges, (std::vector<float>{0.5F, 8.0F}));
+  EXPECT_EQ(scan->ranges, (std::vector<float>{0.5F, 7.75F}));
 }
 
 TEST(Messages, NoCutOfAMessageIsTakenForOne) {

@@ -1,0 +1,128 @@
+#include "record/standard_readings.h"
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "record/cdr.h"
+#include "record/ros_messages.h"
+#include "record/schemas.h"
+
+namespace sf::record {
+
+namespace {
+
+using Message = StandardTopic::Message;
+
+void put_range(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
+  // Infrared readings have a second column, the raw value.
+  const std::size_t width = topic.infrared ? 2 : 1;
+  const double range = values[width * topic.element];
+  cdr.put(static_cast<std::uint8_t>(topic.infrared ? 1 : 0));
+  for (const double value : {topic.fov, topic.range_min, topic.range_max}) cdr.put(static_cast<float>(value));
+  cdr.put(range >= topic.range_max ? std::numeric_limits<float>::infinity() : static_cast<float>(range));
+  cdr.put(0.0F);  // variance: unknown
+}
+
+void put_field(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
+  const std::span<const double> element = values.subspan(4 * topic.element, 4);
+  for (std::size_t axis = 1; axis < 4; ++axis) cdr.put(element[axis]);
+  put_zeros(cdr, 9);
+}
+
+struct Degrees {
+  double latitude = 0.0, longitude = 0.0;
+};
+
+/// The position on the ellipsoid above a point of the plane that touches it at (0, 0): there east is Earth's y axis and
+/// north its z axis. Exact.
+Degrees degrees_at(double east, double north) {
+  constexpr double a = 6378137.0, b = 6356752.314245;  // [m] semi-axes of WGS84
+  const double up = a * std::sqrt(std::max(0.0, 1.0 - (east / a) * (east / a) - (north / b) * (north / b)));
+  const double from_axis = std::hypot(up, east);
+  return {std::atan2(a * a * north, b * b * from_axis) * 180.0 / M_PI, std::atan2(east, up) * 180.0 / M_PI};
+}
+
+void put_fix(CdrWriter& cdr, std::span<const double> values) {
+  constexpr std::uint16_t kGps = 1;
+  const bool fix = std::isfinite(values[0]);
+  const Degrees at = fix ? degrees_at(values[0], values[1]) : Degrees{values[0], values[0]};
+  cdr.put(static_cast<std::int8_t>(fix ? 0 : -1));
+  cdr.put(kGps);
+  cdr.put(at.latitude);
+  cdr.put(at.longitude);
+  cdr.put(std::numeric_limits<double>::quiet_NaN());  // altitude: not measured
+  put_zeros(cdr, 9);
+  cdr.put(std::uint8_t{0});  // covariance: unknown
+}
+
+/// Nine numbers of which the first says that the quantity is not measured.
+void put_unmeasured(CdrWriter& cdr) {
+  cdr.put(-1.0);
+  put_zeros(cdr, 8);
+}
+
+void put_imu(CdrWriter& cdr, std::span<const double> values) {
+  for (const double part : {0.0, 0.0, 0.0, 1.0}) cdr.put(part);
+  put_unmeasured(cdr);
+  for (const double rate : {0.0, 0.0, values[0]}) cdr.put(rate);
+  put_zeros(cdr, 9);
+  put_zeros(cdr, 3);
+  put_unmeasured(cdr);
+}
+
+void put_map(CdrWriter& cdr, const StandardTopic& topic, std::int64_t time, std::span<const double> values) {
+  const maps::GridGeometry& grid = topic.grid;
+  const std::int64_t columns = maps::columns(grid), rows = maps::rows(grid);
+  cdr.put(static_cast<std::int32_t>(time / 1'000'000'000));
+  cdr.put(static_cast<std::uint32_t>(time % 1'000'000'000));
+  cdr.put(static_cast<float>(grid.cell));
+  cdr.put(static_cast<std::uint32_t>(columns));
+  cdr.put(static_cast<std::uint32_t>(rows));
+  put_pose(cdr, {grid.left, grid.top - static_cast<double>(rows) * grid.cell, 0.0, 0.0});
+  cdr.put_count(static_cast<std::size_t>(columns * rows));
+  constexpr std::int8_t kShown[4] = {-1, 100, 0, -1};  // by maps::Cell
+  for (std::int64_t row = rows - 1; row >= 0; --row)   // a ROS map begins at its lower left
+    for (std::int64_t column = 0; column < columns; ++column) {
+      const auto word = static_cast<std::uint32_t>(
+          values[static_cast<std::size_t>(row / 4) * grid.word_columns + static_cast<std::size_t>(column / 4)]);
+      cdr.put(kShown[(word >> maps::OccupancyGrid::shift_of({column, row})) & 3u]);
+    }
+}
+
+}  // namespace
+
+std::string_view type_of(Message message) {
+  switch (message) {
+    case Message::range:
+      return kRange;
+    case Message::magnetic_field:
+      return kMagneticField;
+    case Message::fix:
+      return kNavSatFix;
+    case Message::imu:
+      return kImu;
+    case Message::map:
+      return kOccupancyGrid;
+  }
+  return {};
+}
+
+void encode_standard(const StandardTopic& topic, std::int64_t time, std::span<const double> values, base::Bytes& out) {
+  CdrWriter cdr(out);
+  put_header(cdr, time, topic.message == Message::map ? "world" : topic.frame);
+  switch (topic.message) {
+    case Message::range:
+      return put_range(cdr, topic, values);
+    case Message::magnetic_field:
+      return put_field(cdr, topic, values);
+    case Message::fix:
+      return put_fix(cdr, values);
+    case Message::imu:
+      return put_imu(cdr, values);
+    case Message::map:
+      return put_map(cdr, topic, time, values);
+  }
+}
+
+}  // namespace sf::record

@@ -1,0 +1,91 @@
+#pragma once
+// Ticks as ROS messages: the topics of a run, and what each tick has to say on them. Recordings and bridges share them.
+//
+//   TickMessages messages(info);
+//   for (const Topic& topic : messages.topics()) advertise(topic);
+//   messages.begin(emit);
+//   while (running) messages.encode(tick, emit);
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/tick_record.h"
+#include "record/ros_messages.h"
+#include "record/run_info.h"
+
+namespace sf::record {
+
+/// Lives as long as its TickMessages.
+struct Topic {
+  std::string name;         ///< "/robot/laser/scan"
+  std::string_view type;    ///< "sensor_msgs/msg/LaserScan"
+  std::string_view schema;  ///< its definition as `ros2msg`
+  bool latched = false;     ///< the message of `begin` holds for the whole run
+};
+
+/// A message; its bytes are valid during the call.
+struct TopicMessage {
+  std::uint32_t topic = 0;              ///< row of `TickMessages::topics`
+  std::uint32_t sequence = 0;           ///< of readings: their own; else counted per tick
+  std::int64_t log_time = 0;            ///< [ns] of the tick
+  std::int64_t time = 0;                ///< [ns] of the measurement
+  std::span<const std::uint8_t> bytes;  ///< CDR
+};
+
+/// One thread. After warm-up, messages allocate nothing.
+class TickMessages {
+ public:
+  using Emit = std::function<void(const TopicMessage&)>;
+
+  /// @param info frames and topics are named (`name_frames`); outlives the object
+  explicit TickMessages(const RunInfo& info);
+
+  const std::vector<Topic>& topics() const { return topics_; }
+
+  /// Latched topics. The next tick is the first of a run: its time may be earlier than that of the last one.
+  void begin(const Emit& emit);
+  /// Rule: every report's mover is a row of `info.movers`, its quality is there if `info.estimated`, every reading's
+  /// sensor one of its sensors; time is non-decreasing and not negative.
+  /// @param wanted per topic, for those that nobody listens to; empty: all are
+  void encode(const base::TickRecord& record, const Emit& emit, const std::vector<bool>& wanted = {});
+
+ private:
+  struct SensorTopics {
+    const SensorTypeInfo* type = nullptr;  ///< row of `RunInfo::sensor_types`
+    const SensorInfo* sensor = nullptr;
+    std::uint32_t topic = 0;
+    Scan header;                 ///< `frame` of every type; of scans, all but time and ranges
+    std::uint32_t standard = 0;  ///< first of the rows of its standard topics
+  };
+  struct MoverTopics {
+    std::uint32_t odometry = 0, command = 0, quality = 0;
+    std::vector<SensorTopics> sensors;
+  };
+  struct Output;
+
+  std::uint32_t add(std::string name, std::string_view type, bool latched = false);
+  std::uint32_t add(std::string name, const SensorTypeInfo& type);
+  void add_mover(const MoverInfo& mover);
+  void add_readings(std::size_t row);
+  void send_frames(const Output& out);
+  void send_transforms(const Output& out);
+  void send_odometry(const Output& out);
+  void send_qualities(const Output& out) const;
+  void send_reading(const base::ReadingBlock& reading, const Output& out);
+
+  const RunInfo& info_;
+  std::map<std::string, std::string, std::less<>> schemas_;  ///< by type
+  std::vector<Topic> topics_;
+  std::vector<MoverTopics> movers_;
+  std::int64_t next_odometry_ = 0;  ///< [ns]
+  std::uint32_t ticks_ = 0, odometries_ = 0;
+  base::Bytes message_;
+  std::vector<Transform> transforms_;
+};
+
+}  // namespace sf::record

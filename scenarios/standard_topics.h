@@ -1,0 +1,13 @@
+#pragma once
+// Which readings recordings and bridges tell as standard ROS messages, too: elements of sonars and infrared sensors as
+// ranges, of magnetometers as magnetic fields, GPS fixes, gyros as IMUs, occupancy maps.
+
+#include "record/run_info.h"
+#include "world/world.h"
+
+namespace sf::scenarios {
+
+/// Sets `SensorInfo::standard` of all sensors. Rule: `info` has the sensors of `world`.
+void add_standard_topics(const world::World& world, record::RunInfo& info);
+
+}  // namespace sf::scenarios

@@ -1,0 +1,134 @@
+// Readings as standard ROS messages, read back by the layout that ROS documents.
+
+#include "record/standard_readings.h"
+
+#include <gtest/gtest.h>
+
+#include <GeographicLib/LocalCartesian.hpp>
+#include <cmath>
+#include <limits>
+
+#include "record/cdr.h"
+#include "record/ros_messages.h"
+
+namespace sf::record {
+namespace {
+
+using Message = StandardTopic::Message;
+constexpr std::int64_t kTime = 3'000'000'021;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// A message of the topic, after its header.
+struct Encoded {
+  Encoded(const StandardTopic& topic, const std::vector<double>& values, const std::string& frame = "robot/x") {
+    encode_standard(topic, kTime, values, bytes);
+    cdr = CdrReader(bytes);
+    EXPECT_EQ(get_header(cdr, time), frame);
+    EXPECT_EQ(time, kTime);
+  }
+  void skip(int numbers) {
+    for (int i = 0; i < numbers; ++i) cdr.get<double>();
+  }
+  base::Bytes bytes;
+  CdrReader cdr{bytes};
+  std::int64_t time = 0;
+};
+
+Encoded of(StandardTopic topic, const std::vector<double>& values) {
+  topic.frame = "robot/x";
+  return {topic, values};
+}
+
+TEST(StandardReadings, ARangeHasItsConeAndItsLimits) {
+  StandardTopic topic{.message = Message::range, .element = 1, .fov = 0.5, .range_min = 0.25, .range_max = 4.0};
+  for (const auto& [range, told] : {std::pair{2.5, 2.5F}, {4.0, kInfinity}, {0.0, 0.0F}}) {
+    Encoded message = of(topic, {9.0, range, 9.0});
+    EXPECT_EQ(message.cdr.get<std::uint8_t>(), 0) << "ultrasound";
+    EXPECT_EQ(message.cdr.get<float>(), 0.5F);
+    EXPECT_EQ(message.cdr.get<float>(), 0.25F);
+    EXPECT_EQ(message.cdr.get<float>(), 4.0F);
+    EXPECT_EQ(message.cdr.get<float>(), told);
+    EXPECT_EQ(message.cdr.get<float>(), 0.0F) << "variance: unknown";
+    EXPECT_TRUE(message.cdr.good());
+  }
+}
+
+TEST(StandardReadings, InfraredElementsHaveTwoColumns) {
+  Encoded message =
+      of({.message = Message::range, .element = 1, .infrared = true, .range_max = 1.0}, {0.1, 900.0, 0.2, 800.0});
+  EXPECT_EQ(message.cdr.get<std::uint8_t>(), 1);
+  for (int i = 0; i < 3; ++i) message.cdr.get<float>();
+  EXPECT_EQ(message.cdr.get<float>(), 0.2F);
+}
+
+TEST(StandardReadings, AMagneticFieldIsTheVectorOfItsElement) {
+  Encoded message = of({.message = Message::magnetic_field, .element = 1}, {9, 9, 9, 9, 5e-5, 3e-5, 4e-5, -1e-6});
+  EXPECT_EQ(message.cdr.get<double>(), 3e-5);
+  EXPECT_EQ(message.cdr.get<double>(), 4e-5);
+  EXPECT_EQ(message.cdr.get<double>(), -1e-6);
+  message.skip(9);
+  EXPECT_TRUE(message.cdr.good());
+}
+
+/// The plane's points as GeographicLib sees them: on the ellipsoid, above or below.
+TEST(StandardReadings, AFixLiesOnTheEllipsoidOverItsPoint) {
+  const GeographicLib::LocalCartesian plane(0.0, 0.0);
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {25.0, -3.0}, {-7e4, 9e4}}) {
+    Encoded message = of({.message = Message::fix}, {x, y, 1.2, 7});
+    EXPECT_EQ(message.cdr.get<std::int8_t>(), 0) << "a fix";
+    EXPECT_EQ(message.cdr.get<std::uint16_t>(), 1u) << "GPS";
+    const double latitude = message.cdr.get<double>(), longitude = message.cdr.get<double>();
+    double east = 0, north = 0, up = 0;
+    plane.Forward(latitude, longitude, 0.0, east, north, up);
+    EXPECT_NEAR(east, x, 1e-6);
+    EXPECT_NEAR(north, y, 1e-6);
+    EXPECT_TRUE(std::isnan(message.cdr.get<double>())) << "no altitude is measured";
+    message.skip(9);
+    EXPECT_EQ(message.cdr.get<std::uint8_t>(), 0) << "covariance: unknown";
+    EXPECT_TRUE(message.cdr.good());
+  }
+}
+
+TEST(StandardReadings, WithoutAFixThereIsNoPosition) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Encoded message = of({.message = Message::fix}, {nan, nan, nan, 3});
+  EXPECT_EQ(message.cdr.get<std::int8_t>(), -1);
+  message.cdr.get<std::uint16_t>();
+  EXPECT_TRUE(std::isnan(message.cdr.get<double>()));
+  EXPECT_TRUE(std::isnan(message.cdr.get<double>()));
+}
+
+TEST(StandardReadings, AnImuKnowsTheYawRateAlone) {
+  Encoded message = of({.message = Message::imu}, {0.75});
+  message.skip(4);
+  EXPECT_EQ(message.cdr.get<double>(), -1.0) << "no orientation";
+  message.skip(8 + 2);
+  EXPECT_EQ(message.cdr.get<double>(), 0.75);
+  message.skip(9 + 3);
+  EXPECT_EQ(message.cdr.get<double>(), -1.0) << "no acceleration";
+  message.skip(8);
+  EXPECT_TRUE(message.cdr.good());
+}
+
+/// One word of 4 x 4 cells: rows of a ROS map begin at the lower left, ours at the upper left.
+TEST(StandardReadings, AMapIsTurnedOver) {
+  maps::OccupancyGrid grid({.left = -1.0, .top = 3.0, .cell = 0.5, .word_columns = 2, .word_rows = 1});
+  grid.set({0, 0}, maps::Cell::occupied);  // upper left
+  grid.set({7, 3}, maps::Cell::free);      // lower right
+  Encoded message({.message = Message::map, .frame = "robot/x", .grid = grid.geometry},
+                  {grid.words.begin(), grid.words.end()}, "world");
+  EXPECT_EQ(message.cdr.get<std::int32_t>(), 3);
+  EXPECT_EQ(message.cdr.get<std::uint32_t>(), 21u);
+  EXPECT_EQ(message.cdr.get<float>(), 0.5F);
+  EXPECT_EQ(message.cdr.get<std::uint32_t>(), 8u);
+  EXPECT_EQ(message.cdr.get<std::uint32_t>(), 4u);
+  EXPECT_EQ(message.cdr.get<double>(), -1.0);
+  EXPECT_EQ(message.cdr.get<double>(), 1.0) << "two metres below the top";
+  message.skip(5);
+  ASSERT_EQ(message.cdr.get_count(1), 32u);
+  for (int i = 0; i < 32; ++i) EXPECT_EQ(message.cdr.get<std::int8_t>(), i == 7 ? 0 : i == 24 ? 100 : -1) << i;
+  EXPECT_TRUE(message.cdr.good());
+}
+
+}  // namespace
+}  // namespace sf::record
