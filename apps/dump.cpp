@@ -6,17 +6,22 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "apps/commands.h"
 #include "apps/exposure_warning.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
+#include "apps/v2x_json.h"
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "netio/pcap.h"
 #include "netio/port_listener.h"
 #include "netio/server/packet_fields.h"
+#include "netio/server/signal_messages.h"
+#include "netio/v2x/frame.h"
+#include "world/fields.h"
 
 namespace sf::apps {
 
@@ -101,6 +106,36 @@ std::string json_value(const server::PacketField& field) {
   return "[" + text + "]";
 }
 
+std::string words_of(v2x::PhaseState phase) {
+  if (phase == v2x::PhaseState::unavailable) return "unavailable";
+  return std::string(world::words_of(world::LightState{})[static_cast<std::size_t>(server::light_of(phase))]);
+}
+
+/// "SPaT of intersection 2: group 1 green, group 2 red", or "MAP of intersection 2: 8 lanes".
+std::string words_of(const v2x::Frame& frame) {
+  std::vector<std::string> parts;
+  if (const auto* map = std::get_if<v2x::MapData>(&frame.message)) {
+    for (const v2x::IntersectionGeometry& each : map->intersections)
+      parts.push_back(fmt::format("intersection {}: {}", each.id.id, counted(each.lanes.size(), "lane")));
+    return fmt::format("MAP of {}", parts.empty() ? "no intersection" : fmt::format("{}", fmt::join(parts, "; ")));
+  }
+  for (const v2x::IntersectionState& each : std::get<v2x::Spat>(frame.message).intersections) {
+    std::vector<std::string> groups;
+    for (const v2x::MovementState& group : each.states)
+      groups.push_back(fmt::format("group {} {}", group.signal_group, words_of(group.events.front().state)));
+    parts.push_back(fmt::format("intersection {}: {}", each.id.id, fmt::join(groups, ", ")));
+  }
+  return fmt::format("SPaT of {}", fmt::join(parts, "; "));
+}
+
+/// A datagram that is one J2735 frame.
+std::optional<v2x::Frame> whole_frame(std::span<const std::uint8_t> bytes) {
+  v2x::Frame frame;
+  const v2x::DecodeResult result = v2x::decode(bytes, frame);
+  if (!result.ok() || result.size != bytes.size()) return std::nullopt;
+  return frame;
+}
+
 class Printer {
  public:
   explicit Printer(bool json) : json_(json) {}
@@ -110,9 +145,19 @@ class Printer {
     const bool cut = datagram.sent_bytes > datagram.payload.size();
     if (!cut) packet = server::describe_packet(datagram.payload);
     const bool good = !cut && packet.status == netio::PacketStatus::accepted;
+    if (!cut && !good) {
+      if (const auto frame = whole_frame(datagram.payload)) return print(datagram, *frame);
+    }
     cut ? void(++cut_) : counts_.add(packet.status);
     const std::string status = cut ? "cut off by the capture" : std::string(netio::name(packet.status));
     apps::print(json_ ? json_line(datagram, packet, status, good) : words_line(datagram, packet, status, good));
+  }
+  void print(const netio::CapturedDatagram& datagram, const v2x::Frame& frame) {
+    counts_.add(netio::PacketStatus::accepted);
+    const bool spat = std::holds_alternative<v2x::Spat>(frame.message);
+    apps::print(json_ ? fmt::format("{},\"name\":\"{}\",\"frame\":{}}}\n", json_head(datagram, "accepted"),
+                                    spat ? "SPaT" : "MAP", json_of(frame))
+                      : words_head(datagram) + words_of(frame) + "\n");
   }
   std::uint64_t datagrams() const { return counts_.total() + cut_; }
   bool any_good() const { return counts_[netio::PacketStatus::accepted] > 0; }
@@ -121,16 +166,22 @@ class Printer {
   }
 
  private:
+  static std::string words_head(const netio::CapturedDatagram& datagram) {
+    return fmt::format("{}.{:06} {} > {}: ", datagram.time / 1'000'000'000, datagram.time % 1'000'000'000 / 1000,
+                       datagram.source, datagram.destination);
+  }
+  static std::string json_head(const netio::CapturedDatagram& datagram, const std::string& status) {
+    return fmt::format(R"({{"received_ns":{},"from":"{}","to":"{}","bytes":{},"status":"{}")", datagram.time,
+                       datagram.source, datagram.destination, datagram.sent_bytes, status);
+  }
   static std::string words_line(const netio::CapturedDatagram& datagram, const server::PacketDescription& packet,
                                 const std::string& status, bool good) {
     const std::string text = good ? words_of(packet) : fmt::format("{}, {} bytes", status, datagram.payload.size());
-    return fmt::format("{}.{:06} {} > {}: {}\n", datagram.time / 1'000'000'000, datagram.time % 1'000'000'000 / 1000,
-                       datagram.source, datagram.destination, text);
+    return words_head(datagram) + text + "\n";
   }
   static std::string json_line(const netio::CapturedDatagram& datagram, const server::PacketDescription& packet,
                                const std::string& status, bool good) {
-    std::string text = fmt::format(R"({{"received_ns":{},"from":"{}","to":"{}","bytes":{},"status":"{}")",
-                                   datagram.time, datagram.source, datagram.destination, datagram.sent_bytes, status);
+    std::string text = json_head(datagram, status);
     if (good) text += fmt::format(R"(,"name":"{}")", packet.name);
     if (good)
       for (const server::PacketField& field : packet.fields)

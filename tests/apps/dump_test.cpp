@@ -37,7 +37,36 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+/// One datagram of J2735, with `more` octets behind it.
+std::string signal_capture(const std::string& hex, std::size_t more = 0) {
+  base::Bytes frame;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+    frame.push_back(static_cast<std::uint8_t>(std::stoi(hex.substr(i, 2), nullptr, 16)));
+  frame.resize(frame.size() + more);
+  test::PcapFile file;
+  file.add(test::ethernet(test::ipv4(test::udp(9010, 9010, frame))), 1'700'000'000, 0);
+  return file.text();
+}
+
 }  // namespace
+
+/// Real traffic lights are on the same wires.
+TEST(Dump, SignalMessagesAreWordsToo) {
+  const Folder folder;
+  const Outcome frames = run_program({"v2x", "export", our_world("simville/simville.world")});
+  const std::vector<std::string> hex = lines_of(frames.out);
+  ASSERT_GE(hex.size(), 2u);
+  std::string text;
+  for (std::size_t i = 0; i < 2; ++i)
+    text += run_program({"dump", folder.write("lights.pcap", signal_capture(hex[i]))}).out;
+  EXPECT_NE(text.find(": MAP of intersection 1: "), std::string::npos) << text;
+  EXPECT_NE(text.find(": SPaT of intersection 1: group 1 "), std::string::npos) << text;
+  const Outcome json = run_program({"dump", "--json", folder.write("lights.pcap", signal_capture(hex[0]))});
+  EXPECT_EQ(json.code, 0);
+  EXPECT_EQ(Json(json.out).text("/name"), "MAP");
+  // What follows a frame is not of it, and the datagram is none of ours either.
+  EXPECT_EQ(run_program({"dump", folder.write("lights.pcap", signal_capture(hex[0], 1))}).code, 1);
+}
 
 TEST(Dump, ACaptureIsPrintedInWords) {
   const Folder folder;
