@@ -6,6 +6,7 @@
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
+#include "base/installation.h"
 
 namespace sf::apps {
 
@@ -297,6 +298,7 @@ void add_light(CLI::App& app, Call& call) {
                       "worlds/simville/lights.toml --farm 127.0.0.1:9000"});
   sub->add_option("file", o.file, "World file with the lights and their plans, or a plan (.toml) that names its world")
       ->required()
+      ->transform(base::installed_file)
       ->type_name("FILE");
   sub->add_option("--send", o.send, "Host to send SPaT and MAP to")->check(not_empty("a host"))->type_name("HOST");
   sub->add_option("--farm", o.farm,

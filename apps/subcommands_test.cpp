@@ -8,6 +8,7 @@
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
 #include "apps/text.h"
+#include "base/installation.h"
 #include "scenarios/experiment.h"
 #include "selftest/suite.h"
 
@@ -50,7 +51,10 @@ void add_test(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("test", "Run scenarios and check their expectations (exit 1 when one fails)");
   auto& o = add_command(*sub, call, test_scenarios);
   add_examples(*sub, {"experiments/mapping.toml --junit results.xml"});
-  sub->add_option("scenario", o.scenarios, "Scenario files (.toml)")->required()->type_name("FILE");
+  sub->add_option("scenario", o.scenarios, "Scenario files (.toml)")
+      ->required()
+      ->transform(base::installed_file)
+      ->type_name("FILE");
   sub->add_option("--junit", o.junit, "Write the results as JUnit XML")->check(not_empty("a file"))->type_name("FILE");
   add_device(*sub, o);
 }

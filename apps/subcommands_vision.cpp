@@ -6,6 +6,7 @@
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
+#include "base/installation.h"
 #include "vision/camera.h"
 
 namespace sf::apps {
@@ -53,7 +54,10 @@ void add_vps(CLI::App& app, Call& call) {
                       "lab.toml --input north=/dev/video0 --input south=/dev/video1 --send 192.168.1.5:9000",
                       "lab.toml --input north=photographs --overlay out/pictures",
                       "worlds/testbed.toml --robots 9200 --send 127.0.0.1:9100"});
-  sub->add_option("testbed", o.testbed, "Testbed file: cameras and tags (docs/vps.md)")->required()->type_name("FILE");
+  sub->add_option("testbed", o.testbed, "Testbed file: cameras and tags (docs/vps.md)")
+      ->required()
+      ->transform(base::installed_file)
+      ->type_name("FILE");
   add_json(*sub, o);
   sub->add_option_function<std::vector<std::string>>(
          "--input",
