@@ -41,7 +41,7 @@ std::string text_of(const VpsReport& r) {
   if (r.counts.images > 0)
     text += row("processing", "{:.1f} images/s, {:.1f} ms of CPU time an image", images / r.processing_s,
                 1e3 * r.processing_cpu_s / images);
-  text += row("sightings", "{} of {}", r.counts.sightings, counted(r.tags.size(), "tag"));
+  text += row("sightings", "{}; {} tracked", r.counts.sightings, counted(r.tags.size(), "tag"));
   if (r.counts.unlisted > 0) text += row("", "{} with ids that the file does not list", r.counts.unlisted);
   if (r.counts.unfitted > 0) text += row("", "{} refused: fewer than three sides with an edge", r.counts.unfitted);
   if (r.counts.misfitted > 0)

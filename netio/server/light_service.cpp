@@ -12,6 +12,7 @@ LightService::LightService(const world::World& world, const LightListenerOptions
       listener_(world, roads_ ? &*roads_ : nullptr, options),
       messages_(world, roads_ ? &*roads_ : nullptr),
       radio_(radio),
+      forecasts_(world.lights.size()),
       signals_(world.lights.size()),
       places_(world.movers.size()) {}
 
@@ -28,9 +29,11 @@ void LightService::accept(const netio::Header& header, const netio::V2i& signals
 void LightService::update(std::int64_t now) {
   if (world_.lights.empty()) return;
   listener_.receive(now, base::unix_time() / 1'000'000);
-  forecasts_ = world::forecasts_at(world_, 1e-9 * static_cast<double>(now));
   constexpr double kUnheard = -1.0;
-  for (std::size_t i = 0; i < signals_.size(); ++i) signals_[i] = {forecasts_[i].now.state, kUnheard};
+  for (std::size_t i = 0; i < signals_.size(); ++i) {
+    forecasts_[i] = world::forecast_at(world_.lights[i], 1e-9 * static_cast<double>(now));
+    signals_[i] = {forecasts_[i].now.state, kUnheard};
+  }
   listener_.apply(now, signals_);
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     if (signals_[i].left != kUnheard) forecasts_[i] = {signals_[i], signals_[i].left, std::nullopt};
