@@ -94,6 +94,7 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(kNameWidth);
   add_inspect_commands(app, parsed.call);
+  add_export_commands(app, parsed.call);
   add_run_commands(app, parsed.call);
   add_vision_commands(app, parsed.call);
   add_test_commands(app, parsed.call);

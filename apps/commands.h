@@ -18,6 +18,8 @@ int light(const LightOptions& options);
 int start(const StartOptions& options);
 int object(const ObjectOptions& options);
 int plot(const PlotOptions& options);
+int export_recording(const ExportOptions& options);
+int view(const ViewOptions& options);
 int listen(const ListenOptions& options);
 int dump(const DumpOptions& options);
 int experiment(const ExperimentOptions& options);

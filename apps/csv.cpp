@@ -4,19 +4,12 @@
 
 #include <cmath>
 
+#include "apps/csv_text.h"
 #include "apps/report.h"
 
 namespace sf::apps {
 
 namespace {
-
-/// In quotes where a comma, a quote or a line end would be misread.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string missing_or(double value, const sensors::Column& column) {
   if (std::isnan(value)) return "";
@@ -37,6 +30,15 @@ std::string csv_heading(const sensors::SensorType& type) {
 }
 
 }  // namespace
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
 std::string place_of(const world::World& world, const sensors::SensorSet& sensor_set,
                      const base::ReadingBlock& reading) {

@@ -45,12 +45,12 @@ int field(const FieldOptions& options) {
   const world::World world = world::load_world(options.world, options.load);
   print_warnings(options.world, world.warnings);
   refuse_without_magnets(world);
-  const viz::FieldView view = viz::field_view(world, {options.height, options.line, options.extent});
+  const viz::FieldView view = viz::field_view(world, {options.height, options.line, options.extent, options.page});
 
   gpu::Device device(options.device);
   Progress progress("summing magnets");
   const viz::FieldSamples samples = viz::sample_field(world, device, view, [&](double part) { progress.show(part); });
-  viz::draw_field(world, view, samples, options.out);
+  viz::draw_field(world, view, samples, options.out, options.page);
   print_message("wrote {}", options.out);
   if (options.csv.empty()) return 0;
   write_csv(options.csv, view, samples);

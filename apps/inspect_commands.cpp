@@ -115,7 +115,7 @@ int draw(const DrawOptions& options) {
   if (const auto code = draw_roads(options)) return *code;
   const world::World world = world::load_world(options.world, options.load);
   print_warnings(options.world, world.warnings);
-  viz::draw_world(world, options.out);
+  viz::draw_world(world, options.out, options.page);
   print_message("wrote {}", options.out);
   return 0;
 }

@@ -190,7 +190,7 @@ void Display::save(const std::string& file) const {
     for (const Source& source : sources_)
       if (source.assembler.map() != nullptr)
         figure.subtitle += (figure.subtitle.empty() ? "" : ", ") + name_of(source, options_.wire);
-    return viz::draw_map(all[0], figure, file);
+    return viz::draw_map(all[0], figure, file, options_.page);
   }
   // One picture a port: map.png becomes map_52000.png and so on.
   const std::size_t dot = file.rfind('.') > file.rfind('/') + 1 ? file.rfind('.') : std::string::npos;
@@ -199,7 +199,7 @@ void Display::save(const std::string& file) const {
     if (source.assembler.map() == nullptr) continue;
     figure.subtitle = name_of(source, options_.wire);
     const std::string own = file.substr(0, dot) + "_" + std::to_string(source.port);
-    viz::draw_map(all[i++], figure, dot == std::string::npos ? own : own + file.substr(dot));
+    viz::draw_map(all[i++], figure, dot == std::string::npos ? own : own + file.substr(dot), options_.page);
   }
 }
 

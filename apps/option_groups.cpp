@@ -213,6 +213,57 @@ void add_threads(CLI::App& app, ThreadsOption& o) {
       ->type_name("N");
 }
 
+CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& help) {
+  return app.add_option("-o,--out", file, help)->check(picture())->type_name("FILE");
+}
+
+void add_page(CLI::App& app, PageOption& o) {
+  app.add_option_function<std::string>(
+         "--size",
+         [&o](const std::string& text) {
+           if (const auto size = read_size(text)) o.page.width = size->x, o.page.height = size->y;
+         },
+         "Width of the picture on paper, or width and greatest height [mm]; 85 is one column (default: 226 or so)")
+      ->check(readable(read_size, "W or WxH [mm] with W from 85 to 1000 and H from 60 to 1000, such as 85 or 170x120"))
+      ->type_name("W[xH]")
+      ->group("Picture");
+  app.add_option("--dpi", o.page.dpi, "Dots per inch of PNG pictures (default: 180)")
+      ->check(number(50.0, 1200.0))
+      ->type_name("N")
+      ->group("Picture");
+  app.add_flag_callback(
+         "--no-title", [&o] { o.page.title = false; }, "Neither title nor subtitle, for a caption's sake")
+      ->group("Picture");
+}
+
+void add_extent(CLI::App& app, PageOption& o) {
+  app.add_option_function<std::string>(
+         "--extent", [&o](const std::string& text) { o.page.extent = read_extent(text); },
+         "Area of the world to show [m] (default: all of it)")
+      ->check(readable(read_extent, "XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1"))
+      ->type_name("XMIN,YMIN,XMAX,YMAX")
+      ->group("Picture");
+}
+
+void add_format(CLI::App& app, std::string& format) {
+  add_choice(
+      app, "--format", {"png", "svg", "pdf"}, [&format](const std::string& word) { format = word; },
+      "Kind of the pictures (default: png)")
+      ->group("Picture");
+}
+
+void add_part(CLI::App& app, PartOption& o) {
+  app.add_option("--robots", o.robots, "Names of the robots to take (default: all)")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  app.add_option("--from", o.from, "Begin of the part to take [s] (default: 0)")
+      ->check(number(0.0, 1e9))
+      ->type_name("S");
+  app.add_option("--to", o.to, "End of the part to take [s] (default: the recording's)")
+      ->check(number(0.0, 1e9))
+      ->type_name("S");
+}
+
 void add_recording(CLI::App& app, RecordingOption& o) {
   app.add_option("recording", o.recording, "Folder of the recording")->required()->type_name("DIR");
 }

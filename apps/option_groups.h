@@ -77,6 +77,17 @@ void add_threads(CLI::App& app, ThreadsOption& o);
 /// Other programs beside `run` and `serve`, as options of this group.
 inline constexpr const char* kBridgeGroup = "Bridges to other programs (docs/bridges.md)";
 void add_bridges(CLI::App& app, BridgeOptions& o);
+/// `--out FILE` of one picture.
+CLI::Option* add_picture(CLI::App& app, std::string& file,
+                         const std::string& help = "Picture to write: .png, .svg or .pdf");
+/// `--size`, `--dpi` and `--no-title`.
+void add_page(CLI::App& app, PageOption& o);
+/// `--extent` of figures of a world.
+void add_extent(CLI::App& app, PageOption& o);
+/// `--format` of pictures in a folder.
+void add_format(CLI::App& app, std::string& format);
+/// `--robots` (names), `--from` and `--to`.
+void add_part(CLI::App& app, PartOption& o);
 /// The folder of a recorded run.
 void add_recording(CLI::App& app, RecordingOption& o);
 void add_sensor_type(CLI::App& app, SenseOptions& o);

@@ -11,6 +11,7 @@
 #include "apps/text.h"
 #include "base/suggest.h"
 #include "control/raw_text.h"
+#include "viz/picture_file.h"
 
 namespace sf::apps {
 
@@ -88,8 +89,8 @@ Validator picture() {
     std::filesystem::path file(text);
     const std::string suffix = file.extension().string();
     if (text.empty()) return std::string("expected a file, got ''");
-    if (suffix.empty() || suffix == ".png" || suffix == ".PNG") return std::string();
-    return fmt::format("pictures are PNG files, and '{}' ends in {}; write {}", text, suffix,
+    if (viz::format_of(text)) return std::string();
+    return fmt::format("pictures are PNG, SVG or PDF files, and '{}' ends in {}; write {}", text, suffix,
                        file.replace_extension(".png").string());
   };
 }
@@ -116,6 +117,16 @@ std::optional<world::Extent> read_extent(const std::string& text) {
   const auto v = read_coordinates(text, 4);
   if (!v || (*v)[0] >= (*v)[2] || (*v)[1] >= (*v)[3]) return std::nullopt;
   return world::Extent{(*v)[0], (*v)[1], (*v)[2], (*v)[3]};
+}
+
+std::optional<glm::dvec2> read_size(const std::string& text) {
+  const std::size_t x = text.find('x');
+  const auto width = read_coordinates(text.substr(0, x), 1);
+  const auto height =
+      x == std::string::npos ? std::optional(std::vector{0.0}) : read_coordinates(text.substr(x + 1), 1);
+  if (!width || !height || width->front() < 85.0 || width->front() > 1000.0) return std::nullopt;
+  if (x != std::string::npos && (height->front() < 60.0 || height->front() > 1000.0)) return std::nullopt;
+  return glm::dvec2{width->front(), height->front()};
 }
 
 std::optional<std::vector<std::uint16_t>> read_ports(const std::string& text) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/pose.h"
-#include "viz/canvas.h"
+#include "viz/paths.h"
 #include "world/world.h"
 
 namespace sf::apps {
@@ -26,7 +26,7 @@ Validator number(double first, double last);
 Validator one_of(std::vector<std::string> words);
 /// @param expected with its article
 Validator not_empty(const std::string& expected);
-/// A file that a picture is written to: there is PNG, and a name without a suffix may stand for it.
+/// A file that a picture is written to: its suffix is one of viz::format_of.
 Validator picture();
 /// An argument that `read` understands. @param expected with its article
 template <class Read>
@@ -46,6 +46,8 @@ std::optional<base::Pose> read_pose(const std::string& text);
 std::optional<viz::Line> read_line(const std::string& text);
 /// "XMIN,YMIN,XMAX,YMAX" [m], each within 1e7; not empty.
 std::optional<world::Extent> read_extent(const std::string& text);
+/// "85" or "170x120" [mm] as width in [85, 1000] and height in [60, 1000]; the height is 0 where there is none.
+std::optional<glm::dvec2> read_size(const std::string& text);
 /// "52000" or "52000-52016" (both ends included, at most 1024) as ports from 1 on.
 std::optional<std::vector<std::uint16_t>> read_ports(const std::string& text);
 

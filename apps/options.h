@@ -2,6 +2,7 @@
 // The arguments of each command as plain values. Groups that commands share come first; a command has those that it
 // names, and its own.
 
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -17,7 +18,8 @@
 #include "scenarios/plant.h"
 #include "scenarios/tradeoff.h"
 #include "sensors/sensor_type.h"
-#include "viz/canvas.h"
+#include "viz/paths.h"
+#include "viz/picture_file.h"
 #include "world/world.h"
 
 namespace sf::apps {
@@ -37,6 +39,17 @@ struct WorldOptions {
 
 struct RecordingOption {
   std::string recording;  ///< its folder
+};
+
+struct PageOption {
+  viz::Page page;
+};
+
+/// The part of a recording that a command is about.
+struct PartOption {
+  std::vector<std::string> robots;  ///< names; empty: all
+  double from = 0.0;                ///< [s] simulated
+  double to = HUGE_VAL;             ///< [s] simulated
 };
 
 struct SeedOption {
@@ -132,7 +145,7 @@ struct CheckOptions : WorldOptions, JsonOption {
   double rate = 0.0;  ///< [Hz] that sensors are compared with; 0: none
 };
 
-struct DrawOptions : WorldOptions {
+struct DrawOptions : WorldOptions, PageOption {
   std::string out;  ///< picture
 };
 
@@ -144,7 +157,7 @@ struct V2xOptions : OriginOption {
   double time = 0.0;  ///< [s] export: simulated
 };
 
-struct FieldOptions : WorldOptions, DeviceOption {
+struct FieldOptions : WorldOptions, DeviceOption, PageOption {
   std::string out;                      ///< picture
   double height = 0.0;                  ///< [m] of the figure
   std::optional<viz::Line> line;        ///< [m] of its profile
@@ -159,8 +172,25 @@ struct SenseOptions : WorldOptions, JsonOption, DeviceOption, NoReturnOption {
   std::uint32_t sensor = 0;        ///< among its sensors of that type
 };
 
-struct PlotOptions : RecordingOption, DeviceOption {
-  std::string out;  ///< folder; empty: the recording's
+struct PlotOptions : RecordingOption, PartOption, DeviceOption, PageOption {
+  std::string out;             ///< folder; empty: the recording's
+  std::string format = "png";  ///< suffix of the pictures
+  bool csv = false;            ///< the curves as CSV files, too
+};
+
+struct ExportOptions : RecordingOption, PartOption, DeviceOption {
+  std::string out;      ///< folder
+  bool vtk = false;     ///< VTK's files in place of CSV
+  double every = 1.0;   ///< [s] between files of a series
+  double height = 0.1;  ///< [m] of the field's plane
+};
+
+struct ViewOptions : RecordingOption, PartOption, DeviceOption {
+  bool three_d = false;    ///< VTK's window
+  double every = 0.1;      ///< [s] between frames
+  double height = 0.1;     ///< [m] of the field's plane
+  double time = 0.0;       ///< [s] of the first frame shown
+  std::string screenshot;  ///< picture to write in place of waiting for a user; empty: none
 };
 
 struct ExplainOptions : WorldOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {};
@@ -266,7 +296,7 @@ struct DumpOptions : JsonOption, BindOption, DurationOption {
   std::uint64_t count = 0;           ///< of datagrams after which it ends; 0: any
 };
 
-struct MapOptions : ReceiveOptions, WireOption, DurationOption {
+struct MapOptions : ReceiveOptions, WireOption, DurationOption, PageOption {
   std::vector<std::uint16_t> map_ports;  ///< to listen on
   bool merge = false;                    ///< of all of them one map
   std::string out;                       ///< picture; empty: none
@@ -291,8 +321,15 @@ struct VerifyOptions : RecordingOption, ThreadsOption, JsonOption, DeviceOption 
   std::uint64_t sample = 500;  ///< scans that are cast again in plain C++; 0: all
 };
 
-struct TradeoffOptions : WorldOptions, AccuracyTargetOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {
-  std::string out;  ///< folder; empty: none
+struct TradeoffOptions : WorldOptions,
+                         AccuracyTargetOptions,
+                         JsonOption,
+                         DeviceOption,
+                         CloneOptions,
+                         ThreadsOption,
+                         PageOption {
+  std::string out;             ///< folder; empty: none
+  std::string format = "png";  ///< suffix of the picture
 };
 
 struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption, BindOption {

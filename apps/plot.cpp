@@ -1,5 +1,7 @@
 // `plot`: pictures from a recording, later and elsewhere. Scans are computed again from the recorded poses and world.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -8,15 +10,15 @@
 #include "apps/plot_maps.h"
 #include "apps/plot_readings.h"
 #include "apps/progress_line.h"
+#include "apps/recording_csv.h"
+#include "apps/recording_part.h"
 #include "apps/report.h"
+#include "apps/scan_replay.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
-#include "base/time.h"
-#include "farm/farm.h"
-#include "record/recording.h"
 #include "scenarios/experiment.h"
-#include "sensors/laser.h"
+#include "viz/lights_figure.h"
 #include "viz/occupancy_figure.h"
 #include "viz/scan_map.h"
 #include "viz/trajectory_figure.h"
@@ -25,12 +27,12 @@ namespace sf::apps {
 
 namespace {
 
-std::vector<viz::Track> tracks_of(const record::Recording& recording, const world::World& world) {
+std::vector<viz::Track> tracks_of(const RecordingPart& part, const world::World& world) {
   std::vector<viz::Track> tracks;
-  for (std::size_t m = 0; m < recording.states.size(); ++m) {
-    if (world.movers[m].is_tag) continue;
-    viz::Track track{world.movers[m].name, std::nullopt, {}, {}, 1e-9 * static_cast<double>(recording.end_time)};
-    for (const record::StateSample& s : recording.states[m]) {
+  for (std::size_t m = 0; m < part.recording.states.size(); ++m) {
+    if (world.movers[m].is_tag || part.chosen[m] == 0) continue;
+    viz::Track track{world.movers[m].name, std::nullopt, {}, {}, part.seconds};
+    for (const record::StateSample& s : part.recording.states[m]) {
       if (base::is_absent(s.X_WM)) continue;
       track.poses.push_back(s.X_WM);
       track.contacts.push_back(s.contact);
@@ -40,6 +42,27 @@ std::vector<viz::Track> tracks_of(const record::Recording& recording, const worl
   return tracks;
 }
 
+/// Successive states of each light that are equal make one span.
+std::vector<viz::LightRow> light_rows(const record::Recording& recording, const world::World& world) {
+  std::vector<viz::LightRow> rows;
+  for (const world::Light& light : world.lights) rows.push_back({light.name, {}});
+  for (std::size_t t = 0; t < recording.lights.size(); ++t) {
+    const record::LightsSample& sample = recording.lights[t];
+    const double time = 1e-9 * static_cast<double>(sample.time);
+    const double end = t + 1 < recording.lights.size() ? 1e-9 * static_cast<double>(recording.lights[t + 1].time)
+                                                       : time + recording.info.interval;
+    for (std::size_t k = 0; k < std::min(rows.size(), sample.lights.size()); ++k) {
+      const auto state = static_cast<world::LightState>(sample.lights[k].state);
+      std::vector<viz::LightSpan>& spans = rows[k].spans;
+      if (!spans.empty() && spans.back().state == state)
+        spans.back().to = end;
+      else
+        spans.push_back({time, end, state});
+    }
+  }
+  return rows;
+}
+
 /// Pictures are written whole: a stop is heeded between two.
 /// @throws base::InputError when one was asked for.
 void go_on() {
@@ -47,57 +70,72 @@ void go_on() {
     throw base::InputError("interrupted: the pictures that were written are whole, others are not there");
 }
 
-/// Computes every laser's scan once a simulated second from where its robot was.
-void map_scans(const record::Recording& recording, const world::World& world, gpu::Device& device, viz::ScanMap& map) {
-  farm::FarmOptions quiet;
-  quiet.noise = false;
-  farm::Farm farm(world, device, quiet);
-  const auto every = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / recording.info.interval)));
-  std::vector<base::Report> reports;
-  const std::size_t ticks = recording.states.empty() ? 0 : recording.states[0].size();
+/// Computes every chosen laser's scan once a simulated second from where its robot was.
+void map_scans(const RecordingPart& part, const world::World& world, gpu::Device& device, viz::ScanMap& map) {
+  ScanReplay replay(part, world, device);
+  const std::vector<std::size_t> ticks = ticks_apart(part, 1.0);
   Progress progress("mapping");
-  for (std::size_t t = 0; t < ticks; t += every) {
-    reports.clear();
-    for (std::uint32_t m = 0; m < recording.states.size(); ++m) {
-      const record::StateSample& s = recording.states[m][t];
-      farm.set_absent(m, base::is_absent(s.X_WM));
-      farm.subscribe(m, 1u << sensors::kLaser);
-      reports.push_back({m, s.time, s.X_WM, s.velocity});
-    }
-    // Slow sensors look too: each tick is as far from the last as their period.
-    const auto now = static_cast<std::int64_t>(t + 1) * 1000 * base::kSecond;
-    for (const base::ReadingBlock& reading : farm.tick(now, reports)) map.add(world, reading);
-    progress.show(static_cast<double>(t) / static_cast<double>(ticks));
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    for (const base::ReadingBlock& scan : replay.scans_at(ticks[i])) map.add(world, scan);
+    progress.show(static_cast<double>(i) / static_cast<double>(ticks.size()));
     go_on();
   }
+}
+
+/// Names of the files written, each at once.
+struct Written {
+  void operator()(const std::string& file) const {
+    print_message("wrote {}", file);
+    go_on();
+  }
+};
+
+void draw_paths(const RecordingPart& part, const world::World& world, const PlotOptions& options,
+                const std::string& folder) {
+  const std::string trajectories = folder + "/trajectories." + options.format;
+  viz::draw_trajectories(world, tracks_of(part, world), trajectories, "robot", options.page);
+  Written{}(trajectories);
+  if (options.csv) Written{}(write_trajectories_csv(part, folder));
+}
+
+void draw_lights(const RecordingPart& part, const world::World& world, const PlotOptions& options,
+                 const std::string& folder) {
+  if (part.recording.lights.empty() || world.lights.empty()) return;
+  const std::string lights = folder + "/lights." + options.format;
+  const std::vector<viz::LightRow> rows = light_rows(part.recording, world);
+  viz::draw_light_states(rows, fmt::format("{}: {}", part.recording.info.world, counted(rows.size(), "light")), lights,
+                         options.page);
+  Written{}(lights);
+  if (options.csv) Written{}(write_lights_csv(part, folder));
+}
+
+void draw_occupancy(const RecordingPart& part, const world::World& world, const PlotOptions& options,
+                    const std::string& folder) {
+  if (!has_laser(part, world))
+    return print_message("no occupancy.{}: none of these robots has a laser", options.format);
+  gpu::Device device(options.device);
+  viz::ScanMap map(viz::grid_over(world.extent));
+  map_scans(part, world, device, map);
+  const std::string occupancy = folder + "/occupancy." + options.format;
+  viz::draw_occupancy(world, map.states(), occupancy, options.page);
+  print_message("wrote {}", occupancy);
 }
 
 }  // namespace
 
 int plot(const PlotOptions& options) {
-  const record::Recording recording = record::open_recording(options.recording);
-  print_damage(recording);
-  const world::World world = world::from_snapshot(recording.info.snapshot);
-  const std::filesystem::path folder =
-      options.out.empty() ? std::filesystem::path(recording.file).parent_path() : std::filesystem::path(options.out);
-  scenarios::make_folder(folder.string());
+  const RecordingPart part = open_part(options.recording, options);
+  const world::World world = world::from_snapshot(part.recording.info.snapshot);
+  const std::string folder =
+      options.out.empty() ? std::filesystem::path(part.recording.file).parent_path().string() : options.out;
+  scenarios::make_folder(folder);
 
   install_stop_handlers();
-  const std::string trajectories = (folder / "trajectories.png").string();
-  viz::draw_trajectories(world, tracks_of(recording, world), trajectories);
-  print_message("wrote {}", trajectories);
-  go_on();
-  for (const std::string& file : draw_readings(recording, folder.string())) print_message("wrote {}", file);
-  go_on();
-  for (const std::string& file : draw_maps(recording, world, folder.string())) print_message("wrote {}", file);
-  go_on();
-
-  gpu::Device device(options.device);
-  viz::ScanMap map(viz::grid_over(world.extent));
-  map_scans(recording, world, device, map);
-  const std::string occupancy = (folder / "occupancy.png").string();
-  viz::draw_occupancy(world, map.states(), occupancy);
-  print_message("wrote {}", occupancy);
+  draw_paths(part, world, options, folder);
+  for (const std::string& file : draw_readings(part.recording, options, folder)) Written{}(file);
+  draw_lights(part, world, options, folder);
+  for (const std::string& file : draw_maps(part.recording, world, options, folder)) Written{}(file);
+  draw_occupancy(part, world, options, folder);
   return 0;
 }
 

@@ -48,12 +48,12 @@ std::vector<LastMap> last_maps(const record::Recording& recording, const world::
 }  // namespace
 
 std::vector<std::string> draw_maps(const record::Recording& recording, const world::World& world,
-                                   const std::string& folder) {
+                                   const PlotOptions& options, const std::string& folder) {
   const std::vector<LastMap> all = last_maps(recording, world);
   std::vector<std::string> files;
   const auto draw = [&](const maps::OccupancyGrid& grid, const viz::MapFigure& figure, const std::string& file) {
-    files.push_back(folder + "/" + file);
-    viz::draw_map(grid, figure, files.back());
+    files.push_back(folder + "/" + file + "." + options.format);
+    viz::draw_map(grid, figure, files.back(), options.page);
   };
   if (all.empty()) return files;
   std::vector<const maps::OccupancyGrid*> grids;
@@ -64,10 +64,10 @@ std::vector<std::string> draw_maps(const record::Recording& recording, const wor
   }
   if (maps::merge_problem(grids).empty()) {
     if (all.size() > 1) figure.subtitle += fmt::format(", {} maps", all.size());
-    draw(maps::merge(grids), figure, "map.png");
+    draw(maps::merge(grids), figure, "map");
     return files;
   }
-  for (const LastMap& map : all) draw(map.grid, {"Occupancy map", map.name, {map.place}}, "map_" + map.name + ".png");
+  for (const LastMap& map : all) draw(map.grid, {"Occupancy map", map.name, {map.place}}, "map_" + map.name);
   return files;
 }
 

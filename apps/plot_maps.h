@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/options.h"
 #include "record/recording.h"
 #include "world/world.h"
 
@@ -13,6 +14,6 @@ namespace sf::apps {
 /// where theirs cannot be merged.
 /// @return the files written.
 std::vector<std::string> draw_maps(const record::Recording& recording, const world::World& world,
-                                   const std::string& folder);
+                                   const PlotOptions& options, const std::string& folder);
 
 }  // namespace sf::apps

@@ -100,7 +100,7 @@ std::optional<int> draw_roads(const DrawOptions& options) {
   std::vector<world::Warning> warnings;
   const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
   print_warnings(options.world, warnings);
-  viz::draw_roads(network, options.out);
+  viz::draw_roads(network, options.out, options.page);
   print_message("wrote {}", options.out);
   return 0;
 }

@@ -10,6 +10,7 @@ class App;
 namespace sf::apps {
 
 void add_inspect_commands(CLI::App& app, Call& call);  ///< worlds, devices, recordings
+void add_export_commands(CLI::App& app, Call& call);   ///< recordings for other programs
 void add_run_commands(CLI::App& app, Call& call);      ///< the farm, robots, receivers
 void add_test_commands(CLI::App& app, Call& call);     ///< experiments, scenarios, self-tests
 void add_vision_commands(CLI::App& app, Call& call);   ///< cameras

@@ -41,7 +41,9 @@ void add_draw(CLI::App& app, Call& call) {
   auto& o = add_command(*sub, call, draw);
   add_examples(*sub, {"worlds/simville/simville.world -o simville.png"});
   add_world(*sub, o);
-  sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(picture())->type_name("FILE");
+  add_picture(*sub, o.out)->required();
+  add_page(*sub, o);
+  add_extent(*sub, o);
 }
 
 void add_field(CLI::App& app, Call& call) {
@@ -54,7 +56,8 @@ void add_field(CLI::App& app, Call& call) {
       ->required()
       ->check(number(-1e6, 1e6))
       ->type_name("Z");
-  sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(picture())->type_name("FILE");
+  add_picture(*sub, o.out)->required();
+  add_page(*sub, o);
   sub->add_option_function<std::string>(
          "--line", [&o](const std::string& text) { o.line = read_line(text); },
          "Ends of the profile's line [m] (default: along the magnets)")
@@ -95,13 +98,18 @@ void add_sense(CLI::App& app, Call& call) {
 
 void add_plot(CLI::App& app, Call& call) {
   CLI::App* sub =
-      app.add_subcommand("plot", "Draw trajectories, an occupancy map and recorded readings from a recorded run");
+      app.add_subcommand("plot", "Draw trajectories, an occupancy map, readings and lights from a recorded run");
   auto& o = add_command(*sub, call, plot);
-  add_examples(*sub, {"out/run"});
+  add_examples(*sub, {"out/run", "out/run -o figures --format pdf --size 85 --no-title --robots robot1,robot2"});
   add_recording(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
+  add_format(*sub, o.format);
+  sub->add_flag("--csv", o.csv, "Write every plotted curve as a CSV file beside its figure")->group("Picture");
+  add_page(*sub, o);
+  add_extent(*sub, o);
+  add_part(*sub, o);
   add_device(*sub, o);
 }
 

@@ -85,9 +85,11 @@ void add_tradeoff(CLI::App& app, Call& call) {
   auto& o = add_command(*sub, call, tradeoff);
   add_examples(*sub, {"worlds/cave.world --max-error 5mm"});
   add_world(*sub, o);
-  sub->add_option("-o,--out", o.out, "Folder for tradeoff.csv and tradeoff.png")
+  sub->add_option("-o,--out", o.out, "Folder for tradeoff.csv and the picture, tradeoff.png")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
+  add_format(*sub, o.format);
+  add_page(*sub, o);
   add_accuracy_target(*sub, o);
   sub->add_flag("--auto", o.automatic, "Print only the words for --accuracy, for scripts");
   add_json(*sub, o);

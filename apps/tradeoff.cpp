@@ -55,7 +55,7 @@ std::string advice_text(const std::vector<scenarios::ModeResult>& results, const
 }
 
 void draw(const std::string& world, const std::string& device, const std::vector<scenarios::ModeResult>& results,
-          const std::string& file) {
+          const std::string& file, const viz::Page& page) {
   std::vector<viz::TradeoffPanel> panels;
   for (const scenarios::ModeResult& g : results) {
     if (panels.empty() || panels.back().title != g.sensor)
@@ -70,7 +70,8 @@ void draw(const std::string& world, const std::string& device, const std::vector
         {g.mode, g.rate, g.median, g.p99, g.max, g.front, {g.covered, g.covered_max, g.bound}});
   }
   viz::draw_tradeoff("Speed against error: " + world,
-                     "whole ticks on " + device + "; blue: none is as fast with 99 % of errors as small", panels, file);
+                     "whole ticks on " + device + "; blue: none is as fast with 99 % of errors as small", panels, file,
+                     page);
 }
 
 void write(const TradeoffOptions& options, const world::World& world, const gpu::Device& device,
@@ -78,7 +79,7 @@ void write(const TradeoffOptions& options, const world::World& world, const gpu:
   scenarios::make_folder(options.out);
   const std::filesystem::path folder(options.out);
   scenarios::write_text((folder / "tradeoff.csv").string(), scenarios::csv_of(results));
-  draw(world.name, device.info().name, results, (folder / "tradeoff.png").string());
+  draw(world.name, device.info().name, results, (folder / ("tradeoff." + options.format)).string(), options.page);
 }
 
 std::vector<scenarios::ModeResult> measure(const world::World& world, gpu::Device& device, std::uint64_t seed,

@@ -87,7 +87,7 @@ class Overlay {
       if (!videos_.empty())
         videos_[i]->write(picture);
       else
-        viz::write_png(fmt::format("{}/{}-{:06}.png", path_, camera.name, number), picture.pixels.data(), picture.width,
+        viz::write_png(fmt::format("{}/{}-{:06}.png", path_, camera.name, number), picture.pixels, picture.width,
                        picture.height, viz::PngContent::photograph);
     }
   }

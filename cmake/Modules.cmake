@@ -11,9 +11,13 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_library(SODIUM sodium REQUIRED)  # libsodium-dev
 find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-dev)
 
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-ft cairo-pdf)  # libcairo2-dev
+
 # Debian's VTK 9.1 looks for MPI; this project does not use it.
 find_package(MPI QUIET COMPONENTS C)
-find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel RenderingFreeType)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML FiltersFlowPaths InteractionWidgets RenderingOpenGL2 RenderingFreeType)
+find_package(X11 REQUIRED)
 
 # OpenCV without its CMake package, which Debian has only together with all of OpenCV (libopencv-dev).
 find_path(OPENCV_INCLUDE opencv2/aruco.hpp PATH_SUFFIXES opencv4 REQUIRED)  # libopencv-contrib-dev

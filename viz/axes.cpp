@@ -58,25 +58,8 @@ void draw_frame(Canvas& canvas, const PixelBox& plot) {
   canvas.polyline(corners, theme::kHairline, theme::kFrame);
 }
 
-/// `text` shortened until it is at most `width` [px] wide.
-std::string fitted(std::string text, const TextStyle& style, double width) {
-  if (text_size(text, style).x <= width) return text;
-  while (!text.empty() && text_size(text + "...", style).x > width) text.pop_back();
-  return text + "...";
-}
-
-void draw_names(Canvas& canvas, const FigureLayout& at, const FigureOptions& options) {
-  const double room = at.width - at.plot.x_min - 20.0;
-  TextStyle style;
-  style.size = 28;
-  style.bold = true;
-  canvas.text({at.plot.x_min + 0.0, 42.0}, fitted(options.title, style, room), style);
-  style = small_text();
-  style.size = 19;
-  style.color = theme::kLabel;
-  canvas.text({at.plot.x_min + 0.0, 77.0}, fitted(options.subtitle, style, room), style);
-
-  style = small_text();
+void draw_axis_names(Canvas& canvas, const FigureLayout& at) {
+  TextStyle style = small_text();
   style.across = Anchor::middle;
   canvas.text({0.5 * (at.plot.x_min + at.plot.x_max), at.plot.y_max + 52.0}, "x [m]", style);
   style.upwards = true;
@@ -94,27 +77,6 @@ void draw_scale_bar(Canvas& canvas, const FigureLayout& at) {
   style.across = Anchor::end;
   canvas.text({left - 10.0, y},
               metres >= 1000.0 ? fmt::format("{:g} km", metres / 1000.0) : fmt::format("{:g} m", metres), style);
-}
-
-void draw_bar(Canvas& canvas, const FigureLayout& at, const ColorBar& bar) {
-  const double x0 = at.plot.x_max + 28.0;
-  const double x1 = x0 + 20.0;
-  const double high = std::min<double>(at.plot.y_max - at.plot.y_min, 520.0);
-  const double y1 = at.plot.y_max;
-  const double y0 = y1 - high;
-  std::vector<std::uint32_t> colors(bar.colors.rbegin(), bar.colors.rend());
-  canvas.image({x0, y0}, {x1, y1}, {1, static_cast<int>(colors.size()), colors});
-  const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
-  canvas.polyline(corners, theme::kHairline, theme::kFrame);
-  TextStyle style = small_text();
-  style.down = Anchor::start;
-  canvas.text({x1 + 9.0, y0}, bar.high, style);
-  style.down = Anchor::end;
-  canvas.text({x1 + 9.0, y1}, bar.low, style);
-  style.down = Anchor::middle;
-  style.across = Anchor::start;
-  style.upwards = true;
-  canvas.text({x1 + 10.0, 0.5 * (y0 + y1)}, bar.title, style);
 }
 
 }  // namespace
@@ -135,11 +97,11 @@ void Axes::save(const std::string& path) {
   canvas_.unclip();
   draw_frame(canvas_, layout_.plot);
   draw_ticks(canvas_, layout_);
-  draw_names(canvas_, layout_, options_);
+  draw_heading(canvas_, layout_.plot.x_min, layout_.heading);
+  draw_axis_names(canvas_, layout_);
   draw_scale_bar(canvas_, layout_);
-  if (options_.bar) draw_bar(canvas_, layout_, *options_.bar);
   draw_legend(canvas_, {layout_.plot.x_min + 0.0, layout_.legend_top}, options_.legend, layout_.legend);
-  canvas_.save_png(path);
+  save_picture(canvas_.drawing(), path, options_.page);
 }
 
 }  // namespace sf::viz

@@ -7,24 +7,16 @@
 //   axes.save("cave.png");
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "viz/canvas.h"
+#include "viz/heading.h"
 #include "viz/legend.h"
 #include "viz/theme.h"
 #include "world/world.h"
 
 namespace sf::viz {
-
-/// A strip of colours on the right of the plot.
-struct ColorBar {
-  std::string title;
-  std::string low;                    ///< text at the lower end
-  std::string high;                   ///< text at the upper end
-  std::vector<std::uint32_t> colors;  ///< from low to high, at least one
-};
 
 struct FigureOptions {
   std::string title;
@@ -33,8 +25,8 @@ struct FigureOptions {
   double margin = 0.03;                      ///< [-] free margin around `extent`, relative to its longer side
   std::uint32_t background = theme::kWhite;  ///< of the plot
   std::vector<LegendItem> legend;
-  std::optional<ColorBar> bar;
-  int long_side = 1600;  ///< [px] of the whole picture, in [600, 8000]
+  int long_side = 1600;  ///< [px] of the whole picture, in [600, 8000]; a page with a size of its own has priority
+  Page page;
 };
 
 /// Positions of the parts of a figure. All [px] but `shown`.
@@ -47,6 +39,7 @@ struct FigureLayout {
   double tick_spacing = 90.0;  ///< at least; wide enough for the widest label along x
   std::vector<LegendPlace> legend;
   double legend_top = 0.0;
+  Heading heading;
 };
 FigureLayout lay_out(const FigureOptions& options);
 
@@ -64,7 +57,7 @@ class Axes {
   }
   double scale() const { return layout_.scale; }
 
-  /// Adds frame, ticks, texts and legend, and writes the picture.
+  /// Adds frame, ticks, texts and legend, and writes the picture in the format of its suffix.
   /// @throws base::InputError naming the path when it cannot be written.
   void save(const std::string& path);
 

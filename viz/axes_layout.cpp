@@ -9,7 +9,6 @@ namespace sf::viz {
 namespace {
 
 constexpr double kEdge = 26.0;        // around the whole figure
-constexpr double kTitle = 74.0;       // title and subtitle
 constexpr double kTicksBelow = 68.0;  // tick labels and the axis' name
 constexpr double kAxisName = 34.0;    // left of the tick labels
 constexpr double kSmallestWide = 620.0;
@@ -21,10 +20,10 @@ struct Size {
 
 /// The extent with its margin, never empty.
 world::Extent padded(const FigureOptions& options) {
-  world::Extent e = options.extent;
+  world::Extent e = options.page.extent.value_or(options.extent);
   SF_CHECK(std::isfinite(e.x_min + e.x_max + e.y_min + e.y_max) && e.x_min <= e.x_max && e.y_min <= e.y_max,
            "the extent of a figure must be finite and in order");
-  double pad = options.margin * std::max(e.x_max - e.x_min, e.y_max - e.y_min);
+  double pad = options.page.extent ? 0.0 : options.margin * std::max(e.x_max - e.x_min, e.y_max - e.y_min);
   if (e.x_min == e.x_max && e.y_min == e.y_max) pad = 1.0;
   e.x_min -= pad, e.y_min -= pad, e.x_max += pad, e.y_max += pad;
   return e;
@@ -37,13 +36,6 @@ double widest_label(double from, double to, double smallest_step) {
   for (const double value : ticks.at)
     widest = std::max(widest, text_size(tick_text(value, ticks.decimals), small_text()).x);
   return widest;
-}
-
-double bar_width(const FigureOptions& options) {
-  if (!options.bar) return 0.0;
-  const TextStyle style = small_text();
-  const double texts = std::max(text_size(options.bar->low, style).x, text_size(options.bar->high, style).x);
-  return 84.0 + texts;
 }
 
 /// Grows one side of `shown` about its middle so that it fills `plot` at `scale`.
@@ -60,15 +52,20 @@ FigureLayout lay_out(const FigureOptions& options) {
            "long side " + std::to_string(options.long_side) + " px");
   const world::Extent wanted = padded(options);
   const Size extent{std::max(wanted.x_max - wanted.x_min, 1e-9), std::max(wanted.y_max - wanted.y_min, 1e-9)};
-  const double right = kEdge + bar_width(options);
-  const double header = options.title.empty() ? kEdge : kEdge + kTitle;
+  const double width = page_pixels(options.page.width, options.long_side);
+  // A column is narrow beside its texts: a figure of a given width alone may be higher than wide.
+  const double height =
+      page_pixels(options.page.height, static_cast<int>(options.page.width > 0.0 ? 1.6 * width : width));
 
   // Labels, legend and scale depend on each other; two iterations suffice.
   FigureLayout layout;
   double left = kEdge + kAxisName + 40.0;
   double footer = kTicksBelow + kLegendRow + kEdge;
+  double heading_width = width - left - kEdge;
   for (int round = 0; round < 3; ++round) {
-    const Size room{options.long_side - left - right, options.long_side - header - footer};
+    layout.heading = make_heading(options.title, options.subtitle, heading_width, options.page);
+    const double header = layout.heading.height;
+    const Size room{width - left - kEdge, std::max(height - header - footer, 1.0)};
     layout.scale = std::min(room.x / extent.x, room.y / extent.y);
     const Size plot{std::clamp(std::round(extent.x * layout.scale), std::min(kSmallestWide, room.x), room.x),
                     std::clamp(std::round(extent.y * layout.scale), std::min(kSmallestHigh, room.y), room.y)};
@@ -86,9 +83,10 @@ FigureLayout lay_out(const FigureOptions& options) {
     left = kEdge + kAxisName +
            widest_label(layout.shown.y_min, layout.shown.y_max, layout.tick_spacing / layout.scale) + 14.0;
     footer = kTicksBelow + rows * kLegendRow + kEdge;
+    heading_width = layout.plot.x_max + kEdge - left - kEdge;
   }
   layout.legend_top = layout.plot.y_max + kTicksBelow + 8.0;
-  layout.width = static_cast<int>(std::ceil(layout.plot.x_max + right));
+  layout.width = static_cast<int>(std::ceil(layout.plot.x_max + kEdge));
   layout.height = static_cast<int>(std::ceil(layout.plot.y_max + footer));
   return layout;
 }

@@ -1,51 +1,22 @@
 #include "viz/canvas.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
-#include "viz/png.h"
-#include "viz/text_renderer.h"
+#include "viz/drawing_backend.h"
 
 namespace sf::viz {
 namespace {
 
 constexpr int kLargestSide = 16384;
 
-using Channels = std::array<std::uint8_t, 3>;
-
-Channels channels(std::uint32_t color) {
-  return {static_cast<std::uint8_t>(color >> 16), static_cast<std::uint8_t>(color >> 8),
-          static_cast<std::uint8_t>(color)};
-}
-
-float opacity(std::uint32_t color) { return static_cast<float>(color >> 24) / 255.0f; }
-
-void blend(std::uint8_t* pixel, const Channels& color, float amount) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float old = pixel[c];
-    pixel[c] = static_cast<std::uint8_t>(old + (static_cast<float>(color[c]) - old) * amount + 0.5f);
-  }
-}
-
-/// VTK's built-in font has Latin letters only and rounds square brackets, so a complete font is used when one is
-/// installed.
-const std::string& font_file(bool bold) {
-  static const auto installed = [](const char* path) { return std::filesystem::exists(path) ? path : ""; };
-  static const std::string regular = installed("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf");
-  static const std::string heavy = installed("/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf");
-  return bold ? heavy : regular;
-}
-
-/// The glyphs of `text` in a tight box.
-GlyphBitmap glyph_bitmap(const std::string& text, const TextStyle& style) {
-  GlyphBitmap stencil;
-  SF_CHECK(text_renderer().render({text, style.size, style.bold, style.upwards, font_file(style.bold)}, stencil),
-           "cannot render '" + text + "'");
-  return stencil;
-}
+// Parts of the em height above and below the baseline, of letters without accents.
+constexpr double kAscent = 0.78;
+constexpr double kDescent = 0.24;
 
 double anchored(double at, double size, Anchor anchor) {
   if (anchor == Anchor::start) return at;
@@ -60,88 +31,75 @@ std::vector<glm::dvec2> circle(glm::dvec2 center, double radius) {
   return points;
 }
 
+/// Length of the UTF-8 character at the start of `text`; 0 when there is none that can be drawn.
+std::size_t character_length(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<std::uint8_t>(text[k]); };
+  const std::size_t length = byte(0) < 0x80       ? 1
+                             : byte(0) >> 5 == 6  ? 2
+                             : byte(0) >> 4 == 14 ? 3
+                             : byte(0) >> 3 == 30 ? 4
+                                                  : 0;
+  if (length == 0 || length > text.size()) return 0;
+  std::uint32_t code = length == 1 ? byte(0) : byte(0) & (0x7Fu >> length);
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byte(k) & 0xC0) != 0x80) return 0;
+    code = code << 6 | (byte(k) & 0x3Fu);
+  }
+  constexpr std::array<std::uint32_t, 5> kLeast{0, 0x20, 0xA0, 0x800, 0x10000};
+  const bool surrogate = code >= 0xD800 && code < 0xE000;
+  const bool none = (code & 0xFFFEu) == 0xFFFEu || (code >= 0xFDD0 && code < 0xFDF0) || code == 0x7F;
+  return code < kLeast[length] || code > 0x10FFFF || surrogate || none ? 0 : length;
+}
+
+/// `text` with '?' in place of bytes that are not UTF-8 and of control characters.
+std::string drawable(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t length = character_length(text);
+    out += length > 0 ? text.substr(0, length) : "?";
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return out;
+}
+
+Lettering lettering(const std::string& text, const TextStyle& style) {
+  return {drawable(text), style.size, style.bold, style.upwards, {}, style.color | theme::kBlack, style.halo};
+}
+
 }  // namespace
-
-struct Canvas::Surface {
-  Surface(int w, int h)
-      : width(w),
-        height(h),
-        pixels(3 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)),
-        strokes(w, h),
-        areas(w, h),
-        clip{0, 0, w, h} {}
-  std::uint8_t* at(int x, int y) {
-    return pixels.data() +
-           3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
-  }
-  void paint(CoverageBuffer& rows, bool edges, std::uint32_t color) {
-    const Channels rgb = channels(color);
-    const float whole = opacity(color);
-    rows.drain([&](int y, int x_min, std::span<float> part) {
-      if (edges) sum_edges(part);
-      std::uint8_t* pixel = at(x_min, y);
-      for (const float coverage : part) {
-        if (coverage > 0.002f) blend(pixel, rgb, coverage * whole);
-        pixel += 3;
-      }
-    });
-  }
-  void stamp(const GlyphBitmap& text, int left, int top, std::uint32_t color, float gain) {
-    const Channels rgb = channels(color);
-    const std::uint8_t* coverage = text.coverage.data();
-    for (int y = top; y < top + text.height; ++y)
-      for (int x = left; x < left + text.width; ++x) {
-        const float alpha = static_cast<float>(*coverage++) / 255.0f;
-        const bool inside = y >= clip.y_min && y < clip.y_max && x >= clip.x_min && x < clip.x_max;
-        if (inside && alpha > 0.0f) blend(at(x, y), rgb, std::min(1.0f, alpha * gain) * opacity(color));
-      }
-  }
-
-  int width;
-  int height;
-  std::vector<std::uint8_t> pixels;  ///< red, green, blue; row by row, the top row first
-  CoverageBuffer strokes;
-  CoverageBuffer areas;
-  PixelBox clip;
-};
 
 glm::dvec2 text_size(const std::string& text, const TextStyle& style) {
   if (text.empty()) return {};
-  const GlyphBitmap stencil = glyph_bitmap(text, style);
-  return {static_cast<double>(stencil.width), static_cast<double>(stencil.height)};
+  const glm::dvec2 flat{drawing_backend().text_width(lettering(text, style)), (kAscent + kDescent) * style.size};
+  return style.upwards ? glm::dvec2{flat.y, flat.x} : flat;
 }
 
-Canvas::Canvas(int width, int height, std::uint32_t background) {
+Canvas::Canvas(int width, int height, std::uint32_t background) : drawing_{width, height, background, {}} {
   SF_CHECK(width >= 1 && height >= 1 && width <= kLargestSide && height <= kLargestSide,
            "a canvas of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
-  surface_ = std::make_unique<Surface>(width, height);
-  const Channels rgb = channels(background);
-  for (auto pixel = surface_->pixels.begin(); pixel != surface_->pixels.end(); pixel += 3)
-    std::copy(rgb.begin(), rgb.end(), pixel);
+  unclip();
 }
-Canvas::~Canvas() = default;
-Canvas::Canvas(Canvas&&) noexcept = default;
-Canvas& Canvas::operator=(Canvas&&) noexcept = default;
-
-int Canvas::width() const { return surface_->width; }
-int Canvas::height() const { return surface_->height; }
 
 void Canvas::clip(const PixelBox& box) {
-  surface_->clip = {std::max(box.x_min, 0), std::max(box.y_min, 0), std::min(box.x_max, width()),
-                    std::min(box.y_max, height())};
+  clip_ = {std::max(box.x_min, 0), std::max(box.y_min, 0), std::min(box.x_max, width()), std::min(box.y_max, height())};
+  drawing_.shapes.push_back(Clip{clip_});
 }
-void Canvas::unclip() { surface_->clip = {0, 0, width(), height()}; }
+void Canvas::unclip() { clip({0, 0, width(), height()}); }
+
+PathBox Canvas::visible(double beyond) const {
+  return {{clip_.x_min - beyond, clip_.y_min - beyond}, {clip_.x_max + beyond, clip_.y_max + beyond}};
+}
 
 void Canvas::polyline(std::span<const glm::dvec2> points, double line_width, std::uint32_t color) {
-  if (points.size() == 1) add_line(surface_->strokes, surface_->clip, points[0], points[0], line_width);
-  for (std::size_t i = 0; i + 1 < points.size(); ++i)
-    add_line(surface_->strokes, surface_->clip, points[i], points[i + 1], line_width);
-  surface_->paint(surface_->strokes, false, color);
+  std::vector<Line> parts;
+  if (points.size() == 1) parts.push_back({points[0], points[0]});
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) parts.push_back({points[i], points[i + 1]});
+  lines(parts, line_width, color);
 }
 
 void Canvas::lines(std::span<const Line> lines, double line_width, std::uint32_t color) {
-  for (const Line& l : lines) add_line(surface_->strokes, surface_->clip, l.a, l.b, line_width);
-  surface_->paint(surface_->strokes, false, color);
+  Paths paths = cut_lines(lines, visible(line_width));
+  if (!paths.empty()) drawing_.shapes.push_back(Stroke{std::move(paths), line_width, color});
 }
 
 void Canvas::line(glm::dvec2 a, glm::dvec2 b, double line_width, std::uint32_t color) {
@@ -150,14 +108,16 @@ void Canvas::line(glm::dvec2 a, glm::dvec2 b, double line_width, std::uint32_t c
 }
 
 void Canvas::polygon(std::span<const glm::dvec2> points, std::uint32_t color) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    add_edge(surface_->areas, surface_->clip, points[i], points[(i + 1) % points.size()]);
-  surface_->paint(surface_->areas, true, color);
+  std::vector<glm::dvec2> outline;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(outline),
+               [](const glm::dvec2& p) { return std::isfinite(p.x + p.y); });
+  Paths paths = cut_outlines({std::move(outline)}, visible(1.0));
+  if (!paths.empty()) drawing_.shapes.push_back(Fill{std::move(paths), color});
 }
 
 void Canvas::area(std::span<const Line> edges, std::uint32_t color) {
-  for (const Line& e : edges) add_edge(surface_->areas, surface_->clip, e.a, e.b);
-  surface_->paint(surface_->areas, true, color);
+  Paths paths = cut_outlines(join_edges(edges), visible(1.0));
+  if (!paths.empty()) drawing_.shapes.push_back(Fill{std::move(paths), color});
 }
 
 void Canvas::disc(glm::dvec2 center, double radius, std::uint32_t color) { polygon(circle(center, radius), color); }
@@ -169,45 +129,20 @@ void Canvas::ring(glm::dvec2 center, double radius, double line_width, std::uint
 }
 
 void Canvas::text(glm::dvec2 at, const std::string& text, const TextStyle& style) {
-  if (text.empty()) return;
-  const GlyphBitmap letters = glyph_bitmap(text, style);
-  const int left = static_cast<int>(std::lround(anchored(at.x, letters.width, style.across)));
-  const int top = static_cast<int>(std::lround(anchored(at.y, letters.height, style.down)));
-  if (style.halo >> 24) {
-    for (int dy = -2; dy <= 2; ++dy)
-      for (int dx = -2; dx <= 2; ++dx)
-        if (dx * dx + dy * dy <= 5) surface_->stamp(letters, left + dx, top + dy, style.halo, 0.5f);
-  }
-  surface_->stamp(letters, left, top, style.color, 1.0f);
+  if (text.empty() || !std::isfinite(at.x + at.y)) return;
+  const glm::dvec2 size = text_size(text, style);
+  const glm::dvec2 low{anchored(at.x, size.x, style.across), anchored(at.y, size.y, style.down)};
+  Lettering letters = lettering(text, style);
+  const double rise = kAscent * style.size;
+  letters.at = style.upwards ? low + glm::dvec2{rise, size.y} : low + glm::dvec2{0.0, rise};
+  drawing_.shapes.push_back(std::move(letters));
 }
 
 void Canvas::image(glm::dvec2 from, glm::dvec2 to, const ColorGrid& cells) {
   SF_CHECK(cells.columns > 0 && cells.rows > 0 && to.x > from.x && to.y > from.y &&
                cells.colors.size() == static_cast<std::size_t>(cells.columns) * static_cast<std::size_t>(cells.rows),
            "image of " + std::to_string(cells.columns) + " x " + std::to_string(cells.rows));
-  const PixelBox& clip = surface_->clip;
-  const glm::dvec2 step{cells.columns / (to.x - from.x), cells.rows / (to.y - from.y)};
-  const int y_end = std::min(clip.y_max, static_cast<int>(std::ceil(to.y)));
-  const int x_end = std::min(clip.x_max, static_cast<int>(std::ceil(to.x)));
-  for (int y = std::max(clip.y_min, static_cast<int>(std::floor(from.y))); y < y_end; ++y) {
-    const double v = (y - from.y) * step.y;
-    for (int x = std::max(clip.x_min, static_cast<int>(std::floor(from.x))); x < x_end; ++x) {
-      const double u = (x - from.x) * step.x;
-      const BoxMean mean = box_mean(cells, u, u + step.x, v, v + step.y);
-      Channels rgb;
-      for (std::size_t c = 0; c < 3; ++c) rgb[c] = static_cast<std::uint8_t>(mean.rgb[c] + 0.5);
-      blend(surface_->at(x, y), rgb, static_cast<float>(std::min(1.0, mean.area / (step.x * step.y))));
-    }
-  }
+  drawing_.shapes.push_back(CellImage{from, to, cells.columns, cells.rows, {cells.colors.begin(), cells.colors.end()}});
 }
-
-std::uint32_t Canvas::pixel(int x, int y) const {
-  SF_CHECK(x >= 0 && y >= 0 && x < width() && y < height(),
-           "pixel " + std::to_string(x) + ", " + std::to_string(y) + " is outside the picture");
-  const std::uint8_t* p = surface_->at(x, y);
-  return 0xFF000000u | static_cast<std::uint32_t>(p[0]) << 16 | static_cast<std::uint32_t>(p[1]) << 8 | p[2];
-}
-
-void Canvas::save_png(const std::string& path) const { write_png(path, surface_->pixels.data(), width(), height()); }
 
 }  // namespace sf::viz

@@ -1,28 +1,28 @@
 #pragma once
-// A picture in memory. VTK renders the text (viz/text_renderer.h), libspng writes the file (viz/png.h), and lines and
-// areas are drawn with analytic coverage (viz/coverage.h). Needs neither a display nor OpenGL.
+// The pen of figures: it adds shapes to a drawing (viz/drawing.h). Text is measured by the drawing backend, loaded with
+// the first figure (viz/drawing_backend.h). Needs neither a display nor OpenGL.
 //
-// Coordinates are pixels, x right, y down, (0, 0) the upper left corner of the picture. Colours are 0xAARRGGBB; alpha
-// is the opacity of the whole shape, however often it overlaps itself. Points that are not finite are skipped. One
-// thread at a time may draw, on any canvas: VTK's font cache is shared.
+// Coordinates are pixels of the layout, 180 to the inch, x right, y down, (0, 0) the upper left corner of the picture.
+// Colours are 0xAARRGGBB; alpha is the opacity of the whole shape, however often it overlaps itself. Points that are
+// not finite are skipped. One thread at a time may draw, on any canvas: the fonts are shared.
 
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 
 #include "base/pose.h"
-#include "viz/coverage.h"
-#include "viz/resample.h"
+#include "viz/drawing.h"
+#include "viz/paths.h"
 #include "viz/theme.h"
 
 namespace sf::viz {
 
-/// A straight line between two points, in pixels or in metres.
-struct Line {
-  glm::dvec2 a;
-  glm::dvec2 b;
+/// `columns` * `rows` opaque colours, row by row.
+struct ColorGrid {
+  int columns = 0;
+  int rows = 0;
+  std::span<const std::uint32_t> colors;
 };
 
 /// [px] coordinate of the middle of the nearest pixel, for crisp one-pixel lines.
@@ -41,19 +41,17 @@ struct TextStyle {
   std::uint32_t halo = theme::kNone;  ///< colour of a soft border for texts over lines; alpha 0: none
 };
 
-/// [px] width and height of the box of `text` (UTF-8, one line) on the picture.
+/// [px] width and height of the box of `text` (UTF-8, one line) on the picture. The height is that of all letters, so
+/// that texts beside each other share a baseline.
 glm::dvec2 text_size(const std::string& text, const TextStyle& style);
 
 class Canvas {
  public:
   /// @param width, height [px] in [1, 16384]
   Canvas(int width, int height, std::uint32_t background);
-  ~Canvas();
-  Canvas(Canvas&&) noexcept;
-  Canvas& operator=(Canvas&&) noexcept;
 
-  int width() const;
-  int height() const;
+  int width() const { return drawing_.width; }
+  int height() const { return drawing_.height; }
 
   /// Clips subsequent drawing to `box`; initially to the whole picture.
   void clip(const PixelBox& box);
@@ -78,15 +76,13 @@ class Canvas {
   /// is smaller.
   void image(glm::dvec2 from, glm::dvec2 to, const ColorGrid& cells);
 
-  /// 0xFFRRGGBB of a pixel inside the picture.
-  std::uint32_t pixel(int x, int y) const;
-
-  /// @throws base::InputError naming the path when it cannot be written.
-  void save_png(const std::string& path) const;
+  const Drawing& drawing() const { return drawing_; }
 
  private:
-  struct Surface;
-  std::unique_ptr<Surface> surface_;
+  PathBox visible(double beyond) const;
+
+  Drawing drawing_;
+  PixelBox clip_;
 };
 
 }  // namespace sf::viz

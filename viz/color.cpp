@@ -34,6 +34,16 @@ bool shown(const std::array<double, 3>& rgb) {
   return std::all_of(rgb.begin(), rgb.end(), [](double c) { return c >= 0.0 && c <= 1.0; });
 }
 
+/// As saturated as sRGB allows, up to `chroma`.
+std::uint32_t oklch(double lightness, double chroma, double hue) {
+  std::array<double, 3> rgb{};
+  do {
+    rgb = light({lightness, chroma * std::cos(hue), chroma * std::sin(hue)});
+    chroma -= 0.001;
+  } while (!shown(rgb) && chroma > 0.0);
+  return pack(to_srgb(rgb[0]), to_srgb(rgb[1]), to_srgb(rgb[2]));
+}
+
 }  // namespace
 
 std::uint32_t with_opacity(std::uint32_t color, double opacity) { return byte(opacity) << 24 | (color & 0x00FFFFFFu); }
@@ -55,22 +65,15 @@ OklabColor to_oklab(std::uint32_t color) {
           0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
 }
 
-std::uint32_t ramp(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  const double lightness = 0.30 + 0.50 * t;
-  const double hue = (300.0 - 225.0 * t) * M_PI / 180.0;
-  double chroma = 0.16;
-  std::array<double, 3> rgb{};
-  do {
-    rgb = light({lightness, chroma * std::cos(hue), chroma * std::sin(hue)});
-    chroma -= 0.001;
-  } while (!shown(rgb) && chroma > 0.0);
-  return pack(to_srgb(rgb[0]), to_srgb(rgb[1]), to_srgb(rgb[2]));
+std::uint32_t distinct(std::size_t i) {
+  constexpr double kGoldenAngle = 2.399963229728653;  // [rad]
+  constexpr std::array<double, 3> kLightness{0.55, 0.40, 0.70};
+  return oklch(kLightness[i % kLightness.size()], 0.17, 4.0 + kGoldenAngle * static_cast<double>(i));
 }
 
 std::uint32_t row_color(std::size_t i, std::size_t count) {
   if (count <= theme::kSeries.size()) return theme::kSeries[i % theme::kSeries.size()];
-  return ramp(static_cast<double>(i) / static_cast<double>(count - 1));
+  return distinct(i);
 }
 
 }  // namespace sf::viz

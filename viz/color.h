@@ -21,12 +21,12 @@ struct OklabColor {
 };
 OklabColor to_oklab(std::uint32_t color);
 
-/// Colour ramp from violet through blue and green to amber, t in [0, 1]. Lightness rises linearly with t, from 0.30 to
-/// 0.80, so the order is visible in grey and with colour blindness; all colours contrast with white.
-std::uint32_t ramp(double t);
+/// A colour of its own for each `i`: successive ones differ in hue by the golden angle and in lightness, so that
+/// neighbours look unlike each other; all contrast with white.
+std::uint32_t distinct(std::size_t i);
 
 /// The colour of row `i` of `count`. Up to seven rows: the palette of Okabe and Ito ("Color Universal Design", 2002)
-/// without its yellow, which has no contrast with white. More rows: equal steps along `ramp`.
+/// without its yellow, which has no contrast with white. More rows: `distinct`.
 std::uint32_t row_color(std::size_t i, std::size_t count);
 
 }  // namespace sf::viz

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "viz/color.h"
+#include "viz/heading.h"
 #include "viz/legend.h"
 #include "viz/theme.h"
 #include "viz/ticks.h"
@@ -25,7 +26,6 @@ constexpr double kGap = 96.0;          // from the map to the profile
 constexpr double kProfileHeight = 300.0;
 constexpr double kLegendBelow = 72.0;  // the profile's labels
 constexpr double kFieldEdge = 18.0;
-constexpr double kRight = 150.0;  // the colour bar
 
 /// A plot: its box of pixels and the values at its edges.
 struct Plot {
@@ -49,7 +49,8 @@ void draw_axes(Canvas& canvas, const Plot& plot, const std::string& x_name, cons
   TextStyle style = small_text();
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  const Ticks xs = make_ticks(plot.x0, plot.x1, 110.0 * (plot.x1 - plot.x0) / (b.x_max - b.x_min));
+  const Ticks xs = make_ticks(plot.x0, plot.x1,
+                              std::min(110.0, (b.x_max - b.x_min) / 4.0) * (plot.x1 - plot.x0) / (b.x_max - b.x_min));
   for (const double x : xs.at) {
     const double px = crisp(plot.pixel({x, plot.y0}).x);
     if (grid) canvas.line({px, b.y_min + 0.0}, {px, b.y_max + 0.0}, theme::kHairline, theme::kGridLine);
@@ -201,38 +202,40 @@ void draw_profile(Canvas& canvas, const FieldView& view, const FieldSamples& sam
   draw_legend(canvas, {plot.box.x_min + 0.0, plot.box.y_max + kLegendBelow}, kCurves, places);
 }
 
-void draw_names(Canvas& canvas, const world::World& world, const FieldView& view, const FieldSamples& samples) {
+std::string title_of(const world::World& world) {
   const std::string file = std::filesystem::path(world.file).filename().string();
-  TextStyle style;
-  style.size = 28;
-  style.bold = true;
-  canvas.text({view.map.x_min + 0.0, 38.0}, "Magnetic field of " + (world.name.empty() ? file : world.name), style);
+  return "Magnetic field of " + (world.name.empty() ? file : world.name);
+}
+
+std::string subtitle_of(const world::World& world, const FieldView& view, const FieldSamples& samples) {
   std::size_t magnets = world.magnets.size();
   for (const world::Mover& mover : world.movers) magnets += mover.magnets.size();
   std::string text = fmt::format("{} magnet{}, {:g} m above the ground, at most {:.3g} Gauss", magnets,
                                  magnets == 1 ? "" : "s", view.height, top_of(samples));
   if (world.magnet_cutoff > 0.0) text += fmt::format(", cut off at {:g} m", world.magnet_cutoff);
-  style = small_text();
-  style.size = 19;
-  style.color = theme::kLabel;
-  canvas.text({view.map.x_min + 0.0, 74.0}, text, style);
+  return text;
 }
 
 }  // namespace
 
-void draw_field(const world::World& world, const FieldView& view, const FieldSamples& samples,
-                const std::string& png_path) {
-  const double top = view.map.y_max + kGap;
-  const Plot map{view.map, view.extent.x_min, view.extent.x_max, view.extent.y_min, view.extent.y_max};
+void draw_field(const world::World& world, const FieldView& view, const FieldSamples& samples, const std::string& path,
+                const Page& page) {
+  const Heading heading = make_heading(title_of(world), subtitle_of(world, view, samples),
+                                       view.map.x_max + kFieldRight - view.map.x_min - kFieldEdge, page);
+  PixelBox place = view.map;  // below the heading, whatever its lines
+  place.y_max += static_cast<int>(heading.height) - place.y_min;
+  place.y_min = static_cast<int>(heading.height);
+  const double top = place.y_max + kGap;
+  const Plot map{place, view.extent.x_min, view.extent.x_max, view.extent.y_min, view.extent.y_max};
   const Plot profile{
-      {view.map.x_min, static_cast<int>(top), view.map.x_max, static_cast<int>(top + kProfileHeight)}, 0, 1, 0, 1};
-  const int rows = place_legend(kCurves, view.map.x_max - view.map.x_min).back().row + 1;
+      {place.x_min, static_cast<int>(top), place.x_max, static_cast<int>(top + kProfileHeight)}, 0, 1, 0, 1};
+  const int rows = place_legend(kCurves, place.x_max - place.x_min).back().row + 1;
   const double high = top + kProfileHeight + kLegendBelow + rows * kLegendRow + kFieldEdge;
-  Canvas canvas(view.map.x_max + static_cast<int>(kRight), static_cast<int>(high), theme::kWhite);
-  draw_names(canvas, world, view, samples);
+  Canvas canvas(place.x_max + kFieldRight, static_cast<int>(high), theme::kWhite);
+  draw_heading(canvas, place.x_min, heading);
   draw_map(canvas, world, view, samples, map);
   draw_profile(canvas, view, samples, profile);
-  canvas.save_png(png_path);
+  save_picture(canvas.drawing(), path, page);
 }
 
 }  // namespace sf::viz

@@ -12,15 +12,20 @@
 #include "gpu/device.h"
 #include "sensors/magnetic_field/records.h"
 #include "viz/canvas.h"
+#include "viz/picture_file.h"
 #include "world/world.h"
 
 namespace sf::viz {
+
+/// [px] right of the map: the bar of colours
+inline constexpr int kFieldRight = 150;
 
 /// The requested view.
 struct FieldRequest {
   double height = 0.0;                  ///< [m] in the world
   std::optional<Line> line;             ///< [m] of the profile; ends distinct
   std::optional<world::Extent> extent;  ///< [m] of the map; not empty
+  Page page;
 };
 
 /// The view to draw.
@@ -28,7 +33,7 @@ struct FieldView {
   double height = 0.0;   ///< [m] in the world
   Line line;             ///< [m] of the profile
   world::Extent extent;  ///< [m] of the map
-  PixelBox map;          ///< the map's place on the picture
+  PixelBox map;          ///< the map's place on the picture below a heading of two lines
 };
 
 /// Completes a request. The default map contains all magnets at load and the area around them in which the field decays
@@ -57,7 +62,7 @@ FieldSamples sample_field(const world::World& world, gpu::Device& device, const 
                           const std::function<void(double)>& progress);
 
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_field(const world::World& world, const FieldView& view, const FieldSamples& samples,
-                const std::string& png_path);
+void draw_field(const world::World& world, const FieldView& view, const FieldSamples& samples, const std::string& path,
+                const Page& page = {});
 
 }  // namespace sf::viz

@@ -15,7 +15,8 @@ using world::Extent;
 
 // [px] of the map.
 constexpr int kLeft = 104;
-constexpr int kTop = 104;
+constexpr int kTop = 100;              // a heading of two lines
+constexpr double kFieldBelow = 620.0;  // heading, profile and legend
 constexpr double kNarrowest = 640.0;
 constexpr double kWidest = 1180.0;
 constexpr double kLowest = 220.0;
@@ -65,11 +66,13 @@ Line default_line(const MagnetBox& box, const Extent& shown) {
 }
 
 /// Extends the shorter side, for a limited aspect ratio of the map.
-PixelBox place_map(Extent& shown) {
+PixelBox place_map(Extent& shown, const Page& page) {
   const double wide = shown.x_max - shown.x_min;
   const double high = shown.y_max - shown.y_min;
-  const double scale = std::min(kWidest / wide, kHighest / high);
-  const double width = std::round(std::max(wide * scale, kNarrowest));
+  const double widest = page.width > 0.0 ? page_pixels(page.width, 0) - kLeft - kFieldRight : kWidest;
+  const double highest = page.height > 0.0 ? std::max(page_pixels(page.height, 0) - kFieldBelow, kLowest) : kHighest;
+  const double scale = std::min(widest / wide, highest / high);
+  const double width = std::round(std::max(wide * scale, std::min(kNarrowest, widest)));
   const double height = std::round(std::max(high * scale, kLowest));
   const double more_x = 0.5 * (width / scale - wide);
   const double more_y = 0.5 * (height / scale - high);
@@ -110,7 +113,7 @@ FieldView field_view(const world::World& world, const FieldRequest& wish) {
   view.height = wish.height;
   view.extent = wish.extent.value_or(default_extent(box, wish.height));
   const Extent wanted = view.extent;
-  view.map = place_map(view.extent);
+  view.map = place_map(view.extent, wish.page);
   view.line = wish.line.value_or(default_line(box, wanted));
   return view;
 }

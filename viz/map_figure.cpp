@@ -8,6 +8,7 @@
 #include "maps/map_text.h"
 #include "viz/canvas.h"
 #include "viz/color.h"
+#include "viz/heading.h"
 #include "viz/legend.h"
 #include "viz/map_cells.h"
 #include "viz/theme.h"
@@ -25,7 +26,6 @@ constexpr std::int64_t kMaxWithGrid = 1600;
 constexpr double kLongest = 8000.0;
 constexpr double kLeft = 86.0;
 constexpr double kRight = 40.0;
-constexpr double kTop = 92.0;
 constexpr double kLabels = 70.0;  // below the map
 constexpr double kNarrowest = 640.0;
 
@@ -38,18 +38,28 @@ struct Layout {
   double width = 0.0;  ///< [px] of the picture
   double height = 0.0;
   std::vector<LegendPlace> legend;
+  Heading heading;
 };
 
-Layout lay_out(const maps::GridGeometry& geometry, std::span<const LegendItem> legend) {
+Layout lay_out(const maps::GridGeometry& geometry, std::span<const LegendItem> legend, const MapFigure& figure,
+               const std::string& subtitle, const Page& page) {
   Layout l;
   const std::int64_t longest = std::max(maps::columns(geometry), maps::rows(geometry));
   l.grid = longest <= kMaxWithGrid;
   if (!l.grid) l.scale = std::min(static_cast<double>(kPitch), kLongest / static_cast<double>(longest));
+  const double narrowest = page_pixels(page.width, static_cast<int>(kNarrowest));
+  if (page.width > 0.0) {
+    const double room = page.height > 0.0 ? page_pixels(page.height, 0) - kLabels - 3.0 * kLegendRow : HUGE_VAL;
+    l.scale = std::min((narrowest - kLeft - kRight - 1.0) / static_cast<double>(maps::columns(geometry)),
+                       std::max(room, 100.0) / static_cast<double>(maps::rows(geometry)));
+    l.grid = false;
+  }
   const double line = l.grid ? 1.0 : 0.0;
   const double wide = std::ceil(l.scale * static_cast<double>(maps::columns(geometry))) + line;
   const double high = std::ceil(l.scale * static_cast<double>(maps::rows(geometry))) + line;
-  l.width = std::max(kNarrowest, kLeft + wide + kRight);
-  l.low = {std::floor(kLeft + 0.5 * (l.width - kLeft - kRight - wide)), kTop};
+  l.width = std::max(narrowest, kLeft + wide + kRight);
+  l.heading = make_heading(figure.title, subtitle, l.width - 2.0 * kRight, page);
+  l.low = {std::floor(kLeft + 0.5 * (l.width - kLeft - kRight - wide)), std::ceil(l.heading.height)};
   l.high = l.low + glm::dvec2{wide, high};
   l.legend = place_legend(legend, l.width - 2.0 * kRight);
   l.height = l.high.y + kLabels + kLegendRow * (l.legend.back().row + 1) + 12.0;
@@ -133,27 +143,22 @@ void draw_places(Canvas& canvas, const maps::GridGeometry& geometry, const Layou
 
 }  // namespace
 
-void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& png_path) {
+void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& path, const Page& page) {
   const maps::CellCounts census = maps::count(grid);
   const std::vector<LegendItem> legend = legend_of(census, figure);
-  const Layout l = lay_out(grid.geometry, legend);
-  Canvas canvas(static_cast<int>(std::ceil(l.width)), static_cast<int>(std::ceil(l.height)), theme::kWhite);
-  TextStyle title;
-  title.size = 26;
-  title.bold = true;
-  canvas.text({kRight, 30.0}, figure.title, title);
   const double all = static_cast<double>(census.all());
   const double known = 100.0 * static_cast<double>(census.occupied + census.free) / all;
-  canvas.text({kRight, 64.0},
-              fmt::format("{}{}{} x {} cells of {:g} m, {:.1f} % explored", figure.subtitle,
-                          figure.subtitle.empty() ? "" : ": ", maps::columns(grid.geometry), maps::rows(grid.geometry),
-                          grid.geometry.cell, known),
-              small_text());
+  const std::string subtitle = fmt::format("{}{}{} x {} cells of {:g} m, {:.1f} % explored", figure.subtitle,
+                                           figure.subtitle.empty() ? "" : ": ", maps::columns(grid.geometry),
+                                           maps::rows(grid.geometry), grid.geometry.cell, known);
+  const Layout l = lay_out(grid.geometry, legend, figure, subtitle, page);
+  Canvas canvas(static_cast<int>(std::ceil(l.width)), static_cast<int>(std::ceil(l.height)), theme::kWhite);
+  draw_heading(canvas, kRight, l.heading);
   draw_cells(canvas, grid, l);
   draw_places(canvas, grid.geometry, l, figure);
   draw_axes(canvas, grid.geometry, l);
   draw_legend(canvas, {kRight, l.high.y + kLabels}, legend, l.legend);
-  canvas.save_png(png_path);
+  save_picture(canvas.drawing(), path, page);
 }
 
 }  // namespace sf::viz

@@ -7,6 +7,7 @@
 
 #include "base/pose.h"
 #include "maps/grid.h"
+#include "viz/picture_file.h"
 
 namespace sf::viz {
 
@@ -24,6 +25,6 @@ struct MapFigure {
 
 /// Maps of more than 1600 cells along a side are drawn without a grid and reduced as needed.
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& png_path);
+void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& path, const Page& page = {});
 
 }  // namespace sf::viz

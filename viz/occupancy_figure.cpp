@@ -48,15 +48,18 @@ FigureOptions options_of(const world::World& world, const maps::OccupancyGrid& g
 
 }  // namespace
 
-void draw_occupancy(const world::World& world, const maps::OccupancyGrid& grid, const std::string& png_path) {
-  Axes axes(options_of(world, grid));
+void draw_occupancy(const world::World& world, const maps::OccupancyGrid& grid, const std::string& path,
+                    const Page& page) {
+  FigureOptions options = options_of(world, grid);
+  options.page = page;
+  Axes axes(std::move(options));
   const world::Extent e = extent_of(grid.geometry);
   const std::vector<std::uint32_t> pixels = pixels_of(grid);
   axes.canvas().image(
       axes.pixel({e.x_min, e.y_max}), axes.pixel({e.x_max, e.y_min}),
       {static_cast<int>(maps::columns(grid.geometry)), static_cast<int>(maps::rows(grid.geometry)), pixels});
   draw_cell_borders(axes, grid.geometry);
-  axes.save(png_path);
+  axes.save(path);
 }
 
 }  // namespace sf::viz

@@ -5,11 +5,13 @@
 #include <string>
 
 #include "maps/grid.h"
+#include "viz/picture_file.h"
 #include "world/world.h"
 
 namespace sf::viz {
 
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_occupancy(const world::World& world, const maps::OccupancyGrid& grid, const std::string& png_path);
+void draw_occupancy(const world::World& world, const maps::OccupancyGrid& grid, const std::string& path,
+                    const Page& page = {});
 
 }  // namespace sf::viz

@@ -43,20 +43,21 @@ void draw_track(Axes& axes, const Track& track, std::uint32_t color) {
 }  // namespace
 
 void draw_along_paths(const world::World& world, std::span<const Track> tracks, const std::string& title,
-                      const std::string& subtitle, const std::string& png_path) {
+                      const std::string& subtitle, const std::string& file, const Page& page) {
   FigureOptions options{
       .title = title, .subtitle = subtitle, .extent = extent_of(world, tracks), .legend = road_legend(world)};
   if (!world.paths.empty()) options.legend.push_back({LegendMark::dashed, theme::kReferencePath, "middle of the lane"});
   const auto color = [&](std::size_t i) { return tracks[i].color.value_or(row_color(i, tracks.size())); };
   for (std::size_t i = 0; i < std::min<std::size_t>(tracks.size(), 7); ++i)
     options.legend.push_back({LegendMark::line, color(i), tracks[i].name});
+  options.page = page;
   Axes axes(std::move(options));
   draw_lane_markings(axes, world);
   draw_magnets(axes, world);
   draw_walls(axes, world, WallColors::quiet);
   for (const world::Path& path : world.paths) draw_middle(axes, path);
   for (std::size_t i = 0; i < tracks.size(); ++i) draw_track(axes, tracks[i], color(i));
-  axes.save(png_path);
+  axes.save(file);
 }
 
 }  // namespace sf::viz

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "viz/picture_file.h"
 #include "viz/tracks.h"
 #include "world/world.h"
 
@@ -12,6 +13,6 @@ namespace sf::viz {
 /// Draws lane markings, magnets and walls, the centre line of each path of the world (dashed), and each track.
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_along_paths(const world::World& world, std::span<const Track> tracks, const std::string& title,
-                      const std::string& subtitle, const std::string& png_path);
+                      const std::string& subtitle, const std::string& file, const Page& page = {});
 
 }  // namespace sf::viz

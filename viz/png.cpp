@@ -3,20 +3,17 @@
 #include <spng.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <memory>
-#include <vector>
 
 #include "base/error.h"
 
 namespace sf::viz {
 
-namespace {
-
-/// The file's bytes; empty when the encoding failed.
-std::vector<std::uint8_t> encode_png(const std::uint8_t* rgb, int width, int height, PngContent content) {
+std::string encode_png(std::span<const std::uint8_t> rgb, int width, int height, PngContent content, double dpi) {
   const std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)> png(spng_ctx_new(SPNG_CTX_ENCODER), &spng_ctx_free);
   spng_ihdr header{};
   header.width = static_cast<std::uint32_t>(width);
@@ -28,32 +25,32 @@ std::vector<std::uint8_t> encode_png(const std::uint8_t* rgb, int width, int hei
   spng_set_option(png.get(), SPNG_IMG_COMPRESSION_LEVEL, photograph ? 1 : 6);
   if (photograph) spng_set_option(png.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_SUB);
   spng_set_ihdr(png.get(), &header);
-  const std::size_t size = 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  if (spng_encode_image(png.get(), rgb, size, SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE) != 0) return {};
+  const auto per_metre = static_cast<std::uint32_t>(std::lround(dpi / 0.0254));
+  spng_phys size{per_metre, per_metre, 1};
+  if (per_metre > 0) spng_set_phys(png.get(), &size);
+  int error = spng_encode_image(png.get(), rgb.data(), rgb.size(), SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
 
-  int error = 0;
   std::size_t length = 0;
-  const std::unique_ptr<void, decltype(&std::free)> file(spng_get_png_buffer(png.get(), &length, &error), &std::free);
-  if (file == nullptr || error != 0) return {};
-  const auto* const first = static_cast<const std::uint8_t*>(file.get());
-  return {first, first + length};
+  const std::unique_ptr<void, decltype(&std::free)> file(
+      error == 0 ? spng_get_png_buffer(png.get(), &length, &error) : nullptr, &std::free);
+  SF_CHECK(file != nullptr && error == 0, std::string("spng made no PNG: ") + spng_strerror(error));
+  return {static_cast<const char*>(file.get()), length};
 }
 
-}  // namespace
-
-void write_png(const std::string& path, const std::uint8_t* rgb, int width, int height, PngContent content) {
-  const std::vector<std::uint8_t> png = encode_png(rgb, width, height, content);
-  SF_CHECK(!png.empty(), "spng made no PNG");
-
+void write_picture(const std::string& path, std::string_view bytes) {
   errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  if (file) file.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  if (file) file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (file) file.close();
   if (!file)
     throw base::InputError(path, 0,
                            std::string("cannot write the picture (") +
                                (errno != 0 ? std::strerror(errno) : "unknown reason") +
                                "): name a file in a folder that exists, can be written and has room");
+}
+
+void write_png(const std::string& path, std::span<const std::uint8_t> rgb, int width, int height, PngContent content) {
+  write_picture(path, encode_png(rgb, width, height, content));
 }
 
 }  // namespace sf::viz

@@ -182,7 +182,7 @@ std::string subtitle_of(const RoadNetwork& network) {
 
 }  // namespace
 
-void draw_roads(const RoadNetwork& network, const std::string& png_path) {
+void draw_roads(const RoadNetwork& network, const std::string& path, const Page& page) {
   FigureOptions options;
   options.title =
       printable(network.name.empty() ? std::filesystem::path(network.file).filename().string() : network.name, 120);
@@ -191,6 +191,7 @@ void draw_roads(const RoadNetwork& network, const std::string& png_path) {
   options.background = theme::kRoadGround;
   options.legend = legend_of(network);
   options.long_side = picture_size(network);
+  options.page = page;
   Axes axes(std::move(options));
   const FigureLayout& layout = axes.layout();
   const RoadView view{axes.canvas(), layout.plot, {layout.shown.x_min, layout.shown.y_min}, layout.scale};
@@ -203,7 +204,7 @@ void draw_roads(const RoadNetwork& network, const std::string& png_path) {
   for (const Inset& inset : insets) enlarged.push_back(inset.part);
   draw_texts(view, network, labels, enlarged);
   for (const Inset& inset : insets) draw_inset(view, network, inset);
-  axes.save(png_path);
+  axes.save(path);
 }
 
 }  // namespace sf::viz

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "viz/picture_file.h"
 #include "world/roads/network.h"
 
 namespace sf::viz {
@@ -11,6 +12,6 @@ namespace sf::viz {
 /// checkpoints with their ids and the names of segments and zones; texts without room are left out. The size of the
 /// picture follows from the width of its lanes, up to 4000 pixels.
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_roads(const world::RoadNetwork& network, const std::string& png_path);
+void draw_roads(const world::RoadNetwork& network, const std::string& path, const Page& page = {});
 
 }  // namespace sf::viz

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "viz/canvas.h"
 #include "viz/color.h"
+#include "viz/heading.h"
 #include "viz/legend.h"
 #include "viz/theme.h"
 #include "viz/ticks.h"
@@ -18,11 +19,13 @@ constexpr std::size_t kNamed = 7;
 
 // [px]
 constexpr double kSeriesEdge = 26.0;
-constexpr double kHeader = 100.0;     ///< title and subtitle
 constexpr double kPanelTitle = 34.0;  ///< above each plot
 constexpr double kTicksBelow = 68.0;  ///< labels and the axis' name, below the last plot
 constexpr double kAxisName = 34.0;    ///< left of the labels
 constexpr double kSmallestStep = 60.0;
+constexpr double kLowestPlot = 120.0;
+constexpr double kLoneDot = 2.2;
+constexpr double kSmallestMove = 0.3;  ///< shorter steps of a curve are left out
 
 struct Span {
   double from = 0.0, to = 1.0;
@@ -97,21 +100,37 @@ double widest_label(const Span& shown, double height) {
 
 double plot_height(std::size_t panels) { return panels == 1 ? 620.0 : panels == 2 ? 420.0 : 300.0; }
 
-std::vector<PlotArea> lay_out(const SeriesOptions& options) {
-  const double height = plot_height(options.panels.size());
+/// The picture's width, its heading, and its panels.
+struct SeriesLayout {
+  int width = 0;
+  Heading heading;
+  std::vector<PlotArea> places;
+};
+
+SeriesLayout lay_out(const SeriesOptions& options, const Page& page) {
+  double height = plot_height(options.panels.size());
+  SeriesLayout layout;
+  layout.width = page_pixels(page.width, options.width);
   double left = 0.0;
   for (const Panel& panel : options.panels)
     left = std::max(left, widest_label(value_span(panel, options.from_zero), height));
   left += kSeriesEdge + kAxisName + 14.0;
 
-  std::vector<PlotArea> places;
-  double top = kHeader;
+  layout.heading = make_heading(options.title, options.subtitle, layout.width - left - kSeriesEdge, page);
+  if (page.height > 0.0) {
+    const double others = layout.heading.height + kTicksBelow + kSeriesEdge;
+    const double share = (page_pixels(page.height, 0) - others) / static_cast<double>(options.panels.size());
+    height = std::max(kLowestPlot, share - kPanelTitle - kLegendRow - 34.0);
+  }
+
+  std::vector<PlotArea>& places = layout.places;
+  double top = layout.heading.height;
   for (const Panel& panel : options.panels) {
     PlotArea& place = places.emplace_back();
     place.time = time_span(options);
     place.shown = value_span(panel, options.from_zero);
     if (!panel.title.empty()) top += kPanelTitle;
-    place.plot = {static_cast<int>(left), static_cast<int>(top), options.width - static_cast<int>(kSeriesEdge),
+    place.plot = {static_cast<int>(left), static_cast<int>(top), layout.width - static_cast<int>(kSeriesEdge),
                   static_cast<int>(top + height)};
     for (const std::size_t row : named_rows(panel.series.size()))
       place.legend.push_back({LegendMark::line, row_color(row, panel.series.size()), panel.series[row].name});
@@ -121,7 +140,7 @@ std::vector<PlotArea> lay_out(const SeriesOptions& options) {
     const int rows = place.legend_at.empty() ? 0 : place.legend_at.back().row + 1;
     top = place.legend_top + rows * kLegendRow + 14.0;
   }
-  return places;
+  return layout;
 }
 
 Ticks ticks_of(const Span& span, double pixels, double smallest) {
@@ -153,12 +172,17 @@ void draw_scales(Canvas& canvas, const PlotArea& at, const std::string& x_name) 
 void draw_curve(Canvas& canvas, const PlotArea& at, const Series& series, std::uint32_t color) {
   std::vector<Line> lines;
   std::optional<glm::dvec2> last;
+  const auto known = [&](std::size_t i) {
+    return i < series.values.size() && std::isfinite(series.values[i]) && std::isfinite(series.times[i]);
+  };
   for (std::size_t i = 0; i < series.values.size(); ++i) {
-    if (!std::isfinite(series.values[i]) || !std::isfinite(series.times[i])) {
+    if (!known(i)) {
       last.reset();
       continue;
     }
     const glm::dvec2 here = at.pixel(series.times[i], series.values[i]);
+    if (!last && !known(i + 1)) canvas.disc(here, kLoneDot, color);
+    if (last && length(here - *last) < kSmallestMove && known(i + 1)) continue;
     lines.push_back({last.value_or(here), here});
     last = here;
   }
@@ -187,7 +211,7 @@ void draw_panel(Canvas& canvas, const Panel& panel, const PlotArea& at, const st
 
 }  // namespace
 
-void draw_series(const SeriesOptions& options, const std::string& png_path) {
+void draw_series(const SeriesOptions& options, const std::string& path, const Page& page) {
   SF_CHECK(!options.panels.empty() && options.panels.size() <= 16, std::to_string(options.panels.size()) + " panels");
   SF_CHECK(options.width >= 600 && options.width <= 8000, "width " + std::to_string(options.width) + " px");
   for (const Panel& panel : options.panels)
@@ -196,21 +220,15 @@ void draw_series(const SeriesOptions& options, const std::string& png_path) {
                                                                 std::to_string(series.times.size()) + " times for " +
                                                                 std::to_string(series.values.size()) + " values");
 
-  const std::vector<PlotArea> places = lay_out(options);
+  const SeriesLayout layout = lay_out(options, page);
+  const std::vector<PlotArea>& places = layout.places;
   const PlotArea& last = places.back();
   const int rows = last.legend_at.empty() ? 0 : last.legend_at.back().row + 1;
-  Canvas canvas(options.width, static_cast<int>(last.legend_top + rows * kLegendRow + kSeriesEdge), theme::kWhite);
-  TextStyle style;
-  style.size = 28;
-  style.bold = true;
-  canvas.text({last.plot.x_min + 0.0, 42.0}, options.title, style);
-  style = small_text();
-  style.size = 19;
-  style.color = theme::kLabel;
-  canvas.text({last.plot.x_min + 0.0, 77.0}, options.subtitle, style);
+  Canvas canvas(layout.width, static_cast<int>(last.legend_top + rows * kLegendRow + kSeriesEdge), theme::kWhite);
+  draw_heading(canvas, last.plot.x_min, layout.heading);
   for (std::size_t i = 0; i < places.size(); ++i)
     draw_panel(canvas, options.panels[i], places[i], i + 1 == places.size() ? options.x_name : "");
-  canvas.save_png(png_path);
+  save_picture(canvas.drawing(), path, page);
 }
 
 }  // namespace sf::viz

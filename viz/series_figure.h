@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "viz/picture_file.h"
+
 namespace sf::viz {
 
 /// One quantity, in order of time. Rule: equal numbers of times and values.
@@ -34,6 +36,6 @@ struct SeriesOptions {
 /// Draws each series in the colour of its row. Up to seven are named below their panel; of more, seven from the first
 /// to the last.
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_series(const SeriesOptions& options, const std::string& png_path);
+void draw_series(const SeriesOptions& options, const std::string& path, const Page& page = {});
 
 }  // namespace sf::viz

@@ -81,12 +81,16 @@ void draw_lights(Axes& axes, const world::World& world, double time) {
   }
 }
 
+LegendItem signal_legend_item(LightState state) {
+  return {mark_of(state).mark, mark_of(state).color, fmt::format("light, {}", name_of(state))};
+}
+
 std::vector<LegendItem> lights_legend(const world::World& world, double time) {
   std::vector<LegendItem> items;
   for (const LightMark& m : kLightMarks) {
     const bool shown = std::any_of(world.lights.begin(), world.lights.end(),
                                    [&](const world::Light& light) { return signal_at(light, time).state == m.state; });
-    if (shown) items.push_back({m.mark, m.color, fmt::format("light, {}", name_of(m.state))});
+    if (shown) items.push_back(signal_legend_item(m.state));
   }
   return items;
 }

@@ -21,6 +21,8 @@ void draw_lights(Axes& axes, const world::World& world, double time = 0.0);
 
 /// Items for the parts of this layer in the world; lights as at time 0.
 std::vector<LegendItem> signal_layer_legend(const world::World& world);
+/// The mark of a light in one state, "light, green".
+LegendItem signal_legend_item(world::LightState state);
 /// Items for lights alone, one per state shown at `time` [s].
 std::vector<LegendItem> lights_legend(const world::World& world, double time);
 

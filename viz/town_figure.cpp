@@ -115,12 +115,14 @@ void draw_convoys(Axes& axes, const World& world, std::span<const Track> tracks,
 
 }  // namespace
 
-void draw_town(const World& world, std::span<const Track> tracks, const TownFinalState& end,
-               const std::string& png_path) {
+void draw_town(const World& world, std::span<const Track> tracks, const TownFinalState& end, const std::string& path,
+               const Page& page) {
   SF_CHECK(end.movers.size() == tracks.size() && end.follows.size() == tracks.size(),
            "tracks, movers and whom they follow: expected as many of each");
   const std::vector<Group> groups = groups_of(world, end);
-  Axes axes(plan_of(world, tracks, end, groups));
+  FigureOptions options = plan_of(world, tracks, end, groups);
+  options.page = page;
+  Axes axes(std::move(options));
   std::vector<world::Warning> heard_at_load;
   for (const std::string& file : world.road_files) draw_streets(axes, world::load_roads(file, heard_at_load));
   draw_lane_markings(axes, world);
@@ -140,7 +142,7 @@ void draw_town(const World& world, std::span<const Track> tracks, const TownFina
   }
   draw_convoys(axes, world, tracks, end);
   for (const Track& track : tracks) draw_contacts(axes, track, 5.0, 1.6);
-  axes.save(png_path);
+  axes.save(path);
 }
 
 }  // namespace sf::viz

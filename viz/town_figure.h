@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "viz/picture_file.h"
 #include "viz/tracks.h"
 #include "world/world.h"
 
@@ -22,6 +23,6 @@ struct TownFinalState {
 /// of their own, and each follower is joined to the robot ahead; robots of an uncommon shape have a third colour.
 /// @throws base::InputError naming the path when it cannot be written, or when roads can no longer be read.
 void draw_town(const world::World& world, std::span<const Track> tracks, const TownFinalState& end,
-               const std::string& png_path);
+               const std::string& path, const Page& page = {});
 
 }  // namespace sf::viz

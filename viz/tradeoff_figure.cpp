@@ -7,6 +7,7 @@
 
 #include "viz/canvas.h"
 #include "viz/color.h"
+#include "viz/heading.h"
 #include "viz/labels.h"
 #include "viz/legend.h"
 #include "viz/theme.h"
@@ -19,8 +20,8 @@ namespace {
 constexpr int kWidth = 1400;
 constexpr int kLeft = 150;
 constexpr int kRight = 40;
-constexpr int kHeader = 100;
 constexpr int kPlot = 400;
+constexpr int kLowest = 200;
 constexpr int kBetween = 150;       ///< title of a panel, and labels below its plot
 constexpr double kNothing = 120.0;  ///< column of errors that are 0
 
@@ -72,7 +73,7 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
   style.across = Anchor::end;
-  const Ticks rates = make_ticks(0.0, at.fastest, at.fastest * 60.0 / kPlot);
+  const Ticks rates = make_ticks(0.0, at.fastest, at.fastest * 60.0 / (p.y_max - p.y_min));
   for (const double rate : rates.at) {
     const double y = std::floor(at.y(rate)) + 0.5;
     canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, theme::kHairline, theme::kGridLine);
@@ -80,7 +81,8 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   }
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  const int step = std::max(1, (at.error.to - at.error.from + 11) / 12);
+  const int most = std::clamp((p.x_max - p.x_min) / 100, 3, 12);  // labels
+  const int step = std::max(1, (at.error.to - at.error.from + most - 1) / most);
   for (int decade = at.error.from; decade <= at.error.to; decade += step) {
     const double x = std::floor(at.x(std::pow(10.0, decade))) + 0.5;
     canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, theme::kHairline, theme::kGridLine);
@@ -120,6 +122,7 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
     const glm::dvec2 mark{at.x(point.middle), at.y(point.rate)};
     const Line whisker{{at.x(point.low), mark.y}, {at.x(point.high), mark.y}};
     canvas.line(whisker.a, whisker.b, theme::kOutline, with_opacity(color, 0.6));
+    labels.forbid({{whisker.a.x - 3.0, mark.y - 6.0}, {whisker.b.x + 3.0, mark.y + 6.0}});
     for (const glm::dvec2& end : {whisker.a, whisker.b})
       canvas.line({end.x, end.y - 5.0}, {end.x, end.y + 5.0}, theme::kOutline, color);
     if (point.covered.part > 0.0) {
@@ -159,28 +162,28 @@ void draw_panel(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) 
 }  // namespace
 
 void draw_tradeoff(const std::string& title, const std::string& subtitle, std::span<const TradeoffPanel> panels,
-                   const std::string& png_path) {
-  const int height = kHeader + static_cast<int>(panels.size()) * (kPlot + kBetween);
-  Canvas canvas(kWidth, height, theme::kWhite);
-  TextStyle style;
-  style.size = 28;
-  style.bold = true;
-  canvas.text({kLeft + 0.0, 42.0}, title, style);
-  style = small_text();
-  style.size = 19;
-  style.color = theme::kLabel;
-  canvas.text({kLeft + 0.0, 77.0}, subtitle, style);
-  int top = kHeader + 50;
+                   const std::string& path, const Page& page) {
+  const int width = page_pixels(page.width, kWidth);
+  const Heading heading = make_heading(title, subtitle, width - kLeft - kRight, page);
+  int plot = kPlot;
+  if (page.height > 0.0 && !panels.empty())
+    plot = std::max(
+        kLowest,
+        (page_pixels(page.height, 0) - static_cast<int>(heading.height)) / static_cast<int>(panels.size()) - kBetween);
+  const int height = static_cast<int>(heading.height) + static_cast<int>(panels.size()) * (plot + kBetween);
+  Canvas canvas(width, std::max(height, 1), theme::kWhite);
+  draw_heading(canvas, kLeft, heading);
+  int top = static_cast<int>(heading.height) + 50;
   for (const TradeoffPanel& panel : panels) {
-    PlotArea at{{kLeft, top, kWidth - kRight, top + kPlot}, {}};
+    PlotArea at{{kLeft, top, width - kRight, top + plot}, {}};
     at.error = decades_of(panel.points);
     double fastest = 0.0;
     for (const TradeoffPoint& point : panel.points) fastest = std::max(fastest, point.rate);
     if (fastest > 0.0) at.fastest = 1.15 * fastest;
     draw_panel(canvas, panel, at);
-    top += kPlot + kBetween;
+    top += plot + kBetween;
   }
-  canvas.save_png(png_path);
+  save_picture(canvas.drawing(), path, page);
 }
 
 }  // namespace sf::viz

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "viz/picture_file.h"
+
 namespace sf::viz {
 
 /// The elements for which an error bound is stated.
@@ -36,6 +38,6 @@ struct TradeoffPanel {
 /// share.
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_tradeoff(const std::string& title, const std::string& subtitle, std::span<const TradeoffPanel> panels,
-                   const std::string& png_path);
+                   const std::string& path, const Page& page = {});
 
 }  // namespace sf::viz

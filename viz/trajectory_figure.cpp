@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "viz/axes.h"
 #include "viz/color.h"
+#include "viz/labels.h"
 #include "viz/road_layer.h"
 #include "viz/theme.h"
 #include "viz/wall_layer.h"
@@ -20,6 +21,7 @@ using base::Pose;
 using world::World;
 
 constexpr std::size_t kNamedTracks = 7;
+constexpr std::size_t kNamedEnds = 150;
 
 std::uint32_t color_of(std::span<const Track> tracks, std::size_t i) {
   return tracks[i].color.value_or(row_color(i, tracks.size()));
@@ -64,39 +66,52 @@ std::string subtitle_of(const World& world, std::span<const Track> tracks, std::
   return world.name.empty() ? text : world.name + ": " + text;
 }
 
-FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::string_view what) {
+FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::string_view what, const Page& page) {
   FigureOptions options;
+  options.page = page;
   options.title = "Trajectories";
   options.subtitle = subtitle_of(world, tracks, what);
   options.extent = extent_of(world, tracks);
   options.legend = wall_legend(world, WallColors::quiet);
   for (const LegendItem& item : road_legend(world)) options.legend.push_back(item);
-  const std::uint32_t sample = tracks.size() <= kNamedTracks ? theme::kFrame : ramp(0.3);
-  options.legend.push_back({LegendMark::ring, sample, "start"});
-  options.legend.push_back({LegendMark::dot, sample, "end"});
+  options.legend.push_back({LegendMark::ring, theme::kFrame, "start"});
+  options.legend.push_back({LegendMark::dot, theme::kFrame, "end"});
   options.legend.push_back({LegendMark::cross, theme::kContact, "contact"});
-  if (tracks.size() <= kNamedTracks) {
-    for (std::size_t i = 0; i < tracks.size(); ++i)
-      options.legend.push_back({LegendMark::line, color_of(tracks, i), tracks[i].name});
-    return options;
-  }
-  ColorBar bar{std::string(what), tracks.front().name, tracks.back().name, {}};
-  const std::size_t steps = std::min<std::size_t>(tracks.size(), 512);
-  for (std::size_t k = 0; k < steps; ++k) bar.colors.push_back(color_of(tracks, k * (tracks.size() - 1) / (steps - 1)));
-  options.bar = std::move(bar);
+  for (std::size_t i = 0; i < tracks.size() && tracks.size() <= kNamedTracks; ++i)
+    options.legend.push_back({LegendMark::line, color_of(tracks, i), tracks[i].name});
   return options;
+}
+
+/// Names of more tracks than the legend has room for, in their colours beside their ends, as far as there is room.
+void draw_end_names(Axes& axes, std::span<const Track> tracks) {
+  if (tracks.size() <= kNamedTracks || tracks.size() > kNamedEnds) return;
+  Labels labels(axes.layout().plot);
+  std::vector<std::optional<glm::dvec2>> ends;
+  for (const Track& track : tracks) {
+    const auto last = std::find_if(track.poses.rbegin(), track.poses.rend(), is_finite);
+    ends.push_back(last == track.poses.rend() ? std::nullopt : std::optional(axes.pixel({last->x, last->y})));
+    if (ends.back()) labels.forbid({*ends.back() - glm::dvec2{4.0, 4.0}, *ends.back() + glm::dvec2{4.0, 4.0}});
+  }
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (!ends[i]) continue;
+    TextStyle style = small_text();
+    style.size = 14;
+    style.color = mix(color_of(tracks, i), theme::kBlack, 0.25);
+    style.halo = theme::kWhite;
+    labels.place(axes.canvas(), {&*ends[i], 1}, tracks[i].name, style, {6.0, 30.0, 14.0, 0.0});
+  }
 }
 
 }  // namespace
 
-void draw_trajectories(const World& world, std::span<const Track> tracks, const std::string& png_path,
-                       std::string_view what) {
+void draw_trajectories(const World& world, std::span<const Track> tracks, const std::string& path,
+                       std::string_view what, const Page& page) {
   for (const Track& track : tracks)
     SF_CHECK(track.contacts.empty() || track.contacts.size() == track.poses.size(),
              "track " + track.name + " has " + std::to_string(track.contacts.size()) + " contacts for " +
                  std::to_string(track.poses.size()) + " poses");
   const Weight weight = weight_for(tracks.size());
-  Axes axes(plan_of(world, tracks, what));
+  Axes axes(plan_of(world, tracks, what, page));
   draw_lane_markings(axes, world);
   draw_magnets(axes, world);
   draw_walls(axes, world, WallColors::quiet);
@@ -104,7 +119,8 @@ void draw_trajectories(const World& world, std::span<const Track> tracks, const 
     draw_path(axes, tracks[i], weight.line, with_opacity(color_of(tracks, i), weight.opacity));
   for (std::size_t i = 0; i < tracks.size(); ++i) draw_ends(axes, tracks[i], weight.mark, color_of(tracks, i));
   for (const Track& track : tracks) draw_contacts(axes, track, weight.cross, weight.cross_line);
-  axes.save(png_path);
+  draw_end_names(axes, tracks);
+  axes.save(path);
 }
 
 }  // namespace sf::viz

@@ -12,6 +12,7 @@
 #include "sensors/laser_settings.h"
 #include "viz/axes.h"
 #include "viz/color.h"
+#include "viz/labels.h"
 #include "viz/mover_layer.h"
 #include "viz/road_layer.h"
 #include "viz/sensor_overlay.h"
@@ -85,14 +86,27 @@ void draw_tag(Axes& axes, const Mover& mover) {
   draw_dashes(axes.canvas(), circle, 2.0, 6.0, 3.0, theme::kTag);
 }
 
-void draw_name(Axes& axes, const Mover& mover) {
+/// Names beside their robots, never over each other, robots or lights; rather none than one on another.
+void draw_names(Axes& axes, const World& world) {
   TextStyle style = small_text();
   style.halo = theme::kWhite;
-  style.across = Anchor::middle;
-  style.down = Anchor::start;
-  const glm::dvec2 at = axes.pixel({mover.X_WM.x, mover.X_WM.y});
-  axes.canvas().text(at + glm::dvec2{0.0, std::max(mover.radius * axes.scale(), kSmallestMark) + 7.0}, mover.name,
-                     style);
+  Labels labels(axes.layout().plot);
+  const auto keep_free = [&](glm::dvec2 at, double reach) {
+    labels.forbid({at - glm::dvec2{reach, reach}, at + glm::dvec2{reach, reach}});
+  };
+  const auto reach_of = [&](const Mover& mover) { return std::max(mover.radius * axes.scale(), kSmallestMark); };
+  for (const world::Segment& wall : world.walls) {
+    const glm::dvec2 line[] = {axes.pixel(wall.a), axes.pixel(wall.b)};
+    labels.avoid(line, 2.0);
+  }
+  for (const world::Light& light : world.lights) keep_free(axes.pixel({light.X_WL.x, light.X_WL.y}), 9.0);
+  for (const Mover& mover : world.movers) keep_free(axes.pixel({mover.X_WM.x, mover.X_WM.y}), 0.8 * reach_of(mover));
+  for (const Mover& mover : world.movers) {
+    const glm::dvec2 mark[] = {axes.pixel({mover.X_WM.x, mover.X_WM.y})};
+    const double near = reach_of(mover) + 4.0;
+    labels.place(axes.canvas(), mark, mover.name, style,
+                 {.nearest = near, .farthest = near + 70.0, .leader = near + 12.0, .clear_cost = 0.4});
+  }
 }
 
 /// "laser 270 deg, 8 m": the common value of all lasers of one colour, or their range.
@@ -158,12 +172,13 @@ std::string subtitle_of(const World& world) {
 
 }  // namespace
 
-void draw_world(const World& world, const std::string& png_path) {
+void draw_world(const World& world, const std::string& path, const Page& page) {
   FigureOptions options;
   options.title = world.name.empty() ? std::filesystem::path(world.file).filename().string() : world.name;
   options.subtitle = subtitle_of(world);
   options.extent = world.extent;
   options.legend = legend_of(world);
+  options.page = page;
   Axes axes(std::move(options));
   draw_lane_markings(axes, world);
   draw_floor_holes(axes, world);
@@ -176,9 +191,8 @@ void draw_world(const World& world, const std::string& png_path) {
   if (!crowded(world)) draw_sensors(axes, world);
   for (const Mover& mover : world.movers)
     if (mover.is_tag) draw_tag(axes, mover);
-  for (const Mover& mover : world.movers)
-    if (!crowded(world)) draw_name(axes, mover);
-  axes.save(png_path);
+  if (!crowded(world)) draw_names(axes, world);
+  axes.save(path);
 }
 
 }  // namespace sf::viz

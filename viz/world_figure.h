@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "viz/picture_file.h"
 #include "world/world.h"
 
 namespace sf::viz {
@@ -11,6 +12,6 @@ namespace sf::viz {
 /// named when there are at most twenty.
 /// @param world with an up-to-date `extent` (see world::update_extent_and_hash)
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_world(const world::World& world, const std::string& png_path);
+void draw_world(const world::World& world, const std::string& path, const Page& page = {});
 
 }  // namespace sf::viz

@@ -23,16 +23,17 @@ TEST(Loading, CommandsWithoutPicturesLoadNoDrawingLibrary) {
   for (const Words& arguments : {Words{"--version"}, Words{"check", world}, Words{"run", world, "--duration", "0.3"},
                                  Words{"sense", world}, Words{"explain", world}}) {
     const std::string said = loaded_by(arguments);
-    for (const char* library : {"libvtk", "libfreetype", "libpng", "sensorfarm_text_renderer"})
+    for (const char* library : {"libvtk", "libcairo", "libfreetype", "libpng", "sensorfarm_cairo"})
       EXPECT_EQ(said.find(library), std::string::npos) << arguments[0] << " loads " << library;
   }
 }
 
-TEST(Loading, DrawingLoadsTheTextRenderer) {
+TEST(Loading, DrawingLoadsCairoAndNothingOfVtk) {
   const Folder folder;
   const std::string said = loaded_by({"draw", our_world("rooms.world"), "-o", folder.path("rooms.png")});
-  EXPECT_NE(said.find("sensorfarm_text_renderer.so"), std::string::npos);
-  EXPECT_NE(said.find("libvtkRenderingFreeType"), std::string::npos);
+  EXPECT_NE(said.find("sensorfarm_cairo.so"), std::string::npos);
+  EXPECT_NE(said.find("libcairo.so"), std::string::npos);
+  EXPECT_EQ(said.find("libvtk"), std::string::npos);
 }
 
 /// A program without the drawing module beside it takes the one that the dynamic linker finds.

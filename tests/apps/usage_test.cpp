@@ -158,11 +158,11 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
     expect_refused(arguments, said);
 }
 
-/// There is PNG: a name that asks for another format is refused before anything is done.
+/// A name that asks for another format is refused before anything is done.
 TEST(Usage, PicturesInFormatsThatThereAreNotAreRefused) {
   const Folder folder;
   const std::string world = our_world("six_magnets.world"), network = our_world("simville/simville.rndf");
-  for (const std::string suffix : {".svg", ".pdf", ".jpg", ".PDF"}) {
+  for (const std::string suffix : {".jpg", ".eps", ".svgz"}) {
     const std::string file = folder.path("x" + suffix);
     for (const Words& words : std::vector<Words>{{"draw", world, "-o", file},
                                                  {"draw", network, "-o", file},
@@ -172,11 +172,34 @@ TEST(Usage, PicturesInFormatsThatThereAreNotAreRefused) {
       EXPECT_FALSE(std::filesystem::exists(file));
     }
   }
-  for (const char* name : {"x.PNG", "plain", "v1.2/x.png"}) {
-    std::filesystem::create_directories(folder.path("v1.2"));
+}
+
+TEST(Usage, ThePicturesSuffixIsItsFormat) {
+  const Folder folder;
+  const std::string world = our_world("six_magnets.world");
+  std::filesystem::create_directories(folder.path("v1.2"));
+  for (const auto& [name, begin] : {std::pair{"x.PNG", "\x89PNG"},
+                                    {"plain", "\x89PNG"},
+                                    {"v1.2/x.png", "\x89PNG"},
+                                    {"x.svg", "<?xml"},
+                                    {"x.PDF", "%PDF-"}}) {
     EXPECT_EQ(run_program({"draw", world, "-o", folder.path(name)}).code, 0) << name;
-    EXPECT_EQ(read_file(folder.path(name)).substr(1, 3), "PNG") << name;
+    EXPECT_TRUE(read_file(folder.path(name)).starts_with(begin)) << name;
   }
+}
+
+TEST(Usage, SizesOfPicturesHaveBounds) {
+  const Folder folder;
+  const std::string world = our_world("six_magnets.world"), file = folder.path("x.png");
+  for (const char* size : {"84", "1001", "85x59", "85x1001", "85x", "x60", "85,60", "wide", "nan", "85x60x70", ""})
+    expect_refused({"draw", world, "-o", file, "--size", size}, "such as 85 or 170x120");
+  for (const char* dpi : {"49", "1201", "nan"})
+    expect_refused({"draw", world, "-o", file, "--dpi", dpi}, "from 50 to 1200");
+  expect_refused({"draw", world, "-o", file, "--extent", "1,1,0,2"}, "expected XMIN,YMIN,XMAX,YMAX");  // turned round
+  expect_refused({"draw", world, "-o", file, "--size", "1000", "--dpi", "1200"}, "fewer dots per inch");
+  EXPECT_FALSE(std::filesystem::exists(file));
+  for (const char* size : {"85", "1000x60"})  // the smallest, and the widest with the lowest
+    EXPECT_EQ(run_program({"draw", world, "-o", file, "--size", size, "--dpi", "50"}).code, 0) << size;
 }
 
 TEST(Usage, WrongFilesAreRefusedByEveryCommandThatReadsAWorld) {

@@ -68,7 +68,7 @@ TEST(OwnController, PluginFilesAreRefusedWithTheReason) {
   std::ofstream(text) << "no library";
   expect_in("cannot be loaded as a shared library", refusal_of([&] { find_controller(text); }));
   std::filesystem::remove(text);
-  expect_in("is no plug-in", refusal_of([] { find_controller(SF_BINARY_DIR "/sensorfarm_text_renderer.so"); }));
+  expect_in("is no plug-in", refusal_of([] { find_controller(SF_BINARY_DIR "/sensorfarm_cairo.so"); }));
   expect_in("build it again", refusal_of([] { find_controller(SF_BINARY_DIR "/test_old_plugin.so"); }));
   expect_in("has several controllers; expected one of: ", refusal_of([] { find_controller(kPlugin); }));
   expect_in(":test-straight", refusal_of([] { find_controller(kPlugin + ":other"); }));

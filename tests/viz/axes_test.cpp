@@ -113,7 +113,6 @@ TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // no text is cut off
   options.subtitle = std::string(300, 'w');
   options.extent = {99999000, -99999000, 99999020, -99998990};
   options.legend.assign(12, {LegendMark::block, 0xFF00FF00u, "something to be known", 0xFF000000u});
-  options.bar = ColorBar{"robot", "the first", "the last of them all", {0xFF000000u, 0xFFFF0000u}};
   Axes axes(options);
   const std::string path = scenes::own_file("axes.png");
   axes.save(path);
@@ -123,31 +122,6 @@ TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // no text is cut off
   EXPECT_EQ(p.count(white, 0, p.height - 8, p.width, p.height), 8 * p.width);
   EXPECT_EQ(p.count(white, 0, 0, 8, p.height), 8 * p.height);
   EXPECT_EQ(p.count(white, p.width - 8, 0, p.width, p.height), 8 * p.height);
-}
-
-/// Above the bar's middle only the upper label differs between the pictures, below it only the lower one.
-TEST(Axes, TheBarsLabelsAreAtTheirEnds) {
-  const auto draw = [](const char* low, const char* high, const char* name) {
-    FigureOptions options;
-    options.extent = {0, 0, 10, 5};
-    options.bar = ColorBar{"", low, high, {0xFF000000u, 0xFFFF0000u}};
-    Axes axes(options);
-    axes.save(scenes::own_file(name));
-    return scenes::read_png(scenes::own_file(name));
-  };
-  const scenes::Picture p = draw("1", "8", "bar.png"), low = draw("4", "8", "low.png"),
-                        high = draw("1", "4", "high.png");
-  const int middle = p.height / 2;
-  const auto apart = [&](const scenes::Picture& q, int y0, int y1) {
-    int n = 0;
-    for (int y = y0; y < y1; ++y)
-      for (int x = 0; x < p.width; ++x) n += p.at(x, y) != q.at(x, y) ? 1 : 0;
-    return n;
-  };
-  EXPECT_EQ(apart(low, 0, middle), 0);
-  EXPECT_GT(apart(low, middle, p.height), 10);
-  EXPECT_GT(apart(high, 0, middle), 10);
-  EXPECT_EQ(apart(high, middle, p.height), 0);
 }
 
 TEST(Axes, TitleAndLegendAreThere) {

@@ -11,14 +11,18 @@
 #include "tests/units.h"
 #include "tests/viz/png.h"
 #include "viz/legend.h"
+#include "viz/picture_file.h"
 
 namespace sf::viz {
 namespace {
 
+using scenes::picture_of;
+
 int darkness(const Canvas& canvas) {
+  const scenes::Picture picture = picture_of(canvas);
   int sum = 0;
-  for (int y = 0; y < canvas.height(); ++y)
-    for (int x = 0; x < canvas.width(); ++x) sum += 255 - static_cast<int>(canvas.pixel(x, y) & 0xFFu);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) sum += 255 - static_cast<int>(picture.at(x, y) & 0xFFu);
   return sum;
 }
 
@@ -28,7 +32,7 @@ double area_of(const Canvas& canvas) { return darkness(canvas) / 255.0; }
 TEST(Canvas, StartsAsBackground) {
   const Canvas canvas(3, 2, 0xFF123456u);
   for (int y = 0; y < 2; ++y)
-    for (int x = 0; x < 3; ++x) EXPECT_EQ(canvas.pixel(x, y), 0xFF123456u);
+    for (int x = 0; x < 3; ++x) EXPECT_EQ(picture_of(canvas).at(x, y), 0xFF123456u);
 }
 
 TEST(Canvas, PolygonFillsWholePixels) {  // whole pixels: no grey anywhere
@@ -37,7 +41,7 @@ TEST(Canvas, PolygonFillsWholePixels) {  // whole pixels: no grey anywhere
   canvas.polygon(box, kBlack);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x)
-      EXPECT_EQ(canvas.pixel(x, y), x >= 2 && x < 5 && y >= 3 && y < 7 ? kBlack : kWhite) << x << ", " << y;
+      EXPECT_EQ(picture_of(canvas).at(x, y), x >= 2 && x < 5 && y >= 3 && y < 7 ? kBlack : kWhite) << x << ", " << y;
 }
 
 TEST(Canvas, PolygonCoversItsArea) {  // any slope: coverage sums to the area, here of a triangle of 20 x 11 / 2
@@ -55,7 +59,7 @@ TEST(Canvas, PolygonDirectionDoesNotMatter) {
   one.polygon(there, kBlack);
   other.polygon(back, kBlack);
   for (int y = 0; y < 16; ++y)
-    for (int x = 0; x < 16; ++x) EXPECT_EQ(one.pixel(x, y), other.pixel(x, y));
+    for (int x = 0; x < 16; ++x) EXPECT_EQ(picture_of(one).at(x, y), picture_of(other).at(x, y));
 }
 
 TEST(Canvas, OverlapOfOneShapeIsPaintedOnce) {  // the middle of two overlapping squares is no darker than the rest
@@ -66,9 +70,9 @@ TEST(Canvas, OverlapOfOneShapeIsPaintedOnce) {  // the middle of two overlapping
     for (int i = 0; i < 4; ++i) edges.push_back({p[i], p[(i + 1) % 4]});
   }
   canvas.area(edges, 0x80000000u);
-  EXPECT_EQ(canvas.pixel(2, 2), canvas.pixel(5, 5));
-  EXPECT_EQ(canvas.pixel(8, 8), canvas.pixel(5, 5));
-  EXPECT_NE(canvas.pixel(5, 5), kWhite);
+  EXPECT_EQ(picture_of(canvas).at(2, 2), picture_of(canvas).at(5, 5));
+  EXPECT_EQ(picture_of(canvas).at(8, 8), picture_of(canvas).at(5, 5));
+  EXPECT_NE(picture_of(canvas).at(5, 5), kWhite);
 }
 
 TEST(Canvas, HoleStaysEmpty) {  // an outline of the opposite orientation is subtracted
@@ -79,8 +83,8 @@ TEST(Canvas, HoleStaysEmpty) {  // an outline of the opposite orientation is sub
   for (int i = 0; i < 4; ++i) edges.push_back({outer[i], outer[(i + 1) % 4]});
   for (int i = 0; i < 4; ++i) edges.push_back({inner[i], inner[(i + 1) % 4]});
   canvas.area(edges, kBlack);
-  EXPECT_EQ(canvas.pixel(5, 5), kWhite);
-  EXPECT_EQ(canvas.pixel(2, 5), kBlack);
+  EXPECT_EQ(picture_of(canvas).at(5, 5), kWhite);
+  EXPECT_EQ(picture_of(canvas).at(2, 5), kBlack);
 }
 
 TEST(Canvas, AreaMayReachFarOutside) {  // clipped on all sides: the whole inside is covered
@@ -117,15 +121,15 @@ TEST(Canvas, JointsOfAPolylineAreNotDarker) {
   for (int i = 0; i <= 300; ++i) points.push_back({5.0 + i / 10.0, 5.0});
   many.polyline(points, 2.0, 0x80000000u);
   for (int y = 0; y < 10; ++y)
-    for (int x = 0; x < 40; ++x) EXPECT_EQ(one.pixel(x, y), many.pixel(x, y)) << x << ", " << y;
+    for (int x = 0; x < 40; ++x) EXPECT_EQ(picture_of(one).at(x, y), picture_of(many).at(x, y)) << x << ", " << y;
 }
 
 TEST(Canvas, OnePointIsADot) {
   Canvas canvas(9, 9, kWhite);
   const glm::dvec2 point{4.5, 4.5};
   canvas.polyline({&point, 1}, 3.0, kBlack);
-  EXPECT_EQ(canvas.pixel(4, 4), kBlack);
-  EXPECT_EQ(canvas.pixel(0, 4), kWhite);
+  EXPECT_EQ(picture_of(canvas).at(4, 4), kBlack);
+  EXPECT_EQ(picture_of(canvas).at(0, 4), kWhite);
 }
 
 TEST(Canvas, ClipKeepsTheRest) {
@@ -175,16 +179,16 @@ TEST(Canvas, OpacityMixes) {
   Canvas canvas(3, 3, kWhite);
   const glm::dvec2 all[] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}};
   canvas.polygon(all, 0x80FF0000u);
-  EXPECT_NEAR(static_cast<double>(canvas.pixel(1, 1) & 0xFFu), 127.0, 1.0);
-  EXPECT_EQ(canvas.pixel(1, 1) >> 16 & 0xFFu, 255u);
+  EXPECT_NEAR(static_cast<double>(picture_of(canvas).at(1, 1) & 0xFFu), 127.0, 1.0);
+  EXPECT_EQ(picture_of(canvas).at(1, 1) >> 16 & 0xFFu, 255u);
 }
 
 TEST(Canvas, ImageRepeatsLargeCells) {  // a cell of 4 x 4 pixels is one colour to its border
   Canvas canvas(8, 4, kWhite);
   const std::uint32_t cells[] = {0xFF112233u, 0xFF445566u};
   canvas.image({0, 0}, {8, 4}, {2, 1, cells});
-  EXPECT_EQ(canvas.pixel(3, 3), cells[0]);
-  EXPECT_EQ(canvas.pixel(4, 0), cells[1]);
+  EXPECT_EQ(picture_of(canvas).at(3, 3), cells[0]);
+  EXPECT_EQ(picture_of(canvas).at(4, 0), cells[1]);
 }
 
 TEST(Canvas, ImageAveragesSmallCells) {  // a checker board of half pixels is grey
@@ -193,14 +197,14 @@ TEST(Canvas, ImageAveragesSmallCells) {  // a checker board of half pixels is gr
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 4; ++i) cells.push_back((i + j) % 2 ? kWhite : kBlack);
   canvas.image({0, 0}, {2, 2}, {4, 4, cells});
-  EXPECT_EQ(canvas.pixel(1, 1), 0xFF808080u);
+  EXPECT_NEAR(static_cast<double>(picture_of(canvas).at(1, 1) & 0xFFu), 127.5, 1.0);
 }
 
 TEST(Canvas, ImageStartsWithItsTopRow) {
   Canvas canvas(1, 2, kWhite);
   const std::uint32_t cells[] = {0xFF010203u, 0xFF040506u};
   canvas.image({0, 0}, {1, 2}, {1, 2, cells});
-  EXPECT_EQ(canvas.pixel(0, 0), cells[0]);
+  EXPECT_EQ(picture_of(canvas).at(0, 0), cells[0]);
 }
 
 TEST(Canvas, TextLiesInItsBox) {
@@ -265,19 +269,19 @@ TEST(Canvas, PngReadsBackTheSame) {
   Canvas canvas(31, 17, 0xFFFAFBFCu);
   canvas.disc({9, 5}, 3, 0xFFD55E00u);
   const std::string path = scenes::own_file("canvas.png");
-  canvas.save_png(path);
+  save_picture(canvas.drawing(), path);
   const scenes::Picture picture = scenes::read_png(path);
   ASSERT_EQ(picture.width, 31);
   ASSERT_EQ(picture.height, 17);
   for (int y = 0; y < 17; ++y)
-    for (int x = 0; x < 31; ++x) ASSERT_EQ(picture.at(x, y), canvas.pixel(x, y)) << x << ", " << y;
+    for (int x = 0; x < 31; ++x) ASSERT_EQ(picture.at(x, y), picture_of(canvas).at(x, y)) << x << ", " << y;
 }
 
 TEST(Canvas, UnwritablePathIsNamed) {
   const Canvas canvas(4, 4, kWhite);
   for (const std::string& path : {testing::TempDir() + "no/such/folder/a.png", testing::TempDir()}) {
     try {
-      canvas.save_png(path);
+      save_picture(canvas.drawing(), path);
       ADD_FAILURE() << path << " was written";
     } catch (const base::InputError& error) {
       EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
@@ -287,7 +291,7 @@ TEST(Canvas, UnwritablePathIsNamed) {
 
 TEST(Canvas, FullDiskIsAnError) {  // the bytes fit into the stream's buffer, not onto the device
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this machine";
-  EXPECT_THROW(Canvas(4, 4, kWhite).save_png("/dev/full"), base::InputError);
+  EXPECT_THROW(save_picture(Canvas(4, 4, kWhite).drawing(), "/dev/full"), base::InputError);
 }
 
 }  // namespace

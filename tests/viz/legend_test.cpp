@@ -15,7 +15,9 @@ namespace {
 std::string row_of(const Canvas& canvas, int y) {
   std::string row;
   for (int x = 0; x < canvas.width(); ++x)
-    row += canvas.pixel(x, y) == kBlack ? '#' : canvas.pixel(x, y) == kWhite ? '.' : '+';
+    row += scenes::picture_of(canvas).at(x, y) == kBlack   ? '#'
+           : scenes::picture_of(canvas).at(x, y) == kWhite ? '.'
+                                                           : '+';
   return row;
 }
 
@@ -62,7 +64,7 @@ TEST(Dashes, GoOnOverTheCornersOfAPath) {
 TEST(Dashes, TurnCorners) {
   const auto column_of = [](const Canvas& canvas, int x) {
     std::string column;
-    for (int y = 0; y < canvas.height(); ++y) column += canvas.pixel(x, y) == kBlack ? '#' : '.';
+    for (int y = 0; y < canvas.height(); ++y) column += scenes::picture_of(canvas).at(x, y) == kBlack ? '#' : '.';
     return column;
   };
   const auto second_leg = [&](glm::dvec2 begin) {
@@ -91,9 +93,9 @@ TEST(Cross, HasFourArms) {
   draw_cross(canvas, {20, 20}, 10.0, 3.0, kBlack);
   for (const int d : {2, 8})
     for (const auto& [x, y] : {std::pair{20 + d, 20 + d}, {20 - d, 20 - d}, {20 + d, 20 - d}, {20 - d, 20 + d}})
-      EXPECT_EQ(canvas.pixel(x, y), kBlack) << x << ", " << y;
-  EXPECT_EQ(canvas.pixel(26, 20), kWhite) << "beside them";
-  EXPECT_EQ(canvas.pixel(34, 34), kWhite) << "beyond them";
+      EXPECT_EQ(scenes::picture_of(canvas).at(x, y), kBlack) << x << ", " << y;
+  EXPECT_EQ(scenes::picture_of(canvas).at(26, 20), kWhite) << "beside them";
+  EXPECT_EQ(scenes::picture_of(canvas).at(34, 34), kWhite) << "beyond them";
 }
 
 /// The states of traffic lights differ by shape: what is painted beside the middle tells them apart.
@@ -111,9 +113,9 @@ TEST(Signals, ShapesDiffer) {
     constexpr std::uint32_t kColor = 0xFF00FF00u;
     Canvas canvas(40, 40, kWhite);
     draw_signal(canvas, {20.5, 20.5}, 10.0, c.mark, kColor);
-    EXPECT_EQ(canvas.pixel(20, 20) == kColor, c.middle) << static_cast<int>(c.mark);
-    EXPECT_EQ(canvas.pixel(28, 28) == kColor, c.corner) << static_cast<int>(c.mark);
-    EXPECT_EQ(canvas.pixel(31, 20) == kColor, c.side) << static_cast<int>(c.mark);
+    EXPECT_EQ(scenes::picture_of(canvas).at(20, 20) == kColor, c.middle) << static_cast<int>(c.mark);
+    EXPECT_EQ(scenes::picture_of(canvas).at(28, 28) == kColor, c.corner) << static_cast<int>(c.mark);
+    EXPECT_EQ(scenes::picture_of(canvas).at(31, 20) == kColor, c.side) << static_cast<int>(c.mark);
   }
 }
 
@@ -124,11 +126,12 @@ TEST(Legend, SamplesStandInTheirPlaces) {
   const std::vector<LegendPlace> places{{0.0, 0}, {0.0, 1}};
   Canvas canvas(120, 100, kWhite);
   draw_legend(canvas, {10, 10}, items, places);
+  const scenes::Picture picture = scenes::picture_of(canvas);
   const auto rows_of = [&](std::uint32_t color) {
     std::vector<int> rows;
     for (int y = 0; y < canvas.height(); ++y)
       for (int x = 0; x < canvas.width(); ++x)
-        if (canvas.pixel(x, y) == color && (rows.empty() || rows.back() != y)) rows.push_back(y);
+        if (picture.at(x, y) == color && (rows.empty() || rows.back() != y)) rows.push_back(y);
     return rows;
   };
   const std::vector<int> first = rows_of(0xFFFF0000u), second = rows_of(0xFF00FF00u);

@@ -29,7 +29,7 @@ TEST(MapFigure, CellsAreFourPixelsWithALineBetween) {
   draw_map(grid, {"Title", "", {}}, out("cells.png"));
   const scenes::Picture picture = scenes::read_png(out("cells.png"));
   // The map's left side: the first column in the colour of grid lines over a map's height.
-  const int left = 86, top = 92, pitch = 5;
+  const int left = 86, top = 100, pitch = 5;  // below a title and a subtitle
   for (int row = 0; row < 120; ++row)
     for (int column = 0; column < 120; ++column) {
       const std::uint32_t expected[] = {kDark, kBlue, kWhite};
@@ -50,7 +50,7 @@ TEST(MapFigure, RobotsAreMarkedWhereTheyAre) {
   EXPECT_EQ(robot.width, bare.width);
   int changed = 0, elsewhere = 0;
   // The map is centred in a picture of the smallest width.
-  const int left = 86 + (bare.width - 86 - 40 - 201) / 2, top = 92;
+  const int left = 86 + (bare.width - 86 - 40 - 201) / 2, top = 64;  // below a subtitle
   for (int y = top; y < top + 201; ++y)
     for (int x = left; x < left + 201; ++x) {
       if (bare.at(x, y) == robot.at(x, y)) continue;

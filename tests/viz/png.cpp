@@ -7,7 +7,14 @@
 #include <fstream>
 #include <iterator>
 
+#include "viz/picture_file.h"
+
 namespace sf::scenes {
+
+Picture picture_of(const viz::Canvas& canvas) {
+  viz::PixelImage image = viz::paint_pixels(canvas.drawing());
+  return {image.width, image.height, std::move(image.rgb)};
+}
 
 Picture read_png(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "viz/canvas.h"
+
 namespace sf {
 inline constexpr std::uint32_t kWhite = 0xFFFFFFFFu;
 inline constexpr std::uint32_t kBlack = 0xFF000000u;
@@ -35,6 +37,9 @@ struct Picture {
   /// In the whole picture.
   int count(std::uint32_t color) const { return count(color, 0, 0, width, height); }
 };
+
+/// The pixels of a drawing.
+Picture picture_of(const viz::Canvas& canvas);
 
 /// Fails the test when the file is not a PNG.
 Picture read_png(const std::string& path);

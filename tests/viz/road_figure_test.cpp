@@ -101,9 +101,10 @@ TEST(RoadView, EverythingIsWhereItShouldBe) {
   Canvas canvas(1000, 300, 0xFFFFFFFFu);
   const RoadView view{canvas, {0, 0, 1000, 300}, {-2.05, -12.05}, 10.0};
   draw_network(view, small());
+  const Picture drawn = scenes::picture_of(canvas);
   const auto at = [&](double x, double y) {
     const glm::dvec2 p = view.pixel({x, y});
-    return canvas.pixel(static_cast<int>(p.x), static_cast<int>(p.y));
+    return drawn.at(static_cast<int>(p.x), static_cast<int>(p.y));
   };
   EXPECT_EQ(at(10, 0.8), theme::kAsphalt);
   EXPECT_EQ(at(10, 3.8), theme::kAsphalt);
@@ -125,11 +126,12 @@ TEST(RoadView, ArrowsPointInDrivingDirection) {
   for (world::RoadLane& lane : network.lanes) lane.left = lane.right = world::Boundary::none;
   draw_network(view, network);
   // Columns of white along the first lane's centre line: an arrow to the right is widest at its left.
+  const Picture drawn = scenes::picture_of(canvas);
   const auto white = [&](double x, double y_low, double y_high) {
     int n = 0;
     for (double y = y_low; y < y_high; y += 0.1) {
       const glm::dvec2 p = view.pixel({x, y});
-      n += canvas.pixel(static_cast<int>(p.x), static_cast<int>(p.y)) == 0xFFFFFFFFu;
+      n += drawn.at(static_cast<int>(p.x), static_cast<int>(p.y)) == 0xFFFFFFFFu;
     }
     return n;
   };
@@ -200,8 +202,9 @@ TEST(Labels, PreferBareGround) {
   EXPECT_TRUE(labels.is_bare({{250, 90}, {270, 110}}));
   const glm::dvec2 mark[] = {{200, 100}};
   ASSERT_TRUE(labels.place(canvas, mark, "x", small_text(), {4.0, 90.0, 100.0, 1.0}));
+  const Picture drawn = scenes::picture_of(canvas);
   for (int x = 172; x < 228; ++x)
-    for (int y = 0; y < 200; ++y) ASSERT_EQ(canvas.pixel(x, y), 0xFFFFFFFFu) << x << " " << y;
+    for (int y = 0; y < 200; ++y) ASSERT_EQ(drawn.at(x, y), 0xFFFFFFFFu) << x << " " << y;
 }
 
 TEST(Labels, StayInside) {

@@ -1,0 +1,17 @@
+#pragma once
+// The field of a world's magnets on a plane, for VTK.
+
+#include <optional>
+
+#include "gpu/device.h"
+#include "viz/vtk_files.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+/// Cells over the world's extent with arrays `magnitude` [T], `B` [T] and `in_plane` [T], B without its z. nullopt: the
+/// world has no magnets.
+/// @param height [m] of the plane in the world
+std::optional<viz::GridData> field_grid(const world::World& world, gpu::Device& device, double height);
+
+}  // namespace sf::apps

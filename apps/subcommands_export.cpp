@@ -1,0 +1,69 @@
+// Subcommands that bring recordings to other programs and windows.
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands.h"
+#include "apps/option_groups.h"
+#include "apps/option_parsers.h"
+#include "apps/subcommands.h"
+
+namespace sf::apps {
+
+namespace {
+
+void add_height(CLI::App& app, double& height) {
+  app.add_option("--height", height, "Height of the plane of the magnetic field [m]")
+      ->check(number(-1e6, 1e6))
+      ->type_name("Z")
+      ->capture_default_str();
+}
+
+void add_every(CLI::App& app, double& every, const std::string& help) {
+  app.add_option("--every", every, help)->check(number(1e-3, 1e6))->type_name("S")->capture_default_str();
+}
+
+void add_export(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "export", "Write a recorded run's trajectories and readings as CSV, or its geometry as VTK files for ParaView");
+  auto& o = add_command(*sub, call, export_recording);
+  add_examples(*sub, {"out/run -o tables", "out/run --vtk --every 0.5 -o paraview"});
+  add_recording(*sub, o);
+  sub->add_option("-o,--out", o.out, "Folder for the files")
+      ->required()
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
+  sub->add_flag("--vtk", o.vtk, "Walls, roads, robots, trajectories, scans, occupancy and field as VTK files");
+  add_every(*sub, o.every, "Simulated time between the files of a series of --vtk [s]");
+  add_height(*sub, o.height);
+  add_part(*sub, o);
+  add_device(*sub, o);
+}
+
+void add_view(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("view", "Show a recorded run in a window");
+  auto& o = add_command(*sub, call, view);
+  add_examples(*sub, {"out/run --3d"});
+  add_recording(*sub, o);
+  sub->add_flag("--3d", o.three_d, "In three dimensions (VTK): walls, robots, beams, magnetic field, a time slider")
+      ->required();
+  add_every(*sub, o.every, "Simulated time between two frames [s]");
+  add_height(*sub, o.height);
+  sub->add_option("--time", o.time, "Simulated time to begin with [s]")
+      ->check(number(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+  sub->add_option("--screenshot", o.screenshot, "PNG file to write instead of opening the window for a user")
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+  add_part(*sub, o);
+  add_device(*sub, o);
+}
+
+}  // namespace
+
+void add_export_commands(CLI::App& app, Call& call) {
+  add_export(app, call);
+  add_view(app, call);
+}
+
+}  // namespace sf::apps

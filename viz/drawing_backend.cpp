@@ -1,0 +1,13 @@
+#include "viz/drawing_backend.h"
+
+#include "base/plugin.h"
+
+namespace sf::viz {
+
+const DrawingBackend& drawing_backend() {
+  static const auto* const loaded =
+      static_cast<const DrawingBackend*>(base::load_plugin(kDrawingBackendSymbol, "nothing can be drawn", "Cairo"));
+  return *loaded;
+}
+
+}  // namespace sf::viz

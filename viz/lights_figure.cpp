@@ -1,0 +1,109 @@
+#include "viz/lights_figure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "viz/color.h"
+#include "viz/heading.h"
+#include "viz/legend.h"
+#include "viz/signal_layer.h"
+#include "viz/ticks.h"
+
+namespace sf::viz {
+namespace {
+
+using world::LightState;
+
+// [px]
+constexpr int kOwnWidth = 1600;
+constexpr double kSide = 26.0;
+constexpr double kRow = 34.0;
+constexpr double kBar = 22.0;  ///< height of a bar of red
+constexpr double kBelow = 76.0;
+constexpr double kRoomForMark = 18.0;
+constexpr double kFlash = 7.0;  ///< from one flash to the next
+
+/// Part of the height of a row's bars: stop is the highest.
+double height_of(LightState state) {
+  if (state == LightState::red || state == LightState::flashing_red) return 1.0;
+  return state == LightState::green ? 0.35 : state == LightState::dark ? 0.08 : 0.65;
+}
+
+bool flashes(LightState state) { return state == LightState::flashing_red || state == LightState::flashing_yellow; }
+
+void fill_box(Canvas& canvas, double x0, double y0, double x1, double y1, std::uint32_t color) {
+  const glm::dvec2 box[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+  canvas.polygon(box, color);
+}
+
+void draw_span(Canvas& canvas, double x0, double x1, double y, LightState state) {
+  const LegendItem item = signal_legend_item(state);
+  const double half = 0.5 * kBar * height_of(state);
+  const std::uint32_t color = with_opacity(item.color, 0.75);
+  if (flashes(state))
+    for (double x = x0; x < x1; x += kFlash)
+      fill_box(canvas, x, y - half, std::min(x + 0.5 * kFlash, x1), y + half, color);
+  else
+    fill_box(canvas, x0, y - half, x1, y + half, color);
+  canvas.line({x0, y - 0.5 * kBar}, {x0, y + 0.5 * kBar}, theme::kHairline, theme::kFrame);
+  if (x1 - x0 > kRoomForMark) draw_signal(canvas, {0.5 * (x0 + x1), y}, 5.0, item.sample, item.color);
+}
+
+/// The time axis: labels below, lines across all rows.
+void draw_times(Canvas& canvas, const PixelBox& plot, double from, double to) {
+  TextStyle style = small_text();
+  style.across = Anchor::middle;
+  style.down = Anchor::start;
+  const Ticks ticks = make_ticks(from, to, 110.0 / (plot.x_max - plot.x_min) * (to - from));
+  for (const double time : ticks.at) {
+    const double x = crisp(plot.x_min + (time - from) / (to - from) * (plot.x_max - plot.x_min));
+    canvas.line({x, plot.y_min + 0.0}, {x, plot.y_max + 0.0}, theme::kHairline, theme::kGridLine);
+    canvas.text({x, plot.y_max + 9.0}, tick_text(time, ticks.decimals), style);
+  }
+  canvas.text({0.5 * (plot.x_min + plot.x_max), plot.y_max + 36.0}, "time [s]", style);
+}
+
+std::vector<LegendItem> legend_of(std::span<const LightRow> rows) {
+  std::set<LightState> seen;
+  for (const LightRow& row : rows)
+    for (const LightSpan& span : row.spans) seen.insert(span.state);
+  std::vector<LegendItem> items;
+  for (const LightState state : seen) items.push_back(signal_legend_item(state));
+  return items;
+}
+
+}  // namespace
+
+void draw_light_states(std::span<const LightRow> rows, const std::string& subtitle, const std::string& path,
+                       const Page& page) {
+  const int width = page_pixels(page.width, kOwnWidth);
+  double from = HUGE_VAL, to = -HUGE_VAL, left = 0.0;
+  for (const LightRow& row : rows) {
+    left = std::max(left, text_size(row.name, small_text()).x);
+    for (const LightSpan& span : row.spans) from = std::min(from, span.from), to = std::max(to, span.to);
+  }
+  if (!(to > from)) from = std::isfinite(from) ? from - 0.5 : 0.0, to = from + 1.0;
+  left = kSide + std::min(left, 0.4 * width) + 12.0;
+  const Heading heading = make_heading("Traffic lights", subtitle, width - left - kSide, page);
+  const PixelBox plot{static_cast<int>(left), static_cast<int>(heading.height), width - static_cast<int>(kSide),
+                      static_cast<int>(heading.height + kRow * static_cast<double>(rows.size()))};
+  const std::vector<LegendItem> legend = legend_of(rows);
+  const auto places = place_legend(legend, plot.x_max - plot.x_min);
+  const int legend_rows = places.empty() ? 0 : places.back().row + 1;
+  Canvas canvas(width, static_cast<int>(plot.y_max + kBelow + legend_rows * kLegendRow + kSide), theme::kWhite);
+  draw_heading(canvas, left, heading);
+  draw_times(canvas, plot, from, to);
+  TextStyle style = small_text();
+  style.across = Anchor::end;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double y = plot.y_min + kRow * (static_cast<double>(i) + 0.5);
+    canvas.text({left - 10.0, y}, rows[i].name, style);
+    const auto x = [&](double time) { return plot.x_min + (time - from) / (to - from) * (plot.x_max - plot.x_min); };
+    for (const LightSpan& span : rows[i].spans) draw_span(canvas, x(span.from), x(span.to), y, span.state);
+  }
+  draw_legend(canvas, {plot.x_min + 0.0, plot.y_max + kBelow}, legend, places);
+  save_picture(canvas.drawing(), path, page);
+}
+
+}  // namespace sf::viz

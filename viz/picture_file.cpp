@@ -1,0 +1,64 @@
+#include "viz/picture_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.h"
+#include "viz/drawing_backend.h"
+#include "viz/png.h"
+#include "viz/svg.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr double kLargestSide = 32768.0;  // [px] Cairo's
+
+}  // namespace
+
+std::optional<PictureFormat> format_of(const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (suffix.empty() || suffix == ".png") return PictureFormat::png;
+  if (suffix == ".svg") return PictureFormat::svg;
+  if (suffix == ".pdf") return PictureFormat::pdf;
+  return std::nullopt;
+}
+
+int page_pixels(double millimetres, int otherwise) {
+  return millimetres > 0.0 ? static_cast<int>(millimetres * kPixelsPerMillimetre) : otherwise;
+}
+
+PixelImage paint_pixels(const Drawing& drawing, double scale) {
+  PixelImage image{static_cast<int>(std::ceil(drawing.width * scale - 1e-6)),
+                   static_cast<int>(std::ceil(drawing.height * scale - 1e-6)),
+                   {}};
+  if (!drawing_backend().pixels(drawing, scale, image.rgb))
+    throw base::InputError(fmt::format(
+        "cannot paint a picture of {} x {} pixels: too little memory; take fewer dots per inch or a smaller size",
+        image.width, image.height));
+  return image;
+}
+
+void save_picture(const Drawing& drawing, const std::string& path, const Page& page) {
+  const PictureFormat format = format_of(path).value_or(PictureFormat::png);
+  if (format == PictureFormat::svg) return write_picture(path, to_svg(drawing));
+  if (format == PictureFormat::pdf) {
+    std::string bytes;
+    SF_CHECK(drawing_backend().pdf(drawing, bytes), "Cairo made no PDF");
+    return write_picture(path, bytes);
+  }
+  const double scale = page.dpi / kPixelsPerInch;
+  if (scale * std::max(drawing.width, drawing.height) > kLargestSide)
+    throw base::InputError(path, 0,
+                           fmt::format("the picture would be {:.0f} x {:.0f} pixels, more than {:g} along a side; take "
+                                       "fewer dots per inch or a smaller size",
+                                       drawing.width * scale, drawing.height * scale, kLargestSide));
+  const PixelImage image = paint_pixels(drawing, scale);
+  write_picture(path, encode_png(image.rgb, image.width, image.height, PngContent::figure, page.dpi));
+}
+
+}  // namespace sf::viz

@@ -1,0 +1,13 @@
+#pragma once
+// SVG files of drawings. Texts are `<text>` elements, so they can be searched, selected and edited.
+
+#include <string>
+
+#include "viz/drawing.h"
+
+namespace sf::viz {
+
+/// An SVG 1.1 document of the drawing's size on paper.
+std::string to_svg(const Drawing& drawing);
+
+}  // namespace sf::viz

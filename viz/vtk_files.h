@@ -1,0 +1,59 @@
+#pragma once
+// Geometry and images as VTK's XML files (.vtp, .vti), which ParaView opens. VTK is in a plug-in (vtk_files.cpp,
+// `sensorfarm_vtk_files.so`) that is loaded with the first file.
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+namespace sf::viz {
+
+/// Numbers of each point or cell.
+struct DataArray {
+  std::string name;
+  int width = 1;               ///< numbers per point or cell
+  std::vector<double> values;  ///< `width` per point or cell
+};
+
+/// Points, with dots on them, and lines and polygons between them. Cell arrays hold the values of dots, then of lines,
+/// then of polygons.
+struct PolyData {
+  std::vector<glm::dvec3> points;                   ///< [m] world frame
+  std::vector<std::vector<std::int64_t>> dots;      ///< rows of `points`, one each
+  std::vector<std::vector<std::int64_t>> lines;     ///< rows of `points`
+  std::vector<std::vector<std::int64_t>> polygons;  ///< rows of `points`, convex, first not repeated
+  std::vector<DataArray> point_data, cell_data;
+  std::vector<std::string> names;  ///< one per cell as array `name`; empty: none
+};
+
+/// Cells of a grid in the plane z = const, row by row from the lower left (-x, -y).
+struct GridData {
+  double x = 0.0, y = 0.0, z = 0.0;   ///< [m] lower left corner of the first cell
+  double cell_x = 1.0, cell_y = 1.0;  ///< [m] > 0
+  int columns = 1, rows = 1;
+  std::vector<DataArray> cell_data;
+};
+
+/// The functions do not throw. @return false when the file cannot be written
+struct VtkFiles {
+  bool (*write_poly_data)(const PolyData& data, const std::string& path);
+  bool (*write_grid)(const GridData& data, const std::string& path);
+};
+
+/// The name of the plug-in's only symbol: `extern "C" const VtkFiles sensorfarm_vtk_files`.
+inline constexpr const char* kVtkFilesSymbol = "sensorfarm_vtk_files";
+
+/// Write a `.vtp` or a `.vti` file. @throws base::InputError naming the path when it cannot be written.
+void write_poly_data(const PolyData& data, const std::string& path);
+void write_grid(const GridData& data, const std::string& path);
+
+/// One file of a series over time.
+struct SeriesFile {
+  double time = 0.0;  ///< [s]
+  std::string file;   ///< relative to the series' folder
+};
+/// Writes a `.pvd` file. @throws base::InputError naming the path when it cannot be written.
+void write_file_series(const std::vector<SeriesFile>& files, const std::string& path);
+
+}  // namespace sf::viz

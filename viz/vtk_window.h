@@ -1,0 +1,43 @@
+#pragma once
+// VTK's interactive window on a recorded run. VTK is in a plug-in (vtk_window.cpp, `sensorfarm_vtk_window.so`) that is
+// loaded when a window is opened. Needs a display and OpenGL.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viz/picture_file.h"
+#include "viz/vtk_files.h"
+
+namespace sf::viz {
+
+/// What moves.
+struct Frame3d {
+  PolyData bodies, beams;
+};
+
+struct Scene3d {
+  std::string title;
+  PolyData walls, roads;
+  std::optional<GridData> field;              ///< cell arrays `magnitude` [T] and `in_plane` (x, y, 0) [T]
+  std::vector<double> times;                  ///< [s] of each frame, ascending, at least one
+  std::function<Frame3d(std::size_t)> frame;  ///< of a row of `times`
+  std::size_t first = 0;                      ///< row of `times` to begin with
+  std::function<bool()> stop;                 ///< true: close the window
+  int width = 1280, height = 800;             ///< [px] of the window
+};
+
+/// Shows the scene until its window is closed, or `stop` says so. Space plays and pauses, the arrow keys step, the
+/// slider chooses the time, q closes.
+/// @param picture not null: takes the window's pixels once, and returns without waiting for a user
+/// @throws base::InputError without a display
+void show_window(const Scene3d& scene, PixelImage* picture = nullptr);
+
+/// The plug-in's function. @return what is missing; empty when all went well
+struct WindowPlugin {
+  std::string (*show)(const Scene3d& scene, PixelImage* picture);
+};
+inline constexpr const char* kWindowSymbol = "sensorfarm_vtk_window";
+
+}  // namespace sf::viz

@@ -1,0 +1,150 @@
+#include "viz/world_geometry.h"
+
+#include <cmath>
+
+#include "base/bearing.h"
+#include "sensors/laser_settings.h"
+#include "world/path_geometry.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr double kPathStep = 0.05;  // [m]
+
+std::int64_t add_point(PolyData& data, glm::dvec2 p, double z) {
+  data.points.push_back({p.x, p.y, z});
+  return static_cast<std::int64_t>(data.points.size()) - 1;
+}
+
+/// Appends to the array of that name, which is made by its first value.
+void append(std::vector<DataArray>& arrays, const char* name, std::initializer_list<double> values) {
+  auto found = std::find_if(arrays.begin(), arrays.end(), [&](const DataArray& a) { return a.name == name; });
+  if (found == arrays.end()) found = arrays.insert(arrays.end(), {name, static_cast<int>(values.size()), {}});
+  found->values.insert(found->values.end(), values);
+}
+
+void append_color(std::vector<DataArray>& arrays, std::uint32_t color) {
+  const auto part = [&](int shift) { return static_cast<double>((color >> shift) & 0xFFu); };
+  append(arrays, "rgb", {part(16), part(8), part(0)});
+}
+
+void add_upright(PolyData& data, glm::dvec2 a, glm::dvec2 b, double z_min, double z_max) {
+  data.polygons.push_back(
+      {add_point(data, a, z_min), add_point(data, b, z_min), add_point(data, b, z_max), add_point(data, a, z_max)});
+}
+
+std::uint32_t color_of(const world::World& world, std::uint32_t model) {
+  return model < world.models.size() ? world.models[model].color : 0xFF808080u;
+}
+
+std::string name_of(const world::World& world, std::uint32_t model) {
+  return model < world.models.size() ? world.models[model].name : "";
+}
+
+void add_line(PolyData& data, const std::vector<glm::dvec2>& points, double width, std::uint32_t color, double kind) {
+  std::vector<std::int64_t>& line = data.lines.emplace_back();
+  for (const glm::dvec2& p : points) line.push_back(add_point(data, p, 0.0));
+  append(data.cell_data, "width", {width});
+  append(data.cell_data, "kind", {kind});
+  append_color(data.cell_data, color);
+}
+
+}  // namespace
+
+PolyData walls_geometry(const world::World& world) {
+  PolyData data;
+  for (const world::Segment& wall : world.walls) {
+    add_upright(data, wall.a, wall.b, wall.z_min, wall.z_max);
+    append(data.cell_data, "model", {static_cast<double>(wall.model)});
+    append(data.cell_data, "height", {wall.z_max - wall.z_min});
+    append(data.cell_data, "laser", {wall.seen_by_laser ? 1.0 : 0.0});
+    append(data.cell_data, "robots", {wall.stops_robots ? 1.0 : 0.0});
+    append_color(data.cell_data, color_of(world, wall.model));
+    data.names.push_back(name_of(world, wall.model));
+  }
+  return data;
+}
+
+PolyData roads_geometry(const world::World& world) {
+  PolyData data;
+  for (const world::LaneMarking& marking : world.lane_markings)
+    if (marking.line.size() > 1) add_line(data, marking.line, marking.width, marking.color, 0.0);
+  for (const world::Path& path : world.paths) {
+    const double length = world::length_of(path);
+    const int steps = std::max(1, static_cast<int>(std::ceil(length / kPathStep)));
+    std::vector<glm::dvec2> points;
+    for (int i = 0; i <= steps; ++i) {
+      const base::Pose X_WP = world::pose_at(path, length * i / steps);
+      points.push_back({X_WP.x, X_WP.y});
+    }
+    add_line(data, points, path.pieces.empty() ? 0.0 : path.pieces.front().width, 0xFF808080u, 1.0);
+  }
+  return data;
+}
+
+PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> poses) {
+  PolyData data;
+  for (std::size_t m = 0; m < std::min(poses.size(), world.movers.size()); ++m) {
+    if (base::is_absent(poses[m])) continue;
+    for (const world::Segment& side : world.movers[m].body) {
+      add_upright(data, transform(poses[m], side.a), transform(poses[m], side.b), poses[m].z + side.z_min,
+                  poses[m].z + side.z_max);
+      append(data.cell_data, "robot", {static_cast<double>(m)});
+      append_color(data.cell_data, color_of(world, side.model));
+      data.names.push_back(world.movers[m].name);
+    }
+  }
+  return data;
+}
+
+PolyData trajectories_geometry(const world::World& world, std::span<const std::vector<MotionSample>> motions) {
+  PolyData data;
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    bool drawing = false;
+    for (const MotionSample& s : motions[m]) {
+      if (base::is_absent(s.X_WM)) {
+        drawing = false;
+        continue;
+      }
+      if (!drawing) {
+        data.lines.emplace_back();
+        append(data.cell_data, "robot", {static_cast<double>(m)});
+        data.names.push_back(world.movers[m].name);
+      }
+      drawing = true;
+      data.lines.back().push_back(add_point(data, {s.X_WM.x, s.X_WM.y}, s.X_WM.z));
+      append(data.point_data, "time", {s.time});
+      append(data.point_data, "speed", {s.speed});
+      append(data.point_data, "yaw", {s.X_WM.yaw});
+      append(data.point_data, "contact", {s.contact ? 1.0 : 0.0});
+    }
+  }
+  return data;
+}
+
+void ScanGeometry::add(const world::World& world, const base::ReadingBlock& scan) {
+  const sensors::LaserSettings laser = sensors::lasers_of(world.movers[scan.mover])[scan.sensor];
+  const base::Pose& X_WS = scan.X_WS;
+  for (std::size_t i = 0; i < scan.values.size(); ++i) {
+    const double bearing = bearing_of(laser, static_cast<std::uint32_t>(i));
+    const glm::dvec2 end = transform(X_WS, base::rotate(bearing, {scan.values[i], 0.0}));
+    const bool hit = i < scan.hits.size() && scan.hits[i] != base::kNoHit;
+    const bool bounded = i >= scan.quality.size() || scan.quality[i] == base::QualityFlag::none;
+    const auto add_sample = [&](glm::dvec2 p) {
+      append(data_.point_data, "range", {scan.values[i]});
+      append(data_.point_data, "bearing", {bearing});
+      append(data_.point_data, "hit", {hit ? static_cast<double>(scan.hits[i]) : -1.0});
+      append(data_.point_data, "bound", {bounded ? scan.bound : HUGE_VAL});
+      append(data_.point_data, "robot", {static_cast<double>(scan.mover)});
+      append(data_.point_data, "sensor", {static_cast<double>(scan.sensor)});
+      append(data_.point_data, "time", {1e-9 * static_cast<double>(scan.time)});
+      return add_point(data_, p, X_WS.z);
+    };
+    if (beams_)
+      data_.lines.push_back({add_sample({X_WS.x, X_WS.y}), add_sample(end)});
+    else
+      data_.dots.push_back({add_sample(end)});
+  }
+}
+
+}  // namespace sf::viz
