@@ -16,7 +16,7 @@ pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-ft cairo-pdf)  # li
 
 # Debian's VTK 9.1 looks for MPI; this project does not use it.
 find_package(MPI QUIET COMPONENTS C)
-find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML FiltersFlowPaths InteractionWidgets RenderingOpenGL2 RenderingFreeType)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML FiltersCore FiltersFlowPaths InteractionWidgets RenderingOpenGL2 RenderingFreeType)
 find_package(X11 REQUIRED)
 
 # OpenCV without its CMake package, which Debian has only together with all of OpenCV (libopencv-dev).

@@ -17,7 +17,8 @@ using world::RoadNetwork;
 using world::RoadZone;
 
 constexpr std::size_t kLongestName = 32;
-constexpr std::uint32_t kMaxLanes = 8;  // lanes of a segment that are tried for its name
+constexpr double kShortestNamed = 45.0;  // [px] of a street
+constexpr std::uint32_t kMaxLanes = 8;   // lanes of a segment that are tried for its name
 
 bool is_in(const DetailViews& places, glm::dvec2 p) {
   return std::any_of(places.begin(), places.end(), [&](const world::Extent& e) {
@@ -51,7 +52,12 @@ void label_segments(const RoadView& view, const RoadNetwork& network, Labels& la
       }
     }
     const std::string number = std::to_string(segment.id);
-    const bool named = !segment.name.empty() && segment.name != number;
+    bool named = !segment.name.empty() && segment.name != number;
+    // A short street's whole name would stand for its neighbours, too.
+    double longest = 0.0;
+    for (std::uint32_t i = 0; i < segment.lanes; ++i)
+      longest = std::max(longest, length_of(network.lanes[segment.first_lane + i]) * view.scale);
+    named = named && longest > kShortestNamed;
     const std::string whole = named ? number + " " + printable(segment.name, kLongestName) : number;
     const LabelRules rules{7.0, 90.0, 22.0, 1.0};
     if (!labels.place(view.canvas, marks, whole, style, rules)) labels.place(view.canvas, marks, number, style, rules);

@@ -140,7 +140,7 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
     style.color = point.front ? theme::kInk : theme::kMinorLabel;
     style.halo = theme::kWhite;
     const glm::dvec2 mark[] = {{at.x(point.middle), at.y(point.rate)}};
-    labels.place(canvas, mark, label_of(point), style, {.nearest = 10.0});
+    labels.place(canvas, mark, label_of(point), style, {.nearest = 10.0, .farthest = 120.0});
   }
 }
 
@@ -179,7 +179,7 @@ void draw_tradeoff(const std::string& title, const std::string& subtitle, std::s
     at.error = decades_of(panel.points);
     double fastest = 0.0;
     for (const TradeoffPoint& point : panel.points) fastest = std::max(fastest, point.rate);
-    if (fastest > 0.0) at.fastest = 1.15 * fastest;
+    if (fastest > 0.0) at.fastest = 1.3 * fastest;
     draw_panel(canvas, panel, at);
     top += plot + kBetween;
   }

@@ -22,7 +22,7 @@ struct PolyData {
   std::vector<glm::dvec3> points;                   ///< [m] world frame
   std::vector<std::vector<std::int64_t>> dots;      ///< rows of `points`, one each
   std::vector<std::vector<std::int64_t>> lines;     ///< rows of `points`
-  std::vector<std::vector<std::int64_t>> polygons;  ///< rows of `points`, convex, first not repeated
+  std::vector<std::vector<std::int64_t>> polygons;  ///< rows of `points`, in a plane, first not repeated
   std::vector<DataArray> point_data, cell_data;
   std::vector<std::string> names;  ///< one per cell as array `name`; empty: none
 };

@@ -20,6 +20,7 @@
 #include <vtkSliderWidget.h>
 #include <vtkStreamTracer.h>
 #include <vtkTextProperty.h>
+#include <vtkTriangleFilter.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkWidgetEvent.h>
 #include <vtkWindowToImageFilter.h>
@@ -59,8 +60,17 @@ vtkNew<vtkPolyData> painted(const PolyData& data) {
 struct Part {
   vtkNew<vtkPolyDataMapper> mapper;
   vtkNew<vtkActor> actor;
-  Part() { actor->SetMapper(mapper); }
-  void set(const PolyData& data) { mapper->SetInputData(painted(data)); }
+  Part() {
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetAmbient(0.45);
+    actor->GetProperty()->SetDiffuse(0.6);
+  }
+  void set(const PolyData& data) {
+    vtkNew<vtkTriangleFilter> triangles;  // outlines may be concave
+    triangles->SetInputData(painted(data));
+    triangles->Update();
+    mapper->SetInputData(triangles->GetOutput());
+  }
 };
 
 class Window {

@@ -1,6 +1,7 @@
 #include "viz/world_geometry.h"
 
 #include <cmath>
+#include <map>
 
 #include "base/bearing.h"
 #include "sensors/laser_settings.h"
@@ -39,6 +40,29 @@ std::uint32_t color_of(const world::World& world, std::uint32_t model) {
 
 std::string name_of(const world::World& world, std::uint32_t model) {
   return model < world.models.size() ? world.models[model].name : "";
+}
+
+/// The top of a part of a body.
+struct Lid {
+  std::vector<glm::dvec2> outline;  ///< [m] mover's frame
+  double z = 0.0;                   ///< [m] above the mover's origin
+  std::uint32_t model = 0;
+};
+
+/// One per closed outline of a mover's models.
+std::vector<Lid> lids_of(const world::Mover& mover) {
+  std::map<std::uint32_t, std::vector<Line>> edges;
+  std::map<std::uint32_t, double> tops;
+  for (const world::Segment& side : mover.body) {
+    if (!side.solid_left) continue;
+    edges[side.model].push_back({side.a, side.b});
+    tops[side.model] = side.z_max;
+  }
+  std::vector<Lid> lids;
+  for (const auto& [model, lines] : edges)
+    for (std::vector<glm::dvec2>& outline : join_edges(lines))
+      if (outline.size() > 2) lids.push_back({std::move(outline), tops[model], model});
+  return lids;
 }
 
 void add_line(PolyData& data, const std::vector<glm::dvec2>& points, double width, std::uint32_t color, double kind) {
@@ -86,12 +110,21 @@ PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> 
   PolyData data;
   for (std::size_t m = 0; m < std::min(poses.size(), world.movers.size()); ++m) {
     if (base::is_absent(poses[m])) continue;
+    const auto add_cell = [&](std::uint32_t model) {
+      append(data.cell_data, "robot", {static_cast<double>(m)});
+      append_color(data.cell_data, color_of(world, model));
+      data.names.push_back(world.movers[m].name);
+    };
+    for (const Lid& lid : lids_of(world.movers[m])) {
+      std::vector<std::int64_t>& polygon = data.polygons.emplace_back();
+      for (const glm::dvec2& p : lid.outline)
+        polygon.push_back(add_point(data, transform(poses[m], p), poses[m].z + lid.z));
+      add_cell(lid.model);
+    }
     for (const world::Segment& side : world.movers[m].body) {
       add_upright(data, transform(poses[m], side.a), transform(poses[m], side.b), poses[m].z + side.z_min,
                   poses[m].z + side.z_max);
-      append(data.cell_data, "robot", {static_cast<double>(m)});
-      append_color(data.cell_data, color_of(world, side.model));
-      data.names.push_back(world.movers[m].name);
+      add_cell(side.model);
     }
   }
   return data;

@@ -19,8 +19,8 @@ PolyData walls_geometry(const world::World& world);
 /// Lane markings and paths as lines on the ground. Cell arrays: `width` [m], `rgb` [0, 255], `kind`: 0 marking, 1 path.
 PolyData roads_geometry(const world::World& world);
 
-/// The bodies of movers at `poses`, one per mover of the world; absent ones are left out. Cell arrays: `robot` (row of
-/// the world's movers), `rgb`; `name`.
+/// The sides and tops of the bodies of movers at `poses`, one per mover of the world; absent ones are left out. Cell
+/// arrays: `robot` (row of the world's movers), `rgb`; `name`.
 PolyData bodies_geometry(const world::World& world, std::span<const base::Pose> poses);
 
 /// A mover's state at one tick.

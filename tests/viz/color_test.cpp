@@ -27,7 +27,7 @@ TEST(Color, LabOfKnownColours) {  // from the definition's own table: white, and
 TEST(Color, NeighboursLookUnlike) {  // robots of neighbouring rows: 0.02 is just visible
   for (std::size_t i = 0; i < 300; ++i)
     for (std::size_t k = 1; k <= 8; ++k)
-      EXPECT_GT(distance(distinct(i), distinct(i + k)), 0.08) << i << " and " << i + k;
+      EXPECT_GT(distance(distinct(i), distinct(i + k)), 0.06) << i << " and " << i + k;
 }
 
 TEST(Color, DistinctColoursStandOutFromWhite) {

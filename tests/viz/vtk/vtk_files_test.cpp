@@ -1,0 +1,183 @@
+// Files for ParaView, read back by VTK's own readers.
+
+#include "viz/vtk_files.h"
+
+#include <gtest/gtest.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkIdList.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkStringArray.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "tests/viz/png.h"
+#include "tests/viz/scenes.h"
+#include "viz/world_geometry.h"
+
+namespace sf::viz {
+namespace {
+
+vtkNew<vtkXMLPolyDataReader> read_poly_data(const std::string& path) {
+  vtkNew<vtkXMLPolyDataReader> reader;
+  EXPECT_TRUE(reader->CanReadFile(path.c_str())) << path;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  return reader;
+}
+
+double number(vtkFieldData* data, const char* name, vtkIdType row, int part = 0) {
+  vtkDataArray* array = data->GetArray(name);
+  return array == nullptr ? NAN : array->GetComponent(row, part);
+}
+
+TEST(VtkFiles, WallsAreUprightRectangles) {
+  world::World world;
+  const std::uint32_t block = scenes::add_model(world, "block", 0xFF102030u);
+  scenes::add_box(world, 1.0, 2.0, 3.0, 4.0, block);
+  world.walls[1].seen_by_laser = false;
+  write_poly_data(walls_geometry(world), scenes::own_file("walls.vtp"));
+  const auto reader = read_poly_data(scenes::own_file("walls.vtp"));
+  vtkPolyData* walls = reader->GetOutput();
+  ASSERT_EQ(walls->GetNumberOfPolys(), 4);
+  ASSERT_EQ(walls->GetNumberOfPoints(), 16);
+  for (vtkIdType k = 0; k < 4; ++k) {
+    const world::Segment& wall = world.walls[static_cast<std::size_t>(k)];
+    double p[3];
+    walls->GetPoint(4 * k, p);
+    EXPECT_EQ(glm::dvec3(p[0], p[1], p[2]), glm::dvec3(wall.a.x, wall.a.y, wall.z_min));
+    walls->GetPoint(4 * k + 2, p);
+    EXPECT_EQ(glm::dvec3(p[0], p[1], p[2]), glm::dvec3(wall.b.x, wall.b.y, wall.z_max));
+    EXPECT_EQ(number(walls->GetCellData(), "rgb", k, 1), 0x20);
+    EXPECT_EQ(number(walls->GetCellData(), "laser", k), k == 1 ? 0.0 : 1.0);
+  }
+  auto* names = vtkStringArray::SafeDownCast(walls->GetCellData()->GetAbstractArray("name"));
+  ASSERT_NE(names, nullptr);
+  EXPECT_EQ(names->GetValue(3), "block");
+}
+
+/// A robot that left and came back has two lines; every sample keeps its numbers to the bit.
+TEST(VtkFiles, TrajectoriesKeepTimeAndSpeed) {
+  world::World world;
+  world.movers.push_back(scenes::make_robot(world, 1, {}, 0xFF0000FFu, 5.0));
+  std::vector<std::vector<MotionSample>> motions(1);
+  for (int i = 0; i < 5; ++i) motions[0].push_back({0.1 * i, {0.3 * i, -0.7 * i, 0.0, 0.01 * i}, 1.0 / 3.0 + i, i == 4});
+  motions[0][2].X_WM.x = motions[0][2].X_WM.y = NAN;
+  ASSERT_TRUE(base::is_absent(motions[0][2].X_WM));
+  write_poly_data(trajectories_geometry(world, motions), scenes::own_file("t.vtp"));
+  const auto reader = read_poly_data(scenes::own_file("t.vtp"));
+  vtkPolyData* data = reader->GetOutput();
+  EXPECT_EQ(data->GetNumberOfLines(), 2);
+  ASSERT_EQ(data->GetNumberOfPoints(), 4);
+  int row = 0;
+  for (const int i : {0, 1, 3, 4}) {
+    const MotionSample& s = motions[0][static_cast<std::size_t>(i)];
+    EXPECT_EQ(data->GetPoint(row)[0], s.X_WM.x);
+    EXPECT_EQ(number(data->GetPointData(), "time", row), s.time);
+    EXPECT_EQ(number(data->GetPointData(), "speed", row), s.speed);
+    EXPECT_EQ(number(data->GetPointData(), "yaw", row), s.X_WM.yaw);
+    EXPECT_EQ(number(data->GetPointData(), "contact", row), s.contact ? 1.0 : 0.0);
+    ++row;
+  }
+}
+
+/// Three beams of a laser at the origin of a robot turned by 90 degrees: the middle one looks along +y.
+TEST(VtkFiles, ScansEndWhereTheirBeamsDo) {
+  world::World world;
+  world.movers.push_back(scenes::make_robot(world, 1, {}, 0xFF0000FFu, 5.0));
+  sensors::LaserSettings laser = sensors::lasers_of(world.movers[0])[0];
+  laser.samples = 3;
+  world.movers[0].sensors = {sensors::laser_sensor(laser)};
+  const double ranges[] = {1.0, 2.0, 5.0};
+  const std::uint32_t hits[] = {0, 7, base::kNoHit};
+  const base::QualityFlag quality[] = {base::QualityFlag::none, base::QualityFlag::grazing, base::QualityFlag::none};
+  base::ReadingBlock scan;
+  scan.X_WS = {1.0, 1.0, 0.2, M_PI / 2};
+  scan.values = ranges;
+  scan.hits = hits;
+  scan.quality = quality;
+  scan.bound = 0.25;
+  scan.time = 1'500'000'000;
+  ScanGeometry dots(false), beams(true);
+  dots.add(world, scan);
+  beams.add(world, scan);
+  write_poly_data(dots.data(), scenes::own_file("dots.vtp"));
+  write_poly_data(beams.data(), scenes::own_file("beams.vtp"));
+  const auto reader = read_poly_data(scenes::own_file("dots.vtp"));
+  vtkPolyData* data = reader->GetOutput();
+  EXPECT_EQ(data->GetNumberOfVerts(), 3);
+  ASSERT_EQ(data->GetNumberOfPoints(), 3);
+  EXPECT_NEAR(data->GetPoint(1)[0], 1.0, 1e-12);
+  EXPECT_NEAR(data->GetPoint(1)[1], 3.0, 1e-12);
+  EXPECT_EQ(data->GetPoint(1)[2], 0.2);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(number(data->GetPointData(), "range", i), ranges[i]);
+  EXPECT_EQ(number(data->GetPointData(), "hit", 1), 7.0);
+  EXPECT_EQ(number(data->GetPointData(), "hit", 2), -1.0) << "no echo";
+  EXPECT_EQ(number(data->GetPointData(), "bound", 0), 0.25);
+  EXPECT_EQ(number(data->GetPointData(), "bound", 1), HUGE_VAL) << "grazing: its bound does not hold";
+  EXPECT_EQ(number(data->GetPointData(), "time", 2), 1.5);
+  const auto other = read_poly_data(scenes::own_file("beams.vtp"));
+  EXPECT_EQ(other->GetOutput()->GetNumberOfLines(), 3);
+  EXPECT_EQ(other->GetOutput()->GetNumberOfPoints(), 6);
+}
+
+TEST(VtkFiles, AbsentRobotsHaveNoBody) {
+  world::World world;
+  for (std::uint32_t id : {1u, 2u}) world.movers.push_back(scenes::make_robot(world, id, {}, 0xFF0000FFu, 5.0));
+  const base::Pose gone{NAN, NAN, NAN, NAN};
+  EXPECT_TRUE(bodies_geometry(world, std::vector<base::Pose>{gone, gone}).polygons.empty());
+  const PolyData one = bodies_geometry(world, std::vector<base::Pose>{gone, {5.0, 6.0, 0.0, 0.0}});
+  EXPECT_EQ(one.polygons.size(), 17u) << "16 sides and the top";
+  for (const glm::dvec3& p : one.points) EXPECT_NEAR(std::hypot(p.x - 5.0, p.y - 6.0), 0.165, 1e-9);
+  for (const double robot : one.cell_data[0].values) EXPECT_EQ(robot, 1.0);
+}
+
+TEST(VtkFiles, RoadsAreLinesOnTheGround) {
+  world::World world;
+  world.lane_markings.push_back({{{0, 0}, {1, 0}, {1, 1}}, 0.05, 0xFFFFFF00u});
+  world.lane_markings.push_back({{{0, 0}}, 0.05, 0xFFFFFF00u});  // one point is no line
+  write_poly_data(roads_geometry(world), scenes::own_file("roads.vtp"));
+  const auto reader = read_poly_data(scenes::own_file("roads.vtp"));
+  ASSERT_EQ(reader->GetOutput()->GetNumberOfLines(), 1);
+  EXPECT_EQ(number(reader->GetOutput()->GetCellData(), "width", 0), 0.05);
+  EXPECT_EQ(number(reader->GetOutput()->GetCellData(), "rgb", 0, 2), 0.0);
+}
+
+TEST(VtkFiles, GridsHaveTheirPlaceAndValues) {
+  const GridData grid{-1.0, 2.0, 0.1, 0.5, 0.25, 3, 2, {{"magnitude", 1, {1, 2, 3, 4, 5, 6.5}}}};
+  write_grid(grid, scenes::own_file("g.vti"));
+  vtkNew<vtkXMLImageDataReader> reader;
+  reader->SetFileName(scenes::own_file("g.vti").c_str());
+  reader->Update();
+  vtkImageData* image = reader->GetOutput();
+  ASSERT_EQ(image->GetNumberOfCells(), 6);
+  double box[6];
+  image->GetBounds(box);
+  const double expected[] = {-1.0, 0.5, 2.0, 2.5, 0.1, 0.1};
+  for (int i = 0; i < 6; ++i) EXPECT_DOUBLE_EQ(box[i], expected[i]) << i;
+  EXPECT_EQ(number(image->GetCellData(), "magnitude", 5), 6.5);
+  EXPECT_EQ(number(image->GetCellData(), "magnitude", 3), 4.0) << "the first cell of the second row";
+}
+
+TEST(VtkFiles, UnwritableFilesAreNamed) {
+  for (const char* path : {"/nowhere/x.vtp", "/nowhere/x.vti", "/nowhere/x.pvd"}) {
+    try {
+      if (std::string(path).ends_with("vtp")) write_poly_data({}, path);
+      if (std::string(path).ends_with("vti")) write_grid({}, path);
+      if (std::string(path).ends_with("pvd")) write_file_series({}, path);
+      ADD_FAILURE() << path << " was written";
+    } catch (const base::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sf::viz
