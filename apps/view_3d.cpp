@@ -52,9 +52,11 @@ int view_3d(const ViewOptions& options) {
   const auto first = std::lower_bound(scene.times.begin(), scene.times.end(), options.time - 1e-9);
   scene.first = static_cast<std::size_t>(first - scene.times.begin());
   scene.stop = []() -> bool { return stop_requested(); };
+  scene.opened = [] {
+    print_message("space plays and pauses, the arrow keys step, the slider chooses the time, q closes the window");
+  };
   install_stop_handlers();
   if (options.screenshot.empty()) {
-    print_message("space plays and pauses, the arrow keys step, the slider chooses the time, q closes the window");
     viz::show_window(scene);
     return 0;
   }

@@ -27,6 +27,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "viz/vtk_convert.h"
 
@@ -118,6 +119,7 @@ class Window {
     interactor_->AddObserver(vtkCommand::KeyPressEvent, on_event);
     slider_->AddObserver(vtkCommand::InteractionEvent, on_event);
     interactor_->CreateRepeatingTimer(kTick);
+    if (scene_.opened) scene_.opened();
     interactor_->Start();
   }
 
@@ -249,11 +251,11 @@ class Window {
 };
 
 std::string show(const Scene3d& scene, PixelImage* picture) {
-  // VTK ends the process when it finds no display, so we look first.
-  Display* const display = XOpenDisplay(nullptr);
+  // VTK ends the process when it finds no display, so we look first. The connection stays open: a server whose only
+  // client leaves resets itself, and VTK's connection with it.
+  const std::unique_ptr<Display, decltype(&XCloseDisplay)> display(XOpenDisplay(nullptr), &XCloseDisplay);
   if (display == nullptr)
     return "no display: the window needs X11; set DISPLAY, or run it under xvfb-run, or take `view DIR` in a browser";
-  XCloseDisplay(display);
   vtkObject::GlobalWarningDisplayOff();
   Window window(scene);
   if (picture != nullptr)

@@ -24,6 +24,7 @@ struct Scene3d {
   std::vector<double> times;                  ///< [s] of each frame, ascending, at least one
   std::function<Frame3d(std::size_t)> frame;  ///< of a row of `times`
   std::size_t first = 0;                      ///< row of `times` to begin with
+  std::function<void()> opened;               ///< called once the window is open for a user
   std::function<bool()> stop;                 ///< true: close the window
   int width = 1280, height = 800;             ///< [px] of the window
 };

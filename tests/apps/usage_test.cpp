@@ -7,28 +7,20 @@
 
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
+#include "tests/apps/refused.h"
 
 namespace sf {
 
 namespace {
 
-const Words kSubcommands{"devices", "check",      "draw",   "sense",  "run",      "serve", "robot",
-                         "start",   "plot",       "listen", "dump",   "field",    "map",   "selftest",
-                         "explain", "experiment", "test",   "verify", "tradeoff", "help"};
+const Words kSubcommands{"devices", "check",  "draw",     "sense",  "run",  "serve",    "robot",   "start",
+                         "plot",    "listen", "dump",     "field",  "map",  "selftest", "explain", "experiment",
+                         "test",    "verify", "tradeoff", "export", "view", "help"};
 
 struct Wrong {
   Words arguments;
   std::string said;  ///< somewhere in the line
 };
-
-void expect_refused(const Words& arguments, const std::string& said) {
-  const Outcome outcome = run_program(arguments);
-  EXPECT_EQ(outcome.code, 2) << said << "\n" << outcome.err;
-  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
-  EXPECT_NE(outcome.err.find(said), std::string::npos) << "'" << said << "' is not in: " << outcome.err;
-  EXPECT_EQ(outcome.err.rfind("sensorfarm: ", 0), 0u) << outcome.err;
-  EXPECT_EQ(outcome.out, "");
-}
 
 }  // namespace
 

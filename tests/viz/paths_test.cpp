@@ -16,7 +16,8 @@ constexpr PathBox kBox{{0.0, 0.0}, {10.0, 10.0}};
 double area_within(const Paths& outlines) {
   double sum = 0.0;
   for (const auto& outline : outlines)
-    for (std::size_t i = 0; i < outline.size(); ++i) sum += 0.5 * base::cross(outline[i], outline[(i + 1) % outline.size()]);
+    for (std::size_t i = 0; i < outline.size(); ++i)
+      sum += 0.5 * base::cross(outline[i], outline[(i + 1) % outline.size()]);
   return sum;
 }
 
@@ -29,9 +30,9 @@ TEST(Paths, LinesThatMeetAreOnePath) {
 }
 
 TEST(Paths, LinesAreCutAtTheBox) {
-  const Line lines[] = {{{-5, 5}, {15, 5}},    // through both sides
-                        {{-5, -1}, {15, -1}},  // beside it
-                        {{-1, 2}, {2, -1}},    // across a corner
+  const Line lines[] = {{{-5, 5}, {15, 5}},       // through both sides
+                        {{-5, -1}, {15, -1}},     // beside it
+                        {{-1, 2}, {2, -1}},       // across a corner
                         {{-1, 0.5}, {0.5, -1}}};  // past the corner
   const Paths paths = cut_lines(lines, kBox);
   ASSERT_EQ(paths.size(), 2u);
@@ -60,7 +61,8 @@ TEST(Paths, EdgesInAnyOrderMakeTheirOutlines) {
     const glm::dvec2 p[] = {{1 + d, 1}, {2 + d, 1}, {2 + d, 2}, {1 + d, 2}};
     for (int i = 0; i < 4; ++i) edges.push_back({p[i], p[(i + 1) % 4]});
   }
-  std::sort(edges.begin(), edges.end(), [](const Line& a, const Line& b) { return a.a.x + 3 * a.b.y < b.a.x + 3 * b.b.y; });
+  std::sort(edges.begin(), edges.end(),
+            [](const Line& a, const Line& b) { return a.a.x + 3 * a.b.y < b.a.x + 3 * b.b.y; });
   const Paths outlines = join_edges(edges);
   ASSERT_EQ(outlines.size(), 2u);
   for (const auto& outline : outlines) EXPECT_EQ(outline.size(), 4u);

@@ -86,25 +86,24 @@ TEST(Svg, ImagesArePngFiles) {
   EXPECT_NE(svg.find("href=\"data:image/png;base64,iVBORw0KGgo"), std::string::npos) << "the signature of PNG";
 }
 
-TEST(Svg, ADrawingWithoutShapesIsAPage) {
-  EXPECT_TRUE(is_well_formed(to_svg({10, 10, kWhite, {}})));
-}
+TEST(Svg, ADrawingWithoutShapesIsAPage) { EXPECT_TRUE(is_well_formed(to_svg({10, 10, kWhite, {}}))); }
 
 /// Control characters, cut or overlong sequences, surrogates and numbers beyond Unicode would end a file's readers.
 TEST(Canvas, BytesThatAreNoTextBecomeQuestionMarks) {
   struct Case {
     std::string text, drawn;
   };
-  for (const Case& c : std::vector<Case>{{"a\nb\x01", "a?b?"},
-                                         {"\xC3\xA4 \xE2\x82\xAC \xF0\x9F\xA4\x96", "\xC3\xA4 \xE2\x82\xAC \xF0\x9F\xA4\x96"},
-                                         {"\xC3", "?"},
-                                         {"\xE2\x82", "??"},
-                                         {"\xC0\xAF", "??"},
-                                         {"\xED\xA0\x80", "???"},
-                                         {"\xF5\x80\x80\x80", "????"},
-                                         {"\xEF\xBF\xBF", "???"},
-                                         {std::string("\0", 1), "?"},
-                                         {"\x7F", "?"}}) {
+  for (const Case& c :
+       std::vector<Case>{{"a\nb\x01", "a?b?"},
+                         {"\xC3\xA4 \xE2\x82\xAC \xF0\x9F\xA4\x96", "\xC3\xA4 \xE2\x82\xAC \xF0\x9F\xA4\x96"},
+                         {"\xC3", "?"},
+                         {"\xE2\x82", "??"},
+                         {"\xC0\xAF", "??"},
+                         {"\xED\xA0\x80", "???"},
+                         {"\xF5\x80\x80\x80", "????"},
+                         {"\xEF\xBF\xBF", "???"},
+                         {std::string("\0", 1), "?"},
+                         {"\x7F", "?"}}) {
     Canvas canvas(10, 10, kWhite);
     canvas.text({0, 0}, c.text, {});
     EXPECT_EQ(std::get<Lettering>(canvas.drawing().shapes.back()).text, c.drawn);
@@ -150,9 +149,8 @@ TEST(PictureFile, DotsPerInchScaleThePixelsAlone) {
 
 TEST(PictureFile, ToldLimitsAreKept) {
   const std::string path = scenes::own_file("x.png");
-  expect_in("more than 32768 along a side", refusal_of([&] {
-              save_picture(Canvas(16384, 1, kWhite).drawing(), path, {.dpi = 361.0});
-            }));
+  expect_in("more than 32768 along a side",
+            refusal_of([&] { save_picture(Canvas(16384, 1, kWhite).drawing(), path, {.dpi = 361.0}); }));
   for (const char* name : {"/nowhere/x.svg", "/nowhere/x.pdf", "/nowhere/x.png"})
     EXPECT_THROW(save_picture(one_of_each().drawing(), name), base::InputError) << name;
 }

@@ -68,7 +68,8 @@ TEST(VtkFiles, TrajectoriesKeepTimeAndSpeed) {
   world::World world;
   world.movers.push_back(scenes::make_robot(world, 1, {}, 0xFF0000FFu, 5.0));
   std::vector<std::vector<MotionSample>> motions(1);
-  for (int i = 0; i < 5; ++i) motions[0].push_back({0.1 * i, {0.3 * i, -0.7 * i, 0.0, 0.01 * i}, 1.0 / 3.0 + i, i == 4});
+  for (int i = 0; i < 5; ++i)
+    motions[0].push_back({0.1 * i, {0.3 * i, -0.7 * i, 0.0, 0.01 * i}, 1.0 / 3.0 + i, i == 4});
   motions[0][2].X_WM.x = motions[0][2].X_WM.y = NAN;
   ASSERT_TRUE(base::is_absent(motions[0][2].X_WM));
   write_poly_data(trajectories_geometry(world, motions), scenes::own_file("t.vtp"));

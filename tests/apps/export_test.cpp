@@ -1,0 +1,255 @@
+// `export`, `plot` and `view --3d` of a recorded run.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <sstream>
+
+#include "record/reading_messages.h"
+#include "record/recording.h"
+#include "tests/apps/program.h"
+#include "tests/apps/refused.h"
+#include "tests/instrumented.h"
+#include "tests/refusal.h"
+#include "tests/viz/png.h"
+#include "viz/theme.h"
+
+namespace sf {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// Fields of a CSV file without quotes; its heading is row 0.
+Rows rows_of(const std::string& path) {
+  Rows rows;
+  std::stringstream file(read_file(path));
+  for (std::string line; std::getline(file, line);) {
+    rows.emplace_back();
+    std::stringstream fields(line + ",");
+    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
+  }
+  return rows;
+}
+
+/// As written by a number's shortest form: to the bit.
+bool same(const std::string& field, double value) {
+  return std::isnan(value) ? field.empty() : !field.empty() && std::strtod(field.c_str(), nullptr) == value;
+}
+
+/// Two robots among walls, one with a sonar, encoders and GPS, and a traffic light.
+constexpr const char* kRecordedWorld = R"(
+define block model( size [1 1 1] obstacle_return 1 )
+model( name "room" size [8 8 1] boundary 1 obstacle_return 1 )
+block( pose [2 2 0 0] )
+position( name "one" pose [-2 -2 0 30] laser( samples 31 fov 180 range_max 3 rate 5 ) sonar( scount 2 spose[0] [0.1 0 0] spose[1] [0 0.1 90] ) encoder( ) gps( ) )
+position( name "two" pose [1 -2 0 90] )
+light( name "lamp" pose [0 3 0 0] phases 2 phase[0] ["green" 2] phase[1] ["red" 2] )
+)";
+
+class Recorded : public testing::Test {
+ protected:
+  void SetUp() override {
+    const Outcome outcome = run_program({"run", folder_.write("w.world", kRecordedWorld), "--duration", "3", "--record",
+                                         folder_.path("r"), "--record-readings"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+  Words with(const std::string& command, const Words& more) const {
+    Words words{command, folder_.path("r")};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  record::Recording recording() const { return record::open_recording(folder_.path("r")); }
+
+  Folder folder_;
+};
+
+TEST_F(Recorded, TrajectoriesAreExportedToTheBit) {
+  const Outcome outcome = run_program(with("export", {"-o", folder_.path("csv")}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Rows rows = rows_of(folder_.path("csv/trajectories.csv"));
+  const record::Recording expected = recording();
+  ASSERT_EQ(rows.size(), 1 + expected.states[0].size() + expected.states[1].size());
+  EXPECT_EQ(rows[0][2], "x_m");
+  std::size_t row = 1;
+  for (std::size_t m = 0; m < 2; ++m)
+    for (const record::StateSample& s : expected.states[m]) {
+      const std::vector<std::string>& fields = rows[row++];
+      ASSERT_EQ(fields.size(), 13u);
+      EXPECT_EQ(fields[1], expected.info.movers[m].name);
+      EXPECT_TRUE(same(fields[0], 1e-9 * static_cast<double>(s.time)));
+      EXPECT_TRUE(same(fields[2], s.X_WM.x) && same(fields[3], s.X_WM.y) && same(fields[5], s.X_WM.yaw));
+      EXPECT_TRUE(same(fields[6], s.velocity.forward) && same(fields[11], s.command.turn)) << row;
+    }
+}
+
+TEST_F(Recorded, ReadingsAreExportedToTheBit) {
+  ASSERT_EQ(run_program(with("export", {"-o", folder_.path("csv")})).code, 0);
+  const record::Recording expected = recording();
+  std::size_t checked = 0;
+  for (const record::SensorTypeInfo& type : expected.info.sensor_types) {
+    const Rows rows = rows_of(folder_.path("csv/" + type.name + ".csv"));
+    const std::size_t width = record::element_width(type), before = type.is_scan ? 7 : 6;
+    std::size_t row = 1;
+    for (const record::ReadingSample& reading : expected.readings) {
+      if (reading.type != type.id) continue;
+      for (std::size_t i = 0; i < reading.values.size(); ++i) {
+        ASSERT_LT(row + i / width, rows.size()) << type.name;
+        const std::vector<std::string>& fields = rows[row + i / width];
+        ASSERT_EQ(fields.size(), before + width);
+        EXPECT_TRUE(same(fields[before + i % width], reading.values[i])) << type.name << " " << row;
+        ++checked;
+      }
+      row += reading.values.size() / width;
+    }
+    EXPECT_EQ(row, rows.size()) << type.name;
+  }
+  EXPECT_GT(checked, 15u * 31u + 30u * 4u) << "scans at 5 Hz, encoders at 10 Hz";
+}
+
+TEST_F(Recorded, APartIsExported) {
+  ASSERT_EQ(
+      run_program(with("export", {"-o", folder_.path("csv"), "--robots", "one", "--from", "1", "--to", "2"})).code, 0);
+  const Rows rows = rows_of(folder_.path("csv/trajectories.csv"));
+  ASSERT_EQ(rows.size(), 1u + 11u) << "from tick to tick, both among them";
+  EXPECT_EQ(rows[1][0], "1");
+  EXPECT_EQ(rows.back()[0], "2");
+  for (std::size_t i = 1; i < rows.size(); ++i) EXPECT_EQ(rows[i][1], "one");
+  for (const std::vector<std::string>& row : rows_of(folder_.path("csv/encoder.csv")))
+    EXPECT_TRUE(row[0] == "time_s" || (std::stod(row[0]) >= 1.0 && std::stod(row[0]) <= 2.0)) << row[0];
+}
+
+TEST_F(Recorded, LightsAreExported) {
+  ASSERT_EQ(run_program(with("export", {"-o", folder_.path("csv")})).code, 0);
+  const Rows rows = rows_of(folder_.path("csv/lights.csv"));
+  ASSERT_EQ(rows.size(), 31u);
+  EXPECT_EQ(rows[1][1], "lamp");
+  EXPECT_TRUE(rows[1][2] == "red" || rows[1][2] == "green") << rows[1][2];
+}
+
+TEST_F(Recorded, EverySensorTypeAndTheLightsArePlotted) {
+  const Outcome outcome = run_program(with("plot", {"-o", folder_.path("p"), "--csv"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* name : {"sonar", "encoder", "gps", "lights"})
+    EXPECT_GT(count_lines(read_file(folder_.path(std::string("p/") + name + ".csv"))), 2u) << name;
+  scenes::expect_painted(folder_.path("p/lights.png"), {{viz::theme::kLightGreen, 30}, {viz::theme::kLightRed, 30}});
+  for (const char* name : {"sonar", "gps"})
+    scenes::expect_painted(folder_.path(std::string("p/") + name + ".png"), {{viz::theme::kFrame, 500}});
+  scenes::expect_painted(folder_.path("p/encoder.png"), {{viz::theme::kBlue, 500}});
+  EXPECT_TRUE(std::filesystem::exists(folder_.path("p/trajectories.csv")));
+  const Rows curve = rows_of(folder_.path("p/encoder.csv"));
+  EXPECT_EQ(curve[0], (std::vector<std::string>{"panel", "curve", "time_s", "value"}));
+  EXPECT_EQ(curve[1][0], "left [m]");
+  EXPECT_EQ(curve[1][1], "one");
+}
+
+TEST_F(Recorded, PlotsAreSvgOrPdfOnDemand) {
+  ASSERT_EQ(
+      run_program(with("plot", {"-o", folder_.path("p"), "--format", "svg", "--size", "85", "--robots", "one"})).code,
+      0);
+  const std::string svg = read_file(folder_.path("p/trajectories.svg"));
+  EXPECT_NE(svg.find(">one</text>"), std::string::npos);
+  EXPECT_EQ(svg.find(">two</text>"), std::string::npos) << "not asked for";
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("p/trajectories.png")));
+  ASSERT_EQ(run_program(with("plot", {"-o", folder_.path("p"), "--format", "pdf", "--no-title"})).code, 0);
+  for (const char* name : {"trajectories", "occupancy", "gps", "lights"})
+    EXPECT_TRUE(read_file(folder_.path(std::string("p/") + name + ".pdf")).starts_with("%PDF-")) << name;
+  ASSERT_EQ(run_program(with("plot", {"-o", folder_.path("n"), "--format", "svg", "--no-title"})).code, 0);
+  EXPECT_EQ(read_file(folder_.path("n/trajectories.svg")).find(">Trajectories<"), std::string::npos);
+}
+
+TEST_F(Recorded, WithoutALaserThereIsNoMap) {
+  const Outcome outcome = run_program(with("plot", {"-o", folder_.path("p"), "--robots", "two"}));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  expect_in("no occupancy.png: none of these robots has a laser", outcome.err);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("p/occupancy.png")));
+}
+
+TEST_F(Recorded, PartsThatThereAreNotAreRefused) {
+  const std::string out = folder_.path("x");
+  expect_refused(with("plot", {"-o", out, "--robots", "one,three"}), "has no robot 'three'; it has one or two");
+  expect_refused(with("export", {"-o", out, "--from", "5"}), "has no tick from 5 s to inf s; it lasts from 0 to 2.9 s");
+  expect_refused(with("export", {"-o", out, "--from", "2", "--to", "1"}),
+                 "has no tick from 2 s to 1 s");  // turned round
+  expect_refused(with("export", {}), "--out");
+  expect_refused(with("export", {"-o", out, "--every", "0"}), "--every");
+  expect_refused(with("plot", {"-o", out, "--format", "eps"}), "expected png, svg or pdf");
+  expect_refused({"export", folder_.path("none"), "-o", out}, "no such recording");
+  EXPECT_FALSE(std::filesystem::exists(out));
+  expect_refused(with("export", {"-o", "/proc/none"}), "/proc/none");
+}
+
+TEST_F(Recorded, ParaViewGetsSeries) {
+  const Outcome outcome = run_program(with("export", {"--vtk", "-o", folder_.path("v"), "--every", "1"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* name : {"walls.vtp", "trajectories.vtp", "occupancy.vti"})
+    EXPECT_TRUE(read_file(folder_.path(std::string("v/") + name)).starts_with("<?xml")) << name;
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("v/field.vti"))) << "no magnets";
+  for (const std::string name : {"robots", "scans"}) {
+    const std::string series = read_file(folder_.path("v/" + name + ".pvd"));
+    for (const char* time : {"0", "1", "2"}) expect_in("timestep=\"" + std::string(time) + "\"", series);
+    expect_in("file=\"" + name + "/" + name + "_000002.vtp\"", series);
+    EXPECT_TRUE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000002.vtp")));
+    EXPECT_FALSE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000003.vtp")));
+  }
+}
+
+/// An X server without a screen, on a display of its own.
+class VirtualDisplay {
+ public:
+  VirtualDisplay() : server_({"-displayfd", "2", "-screen", "0", "1300x900x24"}, {}, "", "", "Xvfb") {
+    if (server_.says("\n")) name_ = ":" + std::to_string(std::atoi(server_.err().c_str()));
+  }
+  Environment environment() const { return {{"DISPLAY", name_}}; }
+
+ private:
+  Program server_;
+  std::string name_;
+};
+
+TEST_F(Recorded, WithoutADisplayTheWindowIsRefused) {
+  expect_refused(with("view", {"--3d"}), "no display");
+  const Outcome outcome = run_program(with("view", {"--3d"}), {{"DISPLAY", ":64999"}});
+  EXPECT_EQ(outcome.code, 2) << "a display that is not there";
+  expect_refused(with("view", {}), "--3d");
+}
+
+TEST_F(Recorded, TheWindowShowsTheRun) {
+  if (!succeeds("command -v Xvfb")) GTEST_SKIP() << "no Xvfb on this machine (Debian: xvfb)";
+  if (instrumented()) GTEST_SKIP() << "the driver's own leaks would be reported";
+  const VirtualDisplay display;
+  const auto shown_at = [&](const std::string& time) {
+    const Outcome outcome = run_program(with("view", {"--3d", "--screenshot", folder_.path("s.png"), "--time", time}),
+                                        display.environment());
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return scenes::read_png(folder_.path("s.png"));
+  };
+  const scenes::Picture begin = shown_at("0"), end = shown_at("2.9");
+  EXPECT_EQ(begin.width, 1280);
+  int changed = 0, red = 0;
+  for (int y = 0; y < begin.height; ++y)
+    for (int x = 0; x < begin.width; ++x) {
+      changed += begin.at(x, y) != end.at(x, y);
+      const std::uint32_t c = begin.at(x, y);
+      red += (c >> 16 & 0xFF) > 90 && (c >> 8 & 0xFF) < 60 && (c & 0xFF) < 60;
+    }
+  EXPECT_GT(changed, 500) << "robots, beams and the slider have moved";
+  EXPECT_LT(changed, begin.width * begin.height / 2) << "walls stand still";
+  EXPECT_GT(red, 500) << "Stage's default colour, of walls and bodies";
+}
+
+/// Opens it for a user, who closes it as from a terminal.
+TEST_F(Recorded, TheWindowClosesOnDemand) {
+  if (!succeeds("command -v Xvfb")) GTEST_SKIP() << "no Xvfb on this machine (Debian: xvfb)";
+  if (instrumented()) GTEST_SKIP() << "the driver's own leaks would be reported";
+  const VirtualDisplay display;
+  Program window(with("view", {"--3d"}), display.environment());
+  ASSERT_TRUE(window.says("the slider chooses the time")) << window.err();
+  window.signal(SIGTERM);
+  EXPECT_EQ(window.wait().code, 0) << window.err();
+}
+
+}  // namespace
+}  // namespace sf
