@@ -57,9 +57,10 @@ struct Heavy {
   std::string module;  ///< empty: any
   std::size_t sources = 1;
 };
-const std::vector<Heavy> kHeavy{{"CLI/", "apps", 6},
+const std::vector<Heavy> kHeavy{{"CLI/", "apps", 7},
                                 {"nlohmann/", "apps", 4},
-                                {"vtk", "viz"},
+                                {"vtk", "viz", 3},
+                                {"cairo", "viz"},
                                 {"opencv2/", "vision", 4},
                                 {"boost/asio", "netio/bridges", 2},
                                 {"boost/beast", "netio/bridges"},

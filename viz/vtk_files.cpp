@@ -1,38 +1,42 @@
-// The plug-in for VTK's files.
-
 #include "viz/vtk_files.h"
 
-#include <vtkXMLImageDataWriter.h>
-#include <vtkXMLPolyDataWriter.h>
+#include <fmt/format.h>
 
-#include "viz/vtk_convert.h"
+#include "base/error.h"
+#include "base/plugin.h"
+#include "viz/png.h"
+#include "viz/vtk/plugin.h"
 
 namespace sf::viz {
+
 namespace {
 
-template <class Writer, class Data>
-bool write_data(Data* data, const std::string& path) {
-  vtkNew<Writer> writer;
-  writer->SetInputData(data);
-  writer->SetFileName(path.c_str());
-  writer->SetDataModeToAppended();
-  return writer->Write() == 1 && writer->GetErrorCode() == 0;
-}
-
-bool poly_data_file(const PolyData& data, const std::string& path) {
-  vtkObject::GlobalWarningDisplayOff();  // the caller reports
-  return write_data<vtkXMLPolyDataWriter>(poly_data_of(data).Get(), path);
-}
-
-bool grid_file(const GridData& grid, const std::string& path) {
-  vtkObject::GlobalWarningDisplayOff();
-  return write_data<vtkXMLImageDataWriter>(image_of(grid).Get(), path);
+void expect_written(bool written, const std::string& path) {
+  if (!written)
+    throw base::InputError(path, 0, "cannot be written; name a folder that exists, can be written and has room");
 }
 
 }  // namespace
-}  // namespace sf::viz
 
-extern "C" {
-extern const sf::viz::VtkFiles sensorfarm_vtk_files;
-const sf::viz::VtkFiles sensorfarm_vtk_files{sf::viz::poly_data_file, sf::viz::grid_file};
+const VtkPlugin& vtk_plugin() {
+  static const auto* const loaded = static_cast<const VtkPlugin*>(
+      base::load_plugin(kVtkSymbol, "no VTK file can be written and no window opened", "VTK 9.1"));
+  return *loaded;
 }
+
+void write_poly_data(const PolyData& data, const std::string& path) {
+  expect_written(vtk_plugin().write_poly_data(data, path), path);
+}
+
+void write_grid(const GridData& data, const std::string& path) {
+  expect_written(vtk_plugin().write_grid(data, path), path);
+}
+
+void write_file_series(const std::vector<SeriesFile>& files, const std::string& path) {
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
+  for (const SeriesFile& file : files)
+    text += fmt::format("<DataSet timestep=\"{}\" file=\"{}\"/>\n", file.time, file.file);
+  write_picture(path, text + "</Collection>\n</VTKFile>\n");
+}
+
+}  // namespace sf::viz

@@ -1,6 +1,6 @@
 #pragma once
-// Geometry and images as VTK's XML files (.vtp, .vti), which ParaView opens. VTK is in a plug-in (vtk_files.cpp,
-// `sensorfarm_vtk_files.so`) that is loaded with the first file.
+// Geometry and images as VTK's XML files (.vtp, .vti), which ParaView opens. VTK is in a plug-in
+// (viz/vtk/plugin.h) that is loaded with the first file.
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -34,15 +34,6 @@ struct GridData {
   int columns = 1, rows = 1;
   std::vector<DataArray> cell_data;
 };
-
-/// The functions do not throw. @return false when the file cannot be written
-struct VtkFiles {
-  bool (*write_poly_data)(const PolyData& data, const std::string& path);
-  bool (*write_grid)(const GridData& data, const std::string& path);
-};
-
-/// The name of the plug-in's only symbol: `extern "C" const VtkFiles sensorfarm_vtk_files`.
-inline constexpr const char* kVtkFilesSymbol = "sensorfarm_vtk_files";
 
 /// Write a `.vtp` or a `.vti` file. @throws base::InputError naming the path when it cannot be written.
 void write_poly_data(const PolyData& data, const std::string& path);

@@ -1,6 +1,6 @@
 #pragma once
-// VTK's interactive window on a recorded run. VTK is in a plug-in (vtk_window.cpp, `sensorfarm_vtk_window.so`) that is
-// loaded when a window is opened. Needs a display and OpenGL.
+// VTK's interactive window on a recorded run. VTK is in a plug-in (viz/vtk/plugin.h) that is loaded when
+// a window is opened. Needs a display and OpenGL.
 
 #include <functional>
 #include <optional>
@@ -34,11 +34,5 @@ struct Scene3d {
 /// @param picture not null: takes the window's pixels once, and returns without waiting for a user
 /// @throws base::InputError without a display
 void show_window(const Scene3d& scene, PixelImage* picture = nullptr);
-
-/// The plug-in's function. @return what is missing; empty when all went well
-struct WindowPlugin {
-  std::string (*show)(const Scene3d& scene, PixelImage* picture);
-};
-inline constexpr const char* kWindowSymbol = "sensorfarm_vtk_window";
 
 }  // namespace sf::viz

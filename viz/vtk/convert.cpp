@@ -1,5 +1,4 @@
-#pragma once
-// Our plain tables as VTK's objects. For the plug-ins with VTK only.
+#include "viz/vtk/convert.h"
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -11,11 +10,10 @@
 #include <vtkPolyData.h>
 #include <vtkStringArray.h>
 
-#include "viz/vtk_files.h"
-
 namespace sf::viz {
+namespace {
 
-inline void add_arrays(vtkFieldData* to, const std::vector<DataArray>& arrays) {
+void add_arrays(vtkFieldData* to, const std::vector<DataArray>& arrays) {
   for (const DataArray& array : arrays) {
     vtkNew<vtkDoubleArray> values;
     values->SetName(array.name.c_str());
@@ -26,7 +24,7 @@ inline void add_arrays(vtkFieldData* to, const std::vector<DataArray>& arrays) {
   }
 }
 
-inline vtkNew<vtkCellArray> cells_of(const std::vector<std::vector<std::int64_t>>& rows) {
+vtkNew<vtkCellArray> cells_of(const std::vector<std::vector<std::int64_t>>& rows) {
   vtkNew<vtkCellArray> cells;
   for (const auto& row : rows) {
     cells->InsertNextCell(static_cast<int>(row.size()));
@@ -35,8 +33,10 @@ inline vtkNew<vtkCellArray> cells_of(const std::vector<std::vector<std::int64_t>
   return cells;
 }
 
-inline vtkNew<vtkPolyData> poly_data_of(const PolyData& data) {
-  vtkNew<vtkPolyData> out;
+}  // namespace
+
+vtkPolyData* new_poly_data(const PolyData& data) {
+  vtkPolyData* const out = vtkPolyData::New();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   for (const glm::dvec3& p : data.points) points->InsertNextPoint(p.x, p.y, p.z);
@@ -54,8 +54,8 @@ inline vtkNew<vtkPolyData> poly_data_of(const PolyData& data) {
   return out;
 }
 
-inline vtkNew<vtkImageData> image_of(const GridData& grid) {
-  vtkNew<vtkImageData> out;
+vtkImageData* new_image(const GridData& grid) {
+  vtkImageData* const out = vtkImageData::New();
   out->SetOrigin(grid.x, grid.y, grid.z);
   out->SetSpacing(grid.cell_x, grid.cell_y, 1.0);
   out->SetDimensions(grid.columns + 1, grid.rows + 1, 1);  // corners of cells
