@@ -255,6 +255,7 @@ void add_format(CLI::App& app, std::string& format) {
 void add_part(CLI::App& app, PartOption& o) {
   app.add_option("--robots", o.robots, "Names of the robots to take (default: all)")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAME,...");
   app.add_option("--from", o.from, "Begin of the part to take [s] (default: 0)")
       ->check(number(0.0, 1e9))

@@ -23,9 +23,9 @@ std::vector<std::uint8_t> chosen_of(const record::Recording& recording, const st
       chosen[static_cast<std::size_t>(found - movers.begin())] = 1;
       continue;
     }
-    std::vector<std::string> names;
+    std::vector<std::string_view> names;
     for (const auto& mover : movers) names.push_back(mover.name);
-    throw base::InputError(recording.file, 0, fmt::format("has no robot '{}'; it has {}", name, join_or(names)));
+    throw base::InputError(recording.file, 0, fmt::format("has no robot '{}'; it has {}", name, list_names(names)));
   }
   return chosen;
 }

@@ -90,8 +90,11 @@ std::vector<std::size_t> named_rows(std::size_t count) {
   return rows;
 }
 
+/// [px] smallest distance of labels along an axis of values.
+double value_step(double height) { return std::min(kSmallestStep, height / 3.0); }
+
 double widest_label(const Span& shown, double height) {
-  const Ticks ticks = make_ticks(shown.from, shown.to, kSmallestStep / height * (shown.to - shown.from));
+  const Ticks ticks = make_ticks(shown.from, shown.to, value_step(height) / height * (shown.to - shown.from));
   double widest = 0.0;
   for (const double value : ticks.at)
     widest = std::max(widest, text_size(tick_text(value, ticks.decimals), small_text()).x);
@@ -100,6 +103,12 @@ double widest_label(const Span& shown, double height) {
 
 double plot_height(std::size_t panels) { return panels == 1 ? 620.0 : panels == 2 ? 420.0 : 300.0; }
 
+/// One legend below both then suffices.
+bool same_names(const Panel& a, const Panel& b) {
+  return std::equal(a.series.begin(), a.series.end(), b.series.begin(), b.series.end(),
+                    [](const Series& one, const Series& other) { return one.name == other.name; });
+}
+
 /// The picture's width, its heading, and its panels.
 struct SeriesLayout {
   int width = 0;
@@ -107,21 +116,28 @@ struct SeriesLayout {
   std::vector<PlotArea> places;
 };
 
+/// [px] left end of the plots, right of the widest label.
+double plots_left(const SeriesOptions& options, double height) {
+  double widest = 0.0;
+  for (const Panel& panel : options.panels)
+    widest = std::max(widest, widest_label(value_span(panel, options.from_zero), height));
+  return widest + kSeriesEdge + kAxisName + 14.0;
+}
+
+/// [px] height of one plot on a page of a given height.
+double plot_height(const SeriesOptions& options, const Page& page, double heading) {
+  if (!(page.height > 0.0)) return plot_height(options.panels.size());
+  const double room = page_pixels(page.height, 0) - heading - kTicksBelow - kSeriesEdge;
+  return std::max(kLowestPlot, room / static_cast<double>(options.panels.size()) - kPanelTitle - kLegendRow - 34.0);
+}
+
 SeriesLayout lay_out(const SeriesOptions& options, const Page& page) {
-  double height = plot_height(options.panels.size());
   SeriesLayout layout;
   layout.width = page_pixels(page.width, options.width);
-  double left = 0.0;
-  for (const Panel& panel : options.panels)
-    left = std::max(left, widest_label(value_span(panel, options.from_zero), height));
-  left += kSeriesEdge + kAxisName + 14.0;
-
+  double left = plots_left(options, plot_height(options.panels.size()));
   layout.heading = make_heading(options.title, options.subtitle, layout.width - left - kSeriesEdge, page);
-  if (page.height > 0.0) {
-    const double others = layout.heading.height + kTicksBelow + kSeriesEdge;
-    const double share = (page_pixels(page.height, 0) - others) / static_cast<double>(options.panels.size());
-    height = std::max(kLowestPlot, share - kPanelTitle - kLegendRow - 34.0);
-  }
+  const double height = plot_height(options, page, layout.heading.height);
+  left = plots_left(options, height);
 
   std::vector<PlotArea>& places = layout.places;
   double top = layout.heading.height;
@@ -132,10 +148,11 @@ SeriesLayout lay_out(const SeriesOptions& options, const Page& page) {
     if (!panel.title.empty()) top += kPanelTitle;
     place.plot = {static_cast<int>(left), static_cast<int>(top), layout.width - static_cast<int>(kSeriesEdge),
                   static_cast<int>(top + height)};
-    for (const std::size_t row : named_rows(panel.series.size()))
-      place.legend.push_back({LegendMark::line, row_color(row, panel.series.size()), panel.series[row].name});
-    place.legend_at = place_legend(place.legend, place.plot.x_max - place.plot.x_min);
     const bool last = &panel == &options.panels.back();
+    for (const std::size_t row : named_rows(panel.series.size()))
+      if (last || !same_names(panel, *(&panel + 1)))
+        place.legend.push_back({LegendMark::line, row_color(row, panel.series.size()), panel.series[row].name});
+    place.legend_at = place_legend(place.legend, place.plot.x_max - place.plot.x_min);
     place.legend_top = place.plot.y_max + (last ? kTicksBelow + 8.0 : 20.0);
     const int rows = place.legend_at.empty() ? 0 : place.legend_at.back().row + 1;
     top = place.legend_top + rows * kLegendRow + 14.0;
@@ -152,7 +169,7 @@ void draw_scales(Canvas& canvas, const PlotArea& at, const std::string& x_name) 
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
   style.across = Anchor::end;
-  const Ticks values = ticks_of(at.shown, p.y_max - p.y_min, kSmallestStep);
+  const Ticks values = ticks_of(at.shown, p.y_max - p.y_min, value_step(p.y_max - p.y_min));
   for (const double value : values.at) {
     const double y = crisp(at.pixel(at.time.from, value).y);
     canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, theme::kHairline, theme::kGridLine);

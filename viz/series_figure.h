@@ -34,7 +34,7 @@ struct SeriesOptions {
 };
 
 /// Draws each series in the colour of its row. Up to seven are named below their panel; of more, seven from the first
-/// to the last.
+/// to the last. Neighbouring panels with the same names have one legend, below the last of them.
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_series(const SeriesOptions& options, const std::string& path, const Page& page = {});
 
