@@ -23,11 +23,11 @@ constexpr std::size_t kNamedPlaces = 7;
 // [px]
 constexpr int kPitch = 5;  // a cell of 4 and a line of 1
 constexpr std::int64_t kMaxWithGrid = 1600;
-constexpr double kLongest = 8000.0;
-constexpr double kLeft = 86.0;
-constexpr double kRight = 40.0;
-constexpr double kLabels = 70.0;  // below the map
-constexpr double kNarrowest = 640.0;
+constexpr double kLongestMap = 8000.0;
+constexpr double kMapLeft = 86.0;
+constexpr double kMapRight = 40.0;
+constexpr double kMapLabels = 70.0;  // below the map
+constexpr double kNarrowestMap = 640.0;
 
 /// The map's place in the picture.
 struct Layout {
@@ -46,23 +46,23 @@ Layout lay_out(const maps::GridGeometry& geometry, std::span<const LegendItem> l
   Layout l;
   const std::int64_t longest = std::max(maps::columns(geometry), maps::rows(geometry));
   l.grid = longest <= kMaxWithGrid;
-  if (!l.grid) l.scale = std::min(static_cast<double>(kPitch), kLongest / static_cast<double>(longest));
-  const double narrowest = page_pixels(page.width, static_cast<int>(kNarrowest));
+  if (!l.grid) l.scale = std::min(static_cast<double>(kPitch), kLongestMap / static_cast<double>(longest));
+  const double narrowest = page_pixels(page.width, static_cast<int>(kNarrowestMap));
   if (page.width > 0.0) {
-    const double room = page.height > 0.0 ? page_pixels(page.height, 0) - kLabels - 3.0 * kLegendRow : HUGE_VAL;
-    l.scale = std::min((narrowest - kLeft - kRight - 1.0) / static_cast<double>(maps::columns(geometry)),
+    const double room = page.height > 0.0 ? page_pixels(page.height, 0) - kMapLabels - 3.0 * kLegendRow : HUGE_VAL;
+    l.scale = std::min((narrowest - kMapLeft - kMapRight - 1.0) / static_cast<double>(maps::columns(geometry)),
                        std::max(room, 100.0) / static_cast<double>(maps::rows(geometry)));
     l.grid = false;
   }
   const double line = l.grid ? 1.0 : 0.0;
   const double wide = std::ceil(l.scale * static_cast<double>(maps::columns(geometry))) + line;
   const double high = std::ceil(l.scale * static_cast<double>(maps::rows(geometry))) + line;
-  l.width = std::max(narrowest, kLeft + wide + kRight);
-  l.heading = make_heading(figure.title, subtitle, l.width - 2.0 * kRight, page);
-  l.low = {std::floor(kLeft + 0.5 * (l.width - kLeft - kRight - wide)), std::ceil(l.heading.height)};
+  l.width = std::max(narrowest, kMapLeft + wide + kMapRight);
+  l.heading = make_heading(figure.title, subtitle, l.width - 2.0 * kMapRight, page);
+  l.low = {std::floor(kMapLeft + 0.5 * (l.width - kMapLeft - kMapRight - wide)), std::ceil(l.heading.height)};
   l.high = l.low + glm::dvec2{wide, high};
-  l.legend = place_legend(legend, l.width - 2.0 * kRight);
-  l.height = l.high.y + kLabels + kLegendRow * (l.legend.back().row + 1) + 12.0;
+  l.legend = place_legend(legend, l.width - 2.0 * kMapRight);
+  l.height = l.high.y + kMapLabels + kLegendRow * (l.legend.back().row + 1) + 12.0;
   return l;
 }
 
@@ -153,11 +153,11 @@ void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const st
                                            maps::rows(grid.geometry), grid.geometry.cell, known);
   const Layout l = lay_out(grid.geometry, legend, figure, subtitle, page);
   Canvas canvas(static_cast<int>(std::ceil(l.width)), static_cast<int>(std::ceil(l.height)), theme::kWhite);
-  draw_heading(canvas, kRight, l.heading);
+  draw_heading(canvas, kMapRight, l.heading);
   draw_cells(canvas, grid, l);
   draw_places(canvas, grid.geometry, l, figure);
   draw_axes(canvas, grid.geometry, l);
-  draw_legend(canvas, {kRight, l.high.y + kLabels}, legend, l.legend);
+  draw_legend(canvas, {kMapRight, l.high.y + kMapLabels}, legend, l.legend);
   save_picture(canvas.drawing(), path, page);
 }
 

@@ -14,7 +14,7 @@
 namespace sf::viz {
 namespace {
 
-constexpr double kLargestSide = 32768.0;  // [px] Cairo's
+constexpr double kLargestPicture = 32768.0;  // [px] Cairo's
 
 }  // namespace
 
@@ -52,11 +52,11 @@ void save_picture(const Drawing& drawing, const std::string& path, const Page& p
     return write_picture(path, bytes);
   }
   const double scale = page.dpi / kPixelsPerInch;
-  if (scale * std::max(drawing.width, drawing.height) > kLargestSide)
+  if (scale * std::max(drawing.width, drawing.height) > kLargestPicture)
     throw base::InputError(path, 0,
                            fmt::format("the picture would be {:.0f} x {:.0f} pixels, more than {:g} along a side; take "
                                        "fewer dots per inch or a smaller size",
-                                       drawing.width * scale, drawing.height * scale, kLargestSide));
+                                       drawing.width * scale, drawing.height * scale, kLargestPicture));
   const PixelImage image = paint_pixels(drawing, scale);
   write_picture(path, encode_png(image.rgb, image.width, image.height, PngContent::figure, page.dpi));
 }

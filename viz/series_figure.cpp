@@ -19,10 +19,10 @@ constexpr std::size_t kNamed = 7;
 
 // [px]
 constexpr double kSeriesEdge = 26.0;
-constexpr double kPanelTitle = 34.0;  ///< above each plot
-constexpr double kTicksBelow = 68.0;  ///< labels and the axis' name, below the last plot
-constexpr double kAxisName = 34.0;    ///< left of the labels
-constexpr double kSmallestStep = 60.0;
+constexpr double kPanelTitle = 34.0;      ///< above each plot
+constexpr double kSeriesTicks = 68.0;     ///< labels and the axis' name, below the last plot
+constexpr double kSeriesAxisName = 34.0;  ///< left of the labels
+constexpr double kSmallestTick = 60.0;
 constexpr double kLowestPlot = 120.0;
 constexpr double kLoneDot = 2.2;
 constexpr double kSmallestMove = 0.3;  ///< shorter steps of a curve are left out
@@ -32,7 +32,7 @@ struct Span {
 };
 
 /// One panel on the picture.
-struct PlotArea {
+struct SeriesPlot {
   PixelBox plot;
   Span time;   ///< [s]
   Span shown;  ///< of the values
@@ -91,7 +91,7 @@ std::vector<std::size_t> named_rows(std::size_t count) {
 }
 
 /// [px] smallest distance of labels along an axis of values.
-double value_step(double height) { return std::min(kSmallestStep, height / 3.0); }
+double value_step(double height) { return std::min(kSmallestTick, height / 3.0); }
 
 double widest_label(const Span& shown, double height) {
   const Ticks ticks = make_ticks(shown.from, shown.to, value_step(height) / height * (shown.to - shown.from));
@@ -113,7 +113,7 @@ bool same_names(const Panel& a, const Panel& b) {
 struct SeriesLayout {
   int width = 0;
   Heading heading;
-  std::vector<PlotArea> places;
+  std::vector<SeriesPlot> places;
 };
 
 /// [px] left end of the plots, right of the widest label.
@@ -121,13 +121,13 @@ double plots_left(const SeriesOptions& options, double height) {
   double widest = 0.0;
   for (const Panel& panel : options.panels)
     widest = std::max(widest, widest_label(value_span(panel, options.from_zero), height));
-  return widest + kSeriesEdge + kAxisName + 14.0;
+  return widest + kSeriesEdge + kSeriesAxisName + 14.0;
 }
 
 /// [px] height of one plot on a page of a given height.
 double plot_height(const SeriesOptions& options, const Page& page, double heading) {
   if (!(page.height > 0.0)) return plot_height(options.panels.size());
-  const double room = page_pixels(page.height, 0) - heading - kTicksBelow - kSeriesEdge;
+  const double room = page_pixels(page.height, 0) - heading - kSeriesTicks - kSeriesEdge;
   return std::max(kLowestPlot, room / static_cast<double>(options.panels.size()) - kPanelTitle - kLegendRow - 34.0);
 }
 
@@ -139,10 +139,10 @@ SeriesLayout lay_out(const SeriesOptions& options, const Page& page) {
   const double height = plot_height(options, page, layout.heading.height);
   left = plots_left(options, height);
 
-  std::vector<PlotArea>& places = layout.places;
+  std::vector<SeriesPlot>& places = layout.places;
   double top = layout.heading.height;
   for (const Panel& panel : options.panels) {
-    PlotArea& place = places.emplace_back();
+    SeriesPlot& place = places.emplace_back();
     place.time = time_span(options);
     place.shown = value_span(panel, options.from_zero);
     if (!panel.title.empty()) top += kPanelTitle;
@@ -153,7 +153,7 @@ SeriesLayout lay_out(const SeriesOptions& options, const Page& page) {
       if (last || !same_names(panel, *(&panel + 1)))
         place.legend.push_back({LegendMark::line, row_color(row, panel.series.size()), panel.series[row].name});
     place.legend_at = place_legend(place.legend, place.plot.x_max - place.plot.x_min);
-    place.legend_top = place.plot.y_max + (last ? kTicksBelow + 8.0 : 20.0);
+    place.legend_top = place.plot.y_max + (last ? kSeriesTicks + 8.0 : 20.0);
     const int rows = place.legend_at.empty() ? 0 : place.legend_at.back().row + 1;
     top = place.legend_top + rows * kLegendRow + 14.0;
   }
@@ -165,7 +165,7 @@ Ticks ticks_of(const Span& span, double pixels, double smallest) {
 }
 
 /// @param x_name name of the axis; empty: neither name nor labels
-void draw_scales(Canvas& canvas, const PlotArea& at, const std::string& x_name) {
+void draw_series_scales(Canvas& canvas, const SeriesPlot& at, const std::string& x_name) {
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
   style.across = Anchor::end;
@@ -186,7 +186,7 @@ void draw_scales(Canvas& canvas, const PlotArea& at, const std::string& x_name) 
   if (!x_name.empty()) canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, x_name, style);
 }
 
-void draw_curve(Canvas& canvas, const PlotArea& at, const Series& series, std::uint32_t color) {
+void draw_curve(Canvas& canvas, const SeriesPlot& at, const Series& series, std::uint32_t color) {
   std::vector<Line> lines;
   std::optional<glm::dvec2> last;
   const auto known = [&](std::size_t i) {
@@ -206,8 +206,8 @@ void draw_curve(Canvas& canvas, const PlotArea& at, const Series& series, std::u
   canvas.lines(lines, theme::kCurve, color);
 }
 
-void draw_panel(Canvas& canvas, const Panel& panel, const PlotArea& at, const std::string& x_name) {
-  draw_scales(canvas, at, x_name);
+void draw_panel(Canvas& canvas, const Panel& panel, const SeriesPlot& at, const std::string& x_name) {
+  draw_series_scales(canvas, at, x_name);
   canvas.clip(at.plot);
   for (std::size_t i = 0; i < panel.series.size(); ++i)
     draw_curve(canvas, at, panel.series[i], row_color(i, panel.series.size()));
@@ -238,8 +238,8 @@ void draw_series(const SeriesOptions& options, const std::string& path, const Pa
                                                                 std::to_string(series.values.size()) + " values");
 
   const SeriesLayout layout = lay_out(options, page);
-  const std::vector<PlotArea>& places = layout.places;
-  const PlotArea& last = places.back();
+  const std::vector<SeriesPlot>& places = layout.places;
+  const SeriesPlot& last = places.back();
   const int rows = last.legend_at.empty() ? 0 : last.legend_at.back().row + 1;
   Canvas canvas(layout.width, static_cast<int>(last.legend_top + rows * kLegendRow + kSeriesEdge), theme::kWhite);
   draw_heading(canvas, last.plot.x_min, layout.heading);

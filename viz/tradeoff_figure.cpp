@@ -17,11 +17,11 @@ namespace sf::viz {
 namespace {
 
 // [px]
-constexpr int kWidth = 1400;
-constexpr int kLeft = 150;
-constexpr int kRight = 40;
+constexpr int kTradeoffWidth = 1400;
+constexpr int kTradeoffLeft = 150;
+constexpr int kTradeoffRight = 40;
 constexpr int kPlot = 400;
-constexpr int kLowest = 200;
+constexpr int kLowestPanel = 200;
 constexpr int kBetween = 150;       ///< title of a panel, and labels below its plot
 constexpr double kNothing = 120.0;  ///< column of errors that are 0
 
@@ -163,19 +163,19 @@ void draw_panel(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) 
 
 void draw_tradeoff(const std::string& title, const std::string& subtitle, std::span<const TradeoffPanel> panels,
                    const std::string& path, const Page& page) {
-  const int width = page_pixels(page.width, kWidth);
-  const Heading heading = make_heading(title, subtitle, width - kLeft - kRight, page);
+  const int width = page_pixels(page.width, kTradeoffWidth);
+  const Heading heading = make_heading(title, subtitle, width - kTradeoffLeft - kTradeoffRight, page);
   int plot = kPlot;
   if (page.height > 0.0 && !panels.empty())
     plot = std::max(
-        kLowest,
+        kLowestPanel,
         (page_pixels(page.height, 0) - static_cast<int>(heading.height)) / static_cast<int>(panels.size()) - kBetween);
   const int height = static_cast<int>(heading.height) + static_cast<int>(panels.size()) * (plot + kBetween);
   Canvas canvas(width, std::max(height, 1), theme::kWhite);
-  draw_heading(canvas, kLeft, heading);
+  draw_heading(canvas, kTradeoffLeft, heading);
   int top = static_cast<int>(heading.height) + 50;
   for (const TradeoffPanel& panel : panels) {
-    PlotArea at{{kLeft, top, width - kRight, top + plot}, {}};
+    PlotArea at{{kTradeoffLeft, top, width - kTradeoffRight, top + plot}, {}};
     at.error = decades_of(panel.points);
     double fastest = 0.0;
     for (const TradeoffPoint& point : panel.points) fastest = std::max(fastest, point.rate);

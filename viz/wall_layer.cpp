@@ -50,12 +50,12 @@ Paint paint_of(const world::World& world, std::uint32_t model, Kind kind, WallCo
 }
 
 /// The walls of one model and kind, in canvas coordinates.
-struct Group {
+struct WallGroup {
   std::vector<Line> all;
   std::vector<Line> closed;
 };
 
-void draw_group(Canvas& canvas, const Group& group, Kind kind, const Paint& paint) {
+void draw_group(Canvas& canvas, const WallGroup& group, Kind kind, const Paint& paint) {
   if (!group.closed.empty() && paint.fill >> 24) canvas.area(group.closed, paint.fill);
   if (kind == Kind::solid) canvas.lines(group.all, 1.4, paint.edge);
   if (kind == Kind::passable || kind == Kind::overhead) draw_dashes(canvas, group.all, 1.4, 8.0, 4.0, paint.edge);
@@ -66,11 +66,11 @@ void draw_group(Canvas& canvas, const Group& group, Kind kind, const Paint& pain
 
 void draw_walls(Axes& axes, const world::World& world, WallColors colors) {
   // Walls invisible to lasers are drawn beneath visible ones.
-  std::map<std::tuple<bool, std::uint32_t, Kind>, Group> groups;
+  std::map<std::tuple<bool, std::uint32_t, Kind>, WallGroup> groups;
   const double room = headroom(world);
   for (const world::Segment& s : world.walls) {
     const Kind kind = kind_of(s, room);
-    Group& group = groups[{kind != Kind::unseen, s.model, kind}];
+    WallGroup& group = groups[{kind != Kind::unseen, s.model, kind}];
     const Line line{axes.pixel(s.a), axes.pixel(s.b)};
     group.all.push_back(line);
     if (s.solid_left) group.closed.push_back(line);
