@@ -273,7 +273,7 @@ void add_simulation(py::module_& module) {
           py::arg("row"), py::arg("pose"), "Places a robot at (x, y, z [m], yaw [rad]), at rest.")
       .def(
           "draw", [](const PySimulation& s, Text file) { in_farm([&] { s.farm.draw(file); }); }, py::arg("file"),
-          "Writes a PNG of the world at this time.")
+          "Writes a picture of the world at this time: PNG, SVG or PDF by its suffix.")
       .def("finish_recording", [](PySimulation& s) { in_farm([&] { s.farm.finish_recording(); }); });
   add_state(c), add_readings(c);
 }
