@@ -122,7 +122,7 @@ class SENSORFARM_API Simulation {
   /// Ends the recording, with its index. @throws Error when it cannot be written
   void finish_recording();
   /// Draws walls, robots and tags at their present poses, and fields of view, to a PNG, SVG or PDF file by its suffix.
-  /// @throws Error when it cannot be written, and without VTK
+  /// @throws Error when it cannot be written, and without Cairo
   void draw(const std::string& file) const;
   /// Keeps the memory behind spans and readings, whose content changes with the next step, beyond the simulation.
   std::shared_ptr<const void> memory() const;
