@@ -27,6 +27,10 @@ foreach(part core imgproc imgcodecs videoio calib3d aruco)
   list(APPEND OPENCV_LIBRARIES ${OPENCV_${part}})
 endforeach()
 
+# Cyclone DDS without its CMake package, which wants OpenSSL's headers (cyclonedds-dev).
+find_path(CYCLONEDDS_INCLUDE dds/dds.h REQUIRED)
+find_library(CYCLONEDDS ddsc REQUIRED)
+
 # Build flags of all targets. Contraction is off so that host and device round alike. Code can be part of a shared library
 # (-fPIC; one form for all, as precompiled headers need). g++ 12 warns falsely of overlapping strings (-Wrestrict) and,
 # with precompiled headers, of array bounds.
@@ -105,8 +109,8 @@ endfunction()
 
 # add_module(NAME [UNITY] [FOLDER folder] [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [PLUGINS names...])
 # FOLDER: folder of the sources, default NAME; a folder below another module's belongs to this module only. SOURCES:
-# files generated at configure time, in addition to the folder's. PLUGINS: the source NAME/<name>.cpp or the folder
-# NAME/<name>/ becomes sensorfarm_<name>.so beside the program, which is loaded at first use.
+# files generated at configure time, in addition to the folder's. PLUGINS: the source FOLDER/<name>.cpp or the folder
+# FOLDER/<name>/ becomes sensorfarm_<name>.so beside the program, which is loaded at first use.
 function(add_module name)
   cmake_parse_arguments(MODULE "UNITY" "FOLDER" "PUBLIC;PRIVATE;SOURCES;PLUGINS" ${ARGN})
   if(NOT MODULE_FOLDER)
@@ -117,9 +121,9 @@ function(add_module name)
     list(FILTER sources EXCLUDE REGEX "/(netio/server|netio/bridges|netio/v2x|robots/estimation)/")
   endif()
   foreach(plugin ${MODULE_PLUGINS})
-    set(plugin_sources ${CMAKE_SOURCE_DIR}/${name}/${plugin}.cpp)
-    if(IS_DIRECTORY ${CMAKE_SOURCE_DIR}/${name}/${plugin})
-      file(GLOB plugin_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${name}/${plugin}/*.cpp)
+    set(plugin_sources ${CMAKE_SOURCE_DIR}/${MODULE_FOLDER}/${plugin}.cpp)
+    if(IS_DIRECTORY ${CMAKE_SOURCE_DIR}/${MODULE_FOLDER}/${plugin})
+      file(GLOB plugin_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${MODULE_FOLDER}/${plugin}/*.cpp)
     endif()
     list(REMOVE_ITEM sources ${plugin_sources})
     add_library(sensorfarm_${plugin} MODULE ${plugin_sources})
