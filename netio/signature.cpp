@@ -17,6 +17,12 @@ constexpr std::uint16_t kTrailer = kSignatureBytes;
 
 }  // namespace
 
+Sha256 sha256(std::span<const std::uint8_t> bytes) {
+  Sha256 hash{};
+  crypto_hash_sha256(hash.data(), bytes.data(), bytes.size());
+  return hash;
+}
+
 TruncatedHmac hmac_sha256(std::span<const std::uint8_t> key, std::span<const std::uint8_t> bytes) {
   static const bool ready = sodium_init() >= 0;
   SF_CHECK(ready, "libsodium does not start");

@@ -23,6 +23,11 @@ inline constexpr std::size_t kSignatureBytes = 24;  ///< [byte] u64 counter, and
 using SigningKey = std::array<std::uint8_t, kKeyBytes>;
 using TruncatedHmac = std::array<std::uint8_t, 16>;
 
+using Sha256 = std::array<std::uint8_t, 32>;
+
+/// SHA-256 (FIPS 180-4).
+Sha256 sha256(std::span<const std::uint8_t> bytes);
+
 /// First 16 bytes of HMAC-SHA-256 (RFC 2104; truncated by its section 5). @param key of any length
 TruncatedHmac hmac_sha256(std::span<const std::uint8_t> key, std::span<const std::uint8_t> bytes);
 
