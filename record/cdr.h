@@ -87,6 +87,7 @@ class CdrReader {
     return 0;
   }
   bool good() const { return good_ && bytes_.good(); }
+  std::size_t left() const { return bytes_.left(); }  ///< [byte]
 
  private:
   void align(std::size_t size) {

@@ -1,0 +1,238 @@
+#include "netio/bridges/ros2_bridge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <utility>
+
+#include "base/error.h"
+#include "netio/bridges/ros_types.h"
+#include "record/cdr.h"
+#include "record/schemas.h"
+
+namespace sf::bridges {
+
+namespace {
+
+constexpr std::string_view kNode = "sensorfarm";
+constexpr std::string_view kDiscovery = "rmw_dds_common/msg/ParticipantEntitiesInfo";
+constexpr std::string_view kDiscoveryFields =
+    "rmw_dds_common/Gid gid\nrmw_dds_common/NodeEntitiesInfo[] node_entities_info_seq\n";
+constexpr int kDepth = 10, kTransformsDepth = 100;  // messages kept for slow readers
+
+bool is_set(const char* variable, std::string_view value) {
+  const char* const text = std::getenv(variable);
+  return text != nullptr && value == text;
+}
+
+/// As rmw_cyclonedds numbers them: the participant's prefix and a count, so that a client knows which request reader
+/// and which reply writer are one service.
+std::string service_id(DdsGuid guid, std::size_t number) {
+  for (std::size_t i = 0; i < 4; ++i) guid[12 + i] = static_cast<std::uint8_t>((number + 1) >> (24 - 8 * i));
+  std::string text = "serviceid=";
+  for (std::size_t i = 0; i < guid.size(); ++i) text += fmt::format("{}{:x}", i == 0 ? "" : ".", guid[i]);
+  return text + ";";
+}
+
+/// Tags follow packets; all other movers can be driven.
+std::size_t count_driven(const world::World& world) {
+  return static_cast<std::size_t>(
+      std::count_if(world.movers.begin(), world.movers.end(), [](const world::Mover& mover) { return !mover.is_tag; }));
+}
+
+}  // namespace
+
+Ros2Options ros2_options(std::string domain) {
+  const char* const variable = std::getenv("ROS_DOMAIN_ID");
+  const bool is_variable = domain.empty() && variable != nullptr;
+  if (is_variable) domain = variable;
+  Ros2Options options;
+  options.loopback = is_set("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST") || is_set("ROS_LOCALHOST_ONLY", "1");
+  if (domain.empty()) return options;
+  const char* const end = domain.data() + domain.size();
+  const auto [last, error] = std::from_chars(domain.data(), end, options.domain);
+  if (error != std::errc() || last != end || options.domain > kDdsMaxDomain)
+    throw base::InputError(fmt::format("{} '{}': expected the number of a domain, 0 to {}",
+                                       is_variable ? "ROS_DOMAIN_ID" : "--ros2", domain, kDdsMaxDomain));
+  return options;
+}
+
+void DdsInbox::add(DdsMessage&& message) {
+  const std::lock_guard lock(mutex_);
+  if (messages_.size() >= kMaxMessages || bytes_ + message.bytes.size() > kMaxBytes) {
+    ++left_out_;
+    return;
+  }
+  bytes_ += message.bytes.size();
+  messages_.push_back(std::move(message));
+}
+
+void DdsInbox::take(std::deque<DdsMessage>& out) {
+  const std::lock_guard lock(mutex_);
+  std::move(messages_.begin(), messages_.end(), std::back_inserter(out));
+  messages_.clear();
+  bytes_ = 0;
+}
+
+std::uint64_t DdsInbox::left_out() const {
+  const std::lock_guard lock(mutex_);
+  return left_out_;
+}
+
+Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library)
+    : options_(options),
+      scene_(scene),
+      services_(scene),
+      messages_(scene.info),
+      command_readers_(scene.simulated ? 2 * count_driven(scene.world) : 0) {
+  const auto receive = [this](DdsMessage&& message) {
+    (message.reader < command_readers_ ? commands_ : requests_).add(std::move(message));
+  };
+  try {
+    participant_ = library.open({options.domain, "enclave=/;", options.loopback, receive});
+    add_topics();
+    add_commands();
+    add_services();
+    announce();
+  } catch (const std::runtime_error& error) {
+    throw base::InputError(fmt::format("--ros2: {}", error.what()));
+  }
+  messages_.begin([this](const record::TopicMessage& message) { add(message); });
+  outbox_.emplace(*participant_);
+  outbox_->add(batch_);
+}
+
+std::string Ros2Bridge::describe() const {
+  return fmt::format("ROS 2: node /{} in domain {}{}", kNode, options_.domain,
+                     options_.loopback ? ", on this machine" : "");
+}
+
+void Ros2Bridge::add_topics() {
+  for (const record::Topic& topic : messages_.topics()) {
+    const bool is_command = topic.type == record::kTwistStamped;  // of a controller; those of others are heard there
+    const int depth = topic.latched ? 1 : topic.name == "/tf" ? kTransformsDepth : kDepth;
+    writer_of_.push_back(is_command ? kNone
+                                    : add_writer("rt" + topic.name, topic.type, topic.schema, depth, topic.latched));
+  }
+  wanted_.assign(writer_of_.size(), false);
+}
+
+void Ros2Bridge::add_commands() {
+  if (!scene_.simulated) return;
+  const std::string plain = record::schema_text("geometry_msgs/msg/Twist");
+  const std::string stamped = record::schema_text(record::kTwistStamped);
+  for (std::uint32_t row = 0; row < scene_.info.movers.size(); ++row) {
+    if (scene_.world.movers[row].is_tag) continue;
+    const std::string topic = "rt/" + scene_.info.movers[row].frame + "/cmd_vel";
+    add_reader(topic, "geometry_msgs/msg/Twist", plain);
+    add_reader(topic, record::kTwistStamped, stamped);
+    driven_.push_back(row);
+  }
+}
+
+void Ros2Bridge::add_services() {
+  for (const ServiceType& service : services_.types()) {
+    const std::string id = service_id(participant_->guid(), reply_writers_.size());
+    const std::string type(service.type), name(service.name);
+    add_reader("rq" + name + "Request", type + "_Request", ros_definition(service.request), id);
+    reply_writers_.push_back(
+        add_writer("rr" + name + "Reply", type + "_Response", ros_definition(service.response), kDepth, false, id));
+  }
+}
+
+/// What `ros2 node list` reads: the participant's nodes, and their readers and writers.
+void Ros2Bridge::announce() {
+  const std::size_t writer = add_writer("ros_discovery_info", kDiscovery, ros_definition(kDiscoveryFields), 1, true);
+  writers_.pop_back();  // it is the participant's, not the node's
+  record::CdrWriter cdr(batch_.add(writer));
+  const auto put = [&cdr](const DdsGuid& guid) {
+    for (const std::uint8_t byte : guid) cdr.put(byte);
+  };
+  put(participant_->guid());
+  cdr.put_count(1);
+  cdr.put("/");
+  cdr.put(kNode);
+  for (const auto* guids : {&readers_, &writers_}) {
+    cdr.put_count(guids->size());
+    for (const DdsGuid& guid : *guids) put(guid);
+  }
+}
+
+std::size_t Ros2Bridge::add_writer(const std::string& topic, std::string_view type, std::string_view definition,
+                                   int depth, bool latched, const std::string& user_data) {
+  return participant_->add_writer({topic, dds_type(type), user_data + type_user_data(type, definition), depth, latched},
+                                  writers_.emplace_back());
+}
+
+std::size_t Ros2Bridge::add_reader(const std::string& topic, std::string_view type, std::string_view definition,
+                                   const std::string& user_data) {
+  // Commands of writers of any kind are taken; requests come from reliable writers.
+  const bool any = user_data.empty();
+  return participant_->add_reader(
+      {topic, dds_type(type), user_data + type_user_data(type, definition), kDepth, false, any},
+      readers_.emplace_back());
+}
+
+void Ros2Bridge::publish(const base::TickRecord& tick, const RunState& state) {
+  const auto emit = [this](const record::TopicMessage& message) { add(message); };
+  if (state.runs != runs_) messages_.begin(emit);
+  runs_ = state.runs;
+  for (std::size_t row = 0; row < writer_of_.size(); ++row)
+    wanted_[row] = writer_of_[row] != kNone && participant_->count_readers(writer_of_[row]) > 0;
+  messages_.encode(tick, emit, wanted_);
+  if (!batch_.messages().empty()) outbox_->add(batch_);
+  services_.observe(&tick, state);
+  send_answers();
+}
+
+void Ros2Bridge::add(const record::TopicMessage& message) {
+  batch_.add(writer_of_[message.topic]).assign(message.bytes.begin(), message.bytes.end());
+}
+
+void Ros2Bridge::publish(const RunState& state) {
+  services_.observe(nullptr, state);
+  send_answers();
+}
+
+void Ros2Bridge::take(Requests& requests) {
+  commands_.take(come_);
+  for (; !come_.empty(); come_.pop_front())
+    if (!take_command(come_.front(), requests)) ++malformed_;
+  if (pending_.empty()) requests_.take(pending_);
+  for (std::size_t count = 0; !pending_.empty() && count < kMaxRequests; ++count, pending_.pop_front()) {
+    const DdsMessage& message = pending_.front();
+    if (!services_.take(message.reader - command_readers_, message.bytes, message.writer, requests)) ++malformed_;
+  }
+  send_answers();
+}
+
+bool Ros2Bridge::take_command(const DdsMessage& message, Requests& requests) const {
+  record::CdrReader cdr(message.bytes);
+  std::int64_t time = 0;
+  if (message.reader % 2 == 1) record::get_header(cdr, time);
+  Command command{.mover = driven_[message.reader / 2]};
+  command.twist.forward = cdr.get<double>();
+  command.twist.left = cdr.get<double>();
+  for (int i = 0; i < 3; ++i) cdr.get<double>();  // upwards, and turns about x and y
+  command.twist.turn = cdr.get<double>();
+  const base::Twist& twist = command.twist;
+  if (!cdr.good() || !std::isfinite(twist.forward + twist.left + twist.turn)) return false;
+  requests.commands.push_back(command);
+  return true;
+}
+
+void Ros2Bridge::send_answers() {
+  for (Answer& answer : services_.answers())
+    outbox_->add(DdsReply{reply_writers_[answer.service], command_readers_ + answer.service, answer.caller.writer,
+                          std::move(answer.message)});
+}
+
+Ros2Bridge::Counts Ros2Bridge::counts() const {
+  return {outbox_->counts(), malformed_, commands_.left_out() + requests_.left_out()};
+}
+
+}  // namespace sf::bridges

@@ -1,0 +1,101 @@
+#pragma once
+// A run as a node of ROS 2, `/sensorfarm`, without a ROS installation: its topics are those of recordings, its commands
+// are geometry_msgs/Twist and TwistStamped on /ROBOT/cmd_vel, its services those of `RosServices`.
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "netio/bridges/bridge.h"
+#include "netio/bridges/dds.h"
+#include "netio/bridges/dds_outbox.h"
+#include "netio/bridges/ros_services.h"
+#include "record/tick_messages.h"
+
+namespace sf::bridges {
+
+struct Ros2Options {
+  std::uint32_t domain = 0;  ///< ROS_DOMAIN_ID of the nodes, [0, kDdsMaxDomain]
+  bool loopback = false;     ///< nodes of this machine only
+};
+
+/// @param domain digits; empty: ROS_DOMAIN_ID of the environment, or 0. Of the environment, too, as nodes of ROS 2 read
+/// it, ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_LOCALHOST_ONLY=1: `loopback`.
+/// @throws base::InputError where it is no domain
+Ros2Options ros2_options(std::string domain);
+
+/// Messages of others, until the run asks for them.
+class DdsInbox {
+ public:
+  static constexpr std::size_t kMaxMessages = 4096;
+  static constexpr std::size_t kMaxBytes = 16 << 20;
+
+  void add(DdsMessage&& message);
+  /// Moves all messages to the end of `out`.
+  void take(std::deque<DdsMessage>& out);
+  std::uint64_t left_out() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::deque<DdsMessage> messages_;
+  std::size_t bytes_ = 0;
+  std::uint64_t left_out_ = 0;
+};
+
+class Ros2Bridge : public Bridge {
+ public:
+  static constexpr std::size_t kNone = ~std::size_t{0};
+  static constexpr std::size_t kMaxRequests = 32;  ///< of services, taken per tick; further ones wait
+
+  /// @throws base::InputError where DDS cannot be used
+  Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library = dds_library());
+
+  void publish(const base::TickRecord& tick, const RunState& state) override;
+  void publish(const RunState& state) override;
+  void take(Requests& requests) override;
+  std::string describe() const override;
+
+  struct Counts {
+    DdsOutbox::Counts sent;
+    std::uint64_t malformed = 0;  ///< messages that could not be read
+    std::uint64_t left_out = 0;   ///< messages that came faster than ticks
+  };
+  Counts counts() const;
+
+ private:
+  void add_topics();
+  void add_commands();
+  void add_services();
+  void announce();
+  std::size_t add_writer(const std::string& topic, std::string_view type, std::string_view definition, int depth,
+                         bool latched, const std::string& user_data = {});
+  std::size_t add_reader(const std::string& topic, std::string_view type, std::string_view definition,
+                         const std::string& user_data = {});
+  void add(const record::TopicMessage& message);
+  /// @return false: it cannot be read
+  bool take_command(const DdsMessage& message, Requests& requests) const;
+  void send_answers();
+
+  const Ros2Options options_;
+  const Scene scene_;
+  RosServices services_;
+  record::TickMessages messages_;
+  const std::size_t command_readers_;      ///< they come before those of services: for each robot Twist, TwistStamped
+  DdsInbox commands_, requests_;           // outlive the participant, which fills them
+  std::deque<DdsMessage> come_, pending_;  ///< taken from these
+  std::uint64_t malformed_ = 0;
+  std::vector<std::size_t> writer_of_;      ///< by row of `messages_.topics()`; kNone: it has none
+  std::vector<bool> wanted_;                ///< likewise: somebody reads it
+  std::vector<std::uint32_t> driven_;       ///< by pair of readers of commands: row of the mover
+  std::vector<std::size_t> reply_writers_;  ///< by service
+  std::vector<DdsGuid> readers_, writers_;  ///< all of them
+  std::uint32_t runs_ = 0;
+  DdsBatch batch_;
+  std::unique_ptr<DdsParticipant> participant_;
+  std::optional<DdsOutbox> outbox_;
+};
+
+}  // namespace sf::bridges

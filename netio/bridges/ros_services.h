@@ -1,0 +1,85 @@
+#pragma once
+// Services of a run for nodes of ROS 2: those of simulation_interfaces 2.1 that fit, which serve clients of 1.0 too,
+// and three of std_srvs for users without that package. One thread: requests come between two ticks, and those that
+// change the run are answered when it has changed.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/bytes.h"
+#include "netio/bridges/bridge.h"
+#include "record/cdr.h"
+
+namespace sf::bridges {
+
+struct ServiceType {
+  std::string_view name;               ///< "/set_simulation_state"
+  std::string_view type;               ///< "simulation_interfaces/srv/SetSimulationState"
+  std::string_view request, response;  ///< fields, one per line (`ros2msg`)
+};
+
+/// Where an answer goes. rmw_cyclonedds writes the first two before a request, and looks for them before the answer.
+struct Caller {
+  std::uint64_t client = 0;
+  std::int64_t sequence = 0;
+  std::uint64_t writer = 0;  ///< `DdsMessage::writer`
+};
+
+struct Answer {
+  std::size_t service = 0;  ///< row of `RosServices::types`
+  Caller caller;
+  base::Bytes message;  ///< with encapsulation, and the caller's first two
+};
+
+class RosServices {
+ public:
+  static constexpr std::size_t kMaxWaiting = 64;       ///< requests that wait for the run; more are refused
+  static constexpr std::uint32_t kMaxSteps = 1000000;  ///< of one request
+
+  explicit RosServices(const Scene& scene);
+
+  /// Those of this run: where robots are not simulated, those that change nothing.
+  std::span<const ServiceType> types() const { return types_; }
+
+  /// Takes one request, with encapsulation. @param writer see Caller @param requests out: what it asks of the run
+  /// @return false: it cannot be read, and is dropped
+  bool take(std::size_t service, std::span<const std::uint8_t> message, std::uint64_t writer, Requests& requests);
+  /// Called with every tick, or while the run is paused without one, when the requests above were done.
+  void observe(const base::TickRecord* tick, const RunState& state);
+  /// Gives those that came to be since the last call.
+  std::vector<Answer> answers();
+
+ private:
+  struct Handlers;
+  enum class Until { state, reset, steps };
+  /// A request, and what it waits for.
+  struct Call {
+    std::size_t service = 0;
+    Caller caller;
+    Until until = Until::state;
+    bool paused = false;      ///< the state that it wants
+    std::uint32_t steps = 0;  ///< that are left
+  };
+
+  record::CdrWriter begin_answer(const Call& call);
+  /// Answers with a simulation_interfaces/Result, or a success and a message of std_srvs.
+  void add_result(const Call& call, std::uint8_t code, std::string_view message = {});
+  bool wait(const Call& call);  ///< @return true
+  /// @param ticked a tick was made, which no call before this one has counted; false once it is counted
+  /// @return whether it waits no more
+  bool finish(Call& call, bool& ticked, bool began_again);
+
+  const Scene scene_;
+  std::vector<ServiceType> types_;
+  std::vector<Call> waiting_;
+  std::vector<Answer> answers_;
+  RunState state_;
+  bool stopped_ = false;              ///< paused at the begin, by STATE_STOPPED
+  std::int64_t time_ = 0;             ///< [ns] of the last tick
+  std::vector<base::Report> movers_;  ///< by row, as of the last tick
+};
+
+}  // namespace sf::bridges
