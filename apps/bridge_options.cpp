@@ -1,6 +1,7 @@
 #include "apps/bridge_options.h"
 
 #include "apps/text.h"
+#include "netio/bridges/ros2_bridge.h"
 
 namespace sf::apps {
 
@@ -9,10 +10,14 @@ LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world
   if (!options.any()) return;
   info_ = scenarios::run_info(world, sensor_set, settings);
   record::name_frames(info_);
-  [[maybe_unused]] const bridges::Scene scene{world, sensor_set, info_, simulated};
+  const bridges::Scene scene{world, sensor_set, info_, simulated};
+  if (options.ros2) bridges_.add(std::make_unique<bridges::Ros2Bridge>(bridges::ros2_options(*options.ros2), scene));
   for (const std::string& line : bridges_.describe()) print_message("{}", line);
 }
 
-void LiveBridges::write(const base::TickRecord& record) { bridges_.publish(record, {}); }
+void LiveBridges::write(const base::TickRecord& record) {
+  bridges_.take(ignored_);  // questions are answered, while nothing is changed
+  bridges_.publish(record, {});
+}
 
 }  // namespace sf::apps

@@ -26,6 +26,7 @@ class LiveBridges : public base::Sink {
  private:
   record::RunInfo info_;
   bridges::Bridges bridges_;
+  bridges::Requests ignored_;
 };
 
 }  // namespace sf::apps

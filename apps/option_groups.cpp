@@ -9,6 +9,7 @@
 #include "apps/text.h"
 #include "base/installation.h"
 #include "control/own_controllers.h"
+#include "netio/bridges/dds.h"
 #include "sensors/accuracy.h"
 
 namespace sf::apps {
@@ -205,7 +206,13 @@ void add_ports(CLI::App& app, PortOptions& o) {
   add_wire(app, o);
 }
 
-void add_bridges(CLI::App&, BridgeOptions&) {}
+void add_bridges(CLI::App& app, BridgeOptions& o) {
+  app.add_option("--ros2", o.ros2, "A node of ROS 2 in that domain (default: ROS_DOMAIN_ID, or 0)")
+      ->expected(0, 1)
+      ->check(whole(0, bridges::kDdsMaxDomain))
+      ->type_name("[DOMAIN]")
+      ->group("Bridges");
+}
 
 void add_threads(CLI::App& app, ThreadsOption& o) {
   app.add_option("--threads", o.threads, "Threads of the host (0: all); readings do not depend on it")

@@ -197,7 +197,8 @@ struct ExplainOptions : WorldOptions, JsonOption, DeviceOption, CloneOptions, Th
 
 /// Connections to other programs (netio/bridges); each is an address, or a number, as its option's help says.
 struct BridgeOptions {
-  bool any() const { return false; }
+  std::optional<std::string> ros2;  ///< domain; empty: that of the environment, or 0
+  bool any() const { return ros2.has_value(); }
 };
 
 struct RunOptions : WorldOptions,
