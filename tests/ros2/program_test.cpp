@@ -1,0 +1,97 @@
+// The program with --ros2, in a process of its own, and Fast DDS in this one.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+
+#include "tests/apps/program.h"
+#include "tests/ros2/fast_peer.h"
+
+namespace sf::ros2 {
+namespace {
+
+std::string domain_of_program() { return std::to_string(1 + (static_cast<unsigned>(getpid()) + 115) % 230); }
+
+const Environment kHere{{"ROS_LOCALHOST_ONLY", "1"}};
+
+TEST(Ros2Program, ARunIsSeenDrivenAndPaused) {
+  const std::string domain = domain_of_program();
+  Program run({"run", our_world("rooms.world"), "--ros2", domain}, kHere);
+  ASSERT_TRUE(run.says("node /sensorfarm in domain " + domain + ", on this machine")) << run.err();
+  FastPeer peer(static_cast<std::uint32_t>(std::stoul(domain)));
+  ASSERT_TRUE(peer.wait([&] { return !peer.endpoints().empty(); }));
+  const auto topic = [&](const std::string& ending) {
+    for (const Endpoint& one : peer.endpoints())
+      if (one.topic.ends_with(ending)) return one.topic;
+    return std::string();
+  };
+  ASSERT_TRUE(peer.wait([&] { return !topic("/scan").empty() && !topic("/cmd_vel").empty(); }));
+  const std::size_t scans = peer.subscribe(topic("/scan"), "sensor_msgs::msg::dds_::LaserScan_", false, false);
+  const std::size_t clock = peer.subscribe("rt/clock", "rosgraph_msgs::msg::dds_::Clock_", false, false);
+  const std::string commands = topic("/cmd_vel");
+  const std::size_t odometry =
+      peer.subscribe(commands.substr(0, commands.rfind('/')) + "/odom", "nav_msgs::msg::dds_::Odometry_", false, false);
+  const std::size_t drive = peer.advertise(commands, "geometry_msgs::msg::dds_::Twist_");
+  EXPECT_TRUE(peer.wait([&] { return !peer.messages(scans).empty() && !peer.messages(clock).empty(); }));
+  EXPECT_TRUE(decode_scan(peer.messages(scans).front()));
+  EXPECT_TRUE(peer.wait([&] {
+    peer.send(drive, encode_twist(0.0, 0.0, 0.125));
+    const auto messages = peer.messages(odometry);
+    const auto last = messages.empty() ? std::nullopt : decode_odometry(messages.back());
+    return last && std::abs(last->velocity[5] - 0.125) < 1e-9;
+  }));
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait().code, 0);
+}
+
+TEST(Ros2Program, AServiceAnswersQuestions) {
+  const std::string domain = domain_of_program();
+  Program serve({"serve", our_world("rooms.world"), "--port", "0", "--ros2", domain}, kHere);
+  ASSERT_TRUE(serve.says("node /sensorfarm")) << serve.err();
+  FastPeer peer(static_cast<std::uint32_t>(std::stoul(domain)));
+  const std::size_t ask =
+      peer.advertise("rq/get_simulation_stateRequest", "simulation_interfaces::srv::dds_::GetSimulationState_Request_");
+  const std::size_t answers =
+      peer.subscribe("rr/get_simulation_stateReply", "simulation_interfaces::srv::dds_::GetSimulationState_Response_");
+  ASSERT_TRUE(peer.wait([&] { return peer.matched_writer(ask) && peer.matched_reader(answers); }));
+  std::int64_t calls = 0;
+  EXPECT_TRUE(peer.wait([&] {
+    peer.send(ask, encode_request(17, ++calls, {0}));
+    return !peer.messages(answers).empty();
+  }));
+  for (const Endpoint& one : peer.endpoints())
+    EXPECT_EQ(one.topic.find("cmd_vel"), std::string::npos) << "robots of a service live elsewhere";
+  serve.signal(SIGINT);
+  EXPECT_EQ(serve.wait().code, 0);
+}
+
+TEST(Ros2Program, SaysInOneLineWhyItCannot) {
+  const std::string world = our_world("rooms.world");
+  const auto refusal = [&](const Words& words, const Environment& environment) {
+    Words all{"run", world, "--duration", "0.1"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Outcome outcome = run_program(all, environment);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_NE(refusal({"--ros2", "233"}, {}).find("from 0 to 232"), std::string::npos);
+  EXPECT_NE(refusal({"--ros2"}, {{"ROS_DOMAIN_ID", "home"}}).find("ROS_DOMAIN_ID 'home'"), std::string::npos);
+}
+
+TEST(Ros2Program, WithoutThePlugInSaysWhatIsMissing) {
+  const Folder folder;
+  std::filesystem::copy_file(SF_PROGRAM, folder.path("alone"));
+  setenv("SENSORFARM_PROGRAM", folder.path("alone").c_str(), 1);
+  const Outcome outcome = run_program({"run", our_world("rooms.world"), "--ros2", "--duration", "0.1"});
+  unsetenv("SENSORFARM_PROGRAM");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  EXPECT_NE(outcome.err.find("Cyclone DDS 0.10 installed"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace sf::ros2
