@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "netio/endpoint.h"
+#include "netio/socket.h"
 
 namespace sf::netio {
 
@@ -22,6 +23,11 @@ inline sockaddr_in to_posix(const Endpoint& endpoint) {
 }
 
 inline Endpoint from_posix(const sockaddr_in& posix) { return {ntohl(posix.sin_addr.s_addr), ntohs(posix.sin_port)}; }
+
+/// @param protocol "UDP" or "TCP", for errors
+/// @throws PortInUse
+/// @throws base::InputError when the address is not this machine's
+void bind_socket(const Socket& socket, const Endpoint& endpoint, const char* protocol);
 
 inline std::string error_text(int error) { return std::generic_category().message(error); }
 

@@ -43,19 +43,23 @@ Socket::~Socket() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
+void bind_socket(const Socket& socket, const Endpoint& endpoint, const char* protocol) {
+  const sockaddr_in address = to_posix(endpoint);
+  if (bind(socket.descriptor(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return;
+  const int error = errno;
+  const std::string what =
+      std::string("cannot bind ") + protocol + " " + text(endpoint) + ": " + error_text(error) + "; " + remedy(error);
+  if (error == EADDRINUSE) throw PortInUse(what);
+  throw base::InputError(what);
+}
+
 Socket open_udp(const Endpoint& endpoint, const SocketBuffers& buffers) {
   Socket opened(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (opened.descriptor() < 0) {
     throw base::InputError("no UDP socket for " + text(endpoint) + ": " + error_text(errno) +
                            "; raise `ulimit -n`, or use fewer ports");
   }
-  const sockaddr_in address = to_posix(endpoint);
-  if (bind(opened.descriptor(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    const int error = errno;
-    const std::string what = "cannot bind UDP " + text(endpoint) + ": " + error_text(error) + "; " + remedy(error);
-    if (error == EADDRINUSE) throw PortInUse(what);
-    throw base::InputError(what);
-  }
+  bind_socket(opened, endpoint, "UDP");
   ask_buffer(opened.descriptor(), SO_RCVBUFFORCE, SO_RCVBUF, buffers.receive);
   ask_buffer(opened.descriptor(), SO_SNDBUFFORCE, SO_SNDBUF, buffers.send);
   return opened;
