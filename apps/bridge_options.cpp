@@ -1,7 +1,9 @@
 #include "apps/bridge_options.h"
 
+#include "apps/address.h"
 #include "apps/text.h"
 #include "netio/bridges/ros2_bridge.h"
+#include "netio/bridges/player_bridge.h"
 
 namespace sf::apps {
 
@@ -12,6 +14,8 @@ LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world
   record::name_frames(info_);
   const bridges::Scene scene{world, sensor_set, info_, simulated};
   if (options.ros2) bridges_.add(std::make_unique<bridges::Ros2Bridge>(bridges::ros2_options(*options.ros2), scene));
+  if (!options.player.empty())
+    bridges_.add(std::make_unique<bridges::PlayerBridge>(scene, read_own_address(options.player, "--player")));
   for (const std::string& line : bridges_.describe()) print_message("{}", line);
 }
 

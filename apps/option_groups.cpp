@@ -212,6 +212,13 @@ void add_bridges(CLI::App& app, BridgeOptions& o) {
       ->check(whole(0, bridges::kDdsMaxDomain))
       ->type_name("[DOMAIN]")
       ->group("Bridges");
+  app.add_option("--player", o.player,
+                 "Player server for clients of Player, all robots at this port, and robot K alone K - 1 ports on "
+                 "(default: 127.0.0.1:6665; 0: any free ones)")
+      ->expected(0, 1)
+      ->default_str("6665")
+      ->type_name("[HOST:]PORT")
+      ->group(kBridgeGroup);
 }
 
 void add_threads(CLI::App& app, ThreadsOption& o) {

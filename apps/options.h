@@ -199,6 +199,8 @@ struct ExplainOptions : WorldOptions, JsonOption, DeviceOption, CloneOptions, Th
 struct BridgeOptions {
   std::optional<std::string> ros2;  ///< domain; empty: that of the environment, or 0
   bool any() const { return ros2.has_value(); }
+  std::string player;  ///< [HOST:]PORT of a Player server; empty: none
+  bool any() const { return !player.empty(); }
 };
 
 struct RunOptions : WorldOptions,
