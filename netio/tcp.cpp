@@ -94,9 +94,11 @@ std::span<const std::uint64_t> SocketWait::wait() {
   const int count = epoll_wait(epoll_.descriptor(), events.data(), static_cast<int>(events.size()), -1);
   for (int i = 0; i < count; ++i) ready_.push_back(events[static_cast<std::size_t>(i)].data.u64);
   std::uint64_t ignored = 0;
-  if (std::find(ready_.begin(), ready_.end(), kWoken) != ready_.end())
-    while (read(event_.descriptor(), &ignored, sizeof ignored) > 0) {
-    }
+  const auto woken = std::find(ready_.begin(), ready_.end(), kWoken);
+  if (woken == ready_.end()) return ready_;
+  std::iter_swap(woken, ready_.begin());
+  while (read(event_.descriptor(), &ignored, sizeof ignored) > 0) {
+  }
   return ready_;
 }
 

@@ -40,7 +40,7 @@ class SocketWait {
   /// Keys of sockets that can be read (or written, where asked for), or have ended. Waits for at least one; valid until
   /// the next call.
   std::span<const std::uint64_t> wait();
-  /// Ends a wait with kWoken. From any thread.
+  /// Ends a wait with kWoken, ahead of the sockets' keys. From any thread.
   void wake();
 
  private:
