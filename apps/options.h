@@ -243,6 +243,7 @@ struct ServeOptions : WorldOptions,
   std::uint32_t wait_for = 1;              ///< robots that are subscribed before the first tick
   std::uint16_t spat = 0;                  ///< port for SPaT; 0: none is heard
   server::StaleLights stale_lights = server::StaleLights::dark;
+  std::string mirror;  ///< "host:port" of an observer of all readings; empty: none
 };
 
 struct RobotOptions : WorldOptions,
@@ -349,6 +350,7 @@ struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption, BindOpt
   std::string overlay;                                      ///< folder of pictures, or video; empty: none
   std::uint32_t every = 1;                                  ///< image of each camera that is drawn over
   std::string world;                                        ///< drawn over the pictures; empty: none
+  std::uint16_t readings = 0;                               ///< port for mirrored readings; 0: none are drawn
 };
 
 struct CalibrateOptions {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "apps/address.h"
 #include "apps/automatic_accuracy.h"
 #include "apps/bridge_options.h"
 #include "apps/commands.h"
@@ -29,6 +30,14 @@ namespace sf::apps {
 
 namespace {
 
+std::optional<netio::Endpoint> mirror_of(const ServeOptions& options) {
+  if (options.mirror.empty()) return std::nullopt;
+  if (options.wire == sensors::WireFormat::thesis)
+    throw base::InputError("--mirror: the thesis' packets do not say whose readings they are; use `--wire farm`");
+  netio::AddressBook book;
+  return read_address(book, options.mirror, "--mirror");
+}
+
 server::ServiceOptions service_options(const ServeOptions& options, const world::World& world) {
   server::ServiceOptions service{.rate = options.rate, .seed = options.seed, .no_return_inf = options.no_return_inf};
   service.receiver = {.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
@@ -38,6 +47,7 @@ server::ServiceOptions service_options(const ServeOptions& options, const world:
   require_signable(service.receiver.peers, options.wire);
   if (options.spat > 0) service.spat = netio::Endpoint{service.receiver.bind.address, options.spat};
   service.stale_lights = options.stale_lights;
+  service.mirror = mirror_of(options);
   server::StateFilterOptions& filter = service.receiver.filter;
   filter.enabled = options.filter;
   filter.clock.source = options.clock;

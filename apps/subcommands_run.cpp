@@ -110,8 +110,9 @@ void refuse_with_lockstep(const CLI::App& sub) {
     const std::string name = option->get_name();
     const bool of_ports =
         (name != "--port" && name.ends_with("-port")) || name == "--ports-per-robot" || name == "--wire";
-    if (option->count() > 0 && (of_ports || name == "--rate" || name == "--radio" || name == "--forget" ||
-                                name == "--filter" || name == "--stale-after" || option->get_group() == kBridgeGroup))
+    if (option->count() > 0 &&
+        (of_ports || name == "--rate" || name == "--radio" || name == "--forget" || name == "--mirror" ||
+         name == "--filter" || name == "--stale-after" || option->get_group() == kBridgeGroup))
       throw CLI::ValidationError(name, "does not go with --lockstep");
   }
 }
@@ -169,6 +170,10 @@ void add_serve(CLI::App& app, Call& call) {
   add_peers(*sub, o);
   add_lockstep(*sub, o);
   add_filter(*sub, o);
+  sub->add_option("--mirror", o.mirror,
+                  "Address of an observer that gets a copy of every packet of a reading (`vps --readings`)")
+      ->check(not_empty("HOST:PORT"))
+      ->type_name("HOST:PORT");
   sub->add_option("--spat", o.spat,
                   "UDP port on which to listen for SPaT of traffic lights, which replace the world's plans, as V2I at "
                   "the farm's port do")

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/error.h"
 #include "netio/packets.h"
 
 namespace sf::server {
@@ -16,13 +17,15 @@ netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set) {
 }
 
 ReadingPublisher::ReadingPublisher(const world::World& world, const sensors::SensorSet& sensor_set, StreamLayout layout,
-                                   netio::Outbox outbox)
+                                   netio::Outbox outbox, std::optional<netio::Endpoint> mirror)
     : world_(world),
       sensor_set_(sensor_set),
       layout_(std::move(layout)),
       outbox_(std::move(outbox)),
+      mirror_(mirror),
       thread_pool_(sensor_set.count() > kLargeFleet ? 0 : 1),
       memory_(thread_pool_.threads()) {
+  SF_CHECK(!mirror_ || layout_.wire == sensors::WireFormat::farm, "copies of packets without headers");
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (const sensors::SensorSpec& row : group.rows)
       streams_[group.type->id].push_back(
@@ -40,7 +43,7 @@ ReadingPublisher::Job ReadingPublisher::make_job(const AddressedReading& address
   return {addressed, group.type, &row, &stream, stream.sent, 0, 0, true};
 }
 
-/// @return how many parts could not be made; each of the others is put: (part, endpoint, bytes).
+/// @return how many parts could not be made; each of the others is put: (datagram, endpoint, bytes).
 template <class Put>
 std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put) const {
   const base::ReadingBlock& reading = *job.addressed.reading;
@@ -68,6 +71,7 @@ std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put
       const netio::PacketSigner* signer = job.addressed.signer;
       if (signer != nullptr) netio::sign(memory.packet, signer->key(), job.counter + part);
       put(part, netio::Endpoint{job.addressed.address, port}, memory.packet);
+      if (mirror_) put(job.stream->parts + part, *mirror_, memory.packet);
     }
   }
   return failed;
@@ -79,14 +83,14 @@ void ReadingPublisher::queue(std::span<const AddressedReading> readings) {
   for (const AddressedReading& addressed : readings) {
     Job job = make_job(addressed);
     if (job.stream->parts == 0) continue;
-    if (datagrams + job.stream->parts > outbox_.capacity()) {
+    if (datagrams + datagrams_of(*job.stream) > outbox_.capacity()) {
       encode_all();
       datagrams = 0;
     }
     job.place = datagrams;
     // Before the threads begin: signatures do not depend on their order.
     if (job.addressed.signer != nullptr) job.counter = job.addressed.signer->take(job.stream->parts);
-    datagrams += job.stream->parts;
+    datagrams += datagrams_of(*job.stream);
     ++job.stream->sent;
     jobs_.push_back(job);
   }
@@ -96,7 +100,7 @@ void ReadingPublisher::queue(std::span<const AddressedReading> readings) {
 /// All at once; where a part is not numbers, one by one, since what is not sent is not numbered.
 void ReadingPublisher::encode_all() {
   if (jobs_.empty()) return;
-  const std::size_t datagrams = jobs_.back().place + jobs_.back().stream->parts;
+  const std::size_t datagrams = jobs_.back().place + datagrams_of(*jobs_.back().stream);
   const bool fits = datagrams <= outbox_.capacity();
   const std::size_t first = fits ? outbox_.claim(datagrams) : 0;
   if (fits)

@@ -2,6 +2,7 @@
 // Readings to robots: what leaves, in which form.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,8 +39,10 @@ netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set);
 /// World and roster must outlive it.
 class ReadingPublisher {
  public:
+  /// @param mirror gets a copy of each packet as well, byte for byte; not with the thesis' packets, which do not say
+  /// whose they are
   ReadingPublisher(const world::World& world, const sensors::SensorSet& sensor_set, StreamLayout layout,
-                   netio::Outbox outbox);
+                   netio::Outbox outbox, std::optional<netio::Endpoint> mirror = std::nullopt);
 
   /// Queues each reading's packets to its address, at its sensor's port; none where the layout has none of its
   /// sensor's.
@@ -68,6 +71,8 @@ class ReadingPublisher {
     base::Bytes payload, packet;
   };
   Job make_job(const AddressedReading& addressed);
+  /// Of a reading, copies included.
+  std::size_t datagrams_of(const Stream& stream) const { return stream.parts * (mirror_ ? 2u : 1u); }
   void encode_all();
   void encode_and_queue(Job& job);
   template <class Put>
@@ -77,6 +82,7 @@ class ReadingPublisher {
   const sensors::SensorSet& sensor_set_;
   StreamLayout layout_;
   netio::Outbox outbox_;
+  std::optional<netio::Endpoint> mirror_;
   base::ThreadPool thread_pool_;
   std::map<std::uint8_t, std::vector<Stream>> streams_;  ///< by type, per row of its group
   std::vector<Job> jobs_;

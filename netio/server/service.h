@@ -35,6 +35,7 @@ struct ServiceOptions {
   /// Lights of the world; peers are those of `receiver`.
   std::optional<netio::Endpoint> spat;  ///< where to listen for SPaT; nullopt: nowhere
   StaleLights stale_lights = StaleLights::dark;
+  std::optional<netio::Endpoint> mirror;  ///< where a copy of each reading's packets goes; nullopt: nowhere
 };
 
 struct ServiceStats {

@@ -149,6 +149,37 @@ TEST(ReadingPublisher, EachPartHasACounterOfItsOwn) {
   EXPECT_EQ(signer.take(), 9u) << "as many as datagrams";
 }
 
+/// Boundary: a reading of two parts, and one that is not numbers, which is encoded one by one.
+TEST(ReadingPublisher, AMirrorGetsACopyOfEachPacket) {
+  const world::World world = fleet(2, 400);
+  const sensors::SensorSet sensor_set(world);
+  const netio::Socket ears = netio::open_udp({netio::kLoopback, 0}), mirror = netio::open_udp({netio::kLoopback, 0});
+  StreamLayout layout;
+  layout.stride = 0;
+  layout.bases[sensors::kLaser] = netio::bound_endpoint(ears).port;
+  ReadingPublisher publisher(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)),
+                             netio::bound_endpoint(mirror));
+  netio::PacketSigner signer(netio::SigningKey{1}, 5);
+  std::vector<double> ranges(400, 1.0), broken(400, 2.0);
+  broken[399] = NAN;
+  base::ReadingBlock whole, half;
+  whole.type = half.type = sensors::kLaser;
+  half.mover = 1;
+  whole.values = ranges, half.values = broken;
+  for (const std::size_t readings : {1, 2}) {
+    const std::vector<AddressedReading> addressed{{&whole, netio::kLoopback, {7, 9}, &signer},
+                                                  {&half, netio::kLoopback, {7, 9}, nullptr}};
+    publisher.queue(std::span(addressed).first(readings));
+    publisher.flush();
+  }
+  netio::ReceiveBatch sent(16), copied(16);
+  ASSERT_EQ(sent.fill(ears), 5u);
+  ASSERT_EQ(copied.fill(mirror), 5u);
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_TRUE(std::ranges::equal(sent.bytes(i), copied.bytes(i))) << i << ": signatures too";
+  EXPECT_EQ(publisher.counts().packets.sent, 10u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Fleets, PostTest, testing::Values(3u, 256u, 257u, 2500u));
 
 }  // namespace
