@@ -31,29 +31,29 @@ void add_rendered(CLI::App& app, VpsOptions& o) {
       ->type_name("N")
       ->needs(rendered)
       ->group(kGroup);
-  auto* robots = app.add_option("--robots", o.robots,
-                                "Render images, in real time, of robots that report their true states to this UDP port "
-                                "(`sensorfarm robot --truth`)")
-                     ->check(whole(1, 65535))
-                     ->type_name("PORT")
-                     ->excludes(rendered)
-                     ->group(kGroup);
-  app.add_option("--bind", o.bind, "Address to listen on for --robots (0.0.0.0: every interface)")
-      ->check(not_empty("an address"))
-      ->type_name("ADDR")
-      ->capture_default_str()
-      ->needs(robots)
+  app.add_option("--robots", o.robots,
+                 "Render images, in real time, of robots that report their true states to this UDP port "
+                 "(`sensorfarm robot --truth`)")
+      ->check(whole(1, 65535))
+      ->type_name("PORT")
+      ->excludes(rendered)
       ->group(kGroup);
+}
+
+void refuse_bind_alone(const CLI::App& sub) {
+  if (sub.count("--bind") > 0 && sub.count("--robots") + sub.count("--readings") == 0)
+    throw CLI::ValidationError("--bind", "requires --robots or --readings");
 }
 
 void add_vps(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "vps", "Virtual positioning system: find tags in the images of overhead cameras and send a TAG packet for each");
-  auto& o = add_command(*sub, call, vps);
+  auto& o = add_command(*sub, call, vps, [sub] { refuse_bind_alone(*sub); });
   add_examples(*sub, {"worlds/testbed.toml --rendered 30 --images 20",
                       "lab.toml --input north=/dev/video0 --input south=/dev/video1 --send 192.168.1.5:9000",
                       "lab.toml --input north=photographs --overlay out/pictures",
-                      "worlds/testbed.toml --robots 9200 --send 127.0.0.1:9100"});
+                      "worlds/testbed.toml --robots 9200 --send 127.0.0.1:9100",
+                      "lab.toml --overlay out/pictures --world lab.world --readings 9300"});
   sub->add_option("testbed", o.testbed, "Testbed file: cameras and tags (docs/vps.md)")
       ->required()
       ->transform(base::installed_file)
@@ -100,6 +100,14 @@ void add_vps(CLI::App& app, Call& call) {
       ->check(not_empty("a world"))
       ->needs(overlay)
       ->type_name("WORLD");
+  sub->add_option(
+         "--readings", o.readings,
+         "UDP port for readings of the world's robots (`serve --mirror`): their beams and lane edges are drawn "
+         "from where the cameras see their tags")
+      ->check(whole(1, 65535))
+      ->needs("--world")
+      ->type_name("PORT");
+  add_bind(*sub, o);
 }
 
 void add_calibrate(CLI::App& app, Call& call) {

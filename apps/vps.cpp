@@ -14,6 +14,7 @@
 #include "apps/stop_signals.h"
 #include "apps/tag_sender.h"
 #include "apps/text.h"
+#include "apps/vps_readings.h"
 #include "apps/vps_report.h"
 #include "base/elapsed.h"
 #include "base/error.h"
@@ -68,21 +69,26 @@ class Overlay {
       open_videos();
     else
       scenarios::make_folder(path_);
+    if (options.readings > 0)
+      readings_.emplace(options.world, netio::Endpoint{netio::resolve(options.bind), options.readings}, testbed);
     if (options.world.empty()) return;
-    const world::World world = world::load_world(options.world);
+    const world::World world = readings_ ? readings_->world() : world::load_world(options.world);
     for (const vision::TestbedCamera& each : testbed.cameras)
       world_marks_.push_back(vision::world_marks(each.camera, world));
   }
 
-  void write(const vision::Positioning& positioning, std::span<const vision::Frame> frames, std::uint64_t number) {
+  void write(const vision::Positioning& positioning, std::span<const vision::TrackedTag> tags,
+             std::span<const vision::Frame> frames, std::uint64_t number) {
     if (path_.empty() || number % every_ != 0 || pictures_ > kMostPictures) return;
     if (pictures_++ == kMostPictures)
       return print_message("--overlay ends after {} pictures of each camera; --every N draws fewer", kMostPictures);
+    const auto lines = readings_ ? readings_->lines(tags) : std::span<const vision::PlaneLine>{};
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (frames[i].image.pixels.empty()) continue;
       const vision::Camera& camera = testbed_.cameras[i].camera;
-      std::vector<vision::Mark> marks = vision::tag_marks(camera, positioning.sightings(i));
-      if (!world_marks_.empty()) marks.insert(marks.begin(), world_marks_[i].begin(), world_marks_[i].end());
+      std::vector<vision::Mark> marks = world_marks_.empty() ? std::vector<vision::Mark>() : world_marks_[i];
+      for (const auto& more : {vision::line_marks(camera, lines), vision::tag_marks(camera, positioning.sightings(i))})
+        marks.insert(marks.end(), more.begin(), more.end());
       const vision::Image picture = vision::draw_over(frames[i].image, marks);
       if (!videos_.empty())
         videos_[i]->write(picture);
@@ -108,6 +114,7 @@ class Overlay {
   std::uint32_t every_;
   std::uint64_t pictures_ = 0;
   std::vector<std::unique_ptr<vision::VideoFile>> videos_;
+  std::optional<SeenReadings> readings_;
   std::vector<std::vector<vision::Mark>> world_marks_;  ///< of each camera
 };
 
@@ -173,7 +180,7 @@ int vps(const VpsOptions& options) {
     const auto tags = process(frames, positioning, report);
     sender.send(tags, epoch);
     track.write(tags);
-    overlay.write(positioning, frames, n);
+    overlay.write(positioning, tags, frames, n);
     if (meter) meter->add(frames[0].time, tags);
   }
   report.counts = positioning.counts();

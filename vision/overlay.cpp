@@ -140,21 +140,25 @@ std::vector<Mark> tag_marks(const Camera& camera, std::span<const Sighting> sigh
   return marks;
 }
 
-std::vector<Mark> world_marks(const Camera& camera, const world::World& world) {
+std::vector<Mark> line_marks(const Camera& camera, std::span<const PlaneLine> lines) {
   std::vector<Mark> marks;
-  std::map<double, base::Box> boxes;  // by height, which many walls share
-  const auto add = [&](std::span<const glm::dvec2> line, double z, Color color, int width) {
-    const auto [box, is_new] = boxes.try_emplace(z);
-    if (is_new) box->second = seen_box(camera, z);
-    LineMarks(camera, z, box->second, {{}, "", color, width}, marks).add(line);
-  };
-  for (const world::LaneMarking& marking : world.lane_markings) add(marking.line, 0.0, kMarking, 2);
-  for (const world::Segment& wall : world.walls) {
-    const std::array<glm::dvec2, 2> line{wall.a, wall.b};
-    add(line, wall.z_min, kWall, 1);
-    add(line, wall.z_max, kWall, 2);
+  std::map<double, base::Box> boxes;  // by height, which many lines share
+  for (const PlaneLine& line : lines) {
+    const auto [box, is_new] = boxes.try_emplace(line.z);
+    if (is_new) box->second = seen_box(camera, line.z);
+    LineMarks(camera, line.z, box->second, {{}, "", line.color, line.width}, marks).add(line.points);
   }
   return marks;
+}
+
+std::vector<Mark> world_marks(const Camera& camera, const world::World& world) {
+  std::vector<PlaneLine> lines;
+  for (const world::LaneMarking& marking : world.lane_markings) lines.push_back({marking.line, 0.0, kMarking, 2});
+  for (const world::Segment& wall : world.walls) {
+    lines.push_back({{wall.a, wall.b}, wall.z_min, kWall, 1});
+    lines.push_back({{wall.a, wall.b}, wall.z_max, kWall, 2});
+  }
+  return line_marks(camera, lines);
 }
 
 Image draw_over(const Image& grey, const std::vector<Mark>& marks) {

@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 11> kCameraKeys{"name",       "size",    
                                                        "distortion", "position", "orientation", "rate",
                                                        "exposure",   "readout",  "source"};
 constexpr std::array<std::string_view, 3> kSurveyKeys{"id", "position", "heading"};
-constexpr std::array<std::string_view, 5> kTagKeys{"id", "side", "height", "offset", "address"};
+constexpr std::array<std::string_view, 6> kTagKeys{"id", "side", "height", "offset", "address", "robot"};
 
 const TomlNode& required(const TomlReader& reader, const TomlNode& table, std::string_view key,
                          std::string_view expected) {
@@ -128,6 +128,8 @@ TagMount read_tag(const TomlReader& reader, const TomlNode& table, const TagMoun
   std::array<double, 3> offset{};
   reader.numbers(table, "offset", offset, 1e3, "[x, y, yaw] of the tag on its object in metres and degrees");
   tag.X_OT = {offset[0], offset[1], 0.0, offset[2] * kDegree};
+  if (world::find(table, "robot") != nullptr)
+    tag.robot = static_cast<std::uint32_t>(reader.whole(table, "robot", 0, 65534));
   return tag;
 }
 

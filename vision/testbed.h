@@ -24,6 +24,7 @@ struct TagMount {
   double height = 0.0;  ///< [m] of the tag above the world's z = 0
   base::Pose X_OT;      ///< tag in the frame of its object, whose pose is sent; default: the tag's own pose is sent
   std::string address;  ///< "host:port" that its packets go to; empty: the default
+  std::optional<std::uint32_t> robot;  ///< id of the robot that carries it; nullopt: the tag's id
 };
 
 /// A tag at a known place, by which cameras are placed (vision/placement.h). It lies flat.

@@ -11,9 +11,12 @@
 #include <thread>
 
 #include "base/elapsed.h"
+#include "netio/outbox.h"
 #include "netio/packets.h"
 #include "netio/signature.h"
 #include "netio/socket.h"
+#include "sensors/laser.h"
+#include "sensors/sensor_set.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/viz/png.h"
@@ -36,6 +39,24 @@ constexpr const char* kTestbed =
     "[[tag]]\n"
     "id = 2\n"
     "offset = [0.1, 0, 90]\n";
+
+/// The reading of a laser whose beams all end 0.3 m away, as `serve --mirror` sends it.
+base::Bytes mirrored_scan(const std::string& world_file, std::uint32_t sequence) {
+  const world::World world = world::load_world(world_file, {.sensors = sensors::world_file_words()});
+  const sensors::SensorSet sensor_set(world);
+  const std::vector<double> ranges(31, 0.3);
+  base::ReadingBlock block;
+  block.type = sensors::kLaser, block.values = ranges;
+  netio::Header header;
+  header.robot = static_cast<std::uint16_t>(world.movers[0].id);
+  header.sequence = sequence;
+  header.time = std::int64_t{100'000'000} * sequence;
+  base::Bytes payload, packet;
+  const auto& type = *sensor_set.group(sensors::kLaser)->type;
+  const std::uint8_t kind = type.encode(sensor_set.row(block), block, sensors::WireFormat::farm, 0, payload);
+  netio::encode_reading(header, kind, payload, packet);
+  return packet;
+}
 
 }  // namespace
 
@@ -268,6 +289,25 @@ TEST(Vps, NamesWhatIsWrong) {
     EXPECT_NE(outcome.err.find(each.expected), std::string::npos) << outcome.err;
     EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
   }
+}
+
+/// Readings come over and over while it runs, so some are there when a tag is seen.
+TEST(Vps, ReadingsAreDrawnFromWhereTheTagsAreSeen) {
+  const Folder folder;
+  const std::string testbed = folder.write("t.toml", std::string(kTestbed) + "robot = 5\n");  // carries tag 2
+  const std::string world = folder.write(
+      "w.world", "position( name \"roomba5\" size [0.2 0.2 0.1] laser( samples 31 fov 180 range_max 2 ) )\n");
+  const unsigned port = free_ports(1);
+  Program vps({"vps", testbed, "--rendered", "2", "--images", "6", "--overlay", folder.path("seen"), "--world", world,
+               "--readings", std::to_string(port)});
+  netio::Outbox outbox;
+  for (std::uint32_t sequence = 0; vps.running(); ++sequence) {
+    outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, mirrored_scan(world, sequence));
+    outbox.flush();
+  }
+  const Outcome outcome = vps.wait();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  scenes::expect_painted(folder.path("seen/a-000005.png"), {{0xFFEBC846u, 100}, {0xFFFFFFFFu, 20}});  // beams, echoes
 }
 
 }  // namespace sf

@@ -38,6 +38,16 @@ TEST(Overlay, MarksWallsWhereTheCameraProjectsThem) {
   }
 }
 
+TEST(Overlay, MarksLinesAtTheirHeightAndInTheirColour) {
+  const Camera camera = distorted_camera();
+  const std::vector<PlaneLine> lines{{{{0.0, 0.0}, {0.5, 0.5}}, 0.2, {1, 2, 3}, 4}, {{{9.0, 9.0}, {9.0, 8.0}}, 0.2}};
+  const std::vector<Mark> marks = line_marks(camera, lines);
+  ASSERT_EQ(marks.size(), 1u) << "the other is out of sight";
+  EXPECT_EQ(marks[0].points.back(), *project(camera, {0.5, 0.5, 0.2}));
+  EXPECT_EQ(marks[0].color, lines[0].color);
+  EXPECT_EQ(marks[0].width, 4);
+}
+
 TEST(Overlay, ClipsToThePicture) {
   const Camera camera = distorted_camera();
   // 5 m x 4 m are in sight: walls beside it, through it, round it, and much longer than the pieces of a mark could be.
