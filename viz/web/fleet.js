@@ -1,0 +1,101 @@
+// States of all robots: the newest, those shown on the way to them, and trails.
+
+const snapDistance = 2;  // [m] between two updates: the robot was placed
+const longestGap = 0.6;  // [s] of real time between updates that are shown as a motion
+
+export class Fleet {
+  constructor(scene) {
+    this.count = scene.movers.length;
+    const make = () => new Float64Array(this.count);
+    this.x = make(); this.y = make(); this.yaw = make();           // newest
+    this.fromX = make(); this.fromY = make(); this.fromYaw = make();
+    this.shownX = make(); this.shownY = make(); this.shownYaw = make();
+    this.absent = new Uint8Array(this.count).fill(1);
+    this.contact = new Uint8Array(this.count);
+    this.states = new Array(this.count);
+    this.tick = -1;
+    this.time = 0;
+    this.updates = 0;
+    this.length = Math.round(Math.min(400, Math.max(24, 24000 / Math.max(1, this.count))));
+    this.trail = new Float32Array(2 * this.length * this.count);
+    this.trailCount = new Uint32Array(this.count);
+    this.radius = scene.movers.map((mover) => Math.max(0.02, mover.radius));
+    this.origin = scene.origin;
+  }
+
+  /** @param message sensorfarm_msgs/msg/Fleet  @param now [s] of real time */
+  update(message, time, now) {
+    const back = time < this.time;
+    if (back) this.trailCount.fill(0);
+    const gap = this.updates > 0 && !back ? now - this.arrived : longestGap;
+    this.duration = gap < longestGap ? gap : 0;
+    this.arrived = now;
+    this.time = time;
+    this.tick = message.tick;
+    ++this.updates;
+    const seen = new Uint8Array(this.count);
+    for (const state of message.states) this.#take(state, seen);
+    for (let i = 0; i < this.count; ++i) if (!seen[i]) this.absent[i] = 1;
+  }
+
+  #take(state, seen) {
+    const i = state.mover, { x, y, yaw } = state.pose;
+    if (i >= this.count || Number.isNaN(x)) return;
+    seen[i] = 1;
+    const snap = this.absent[i] || this.duration === 0 || Math.hypot(x - this.x[i], y - this.y[i]) > snapDistance + this.radius[i];
+    this.fromX[i] = snap ? x : this.shownX[i];
+    this.fromY[i] = snap ? y : this.shownY[i];
+    this.fromYaw[i] = snap ? yaw : this.shownYaw[i];
+    this.x[i] = x; this.y[i] = y; this.yaw[i] = yaw;
+    this.absent[i] = 0;
+    this.contact[i] = state.contact ? 1 : 0;
+    this.states[i] = state;
+    this.#extendTrail(i, x - this.origin[0], y - this.origin[1]);
+  }
+
+  #extendTrail(i, x, y) {
+    const base = 2 * this.length * i, count = this.trailCount[i];
+    if (count > 0) {
+      const last = base + 2 * ((count - 1) % this.length);
+      const moved = Math.hypot(this.trail[last] - x, this.trail[last + 1] - y);
+      if (moved < 0.4 * this.radius[i]) return;
+      if (moved > snapDistance + this.radius[i]) this.trailCount[i] = 0;
+    }
+    const at = base + 2 * (this.trailCount[i] % this.length);
+    this.trail[at] = x;
+    this.trail[at + 1] = y;
+    ++this.trailCount[i];
+  }
+
+  /** Calls `add(x, y, first)` from the oldest point on; coordinates from the scene's origin. */
+  eachTrailPoint(i, add) {
+    const count = this.trailCount[i], kept = Math.min(count, this.length), base = 2 * this.length * i;
+    for (let k = count - kept; k < count; ++k) {
+      const at = base + 2 * (k % this.length);
+      add(this.trail[at], this.trail[at + 1], k === count - kept);
+    }
+  }
+
+  /** Moves the shown poses on. @return true while they move */
+  animate(now) {
+    const share = this.duration > 0 ? Math.min(1, (now - this.arrived) / this.duration) : 1;
+    for (let i = 0; i < this.count; ++i) {
+      this.shownX[i] = this.fromX[i] + share * (this.x[i] - this.fromX[i]);
+      this.shownY[i] = this.fromY[i] + share * (this.y[i] - this.fromY[i]);
+      const turn = this.yaw[i] - this.fromYaw[i];
+      this.shownYaw[i] = this.fromYaw[i] + share * (turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI)));
+    }
+    return share < 1;
+  }
+
+  /** The robot nearest to a point, within `reach` [m] of its outline's circle; -1: none. */
+  pick(x, y, reach) {
+    let best = -1, least = Infinity;
+    for (let i = 0; i < this.count; ++i) {
+      if (this.absent[i]) continue;
+      const distance = Math.hypot(x - this.shownX[i], y - this.shownY[i]) - this.radius[i];
+      if (distance < reach && distance < least) { least = distance; best = i; }
+    }
+    return best;
+  }
+}

@@ -1,0 +1,446 @@
+// The page: connects, and joins the parts.
+
+import { Camera } from './camera.js';
+import { twistBytes } from './cdr.js';
+import { Drawing, drawSignal } from './draw.js';
+import { Fleet } from './fleet.js';
+import { Panel } from './panel.js';
+import { Connection } from './protocol.js';
+import { StaticLayer, loadScene } from './scene.js';
+import { MapPicture, compose } from './sensors.js';
+import { theme } from './theme.js';
+
+const $ = (id) => document.getElementById(id);
+const token = new URLSearchParams(location.search).get('token') ?? '';
+const seconds = () => performance.now() / 1000;
+
+let scene, camera, fleet, drawing, panel, connection;
+let paused = false, speed = 1, following = false, driving = false, sliding = false, dirty = true, time = 0;
+let runs = null, range = [0, 0];
+const pressed = new Set();
+
+function notice(text, lasts = 6) {
+  $('notice').textContent = text;
+  $('notice').hidden = !text;
+  clearTimeout(notice.timer);
+  if (text && lasts) notice.timer = setTimeout(() => { $('notice').hidden = true; }, 1000 * lasts);
+}
+
+function showStatus(state, text) {
+  $('status').dataset.state = state;
+  $('status').textContent = text;
+}
+
+// Time
+
+function clockText(t) {
+  const minutes = Math.floor(t / 60);
+  return minutes > 0 ? `${minutes}:${(t - 60 * minutes).toFixed(1).padStart(4, '0')} min` : `${t.toFixed(1)} s`;
+}
+
+function showTime(t) {
+  time = t;
+  $('clock').textContent = clockText(t);
+  $('at').textContent = clockText(t);
+  if (!sliding) $('slider').value = t;
+}
+
+function showPaused() {
+  $('pause-text').textContent = paused ? 'Continue' : 'Pause';
+  $('pause-icon').setAttribute('d', paused ? 'M4 2.5l9 5.5-9 5.5z' : 'M4 3h3v10H4zM9 3h3v10H9z');
+  showStatus(paused ? 'paused' : 'live', paused ? 'paused' : scene.mode === 'recording' ? 'playing' : 'live');
+}
+
+const isRecording = () => scene.mode === 'recording';
+function setPaused(value) {
+  if (scene.mode === 'service') return;
+  if (isRecording()) connection.play({ paused: value, speed, time: !value && time >= range[1] - 1e-6 ? range[0] : undefined });
+  else connection.set(['/paused', value]);
+}
+function setSpeed(value) {
+  if (isRecording()) connection.play({ paused, speed: value, time: undefined });
+  else connection.set(['/speed', value]);
+}
+function seek(t) { connection.play({ paused, speed, time: Math.min(range[1], Math.max(range[0], t)) }); }
+function step() { connection.call('/step'); }
+function reset() {
+  connection.call('/reset');
+  if (!isRecording()) setPaused(false);
+}
+
+function showParameters(values) {
+  if ('/paused' in values) paused = values['/paused'];
+  if ('/speed' in values) {
+    speed = values['/speed'];
+    const options = [...$('speed').options], known = options.find((option) => Number(option.value) === speed);
+    if (!known) $('speed').append(new Option(`${Number(speed.toFixed(3))}×`, speed));
+    $('speed').value = String(speed);
+  }
+  if ('/measured_speed' in values) $('pace').textContent = paused ? '' : `${values['/measured_speed'].toFixed(2)}× real`;
+  if ('/runs' in values) {
+    if (runs !== null && values['/runs'] !== runs) panel.clear();
+    runs = values['/runs'];
+  }
+  if (paused) $('pace').textContent = '';
+  showPaused();
+  dirty = true;
+}
+
+// Robots
+
+function topicsOf(row) { return row < 0 ? [] : scene.movers[row].sensors.map((sensor) => sensor.topic); }
+
+function select(row) {
+  if (row === drawing.selected) return;
+  for (const topic of topicsOf(drawing.selected)) connection.unsubscribe(topic);
+  stopDriving();
+  drawing.selected = row;
+  drawing.held.clear();
+  drawing.maps.clear();
+  const actions = [];
+  if (row >= 0 && scene.mode === 'run' && !scene.movers[row].tag) {
+    const drive = Object.assign(document.createElement('button'), { id: 'drive', textContent: 'Drive', title: 'Drive with the arrow keys, in place of the controller (D)', onclick: toggleDriving });
+    drive.setAttribute('aria-pressed', 'false');
+    actions.push(drive);
+  }
+  panel.last = row >= 0 ? fleet.states[row] : null;
+  panel.show(row, actions);
+  for (const sensor of row < 0 ? [] : scene.movers[row].sensors) connection.subscribe(sensor.topic, (message) => hold(row, sensor, message));
+  $('follow').disabled = row < 0;
+  if (row < 0) setFollowing(false);
+  dirty = true;
+}
+
+/** Keeps a reading with the sensor's pose when it measured: the robot has moved since. */
+function hold(row, sensor, message) {
+  const at = message.header ? message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec : fleet.time;
+  const state = fleet.states[row];
+  if (sensor.map) {
+    drawing.maps.set(sensor.topic, new MapPicture(message, sensor.map));
+  } else if (state) {
+    const late = Math.min(1, Math.max(0, fleet.time - at)), { velocity, pose } = state;
+    const robot = compose([pose.x - scene.origin[0], pose.y - scene.origin[1], pose.yaw], [-late * velocity.forward, -late * velocity.left, -late * velocity.turn]);
+    drawing.held.set(sensor.topic, { message, pose: compose(robot, sensor.pose) });
+  }
+  panel.reading(sensor.topic, message, at);
+  dirty = true;
+}
+
+function nextRobot(by) {
+  const present = scene.movers.map((_, i) => i).filter((i) => !fleet.absent[i]);
+  if (present.length === 0) return;
+  const at = present.indexOf(drawing.selected);
+  select(present[(at < 0 ? (by > 0 ? 0 : present.length - 1) : at + by + present.length) % present.length]);
+}
+
+function setFollowing(value) {
+  following = value && drawing.selected >= 0;
+  $('follow').setAttribute('aria-pressed', String(following));
+  if (following && fleet.radius[drawing.selected] * camera.scale < 8) camera.scale = 8 / fleet.radius[drawing.selected];
+  dirty = true;
+}
+
+// Driving
+
+function toggleDriving() {
+  if (driving) return stopDriving();
+  if (!$('drive')) return;
+  driving = true;
+  $('drive').setAttribute('aria-pressed', 'true');
+  notice('Arrow keys drive the robot; D or Escape ends it. Its controller does not take over again until a restart.');
+  sendDrive();
+}
+function stopDriving() {
+  if (!driving) return;
+  pressed.clear();
+  sendTwist();
+  driving = false;
+  clearTimeout(sendDrive.timer);
+  $('drive')?.setAttribute('aria-pressed', 'false');
+}
+function sendTwist() {
+  const { frame, max } = scene.movers[drawing.selected];
+  const ahead = (pressed.has('ArrowUp') ? 1 : 0) - (pressed.has('ArrowDown') ? 1 : 0), turn = (pressed.has('ArrowLeft') ? 1 : 0) - (pressed.has('ArrowRight') ? 1 : 0);
+  connection.drive(`/${frame}/cmd_vel`, twistBytes(0.7 * ahead * max[0], 0, 0.6 * turn * max[1]));
+}
+function sendDrive() {
+  if (!driving) return;
+  sendTwist();
+  sendDrive.timer = setTimeout(sendDrive, 100);
+}
+
+// View
+
+function fitAll() {
+  setFollowing(false);
+  camera.fit(scene.extent);
+  dirty = true;
+}
+
+function showScale() {
+  const length = camera.roundLength(140), bar = $('scale');
+  bar.style.width = `${length * camera.scale}px`;
+  bar.firstElementChild.textContent = length >= 1000 ? `${length / 1000} km` : length >= 1 ? `${length} m` : `${Number((length * 100).toPrecision(2))} cm`;
+}
+
+function showLegend() {
+  const items = [];
+  const swatch = (draw) => {
+    const canvas = Object.assign(document.createElement('canvas'), { width: 44, height: 28 }), c = canvas.getContext('2d');
+    c.scale(2, 2);
+    draw(c);
+    return canvas;
+  };
+  const states = [...new Set(Object.values(drawing.drawn.lights))].sort(), words = ['dark', 'red', 'yellow', 'green', 'flashing red', 'flashing yellow'];
+  for (const state of states) items.push([swatch((c) => drawSignal(c, 11, 7, 4.5, state)), `light, ${words[state]}`]);
+  const line = (color, width) => swatch((c) => { c.strokeStyle = color; c.lineWidth = width; c.moveTo(2, 7); c.lineTo(20, 7); c.stroke(); });
+  if (drawing.drawn.hits > 0) items.push([swatch((c) => { c.fillStyle = theme.view; c.fillRect(9, 5, 4, 4); }), 'echo of the laser']);
+  if (drawing.drawn.edges > 0) items.push([line(theme.lane, 3), 'lane edge as sensed']);
+  if (drawing.drawn.fields > 0) items.push([line(theme.magnetometer, 2), 'magnetic field']);
+  if (drawing.drawn.maps > 0) items.push([swatch((c) => { c.fillStyle = theme.map; c.fillRect(4, 2, 7, 10); c.fillStyle = '#cfe9f8'; c.fillRect(11, 2, 7, 10); }), 'map: occupied, free']);
+  if (drawing.drawn.contacts > 0) items.push([swatch((c) => { c.strokeStyle = theme.contact; c.lineWidth = 1.8; c.arc(11, 7, 5, 0, 7); c.moveTo(8.5, 4.5); c.lineTo(13.5, 9.5); c.moveTo(8.5, 9.5); c.lineTo(13.5, 4.5); c.stroke(); }), 'contact']);
+  const key = items.map(([, text]) => text).join();
+  if (key === showLegend.key) return;
+  showLegend.key = key;
+  $('legend').replaceChildren(...items.flatMap(([canvas, text]) => [canvas, Object.assign(document.createElement('span'), { textContent: text })]));
+}
+
+function animate() {
+  requestAnimationFrame(animate);
+  const now = seconds(), moving = fleet.animate(now);
+  if (following && drawing.selected >= 0 && !fleet.absent[drawing.selected]) {
+    camera.x = fleet.shownX[drawing.selected];
+    camera.y = fleet.shownY[drawing.selected];
+  }
+  const blinking = drawing.lights.some(({ state }) => state >= 4);
+  if (dirty || moving || blinking) {
+    dirty = false;
+    drawing.frame();
+    showScale();
+    showLegend();
+    ++counters.frames;
+  }
+  panel.draw(now, drawing.maps);
+}
+
+function openPopup(id, open = $(`${id}-list`).hidden) {
+  for (const other of ['layers', 'help']) {
+    const shown = other === id && open;
+    $(`${other}-list`).hidden = !shown;
+    $(other).setAttribute('aria-expanded', String(shown));
+  }
+  if (open) $(`${id}-list`).querySelector('input')?.focus();
+}
+
+function fillPopups() {
+  const words = { trails: 'Trails', beams: 'Beams and fields of the selected robot', maps: 'Its occupancy map', names: 'Names', lights: 'Traffic lights', contacts: 'Contacts' };
+  $('layers-list').replaceChildren(...Object.entries(words).map(([key, text]) => {
+    const box = Object.assign(document.createElement('input'), { type: 'checkbox', checked: true, onchange: () => { drawing.layers[key] = box.checked; dirty = true; } });
+    const label = document.createElement('label');
+    label.append(box, text);
+    return label;
+  }));
+  const keys = [['Space', 'pause or continue'], ['N', 'one tick'], ['Shift R', 'restart'], ['1 … 4', 'speed 1/4, 1, 4, max'], ['Arrows', 'pan; while driving: drive'], ['+ −', 'zoom'], ['0', 'show all'], ['[ ]', 'previous, next robot'], ['F', 'follow it'], ['D', 'drive it'], ['/', 'find a robot'], ['L', 'layers'], [', .', 'a recording: one second back, on'], ['Esc', 'close, end driving, select none']];
+  const table = document.createElement('table');
+  for (const [key, text] of keys) {
+    const row = table.insertRow();
+    row.insertCell().append(Object.assign(document.createElement('kbd'), { textContent: key }));
+    row.insertCell().textContent = text;
+  }
+  $('help-list').replaceChildren(Object.assign(document.createElement('h2'), { textContent: 'Keys' }), table);
+}
+
+// Input
+
+function escape() {
+  if (!$('help-list').hidden || !$('layers-list').hidden) openPopup('', false);
+  else if (driving) stopDriving();
+  else select(-1);
+}
+
+const keys = {
+  ' ': () => setPaused(!paused), n: step, N: step, R: reset, f: () => setFollowing(!following), d: toggleDriving,
+  '+': () => zoom(1.25), '=': () => zoom(1.25), '-': () => zoom(0.8), '0': fitAll, Home: fitAll,
+  '[': () => nextRobot(-1), ']': () => nextRobot(1), l: () => openPopup('layers'), '?': () => openPopup('help'),
+  '/': () => $('search').focus(), Escape: escape, ',': () => isRecording() && seek(time - 1), '.': () => isRecording() && seek(time + 1),
+  '1': () => setSpeed(0.25), '2': () => setSpeed(1), '3': () => setSpeed(4), '4': () => !isRecording() && setSpeed(0),
+};
+const pans = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+function zoom(factor, x, y) {
+  camera.zoom(factor, following ? undefined : x, following ? undefined : y);
+  dirty = true;
+}
+
+function keyDown(event) {
+  const typing = event.target.matches('input[type=search], select, #slider');
+  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  if (typing && event.key === 'Escape') return event.target.blur();
+  if (typing || (event.key === ' ' && event.target.matches('button, input'))) return;
+  if (driving && event.key in pans) { pressed.add(event.key); event.preventDefault(); return; }
+  if (event.key in pans) {
+    setFollowing(false);
+    camera.pan(60 * pans[event.key][0], 60 * pans[event.key][1]);
+    dirty = true;
+  } else if (keys[event.key]) {
+    keys[event.key]();
+  } else {
+    return;
+  }
+  event.preventDefault();
+}
+
+function listenToPointer(canvas) {
+  let from = null, moved = false, pinch = 0;
+  const fingers = new Map();
+  canvas.onpointerdown = (event) => {
+    canvas.focus({ preventScroll: true });
+    canvas.setPointerCapture(event.pointerId);
+    fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    from = [event.offsetX, event.offsetY];
+    moved = false;
+    openPopup('', false);
+  };
+  canvas.onpointermove = (event) => {
+    if (!fingers.has(event.pointerId)) return;
+    fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    if (fingers.size === 2) {
+      const [a, b] = [...fingers.values()], apart = Math.hypot(a[0] - b[0], a[1] - b[1]);
+      if (pinch > 0) zoom(apart / pinch, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2);
+      pinch = apart;
+      moved = true;
+      return;
+    }
+    const dx = event.offsetX - from[0], dy = event.offsetY - from[1];
+    if (!moved && Math.hypot(dx, dy) < 4) return;
+    moved = true;
+    setFollowing(false);
+    camera.pan(dx, dy);
+    from = [event.offsetX, event.offsetY];
+    dirty = true;
+  };
+  canvas.onpointerup = canvas.onpointercancel = (event) => {
+    fingers.delete(event.pointerId);
+    pinch = 0;
+    if (moved || event.type === 'pointercancel') return;
+    const [x, y] = camera.toWorld(event.offsetX, event.offsetY);
+    select(fleet.pick(x, y, 10 / camera.scale));
+  };
+  canvas.addEventListener('wheel', (event) => {
+    event.preventDefault();
+    zoom(Math.exp(-Math.max(-300, Math.min(300, event.deltaY)) * 0.0016), event.offsetX, event.offsetY);
+  }, { passive: false });
+  canvas.ondblclick = (event) => zoom(1.8, event.offsetX, event.offsetY);
+}
+
+function listen() {
+  $('pause').onclick = () => setPaused(!paused);
+  $('step').onclick = step;
+  $('reset').onclick = reset;
+  $('speed').onchange = () => setSpeed(Number($('speed').value));
+  $('fit').onclick = fitAll;
+  $('follow').onclick = () => setFollowing(!following);
+  $('layers').onclick = () => openPopup('layers');
+  $('help').onclick = () => openPopup('help');
+  $('zoom-in').onclick = () => zoom(1.4);
+  $('zoom-out').onclick = () => zoom(1 / 1.4);
+  $('slider').oninput = () => { sliding = true; $('at').textContent = clockText(Number($('slider').value)); seek(Number($('slider').value)); };
+  $('slider').onchange = () => { sliding = false; };
+  document.addEventListener('keydown', keyDown);
+  document.addEventListener('keyup', (event) => pressed.delete(event.key));
+  window.addEventListener('blur', () => pressed.clear());
+  listenToPointer($('view'));
+  new ResizeObserver(() => { drawing.resize(); dirty = true; }).observe($('view'));
+}
+
+// Connection
+
+function connect() {
+  const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/${token ? `?token=${encodeURIComponent(token)}` : ''}`;
+  connection = new Connection(url);
+  let opened = false;
+  connection.addEventListener('open', () => {
+    opened = true;
+    notice('');
+    if (!isRecording()) connection.watchParameters();
+  });
+  connection.addEventListener('close', () => {
+    stopDriving();
+    showStatus('lost', 'not connected');
+    notice(opened ? 'The run has ended, or the connection broke. Trying again.' : 'No connection. Trying again.', 0);
+    setTimeout(reconnect, 1500);
+  });
+  connection.addEventListener('info', ({ detail }) => {
+    counters.info = detail;
+    showPaused();
+    const nanos = (t) => t.sec + 1e-9 * t.nsec;
+    if (!detail.dataStartTime) return;
+    range = [nanos(detail.dataStartTime), nanos(detail.dataEndTime)];
+    Object.assign($('slider'), { min: range[0], max: range[1] });
+    $('end').textContent = clockText(range[1]);
+    $('timeline').hidden = false;
+  });
+  connection.addEventListener('time', ({ detail }) => showTime(detail));
+  connection.addEventListener('parameters', ({ detail }) => showParameters(detail));
+  connection.addEventListener('playback', ({ detail }) => {
+    paused = detail.status !== 'playing';
+    speed = detail.speed;
+    $('speed').value = String(speed);
+    showPaused();
+    if (paused) showTime(detail.time);
+    if (detail.sought) { panel.clear(); fleet.trailCount.fill(0); }
+  });
+  connection.addEventListener('status', ({ detail }) => notice(detail.message));
+  connection.subscribe('/fleet', (message, t) => {
+    fleet.update(message, t, seconds());
+    ++counters.updates;
+    if (drawing.selected >= 0) panel.moved(fleet.states[drawing.selected], t);
+    dirty = true;
+  });
+  connection.subscribe('/lights', (message) => { drawing.lights = message.lights; dirty = true; });
+  const row = drawing.selected;
+  drawing.selected = -1;
+  select(row);
+}
+
+/** Another run may listen at the same address now. */
+async function reconnect() {
+  try {
+    const next = await loadScene(token);
+    if (JSON.stringify(next.movers.map(({ name }) => name)) !== JSON.stringify(scene.movers.map(({ name }) => name)) || next.world !== scene.world) return location.reload();
+    connect();
+  } catch {
+    setTimeout(reconnect, 1500);
+  }
+}
+
+const counters = { updates: 0, frames: 0, info: null };
+
+async function start() {
+  try {
+    scene = await loadScene(token);
+  } catch (error) {
+    showStatus('lost', 'not connected');
+    return notice(`The world could not be loaded: ${error.message}`, 0);
+  }
+  document.title = `${scene.world} – sensor farm`;
+  $('world').textContent = scene.world;
+  $('world').title = scene.world;
+  camera = new Camera();
+  fleet = new Fleet(scene);
+  drawing = new Drawing($('view'), camera, scene, new StaticLayer(scene), fleet);
+  panel = new Panel(scene, select);
+  drawing.resize();
+  camera.fit(scene.extent);
+  fillPopups();
+  listen();
+  for (const id of ['pause', 'step', 'reset', 'speed']) $(id).disabled = scene.mode === 'service';
+  if (isRecording()) for (const option of [...$('speed').options]) if (option.value === '0') option.remove();
+  $('follow').disabled = true;
+  connect();
+  // For tests, and for the browser's console.
+  window.view = { scene, camera, fleet, drawing, panel, counters, select, get paused() { return paused; }, get time() { return time; }, get connection() { return connection; } };
+  requestAnimationFrame(animate);
+}
+
+start();

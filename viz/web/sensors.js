@@ -1,0 +1,164 @@
+// Readings of the selected robot over the map. Each is anchored where the robot was when it was measured, so that ends
+// of beams lie on walls.
+
+import { theme, fade } from './theme.js';
+import { sectorPath } from './scene.js';
+
+/** Frame B in A, then C in B: [x, y, yaw]. */
+export function compose([x, y, yaw], [bx, by, byaw]) {
+  const c = Math.cos(yaw), s = Math.sin(yaw);
+  return [x + c * bx - s * by, y + s * bx + c * by, yaw + byaw];
+}
+
+function drawScan(c, px, pose, sensor, scan, drawn) {
+  const { ranges, angle_min, angle_increment, range_max } = scan, [x, y, yaw] = pose;
+  const outline = new Path2D(), rays = new Path2D(), ends = new Path2D();
+  const full = angle_increment * (ranges.length - 1) > 2 * Math.PI - 0.05;
+  if (!full) outline.moveTo(x, y);
+  const every = Math.max(1, Math.round(ranges.length / 90)), dot = 2 * px;
+  let hits = 0;
+  for (let i = 0; i < ranges.length; ++i) {
+    const echo = ranges[i] < range_max * 0.99999, range = Math.min(ranges[i], range_max);
+    const angle = yaw + angle_min + i * angle_increment;
+    const ex = x + range * Math.cos(angle), ey = y + range * Math.sin(angle);
+    if (i === 0 && full) outline.moveTo(ex, ey); else outline.lineTo(ex, ey);
+    if (i % every === 0) { rays.moveTo(x, y); rays.lineTo(ex, ey); }
+    if (echo) { ++hits; ends.rect(ex - dot, ey - dot, 2 * dot, 2 * dot); }
+  }
+  outline.closePath();
+  c.fillStyle = fade(theme.view, 0.12);
+  c.fill(outline);
+  c.strokeStyle = fade(theme.view, 0.28);
+  c.lineWidth = px;
+  c.stroke(rays);
+  c.fillStyle = theme.view;
+  c.fill(ends);
+  drawn.beams += ranges.length;
+  drawn.hits += hits;
+}
+
+/** Cones of sonar and infrared, as far as they saw. */
+function drawCones(c, px, pose, sensor, message, drawn) {
+  const ranges = message.range_m;
+  sensor.cones.forEach((cone, i) => {
+    const range = ranges[i];
+    if (!(range >= 0)) return;
+    const [x, y, yaw] = compose(pose, cone), echo = range < sensor.range_max * 0.999;
+    const path = sectorPath(x, y, yaw, sensor.cone_fov, Math.min(range, sensor.range_max));
+    c.fillStyle = fade(theme.view, echo ? 0.2 : 0.07);
+    c.fill(path);
+    c.lineWidth = px;
+    c.strokeStyle = fade(theme.view, echo ? 0.8 : 0.25);
+    c.stroke(path);
+    ++drawn.cones;
+  });
+}
+
+/** The distance to a lane's edge, from the sensor to the edge, and the edge across its end. */
+function drawLaneEdge(c, px, pose, sensor, message, drawn) {
+  const [x, y, yaw] = pose, sector = sectorPath(x, y, yaw, sensor.fan_fov, sensor.range_max);
+  c.fillStyle = fade(theme.lane, 0.1);
+  c.fill(sector);
+  c.strokeStyle = fade(theme.lane, 0.5);
+  c.lineWidth = px;
+  c.stroke(sector);
+  const distance = message.distance_m;
+  if (!Number.isFinite(distance)) return;
+  const [ux, uy] = sensor.perpendicular;
+  const dx = Math.cos(yaw) * ux - Math.sin(yaw) * uy, dy = Math.sin(yaw) * ux + Math.cos(yaw) * uy;
+  const ex = x + distance * dx, ey = y + distance * dy, half = 0.3 * sensor.range_max;
+  c.strokeStyle = theme.lane;
+  c.lineWidth = 2.5 * px;
+  c.beginPath();
+  c.moveTo(x, y); c.lineTo(ex, ey);
+  c.stroke();
+  c.lineWidth = 4 * px;
+  c.beginPath();
+  c.moveTo(ex - half * dy, ey + half * dx); c.lineTo(ex + half * dy, ey - half * dx);
+  c.stroke();
+  ++drawn.edges;
+}
+
+/** The field at each element, as an arrow in the plane; its length grows with the logarithm. */
+function drawField(c, px, pose, sensor, message, drawn) {
+  const field = message.vector_t ?? [];
+  sensor.elements.forEach((element, i) => {
+    const [x, y, yaw] = compose(pose, element);
+    c.fillStyle = theme.magnetometer;
+    c.beginPath();
+    c.arc(x, y, 3 * px, 0, 2 * Math.PI);
+    c.fill();
+    const bx = field[3 * i], by = field[3 * i + 1], plane = Math.hypot(bx, by);
+    ++drawn.fields;
+    if (!(plane > 1e-9)) return;
+    const length = (6 + 9 * Math.log10(plane / 1e-9)) * px, direction = yaw + Math.atan2(by, bx);
+    const ex = x + length * Math.cos(direction), ey = y + length * Math.sin(direction);
+    c.strokeStyle = theme.magnetometer;
+    c.lineWidth = 2 * px;
+    c.beginPath();
+    c.moveTo(x, y); c.lineTo(ex, ey);
+    for (const side of [2.6, -2.6]) { c.moveTo(ex, ey); c.lineTo(ex + 7 * px * Math.cos(direction + side), ey + 7 * px * Math.sin(direction + side)); }
+    c.stroke();
+  });
+}
+
+function drawFix(c, px, origin, message) {
+  const x = message.x_m - origin[0], y = message.y_m - origin[1];
+  if (!Number.isFinite(x)) return;
+  c.strokeStyle = theme.gps;
+  c.lineWidth = 2.5 * px;
+  c.beginPath();
+  for (const [dx, dy] of [[7, 7], [7, -7]]) { c.moveTo(x - dx * px, y - dy * px); c.lineTo(x + dx * px, y + dy * px); }
+  c.stroke();
+}
+
+/** Occupancy maps as pictures, made anew when a reading came. */
+export class MapPicture {
+  #canvas = document.createElement('canvas');
+  cells = { occupied: 0, free: 0 };
+
+  constructor(message, { left, top, cell, words }) {
+    const data = message.word, columns = 4 * words, rows = 4 * Math.ceil(data.length / words);
+    Object.assign(this, { left, top, width: columns * cell, height: rows * cell });
+    this.#canvas.width = columns;
+    this.#canvas.height = rows;
+    const context = this.#canvas.getContext('2d'), image = context.createImageData(columns, rows);
+    for (let word = 0; word < data.length; ++word) {
+      const bits = data[word], column = 4 * (word % words), row = 4 * Math.floor(word / words);
+      for (let k = 0; k < 16; ++k) {
+        const state = (bits >>> (2 * k)) & 3;
+        if (state === 0) continue;
+        const at = 4 * ((row + (k >> 2)) * columns + column + (k & 3));
+        const [r, g, b, a] = state === 1 ? [23, 72, 209, 235] : [86, 180, 233, 70];
+        image.data[at] = r; image.data[at + 1] = g; image.data[at + 2] = b; image.data[at + 3] = a;
+        ++this.cells[state === 1 ? 'occupied' : 'free'];
+      }
+    }
+    context.putImageData(image, 0, 0);
+  }
+
+  draw(c, origin, px) {
+    c.save();
+    c.translate(this.left - origin[0], this.top - origin[1]);
+    c.scale(1, -1);
+    c.imageSmoothingEnabled = false;
+    c.drawImage(this.#canvas, 0, 0, this.width, this.height);
+    c.strokeStyle = fade(theme.map, 0.5);
+    c.lineWidth = px;
+    c.strokeRect(0, 0, this.width, this.height);
+    c.restore();
+  }
+}
+
+/** One sensor's newest reading, as far as it lies below the robots. @param held {message, pose} of the sensor from the scene's origin */
+export function drawReadingBelow(c, px, sensor, { message, pose }, drawn) {
+  if (message.ranges) drawScan(c, px, pose, sensor, message, drawn);
+  else if (sensor.cones && message.range_m) drawCones(c, px, pose, sensor, message, drawn);
+}
+
+/** Likewise what lies above them. */
+export function drawReadingAbove(c, px, origin, sensor, { message, pose }, drawn) {
+  if (sensor.perpendicular) drawLaneEdge(c, px, pose, sensor, message, drawn);
+  else if (sensor.elements) drawField(c, px, pose, sensor, message, drawn);
+  else if (sensor.type === 'gps') drawFix(c, px, origin, message);
+}
