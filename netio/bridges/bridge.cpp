@@ -9,6 +9,7 @@ void Requests::clear() {
   speed.reset();
   steps = 0;
   reset = false;
+  time.reset();
 }
 
 void Bridges::publish(const base::TickRecord& tick, const RunState& state) {

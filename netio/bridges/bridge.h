@@ -48,9 +48,10 @@ struct Requests {
   std::vector<Command> commands;  ///< from its first on, a robot is driven from outside, no longer by its controller
   std::vector<Placement> placements;
   std::optional<bool> paused;
-  std::optional<double> speed;  ///< [1] simulated over real time, > 0; infinity: as fast as the machine allows
-  std::uint32_t steps = 0;      ///< ticks to be made while paused
-  bool reset = false;           ///< begins again at time 0, with the same seed
+  std::optional<double> speed;       ///< [1] simulated over real time, > 0; infinity: as fast as the machine allows
+  std::uint32_t steps = 0;           ///< ticks to be made while paused
+  bool reset = false;                ///< begins again at time 0, with the same seed
+  std::optional<std::int64_t> time;  ///< [ns] of a recording, to go to
 
   /// Forgets all, and keeps its memory.
   void clear();

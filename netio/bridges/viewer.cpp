@@ -1,0 +1,118 @@
+#include "netio/bridges/viewer.h"
+
+#include <algorithm>
+
+#include "netio/bridges/scene_json.h"
+#include "netio/bridges/web_files.h"
+
+namespace sf::bridges {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+// Ticks at 30 Hz come every 33 ms, more or less; none of them is left out.
+constexpr milliseconds kLeastInterval(25);
+constexpr milliseconds kStateInterval(500);  // of the measured speed
+constexpr int kMostWaiting = 4;
+
+std::vector<std::string> drivers_of(const Scene& scene, ViewerMode mode) {
+  std::vector<std::string> topics;
+  if (mode != ViewerMode::run || !scene.simulated) return topics;
+  for (const record::MoverInfo& mover : scene.info.movers) topics.push_back("/" + mover.frame + "/cmd_vel");
+  return topics;
+}
+
+}  // namespace
+
+Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
+    : messages_(scene.info),
+      scene_json_(scene_json(scene, options.mode)),
+      wishes_(messages_.topics().size()),
+      sessions_({"sensorfarm: " + scene.info.world, options.mode, options.start, options.end,
+                 drivers_of(scene, options.mode)},
+                messages_.topics(), wishes_),
+      wanted_(messages_.topics().size()),
+      next_(messages_.topics().size()) {
+  std::vector<SharedMessage> latched;
+  messages_.begin([&](const record::TopicMessage& message) {
+    latched.push_back({message.topic, message.log_time,
+                       std::make_shared<const base::Bytes>(message.bytes.begin(), message.bytes.end())});
+  });
+  WebOptions web{options.address, {kSdkV1, kWebSocketV1}, web_files(), options.limits};
+  web.files["/scene.json"] = {"application/json", scene_json_, true};
+  server_ = std::make_unique<WebServer>(std::move(web), sessions_);
+  server_->post([this, latched = std::move(latched)] { sessions_.start(*server_, latched); });
+}
+
+Viewer::~Viewer() = default;
+
+std::string Viewer::describe() const { return "view on " + server_->url(); }
+
+void Viewer::publish(const base::TickRecord& tick, const RunState& state) {
+  if (!last_.empty() && tick.time < last_.time()) messages_.begin([](const record::TopicMessage&) {});  // a new run
+  const bool is_watched = !sessions_.empty();
+  last_.store(tick, is_watched);
+  show(state);
+  paused_shown_ = state.paused;
+  if (!is_watched) return;
+  choose_topics(state.paused);
+  if (!due_.empty() || Clock::now() >= next_time_) send(fresh_.empty() ? tick : last_.record());
+}
+
+void Viewer::publish(const RunState& state) {
+  show(state);
+  if (sessions_.empty() || last_.empty()) return;
+  choose_topics(!paused_shown_);  // ticks may have been left out before the pause
+  paused_shown_ = true;
+  if (!due_.empty()) send(last_.record());
+}
+
+void Viewer::show(const RunState& state) {
+  const Clock::time_point now = Clock::now();
+  RunState next = state;
+  if (now < next_state_) next.measured = state_.measured;
+  const bool changed = next.paused != state_.paused || next.speed != state_.speed || next.runs != state_.runs ||
+                       next.measured != state_.measured;
+  if (shown_ && !changed) return;
+  if (next.measured != state_.measured) next_state_ = now + kStateInterval;
+  shown_ = true;
+  state_ = next;
+  server_->post([this, next, time = last_.time()] { sessions_.show(next, time); });
+}
+
+/// @param all topics that are subscribed, though it may not be their turn
+void Viewer::choose_topics(bool all) {
+  topics_.clear();
+  fresh_.clear();
+  due_.clear();
+  wishes_.topics(topics_, fresh_);
+  const Clock::time_point now = Clock::now();
+  for (const std::uint32_t topic : topics_)
+    if (all || now >= next_[topic] || std::binary_search(fresh_.begin(), fresh_.end(), topic)) due_.push_back(topic);
+}
+
+/// Sends the tick's time, and what it has to say on the topics of `due_`.
+void Viewer::send(const base::TickRecord& tick) {
+  if (waiting_ >= kMostWaiting) {
+    ++dropped_;
+    return;
+  }
+  const Clock::time_point next = next_time_ = Clock::now() + kLeastInterval;
+  std::vector<SharedMessage> update;
+  for (const std::uint32_t topic : due_) wanted_[topic] = true;
+  const auto add = [&](const record::TopicMessage& message) {
+    next_[message.topic] = next;
+    update.push_back({message.topic, message.log_time,
+                      std::make_shared<const base::Bytes>(message.bytes.begin(), message.bytes.end())});
+  };
+  messages_.encode(tick, add, wanted_);
+  for (const std::uint32_t topic : due_) wanted_[topic] = false;
+  ++waiting_;
+  server_->post([this, time = tick.time, update = std::move(update)] {
+    --waiting_;
+    sessions_.update(time, update);
+  });
+}
+
+}  // namespace sf::bridges
