@@ -4,6 +4,7 @@
 #include "apps/text.h"
 #include "netio/bridges/ros2_bridge.h"
 #include "netio/bridges/player_bridge.h"
+#include "netio/bridges/viewer.h"
 
 namespace sf::apps {
 
@@ -16,6 +17,11 @@ LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world
   if (options.ros2) bridges_.add(std::make_unique<bridges::Ros2Bridge>(bridges::ros2_options(*options.ros2), scene));
   if (!options.player.empty())
     bridges_.add(std::make_unique<bridges::PlayerBridge>(scene, read_own_address(options.player, "--player")));
+  if (options.view) {
+    const bridges::ViewerOptions view{*options.view,
+                                      simulated ? bridges::ViewerMode::run : bridges::ViewerMode::service};
+    bridges_.add(std::make_unique<bridges::Viewer>(scene, view));
+  }
   for (const std::string& line : bridges_.describe()) print_message("{}", line);
 }
 

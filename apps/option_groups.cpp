@@ -217,6 +217,13 @@ void add_bridges(CLI::App& app, BridgeOptions& o) {
                  "(default: 127.0.0.1:6665; 0: any free ones)")
       ->expected(0, 1)
       ->default_str("6665")
+  const auto read = [&o](const std::string& text) { o.view = bridges::read_web_address(text); };
+  app.add_option_function<std::string>(
+         "--view", read,
+         "Show it live in a browser, and to Foxglove's viewers, at this address (default 127.0.0.1:8765)")
+      ->check(readable(bridges::read_web_address, "[HOST:]PORT such as 8765 or 0.0.0.0:8765"))
+      ->expected(0, 1)
+      ->default_str("8765")
       ->type_name("[HOST:]PORT")
       ->group(kBridgeGroup);
 }

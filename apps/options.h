@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/pose.h"
+#include "netio/bridges/web_access.h"
 #include "netio/packets.h"
 #include "netio/ports.h"
 #include "netio/server/light_listener.h"
@@ -193,6 +194,10 @@ struct ViewOptions : RecordingOption, PartOption, DeviceOption {
   std::string screenshot;  ///< picture to write in place of waiting for a user; empty: none
 };
 
+struct ViewOptions : RecordingOption {
+  bridges::WebAddress port;
+};
+
 struct ExplainOptions : WorldOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {};
 
 /// Connections to other programs (netio/bridges); each is an address, or a number, as its option's help says.
@@ -201,6 +206,8 @@ struct BridgeOptions {
   bool any() const { return ros2.has_value(); }
   std::string player;  ///< [HOST:]PORT of a Player server; empty: none
   bool any() const { return !player.empty(); }
+  std::optional<bridges::WebAddress> view;  ///< of the live view; nullopt: none
+  bool any() const { return view.has_value(); }
 };
 
 struct RunOptions : WorldOptions,

@@ -1,0 +1,117 @@
+#include "scenarios/replay.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "record/reading_messages.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+bool same_columns(const record::SensorTypeInfo& a, const record::SensorTypeInfo& b) {
+  const auto equal = [](const record::ColumnInfo& x, const record::ColumnInfo& y) {
+    return x.name == y.name && x.width == y.width;
+  };
+  return a.list == b.list && a.is_scan == b.is_scan &&
+         std::equal(a.columns.begin(), a.columns.end(), b.columns.begin(), b.columns.end(), equal);
+}
+
+/// Whether `info` has the sensor of a reading, with values of the same form.
+bool is_known(const record::ReadingSample& reading, const record::RunInfo& recorded, const record::RunInfo& info) {
+  const record::SensorTypeInfo* const then = record::find_sensor_type(recorded, reading.type);
+  const record::SensorTypeInfo* const now = record::find_sensor_type(info, reading.type);
+  if (then == nullptr || now == nullptr || !same_columns(*then, *now)) return false;
+  const auto& sensors = info.movers[reading.mover].sensors;
+  const auto count = std::count_if(sensors.begin(), sensors.end(),
+                                   [&](const record::SensorInfo& sensor) { return sensor.type == reading.type; });
+  const std::size_t width = record::element_width(*now), size = reading.values.size();
+  return reading.sensor < count && (now->list.empty() ? size == width : size % width == 0);
+}
+
+}  // namespace
+
+Replay::Replay(const record::Recording& recording, const record::RunInfo& info)
+    : recording_(recording), lights_(info.lights.size()) {
+  if (recording.states.size() != info.movers.size() || recording.states.empty())
+    throw base::InputError(recording.file, 0, "has other robots than its world");
+  if (ticks() == 0) throw base::InputError(recording.file, 0, "has no ticks");
+  for (std::size_t row = 0; row < recording.readings.size(); ++row) {
+    if (is_known(recording.readings[row], recording.info, info))
+      rows_.push_back(row);
+    else
+      ++left_out_;
+  }
+  std::stable_sort(rows_.begin(), rows_.end(), [&](std::size_t a, std::size_t b) {
+    return recording.readings[a].delivered < recording.readings[b].delivered;
+  });
+  for (const std::size_t row : rows_) {
+    const record::ReadingSample& reading = recording.readings[row];
+    sensors_[{reading.mover, reading.type, reading.sensor}].push_back(row);
+  }
+}
+
+std::size_t Replay::tick_at(std::int64_t time) const {
+  const auto& states = recording_.states.front();
+  const auto after = std::upper_bound(states.begin(), states.end(), time,
+                                      [](std::int64_t t, const record::StateSample& state) { return t < state.time; });
+  return after == states.begin() ? 0 : static_cast<std::size_t>(after - states.begin()) - 1;
+}
+
+base::TickRecord Replay::tick(std::size_t number, std::optional<std::size_t> shown) {
+  add_states(number);
+  readings_.clear();
+  const auto is_later = [&](std::int64_t time, std::size_t row) { return time < recording_.readings[row].delivered; };
+  const std::int64_t now = time_of(number);
+  if (shown && *shown <= number) {
+    const auto begin = std::upper_bound(rows_.begin(), rows_.end(), time_of(*shown), is_later);
+    const auto end = std::upper_bound(begin, rows_.end(), now, is_later);
+    for (auto row = begin; row != end; ++row) add_reading(*row);
+  } else {
+    for (const auto& [sensor, rows] : sensors_) {
+      const auto after = std::upper_bound(rows.begin(), rows.end(), now, is_later);
+      if (after != rows.begin()) add_reading(*(after - 1));
+    }
+  }
+  base::TickRecord record;
+  record.tick = recording_.states.front()[number].tick;
+  record.time = now;
+  record.reports = reports_;
+  record.commands = commands_;
+  record.contacts = contacts_;
+  record.readings = readings_;
+  const auto lights =
+      std::upper_bound(recording_.lights.begin(), recording_.lights.end(), now,
+                       [](std::int64_t time, const record::LightsSample& sample) { return time < sample.time; });
+  if (lights != recording_.lights.begin() && (lights - 1)->lights.size() == lights_)
+    record.lights = (lights - 1)->lights;
+  return record;
+}
+
+/// Movers of a damaged tick stand where they are not told.
+void Replay::add_states(std::size_t number) {
+  reports_.clear();
+  commands_.clear();
+  contacts_.clear();
+  for (std::uint32_t mover = 0; mover < recording_.states.size(); ++mover) {
+    const auto& states = recording_.states[mover];
+    if (number >= states.size()) continue;
+    const record::StateSample& state = states[number];
+    reports_.push_back({mover, state.time, state.X_WM, state.velocity});
+    commands_.push_back(state.command);
+    contacts_.push_back(state.contact ? 1 : 0);
+  }
+}
+
+void Replay::add_reading(std::size_t row) {
+  const record::ReadingSample& reading = recording_.readings[row];
+  base::ReadingBlock& block = readings_.emplace_back();
+  block.mover = reading.mover;
+  block.sensor = reading.sensor;
+  block.type = reading.type;
+  block.sequence = reading.sequence;
+  block.time = reading.time;
+  block.values = reading.values;
+}
+
+}  // namespace sf::scenarios
