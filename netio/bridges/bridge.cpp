@@ -12,6 +12,17 @@ void Requests::clear() {
   time.reset();
 }
 
+void Requests::add(Requests& later) {
+  commands.insert(commands.end(), later.commands.begin(), later.commands.end());
+  placements.insert(placements.end(), later.placements.begin(), later.placements.end());
+  if (later.paused) paused = later.paused;
+  if (later.speed) speed = later.speed;
+  if (later.time) time = later.time;
+  steps += later.steps;
+  reset = reset || later.reset;
+  later.clear();
+}
+
 void Bridges::publish(const base::TickRecord& tick, const RunState& state) {
   for (const auto& bridge : bridges_) bridge->publish(tick, state);
 }

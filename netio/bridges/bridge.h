@@ -55,6 +55,8 @@ struct Requests {
 
   /// Forgets all, and keeps its memory.
   void clear();
+  /// Moves all of `later` to the end: what both ask for is what `later` asks for.
+  void add(Requests& later);
 };
 
 /// Of a run between two ticks.

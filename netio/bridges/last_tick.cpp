@@ -13,7 +13,7 @@ std::span<const T> keep(std::vector<T>& own, std::span<const T> given) {
 }  // namespace
 
 void LastTick::store(const base::TickRecord& tick, bool with_readings) {
-  if (tick.time < tick_.time) {
+  if (!with_readings || tick.time < tick_.time) {
     readings_.clear();
     rows_.clear();
   }
@@ -24,8 +24,8 @@ void LastTick::store(const base::TickRecord& tick, bool with_readings) {
   tick_.contacts = keep(contacts_, tick.contacts);
   tick_.qualities = keep(qualities_, tick.qualities);
   tick_.lights = keep(lights_, tick.lights);
-  if (!with_readings) return;
-  for (const base::ReadingBlock& reading : tick.readings) store(reading);
+  for (const base::ReadingBlock& reading : tick.readings)
+    if (with_readings) store(reading);
 }
 
 void LastTick::store(const base::ReadingBlock& reading) {

@@ -1,6 +1,5 @@
 #pragma once
-// The newest tick with every sensor's newest reading: what a viewer is shown that connects, or chooses another robot,
-// while the run is paused.
+// The newest tick: what a viewer is shown that connects, or chooses another robot, while the run is paused.
 
 #include <cstdint>
 #include <unordered_map>
@@ -13,8 +12,8 @@ namespace sf::bridges {
 /// One thread.
 class LastTick {
  public:
-  /// Copies the tick; readings of sensors that have none in it are kept, unless time went back.
-  /// @param with_readings false: readings are left as they are
+  /// Copies the tick. @param with_readings true: those that it lacks are kept from earlier ticks, unless time went
+  /// back; false: readings, which are the largest part, are left out and forgotten
   void store(const base::TickRecord& tick, bool with_readings);
   bool empty() const { return reports_.empty(); }
   std::int64_t time() const { return tick_.time; }

@@ -28,6 +28,7 @@ std::vector<std::string> drivers_of(const Scene& scene, ViewerMode mode) {
 Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
     : messages_(scene.info),
       scene_json_(scene_json(scene, options.mode)),
+      mode_(options.mode),
       wishes_(messages_.topics().size()),
       sessions_({"sensorfarm: " + scene.info.world, options.mode, options.start, options.end,
                  drivers_of(scene, options.mode)},
@@ -52,12 +53,22 @@ std::string Viewer::describe() const { return "view on " + server_->url(); }
 void Viewer::publish(const base::TickRecord& tick, const RunState& state) {
   if (!last_.empty() && tick.time < last_.time()) messages_.begin([](const record::TopicMessage&) {});  // a new run
   const bool is_watched = !sessions_.empty();
-  last_.store(tick, is_watched);
+  // Copying all readings of a large fleet in every tick would cost more than showing them.
+  is_kept_ = state.paused || pausing_ || (mode_ == ViewerMode::recording && is_watched);
+  last_.store(tick, is_kept_);
   show(state);
   paused_shown_ = state.paused;
   if (!is_watched) return;
   choose_topics(state.paused);
-  if (!due_.empty() || Clock::now() >= next_time_) send(fresh_.empty() ? tick : last_.record());
+  if (!due_.empty() || Clock::now() >= next_time_) send(is_kept_ && !fresh_.empty() ? last_.record() : tick);
+}
+
+void Viewer::take(Requests& requests) {
+  wishes_.take(requests_);
+  const bool waits = requests_.paused.value_or(false) && !state_.paused && !is_kept_ && !last_.empty() &&
+                     mode_ == ViewerMode::run && !sessions_.empty();
+  pausing_ = waits;
+  if (!waits) requests.add(requests_);
 }
 
 void Viewer::publish(const RunState& state) {
@@ -103,8 +114,7 @@ void Viewer::send(const base::TickRecord& tick) {
   for (const std::uint32_t topic : due_) wanted_[topic] = true;
   const auto add = [&](const record::TopicMessage& message) {
     next_[message.topic] = next;
-    update.push_back({message.topic, message.log_time,
-                      std::make_shared<const base::Bytes>(message.bytes.begin(), message.bytes.end())});
+    update.push_back({message.topic, message.log_time, copy_of(message.bytes)});
   };
   messages_.encode(tick, add, wanted_);
   for (const std::uint32_t topic : due_) wanted_[topic] = false;
@@ -113,6 +123,22 @@ void Viewer::send(const base::TickRecord& tick) {
     --waiting_;
     sessions_.update(time, update);
   });
+}
+
+/// Large messages take buffers that all clients have done with: new memory costs more than filling it.
+std::shared_ptr<const base::Bytes> Viewer::copy_of(std::span<const std::uint8_t> message) {
+  constexpr std::size_t kLarge = 16 << 10, kMostBuffers = 8;
+  if (message.size() < kLarge) return std::make_shared<const base::Bytes>(message.begin(), message.end());
+  const auto is_free = [](const std::shared_ptr<base::Bytes>& buffer) { return buffer.use_count() == 1; };
+  const auto free = std::find_if(buffers_.begin(), buffers_.end(), is_free);
+  if (free == buffers_.end()) {
+    auto made = std::make_shared<base::Bytes>(message.begin(), message.end());
+    if (buffers_.size() < kMostBuffers) buffers_.push_back(made);
+    return made;
+  }
+  std::atomic_thread_fence(std::memory_order_acquire);  // the last reader was the server's thread
+  (*free)->assign(message.begin(), message.end());
+  return *free;
 }
 
 }  // namespace sf::bridges

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,8 @@ class Viewer : public Bridge {
 
   void publish(const base::TickRecord& tick, const RunState& state) override;
   void publish(const RunState& state) override;
-  void take(Requests& requests) override { wishes_.take(requests); }
+  /// A pause waits for one more tick, of which all readings are kept for those who look at robots meanwhile.
+  void take(Requests& requests) override;
   std::string describe() const override;
 
   const WebServer& server() const { return *server_; }
@@ -50,9 +52,11 @@ class Viewer : public Bridge {
   void show(const RunState& state);
   void choose_topics(bool all);
   void send(const base::TickRecord& tick);
+  std::shared_ptr<const base::Bytes> copy_of(std::span<const std::uint8_t> message);
 
   record::TickMessages messages_;
   std::string scene_json_;
+  const ViewerMode mode_;
   ViewerWishes wishes_;
   ViewerSessions sessions_;
   LastTick last_;
@@ -61,9 +65,13 @@ class Viewer : public Bridge {
   Clock::time_point next_state_, next_time_;
   std::vector<std::uint32_t> topics_, fresh_, due_;  ///< `due_`: to be sent, those of `fresh_` among them
   std::vector<bool> wanted_;
-  std::vector<Clock::time_point> next_;  ///< per topic: earliest time of its next message
-  bool paused_shown_ = false;            ///< the last tick before the pause was sent
-  std::atomic<int> waiting_ = 0;         ///< updates on their way to the server's thread
+  std::vector<Clock::time_point> next_;                ///< per topic: earliest time of its next message
+  std::vector<std::shared_ptr<base::Bytes>> buffers_;  ///< of large messages, used again
+  Requests requests_;
+  bool pausing_ = false;          ///< a pause waits for a tick
+  bool is_kept_ = false;          ///< `last_` has the newest tick's readings
+  bool paused_shown_ = false;     ///< the last tick before the pause was sent
+  std::atomic<int> waiting_ = 0;  ///< updates on their way to the server's thread
   std::uint64_t dropped_ = 0;
   std::unique_ptr<WebServer> server_;  ///< last: its thread uses the others
 };

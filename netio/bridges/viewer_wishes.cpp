@@ -60,13 +60,7 @@ void ViewerWishes::seek(std::int64_t time) {
 
 void ViewerWishes::take(Requests& requests) {
   const std::lock_guard lock(mutex_);
-  requests.commands.insert(requests.commands.end(), requests_.commands.begin(), requests_.commands.end());
-  if (requests_.paused) requests.paused = requests_.paused;
-  if (requests_.speed) requests.speed = requests_.speed;
-  if (requests_.time) requests.time = requests_.time;
-  requests.steps += requests_.steps;
-  requests.reset = requests.reset || requests_.reset;
-  requests_.clear();
+  requests.add(requests_);
 }
 
 }  // namespace sf::bridges

@@ -46,4 +46,27 @@ TEST(Bridges, EachIsGivenEveryTickAndAsked) {
   EXPECT_EQ(bridges.describe().size(), 2u);
 }
 
+TEST(Requests, AddInOrder) {
+  Requests first, later;
+  first.paused = true;
+  first.steps = 2;
+  first.speed = 2.0;
+  first.commands.push_back({1, {}});
+  later.paused = false;
+  later.steps = 1;
+  later.time = 5;
+  later.reset = true;
+  later.commands.push_back({2, {}});
+  first.add(later);
+  EXPECT_EQ(first.paused, false);
+  EXPECT_EQ(first.speed, 2.0);
+  EXPECT_EQ(first.time, 5);
+  EXPECT_EQ(first.steps, 3u);
+  EXPECT_TRUE(first.reset);
+  ASSERT_EQ(first.commands.size(), 2u);
+  EXPECT_EQ(first.commands[1].mover, 2u);
+  EXPECT_TRUE(later.commands.empty());
+  EXPECT_FALSE(later.paused || later.time || later.reset || later.steps > 0);
+}
+
 }  // namespace sf::bridges

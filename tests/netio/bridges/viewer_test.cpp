@@ -200,6 +200,21 @@ TEST(Viewer, TakesParametersAndServices) {
   EXPECT_EQ(requests.paused, true);
 }
 
+TEST(Viewer, PausesAfterOneMoreTick) {
+  ViewerFixture fixture;
+  const std::vector<base::Report> reports = fixture.states();
+  base::TickRecord tick;
+  tick.reports = reports;
+  fixture.viewer->publish(tick, {});
+  Watcher client(fixture);
+  client.text(R"({"op":"setParameters","id":"s","parameters":[{"name":"/paused","value":true}]})");
+  client.settle();
+  EXPECT_FALSE(fixture.requests().paused) << "the next tick's readings are to be kept";
+  fixture.viewer->publish(tick, {});
+  EXPECT_EQ(fixture.requests().paused, true);
+  EXPECT_FALSE(fixture.requests().paused);
+}
+
 TEST(Viewer, RefusesWhatCannotBeSet) {
   ViewerFixture fixture;
   Watcher client(fixture);

@@ -1,0 +1,142 @@
+// CPU time that the live view costs the farm's process per tick: a fleet at 30 ticks/s with a reader of its states and
+// one robot's readings, and without. The reader is a process of its own, byte by byte, as no browser's time is meant.
+//
+//   build/bench/view_cost [ROBOTS] [SECONDS]
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+
+#include "bench/cost.h"
+#include "bench/tiles.h"
+#include "netio/bridges/viewer.h"
+#include "scenarios/run_info.h"
+#include "scenarios/simulation.h"
+#include "tests/netio/bridges/raw_client.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::bench {
+
+namespace {
+
+constexpr double kRate = 30.0;  // [Hz] of ticks in real time
+constexpr int kTurns = 5;       // with and without a reader, each
+
+/// What the reader reads, for the parent's report.
+struct Count {
+  std::uint64_t messages = 0, bytes = 0;
+};
+
+/// A process that reads until the server goes, or the parent closes `end`.
+class ReaderProcess {
+ public:
+  ReaderProcess(std::uint16_t port, const std::vector<int>& channels) {
+    if (::pipe(report_) != 0) std::abort();
+    child_ = ::fork();
+    if (child_ == 0) read(port, channels);
+    ::close(report_[1]);
+    char ready = 0;
+    if (::read(report_[0], &ready, 1) != 1) std::abort();
+  }
+  /// Ends it. @return what it read
+  Count end() {
+    ::kill(child_, SIGTERM);
+    Count count, next;
+    while (::read(report_[0], &next, sizeof(next)) == sizeof(next)) count = next;
+    ::close(report_[0]);
+    ::waitpid(child_, nullptr, 0);
+    return count;
+  }
+
+ private:
+  [[noreturn]] void read(std::uint16_t port, const std::vector<int>& channels) {
+    bridges::RawClient client(port);
+    client.upgrade("foxglove.sdk.v1");
+    int id = 1;
+    for (const int channel : channels)
+      client.text(fmt::format(R"({{"op":"subscribe","subscriptions":[{{"id":{},"channelId":{}}}]}})", id++, channel));
+    client.settle();
+    Count count;
+    bool written = ::write(report_[1], "r", 1) == 1;
+    while (const auto message = client.receive()) {
+      ++count.messages;
+      count.bytes += message->payload.size();
+      written = written && ::write(report_[1], &count, sizeof(count)) == sizeof(count);
+    }
+    ::_exit(0);
+  }
+
+  int report_[2] = {};
+  pid_t child_ = 0;
+};
+
+std::vector<int> channels_of(const record::RunInfo& info) {
+  const record::TickMessages messages(info);
+  std::vector<int> channels;
+  for (std::size_t row = 0; row < messages.topics().size(); ++row) {
+    const std::string& name = messages.topics()[row].name;
+    if (name == "/fleet" || name == info.movers.front().sensors.front().topic)
+      channels.push_back(static_cast<int>(row));
+  }
+  return channels;
+}
+
+/// Ticks at the rate. @return CPU time per tick [s]
+double drive(scenarios::Simulation& simulation, bridges::Viewer* viewer, int ticks) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Cost before = now();
+  for (int i = 0; i < ticks; ++i) {
+    const base::TickRecord tick = simulation.step();
+    if (viewer != nullptr) viewer->publish(tick, {});
+    std::this_thread::sleep_until(begin + std::chrono::duration<double>((i + 1) / kRate));
+  }
+  return (now() - before).cpu_s / ticks;
+}
+
+void measure(double interval, std::uint32_t robots, double seconds, gpu::Device& device) {
+  world::World world = tiled_cave(robots, scenes::laser(361, M_PI, 8.0));
+  world.interval = interval;
+  const sensors::SensorSet sensor_set(world);
+  record::RunInfo info = scenarios::run_info(world, sensor_set, {.seed = 1, .record_readings = true});
+  record::name_frames(info);
+  const std::vector<int> channels = channels_of(info);
+  scenarios::Simulation simulation(world, device, {});
+  bridges::Viewer viewer({world, sensor_set, info}, {.address = {"127.0.0.1", 0}});
+  const int ticks = static_cast<int>(seconds * kRate);
+  drive(simulation, nullptr, ticks / 2);
+  std::vector<double> without, idle, with;
+  Count read;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    without.push_back(drive(simulation, nullptr, ticks));
+    idle.push_back(drive(simulation, &viewer, ticks));
+    ReaderProcess reader(viewer.server().port(), channels);
+    with.push_back(drive(simulation, &viewer, ticks));
+    read = reader.end();
+  }
+  const double plain = median(without), watched = median(with);
+  fmt::print("{} robots, interval {:.3f} s, {} ticks/s, median of {} turns of {} ticks\n", robots, interval, kRate,
+             kTurns, ticks);
+  fmt::print("  no view             {:8.3f} ms of CPU per tick\n", 1e3 * plain);
+  fmt::print("  view, nobody looks  {:8.3f} ms, {:+.1f} %\n", 1e3 * median(idle), 100.0 * (median(idle) / plain - 1.0));
+  fmt::print(
+      "  view, one reader    {:8.3f} ms, {:+.1f} %; it read {:.2f} messages and {:.0f} kB per tick, {} skipped\n",
+      1e3 * watched, 100.0 * (watched / plain - 1.0), static_cast<double>(read.messages) / ticks,
+      1e-3 * static_cast<double>(read.bytes) / ticks, viewer.server().skipped());
+}
+
+}  // namespace
+
+}  // namespace sf::bench
+
+int main(int argc, char** argv) {
+  const auto robots = static_cast<std::uint32_t>(argc > 1 ? std::atoi(argv[1]) : 1000);
+  const double seconds = argc > 2 ? std::atof(argv[2]) : 6.0;
+  sf::gpu::Device device;
+  sf::bench::measure(0.1, robots, seconds, device);         // every robot's laser in every tick
+  sf::bench::measure(1.0 / 30.0, robots, seconds, device);  // lasers at 10 Hz: in every third
+}
