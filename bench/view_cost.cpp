@@ -88,12 +88,15 @@ std::vector<int> channels_of(const record::RunInfo& info) {
 
 /// Ticks at the rate. @return CPU time per tick [s]
 double drive(scenarios::Simulation& simulation, bridges::Viewer* viewer, int ticks) {
-  const auto begin = std::chrono::steady_clock::now();
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kPeriod = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / kRate));
+  Clock::time_point next = Clock::now();
   const Cost before = now();
   for (int i = 0; i < ticks; ++i) {
     const base::TickRecord tick = simulation.step();
     if (viewer != nullptr) viewer->publish(tick, {});
-    std::this_thread::sleep_until(begin + std::chrono::duration<double>((i + 1) / kRate));
+    next = std::max(next + kPeriod, Clock::now());  // what is late is not made up for: no update would be sent
+    std::this_thread::sleep_until(next);
   }
   return (now() - before).cpu_s / ticks;
 }

@@ -5,6 +5,7 @@ import { drawReadingAbove, drawReadingBelow } from './sensors.js';
 
 const smallest = 3;  // [px] radius below which a robot is a dot
 const namedRobots = 30;
+const paths = 60;  // robots drawn as paths; more of them as pictures, and their trails as hairlines, which cost a tenth
 
 export class Drawing {
   constructor(canvas, camera, scene, layer, fleet) {
@@ -17,6 +18,7 @@ export class Drawing {
     this.maps = new Map();  // by topic: MapPicture
     /** What the last frame shows, for tests. */
     this.drawn = {};
+    this.sprites = new Map();
     this.byColor = new Map();
     scene.movers.forEach((mover, i) => {
       const color = mover.color || theme.wall;
@@ -77,7 +79,8 @@ export class Drawing {
       c.stroke();
     };
     c.lineJoin = 'round';
-    for (const [color, robots] of this.byColor) stroke(robots.filter((i) => i !== this.selected), fade(onPaper(color), 0.5), 1.3);
+    const width = fleet.count > paths ? 1 / this.ratio : 1.3;
+    for (const [color, robots] of this.byColor) stroke(robots.filter((i) => i !== this.selected), fade(onPaper(color), 0.5), width);
     if (this.selected >= 0) stroke([this.selected], fade(theme.trail, 0.85), 2.2);
   }
 
@@ -89,48 +92,82 @@ export class Drawing {
     }
   }
 
-  /** All robots of a colour are one path: a thousand cost as much as their outlines. */
   #robots(c) {
-    for (const [color, robots] of this.byColor) {
-      const seen = robots.filter((i) => this.#visible(i));
-      if (seen.length === 0) continue;
-      this.drawn.robots += seen.length;
-      c.beginPath();
-      for (const i of seen) this.#outline(c, i);
-      c.fillStyle = fade(color, 0.85);
-      c.fill();
-      c.strokeStyle = darker(color, 0.55);
-      c.lineWidth = 1.2;
-      c.stroke();
-      c.beginPath();
-      for (const i of seen) this.#heading(c, i);
-      c.lineWidth = 2;
-      c.strokeStyle = darker(color, 0.7);
-      c.stroke();
+    const all = [...this.byColor].map(([color, robots]) => [color, robots.filter((i) => this.#visible(i))]);
+    for (const [, seen] of all) this.drawn.robots += seen.length;
+    for (const [color, seen] of all) (this.drawn.robots > paths ? this.#pictures : this.#bodies).call(this, c, color, seen);
+    c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+  }
+
+  #bodies(c, color, robots) {
+    c.beginPath();
+    for (const i of robots) this.#outline(c, i, this.camera.toScreen(this.fleet.shownX[i], this.fleet.shownY[i]), this.fleet.shownYaw[i]);
+    c.fillStyle = fade(color, 0.85);
+    c.fill();
+    c.strokeStyle = darker(color, 0.55);
+    c.lineWidth = 1.2;
+    c.stroke();
+    c.beginPath();
+    for (const i of robots) this.#heading(c, i, this.camera.toScreen(this.fleet.shownX[i], this.fleet.shownY[i]), this.fleet.shownYaw[i]);
+    c.lineWidth = 2;
+    c.strokeStyle = darker(color, 0.7);
+    c.stroke();
+  }
+
+  /** One picture for all robots of a shape and colour, turned. */
+  #pictures(c, color, robots) {
+    const { fleet, camera, ratio } = this;
+    if (this.spriteScale !== camera.scale * ratio) this.sprites.clear();
+    this.spriteScale = camera.scale * ratio;
+    for (const i of robots) {
+      const key = `${this.scene.movers[i].shape} ${color} ${fleet.radius[i]}`;
+      if (!this.sprites.has(key)) this.sprites.set(key, this.#picture(color, i));
+      const { canvas, half } = this.sprites.get(key), [x, y] = camera.toScreen(fleet.shownX[i], fleet.shownY[i]);
+      const cos = Math.cos(fleet.shownYaw[i]), sin = Math.sin(fleet.shownYaw[i]);
+      c.setTransform(cos, -sin, sin, cos, ratio * x, ratio * y);
+      c.drawImage(canvas, -half, -half);
     }
   }
 
-  #outline(c, i) {
-    const { fleet, camera, scene } = this;
-    const [x, y] = camera.toScreen(fleet.shownX[i], fleet.shownY[i]), radius = fleet.radius[i] * camera.scale;
+  #picture(color, i) {
+    const half = Math.ceil(this.ratio * (Math.max(8, this.fleet.radius[i] * this.camera.scale) + 3));
+    const canvas = document.createElement('canvas'), size = 2 * half;
+    canvas.width = canvas.height = size;
+    const c = canvas.getContext('2d');
+    c.setTransform(this.ratio, 0, 0, this.ratio, half, half);
+    c.beginPath();
+    this.#outline(c, i, [0, 0], 0);
+    c.fillStyle = fade(color, 0.85);
+    c.fill();
+    c.strokeStyle = darker(color, 0.55);
+    c.lineWidth = 1.2;
+    c.stroke();
+    c.beginPath();
+    this.#heading(c, i, [0, 0], 0);
+    c.lineWidth = 2;
+    c.strokeStyle = darker(color, 0.7);
+    c.stroke();
+    return { canvas, half };
+  }
+
+  #outline(c, i, [x, y], yaw) {
+    const { fleet, camera, scene } = this, radius = fleet.radius[i] * camera.scale;
     const { closed, open } = scene.shapes[scene.movers[i].shape];
     if (radius < smallest || closed.length + open.length === 0) {
       c.moveTo(x + Math.max(radius, 2.4), y);
       c.arc(x, y, Math.max(radius, 2.4), 0, 2 * Math.PI);
       return;
     }
-    const cos = Math.cos(fleet.shownYaw[i]) * camera.scale, sin = Math.sin(fleet.shownYaw[i]) * camera.scale;
+    const cos = Math.cos(yaw) * camera.scale, sin = Math.sin(yaw) * camera.scale;
     for (const line of closed.concat(open))
       for (let k = 0; k < line.length; k += 2)
         c[k === 0 ? 'moveTo' : 'lineTo'](x + cos * line[k] - sin * line[k + 1], y - sin * line[k] - cos * line[k + 1]);
   }
 
-  #heading(c, i) {
-    const { fleet, camera } = this;
-    const [x, y] = camera.toScreen(fleet.shownX[i], fleet.shownY[i]);
-    const radius = fleet.radius[i] * camera.scale, reach = radius < smallest ? Math.max(2.2 * radius, 6) : radius;
+  #heading(c, i, [x, y], yaw) {
+    const radius = this.fleet.radius[i] * this.camera.scale, reach = radius < smallest ? Math.max(2.2 * radius, 6) : radius;
     c.moveTo(x, y);
-    c.lineTo(x + reach * Math.cos(fleet.shownYaw[i]), y - reach * Math.sin(fleet.shownYaw[i]));
+    c.lineTo(x + reach * Math.cos(yaw), y - reach * Math.sin(yaw));
   }
 
   /** A ring and a cross: contact is known without its colour. */
