@@ -2,8 +2,8 @@
 
 #include "apps/address.h"
 #include "apps/text.h"
-#include "netio/bridges/ros2_bridge.h"
 #include "netio/bridges/player_bridge.h"
+#include "netio/bridges/ros2_bridge.h"
 #include "netio/bridges/viewer.h"
 
 namespace sf::apps {

@@ -211,12 +211,14 @@ void add_bridges(CLI::App& app, BridgeOptions& o) {
       ->expected(0, 1)
       ->check(whole(0, bridges::kDdsMaxDomain))
       ->type_name("[DOMAIN]")
-      ->group("Bridges");
+      ->group(kBridgeGroup);
   app.add_option("--player", o.player,
                  "Player server for clients of Player, all robots at this port, and robot K alone K - 1 ports on "
                  "(default: 127.0.0.1:6665; 0: any free ones)")
       ->expected(0, 1)
       ->default_str("6665")
+      ->type_name("[HOST:]PORT")
+      ->group(kBridgeGroup);
   const auto read = [&o](const std::string& text) { o.view = bridges::read_web_address(text); };
   app.add_option_function<std::string>(
          "--view", read,

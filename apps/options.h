@@ -187,27 +187,22 @@ struct ExportOptions : RecordingOption, PartOption, DeviceOption {
 };
 
 struct ViewOptions : RecordingOption, PartOption, DeviceOption {
-  bool three_d = false;    ///< VTK's window
-  double every = 0.1;      ///< [s] between frames
-  double height = 0.1;     ///< [m] of the field's plane
-  double time = 0.0;       ///< [s] of the first frame shown
-  std::string screenshot;  ///< picture to write in place of waiting for a user; empty: none
-};
-
-struct ViewOptions : RecordingOption {
-  bridges::WebAddress port;
+  bridges::WebAddress port;  ///< of the page in a browser
+  bool three_d = false;      ///< VTK's window instead
+  double every = 0.1;        ///< [s] between frames
+  double height = 0.1;       ///< [m] of the field's plane
+  double time = 0.0;         ///< [s] of the first frame shown
+  std::string screenshot;    ///< picture to write in place of waiting for a user; empty: none
 };
 
 struct ExplainOptions : WorldOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {};
 
 /// Connections to other programs (netio/bridges); each is an address, or a number, as its option's help says.
 struct BridgeOptions {
-  std::optional<std::string> ros2;  ///< domain; empty: that of the environment, or 0
-  bool any() const { return ros2.has_value(); }
-  std::string player;  ///< [HOST:]PORT of a Player server; empty: none
-  bool any() const { return !player.empty(); }
+  std::optional<std::string> ros2;          ///< domain; empty: that of the environment, or 0
+  std::string player;                       ///< [HOST:]PORT of a Player server; empty: none
   std::optional<bridges::WebAddress> view;  ///< of the live view; nullopt: none
-  bool any() const { return view.has_value(); }
+  bool any() const { return ros2 || !player.empty() || view; }
 };
 
 struct RunOptions : WorldOptions,

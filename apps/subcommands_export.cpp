@@ -11,15 +11,15 @@ namespace sf::apps {
 
 namespace {
 
-void add_height(CLI::App& app, double& height) {
-  app.add_option("--height", height, "Height of the plane of the magnetic field [m]")
+CLI::Option* add_height(CLI::App& app, double& height) {
+  return app.add_option("--height", height, "Height of the plane of the magnetic field [m]")
       ->check(number(-1e6, 1e6))
       ->type_name("Z")
       ->capture_default_str();
 }
 
-void add_every(CLI::App& app, double& every, const std::string& help) {
-  app.add_option("--every", every, help)->check(number(1e-3, 1e6))->type_name("S")->capture_default_str();
+CLI::Option* add_every(CLI::App& app, double& every, const std::string& help) {
+  return app.add_option("--every", every, help)->check(number(1e-3, 1e6))->type_name("S")->capture_default_str();
 }
 
 void add_export(CLI::App& app, Call& call) {
@@ -40,21 +40,36 @@ void add_export(CLI::App& app, Call& call) {
 }
 
 void add_view(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand("view", "Show a recorded run in a window");
-  auto& o = add_command(*sub, call, view);
-  add_examples(*sub, {"out/run --3d"});
+  constexpr const char* kGroup = "VTK's window";
+  CLI::App* sub = app.add_subcommand(
+      "view", "Show a recorded run in a browser, with its time to choose, and to Foxglove's viewers, or in a window");
+  auto& o = add_command(*sub, call, view, [sub] {
+    for (const char* name : {"--robots", "--from", "--to"})
+      if (sub->count(name) > 0 && sub->count("--3d") == 0) throw CLI::RequiresError(name, "--3d");
+  });
+  add_examples(*sub, {"out/run", "out/run --port 8800", "out/run --3d"});
   add_recording(*sub, o);
-  sub->add_flag("--3d", o.three_d, "In three dimensions (VTK): walls, robots, beams, magnetic field, a time slider")
-      ->required();
-  add_every(*sub, o.every, "Simulated time between two frames [s]");
-  add_height(*sub, o.height);
+  sub->add_option_function<std::string>(
+         "--port", [&o](const std::string& text) { o.port = *bridges::read_web_address(text); },
+         "TCP port, and address where others are to see it (default 127.0.0.1:8765; port 0: any free one)")
+      ->check(readable(bridges::read_web_address, "[HOST:]PORT such as 8765 or 0.0.0.0:8765"))
+      ->type_name("[HOST:]PORT");
+  auto* window =
+      sub->add_flag("--3d", o.three_d, "In three dimensions (VTK): walls, robots, beams, magnetic field, a time slider")
+          ->group(kGroup);
+  add_every(*sub, o.every, "Simulated time between two frames [s]")->needs(window)->group(kGroup);
+  add_height(*sub, o.height)->needs(window)->group(kGroup);
   sub->add_option("--time", o.time, "Simulated time to begin with [s]")
+      ->needs(window)
       ->check(number(0.0, 1e9))
       ->type_name("S")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(kGroup);
   sub->add_option("--screenshot", o.screenshot, "PNG file to write instead of opening the window for a user")
+      ->needs(window)
       ->check(not_empty("a file"))
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->group(kGroup);
   add_part(*sub, o);
   add_device(*sub, o);
 }

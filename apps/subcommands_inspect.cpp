@@ -113,19 +113,6 @@ void add_plot(CLI::App& app, Call& call) {
   add_device(*sub, o);
 }
 
-void add_view(CLI::App& app, Call& call) {
-  CLI::App* sub = app.add_subcommand(
-      "view", "Show a recorded run in a browser, with its time to choose, and to Foxglove's viewers");
-  auto& o = add_command(*sub, call, view);
-  add_examples(*sub, {"out/run", "out/run --port 8800"});
-  add_recording(*sub, o);
-  sub->add_option_function<std::string>(
-         "--port", [&o](const std::string& text) { o.port = *bridges::read_web_address(text); },
-         "TCP port, and address where others are to see it (default 127.0.0.1:8765; port 0: any free one)")
-      ->check(readable(bridges::read_web_address, "[HOST:]PORT such as 8765 or 0.0.0.0:8765"))
-      ->type_name("[HOST:]PORT");
-}
-
 void add_v2x(CLI::App& app, Call& call) {
   using Action = V2xOptions::Action;
   CLI::App* sub = app.add_subcommand("v2x",
@@ -184,7 +171,6 @@ void add_inspect_commands(CLI::App& app, Call& call) {
   add_field(app, call);
   add_sense(app, call);
   add_plot(app, call);
-  add_view(app, call);
   add_explain(app, call);
   add_v2x(app, call);
 }

@@ -9,6 +9,7 @@
 #include "apps/report.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
+#include "apps/view_3d.h"
 #include "base/elapsed.h"
 #include "netio/bridges/viewer.h"
 #include "record/recording.h"
@@ -72,6 +73,7 @@ class Playback {
 }  // namespace
 
 int view(const ViewOptions& options) {
+  if (options.three_d) return view_3d(options);
   const record::Recording recording = record::open_recording(options.recording);
   print_damage(recording);
   const world::World world = world::from_snapshot(recording.info.snapshot);

@@ -67,6 +67,4 @@ int view_3d(const ViewOptions& options) {
   return 0;
 }
 
-int view(const ViewOptions& options) { return view_3d(options); }
-
 }  // namespace sf::apps

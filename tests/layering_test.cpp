@@ -58,12 +58,9 @@ struct Heavy {
   std::size_t sources = 1;
 };
 const std::vector<Heavy> kHeavy{{"CLI/", "apps", 7},
-                                {"nlohmann/", "apps", 4},
+                                {"nlohmann/", "", 6},
                                 {"vtk", "viz", 3},
                                 {"cairo", "viz"},
-const std::vector<Heavy> kHeavy{{"CLI/", "apps", 6},
-                                {"nlohmann/", "", 6},
-                                {"vtk", "viz"},
                                 {"opencv2/", "vision", 4},
                                 {"boost/asio", "netio/bridges", 2},
                                 {"boost/beast", "netio/bridges"},
