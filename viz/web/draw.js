@@ -6,6 +6,7 @@ import { drawReadingAbove, drawReadingBelow } from './sensors.js';
 const smallest = 3;  // [px] radius below which a robot is a dot
 const namedRobots = 30;
 const paths = 60;  // robots drawn as paths; more of them as pictures, and their trails as hairlines, which cost a tenth
+const headings = 64;  // of such pictures
 
 export class Drawing {
   constructor(canvas, camera, scene, layer, fleet) {
@@ -114,36 +115,36 @@ export class Drawing {
     c.stroke();
   }
 
-  /** One picture for all robots of a shape and colour, turned. */
+  /** One picture for all robots of a shape, colour and heading: unturned, on whole pixels, it is copied fast. */
   #pictures(c, color, robots) {
     const { fleet, camera, ratio } = this;
     if (this.spriteScale !== camera.scale * ratio) this.sprites.clear();
     this.spriteScale = camera.scale * ratio;
+    c.setTransform(1, 0, 0, 1, 0, 0);
     for (const i of robots) {
-      const key = `${this.scene.movers[i].shape} ${color} ${fleet.radius[i]}`;
-      if (!this.sprites.has(key)) this.sprites.set(key, this.#picture(color, i));
+      const turns = fleet.shownYaw[i] / (2 * Math.PI), step = Math.round((turns - Math.floor(turns)) * headings) % headings;
+      const key = `${step} ${this.scene.movers[i].shape} ${color} ${fleet.radius[i]}`;
+      if (!this.sprites.has(key)) this.sprites.set(key, this.#picture(color, i, (step / headings) * 2 * Math.PI));
       const { canvas, half } = this.sprites.get(key), [x, y] = camera.toScreen(fleet.shownX[i], fleet.shownY[i]);
-      const cos = Math.cos(fleet.shownYaw[i]), sin = Math.sin(fleet.shownYaw[i]);
-      c.setTransform(cos, -sin, sin, cos, ratio * x, ratio * y);
-      c.drawImage(canvas, -half, -half);
+      c.drawImage(canvas, Math.round(ratio * x) - half, Math.round(ratio * y) - half);
     }
   }
 
-  #picture(color, i) {
+  #picture(color, i, yaw) {
     const half = Math.ceil(this.ratio * (Math.max(8, this.fleet.radius[i] * this.camera.scale) + 3));
     const canvas = document.createElement('canvas'), size = 2 * half;
     canvas.width = canvas.height = size;
     const c = canvas.getContext('2d');
     c.setTransform(this.ratio, 0, 0, this.ratio, half, half);
     c.beginPath();
-    this.#outline(c, i, [0, 0], 0);
+    this.#outline(c, i, [0, 0], yaw);
     c.fillStyle = fade(color, 0.85);
     c.fill();
     c.strokeStyle = darker(color, 0.55);
     c.lineWidth = 1.2;
     c.stroke();
     c.beginPath();
-    this.#heading(c, i, [0, 0], 0);
+    this.#heading(c, i, [0, 0], yaw);
     c.lineWidth = 2;
     c.strokeStyle = darker(color, 0.7);
     c.stroke();
