@@ -213,7 +213,7 @@ TEST_F(Recorded, WithoutADisplayTheWindowIsRefused) {
   expect_refused(with("view", {"--3d"}), "no display");
   const Outcome outcome = run_program(with("view", {"--3d"}), {{"DISPLAY", ":64999"}});
   EXPECT_EQ(outcome.code, 2) << "a display that is not there";
-  expect_refused(with("view", {}), "--3d");
+  expect_refused(with("view", {"--from", "1"}), "--3d");
 }
 
 TEST_F(Recorded, TheWindowShowsTheRun) {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "avoid.h"
+#include "tests/four_ways/avoid.h"
 
 int main() {
   sensorfarm::Simulation simulation("worlds/cave.world", {.robots = 5});

@@ -2,7 +2,7 @@
 
 #include <sensorfarm/plugin.h>
 
-#include "avoid.h"
+#include "tests/four_ways/avoid.h"
 
 namespace {
 
