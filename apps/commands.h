@@ -24,6 +24,7 @@ int listen(const ListenOptions& options);
 int dump(const DumpOptions& options);
 int experiment(const ExperimentOptions& options);
 int test_scenarios(const TestOptions& options);
+int sweep(const SweepOptions& options);
 int map(const MapOptions& options);
 int verify(const VerifyOptions& options);
 int explain(const ExplainOptions& options);

@@ -6,6 +6,7 @@
 
 #include "apps/csv_text.h"
 #include "apps/report.h"
+#include "base/csv.h"
 
 namespace sf::apps {
 
@@ -63,7 +64,7 @@ std::string text_of(const world::World& world, const sensors::SensorSet& sensor_
       for (std::uint32_t k = 0; k < column.width; ++k, ++at)
         line += (type.is_scan || at > i * width ? "," : "") + missing_or(reading.values[at], column);
     if (type.is_scan)
-      line += "," + (reading.hits[i] == base::kNoHit ? "" : csv_field(world.models[reading.hits[i]].name));
+      line += "," + (reading.hits[i] == base::kNoHit ? "" : base::csv_field(world.models[reading.hits[i]].name));
     text += line + "\n";
   }
   return text;

@@ -323,6 +323,19 @@ struct TestOptions : DeviceOption {
   std::string junit;                   ///< file; empty: none
 };
 
+struct SweepOptions : DeviceOption {
+  std::string file;                 ///< of the sweep
+  std::string out;                  ///< folder
+  unsigned jobs = 0;                ///< processes; 0: one per core, or Slurm's CPUs per task
+  std::string share;                ///< "K/N"; empty: all, or the task's of `srun`
+  bool list = false;                ///< print the points
+  bool retry = false;               ///< failed jobs once more
+  bool merge = false;               ///< write the tables of what is there
+  bool slurm = false;               ///< write a batch script
+  std::uint64_t tasks = 100;        ///< of its job array, at most
+  std::vector<std::string> sbatch;  ///< its options of sbatch
+};
+
 struct VerifyOptions : RecordingOption, ThreadsOption, JsonOption, DeviceOption {
   std::uint64_t sample = 500;  ///< scans that are cast again in plain C++; 0: all
 };

@@ -6,6 +6,7 @@
 #include "apps/commands.h"
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
+#include "apps/slurm.h"
 #include "apps/subcommands.h"
 #include "apps/text.h"
 #include "base/installation.h"
@@ -56,6 +57,56 @@ void add_test(CLI::App& app, Call& call) {
       ->transform(base::installed_file)
       ->type_name("FILE");
   sub->add_option("--junit", o.junit, "Write the results as JUnit XML")->check(not_empty("a file"))->type_name("FILE");
+  add_device(*sub, o);
+}
+
+void add_sweep(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("sweep",
+                                     "Run a scenario over a grid or a sample of its keys, each point with several "
+                                     "seeds, into one folder; again, it goes on with what is missing (exit 1 when a "
+                                     "job failed or missed an expectation)");
+  auto& o = add_command(*sub, call, sweep, [sub] {
+    if (sub->count("--out") + sub->count("--list") == 0) throw CLI::RequiredError("--out (or --list)");
+  });
+  add_examples(*sub, {"experiments/sweeps/lane-edge.toml -o out/sweep",
+                      "experiments/sweeps/lane-edge.toml -o out/sweep --slurm"});
+  sub->add_option("sweep", o.file, "Sweep file (.toml; docs/sweeps.md)")
+      ->required()
+      ->transform(base::installed_file)
+      ->type_name("FILE");
+  auto* out = sub->add_option("-o,--out", o.out, "Folder of results and tables; several machines may share it")
+                  ->check(not_empty("a folder"))
+                  ->type_name("DIR");
+  auto* list =
+      sub->add_flag("--list", o.list, "Print the points and the number of jobs, and run nothing")->excludes(out);
+  sub->add_option("--jobs", o.jobs, "Number of processes (default: one per core; in Slurm, SLURM_CPUS_PER_TASK)")
+      ->check(whole(1, 1024))
+      ->type_name("N");
+  auto* share =
+      sub->add_option("--share", o.share, "Run one of N shares, e.g. 2/8 (default: all; under srun, that of the task)")
+          ->check(readable(read_share, "a share K/N, such as 2/8"))
+          ->excludes(list)
+          ->type_name("K/N");
+  auto* retry = sub->add_flag("--retry", o.retry, "Run failed jobs once more")->excludes(list);
+  auto* merge = sub->add_flag("--merge", o.merge, "Run nothing: write the tables of what is there, missing jobs marked")
+                    ->excludes(list)
+                    ->excludes(share)
+                    ->excludes(retry);
+  auto* slurm =
+      sub->add_flag("--slurm", o.slurm, "Run nothing: write the batch script of a Slurm job array for what is missing")
+          ->excludes(list)
+          ->excludes(share)
+          ->excludes(merge);
+  sub->add_option("--tasks", o.tasks, "Largest number of tasks of the job array")
+      ->check(whole(1, 100'000))
+      ->needs(slurm)
+      ->capture_default_str()
+      ->type_name("N");
+  sub->add_option("--sbatch", o.sbatch,
+                  "Option of sbatch for the script, e.g. --sbatch=--time=1:00:00; may be repeated")
+      ->needs(slurm)
+      ->expected(1)
+      ->type_name("OPTION");
   add_device(*sub, o);
 }
 
@@ -129,6 +180,7 @@ void add_selftest(CLI::App& app, Call& call) {
 void add_test_commands(CLI::App& app, Call& call) {
   add_experiment(app, call);
   add_test(app, call);
+  add_sweep(app, call);
   add_verify(app, call);
   add_tradeoff(app, call);
   add_selftest(app, call);

@@ -20,6 +20,12 @@ struct ExpectationResult {
   int line = 0;  ///< in the scenario's file
 };
 
+/// A measure of a run over all robots: the sum or that of the worst, as in [expect] (docs/scenarios.md).
+struct Metric {
+  std::string name;    ///< key of the expectation, or "KEY of ROBOT"
+  double value = 0.0;  ///< in the expectation's unit; NaN when there was nothing to measure
+};
+
 /// A scenario without expectations neither passes nor fails.
 enum class ScenarioStatus : std::uint8_t { passed, failed, no_expectations };
 
@@ -31,6 +37,8 @@ struct ScenarioResult {
   double wall = 0.0;       ///< [s]
   std::uint64_t ticks = 0;
   std::uint64_t hash = 0;  ///< of all readings
+  /// Those of every run, then the other ones that the scenario expects. No durations, so the same on any machine.
+  std::vector<Metric> metrics;
   ScenarioStatus status() const;
 };
 
@@ -40,8 +48,9 @@ struct ScenarioResult {
 std::vector<world::Warning> check_scenario(const Scenario& scenario);
 
 /// @param progress called with the completed part in [0, 1]; may be empty
+/// @param threads of the host's part; 0: all. Does not affect results
 /// @throws base::InputError when the world or a robot lacks something required
 ScenarioResult run_scenario(const Scenario& scenario, gpu::Device& device,
-                            const std::function<void(double)>& progress = {});
+                            const std::function<void(double)>& progress = {}, unsigned threads = 0);
 
 }  // namespace sf::scenarios

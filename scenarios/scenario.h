@@ -12,6 +12,7 @@
 #include "netio/link_model.h"
 #include "scenarios/plant.h"
 #include "scenarios/simulation.h"
+#include "world/toml.h"
 #include "world/world.h"
 
 namespace sf::scenarios {
@@ -90,6 +91,7 @@ struct Scenario {
 /// The path of the world is relative to the scenario's folder.
 /// @throws base::InputError with file and line, also for unknown keys
 Scenario parse_scenario(const std::string& file, std::string_view text);
+Scenario parse_scenario(const std::string& file, const world::TomlNode& root);
 Scenario read_scenario(const std::string& file);
 
 /// The world with the scenario's changes. @throws base::InputError for unknown robots or lack of room.

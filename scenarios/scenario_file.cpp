@@ -66,7 +66,8 @@ control::Settings settings_of(const Reader& reader, const TomlNode* table, const
   std::vector<control::Setting> settings;
   if (table != nullptr)
     for (const TomlNode& node : table->items)
-      settings.push_back({node.key, value_of(reader, node), fmt::format("{}:{}: ", reader.file(), node.line)});
+      settings.push_back({node.key, value_of(reader, node),
+                          node.line > 0 ? fmt::format("{}:{}: ", reader.file(), node.line) : reader.file() + ": "});
   return {fmt::format("controller '{}'", controller), std::move(settings)};
 }
 
@@ -273,7 +274,10 @@ std::optional<Plant> plant_of(std::string_view name) {
 }
 
 Scenario parse_scenario(const std::string& file, std::string_view text) {
-  const TomlNode root = world::parse_toml(file, text);
+  return parse_scenario(file, world::parse_toml(file, text));
+}
+
+Scenario parse_scenario(const std::string& file, const TomlNode& root) {
   const Reader reader(file);
   reader.require_known(root, kKeys);
   Scenario scenario{.file = file};

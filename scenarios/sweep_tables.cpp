@@ -1,0 +1,207 @@
+#include "scenarios/sweep_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "base/csv.h"
+#include "base/hash.h"
+#include "scenarios/experiment.h"
+#include "scenarios/statistics.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+/// In order of their first appearance: jobs may differ in what they expect, when that is a parameter.
+std::vector<std::string> metric_names(JobResults results) {
+  std::vector<std::string> names;
+  for (const auto& result : results)
+    if (result)
+      for (const Metric& metric : result->metrics)
+        if (std::find(names.begin(), names.end(), metric.name) == names.end()) names.push_back(metric.name);
+  return names;
+}
+
+/// NaN without one.
+double value_of_metric(const JobResult& result, const std::string& name) {
+  for (const Metric& metric : result.metrics)
+    if (metric.name == name) return metric.value;
+  return std::nan("");
+}
+
+std::string number_or_empty(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
+
+std::vector<std::string> parameter_texts(const Sweep& sweep, std::uint64_t point) {
+  const std::vector<std::size_t> rows = rows_at(sweep, point);
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < rows.size(); ++i) texts.push_back(text_of(sweep.parameters[i].values[rows[i]]));
+  return texts;
+}
+
+std::string csv_row(std::vector<std::string> fields) {
+  for (std::string& field : fields) field = base::csv_field(field);
+  return fmt::format("{}\n", fmt::join(fields, ","));
+}
+
+/// For tables of Markdown.
+std::string cell(std::string text) {
+  std::replace(text.begin(), text.end(), '|', '/');
+  return text;
+}
+
+JobResults of_point(const Sweep& sweep, JobResults results, std::uint64_t point) {
+  return results.subspan(point * sweep.seeds.size(), sweep.seeds.size());
+}
+
+ErrorStatistics over_seeds(JobResults results, const std::string& metric) {
+  std::vector<double> values;
+  for (const auto& result : results)
+    if (result) values.push_back(value_of_metric(*result, metric));
+  return statistics_of(values);
+}
+
+/// "0.0341 +- 0.0012"; the deviation is left out for a single value.
+std::string mean_and_deviation(const ErrorStatistics& s) {
+  if (s.count == 0) return "";
+  return fmt::format("{:.4g}", s.mean) + (s.count > 1 ? fmt::format(" ± {:.2g}", s.deviation) : "");
+}
+
+/// Metrics that some job has a value of.
+std::vector<std::string> measured_names(JobResults results) {
+  std::vector<std::string> names = metric_names(results);
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [&](const std::string& name) { return over_seeds(results, name).count == 0; }),
+              names.end());
+  return names;
+}
+
+std::string seeds_text(const Sweep& sweep) {
+  return sweep.seeds.size() > 10
+             ? fmt::format("{}, ... ({} in all)", fmt::join(sweep.seeds.begin(), sweep.seeds.begin() + 10, ", "),
+                           sweep.seeds.size())
+             : fmt::format("{}", fmt::join(sweep.seeds, ", "));
+}
+
+}  // namespace
+
+JobCounts counts_of(JobResults results) {
+  JobCounts counts;
+  for (const auto& result : results) {
+    if (!result)
+      ++counts.missing;
+    else if (result->status == JobStatus::passed)
+      ++counts.passed;
+    else if (result->status == JobStatus::missed)
+      ++counts.missed;
+    else if (result->status == JobStatus::no_expectations)
+      ++counts.no_expectations;
+    else
+      ++counts.failed;
+  }
+  return counts;
+}
+
+std::string text_of(const JobCounts& counts) {
+  const std::pair<std::uint64_t, const char*> kinds[] = {{counts.passed, "pass"},
+                                                         {counts.missed, "missed"},
+                                                         {counts.no_expectations, "without expectations"},
+                                                         {counts.failed, "failed"},
+                                                         {counts.missing, "missing"}};
+  std::vector<std::string> texts;
+  for (const auto& [count, word] : kinds)
+    if (count > 0) texts.push_back(fmt::format("{} {}", count, word));
+  return fmt::format("{}: {}", counted(counts.all(), "job"), fmt::join(texts, ", "));
+}
+
+std::string csv_of_jobs(const Sweep& sweep, JobResults results) {
+  const std::vector<std::string> metrics = metric_names(results);
+  std::vector<std::string> head{"job", "point"};
+  for (const SweepParameter& parameter : sweep.parameters) head.push_back(parameter.name);
+  head.insert(head.end(), {"seed", "status"});
+  head.insert(head.end(), metrics.begin(), metrics.end());
+  head.insert(head.end(), {"simulated_s", "hash", "message"});
+  std::string text = csv_row(head);
+  for (std::uint64_t job = 0; job < results.size(); ++job) {
+    const std::uint64_t point = job / sweep.seeds.size();
+    std::vector<std::string> row{std::to_string(job), std::to_string(point)};
+    for (std::string& value : parameter_texts(sweep, point)) row.push_back(std::move(value));
+    row.push_back(std::to_string(sweep.seeds[job % sweep.seeds.size()]));
+    const auto& result = results[job];
+    const bool ran = result && result->status != JobStatus::failed;
+    row.emplace_back(result ? word_of(result->status) : "missing");
+    for (const std::string& name : metrics) row.push_back(ran ? number_or_empty(value_of_metric(*result, name)) : "");
+    row.push_back(ran ? fmt::format("{}", result->simulated) : "");
+    row.push_back(ran ? base::hash_hex(result->hash) : "");
+    row.push_back(result ? result->message : "");
+    text += csv_row(row);
+  }
+  return text;
+}
+
+std::string csv_of_points(const Sweep& sweep, JobResults results) {
+  const std::vector<std::string> metrics = metric_names(results);
+  std::vector<std::string> head{"point"};
+  for (const SweepParameter& parameter : sweep.parameters) head.push_back(parameter.name);
+  head.insert(head.end(), {"jobs", "pass", "missed", "none", "failed", "missing"});
+  for (const std::string& name : metrics)
+    for (const char* part : {"_mean", "_std", "_min", "_max"}) head.push_back(name + part);
+  std::string text = csv_row(head);
+  for (std::uint64_t point = 0; point < sweep.points(); ++point) {
+    const JobResults own = of_point(sweep, results, point);
+    std::vector<std::string> row{std::to_string(point)};
+    for (std::string& value : parameter_texts(sweep, point)) row.push_back(std::move(value));
+    const JobCounts counts = counts_of(own);
+    for (const std::uint64_t count :
+         {counts.all(), counts.passed, counts.missed, counts.no_expectations, counts.failed, counts.missing})
+      row.push_back(std::to_string(count));
+    for (const std::string& name : metrics) {
+      const ErrorStatistics s = over_seeds(own, name);
+      for (const double value : {s.mean, s.deviation, s.least, s.most}) row.push_back(number_or_empty(value));
+    }
+    text += csv_row(row);
+  }
+  return text;
+}
+
+std::string markdown_of_points(const Sweep& sweep, JobResults results, std::size_t most) {
+  const std::vector<std::string> metrics = measured_names(results);
+  std::vector<std::string> head{"point"};
+  for (const SweepParameter& parameter : sweep.parameters) head.push_back(cell(parameter.name));
+  head.insert(head.end(), {"pass", "missed", "failed", "missing"});
+  for (const std::string& name : metrics) head.push_back(cell(name));
+  std::string text = fmt::format("| {} |\n|", fmt::join(head, " | "));
+  for (std::size_t i = 0; i < head.size(); ++i) text += "---|";
+  text += "\n";
+  for (std::uint64_t point = 0; point < std::min<std::uint64_t>(sweep.points(), most); ++point) {
+    const JobResults own = of_point(sweep, results, point);
+    const JobCounts counts = counts_of(own);
+    std::vector<std::string> row{std::to_string(point)};
+    for (const std::string& value : parameter_texts(sweep, point)) row.push_back(cell(value));
+    for (const std::uint64_t count : {counts.passed, counts.missed, counts.failed, counts.missing})
+      row.push_back(std::to_string(count));
+    for (const std::string& name : metrics) row.push_back(mean_and_deviation(over_seeds(own, name)));
+    text += fmt::format("| {} |\n", fmt::join(row, " | "));
+  }
+  if (sweep.points() > most) text += fmt::format("\n{} points more are in points.csv.\n", sweep.points() - most);
+  return text;
+}
+
+std::vector<std::string> write_sweep_tables(const Sweep& sweep, const SweepFolder& folder, JobResults results) {
+  const std::string report = fmt::format(
+      "# Sweep {}\n\n{} of {}, seeds {}. {}. Values are means over the seeds, ± the standard deviation of a "
+      "sample.\n\n",
+      sweep.name, counted(sweep.points(), "point"), std::filesystem::path(sweep.scenario).filename().string(),
+      seeds_text(sweep), text_of(counts_of(results)));
+  std::vector<std::string> files{folder.file("jobs.csv"), folder.file("points.csv"), folder.file("report.md")};
+  write_whole(files[0], csv_of_jobs(sweep, results));
+  write_whole(files[1], csv_of_points(sweep, results));
+  write_whole(files[2], report + markdown_of_points(sweep, results, 1000));
+  return files;
+}
+
+}  // namespace sf::scenarios

@@ -1,0 +1,36 @@
+#pragma once
+// Tables of a sweep: one row per job, and statistics over the seeds, one row per point.
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "scenarios/sweep_results.h"
+
+namespace sf::scenarios {
+
+/// Number of jobs by result.
+struct JobCounts {
+  std::uint64_t passed = 0, missed = 0, no_expectations = 0, failed = 0, missing = 0;
+  std::uint64_t all() const { return passed + missed + no_expectations + failed + missing; }
+  bool good() const { return missed + failed + missing == 0; }
+};
+using JobResults = std::span<const std::optional<JobResult>>;
+JobCounts counts_of(JobResults results);
+/// "12 jobs: 10 pass, 1 missed, 1 failed"; kinds without a job are left out.
+std::string text_of(const JobCounts& counts);
+
+// Functions of the results of all jobs, in their order; none: a missing one. They do not depend on who ran which job.
+
+/// `job,point,PARAMETERS,seed,status,METRICS,simulated_s,hash,message`.
+std::string csv_of_jobs(const Sweep& sweep, JobResults results);
+/// `point,PARAMETERS,jobs,pass,missed,none,failed,missing`, and of each metric `_mean,_std,_min,_max` over the seeds
+/// that have a value; the sample deviation is empty for a single one.
+std::string csv_of_points(const Sweep& sweep, JobResults results);
+/// The same for readers, as Markdown. @param most rows; more are cut, and say so
+std::string markdown_of_points(const Sweep& sweep, JobResults results, std::size_t most);
+
+/// Writes jobs.csv, points.csv and report.md. @return their paths
+std::vector<std::string> write_sweep_tables(const Sweep& sweep, const SweepFolder& folder, JobResults results);
+
+}  // namespace sf::scenarios
