@@ -1,0 +1,139 @@
+#include "scenarios/sweep_results.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "scenarios/sweep_tables.h"
+
+namespace sf::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+
+Sweep two_points(const std::string& more = "") {
+  return parse_sweep(SF_SOURCE_DIR "/experiments/sweeps/test.toml",
+                     "scenario = \"../simville.toml\"\nseeds = 2\n" + more + "[grid]\nname_of = [\"a, b\", \"c|d\"]\n");
+}
+
+std::string empty_folder(const std::string& name) {
+  const std::string path = testing::TempDir() + name;
+  fs::remove_all(path);
+  return path;
+}
+
+JobResult result_of_job(JobStatus status, double x, double y) {
+  return {.status = status, .simulated = 2.5, .hash = UINT64_MAX, .metrics = {{"x", x}, {"y of r1", y}}};
+}
+
+TEST(SweepFolder, ResultsComeBackBitForBit) {
+  const SweepFolder folder(two_points(), empty_folder("results"));
+  EXPECT_FALSE(folder.read(0).has_value());
+  JobResult written = result_of_job(JobStatus::missed, 0.1 + 0.2, std::nan(""));
+  written.metrics.push_back({"infinite", -std::numeric_limits<double>::infinity()});
+  written.metrics.push_back({"smallest", std::numeric_limits<double>::denorm_min()});
+  written.message = "two\nlines\tand a tab";
+  for (const std::uint64_t job : {std::uint64_t{0}, std::uint64_t{999}, std::uint64_t{1000}, kMostJobs - 1}) {
+    folder.write(job, written);
+    const std::optional<JobResult> read = folder.read(job);
+    ASSERT_TRUE(read.has_value()) << job;
+    EXPECT_EQ(read->status, JobStatus::missed);
+    EXPECT_EQ(read->message, "two lines and a tab");
+    EXPECT_EQ(read->hash, UINT64_MAX);
+    EXPECT_EQ(read->simulated, 2.5);
+    ASSERT_EQ(read->metrics.size(), 4u);
+    EXPECT_EQ(read->metrics[0].value, 0.1 + 0.2);
+    EXPECT_TRUE(std::isnan(read->metrics[1].value));
+    EXPECT_EQ(read->metrics[1].name, "y of r1");
+    EXPECT_EQ(read->metrics[2].value, -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(read->metrics[3].value, std::numeric_limits<double>::denorm_min());
+  }
+}
+
+/// As after a crash of the machine or on a full disk: each beginning of a file is no result.
+TEST(SweepFolder, APartOfAResultIsNone) {
+  const SweepFolder folder(two_points(), empty_folder("parts"));
+  folder.write(3, result_of_job(JobStatus::passed, 1.0, 2.0));
+  const std::string file = folder.file("jobs/000/000003.txt");
+  const std::string whole = base::read_text(file);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    std::ofstream(file, std::ios::binary | std::ios::trunc) << whole.substr(0, size);
+    EXPECT_FALSE(folder.read(3).has_value()) << size;
+  }
+  for (const char* wrong : {"status\tgood\nend\n", "metric\tx\tmuch\nend\n", "hash\t-1\nend\n", "nobody\t1\nend\n"}) {
+    std::ofstream(file, std::ios::binary | std::ios::trunc) << wrong;
+    EXPECT_FALSE(folder.read(3).has_value()) << wrong;
+  }
+}
+
+TEST(SweepFolder, AnotherSweepIsRefused) {
+  const std::string path = empty_folder("mine");
+  const SweepFolder folder(two_points(), path);
+  EXPECT_NO_THROW(SweepFolder(two_points(), path));
+  EXPECT_THROW(SweepFolder(two_points("name = \"other\"\n"), path), base::InputError);
+  EXPECT_THROW(SweepFolder(two_points(), "/proc/none"), base::InputError);
+}
+
+TEST(SweepFolder, LeavesNoOtherFiles) {
+  const SweepFolder folder(two_points(), empty_folder("tidy"));
+  folder.write(0, result_of_job(JobStatus::passed, 1.0, 2.0));
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder.path())) files += entry.is_regular_file() ? 1 : 0;
+  EXPECT_EQ(files, 2u) << "the mark and the result";
+}
+
+TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
+  const Sweep sweep = two_points();
+  std::vector<std::optional<JobResult>> results(4);
+  results[0] = result_of_job(JobStatus::passed, 1.0, std::nan(""));
+  results[1] = result_of_job(JobStatus::missed, 4.0, std::nan(""));
+  results[1]->message = "x: expected <= 2, got 4";
+  results[2] = JobResult{.message = "it said \"no\""};
+  EXPECT_EQ(csv_of_jobs(sweep, results),
+            "job,point,name_of,seed,status,x,y of r1,simulated_s,hash,message\n"
+            "0,0,\"a, b\",1,pass,1,,2.5,ffffffffffffffff,\n"
+            "1,0,\"a, b\",2,missed,4,,2.5,ffffffffffffffff,\"x: expected <= 2, got 4\"\n"
+            "2,1,c|d,1,failed,,,,,\"it said \"\"no\"\"\"\n"
+            "3,1,c|d,2,missing,,,,,\n");
+  // Mean 2.5, deviation 1.5 sqrt(2); nothing where no job has a value.
+  EXPECT_EQ(csv_of_points(sweep, results),
+            "point,name_of,jobs,pass,missed,none,failed,missing,x_mean,x_std,x_min,x_max,y of r1_mean,y of r1_std,y of "
+            "r1_min,y of r1_max\n"
+            "0,\"a, b\",2,1,1,0,0,0,2.5,2.1213203435596424,1,4,,,,\n"
+            "1,c|d,2,0,0,0,1,1,,,,,,,,\n");
+  EXPECT_EQ(markdown_of_points(sweep, results, 1),
+            "| point | name_of | pass | missed | failed | missing | x |\n|---|---|---|---|---|---|---|\n"
+            "| 0 | a, b | 1 | 1 | 0 | 0 | 2.5 ± 2.1 |\n\n1 points more are in points.csv.\n");
+  EXPECT_EQ(text_of(counts_of(results)), "4 jobs: 1 pass, 1 missed, 1 failed, 1 missing");
+  EXPECT_FALSE(counts_of(results).good());
+}
+
+TEST(JobCounts, OnlyMissedFailedAndMissingJobsAreBad) {
+  std::vector<std::optional<JobResult>> results{result_of_job(JobStatus::passed, 1.0, 1.0),
+                                                result_of_job(JobStatus::no_expectations, 1.0, 1.0)};
+  EXPECT_TRUE(counts_of(results).good());
+  for (const auto& bad : {std::optional(result_of_job(JobStatus::missed, 1.0, 1.0)),
+                          std::optional(JobResult{.status = JobStatus::failed}), std::optional<JobResult>()}) {
+    results[0] = bad;
+    EXPECT_FALSE(counts_of(results).good());
+  }
+}
+
+TEST(JobResult, ExpectationsDecideItsStatus) {
+  ScenarioResult result{.simulated = 1.0, .metrics = {{"contacts", 0.0}}};
+  EXPECT_EQ(job_result_of(result).status, JobStatus::no_expectations);
+  result.outcomes.push_back({.what = "a", .expected = "<= 1", .measured = "0", .met = true});
+  EXPECT_EQ(job_result_of(result).status, JobStatus::passed);
+  result.outcomes.push_back({.what = "b", .expected = "done", .measured = "not done"});
+  EXPECT_EQ(job_result_of(result).status, JobStatus::missed);
+  EXPECT_EQ(job_result_of(result).message, "b: expected done, got not done");
+  EXPECT_EQ(job_result_of(result).metrics.size(), 1u);
+}
+
+}  // namespace
+}  // namespace sf::scenarios

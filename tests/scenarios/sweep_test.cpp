@@ -1,0 +1,215 @@
+#include "scenarios/sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "base/error.h"
+#include "scenarios/sweep_sample.h"
+
+namespace sf::scenarios {
+namespace {
+
+constexpr const char* kSweepFile = SF_SOURCE_DIR "/experiments/sweeps/test.toml";
+constexpr const char* kTown = "scenario = \"../simville.toml\"\n";
+
+/// Message from the file's name on; empty without an error.
+std::string sweep_refusal(const std::string& text) {
+  try {
+    check_sweep(parse_sweep(kSweepFile, text));
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    return what.substr(what.find("test.toml"));
+  }
+  return {};
+}
+
+std::vector<double> values_of(const std::string& parameter) {
+  const Sweep sweep = parse_sweep(kSweepFile, kTown + ("[grid]\n" + parameter));
+  std::vector<double> numbers;
+  for (const world::TomlNode& value : sweep.parameters.at(0).values) numbers.push_back(value.number);
+  return numbers;
+}
+
+TEST(SweepFile, OneErrorEachAtItsLine) {
+  const std::string town = kTown;
+  const std::pair<std::string, std::string> kCorpus[] = {
+      {"seeds = 2\n", "test.toml: has no scenario"},
+      {"seeds = 2\nscenario = \"no.toml\"\n", "test.toml:2: there is no scenario 'no.toml'"},
+      {town + "sead = 2\n", "test.toml:2: unknown key 'sead'"},
+      {town + "seeds = 0\n", "test.toml:2: 'seeds' expects at least one"},
+      {town + "seeds = [1, 2, 1]\n", "test.toml:2: 'seeds' has one of them twice"},
+      {town + "seeds = [1.5]\n", "test.toml:2: 'seeds' expects a whole number"},
+      {town + "[grid]\nseed = [1, 2]\n", "test.toml:3: 'seed' is no parameter"},
+      {town + "[grid]\nduration = []\n", "test.toml:3: 'duration' has no values"},
+      {town + "[grid]\n\"link..delay\" = [1]\n", "test.toml:3: 'link..delay' has an empty part"},
+      {town + "[grid]\nlink.delay = [0]\n\"link.delay\" = [1]\n", "test.toml:4: 'link.delay' is a parameter already"},
+      {town + "[grid]\nduration = { from = 1, to = 2 }\n", "test.toml:3: 'duration' has no 'count'"},
+      {town + "[grid]\nduration = { from = 1, to = 2, count = 1 }\n", "test.toml:3: 'duration' expects a count of"},
+      {town + "[grid]\nduration = { from = 2, to = 2, count = 2 }\n", "test.toml:3: 'duration' expects 'from' below"},
+      {town + "[grid]\nduration = { from = 0, to = 2, count = 3, scale = \"log\" }\n",
+       "test.toml:3: 'duration': scale \"log\" expects 'from' above 0"},
+      {town + "[grid]\nduration = { from = 0.5, to = 2, count = 3, whole = true }\n",
+       "test.toml:3: 'duration': whole = true expects whole numbers"},
+      {town + "[sample]\npoints = 3\n", "test.toml:2: a sample has points = N and"},
+      {town + "[sample]\npoints = 3\n[sample.range]\nduration = { from = 1, to = 2, count = 3 }\n",
+       "test.toml:5: 'count' belongs to ranges of a grid"},
+      {town + "[sample]\npoints = 3\nmethod = \"sobol\"\n[sample.range]\nduration = [1, 2]\n",
+       "test.toml:4: 'method' expects"},
+      // Known by the scenario alone.
+      {town + "[grid]\nduratoin = [1]\n", "test.toml:3: duratoin = 1: "},
+      {town + "[grid]\nlink.delay = [0.1, 0.2, -1, 0.3]\n", "test.toml:3: link.delay = -1: "},
+      {town + "[grid]\nduration.long = [1]\n", "test.toml:3: duration.long = 1: 'duration' is a value"},
+      {town + "[grid]\nduration = [1]\nevent.3.at = [1]\n", "test.toml:4: event.3.at = 1: "},
+      // The second of three parameters is at fault, in a value that is neither first nor last.
+      {town + "[grid]\nduration = [1, 2]\ndefault.controller = [\"wander\", \"nobody\", \"none\"]\nseeds = 1\n",
+       "test.toml:5: seeds = 1: "},
+      {town + "[grid]\nduration = [1, 2]\nplant = [\"ideal\", \"Ideal\", \"thesis\"]\nlink.delay = [0.1]\n",
+       "test.toml:4: plant = Ideal: "},
+  };
+  for (const auto& [text, said] : kCorpus) EXPECT_EQ(sweep_refusal(text).substr(0, said.size()), said) << text;
+}
+
+TEST(SweepFile, TheNumberOfJobsIsBoundedBeforeAnyIsMade) {
+  const std::string grid = "[grid]\nduration = { from = 1, to = 2, count = 1000 }\n";
+  const std::string delay = "link.delay = { from = 0, to = 1, count = 1000 }\n";
+  EXPECT_EQ(parse_sweep(kSweepFile, kTown + grid + delay).jobs(), kMostJobs);  // the largest sweep
+  const auto refused = [](const std::string& text) {
+    const std::string said = sweep_refusal(text);
+    return said.find("test.toml: has ") == 0 && said.find("expected 1000000 at most") != std::string::npos;
+  };
+  EXPECT_TRUE(refused(kTown + std::string("seeds = 2\n") + grid + delay)) << "seeds count, too";
+  EXPECT_TRUE(refused(kTown + grid + delay + "start_at = { from = 0, to = 1, count = 1000000 }\n"));
+  EXPECT_TRUE(refused(kTown + grid + "[sample]\npoints = 1001\n[sample.range]\nlink.delay = [0, 1]\n"));
+  EXPECT_EQ(sweep_refusal(kTown + std::string("[sample]\npoints = 1000000\n[sample.range]\n"
+                                              "a = [1]\nb = [1]\nc = [1]\nd = [1]\ne = [1]\n"))
+                .substr(0, 33),
+            "test.toml:2: too many points and ");
+}
+
+TEST(SweepFile, RangesReachBothEnds) {
+  EXPECT_EQ(values_of("duration = { from = 1, to = 2, count = 3 }"), (std::vector<double>{1.0, 1.5, 2.0}));
+  EXPECT_EQ(values_of("duration = { from = 1, to = 4, count = 4, whole = true }"), (std::vector<double>{1, 2, 3, 4}));
+  const std::vector<double> decades = values_of("duration = { from = 0.1, to = 1000, count = 5, scale = \"log\" }");
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(decades[i] / std::pow(10.0, i - 1), 1.0, 1e-12);
+  EXPECT_EQ(decades.back(), 1000.0);
+}
+
+TEST(Sweep, SeedsRunFastestAndTheFilesFirstParameterSlowest) {
+  const Sweep sweep = parse_sweep(kSweepFile, kTown + std::string("seeds = [7, 5]\n[grid]\nstart_at = [1, 2]\n"
+                                                                  "duration = [10, 20, 30]\n"));
+  ASSERT_EQ(sweep.jobs(), 12u);
+  for (std::uint64_t job = 0; job < 12; ++job) {
+    const Scenario scenario = scenario_of(sweep, job);
+    EXPECT_EQ(scenario.start_at, 1.0 + static_cast<double>(job / 6)) << job;
+    EXPECT_EQ(scenario.duration, 10.0 * static_cast<double>(1 + job / 2 % 3)) << job;
+    EXPECT_EQ(scenario.seed, job % 2 == 0 ? 7u : 5u) << job;
+  }
+}
+
+TEST(Sweep, ASampleGoesThroughEachPointOfTheGrid) {
+  const Sweep sweep =
+      parse_sweep(kSweepFile, kTown + std::string("[grid]\nduration = [10, 20]\n[sample]\npoints = 3\n"
+                                                  "[sample.range]\nlink.delay = { from = 0, to = 1 }\n"));
+  ASSERT_EQ(sweep.points(), 6u);
+  std::set<double> delays;
+  for (std::uint64_t point = 0; point < 6; ++point) {
+    EXPECT_EQ(scenario_of(sweep, point).duration, point < 3 ? 10.0 : 20.0);
+    EXPECT_EQ(scenario_of(sweep, point).actor.link.delay, scenario_of(sweep, point % 3).actor.link.delay);
+    delays.insert(scenario_of(sweep, point).actor.link.delay);
+  }
+  EXPECT_EQ(delays.size(), 3u);
+}
+
+/// A robot of the file, one of the world alone, and a whole table.
+TEST(Sweep, ParametersReachEveryKeyOfAScenario) {
+  const Sweep sweep =
+      parse_sweep(kSweepFile,
+                  "scenario = \"../minimagic.toml\"\n[grid]\nrobot.tag1.settings.speed = [0.3]\nrobot.new.rate = [4]\n"
+                  "link = [{ delay = 0.5, loss = 0.25 }]\nexpect.contacts = [3]\n");
+  const Scenario scenario = scenario_of(sweep, 0);
+  const auto robot = [&](const std::string& name) {
+    return *std::find_if(scenario.robot_setups.begin(), scenario.robot_setups.end(),
+                         [&](const RobotSetup& setup) { return setup.name == name; });
+  };
+  control::Settings settings = robot("tag1").actor->controller.settings;
+  EXPECT_EQ(settings.number("speed", 0.0, 0.0, 1.0), 0.3);
+  EXPECT_EQ(settings.numbers("points", {}).size(), 4u) << "the robot's other settings stay";
+  EXPECT_EQ(robot("new").actor->controller.rate, 4.0);
+  EXPECT_EQ(scenario.actor.link.loss, 0.25);
+  EXPECT_EQ(scenario.expect.at(0).limit, 3.0);
+  EXPECT_EQ(text_of(sweep.parameters[2].values[0]), "{ delay = 0.5, loss = 0.25 }");
+}
+
+TEST(Sweep, ItsHashKnowsBothFiles) {
+  const auto hash = [](const std::string& text) { return parse_sweep(kSweepFile, text).hash; };
+  EXPECT_EQ(hash(kTown), hash(kTown));
+  EXPECT_NE(hash(kTown), hash(std::string(kTown) + "seeds = 1\n"));
+  const std::string copy = testing::TempDir() + "copied.toml";
+  std::filesystem::copy_file(SF_SOURCE_DIR "/experiments/simville.toml", copy,
+                             std::filesystem::copy_options::overwrite_existing);
+  const std::string text = "scenario = \"" + copy + "\"\nname = \"a\"\n";
+  std::filesystem::copy_file(SF_SOURCE_DIR "/experiments/minimagic.toml", testing::TempDir() + "other.toml",
+                             std::filesystem::copy_options::overwrite_existing);
+  const std::uint64_t before = hash(text);
+  std::filesystem::rename(testing::TempDir() + "other.toml", copy);
+  EXPECT_NE(hash(text), before) << "the scenario changed behind the same words";
+}
+
+TEST(Sweep, TheExampleIsValid) {
+  const Sweep sweep = read_sweep(SF_SOURCE_DIR "/experiments/sweeps/lane-edge.toml");
+  EXPECT_TRUE(check_sweep(sweep).empty());
+  EXPECT_EQ(sweep.jobs(), 27u);
+}
+
+TEST(SamplePoints, ALatinHypercubeHasOnePointInEachInterval) {
+  for (const std::uint64_t points : {1u, 2u, 7u, 100u}) {
+    const auto rows = sample_points(SampleMethod::latin_hypercube, points, 3, points);
+    for (std::size_t d = 0; d < 3; ++d) {
+      std::set<std::uint64_t> intervals;
+      for (const std::vector<double>& row : rows) {
+        EXPECT_GE(row[d], 0.0);
+        EXPECT_LT(row[d], 1.0);
+        intervals.insert(static_cast<std::uint64_t>(row[d] * static_cast<double>(points)));
+      }
+      EXPECT_EQ(intervals.size(), points) << d;
+    }
+  }
+}
+
+TEST(SamplePoints, SeedsAndMethodsDifferAndARandomSampleGrows) {
+  const auto points = [](SampleMethod method, std::uint64_t count, std::uint64_t seed) {
+    return sample_points(method, count, 2, seed);
+  };
+  constexpr auto kLatin = SampleMethod::latin_hypercube;
+  EXPECT_EQ(points(kLatin, 9, 1), points(kLatin, 9, 1));
+  EXPECT_NE(points(kLatin, 9, 1), points(kLatin, 9, 2));
+  const auto nine = points(SampleMethod::random, 9, 1);
+  EXPECT_NE(nine, points(kLatin, 9, 1));
+  auto twenty = points(SampleMethod::random, 20, 1);
+  twenty.resize(9);
+  EXPECT_EQ(twenty, nine);
+  EXPECT_NEAR(sample_points(SampleMethod::random, 1, 1, 1)[0][0], 0.13387664401253274, 1e-15) << "the engine's first";
+}
+
+/// The mean of a coordinate varies less over hypercubes than over independent points: that is what they are for.
+TEST(SamplePoints, AHypercubesMeanIsCloserToTheMiddle) {
+  double latin = 0.0, random = 0.0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const auto error = [&](SampleMethod method) {
+      double sum = 0.0;
+      for (const std::vector<double>& row : sample_points(method, 20, 1, seed)) sum += row[0];
+      return std::pow(sum / 20.0 - 0.5, 2.0);
+    };
+    latin += error(SampleMethod::latin_hypercube) / 200.0;
+    random += error(SampleMethod::random) / 200.0;
+  }
+  EXPECT_NEAR(random, 1.0 / 12.0 / 20.0, 0.0013) << "variance of a mean of 20; three of its deviations";
+  EXPECT_NEAR(latin, 1.0 / 12.0 / 8000.0, 4e-6) << "jitter within intervals alone: 1 / (12 n^3)";
+}
+
+}  // namespace
+}  // namespace sf::scenarios
