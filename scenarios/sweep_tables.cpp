@@ -187,7 +187,8 @@ std::string markdown_of_points(const Sweep& sweep, JobResults results, std::size
     for (const std::string& name : metrics) row.push_back(mean_and_deviation(over_seeds(own, name)));
     text += fmt::format("| {} |\n", fmt::join(row, " | "));
   }
-  if (sweep.points() > most) text += fmt::format("\n{} points more are in points.csv.\n", sweep.points() - most);
+  if (sweep.points() > most)
+    text += fmt::format("\nMore in points.csv: {}.\n", counted(sweep.points() - most, "point"));
   return text;
 }
 

@@ -108,7 +108,7 @@ TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
             "1,c|d,2,0,0,0,1,1,,,,,,,,\n");
   EXPECT_EQ(markdown_of_points(sweep, results, 1),
             "| point | name_of | pass | missed | failed | missing | x |\n|---|---|---|---|---|---|---|\n"
-            "| 0 | a, b | 1 | 1 | 0 | 0 | 2.5 ± 2.1 |\n\n1 points more are in points.csv.\n");
+            "| 0 | a, b | 1 | 1 | 0 | 0 | 2.5 ± 2.1 |\n\nMore in points.csv: 1 point.\n");
   EXPECT_EQ(text_of(counts_of(results)), "4 jobs: 1 pass, 1 missed, 1 failed, 1 missing");
   EXPECT_FALSE(counts_of(results).good());
 }

@@ -178,6 +178,11 @@ TEST(SamplePoints, ALatinHypercubeHasOnePointInEachInterval) {
       EXPECT_EQ(intervals.size(), points) << d;
     }
   }
+  // Each coordinate has its own order: of a hundred points one is expected in the same interval of two.
+  std::size_t same = 0;
+  for (const std::vector<double>& row : sample_points(SampleMethod::latin_hypercube, 100, 2, 1))
+    same += std::floor(100.0 * row[0]) == std::floor(100.0 * row[1]) ? 1 : 0;
+  EXPECT_LT(same, 8u);
 }
 
 TEST(SamplePoints, SeedsAndMethodsDifferAndARandomSampleGrows) {

@@ -1,0 +1,229 @@
+// `sweep` as a user runs it: processes, shares, kills, and Slurm's scripts and variables.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <thread>
+
+#include "tests/apps/program.h"
+
+namespace sf {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kJobs = 24;
+
+/// Twelve points of two seeds; a job takes some hundredths of a second.
+std::string write_sweep(const Folder& folder, const std::string& duration = "1", const std::string& expect = "") {
+  folder.write("small.toml", "world = \"" + our_world("rooms.world") + "\"\nrobots = 2\nduration = " + duration + "\n" +
+                                 (expect.empty() ? "" : "[expect]\n" + expect));
+  return folder.write("sweep.toml",
+                      "scenario = \"small.toml\"\nseeds = 2\n[grid]\nrobots = [1, 2, 3]\n"
+                      "[sample]\npoints = 4\n[sample.range]\nlink.delay = { from = 0, to = 0.3 }\n");
+}
+
+/// By name; the sweep's results and tables.
+std::map<std::string, std::string> tables_of(const Folder& folder, const std::string& out) {
+  std::map<std::string, std::string> tables;
+  for (const char* name : {"jobs.csv", "points.csv", "report.md"})
+    tables[name] = read_file(folder.path(out + "/" + name));
+  return tables;
+}
+
+/// Paths of the results, with their times of writing.
+std::map<std::string, fs::file_time_type> results_of(const std::string& out) {
+  std::map<std::string, fs::file_time_type> results;
+  std::error_code none;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(out) / "jobs", none))
+    if (entry.path().extension() == ".txt") results[entry.path().filename()] = entry.last_write_time();
+  return results;
+}
+
+TEST(SweepCommand, TablesAreTheSameForAnyNumberOfProcesses) {
+  const Folder folder;
+  const std::string file = write_sweep(folder, "1", "contacts = 1000\n");
+  const Outcome one = run_program({"sweep", file, "-o", folder.path("one"), "--jobs", "1"});
+  ASSERT_EQ(one.code, 0) << one.err;
+  EXPECT_NE(one.out.find("24 jobs: 24 pass\n"), std::string::npos) << one.out;
+  EXPECT_EQ(one.err.find('\r'), std::string::npos) << "quiet where nobody watches: " << one.err;
+  ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("three"), "--jobs", "3"}).code, 0);
+  EXPECT_EQ(tables_of(folder, "three"), tables_of(folder, "one"));
+
+  // Shares, in any order; the last one writes the tables.
+  for (const char* share : {"3/3", "1/3"}) {
+    const Outcome part = run_program({"sweep", file, "-o", folder.path("parts"), "--share", share});
+    EXPECT_EQ(part.code, 0) << part.err;
+    EXPECT_NE(part.err.find("8 jobs: 8 pass"), std::string::npos) << part.err;
+    EXPECT_FALSE(fs::exists(folder.path("parts/jobs.csv")));
+  }
+  // As `srun` starts it.
+  const Outcome last =
+      run_program({"sweep", file, "-o", folder.path("parts")},
+                  {{"SLURM_STEP_ID", "0"}, {"SLURM_PROCID", "1"}, {"SLURM_NTASKS", "3"}, {"SLURM_CPUS_PER_TASK", "2"}});
+  EXPECT_EQ(last.code, 0) << last.err;
+  EXPECT_EQ(tables_of(folder, "parts"), tables_of(folder, "one"));
+  EXPECT_EQ(count_lines(tables_of(folder, "one")["jobs.csv"]), 1 + kJobs);
+}
+
+/// Begins the sweep and sends it `end` when some jobs are done. A busy machine may let this test look too late, when
+/// all are: then once more, in another folder.
+Outcome interrupted(const std::string& file, int end, std::string& out) {
+  for (;; out += "x") {
+    Program program({"sweep", file, "-o", out, "--jobs", "2"});
+    while (program.running() && results_of(out).size() < 4) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    program.signal(end);
+    Outcome outcome = program.wait();
+    if (results_of(out).size() < kJobs || out.size() > 200) return outcome;
+  }
+}
+
+/// `end` in the middle, and once more from there.
+void interrupt_and_go_on(int end) {
+  const Folder folder;
+  const std::string file = write_sweep(folder, "20");
+  std::string out = folder.path("out");
+  const Outcome killed = interrupted(file, end, out);
+  const auto kept = results_of(out);
+  ASSERT_GE(kept.size(), 4u) << killed.err;
+  ASSERT_LT(kept.size(), kJobs) << "it was to be stopped in the middle";
+  EXPECT_FALSE(fs::exists(out + "/jobs.csv"));
+  if (end == SIGKILL) {
+    EXPECT_EQ(killed.signal, SIGKILL);
+  } else {
+    EXPECT_EQ(killed.code, 1);
+    EXPECT_NE(killed.err.find("interrupted: "), std::string::npos) << killed.err;
+  }
+
+  const Outcome merged = run_program({"sweep", file, "-o", out, "--merge"});
+  EXPECT_EQ(merged.code, 1) << "jobs are missing";
+  EXPECT_NE(read_file(out + "/jobs.csv").find(",missing,"), std::string::npos);
+
+  ASSERT_EQ(run_program({"sweep", file, "-o", out}).code, 0);
+  const auto all = results_of(out);
+  EXPECT_EQ(all.size(), kJobs);
+  for (const auto& [name, time] : kept) EXPECT_EQ(all.at(name), time) << name << " was done already";
+  ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("undisturbed")}).code, 0);
+  EXPECT_EQ(tables_of(folder, fs::path(out).filename()), tables_of(folder, "undisturbed"));
+}
+
+TEST(SweepCommand, AKilledSweepGoesOn) { interrupt_and_go_on(SIGKILL); }
+TEST(SweepCommand, CtrlCLeavesFinishedJobs) { interrupt_and_go_on(SIGINT); }
+
+TEST(SweepCommand, MissedExpectationsAreInTablesAndExitCode) {
+  const Folder folder;
+  const std::string file = write_sweep(folder, "0.5", "distance = 1000\n");
+  const Outcome outcome = run_program({"sweep", file, "-o", folder.path("out")});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.out.find("24 jobs: 24 missed"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("job 0 missed: distance: expected >= 1000, got "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("14 jobs more: see jobs.csv"), std::string::npos) << outcome.err;
+}
+
+/// A crash of a controller, a controller's own error, and jobs beside them that are fine.
+TEST(SweepCommand, AFailureCostsItsJobAlone) {
+  const Folder folder;
+  // Of three values the least and the greatest are tried before: the middle one is known by its job.
+  folder.write("small.toml", "world = \"" + our_world("testpath/testpath.world") +
+                                 "\"\nduration = 0.5\n[default]\ncontroller = \"lane-keeping\"\n");
+  const std::string file =
+      folder.write("sweep.toml",
+                   "scenario = \"small.toml\"\n[grid]\ndefault.settings = [{ kp = 0.5 }, { kp = 0.5, ki = 0.1 }]\n"
+                   "default.controller = [\"lane-keeping\", \"wander\"]\n");
+  const Outcome early = run_program({"sweep", file, "-o", folder.path("out")});
+  EXPECT_EQ(early.code, 2) << "found with the first point's other values";
+  EXPECT_NE(early.err.find("sweep.toml:4: default.controller = wander"), std::string::npos) << early.err;
+
+  const std::string pairs = folder.write("pairs.toml",
+                                         "scenario = \"small.toml\"\n[grid]\n"
+                                         "default.controller = [\"lane-keeping\", \"none\"]\n"
+                                         "expect = [{ contacts = 100 }, { mean_error = 100 }]\n");
+  const Outcome outcome = run_program({"sweep", pairs, "-o", folder.path("pairs")});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_NE(outcome.out.find("4 jobs: 3 pass, 1 failed"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("job 3 failed: "), std::string::npos) << outcome.err;
+  const auto before = results_of(folder.path("pairs"));
+  EXPECT_EQ(run_program({"sweep", pairs, "-o", folder.path("pairs")}).code, 1);
+  EXPECT_EQ(results_of(folder.path("pairs")), before) << "failed jobs stay as they are";
+  EXPECT_EQ(run_program({"sweep", pairs, "-o", folder.path("pairs"), "--retry"}).code, 1);
+  const auto after = results_of(folder.path("pairs"));
+  EXPECT_NE(after.at("000003.txt"), before.at("000003.txt")) << "--retry runs them once more";
+  EXPECT_EQ(after.at("000000.txt"), before.at("000000.txt")) << "and no other";
+}
+
+TEST(SweepCommand, AProcessThatDiesCostsItsJobAlone) {
+  if (std::getenv("SENSORFARM_INSTRUMENTED") != nullptr) GTEST_SKIP() << "Python's plug-in is not instrumented";
+  if (!fs::exists(SF_BINARY_DIR "/sensorfarm_python.so")) GTEST_SKIP() << "built without Python";
+  const Folder folder;
+  folder.write("crash.py",
+               "import os, signal\n"
+               "class Crash:\n"
+               "  def __init__(self, robot, settings):\n    pass\n"
+               "  def step(self, input):\n    os.kill(os.getpid(), signal.SIGKILL)\n");
+  folder.write("small.toml", "world = \"" + our_world("rooms.world") + "\"\nrobots = 1\nduration = 0.5\n");
+  const std::string file = folder.write(
+      "sweep.toml",
+      "scenario = \"small.toml\"\n[grid]\ndefault.controller = [\"wander\", \"crash.py:Crash\", \"none\"]\n");
+  const Outcome outcome = run_program({"sweep", file, "-o", folder.path("out"), "--jobs", "1"});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_NE(outcome.out.find("3 jobs: 2 without expectations, 1 failed"), std::string::npos)
+      << outcome.out << outcome.err;
+  EXPECT_NE(outcome.err.find("job 1 failed: its process was ended by signal 9"), std::string::npos) << outcome.err;
+}
+
+TEST(SweepCommand, SlurmScriptsNameWhatIsMissing) {
+  const Folder folder;
+  const std::string file = write_sweep(folder, "0.5");
+  const std::string out = folder.path("o u t");
+  Words words{"sweep", file, "-o", out, "--slurm", "--tasks", "4", "--jobs", "2", "--sbatch=--time=5"};
+  const Outcome first = run_program(words);
+  ASSERT_EQ(first.code, 0) << first.err;
+  const std::string path = out + "/sweep.sbatch", script = read_file(path);
+  for (const char* line : {"#SBATCH --array=0-3\n", "#SBATCH --cpus-per-task=2\n", "#SBATCH --time=5\n"})
+    EXPECT_NE(script.find(line), std::string::npos) << line << script;
+  EXPECT_TRUE(succeeds("bash -n '" + path + "'"));
+
+  // As sbatch runs two of its four tasks; the other two died with their machine.
+  const std::string task = "SENSORFARM= SLURM_JOB_ID=7 SLURM_PROCID=0 SLURM_NTASKS=1 SLURM_ARRAY_TASK_ID=";
+  for (const char* number : {"0", "2"}) EXPECT_TRUE(succeeds(task + number + " bash '" + path + "'")) << number;
+  EXPECT_EQ(results_of(out).size(), kJobs / 2);
+  ASSERT_EQ(run_program(words).code, 0);
+  EXPECT_NE(read_file(path).find("#SBATCH --array=1,3\n"), std::string::npos) << read_file(path);
+  for (const char* number : {"1", "3"}) EXPECT_TRUE(succeeds(task + number + " bash '" + path + "'")) << number;
+  ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("here")}).code, 0);
+  EXPECT_EQ(tables_of(folder, "o u t"), tables_of(folder, "here"));
+  EXPECT_NE(run_program(words).out.find("24 jobs: "), std::string::npos) << "nothing is missing: the tables";
+}
+
+TEST(SweepCommand, WrongUsageIsExplained) {
+  const Folder folder;
+  const std::string file = write_sweep(folder);
+  const auto refused = [&](Words words, const Environment& environment = {}) {
+    words.insert(words.begin(), {"sweep", file});
+    const Outcome outcome = run_program(words, environment);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_NE(refused({}).find("--out"), std::string::npos);
+  for (const char* share : {"0/2", "3/2", "1", "1/", "/2", "-1/2", "1/2/3"})
+    EXPECT_NE(refused({"-o", folder.path("out"), "--share", share}).find("a share K/N"), std::string::npos) << share;
+  EXPECT_NE(refused({"-o", folder.path("out"), "--tasks", "3"}).find("--slurm"), std::string::npos);
+  EXPECT_NE(refused({"-o", folder.path("out"), "--slurm", "--sbatch=time"}).find("--sbatch 'time'"), std::string::npos);
+  EXPECT_NE(refused({"-o", folder.path("a\"b"), "--slurm"}).find("cannot stand in a batch script"), std::string::npos);
+  EXPECT_NE(refused({"-o", folder.path("out")}, {{"SLURM_STEP_ID", "0"}, {"SLURM_PROCID", "2"}, {"SLURM_NTASKS", "2"}})
+                .find("SLURM_PROCID is '2'"),
+            std::string::npos);
+  EXPECT_EQ(run_program({"sweep", file, "-o", folder.path("out")}, no_device()).code, 3);
+  const Outcome list = run_program({"sweep", file, "--list"}, no_device());
+  EXPECT_EQ(list.code, 0) << "needs no device: " << list.err;
+  EXPECT_NE(list.out.find("12 points x 2 seeds = 24 jobs"), std::string::npos) << list.out;
+}
+
+}  // namespace
+}  // namespace sf
