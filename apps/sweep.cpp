@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <thread>
@@ -91,8 +90,6 @@ bool run_jobs(const SweepOptions& options, const Sweep& sweep, const SweepFolder
               bool replace) {
   const unsigned processes = processes_of(options);
   const bool alone = processes == 1 && !slurm_cpus();
-  // Drivers on the CPU start a thread per core in each process, which only take turns then.
-  if (!alone) setenv("LP_NUM_THREADS", "1", 0);
   std::unique_ptr<gpu::Device> device;  // of a child
   install_stop_handlers();
   Progress progress(sweep.name);

@@ -21,11 +21,11 @@ Four four_of(const std::vector<double>& values) {
   const auto count = static_cast<double>(values.size());
   double sum = 0.0;
   for (const double v : values) sum += v;
-  four.mean = sum / count;
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  four.mean = std::clamp(sum / count, *least, *most);  // equal values have their value as mean, and no deviation
   double squares = 0.0;
   for (const double v : values) squares += (v - four.mean) * (v - four.mean);
   if (values.size() > 1) four.deviation = std::sqrt(squares / (count - 1.0));
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
   four.least = *least;
   four.most = *most;
   return four;

@@ -65,10 +65,10 @@ ErrorStatistics over_seeds(JobResults results, const std::string& metric) {
   return statistics_of(values);
 }
 
-/// "0.0341 +- 0.0012"; the deviation is left out for a single value.
+/// "0.0341 ± 0.0012"; the deviation is left out where there is none.
 std::string mean_and_deviation(const ErrorStatistics& s) {
   if (s.count == 0) return "";
-  return fmt::format("{:.4g}", s.mean) + (s.count > 1 ? fmt::format(" ± {:.2g}", s.deviation) : "");
+  return fmt::format("{:.4g}", s.mean) + (s.deviation > 0.0 ? fmt::format(" ± {:.2g}", s.deviation) : "");
 }
 
 /// Metrics that some job has a value of.

@@ -31,6 +31,16 @@ TEST(Statistics, OfOneHaveNoDeviation) {
   EXPECT_TRUE(std::isnan(s.deviation));
 }
 
+/// A sum of three divided by three may miss the value by a rounding.
+TEST(Statistics, OfEqualValuesHaveThatMeanAndDeviationZero) {
+  for (int k = 1; k <= 200; ++k) {
+    const double x = 0.0123 * k;
+    const double three[] = {x, x, x};
+    EXPECT_EQ(statistics_of(three).mean, x);
+    EXPECT_EQ(statistics_of(three).deviation, 0.0);
+  }
+}
+
 TEST(Statistics, ByHand) {
   const double four[] = {1.0, -3.0, kNan, 2.0, HUGE_VAL, 4.0};
   const ErrorStatistics s = statistics_of(four);
