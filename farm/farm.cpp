@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "farm/delivery.h"
 #include "farm/pose_changes.h"
 #include "farm/sensor_pipeline.h"
+#include "farm/shared_hash.h"
 #include "gpu/batch.h"
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
@@ -55,12 +57,15 @@ struct Farm::State {
   std::vector<base::Report> tick_states;  ///< of the last tick, while samples follow it
   bool between = false;                   ///< `states` are those of a sample
   std::vector<std::uint32_t> subscribed;  ///< per mover: bits of sensor types
+  std::vector<std::uint32_t> read_here;   ///< likewise, of those that are read here
+  std::vector<std::uint8_t> elsewhere;    ///< per mover: another process reads its sensors
   std::vector<std::uint8_t> gone;         ///< per mover
   std::vector<base::StateQuality> qualities;  ///< per mover; empty: none was set
   std::vector<base::ReadingBlock> blocks;
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
   FarmStats stats;
   std::uint64_t hash = 0;
+  std::optional<SharedHash> shared;
 
   State(const world::World& w, gpu::Device& d, const FarmOptions& options)
       : world(w),
@@ -75,6 +80,8 @@ struct Farm::State {
         pose_changes(w),
         states(robots::states_at_load(w)),
         subscribed(w.movers.size(), 0),
+        read_here(w.movers.size(), 0),
+        elsewhere(w.movers.size(), 0),
         gone(w.movers.size(), 0) {
     const sensors::SensorContext context{
         w, device, thread_pool, states, options.seed, options.noise, options.true_poses, options.scene};
@@ -82,6 +89,7 @@ struct Farm::State {
       device.set_owner(group.type->name);
       pipelines.emplace_back(context, group);
     }
+    if (options.shared) shared.emplace(sensor_set);
     blocks.reserve(sensor_set.count());
     hashes.reserve(sensor_set.count());
   }
@@ -96,12 +104,13 @@ struct Farm::State {
   void append(const SensorPipeline& pipeline);
   /// @param reuse whether cached readings may be used
   void measure(std::int64_t now, bool reuse);
-  void add_to_hash(std::span<const base::ReadingBlock> readings);
+  void subscribe(std::uint32_t mover, std::uint32_t types);
+  void add_to_hash(std::int64_t now, std::span<const base::ReadingBlock> readings);
   std::span<const double> sent(const base::ReadingBlock& reading, unsigned thread);
 };
 
 bool Farm::State::find_due(std::int64_t now) {
-  for (SensorPipeline& pipeline : pipelines) stats.missed += pipeline.find_due(now, subscribed);
+  for (SensorPipeline& pipeline : pipelines) stats.missed += pipeline.find_due(now, read_here);
   return std::any_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return !s.due.empty(); });
 }
 
@@ -201,7 +210,7 @@ std::span<const double> Farm::State::sent(const base::ReadingBlock& reading, uns
   return values;
 }
 
-void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
+void Farm::State::add_to_hash(std::int64_t now, std::span<const base::ReadingBlock> readings) {
   hashes.resize(readings.size());
   thread_pool.parallel_for(readings.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
     for (std::size_t i = first; i < last; ++i) {
@@ -213,7 +222,15 @@ void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
       hashes[i] = base::hash_bytes(r.hits.data(), r.hits.size_bytes(), hashes[i]);
     }
   });
-  hash = base::hash_bytes(hashes.data(), hashes.size() * sizeof hashes[0], hash);
+  if (shared)
+    shared->add_call(now, readings, hashes);
+  else
+    hash = base::hash_bytes(hashes.data(), hashes.size() * sizeof hashes[0], hash);
+}
+
+void Farm::State::subscribe(std::uint32_t mover, std::uint32_t types) {
+  subscribed.at(mover) = types;
+  read_here[mover] = elsewhere[mover] != 0 ? 0 : types;
 }
 
 std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
@@ -227,7 +244,7 @@ std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
     for (base::ReadingBlock& block : blocks) block.state = qualities[block.mover];
   Stopwatch watch;
   const auto delivered = delivery.deliver(now, blocks);
-  add_to_hash(delivered);
+  add_to_hash(now, delivered);
   watch.lap(stats.collect_s);
   stats.readings += delivered.size();
   return delivered;
@@ -239,11 +256,15 @@ Farm::Farm(const world::World& world, gpu::Device& device, const FarmOptions& op
 Farm::~Farm() = default;
 
 void Farm::subscribe(std::uint32_t mover, std::uint32_t types) {
-  s_->subscribed.at(mover) = s_->gone.at(mover) != 0 ? 0 : types;
+  s_->subscribe(mover, s_->gone.at(mover) != 0 ? 0 : types);
+}
+void Farm::leave_to_others(std::uint32_t mover) {
+  s_->elsewhere.at(mover) = 1;
+  s_->subscribe(mover, s_->subscribed[mover]);
 }
 void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
-  if (gone) s_->subscribed.at(mover) = 0;
+  if (gone) s_->subscribe(mover, 0);
 }
 void Farm::set_state_quality(std::uint32_t mover, const base::StateQuality& quality) {
   s_->qualities.resize(s_->gone.size());
@@ -306,6 +327,8 @@ base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t type, std::uint
 }
 
 std::uint64_t Farm::hash() const { return s_->hash; }
+void Farm::write_shared(base::Bytes& out) { s_->shared.value().write(out); }
+void Farm::add_shared(std::span<base::ByteReader> parts) { s_->hash = s_->shared.value().chain(parts); }
 
 FarmStats Farm::stats() const {
   FarmStats stats = s_->stats;

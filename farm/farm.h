@@ -18,6 +18,7 @@
 #include <span>
 #include <string>
 
+#include "base/bytes.h"
 #include "base/reading.h"
 #include "base/report.h"
 #include "farm/schedule.h"
@@ -37,6 +38,7 @@ struct FarmOptions {
                                ///< them behind server::NoReturnFilter; readings are unchanged
   unsigned threads = 0;        ///< of the host's part; 0: all of the machine. Does not affect readings
   raycast::SceneOptions scene;
+  bool shared = false;  ///< other processes measure the rest of the fleet: their readings belong to the hash
 };
 
 /// Costs and counts of all ticks so far.
@@ -75,6 +77,10 @@ class Farm {
   /// Sets what the readings of a mover state from now on of the state that they are computed from; initially nothing.
   void set_state_quality(std::uint32_t mover, const base::StateQuality& quality);
 
+  /// From now on another process measures the mover's subscribed sensors: they are due here, too, for `next_due` and
+  /// the numbers of readings, but not read.
+  void leave_to_others(std::uint32_t mover);
+
   const sensors::SensorSet& sensor_set() const;
 
   /// Computes every subscribed sensor that is due at `now` and returns the readings delivered at `now` (latency may
@@ -103,7 +109,12 @@ class Farm {
   base::ReadingBlock sense(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, const base::Pose& X_WM);
 
   /// Hash of the values and hits of all readings delivered so far, call by call: a call without readings counts too.
+  /// Of a shared farm: of those chained by `add_shared`.
   std::uint64_t hash() const;
+  /// Shared farms: hashes of this process' readings since the last call, for the others (farm/shared_hash.h).
+  void write_shared(base::Bytes& out);
+  /// @param parts what `write_shared` of all processes wrote, one reader each; out: behind it
+  void add_shared(std::span<base::ByteReader> parts);
   FarmStats stats() const;
 
  private:

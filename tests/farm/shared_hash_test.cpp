@@ -1,0 +1,116 @@
+// A fleet measured in parts: the hash of all readings is that of one farm.
+
+#include "farm/shared_hash.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/farm/small_farm.h"
+#include "tests/sensors/edit_laser.h"
+
+namespace sf::farm {
+namespace {
+
+/// Prompt and late sensors, at three rates that no tick has in common.
+world::World mixed_world() {
+  world::World world = small_world(7, {.range_sigma = 0.01});
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    scenes::edit_laser(world.movers[m])->rate = m % 3 == 0 ? 10.0 : m % 3 == 1 ? 33.0 : 7.0;
+    scenes::edit_laser(world.movers[m])->latency = m % 2 == 0 ? 0.0 : 0.013 * m;
+  }
+  return world;
+}
+
+/// Reports with their time, between which states are interpolated.
+std::vector<base::Report> timed_reports(const world::World& world, int tick) {
+  std::vector<base::Report> reports = reports_at(world, tick);
+  for (base::Report& report : reports) report.time = tick * 100'000'000LL;
+  return reports;
+}
+
+std::span<const base::ReadingBlock> step(Farm& farm, const world::World& world, int tick) {
+  const auto reports = timed_reports(world, tick);
+  for (std::int64_t due = farm.next_due(); due < tick * 100'000'000LL; due = farm.next_due())
+    farm.sample_between(due, reports);
+  return farm.tick(tick * 100'000'000LL, reports);
+}
+
+/// @param parts farms; mover m is measured by farm m % parts @param silent as the last part, which owns no mover
+std::uint64_t hash_of_parts(const world::World& world, unsigned parts, bool silent) {
+  std::vector<std::unique_ptr<Farm>> farms;
+  const unsigned all = parts + (silent ? 1 : 0);
+  for (unsigned part = 0; part < all; ++part) {
+    farms.push_back(std::make_unique<Farm>(world, device(), FarmOptions{.seed = 3, .shared = true}));
+    farms.back()->subscribe_all();
+    for (std::uint32_t m = 0; m < world.movers.size(); ++m)
+      if (m % parts != part) farms.back()->leave_to_others(m);
+  }
+  for (int k = 0; k < 12; ++k) {
+    std::vector<base::Bytes> written(all);
+    for (unsigned part = 0; part < all; ++part) {
+      step(*farms[part], world, k);
+      farms[part]->write_shared(written[part]);
+    }
+    std::vector<base::ByteReader> readers(written.begin(), written.end());
+    farms[0]->add_shared(readers);
+    for (const base::ByteReader& reader : readers) EXPECT_EQ(reader.left(), 0u);
+  }
+  return farms[0]->hash();
+}
+
+TEST(SharedHash, IsThatOfOneFarm) {
+  const world::World world = mixed_world();
+  Farm alone(world, device(), {.seed = 3});
+  alone.subscribe_all();
+  for (int k = 0; k < 12; ++k) step(alone, world, k);
+  for (const unsigned parts : {1u, 2u, 3u, 7u}) EXPECT_EQ(hash_of_parts(world, parts, false), alone.hash()) << parts;
+  EXPECT_EQ(hash_of_parts(world, 2, true), alone.hash()) << "a part without robots samples at the same times";
+}
+
+TEST(SharedHash, AReadingLeftOutShows) {
+  const world::World world = mixed_world();
+  Farm alone(world, device(), {.seed = 3, .shared = true});
+  alone.subscribe_all();
+  Farm part(world, device(), {.seed = 3, .shared = true});
+  part.subscribe_all();
+  part.leave_to_others(2);
+  std::uint64_t hashes[2];
+  for (Farm* farm : {&alone, &part}) {
+    step(*farm, world, 0);
+    base::Bytes written;
+    farm->write_shared(written);
+    std::vector<base::ByteReader> readers{base::ByteReader(written)};
+    farm->add_shared(readers);
+    hashes[farm == &part] = farm->hash();
+  }
+  EXPECT_NE(hashes[0], hashes[1]);
+}
+
+/// Keys order readings as `Delivery` does, call by call.
+TEST(ReadingOrder, FollowsTheFarm) {
+  const world::World world = mixed_world();
+  Farm farm(world, device(), {.seed = 3});
+  farm.subscribe_all();
+  const ReadingOrder order(farm.sensor_set());
+  ReadingOrder::Key last{-1, 0};
+  std::size_t readings = 0;
+  for (int k = 0; k < 12; ++k) {
+    const auto reports = timed_reports(world, k);
+    const auto check = [&](std::span<const base::ReadingBlock> delivered) {
+      for (const base::ReadingBlock& r : delivered) {
+        const auto key = order.key(order.sensor_of(r.type, r.mover, r.sensor), r.time);
+        EXPECT_LT(last, key) << "mover " << r.mover << " at " << r.time;
+        last = key;
+        ++readings;
+      }
+    };
+    for (std::int64_t due = farm.next_due(); due < k * 100'000'000LL; due = farm.next_due())
+      check(farm.sample_between(due, reports));
+    check(farm.tick(k * 100'000'000LL, reports));
+  }
+  EXPECT_GT(readings, 100u);
+}
+
+}  // namespace
+}  // namespace sf::farm
