@@ -2,9 +2,11 @@
 // How controllers fared: their error, whether they are done, the checkpoints they passed.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cluster/ranks.h"
 #include "control/error_summary.h"
 #include "control/own_localization.h"
 #include "scenarios/run_metrics.h"
@@ -49,7 +51,8 @@ class ControlMetrics {
 
   /// After every `Simulation::step`, with what it gave.
   void update(const base::TickRecord& tick);
-  ControlReport facts(const world::World& world) const;
+  /// @param ranks that share the fleet, which all call this; null: none
+  ControlReport facts(const world::World& world, cluster::Ranks* ranks = nullptr) const;
 
  private:
   const scenarios::Simulation& simulation_;
@@ -60,7 +63,15 @@ class ControlMetrics {
     std::int64_t since = 0;  ///< [ns]
     bool contact = false;    ///< at the last tick
   };
-  std::vector<Standing> standing(const world::World& world) const;
+  /// Of a robot at the end.
+  struct End {
+    std::optional<control::LocalizationError> localization;
+    std::string reason;  ///< why it stands; empty: none was stated, or it drives
+  };
+  bool stands(std::uint32_t mover) const;
+  std::vector<End> ends() const;
+  static void add_ends_of_others(cluster::Ranks& ranks, std::vector<End>& ends);
+  std::vector<Standing> standing(const world::World& world, const std::vector<End>& ends) const;
 
   std::vector<scenarios::CheckpointProgress> goals_;  ///< per mover
   std::vector<Rest> rests_;                           ///< per mover

@@ -220,7 +220,9 @@ struct RunOptions : WorldOptions,
   std::optional<double> speed;     ///< [1] simulated over real time, 0: no limit; nullopt: none, and 1 beside bridges
   std::string record;              ///< folder; empty: no recording
   bool record_readings = false;
-  std::string send;  ///< host; empty: none
+  std::string send;         ///< host; empty: none
+  double checkpoint = 0.0;  ///< [s] simulated between check points; 0: none
+  bool resume = false;      ///< a run that was cut short: compare with its check points
 };
 
 struct ServeOptions : WorldOptions,
@@ -349,6 +351,13 @@ struct TradeoffOptions : WorldOptions,
                          PageOption {
   std::string out;             ///< folder; empty: none
   std::string format = "png";  ///< suffix of the picture
+struct MergeOptions {
+  std::vector<std::string> places;  ///< folders with recordings of ranks, or these themselves
+  std::string out;                  ///< folder
+};
+
+struct TradeoffOptions : WorldOptions, AccuracyTargetOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {
+  std::string out;  ///< folder; empty: none
 };
 
 struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption, BindOption {

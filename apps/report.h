@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/control_report.h"
+#include "apps/rank_run.h"
 #include "base/reading.h"
 #include "farm/farm.h"
 #include "gpu/device.h"
@@ -61,6 +62,7 @@ struct RunReport {
   std::uint64_t recorded_bytes = 0;                ///< its size
   std::string recording_error;                     ///< why it ends before the run; empty: it does not
   std::optional<server::LockstepCounts> lockstep;  ///< of a service in lockstep
+  std::optional<RankReport> shared;                ///< by several ranks; times are means of theirs, counts sums
 };
 
 /// Results of `selftest`.

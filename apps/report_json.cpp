@@ -256,6 +256,11 @@ std::string json_of(const RunReport& f) {
               {"device", f.farm.device_s},
               {"collect", f.farm.collect_s},
               {"out", f.out_s}}}};
+  if (f.shared)
+    json["shared"] = {{"ranks", f.shared->ranks},
+                      {"bytes_per_robot_and_tick", f.shared->bytes},
+                      {"wait_s", f.shared->wait_s},
+                      {"imbalance", f.shared->imbalance}};
   if (f.farm.work.dipoles > 0) json["dipoles"] = f.farm.work.dipoles;
   if (f.control.robots > 0) json["control"] = control_json(f.control);
   if (f.sent)

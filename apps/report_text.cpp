@@ -246,6 +246,11 @@ std::string text_of(const RunReport& f) {
   text += row("  device", stage(f.farm.device_s));
   text += row("  collect", stage(f.farm.collect_s));
   text += row("  send, record", stage(f.out_s));
+  if (f.shared) {
+    text += row("  other ranks", stage(f.shared->wait_s));
+    text += row("ranks", "{}; {:.0f} bytes sent per robot and tick, slowest rank {:.2f} x the mean in sensing",
+                f.shared->ranks, f.shared->bytes, f.shared->imbalance);
+  }
   text += row("hash of readings", base::hash_hex(f.hash));
   return text;
 }

@@ -1,6 +1,7 @@
 // `run`: a simulated fleet in the loop, recorded and sent as asked.
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -11,11 +12,13 @@
 
 #include "apps/automatic_accuracy.h"
 #include "apps/bridge_options.h"
+#include "apps/checkpoints.h"
 #include "apps/commands.h"
 #include "apps/controller_options.h"
 #include "apps/default_robot.h"
 #include "apps/layout_options.h"
 #include "apps/progress_line.h"
+#include "apps/rank_run.h"
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
 #include "apps/run_outputs.h"
@@ -24,6 +27,8 @@
 #include "base/contact_onset.h"
 #include "base/elapsed.h"
 #include "base/error.h"
+#include "base/hash.h"
+#include "cluster/failure.h"
 #include "raycast/caster_choice.h"
 #include "scenarios/operator.h"
 #include "scenarios/simulation.h"
@@ -40,13 +45,17 @@ bool names_one_of_several(const std::string& refusal, const world::World& world,
          });
 }
 
-scenarios::SimulationOptions simulation_options(const world::World& world, const RunOptions& options) {
+scenarios::SimulationOptions simulation_options(const world::World& world, const RunOptions& options,
+                                                cluster::Ranks* ranks) {
   scenarios::SimulationOptions simulation{
-      .seed = options.seed, .threads = options.threads, .no_return_inf = options.no_return_inf};
+      .seed = options.seed, .threads = threads_of(options, ranks), .no_return_inf = options.no_return_inf};
   simulation.actor.controller = controller_config_of(options);
   simulation.actors = make_actors(world, options);
+  simulation.ranks = ranks;
   return simulation;
 }
+
+const char* const kRemedy = "; or name the robots that are driven (--drive NAME)";
 
 /// `act()`; where a controller refuses one of several robots, with a remedy. Some do when they are made, some when they
 /// start.
@@ -56,49 +65,117 @@ auto advised(const world::World& world, const RunOptions& options, Act&& act) {
     return act();
   } catch (const base::InputError& error) {
     if (!names_one_of_several(error.what(), world, options)) throw;
-    throw base::InputError(error.what() + std::string("; or name the robots that are driven (--drive NAME)"));
+    throw base::InputError(std::string(error.what()) + kRemedy);
+  } catch (const cluster::Failure& failure) {
+    if (!names_one_of_several(failure.what(), world, options)) throw;
+    throw cluster::Failure(failure.code(), std::string(failure.what()) + kRemedy);
   }
+}
+
+/// What a run stands on.
+struct Ground {
+  world::World world;
+  std::optional<server::StreamLayout> layout;
+  gpu::Device device;
+  sensors::SensorSet sensor_set;
+  std::string caster;
+
+  explicit Ground(const RunOptions& options)
+      : world(load_with_robots(options.world, options.load, options.robots, options.seed, options.of)),
+        layout(layout_of(world, options)),
+        device(options.device),
+        sensor_set(with_accuracy(options)),
+        caster(raycast::describe_caster(device.info().software)) {
+    warn_of_many_times(sensor_set);
+  }
+
+ private:
+  static std::optional<server::StreamLayout> layout_of(const world::World& world, const RunOptions& options) {
+    if (options.send.empty()) return std::nullopt;
+    return stream_layout_of(world, sensors::SensorSet(world), options);
+  }
+  const world::World& with_accuracy(const RunOptions& options) {
+    choose_accuracy(world, device, options, options.seed, options.threads);
+    return world;
+  }
+};
+
+/// What results depend on.
+std::uint64_t hash_of(const world::World& world, const RunOptions& options) {
+  std::string text = fmt::format("{} {} {} {} {} {} {}", base::hash_hex(world.hash), world.movers.size(), options.of,
+                                 options.seed, options.controller, options.localize, options.no_return_inf);
+  for (const auto* words : {&options.set, &options.drive})
+    for (const std::string& word : *words) text += "\n" + word;
+  return base::hash_bytes(text.data(), text.size());
+}
+
+/// The first rank keeps them.
+std::optional<Checkpoints> checkpoints_of(const world::World& world, const RunOptions& options,
+                                          const cluster::Ranks* ranks, const std::string& folder) {
+  if ((options.checkpoint == 0.0 && !options.resume) || (ranks != nullptr && ranks->rank() > 0)) return std::nullopt;
+  const auto every = options.checkpoint == 0.0 ? 0.0 : std::max(1.0, std::round(options.checkpoint / world.interval));
+  return Checkpoints(folder, hash_of(world, options), static_cast<std::uint64_t>(every), options.resume);
+}
+
+/// Readings of other ranks are in their own recordings; without readings, one recording has all.
+record::RecordingPart part_of(const RunOptions& options, const cluster::Ranks* ranks) {
+  return ranks != nullptr && options.record_readings ? record::RecordingPart{ranks->rank(), ranks->size()}
+                                                     : record::RecordingPart{};
+}
+
+/// Folder of the recording after `resets`: each begins one of its own. Empty: this rank records nothing.
+std::string recording_folder(const RunOptions& options, const cluster::Ranks* ranks, std::uint32_t resets) {
+  if (ranks != nullptr && ranks->rank() > 0 && !options.record_readings) return "";
+  return options.record.empty() || resets == 0 ? options.record : fmt::format("{}-{}", options.record, resets + 1);
 }
 
 /// A fleet from time 0 on, with what follows it.
 struct Course {
+  const world::World& world;
+  cluster::Ranks* ranks;
   scenarios::Simulation simulation;
   ControlMetrics tally;
   std::vector<base::ContactOnset> contacts;
+  std::optional<Checkpoints> checkpoints;
   RunOutputs outputs;
   std::uint64_t ticks = 0;
   std::uint64_t contacts_begun = 0;
 
-  Course(const world::World& world, gpu::Device& device, const sensors::SensorSet& sensor_set,
-         const std::optional<server::StreamLayout>& layout, const std::string& caster, const RunOptions& options,
-         const std::string& record)
-      : simulation(world, device, simulation_options(world, options)),
+  Course(Ground& ground, const RunOptions& options, cluster::Ranks* of, std::uint32_t resets)
+      : world(ground.world),
+        ranks(of),
+        simulation(world, ground.device, simulation_options(world, options, ranks)),
         tally(simulation, world.movers.size(), options.controller),
         contacts(world.movers.size()),
-        outputs(world, sensor_set, layout, caster, options, record) {}
+        checkpoints(checkpoints_of(world, options, ranks, recording_folder(options, ranks, resets))),
+        outputs(world, ground.sensor_set, ground.layout, ground.caster, options,
+                recording_folder(options, ranks, resets), part_of(options, ranks)) {}
 
-  double simulated(const world::World& world) const { return static_cast<double>(ticks) * world.interval; }
+  double simulated() const { return static_cast<double>(ticks) * world.interval; }
 
   /// Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
-  void step(const world::World& world, scenarios::Operator& users) {
+  void step(scenarios::Operator& users) {
     const base::TickRecord tick = simulation.step();
-    tally.update(tick);
     users.publish(tick);
     outputs.write(tick, [&](std::int64_t time) { users.keep_pace(1e-9 * static_cast<double>(time) + world.interval); });
+    simulation.settle();
+    tally.update(tick);
     for (std::size_t m = 0; m < contacts.size(); ++m)
       contacts_begun += !world.movers[m].is_tag && contacts[m].begins(tick.contacts[m] != 0);
     ++ticks;
+    if (checkpoints) checkpoints->update(ticks, simulation.farm().hash(), tick.reports);
   }
 
-  void report(const world::World& world, RunReport& facts) {
+  void report(RunReport& facts) {
     facts.ticks = ticks;
-    facts.simulated_s = simulated(world);
+    facts.simulated_s = simulated();
     facts.contacts = contacts_begun;
-    facts.control = tally.facts(world);
+    facts.control = tally.facts(world, ranks);
     facts.move_s = simulation.move_seconds();
     facts.farm = simulation.farm().stats();
     facts.hash = simulation.farm().hash();
     outputs.finish(facts);
+    if (ranks != nullptr) add_up(*ranks, facts);
   }
 };
 
@@ -110,72 +187,73 @@ double speed_of(const RunOptions& options, bool watched) {
   return speed > 0.0 ? speed : std::numeric_limits<double>::infinity();
 }
 
-/// Folder of the recording after `resets`: each begins one of its own.
-std::string recording_folder(const RunOptions& options, std::uint32_t resets) {
-  return options.record.empty() || resets == 0 ? options.record : fmt::format("{}-{}", options.record, resets + 1);
-}
-
-}  // namespace
-
-int run(const RunOptions& options) {
-  world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
-  std::optional<server::StreamLayout> layout;
-  if (!options.send.empty()) layout = stream_layout_of(world, sensors::SensorSet(world), options);
-  gpu::Device device(options.device);
-  choose_accuracy(world, device, options, options.seed, options.threads);
-  const sensors::SensorSet sensor_set(world);
-  warn_of_many_times(sensor_set);
-  const std::string caster = raycast::describe_caster(device.info().software);
+int simulate(const RunOptions& options, cluster::Ranks* ranks) {
+  std::optional<Ground> ground;
   std::optional<Course> course;
+  std::optional<LiveBridges> live;
   const auto begin = [&](std::uint32_t resets) {
     course.reset();
-    advised(world, options, [&] {
-      course.emplace(world, device, sensor_set, layout, caster, options, recording_folder(options, resets));
-    });
+    advised(ground->world, options, [&] { course.emplace(*ground, options, ranks, resets); });
   };
-  begin(0);
+  on_all(ranks, [&] {
+    if (ranks != nullptr) check_for_ranks(options);
+    ground.emplace(options);
+    begin(0);
+    live.emplace(options, ground->world, ground->sensor_set,
+                 scenarios::RunSettings{options.seed, true, options.no_return_inf, ground->caster}, true);
+  });
   const std::vector<world::Warning> heard = course->simulation.warnings();
   if (!heard.empty()) print_warnings(heard.front().file, heard);
-  LiveBridges live(options, world, sensor_set, {options.seed, true, options.no_return_inf, caster}, true);
-  scenarios::Operator users(live.bridges(), stop_requested(), speed_of(options, !live.empty()));
+  std::atomic<bool> all_stop = false;
+  scenarios::Operator users(live->bridges(), ranks != nullptr ? all_stop : stop_requested(),
+                            speed_of(options, !live->empty()));
   install_stop_handlers();
 
-  const double duration = options.duration.value_or(live.empty() ? 60.0 : kWithoutEnd);
-  const double ticks = std::round(duration / world.interval);
+  const double duration = options.duration.value_or(live->empty() ? 60.0 : kWithoutEnd);
+  const double ticks = std::round(duration / ground->world.interval);
   RunReport facts;
   const auto start = std::chrono::steady_clock::now();
   {
     Progress progress("simulating");
     auto next = scenarios::Operator::Next::tick;
     while (static_cast<double>(course->ticks) < ticks) {
-      next = users.wait(course->simulation, course->simulated(world));
+      next = users.wait(course->simulation, course->simulated());
       if (next == scenarios::Operator::Next::stop) break;
       if (next == scenarios::Operator::Next::reset) {
         users.begin_again();
         begin(users.resets());
         continue;
       }
-      advised(world, options, [&] { course->step(world, users); });
-      const double simulated = course->simulated(world);
-      if (duration < kWithoutEnd)
+      if (stop_requested()) course->simulation.request_stop();
+      advised(ground->world, options, [&] { course->step(users); });
+      all_stop = course->simulation.stop_agreed();
+      const double simulated = course->simulated();
+      if (duration < kWithoutEnd && (ranks == nullptr || ranks->rank() == 0))
         progress.show(simulated / duration, fmt::format("{:.0f} s of {:g} s", simulated, duration));
     }
     facts.interrupted = next == scenarios::Operator::Next::stop;
-    users.keep_pace(course->simulated(world));  // a tick lasts until the next one would begin
+    users.keep_pace(course->simulated());  // a tick lasts until the next one would begin
   }
   facts.wall_s = base::seconds_since(start);
-  facts.device = device.info().name;
-  facts.software = device.info().software;
-  facts.caster = caster;
-  facts.robots = static_cast<std::uint32_t>(count_robots(world));
-  course->report(world, facts);
-  std::vector<world::Warning> warnings = world.warnings;
+  const gpu::DeviceInfo& device = ground->device.info();
+  facts.device = device.name;
+  facts.software = device.software;
+  facts.caster = ground->caster;
+  facts.robots = static_cast<std::uint32_t>(count_robots(ground->world));
+  course->report(facts);
+  std::vector<world::Warning> warnings = ground->world.warnings;
   warnings.insert(warnings.end(), heard.begin(), heard.end());
   print(options.json ? with_warnings(json_of(facts), warnings) : text_of(facts));
   const netio::OutboxCounts& packets = facts.publisher.packets;
   if (packets.failed == 0) return 0;
   print_message("{} of {} packets were not sent: {}", packets.failed, packets.queued, packets.first_failure);
   return 1;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  return with_ranks([&](cluster::Ranks* ranks) { return simulate(options, ranks); });
 }
 
 }  // namespace sf::apps

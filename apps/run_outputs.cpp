@@ -14,7 +14,7 @@ using Clock = std::chrono::steady_clock;
 
 RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sensor_set,
                        const std::optional<server::StreamLayout>& layout, const std::string& caster,
-                       const RunOptions& options, const std::string& record)
+                       const RunOptions& options, const std::string& record, const record::RecordingPart& part)
     : sensor_set_(sensor_set),
       no_return_filter_(sensor_set, options.no_return_inf),
       session_token_{netio::random_session(), 0} {
@@ -25,7 +25,8 @@ RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sens
   if (!record.empty())
     recorder_.emplace(
         record,
-        scenarios::run_info(world, sensor_set, {options.seed, options.record_readings, options.no_return_inf, caster}));
+        scenarios::run_info(world, sensor_set, {options.seed, options.record_readings, options.no_return_inf, caster}),
+        part);
 }
 
 void RunOutputs::write(base::TickRecord tick, const std::function<void(std::int64_t)>& wait) {

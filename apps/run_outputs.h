@@ -20,10 +20,11 @@ class RunOutputs {
  public:
   /// World, sensor set and layout must outlive it.
   /// @param layout of the packets; nullopt: none are sent. @param caster description of the ray caster
-  /// @param record folder of the recording; empty: none. @throws base::InputError where it cannot be written
+  /// @param record folder of the recording; empty: none. @param part of it that this process records. @throws
+  /// base::InputError where it cannot be written
   RunOutputs(const world::World& world, const sensors::SensorSet& sensor_set,
              const std::optional<server::StreamLayout>& layout, const std::string& caster, const RunOptions& options,
-             const std::string& record);
+             const std::string& record, const record::RecordingPart& part = {});
 
   /// @param wait called with the time [ns] at which a reading is delivered, before it is sent: the tick's, or one
   /// before it

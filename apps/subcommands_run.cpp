@@ -40,6 +40,13 @@ void add_run(CLI::App& app, Call& call) {
   sub->add_flag("--record-readings", o.record_readings,
                 "Record the readings too, not only the states from which they can be computed")
       ->needs(record);
+  sub->add_option("--checkpoint", o.checkpoint, "Keep a check point of the run every S simulated seconds (--record)")
+      ->check(number(0.001, 1e9))
+      ->needs(record)
+      ->type_name("S");
+  sub->add_flag("--resume", o.resume,
+                "Compute a run that was cut short again, with the same bytes, and compare it with its check points")
+      ->needs(record);
   auto* speed = sub->add_option("--speed", o.speed,
                                 "Simulated over real time (0: as fast as possible; default: 0, and 1 beside bridges)")
                     ->check(number(0.0, 1e6))

@@ -108,6 +108,17 @@ void add_sweep(CLI::App& app, Call& call) {
       ->expected(1)
       ->type_name("OPTION");
   add_device(*sub, o);
+void add_merge(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("merge", "Put the recordings of a run's ranks together (docs/cluster.md)");
+  auto& o = add_command(*sub, call, merge);
+  add_examples(*sub, {"out/run -o out/whole"});
+  sub->add_option("places", o.places, "Folders with rank-0.mcap and so on, or these files")
+      ->required()
+      ->type_name("DIR");
+  sub->add_option("-o,--out", o.out, "Folder for the result (run.mcap)")
+      ->required()
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
 }
 
 void add_verify(CLI::App& app, Call& call) {
@@ -181,6 +192,7 @@ void add_test_commands(CLI::App& app, Call& call) {
   add_experiment(app, call);
   add_test(app, call);
   add_sweep(app, call);
+  add_merge(app, call);
   add_verify(app, call);
   add_tradeoff(app, call);
   add_selftest(app, call);

@@ -7,9 +7,19 @@
 
 namespace sf::apps {
 
-void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+namespace {
+bool muted = false;
+}  // namespace
 
-void print_message(const std::string& text) { std::fputs(("sensorfarm: " + text + "\n").c_str(), stderr); }
+void mute(bool on) { muted = on; }
+
+void print(const std::string& text) {
+  if (!muted) std::fputs(text.c_str(), stdout);
+}
+
+void print_message(const std::string& text) {
+  if (!muted) std::fputs(("sensorfarm: " + text + "\n").c_str(), stderr);
+}
 
 std::string row(std::string_view name, std::string_view value) { return fmt::format("  {:<18} {}\n", name, value); }
 

@@ -12,6 +12,8 @@
 
 namespace sf::apps {
 
+/// From now on `print` and `print_message` do nothing: of several ranks, one speaks.
+void mute(bool on);
 /// To standard output.
 void print(const std::string& text);
 /// To standard error: "sensorfarm: ", `text` and an end of line.

@@ -7,6 +7,7 @@
 #include "apps/report.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
+#include "scenarios/merging.h"
 #include "scenarios/verification.h"
 
 namespace sf::apps {
@@ -43,7 +44,7 @@ std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
 }
 
 int verify(const VerifyOptions& options) {
-  const record::Recording recording = record::open_recording(options.recording);
+  const record::Recording recording = scenarios::open_run(options.recording);
   print_damage(recording);
   gpu::Device device(options.device);
   install_stop_handlers();

@@ -1,5 +1,6 @@
 #include "record/recorder.h"
 
+#include <cstdio>
 #include <map>
 #include <span>
 #include <string_view>
@@ -57,8 +58,11 @@ std::vector<std::uint16_t> add_channels(McapWriter& mcap, std::span<const Topic>
 
 }  // namespace
 
-Recorder::Recorder(const std::string& directory, RunInfo info)
-    : info_(named(std::move(info))), file_(directory + "/run.mcap"), mcap_("ros2", "sensorfarm"), messages_(info_) {
+Recorder::Recorder(const std::string& directory, RunInfo info, const RecordingPart& part)
+    : info_(named(std::move(info))),
+      file_(directory + "/" + part.file()),
+      mcap_("ros2", "sensorfarm"),
+      messages_(info_) {
   if (messages_.topics().size() > kMaxChannels) {
     throw base::InputError(file_.path(), 0,
                            "needs " + std::to_string(messages_.topics().size()) +
@@ -66,10 +70,15 @@ Recorder::Recorder(const std::string& directory, RunInfo info)
   }
   mcap_.add_attachment({.name = "world.bin", .media_type = "application/octet-stream", .data = info_.snapshot});
   mcap_.add_metadata({"sensorfarm", summary_of(info_)});
+  if (part.parts > 1)
+    mcap_.add_metadata({kPartMetadata, {{"part", std::to_string(part.part)}, {"parts", std::to_string(part.parts)}}});
+  if (part.part > 0) wanted_ = messages_.readings_and_clock();
   channels_ = add_channels(mcap_, messages_.topics());
   messages_.begin([this](const TopicMessage& message) { add(message); });
   flush();
   file_.publish();
+  // Another run's whole recording would be taken for this one's.
+  if (part.parts > 1 && part.part == 0) std::remove((directory + "/" + RecordingPart{}.file()).c_str());
   info_.snapshot = {};
   info_.shape = {};
 }
@@ -84,7 +93,8 @@ Recorder::~Recorder() {
 
 void Recorder::write(const base::TickRecord& record) {
   SF_CHECK(!finished_, "tick " + std::to_string(record.tick) + " after the end of the recording");
-  messages_.encode(record, [this](const TopicMessage& message) { add(message); });
+  messages_.encode(
+      record, [this](const TopicMessage& message) { add(message); }, wanted_);
   flush();
 }
 

@@ -19,6 +19,17 @@
 
 namespace sf::record {
 
+/// Part of a recording that a process writes, where several share a fleet (scenarios/merging.h).
+struct RecordingPart {
+  unsigned part = 0;   ///< below `parts`; 0 has all but the others' readings, the others have theirs and /clock
+  unsigned parts = 1;  ///< 1: DIR/run.mcap; else DIR/rank-0.mcap and so on
+
+  std::string file() const { return parts == 1 ? "run.mcap" : "rank-" + std::to_string(part) + ".mcap"; }
+};
+
+/// Name of the metadata with number and count of parts, in recordings with several.
+inline constexpr const char* kPartMetadata = "sensorfarm.part";
+
 /// One thread. A recording already in the directory is replaced in one step, once the new one contains its world.
 class Recorder : public base::Sink {
  public:
@@ -26,7 +37,7 @@ class Recorder : public base::Sink {
   /// positive; a rate of odometry of 0 leaves odometry out.
   /// @throws base::InputError when the directory cannot be written, another run is being recorded there, or the fleet
   /// has more topics than a file can hold.
-  Recorder(const std::string& directory, RunInfo info);
+  Recorder(const std::string& directory, RunInfo info, const RecordingPart& part = {});
   /// Calls `finish` if needed and ignores its errors; call `finish` to get them.
   ~Recorder() override;
 
@@ -51,6 +62,7 @@ class Recorder : public base::Sink {
   McapWriter mcap_;
   TickMessages messages_;
   std::vector<std::uint16_t> channels_;  ///< per topic
+  std::vector<bool> wanted_;             ///< per topic, of ticks; empty: all
   bool finished_ = false;
 };
 

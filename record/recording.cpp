@@ -44,21 +44,6 @@ std::string_view type_of(const McapContents& contents, const McapMessage& messag
   return ours ? std::string_view(schema->second.name) : std::string_view();
 }
 
-void read_info(const McapContents& contents, Recording& recording) {
-  const auto found = std::find_if(contents.messages.begin(), contents.messages.end(),
-                                  [&](const McapMessage& message) { return type_of(contents, message) == kRunInfo; });
-  if (found == contents.messages.end() || !decode_run_info(found->data, recording.info)) {
-    throw base::InputError(recording.file, 0,
-                           "not a sensorfarm recording: expected a readable " + std::string(kRunInfo) + " message");
-  }
-  const auto world = std::find_if(contents.attachments.begin(), contents.attachments.end(),
-                                  [](const McapAttachment& attachment) { return attachment.name == "world.bin"; });
-  if (world == contents.attachments.end() || world->data.empty()) {
-    throw base::InputError(recording.file, 0, "no complete world inside: expected an attachment world.bin");
-  }
-  recording.info.snapshot.assign(world->data.begin(), world->data.end());
-}
-
 Topics sensor_topics(const RunInfo& info) {
   Topics topics;
   for (std::uint32_t mover = 0; mover < info.movers.size(); ++mover) {
@@ -138,6 +123,23 @@ void read_messages(const McapContents& contents, Recording& recording) {
 
 }  // namespace
 
+RunInfo run_info_of(const McapContents& contents, const std::string& name) {
+  RunInfo info;
+  const auto found = std::find_if(contents.messages.begin(), contents.messages.end(),
+                                  [&](const McapMessage& message) { return type_of(contents, message) == kRunInfo; });
+  if (found == contents.messages.end() || !decode_run_info(found->data, info)) {
+    throw base::InputError(name, 0,
+                           "not a sensorfarm recording: expected a readable " + std::string(kRunInfo) + " message");
+  }
+  const auto world = std::find_if(contents.attachments.begin(), contents.attachments.end(),
+                                  [](const McapAttachment& attachment) { return attachment.name == "world.bin"; });
+  if (world == contents.attachments.end() || world->data.empty()) {
+    throw base::InputError(name, 0, "no complete world inside: expected an attachment world.bin");
+  }
+  info.snapshot.assign(world->data.begin(), world->data.end());
+  return info;
+}
+
 Recording open_recording(const std::string& directory) {
   const std::string name = file_in(directory);
   const MappedFile file(name);
@@ -150,7 +152,7 @@ Recording read_recording(std::span<const std::uint8_t> bytes, const std::string&
   recording.file = name;
   recording.truncated = contents.truncated;
   recording.damage = contents.damage;
-  read_info(contents, recording);
+  recording.info = run_info_of(contents, name);
   read_messages(contents, recording);
   return recording;
 }

@@ -57,4 +57,9 @@ Recording open_recording(const std::string& directory);
 /// Likewise from memory. @param name of the file, for messages
 Recording read_recording(std::span<const std::uint8_t> bytes, const std::string& name);
 
+struct McapContents;
+/// The description of a recorded run, with its world. @param name of the file, for messages
+/// @throws base::InputError where it is not a recording of ours
+RunInfo run_info_of(const McapContents& contents, const std::string& name);
+
 }  // namespace sf::record

@@ -57,6 +57,7 @@ TickMessages::TickMessages(const RunInfo& info) : info_(info) {
   add("/bodies", kMarkers, true);
   if (!info.lights.empty()) add("/lights", kLights);
   for (const MoverInfo& mover : info.movers) add_mover(mover);
+  first_reading_ = topics_.size();
   if (info.record_readings)
     for (std::size_t row = 0; row < info.movers.size(); ++row) add_readings(row);
 }
@@ -91,6 +92,13 @@ void TickMessages::add_readings(std::size_t row) {
     each.standard = static_cast<std::uint32_t>(topics_.size());
     for (const StandardTopic& standard : each.sensor->standard) add(standard.topic, type_of(standard.message));
   }
+}
+
+std::vector<bool> TickMessages::readings_and_clock() const {
+  std::vector<bool> wanted(topics_.size());
+  for (std::size_t topic = first_reading_; topic < wanted.size(); ++topic) wanted[topic] = true;
+  wanted[kClockRow] = true;
+  return wanted;
 }
 
 void TickMessages::begin(const Emit& emit) {

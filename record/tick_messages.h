@@ -47,6 +47,9 @@ class TickMessages {
 
   const std::vector<Topic>& topics() const { return topics_; }
 
+  /// Per topic, for `encode`: readings and /clock.
+  std::vector<bool> readings_and_clock() const;
+
   /// Latched topics. The next tick is the first of a run: its time may be earlier than that of the last one.
   void begin(const Emit& emit);
   /// Rule: every report's mover is a row of `info.movers`, its quality is there if `info.estimated`, every reading's
@@ -82,6 +85,7 @@ class TickMessages {
   std::map<std::string, std::string, std::less<>> schemas_;  ///< by type
   std::vector<Topic> topics_;
   std::vector<MoverTopics> movers_;
+  std::size_t first_reading_ = 0;   ///< row of the first topic of readings; all topics from it on are theirs
   std::int64_t next_odometry_ = 0;  ///< [ns]
   std::uint32_t ticks_ = 0, odometries_ = 0;
   base::Bytes message_;

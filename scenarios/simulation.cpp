@@ -24,6 +24,7 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   farm.true_poses = !options.states;
   farm.noise = options.noise;
   farm.scene.caster = options.caster;
+  farm.shared = options.ranks != nullptr;
   return farm;
 }
 
@@ -63,6 +64,12 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
            "actors: expected none or one per mover");
   if (options.states) states_.emplace(world, *options.states);
   farm_.subscribe_all();
+  if (options.ranks != nullptr) {
+    exchange_.emplace(*options.ranks, world, farm_.sensor_set());
+    statuses_.resize(world.movers.size());
+    for (std::uint32_t i = 0; i < world.movers.size(); ++i)
+      if (!exchange_->owns(i)) farm_.leave_to_others(i);
+  }
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) controls_.push_back(make_control(i, options));
   for (const RobotControl& robot : controls_)
     if (robot.controller) v2v_range_ = std::max(v2v_range_, robot.controller->v2v_range());
@@ -75,6 +82,8 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Sim
   RobotControl robot;
   const Actor& actor = options.actors.empty() ? options.actor : options.actors[mover];
   if (actor.controller.name.empty() || (options.actors.empty() && world_.movers[mover].is_tag)) return robot;
+  if (exchange_) statuses_[mover].drives = true;
+  if (!owns(mover)) return robot;
   std::vector<world::Warning> warnings;
   const control::ControllerContext site{world_, mover, options.seed, roads(), &warnings, &farm_.sensor_set()};
   control::ConfiguredController made = control::make_controller(site, actor.controller);
@@ -97,11 +106,13 @@ bool Simulation::all_done() const {
 
 base::TickRecord Simulation::step() {
   const std::int64_t time = static_cast<std::int64_t>(tick_) * interval_;
+  settle();
   if (tick_ > 0) move();
   const auto readings = sense(time);
   const auto start = std::chrono::steady_clock::now();
   sort_by_mover(readings);
   decide(time);
+  if (exchange_) begin_exchange();
   move_s_ += base::seconds_since(start);
   return {tick_++, time, recorded_reports(), executed_commands_, fleet_.contacts(), readings, {}, light_states_};
 }
@@ -187,8 +198,31 @@ void Simulation::decide(std::int64_t time) {
   thread_pool_.parallel_for(controls_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
     for (std::size_t m = begin; m < end; ++m) try_to_decide(static_cast<std::uint32_t>(m), time, thread);
   });
+  if (exchange_) return;  // errors and intents of all ranks: `settle`
   if (failure_) std::rethrow_exception(failure_);
   std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());
+}
+
+void Simulation::begin_exchange() {
+  for (std::uint32_t m = 0; m < controls_.size(); ++m)
+    if (controls_[m].controller)
+      statuses_[m] = {true, controls_[m].stepped, controls_[m].controller->done(), controls_[m].controller->error()};
+  exchange_->begin(decisions(), farm_, failed_, failure_, stop_);
+  exchanging_ = true;
+}
+
+void Simulation::settle() {
+  if (!exchanging_) return;
+  exchanging_ = false;
+  stop_agreed_ = exchange_->finish(decisions(), farm_);
+  std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());
+}
+
+ControlStatus Simulation::status(std::uint32_t mover) const {
+  if (exchange_) return statuses_[mover];
+  const RobotControl& robot = controls_[mover];
+  if (!robot.controller) return {};
+  return {true, robot.stepped, robot.controller->done(), robot.controller->error()};
 }
 
 /// `decide_one`; keeps the error of the first mover that fails, since none may leave a thread of the pool.

@@ -24,6 +24,7 @@
 #include "robots/fleet.h"
 #include "robots/neighbour_grid.h"
 #include "scenarios/mailbox.h"
+#include "scenarios/rank_exchange.h"
 #include "scenarios/state_link.h"
 #include "world/lights.h"
 #include "world/roads/network.h"
@@ -47,6 +48,7 @@ struct SimulationOptions {
   bool no_return_inf = false;              ///< see farm::FarmOptions
   bool noise = true;                       ///< likewise
   raycast::CasterChoice caster = raycast::CasterChoice::automatic;
+  cluster::Ranks* ranks = nullptr;  ///< that share the fleet, with the same options; null: this process has all of it
 };
 
 /// `world` and `device` must outlive it. One thread at a time. Ticks allocate nothing after warm-up.
@@ -59,6 +61,13 @@ class Simulation {
   /// delivered since the last tick, in order of delivery. Spans live until the next call.
   /// @throws base::InputError where a controller fails; the first robot's error
   base::TickRecord step();
+
+  /// Ends the last tick's exchange with other ranks, which goes on meanwhile; else the next step does. Without ranks
+  /// nothing is to be done. @throws cluster::Failure on all ranks where a controller failed on one
+  void settle();
+  /// All ranks are to stop: `stop_agreed` says so on all of them, after the same tick.
+  void request_stop() { stop_ = true; }
+  bool stop_agreed() const { return stop_agreed_; }
 
   /// Sets the commands of movers without a controller, to be executed from the next step on until they are set again.
   /// @param commands one per mover, finite; those of other movers are ignored
@@ -78,10 +87,15 @@ class Simulation {
   const farm::Farm& farm() const { return farm_; }
   double move_seconds() const { return move_s_; }  ///< [s] wall time of controllers and motion
 
-  /// The mover's controller; null for movers that stand.
+  /// The mover's controller; null for movers that stand, and for those of other ranks.
   const control::Controller* controller(std::uint32_t mover) const { return controls_[mover].controller.get(); }
   /// The last tick called the mover's controller.
   bool stepped(std::uint32_t mover) const { return controls_[mover].stepped; }
+  /// This process senses and decides for the mover.
+  bool owns(std::uint32_t mover) const { return !exchange_ || exchange_->owns(mover); }
+  /// The mover's controller, of whatever rank, after `settle`.
+  ControlStatus status(std::uint32_t mover) const;
+  const base::Intent& intent(std::uint32_t mover) const { return next_intents_[mover]; }
   /// All controllers that decide are done; false without any.
   bool all_done() const;
   const world::RoadNetwork* roads() const { return roads_ ? &*roads_ : nullptr; }
@@ -108,6 +122,8 @@ class Simulation {
   void try_to_decide(std::uint32_t mover, std::int64_t time, unsigned thread);
   std::int64_t leaves_at(const base::ReadingBlock& reading) const;
   bool due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
+  void begin_exchange();
+  FleetDecisions decisions() { return {commands_, next_intents_, statuses_}; }
   void find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const;
 
   const world::World& world_;
@@ -143,6 +159,11 @@ class Simulation {
   std::int64_t interval_;  ///< [ns]
   std::uint64_t tick_ = 0;
   double move_s_ = 0.0;
+  std::optional<RankExchange> exchange_;  ///< none: this process has the whole fleet
+  std::vector<ControlStatus> statuses_;   ///< per mover, with an exchange
+  bool exchanging_ = false;
+  bool stop_ = false;
+  bool stop_agreed_ = false;
 };
 
 }  // namespace sf::scenarios

@@ -44,9 +44,10 @@ const std::map<std::string, Modules> kMayInclude{
     {"selftest", {"netio", "record", "farm", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"vision", {"world", "base"}},
     {"viz", {"farm", "record", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
+    {"cluster", {"base"}},
     {"scenarios",
-     {"selftest", "viz", "netio/server", "netio/bridges", "netio", "record", "farm", "control", "sensors", "raycast",
-      "maps", "robots", "world", "gpu", "base"}},
+     {"selftest", "cluster", "viz", "netio/server", "netio/bridges", "netio", "record", "farm", "control", "sensors",
+      "raycast", "maps", "robots", "world", "gpu", "base"}},
 };
 const Modules kMayIncludeAnything{"apps", "examples", "library", "bench", "tests"};
 
@@ -61,6 +62,10 @@ const std::vector<Heavy> kHeavy{{"CLI/", "apps", 7},
                                 {"nlohmann/", "", 6},
                                 {"vtk", "viz", 3},
                                 {"cairo", "viz"},
+const std::vector<Heavy> kHeavy{{"CLI/", "apps", 6},
+                                {"nlohmann/", "apps", 4},
+                                {"mpi.h", "cluster"},
+                                {"vtk", "viz"},
                                 {"opencv2/", "vision", 4},
                                 {"boost/asio", "netio/bridges", 2},
                                 {"boost/beast", "netio/bridges"},

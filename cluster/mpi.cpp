@@ -1,0 +1,90 @@
+// The ranks of an MPI job. The only source that includes MPI.
+
+#include <mpi.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <numeric>
+#include <vector>
+
+#include "cluster/ranks.h"
+
+namespace sf::cluster {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class MpiRanks final : public Ranks {
+ public:
+  MpiRanks() {
+    int rank = 0, size = 1, beside = 1;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    MPI_Comm machine = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    MPI_Comm_size(machine, &beside);
+    MPI_Comm_free(&machine);
+    rank_ = static_cast<unsigned>(rank);
+    size_ = static_cast<unsigned>(size);
+    beside_ = static_cast<unsigned>(beside);
+    sizes_.resize(size_);
+    starts_.resize(size_);
+    blocks_.resize(size_);
+  }
+  ~MpiRanks() override { MPI_Finalize(); }
+
+  unsigned rank() const override { return rank_; }
+  unsigned size() const override { return size_; }
+  unsigned beside() const override { return beside_; }
+
+  void begin(Block block) override {
+    const auto start = Clock::now();
+    const int size = static_cast<int>(block.size());
+    MPI_Allgather(&size, 1, MPI_INT, sizes_.data(), 1, MPI_INT, MPI_COMM_WORLD);
+    std::exclusive_scan(sizes_.begin(), sizes_.end(), starts_.begin(), 0);
+    all_.resize(static_cast<std::size_t>(starts_.back()) + static_cast<std::size_t>(sizes_.back()));
+    MPI_Iallgatherv(block.data(), size, MPI_BYTE, all_.data(), sizes_.data(), starts_.data(), MPI_BYTE, MPI_COMM_WORLD,
+                    &request_);
+    ++counts_.exchanges;
+    counts_.bytes += block.size();
+    count(start);
+  }
+
+  std::span<const Block> finish() override {
+    const auto start = Clock::now();
+    MPI_Wait(&request_, MPI_STATUS_IGNORE);
+    for (unsigned r = 0; r < size_; ++r)
+      blocks_[r] = Block(all_).subspan(static_cast<std::size_t>(starts_[r]), static_cast<std::size_t>(sizes_[r]));
+    count(start);
+    return blocks_;
+  }
+
+  [[noreturn]] void abort(int code) override {
+    MPI_Abort(MPI_COMM_WORLD, code);
+    std::_Exit(code);
+  }
+
+ private:
+  void count(Clock::time_point start) { counts_.wait_s += std::chrono::duration<double>(Clock::now() - start).count(); }
+
+  unsigned rank_ = 0, size_ = 1, beside_ = 1;
+  std::vector<int> sizes_, starts_;  ///< [byte] per rank
+  std::vector<std::uint8_t> all_;
+  std::vector<Block> blocks_;
+  MPI_Request request_ = MPI_REQUEST_NULL;
+};
+
+}  // namespace
+
+}  // namespace sf::cluster
+
+extern "C" {
+sf::cluster::Ranks* sensorfarm_mpi();
+
+sf::cluster::Ranks* sensorfarm_mpi() {
+  int level = 0;
+  if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &level) != MPI_SUCCESS) return nullptr;
+  return new sf::cluster::MpiRanks();
+}
+}

@@ -1,0 +1,61 @@
+#pragma once
+// Ranks: the processes of one job over one or more machines, as `mpirun -n N` starts them.
+//
+//   const std::unique_ptr<cluster::Ranks> ranks = cluster::join();  // null: a process of its own
+//   ranks->begin(block);                                            // one block of bytes per rank
+//   ...                                                             // work meanwhile
+//   for (const auto block : ranks->finish()) ...                    // those of all ranks
+//
+// MPI is used in one source, a plug-in (cluster/mpi.cpp, `sensorfarm_mpi.so`) that is loaded in such a process alone.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace sf::cluster {
+
+/// Bytes of one rank.
+using Block = std::span<const std::uint8_t>;
+
+/// What exchanges have cost so far.
+struct ExchangeCounts {
+  std::uint64_t exchanges = 0;
+  std::uint64_t bytes = 0;  ///< of the blocks of this rank; every other rank receives them
+  double wait_s = 0.0;      ///< [s] in `begin` and `finish`
+};
+
+/// One thread. All ranks call `begin` and `finish` in the same order.
+class Ranks {
+ public:
+  virtual ~Ranks() = default;
+  virtual unsigned rank() const = 0;    ///< in [0, size())
+  virtual unsigned size() const = 0;    ///< at least 1
+  virtual unsigned beside() const = 0;  ///< ranks on this machine, this one among them
+  /// Starts an exchange. @param block at most 2 GiB with those of all ranks; unchanged until `finish`
+  virtual void begin(Block block) = 0;
+  /// Ends it. @return one block per rank; they live until the next `begin`
+  virtual std::span<const Block> finish() = 0;
+  /// Ends the processes of all ranks.
+  [[noreturn]] virtual void abort(int code) = 0;
+
+  std::span<const Block> exchange(Block block) {
+    begin(block);
+    return finish();
+  }
+  const ExchangeCounts& counts() const { return counts_; }
+
+ protected:
+  ExchangeCounts counts_;
+};
+
+/// This process was started as a rank: by mpirun, or by srun with an interface for MPI.
+bool is_rank();
+
+/// Joins the other ranks; null where `is_rank` says no. Called once.
+/// @throws base::InputError where the plug-in or MPI is missing
+std::unique_ptr<Ranks> join();
+
+/// The plug-in's symbol: `extern "C" sf::cluster::Ranks* sensorfarm_mpi()`, null when MPI cannot start.
+inline constexpr const char* kMpiSymbol = "sensorfarm_mpi";
+
+}  // namespace sf::cluster

@@ -1,0 +1,22 @@
+#include "cluster/shares.h"
+
+#include <numeric>
+
+namespace sf::cluster {
+
+std::vector<std::uint32_t> equal_shares(std::span<const double> costs, unsigned shares) {
+  const double whole = std::accumulate(costs.begin(), costs.end(), 0.0);
+  std::vector<std::uint32_t> first{0};
+  double before = 0.0;
+  std::uint32_t at = 0;
+  for (unsigned k = 1; k < shares; ++k) {
+    // An item goes to the share in which its middle lies.
+    const double due = whole * k / shares;
+    while (at < costs.size() && before + 0.5 * costs[at] < due) before += costs[at++];
+    first.push_back(at);
+  }
+  first.push_back(static_cast<std::uint32_t>(costs.size()));
+  return first;
+}
+
+}  // namespace sf::cluster

@@ -1,0 +1,132 @@
+#include "scenarios/rank_exchange.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "cluster/failure.h"
+#include "cluster/shares.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+enum Header : std::uint8_t { kStop = 1, kFailed = 2 };
+enum Present : std::uint8_t { kStepped = 1, kDone = 2, kError = 4, kIntent = 8, kCommand = 16, kLeft = 32 };
+
+/// [1/s] Rays, or as many as take the same time: of a robot's motion and controller, and of each reading.
+constexpr double kPerRobot = 500.0, kPerReading = 20.0;
+
+std::vector<double> costs_of(const world::World& world, const sensors::SensorSet& sensor_set) {
+  std::vector<double> costs(world.movers.size(), kPerRobot);
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : group.rows) costs[row.mover] += row.rate * (kPerReading + row.elements);
+  return costs;
+}
+
+/// To the bit: the sign of a zero counts.
+bool same(const base::Twist& p, const base::Twist& q) { return std::memcmp(&p, &q, sizeof p) == 0; }
+bool same(const base::Intent& p, const base::Intent& q) {
+  return p.follows == q.follows && p.checkpoint == q.checkpoint && p.docking == q.docking;
+}
+
+}  // namespace
+
+RankExchange::RankExchange(cluster::Ranks& ranks, const world::World& world, const sensors::SensorSet& sensor_set)
+    : ranks_(ranks),
+      first_(cluster::equal_shares(costs_of(world, sensor_set), ranks.size())),
+      sent_commands_(world.movers.size()),
+      sent_intents_(world.movers.size()) {}
+
+void RankExchange::begin(const FleetDecisions& own, farm::Farm& farm, std::uint32_t failed,
+                         const std::exception_ptr& failure, bool stop) {
+  block_.clear();
+  base::ByteWriter out(block_);
+  out.put(static_cast<std::uint8_t>((stop ? kStop : 0) | (failure ? kFailed : 0)));
+  if (failure) {
+    std::string message;
+    try {
+      std::rethrow_exception(failure);
+    } catch (const std::exception&) {
+      out.put(static_cast<std::uint8_t>(cluster::code_of_current(message)));
+    }
+    out.put(failed);
+    out.put_string(message);
+  }
+  for (std::uint32_t m = first_[ranks_.rank()]; m < first_[ranks_.rank() + 1]; ++m)
+    if (own.statuses[m].drives) put_mover(m, own, out);
+  farm.write_shared(block_);
+  ranks_.begin(block_);
+}
+
+bool RankExchange::finish(const FleetDecisions& all, farm::Farm& farm) {
+  readers_.clear();
+  for (const cluster::Block block : ranks_.finish()) readers_.emplace_back(block);
+  bool stop = false;
+  std::uint32_t first_failed = base::kNoId;
+  int code = 0;
+  std::string message;
+  for (unsigned rank = 0; rank < readers_.size(); ++rank) {
+    base::ByteReader& in = readers_[rank];
+    const auto header = in.get<std::uint8_t>();
+    stop = stop || (header & kStop) != 0;
+    if ((header & kFailed) != 0) {
+      const int its_code = in.get<std::uint8_t>();
+      const auto mover = in.get<std::uint32_t>();
+      std::string text = in.get_string();
+      if (mover < first_failed) first_failed = mover, code = its_code, message = std::move(text);
+    }
+    for (std::uint32_t m = first_[rank]; m < first_[rank + 1]; ++m)
+      if (all.statuses[m].drives) get_mover(m, all, in);
+    SF_CHECK(in.good(), "the decisions of rank " + std::to_string(rank) + " end early");
+  }
+  if (code != 0) throw cluster::Failure(code, message);
+  if (ranks_.rank() == 0) farm.add_shared(readers_);
+  return stop;
+}
+
+void RankExchange::put_mover(std::uint32_t mover, const FleetDecisions& own, base::ByteWriter& out) {
+  const ControlStatus& status = own.statuses[mover];
+  const base::Twist& command = own.commands[mover];
+  const base::Intent& intent = own.intents[mover];
+  const bool error = status.stepped && std::isfinite(status.error);
+  const bool new_intent = !same(intent, sent_intents_[mover]);
+  const bool new_command = !same(command, sent_commands_[mover]);
+  const bool left = command.left != 0.0 || std::signbit(command.left);
+  out.put(static_cast<std::uint8_t>((status.stepped ? kStepped : 0) | (status.done ? kDone : 0) | (error ? kError : 0) |
+                                    (new_intent ? kIntent : 0) | (new_command ? kCommand : 0) | (left ? kLeft : 0)));
+  if (error) out.put(status.error);
+  if (new_intent) {
+    out.put(intent.follows);
+    out.put(intent.checkpoint);
+    out.put(static_cast<std::uint8_t>(intent.docking));
+  }
+  if (!new_command) return;
+  out.put(command.forward);
+  if (left) out.put(command.left);
+  out.put(command.turn);
+}
+
+void RankExchange::get_mover(std::uint32_t mover, const FleetDecisions& all, base::ByteReader& in) {
+  const auto present = in.get<std::uint8_t>();
+  ControlStatus& status = all.statuses[mover];
+  status.stepped = (present & kStepped) != 0;
+  status.done = (present & kDone) != 0;
+  status.error = (present & kError) != 0 ? in.get<double>() : std::numeric_limits<double>::quiet_NaN();
+  if ((present & kIntent) != 0) {
+    base::Intent& intent = sent_intents_[mover];
+    intent.follows = in.get<std::uint32_t>();
+    intent.checkpoint = in.get<std::uint32_t>();
+    intent.docking = in.get<std::uint8_t>() != 0;
+  }
+  if ((present & kCommand) != 0) {
+    base::Twist& command = sent_commands_[mover];
+    command.forward = in.get<double>();
+    command.left = (present & kLeft) != 0 ? in.get<double>() : 0.0;
+    command.turn = in.get<double>();
+  }
+  all.intents[mover] = sent_intents_[mover];
+  all.commands[mover] = sent_commands_[mover];
+}
+
+}  // namespace sf::scenarios
