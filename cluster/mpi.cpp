@@ -40,12 +40,9 @@ class MpiRanks final : public Ranks {
 
   void begin(Block block) override {
     const auto start = Clock::now();
-    const int size = static_cast<int>(block.size());
-    MPI_Allgather(&size, 1, MPI_INT, sizes_.data(), 1, MPI_INT, MPI_COMM_WORLD);
-    std::exclusive_scan(sizes_.begin(), sizes_.end(), starts_.begin(), 0);
-    all_.resize(static_cast<std::size_t>(starts_.back()) + static_cast<std::size_t>(sizes_.back()));
-    MPI_Iallgatherv(block.data(), size, MPI_BYTE, all_.data(), sizes_.data(), starts_.data(), MPI_BYTE, MPI_COMM_WORLD,
-                    &request_);
+    block_ = block;
+    own_size_ = static_cast<int>(block.size());
+    MPI_Iallgather(&own_size_, 1, MPI_INT, sizes_.data(), 1, MPI_INT, MPI_COMM_WORLD, &request_);
     ++counts_.exchanges;
     counts_.bytes += block.size();
     count(start);
@@ -54,6 +51,10 @@ class MpiRanks final : public Ranks {
   std::span<const Block> finish() override {
     const auto start = Clock::now();
     MPI_Wait(&request_, MPI_STATUS_IGNORE);
+    std::exclusive_scan(sizes_.begin(), sizes_.end(), starts_.begin(), 0);
+    all_.resize(static_cast<std::size_t>(starts_.back()) + static_cast<std::size_t>(sizes_.back()));
+    MPI_Allgatherv(block_.data(), own_size_, MPI_BYTE, all_.data(), sizes_.data(), starts_.data(), MPI_BYTE,
+                   MPI_COMM_WORLD);
     for (unsigned r = 0; r < size_; ++r)
       blocks_[r] = Block(all_).subspan(static_cast<std::size_t>(starts_[r]), static_cast<std::size_t>(sizes_[r]));
     count(start);
@@ -69,6 +70,8 @@ class MpiRanks final : public Ranks {
   void count(Clock::time_point start) { counts_.wait_s += std::chrono::duration<double>(Clock::now() - start).count(); }
 
   unsigned rank_ = 0, size_ = 1, beside_ = 1;
+  Block block_;
+  int own_size_ = 0;                 ///< [byte] of it
   std::vector<int> sizes_, starts_;  ///< [byte] per rank
   std::vector<std::uint8_t> all_;
   std::vector<Block> blocks_;

@@ -31,7 +31,7 @@ class Ranks {
   virtual unsigned rank() const = 0;    ///< in [0, size())
   virtual unsigned size() const = 0;    ///< at least 1
   virtual unsigned beside() const = 0;  ///< ranks on this machine, this one among them
-  /// Starts an exchange. @param block at most 2 GiB with those of all ranks; unchanged until `finish`
+  /// Starts an exchange. @param block at most 2 GiB with those of all ranks; unchanged until after `finish`
   virtual void begin(Block block) = 0;
   /// Ends it. @return one block per rank; they live until the next `begin`
   virtual std::span<const Block> finish() = 0;

@@ -112,8 +112,8 @@ base::TickRecord Simulation::step() {
   const auto start = std::chrono::steady_clock::now();
   sort_by_mover(readings);
   decide(time);
-  if (exchange_) begin_exchange();
   move_s_ += base::seconds_since(start);
+  if (exchange_) begin_exchange();
   return {tick_++, time, recorded_reports(), executed_commands_, fleet_.contacts(), readings, {}, light_states_};
 }
 
