@@ -342,6 +342,11 @@ struct VerifyOptions : RecordingOption, ThreadsOption, JsonOption, DeviceOption 
   std::uint64_t sample = 500;  ///< scans that are cast again in plain C++; 0: all
 };
 
+struct MergeOptions {
+  std::vector<std::string> places;  ///< folders with recordings of ranks, or these themselves
+  std::string out;                  ///< folder
+};
+
 struct TradeoffOptions : WorldOptions,
                          AccuracyTargetOptions,
                          JsonOption,
@@ -351,13 +356,6 @@ struct TradeoffOptions : WorldOptions,
                          PageOption {
   std::string out;             ///< folder; empty: none
   std::string format = "png";  ///< suffix of the picture
-struct MergeOptions {
-  std::vector<std::string> places;  ///< folders with recordings of ranks, or these themselves
-  std::string out;                  ///< folder
-};
-
-struct TradeoffOptions : WorldOptions, AccuracyTargetOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {
-  std::string out;  ///< folder; empty: none
 };
 
 struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption, BindOption {

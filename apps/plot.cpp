@@ -19,8 +19,6 @@
 #include "base/error.h"
 #include "scenarios/experiment.h"
 #include "viz/lights_figure.h"
-#include "scenarios/merging.h"
-#include "sensors/laser.h"
 #include "viz/occupancy_figure.h"
 #include "viz/scan_map.h"
 #include "viz/trajectory_figure.h"
@@ -131,12 +129,6 @@ int plot(const PlotOptions& options) {
   const std::string folder =
       options.out.empty() ? std::filesystem::path(part.recording.file).parent_path().string() : options.out;
   scenarios::make_folder(folder);
-  const record::Recording recording = scenarios::open_run(options.recording);
-  print_damage(recording);
-  const world::World world = world::from_snapshot(recording.info.snapshot);
-  const std::filesystem::path folder =
-      options.out.empty() ? std::filesystem::path(recording.file).parent_path() : std::filesystem::path(options.out);
-  scenarios::make_folder(folder.string());
 
   install_stop_handlers();
   draw_paths(part, world, options, folder);

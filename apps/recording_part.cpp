@@ -8,6 +8,7 @@
 #include "apps/report.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "scenarios/merging.h"
 
 namespace sf::apps {
 
@@ -33,7 +34,7 @@ std::vector<std::uint8_t> chosen_of(const record::Recording& recording, const st
 }  // namespace
 
 RecordingPart open_part(const std::string& directory, const PartOption& wanted) {
-  RecordingPart part{record::open_recording(directory), {}, 0.0};
+  RecordingPart part{scenarios::open_run(directory), {}, 0.0};
   record::Recording& recording = part.recording;
   print_damage(recording);
   part.chosen = chosen_of(recording, wanted.robots);

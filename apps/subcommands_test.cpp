@@ -108,6 +108,8 @@ void add_sweep(CLI::App& app, Call& call) {
       ->expected(1)
       ->type_name("OPTION");
   add_device(*sub, o);
+}
+
 void add_merge(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("merge", "Put the recordings of a run's ranks together (docs/cluster.md)");
   auto& o = add_command(*sub, call, merge);

@@ -13,6 +13,7 @@
 #include "base/elapsed.h"
 #include "netio/bridges/viewer.h"
 #include "record/recording.h"
+#include "scenarios/merging.h"
 #include "scenarios/replay.h"
 #include "scenarios/run_info.h"
 
@@ -74,7 +75,7 @@ class Playback {
 
 int view(const ViewOptions& options) {
   if (options.three_d) return view_3d(options);
-  const record::Recording recording = record::open_recording(options.recording);
+  const record::Recording recording = scenarios::open_run(options.recording);
   print_damage(recording);
   const world::World world = world::from_snapshot(recording.info.snapshot);
   const sensors::SensorSet sensor_set(world);

@@ -14,7 +14,6 @@ find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-ft cairo-pdf)  # libcairo2-dev
 
-# Debian's VTK 9.1 looks for MPI; this project does not use it.
 # Ranks (cluster/) work without it as one process each. Debian's VTK 9.1 looks for it, too.
 find_package(MPI QUIET COMPONENTS C)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML FiltersCore FiltersFlowPaths InteractionWidgets RenderingOpenGL2 RenderingFreeType)

@@ -15,10 +15,7 @@ namespace {
 
 const Words kSubcommands{"devices", "check",  "draw",     "sense",  "run",  "serve",    "robot",   "start",
                          "plot",    "listen", "dump",     "field",  "map",  "selftest", "explain", "experiment",
-                         "test",    "verify", "tradeoff", "export", "view", "help"};
-const Words kSubcommands{"devices", "check",      "draw",   "sense",  "run",      "serve", "robot",
-                         "start",   "plot",       "listen", "dump",   "field",    "map",   "selftest",
-                         "explain", "experiment", "test",   "verify", "tradeoff", "merge", "help"};
+                         "test",    "verify", "tradeoff", "export", "view", "merge",    "sweep",   "help"};
 
 struct Wrong {
   Words arguments;
