@@ -73,6 +73,7 @@ void MirroredReadings::add_lines(std::uint32_t mover, const base::Pose& X_WM, st
 void MirroredReadings::add_scan(const sensors::SensorSpec& laser, const base::Pose& X_WS,
                                 std::span<const double> ranges, std::vector<SightLine>& lines) const {
   const std::uint32_t every = (laser.elements + kMostBeams - 1) / kMostBeams;
+  const double step = laser.fov / std::max(1u, laser.elements - 1);  // [rad]
   SightLine echoes{SightLine::Kind::echoes, {}, X_WS.z};
   const auto end_echoes = [&] {
     if (echoes.points.size() > 1) lines.push_back(echoes);
@@ -83,7 +84,10 @@ void MirroredReadings::add_scan(const sensors::SensorSpec& laser, const base::Po
     const double range = returned ? ranges[i] : laser.limit;
     const glm::dvec2 end = base::transform(X_WS, base::rotate(sensors::bearing_of(laser, i), {range, 0.0}));
     if (i % every == 0) lines.push_back({SightLine::Kind::beam, {{X_WS.x, X_WS.y}, end}, X_WS.z});
-    if (!returned) end_echoes();
+    // A step of range that no surface at up to 80 degrees explains is the edge of one.
+    const double before = i > 0 ? std::min(ranges[i - 1], laser.limit) : range;
+    const double most = 0.05 + 5.7 * step * std::min(range, before);
+    if (!returned || std::abs(range - before) > most) end_echoes();
     if (returned) echoes.points.push_back(end);
   }
   end_echoes();

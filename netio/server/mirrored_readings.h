@@ -22,7 +22,7 @@ namespace sf::server {
 struct SightLine {
   enum class Kind : std::uint8_t {
     beam,      ///< from the sensor to where the beam ended
-    echoes,    ///< through the ends of neighbouring beams that returned
+    echoes,    ///< through the ends of neighbouring beams that returned from one surface
     lane_edge  ///< a piece of the edge, 0.3 m long, at a right angle to the direction in which it was measured
   } kind = Kind::beam;
   std::vector<glm::dvec2> points;  ///< [m] in the world

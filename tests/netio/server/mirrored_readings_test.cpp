@@ -71,6 +71,15 @@ TEST_F(MirroredReadingsTest, BeamsStartAtTheSensorOfTheSeenRobot) {
   EXPECT_EQ(echoes, 2);
 }
 
+/// The third beam passes the near surface that the first two meet.
+TEST_F(MirroredReadingsTest, EchoesOfTwoSurfacesAreTwoLines) {
+  readings.accept(packet(sensors::kLaser, {0.1, 0.1, 3.0, 3.0, 3.0}), 0);
+  std::vector<std::size_t> sizes;
+  for (const SightLine& line : lines({}))
+    if (line.kind == Kind::echoes) sizes.push_back(line.points.size());
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{2, 3}));
+}
+
 TEST_F(MirroredReadingsTest, EdgesLieAcrossTheirPerpendicular) {
   readings.accept(packet(sensors::kLaneEdge, {0.5, 30, 0.0, 0.0}), 0);
   const auto all = lines({1.0, 0.0, 0.0, 0.0});
