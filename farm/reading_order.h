@@ -17,7 +17,7 @@ class ReadingOrder {
   struct Key {
     std::int64_t due = 0;    ///< [ns] time of the measurement and latency
     std::uint64_t rank = 0;  ///< among those due at one time: late readings by robot, then others by type
-    auto operator<=>(const Key&) const = default;
+    auto operator<=>(const Key&) const = default;  // NOLINT(modernize-use-nullptr): misread by clang-tidy 14
   };
 
   explicit ReadingOrder(const sensors::SensorSet& sensor_set);
