@@ -28,9 +28,10 @@ class MpiRanks final : public Ranks {
     rank_ = static_cast<unsigned>(rank);
     size_ = static_cast<unsigned>(size);
     beside_ = static_cast<unsigned>(beside);
-    sizes_.resize(size_);
-    starts_.resize(size_);
+    for (auto* sizes : {&sizes_, &starts_, &sent_sizes_, &sent_starts_, &got_sizes_, &got_starts_})
+      sizes->resize(size_);
     blocks_.resize(size_);
+    got_blocks_.resize(size_);
   }
   ~MpiRanks() override { MPI_Finalize(); }
 
@@ -61,6 +62,28 @@ class MpiRanks final : public Ranks {
     return blocks_;
   }
 
+  std::span<const Block> swap(std::span<const base::Bytes> to) override {
+    const auto start = Clock::now();
+    sent_.clear();
+    for (unsigned r = 0; r < size_; ++r) {
+      sent_starts_[r] = static_cast<int>(sent_.size());
+      sent_sizes_[r] = static_cast<int>(to[r].size());
+      sent_.insert(sent_.end(), to[r].begin(), to[r].end());
+    }
+    MPI_Alltoall(sent_sizes_.data(), 1, MPI_INT, got_sizes_.data(), 1, MPI_INT, MPI_COMM_WORLD);
+    std::exclusive_scan(got_sizes_.begin(), got_sizes_.end(), got_starts_.begin(), 0);
+    got_.resize(static_cast<std::size_t>(got_starts_.back()) + static_cast<std::size_t>(got_sizes_.back()));
+    MPI_Alltoallv(sent_.data(), sent_sizes_.data(), sent_starts_.data(), MPI_BYTE, got_.data(), got_sizes_.data(),
+                  got_starts_.data(), MPI_BYTE, MPI_COMM_WORLD);
+    for (unsigned r = 0; r < size_; ++r)
+      got_blocks_[r] =
+          Block(got_).subspan(static_cast<std::size_t>(got_starts_[r]), static_cast<std::size_t>(got_sizes_[r]));
+    ++counts_.exchanges;
+    counts_.bytes += sent_.size() - to[rank_].size();
+    count(start);
+    return got_blocks_;
+  }
+
   [[noreturn]] void abort(int code) override {
     MPI_Abort(MPI_COMM_WORLD, code);
     std::_Exit(code);
@@ -75,6 +98,9 @@ class MpiRanks final : public Ranks {
   std::vector<int> sizes_, starts_;  ///< [byte] per rank
   std::vector<std::uint8_t> all_;
   std::vector<Block> blocks_;
+  std::vector<int> sent_sizes_, sent_starts_, got_sizes_, got_starts_;  ///< [byte] per rank, of a swap
+  std::vector<std::uint8_t> sent_, got_;
+  std::vector<Block> got_blocks_;
   MPI_Request request_ = MPI_REQUEST_NULL;
 };
 

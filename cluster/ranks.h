@@ -12,6 +12,8 @@
 #include <memory>
 #include <span>
 
+#include "base/bytes.h"
+
 namespace sf::cluster {
 
 /// Bytes of one rank.
@@ -20,8 +22,8 @@ using Block = std::span<const std::uint8_t>;
 /// What exchanges have cost so far.
 struct ExchangeCounts {
   std::uint64_t exchanges = 0;
-  std::uint64_t bytes = 0;  ///< of the blocks of this rank; every other rank receives them
-  double wait_s = 0.0;      ///< [s] in `begin` and `finish`
+  std::uint64_t bytes = 0;  ///< sent by this rank, counted once where every other rank receives them
+  double wait_s = 0.0;      ///< [s] in `begin`, `finish` and `swap`
 };
 
 /// One thread. All ranks call `begin` and `finish` in the same order.
@@ -35,6 +37,9 @@ class Ranks {
   virtual void begin(Block block) = 0;
   /// Ends it. @return one block per rank; they live until the next `begin`
   virtual std::span<const Block> finish() = 0;
+  /// Sends each rank a block of its own. @param to one per rank @return one from each rank; they live until the next
+  /// call
+  virtual std::span<const Block> swap(std::span<const base::Bytes> to) = 0;
   /// Ends the processes of all ranks.
   [[noreturn]] virtual void abort(int code) = 0;
 

@@ -25,6 +25,7 @@ class SecondOfThree final : public Ranks {
     blocks_ = {first_, own_, third_};
     return blocks_;
   }
+  std::span<const Block> swap(std::span<const base::Bytes>) override { return {}; }
   [[noreturn]] void abort(int code) override { std::_Exit(code); }
 
  private:
