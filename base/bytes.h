@@ -64,6 +64,10 @@ class ByteReader {
     if (!take(size)) return {};
     return in_.subspan(at_ - size, size);
   }
+  /// Copies the next `size` bytes; fewer left: nothing, and the reader is bad.
+  void get_into(void* out, std::size_t size) {
+    if (take(size) && size > 0) std::memcpy(out, in_.data() + at_ - size, size);
+  }
   std::string get_string() {
     const auto text = get_bytes(get<std::uint32_t>());
     return {reinterpret_cast<const char*>(text.data()), text.size()};

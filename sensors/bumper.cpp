@@ -86,6 +86,7 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
     rows.push_back(mounted.row);
     rows.back().elements = static_cast<std::uint32_t>(read_bumper(mounted.settings).size());
     rows.back().limit = 1.0;
+    rows.back().reach = 0.0;
   });
   return rows;
 }

@@ -43,6 +43,7 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
     rows.push_back(mounted.row);
     rows.back().elements = static_cast<std::uint32_t>(read_elements(mounted.settings, kMostCliffPoints).size());
     rows.back().limit = 1.0;
+    rows.back().reach = 0.0;
   });
   return rows;
 }

@@ -36,6 +36,8 @@ class Encoders : public HostBackend {
   explicit Encoders(const SensorContext& context);
 
   void accumulate(std::int64_t now, bool between) override;
+  void write_state(std::uint32_t row, base::ByteWriter& out) const override;
+  void read_state(std::uint32_t row, base::ByteReader& in) override;
 
  private:
   void measure(std::span<const HostSample> samples) const override;
@@ -53,6 +55,7 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
   for_each_sensor(world, encoder_type, [&](const MountedSensor& mounted) {
     read_encoder(mounted.settings, world.movers[mounted.row.mover]);
     rows.push_back(mounted.row);
+    rows.back().reach = 0.0;
   });
   return rows;
 }
@@ -96,6 +99,26 @@ void Encoders::accumulate(std::int64_t now, bool between) {
     if (!between) track = {X_WM, now, true};
   }
   if (!between) last_ = now;
+}
+
+// Of wheels that slip, the number of steps of a random walk is part of the state.
+static_assert(std::is_trivially_copyable_v<Rolled> && std::is_trivially_copyable_v<Slippage> &&
+              std::is_trivially_copyable_v<Track>);
+
+void Encoders::write_state(std::uint32_t row, base::ByteWriter& out) const {
+  const Wheels& wheels = wheels_[row];
+  out.put_bytes(&wheels.rolled, sizeof wheels.rolled);
+  out.put_bytes(&wheels.left, sizeof wheels.left);
+  out.put_bytes(&wheels.right, sizeof wheels.right);
+  out.put_bytes(&tracks_[row], sizeof tracks_[row]);
+}
+
+void Encoders::read_state(std::uint32_t row, base::ByteReader& in) {
+  Wheels& wheels = wheels_[row];
+  in.get_into(&wheels.rolled, sizeof wheels.rolled);
+  in.get_into(&wheels.left, sizeof wheels.left);
+  in.get_into(&wheels.right, sizeof wheels.right);
+  in.get_into(&tracks_[row], sizeof tracks_[row]);
 }
 
 double counts_of(double rolled, double scale, const Slippage& slippage, double per_count) {

@@ -14,14 +14,14 @@ namespace {
 
 using world::Segment;
 
-constexpr double kMask = 15.0 * M_PI / 180.0;  // [rad] least elevation
-constexpr double kMostPieces = 64.0;           // most steps along a line of sight
-constexpr double kSingular = 1e-9;             // of the satellites' normal matrix
+constexpr double kMostPieces = 64.0;  // most steps along a line of sight
+constexpr double kSingular = 1e-9;    // of the satellites' normal matrix
+
+bool blocks(const Segment& wall) { return wall.seen_by_laser || wall.stops_robots; }
 
 std::vector<Segment> blocking(const world::World& world) {
   std::vector<Segment> walls;
-  for (const Segment& wall : world.walls)
-    if (wall.seen_by_laser || wall.stops_robots) walls.push_back(wall);
+  std::copy_if(world.walls.begin(), world.walls.end(), std::back_inserter(walls), blocks);
   return walls;
 }
 
@@ -40,12 +40,19 @@ double piece_of(std::span<const Segment> walls) {
 
 }  // namespace
 
+double top_of_blocking(const world::World& world) {
+  double top = -HUGE_VAL;
+  for (const Segment& wall : world.walls)
+    if (blocks(wall)) top = std::max(top, wall.z_max);
+  return top;
+}
+
 std::vector<Satellite> constellation(std::uint32_t count) {
   SF_CHECK(count >= 1 && count <= 64, std::to_string(count) + " satellites");
   const double golden = M_PI * (3.0 - std::sqrt(5.0));
   std::vector<Satellite> satellites;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const double up = std::sin(kMask) + (1.0 - std::sin(kMask)) * (i + 0.5) / count;
+    const double up = std::sin(kLeastElevation) + (1.0 - std::sin(kLeastElevation)) * (i + 0.5) / count;
     satellites.push_back({base::rotate(golden * i, {1.0, 0.0}), up / std::sqrt(1.0 - up * up)});
   }
   return satellites;

@@ -9,6 +9,7 @@
 // line crosses its range of heights, and a solid overhead (a bridge, a roof) where the line meets its underside within
 // its outline. Movers block nothing.
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -28,6 +29,10 @@ struct Satellite {
 
 /// @param count in [1, 64]
 std::vector<Satellite> constellation(std::uint32_t count);
+
+inline constexpr double kLeastElevation = 15.0 * M_PI / 180.0;  ///< [rad] of all constellations
+/// [m] Largest height of what blocks lines of sight; -infinity: nothing does.
+double top_of_blocking(const world::World& world);
 
 /// Position errors from independent range errors of standard deviation 1, with unknown 3-D position and clock: (x, y) =
 /// (xx n, yx n + yy m), with standard normal n and m.

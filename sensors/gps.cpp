@@ -34,11 +34,14 @@ class GpsReceivers : public HostBackend {
 
 std::vector<SensorSpec> specs_of(const world::World& world) {
   std::vector<SensorSpec> rows;
+  const double top = top_of_blocking(world);
   for_each_sensor(world, gps_type, [&](const MountedSensor& mounted) {
     read_gps(mounted.settings);
     SensorSpec row = mounted.row;
     row.rate = rate_of(mounted.settings, kRate);
     row.X_MS.z += mounted.settings.height;
+    const double above = top - world.movers[row.mover].X_WM.z - row.X_MS.z;
+    row.reach = std::max(0.0, above / std::tan(kLeastElevation));
     rows.push_back(row);
   });
   return rows;

@@ -42,6 +42,7 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
   for_each_sensor(world, gyro_type, [&](const MountedSensor& mounted) {
     rows.push_back(mounted.row);
     rows.back().limit = read_gyro(mounted.settings).range;
+    rows.back().reach = 0.0;
   });
   return rows;
 }

@@ -49,9 +49,12 @@ class IrReceivers : public HostBackend {
 
 std::vector<SensorSpec> specs_of(const world::World& world) {
   std::vector<SensorSpec> rows;
+  double reach = 0.0;
+  for (const Emitter& e : world.emitters) reach = std::max({reach, e.range, e.halo});
   for_each_sensor(world, irreceiver_type, [&](const MountedSensor& mounted) {
     rows.push_back(mounted.row);
     rows.back().X_MS.z += 0.5 * mounted.settings.height;
+    rows.back().reach = reach;
   });
   return rows;
 }

@@ -60,7 +60,7 @@ LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uin
   edge.distance_max = kFarthest * fan.range_max;
   edge.row.X_MS = fan.X_MS;
   edge.row.limit = edge.distance_max;
-  edge.row.dependency_radius = fan.range_max;
+  edge.row.dependency_radius = edge.row.reach = fan.range_max;
   edge.row.noisy = fan.noise.has_range() || fan.noise.angle_sigma > 0.0;
   return edge;
 }

@@ -174,7 +174,7 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
                     laser.samples, laser.range_max, 0, 0.0, cast.mode});
     rows.back().fov = laser.fov;
     rows.back().range_min = laser.range_min;
-    rows.back().dependency_radius = laser.range_max;
+    rows.back().dependency_radius = rows.back().reach = laser.range_max;
     rows.back().noisy = laser.noise.has_range() || laser.noise.angle_sigma > 0.0;
   }
   return rows;

@@ -40,6 +40,7 @@ std::vector<Array> arrays_of(const world::World& world) {
     array.row.dependency_radius =
         HUGE_VAL;  // the order in which moving magnets are summed depends on all of their positions
     array.row.depends_on_magnets = true;
+    array.row.reach = 0.0;
     array.row.noisy = array.settings.sigma > 0.0;
     array.height = world.movers[mover].X_WM.z + array.row.X_MS.z;
     for (const Pose& X_SE : array.settings.X_SE) array.facing.push_back(base::rotate(X_SE.yaw, {1.0, 0.0}));

@@ -111,6 +111,7 @@ Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, s
   fill_from(sensor, lasers[map.laser], map.settings);
   map.row.elements = maps::words(map.settings.grid);
   map.row.limit = 4294967295.0;
+  map.row.reach = 0.0;
   map.row.across = map.settings.grid.word_columns;
   map.row.pitch = map.settings.grid.cell;
   return map;

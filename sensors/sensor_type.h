@@ -5,6 +5,7 @@
 // and `farm_sensor(<wire id> x DEVICE)` in sensors/CMakeLists.txt; records of its kernel: their header in
 // shaders/CMakeLists.txt. One without a kernel says HOST and has no shader. Rays are horizontal (raycast/ray_caster.h).
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -63,6 +64,8 @@ struct SensorSpec {
                                     ///< within this radius. 0 disables reuse
   bool depends_on_magnets = false;  ///< the reading depends on the poses of all movers with magnets instead
   bool noisy = false;               ///< the reading also depends on noise, unless that is off
+  /// [m] from the sensor: surfaces farther away have no effect on a reading. Infinite: all surfaces may have one.
+  double reach = HUGE_VAL;
 };
 
 /// [rad] Bearing of beam `i` of a scan in the sensor's frame.
@@ -95,6 +98,10 @@ class SensorBackend {
   /// Host work after the batch: appends one block per due sensor, in order. The farm fills in time, sequence and X_WM.
   /// Spans are valid until the next `prepare`.
   virtual void collect(std::vector<base::ReadingBlock>& out) = 0;
+  /// The part of one sensor's state on which its later readings depend and which poses and settings do not give, for a
+  /// process that goes on with this sensor; initially none. @param row among the world's sensors of this type
+  virtual void write_state(std::uint32_t /*row*/, base::ByteWriter& /*out*/) const {}
+  virtual void read_state(std::uint32_t /*row*/, base::ByteReader& /*in*/) {}
   virtual SensorStats stats() const = 0;
   /// True when the due readings need the farm's batch.
   virtual bool on_device() const { return true; }

@@ -37,11 +37,17 @@ class Rangers : public SensorBackend {
   void record_derive(gpu::Batch& batch) override { cones_.record_derive(batch); }
   void add_copies(gpu::Batch& batch) override { cones_.add_copies(batch); }
   void collect(std::vector<base::ReadingBlock>& out) override;
+  void write_state(std::uint32_t row, base::ByteWriter& out) const override;
+  void read_state(std::uint32_t row, base::ByteReader& in) override;
   SensorStats stats() const override { return cones_.stats(); }
   bool on_device() const override { return cones_.on_device(); }
 
  private:
   void fire(const DueSample& due);
+  std::size_t first_value(std::uint32_t row) const { return type_.columns * std::size_t{first_cones_[row]}; }
+  std::size_t held_bytes(std::uint32_t row) const {
+    return arrays_[row].turns > 1 ? sizeof(double) * type_.columns * arrays_[row].X_SC.size() : 0;
+  }
   void write_reading(std::size_t i);
 
   base::ThreadPool& thread_pool_;
@@ -117,6 +123,17 @@ void Rangers::write_reading(std::size_t i) {
   }
 }
 
+// The echoes of transducers that do not fire are held in arrays with a firing cycle.
+void Rangers::write_state(std::uint32_t row, base::ByteWriter& out) const {
+  out.put(last_[row]);
+  out.put_bytes(values_.data() + first_value(row), held_bytes(row));
+}
+
+void Rangers::read_state(std::uint32_t row, base::ByteReader& in) {
+  last_[row] = in.get<std::uint64_t>();
+  in.get_into(values_.data() + first_value(row), held_bytes(row));
+}
+
 void Rangers::collect(std::vector<base::ReadingBlock>& out) {
   thread_pool_.parallel_for(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) write_reading(i);
@@ -142,11 +159,11 @@ std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays) {
   for (const ConeArray& array : arrays) {
     rows.push_back(array.row);
     rows.back().noisy = array.sigma > 0.0 || array.proportional > 0.0;
-    // With a firing cycle, a reading contains echoes of earlier readings: no reuse.
-    if (array.turns > 1) continue;
+    double& reach = rows.back().reach = 0.0;
     for (const Pose& X_SC : array.X_SC)
-      rows.back().dependency_radius =
-          std::max(rows.back().dependency_radius, array.range_max + glm::length(glm::dvec2{X_SC.x, X_SC.y}));
+      reach = std::max(reach, array.range_max + glm::length(glm::dvec2{X_SC.x, X_SC.y}));
+    // With a firing cycle, a reading contains echoes of earlier readings: no reuse.
+    if (array.turns == 1) rows.back().dependency_radius = reach;
   }
   return rows;
 }
