@@ -57,9 +57,12 @@ struct Farm::State {
   std::vector<base::Report> tick_states;  ///< of the last tick, while samples follow it
   bool between = false;                   ///< `states` are those of a sample
   std::vector<std::uint32_t> subscribed;  ///< per mover: bits of sensor types
-  std::vector<std::uint32_t> read_here;   ///< likewise, of those that are read here
-  std::vector<std::uint8_t> elsewhere;    ///< per mover: another process reads its sensors
-  std::vector<std::uint8_t> gone;         ///< per mover
+  std::vector<std::uint32_t> measured_types;   ///< likewise, of those that are measured here
+  std::vector<std::uint32_t> delivered_types;  ///< likewise, of those whose readings are delivered here
+  std::vector<std::uint8_t> measures;          ///< per mover: its sensors are measured here
+  std::vector<std::uint8_t> delivers;          ///< per mover: its readings are delivered here
+  ReadingExchange* exchange = nullptr;
+  std::vector<std::uint8_t> gone;             ///< per mover
   std::vector<base::StateQuality> qualities;  ///< per mover; empty: none was set
   std::vector<base::ReadingBlock> blocks;
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
@@ -80,8 +83,10 @@ struct Farm::State {
         pose_changes(w),
         states(robots::states_at_load(w)),
         subscribed(w.movers.size(), 0),
-        read_here(w.movers.size(), 0),
-        elsewhere(w.movers.size(), 0),
+        measured_types(w.movers.size(), 0),
+        delivered_types(w.movers.size(), 0),
+        measures(w.movers.size(), 1),
+        delivers(w.movers.size(), 1),
         gone(w.movers.size(), 0) {
     const sensors::SensorContext context{
         w, device, thread_pool, states, options.seed, options.noise, options.true_poses, options.scene};
@@ -110,7 +115,8 @@ struct Farm::State {
 };
 
 bool Farm::State::find_due(std::int64_t now) {
-  for (SensorPipeline& pipeline : pipelines) stats.missed += pipeline.find_due(now, read_here);
+  for (SensorPipeline& pipeline : pipelines)
+    stats.missed += pipeline.find_due(now, pipeline.derived() ? delivered_types : measured_types);
   return std::any_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return !s.due.empty(); });
 }
 
@@ -182,10 +188,11 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
   collect_all(true);
   for (const SensorPipeline& pipeline : pipelines)
     if (!pipeline.derived()) append(pipeline);
-  const std::size_t measured = blocks.size();
+  if (exchange != nullptr) exchange->exchange(blocks);
+  const std::size_t known = blocks.size();
   for (SensorPipeline& pipeline : pipelines) {
     if (!pipeline.derived()) continue;
-    pipeline.backend->observe(std::span(blocks).first(measured));
+    pipeline.backend->observe(std::span(blocks).first(known));
     collect(pipeline, now, reuse);
     append(pipeline);
   }
@@ -230,7 +237,8 @@ void Farm::State::add_to_hash(std::int64_t now, std::span<const base::ReadingBlo
 
 void Farm::State::subscribe(std::uint32_t mover, std::uint32_t types) {
   subscribed.at(mover) = types;
-  read_here[mover] = elsewhere[mover] != 0 ? 0 : types;
+  measured_types[mover] = measures[mover] != 0 ? types : 0;
+  delivered_types[mover] = delivers[mover] != 0 ? types : 0;
 }
 
 std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
@@ -239,7 +247,7 @@ std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
     pipeline.backend->accumulate(now, between);
   }
   blocks.clear();
-  if (find_due(now)) measure(now, reuse_unchanged);
+  if (find_due(now) || exchange != nullptr) measure(now, reuse_unchanged);
   if (!qualities.empty())
     for (base::ReadingBlock& block : blocks) block.state = qualities[block.mover];
   Stopwatch watch;
@@ -259,9 +267,15 @@ void Farm::subscribe(std::uint32_t mover, std::uint32_t types) {
   s_->subscribe(mover, s_->gone.at(mover) != 0 ? 0 : types);
 }
 void Farm::leave_to_others(std::uint32_t mover) {
-  s_->elsewhere.at(mover) = 1;
+  s_->delivers.at(mover) = 0;
+  set_measured_here(mover, false);
+}
+void Farm::set_measured_here(std::uint32_t mover, bool here) {
+  s_->measures.at(mover) = here ? 1 : 0;
   s_->subscribe(mover, s_->subscribed[mover]);
 }
+void Farm::set_exchange(ReadingExchange* exchange) { s_->exchange = exchange; }
+void Farm::set_hidden(std::uint32_t mover, bool hidden) { s_->gone.at(mover) = hidden ? 1 : 0; }
 void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
   if (gone) s_->subscribe(mover, 0);
@@ -329,6 +343,15 @@ base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t type, std::uint
 std::uint64_t Farm::hash() const { return s_->hash; }
 void Farm::write_shared(base::Bytes& out) { s_->shared.value().write(out); }
 void Farm::add_shared(std::span<base::ByteReader> parts) { s_->hash = s_->shared.value().chain(parts); }
+
+void Farm::write_sensors(std::uint32_t mover, base::ByteWriter& out) const {
+  for (const SensorPipeline& pipeline : s_->pipelines)
+    pipeline.for_rows_of(mover, [&](std::uint32_t row) { pipeline.backend->write_state(row, out); });
+}
+void Farm::read_sensors(std::uint32_t mover, base::ByteReader& in) {
+  for (const SensorPipeline& pipeline : s_->pipelines)
+    pipeline.for_rows_of(mover, [&](std::uint32_t row) { pipeline.backend->read_state(row, in); });
+}
 
 FarmStats Farm::stats() const {
   FarmStats stats = s_->stats;

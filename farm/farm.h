@@ -21,6 +21,7 @@
 #include "base/bytes.h"
 #include "base/reading.h"
 #include "base/report.h"
+#include "farm/reading_exchange.h"
 #include "farm/schedule.h"
 #include "gpu/device.h"
 #include "sensors/sensor_set.h"
@@ -77,9 +78,19 @@ class Farm {
   /// Sets what the readings of a mover state from now on of the state that they are computed from; initially nothing.
   void set_state_quality(std::uint32_t mover, const base::StateQuality& quality);
 
-  /// From now on another process measures the mover's subscribed sensors: they are due here, too, for `next_due` and
-  /// the numbers of readings, but not read.
+  /// From now on another process delivers the mover's readings, and measures its subscribed sensors: they are due here,
+  /// too, for `next_due` and the numbers of readings, but not read.
   void leave_to_others(std::uint32_t mover);
+  /// This process measures the mover's subscribed sensors, or does not, whichever process delivers their readings.
+  void set_measured_here(std::uint32_t mover, bool here);
+  /// Passes readings between the process that measures and the one that delivers. It must outlive the farm; null: none.
+  void set_exchange(ReadingExchange* exchange);
+  /// Another process knows where the mover is, this one does not: nothing here senses it until it is shown again. The
+  /// first report after that sets its pose.
+  void set_hidden(std::uint32_t mover, bool hidden);
+  /// The state of the mover's sensors for a process that measures them from now on (SensorBackend::write_state).
+  void write_sensors(std::uint32_t mover, base::ByteWriter& out) const;
+  void read_sensors(std::uint32_t mover, base::ByteReader& in);
 
   const sensors::SensorSet& sensor_set() const;
 

@@ -1,6 +1,7 @@
 #pragma once
 // State of one sensor type: its backend, its due sensors, and the sensors to measure.
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -28,6 +29,12 @@ struct SensorPipeline {
   /// @param group must outlive it
   SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& group);
 
+  /// Rows are in order of movers.
+  template <class Visit>
+  void for_rows_of(std::uint32_t mover, Visit&& visit) const {
+    const auto rows = std::ranges::equal_range(group->rows, mover, {}, &sensors::SensorSpec::mover);
+    for (const sensors::SensorSpec& row : rows) visit(static_cast<std::uint32_t>(&row - group->rows.data()));
+  }
   bool derived() const { return group->type->derived_from != 0; }
   /// Finds the sensors of this type due at `now` [ns].
   /// @param subscribed per mover: bits of sensor types

@@ -118,7 +118,7 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
 // step. Only these are tested.
 void Fleet::update_contacts() {
   for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
-    contacts_[row] = refused_[row] != 0 || reports_[row].contact_mask != 0;
+    contacts_[row] = absent_[row] == 0 && (refused_[row] != 0 || reports_[row].contact_mask != 0);
     const auto struck = refused_[row] != 0 ? std::span(struck_) : std::span<std::uint8_t>();
     if (contacts_[row] != 0)
       reports_[row].contact_mask = body_contact(row, reports_[row].X_WM, reports_, struck).sectors;
@@ -127,7 +127,7 @@ void Fleet::update_contacts() {
     if (struck_[row] != 0 && contacts_[row] == 0)
       reports_[row].contact_mask = body_contact(row, reports_[row].X_WM, reports_).sectors;
     struck_[row] = 0;
-    contacts_[row] = refused_[row] != 0 || reports_[row].contact_mask != 0;
+    contacts_[row] = absent_[row] == 0 && (refused_[row] != 0 || reports_[row].contact_mask != 0);
   });
 }
 
@@ -143,6 +143,11 @@ std::size_t Fleet::apply(std::span<const base::Report> reports) {
     ++taken;
   }
   return taken;
+}
+
+void Fleet::set_moved(const base::Report& report, bool contact) {
+  reports_[report.mover] = report;
+  contacts_[report.mover] = contact ? 1 : 0;
 }
 
 std::span<const base::Report> Fleet::predict(std::int64_t time) {

@@ -66,8 +66,11 @@ class Fleet {
   /// @return number of accepted reports
   std::size_t apply(std::span<const base::Report> reports);
 
-  /// Until it is set present again, no mover meets an absent one, and `predict` gives it no contacts.
+  /// Until it is set present again, no mover meets an absent one, `move` lets it stand, and it has no contacts.
   void set_absent(std::uint32_t row, bool gone) { absent_[row] = gone ? 1 : 0; }
+
+  /// Takes the state of a mover as another process' `move` left it. @param contact its entry in `contacts`
+  void set_moved(const base::Report& report, bool contact);
 
   /// One per mover, in order of rows: the newest state. Yaw is in [-pi, pi] after `move`, as reported after `apply`.
   /// The velocity of a simulated mover is the one at the end of the tick, 0 after a stop. Valid as long as the fleet.

@@ -19,6 +19,11 @@ bool moves(const Twist& v) { return v.forward != 0.0 || v.left != 0.0 || v.turn 
 }  // namespace
 
 void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scratch& scratch) {
+  waiting_[row] = 0;
+  if (absent_[row] != 0) {
+    progress_[row] = proposed_[row] = {reports_[row].X_WM, {}, 0.0, false};
+    return;
+  }
   const world::Mover& mover = world_.movers[row];
   const Footprint& outline = footprints_[row];
   const Twist wanted = limit_kinematics(mover, apply_actuator_model(mover, command));
