@@ -221,6 +221,7 @@ struct RunOptions : WorldOptions,
   std::string record;              ///< folder; empty: no recording
   bool record_readings = false;
   std::string send;         ///< host; empty: none
+  bool tiles = false;       ///< each rank has a part of the world
   double checkpoint = 0.0;  ///< [s] simulated between check points; 0: none
   bool resume = false;      ///< a run that was cut short: compare with its check points
 };

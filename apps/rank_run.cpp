@@ -79,10 +79,12 @@ void check_for_ranks(const RunOptions& options) {
     throw base::InputError("bridges show the fleet of one process: leave them out, or run without mpirun");
 }
 
-void add_up(cluster::Ranks& ranks, RunReport& facts) {
+void add_up(cluster::Ranks& ranks, RunReport& facts, std::optional<std::uint64_t> passed_on) {
   const cluster::ExchangeCounts exchanges = ranks.counts();
   RankReport report{ranks.size()};
-  const std::vector<std::uint64_t*> counts = counts_of(facts);
+  report.passed_on = passed_on;
+  std::vector<std::uint64_t*> counts = counts_of(facts);
+  if (passed_on) counts.push_back(&*report.passed_on);
   const std::vector<double*> seconds = seconds_of(facts);
   base::Bytes block;
   base::ByteWriter out(block);

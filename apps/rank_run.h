@@ -14,8 +14,9 @@ struct RunReport;
 /// What sharing the fleet cost.
 struct RankReport {
   unsigned ranks = 0;
-  double bytes = 0.0;      ///< [byte] sent per robot and tick, all ranks together, each block counted once
-  double wait_s = 0.0;     ///< [s] in exchanges, mean of the ranks
+  double bytes = 0.0;   ///< [byte] sent per robot and tick, all ranks together, each block counted once
+  double wait_s = 0.0;  ///< [s] in exchanges, mean of the ranks
+  std::optional<std::uint64_t> passed_on = {};  ///< robots that have crossed from one tile to another; none: no tiles
   double imbalance = 0.0;  ///< [-] of the time spent on sensing: the slowest rank's over the mean; 1: none
 };
 
@@ -32,7 +33,7 @@ unsigned threads_of(const RunOptions& options, const cluster::Ranks* ranks);
 /// @throws base::InputError for options that several ranks cannot follow
 void check_for_ranks(const RunOptions& options);
 
-/// Adds up the counts of all ranks, which all call this.
-void add_up(cluster::Ranks& ranks, RunReport& facts);
+/// Adds up the counts of all ranks, which all call this. @param passed_on see RankReport, of this rank
+void add_up(cluster::Ranks& ranks, RunReport& facts, std::optional<std::uint64_t> passed_on);
 
 }  // namespace sf::apps

@@ -261,6 +261,7 @@ std::string json_of(const RunReport& f) {
                       {"bytes_per_robot_and_tick", f.shared->bytes},
                       {"wait_s", f.shared->wait_s},
                       {"imbalance", f.shared->imbalance}};
+  if (f.shared && f.shared->passed_on) json["shared"]["passed_on"] = *f.shared->passed_on;
   if (f.farm.work.dipoles > 0) json["dipoles"] = f.farm.work.dipoles;
   if (f.control.robots > 0) json["control"] = control_json(f.control);
   if (f.sent)

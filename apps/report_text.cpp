@@ -250,6 +250,7 @@ std::string text_of(const RunReport& f) {
     text += row("  other ranks", stage(f.shared->wait_s));
     text += row("ranks", "{}; {:.0f} bytes sent per robot and tick, slowest rank {:.2f} x the mean in sensing",
                 f.shared->ranks, f.shared->bytes, f.shared->imbalance);
+    if (f.shared->passed_on) text += row("tiles", "{} robots passed on between them", *f.shared->passed_on);
   }
   text += row("hash of readings", base::hash_hex(f.hash));
   return text;

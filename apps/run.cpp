@@ -52,6 +52,7 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
   simulation.actor.controller = controller_config_of(options);
   simulation.actors = make_actors(world, options);
   simulation.ranks = ranks;
+  simulation.tiles = options.tiles && ranks != nullptr;
   return simulation;
 }
 
@@ -175,7 +176,7 @@ struct Course {
     facts.farm = simulation.farm().stats();
     facts.hash = simulation.farm().hash();
     outputs.finish(facts);
-    if (ranks != nullptr) add_up(*ranks, facts);
+    if (ranks != nullptr) add_up(*ranks, facts, simulation.passed_on());
   }
 };
 

@@ -47,6 +47,7 @@ void add_run(CLI::App& app, Call& call) {
   sub->add_flag("--resume", o.resume,
                 "Compute a run that was cut short again, with the same bytes, and compare it with its check points")
       ->needs(record);
+  sub->add_flag("--tiles", o.tiles, "With several ranks (mpirun): each knows and senses one part of the world");
   auto* speed = sub->add_option("--speed", o.speed,
                                 "Simulated over real time (0: as fast as possible; default: 0, and 1 beside bridges)")
                     ->check(number(0.0, 1e6))

@@ -17,13 +17,6 @@ enum Present : std::uint8_t { kStepped = 1, kDone = 2, kError = 4, kIntent = 8, 
 /// [1/s] Rays, or as many as take the same time: of a robot's motion and controller, and of each reading.
 constexpr double kPerRobot = 500.0, kPerReading = 20.0;
 
-std::vector<double> costs_of(const world::World& world, const sensors::SensorSet& sensor_set) {
-  std::vector<double> costs(world.movers.size(), kPerRobot);
-  for (const sensors::SensorSet::Group& group : sensor_set.groups())
-    for (const sensors::SensorSpec& row : group.rows) costs[row.mover] += row.rate * (kPerReading + row.elements);
-  return costs;
-}
-
 /// To the bit: the sign of a zero counts.
 bool same(const base::Twist& p, const base::Twist& q) { return std::memcmp(&p, &q, sizeof p) == 0; }
 bool same(const base::Intent& p, const base::Intent& q) {
@@ -32,11 +25,27 @@ bool same(const base::Intent& p, const base::Intent& q) {
 
 }  // namespace
 
-RankExchange::RankExchange(cluster::Ranks& ranks, const world::World& world, const sensors::SensorSet& sensor_set)
-    : ranks_(ranks),
-      first_(cluster::equal_shares(costs_of(world, sensor_set), ranks.size())),
-      sent_commands_(world.movers.size()),
-      sent_intents_(world.movers.size()) {}
+std::vector<double> costs_of(const world::World& world, const sensors::SensorSet& sensor_set) {
+  std::vector<double> costs(world.movers.size(), kPerRobot);
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : group.rows) costs[row.mover] += row.rate * (kPerReading + row.elements);
+  return costs;
+}
+
+std::vector<unsigned> equal_homes(std::span<const double> costs, unsigned ranks) {
+  const std::vector<std::uint32_t> first = cluster::equal_shares(costs, ranks);
+  std::vector<unsigned> homes;
+  for (unsigned rank = 0; rank < ranks; ++rank) homes.resize(first[rank + 1], rank);
+  return homes;
+}
+
+RankExchange::RankExchange(cluster::Ranks& ranks, std::span<const unsigned> homes)
+    : ranks_(ranks), movers_(ranks.size()), sent_commands_(homes.size()), sent_intents_(homes.size()) {
+  for (std::uint32_t m = 0; m < homes.size(); ++m) {
+    owned_.push_back(homes[m] == ranks.rank());
+    movers_[homes[m]].push_back(m);
+  }
+}
 
 void RankExchange::begin(const FleetDecisions& own, farm::Farm& farm, std::uint32_t failed,
                          const std::exception_ptr& failure, bool stop) {
@@ -53,7 +62,7 @@ void RankExchange::begin(const FleetDecisions& own, farm::Farm& farm, std::uint3
     out.put(failed);
     out.put_string(message);
   }
-  for (std::uint32_t m = first_[ranks_.rank()]; m < first_[ranks_.rank() + 1]; ++m)
+  for (const std::uint32_t m : movers_[ranks_.rank()])
     if (own.statuses[m].drives) put_mover(m, own, out);
   farm.write_shared(block_);
   ranks_.begin(block_);
@@ -76,7 +85,7 @@ bool RankExchange::finish(const FleetDecisions& all, farm::Farm& farm) {
       std::string text = in.get_string();
       if (mover < first_failed) first_failed = mover, code = its_code, message = std::move(text);
     }
-    for (std::uint32_t m = first_[rank]; m < first_[rank + 1]; ++m)
+    for (const std::uint32_t m : movers_[rank])
       if (all.statuses[m].drives) get_mover(m, all, in);
     SF_CHECK(in.good(), "the decisions of rank " + std::to_string(rank) + " end early");
   }

@@ -1,6 +1,6 @@
 #pragma once
-// A fleet shared by the ranks of a job. Every rank moves all robots; it senses, decides and records for its own share,
-// and tells the others once per tick what they cannot compute: commands, intents, and what a report needs.
+// A fleet shared by the ranks of a job. A rank decides and records for its own robots, and tells the others once per
+// tick what they cannot compute: commands, intents, and what a report needs.
 
 #include <cstdint>
 #include <exception>
@@ -30,14 +30,20 @@ struct FleetDecisions {
   std::span<ControlStatus> statuses;
 };
 
+/// Rays per second of each mover, or as many as take the time of its motion, controller and readings.
+std::vector<double> costs_of(const world::World& world, const sensors::SensorSet& sensor_set);
+
+/// The rank of each mover: neighbouring ones of the world's list have one, and all ranks have about the same cost.
+std::vector<unsigned> equal_homes(std::span<const double> costs, unsigned ranks);
+
 /// One thread.
 class RankExchange {
  public:
-  /// Shares are neighbouring movers with about the same number of rays per second. `ranks` must outlive it.
-  RankExchange(cluster::Ranks& ranks, const world::World& world, const sensors::SensorSet& sensor_set);
+  /// `ranks` must outlive it. @param homes per mover: the rank that decides for it
+  RankExchange(cluster::Ranks& ranks, std::span<const unsigned> homes);
 
-  /// This rank senses and decides for the mover.
-  bool owns(std::uint32_t mover) const { return mover >= first_[ranks_.rank()] && mover < first_[ranks_.rank() + 1]; }
+  /// This rank decides for the mover, and delivers its readings.
+  bool owns(std::uint32_t mover) const { return owned_[mover] != 0; }
 
   /// Sends the decisions for the own share, and its readings' hashes. @param failed mover whose controller threw
   /// `failure`; null: none did @param stop a user asks for the end of the run
@@ -52,7 +58,8 @@ class RankExchange {
   void get_mover(std::uint32_t mover, const FleetDecisions& all, base::ByteReader& in);
 
   cluster::Ranks& ranks_;
-  std::vector<std::uint32_t> first_;        ///< per rank and one more: its first mover
+  std::vector<std::uint8_t> owned_;                 ///< per mover
+  std::vector<std::vector<std::uint32_t>> movers_;  ///< per rank: those it decides for
   std::vector<base::Twist> sent_commands_;  ///< per mover, as the others know them; equal ones are not sent again
   std::vector<base::Intent> sent_intents_;  ///< likewise
   base::Bytes block_;

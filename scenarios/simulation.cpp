@@ -41,14 +41,24 @@ std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) 
   return readings.first(kept);
 }
 
+/// This rank's part of the world, with tiles.
+std::optional<world::World> part_of(const world::World& world, const std::optional<FleetTiles>& tiles) {
+  if (!tiles) return std::nullopt;
+  std::optional<world::World> part = world;
+  tiles->keep_own_part(*part);
+  return part;
+}
+
 }  // namespace
 
 Simulation::Simulation(const world::World& world, gpu::Device& device, SimulationOptions options)
-    : world_(world),
-      roads_(world::roads_of(world)),
+    : tiles_(options.tiles ? std::optional<FleetTiles>(std::in_place, *options.ranks, world) : std::nullopt),
+      part_(part_of(world, tiles_)),
+      world_(part_ ? *part_ : world),
+      roads_(world::roads_of(world_)),
       thread_pool_(options.threads),
-      farm_(world, device, farm_options(options)),
-      fleet_(world, &thread_pool_),
+      farm_(world_, device, farm_options(options)),
+      fleet_(world_, &thread_pool_),
       commands_(world.movers.size()),
       executed_commands_(world.movers.size()),
       first_(world.movers.size() + 1),
@@ -64,18 +74,29 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
            "actors: expected none or one per mover");
   if (options.states) states_.emplace(world, *options.states);
   farm_.subscribe_all();
-  if (options.ranks != nullptr) {
-    exchange_.emplace(*options.ranks, world, farm_.sensor_set());
-    statuses_.resize(world.movers.size());
-    for (std::uint32_t i = 0; i < world.movers.size(); ++i)
-      if (!exchange_->owns(i)) farm_.leave_to_others(i);
-  }
+  if (options.ranks != nullptr) begin_sharing(options);
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) controls_.push_back(make_control(i, options));
   for (const RobotControl& robot : controls_)
     if (robot.controller) v2v_range_ = std::max(v2v_range_, robot.controller->v2v_range());
   for (auto& others : others_) others.reserve(v2v_range_ > 0.0 ? world.movers.size() : 0);
   sorted_.reserve(farm_.sensor_set().count());
   next_.reserve(first_.size());
+}
+
+void Simulation::begin_sharing(const SimulationOptions& options) {
+  const std::vector<unsigned> equal = equal_homes(costs_of(world_, farm_.sensor_set()), options.ranks->size());
+  exchange_.emplace(*options.ranks, tiles_ ? tiles_->homes() : equal);
+  statuses_.resize(world_.movers.size());
+  for (std::uint32_t i = 0; i < world_.movers.size(); ++i)
+    if (!exchange_->owns(i)) farm_.leave_to_others(i);
+}
+
+/// At the first step, when no rank has failed to begin.
+void Simulation::begin_tiles() {
+  std::vector<double> ranges;
+  for (const RobotControl& robot : controls_) ranges.push_back(robot.controller ? robot.controller->v2v_range() : 0.0);
+  tiles_->begin(fleet_, farm_, ranges);
+  for (const double range : ranges) v2v_range_ = std::max(v2v_range_, range);
 }
 
 Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const SimulationOptions& options) {
@@ -107,6 +128,7 @@ bool Simulation::all_done() const {
 base::TickRecord Simulation::step() {
   const std::int64_t time = static_cast<std::int64_t>(tick_) * interval_;
   settle();
+  if (tiles_ && tick_ == 0) begin_tiles();
   if (tick_ > 0) move();
   const auto readings = sense(time);
   const auto start = std::chrono::steady_clock::now();
@@ -152,6 +174,8 @@ void Simulation::move() {
   const auto start = std::chrono::steady_clock::now();
   fleet_.move(commands_, interval_);
   executed_commands_ = commands_;
+  if (tiles_) tiles_->share_states();
+  if (tiles_ && v2v_range_ > 0.0) tiles_->share_neighbours();
   move_s_ += base::seconds_since(start);
 }
 
@@ -286,14 +310,20 @@ bool Simulation::due(RobotControl& robot, std::span<const base::ReadingBlock> fr
 
 void Simulation::find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const {
   const std::span<const base::Report> reports = fleet_.reports();
+  const auto add = [&](const base::Report& other) {
+    if (other.mover != mover && !world_.movers[other.mover].is_tag)
+      others.push_back({world_.movers[other.mover].id, other, intents_[other.mover]});
+  };
   const glm::dvec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
-  neighbours_.any(here, v2v_range, [&](std::uint32_t row) {
-    if (row == mover || world_.movers[row].is_tag) return false;
-    const base::Pose& X_WM = reports[row].X_WM;
-    if (glm::length(glm::dvec2{X_WM.x, X_WM.y} - here) > v2v_range) return false;
-    others.push_back({world_.movers[row].id, reports[row], intents_[row]});
-    return false;
-  });
+  if (tiles_ && !tiles_->measures(mover))
+    for (const base::Report& other : tiles_->neighbours(mover)) add(other);
+  else
+    neighbours_.any(here, v2v_range, [&](std::uint32_t row) {
+      const base::Pose& X_WM = reports[row].X_WM;
+      const bool known = !tiles_ || tiles_->present(row);
+      if (known && glm::length(glm::dvec2{X_WM.x, X_WM.y} - here) <= v2v_range) add(reports[row]);
+      return false;
+    });
   std::sort(others.begin(), others.end(),
             [](const control::Neighbour& p, const control::Neighbour& q) { return p.id < q.id; });
 }

@@ -23,6 +23,7 @@
 #include "netio/link_model.h"
 #include "robots/fleet.h"
 #include "robots/neighbour_grid.h"
+#include "scenarios/fleet_tiles.h"
 #include "scenarios/mailbox.h"
 #include "scenarios/rank_exchange.h"
 #include "scenarios/state_link.h"
@@ -49,6 +50,7 @@ struct SimulationOptions {
   bool noise = true;                       ///< likewise
   raycast::CasterChoice caster = raycast::CasterChoice::automatic;
   cluster::Ranks* ranks = nullptr;  ///< that share the fleet, with the same options; null: this process has all of it
+  bool tiles = false;  ///< each rank knows and senses a part of the world (scenarios/fleet_tiles.h), which needs ranks
 };
 
 /// `world` and `device` must outlive it. One thread at a time. Ticks allocate nothing after warm-up.
@@ -91,8 +93,10 @@ class Simulation {
   const control::Controller* controller(std::uint32_t mover) const { return controls_[mover].controller.get(); }
   /// The last tick called the mover's controller.
   bool stepped(std::uint32_t mover) const { return controls_[mover].stepped; }
-  /// This process senses and decides for the mover.
+  /// This process decides for the mover and delivers its readings.
   bool owns(std::uint32_t mover) const { return !exchange_ || exchange_->owns(mover); }
+  /// Movers that this rank has passed on to other tiles so far; none without tiles.
+  std::optional<std::uint64_t> passed_on() const { return tiles_ ? std::optional(tiles_->passed_on()) : std::nullopt; }
   /// The mover's controller, of whatever rank, after `settle`.
   ControlStatus status(std::uint32_t mover) const;
   const base::Intent& intent(std::uint32_t mover) const { return next_intents_[mover]; }
@@ -123,9 +127,13 @@ class Simulation {
   std::int64_t leaves_at(const base::ReadingBlock& reading) const;
   bool due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
   void begin_exchange();
+  void begin_sharing(const SimulationOptions& options);
+  void begin_tiles();
   FleetDecisions decisions() { return {commands_, next_intents_, statuses_}; }
   void find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const;
 
+  std::optional<FleetTiles> tiles_;   ///< none: this process knows the whole world
+  std::optional<world::World> part_;  ///< of this rank's tile
   const world::World& world_;
   std::optional<world::RoadNetwork> roads_;
   base::ThreadPool thread_pool_;

@@ -1,0 +1,136 @@
+// Tiles give the bytes of one process: readings, states and contacts.
+
+#include "scenarios/fleet_tiles.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "scenarios/simulation.h"
+#include "sensors/sensor_type.h"
+#include "tests/cluster/thread_ranks.h"
+#include "tests/device.h"
+#include "tests/refusal.h"
+#include "tests/sensors/scenes.h"
+#include "tests/world/read_world.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+world::World read(const std::string& text) {
+  return world::read_world("include \"robots.inc\"\n" + text, {.sensors = sensors::world_file_words()});
+}
+
+/// Rows of houses, and robots between them with all kinds of sensors that keep a state or look far.
+world::World town(unsigned robots) {
+  std::string text =
+      "define house model( size [2 2 1] )\n"
+      "define walker create( create_laser( range_max 2 ) create_map( laser \"\" ) create_encoder( ) create_gyro( ) )\n"
+      "define driver pioneer3at( pioneer_sonar( ) pioneer_encoder( ) outdoor_gps( ) mems_gyro( ) )\n";
+  text.replace(text.find(" create_gyro( )"), 15, " mems_gyro( latency 0.25 )");
+  text.replace(text.find("( laser \"\" )"), 12, "( )");
+  for (int x = 0; x < 6; ++x)
+    for (int y = 0; y < 4; ++y)
+      text += "house( pose [" + std::to_string(5 * x) + " " + std::to_string(5 * y) + " 0 0] )\n";
+  for (unsigned k = 0; k < robots; ++k)
+    text += std::string(k % 2 == 0 ? "walker" : "driver") + "( name \"r" + std::to_string(k) + "\" pose [" +
+            std::to_string(2.5 + 5.0 * (k % 5)) + " " + std::to_string(0.3 + 1.6 * (k / 5)) + " 0 " +
+            std::to_string(75 * k) + "] )\n";
+  return read(text);
+}
+
+struct Course {
+  std::uint64_t hash = 0;
+  std::vector<double> states;  ///< of all movers and ticks, and contacts
+  std::uint64_t passed_on = 0;
+  bool operator==(const Course& other) const { return hash == other.hash && states == other.states; }
+};
+
+Course run(const world::World& world, gpu::Device& on, SimulationOptions options, int ticks) {
+  Course course;
+  Simulation simulation(world, on, options);
+  for (int i = 0; i < ticks; ++i) {
+    const base::TickRecord tick = simulation.step();
+    for (const base::Report& r : tick.reports)
+      for (const double v : {r.X_WM.x, r.X_WM.y, r.X_WM.yaw, r.velocity.forward, r.velocity.turn,
+                             double(tick.contacts[r.mover]), double(r.contact_mask)})
+        course.states.push_back(v);
+    simulation.settle();
+  }
+  course.hash = simulation.farm().hash();
+  course.passed_on = simulation.passed_on().value_or(0);
+  return course;
+}
+
+/// The first rank's course, which has all states, and the robots that all ranks have passed on.
+Course run_in_tiles(const world::World& world, unsigned ranks, SimulationOptions options, int ticks) {
+  std::vector<Course> courses(ranks);
+  std::vector<std::unique_ptr<gpu::Device>> devices;
+  for (unsigned rank = 0; rank < ranks; ++rank) devices.push_back(std::make_unique<gpu::Device>());
+  options.tiles = true;
+  options.threads = 1;
+  cluster::ThreadRanks(ranks).run([&](cluster::Ranks& one) {
+    SimulationOptions own = options;
+    own.ranks = &one;
+    courses[one.rank()] = run(world, *devices[one.rank()], own, ticks);
+  });
+  for (unsigned rank = 1; rank < ranks; ++rank) courses[0].passed_on += courses[rank].passed_on;
+  return courses[0];
+}
+
+void expect_same(const world::World& world, const SimulationOptions& options, int ticks) {
+  const Course alone = run(world, device(), options, ticks);
+  for (const unsigned ranks : {2u, 3u, 5u}) {
+    const Course tiled = run_in_tiles(world, ranks, options, ticks);
+    EXPECT_EQ(tiled.hash, alone.hash) << ranks << " ranks";
+    EXPECT_EQ(tiled.states, alone.states) << ranks << " ranks";
+    EXPECT_GT(tiled.passed_on, 0u) << ranks << " ranks";
+  }
+}
+
+TEST(FleetTiles, GiveTheBytesOfOneProcess) { expect_same(town(30), {.seed = 3}, 150); }
+
+/// Behind a slow link a robot decides by readings that it got in another tile.
+TEST(FleetTiles, GiveTheBytesOfOneProcessBehindASlowLink) {
+  SimulationOptions options{.seed = 4};
+  options.actor.link = {.delay = 0.1, .jitter = 0.2, .loss = 0.1, .seed = 7};
+  expect_same(town(20), options, 80);
+}
+
+/// Cars that hear each other over the whole town, and follow each other's intents.
+TEST(FleetTiles, RobotsHearEachOtherAcrossEdges) {
+  const world::World world =
+      world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
+  SimulationOptions options{.seed = 5};
+  options.actor.controller.name.clear();
+  options.actors.assign(world.movers.size(), options.actor);
+  for (std::size_t m = 0; m < world.movers.size(); ++m)
+    if (world.movers[m].name.starts_with("roomba") && world.movers[m].name < "roomba3")
+      options.actors[m].controller = {"route", 0.0, {"controller 'route'", {{"tour", true, ""}, {"radio", 30.0, ""}}}};
+  expect_same(world, options, 400);
+}
+
+/// The fields of magnets are summed in the order of one process.
+TEST(FleetTiles, CarriedMagnetsAreKnownEverywhere) {
+  std::string text;
+  for (int k = 0; k < 8; ++k)
+    text += "create( name \"r" + std::to_string(k) + "\" pose [" + std::to_string(3 * k) +
+            " 0 0 0] create_magnetometer( ) create_laser( )"
+            " model( size [0.02 0.02 0.02] magnetic_moment 10000 magnetometer_return 1 obstacle_return 0 ) )\n";
+  expect_same(read(text), {.seed = 6}, 60);
+}
+
+TEST(FleetTiles, EachRankKeepsItsHouses) {
+  const world::World whole = town(30);
+  std::vector<std::size_t> walls(4);
+  cluster::ThreadRanks(4).run([&](cluster::Ranks& one) {
+    world::World part = whole;
+    FleetTiles(one, whole).keep_own_part(part);
+    walls[one.rank()] = part.walls.size();
+  });
+  for (const std::size_t count : walls) EXPECT_LT(count, whole.walls.size());
+}
+
+}  // namespace
+
+}  // namespace sf::scenarios
