@@ -3,13 +3,18 @@
 //
 //   build/bench/view_cost [ROBOTS] [SECONDS]
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <span>
+#include <string>
+#include <string_view>
 #include <thread>
 
 #include "bench/cost.h"
@@ -32,13 +37,22 @@ struct Count {
   std::uint64_t messages = 0, bytes = 0;
 };
 
-/// A process that reads until the server goes, or the parent closes `end`.
+/// A process that reads until the server goes, or the parent closes its end of a pipe. A program of its own: pages that
+/// a fork shares would be copied when the farm writes to them, at the cost of the farm.
 class ReaderProcess {
  public:
   ReaderProcess(std::uint16_t port, const std::vector<int>& channels) {
-    if (::pipe(report_) != 0) std::abort();
-    child_ = ::fork();
-    if (child_ == 0) read(port, channels);
+    if (::pipe2(report_, O_CLOEXEC) != 0) std::abort();
+    std::vector<std::string> words{"view_cost", "--read", std::to_string(port)};
+    for (const int channel : channels) words.push_back(std::to_string(channel));
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, report_[1], STDOUT_FILENO);
+    if (::posix_spawn(&child_, "/proc/self/exe", &actions, nullptr, arguments.data(), environ) != 0) std::abort();
+    posix_spawn_file_actions_destroy(&actions);
     ::close(report_[1]);
     char ready = 0;
     if (::read(report_[0], &ready, 1) != 1) std::abort();
@@ -54,26 +68,26 @@ class ReaderProcess {
   }
 
  private:
-  [[noreturn]] void read(std::uint16_t port, const std::vector<int>& channels) {
-    bridges::RawClient client(port);
-    client.upgrade("foxglove.sdk.v1");
-    int id = 1;
-    for (const int channel : channels)
-      client.text(fmt::format(R"({{"op":"subscribe","subscriptions":[{{"id":{},"channelId":{}}}]}})", id++, channel));
-    client.settle();
-    Count count;
-    bool written = ::write(report_[1], "r", 1) == 1;
-    while (const auto message = client.receive()) {
-      ++count.messages;
-      count.bytes += message->payload.size();
-      written = written && ::write(report_[1], &count, sizeof(count)) == sizeof(count);
-    }
-    ::_exit(0);
-  }
-
   int report_[2] = {};
   pid_t child_ = 0;
 };
+
+/// The reader's program: tells standard output what it has read.
+void read_channels(std::uint16_t port, std::span<char*> channels) {
+  bridges::RawClient client(port);
+  client.upgrade("foxglove.sdk.v1");
+  int id = 1;
+  for (const char* channel : channels)
+    client.text(fmt::format(R"({{"op":"subscribe","subscriptions":[{{"id":{},"channelId":{}}}]}})", id++, channel));
+  client.settle();
+  Count count;
+  bool written = ::write(STDOUT_FILENO, "r", 1) == 1;
+  while (const auto message = client.receive()) {
+    ++count.messages;
+    count.bytes += message->payload.size();
+    written = written && ::write(STDOUT_FILENO, &count, sizeof(count)) == sizeof(count);
+  }
+}
 
 std::vector<int> channels_of(const record::RunInfo& info) {
   const record::TickMessages messages(info);
@@ -137,6 +151,10 @@ void measure(double interval, std::uint32_t robots, double seconds, gpu::Device&
 }  // namespace sf::bench
 
 int main(int argc, char** argv) {
+  if (argc > 2 && std::string_view(argv[1]) == "--read") {
+    sf::bench::read_channels(static_cast<std::uint16_t>(std::atoi(argv[2])), {argv + 3, argv + argc});
+    return 0;
+  }
   const auto robots = static_cast<std::uint32_t>(argc > 1 ? std::atoi(argv[1]) : 1000);
   const double seconds = argc > 2 ? std::atof(argv[2]) : 6.0;
   sf::gpu::Device device;
