@@ -70,7 +70,7 @@ base::Report get_report(base::ByteReader& in) {
   return report;
 }
 
-enum State : std::uint8_t { kContact = 1, kPassed = 2 };
+enum State : std::uint8_t { kTouching = 1, kMovesIn = 2 };
 
 }  // namespace
 
@@ -138,7 +138,7 @@ void FleetTiles::clear_blocks() {
 void FleetTiles::send_state(std::uint32_t mover, unsigned rank, bool passed) {
   base::ByteWriter out(blocks_[rank]);
   const bool contact = fleet_->contacts()[mover] != 0;
-  out.put(static_cast<std::uint8_t>((contact ? kContact : 0) | (passed ? kPassed : 0)));
+  out.put(static_cast<std::uint8_t>((contact ? kTouching : 0) | (passed ? kMovesIn : 0)));
   put_report(fleet_->reports()[mover], out);
   if (passed) farm_->write_sensors(mover, out);
 }
@@ -148,10 +148,10 @@ void FleetTiles::take_state(base::ByteReader& in) {
   const base::Report report = get_report(in);
   const std::uint32_t mover = report.mover;
   SF_CHECK(in.good() && mover < homes_.size(), "the states of another rank end early");
-  fleet_->set_moved(report, (state & kContact) != 0);
+  fleet_->set_moved(report, (state & kTouching) != 0);
   seen_[mover] = near_tile(ranks_.rank(), mover, place_of(report.X_WM)) ? 1 : 0;
   set_present(mover, seen_[mover] != 0);
-  if ((state & kPassed) == 0) return;
+  if ((state & kMovesIn) == 0) return;
   farm_->read_sensors(mover, in);
   farm_->set_measured_here(mover, true);
   measured_[mover] = 1;
