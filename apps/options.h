@@ -222,6 +222,7 @@ struct RunOptions : WorldOptions,
   bool record_readings = false;
   std::string send;         ///< host; empty: none
   bool tiles = false;       ///< each rank has a part of the world
+  double balance = 0.0;     ///< [s] simulated between new cuts of tiles; 0: none
   double checkpoint = 0.0;  ///< [s] simulated between check points; 0: none
   bool resume = false;      ///< a run that was cut short: compare with its check points
 };

@@ -35,10 +35,6 @@ int run_shared(cluster::Ranks& ranks, const std::function<int(cluster::Ranks*)>&
   return code;  // g++ does not know that a virtual function never returns
 }
 
-double sensing_of(const farm::FarmStats& stats) {
-  return stats.place_s + stats.lists_s + stats.device_s + stats.collect_s;
-}
-
 /// Counts of a rank's own robots.
 std::vector<std::uint64_t*> counts_of(RunReport& f) {
   sensors::SensorStats& work = f.farm.work;
@@ -89,7 +85,7 @@ void add_up(cluster::Ranks& ranks, RunReport& facts, std::optional<std::uint64_t
   base::Bytes block;
   base::ByteWriter out(block);
   for (std::uint64_t* count : counts) out.put(std::exchange(*count, 0));
-  const double own = sensing_of(facts.farm);
+  const double own = facts.farm.sensing_s();
   for (double* value : seconds) out.put(std::exchange(*value, 0.0));
   out.put(own);
   out.put(exchanges.bytes);

@@ -53,6 +53,7 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
   simulation.actors = make_actors(world, options);
   simulation.ranks = ranks;
   simulation.tiles = options.tiles && ranks != nullptr;
+  simulation.balance = options.balance;
   return simulation;
 }
 
@@ -150,7 +151,10 @@ struct Course {
         contacts(world.movers.size()),
         checkpoints(checkpoints_of(world, options, ranks, recording_folder(options, ranks, resets))),
         outputs(world, ground.sensor_set, ground.layout, ground.caster, options,
-                recording_folder(options, ranks, resets), part_of(options, ranks)) {}
+                recording_folder(options, ranks, resets), part_of(options, ranks)) {
+    // The simulation has its part of them, and a recording begins with all.
+    if (options.tiles && ranks != nullptr && options.balance == 0.0) ground.world.walls = {};
+  }
 
   double simulated() const { return static_cast<double>(ticks) * world.interval; }
 

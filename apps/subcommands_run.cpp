@@ -47,7 +47,11 @@ void add_run(CLI::App& app, Call& call) {
   sub->add_flag("--resume", o.resume,
                 "Compute a run that was cut short again, with the same bytes, and compare it with its check points")
       ->needs(record);
-  sub->add_flag("--tiles", o.tiles, "With several ranks (mpirun): each knows and senses one part of the world");
+  auto* tiles = sub->add_flag("--tiles", o.tiles, "Ranks (mpirun) each know and sense one part of the world");
+  sub->add_option("--balance", o.balance, "Cut the parts anew every S simulated seconds, by the time they take")
+      ->check(number(0.001, 1e9))
+      ->needs(tiles)
+      ->type_name("S");
   auto* speed = sub->add_option("--speed", o.speed,
                                 "Simulated over real time (0: as fast as possible; default: 0, and 1 beside bridges)")
                     ->check(number(0.0, 1e6))

@@ -188,7 +188,9 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
   collect_all(true);
   for (const SensorPipeline& pipeline : pipelines)
     if (!pipeline.derived()) append(pipeline);
+  watch.lap(stats.collect_s);
   if (exchange != nullptr) exchange->exchange(blocks);
+  watch.lap(stats.exchange_s);
   const std::size_t known = blocks.size();
   for (SensorPipeline& pipeline : pipelines) {
     if (!pipeline.derived()) continue;

@@ -54,6 +54,8 @@ struct FarmStats {
   double lists_s = 0.0;       ///< [s] host: lists of candidate walls, ray casting on the host, recording of kernels
   double device_s = 0.0;      ///< [s] host: preparation of the submission and the wait for its end
   double collect_s = 0.0;     ///< [s] host sensors, noise, interpolation, maps with their batch, delivery
+  double exchange_s = 0.0;    ///< [s] readings of other processes, and the wait for them
+  double sensing_s() const { return place_s + lists_s + device_s + collect_s; }
 };
 
 inline constexpr std::uint32_t kAllSensorTypes = 0xFFFFFFFFu;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "base/error.h"
 #include "scenarios/rank_exchange.h"
@@ -44,10 +45,10 @@ double reach_of(const world::World& world, const sensors::SensorSet& sensor_set)
   return reach + largest.radius + 4.0 * largest.way;
 }
 
-cluster::Tiles tiles_of(const world::World& world, const sensors::SensorSet& sensor_set, unsigned count) {
+cluster::Tiles tiles_of(const world::World& world, std::span<const double> costs, unsigned count) {
   std::vector<glm::dvec2> places;
   for (const world::Mover& mover : world.movers) places.push_back(place_of(mover.X_WM));
-  return {places, costs_of(world, sensor_set), count};
+  return {places, costs, count};
 }
 
 void put_report(const base::Report& report, base::ByteWriter& out) {
@@ -77,7 +78,8 @@ enum State : std::uint8_t { kTouching = 1, kMovesIn = 2 };
 FleetTiles::FleetTiles(cluster::Ranks& ranks, const world::World& world)
     : ranks_(ranks),
       v2v_ranges_(world.movers.size()),
-      tiles_(tiles_of(world, sensors::SensorSet(world), ranks.size())),
+      costs_(costs_of(world, sensors::SensorSet(world))),
+      tiles_(tiles_of(world, costs_, ranks.size())),
       blocks_(ranks.size()) {
   const sensors::SensorSet sensor_set(world);
   wall_reach_ = ghost_reach_ = reach_of(world, sensor_set);
@@ -121,7 +123,8 @@ void FleetTiles::begin(robots::Fleet& fleet, farm::Farm& farm, std::span<double>
 }
 
 bool FleetTiles::near_tile(unsigned rank, std::uint32_t mover, glm::dvec2 p) const {
-  return everywhere_[mover] != 0 || tiles_.distance(rank, p) <= ghost_reach_;
+  return everywhere_[mover] != 0 || tiles_.distance(rank, p) <= ghost_reach_ ||
+         (next_ && next_->distance(rank, p) <= ghost_reach_);
 }
 
 void FleetTiles::set_present(std::uint32_t mover, bool here) {
@@ -160,6 +163,10 @@ void FleetTiles::take_state(base::ByteReader& in) {
 
 void FleetTiles::share_states() {
   clear_blocks();
+  if (next_ && std::exchange(next_known_, !next_known_)) {
+    tiles_ = std::move(*next_);
+    next_.reset();
+  }
   std::fill(seen_.begin(), seen_.end(), 0);
   for (const std::uint32_t m : own_) {
     const glm::dvec2 p = place_of(fleet_->reports()[m].X_WM);
@@ -178,6 +185,27 @@ void FleetTiles::share_states() {
     for (base::ByteReader in(block); in.left() > 0;) take_state(in);
   std::sort(own_.begin(), own_.end());
   for (std::uint32_t m = 0; m < seen_.size(); ++m) set_present(m, seen_[m] != 0);
+}
+
+void FleetTiles::cut_anew(double seconds) {
+  double cost = 0.0;
+  for (const std::uint32_t m : own_) cost += costs_[m];
+  base::Bytes block;
+  base::ByteWriter out(block);
+  for (const std::uint32_t m : own_) {
+    const glm::dvec2 p = place_of(fleet_->reports()[m].X_WM);
+    for (const double v : {p.x, p.y, costs_[m] / cost * seconds}) out.put(v);
+  }
+  std::vector<glm::dvec2> places;
+  std::vector<double> times;
+  for (const cluster::Block other : ranks_.exchange(block))
+    for (base::ByteReader in(other); in.left() > 0;) {
+      const double x = in.get<double>(), y = in.get<double>();
+      places.push_back({x, y});
+      times.push_back(in.get<double>());
+    }
+  next_.emplace(places, times, ranks_.size());
+  next_known_ = false;
 }
 
 void FleetTiles::share_neighbours() {

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,11 @@ class FleetTiles final : public farm::ReadingExchange {
   /// Readings go home.
   void exchange(std::vector<base::ReadingBlock>& readings) override;
 
+  /// Cuts the plane anew, by the time that ranks have taken; the new tiles hold from the next motion but one, when
+  /// their ranks know the states of their movers from the motion before. Ranks must know all walls.
+  /// @param seconds [s] of sensing since the last cut
+  void cut_anew(double seconds);
+
   bool measures(std::uint32_t mover) const { return measured_[mover] != 0; }
   /// The mover is in this rank's tile or a ghost there.
   bool present(std::uint32_t mover) const { return present_[mover] != 0; }
@@ -67,7 +73,10 @@ class FleetTiles final : public farm::ReadingExchange {
   std::vector<double> v2v_ranges_;        ///< [m] per mover
   std::vector<std::uint8_t> everywhere_;  ///< per mover: it carries magnets, which are summed in one order
   std::vector<unsigned> homes_;           ///< per mover
+  std::vector<double> costs_;             ///< per mover
   cluster::Tiles tiles_;
+  std::optional<cluster::Tiles> next_;  ///< tiles from the next motion but one on
+  bool next_known_ = false;             ///< ghosts of the next tiles have been shared once
   robots::Fleet* fleet_ = nullptr;
   farm::Farm* farm_ = nullptr;
   std::vector<std::uint8_t> measured_, present_, seen_;  ///< per mover

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "base/elapsed.h"
 #include "base/error.h"
@@ -42,8 +43,9 @@ std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) 
 }
 
 /// This rank's part of the world, with tiles.
-std::optional<world::World> part_of(const world::World& world, const std::optional<FleetTiles>& tiles) {
-  if (!tiles) return std::nullopt;
+std::optional<world::World> part_of(const world::World& world, const std::optional<FleetTiles>& tiles,
+                                    const SimulationOptions& options) {
+  if (!tiles || options.balance > 0.0) return std::nullopt;
   std::optional<world::World> part = world;
   tiles->keep_own_part(*part);
   return part;
@@ -53,7 +55,7 @@ std::optional<world::World> part_of(const world::World& world, const std::option
 
 Simulation::Simulation(const world::World& world, gpu::Device& device, SimulationOptions options)
     : tiles_(options.tiles ? std::optional<FleetTiles>(std::in_place, *options.ranks, world) : std::nullopt),
-      part_(part_of(world, tiles_)),
+      part_(part_of(world, tiles_, options)),
       world_(part_ ? *part_ : world),
       roads_(world::roads_of(world_)),
       thread_pool_(options.threads),
@@ -87,6 +89,8 @@ void Simulation::begin_sharing(const SimulationOptions& options) {
   const std::vector<unsigned> equal = equal_homes(costs_of(world_, farm_.sensor_set()), options.ranks->size());
   exchange_.emplace(*options.ranks, tiles_ ? tiles_->homes() : equal);
   statuses_.resize(world_.movers.size());
+  if (tiles_ && options.balance > 0.0)
+    balance_ = static_cast<std::uint64_t>(std::max(2.0, std::round(options.balance / world_.interval)));
   for (std::uint32_t i = 0; i < world_.movers.size(); ++i)
     if (!exchange_->owns(i)) farm_.leave_to_others(i);
 }
@@ -97,6 +101,11 @@ void Simulation::begin_tiles() {
   for (const RobotControl& robot : controls_) ranges.push_back(robot.controller ? robot.controller->v2v_range() : 0.0);
   tiles_->begin(fleet_, farm_, ranges);
   for (const double range : ranges) v2v_range_ = std::max(v2v_range_, range);
+}
+
+void Simulation::balance_tiles() {
+  const double sensing_s = farm_.stats().sensing_s();
+  tiles_->cut_anew(sensing_s - std::exchange(balanced_s_, sensing_s));
 }
 
 Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const SimulationOptions& options) {
@@ -129,6 +138,7 @@ base::TickRecord Simulation::step() {
   const std::int64_t time = static_cast<std::int64_t>(tick_) * interval_;
   settle();
   if (tiles_ && tick_ == 0) begin_tiles();
+  if (balance_ > 0 && tick_ > 0 && tick_ % balance_ == 0) balance_tiles();
   if (tick_ > 0) move();
   const auto readings = sense(time);
   const auto start = std::chrono::steady_clock::now();

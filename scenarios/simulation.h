@@ -50,6 +50,8 @@ struct SimulationOptions {
   bool noise = true;                       ///< likewise
   raycast::CasterChoice caster = raycast::CasterChoice::automatic;
   cluster::Ranks* ranks = nullptr;  ///< that share the fleet, with the same options; null: this process has all of it
+  double balance = 0.0;  ///< [s] simulated between new cuts of the tiles, by measured times; 0: tiles stay, and ranks
+                         ///< keep only the walls of their own
   bool tiles = false;  ///< each rank knows and senses a part of the world (scenarios/fleet_tiles.h), which needs ranks
 };
 
@@ -129,6 +131,7 @@ class Simulation {
   void begin_exchange();
   void begin_sharing(const SimulationOptions& options);
   void begin_tiles();
+  void balance_tiles();
   FleetDecisions decisions() { return {commands_, next_intents_, statuses_}; }
   void find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const;
 
@@ -167,6 +170,8 @@ class Simulation {
   std::int64_t interval_;  ///< [ns]
   std::uint64_t tick_ = 0;
   double move_s_ = 0.0;
+  std::uint64_t balance_ = 0;             ///< ticks between new cuts of tiles; 0: they stay
+  double balanced_s_ = 0.0;               ///< [s] of sensing until the last cut
   std::optional<RankExchange> exchange_;  ///< none: this process has the whole fleet
   std::vector<ControlStatus> statuses_;   ///< per mover, with an exchange
   bool exchanging_ = false;
