@@ -101,6 +101,19 @@ TEST(FleetTiles, GiveTheBytesOfOneProcessBehindASlowLink) {
 /// Times differ from run to run, and with them the tiles, but not the bytes.
 TEST(FleetTiles, NewCutsChangeNothing) { expect_same(town(24), {.seed = 8, .balance = 0.4}, 100); }
 
+/// The first robot stands, which takes no time, so the second one passes to its rank, which must know it before.
+TEST(FleetTiles, ANewCutPassesARobotFarFromTheOldEdge) {
+  std::string text;
+  for (int k = 0; k < 3; ++k)
+    text += "create( name \"r" + std::to_string(k) + "\" pose [" + std::to_string(60 * k) +
+            " 0 0 20] create_laser( ) )\nmodel( size [1 1 1] pose [" + std::to_string(60 * k + 1) + " 0 0 10] )\n";
+  const world::World world = read(text);
+  SimulationOptions options{.seed = 9, .balance = 0.2};
+  options.actors.assign(3, options.actor);
+  options.actors[0].controller.name.clear();
+  expect_same(world, options, 60, {2});
+}
+
 /// Cars that hear each other over the whole town, and follow each other's intents.
 TEST(FleetTiles, RobotsHearEachOtherAcrossEdges) {
   const world::World world =
