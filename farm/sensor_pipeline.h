@@ -32,8 +32,10 @@ struct SensorPipeline {
   /// Rows are in order of movers.
   template <class Visit>
   void for_rows_of(std::uint32_t mover, Visit&& visit) const {
-    const auto rows = std::ranges::equal_range(group->rows, mover, {}, &sensors::SensorSpec::mover);
-    for (const sensors::SensorSpec& row : rows) visit(static_cast<std::uint32_t>(&row - group->rows.data()));
+    const auto before = [](const sensors::SensorSpec& row, std::uint32_t m) { return row.mover < m; };
+    auto row = std::lower_bound(group->rows.begin(), group->rows.end(), mover, before);
+    for (; row != group->rows.end() && row->mover == mover; ++row)
+      visit(static_cast<std::uint32_t>(row - group->rows.begin()));
   }
   bool derived() const { return group->type->derived_from != 0; }
   /// Finds the sensors of this type due at `now` [ns].
