@@ -109,11 +109,14 @@ void Viewer::send(const base::TickRecord& tick) {
     ++dropped_;
     return;
   }
-  const Clock::time_point next = next_time_ = Clock::now() + kLeastInterval;
+  // A tick that is late does not hold back the next one, which comes sooner after it.
+  const Clock::time_point now = Clock::now();
+  const auto next = [now](Clock::time_point last) { return std::max(last, now - kLeastInterval) + kLeastInterval; };
+  next_time_ = next(next_time_);
   std::vector<SharedMessage> update;
   for (const std::uint32_t topic : due_) wanted_[topic] = true;
   const auto add = [&](const record::TopicMessage& message) {
-    next_[message.topic] = next;
+    next_[message.topic] = next(next_[message.topic]);
     update.push_back({message.topic, message.log_time, copy_of(message.bytes)});
   };
   messages_.encode(tick, add, wanted_);
