@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "apps/commands.h"
 #include "apps/progress_line.h"
+#include "apps/rank_run.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "cluster/shares.h"
 #include "scenarios/trial.h"
 
 namespace sf::apps {
@@ -41,29 +44,43 @@ int list_all() {
   return 0;
 }
 
-}  // namespace
-
-int experiment(const ExperimentOptions& options) {
-  if (options.list) return list_all();
-  const scenarios::ExperimentOptions experiment_options{.trials = options.trials,
-                                                        .seed = options.seed,
-                                                        .plant = options.plant,
-                                                        .folder = folder_of(options),
-                                                        .out = options.out,
-                                                        .warn = print_warnings,
-                                                        .stop = [] { return stop_requested().load(); }};
-  gpu::Device device(options.device);
+int run_shared(const ExperimentOptions& options, cluster::Ranks* ranks) {
+  scenarios::ExperimentOptions experiment_options{.trials = options.trials,
+                                                  .seed = options.seed,
+                                                  .plant = options.plant,
+                                                  .out = options.out,
+                                                  .threads = cluster::threads_of(0, ranks),
+                                                  .ranks = ranks,
+                                                  .warn = print_warnings,
+                                                  .stop = [] { return stop_requested().load(); }};
+  std::optional<gpu::Device> device;
+  on_all(ranks, [&] {
+    experiment_options.folder = folder_of(options);
+    device.emplace(options.device);
+  });
   install_stop_handlers();
   std::vector<std::string> files;
   try {
     Progress progress(options.experiment);
-    files = scenarios::run_experiment(*scenarios::find_experiment(options.experiment), experiment_options, device,
-                                      [&](double part, const std::string& note) { progress.show(part, note); });
+    files = scenarios::run_experiment(*scenarios::find_experiment(options.experiment), experiment_options, *device,
+                                      [&](double part, const std::string& note) {
+                                        if (ranks == nullptr || ranks->rank() == 0) progress.show(part, note);
+                                      });
   } catch (const scenarios::Interrupted&) {
-    throw base::InputError("interrupted: no report was written; " + options.out + " has the trials that were finished");
+    on_all(ranks, [&] {
+      throw base::InputError("interrupted: no report was written; " + options.out +
+                             " has the trials that were finished");
+    });
   }
   for (const std::string& file : files) print_message("wrote {}", file);
   return 0;
+}
+
+}  // namespace
+
+int experiment(const ExperimentOptions& options) {
+  if (options.list) return list_all();
+  return with_ranks([&](cluster::Ranks* ranks) { return run_shared(options, ranks); });
 }
 
 }  // namespace sf::apps

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "cluster/failure.h"
+#include "cluster/shares.h"
 
 namespace sf::apps {
 
@@ -56,16 +56,10 @@ int with_ranks(const std::function<int(cluster::Ranks*)>& body) {
   return !ranks || ranks->size() == 1 ? body(nullptr) : run_shared(*ranks, body);
 }
 
-void on_all(cluster::Ranks* ranks, const std::function<void()>& body) {
-  if (ranks != nullptr)
-    cluster::agree(*ranks, body);
-  else
-    body();
-}
+void on_all(cluster::Ranks* ranks, const std::function<void()>& body) { cluster::agree(ranks, body); }
 
 unsigned threads_of(const RunOptions& options, const cluster::Ranks* ranks) {
-  if (ranks == nullptr || options.threads > 0) return options.threads;
-  return std::max(1u, std::thread::hardware_concurrency() / ranks->beside());
+  return cluster::threads_of(options.threads, ranks);
 }
 
 void check_for_ranks(const RunOptions& options) {

@@ -13,9 +13,10 @@ void print_warnings(const std::string& file, const std::vector<world::Warning>& 
   constexpr std::size_t kFirst = 3;
   const std::size_t count = warnings.size();
   if (count == 0) return;
-  print_message("{}{}:", counted(count, "warning"),
-                count > kFirst ? fmt::format(", the first 3 here, all with `sensorfarm check {}`", file) : "");
-  std::fputs(text_of(std::span(warnings).first(std::min(count, kFirst))).c_str(), stderr);
+  std::string lines = text_of(std::span(warnings).first(std::min(count, kFirst)));
+  lines.pop_back();  // `print_message` ends the line
+  print_message("{}{}:\n{}", counted(count, "warning"),
+                count > kFirst ? fmt::format(", the first 3 here, all with `sensorfarm check {}`", file) : "", lines);
 }
 
 std::string text_of(std::span<const world::Warning> warnings) {

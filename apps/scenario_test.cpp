@@ -2,14 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "apps/commands.h"
 #include "apps/progress_line.h"
+#include "apps/rank_run.h"
 #include "apps/report.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "cluster/shares.h"
 #include "scenarios/junit.h"
 
 namespace sf::apps {
@@ -51,27 +55,47 @@ void write_junit(const std::string& path, const std::vector<scenarios::ScenarioR
   if (!file) refuse_junit(path);
 }
 
-}  // namespace
+/// The first rank's word: times, which a scenario can limit, differ between ranks.
+bool agreed(bool passed, cluster::Ranks* ranks) {
+  if (ranks == nullptr) return passed;
+  const std::array<std::uint8_t, 1> word{passed};
+  return ranks->exchange(word).front().front() != 0;
+}
 
-int test_scenarios(const TestOptions& options) {
-  // All files are read, and what they ask for is tried, before any is run: a slip in the last is known at once.
+int test_all(const TestOptions& options, cluster::Ranks* ranks) {
+  const bool reports = ranks == nullptr || ranks->rank() == 0;
   std::vector<scenarios::Scenario> all;
-  for (const std::string& file : options.scenarios) all.push_back(scenarios::read_scenario(file));
-  for (const scenarios::Scenario& scenario : all) print_warnings(scenario.world, scenarios::check_scenario(scenario));
-  if (!options.junit.empty()) check_junit(options.junit);
-  gpu::Device device(options.device);
+  std::optional<gpu::Device> device;
+  // All files are read, and what they ask for is tried, before any is run: a slip in the last is known at once.
+  on_all(ranks, [&] {
+    for (const std::string& file : options.scenarios) all.push_back(scenarios::read_scenario(file));
+    for (const scenarios::Scenario& scenario : all) print_warnings(scenario.world, scenarios::check_scenario(scenario));
+    if (!options.junit.empty() && reports) check_junit(options.junit);
+    device.emplace(options.device);
+  });
   std::vector<scenarios::ScenarioResult> results;
   bool passed = true;
   for (const scenarios::Scenario& scenario : all) {
     {
       Progress progress(scenario.name);
-      results.push_back(scenarios::run_scenario(scenario, device, [&](double part) { progress.show(part); }));
+      const auto show = [&](double part) {
+        if (reports) progress.show(part);
+      };
+      results.push_back(scenarios::run_scenario(scenario, *device, show, cluster::threads_of(0, ranks), ranks));
     }
     print(text_of(results.back()));
     passed = passed && results.back().status() != scenarios::ScenarioStatus::failed;
   }
-  if (!options.junit.empty()) write_junit(options.junit, results);
-  return passed ? 0 : 1;
+  on_all(ranks, [&] {
+    if (!options.junit.empty() && reports) write_junit(options.junit, results);
+  });
+  return agreed(passed, ranks) ? 0 : 1;
+}
+
+}  // namespace
+
+int test_scenarios(const TestOptions& options) {
+  return with_ranks([&](cluster::Ranks* ranks) { return test_all(options, ranks); });
 }
 
 }  // namespace sf::apps

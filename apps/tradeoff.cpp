@@ -11,6 +11,7 @@
 #include "apps/commands.h"
 #include "apps/default_robot.h"
 #include "apps/progress_line.h"
+#include "apps/rank_run.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
@@ -123,7 +124,9 @@ void choose_accuracy(world::World& world, gpu::Device& device, const AccuracyTar
   sensors::set_accuracy(world, words);
 }
 
-int tradeoff(const TradeoffOptions& options) {
+namespace {
+
+int measure_alone(const TradeoffOptions& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   gpu::Device device(options.device);
   install_stop_handlers();
@@ -141,6 +144,17 @@ int tradeoff(const TradeoffOptions& options) {
                                                : text_of(results) + advice_text(results, target);
   print(text);
   return 0;
+}
+
+}  // namespace
+
+int tradeoff(const TradeoffOptions& options) {
+  return with_ranks([&](cluster::Ranks* ranks) {
+    on_all(ranks, [&] {
+      if (ranks != nullptr) throw base::InputError("tradeoff measures the speed of one process: run it without mpirun");
+    });
+    return measure_alone(options);
+  });
 }
 
 }  // namespace sf::apps

@@ -38,4 +38,11 @@ void agree(Ranks& ranks, const std::function<void()>& body) {
   }
 }
 
+void agree(Ranks* ranks, const std::function<void()>& body) {
+  if (ranks != nullptr)
+    agree(*ranks, body);
+  else
+    body();
+}
+
 }  // namespace sf::cluster

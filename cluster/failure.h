@@ -25,5 +25,7 @@ int code_of_current(std::string& message);
 
 /// Runs `body` on all ranks. @throws Failure on all of them where it threw on one
 void agree(Ranks& ranks, const std::function<void()>& body);
+/// Likewise; without ranks `body()` with its own error. @param ranks may be null
+void agree(Ranks* ranks, const std::function<void()>& body);
 
 }  // namespace sf::cluster

@@ -1,6 +1,8 @@
 #include "cluster/shares.h"
 
+#include <algorithm>
 #include <numeric>
+#include <thread>
 
 namespace sf::cluster {
 
@@ -17,6 +19,11 @@ std::vector<std::uint32_t> equal_shares(std::span<const double> costs, unsigned 
   }
   first.push_back(static_cast<std::uint32_t>(costs.size()));
   return first;
+}
+
+unsigned threads_of(unsigned wanted, const Ranks* ranks) {
+  if (ranks == nullptr || wanted > 0) return wanted;
+  return std::max(1u, std::thread::hardware_concurrency() / ranks->beside());
 }
 
 }  // namespace sf::cluster

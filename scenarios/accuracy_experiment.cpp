@@ -66,10 +66,10 @@ Outcome measure(const ExperimentContext& context, const Test& test, const Scenar
     own.seed = context.options.seed + k;
     world::World world = disturbed_world(own, {});
     sensors::set_accuracy(world, fmt::format("{}:{}", test.sensor, mode));
-    const Trial trial =
-        run_trial(own, world, context.device,
-                  {.maps = test.maps, .threads = context.options.threads, .stop = context.options.stop});
-    if (test.maps) add_map(reference, trial, share, outcome);
+    TrialOptions options = trial_options(context);
+    options.maps = test.maps;
+    const Trial trial = run_trial(own, world, context.device, options);
+    if (test.maps && reports(context)) add_map(reference, trial, share, outcome);
     const ThesisRow row = row_of(trial.errors.front());
     outcome.abs_error += share * row[4];
     outcome.max_error = std::max(outcome.max_error, row[7]);
@@ -161,6 +161,7 @@ std::vector<std::string> run_accuracy(const ExperimentContext& context) {
       done += 1.0 / static_cast<double>(tests().size() * modes.size());
     }
   }
+  if (!reports(context)) return {};
   std::vector<std::string> files{in_folder(context, "accuracy.csv"), in_folder(context, "report.md")};
   write_text(files[0], csv_of(outcomes));
   write_text(files[1], report_of(context, outcomes));

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "cluster/failure.h"
 #include "scenarios/runner.h"
 
 namespace sf::scenarios {
@@ -41,13 +42,16 @@ const ExperimentType* find_experiment(std::string_view name) {
 std::vector<std::string> run_experiment(const ExperimentType& type, const ExperimentOptions& options,
                                         gpu::Device& device,
                                         const std::function<void(double, const std::string&)>& progress) {
-  Scenario scenario = read_scenario((std::filesystem::path(options.folder) /
-                                     (std::string(type.scenario.empty() ? type.name : type.scenario) + ".toml"))
-                                        .string());
-  scenario.plant = options.plant ? *options.plant : scenario.plant ? *scenario.plant : type.plant;
-  make_folder(options.out);
-  const std::vector<world::Warning> warnings = check_scenario(scenario);
-  if (options.warn) options.warn(scenario.world, warnings);
+  Scenario scenario;
+  cluster::agree(options.ranks, [&] {
+    scenario = read_scenario((std::filesystem::path(options.folder) /
+                              (std::string(type.scenario.empty() ? type.name : type.scenario) + ".toml"))
+                                 .string());
+    scenario.plant = options.plant ? *options.plant : scenario.plant ? *scenario.plant : type.plant;
+    make_folder(options.out);
+    const std::vector<world::Warning> warnings = check_scenario(scenario);
+    if (options.warn) options.warn(scenario.world, warnings);
+  });
   return type.run({type, scenario, options, device, progress});
 }
 
@@ -58,20 +62,27 @@ std::vector<Trial> run_trials(const ExperimentContext& context, const TrialOptio
       context.progress(static_cast<double>(k) / context.options.trials, fmt::format("trial {}", k + 1));
     Scenario scenario = context.scenario;
     scenario.seed = context.options.seed + k;
-    TrialOptions own = options;
-    own.threads = context.options.threads;
+    TrialOptions own = trial_options(context);
+    own.maps = options.maps, own.supervisor = options.supervisor, own.disturbance = options.disturbance;
     own.record = in_folder(context, fmt::format("trial-{}", k + 1));
-    own.stop = context.options.stop;
     try {
       trials.push_back(run_trial(scenario, disturbed_world(scenario, options.disturbance), context.device, own));
     } catch (const Interrupted&) {
       std::error_code ignored;
-      std::filesystem::remove(std::filesystem::path(own.record) / "run.mcap", ignored);
+      std::filesystem::remove(std::filesystem::path(own.record) / part_of(own.ranks).file(), ignored);
       std::filesystem::remove(own.record, ignored);  // fails and keeps the folder when it holds other files
       throw;
     }
   }
   return trials;
+}
+
+bool reports(const ExperimentContext& context) {
+  return context.options.ranks == nullptr || context.options.ranks->rank() == 0;
+}
+
+TrialOptions trial_options(const ExperimentContext& context) {
+  return {.threads = context.options.threads, .stop = context.options.stop, .ranks = context.options.ranks};
 }
 
 std::string in_folder(const ExperimentContext& context, const std::string& name) {

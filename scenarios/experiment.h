@@ -21,6 +21,7 @@ struct ExperimentOptions {
   std::string folder;          ///< contains the scenario files
   std::string out;             ///< output folder
   unsigned threads = 0;
+  cluster::Ranks* ranks = nullptr;  ///< that share the fleets of all trials; null: none
   /// Receives warnings of the world file.
   std::function<void(const std::string& world, const std::vector<world::Warning>&)> warn;
   std::function<bool()> stop;  ///< polled; true ends the experiment; may be empty
@@ -52,7 +53,8 @@ std::span<const ExperimentType* const> experiments();
 /// Null for an unknown name.
 const ExperimentType* find_experiment(std::string_view name);
 
-/// Reads the scenario, runs the experiment and writes its files.
+/// Reads the scenario, runs the experiment and writes its files: of several ranks the first, and each its parts of the
+/// recordings.
 /// @return the files written
 /// @throws base::InputError for a folder that cannot be written or an invalid scenario
 /// @throws Interrupted when `options.stop` returns true; the recordings of complete trials remain, and no other file is
@@ -65,6 +67,10 @@ std::vector<std::string> run_experiment(const ExperimentType& type, const Experi
 
 /// Runs all trials one after another, each with the output folder `trial-<k>/`.
 std::vector<Trial> run_trials(const ExperimentContext& context, const TrialOptions& options);
+/// This process writes the report: of several ranks the first.
+bool reports(const ExperimentContext& context);
+/// Options of a trial without a recording.
+TrialOptions trial_options(const ExperimentContext& context);
 /// Path of a file in the output folder.
 std::string in_folder(const ExperimentContext& context, const std::string& name);
 /// Creates the output folder given with -o, and its parents, if missing.

@@ -51,8 +51,7 @@ void measure(const ExperimentContext& context, Row& row) {
   for (std::uint32_t k = 0; k < context.options.trials; ++k) {
     const Scenario scenario = scenario_of(context, row, context.options.seed + k);
     const world::World world = disturbed_world(scenario, {});
-    const Trial trial =
-        run_trial(scenario, world, context.device, {.threads = context.options.threads, .stop = context.options.stop});
+    const Trial trial = run_trial(scenario, world, context.device, trial_options(context));
     const LaneErrors errors = lane_errors(trial.tracks.front(), world.paths.front());
     row.mean.mean_abs += errors.mean_abs / context.options.trials;
     row.mean.amplitude += errors.amplitude / context.options.trials;
@@ -119,6 +118,7 @@ std::vector<std::string> run_late_states(const ExperimentContext& context) {
       context.progress(static_cast<double>(i) / static_cast<double>(rows.size()), rows[i].states.name);
     measure(context, rows[i]);
   }
+  if (!reports(context)) return {};
   std::vector<std::string> files{in_folder(context, "late-states.csv"), in_folder(context, "report.md")};
   write_text(files[0], csv_of(rows));
   write_text(files[1], report_of(context, rows));

@@ -105,6 +105,7 @@ void run_with(const ExperimentContext& context, const Entrant& entrant, std::vec
   options.out = in_folder(context, entrant.name);
   const ExperimentContext own{context.type, scenario, options, context.device, context.progress};
   const std::vector<Trial> trials = run_trials(own, {.maps = true, .supervisor = entrant.supervisor});
+  if (!reports(context)) return;
   const world::World world = world_of(scenario);
   std::vector<viz::Track> tracks;
   VisibleArea reference(world);
@@ -137,6 +138,7 @@ std::vector<std::string> run_mapping(const ExperimentContext& context) {
   std::vector<Mapped> rows;
   std::vector<std::string> files{in_folder(context, "statistics.csv"), in_folder(context, "report.md")};
   for (const Entrant& entrant : entrants_of(context.scenario)) run_with(context, entrant, rows, files);
+  if (!reports(context)) return {};
   write_text(files[0], csv_of(rows));
   write_text(files[1], report_of(context, rows));
   return files;

@@ -82,6 +82,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Trial>
 std::vector<std::string> run_path(const ExperimentContext& context) {
   const ThesisTable& table = *thesis_table(context.scenario.name);
   const std::vector<Trial> trials = run_trials(context, {});
+  if (!reports(context)) return {};
   const world::World world = world_of(context.scenario);
   std::vector<ErrorStatistics> statistics;
   for (const Trial& trial : trials) statistics.push_back(trial.errors.front());

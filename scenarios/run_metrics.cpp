@@ -88,11 +88,12 @@ void RunMetrics::update(const base::TickRecord& tick) {
 }
 
 void RunMetrics::update_checkpoints(std::uint32_t mover) {
-  const control::Controller* controller = simulation_.controller(mover);
-  if (controller == nullptr || !simulation_.stepped(mover)) return;
+  if (simulation_.owns(mover) && !simulation_.stepped(mover)) return;
+  const ControlStatus status = simulation_.status(mover);
+  if (!status.stepped) return;
   RobotMetrics& counts = counts_[mover];
-  if (const double error = controller->error(); std::isfinite(error)) counts.errors.push_back(error);
-  counts.goals.update(controller->intent().checkpoint);
+  if (std::isfinite(status.error)) counts.errors.push_back(status.error);
+  counts.goals.update(simulation_.intent(mover).checkpoint);
 }
 
 /// Counts stop lines that the robot's front crosses in driving direction at red.

@@ -35,7 +35,7 @@ class RunMetrics {
  public:
   RunMetrics(const world::World& world, const Simulation& simulation);
 
-  /// Called after every `Simulation::step` with its result.
+  /// Called after every `Simulation::step` with its result, and with ranks after `Simulation::settle`.
   void update(const base::TickRecord& tick);
 
   /// Records that a mover was placed there, so that this does not count as driving.

@@ -8,8 +8,10 @@
 #include <map>
 #include <optional>
 
+#include "base/bytes.h"
 #include "base/elapsed.h"
 #include "base/error.h"
+#include "cluster/failure.h"
 #include "scenarios/coverage.h"
 #include "scenarios/run_metrics.h"
 #include "scenarios/statistics.h"
@@ -89,17 +91,19 @@ control::ConfiguredController try_controller(const Scenario& scenario, const con
 /// One run with its metrics.
 class Run {
  public:
-  Run(const Scenario& scenario, gpu::Device& device, unsigned threads)
+  Run(const Scenario& scenario, gpu::Device& device, unsigned threads, cluster::Ranks* ranks)
       : scenario_(scenario),
+        ranks_(ranks),
         world_(world_of(scenario)),
-        simulation_(world_, device, options_of(scenario, world_, threads)),
+        simulation_(world_, device, options_of(scenario, world_, threads, ranks)),
         metrics_(world_, simulation_) {
     const SimulationOptions options = simulation_of(scenario, world_);
     for (const ObjectEvent& event : scenario.events) objects_.push_back(object_of(scenario, world_, options, event));
     for (const Expectation& e : scenario.expect)
       if (e.kind == Kind::map_coverage)
         for (const std::uint32_t row : rows_of(scenario, world_, e))
-          if (!sensors::lasers_of(world_.movers[row]).empty()) maps_.try_emplace(row, world_, row);
+          if (simulation_.owns(row) && !sensors::lasers_of(world_.movers[row]).empty())
+            maps_.try_emplace(row, world_, row);
   }
 
   void go(const std::function<void(double)>& progress, ScenarioResult& result) {
@@ -110,6 +114,7 @@ class Run {
       change_objects(static_cast<double>(result.ticks) * world_.interval);
       const auto begin = Clock::now();
       const base::TickRecord tick = simulation_.step();
+      simulation_.settle();
       tick_ms_.push_back(1e3 * base::seconds_since(begin));
       metrics_.update(tick);
       add_scans(tick.readings, maps_);
@@ -118,14 +123,17 @@ class Run {
     result.wall = base::seconds_since(start);
     result.simulated = static_cast<double>(result.ticks) * world_.interval;
     result.hash = simulation_.farm().hash();
+    cover();
     for (const Expectation& e : scenario_.expect) result.outcomes.push_back(judge(e));
     result.metrics = all_metrics();
   }
 
  private:
-  static SimulationOptions options_of(const Scenario& scenario, const world::World& world, unsigned threads) {
+  static SimulationOptions options_of(const Scenario& scenario, const world::World& world, unsigned threads,
+                                      cluster::Ranks* ranks) {
     SimulationOptions options = simulation_of(scenario, world);
     options.threads = threads;
+    options.ranks = ranks;
     return options;
   }
 
@@ -172,9 +180,22 @@ class Run {
     return value;
   }
 
-  Coverage seen_by(std::uint32_t mover) const {
-    const maps::OccupancyGrid& grid = maps_.at(mover).grid();
-    return coverage_of(grid, visible_area(world_, mover, grid.geometry));
+  /// Compares all maps with what could be seen; each rank has those of its own robots.
+  void cover() {
+    base::Bytes block;
+    base::ByteWriter out(block);
+    for (const auto& [row, map] : maps_) {
+      const Coverage seen = coverage_of(map.grid(), visible_area(world_, row, map.grid().geometry));
+      coverages_[row] = seen.coverage();
+      out.put(row);
+      out.put(seen.coverage());
+    }
+    if (ranks_ == nullptr) return;
+    for (const cluster::Block other : ranks_->exchange(block))
+      for (base::ByteReader in(other); in.left() > 0;) {
+        const auto row = in.get<std::uint32_t>();
+        coverages_[row] = in.get<double>();
+      }
   }
 
   /// The measured value as text, with words for missing values.
@@ -203,7 +224,7 @@ class Run {
         return worst(e, false, [&](std::uint32_t r) { return statistics_of(metrics_.of(r).errors).abs_mean; });
       case Kind::map_coverage:
         return worst(e, true,
-                     [&](std::uint32_t r) { return maps_.contains(r) ? seen_by(r).coverage() : std::nan(""); });
+                     [&](std::uint32_t r) { return coverages_.contains(r) ? coverages_.at(r) : std::nan(""); });
       case Kind::lights_obeyed:
         return static_cast<double>(metrics_.red_lights_passed());
       case Kind::done:
@@ -251,12 +272,14 @@ class Run {
   }
 
   const Scenario& scenario_;
+  cluster::Ranks* ranks_;
   world::World world_;
   std::vector<std::uint32_t> objects_;  ///< per event: its mover
   std::size_t next_event_ = 0;
   Simulation simulation_;
   RunMetrics metrics_;
-  std::map<std::uint32_t, RobotMap> maps_;  ///< by row of the mover
+  std::map<std::uint32_t, RobotMap> maps_;     ///< by row of the mover, of this rank
+  std::map<std::uint32_t, double> coverages_;  ///< [-] likewise, of all ranks, after the run
   std::vector<double> tick_ms_;
 };
 
@@ -284,11 +307,14 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
 }
 
 ScenarioResult run_scenario(const Scenario& scenario, gpu::Device& device, const std::function<void(double)>& progress,
-                            unsigned threads) {
-  check_scenario(scenario);
+                            unsigned threads, cluster::Ranks* ranks) {
   ScenarioResult result{.name = scenario.name, .file = scenario.file};
-  Run run(scenario, device, threads);
-  run.go(progress, result);
+  std::optional<Run> run;
+  cluster::agree(ranks, [&] {
+    check_scenario(scenario);
+    run.emplace(scenario, device, threads, ranks);
+  });
+  run->go(progress, result);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cluster/ranks.h"
 #include "gpu/device.h"
 #include "scenarios/scenario.h"
 
@@ -49,8 +50,10 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario);
 
 /// @param progress called with the completed part in [0, 1]; may be empty
 /// @param threads of the host's part; 0: all. Does not affect results
-/// @throws base::InputError when the world or a robot lacks something required
+/// @param ranks that share the fleet, and all call this; null: none. The first one's result has the hash of readings
+/// @throws base::InputError when the world or a robot lacks something required; with ranks cluster::Failure on all
 ScenarioResult run_scenario(const Scenario& scenario, gpu::Device& device,
-                            const std::function<void(double)>& progress = {}, unsigned threads = 0);
+                            const std::function<void(double)>& progress = {}, unsigned threads = 0,
+                            cluster::Ranks* ranks = nullptr);
 
 }  // namespace sf::scenarios

@@ -128,10 +128,14 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Sim
 }
 
 bool Simulation::all_done() const {
-  const auto drives = [](const RobotControl& d) { return d.controller != nullptr && !d.driven; };
-  return std::any_of(controls_.begin(), controls_.end(), drives) &&
-         std::all_of(controls_.begin(), controls_.end(),
-                     [&](const RobotControl& d) { return !drives(d) || d.controller->done(); });
+  bool any = false;
+  for (std::uint32_t m = 0; m < controls_.size() && tick_ > 0; ++m) {
+    if (controls_[m].driven) continue;
+    const ControlStatus robot = status(m);
+    if (robot.drives && !robot.done) return false;
+    any = any || robot.drives;
+  }
+  return any;
 }
 
 base::TickRecord Simulation::step() {

@@ -102,7 +102,7 @@ class Simulation {
   /// The mover's controller, of whatever rank, after `settle`.
   ControlStatus status(std::uint32_t mover) const;
   const base::Intent& intent(std::uint32_t mover) const { return next_intents_[mover]; }
-  /// All controllers that decide are done; false without any.
+  /// All controllers that decide are done, of all ranks after `settle`; false without any, and before the first tick.
   bool all_done() const;
   const world::RoadNetwork* roads() const { return roads_ ? &*roads_ : nullptr; }
   /// Warnings of the first files that a controller has read (a mission).

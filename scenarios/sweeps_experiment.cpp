@@ -76,8 +76,7 @@ void measure(const ExperimentContext& context, Point& point) {
         if (point.setting.one_ray) set_number(sensor, "samples", 1.0), set_number(sensor, "fov", 0.0);
       }
     world::update_extent_and_hash(world);
-    const Trial trial =
-        run_trial(scenario, world, context.device, {.threads = context.options.threads, .stop = context.options.stop});
+    const Trial trial = run_trial(scenario, world, context.device, trial_options(context));
     rows.push_back(row_of(trial.errors.front()));
     point.seconds += trial.simulated / context.options.trials;
     point.all_done = point.all_done && trial.done;
@@ -187,6 +186,7 @@ std::vector<std::string> run_sweeps(const ExperimentContext& context) {
       context.progress(static_cast<double>(i) / static_cast<double>(points.size()), points[i].sweep);
     measure(context, points[i]);
   }
+  if (!reports(context)) return {};
   std::vector<std::string> files{in_folder(context, "sweeps.csv"), in_folder(context, "report.md")};
   write_text(files[0], csv_of_points(points));
   write_text(files[1], report_of(context, points));

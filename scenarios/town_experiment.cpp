@@ -41,6 +41,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Trial>
 
 std::vector<std::string> run_town(const ExperimentContext& context) {
   const std::vector<Trial> trials = run_trials(context, {});
+  if (!reports(context)) return {};
   std::vector<std::string> files{in_folder(context, "statistics.csv"), in_folder(context, "report.md")};
   write_text(files[0], csv_of(trials));
   write_text(files[1], report_of(context, trials));

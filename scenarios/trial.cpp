@@ -5,10 +5,11 @@
 #include <map>
 #include <optional>
 
+#include "base/bytes.h"
 #include "base/elapsed.h"
 #include "base/random.h"
+#include "cluster/failure.h"
 #include "raycast/caster_choice.h"
-#include "record/recorder.h"
 #include "scenarios/coverage.h"
 #include "scenarios/run_info.h"
 #include "sensors/laser_settings.h"
@@ -42,12 +43,13 @@ class Keeper {
  public:
   Keeper(const world::World& world, const Simulation& simulation, bool maps) {
     for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
-      if (world.movers[row].is_tag && simulation.controller(row) == nullptr) continue;
+      if (world.movers[row].is_tag && !simulation.status(row).drives) continue;
       rows_.push_back(row);
       tracks_.push_back({.name = world.movers[row].name});
       dead_end_detectors_.emplace_back(2.0 * world.movers[row].radius, world.interval);
       helped_.push_back(0);
-      if (maps && !sensors::lasers_of(world.movers[row]).empty()) maps_.try_emplace(row, world, row);
+      if (maps && simulation.owns(row) && !sensors::lasers_of(world.movers[row]).empty())
+        maps_.try_emplace(row, world, row);
     }
   }
 
@@ -58,9 +60,8 @@ class Keeper {
       dead_end_detectors_[i].update(tick.reports[rows_[i]], tick.contacts[rows_[i]] != 0);
     }
     add_scans(tick.readings, maps_);
-    const control::Controller* first = rows_.empty() ? nullptr : simulation.controller(rows_[0]);
-    if (first != nullptr && simulation.stepped(rows_[0]) && std::isfinite(first->error()))
-      times_.push_back(1e-9 * static_cast<double>(tick.time));
+    const ControlStatus first = rows_.empty() ? ControlStatus{} : simulation.status(rows_[0]);
+    if (first.stepped && std::isfinite(first.error)) times_.push_back(1e-9 * static_cast<double>(tick.time));
   }
 
   void intervention(const base::Report& before, const base::Pose& X_WM) {
@@ -71,7 +72,8 @@ class Keeper {
     }
   }
 
-  void give(const RunMetrics& metrics, const world::World& world, const Simulation& simulation, Trial& trial) {
+  void give(const RunMetrics& metrics, const world::World& world, const Simulation& simulation, cluster::Ranks* ranks,
+            Trial& trial) {
     for (const std::uint32_t row : rows_) trial.follows.push_back(followed_by(row, world, simulation));
     trial.rows = rows_;
     trial.tracks = std::move(tracks_);
@@ -83,17 +85,46 @@ class Keeper {
       trial.counts.push_back(metrics.of(row));
       trial.errors.push_back(statistics_of(metrics.of(row).errors));
     }
-    for (const auto& [row, map] : maps_) {
+    for (auto& [row, grid] : ranks == nullptr ? own_maps() : maps_of_all(*ranks)) {
       trial.mapped.push_back(row);
-      trial.maps.push_back(map.grid());
+      trial.maps.push_back(std::move(grid));
     }
   }
 
  private:
+  using Grids = std::map<std::uint32_t, maps::OccupancyGrid>;  ///< by row of the mover
+
+  Grids own_maps() const {
+    Grids grids;
+    for (const auto& [row, map] : maps_) grids.emplace(row, map.grid());
+    return grids;
+  }
+
+  Grids maps_of_all(cluster::Ranks& ranks) const {
+    base::Bytes block;
+    base::ByteWriter out(block);
+    for (const auto& [row, map] : maps_) {
+      const maps::GridGeometry& g = map.grid().geometry;
+      out.put(row);
+      for (const double value : {g.left, g.top, g.cell}) out.put(value);
+      for (const std::uint32_t size : {g.word_columns, g.word_rows}) out.put(size);
+      for (const std::uint32_t word : map.grid().words) out.put(word);
+    }
+    Grids grids;
+    for (const cluster::Block other : ranks.exchange(block))
+      for (base::ByteReader in(other); in.left() > 0;) {
+        const auto row = in.get<std::uint32_t>();
+        maps::GridGeometry g;
+        for (double* value : {&g.left, &g.top, &g.cell}) *value = in.get<double>();
+        for (std::uint32_t* size : {&g.word_columns, &g.word_rows}) *size = in.get<std::uint32_t>();
+        for (std::uint32_t& word : grids.emplace(row, g).first->second.words) word = in.get<std::uint32_t>();
+      }
+    return grids;
+  }
+
   /// Track of the robot's leader.
   std::uint32_t followed_by(std::uint32_t row, const world::World& world, const Simulation& simulation) const {
-    const control::Controller* controller = simulation.controller(row);
-    const std::uint32_t id = controller == nullptr ? base::kNoId : controller->intent().follows;
+    const std::uint32_t id = simulation.intent(row).follows;
     for (std::size_t i = 0; i < rows_.size() && id != base::kNoId; ++i)
       if (!world.movers[rows_[i]].is_tag && world.movers[rows_[i]].id == id) return static_cast<std::uint32_t>(i);
     return world::kNone;
@@ -125,43 +156,75 @@ world::World disturbed_world(const Scenario& scenario, const Disturbance& distur
   return world;
 }
 
+record::RecordingPart part_of(const cluster::Ranks* ranks) {
+  return ranks == nullptr ? record::RecordingPart{} : record::RecordingPart{ranks->rank(), ranks->size()};
+}
+
+namespace {
+
+/// A trial's simulation and recording, as all ranks begin them.
+struct Course {
+  std::optional<Simulation> simulation;
+  std::optional<record::Recorder> recorder;
+
+  Course(const Scenario& scenario, const world::World& world, gpu::Device& device, const TrialOptions& options) {
+    SimulationOptions simulation_options = simulation_of(scenario, world);
+    simulation_options.threads = options.threads;
+    simulation_options.ranks = options.ranks;
+    cluster::agree(options.ranks, [&] {
+      simulation.emplace(world, device, simulation_options);
+      if (options.record.empty()) return;
+      recorder.emplace(options.record,
+                       run_info(world, simulation->farm().sensor_set(),
+                                {.seed = scenario.seed,
+                                 .record_readings = true,
+                                 .caster = raycast::describe_caster(device.info().software)}),
+                       part_of(options.ranks));
+    });
+  }
+
+  /// One tick, of which all ranks know. @throws Interrupted on all of them where one was stopped
+  base::TickRecord step(const TrialOptions& options) {
+    const bool stop = options.stop && options.stop();
+    if (stop && options.ranks == nullptr) throw Interrupted();
+    if (stop) simulation->request_stop();
+    const base::TickRecord record = simulation->step();
+    if (recorder) recorder->write(record);
+    simulation->settle();
+    if (simulation->stop_agreed()) throw Interrupted();
+    return record;
+  }
+};
+
+}  // namespace
+
 Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device& device, const TrialOptions& options) {
-  SimulationOptions simulation_options = simulation_of(scenario, world);
-  simulation_options.threads = options.threads;
-  Simulation simulation(world, device, simulation_options);
+  Course course(scenario, world, device, options);
+  Simulation& simulation = *course.simulation;
   RunMetrics metrics(world, simulation);
   Keeper keeper(world, simulation, options.maps);
   Supervisor supervisor(world, options.supervisor);
-  std::optional<record::Recorder> recorder;
-  if (!options.record.empty())
-    recorder.emplace(options.record, run_info(world, simulation.farm().sensor_set(),
-                                              {.seed = scenario.seed,
-                                               .record_readings = true,
-                                               .caster = raycast::describe_caster(device.info().software)}));
-
   Trial trial;
   const auto start = std::chrono::steady_clock::now();
   const auto ticks = std::llround(scenario.duration / world.interval);
   std::int64_t tick = 0;
   for (; tick < ticks && !simulation.all_done(); ++tick) {
-    if (options.stop && options.stop()) throw Interrupted();
-    const base::TickRecord record = simulation.step();
+    const base::TickRecord record = course.step(options);
     metrics.update(record);
     keeper.update(record, simulation);
-    if (recorder) recorder->write(record);
     for (const Supervisor::Intervention& intervention : supervisor.update(record)) {
       keeper.intervention(record.reports[intervention.mover], intervention.X_WM);
       metrics.put(intervention.mover, intervention.X_WM);
       simulation.put(intervention.mover, intervention.X_WM);
     }
   }
-  if (recorder) recorder->finish();
+  if (course.recorder) course.recorder->finish();
   trial.wall = base::seconds_since(start);
   trial.decided = simulation.move_seconds();
   trial.simulated = static_cast<double>(tick) * world.interval;
   trial.done = simulation.all_done();
   trial.hash = simulation.farm().hash();
-  keeper.give(metrics, world, simulation, trial);
+  keeper.give(metrics, world, simulation, options.ranks, trial);
   return trial;
 }
 

@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "cluster/ranks.h"
 #include "gpu/device.h"
 #include "maps/grid.h"
+#include "record/recorder.h"
 #include "scenarios/dead_end_detector.h"
 #include "scenarios/run_metrics.h"
 #include "scenarios/scenario.h"
@@ -54,7 +56,8 @@ struct TrialOptions {
   bool maps = false;
   SupervisorSettings supervisor;  ///< default: no supervisor
   unsigned threads = 0;
-  std::function<bool()> stop;  ///< polled each tick; true stops the trial; may be empty
+  std::function<bool()> stop;       ///< polled each tick; true stops the trial; may be empty
+  cluster::Ranks* ranks = nullptr;  ///< that share the fleet, and all run the trial; null: none
 };
 
 /// The trial was stopped by `TrialOptions::stop`.
@@ -62,10 +65,14 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
+/// The part of a recording with readings that this process writes. @param ranks may be null
+record::RecordingPart part_of(const cluster::Ranks* ranks);
+
 /// The scenario's world with the disturbance drawn from its seed.
 world::World disturbed_world(const Scenario& scenario, const Disturbance& disturbance);
 
 /// Runs until all controllers are done or the scenario's duration is over.
+/// With ranks all have its results, but for the hash, which the first has; each records its part of the recording.
 /// @throws Interrupted when `options.stop` returns true; the recording then ends with the last complete tick
 Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device& device, const TrialOptions& options);
 
