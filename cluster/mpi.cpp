@@ -17,10 +17,12 @@ using Clock = std::chrono::steady_clock;
 
 class MpiRanks final : public Ranks {
  public:
-  MpiRanks() {
+  /// @param owner of MPI: it ends with this. Else a program that uses MPI itself ends it.
+  explicit MpiRanks(bool owner) : owner_(owner) {
     int rank = 0, size = 1, beside = 1;
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    MPI_Comm_dup(MPI_COMM_WORLD, &all_ranks_);  // apart from such a program's messages
+    MPI_Comm_rank(all_ranks_, &rank);
+    MPI_Comm_size(all_ranks_, &size);
     MPI_Comm machine = MPI_COMM_NULL;
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
     MPI_Comm_size(machine, &beside);
@@ -33,7 +35,11 @@ class MpiRanks final : public Ranks {
     blocks_.resize(size_);
     got_blocks_.resize(size_);
   }
-  ~MpiRanks() override { MPI_Finalize(); }
+  ~MpiRanks() override {
+    int ended = 0;
+    MPI_Finalized(&ended);
+    if (ended == 0 && owner_) MPI_Finalize();
+  }
 
   unsigned rank() const override { return rank_; }
   unsigned size() const override { return size_; }
@@ -43,7 +49,7 @@ class MpiRanks final : public Ranks {
     const auto start = Clock::now();
     block_ = block;
     own_size_ = static_cast<int>(block.size());
-    MPI_Iallgather(&own_size_, 1, MPI_INT, sizes_.data(), 1, MPI_INT, MPI_COMM_WORLD, &request_);
+    MPI_Iallgather(&own_size_, 1, MPI_INT, sizes_.data(), 1, MPI_INT, all_ranks_, &request_);
     ++counts_.exchanges;
     counts_.bytes += block.size();
     count(start);
@@ -55,7 +61,7 @@ class MpiRanks final : public Ranks {
     std::exclusive_scan(sizes_.begin(), sizes_.end(), starts_.begin(), 0);
     all_.resize(static_cast<std::size_t>(starts_.back()) + static_cast<std::size_t>(sizes_.back()));
     MPI_Allgatherv(block_.data(), own_size_, MPI_BYTE, all_.data(), sizes_.data(), starts_.data(), MPI_BYTE,
-                   MPI_COMM_WORLD);
+                   all_ranks_);
     for (unsigned r = 0; r < size_; ++r)
       blocks_[r] = Block(all_).subspan(static_cast<std::size_t>(starts_[r]), static_cast<std::size_t>(sizes_[r]));
     count(start);
@@ -92,6 +98,8 @@ class MpiRanks final : public Ranks {
  private:
   void count(Clock::time_point start) { counts_.wait_s += std::chrono::duration<double>(Clock::now() - start).count(); }
 
+  bool owner_;
+  MPI_Comm all_ranks_ = MPI_COMM_NULL;
   unsigned rank_ = 0, size_ = 1, beside_ = 1;
   Block block_;
   int own_size_ = 0;                 ///< [byte] of it
@@ -112,8 +120,12 @@ extern "C" {
 sf::cluster::Ranks* sensorfarm_mpi();
 
 sf::cluster::Ranks* sensorfarm_mpi() {
-  int level = 0;
+  int ended = 0, begun = 0, level = 0;
+  MPI_Finalized(&ended);
+  MPI_Initialized(&begun);
+  if (ended != 0) return nullptr;
+  if (begun != 0) return new sf::cluster::MpiRanks(false);
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &level) != MPI_SUCCESS) return nullptr;
-  return new sf::cluster::MpiRanks();
+  return new sf::cluster::MpiRanks(true);
 }
 }

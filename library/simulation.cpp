@@ -4,14 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <optional>
 
+#include "base/bytes.h"
 #include "base/error.h"
+#include "cluster/failure.h"
+#include "cluster/shares.h"
 #include "control/own_controller.h"
 #include "control/own_controllers.h"
 #include "library/errors.h"
 #include "library/loading.h"
+#include "library/ranks.h"
 #include "library/reading_table.h"
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
@@ -25,8 +30,9 @@ using namespace sf;
 
 namespace {
 
-scenarios::SimulationOptions simulation_options(const Options& options) {
-  scenarios::SimulationOptions simulation{.seed = options.seed, .threads = options.threads};
+scenarios::SimulationOptions simulation_options(const Options& options, cluster::Ranks* ranks) {
+  scenarios::SimulationOptions simulation{.seed = options.seed, .threads = cluster::threads_of(options.threads, ranks)};
+  simulation.ranks = ranks;
   simulation.noise = options.noise;
   simulation.caster = library::caster_of(options.caster);
   simulation.actor.controller = library::controller_of(options);
@@ -38,13 +44,18 @@ scenarios::SimulationOptions simulation_options(const Options& options) {
 /// World, simulation and tables of readings, at one address.
 struct Simulation::State {
   State(library::WorldSource source, const Options& given);
+  void prepare();
+  void record();
   void step(std::span<const Twist> commands);
+  void set(std::span<const Twist> given);
+  void exchange(std::span<const Twist> given);
   void put(std::size_t row, const Pose& pose);
   void take(const base::TickRecord& tick);
   const library::ReadingTable& table(std::string_view type) const;
 
   library::WorldSource source;
   Options options;
+  cluster::Ranks* ranks;  ///< null: none but this process
   std::shared_ptr<gpu::Device> device;
   world::World world;
   std::optional<scenarios::Simulation> simulation;
@@ -54,20 +65,26 @@ struct Simulation::State {
   std::vector<std::string> models;
   std::vector<std::string> warnings;
   std::vector<base::Twist> commands;
+  std::vector<base::Twist> sent;  ///< likewise, as other ranks know them
+  bool commanded = false;         ///< some row has no controller
   std::vector<Pose> poses;
   std::vector<Twist> velocities;
-  std::vector<std::uint8_t> contacts, done;
+  std::vector<std::uint8_t> contacts, done, owned;
   std::vector<base::ReadingBlock> of_type;  ///< scratch
   std::uint64_t tick = 0;
   double time = 0.0;
 };
 
 Simulation::State::State(library::WorldSource from, const Options& given)
-    : source(std::move(from)),
-      options(given),
-      device(library::shared_device(given.device)),
-      world(library::load(source, options)) {
-  simulation.emplace(world, *device, simulation_options(options));
+    : source(std::move(from)), options(given), ranks(given.ranks ? library::joined_ranks() : nullptr) {
+  cluster::agree(ranks, [&] { prepare(); });
+  take(simulation->step());
+}
+
+void Simulation::State::prepare() {
+  device = library::shared_device(options.device);
+  world = library::load(source, options);
+  simulation.emplace(world, *device, simulation_options(options, ranks));
   const sensors::SensorSet& sensor_set = simulation->farm().sensor_set();
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) tables.emplace_back(group, world.interval);
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)
@@ -76,31 +93,77 @@ Simulation::State::State(library::WorldSource from, const Options& given)
   for (const world::Warning& w : world.warnings)
     warnings.push_back(fmt::format("{}:{}: {}", w.file, w.line, w.message));
   commands.assign(world.movers.size(), {});
+  sent = commands;
+  for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
+    owned.push_back(simulation->owns(row));
+    commanded = commanded || !simulation->status(row).drives;
+  }
   poses.resize(world.movers.size()), velocities.resize(poses.size());
   contacts.resize(poses.size()), done.resize(poses.size());
-  if (!options.record.empty())
-    recorder.emplace(options.record,
-                     scenarios::run_info(world, sensor_set,
-                                         {options.seed, options.record_readings, false,
-                                          library::describe_caster(device->info().software, options.caster)}));
-  take(simulation->step());
+  if (!options.record.empty()) record();
+}
+
+/// Readings of other ranks are in their own parts; without readings the first rank records all.
+void Simulation::State::record() {
+  record::RecordingPart part;
+  if (ranks != nullptr && options.record_readings) part = {ranks->rank(), ranks->size()};
+  if (ranks != nullptr && !options.record_readings && ranks->rank() > 0) return;
+  recorder.emplace(options.record,
+                   scenarios::run_info(world, simulation->farm().sensor_set(),
+                                       {options.seed, options.record_readings, false,
+                                        library::describe_caster(device->info().software, options.caster)}),
+                   part);
 }
 
 void Simulation::State::step(std::span<const Twist> given) {
-  if (!given.empty()) {
-    if (given.size() != commands.size())
-      throw base::InputError(
-          fmt::format("{} commands for {} robots; expected one per row", given.size(), commands.size()));
-    for (std::size_t i = 0; i < given.size(); ++i) {
-      const Twist& twist = given[i];
-      if (!std::isfinite(twist.forward) || !std::isfinite(twist.left) || !std::isfinite(twist.turn))
-        throw base::InputError(fmt::format("the command of '{}' is ({}, {}, {}); expected finite numbers",
-                                           robots[i].name, twist.forward, twist.left, twist.turn));
-      commands[i] = {twist.forward, twist.left, twist.turn};
-    }
-    simulation->command(commands);
-  }
+  if (ranks == nullptr)
+    set(given);
+  else if (commanded)
+    exchange(given);
+  simulation->command(commands);
   take(simulation->step());
+}
+
+/// Takes the commands of own rows.
+void Simulation::State::set(std::span<const Twist> given) {
+  if (!given.empty() && given.size() != commands.size())
+    throw base::InputError(
+        fmt::format("{} commands for {} robots; expected one per row", given.size(), commands.size()));
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (owned[i] == 0) continue;
+    const Twist& twist = given[i];
+    if (!std::isfinite(twist.forward) || !std::isfinite(twist.left) || !std::isfinite(twist.turn))
+      throw base::InputError(fmt::format("the command of '{}' is ({}, {}, {}); expected finite numbers", robots[i].name,
+                                         twist.forward, twist.left, twist.turn));
+    commands[i] = {twist.forward, twist.left, twist.turn};
+  }
+}
+
+/// `set` on all ranks: each sends what its rows have new, or why it refuses them.
+void Simulation::State::exchange(std::span<const Twist> given) {
+  std::string refusal;
+  try {
+    set(given);
+  } catch (const base::InputError& error) {
+    refusal = error.what();
+  }
+  base::Bytes block;
+  base::ByteWriter out(block);
+  out.put_string(refusal);
+  for (std::uint32_t i = 0; i < commands.size(); ++i) {
+    if (owned[i] == 0 || std::memcmp(&commands[i], &sent[i], sizeof sent[i]) == 0) continue;
+    out.put(i);
+    for (const double value : {commands[i].forward, commands[i].left, commands[i].turn}) out.put(value);
+    sent[i] = commands[i];
+  }
+  for (const cluster::Block other : ranks->exchange(block)) {
+    base::ByteReader in(other);
+    if (const std::string why = in.get_string(); !why.empty()) throw cluster::Failure(2, why);
+    while (in.left() > 0) {
+      base::Twist& command = commands.at(in.get<std::uint32_t>());
+      for (double* value : {&command.forward, &command.left, &command.turn}) *value = in.get<double>();
+    }
+  }
 }
 
 void Simulation::State::put(std::size_t row, const Pose& pose) {
@@ -119,8 +182,6 @@ void Simulation::State::take(const base::TickRecord& record) {
     poses[i] = {report.X_WM.x, report.X_WM.y, report.X_WM.z, report.X_WM.yaw};
     velocities[i] = {report.velocity.forward, report.velocity.left, report.velocity.turn};
     contacts[i] = record.contacts[i];
-    const control::Controller* controller = simulation->controller(static_cast<std::uint32_t>(i));
-    done[i] = controller != nullptr && controller->done();
   }
   for (library::ReadingTable& table : tables) {
     of_type.clear();
@@ -129,6 +190,11 @@ void Simulation::State::take(const base::TickRecord& record) {
     table.take(of_type);
   }
   if (recorder) recorder->write(record);
+  simulation->settle();
+  for (std::uint32_t i = 0; i < done.size(); ++i) {
+    const control::Controller* controller = simulation->controller(i);
+    done[i] = owned[i] != 0 ? controller != nullptr && controller->done() : simulation->status(i).done;
+  }
 }
 
 const library::ReadingTable& Simulation::State::table(std::string_view type) const {
@@ -199,7 +265,14 @@ const std::vector<std::string>& Simulation::models() const { return state_->mode
 double Simulation::interval() const { return state_->world.interval; }
 double Simulation::time() const { return state_->time; }
 std::uint64_t Simulation::tick() const { return state_->tick; }
-std::uint64_t Simulation::hash() const { return state_->simulation->farm().hash(); }
+unsigned Simulation::rank() const { return state_->ranks == nullptr ? 0 : state_->ranks->rank(); }
+unsigned Simulation::ranks() const { return state_->ranks == nullptr ? 1 : state_->ranks->size(); }
+std::span<const std::uint8_t> Simulation::owned() const { return state_->owned; }
+
+std::uint64_t Simulation::hash() const {
+  if (rank() > 0) throw Error("the hash of all ranks' readings is known to rank 0 alone");
+  return state_->simulation->farm().hash();
+}
 
 std::string Simulation::description() const {
   const gpu::DeviceInfo& info = state_->device->info();

@@ -89,6 +89,7 @@ Options options_of(Keywords& given) {
   given.read("accuracy", options.accuracy), given.read("device", options.device), given.read("caster", options.caster);
   given.read("controller", controller), given.read_settings(options.settings);
   given.read("record", options.record), given.read("record_readings", options.record_readings);
+  given.read("ranks", options.ranks);
   options.controller = controller_name(controller);
   if (options.controller.empty() && !options.settings.empty())
     throw py::value_error("'settings' are given without a controller");
@@ -102,7 +103,9 @@ PySimulation made(const py::kwargs& keywords, Make&& make) {
   bool writable = false;
   given.read("writable", writable);
   given.finish();
-  return in_farm([&] { return PySimulation{make(options), writable}; });
+  PySimulation s = in_farm([&] { return PySimulation{make(options), writable}; });
+  if (s.farm.ranks() > 1) py::module_::import("sensorfarm").attr("_end_all_by_errors")();
+  return s;
 }
 
 /// The name by which a simulation can use a class, "module.Class", with a number where another class has it.
@@ -218,6 +221,13 @@ void add_state(py::class_<PySimulation>& c) {
           "hash", [](const PySimulation& s) { return s.farm.hash(); },
           "Of all readings so far: that of `sensorfarm run`.")
       .def_property_readonly(
+          "rank", [](const PySimulation& s) { return s.farm.rank(); }, "Number of this process, below `ranks`.")
+      .def_property_readonly(
+          "ranks", [](const PySimulation& s) { return s.farm.ranks(); }, "Processes that share the fleet.")
+      .def_property_readonly(
+          "owned", [](const PySimulation& s) { return truth(s, s.farm.owned()); },
+          "(robots,): this rank has its readings and commands it.")
+      .def_property_readonly(
           "description", [](const PySimulation& s) { return s.farm.description(); }, "Device and caster, in one line.")
       .def_property_readonly(
           "warnings", [](const PySimulation& s) { return s.farm.warnings(); }, "Of the world file.")
@@ -253,7 +263,7 @@ void add_simulation(py::module_& module) {
        }),
        py::arg("world"),
        "world: a file; options: robots=0, of='', seed=1, threads=0, noise=True, accuracy='', device='', caster='auto', "
-       "controller='', settings={}, record='', record_readings=False, writable=False (docs/python.md)")
+       "controller='', settings={}, record='', record_readings=False, ranks=False, writable=False (docs/python.md)")
       .def_static(
           "from_text",
           [](Text text, Text name, const py::kwargs& options) {
@@ -286,6 +296,7 @@ PYBIND11_MODULE(_sensorfarm, module) {
   module.attr("NONE") = kNone;
   add_controller_types(module);
   add_simulation(module);
+  module.def("_abort_ranks", &abort_ranks);
   module.def(
       "load_plugin", [](Text file) { in_farm([&] { load_plugin(file); }); }, py::arg("file"));
 }

@@ -52,6 +52,9 @@ struct Options {
   std::vector<std::pair<std::string, std::string>> settings;  ///< of that controller
   std::string record;                                         ///< folder of a recording (run.mcap); empty: none
   bool record_readings = false;  ///< record readings too, not only the states from which they can be computed
+  /// Processes that mpirun has started share the fleet (docs/cluster.md): each has the readings of its own robots alone
+  /// and commands these; the rest is known to all. All make the same calls with the same arguments, commands apart.
+  bool ranks = false;
 };
 
 /// The newest readings of all sensors of one type, as one table with a row per sensor. A view: valid until the next
@@ -92,7 +95,7 @@ class SENSORFARM_API Simulation {
 
   /// Advances by one tick: robots execute their commands, then sensors that are due are read. Without an argument
   /// commands stay as they are.
-  /// @param commands one per row; rows with a controller ignore theirs
+  /// @param commands one per row; rows with a controller, and those of other ranks, ignore theirs
   /// @throws Error for another number of commands, numbers that are not finite, and a controller that fails
   void step();
   void step(std::span<const Twist> commands);
@@ -113,12 +116,15 @@ class SENSORFARM_API Simulation {
   Readings readings(std::string_view type) const;  ///< @throws Error for a type that the world does not have
   const std::vector<std::string>& models() const;  ///< names, by the numbers in `hits`
 
-  double interval() const;                           ///< [s] of a tick
-  double time() const;                               ///< [s] of the last tick
-  std::uint64_t tick() const;                        ///< its number, from 0
-  std::uint64_t hash() const;                        ///< of all readings so far; that of `sensorfarm run`
-  std::string description() const;                   ///< device and caster, in one line
+  double interval() const;          ///< [s] of a tick
+  double time() const;              ///< [s] of the last tick
+  std::uint64_t tick() const;       ///< its number, from 0
+  std::uint64_t hash() const;       ///< of all readings so far; that of `sensorfarm run`. @throws Error on ranks but 0
+  std::string description() const;  ///< device and caster, in one line
   const std::vector<std::string>& warnings() const;  ///< of the world file
+  unsigned rank() const;                             ///< of this process, below `ranks`
+  unsigned ranks() const;                            ///< that share the fleet; 1: none but this
+  std::span<const std::uint8_t> owned() const;       ///< per row: 1 where this rank senses and commands
   /// Ends the recording, with its index. @throws Error when it cannot be written
   void finish_recording();
   /// Draws walls, robots and tags at their present poses, and fields of view, to a PNG, SVG or PDF file by its suffix.
@@ -133,6 +139,8 @@ class SENSORFARM_API Simulation {
   std::shared_ptr<State> state_;
 };
 
+/// Ends the processes of all ranks, which would wait for one that ends by an error alone.
+[[noreturn]] SENSORFARM_API void abort_ranks(int code);
 /// Adds a controller of your own for the rest of the program: `Options::controller` can name it. @throws Error
 SENSORFARM_API void add_controller(ControllerEntry entry);
 /// Adds a sensor type of your own for the rest of the program: worlds loaded from now on may have such sensors. A

@@ -10,12 +10,13 @@
 """
 
 import os as _os
+import sys as _sys
 import tempfile as _tempfile
 
 import numpy as _numpy
 
 from ._sensorfarm import (NONE, DeviceError, Error, Input, Light, Neighbour, Pose, Reading, Robot, SensorInfo,
-                          Settings, Simulation, Twist, load_plugin)
+                          Settings, Simulation, Twist, _abort_ranks, load_plugin)
 
 __all__ = ["NONE", "DeviceError", "Error", "Input", "Light", "Neighbour", "Pose", "Reading", "Robot", "SensorInfo",
            "Settings", "Simulation", "Twist", "load_plugin"]
@@ -35,6 +36,22 @@ def _png(self):
         self.draw(file)
         with open(file, "rb") as picture:
             return picture.read()
+
+
+def _end_all_by_errors():
+    """From now on an exception that ends this process ends those of all ranks, which would wait for it for ever."""
+    before = _sys.excepthook
+    if getattr(before, "ends_all", False):
+        return
+
+    def hook(type, value, trace):
+        before(type, value, trace)
+        for stream in (_sys.stdout, _sys.stderr):
+            stream.flush()
+        _abort_ranks(1)
+
+    hook.ends_all = True
+    _sys.excepthook = hook
 
 
 Simulation.valid, Simulation._repr_png_ = _valid, _png

@@ -182,12 +182,13 @@ class Simulation:
     def __init__(self, world: str, *, robots: int = 0, of: str = "", seed: int = 1, threads: int = 0, noise: bool = True,
                  accuracy: str = "", device: str = "", caster: str = "auto", controller: str | type[Controller] = "",
                  settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,
-                 writable: bool = False) -> None:
+                 ranks: bool = False, writable: bool = False) -> None:
         """world: a world file or ROS map (.yaml), also one of the installed worlds. robots: clones of one robot (`of`;
         else the first with sensors) at free poses; 0: the world's own. seed: of poses, noise and controllers. threads: 0
         for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row or part of a device's name. caster:
         auto, vulkan or host. controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty:
-        twists drive them. record: folder of a recording. Raises Error, DeviceError, TypeError."""
+        twists drive them. record: folder of a recording. ranks: processes of mpirun share the fleet; all make the same
+        calls, and each has the readings of its own robots alone and commands these (docs/cluster.md). Raises Error, DeviceError, TypeError."""
     @staticmethod
     def from_text(text: str, name: str = "given.world", **options: Any) -> Simulation:
         """A world given as text, with the options of the constructor. name: for messages; files that the text includes are
@@ -236,6 +237,15 @@ class Simulation:
     @property
     def hash(self) -> int:
         """Of all readings so far: that of `sensorfarm run`, which prints it in hexadecimal digits."""
+    @property
+    def rank(self) -> int:
+        """Number of this process, below `ranks`."""
+    @property
+    def ranks(self) -> int:
+        """Processes that share the fleet; 1: this one alone."""
+    @property
+    def owned(self) -> NDArray[np.bool_]:
+        """(robots,): this rank has its readings and commands it."""
     @property
     def description(self) -> str:
         """Device and caster, in one line."""

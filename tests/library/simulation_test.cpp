@@ -51,6 +51,16 @@ TEST(Library, CommandsAndControllersGiveOneHash) {
   EXPECT_NE(other.hash(), commanded.hash());
 }
 
+TEST(Library, WithoutMpirunOneRankHasAll) {
+  Simulation alone(kCave, {.robots = 5});
+  Simulation shared(kCave, {.robots = 5, .ranks = true});
+  drive(alone, 5), drive(shared, 5);
+  EXPECT_EQ(shared.rank(), 0u);
+  EXPECT_EQ(shared.ranks(), 1u);
+  EXPECT_EQ(std::count(shared.owned().begin(), shared.owned().end(), 1), 5);
+  EXPECT_EQ(shared.hash(), alone.hash());
+}
+
 TEST(Library, ReadingsAreTheFarmsOwnTable) {
   Simulation simulation(kCave, {.robots = 8});
   const Readings first = simulation.readings("laser");
