@@ -69,7 +69,7 @@ std::vector<Trial> run_trials(const ExperimentContext& context, const TrialOptio
       trials.push_back(run_trial(scenario, disturbed_world(scenario, options.disturbance), context.device, own));
     } catch (const Interrupted&) {
       std::error_code ignored;
-      std::filesystem::remove(std::filesystem::path(own.record) / part_of(own.ranks).file(), ignored);
+      std::filesystem::remove(std::filesystem::path(own.record) / recording_part_of(own.ranks).file(), ignored);
       std::filesystem::remove(own.record, ignored);  // fails and keeps the folder when it holds other files
       throw;
     }

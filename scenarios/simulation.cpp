@@ -43,8 +43,8 @@ std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) 
 }
 
 /// This rank's part of the world, with tiles.
-std::optional<world::World> part_of(const world::World& world, const std::optional<FleetTiles>& tiles,
-                                    const SimulationOptions& options) {
+std::optional<world::World> own_part_of(const world::World& world, const std::optional<FleetTiles>& tiles,
+                                        const SimulationOptions& options) {
   if (!tiles || options.balance > 0.0) return std::nullopt;
   std::optional<world::World> part = world;
   tiles->keep_own_part(*part);
@@ -55,7 +55,7 @@ std::optional<world::World> part_of(const world::World& world, const std::option
 
 Simulation::Simulation(const world::World& world, gpu::Device& device, SimulationOptions options)
     : tiles_(options.tiles ? std::optional<FleetTiles>(std::in_place, *options.ranks, world) : std::nullopt),
-      part_(part_of(world, tiles_, options)),
+      part_(own_part_of(world, tiles_, options)),
       world_(part_ ? *part_ : world),
       roads_(world::roads_of(world_)),
       thread_pool_(options.threads),

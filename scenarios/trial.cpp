@@ -156,7 +156,7 @@ world::World disturbed_world(const Scenario& scenario, const Disturbance& distur
   return world;
 }
 
-record::RecordingPart part_of(const cluster::Ranks* ranks) {
+record::RecordingPart recording_part_of(const cluster::Ranks* ranks) {
   return ranks == nullptr ? record::RecordingPart{} : record::RecordingPart{ranks->rank(), ranks->size()};
 }
 
@@ -179,7 +179,7 @@ struct Course {
                                 {.seed = scenario.seed,
                                  .record_readings = true,
                                  .caster = raycast::describe_caster(device.info().software)}),
-                       part_of(options.ranks));
+                       recording_part_of(options.ranks));
     });
   }
 

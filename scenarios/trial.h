@@ -66,7 +66,7 @@ struct Interrupted : std::runtime_error {
 };
 
 /// The part of a recording with readings that this process writes. @param ranks may be null
-record::RecordingPart part_of(const cluster::Ranks* ranks);
+record::RecordingPart recording_part_of(const cluster::Ranks* ranks);
 
 /// The scenario's world with the disturbance drawn from its seed.
 world::World disturbed_world(const Scenario& scenario, const Disturbance& disturbance);
