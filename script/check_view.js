@@ -36,7 +36,8 @@ async function open(browser, url, requests) {
   page.on("pageerror", (error) => { console.error(error); process.exit(1); });
   page.on("request", (request) => requests.push(request.url()));
   await page.goto(url);
-  await until(page, "no updates", () => window.view && view.counters.updates > 2 && view.drawing.drawn.robots > 0);
+  // Until the page has begun, `view` is its canvas of that name.
+  await until(page, "no updates", () => window.view?.counters?.updates > 2 && view.drawing.drawn.robots > 0);
   return page;
 }
 
