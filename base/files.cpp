@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "base/error.h"
 
@@ -22,6 +23,9 @@ struct Descriptor {
   }
 };
 
+constexpr std::size_t kMaxLine = 16u << 20;
+constexpr std::size_t kBlock = 1u << 20;
+
 [[noreturn]] void fail_to_read(const std::string& file) {
   throw InputError(file, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
 }
@@ -30,11 +34,10 @@ struct Descriptor {
   throw InputError(file, 0, fmt::format("larger than {} MiB, the limit for such files", most >> 20));
 }
 
-}  // namespace
-
-std::string read_bytes(const std::string& file, std::size_t most) {
+/// An open file of `size` bytes.
+int open_regular(const std::string& file, std::size_t& size) {
   // O_NONBLOCK: opening a pipe without a writer would block.
-  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (in.number < 0 && (errno == ENOENT || errno == ENOTDIR))
     throw InputError(file, 0, "no such file; give the path of an existing file");
   if (in.number < 0) fail_to_read(file);
@@ -42,17 +45,32 @@ std::string read_bytes(const std::string& file, std::size_t most) {
   if (::fstat(in.number, &status) != 0) fail_to_read(file);
   if (!S_ISREG(status.st_mode))
     throw InputError(file, 0, "not a file but a folder, a device or a pipe; give the path of an existing file");
-  const auto promised = static_cast<std::size_t>(status.st_size);
+  size = static_cast<std::size_t>(status.st_size);
+  return std::exchange(in.number, -1);
+}
+
+/// At most `most` bytes; 0 at the end of the file.
+std::size_t read_some(const std::string& file, int descriptor, char* out, std::size_t most) {
+  for (;;) {
+    const ssize_t got = ::read(descriptor, out, most);
+    if (got >= 0) return static_cast<std::size_t>(got);
+    if (errno != EINTR) fail_to_read(file);
+  }
+}
+
+}  // namespace
+
+std::string read_bytes(const std::string& file, std::size_t most) {
+  std::size_t promised = 0;
+  const Descriptor in{open_regular(file, promised)};
   if (promised > most) refuse_size(file, most);
 
   std::string bytes(promised + 1, '\0');
   std::size_t have = 0;
   for (;;) {
-    const ssize_t got = ::read(in.number, bytes.data() + have, bytes.size() - have);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail_to_read(file);
+    const std::size_t got = read_some(file, in.number, bytes.data() + have, bytes.size() - have);
     if (got == 0) break;
-    have += static_cast<std::size_t>(got);
+    have += got;
     if (have > most) refuse_size(file, most);
     if (have == bytes.size()) bytes.resize(std::min(2 * have, most + 1));  // the file grew meanwhile
   }
@@ -66,6 +84,37 @@ std::string read_text(const std::string& file, std::size_t most) {
   if (text.find_first_not_of(" \t\r\n\v\f") == std::string::npos)
     throw InputError(file, 0, "holds nothing but blanks; was it saved, or copied whole?");
   return text;
+}
+
+LineFile::LineFile(const std::string& file) : file_(file) {
+  std::size_t size = 0;
+  descriptor_ = open_regular(file, size);
+}
+
+LineFile::~LineFile() { ::close(descriptor_); }
+
+bool LineFile::refill() {
+  buffer_.erase(0, begin_);
+  seen_ = buffer_.size();
+  begin_ = 0;
+  if (seen_ > kMaxLine)
+    throw InputError(file_, number_ + 1, fmt::format("a line of more than {} MiB, the limit", kMaxLine >> 20));
+  buffer_.resize(seen_ + kBlock);
+  const std::size_t got = read_some(file_, descriptor_, buffer_.data() + seen_, kBlock);
+  buffer_.resize(seen_ + got);
+  return got > 0;
+}
+
+bool LineFile::next(std::string_view& line) {
+  std::size_t end = buffer_.find('\n', seen_);
+  while (end == std::string::npos && refill()) end = buffer_.find('\n', seen_);
+  if (end == std::string::npos) end = buffer_.size();  // the last line may have no end
+  if (begin_ == buffer_.size()) return false;
+  line = std::string_view(buffer_).substr(begin_, end - begin_);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  begin_ = seen_ = std::min(end + 1, buffer_.size());
+  ++number_;
+  return true;
 }
 
 }  // namespace sf::base

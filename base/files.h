@@ -1,8 +1,9 @@
 #pragma once
-// Whole files from outside, of limited size.
+// Files from outside: whole ones of limited size, and larger ones a line at a time.
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace sf::base {
 
@@ -11,5 +12,28 @@ namespace sf::base {
 std::string read_bytes(const std::string& file, std::size_t most);
 /// Likewise for a text. @throws InputError also for a text without content.
 std::string read_text(const std::string& file, std::size_t most = 64u << 20);
+
+/// The lines of a text file of any size, read in blocks.
+class LineFile {
+ public:
+  /// @throws InputError when the file is missing or not a regular file
+  explicit LineFile(const std::string& file);
+  ~LineFile();
+  LineFile(const LineFile&) = delete;
+
+  /// The next line without its end (LF or CRLF) in `line`, which lives until the next call; false after the last one.
+  /// @throws InputError for a line of more than 16 MiB, and when reading fails
+  bool next(std::string_view& line);
+  int number() const { return number_; }  ///< of the line, 1-based
+
+ private:
+  bool refill();
+  std::string file_;
+  int descriptor_;
+  std::string buffer_;
+  std::size_t begin_ = 0;  ///< of what is not yet returned
+  std::size_t seen_ = 0;   ///< no line ends between `begin_` and here
+  int number_ = 0;
+};
 
 }  // namespace sf::base

@@ -3,12 +3,26 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace sf::base {
 
 /// Hash of `size` bytes, chained from `seed`: hash(b, hash(a)) is the hash of the sequence a, b.
 std::uint64_t hash_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
+
+/// `hash_bytes` of bytes that arrive in parts.
+class StreamingHash {
+ public:
+  StreamingHash();
+  ~StreamingHash();
+  void add(const void* data, std::size_t size);
+  std::uint64_t value() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// 16 lower-case hexadecimal digits.
 std::string hash_hex(std::uint64_t hash);

@@ -1,0 +1,70 @@
+#include "base/files.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "tests/refusal.h"
+
+namespace sf::base {
+
+namespace {
+
+std::string file_with(const std::string& text) {
+  const std::string file = (std::filesystem::temp_directory_path() / "lines.txt").string();
+  std::ofstream(file, std::ios::binary) << text;
+  return file;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  LineFile lines(file_with(text));
+  std::vector<std::string> all;
+  for (std::string_view line; lines.next(line);) {
+    all.emplace_back(line);
+    EXPECT_EQ(lines.number(), static_cast<int>(all.size()));
+  }
+  return all;
+}
+
+TEST(LineFile, EndsAreNoPartOfALine) {
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(lines_of(""), Lines());
+  EXPECT_EQ(lines_of("\n"), Lines({""}));
+  EXPECT_EQ(lines_of("a\nb"), Lines({"a", "b"}));
+  EXPECT_EQ(lines_of("a\r\n\nb\n"), Lines({"a", "", "b"}));
+  EXPECT_EQ(lines_of("a\rb\n"), Lines({"a\rb"}));
+}
+
+TEST(LineFile, LinesMeetTheEndsOfBlocksAnywhere) {  // a block is a MiB
+  for (const std::size_t first : {(1u << 20) - 2, (1u << 20) - 1, 1u << 20, (1u << 20) + 1, 3u << 20}) {
+    const auto lines = lines_of(std::string(first, 'a') + "\nb\n" + std::string(first, 'c'));
+    ASSERT_EQ(lines.size(), 3u) << first;
+    EXPECT_EQ(lines[0].size(), first);
+    EXPECT_EQ(lines[1], "b");
+    EXPECT_EQ(lines[2], std::string(first, 'c'));
+  }
+}
+
+TEST(LineFile, AnEndlessLineIsRefused) {
+  const std::string file = file_with("a\n");
+  std::filesystem::resize_file(file, 64u << 20);  // zeros
+  LineFile lines(file);
+  std::string_view line;
+  EXPECT_TRUE(lines.next(line));
+  expect_in("lines.txt:2: a line of more than 16 MiB, the limit", refusal_of([&] { lines.next(line); }));
+}
+
+TEST(LineFile, NeedsAFile) {
+  expect_in("no such file", refusal_of([] { LineFile("/nowhere/at.all"); }));
+  expect_in("a folder, a device or a pipe", refusal_of([] { LineFile("/dev/zero"); }));
+  const std::string pipe = (std::filesystem::temp_directory_path() / "pipe").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expect_in("a folder, a device or a pipe", refusal_of([&] { LineFile{pipe}; }));
+}
+
+}  // namespace
+
+}  // namespace sf::base
