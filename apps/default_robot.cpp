@@ -8,6 +8,7 @@
 #include "scenarios/default_robot.h"
 #include "sensors/sensor_type.h"
 #include "world/free_space.h"
+#include "world/outlines.h"
 
 namespace sf::apps {
 
@@ -15,6 +16,7 @@ world::World load_with_robots(const std::string& file, const world::LoadOptions&
                               std::uint64_t seed, const std::string& of) {
   world::World world = world::load_world(file, options);
   const bool added = scenarios::add_default_robot(world);
+  if (count > 0 || added) world::read_unread(world);  // free places are looked for among all walls
   if (added)
     print_message(
         "{} has no robot; it is lent 'roomba1' (id 1), a Create with a laser of 361 rays, 180 "

@@ -86,7 +86,7 @@ Chosen require_sensor(const world::World& world, const sensors::SensorSet& senso
 }
 
 void warn_of_pose(const world::World& world, const world::Mover& robot, const base::Pose& X_WM) {
-  const std::string where = world::placement_problem(world, robot, X_WM);
+  const std::string where = world::PlaceCheck(world).problem(robot, X_WM);
   if (!where.empty()) print_message("warning: at ({:g}, {:g}) '{}' is {}", X_WM.x, X_WM.y, robot.name, where);
 }
 

@@ -21,7 +21,8 @@ void print_warnings(const std::string& file, const std::vector<world::Warning>& 
 
 std::string text_of(std::span<const world::Warning> warnings) {
   std::string text;
-  for (const world::Warning& w : warnings) text += fmt::format("{}:{}: warning: {}\n", w.file, w.line, w.message);
+  for (const world::Warning& w : warnings)
+    text += fmt::format("{}{}: warning: {}\n", w.file, w.line > 0 ? fmt::format(":{}", w.line) : "", w.message);
   return text;
 }
 

@@ -82,8 +82,9 @@ struct Ground {
   sensors::SensorSet sensor_set;
   std::string caster;
 
-  explicit Ground(const RunOptions& options)
-      : world(load_with_robots(options.world, options.load, options.robots, options.seed, options.of)),
+  /// @param ranks may be null
+  Ground(const RunOptions& options, const cluster::Ranks* ranks)
+      : world(load_with_robots(options.world, load_options(options, ranks), options.robots, options.seed, options.of)),
         layout(layout_of(world, options)),
         device(options.device),
         sensor_set(with_accuracy(options)),
@@ -92,6 +93,13 @@ struct Ground {
   }
 
  private:
+  /// Ranks with tiles read outlines when they know their part, except where each keeps the whole world, and its
+  /// recording.
+  static world::LoadOptions load_options(const RunOptions& options, const cluster::Ranks* ranks) {
+    world::LoadOptions load = options.load;
+    load.leave_outlines = ranks != nullptr && options.tiles && options.balance == 0.0 && options.record.empty();
+    return load;
+  }
   static std::optional<server::StreamLayout> layout_of(const world::World& world, const RunOptions& options) {
     if (options.send.empty()) return std::nullopt;
     return stream_layout_of(world, sensors::SensorSet(world), options);
@@ -202,12 +210,13 @@ int simulate(const RunOptions& options, cluster::Ranks* ranks) {
   };
   on_all(ranks, [&] {
     if (ranks != nullptr) check_for_ranks(options);
-    ground.emplace(options);
+    ground.emplace(options, ranks);
     begin(0);
     live.emplace(options, ground->world, ground->sensor_set,
                  scenarios::RunSettings{options.seed, true, options.no_return_inf, ground->caster}, true);
   });
-  const std::vector<world::Warning> heard = course->simulation.warnings();
+  std::vector<world::Warning> heard = course->simulation.warnings();
+  for (world::Warning& warning : course->simulation.warnings_of_starts()) heard.push_back(std::move(warning));
   if (!heard.empty()) print_warnings(heard.front().file, heard);
   std::atomic<bool> all_stop = false;
   scenarios::Operator users(live->bridges(), ranks != nullptr ? all_stop : stop_requested(),

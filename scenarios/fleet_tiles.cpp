@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "scenarios/rank_exchange.h"
+#include "world/free_space.h"
 #include "world/near_part.h"
 
 namespace sf::scenarios {
@@ -95,6 +96,29 @@ FleetTiles::FleetTiles(cluster::Ranks& ranks, const world::World& world)
 
 void FleetTiles::keep_own_part(world::World& world) const {
   world::keep_near(world, tiles_[ranks_.rank()], wall_reach_);
+}
+
+std::vector<world::Warning> FleetTiles::warnings_of_starts(const world::World& part) {
+  base::Bytes block;
+  base::ByteWriter out(block);
+  const world::PlaceCheck check(part);
+  for (std::uint32_t m = 0; m < homes_.size(); ++m) {
+    const std::string problem = homes_[m] == ranks_.rank() ? check.start_problem(part.movers[m]) : "";
+    if (problem.empty()) continue;
+    out.put(m);
+    out.put_string(problem);
+  }
+  std::map<std::uint32_t, std::string> problems;
+  for (const cluster::Block other : ranks_.exchange(block)) {
+    base::ByteReader in(other);
+    while (in.left() > 0) {
+      const auto mover = in.get<std::uint32_t>();
+      problems[mover] = in.get_string();
+    }
+  }
+  std::vector<world::Warning> warnings;
+  for (const auto& [mover, problem] : problems) warnings.push_back({part.file, 0, problem});
+  return warnings;
 }
 
 void FleetTiles::share_v2v_ranges(std::span<double> v2v_ranges) {

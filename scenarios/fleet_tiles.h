@@ -31,8 +31,10 @@ class FleetTiles final : public farm::ReadingExchange {
   /// `ranks` must outlive it. @throws base::InputError for a sensor whose readings depend on the whole world
   FleetTiles(cluster::Ranks& ranks, const world::World& world);
 
-  /// Drops the walls that this rank does not need.
+  /// Drops the walls that this rank does not need. Of files of outlines that are not read yet, it reads the others.
   void keep_own_part(world::World& world) const;
+  /// Robots of all ranks that cannot stand where they start, each judged by its home; all ranks call this.
+  std::vector<world::Warning> warnings_of_starts(const world::World& part);
   /// The home of each mover.
   std::span<const unsigned> homes() const { return homes_; }
   /// Shows `fleet` and `farm`, which must outlive it, the movers of this part at load.

@@ -56,6 +56,7 @@ std::optional<world::World> own_part_of(const world::World& world, const std::op
 Simulation::Simulation(const world::World& world, gpu::Device& device, SimulationOptions options)
     : tiles_(options.tiles ? std::optional<FleetTiles>(std::in_place, *options.ranks, world) : std::nullopt),
       part_(own_part_of(world, tiles_, options)),
+      starts_unchecked_(!world.unread.empty()),
       world_(part_ ? *part_ : world),
       roads_(world::roads_of(world_)),
       thread_pool_(options.threads),
@@ -93,6 +94,10 @@ void Simulation::begin_sharing(const SimulationOptions& options) {
     balance_ = static_cast<std::uint64_t>(std::max(2.0, std::round(options.balance / world_.interval)));
   for (std::uint32_t i = 0; i < world_.movers.size(); ++i)
     if (!exchange_->owns(i)) farm_.leave_to_others(i);
+}
+
+std::vector<world::Warning> Simulation::warnings_of_starts() {
+  return starts_unchecked_ ? tiles_->warnings_of_starts(world_) : std::vector<world::Warning>();
 }
 
 /// At the first step, when no rank has failed to begin.

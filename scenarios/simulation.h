@@ -107,6 +107,9 @@ class Simulation {
   const world::RoadNetwork* roads() const { return roads_ ? &*roads_ : nullptr; }
   /// Warnings of the first files that a controller has read (a mission).
   const std::vector<world::Warning>& warnings() const { return warnings_; }
+  /// With tiles, robots that cannot stand where they start, if the world's files of outlines were not read at load,
+  /// when nobody could tell; all ranks call this, before the first step.
+  std::vector<world::Warning> warnings_of_starts();
 
  private:
   struct RobotControl {
@@ -137,6 +140,7 @@ class Simulation {
 
   std::optional<FleetTiles> tiles_;   ///< none: this process knows the whole world
   std::optional<world::World> part_;  ///< of this rank's tile
+  bool starts_unchecked_ = false;     ///< the world's walls were not known at load
   const world::World& world_;
   std::optional<world::RoadNetwork> roads_;
   base::ThreadPool thread_pool_;

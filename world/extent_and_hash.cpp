@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "base/hash.h"
+#include "world/outlines.h"
 #include "world/path_geometry.h"
 #include "world/serialization.h"
 
@@ -9,13 +10,39 @@ namespace sf::world {
 
 namespace {
 
-Extent extent_of(const World& world) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Extent extent{kFar, kFar, -kFar, -kFar};
-  const auto include = [&](glm::dvec2 p) {
-    extent = {std::min(extent.x_min, p.x), std::min(extent.y_min, p.y), std::max(extent.x_max, p.x),
-              std::max(extent.y_max, p.y)};
-  };
+constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr Extent kNowhere{kFar, kFar, -kFar, -kFar};
+
+void include(Extent& extent, glm::dvec2 p) {
+  extent = {std::min(extent.x_min, p.x), std::min(extent.y_min, p.y), std::max(extent.x_max, p.x),
+            std::max(extent.y_max, p.y)};
+}
+
+/// Of the walls in files.
+struct UnreadWalls {
+  std::uint64_t count = 0;
+  Extent extent = kNowhere;
+};
+
+/// Sets the longest wall of each file, too.
+UnreadWalls measure_unread(World& world) {
+  UnreadWalls unread;
+  for (OutlineFile& file : world.unread) {
+    file.longest = 0.0;
+    read_outlines(file, [&](std::span<const Segment> walls) {
+      unread.count += walls.size();
+      for (const Segment& wall : walls) {
+        sf::world::include(unread.extent, wall.a);
+        sf::world::include(unread.extent, wall.b);
+        file.longest = std::max(file.longest, glm::length(wall.b - wall.a));
+      }
+    });
+  }
+  return unread;
+}
+
+Extent extent_of(const World& world, Extent extent) {
+  const auto include = [&](glm::dvec2 p) { sf::world::include(extent, p); };
   for (const Segment& wall : world.walls) {
     include(wall.a);
     include(wall.b);
@@ -62,31 +89,65 @@ bool is_first_hashed(Member member) {
   return std::apply([&](auto... others) { return (same(others) || ...); }, kFirstHashed);
 }
 
-std::uint64_t hash_of(const World& world) {
-  std::vector<std::uint8_t> bytes;
-  base::ByteWriter out(bytes);
-  RowWriter writer{out, RowFields::physics};
-  const auto put = [&](const auto& value) {
+/// Hash of values as bytes, which are not kept.
+class FieldHash {
+ public:
+  template <class T>
+  void put_rows(const T& rows) {
+    for (const auto& row : rows) put(row);
+  }
+  template <class T>
+  void put(const T& value) {
+    writer_.put(value);
+    if (bytes_.size() > kBlock) flush();
+  }
+  std::uint64_t value() {
+    flush();
+    return hash_.value();
+  }
+
+ private:
+  static constexpr std::size_t kBlock = 1u << 16;
+  void flush() {
+    hash_.add(bytes_.data(), bytes_.size());
+    bytes_.clear();
+  }
+  base::StreamingHash hash_;
+  base::Bytes bytes_;
+  base::ByteWriter out_{bytes_};
+  RowWriter writer_{out_, RowFields::physics};
+};
+
+/// @param unread walls in files: they follow the others
+std::uint64_t hash_of(const World& world, std::uint64_t unread) {
+  FieldHash hash;
+  const auto put = [&](auto member) {
+    const auto& value = world.*member;
+    constexpr bool is_walls = std::is_same_v<decltype(member), decltype(&World::walls)>;
     if constexpr (requires { value.data(); }) {
-      out.put(static_cast<std::uint64_t>(value.size()));
-      for (const auto& row : value) writer.put(row);
+      hash.put(static_cast<std::uint64_t>(value.size()) + (is_walls ? unread : 0));
+      hash.put_rows(value);
     } else {
-      writer.put(value);
+      hash.put(value);
     }
+    if constexpr (is_walls)
+      for (const OutlineFile& file : world.unread)
+        read_outlines(file, [&](std::span<const Segment> walls) { hash.put_rows(walls); });
   };
-  std::apply([&](auto... member) { (put(world.*member), ...); }, kFirstHashed);
+  std::apply([&](auto... member) { (put(member), ...); }, kFirstHashed);
   for_each_field<World>([&](const auto& field) {
-    if (field.role == Role::physics && !is_first_hashed(field.member)) put(world.*field.member);
+    if (field.role == Role::physics && !is_first_hashed(field.member)) put(field.member);
   });
-  return base::hash_bytes(bytes.data(), bytes.size());
+  return hash.value();
 }
 
 }  // namespace
 
 void update_extent_and_hash(World& world) {
   for (Mover& mover : world.movers) mover.radius = radius_of(mover);
-  world.extent = extent_of(world);
-  world.hash = hash_of(world);
+  const UnreadWalls unread = measure_unread(world);
+  world.extent = extent_of(world, unread.extent);
+  world.hash = hash_of(world, unread.count);
 }
 
 void translate(World& world, double dx, double dy) {
@@ -98,6 +159,7 @@ void translate(World& world, double dx, double dy) {
     move(wall.a);
     move(wall.b);
   }
+  for (OutlineFile& file : world.unread) move(file.X_WF);
   for (LaneMarking& marking : world.lane_markings)
     for (glm::dvec2& p : marking.line) move(p);
   for (Magnet& magnet : world.magnets) move(magnet.p);

@@ -1,7 +1,10 @@
 #include "world/free_space.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <string>
 
@@ -55,7 +58,9 @@ bool wall_between(const WallTree& walls, glm::dvec2 p, glm::dvec2 q) {
   return walls.any(box_of(p, q), [&](const Segment& w) { return segments_meet(p, q, w.a, w.b); });
 }
 
-bool in_solid(const WallTree& walls, glm::dvec2 p) { return winding_number(walls.walls(), p) != 0; }
+bool in_solid(const WallTree& walls, glm::dvec2 p) {
+  return winding_number(walls, p, [](const Segment&) { return true; }) != 0;
+}
 
 bool is_known(std::span<const Segment> known, glm::dvec2 p) { return known.empty() || winding_number(known, p) != 0; }
 
@@ -231,39 +236,53 @@ const Model* plan_of(const World& world) {
   return nullptr;
 }
 
-// The wall that the robot's outline would cross at that pose. The outline is shrunk a little, so that contact does not
-// count.
-const Segment* wall_in(const World& world, const Mover& robot, const Pose& X_WM) {
+std::vector<Segment> stopping(const World& world) {
+  std::vector<Segment> walls;
+  std::copy_if(world.walls.begin(), world.walls.end(), std::back_inserter(walls),
+               [](const Segment& wall) { return wall.stops_robots; });
+  return walls;
+}
+
+// The first model with a wall that the robot's outline would cross at that pose; kNone without one. The outline is
+// shrunk a little, so that contact does not count.
+std::uint32_t model_in(const WallTree& walls, const Mover& robot, const Pose& X_WM) {
   const Heights heights = heights_of(robot, X_WM.z);
-  const glm::dvec2 p{X_WM.x, X_WM.y};
-  for (const Segment& wall : world.walls) {
-    if (!wall.stops_robots || !heights.meet(wall) || distance(p, wall.a, wall.b) > robot.radius) continue;
-    for (const Segment& side : robot.body) {
-      if (!side.stops_robots) continue;
-      if (segments_meet(transform(X_WM, 0.98 * side.a), transform(X_WM, 0.98 * side.b), wall.a, wall.b)) return &wall;
-    }
-  }
-  return nullptr;
+  std::uint32_t first = kNone;
+  walls.any(box_around({X_WM.x, X_WM.y}, robot.radius), [&](const Segment& wall) {
+    if (!heights.meet(wall) || wall.model >= first) return false;
+    for (const Segment& side : robot.body)
+      if (side.stops_robots &&
+          segments_meet(transform(X_WM, 0.98 * side.a), transform(X_WM, 0.98 * side.b), wall.a, wall.b))
+        first = wall.model;
+    return false;
+  });
+  return first;
 }
 
 }  // namespace
 
-std::string placement_problem(const World& world, const Mover& robot, const Pose& X_WM) {
+PlaceCheck::PlaceCheck(const World& world)
+    : world_(world), walls_(stopping(world)), known_(known_free(world)), plan_(plan_of(world)) {}
+
+std::string PlaceCheck::problem(const Mover& robot, const Pose& X_WM) const {
   const glm::dvec2 p{X_WM.x, X_WM.y};
-  const Model* plan = plan_of(world);
-  if (plan != nullptr) {
-    const glm::dvec2 at = base::rotate(-plan->X_WM.yaw, p - glm::dvec2{plan->X_WM.x, plan->X_WM.y});
-    if (2.0 * std::abs(at.x) > plan->size.x || 2.0 * std::abs(at.y) > plan->size.y)
-      return "outside of '" + plan->name + "'";
+  if (plan_ != nullptr) {
+    const glm::dvec2 at = base::rotate(-plan_->X_WM.yaw, p - glm::dvec2{plan_->X_WM.x, plan_->X_WM.y});
+    if (2.0 * std::abs(at.x) > plan_->size.x || 2.0 * std::abs(at.y) > plan_->size.y)
+      return "outside of '" + plan_->name + "'";
   }
   const Heights heights = heights_of(robot, X_WM.z);
-  int around = 0;
-  for (const Segment& wall : world.walls)
-    if (wall.stops_robots && heights.meet(wall)) around += winding_number({&wall, 1}, p);
-  if (around != 0) return "within a wall";
-  const Segment* wall = wall_in(world, robot, X_WM);
-  if (wall != nullptr) return "partly in a wall of '" + world.models[wall->model].name + "'";
-  return is_known(known_free(world), p) ? "" : "where the map knows nothing";
+  if (winding_number(walls_, p, [&](const Segment& wall) { return heights.meet(wall); }) != 0) return "within a wall";
+  const std::uint32_t model = model_in(walls_, robot, X_WM);
+  if (model != kNone) return "partly in a wall of '" + world_.models[model].name + "'";
+  return is_known(known_, p) ? "" : "where the map knows nothing";
+}
+
+std::string PlaceCheck::start_problem(const Mover& robot) const {
+  const std::string where = robot.is_tag ? "" : problem(robot, robot.X_WM);
+  return where.empty() ? ""
+                       : fmt::format("'{}' starts at ({:g}, {:g}), {}; expected a 'pose' in free space", robot.name,
+                                     robot.X_WM.x, robot.X_WM.y, where);
 }
 
 std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32_t count, std::uint64_t seed) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/pose.h"
+#include "world/wall_tree.h"
 #include "world/world.h"
 
 namespace sf::world {
@@ -33,8 +34,22 @@ std::uint32_t robot_to_copy(const World& world, const std::string& name = "");
 /// As clone_robots in world/world.h, with copies of the robot named `of`; empty: of robot_to_copy(world).
 void clone_robots(World& world, std::uint32_t count, std::uint64_t seed, const std::string& of);
 
-/// The reason for which the robot cannot stand at that pose, such as "within a wall": in or on a wall that stops it,
-/// outside of the floor plan, in unknown space. Empty: no objection.
-std::string placement_problem(const World& world, const Mover& robot, const Pose& X_WM);
+/// Judges places of robots in a world, which must outlive it.
+class PlaceCheck {
+ public:
+  explicit PlaceCheck(const World& world);
+
+  /// The reason for which the robot cannot stand at that pose, such as "within a wall": in or on a wall that stops it,
+  /// outside of the floor plan, in unknown space. Empty: no objection.
+  std::string problem(const Mover& robot, const Pose& X_WM) const;
+  /// A message for the user where the robot cannot stand where it starts; else empty. Tags can stand anywhere.
+  std::string start_problem(const Mover& robot) const;
+
+ private:
+  const World& world_;
+  WallTree walls_;              ///< that stop robots
+  std::vector<Segment> known_;  ///< border of a map's known area; empty: all is known
+  const Model* plan_;           ///< the floor plan; null: none
+};
 
 }  // namespace sf::world

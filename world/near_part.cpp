@@ -4,16 +4,19 @@
 #include <span>
 #include <vector>
 
+#include "world/outlines.h"
 #include "world/wall_tree.h"
 
 namespace sf::world {
 
 namespace {
 
-/// The end of the line of connected walls of one model that begins at `first`.
+/// Whether a wall goes on with the line of connected walls of one model that ends with `last`.
+bool goes_on(const Segment& last, const Segment& wall) { return wall.model == last.model && wall.a == last.b; }
+
 std::size_t end_of_line(const std::vector<Segment>& walls, std::size_t first) {
   std::size_t end = first + 1;
-  while (end < walls.size() && walls[end].model == walls[first].model && walls[end].a == walls[end - 1].b) ++end;
+  while (end < walls.size() && goes_on(walls[end - 1], walls[end])) ++end;
   return end;
 }
 
@@ -23,24 +26,59 @@ double longest_of(std::span<const Segment> walls) {
   return longest;
 }
 
-}  // namespace
+/// Chooses among lines of walls, in the world's order.
+class NearLines {
+ public:
+  /// @param longest [m] wall of the world: error bounds depend on it, so one of that length is kept
+  NearLines(const base::Box& near, double longest) : near_(near), missing_(longest) {}
 
-void keep_near(World& world, const base::Box& box, double reach) {
-  const base::Box near{box.min - reach, box.max + reach};
-  // Error bounds depend on the longest wall.
-  double missing = longest_of(world.walls);
-  std::size_t kept = 0;
-  for (std::size_t first = 0, end = 0; first < world.walls.size(); first = end) {
-    end = end_of_line(world.walls, first);
-    const auto line = std::span(world.walls).subspan(first, end - first);
+  bool keeps(std::span<const Segment> line) {
     // The rest of an outline in several pieces is not known here.
     const bool open = line.front().solid_left && line.front().a != line.back().b;
     const double longest = longest_of(line);
-    if (!open && !base::meet(near, box_of(line)) && longest < missing) continue;
-    if (longest == missing) missing = HUGE_VAL;
-    for (const Segment& wall : line) world.walls[kept++] = wall;
+    if (!open && !base::meet(near_, box_of(line)) && longest < missing_) return false;
+    if (longest == missing_) missing_ = HUGE_VAL;
+    return true;
   }
-  world.walls.resize(kept);
+
+ private:
+  base::Box near_;
+  double missing_;
+};
+
+void drop_far_lines(std::vector<Segment>& walls, NearLines& lines) {
+  std::size_t kept = 0;
+  for (std::size_t first = 0, end = 0; first < walls.size(); first = end) {
+    end = end_of_line(walls, first);
+    const auto line = std::span(walls).subspan(first, end - first);
+    if (!lines.keeps(line)) continue;
+    for (const Segment& wall : line) walls[kept++] = wall;
+  }
+  walls.resize(kept);
+}
+
+void read_near_lines(const OutlineFile& file, std::vector<Segment>& walls, NearLines& lines) {
+  std::vector<Segment> line;
+  const auto end_line = [&] {
+    if (!line.empty() && lines.keeps(line)) walls.insert(walls.end(), line.begin(), line.end());
+    line.clear();
+  };
+  read_outlines(file, [&](std::span<const Segment> more) {
+    if (!line.empty() && !goes_on(line.back(), more.front())) end_line();
+    line.insert(line.end(), more.begin(), more.end());
+  });
+  end_line();
+}
+
+}  // namespace
+
+void keep_near(World& world, const base::Box& box, double reach) {
+  double longest = longest_of(world.walls);
+  for (const OutlineFile& file : world.unread) longest = std::max(longest, file.longest);
+  NearLines lines({box.min - reach, box.max + reach}, longest);
+  drop_far_lines(world.walls, lines);
+  for (const OutlineFile& file : world.unread) read_near_lines(file, world.walls, lines);
+  world.unread.clear();
   world.walls.shrink_to_fit();
 }
 

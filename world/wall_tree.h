@@ -60,4 +60,15 @@ class WallTree {
   base::BoxTree tree_;
 };
 
+/// The same of those walls of a tree for which `counts(const Segment&)` is true.
+template <class Predicate>
+int winding_number(const WallTree& walls, glm::dvec2 p, Predicate&& counts) {
+  int sum = 0;  // of the edges that a line from `p` to the right crosses
+  walls.any({p, {HUGE_VAL, p.y}}, [&](const Segment& wall) {
+    if (counts(wall)) sum += winding_number(std::span(&wall, 1), p);
+    return false;
+  });
+  return sum;
+}
+
 }  // namespace sf::world

@@ -191,7 +191,7 @@ struct FloorHole {
 /// A message for the user that did not stop the load.
 struct Warning {
   std::string file;
-  int line = 0;  ///< 1-based
+  int line = 0;  ///< 1-based; 0: the whole file
   std::string message;
 };
 
@@ -199,11 +199,21 @@ struct Extent {
   double x_min = 0.0, y_min = 0.0, x_max = 0.0, y_max = 0.0;  ///< [m] bounds of all geometry and movers
 };
 
+/// A file of outlines (`outlines "FILE"` of a model, world/outlines.h) whose walls are not in `World::walls`.
+struct OutlineFile {
+  std::string file;              ///< as opened
+  Pose X_WF;                     ///< frame of the file's coordinates; z is the foot of the walls
+  double metres_per_unit = 1.0;  ///< [m] per unit of length of the file
+  Segment surface;               ///< model, flags, and the height of outlines without one of their own (`z_max`)
+  double longest = 0.0;          ///< [m] wall
+};
+
 struct World {
   std::string name;
   std::string file;  ///< as given by the user
   std::vector<Model> models;
-  std::vector<Segment> walls;              ///< static segments in the world frame
+  std::vector<Segment> walls;       ///< static segments in the world frame
+  std::vector<OutlineFile> unread;  ///< follow `walls`; `extent` and `hash` count them (LoadOptions::leave_outlines)
   std::vector<LaneMarking> lane_markings;  ///< road paint, visible to lane edge sensors only
   double road_resolution = 0.0;            ///< [m] raster step for lane edge sensors; 0: exact markings
   std::vector<Magnet> magnets;             ///< static magnets
@@ -228,6 +238,7 @@ struct LoadOptions {
   bool stage_noise = false;      ///< read the first number of `noise` as a variance, as Stage does
   bool unknown_is_wall = false;  ///< ROS maps: unknown cells are walls
   bool strict_roads = false;     ///< refuse road networks with deviations from their format
+  bool leave_outlines = false;   ///< the walls of outline files stay in their files (`World::unread`)
   std::string accuracy;          ///< word for all sensors, before those of the file; empty: those of the file hold
   std::span<const SensorKeyword> sensors;  ///< modelled sensor types; models of other types become plain bodies
 };

@@ -2,7 +2,11 @@
 
 #include "scenarios/fleet_tiles.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "base/error.h"
 #include "scenarios/simulation.h"
@@ -146,6 +150,47 @@ TEST(FleetTiles, EachRankKeepsItsHouses) {
     walls[one.rank()] = part.walls.size();
   });
   for (const std::size_t count : walls) EXPECT_LT(count, whole.walls.size());
+}
+
+/// A world whose houses stand in a file; one robot begins in the second row's first house.
+std::string town_in_file() {
+  const auto file = std::filesystem::temp_directory_path() / "town.csv";
+  std::ofstream out(file);
+  for (int x = 0; x < 6; ++x)
+    for (int y = 0; y < 4; ++y)
+      out << fmt::format("POLYGON (({0} {1}, {2} {1}, {2} {3}, {0} {3}))\n", 5 * x - 1, 5 * y - 1, 5 * x + 1,
+                         5 * y + 1);
+  std::string text = "model( outlines \"" + file.string() + "\" size [0 0 1] )\n";
+  for (int k = 0; k < 12; ++k)
+    text += fmt::format("create( name \"r{}\" pose [{} {} 0 {}] create_laser( range_max 2 ) )\n", k,
+                        2.5 + 5.0 * (k % 4), 2.5 + 5.0 * (k / 4), 75 * k);
+  return text + "create( name \"lost\" pose [0 5 0 0] )\n";
+}
+
+TEST(FleetTiles, RanksReadTheirPartOfAFileAlone) {
+  const std::string text = town_in_file();
+  const world::World whole = read(text);
+  world::LoadOptions options{.sensors = sensors::world_file_words()};
+  options.leave_outlines = true;
+  const world::World left = world::read_world("include \"robots.inc\"\n" + text, options);
+  ASSERT_EQ(left.walls.size(), 0u);
+  const Course alone = run(whole, device(), {.seed = 3}, 60);
+  EXPECT_EQ(run_in_tiles(left, 3, {.seed = 3}, 60), alone);
+}
+
+TEST(FleetTiles, RobotsInWallsOfAFileAreNoticed) {  // when each rank knows its walls; all ranks say the same
+  world::LoadOptions options{.sensors = sensors::world_file_words()};
+  options.leave_outlines = true;
+  const world::World left = world::read_world("include \"robots.inc\"\n" + town_in_file(), options);
+  cluster::ThreadRanks(3).run([&](cluster::Ranks& one) {
+    world::World part = left;
+    FleetTiles tiles(one, left);
+    tiles.keep_own_part(part);
+    EXPECT_LT(part.walls.size(), 96u);
+    const std::vector<world::Warning> warnings = tiles.warnings_of_starts(part);
+    ASSERT_EQ(warnings.size(), 1u);
+    expect_in("'lost' starts at (0, 5), within a wall", warnings[0].message);
+  });
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ TEST_F(RosMap, CopiesStartInsideTheArenaAmidTheUnknown) {
       ASSERT_EQ(world.movers.size(), 8u);
       for (const Mover& mover : world.movers) {
         EXPECT_LT(std::max(std::abs(mover.X_WM.x), std::abs(mover.X_WM.y)), 2.5) << start.x;
-        EXPECT_EQ(placement_problem(world, mover, mover.X_WM), "");
+        EXPECT_EQ(PlaceCheck(world).problem(mover, mover.X_WM), "");
       }
     }
 }
@@ -128,7 +128,7 @@ TEST_F(RosMap, PosesThatNobodyCanHaveAreNamed) {
   World world = load(std::string(kSandbox) + "0.196\n");
   scenes::add_create(world, {});
   update_extent_and_hash(world);
-  const auto where = [&](double x, double y) { return placement_problem(world, world.movers[0], {x, y, 0.0, 0.3}); };
+  const auto where = [&](double x, double y) { return PlaceCheck(world).problem(world.movers[0], {x, y, 0.0, 0.3}); };
   EXPECT_EQ(where(1, 1), "");
   EXPECT_EQ(where(0, 0), "within a wall");
   EXPECT_EQ(where(2.35, 1), "partly in a wall of 'map'");

@@ -6,6 +6,7 @@
 
 #include "world/free_space.h"
 #include "world/keys.h"
+#include "world/outlines.h"
 #include "world/stage/build_state.h"
 #include "world/stage/light_entities.h"
 #include "world/stage/mover_entities.h"
@@ -34,14 +35,12 @@ void read_units(StageContext& context, const Entity& root) {
   }
 }
 
-void warn_of_placements(BuildState& b) {
+void warn_of_starts(BuildState& b) {
+  if (b.world.movers.empty()) return;
+  const PlaceCheck check(b.world);
   for (std::size_t row = 0; row < b.world.movers.size(); ++row) {
-    const Mover& robot = b.world.movers[row];
-    const std::string where = robot.is_tag ? "" : placement_problem(b.world, robot, robot.X_WM);
-    if (where.empty()) continue;
-    warn(b.context, b.locations[row],
-         fmt::format("'{}' starts at ({:g}, {:g}), {}; expected a 'pose' in free space", robot.name, robot.X_WM.x,
-                     robot.X_WM.y, where));
+    const std::string problem = check.start_problem(b.world.movers[row]);
+    if (!problem.empty()) warn(b.context, b.locations[row], problem);
   }
 }
 
@@ -63,8 +62,9 @@ World build_world(const std::string& file, const std::string& content, const Loa
   number_movers(b);
   check_stop_lines(b);
 
+  if (!options.leave_outlines) read_unread(b.world);
   update_extent_and_hash(b.world);
-  warn_of_placements(b);
+  if (b.world.unread.empty()) warn_of_starts(b);
   b.world.warnings = std::move(b.context.warnings);
   return std::move(b.world);
 }

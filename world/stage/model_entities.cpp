@@ -11,6 +11,7 @@
 #include "world/stage/floor_entities.h"
 #include "world/stage/light_entities.h"
 #include "world/stage/mover_entities.h"
+#include "world/stage/outline_entities.h"
 #include "world/stage/read_keys.h"
 #include "world/stage/road_entities.h"
 
@@ -94,9 +95,8 @@ Segment placed(const Segment& local, const Pose& X, const Segment& surface) {
   return segment;
 }
 
-/// @param X_B the body frame, in the mover's frame for a mover's body, else in the world.
-void add_body(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
-              const Pose& X_B) {
+/// Model and flags of a body's surface.
+Segment surface_of(const BuildState& b, const Entity& entity, const Model& model) {
   const StageContext& context = b.context;
   Segment surface;
   surface.model = static_cast<std::uint32_t>(b.world.models.size());
@@ -105,6 +105,13 @@ void add_body(BuildState& b, const Entity& entity, const Model& model, const std
       number(context, entity, "laser_return", 1.0) != 0.0 && number(context, entity, "ranger_return", 1.0) >= 0.0;
   const bool is_plan = model.is_bitmap && !b.options.stage_obstacles;
   surface.stops_robots |= is_plan;
+  return surface;
+}
+
+/// @param X_B the body frame, in the mover's frame for a mover's body, else in the world.
+void add_body(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
+              const Pose& X_B) {
+  const Segment surface = surface_of(b, entity, model);
   auto& segments = model.mover == kNone ? b.world.walls : b.world.movers[model.mover].body;
   for (const Segment& local : shape) {
     const Segment segment = placed(local, X_B, surface);
@@ -147,7 +154,8 @@ ModelProperties read_model_properties(BuildState& b, const Entity& entity, Paren
 
 std::vector<Segment> shape_of_model(BuildState& b, const Entity& entity, const ModelProperties& said) {
   const bool is_light = said.kind == EntityKind::light;
-  const bool is_box = !is_light && !has_no_body(entity.type) && (said.sensor == nullptr || entity.type == "laser");
+  const bool is_box = !is_light && !has_no_body(entity.type) && (said.sensor == nullptr || entity.type == "laser") &&
+                      find(entity, "outlines") == nullptr;
   std::vector<Segment> shape = shape_of(b.context, b.bitmaps, entity, said.size, is_box);
   if (is_light && shape.empty() && !flag(b.context, entity, "noblocks", false))
     return light_shape(said.size, number(b.context, entity, "lamps", 3.0) == 1.0);
@@ -204,6 +212,8 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   const std::vector<Segment> shape = shape_of_model(b, entity, said);
   is_floor_hole(b.context, entity) ? add_floor_holes(b, entity, model, shape, X_B)
                                    : add_body(b, entity, model, shape, X_B);
+  if (find(entity, "outlines") != nullptr)
+    add_outlines(b, entity, model, surface_of(b, entity, model), said.size.z, X_B);
   add_magnet(b, entity, model, said.size, X_B);
   add_emitter(b, entity, model, said.size, X_B);
   if (said.kind == EntityKind::light) add_light(b, entity, model);

@@ -158,14 +158,7 @@ Bitmap grid_of(Picture picture) {
 
 const TracedBitmap& bitmap_of(StageContext& context, BitmapCache& bitmaps, const Entity& entity) {
   const SourceLocation at = find(entity, "bitmap")->at;
-  const std::string name = text(context, entity, "bitmap", "");
-  const std::string file = find_file(context.document, at, name);
-  if (file.empty()) {
-    fail(context, at,
-         fmt::format("cannot find the bitmap \"{}\"; expected it beside this file, beside the world file or along "
-                     "$STAGEPATH",
-                     name));
-  }
+  const std::string file = file_of(context, entity, "bitmap");
   auto& traced = bitmaps[file];
   try {
     if (!traced) traced = trace_bitmap(grid_of(read_picture(file, Channel::first)), file);

@@ -91,6 +91,19 @@ std::string text(const StageContext& context, const Entity& entity, std::string_
   return property == nullptr ? fallback : single(context, *property, true).text;
 }
 
+std::string file_of(const StageContext& context, const Entity& entity, std::string_view key) {
+  const std::string name = text(context, entity, key, "");
+  const SourceLocation at = location_of(entity, key);
+  const std::string file = find_file(context.document, at, name);
+  if (file.empty()) {
+    fail(context, at,
+         fmt::format("cannot find the {} \"{}\"; expected {} beside this file, beside the world file or along "
+                     "$STAGEPATH",
+                     key, name, key.ends_with('s') ? "them" : "it"));
+  }
+  return file;
+}
+
 Accuracy accuracy(const StageContext& context, const LoadOptions& options, const Entity& entity) {
   const Property* property = find(entity, "accuracy");
   if (property == nullptr || !options.accuracy.empty()) return {options.accuracy, "", 0};

@@ -57,6 +57,9 @@ double above_zero(const StageContext& context, const Entity& entity, std::string
 bool flag(const StageContext& context, const Entity& entity, std::string_view key, bool fallback);
 std::string text(const StageContext& context, const Entity& entity, std::string_view key, const std::string& fallback);
 
+/// The path of the file that the property names. @throws base::InputError where there is none
+std::string file_of(const StageContext& context, const Entity& entity, std::string_view key);
+
 /// `LoadOptions::accuracy`, else `accuracy "word"`, else no request.
 Accuracy accuracy(const StageContext& context, const LoadOptions& options, const Entity& entity);
 
