@@ -88,6 +88,7 @@ struct Farm::State {
         measures(w.movers.size(), 1),
         delivers(w.movers.size(), 1),
         gone(w.movers.size(), 0) {
+    SF_CHECK(w.unread.empty(), "the walls of " + w.unread.front().file + " are not read");
     const sensors::SensorContext context{
         w, device, thread_pool, states, options.seed, options.noise, options.true_poses, options.scene};
     for (const auto& group : sensor_set.groups()) {

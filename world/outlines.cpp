@@ -28,13 +28,20 @@ struct Row {
   std::optional<double> height;  ///< in the unit of length of the file
 };
 
-/// Fields of a line of comma-separated values; quotes stand round a field that contains commas.
+/// The first quote that ends a field: two in a row stand for one within it.
+std::size_t closing_quote(std::string_view text) {
+  std::size_t at = text.find('"');
+  while (at < text.size() && text.substr(at + 1).starts_with('"')) at = text.find('"', at + 2);
+  return at;
+}
+
+/// Fields of a line of comma-separated values (RFC 4180); quotes stand round a field that contains commas.
 std::vector<std::string_view> fields_of(std::string_view line) {
   std::vector<std::string_view> fields;
   for (bool more = true; more;) {
     const bool quoted = line.starts_with('"');
     if (quoted) line.remove_prefix(1);
-    const std::size_t end = std::min(line.find(quoted ? '"' : ','), line.size());
+    const std::size_t end = std::min(quoted ? closing_quote(line) : line.find(','), line.size());
     fields.push_back(line.substr(0, end));
     line.remove_prefix(std::min(line.find(',', end), line.size()));
     more = line.starts_with(',');

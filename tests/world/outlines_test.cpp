@@ -95,7 +95,7 @@ TEST(Outlines, ATableHasHeights) {  // as GDAL writes it
   const World world = town_of(
       "WKT,name,height\r\n"
       "\"POLYGON ((0 0,1 0,1 1,0 0))\",town hall,12.5\r\n"
-      "\"LINESTRING (0 0,1 0)\",\"a fence, green\",\r\n"
+      "\"LINESTRING (0 0,1 0)\",\"a \"\"fence\"\", green\",\r\n"
       "\"LINESTRING (0 0,2 0)\",fence,0\r\n");
   ASSERT_EQ(world.walls.size(), 5u);
   EXPECT_EQ(world.walls[0].z_max, 12.5);
