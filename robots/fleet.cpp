@@ -70,6 +70,7 @@ Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
   travels_.resize(count);
   progress_.resize(count);
   proposed_.resize(count);
+  free_discs_.resize(count);
   for (auto* flags :
        {&waiting_, &yielded_, &changed_, &continues_, &contacts_, &refused_, &struck_, &reported_, &absent_})
     flags->resize(count);

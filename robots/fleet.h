@@ -102,6 +102,11 @@ class Fleet {
     std::uint32_t sectors = 0;
     glm::dvec2 away;  ///< world frame: the sum of unit vectors from the touching surfaces to the mover's origin
   };
+  /// A disc without walls round a former place: while a mover's way stays in it, no wall is searched for.
+  struct FreeDisc {
+    glm::dvec2 centre;
+    double radius = 0.0;  ///< [m]
+  };
   /// Buffers of one thread.
   struct Scratch {
     std::vector<FootprintEdge> next, now, other;  ///< for place_footprint
@@ -122,6 +127,8 @@ class Fleet {
   double sweep_of(std::uint32_t row) const;
   double reach_of(std::uint32_t row) const;
   void commit(std::uint32_t row);
+  void find_free_disc(std::uint32_t row);
+  bool is_in_free_disc(std::uint32_t row) const;
   void find_near(std::uint32_t row, Scratch& scratch) const;
   bool moved(std::uint32_t row) const;
 
@@ -167,6 +174,7 @@ class Fleet {
   std::vector<Progress>
       progress_;  ///< at the begin of the round; `reports_` has the poses that other movers test against
   std::vector<Progress> proposed_;
+  std::vector<FreeDisc> free_discs_;
   std::vector<std::uint8_t> waiting_;      ///< 1: its tick is not finished
   std::vector<std::uint8_t> yielded_;      ///< 1: yielded in this round
   std::vector<std::uint8_t> changed_;      ///< 1: it moved or yielded in this round

@@ -72,6 +72,26 @@ double Fleet::reach_of(std::uint32_t row) const {
   return travels_[row] + std::abs(progress_[row].velocity.turn) * footprints_[row].radius * progress_[row].left;
 }
 
+bool Fleet::is_in_free_disc(std::uint32_t row) const {
+  constexpr double kMargin = 1e-6;  // [m] of rounding
+  const FreeDisc& disc = free_discs_[row];
+  const double reach = footprints_[row].radius + reach_of(row);
+  return length(origin(progress_[row].X_WM) - disc.centre) + reach + kMargin <= disc.radius;
+}
+
+/// Looks farther than this tick needs. Near walls, the first one ends the search.
+void Fleet::find_free_disc(std::uint32_t row) {
+  if (is_in_free_disc(row)) return;
+  const Pose& X_WM = progress_[row].X_WM;
+  const double radius = footprints_[row].radius, near = radius + reach_of(row);
+  double free = 4.0 * near;
+  const bool ended = any_wall(row, X_WM, free - radius, [&](const Segment&, double gap) {
+    free = std::min(free, gap + radius);
+    return free <= near;
+  });
+  free_discs_[row] = {origin(X_WM), ended ? 0.0 : free};
+}
+
 Fleet::Progress Fleet::advance_mover(std::uint32_t row, bool last, Scratch& scratch) const {
   Progress progress = progress_[row];
   const Pose& from = progress_[row].X_WM;
@@ -79,11 +99,12 @@ Fleet::Progress Fleet::advance_mover(std::uint32_t row, bool last, Scratch& scra
   const auto meets = [&](std::uint32_t other) { return comes_near(row, from, sweep, other, reports_[other].X_WM); };
   progress.free = std::none_of(scratch.near.begin(), scratch.near.end(), meets);
   scratch.walls.clear();
-  any_wall(row, from, reach_of(row), [&](const Segment& wall, double gap) {
-    scratch.walls.push_back(&wall);
-    progress.free = progress.free && gap > sweep;
-    return false;
-  });
+  if (!is_in_free_disc(row))
+    any_wall(row, from, reach_of(row), [&](const Segment& wall, double gap) {
+      scratch.walls.push_back(&wall);
+      progress.free = progress.free && gap > sweep;
+      return false;
+    });
   if (!progress.free)
     return advance_in_steps(row, std::max(1.0, std::ceil(sweep / footprints_[row].step)), last, scratch);
   progress.X_WM = advance(from, progress.velocity, progress.left);

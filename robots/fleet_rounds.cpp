@@ -51,6 +51,7 @@ void Fleet::run_round(bool last) {
 
 void Fleet::propose(std::uint32_t row, bool last, Scratch& scratch) {
   find_near(row, scratch);
+  find_free_disc(row);
   proposed_[row] = advance_mover(row, last, scratch);
   proposed_[row].exposed =
       std::any_of(scratch.near.begin(), scratch.near.end(), [&](std::uint32_t other) { return waiting_[other] != 0; });

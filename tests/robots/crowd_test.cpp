@@ -103,6 +103,23 @@ TEST(Crowd, NothingEverCrossesAnything) {
   EXPECT_GT(travelled, ticks / 3.0);
 }
 
+/// What a fleet keeps between ticks changes nothing.
+TEST(Crowd, MovesAsAFleetMadeAnewWould) {
+  const world::World world = crowd();
+  Fleet fleet(world);
+  for (int tick = 0; tick < (instrumented() ? 30 : 200); ++tick) {
+    const std::vector<Twist> commands = random_commands(world.movers.size(), tick);
+    Fleet anew(world);
+    anew.apply(fleet.reports());
+    anew.move(commands, kTick);
+    fleet.move(commands, kTick);
+    for (std::size_t row = 0; row < world.movers.size(); ++row) {
+      const Pose &p = fleet.reports()[row].X_WM, &q = anew.reports()[row].X_WM;
+      ASSERT_TRUE(p.x == q.x && p.y == q.y && p.yaw == q.yaw) << "tick " << tick << " row " << row;
+    }
+  }
+}
+
 std::uint64_t hash_of_run(const world::World& world, int ticks) {
   Fleet fleet(world);
   std::uint64_t hash = 0;
