@@ -30,7 +30,8 @@ std::size_t CellCache::bucket_of(const CellKey& key) const {
   return base::hash_bytes(&key, sizeof key) & (table_.size() - 1);
 }
 
-std::uint32_t CellCache::slot_of(const CellKey& key) const {
+std::uint32_t CellCache::slot_of(const CellKey& key, std::uint32_t guess) const {
+  if (guess < slots_.size() && slots_[guess].used && slots_[guess].key == key) return guess;
   for (std::size_t at = bucket_of(key); table_[at] != kNone; at = (at + 1) & (table_.size() - 1))
     if (slots_[table_[at]].key == key) return table_[at];
   return kNone;

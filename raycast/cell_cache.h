@@ -32,8 +32,8 @@ class CellCache {
   void begin_tick() { ++tick_; }
   /// The slot of `key`, marked as used in this tick; kNone when absent.
   std::uint32_t find(const CellKey& key);
-  /// The slot of `key`; kNone when absent. Thread-safe among readers.
-  std::uint32_t slot_of(const CellKey& key) const;
+  /// The slot of `key`; kNone when absent. Thread-safe among readers. @param guess its likely slot, or kNone
+  std::uint32_t slot_of(const CellKey& key, std::uint32_t guess = kNone) const;
   /// Marks `slot` as used in this tick.
   void touch(std::uint32_t slot) { slots_[slot].tick = tick_; }
   /// Allocates `chunks` chunks for `key`, which must be absent.
@@ -42,8 +42,9 @@ class CellCache {
 
   std::uint32_t first_chunk(std::uint32_t slot) const { return slots_[slot].first_page * page_; }
   std::uint32_t slots() const { return static_cast<std::uint32_t>(slots_.size()); }
-  std::uint32_t cells() const { return used_; }   ///< in the pool now
-  std::uint64_t built() const { return built_; }  ///< inserted since construction
+  std::uint32_t cells() const { return used_; }             ///< in the pool now
+  std::uint64_t built() const { return built_; }            ///< inserted since construction
+  std::uint64_t evicted() const { return built_ - used_; }  ///< of these, removed again
 
  private:
   struct Slot {

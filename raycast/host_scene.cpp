@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::uint32_t kPageBlocks = 4;
 constexpr std::uint32_t kFirstCells = 256, kFirstBlocks = 1u << 11;
+/// [blocks] Up to 42 MiB the cache grows rather than evict cells again, since robots return to their cells.
+constexpr std::uint32_t kKeptBlocks = 1u << 17;
 /// [blocks] Limit of the cache: a quarter of the machine's memory, between 0.7 and 2.7 GiB (100 000 robots need 1.4). A
 /// cell without room in the cache is rebuilt by each scan.
 std::uint32_t most_blocks() {
@@ -138,12 +140,16 @@ void HostScene::prepare(std::span<const Viewpoint> views) {
   views_.assign(views.begin(), views.end());
   cells_.find(views, thread_pool_);
   static const std::uint32_t most = most_blocks();
-  for (build_missing_cells(); !cells_.missing().empty() && blocks_.size() < most; build_missing_cells()) {
-    lists_.resize(2 * lists_.size());
-    blocks_.resize(2 * blocks_.size());
-    bounds_.resize(blocks_.size() + kBlock);
-    cells_.grow(static_cast<std::uint32_t>(lists_.size()), static_cast<std::uint32_t>(blocks_.size()));
-  }
+  const std::uint64_t evicted = cells_.cache().evicted();
+  for (build_missing_cells(); !cells_.missing().empty() && blocks_.size() < most; build_missing_cells()) grow();
+  if (cells_.cache().evicted() != evicted && blocks_.size() < kKeptBlocks) grow();
+}
+
+void HostScene::grow() {
+  lists_.resize(2 * lists_.size());
+  blocks_.resize(2 * blocks_.size());
+  bounds_.resize(blocks_.size() + kBlock);
+  cells_.grow(static_cast<std::uint32_t>(lists_.size()), static_cast<std::uint32_t>(blocks_.size()));
 }
 
 /// Prefetches the cell of view `i`, which is mostly scanned next.

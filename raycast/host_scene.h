@@ -43,6 +43,7 @@ class HostScene {
     std::uint32_t first = 0, front_facing = 0, all = 0;
   };
   void build_missing_cells();
+  void grow();
   static void add_blocks(std::vector<CandidateWall>& found, Thread& thread);
   void prefetch(std::size_t i) const;
   Cell collect(const CellKey& key, Thread& thread) const;

@@ -18,13 +18,14 @@ void ViewCells::grow(std::uint32_t slots, std::uint32_t chunks) {
   one_sided_.resize(cache_.slots());
 }
 
-CellKey ViewCells::key_of(const Viewpoint& view) const {
+/// @param last_slot of the same view in the last tick: a robot mostly stays in its cell
+CellKey ViewCells::key_of(const Viewpoint& view, std::uint32_t last_slot) const {
   const double size = sizes_[view.config];
   CellKey key{2 * std::int64_t{view.config}, static_cast<std::int64_t>(std::floor(view.X_WS.x / size)),
               static_cast<std::int64_t>(std::floor(view.X_WS.y / size))};
   // A cell without a surface lies on one side as a whole: the result for its first viewpoint holds for all.
   const auto known = [&] {
-    const std::uint32_t slot = cache_.slot_of(key);
+    const std::uint32_t slot = cache_.slot_of(key, last_slot);
     return slot != CellCache::kNone && one_sided_[slot] != 0;
   };
   if (known()) return key;
@@ -52,13 +53,13 @@ glm::dvec2 ViewCells::centre_of(const CellKey& key) const {
 
 void ViewCells::find(std::span<const Viewpoint> views, base::ThreadPool& thread_pool) {
   keys_.resize(views.size());
-  slots_.resize(views.size());
+  slots_.resize(views.size(), CellCache::kNone);
   thread_pool.parallel_for(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const bool same = i > first && views[i].config == views[i - 1].config && views[i].X_WS.x == views[i - 1].X_WS.x &&
                         views[i].X_WS.y == views[i - 1].X_WS.y;
-      keys_[i] = same ? keys_[i - 1] : key_of(views[i]);
-      slots_[i] = same ? slots_[i - 1] : cache_.slot_of(keys_[i]);
+      keys_[i] = same ? keys_[i - 1] : key_of(views[i], slots_[i]);
+      slots_[i] = same ? slots_[i - 1] : cache_.slot_of(keys_[i], slots_[i]);
     }
   });
   cache_.begin_tick();

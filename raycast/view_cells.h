@@ -44,14 +44,14 @@ class ViewCells {
   void classify_cell(const CellKey& key, std::uint32_t slot, std::span<const std::uint32_t> near);
 
  private:
-  CellKey key_of(const Viewpoint& view) const;
+  CellKey key_of(const Viewpoint& view, std::uint32_t last_slot) const;
 
   const ListConfigs& configs_;
   std::vector<double> sizes_;
   CellCache cache_;
   std::vector<std::uint8_t> one_sided_;  ///< per slot: no surface crosses the cell
   std::vector<CellKey> keys_;            ///< of this tick's views
-  std::vector<std::uint32_t> slots_;     ///< of this tick's views; kNone where the cell was missing
+  std::vector<std::uint32_t> slots_;     ///< likewise; kNone where the cell was missing
   std::vector<CellKey> missing_;
 };
 

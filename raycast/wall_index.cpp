@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kMaxBands = 1024;
 constexpr std::size_t kLeafWalls = 8;
+constexpr std::size_t kAhead = 8;  ///< walls that are fetched while earlier ones are looked at
 
 double least_x(const IndexedWall& s) { return std::min(s.a.x, s.b.x); }
 double largest_x(const IndexedWall& s) { return std::max(s.a.x, s.b.x); }
@@ -69,8 +70,10 @@ bool WallIndex::inside_solid(glm::dvec2 p) const {
   const bool left = p.x - all.min.x < all.max.x - p.x;
   const Band& band = bands_[band_of(p.y)];
   int winding = 0;
-  for (const std::uint32_t i : left ? band.from_left : band.from_right) {
-    const IndexedWall& s = segments_[i];
+  const std::vector<std::uint32_t>& walls = left ? band.from_left : band.from_right;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    if (k + kAhead < walls.size()) __builtin_prefetch(&segments_[walls[k + kAhead]]);
+    const IndexedWall& s = segments_[walls[k]];
     if (left ? least_x(s) > p.x : largest_x(s) < p.x) break;
     const bool below_a = s.a.y <= p.y;
     if (below_a == (s.b.y <= p.y)) continue;

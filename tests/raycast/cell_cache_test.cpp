@@ -27,6 +27,20 @@ TEST(CellCache, FindsWhatWasInserted) {
   EXPECT_EQ(cache.built(), 1u);
 }
 
+TEST(CellCache, AWrongGuessChangesNothing) {
+  CellCache cache(2, 2 * kPage);
+  const std::uint32_t p = cache.insert({0, 1, 0}, 1), q = cache.insert({0, 2, 0}, 1);
+  for (const std::uint32_t guess : {p, q, 2u, CellCache::kNone}) {
+    EXPECT_EQ(cache.slot_of({0, 1, 0}, guess), p) << guess;
+    EXPECT_EQ(cache.slot_of({0, 3, 0}, guess), CellCache::kNone) << guess;
+  }
+  cache.begin_tick();
+  cache.touch(q);
+  EXPECT_EQ(cache.insert({0, 4, 0}, 1), p) << "in place of the first";
+  EXPECT_EQ(cache.slot_of({0, 1, 0}, p), CellCache::kNone);
+  EXPECT_EQ(cache.evicted(), 1u);
+}
+
 TEST(CellCache, ACellWithoutChunksIsACellToo) {
   CellCache cache(4, kPage);
   ASSERT_NE(cache.insert({0, 0, 0}, 0), CellCache::kNone);

@@ -162,6 +162,25 @@ TEST(HostScene, CellsAreListedOnce) {
   EXPECT_EQ(scene.cells_built(), 2u);
 }
 
+/// A robot drives rounds through more cells than the cache has at first.
+TEST(HostScene, CellsThatRobotsReturnToAreKept) {
+  const world::World world = scenes::boxes(400, 40.0, 2);
+  base::ThreadPool thread_pool(1);
+  ListConfigs configs(world);
+  const std::uint32_t config = configs.add({0.1, 2.0, 0.0, M_PI});
+  HostScene scene(world, configs, thread_pool);
+  std::uint64_t built[4] = {};
+  for (std::uint64_t& total : built) {
+    for (int cell = 0; cell < 80 * 80; ++cell) {
+      const Viewpoint view{config, 0, {-20.0 + 0.5 * (cell % 80), -20.0 + 0.5 * (cell / 80), 0.1, 0.0}};
+      scene.prepare({&view, 1});
+    }
+    total = scene.cells_built();
+  }
+  EXPECT_GT(built[0], 1'000u);
+  EXPECT_EQ(built[3], built[2]);
+}
+
 TEST(MoverGeometry, MoversOfOneShapeShareItsBlocks) {
   world::World world;
   for (int i = 0; i < 5; ++i) scenes::add_robot(world, {2.0 * i, 0.0, 0.0, 0.3 * i}, scenes::laser());
