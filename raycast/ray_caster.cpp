@@ -13,6 +13,8 @@ RayCaster::~RayCaster() = default;
 
 const std::vector<Scanner>& RayCaster::scanners() const { return t_->scanners; }
 const BeamPlan& RayCaster::plan(std::uint32_t scanner) const { return t_->scanner_rows[scanner].plan; }
+std::uint32_t RayCaster::lane(std::uint32_t scanner) const { return t_->scanner_rows[scanner].out; }
+const Pose& RayCaster::X_WS(std::size_t i) const { return t_->views[i].X_WS; }
 bool RayCaster::on_device() const { return t_->scene != nullptr; }
 SensorStats RayCaster::stats() const {
   const Tables& t = *t_;

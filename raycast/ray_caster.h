@@ -65,6 +65,7 @@ class RayCaster {
 
   const std::vector<Scanner>& scanners() const;
   const BeamPlan& plan(std::uint32_t scanner) const;
+  std::uint32_t lane(std::uint32_t scanner) const;  ///< first of its lanes in the result tables
   SensorStats stats() const;
   bool on_device() const;  ///< false: scans run on the host, and nothing is recorded
 
@@ -78,6 +79,7 @@ class RayCaster {
   void add_copies(gpu::Batch& batch, bool results);
   /// Results of the i-th due scanner, valid after `prepare`.
   ScanResult results(std::size_t i) const;
+  const Pose& X_WS(std::size_t i) const;  ///< pose of the i-th due scanner
   /// Adds the device's uncertain beams to `stats`. Call once after each batch.
   void count();
 

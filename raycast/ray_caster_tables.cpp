@@ -22,13 +22,13 @@ std::uint32_t count_sensing_movers(const std::vector<Scanner>& scanners) {
   return sensing_movers;
 }
 
-ScanView scan_view_of(const Scanner& scanner, const Viewpoint& from) {
+ScanView scan_view_of(const ScannerRow& row, const Viewpoint& from) {
   ScanView view;
   view.heading = from.heading;
   view.yaw = from.X_WS.yaw;
-  view.range_min = scanner.scan.range_min;
+  view.range_min = row.range_min;
   view.min_sine = kMinSine;
-  view.single = scanner.single;
+  view.single = row.single;
   return view;
 }
 
@@ -87,9 +87,13 @@ void RayCaster::Tables::plan(const world::World& world) {
   for (const Scanner& scanner : scanners) {
     ScannerRow row;
     row.plan = plan_beams(scanner.scan, noise);
-    row.height = world.movers[scanner.mover].X_WM.z + scanner.scan.X_MS.z;
+    row.mover = scanner.mover;
+    row.range_min = scanner.scan.range_min;
+    row.single = scanner.single;
+    row.mount = scanner.scan.X_MS;
+    row.mount.z += world.movers[scanner.mover].X_WM.z;
     const double turn = noise ? kMaxSigmas * scanner.scan.noise.angle_sigma : 0.0;
-    const ListConfig config{row.height, scanner.scan.range_max, row.plan.spread, scanner.scan.fov + 2.0 * turn,
+    const ListConfig config{row.mount.z, scanner.scan.range_max, row.plan.spread, scanner.scan.fov + 2.0 * turn,
                             static_cast<std::uint32_t>(std::min<std::size_t>(beams[scanner.mover], 1'000'000))};
     row.config = configs.add(config);
     row.angle_noise = noise && scanner.scan.noise.angle_sigma > 0.0;
@@ -203,15 +207,14 @@ void RayCaster::Tables::compute_viewpoints(std::size_t first, std::size_t last) 
   std::uint32_t mover = kNotShared;
   glm::dvec2 turn;
   for (std::size_t i = first; i < last; ++i) {
-    const Scanner& scanner = scanners[due[i].row];
     const ScannerRow& row = scanner_rows[due[i].row];
-    const Pose &X = states[scanner.mover].X_WM, &X_MS = scanner.scan.X_MS;
-    if (scanner.mover != mover) turn = {std::cos(X.yaw), std::sin(X.yaw)};
-    mover = scanner.mover;
+    const Pose &X = states[row.mover].X_WM, &X_MS = row.mount;
+    if (row.mover != mover) turn = {std::cos(X.yaw), std::sin(X.yaw)};
+    mover = row.mover;
     const double yaw = X.yaw + X_MS.yaw;
     views[i] = {row.config,
                 mover,
-                {X.x + (turn.x * X_MS.x - turn.y * X_MS.y), X.y + (turn.y * X_MS.x + turn.x * X_MS.y), row.height, yaw},
+                {X.x + (turn.x * X_MS.x - turn.y * X_MS.y), X.y + (turn.y * X_MS.x + turn.x * X_MS.y), X_MS.z, yaw},
                 yaw == X.yaw ? turn : glm::dvec2{std::cos(yaw), std::sin(yaw)}};
   }
 }
@@ -303,7 +306,6 @@ void RayCaster::Tables::write_results(const ScannerRow& row, const double* own_r
 void RayCaster::Tables::scan_one(std::size_t k, unsigned thread) {
   const DueSample& d = due[scans[k].due];
   const ScannerRow& row = scanner_rows[d.row];
-  const Scanner& scanner = scanners[d.row];
   Scratch& own = scratch[thread];
   if (row.angle_noise) apply_angle_noise(d, thread);
   if (row.angle_noise) make_pattern(d.row, angle_offsets[thread], own, own.pattern);
@@ -316,36 +318,37 @@ void RayCaster::Tables::scan_one(std::size_t k, unsigned thread) {
     hit_models = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
   }
   const bool grazes =
-      host->scan(k, scan_view_of(scanner, host_views[k]), pattern, thread, {to, hit_models, own.grazes.data()});
+      host->scan(k, scan_view_of(row, host_views[k]), pattern, thread, {to, hit_models, own.grazes.data()});
   write_results(row, to, hit_models, grazes ? own.grazes.data() : nullptr);
 }
 
-/// Scans all beams of a shared view and distributes the results to its scanners.
+/// Scans all beams of a shared view and distributes the results to its scanners, in the layout of the kernels.
 void RayCaster::Tables::scan_shared(std::size_t k, unsigned thread) {
   const SharedView& shared = shared_views.views()[scans[k].shared];
   const SharedPattern& all = shared_views.pattern(shared);
-  const std::size_t beams = all.sources.size();
+  const ScannerRow& row = scanner_rows[shared.first];
+  const std::size_t beams = all.sources.size(), first = SF_BEAMS_PER_LANE * std::size_t{row.out};
   Scratch& own = scratch[thread];
-  own.make_room(2 * beams);
-  ScanView view = scan_view_of(scanners[shared.first], host_views[k]);
+  own.make_room(beams);
+  ScanView view = scan_view_of(row, host_views[k]);
   for (std::size_t b = 0; b < beams; ++b) {
-    const SharedPattern::Source& s = all.sources[b];
-    view.heading = views[scans[k].due + s.scanner].heading;
-    const glm::dvec2 d = direction_of(view, patterns[scanner_rows[shared.first + s.scanner].pattern], s.beam);
+    view.heading = views[scans[k].due + all.sources[b].scanner].heading;
+    const glm::dvec2 d = direction_of(view, all.beams, b);
     own.x[b] = d.x, own.y[b] = d.y;
   }
   view.heading = host_views[k].heading;
   view.x = own.x.data(), view.y = own.y.data();
   const bool grazes = host->scan(k, view, all.beams, thread, {own.ranges.data(), own.models.data(), own.grazes.data()});
+  double* const out = ranges->host<double>().data() + first;
+  std::uint32_t* const hit_models = hits->host<std::uint32_t>().data() + first;
+  std::uint32_t* const lane_flags = beam_flags->host<std::uint32_t>().data() + row.out;
+  std::fill_n(lane_flags, all.lanes, 0u);
   for (std::size_t b = 0; b < beams; ++b) {
-    const std::size_t place = beams + all.sources[b].place;
-    own.ranges[place] = own.ranges[b], own.models[place] = own.models[b], own.grazes[place] = own.grazes[b];
-  }
-  std::size_t at = beams;
-  for (std::uint32_t f = 0; f < shared.scanners; ++f) {
-    const ScannerRow& row = scanner_rows[shared.first + f];
-    write_results(row, &own.ranges[at], &own.models[at], grazes ? &own.grazes[at] : nullptr);
-    at += row.plan.samples.size();
+    const SharedPattern::Source& s = all.sources[b];
+    std::fill_n(out + s.place, s.places, own.ranges[b]);
+    std::fill_n(hit_models + s.place, s.places, own.models[b]);
+    if (grazes && own.grazes[b] != 0)
+      lane_flags[s.place / SF_BEAMS_PER_LANE] |= SF_GRAZING << s.place % SF_BEAMS_PER_LANE;
   }
 }
 

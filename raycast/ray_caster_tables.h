@@ -25,14 +25,17 @@ struct HostScan {
 
 /// One scanner, planned at load.
 struct ScannerRow {
-  BeamPlan plan;
-  double height = 0.0;  ///< [m] world height of the beams; fixed at load (2.5-D world)
+  base::Pose mount;        ///< in the mover's frame; z: world height of the beams, fixed at load (2.5-D world)
+  double range_min = 0.0;  ///< [m]
+  std::uint32_t mover = 0;
   std::uint32_t config = 0;
   std::uint32_t beams = 0;  ///< first lane of its beam tables
   std::uint32_t pattern = 0;
   std::uint32_t out = 0;              ///< first lane of its results
-  bool angle_noise = false;           ///< has angular noise: its beam tables are its own and change
   std::uint32_t shared = kNotShared;  ///< the shared view that begins with it
+  bool angle_noise = false;           ///< has angular noise: its beam tables are its own and change
+  bool single = false;                ///< as Scanner::single
+  BeamPlan plan;
 };
 
 /// One kernel over the lanes of its due scanners.

@@ -13,22 +13,28 @@ constexpr float kMaxSlack = 4.0F;
 
 SharedPattern merge(std::span<const Scanner> scanners, std::span<const BeamPlan* const> plans) {
   struct Beam {
-    double bearing;
+    double bearing, own_bearing;
     SharedPattern::Source source;
   };
+  SharedPattern pattern;
   std::vector<Beam> beams;
   for (std::uint32_t f = 0; f < scanners.size(); ++f) {
-    const std::vector<std::uint32_t>& samples = plans[f]->samples;
-    for (std::uint32_t k = 0; k < samples.size(); ++k) {
-      const double bearing =
-          scanners[f].scan.X_MS.yaw - scanners[0].scan.X_MS.yaw + bearing_of(scanners[f].scan, samples[k]);
-      beams.push_back({base::wrap_angle(bearing), {f, k, static_cast<std::uint32_t>(beams.size())}});
+    const BeamPlan& plan = *plans[f];
+    const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{pattern.lanes};
+    pattern.lanes += plan.lanes();
+    for (std::size_t k = 0; k < plan.samples.size(); ++k) {
+      const double bearing = bearing_of(scanners[f].scan, plan.samples[k]);
+      const std::size_t place = first + plan.place(k);
+      const std::size_t next =
+          k + 1 < plan.samples.size() ? first + plan.place(k + 1) : SF_BEAMS_PER_LANE * pattern.lanes;
+      beams.push_back({base::wrap_angle(scanners[f].scan.X_MS.yaw - scanners[0].scan.X_MS.yaw + bearing),
+                       bearing,
+                       {f, static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(next - place)}});
     }
   }
   std::sort(beams.begin(), beams.end(), [](const Beam& p, const Beam& q) {
     return p.bearing < q.bearing || (p.bearing == q.bearing && p.source.place < q.source.place);
   });
-  SharedPattern pattern;
   std::vector<double> bearings, directions;
   for (const Beam& beam : beams) {
     bearings.push_back(beam.bearing);
@@ -36,6 +42,10 @@ SharedPattern merge(std::span<const Scanner> scanners, std::span<const BeamPlan*
     pattern.sources.push_back(beam.source);
   }
   pattern.beams.assign(bearings, directions, bearings.front(), bearings.back());
+  for (std::size_t b = 0; b < beams.size(); ++b) {
+    pattern.beams.cos64[b] = std::cos(beams[b].own_bearing);
+    pattern.beams.sin64[b] = std::sin(beams[b].own_bearing);
+  }
   return pattern;
 }
 

@@ -15,11 +15,12 @@ namespace sf::raycast {
 struct SharedPattern {
   struct Source {
     std::uint32_t scanner;  ///< relative to the first of the view
-    std::uint32_t beam;     ///< of that scanner's pattern
-    std::uint32_t place;    ///< index among all beams, scanner after scanner
+    std::uint32_t place;    ///< its first place among those of the view's lanes
+    std::uint32_t places;   ///< number of its places: unused ones repeat a beam
   };
-  ScanPattern beams;
+  ScanPattern beams;            ///< its 64-bit directions are in the frame of each beam's own scanner
   std::vector<Source> sources;  ///< of each beam
+  std::uint32_t lanes = 0;
 };
 
 /// A run of scanner rows.

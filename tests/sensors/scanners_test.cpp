@@ -79,6 +79,26 @@ world::World spots() {
 
 TEST(Fans, OfOneRobotThatLookFromOnePoint) { expect_exact("spots", sweep(spots())); }
 
+/// Beams that graze are flagged with either caster, whichever place they have among those of the robot's scanners.
+TEST(Fans, OfOneRobotAlongAWall) {
+  world::World world;
+  scenes::add_room(world, {}, 6.0);
+  for (const double y : {1e-4, 1e-5, 1e-6}) {
+    const std::uint32_t mover = add_eye(world, {-2.9, -3.0 + y, 0.0, 0.0}, eye(1, 0.0, 8.0));
+    sensors::LaserSettings laser = sensors::lasers_of(world.movers[mover])[0];
+    scenes::remove_lasers(world.movers[mover]);
+    for (const double heading : {1.0, 2.0, 3.0, -1e-5, 0.5, -2e-5}) {
+      laser.X_MS.yaw = heading;
+      laser.samples = heading == 2.0 ? 7 : 1;
+      laser.fov = heading == 2.0 ? 4.0 : 0.0;
+      world.movers[mover].sensors.push_back(sensors::laser_sensor(laser));
+    }
+  }
+  expect_exact("along a wall", sweep(world));
+  const Glance glance(world);
+  EXPECT_TRUE(std::ranges::any_of(glance.readings, [](const auto& r) { return !r.quality.empty(); }));
+}
+
 TEST(Fans, OfOneRobotInThirtyTwoBits) {
   world::World world = spots();
   sensors::set_accuracy(world, "single");
