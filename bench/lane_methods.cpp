@@ -36,7 +36,7 @@ class FarmLanes final : public LaneReader {
     }
     backend_->add_copies(batch_);
     batch_.run();
-    blocks_.clear();
+    blocks_.resize(due_.size());
     backend_->collect(blocks_);
   }
   sensors::EdgeReading reading(std::size_t sensor) const override {

@@ -30,22 +30,23 @@ ClearanceEstimator::ClearanceEstimator(const world::Mover& mover) {
   half_width_ = 1.15 * half_width + 0.01;
 
   for (const sensors::LaserSettings& laser : sensors::lasers_of(mover)) {
-    View view{{laser.X_MS.x, laser.X_MS.y}, laser.range_max, {}};
+    View view{{laser.X_MS.x, laser.X_MS.y}, laser.range_max, static_cast<std::uint32_t>(beams_.size()), 0};
     const std::uint32_t stride = (laser.samples + kBeams - 1) / kBeams;
     for (std::uint32_t i = 0; i < laser.samples; i += stride) {
       const double along = laser.samples > 1 ? static_cast<double>(i) / (laser.samples - 1) - 0.5 : 0.0;
       const double bearing = base::wrap_angle(laser.X_MS.yaw + along * laser.fov);
       if (std::abs(bearing) > kFarthestBearing) continue;
-      view.beams.push_back({i, static_cast<float>(std::cos(bearing)), static_cast<float>(std::sin(bearing))});
+      beams_.push_back({i, static_cast<float>(std::cos(bearing)), static_cast<float>(std::sin(bearing))});
       if (std::abs(bearing) < 0.6) range_ = std::max(range_, laser.X_MS.x + laser.range_max - front_);
     }
-    views_.push_back(std::move(view));
+    view.end = static_cast<std::uint32_t>(beams_.size());
+    views_.push_back(view);
   }
   if (!std::isfinite(range_)) range_ = 1e3;
 }
 
 void ClearanceEstimator::add(const View& view, std::span<const double> ranges, Sum& sum) const {
-  for (const Beam& beam : view.beams) {
+  for (const Beam& beam : std::span(beams_).subspan(view.first, view.end - view.first)) {
     if (beam.sample >= ranges.size() || std::isnan(ranges[beam.sample])) continue;
     const double range = std::max(ranges[beam.sample], 0.0);
 

@@ -36,12 +36,13 @@ class ClearanceEstimator {
   struct View {
     glm::dvec2 p_MS;
     double range_max;
-    std::vector<Beam> beams;
+    std::uint32_t first, end;  ///< its beams
   };
   struct Sum;
   void add(const View& view, std::span<const double> ranges, Sum& sum) const;
 
   std::vector<View> views_;  ///< one per laser
+  std::vector<Beam> beams_;  ///< of all lasers
   double front_ = 0.0;       ///< [m] from the origin to the body's front
   double half_width_ = 0.0;  ///< [m] half the width of the lane that the body needs
   double range_ = 0.0;

@@ -65,6 +65,7 @@ struct Farm::State {
   std::vector<std::uint8_t> gone;             ///< per mover
   std::vector<base::StateQuality> qualities;  ///< per mover; empty: none was set
   std::vector<base::ReadingBlock> blocks;
+  SensorPipeline* lender = nullptr;   ///< `blocks` are its vector of readings, and it has theirs
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
   FarmStats stats;
   std::uint64_t hash = 0;
@@ -107,7 +108,8 @@ struct Farm::State {
   void prepare();
   void submit();
   void collect(SensorPipeline& pipeline, std::int64_t now, bool reuse);
-  void append(const SensorPipeline& pipeline);
+  void clear_blocks();
+  void append(SensorPipeline& pipeline);
   /// @param reuse whether cached readings may be used
   void measure(std::int64_t now, bool reuse);
   void subscribe(std::uint32_t mover, std::uint32_t types);
@@ -187,7 +189,7 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
   batch.wait();
   watch.lap(stats.device_s);
   collect_all(true);
-  for (const SensorPipeline& pipeline : pipelines)
+  for (SensorPipeline& pipeline : pipelines)
     if (!pipeline.derived()) append(pipeline);
   watch.lap(stats.collect_s);
   if (exchange != nullptr) exchange->exchange(blocks);
@@ -203,11 +205,23 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
 }
 
 void Farm::State::collect(SensorPipeline& pipeline, std::int64_t now, bool reuse) {
-  stats.reused += pipeline.collect(now, states);
+  stats.reused += pipeline.collect(now, states, thread_pool);
   if (reuse) pipeline.store();
 }
 
-void Farm::State::append(const SensorPipeline& pipeline) {
+void Farm::State::clear_blocks() {
+  if (lender != nullptr) blocks.swap(lender->blocks);
+  lender = nullptr;
+  blocks.clear();
+}
+
+/// Copies a type's readings behind those of the types before it. Those of the first are swapped, not copied.
+void Farm::State::append(SensorPipeline& pipeline) {
+  if (blocks.empty() && exchange == nullptr) {
+    blocks.swap(pipeline.blocks);
+    lender = &pipeline;
+    return;
+  }
   blocks.insert(blocks.end(), pipeline.blocks.begin(), pipeline.blocks.end());
 }
 
@@ -249,7 +263,7 @@ std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
     pipeline.cache.invalidate(pose_changes, states);
     pipeline.backend->accumulate(now, between);
   }
-  blocks.clear();
+  clear_blocks();
   if (find_due(now) || exchange != nullptr) measure(now, reuse_unchanged);
   if (!qualities.empty())
     for (base::ReadingBlock& block : blocks) block.state = qualities[block.mover];
@@ -326,7 +340,7 @@ std::int64_t Farm::next_due() const {
 
 base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, const base::Pose& X_WM) {
   State& s = *s_;
-  s.blocks.clear();
+  s.clear_blocks();
   for (SensorPipeline& pipeline : s.pipelines) {
     pipeline.due.clear();
     const auto& rows = pipeline.group->rows;

@@ -7,8 +7,9 @@
 namespace sf::farm {
 
 SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& g)
-    : group(&g), backend(g.type->make(context)), cache(g.rows, context.noise), started(g.rows.size(), 0) {
-  for (const sensors::SensorSpec& row : g.rows) next.push_back(due_time(0, row.rate, row.phase));
+    : group(&g), backend(g.type->make(context)), cache(g.rows, context.noise) {
+  for (const sensors::SensorSpec& row : g.rows)
+    timings.push_back({row.rate, row.phase, 0, due_time(0, row.rate, row.phase), row.mover});
   due.reserve(g.rows.size());
   to_measure.reserve(g.rows.size());
   blocks.reserve(g.rows.size());
@@ -22,21 +23,21 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::ui
   double rate = -1.0, phase = 0.0;
   std::uint64_t ready = 0, counted = 0;
   std::int64_t then = 0;
-  for (std::uint32_t i = 0; i < started.size(); ++i) {
-    if (now < next[i] - 1) continue;
-    const sensors::SensorSpec& row = group->rows[i];
+  for (std::uint32_t i = 0; i < timings.size(); ++i) {
+    Timing& row = timings[i];
+    if (now < row.next - 1) continue;
     if (row.rate != rate || row.phase != phase) {
       rate = row.rate, phase = row.phase;
       ready = readings_started(now, rate, phase);
       counted = ~std::uint64_t{0};
     }
-    const std::uint64_t should = std::max(ready, started[i] + (now >= next[i]));
-    if (should <= started[i]) continue;
-    const std::uint64_t skipped = should - started[i] - 1;
-    started[i] = should;
+    const std::uint64_t should = std::max(ready, row.started + (now >= row.next));
+    if (should <= row.started) continue;
+    const std::uint64_t skipped = should - row.started - 1;
+    row.started = should;
     if (should != counted) then = due_time(should, rate, phase);
     counted = should;
-    next[i] = then;
+    row.next = then;
     // Sequence numbers follow due times: a reading without subscription leaves a gap, and its random numbers stay
     // unused.
     if ((subscribed[row.mover] & type) == 0) continue;
@@ -49,8 +50,8 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::ui
 std::int64_t SensorPipeline::next_due(std::span<const std::uint32_t> subscribed) const {
   const std::uint32_t type = 1u << group->type->id;
   std::int64_t soonest = kNever;
-  for (std::size_t i = 0; i < next.size(); ++i)
-    if (next[i] < soonest && (subscribed[group->rows[i].mover] & type) != 0) soonest = next[i];
+  for (const Timing& row : timings)
+    if (row.next < soonest && (subscribed[row.mover] & type) != 0) soonest = row.next;
   return soonest;
 }
 
@@ -75,23 +76,25 @@ void SensorPipeline::add_copies(gpu::Batch& batch) {
   uploaded = idle;
 }
 
-std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Report> states) {
-  blocks.clear();
-  backend->collect(blocks);
+std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Report> states,
+                                    base::ThreadPool& thread_pool) {
+  blocks.resize(due.size());
+  backend->collect(std::span(blocks).first(to_measure.size()));
   // Reused readings are inserted among the measured ones, from the last one backwards.
   const std::size_t again = due.size() - to_measure.size();
-  blocks.resize(due.size());
   std::size_t fresh = to_measure.size();
-  for (std::size_t i = due.size(); again > 0 && i-- > 0;) {
+  for (std::size_t i = due.size(); i-- > fresh;) {
     const bool measured = fresh > 0 && to_measure[fresh - 1].row == due[i].row;
     blocks[i] = measured ? blocks[--fresh] : cache.reading(due[i].row);
   }
-  for (std::size_t i = 0; i < due.size(); ++i) {
-    base::ReadingBlock& block = blocks[i];
-    block.time = now;
-    block.sequence = static_cast<std::uint32_t>(due[i].sequence);
-    block.X_WM = states[block.mover].X_WM;
-  }
+  thread_pool.parallel_for(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) {
+      base::ReadingBlock& block = blocks[i];
+      block.time = now;
+      block.sequence = static_cast<std::uint32_t>(due[i].sequence);
+      block.X_WM = states[block.mover].X_WM;
+    }
+  });
   return again;
 }
 

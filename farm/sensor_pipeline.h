@@ -17,8 +17,14 @@ struct SensorPipeline {
   const sensors::SensorSet::Group* group = nullptr;
   std::unique_ptr<sensors::SensorBackend> backend;
   ReadingCache cache;
-  std::vector<std::uint64_t> started;  ///< per row: readings started
-  std::vector<std::int64_t> next;      ///< [ns] per row: due time of the next one
+  /// The due times of one sensor.
+  struct Timing {
+    double rate, phase;     ///< [Hz], [s]
+    std::uint64_t started;  ///< readings
+    std::int64_t next;      ///< [ns] due time of the next one
+    std::uint32_t mover;
+  };
+  std::vector<Timing> timings;  ///< per row
   std::vector<sensors::DueSample> due;
   std::vector<sensors::DueSample> to_measure;  ///< due sensors without a reusable reading
   std::vector<base::ReadingBlock> blocks;      ///< readings of all due sensors, in order
@@ -52,7 +58,7 @@ struct SensorPipeline {
   bool needs_device() const { return !to_measure.empty() && backend->on_device(); }
   void add_copies(gpu::Batch& batch);
   /// Fills `blocks`. @return number of reused readings
-  std::size_t collect(std::int64_t now, std::span<const base::Report> states);
+  std::size_t collect(std::int64_t now, std::span<const base::Report> states, base::ThreadPool& thread_pool);
   /// Offers the measured readings of `blocks` to the cache.
   void store();
 };

@@ -38,14 +38,14 @@ bool HostBackend::prepare(std::span<const DueSample> due) {
   return !std::exchange(recorded_, true);
 }
 
-void HostBackend::collect(std::vector<base::ReadingBlock>& out) {
+void HostBackend::collect(std::span<base::ReadingBlock> out) {
   thread_pool_.parallel_for(samples_.size(), kPiece, [this](std::size_t first, std::size_t last, unsigned) {
     measure(std::span<const HostSample>(samples_).subspan(first, last - first));
   });
-  for (const HostSample& sample : samples_) {
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const HostSample& sample = samples_[i];
     const SensorSpec& row = rows_[sample.row];
-    out.push_back(
-        {.mover = row.mover, .sensor = row.sensor, .type = type_, .X_WS = sample.X_WS, .values = sample.values});
+    out[i] = {.mover = row.mover, .sensor = row.sensor, .type = type_, .X_WS = sample.X_WS, .values = sample.values};
   }
 }
 

@@ -24,7 +24,7 @@ class HostBackend : public SensorBackend {
   bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch&) override {}
   void add_copies(gpu::Batch&) override {}
-  void collect(std::vector<base::ReadingBlock>& out) override;
+  void collect(std::span<base::ReadingBlock> out) override;
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return false; }
 

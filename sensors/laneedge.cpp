@@ -45,7 +45,7 @@ class LaneEdges : public SensorBackend {
   void record_measure(gpu::Batch& batch) override;
   void record_derive(gpu::Batch& batch) override { fit_.record(batch); }
   void add_copies(gpu::Batch& batch) override;
-  void collect(std::vector<base::ReadingBlock>& out) override;
+  void collect(std::span<base::ReadingBlock> out) override;
   SensorStats stats() const override { return caster_.stats(); }
 
  private:
@@ -136,7 +136,7 @@ void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   if (why != base::QualityFlag::none) block.quality = {&kReasons[static_cast<std::size_t>(why)], 1};
 }
 
-void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
+void LaneEdges::collect(std::span<base::ReadingBlock> out) {
   if (casting_) caster_.count();
   for (std::size_t i = 0; i < due_.size(); ++i) {
     const LaneEdge& edge = edges_[due_[i].row];
@@ -144,11 +144,11 @@ void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
     block.mover = edge.row.mover;
     block.sensor = edge.row.sensor;
     block.type = kLaneEdge;
-    block.X_WS = caster_.results(i).X_WS;
+    block.X_WS = caster_.X_WS(i);
     block.values = fit_.values(i);
     block.mode = edge.row.mode;
     state(i, block);
-    out.push_back(block);
+    out[i] = block;
   }
 }
 

@@ -12,12 +12,19 @@ namespace sf::sensors {
 
 namespace {
 
-/// State of one laser.
+/// A laser's place in the tables, and what its readings need: small, since a fleet may have very many.
 struct Row {
-  CastLaser cast;
-  bool reworked = false;    ///< results are post-processed on the host
-  std::size_t samples = 0;  ///< index of its first sample among all
-  bool grazing = false;     ///< some beam of its last scan grazes
+  std::span<const double> values;  ///< [m] of its readings
+  std::span<const std::uint32_t> hits;
+  std::span<const std::uint32_t> beam_flags;  ///< of its lanes
+  std::size_t first_sample;                   ///< among those of all lasers
+  double range_max;                           ///< [m]
+  std::uint32_t mover, sensor;
+  std::uint8_t mode;
+  bool single;
+  bool reworked;         ///< results are post-processed on the host
+  bool interpolated;     ///< some samples are not cast
+  bool grazing = false;  ///< some beam of its last scan grazes
 };
 
 /// The lasers of a world and their scanners, by mover and in file order.
@@ -49,13 +56,15 @@ class Lasers : public SensorBackend {
   }
   void record_measure(gpu::Batch& batch) override { caster_.record(batch); }
   void add_copies(gpu::Batch& batch) override { caster_.add_copies(batch, true); }
-  void collect(std::vector<base::ReadingBlock>& out) override;
+  void collect(std::span<base::ReadingBlock> out) override;
   SensorStats stats() const override { return caster_.stats(); }
   bool on_device() const override { return caster_.on_device(); }
 
  private:
   Lasers(const SensorContext& context, LaserTables tables);
 
+  Row make_row(std::uint32_t i, std::size_t first_sample) const;
+  void find_results(std::uint32_t i);
   void shape(std::size_t i);
   void mark(std::size_t i);
   base::ReadingBlock block_of(std::size_t i);
@@ -65,6 +74,7 @@ class Lasers : public SensorBackend {
   bool noise_;
   double longest_;  ///< [m] longest surface
   raycast::RayCaster caster_;
+  std::vector<CastLaser> lasers_;
   std::vector<Row> rows_;  ///< per laser
   std::vector<DueSample> due_;
   std::vector<double> values_;              ///< [m] of all lasers' samples, when any is reworked
@@ -77,88 +87,100 @@ Lasers::Lasers(const SensorContext& context, LaserTables tables)
       seed_(context.seed),
       noise_(context.noise),
       longest_(reaches_of(context.world).longest),
-      caster_(context, context.world, std::move(tables.scanners)) {
+      caster_(context, context.world, std::move(tables.scanners)),
+      lasers_(std::move(tables.lasers)) {
   std::size_t samples = 0;
-  bool any = false;
-  for (CastLaser& cast : tables.lasers) {
-    Row& row = rows_.emplace_back(Row{std::move(cast), false, samples});
-    const LaserSettings& laser = row.cast.laser;
-    const auto i = static_cast<std::uint32_t>(rows_.size() - 1);
-    row.reworked = laser.resolution > 1 || !caster_.plan(i).packed || (noise_ && laser.noise.has_range());
-    samples += laser.samples;
-    any = any || row.reworked;
+  for (std::uint32_t i = 0; i < lasers_.size(); ++i) {
+    rows_.push_back(make_row(i, samples));
+    samples += lasers_[i].laser.samples;
   }
+  const bool any = std::any_of(rows_.begin(), rows_.end(), [](const Row& row) { return row.reworked; });
   values_.resize(any ? samples : 0);
   met_.resize(any ? samples : 0);
   quality_.assign(samples, base::QualityFlag::not_cast);
-  for (std::uint32_t i = 0; i < rows_.size(); ++i)
+  for (std::uint32_t i = 0; i < rows_.size(); ++i) {
+    find_results(i);
     for (const std::uint32_t sample : caster_.plan(i).samples)
-      quality_[rows_[i].samples + sample] = base::QualityFlag::none;
+      quality_[rows_[i].first_sample + sample] = base::QualityFlag::none;
+  }
+}
+
+Row Lasers::make_row(std::uint32_t i, std::size_t first_sample) const {
+  const LaserSettings& laser = lasers_[i].laser;
+  const raycast::Scanner& scanner = caster_.scanners()[i];
+  const bool interpolated = laser.resolution > 1;
+  return {.first_sample = first_sample,
+          .range_max = laser.range_max,
+          .mover = scanner.mover,
+          .sensor = scanner.sensor,
+          .mode = lasers_[i].mode,
+          .single = lasers_[i].single,
+          .reworked = interpolated || !caster_.plan(i).packed || (noise_ && laser.noise.has_range()),
+          .interpolated = interpolated};
+}
+
+void Lasers::find_results(std::uint32_t i) {
+  Row& row = rows_[i];
+  const std::size_t lane = caster_.lane(i), samples = lasers_[i].laser.samples;
+  const std::size_t first = row.reworked ? row.first_sample : SF_BEAMS_PER_LANE * lane;
+  const std::span<const double> ranges = row.reworked ? std::span(values_) : caster_.ranges().host<double>();
+  const std::span<const std::uint32_t> hits = row.reworked ? std::span(met_) : caster_.hits().host<std::uint32_t>();
+  row.values = ranges.subspan(first, samples);
+  row.hits = hits.subspan(first, samples);
+  row.beam_flags = caster_.beam_flags().host<std::uint32_t>().subspan(lane, caster_.plan(i).lanes());
 }
 
 void Lasers::shape(std::size_t i) {
   const DueSample& due = due_[i];
   const Row& row = rows_[due.row];
-  const raycast::Scanner& fan = caster_.scanners()[due.row];
-  const raycast::ScanResult results = caster_.results(i);
-  const raycast::BeamPlan& plan = *results.plan;
-  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
-  const double* const cast = caster_.ranges().host<double>().data() + first;
-  const std::uint32_t* const cast_hits = caster_.hits().host<std::uint32_t>().data() + first;
-  double* const out = values_.data() + row.samples;
-  std::uint32_t* const out_hits = met_.data() + row.samples;
-  finish_scan(row.cast, plan, {seed_, base::RandomStream::range_noise, fan.mover, fan.sensor, due.sequence}, noise_,
-              {cast, cast_hits}, {out, fan.scan.samples}, {out_hits, fan.scan.samples});
+  const CastLaser& cast = lasers_[due.row];
+  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{caster_.lane(due.row)};
+  const double* const ranges = caster_.ranges().host<double>().data() + first;
+  const std::uint32_t* const hits = caster_.hits().host<std::uint32_t>().data() + first;
+  finish_scan(cast, caster_.plan(due.row),
+              {seed_, base::RandomStream::range_noise, row.mover, row.sensor, due.sequence}, noise_, {ranges, hits},
+              {values_.data() + row.first_sample, cast.laser.samples},
+              {met_.data() + row.first_sample, cast.laser.samples});
 }
 
 /// Sets the quality flags of a scan. Flags of samples that are never cast were set at construction; grazing changes.
 void Lasers::mark(std::size_t i) {
   Row& row = rows_[due_[i].row];
-  const raycast::ScanResult results = caster_.results(i);
-  const raycast::BeamPlan& plan = *results.plan;
-  const auto beam_flags = caster_.beam_flags().host<std::uint32_t>().subspan(results.lane, plan.lanes());
   const bool grazing =
-      std::any_of(beam_flags.begin(), beam_flags.end(), [](std::uint32_t v) { return v % SF_UNCERTAIN != 0; });
+      std::any_of(row.beam_flags.begin(), row.beam_flags.end(), [](std::uint32_t v) { return v % SF_UNCERTAIN != 0; });
   if (!grazing && !row.grazing) return;
   row.grazing = grazing;
+  const raycast::BeamPlan& plan = caster_.plan(due_[i].row);
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {
     const std::size_t place = plan.place(k);
-    const bool grazes = (beam_flags[place / SF_BEAMS_PER_LANE] >> (place % SF_BEAMS_PER_LANE) & SF_GRAZING) != 0;
-    quality_[row.samples + plan.samples[k]] = grazes ? base::QualityFlag::grazing : base::QualityFlag::none;
+    const bool grazes = (row.beam_flags[place / SF_BEAMS_PER_LANE] >> (place % SF_BEAMS_PER_LANE) & SF_GRAZING) != 0;
+    quality_[row.first_sample + plan.samples[k]] = grazes ? base::QualityFlag::grazing : base::QualityFlag::none;
   }
 }
 
 base::ReadingBlock Lasers::block_of(std::size_t i) {
   const Row& row = rows_[due_[i].row];
-  const raycast::Scanner& fan = caster_.scanners()[due_[i].row];
-  const raycast::ScanResult results = caster_.results(i);
-  const std::size_t samples = fan.scan.samples;
-  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
   base::ReadingBlock block;
-  block.mover = fan.mover;
-  block.sensor = fan.sensor;
+  block.mover = row.mover;
+  block.sensor = row.sensor;
   block.type = kLaser;
-  block.X_WS = results.X_WS;
-  block.values = row.reworked ? std::span<const double>(values_).subspan(row.samples, samples)
-                              : caster_.ranges().host<double>().subspan(first, samples);
-  block.hits = row.reworked ? std::span<const std::uint32_t>(met_).subspan(row.samples, samples)
-                            : caster_.hits().host<std::uint32_t>().subspan(first, samples);
-  block.mode = row.cast.mode;
-  const double away = std::max(std::abs(results.X_WS.x), std::abs(results.X_WS.y));
-  block.bound = laser_bound(row.cast, longest_, away + fan.scan.range_max);
-  if (row.grazing || row.cast.laser.resolution > 1)
-    block.quality = std::span<const base::QualityFlag>(quality_).subspan(row.samples, samples);
+  block.X_WS = caster_.X_WS(i);
+  block.values = row.values;
+  block.hits = row.hits;
+  block.mode = row.mode;
+  const double away = std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y));
+  block.bound = laser_bound(row.range_max, row.single, longest_, away + row.range_max);
+  if (row.grazing || row.interpolated)
+    block.quality = std::span<const base::QualityFlag>(quality_).subspan(row.first_sample, row.values.size());
   return block;
 }
 
-void Lasers::collect(std::vector<base::ReadingBlock>& out) {
-  const std::size_t before = out.size();
-  out.resize(before + due_.size());
+void Lasers::collect(std::span<base::ReadingBlock> out) {
   thread_pool_.parallel_for(due_.size(), 32, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       if (rows_[due_[i].row].reworked) shape(i);
       mark(i);
-      out[before + i] = block_of(i);
+      out[i] = block_of(i);
     }
   });
   caster_.count();

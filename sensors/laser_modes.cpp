@@ -42,15 +42,14 @@ Reaches reaches_of(const world::World& world) {
   return reaches;
 }
 
-double laser_bound(const CastLaser& cast, double longest, double farthest) {
-  return raycast::exact_bound(cast.laser.range_max, longest, farthest) +
-         (cast.single ? raycast::single_bound(cast.laser.range_max) : 0.0);
+double laser_bound(double range_max, bool single, double longest, double farthest) {
+  return raycast::exact_bound(range_max, longest, farthest) + (single ? raycast::single_bound(range_max) : 0.0);
 }
 
 ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor) {
   const CastLaser cast = cast_laser(world, lasers_of(world.movers[sensor.mover])[sensor.sensor]);
   const Reaches reaches = reaches_of(world);
-  return {laser_bound(cast, reaches.longest, reaches.farthest + cast.laser.range_max),
+  return {laser_bound(cast.laser.range_max, cast.single, reaches.longest, reaches.farthest + cast.laser.range_max),
           "cast beams that do not graze; the others are flagged"};
 }
 

@@ -32,9 +32,9 @@ struct Reaches {
 };
 Reaches reaches_of(const world::World& world);
 
-/// [m] base::ReadingBlock::bound of a laser. @param longest [m] longest surface  @param farthest [m] largest coordinate
-/// of anything in range
-double laser_bound(const CastLaser& laser, double longest, double farthest);
+/// [m] base::ReadingBlock::bound of a laser. @param single CastLaser::single  @param longest [m] longest surface @param
+/// farthest [m] largest coordinate of anything in range
+double laser_bound(double range_max, bool single, double longest, double farthest);
 
 ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor);
 

@@ -78,7 +78,7 @@ class Magnetometers : public SensorBackend {
   void add_copies(gpu::Batch& batch) override {
     for (auto& [mode, wave] : waves_) wave.field.add_copies(batch);
   }
-  void collect(std::vector<base::ReadingBlock>& out) override;
+  void collect(std::span<base::ReadingBlock> out) override;
   SensorStats stats() const override;
 
  private:
@@ -188,7 +188,7 @@ void Magnetometers::read(std::size_t i) {
   }
 }
 
-void Magnetometers::collect(std::vector<base::ReadingBlock>& out) {
+void Magnetometers::collect(std::span<base::ReadingBlock> out) {
   thread_pool_.parallel_for(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) read(i);
   });
@@ -203,7 +203,7 @@ void Magnetometers::collect(std::vector<base::ReadingBlock>& out) {
         std::span<const double>(values_).subspan(array.values, kMagnetometerColumns * array.settings.X_SE.size());
     block.mode = array.row.mode;
     block.bound = array.bound.at(std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y)) + 1.0);
-    out.push_back(block);
+    out[i] = block;
   }
 }
 

@@ -24,7 +24,7 @@ class Occupancies : public SensorBackend {
   void record_measure(gpu::Batch&) override {}
   void add_copies(gpu::Batch&) override {}
   void observe(std::span<const base::ReadingBlock> readings) override;
-  void collect(std::vector<base::ReadingBlock>& out) override;
+  void collect(std::span<base::ReadingBlock> out) override;
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return false; }  // has a batch of its own
 
@@ -80,11 +80,12 @@ void Occupancies::observe(std::span<const base::ReadingBlock> readings) {
   batch_.update(scans_, wanted_);
 }
 
-void Occupancies::collect(std::vector<base::ReadingBlock>& out) {
-  for (const DueSample& due : due_) {
-    const Occupancy& map = maps_[due.row];
-    const std::span<const std::uint32_t> words = batch_.words(due.row);
-    const std::span<double> values = std::span(values_).subspan(first_[due.row], words.size());
+void Occupancies::collect(std::span<base::ReadingBlock> out) {
+  for (std::size_t i = 0; i < due_.size(); ++i) {
+    const std::uint32_t row = due_[i].row;
+    const Occupancy& map = maps_[row];
+    const std::span<const std::uint32_t> words = batch_.words(row);
+    const std::span<double> values = std::span(values_).subspan(first_[row], words.size());
     std::copy(words.begin(), words.end(), values.begin());
     base::ReadingBlock block;
     block.mover = map.row.mover;
@@ -93,7 +94,7 @@ void Occupancies::collect(std::vector<base::ReadingBlock>& out) {
     block.X_WS = {map.settings.grid.left, map.settings.grid.top, 0.0, 0.0};
     block.values = values;
     block.flags = flags_;
-    out.push_back(block);
+    out[i] = block;
   }
 }
 

@@ -91,7 +91,7 @@ class OwnSensors final : public SensorBackend {
   void add_copies(gpu::Batch& batch) override {
     if (kernel_) kernel_->add_copies(batch);
   }
-  void collect(std::vector<base::ReadingBlock>& out) override;
+  void collect(std::span<base::ReadingBlock> out) override;
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return kernel_ != nullptr; }
 
@@ -147,19 +147,18 @@ void OwnSensors::measure(std::size_t i) {
   }
 }
 
-void OwnSensors::collect(std::vector<base::ReadingBlock>& out) {
+void OwnSensors::collect(std::span<base::ReadingBlock> out) {
   context_.thread_pool.parallel_for(due_.size(), 16, [this](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) measure(i);
   });
   if (!failure_.empty()) throw base::InputError(failure_);
   for (std::size_t i = 0; i < due_.size(); ++i) {
     const SensorSpec& spec = sensors_[due_[i].row].spec;
-    out.push_back(
-        {.mover = spec.mover,
-         .sensor = spec.sensor,
-         .type = type_.entry.id,
-         .X_WS = X_WS_[i],
-         .values = std::span<const double>(values_).subspan(i * stride_, spec.elements * type_.columns.size())});
+    out[i] = {.mover = spec.mover,
+              .sensor = spec.sensor,
+              .type = type_.entry.id,
+              .X_WS = X_WS_[i],
+              .values = std::span<const double>(values_).subspan(i * stride_, spec.elements * type_.columns.size())};
   }
 }
 

@@ -95,9 +95,9 @@ class SensorBackend {
   /// Receives this tick's readings of all types that are not derived, before latency, for sensors that derive theirs
   /// from some of them (SensorType::derived_from). Called before `collect` whenever a sensor is due; may be empty.
   virtual void observe(std::span<const base::ReadingBlock>) {}
-  /// Host work after the batch: appends one block per due sensor, in order. The farm fills in time, sequence and X_WM.
-  /// Spans are valid until the next `prepare`.
-  virtual void collect(std::vector<base::ReadingBlock>& out) = 0;
+  /// Host work after the batch: writes one block per due sensor, in order. The farm fills in time, sequence and X_WM.
+  /// Spans of the blocks are valid until the next `prepare`.
+  virtual void collect(std::span<base::ReadingBlock> out) = 0;
   /// The part of one sensor's state on which its later readings depend and which poses and settings do not give, for a
   /// process that goes on with this sensor; initially none. @param row among the world's sensors of this type
   virtual void write_state(std::uint32_t /*row*/, base::ByteWriter& /*out*/) const {}

@@ -36,7 +36,7 @@ class Rangers : public SensorBackend {
   void record_measure(gpu::Batch& batch) override { cones_.record_measure(batch); }
   void record_derive(gpu::Batch& batch) override { cones_.record_derive(batch); }
   void add_copies(gpu::Batch& batch) override { cones_.add_copies(batch); }
-  void collect(std::vector<base::ReadingBlock>& out) override;
+  void collect(std::span<base::ReadingBlock> out) override;
   void write_state(std::uint32_t row, base::ByteWriter& out) const override;
   void read_state(std::uint32_t row, base::ByteReader& in) override;
   SensorStats stats() const override { return cones_.stats(); }
@@ -134,7 +134,7 @@ void Rangers::read_state(std::uint32_t row, base::ByteReader& in) {
   in.get_into(values_.data() + first_value(row), held_bytes(row));
 }
 
-void Rangers::collect(std::vector<base::ReadingBlock>& out) {
+void Rangers::collect(std::span<base::ReadingBlock> out) {
   thread_pool_.parallel_for(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) write_reading(i);
   });
@@ -148,7 +148,7 @@ void Rangers::collect(std::vector<base::ReadingBlock>& out) {
     block.X_WS = X_WS_[i];
     block.values = std::span<const double>(values_).subspan(type_.columns * std::size_t{first_cones_[due_[i].row]},
                                                             type_.columns * array.X_SC.size());
-    out.push_back(block);
+    out[i] = block;
   }
 }
 

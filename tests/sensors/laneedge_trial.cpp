@@ -91,7 +91,7 @@ const std::vector<base::ReadingBlock>& EdgeRig::tick(const std::vector<sensors::
   }
   s.backend->add_copies(s.batch);
   s.batch.run();
-  s.blocks.clear();
+  s.blocks.resize(due.size());
   s.backend->collect(s.blocks);
   return s.blocks;
 }
