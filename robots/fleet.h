@@ -105,6 +105,7 @@ class Fleet {
   /// A disc without walls round a former place: while a mover's way stays in it, no wall is searched for.
   struct FreeDisc {
     glm::dvec2 centre;
+    double z = 0.0;       ///< [m] of the place: walls of other heights may be there
     double radius = 0.0;  ///< [m]
   };
   /// Buffers of one thread.
