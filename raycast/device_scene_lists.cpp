@@ -89,7 +89,7 @@ void DeviceScene::build_missing_cells() {
       }
       cell.first = pool_begin_ + kChunkTexels * cells_.cache().first_chunk(slot);
       cell_tables_[slot] = cell;
-      cells_.classify_cell(key, slot, s.walls.near);
+      cells_.find_clear_parts(key, slot, s.walls.near);
       const std::uint32_t entries = cell.first + SF_SECTORS;
       const auto chunks = entries + static_cast<std::uint32_t>(s.entries.size());
       for (ListHead& head : s.heads) head.first += chunks, head.base = entries;

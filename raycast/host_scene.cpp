@@ -128,7 +128,7 @@ void HostScene::build_missing_cells() {
       }
       cell.first = cells_.cache().first_chunk(slot);
       lists_[slot] = cell;
-      cells_.classify_cell(key, slot, t.walls.near);
+      cells_.find_clear_parts(key, slot, t.walls.near);
       std::copy_n(t.blocks.begin(), cell.all, blocks_.begin() + static_cast<std::ptrdiff_t>(cell.first));
       std::copy_n(t.bounds.begin(), cell.all, bounds_.begin() + static_cast<std::ptrdiff_t>(cell.first));
     }

@@ -8,14 +8,30 @@
 
 namespace sf::raycast {
 
+namespace {
+
+constexpr int kSide = 8;  ///< parts of a cell along each side
+constexpr std::uint64_t kFirstColumn = 0x0101010101010101u, kAll = ~std::uint64_t{0};
+
+/// All parts in `clear` that are connected with those in `from`.
+std::uint64_t connected(std::uint64_t from, std::uint64_t clear) {
+  for (std::uint64_t all = from & clear;; from = all) {
+    all |= ((all << 1) & ~kFirstColumn) | ((all & ~kFirstColumn) >> 1) | all << kSide | all >> kSide;
+    all &= clear;
+    if (all == from) return all;
+  }
+}
+
+}  // namespace
+
 ViewCells::ViewCells(const ListConfigs& configs, double (*size)(double range, std::uint32_t beams), CellCache cache)
-    : configs_(configs), cache_(std::move(cache)), one_sided_(cache_.slots()) {
+    : configs_(configs), cache_(std::move(cache)), parts_(cache_.slots()) {
   for (std::size_t i = 0; i < configs.size(); ++i) sizes_.push_back(size(configs[i].range, configs[i].beams));
 }
 
 void ViewCells::grow(std::uint32_t slots, std::uint32_t chunks) {
   cache_.grow(slots, chunks);
-  one_sided_.resize(cache_.slots());
+  parts_.resize(cache_.slots());
 }
 
 /// @param last_slot of the same view in the last tick: a robot mostly stays in its cell
@@ -23,10 +39,11 @@ CellKey ViewCells::key_of(const Viewpoint& view, std::uint32_t last_slot) const 
   const double size = sizes_[view.config];
   CellKey key{2 * std::int64_t{view.config}, static_cast<std::int64_t>(std::floor(view.X_WS.x / size)),
               static_cast<std::int64_t>(std::floor(view.X_WS.y / size))};
-  // A cell without a surface lies on one side as a whole: the result for its first viewpoint holds for all.
+  // What no surface divides lies on one side as a whole: the result for one viewpoint holds for all.
+  const std::uint32_t part = part_of(view);
   const auto known = [&] {
     const std::uint32_t slot = cache_.slot_of(key, last_slot);
-    return slot != CellCache::kNone && one_sided_[slot] != 0;
+    return slot != CellCache::kNone && (parts_[slot].known >> part & 1) != 0;
   };
   if (known()) return key;
   key.config |= 1;
@@ -35,15 +52,38 @@ CellKey ViewCells::key_of(const Viewpoint& view, std::uint32_t last_slot) const 
   return key;
 }
 
-void ViewCells::classify_cell(const CellKey& key, std::uint32_t slot, std::span<const std::uint32_t> near) {
-  const glm::dvec2 centre = centre_of(key);
+std::uint32_t ViewCells::part_of(const Viewpoint& view) const {
+  const double size = sizes_[view.config];
+  const auto along = [size](double at) {
+    const double part = kSide * (at / size - std::floor(at / size));
+    return std::min(static_cast<std::uint32_t>(part), kSide - 1u);
+  };
+  return kSide * along(view.X_WS.y) + along(view.X_WS.x);
+}
+
+void ViewCells::find_clear_parts(const CellKey& key, std::uint32_t slot, std::span<const std::uint32_t> near) {
   const WallIndex& wall_index = configs_.wall_index(config_of(key));
-  const double reach = sizes_[config_of(key)] * M_SQRT1_2 * (1.0 + 1e-9) + 1e-9 * (1.0 + length(centre));
-  const bool any = std::any_of(near.begin(), near.end(), [&](std::uint32_t row) {
+  const double size = sizes_[config_of(key)], part = size / kSide;
+  const glm::dvec2 centre = centre_of(key), first = centre - 0.5 * (size - part) * glm::dvec2{1.0, 1.0};
+  const double rounding = 1e-9 * (1.0 + length(centre));
+  const auto touches = [&](const IndexedWall& s, glm::dvec2 middle, double side) {
+    return world::distance(middle, s.a, s.b) <= side * M_SQRT1_2 * (1.0 + 1e-9) + rounding;
+  };
+  std::uint64_t clear = kAll;
+  for (const std::uint32_t row : near) {
     const IndexedWall& s = wall_index.segments()[row];
-    return s.solid_left && world::distance(centre, s.a, s.b) <= reach;
-  });
-  one_sided_[slot] = any ? 0 : 1;
+    if (!s.solid_left || !touches(s, centre, size)) continue;
+    for (int i = 0; i < kSide * kSide; ++i)
+      if (touches(s, first + part * glm::dvec2{i % kSide, i / kSide}, part)) clear &= ~(std::uint64_t{1} << i);
+  }
+  parts_[slot] = {clear, 0};
+}
+
+/// Learns from a viewpoint of the cell that the parts connected with its own lie on the cell's side.
+void ViewCells::learn_side(const Viewpoint& view, Parts& parts) const {
+  if (parts.known == parts.clear) return;
+  const std::uint64_t own = std::uint64_t{1} << part_of(view);
+  if ((own & parts.clear & ~parts.known) != 0) parts.known |= connected(own, parts.clear);
 }
 
 glm::dvec2 ViewCells::centre_of(const CellKey& key) const {
@@ -64,8 +104,14 @@ void ViewCells::find(std::span<const Viewpoint> views, base::ThreadPool& thread_
   });
   cache_.begin_tick();
   missing_.clear();
-  for (std::size_t i = 0; i < keys_.size(); ++i)
-    slots_[i] != CellCache::kNone ? cache_.touch(slots_[i]) : missing_.push_back(keys_[i]);
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    if (slots_[i] == CellCache::kNone) {
+      missing_.push_back(keys_[i]);
+      continue;
+    }
+    cache_.touch(slots_[i]);
+    learn_side(views[i], parts_[slots_[i]]);
+  }
   const auto order = [](const CellKey& p, const CellKey& q) {
     return std::tie(p.config, p.x, p.y) < std::tie(q.config, q.x, q.y);
   };

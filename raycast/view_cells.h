@@ -40,18 +40,25 @@ class ViewCells {
   static std::size_t config_of(const CellKey& key) { return static_cast<std::size_t>(key.config / 2); }
   /// True when viewpoints in the cell lie inside solids.
   static bool in_solid(const CellKey& key) { return key.config % 2 == 1; }
-  /// Records whether a new cell lies on one side of all surfaces. @param near walls round it
-  void classify_cell(const CellKey& key, std::uint32_t slot, std::span<const std::uint32_t> near);
+  /// Finds the parts of a new cell that surfaces touch. @param near walls round it
+  void find_clear_parts(const CellKey& key, std::uint32_t slot, std::span<const std::uint32_t> near);
 
  private:
+  /// Which parts of a cell, eight by eight of them, lie on the side of all surfaces that its key states.
+  struct Parts {
+    std::uint64_t clear = 0;  ///< no surface touches them
+    std::uint64_t known = 0;  ///< of these: they are connected with a viewpoint of the cell
+  };
   CellKey key_of(const Viewpoint& view, std::uint32_t last_slot) const;
+  std::uint32_t part_of(const Viewpoint& view) const;
+  void learn_side(const Viewpoint& view, Parts& parts) const;
 
   const ListConfigs& configs_;
   std::vector<double> sizes_;
   CellCache cache_;
-  std::vector<std::uint8_t> one_sided_;  ///< per slot: no surface crosses the cell
-  std::vector<CellKey> keys_;            ///< of this tick's views
-  std::vector<std::uint32_t> slots_;     ///< likewise; kNone where the cell was missing
+  std::vector<Parts> parts_;          ///< per slot
+  std::vector<CellKey> keys_;         ///< of this tick's views
+  std::vector<std::uint32_t> slots_;  ///< likewise; kNone where the cell was missing
   std::vector<CellKey> missing_;
 };
 

@@ -162,6 +162,34 @@ TEST(HostScene, CellsAreListedOnce) {
   EXPECT_EQ(scene.cells_built(), 2u);
 }
 
+/// Viewpoints inside and outside of solids, in cells that both share, tick by tick.
+TEST(HostScene, EitherSideOfWallsInOneCell) {
+  const world::World world = crowd();
+  base::ThreadPool thread_pool(2);
+  ListConfigs configs(world);
+  const std::uint32_t config = configs.add({0.1, 8.0, 0.0, 2.0 * M_PI});
+  HostScene scene(world, configs, thread_pool);
+  const std::vector<base::Report> states = robots::states_at_load(world);
+  scene.place_movers(states);
+  const ScanPattern pattern = pattern_of(even_bearings(5, M_PI));
+  trial::Chance chance(7);
+  for (int tick = 0; tick < 4; ++tick) {
+    std::vector<Viewpoint> views;
+    for (int i = 0; i < 400; ++i) {
+      const glm::dvec2 p = chance.in_square(2.0);
+      views.push_back({config, 0, {p.x, p.y, 0.1, 0.0}, {1.0, 0.0}});
+    }
+    scene.prepare(views);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      Scan given{std::vector<double>(5), std::vector<std::uint32_t>(5)};
+      std::vector<std::uint8_t> grazes(5);
+      scene.scan(i, {.heading = {1.0, 0.0}, .min_sine = 1e-3}, pattern, 0,
+                 {given.ranges.data(), given.models.data(), grazes.data()});
+      EXPECT_EQ(given, intersect_everything(world, views[i].X_WS, 0, pattern, 8.0)) << tick << " " << i;
+    }
+  }
+}
+
 /// A robot drives rounds through more cells than the cache has at first.
 TEST(HostScene, CellsThatRobotsReturnToAreKept) {
   const world::World world = scenes::boxes(400, 40.0, 2);
