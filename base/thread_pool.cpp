@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/error.h"
+
 namespace sf::base {
 
 namespace {
@@ -19,8 +21,28 @@ void pause() {
 #endif
 }
 
+/// Pieces of a loop that one thread takes first, from the front; when its own are done, others take them from the back.
+class alignas(64) Share {
+ public:
+  void assign(std::uint32_t first, std::uint32_t end) { ends_ = std::uint64_t{end} << 32 | first; }
+  /// @return false when none is left
+  bool take(bool from_front, std::size_t& piece) {
+    for (std::uint64_t ends = ends_;;) {
+      const auto first = static_cast<std::uint32_t>(ends), end = static_cast<std::uint32_t>(ends >> 32);
+      if (first >= end) return false;
+      piece = from_front ? first : end - 1;
+      if (ends_.compare_exchange_weak(ends, from_front ? ends + 1 : ends - (std::uint64_t{1} << 32))) return true;
+    }
+  }
+
+ private:
+  std::atomic<std::uint64_t> ends_{0};  ///< first piece, and in the upper half the one behind the last
+};
+
 }  // namespace
 
+// Every loop has the same shares: what a loop over robots wrote is still in the caches of the core that reads it in the
+// next one.
 struct ThreadPool::State {
   std::mutex lock;
   std::condition_variable wake;
@@ -29,18 +51,24 @@ struct ThreadPool::State {
   Job job{};
   std::size_t count = 0;
   std::size_t piece = 1;
-  std::atomic<std::size_t> next{0};
+  std::vector<Share> shares;  ///< per thread
   std::atomic<unsigned> round{0};
   unsigned busy = 0;  ///< threads that work on the job, without the caller
   bool open = false;  ///< true: a thread that wakes may still join the job
   bool stop = false;
 
   void work(unsigned thread) {
-    for (;;) {
-      const std::size_t first = next.fetch_add(piece);
-      if (first >= count) return;
-      job.call(job.body, first, std::min(first + piece, count), thread);
-    }
+    for (std::size_t k = 0, at = 0; k < shares.size(); ++k)
+      while (shares[(thread + k) % shares.size()].take(k == 0, at))
+        job.call(job.body, at * piece, std::min((at + 1) * piece, count), thread);
+  }
+
+  /// The shares of a loop differ by one piece at most.
+  void divide() {
+    const std::size_t pieces = (count + piece - 1) / piece, n = shares.size();
+    SF_CHECK(pieces <= 0xFFFFFFFFu, std::to_string(pieces) + " pieces");
+    for (std::size_t i = 0; i < n; ++i)
+      shares[i].assign(static_cast<std::uint32_t>(i * pieces / n), static_cast<std::uint32_t>((i + 1) * pieces / n));
   }
 
   /// Spins before it sleeps: the next job of a tick usually follows sooner than a sleeping thread wakes.
@@ -68,6 +96,7 @@ struct ThreadPool::State {
 
 ThreadPool::ThreadPool(unsigned threads) : state_(std::make_unique<State>()) {
   const unsigned wanted = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
+  state_->shares = std::vector<Share>(wanted);
   for (unsigned i = 1; i < wanted; ++i) state_->threads.emplace_back([this, i] { state_->serve(i); });
 }
 
@@ -93,7 +122,7 @@ void ThreadPool::run_job(std::size_t count, std::size_t piece, Job job) {
     s.job = job;
     s.count = count;
     s.piece = std::max<std::size_t>(1, piece);
-    s.next = 0;
+    s.divide();
     s.open = true;
     ++s.round;
   }
