@@ -53,8 +53,8 @@ struct ThreadPool::State {
   std::size_t piece = 1;
   std::vector<Share> shares;  ///< per thread
   std::atomic<unsigned> round{0};
-  unsigned busy = 0;  ///< threads that work on the job, without the caller
-  bool open = false;  ///< true: a thread that wakes may still join the job
+  std::atomic<unsigned> busy{0};  ///< threads that work on the job, without the caller
+  bool open = false;              ///< true: a thread that wakes may still join the job
   bool stop = false;
 
   void work(unsigned thread) {
@@ -71,15 +71,16 @@ struct ThreadPool::State {
       shares[i].assign(static_cast<std::uint32_t>(i * pieces / n), static_cast<std::uint32_t>((i + 1) * pieces / n));
   }
 
-  /// Spins before it sleeps: the next job of a tick usually follows sooner than a sleeping thread wakes.
-  void wait_awake(unsigned seen) const {
-    for (int turn = 0; turn < kTurnsAwake && round.load(std::memory_order_relaxed) == seen; ++turn) pause();
+  /// Spins before a thread sleeps: the next job of a tick, and the end of a job, mostly come sooner than it would wake.
+  template <class Condition>
+  static void spin_until(Condition condition) {
+    for (int turn = 0; turn < kTurnsAwake && !condition(); ++turn) pause();
   }
 
   void serve(unsigned thread) {
     unsigned seen = 0;
     for (;;) {
-      wait_awake(seen);
+      spin_until([&] { return round != seen; });
       {
         std::unique_lock guard(lock);
         wake.wait(guard, [&] { return stop || (open && round != seen); });
@@ -129,8 +130,12 @@ void ThreadPool::run_job(std::size_t count, std::size_t piece, Job job) {
   s.wake.notify_all();
   s.work(0);
   // All pieces are taken. Threads that have not woken yet are not waited for.
+  {
+    const std::scoped_lock guard(s.lock);
+    s.open = false;
+  }
+  s.spin_until([&] { return s.busy == 0; });
   std::unique_lock guard(s.lock);
-  s.open = false;
   s.done.wait(guard, [&] { return s.busy == 0; });
 }
 

@@ -45,7 +45,6 @@ bool RayCaster::prepare(std::span<const DueSample> due, bool cast) {
   t.views.resize(due.size());
   t.thread_pool.parallel_for(
       due.size(), 256, [&t](std::size_t first, std::size_t last, unsigned) { t.compute_viewpoints(first, last); });
-  for (const DueSample& d : due) t.rays += t.scanner_rows[d.row].plan.samples.size();
   const bool replaced = t.scene && t.prepare();
   t.write_lanes();
   if (t.scene && t.any_angle_noise)

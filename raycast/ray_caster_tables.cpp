@@ -202,21 +202,24 @@ void RayCaster::Tables::make_pattern(std::size_t i, std::span<const double> angl
                  bearing_of(scan, samples.front()), bearing_of(scan, samples.back()), row.plan.place(1));
 }
 
-/// Poses of the due scanners [first, last): as base::compose, with one sine and cosine per mover.
+/// Poses of the due scanners [first, last): as base::compose, with one sine and cosine per mover. Counts their beams.
 void RayCaster::Tables::compute_viewpoints(std::size_t first, std::size_t last) {
   std::uint32_t mover = kNotShared;
+  std::uint64_t beams = 0;
   glm::dvec2 turn;
   for (std::size_t i = first; i < last; ++i) {
     const ScannerRow& row = scanner_rows[due[i].row];
     const Pose &X = states[row.mover].X_WM, &X_MS = row.mount;
     if (row.mover != mover) turn = {std::cos(X.yaw), std::sin(X.yaw)};
     mover = row.mover;
+    beams += row.plan.samples.size();
     const double yaw = X.yaw + X_MS.yaw;
     views[i] = {row.config,
                 mover,
                 {X.x + (turn.x * X_MS.x - turn.y * X_MS.y), X.y + (turn.y * X_MS.x + turn.x * X_MS.y), X_MS.z, yaw},
                 yaw == X.yaw ? turn : glm::dvec2{std::cos(yaw), std::sin(yaw)}};
   }
+  rays += beams;
 }
 
 /// Builds the device's lists and rows of all due scanners. @return true when tables were replaced

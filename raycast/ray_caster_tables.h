@@ -1,6 +1,7 @@
 #pragma once
 // Tables that the sources of raycast::RayCaster share: one row per scanner, and the device's buffers.
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -83,7 +84,7 @@ struct RayCaster::Tables {
   std::uint32_t out_lanes = 0;
   std::uint32_t spare_lanes = 0;  ///< behind all results: device output of host scans
   std::uint64_t host_scans = 0;
-  std::uint64_t rays = 0;
+  std::atomic<std::uint64_t> rays{0};
   std::uint64_t uncertain_beams = 0;
   bool bound = false;
   bool beams_changed = true;
