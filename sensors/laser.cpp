@@ -67,7 +67,7 @@ class Lasers : public SensorBackend {
   void find_results(std::uint32_t i);
   void shape(std::size_t i);
   void mark(std::size_t i);
-  base::ReadingBlock block_of(std::size_t i);
+  void write(std::size_t i, base::ReadingBlock& block) const;
 
   base::ThreadPool& thread_pool_;
   std::uint64_t seed_;
@@ -158,21 +158,22 @@ void Lasers::mark(std::size_t i) {
   }
 }
 
-base::ReadingBlock Lasers::block_of(std::size_t i) {
+/// Writes every field that the farm does not fill in, where it stays: a copy of 232 bytes would double the time.
+void Lasers::write(std::size_t i, base::ReadingBlock& block) const {
   const Row& row = rows_[due_[i].row];
-  base::ReadingBlock block;
   block.mover = row.mover;
   block.sensor = row.sensor;
   block.type = kLaser;
   block.X_WS = caster_.X_WS(i);
   block.values = row.values;
   block.hits = row.hits;
+  block.flags = 0;
   block.mode = row.mode;
   const double away = std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y));
   block.bound = laser_bound(row.range_max, row.single, longest_, away + row.range_max);
-  if (row.grazing || row.interpolated)
-    block.quality = std::span<const base::QualityFlag>(quality_).subspan(row.first_sample, row.values.size());
-  return block;
+  block.quality = {};
+  if (row.grazing || row.interpolated) block.quality = std::span(quality_).subspan(row.first_sample, row.values.size());
+  block.state = {};
 }
 
 void Lasers::collect(std::span<base::ReadingBlock> out) {
@@ -180,7 +181,7 @@ void Lasers::collect(std::span<base::ReadingBlock> out) {
     for (std::size_t i = first; i < last; ++i) {
       if (rows_[due_[i].row].reworked) shape(i);
       mark(i);
-      out[i] = block_of(i);
+      write(i, out[i]);
     }
   });
   caster_.count();
