@@ -78,6 +78,7 @@ RayCaster::Tables::Tables(const SensorContext& context, const world::World& worl
   for (const ScannerRow& row : scanner_rows)
     if (!row.angle_noise && row.pattern == patterns.size())
       make_pattern(static_cast<std::size_t>(&row - scanner_rows.data()), {}, scratch[0], patterns.emplace_back());
+  shared_of.assign(scanners.size(), kNotShared);
   if (!scene) find_shared_views();
 }
 
@@ -249,7 +250,7 @@ void RayCaster::Tables::find_shared_views() {
       continue;
     if (shared_views.add(first, std::span(scanners).subspan(first, own.size()),
                          std::span(plans).subspan(first, own.size())))
-      scanner_rows[first].shared = static_cast<std::uint32_t>(shared_views.views().size() - 1);
+      shared_of[first] = static_cast<std::uint32_t>(shared_views.views().size() - 1);
   }
 }
 
@@ -271,7 +272,7 @@ void RayCaster::Tables::list_scans() {
   host_views.clear();
   for (std::size_t k = 0, together = 1; k < host_due.size(); k += together) {
     const std::uint32_t i = host_due[k];
-    std::uint32_t shared = scanner_rows[due[i].row].shared;
+    std::uint32_t shared = shared_of[due[i].row];
     together = shared == kNotShared ? 1 : shared_views.views()[shared].scanners;
     const std::size_t last = k + together - 1;
     if (last >= host_due.size() || due[host_due[last]].row - due[i].row != together - 1)

@@ -32,10 +32,9 @@ struct ScannerRow {
   std::uint32_t config = 0;
   std::uint32_t beams = 0;  ///< first lane of its beam tables
   std::uint32_t pattern = 0;
-  std::uint32_t out = 0;              ///< first lane of its results
-  std::uint32_t shared = kNotShared;  ///< the shared view that begins with it
-  bool angle_noise = false;           ///< has angular noise: its beam tables are its own and change
-  bool single = false;                ///< as Scanner::single
+  std::uint32_t out = 0;     ///< first lane of its results
+  bool angle_noise = false;  ///< has angular noise: its beam tables are its own and change
+  bool single = false;       ///< as Scanner::single
   BeamPlan plan;
 };
 
@@ -77,10 +76,11 @@ struct RayCaster::Tables {
       x.resize(beams + 2 * kBlock), y.resize(beams + 2 * kBlock);
     }
   };
-  std::vector<Scratch> scratch;         ///< per thread
-  std::vector<std::uint32_t> host_due;  ///< due scanners of host scans
-  SharedViews shared_views;             ///< used only where the device casts nothing
-  std::vector<HostScan> scans;          ///< of this tick
+  std::vector<Scratch> scratch;          ///< per thread
+  std::vector<std::uint32_t> host_due;   ///< due scanners of host scans
+  SharedViews shared_views;              ///< used only where the device casts nothing
+  std::vector<std::uint32_t> shared_of;  ///< per scanner: the shared view that begins with it, or kNotShared
+  std::vector<HostScan> scans;           ///< of this tick
   std::uint32_t out_lanes = 0;
   std::uint32_t spare_lanes = 0;  ///< behind all results: device output of host scans
   std::uint64_t host_scans = 0;
