@@ -60,6 +60,17 @@ TEST(Device, NamesWhatItHolds) {
   EXPECT_TRUE(device.allocations().empty());
 }
 
+/// The driver's limit counts bytes, not texels: 5 texels of 16 bytes.
+TEST(Buffer, FitsAStorageBufferByItsBytes) {
+  Device device;
+  const Buffer table(device, "table", Role::upload, Texel::u32x4, 5);
+  std::uint32_t& limit = device.vk().properties.limits.maxStorageBufferRange;
+  limit = 80;
+  EXPECT_TRUE(table.fits_storage_buffer());
+  limit = 79;
+  EXPECT_FALSE(table.fits_storage_buffer());
+}
+
 /// A table above the device's limit is refused with the limit and a remedy.
 TEST(Buffer, MoreThanTheDeviceHoldsIsRefused) {
   Device device;
