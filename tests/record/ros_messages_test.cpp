@@ -60,6 +60,9 @@ TEST(Messages, AScanComesBack) {
   EXPECT_EQ(scan->time, 12'000'000'034);
   EXPECT_EQ(scan->frame, "r/l");
   EXPECT_EQ(scan->fov, 2.0F);
+  EXPECT_EQ(scan->scan_time, 0.1F);
+  EXPECT_EQ(scan->range_min, 0.25F);
+  EXPECT_EQ(scan->range_max, 8.0F);
   EXPECT_EQ(scan->ranges, (std::vector<float>{0.5F, 7.75F}));
 }
 
@@ -101,18 +104,53 @@ TEST(Messages, OdometryLiesWhereROSExpectsIt) {
 
 TEST(Messages, CommandsAndTransformsLieWhereROSExpectsThem) {
   Bytes twist;
-  encode_twist(0, "abc", {0.5, 0.0, 0.125}, twist);
+  encode_twist(1'500'000'000, "abc", {0.5, -0.25, 0.125}, twist);
+  EXPECT_EQ(at<std::int32_t>(twist, 4), 1);
+  EXPECT_EQ(at<std::uint32_t>(twist, 8), 500'000'000u);
+  EXPECT_EQ(std::memcmp(twist.data() + 16, "abc", 4), 0);
   EXPECT_EQ(at<double>(twist, 20), 0.5);  // stamp 8, string 8: 16 behind the encapsulation
+  EXPECT_EQ(at<double>(twist, 28), -0.25);
+  for (const std::size_t zero : {36, 44, 52}) EXPECT_EQ(at<double>(twist, zero), 0.0) << zero;
   EXPECT_EQ(at<double>(twist, 60), 0.125);
   EXPECT_EQ(twist.size(), 68u);
 
   Bytes transforms;
-  const std::vector<Transform> two = {{0, "abc", "abc", {1.0, 2.0, 3.0, 0.0}}, {0, "abc", "abc", {4.0, 5.0, 6.0, 0.0}}};
+  const std::vector<Transform> two = {{2'000'000'003, "abc", "xyz", {1.0, 2.0, 3.0, 0.0}},
+                                      {0, "abc", "xyz", {4.0, 5.0, 6.0, 0.0}}};
   encode_transforms(two, transforms);
   EXPECT_EQ(at<std::uint32_t>(transforms, 4), 2u);
-  EXPECT_EQ(at<double>(transforms, 36), 1.0);   // count 4, stamp 8, strings 16: 28 -> 32 behind the encapsulation
+  EXPECT_EQ(at<std::int32_t>(transforms, 8), 2);
+  EXPECT_EQ(at<std::uint32_t>(transforms, 12), 3u);
+  EXPECT_EQ(std::memcmp(transforms.data() + 20, "abc", 4), 0) << "parent";
+  EXPECT_EQ(std::memcmp(transforms.data() + 28, "xyz", 4), 0) << "child";
+  EXPECT_EQ(at<double>(transforms, 36), 1.0);  // count 4, stamp 8, strings 16: 28 -> 32 behind the encapsulation
+  EXPECT_EQ(at<double>(transforms, 44), 2.0);
+  EXPECT_EQ(at<double>(transforms, 52), 3.0);
   EXPECT_EQ(at<double>(transforms, 84), 1.0);   // w
   EXPECT_EQ(at<double>(transforms, 116), 4.0);  // 88 + stamp 8, strings 16: 112 behind the encapsulation
+}
+
+TEST(Messages, TheClockAndAStatesQualityLieInTheirOrder) {
+  Bytes clock;
+  encode_clock(3'000'000'021, clock);
+  EXPECT_EQ(at<std::int32_t>(clock, 4), 3);
+  EXPECT_EQ(at<std::uint32_t>(clock, 8), 21u);
+  EXPECT_EQ(clock.size(), 12u);
+
+  base::StateQuality quality;
+  quality.stale = true;
+  quality.age = 250'000'000;
+  for (std::size_t i = 0; i < quality.covariance.size(); ++i) quality.covariance[i] = 0.5F + static_cast<float>(i);
+  Bytes out;
+  encode_state_quality(5'000'000'006, "abc", quality, out);
+  EXPECT_EQ(at<std::int32_t>(out, 4), 5);
+  EXPECT_EQ(at<std::uint32_t>(out, 8), 6u);
+  EXPECT_EQ(std::memcmp(out.data() + 16, "abc", 4), 0);
+  EXPECT_EQ(at<std::uint8_t>(out, 20), 1);  // stamp 8, string 8: 16 behind the encapsulation
+  EXPECT_EQ(at<double>(out, 28), 0.25);     // [s], 8-aligned
+  for (std::size_t i = 0; i < quality.covariance.size(); ++i)
+    EXPECT_EQ(at<float>(out, 36 + 4 * i), 0.5F + static_cast<float>(i)) << i;
+  EXPECT_EQ(out.size(), 36 + 4 * quality.covariance.size());
 }
 
 TEST(Messages, AFleetComesBackToTheBit) {
