@@ -1,5 +1,6 @@
 #include "netio/server/signal_messages.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -180,6 +181,54 @@ TEST(MapMessage, SimVilleHasTwoIntersections) {
   EXPECT_EQ(town.intersections[0].lights, (std::vector<std::uint32_t>{0, 1, 2, 3}));
   EXPECT_EQ(town.intersections[1].lights, (std::vector<std::uint32_t>{4, 5, 6}));
   EXPECT_EQ(town.intersections[0].stops.size(), 4u);
+}
+
+using PointKind = world::PointRef::Kind;
+
+/// Two lanes of one way-point each with a stop line, at (0, 0) and (4, 0); behind them a way out at `ends` for each, of
+/// a lane or of one zone.
+struct TwoStops {
+  world::World world;
+  world::RoadNetwork roads;
+
+  TwoStops(PointKind kind, const std::vector<glm::dvec2>& ends, const std::vector<std::uint32_t>& to) {
+    const auto add_lane = [&](std::uint16_t segment, glm::dvec2 p) {
+      world::RoadLane& lane = roads.lanes.emplace_back();
+      lane.width = 3.0;
+      lane.points.push_back({.id = {segment, 1, 1}, .p = p});
+      lane.centre.points = {p};
+    };
+    for (std::uint16_t i = 0; i < 2; ++i) {
+      const auto segment = static_cast<std::uint16_t>(1 + i);
+      add_lane(segment, {4.0 * i, 0.0});
+      const world::PointRef at{PointKind::lane, i, 0};
+      roads.stops.push_back({.at = at, .left = {}, .right = {}});
+      roads.index.push_back({{segment, 1, 1}, at});
+      world.lights.push_back(light({{LightState::red, 1.0}}));
+      world.lights.back().points = {fmt::format("{}.1.1", segment)};
+    }
+    world::RoadZone& zone = roads.zones.emplace_back();
+    for (std::uint16_t i = 0; i < ends.size(); ++i) {
+      add_lane(static_cast<std::uint16_t>(3 + i), ends[i]);
+      zone.perimeter.push_back({{9, 0, static_cast<std::uint16_t>(1 + i)}, ends[i]});
+    }
+    for (std::uint32_t i = 0; i < 2; ++i)
+      roads.exits.push_back(
+          {.from = roads.stops[i].at,
+           .to = kind == PointKind::lane ? world::PointRef{kind, 2 + to[i], 0} : world::PointRef{kind, 0, to[i]}});
+  }
+  std::size_t intersections() const { return intersections_of(world, &roads).size(); }
+};
+
+/// Lights belong together where the ways behind them meet: in one lane, or where they cross. Ways into a zone meet in
+/// it, where no light governs.
+TEST(MapMessage, AnIntersectionIsWhereWaysMeet) {
+  const std::vector<glm::dvec2> apart{{0.0, 5.0}, {4.0, 5.0}}, crossed{{4.0, 5.0}, {0.0, 5.0}};
+  EXPECT_EQ(TwoStops(PointKind::lane, apart, {0, 1}).intersections(), 2u) << "side by side";
+  EXPECT_EQ(TwoStops(PointKind::lane, crossed, {0, 1}).intersections(), 1u) << "crossing ways into two lanes";
+  EXPECT_EQ(TwoStops(PointKind::lane, apart, {0, 0}).intersections(), 1u) << "into one lane";
+  EXPECT_EQ(TwoStops(PointKind::perimeter, apart, {0, 0}).intersections(), 2u) << "into one zone by one point";
+  EXPECT_EQ(TwoStops(PointKind::perimeter, crossed, {0, 1}).intersections(), 2u) << "into one zone, crossing";
 }
 
 TEST(MapMessage, LanesBeginAtStopLinesAndEntries) {
