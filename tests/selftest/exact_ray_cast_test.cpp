@@ -5,6 +5,7 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
+#include "selftest/exact_ray_cast.h"
 #include "selftest/fixture.h"
 #include "sensors/laser_settings.h"
 #include "sensors/magnetic_field/sampling.h"
@@ -188,6 +189,32 @@ TEST(Oracle, DistancesToRandomEdges) {
   }
   std::printf("[ measured ] edges: worst %.2g of what is allowed\n", worst);
   EXPECT_EQ(seen, 40);
+}
+
+/// A beam at every heading to a corner 2 m ahead. A gap of any width lies beside a free end and between walls on one
+/// side of the beam, so that rounding decides; walls on both sides leave none.
+TEST(ExactRayCast, OnlyClosedCornersAreSure) {
+  for (int k = 0; k < 64; ++k) {
+    const double heading = 0.1 * k - 3.15;
+    const Pose X{3.0, -7.0, 0.0, heading};
+    const auto at = [&](double ahead, double left) { return base::transform(X, glm::dvec2{ahead, left}); };
+    const glm::dvec2 corner = at(2.0, 0.0), far_left = at(4.0, 1.0), left = at(2.5, 1.5), right = at(3.0, -1.0);
+    const Beam beam = beam_of(X, laser(1, 0.0, 8.0), 0);
+    const auto hit = [&](const std::vector<std::pair<glm::dvec2, glm::dvec2>>& walls) {
+      world::World world;
+      for (const auto& [a, b] : walls) add_wall(world, a, b);
+      return nearest_hit(world.walls, beam, 8.0);
+    };
+    EXPECT_TRUE(hit({{corner, left}}).ambiguous) << "a free end at heading " << heading;
+    EXPECT_TRUE(hit({{corner, left}, {far_left, corner}}).ambiguous) << "both on the left at heading " << heading;
+    EXPECT_TRUE(hit({{corner, left}, {at(2.0, 1e-3), right}}).ambiguous) << "not at one point";
+    for (const bool turned : {false, true}) {
+      const Hit closed = hit({{corner, left}, turned ? std::pair{right, corner} : std::pair{corner, right}});
+      EXPECT_FALSE(closed.ambiguous) << "closed at heading " << heading;
+    }
+    EXPECT_FALSE(hit({{at(1.0, -1.0), at(1.0, 1.0)}, {corner, left}}).ambiguous) << "behind a wall";
+    EXPECT_FALSE(hit({{at(2.0, 1e-9), left}}).ambiguous) << "farther off than rounding";
+  }
 }
 
 /// The reference detects a wall that is displaced by more than rounding.
