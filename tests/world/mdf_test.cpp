@@ -70,8 +70,17 @@ TEST(Mdf, RealHabitsChangeNothing) {
 }
 
 TEST(Mdf, MissingEndsAreWarnings) {
-  for (const std::string end : {"end_checkpoints\n", "end_speed_limits\n", "end_file\n"})
-    EXPECT_EQ(parse_mdf("go.mdf", mdf_with(end, "")).warnings.size(), 1u) << end;
+  const std::vector<std::pair<std::string, std::string>> corpus{
+      {"end_checkpoints\n", "5: 'checkpoints' has no 'end_checkpoints'; it ends before 'speed_limits'\n"},
+      {"end_speed_limits\n", "11: 'speed_limits' has no 'end_speed_limits'; it ends before 'end_file'\n"},
+      {"end_file\n", "15: 'end_file' is missing at the end of the file\n"}};
+  for (const auto& [end, warning] : corpus)
+    EXPECT_EQ(lines_of(parse_mdf("go.mdf", mdf_with(end, "")).warnings), warning) << end;
+  // Cut within a block: the line where the block begins.
+  const std::string cut = kSmallMdf.substr(0, kSmallMdf.find("end_speed_limits"));
+  EXPECT_EQ(lines_of(parse_mdf("go.mdf", cut).warnings),
+            "11: 'speed_limits' has no 'end_speed_limits'; it ends at the end of the file\n"
+            "14: 'end_file' is missing at the end of the file\n");
 }
 
 TEST(Mdf, WrongFilesAreRefused) {

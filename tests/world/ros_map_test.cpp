@@ -192,9 +192,13 @@ TEST_F(RosMap, BadMapsAreRefusedWithTheirLine) {
   EXPECT_EQ(error(without("origin", "origin: [1, 2]")).substr(0, 9), "m.yaml:3:");
   EXPECT_EQ(error(without("origin", "origin: [1, 2, x]")).substr(0, 9), "m.yaml:3:");
   EXPECT_EQ(error(without("origin", "origin: [1e300, 2, 0]")).substr(0, 9), "m.yaml:3:");
+  for (const char* origin : {"[.nan, 2, 0]", "[1, .nan, 0]", "[1, 2, .nan]", "[-.inf, 2, 0]", "[1, 2, .inf]"})
+    EXPECT_EQ(error(without("origin", std::string("origin: ") + origin)).substr(0, 9), "m.yaml:3:") << origin;
   EXPECT_EQ(error(without("negate", "negate: maybe")).substr(0, 9), "m.yaml:4:");
   EXPECT_EQ(error(without("occupied", "occupied_thresh: 2")).substr(0, 9), "m.yaml:5:");
+  EXPECT_EQ(error(without("occupied", "occupied_thresh: .nan")).substr(0, 9), "m.yaml:5:");
   EXPECT_EQ(error(without("free", "free_thresh: 0.9")).substr(0, 9), "m.yaml:6:");
+  EXPECT_EQ(error(without("free", "free_thresh: -0.1")).substr(0, 9), "m.yaml:6:");
   EXPECT_EQ(error(kGood + "mode: raw\n").substr(0, 9), "m.yaml:7:");
   EXPECT_NE(error("a: [1").find("not YAML"), std::string::npos);
   EXPECT_NE(error("- 1\n- 2\n").find("expected the YAML of a ROS map"), std::string::npos);
