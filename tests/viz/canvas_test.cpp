@@ -144,6 +144,23 @@ TEST(Canvas, ClipKeepsTheRest) {
   EXPECT_NEAR(area_of(canvas), 16.0, 1e-9);
 }
 
+/// A line 4 px wide whose middle runs 1 px outside of one side: one row or column of it remains, of a clip's box too.
+TEST(Canvas, WideLinesBesideASideAreCutAtIt) {
+  for (const PixelBox& box : {PixelBox{0, 0, 20, 12}, PixelBox{3, 2, 15, 9}}) {
+    const double x0 = box.x_min, y0 = box.y_min, x1 = box.x_max, y1 = box.y_max, far = 40.0;
+    const double width = x1 - x0, height = y1 - y0;
+    for (const auto& [line, area, side] : {std::tuple{Line{{x0 - 1, -far}, {x0 - 1, far}}, height, "left"},
+                                           {Line{{x1 + 1, -far}, {x1 + 1, far}}, height, "right"},
+                                           {Line{{-far, y0 - 1}, {far, y0 - 1}}, width, "top"},
+                                           {Line{{-far, y1 + 1}, {far, y1 + 1}}, width, "bottom"}}) {
+      Canvas canvas(20, 12, kWhite);
+      canvas.clip(box);
+      canvas.line(line.a, line.b, 4.0, kBlack);
+      EXPECT_NEAR(area_of(canvas), area, 1e-9) << side << " of " << width << " x " << height;
+    }
+  }
+}
+
 TEST(Canvas, ClipOutsideThePictureDrawsNothing) {
   Canvas canvas(10, 10, kWhite);
   canvas.clip({20, 20, 30, 30});

@@ -16,6 +16,7 @@
 #include <vtkXMLPolyDataReader.h>
 
 #include <cmath>
+#include <set>
 
 #include "base/error.h"
 #include "tests/viz/png.h"
@@ -43,6 +44,8 @@ TEST(VtkFiles, WallsAreUprightRectangles) {
   const std::uint32_t block = scenes::add_model(world, "block", 0xFF102030u);
   scenes::add_box(world, 1.0, 2.0, 3.0, 4.0, block);
   world.walls[1].seen_by_laser = false;
+  world.walls[2].stops_robots = false;
+  world.walls[3].z_min = 0.25;
   write_poly_data(walls_geometry(world), scenes::own_file("walls.vtp"));
   const auto reader = read_poly_data(scenes::own_file("walls.vtp"));
   vtkPolyData* walls = reader->GetOutput();
@@ -57,6 +60,9 @@ TEST(VtkFiles, WallsAreUprightRectangles) {
     EXPECT_EQ(glm::dvec3(p[0], p[1], p[2]), glm::dvec3(wall.b.x, wall.b.y, wall.z_max));
     EXPECT_EQ(number(walls->GetCellData(), "rgb", k, 1), 0x20);
     EXPECT_EQ(number(walls->GetCellData(), "laser", k), k == 1 ? 0.0 : 1.0);
+    EXPECT_EQ(number(walls->GetCellData(), "robots", k), k == 2 ? 0.0 : 1.0);
+    EXPECT_EQ(number(walls->GetCellData(), "height", k), k == 3 ? 0.75 : 1.0);
+    EXPECT_EQ(number(walls->GetCellData(), "model", k), block);
   }
   auto* names = vtkStringArray::SafeDownCast(walls->GetCellData()->GetAbstractArray("name"));
   ASSERT_NE(names, nullptr);
@@ -124,6 +130,7 @@ TEST(VtkFiles, ScansEndWhereTheirBeamsDo) {
   EXPECT_EQ(number(data->GetPointData(), "bound", 0), 0.25);
   EXPECT_EQ(number(data->GetPointData(), "bound", 1), HUGE_VAL) << "grazing: its bound does not hold";
   EXPECT_EQ(number(data->GetPointData(), "time", 2), 1.5);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(number(data->GetPointData(), "bearing", i), (i - 1) * 0.5 * laser.fov) << i;
   const auto other = read_poly_data(scenes::own_file("beams.vtp"));
   EXPECT_EQ(other->GetOutput()->GetNumberOfLines(), 3);
   EXPECT_EQ(other->GetOutput()->GetNumberOfPoints(), 6);
@@ -138,6 +145,30 @@ TEST(VtkFiles, AbsentRobotsHaveNoBody) {
   EXPECT_EQ(one.polygons.size(), 17u) << "16 sides and the top";
   for (const glm::dvec3& p : one.points) EXPECT_NEAR(std::hypot(p.x - 5.0, p.y - 6.0), 0.165, 1e-9);
   for (const double robot : one.cell_data[0].values) EXPECT_EQ(robot, 1.0);
+}
+
+/// Models with closed outlines have a lid, at their own height; a bar that is open has none.
+TEST(VtkFiles, OnlyClosedOutlinesHaveALid) {
+  world::World world;
+  world.movers.push_back(scenes::make_robot(world, 1, {}, 0xFF0000FFu, 5.0));
+  const std::uint32_t bar = scenes::add_model(world, "bar", 0xFF00FF00u);
+  const glm::dvec2 p[] = {{0.2, -0.1}, {0.3, -0.1}, {0.3, 0.1}, {0.2, 0.1}};
+  for (int i = 0; i < 3; ++i) world.movers[0].body.push_back({p[i], p[i + 1], 0.0, 0.5, bar, true, true, true});
+  for (std::size_t i = 16; i < 19; ++i) world.movers[0].body[i].solid_left = false;
+  const std::uint32_t tower = scenes::add_model(world, "tower", 0xFFFF0000u);
+  for (int i = 0; i < 4; ++i)
+    world.movers[0].body.push_back({0.1 * p[i], 0.1 * p[(i + 1) % 4], 0.1, 0.4, tower, true, true, true});
+  const PolyData bodies = bodies_geometry(world, std::vector<base::Pose>{{5.0, 6.0, 0.25, 0.0}});
+  ASSERT_EQ(bodies.polygons.size(), 2u + 16u + 3u + 4u) << "lids, then sides";
+  const auto height = [&](std::size_t lid) {
+    std::set<double> heights;
+    for (const std::int64_t point : bodies.polygons[lid]) heights.insert(bodies.points[point].z);
+    return heights;
+  };
+  EXPECT_EQ(bodies.polygons[0].size(), 16u);
+  EXPECT_EQ(height(0), std::set<double>{0.25 + 0.1});
+  EXPECT_EQ(bodies.polygons[1].size(), 4u);
+  EXPECT_EQ(height(1), std::set<double>{0.25 + 0.4});
 }
 
 TEST(VtkFiles, RoadsAreLinesOnTheGround) {
