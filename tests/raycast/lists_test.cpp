@@ -12,6 +12,7 @@
 #include "tests/sensors/brute_force.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/scenes.h"
+#include "world/wall_tree.h"
 
 namespace sf::raycast {
 namespace {
@@ -59,6 +60,33 @@ TEST(Sectors, EveryWallABeamMeetsIsListed) {
   every_hit_is_listed(scenes::cave(300, 16.0, 4), 30.0, 1.0, 2);
   every_hit_is_listed(scenes::boxes(60, 16.0, 5), 8.0, 0.25, 3);
   every_hit_is_listed(scenes::boxes(60, 16.0, 6), 30.0, 0.003, 4);
+}
+
+/// From the cell's corners, where viewers see most of the difference, both ends lie within a wall's interval, and no
+/// point of it is nearer than stated.
+TEST(CandidateWalls, IntervalsAndDistancesHoldForTheCellsCorners) {
+  const world::World world = scenes::cave(300, 16.0, 3);
+  const WallIndex wall_index(world.walls, 0.1);
+  trial::Chance chance(7);
+  std::size_t checked = 0;
+  for (const double size : {0.05, 0.25, 1.0}) {
+    CandidateWalls walls;
+    for (int c = 0; c < 20; ++c) {
+      find_candidate_walls(wall_index, {size, 8.0}, chance.in_square(6.0), true, walls);
+      for (const CandidateWall& w : walls.front_facing)
+        for (const glm::dvec2& corner : {glm::dvec2{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}) {
+          const glm::dvec2 p = 0.5 * size * corner;
+          ASSERT_LE(w.nearest, world::distance(p, w.a, w.b) + 1e-12);
+          if (w.half > M_PI) continue;
+          for (const glm::dvec2& end : {w.a - p, w.b - p}) {
+            const double off = base::wrap_angle(std::atan2(end.y, end.x) - w.bearing);
+            ASSERT_LE(std::abs(off), w.half) << "wall " << w.row << " from a cell of " << size << " m";
+            ++checked;
+          }
+        }
+    }
+  }
+  EXPECT_GT(checked, 10'000u);
 }
 
 /// Lists must be far shorter than the set of all walls.
