@@ -53,6 +53,24 @@ TEST(CheckScenario, AValidScenarioPasses) {
             "");
 }
 
+/// A caller who checks nothing beforehand gets the same errors, and no run.
+TEST(RunScenario, RefusesWhatTheCheckRefuses) {
+  gpu::Device device;
+  for (const std::string& text :
+       {std::string(kPath) + "[expect]\nlights_obeyed = true\n",
+        std::string(kPath) + "duration = 1\n[default]\ncontroller = \"none\"\n[expect]\nmean_error = 1\n",
+        std::string(kPath) + "[default]\ncontroller = \"lane-keeping\"\nsettings = { kp = \"much\" }\n"}) {
+    const std::string refusal = run_refusal(text);
+    ASSERT_FALSE(refusal.empty()) << text;
+    try {
+      run_scenario(parse_scenario(kRunFile, text), device);
+      ADD_FAILURE() << "it ran: " << text;
+    } catch (const base::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(refusal), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(ScenarioStatus, NothingExpectedIsNeitherPassedNorFailed) {
   ScenarioResult result;
   EXPECT_EQ(result.status(), ScenarioStatus::no_expectations);

@@ -1,10 +1,12 @@
 #include "scenarios/sweep.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "base/error.h"
@@ -71,6 +73,28 @@ TEST(SweepFile, OneErrorEachAtItsLine) {
        "test.toml:4: plant = Ideal: "},
   };
   for (const auto& [text, said] : kCorpus) EXPECT_EQ(sweep_refusal(text).substr(0, said.size()), said) << text;
+}
+
+/// An event's number is digits alone, below the number of events; a value reaches the event that it names.
+TEST(SweepFile, EventsGoByTheirNumber) {
+  const std::string file = testing::TempDir() + "events_" + std::to_string(getpid()) + ".toml";
+  std::ofstream(file) << "world = \"" SF_SOURCE_DIR "/worlds/minimagic/minimagic.world\"\n"
+                      << "[[event]]\nat = 1\nobject = \"tag1\"\npresent = false\n"
+                      << "[[event]]\nat = 2\nobject = \"tag1\"\npresent = true\n";
+  const auto text = [&](const std::string& number) {
+    return "scenario = \"" + file + "\"\n[grid]\nevent." + number + ".at = [1.5]\n";
+  };
+  for (const std::string number : {"0", "1"}) {
+    EXPECT_EQ(sweep_refusal(text(number)), "");
+    const Scenario scenario = scenario_of(parse_sweep(kSweepFile, text(number)), 0);
+    ASSERT_EQ(scenario.events.size(), 2u);
+    EXPECT_EQ(scenario.events[0].at, number == "0" ? 1.5 : 1.0);
+    EXPECT_EQ(scenario.events[1].at, number == "1" ? 1.5 : 2.0);
+  }
+  for (const std::string number : {"2", "-1", "0x", "1st", "first", "18446744073709551616"})
+    EXPECT_EQ(sweep_refusal(text(number)), "test.toml:3: event." + number + ".at = 1.5: 'event' has no item " + number +
+                                               "; expected its number, from 0 to 1");
+  std::filesystem::remove(file);
 }
 
 TEST(SweepFile, TheNumberOfJobsIsBoundedBeforeAnyIsMade) {
