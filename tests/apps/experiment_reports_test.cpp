@@ -1,0 +1,239 @@
+// Reports and figures of experiments beside their CSV files.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "tests/apps/program.h"
+#include "tests/viz/png.h"
+#include "viz/series_figure.h"
+
+namespace sf {
+namespace {
+
+using CsvRecord = std::map<std::string, std::string>;
+
+/// Lines of a file by the names of its heading; cells with commas are quoted.
+std::vector<CsvRecord> csv_records(const std::string& csv) {
+  const auto cells_of = [](const std::string& line) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"')
+        quoted = !quoted;
+      else if (c == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += c;
+    }
+    return cells;
+  };
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> names = cells_of(line);
+  std::vector<CsvRecord> records;
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> cells = cells_of(line);
+    EXPECT_EQ(cells.size(), names.size()) << line;
+    CsvRecord& record = records.emplace_back();
+    for (std::size_t i = 0; i < std::min(cells.size(), names.size()); ++i) record[names[i]] = cells[i];
+  }
+  return records;
+}
+
+/// Cells of all tables of a report, without their headings.
+std::vector<std::vector<std::string>> table_rows(const std::string& report) {
+  std::istringstream lines(report);
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("|---")) {
+      if (!rows.empty()) rows.pop_back();  // the heading above it
+      continue;
+    }
+    if (!line.starts_with("| ")) continue;
+    std::vector<std::string>& cells = rows.emplace_back();
+    for (std::size_t at = 2, end = 0; (end = line.find(" |", at)) != std::string::npos; at = end + 3)
+      cells.push_back(line.substr(at, end - at));
+  }
+  return rows;
+}
+
+/// A table's cell shows a number of the file, times `scale`, to `places` behind the point.
+void expect_shown(const std::string& cell, const CsvRecord& record, const std::string& name, double scale, int places) {
+  const std::size_t point = cell.find('.');
+  const std::size_t end = std::min(cell.find(' '), cell.size());
+  EXPECT_EQ(point == std::string::npos ? 0 : static_cast<int>(end - point - 1), places) << name << ": " << cell;
+  EXPECT_NEAR(std::stod(cell), scale * std::stod(record.at(name)), 0.51 * std::pow(10.0, -places)) << name;
+}
+
+/// A run of so many seconds on the test path, from which an experiment of one robot starts.
+std::string short_path(const std::string& seconds, const std::string& controller, const std::string& more = "") {
+  return "world = \"" + our_world("testpath/testpath.world") + "\"\nduration = " + seconds +
+         "\nplant = \"thesis\"\n[default]\ncontroller = \"" + controller + "\"\n" + more;
+}
+
+/// The report's tables and the figures show the columns of the file that they name.
+TEST(ExperimentReport, SweepsShowTheColumnsOfTheirFile) {
+  const Folder folder;
+  folder.write("sweeps.toml", short_path("2", "lane-keeping"));
+  const Outcome outcome = run_program(
+      {"experiment", "sweeps", "--trials", "1", "--seed", "3", "-o", folder.path("out"), "--files", folder.path()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/sweeps.csv")));
+  ASSERT_EQ(records.size(), 4u * (2 * 7 + 2 * 6 + 5 + 4)) << "four laws";
+  const auto rows = table_rows(read_file(folder.path("out/report.md")));
+  ASSERT_EQ(rows.size(), records.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    SCOPED_TRACE(i);
+    const CsvRecord& record = records[i];
+    ASSERT_EQ(rows[i].size(), 8u);
+    EXPECT_EQ(rows[i][0], record.at("x"));
+    EXPECT_EQ(rows[i][1], record.at("law"));
+    expect_shown(rows[i][2], record, "mean", 1.0, 4);
+    expect_shown(rows[i][3], record, "owed_mean", 1.0, 4);
+    expect_shown(rows[i][4], record, "abs_mean", 1.0, 4);
+    expect_shown(rows[i][5], record, "abs_max", 1.0, 3);
+    expect_shown(rows[i][6], record, "seconds", 1.0, 1);
+    EXPECT_EQ(rows[i][7], "no") << "two seconds";
+    EXPECT_EQ(record.at("end_reached"), "0");
+    EXPECT_NEAR(std::stod(record.at("abs_max")), std::max(-std::stod(record.at("min")), std::stod(record.at("max"))),
+                1e-6);
+  }
+
+  for (const auto& [sweep, axis] :
+       {std::pair{"delay-ideal", "delay of readings [s]"}, {"loss-thesis", "part of readings lost [-]"}}) {
+    viz::SeriesOptions figure{.title = std::string("Lane edge loop: ") + sweep,
+                              .subtitle = "seed 3",
+                              .panels = {},
+                              .x_name = axis,
+                              .from_zero = true};
+    for (const auto& [column, name] :
+         {std::pair{"mean", "mean error [m]"}, {"abs_mean", "mean |error| [m]"}, {"abs_max", "largest |error| [m]"}}) {
+      viz::Panel& panel = figure.panels.emplace_back();
+      panel.y_name = name;
+      for (const char* law : {"P", "PI", "P, exact edge", "PI, exact edge"}) {
+        viz::Series& series = panel.series.emplace_back();
+        series.name = law;
+        for (const CsvRecord& record : records)
+          if (record.at("sweep") == sweep && record.at("law") == law) {
+            series.times.push_back(std::stod(record.at("x")));
+            series.values.push_back(std::stod(record.at(column)));
+          }
+      }
+    }
+    viz::draw_series(figure, folder.path("expected.png"));
+    const scenes::Picture expected = scenes::read_png(folder.path("expected.png")),
+                          drawn = scenes::read_png(folder.path(std::string("out/sweep-") + sweep + ".png"));
+    ASSERT_EQ(drawn.width, expected.width);
+    ASSERT_EQ(drawn.height, expected.height);
+    int different = 0;
+    for (int y = 0; y < drawn.height; ++y)
+      for (int x = 0; x < drawn.width; ++x) different += drawn.at(x, y) != expected.at(x, y) ? 1 : 0;
+    EXPECT_LT(different, 300) << sweep << ": the file has six digits";
+  }
+}
+
+/// Metres in the file, millimetres in the report.
+TEST(ExperimentReport, LateStatesShowTheColumnsOfTheirFile) {
+  const Folder folder;
+  folder.write("late-states.toml",
+               short_path("4", "lane-keeping", "[states]\nrate = 10\ndelay = 0.08\nfilter = true\n"));
+  const Outcome outcome =
+      run_program({"experiment", "late-states", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/late-states.csv")));
+  ASSERT_EQ(records.size(), 2u * 2 * 5) << "two gains, two speeds, five kinds of states";
+  const auto rows = table_rows(read_file(folder.path("out/report.md")));
+  ASSERT_EQ(rows.size(), records.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    SCOPED_TRACE(i);
+    const CsvRecord& record = records[i];
+    ASSERT_EQ(rows[i].size(), 8u);
+    EXPECT_EQ(rows[i][0], record.at("kp"));
+    EXPECT_EQ(rows[i][1], record.at("speed"));
+    EXPECT_EQ(rows[i][2], record.at("states"));
+    expect_shown(rows[i][3], record, "abs_mean", 1e3, 1);
+    expect_shown(rows[i][4], record, "amplitude", 1e3, 1);
+    expect_shown(rows[i][5], record, "abs_max", 1e3, 0);
+    EXPECT_EQ(rows[i][6], record.at("left_lane") == "0" ? "no" : "**yes**");
+    EXPECT_EQ(rows[i][7], "**no**");
+    EXPECT_EQ(record.at("end_reached"), "0");
+    EXPECT_GT(std::stod(record.at("abs_max")), std::stod(record.at("abs_mean")));
+  }
+  for (const char* name : {"trajectories-0.1.png", "trajectories-0.5.png"})
+    EXPECT_GT(scenes::read_png(folder.path(std::string("out/") + name)).width, 0) << name;
+}
+
+/// A part in the file, per cent in the report.
+TEST(ExperimentReport, AccuracyShowsTheColumnsOfItsFile) {
+  const Folder folder;
+  folder.write("small.world",
+               "model( size [0.8 0.8 0.5] boundary 1 noblocks 0 )\n"
+               "position( name \"a\" size [0.2 0.2 0.1] laser( samples 91 fov 180 range_max 2 ) )\n");
+  folder.write("explore.toml", "world = \"small.world\"\nduration = 2\n[default]\ncontroller = \"avoid\"\n");
+  folder.write("lane-edge-p.toml", short_path("4", "lane-keeping"));
+  folder.write("magnet-p.toml", short_path("4", "magnet-keeping"));
+  const Outcome outcome =
+      run_program({"experiment", "accuracy", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/accuracy.csv")));
+  ASSERT_EQ(records.size(), 3u + 4 + 5) << "modes of the three types";
+  const auto rows = table_rows(read_file(folder.path("out/report.md")));
+  ASSERT_EQ(rows.size(), records.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    SCOPED_TRACE(i);
+    const CsvRecord& record = records[i];
+    ASSERT_EQ(rows[i].size(), 6u);
+    EXPECT_EQ(record.at("sensor"), i < 3 ? "laneedge" : i < 7 ? "magnetometer" : "laser");
+    EXPECT_EQ(rows[i][0], record.at("mode"));
+    if (i < 7) {
+      expect_shown(rows[i][1], record, "abs_mean", 1.0, 4);
+      expect_shown(rows[i][2], record, "abs_max", 1.0, 4);
+      EXPECT_GT(std::stod(record.at("abs_max")), std::stod(record.at("abs_mean")));
+    } else {
+      expect_shown(rows[i][1], record, "cells_missed", 100.0, 3);
+      expect_shown(rows[i][2], record, "cells_wrong", 100.0, 3);
+    }
+    EXPECT_EQ(std::stod(rows[i][3]), std::stod(record.at("contacts")));
+    expect_shown(rows[i][4], record, "seconds", 1.0, 1);
+    EXPECT_EQ(record.at("seconds"), i < 7 ? "4.0" : "2.0");
+    EXPECT_EQ(rows[i][5], "**no**");
+    EXPECT_EQ(record.at("done"), "0");
+  }
+}
+
+/// One row per robot and trial, with the same numbers in both files.
+TEST(ExperimentReport, ATownShowsTheColumnsOfItsFile) {
+  const Folder folder;
+  folder.write("minimagic.toml", "world = \"" + our_world("rooms.world") +
+                                     "\"\nduration = 5\nrobots = 3\n[default]\ncontroller = \"wander\"\n");
+  const Outcome outcome =
+      run_program({"experiment", "minimagic", "--trials", "2", "-o", folder.path("out"), "--files", folder.path()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<CsvRecord> records = csv_records(read_file(folder.path("out/statistics.csv")));
+  const auto rows = table_rows(read_file(folder.path("out/report.md")));
+  ASSERT_GE(records.size(), 2u * 3);
+  ASSERT_EQ(rows.size(), records.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    SCOPED_TRACE(i);
+    const CsvRecord& record = records[i];
+    ASSERT_EQ(rows[i].size(), 6u);
+    EXPECT_EQ(record.at("trial"), i < records.size() / 2 ? "1" : "2");
+    EXPECT_EQ(rows[i][0], record.at("robot"));
+    expect_shown(rows[i][1], record, "driven_m", 1.0, 2);
+    EXPECT_EQ(rows[i][2], record.at("contacts"));
+    EXPECT_EQ(rows[i][3], record.at("checkpoints"));
+    EXPECT_EQ(rows[i][4], record.at("full_stops"));
+    EXPECT_EQ(rows[i][5], record.at("reds_passed"));
+    EXPECT_EQ(record.at("mean_abs_error_m"), "") << "without a lane there is none";
+    EXPECT_GT(std::stod(record.at("driven_m")), 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace sf
