@@ -251,6 +251,27 @@ TEST(CloneRobots, ModelsStayConsistent) {
   EXPECT_EQ(names.size(), 3u + 5u * 3u) << "walls, post, tag; three models a robot";
 }
 
+/// Tags follow the copies; each keeps its own models.
+TEST(CloneRobots, EveryTagHasARowOfItsOwn) {
+  World world = mixed();
+  for (const std::uint32_t id : {8u, 9u}) {
+    scenes::add_create(world, {7, 1.0 * (id - 7), 0, 0}).is_tag = true;
+    Mover& tag = world.movers.back();
+    tag.id = id;
+    tag.name = world.models[tag.model].name = "tag" + std::to_string(id);
+  }
+  clone_robots(world, 4, 1);
+  ASSERT_EQ(world.movers.size(), 7u);
+  std::set<std::string> tags;
+  for (std::uint32_t row = 4; row < 7; ++row) {
+    EXPECT_TRUE(world.movers[row].is_tag) << row;
+    EXPECT_EQ(world.models[world.movers[row].model].name, world.movers[row].name);
+    EXPECT_EQ(world.models[world.movers[row].model].mover, row);
+    tags.insert(world.movers[row].name);
+  }
+  EXPECT_EQ(tags, (std::set<std::string>{"tag3", "tag8", "tag9"}));
+}
+
 TEST(CloneRobots, CopiesKeepClearOfTags) {
   World world = mixed();
   clone_robots(world, 60, 1);
