@@ -20,9 +20,10 @@ TEST(Route, DrivesEveryCheckpointOfSimville) {
   for (const auto& checkpoint : t.roads.checkpoints) all.push_back(checkpoint.id);
   t.add(on_lane(t.roads, "1.1", 0.3), "route", go(all));
   t.begin();
-  double worst = 0.0;
+  double worst = 0.0, last = 0.0;  // [m], [m/s] when it decides
   std::set<std::uint32_t> headed;
   while (!t.controllers[0]->done() && t.time < 3'000'000'000'000) {
+    last = t.fleet->reports()[0].velocity.forward;
     t.tick();
     worst = std::max(worst, std::abs(t.controllers[0]->error()));
     headed.insert(t.intents[0].checkpoint);
@@ -31,7 +32,28 @@ TEST(Route, DrivesEveryCheckpointOfSimville) {
   EXPECT_EQ(t.route(0).reached(), all.size());
   for (const double id : all) EXPECT_TRUE(headed.count(std::uint32_t(id))) << id;
   EXPECT_LT(worst, 0.02);  // [m] from its line
+  EXPECT_LT(std::abs(last), 0.01) << "it is done when it stands";
   EXPECT_EQ(t.contacts, 0);
+}
+
+/// Without the start signal it neither drives nor tells others where it is going.
+TEST(Route, StandsUntilItIsStarted) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 0.3), "route", go({1}));
+  t.begin();
+  for (const std::int64_t time : {std::int64_t{0}, std::int64_t{100'000'000}, std::int64_t{5'000'000'000}}) {
+    const Twist command =
+        t.controllers[0]->step({.time = time, .state = t.fleet->reports()[0], .readings = {}, .started = false});
+    EXPECT_EQ(command.forward, 0.0);
+    EXPECT_EQ(command.turn, 0.0);
+    EXPECT_EQ(t.controllers[0]->intent().checkpoint, base::kNoId);
+    EXPECT_EQ(t.route(0).stop_reason(), "the start signal was not given");
+  }
+  t.time = 5'100'000'000;
+  t.tick();
+  t.tick();
+  EXPECT_GT(t.fleet->reports()[0].velocity.forward, 0.0);
+  EXPECT_EQ(t.controllers[0]->intent().checkpoint, 1u);
 }
 
 TEST(Route, DrivesAMissionRoundAndRound) {
