@@ -8,6 +8,7 @@
 
 #include "sensors/laser_settings.h"
 #include "sensors/settings.h"
+#include "tests/device.h"
 
 namespace sf::scenarios {
 
@@ -58,6 +59,21 @@ TEST(Trial, SensorsWithNoiseOfTheirOwnKeepIt) {
     ASSERT_NE(sensor, robot.sensors.end()) << name;
     EXPECT_NEAR(sensors::find(*sensor, "noise")->numbers[0], constant, 1e-15) << name;  // in the file's units
   }
+}
+
+/// A controller at 5 Hz in ticks of 0.1 s: one time for each of its errors, every second tick.
+TEST(Trial, TimesAreThoseOfTheErrors) {
+  Scenario scenario;
+  scenario.world = SF_SOURCE_DIR "/worlds/testpath/testpath.world";
+  scenario.duration = 4.0;
+  scenario.actor.controller = {"lane-keeping", 5.0, {"controller 'lane-keeping'", {{"speed", 0.1, ""}}}};
+  const Trial trial = run_trial(scenario, disturbed_world(scenario, {}), device(), {});
+  ASSERT_GT(trial.times.size(), 10u);
+  EXPECT_EQ(trial.times.size(), trial.counts.at(0).errors.size());
+  EXPECT_EQ(trial.times.size(), trial.errors.at(0).count);
+  for (std::size_t i = 1; i < trial.times.size(); ++i) EXPECT_NEAR(trial.times[i] - trial.times[i - 1], 0.2, 1e-9) << i;
+  EXPECT_EQ(trial.simulated, 4.0);
+  EXPECT_EQ(trial.tracks.at(0).poses.size(), 40u);
 }
 
 TEST(Trial, NoDisturbanceLeavesTheWorldAsItIs) {
