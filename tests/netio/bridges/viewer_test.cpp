@@ -185,6 +185,8 @@ TEST(Viewer, TakesParametersAndServices) {
   EXPECT_FALSE(fixture.requests().paused) << "asked for once";
 
   client.text(R"({"op":"setParameters","parameters":[{"name":"/speed","value":0}]})");
+  client.text(R"({"op":"getParameters","id":"g","parameterNames":["/speed"]})");
+  EXPECT_NE(client.receive_with("parameterValues").find("\"id\":\"g\""), std::string::npos) << "no id, no answer";
   client.send_frame(2, call_bytes(2, "json", "{}"));
   client.send_frame(2, call_bytes(2, "cdr", std::string("\0\1\0\0", 4)));
   client.send_frame(2, call_bytes(3, "json", "{}"));
