@@ -160,6 +160,14 @@ TEST_F(Recorded, PlotsAreSvgOrPdfOnDemand) {
   EXPECT_EQ(read_file(folder_.path("n/trajectories.svg")).find(">Trajectories<"), std::string::npos);
 }
 
+TEST_F(Recorded, APlotSaysHowLongItsPartLasts) {
+  for (const auto& [from, to, said] : {std::tuple{"0", "10", "2 robots, 2.9 s, "}, {"1", "2", "2 robots, 1 s, "}}) {
+    ASSERT_EQ(run_program(with("plot", {"-o", folder_.path("p"), "--format", "svg", "--from", from, "--to", to})).code,
+              0);
+    EXPECT_NE(read_file(folder_.path("p/trajectories.svg")).find(said), std::string::npos) << said;
+  }
+}
+
 TEST_F(Recorded, WithoutALaserThereIsNoMap) {
   const Outcome outcome = run_program(with("plot", {"-o", folder_.path("p"), "--robots", "two"}));
   EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -90,6 +90,38 @@ TEST(Usage, HelpNamesTheOptions) {
   }
 }
 
+/// An option that changes another one means nothing without it.
+TEST(Usage, OptionsThatNeedAnotherOneAreRefusedWithoutIt) {
+  const Folder folder;
+  const std::string world = our_world("rooms.world"), out = folder.path("out");
+  const std::string sweep = SF_SOURCE_DIR "/experiments/sweeps/lane-edge.toml";
+  for (const auto& [arguments, said] :
+       std::vector<Wrong>{{{"run", world, "--of", "roomba0"}, "--of requires --robots"},
+                          {{"run", world, "--record-readings"}, "--record-readings requires --record"},
+                          {{"run", world, "--checkpoint", "1"}, "--checkpoint requires --record"},
+                          {{"run", world, "--resume"}, "--resume requires --record"},
+                          {{"run", world, "--balance", "1"}, "--balance requires --tiles"},
+                          {{"run", world, "--max-error", "5mm"}, "--max-error requires"},
+                          {{"run", world, "--min-rate", "1e6"}, "--min-rate requires"},
+                          {{"serve", world, "--stale", "hide"}, "--stale requires --filter"},
+                          {{"serve", world, "--clock", "estimated"}, "--clock requires --filter"},
+                          {{"serve", world, "--link-delay", "1"}, "--link-delay requires --filter"},
+                          {{"serve", world, "--wait-for", "1"}, "--wait-for requires --lockstep"},
+                          {{"serve", world, "--lockstep-timeout", "1"}, "--lockstep-timeout requires --lockstep"},
+                          {{"robot", world, "--name", "roomba1", "--clock", "estimated"}, "--clock requires --cameras"},
+                          {{"robot", world, "--name", "roomba1", "--baud", "57600"}, "--baud requires --serial"},
+                          {{"sweep", sweep, "-o", out, "--tasks", "3"}, "--tasks requires --slurm"},
+                          {{"sweep", sweep, "-o", out, "--sbatch=--time=1"}, "--sbatch requires --slurm"},
+                          {{"view", out, "--time", "1"}, "--time requires --3d"},
+                          {{"view", out, "--screenshot", "a.png"}, "--screenshot requires --3d"},
+                          {{"view", out, "--every", "1"}, "--every requires --3d"},
+                          {{"view", out, "--height", "1"}, "--height requires --3d"},
+                          {{"experiment", "mapping"}, "requires --out"},
+                          {{"calibrate", out, "--marker", "0.03"}, "--marker requires --charuco"},
+                          {{"calibrate", out, "--charuco", "aruco_4x4_50"}, "--charuco requires --marker"}})
+    expect_refused(arguments, said);
+}
+
 TEST(Usage, VersionIsPrinted) {
   const Outcome outcome = run_program({"--version"});
   EXPECT_EQ(outcome.code, 0);
