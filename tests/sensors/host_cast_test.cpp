@@ -84,6 +84,24 @@ TEST(HostCast, LasersWithNoiseAndResolution) {
   expect_same_bytes(world);
 }
 
+/// Lasers at one place of a robot share a pattern of beams on the host where these lie evenly: one pattern for robots
+/// with equal lasers, another one where yaw, field of view, samples or resolution differ.
+TEST(HostCast, LasersAtOnePlaceOfARobot) {
+  world::World world = scenes::boxes(60, 16.0, 6);
+  scenes::add_robots(world, 12, scenes::laser(91, M_PI / 2, 5.0), 6);
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    world.movers[m].sensors.push_back(sensors::laser_sensor(sensors::lasers_of(world.movers[m])[0]));
+    scenes::edit_laser(world.movers[m], 1)->X_MS.yaw += m % 6 == 1 ? 1.6 : M_PI / 2;
+    for (const std::size_t i : {0, 1}) {
+      auto laser = scenes::edit_laser(world.movers[m], i);
+      if (m % 6 == 2) laser->fov = 1.54;
+      if (m % 6 == 3) laser->samples = 90;
+      if (m % 6 == 4) laser->resolution = 2;
+    }
+  }
+  expect_same_bytes(world);
+}
+
 /// Grazing beams are flagged alike. (Exactly on the wall, either side may be the sensor's.)
 TEST(HostCast, AlongWalls) {
   world::World world;
