@@ -12,7 +12,7 @@ Cost cast_once(Caster& caster, std::size_t round) {
   caster.poison();
   const Cost start = now();
   caster.cast(round);
-  const Cost cost = now() - start;
+  const Cost cost = since(start);
   SF_CHECK(caster.unwritten() == 0, caster.name() + " left " + std::to_string(caster.unwritten()) + " rays unanswered");
   return cost;
 }

@@ -37,7 +37,7 @@ Cost measure_once(ConeMethod& method, std::size_t round, const ConeComparison& c
   method.poison();
   const Cost start = now();
   method.measure(round);
-  const Cost cost = now() - start;
+  const Cost cost = since(start);
   for (std::size_t i = 0; i < comparison.cones; ++i)
     SF_CHECK(!std::isnan(method.range(i % comparison.robots, i / comparison.robots)),
              method.name() + " left cones unanswered");

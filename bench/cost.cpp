@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
 #include "base/error.h"
 
@@ -20,6 +21,12 @@ Cost now() {
   getrusage(RUSAGE_SELF, &usage);
   const auto wall = std::chrono::steady_clock::now().time_since_epoch();
   return {std::chrono::duration<double>(wall).count(), seconds(usage.ru_utime) + seconds(usage.ru_stime)};
+}
+
+Cost since(const Cost& start) {
+  const double end = now().wall_s;
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return {end - start.wall_s, now().cpu_s - start.cpu_s};
 }
 
 double median(std::vector<double> values) {

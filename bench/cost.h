@@ -16,6 +16,10 @@ struct Cost {
 /// Time since a fixed point in the past.
 Cost now();
 
+/// Cost from `start` on. Sleeps for a millisecond, not counted, since a thread's time is counted when it sleeps: those
+/// of a pool spin for a while first.
+Cost since(const Cost& start);
+
 inline Cost operator-(const Cost& p, const Cost& q) { return {p.wall_s - q.wall_s, p.cpu_s - q.cpu_s}; }
 
 /// Median; the mean of the two middle values for an even count. @pre `values` is not empty

@@ -54,7 +54,7 @@ CurvePoint measure(gpu::Device& device, double count, bool wander, std::size_t t
   for (std::size_t k = 0; k < ticks; ++k) {
     const Cost begun = now();
     fleet.tick(wander);
-    costs.push_back(now() - begun);
+    costs.push_back(since(begun));
   }
   point.wall_s = median(costs).wall_s;
   point.cpu_s = median(costs).cpu_s;

@@ -90,7 +90,7 @@ FieldComparison compare(const FieldScene& scene, gpu::Device& device) {
     methods[k]->poison();
     const Cost start = now();
     methods[k]->sum(turn);
-    const Cost cost = now() - start;
+    const Cost cost = since(start);
     check_accuracy(scene, *methods[k], turn, comparison.method_results[k], largest);
     return cost;
   });

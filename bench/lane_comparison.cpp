@@ -23,7 +23,7 @@ Cost read_once(LaneReader& reader, std::size_t round, std::size_t sensors) {
   reader.poison();
   const Cost start = now();
   reader.read(round);
-  const Cost cost = now() - start;
+  const Cost cost = since(start);
   for (std::size_t i = 0; i < sensors; ++i)
     SF_CHECK(reader.reading(i).distance != kPoisonDistance, reader.name() + " left sensors unanswered");
   return cost;

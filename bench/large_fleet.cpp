@@ -77,7 +77,7 @@ class LargeFleet {
     publisher_.queue(addressed_readings_);
     publisher_.flush();
     encode_s_ += now().wall_s - sensed;
-    const Cost cost = now() - start;
+    const Cost cost = since(start);
     received_ += sink_.drain();
     return cost;
   }

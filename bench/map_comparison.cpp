@@ -156,7 +156,7 @@ MapComparison compare_maps(gpu::Device& device, std::uint32_t robots, double ran
   take_turns(comparison.method_results, repeats, mappers.back()->name(), [&](std::size_t k, std::size_t turn) {
     const Cost start = now();
     mappers[k]->update(rounds[turn % rounds.size()]);
-    return now() - start;
+    return since(start);
   });
   for (std::size_t k = 0; k < mappers.size(); ++k)
     check_accuracy(*mappers[k], *mappers.back(), robots, comparison.method_results[k]);

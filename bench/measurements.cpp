@@ -25,7 +25,7 @@ Cost tick_cost(farm::Farm& farm) {
   for (int k = 0; k < kRepeats + 2; ++k, time += 100'000'000) {
     const Cost start = now();
     farm.tick(time, {});
-    if (k >= 2) costs.push_back(now() - start);
+    if (k >= 2) costs.push_back(since(start));
   }
   return median(costs);
 }
@@ -92,7 +92,7 @@ std::vector<Measurement> measure_lists(gpu::Device& device) {
     farm.subscribe_all();
     const Cost start = now();
     farm.tick(0, {});
-    const Cost first = now() - start;
+    const Cost first = since(start);
     const Cost later = tick_cost(farm);
     const auto cells = static_cast<double>(farm.stats().work.cells_built);
     const std::string at = " at " + std::string(range > 1.0 ? "8" : "0.75") + " m";

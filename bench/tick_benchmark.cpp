@@ -84,7 +84,7 @@ TickResult run_ticks(const std::string& scene, const world::World& world, gpu::D
     if (!wander) poison(fleet.readings());
     const Cost start = now();
     fleet.tick(wander);
-    result.ticks.push_back(now() - start);
+    result.ticks.push_back(since(start));
     SF_CHECK(unwritten(fleet.readings()) == 0, "the farm left rays unanswered");
   }
   const auto n = static_cast<double>(ticks);

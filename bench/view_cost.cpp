@@ -112,7 +112,7 @@ double drive(scenarios::Simulation& simulation, bridges::Viewer* viewer, int tic
     next = std::max(next + kPeriod, Clock::now());  // what is late is not made up for: no update would be sent
     std::this_thread::sleep_until(next);
   }
-  return (now() - before).cpu_s / ticks;
+  return since(before).cpu_s / ticks;
 }
 
 void measure(double interval, std::uint32_t robots, double seconds, gpu::Device& device) {
