@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::uint32_t kPageBlocks = 4;
 constexpr std::uint32_t kFirstCells = 256, kFirstBlocks = 1u << 11;
-/// [blocks] Up to 42 MiB the cache grows rather than evict cells again, since robots return to their cells.
-constexpr std::uint32_t kKeptBlocks = 1u << 17;
+/// [blocks] Robots return to their cells: up to this size per view (21 KiB), and 42 MiB in all, the cache grows rather
+/// than evict cells again.
+constexpr std::size_t kKeptPerView = 64, kMostKept = 1u << 17;
 /// [blocks] Limit of the cache: a quarter of the machine's memory, between 0.7 and 2.7 GiB (100 000 robots need 1.4). A
 /// cell without room in the cache is rebuilt by each scan.
 std::uint32_t most_blocks() {
@@ -142,7 +143,7 @@ void HostScene::prepare(std::span<const Viewpoint> views) {
   static const std::uint32_t most = most_blocks();
   const std::uint64_t evicted = cells_.cache().evicted();
   for (build_missing_cells(); !cells_.missing().empty() && blocks_.size() < most; build_missing_cells()) grow();
-  if (cells_.cache().evicted() != evicted && blocks_.size() < kKeptBlocks) grow();
+  if (cells_.cache().evicted() != evicted && blocks_.size() < std::min(kKeptPerView * views.size(), kMostKept)) grow();
 }
 
 void HostScene::grow() {
