@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/apps/program.h"
+#include "tests/instrumented.h"
 #include "tests/viz/png.h"
 #include "viz/series_figure.h"
 
@@ -79,6 +80,7 @@ std::string short_path(const std::string& seconds, const std::string& controller
 
 /// The report's tables and the figures show the columns of the file that they name.
 TEST(ExperimentReport, SweepsShowTheColumnsOfTheirFile) {
+  if (instrumented()) GTEST_SKIP() << "140 runs: 8 s without instruments";
   const Folder folder;
   folder.write("sweeps.toml", short_path("2", "lane-keeping"));
   const Outcome outcome = run_program(
