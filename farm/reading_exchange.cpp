@@ -14,7 +14,8 @@ void put_all(std::span<const T> row, base::ByteWriter& out) {
 
 template <class T>
 std::span<const T> get_all(std::vector<T>& row, base::ByteReader& in) {
-  row.resize(std::min<std::size_t>(in.get<std::uint32_t>(), in.left() / sizeof(T)));
+  const auto said = in.get<std::uint32_t>();
+  row.resize(std::min<std::size_t>(said, in.left() / sizeof(T)));
   in.get_into(row.data(), row.size() * sizeof(T));
   return row;
 }

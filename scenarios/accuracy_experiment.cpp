@@ -21,7 +21,7 @@ struct Outcome {
   std::string test;
   std::string sensor;  ///< sensor type
   std::string mode;
-  double abs_error = 0.0;  ///< [m] or [T] of the controller; 0 without one
+  double abs_error = 0.0;  ///< [m], with magnetometers [Gauss], of the controller; 0 without one
   double max_error = 0.0;
   double missed = 0.0;  ///< [-] part of the visible cells that is not mapped
   double wrong = 0.0;   ///< [-] part of the known cells
@@ -101,9 +101,9 @@ std::string report_of(const ExperimentContext& context, const std::vector<Outcom
               ? "\n## Mapping, `explore`, by laser\n\n| mode | cells missed | cells wrong | contacts | time [s] | done "
                 "|\n|---|---|---|---|---|---|\n"
               : fmt::format(
-                    "\n## {}, by {}\n\n| mode | mean abs error | largest | contacts | time [s] | done "
+                    "\n## {0}, by {1}\n\n| mode | mean abs error [{2}] | largest [{2}] | contacts | time [s] | done "
                     "|\n|---|---|---|---|---|---|\n",
-                    o.test, o.sensor);
+                    o.test, o.sensor, o.sensor == "magnetometer" ? "Gauss" : "m");
     last = o.test;
     const std::string end =
         fmt::format("{:.2g} | {:.1f} | {} |\n", o.contacts, o.seconds, o.all_done ? "yes" : "**no**");
