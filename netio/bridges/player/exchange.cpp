@@ -33,6 +33,7 @@ void Exchange::publish(const base::TickRecord& tick, const RunState& state) {
   is_new_ = true;
   reports_.assign(tick.reports.begin(), tick.reports.end());
   contacts_.assign(tick.contacts.begin(), tick.contacts.end());
+  contacts_.resize(reports_.size());  // a service knows of none
   for (const base::ReadingBlock& reading : tick.readings) {
     const std::uint32_t slot = devices_.slot_of(reading.type, reading.mover, reading.sensor);
     if (slot == robots_[reading.mover].encoder) robots_[reading.mover].odometry.roll(reading);
