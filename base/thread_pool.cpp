@@ -13,7 +13,7 @@ namespace sf::base {
 
 namespace {
 
-constexpr int kTurnsAwake = 4000;  ///< about 80 us
+constexpr int kTurnsAwake = 4000;  ///< about 60 us
 
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
