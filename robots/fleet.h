@@ -102,10 +102,10 @@ class Fleet {
     std::uint32_t sectors = 0;
     glm::dvec2 away;  ///< world frame: the sum of unit vectors from the touching surfaces to the mover's origin
   };
-  /// A disc without walls round a former place: while a mover's way stays in it, no wall is searched for.
+  /// A disc without walls round a former place: while a mover's way stays in it, no wall is searched for. A mover's
+  /// height never changes.
   struct FreeDisc {
     glm::dvec2 centre;
-    double z = 0.0;       ///< [m] of the place: walls of other heights may be there
     double radius = 0.0;  ///< [m]
   };
   /// Buffers of one thread.

@@ -76,8 +76,7 @@ bool Fleet::is_in_free_disc(std::uint32_t row) const {
   constexpr double kMargin = 1e-6;  // [m] of rounding
   const FreeDisc& disc = free_discs_[row];
   const double reach = footprints_[row].radius + reach_of(row);
-  return progress_[row].X_WM.z == disc.z &&
-         length(origin(progress_[row].X_WM) - disc.centre) + reach + kMargin <= disc.radius;
+  return length(origin(progress_[row].X_WM) - disc.centre) + reach + kMargin <= disc.radius;
 }
 
 /// Looks farther than this tick needs. Near walls, the first one ends the search.
@@ -90,7 +89,7 @@ void Fleet::find_free_disc(std::uint32_t row) {
     free = std::min(free, gap + radius);
     return free <= near;
   });
-  free_discs_[row] = {origin(X_WM), X_WM.z, ended ? 0.0 : free};
+  free_discs_[row] = {origin(X_WM), ended ? 0.0 : free};
 }
 
 Fleet::Progress Fleet::advance_mover(std::uint32_t row, bool last, Scratch& scratch) const {

@@ -120,22 +120,6 @@ TEST(Crowd, MovesAsAFleetMadeAnewWould) {
   }
 }
 
-/// The floor above has other walls.
-TEST(Crowd, WaysWithoutWallsAreThoseOfAHeight) {
-  world::World world = scenes::empty_world();
-  scenes::add_wall(world, {0.8, -2}, {0.8, 2});
-  for (world::Segment& wall : world.walls) wall.z_min = 2.0, wall.z_max = 3.0;
-  scenes::add_create(world, {0, 0, 0, 0});
-  Fleet fleet(world);
-  const std::vector<Twist> ahead{{0.4, 0, 0}};
-  fleet.move(ahead, kTick);
-  std::vector<Report> upstairs{fleet.reports()[0]};
-  upstairs[0].X_WM.z = 2.2;
-  fleet.apply(upstairs);
-  for (int tick = 0; tick < 30; ++tick) fleet.move(ahead, kTick);
-  EXPECT_LT(fleet.reports()[0].X_WM.x, 0.8);
-}
-
 std::uint64_t hash_of_run(const world::World& world, int ticks) {
   Fleet fleet(world);
   std::uint64_t hash = 0;
