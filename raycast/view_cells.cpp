@@ -39,7 +39,7 @@ CellKey ViewCells::key_of(const Viewpoint& view, std::uint32_t last_slot) const 
   const double size = sizes_[view.config];
   CellKey key{2 * std::int64_t{view.config}, static_cast<std::int64_t>(std::floor(view.X_WS.x / size)),
               static_cast<std::int64_t>(std::floor(view.X_WS.y / size))};
-  // What no surface divides lies on one side as a whole: the result for one viewpoint holds for all.
+  // An undivided region lies on one side as a whole: the result for one viewpoint holds for all.
   const std::uint32_t part = part_of(view);
   const auto known = [&] {
     const std::uint32_t slot = cache_.slot_of(key, last_slot);

@@ -103,7 +103,7 @@ TEST(Crowd, NothingEverCrossesAnything) {
   EXPECT_GT(travelled, ticks / 3.0);
 }
 
-/// What a fleet keeps between ticks changes nothing.
+/// The discs that a fleet keeps between ticks change nothing.
 TEST(Crowd, MovesAsAFleetMadeAnewWould) {
   const world::World world = crowd();
   Fleet fleet(world);
