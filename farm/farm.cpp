@@ -306,6 +306,7 @@ void Farm::subscribe_all() {
 }
 
 const sensors::SensorSet& Farm::sensor_set() const { return s_->sensor_set; }
+base::ThreadPool& Farm::thread_pool() { return s_->thread_pool; }
 
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
   ++s_->stats.ticks;

@@ -27,6 +27,10 @@
 #include "sensors/sensor_set.h"
 #include "world/world.h"
 
+namespace sf::base {
+class ThreadPool;
+}
+
 namespace sf::farm {
 
 struct FarmOptions {
@@ -95,6 +99,8 @@ class Farm {
   void read_sensors(std::uint32_t mover, base::ByteReader& in);
 
   const sensors::SensorSet& sensor_set() const;
+  /// For the caller's own loops, between two calls: threads of a second pool would take the cores from these.
+  base::ThreadPool& thread_pool();
 
   /// Computes every subscribed sensor that is due at `now` and returns the readings delivered at `now` (latency may
   /// delay a reading). Movers without a report keep their pose. A sensor is due at phase + k / rate for k = 0, 1, ...;

@@ -8,8 +8,13 @@ namespace sf::farm {
 
 SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& g)
     : group(&g), backend(g.type->make(context)), cache(g.rows, context.noise) {
-  for (const sensors::SensorSpec& row : g.rows)
-    timings.push_back({row.rate, row.phase, 0, due_time(0, row.rate, row.phase), row.mover});
+  for (std::uint32_t i = 0; i < g.rows.size(); ++i) {
+    const sensors::SensorSpec& row = g.rows[i];
+    if (timings.empty() || timings.back().rate != row.rate || timings.back().phase != row.phase)
+      timings.push_back({row.rate, row.phase, 0, due_time(0, row.rate, row.phase), i, i});
+    timings.back().end = i + 1;
+    movers.push_back(row.mover);
+  }
   due.reserve(g.rows.size());
   to_measure.reserve(g.rows.size());
   blocks.reserve(g.rows.size());
@@ -19,30 +24,21 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::ui
   due.clear();
   std::uint64_t missed = 0;
   const std::uint32_t type = 1u << group->type->id;
-  // Consecutive sensors mostly have the same rate and phase.
-  double rate = -1.0, phase = 0.0;
-  std::uint64_t ready = 0, counted = 0;
-  std::int64_t then = 0;
-  for (std::uint32_t i = 0; i < timings.size(); ++i) {
-    Timing& row = timings[i];
-    if (now < row.next - 1) continue;
-    if (row.rate != rate || row.phase != phase) {
-      rate = row.rate, phase = row.phase;
-      ready = readings_started(now, rate, phase);
-      counted = ~std::uint64_t{0};
-    }
-    const std::uint64_t should = std::max(ready, row.started + (now >= row.next));
-    if (should <= row.started) continue;
-    const std::uint64_t skipped = should - row.started - 1;
-    row.started = should;
-    if (should != counted) then = due_time(should, rate, phase);
-    counted = should;
-    row.next = then;
+  for (Timing& timing : timings) {
+    if (now < timing.next - 1) continue;
+    const std::uint64_t ready = readings_started(now, timing.rate, timing.phase);
+    const std::uint64_t should = std::max(ready, timing.started + (now >= timing.next));
+    if (should <= timing.started) continue;
+    const std::uint64_t skipped = should - timing.started - 1;
+    timing.started = should;
+    timing.next = due_time(should, timing.rate, timing.phase);
     // Sequence numbers follow due times: a reading without subscription leaves a gap, and its random numbers stay
     // unused.
-    if ((subscribed[row.mover] & type) == 0) continue;
-    due.push_back({i, should - 1});
-    missed += skipped;
+    for (std::uint32_t row = timing.first; row < timing.end; ++row) {
+      if ((subscribed[movers[row]] & type) == 0) continue;
+      due.push_back({row, should - 1});
+      missed += skipped;
+    }
   }
   return missed;
 }
@@ -50,8 +46,11 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::ui
 std::int64_t SensorPipeline::next_due(std::span<const std::uint32_t> subscribed) const {
   const std::uint32_t type = 1u << group->type->id;
   std::int64_t soonest = kNever;
-  for (const Timing& row : timings)
-    if (row.next < soonest && (subscribed[row.mover] & type) != 0) soonest = row.next;
+  for (const Timing& timing : timings) {
+    if (timing.next >= soonest) continue;
+    for (std::uint32_t row = timing.first; row < timing.end && timing.next < soonest; ++row)
+      if ((subscribed[movers[row]] & type) != 0) soonest = timing.next;
+  }
   return soonest;
 }
 

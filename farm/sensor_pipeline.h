@@ -17,14 +17,15 @@ struct SensorPipeline {
   const sensors::SensorSet::Group* group = nullptr;
   std::unique_ptr<sensors::SensorBackend> backend;
   ReadingCache cache;
-  /// The due times of one sensor.
+  /// The due times of consecutive sensors with the same rate and phase.
   struct Timing {
-    double rate, phase;     ///< [Hz], [s]
-    std::uint64_t started;  ///< readings
-    std::int64_t next;      ///< [ns] due time of the next one
-    std::uint32_t mover;
+    double rate, phase;        ///< [Hz], [s]
+    std::uint64_t started;     ///< readings of each
+    std::int64_t next;         ///< [ns] due time of the next one
+    std::uint32_t first, end;  ///< rows
   };
-  std::vector<Timing> timings;  ///< per row
+  std::vector<Timing> timings;
+  std::vector<std::uint32_t> movers;  ///< per row
   std::vector<sensors::DueSample> due;
   std::vector<sensors::DueSample> to_measure;  ///< due sensors without a reusable reading
   std::vector<base::ReadingBlock> blocks;      ///< readings of all due sensors, in order

@@ -1,12 +1,14 @@
 #include "scenarios/simulation.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
 #include "base/elapsed.h"
 #include "base/error.h"
+#include "base/thread_pool.h"
 #include "base/time.h"
 #include "farm/schedule.h"
 #include "sensors/laser.h"
@@ -59,15 +61,14 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       starts_unchecked_(!world.unread.empty()),
       world_(part_ ? *part_ : world),
       roads_(world::roads_of(world_)),
-      thread_pool_(options.threads),
       farm_(world_, device, farm_options(options)),
-      fleet_(world_, &thread_pool_),
+      fleet_(world_, &farm_.thread_pool()),
       commands_(world.movers.size()),
       executed_commands_(world.movers.size()),
       first_(world.movers.size() + 1),
       intents_(world.movers.size()),
       next_intents_(world.movers.size()),
-      others_(thread_pool_.threads()),
+      others_(farm_.thread_pool().threads()),
       signals_(world.lights.size()),
       light_states_(world.lights.size()),
       absent_(world.movers.size(), false),
@@ -217,19 +218,30 @@ void Simulation::put(std::uint32_t mover, const base::Pose& X_WM) {
 }
 
 void Simulation::sort_by_mover(std::span<const base::ReadingBlock> readings) {
-  std::fill(first_.begin(), first_.end(), 0u);
-  bool in_order = true;
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    ++first_[readings[i].mover + 1];
-    in_order = in_order && (i == 0 || readings[i - 1].mover <= readings[i].mover);
-  }
-  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   by_mover_ = readings;
-  if (in_order && readings_.empty()) return;
+  if (readings_.empty() && index_by_mover(readings)) return;
+  std::fill(first_.begin(), first_.end(), 0u);
+  for (const base::ReadingBlock& r : readings) ++first_[r.mover + 1];
+  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   sorted_.resize(readings.size());
   next_.assign(first_.begin(), first_.end());
   for (const base::ReadingBlock& r : readings) sorted_[next_[r.mover]++] = r;
   by_mover_ = sorted_;
+}
+
+/// Sets `first_` for readings in order of movers. @return false for any other order
+bool Simulation::index_by_mover(std::span<const base::ReadingBlock> readings) {
+  std::atomic<bool> in_order{true};
+  farm_.thread_pool().parallel_for(readings.size(), 256, [&](std::size_t begin, std::size_t end, unsigned) {
+    std::uint32_t above = begin == 0 ? 0 : readings[begin - 1].mover + 1;  // the last reading's mover
+    for (std::size_t i = begin; i < end; ++i) {
+      if (readings[i].mover + 1 < above) in_order = false;
+      for (; above <= readings[i].mover; ++above) first_[above] = static_cast<std::uint32_t>(i);
+    }
+  });
+  const std::size_t rest = readings.empty() ? 0 : readings.back().mover + 1;
+  if (in_order) std::fill(first_.begin() + static_cast<std::ptrdiff_t>(rest), first_.end(), readings.size());
+  return in_order;
 }
 
 void Simulation::decide(std::int64_t time) {
@@ -238,7 +250,7 @@ void Simulation::decide(std::int64_t time) {
     light_states_[i] = world::status_of(signals_[i]);
   }
   if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
-  thread_pool_.parallel_for(controls_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
+  farm_.thread_pool().parallel_for(controls_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
     for (std::size_t m = begin; m < end; ++m) try_to_decide(static_cast<std::uint32_t>(m), time, thread);
   });
   if (exchange_) return;  // errors and intents of all ranks: `settle`

@@ -15,7 +15,6 @@
 #include <span>
 #include <vector>
 
-#include "base/thread_pool.h"
 #include "base/tick_record.h"
 #include "control/controllers.h"
 #include "farm/farm.h"
@@ -125,6 +124,7 @@ class Simulation {
   void move();
   std::span<const base::ReadingBlock> sense(std::int64_t time);
   void sort_by_mover(std::span<const base::ReadingBlock> readings);
+  bool index_by_mover(std::span<const base::ReadingBlock> readings);
   std::span<const base::Report> recorded_reports();
   void decide(std::int64_t time);
   void decide_one(std::uint32_t mover, std::int64_t time, unsigned thread);
@@ -143,7 +143,6 @@ class Simulation {
   bool starts_unchecked_ = false;     ///< the world's walls were not known at load
   const world::World& world_;
   std::optional<world::RoadNetwork> roads_;
-  base::ThreadPool thread_pool_;
   farm::Farm farm_;
   robots::Fleet fleet_;
   std::optional<StateLink> states_;  ///< none: the farm knows the true states

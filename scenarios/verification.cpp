@@ -66,8 +66,7 @@ class Verifier {
         options_(options),
         world_(world::from_snapshot(recording.info.snapshot)),
         farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads}),
-        reference_(world_, recording.info.seed),
-        thread_pool_(options.threads) {
+        reference_(world_, recording.info.seed) {
     for (const auto& [key, value] : recording.info.options)
       infinite_ = infinite_ || (key == "no_return" && value == "inf");
     for (std::size_t i = 0; i < recording.readings.size(); ++i) {
@@ -264,7 +263,7 @@ class Verifier {
       while (last < asked_.size() && asked_[last].time == asked_[first].time) ++last;
       poses_of(asked_[first], poses);
       reference_.set_poses(poses);
-      thread_pool_.parallel_for(last - first, 1, [&](std::size_t begin, std::size_t end, unsigned) {
+      farm_.thread_pool().parallel_for(last - first, 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = first + begin; i < first + end; ++i)
           scans[i] = reference_.scan(asked_[i].mover, asked_[i].sensor, asked_[i].sequence);
       });
@@ -291,7 +290,6 @@ class Verifier {
   const world::World world_;
   farm::Farm farm_;
   sensors::LaserReference reference_;
-  base::ThreadPool thread_pool_;
   bool infinite_ = false;
   bool recorded_ = false;                 ///< the recording has scans
   std::map<Name, std::size_t> readings_;  ///< recorded readings not compared yet
