@@ -12,7 +12,8 @@
 #include "bench/report.h"
 #include "bench/scans.h"
 #include "maps/grid_update.h"
-#include "sensors/occupancy_host.h"
+#include "sensors/occupancy_batch.h"
+#include "tests/maps/plain_scan.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::bench {
@@ -69,7 +70,7 @@ class Mapper {
 class FarmMapper : public Mapper {
  public:
   FarmMapper(gpu::Device& device, const std::vector<sensors::MapSettings>& map_settings)
-      : batch_(device, thread_pool_, map_settings, device.info().software ? sensors::kFarScan : maps::kMaxRangeCells) {
+      : batch_(device, thread_pool_, map_settings, device.info().software) {
     for (std::uint32_t i = 0; i < map_settings.size(); ++i) wanted_.push_back(i);
   }
   std::string name() const override { return "farm"; }
@@ -110,13 +111,13 @@ class PlainMapper : public Mapper {
         const maps::ScanView view{round.X_WS[i], round.ranges[i], beams_, map_settings_[i].range_min,
                                   map_settings_[i].range_max};
         const maps::TracedScan scan = maps::trace_scan(map_settings_[i].grid, view, ends_[thread]);
-        if (weighs_) maps::add_traced_scan(odds_[i], scan, ends_[thread], covered_[thread]);
-        if (!weighs_) maps::add_traced_scan(grids_[i], scan, ends_[thread]);
+        if (weighs_) trial::add_plainly(odds_[i], scan, ends_[thread], covered_[thread]);
+        if (!weighs_) trial::add_plainly(grids_[i], scan, ends_[thread]);
       }
     });
   }
   std::vector<std::uint32_t> words(std::uint32_t map) const override {
-    return weighs_ ? maps::to_occupancy(odds_[map]).words : grids_[map].words;
+    return weighs_ ? trial::plain_words(odds_[map]) : grids_[map].words;
   }
 
  private:

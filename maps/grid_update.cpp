@@ -1,44 +1,60 @@
 #include "maps/grid_update.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <utility>
+#include <bit>
+#include <cstring>
+
+#include "maps/scan_raster.h"
 
 namespace sf::maps {
 
 namespace {
 
-/// Frees all cells of one beam's line. `inside`: the whole line is inside the map.
-void free_line(OccupancyGrid& grid, CellAt sensor, std::int32_t columns, std::int32_t rows, bool inside) {
-  const bool flat = std::abs(columns) >= std::abs(rows);
-  const std::int32_t steps = std::abs(flat ? columns : rows);
-  const std::int32_t aside = std::abs(flat ? rows : columns);
-  const CellAt along = flat ? CellAt{columns < 0 ? -1 : 1, 0} : CellAt{0, rows < 0 ? -1 : 1};
-  const CellAt across = flat ? CellAt{0, rows < 0 ? -1 : 1} : CellAt{columns < 0 ? -1 : 1, 0};
-  CellAt at = sensor;
-  // floor((2 i aside + steps) / (2 steps)), kept as quotient (in `at`) and remainder.
-  std::int32_t rest = steps;
-  for (std::int32_t i = 0; i <= steps; ++i) {
-    if (inside || contains(grid.geometry, at)) grid.set(at, Cell::free);
-    at = {at.column + along.column, at.row + along.row};
-    rest += 2 * aside;
-    if (rest < 2 * steps) continue;
-    rest -= 2 * steps;
-    at = {at.column + across.column, at.row + across.row};
+ScanRaster& raster() {
+  thread_local ScanRaster own;
+  return own;
+}
+
+/// The states of sixteen cells, a byte each, as a word of a map.
+std::uint32_t word_of(const std::uint8_t* states) {
+  static_assert(std::endian::native == std::endian::little);
+  std::uint32_t word = 0;
+  for (int half = 0; half < 2; ++half) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, states + 8 * half, sizeof bits);
+    bits = (bits | bits >> 6) & 0x000F'000F'000F'000Fu;
+    bits = (bits | bits >> 12) & 0x0000'00FF'0000'00FFu;
+    bits = (bits | bits >> 24) & 0xFFFFu;
+    word |= static_cast<std::uint32_t>(bits) << 16 * half;
   }
+  return word;
+}
+
+/// Changes the log odds of a word's cells. @return their states
+std::uint32_t weigh(const LogOddsUpdate& rule, const std::uint8_t* covered, std::int16_t* odds) {
+  std::uint8_t states[16];
+  for (int i = 0; i < 16; ++i) {
+    const std::int32_t more = covered[i] == SF_CELL_OCCUPIED ? rule.hit : covered[i] == SF_CELL_FREE ? -rule.miss : 0;
+    const std::int32_t sum = std::clamp(odds[i] + more, -rule.limit, rule.limit);
+    odds[i] = static_cast<std::int16_t>(sum);
+    states[i] = static_cast<std::uint8_t>(sum > 0 ? SF_CELL_OCCUPIED : sum < 0 ? SF_CELL_FREE : SF_CELL_UNEXPLORED);
+  }
+  return word_of(states);
 }
 
 }  // namespace
 
 void add_traced_scan(OccupancyGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends) {
-  const CellBox part = intersect(scan.box, cells_of(grid.geometry));
-  if (is_empty(part)) return;
-  const bool inside = part.low == scan.box.low && part.high == scan.box.high;
-  for (const std::uint32_t end : ends) free_line(grid, scan.sensor, columns_of(end), rows_of(end), inside);
-  for (const std::uint32_t end : ends) {
-    const CellAt at{scan.sensor.column + columns_of(end), scan.sensor.row + rows_of(end)};
-    if (hit_of(end) && (inside || contains(grid.geometry, at))) grid.set(at, Cell::occupied);
-  }
+  raster().add(grid.geometry, scan, ends, [&](std::size_t at, const std::uint8_t* covered) {
+    const std::uint32_t states = word_of(covered), low = (states | states >> 1) & 0x5555'5555u;
+    grid.words[at] = (grid.words[at] & ~(low | low << 1)) | states;
+  });
+}
+
+void add_traced_scan(LogOddsGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends) {
+  raster().add(grid.geometry, scan, ends, [&](std::size_t at, const std::uint8_t* covered) {
+    grid.words[at] = weigh(grid.rule, covered, &grid.cells[16 * at]);
+  });
 }
 
 void add_scan(OccupancyGrid& grid, const ScanView& scan) {
@@ -46,44 +62,15 @@ void add_scan(OccupancyGrid& grid, const ScanView& scan) {
   add_traced_scan(grid, trace_scan(grid.geometry, scan, ends), ends);
 }
 
-void add_traced_scan(LogOddsGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends,
-                     OccupancyGrid& covered) {
-  const CellBox part = intersect(scan.box, cells_of(grid.geometry));
-  if (is_empty(part)) return;
-  add_traced_scan(covered, scan, ends);
-  for (std::int64_t row = part.low.row / 4; row <= (part.high.row - 1) / 4; ++row) {
-    for (std::int64_t column = part.low.column / 4; column <= (part.high.column - 1) / 4; ++column) {
-      const std::size_t word = covered.word_of({4 * column, 4 * row});
-      std::int16_t* odds = &grid.cells[16 * word];
-      for (std::uint32_t states = std::exchange(covered.words[word], 0u); states != 0; states >>= 2, ++odds) {
-        if ((states & 3u) == SF_CELL_UNEXPLORED) continue;
-        const std::int32_t more = (states & 3u) == SF_CELL_OCCUPIED ? grid.rule.hit : -grid.rule.miss;
-        *odds = static_cast<std::int16_t>(std::clamp(*odds + more, -grid.rule.limit, grid.rule.limit));
-      }
-    }
-  }
-}
-
 void add_scan(LogOddsGrid& grid, const ScanView& scan) {
   std::vector<std::uint32_t> ends(scan.ranges.size());
-  OccupancyGrid covered(grid.geometry);
-  add_traced_scan(grid, trace_scan(grid.geometry, scan, ends), ends, covered);
+  add_traced_scan(grid, trace_scan(grid.geometry, scan, ends), ends);
 }
 
 OccupancyGrid to_occupancy(const LogOddsGrid& grid) {
   OccupancyGrid states(grid.geometry);
-  write_occupancy(grid, states);
+  states.words = grid.words;
   return states;
-}
-
-void write_occupancy(const LogOddsGrid& grid, OccupancyGrid& states) {
-  std::fill(states.words.begin(), states.words.end(), 0u);
-  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
-    const std::uint32_t state = grid.cells[i] > 0   ? SF_CELL_OCCUPIED
-                                : grid.cells[i] < 0 ? SF_CELL_FREE
-                                                    : SF_CELL_UNEXPLORED;
-    states.words[i / 16] |= state << 2 * (i % 16);
-  }
 }
 
 }  // namespace sf::maps

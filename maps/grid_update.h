@@ -1,6 +1,6 @@
 #pragma once
-// Adds scans to a map, one at a time, on the host. The definition of the update, and the reference for the device,
-// whose result is bitwise equal.
+// Adds scans to a map, one at a time, on the host. The device's result is bitwise equal. Each thread keeps up to 4 MiB of
+// scratch memory (maps/scan_raster.h).
 //
 // The rule, after the thesis (4.4.3). The end of a beam is the cell of the point at its range (equations 9 and 10). The
 // line from the sensor's cell to the end is free: with n = max(|dc|, |dr|) steps along the longer axis (columns when
@@ -37,21 +37,17 @@ struct LogOddsUpdate {
 struct LogOddsGrid {
   GridGeometry geometry;
   LogOddsUpdate rule;
-  std::vector<std::int16_t> cells;  ///< 16 a word
+  std::vector<std::int16_t> cells;   ///< 16 a word, within +-limit
+  std::vector<std::uint32_t> words;  ///< as of OccupancyGrid: occupied above 0, free below, unexplored at 0
 
   LogOddsGrid(const GridGeometry& p, const LogOddsUpdate& r)
-      : geometry(p), rule(r), cells(16 * std::size_t{words(p)}) {}
+      : geometry(p), rule(r), cells(16 * std::size_t{maps::words(p)}), words(maps::words(p)) {}
 };
 
 /// Updates each cell that the scan covers once: as occupied, or else as free.
 void add_scan(LogOddsGrid& grid, const ScanView& scan);
-/// @param covered scratch map of the same geometry: unexplored before and after
-void add_traced_scan(LogOddsGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends,
-                     OccupancyGrid& covered);
+void add_traced_scan(LogOddsGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends);
 
-/// Occupied above 0, free below, unexplored at 0.
 OccupancyGrid to_occupancy(const LogOddsGrid& grid);
-/// @param states of the same geometry: overwritten
-void write_occupancy(const LogOddsGrid& grid, OccupancyGrid& states);
 
 }  // namespace sf::maps

@@ -6,7 +6,7 @@
 #include "maps/map_packets.h"
 #include "raycast/caster_choice.h"
 #include "sensors/laser.h"
-#include "sensors/occupancy_host.h"
+#include "sensors/occupancy_batch.h"
 #include "sensors/occupancy_packets.h"
 
 namespace sf::sensors {
@@ -46,16 +46,14 @@ std::vector<MapSettings> map_settings_of(const std::vector<Occupancy>& all) {
   return map_settings;
 }
 
-/// [cells] largest range of scans on the device.
-double farthest_on(const SensorContext& context) {
-  const bool host =
-      raycast::choose_caster(context.device.info().software, context.scene.caster) == raycast::CasterChoice::host;
-  return host ? kFarScan : maps::kMaxRangeCells;
+/// As rays are: a software device is slower at both.
+bool on_host(const SensorContext& context) {
+  return raycast::choose_caster(context.device.info().software, context.scene.caster) == raycast::CasterChoice::host;
 }
 
 Occupancies::Occupancies(const SensorContext& context)
     : maps_(occupancies_of(context.world)),
-      batch_(context.device, context.thread_pool, map_settings_of(maps_), farthest_on(context)),
+      batch_(context.device, context.thread_pool, map_settings_of(maps_), on_host(context)),
       flags_(context.true_poses ? maps::kTruePoses : 0) {
   std::size_t values = 0;
   for (std::uint32_t i = 0; i < maps_.size(); ++i) {

@@ -5,13 +5,15 @@
 
 #include "base/error.h"
 #include "gpu/group_counts.h"
+#include "sensors/occupancy_host.h"
 #include "sensors/occupancy_tables.h"
 
 namespace sf::sensors {
 
 namespace {
 
-constexpr float kBearingSlack = 1e-3f;  ///< [rad] many times the error of 32 bits and of the polynomial
+constexpr std::size_t kMostOfAll = 1u << 27;  ///< words of all maps; pairs of beams of all their lasers
+constexpr float kBearingSlack = 1e-3f;        ///< [rad] many times the error of 32 bits and of the polynomial
 
 BeamLine line_of(std::uint32_t end) {
   const std::int32_t columns = maps::columns_of(end);
@@ -189,32 +191,48 @@ void MapBatch::Tables::send() {
     batch.download(*words, 4 * std::size_t{all[map].words}, 4 * std::size_t{maps::words(all[map].settings.grid)});
 }
 
+void MapBatch::Tables::update(std::span<const MapScan> some, std::span<const std::uint32_t> read) {
+  scans.assign(some.begin(), some.end());
+  wanted.assign(read.begin(), read.end());
+  if (scans.empty() && (wanted.empty() || unified)) return;
+  trace();
+  assign_blocks();
+  mark_hits();
+  send();
+  batch.run();
+}
+
 MapBatch::MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapSettings> map_settings,
-                   double farthest)
-    : t_(std::make_unique<Tables>(device, thread_pool, std::move(map_settings), farthest)) {}
+                   bool on_host)
+    : maps_(map_settings.size()) {
+  std::size_t words = 0, beams = 0;
+  for (const MapSettings& p : map_settings) {
+    SF_CHECK(maps::is_valid(p.grid) && p.samples >= 1 && p.samples <= kMostMapBeams,
+             std::to_string(p.samples) + " beams on a map of " + std::to_string(p.grid.cell) + " m cells");
+    words += maps::words(p.grid);
+    beams += pairs_of(p);
+    if (words >= kMostOfAll || beams >= kMostOfAll)
+      throw base::DeviceError("the maps of all robots have more than " + std::to_string(kMostOfAll) +
+                              " words or beams; use fewer robots or smaller maps");
+  }
+  if (on_host)
+    host_ = std::make_unique<HostMaps>(map_settings, thread_pool);
+  else
+    t_ = std::make_unique<Tables>(device, thread_pool, std::move(map_settings));
+}
 
 MapBatch::~MapBatch() = default;
 
 void MapBatch::update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted) {
-  Tables& t = *t_;
-  SF_CHECK(scans.size() <= t.all.size(), std::to_string(scans.size()) + " scans for fewer maps");
-  t.on_host.update(scans, wanted, t.thread_pool);
-  t.scans.clear();
-  t.wanted.clear();
-  for (const MapScan& scan : scans)
-    if (!t.on_host.has(scan.map)) t.scans.push_back(scan);
-  for (const std::uint32_t map : wanted)
-    if (!t.on_host.has(map)) t.wanted.push_back(map);
-  if (t.scans.empty() && (t.wanted.empty() || t.unified)) return;
-  t.trace();
-  t.assign_blocks();
-  t.mark_hits();
-  t.send();
-  t.batch.run();
+  SF_CHECK(scans.size() <= maps_, std::to_string(scans.size()) + " scans for fewer maps");
+  if (host_)
+    host_->update(scans);
+  else
+    t_->update(scans, wanted);
 }
 
 std::span<const std::uint32_t> MapBatch::words(std::uint32_t map) const {
-  if (t_->on_host.has(map)) return t_->on_host.words(map);
+  if (host_) return host_->words(map);
   return t_->words->host<std::uint32_t>().subspan(t_->all[map].words, maps::words(t_->all[map].settings.grid));
 }
 

@@ -36,14 +36,15 @@ struct MapScan {
   std::span<const double> ranges;  ///< [m] `samples` values
 };
 
+class HostMaps;
+
 /// Not thread-safe. `device` and `thread_pool` must outlive it.
 class MapBatch {
  public:
   /// All maps start unexplored.
-  /// @param farthest [cells] largest range of scans on the device; the host enters the others
+  /// @param on_host the host enters the scans; else the device, which holds the maps
   /// @throws base::DeviceError when the device cannot hold the maps
-  MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapSettings> map_settings,
-           double farthest = maps::kMaxRangeCells);
+  MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapSettings> map_settings, bool on_host);
   ~MapBatch();
 
   /// Enters scans, at most one per map. @param wanted maps whose words will be read
@@ -54,6 +55,8 @@ class MapBatch {
 
  private:
   struct Tables;
+  std::size_t maps_;
+  std::unique_ptr<HostMaps> host_;  ///< or `t_`
   std::unique_ptr<Tables> t_;
 };
 

@@ -15,8 +15,6 @@ namespace {
 using gpu::Role;
 using gpu::Texel;
 
-constexpr std::size_t kMostOfAll = 1u << 27;  ///< words of all maps; pairs of beams of all their lasers
-
 /// Blocks of a map's words, and of its strips, for a scan that covers the whole map.
 std::size_t word_blocks(const maps::GridGeometry& geometry) {
   return std::size_t{units_of(geometry.word_columns, SF_MAP_BLOCK)} * geometry.word_rows;
@@ -30,9 +28,8 @@ std::size_t strip_blocks(const maps::GridGeometry& geometry) {
 
 }  // namespace
 
-MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapSettings> map_settings,
-                         double farthest)
-    : thread_pool(w), on_host(map_settings, farthest), unified(device.unified()), batch(device) {
+MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapSettings> map_settings)
+    : thread_pool(w), unified(device.unified()), batch(device) {
   lay_out(std::move(map_settings));
   assign_layout();
   rows = std::make_unique<gpu::Buffer>(device, "due maps", Role::upload, Texel::u32x4,
@@ -44,8 +41,7 @@ MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<M
   words = std::make_unique<gpu::Buffer>(device, "maps", Role::download, Texel::u32, all_words + 1);
   std::fill_n(words->host<std::uint32_t>().data(), all_words + 1, 0u);
   std::size_t most = 0;
-  for (std::uint32_t i = 0; i < all.size(); ++i)
-    if (!on_host.has(i)) most += strip_blocks(all[i].settings.grid);
+  for (const MapLayout& map : all) most += strip_blocks(map.settings.grid);
   const std::size_t lanes = make_dispatch(device, "strips of a map", strips, occupancy_strips_comp_spv, most);
   covered = std::make_unique<gpu::Buffer>(device, "covered cells", Role::download, Texel::u32, lanes);
   make_words(device, "map", plain, occupancy_comp_spv, false);
@@ -60,8 +56,6 @@ MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<M
 
 void MapBatch::Tables::lay_out(std::vector<MapSettings> map_settings) {
   for (MapSettings& p : map_settings) {
-    SF_CHECK(maps::is_valid(p.grid) && p.samples >= 1 && p.samples <= kMostMapBeams,
-             std::to_string(p.samples) + " beams on a map of " + std::to_string(p.grid.cell) + " m cells");
     auto& fan = fans[{p.fov, p.samples}];
     if (fan.empty()) fan = maps::beam_directions(p.fov, p.samples);
     all.push_back({std::move(p), 0, 0, &fan});
@@ -70,16 +64,11 @@ void MapBatch::Tables::lay_out(std::vector<MapSettings> map_settings) {
 }
 
 void MapBatch::Tables::assign_layout() {
-  for (std::uint32_t i = 0; i < all.size(); ++i) {
-    if (on_host.has(i)) continue;
-    MapLayout& map = all[i];
+  for (MapLayout& map : all) {
     map.words = static_cast<std::uint32_t>(all_words);
     map.lines = static_cast<std::uint32_t>(all_lines);
     all_words += maps::words(map.settings.grid);
     all_lines += pairs_of(map.settings);
-    if (all_words >= kMostOfAll || all_lines >= kMostOfAll)
-      throw base::DeviceError("the maps of all robots have more than " + std::to_string(kMostOfAll) +
-                              " words or beams; use fewer robots or smaller maps");
   }
 }
 
@@ -98,8 +87,8 @@ std::size_t MapBatch::Tables::make_dispatch(gpu::Device& device, const char* nam
 void MapBatch::Tables::make_words(gpu::Device& device, const char* name, MapWords& part,
                                   std::span<const std::uint32_t> spirv, bool has_log_odds) {
   std::size_t most = 0;
-  for (std::uint32_t i = 0; i < all.size(); ++i)
-    if (!on_host.has(i) && all[i].settings.odds.has_value() == has_log_odds) most += word_blocks(all[i].settings.grid);
+  for (const MapLayout& map : all)
+    if (map.settings.odds.has_value() == has_log_odds) most += word_blocks(map.settings.grid);
   const std::size_t lanes = make_dispatch(device, name, part.dispatch, spirv, most);
   part.hit_words = std::make_unique<gpu::Buffer>(device, "struck cells", Role::upload, Texel::u32, lanes);
 }

@@ -13,7 +13,6 @@
 #include "gpu/kernel.h"
 #include "maps/traced_scan.h"
 #include "sensors/occupancy_batch.h"
-#include "sensors/occupancy_host.h"
 #include "sensors/occupancy_records.h"
 
 namespace sf::sensors {
@@ -56,7 +55,6 @@ inline std::uint32_t pairs_of(const MapSettings& settings) { return (settings.sa
 
 struct MapBatch::Tables {
   base::ThreadPool& thread_pool;
-  HostMaps on_host;
   bool unified;
   std::vector<MapLayout> all;
   std::size_t all_words = 0, all_lines = 0;  ///< on the device
@@ -76,7 +74,8 @@ struct MapBatch::Tables {
   gpu::Batch batch;
   bool blank = true;  ///< maps are not yet on the device
 
-  Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapSettings> map_settings, double farthest);
+  Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapSettings> map_settings);
+  void update(std::span<const MapScan> some, std::span<const std::uint32_t> read);
   void lay_out(std::vector<MapSettings> map_settings);
   void assign_layout();
   std::size_t make_dispatch(gpu::Device& device, const char* name, MapDispatch& dispatch,

@@ -27,7 +27,7 @@ maps::GridGeometry grid_over(const world::Extent& extent) {
   return {extent.x_min, extent.y_max, cell, words(width), words(height)};
 }
 
-ScanMap::ScanMap(const maps::GridGeometry& geometry) : odds_(geometry, kRule), covered_(geometry) {}
+ScanMap::ScanMap(const maps::GridGeometry& geometry) : odds_(geometry, kRule) {}
 
 void ScanMap::add(const world::World& world, const base::ReadingBlock& scan) {
   const sensors::LaserSettings laser = sensors::lasers_of(world.movers[scan.mover])[scan.sensor];
@@ -44,7 +44,7 @@ void ScanMap::add(const world::World& world, const base::ReadingBlock& scan) {
     const bool moves = scan.hits[k] != base::kNoHit && world.models[scan.hits[k]].mover != world::kNone;
     if (moves) ends_[k] = maps::without_hit(ends_[k]);
   }
-  maps::add_traced_scan(odds_, traced, ends_, covered_);
+  maps::add_traced_scan(odds_, traced, ends_);
 }
 
 }  // namespace sf::viz

@@ -61,7 +61,7 @@ OwnMap::OwnMap(const world::World& world, std::uint32_t mover, const OwnMapOptio
       options_(options),
       robot_(static_cast<std::uint16_t>(world.movers[mover].id)),
       session_(netio::random_session()),
-      map_({&settings_.settings, 1}, 0.0),
+      map_({&settings_.settings, 1}, thread_pool_),
       words_(settings_.row.elements) {
   const std::string problem = sensors::occupancy_wire_problem(settings_.row, options.wire);
   if (!problem.empty()) throw base::InputError("--map: " + problem);
@@ -72,15 +72,13 @@ void OwnMap::add(const base::ReadingBlock& reading, const base::Pose& X_WM) {
   if ((last_scan_ && reading.time <= *last_scan_) || reading.values.size() != settings_.settings.samples) return;
   last_scan_ = reading.time;
   const sensors::MapScan scan{0, base::compose(X_WM, X_ML_), reading.values};
-  map_.update({&scan, 1}, {}, thread_pool_);
+  map_.update({&scan, 1});
   ++scans_;
 }
 
 void OwnMap::send(std::int64_t now, bool true_poses) {
   if (now < next_ || scans_ == 0) return;
   next_ = now + std::llround(1e9 / settings_.row.rate);
-  constexpr std::uint32_t kWanted = 0;
-  map_.update({}, {&kWanted, 1}, thread_pool_);
   const std::span<const std::uint32_t> words = map_.words(0);
   std::copy(words.begin(), words.end(), words_.begin());
 

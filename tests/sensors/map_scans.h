@@ -7,6 +7,7 @@
 
 #include "maps/grid_update.h"
 #include "sensors/occupancy_batch.h"
+#include "tests/maps/plain_scan.h"
 #include "tests/sensors/chance.h"
 
 namespace sf::trial {
@@ -43,7 +44,7 @@ inline base::Pose odd_pose(Chance& chance, const sensors::MapSettings& settings)
   return X;
 }
 
-/// The reference: the update rule itself.
+/// The reference.
 class PlainMaps {
  public:
   explicit PlainMaps(const std::vector<sensors::MapSettings>& map_settings) : map_settings_(map_settings) {
@@ -56,11 +57,14 @@ class PlainMaps {
   void update(const sensors::MapScan& scan) {
     const sensors::MapSettings& settings = map_settings_[scan.map];
     const maps::ScanView view{scan.X_WS, scan.ranges, beams_[scan.map], settings.range_min, settings.range_max};
-    if (settings.odds) maps::add_scan(odds_[scan.map], view);
-    if (!settings.odds) maps::add_scan(grids_[scan.map], view);
+    std::vector<std::uint32_t> ends(scan.ranges.size());
+    const maps::TracedScan traced = maps::trace_scan(settings.grid, view, ends);
+    maps::OccupancyGrid covered(settings.grid);
+    if (settings.odds) add_plainly(odds_[scan.map], traced, ends, covered);
+    if (!settings.odds) add_plainly(grids_[scan.map], traced, ends);
   }
   std::vector<std::uint32_t> words(std::uint32_t map) const {
-    return map_settings_[map].odds ? maps::to_occupancy(odds_[map]).words : grids_[map].words;
+    return map_settings_[map].odds ? plain_words(odds_[map]) : grids_[map].words;
   }
 
  private:
