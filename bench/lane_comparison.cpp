@@ -9,8 +9,8 @@
 #include "base/hash.h"
 #include "bench/lane_methods.h"
 #include "bench/report.h"
+#include "sensors/lane_markings/host_fit.h"
 #include "tests/sensors/brute_force.h"
-#include "tests/sensors/laneedge_mirror.h"
 
 namespace sf::bench {
 
@@ -42,9 +42,9 @@ sensors::EdgeReading brute_force(const LaneScene& scene, const LaneKnowledge& kn
     ranges.push_back(answer.range);
     tags.push_back(answer.model);
   }
-  mirror::Points points;
-  mirror::make_points(known.rows[i], ranges, tags, known.job.directions, {}, points);
-  return mirror::read_edge(known.rows[i], points, known.job.grains);
+  sensors::fit::Points points;
+  sensors::fit::make_points(known.rows[i], {ranges.data(), tags.data(), known.job.directions.data(), nullptr}, points);
+  return sensors::fit::read_edge(known.rows[i], points, known.job.grains);
 }
 
 void check_accuracy(const LaneReader& reader, const std::vector<sensors::EdgeReading>& right, std::size_t every,

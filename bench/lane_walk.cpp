@@ -2,7 +2,7 @@
 
 #include "bench/lane_walk.h"
 
-#include "tests/sensors/laneedge_mirror.h"
+#include "sensors/lane_markings/host_fit.h"
 
 namespace sf::bench {
 
@@ -101,9 +101,9 @@ void SF_READ_LANE(const LaneJob& job, const sensors::EdgeRow& row, const base::P
     walk_fan(job, X_WS, ranges, tags);
   else
     job.walk(*job.grid, X_WS, job.beams, job.range_max, ranges, tags);
-  mirror::Points points;
-  mirror::make_points(row, {ranges, row.beams}, {tags, row.beams}, job.directions, {}, points);
-  out = mirror::read_edge(row, points, job.grains);
+  sensors::fit::Points points;
+  sensors::fit::make_points(row, {ranges, tags, job.directions.data(), nullptr}, points);
+  out = sensors::fit::read_edge(row, points, job.grains);
 }
 
 }  // namespace sf::bench

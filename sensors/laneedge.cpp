@@ -43,16 +43,21 @@ class LaneEdges : public SensorBackend {
   void place_movers() override { caster_.place_movers(); }
   bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch& batch) override;
-  void record_derive(gpu::Batch& batch) override { fit_.record(batch); }
+  void record_derive(gpu::Batch& batch) override {
+    if (on_device()) fit_.record(batch);
+  }
   void add_copies(gpu::Batch& batch) override;
   void collect(std::span<base::ReadingBlock> out) override;
   SensorStats stats() const override { return caster_.stats(); }
+  bool on_device() const override { return !exact_ || caster_.on_device(); }
 
  private:
   void make_raster_caster(const SensorContext& context);
   void bind();
+  void write(std::size_t i, base::ReadingBlock& block);
   void state(std::size_t i, base::ReadingBlock& block);
 
+  base::ThreadPool& thread_pool_;
   std::vector<LaneEdge> edges_;
   bool noise_;
   bool exact_;  ///< markings are exact outlines, not pixels
@@ -68,14 +73,15 @@ class LaneEdges : public SensorBackend {
 };
 
 LaneEdges::LaneEdges(const SensorContext& context)
-    : edges_(lane_edges_of(context.world)),
+    : thread_pool_(context.thread_pool),
+      edges_(lane_edges_of(context.world)),
       noise_(context.noise),
       exact_(!uses_raster(context.world)),
       scene_(filter_scene(context.world, exact_)),
       longest_(reaches_of(scene_.world).longest),
       caster_(context, scene_.world, scanners_of(edges_)),
       casting_(exact_ || anything_else(scene_.world)),
-      fit_(context, edges_, scene_.grains) {
+      fit_(context, edges_, scene_.grains, !on_device()) {
   if (!exact_) make_raster_caster(context);
 }
 
@@ -93,6 +99,7 @@ bool LaneEdges::prepare(std::span<const DueSample> due) {
   for (std::size_t i = 0; i < due.size(); ++i) lanes_[i] = caster_.results(i).lane;
   if (raster_caster_) raster_caster_->prepare(due.size());
   fit_.prepare(due, lanes_);
+  if (!on_device()) return false;
   if (again) bind();
   return again;
 }
@@ -106,6 +113,7 @@ void LaneEdges::bind() {
 }
 
 void LaneEdges::record_measure(gpu::Batch& batch) {
+  if (!on_device()) return;
   if (casting_) caster_.record(batch);
   if (casting_) batch.barrier();
   if (raster_caster_)
@@ -115,6 +123,7 @@ void LaneEdges::record_measure(gpu::Batch& batch) {
 }
 
 void LaneEdges::add_copies(gpu::Batch& batch) {
+  if (!on_device()) return;
   caster_.add_copies(batch, false);
   if (raster_caster_) raster_caster_->add_copies(batch);
   fit_.add_copies(batch);
@@ -136,20 +145,25 @@ void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   if (why != base::QualityFlag::none) block.quality = {&kReasons[static_cast<std::size_t>(why)], 1};
 }
 
+void LaneEdges::write(std::size_t i, base::ReadingBlock& block) {
+  const LaneEdge& edge = edges_[due_[i].row];
+  if (!on_device())
+    fit_.fit_on_host(i, lanes_[i], caster_.ranges().host<double>(), caster_.hits().host<std::uint32_t>());
+  block = {};
+  block.mover = edge.row.mover;
+  block.sensor = edge.row.sensor;
+  block.type = kLaneEdge;
+  block.X_WS = caster_.X_WS(i);
+  block.values = fit_.values(i);
+  block.mode = edge.row.mode;
+  state(i, block);
+}
+
 void LaneEdges::collect(std::span<base::ReadingBlock> out) {
   if (casting_) caster_.count();
-  for (std::size_t i = 0; i < due_.size(); ++i) {
-    const LaneEdge& edge = edges_[due_[i].row];
-    base::ReadingBlock block;
-    block.mover = edge.row.mover;
-    block.sensor = edge.row.sensor;
-    block.type = kLaneEdge;
-    block.X_WS = caster_.X_WS(i);
-    block.values = fit_.values(i);
-    block.mode = edge.row.mode;
-    state(i, block);
-    out[i] = block;
-  }
+  thread_pool_.parallel_for(due_.size(), 16, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) write(i, out[i]);
+  });
 }
 
 std::vector<SensorSpec> specs_of(const world::World& world) {

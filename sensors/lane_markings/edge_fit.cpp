@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "gpu/group_counts.h"
+#include "sensors/lane_markings/host_fit.h"
 #include "shaders/laneedge.comp.h"
 #include "shaders/laneedge_points.comp.h"
 
@@ -68,15 +69,18 @@ EdgeFit::Plan EdgeFit::plan(const SensorContext& context, const std::vector<Lane
   return plan;
 }
 
-EdgeFit::EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edges, const std::vector<double>& grains)
+EdgeFit::EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edges, const std::vector<double>& grains,
+                 bool on_host)
     : thread_pool_(context.thread_pool),
       seed_(context.seed),
       edges_(edges),
+      sizes_(grains),
+      on_host_(on_host),
       plan_(plan(context, edges)),
       kernel_(context.device, "line through points", laneedge_comp_spv),
       maker_(context.device, "points of paint", laneedge_points_comp_spv),
       rows_(context.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4,
-            gpu::texels_of<EdgeRow>(kernel_.padded(edges.size()))),
+            gpu::texels_of<EdgeRow>(kernel_.padded(on_host ? 1 : edges.size()))),
       directions_(context.device, "bearings", gpu::Role::upload, gpu::Texel::u32x4,
                   SF_BEAMS_PER_LANE * std::size_t{plan_.direction_lanes}),
       normals_(context.device, "normal deviates", gpu::Role::upload, gpu::Texel::f32x4, plan_.noise_lanes),
@@ -85,8 +89,9 @@ EdgeFit::EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edge
                 gpu::texels_of<EdgeReading>(edges.size())),
       groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
       points_(context.device, "points", gpu::Role::download, gpu::Texel::u32x4,
-              SF_BEAMS_PER_LANE * (std::size_t{plan_.lanes} + 1)),
-      order_(context.device, "order of work", gpu::Role::upload, gpu::Texel::u32, kernel_.padded(edges.size())),
+              SF_BEAMS_PER_LANE * (on_host ? 1 : std::size_t{plan_.lanes} + 1)),
+      order_(context.device, "order of work", gpu::Role::upload, gpu::Texel::u32,
+             kernel_.padded(on_host ? 1 : edges.size())),
       mixtures_(context.device, "mixtures", gpu::Role::download, gpu::Texel::u32, edges.size()) {
   kernel_.bind({{"rows", &rows_},
                 {"points", &points_},
@@ -122,7 +127,7 @@ std::span<const double> EdgeFit::directions(std::uint32_t edge) {
 
 void EdgeFit::prepare(std::span<const DueSample> due, std::span<const std::uint32_t> lanes) {
   due_.assign(due.begin(), due.end());
-  write_order(write_rows(lanes));
+  if (!on_host_) write_order(write_rows(lanes));
   if (!plan_.any_noise) return;
   thread_pool_.parallel_for(due_.size(), 16, [this](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) draw_noise(due_[i]);
@@ -178,6 +183,19 @@ void EdgeFit::draw_noise(const DueSample& due) {
   float* const out = normals_.host<float>().data() + SF_BEAMS_PER_LANE * std::size_t{row.noise};
   for (std::uint32_t k = 0; k < row.beams; ++k)
     out[plan_.beams[due.row].place(k)] = static_cast<float>(base::random_normal(draw, k)[0]);
+}
+
+void EdgeFit::fit_on_host(std::size_t i, std::uint32_t lane, std::span<const double> ranges,
+                          std::span<const std::uint32_t> tags) {
+  const EdgeRow& row = plan_.rows[due_[i].row];
+  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{lane};
+  fit::Points points;
+  fit::make_points(row,
+                   {ranges.data() + first, tags.data() + first, directions(due_[i].row).data(),
+                    normals_.host<float>().data() + SF_BEAMS_PER_LANE * std::size_t{row.noise},
+                    plan_.beams[due_[i].row].packed ? 1u : SF_BEAMS_PER_LANE},
+                   points);
+  readings_.host<EdgeReading>()[i] = fit::read_edge(row, points, sizes_);
 }
 
 void EdgeFit::bind(gpu::Buffer& lanes, gpu::Buffer& ranges, gpu::Buffer& hits) {

@@ -1,5 +1,5 @@
 #pragma once
-// Fits lane edges on the device: one dispatch for the points of all due sensors.
+// Fits lane edges: on the device, in one dispatch for the points of all due sensors, or on the host, as rays are cast.
 
 #include <cstdint>
 #include <span>
@@ -26,9 +26,11 @@ struct PointTables {
 class EdgeFit {
  public:
   /// @param grains [m] pixel sizes; tags hold indices into them
+  /// @param on_host nothing is recorded: `fit_on_host` for each due sensor after `prepare`
   /// @throws base::DeviceError when the device cannot hold the tables, base::InputError for more sensors than one
   /// dispatch takes.
-  EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edges, const std::vector<double>& grains);
+  EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edges, const std::vector<double>& grains,
+          bool on_host);
 
   /// @param lanes first result lane of each due sensor
   void prepare(std::span<const DueSample> due, std::span<const std::uint32_t> lanes);
@@ -41,6 +43,9 @@ class EdgeFit {
   }
   void record(gpu::Batch& batch) const { batch.dispatch(kernel_, groups_, 0); }
   void add_copies(gpu::Batch& batch);
+  /// Fits the i-th due sensor's edge; several threads may fit different ones. @param ranges, tags as in `bind`
+  void fit_on_host(std::size_t i, std::uint32_t lane, std::span<const double> ranges,
+                   std::span<const std::uint32_t> tags);
 
   /// Columns and full record of the i-th due sensor. Both are valid until the next `prepare`.
   std::span<const double> values(std::size_t i) {
@@ -73,6 +78,8 @@ class EdgeFit {
   base::ThreadPool& thread_pool_;
   std::uint64_t seed_;
   const std::vector<LaneEdge>& edges_;
+  std::vector<double> sizes_;  ///< [m] of pixels
+  bool on_host_;
   Plan plan_;
   std::vector<DueSample> due_;
   std::vector<std::uint32_t> written_;  ///< due rows, in order, in the current `rows_`

@@ -8,9 +8,9 @@
 
 #include "base/random.h"
 #include "sensors/lane_markings/edge_fit.h"
+#include "sensors/lane_markings/host_fit.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
-#include "tests/sensors/laneedge_mirror.h"
 #include "tests/sensors/laneedge_trial.h"
 
 namespace sf::trial {
@@ -30,7 +30,7 @@ const std::vector<double> kGrains{0.0, 0.005, 0.02};
 class FitRig {
  public:
   explicit FitRig(const std::vector<Settings>& settings)
-      : context_{world_, device(), thread_pool_, {}}, edges_(edges_of(settings)), fit_(context_, edges_, kGrains) {}
+      : context_{world_, device(), thread_pool_, {}}, edges_(edges_of(settings)), fit_(context_, edges_, kGrains, false) {}
 
   std::vector<EdgeReading> read(const std::vector<Shot>& shots) {
     std::vector<sensors::DueSample> due;
@@ -89,9 +89,11 @@ class FitRig {
       directions.push_back(fit_.directions(i)[2 * plan.place(k) + 1]);
       normals.push_back(static_cast<float>(base::random_normal(draw, k)[0]));
     }
-    mirror::Points points;
-    mirror::make_points(fit_.rows()[i], shot.ranges, shot.tags, directions, normals, points);
-    return mirror::read_edge(fit_.rows()[i], points, kGrains);
+    sensors::fit::Points points;
+    sensors::fit::make_points(
+        fit_.rows()[i],
+        {shot.ranges.data(), shot.tags.data(), directions.data(), normals.empty() ? nullptr : normals.data()}, points);
+    return sensors::fit::read_edge(fit_.rows()[i], points, kGrains);
   }
 
   const std::vector<sensors::LaneEdge>& edges() const { return edges_; }

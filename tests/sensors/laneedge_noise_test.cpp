@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "tests/device.h"
 #include "tests/sensors/laneedge_trial.h"
 #include "tests/units.h"
 
@@ -105,7 +106,7 @@ bool same(const EdgeReading& p, const EdgeReading& q) {
          bits(p.sigma) == bits(q.sigma);
 }
 
-/// Threads, other sensors and order change no bit; seed and sequence do.
+/// Threads, kernels, other sensors and order change no bit; seed and sequence do.
 TEST(LaneEdgeNoise, IsAFunctionOfNames) {
   const world::World exact = noisy_world(150, {0.003, 0.005, 0.2});
   world::World pixels = exact;
@@ -116,6 +117,8 @@ TEST(LaneEdgeNoise, IsAFunctionOfNames) {
       const auto again = EdgeRig(*world, 5, threads).read(4);
       for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_TRUE(same(expected[i], again[i])) << i;
     }
+    const auto by_kernels = EdgeRig(*world, 5, 1, true, &device()).read(4);
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_TRUE(same(expected[i], by_kernels[i])) << i;
     EdgeRig rig(*world, 5);
     std::vector<base::Pose> poses;
     for (const world::Mover& mover : world->movers) poses.push_back(mover.X_WM);

@@ -62,18 +62,25 @@ struct EdgeRig::State {
   std::size_t rows;
   std::vector<base::ReadingBlock> blocks;
 
-  State(const world::World& w, std::uint64_t seed, unsigned threads, bool noise, gpu::Device& on)
+  State(const world::World& w, std::uint64_t seed, unsigned threads, bool noise, gpu::Device* on)
       : world(w),
         thread_pool(threads),
         states(robots::states_at_load(world)),
-        context{world, on, thread_pool, states, seed, noise},
+        context{world,
+                on != nullptr ? *on : device(),
+                thread_pool,
+                states,
+                seed,
+                noise,
+                true,
+                {.caster = on != nullptr ? raycast::CasterChoice::vulkan : raycast::CasterChoice::automatic}},
         backend(sensors::laneedge_type.make(context)),
-        batch(on),
+        batch(context.device),
         rows(sensors::laneedge_type.specs(world).size()) {}
 };
 
 EdgeRig::EdgeRig(const world::World& world, std::uint64_t seed, unsigned threads, bool noise, gpu::Device* on)
-    : s_(std::make_unique<State>(world, seed, threads, noise, on != nullptr ? *on : device())) {}
+    : s_(std::make_unique<State>(world, seed, threads, noise, on)) {}
 
 EdgeRig::~EdgeRig() = default;
 
@@ -89,8 +96,10 @@ const std::vector<base::ReadingBlock>& EdgeRig::tick(const std::vector<sensors::
     s.backend->record_derive(s.batch);
     s.batch.end();
   }
-  s.backend->add_copies(s.batch);
-  s.batch.run();
+  if (s.backend->on_device()) {
+    s.backend->add_copies(s.batch);
+    s.batch.run();
+  }
   s.blocks.resize(due.size());
   s.backend->collect(s.blocks);
   return s.blocks;

@@ -33,6 +33,7 @@ world::LaneMarking arc(glm::dvec2 centre, double radius, double from, double to,
 /// The sensor backend of one world, driven without a farm.
 class EdgeRig {
  public:
+  /// @param on if not null: kernels run on this device
   explicit EdgeRig(const world::World& world, std::uint64_t seed = 0, unsigned threads = 0, bool noise = true,
                    gpu::Device* on = nullptr);
   ~EdgeRig();

@@ -1,6 +1,6 @@
 #pragma once
 // The lane edge sensor's fit on the host, with the same operations in the same order as shaders/lib/edge_fit.glsl: the
-// bit-exact reference of the device, and the plain C++ of benchmarks.
+// bytes are the same. In a header since a benchmark compiles it for other processors, too.
 
 #include <algorithm>
 #include <bit>
@@ -11,43 +11,47 @@
 
 #include "raycast/records.h"
 #include "sensors/lane_markings/line_fit.h"
-#include "sensors/laneedge.h"
-#include "tests/units.h"
+#include "sensors/laneedge_settings.h"
 
-namespace sf::mirror {
-
-using sensors::EdgeReading;
-using sensors::EdgeRow;
-using namespace sensors::fit;
+namespace sf::sensors::fit {
 
 /// Points of one scan, beam by beam; unused places of the device's lanes are left out.
 struct Points {
-  double w[sensors::kMostEdgeSamples], x[sensors::kMostEdgeSamples], y[sensors::kMostEdgeSamples];
+  double w[kMostEdgeSamples], x[kMostEdgeSamples], y[kMostEdgeSamples];
   std::uint32_t count = 0;                 ///< beams
   std::uint32_t lane = SF_BEAMS_PER_LANE;  ///< beams per lane
   std::uint32_t grain = 0;
 };
 
-/// @param directions cosine and sine of each beam  @param normals one per beam; empty without noise
-static inline void make_points(const EdgeRow& row, std::span<const double> ranges, std::span<const std::uint32_t> tags,
-                               std::span<const double> directions, std::span<const float> normals, Points& p) {
+/// The hits of a scan, as arrays over beams.
+struct EdgeHits {
+  const double* ranges;       ///< [m]
+  const std::uint32_t* tags;  ///< of the surfaces that were met, or SF_NO_HIT
+  const double* directions;   ///< cosine and sine of each beam
+  const float* normals;       ///< null without noise
+  std::uint32_t stride = 1;   ///< from one beam to the next, in all of them
+};
+
+static inline void make_points(const EdgeRow& row, const EdgeHits& hits, Points& p) {
   p.count = row.beams;
   p.lane = (row.flags & SF_EDGE_PACKED) != 0 ? SF_BEAMS_PER_LANE : 1;
   p.grain = 0;
-  for (std::uint32_t k = 0; k < row.beams; ++k) {
-    const double share = static_cast<double>(row.noise_share) * (normals.empty() ? 0.0 : double{normals[k]});
-    const double spread = row.range_proportional * ranges[k];
+  for (std::uint32_t k = 0, at = 0; k < row.beams; ++k, at += hits.stride) {
+    const double range = hits.ranges[at];
+    const double share =
+        static_cast<double>(row.noise_share) * (hits.normals == nullptr ? 0.0 : double{hits.normals[at]});
+    const double spread = row.range_proportional * range;
     const double sigma = std::sqrt(row.range_sigma * row.range_sigma + spread * spread);
-    const double disturbed = ranges[k] + sigma * share;
+    const double disturbed = range + sigma * share;
     const double r = std::min(std::max(disturbed, row.range_min), double{row.range_max});
-    const std::uint32_t tag = tags[k];
+    const std::uint32_t tag = hits.tags[at];
     const bool is_edge = (tag & SF_TAG_END) == 0 || (row.flags & SF_EDGE_SINGLE) != 0;
     const bool counts = tag != SF_NO_HIT && (tag & SF_TAG_MOVER) == 0 && is_edge && r < row.range_limit &&
                         (r > row.range_min || row.range_min == 0.0);
     p.w[k] = counts ? 1.0 : 0.0;
-    const auto bits = std::bit_cast<std::uint64_t>(r * directions[2 * k]) & ~std::uint64_t{SF_GRAIN_MASK};
+    const auto bits = std::bit_cast<std::uint64_t>(r * hits.directions[2 * at]) & ~std::uint64_t{SF_GRAIN_MASK};
     p.x[k] = counts ? std::bit_cast<double>(bits | tag >> SF_TAG_BITS) : 0.0;
-    p.y[k] = r * directions[2 * k + 1];
+    p.y[k] = r * hits.directions[2 * at + 1];
     if (counts) p.grain = std::max(p.grain, tag >> SF_TAG_BITS);
   }
 }
@@ -130,8 +134,10 @@ static inline double noise_across(const Line& line, const EdgeRow& row) {
   return radial * out_of * out_of + row.angle_sigma * row.angle_sigma * beside * beside;
 }
 
+inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
 static inline EdgeReading single_ray(const EdgeRow& row, const Points& p, double grain) {
-  if (p.w[0] == 0.0) return {kNaN, 0.0, 0.0, kNaN, 1.0, 0.0};
+  if (p.w[0] == 0.0) return {kNoNumber, 0.0, 0.0, kNoNumber, 1.0, 0.0};
   const double first = std::sqrt(p.x[0] * p.x[0] + p.y[0] * p.y[0]);
   const double spread = row.range_proportional * first;
   return {first, 1.0, 0.0, std::sqrt(row.range_sigma * row.range_sigma + spread * spread + grain * grain / 12.0),
@@ -161,7 +167,8 @@ static inline EdgeReading read_edge(const EdgeRow& row, const Points& p, std::sp
   const LineFit f =
       fit_at(line, trend, curvature, point_error, row.perpendicular_x, row.perpendicular_y, row.distance_max);
   const double others = all.n - f.points;
-  return {f.seen ? f.distance : kNaN, f.points, f.seen ? f.residual : 0.0, f.seen ? f.sigma : kNaN, f.gain, others};
+  return {f.seen ? f.distance : kNoNumber, f.points, f.seen ? f.residual : 0.0,
+          f.seen ? f.sigma : kNoNumber,    f.gain,   others};
 }
 
-}  // namespace sf::mirror
+}  // namespace sf::sensors::fit
