@@ -1,6 +1,6 @@
 #pragma once
-// Adds scans to a map, one at a time, on the host. The device's result is bitwise equal. Each thread keeps up to 4 MiB of
-// scratch memory (maps/scan_raster.h).
+// Adds scans to a map, one at a time, on the host. The device's result is bitwise equal. Each thread keeps up to 4 MiB
+// of scratch memory (maps/scan_raster.h).
 //
 // The rule, after the thesis (4.4.3). The end of a beam is the cell of the point at its range (equations 9 and 10). The
 // line from the sensor's cell to the end is free: with n = max(|dc|, |dr|) steps along the longer axis (columns when

@@ -30,7 +30,9 @@ const std::vector<double> kGrains{0.0, 0.005, 0.02};
 class FitRig {
  public:
   explicit FitRig(const std::vector<Settings>& settings)
-      : context_{world_, device(), thread_pool_, {}}, edges_(edges_of(settings)), fit_(context_, edges_, kGrains, false) {}
+      : context_{world_, device(), thread_pool_, {}},
+        edges_(edges_of(settings)),
+        fit_(context_, edges_, kGrains, false) {}
 
   std::vector<EdgeReading> read(const std::vector<Shot>& shots) {
     std::vector<sensors::DueSample> due;
