@@ -1,0 +1,16 @@
+#pragma once
+// Golden records of drawings (tests/golden.h): an SVG file in which neighbouring paths of one style are joined, long
+// paths are replaced by their measures, and images by their cells.
+
+#include <string>
+
+namespace sf::scenes {
+
+/// The record of an SVG document.
+std::string drawing_record(const std::string& svg);
+
+/// Compares the record of the SVG file with the golden one. With SENSORFARM_RECORDS=FOLDER set, the drawing is written
+/// to FOLDER/NAME.svg as well.
+void expect_recorded(const std::string& svg_file, const std::string& module, const std::string& name);
+
+}  // namespace sf::scenes

@@ -1,0 +1,153 @@
+// Plots of numbers and maps, compared with golden records of their drawings.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "tests/viz/drawing_record.h"
+#include "tests/viz/png.h"
+#include "viz/field_figure.h"
+#include "viz/legend.h"
+#include "viz/lights_figure.h"
+#include "viz/map_figure.h"
+#include "viz/series_figure.h"
+#include "viz/svg.h"
+#include "viz/tradeoff_figure.h"
+
+namespace sf::viz {
+namespace {
+
+/// Draws to an SVG file and compares it with its record.
+template <class Draw>
+void expect_drawing(const std::string& name, Draw&& draw) {
+  const std::string file = scenes::own_file(name + ".svg");
+  draw(file);
+  scenes::expect_recorded(file, "viz", name);
+}
+
+Series series(const std::string& name, double scale, int steps) {
+  Series s{name, {}, {}};
+  for (int i = 0; i <= steps; ++i) s.times.push_back(2.0 + 0.5 * i), s.values.push_back(scale * ((i * 7) % 5 + 3));
+  return s;
+}
+
+SeriesOptions panels() {
+  SeriesOptions options{.title = "Three panels", .subtitle = "of made-up numbers"};
+  options.panels = {{"", "distance [m]", {series("a", 0.1, 12), series("b", 0.15, 9)}},
+                    {"second", "speed [m/s]", {series("a", 2.0, 12), series("b", 3.0, 9)}, true},
+                    {"third", "angle [deg]", {}}};
+  for (int i = 0; i < 9; ++i) options.panels[2].series.push_back(series(fmt::format("row {}", i), 10.0 + i, 6));
+  options.panels[0].series[0].values[4] = NAN;
+  options.panels[0].series[1].values[1] = options.panels[0].series[1].values[3] = NAN;
+  options.panels[2].series[1].times[2] = HUGE_VAL;
+  return options;
+}
+
+TEST(SeriesRecord, ShowsPanelsAndTheirLegends) {
+  expect_drawing("series", [](const std::string& file) { draw_series(panels(), file); });
+}
+
+TEST(SeriesRecord, BeginsAtZeroOnAPage) {
+  SeriesOptions options = panels();
+  options.from_zero = true;
+  options.x_name = "delay [s]";
+  options.panels.resize(2);
+  for (double& v : options.panels[1].series[0].values) v = 7.0;  // of no span
+  expect_drawing("series_page",
+                 [&](const std::string& file) { draw_series(options, file, {.width = 100.0, .height = 120.0}); });
+}
+
+TEST(LightsRecord, ShowsEachState) {
+  using world::LightState;
+  std::vector<LightRow> rows{{"north", {}}, {"a light in the south", {}}};
+  double time = 1.0;
+  for (const LightState state : {LightState::dark, LightState::red, LightState::yellow, LightState::green,
+                                 LightState::flashing_red, LightState::flashing_yellow}) {
+    rows[0].spans.push_back({time, time + 1.25, state});
+    rows[1].spans.push_back({2.0 * time, 2.0 * time + 0.1, state});
+    time += 1.5;
+  }
+  expect_drawing("lights", [&](const std::string& file) { draw_light_states(rows, "two lights", file); });
+}
+
+TEST(TradeoffRecord, ShowsPointsAndTheirBounds) {
+  TradeoffPoint exact{"exact", 2.5e5, 0.0, 0.0, 1e-9, true, {}}, table{"table", 1.5e6, 1e-5, 3e-4, 2e-3, true, {}};
+  TradeoffPoint skip{"skip4", 9.0e5, 1e-6, 4e-4, HUGE_VAL, false, {0.259, 1e-3, 2e-3}};
+  const std::vector<TradeoffPanel> both{{"laser", "rays per second", "error [m]", {exact, table, skip}},
+                                        {"sonar", "readings per second", "error [m]", {{"one", 700.0, 0.2, 0.9, 1.2}}}};
+  expect_drawing("tradeoff", [&](const std::string& file) { draw_tradeoff("Speed", "over error", both, file); });
+  expect_drawing("tradeoff_page", [&](const std::string& file) {
+    draw_tradeoff("Speed", "over error", both, file, {.width = 110.0, .height = 150.0});
+  });
+}
+
+world::World magnets() {
+  world::World world;
+  world.name = "five";
+  for (int i = 0; i < 5; ++i)
+    world.magnets.push_back({{0.3 * i, 0.1 * (i % 2)}, -0.05, i == 2 ? -1.0 : 1.0, 0.0125, 0});
+  world.magnet_cutoff = 2.5;
+  return world;
+}
+
+/// Made-up samples: |B| grows along x and y, the profile is a parabola.
+FieldSamples samples(const FieldView& view) {
+  FieldSamples made{12, 6, {}, {}};
+  for (int i = 0; i < 72; ++i) made.map.push_back(2e-6 * (i % 12) * (1 + i / 12));
+  for (int i = 0; i <= 20; ++i) {
+    const glm::dvec2 d = view.line.b - view.line.a;
+    made.profile.push_back(
+        {0.05 * i * glm::length(d), view.line.a + 0.05 * i * d, {0.0, 1e-6 * i, 1e-6 * i * i, 5e-6 * i}});
+  }
+  return made;
+}
+
+TEST(FieldRecord, ShowsMapAndProfile) {
+  const FieldView view = field_view(magnets(), {.height = 0.075});
+  expect_drawing("field", [&](const std::string& file) { draw_field(magnets(), view, samples(view), file); });
+}
+
+TEST(FieldRecord, FollowsItsPage) {
+  const Page page{.width = 120.0, .height = 140.0};
+  const FieldView view = field_view(magnets(), {0.3, Line{{0.0, -0.5}, {0.4, 0.5}}, std::nullopt, page});
+  expect_drawing("field_page",
+                 [&](const std::string& file) { draw_field(magnets(), view, samples(view), file, page); });
+}
+
+maps::OccupancyGrid grid() {
+  maps::OccupancyGrid made({-1.0, 2.0, 0.25, 3, 2});
+  for (std::int64_t i = 0; i < 60; ++i) made.set({i % 12, i / 12}, static_cast<maps::Cell>(i % 7 < 4 ? 2 : i % 3));
+  return made;
+}
+
+MapFigure figure() {
+  MapFigure made{"A map", "made up", {}};
+  for (int i = 0; i < 9; ++i) made.places.push_back({fmt::format("robot {}", i), {-0.9 + 0.2 * i, 1.0, 0.0, 0.5 * i}});
+  return made;
+}
+
+TEST(MapRecord, ShowsCellsAndRobots) {
+  expect_drawing("map", [](const std::string& file) { draw_map(grid(), figure(), file); });
+}
+
+TEST(MapRecord, FollowsItsPage) {
+  MapFigure one = figure();
+  one.places.resize(2);
+  expect_drawing("map_page",
+                 [&](const std::string& file) { draw_map(grid(), one, file, {.width = 100.0, .height = 60.0}); });
+}
+
+TEST(LegendRecord, DrawsEachMark) {
+  std::vector<LegendItem> items;
+  for (int mark = 0; mark <= static_cast<int>(LegendMark::crossed_dot); ++mark)
+    items.push_back({static_cast<LegendMark>(mark), 0xFF204060u + static_cast<std::uint32_t>(mark),
+                     fmt::format("mark number {}", mark), 0xFF808080u});
+  Canvas canvas(600, 300, theme::kWhite);
+  draw_legend(canvas, {20.0, 10.0}, items, place_legend(items, 500.0));
+  expect_drawing("legend", [&](const std::string& file) { std::ofstream(file) << to_svg(canvas.drawing()); });
+}
+
+}  // namespace
+}  // namespace sf::viz

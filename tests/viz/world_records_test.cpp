@@ -1,0 +1,110 @@
+// Figures of a world, compared with golden records of their drawings.
+
+#include <gtest/gtest.h>
+
+#include "tests/viz/drawing_record.h"
+#include "tests/viz/png.h"
+#include "tests/viz/rich_world.h"
+#include "viz/occupancy_figure.h"
+#include "viz/path_figure.h"
+#include "viz/road_figure.h"
+#include "viz/town_figure.h"
+#include "viz/trajectory_figure.h"
+#include "viz/world_figure.h"
+#include "world/roads/roads.h"
+
+namespace sf::viz {
+namespace {
+
+/// Draws to an SVG file and compares it with its record.
+template <class Draw>
+void expect_drawing(const std::string& name, Draw&& draw) {
+  const std::string file = scenes::own_file(name + ".svg");
+  draw(file);
+  scenes::expect_recorded(file, "viz", name);
+}
+
+/// `count` tracks side by side, each of four poses and a contact; every third is broken.
+std::vector<Track> tracks_of(std::size_t count) {
+  std::vector<Track> tracks;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = 0.4 + 7.0 * static_cast<double>(i) / static_cast<double>(count), d = 0.02;
+    Track track{.name = fmt::format("run {}", i + 1), .duration = 12.5};
+    track.poses = {{x, 0.6, 0, 0}, {x + d, 1.6, 0, 0}, {x + d, 1.6001, 0, 0}, {x + 3 * d, 2.9, 0, 0}, {x, 3.2, 0, 0}};
+    track.contacts = {0, 1, 1, 0, 1};
+    if (i % 3 == 1) track.poses[2].x = NAN;
+    tracks.push_back(track);
+  }
+  return tracks;
+}
+
+TEST(WorldRecord, ShowsOneOfEverything) {
+  expect_drawing("world", [](const std::string& file) { draw_world(scenes::rich_world(), file); });
+}
+
+TEST(WorldRecord, FollowsItsPage) {
+  const Page page{.width = 170.0, .height = 150.0, .title = false, .extent = world::Extent{0.5, 0.5, 4.5, 3.5}};
+  expect_drawing("world_page", [&](const std::string& file) { draw_world(scenes::rich_world(), file, page); });
+}
+
+TEST(WorldRecord, UnitesTheViewsOfACrowd) {
+  world::World world = scenes::rich_world();
+  world.movers.clear();
+  for (std::uint32_t i = 0; i < 21; ++i)
+    world.movers.push_back(scenes::make_robot(world, i + 1, {0.35 * (i + 1), 2.5, 0, 0.3 * i}, 0xFF2E7D32u, 0.6));
+  expect_drawing("world_crowd", [&](const std::string& file) { draw_world(world, file); });
+}
+
+TEST(TrajectoryRecord, NamesAFewTracksInTheLegend) {
+  std::vector<Track> tracks = tracks_of(4);
+  tracks[3].color = 0xFF123456u;
+  tracks[2].contacts.clear();
+  expect_drawing("trajectories",
+                 [&](const std::string& file) { draw_trajectories(scenes::rich_world(), tracks, file); });
+}
+
+TEST(TrajectoryRecord, NamesMoreTracksAtTheirEnds) {
+  expect_drawing("trajectories_many",
+                 [](const std::string& file) { draw_trajectories(scenes::rich_world(), tracks_of(9), file, "trial"); });
+}
+
+TEST(PathRecord, ShowsLanesAndTheirMiddles) {
+  std::vector<Track> tracks = tracks_of(3);
+  tracks[0].color = 0xFF654321u;
+  expect_drawing("paths", [&](const std::string& file) {
+    draw_along_paths(scenes::rich_world(), tracks, "Along the lane", "three runs", file);
+  });
+}
+
+TEST(OccupancyRecord, ShowsCellsAndTheirShares) {
+  maps::OccupancyGrid grid({-0.5, 4.5, 0.5, 3, 2});
+  for (std::int64_t i = 0; i < 75; ++i) grid.set({i % 12, i / 12}, static_cast<maps::Cell>(i % 7 < 4 ? 2 : i % 3));
+  expect_drawing("occupancy", [&](const std::string& file) { draw_occupancy(scenes::rich_world(), grid, file); });
+}
+
+TEST(TownRecord, ShowsConvoysAndLights) {
+  const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world");
+  std::vector<Track> tracks;
+  TownFinalState end{.time = 9.0};
+  for (const std::uint32_t row : {0u, 1u, 2u, 6u}) {
+    const base::Pose& X = world.movers[row].X_WM;
+    Track track{.name = world.movers[row].name};
+    for (int i = 0; i <= 10; ++i) track.poses.push_back({X.x + 0.1 * i, X.y + 0.02 * i * row, 0.0, 0.1 * i});
+    track.contacts.assign(11, 0);
+    track.contacts[row + 1] = 1;
+    tracks.push_back(track);
+    end.movers.push_back(row);
+    end.follows.push_back(world::kNone);
+  }
+  end.follows[1] = 0;
+  expect_drawing("town", [&](const std::string& file) { draw_town(world, tracks, end, file); });
+}
+
+TEST(RoadRecord, ShowsANetworkAndItsCarPark) {
+  std::vector<world::Warning> warnings;
+  const world::RoadNetwork network = world::load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
+  expect_drawing("roads", [&](const std::string& file) { draw_roads(network, file); });
+}
+
+}  // namespace
+}  // namespace sf::viz
