@@ -2,16 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
+#include "tests/golden.h"
 #include "tests/viz/drawing_record.h"
 #include "tests/viz/png.h"
 #include "tests/viz/rich_world.h"
 #include "viz/occupancy_figure.h"
 #include "viz/path_figure.h"
-#include "viz/road_figure.h"
 #include "viz/town_figure.h"
 #include "viz/trajectory_figure.h"
 #include "viz/world_figure.h"
-#include "world/roads/roads.h"
 
 namespace sf::viz {
 namespace {
@@ -38,6 +39,15 @@ std::vector<Track> tracks_of(std::size_t count) {
   return tracks;
 }
 
+/// Widths and opacities of strokes of one colour, with their numbers.
+std::map<std::string, int> strokes(const std::string& file, const std::string& color) {
+  std::map<std::string, int> found;
+  const std::string stroke = " stroke=\"#" + color + "\"";
+  for (const std::string& line : golden::lines_of(golden::read(file)))
+    if (const std::size_t at = line.find(stroke); at != std::string::npos) ++found[line.substr(at + stroke.size())];
+  return found;
+}
+
 TEST(WorldRecord, ShowsOneOfEverything) {
   expect_drawing("world", [](const std::string& file) { draw_world(scenes::rich_world(), file); });
 }
@@ -55,6 +65,18 @@ TEST(WorldRecord, UnitesTheViewsOfACrowd) {
   expect_drawing("world_crowd", [&](const std::string& file) { draw_world(world, file); });
 }
 
+/// Boundary: the number of movers up to which views in a union have outlines.
+TEST(WorldFigure, ViewsOfVeryManyMoversHaveNoOutlines) {
+  for (const std::size_t count : {300u, 301u}) {
+    world::World world = scenes::rich_world();
+    world.movers.assign(count, world.movers[0]);
+    const std::string file = scenes::own_file("outlines.svg");
+    draw_world(world, file);
+    const std::string outlines = " stroke-opacity=\"0.22\" stroke-width=\"0.5\"/>";
+    EXPECT_EQ(strokes(file, "1313c6").count(outlines), count == 300 ? 1u : 0u);
+  }
+}
+
 TEST(TrajectoryRecord, NamesAFewTracksInTheLegend) {
   std::vector<Track> tracks = tracks_of(4);
   tracks[3].color = 0xFF123456u;
@@ -66,6 +88,29 @@ TEST(TrajectoryRecord, NamesAFewTracksInTheLegend) {
 TEST(TrajectoryRecord, NamesMoreTracksAtTheirEnds) {
   expect_drawing("trajectories_many",
                  [](const std::string& file) { draw_trajectories(scenes::rich_world(), tracks_of(9), file, "trial"); });
+}
+
+/// Boundary: the numbers of tracks at which lines, marks and crosses become thinner.
+TEST(TrajectoryFigure, ManyTracksAreThinner) {
+  struct Case {
+    int count;
+    std::string line, cross;
+  };
+  const std::vector<Case> cases{{7, "stroke-width=\"2.4\"", "2"},
+                                {8, "stroke-opacity=\"0.949\" stroke-width=\"1.8\"", "1.2"},
+                                {40, "stroke-opacity=\"0.949\" stroke-width=\"1.8\"", "1.2"},
+                                {41, "stroke-opacity=\"0.902\" stroke-width=\"1.4\"", "1"},
+                                {250, "stroke-opacity=\"0.902\" stroke-width=\"1.4\"", "1"},
+                                {251, "stroke-opacity=\"0.8\" stroke-width=\"1\"", "0.7"}};
+  for (const Case& each : cases) {
+    std::vector<Track> tracks = tracks_of(static_cast<std::size_t>(each.count));
+    for (Track& track : tracks) track.color = 0xFF123456u;
+    const std::string file = scenes::own_file("weights.svg");
+    draw_trajectories(scenes::rich_world(), tracks, file);
+    EXPECT_EQ(strokes(file, "123456")[" " + each.line + "/>"], each.count);
+    const int in_legend = each.cross == "2" ? 1 : 0;
+    EXPECT_EQ(strokes(file, "d4351c")[" stroke-width=\"" + each.cross + "\"/>"], 2 * each.count + in_legend);
+  }
 }
 
 TEST(PathRecord, ShowsLanesAndTheirMiddles) {
@@ -98,12 +143,6 @@ TEST(TownRecord, ShowsConvoysAndLights) {
   }
   end.follows[1] = 0;
   expect_drawing("town", [&](const std::string& file) { draw_town(world, tracks, end, file); });
-}
-
-TEST(RoadRecord, ShowsANetworkAndItsCarPark) {
-  std::vector<world::Warning> warnings;
-  const world::RoadNetwork network = world::load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
-  expect_drawing("roads", [&](const std::string& file) { draw_roads(network, file); });
 }
 
 }  // namespace

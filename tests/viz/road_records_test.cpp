@@ -1,0 +1,53 @@
+// Figures of road networks, compared with golden records of their drawings.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/viz/drawing_record.h"
+#include "tests/viz/png.h"
+#include "viz/road_figure.h"
+#include "world/roads/roads.h"
+
+namespace sf::viz {
+namespace {
+
+void expect_roads(const world::RoadNetwork& network, const std::string& name, const Page& page = {}) {
+  const std::string file = scenes::own_file(name + ".svg");
+  draw_roads(network, file, page);
+  scenes::expect_recorded(file, "viz", name);
+}
+
+/// A road of 670 m beside a zone with eight spots of 3 m, each with a checkpoint.
+world::RoadNetwork road_with_car_park() {
+  std::string text =
+      "RNDF_name park\nnum_segments 1\nnum_zones 1\nsegment 1\nnum_lanes 1\nsegment_name Long_Road\nlane 1.1\n"
+      "num_waypoints 2\nleft_boundary broken_white\nright_boundary solid_white\nexit 1.1.2 2.0.1\n1.1.1 0 0\n"
+      "1.1.2 0 0\nend_lane\nend_segment\nzone 2\nnum_spots 8\nzone_name Park\nperimeter 2.0\n"
+      "num_perimeterpoints 4\n2.0.1 0 0\n2.0.2 0 0\n2.0.3 0 0\n2.0.4 0 0\nend_perimeter\n";
+  std::string places =
+      "lane_width_m = 3\nspot_width_m = 3\n[points]\n\"1.1.1\" = { position = [0, 300] }\n"
+      "\"1.1.2\" = { position = [600, 0] }\n\"2.0.1\" = { position = [590, 30] }\n"
+      "\"2.0.2\" = { position = [590, 60] }\n\"2.0.3\" = { position = [550, 60] }\n"
+      "\"2.0.4\" = { position = [550, 30] }\n";
+  for (int i = 1; i <= 8; ++i) {
+    text += fmt::format("spot 2.{0}\ncheckpoint 2.{0}.2 {1}\n2.{0}.1 0 0\n2.{0}.2 0 0\nend_spot\n", i, 70 + i);
+    places += fmt::format("\"2.{0}.1\" = {{ position = [{1}, 40] }}\n\"2.{0}.2\" = {{ position = [{1}, 46] }}\n", i,
+                          552 + 4 * i);
+  }
+  text += "end_zone\nend_file\n";
+  std::vector<world::Warning> warnings;
+  return world::build_network(world::parse_rndf("park.rndf", text), world::parse_sidecar("park.toml", places, warnings),
+                              warnings);
+}
+
+TEST(RoadRecord, ShowsLanesTextsAndSpots) {
+  std::vector<world::Warning> warnings;
+  const world::RoadNetwork network = world::load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
+  expect_roads(network, "roads");
+  expect_roads(network, "roads_page", {.width = 110.0});
+}
+
+TEST(RoadRecord, EnlargesACrowdedCarPark) { expect_roads(road_with_car_park(), "roads_inset"); }
+
+}  // namespace
+}  // namespace sf::viz
