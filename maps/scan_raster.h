@@ -49,7 +49,7 @@ class ScanRaster {
     const std::int32_t steps = std::abs(far), step = far < 0 ? -1 : 1;
     const double slope = steps > 0 ? static_cast<double>(std::abs(aside) * kOne) / steps : 0.0;
     const std::int64_t up = static_cast<std::int64_t>(slope) + 1, more = aside < 0 ? -up : up;
-    std::int64_t offset = aside < 0 ? kOne / 2 - 1 : kOne / 2;
+    std::int64_t offset = kOne / 2;
     for (std::int32_t i = 0, at = 0; i <= steps; ++i, at += step, offset += more)
       visit(along[at] + across[offset >> 32]);
   }

@@ -146,14 +146,16 @@ TEST(Schedule, MissedReadingsAreCounted) {
 }
 
 TEST(Schedule, RatesAndPhasesInAFarm) {
-  world::World world = small_world(3);
+  world::World world = small_world(4);
   scenes::edit_laser(world.movers[0])->rate = 10.0;
   scenes::edit_laser(world.movers[1])->rate = 2.0;
   scenes::edit_laser(world.movers[2])->rate = 10.0;
   scenes::edit_laser(world.movers[2])->phase = 0.05;
+  scenes::edit_laser(world.movers[3])->rate = 10.0;  // as the one before, at another phase
+  scenes::edit_laser(world.movers[3])->phase = 0.09;
   Farm farm(world, device());
   farm.subscribe_all();
-  std::vector<int> counts(3, 0);
+  std::vector<int> counts(4, 0);
   for (int k = 0; k < 100; ++k)  // 2 s in ticks of 20 ms
     for (const auto& r : farm.tick(k * 20'000'000ll, {})) {
       EXPECT_EQ(r.sequence, static_cast<std::uint32_t>(counts[r.mover]++));
@@ -163,7 +165,7 @@ TEST(Schedule, RatesAndPhasesInAFarm) {
       EXPECT_GE(late, -1e-9);
       EXPECT_LT(late, 0.02);
     }
-  EXPECT_EQ(counts, (std::vector<int>{20, 4, 20}));
+  EXPECT_EQ(counts, (std::vector<int>{20, 4, 20, 20}));
 }
 
 /// A tick longer than the period: one reading per tick, with the number of the latest due time.

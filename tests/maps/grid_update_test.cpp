@@ -74,6 +74,9 @@ TEST(MapRule, ALaterScanIsRight) {
   const std::vector<double> ranges{6.0};
   add_scan(grid, {{2.5, 9.5, 0, 0}, ranges, beams, 0.0, 8.0});
   EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00      1000");
+  const std::vector<double> nearer{4.0};
+  add_scan(grid, {{2.5, 9.5, 0, 0}, nearer, beams, 0.0, 8.0});
+  EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00    1 1000") << "a free cell is occupied, and what it hides stays";
 }
 
 TEST(MapRule, BesideTheMap) {
