@@ -63,7 +63,7 @@ static inline bool near(const Line& line, const Points& p, std::uint32_t k, doub
 
 static inline Moments moments_near(const Points& p, std::uint32_t first, std::uint32_t end, const Line& line,
                                    double allowed) {
-  Moments m = Moments(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+  Moments m = Moments{0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   double v = 0.0;
   for (std::uint32_t k = first; k < end; ++k) add_point(m, near(line, p, k, allowed, v) ? p.w[k] : 0.0, p.x[k], p.y[k]);
   return m;
@@ -80,7 +80,7 @@ static inline LineMoments trend_near(const Points& p, const Line& line, double a
 }
 
 struct Candidate {
-  Line line = Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0);
+  Line line = Line{0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0};
   double allowed = 0.0;
   float votes = -1e30F;
 };
@@ -101,7 +101,7 @@ static inline Window window(int lanes, bool packed, int k) {
 
 static inline Candidate elect(const Points& p, double source) {
   const int lanes = static_cast<int>((p.count + p.lane - 1) / p.lane);
-  const Line anywhere = Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0);
+  const Line anywhere = Line{0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0};
   Candidate best;
   for (int k = 0; k < 16; ++k) {
     const Window w = window(lanes, p.lane > 1, k);
@@ -148,7 +148,7 @@ static inline EdgeReading read_edge(const EdgeRow& row, const Points& p, std::sp
   const double grain = grains[p.grain];
   if ((row.flags & SF_EDGE_SINGLE) != 0) return single_ray(row, p, grain);
   constexpr double kAll = std::numeric_limits<double>::infinity();
-  const Moments all = moments_near(p, 0, p.count, Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0), kAll);
+  const Moments all = moments_near(p, 0, p.count, Line{0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0}, kAll);
   Line line = line_through(all);
   double noise = std::sqrt(noise_across(line, row));
   const double source = tolerance(grain, noise);
@@ -163,7 +163,7 @@ static inline EdgeReading read_edge(const EdgeRow& row, const Points& p, std::sp
     noise = std::sqrt(noise_across(line, row));
   }
   constexpr double kFloor = 9.313225746154785e-10;
-  const PointError point_error = PointError(grain, noise > kFloor ? noise : kFloor);
+  const PointError point_error = PointError{grain, noise > kFloor ? noise : kFloor};
   const LineFit f =
       fit_at(line, trend, curvature, point_error, row.perpendicular_x, row.perpendicular_y, row.distance_max);
   const double others = all.n - f.points;

@@ -152,7 +152,7 @@ TEST(Schedule, RatesAndPhasesInAFarm) {
   scenes::edit_laser(world.movers[2])->rate = 10.0;
   scenes::edit_laser(world.movers[2])->phase = 0.05;
   scenes::edit_laser(world.movers[3])->rate = 10.0;  // as the one before, at another phase
-  scenes::edit_laser(world.movers[3])->phase = 0.09;
+  scenes::edit_laser(world.movers[3])->phase = 0.07;
   Farm farm(world, device());
   farm.subscribe_all();
   std::vector<int> counts(4, 0);
