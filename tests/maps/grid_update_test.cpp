@@ -84,6 +84,7 @@ TEST(MapRule, BesideTheMap) {
   EXPECT_EQ(text_of(into).substr(2 * 13, 12), " 10000000000") << "it comes from outside";
   const OccupancyGrid out = one_beam({9.5, 9.5, 0, 0}, 7.0, 8.0);
   EXPECT_EQ(text_of(out).substr(2 * 13, 12), "000000000   ") << "its end is outside";
+  EXPECT_EQ(count(out).unexplored, 141u) << "and enters no other row";
   EXPECT_EQ(count(one_beam({-5.5, 9.5, 0, 0}, 4.0, 8.0)).unexplored, 144u);
   for (const double far : {1e9, 1e300, std::numeric_limits<double>::infinity(), std::nan("")})
     EXPECT_EQ(count(one_beam({far, 9.5, 0, 0}, 4.0, 8.0)).unexplored, 144u) << far;
