@@ -63,7 +63,18 @@ std::string decoded(const std::string& base64) {
   return bytes;
 }
 
-/// The cells of an image: a letter for each colour where they are few, else the colours.
+/// One number for each block of 16 x 16 cells, which changes with each of them.
+std::string blocks(const Picture& picture, const std::map<std::uint32_t, char>& letters) {
+  std::map<std::pair<int, int>, int> sums;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      sums[{y / 16, x / 16}] += (letters.at(picture.at(x, y)) - 'a') * ((x + 3 * y) % 7 + 1);
+  std::string text;
+  for (const auto& [block, sum] : sums) text += fmt::format(" {}", sum);
+  return text;
+}
+
+/// The cells of an image: a letter for each colour where they are few, else the colours; of a large one its blocks.
 std::string cells(const std::string& base64) {
   const std::string path = own_file("record_image.png");
   std::ofstream(path, std::ios::binary) << decoded(base64);
@@ -75,6 +86,7 @@ std::string cells(const std::string& base64) {
   std::string text = fmt::format("{} x {}", picture.width, picture.height);
   for (auto& [color, letter] : letters)
     if (letters.size() <= 26) text += fmt::format(" {}=#{:06x}", letter = next++, color & 0xFFFFFFu);
+  if (picture.width * picture.height > 4000) return text + blocks(picture, letters);
   for (int y = 0; y < picture.height; ++y) {
     text += ' ';
     for (int x = 0; x < picture.width; ++x) {

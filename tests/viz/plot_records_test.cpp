@@ -27,6 +27,13 @@ void expect_drawing(const std::string& name, Draw&& draw) {
   scenes::expect_recorded(file, "viz", name);
 }
 
+/// Many short words, whose breaks tell the width of a heading.
+std::string filler() {
+  std::string text = "words";
+  for (int i = 0; i < 90; ++i) text += i % 3 == 0 ? " a" : i % 3 == 1 ? " of" : " one";
+  return text;
+}
+
 Series series(const std::string& name, double scale, int steps) {
   Series s{name, {}, {}};
   for (int i = 0; i <= steps; ++i) s.times.push_back(2.0 + 0.5 * i), s.values.push_back(scale * ((i * 7) % 5 + 3));
@@ -34,7 +41,7 @@ Series series(const std::string& name, double scale, int steps) {
 }
 
 SeriesOptions panels() {
-  SeriesOptions options{.title = "Three panels", .subtitle = "of made-up numbers"};
+  SeriesOptions options{.title = "Three panels", .subtitle = filler()};
   options.panels = {{"", "distance [m]", {series("a", 0.1, 12), series("b", 0.15, 9)}},
                     {"second", "speed [m/s]", {series("a", 2.0, 12), series("b", 3.0, 9)}, true},
                     {"third", "angle [deg]", {}}};
@@ -69,15 +76,16 @@ TEST(LightsRecord, ShowsEachState) {
     rows[1].spans.push_back({2.0 * time, 2.0 * time + 0.1, state});
     time += 1.5;
   }
-  expect_drawing("lights", [&](const std::string& file) { draw_light_states(rows, "two lights", file); });
+  expect_drawing("lights", [&](const std::string& file) { draw_light_states(rows, filler(), file); });
 }
 
 TEST(TradeoffRecord, ShowsPointsAndTheirBounds) {
   TradeoffPoint exact{"exact", 2.5e5, 0.0, 0.0, 1e-9, true, {}}, table{"table", 1.5e6, 1e-5, 3e-4, 2e-3, true, {}};
   TradeoffPoint skip{"skip4", 9.0e5, 1e-6, 4e-4, HUGE_VAL, false, {0.259, 1e-3, 2e-3}};
-  const std::vector<TradeoffPanel> both{{"laser", "rays per second", "error [m]", {exact, table, skip}},
-                                        {"sonar", "readings per second", "error [m]", {{"one", 700.0, 0.2, 0.9, 1.2}}}};
-  expect_drawing("tradeoff", [&](const std::string& file) { draw_tradeoff("Speed", "over error", both, file); });
+  const std::vector<TradeoffPanel> both{
+      {"laser", "rays per second", "error [m]", {exact, table, skip}},
+      {"sonar", "readings per second", "error [m]", {{"one", 700.0, 0.12, 0.3, 0.85}}}};
+  expect_drawing("tradeoff", [&](const std::string& file) { draw_tradeoff("Speed", filler(), both, file); });
   expect_drawing("tradeoff_page", [&](const std::string& file) {
     draw_tradeoff("Speed", "over error", both, file, {.width = 110.0, .height = 150.0});
   });
@@ -116,6 +124,14 @@ TEST(FieldRecord, FollowsItsPage) {
                  [&](const std::string& file) { draw_field(magnets(), view, samples(view), file, page); });
 }
 
+TEST(FieldRecord, ShowsAColumnOfMagnets) {
+  world::World world;
+  world.file = "some/column.world";
+  for (int i = 0; i < 7; ++i) world.magnets.push_back({{2.0 + 0.02 * i, 0.25 * i}, 0.1 * i, 1.0, 0.0125, 0});
+  const FieldView view = field_view(world, {.height = 0.2});
+  expect_drawing("field_column", [&](const std::string& file) { draw_field(world, view, samples(view), file); });
+}
+
 maps::OccupancyGrid grid() {
   maps::OccupancyGrid made({-1.0, 2.0, 0.25, 3, 2});
   for (std::int64_t i = 0; i < 60; ++i) made.set({i % 12, i / 12}, static_cast<maps::Cell>(i % 7 < 4 ? 2 : i % 3));
@@ -123,7 +139,7 @@ maps::OccupancyGrid grid() {
 }
 
 MapFigure figure() {
-  MapFigure made{"A map", "made up", {}};
+  MapFigure made{"A map", filler(), {}};
   for (int i = 0; i < 9; ++i) made.places.push_back({fmt::format("robot {}", i), {-0.9 + 0.2 * i, 1.0, 0.0, 0.5 * i}});
   return made;
 }

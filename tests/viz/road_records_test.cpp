@@ -17,22 +17,25 @@ void expect_roads(const world::RoadNetwork& network, const std::string& name, co
   scenes::expect_recorded(file, "viz", name);
 }
 
-/// A road of 670 m beside a zone with eight spots of 3 m, each with a checkpoint.
-world::RoadNetwork road_with_car_park() {
-  std::string text =
-      "RNDF_name park\nnum_segments 1\nnum_zones 1\nsegment 1\nnum_lanes 1\nsegment_name Long_Road\nlane 1.1\n"
-      "num_waypoints 2\nleft_boundary broken_white\nright_boundary solid_white\nexit 1.1.2 2.0.1\n1.1.1 0 0\n"
-      "1.1.2 0 0\nend_lane\nend_segment\nzone 2\nnum_spots 8\nzone_name Park\nperimeter 2.0\n"
-      "num_perimeterpoints 4\n2.0.1 0 0\n2.0.2 0 0\n2.0.3 0 0\n2.0.4 0 0\nend_perimeter\n";
-  std::string places =
-      "lane_width_m = 3\nspot_width_m = 3\n[points]\n\"1.1.1\" = { position = [0, 300] }\n"
-      "\"1.1.2\" = { position = [600, 0] }\n\"2.0.1\" = { position = [590, 30] }\n"
-      "\"2.0.2\" = { position = [590, 60] }\n\"2.0.3\" = { position = [550, 60] }\n"
-      "\"2.0.4\" = { position = [550, 30] }\n";
+/// A road of 670 m beside a zone with eight spots of 3 m, each with a checkpoint; in the south-east, or in the
+/// north-west and without a name.
+world::RoadNetwork road_with_car_park(bool north_west) {
+  std::string text = fmt::format(
+      "RNDF_name park\nnum_segments 1\nnum_zones 1\nsegment 1\nnum_lanes 1\n{}lane 1.1\nnum_waypoints 2\n"
+      "left_boundary broken_white\nright_boundary solid_white\nexit 1.1.2 2.0.1\n1.1.1 0 0\n1.1.2 0 0\nend_lane\n"
+      "end_segment\nzone 2\nnum_spots 8\nzone_name Park\nperimeter 2.0\nnum_perimeterpoints 4\n2.0.1 0 0\n2.0.2 0 0\n"
+      "2.0.3 0 0\n2.0.4 0 0\nend_perimeter\n",
+      north_west ? "" : "segment_name Long_Road\n");
+  std::string places = "lane_width_m = 3\nspot_width_m = 3\n[points]\n";
+  const auto add = [&](const std::string& point, double x, double y) {
+    if (north_west) x = 600.0 - x, y = 300.0 - y;
+    places += fmt::format("\"{}\" = {{ position = [{}, {}] }}\n", point, x, y);
+  };
+  add("1.1.1", 0, 300), add("1.1.2", 600, 0);
+  add("2.0.1", 590, 30), add("2.0.2", 590, 60), add("2.0.3", 550, 60), add("2.0.4", 550, 30);
   for (int i = 1; i <= 8; ++i) {
     text += fmt::format("spot 2.{0}\ncheckpoint 2.{0}.2 {1}\n2.{0}.1 0 0\n2.{0}.2 0 0\nend_spot\n", i, 70 + i);
-    places += fmt::format("\"2.{0}.1\" = {{ position = [{1}, 40] }}\n\"2.{0}.2\" = {{ position = [{1}, 46] }}\n", i,
-                          552 + 4 * i);
+    add(fmt::format("2.{}.1", i), 552 + 4 * i, 40), add(fmt::format("2.{}.2", i), 552 + 4 * i, 46);
   }
   text += "end_zone\nend_file\n";
   std::vector<world::Warning> warnings;
@@ -47,7 +50,10 @@ TEST(RoadRecord, ShowsLanesTextsAndSpots) {
   expect_roads(network, "roads_page", {.width = 110.0});
 }
 
-TEST(RoadRecord, EnlargesACrowdedCarPark) { expect_roads(road_with_car_park(), "roads_inset"); }
+TEST(RoadRecord, EnlargesACrowdedCarPark) {
+  expect_roads(road_with_car_park(false), "roads_inset");
+  expect_roads(road_with_car_park(true), "roads_inset_below");
+}
 
 }  // namespace
 }  // namespace sf::viz

@@ -60,6 +60,9 @@ TEST(WorldRecord, FollowsItsPage) {
 TEST(WorldRecord, UnitesTheViewsOfACrowd) {
   world::World world = scenes::rich_world();
   world.movers.clear();
+  world.emitters.erase(world.emitters.begin());
+  world.magnets.resize(3);
+  world.lights.clear();
   for (std::uint32_t i = 0; i < 21; ++i)
     world.movers.push_back(scenes::make_robot(world, i + 1, {0.35 * (i + 1), 2.5, 0, 0.3 * i}, 0xFF2E7D32u, 0.6));
   expect_drawing("world_crowd", [&](const std::string& file) { draw_world(world, file); });
@@ -86,8 +89,10 @@ TEST(TrajectoryRecord, NamesAFewTracksInTheLegend) {
 }
 
 TEST(TrajectoryRecord, NamesMoreTracksAtTheirEnds) {
+  std::vector<Track> tracks = tracks_of(9);
+  for (Track& track : tracks) track.duration = 0.5;
   expect_drawing("trajectories_many",
-                 [](const std::string& file) { draw_trajectories(scenes::rich_world(), tracks_of(9), file, "trial"); });
+                 [&](const std::string& file) { draw_trajectories(scenes::rich_world(), tracks, file, "trial"); });
 }
 
 /// Boundary: the numbers of tracks at which lines, marks and crosses become thinner.
@@ -110,6 +115,17 @@ TEST(TrajectoryFigure, ManyTracksAreThinner) {
     EXPECT_EQ(strokes(file, "123456")[" " + each.line + "/>"], each.count);
     const int in_legend = each.cross == "2" ? 1 : 0;
     EXPECT_EQ(strokes(file, "d4351c")[" stroke-width=\"" + each.cross + "\"/>"], 2 * each.count + in_legend);
+  }
+}
+
+/// Boundary: more than 7 tracks are named at their ends, more than 150 nowhere.
+TEST(TrajectoryFigure, VeryManyTracksHaveNoNames) {
+  for (const std::size_t count : {7u, 8u, 150u, 151u}) {
+    const std::string file = scenes::own_file("names.svg");
+    draw_trajectories(scenes::rich_world(), tracks_of(count), file);
+    const std::string svg = golden::read(file);
+    EXPECT_EQ(svg.find(">run 1</text>") != std::string::npos, count <= 150) << count;
+    EXPECT_EQ(svg.find("font-size=\"14\"") != std::string::npos, count == 8 || count == 150) << count;
   }
 }
 
