@@ -160,7 +160,7 @@ void HostScene::prefetch(std::size_t i) const {
   if (cells_.slot(i) == CellCache::kNone) return;
   const std::uint32_t first = lists_[cells_.slot(i)].first;
   __builtin_prefetch(&bounds_[first]);
-  raycast::prefetch(blocks_[first]);
+  raycast::prefetch(&blocks_[first], sizeof(SegmentBlock));
 }
 
 bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, unsigned thread, const ScanOutput& out) {

@@ -32,6 +32,9 @@ ScanView scan_view_of(const ScannerRow& row, const Viewpoint& from) {
   return view;
 }
 
+/// [beams] whose results are fetched before a scan: a third of the smallest first-level cache.
+constexpr std::size_t kMostFetched = 1024;
+
 /// Scanners with equal beams share beam tables.
 using BeamTableKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 
@@ -320,6 +323,9 @@ void RayCaster::Tables::scan_one(std::size_t k, unsigned thread) {
   if (row.plan.packed) {
     to = ranges->host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
     hit_models = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
+    // A fleet's results exceed the caches: stores would wait for each of their lines.
+    const std::size_t fetched = std::min<std::size_t>(pattern.beams, kMostFetched);
+    prefetch(to, fetched * sizeof *to), prefetch(hit_models, fetched * sizeof *hit_models);
   }
   const bool grazes =
       host->scan(k, scan_view_of(row, host_views[k]), pattern, thread, {to, hit_models, own.grazes.data()});

@@ -31,9 +31,8 @@ struct BlockBounds {
   float half;     ///< [rad] to either side of `bearing`; > pi: all directions
 };
 
-inline void prefetch(const SegmentBlock& block) {
-  for (std::size_t byte = 0; byte < sizeof block; byte += 64)
-    __builtin_prefetch(reinterpret_cast<const char*>(&block) + byte);
+inline void prefetch(const void* first, std::size_t bytes) {
+  for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(static_cast<const char*>(first) + byte);
 }
 
 /// Appends one segment. `used` counts the places used in the last block.

@@ -51,7 +51,8 @@ void rasterize_walls(Scratch& s, const Projection& p, const ScanView& view, cons
       if (!may_be_visible(s, pattern, p.full, {intervals.nearest[i], 0, intervals.low[i], intervals.high[i]})) continue;
       const SegmentBlock& block = scene.walls[first + i];
       const std::uint32_t after = pending & (pending - 1);
-      if (after != 0) prefetch(scene.walls[first + static_cast<std::uint32_t>(__builtin_ctz(after))]);
+      if (after != 0)
+        prefetch(&scene.walls[first + static_cast<std::uint32_t>(__builtin_ctz(after))], sizeof(SegmentBlock));
       ProjectedBlock& next = projected[spare];
       next.count = 0;
       for (std::uint32_t k = 0; k < kBlock; k += lanes())
