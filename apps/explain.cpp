@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "apps/commands.h"
 #include "apps/default_robot.h"
 #include "apps/progress_line.h"
@@ -48,8 +50,9 @@ std::string costs_of(const scenarios::SensorTypeCost& k, const scenarios::Explan
   text += row("a tick", "{:.3f} ms subscribed {}, {:.3f} ms more than without subscribers", 1e3 * k.tick,
               k.source.empty() ? "alone" : fmt::format("with the {}s", k.source), 1e3 * (k.tick - e.silent));
   text += row("", work_of(k, static_cast<double>(e.ticks)));
+  std::string_view label = "accuracy";
   for (const sensors::AccuracyStatement& s : e.statements)
-    if (s.type->name == k.type) text += row("accuracy", apps::text_of(s));
+    if (s.type->name == k.type) text += row(std::exchange(label, ""), apps::text_of(s));
   text += row("kernels",
               k.kernels.empty() ? "none: it is read on the host" : fmt::format("{}", fmt::join(k.kernels, ", ")));
   if (k.tables.empty()) return text;

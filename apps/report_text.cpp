@@ -154,7 +154,7 @@ std::string control_text(const ControlReport& f) {
   for (std::size_t i = 0; i < std::min(f.standing.size(), kLines); ++i)
     text += row(i == 0 ? "stand at the end" : "", text_of(f.standing[i]));
   if (f.standing.size() > kLines)
-    text += row("", "and robots for {} other reasons (--json has all)", f.standing.size() - kLines);
+    text += row("", "and robots for {} (--json has all)", counted(f.standing.size() - kLines, "other reason"));
   return text;
 }
 

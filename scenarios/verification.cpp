@@ -109,6 +109,9 @@ class Verifier {
     if (unfelt_ > 0)
       result_.skipped.push_back(
           fmt::format("{} readings of bumpers: where a robot was touched is not recorded", unfelt_));
+    if (recording_.readings.empty() && farm_.sensor_set().group(sensors::kLaser) == nullptr)
+      result_.skipped.emplace_back(
+          "all readings: the run kept none, and no robot has a laser to compare with plain C++");
   }
 
   /// Readings of a service are those that robots asked for, at times of its clock: scans, and nothing else, can be

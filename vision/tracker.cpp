@@ -42,31 +42,29 @@ std::optional<Tracker::View> Tracker::merge(const Track* track, std::span<const 
   const auto view_of = [](const Sighting& s) {
     return View{s.time, s.fit.pixel, {s.fit.X_WT.x, s.fit.X_WT.y, s.fit.X_WT.yaw}};
   };
-  std::optional<View> first;
-  for (const Sighting& sighting : views) {
-    const View view = view_of(sighting);
-    if (track != nullptr && !is_near(*track, view)) continue;
-    if (!first) first = view;
-  }
+  const auto fits = [track](const View& view) { return track == nullptr || is_near(*track, view); };
+  const auto found = std::find_if(views.begin(), views.end(), [&](const Sighting& s) { return fits(view_of(s)); });
   used = 0;
-  if (!first) return std::nullopt;
-  View sum{first->time, 0.0, {}};
+  if (found == views.end()) return std::nullopt;
+  const View first = view_of(*found);
+  View sum{first.time, 0.0, {}};
   double weights = 0.0;
   for (const Sighting& sighting : views) {
     const View view = view_of(sighting);
-    const double dt = first->time - view.time;
-    const double apart = std::hypot(view.at[0] - first->at[0], view.at[1] - first->at[1]);
+    if (!fits(view)) continue;
+    const double dt = first.time - view.time;
+    const double apart = std::hypot(view.at[0] - first.at[0], view.at[1] - first.at[1]);
     if (apart > 0.5 * kGate + kMaxSpeed * std::abs(dt)) continue;
     const double weight = 1.0 / (view.pixel * view.pixel);
     for (std::size_t i = 0; i < 3; ++i) {
       // Headings relative to the first, so that none is averaged across the jump at pi.
-      const double off = i == 2 ? base::wrap_angle(view.at[2] - first->at[2]) : view.at[i] - first->at[i];
+      const double off = i == 2 ? base::wrap_angle(view.at[2] - first.at[2]) : view.at[i] - first.at[i];
       sum.at[i] += weight * (off + (track != nullptr ? dt * track->axes[i].v : 0.0));
     }
     weights += weight;
     ++used;
   }
-  for (std::size_t i = 0; i < 3; ++i) sum.at[i] = first->at[i] + sum.at[i] / weights;
+  for (std::size_t i = 0; i < 3; ++i) sum.at[i] = first.at[i] + sum.at[i] / weights;
   sum.pixel = 1.0 / std::sqrt(weights);
   return sum;
 }

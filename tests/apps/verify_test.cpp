@@ -97,6 +97,22 @@ TEST(Verify, WithoutReadings) {
   EXPECT_NE(outcome.out.find("\"sound\": true"), std::string::npos) << outcome.out;
 }
 
+/// Where nothing can be compared, that is said.
+TEST(Verify, WithoutReadingsAndLasers) {
+  const Folder folder;
+  const std::string world = folder.path("blind.world"), run = folder.path("run");
+  std::ofstream(world) << "position(pose [1 1 0 0] drive \"diff\")\n";
+  ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", run}).code, 0);
+  const Outcome outcome = run_program({"verify", run});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(
+      outcome.out,
+      "ticks              10\n"
+      "note               the run kept no readings (run --record-readings): what its poses give here was checked\n"
+      "skipped            all readings: the run kept none, and no robot has a laser to compare with plain C++\n"
+      "verdict            sound\n");
+}
+
 /// A flipped bit in a scan is behind a checksum: it is told as damage, and what is left is verified.
 TEST(Verify, DamageIsTold) {
   const Folder folder;

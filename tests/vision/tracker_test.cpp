@@ -90,6 +90,17 @@ TEST(Tracker, MergesViewsOfAFastTag) {
   }
 }
 
+/// A camera that lags behind shows the tag's past beside the others' present.
+TEST(Tracker, RefusesAnOldViewBesideANewOne) {
+  Tracker tracker;
+  update(tracker, {sighting(0.2, 0.0, 0.0, 0.0)});
+  const auto tracked = update(tracker, {sighting(0.3, 0.0, 0.0, 0.0), sighting(0.15, 0.08, 0.0, 0.0)});
+  ASSERT_EQ(tracked.size(), 1u);
+  EXPECT_EQ(tracked[0].X_WT.x, 0.0);
+  EXPECT_EQ(tracked[0].cameras, 1);
+  EXPECT_EQ(tracker.refused(), 1u);
+}
+
 TEST(Tracker, RefusesASecondPlace) {
   Tracker tracker;
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});

@@ -141,6 +141,13 @@ TEST(RndfSlips, OneSlipIsOneProblem) {
   }
 }
 
+// Lanes whose segment does not begin are no zones.
+TEST(RndfSlips, RefusedLanesAreNoZones) {
+  const std::string said = refusal_of(small_with("segment 1\n", ""), false);
+  EXPECT_NE(said.find("'num_segments' says 2, but the file has 1"), std::string::npos) << said;
+  EXPECT_EQ(said.find("num_zones"), std::string::npos) << said;
+}
+
 TEST(RndfSlips, AHundredProblemsAreEnough) {
   std::string text(kSmallRndf);
   std::string more;

@@ -158,9 +158,9 @@ Rndf RndfReader::read() {
 /// block.
 void RndfReader::skip(std::string_view keyword) {
   const int level = level_of(keyword);
-  if (is_number(keyword)) ++open_.back().skipped;
+  if (is_number(keyword)) ++open_.back().skipped["point"];
   if (level == kInner || keyword.starts_with("end_")) return;
-  ++open_.back().skipped;
+  ++open_.back().skipped[std::string(keyword)];
   const std::string end = "end_" + std::string(keyword);
   while (next() && now().keyword != end) {
     if (const auto id = read_point_id(now().keyword)) unread_.insert(*id);
@@ -226,8 +226,8 @@ void RndfReader::open(RndfBlock block, std::string name) { open_.push_back({bloc
 
 // Checks a declared count. Only the counts of zones and spots may be zero, and then may be missing. The actual number
 // takes precedence, unless the file ends before that number was reached.
-void RndfReader::check_declared(const Open& open, std::string_view keyword, std::size_t have) {
-  have += open.skipped;
+void RndfReader::check_declared(const Open& open, std::string_view keyword, std::string_view entry, std::size_t have) {
+  have += open.refused(entry);
   const bool may_be_none = keyword == "num_zones" || keyword == "num_spots";
   const auto said = open.declared.find(keyword);
   if (said == open.declared.end()) {
@@ -259,28 +259,28 @@ void RndfReader::close() {
   const Open& last = open_.back();
   switch (last.block) {
     case RndfBlock::file:
-      check_declared(last, "num_segments", rndf_.segments.size());
-      check_declared(last, "num_zones", rndf_.zones.size());
+      check_declared(last, "num_segments", "segment", rndf_.segments.size());
+      check_declared(last, "num_zones", "zone", rndf_.zones.size());
       break;
     case RndfBlock::segment:
-      check_declared(last, "num_lanes", rndf_.segments.back().lanes.size());
+      check_declared(last, "num_lanes", "lane", rndf_.segments.back().lanes.size());
       break;
     case RndfBlock::lane:
-      check_declared(last, "num_waypoints", lane().points.size());
+      check_declared(last, "num_waypoints", "point", lane().points.size());
       break;
     case RndfBlock::zone:
-      check_declared(last, "num_spots", zone().spots.size());
-      if (zone().perimeter.empty() && last.skipped == 0)
+      check_declared(last, "num_spots", "spot", zone().spots.size());
+      if (zone().perimeter.empty() && last.refused("perimeter") == 0)
         diagnostics_.add_error(last.line,
                                fmt::format("{} has no perimeter; expected 'perimeter {}.0'", last.name, zone().id));
       break;
     case RndfBlock::perimeter:
-      check_declared(last, "num_perimeterpoints", zone().perimeter.size());
+      check_declared(last, "num_perimeterpoints", "point", zone().perimeter.size());
       if (zone().perimeter.size() < 3)
         warn(last.line, fmt::format("{} has fewer than three points: no area", last.name));
       break;
     case RndfBlock::spot:
-      if (spot().points.size() + last.skipped != 2)
+      if (spot().points.size() + last.refused("point") != 2)
         diagnostics_.add_error(last.line, fmt::format("{} has {} points; expected two: its entry and its end",
                                                       last.name, spot().points.size()));
       break;

@@ -37,7 +37,12 @@ class RndfReader {
     std::string name;                                            ///< `lane 1.2`
     std::map<std::string, DeclaredCount, std::less<>> declared;  ///< by keyword, e.g. `num_lanes`
     std::map<std::string, std::string, std::less<>> seen;  ///< keywords allowed once in the block, with their text
-    std::size_t skipped = 0;                               ///< refused blocks and points in this block
+    /// Refused blocks in this block, by keyword, and refused points as `point`.
+    std::map<std::string, std::size_t, std::less<>> skipped;
+    std::size_t refused(std::string_view what) const {
+      const auto found = skipped.find(what);
+      return found == skipped.end() ? 0 : found->second;
+    }
   };
   struct Rule;
   static const std::map<std::string_view, Rule>& rules();
@@ -57,7 +62,7 @@ class RndfReader {
   void close_implied(const std::string& because);
   void end_block(RndfBlock block);
   void end_file();
-  void check_declared(const Open& open, std::string_view keyword, std::size_t have);
+  void check_declared(const Open& open, std::string_view keyword, std::string_view entry, std::size_t have);
   void check_name();
 
   // Effects of keywords
