@@ -34,7 +34,7 @@ std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
   if (v.reference.readings < v.scans)
     text += row("", "a sample: {} of {} scans, spread evenly over the run (--all: every one)", v.reference.readings,
                 v.scans);
-  if (!readings_recorded)
+  if (!readings_recorded && v.reference.readings > 0)
     text += row("note", "the run kept no readings (run --record-readings): what its poses give here was checked");
   for (const std::string& skipped : v.skipped) text += row("skipped", skipped);
   if (v.missing > 0) text += row("missing", counted(v.missing, "recorded reading") + " that no sensor was due to make");
