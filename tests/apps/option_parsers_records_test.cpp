@@ -1,0 +1,111 @@
+// Parsers of arguments, at the limits of what they take and one beyond, and short texts of reports: a golden record.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "apps/option_parsers.h"
+#include "apps/slurm.h"
+#include "apps/text.h"
+#include "tests/apps/golden.h"
+
+namespace sf::apps {
+
+namespace {
+
+/// "NAME 'text' -> value", one a line. @param show the value that was read as text
+template <class Read, class Show>
+std::string table(const char* name, Read read, Show show, const std::vector<std::string>& texts) {
+  std::string rows;
+  for (const std::string& text : texts) {
+    const auto value = read(text);
+    rows += fmt::format("{} '{}' -> {}\n", name, text, value ? show(*value) : "none");
+  }
+  return rows;
+}
+
+std::string answers(const char* name, const Validator& validator, const std::vector<std::string>& texts) {
+  std::string rows;
+  for (const std::string& text : texts) rows += fmt::format("{} '{}' -> '{}'\n", name, text, validator(text));
+  return rows;
+}
+
+std::string places() {
+  const auto pose = [](const base::Pose& X) { return fmt::format("{:g} {:g} {:g} {:.9g}", X.x, X.y, X.z, X.yaw); };
+  const auto line = [](const viz::Line& l) {
+    return fmt::format("{:g} {:g} to {:g} {:g}", l.a.x, l.a.y, l.b.x, l.b.y);
+  };
+  const auto extent = [](const world::Extent& e) {
+    return fmt::format("{:g} {:g} {:g} {:g}", e.x_min, e.y_min, e.x_max, e.y_max);
+  };
+  const auto size = [](const glm::dvec2& s) { return fmt::format("{:g} by {:g}", s.x, s.y); };
+  return table("pose", read_pose, pose,
+               {"1,2,90", "1,2", "1,2,3,4", "1e7,-1e7,0", "1.0000001e7,0,0", "0,1.0000001e7,0", "a,b,c"}) +
+         table("line", read_line, line, {"0,0,1,2", "1,2,1,2", "1,2,1,3", "1,2,3,2", "0,0,1"}) +
+         table("extent", read_extent, extent, {"0,1,2,3", "0,1,0,3", "2,1,0,3", "0,3,2,3", "0,4,2,3", "0,1,2"}) +
+         table("size", read_size, size,
+               {"85", "84.9", "1000", "1001", "85x60", "85x59.9", "85x1000", "85x1001", "170x120", "x", "85x", "a"});
+}
+
+std::string numbers() {
+  const auto ports = [](const std::vector<std::uint16_t>& p) {
+    return fmt::format("{} from {} to {}", p.size(), p.front(), p.back());
+  };
+  const auto quantity = [](const Quantity& q) { return fmt::format("{:.9g} {}", q.value, q.is_tesla ? "T" : "m"); };
+  const auto rate = [](double hertz) { return fmt::format("{:g}", hertz); };
+  const auto share = [](const Share& s) { return fmt::format("{} of {}", s.index, s.count); };
+  const auto setting = [](const auto& s) { return fmt::format("[{}] [{}]", s.first, s.second); };
+  return table("ports", read_ports, ports,
+               {"1", "0", "65535", "65536", "10-10", "10-9", "1-1024", "1-1025", "1000-2023", "5-", "-5", "01",
+                "1-2-3"}) +
+         table("quantity", read_quantity, quantity,
+               {"1m",  "2cm", "3mm", "4um", "4\u00b5m", "5nm", "1T", "2mT",  "3uT", "3\u00b5T",
+                "4nT", "5G",  "6mG", "0m",  "-1m",      "1",   "m",  "infm", "1 m", "1km"}) +
+         table("rate", read_rate, rate, {"10", "10Hz", "0", "-1", "10hz", "10 Hz", "inf", "0.5Hz", ""}) +
+         table("share", read_share, share, {"1/1", "2/8", "8/8", "9/8", "0/8", "8", "a/8", "1/b", "1/"}) +
+         table("setting", read_setting, setting, {"a=b", "a=", "=b", "a", "a=b=c"});
+}
+
+std::string validators() {
+  return answers("whole 2 to 10", whole(2, 10), {"1", "2", "10", "11", "-3", "05", "2.0", "", "0x3"}) +
+         answers("number -1 to 2.5", number(-1.0, 2.5),
+                 {"-1", "-1.01", "2.5", "2.51", "nan", "inf", "", "1a", "1e-3"}) +
+         answers("one_of", one_of({"max", "inf", "none"}), {"max", "inf", "none", "Max", ""}) +
+         answers("one_of one", one_of({"max"}), {"max", "min"}) + answers("not_empty", not_empty("a name"), {"", "x"}) +
+         answers("picture", picture(), {"", "a.png", "a.SVG", "a.pdf", "a.jpg", "a", "b/c.d/e"});
+}
+
+std::string words() {
+  std::string rows;
+  for (const double value : {0.0, 9.9e-13, 1e-12, 5e-3, 2.5e-6, 0.9994e-9, 0.9995e-9, 999.4e-3, 999.5e-3, 12345.0,
+                             std::numeric_limits<double>::infinity()})
+    rows += fmt::format("quantity {:g} -> {}\n", value, quantity_text(value, "m"));
+  std::vector<std::string_view> names;
+  for (int i = 0; i < 12; ++i, names.emplace_back("n"))
+    if (i < 3 || i > 8) rows += fmt::format("{} names -> {}\n", i, list_names(names));
+  for (const std::string word : {"--jsn", "--json", "json", "--zzzzzz", "--repot"})
+    rows += fmt::format("suggest {} -> {}\n", word, suggest_option(word, {"json", "report", "seed"}));
+  rows += fmt::format("{}, {}, {}\n", counted(0, "port"), counted(1, "port"), counted(2, "port"));
+  rows += shell_quoted("it's $here") + "\n" + row("name", 5) + row("", "more");
+  return rows;
+}
+
+std::string batch_script() {
+  return text_of(BatchScript{.name = "grid",
+                             .tasks = {0, 1, 2, 5, 7, 8},
+                             .shares = 9,
+                             .cpus = 3,
+                             .log = "out/%a.log",
+                             .directives = {"--time=1:00:00"},
+                             .program = "/opt/sensor farm",
+                             .arguments = {"sweep", "a b.toml"}});
+}
+
+}  // namespace
+
+TEST(OptionParserRecords, TakeWhatTheirRecordHas) {
+  expect_golden("option_parsers", places() + numbers() + validators() + words() + batch_script());
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,163 @@
+// Reports with every count set, and with none, beside golden records: rows that a run on one machine does not show.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "apps/report.h"
+#include "apps/robot_report.h"
+#include "apps/vps_report.h"
+#include "tests/apps/golden.h"
+
+namespace sf::apps {
+
+namespace {
+
+void fill(netio::PacketCounts& counts, std::uint64_t first) {
+  for (std::uint64_t& count : counts.of) count = first++;
+}
+
+netio::OutboxCounts outbox(std::uint64_t sent) {
+  return {.sent = sent, .sent_bytes = 2'345'678, .failed = 3, .dropped = 4, .first_failure = "192.0.2.1:1: no route"};
+}
+
+/// Robots that stand for six reasons: one more than the text has lines for.
+ControlReport control_report() {
+  ControlReport f{.controller = "route", .robots = 9, .done = 2, .error = {11, -0.0125, 0.25}};
+  f.has_goals = true;
+  f.checkpoints = 12;
+  f.localization = {.steps = 4, .squares = 1.0, .yaw_squares = 0.04, .max = 0.75};
+  for (std::uint64_t i = 0; i < 6; ++i)
+    f.standing.push_back(
+        {fmt::format("reason {}", i), {"a", "b", "c"}, i < 3 ? 3 + i : 1, 3.6 + static_cast<double>(i)});
+  return f;
+}
+
+void set_service(RunReport& f) {
+  f.sent = f.received = f.filtered = true;
+  f.publisher = {outbox(21), 5};
+  fill(f.inbox, 1);
+  f.socket_drops = 31;
+  f.relayed = {.states = 32, .datagrams = 33, .waited = 34, .starts = 35};
+  f.lights = {{.states = 41, .messages = 42, .others = 43, .invalid = 44, .packets = 45, .refused = 46, .silences = 47},
+              48};
+  for (std::size_t k = 0; k < f.states.states.size(); ++k) f.states.states[k] = 50 + k;
+  f.states.clocks = {61, 62, 63, 64};
+  f.states.flooded = 65;
+  for (std::uint64_t i = 0; i < 7; ++i)
+    f.clocks.push_back({fmt::format("robot{}", i),
+                        {.offset = 1'500'000 * static_cast<std::int64_t>(i) - 3'000'000,
+                         .drift = 1.25e-5,
+                         .synchronised = true,
+                         .drift_known = i % 2 == 0,
+                         .steps = i % 3}});
+  f.lines_left_out = 66;
+  f.lockstep = server::LockstepCounts{71, 72, 73, 74, 75};
+}
+
+RunReport full_report() {
+  RunReport f{.device = "GPU", .software = true, .caster = "host", .robots = 9, .ticks = 200, .simulated_s = 20.0};
+  f.wall_s = 0.5;
+  f.contacts = 13;
+  f.control = control_report();
+  f.move_s = 0.1, f.out_s = 0.2;
+  f.farm = {.ticks = 200, .readings = 14, .missed = 15, .reused = 16, .batches = 17};
+  f.farm.work = {.rays = 4'000'000, .uncertain = 18, .cells_built = 19, .dipoles = 20'000, .host_scans = 2};
+  f.farm.place_s = 0.01, f.farm.lists_s = 0.02, f.farm.device_s = 0.03, f.farm.collect_s = 0.04;
+  f.hash = 0x123456789abcdef0;
+  f.interrupted = true;
+  set_service(f);
+  f.recording = "r/run.mcap", f.recorded_bytes = 4'560'000, f.recording_error = "disk full";
+  f.shared = RankReport{.ranks = 4, .bytes = 80.6, .wait_s = 0.06, .passed_on = 77, .imbalance = 1.234};
+  return f;
+}
+
+scenarios::Verification verification(std::uint64_t different, double largest) {
+  scenarios::Verification v{.ticks = 30};
+  v.recomputed.push_back({"laser", 1, 7, different, largest, "tick 3"});
+  v.reference = {"laser", 5, 35, 0, 0.0, ""};
+  v.scans = 6;
+  v.missing = different;
+  v.interrupted = largest > 0.0;
+  v.skipped = {"bumpers"};
+  if (different > 1) v.damage = {"chunk 3"};
+  return v;
+}
+
+server::RobotClientStats robot_stats() {
+  server::RobotClientStats f{.robot = "anna", .id = 7, .controller = "route", .farm = "127.0.0.1:9000", .wall_s = 2.5};
+  f.steps = 25, f.contacts = 2, f.stops = 3, f.lines_left_out = 4, f.distance_m = 1.25, f.done = true;
+  f.started = false;
+  f.pose = {1.0, -2.0, 0.0, 0.5};
+  f.link.sent = outbox(51);
+  f.link.out = {11, 12, 13, 14, 15};
+  f.link.in = {21, 22, 0, 24, 25};
+  fill(f.link.readings.packets, 1);
+  f.link.readings.late = 31, f.link.readings.duplicates = 1, f.link.readings.jumps = 33, f.link.readings.lost = 34;
+  f.link.readings.restarts = 35;
+  fill(f.link.packets, 3);
+  f.link.socket_drops = 41, f.link.stale = 42, f.link.whole = {{"gps", 43}, {"laser", 44}};
+  f.error = {5, 0.5, 0.75};
+  f.localization = {.steps = 4, .squares = 1.0, .yaw_squares = 0.04, .max = 0.75};
+  f.cameras.emplace();
+  fill(f.cameras->packets, 2);
+  f.cameras->states.states = {61, 62, 63, 64, 65, 66, 67, 68, 69};
+  f.cameras->errors = {4, 0.0004, 0.015, 0.1};
+  f.create = server::CreateCounts{71, 72, 73, 1, 75, 76};
+  f.map = server::OwnMapCounts{81, 82, outbox(83)};
+  f.listens_for_spat = true;
+  f.lights = {.states = 91, .messages = 92, .others = 93, .invalid = 94, .packets = 95, .refused = 96, .silences = 97};
+  return f;
+}
+
+VpsReport vps_report() {
+  VpsReport r{.cameras = 2, .refused = 6, .processing_s = 0.5, .processing_cpu_s = 1.5};
+  r.counts = {
+      .images = 10, .unreadable = 1, .sightings = 20, .unlisted = 3, .unfitted = 4, .misfitted = 5, .frozen = 7};
+  r.tags[3] = {3, 1.5, {1.0, -2.0, 0.1, 0.5}, {0.3, 0.4}, -0.25, 2};
+  r.reported[3] = 18;
+  r.accuracy = vision::Accuracy{{0.0004, 0.015, 4}, {0.01, 0.06, 4}, {0.04, 0.15, 4}, {0.09, 0.2, 1}, 8, 9};
+  r.sent = outbox(17);
+  r.unaddressed = 2;
+  r.truth = TruthCounts{3, 44, 5};
+  return r;
+}
+
+netio::StreamSummary summary() {
+  netio::StreamSummary s{.datagrams = 100, .bytes = 2'500'000, .good = 90, .counts = {}, .stale_states = 1};
+  fill(s.counts, 0);
+  s.oldest_state = 250'000'000, s.lost = 5, s.duplicates = 1, s.reordered = 7, s.ports = 1, s.silent_ports = 2;
+  s.socket_drops = 8;
+  s.of = {{"laser", {60, 4321}}, {"gps", {30, 30}}};
+  return s;
+}
+
+template <class Report>
+std::string both(const Report& report) {
+  return text_of(report) + json_of(report);
+}
+
+}  // namespace
+
+TEST(ReportRecords, ARunShowsEveryCountThatItHas) { expect_golden("report_run", both(full_report())); }
+
+TEST(ReportRecords, AnEmptyRunShowsNoRowsOfServices) { expect_golden("report_run_empty", both(RunReport{})); }
+
+TEST(ReportRecords, ARobotShowsEveryCountThatItHas) {
+  expect_golden("report_robot", both(robot_stats()) + both(server::RobotClientStats{}));
+}
+
+TEST(ReportRecords, AVerificationShowsDifferencesDamageAndVerdict) {
+  std::string text;
+  for (const auto& [different, largest] : {std::pair<std::uint64_t, double>{0, 0.0}, {0, 0.125}, {1, 0.5}, {2, 3.0}})
+    text += text_of(verification(different, largest), different == 0) + json_of(verification(different, largest));
+  expect_golden("report_verification", text);
+}
+
+TEST(ReportRecords, VpsAndStreamsShowEveryCountThatTheyHave) {
+  expect_golden("report_vps", both(vps_report()) + both(VpsReport{}));
+  expect_golden("report_streams", both(summary()) + both(netio::StreamSummary{}));
+}
+
+}  // namespace sf::apps
