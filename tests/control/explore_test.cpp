@@ -251,7 +251,10 @@ TEST(PlanAround, HoldsTheWorldAndIsNeverSmallerThanTheThesis) {
   const maps::GridGeometry wide = grid_around(world);
   for (const glm::dvec2& p : {glm::dvec2{10, -1.5}, glm::dvec2{18, 1.5}})
     EXPECT_TRUE(maps::contains(wide, maps::cell_at(wide, p)));
-  EXPECT_GT(wide.word_columns, 60u);
+  EXPECT_EQ(wide.word_columns, 69u) << "8 m in words of 12 cm, and two more";
+  EXPECT_EQ(wide.word_rows, 30u);
+  EXPECT_NEAR(wide.left, 14.0 - 69 * 0.06, 1e-12);
+  EXPECT_NEAR(wide.top, 1.8, 1e-12);
 }
 
 }  // namespace

@@ -100,6 +100,21 @@ TEST(CloneRobots, TheSame100KmAway) {
   }
 }
 
+/// Free places are found from the region's corner on, wherever that is.
+TEST(CloneRobots, AMovedWorldMovesThemWithIt) {
+  World here = two_rooms(), there = two_rooms();
+  const glm::dvec2 by{-32.0, 16.0};  // sums of the cells' coordinates stay exact
+  for (Segment& wall : there.walls) wall.a += by, wall.b += by;
+  there.movers[0].X_WM.x += by.x, there.movers[0].X_WM.y += by.y;
+  update_extent_and_hash(there);
+  clone_robots(here, 30, 1);
+  clone_robots(there, 30, 1);
+  for (std::size_t k = 0; k < here.movers.size(); ++k) {
+    EXPECT_LT(length(at(there.movers[k]) - at(here.movers[k]) - by), 1e-9) << k;
+    EXPECT_EQ(there.movers[k].X_WM.yaw, here.movers[k].X_WM.yaw) << k;
+  }
+}
+
 TEST(CloneRobots, Something100KmAwayDoesNotCoarsenTheRoom) {
   World world = two_rooms();
   scenes::add_wall(world, {1e5, 1e5}, {1e5, 1e5 + 1});

@@ -33,6 +33,8 @@ TEST(Colors, AreSortedSoThatEveryNameIsFound) {
   EXPECT_EQ(color_of("red4"), 0xFF8C0000u);
   EXPECT_FALSE(color_of("gray101"));
   EXPECT_FALSE(color_of("red5"));
+  EXPECT_EQ(color_of("gray100"), 0xFFFFFFFFu);
+  EXPECT_FALSE(color_of("gray0100")) << "three digits at most";
   EXPECT_FALSE(color_of("1"));
   EXPECT_FALSE(color_of(""));
 }

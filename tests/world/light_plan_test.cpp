@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "world/light_phases.h"
 #include "world/lights.h"
 
 namespace sf::world {
@@ -36,6 +37,47 @@ duration = 10
 yellow = 3
 clear = 0
 )";
+
+/// The limits of times: the value at the limit is taken, the one beyond is refused.
+TEST(LightPlan, TimesEndAtTheirLimits) {
+  struct Limit {
+    std::string from, to;  ///< `from` of the plan is replaced by `to` and a value
+    std::string least, below, most, beyond;
+  };
+  const Limit limits[] = {
+      {"duration = 8", "duration = ", "0.001", "0.0009", "1e6", "1000001"},
+      {"yellow = 3", "yellow = ", "0", "-0.001", "1e6", "1000001"},
+      {"clear = 0", "clear = ", "0", "-0.001", "1e6", "1000001"},
+  };
+  const auto is_refused = [](const Limit& l, const std::string& value) {
+    std::string plan = kTwoStages;
+    plan.replace(plan.find(l.from), l.from.size(), l.to + value);
+    World world = plan_street();
+    try {
+      parse_light_plan("p.toml", plan, world);
+    } catch (const base::InputError&) {
+      return true;
+    }
+    return false;
+  };
+  for (const Limit& l : limits) {
+    for (const std::string& fine : {l.least, l.most}) EXPECT_FALSE(is_refused(l, fine)) << l.to << fine;
+    for (const std::string& wrong : {l.below, l.beyond}) EXPECT_TRUE(is_refused(l, wrong)) << l.to << wrong;
+  }
+}
+
+/// A light that is green in the last stage and in the first begins with the last.
+TEST(LightPlan, GreenOverTheEndOfTheCycleBeginsOnce) {
+  World world = plan_street();
+  const LightPlan plan = parse_light_plan("p.toml",
+                                          "[[program]]\nlights = [\"a\", \"b\"]\n"
+                                          "[[program.stage]]\nstates = { a = \"green\" }\nduration = 8\n"
+                                          "[[program.stage]]\nstates = { b = \"green\" }\nduration = 10\n"
+                                          "[[program.stage]]\nstates = { a = \"green\" }\nduration = 4\n",
+                                          world);
+  EXPECT_EQ(first_green(plan.programs.at(0), 0), 8.0 + 3.0 + 10.0 + 3.0);
+  EXPECT_EQ(first_green(plan.programs.at(0), 1), 8.0 + 3.0);
+}
 
 TEST(LightPlan, AFixedProgramBecomesThePlansOfItsLights) {
   World world = plan_street();

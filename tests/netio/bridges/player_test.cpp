@@ -446,6 +446,19 @@ TEST_F(PlayerTest, PortsInUseAreNamed) {
   expect_in("beyond 65535", refusal_of([&] { PlayerBridge(run.scene, {netio::kLoopback, 65535}); }));
 }
 
+TEST_F(PlayerTest, SaysWhichRobotIsOnWhichPort) {
+  const auto described = [](const PlayerRun& of) {
+    const std::string line = of.bridge.describe(), port = std::to_string(of.bridge.endpoint().port);
+    return line.substr(line.find(port) + port.size());
+  };
+  const auto port = [](const PlayerRun& of, int more) { return std::to_string(of.bridge.endpoint().port + more); };
+  const PlayerRun one("name \"e\"\nposition( )\n"), two("name \"e\"\nposition( ) position( )\n"),
+      four("name \"e\"\nposition( ) position( ) position( ) position( )\n");
+  EXPECT_EQ(described(one), "");
+  EXPECT_EQ(described(two), " for all robots, robot 2 alone on port " + port(two, 1));
+  EXPECT_EQ(described(four), " for all robots, robots 2 to 4 alone on ports " + port(four, 1) + " to " + port(four, 3));
+}
+
 TEST(PlayerOdometry, IsThatOfTheEncoders) {
   PlayerRun run("name \"e\"\nposition( name \"ann\" pose [3 4 0 0] size [0.4 0.3 0.2] encoder( track 0.5 ) )\n");
   TestClient client(run.port());
