@@ -10,13 +10,46 @@
 #include "robots/fleet.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
+#include "sensors/magnetometer.h"
+#include "tests/robots/scenes.h"
 #include "tests/units.h"
+#include "world/path_geometry.h"
 #include "world/world.h"
 
 namespace sf::loop {
 
 using base::Pose;
 using base::Twist;
+
+/// The thesis' path, and a Create with a lane edge sensor and five magnetometers. @param yaw [rad] of the former
+inline world::World path_world(double yaw = M_PI / 2) {
+  world::World world = scenes::empty_world();
+  world::Mover& robot = scenes::add_create(world, {0, 0, 0, 0});
+  robot.sensors.push_back({.type = "laneedge", .X_MS = {0.225, 0, 0, yaw}});
+  robot.sensors.push_back(scenes::magnetometers(5));
+  world.paths.push_back({"lane",
+                         {{{0, 0, 0, 0}, 2.72, 0.0, 0.50},
+                          {{2.72, 0, 0, 0}, 0.93 * M_PI / 2, 1 / 0.93, 0.60},
+                          {{3.65, 0.93, 0, M_PI / 2}, 1.349, 0.0, 0.45}}});
+  return world;
+}
+
+/// Distance to the left edge by formula, as an ideal lane edge sensor reads it on a straight lane.
+inline std::vector<double> edge_from(const world::World& world, const Pose& X_WM) {
+  const world::PathProjection at = world::project_onto(world.paths[0], transform(X_WM, {0.225, 0.0}));
+  return {0.5 * world.paths[0].pieces[at.piece].width - at.offset, 61, 0, 0};
+}
+
+/// Five elements over a line whose field is largest above it, with the columns of the magnetometer.
+inline std::vector<double> field_over(const world::World& world, const Pose& X_WM) {
+  std::vector<double> values;
+  for (int i = 0; i < 5; ++i) {
+    const double far = world::project_onto(world.paths[0], transform(X_WM, {0.2, -0.15 + 0.075 * i})).offset;
+    const double field = 1.81 * sensors::kGauss / (1.0 + far * far / 0.015);
+    values.insert(values.end(), {field, 0.0, 0.0, field});
+  }
+  return values;
+}
 
 /// Ranges of a laser on walls only.
 inline std::vector<double> scan(const world::World& world, const sensors::LaserSettings& laser, const Pose& X_WS) {

@@ -64,38 +64,22 @@ std::string drive_of(const world::World& world, const std::string& name, std::ve
   return text + fmt::format("{} done {}\n", line_of(fleet.reports()[0], {}), controller->done());
 }
 
+/// A little beside the path, and askew.
 world::World path_world() {
-  world::World world = scenes::empty_world();
-  world::Mover& robot = scenes::add_create(world, {0, 0.03, 0, 0.1});
-  robot.sensors.push_back({.type = "laneedge", .X_MS = {0.225, 0, 0, M_PI / 2}});
-  robot.sensors.push_back(scenes::magnetometers(5));
-  world.paths.push_back({"lane",
-                         {{{0, 0, 0, 0}, 2.72, 0.0, 0.50},
-                          {{2.72, 0, 0, 0}, 0.93 * M_PI / 2, 1 / 0.93, 0.60},
-                          {{3.65, 0.93, 0, M_PI / 2}, 1.349, 0.0, 0.45}}});
+  world::World world = loop::path_world();
+  world.movers[0].X_WM = {0, 0.03, 0, 0.1};
   return world;
 }
 
 TEST(DriveRecords, LaneKeeping) {
   const world::World world = path_world();
-  const auto edge = [&](const Pose& X_WM) -> std::vector<double> {
-    const world::PathProjection at = world::project_onto(world.paths[0], transform(X_WM, {0.225, 0.0}));
-    return {0.5 * world.paths[0].pieces[at.piece].width - at.offset, 61, 0, 0};
-  };
+  const auto edge = [&](const Pose& X_WM) { return loop::edge_from(world, X_WM); };
   expect_drive("lane_keeping", drive_of(world, "lane-keeping", {}, sensors::kLaneEdge, edge, 400));
 }
 
 TEST(DriveRecords, MagnetKeeping) {
   const world::World world = path_world();
-  const auto field = [&](const Pose& X_WM) {
-    std::vector<double> values;
-    for (int i = 0; i < 5; ++i) {
-      const double far = world::project_onto(world.paths[0], transform(X_WM, {0.2, -0.15 + 0.075 * i})).offset;
-      const double strength = 1.81 * sensors::kGauss / (1.0 + far * far / 0.015);
-      values.insert(values.end(), {strength, 0.0, 0.0, strength});
-    }
-    return values;
-  };
+  const auto field = [&](const Pose& X_WM) { return loop::field_over(world, X_WM); };
   expect_drive("magnet_keeping", drive_of(world, "magnet-keeping", {}, sensors::kMagnetometer, field, 400));
 }
 

@@ -12,6 +12,7 @@
 #include "robots/kinematics.h"
 #include "sensors/laneedge.h"
 #include "sensors/magnetometer.h"
+#include "tests/control/closed_loop.h"
 #include "tests/robots/scenes.h"
 #include "tests/units.h"
 #include "world/path_geometry.h"
@@ -22,18 +23,6 @@ namespace {
 using base::Pose;
 using base::Twist;
 
-world::World path_world(double yaw = M_PI / 2) {
-  world::World world = scenes::empty_world();
-  world::Mover& robot = scenes::add_create(world, {0, 0, 0, 0});
-  robot.sensors.push_back({.type = "laneedge", .X_MS = {0.225, 0, 0, yaw}});
-  robot.sensors.push_back(scenes::magnetometers(5));
-  world.paths.push_back({"lane",
-                         {{{0, 0, 0, 0}, 2.72, 0.0, 0.50},
-                          {{2.72, 0, 0, 0}, 0.93 * M_PI / 2, 1 / 0.93, 0.60},
-                          {{3.65, 0.93, 0, M_PI / 2}, 1.349, 0.0, 0.45}}});
-  return world;
-}
-
 std::unique_ptr<Controller> make(const world::World& world, const ControllerType& type,
                                  std::vector<Setting> numbers = {}) {
   Settings settings("controller", std::move(numbers));
@@ -41,23 +30,6 @@ std::unique_ptr<Controller> make(const world::World& world, const ControllerType
 }
 
 Setting set(const char* key, double value) { return {key, value, ""}; }
-
-/// Distance to the left edge by formula, as an ideal lane edge sensor reads it on a straight lane.
-std::vector<double> edge_from(const world::World& world, const Pose& X_WM) {
-  const world::PathProjection at = world::project_onto(world.paths[0], transform(X_WM, {0.225, 0.0}));
-  return {0.5 * world.paths[0].pieces[at.piece].width - at.offset, 61, 0, 0};
-}
-
-/// Five elements over a line whose field is largest above it, with the columns of the magnetometer.
-std::vector<double> field_over(const world::World& world, const Pose& X_WM) {
-  std::vector<double> values;
-  for (int i = 0; i < 5; ++i) {
-    const double far = world::project_onto(world.paths[0], transform(X_WM, {0.2, -0.15 + 0.075 * i})).offset;
-    const double field = 1.81 * sensors::kGauss / (1.0 + far * far / 0.015);
-    values.insert(values.end(), {field, 0.0, 0.0, field});
-  }
-  return values;
-}
 
 using Plant = Twist (*)(const Twist&);
 Twist ideal(const Twist& twist) { return twist; }
@@ -100,10 +72,10 @@ Drive drive(const world::World& world, Controller& controller, std::uint8_t type
 }
 
 Drive drive_lane(std::vector<Setting> settings, Plant plant, Pose X_WM = {}) {
-  const world::World world = path_world();
+  const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, std::move(settings));
   return drive(
-      world, *controller, sensors::kLaneEdge, [&](const Pose& X) { return edge_from(world, X); }, plant, X_WM);
+      world, *controller, sensors::kLaneEdge, [&](const Pose& X) { return loop::edge_from(world, X); }, plant, X_WM);
 }
 
 // All turning is kp times the error, so that a path that turns by 90 degrees determines the mean error.
@@ -172,7 +144,7 @@ void step_through(Controller& controller, const std::vector<Step>& steps) {
 }
 
 TEST(LaneKeeping, ErrorAndTrapezoidByHand) {
-  const world::World world = path_world();
+  const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("kp", 2.0), set("ki", 10.0)});
   step_through(*controller, {{0.35, 0.1, 0.2, "right of the middle: to the left; no time has passed"},
                              {0.45, 0.2, 0.4 + 10 * 0.015, "0.1 s of 0.1 to 0.2"},
@@ -180,7 +152,7 @@ TEST(LaneKeeping, ErrorAndTrapezoidByHand) {
 }
 
 TEST(LaneKeeping, TheRightEdgeMirrors) {
-  const world::World world = path_world(-M_PI / 2);  // a sensor that looks to the right
+  const world::World world = loop::path_world(-M_PI / 2);  // a sensor that looks to the right
   const auto controller = make(world, lane_keeping_controller, {set("kp", 0.5)});
   step_through(*controller, {{0.35, -0.1, -0.05, "far from the right edge: left of the middle, to the right"}});
 }
@@ -195,7 +167,7 @@ TEST(LaneKeeping, ASensorBesideTheAxisCountsFromTheAxis) {
                            Mounted{M_PI / 2, -0.1, 0.35, 0.0, "left edge, sensor to the right: 0.25"},
                            Mounted{-M_PI / 2, -0.1, 0.25, -0.1, "right edge, sensor to the right: 0.35"},
                            Mounted{-M_PI / 2, 0.1, 0.35, 0.0, "right edge, sensor to the left: 0.25"}}) {
-    world::World world = path_world(m.yaw);
+    world::World world = loop::path_world(m.yaw);
     world.movers[0].sensors[0].X_MS.y = m.y;
     const auto controller = make(world, lane_keeping_controller, {set("kp", 0.5)});
     step_through(*controller, {{m.z, m.error, 0.5 * m.error, m.why}});
@@ -206,11 +178,11 @@ TEST(LaneKeeping, ASensorBesideTheAxisCountsFromTheAxis) {
 TEST(LaneKeeping, ItsOwnGainKeepsTheLane) {
   for (const auto plant : {&ideal, &player_create})
     for (const double speed : {0.1, 0.2, 0.4}) {
-      world::World world = path_world();
+      world::World world = loop::path_world();
       if (plant == &player_create) world.movers[0].actuator_model = world::ActuatorModel::player_create;
       const auto controller = make(world, lane_keeping_controller, {set("speed", speed)});
       const Drive d = drive(
-          world, *controller, sensors::kLaneEdge, [&](const Pose& X) { return edge_from(world, X); }, *plant);
+          world, *controller, sensors::kLaneEdge, [&](const Pose& X) { return loop::edge_from(world, X); }, *plant);
       EXPECT_TRUE(controller->done()) << speed;
       EXPECT_LT(d.farthest, plant == &ideal ? 0.07 : 0.1) << speed;
     }
@@ -218,7 +190,7 @@ TEST(LaneKeeping, ItsOwnGainKeepsTheLane) {
 
 TEST(LaneKeeping, ItsOwnGainFollowsFromSpeedAndSensor) {
   const auto gain = [](double speed, double ahead, world::ActuatorModel law = world::ActuatorModel::direct) {
-    world::World world = path_world();
+    world::World world = loop::path_world();
     world.movers[0].sensors[0].X_MS.x = ahead;
     world.movers[0].actuator_model = law;
     const auto controller = make(world, lane_keeping_controller, {set("speed", speed), set("half_width", 0.25)});
@@ -234,7 +206,7 @@ TEST(LaneKeeping, ItsOwnGainFollowsFromSpeedAndSensor) {
 }
 
 TEST(LaneKeeping, SaysWhyItStands) {
-  const world::World world = path_world();
+  const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5)});
   controller->step({});
   EXPECT_EQ(stop_reason_of(*controller), "no new reading comes from its lane edge sensor");
@@ -251,13 +223,13 @@ TEST(LaneKeeping, SaysWhyItStands) {
 }
 
 TEST(LaneKeeping, TakesAWidthInsteadOfThePaths) {
-  const world::World world = path_world();
+  const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("half_width", 0.3), set("kp", 0.5)});
   step_through(*controller, {{0.35, 0.05, 0.025, "half of 0.6 m"}});
 }
 
 TEST(LaneKeeping, WithoutAnEdgeItHoldsThenStandsThenGoesOn) {
-  const world::World world = path_world();
+  const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("kp", 1.0), set("ki", 1.0), set("hold", 0.25)});
   step_through(*controller, {{0.35, 0.1, 0.1, "an edge"},
                              {0.35, 0.1, 0.11, "still"},
@@ -269,7 +241,7 @@ TEST(LaneKeeping, WithoutAnEdgeItHoldsThenStandsThenGoesOn) {
 }
 
 TEST(LaneKeeping, TheSameReadingAgainCountsUntilTheSensorIsSilentForLong) {
-  const world::World world = path_world();
+  const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5), set("kp", 0.5), set("ki", 1.0)});
   const std::vector<double> values{0.35, 61, 0, 0};
   const base::ReadingBlock block{.type = sensors::kLaneEdge, .sequence = 9, .values = values};
@@ -286,7 +258,7 @@ TEST(LaneKeeping, TheSameReadingAgainCountsUntilTheSensorIsSilentForLong) {
 }
 
 TEST(LaneKeeping, StandsWithoutAnyReading) {
-  const world::World world = path_world();
+  const world::World world = loop::path_world();
   const auto controller = make(world, lane_keeping_controller);
   EXPECT_EQ(controller->step({}).forward, 0.0);
   const std::vector<double> nothing;
@@ -297,10 +269,11 @@ TEST(LaneKeeping, StandsWithoutAnyReading) {
 // ---- Magnets.
 
 Drive drive_magnets(std::vector<Setting> settings, Pose X_WM = {}) {
-  const world::World world = path_world();
+  const world::World world = loop::path_world();
   const auto controller = make(world, magnet_keeping_controller, std::move(settings));
   return drive(
-      world, *controller, sensors::kMagnetometer, [&](const Pose& X) { return field_over(world, X); }, ideal, X_WM);
+      world, *controller, sensors::kMagnetometer, [&](const Pose& X) { return loop::field_over(world, X); }, ideal,
+      X_WM);
 }
 
 TEST(MagnetKeeping, POnAUnicycleHasTheMeanErrorThatTheTurnNeeds) {
@@ -315,7 +288,7 @@ TEST(MagnetKeeping, POnAUnicycleHasTheMeanErrorThatTheTurnNeeds) {
 }
 
 TEST(MagnetKeeping, TakesTheOutermostElementsInGauss) {
-  const world::World world = path_world();
+  const world::World world = loop::path_world();
   const auto controller = make(world, magnet_keeping_controller, {set("kp", 0.5)});
   const std::vector<double> values{0.2e-4, 9, 9, 9, 7, 9, 9, 9, 0.8e-4, 9, 9, 9};  // [T], three elements
   const base::ReadingBlock block{.type = sensors::kMagnetometer, .values = values};
@@ -324,7 +297,7 @@ TEST(MagnetKeeping, TakesTheOutermostElementsInGauss) {
 }
 
 TEST(MagnetKeeping, OneElementOrNoneIsNoArray) {
-  const world::World world = path_world();
+  const world::World world = loop::path_world();
   const std::vector<double> one{1e-4, 0, 0, 0};
   const base::ReadingBlock block{.type = sensors::kMagnetometer, .values = one};
   const auto controller = make(world, magnet_keeping_controller);
