@@ -80,7 +80,7 @@ std::string without_machine(std::string text, const std::string& folder) {
 }
 
 void expect_golden(std::string_view name, const std::string& text) {
-  // What belongs to a row, or to a member of an object, stands on its line.
+  // The rest of a row, or of a member of an object, follows on its line.
   golden::expect(std::regex_replace(text, std::regex("\n {4,}"), " "), "apps", std::string(name), 1e-6);
 }
 

@@ -1,4 +1,4 @@
-// What cameras see and what is drawn over it, compared with golden records.
+// Views of cameras and the drawings over them, compared with golden records.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

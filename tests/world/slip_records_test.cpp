@@ -40,7 +40,7 @@ std::string with_last(const std::string& line, const char* word) {
   return at == std::string::npos ? word : line.substr(0, at + 1) + word;
 }
 
-/// What the reader says of the slips of line `i`.
+/// The messages of the reader about the slips of line `i`.
 std::string slips_of(const std::vector<std::string>& lines, std::size_t i, const Read& read) {
   const auto at = static_cast<std::ptrdiff_t>(i);
   std::vector<std::string> changed = lines;

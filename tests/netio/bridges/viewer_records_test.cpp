@@ -39,7 +39,7 @@ std::string record_of(const RawClient::Message& message) {
   return text + "\n";
 }
 
-/// What comes until the answer to a question with an id of its own.
+/// All messages before the answer to a question with an id of its own.
 std::string said_until_settled(RawClient& client) {
   client.text(R"({"op":"getParameters","parameterNames":[],"id":"settle"})");
   std::string said;
