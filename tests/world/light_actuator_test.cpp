@@ -2,11 +2,14 @@
 
 #include "world/light_actuator.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/random.h"
+#include "tests/golden.h"
+#include "world/fields.h"
 
 namespace sf::world {
 namespace {
@@ -127,6 +130,31 @@ TEST(LightActuator, ALateStepShortensNoYellow) {
   EXPECT_EQ(d.a(), LightState::yellow);
   d.until(52.3, {kAtB});
   EXPECT_EQ(d.a(), LightState::red);
+}
+
+std::string text_of(const SignalForecast& f) {
+  const auto word = [](LightState state) {
+    return std::string(words_of(LightState{})[static_cast<std::size_t>(state)]);
+  };
+  const std::string next = f.next ? fmt::format(", then {} for {:.1f}", word(f.next->state), f.next->left) : "";
+  return fmt::format("{} for {:.1f} to {:.1f}{}", word(f.now.state), f.now.left, f.latest, next);
+}
+
+/// Robots at both lights for 25 s, then at b alone, then at none: forecasts of both lights every second.
+TEST(LightActuator, ForecastsAreAsRecorded) {
+  Drive d;
+  std::string text;
+  for (int second = 0; second <= 60; ++second) {
+    if (second <= 25)
+      d.until(second, {kAtA, kAtB});
+    else if (second <= 40)
+      d.until(second, {kAtB});
+    else
+      d.until(second);
+    const std::vector<SignalForecast> all = d.lights.forecasts(d.time);
+    text += fmt::format("{}: a {}; b {}\n", second, text_of(all[0]), text_of(all[1]));
+  }
+  golden::expect(text, "world", "forecasts", 0.051);
 }
 
 /// Random robots for half an hour: never two greens, yellow between green and red, and no change before its forecast.
