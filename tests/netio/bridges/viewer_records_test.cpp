@@ -88,6 +88,7 @@ std::string transcript(ViewerMode mode, const char* protocol) {
   const std::pair<const char*, std::string> binaries[] = {
       {"pause by json", call_of(1, "json", R"({"data":true})")},
       {"pause by a wrong json", call_of(1, "json", R"({"data":1})")},
+      {"pause without a value", call_of(1, "json", "{}")},
       {"go on by cdr", call_of(1, "cdr", std::string("\0\1\0\0\0", 5))},
       {"pause by a cut cdr", call_of(1, "cdr", std::string("\0\1\0\0", 4))},
       {"step", call_of(2, "json", "{}")},
