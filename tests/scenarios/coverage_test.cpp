@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "control/explore.h"
+#include "sensors/laser.h"
+#include "sensors/laser_settings.h"
 #include "sensors/sensor_type.h"
+#include "sensors/sonar.h"
 
 namespace sf::scenarios {
 namespace {
@@ -43,6 +46,28 @@ TEST(Coverage, IsNeverRoundedUpToAll) {
 TEST(Coverage, ItsCellsAreTheExplorers) {
   const world::World world = mapping_world();
   EXPECT_EQ(RobotMap(world, 0).grid().geometry, control::grid_around(world));
+}
+
+TEST(Coverage, ReadingsOfOthersDrawNothing) {
+  const world::World world = mapping_world();
+  RobotMap map(world, 0);
+  const sensors::LaserSettings laser = sensors::lasers_of(world.movers[0])[0];
+  const std::vector<double> ranges(laser.samples, 1.0);
+  const base::ReadingBlock own{.type = sensors::kLaser, .X_WS = {0.0, 0.0, 0.1, 0.0}, .values = ranges};
+  base::ReadingBlock of_another = own, of_another_type = own, of_another_laser = own, short_one = own;
+  of_another.mover = 1, of_another_type.type = sensors::kSonar, of_another_laser.sensor = 1;
+  short_one.values = std::span(ranges).first(ranges.size() - 1);
+  for (const base::ReadingBlock& reading : {of_another, of_another_type, of_another_laser, short_one}) map.add(reading);
+  const auto known = [&] {
+    std::size_t count = 0;
+    for (std::int64_t row = 0; row < maps::rows(map.grid().geometry); ++row)
+      for (std::int64_t column = 0; column < maps::columns(map.grid().geometry); ++column)
+        count += map.grid().at({column, row}) != Cell::unexplored;
+    return count;
+  };
+  EXPECT_EQ(known(), 0u);
+  map.add(own);
+  EXPECT_GT(known(), 100u);
 }
 
 /// Rounding of a line may free a cell whose centre is within a wall; such cells are not required.

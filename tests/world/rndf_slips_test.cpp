@@ -157,6 +157,17 @@ TEST(RndfSlips, AHundredProblemsAreEnough) {
   EXPECT_NE(said.find("100 problems and more"), std::string::npos);
 }
 
+TEST(RndfSlips, TenThousandWarningsAreEnough) {
+  const auto slips = [](int count) {
+    std::string more = "stop 1.1.3\n";
+    for (int i = 0; i < count; ++i) more += "stop 1.1.3\n";
+    return refusal_of(with(std::string(kSmallRndf), "stop 1.1.3\n", more), false);
+  };
+  EXPECT_EQ(slips(10'000), "");
+  EXPECT_NE(slips(10'001).find("stop 1.1.3 is given twice, after 10000 warnings; is this the right file?"),
+            std::string::npos);
+}
+
 const std::string kMission =
     "MDF_name go\nRNDF small\ncheckpoints\nnum_checkpoints 2\n1\n2\nend_checkpoints\nspeed_limits\n"
     "num_speed_limits 2\n1 0 15\n3 5 25\nend_speed_limits\nend_file\n";
