@@ -326,6 +326,18 @@ TEST_F(PlayerTest, GoalsAreDrivenToInEachTick) {
   EXPECT_TRUE(run.asked().commands.empty()) << "a velocity replaces a goal";
 }
 
+TEST_F(PlayerTest, AGoalWhereItStandsIsAHeading) {
+  run.tick();
+  for (const double yaw : {1.0, -1.0}) {
+    client.send(MessageType::command, kPosition, 2, xdr_of(0.0, 0.0, yaw, 0.0, 0.0, 0.0, 1u));
+    settle();
+    run.tick();
+    const base::Twist twist = run.asked().commands.at(0).twist;
+    EXPECT_EQ(twist.forward, 0.0) << yaw;
+    EXPECT_GT(twist.turn * yaw, 0.1) << yaw;
+  }
+}
+
 TEST_F(PlayerTest, OdometryIsSetAndReset) {
   const auto position = [&] {
     const Message data = data_after(client, [&] { run.tick(); });
