@@ -456,5 +456,26 @@ TEST(PacketStatus, CountsSayWhatHappened) {
   EXPECT_EQ(text(counts), "accepted 1, stale 2");
 }
 
+/// Whole numbers of lockstep at their limits and one beyond.
+TEST(Packets, LockstepEndsAtItsLimits) {
+  struct Limit {
+    base::Bytes packet;
+    std::size_t at;  ///< of the number in its payload
+    std::uint32_t least, most;
+  };
+  const std::vector<Limit> limits{
+      {step_example(), 8, 1, kMaxTicks},     {step_example(), 12, 0, kMaxStepCommands},
+      {fetch_example(), 12, 1, kMaxFetched}, {state_example(), 8, 0, 2},
+      {state_example(), 72, 0, 1},           {state_example(), 76, 0, kDriverLostBit},
+  };
+  for (const Limit& l : limits) {
+    const auto with = [&l](std::uint32_t value) { return reason_of(patched(l.packet, kHeaderBytes + l.at, value)); };
+    EXPECT_EQ(with(l.least), PacketStatus::accepted) << l.at;
+    EXPECT_EQ(with(l.most), PacketStatus::accepted) << l.at;
+    EXPECT_EQ(with(l.most + 1), PacketStatus::out_of_range) << l.at;
+    EXPECT_EQ(with(l.least - 1), PacketStatus::out_of_range) << l.at << ": 0 is too few, -1 too many";
+  }
+}
+
 }  // namespace
 }  // namespace sf::netio
