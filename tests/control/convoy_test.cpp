@@ -149,6 +149,23 @@ TEST(Convoy, LetsARobotInBetween) {
   EXPECT_GT(trail.nearest(t.pose(1)), trail.nearest(t.pose(2)));
 }
 
+// It comes to its last goal where it has just merged: that goal is no longer its own.
+TEST(Convoy, WhoHasMergedForgetsItsGoals) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 4.0), "route", go({2}, {{"merge_behind", 2.0, ""}}));
+  t.begin();
+  const double goal = t.roads.lanes[0].points[12].s;  // 1.1.13
+  const auto step = [&](double own, double leader) {
+    const control::Neighbour other{2, {.X_WM = on_lane(t.roads, "1.1", leader), .velocity = {0.2, 0, 0}}, {}};
+    const base::Report self{.X_WM = on_lane(t.roads, "1.1", own), .velocity = {0.2, 0, 0}};
+    t.controllers[0]->step({.time = t.time += kTick, .state = self, .readings = {}, .others = {&other, 1}});
+  };
+  step(goal - 0.3, goal + 0.2);
+  EXPECT_EQ(t.controllers[0]->intent().checkpoint, 2u);
+  step(goal + 0.01, goal + 0.9);
+  EXPECT_EQ(t.controllers[0]->intent().checkpoint, base::kNoId);
+}
+
 // The same from the adjacent lane: robot 4 drives on 1.2 and merges into the convoy on 1.1.
 TEST(Convoy, LetsARobotInFromTheLaneBeside) {
   Streets t;
@@ -244,6 +261,36 @@ TEST(Passing, DoesNotWhereItMustNot) {
   for (int i = 0; i < 300; ++i) t.tick();
   EXPECT_LT(t.pose(1).x, t.pose(0).x);
   EXPECT_EQ(t.contacts, 0);
+}
+
+/// [s] until a robot that has stood since it began to change lanes takes another route; 99: it does not within 20 s
+double gives_up_after(std::uint32_t row, const std::vector<Setting>& more = {}) {
+  Streets t;
+  for (std::uint32_t k = 0; k < row; ++k) t.add(on_lane(t.roads, "1.3", 1.0 + 0.6 * k), "route", go({8}));
+  t.add(on_lane(t.roads, "1.1", 2.0), "route", go({3}, more));
+  t.begin();
+  for (std::uint32_t k = 0; k < row; ++k) t.controllers[k] = std::make_unique<Stands>();
+  const control::LaneCorridors corridors(t.roads, t.world, {});
+  const auto changes = [&] {
+    const control::RoutePlan& plan = t.route(row).plan();
+    return !plan.legs.empty() && changes_lanes(corridors, plan.legs[leg_at(plan, t.route(row).s())].way);
+  };
+  while (!changes() && t.time < 60 * base::kSecond) t.tick();
+  const std::int64_t since = t.time - kTick;  // it was moving when it last decided
+  const base::Report still{.X_WM = t.pose(row)};
+  for (; t.time <= since + 20 * base::kSecond; t.time += kTick) {
+    t.controllers[row]->step({.time = t.time, .state = still, .readings = {}, .others = {}});
+    EXPECT_EQ(t.controllers[row]->intent().checkpoint, 3u) << "its goal stays";
+    if (!changes()) return 1e-9 * static_cast<double>(t.time - since);
+  }
+  return 99.0;
+}
+
+// Two that would swap lanes wait for different times, unless they are five rows apart.
+TEST(Passing, GivesUpALaneChangeAfterStandingForEightToSixteenSeconds) {
+  const double seconds[] = {8.0, 10.0, 12.0, 14.0, 16.0, 8.0};
+  for (std::uint32_t row = 0; row < 6; ++row) EXPECT_NEAR(gives_up_after(row), seconds[row], 1e-6) << row;
+  EXPECT_EQ(gives_up_after(0, {{"merge_behind", 77.0, ""}}), 99.0) << "it waits for the gap";
 }
 
 }  // namespace

@@ -107,6 +107,30 @@ TEST(StartPoses, StandApartOnLanesAndComeFromTheSeed) {
   EXPECT_THROW(control::start_poses(roads, 500, 1, 0.5), base::InputError);
 }
 
+TEST(RoutePlan, ALaneChangeCostsAMetreMoreThanItsWay) {
+  const Planner p;
+  int changes = 0;
+  for (std::uint32_t node = 0; node < p.streets.roads.index.size(); ++node)
+    for (const control::Edge& edge : p.corridors.edges(node)) {
+      const control::Way& way = p.corridors.way(edge.ways[0]);
+      if (way.kind != control::Way::Kind::change) continue;
+      EXPECT_EQ(edge.from_s, 0.0);
+      EXPECT_EQ(edge.to_s, way.length);
+      EXPECT_EQ(edge.cost, way.length + 1.0);
+      ++changes;
+    }
+  EXPECT_GT(changes, 20);
+}
+
+TEST(LaneCorridors, AreThoseOfOneNetworkOneWorldAndOneShape) {
+  const Streets a, b;
+  const auto shared = control::shared_lane_corridors(a.roads, a.world, {});
+  EXPECT_EQ(control::shared_lane_corridors(a.roads, a.world, {}), shared);
+  EXPECT_NE(control::shared_lane_corridors(b.roads, a.world, {}), shared);
+  EXPECT_NE(control::shared_lane_corridors(a.roads, b.world, {}), shared);
+  EXPECT_NE(control::shared_lane_corridors(a.roads, a.world, {.radius = 0.2}), shared);
+}
+
 // ---- Conflicts: any two points on two ways without a conflict are clear of each other.
 
 /// A gate is held before the first of its conflicts and ends behind the last: for wide robots that one need not begin

@@ -190,6 +190,27 @@ TEST(CloneRobots, FromWithinASolidTheyGoInsideThoughThereIsMoreOutside) {
   }
 }
 
+// Boundary: a pocket of three walls, larger than the room, that is open only where the searched area ends.
+TEST(CloneRobots, APocketAtAnySideOfTheSearchedAreaIsOutside) {
+  for (int side = 0; side < 4; ++side) {
+    World world = scenes::boxed_world(4, 4, {-2, -2});
+    scenes::add_outline(world.walls, scenes::rectangle({0, 0}, 0.6, 0.6));
+    const auto turned = [&](glm::dvec2 p) {
+      for (int i = 0; i < side; ++i) p = {-p.y, p.x};
+      return p;
+    };
+    scenes::add_wall(world, turned({10, -4}), turned({4, -4}));
+    scenes::add_wall(world, turned({4, -4}), turned({4, 4}));
+    scenes::add_wall(world, turned({4, 4}), turned({10, 4}));
+    scenes::add_create(world, {0, 0, 0, 0});  // within a solid; the floor is searched for 10 m around it
+    clone_robots(world, 10, 1);
+    for (const Mover& mover : world.movers) {
+      const glm::dvec2 p = at(mover);
+      EXPECT_TRUE(std::abs(p.x) < 2 && std::abs(p.y) < 2) << side << ": " << p.x << ", " << p.y;
+    }
+  }
+}
+
 TEST(CloneRobots, NoRoomIsSaidWithNumbers) {
   World world = scenes::boxed_world(2, 2);
   scenes::add_create(world, {1, 1, 0, 0});

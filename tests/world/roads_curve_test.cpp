@@ -215,6 +215,15 @@ TEST(Parallel, LoopsInsideTightBendsAreCutOff) {
   EXPECT_LT(inside.size(), bend.points.size());
 }
 
+// Boundary: a hairpin whose legs are as far apart as keeps their parallels, from one leg and from the other.
+TEST(Parallel, KeepsPointsAtExactlyTheTolerance) {
+  const double apart = 1.0 + (1.0 - 2e-3);
+  const Curve hairpin{.points = {{0, 0}, {1.5, 0}, {1.5, apart}, {0, apart}},
+                      .tangents = {{1, 0}, {1, 0}, {-1, 0}, {-1, 0}},
+                      .s = {0.0, 1.5, 1.5 + apart, 3.0 + apart}};
+  EXPECT_EQ(offset_curve(hairpin, 1.0), (Points{{0, 1}, {0, apart - 1.0}}));
+}
+
 TEST(Parallel, NeighboursAreDistinct) {
   for (std::uint32_t k = 0; k < 200; ++k) {
     const Curve curve = smooth_curve(wild(k), kFine);

@@ -117,6 +117,16 @@ TEST(LaneMarkings, DashesFollowBends) {
   }
 }
 
+TEST(LaneMarkings, ASharpTurnBeginsANewMarking) {
+  RoadNetwork network;
+  network.lanes.push_back({.left = Boundary::solid_white, .left_edge = {{0, 0}, {2, 0}, {1, 1}, {0, 2}, {0, 0}}});
+  const auto lane_markings = lane_markings_of(network);
+  ASSERT_EQ(lane_markings.size(), 3u);  // turns of 135 degrees at the second and the fourth point, of 0 at the third
+  EXPECT_EQ(lane_markings[0].line, (std::vector<glm::dvec2>{{0, 0}, {2, 0}}));
+  EXPECT_EQ(lane_markings[1].line, (std::vector<glm::dvec2>{{2, 0}, {1, 1}, {0, 2}}));
+  EXPECT_EQ(lane_markings[2].line, (std::vector<glm::dvec2>{{0, 2}, {0, 0}}));
+}
+
 TEST(LaneMarkings, StopLinesAndSpots) {
   std::vector<Warning> warnings;
   const RoadNetwork network = build_network(small_rndf(), {}, warnings);

@@ -264,5 +264,48 @@ TEST(RoadNetwork, LaneChanges) {
   EXPECT_TRUE(lane_changes(network, *find_point(network, {1, 1, 16})).empty());
 }
 
+/// Lane changes from the start of a lane along +x to a lane that begins at `p` and runs beside it. Both are 4 m wide.
+std::size_t changes_to(glm::dvec2 p) {
+  const auto place = [](const char* id, double x, double y) {
+    return "[points.\"" + std::string(id) + "\"]\nposition = [" + std::to_string(x) + ", " + std::to_string(y) + "]\n";
+  };
+  const RoadNetwork network = build(R"(RNDF_name two
+num_segments 1
+num_zones 0
+segment 1
+num_lanes 2
+lane 1.1
+num_waypoints 2
+1.1.1 0 0
+1.1.2 0 0.001
+end_lane
+lane 1.2
+num_waypoints 2
+1.2.1 0.0001 0
+1.2.2 0.0001 0.001
+end_lane
+end_segment
+end_file
+)",
+                                    "lane_width_m = 4\n" + place("1.1.1", 0, 0) + place("1.1.2", 100, 0) +
+                                        place("1.2.1", p.x, p.y) + place("1.2.2", 100, p.y));
+  return lane_changes(network, *find_point(network, {1, 1, 1})).size();
+}
+
+TEST(RoadNetwork, LanesHalfAWidthToOneAndAHalfApartAreSideBySide) {
+  for (const double side : {1.0, -1.0}) {
+    EXPECT_EQ(changes_to({0, side * 0.49 * 4}), 0u);
+    EXPECT_EQ(changes_to({0, side * 0.51 * 4}), 1u);
+    EXPECT_EQ(changes_to({0, side * 1.49 * 4}), 1u);
+    EXPECT_EQ(changes_to({0, side * 1.51 * 4}), 0u);
+  }
+}
+
+TEST(RoadNetwork, ALaneThatBeginsFurtherOnIsNotBesideYet) {
+  const auto ahead = [](double part) { return glm::dvec2{part, std::sqrt(1.0 - part * part)} * 4.0; };
+  EXPECT_EQ(changes_to(ahead(0.29)), 1u);  // of its distance
+  EXPECT_EQ(changes_to(ahead(0.31)), 0u);
+}
+
 }  // namespace
 }  // namespace sf::world
