@@ -29,6 +29,11 @@ TEST_F(ClientRegistryTest, KnowsItsIdsOnly) {
   EXPECT_FALSE(registry.source(1));
 }
 
+TEST_F(ClientRegistryTest, HasTwoChannels) {
+  EXPECT_EQ(say(kAlice, 0, 0, 1), PacketStatus::accepted);
+  EXPECT_DEATH(say(kAlice, 0, 0, 2), "id 7, line 2");
+}
+
 TEST_F(ClientRegistryTest, NoClientIsActiveBeforeSending) {
   EXPECT_FALSE(registry.is_active(7, 0));
   EXPECT_FALSE(registry.source(7));

@@ -250,6 +250,19 @@ TEST_F(InboxTest, OnlySoManyChallengesInATenthOfASecond) {
   EXPECT_TRUE(inbox.challenge(packet, kOtherSender, kSecond + kSecond / 10, out));
 }
 
+TEST_F(InboxTest, AFloodOfRobotsWithoutKeysTakesNoChallengesOfThoseWithKeys) {
+  base::Bytes out, keyed = v2v(kKeyed, 0);
+  sign(keyed, kKey, 1);
+  EXPECT_EQ(inbox.accept(keyed, kSender, kSecond, packet), PacketStatus::unproven);
+  const Packet genuine = packet;
+  inbox.accept(v2v(7, 0), kOtherSender, kSecond, packet);
+  while (inbox.challenge(packet, kOtherSender, kSecond, out)) {
+  }
+  for (std::size_t i = 0; i < Inbox::kMaxChallenges; ++i)
+    ASSERT_TRUE(inbox.challenge(genuine, kSender, kSecond, out)) << i;
+  EXPECT_FALSE(inbox.challenge(genuine, kSender, kSecond, out)) << "they have a limit of their own";
+}
+
 TEST_F(InboxTest, TagsMakeNoRobotHeard) {
   Inbox both({.bind = {kLoopback, 0}, .robots = {12}, .tags = {12}});
   EXPECT_EQ(both.accept(tag_example(), kSender, 0, packet), PacketStatus::accepted);

@@ -79,12 +79,13 @@ TEST(RelayBounds, AllThatIsPassedOnCarriesTheReceiversStamp) {
   for (const std::uint32_t id : crowd.ids) crowd.say(id, {0, 0});
   for (std::uint32_t pass = 0, next = 0; pass < 2; ++pass) {
     crowd.say(0, {0, 0});
-    crowd.pass();
+    crowd.pass(1000 + pass);
     crowd.received();
     for (const base::Bytes& bytes : crowd.datagrams) {
       Packet packet;
       decode(bytes, packet);
       EXPECT_EQ(packet.header.robot, 5);
+      EXPECT_EQ(packet.header.time, 1000 + pass) << "the farm's time";
       EXPECT_EQ(packet.header.sequence, next++) << "counts datagrams to this robot";
       const auto carries_it = [&](std::span<const std::uint8_t> one) {
         decode(one, packet);
@@ -181,6 +182,41 @@ TEST(RelayBounds, ATurnBringsAllThatWasSaidSinceTheLast) {
       due[id].clear();
     }
   }
+}
+
+constexpr std::uint32_t kNorth = 100, kSouth = 101;  ///< lights
+
+TEST(RelayBounds, LightsHearTheRobotsWithinTheRadiosRangeOfThem) {
+  RelayFixture crowd(3, {.range = 10.0}, {kNorth, kSouth});
+  crowd.shine(kNorth, {0, 100});
+  crowd.shine(kSouth, {0, -100});
+  crowd.say(0, {0, 90});  // exactly at the range
+  crowd.say(1, {0, std::nextafter(-90.0, 0)});
+  crowd.say(2, {0, -95});
+  crowd.pass();  // no robot has asked
+  const auto heard = crowd.received();
+  EXPECT_EQ(heard, (std::map<std::uint32_t, Rows>{{kNorth, {0}}, {kSouth, {2}}}));
+}
+
+/// However little the budget leaves to robots, and once, though others wait for the same states.
+TEST(RelayBounds, ALightHearsTheNearestInTheirOwnTick) {
+  RelayFixture crowd(70, {.budget = Relay::kMinShare}, {kNorth});
+  crowd.all_ask();
+  crowd.shine(kNorth, {0, 0});
+  Rows nearest(64);
+  std::iota(nearest.begin(), nearest.end(), 0u);
+  for (const std::uint32_t id : crowd.ids) crowd.say(id, {0.1 * id, 0});
+  crowd.pass();
+  EXPECT_EQ(crowd.received()[kNorth], nearest);
+  crowd.say(9, {0, 0});
+  EXPECT_GT(crowd.pass().waited, 0u);
+  EXPECT_EQ(crowd.received()[kNorth], Rows{9});
+}
+
+TEST(RelayBounds, ATurnHasRoomForFourStates) {
+  const Rows ids{0, 1};
+  EXPECT_DEATH(Relay(ids, {.most = Relay::kMinShare - 1}), "passes nothing on");
+  EXPECT_DEATH(Relay(ids, {.budget = Relay::kMinShare - 1}), "passes nothing on");
 }
 
 /// Robots with few neighbours use little of the budget, so that more than two are served.

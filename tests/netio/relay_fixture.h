@@ -27,8 +27,12 @@ struct RelayFixture {
   std::uint32_t sequence = 0;
   std::vector<base::Bytes> datagrams;  ///< of the last `heard`
 
-  explicit RelayFixture(std::uint32_t count, const RelayOptions& options = {})
-      : ids(first(count)), inbox({.bind = {kLoopback, 0}, .robots = ids, .session = kFarm}), relay(ids, options) {}
+  /// @param lights ids of intersections
+  explicit RelayFixture(std::uint32_t count, const RelayOptions& options = {},
+                        const std::vector<std::uint32_t>& lights = {})
+      : ids(first(count)),
+        inbox({.bind = {kLoopback, 0}, .robots = ids, .session = kFarm, .lights = lights}),
+        relay(ids, options, lights) {}
   static std::vector<std::uint32_t> first(std::uint32_t count) {
     std::vector<std::uint32_t> all(count);
     std::iota(all.begin(), all.end(), 0u);
@@ -46,21 +50,27 @@ struct RelayFixture {
   }
   void say(std::uint32_t id, glm::dvec2 p) { take(id, V2v{.X_WR = {p.x, p.y, 0, 0}}); }
   void ask(std::uint32_t id, std::uint32_t types = kNeighboursBit) { take(id, Subscribe{types}); }
+  /// A light says where it is.
+  void shine(std::uint32_t light, glm::dvec2 p) {
+    base::Bytes rows;
+    put(SignalApproach{.X_WL = {p.x, p.y, 0, 0}}, rows);
+    take(light, V2i{rows, {}});
+  }
   void all_ask() {
     for (const std::uint32_t id : ids) ask(id);
   }
 
   /// One tick. @return its additions to the counts
-  RelayCounts pass() {
+  RelayCounts pass(std::int64_t now = 0) {
     const RelayCounts before = relay.counts();
-    relay.forward(inbox, 0, outbox);
+    relay.forward(inbox, now, outbox);
     outbox.flush();
-    const RelayCounts& now = relay.counts();
-    return {now.states - before.states, now.datagrams - before.datagrams, now.waited - before.waited,
-            now.starts - before.starts};
+    const RelayCounts& after = relay.counts();
+    return {after.states - before.states, after.datagrams - before.datagrams, after.waited - before.waited,
+            after.starts - before.starts};
   }
 
-  /// By robot: ids of the received states, in order. Loopback delivers immediately.
+  /// By robot or light: ids of the received states, in order. Loopback delivers immediately.
   std::map<std::uint32_t, std::vector<std::uint32_t>> received() {
     std::map<std::uint32_t, std::vector<std::uint32_t>> received;
     datagrams.clear();

@@ -58,6 +58,7 @@ TEST(SequenceTracker, JumpsForgetTheWindow) {
     count_arrival(tracker, jump - 1);
     EXPECT_EQ(tracker.duplicates, 0u) << jump;
     EXPECT_EQ(lost(tracker), jump - 2) << jump;
+    EXPECT_EQ(after({0, 1, jump + 1, jump}).duplicates, 0u) << jump;  // nothing of before takes its place
   }
 }
 

@@ -287,6 +287,16 @@ TEST(LockstepService, AHungProcessIsLeftOutByName) {
   ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); })) << "the others go on";
 }
 
+TEST(LockstepService, OneLostRobotIsToldOf) {
+  Fixture fixture(2, 2, 2.0);
+  Driver one(fixture.port(), {1}), other(fixture.port(), {2});
+  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  EXPECT_EQ(one.robot(1).state.flags, 0u);
+  one.step({});
+  ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); }));
+  EXPECT_EQ(one.robot(1).state.flags, netio::kDriverLostBit);
+}
+
 /// Nobody waits for a process that is alone: it is named once a tick, and keeps its robots.
 TEST(LockstepService, ASilentProcessAloneIsWaitedFor) {
   Fixture fixture(1, 1, 2.0);

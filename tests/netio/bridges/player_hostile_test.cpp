@@ -164,17 +164,19 @@ TEST(PlayerHostile, DataThatWaitsIsBounded) {
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends.data()), 0);
   const netio::Socket other(ends[1]);
   Connection connection(netio::Socket{ends[0]}, 0, netio::Endpoint{});
-  const base::Bytes payload(6u << 20);
-  const auto put = [&](std::uint32_t index) {
+  const auto put = [&](std::uint32_t index, std::size_t size = 6u << 20) {
     Subscription& subscription = connection.subscriptions()[{Interface::laser, index}];
-    connection.put_data({Interface::laser, index}, subscription, 1, 0.0, payload);
-    return subscription.waiting.size() > payload.size();
+    connection.put_data({Interface::laser, index}, subscription, 1, 0.0, base::Bytes(size));
+    return subscription.waiting.size() == kHeaderBytes + size;
   };
   EXPECT_TRUE(put(0) && put(1));
   EXPECT_FALSE(put(2)) << "the third would be more than 16 MiB";
   EXPECT_TRUE(put(1)) << "newer data in place of older";
   connection.unsubscribe({Interface::laser, 0});
   EXPECT_TRUE(put(2));
+  const std::size_t rest = kMostWaiting - 2 * (kHeaderBytes + (6u << 20)) - kHeaderBytes;
+  EXPECT_FALSE(put(0, rest + 1));
+  EXPECT_TRUE(put(0, rest)) << "16 MiB in all";
 }
 
 /// A client that asks and never reads is dropped once its answers fill its share.

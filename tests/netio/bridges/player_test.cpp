@@ -111,6 +111,9 @@ TEST_F(PlayerTest, WhatIsNotThereIsRefused) {
   EXPECT_EQ(ask({}, 77), MessageType::nack) << "no such request of the server";
   EXPECT_EQ(client.access(kPosition, Access::error).header.type, MessageType::ack);
   EXPECT_EQ(client.access(kLaserDevice, Access::close).payload[19], 3) << "closed, though never opened";
+  EXPECT_EQ(ask(kPosition, 0), MessageType::nack) << "0 is none, also where an interface has no configuration";
+  EXPECT_EQ(ask(kPosition, 7, xdr_of(1u)), MessageType::nack);
+  EXPECT_EQ(ask({Interface::map, 0}, 4), MessageType::nack);
 }
 
 TEST_F(PlayerTest, PushedStateIsThatOfTheOdometry) {
@@ -274,12 +277,22 @@ TEST_F(PlayerTest, VelocitiesBecomeCommands) {
 }
 
 TEST_F(PlayerTest, CommandsThatAreNotFiniteOrNotOfAUserAreIgnored) {
-  drive(kNaN, 0.0, 0.0), drive(kInf, 0.0, 0.0), drive(1e9, 0.0, 0.0);
+  drive(kNaN, 0.0, 0.0), drive(kInf, 0.0, 0.0), drive(std::nextafter(1e6, 1e7), 0.0, 0.0);
+  for (const std::uint32_t unknown : {0u, 5u}) client.send(MessageType::command, kPosition, unknown);
+  settle();
   TestClient stranger(run.port());
   stranger.banner();
   stranger.send(MessageType::command, kPosition, 1, xdr_of(1.0, 0.0, 0.0, 1u));
   stranger.request(kPosition, 1);
   EXPECT_TRUE(run.asked().commands.empty());
+  drive(1e6, 0.0, 0.0);
+  EXPECT_EQ(run.asked().commands.size(), 1u) << "the limit itself";
+}
+
+TEST_F(PlayerTest, ModesAreAcknowledgedAndStopNoRobot) {
+  drive(0.2, 0.0, 0.0);
+  for (const std::uint32_t mode : {3u, 4u}) EXPECT_EQ(ask(kPosition, mode, xdr_of(0u)), MessageType::ack);
+  EXPECT_EQ(run.asked().commands.at(0).twist.forward, 0.2);
 }
 
 TEST_F(PlayerTest, RobotsStandStillWithoutMotorsAndUsers) {
@@ -324,6 +337,26 @@ TEST_F(PlayerTest, GoalsAreDrivenToInEachTick) {
   EXPECT_EQ(run.asked().commands.at(0).twist.forward, 0.1);
   run.tick();
   EXPECT_TRUE(run.asked().commands.empty()) << "a velocity replaces a goal";
+}
+
+TEST_F(PlayerTest, GoalsAreDrivenToAtTheSpeedAskedForUpToTheRobots) {
+  run.tick();
+  for (const auto& [asked, driven] : {std::pair{0.2, 0.2}, {0.5, 0.5}, {9.0, 0.5}, {-0.2, 0.5}}) {
+    client.send(MessageType::command, kPosition, 2, xdr_of(3.0, 0.0, 0.0, asked, 0.0, 0.0, 1u));
+    settle();
+    run.tick();
+    EXPECT_EQ(run.asked().commands.at(0).twist.forward, driven) << asked;
+  }
+}
+
+TEST(PlayerGoals, AreNotForCars) {
+  PlayerRun cars("name \"c\"\nposition( name \"car\" drive \"car\" wheelbase 0.5 size [0.6 0.3 0.2] )\n");
+  TestClient driver(cars.port());
+  driver.banner(), driver.open(kPosition);
+  driver.send(MessageType::command, kPosition, 2, xdr_of(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1u));
+  driver.request(kPosition, 1);
+  cars.tick();
+  EXPECT_TRUE(cars.asked().commands.empty());
 }
 
 TEST_F(PlayerTest, AGoalWhereItStandsIsAHeading) {
@@ -386,6 +419,33 @@ TEST_F(PlayerTest, RobotsArePlacedByName) {
   EXPECT_EQ(X_WM.y, 2.0);
   EXPECT_EQ(X_WM.yaw, 0.25);
   EXPECT_EQ(X_WM.z, run.world.movers[1].X_WM.z) << "robots stay on the floor";
+}
+
+TEST_F(PlayerTest, PosesInSpaceComeWithTheTime) {
+  run.reports[1].X_WM = {1.0, 2.0, 0.25, 0.5};
+  run.tick();
+  base::Bytes expected;
+  XdrWriter xdr(expected);
+  xdr.put_text("ben");
+  xdr.put_all({1.0, 2.0, 0.25, 0.0, 0.0, 0.5, 0.1});
+  EXPECT_EQ(client.request(kSimulation, 3, named_pose("ben", 0.0, 0.0, 0.0)).payload, expected);
+  for (const std::uint32_t unknown : {0u, 5u})
+    EXPECT_EQ(ask(kSimulation, unknown, named_pose("ben", 0.0, 0.0, 0.0)), MessageType::nack) << unknown;
+  EXPECT_TRUE(run.asked().placements.empty());
+}
+
+/// Beyond a million metres distances lose their millimetres.
+TEST_F(PlayerTest, PosesAreUsedUpToAMillionMetres) {
+  const double most = 1e6, more = std::nextafter(most, 2 * most);
+  const auto set = [&](double x, double y, double yaw) {
+    const MessageType answer = ask(kSimulation, 2, named_pose("ben", x, y, yaw));
+    EXPECT_EQ(ask(kPosition, 5, xdr_of(x, y, yaw)), answer) << "odometry likewise";
+    return answer;
+  };
+  EXPECT_EQ(set(most, -most, 9.0), MessageType::ack);
+  EXPECT_EQ(set(more, 0.0, 0.0), MessageType::nack);
+  EXPECT_EQ(set(0.0, -more, 0.0), MessageType::nack);
+  for (const double yaw : {kNaN, kInf}) EXPECT_EQ(set(0.0, 0.0, yaw), MessageType::nack) << yaw;
 }
 
 TEST_F(PlayerTest, RunsArePausedAndBegunAgain) {

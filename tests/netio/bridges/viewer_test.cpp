@@ -54,6 +54,15 @@ TEST(Viewer, ServesThePageAndTheScene) {
   EXPECT_EQ(RawClient(fixture.port()).request("/", "Host: localhost\r\n", "POST").substr(9, 3), "405");
 }
 
+TEST(Viewer, EndsAConnectionThatIsAskedToClose) {
+  const ViewerFixture fixture;
+  RawClient client(fixture.port());
+  const auto head = [&](const std::string& more) { return client.request("/", "Host: localhost\r\n" + more, "HEAD"); };
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(head("").substr(9, 3), "200") << "one after another";
+  EXPECT_NE(head("Connection: close\r\n").find("\r\nConnection: close\r\n"), std::string::npos);
+  EXPECT_EQ(head(""), "");
+}
+
 TEST(Viewer, RefusesForeignPagesAndNames) {
   const ViewerFixture fixture;
   const auto status = [&](const std::string& more, const std::string& target = "/", const char* host = "localhost") {
