@@ -5,9 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
 
+#include "gpu/device.h"
+#include "scenarios/lane_errors.h"
+#include "scenarios/path_report.h"
+#include "scenarios/thesis_tables.h"
+#include "scenarios/trial.h"
 #include "tests/apps/program.h"
 #include "tests/instrumented.h"
 #include "tests/viz/png.h"
@@ -78,6 +86,36 @@ std::string short_path(const std::string& seconds, const std::string& controller
          "\nplant = \"thesis\"\n[default]\ncontroller = \"" + controller + "\"\n" + more;
 }
 
+/// Errors of one point of `sweeps`, by a trial of its own with what its row says.
+scenarios::ThesisRow swept_errors(const std::string& file, const CsvRecord& record, std::uint64_t seed) {
+  const std::string sweep = record.at("sweep"), law = record.at("law");
+  const double x = std::stod(record.at("x")), rate = sweep.starts_with("rate") ? x : 10.0;
+  scenarios::Scenario scenario = scenarios::read_scenario(file);
+  scenario.seed = seed;
+  scenario.plant = sweep.ends_with("ideal") ? scenarios::Plant::ideal : scenarios::Plant::thesis;
+  scenario.tick = rate > 10.0 ? 1.0 / rate : 0.1;
+  scenario.actor.link = {.delay = sweep.starts_with("delay") ? x : 0.0, .loss = sweep.starts_with("loss") ? x : 0.0};
+  scenario.actor.controller.rate = rate;
+  scenario.actor.controller.settings = {"test",
+                                        {{"kp", sweep.starts_with("gain") ? x : 0.5, ""},
+                                         {"ki", law.starts_with("PI") ? 0.015 : 0.0, ""},
+                                         {"speed", 0.1, ""},
+                                         {"hold", 5.0, ""}}};
+  world::World world = scenarios::disturbed_world(scenario, {});
+  for (world::Sensor& sensor : world.movers.at(0).sensors) {
+    if (sensor.type != "laneedge") continue;
+    const auto set = [&](const std::string& key, double value) {
+      std::erase_if(sensor.settings, [&](const world::Setting& setting) { return setting.key == key; });
+      sensor.settings.push_back({key, {value}, "", 0, ""});
+    };
+    set("rate", rate);
+    if (law.ends_with("exact edge")) set("samples", 1.0), set("fov", 0.0);
+  }
+  world::update_extent_and_hash(world);
+  static gpu::Device device;
+  return scenarios::row_of(scenarios::run_trial(scenario, world, device, {}).errors.front());
+}
+
 /// The report's tables and the figures show the columns of the file that they name.
 TEST(ExperimentReport, SweepsShowTheColumnsOfTheirFile) {
   if (instrumented()) GTEST_SKIP() << "140 runs: 8 s without instruments";
@@ -106,6 +144,25 @@ TEST(ExperimentReport, SweepsShowTheColumnsOfTheirFile) {
     EXPECT_NEAR(std::stod(record.at("abs_max")), std::max(-std::stod(record.at("min")), std::stod(record.at("max"))),
                 1e-6);
   }
+
+  std::size_t looked_at = 0;
+  for (const auto& [sweep, x, law] : {std::tuple{"delay-thesis", "0.3", "PI"},
+                                      {"gain-ideal", "1.5", "P, exact edge"},
+                                      {"loss-thesis", "0.4", "P"},
+                                      {"rate-thesis", "2", "PI, exact edge"},
+                                      {"rate-thesis", "20", "PI"}})
+    for (const CsvRecord& record : records) {
+      if (record.at("sweep") != sweep || record.at("x") != x || record.at("law") != law) continue;
+      SCOPED_TRACE(std::string(sweep) + ", " + x + ", " + law);
+      const scenarios::ThesisRow errors = swept_errors(folder.path("sweeps.toml"), record, 3);
+      for (std::size_t i = 0; i < errors.size(); ++i)
+        EXPECT_NEAR(std::stod(record.at(std::string(scenarios::kColumns[i]))), errors[i], 2e-5 * std::abs(errors[i]));
+      // The bend's angle by gain and time, of which the thesis' plant has twice.
+      const double kp = std::string(sweep) == "gain-ideal" ? 1.5 : 2 * 0.5;
+      EXPECT_NEAR(std::stod(record.at("owed_mean")), 0.5 * M_PI / (kp * 2.0), 1e-5);
+      ++looked_at;
+    }
+  EXPECT_EQ(looked_at, 5u);
 
   for (const auto& [sweep, axis] :
        {std::pair{"delay-ideal", "delay of readings [s]"}, {"loss-thesis", "part of readings lost [-]"}}) {
@@ -169,6 +226,44 @@ TEST(ExperimentReport, LateStatesShowTheColumnsOfTheirFile) {
   }
   for (const char* name : {"trajectories-0.1.png", "trajectories-0.5.png"})
     EXPECT_GT(scenes::read_png(folder.path(std::string("out/") + name)).width, 0) << name;
+}
+
+/// Each row is a trial with its gain, its speed and its kind of states.
+TEST(ExperimentReport, LateStatesAreThoseThatTheirRowNames) {
+  const Folder folder;
+  const std::string file =
+      folder.write("late-states.toml",
+                   short_path("4", "lane-keeping", "[states]\nrate = 10\ndelay = 0.08\nposition_sigma = 0.01\n"));
+  const Outcome outcome = run_program({"experiment", "late-states", "--trials", "1", "--seed", "3", "-o",
+                                       folder.path("out"), "--files", folder.path()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::map<std::string, std::pair<std::optional<netio::LinkModel>, bool>> kinds{
+      {"true", {}},
+      {"newest", {netio::LinkModel{.delay = 0.08}, false}},
+      {"filtered", {netio::LinkModel{.delay = 0.08}, true}},
+      {"newest, 1 s late", {netio::LinkModel{.delay = 0.9, .jitter = 0.2, .loss = 0.01}, false}},
+      {"filtered, 1 s late", {netio::LinkModel{.delay = 0.9, .jitter = 0.2, .loss = 0.01}, true}}};
+  gpu::Device device;
+  std::set<double> different;
+  for (const CsvRecord& record : csv_records(read_file(folder.path("out/late-states.csv")))) {
+    SCOPED_TRACE(record.at("kp") + ", " + record.at("speed") + ", " + record.at("states"));
+    scenarios::Scenario scenario = scenarios::read_scenario(file);
+    scenario.seed = 3;
+    std::vector<control::Setting> settings{{"speed", std::stod(record.at("speed")), ""}};
+    if (record.at("kp") != "own") settings.push_back({"kp", std::stod(record.at("kp")), ""});
+    scenario.actor.controller.settings = {"test", std::move(settings)};
+    const auto& [link, filter] = kinds.at(record.at("states"));
+    if (link)
+      scenario.states->link = *link, scenario.states->filter = filter;
+    else
+      scenario.states.reset();
+    const world::World world = scenarios::disturbed_world(scenario, {});
+    const scenarios::Trial trial = scenarios::run_trial(scenario, world, device, {});
+    const double expected = scenarios::lane_errors(trial.tracks.front(), world.paths.front()).mean_abs;
+    EXPECT_NEAR(std::stod(record.at("abs_mean")), expected, 1e-5 * expected);
+    different.insert(expected);
+  }
+  EXPECT_GE(different.size(), 15u) << "gains hardly matter before the bend where states are not late";
 }
 
 /// A part in the file, per cent in the report.

@@ -84,6 +84,18 @@ TEST(Experiment, WritesItsFolder) {
   EXPECT_EQ(run_program({"plot", folder.path("out/trial-1"), "-o", folder.path("pictures")}).code, 0);
 }
 
+/// Scenarios are found above the program; a plant of the user's takes the place of the experiment's.
+TEST(Experiment, NeedsNoFilesAndTakesAPlant) {
+  if (!std::string(SF_BINARY_DIR).starts_with(SF_SOURCE_DIR)) GTEST_SKIP() << "built outside of the sources";
+  const Folder folder;
+  const Outcome outcome =
+      run_program({"experiment", "lane-edge-p", "--trials", "1", "--plant", "ideal", "-o", folder.path("out")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(read_file(folder.path("out/report.md")).find("Plant `ideal`, seed 1, "), std::string::npos);
+  for (const char* name : {"report.md", "statistics.csv", "trajectories.png"})
+    EXPECT_NE(outcome.err.find("wrote " + folder.path("out/") + name + "\n"), std::string::npos) << outcome.err;
+}
+
 /// `wrong` is a part of the known cells: per cent in the report, of one in the file.
 TEST(Experiment, TheMappingReportSaysWhatItsFileDoes) {
   const Folder folder;

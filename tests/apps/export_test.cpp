@@ -204,6 +204,71 @@ TEST_F(Recorded, ParaViewGetsSeries) {
   }
 }
 
+/// What the head of a VTK file says of an array, or of the whole: `key="VALUE"` behind `after`.
+std::string vtk_head(const std::string& file, const std::string& after, const std::string& key) {
+  const std::string text = read_file(file);
+  const std::size_t at = text.find(key + "=\"", text.find(after)) + key.size() + 2;
+  return text.substr(at, text.find('"', at) - at);
+}
+
+TEST_F(Recorded, ParaViewGetsThePartThatWasAskedFor) {
+  const std::string out = folder_.path("v"), ways = out + "/trajectories.vtp", map = out + "/occupancy.vti";
+  const Outcome outcome = run_program(
+      with("export", {"--vtk", "-o", out, "--robots", "one", "--from", "1", "--to", "2", "--every", "0.5"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(vtk_head(ways, "<Piece", "NumberOfLines"), "1");
+  EXPECT_EQ(vtk_head(ways, "<Piece", "NumberOfPoints"), "11") << "from tick to tick, both among them";
+  EXPECT_EQ(vtk_head(ways, "\"time\"", "RangeMin"), "1");
+  EXPECT_EQ(vtk_head(ways, "\"time\"", "RangeMax"), "2");
+  EXPECT_EQ(vtk_head(ways, "\"robot\"", "RangeMax"), "0") << "the first";
+  const auto states = recording().states[0];
+  double fastest = 0.0;
+  for (std::size_t tick = 10; tick <= 20; ++tick) {
+    fastest = std::max(fastest, std::hypot(states[tick].velocity.forward, states[tick].velocity.left));
+    ASSERT_FALSE(states[tick].contact);
+  }
+  EXPECT_NEAR(std::stod(vtk_head(ways, "\"speed\"", "RangeMax")), fastest, 1e-9);
+  EXPECT_EQ(vtk_head(ways, "\"contact\"", "RangeMax"), "0");
+  for (const char* series : {"/robots.pvd", "/scans.pvd"})
+    for (const char* time : {"1", "1.5", "2"})
+      expect_in("timestep=\"" + std::string(time) + "\"", read_file(out + series));
+  EXPECT_EQ(vtk_head(out + "/scans/scans_000000.vtp", "\"robot\"", "RangeMax"), "0") << "two has no laser";
+  EXPECT_FALSE(std::filesystem::exists(out + "/roads.vtp")) << "no roads";
+
+  // The room from -4 to 4 m, by cells of 3 cm that begin at its upper left corner.
+  double left = 0.0, bottom = 0.0;
+  ASSERT_EQ(std::sscanf(vtk_head(map, "<ImageData", "Origin").c_str(), "%lf %lf", &left, &bottom), 2);
+  EXPECT_EQ(left, -4.0);
+  int columns = 0, rows = 0;
+  ASSERT_EQ(std::sscanf(vtk_head(map, "<ImageData", "WholeExtent").c_str(), "0 %d 0 %d", &columns, &rows), 2);
+  EXPECT_NEAR(bottom + 0.03 * rows, 4.0, 1e-9);
+  EXPECT_EQ(vtk_head(map, "\"state\"", "RangeMax"), "2") << "free cells";
+  EXPECT_EQ(run_program(with("export", {"--vtk", "-o", folder_.path("w"), "--robots", "two"})).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path("w/scans.pvd"))) << "none of these has a laser";
+}
+
+/// Tags are no robots; a field needs no laser, and is at the height that was asked for.
+TEST(Export, TagsHaveNoWaysAndMagnetsAField) {
+  const Folder folder;
+  const std::string world = folder.write(
+      "w.world",
+      "position( name \"one\" size [0.3 0.3 0.1] )\nmodel( name \"tag1\" pose [1 0 0 0] size [0.3 0.3 0.5] )\n"
+      "model( pose [0 1 -0.1 0] size [0.025 0.025 0.1] magnetic_moment 10000 magnetometer_return 1 )\n");
+  ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", folder.path("r")}).code, 0);
+  const Outcome vtk = run_program({"export", folder.path("r"), "--vtk", "-o", folder.path("v"), "--height", "0.25"});
+  ASSERT_EQ(vtk.code, 0) << vtk.err;
+  EXPECT_EQ(vtk_head(folder.path("v/trajectories.vtp"), "<Piece", "NumberOfLines"), "1");
+  EXPECT_FALSE(std::filesystem::exists(folder.path("v/occupancy.vti")));
+  const std::string origin = vtk_head(folder.path("v/field.vti"), "<ImageData", "Origin");
+  EXPECT_EQ(origin.substr(origin.rfind(' ')), " 0.25");
+  EXPECT_EQ(vtk.err.find("no readings"), std::string::npos) << vtk.err;
+
+  const Outcome csv = run_program({"export", folder.path("r"), "-o", folder.path("c")});
+  EXPECT_EQ(csv.code, 0);
+  expect_in("no readings: the run was not recorded with --record-readings", csv.err);
+  EXPECT_FALSE(std::filesystem::exists(folder.path("c/lights.csv"))) << "no lights";
+}
+
 /// An X server without a screen, on a display of its own.
 class VirtualDisplay {
  public:

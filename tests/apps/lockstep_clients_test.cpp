@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <memory>
 
 #include "base/hash.h"
@@ -11,6 +12,7 @@
 #include "scenarios/simulation.h"
 #include "sensors/sensor_type.h"
 #include "tests/apps/remote_robot.h"
+#include "tests/scenarios/lockstep_driver.h"
 #include "world/free_space.h"
 
 namespace sf {
@@ -56,10 +58,10 @@ struct LockstepServer {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  Json end() {
+  Json end(int code = 0) {
     program.signal(SIGINT);
     const Outcome outcome = program.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.code, code) << outcome.err;
     return Json(outcome.out);
   }
 
@@ -141,6 +143,35 @@ TEST(LockstepClients, PythonDrivesRobotsWithKeys) {
   EXPECT_EQ(facts.number("/lockstep/commands"), 3 * kLockstepTicks);
   EXPECT_GE(facts.number("/received/not signed"), 1);
   EXPECT_FALSE(facts.has("/received/replayed"));
+}
+
+TEST(LockstepClients, ARecordingIsReportedWithItsSize) {
+  const Folder folder;
+  LockstepServer server({"--record", folder.path("r")});
+  ASSERT_NE(server.port, 0u) << server.program.err();
+  const Json facts = server.end();
+  EXPECT_EQ(facts.text("/recording"), folder.path("r/run.mcap"));
+  EXPECT_EQ(facts.number("/recording_bytes"),
+            static_cast<double>(std::filesystem::file_size(folder.path("r/run.mcap"))));
+  EXPECT_FALSE(facts.has("/recording_error"));
+}
+
+/// Its client subscribes and never steps, while another waits.
+TEST(LockstepClients, ALostRobotEndsWithOne) {
+  LockstepServer server({"--wait-for", "2", "--lockstep-timeout", "0.05"});
+  ASSERT_NE(server.port, 0u) << server.program.err();
+  scenarios::Driver one(static_cast<std::uint16_t>(server.port), {1}),
+      other(static_cast<std::uint16_t>(server.port), {2});
+  ASSERT_TRUE(until([&] {
+    for (scenarios::Driver* driver : {&one, &other}) driver->receive(), driver->repeat();
+    return one.is_complete() && other.is_complete();
+  }));
+  one.step({});
+  EXPECT_TRUE(until([&] {
+    one.receive(), one.repeat();
+    return one.is_complete();
+  }));
+  EXPECT_EQ(server.end(1).number("/lockstep/lost_robots"), 1);
 }
 
 TEST(LockstepClients, WhatDoesNotGoWithLockstepIsRefused) {

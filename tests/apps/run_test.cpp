@@ -5,6 +5,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <sstream>
 #include <thread>
 
 #include "record/recording.h"
@@ -521,6 +523,40 @@ TEST(Run, NothingOfADamagedRecordingIsBelieved) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
   EXPECT_NE(outcome.err.find("run.mcap"), std::string::npos);
+}
+
+/// Ticks that a run's check points name; none without the file.
+static std::vector<std::string> check_points(const std::string& folder) {
+  std::istringstream lines(read_file(folder + "/checkpoints"));
+  std::vector<std::string> ticks;
+  std::string line;
+  for (std::getline(lines, line); std::getline(lines, line);) ticks.push_back(line.substr(0, line.find(' ')));
+  return ticks;
+}
+
+TEST(Run, CheckPointsAreWrittenOnDemandAndAResumedRunMeetsThem) {
+  const Folder folder;
+  const auto recorded = [&](const std::string& name, const Words& more) {
+    Words words = run_words("rooms.world", {"--robots", "2", "--record", folder.path(name)});
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  EXPECT_EQ(recorded("plain", {"--duration", "1"}).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder.path("plain/checkpoints")));
+
+  ASSERT_EQ(recorded("kept", {"--duration", "1", "--checkpoint", "0.5"}).code, 0);
+  EXPECT_EQ(check_points(folder.path("kept")), (std::vector<std::string>{"5", "10"}));
+  ASSERT_EQ(recorded("kept", {"--duration", "2", "--checkpoint", "0.5", "--resume"}).code, 0);
+  EXPECT_EQ(check_points(folder.path("kept")), (std::vector<std::string>{"5", "10", "15", "20"}));
+  ASSERT_EQ(recorded("kept", {"--duration", "3", "--resume"}).code, 0);
+  EXPECT_EQ(check_points(folder.path("kept")).size(), 4u) << "none is asked for";
+
+  const Outcome other = recorded("kept", {"--duration", "1", "--resume", "--seed", "2"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.err.find("checkpoints:1: is of another run"), std::string::npos) << other.err;
+  const Outcome none = recorded("plain", {"--duration", "1", "--resume"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.err.find("there is no run to resume"), std::string::npos) << none.err;
 }
 
 }  // namespace sf

@@ -125,6 +125,22 @@ TEST(SweepCommand, MissedExpectationsAreInTablesAndExitCode) {
   EXPECT_NE(outcome.err.find("14 jobs more: see jobs.csv"), std::string::npos) << outcome.err;
 }
 
+TEST(SweepCommand, TenFailuresAreNamedAndTheOthersCounted) {
+  const Folder folder;
+  folder.write("small.toml",
+               "world = \"" + our_world("rooms.world") + "\"\nrobots = 1\nduration = 0.1\n[expect]\ndistance = 1000\n");
+  for (const auto& [seeds, rest] : {std::pair{"10", ""}, {"11", "sensorfarm: 1 job more: see jobs.csv\n"}}) {
+    const std::string file =
+        folder.write("sweep.toml", "scenario = \"small.toml\"\nseeds = " + std::string(seeds) + "\n");
+    const Outcome outcome = run_program({"sweep", file, "-o", folder.path(seeds)});
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_NE(outcome.err.find("job 9 missed: "), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("job 10 "), std::string::npos) << outcome.err;
+    const std::size_t more = outcome.err.find('\n', outcome.err.find("job 9 ")) + 1;
+    EXPECT_EQ(outcome.err.substr(more, outcome.err.find("sensorfarm: wrote ") - more), rest);
+  }
+}
+
 /// A crash of a controller, a controller's own error, and jobs beside them that are fine.
 TEST(SweepCommand, AFailureCostsItsJobAlone) {
   const Folder folder;

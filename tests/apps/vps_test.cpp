@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <cmath>
 #include <csignal>
 #include <fstream>
 #include <map>
 #include <thread>
 
+#include "apps/camera_inputs.h"
 #include "base/elapsed.h"
 #include "netio/outbox.h"
 #include "netio/packets.h"
@@ -175,6 +177,22 @@ TEST(Vps, CtrlCEndsItAtOnce) {
   vps.signal(SIGINT);
   EXPECT_NE(vps.wait().code, -1);
   EXPECT_LT(base::seconds_since(start), 5.0) << "0.05 s on an idle machine";
+}
+
+/// Live images wait for their time however fast they are rendered: they are never closer than their rate.
+TEST(Vps, ImagesOfLiveRobotsAreAPeriodApart) {
+  std::string text = kTestbed;
+  text.insert(text.find("position"), "rate = 10\n");
+  const vision::Testbed testbed = vision::parse_testbed("t.toml", text);
+  const std::atomic<bool> stop = false;
+  const auto inputs = apps::robot_inputs(testbed, {netio::kLoopback, 0}, 1, stop);
+  std::vector<vision::Frame> frames;
+  ASSERT_TRUE(inputs->next(frames));
+  for (int i = 0; i < 2; ++i) {
+    const double before = frames.at(0).time;
+    ASSERT_TRUE(inputs->next(frames));
+    EXPECT_GE(frames.at(0).time, before + 0.1);
+  }
 }
 
 namespace {

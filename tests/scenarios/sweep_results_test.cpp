@@ -55,6 +55,13 @@ TEST(SweepFolder, ResultsComeBackBitForBit) {
   }
 }
 
+TEST(SweepFolder, AFolderHasAThousandResults) {
+  const SweepFolder folder(two_points(), empty_folder("thousand"));
+  for (const std::uint64_t job : {999u, 1000u}) folder.write(job, result_of_job(JobStatus::passed, 1.0, 2.0));
+  EXPECT_TRUE(fs::exists(folder.file("jobs/000/000999.txt")));
+  EXPECT_TRUE(fs::exists(folder.file("jobs/001/001000.txt")));
+}
+
 /// As after a crash of the machine or on a full disk: each beginning of a file is no result.
 TEST(SweepFolder, APartOfAResultIsNone) {
   const SweepFolder folder(two_points(), empty_folder("parts"));
@@ -87,6 +94,13 @@ TEST(SweepFolder, LeavesNoOtherFiles) {
   EXPECT_EQ(files, 2u) << "the mark and the result";
 }
 
+TEST(SweepFolder, AFileThatCannotBeReplacedLeavesNoPart) {
+  const std::string path = empty_folder("not_replaced");
+  fs::create_directories(path + "/file/that_is_a_folder");
+  EXPECT_THROW(write_whole(path + "/file", "text"), base::InputError);
+  EXPECT_EQ(std::distance(fs::directory_iterator(path), {}), 1);
+}
+
 TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
   const Sweep sweep = two_points();
   std::vector<std::optional<JobResult>> results(4);
@@ -113,6 +127,29 @@ TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
   EXPECT_FALSE(counts_of(results).good());
 }
 
+TEST(SweepTables, EqualValuesHaveNoDeviationAndBarsNoMeaning) {
+  const std::vector<std::optional<JobResult>> results(4, result_of_job(JobStatus::passed, 0.1, 2.0));
+  EXPECT_EQ(markdown_of_points(two_points(), results, 2),
+            "| point | name_of | pass | missed | failed | missing | x | y of r1 |\n|---|---|---|---|---|---|---|---|\n"
+            "| 0 | a, b | 2 | 0 | 0 | 0 | 0.1 | 2 |\n| 1 | c/d | 2 | 0 | 0 | 0 | 0.1 | 2 |\n")
+      << "all points are shown: there are none more";
+}
+
+TEST(SweepTables, AReportNamesTenSeedsAndAThousandPoints) {
+  const auto report = [](const std::string& more) {
+    const Sweep sweep =
+        parse_sweep(SF_SOURCE_DIR "/experiments/sweeps/test.toml", "scenario = \"../simville.toml\"\n" + more);
+    const std::vector<std::string> files = write_sweep_tables(sweep, SweepFolder(sweep, empty_folder("report")),
+                                                              std::vector<std::optional<JobResult>>(sweep.jobs()));
+    return base::read_text(files.at(2));
+  };
+  EXPECT_NE(report("seeds = 10\n").find(", seeds 1, 2, 3, 4, 5, 6, 7, 8, 9, 10. "), std::string::npos);
+  EXPECT_NE(report("seeds = 11\n").find(", seeds 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, ... (11 in all). "), std::string::npos);
+  const std::string grid = "[grid]\nduration = { from = 1, to = 2, count = ";
+  EXPECT_EQ(report(grid + "1000 }\n").find("More in"), std::string::npos);
+  EXPECT_NE(report(grid + "1001 }\n").find("\nMore in points.csv: 1 point.\n"), std::string::npos);
+}
+
 TEST(JobCounts, OnlyMissedFailedAndMissingJobsAreBad) {
   std::vector<std::optional<JobResult>> results{result_of_job(JobStatus::passed, 1.0, 1.0),
                                                 result_of_job(JobStatus::no_expectations, 1.0, 1.0)};
@@ -133,6 +170,8 @@ TEST(JobResult, ExpectationsDecideItsStatus) {
   EXPECT_EQ(job_result_of(result).status, JobStatus::missed);
   EXPECT_EQ(job_result_of(result).message, "b: expected done, got not done");
   EXPECT_EQ(job_result_of(result).metrics.size(), 1u);
+  result.outcomes.push_back({.what = "c", .expected = ">= 3", .measured = "2"});
+  EXPECT_EQ(job_result_of(result).message, "b: expected done, got not done; c: expected >= 3, got 2");
 }
 
 }  // namespace

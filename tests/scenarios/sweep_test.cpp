@@ -97,6 +97,57 @@ TEST(SweepFile, EventsGoByTheirNumber) {
   std::filesystem::remove(file);
 }
 
+/// Tried one after the other: a value stands beside the first ones of all other parameters.
+TEST(SweepFile, ValuesThatDoNotGoTogetherAreLeftToTheirJobs) {
+  const std::string lane = "scenario = \"../lane-edge-p.toml\"\n[grid]\n";
+  const std::string controllers = "default.controller = [\"lane-keeping\", \"none\"]\n";
+  EXPECT_EQ(sweep_refusal(lane + controllers + "expect = [{ contacts = 9 }, { mean_error = 9 }]\n"), "");
+  EXPECT_NE(sweep_refusal(lane + controllers + "expect = [{ mean_error = 9 }]\n"), "") << "the two that do not";
+}
+
+/// Lines are the sweep's, as the scenario does not have the value.
+TEST(SweepFile, ARefusedValueHasNoLineOfTheScenario) {
+  const std::string said = sweep_refusal(kTown + std::string("[grid]\nlink.delay = [-1]\n"));
+  EXPECT_NE(said.find("/simville.toml: 'delay'"), std::string::npos) << said;
+}
+
+/// A scenario of its own for one test, with the seed 5, in a world with a slip.
+class OwnScenario : public testing::Test {
+ protected:
+  OwnScenario() {
+    std::ofstream(world_) << "model( size [4 4 1] boundary 1 colour \"red\" )\nposition( name \"one\" )\n";
+    std::ofstream(scenario_) << "world = \"" << world_ << "\"\nseed = 5\n";
+  }
+  ~OwnScenario() override {
+    for (const std::string& file : {world_, scenario_}) std::filesystem::remove(file);
+  }
+  Sweep sweep(const std::string& more = "") const {
+    return parse_sweep(kSweepFile, "scenario = \"" + scenario_ + "\"\n" + more);
+  }
+
+ private:
+  const std::string stem_ = testing::TempDir() + "own_" + std::to_string(getpid());
+  const std::string world_ = stem_ + ".world", scenario_ = stem_ + ".toml";
+};
+
+TEST_F(OwnScenario, ItsWarningsAreToldByTheCheck) {
+  const std::vector<world::Warning> warnings = check_sweep(sweep());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].message.find("'colour'"), std::string::npos) << warnings[0].message;
+}
+
+TEST_F(OwnScenario, ANumberOfSeedsBeginsWithItsOwn) {
+  EXPECT_EQ(sweep("seeds = 3\n").seeds, (std::vector<std::uint64_t>{5, 6, 7}));
+  EXPECT_EQ(sweep().seeds, (std::vector<std::uint64_t>{5}));
+}
+
+TEST_F(OwnScenario, RobotsThatItDoesNotNameGetAnEntry) {
+  const Scenario scenario = scenario_of(sweep("[grid]\nrobot.one.rate = [4]\n"), 0);
+  ASSERT_EQ(scenario.robot_setups.size(), 1u);
+  EXPECT_EQ(scenario.robot_setups[0].name, "one");
+  EXPECT_EQ(scenario.robot_setups[0].actor->controller.rate, 4.0);
+}
+
 TEST(SweepFile, TheNumberOfJobsIsBoundedBeforeAnyIsMade) {
   const std::string grid = "[grid]\nduration = { from = 1, to = 2, count = 1000 }\n";
   const std::string delay = "link.delay = { from = 0, to = 1, count = 1000 }\n";
@@ -120,6 +171,50 @@ TEST(SweepFile, RangesReachBothEnds) {
   const std::vector<double> decades = values_of("duration = { from = 0.1, to = 1000, count = 5, scale = \"log\" }");
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(decades[i] / std::pow(10.0, i - 1), 1.0, 1e-12);
   EXPECT_EQ(decades.back(), 1000.0);
+}
+
+/// One of four points in each quarter: two of each whole number, and one in each decade.
+TEST(SweepFile, SampledRangesAreEvenInTheirScale) {
+  const auto sampled = [](const std::string& range) {
+    const Sweep sweep = parse_sweep(
+        kSweepFile, kTown + std::string("[sample]\npoints = 4\n[sample.range]\nduration = { ") + range + " }\n");
+    std::vector<double> values;
+    for (const world::TomlNode& value : sweep.parameters.at(0).values) values.push_back(value.number);
+    std::sort(values.begin(), values.end());
+    return values;
+  };
+  EXPECT_EQ(sampled("from = 3, to = 4, whole = true"), (std::vector<double>{3, 3, 4, 4}));
+  const std::vector<double> linear = sampled("from = 0, to = 4"),
+                            decades = sampled("from = 0.01, to = 100, scale = \"log\"");
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(std::floor(linear[i]), i);
+    EXPECT_EQ(std::floor(std::log10(decades[i])), i - 2);
+  }
+}
+
+TEST(SweepFile, ASampleIsThatOfItsMethodAndSeed) {
+  const auto expect_sample = [](const std::string& keys, SampleMethod method, std::uint64_t seed) {
+    const Sweep sweep = parse_sweep(kSweepFile, kTown + ("[sample]\npoints = 20\n" + keys) +
+                                                    "[sample.range]\nlink.delay = { from = 0, to = 2 }\n"
+                                                    "default.controller = [\"wander\", \"none\", \"route\"]\n");
+    const auto rows = sample_points(method, 20, 2, seed);
+    const char* const names[] = {"wander", "none", "route"};
+    for (std::size_t i = 0; i < 20; ++i) {
+      EXPECT_EQ(sweep.parameters.at(0).values[i].number, 2.0 * rows[i][0]) << keys;
+      EXPECT_EQ(sweep.parameters.at(1).values[i].text, names[static_cast<std::size_t>(3.0 * rows[i][1])]) << keys;
+    }
+  };
+  expect_sample("", SampleMethod::latin_hypercube, 1);
+  expect_sample("seed = 4\n", SampleMethod::latin_hypercube, 4);
+  expect_sample("method = \"random\"\nseed = 4\n", SampleMethod::random, 4);
+}
+
+TEST(Sweep, ParametersAreInTheOrderOfTheirLines) {
+  const Sweep sweep =
+      parse_sweep(kSweepFile, kTown + std::string("[grid]\nlink.delay = [0]\nduration = [1]\nlink.loss = [0]\n"));
+  std::vector<std::string> names;
+  for (const SweepParameter& parameter : sweep.parameters) names.push_back(parameter.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"link.delay", "duration", "link.loss"}));
 }
 
 TEST(Sweep, SeedsRunFastestAndTheFilesFirstParameterSlowest) {
@@ -168,6 +263,14 @@ TEST(Sweep, ParametersReachEveryKeyOfAScenario) {
   EXPECT_EQ(text_of(sweep.parameters[2].values[0]), "{ delay = 0.5, loss = 0.25 }");
 }
 
+TEST(Sweep, ValuesAreShownAsAFileHasThem) {
+  const Sweep sweep = parse_sweep(
+      kSweepFile, kTown + std::string("[grid]\nvalue = [true, false, 0.5, \"two words\", [1, 2.5], { a = [true] }]\n"));
+  std::vector<std::string> texts;
+  for (const world::TomlNode& value : sweep.parameters.at(0).values) texts.push_back(text_of(value));
+  EXPECT_EQ(texts, (std::vector<std::string>{"true", "false", "0.5", "two words", "[1, 2.5]", "{ a = [true] }"}));
+}
+
 TEST(Sweep, ItsHashKnowsBothFiles) {
   const auto hash = [](const std::string& text) { return parse_sweep(kSweepFile, text).hash; };
   EXPECT_EQ(hash(kTown), hash(kTown));
@@ -207,6 +310,16 @@ TEST(SamplePoints, ALatinHypercubeHasOnePointInEachInterval) {
   for (const std::vector<double>& row : sample_points(SampleMethod::latin_hypercube, 100, 2, 1))
     same += std::floor(100.0 * row[0]) == std::floor(100.0 * row[1]) ? 1 : 0;
   EXPECT_LT(same, 8u);
+}
+
+/// Worked out by another program: a sweep's sample stays as it is from one version to the next.
+TEST(SamplePoints, AHypercubeIsAlwaysTheSame) {
+  const std::vector<std::vector<double>> expected{{0.2267753288025065, 0.8272814072732395},
+                                                  {0.8902429807689076, 0.2042048456833454},
+                                                  {0.6701796227565839, 0.7822716095822353},
+                                                  {0.4941504264980464, 0.014885008014233337},
+                                                  {0.11396942974041932, 0.5270462436627472}};
+  EXPECT_EQ(sample_points(SampleMethod::latin_hypercube, 5, 2, 1), expected);
 }
 
 TEST(SamplePoints, SeedsAndMethodsDifferAndARandomSampleGrows) {

@@ -1,0 +1,82 @@
+// Recordings of two ranks, put together.
+
+#include "scenarios/merging.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "record/recorder.h"
+#include "scenarios/run_info.h"
+#include "scenarios/simulation.h"
+#include "tests/device.h"
+#include "tests/sensors/edit_laser.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::scenarios {
+namespace {
+
+std::string merging_folder(const std::string& name) {
+  const std::string path = testing::TempDir() + "merging/" + name;
+  std::filesystem::remove_all(path);
+  return path;
+}
+
+/// Three robots with lasers that are delivered late; the first two have sonars, whose readings are three messages each.
+world::World merged_world() {
+  world::World world = scenes::boxes(10, 6.0, 3);
+  sensors::LaserSettings laser = scenes::laser(5, M_PI, 4.0);
+  laser.latency = 0.15;
+  scenes::add_robots(world, 3, laser, 5);
+  for (std::size_t m = 0; m < 2; ++m) {
+    world::Sensor sonar;
+    sonar.type = sonar.name = "sonar";
+    sonar.settings = {{"scount", {2.0}, "", 0, ""},
+                      {"spose[0]", {0.1, 0.0, 0.0}, "", 0, ""},
+                      {"spose[1]", {0.0, 0.1, 90.0}, "", 0, ""}};
+    world.movers[m].sensors.push_back(sonar);
+  }
+  world::update_extent_and_hash(world);
+  return world;
+}
+
+/// Ten ticks: whole in WHOLE/run.mcap, and in RANKS by two ranks, of which the second has the odd robots.
+void record_merged(const std::string& whole, const std::string& ranks, std::uint64_t seed = 9) {
+  const world::World world = merged_world();
+  Simulation simulation(world, device(), {.seed = seed});
+  const record::RunInfo info = run_info(world, simulation.farm().sensor_set(), {seed, true});
+  record::Recorder one(whole, info), first(ranks, info, {0, 2}), second(ranks, info, {1, 2});
+  for (int tick = 0; tick < 10; ++tick) {
+    base::TickRecord record = simulation.step();
+    one.write(record);
+    const std::vector<base::ReadingBlock> all(record.readings.begin(), record.readings.end());
+    for (const std::uint32_t rank : {0u, 1u}) {
+      std::vector<base::ReadingBlock> own;
+      std::copy_if(all.begin(), all.end(), std::back_inserter(own), [&](const auto& r) { return r.mover % 2 == rank; });
+      record.readings = own;
+      (rank == 0 ? first : second).write(record);
+    }
+  }
+  for (record::Recorder* recorder : {&one, &first, &second}) recorder->finish();
+}
+
+TEST(Merging, GivesTheBytesOfASingleProcess) {
+  const std::string whole = merging_folder("whole"), ranks = merging_folder("ranks");
+  record_merged(whole, ranks);
+  const record::Recording expected = record::open_recording(whole), read = open_run(ranks);
+  ASSERT_GT(expected.readings.size(), 40u);
+  EXPECT_EQ(read.readings.size(), expected.readings.size()) << "as if it were merged";
+  const MergedRecording merged = merge_recordings(std::span(&ranks, 1), merging_folder("merged"));
+  const std::string bytes = base::read_text(merged.file);
+  EXPECT_TRUE(bytes == base::read_text(whole + "/run.mcap"));
+  EXPECT_EQ(merged.bytes, bytes.size());
+  EXPECT_EQ(merged.ticks, 10u);
+  EXPECT_FALSE(merged.truncated);
+}
+
+}  // namespace
+}  // namespace sf::scenarios
