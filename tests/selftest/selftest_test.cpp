@@ -11,6 +11,7 @@
 #include "selftest/suite.h"
 #include "tests/golden.h"
 #include "tests/instrumented.h"
+#include "tests/selftest/scene_notes.h"
 
 namespace sf::selftest {
 
@@ -30,28 +31,35 @@ std::string test_name(const testing::TestParamInfo<Case>& info) {
   return name;
 }
 
-/// Checks, closest call and notes: a changed scene or tolerance shows there, though the case passes. The roundings of
-/// sines are those of processors with fused operations.
-void expect_recorded(const Case& c, const Outcome& o) {
+/// Finds `text` in a golden record. The roundings of sines are those of processors with fused operations.
+void expect_recorded(const std::string& name, const std::string& text) {
+  if (const char* const path = std::getenv("SENSORFARM_RECORDS"))
+    std::ofstream(fmt::format("{}/{}.txt", path, name), std::ios::app) << text;
+  if (instrumented() || !__builtin_cpu_supports("fma")) return;
+  const std::string file = fmt::format("tests/selftest/golden/{}.txt", name);
+  const std::string record = golden::read(SF_SOURCE_DIR "/" + file);
+  EXPECT_NE(("\n" + record).find("\n" + text), std::string::npos) << file << " has no\n" << text;
+}
+
+/// Checks, closest call and notes: a changed tolerance shows there, though the case passes.
+std::string judged(const Case& c, const Outcome& o) {
   std::string text = fmt::format("{} {}: {:.2g} of {:.3g}\n", c.name, o.checks, o.error, o.allowed);
   for (const std::string& note : o.notes) text += "  " + note + "\n";
-  if (const char* const path = std::getenv("SENSORFARM_RECORDS"))
-    std::ofstream(std::string(path) + "/cases.txt", std::ios::app) << text;
-  if (instrumented() || !__builtin_cpu_supports("fma")) return;
-  const std::string record = golden::read(SF_SOURCE_DIR "/tests/selftest/golden/cases.txt");
-  EXPECT_NE(record.find(text), std::string::npos) << "tests/selftest/golden/cases.txt has no\n" << text;
+  return text;
 }
 
 class Extremes : public testing::TestWithParam<Case> {};
 
 TEST_P(Extremes, Holds) {
+  forget_scenes();
   const Outcome o = run(GetParam(), all_fixture());
   std::printf("[ measured ] %s: %llu checks, closest call %.3g of %.3g allowed, %.2f s\n",
               std::string(GetParam().name).c_str(), static_cast<unsigned long long>(o.checks), o.error, o.allowed,
               o.seconds);
   for (const std::string& note : o.notes) std::printf("[ measured ]   %s\n", note.c_str());
   EXPECT_TRUE(o.passed()) << o.failed << " of " << o.checks << " checks: " << o.failure;
-  expect_recorded(GetParam(), o);
+  expect_recorded("cases", judged(GetParam(), o));
+  expect_recorded("scenes", fmt::format("{}: {}\n", GetParam().name, measured_scenes()));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Extremes, testing::ValuesIn(cases().begin(), cases().end()), test_name);
