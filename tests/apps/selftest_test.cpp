@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "apps/report.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 
@@ -44,6 +45,43 @@ TEST(SelfTest, AsJson) {
   EXPECT_EQ(json.text("/cases/0/group"), "places");
   EXPECT_EQ(json.number("/cases/0/failed"), 0.0);
   EXPECT_GT(json.number("/cases/0/checks"), 20.0);
+}
+
+/// A case that is right or wrong, one to the bit, one within its tolerance, and one that failed; one was not run.
+TEST(SelfTest, TheReportSaysHowEachCaseEnded) {
+  using selftest::Case;
+  const Case plain{"a", "plain", "", "", nullptr}, bits{"a", "bits", "m", "", nullptr},
+      near{"b", "near", "m", "", nullptr};
+  apps::SelfTestReport report{.asked = 5, .seconds = 1.5};
+  report.device.name = "device";
+  report.cases.push_back({&plain, {.checks = 3}});
+  report.cases.push_back({&bits, {.checks = 20}});
+  report.cases.push_back({&near, {.checks = 4, .error = 0.25, .allowed = 0.5, .notes = {"one", "two"}}});
+  EXPECT_TRUE(report.sound());
+  report.cases.push_back({&bits, {.checks = 2, .failed = 1, .error = 0.5, .failure = "x [1]"}});
+  EXPECT_FALSE(report.sound());
+  EXPECT_EQ(report.passed(), 3u);
+  EXPECT_EQ(apps::text_of(report),
+            "group     case                          checks  closest call: error of allowed\n"
+            "a         plain                              3  right or wrong                 ok\n"
+            "a         bits                              20  0: the same to the bit         ok\n"
+            "b         near                               4  0.25 of 0.5 m                  ok\n"
+            "          one\n"
+            "          two\n"
+            "a         bits                               2  0.5 of 0 m                     FAILED\n"
+            "          1 of 2 checks failed; first: x [1]\n"
+            "3 of 4 cases passed on device: 29 checks in 1.5 s; interrupted, 1 not run\n");
+  report.asked = 4;
+  EXPECT_TRUE(apps::text_of(report).ends_with("29 checks in 1.5 s\n"));
+}
+
+TEST(SelfTest, NothingRunIsNotSound) { EXPECT_FALSE(apps::SelfTestReport{}.sound()); }
+
+TEST(SelfTest, ACaseWithoutChecksFails) {
+  const selftest::Case idle{"a", "idle", "", "", nullptr};
+  apps::SelfTestReport report;
+  report.cases.push_back({&idle, {}});
+  EXPECT_FALSE(report.sound());
 }
 
 TEST(SelfTest, WrongUsage) {

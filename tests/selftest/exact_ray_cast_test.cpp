@@ -230,5 +230,76 @@ TEST(Oracle, SeesAWallThatIsElsewhere) {
   EXPECT_GT(abs(Digits50(test.readings[0].values[0]) - nearest_hit(world, test.readings[0].X_WS, eye, 0).range), 2e-13);
 }
 
+/// A wall 2 m ahead of five beams: the outer two meet nothing within 8 m.
+world::World wall_ahead() {
+  world::World world;
+  add_wall(world, {2.0, -3.0}, {2.0, 3.0});
+  add_laser_mover(world, {}, laser(5, 2.0, 8.0));
+  return world;
+}
+
+Outcome judged(const TestFarm& test, std::span<const double> values, std::uint32_t stride = 1) {
+  base::ReadingBlock reading = test.readings[0];
+  reading.values = values;
+  Checks checks;
+  check_scan(*test.world, reading, checks, "scan", stride);
+  return checks.outcome();
+}
+
+TEST(CheckScan, RefusesEachWrongBeam) {
+  const TestFarm test = fixture().measure(wall_ahead());
+  const std::vector<double> good(test.readings[0].values.begin(), test.readings[0].values.end());
+  EXPECT_TRUE(judged(test, good).passed());
+  EXPECT_EQ(judged(test, good).checks, 6u) << "five beams and their number";
+  for (std::size_t i = 0; i < good.size(); ++i)
+    for (const double wrong : {good[i] * (1.0 + 1e-13), good[i] * (1.0 - 1e-13), kNan}) {
+      std::vector<double> values = good;
+      values[i] = wrong;
+      const Outcome o = judged(test, values);
+      EXPECT_EQ(o.failed, 1u) << wrong;
+      EXPECT_EQ(o.failure.find(fmt::format("scan [{}]: {:.17g}, expected ", i, wrong)), 0u) << o.failure;
+    }
+}
+
+TEST(CheckScan, ABeamWithoutAReturnIsItsRangeToTheBit) {
+  const TestFarm test = fixture().measure(wall_ahead());
+  std::vector<double> values(test.readings[0].values.begin(), test.readings[0].values.end());
+  values[4] = std::nextafter(8.0, 0.0);
+  EXPECT_EQ(judged(test, values).failure, "scan [4]: 7.9999999999999991, expected 8");
+}
+
+TEST(CheckScan, RefusesAWrongNumberOfBeams) {
+  const TestFarm test = fixture().measure(wall_ahead());
+  EXPECT_EQ(judged(test, test.readings[0].values.first(4)).failure, "scan: samples: 4, expected 5 [0]");
+}
+
+TEST(CheckScan, AStrideLeavesBeamsOut) {
+  const TestFarm test = fixture().measure(wall_ahead());
+  std::vector<double> values(test.readings[0].values.begin(), test.readings[0].values.end());
+  values[1] = values[3] = kNan;
+  EXPECT_TRUE(judged(test, values, 2).passed());
+  EXPECT_EQ(judged(test, values, 2).checks, 4u);
+  values[4] = kNan;
+  EXPECT_EQ(judged(test, values, 2).failed, 1u);
+}
+
+/// The middle beam passes the free end of a wall.
+TEST(CheckScan, BeamsThatRoundingDecidesAreNotedOnly) {
+  world::World world = wall_ahead();
+  world.walls[0].a.y = 0.0;
+  const TestFarm test = fixture().measure(world);
+  std::vector<double> values(test.readings[0].values.begin(), test.readings[0].values.end());
+  values[2] = kNan;
+  const Outcome o = judged(test, values);
+  EXPECT_TRUE(o.passed()) << o.failure;
+  EXPECT_EQ(o.checks, 5u);
+  EXPECT_EQ(o.notes, std::vector<std::string>{"scan: 1 beams pass an end within rounding and were not judged"});
+}
+
+/// By hand, of a wall that is 3 m away and met 4 m ahead at a sine of 0.5.
+TEST(ExactRayCast, TheBoundGrowsWithDistancesAndShrinksWithTheSine) {
+  EXPECT_NEAR(rounding({.range = 4, .model = 0, .sine = 0.5, .arm = 3}), 2.8e-14, 1e-28);
+}
+
 }  // namespace
 }  // namespace sf::selftest

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <ostream>
 #include <set>
 
@@ -77,6 +78,12 @@ TEST(Suite, NamesAreUniqueAndReasonsAreGiven) {
 
 Outcome outcome_of(void (*body)(Fixture&, Checks&)) { return run({"made", "made", "m", "made", body}, all_fixture()); }
 
+Outcome outcome_of(const std::function<void(Checks&)>& body) {
+  Checks checks;
+  body(checks);
+  return checks.outcome();
+}
+
 /// A wrong result is reported with the failed check and its error.
 TEST(Suite, AWrongAnswerFails) {
   const Outcome o = outcome_of([](Fixture& l, Checks& checks) {
@@ -95,7 +102,6 @@ TEST(Suite, AWrongAnswerFails) {
 }
 
 TEST(Suite, EveryKindOfCheckCanFail) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(outcome_of([](Fixture&, Checks& c) { c.near(kNan, 0, 1e300, "not a number"); }).passed());
   EXPECT_FALSE(outcome_of([](Fixture&, Checks& c) { c.near(1, kNan, 1e300, "not a number"); }).passed());
   EXPECT_FALSE(outcome_of([](Fixture&, Checks& c) { c.same(0.0, -0.0, "another bit"); }).passed());
@@ -107,6 +113,92 @@ TEST(Suite, EveryKindOfCheckCanFail) {
   EXPECT_FALSE(outcome_of([](Fixture&, Checks&) { throw base::InputError("thrown"); }).passed());
   EXPECT_FALSE(outcome_of([](Fixture&, Checks&) {}).passed()) << "a case without checks";
   EXPECT_TRUE(outcome_of([](Fixture&, Checks& c) { c.same(kNan, -kNan, "neither is a number"); }).passed());
+}
+
+/// Errors of 0.25 and of the next double beyond it: sums with 0 and 1 are exact.
+TEST(Suite, AnErrorEqualToItsToleranceIsTheLastThatPasses) {
+  for (const double sign : {1.0, -1.0})
+    for (const double exact : {0.0, 1.0}) {
+      const double last = exact + sign * 0.25, beyond = std::nextafter(last, sign * HUGE_VAL);
+      EXPECT_TRUE(outcome_of([&](Checks& c) { c.near(last, exact, 0.25, "last"); }).passed()) << last;
+      EXPECT_FALSE(outcome_of([&](Checks& c) { c.near(beyond, exact, 0.25, "beyond"); }).passed()) << last;
+    }
+  EXPECT_TRUE(outcome_of([](Checks& c) { c.near(2, 2, 0, "equal"); }).passed());
+  EXPECT_FALSE(outcome_of([](Checks& c) { c.near(1, 1 + 1e-19L, 0, "less than a double's bit"); }).passed());
+  EXPECT_FALSE(outcome_of([](Checks& c) { c.near(1, 1, kNan, "no tolerance"); }).passed());
+  EXPECT_FALSE(outcome_of([](Checks& c) { c.near(kInfinity, 1, 1e300, "infinite"); }).passed());
+}
+
+TEST(Suite, TheSameIsTheSameToTheLastBit) {
+  const double next = std::nextafter(1.0, 2.0);
+  EXPECT_TRUE(outcome_of([](Checks& c) { c.same(kInfinity, kInfinity, "infinite"); }).passed());
+  EXPECT_FALSE(outcome_of([&](Checks& c) { c.same(next, 1.0, "a bit more"); }).passed());
+  EXPECT_FALSE(outcome_of([](Checks& c) { c.same(kNan, 1.0, "no number"); }).passed());
+  EXPECT_FALSE(outcome_of([](Checks& c) { c.same(1.0, kNan, "a number"); }).passed());
+  EXPECT_FALSE(outcome_of([](Checks& c) { c.same(kInfinity, -kInfinity, "sign"); }).passed());
+}
+
+TEST(Suite, EveryKindOfCheckNamesWhatFailed) {
+  const auto failure = [](const std::function<void(Checks&)>& body) { return outcome_of(body).failure; };
+  EXPECT_EQ(failure([](Checks& c) { c.near(kNan, 1, 0.5, "near", 3); }), "near [3]: nan, expected 1 within 0.5");
+  EXPECT_EQ(failure([](Checks& c) { c.same(0.1, 0.25, "same", 4); }), "same [4]: 0.10000000000000001, expected 0.25");
+  EXPECT_EQ(failure([](Checks& c) { c.equal(6, 7u, "count", 5); }), "count: 6, expected 7 [5]");
+  EXPECT_EQ(failure([](Checks& c) { c.holds(false, "holds", 6); }), "holds [6]");
+  EXPECT_EQ(failure([](Checks& c) { c.refused([] {}, "word", "call"); }),
+            "call: expected a refusal that names 'word', not: was taken [0]");
+  EXPECT_EQ(failure([](Checks& c) { c.refused([] { throw base::InputError("y"); }, "x", "call"); }),
+            "call: expected a refusal that names 'x', not: y [0]");
+  EXPECT_EQ(outcome_of([](Fixture&, Checks&) { throw base::InputError("thrown"); }).failure,
+            "it ended with: thrown [0]");
+}
+
+TEST(Suite, RefusalsOfInputsAndDevicesPass) {
+  const Outcome o = outcome_of([](Checks& c) {
+    c.refused([] { throw base::InputError("bad word"); }, "word", "input");
+    c.refused([] { throw base::DeviceError("bad word"); }, "word", "device");
+  });
+  EXPECT_TRUE(o.passed()) << o.failure;
+  EXPECT_EQ(o.checks, 2u);
+}
+
+TEST(Suite, EveryFailureCountsAndTheFirstIsTold) {
+  const Outcome o = outcome_of([](Checks& c) {
+    c.holds(true, "good");
+    c.near(2, 1, 0.5, "first");
+    c.same(2, 1, "second");
+    c.holds(false, "third");
+    c.equal(2, 1, "fourth");
+  });
+  EXPECT_EQ(o.checks, 5u);
+  EXPECT_EQ(o.failed, 4u);
+  EXPECT_EQ(o.failure, "first [0]: 2, expected 1 within 0.5");
+}
+
+TEST(Suite, NotesAreKeptUpToTwelve) {
+  const Outcome o = outcome_of([](Checks& c) {
+    for (int i = 0; i < 14; ++i) c.note(std::to_string(i));
+  });
+  ASSERT_EQ(o.notes.size(), 12u);
+  EXPECT_EQ(o.notes.front(), "0");
+  EXPECT_EQ(o.notes.back(), "11");
+}
+
+/// An error that is not a number, or of what has no tolerance, is beyond all others.
+TEST(Suite, WhatCannotBeComparedIsTheClosestCall) {
+  for (const double got : {kNan, kInfinity}) {
+    const Outcome o = outcome_of([&](Checks& c) {
+      c.near(got, 0, 2.0, "beyond");
+      c.near(100, 0, 1.0, "a hundred times");
+    });
+    EXPECT_EQ(o.error, kInfinity);
+    EXPECT_EQ(o.allowed, 2.0);
+  }
+  const Outcome o = outcome_of([](Checks& c) {
+    c.near(100, 0, 1.0, "a hundred times");
+    c.same(3, 1, "to the bit");
+  });
+  EXPECT_EQ(o.error, 2.0);
+  EXPECT_EQ(o.allowed, 0.0);
 }
 
 TEST(Suite, TheNearestToItsToleranceIsTold) {

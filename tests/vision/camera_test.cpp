@@ -67,6 +67,18 @@ RC_GTEST_PROP(Camera, OrientationIsReadBack, ()) {
   RC_ASSERT(glm::distance(glm::cross(camera.right, camera.down), camera.forward) < 1e-12);
 }
 
+/// Newton's steps need every term of the derivatives where a lens bends as much along as across.
+TEST(Camera, UndistortsStrongTangentialDistortion) {
+  Intrinsics i = plain_camera().intrinsics;
+  for (const auto& [down, across] : {std::pair{0.3, 0.0}, {0.0, 0.3}, {-0.3, 0.0}, {0.0, -0.3}}) {
+    i.distortion = {0.0, 0.0, down, across, 0.0};
+    const double far = 0.5 * (down + across < 0.0 ? -1.0 : 1.0);
+    for (const glm::dvec2& n : {glm::dvec2{far, -0.5 * far}, glm::dvec2{-0.5 * far, far}, glm::dvec2{far, far}})
+      EXPECT_LT(glm::distance(undistort(i, distort(i, n)), n), 1e-12)
+          << down << " " << across << ": " << n.x << " " << n.y;
+  }
+}
+
 TEST(Camera, RefusesPointsThatItCannotSee) {
   const Camera camera = distorted_camera();
   EXPECT_FALSE(project(camera, {0.0, 0.0, 6.5}));       // its own position

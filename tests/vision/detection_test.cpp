@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/error.h"
@@ -49,6 +50,42 @@ Trial run(const Testbed& testbed, const FleetOptions& options, int images) {
   }
   result.accuracy = meter.accuracy();
   return result;
+}
+
+/// A tag of the default dictionary, 0.2 m above the floor.
+Patch tag_patch(std::uint32_t id, glm::dvec2 p, double yaw, double side) {
+  Patch tag;
+  tag.shape = Patch::Shape::tag;
+  tag.X_WP = {p.x, p.y, 0.2, yaw};
+  tag.size = {side, side};
+  tag.pattern = opencv().tag_pattern("apriltag_36h11", id);
+  return tag;
+}
+
+/// Exact edge points of a tag of 0.15 m. @param count of each side: upper, right, lower, left
+std::vector<EdgePoint> edges_of(const Camera& camera, const base::Pose& X_WT, const std::array<int, 4>& count) {
+  std::vector<EdgePoint> edges;
+  for (int side = 0; side < 4; ++side)
+    for (int i = 0; i < count[static_cast<std::size_t>(side)]; ++i) {
+      const glm::dvec2 p = base::transform(X_WT, base::rotate(-0.5 * M_PI * side, {0.03 * i - 0.05, 0.075}));
+      edges.push_back({*project(camera, {p.x, p.y, X_WT.z}), side});
+    }
+  return edges;
+}
+
+/// Grey pixels with a square of another grey, whose upper left pixel is at (20, 20).
+Image square(int side, std::uint8_t inside, std::uint8_t outside) {
+  Image image{64, 64, 1, std::vector<std::uint8_t>(64 * 64, outside)};
+  for (int v = 20; v < 20 + side; ++v)
+    for (int u = 20; u < 20 + side; ++u) image.pixels[static_cast<std::size_t>(64 * v + u)] = inside;
+  return image;
+}
+
+std::size_t edges_in(const Image& image, double side) {
+  const double a = 19.5, b = a + side;
+  std::vector<EdgePoint> edges;
+  find_edges(image, {0, {glm::dvec2{a, a}, {b, a}, {b, b}, {a, b}}}, 8, edges);
+  return edges.size();
 }
 
 }  // namespace
@@ -124,12 +161,7 @@ TEST(Detection, HeadingIsThatOfThePrintedTag) {
   for (const double yaw : {0.0, -2.5, M_PI}) {
     Scene scene;
     scene.texture = 0.0;
-    Patch tag;
-    tag.shape = Patch::Shape::tag;
-    tag.X_WP = {0.5, -0.4, 0.2, yaw};
-    tag.size = {0.15, 0.15};
-    tag.pattern = opencv().tag_pattern("apriltag_36h11", 17);
-    scene.patches.push_back(tag);
+    scene.patches.push_back(tag_patch(17, {0.5, -0.4}, yaw, 0.15));
     Image image;
     Renderer(testbed.cameras[0].camera, Imaging{}, 1).render(scene, 0.0, 0, image);
     std::vector<Sighting> seen;
@@ -140,6 +172,51 @@ TEST(Detection, HeadingIsThatOfThePrintedTag) {
     EXPECT_NEAR(seen[0].fit.X_WT.x, 0.5, 0.3e-3);
     EXPECT_NEAR(seen[0].fit.X_WT.y, -0.4, 0.3e-3);
   }
+}
+
+TEST(Detection, OfTwoTagsWithOneIdTheOneOfTheStatedSizeIsSeen) {
+  const Testbed testbed = testbed_with({plain_camera()});
+  for (const double x : {-0.5, 0.5}) {
+    Scene scene;
+    scene.patches = {tag_patch(17, {x, -0.4}, 0.0, 0.15), tag_patch(17, {-x, -0.4}, 0.0, 0.16)};
+    Image image;
+    Renderer(plain_camera(), Imaging{}, 1).render(scene, 0.0, 0, image);
+    std::vector<Sighting> seen;
+    TagDetector detector(testbed, plain_camera());
+    detector.detect(image, 0.0, seen);
+    ASSERT_EQ(seen.size(), 1u);
+    EXPECT_NEAR(seen[0].fit.X_WT.x, x, 1e-3);
+    EXPECT_EQ(detector.counts().sightings, 1u);
+  }
+}
+
+TEST(Detection, AnyThreeSidesAreASquare) {
+  const base::Pose X_WT{1.2, -0.7, 0.2, 2.0};
+  for (const std::array<int, 4>& count : {std::array<int, 4>{0, 4, 4, 4}, {4, 0, 4, 4}, {4, 4, 0, 4}, {4, 4, 4, 0}}) {
+    const auto fit = fit_tag(distorted_camera(), edges_of(distorted_camera(), X_WT, count), 0.2);
+    ASSERT_TRUE(fit);
+    EXPECT_NEAR(fit->X_WT.x, 1.2, 1e-9);
+    EXPECT_NEAR(fit->X_WT.y, -0.7, 1e-9);
+    EXPECT_NEAR(fit->X_WT.yaw, 2.0, 1e-8);
+    EXPECT_NEAR(fit->side, 0.15, 1e-9);
+  }
+}
+
+TEST(Detection, ASideHasThreePoints) {
+  const base::Pose X_WT{1.2, -0.7, 0.2, 2.0};
+  EXPECT_TRUE(fit_tag(distorted_camera(), edges_of(distorted_camera(), X_WT, {4, 4, 3, 0}), 0.2));
+  EXPECT_FALSE(fit_tag(distorted_camera(), edges_of(distorted_camera(), X_WT, {4, 4, 2, 0}), 0.2));
+}
+
+TEST(Detection, EdgesAreStepsOfTwelveGreys) {
+  EXPECT_EQ(edges_in(square(20, 100, 111), 20.0), 0u);
+  EXPECT_EQ(edges_in(square(20, 100, 112), 20.0), 4u * 15u);
+  EXPECT_EQ(edges_in(square(20, 112, 100), 20.0), 0u) << "white inside";
+}
+
+TEST(Detection, SidesBelowFourPixelsHaveNoEdges) {
+  EXPECT_GT(edges_in(square(4, 0, 200), 4.0), 0u);
+  EXPECT_EQ(edges_in(square(4, 0, 200), 3.99), 0u);
 }
 
 TEST(Detection, EmptyImagesHaveNoTags) {

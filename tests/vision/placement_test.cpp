@@ -97,6 +97,18 @@ TEST(Placement, AWrongPlaceShowsInItsResidual) {
   for (const std::size_t other : {0u, 2u, 3u}) EXPECT_GT(*found.tags[other].without, 1.0);
 }
 
+/// Of a folder, 200 images are read: one of another size behind them is not.
+TEST(Placement, ReadsTwoHundredImages) {
+  const Testbed testbed = survey(false);
+  for (const std::size_t before : {199u, 200u}) {
+    std::vector<Image> images(before);
+    images.push_back({64, 48, 1, std::vector<std::uint8_t>(64 * 48, 9)});
+    const std::string told = refusal(testbed, ImagesInMemory(std::move(images)));
+    EXPECT_EQ(told.find("image 200 is 64 x 48") != std::string::npos, before == 199) << told;
+    EXPECT_EQ(told.find("saw 0, with 0 points") != std::string::npos, before == 200) << told;
+  }
+}
+
 /// Boundaries: no survey, no image, a point too few, points on a line; the least that suffices.
 TEST(Placement, SaysWhatIsMissing) {
   Testbed testbed = survey(false);

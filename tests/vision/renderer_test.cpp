@@ -92,6 +92,15 @@ TEST(Renderer, HigherPatchesHideLowerOnes) {
   EXPECT_EQ(*image.at(150, 60), 0);
 }
 
+TEST(Renderer, BlackPatchesHideTheFloor) {
+  Scene scene = bare(0.5);
+  Patch patch;
+  patch.size = {0.1, 0.1};
+  patch.albedo = 0.0;
+  scene.patches.push_back(patch);
+  EXPECT_EQ(*rendered(small_camera(), perfect(), scene).at(80, 60), 0);
+}
+
 TEST(Renderer, BlursWhatMovesDuringTheExposure) {
   Camera camera = small_camera();
   camera.exposure = 0.01;

@@ -101,6 +101,17 @@ TEST(Tracker, RefusesAnOldViewBesideANewOne) {
   EXPECT_EQ(tracker.refused(), 1u);
 }
 
+/// Views of one moment are of one tag up to half of 0.3 m apart.
+TEST(Tracker, MergesViewsUpToFifteenCentimetresApart) {
+  const auto cameras = [](double apart) {
+    Tracker tracker;
+    update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
+    return update(tracker, {sighting(0.1, 0.0, 0.0, 0.0), sighting(0.1, apart, 0.0, 0.0)}).at(0).cameras;
+  };
+  EXPECT_EQ(cameras(0.15), 2);
+  EXPECT_EQ(cameras(std::nextafter(0.15, 1.0)), 1);
+}
+
 TEST(Tracker, RefusesASecondPlace) {
   Tracker tracker;
   update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
@@ -130,6 +141,13 @@ TEST(Tracker, ForgetsTagsThatWereGone) {
   update(tracker, {sighting(0.1, 0.0, 0.0, 0.0)});
   EXPECT_TRUE(update(tracker, {sighting(1.2, 0.0, 0.0, 0.0)}).empty());  // as if for the first time
   EXPECT_EQ(update(tracker, {sighting(1.3, 0.0, 0.0, 0.0)}).size(), 1u);
+}
+
+TEST(Tracker, RemembersATagForASecond) {
+  Tracker tracker;
+  update(tracker, {sighting(0.0, 0.0, 0.0, 0.0)});
+  EXPECT_EQ(update(tracker, {sighting(1.0, 0.0, 0.0, 0.0)}).size(), 1u);
+  EXPECT_TRUE(update(tracker, {sighting(std::nextafter(2.0, 3.0), 0.0, 0.0, 0.0)}).empty());
 }
 
 TEST(Tracker, KeepsTagsApart) {

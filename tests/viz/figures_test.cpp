@@ -278,6 +278,23 @@ TEST(VisiblePoints, BeamsEndAtTheFirstWallOrAtRangeMax) {
   EXPECT_NEAR(back[1].x, 2.0, 1e-9);  // no wall within range_max
 }
 
+/// Their ends lie beyond the range along one axis each, and their middles within it: 11 / sqrt(2) = 7.78 m away.
+TEST(VisiblePoints, WallsAcrossACornerOfTheRangeAreSeen) {
+  for (int quarter = 0; quarter < 4; ++quarter)
+    for (const bool turned : {false, true}) {
+      world::World world;
+      world::Segment wall;
+      wall.a = base::rotate(0.5 * M_PI * quarter, {-1.0, 12.0});
+      wall.b = base::rotate(0.5 * M_PI * quarter, {12.0, -1.0});
+      if (turned) std::swap(wall.a, wall.b);
+      wall.z_max = 1.0;
+      world.walls.push_back(wall);
+      const double yaw = 0.5 * M_PI * quarter + 0.25 * M_PI;
+      const auto ends = visible_points(world, {0.0, 0.0, 0.5, yaw}, {.fov = 0.2, .samples = 3, .range_max = 8.0}, 3);
+      EXPECT_NEAR(glm::length(ends[1]), 11.0 / std::sqrt(2.0), 1e-12) << quarter << turned;
+    }
+}
+
 TEST(VisiblePoints, SeesOnlyWhatSpansItsHeight) {  // z_min <= z < z_max, the rule of world::Segment
   const world::World world = room();
   sensors::LaserSettings laser;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "viz/legend.h"
 
 namespace sf::viz {
@@ -32,6 +34,18 @@ TEST(Heading, AWordWiderThanTheFigureIsShortened) {
   ASSERT_EQ(heading.title.size(), 1u);
   EXPECT_TRUE(heading.title[0].ends_with("MMM..."));
   EXPECT_LT(heading.title[0].size(), 20u);
+}
+
+TEST(Heading, TextsAsWideAsTheFigureStayWhole) {
+  TextStyle style;
+  style.size = 28;
+  style.bold = true;
+  const auto title = [](const std::string& text, double width) { return make_heading(text, "", width, {}).title; };
+  const double word = text_size("Magnets", style).x, both = text_size("Magnets below", style).x;
+  EXPECT_EQ(title("Magnets", word), std::vector<std::string>{"Magnets"});
+  EXPECT_TRUE(title("Magnets", std::nextafter(word, 0.0))[0].ends_with("..."));
+  EXPECT_EQ(title("Magnets below", both), std::vector<std::string>{"Magnets below"});
+  EXPECT_EQ(title("Magnets below", std::nextafter(both, 0.0)), (std::vector<std::string>{"Magnets", "below"}));
 }
 
 TEST(Heading, WithoutTitleOnlyAMarginIsLeft) {

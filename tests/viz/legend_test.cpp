@@ -119,6 +119,22 @@ TEST(Signals, ShapesDiffer) {
   }
 }
 
+/// Samples of 34 px, gaps of 9 px before texts and of 30 px between items.
+TEST(Legend, ARowEndsWhereTheNextItemDoesNotFit) {
+  const std::vector<LegendItem> items{{LegendMark::line, kBlack, "first", 0}, {LegendMark::line, kBlack, "second", 0}};
+  const double first = 43.0 + text_size("first", small_text()).x, second = 43.0 + text_size("second", small_text()).x;
+  const double both = first + 30.0 + second;
+  std::vector<LegendPlace> places = place_legend(items, both);
+  EXPECT_EQ(places[1].x, first + 30.0) << "it just fits";
+  EXPECT_EQ(places[1].row, 0);
+  places = place_legend(items, std::nextafter(both, 0.0));
+  EXPECT_EQ(places[1].x, 0.0);
+  EXPECT_EQ(places[1].row, 1);
+  places = place_legend(items, 1.0);
+  EXPECT_EQ(places[0].row, 0) << "no row is left empty";
+  EXPECT_EQ(places[1].row, 1);
+}
+
 /// Each sample is drawn in its own colour, in its own row, left of its text.
 TEST(Legend, SamplesStandInTheirPlaces) {
   const std::vector<LegendItem> items{{LegendMark::block, 0xFFFF0000u, "a", 0},

@@ -42,6 +42,13 @@ TEST(Paths, LinesAreCutAtTheBox) {
   EXPECT_EQ(paths[1].back(), glm::dvec2(1, 0));
 }
 
+TEST(Paths, TheBordersBelongToTheBox) {
+  const Line lines[] = {{{2, 10}, {8, 10}}, {{0, 8}, {0, 2}}, {{2, 0}, {8, 0}}, {{10, 2}, {10, 8}}};
+  for (const Line& line : lines) EXPECT_EQ(cut_lines({&line, 1}, kBox), (Paths{{line.a, line.b}}));
+  const Line corner{{-1, 1}, {1, -1}};
+  EXPECT_EQ(cut_lines({&corner, 1}, kBox), (Paths{{{0, 0}}})) << "touches it";
+}
+
 TEST(Paths, ADotIsAPathOfOnePoint) {
   const Line inside{{5, 5}, {5, 5}}, outside{{50, 5}, {50, 5}};
   EXPECT_EQ(cut_lines({&inside, 1}, kBox), (Paths{{{5, 5}}}));

@@ -114,6 +114,23 @@ TEST(ScanMap, FindsTheWallsOfARoom) {
   }
 }
 
+/// Cells of a centimetre for each 8 m begun, 3 cm to 1 m, and at most 4 000 of them; words of 4 x 4 cells.
+TEST(ScanMap, CellsGrowWithTheWorld) {
+  const auto grid = [](double wide, double high) { return grid_over({1.0, 2.0, 1.0 + wide, 2.0 + high}); };
+  EXPECT_EQ(grid(1.0, 1.0).cell, 0.03);
+  EXPECT_EQ(grid(24.0, 1.0).cell, 0.03);
+  EXPECT_EQ(grid(1.0, 24.5).cell, 0.04);
+  EXPECT_EQ(grid(800.0, 1.0).cell, 1.0);
+  EXPECT_EQ(grid(4000.0, 1.0).cell, 1.0);
+  EXPECT_EQ(grid(1.0, 6000.0).cell, 1.5);
+  const maps::GridGeometry room = grid(0.6, 4.0);
+  EXPECT_EQ(room.left, 1.0);
+  EXPECT_EQ(room.top, 6.0);
+  EXPECT_EQ(room.word_columns, 5u) << "60 cm of 12 cm, without one for rounding";
+  EXPECT_EQ(room.word_rows, 34u);
+  EXPECT_EQ(grid(0.0, 0.0).word_columns, 1u);
+}
+
 TEST(ScanMap, GridsOfAllWorldsAreValid) {  // a point, a room, a continent, a strip
   for (const world::Extent& e : {world::Extent{0, 0, 0, 0}, {0, 0, 6, 4}, {-2e6, -2e6, 2e6, 2e6}, {0, 0, 1e5, 1}})
     EXPECT_TRUE(is_valid(grid_over(e))) << e.x_max;
