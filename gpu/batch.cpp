@@ -82,7 +82,7 @@ void Batch::begin() {
   start(vk_->run(), 0);
   wait_between(vk_->run(), kTransfer | VK_PIPELINE_STAGE_HOST_BIT,
                VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_HOST_WRITE_BIT, kCompute | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-               VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+               VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
 }
 
 void Batch::dispatch(const Kernel& kernel, const Buffer& counts, std::size_t offset) {
@@ -93,7 +93,8 @@ void Batch::dispatch(const Kernel& kernel, const Buffer& counts, std::size_t off
 }
 
 void Batch::barrier() {
-  wait_between(vk_->run(), kCompute, VK_ACCESS_SHADER_WRITE_BIT, kCompute, VK_ACCESS_SHADER_READ_BIT);
+  wait_between(vk_->run(), kCompute, VK_ACCESS_SHADER_WRITE_BIT, kCompute | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+               VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
 }
 
 void Batch::end() {

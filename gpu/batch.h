@@ -23,7 +23,7 @@ class Batch {
   void begin();
   /// Runs `kernel` with the group counts (x, y, z as u32) that `counts` holds at `offset` [bytes] at the time of `run`.
   void dispatch(const Kernel& kernel, const Buffer& counts, std::size_t offset);
-  /// Makes the results of earlier dispatches visible to the kernels of later ones (not to their group counts).
+  /// Makes the results of earlier dispatches visible to later ones, to their group counts as well.
   void barrier();
   void end();
 

@@ -22,10 +22,20 @@ int rank(const DeviceInfo& info) {
   return info.kind == "CPU" ? 1 : 0;
 }
 
+bool subgroups_vote(VkPhysicalDevice physical) {
+  VkPhysicalDeviceSubgroupProperties subgroups{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+  VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+  all.pNext = &subgroups;
+  vkGetPhysicalDeviceProperties2(physical, &all);
+  return (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0 &&
+         (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_VOTE_BIT) != 0;
+}
+
 DeviceFeatures features_of(VkPhysicalDevice physical, std::uint32_t api) {
   VkPhysicalDeviceFeatures features;
   vkGetPhysicalDeviceFeatures(physical, &features);
-  DeviceFeatures supported{api, features.shaderFloat64 == VK_TRUE, compute_queue_family(physical) >= 0, {}};
+  DeviceFeatures supported{
+      api, features.shaderFloat64 == VK_TRUE, compute_queue_family(physical) >= 0, subgroups_vote(physical), {}};
   for (const VkFormat format :
        {VK_FORMAT_R32_UINT, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_UINT}) {
     VkFormatProperties support;
@@ -86,6 +96,7 @@ std::string missing_feature(const DeviceFeatures& supported) {
   if (supported.api < VK_API_VERSION_1_2) return "needs Vulkan 1.2, has " + version_text(supported.api);
   if (!supported.doubles) return "has no 64-bit floating point in shaders (shaderFloat64)";
   if (!supported.compute) return "has no compute queue";
+  if (!supported.votes) return "has no votes of subgroups in compute shaders (VK_SUBGROUP_FEATURE_VOTE_BIT)";
   if (supported.missing.empty()) return "";
   return "has no storage texel buffers of VkFormat " + std::to_string(supported.missing.front());
 }

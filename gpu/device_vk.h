@@ -75,6 +75,7 @@ struct DeviceFeatures {
   std::uint32_t api = 0;  ///< as VK_MAKE_API_VERSION
   bool doubles = false;
   bool compute = false;
+  bool votes = false;             ///< of subgroups, in kernels
   std::vector<VkFormat> missing;  ///< formats without storage texel buffers
 };
 

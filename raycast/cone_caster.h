@@ -42,7 +42,7 @@ class ConeCaster {
   }
   void add_copies(gpu::Batch& batch);
   /// Call once after each batch.
-  void count() { caster_.count(); }
+  void take_flags() { caster_.take_flags(); }
   SensorStats stats() const { return caster_.stats(); }
 
   /// Echo of the i-th due cone. Thread-safe.

@@ -1,7 +1,5 @@
 #include "raycast/ray_caster.h"
 
-#include <bit>
-
 #include "raycast/ray_caster_tables.h"
 
 namespace sf::raycast {
@@ -45,6 +43,7 @@ bool RayCaster::prepare(std::span<const DueSample> due, bool cast) {
   t.views.resize(due.size());
   t.thread_pool.parallel_for(
       due.size(), 256, [&t](std::size_t first, std::size_t last, unsigned) { t.compute_viewpoints(first, last); });
+  if (t.scene) t.begin_uncertain();
   const bool replaced = t.scene && t.prepare();
   t.write_lanes();
   if (t.scene && t.any_angle_noise)
@@ -63,6 +62,9 @@ void RayCaster::record(gpu::Batch& batch) {
   if (!t_->scene) return;
   batch.dispatch(*t_->exact.kernel, *t_->exact.groups, 0);
   if (t_->single) batch.dispatch(*t_->single->kernel, *t_->single->groups, 0);
+  batch.barrier();
+  batch.dispatch(*t_->exact.uncertain_kernel, *t_->exact.uncertain, 0);
+  if (t_->single) batch.dispatch(*t_->single->uncertain_kernel, *t_->single->uncertain, 0);
 }
 
 void RayCaster::add_copies(gpu::Batch& batch, bool results) {
@@ -73,6 +75,9 @@ void RayCaster::add_copies(gpu::Batch& batch, bool results) {
     const auto counts = pass.groups->host<std::uint32_t>();
     batch.upload(*pass.lanes, 0, sizeof(Lane) * SF_LANES_PER_GROUP * counts[0] * counts[1]);
     batch.upload(*pass.groups, 0, pass.groups->bytes());
+    if (!t.scene) return;
+    batch.upload(*pass.uncertain, 0, sizeof(UncertainLanes));
+    batch.download(*pass.uncertain, 0, pass.uncertain->bytes());
   };
   send(t.exact);
   if (t.single) send(*t.single);
@@ -94,17 +99,14 @@ void RayCaster::add_copies(gpu::Batch& batch, bool results) {
     const std::size_t lanes = row.plan.lanes();
     batch.upload(*t.ranges, sizeof(LaneRanges) * row.out, sizeof(LaneRanges) * lanes);
     batch.upload(*t.hits, sizeof(LaneHits) * row.out, sizeof(LaneHits) * lanes);
-    batch.upload(*t.beam_flags, 4 * std::size_t{row.out}, 4 * lanes);
   }
-  if (!t.scene) return;
+  if (!t.scene || !results) return;
   // Scans with adjacent results are copied together.
   for (std::size_t i = 0; i < t.due.size();) {
     const std::size_t first = t.scanner_rows[t.due[i].row].out;
     std::size_t lanes = 0;
     for (; i < t.due.size() && t.scanner_rows[t.due[i].row].out == first + lanes; ++i)
       lanes += t.scanner_rows[t.due[i].row].plan.lanes();
-    batch.download(*t.beam_flags, 4 * first, 4 * lanes);
-    if (!results) continue;
     batch.download(*t.ranges, sizeof(LaneRanges) * first, sizeof(LaneRanges) * lanes);
     batch.download(*t.hits, sizeof(LaneHits) * first, sizeof(LaneHits) * lanes);
   }
@@ -116,20 +118,16 @@ ScanResult RayCaster::results(std::size_t i) const {
           t_->views[i].heading};
 }
 
-void RayCaster::count() {
+void RayCaster::take_flags() {
   if (!t_->scene) return;
-  const auto beam_flags = t_->beam_flags->host<std::uint32_t>();
-  for (const DueSample& due : t_->due) {
-    const ScannerRow& row = t_->scanner_rows[due.row];
-    for (std::uint32_t lane = 0; lane < row.plan.lanes(); ++lane)
-      t_->uncertain_beams += static_cast<std::uint64_t>(std::popcount(beam_flags[row.out + lane] / SF_UNCERTAIN));
-  }
+  t_->take_uncertain(t_->exact);
+  if (t_->single) t_->take_uncertain(*t_->single);
 }
 
 gpu::Buffer& RayCaster::ranges() { return *t_->ranges; }
 gpu::Buffer& RayCaster::hits() { return *t_->hits; }
 gpu::Buffer& RayCaster::directions64() { return *t_->directions64; }
-gpu::Buffer& RayCaster::beam_flags() { return *t_->beam_flags; }
+std::span<const std::uint32_t> RayCaster::beam_flags() const { return t_->beam_flags; }
 gpu::Buffer& RayCaster::lanes() { return *t_->exact.lanes; }
 gpu::Buffer& RayCaster::groups() { return *t_->exact.groups; }
 

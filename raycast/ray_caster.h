@@ -80,13 +80,14 @@ class RayCaster {
   /// Results of the i-th due scanner, valid after `prepare`.
   ScanResult results(std::size_t i) const;
   const Pose& X_WS(std::size_t i) const;  ///< pose of the i-th due scanner
-  /// Adds the device's uncertain beams to `stats`. Call once after each batch.
-  void count();
+  /// One word per lane of the results, valid as long as the caster: SF_UNCERTAIN, SF_GRAZING.
+  std::span<const std::uint32_t> beam_flags() const;
+  /// Takes in the device's beam flags, and adds its uncertain beams to `stats`. Call once after each batch.
+  void take_flags();
 
   // Result tables, on the device and (when copied) on the host, and the beams' directions in the sensor frame.
   gpu::Buffer& ranges();        ///< SF_BEAMS_PER_LANE doubles [m] per lane
   gpu::Buffer& hits();          ///< SF_BEAMS_PER_LANE words per lane: `Segment::model` of the hit, or SF_NO_HIT
-  gpu::Buffer& beam_flags();    ///< one word per lane: SF_UNCERTAIN, SF_GRAZING
   gpu::Buffer& directions64();  ///< SF_BEAMS_PER_LANE pairs of doubles per lane: cosine and sine of the bearing
   gpu::Buffer& lanes();         ///< Lane per invocation: the due scanner and its lane; without `single` scanners
   gpu::Buffer& groups();        ///< group counts of the dispatch over `lanes`

@@ -1,6 +1,9 @@
 #include "raycast/ray_caster_tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -9,6 +12,7 @@
 #include "base/error.h"
 #include "gpu/group_counts.h"
 #include "shaders/laser.comp.h"
+#include "shaders/laser_uncertain.comp.h"
 
 namespace sf::raycast {
 
@@ -125,7 +129,7 @@ void RayCaster::Tables::make_tables(gpu::Device& device, std::size_t largest_buf
   ranges = std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4,
                                          gpu::texels_of<LaneRanges>(results));
   hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, gpu::texels_of<LaneHits>(results));
-  beam_flags = std::make_unique<gpu::Buffer>(device, "verdicts", Role::download, Texel::u32, results);
+  beam_flags.assign(results, 0);
   texel_results = !ranges->fits_storage_buffer() || ranges->bytes() > largest_buffer;
   make_pass(device, exact, false);
   const auto asks = [](const Scanner& scanner) { return scanner.single; };
@@ -141,8 +145,18 @@ void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool 
   pass.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
   if (!scene) return;
   const std::uint32_t constants[] = {scene->has_movers(), is_single, texel_results};
+  constexpr std::size_t kWords = sizeof(UncertainLanes) / 4, kEntryWords = sizeof(UncertainLanes::Entry) / 4;
+  pass.uncertain = std::make_unique<gpu::Buffer>(device, "uncertain lanes", Role::download, Texel::u32,
+                                                 kWords + kEntryWords * padded);
+  if (!pass.uncertain->fits_storage_buffer())
+    throw base::DeviceError(
+        fmt::format("{} million beams exceed the storage buffers of the device; use fewer robots or beams, or --caster "
+                    "host",
+                    SF_BEAMS_PER_LANE * out_lanes / 1'000'000));
   pass.kernel =
       std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", laser_comp_spv, constants);
+  pass.uncertain_kernel = std::make_unique<gpu::Kernel>(
+      device, is_single ? "uncertain beams in 32 bits" : "uncertain beams", laser_uncertain_comp_spv, constants);
 }
 
 void RayCaster::Tables::write_all_beams() {
@@ -291,7 +305,7 @@ void RayCaster::Tables::write_results(const ScannerRow& row, const double* own_r
   const std::size_t beams = row.plan.samples.size(), lanes = row.plan.lanes(), places = SF_BEAMS_PER_LANE * lanes;
   double* const out = ranges->host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
   std::uint32_t* const hit_models = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
-  std::uint32_t* const lane_flags = beam_flags->host<std::uint32_t>().data() + row.out;
+  std::uint32_t* const lane_flags = beam_flags.data() + row.out;
   std::fill_n(lane_flags, lanes, 0u);
   if (row.plan.packed) {
     if (own_ranges != out) std::copy_n(own_ranges, beams, out);
@@ -351,7 +365,7 @@ void RayCaster::Tables::scan_shared(std::size_t k, unsigned thread) {
   const bool grazes = host->scan(k, view, all.beams, thread, {own.ranges.data(), own.models.data(), own.grazes.data()});
   double* const out = ranges->host<double>().data() + first;
   std::uint32_t* const hit_models = hits->host<std::uint32_t>().data() + first;
-  std::uint32_t* const lane_flags = beam_flags->host<std::uint32_t>().data() + row.out;
+  std::uint32_t* const lane_flags = beam_flags.data() + row.out;
   std::fill_n(lane_flags, all.lanes, 0u);
   for (std::size_t b = 0; b < beams; ++b) {
     const SharedPattern::Source& s = all.sources[b];
@@ -377,21 +391,47 @@ void RayCaster::Tables::find_host_due() {
 }
 
 void RayCaster::Tables::bind(CastDispatch& pass) {
-  pass.kernel->bind({{"rows", rows.get()},
-                     {"lanes", pass.lanes.get()},
-                     {"bearings", mid_bearings.get()},
-                     {"directions", directions64.get()},
-                     {"lists", &scene->lists()},
-                     {"segment_ids", &scene->segment_ids()},
-                     {"mover_rows", &scene->mover_rows()},
-                     {"segments", &scene->segments()},
-                     {"models", &scene->models()},
-                     {"range_texels", ranges.get()},
-                     {"hit_texels", hits.get()},
-                     {"flag_texels", beam_flags.get()},
-                     {"ranges", ranges.get()},
-                     {"hits", hits.get()},
-                     {"beam_flags", beam_flags.get()}});
+  const std::vector<gpu::TableBinding> tables{{"rows", rows.get()},
+                                              {"lanes", pass.lanes.get()},
+                                              {"bearings", mid_bearings.get()},
+                                              {"directions", directions64.get()},
+                                              {"lists", &scene->lists()},
+                                              {"segment_ids", &scene->segment_ids()},
+                                              {"mover_rows", &scene->mover_rows()},
+                                              {"segments", &scene->segments()},
+                                              {"models", &scene->models()},
+                                              {"range_texels", ranges.get()},
+                                              {"hit_texels", hits.get()},
+                                              {"ranges", ranges.get()},
+                                              {"hits", hits.get()},
+                                              {"uncertain", pass.uncertain.get()}};
+  pass.kernel->bind(tables);
+  pass.uncertain_kernel->bind(tables);
+}
+
+/// Empties the lists of uncertain lanes, and clears the flags of the last cast.
+void RayCaster::Tables::begin_uncertain() {
+  for (const std::uint32_t lane : flagged) beam_flags[lane] = 0;
+  flagged.clear();
+  *reinterpret_cast<UncertainLanes*>(exact.uncertain->host<std::uint32_t>().data()) = {};
+  if (single) *reinterpret_cast<UncertainLanes*>(single->uncertain->host<std::uint32_t>().data()) = {};
+}
+
+/// Takes in the flags of the device's last cast, without scanners whose scans the host computed.
+void RayCaster::Tables::take_uncertain(CastDispatch& pass) {
+  const std::span<const std::uint32_t> words = pass.uncertain->host<std::uint32_t>();
+  const std::uint32_t count = reinterpret_cast<const UncertainLanes*>(words.data())->count;
+  const std::span<const Lane> lanes = pass.lanes->host<Lane>();
+  const auto* entries =
+      reinterpret_cast<const UncertainLanes::Entry*>(words.data() + sizeof(UncertainLanes) / sizeof words[0]);
+  for (const UncertainLanes::Entry& entry : std::span(entries, count)) {
+    const Lane& lane = lanes[entry.lane];
+    std::uint32_t& flags = beam_flags[scanner_rows[due[lane.row].row].out + lane.lane];
+    if (scene->needs_host(lane.row) || flags != 0) continue;  // padding repeats the last lane
+    flags = entry.flags;
+    flagged.push_back(scanner_rows[due[lane.row].row].out + lane.lane);
+    uncertain_beams += static_cast<std::uint64_t>(std::popcount(flags / SF_UNCERTAIN));
+  }
 }
 
 void RayCaster::Tables::bind() {

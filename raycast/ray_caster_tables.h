@@ -38,10 +38,20 @@ struct ScannerRow {
   BeamPlan plan;
 };
 
-/// One kernel over the lanes of its due scanners.
+/// Lanes with beams that 32 bits could not certify, as the first kernel lists them for the second.
+struct UncertainLanes {
+  struct Entry {
+    std::uint32_t lane;   ///< row in `CastDispatch::lanes`
+    std::uint32_t flags;  ///< SF_UNCERTAIN, SF_GRAZING
+  };
+  std::uint32_t across = 0, down = 0, one = 1;  ///< groups of the second dispatch
+  std::uint32_t count = 0;
+};
+
+/// Two kernels over the lanes of their due scanners: the second casts the listed ones in 64 bits.
 struct CastDispatch {
-  std::unique_ptr<gpu::Kernel> kernel;
-  std::unique_ptr<gpu::Buffer> lanes, groups;
+  std::unique_ptr<gpu::Kernel> kernel, uncertain_kernel;
+  std::unique_ptr<gpu::Buffer> lanes, groups, uncertain;
 };
 
 struct RayCaster::Tables {
@@ -57,7 +67,9 @@ struct RayCaster::Tables {
   std::vector<ScannerRow> scanner_rows;
   CastDispatch exact;
   std::optional<CastDispatch> single;  ///< present where a scanner is `single`
-  std::unique_ptr<gpu::Buffer> rows, mid_bearings, directions64, ranges, hits, beam_flags;
+  std::unique_ptr<gpu::Buffer> rows, mid_bearings, directions64, ranges, hits;
+  std::vector<std::uint32_t> beam_flags;  ///< per lane of the results
+  std::vector<std::uint32_t> flagged;     ///< lanes whose flags the device's last cast set
   std::vector<DueSample> due;
   std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, in the current lane tables
   std::vector<Viewpoint> views, host_views;
@@ -99,6 +111,8 @@ struct RayCaster::Tables {
   void write_lanes();
   void write_lanes(CastDispatch& pass, bool is_single);
   void bind(CastDispatch& pass);
+  void begin_uncertain();
+  void take_uncertain(CastDispatch& pass);
   void apply_angle_noise(const DueSample& d, unsigned thread);
   void make_pattern(std::size_t i, std::span<const double> angle_noise, Scratch& own, ScanPattern& pattern);
   void find_shared_views();

@@ -17,6 +17,9 @@
 #define SF_GRAZING 1u
 #define SF_UNCERTAIN 16u
 
+// Uncertain lanes are dispatched in rows of so many groups.
+#define SF_UNCERTAIN_GROUPS_ACROSS 64u
+
 // Sine of the angle below which a beam grazes a surface.
 #define SF_MIN_SINE 1e-3
 

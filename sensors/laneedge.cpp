@@ -139,7 +139,7 @@ void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   if (edge.row.mode > 0)
     why = base::QualityFlag::not_cast;  // a skipped beam may have met another edge
   else if (edge.single)
-    why = (caster_.beam_flags().host<std::uint32_t>()[lanes_[i]] & SF_GRAZING) != 0 ? base::QualityFlag::grazing : why;
+    why = (caster_.beam_flags()[lanes_[i]] & SF_GRAZING) != 0 ? base::QualityFlag::grazing : why;
   else if (std::isfinite(block.bound))
     why = quality_of(fit_.reading(i), point_error(edge, longest_, away), block.bound);
   if (why != base::QualityFlag::none) block.quality = {&kReasons[static_cast<std::size_t>(why)], 1};
@@ -160,7 +160,7 @@ void LaneEdges::write(std::size_t i, base::ReadingBlock& block) {
 }
 
 void LaneEdges::collect(std::span<base::ReadingBlock> out) {
-  if (casting_) caster_.count();
+  if (casting_) caster_.take_flags();
   thread_pool_.parallel_for(due_.size(), 16, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) write(i, out[i]);
   });

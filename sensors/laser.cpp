@@ -127,7 +127,7 @@ void Lasers::find_results(std::uint32_t i) {
   const std::span<const std::uint32_t> hits = row.reworked ? std::span(met_) : caster_.hits().host<std::uint32_t>();
   row.values = ranges.subspan(first, samples);
   row.hits = hits.subspan(first, samples);
-  row.beam_flags = caster_.beam_flags().host<std::uint32_t>().subspan(lane, caster_.plan(i).lanes());
+  row.beam_flags = caster_.beam_flags().subspan(lane, caster_.plan(i).lanes());
 }
 
 void Lasers::shape(std::size_t i) {
@@ -177,6 +177,7 @@ void Lasers::write(std::size_t i, base::ReadingBlock& block) const {
 }
 
 void Lasers::collect(std::span<base::ReadingBlock> out) {
+  caster_.take_flags();
   thread_pool_.parallel_for(due_.size(), 32, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       if (rows_[due_[i].row].reworked) shape(i);
@@ -184,7 +185,6 @@ void Lasers::collect(std::span<base::ReadingBlock> out) {
       write(i, out[i]);
     }
   });
-  caster_.count();
 }
 
 std::vector<SensorSpec> specs_of(const world::World& world) {

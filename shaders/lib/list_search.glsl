@@ -40,14 +40,15 @@ Chunk chunk_of(uvec4 words, vec2 offset, int base, dvec2 origin) {
 
 vec2 turned(vec2 by, vec2 v) { return kMovers ? vec2(by.x * v.x - by.y * v.y, by.y * v.x + by.x * v.y) : v; }
 
-void search_chunk(Chunk chunk, float band, inout Search s) {
+// @param live false: the chunk changes nothing
+void search_chunk(Chunk chunk, float band, bool live, inout Search s) {
   for (int k = 0; k < SF_CHUNK; ++k) {
     const ListEntry entry = load_ListEntry(lists, chunk.entries[k]);
     const vec2 w = chunk.frame.xy + turned(chunk.frame.zw, vec2(entry.x, entry.y));
     const vec2 e = turned(chunk.frame.zw, vec2(entry.ex, entry.ey));
     const float len = abs(e.x) + abs(e.y);
     const float error_margin = band * len;
-    const float ahead = e.x * w.y - e.y * w.x;
+    const float ahead = live ? e.x * w.y - e.y * w.x : -1e30;
     const bool edge_on = abs(ahead) <= error_margin;
     const float inverse = ahead > error_margin ? 1.0 / ahead : 0.0;
     const float h = len * inverse;
@@ -73,8 +74,8 @@ void search_chunk(Chunk chunk, float band, inout Search s) {
 // True where every beam has a certain hit nearer than `nearest` [m].
 bool all_nearer(Search s, float nearest) { return all(greaterThan(nearest * s.low, vec4(1.0001))); }
 
-// Searches the walls, then the movers, until no remaining entry can be nearer. One loop for both: lavapipe runs the
-// body of a loop once more after the last lane has left it.
+// Searches the walls, then the movers, until no remaining entry can be nearer. One loop for both, which all lanes leave
+// together: lavapipe runs the body of other loops once more after the last lane has left.
 void search_lists(ListHead walls, ListHead movers, vec2 offset, dvec2 origin, float band, inout Search s) {
   bool at_walls = walls.count > 0u;
   int at = int(at_walls ? walls.first : movers.first);
@@ -82,11 +83,11 @@ void search_lists(ListHead walls, ListHead movers, vec2 offset, dvec2 origin, fl
   const uvec4 first_mover = kMovers ? imageLoad(lists, int(movers.first)) : uvec4(0u);
   uvec4 words = at_walls ? imageLoad(lists, at) : first_mover;
   bool more = at < end;
-  while (more) {
-    search_chunk(chunk_of(words, offset, int(walls.base), origin), band, s);
+  do {
+    search_chunk(chunk_of(words, offset, int(walls.base), origin), band, more, s);
     ++at;
     words = imageLoad(lists, at);
-    more = at < end && !all_nearer(s, decode_ListChunk(words).nearest);
+    more = more && at < end && !all_nearer(s, decode_ListChunk(words).nearest);
     if (kMovers) {
       const bool turn = !more && at_walls;
       at_walls = at_walls && !turn;
@@ -95,5 +96,5 @@ void search_lists(ListHead walls, ListHead movers, vec2 offset, dvec2 origin, fl
       words = turn ? first_mover : words;
       more = more || (turn && movers.count > 0u && !all_nearer(s, decode_ListChunk(first_mover).nearest));
     }
-  }
+  } while (subgroupAny(more));
 }

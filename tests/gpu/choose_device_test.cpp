@@ -113,7 +113,7 @@ TEST(Choose, ADeviceThatFailsItsSelfCheckIsPassedOver) {
 }
 
 TEST(Lacks, EachLackIsNamed) {
-  const DeviceFeatures able{VK_API_VERSION_1_2, true, true, {}};
+  const DeviceFeatures able{VK_API_VERSION_1_2, true, true, true, {}};
   EXPECT_EQ(missing_feature(able), "");
   DeviceFeatures old = able;
   old.api = VK_MAKE_API_VERSION(0, 1, 1, 4095);
@@ -124,6 +124,9 @@ TEST(Lacks, EachLackIsNamed) {
   DeviceFeatures drawing = able;
   drawing.compute = false;
   EXPECT_EQ(missing_feature(drawing), "has no compute queue");
+  DeviceFeatures silent = able;
+  silent.votes = false;
+  EXPECT_EQ(missing_feature(silent), "has no votes of subgroups in compute shaders (VK_SUBGROUP_FEATURE_VOTE_BIT)");
   DeviceFeatures texels = able;
   texels.missing = {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32_UINT};
   EXPECT_EQ(missing_feature(texels), "has no storage texel buffers of VkFormat 100");

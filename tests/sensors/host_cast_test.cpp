@@ -211,6 +211,21 @@ TEST(SharedLists, CrowdsOfRobotsWithTwoLasers) {
   }
 }
 
+/// Walls that are there twice are equally near: no beam that meets one is certain. 5 400 lanes of the second kernel,
+/// more than a row of its groups.
+TEST(SharedLists, EveryBeamUncertain) {
+  world::World world = scenes::cave(60, 12.0, 5);
+  const std::vector<world::Segment> walls = world.walls;
+  world.walls.insert(world.walls.end(), walls.begin(), walls.end());
+  scenes::add_robots(world, 60, scenes::laser(360, 2.0 * M_PI, 40.0), 5);
+  for (world::Mover& mover : world.movers) mover.body.clear();
+  expect_same_bytes(world);
+  farm::Farm farm(world, device(), kOnDevice);
+  farm.subscribe_all();
+  farm.tick(0, {});
+  EXPECT_EQ(farm.stats().work.uncertain, 60u * 360u) << "each counts once, though padding repeats the last lane";
+}
+
 /// Tables that have grown since the kernels were bound are bound again.
 TEST(SharedLists, TablesThatGrewAreReadFromTheirNewPlace) {
   world::World world = scenes::cave(60, 30.0, 2);

@@ -1,0 +1,70 @@
+// A lane of the kernels that cast lasers: its tables, its beams and its results.
+
+layout(constant_id = 0) const bool kMovers = true;   // the world has movers
+layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges in 32 bits where these are accurate enough
+layout(constant_id = 2) const bool kTexels = false;  // results exceed the limit of storage buffers, which are faster
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;            // RayRow of each sensor
+layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;              // Lane of each lane
+layout(binding = 2, r32f) uniform readonly imageBuffer bearings;             // middle bearing of each lane [sectors]
+layout(binding = 3, rgba32ui) uniform readonly uimageBuffer directions;      // BeamDirection of each beam
+layout(binding = 4, rgba32ui) uniform readonly uimageBuffer lists;           // ListHead, ListEntry, ListChunk
+layout(binding = 5, r32ui) uniform readonly uimageBuffer segment_ids;              // exact segment of each entry
+layout(binding = 6, rgba32ui) uniform readonly uimageBuffer mover_rows;          // MoverRow of each mover and height
+layout(binding = 7, rgba32ui) uniform readonly uimageBuffer segments;        // ExactSegment of each segment
+layout(binding = 8, r32ui) uniform readonly uimageBuffer models;             // `Segment::model` of each segment
+layout(binding = 9, rgba32ui) uniform writeonly uimageBuffer range_texels;   // LaneRanges of each lane
+layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer hit_texels;    // LaneHits of each lane
+layout(binding = 11) writeonly buffer Ranges { dvec4 lane[]; } ranges;        // the same tables
+layout(binding = 12) writeonly buffer Hits { uvec4 lane[]; } hits;
+layout(binding = 13) buffer Uncertain {                                       // lanes with beams that 32 bits could not certify
+  uint across, down, one;  // groups of the dispatch over them
+  uint count;
+  uvec2 lanes[];  // lane; flags: SF_UNCERTAIN, SF_GRAZING
+} uncertain;
+
+#include "shaders/lib/intersect.glsl"
+
+// Directions in the world of the lane whose beams begin at `first` in the tables.
+Beam64[SF_BEAMS_PER_LANE] beams_of(RayRow row, int first) {
+  Beam64 beams[SF_BEAMS_PER_LANE];
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+    const BeamDirection bearing = load_BeamDirection(directions, SF_BEAMS_PER_LANE * first + i);
+    precise double x = row.heading_cos64 * bearing.cos - row.heading_sin64 * bearing.sin;
+    precise double y = row.heading_sin64 * bearing.cos + row.heading_cos64 * bearing.sin;
+    beams[i] = Beam64(dvec2(row.origin_x, row.origin_y), dvec2(x, y));
+  }
+  return beams;
+}
+
+// The reported range, within the sensor's limits.
+double reported_range(ClosestHit hit, Beam64 beam, RayRow row) {
+  double range = hit.range;
+  if (kSinglePrecision) {
+    const float t = range_single(hit.id, beam, float(row.range_max));
+    range = t >= 0.0 ? min(double(t), row.range_max) : range;
+  }
+  return max(range, row.range_min);
+}
+
+uint model_of(uint row) { return row == SF_NO_HIT ? SF_NO_HIT : imageLoad(models, int(row)).x; }
+
+// Stores the lane's ranges and hits.
+void store(int lane, RayRow row, Beam64 beams[SF_BEAMS_PER_LANE], ClosestHit closest[SF_BEAMS_PER_LANE]) {
+  LaneRanges lane_ranges;
+  LaneHits lane_hits;
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+    lane_ranges.range[i] = reported_range(closest[i], beams[i], row);
+    lane_hits.model[i] = model_of(closest[i].id);
+  }
+  if (kTexels) {
+    store_LaneRanges(range_texels, lane, lane_ranges);
+    store_LaneHits(hit_texels, lane, lane_hits);
+  } else {
+    ranges.lane[lane] = lane_ranges.range;
+    hits.lane[lane] = lane_hits.model;
+  }
+}
+
+int invocation() {
+  return int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
+}
