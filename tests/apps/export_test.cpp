@@ -204,7 +204,7 @@ TEST_F(Recorded, ParaViewGetsSeries) {
   }
 }
 
-/// What the head of a VTK file says of an array, or of the whole: `key="VALUE"` behind `after`.
+/// An attribute in the head of a VTK file, of an array or of the whole: `key="VALUE"` behind `after`.
 std::string vtk_head(const std::string& file, const std::string& after, const std::string& key) {
   const std::string text = read_file(file);
   const std::size_t at = text.find(key + "=\"", text.find(after)) + key.size() + 2;

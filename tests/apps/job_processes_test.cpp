@@ -16,7 +16,7 @@
 namespace sf::apps {
 namespace {
 
-/// What children tell this process.
+/// Reports of children to this process, in shared memory.
 struct Told {
   std::atomic<int> begun{0};
   std::atomic<int> runs[8] = {};

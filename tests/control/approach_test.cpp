@@ -1,4 +1,4 @@
-// Whom a robot counts as a road user, on which ways, and what it approaches.
+// Road users of a robot, the ways that they are on, and the lines that they approach.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a robot decides at conflict zones, from single observations of robots at chosen places.
+// Decisions of one robot at conflict zones, from single observations of robots at chosen places.
 
 #include <fmt/format.h>
 

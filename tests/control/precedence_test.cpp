@@ -1,4 +1,4 @@
-// Who goes first, for two robots and one conflict.
+// Precedence of two robots at one conflict.
 
 #include <gtest/gtest.h>
 
