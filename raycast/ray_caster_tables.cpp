@@ -144,7 +144,7 @@ void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool 
   pass.lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
   pass.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
   if (!scene) return;
-  const std::uint32_t constants[] = {scene->has_movers(), is_single, texel_results};
+  const std::uint32_t constants[] = {scene->has_movers(), is_single, texel_results, device.rounds32()};
   constexpr std::size_t kWords = sizeof(UncertainLanes) / 4, kEntryWords = sizeof(UncertainLanes::Entry) / 4;
   pass.uncertain = std::make_unique<gpu::Buffer>(device, "uncertain lanes", Role::download, Texel::u32,
                                                  kWords + kEntryWords * padded);
@@ -153,6 +153,7 @@ void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool 
         fmt::format("{} million beams exceed the storage buffers of the device; use fewer robots or beams, or --caster "
                     "host",
                     SF_BEAMS_PER_LANE * out_lanes / 1'000'000));
+  pass.begin_uncertain();  // no lanes until the first cast
   pass.kernel =
       std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", laser_comp_spv, constants);
   pass.uncertain_kernel = std::make_unique<gpu::Kernel>(
@@ -413,8 +414,8 @@ void RayCaster::Tables::bind(CastDispatch& pass) {
 void RayCaster::Tables::begin_uncertain() {
   for (const std::uint32_t lane : flagged) beam_flags[lane] = 0;
   flagged.clear();
-  *reinterpret_cast<UncertainLanes*>(exact.uncertain->host<std::uint32_t>().data()) = {};
-  if (single) *reinterpret_cast<UncertainLanes*>(single->uncertain->host<std::uint32_t>().data()) = {};
+  exact.begin_uncertain();
+  if (single) single->begin_uncertain();
 }
 
 /// Takes in the flags of the device's last cast, without scanners whose scans the host computed.

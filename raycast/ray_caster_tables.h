@@ -52,6 +52,9 @@ struct UncertainLanes {
 struct CastDispatch {
   std::unique_ptr<gpu::Kernel> kernel, uncertain_kernel;
   std::unique_ptr<gpu::Buffer> lanes, groups, uncertain;
+
+  /// Empties the list of uncertain lanes.
+  void begin_uncertain() { *reinterpret_cast<UncertainLanes*>(uncertain->host<std::uint32_t>().data()) = {}; }
 };
 
 struct RayCaster::Tables {

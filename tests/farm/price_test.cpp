@@ -65,8 +65,9 @@ TEST(Price, KindsThatAreHeardLaterReadTheSame) {
     mover.sensors.push_back(scenes::five());
     mover.sensors.push_back(trial::cones("infrared", trial::ring(4, 0.1)));
   }
+  auto caster = raycast::CasterChoice::host;
   const auto readings = [&](const std::vector<std::uint32_t>& heard) {
-    Farm farm(world, device(), {.reuse_unchanged = false});
+    Farm farm(world, device(), {.reuse_unchanged = false, .scene = {.caster = caster}});
     std::vector<Kept> kept;
     for (int k = 0; k < 12; ++k) {
       for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.subscribe(m, heard[static_cast<std::size_t>(k / 3)]);
@@ -78,8 +79,11 @@ TEST(Price, KindsThatAreHeardLaterReadTheSame) {
   const std::uint32_t laser = 1u << sensors::kLaser, magnets = 1u << sensors::kMagnetometer;
   const std::vector<Kept> all = readings({kAllSensorTypes, kAllSensorTypes, kAllSensorTypes, kAllSensorTypes});
   EXPECT_EQ(all.size(), 3u * 6u * 3u);
-  EXPECT_EQ(readings({laser, 0, laser | magnets, kAllSensorTypes}), all);
-  EXPECT_EQ(readings({0, magnets, laser, kAllSensorTypes}), all);
+  for (const auto each : {raycast::CasterChoice::host, raycast::CasterChoice::vulkan}) {
+    caster = each;
+    EXPECT_EQ(readings({laser, 0, laser | magnets, kAllSensorTypes}), all);
+    EXPECT_EQ(readings({0, magnets, laser, kAllSensorTypes}), all);
+  }
 }
 
 TEST(Price, TheUnheardCastAndSubmitNothing) {
