@@ -1,5 +1,6 @@
 #include "gpu/batch.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -12,11 +13,23 @@ namespace sf::gpu {
 
 namespace {
 
-struct Copy {
+/// Copies between two buffers.
+struct Copies {
   VkBuffer from;
   VkBuffer to;
-  VkBufferCopy region;
+  std::vector<VkBufferCopy> regions;
 };
+
+/// Adjacent regions become one, as a GPU takes microseconds for each: adds `size` bytes at `offset`.
+void add_copy(std::vector<Copies>& all, VkBuffer from, VkBuffer to, VkDeviceSize offset, VkDeviceSize size) {
+  const auto own = std::find_if(all.begin(), all.end(), [&](const Copies& c) { return c.from == from && c.to == to; });
+  std::vector<VkBufferCopy>& regions = own != all.end() ? own->regions : all.emplace_back(Copies{from, to, {}}).regions;
+  VkBufferCopy* const last = regions.empty() ? nullptr : &regions.back();
+  if (last != nullptr && last->srcOffset + last->size == offset)
+    last->size += size;
+  else
+    regions.push_back({offset, offset, size});
+}
 
 }  // namespace
 
@@ -25,8 +38,8 @@ struct Batch::Vk {
   VkCommandPool pool = VK_NULL_HANDLE;
   std::array<VkCommandBuffer, 3> commands{};  ///< upload, run, download
   VkFence done = VK_NULL_HANDLE;
-  std::vector<Copy> ups;
-  std::vector<Copy> downs;
+  std::vector<Copies> ups;
+  std::vector<Copies> downs;
   bool submitted = false;
 
   VkCommandBuffer run() const { return commands[1]; }
@@ -51,8 +64,12 @@ void wait_between(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessF
 constexpr VkPipelineStageFlags kCompute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
 constexpr VkPipelineStageFlags kTransfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
 
-void record_copies(VkCommandBuffer commands, const std::vector<Copy>& copies) {
-  for (const Copy& copy : copies) vkCmdCopyBuffer(commands, copy.from, copy.to, 1, &copy.region);
+void record_copies(VkCommandBuffer commands, std::vector<Copies>& all) {
+  for (Copies& c : all) {
+    if (c.regions.empty()) continue;
+    vkCmdCopyBuffer(commands, c.from, c.to, static_cast<std::uint32_t>(c.regions.size()), c.regions.data());
+    c.regions.clear();
+  }
 }
 
 }  // namespace
@@ -106,21 +123,21 @@ void Batch::end() {
 void Batch::upload(const Buffer& table, std::size_t offset, std::size_t size) {
   const Buffer::Vk& b = table.vk();
   SF_CHECK(offset + size <= table.bytes(), "a copy past the end of a table");
-  if (b.staging.buffer && size > 0) vk_->ups.push_back({b.staging.buffer, b.table.buffer, {offset, offset, size}});
+  if (b.staging.buffer && size > 0) add_copy(vk_->ups, b.staging.buffer, b.table.buffer, offset, size);
 }
 
 void Batch::download(const Buffer& table, std::size_t offset, std::size_t size) {
   const Buffer::Vk& b = table.vk();
   SF_CHECK(offset + size <= table.bytes(), "a copy past the end of a table");
-  if (b.staging.buffer && size > 0) vk_->downs.push_back({b.table.buffer, b.staging.buffer, {offset, offset, size}});
+  if (b.staging.buffer && size > 0) add_copy(vk_->downs, b.table.buffer, b.staging.buffer, offset, size);
 }
 
 void Batch::submit() {
   SF_CHECK(!vk_->submitted, "a batch is submitted again before it was waited for");
   std::array<VkCommandBuffer, 3> used{};
   std::uint32_t count = 0;
-  const auto add_copies = [&](std::vector<Copy>& copies, VkCommandBuffer commands, bool before) {
-    if (copies.empty()) return;
+  const auto add_copies = [&](std::vector<Copies>& copies, VkCommandBuffer commands, bool before) {
+    if (std::all_of(copies.begin(), copies.end(), [](const Copies& c) { return c.regions.empty(); })) return;
     start(commands, VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT);
     record_copies(commands, copies);
     if (!before)
@@ -128,7 +145,6 @@ void Batch::submit() {
                    VK_ACCESS_HOST_READ_BIT);
     check_vk(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
     used[count++] = commands;
-    copies.clear();
   };
   add_copies(vk_->ups, vk_->commands[0], true);
   used[count++] = vk_->run();

@@ -62,8 +62,8 @@ void make_storage(Buffer::Vk& vk, const Device& device, VkDeviceSize size) {
     vk.table = allocate(*vk.device, size, table, {kCached | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT});
   } else {
     vk.table = allocate(*vk.device, size, table, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
-    vk.staging = vk.role == Role::upload ? allocate(*vk.device, size, staging, {kHost})
-                                         : allocate(*vk.device, size, staging, {kCached, kHost});
+    // Cached, since tables that grow are read as well.
+    vk.staging = allocate(*vk.device, size, staging, {kCached, kHost});
   }
   const VkDeviceMemory seen = vk.staging.memory ? vk.staging.memory : vk.table.memory;
   check_vk(vkMapMemory(vk.device->device, seen, 0, VK_WHOLE_SIZE, 0, &vk.mapped), "vkMapMemory");
