@@ -61,8 +61,9 @@ std::string start(Device& device, DeviceCandidates& candidates, std::size_t row)
   vk.physical = candidates.handles[row];
   vk.info = info;
   if (const std::string fault = open(vk); !fault.empty()) return fault;
-  const std::string fault = self_check(device);
+  const auto [fault, rounds32] = self_check(device);
   info.self_check = fault.empty() ? "passed" : "failed";
+  vk.rounds32 = rounds32 && !is_set("SENSORFARM_STAGING");
   if (!fault.empty()) close(vk);
   return fault;
 }
@@ -110,6 +111,8 @@ Device::~Device() { close(*vk_); }
 const DeviceInfo& Device::info() const { return vk_->info; }
 
 bool Device::unified() const { return vk_->unified; }
+bool Device::is_gpu() const { return !vk_->info.software || is_set("SENSORFARM_STAGING"); }
+bool Device::rounds32() const { return vk_->rounds32; }
 
 std::vector<DeviceAllocation> Device::allocations() const {
   std::vector<DeviceAllocation> all;

@@ -51,8 +51,12 @@ class Device {
 
   const DeviceInfo& info() const;
   /// True when host and device share memory, so that uploads and downloads copy nothing. Always false when
-  /// SENSORFARM_STAGING=1 was set at construction: tests then copy on any device.
+  /// SENSORFARM_STAGING=1 was set at construction, which has any device treated as a GPU with its own memory.
   bool unified() const;
+  bool is_gpu() const;  ///< not software, or treated as a GPU
+  /// True when 32-bit roots and quotients are correctly rounded: the constant kRounds32 of kernels. False for GPUs that
+  /// differ, and where a device is treated as a GPU.
+  bool rounds32() const;
   /// All tables and kernels on the device, in order of construction.
   std::vector<DeviceAllocation> allocations() const;
   /// Sets the owner of tables and kernels made from now on: a sensor type's name.

@@ -41,6 +41,7 @@ struct Device::Vk {
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
   bool unified = false;
+  bool rounds32 = false;
   DeviceInfo info;
   std::string owner;
   std::vector<std::pair<const void*, DeviceAllocation>> allocations;  ///< in order of construction

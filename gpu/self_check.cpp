@@ -10,9 +10,9 @@
 
 namespace sf::gpu {
 
-std::string self_check(Device& device) { return self_check(device, self_check_comp_spv); }
+SelfCheck self_check(Device& device) { return self_check(device, self_check_comp_spv); }
 
-std::string self_check(Device& device, std::span<const std::uint32_t> spirv) {
+SelfCheck self_check(Device& device, std::span<const std::uint32_t> spirv) {
   const std::vector<Operands> rows = operands();
   Kernel kernel(device, "self-check", spirv);
   Buffer in(device, "operands", Role::upload, Texel::u32x4, rows.size());
@@ -31,7 +31,8 @@ std::string self_check(Device& device, std::span<const std::uint32_t> spirv) {
   batch.upload(counts, 0, counts.bytes());
   batch.download(out, 0, out.bytes());
   batch.run();
-  return first_difference(out.host<std::uint64_t>());
+  const std::span<const std::uint64_t> found = out.host<std::uint64_t>();
+  return {first_difference(found), rounds32(found)};
 }
 
 }  // namespace sf::gpu

@@ -9,12 +9,17 @@
 
 namespace sf::gpu {
 
+struct SelfCheck {
+  std::string fault;      ///< "" where device and host agree, else one line with the first difference: operation,
+                          ///< operands, found and expected
+  bool rounds32 = false;  ///< as gpu::rounds32
+};
+
 /// Runs the operations of gpu/self_check_arithmetic.h on the device, in the form in which kernels use them, and on the
 /// host.
-/// @return "" when they agree, else one line with the first difference: operation, operands, found and expected
-std::string self_check(Device& device);
+SelfCheck self_check(Device& device);
 
 /// The same with another kernel in place of shaders/self_check.comp.
-std::string self_check(Device& device, std::span<const std::uint32_t> spirv);
+SelfCheck self_check(Device& device, std::span<const std::uint32_t> spirv);
 
 }  // namespace sf::gpu

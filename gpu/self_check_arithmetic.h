@@ -21,6 +21,7 @@ struct Operation {
   double tolerance;  ///< relative; 0 where readings must be bit-identical on every device
   Form form;
   std::uint64_t (*evaluate)(Operands);
+  bool required = true;  ///< false: a device may differ (`rounds32`)
 };
 std::span<const Operation> operations();
 
@@ -32,7 +33,10 @@ std::vector<std::uint64_t> expected_results();
 
 /// @param found as many results as `expected_results()`
 /// @return "" when they agree (the sign of a zero and the bits of a NaN are free), else one line with the first
-/// difference: operation, operands, expected and found
+/// difference of a required operation: its name, operands, expected and found
 std::string first_difference(std::span<const std::uint64_t> found);
+
+/// True when 32-bit roots and quotients are rounded as IEEE 754 states; Vulkan allows errors of a few last places.
+bool rounds32(std::span<const std::uint64_t> found);
 
 }  // namespace sf::gpu

@@ -16,9 +16,9 @@ constexpr SceneOptions kPerRobot{.pool_chunks = 1u << 12, .pool_cells = 1u << 6}
 constexpr SceneOptions kMinimum{.pool_chunks = 1u << 15, .pool_cells = 1u << 10};
 constexpr std::uint32_t kPageChunks = 8;
 
-/// Side of a cell [m]. Small cells have short lists, but each costs memory and building time. A 32nd of the range suits
-/// a scanner of some hundred beams; few beams use larger cells (docs/performance.md).
-double device_cell_size(double range, std::uint32_t beams) {
+/// Side of a cell [m] where kernels run on the processor: short lists save more than small cells cost. A 32nd of the
+/// range suits a scanner of some hundred beams; few beams use larger cells (docs/performance.md).
+double fine_cell_size(double range, std::uint32_t beams) {
   const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 6.0);
   return std::clamp(fewer * range / 32.0, 1e-3, 4.0);
 }
@@ -33,7 +33,7 @@ DeviceScene::DeviceScene(const world::World& world, const ListConfigs& configs, 
       options_{.pool_chunks = 0, .pool_cells = 0},
       configs_(configs),
       movers_(world),
-      cells_(configs, device_cell_size, CellCache(0, 0, kPageChunks)) {
+      cells_(configs, device.is_gpu() ? coarse_cell_size : fine_cell_size, CellCache(0, 0, kPageChunks)) {
   for (unsigned i = 0; i < thread_pool.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());
   for (std::size_t i = 0; i < configs.size(); ++i)
     config_tables_.push_back(

@@ -24,13 +24,6 @@ std::uint32_t most_blocks() {
   return static_cast<std::uint32_t>(std::clamp(0.25 * memory / sizeof(SegmentBlock), 0x1p21, 0x1p23));
 }
 
-/// Side of a cell [m]: an eighth of the range for a scanner of some hundred beams, more for fewer beams, and at least
-/// min(0.25 m, range). Smaller cells cost more to build than they save for moving robots.
-double host_cell_size(double range, std::uint32_t beams) {
-  const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 4.0);
-  return std::clamp(fewer * range / 8.0, std::clamp(range, 1e-3, 0.25), 4.0);
-}
-
 }  // namespace
 
 struct HostScene::ConfigTables {
@@ -49,7 +42,7 @@ HostScene::HostScene(const world::World& world, const ListConfigs& configs, base
     : thread_pool_(thread_pool),
       configs_(configs),
       movers_(world),
-      cells_(configs, host_cell_size, CellCache(kFirstCells, kFirstBlocks, kPageBlocks)),
+      cells_(configs, coarse_cell_size, CellCache(kFirstCells, kFirstBlocks, kPageBlocks)),
       lists_(kFirstCells),
       blocks_(kFirstBlocks),
       bounds_(kFirstBlocks + kBlock) {

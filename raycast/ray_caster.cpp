@@ -73,14 +73,17 @@ void RayCaster::add_copies(gpu::Batch& batch, bool results) {
   if (t.scene) batch.upload(*t.rows, 0, t.due.size() * sizeof(RayRow));
   const auto send = [&](const CastDispatch& pass) {
     const auto counts = pass.groups->host<std::uint32_t>();
-    batch.upload(*pass.lanes, 0, sizeof(Lane) * SF_LANES_PER_GROUP * counts[0] * counts[1]);
-    batch.upload(*pass.groups, 0, pass.groups->bytes());
+    if (t.lanes_changed) {
+      batch.upload(*pass.lanes, 0, sizeof(Lane) * SF_LANES_PER_GROUP * counts[0] * counts[1]);
+      batch.upload(*pass.groups, 0, pass.groups->bytes());
+    }
     if (!t.scene) return;
     batch.upload(*pass.uncertain, 0, sizeof(UncertainLanes));
     batch.download(*pass.uncertain, 0, pass.uncertain->bytes());
   };
   send(t.exact);
   if (t.single) send(*t.single);
+  t.lanes_changed = false;
   if (t.beams_changed) {
     batch.upload(*t.mid_bearings, 0, t.mid_bearings->bytes());
     batch.upload(*t.directions64, 0, t.directions64->bytes());

@@ -187,6 +187,7 @@ void RayCaster::Tables::write_lanes() {
                     std::equal(due.begin(), due.end(), lanes_written.begin(),
                                [](const DueSample& d, std::uint32_t row) { return d.row == row; });
   if (same) return;
+  lanes_changed = true;
   lanes_written.clear();
   for (const DueSample& d : due) lanes_written.push_back(d.row);
   write_lanes(exact, false);

@@ -103,6 +103,7 @@ struct RayCaster::Tables {
   std::uint64_t uncertain_beams = 0;
   bool bound = false;
   bool beams_changed = true;
+  bool lanes_changed = true;
   bool any_angle_noise = false;
   bool texel_results = false;  ///< the tables exceed the limit of storage buffers
 

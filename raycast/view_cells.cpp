@@ -24,6 +24,11 @@ std::uint64_t connected(std::uint64_t from, std::uint64_t clear) {
 
 }  // namespace
 
+double coarse_cell_size(double range, std::uint32_t beams) {
+  const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 4.0);
+  return std::clamp(fewer * range / 8.0, std::clamp(range, 1e-3, 0.25), 4.0);
+}
+
 ViewCells::ViewCells(const ListConfigs& configs, double (*size)(double range, std::uint32_t beams), CellCache cache)
     : configs_(configs), cache_(std::move(cache)), parts_(cache_.slots()) {
   for (std::size_t i = 0; i < configs.size(); ++i) sizes_.push_back(size(configs[i].range, configs[i].beams));

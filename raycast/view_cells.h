@@ -12,6 +12,10 @@
 
 namespace sf::raycast {
 
+/// Side of a cell [m]: an eighth of the range for a scanner of some hundred beams, more for fewer beams, and at least
+/// min(0.25 m, range). Smaller cells cost more to build than they save for moving robots.
+double coarse_cell_size(double range, std::uint32_t beams);
+
 /// Const members are thread-safe, the others are not. `configs` must outlive it.
 class ViewCells {
  public:

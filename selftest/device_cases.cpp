@@ -11,7 +11,6 @@ namespace sf::selftest {
 
 namespace {
 
-constexpr double kCount = 1e-4;  ///< [m] resolution of the laser's wire format
 constexpr std::uint64_t kSeed = 11;
 
 double random_place(std::uint32_t index) {
@@ -48,7 +47,6 @@ struct Disagreements {
 void beside(Fixture& fixture, Checks& checks, const world::World& world, const std::string& what, Disagreements& all) {
   TestFarm test = fixture.measure(world, {.seed = kSeed});
   sensors::LaserReference reference(*test.world, kSeed);
-  const bool exactly = fixture.device().info().software;
   std::vector<Pose> poses;
   for (const world::Mover& m : world.movers) poses.push_back(m.X_WM);
   for (int tick = 1; tick <= 2; ++tick) {
@@ -67,9 +65,8 @@ void beside(Fixture& fixture, Checks& checks, const world::World& world, const s
         if (!same)
           checks.note(fmt::format("{}, robot {} beam {}: {:.17g} m, plain C++ {:.17g} m", what, r.mover, i, r.values[i],
                                   scan.ranges[i]));
-        if (exactly) checks.same(r.values[i], scan.ranges[i], what, i);
-        if (exactly) checks.equal(r.hits[i], scan.hits[i], what, i);
-        if (!exactly) checks.near(r.values[i], scan.ranges[i], kCount, what, i);
+        checks.same(r.values[i], scan.ranges[i], what, i);
+        checks.equal(r.hits[i], scan.hits[i], what, i);
       }
     }
   }

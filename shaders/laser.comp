@@ -34,29 +34,23 @@ uint measure(Search s, Beam64 beams[SF_BEAMS_PER_LANE], double range_max, out Cl
   return uncertain;
 }
 
-// Adds a lane to those that the next dispatch decides.
+// Adds a lane to those that the next dispatch decides, with an invocation for each of its beams.
 void list_uncertain(int lane, uint beams) {
   const uint slot = atomicAdd(uncertain.count, 1u);
   uncertain.lanes[slot] = uvec2(lane, SF_UNCERTAIN * beams);
-  const uint group = slot / SF_LANES_PER_GROUP;
+  const uint group = slot / (SF_LANES_PER_GROUP / SF_BEAMS_PER_LANE);
   atomicMax(uncertain.across, min(group + 1u, SF_UNCERTAIN_GROUPS_ACROSS));
   atomicMax(uncertain.down, group / SF_UNCERTAIN_GROUPS_ACROSS + 1u);
 }
 
 void main() {
   const int lane = invocation();
-  const Lane due = load_Lane(lanes, lane);
-  const RayRow row = load_RayRow(rows, int(due.row));
-  const int first_beam = int(row.beams + due.lane);
-  const Beam64 beams[SF_BEAMS_PER_LANE] = beams_of(row, first_beam);
-  const int sector = int(floor(row.heading_sectors + imageLoad(bearings, first_beam).x)) & (SF_SECTORS - 1);
-  const ListHead walls = load_ListHead(lists, int(row.walls) + sector);
-  const ListHead movers = decode_ListHead(kMovers ? imageLoad(lists, int(row.movers) + sector) : uvec4(0u));
-
-  Search s = begin_search(beams, row.range_max);
-  search_lists(walls, movers, vec2(row.offset_x, row.offset_y), dvec2(row.origin_x, row.origin_y), row.band, s);
+  const ScanLane scan = scan_lane(lane);
+  Search s = begin_search(scan.beams, scan.row.range_max);
+  search_lists(scan.walls, scan.movers, vec2(scan.row.offset_x, scan.row.offset_y),
+               dvec2(scan.row.origin_x, scan.row.origin_y), scan.row.band, s);
   ClosestHit closest[SF_BEAMS_PER_LANE];
-  const uint uncertain_beams = measure(s, beams, row.range_max, closest);
-  store(int(row.results + due.lane), row, beams, closest);
+  const uint uncertain_beams = measure(s, scan.beams, scan.row.range_max, closest);
+  store(scan, closest);
   if (uncertain_beams != 0u) list_uncertain(lane, uncertain_beams);
 }

@@ -6,6 +6,7 @@
 
 layout(local_size_x = 32) in;
 layout(constant_id = 0) const bool kMagnitudes = false;  // some sensor sums magnitudes
+layout(constant_id = 1) const bool kRounds32 = true;   // of the device: lib/exact32.glsl
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer items;     // FieldItem
 layout(binding = 1, r32ui) uniform readonly uimageBuffer spans;        // MagnetSpan
 layout(binding = 2, rgba32ui) uniform readonly uimageBuffer dipoles;   // DipoleRow

@@ -4,9 +4,9 @@
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer operands;  // a and b, two words each
-layout(binding = 1, rgba32ui) uniform writeonly uimageBuffer results;  // nine texels per row: eighteen results
+layout(binding = 1, rgba32ui) uniform writeonly uimageBuffer results;  // ten texels per row: twenty results
 
-void store(int row, int texel, uvec2 first, uvec2 second) { imageStore(results, 9 * row + texel, uvec4(first, second)); }
+void store(int row, int texel, uvec2 first, uvec2 second) { imageStore(results, 10 * row + texel, uvec4(first, second)); }
 
 uvec2 word_of(float x) { return uvec2(floatBitsToUint(x), 0u); }
 
@@ -71,4 +71,8 @@ void main() {
   precise double s = double(root);
   precise double refined = s + (square - s * s) * double(half_over);
   store(row, 8, unpackDouble2x32(inverse), unpackDouble2x32(refined));
+
+  // Devices whose 32-bit roots and quotients are rounded otherwise compute these in 64 bits (lib/exact32.glsl).
+  precise float quotient32 = narrow / other;
+  store(row, 9, word_of(root), word_of(other != 0.0 ? quotient32 : 0.0));
 }

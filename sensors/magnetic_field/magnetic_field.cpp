@@ -46,7 +46,7 @@ MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Threa
   using gpu::Texel;
   fixed_magnets = count_of(world.magnets);
   for (const world::Mover& mover : world.movers) moving_magnets += count_of(mover.magnets);
-  const std::uint32_t constants[] = {magnitudes};
+  const std::uint32_t constants[] = {magnitudes, device.rounds32()};
   kernel = std::make_unique<gpu::Kernel>(device, magnitudes ? "magnetometer with magnitudes" : "magnetometer",
                                          magnetometer_comp_spv, constants);
   // An unrolled iteration may load rows behind the last magnet; they have moment 0.

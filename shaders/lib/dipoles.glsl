@@ -12,6 +12,8 @@
 // [m^2] least square with a finite 32-bit inverse root.
 #define SF_LEAST 1e-37
 
+#include "shaders/lib/exact32.glsl"
+
 DipoleRow dipole_at(int row, bool counts) {
   DipoleRow m = load_DipoleRow(dipoles, row);
   m.moment = counts ? m.moment : 0.0;
@@ -25,8 +27,8 @@ void add(DipoleRow m, FieldPointRow p, double cutoff_squared, inout FieldSum sum
   precise double along = dx * dx + dy * dy;
   precise double squared = along + dz * dz;
 
-  precise float root = sqrt(max(float(squared), SF_LEAST));
-  precise float rough32 = 1.0 / root;
+  precise float root = root32(max(float(squared), SF_LEAST));
+  precise float rough32 = quotient32(1.0, root);
   precise double rough = double(rough32);
   precise double one = squared * rough * rough;
   precise double inverse = rough * (1.5LF - 0.5LF * one);
@@ -44,8 +46,8 @@ void add(DipoleRow m, FieldPointRow p, double cutoff_squared, inout FieldSum sum
   sum.z += bz;
   if (kMagnitudes) {
     precise double q = 1.0LF + 3.0LF * uz * uz;
-    precise float rough_q = sqrt(float(q));
-    precise float half_over = 0.5 / rough_q;
+    precise float rough_q = root32(float(q));
+    precise float half_over = quotient32(0.5, rough_q);
     precise double s = double(rough_q);
     precise double shape = s + (q - s * s) * double(half_over);
     precise double magnitude = abs(scale) * shape;

@@ -1,6 +1,8 @@
 // The 64-bit intersection of one beam and one segment. Every operation is `precise` and in a fixed order: host and
 // device results are equal bit by bit.
 
+#include "shaders/lib/exact32.glsl"
+
 struct Beam64 {
   dvec2 origin;
   dvec2 direction;
@@ -72,6 +74,6 @@ float range_single(uint id, Beam64 beam, float range_max) {
   precise float numerator = ex * wy - ey * wx;
   precise float error_scale = 1.9073486328125e-6 * (abs(ex) + abs(ey)) * (abs(wx) + abs(wy) + range_max);
   precise float limit = SF_SINGLE_TOLERANCE * range_max * abs(denominator);
-  precise float t = numerator / denominator;
+  precise float t = quotient32(numerator, denominator);
   return id != SF_NO_HIT && error_scale <= limit ? max(t, 0.0) : -1.0;
 }

@@ -3,6 +3,7 @@
 layout(constant_id = 0) const bool kMovers = true;   // the world has movers
 layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges in 32 bits where these are accurate enough
 layout(constant_id = 2) const bool kTexels = false;  // results exceed the limit of storage buffers, which are faster
+layout(constant_id = 3) const bool kRounds32 = true;  // of the device: lib/exact32.glsl
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;            // RayRow of each sensor
 layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;              // Lane of each lane
 layout(binding = 2, r32f) uniform readonly imageBuffer bearings;             // middle bearing of each lane [sectors]
@@ -24,16 +25,33 @@ layout(binding = 13) buffer Uncertain {                                       //
 
 #include "shaders/lib/intersect.glsl"
 
-// Directions in the world of the lane whose beams begin at `first` in the tables.
-Beam64[SF_BEAMS_PER_LANE] beams_of(RayRow row, int first) {
+// A lane of the dispatch: its sensor, beams and lists.
+struct ScanLane {
+  RayRow row;
+  int results;  // lane of the results
   Beam64 beams[SF_BEAMS_PER_LANE];
-  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
-    const BeamDirection bearing = load_BeamDirection(directions, SF_BEAMS_PER_LANE * first + i);
-    precise double x = row.heading_cos64 * bearing.cos - row.heading_sin64 * bearing.sin;
-    precise double y = row.heading_sin64 * bearing.cos + row.heading_cos64 * bearing.sin;
-    beams[i] = Beam64(dvec2(row.origin_x, row.origin_y), dvec2(x, y));
-  }
-  return beams;
+  ListHead walls, movers;
+};
+
+// Beam `i` of the lane whose beams begin at `first` in the tables, in the world.
+Beam64 beam_of(RayRow row, int first, int i) {
+  const BeamDirection bearing = load_BeamDirection(directions, SF_BEAMS_PER_LANE * first + i);
+  precise double x = row.heading_cos64 * bearing.cos - row.heading_sin64 * bearing.sin;
+  precise double y = row.heading_sin64 * bearing.cos + row.heading_cos64 * bearing.sin;
+  return Beam64(dvec2(row.origin_x, row.origin_y), dvec2(x, y));
+}
+
+ScanLane scan_lane(int lane) {
+  const Lane due = load_Lane(lanes, lane);
+  ScanLane scan;
+  scan.row = load_RayRow(rows, int(due.row));
+  scan.results = int(scan.row.results + due.lane);
+  const int first = int(scan.row.beams + due.lane);
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) scan.beams[i] = beam_of(scan.row, first, i);
+  const int sector = int(floor(scan.row.heading_sectors + imageLoad(bearings, first).x)) & (SF_SECTORS - 1);
+  scan.walls = load_ListHead(lists, int(scan.row.walls) + sector);
+  scan.movers = decode_ListHead(kMovers ? imageLoad(lists, int(scan.row.movers) + sector) : uvec4(0u));
+  return scan;
 }
 
 // The reported range, within the sensor's limits.
@@ -49,19 +67,19 @@ double reported_range(ClosestHit hit, Beam64 beam, RayRow row) {
 uint model_of(uint row) { return row == SF_NO_HIT ? SF_NO_HIT : imageLoad(models, int(row)).x; }
 
 // Stores the lane's ranges and hits.
-void store(int lane, RayRow row, Beam64 beams[SF_BEAMS_PER_LANE], ClosestHit closest[SF_BEAMS_PER_LANE]) {
+void store(ScanLane scan, ClosestHit closest[SF_BEAMS_PER_LANE]) {
   LaneRanges lane_ranges;
   LaneHits lane_hits;
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
-    lane_ranges.range[i] = reported_range(closest[i], beams[i], row);
+    lane_ranges.range[i] = reported_range(closest[i], scan.beams[i], scan.row);
     lane_hits.model[i] = model_of(closest[i].id);
   }
   if (kTexels) {
-    store_LaneRanges(range_texels, lane, lane_ranges);
-    store_LaneHits(hit_texels, lane, lane_hits);
+    store_LaneRanges(range_texels, scan.results, lane_ranges);
+    store_LaneHits(hit_texels, scan.results, lane_hits);
   } else {
-    ranges.lane[lane] = lane_ranges.range;
-    hits.lane[lane] = lane_hits.model;
+    ranges.lane[scan.results] = lane_ranges.range;
+    hits.lane[scan.results] = lane_hits.model;
   }
 }
 

@@ -15,28 +15,7 @@ struct Search {
   ivec4 first_row;         // first exact segment of the entry's mover
 };
 
-// A chunk of a list, and the frame of its entries: offset and heading.
-struct Chunk {
-  float nearest;
-  ivec4 entries;  // texels
-  vec4 frame;
-  int first_row;
-};
-
-Chunk chunk_of(uvec4 words, vec2 offset, int base, dvec2 origin) {
-  const ListChunk chunk = decode_ListChunk(words);
-  vec4 frame = vec4(-offset, 1.0, 0.0);
-  int first_row = 0;
-  if (kMovers) {
-    const bool is_wall = chunk.mover == 0u;
-    const MoverRow mover = load_MoverRow(mover_rows, is_wall ? 0 : int(chunk.mover) - 1);
-    const vec2 moved = vec2(dvec2(mover.x, mover.y) - origin);
-    frame = is_wall ? frame : vec4(moved, mover.cos, mover.sin);
-    base = is_wall ? base : int(mover.base);
-    first_row = is_wall ? 0 : int(mover.first_row);
-  }
-  return Chunk(chunk.nearest, base + ivec4(chunk.entries), frame, first_row);
-}
+#include "shaders/lib/list_chunk.glsl"
 
 vec2 turned(vec2 by, vec2 v) { return kMovers ? vec2(by.x * v.x - by.y * v.y, by.y * v.x + by.x * v.y) : v; }
 

@@ -177,7 +177,6 @@ FieldSum mirrored(const sensors::DipoleRow& m, const FieldPoint& p) {
 }
 
 TEST(MagnetSum, TheKernelIsItsMirrorToTheBit) {
-  if (!device().info().software) GTEST_SKIP() << "32-bit roots of GPUs need not be correctly rounded";
   const world::World world = scenes::sheet(50, 1.0, 9, true);
   const auto points = places_over(world, 301, 0.6, 0.05);
   const auto sums = sensors::sample_field(world, device(), points, {.magnitudes = true});

@@ -1,0 +1,13 @@
+// 32-bit roots and quotients as IEEE 754 rounds them. Vulkan allows devices errors of a few last places; where the
+// self-check found such (gpu::DeviceInfo::rounds32), they are computed in 64 bits, whose results round to the same.
+// The kernel declares the specialization constant kRounds32.
+
+float root32(float x) {
+  precise float root = kRounds32 ? sqrt(x) : float(sqrt(double(x)));
+  return root;
+}
+
+float quotient32(float a, float b) {
+  precise float quotient = kRounds32 ? a / b : float(double(a) / double(b));
+  return quotient;
+}
