@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <vector>
 
 #include "tests/refusal.h"
@@ -63,6 +64,19 @@ TEST(LineFile, NeedsAFile) {
   const std::string pipe = (std::filesystem::temp_directory_path() / "pipe").string();
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   expect_in("a folder, a device or a pipe", refusal_of([&] { LineFile{pipe}; }));
+}
+
+/// Files of the kernel say that they hold 0 bytes.
+TEST(ReadBytes, AFileMayHoldMoreThanItsSize) {
+  const std::string file = "/proc/version";
+  ASSERT_EQ(std::filesystem::file_size(file), 0u);
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  const std::size_t size = text.str().size();
+  ASSERT_GT(size, 8u);
+  EXPECT_EQ(read_bytes(file, size), text.str());
+  EXPECT_EQ(read_bytes(file, std::size_t{1} << 62), text.str()) << "as much memory as the content needs";
+  expect_in("/proc/version: larger than 0 MiB", refusal_of([&] { read_bytes(file, size - 1); }));
 }
 
 }  // namespace

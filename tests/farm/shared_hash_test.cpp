@@ -6,8 +6,10 @@
 
 #include <memory>
 
+#include "sensors/own_sensors.h"
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/edit_laser.h"
+#include "tests/sensors/host_trial.h"
 
 namespace sf::farm {
 namespace {
@@ -87,9 +89,23 @@ TEST(SharedHash, AReadingLeftOutShows) {
   EXPECT_NE(hashes[0], hashes[1]);
 }
 
-/// Keys order readings as `Delivery` does, call by call.
+/// An own sensor type, whose id is above that of maps.
+void add_still_type() {
+  if (sensors::find_sensor_type(31) != nullptr) return;  // types stay for the whole program
+  struct Still : sensorfarm::Sensor {
+    std::uint32_t elements() const override { return 1; }
+    void read(const sensorfarm::Measurement&, std::span<double> values) const override { values[0] = 0.0; }
+  };
+  const auto make = [](const auto&, const auto&) { return std::make_unique<Still>(); };
+  sensors::add_own_sensor({.name = "still", .id = 31, .columns = {{"zero", 1.0}}, .rate = 10.0, .make = make}, "test");
+}
+
+/// Keys order readings as `Delivery` does, call by call. Maps, which are derived, come after all other types.
 TEST(ReadingOrder, FollowsTheFarm) {
-  const world::World world = mixed_world();
+  add_still_type();
+  world::World world = mixed_world();
+  for (world::Mover& mover : world.movers)
+    for (const char* type : {"occupancy", "still"}) mover.sensors.push_back(trial::fitted(type));
   Farm farm(world, device(), {.seed = 3});
   farm.subscribe_all();
   const ReadingOrder order(farm.sensor_set());

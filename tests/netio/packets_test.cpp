@@ -332,6 +332,21 @@ TEST(Packets, StatesEndAtTheirLimits) {
   for (const Limit& at : tag) check(tag_example(), at);
 }
 
+TEST(Packets, RowsOfAV2iEndAtTheirLimits) {
+  const auto check = [](std::size_t offset, auto limit) {
+    for (const auto edge : {limit, -limit}) {
+      EXPECT_EQ(reason_of(patched(v2i_example(), offset, edge)), PacketStatus::accepted) << offset;
+      EXPECT_EQ(reason_of(patched(v2i_example(), offset, std::nextafter(edge, 2 * edge))), PacketStatus::out_of_range)
+          << offset;
+    }
+  };
+  for (const std::size_t position : {80, 88, 112, 120}) check(position, 1e7);
+  check(96, 1e7f);  // z
+  for (const std::size_t yaw : {100, 128}) check(yaw, 1e6f);
+  EXPECT_EQ(reason_of(patched(v2i_example(), 132, 1e7f)), PacketStatus::accepted);  // width
+  EXPECT_EQ(reason_of(patched(v2i_example(), 132, std::nextafter(1e7f, 2e7f))), PacketStatus::out_of_range);
+}
+
 TEST(Packets, WholeNumbersEndAtTheirLimits) {
   EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 65535)), PacketStatus::accepted);  // last robot id
   EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 65536)),

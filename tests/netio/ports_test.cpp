@@ -34,6 +34,7 @@ TEST(Ports, AFleetWithinTheRuleIsAccepted) {
   std::vector<SensorPorts> fleet;
   for (std::uint32_t id = 0; id <= 6941; ++id) fleet.push_back(use(id, 8));  // the last port is 65535
   EXPECT_EQ(refusal(fleet), "");
+  EXPECT_EQ(refusal({use(65'535, 1, {0, 1})}), "");  // the last id, on the last port
   EXPECT_EQ(refusal({}), "");
   EXPECT_EQ(refusal({use(70'000, 0)}), "");  // a robot without sensors needs no port
 }

@@ -256,6 +256,22 @@ TEST(Service, AStaleRobotIsOutOfTheWorldOnRequest) {
   }
 }
 
+/// After 10 s, to a tick; its last state came at 0.9 s.
+TEST(Service, ARobotIsForgottenOnceItSpokeAndFellSilent) {
+  Fixture f;
+  f.run(10);
+  const auto absent_after = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i, f.now += kTick) f.service->tick(f.now);
+    return f.service->receiver().update_absent(1, f.now);
+  };
+  EXPECT_FALSE(absent_after(97));
+  EXPECT_TRUE(absent_after(2));
+  EXPECT_FALSE(f.service->receiver().update_absent(2, f.now)) << "it never spoke";
+  f.client->step(f.now);
+  f.service->receive_pending(f.now);
+  EXPECT_FALSE(f.service->receiver().update_absent(1, f.now)) << "it speaks again";
+}
+
 /// Keeps the newest of what it takes; can be full.
 struct TestSink : base::Sink {
   bool full = false;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "netio/v2x/frame.h"
+#include "tests/refusal.h"
 #include "world/roads/roads.h"
 
 namespace sf::server {
@@ -319,6 +320,45 @@ TEST(MapMessage, IdsOfConnectionsAreUniqueOrAbsent) {
   EXPECT_EQ(connections, 17u * 16u);
   EXPECT_EQ(without, 17u * 16u - 255u);
   round_trip(*map);
+}
+
+/// Lanes side by side, each with a stop line at its end.
+struct StopLanes {
+  world::RoadNetwork roads;
+  Intersection one{.id = 1, .lights = {0}, .stops = {}, .groups = {}};
+
+  StopLanes(std::uint32_t lanes, const std::vector<glm::dvec2>& points) {
+    for (std::uint32_t row = 0; row < lanes; ++row) {
+      world::RoadLane& lane = roads.lanes.emplace_back();
+      lane.width = 2.5;
+      for (const glm::dvec2& p : points) lane.points.push_back({.id = {}, .p = p + glm::dvec2(2.5 * row, 0.0)});
+      one.stops.push_back({PointKind::lane, row, static_cast<std::uint32_t>(points.size() - 1)});
+      one.groups.push_back(1);
+    }
+  }
+};
+
+TEST(MapMessage, NodesStandBetweenPointsOutOfReach) {
+  const StopLanes far(1, {{-600.0, -800.0}, {0.0, 0.0}});  // 1000 m: four steps of at most 327 m
+  const auto map = map_of(far.roads, far.one, {});
+  ASSERT_TRUE(map);
+  const std::vector<v2x::Node>& nodes = map->intersections.at(0).lanes.at(0).nodes.nodes;
+  ASSERT_EQ(nodes.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(nodes[i].delta.xy.x, i == 0 ? 0 : -15'000) << i;
+    EXPECT_EQ(nodes[i].delta.xy.y, i == 0 ? 0 : -20'000) << i;
+  }
+  round_trip(*map);
+}
+
+TEST(MapMessage, HoldsAsManyLanesAsItHasIds) {
+  const std::vector<glm::dvec2> points{{0.0, -9.0}, {0.0, 0.0}};
+  const StopLanes most(255, points), more(256, points);
+  const auto map = map_of(most.roads, most.one, {});
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->intersections.at(0).lanes.back().id, 255);
+  round_trip(*map);
+  expect_in("has 256 lanes; a MAP message holds 255", refusal_of([&] { map_of(more.roads, more.one, {}); }));
 }
 
 TEST(MapMessage, AnIntersectionWithoutStopLinesHasNone) {

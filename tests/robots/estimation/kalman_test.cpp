@@ -276,8 +276,11 @@ TEST(Measurements, BadNumbersAreInvalid) {
     EXPECT_FALSE(is_valid(m)) << bad;
   }
   m = {};
-  m.pose_covariance = {1, 1, 0, 1, 0, 1};  // x and y fully correlated
-  EXPECT_FALSE(is_valid(m));
+  for (const std::size_t pair : {1, 2, 4}) {  // x and y, x and yaw, or y and yaw fully correlated
+    m.pose_covariance = {1, 0, 0, 1, 0, 1};
+    m.pose_covariance[pair] = 1;
+    EXPECT_FALSE(is_valid(m)) << pair;
+  }
   m.pose_covariance = {1, 0.9, -0.9, 1, 0.9, 1};  // pairs are possible, all three are not
   EXPECT_FALSE(is_valid(m));
   m.pose_covariance = {1, 0.9, 0.9, 1, 0.9, 1};
