@@ -432,6 +432,19 @@ TEST(Endpoint, LoopbackIsItsWholeNetwork) {
   for (const std::uint32_t address : own_addresses()) EXPECT_FALSE(is_loopback(address)) << text_of(address);
 }
 
+TEST(Endpoint, OwnAddressesHoldTheSourceOfARouteToOthers) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  const sockaddr_in other = to_posix({0xCB007101u, 9});  // for documentation; nothing is sent
+  sockaddr_in own{};
+  socklen_t size = sizeof(own);
+  const bool has_route = ::connect(socket, reinterpret_cast<const sockaddr*>(&other), sizeof(other)) == 0 &&
+                         ::getsockname(socket, reinterpret_cast<sockaddr*>(&own), &size) == 0;
+  ::close(socket);
+  const std::uint32_t source = from_posix(own).address;
+  if (!has_route || is_loopback(source)) GTEST_SKIP() << "this machine has no route to others";
+  EXPECT_EQ(std::ranges::count(own_addresses(), source), 1);
+}
+
 /// In a separate process, since the limit applies to the whole process.
 TEST(Socket, OpenFilesAreAllowedButNeverFewer) {
   const auto try_limits = [] {

@@ -205,5 +205,24 @@ TEST(OccupancyBatch, DrawsOneScanCellByCell) {
     }
 }
 
+/// One word of a map fills its tables to their ends, and each of its cells is hit in turn.
+TEST(OccupancyBatch, EveryCellOfTheSmallestMapCanBeHit) {
+  sensors::MapSettings p = map_of(0.0, 1, 4.0, 1.0, {0.0, 4.0});
+  p.grid.word_columns = p.grid.word_rows = 1;
+  base::ThreadPool thread_pool(1);
+  sensors::MapBatch batch(device(), thread_pool, {p}, false);
+  const std::vector<double> none{0.0};  // the sensor's own cell
+  const std::uint32_t all[] = {0};
+  maps::OccupancyGrid expected(p.grid);
+  for (std::int64_t row = 0; row < 4; ++row)
+    for (std::int64_t column = 0; column < 4; ++column) {
+      const sensors::MapScan scans[] = {
+          {0, {0.5 + static_cast<double>(column), 3.5 - static_cast<double>(row), 0, 0}, none}};
+      batch.update(scans, all);
+      expected.set({column, row}, maps::Cell::occupied);
+      ASSERT_EQ(batch.words(0)[0], expected.words[0]) << column << " " << row;
+    }
+}
+
 }  // namespace
 }  // namespace sf::trial

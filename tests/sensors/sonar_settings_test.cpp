@@ -144,6 +144,7 @@ TEST(SonarSettings, WrongSettingsAreRefusedWithFileAndLine) {
       {"incidence", {1.6}, "", "'incidence' is 1.6"},
       {"noise", {-0.01}, "", "'noise' is [-0.01 0]; expected [constant proportional]"},
       {"noise", {0, -1}, "", "'noise' is [0 -1]"},
+      {"noise", {0, 1001}, "", "'noise' is [0 1001]"},
       {"noise", {}, "loud", "'noise' expects [constant proportional]"},
       {"rate", {0}, "", "'rate' is 0"},
       {"noise", {-1}, "", "'noise' is -1; expected 0 to 1000", "infrared"},
@@ -161,6 +162,12 @@ TEST(SonarSettings, WrongSettingsAreRefusedWithFileAndLine) {
       EXPECT_NE(said.find("made.world:42"), std::string::npos) << said;
     }
   }
+}
+
+TEST(SonarSettings, TheLargestNoiseIsTaken) {
+  const ConeArray s = read_sonar(with({cone_setting("noise", {1e4, 1e3})}), 0, 0);
+  EXPECT_EQ(s.sigma, 1e4);
+  EXPECT_EQ(s.proportional, 1e3);
 }
 
 TEST(SonarSettings, ArraysDivideTheTransducers) {

@@ -257,6 +257,10 @@ TEST_F(PlayerTest, ReceiversHaveMetresAndNoFixWithoutNaN) {
   EXPECT_EQ(xdr.get_double(), 11'132.0) << "centimetres, as clients read them";
   EXPECT_EQ(xdr.get_double(), -11'057.0);
   for (const std::uint32_t value : {1u, 6u, 13u}) EXPECT_EQ(xdr.get(), value) << "fix, satellites, 10 HDOP";
+  EXPECT_EQ(xdr.get(), 0u) << "no VDOP";
+  EXPECT_EQ(xdr.get_double(), 0.0) << "no error along x";
+  EXPECT_EQ(xdr.get_double(), 0.0) << "nor along y";
+  EXPECT_TRUE(xdr.done());
   const base::Bytes lost = read(kNaN, kNaN, kNaN);
   XdrReader none(std::span<const std::uint8_t>(lost).subspan(8 + 12 + 16 + 16));
   EXPECT_EQ(none.get(), 0u) << "no fix";

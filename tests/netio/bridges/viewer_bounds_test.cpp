@@ -36,6 +36,24 @@ TEST(ViewerBounds, AClientThatReadsNothingIsSkippedAhead) {
   EXPECT_GT(gaps, 0);
 }
 
+TEST(ViewerBounds, NoMoreUpdatesAreSkippedThanTheLimitAsksFor) {
+  WebLimits limits;
+  limits.waiting_updates = 1000;
+  limits.waiting_bytes = 1'000'000;  // three ticks
+  ViewerFixture fixture(ViewerMode::run, kMany, limits);
+  const Watcher stuck(fixture, {"/fleet"});
+  Watcher other(fixture);
+  std::uint64_t skipped = 0;
+  for (std::uint64_t tick = 1; tick <= 100; ++tick) {
+    fixture.tick(tick);
+    other.settle();
+    const std::uint64_t now = fixture.viewer->server().skipped();
+    ASSERT_LE(now, skipped + 1) << "room for one tick is made";
+    skipped = now;
+  }
+  EXPECT_GT(skipped, 0u);
+}
+
 TEST(ViewerBounds, RepliesThatNobodyReadsEndTheirConnection) {
   WebLimits limits;
   limits.replies = 100'000;

@@ -122,6 +122,20 @@ TEST_F(CreateTest, StartsARobotThatWasSwitchedOffAndOn) {
   EXPECT_TRUE(drive->ready(now));
 }
 
+TEST_F(CreateTest, ForgetsAFrameThatASwitchOffCutShort) {
+  step();
+  CreateSimulator::Bytes cut = create.frame();
+  cut.resize(6);
+  create.send(cut);
+  create.restart();
+  for (int k = 0; k < 6; ++k) drive->update(now += kTenth);
+  EXPECT_TRUE(create.streaming());
+  step();
+  EXPECT_EQ(drive->counts().starts, 2u);
+  EXPECT_EQ(drive->counts().frames, 2 * 7u);
+  EXPECT_EQ(drive->counts().skipped_bytes, 0u);
+}
+
 TEST(CreateDrive, OpensALineThatHungUpAnew) {
   const std::filesystem::path name = std::filesystem::path(testing::TempDir()) / ("create-" + std::to_string(getpid()));
   auto create = std::make_unique<CreateSimulator>();
