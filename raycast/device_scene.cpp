@@ -192,10 +192,13 @@ void DeviceScene::upload(gpu::Batch& batch) {
     batch.upload(*segments_, 0, segments_->bytes());
     batch.upload(*models_, 0, models_->bytes());
   } else {
+    // Whole pages: those of new cells are mostly adjacent, so that one copy takes many.
+    constexpr std::size_t kPageTexels = kPageChunks * kChunkTexels;
     for (const std::uint32_t slot : new_slots_) {
-      const Cell& cell = cell_tables_[slot];
-      lists_up(cell.first, cell.count);
-      batch.upload(*segment_ids_, 4 * std::size_t{cell.first}, 4 * std::size_t{cell.count});
+      const std::size_t first = cell_tables_[slot].first;
+      const std::size_t count = (cell_tables_[slot].count + kPageTexels - 1) / kPageTexels * kPageTexels;
+      lists_up(first, count);
+      batch.upload(*segment_ids_, 4 * first, 4 * count);
     }
     lists_up(pool_end(), mover_texels_used_);
     batch.upload(*segments_, configs_.walls().size() * sizeof(ExactSegment), movers_.segments() * sizeof(ExactSegment));
