@@ -57,10 +57,11 @@ struct Settings {
 struct Fixture {
   explicit Fixture(const Settings& chosen = {})
       : settings(chosen), world(room(chosen.sensor_rate, chosen.latency)), sensor_set(world) {
-    // Reading ports have no option for "any free one": tests that run at once start to look at different places.
+    // Reading ports have no option for "any free one": tests that run at once start to look at different places, and
+    // have ports for four robots there, as those of another are only taken later.
     layout.stride = 8;
     for (unsigned attempt = 0; client == nullptr && attempt < 1000; ++attempt) {
-      layout.bases[sensors::kLaser] = 11'000 + (static_cast<unsigned>(getpid()) + 17 * attempt) * 8 % 20'000;
+      layout.bases[sensors::kLaser] = 11'000 + (static_cast<unsigned>(getpid()) + 17 * attempt) * 32 % 20'000;
       try {
         const netio::Socket free = netio::open_udp({netio::kLoopback, reading_port(1)}),
                             other = netio::open_udp({netio::kLoopback, reading_port(2)});
