@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "apps/report.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 
@@ -80,6 +81,15 @@ TEST(Explain, SaysHowManyBeamsAreInDoubt) {
   const std::size_t end = text.find(said), begin = text.rfind(' ', end - 1);
   ASSERT_NE(end, std::string::npos) << text;
   EXPECT_NEAR(std::stod(text.substr(begin, end - begin)), share, 0.06 * share);
+}
+
+TEST(Explain, SizesHaveTheLargestUnitThatTheyFill) {
+  scenarios::Explanation explanation{.ticks = 1};
+  explanation.types.push_back({.type = "laser", .bytes = 1});
+  explanation.types[0].tables = {
+      {"", "a", 3u << 19}, {"", "b", 1u << 20}, {"", "c", (1u << 20) - 512}, {"", "d", 1024}, {"", "e", 1023}};
+  const std::string text = apps::text_of(explanation);
+  EXPECT_NE(text.find("1 B: a 1.5 MiB, b 1.0 MiB, c 1023.5 KiB, d 1.0 KiB, e 1023 B\n"), std::string::npos) << text;
 }
 
 TEST(Explain, WrongUsage) {

@@ -18,7 +18,8 @@ TEST(Peers, AStartSignalNeedsTheKeyOfItsTable) {
   const std::string file = folder.write("peers.toml", peer("robot = 1"));
   const Outcome refused = run_program({"start", "--peers", file});
   EXPECT_EQ(refused.code, 2);
-  EXPECT_NE(refused.err.find("has no key for START; expected a section [[peer]] with start = true"), std::string::npos)
+  EXPECT_NE(refused.err.find(file + ": has no key for START; expected a section [[peer]] with start = true"),
+            std::string::npos)
       << refused.err;
   EXPECT_EQ(run_program({"start", "--peers", folder.write("start.toml", peer("start = true"))}).code, 0);
 }

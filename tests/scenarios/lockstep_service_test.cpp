@@ -268,6 +268,27 @@ TEST(LockstepService, PacketsOutOfPlaceAreCounted) {
   EXPECT_EQ(fixture.service.lockstep().commands()[1].forward, 0.0);
 }
 
+/// One process has its answer of tick 1, the other asked for tick 2.
+TEST(LockstepService, OnlyTheNewestAnswerIsFetched) {
+  Fixture fixture(2, 2);
+  Driver one(fixture.port(), {1}), other(fixture.port(), {2});
+  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
+  one.step({}), other.step({}, 2);
+  ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete(); }));
+  const auto fetched = [&](Driver& driver, std::uint64_t tick) {
+    fixture.service.advance(fixture.now);  // what was sent before
+    const std::uint64_t before = fixture.service.lockstep().counts().fetched;
+    driver.send(netio::Fetch{tick, 0, 64});
+    driver.flush();
+    fixture.service.advance(fixture.now);
+    return fixture.service.lockstep().counts().fetched - before;
+  };
+  EXPECT_EQ(fetched(one, 0), 0u) << "it is gone";
+  EXPECT_EQ(fetched(other, 1), 0u) << "it did not ask for it";
+  EXPECT_EQ(fetched(one, 1), one.datagrams());
+  EXPECT_EQ(fixture.tick(), 1u);
+}
+
 TEST(LockstepService, AHungProcessIsLeftOutByName) {
   Fixture fixture(3, 3, 2.0);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2, 3});

@@ -97,6 +97,17 @@ TEST(Placement, AWrongPlaceShowsInItsResidual) {
   for (const std::size_t other : {0u, 2u, 3u}) EXPECT_GT(*found.tags[other].without, 1.0);
 }
 
+/// Each tag has four corners, so that the mean of the tags' squares is that of all.
+TEST(Placement, ResidualsOfTagsMakeThatOfAll) {
+  Testbed testbed = survey(true);
+  ImagesInMemory images = pictures(testbed);
+  testbed.surveyed[2].position.x += 0.10;
+  const Placement found = place_camera(testbed, unplaced(), images, "album");
+  double squares = 0.0;
+  for (const TagResidual& tag : found.tags) squares += tag.pixels * tag.pixels;
+  EXPECT_NEAR(std::sqrt(squares / 4.0), found.residual, 1e-3);
+}
+
 /// Of a folder, 200 images are read: one of another size behind them is not.
 TEST(Placement, ReadsTwoHundredImages) {
   const Testbed testbed = survey(false);

@@ -110,4 +110,11 @@ TEST(Drawing, FailsWithTheReason) {
   opencv().draw(image, {mark});
 }
 
+/// A label alone: the width is of a line that it does not have.
+TEST(Drawing, OnePointIsNoLine) {
+  Image image{8, 8, 3, std::vector<std::uint8_t>(192)};
+  opencv().draw(image, {{{{4.0, 4.0}}, "", {255, 0, 0}, 40'000}});
+  EXPECT_EQ(image.pixels, std::vector<std::uint8_t>(192));
+}
+
 }  // namespace sf::vision

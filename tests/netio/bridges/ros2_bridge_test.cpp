@@ -109,6 +109,7 @@ struct Ros2BridgeTest : testing::Test {
     base::TickRecord tick;
     tick.time = time += 100'000'000;
     tick.reports = reports;
+    tick.commands = commands;
     bridge->publish(tick, {.paused = paused, .runs = runs});
   }
   void open(bool simulated = true) {
@@ -149,6 +150,7 @@ struct Ros2BridgeTest : testing::Test {
   const world::World world = two_robots();
   const sensors::SensorSet sensor_set{world};
   const record::RunInfo info = info_of_two();
+  const std::vector<base::Twist> commands{3};
   std::optional<Ros2Bridge> bridge;
   std::int64_t time = 0;
 };
@@ -185,6 +187,17 @@ TEST_F(Ros2BridgeTest, OnlyTopicsThatAreReadAreWritten) {
   publish();
   EXPECT_EQ(network.wait(clock, 2).size(), 2u);
   EXPECT_EQ(network.wait(odometry, 1).size(), 1u);
+}
+
+/// The first writer is of a latched topic, written once.
+TEST_F(Ros2BridgeTest, CommandsAreWrittenToNoTopic) {
+  open();
+  const std::size_t clock = network.writer("rt/clock");
+  for (std::size_t writer = 0; writer < network.writers.size(); ++writer) network.read.insert(writer);
+  for (int i = 0; i < 2; ++i) publish();
+  ASSERT_EQ(network.wait(clock, 2).size(), 2u) << "the tick before is written";
+  ASSERT_TRUE(network.writers[0].latched);
+  EXPECT_EQ(network.wait(0, 1).size(), 1u);
 }
 
 TEST_F(Ros2BridgeTest, AStuckReaderHoldsUpNoTick) {

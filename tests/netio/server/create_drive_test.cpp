@@ -55,6 +55,15 @@ TEST_F(CreateTest, DrivesAndKnowsWhereItIs) {
   EXPECT_EQ(create.unknown, 0u);
 }
 
+TEST_F(CreateTest, KeepsItsVelocityWithinOneInstant) {
+  for (int k = 0; k < 10; ++k) step({0.3, 0, 0});
+  const base::Twist before = drive->state().velocity;
+  EXPECT_GT(before.forward, 0.0);
+  drive->update(now);
+  EXPECT_EQ(drive->state().velocity.forward, before.forward);
+  EXPECT_EQ(drive->state().velocity.turn, before.turn);
+}
+
 TEST_F(CreateTest, ReportsABumpThatWasShort) {
   create.run(2);
   create.bumps = 2;

@@ -361,6 +361,20 @@ TEST(MapMessage, HoldsAsManyLanesAsItHasIds) {
   expect_in("has 256 lanes; a MAP message holds 255", refusal_of([&] { map_of(more.roads, more.one, {}); }));
 }
 
+TEST(MapMessage, ALaneHoldsTheFirstSixteenConnections) {
+  StopLanes fan(1, {{0.0, -9.0}, {0.0, 0.0}});
+  for (std::uint32_t to = 1; to <= 17; ++to) {
+    world::RoadLane& lane = fan.roads.lanes.emplace_back();
+    lane.width = 2.5;
+    lane.points.push_back({.id = {}, .p = {static_cast<double>(to), 20.0}});
+    fan.roads.exits.push_back({fan.one.stops[0], {PointKind::lane, to, 0}});
+  }
+  const auto map = map_of(fan.roads, fan.one, {});
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->intersections.at(0).lanes.at(0).connections.size(), 16u);
+  round_trip(*map);
+}
+
 TEST(MapMessage, AnIntersectionWithoutStopLinesHasNone) {
   const Town town;
   EXPECT_FALSE(map_of(town.roads, {.id = 1, .lights = {0}, .stops = {}, .groups = {}}, {}));
