@@ -212,6 +212,17 @@ TEST(Docking, AfterSuchATouchItDrivesOutOfTheForceFieldFirst) {
   EXPECT_EQ(step({0.8, 0.0, 0, 0.0}, 252, false).forward, 0.0) << "beyond the field: it turns to the dock";
 }
 
+TEST(Docking, AfterSuchATouchItsPlaceIsReachedWithinTwoCentimetres) {
+  for (const double off : {0.02, 0.019}) {
+    Docking docking({.X_WD = {}, .stage = 1.0});
+    const std::vector<double> values{0.0, 254.0};
+    const base::ReadingBlock block{.type = 11, .values = values};
+    docking.step({.state = {.X_WM = {1.0, off, 0, M_PI}}, .contact = true});
+    const double forward = docking.step({.state = {.X_WM = {1.0, off, 0, M_PI}}, .readings = {&block, 1}}).forward;
+    EXPECT_EQ(forward, off < 0.02 ? 0.03 : 0.0) << "it follows the beams, or turns to its place";
+  }
+}
+
 TEST(Docking, FromBehindItGoesRoundTheDock) {
   for (const double side : {1.0, -1.0}) {
     Docking docking({.X_WD = {}, .stage = 1.0});

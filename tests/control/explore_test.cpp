@@ -151,6 +151,32 @@ TEST(Explore, TheSameWayAgain) {
   EXPECT_EQ(a->grid().words, b->grid().words);
 }
 
+// A laser 0.3 m ahead never sees the ground within that distance of where the robot turns.
+TEST(Explore, GroundWithinReachOfALaserBeyondTheBodyIsFreeAtTheStart) {
+  world::World world = scenes::boxed_world(3.0, 3.0, {-1.5, -1.5});
+  scenes::add_create(world, {}).sensors.push_back(
+      sensors::laser_sensor({{.X_MS = {0.3, 0, 0.1, 0}, .fov = M_PI, .samples = 181, .range_max = 1.0}}));
+  const auto controller = make_explore(world);
+  loop::LaserRun run(world, *controller);
+  const auto far = [&] { return std::hypot(run.fleet.reports()[0].X_WM.x, run.fleet.reports()[0].X_WM.y); };
+  for (int i = 0; i < 600 && far() < 0.1; ++i) run.tick();
+  EXPECT_GE(far(), 0.1) << "it can leave the place";
+}
+
+TEST(Explore, AGivenAreaIsRoundedUpToWholeWords) {
+  const maps::GridGeometry area = make_explore(exploration::boxes(2, 4), {{"cell", 0.05, ""},
+                                                                          {"map_left", -1.0, ""},
+                                                                          {"map_top", 2.0, ""},
+                                                                          {"map_width", 2.9, ""},
+                                                                          {"map_height", 4.0, ""}})
+                                      ->grid()
+                                      .geometry;
+  EXPECT_EQ(area.left, -1.0);
+  EXPECT_EQ(area.top, 2.0);
+  EXPECT_EQ(area.word_columns, 15u) << "words of 0.2 m";
+  EXPECT_EQ(area.word_rows, 20u);
+}
+
 TEST(Explore, OddReadingsDoNoHarm) {
   const world::World world = exploration::boxes(2, 4);
   const double nan = std::nan("");

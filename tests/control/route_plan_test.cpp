@@ -122,6 +122,20 @@ TEST(RoutePlan, ALaneChangeCostsAMetreMoreThanItsWay) {
   EXPECT_GT(changes, 20);
 }
 
+TEST(LaneCorridors, LaneChangesBeginAtTheFirstPointOfALaneToo) {
+  const Planner p;
+  int first = 0;
+  for (std::uint32_t row = 0; row < p.streets.roads.lanes.size(); ++row) {
+    const world::PointRef from{world::PointRef::Kind::lane, row, 0};
+    std::size_t changes = 0;
+    for (const control::Edge& edge : p.corridors.edges(p.corridors.node_of(from)))
+      changes += p.corridors.way(edge.ways[0]).kind == control::Way::Kind::change ? 1 : 0;
+    EXPECT_EQ(changes, lane_changes(p.streets.roads, from).size()) << row;
+    first += static_cast<int>(changes);
+  }
+  EXPECT_GT(first, 0);
+}
+
 TEST(LaneCorridors, AreThoseOfOneNetworkOneWorldAndOneShape) {
   const Streets a, b;
   const auto shared = control::shared_lane_corridors(a.roads, a.world, {});

@@ -109,6 +109,27 @@ TEST(Route, ParksAtHalfItsSpeed) {
   EXPECT_NEAR(near, 0.1, 0.01);
 }
 
+// The third spot lies along the x axis, so that the way out of it from (0, 0) is measured exactly; the turn at first is
+// the first spot's.
+TEST(Route, WaitsForItsTurnToLeaveItsSpotUntilItHasLeft) {
+  Streets t;
+  ASSERT_GT(t.roads.zones[0].spots, 2u);
+  world::RoadSpot& spot = t.roads.spots[t.roads.zones[0].first_spot + 2];
+  spot.entry = {-1.0, 0.0};
+  t.add({}, "route", go({8}));
+  const control::RoadFootprint body = control::footprint_of(t.world.movers[0]);
+  spot.end = {body.front, 0.0};
+  t.begin();
+  const auto step = [&](double x) { return t.controllers[0]->step({.time = 0, .state = {.X_WM = {x, 0, 0, 0}}}); };
+  step(0.0);
+  const double margin = 0.12 * body.radius;
+  EXPECT_EQ(step(-0.99 * margin).forward, 0.0);
+  EXPECT_EQ(t.route(0).stop_reason(), "it waits for its turn to leave its parking spot");
+  EXPECT_LT(step(-margin).forward, 0.0) << "in reverse";
+  EXPECT_EQ(t.route(0).s(), margin);
+  EXPECT_EQ(t.route(0).stop_reason(), "");
+}
+
 // 6.2.3 and 1.3.17 are stop signs. The robot stops at each, with its front within 5 cm of the line.
 TEST(Route, StopsFullyAtEveryStopSign) {
   Streets t;

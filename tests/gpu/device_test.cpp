@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <optional>
+#include <string>
 
 #include "base/error.h"
 
@@ -56,6 +58,19 @@ TEST(Device, WithoutADriverItSaysWhatToInstall) {
               "no Vulkan device: " + survey.problem + "; install a driver (Debian: mesa-vulkan-drivers)");
   }
   before.empty() ? unsetenv("VK_DRIVER_FILES") : setenv("VK_DRIVER_FILES", before.c_str(), 1);
+}
+
+TEST(Device, WithoutTheValidationLayerItSaysSo) {
+  const char* const names[] = {"SENSORFARM_VALIDATE", "VK_LAYER_PATH"};
+  std::optional<std::string> before[2];
+  for (int i = 0; i < 2; ++i)
+    if (const char* set = std::getenv(names[i])) before[i] = set;
+  setenv(names[0], "1", 1);
+  setenv(names[1], "/no/such/layers", 1);
+  EXPECT_EQ(Device().validation_messages(), "SENSORFARM_VALIDATE is set, but the validation layer is not installed\n");
+  unsetenv(names[0]);
+  EXPECT_EQ(Device().validation_messages(), "") << "not asked for";
+  for (int i = 0; i < 2; ++i) before[i] ? setenv(names[i], before[i]->c_str(), 1) : unsetenv(names[i]);
 }
 
 TEST(Device, ARowNumberNamesADevice) { EXPECT_EQ(Device("0").info().name, list_devices("0").devices[0].name); }

@@ -96,6 +96,7 @@ TEST(Readings, CountsSaturate) {
   const auto count = [](double value) { return at<std::uint32_t>(encoded(edge_type(), {0, value, 0, 0, 0}), 28); };
   EXPECT_EQ(count(-1.0), 0u);
   EXPECT_EQ(count(std::nan("")), 0u);
+  EXPECT_EQ(count(1.0), 1u);
   EXPECT_EQ(count(4294967295.0), 4294967295u);  // the last
   EXPECT_EQ(count(4294967296.0), 4294967295u);  // one more: u32 would wrap to 0
   EXPECT_EQ(count(std::numeric_limits<double>::infinity()), 4294967295u);

@@ -56,6 +56,14 @@ TEST(Sectors, EndWhereTheSurfaceIsAMillimetreAway) {
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.20101, -1.0}, {0.20101, 1.0})), 0u);
 }
 
+TEST(Sectors, ACornerTouchesASurfaceAtExactlyAMillimetre) {
+  world::World world = scenes::empty_world();
+  const Footprint diamond = footprint_of(scenes::add_mover(world, {}, {{1, 0}, {0, 1}, {-1, 0}, {0, -1}}));
+  const double x = diamond.radius + kContactDistance;
+  ASSERT_LE(x - diamond.radius, kContactDistance) << "by rounding";
+  EXPECT_EQ(contact_sectors(diamond, {}, wall({x, -0.1}, {x, 0.1})), bit(0) | bit(-1));
+}
+
 TEST(Sectors, ObjectsAboveOrBelowDoNotTouch) {
   EXPECT_NE(contact_sectors(square(), {0, 0, 0.5, 0}, wall({0.2, -1.0}, {0.2, 1.0})), 0u);
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2, -1.0}, {0.2, 1.0}, 0.1, 1.0)), 0u) << "the square is 0.1 m high";

@@ -71,6 +71,24 @@ TEST(Explanation, HiddenMoversAreCounted) {
   EXPECT_EQ(farm.stats().work.movers_visible, 2u * 5u) << "both neighbours, one at the ends";
 }
 
+/// 4 m reach from (0, 0) to (2.828, 2.828).
+TEST(Explanation, SmallMoversBeyondTheRangeAreNotCounted) {
+  for (const double at : {2.82, 2.84}) {
+    world::World world;
+    for (const double x : {0.0, at}) scenes::add_robot(world, {x, x, 0.0, 0.0}, scenes::laser(61, 2.0 * M_PI, 4.0));
+    for (world::Mover& mover : world.movers) {
+      for (world::Segment& s : mover.body) s.a *= 1e-4 / mover.radius, s.b *= 1e-4 / mover.radius;
+      mover.radius = 1e-4;
+      mover.sensors[0].X_MS = {};
+    }
+    world::update_extent_and_hash(world);
+    farm::Farm farm(world, device(), {.scene = {.caster = raycast::CasterChoice::vulkan}});
+    farm.subscribe_all();
+    farm.tick(0, {});
+    EXPECT_EQ(farm.stats().work.movers_in_range, at < 2.828 ? 2u : 0u) << at;
+  }
+}
+
 TEST(Explanation, StatesModesAndBounds) {
   world::World world = lasers(2);
   sensors::set_accuracy(world, "skip2");

@@ -133,6 +133,15 @@ TEST(Bitmap, ACheckerboardHasFourSidesPerPixel) {
   check(grid);
 }
 
+TEST(Bitmap, ATraceOfTooManyRunsEndsEarly) {
+  // 10 x 10 single pixels: 200 horizontal runs, then 200 vertical ones, 20 of them a row of pixels.
+  Bitmap grid{19, 19, {}};
+  for (std::uint32_t i = 0; i < 19 * 19; ++i) grid.solid.push_back(i % 19 % 2 == 0 && i / 19 % 2 == 0 ? 1 : 0);
+  EXPECT_EQ(trace_boundary(grid, 400).size(), 400u);
+  EXPECT_EQ(trace_boundary(grid, 399).size(), 400u) << "beyond it in the last row";
+  EXPECT_EQ(trace_boundary(grid, 200).size(), 220u) << "after the first row";
+}
+
 TEST(Bitmap, RandomGridsOfAllDensities) {
   for (std::uint32_t k = 0; k < 60; ++k) {
     Bitmap grid{1 + k % 13, 1 + k % 11, {}};

@@ -142,6 +142,15 @@ TEST(LightPlan, AGreenWaveMovesAtItsSpeed) {
   EXPECT_EQ(signal_at(world.lights[2], 12.01).state, LightState::green);
 }
 
+TEST(LightPlan, AGreenWaveMovesStraightFromLightToLight) {
+  World world = plan_street();
+  world.lights[0].X_WL = {1.0, 3.0, 0.0, 0.0};
+  world.lights[1].X_WL = {4.0, 7.0, 0.0, 0.0};  // 5 m
+  parse_light_plan("p.toml", wave(""), world);
+  EXPECT_EQ(signal_at(world.lights[1], 11.99).state, LightState::red) << "2 s, then 10 s";
+  EXPECT_EQ(signal_at(world.lights[1], 12.01).state, LightState::green);
+}
+
 TEST(LightPlan, ItsWorldIsBesideIt) {
   EXPECT_EQ(world_of_plan("towns/p.toml", "world = \"../x.world\""), "x.world");
   EXPECT_THROW(world_of_plan("p.toml", "[[program]]"), base::InputError);

@@ -255,6 +255,17 @@ TEST(Extremes, TinyAndHugeTimes) {
   }
 }
 
+TEST(Measurements, VariancesEndAtTheirLimits) {
+  const auto valid = [](double variance) {
+    return is_valid(
+        {.pose_covariance = {variance, 0, 0, variance, 0, variance}, .twist_variance = {variance, variance, variance}});
+  };
+  EXPECT_TRUE(valid(1e-18));
+  EXPECT_FALSE(valid(std::nextafter(1e-18, 0.0)));
+  EXPECT_TRUE(valid(1e18));
+  EXPECT_FALSE(valid(std::nextafter(1e18, HUGE_VAL)));
+}
+
 TEST(Measurements, BadNumbersAreInvalid) {
   EXPECT_TRUE(is_valid({}));
   EXPECT_TRUE(is_valid({.time = std::int64_t{1} << 62}));
