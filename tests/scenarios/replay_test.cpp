@@ -9,7 +9,7 @@ namespace sf::scenarios {
 
 namespace {
 
-constexpr std::int64_t kTick = 100;  // [ns]
+constexpr std::int64_t kStep = 100;  // [ns]
 
 /// Two robots over four ticks; the first one's only sensor is read in ticks 0 and 2.
 record::Recording small_recording() {
@@ -22,12 +22,12 @@ record::Recording small_recording() {
   for (std::uint64_t tick = 0; tick < 4; ++tick)
     for (std::size_t mover = 0; mover < 2; ++mover)
       recording.states[mover].push_back({tick,
-                                         static_cast<std::int64_t>(tick) * kTick,
+                                         static_cast<std::int64_t>(tick) * kStep,
                                          mover == 1 && tick == 3,
                                          {static_cast<double>(tick), static_cast<double>(mover)},
                                          {},
                                          {0.5}});
-  recording.readings = {{0, 6, 0, 0, 0, 0, {7.0}}, {0, 6, 0, 1, 2 * kTick, 2 * kTick, {8.0}}};
+  recording.readings = {{0, 6, 0, 0, 0, 0, {7.0}}, {0, 6, 0, 1, 2 * kStep, 2 * kStep, {8.0}}};
   return recording;
 }
 
@@ -42,18 +42,18 @@ TEST(Replay, FindsTicksByTime) {
   const Replay replay(recording, recording.info);
   EXPECT_EQ(replay.ticks(), 4u);
   EXPECT_EQ(replay.start(), 0);
-  EXPECT_EQ(replay.end(), 3 * kTick);
+  EXPECT_EQ(replay.end(), 3 * kStep);
   EXPECT_EQ(replay.tick_at(-1), 0u);            // before the first
-  EXPECT_EQ(replay.tick_at(kTick - 1), 0u);     // just before a tick
-  EXPECT_EQ(replay.tick_at(kTick), 1u);         // at a tick
-  EXPECT_EQ(replay.tick_at(1000 * kTick), 3u);  // beyond the last
+  EXPECT_EQ(replay.tick_at(kStep - 1), 0u);     // just before a tick
+  EXPECT_EQ(replay.tick_at(kStep), 1u);         // at a tick
+  EXPECT_EQ(replay.tick_at(1000 * kStep), 3u);  // beyond the last
 }
 
 TEST(Replay, GivesStatesAndReadingsSinceTheTickShown) {
   const record::Recording recording = small_recording();
   Replay replay(recording, recording.info);
   const base::TickRecord last = replay.tick(3, 2);
-  EXPECT_EQ(last.time, 3 * kTick);
+  EXPECT_EQ(last.time, 3 * kStep);
   ASSERT_EQ(last.reports.size(), 2u);
   EXPECT_EQ(last.reports[1].mover, 1u);
   EXPECT_EQ(last.reports[1].X_WM.x, 3.0);
