@@ -1,11 +1,13 @@
 // `export`, `plot` and `view --3d` of a recorded run.
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <sstream>
 
 #include "record/reading_messages.h"
@@ -127,6 +129,12 @@ TEST_F(Recorded, LightsAreExported) {
   ASSERT_EQ(rows.size(), 31u);
   EXPECT_EQ(rows[1][1], "lamp");
   EXPECT_TRUE(rows[1][2] == "red" || rows[1][2] == "green") << rows[1][2];
+  const record::Recording expected = recording();
+  ASSERT_EQ(expected.lights.size(), 30u);
+  for (std::size_t i = 0; i < 30; ++i) {
+    EXPECT_TRUE(same(rows[i + 1][0], 1e-9 * static_cast<double>(expected.lights[i].time))) << i;
+    EXPECT_TRUE(same(rows[i + 1][3], expected.lights[i].lights[0].left)) << i;
+  }
 }
 
 TEST_F(Recorded, EverySensorTypeAndTheLightsArePlotted) {
@@ -211,6 +219,82 @@ std::string vtk_head(const std::string& file, const std::string& after, const st
   return text.substr(at, text.find('"', at) - at);
 }
 
+std::string from_base64(const std::string& text) {
+  const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char letter : text) {
+    if (letter == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(letters.find(letter));
+    if ((count += 6) >= 8) bytes.push_back(static_cast<char>(bits >> (count -= 8)));
+  }
+  return bytes;
+}
+
+/// The numbers of the first array of a VTK image: blocks of zlib behind the list of their sizes, both in base64.
+std::vector<double> vtk_numbers(const std::string& file) {
+  const std::string text = read_file(file);
+  const std::size_t begin = text.find('_', text.find("<AppendedData")) + 1;
+  const auto words = [&](std::size_t count) {
+    std::vector<std::uint32_t> all(count);
+    std::memcpy(all.data(), from_base64(text.substr(begin, (4 * count + 2) / 3 * 4)).data(), 4 * count);
+    return all;
+  };
+  const std::size_t blocks = words(3)[0];
+  const std::vector<std::uint32_t> sizes = words(3 + blocks);
+  std::size_t all = 0;
+  for (std::size_t i = 3; i < sizes.size(); ++i) all += sizes[i];
+  const std::string packed = from_base64(text.substr(begin + (4 * sizes.size() + 2) / 3 * 4, (all + 2) / 3 * 4));
+  std::string bytes;
+  for (std::size_t i = 0, at = 0; i < blocks; at += sizes[3 + i++]) {
+    std::string block(sizes[1], '\0');
+    uLongf size = block.size();
+    EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(block.data()), &size,
+                         reinterpret_cast<const Bytef*>(packed.data() + at), sizes[3 + i]),
+              Z_OK);
+    bytes += block.substr(0, size);
+  }
+  std::vector<double> numbers(bytes.size() / sizeof(double));
+  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(double));
+  return numbers;
+}
+
+/// Middles of the cells of a VTK image, in the order of their numbers: row by row from the lower left.
+std::vector<glm::dvec2> vtk_middles(const std::string& file) {
+  double left = 0.0, bottom = 0.0, cell = 0.0;
+  EXPECT_EQ(std::sscanf(vtk_head(file, "<ImageData", "Origin").c_str(), "%lf %lf", &left, &bottom), 2);
+  EXPECT_EQ(std::sscanf(vtk_head(file, "<ImageData", "Spacing").c_str(), "%lf", &cell), 1);
+  int columns = 0, rows = 0;
+  EXPECT_EQ(std::sscanf(vtk_head(file, "<ImageData", "WholeExtent").c_str(), "0 %d 0 %d", &columns, &rows), 2);
+  std::vector<glm::dvec2> middles;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      middles.emplace_back(left + (column + 0.5) * cell, bottom + (row + 0.5) * cell);
+  return middles;
+}
+
+/// Known are cells within the 3 m that the robot in the lower left quarter sees, and of the walls that below it.
+TEST_F(Recorded, ParaViewsMapBeginsAtTheLowerLeft) {
+  ASSERT_EQ(run_program(with("export", {"--vtk", "-o", folder_.path("v")})).code, 0);
+  const std::vector<double> cells = vtk_numbers(folder_.path("v/occupancy.vti"));
+  const std::vector<glm::dvec2> middles = vtk_middles(folder_.path("v/occupancy.vti"));
+  ASSERT_EQ(cells.size(), middles.size());
+  const auto poses = recording().states[0];
+  int occupied = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i] == 0.0) continue;
+    const glm::dvec2& p = middles[i];
+    double nearest = INFINITY;
+    for (const record::StateSample& s : poses) nearest = std::min(nearest, std::hypot(s.X_WM.x - p.x, s.X_WM.y - p.y));
+    ASSERT_LT(nearest, 3.05) << p.x << " " << p.y;
+    if (cells[i] != 1.0) continue;
+    EXPECT_LT(p.y, -3.95) << p.x;
+    ++occupied;
+  }
+  EXPECT_GT(occupied, 0);
+}
+
 TEST_F(Recorded, ParaViewGetsThePartThatWasAskedFor) {
   const std::string out = folder_.path("v"), ways = out + "/trajectories.vtp", map = out + "/occupancy.vti";
   const Outcome outcome = run_program(
@@ -261,6 +345,11 @@ TEST(Export, TagsHaveNoWaysAndMagnetsAField) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("v/occupancy.vti")));
   const std::string origin = vtk_head(folder.path("v/field.vti"), "<ImageData", "Origin");
   EXPECT_EQ(origin.substr(origin.rfind(' ')), " 0.25");
+  const std::vector<double> magnitudes = vtk_numbers(folder.path("v/field.vti"));
+  const std::vector<glm::dvec2> middles = vtk_middles(folder.path("v/field.vti"));
+  ASSERT_EQ(magnitudes.size(), middles.size());
+  const auto most = std::max_element(magnitudes.begin(), magnitudes.end()) - magnitudes.begin();
+  EXPECT_LT(length(middles[static_cast<std::size_t>(most)] - glm::dvec2{0.0, 1.0}), 0.02) << "above the magnet";
   EXPECT_EQ(vtk.err.find("no readings"), std::string::npos) << vtk.err;
 
   const Outcome csv = run_program({"export", folder.path("r"), "-o", folder.path("c")});

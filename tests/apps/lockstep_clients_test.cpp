@@ -1,6 +1,7 @@
 // Lockstep as users have it: `serve --lockstep` and the clients in examples/clients/, each a process.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <csignal>
@@ -154,6 +155,31 @@ TEST(LockstepClients, ARecordingIsReportedWithItsSize) {
   EXPECT_EQ(facts.number("/recording_bytes"),
             static_cast<double>(std::filesystem::file_size(folder.path("r/run.mcap"))));
   EXPECT_FALSE(facts.has("/recording_error"));
+}
+
+/// Its file may not grow, as on a full disk: the robots are served to the end, which says so.
+TEST(LockstepClients, ARecordingThatIsNotWholeEndsWithOne) {
+  const Folder folder;
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{400'000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  LockstepServer server({"--record", folder.path("r")});
+  setrlimit(RLIMIT_FSIZE, &before);
+  ASSERT_NE(server.port, 0u) << server.program.err();
+  scenarios::Driver driver(static_cast<std::uint16_t>(server.port), {1, 2, 3});
+  const auto is_complete = [&] {
+    driver.receive(), driver.repeat();
+    return driver.is_complete();
+  };
+  ASSERT_TRUE(until(is_complete));
+  driver.step({}, 1000);
+  ASSERT_TRUE(until(is_complete));
+  driver.leave();
+  const Json facts = server.end(1);
+  EXPECT_NE(facts.text("/recording_error").find("cannot take more than"), std::string::npos);
+  EXPECT_EQ(facts.number("/lockstep/lost_robots"), 0);
+  EXPECT_EQ(facts.number("/ticks"), 1001);
 }
 
 /// Its client subscribes and never steps, while another waits.

@@ -97,6 +97,36 @@ TEST(RightOfWay, DoesNotBlockTheBox) {
   EXPECT_LT(t.pose(1).x - 0.165, line + 0.05);
 }
 
+// Before a lane that stays full a robot plans another way after 20 s, the second robot of the world after 22 s, so that
+// two do not change their minds at once.
+TEST(RightOfWay, AFullLaneIsAvoidedWhenPatienceEnds) {
+  for (const std::uint32_t row : {0u, 1u}) {
+    Streets t;
+    const auto wait = [&] { t.add(on_lane(t.roads, "4.1", 1.0), "route", go({8})); };
+    if (row == 0) wait();
+    t.add(on_lane(t.roads, "5.1", 0.2), "route", go({8}));
+    if (row == 1) wait();
+    t.begin();
+    t.controllers[1 - row] = std::make_unique<Stands>();
+    const auto ways = [&] {
+      std::vector<std::uint32_t> all;
+      for (const control::RouteLeg& leg : t.route(row).plan().legs) all.push_back(leg.way);
+      return all;
+    };
+    std::vector<std::uint32_t> planned;
+    std::int64_t since = -1, waited = -1;  // [ns]
+    while (waited < 0 && t.time < 60 * kSecond) {
+      const std::int64_t now = t.time;
+      const bool stands = t.fleet->reports()[row].velocity.forward < 0.01;
+      t.tick();
+      if (since >= 0 && ways() != planned) waited = now - since;
+      if (since < 0 && stands && t.route(row).stop_reason() == "the lane ahead is full") since = now;
+      planned = ways();
+    }
+    EXPECT_EQ(waited, (row == 0 ? 20 : 22) * kSecond) << row;
+  }
+}
+
 // ---- Crowds.
 
 struct Crowd {

@@ -88,6 +88,51 @@ TEST(PlayerHostile, WrongLengthsEndTheirOwnConnectionOnly) {
   EXPECT_EQ(good.request(kPosition, 1).header.type, MessageType::ack);
 }
 
+/// Requests of a byte less, and of bytes behind what they have, for what other clients would notice.
+TEST(PlayerHostile, RequestsOfAWrongLengthChangeNothing) {
+  PlayerRun run;
+  TestClient good(run.port());
+  good.banner(), good.open(kLaserDevice);
+  run.tick();
+  struct Request {
+    Address to;
+    std::uint32_t subtype;
+    base::Bytes payload;
+  };
+  const Request requests[] = {{kLaserDevice, 4, xdr_of(0u)},  // off
+                              {kPosition, 2, xdr_of(0u)},     // motors off
+                              {kPosition, 3, xdr_of(0u)},
+                              {kPosition, 4, xdr_of(0u)},
+                              {kPosition, 5, xdr_of(5.0, 6.0, 0.0)},
+                              {kSimulation, 2, text_and("ben", {2.0, -1.0, 0.5})},
+                              {kSimulation, 4, text_and("ben", {2.0, -1.0, 0.0, 0.0, 0.0, 0.5, 0.0})}};
+  std::uint64_t malformed = 0;
+  for (const Request& request : requests)
+    for (const std::size_t wrong : {request.payload.size() - 1, request.payload.size() + 4}) {
+      base::Bytes payload = request.payload;
+      payload.resize(wrong);
+      TestClient bad(run.port());
+      bad.banner();
+      bad.send(message_of(MessageType::request, request.to, request.subtype, payload));
+      EXPECT_TRUE(bad.receive().ended) << name_of(request.to.interf) << " " << request.subtype << ": " << wrong;
+      EXPECT_EQ(run.bridge.counts().malformed, ++malformed);
+    }
+  EXPECT_TRUE(run.asked().placements.empty());
+  run.tick({run.reading(sensors::kLaser, {1.0, 2.0, 3.0})});
+  good.send(MessageType::request, kPosition, 1);
+  ASSERT_EQ(good.receive().header.address, kLaserDevice) << "it is on";
+  EXPECT_EQ(good.receive().header.type, MessageType::ack);
+  good.open(kPosition);
+  good.send(MessageType::command, kPosition, 1, xdr_of(0.3, 0.0, 0.0, 1u));
+  EXPECT_EQ(good.request(kPosition, 1).header.type, MessageType::ack);
+  const std::vector<Command> commands = run.asked().commands;
+  ASSERT_EQ(commands.size(), 1u) << "its motors are on";
+  EXPECT_EQ(commands[0].twist.forward, 0.3);
+  run.tick();
+  const Message data = good.receive();
+  EXPECT_EQ(XdrReader(data.payload).get_double(), 0.0) << "its odometry began where it stands";
+}
+
 TEST(PlayerHostile, OversizedMessagesAreNotWaitedFor) {
   PlayerRun run;
   TestClient bad(run.port());

@@ -34,13 +34,13 @@ struct LogPipe {
   }
 };
 
-/// A room of 6 m by 4 m with robots of 0.3 m by 0.3 m that have a laser of 91 beams each, at the world's 10 Hz.
-inline world::World room(double rate = 10.0, double latency = 0.0) {
+/// A room of 6 m by 4 m with robots of 0.3 m by 0.3 m that have a laser each, at the world's 10 Hz.
+inline world::World room(double rate = 10.0, double latency = 0.0, std::uint32_t samples = 91) {
   world::World world = scenes::boxed_world(6.0, 4.0, {-3.0, -2.0});
   for (const base::Pose& X_WM : {base::Pose{-2.0, 0.0, 0.0, 0.0}, base::Pose{2.0, 1.0, 0.0, 0.0}})
     scenes::add_mover(world, X_WM, scenes::rectangle({0.0, 0.0}, 0.3, 0.3))
         .sensors.push_back(sensors::laser_sensor(
-            {{.name = "laser", .X_MS = {0.1, 0.0, 0.04, 0.0}, .samples = 91}, rate, 0.0, latency}));
+            {{.name = "laser", .X_MS = {0.1, 0.0, 0.04, 0.0}, .samples = samples}, rate, 0.0, latency}));
   return world;
 }
 
@@ -52,11 +52,12 @@ struct Settings {
   StateFilterOptions filter;
   double latency = 0.0;  ///< [s] of sensors
   std::vector<netio::Peer> peers;
+  std::uint32_t samples = 91;  ///< of each laser
 };
 
 struct Fixture {
   explicit Fixture(const Settings& chosen = {})
-      : settings(chosen), world(room(chosen.sensor_rate, chosen.latency)), sensor_set(world) {
+      : settings(chosen), world(room(chosen.sensor_rate, chosen.latency, chosen.samples)), sensor_set(world) {
     // Reading ports have no option for "any free one": tests that run at once start to look at different places, and
     // have ports for four robots there, as those of another are only taken later.
     layout.stride = 8;

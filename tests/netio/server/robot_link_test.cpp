@@ -2,6 +2,7 @@
 
 #include "netio/server/robot_link.h"
 
+#include "sensors/laser_packets.h"
 #include "tests/netio/server/fixture.h"
 
 namespace sf::server {
@@ -22,7 +23,7 @@ std::uint32_t stream_of(Type type, std::uint32_t low) { return static_cast<std::
 
 /// The link of robot1.
 struct PlayedFarm : Fixture {
-  explicit PlayedFarm(const netio::LinkModel& model = {}) {
+  explicit PlayedFarm(const netio::LinkModel& model = {}, const Settings& chosen = {}) : Fixture(chosen) {
     client.reset();  // its ports are needed
     link = std::make_unique<RobotLink>(world, sensor_set, 0, layout,
                                        LinkOptions{.farm = outbox.endpoint(), .model = model},
@@ -57,19 +58,20 @@ struct PlayedFarm : Fixture {
     link->send_request(now);
     challenge(kPlayedFarm);
   }
-  void send_scan(netio::Outbox& from, netio::Header header) {
-    const std::vector<double> ranges(91, 2.0);
+  void send_scan(netio::Outbox& from, netio::Header header, std::uint32_t part = 0) {
+    const sensors::SensorSet::Group& lasers = *sensor_set.group(sensors::kLaser);
+    const std::vector<double> ranges(lasers.rows[0].elements, range_of(header.sequence, part));
     base::ReadingBlock block;
     block.type = sensors::kLaser, block.values = ranges;
-    const sensors::SensorSet::Group& lasers = *sensor_set.group(sensors::kLaser);
     base::Bytes payload, bytes;
-    const std::uint8_t type = lasers.type->encode(lasers.rows[0], block, sensors::WireFormat::farm, 0, payload);
+    const std::uint8_t type = lasers.type->encode(lasers.rows[0], block, sensors::WireFormat::farm, part, payload);
     header.robot = 1, header.session = stamp.session, header.token = stamp.token;
     netio::encode_reading(header, type, payload, bytes);
     from.queue({netio::kLoopback, reading_port(1)}, bytes);
     from.flush();
     link->run(now);
   }
+  static double range_of(std::uint32_t sequence, std::uint32_t part) { return 0.5 * (sequence % 8) + 0.125 * part; }
   std::uint64_t scans() const { return link->counts().whole.at("laser"); }
 
   netio::Socket socket = netio::open_udp({netio::kLoopback, 0});
@@ -123,6 +125,85 @@ TEST(RobotLink, ReadingsHaveTheirFateInTheInjectedLink) {
       lost += loses(kScans, piece << 32 | sequence);
       ASSERT_EQ(f.link->counts().in.lost, lost) << sequence << ", datagram " << piece;
     }
+}
+
+/// Scans of three datagrams.
+struct ScansInParts : PlayedFarm {
+  explicit ScansInParts(const netio::LinkModel& model = {}) : PlayedFarm(model, {.samples = 700}) {
+    greet();
+    while (model.loss > 0.0 && now < 10 * kSecond) now += kSecond, greet();  // some of it is lost
+  }
+  void send_parts(std::uint32_t sequence, const std::vector<std::uint32_t>& parts) {
+    for (const std::uint32_t part : parts)
+      send_scan(outbox, {.sequence = sequence, .time = sequence * kTick, .state = {.stated = true, .stale = true}},
+                part);
+  }
+  /// The newest scan is that one, each part in its place.
+  void expect_newest(std::uint32_t sequence) {
+    const auto newest = link->readings();
+    ASSERT_EQ(newest.size(), 1u);
+    EXPECT_EQ(newest[0].block.sequence, sequence);
+    ASSERT_EQ(newest[0].block.values.size(), 700u);
+    for (std::uint32_t i = 0; i < 700; ++i)
+      ASSERT_DOUBLE_EQ(newest[0].block.values[i], range_of(sequence, i / sensors::kPartRays)) << i;
+  }
+};
+
+TEST(RobotLink, AReadingWithALostPartIsNone) {
+  ScansInParts f;
+  f.now = 7;
+  f.send_parts(1, {0, 2});
+  EXPECT_EQ(f.scans(), 0u);
+  EXPECT_TRUE(f.link->readings().empty());
+  EXPECT_EQ(f.link->last_answer(), 7) << "the farm is there";
+  EXPECT_FALSE(f.link->last_reading());
+  f.now = 8;
+  f.send_parts(2, {0, 1, 2});
+  EXPECT_EQ(f.scans(), 1u);
+  EXPECT_EQ(f.link->last_reading(), 8);
+  f.expect_newest(2);
+  EXPECT_EQ(f.link->counts().readings.lost, 1u);
+  f.send_parts(1, {1});
+  EXPECT_EQ(f.scans(), 1u) << "too late";
+  EXPECT_EQ(f.link->counts().readings.late, 1u);
+  f.expect_newest(2);
+}
+
+TEST(RobotLink, RepeatedPartsMakeNoSecondReading) {
+  ScansInParts f;
+  f.send_parts(1, {0, 0, 1, 1});
+  EXPECT_EQ(f.scans(), 0u) << "four datagrams, two parts";
+  EXPECT_EQ(f.link->counts().readings.duplicates, 2u);
+  f.send_parts(1, {2, 2, 0});
+  EXPECT_EQ(f.scans(), 1u);
+  EXPECT_EQ(f.link->counts().stale, 1u) << "readings, not datagrams";
+  f.expect_newest(1);
+}
+
+TEST(RobotLink, PartsOfReadingsComeInAnyOrder) {
+  ScansInParts f;
+  f.send_parts(1, {2, 0});
+  f.send_parts(2, {1});
+  f.send_parts(1, {1});
+  f.expect_newest(1);
+  f.send_parts(3, {2, 1, 0});
+  f.expect_newest(3);
+  f.send_parts(2, {2, 0});
+  EXPECT_EQ(f.scans(), 2u) << "an older one is not wanted";
+  f.expect_newest(3);
+}
+
+TEST(RobotLink, AReadingIsWholeWhereTheInjectedLinkLosesNoPart) {
+  ScansInParts f(kLossy);
+  std::uint64_t whole = 0;
+  for (std::uint32_t sequence = 1; sequence <= 40; ++sequence) {
+    std::uint64_t lost = 0;
+    for (const std::uint64_t piece : {0, 1, 2}) lost += loses(kScans, piece << 32 | sequence);
+    whole += lost == 0 ? 1 : 0;
+    f.send_parts(sequence, {0, 1, 2});
+    ASSERT_EQ(f.scans(), whole) << sequence;
+  }
+  EXPECT_GT(whole, 0u);
 }
 
 TEST(RobotLink, PacketsHaveTheirFateInTheInjectedLink) {
