@@ -2,16 +2,16 @@
 // self-check found such (gpu::DeviceInfo::rounds32), they are computed in 64 bits, whose results round to the same.
 // The kernel declares the specialization constant kRounds32.
 
-// A result rounded to 32 bits. Mesa 25.0 takes double(float(x)) for x; the number of workgroups along z, always one,
-// keeps it from seeing both conversions.
-float rounded(double x) { return uintBitsToFloat(floatBitsToUint(float(x)) + (gl_NumWorkGroups.z - 1u)); }
+// x, as 32 bits. Mesa 25.0 takes double(float(x)) for x; the number of workgroups along z, always one, keeps it from
+// seeing both conversions.
+float kept(float x) { return uintBitsToFloat(floatBitsToUint(x) + (gl_NumWorkGroups.z - 1u)); }
 
 float root32(float x) {
-  precise float root = kRounds32 ? sqrt(x) : rounded(sqrt(double(x)));
+  precise float root = kRounds32 ? sqrt(x) : kept(float(sqrt(double(kept(x)))));
   return root;
 }
 
 float quotient32(float a, float b) {
-  precise float quotient = kRounds32 ? a / b : rounded(double(a) / double(b));
+  precise float quotient = kRounds32 ? a / b : kept(float(double(kept(a)) / double(kept(b))));
   return quotient;
 }
