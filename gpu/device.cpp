@@ -41,7 +41,8 @@ std::string open(Device::Vk& vk) {
     return "could not be opened (vkCreateDevice gave " + std::to_string(result) + ")";
   }
   vkGetDeviceQueue(vk.device, vk.family, 0, &vk.queue);
-  vk.unified = !is_set("SENSORFARM_STAGING") &&
+  vk.as_gpu = is_set("SENSORFARM_STAGING");
+  vk.unified = !vk.as_gpu &&
                vk.memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
                                        VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT) >= 0;
   return "";
@@ -63,7 +64,7 @@ std::string start(Device& device, DeviceCandidates& candidates, std::size_t row)
   if (const std::string fault = open(vk); !fault.empty()) return fault;
   const auto [fault, rounds32] = self_check(device);
   info.self_check = fault.empty() ? "passed" : "failed";
-  vk.rounds32 = rounds32 && !is_set("SENSORFARM_STAGING");
+  vk.rounds32 = rounds32 && !vk.as_gpu;
   if (!fault.empty()) close(vk);
   return fault;
 }
@@ -111,7 +112,7 @@ Device::~Device() { close(*vk_); }
 const DeviceInfo& Device::info() const { return vk_->info; }
 
 bool Device::unified() const { return vk_->unified; }
-bool Device::is_gpu() const { return !vk_->info.software || is_set("SENSORFARM_STAGING"); }
+bool Device::is_gpu() const { return !vk_->info.software || vk_->as_gpu; }
 bool Device::rounds32() const { return vk_->rounds32; }
 
 std::vector<DeviceAllocation> Device::allocations() const {

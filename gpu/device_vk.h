@@ -40,6 +40,7 @@ struct Device::Vk {
   std::uint32_t family = 0;
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
+  bool as_gpu = false;  ///< SENSORFARM_STAGING was set at construction
   bool unified = false;
   bool rounds32 = false;
   DeviceInfo info;

@@ -1,5 +1,5 @@
 // 32-bit roots and quotients as IEEE 754 rounds them. Vulkan allows devices errors of a few last places; where the
-// self-check found such (gpu::DeviceInfo::rounds32), they are computed in 64 bits, whose results round to the same.
+// self-check found such (gpu::Device::rounds32), they are computed in 64 bits, whose results round to the same.
 // The kernel declares the specialization constant kRounds32.
 
 // x, as 32 bits. Mesa 25.0 takes double(float(x)) for x; the number of workgroups along z, always one, keeps it from

@@ -1,7 +1,6 @@
 // Lockstep as users have it: `serve --lockstep` and the clients in examples/clients/, each a process.
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <csignal>
@@ -12,6 +11,7 @@
 #include "control/own_controllers.h"
 #include "scenarios/simulation.h"
 #include "sensors/sensor_type.h"
+#include "tests/apps/file_size_limit.h"
 #include "tests/apps/remote_robot.h"
 #include "tests/scenarios/lockstep_driver.h"
 #include "world/free_space.h"
@@ -160,12 +160,8 @@ TEST(LockstepClients, ARecordingIsReportedWithItsSize) {
 /// Its file may not grow, as on a full disk: the robots are served to the end, which says so.
 TEST(LockstepClients, ARecordingThatIsNotWholeEndsWithOne) {
   const Folder folder;
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  const rlimit small{400'000, before.rlim_max};
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const FileSizeLimit limit(400'000);
   LockstepServer server({"--record", folder.path("r")});
-  setrlimit(RLIMIT_FSIZE, &before);
   ASSERT_NE(server.port, 0u) << server.program.err();
   scenarios::Driver driver(static_cast<std::uint16_t>(server.port), {1, 2, 3});
   const auto is_complete = [&] {

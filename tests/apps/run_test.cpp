@@ -1,7 +1,6 @@
 // `run` and `plot`: a fleet in the loop, its summary, its recording and its pictures.
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <chrono>
 #include <csignal>
@@ -10,6 +9,7 @@
 #include <thread>
 
 #include "record/recording.h"
+#include "tests/apps/file_size_limit.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/viz/png.h"
@@ -447,13 +447,11 @@ TEST(Run, StoppingIsNoFailure) {
 /// A file that may not grow (`ulimit -f`) is as a disk that is full: said, and what was whole stays.
 TEST(Run, AFileThatMayNotGrowEndsARecordingWithAMessage) {
   const Folder folder;
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  const rlimit small{400'000, before.rlim_max};
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  const Outcome outcome =
-      run_program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
-  setrlimit(RLIMIT_FSIZE, &before);
+  const auto run = [&] {
+    const FileSizeLimit limit(400'000);
+    return run_program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
+  };
+  const Outcome outcome = run();
   EXPECT_EQ(outcome.signal, 0) << "SIGXFSZ is " << SIGXFSZ;
   EXPECT_EQ(outcome.code, 2) << outcome.err;
   EXPECT_NE(outcome.err.find("run.mcap: cannot take more than"), std::string::npos) << outcome.err;
