@@ -11,25 +11,11 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_library(SODIUM sodium REQUIRED)  # libsodium-dev
 find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-dev)
 
-find_package(PkgConfig REQUIRED)
-pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-ft cairo-pdf)  # libcairo2-dev
-
-# Ranks (cluster/) work without it as one process each. Debian's VTK 9.1 looks for it, too.
-find_package(MPI QUIET COMPONENTS C)
-find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML FiltersCore FiltersFlowPaths InteractionWidgets RenderingOpenGL2 RenderingFreeType)
-find_package(X11 REQUIRED)
-
-# OpenCV without its CMake package, which Debian has only together with all of OpenCV (libopencv-dev).
-find_path(OPENCV_INCLUDE opencv2/aruco.hpp PATH_SUFFIXES opencv4 REQUIRED)  # libopencv-contrib-dev
-set(OPENCV_LIBRARIES "")
-foreach(part core imgproc imgcodecs videoio calib3d aruco)
-  find_library(OPENCV_${part} opencv_${part} REQUIRED)
-  list(APPEND OPENCV_LIBRARIES ${OPENCV_${part}})
-endforeach()
-
-# Cyclone DDS without its CMake package, which wants OpenSSL's headers (cyclonedds-dev).
-find_path(CYCLONEDDS_INCLUDE dds/dds.h REQUIRED)
-find_library(CYCLONEDDS ddsc REQUIRED)
+# Without plug-ins, the program does all that needs no heavy library, and names the plug-in that a command lacks.
+option(SENSORFARM_PLUGINS "Build the plug-ins: figures, VTK, OpenCV, ROS 2, MPI, Python" ON)
+if(SENSORFARM_PLUGINS)
+  include(PluginLibraries)
+endif()
 
 # Build flags of all targets. Contraction is off so that host and device round alike. Code can be part of a shared library
 # (-fPIC; one form for all, as precompiled headers need). g++ 12 warns falsely of overlapping strings (-Wrestrict) and,
@@ -126,6 +112,9 @@ function(add_module name)
       file(GLOB plugin_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${MODULE_FOLDER}/${plugin}/*.cpp)
     endif()
     list(REMOVE_ITEM sources ${plugin_sources})
+    if(NOT SENSORFARM_PLUGINS)
+      continue()
+    endif()
     add_library(sensorfarm_${plugin} MODULE ${plugin_sources})
     set_target_properties(sensorfarm_${plugin} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
     target_link_libraries(sensorfarm_${plugin} PRIVATE project_options)
@@ -134,7 +123,9 @@ function(add_module name)
   target_link_libraries(${name} PUBLIC project_options Threads::Threads ${MODULE_PUBLIC} PRIVATE ${MODULE_PRIVATE})
   precompiled(${name} common_headers)
   foreach(plugin ${MODULE_PLUGINS})
-    add_dependencies(${name} sensorfarm_${plugin})
+    if(SENSORFARM_PLUGINS)
+      add_dependencies(${name} sensorfarm_${plugin})
+    endif()
   endforeach()
   if(SENSORFARM_CHECKED)
     add_library(${name}_checked OBJECT ${sources} ${MODULE_SOURCES})

@@ -1,0 +1,36 @@
+# Libraries of plug-ins, which no other target links.
+
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-ft cairo-pdf)  # libcairo2-dev
+
+# Ranks (cluster/) work without it as one process each. Debian's VTK 9.1 looks for it, too.
+find_package(MPI QUIET COMPONENTS C)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML FiltersCore FiltersFlowPaths InteractionWidgets RenderingOpenGL2 RenderingFreeType)
+find_package(X11 REQUIRED)
+
+# OpenCV without its CMake package, which Debian has only together with all of OpenCV (libopencv-dev).
+find_path(OPENCV_INCLUDE opencv2/aruco.hpp PATH_SUFFIXES opencv4 REQUIRED)  # libopencv-contrib-dev
+set(OPENCV_LIBRARIES "")
+foreach(part core imgproc imgcodecs videoio calib3d aruco)
+  find_library(OPENCV_${part} opencv_${part} REQUIRED)
+  list(APPEND OPENCV_LIBRARIES ${OPENCV_${part}})
+endforeach()
+
+# Cyclone DDS without its CMake package, which wants OpenSSL's headers (cyclonedds-dev).
+find_path(CYCLONEDDS_INCLUDE dds/dds.h REQUIRED)
+find_library(CYCLONEDDS ddsc REQUIRED)
+
+# Links each plug-in, once add_module() has made its target.
+function(link_plugins)
+  target_link_libraries(sensorfarm_cairo PRIVATE PkgConfig::CAIRO)
+  target_link_libraries(sensorfarm_vtk PRIVATE VTK::IOXML VTK::FiltersCore VTK::FiltersFlowPaths VTK::InteractionWidgets VTK::RenderingOpenGL2 VTK::RenderingFreeType X11::X11)
+  target_include_directories(sensorfarm_opencv SYSTEM PRIVATE ${OPENCV_INCLUDE})
+  target_link_libraries(sensorfarm_opencv PRIVATE fmt::fmt ${OPENCV_LIBRARIES})
+  target_include_directories(sensorfarm_dds SYSTEM PRIVATE ${CYCLONEDDS_INCLUDE})
+  target_compile_definitions(sensorfarm_dds PRIVATE DDS_NDEBUG)  # as the library was built
+  target_link_libraries(sensorfarm_dds PRIVATE fmt::fmt ${CYCLONEDDS})
+  if(MPI_C_FOUND)
+    target_link_libraries(sensorfarm_mpi PRIVATE MPI::MPI_C)
+    target_compile_definitions(sensorfarm_mpi PRIVATE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
+  endif()
+endfunction()
