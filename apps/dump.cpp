@@ -68,10 +68,10 @@ std::string words_of(const server::PacketField& field) {
 
 /// Accuracy of a reading and quality of the state behind it.
 std::string quality_words(const netio::Header& header) {
-  if (netio::sensor_type_of(header.type) == 0) return "";
+  if (netio::sensor_type_of(header.type) == 0 && header.type != netio::Type::values) return "";
   const netio::Accuracy accuracy = netio::decode_accuracy(header.accuracy);
   std::string text = fmt::format("; mode {}", accuracy.mode);
-  if (!std::isinf(accuracy.bound)) text += fmt::format(", error up to {:.3g}", accuracy.bound);
+  if (!std::isinf(accuracy.bound)) text += ", error up to " + rounded_up(accuracy.bound);
   if (accuracy.unsure) text += ", not for every element";
   const netio::StateQuality& state = header.state;
   if (!state.stated) return text;

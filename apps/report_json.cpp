@@ -57,15 +57,22 @@ Json warnings_json(const std::vector<world::Warning>& warnings) {
 /// JSON has no infinite numbers: these become null.
 Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+/// Of a noisy sensor.
+Json noise_json(double bound_without_noise, double sigma) {
+  return {{"bound_without_noise", finite_json(bound_without_noise)}, {"sigma", finite_json(sigma)}};
+}
+
 Json statements_json(const std::vector<sensors::AccuracyStatement>& statements) {
   Json json = Json::array();
-  for (const sensors::AccuracyStatement& s : statements)
+  for (const sensors::AccuracyStatement& s : statements) {
     json.push_back({{"type", s.type->name},
                     {"sensors", s.sensors},
                     {"mode", sensors::word_of(*s.type, s.mode)},
-                    {"bound", finite_json(s.bound.error)},
+                    {"bound", finite_json(s.error())},
                     {"unit", sensors::unit_of(*s.type)},
                     {"condition", s.bound.condition}});
+    if (s.sigma > 0.0) json.back().update(noise_json(s.bound.error, s.sigma));
+  }
   return json;
 }
 
@@ -328,7 +335,9 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
             {"sensor_pose", pose_json(reading.X_WS)}};
   if (type.bound != nullptr) {
     head["accuracy"] = sensors::word_of(type, reading.mode);
-    head["bound"] = finite_json(reading.bound);
+    const double sigma = sensor_set.row(reading).sigma;
+    head["bound"] = sigma > 0.0 ? Json() : finite_json(reading.bound);
+    if (sigma > 0.0) head.update(noise_json(reading.bound_without_noise, sigma));
   }
   if (type.list.empty() && !reading.quality.empty()) head["unsure"] = word_of(reading.quality.front());
   if (type.list.empty()) {

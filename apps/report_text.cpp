@@ -62,8 +62,8 @@ std::string magnets_text(const world::World& world) {
   if (world.magnet_cutoff == 0.0) return row("magnets", "{}, all of them felt everywhere", magnets);
   const sensors::MagnetSummary facts = sensors::summarize_magnets(world);
   return row("magnets", "{}, felt within {:g} m", magnets, facts.cutoff_m) +
-         row("", "what is left out is at most {:.3g} T ({:.3g} Gauss), {:g} m above the ground", facts.bound_T,
-             1e4 * facts.bound_T, facts.height_m);
+         row("", "what is left out is at most {} T ({} Gauss), {:g} m above the ground", rounded_up(facts.bound_T),
+             rounded_up(1e4 * facts.bound_T), facts.height_m);
 }
 
 std::string street_text(const world::World& world) {
@@ -80,8 +80,12 @@ std::string street_text(const world::World& world) {
 }  // namespace
 
 std::string text_of(const sensors::AccuracyStatement& s) {
-  const std::string error =
-      std::isinf(s.bound.error) ? "no bound" : "within " + quantity_text(s.bound.error, sensors::unit_of(*s.type));
+  const std::string_view unit = sensors::unit_of(*s.type);
+  const std::string quiet = std::isinf(s.bound.error) ? "no bound" : "within " + bound_text(s.bound.error, unit);
+  std::string error = quiet;
+  if (s.sigma > 0.0 && std::isfinite(s.bound.error))
+    error = fmt::format("no bound, noise{}; without noise {}",
+                        std::isinf(s.sigma) ? "" : " of sigma " + quantity_text(s.sigma, unit), quiet);
   return fmt::format("{} {}, {}{}{}", counted(s.sensors, s.type->name), sensors::word_of(*s.type, s.mode), error,
                      s.bound.condition.empty() ? "" : ": ", s.bound.condition);
 }

@@ -40,7 +40,9 @@ std::string list_names(const std::vector<std::string_view>& names) {
                      names.size() > kMost ? fmt::format(", ... ({} in all)", names.size()) : "");
 }
 
-std::string quantity_text(double value, std::string_view unit) {
+namespace {
+
+std::string prefixed(double value, std::string_view unit, std::string (*number)(double)) {
   if (std::isinf(value)) return "-";
   if (value == 0.0) return "0";
   if (value < 1e-12) return fmt::format("< 1 p{}", unit);
@@ -48,7 +50,21 @@ std::string quantity_text(double value, std::string_view unit) {
   double scaled = value * 1e12;
   std::size_t at = 0;
   while (scaled >= 999.5 && at + 1 < std::size(kPrefixes)) scaled *= 1e-3, ++at;
-  return fmt::format("{:.3g} {}{}", scaled, kPrefixes[at], unit);
+  return fmt::format("{} {}{}", number(scaled), kPrefixes[at], unit);
+}
+
+}  // namespace
+
+std::string quantity_text(double value, std::string_view unit) {
+  return prefixed(value, unit, [](double scaled) { return fmt::format("{:.3g}", scaled); });
+}
+std::string bound_text(double bound, std::string_view unit) { return prefixed(bound, unit, rounded_up); }
+
+std::string rounded_up(double value) {
+  if (!(value > 0.0) || std::isinf(value)) return fmt::format("{:.3g}", value);
+  const std::string nearest = fmt::format("{:.3g}", value);
+  if (std::stod(nearest) >= value) return nearest;
+  return fmt::format("{:.3g}", value + 0.5 * std::pow(10.0, std::floor(std::log10(value)) - 2.0));
 }
 
 }  // namespace sf::apps

@@ -43,5 +43,9 @@ std::string list_names(const std::vector<std::string_view>& names);
 /// "5 mm", "2.5 uT", "0", "< 1 pm", "-" for infinity; three digits. @param unit "m", "T" or another, which is put
 /// behind the number
 std::string quantity_text(double value, std::string_view unit);
+/// The same of an error bound: never less than it.
+std::string bound_text(double bound, std::string_view unit);
+/// Three digits of a number >= 0, never less than it.
+std::string rounded_up(double value);
 
 }  // namespace sf::apps

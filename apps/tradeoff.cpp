@@ -102,12 +102,13 @@ std::string text_of(const std::vector<scenarios::ModeResult>& results) {
   for (const scenarios::ModeResult& g : results)
     text += fmt::format("{:<13} {:<8} {:>12} {:>9.2f} % {:>11} {:>11} {:>10} {:>10} {:>10} {}\n", g.sensor, g.mode,
                         fmt::format("{:.4g}", g.rate), 100.0 * g.covered,
-                        g.covered > 0.0 ? quantity_text(g.covered_max, g.unit) : "-", quantity_text(g.bound, g.unit),
+                        g.covered > 0.0 ? quantity_text(g.covered_max, g.unit) : "-", bound_text(g.bound, g.unit),
                         quantity_text(g.median, g.unit), quantity_text(g.p99, g.unit), quantity_text(g.max, g.unit),
                         g.front ? "*" : "");
   text += "* no other mode of the type is as fast with 99 % of errors as small\n";
   text +=
-      "A bound holds for the part that it covers; the others are flagged, and may be off by as much as all are.\n\n";
+      "A bound holds for the part that it covers; the others are flagged, and may be off by as much as all are.\n"
+      "All is measured without noise.\n\n";
   for (const scenarios::ModeResult& g : results) text += fmt::format("{:<13} {:<8} {}\n", g.sensor, g.mode, g.what);
   return text + "\n";
 }

@@ -15,7 +15,7 @@ inline constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
 
 /// The reason for which an element's error may exceed the error bound of its reading.
 enum class QualityFlag : std::uint8_t {
-  none = 0,          ///< the bound holds
+  none = 0,          ///< the bound holds, where one is stated
   not_cast = 1,      ///< no beam was cast for this element: it is interpolated between cast beams
   grazing = 2,       ///< the beam meets a surface at too small an angle (SF_MIN_SINE, raycast/records.h)
   not_straight = 3,  ///< lane edge: the points do not lie on one straight line
@@ -36,11 +36,17 @@ struct ReadingBlock {
       hits;  ///< scans of this process: row of the model that each beam met, or kNoHit; empty for all others
   std::uint32_t flags = 0;  ///< bits defined by the header of the sensor type
   std::uint8_t mode = 0;    ///< accuracy mode of the measurement: row of the sensor type's modes
-  /// [unit of the first column] largest error of that column without noise, for elements without a quality flag
-  /// (sensors/accuracy.h); infinite: no bound is stated.
+  /// [unit of the first column] largest error of that column in `values`, for elements without a quality flag
+  /// (sensors/accuracy.h). Infinite: no bound is stated, as of noisy readings, and where no element has a bound.
   double bound = std::numeric_limits<double>::infinity();
-  std::span<const QualityFlag> quality;  ///< one per element; empty: the bound holds for all
+  double bound_without_noise = std::numeric_limits<double>::infinity();  ///< the same before noise was added
+  /// [unit of the first column] largest standard deviation of its noise; 0: no noise; infinite: not known.
+  double sigma = 0.0;
+  std::span<const QualityFlag> quality;  ///< one per element; empty: no element has a flag
   StateQuality state;  ///< of the mover's state at the measurement; not stated where the state is exact
 };
+
+/// Whether the bound of the sensor type does not hold for every element: some have a quality flag, or noise.
+inline bool is_unsure(const ReadingBlock& reading) { return !reading.quality.empty() || reading.sigma > 0.0; }
 
 }  // namespace sf::base

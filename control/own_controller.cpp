@@ -19,6 +19,10 @@ static_assert(sensorfarm::kNone == base::kNoHit && sensorfarm::kNone == base::kN
 sensorfarm::Pose pose_of(const base::Pose& X) { return {X.x, X.y, X.z, X.yaw}; }
 sensorfarm::Twist twist_of(const base::Twist& twist) { return {twist.forward, twist.left, twist.turn}; }
 
+std::span<const std::uint8_t> flags_of(const base::ReadingBlock& reading) {
+  return {reinterpret_cast<const std::uint8_t*>(reading.quality.data()), reading.quality.size()};
+}
+
 /// The farm's settings behind the public interface.
 class PublicSettings final : public sensorfarm::Settings {
  public:
@@ -113,7 +117,7 @@ void OwnController::translate(const ControllerInput& input) {
   readings_.clear(), others_.clear(), lights_.clear();
   for (const base::ReadingBlock& r : input.readings)
     readings_.push_back({sensors::find_sensor_type(r.type)->name, r.sensor, 1e-9 * static_cast<double>(r.time),
-                         pose_of(r.X_WS), r.values, r.hits, r.bound});
+                         pose_of(r.X_WS), r.values, r.hits, r.bound, r.bound_without_noise, r.sigma, flags_of(r)});
   for (const Neighbour& other : input.others)
     others_.push_back({other.id, pose_of(other.state.X_WM), twist_of(other.state.velocity), other.intent.follows});
   for (std::size_t i = 0; i < input.signals.size(); ++i)

@@ -19,7 +19,7 @@ ReadingCache::ReadingCache(std::span<const sensors::SensorSpec> rows, bool noise
     : carrier_of_(rows.size()), validity_(rows.size(), Validity::never), stored_(rows.size()) {
   for (std::uint32_t i = 0; i < rows.size(); ++i) {
     const sensors::SensorSpec& row = rows[i];
-    if (!(row.dependency_radius > 0.0) || (noise && row.noisy)) continue;
+    if (!(row.dependency_radius > 0.0) || (noise && row.sigma > 0.0)) continue;
     validity_[i] = Validity::changed;
     if (carriers_.empty() || carriers_.back().mover != row.mover)
       carriers_.push_back({row.mover, i, i, 0.0, row.depends_on_magnets, false});

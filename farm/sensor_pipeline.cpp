@@ -1,13 +1,27 @@
 #include "farm/sensor_pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "farm/schedule.h"
 
 namespace sf::farm {
 
+namespace {
+
+/// Where no element has a bound, as with noise, a reading states none.
+void withdraw_bound(double sigma, base::ReadingBlock& block) {
+  if (sigma > 0.0 && block.sigma == 0.0) block.sigma = sigma;
+  const auto& flags = block.quality;
+  const bool flagged = !flags.empty() && std::ranges::find(flags, base::QualityFlag::none) == flags.end();
+  if (flagged) block.bound_without_noise = HUGE_VAL;
+  if (flagged || block.sigma > 0.0) block.bound = HUGE_VAL;
+}
+
+}  // namespace
+
 SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& g)
-    : group(&g), backend(g.type->make(context)), cache(g.rows, context.noise) {
+    : group(&g), backend(g.type->make(context)), cache(g.rows, context.noise), noise(context.noise) {
   for (std::uint32_t i = 0; i < g.rows.size(); ++i) {
     const sensors::SensorSpec& row = g.rows[i];
     if (timings.empty() || timings.back().rate != row.rate || timings.back().phase != row.phase)
@@ -92,6 +106,7 @@ std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Repo
       block.time = now;
       block.sequence = static_cast<std::uint32_t>(due[i].sequence);
       block.X_WM = states[block.mover].X_WM;
+      withdraw_bound(noise ? group->rows[due[i].row].sigma : 0.0, block);
     }
   });
   return again;

@@ -30,10 +30,13 @@ ReadingTable::ReadingTable(const sensors::SensorSet::Group& group, double interv
   view_.columns = sensors::element_width(*group.type);
   times_.assign(rows.size(), kNan);
   bounds_.assign(rows.size(), std::numeric_limits<double>::infinity());
+  bound_without_noise_ = bounds_;
+  sigma_.assign(rows.size(), 0.0);
   fresh_.assign(rows.size(), 0);
   flagged_.assign(rows.size(), 0);
   flags_.assign(rows.size() * view_.elements, 0);
-  view_.robots = robots_, view_.times = times_, view_.bounds = bounds_, view_.fresh = fresh_, view_.flags = flags_;
+  view_.robots = robots_, view_.times = times_, view_.fresh = fresh_, view_.flags = flags_;
+  view_.bounds = bounds_, view_.bound_without_noise = bound_without_noise_, view_.sigma = sigma_;
 }
 
 std::size_t ReadingTable::row_of(const base::ReadingBlock& reading) const {
@@ -85,6 +88,8 @@ void ReadingTable::note(const base::ReadingBlock& reading) {
   const std::size_t row = row_of(reading);
   times_[row] = 1e-9 * static_cast<double>(reading.time);
   bounds_[row] = reading.bound;
+  bound_without_noise_[row] = reading.bound_without_noise;
+  sigma_[row] = reading.sigma;
   fresh_[row] = 1;
   const auto flags = std::span(flags_).subspan(row * view_.elements, view_.elements);
   if (flagged_[row] != 0) std::fill(flags.begin(), flags.end(), std::uint8_t{0});

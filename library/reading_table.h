@@ -39,6 +39,8 @@ class ReadingTable {
   std::vector<std::uint32_t> robots_;
   std::vector<double> times_;
   std::vector<double> bounds_;
+  std::vector<double> bound_without_noise_;
+  std::vector<double> sigma_;
   std::vector<std::uint8_t> fresh_;
   std::vector<std::uint8_t> flags_;
   std::vector<std::uint8_t> flagged_;  ///< per row: some flag is set

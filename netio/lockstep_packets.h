@@ -75,7 +75,7 @@ struct Values {
   std::uint32_t total = 0;  ///< values of the whole reading, in [1, kMaxTotal]
   std::uint32_t first = 0;  ///< value that this part begins with: a multiple of kMaxValues
   base::Pose X_WS;          ///< of the sensor at the measurement
-  double bound = std::numeric_limits<double>::infinity();  ///< of the error, see base::ReadingBlock
+  double bound = std::numeric_limits<double>::infinity();  ///< of the error of all elements; infinite: not stated
   std::span<const std::uint8_t> values;                    ///< f64 each; any numbers; live like the datagram
 };
 double value_of(const Values& values, std::size_t i);

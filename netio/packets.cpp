@@ -236,7 +236,8 @@ std::uint16_t encode_accuracy(const Accuracy& accuracy) {
   if (!(accuracy.bound > 0.0) || std::isinf(accuracy.bound)) return static_cast<std::uint16_t>(low);
   // The tolerance keeps rounding of the logarithm from stating a smaller bound.
   const double code = std::ceil(16.0 * std::log2(accuracy.bound) + 1e-9) + 1024.0;
-  const auto k = static_cast<unsigned>(std::clamp(code, 1.0, 2047.0));
+  if (code > 2047.0) return static_cast<std::uint16_t>(low);
+  const auto k = static_cast<unsigned>(std::max(code, 1.0));
   return static_cast<std::uint16_t>(k << 5 | low);
 }
 

@@ -81,10 +81,11 @@ struct Header {
 /// bound of 2^((k - 1024) / 16), rounded up by at most 4.5 %; k = 0: no bound is stated.
 struct Accuracy {
   std::uint8_t mode = 0;  ///< row of the sensor type's modes, in [0, 15]
-  bool unsure = false;    ///< the bound does not hold for some element, by the mode's rule or for a grazing beam
-  double bound = 0.0;     ///< [unit of the first column]; infinite: not stated
+  bool unsure =
+      false;           ///< the sensor type's bound does not hold for some element: base::is_unsure, or a saturated word
+  double bound = 0.0;  ///< [unit of the first column] of the numbers in the packet; infinite: not stated
 };
-/// Bounds of 0 and infinity are encoded as not stated; others saturate at 2^-63 and 2^63.
+/// Bounds of 0, and above 2^(1023 / 16), are encoded as not stated; the least that is stated is 2^(-1023 / 16).
 std::uint16_t encode_accuracy(const Accuracy& accuracy);
 Accuracy decode_accuracy(std::uint16_t word);
 

@@ -47,7 +47,7 @@ PartStatus ReadingAssembler::finish(const ReadingPart& piece, std::int64_t now, 
 
 std::optional<CompleteReading> ReadingAssembler::newest() const {
   if (!newest_.used) return std::nullopt;
-  return CompleteReading{newest_.piece.sequence, newest_.piece.time, arrival_, newest_.values};
+  return CompleteReading{newest_.piece.sequence, newest_.piece.time, arrival_, newest_.values, newest_.piece.accuracy};
 }
 
 /// Counts a part in the tracker, with unwrapped sequences.

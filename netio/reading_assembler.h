@@ -16,9 +16,10 @@ namespace sf::netio {
 /// Identity of a part of a reading.
 struct ReadingPart {
   std::uint32_t sequence = 0;
-  std::uint32_t part = 0;   ///< below `parts`
-  std::uint32_t parts = 1;  ///< >= 1, equal for all parts of a reading
-  std::int64_t time = 0;    ///< [ns] time of measurement
+  std::uint32_t part = 0;      ///< below `parts`
+  std::uint32_t parts = 1;     ///< >= 1, equal for all parts of a reading
+  std::int64_t time = 0;       ///< [ns] time of measurement
+  std::uint16_t accuracy = 0;  ///< Header::accuracy
 };
 
 /// A complete reading.
@@ -27,6 +28,7 @@ struct CompleteReading {
   std::int64_t time = 0;           ///< [ns] time of measurement by the sender's clock
   std::int64_t arrival = 0;        ///< [ns] arrival of its last part by the receiver's clock
   std::span<const double> values;  ///< live until the next part; NaN for elements that no part contained
+  std::uint16_t accuracy = 0;      ///< Header::accuracy of its first part to arrive
 };
 
 /// Result of receiving a part.

@@ -36,7 +36,7 @@ PartStatus Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, 
   if (info.status != PacketStatus::accepted) return PartStatus::rejected;
 
   if (headerless_) synthesise_header(stream, info.part, now, header);
-  const ReadingPart part{header.sequence, info.part, info.parts, header.time};
+  const ReadingPart part{header.sequence, info.part, info.parts, header.time, header.accuracy};
   const PartStatus part_status =
       stream.assembler.take(part, now, [&](std::span<double> values) { read_(i, header, payload, values); });
   counts_.late += part_status == PartStatus::late;

@@ -1,5 +1,6 @@
 // The types of sensorfarm/controller.h in Python.
 
+#include <algorithm>
 #include <limits>
 
 #include "python/controllers.h"
@@ -21,7 +22,8 @@ struct OwnedReading {
   Pose X_WS;
   py::array_t<double> values;
   py::object hits;
-  double bound = 0.0;
+  double bound = 0.0, bound_without_noise = 0.0, sigma = 0.0;
+  py::array_t<std::uint8_t> flags;
 };
 
 struct OwnedInput {
@@ -63,6 +65,9 @@ std::size_t columns_of(const Robot& robot, const Reading& reading) {
 OwnedReading owned(const Reading& reading, std::size_t columns) {
   std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(reading.values.size())};
   if (columns > 1) shape = {shape[0] / static_cast<py::ssize_t>(columns), static_cast<py::ssize_t>(columns)};
+  py::array_t<std::uint8_t> flags(shape[0]);
+  std::fill_n(flags.mutable_data(), flags.size(), std::uint8_t{0});
+  std::copy(reading.flags.begin(), reading.flags.end(), flags.mutable_data());
   py::object hits = py::none();
   if (!reading.hits.empty())
     hits = py::array_t<std::uint32_t>(static_cast<py::ssize_t>(reading.hits.size()), reading.hits.data());
@@ -72,7 +77,10 @@ OwnedReading owned(const Reading& reading, std::size_t columns) {
           reading.X_WS,
           py::array_t<double>(shape, reading.values.data()),
           std::move(hits),
-          reading.bound};
+          reading.bound,
+          reading.bound_without_noise,
+          reading.sigma,
+          std::move(flags)};
 }
 
 const char* word_of(LightState state) {
@@ -121,7 +129,10 @@ void add_input(py::module_& module) {
       .def_readonly("X_WS", &OwnedReading::X_WS)
       .def_readonly("values", &OwnedReading::values)
       .def_readonly("hits", &OwnedReading::hits)
-      .def_readonly("bound", &OwnedReading::bound);
+      .def_readonly("bound", &OwnedReading::bound)
+      .def_readonly("bound_without_noise", &OwnedReading::bound_without_noise)
+      .def_readonly("sigma", &OwnedReading::sigma)
+      .def_readonly("flags", &OwnedReading::flags);
   py::class_<Neighbour>(module, "Neighbour", py::module_local(), "Another robot, as it broadcasts itself (V2V).")
       .def_readonly("id", &Neighbour::id)
       .def_readonly("pose", &Neighbour::pose)

@@ -239,10 +239,17 @@ void add_readings(py::class_<PySimulation>& c) {
   c.def("readings", &values, type,
         "(sensors, elements[, columns]): the newest reading of each sensor; shorter ones end in NaN.")
       .def("hits", &hits, type, "(sensors, beams): number of the model that each beam met, or NONE.")
-      .def("flags", &flags, type, "(sensors, elements): 0 where the bound holds.")
+      .def("flags", &flags, type, "(sensors, elements): 0 where a stated bound holds.")
       .def(
           "bounds", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).bounds); }, type,
-          "(sensors,): largest error of the first column without noise.")
+          "(sensors,): largest error of the first column; infinite where none is stated, as of noisy sensors.")
+      .def(
+          "bound_without_noise",
+          [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).bound_without_noise); }, type,
+          "(sensors,): the same before noise was added.")
+      .def(
+          "sigma", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).sigma); }, type,
+          "(sensors,): largest standard deviation of the first column's noise; 0: none; infinite: not known.")
       .def(
           "times", [](const PySimulation& s, Text t) { return column(s, s.farm.readings(t).times); }, type,
           "(sensors,) [s] of the measurement; NaN before the first.")

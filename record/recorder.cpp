@@ -33,6 +33,8 @@ TextPairs summary_of(const RunInfo& info) {
       {"readings", info.record_readings ? "recorded" : "to be computed again from world.bin and /fleet"},
   };
   for (const auto& [key, value] : info.options) pairs.emplace_back("option." + key, value);
+  for (std::size_t i = 0; i < info.accuracy.size(); ++i)
+    pairs.emplace_back("accuracy." + std::to_string(i), info.accuracy[i]);
   return pairs;
 }
 

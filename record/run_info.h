@@ -97,7 +97,8 @@ struct RunInfo {
   std::vector<SensorTypeInfo> sensor_types;                  ///< types of the movers' sensors
   std::vector<MoverInfo> movers;                             ///< in the rows of `base::Report::mover`
   std::vector<std::pair<std::string, std::string>> options;  ///< further options of the run
-  base::Bytes snapshot;                                      ///< the world, not empty
+  std::vector<std::string> accuracy;  ///< JSON objects: error bounds of its readings; not read back, for readers alone
+  base::Bytes snapshot;               ///< the world, not empty
   WorldShape shape;
   std::vector<std::string> lights;  ///< names of the world's traffic lights; not read back, since the world has them
 };

@@ -22,11 +22,9 @@ void Mailbox::send(const base::ReadingBlock& reading, std::int64_t now) {
   Slot& slot = slot_of(reading);
   auto place = std::find_if(slot.coming.begin(), slot.coming.end(), [](const Kept& kept) { return !kept.used; });
   if (place == slot.coming.end()) place = slot.coming.emplace(slot.coming.end());
-  place->block = reading;
+  place->reading.take(reading);
   place->due = now + *later;
   place->used = true;
-  place->values.assign(reading.values.begin(), reading.values.end());
-  place->hits.assign(reading.hits.begin(), reading.hits.end());
 }
 
 /// Shows the newest reading that is due and discards the other due ones.
@@ -35,7 +33,7 @@ void Mailbox::show(Slot& slot, std::int64_t now) {
   for (Kept& kept : slot.coming) {
     if (!kept.used || kept.due > now) continue;
     kept.used = false;
-    if (slot.has && kept.block.sequence <= slot.shown.block.sequence) continue;
+    if (slot.has && kept.reading.block().sequence <= slot.shown.reading.block().sequence) continue;
     std::swap(slot.shown, kept);
     slot.shown.used = kept.used = false;
     slot.has = slot.renewed = true;
@@ -46,10 +44,7 @@ std::span<const base::ReadingBlock> Mailbox::receive(std::int64_t now) {
   open_.clear();
   for (Slot& slot : slots_) {
     show(slot, now);
-    if (!slot.has) continue;
-    base::ReadingBlock& block = open_.emplace_back(slot.shown.block);
-    block.values = slot.shown.values;
-    block.hits = slot.shown.hits;
+    if (slot.has) open_.push_back(slot.shown.reading.block());
   }
   return open_;
 }

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/reading.h"
+#include "farm/stored_reading.h"
 #include "netio/link_model.h"
 
 namespace sf::scenarios {
@@ -28,11 +28,9 @@ class Mailbox {
 
  private:
   struct Kept {
-    base::ReadingBlock block;  ///< its spans are the vectors below
-    std::int64_t due = 0;      ///< [ns]
+    farm::StoredReading reading;
+    std::int64_t due = 0;  ///< [ns]
     bool used = false;
-    std::vector<double> values;
-    std::vector<std::uint32_t> hits;
   };
   struct Slot {
     std::uint8_t type = 0;

@@ -236,7 +236,7 @@ class Verifier {
     const sensors::CastLaser& cast = reference_.laser(reading.mover, reading.sensor);
     // Noise proportional to the range scales with the error of the range.
     const double stretch = 1.0 + 8.0 * cast.laser.noise.range_proportional;
-    return cast.single ? stretch * reading.bound + cast.laser.range_max * 0x1p-24 : 0.0;
+    return cast.single ? stretch * reading.bound_without_noise + cast.laser.range_max * 0x1p-24 : 0.0;
   }
 
   /// Ranges with the precision of recorded scans.

@@ -63,7 +63,14 @@ struct Reading {
   Pose X_WS;                       ///< the sensor at the measurement
   std::span<const double> values;  ///< row by row, in each the type's columns; a range without a return is the limit
   std::span<const std::uint32_t> hits;  ///< lasers in a simulation: number of the model met by each beam, or kNone
-  double bound = std::numeric_limits<double>::infinity();  ///< largest error of the first column without noise
+  /// Largest error of the first column, in rows without a flag; infinite: none is stated, as of noisy sensors.
+  double bound = std::numeric_limits<double>::infinity();
+  double bound_without_noise = std::numeric_limits<double>::infinity();  ///< the same before noise was added
+  /// Largest standard deviation of the first column's noise; 0: no noise; infinite: not known.
+  double sigma = 0.0;
+  /// One per row: 0, or the reason for which the bound does not hold (docs/accuracy.md); empty: 0 for all. Always empty
+  /// in `sensorfarm robot`, where a bound is stated only if it holds for all rows.
+  std::span<const std::uint8_t> flags;
 };
 
 /// Another robot, as it broadcasts itself (V2V).

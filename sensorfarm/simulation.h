@@ -68,11 +68,13 @@ struct Readings {
   std::size_t stride = 0;               ///< from row to row, in numbers; >= elements * columns
   const std::uint32_t* hits = nullptr;  ///< numbers of the models that beams met, or kNone; null for other types
   std::size_t hit_stride = 0;           ///< from row to row
-  std::span<const std::uint32_t> robots;  ///< per row: its robot's row among Simulation::poses
-  std::span<const double> times;          ///< [s] per row: of the measurement; NaN before the first
-  std::span<const double> bounds;         ///< per row: largest error of the first column, as in Reading::bound
-  std::span<const std::uint8_t> fresh;    ///< per row: 1 where it was delivered in the last step
-  std::span<const std::uint8_t> flags;    ///< sensors * elements: 0 where the bound holds (docs/accuracy.md)
+  std::span<const std::uint32_t> robots;        ///< per row: its robot's row among Simulation::poses
+  std::span<const double> times;                ///< [s] per row: of the measurement; NaN before the first
+  std::span<const double> bounds;               ///< per row: largest error of the first column, as in Reading::bound
+  std::span<const double> bound_without_noise;  ///< per row, as in Reading
+  std::span<const double> sigma;                ///< per row, as in Reading
+  std::span<const std::uint8_t> fresh;          ///< per row: 1 where it was delivered in the last step
+  std::span<const std::uint8_t> flags;          ///< sensors * elements: 0 where a stated bound holds (docs/accuracy.md)
 
   std::span<const double> row(std::size_t i) const { return {values + i * stride, elements * columns}; }
   std::span<const std::uint32_t> hits_of(std::size_t i) const { return {hits + i * hit_stride, elements}; }

@@ -117,13 +117,13 @@ std::vector<std::string_view> accuracy_words() {
 namespace {
 
 /// Settings by which sensors have equal bounds.
-using Alike = std::tuple<std::uint8_t, bool, double, double, std::uint32_t>;
+using Alike = std::tuple<std::uint8_t, double, double, double, std::uint32_t>;
 
 /// @param known bounds computed before
 const ErrorBound& bound_of(const world::World& world, const SensorType& type, const SensorSpec& row,
                            std::map<Alike, ErrorBound>& known) {
   const auto [at, is_new] = known.try_emplace(
-      Alike{row.mode, row.noisy, row.limit, world.movers[row.mover].X_WM.z + row.X_MS.z, row.elements}, ErrorBound{});
+      Alike{row.mode, row.sigma, row.limit, world.movers[row.mover].X_WM.z + row.X_MS.z, row.elements}, ErrorBound{});
   if (is_new) at->second = type.bound(world, row);
   return at->second;
 }
@@ -138,13 +138,14 @@ std::vector<AccuracyStatement> accuracy_statements(const world::World& world, co
     std::map<Alike, ErrorBound> known;
     for (const SensorSpec& row : group.rows) {
       const ErrorBound& bound = bound_of(world, *group.type, row, known);
-      const auto same =
-          std::find_if(statements.begin() + static_cast<std::ptrdiff_t>(first), statements.end(),
-                       [&](const AccuracyStatement& s) { return s.mode == row.mode && s.bound.error == bound.error; });
+      const auto same = std::find_if(
+          statements.begin() + static_cast<std::ptrdiff_t>(first), statements.end(), [&](const AccuracyStatement& s) {
+            return s.mode == row.mode && s.bound.error == bound.error && s.sigma == row.sigma;
+          });
       if (same != statements.end())
         ++same->sensors;
       else
-        statements.push_back({group.type, row.mode, 1, bound});
+        statements.push_back({group.type, row.mode, 1, bound, row.sigma});
     }
   }
   return statements;

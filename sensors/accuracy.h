@@ -38,8 +38,11 @@ std::vector<std::string_view> accuracy_words();
 struct AccuracyStatement {
   const SensorType* type = nullptr;
   std::uint8_t mode = 0;
-  std::uint32_t sensors = 0;  ///< number of sensors with this bound
-  ErrorBound bound;
+  std::uint32_t sensors = 0;  ///< number of sensors with this bound and noise
+  ErrorBound bound;           ///< without noise
+  double sigma = 0.0;         ///< SensorSpec::sigma
+  /// [unit of the first column] base::ReadingBlock::bound: a noisy sensor states none.
+  double error() const { return sigma > 0.0 ? HUGE_VAL : bound.error; }
 };
 std::vector<AccuracyStatement> accuracy_statements(const world::World& world, const SensorSet& sensor_set);
 

@@ -53,8 +53,8 @@ class Encoders : public HostBackend {
 std::vector<SensorSpec> specs_of(const world::World& world) {
   std::vector<SensorSpec> rows;
   for_each_sensor(world, encoder_type, [&](const MountedSensor& mounted) {
-    read_encoder(mounted.settings, world.movers[mounted.row.mover]);
     rows.push_back(mounted.row);
+    rows.back().sigma = read_encoder(mounted.settings, world.movers[mounted.row.mover]).slip > 0.0 ? HUGE_VAL : 0.0;
     rows.back().reach = 0.0;
   });
   return rows;

@@ -36,8 +36,8 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
   std::vector<SensorSpec> rows;
   const double top = top_of_blocking(world);
   for_each_sensor(world, gps_type, [&](const MountedSensor& mounted) {
-    read_gps(mounted.settings);
     SensorSpec row = mounted.row;
+    row.sigma = read_gps(mounted.settings).noise > 0.0 ? HUGE_VAL : 0.0;  // depends on the satellites in sight
     row.rate = rate_of(mounted.settings, kRate);
     row.X_MS.z += mounted.settings.height;
     const double above = top - world.movers[row.mover].X_WM.z - row.X_MS.z;

@@ -41,7 +41,9 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
   std::vector<SensorSpec> rows;
   for_each_sensor(world, gyro_type, [&](const MountedSensor& mounted) {
     rows.push_back(mounted.row);
-    rows.back().limit = read_gyro(mounted.settings).range;
+    const Gyro gyro = read_gyro(mounted.settings);
+    rows.back().limit = gyro.range;
+    rows.back().sigma = gyro.bias > 0.0 || gyro.scale_error > 0.0 ? HUGE_VAL : gyro.noise;
     rows.back().reach = 0.0;
   });
   return rows;

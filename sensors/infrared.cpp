@@ -40,6 +40,7 @@ constexpr PlainForm kForm{kInfrared, "infrared", kNumbers};
 ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type) {
   ConeArray array = read_cones(sensor, mover, number_of_type, {30.0 * kDegrees, 0.0, 0.05, 50.0});
   array.proportional = number(sensor, "noise", 0.0, 0.0, 1e3);
+  array.row.sigma = array.proportional > 0.0 ? HUGE_VAL : 0.0;  // of the response
   return array;
 }
 

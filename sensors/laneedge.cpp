@@ -129,12 +129,13 @@ void LaneEdges::add_copies(gpu::Batch& batch) {
   fit_.add_copies(batch);
 }
 
-/// Sets the error bound of a reading, or the reason for which it may not hold.
+/// Sets the error bound of a reading, or the reason for which it states none.
 void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   const LaneEdge& edge = edges_[due_[i].row];
-  const bool noisy = noise_ && edge.row.noisy;
+  const bool noisy = noise_ && edge.row.sigma > 0.0;
   const double away = std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y)) + edge.fan.range_max;
-  if (exact_ && !noisy) block.bound = lane_edge_bound(edge, longest_, away);
+  if (noisy) block.sigma = std::isnan(block.values[3]) ? HUGE_VAL : block.values[3];
+  if (exact_ && !noisy && !std::isnan(block.values[0])) block.bound = lane_edge_bound(edge, longest_, away);
   base::QualityFlag why = base::QualityFlag::none;
   if (edge.row.mode > 0)
     why = base::QualityFlag::not_cast;  // a skipped beam may have met another edge
@@ -142,7 +143,11 @@ void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
     why = (caster_.beam_flags()[lanes_[i]] & SF_GRAZING) != 0 ? base::QualityFlag::grazing : why;
   else if (std::isfinite(block.bound))
     why = quality_of(fit_.reading(i), point_error(edge, longest_, away), block.bound);
-  if (why != base::QualityFlag::none) block.quality = {&kReasons[static_cast<std::size_t>(why)], 1};
+  if (why != base::QualityFlag::none) {
+    block.quality = {&kReasons[static_cast<std::size_t>(why)], 1};
+    block.bound = HUGE_VAL;
+  }
+  block.bound_without_noise = block.bound;
 }
 
 void LaneEdges::write(std::size_t i, base::ReadingBlock& block) {
@@ -190,6 +195,7 @@ constinit const SensorType laneedge_type{
     .wire_problem = lane_edge_wire_problem,
     .parts = lane_edge_parts,
     .encode = encode_lane_edge,
+    .wire_error = lane_edge_wire_error,
     .decode = decode_lane_edge,
     .read = read_lane_edge,
 };

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kFarmBytes = 12;
 constexpr std::size_t kThesisBytes = 2;
+constexpr double kMillimetre = 1e-3;  // [m] step of the distance
 
 /// Nearest integer multiple of `unit`, in [0, most]; `most` for NaN.
 template <class Word>
@@ -39,12 +40,16 @@ std::uint8_t encode_lane_edge(const SensorSpec&, const base::ReadingBlock& readi
   constexpr auto kMost32 = std::numeric_limits<std::uint32_t>::max();
   const double distance = reading.values[0];
   base::ByteWriter writer(out);
-  writer.put(std::isnan(distance) ? kNoEdge : in_units<std::uint16_t>(distance, 1e-3, kNoEdge - 1));
+  writer.put(std::isnan(distance) ? kNoEdge : in_units<std::uint16_t>(distance, kMillimetre, kNoEdge - 1));
   if (wire == WireFormat::thesis) return kLaneEdge;
   writer.put(in_units<std::uint16_t>(reading.values[1], 1.0, 65'535));
   writer.put(in_units<std::uint32_t>(reading.values[2], 1e-6, kMost32));
   writer.put(in_units<std::uint32_t>(reading.values[3], 1e-6, kMost32));
   return kLaneEdge;
+}
+
+double lane_edge_wire_error(const SensorSpec&, const base::ReadingBlock& reading) {
+  return wire_error(reading.values.first(1), 1, kMillimetre, 0.0, (kNoEdge - 1) * kMillimetre);
 }
 
 PayloadPart decode_lane_edge(const SensorSpec&, std::span<const std::uint8_t> payload, std::uint8_t type,
@@ -62,7 +67,7 @@ void read_lane_edge(const SensorSpec&, std::span<const std::uint8_t> payload, st
                     std::span<double> values) {
   SF_CHECK(values.size() == 4, "a lane edge reading is four numbers");
   base::ByteReader reader(payload);
-  values[0] = from_units(reader.get<std::uint16_t>(), 1e-3);
+  values[0] = from_units(reader.get<std::uint16_t>(), kMillimetre);
   if (wire == WireFormat::thesis) return;
   values[1] = reader.get<std::uint16_t>();
   values[2] = from_units(reader.get<std::uint32_t>(), 1e-6);

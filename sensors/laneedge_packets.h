@@ -20,6 +20,8 @@ std::uint32_t lane_edge_parts(const SensorSpec& sensor, WireFormat wire);       
 /// @return the payload's type. A reading without an edge is sent as well.
 std::uint8_t encode_lane_edge(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
                               std::uint32_t part, base::Bytes& out);
+/// SensorType::wire_error: half a millimetre; infinite for a distance that is sent as 0 or 65534 and is less or more.
+double lane_edge_wire_error(const SensorSpec& sensor, const base::ReadingBlock& reading);
 PayloadPart decode_lane_edge(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                              WireFormat wire);
 /// Fills in the four columns from a payload that `decode_lane_edge` accepted; the thesis format has only the first. NaN

@@ -61,7 +61,7 @@ LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uin
   edge.row.X_MS = fan.X_MS;
   edge.row.limit = edge.distance_max;
   edge.row.dependency_radius = edge.row.reach = fan.range_max;
-  edge.row.noisy = fan.noise.has_range() || fan.noise.angle_sigma > 0.0;
+  edge.row.sigma = fan.noise.has_range() || fan.noise.angle_sigma > 0.0 ? HUGE_VAL : 0.0;  // readings have their own
   return edge;
 }
 
@@ -102,7 +102,7 @@ base::QualityFlag quality_of(const EdgeReading& reading, double error, double bo
 
 ErrorBound bound_of_lane_edge(const world::World& world, const SensorSpec& row) {
   if (uses_raster(world)) return {HUGE_VAL, "markings in pixels: each reading carries its sigma"};
-  if (row.noisy) return {HUGE_VAL, "noise affects the line: each reading carries its sigma"};
+  if (row.sigma > 0.0) return {HUGE_VAL, "noise affects the line: each reading carries its sigma"};
   ErrorBound bound{0.0, "one straight edge, visible on both sides; other readings are flagged"};
   if (row.mode > 0) bound.condition = "one straight edge; all readings are flagged: skipped rays may have met another";
   const double longest = reaches_of(filter_scene(world, true).world).longest;

@@ -139,6 +139,11 @@ std::uint8_t encode_laser(const SensorSpec& sensor, const base::ReadingBlock& sc
   return plain ? kLaser : kLaser + kExtended;
 }
 
+double laser_wire_error(const SensorSpec& sensor, const base::ReadingBlock& scan) {
+  if (fits_plain(sensor)) return wire_error(scan.values, 1, 1.0 / kPlainPerMetre, 0.0, kPlainRange);
+  return wire_error(scan.values, 1, 1.0 / kExtendedPerMetre, 0.0, (kNoReturn - 1) / kExtendedPerMetre);
+}
+
 PayloadPart decode_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                          WireFormat wire) {
   const bool extended = wire == WireFormat::farm && type == kLaser + kExtended;

@@ -2,7 +2,7 @@
 // Laser scans as payloads, in three forms; docs/packets.md gives every byte. Readings are in metres, payloads in
 // integer wire units, rounded to nearest (half up); values saturate at both ends and never wrap.
 //
-// The first five functions are the wire part of the laser's SensorType. Of a spec they read `elements` (samples) and
+// The first six functions are the wire part of the laser's SensorType. Of a spec they read `elements` (samples) and
 // `limit` (range_max).
 
 #include <cstdint>
@@ -32,6 +32,9 @@ std::uint32_t laser_parts(const SensorSpec& sensor, WireFormat wire);
 /// @return the payload's type; 0, with nothing appended, when a range of this part is NaN
 std::uint8_t encode_laser(const SensorSpec& sensor, const base::ReadingBlock& scan, WireFormat wire, std::uint32_t part,
                           base::Bytes& out);
+
+/// SensorType::wire_error: half a millimetre, or a twentieth of one in the extended form.
+double laser_wire_error(const SensorSpec& sensor, const base::ReadingBlock& scan);
 
 /// Validates a payload against this laser: equal number of rays, none beyond range_max by more than 1 mm (except
 /// saturated words and no return). A spec with 0 elements or limit 0 disables the respective check.

@@ -41,7 +41,7 @@ std::vector<Array> arrays_of(const world::World& world) {
         HUGE_VAL;  // the order in which moving magnets are summed depends on all of their positions
     array.row.depends_on_magnets = true;
     array.row.reach = 0.0;
-    array.row.noisy = array.settings.sigma > 0.0;
+    array.row.sigma = array.settings.sigma;
     array.height = world.movers[mover].X_WM.z + array.row.X_MS.z;
     for (const Pose& X_SE : array.settings.X_SE) array.facing.push_back(base::rotate(X_SE.yaw, {1.0, 0.0}));
     values += kMagnetometerColumns * array.settings.X_SE.size();
@@ -202,7 +202,8 @@ void Magnetometers::collect(std::span<base::ReadingBlock> out) {
     block.values =
         std::span<const double>(values_).subspan(array.values, kMagnetometerColumns * array.settings.X_SE.size());
     block.mode = array.row.mode;
-    block.bound = array.bound.at(std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y)) + 1.0);
+    block.bound = block.bound_without_noise =
+        array.bound.at(std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y)) + 1.0);
     out[i] = block;
   }
 }
@@ -232,6 +233,7 @@ constinit const SensorType magnetometer_type{
     .wire_problem = magnetometer_wire_problem,
     .parts = magnetometer_parts,
     .encode = encode_magnetometer,
+    .wire_error = magnetometer_wire_error,
     .decode = decode_magnetometer,
     .read = read_magnetometer_payload,
 };

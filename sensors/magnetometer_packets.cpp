@@ -61,6 +61,10 @@ std::uint8_t encode_magnetometer(const SensorSpec& sensor, const base::ReadingBl
   return kMagnetometer;
 }
 
+double magnetometer_wire_error(const SensorSpec&, const base::ReadingBlock& reading) {
+  return wire_error(reading.values, kMagnetometerColumns, kUnit, kLeast * kUnit, kMost * kUnit);
+}
+
 PayloadPart decode_magnetometer(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                                 WireFormat wire) {
   if (type != kMagnetometer) return {.fault = PayloadError::out_of_range};

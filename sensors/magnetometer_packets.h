@@ -27,6 +27,9 @@ std::uint32_t magnetometer_parts(const SensorSpec& sensor, WireFormat wire);
 std::uint8_t encode_magnetometer(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
                                  std::uint32_t part, base::Bytes& out);
 
+/// SensorType::wire_error of the elements' fields: half of 1e-8 T.
+double magnetometer_wire_error(const SensorSpec& sensor, const base::ReadingBlock& reading);
+
 /// Validates a payload against this array: equal number of elements, none beyond its limit by more than a unit. A spec
 /// with 0 elements or limit 0 disables the respective check.
 PayloadPart decode_magnetometer(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,

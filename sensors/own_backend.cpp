@@ -169,7 +169,7 @@ std::vector<OwnSensor> own_sensors(const world::World& world, const OwnType& typ
   for_each_of(world, type.entry.name, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
     OwnSensor own{common_spec(sensor, mover, number), nullptr};
     own.spec.rate = rate_of(sensor, type.entry.rate);
-    own.spec.noisy = true;
+    own.spec.sigma = HUGE_VAL;  // it may add noise
     const Pose& X = own.spec.X_MS;
     try {
       own.sensor = type.entry.make({own.spec.name, mover, number, {X.x, X.y, X.z, X.yaw}, sensor.height},

@@ -36,9 +36,9 @@ struct AccuracyMode {
   std::string_view what;  ///< description in a few words
 };
 
-/// Largest error of a sensor, stated before a run.
+/// Largest error of a sensor without noise, stated before a run.
 struct ErrorBound {
-  double error = 0.0;     ///< [unit of the first column] see base::ReadingBlock::bound
+  double error = 0.0;     ///< [unit of the first column] see base::ReadingBlock::bound_without_noise
   std::string condition;  ///< where it holds; empty: everywhere
 };
 
@@ -63,7 +63,9 @@ struct SensorSpec {
   double dependency_radius = 0.0;   ///< [m] > 0: the reading depends only on its own mover's pose and on the poses
                                     ///< within this radius. 0 disables reuse
   bool depends_on_magnets = false;  ///< the reading depends on the poses of all movers with magnets instead
-  bool noisy = false;               ///< the reading also depends on noise, unless that is off
+  /// [unit of the first column] largest standard deviation of its noise; infinite: not known. Where positive, the
+  /// reading also depends on noise, unless that is off.
+  double sigma = 0.0;
   /// [m] from the sensor: surfaces farther away have no effect on a reading. Infinite: all surfaces may have one.
   double reach = HUGE_VAL;
 };
@@ -146,7 +148,7 @@ struct SensorType {
                                   ///< `collect` runs after theirs; 0: none
 
   std::span<const AccuracyMode> modes;  ///< the first is `exact`; empty: no other mode
-  /// The error bound of one sensor's readings. Null: no bound is stated, neither here nor in readings.
+  /// The error bound of one sensor's readings without noise. Null: no bound is stated, neither here nor in readings.
   ErrorBound (*bound)(const world::World& world, const SensorSpec& sensor) = nullptr;
 
   /// Specs of all sensors of this type, by mover and in file order.
@@ -163,6 +165,10 @@ struct SensorType {
   /// @return its type; 0 when a value is NaN and nothing may be sent
   std::uint8_t (*encode)(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
                          std::uint32_t part, base::Bytes& out);
+  /// The largest difference between the first column of a reading and of its payloads in the farm's format, in the
+  /// column's unit: half a step of the wire; infinite where a value saturates. Words that are no numbers do not count.
+  /// Null for types without a bound.
+  double (*wire_error)(const SensorSpec& sensor, const base::ReadingBlock& reading) = nullptr;
   /// Validates arbitrary bytes as such a payload.
   PayloadPart (*decode)(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                         WireFormat wire);
@@ -178,6 +184,10 @@ inline std::size_t element_width(const SensorType& type) {
   for (const Column& column : type.columns) width += column.width;
   return width;
 }
+
+/// `SensorType::wire_error` of a wire with steps of `step`, rounded to nearest, for values in [least, most], all in the
+/// unit of the first column. Infinite values have words of their own. @param width numbers per element
+double wire_error(std::span<const double> values, std::size_t width, double step, double least, double most);
 
 /// `SensorType::make` for a backend that needs only the context.
 template <class Made>

@@ -36,6 +36,7 @@ void read_noise(const world::Sensor& sensor, ConeArray& array) {
   if (!values) return;
   array.sigma = sensor.metres_per_unit * (*values)[0];
   array.proportional = values->size() > 1 ? (*values)[1] : 0.0;
+  array.row.sigma = std::hypot(array.sigma, array.proportional * array.range_max);
   if (array.sigma >= 0.0 && array.sigma <= kLongest && array.proportional >= 0.0 && array.proportional <= kMostShare)
     return;
   refuse(sensor, "noise",

@@ -98,7 +98,7 @@ typedef struct {
   uint32_t sequence;
   int64_t time_ns;  // of the measurement
   uint32_t session, token;
-  unsigned mode, unsure;         // readings: accuracy mode; 1: the bound does not hold for every element
+  unsigned mode, unsure;         // readings, VALUES: accuracy mode; 1: no bound holds for every element
   double bound;                  // of the error, in the unit of the first column; NAN: not stated
   uint32_t age_us;               // of the robot's state behind the reading; 0: not stated
   unsigned stale;                // 1: that state is too old to be relied on
@@ -347,11 +347,16 @@ static const char* decode_lockstep(sf_packet* p, const uint8_t* b, size_t size) 
   return in_range(p->words[0] < p->words[1] && p->words[2] <= 1 && p->words[3] <= 1);
 }
 
-static void decode_quality(sf_packet* p, const uint8_t* b) {
+static bool has_accuracy(const sf_packet* p) { return p->type < 128 || p->type == SF_VALUES; }
+
+static void decode_accuracy(sf_packet* p, const uint8_t* b) {
   const unsigned accuracy = (unsigned)get(b + 10, 2);
   p->mode = accuracy & 15;
   p->unsure = accuracy >> 4 & 1;
   p->bound = accuracy < 32 ? NAN : exp2(((double)(accuracy >> 5) - 1024) / 16);
+}
+
+static void decode_state_quality(sf_packet* p, const uint8_t* b) {
   p->age_us = (uint32_t)get(b + 32, 4);
   if (p->age_us == 0) return;
   p->stale = b[62] & 1;
@@ -384,7 +389,8 @@ const char* sf_decode(const uint8_t* bytes, size_t size, sf_packet* packet) {
   const uint8_t* const b = bytes + SF_HEADER;
   size -= SF_HEADER + trailer;
   if (size > 1256) return "too long";
-  if (packet->type < 128) decode_quality(packet, bytes);
+  if (has_accuracy(packet)) decode_accuracy(packet, bytes);
+  if (packet->type < 128) decode_state_quality(packet, bytes);
   const char* const status = packet->type == SF_LASER || packet->type == SF_LASER_EXTENDED
                                  ? decode_laser(packet, b, size)
                              : packet->type == SF_LANE_EDGE  ? decode_lane_edge(packet, b, size)
@@ -481,6 +487,15 @@ void sf_print_body(FILE* out, const sf_packet* p, const char* before, const char
     print_columns(out, sf_find_type(SF_STOP_LINE), p->values + approaches, p->count - approaches, before, after);
 }
 
+// "; error up to " with three digits, never less than the bound.
+static void print_bound(FILE* out, double bound) {
+  char text[32];
+  snprintf(text, sizeof text, "%.3g", bound);
+  if (strtod(text, NULL) < bound)
+    snprintf(text, sizeof text, "%.3g", bound + 0.5 * pow(10, floor(log10(bound)) - 2));
+  fprintf(out, "; error up to %s", text);
+}
+
 // One line about a packet; NEIGHBOURS: one for each state.
 void sf_print(FILE* out, const sf_packet* p) {
   for (unsigned i = 0; p->type == SF_NEIGHBOURS && i < p->count; ++i) {
@@ -492,8 +507,8 @@ void sf_print(FILE* out, const sf_packet* p) {
   fprintf(out, "%s %u of %s %u at %.3f s", sf_find_type(p->type)->name, p->sensor, whose, p->robot,
           (double)p->time_ns * 1e-9);
   sf_print_body(out, p, "; ", "");
-  if (p->type < 128) fprintf(out, "; mode %u%s", p->mode, p->unsure ? ", not for every element" : "");
-  if (p->type < 128 && !isnan(p->bound)) fprintf(out, "; error up to %.3g", p->bound);
+  if (has_accuracy(p)) fprintf(out, "; mode %u%s", p->mode, p->unsure ? ", not for every element" : "");
+  if (has_accuracy(p) && !isnan(p->bound)) print_bound(out, p->bound);
   if (p->age_us > 0) fprintf(out, "; state %.1f ms old%s", p->age_us * 1e-3, p->stale ? ", stale" : "");
   if (p->covariance[0] + p->covariance[3] + p->covariance[5] > 0)
     fprintf(out, ", sigma %.3g m, %.3g m, %.3g rad", sqrt(p->covariance[0]), sqrt(p->covariance[3]),

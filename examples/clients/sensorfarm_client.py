@@ -243,11 +243,13 @@ def decode(data):
     require(len(payload) <= MAX_PAYLOAD, "too long")
     packet = {"type": type, "robot": robot, "sensor": sensor, "sequence": sequence, "time_ns": time_ns,
               "session": session, "token": token}
+    if type < 128 or type == VALUES:
+        bound = None if accuracy < 32 else 2.0**(((accuracy >> 5) - 1024) / 16)
+        packet.update(mode=accuracy & 15, unsure=accuracy >> 4 & 1, bound=bound)
     if type < 128:
         known = all(map(math.isfinite, covariance)) and min(covariance[0], covariance[3], covariance[5]) >= 0
-        bound = None if accuracy < 32 else 2.0**(((accuracy >> 5) - 1024) / 16)
-        packet.update(mode=accuracy & 15, unsure=accuracy >> 4 & 1, bound=bound, age_us=age,
-                      stale=flags & 1 if age else 0, covariance=list(covariance) if age and known else [0.0] * 6)
+        packet.update(age_us=age, stale=flags & 1 if age else 0,
+                      covariance=list(covariance) if age and known else [0.0] * 6)
     if type in (COMMAND, STEP, FETCH, STATE, VALUES):
         packet.update(decode_lockstep(type, payload))
     elif type >= 128:
@@ -441,17 +443,23 @@ def fields(packet):
     return pairs
 
 
+def rounded_up(bound):
+    """Three digits, never less than the bound."""
+    nearest = "%.3g" % bound
+    return nearest if float(nearest) >= bound else "%.3g" % (bound + 0.5 * 10.0**(math.floor(math.log10(bound)) - 2))
+
+
 def words(packet):
     """One line about a packet; NEIGHBOURS: one for each state."""
     if packet["type"] == NEIGHBOURS:
         return "\n".join(map(words, packet["states"]))
     whose = {V2I: "intersection", OBJECT: "tag"}.get(packet["type"], "robot")
     line = "%s %d of %s %d" % (TYPE_NAMES[packet["type"]], packet["sensor"], whose, packet["robot"])
-    body = list(fields(packet).items())[13 if packet["type"] < 128 else 7:]
+    body = list(fields(packet).items())[13 if packet["type"] < 128 else 10 if packet["type"] == VALUES else 7:]
     line += " at %.3f s" % (packet["time_ns"] * 1e-9) + "".join("; %s = %s" % pair for pair in body)
-    if packet["type"] < 128:
+    if "mode" in packet:
         line += "; mode %d" % packet["mode"] + (", not for every element" if packet["unsure"] else "")
-        line += "; error up to %.3g" % packet["bound"] if packet["bound"] else ""
+        line += "; error up to " + rounded_up(packet["bound"]) if packet["bound"] else ""
     if packet.get("age_us"):
         line += "; state %.1f ms old" % (packet["age_us"] * 1e-3) + (", stale" if packet["stale"] else "")
         sigmas = [math.sqrt(packet["covariance"][i]) for i in (0, 3, 5)]

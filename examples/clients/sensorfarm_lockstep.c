@@ -22,6 +22,8 @@ typedef struct {
   unsigned total;   // values
   double pose[4];   // of the sensor: x, y, z [m], yaw [rad] in the world frame
   double* values;   // row by row; INFINITY: no return
+  double error;     // largest of the first column of all rows; INFINITY: no bound is stated
+  bool unsure;      // the type's bound does not hold for all rows: noise, a bend, beams that graze or were not cast
 } sf_reading;
 
 typedef struct {
@@ -114,6 +116,8 @@ static void place_values(sf_robot* robot, const sf_packet* p) {
   }
   reading->tick = p->tick;
   reading->time_ns = p->time_ns;
+  reading->error = p->error;
+  reading->unsure = p->unsure;
   memcpy(reading->pose, p->sensor_pose, sizeof reading->pose);
   memcpy(reading->values + p->words[4], p->values, p->count * sizeof *p->values);
 }

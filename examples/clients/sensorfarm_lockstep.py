@@ -32,7 +32,9 @@ ROWS, WINDOW, PUSHED = 38, 64, 64  # robots of a COMMAND; datagrams of a FETCH; 
 PATIENCE = 0.02  # [s] of silence after which packets are repeated, doubled each time up to half a second
 
 State = collections.namedtuple("State", "pose velocity contact")  # x, y, z, yaw; forward, left, turn; 0 or 1
-Reading = collections.namedtuple("Reading", "time_ns pose values error tick")  # error: None: no bound is stated
+# error: the largest of the first column of all elements; None: no bound is stated. unsure: 1: the sensor type's bound does
+# not hold for all of them (noise, a bend of a lane edge, beams that graze or were not cast).
+Reading = collections.namedtuple("Reading", "time_ns pose values error tick unsure")
 
 
 class Lockstep(Client):
@@ -194,7 +196,8 @@ class Lockstep(Client):
         key = packet["robot"], SENSORS[packet["values_type"]][0], packet["sensor"]
         values = self.rows.setdefault(key, array.array("d", bytes(8 * packet["total"])))
         values[packet["first"]:packet["first"] + len(packet["value"])] = array.array("d", packet["value"])
-        self.readings[key] = Reading(packet["time_ns"], packet["sensor_pose"], values, packet["error"], packet["tick"])
+        self.readings[key] = Reading(packet["time_ns"], packet["sensor_pose"], values, packet["error"], packet["tick"],
+                                     packet["unsure"])
 
 
 def avoid(ranges):

@@ -1,6 +1,7 @@
 // Packets that lockstep sends: the answer of a tick as numbered datagrams, encoded when they are sent.
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "netio/packets.h"
@@ -112,10 +113,12 @@ void Lockstep::encode(Process& process, std::uint32_t index) {
   header.sensor = static_cast<std::uint16_t>(reading.sensor);
   header.sequence = process.values++;
   header.time = reading.time;
-  header.accuracy = netio::encode_accuracy({reading.mode, !reading.quality.empty(), reading.bound});
+  // Receivers do not see which elements have a flag, so `error` is stated only where it holds for all of them.
+  const bool unsure = base::is_unsure(reading);
+  const double error = unsure ? HUGE_VAL : reading.bound;
+  header.accuracy = netio::encode_accuracy({reading.mode, unsure, reading.bound});
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes());
-  netio::encode(header, netio::Values{place, reading.type, total, part.first, reading.X_WS, reading.bound, bytes},
-                packet_);
+  netio::encode(header, netio::Values{place, reading.type, total, part.first, reading.X_WS, error, bytes}, packet_);
 }
 
 }  // namespace sf::server

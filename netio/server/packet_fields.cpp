@@ -45,11 +45,13 @@ void add_header(const netio::Header& header, Fields& out) {
   add(out, "time_ns", header.time);
   add(out, "session", header.session);
   add(out, "token", header.token);
-  if (netio::sensor_type_of(header.type) == 0) return;
+  const bool is_reading = netio::sensor_type_of(header.type) != 0;
+  if (!is_reading && header.type != netio::Type::values) return;
   const netio::Accuracy accuracy = netio::decode_accuracy(header.accuracy);
   add(out, "mode", accuracy.mode);
   add(out, "unsure", accuracy.unsure);
   add(out, "bound", std::isinf(accuracy.bound) ? kNan : accuracy.bound);
+  if (!is_reading) return;
   add(out, "age_us", header.state.age / 1000);
   add(out, "stale", header.state.stale);
   add(out, "covariance", header.state.covariance);

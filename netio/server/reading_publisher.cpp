@@ -1,12 +1,25 @@
 #include "netio/server/reading_publisher.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
 #include "netio/packets.h"
 
 namespace sf::server {
+
+namespace {
+
+/// The bound of the numbers that packets carry, which are rounded.
+netio::Accuracy accuracy_on_wire(const sensors::SensorType& type, const sensors::SensorSpec& row,
+                                 const base::ReadingBlock& reading) {
+  const bool stated = type.wire_error != nullptr && std::isfinite(reading.bound);
+  const double error = stated ? type.wire_error(row, reading) : 0.0;
+  return {reading.mode, base::is_unsure(reading) || std::isinf(error), reading.bound + error};
+}
+
+}  // namespace
 
 netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set) {
   netio::OutboxOptions options;
@@ -52,7 +65,7 @@ std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put
   header.sensor = static_cast<std::uint16_t>(reading.sensor);
   header.sequence = job.sequence;
   header.time = reading.time;
-  header.accuracy = netio::encode_accuracy({reading.mode, !reading.quality.empty(), reading.bound});
+  header.accuracy = netio::encode_accuracy(accuracy_on_wire(*job.type, *job.row, reading));
   header.session = job.addressed.session_token.session;
   header.token = job.addressed.session_token.token;
   header.state = job.addressed.reading->state;

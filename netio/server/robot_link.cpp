@@ -1,6 +1,7 @@
 #include "netio/server/robot_link.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "netio/server/wire_ids.h"
@@ -187,6 +188,17 @@ void RobotLink::handle_challenge(const netio::SessionToken& before) {
   clock_ = {};
 }
 
+namespace {
+
+/// Packets do not say which elements have a flag: a bound is stated where it holds for all of them. Without one, the
+/// sensor may be noisy.
+void state_bound(const netio::Accuracy& accuracy, double sigma, base::ReadingBlock& block) {
+  block.bound = block.bound_without_noise = accuracy.unsure ? HUGE_VAL : accuracy.bound;
+  block.sigma = std::isinf(block.bound) ? sigma : 0.0;
+}
+
+}  // namespace
+
 std::span<RobotLink::Newest> RobotLink::readings() {
   newest_.clear();
   for (std::size_t i = 0; i < streams_.size(); ++i) {
@@ -201,6 +213,7 @@ std::span<RobotLink::Newest> RobotLink::readings() {
     newest.block.sequence = whole->sequence;
     newest.block.time = clock_.to_own(whole->time);
     newest.block.values = whole->values;
+    state_bound(netio::decode_accuracy(whole->accuracy), source.row->sigma, newest.block);
   }
   return newest_;
 }

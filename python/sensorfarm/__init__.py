@@ -22,11 +22,13 @@ __all__ = ["NONE", "DeviceError", "Error", "Input", "Light", "Neighbour", "Pose"
            "Settings", "Simulation", "Twist", "load_plugin"]
 
 
-def _valid(self, type):
-    """A new bool array (sensors, elements): the element was measured, and its error bound holds."""
+def _valid(self, type, without_noise=False):
+    """A new bool array (sensors, elements): the element was measured, and a stated error bound holds for it; with
+    without_noise=True also where that bound holds before noise is added."""
     values = self.readings(type)
     measured = _numpy.isfinite(values) if values.ndim == 2 else _numpy.isfinite(values).all(axis=2)
-    return measured & (self.flags(type) == 0)
+    stated = _numpy.isfinite(self.bound_without_noise(type) if without_noise else self.bounds(type))
+    return measured & (self.flags(type) == 0) & stated[:, None]
 
 
 def _png(self):

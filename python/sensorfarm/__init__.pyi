@@ -106,7 +106,16 @@ class Reading:
         """(beams,) numbers of models, or NONE; None for types without beams."""
     @property
     def bound(self) -> float:
-        """Largest error of the first column without noise; infinity: not stated."""
+        """Largest error of the first column, of elements without a flag; infinity: not stated, as of noisy sensors."""
+    @property
+    def bound_without_noise(self) -> float:
+        """The same before noise was added."""
+    @property
+    def sigma(self) -> float:
+        """Largest standard deviation of the first column's noise; 0: no noise; infinity: not known."""
+    @property
+    def flags(self) -> NDArray[np.uint8]:
+        """(elements,): 0, or the reason for which the bound does not hold (docs/accuracy.md)."""
 
 class Neighbour:
     """Another robot, as it broadcasts itself (V2V)."""
@@ -258,11 +267,16 @@ class Simulation:
     def hits(self, type: str) -> NDArray[np.uint32]:
         """(sensors, beams): number of the model that each beam met, or NONE."""
     def flags(self, type: str) -> NDArray[np.uint8]:
-        """(sensors, elements): 0 where the bound holds (docs/accuracy.md)."""
-    def valid(self, type: str) -> NDArray[np.bool_]:
-        """(sensors, elements): measured, and the bound holds. A new array."""
+        """(sensors, elements): 0 where a stated bound holds (docs/accuracy.md)."""
+    def valid(self, type: str, without_noise: bool = False) -> NDArray[np.bool_]:
+        """(sensors, elements): measured, and a stated bound holds; without_noise=True: by `bound_without_noise`, which
+        noisy sensors have, too. A new array."""
     def bounds(self, type: str) -> NDArray[np.float64]:
-        """(sensors,): largest error of the first column without noise; infinity: not stated."""
+        """(sensors,): largest error of the first column; infinity: not stated, as of noisy sensors."""
+    def bound_without_noise(self, type: str) -> NDArray[np.float64]:
+        """(sensors,): the same before noise was added."""
+    def sigma(self, type: str) -> NDArray[np.float64]:
+        """(sensors,): largest standard deviation of the first column's noise; 0: no noise; infinity: not known."""
     def times(self, type: str) -> NDArray[np.float64]:
         """(sensors,) [s] of the measurement; NaN before the first."""
     def rows(self, type: str) -> NDArray[np.uint32]:

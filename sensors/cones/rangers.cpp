@@ -158,7 +158,6 @@ std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays) {
   std::vector<SensorSpec> rows;
   for (const ConeArray& array : arrays) {
     rows.push_back(array.row);
-    rows.back().noisy = array.sigma > 0.0 || array.proportional > 0.0;
     double& reach = rows.back().reach = 0.0;
     for (const Pose& X_SC : array.X_SC)
       reach = std::max(reach, array.range_max + glm::length(glm::dvec2{X_SC.x, X_SC.y}));

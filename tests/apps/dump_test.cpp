@@ -85,7 +85,7 @@ TEST(Dump, ACaptureIsPrintedInWords) {
           "laser 3 of robot 7, sequence 258, 1.500 s; range_m = 0 65.535; mode 2, error up to 0.00102, not for every "
           "element; state 12.3 ms old, stale, sigma 0.5 m, 0.707 m, 0.0312 rad",
       "1700000000.000002" + way +
-          "laser 0 of robot 7, sequence 258, 1.500 s; range_m = 361 numbers, 0 to 2; mode 0, error up to 1.05e-08; "
+          "laser 0 of robot 7, sequence 258, 1.500 s; range_m = 361 numbers, 0 to 2; mode 0, error up to 1.06e-08; "
           "state 0.0 ms old",
       "1700000000.000003" + way +
           "gps 0 of robot 7, sequence 258, 1.500 s; x_m = none; y_m = none; hdop = none; satellites = 3; mode 0",

@@ -108,4 +108,18 @@ TEST(OptionParserRecords, TakeWhatTheirRecordHas) {
   expect_golden("option_parsers", places() + numbers() + validators() + words() + batch_script());
 }
 
+/// A printed bound is never less than the bound.
+TEST(Texts, BoundsAreRoundedUp) {
+  for (double bound = 1e-15; bound < 1e6; bound *= 1.00173) {
+    const double shown = std::stod(rounded_up(bound));
+    ASSERT_GE(shown, bound);
+    ASSERT_LE(shown, 1.0101 * bound) << "three digits";
+  }
+  EXPECT_EQ(rounded_up(1.05), "1.05") << "three digits are enough";
+  EXPECT_EQ(rounded_up(9.991), "10") << "a digit more";
+  EXPECT_EQ(bound_text(1.0501e-9, "m"), "1.06 nm");
+  EXPECT_EQ(bound_text(0.0, "m"), "0");
+  EXPECT_EQ(bound_text(std::numeric_limits<double>::infinity(), "m"), "-");
+}
+
 }  // namespace sf::apps

@@ -115,6 +115,8 @@ TEST(OwnController, GetsWhatARobotKnows) {
   const std::vector<double> values{1.0, 2.0};
   base::ReadingBlock block;
   block.type = 1, block.sensor = 2, block.time = 500'000'000, block.values = values, block.bound = 1e-9;
+  const base::QualityFlag flags[] = {base::QualityFlag::none, base::QualityFlag::grazing};
+  block.bound_without_noise = 2e-9, block.sigma = 0.5, block.quality = flags;
   const Neighbour near{9, {.X_WM = {1, 2, 0, 3}, .velocity = {4, 5, 6}}, {.follows = 7}};
   const world::Signal signal{world::LightState::flashing_yellow, 1.5};
   const base::Twist twist = controller->step({.time = 2'000'000'000,
@@ -137,6 +139,9 @@ TEST(OwnController, GetsWhatARobotKnows) {
   EXPECT_EQ(readings[0].time, 0.5);
   EXPECT_EQ(readings[0].values.data(), values.data());
   EXPECT_EQ(readings[0].bound, 1e-9);
+  EXPECT_EQ(readings[0].bound_without_noise, 2e-9);
+  EXPECT_EQ(readings[0].sigma, 0.5);
+  EXPECT_EQ(std::vector(readings[0].flags.begin(), readings[0].flags.end()), (std::vector<std::uint8_t>{0, 2}));
   ASSERT_EQ(others.size(), 1u);
   EXPECT_EQ(others[0].id, 9u);
   EXPECT_EQ(others[0].pose.y, 2.0);

@@ -70,6 +70,8 @@ TEST(Library, ReadingsAreTheFarmsOwnTable) {
   EXPECT_GE(first.stride, 361u);
   EXPECT_TRUE(std::all_of(first.fresh.begin(), first.fresh.end(), [](auto f) { return f == 1; }));
   EXPECT_LT(first.bounds[0], 2e-9);
+  EXPECT_EQ(first.bound_without_noise[0], first.bounds[0]);
+  EXPECT_EQ(first.sigma[0], 0.0);
   const double before = first.row(7)[180];
   drive(simulation, 3);
   const Readings second = simulation.readings("laser");

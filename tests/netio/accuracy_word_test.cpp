@@ -35,7 +35,11 @@ TEST(AccuracyWord, BoundsAreRoundedUp) {
 }
 
 TEST(AccuracyWord, Saturates) {
-  EXPECT_EQ(decode_accuracy(encode_accuracy({0, false, 1e300})).bound, std::exp2(1023.0 / 16.0));
+  EXPECT_EQ(decode_accuracy(encode_accuracy({0, false, 0.999 * std::exp2(1023.0 / 16.0)})).bound,
+            std::exp2(1023.0 / 16.0))
+      << "the largest";
+  EXPECT_EQ(decode_accuracy(encode_accuracy({0, true, std::exp2(1023.0 / 16.0)})).bound, HUGE_VAL) << "never less";
+  EXPECT_EQ(encode_accuracy({3, true, 1e300}), 0x13u) << "no bound; mode and flag stay";
   EXPECT_EQ(decode_accuracy(encode_accuracy({0, false, 1e-300})).bound, std::exp2(-1023.0 / 16.0));
   EXPECT_EQ(decode_accuracy(encode_accuracy({0, false, -1.0})).bound, HUGE_VAL) << "no bound";
 }

@@ -139,7 +139,12 @@ inline base::Bytes values_example() {
   base::Bytes bytes, out;
   base::ByteWriter writer(bytes);
   for (const double range : ranges) writer.put(range);
-  encode({.robot = 7, .sequence = 240, .time = 12'000'000'000, .session = 0x11223344, .token = 0x55667788},
+  encode({.robot = 7,
+          .sequence = 240,
+          .time = 12'000'000'000,
+          .accuracy = encode_accuracy({0, false, 1e-9}),
+          .session = 0x11223344,
+          .token = 0x55667788},
          Values{{121, 1, 3}, 1, 3, 0, {1.6, -2.2, 0.05, 0.5}, 1e-9, bytes}, out);
   return out;
 }

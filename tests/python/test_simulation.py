@@ -122,6 +122,19 @@ class Readings(unittest.TestCase):
         sim.step()
         numpy.testing.assert_array_equal(sim.valid("laser")[0], [True, True, False, True, True])
 
+    def test_noisy_sensors_state_no_bound(self):
+        """A bound of the readings without noise, and the noise's deviation, take its place."""
+        text = ROOM.replace("range_max 3 )", "range_max 3 noise [0.2 0 0] )")
+        for noise in (True, False):
+            sim = sensorfarm.Simulation.from_text(text, noise=noise)
+            self.assertEqual(numpy.isinf(sim.bounds("laser")).tolist(), [noise, False])
+            self.assertTrue((sim.bound_without_noise("laser") < 2e-9).all())
+            self.assertEqual(sim.sigma("laser").tolist(), [0.2 * noise, 0.0])
+            self.assertEqual(sim.valid("laser")[0].any(), not noise)
+            self.assertTrue(sim.valid("laser")[1, :3].all())
+            self.assertTrue(sim.valid("laser", without_noise=True)[0].all())
+            self.assertFalse(sim.valid("sonar").any(), "its type states no bound")
+
     def test_ranges(self):
         """From (-1, 0) the other robot's side is 1.85 m ahead, and the wall (1 cm thick) 1.99 m to the left."""
         sim = room()

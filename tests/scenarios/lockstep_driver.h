@@ -55,6 +55,8 @@ class FaultyLink {
 struct Driven {
   netio::State state;
   std::map<std::uint8_t, std::vector<double>> readings;  ///< newest of the first sensor of each type
+  std::map<std::uint8_t, double> errors;                 ///< VALUES: `error` of them
+  std::map<std::uint8_t, netio::Accuracy> accuracies;    ///< and the header's word
 };
 
 class Driver {
@@ -150,6 +152,8 @@ class Driver {
       if (!place(values->part) || packet.header.sensor != 0) return;
       std::vector<double>& all = driven_[packet.header.robot].readings[values->type];
       all.resize(values->total);
+      driven_[packet.header.robot].errors[values->type] = values->bound;
+      driven_[packet.header.robot].accuracies[values->type] = netio::decode_accuracy(packet.header.accuracy);
       for (std::size_t i = 0; i < values->values.size() / sizeof(double); ++i)
         all[values->first + i] = netio::value_of(*values, i);
     }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "control/own_controllers.h"
+#include "sensors/laneedge.h"
 #include "sensors/laser.h"
 #include "sensors/sensor_type.h"
 #include "tests/netio/server/fixture.h"
@@ -214,6 +215,49 @@ TEST(LockstepService, AnAnswerHasTheReadingsSinceTheOneBefore) {
     driver.step({}, ticks);
   }
   EXPECT_EQ(datagrams, (std::vector<std::size_t>{2, 1, 2, 1, 2, 2})) << "at ticks 0, 1, 2, 3, 5 and 7";
+}
+
+/// A laser with `settings` for the first robot, and a lane edge sensor for both: 0.4 m before a line, and in a bend.
+world::World bounds_world(const sensors::LaserSettings& settings) {
+  world::World world = server::room();
+  world.movers[0].sensors = {sensors::laser_sensor(settings)};
+  for (world::Mover& mover : world.movers) mover.sensors.push_back({"laneedge", "edge", {}, 0.1, 1.0, 1.0, {}, 0, ""});
+  world.lane_markings.push_back({{{-1.5, -1.0}, {-1.5, 1.0}}, 0.1, 0xFFFFFFFFu});
+  world::LaneMarking bend{{}, 0.1, 0xFFFFFFFFu};
+  for (double angle = -1.5; angle < 1.5; angle += 0.01)
+    bend.line.push_back({2.0 + 0.4 * std::cos(angle), 1.0 + 0.4 * std::sin(angle)});
+  world.lane_markings.push_back(bend);
+  world::update_extent_and_hash(world);
+  return world;
+}
+
+/// `error` holds for every value, or is infinite. The header says which of both, and keeps the bound of unflagged
+/// beams.
+TEST(LockstepService, ErrorsHoldForEveryValueOrAreLeftOut) {
+  struct Case {
+    double sigma;
+    const char* mode;
+    bool error, unsure, bound;
+  };
+  for (const Case& c : {Case{0.0, "exact", true, false, true}, Case{0.2, "exact", false, true, false},
+                        Case{0.0, "skip2", false, true, true}}) {
+    sensors::LaserSettings settings{{.name = "laser", .noise = {.range_sigma = c.sigma}}};
+    settings.accuracy.word = c.mode;
+    Fixture fixture(bounds_world(settings));
+    Driver driver(fixture.port(), {1, 2});
+    ASSERT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
+    const Driven &straight = driver.robot(1), &bend = driver.robot(2);
+    const netio::Accuracy& laser = straight.accuracies.at(sensors::kLaser);
+    EXPECT_EQ(std::isfinite(straight.errors.at(sensors::kLaser)), c.error) << c.mode;
+    EXPECT_EQ(laser.unsure, c.unsure) << c.mode;
+    EXPECT_EQ(std::isfinite(laser.bound), c.bound) << c.mode;
+    EXPECT_LT(straight.errors.at(sensors::kLaneEdge), 1.1e-8);
+    EXPECT_FALSE(straight.accuracies.at(sensors::kLaneEdge).unsure);
+    EXPECT_FALSE(std::isnan(bend.readings.at(sensors::kLaneEdge)[0]));
+    EXPECT_TRUE(std::isinf(bend.errors.at(sensors::kLaneEdge))) << "not one straight line";
+    EXPECT_TRUE(bend.accuracies.at(sensors::kLaneEdge).unsure);
+    EXPECT_TRUE(std::isinf(bend.accuracies.at(sensors::kLaneEdge).bound));
+  }
 }
 
 /// A STEP that says two commands waits for the second one, whatever is repeated meanwhile.

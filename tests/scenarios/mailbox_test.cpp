@@ -48,6 +48,19 @@ TEST(Mailbox, KeepsACopyUntilANewerOneComes) {
   EXPECT_EQ(newest(box, 100 * kMs), 1.0);
 }
 
+/// A sensor's flags change in place, too.
+TEST(Mailbox, KeepsFlags) {
+  Mailbox box({}, 0);
+  Sender sender;
+  base::ReadingBlock reading = sender.reading(0);
+  base::QualityFlag flag = base::QualityFlag::grazing;
+  reading.quality = {&flag, 1};
+  box.send(reading, 0);
+  flag = base::QualityFlag::none;
+  ASSERT_EQ(box.receive(0)[0].quality.size(), 1u);
+  EXPECT_EQ(box.receive(0)[0].quality[0], base::QualityFlag::grazing);
+}
+
 TEST(Mailbox, ADelayOfDIsSeenDLater) {
   Mailbox box({.delay = 0.25}, 0);
   Sender sender;

@@ -349,6 +349,80 @@ TEST(Accuracy, KindsWithoutABoundStateNone) {
     EXPECT_EQ(std::isinf(r.bound), r.type != sensors::kLaser) << static_cast<int>(r.type);
 }
 
+/// One rule for all types: a noisy reading states no bound, but what its bound was without noise, and sigma.
+TEST(Accuracy, NoisyReadingsStateNoBound) {
+  struct Case {
+    const char* type;
+    std::vector<std::pair<std::string, std::vector<double>>> settings;
+    double sigma, bound_without_noise;
+  };
+  constexpr double kUnknown = HUGE_VAL;
+  const Case cases[] = {
+      {"laser", {{"noise", {0.2, 0, 0}}}, 0.2, 1.1e-9},
+      {"laser", {{"noise", {0.03, 0.005, 0}}}, std::hypot(0.03, 0.005 * 8.0), 1.1e-9},
+      {"laser", {{"noise", {0, 0, 1}}}, kUnknown, 1.1e-9},
+      {"magnetometer", {{"noise", {0.01}}}, 1e-6, 1e-9},
+      {"sonar", {{"noise", {0.01, 0.02}}}, std::hypot(0.01, 0.02 * 4.0), kUnknown},
+      {"infrared", {{"noise", {0.1}}}, kUnknown, kUnknown},
+      {"encoder", {{"slip", {0.01}}}, kUnknown, kUnknown},
+      {"gyro", {{"noise", {1}}}, M_PI / 180.0, kUnknown},
+      {"gyro", {{"noise", {1}}, {"bias", {1}}}, kUnknown, kUnknown},
+      {"gps", {{"noise", {1.5}}}, kUnknown, kUnknown},
+  };
+  for (const Case& c : cases) {
+    world::World world;
+    scenes::add_room(world, {0.0, 0.0}, 4.0);
+    world::Mover& mover = world.movers[scenes::add_robot(world, {}, scenes::laser(3))];
+    mover.sensors = {{c.type, c.type, {}, 0.1, 1.0, M_PI / 180.0, {}, 0, ""}};
+    for (const auto& [key, numbers] : c.settings) mover.sensors[0].settings.push_back(setting(key, numbers));
+    world::update_extent_and_hash(world);
+    const Glance with(world), without(world, {.noise = false});
+    const base::ReadingBlock &noisy = with.readings[0], &quiet = without.readings[0];
+    EXPECT_TRUE(std::isinf(noisy.bound)) << c.type;
+    EXPECT_TRUE(is_unsure(noisy)) << c.type;
+    EXPECT_NEAR(noisy.sigma, c.sigma, 1e-12) << c.type;
+    EXPECT_LE(noisy.bound_without_noise, c.bound_without_noise) << c.type;
+    EXPECT_EQ(noisy.bound_without_noise, quiet.bound) << c.type << ", that of the reading without noise";
+    EXPECT_EQ(quiet.sigma, 0.0) << c.type;
+    EXPECT_FALSE(is_unsure(quiet)) << c.type;
+    const auto statements = sensors::accuracy_statements(world, sensors::SensorSet(world));
+    ASSERT_EQ(statements.size(), std::isinf(c.bound_without_noise) ? 0u : 1u) << c.type;
+    if (statements.empty()) continue;
+    EXPECT_TRUE(std::isinf(statements[0].error())) << c.type << ", before a run";
+    EXPECT_GE(statements[0].bound.error, quiet.bound) << c.type;
+    EXPECT_EQ(statements[0].sigma, noisy.sigma) << c.type;
+  }
+}
+
+/// The noise of lane edges reaches the fitted line: a reading has its own sigma, and no bound without it either, since
+/// nothing shows whether the edge is straight.
+TEST(Accuracy, NoisyLaneEdgesHaveTheirOwnSigma) {
+  world::World world;
+  world.lane_markings.push_back({{{-10.0, 0.4}, {10.0, 0.4}}, 0.1, 0xFFFFFFFFu});
+  add_edge_eye(world, {0.0, 0.0, 0.0, 0.5 * M_PI}, {{"noise", {0.002, 0, 0}}});
+  world::update_extent_and_hash(world);
+  const Glance glance(world);
+  const base::ReadingBlock& reading = glance.readings[0];
+  EXPECT_EQ(reading.sigma, reading.values[3]);
+  EXPECT_GT(reading.sigma, 1e-5);
+  EXPECT_TRUE(std::isinf(reading.bound));
+  EXPECT_TRUE(std::isinf(reading.bound_without_noise));
+}
+
+/// Boundary: the only beam of a scan grazes. No element has a bound, so the reading states none.
+TEST(Accuracy, AReadingOfFlaggedElementsStatesNoBound) {
+  world::World world;
+  scenes::add_room(world, {0.0, 0.0}, 4.0);
+  scenes::add_robot(world, {0.0, 2.0 - 1e-4, 0.0, 1e-4}, scenes::laser(1));
+  world::update_extent_and_hash(world);
+  const Glance glance(world);
+  const base::ReadingBlock& reading = glance.readings[0];
+  ASSERT_EQ(reading.quality.size(), 1u);
+  EXPECT_EQ(reading.quality[0], QualityFlag::grazing);
+  EXPECT_TRUE(std::isinf(reading.bound));
+  EXPECT_TRUE(std::isinf(reading.bound_without_noise));
+}
+
 TEST(Accuracy, AWorldsOwnCutOffStaysTheNearest) {
   world::World world;
   world.magnet_cutoff = 2.0;

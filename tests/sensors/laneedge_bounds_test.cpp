@@ -66,9 +66,10 @@ Seen judge(world::World world, const std::vector<Face>& faces, const std::vector
   Seen seen;
   const double bearing = settings[0].second[0] * M_PI / 180.0;
   for (const base::ReadingBlock& r : rig.tick(due, poses)) {
+    EXPECT_EQ(std::isinf(r.bound), std::isnan(r.values[0]) || !r.quality.empty()) << "a bound holds, or is left out";
     if (std::isnan(r.values[0])) continue;
     ++seen.read;
-    if (!r.quality.empty() || std::isinf(r.bound)) continue;
+    if (std::isinf(r.bound)) continue;
     ++seen.stated;
     const auto error =
         static_cast<double>(error_of(r.values[0], faces, r.X_WS, static_cast<Wide>(r.X_WS.yaw) + bearing));
@@ -181,14 +182,16 @@ TEST(LaneEdgeBounds, OfASingleRayIsThatOfItsRange) {
   const auto& blocks = rig.tick({{0, 0}}, {world.movers[0].X_WM});
   ASSERT_EQ(blocks[0].quality.size(), 1u);
   EXPECT_EQ(blocks[0].quality[0], QualityFlag::grazing);
+  EXPECT_TRUE(std::isinf(blocks[0].bound));
 }
 
-/// The quality flag of one sensor at `pose`.
+/// The quality flag of one sensor at `pose`. A flagged reading states no bound.
 QualityFlag said(world::World world, const Pose& pose, const Settings& settings = {{"perpendicular", {0}}}) {
   add_edge_eye(world, pose, settings);
   EdgeRig rig(world);
   const auto& blocks = rig.tick({{0, 0}}, {pose});
   EXPECT_FALSE(std::isnan(blocks[0].values[0]));
+  EXPECT_EQ(std::isinf(blocks[0].bound), !blocks[0].quality.empty());
   return blocks[0].quality.empty() ? QualityFlag::none : blocks[0].quality[0];
 }
 

@@ -10,9 +10,11 @@ static void print_fields(FILE* out, const sf_packet* p, const char* prefix) {
   fprintf(out, "%ssequence = %lu\n%stime_ns = %lld\n", prefix, (unsigned long)p->sequence, prefix,
           (long long)p->time_ns);
   fprintf(out, "%ssession = %lu\n%stoken = %lu\n", prefix, (unsigned long)p->session, prefix, (unsigned long)p->token);
-  if (p->type < 128) {
+  if (has_accuracy(p)) {
     fprintf(out, "mode = %u\nunsure = %u\n", p->mode, p->unsure);
     fprintf(out, isnan(p->bound) ? "bound = none\n" : "bound = %.10g\n", p->bound);
+  }
+  if (p->type < 128) {
     fprintf(out, "age_us = %lu\nstale = %u\ncovariance =", (unsigned long)p->age_us, p->stale);
     for (unsigned i = 0; i < 6; ++i) fprintf(out, " %.10g", p->covariance[i]);
     fputc('\n', out);
