@@ -57,13 +57,25 @@ std::string subject_of(const server::PacketDescription& packet) {
   return fmt::format("{} {} of robot {}", packet.name, header.sensor, header.robot);
 }
 
+/// @param exact all digits: VALUES are not rounded, and state the error of what they are
+std::string words_of(double number, bool exact) {
+  if (std::isnan(number)) return "none";
+  return exact ? fmt::format("{}", number) : fmt::format("{:.10g}", number);
+}
+
 /// "range_m = 1 0.25 8"; of a long list its number of numbers and their extremes.
-std::string words_of(const server::PacketField& field) {
-  const auto* list = std::get_if<std::vector<double>>(&field.value);
-  if (list == nullptr || list->size() <= kMaxNumbers) return field.name + " = " + text_of(field);
+std::string words_of(const server::PacketField& field, bool exact) {
+  if (std::holds_alternative<std::int64_t>(field.value)) return field.name + " = " + text_of(field);
+  if (const auto* number = std::get_if<double>(&field.value)) return field.name + " = " + words_of(*number, exact);
+  const auto& list = std::get<std::vector<double>>(field.value);
+  std::string text = field.name + " =";
+  if (list.size() <= kMaxNumbers) {
+    for (const double number : list) text += " " + words_of(number, exact);
+    return text;
+  }
   double least = HUGE_VAL, most = -HUGE_VAL;
-  for (const double number : *list) least = std::fmin(least, number), most = std::fmax(most, number);
-  return fmt::format("{} = {} numbers, {:.10g} to {:.10g}", field.name, list->size(), least, most);
+  for (const double number : list) least = std::fmin(least, number), most = std::fmax(most, number);
+  return fmt::format("{} {} numbers, {} to {}", text, list.size(), words_of(least, exact), words_of(most, exact));
 }
 
 /// Accuracy of a reading and quality of the state behind it.
@@ -91,7 +103,7 @@ std::string words_of(const server::PacketDescription& packet) {
   std::string text = fmt::format("{}, sequence {}, {:.3f} s", subject_of(packet), packet.header.sequence,
                                  1e-9 * static_cast<double>(packet.header.time));
   for (const server::PacketField& field : std::span(packet.fields).subspan(packet.header_fields))
-    if (!is_repeated(field.name)) text += "; " + words_of(field);
+    if (!is_repeated(field.name)) text += "; " + words_of(field, packet.header.type == netio::Type::values);
   return text + quality_words(packet.header);
 }
 

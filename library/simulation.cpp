@@ -110,8 +110,10 @@ void Simulation::State::record() {
   if (ranks != nullptr && !options.record_readings && ranks->rank() > 0) return;
   recorder.emplace(options.record,
                    scenarios::run_info(world, simulation->farm().sensor_set(),
-                                       {options.seed, options.record_readings, false,
-                                        library::describe_caster(device->info().software, options.caster)}),
+                                       {.seed = options.seed,
+                                        .record_readings = options.record_readings,
+                                        .caster = library::describe_caster(device->info().software, options.caster),
+                                        .noise = options.noise}),
                    part);
 }
 

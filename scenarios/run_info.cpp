@@ -34,9 +34,10 @@ void add_type(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
 std::string number_or_null(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
 /// The bounds of the recorded numbers: scans have 32 bits. Flags are not recorded.
-std::vector<std::string> accuracy_rows(const world::World& world, const sensors::SensorSet& sensor_set) {
+std::vector<std::string> accuracy_rows(const world::World& world, const sensors::SensorSet& sensor_set, bool noise) {
   std::vector<std::string> rows;
   for (const sensors::AccuracyStatement& s : sensors::accuracy_statements(world, sensor_set)) {
+    const double sigma = noise ? s.sigma : 0.0, without_noise = s.bound.error;
     double rounding = 0.0;
     if (s.type->is_scan)
       for (const sensors::SensorSpec& row : sensor_set.group(s.type->id)->rows)
@@ -44,9 +45,9 @@ std::vector<std::string> accuracy_rows(const world::World& world, const sensors:
     rows.push_back(fmt::format(
         R"({{"type":"{}","sensors":{},"mode":"{}","bound":{},"bound_without_noise":{},"sigma":{},"unit":"{}",)"
         R"("condition":"{}"}})",
-        s.type->name, s.sensors, sensors::word_of(*s.type, s.mode), number_or_null(s.error() + rounding),
-        number_or_null(s.bound.error + rounding), number_or_null(s.sigma), sensors::unit_of(*s.type),
-        s.bound.condition));
+        s.type->name, s.sensors, sensors::word_of(*s.type, s.mode),
+        number_or_null(sigma > 0.0 ? HUGE_VAL : without_noise + rounding), number_or_null(without_noise + rounding),
+        number_or_null(sigma), sensors::unit_of(*s.type), s.bound.condition));
   }
   return rows;
 }
@@ -64,7 +65,7 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   if (settings.record_readings) info.odometry_rate = 1.0 / world.interval;  // every tick, as viewers draw them
   info.estimated = settings.estimated;
   info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}, {"caster", settings.caster}};
-  info.accuracy = accuracy_rows(world, sensor_set);
+  info.accuracy = accuracy_rows(world, sensor_set, settings.noise);
   info.snapshot = world::snapshot(world);
   for (const world::Mover& mover : world.movers)
     info.movers.push_back({mover.name, "", mover.id, {}, body_of(world, mover)});

@@ -16,6 +16,7 @@ struct RunSettings {
   bool no_return_inf = false;  ///< beams without a return read infinity
   std::string caster;          ///< description of the ray caster, from `raycast::describe_caster`
   bool estimated = false;      ///< states are estimates, recorded with their quality
+  bool noise = true;           ///< noisy sensors are noisy
 };
 
 record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const RunSettings& settings);

@@ -39,6 +39,34 @@ std::string small_world(const Folder& folder) {
 
 }  // namespace
 
+/// A noisy sensor states no bound, but what it would be without noise.
+TEST(Check, NoisySensorsStateNoBound) {
+  const Folder folder;
+  const std::string world = folder.write("w.world",
+                                         "position( name \"a\" laser( noise [0.2 0 0] ) laser( noise [0 0 1] ) "
+                                         "laser( samples 3 ) )\nmodel( pose [5 0 0 0] size [1 1 1] )\n");
+  const Outcome outcome = run_program({"check", world, "--json"});
+  const Json facts(outcome.out);
+  ASSERT_EQ(facts.size("/accuracy"), 3u) << outcome.out;
+  for (const std::string row : {"/accuracy/0", "/accuracy/1"}) {
+    EXPECT_TRUE(facts.is_null(row + "/bound"));
+    EXPECT_LT(facts.number(row + "/bound_without_noise"), 2e-9);
+  }
+  EXPECT_EQ(facts.number("/accuracy/0/sigma"), 0.2);
+  EXPECT_TRUE(facts.is_null("/accuracy/1/sigma")) << "a beam that turns may meet another surface";
+  EXPECT_LT(facts.number("/accuracy/2/bound"), 2e-9);
+  EXPECT_FALSE(facts.has("/accuracy/2/sigma"));
+  const std::string text = run_program({"check", world}).out;
+  for (const std::string said :
+       {"1 laser exact, no bound, noise of sigma 200 mm; without noise within 1.0",
+        "1 laser exact, no bound, noise; without noise within 1.0", "1 laser exact, within 1.0"})
+    EXPECT_NE(text.find(said), std::string::npos) << said << " is not in\n" << text;
+  const Json reading(run_program({"sense", world, "--json"}).out);
+  EXPECT_TRUE(reading.is_null("/bound"));
+  EXPECT_LT(reading.number("/bound_without_noise"), 2e-9);
+  EXPECT_EQ(reading.number("/sigma"), 0.2);
+}
+
 /// How often sensors are read, which of them between ticks, and for which a rate of ticks would be too low.
 TEST(Check, RatesAreSaid) {
   const Folder folder;

@@ -4,6 +4,7 @@
 
 #include <sys/stat.h>
 
+#include <cstring>
 #include <sstream>
 
 #include "netio/outbox.h"
@@ -145,6 +146,25 @@ TEST(Dump, ACutOffDatagramIsSaid) {
   EXPECT_NE(outcome.out.find(": cut off by the capture, 69 bytes\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("a.pcap: damaged after 1 record\n"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("nothing received, cut off by the capture 1\n"), std::string::npos) << outcome.err;
+}
+
+/// The error beside VALUES is that of the numbers, so they keep all digits.
+TEST(Dump, ValuesKeepAllDigits) {
+  const Folder folder;
+  base::Bytes third = vector_of("values");
+  const double value = 1.0 / 3.0;
+  std::memcpy(third.data() + 136, &value, sizeof value);
+  test::PcapFile file;
+  file.add(test::ethernet(test::ipv4(test::udp(9000, 9000, third))), 1'700'000'000, 0);
+  file.add(test::ethernet(test::ipv4(test::udp(9000, 9000, vector_of("values", 3)))), 1'700'000'000, 1);
+  const std::vector<std::string> lines = lines_of(run_program({"dump", folder.write("a.pcap", file.text())}).out);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_NE(lines[0].find("; error = 1e-09; value = 0.3333333333333333 0.2503 inf; mode 0, error up to 1.02e-09"),
+            std::string::npos)
+      << lines[0];
+  EXPECT_NE(lines[1].find("; error = none; value = 1 2 4; mode 2, error up to 1.02e-09, not for every element"),
+            std::string::npos)
+      << lines[1];
 }
 
 TEST(Dump, WrongFilesAndWordsAreRefused) {

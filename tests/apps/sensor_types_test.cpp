@@ -406,6 +406,7 @@ TEST(LaneEdge, ABoundIsTrueOfItsReadingOrFlagged) {
   };
   const Json bend = sense("3.3,0.4,50");
   EXPECT_EQ(bend.text("/unsure"), "not straight");
+  EXPECT_TRUE(bend.is_null("/bound"));
   const Json straight = sense("1,0,0");
   EXPECT_FALSE(straight.has("/unsure"));
   EXPECT_LT(straight.number("/bound"), 1.1e-8);

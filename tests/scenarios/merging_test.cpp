@@ -64,6 +64,28 @@ void record_merged(const std::string& whole, const std::string& ranks, std::uint
   for (record::Recorder* recorder : {&one, &first, &second}) recorder->finish();
 }
 
+/// Bounds are of the recorded numbers, and noisy sensors state none.
+TEST(RunInfo, HasTheBoundsOfRecordedReadings) {
+  world::World world = merged_world();
+  for (const std::size_t m : {1, 2})
+    for (world::Setting& setting : world.movers[m].sensors[0].settings)
+      if (setting.key == "noise") setting.numbers[0] = 0.2;
+  const sensors::SensorSet sensor_set(world);
+  const auto rows = run_info(world, sensor_set, {}).accuracy;
+  ASSERT_EQ(rows.size(), 2u) << "sonar states none";
+  const auto number = [](const std::string& row, const std::string& key) {
+    return std::stod(row.substr(row.find("\"" + key + "\":") + key.size() + 3));
+  };
+  const double rounding = 0x1p-24 * sensor_set.group(sensors::kLaser)->rows[0].limit;
+  EXPECT_GE(number(rows[0], "bound"), 1e-9 + rounding) << "of 32 bits";
+  EXPECT_LE(number(rows[0], "bound"), 2e-9 + rounding);
+  EXPECT_EQ(number(rows[0], "sigma"), 0.0);
+  EXPECT_NE(rows[1].find("\"bound\":null"), std::string::npos) << rows[1];
+  EXPECT_EQ(number(rows[1], "bound_without_noise"), number(rows[0], "bound"));
+  EXPECT_EQ(number(rows[1], "sigma"), 0.2);
+  EXPECT_EQ(run_info(world, sensor_set, {.noise = false}).accuracy[1].find("null"), std::string::npos);
+}
+
 TEST(Merging, GivesTheBytesOfASingleProcess) {
   const std::string whole = merging_folder("whole"), ranks = merging_folder("ranks");
   record_merged(whole, ranks);

@@ -374,13 +374,13 @@ TEST(Accuracy, NoisyReadingsStateNoBound) {
     scenes::add_room(world, {0.0, 0.0}, 4.0);
     world::Mover& mover = world.movers[scenes::add_robot(world, {}, scenes::laser(3))];
     mover.sensors = {{c.type, c.type, {}, 0.1, 1.0, M_PI / 180.0, {}, 0, ""}};
-    for (const auto& [key, numbers] : c.settings) mover.sensors[0].settings.push_back(setting(key, numbers));
+    for (const auto& [key, numbers] : c.settings) mover.sensors[0].settings.push_back(scenes::setting(key, numbers));
     world::update_extent_and_hash(world);
     const Glance with(world), without(world, {.noise = false});
     const base::ReadingBlock &noisy = with.readings[0], &quiet = without.readings[0];
     EXPECT_TRUE(std::isinf(noisy.bound)) << c.type;
     EXPECT_TRUE(is_unsure(noisy)) << c.type;
-    EXPECT_NEAR(noisy.sigma, c.sigma, 1e-12) << c.type;
+    EXPECT_DOUBLE_EQ(noisy.sigma, c.sigma) << c.type;
     EXPECT_LE(noisy.bound_without_noise, c.bound_without_noise) << c.type;
     EXPECT_EQ(noisy.bound_without_noise, quiet.bound) << c.type << ", that of the reading without noise";
     EXPECT_EQ(quiet.sigma, 0.0) << c.type;

@@ -2,6 +2,8 @@
 
 #include "netio/server/robot_link.h"
 
+#include <cmath>
+
 #include "sensors/laser_packets.h"
 #include "tests/netio/server/fixture.h"
 
@@ -98,6 +100,24 @@ TEST(RobotLink, OnlyTheFarmsReadingsAreHeard) {
   f.send_scan(f.outbox, {.sequence = 1});
   EXPECT_EQ(f.scans(), 1u);
   EXPECT_EQ(f.link->last_answer(), 7);
+}
+
+/// Packets do not say which elements have a flag, so controllers see the bound where it holds for all of them.
+TEST(RobotLink, ReadingsHaveTheBoundsOfTheirPackets) {
+  PlayedFarm f;
+  f.greet();
+  std::uint32_t sequence = 0;
+  const auto received = [&](const netio::Accuracy& accuracy) {
+    f.send_scan(f.outbox, {.sequence = ++sequence, .accuracy = netio::encode_accuracy(accuracy)});
+    const base::ReadingBlock block = f.link->readings()[0].block;
+    EXPECT_EQ(block.bound_without_noise, block.bound);
+    EXPECT_EQ(block.sequence, sequence);
+    return block.bound;
+  };
+  EXPECT_NEAR(received({0, false, 0.5e-3}), 0.51e-3, 0.02e-3);
+  EXPECT_TRUE(std::isinf(received({2, true, 0.5e-3}))) << "not for every element";
+  EXPECT_TRUE(std::isinf(received({0, true, HUGE_VAL}))) << "noise";
+  EXPECT_TRUE(std::isinf(received({0, false, HUGE_VAL}))) << "none";
 }
 
 TEST(RobotLink, AFarmOnThisMachineIsHeardOnLoopbackAlone) {
