@@ -136,6 +136,7 @@ int sense(const SenseOptions& options) {
   base::ReadingBlock reading = farm.sense(mover, chosen.type->id, chosen.sensor, X_WM);
   std::vector<double> values(reading.values.begin(), reading.values.end());
   if (options.no_return_inf) sensors::mark_no_return(reading, sensor_set.row(reading).limit, values);
+  if (!options.json && !options.too_near_min) base::mark_too_near(reading.quality, values);
   reading.values = values;
   if (!options.json) print_message(place_of(world, sensor_set, reading));
   print(options.json ? with_warnings(json_of(world, sensor_set, reading), world.warnings)

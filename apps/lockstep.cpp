@@ -82,7 +82,11 @@ int serve_lockstep(const ServeOptions& options) {
     if (!options.record.empty()) {
       const std::string caster = raycast::describe_caster(device.info().software);
       recorder.emplace(options.record, scenarios::run_info(world, service.simulation().farm().sensor_set(),
-                                                           {options.seed, true, options.no_return_inf, caster}));
+                                                           {.seed = options.seed,
+                                                            .record_readings = true,
+                                                            .no_return_inf = options.no_return_inf,
+                                                            .caster = caster,
+                                                            .too_near_min = options.too_near_min}));
       service.record_to(*recorder);
     }
     install_stop_handlers();

@@ -135,6 +135,11 @@ void add_no_return(CLI::App& app, NoReturnOption& o) {
   add_choice<bool, bool>(app, "--no-return", o.no_return_inf, {{"max", false}, {"inf", true}},
                          "Range of a beam without a return: max (range_max) or inf (null in JSON)")
       ->default_str("max");
+  add_choice<bool, bool>(
+      app, "--too-near", o.too_near_min, {{"inf", false}, {"min", true}},
+      "Range of a surface nearer than the sensor's minimum, in ROS messages, recordings and CSV: inf "
+      "(-infinity, REP 117) or min (range_min)")
+      ->default_str("inf");
 }
 
 void add_wire(CLI::App& app, WireOption& o) {

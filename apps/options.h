@@ -68,6 +68,7 @@ struct ThreadsOption {
 
 struct NoReturnOption {
   bool no_return_inf = false;
+  bool too_near_min = false;  ///< in messages, and in CSV
 };
 
 struct AccuracyTargetOptions {

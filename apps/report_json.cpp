@@ -82,7 +82,7 @@ Json number_json(double value, bool whole) {
 }
 
 std::string_view word_of(base::QualityFlag quality) {
-  constexpr std::string_view kWords[] = {"no", "not cast", "grazing", "not straight", "extrapolated"};
+  constexpr std::string_view kWords[] = {"no", "not cast", "grazing", "not straight", "extrapolated", "too near"};
   return kWords[static_cast<std::size_t>(quality)];
 }
 

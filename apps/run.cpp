@@ -213,7 +213,12 @@ int simulate(const RunOptions& options, cluster::Ranks* ranks) {
     ground.emplace(options, ranks);
     begin(0);
     live.emplace(options, ground->world, ground->sensor_set,
-                 scenarios::RunSettings{options.seed, true, options.no_return_inf, ground->caster}, true);
+                 scenarios::RunSettings{.seed = options.seed,
+                                        .record_readings = true,
+                                        .no_return_inf = options.no_return_inf,
+                                        .caster = ground->caster,
+                                        .too_near_min = options.too_near_min},
+                 true);
   });
   std::vector<world::Warning> heard = course->simulation.warnings();
   for (world::Warning& warning : course->simulation.warnings_of_starts()) heard.push_back(std::move(warning));

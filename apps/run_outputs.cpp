@@ -23,10 +23,14 @@ RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sens
     publisher_.emplace(world, sensor_set, *layout, netio::Outbox(server::outbox_options(sensor_set)));
   }
   if (!record.empty())
-    recorder_.emplace(
-        record,
-        scenarios::run_info(world, sensor_set, {options.seed, options.record_readings, options.no_return_inf, caster}),
-        part);
+    recorder_.emplace(record,
+                      scenarios::run_info(world, sensor_set,
+                                          {.seed = options.seed,
+                                           .record_readings = options.record_readings,
+                                           .no_return_inf = options.no_return_inf,
+                                           .caster = caster,
+                                           .too_near_min = options.too_near_min}),
+                      part);
 }
 
 void RunOutputs::write(base::TickRecord tick, const std::function<void(std::int64_t)>& wait) {

@@ -86,7 +86,8 @@ scenarios::RunSettings run_settings(const ServeOptions& options, bool software) 
           .record_readings = true,
           .no_return_inf = options.no_return_inf,
           .caster = raycast::describe_caster(software),
-          .estimated = true};
+          .estimated = true,
+          .too_near_min = options.too_near_min};
 }
 
 /// The recording of a service: its states are estimates, its ticks and samples are at times of its clock.

@@ -19,7 +19,8 @@ enum class QualityFlag : std::uint8_t {
   not_cast = 1,      ///< no beam was cast for this element: it is interpolated between cast beams
   grazing = 2,       ///< the beam meets a surface at too small an angle (SF_MIN_SINE, raycast/records.h)
   not_straight = 3,  ///< lane edge: the points do not lie on one straight line
-  extrapolated = 4   ///< lane edge: distance without a ray on the paint, extrapolated beyond the points
+  extrapolated = 4,  ///< lane edge: distance without a ray on the paint, extrapolated beyond the points
+  too_near = 5       ///< range: the surface is nearer than the sensor's minimum (base/echo.h)
 };
 
 /// One reading of one sensor. The spans live until the next tick of the farm that returned them.

@@ -30,7 +30,7 @@ struct ScanSettings {
   double fov = M_PI;             ///< [rad] in [0, 2 pi]
   std::uint32_t samples = 180;   ///< in [1, 1'000'000]
   double range_min = 0.0;        ///< [m] closer echoes read range_min
-  double range_max = 8.0;        ///< [m] > 0; the reading of a beam without an echo
+  double range_max = 8.0;        ///< [m] > 0; the reading of a beam without an echo before it
   std::uint32_t resolution = 1;  ///< only every n-th beam and the last are cast
   ScanNoise noise;               ///< ray casting applies its angular part only
 };

@@ -4,7 +4,7 @@
 //
 // Ranges are exact: the nearest surface along each beam, from either side, decided in 64 bits against the segments of
 // the world, within `exact_bound` of real arithmetic except for beams that graze a surface; scanners that are `single`
-// add `single_bound`. A beam without a hit within range_max reads range_max. A surface
+// add `single_bound`. A beam without a hit before range_max reads range_max. A surface
 // that touches the sensor (within SF_CONTACT_DISTANCE along the beam) stops beams that enter it, which read 0, and
 // passes beams that leave it. A sensor inside a solid reads the distance to its boundary. The mover that carries the
 // sensor is invisible to it.

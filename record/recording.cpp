@@ -22,7 +22,8 @@ namespace {
 struct SensorTopic {
   std::uint32_t mover = 0;
   const SensorTypeInfo* type = nullptr;
-  std::uint32_t sensor = 0;  ///< 0-based among the mover's sensors of its type
+  std::uint32_t sensor = 0;          ///< 0-based among the mover's sensors of its type
+  const SensorInfo* info = nullptr;  ///< in `RunInfo::movers`
 };
 using Topics = std::map<std::string, SensorTopic>;
 
@@ -50,7 +51,7 @@ Topics sensor_topics(const RunInfo& info) {
     std::map<std::uint8_t, std::uint32_t> before;  // by sensor type
     for (const SensorInfo& sensor : info.movers[mover].sensors) {
       const SensorTypeInfo* type = find_sensor_type(info, sensor.type);
-      if (type != nullptr) topics[sensor.topic] = {mover, type, before[sensor.type]++};
+      if (type != nullptr) topics[sensor.topic] = {mover, type, before[sensor.type]++, &sensor};
     }
   }
   return topics;
@@ -70,23 +71,20 @@ bool read_fleet(const McapMessage& message, FleetState& fleet, Recording& record
 }
 
 /// Beams without a return are infinite in messages; in the run they may have been `range_max`.
-bool read_scan(const McapMessage& message, const RunInfo& info, ReadingSample& sample) {
+bool read_scan(const McapMessage& message, const SensorTopic& topic, const RunInfo& info, ReadingSample& sample) {
   const std::optional<Scan> scan = decode_scan(message.data);
   if (!scan) return false;
-  const bool infinite = std::find(info.options.begin(), info.options.end(),
-                                  std::pair<std::string, std::string>("no_return", "inf")) != info.options.end();
+  const double none = option_of(info, kNoReturn) == "inf" ? HUGE_VAL : topic.info->range_max;
   sample.time = scan->time;
   sample.values.assign(scan->ranges.begin(), scan->ranges.end());
-  if (!infinite)
-    for (double& range : sample.values)
-      if (std::isinf(range)) range = scan->range_max;
+  std::replace(sample.values.begin(), sample.values.end(), HUGE_VAL, none);
   return true;
 }
 
 bool read_reading(const McapMessage& message, const SensorTopic& topic, Recording& recording) {
   ReadingSample sample{topic.mover, topic.type->id, topic.sensor, message.sequence,
                        static_cast<std::int64_t>(message.log_time)};
-  if (!(topic.type->is_scan ? read_scan(message, recording.info, sample)
+  if (!(topic.type->is_scan ? read_scan(message, topic, recording.info, sample)
                             : decode_reading(*topic.type, message.data, sample.time, sample.values)))
     return false;
   recording.readings.push_back(std::move(sample));

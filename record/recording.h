@@ -29,7 +29,9 @@ struct ReadingSample {
   std::uint32_t sequence = 0;
   std::int64_t delivered = 0;  ///< [ns] simulated time of the tick of delivery
   std::int64_t time = 0;       ///< [ns] of the measurement
-  std::vector<double> values;  ///< element by element, in the order of the sensor type's columns; scans in float32
+  /// Element by element, in the order of the sensor type's columns; scans in float32. A range of -infinity is that of a
+  /// surface nearer than the sensor's minimum; one from the sensor's maximum on is that of no echo.
+  std::vector<double> values;
 };
 
 /// All traffic lights at one tick.

@@ -1,7 +1,6 @@
 #include "record/ros_messages.h"
 
 #include <cmath>
-#include <limits>
 
 #include "base/error.h"
 #include "base/time.h"
@@ -72,18 +71,17 @@ void encode_transforms(std::span<const Transform> transforms, Bytes& out) {
 void encode_scan(const Scan& scan, std::span<const double> ranges, Bytes& out) {
   CdrWriter cdr(out);
   put_header(cdr, scan.time, scan.frame);
-  cdr.put(-0.5F * scan.fov);
-  cdr.put(0.5F * scan.fov);
-  cdr.put(ranges.size() > 1 ? scan.fov / static_cast<float>(ranges.size() - 1) : 0.0F);
+  const bool one = ranges.size() < 2;
+  const float fov = one ? 0.0F : scan.fov;
+  cdr.put(-0.5F * fov);
+  cdr.put(0.5F * fov);
+  cdr.put(one ? 0.0F : fov / static_cast<float>(ranges.size() - 1));
   cdr.put(0.0F);
   cdr.put(scan.scan_time);
-  cdr.put(scan.range_min);
-  cdr.put(scan.range_max);
+  cdr.put(base::float_below(scan.range_min));
+  cdr.put(base::float_above(scan.range_max));
   cdr.put_count(ranges.size());
-  for (const double range : ranges) {
-    const auto value = static_cast<float>(range);
-    cdr.put(value >= scan.range_max ? std::numeric_limits<float>::infinity() : value);
-  }
+  for (const double range : ranges) cdr.put(base::rep117_range(range, {scan.range_min, scan.range_max}));
   cdr.put_count(0);
 }
 

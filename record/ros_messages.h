@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/bytes.h"
+#include "base/echo.h"
 #include "base/pose.h"
 #include "base/state_quality.h"
 #include "record/cdr.h"
@@ -33,11 +34,11 @@ struct Transform {
 struct Scan {
   std::int64_t time = 0;      ///< [ns] of the measurement
   std::string frame;          ///< of the sensor: x along bearing 0
-  float fov = 0.0F;           ///< [rad] bearings run from -fov/2 to +fov/2, both included
+  float fov = 0.0F;           ///< [rad] bearings run from -fov/2 to +fov/2, both included; that of one sample is 0
   float scan_time = 0.0F;     ///< [s] from one scan to the next
-  float range_min = 0.0F;     ///< [m]
-  float range_max = 0.0F;     ///< [m]
-  std::vector<float> ranges;  ///< [m] one per sample; infinity without an echo
+  double range_min = 0.0;     ///< [m]
+  double range_max = 0.0;     ///< [m]
+  std::vector<float> ranges;  ///< [m] one per sample, as of base::rep117_range
 };
 
 /// Position and the quaternion (x, y, z, w) of a turn about +z.
@@ -53,8 +54,10 @@ void encode_twist(std::int64_t time, std::string_view frame, const base::Twist& 
 
 void encode_transforms(std::span<const Transform> transforms, base::Bytes& out);
 
-/// @param ranges [m] rounded to float32; a beam without a return (range_max or infinity) is infinity, as REP 117 says.
-/// `scan.ranges` is not used.
+/// The message's limits are rounded outwards, so that each valid range is at least `range_min` and less than
+/// `range_max`.
+/// @param ranges [m] one per sample: `range_max` or more without an echo, less than `range_min` for a surface that is
+/// too near. `scan.ranges` is not used.
 void encode_scan(const Scan& scan, std::span<const double> ranges, base::Bytes& out);
 
 /// The simulated time, for nodes that use it.
@@ -65,7 +68,7 @@ void encode_clock(std::int64_t time, base::Bytes& out);
 void encode_state_quality(std::int64_t time, std::string_view frame, const base::StateQuality& quality,
                           base::Bytes& out);
 
-/// @returns nullopt when the bytes are not a LaserScan.
+/// @returns nullopt when the bytes are not a LaserScan. Its limits are those of the message, its fov 0 for one sample.
 std::optional<Scan> decode_scan(std::span<const std::uint8_t> message);
 
 }  // namespace sf::record

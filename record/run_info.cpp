@@ -161,6 +161,12 @@ MoverInfo get_mover(CdrReader& cdr) {
 
 std::string frame_of(const SensorInfo& sensor) { return sensor.topic.substr(1, sensor.topic.rfind('/') - 1); }
 
+std::string_view option_of(const RunInfo& info, std::string_view key) {
+  const auto found =
+      std::find_if(info.options.begin(), info.options.end(), [&](const auto& o) { return o.first == key; });
+  return found == info.options.end() ? std::string_view() : found->second;
+}
+
 const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id) {
   for (const SensorTypeInfo& type : info.sensor_types)
     if (type.id == id) return &type;

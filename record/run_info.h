@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -102,6 +103,14 @@ struct RunInfo {
   WorldShape shape;
   std::vector<std::string> lights;  ///< names of the world's traffic lights; not read back, since the world has them
 };
+
+/// Options of a run, in the words of the command line.
+inline constexpr std::string_view kNoReturn = "no_return";  ///< "max" or "inf"
+/// "inf" or "min": ranges of surfaces that are too near. Absent: recorded as range_min, by versions without this
+/// option.
+inline constexpr std::string_view kTooNear = "too_near";
+/// Value of an option; empty where the run has none of that name.
+std::string_view option_of(const RunInfo& info, std::string_view key);
 
 /// @return null when the run has no sensors of that type.
 const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id);

@@ -19,8 +19,10 @@ void put_range(CdrWriter& cdr, const StandardTopic& topic, std::span<const doubl
   const std::size_t width = topic.infrared ? 2 : 1;
   const double range = values[width * topic.element];
   cdr.put(static_cast<std::uint8_t>(topic.infrared ? 1 : 0));
-  for (const double value : {topic.fov, topic.range_min, topic.range_max}) cdr.put(static_cast<float>(value));
-  cdr.put(range >= topic.range_max ? std::numeric_limits<float>::infinity() : static_cast<float>(range));
+  cdr.put(static_cast<float>(topic.fov));
+  cdr.put(base::float_below(topic.range_min));
+  cdr.put(base::float_above(topic.range_max));
+  cdr.put(base::rep117_range(range, {topic.range_min, topic.range_max}));
   cdr.put(0.0F);  // variance: unknown
 }
 

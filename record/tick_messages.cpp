@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/echo.h"
 #include "base/error.h"
 #include "record/fleet_message.h"
 #include "record/lights_message.h"
@@ -22,8 +23,8 @@ Scan header_of(const SensorInfo& sensor) {
   return {.frame = frame_of(sensor),
           .fov = static_cast<float>(sensor.fov),
           .scan_time = static_cast<float>(1.0 / sensor.rate),
-          .range_min = static_cast<float>(sensor.range_min),
-          .range_max = static_cast<float>(sensor.range_max)};
+          .range_min = sensor.range_min,
+          .range_max = sensor.range_max};
 }
 
 }  // namespace
@@ -46,7 +47,7 @@ struct TickMessages::Output {
   }
 };
 
-TickMessages::TickMessages(const RunInfo& info) : info_(info) {
+TickMessages::TickMessages(const RunInfo& info) : info_(info), marks_too_near_(option_of(info, kTooNear) != "min") {
   add("/run", kRunInfo, true);
   add("/fleet", kFleet);
   add("/tf", kTransforms);
@@ -192,18 +193,27 @@ void TickMessages::send_reading(const base::ReadingBlock& reading, const Output&
   for (SensorTopics& each : movers_[reading.mover].sensors) {
     if (each.type->id != reading.type || before++ < reading.sensor) continue;
     each.header.time = reading.time;
+    const std::span<const double> values = marked(reading);
     out.send(each.topic, reading.sequence, reading.time, [&](base::Bytes& bytes) {
-      each.type->is_scan ? encode_scan(each.header, reading.values, bytes)
-                         : encode_reading(*each.type, reading.time, each.header.frame, reading.values, bytes);
+      each.type->is_scan ? encode_scan(each.header, values, bytes)
+                         : encode_reading(*each.type, reading.time, each.header.frame, values, bytes);
     });
     std::uint32_t topic = each.standard;
     for (const StandardTopic& standard : each.sensor->standard)
       out.send(topic++, reading.sequence, reading.time,
-               [&](base::Bytes& bytes) { encode_standard(standard, reading.time, reading.values, bytes); });
+               [&](base::Bytes& bytes) { encode_standard(standard, reading.time, values, bytes); });
     return;
   }
   SF_CHECK(false, "mover " + std::to_string(reading.mover) + " type " + std::to_string(reading.type) + " sensor " +
                       std::to_string(reading.sensor));
+}
+
+/// The values of a reading as messages have them, which state no flags.
+std::span<const double> TickMessages::marked(const base::ReadingBlock& reading) {
+  if (!marks_too_near_ || reading.quality.empty()) return reading.values;
+  marked_.assign(reading.values.begin(), reading.values.end());
+  base::mark_too_near(reading.quality, marked_);
+  return marked_;
 }
 
 }  // namespace sf::record

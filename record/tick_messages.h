@@ -80,6 +80,7 @@ class TickMessages {
   void send_odometry(const Output& out);
   void send_qualities(const Output& out) const;
   void send_reading(const base::ReadingBlock& reading, const Output& out);
+  std::span<const double> marked(const base::ReadingBlock& reading);
 
   const RunInfo& info_;
   std::map<std::string, std::string, std::less<>> schemas_;  ///< by type
@@ -88,6 +89,8 @@ class TickMessages {
   std::size_t first_reading_ = 0;   ///< row of the first topic of readings; all topics from it on are theirs
   std::int64_t next_odometry_ = 0;  ///< [ns]
   std::uint32_t ticks_ = 0, odometries_ = 0;
+  bool marks_too_near_ = true;  ///< ranges of surfaces that are too near are -infinity
+  std::vector<double> marked_;  ///< values of one reading
   base::Bytes message_;
   std::vector<Transform> transforms_;
 };

@@ -64,8 +64,9 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   info.record_readings = settings.record_readings;
   if (settings.record_readings) info.odometry_rate = 1.0 / world.interval;  // every tick, as viewers draw them
   info.estimated = settings.estimated;
-  info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}, {"caster", settings.caster}};
-  info.accuracy = accuracy_rows(world, sensor_set, settings.noise);
+  info.options = {{std::string(record::kNoReturn), settings.no_return_inf ? "inf" : "max"},
+                  {std::string(record::kTooNear), settings.too_near_min ? "min" : "inf"},
+                  {"caster", settings.caster}};
   info.snapshot = world::snapshot(world);
   for (const world::Mover& mover : world.movers)
     info.movers.push_back({mover.name, "", mover.id, {}, body_of(world, mover)});

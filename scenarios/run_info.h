@@ -17,6 +17,7 @@ struct RunSettings {
   std::string caster;          ///< description of the ray caster, from `raycast::describe_caster`
   bool estimated = false;      ///< states are estimates, recorded with their quality
   bool noise = true;           ///< noisy sensors are noisy
+  bool too_near_min = false;   ///< surfaces nearer than a sensor's minimum read that minimum in messages
 };
 
 record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const RunSettings& settings);

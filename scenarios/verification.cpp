@@ -66,9 +66,9 @@ class Verifier {
         options_(options),
         world_(world::from_snapshot(recording.info.snapshot)),
         farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads}),
-        reference_(world_, recording.info.seed) {
-    for (const auto& [key, value] : recording.info.options)
-      infinite_ = infinite_ || (key == "no_return" && value == "inf");
+        reference_(world_, recording.info.seed),
+        infinite_(record::option_of(recording.info, record::kNoReturn) == "inf"),
+        too_near_(record::option_of(recording.info, record::kTooNear)) {
     for (std::size_t i = 0; i < recording.readings.size(); ++i) {
       const record::ReadingSample& r = recording.readings[i];
       readings_[{r.type, r.mover, r.sensor, r.sequence}] = i;
@@ -216,7 +216,8 @@ class Verifier {
     const bool is_scan = reading.type == sensors::kLaser;
     const auto at = readings_.find({reading.type, reading.mover, reading.sensor, reading.sequence});
     if (at == readings_.end()) {
-      if (is_scan && !recorded_) ask(reading, told_scan(reading.mover, reading.sensor, reading.values, reading.hits));
+      if (is_scan && !recorded_)
+        ask(reading, told_scan(reading.mover, reading.sensor, reading.values, reading.quality));
       return;
     }
     const std::vector<double>& theirs = recording_.readings[at->second].values;
@@ -225,8 +226,9 @@ class Verifier {
       ++unfelt_;
       return;
     }
-    if (!is_scan) return compare(reading.values, theirs, place_of(reading), compared(reading.type));
-    const std::vector<double> told = told_scan(reading.mover, reading.sensor, reading.values, reading.hits);
+    if (!is_scan)
+      return compare(told_values(reading.values, reading.quality), theirs, place_of(reading), compared(reading.type));
+    const std::vector<double> told = told_scan(reading.mover, reading.sensor, reading.values, reading.quality);
     compare(told, theirs, place_of(reading), compared(reading.type));
     ask(reading, theirs);
   }
@@ -239,13 +241,26 @@ class Verifier {
     return cast.single ? stretch * reading.bound_without_noise + cast.laser.range_max * 0x1p-24 : 0.0;
   }
 
-  /// Ranges with the precision of recorded scans.
+  /// Values as messages have them. @param flags of the reading's elements; empty: none
+  std::vector<double> told_values(std::span<const double> values, std::span<const base::QualityFlag> flags) const {
+    std::vector<double> all(values.begin(), values.end());
+    if (too_near_ == "inf") base::mark_too_near(flags, all);
+    return all;
+  }
+
+  /// Ranges as recorded scans have them. Those of versions without the option `kTooNear` were rounded to float32 alone.
   std::vector<double> told_scan(std::uint32_t mover, std::uint32_t sensor, std::span<const double> ranges,
-                                std::span<const std::uint32_t> hits) const {
-    const double range_max = farm_.sensor_set().of(sensors::kLaser, mover)[sensor].limit;
-    std::vector<double> all;
-    for (std::size_t i = 0; i < ranges.size(); ++i)
-      all.push_back(static_cast<float>(infinite_ ? sensors::or_infinite(ranges[i], hits[i], range_max) : ranges[i]));
+                                std::span<const base::QualityFlag> flags) const {
+    const sensors::SensorSpec& laser = farm_.sensor_set().of(sensors::kLaser, mover)[sensor];
+    const auto most = static_cast<float>(laser.limit);
+    std::vector<double> all = told_values(ranges, flags);
+    for (double& range : all) {
+      const auto rounded = static_cast<float>(range);
+      const float told = !too_near_.empty() ? base::rep117_range(range, sensors::limits_of(laser))
+                         : rounded >= most  ? HUGE_VALF
+                                            : rounded;
+      range = told < HUGE_VALF ? told : infinite_ ? HUGE_VAL : laser.limit;
+    }
     return all;
   }
 
@@ -277,7 +292,12 @@ class Verifier {
   }
 
   void judge(const Asked& asked, const sensors::LaserReference::Scan& scan) {
-    compare(told_scan(asked.mover, asked.sensor, scan.ranges, scan.hits), asked.ranges,
+    std::vector<double> ours = told_scan(asked.mover, asked.sensor, scan.ranges, scan.quality), theirs = asked.ranges;
+    // Errors of 32-bit ranges may lead across range_min.
+    const double least = reference_.laser(asked.mover, asked.sensor).laser.range_min;
+    for (std::vector<double>* const ranges : {&ours, &theirs})
+      if (asked.allowed > 0.0) std::replace(ranges->begin(), ranges->end(), -HUGE_VAL, least);
+    compare(ours, theirs,
             fmt::format("{}, laser {}, reading {}", world_.movers[asked.mover].name, asked.sensor, asked.sequence),
             result_.reference, asked.allowed);
   }
@@ -293,7 +313,8 @@ class Verifier {
   const world::World world_;
   farm::Farm farm_;
   sensors::LaserReference reference_;
-  bool infinite_ = false;
+  const bool infinite_;                   ///< beams without a return are recorded as infinity
+  const std::string_view too_near_;       ///< as of `record::kTooNear`
   bool recorded_ = false;                 ///< the recording has scans
   std::map<Name, std::size_t> readings_;  ///< recorded readings not compared yet
   std::vector<base::Report> reports_;     ///< of one tick

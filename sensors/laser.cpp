@@ -22,9 +22,10 @@ struct Row {
   std::uint32_t mover, sensor;
   std::uint8_t mode;
   bool single;
-  bool reworked;         ///< results are post-processed on the host
-  bool interpolated;     ///< some samples are not cast
-  bool grazing = false;  ///< some beam of its last scan grazes
+  bool reworked;          ///< results are post-processed on the host
+  bool interpolated;      ///< some samples are not cast
+  bool grazing = false;   ///< some beam of its last scan grazes
+  bool too_near = false;  ///< some surface of its last scan is nearer than its minimum
 };
 
 /// The lasers of a world and their scanners, by mover and in file order.
@@ -39,7 +40,7 @@ LaserTables lasers_in(const world::World& world) {
     std::uint32_t number = 0;
     for (const LaserSettings& laser : lasers_of(world.movers[m])) {
       const CastLaser& cast = tables.lasers.emplace_back(cast_laser(world, laser));
-      tables.scanners.push_back({cast.laser, m, number++, cast.single});
+      tables.scanners.push_back({cast_settings(cast.laser), m, number++, cast.single});
     }
   }
   return tables;
@@ -115,7 +116,8 @@ Row Lasers::make_row(std::uint32_t i, std::size_t first_sample) const {
           .sensor = scanner.sensor,
           .mode = lasers_[i].mode,
           .single = lasers_[i].single,
-          .reworked = interpolated || !caster_.plan(i).packed || (noise_ && laser.noise.has_range()),
+          .reworked =
+              interpolated || !caster_.plan(i).packed || (noise_ && laser.noise.has_range()) || laser.range_min > 0.0,
           .interpolated = interpolated};
 }
 
@@ -132,25 +134,29 @@ void Lasers::find_results(std::uint32_t i) {
 
 void Lasers::shape(std::size_t i) {
   const DueSample& due = due_[i];
-  const Row& row = rows_[due.row];
+  Row& row = rows_[due.row];
   const CastLaser& cast = lasers_[due.row];
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{caster_.lane(due.row)};
   const double* const ranges = caster_.ranges().host<double>().data() + first;
   const std::uint32_t* const hits = caster_.hits().host<std::uint32_t>().data() + first;
-  finish_scan(cast, caster_.plan(due.row),
-              {seed_, base::RandomStream::range_noise, row.mover, row.sensor, due.sequence}, noise_, {ranges, hits},
-              {values_.data() + row.first_sample, cast.laser.samples},
-              {met_.data() + row.first_sample, cast.laser.samples});
+  row.too_near =
+      finish_scan(cast, caster_.plan(due.row),
+                  {seed_, base::RandomStream::range_noise, row.mover, row.sensor, due.sequence}, noise_, {ranges, hits},
+                  {{values_.data() + row.first_sample, cast.laser.samples},
+                   {met_.data() + row.first_sample, cast.laser.samples},
+                   {quality_.data() + row.first_sample, cast.laser.samples}});
 }
 
-/// Sets the quality flags of a scan. Flags of samples that are never cast were set at construction; grazing changes.
+/// Sets the quality flags of a scan, where they were not all as at construction; `shape` adds those that are too near.
 void Lasers::mark(std::size_t i) {
   Row& row = rows_[due_[i].row];
   const bool grazing =
       std::any_of(row.beam_flags.begin(), row.beam_flags.end(), [](std::uint32_t v) { return v % SF_UNCERTAIN != 0; });
-  if (!grazing && !row.grazing) return;
+  if (!grazing && !row.grazing && !row.too_near) return;
   row.grazing = grazing;
   const raycast::BeamPlan& plan = caster_.plan(due_[i].row);
+  std::fill_n(quality_.begin() + static_cast<std::ptrdiff_t>(row.first_sample), row.values.size(),
+              base::QualityFlag::not_cast);
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {
     const std::size_t place = plan.place(k);
     const bool grazes = (row.beam_flags[place / SF_BEAMS_PER_LANE] >> (place % SF_BEAMS_PER_LANE) & SF_GRAZING) != 0;
@@ -173,7 +179,8 @@ void Lasers::write(std::size_t i, base::ReadingBlock& block) const {
   block.bound = block.bound_without_noise = laser_bound(row.range_max, row.single, longest_, away + row.range_max);
   block.sigma = 0.0;
   block.quality = {};
-  if (row.grazing || row.interpolated) block.quality = std::span(quality_).subspan(row.first_sample, row.values.size());
+  if (row.grazing || row.interpolated || row.too_near)
+    block.quality = std::span(quality_).subspan(row.first_sample, row.values.size());
   block.state = {};
 }
 
@@ -181,8 +188,8 @@ void Lasers::collect(std::span<base::ReadingBlock> out) {
   caster_.take_flags();
   thread_pool_.parallel_for(due_.size(), 32, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
-      if (rows_[due_[i].row].reworked) shape(i);
       mark(i);
+      if (rows_[due_[i].row].reworked) shape(i);
       write(i, out[i]);
     }
   });

@@ -1,10 +1,12 @@
 #pragma once
 // Readings from the cast beams of a laser: range noise, and interpolation of the samples that `resolution` leaves out.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 
+#include "base/echo.h"
 #include "base/random.h"
 #include "base/reading.h"
 #include "raycast/beams.h"
@@ -18,23 +20,38 @@ struct CastScan {
   const std::uint32_t* hits;  ///< model of the hit, or base::kNoHit
 };
 
-/// Range noise is added to hits only, and clamped to [range_min, range_max]. An interpolated sample has a model where
-/// both neighbours hit the same one. Its range lies on the straight line between the neighbours' ranges, as in Stage;
-/// or, with `shape.sines`, on the straight line between the neighbours' points, which is exact on a flat wall, and
-/// equals the nearer neighbour's range where they hit different models.
-/// @param draw key of `base::RandomStream::range_noise`  @param noise false: no noise, whatever the laser's settings
-/// @param ranges, hits one per sample
-void finish_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::RandomKey& draw, bool noise,
-                 const CastScan& cast, std::span<double> ranges, std::span<std::uint32_t> hits);
-
-/// Range with infinity for no return. @param range [m] of a beam that met `hit`
-inline double or_infinite(double range, std::uint32_t hit, double range_max) {
-  return hit == base::kNoHit && range >= range_max ? std::numeric_limits<double>::infinity() : range;
+/// Settings with which beams are cast for `finish_scan`: a surface nearer than range_min reads the largest number below
+/// it.
+inline raycast::ScanSettings cast_settings(raycast::ScanSettings scan) {
+  scan.range_min = scan.range_min > 0.0 ? std::nextafter(scan.range_min, 0.0) : 0.0;
+  return scan;
 }
 
-/// Applies `or_infinite` to a scan. @param ranges out: one per sample
+/// Samples of one scan, one per sample each.
+struct FinishedScan {
+  std::span<double> ranges;       ///< [m]
+  std::span<std::uint32_t> hits;  ///< model of the hit, or base::kNoHit
+  std::span<base::QualityFlag> quality;
+};
+
+/// Range noise is added to hits only, and clamped to [range_min, range_max]; a range that reaches range_max is no hit.
+/// An interpolated sample has a model where both neighbours hit the same one. Its range lies on the straight line
+/// between the neighbours' ranges, as in Stage; or, with `shape.sines`, on the straight line between the neighbours'
+/// points, which is exact on a flat wall, and equals the nearer neighbour's range where they hit different models.
+/// @param draw key of `base::RandomStream::range_noise`  @param noise false: no noise, whatever the laser's settings
+/// @param cast of `cast_settings`
+/// @param scan out: `quality` is set to `too_near` where the surface, or that of the nearer cast beam, is nearer than
+/// range_min, whatever noise was added, and kept elsewhere
+/// @return true when any sample is too near
+bool finish_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::RandomKey& draw, bool noise,
+                 const CastScan& cast, const FinishedScan& scan);
+
+/// Copies a scan's ranges with infinity for no echo. @param ranges out: one per sample
 inline void mark_no_return(const base::ReadingBlock& scan, double range_max, std::span<double> ranges) {
-  for (std::size_t i = 0; i < scan.hits.size(); ++i) ranges[i] = or_infinite(scan.values[i], scan.hits[i], range_max);
+  const auto marked = [&](double range) {
+    return base::echo_of(range, {.max = range_max}) == base::Echo::none ? HUGE_VAL : range;
+  };
+  std::transform(scan.values.begin(), scan.values.end(), ranges.begin(), marked);
 }
 
 }  // namespace sf::sensors

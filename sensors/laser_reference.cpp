@@ -47,13 +47,14 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t num
   const CastLaser& cast = laser(mover, number);
   const LaserSettings& l = cast.laser;
   const raycast::BeamPlan plan = raycast::plan_beams(l, noise_);
-  Scan scan{base::compose(poses_[mover], l.X_MS), std::vector<double>(l.samples),
-            std::vector<std::uint32_t>(l.samples)};
+  Scan scan{base::compose(poses_[mover], l.X_MS), std::vector<double>(l.samples), std::vector<std::uint32_t>(l.samples),
+            std::vector<base::QualityFlag>(l.samples)};
   scan.X_WS.z = world_.movers[mover].X_WM.z + l.X_MS.z;
   std::vector<double> turns(noise_ && l.noise.angle_sigma > 0.0 ? plan.samples.size() : 0);
   draw_angle_noise(l, plan, {seed_, base::RandomStream::angle_noise, mover, number, sequence}, turns);
 
   const std::vector<Seen> surfaces = in_sight(mover, scan.X_WS, l.range_max);
+  const double least = cast_settings(l).range_min;
   const glm::dvec2 heading{std::cos(scan.X_WS.yaw), std::sin(scan.X_WS.yaw)};
   std::vector<double> ranges(SF_BEAMS_PER_LANE * std::size_t{plan.lanes()});
   std::vector<std::uint32_t> hits(ranges.size());
@@ -68,11 +69,11 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t num
       intersect(seen.surface, {scan.X_WS.x, scan.X_WS.y}, d, nearest);
       if (nearest.id != before) model = seen.model;
     }
-    ranges[plan.place(k)] = std::max(nearest.range, l.range_min);
-    hits[plan.place(k)] = model;
+    ranges[plan.place(k)] = std::max(nearest.range, least);
+    hits[plan.place(k)] = nearest.range < l.range_max ? model : SF_NO_HIT;
   }
   finish_scan(cast, plan, {seed_, base::RandomStream::range_noise, mover, number, sequence}, noise_,
-              {ranges.data(), hits.data()}, scan.ranges, scan.hits);
+              {ranges.data(), hits.data()}, {scan.ranges, scan.hits, scan.quality});
   return scan;
 }
 

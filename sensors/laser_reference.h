@@ -30,8 +30,9 @@ class LaserReference {
 
   struct Scan {
     Pose X_WS;
-    std::vector<double> ranges;       ///< [m] one per sample, as in base::ReadingBlock
-    std::vector<std::uint32_t> hits;  ///< model per sample, as in base::ReadingBlock
+    std::vector<double> ranges;              ///< [m] one per sample, as in base::ReadingBlock
+    std::vector<std::uint32_t> hits;         ///< model per sample, as in base::ReadingBlock
+    std::vector<base::QualityFlag> quality;  ///< per sample: too_near or none
   };
   /// One reading of a mover's laser. @param sequence key of its noise
   Scan scan(std::uint32_t mover, std::uint32_t number, std::uint64_t sequence) const;

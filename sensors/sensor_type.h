@@ -15,6 +15,7 @@
 
 #include "base/bearing.h"
 #include "base/bytes.h"
+#include "base/echo.h"
 #include "base/reading.h"
 #include "base/report.h"
 #include "base/thread_pool.h"
@@ -57,7 +58,7 @@ struct SensorSpec {
   double pitch = 0.0;          ///< [m] side of an image's cell
   std::uint8_t mode = 0;       ///< row of its type's modes
   double fov = 0.0;            ///< [rad] of a scan (SensorType::is_scan)
-  double range_min = 0.0;      ///< [m] of a scan; its largest range is `limit`
+  double range_min = 0.0;      ///< [m] of ranges (laser, sonar, infrared); they end before `limit`
 
   // Dependencies of a reading beside its sequence number, for the farm's reading cache.
   double dependency_radius = 0.0;   ///< [m] > 0: the reading depends only on its own mover's pose and on the poses
@@ -69,6 +70,8 @@ struct SensorSpec {
   /// [m] from the sensor: surfaces farther away have no effect on a reading. Infinite: all surfaces may have one.
   double reach = HUGE_VAL;
 };
+
+inline base::RangeLimits limits_of(const SensorSpec& sensor) { return {sensor.range_min, sensor.limit}; }
 
 /// [rad] Bearing of beam `i` of a scan in the sensor's frame.
 inline double bearing_of(const SensorSpec& sensor, std::uint32_t i) {

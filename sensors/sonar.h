@@ -7,7 +7,7 @@
 // Lengths and angles are in the file's units.
 //
 // A reading has one column per transducer: the range [m] of the nearest surface met by one of the cone's rays, clamped
-// to [range_min, range_max]; range_max without an echo.
+// to [range_min, range_max]; range_max without an echo before it.
 
 #include <cstdint>
 

@@ -66,7 +66,7 @@ void decide_beam(bool live, ScanLane scan, uint slot, int i) {
   const ClosestHit hit = decide(live, scan, beam);
   if (!live) return;
   ranges.lane[scan.results][i] = reported_range(hit, beam, scan.row);
-  hits.lane[scan.results][i] = model_of(hit.id);
+  hits.lane[scan.results][i] = reported_model(hit, scan.row);
   if (grazes(hit, float(SF_MIN_SINE))) atomicOr(uncertain.lanes[slot].y, SF_GRAZING << i);
 }
 

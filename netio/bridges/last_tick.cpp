@@ -36,7 +36,7 @@ void LastTick::store(const base::ReadingBlock& reading) {
   stored.block = reading;
   stored.block.values = keep(stored.values, reading.values);
   stored.block.hits = {};
-  stored.block.quality = {};
+  stored.block.quality = keep(stored.quality, reading.quality);
 }
 
 const base::TickRecord& LastTick::record() {
@@ -44,6 +44,7 @@ const base::TickRecord& LastTick::record() {
   for (const Stored& stored : readings_) {
     blocks_.push_back(stored.block);
     blocks_.back().values = stored.values;  // the table may have moved since
+    blocks_.back().quality = stored.quality;
   }
   tick_.readings = blocks_;
   return tick_;

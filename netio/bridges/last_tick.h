@@ -24,6 +24,7 @@ class LastTick {
   struct Stored {
     base::ReadingBlock block;
     std::vector<double> values;
+    std::vector<base::QualityFlag> quality;
   };
   void store(const base::ReadingBlock& reading);
 

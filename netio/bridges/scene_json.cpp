@@ -152,6 +152,7 @@ void add_elements(const record::SensorInfo& sensor, Json& row) {
     if (element.message == Message::range) {
       row["cones"].push_back(pose_json(element.X_SE));
       row["cone_fov"] = element.fov;
+      row["range_min"] = element.range_min;
       row["range_max"] = element.range_max;
     } else if (element.message == Message::magnetic_field) {
       row["elements"].push_back(pose_json(element.X_SE));

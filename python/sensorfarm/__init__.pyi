@@ -263,11 +263,12 @@ class Simulation:
         """Of the world file."""
     def readings(self, type: str) -> NDArray[np.float64]:
         """(sensors, elements), or (sensors, elements, columns) for types with several columns: the newest reading of each
-        sensor of the type. Shorter readings end in NaN. A range without a return is the sensor's limit."""
+        sensor of the type. Shorter readings end in NaN. A range without a return is the sensor's limit, and that of a
+        surface nearer than its minimum is this minimum, with the flag 5."""
     def hits(self, type: str) -> NDArray[np.uint32]:
         """(sensors, beams): number of the model that each beam met, or NONE."""
     def flags(self, type: str) -> NDArray[np.uint8]:
-        """(sensors, elements): 0 where a stated bound holds (docs/accuracy.md)."""
+        """(sensors, elements): 0 where a stated bound holds (docs/accuracy.md); 5: the surface is too near."""
     def valid(self, type: str, without_noise: bool = False) -> NDArray[np.bool_]:
         """(sensors, elements): measured, and a stated bound holds; without_noise=True: by `bound_without_noise`, which
         noisy sensors have, too. A new array."""

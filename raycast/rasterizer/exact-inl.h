@@ -111,9 +111,10 @@ bool intersect_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern
   intersect_walls(view, scene, d, best);
   if (scene.movers != nullptr) intersect_movers(s, view, scene, d, best);
   const bool grazes = best.grazes(static_cast<float>(view.min_sine));
+  if (best.range >= view.range_max) best.id = SF_NO_HIT;
   if (view.single && best.id != SF_NO_HIT) {
     const float t = range_single(scene.exact[best.id], view.origin, d, static_cast<float>(view.range_max));
-    if (t >= 0.0f) best.range = std::min(static_cast<double>(t), view.range_max);
+    if (t >= 0.0f && static_cast<double>(t) < view.range_max) best.range = static_cast<double>(t);
   }
   out.ranges[i] = std::max(best.range, view.range_min);
   out.models[i] = best.id == SF_NO_HIT ? SF_NO_HIT : scene.models[best.id];

@@ -80,7 +80,8 @@ void measure_in_32_bits(const ScanView& view, const ScanPattern& pattern, const 
                         std::uint32_t end, double* ranges) {
   for (std::uint32_t j = first; j < end; ++j) {
     const float t = range_single(g, view.origin, direction_of(view, pattern, j), static_cast<float>(view.range_max));
-    if (t >= 0.0f) ranges[j] = std::max(std::min(static_cast<double>(t), view.range_max), view.range_min);
+    if (t >= 0.0f && static_cast<double>(t) < view.range_max)
+      ranges[j] = std::max(static_cast<double>(t), view.range_min);
   }
 }
 

@@ -58,6 +58,7 @@ ConeArray read_cones(const world::Sensor& sensor, std::uint32_t mover, std::uint
   array.fov = read_fov(sensor, defaults.fov);
   array.rays = read_rays(sensor, array.fov);
   read_range(sensor, defaults, array);
+  array.row.range_min = array.range_min;
   array.row.limit = array.range_max;
   return array;
 }

@@ -45,10 +45,9 @@ class Rangers : public SensorBackend {
  private:
   void fire(const DueSample& due);
   std::size_t first_value(std::uint32_t row) const { return type_.columns * std::size_t{first_cones_[row]}; }
-  std::size_t held_bytes(std::uint32_t row) const {
-    return arrays_[row].turns > 1 ? sizeof(double) * type_.columns * arrays_[row].X_SC.size() : 0;
-  }
+  std::size_t held(std::uint32_t row) const { return arrays_[row].turns > 1 ? arrays_[row].X_SC.size() : 0; }
   void write_reading(std::size_t i);
+  std::span<const base::QualityFlag> quality_of(std::uint32_t row) const;
 
   base::ThreadPool& thread_pool_;
   std::span<const base::Report> states_;
@@ -61,6 +60,7 @@ class Rangers : public SensorBackend {
   std::vector<std::uint64_t> last_;         ///< per array: sequence number of its last reading, or kNever
   std::vector<double> heights_;             ///< [m] per array: world height of its origin
   std::vector<double> values_;              ///< of all arrays; transducers that do not fire keep theirs
+  std::vector<base::QualityFlag> quality_;  ///< per cone, likewise
   std::vector<DueSample> due_;
   std::vector<Pose> X_WS_;               ///< per due array
   std::vector<DueSample> due_cones_;     ///< transducers that fire
@@ -83,6 +83,7 @@ Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, co
     heights_.push_back(context.world.movers[array.row.mover].X_WM.z + array.row.X_MS.z);
   }
   values_.resize(type_.columns * std::size_t{cones});
+  quality_.resize(cones);
 }
 
 bool Rangers::prepare(std::span<const DueSample> due) {
@@ -120,18 +121,28 @@ void Rangers::write_reading(std::size_t i) {
     const double deviate = noisy ? base::random_normal(draw, transducer)[0] : 0.0;
     const auto out = std::span(values_).subspan(type_.columns * std::size_t{due_cones_[k].row}, type_.columns);
     type_.write_reading(array, echo.range, echo.hit != SF_NO_HIT, deviate, out);
+    quality_[due_cones_[k].row] = echo.range < array.range_min ? base::QualityFlag::too_near : base::QualityFlag::none;
   }
+}
+
+/// Empty when all flags are none.
+std::span<const base::QualityFlag> Rangers::quality_of(std::uint32_t row) const {
+  const auto own = std::span<const base::QualityFlag>(quality_).subspan(first_cones_[row], arrays_[row].X_SC.size());
+  const bool any = std::any_of(own.begin(), own.end(), [](auto flag) { return flag != base::QualityFlag::none; });
+  return any ? own : std::span<const base::QualityFlag>();
 }
 
 // The echoes of transducers that do not fire are held in arrays with a firing cycle.
 void Rangers::write_state(std::uint32_t row, base::ByteWriter& out) const {
   out.put(last_[row]);
-  out.put_bytes(values_.data() + first_value(row), held_bytes(row));
+  out.put_bytes(values_.data() + first_value(row), sizeof(double) * type_.columns * held(row));
+  out.put_bytes(quality_.data() + first_cones_[row], sizeof(base::QualityFlag) * held(row));
 }
 
 void Rangers::read_state(std::uint32_t row, base::ByteReader& in) {
   last_[row] = in.get<std::uint64_t>();
-  in.get_into(values_.data() + first_value(row), held_bytes(row));
+  in.get_into(values_.data() + first_value(row), sizeof(double) * type_.columns * held(row));
+  in.get_into(quality_.data() + first_cones_[row], sizeof(base::QualityFlag) * held(row));
 }
 
 void Rangers::collect(std::span<base::ReadingBlock> out) {
@@ -148,6 +159,7 @@ void Rangers::collect(std::span<base::ReadingBlock> out) {
     block.X_WS = X_WS_[i];
     block.values = std::span<const double>(values_).subspan(type_.columns * std::size_t{first_cones_[due_[i].row]},
                                                             type_.columns * array.X_SC.size());
+    block.quality = quality_of(due_[i].row);
     out[i] = block;
   }
 }

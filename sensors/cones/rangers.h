@@ -1,5 +1,6 @@
 #pragma once
-// The common backend of sonar and infrared: firing order, and readings from echoes.
+// The common backend of sonar and infrared: firing order, and readings from echoes. An element whose surface is nearer
+// than range_min has the quality flag `too_near`.
 
 #include <memory>
 #include <span>

@@ -54,17 +54,23 @@ ScanLane scan_lane(int lane) {
   return scan;
 }
 
+// The segment that the beam meets before the end of its range, or SF_NO_HIT.
+uint met_before(ClosestHit hit, RayRow row) { return hit.range < row.range_max ? hit.id : SF_NO_HIT; }
+
 // The reported range, within the sensor's limits.
 double reported_range(ClosestHit hit, Beam64 beam, RayRow row) {
   double range = hit.range;
   if (kSinglePrecision) {
-    const float t = range_single(hit.id, beam, float(row.range_max));
-    range = t >= 0.0 ? min(double(t), row.range_max) : range;
+    const float t = range_single(met_before(hit, row), beam, float(row.range_max));
+    range = t >= 0.0 && double(t) < row.range_max ? double(t) : range;
   }
   return max(range, row.range_min);
 }
 
-uint model_of(uint row) { return row == SF_NO_HIT ? SF_NO_HIT : imageLoad(models, int(row)).x; }
+uint reported_model(ClosestHit hit, RayRow row) {
+  const uint segment = met_before(hit, row);
+  return segment == SF_NO_HIT ? SF_NO_HIT : imageLoad(models, int(segment)).x;
+}
 
 // Stores the lane's ranges and hits.
 void store(ScanLane scan, ClosestHit closest[SF_BEAMS_PER_LANE]) {
@@ -72,7 +78,7 @@ void store(ScanLane scan, ClosestHit closest[SF_BEAMS_PER_LANE]) {
   LaneHits lane_hits;
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
     lane_ranges.range[i] = reported_range(closest[i], scan.beams[i], scan.row);
-    lane_hits.model[i] = model_of(closest[i].id);
+    lane_hits.model[i] = reported_model(closest[i], scan.row);
   }
   if (kTexels) {
     store_LaneRanges(range_texels, scan.results, lane_ranges);

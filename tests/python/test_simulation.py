@@ -111,6 +111,28 @@ class Readings(unittest.TestCase):
         self.assertTrue(numpy.isnan(ranges[1, 3:]).all())
         numpy.testing.assert_array_equal(sim.valid("laser"), [[True] * 5, [True] * 3 + [False] * 2])
 
+    def test_ranges_at_their_limits(self):
+        """Each row of the table in docs/sensors.md."""
+        with open("docs/sensors.md", encoding="utf-8") as page:
+            table = page.read().split("## Limits of ranges\n")[1].split("\n## ")[0]
+        rows = [[cell.strip(" `") for cell in line.strip("|").split("|")] for line in table.splitlines() if line.startswith("|")][2:]
+        self.assertEqual(len(rows), 6)
+        values = {"range_min": 0.5, "range_max": 4.0, "d": 2.0, "less than range_min": 0.25, "more than range_max": 6.0}
+        for name, surface, flag, model, value, _, _ in rows:
+            wall, surface = "", surface.replace("`", "")
+            if surface in values:
+                wall = f'model( name "wall" pose [{values[surface] + 0.5} 0 0 0] size [1 4 1] )'
+            sim = sensorfarm.Simulation.from_text(wall + """
+                position( name "eye" pose [0 0 0 0] size [0.1 0.1 0.1] laser( samples 1 fov 180 range_min 0.5 range_max 4 )
+                          sonar( fov 0 range [0.5 4] ) infrared( fov 0 range [0.5 4] ) )""")
+            for type in ("laser", "sonar", "infrared"):
+                with self.subTest(row=name, type=type):
+                    self.assertEqual(sim.readings(type).flat[0], values[value])
+                    self.assertEqual(sim.flags(type)[0, 0], 5 if flag == "too near" else 0)
+                    self.assertEqual(sim.valid(type)[0, 0], flag == "none")
+            self.assertEqual(sim.hits("laser")[0, 0] == sensorfarm.NONE, model == "none", name)
+            self.assertEqual(list(sim.robots[0].sensors[0].bearings), [0.0], "a single beam looks ahead")
+
     def test_late_and_uncertain_elements_are_invalid(self):
         """Before a sensor's first reading all is invalid; where a beam grazes a wall its bound does not hold."""
         sim = sensorfarm.Simulation.from_text(ROOM.replace("rate 5", "rate 5 phase 0.1"), noise=False)

@@ -46,10 +46,29 @@ TEST(Messages, AScanLiesWhereROSExpectsIt) {
   EXPECT_EQ(out.size(), 68u);
 }
 
-TEST(Messages, AScanOfOneBeamHasNoIncrement) {
+/// Clients compute `angle_min + i * angle_increment`.
+TEST(Messages, AScanOfOneBeamLooksAhead) {
   Bytes out;
   encode_scan(sample_scan(), std::vector<double>{1.0}, out);
-  EXPECT_EQ(at<float>(out, 28), 0.0F);
+  EXPECT_EQ(at<float>(out, 20), 0.0F) << "angle_min";
+  EXPECT_EQ(at<float>(out, 24), 0.0F) << "angle_max";
+  EXPECT_EQ(at<float>(out, 28), 0.0F) << "angle_increment";
+  EXPECT_EQ(decode_scan(out)->fov, 0.0F);
+}
+
+TEST(Messages, LimitsThatFloatsDoNotHoldAreRoundedOutwards) {
+  Scan scan = sample_scan();
+  scan.range_min = 0.1;  // its nearest float32 is more
+  scan.range_max = 0.7;  // its nearest float32 is less
+  Bytes out;
+  encode_scan(scan, std::vector<double>{0.1, std::nextafter(0.7, 0.0), 0.09}, out);
+  const auto back = decode_scan(out);
+  ASSERT_TRUE(back);
+  EXPECT_LT(back->range_min, 0.1);
+  EXPECT_GT(back->range_max, 0.7);
+  EXPECT_EQ(back->ranges[0], 0.1F);
+  EXPECT_EQ(back->ranges[1], 0.7F);
+  EXPECT_EQ(back->ranges[2], -std::numeric_limits<float>::infinity()) << "too near";
 }
 
 TEST(Messages, AScanComesBack) {

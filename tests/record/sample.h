@@ -68,7 +68,7 @@ struct SampleTick {
       contacts.push_back(static_cast<std::uint8_t>((tick + m) % 2));
     }
     ranges = {{t / 3.0, 8.0, 0.0, 2.5},
-              {t},
+              {t + 0.5},
               {1.0 / 3.0, 4.0},
               {t, 1.0, 2.0, 3.0, 4.0, -t, -1.0, -2.0, -3.0, 5.0},  // two elements
               {t / 7.0, 61.0, 0.1, 0.2, 0.3},

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
+#include <utility>
 
 #include "record/cdr.h"
+#include "record/reading_messages.h"
 #include "tests/record/sample.h"
 
 namespace sf::record {
@@ -90,6 +93,38 @@ TEST(TickMessages, AfterAResetOdometryIsDueAtOnce) {
   messages.begin([](const TopicMessage&) {});
   messages.encode(test::SampleTick(0).record, count);
   EXPECT_EQ(counts["/roomba_1/odom"], 2);
+}
+
+/// Ranges of the second scan of the sample, and the first field of its first array, as a tick's messages have them.
+std::pair<float, double> told_values(const RunInfo& info, const base::TickRecord& record) {
+  TickMessages messages(info);
+  std::pair<float, double> told{NAN, NAN};
+  messages.encode(record, [&](const TopicMessage& message) {
+    const std::string& topic = messages.topics()[message.topic].name;
+    if (topic == "/roomba_1/front_2/scan") told.first = decode_scan(message.bytes)->ranges.at(0);
+    std::int64_t time = 0;
+    std::vector<double> values;
+    if (topic != "/roomba_1/front_3/array" || !decode_reading(info.sensor_types[2], message.bytes, time, values))
+      return;
+    told.second = values.at(0);
+  });
+  return told;
+}
+
+/// In messages, which have no flags, surfaces that are too near are -infinity (REP 117), or `range_min` where that is
+/// asked for.
+TEST(TickMessages, RangesOfSurfacesThatAreTooNearAreMarked) {
+  RunInfo info = named_info();
+  test::SampleTick tick(0);
+  const double range = tick.ranges[1][0] = 0.5, field = tick.ranges[3][0];
+  EXPECT_EQ(told_values(info, tick.record), std::pair(static_cast<float>(range), field)) << "without flags";
+
+  const base::QualityFlag near[] = {base::QualityFlag::too_near, base::QualityFlag::none};
+  tick.readings[1].quality = std::span(near).first(1);
+  tick.readings[3].quality = near;
+  EXPECT_EQ(told_values(info, tick.record), std::pair(-HUGE_VALF, -HUGE_VAL));
+  info.options.emplace_back(kTooNear, "min");
+  EXPECT_EQ(told_values(info, tick.record), std::pair(static_cast<float>(range), field));
 }
 
 }  // namespace

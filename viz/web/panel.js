@@ -37,8 +37,9 @@ function longest(list, width) {
   return found;
 }
 
-/** Ranges without an echo are infinite (REP 117). */
+/** Ranges without an echo are infinite, those of surfaces that are too near -infinite (REP 117). */
 function valueText(value, unit, isRange) {
+  if (isRange && value === -Infinity) return 'too near';
   return isRange && value === Infinity ? 'no echo' : `${short(value)} ${unit}`.trim();
 }
 

@@ -10,15 +10,21 @@ export function compose([x, y, yaw], [bx, by, byaw]) {
   return [x + c * bx - s * by, y + s * bx + c * by, yaw + byaw];
 }
 
+/** A range of a sensor with limits [least, most), as REP 117 says: below `least` the surface is too near. */
+function echoOf(range, least, most) {
+  const near = range < least;
+  return { near, echo: !near && range < most, drawn: near ? least : Math.min(range, most) };
+}
+
 function drawScan(c, px, pose, sensor, scan, drawn) {
-  const { ranges, angle_min, angle_increment, range_max } = scan, [x, y, yaw] = pose;
+  const { ranges, angle_min, angle_increment, range_min, range_max } = scan, [x, y, yaw] = pose;
   const outline = new Path2D(), rays = new Path2D(), ends = new Path2D();
   const full = angle_increment * (ranges.length - 1) > 2 * Math.PI - 0.05;
   if (!full) outline.moveTo(x, y);
   const every = Math.max(1, Math.round(ranges.length / 90)), dot = 2 * px;
   let hits = 0;
   for (let i = 0; i < ranges.length; ++i) {
-    const echo = ranges[i] < range_max * 0.99999, range = Math.min(ranges[i], range_max);
+    const { echo, drawn: range } = echoOf(ranges[i], range_min, range_max);
     const angle = yaw + angle_min + i * angle_increment;
     const ex = x + range * Math.cos(angle), ey = y + range * Math.sin(angle);
     if (i === 0 && full) outline.moveTo(ex, ey); else outline.lineTo(ex, ey);
@@ -42,13 +48,13 @@ function drawCones(c, px, pose, sensor, message, drawn) {
   const ranges = message.range_m;
   sensor.cones.forEach((cone, i) => {
     const range = ranges[i];
-    if (!(range >= 0)) return;
-    const [x, y, yaw] = compose(pose, cone), echo = range < sensor.range_max * 0.999;
-    const path = sectorPath(x, y, yaw, sensor.cone_fov, Math.min(range, sensor.range_max));
-    c.fillStyle = fade(theme.view, echo ? 0.2 : 0.07);
+    if (range === undefined || Number.isNaN(range)) return;
+    const [x, y, yaw] = compose(pose, cone), { near, echo, drawn: radius } = echoOf(range, sensor.range_min, sensor.range_max);
+    const path = sectorPath(x, y, yaw, sensor.cone_fov, radius);
+    c.fillStyle = fade(theme.view, near || echo ? 0.2 : 0.07);
     c.fill(path);
     c.lineWidth = px;
-    c.strokeStyle = fade(theme.view, echo ? 0.8 : 0.25);
+    c.strokeStyle = fade(theme.view, near || echo ? 0.8 : 0.25);
     c.stroke(path);
     ++drawn.cones;
   });

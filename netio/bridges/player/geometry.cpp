@@ -83,10 +83,12 @@ base::Bytes laser_config(const sensors::SensorSpec& laser) {
   return out;
 }
 
-base::Bytes ranger_config(const sensors::SensorSpec& spec, double half_fov, double resolution, double range_min) {
+/// Clients take range i of an element to have the bearing of its least angle plus i times the resolution: those of one
+/// range are 0. @param resolution [rad] of arrays: the aperture of a cone
+base::Bytes ranger_config(const sensors::SensorSpec& spec, double least, double most, double resolution) {
   base::Bytes out;
   XdrWriter xdr(out);
-  xdr.put_all({-half_fov, half_fov, resolution, range_min, spec.limit, 0.0, spec.rate});
+  xdr.put_all({least, most, resolution, spec.range_min, spec.limit, 0.0, spec.rate});
   return out;
 }
 
@@ -139,9 +141,9 @@ base::Bytes SensorGeometry::config(Interface interf, std::uint8_t type, const se
                                    std::size_t row) const {
   if (interf == Interface::laser) return laser_config(spec);
   if (interf != Interface::ranger) return {};
-  if (!is_array(type)) return ranger_config(spec, 0.5 * spec.fov, resolution_of(spec), spec.range_min);
-  const sensors::ConeArray& array = cones(type, row);
-  return ranger_config(spec, 0.5 * array.fov, array.fov, array.range_min);
+  if (is_array(type)) return ranger_config(spec, 0.0, 0.0, cones(type, row).fov);
+  return ranger_config(spec, sensors::bearing_of(spec, 0), sensors::bearing_of(spec, spec.elements - 1),
+                       resolution_of(spec));
 }
 
 }  // namespace sf::bridges::player

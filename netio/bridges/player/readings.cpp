@@ -9,9 +9,9 @@ namespace sf::bridges::player {
 
 namespace {
 
-/// [m] An infinite range and one that is no number become the largest.
-double clean(double range, double most) {
-  return range >= 0.0 ? std::min(range, most) : std::isnan(range) ? most : 0.0;
+/// [m] Player's ranges are finite and lie within the sensor's limits; NaN becomes the largest.
+double clean(double range, const base::RangeLimits& limits) {
+  return std::isnan(range) ? limits.max : std::clamp(range, limits.min, limits.max);
 }
 
 /// Numbers per element, of which the first is its range.
@@ -22,7 +22,7 @@ void put_ranges(const Device& device, const LastReading& reading, XdrWriter& xdr
   const std::size_t width = width_of(device);
   xdr.put_count(reading.values.size() / width);
   for (std::size_t i = 0; i < reading.values.size(); i += width)
-    xdr.put(static_cast<Number>(clean(reading.values[i], device.sensor->limit)));
+    xdr.put(static_cast<Number>(clean(reading.values[i], limits_of(*device.sensor))));
 }
 
 void put_scan(const Device& device, const LastReading& reading, XdrWriter& xdr) {

@@ -48,6 +48,20 @@ TEST(LastTick, KeepsEachSensorsNewestReading) {
   EXPECT_EQ(last.record().readings.size(), 100u);
 }
 
+/// A flag is a part of what a reading says: messages depend on it.
+TEST(LastTick, KeepsTheFlagsOfReadings) {
+  LastTick last;
+  {
+    TickOf tick(1, {0, 1});
+    const base::QualityFlag near = base::QualityFlag::too_near;
+    tick.readings[1].quality = {&near, 1};
+    last.store(tick.tick, true);
+  }
+  EXPECT_TRUE(last.record().readings[0].quality.empty());
+  ASSERT_EQ(last.record().readings[1].quality.size(), 1u);
+  EXPECT_EQ(last.record().readings[1].quality[0], base::QualityFlag::too_near);
+}
+
 TEST(LastTick, ForgetsReadingsThatGrewOld) {
   LastTick last;
   last.store(TickOf(1, {0}).tick, true);

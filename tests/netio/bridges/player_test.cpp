@@ -202,6 +202,35 @@ TEST_F(PlayerTest, FirstRangesOfARangerDescribeIt) {
   EXPECT_EQ(ask(ranger, 4, config.payload), MessageType::ack) << "setting it changes nothing";
 }
 
+/// Clients take range i of an element to have the bearing of the least angle plus i times the resolution.
+TEST(PlayerRangers, TheBearingOfASingleRangeIsZero) {
+  const PlayerRun run(R"(
+model( name "wall" pose [9 0 0 0] size [1 1 1] )
+position(
+  name "ann" size [0.3 0.3 0.3]
+  ranger( sensor( range [0 8] fov 180 samples 1 ) )
+  ranger( sensor( range [0 8] fov 180 samples 2 ) )
+  sonar( scount 2 spose[0] [0.1 0 0] spose[1] [0 0.1 90] range [0.1 4] fov 20 )
+  infrared( range [0 0.5] fov 30 )
+)
+)");
+  const Devices devices(run.world, run.sensor_set);
+  std::vector<std::pair<double, double>> angles;
+  for (const Device& device : devices.rows()) {
+    if (device.interf != Interface::ranger) continue;
+    XdrReader config(device.config);
+    angles.emplace_back(config.get_double(), 0.0);
+    angles.back().second = config.get_double();
+  }
+  ASSERT_EQ(angles.size(), 4u);
+  const std::pair zero{0.0, 0.0};
+  EXPECT_EQ(angles[0], zero) << "a scan of one beam";
+  EXPECT_NEAR(angles[1].first, -M_PI / 2, 1e-12) << "a scan of two beams";
+  EXPECT_NEAR(angles[1].second, M_PI / 2, 1e-12);
+  EXPECT_EQ(angles[2], zero) << "a sonar's transducer, which its geometry turns";
+  EXPECT_EQ(angles[3], zero) << "an infrared sensor's element";
+}
+
 TEST_F(PlayerTest, ArraysHaveRangesVoltagesAndGeometry) {
   client.access(kPosition, Access::close);
   client.open({Interface::sonar, 0});
