@@ -113,7 +113,8 @@ void Simulation::State::record() {
                                        {.seed = options.seed,
                                         .record_readings = options.record_readings,
                                         .caster = library::describe_caster(device->info().software, options.caster),
-                                        .noise = options.noise}),
+                                        .noise = options.noise,
+                                        .too_near_min = options.too_near_min}),
                    part);
 }
 

@@ -106,8 +106,8 @@ struct RunInfo {
 
 /// Options of a run, in the words of the command line.
 inline constexpr std::string_view kNoReturn = "no_return";  ///< "max" or "inf"
-/// "inf" or "min": ranges of surfaces that are too near. Absent: recorded as range_min, by versions without this
-/// option.
+/// "min": ranges of surfaces that are too near are range_min in messages. Absent: they are -infinity, or the recording
+/// is of a version without this option, which has range_min.
 inline constexpr std::string_view kTooNear = "too_near";
 /// Value of an option; empty where the run has none of that name.
 std::string_view option_of(const RunInfo& info, std::string_view key);

@@ -65,8 +65,9 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   if (settings.record_readings) info.odometry_rate = 1.0 / world.interval;  // every tick, as viewers draw them
   info.estimated = settings.estimated;
   info.options = {{std::string(record::kNoReturn), settings.no_return_inf ? "inf" : "max"},
-                  {std::string(record::kTooNear), settings.too_near_min ? "min" : "inf"},
                   {"caster", settings.caster}};
+  info.accuracy = accuracy_rows(world, sensor_set, settings.noise);
+  if (settings.too_near_min) info.options.emplace_back(record::kTooNear, "min");
   info.snapshot = world::snapshot(world);
   for (const world::Mover& mover : world.movers)
     info.movers.push_back({mover.name, "", mover.id, {}, body_of(world, mover)});

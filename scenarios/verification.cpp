@@ -50,6 +50,13 @@ void compare(std::span<const double> ours, std::span<const double> theirs, const
   if (before == 0 && into.different > 0) into.first = where;
 }
 
+/// A recording without a mark has no surface that is too near, or the value of its sensor's minimum there.
+bool any_marked(const record::Recording& recording) {
+  return std::any_of(recording.readings.begin(), recording.readings.end(), [](const record::ReadingSample& reading) {
+    return std::find(reading.values.begin(), reading.values.end(), -HUGE_VAL) != reading.values.end();
+  });
+}
+
 /// A scan to be recomputed by plain C++.
 struct Asked {
   std::uint32_t mover, sensor, sequence;
@@ -68,7 +75,7 @@ class Verifier {
         farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads}),
         reference_(world_, recording.info.seed),
         infinite_(record::option_of(recording.info, record::kNoReturn) == "inf"),
-        too_near_(record::option_of(recording.info, record::kTooNear)) {
+        marks_too_near_(any_marked(recording)) {
     for (std::size_t i = 0; i < recording.readings.size(); ++i) {
       const record::ReadingSample& r = recording.readings[i];
       readings_[{r.type, r.mover, r.sensor, r.sequence}] = i;
@@ -229,7 +236,7 @@ class Verifier {
     if (!is_scan)
       return compare(told_values(reading.values, reading.quality), theirs, place_of(reading), compared(reading.type));
     const std::vector<double> told = told_scan(reading.mover, reading.sensor, reading.values, reading.quality);
-    compare(told, theirs, place_of(reading), compared(reading.type));
+    compare(told, settled(laser_of(reading.mover, reading.sensor), theirs), place_of(reading), compared(reading.type));
     ask(reading, theirs);
   }
 
@@ -244,24 +251,34 @@ class Verifier {
   /// Values as messages have them. @param flags of the reading's elements; empty: none
   std::vector<double> told_values(std::span<const double> values, std::span<const base::QualityFlag> flags) const {
     std::vector<double> all(values.begin(), values.end());
-    if (too_near_ == "inf") base::mark_too_near(flags, all);
+    if (marks_too_near_) base::mark_too_near(flags, all);
     return all;
   }
 
-  /// Ranges as recorded scans have them. Those of versions without the option `kTooNear` were rounded to float32 alone.
+  const sensors::SensorSpec& laser_of(std::uint32_t mover, std::uint32_t sensor) const {
+    return farm_.sensor_set().of(sensors::kLaser, mover)[sensor];
+  }
+
+  /// Takes the last float32 before range_max for no echo, and one below range_min for range_min: earlier versions
+  /// rounded ranges so.
+  std::vector<double> settled(const sensors::SensorSpec& laser, std::vector<double> ranges) const {
+    const double none = infinite_ ? HUGE_VAL : laser.limit;
+    const double first = base::float_above(laser.range_min);
+    const double last = base::rep117_range(std::nextafter(laser.limit, 0.0), limits_of(laser));
+    for (double& range : ranges) {
+      if (range >= last) range = none;
+      if (std::isfinite(range)) range = std::max(range, first);
+    }
+    return ranges;
+  }
+
+  /// Ranges as recorded scans have them.
   std::vector<double> told_scan(std::uint32_t mover, std::uint32_t sensor, std::span<const double> ranges,
                                 std::span<const base::QualityFlag> flags) const {
-    const sensors::SensorSpec& laser = farm_.sensor_set().of(sensors::kLaser, mover)[sensor];
-    const auto most = static_cast<float>(laser.limit);
+    const sensors::SensorSpec& laser = laser_of(mover, sensor);
     std::vector<double> all = told_values(ranges, flags);
-    for (double& range : all) {
-      const auto rounded = static_cast<float>(range);
-      const float told = !too_near_.empty() ? base::rep117_range(range, sensors::limits_of(laser))
-                         : rounded >= most  ? HUGE_VALF
-                                            : rounded;
-      range = told < HUGE_VALF ? told : infinite_ ? HUGE_VAL : laser.limit;
-    }
-    return all;
+    for (double& range : all) range = base::rep117_range(range, limits_of(laser));
+    return settled(laser, std::move(all));
   }
 
   /// Puts every `stride_`-th scan on the list for plain C++.
@@ -292,7 +309,8 @@ class Verifier {
   }
 
   void judge(const Asked& asked, const sensors::LaserReference::Scan& scan) {
-    std::vector<double> ours = told_scan(asked.mover, asked.sensor, scan.ranges, scan.quality), theirs = asked.ranges;
+    std::vector<double> ours = told_scan(asked.mover, asked.sensor, scan.ranges, scan.quality);
+    std::vector<double> theirs = settled(laser_of(asked.mover, asked.sensor), asked.ranges);
     // Errors of 32-bit ranges may lead across range_min.
     const double least = reference_.laser(asked.mover, asked.sensor).laser.range_min;
     for (std::vector<double>* const ranges : {&ours, &theirs})
@@ -314,7 +332,7 @@ class Verifier {
   farm::Farm farm_;
   sensors::LaserReference reference_;
   const bool infinite_;                   ///< beams without a return are recorded as infinity
-  const std::string_view too_near_;       ///< as of `record::kTooNear`
+  const bool marks_too_near_;             ///< ranges of surfaces that are too near are recorded as -infinity
   bool recorded_ = false;                 ///< the recording has scans
   std::map<Name, std::size_t> readings_;  ///< recorded readings not compared yet
   std::vector<base::Report> reports_;     ///< of one tick

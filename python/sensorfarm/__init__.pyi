@@ -191,12 +191,13 @@ class Simulation:
     def __init__(self, world: str, *, robots: int = 0, of: str = "", seed: int = 1, threads: int = 0, noise: bool = True,
                  accuracy: str = "", device: str = "", caster: str = "auto", controller: str | type[Controller] = "",
                  settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,
-                 ranks: bool = False, writable: bool = False) -> None:
+                 ranks: bool = False, too_near_min: bool = False, writable: bool = False) -> None:
         """world: a world file or ROS map (.yaml), also one of the installed worlds. robots: clones of one robot (`of`;
         else the first with sensors) at free poses; 0: the world's own. seed: of poses, noise and controllers. threads: 0
         for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row or part of a device's name. caster:
         auto, vulkan or host. controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty:
-        twists drive them. record: folder of a recording. ranks: processes of mpirun share the fleet; all make the same
+        twists drive them. record: folder of a recording. too_near_min: ranges of surfaces that
+        are too near are recorded as range_min, not as -infinity (docs/sensors.md). ranks: processes of mpirun share the fleet; all make the same
         calls, and each has the readings of its own robots alone and commands these (docs/cluster.md). Raises Error, DeviceError, TypeError."""
     @staticmethod
     def from_text(text: str, name: str = "given.world", **options: Any) -> Simulation:

@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -31,12 +32,15 @@ world::World recorded_world() {
 }
 
 /// Two seconds of wandering.
-record::Recording recorded(bool readings, const std::string& mode = "exact", world::World world = recorded_world()) {
+record::Recording recorded(bool readings, const std::string& mode = "exact", world::World world = recorded_world(),
+                           bool too_near_min = false) {
   const auto folder = std::filesystem::temp_directory_path() / ("sf_verification_" + std::to_string(::getpid()));
   sensors::set_accuracy(world, mode);
   {
     Simulation simulation(world, device(), {.seed = 9});
-    record::Recorder recorder(folder.string(), run_info(world, simulation.farm().sensor_set(), {9, readings}));
+    record::Recorder recorder(folder.string(),
+                              run_info(world, simulation.farm().sensor_set(),
+                                       {.seed = 9, .record_readings = readings, .too_near_min = too_near_min}));
     for (int tick = 0; tick < 20; ++tick) recorder.write(simulation.step());
     recorder.finish();
   }
@@ -97,6 +101,51 @@ TEST(Verification, InOtherModes) {
   EXPECT_EQ(single.recomputed[0].largest, 0.0) << "one device, one answer";
   EXPECT_GT(single.reference.largest, 0.0) << "or it was not measured in 32 bits";
   EXPECT_LT(single.reference.largest, 1e-3);
+}
+
+/// Robots whose lasers and sonars have many surfaces nearer than their minimum.
+world::World near_world() {
+  world::World world = recorded_world();
+  for (world::Mover& mover : world.movers) {
+    scenes::edit_laser(mover)->range_min = 1.4;  // 1.4F is less
+    world::Sensor sonar;
+    sonar.type = sonar.name = "sonar";
+    sonar.settings = {{"range", {1.0, 3.0}, "", 0, ""}};
+    mover.sensors.push_back(sonar);
+  }
+  world::update_extent_and_hash(world);
+  return world;
+}
+
+std::size_t count_too_near(const record::Recording& run) {
+  std::size_t count = 0;
+  for (const record::ReadingSample& reading : run.readings)
+    count += static_cast<std::size_t>(std::count(reading.values.begin(), reading.values.end(), -HUGE_VAL));
+  return count;
+}
+
+/// Ranges of surfaces that are too near are recorded as -infinity, or as the minimum; those of earlier versions, which
+/// name no option, as the minimum.
+TEST(Verification, RangesThatAreTooNear) {
+  for (const std::string mode : {"exact", "skip4", "single"}) {
+    const record::Recording marked = recorded(true, mode, near_world());
+    EXPECT_GT(count_too_near(marked), 100u);
+    const Verification v = verify(marked, device(), {});
+    EXPECT_TRUE(v.sound()) << mode << v.reference.first << v.recomputed[0].first;
+    EXPECT_EQ(v.recomputed.size(), 2u);
+
+    const record::Recording plain = recorded(true, mode, near_world(), true);
+    EXPECT_EQ(count_too_near(plain), 0u);
+    EXPECT_EQ(record::option_of(plain.info, record::kTooNear), "min");
+    EXPECT_TRUE(verify(plain, device(), {}).sound()) << mode;
+
+    record::Recording earlier = plain;
+    std::erase_if(earlier.info.options, [](const auto& option) { return option.first == record::kTooNear; });
+    for (record::ReadingSample& reading : earlier.readings)
+      if (reading.type == 1)
+        for (double& range : reading.values) range = range == base::float_above(1.4) ? double{1.4F} : range;
+    EXPECT_TRUE(verify(earlier, device(), {}).sound()) << mode << ", as of earlier versions";
+  }
 }
 
 TEST(Verification, A32BitRangeBeyondItsBoundIsFound) {
