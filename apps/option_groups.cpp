@@ -75,8 +75,10 @@ void add_world(CLI::App& app, WorldOptions& o) {
   app.add_flag("--stage-noise", o.load.stage_noise, "As in Stage, the first number of `noise` is a variance")
       ->group(kWorld);
   app.add_flag("--unknown-is-wall", o.load.unknown_is_wall, "Unknown cells of a ROS map are walls")->group(kWorld);
-  app.add_flag("--strict", o.load.strict_roads,
-               "Refuse road networks and missions with any error, even where its meaning is clear")
+  app.add_flag(
+         "--strict", o.load.strict,
+         "Refuse road networks and missions with any error, even where its meaning is clear, and files of outlines "
+         "with any row that has no walls or no valid height")
       ->group(kWorld);
 }
 

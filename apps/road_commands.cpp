@@ -31,17 +31,17 @@ void append(std::vector<world::Warning>& all, const std::vector<world::Warning>&
 
 int check_network(const CheckOptions& options) {
   std::vector<world::Warning> warnings;
-  const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
+  const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict);
   const RoadReport facts{network, world::lane_markings_of(network).size(), warnings};
   print(options.json ? json_of(facts) : text_of(facts));
   return 0;
 }
 
 int check_mission(const CheckOptions& options) {
-  const world::Mdf mission = world::read_mdf(options.world, options.load.strict_roads);
+  const world::Mdf mission = world::read_mdf(options.world, options.load.strict);
   std::vector<world::Warning> warnings = mission.warnings;
   if (!options.rndf.empty()) {
-    const world::Rndf rndf = world::read_rndf(options.rndf, options.load.strict_roads);
+    const world::Rndf rndf = world::read_rndf(options.rndf, options.load.strict);
     append(warnings, rndf.warnings);
     append(warnings, world::check_against(mission, rndf));
   }
@@ -98,7 +98,7 @@ std::optional<int> draw_roads(const DrawOptions& options) {
     throw base::InputError(options.world, 0, "a mission has no picture; draw the .rndf file that it was made for");
   if (!is_network(options.world)) return std::nullopt;
   std::vector<world::Warning> warnings;
-  const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
+  const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict);
   print_warnings(options.world, warnings);
   viz::draw_roads(network, options.out, options.page);
   print_message("wrote {}", options.out);

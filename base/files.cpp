@@ -93,28 +93,65 @@ LineFile::LineFile(const std::string& file) : file_(file) {
 
 LineFile::~LineFile() { ::close(descriptor_); }
 
+/// Keeps the current line.
 bool LineFile::refill() {
   buffer_.erase(0, begin_);
-  seen_ = buffer_.size();
+  end_ -= begin_;
+  first_end_ -= begin_;
   begin_ = 0;
-  if (seen_ > kMaxLine)
-    throw InputError(file_, number_ + 1, fmt::format("a line of more than {} MiB, the limit", kMaxLine >> 20));
-  buffer_.resize(seen_ + kBlock);
-  const std::size_t got = read_some(file_, descriptor_, buffer_.data() + seen_, kBlock);
-  buffer_.resize(seen_ + got);
+  const std::size_t have = buffer_.size();
+  buffer_.resize(have + kBlock);
+  const std::size_t got = read_some(file_, descriptor_, buffer_.data() + have, kBlock);
+  buffer_.resize(have + got);
   return got > 0;
 }
 
-bool LineFile::next(std::string_view& line) {
-  std::size_t end = buffer_.find('\n', seen_);
-  while (end == std::string::npos && refill()) end = buffer_.find('\n', seen_);
-  if (end == std::string::npos) end = buffer_.size();  // the last line may have no end
-  if (begin_ == buffer_.size()) return false;
-  line = std::string_view(buffer_).substr(begin_, end - begin_);
+/// The first line end from `from` on, relative to `begin_`; the end of the file where none follows.
+std::size_t LineFile::find_end(std::size_t from) {
+  for (;;) {
+    const std::size_t end = buffer_.find('\n', begin_ + from);
+    if (end != std::string::npos) return end - begin_;
+    from = buffer_.size() - begin_;
+    if (from > kMaxLine || !refill()) return from;
+  }
+}
+
+std::string_view LineFile::line_to(std::size_t end) const {
+  std::string_view line = std::string_view(buffer_).substr(begin_, end - begin_);
   if (line.ends_with('\r')) line.remove_suffix(1);
-  begin_ = seen_ = std::min(end + 1, buffer_.size());
-  ++number_;
+  return line;
+}
+
+bool LineFile::next(std::string_view& line) {
+  begin_ = std::min(end_ + 1, buffer_.size());
+  end_ = first_end_ = begin_;
+  number_ = last_number() + 1;
+  appended_ = 0;
+  const std::size_t length = find_end(0);
+  if (length > kMaxLine)
+    throw InputError(file_, number_, fmt::format("a line of more than {} MiB, the limit", kMaxLine >> 20));
+  end_ = first_end_ = begin_ + length;
+  if (begin_ == buffer_.size()) return false;
+  line = line_to(end_);
   return true;
+}
+
+bool LineFile::extend(std::string_view& line) {
+  bool more = end_ + 1 < buffer_.size() || refill();
+  const std::size_t length = more ? find_end(end_ + 1 - begin_) : 0;
+  more = more && length <= kMaxLine;
+  if (more) {
+    end_ = begin_ + length;
+    ++appended_;
+  }
+  line = line_to(end_);  // the buffer may have moved
+  return more;
+}
+
+void LineFile::shrink(std::string_view& line) {
+  end_ = first_end_;
+  appended_ = 0;
+  line = line_to(end_);
 }
 
 }  // namespace sf::base

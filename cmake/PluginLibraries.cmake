@@ -16,6 +16,10 @@ foreach(part core imgproc imgcodecs videoio calib3d aruco)
   list(APPEND OPENCV_LIBRARIES ${OPENCV_${part}})
 endforeach()
 
+# GDAL without its CMake package, which looks for all that GDAL may be built with.
+find_path(GDAL_INCLUDE gdal.h PATH_SUFFIXES gdal REQUIRED)  # libgdal-dev
+find_library(GDAL gdal REQUIRED)
+
 # Cyclone DDS without its CMake package, which wants OpenSSL's headers (cyclonedds-dev).
 find_path(CYCLONEDDS_INCLUDE dds/dds.h REQUIRED)
 find_library(CYCLONEDDS ddsc REQUIRED)
@@ -26,6 +30,8 @@ function(link_plugins)
   target_link_libraries(sensorfarm_vtk PRIVATE VTK::IOXML VTK::FiltersCore VTK::FiltersFlowPaths VTK::InteractionWidgets VTK::RenderingOpenGL2 VTK::RenderingFreeType X11::X11)
   target_include_directories(sensorfarm_opencv SYSTEM PRIVATE ${OPENCV_INCLUDE})
   target_link_libraries(sensorfarm_opencv PRIVATE fmt::fmt ${OPENCV_LIBRARIES})
+  target_include_directories(sensorfarm_gdal SYSTEM PRIVATE ${GDAL_INCLUDE})
+  target_link_libraries(sensorfarm_gdal PRIVATE fmt::fmt ${GDAL})
   target_include_directories(sensorfarm_dds SYSTEM PRIVATE ${CYCLONEDDS_INCLUDE})
   target_compile_definitions(sensorfarm_dds PRIVATE DDS_NDEBUG)  # as the library was built
   target_link_libraries(sensorfarm_dds PRIVATE fmt::fmt ${CYCLONEDDS})

@@ -24,19 +24,20 @@ struct UnreadWalls {
   Extent extent = kNowhere;
 };
 
-/// Sets the longest wall of each file, too.
+/// Sets the longest wall of each file, and adds warnings, too.
 UnreadWalls measure_unread(World& world) {
   UnreadWalls unread;
   for (OutlineFile& file : world.unread) {
     file.longest = 0.0;
-    read_outlines(file, [&](std::span<const Segment> walls) {
+    const auto measure = [&](std::span<const Segment> walls) {
       unread.count += walls.size();
       for (const Segment& wall : walls) {
         sf::world::include(unread.extent, wall.a);
         sf::world::include(unread.extent, wall.b);
         file.longest = std::max(file.longest, glm::length(wall.b - wall.a));
       }
-    });
+    };
+    read_outlines(file, measure, &world.warnings);
   }
   return unread;
 }

@@ -1,19 +1,52 @@
-#include "world/well_known_text.h"
-
-#include <fmt/format.h>
-
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
-#include <cmath>
+#include <cstdlib>
 #include <string>
 
-#include "base/error.h"
+#include "world/geometry_reader.h"
 
 namespace sf::world {
 
 namespace {
 
-constexpr std::size_t kShown = 24;  // characters of the text in errors
+constexpr std::size_t kShownText = 24;  // characters of the text in errors
+constexpr std::size_t kMinDigits = 18;  // of binary in hexadecimal digits: byte order, type and a number of members
+constexpr std::string_view kTextBlanks = " \t\r\n";
+constexpr std::string_view kDigits = "0123456789abcdefABCDEF";
+
+constexpr std::string_view kFirstCharacters = "0PLMGCTSplmgcts";  // of digits, types and SRID
+
+struct TypeName {
+  std::string_view name;
+  GeometryType type;
+};
+constexpr std::array<TypeName, 15> kTypes{{{"POINT", GeometryType::point},
+                                           {"LINESTRING", GeometryType::linestring},
+                                           {"POLYGON", GeometryType::polygon},
+                                           {"MULTIPOINT", GeometryType::multipoint},
+                                           {"MULTILINESTRING", GeometryType::multilinestring},
+                                           {"MULTIPOLYGON", GeometryType::multipolygon},
+                                           {"GEOMETRYCOLLECTION", GeometryType::collection},
+                                           {"CIRCULARSTRING", GeometryType::circularstring},
+                                           {"COMPOUNDCURVE", GeometryType::compoundcurve},
+                                           {"CURVEPOLYGON", GeometryType::curvepolygon},
+                                           {"MULTICURVE", GeometryType::multicurve},
+                                           {"MULTISURFACE", GeometryType::multisurface},
+                                           {"POLYHEDRALSURFACE", GeometryType::polyhedralsurface},
+                                           {"TIN", GeometryType::tin},
+                                           {"TRIANGLE", GeometryType::triangle}}};
+
+/// With or without the letters of its dimensions, as in POLYGONZ.
+const TypeName* find_type(std::string_view word) {
+  for (const TypeName& row : kTypes) {
+    if (!word.starts_with(row.name)) continue;
+    const std::string_view rest = word.substr(row.name.size());
+    if (rest.empty() || rest == "Z" || rest == "M" || rest == "ZM") return &row;
+  }
+  return nullptr;
+}
 
 class TextReader {
  public:
@@ -21,9 +54,88 @@ class TextReader {
 
   [[noreturn]] void fail(std::string_view expected) {
     skip_blanks();
-    const std::string_view rest = text_.substr(at_, kShown);
+    const std::string_view rest = text_.substr(at_, kShownText);
     throw base::InputError(fmt::format("expected {}, found {}", expected,
-                                       rest.empty() ? "the end of the line" : fmt::format("'{}'", rest)));
+                                       rest.empty() ? "the end of the text" : fmt::format("'{}'", rest)));
+  }
+  /// `SRID=n;`. @return 0: none
+  std::uint32_t srid() {
+    const std::size_t start = at_;
+    std::uint32_t value = 0;
+    if (word() == "SRID" && take('=')) {
+      skip_blanks();
+      const char* const begin = text_.data() + at_;
+      at_ += static_cast<std::size_t>(std::from_chars(begin, text_.data() + text_.size(), value).ptr - begin);
+      if (take(';')) return value;
+    }
+    at_ = start;
+    return 0;
+  }
+  /// Null, and nothing is read: no word that is a type.
+  const TypeName* tag() {
+    const std::size_t start = at_;
+    const TypeName* const type = find_type(word());
+    if (type == nullptr) at_ = start;
+    if (type == nullptr) return nullptr;
+    const std::size_t after = at_;
+    const std::string dimensions = word();
+    if (dimensions != "Z" && dimensions != "M" && dimensions != "ZM") at_ = after;
+    return type;
+  }
+  bool take_empty() {
+    const std::size_t start = at_;
+    if (word() == "EMPTY") return true;
+    at_ = start;
+    return false;
+  }
+  bool is(char c) {
+    skip_blanks();
+    return at_ < text_.size() && text_[at_] == c;
+  }
+  bool take(char c) {
+    if (!is(c)) return false;
+    ++at_;
+    return true;
+  }
+  bool at_end() {
+    skip_blanks();
+    return at_ == text_.size();
+  }
+  std::size_t at() const { return at_; }
+
+  GeometryType type(std::optional<GeometryType> implied) {
+    const TypeName* const found = tag();
+    if (found == nullptr && implied) return *implied;
+    if (found == nullptr) fail("POLYGON, MULTIPOLYGON, LINESTRING or MULTILINESTRING");
+    if (!is('(') && !is('E') && !is('e')) fail(fmt::format("'(' or EMPTY after {}", found->name));
+    return found->type;
+  }
+  template <class F>
+  void each(const F& f) {
+    if (take('(')) {
+      do f();
+      while (take(','));
+      if (!take(')')) fail("')'");
+    } else if (!take_empty()) {
+      fail("'('");
+    }
+  }
+  glm::dvec2 point() {
+    const double x = number(true);
+    const double y = number(true);
+    for (int more = 0; more < 2 && !is(',') && !is(')') && !at_end(); ++more) number(false);  // z, m
+    return {x, y};
+  }
+  void skip_points(GeometryType) {
+    each([&] {
+      if (is('(')) return each([&] { point(); });
+      if (!take_empty()) point();
+    });
+  }
+
+ private:
+  void skip_blanks() {
+    while (at_ < text_.size() && (text_[at_] == ' ' || (text_[at_] >= '\t' && text_[at_] <= '\r'))) ++at_;
   }
   /// The next word in capital letters; empty before anything else.
   std::string word() {
@@ -33,99 +145,93 @@ class TextReader {
       word += static_cast<char>(std::toupper(static_cast<unsigned char>(text_[at_])));
     return word;
   }
-  bool take(char c) {
-    skip_blanks();
-    if (at_ >= text_.size() || text_[at_] != c) return false;
-    ++at_;
-    return true;
-  }
-  void expect(char c) {
-    if (!take(c)) fail(fmt::format("'{}'", c));
-  }
-  bool at_end() {
-    skip_blanks();
-    return at_ == text_.size();
-  }
-  double number() {
+  double number(bool finite) {
     skip_blanks();
     double value = 0.0;
-    const char* const begin = text_.data() + at_;
-    const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
-    if (error != std::errc() || !std::isfinite(value)) fail("a finite number");
-    at_ += static_cast<std::size_t>(end - begin);
+    const char* begin = text_.data() + at_;
+    const char* const last = text_.data() + text_.size();
+    if (is('+')) ++begin;
+    auto [end, error] = std::from_chars(begin, last, value);
+    if (error == std::errc::result_out_of_range)
+      value = std::strtod(std::string(begin, end).c_str(), nullptr);  // 1e-999
+    const bool ends = end == last || (!std::isalnum(static_cast<unsigned char>(*end)) && *end != '+' && *end != '-');
+    if (error == std::errc::invalid_argument || !ends || (finite && !std::isfinite(value))) fail("a finite number");
+    at_ = static_cast<std::size_t>(end - text_.data());
     return value;
-  }
-  /// Another number follows.
-  bool is_number() {
-    skip_blanks();
-    return at_ < text_.size() && text_[at_] != ',' && text_[at_] != ')';
-  }
-
- private:
-  void skip_blanks() {
-    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
   }
   std::string_view text_;
   std::size_t at_ = 0;
 };
 
-std::vector<glm::dvec2> read_points(TextReader& in) {
-  std::vector<glm::dvec2> points;
-  in.expect('(');
-  do {
-    const double x = in.number();
-    const double y = in.number();
-    points.push_back({x, y});
-    while (in.is_number()) in.number();  // z, m
-  } while (in.take(','));
-  in.expect(')');
-  return points;
+/// Without blanks at its start, and without the mark of PostgreSQL or SQL in front of hexadecimal digits.
+std::string_view unmarked(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kTextBlanks), text.size()));
+  if (text.starts_with("\\x") || text.starts_with("0x") || text.starts_with("0X")) text.remove_prefix(2);
+  return text;
 }
 
-TextGeometry read_lines(TextReader& in, bool closed) {
-  TextGeometry geometry{closed, {}};
-  in.expect('(');
-  do {
-    geometry.lines.push_back(read_points(in));
-  } while (in.take(','));
-  in.expect(')');
-  return geometry;
+int nibble(char c) { return c <= '9' ? c - '0' : (c | 0x20) - 'a' + 10; }
+std::uint32_t byte_at(std::string_view digits, std::size_t i) {
+  return static_cast<std::uint32_t>(16 * nibble(digits[2 * i]) + nibble(digits[2 * i + 1]));
 }
 
-std::vector<TextGeometry> read_parts(TextReader& in, const std::string& type) {
-  if (type == "LINESTRING") return {{false, {read_points(in)}}};
-  if (type == "MULTILINESTRING") return {read_lines(in, false)};
-  if (type == "POLYGON") return {read_lines(in, true)};
-  std::vector<TextGeometry> polygons;
-  in.expect('(');
-  do {
-    polygons.push_back(read_lines(in, true));
-  } while (in.take(','));
-  in.expect(')');
-  return polygons;
+/// Binary in hexadecimal digits, by its first ones.
+struct HexGeometry {
+  std::size_t digits = 0;  ///< 0: it is none
+  TypeCode code;
+};
+HexGeometry hex_geometry(std::string_view text) {
+  if (!text.starts_with("00") && !text.starts_with("01")) return {};
+  const std::size_t digits = std::min(text.find_first_not_of(kDigits), text.size());
+  if (digits < kMinDigits || digits % 2 != 0) return {};
+  TypeCode code;
+  for (std::size_t i = 0; i < 4; ++i) code.code = code.code << 8 | byte_at(text, text[1] == '1' ? 4 - i : 1 + i);
+  return code.valid() ? HexGeometry{digits, code} : HexGeometry{};
+}
+
+/// Where the parenthesis at `open` closes.
+std::size_t closing_parenthesis(std::string_view text, std::size_t open) {
+  int depth = 0;
+  for (std::size_t at = open; at != std::string_view::npos; at = text.find_first_of("()", at + 1))
+    if ((depth += text[at] == '(' ? 1 : -1) == 0) return at + 1;
+  return std::string_view::npos;
+}
+
+GeometryGuess::Content content_of(GeometryType type) {
+  const bool points = type == GeometryType::point || type == GeometryType::multipoint;
+  return points ? GeometryGuess::Content::points : GeometryGuess::Content::walls;
 }
 
 }  // namespace
 
-std::vector<TextGeometry> read_geometry(std::string_view text) {
+GeometryGuess guess_geometry(std::string_view text) {
+  const std::string_view binary = unmarked(text);
+  if (binary.empty() || kFirstCharacters.find(binary.front()) == std::string_view::npos) return {};
+  if (const HexGeometry hex = hex_geometry(binary); hex.digits > 0)
+    return {content_of(hex.code.type()), static_cast<std::size_t>(binary.data() - text.data()) + hex.digits};
   TextReader in(text);
-  const std::string type = in.word();
-  if (type != "POLYGON" && type != "MULTIPOLYGON" && type != "LINESTRING" && type != "MULTILINESTRING") {
-    if (type.empty()) in.fail("POLYGON, MULTIPOLYGON, LINESTRING or MULTILINESTRING");
-    throw base::InputError(fmt::format(
-        "'{}' has no walls; expected POLYGON, MULTIPOLYGON, LINESTRING or MULTILINESTRING", type.substr(0, kShown)));
+  in.srid();
+  const TypeName* const type = in.tag();
+  if (type == nullptr) return {};
+  if (in.is('(')) return {content_of(type->type), closing_parenthesis(text, in.at())};
+  if (in.take_empty()) return {content_of(type->type), in.at()};
+  return {};
+}
+
+void read_geometry(std::string_view text, double arc_error, WellKnownGeometry& geometry) {
+  const std::string_view binary = unmarked(text);
+  if (const std::size_t digits = hex_geometry(binary).digits; digits > 0) {
+    if (binary.find_first_not_of(kTextBlanks, digits) != std::string_view::npos)
+      throw base::InputError(fmt::format("expected hexadecimal digits, found '{}'", binary.substr(digits, kShownText)));
+    std::string bytes(digits / 2, '\0');
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(byte_at(binary, i));
+    return read_binary_geometry(bytes, arc_error, geometry);
   }
-  std::string dimensions = in.word();
-  if (dimensions == "Z" || dimensions == "M" || dimensions == "ZM") dimensions = in.word();
-  std::vector<TextGeometry> parts;
-  if (dimensions.empty()) {
-    parts = read_parts(in, type);
-  } else if (dimensions != "EMPTY") {
-    throw base::InputError(
-        fmt::format("expected '(' or EMPTY after {}, found '{}'", type, dimensions.substr(0, kShown)));
-  }
+  TextReader in(text);
+  geometry.clear();
+  geometry.srid = in.srid();
+  GeometryReader(in, arc_error, geometry).read();
   if (!in.at_end()) in.fail("the end of the geometry");
-  return parts;
 }
 
 }  // namespace sf::world

@@ -193,6 +193,7 @@ struct Warning {
   std::string file;
   int line = 0;  ///< 1-based; 0: the whole file
   std::string message;
+  bool operator==(const Warning&) const = default;
 };
 
 struct Extent {
@@ -206,6 +207,7 @@ struct OutlineFile {
   double metres_per_unit = 1.0;  ///< [m] per unit of length of the file
   Segment surface;               ///< model, flags, and the height of outlines without one of their own (`z_max`)
   double longest = 0.0;          ///< [m] wall
+  bool strict = false;           ///< a row that would be left out, or has no valid height, is an error
 };
 
 struct World {
@@ -237,7 +239,7 @@ struct LoadOptions {
   bool stage_obstacles = false;  ///< keep Stage's rule that floor plans with `obstacle_return 0` do not stop robots
   bool stage_noise = false;      ///< read the first number of `noise` as a variance, as Stage does
   bool unknown_is_wall = false;  ///< ROS maps: unknown cells are walls
-  bool strict_roads = false;     ///< refuse road networks with deviations from their format
+  bool strict = false;           ///< refuse road networks and files of outlines that deviate from their format
   bool leave_outlines = false;   ///< the walls of outline files stay in their files (`World::unread`)
   std::string accuracy;          ///< word for all sensors, before those of the file; empty: those of the file hold
   std::span<const SensorKeyword> sensors;  ///< modelled sensor types; models of other types become plain bodies

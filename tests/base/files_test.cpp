@@ -58,6 +58,45 @@ TEST(LineFile, AnEndlessLineIsRefused) {
   expect_in("lines.txt:2: a line of more than 16 MiB, the limit", refusal_of([&] { lines.next(line); }));
 }
 
+TEST(LineFile, LinesCanBeJoinedAndPartedAgain) {
+  for (const std::size_t first :
+       {std::size_t{0}, std::size_t{3}, (std::size_t{1} << 20) - 2, (std::size_t{1} << 20) - 1,
+        std::size_t{1} << 20}) {  // the first line end at the end of a block
+    const std::string a(first, 'a');
+    LineFile lines(file_with(a + "\r\nb\nc"));
+    std::string_view line;
+    ASSERT_TRUE(lines.next(line));
+    EXPECT_TRUE(lines.extend(line));
+    EXPECT_EQ(line, a + "\r\nb");
+    EXPECT_TRUE(lines.extend(line));
+    EXPECT_EQ(line, a + "\r\nb\nc");
+    EXPECT_EQ(lines.number(), 1);
+    EXPECT_EQ(lines.last_number(), 3);
+    EXPECT_FALSE(lines.extend(line));
+    lines.shrink(line);
+    EXPECT_EQ(line, a);
+    ASSERT_TRUE(lines.next(line));
+    EXPECT_EQ(line, "b");
+    EXPECT_EQ(lines.number(), 2);
+    EXPECT_TRUE(lines.extend(line));
+    EXPECT_FALSE(lines.next(line)) << "an appended line is not returned again";
+  }
+  LineFile lines(file_with("a\n"));
+  std::string_view line;
+  ASSERT_TRUE(lines.next(line));
+  EXPECT_FALSE(lines.extend(line)) << "a line end at the end of the file begins no line";
+}
+
+TEST(LineFile, LinesAreJoinedUpToTheLimit) {
+  const std::string file = file_with("a\n");
+  std::filesystem::resize_file(file, 64u << 20);
+  LineFile lines(file);
+  std::string_view line;
+  ASSERT_TRUE(lines.next(line));
+  EXPECT_FALSE(lines.extend(line));
+  EXPECT_EQ(line, "a");
+}
+
 TEST(LineFile, NeedsAFile) {
   expect_in("no such file", refusal_of([] { LineFile("/nowhere/at.all"); }));
   expect_in("a folder, a device or a pipe", refusal_of([] { LineFile("/dev/zero"); }));

@@ -21,7 +21,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   outlines.file = file;
   outlines.surface.z_max = 3.0;
   try {
-    world::read_outlines(outlines, [](std::span<const world::Segment> walls) {
+    std::vector<world::Warning> warnings;
+    const auto check = [](std::span<const world::Segment> walls) {
       require(!walls.empty());
       for (std::size_t i = 0; i < walls.size(); ++i) {
         require(std::isfinite(walls[i].a.x + walls[i].a.y + walls[i].b.x + walls[i].b.y) && walls[i].a != walls[i].b);
@@ -29,7 +30,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(i == 0 || walls[i].a == walls[i - 1].b);
       }
       require(!walls.front().solid_left || walls.front().a == walls.back().b);
-    });
+    };
+    world::read_outlines(outlines, check, &warnings);
+    require(warnings.size() < 20);
   } catch (const base::InputError& error) {
     require(std::string_view(error.what()).starts_with(file));
   }

@@ -70,14 +70,29 @@ TEST(Outlines, AHoleInARingWithoutSidesHasNoneEither) {
   for (const Segment& wall : world.walls) EXPECT_FALSE(wall.solid_left);
 }
 
+TEST(Outlines, AHoleThatLeavesItsRingHasNoSides) {  // it would turn inside and outside
+  const std::string square = "POLYGON ((0 0, 9 0, 9 9, 0 9, 0 0), ", hole = ", (1 1, 2 1, 2 2, 1 1))";
+  for (const char* stray :
+       {"(11 3, 12 3, 12 4, 11 3)", "(8 3, 12 3, 12 4, 8 3)", "(-1 -1, 10 -1, 10 10, -1 10, -1 -1)"}) {
+    const World world = town_of(square + stray + hole);
+    for (std::size_t i = 0; i < world.walls.size(); ++i)
+      EXPECT_EQ(world.walls[i].solid_left, i < 4 || i + 3 >= world.walls.size()) << stray << " wall " << i;
+    expect_in("1: an inner ring leaves its outer ring: its walls are thin ones", warnings_of(world));
+  }
+  for (const char* touching : {"(0 3, 1 3, 1 4, 0 3)", "(0 0, 3 1, 1 3, 0 0)", "(-1e-9 3, 1 3, 1 4, -1e-9 3)"}) {
+    const World world = town_of(square + touching + hole);
+    EXPECT_TRUE(world.walls[5].solid_left) << touching;
+    EXPECT_EQ(warnings_of(world), "") << touching;
+  }
+}
+
 TEST(Outlines, EveryPartOfAGeometry) {
   EXPECT_EQ(town_of("MULTIPOLYGON (((0 0, 1 0, 0 1)), ((5 5, 6 5, 5 6), (5.1 5.1, 5.2 5.1, 5.1 5.2)))").walls.size(),
             9u);
   EXPECT_EQ(town_of("LINESTRING (0 0, 1 0, 1 1)").walls.size(), 2u);
   EXPECT_EQ(town_of("multilinestring((0 0,1 0),(2 0,3 0,4 0))").walls.size(), 3u);
-  EXPECT_EQ(town_of("POLYGON EMPTY\nLINESTRING Z EMPTY").walls.size(), 0u);
   EXPECT_EQ(town_of("LINESTRING (0 0, 0 0, 1 0)").walls.size(), 1u);  // a step of no length is no wall
-  EXPECT_EQ(town_of("LINESTRING (0 0)").walls.size(), 0u);
+  EXPECT_EQ(town_of("LINESTRING (0 0)\nLINESTRING (0 0, 1 0)").walls.size(), 1u);
   EXPECT_FALSE(town_of("LINESTRING (0 0, 1 0)").walls[0].solid_left);
 }
 
@@ -119,33 +134,132 @@ TEST(Outlines, StandWhereTheirModelStands) {
   EXPECT_EQ(world.models[world.walls[0].model].name, "model:0");
 }
 
-TEST(Outlines, FaultsAreRefusedWithTheirLine) {
-  const std::pair<const char*, const char*> cases[] = {
-      {"", "outlines.csv: has no outlines"},
-      {"\n  \n", "outlines.csv: has no outlines"},
-      {"WKT,height\n", "outlines.csv: has no outlines"},
-      {"LINESTRING (0 0, 1 0)\nPOINT (1 2)", "outlines.csv:2: 'POINT' has no walls; expected POLYGON"},
-      {"(0 0, 1 0)",
-       "outlines.csv:1: expected POLYGON, MULTIPOLYGON, LINESTRING or MULTILINESTRING, found '(0 0, 1 0)'"},
-      {"LINESTRING (0 0, 1)", "outlines.csv:1: expected a finite number, found ')'"},
-      {"LINESTRING (0 0, 1 nan)", "expected a finite number, found 'nan)'"},
-      {"LINESTRING (0 0, 1 1e999)", "expected a finite number, found '1e999)'"},
-      {"LINESTRING (0 0, 1 1", "expected ')', found the end of the line"},
-      {"LINESTRING (0 0, 1 1) x", "expected the end of the geometry, found 'x'"},
-      {"LINESTRING SOME (0 0, 1 1)", "expected '(' or EMPTY after LINESTRING, found 'SOME'"},
-      {"POLYGON (0 0, 1 1)", "expected '(', found '0 0, 1 1)'"},
-      {"LINESTRING (0 0, 1e8 0)", "a corner is 1e+08 m from the origin"},
-      {"WKT,height\n\"LINESTRING (0 0,1 0)\",high", "outlines.csv:2: the height is 'high'; expected a number"},
-      {"WKT,height\n\"LINESTRING (0 0,1 0)\",-1", "outlines.csv:2: the height is '-1'"},
-      {"{\"type\": \"FeatureCollection\"}", "expected POLYGON"},
-  };
-  for (const auto& [text, message] : cases) expect_in(message, outline_refusal(text));
+/// The warnings of a file with a good wall in front of the given rows: "2: ...".
+std::string faults_of(const std::string& rows, const std::string& first = "\"LINESTRING (0 0,1 0)\"") {
+  const World world = town_of(first + "\n" + rows);
+  EXPECT_EQ(world.walls.front().b, glm::dvec2(1, 0));
+  return warnings_of(world);
 }
 
-TEST(Outlines, RingsOfTooManyCornersAreRefused) {  // the check for crossings is quadratic
-  std::string ring = "POLYGON ((0 0";
-  for (int i = 1; i <= 20'000; ++i) ring += "," + std::to_string(i) + " " + std::to_string(i % 2);
-  expect_in("a ring of 20001 corners; at most 20000", outline_refusal(ring + "))"));
+TEST(Outlines, ARowThatCannotBeReadIsLeftOutWithItsLine) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"POINT (1 2)", "2: points have no walls: left out\n"},
+      {"(0 0, 1 0)", "2: expected POLYGON, MULTIPOLYGON, LINESTRING or MULTILINESTRING, found '(0 0': left out\n"},
+      {"LINESTRING (0 0, 1)", "2: expected a finite number, found ')': left out\n"},
+      {"LINESTRING (0 0, 1 nan)", "expected a finite number, found 'nan)'"},
+      {"LINESTRING (0 0, 1 -inf)", "expected a finite number, found '-inf)'"},
+      {"LINESTRING (0 0, 1 1e999)", "expected a finite number, found '1e999)'"},
+      {"LINESTRING (0 0, 1 2-3)", "expected a finite number, found '2-3)'"},
+      {"LINESTRING (0 0 1 1 2 2)", "expected ')', found '2 2)'"},  // no commas
+      {"LINESTRING (0 0, 1 1", "expected ')', found the end of the text"},
+      {"LINESTRING (0 0, 1 1) x", "expected the end of the geometry, found 'x'"},
+      {"LINESTRING SOME (0 0, 1 1)", "expected '(' or EMPTY after LINESTRING, found 'SOME (0 0'"},
+      {"POLYGON (0 0, 1 1)", "expected '(', found '0 0, 1 1)'"},
+      {"POLYGON (EMPTY, (0 0, 1 0, 1 1))", "expected an outer ring with points before inner ones"},
+      {"POLYGON EMPTY", "2: the geometry is EMPTY: left out\n"},
+      {"LINESTRING (0 0, 1e8 0)", "2: a corner is 1e+08 m from the origin"},
+      {"TIN (((0 0 0, 1 0 0, 1 1 1, 0 0 0)))", "2: faces in three dimensions have no outline"},
+      {"CIRCULARSTRING (0 0, 1 1)", "expected an odd number of points in a CIRCULARSTRING"},
+      {"COMPOUNDCURVE (COMPOUNDCURVE ((0 0, 1 1)))", "expected a line or arcs in a COMPOUNDCURVE"},
+      {"CURVEPOLYGON (POLYGON ((0 0, 1 1, 1 0)))", "expected a line, arcs or a COMPOUNDCURVE"},
+  };
+  for (const auto& [text, message] : cases) expect_in(message, faults_of(text));
+  std::string deep;
+  for (int i = 0; i < 40; ++i) deep += "GEOMETRYCOLLECTION (";
+  expect_in("2: collections within 32 collections", faults_of(deep + "POINT (0 0)" + std::string(40, ')')));
+}
+
+TEST(Outlines, AHeightThatCannotBeReadIsThatOfTheModel) {
+  for (const char* height : {"12 m", "\"3,5\"", "5e70", "1e999", "-1", "nan", "inf", "high", "0x10", "12'6\""}) {
+    const World world =
+        town_of("WKT,height\n\"LINESTRING (0 0,1 0)\",9\n\"LINESTRING (0 0,2 0)\"," + std::string(height));
+    ASSERT_EQ(world.walls.size(), 2u) << height;
+    EXPECT_EQ(world.walls[0].z_max, 9.0) << height;
+    EXPECT_EQ(world.walls[1].z_max, 3.0) << height;
+    expect_in("3: the height is '", warnings_of(world));
+  }
+  for (const char* height : {"+7", " 7 ", "7.", "\"7\"", "7e0"}) {
+    const World world = town_of("WKT,height\n\"LINESTRING (0 0,1 0)\"," + std::string(height));
+    EXPECT_EQ(world.walls[0].z_max, 7.0) << height;
+    EXPECT_TRUE(world.warnings.empty()) << height;
+  }
+}
+
+TEST(Outlines, WarningsAreFew) {  // and none is lost: the others are counted
+  std::string rows;
+  for (int i = 0; i < 1000; ++i) rows += "LINESTRING (0 0\nPOINT (0 0)\nPOLYGON EMPTY\n";
+  const std::string warnings = faults_of(rows);
+  EXPECT_EQ(std::count(warnings.begin(), warnings.end(), '\n'), 3 * 4) << warnings;
+  expect_in("8: expected ')'", warnings);
+  expect_in("0: 997 rows more are left out that cannot be read\n", warnings);
+  expect_in("0: 997 rows more have points, which are left out\n", warnings);
+  expect_in("0: 997 rows more are left out without a geometry\n", warnings);
+}
+
+TEST(Outlines, WarningsComeOnceHoweverOftenAFileIsRead) {  // for extent, for the hash, for its walls
+  const std::string text = "LINESTRING (0 0, 1 0)\nPOINT (0 0)\n";
+  World left = town_of(text, "0 0 0 0", true);
+  EXPECT_EQ(warnings_of(left), warnings_of(town_of(text)));
+  EXPECT_EQ(left.warnings.size(), 1u);
+  translate(left, 1.0, 0.0);
+  read_unread(left);
+  EXPECT_EQ(left.warnings.size(), 1u);
+}
+
+TEST(Outlines, StrictlyTheFirstFaultIsAnError) {  // as before rows could be left out
+  LoadOptions strict = kWithLasers;
+  strict.strict = true;
+  for (const char* row : {"POINT (1 2)", "LINESTRING (0 0, 1)", "POLYGON EMPTY"}) {
+    const std::string file = outlines_file("LINESTRING (0 0, 1 0)\n" + std::string(row));
+    expect_in("outlines.csv:2: ",
+              sf::refusal_of([&] { read_world("model( outlines \"" + file + "\" size [0 0 3] )", strict); }));
+  }
+}
+
+TEST(Outlines, AFileWithoutWallsIsAnErrorThatNamesItsColumns) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "outlines.csv: the file has no outlines with walls; its first line does not name its columns; expected"},
+      {"\n  \n", "outlines.csv: the file has no outlines"},
+      {"id;name\n1;hall\n",
+       "outlines.csv:2: has no geometry: left out; the file has no outlines with walls; its columns are 'id', 'name'; "
+       "expected"},
+      {"WKT,height\n", "outlines.csv: the file has no outlines with walls; its columns are 'WKT', 'height'"},
+      {"WKT,name\nPOINT (1 2),tree\n",
+       "outlines.csv:2: points have no walls: left out; the file has no outlines with walls"},
+      {"POLYGON EMPTY", "outlines.csv:1: the geometry is EMPTY: left out; the file"},
+      {"LINESTRING (0 0, 0 0)", "outlines.csv: the file has no outlines with walls"},
+      {"W\0K\0T", "outlines.csv: the file has no outlines with walls; its columns are 'W'"},
+      {"\xFF\xFEW", "outlines.csv: is a text in UTF-16: save it as UTF-8"},
+      {"\xFE\xFF", "outlines.csv: is a text in UTF-16: save it as UTF-8"},
+      {"PK\x03\x04", "outlines.csv: is a ZIP archive"},
+      {"\x1F\x8B", "outlines.csv: is compressed"},
+      {"<?xml ?>", "outlines.csv: is XML or HTML"},
+      {"WKT\rPOINT (0 0)\r", "outlines.csv:1: a line ends in CR alone; convert"},
+  };
+  for (const auto& [text, message] : cases) expect_in(message, outline_refusal(text));
+  expect_in("outlines.csv: is no text; expected a table", outline_refusal(std::string("WKT\0\0", 5)));
+}
+
+TEST(Outlines, DegreesAreNoMetres) {
+  const std::string house = "POLYGON ((11.5755 48.1372, 11.5756 48.1372, 11.5756 48.1373))\n";
+  expect_in("0: the coordinates are degrees", warnings_of(town_of(house)));
+  expect_in("0: the coordinates are degrees", warnings_of(town_of("SRID=4326;LINESTRING (0 0, 12 0)")));
+  EXPECT_EQ(warnings_of(town_of("SRID=32632;LINESTRING (0 0, 12 0)")), "");
+  EXPECT_EQ(warnings_of(town_of("SRID=4087;LINESTRING (0 0, 1200 0)")), "") << "a projection among EPSG's angles";
+  EXPECT_EQ(warnings_of(town_of(house + "LINESTRING (0 0, 0.02 0)")), "");
+}
+
+TEST(Outlines, TheWorkForCrossingsIsBounded) {  // it is quadratic where all edges overlap
+  std::string zigzag = "LINESTRING (0 0, 1 0)\nPOLYGON ((0 0", comb = zigzag;
+  for (int i = 1; i <= 50'000; ++i) {
+    zigzag += fmt::format(",{} {}", i, i % 2);
+    comb += fmt::format(",{} {}", i % 2, i);
+  }
+  EXPECT_EQ(town_of(zigzag + ",0 -1))").walls.size(), 50'003u);
+  const World world = town_of(comb + ",-1 0))");
+  EXPECT_EQ(world.walls.size(), 1u);
+  expect_in("2: a ring of 50002 corners: its check for crossings takes the file beyond 1e+09 pairs",
+            warnings_of(world));
 }
 
 TEST(Outlines, AreForModelsThatStandAndHaveNothingElse) {

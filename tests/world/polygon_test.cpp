@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 namespace sf::world {
 namespace {
 
@@ -63,6 +66,46 @@ TEST(Polygon, CornersOnAStraightEdgeAreFine) {
   const auto outline = make_polygon({{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}});
   EXPECT_TRUE(outline.solid_left);
   EXPECT_EQ(outline.edges.size(), 5u);
+}
+
+TEST(Polygon, CrossingsAreThoseThatAllPairsShow) {  // on a grid, where side and betweenness are exact
+  using P = glm::dvec2;
+  const auto side = [](P a, P b, P p) { return base::cross(b - a, p - a); };
+  const auto on = [&](P a, P b, P p) { return side(a, b, p) == 0.0 && dot(a - p, b - p) <= 0.0; };
+  const auto meet = [&](P a, P b, P c, P d) {
+    return (side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0) || on(a, b, c) || on(a, b, d) ||
+           on(c, d, a) || on(c, d, b);
+  };
+  std::mt19937 random(7);
+  int simple = 0;
+  for (int run = 0; run < 5000; ++run) {
+    std::vector<P> p(3 + random() % 6);
+    for (P& corner : p) corner = {static_cast<double>(random() % 6), static_cast<double>(random() % 6)};
+    const std::size_t n = p.size();
+    double area = 0.0;
+    bool expected = true;
+    for (std::size_t i = 0; i < n; ++i) {
+      const P a = p[i], b = p[(i + 1) % n], c = p[(i + 2) % n];
+      area += base::cross(a, b);
+      if (a == b || (side(a, b, c) == 0.0 && dot(b - a, c - b) < 0.0)) expected = false;
+      for (std::size_t j = i + 2; j < n; ++j)
+        if ((j + 1) % n != i && meet(a, b, p[j], p[(j + 1) % n])) expected = false;
+    }
+    const bool repeats = std::adjacent_find(p.begin(), p.end()) != p.end() || p.front() == p.back();
+    if (repeats || area == 0.0) continue;
+    EXPECT_EQ(make_polygon(p).solid_left, expected) << run;
+    simple += expected;
+  }
+  EXPECT_GT(simple, 500);
+}
+
+TEST(Polygon, WorkIsBounded) {  // pairs that overlap along x: of a square, each edge with all others
+  const std::vector<glm::dvec2> square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  double pairs = 6.0;
+  EXPECT_TRUE(make_polygon(square, pairs).has_value());
+  EXPECT_EQ(pairs, 1.0) << "but the two upright ones";
+  EXPECT_FALSE(make_polygon(square, pairs).has_value());
+  EXPECT_EQ(pairs, 1.0) << "nothing is charged for what is not done";
 }
 
 TEST(Polygon, ConcaveIsSimple) { EXPECT_TRUE(make_polygon({{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}}).solid_left); }

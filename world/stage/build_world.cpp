@@ -65,7 +65,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   if (!options.leave_outlines) read_unread(b.world);
   update_extent_and_hash(b.world);
   if (b.world.unread.empty()) warn_of_starts(b);
-  b.world.warnings = std::move(b.context.warnings);
+  b.world.warnings.insert(b.world.warnings.begin(), b.context.warnings.begin(), b.context.warnings.end());
   return std::move(b.world);
 }
 

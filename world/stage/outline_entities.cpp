@@ -25,7 +25,11 @@ void add_outlines(BuildState& b, const Entity& entity, const Model& model, Segme
                      "[0 0 HEIGHT]",
                      entity.word, height));
   surface.z_max = height;
-  b.world.unread.push_back({file, X_B, b.context.metres_per_unit, surface});
+  b.world.unread.push_back({.file = file,
+                            .X_WF = X_B,
+                            .metres_per_unit = b.context.metres_per_unit,
+                            .surface = surface,
+                            .strict = b.options.strict});
 }
 
 }  // namespace sf::world

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "world/arc.h"
 #include "world/path_geometry.h"
 #include "world/stage/magnet_row.h"
 #include "world/stage/road_entities.h"
@@ -13,7 +14,6 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kArcError = 1e-6;  // [m] between an arc and its chords
 constexpr std::uint32_t kMaxPieces = 10'000;
 constexpr int kMaxDashes = 1'000'000;
 constexpr double kMaxPaintPoints = 4e6;  // of the lane markings of all paths
@@ -101,8 +101,7 @@ Paint read_paint(const StageContext& context, const Entity& entity, const char* 
 double chords_of(const PathPiece& piece, double length, double offset, const Paint& paint) {
   if (piece.curvature == 0.0) return 1.0;
   const double outer = 1.0 / std::abs(piece.curvature) + std::abs(offset) + paint.width;
-  const double step = 2.0 * std::acos(1.0 - kArcError / outer);
-  return std::max(1.0, std::ceil(length * std::abs(piece.curvature) / step));
+  return chord_count(outer, length * std::abs(piece.curvature), kArcError);
 }
 
 /// The marking between `from` and `to` along the centre line [m], `offset` to its left.

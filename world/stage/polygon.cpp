@@ -51,33 +51,68 @@ bool folds_back(const PolygonEdge& first, const PolygonEdge& second) {
   return cross(d, e) == 0.0 && dot(d, e) < 0.0;
 }
 
-// Quadratic; blocks have tens of corners.
-bool is_simple(const std::vector<PolygonEdge>& edges) {
+/// An edge's extent along x.
+struct EdgeSpan {
+  double min, max;
+  std::size_t edge;
+};
+
+/// By their lower ends, so that those that overlap one follow it.
+std::vector<EdgeSpan> spans_of(const std::vector<PolygonEdge>& edges) {
+  std::vector<EdgeSpan> spans;
+  for (const PolygonEdge& e : edges) spans.push_back({std::min(e.a.x, e.b.x), std::max(e.a.x, e.b.x), spans.size()});
+  std::sort(spans.begin(), spans.end(), [](const EdgeSpan& s, const EdgeSpan& t) { return s.min < t.min; });
+  return spans;
+}
+
+double overlapping_pairs(const std::vector<EdgeSpan>& spans) {
+  double pairs = 0.0;
+  for (auto span = spans.begin(); span != spans.end(); ++span)
+    pairs += static_cast<double>(
+        std::upper_bound(span, spans.end(), span->max, [](double max, const EdgeSpan& s) { return max < s.min; }) -
+        span - 1);
+  return pairs;
+}
+
+bool is_simple(const std::vector<PolygonEdge>& edges, const std::vector<EdgeSpan>& spans) {
   const std::size_t n = edges.size();
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < n; ++i)
     if (folds_back(edges[i], edges[(i + 1) % n])) return false;
-    for (std::size_t j = i + 2; j < n; ++j) {
-      const bool neighbours = i == 0 && j == n - 1;
-      if (!neighbours && meet(edges[i], edges[j])) return false;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n && spans[j].min <= spans[i].max; ++j) {
+      const std::size_t apart = std::max(spans[i].edge, spans[j].edge) - std::min(spans[i].edge, spans[j].edge);
+      const bool neighbours = apart == 1 || apart == n - 1;
+      if (!neighbours && meet(edges[spans[i].edge], edges[spans[j].edge])) return false;
     }
-  }
   return true;
 }
 
 }  // namespace
 
-Polygon make_polygon(std::vector<glm::dvec2> points) {
+std::optional<Polygon> make_polygon(std::vector<glm::dvec2> points, double& pairs) {
   drop_repeated(points);
-  if (points.size() < 2) return {};
-  if (points.size() == 2) return {{{points[0], points[1]}}, false};
+  if (points.size() < 2) return Polygon{};
+  if (points.size() == 2) return Polygon{{{points[0], points[1]}}, false};
 
   const double area = twice_area(points);
   if (area < 0.0) std::reverse(points.begin(), points.end());
   Polygon outline;
   for (std::size_t i = 0; i < points.size(); ++i) outline.edges.push_back({points[i], points[(i + 1) % points.size()]});
   const double size = extent(points);
-  outline.solid_left = std::abs(area) > 1e-12 * size * size && is_simple(outline.edges);
+  outline.solid_left = std::abs(area) > 1e-12 * size * size;
+  if (!outline.solid_left) return outline;
+
+  const std::vector<EdgeSpan> spans = spans_of(outline.edges);
+  const double compared = overlapping_pairs(spans);
+  if (compared > pairs) return std::nullopt;
+  pairs -= compared;
+  outline.solid_left = is_simple(outline.edges, spans);
   return outline;
+}
+
+Polygon make_polygon(std::vector<glm::dvec2> points) {
+  double pairs = HUGE_VAL;
+  return *make_polygon(std::move(points), pairs);
 }
 
 }  // namespace sf::world

@@ -1,6 +1,7 @@
 #pragma once
 // Polygons of the world file as outlines with known sides.
 
+#include <optional>
 #include <vector>
 
 #include "base/pose.h"
@@ -22,5 +23,9 @@ struct Polygon {
 /// wall; fewer points give nothing. A polygon that crosses or touches itself, or has no area, keeps its edges without
 /// `solid_left`.
 Polygon make_polygon(std::vector<glm::dvec2> points);
+
+/// Likewise, with bounded work. @param pairs of edges that may still be compared; lowered by those that are
+/// @return nothing where more would have to be: all whose extents along x overlap, at most half the square of the edges
+std::optional<Polygon> make_polygon(std::vector<glm::dvec2> points, double& pairs);
 
 }  // namespace sf::world

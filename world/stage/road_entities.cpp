@@ -24,7 +24,7 @@ RoadNetwork read_network(BuildState& b, const Entity& entity) {
         fmt::format("cannot find the road network \"{}\"; expected it beside this file, beside the world file or along "
                     "$STAGEPATH",
                     name));
-  return load_roads(file, b.context.warnings, b.options.strict_roads);
+  return load_roads(file, b.context.warnings, b.options.strict);
 }
 
 /// The lanes in a list such as "1.1 3.2", or all for "all".

@@ -1,0 +1,231 @@
+// Outlines in the formats that GDAL reads, written by GDAL: the walls are those of the same outlines in text.
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <fmt/format.h>
+#include <gdal.h>
+#include <gtest/gtest.h>
+#include <ogr_api.h>
+#include <ogr_srs_api.h>
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "tests/refusal.h"
+#include "world/outlines.h"
+#include "world/stage/properties.h"
+
+namespace sf::world {
+
+namespace {
+
+struct Feature {
+  std::string wkt;  ///< empty: none
+  double height;    ///< NaN: none
+};
+
+std::string in_folder(const std::string& name) { return (std::filesystem::temp_directory_path() / name).string(); }
+
+using Wall = std::array<double, 6>;
+struct LayerRead {
+  std::vector<Wall> walls;  ///< sorted: formats may begin a ring at another corner
+  std::string warnings;
+};
+
+LayerRead read_layers(const std::string& file, double unit = 1.0) {
+  OutlineFile outlines;
+  outlines.file = file;
+  outlines.metres_per_unit = unit;
+  outlines.surface.z_max = 3.0;
+  LayerRead found;
+  std::vector<Warning> warnings;
+  read_outlines(
+      outlines,
+      [&](std::span<const Segment> walls) {
+        for (const Segment& w : walls)
+          found.walls.push_back({w.a.x, w.a.y, w.b.x, w.b.y, w.z_max, w.solid_left ? 1.0 : 0.0});
+      },
+      &warnings);
+  std::sort(found.walls.begin(), found.walls.end());
+  for (const Warning& w : warnings) found.warnings += fmt::format("{}: {}\n", w.line, w.message);
+  return found;
+}
+
+LayerRead read_layers_of(const std::string& name, const std::string& text) {
+  std::ofstream(in_folder(name), std::ios::binary) << text;
+  return read_layers(in_folder(name));
+}
+
+/// A file with one layer of these features. @param options of the layer
+std::string write_layer(const char* driver, const std::string& name, const std::vector<Feature>& features,
+                        OGRwkbGeometryType type, const std::vector<std::string>& options = {}, int epsg = 32632,
+                        int layers = 1) {
+  RegisterOGRGeoPackage(), RegisterOGRShape(), RegisterOGRGeoJSON(), RegisterOGRGeoJSONSeq(), RegisterOGRCSV();
+  std::filesystem::remove(in_folder(name));
+  const GDALDatasetH dataset =
+      GDALCreate(GDALGetDriverByName(driver), in_folder(name).c_str(), 0, 0, 0, GDT_Unknown, nullptr);
+  char** list = nullptr;
+  for (const std::string& option : options) list = CSLAddString(list, option.c_str());
+  const OGRSpatialReferenceH system = OSRNewSpatialReference(nullptr);
+  OSRImportFromEPSG(system, epsg);
+  for (int i = 0; i < layers; ++i) {
+    const OGRLayerH layer = GDALDatasetCreateLayer(dataset, fmt::format("houses{}", i).c_str(), system, type, list);
+    const OGRFieldDefnH field = OGR_Fld_Create("Height", OFTReal);
+    OGR_L_CreateField(layer, field, 1);
+    OGR_Fld_Destroy(field);
+    for (const Feature& f : features) {
+      const OGRFeatureH feature = OGR_F_Create(OGR_L_GetLayerDefn(layer));
+      OGRGeometryH geometry = nullptr;
+      std::string wkt = f.wkt;
+      char* text = wkt.data();
+      if (!wkt.empty() && OGR_G_CreateFromWkt(&text, nullptr, &geometry) == OGRERR_NONE)
+        OGR_F_SetGeometryDirectly(feature, geometry);
+      if (!std::isnan(f.height)) OGR_F_SetFieldDouble(feature, 0, f.height);
+      EXPECT_EQ(OGR_L_CreateFeature(layer, feature), OGRERR_NONE);
+      OGR_F_Destroy(feature);
+    }
+  }
+  OSRDestroySpatialReference(system);
+  CSLDestroy(list);
+  GDALClose(dataset);
+  return in_folder(name);
+}
+
+/// Around a centre, with corners whose decimals are exact.
+std::string ring_at_random(std::mt19937& random, glm::dvec2 centre, double size) {
+  const int corners = 3 + static_cast<int>(random() % 8);
+  std::string text;
+  std::string first;
+  for (int i = 0; i < corners; ++i) {
+    const double r = size * std::uniform_real_distribution(0.5, 1.0)(random), a = 2.0 * M_PI * i / corners;
+    const auto grid = [](double v) { return std::round(v * 64.0) / 64.0; };
+    const std::string corner = fmt::format("{} {}", grid(centre.x + r * std::cos(a)), grid(centre.y + r * std::sin(a)));
+    if (i == 0) first = corner;
+    text += corner + ",";
+  }
+  return "(" + text + first + ")";
+}
+
+std::vector<Feature> features_at_random(unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Feature> features;
+  for (int i = 0; i < 60; ++i) {
+    const glm::dvec2 centre{500'000.0 + 30.0 * i, 4e6 + static_cast<double>(random() % 1000)};
+    const std::string outer = ring_at_random(random, centre, 12.0), inner = ring_at_random(random, centre, 3.0);
+    const std::string other = ring_at_random(random, centre + glm::dvec2(0, 2000), 9.0);
+    const double height = static_cast<double>(random() % 100) / 8.0;
+    features.push_back(i % 3 == 0   ? Feature{"MULTIPOLYGON ((" + outer + "),(" + other + "))", height}
+                       : i % 3 == 1 ? Feature{"POLYGON (" + outer + "," + inner + ")", height}
+                                    : Feature{"POLYGON (" + outer + ")", NAN});
+  }
+  return features;
+}
+
+std::string table_of(const std::vector<Feature>& features) {
+  std::string text = "WKT,height\n";
+  for (const Feature& f : features)
+    text += fmt::format("\"{}\",{}\n", f.wkt, std::isnan(f.height) ? "" : fmt::format("{}", f.height));
+  return text;
+}
+
+TEST(OutlineLayers, EveryFormatHasTheWallsOfTheText) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const std::vector<Feature> houses = features_at_random(seed);
+    const LayerRead text = read_layers_of("houses.txt", table_of(houses));
+    EXPECT_EQ(text.warnings, "");
+    ASSERT_GT(text.walls.size(), 300u);
+    const std::string files[] = {
+        write_layer("GPKG", "houses.gpkg", houses, wkbUnknown),
+        write_layer("ESRI Shapefile", "houses.shp", houses, wkbPolygon),
+        write_layer("GeoJSON", "houses.geojson", houses, wkbUnknown),
+        write_layer("CSV", "comma.csv", houses, wkbUnknown, {"GEOMETRY=AS_WKT"}),
+        write_layer("CSV", "semicolon.csv", houses, wkbUnknown, {"GEOMETRY=AS_WKT", "SEPARATOR=SEMICOLON"}),
+        write_layer("CSV", "tab.csv", houses, wkbUnknown, {"GEOMETRY=AS_WKT", "SEPARATOR=TAB", "WRITE_BOM=YES"}),
+        write_layer("CSV", "windows.csv", houses, wkbUnknown,
+                    {"GEOMETRY=AS_WKT", "LINEFORMAT=CRLF", "STRING_QUOTING=ALWAYS"}),
+    };
+    for (const std::string& file : files) {
+      const LayerRead found = read_layers(file);
+      EXPECT_TRUE(found.walls == text.walls) << file << ": " << found.walls.size() << " of " << text.walls.size();
+      EXPECT_EQ(found.warnings, "") << file;
+    }
+  }
+}
+
+TEST(OutlineLayers, RowsWithoutWallsAreNamedAndCounted) {
+  std::vector<Feature> features{{"LINESTRING (0 0,900 0)", -2.0}, {"", 1.0}, {"POINT (1 2)", 1.0}};
+  for (int i = 0; i < 5; ++i) features.push_back({"POLYGON EMPTY", 1.0});
+  const LayerRead found = read_layers(write_layer("GPKG", "mixed.gpkg", features, wkbUnknown));
+  EXPECT_EQ(found.walls.size(), 1u);
+  EXPECT_EQ(found.walls[0][4], 3.0);
+  EXPECT_EQ(
+      found.warnings,
+      "0: feature 1: the height is '-2'; expected a number alone, such as 3.5, from 0 to 1e+07: the model's height "
+      "counts\n0: feature 2: has no geometry: left out\n0: feature 3: points have no walls: left out\n"
+      "0: feature 4: the geometry is EMPTY: left out\n0: feature 5: the geometry is EMPTY: left out\n"
+      "0: 3 rows more are left out without a geometry\n");
+  expect_in("has no outlines with walls; its layers are 'houses0', their columns 'Height'", sf::refusal_of([&] {
+              read_layers(write_layer("GPKG", "none.gpkg", {{"POINT (1 2)", 1.0}}, wkbUnknown));
+            }));
+}
+
+TEST(OutlineLayers, CurvesAreChordsWithinAMicrometre) {
+  const std::vector<Feature> tower{
+      {"CURVEPOLYGON (CIRCULARSTRING (500002 0,500000 2,499998 0,500000 -2,500002 0))", 9.0}};
+  const LayerRead found = read_layers(write_layer("GPKG", "tower.gpkg", tower, wkbCurvePolygon));
+  ASSERT_GT(found.walls.size(), 1000u);
+  for (const Wall& w : found.walls) {
+    EXPECT_NEAR(std::hypot(w[0] - 5e5, w[1]), 2.0, 1e-9);
+    EXPECT_NEAR(std::hypot(0.5 * (w[0] + w[2]) - 5e5, 0.5 * (w[1] + w[3])), 2.0, 1.001e-6);
+  }
+}
+
+TEST(OutlineLayers, SystemsInDegreesAndSeveralLayersAreNamed) {
+  const std::vector<Feature> house{{"POLYGON ((11 48,11 49,12 49,11 48))", NAN}};
+  expect_in("the coordinates are degrees",
+            read_layers(write_layer("GPKG", "degrees.gpkg", house, wkbUnknown, {}, 4326)).warnings);
+  expect_in("the coordinates are degrees",
+            read_layers_of("degrees.json",
+                           R"({"type": "Polygon", "coordinates": [[[11, 48], [11, 49], [12, 49], [11, 48]]]})")
+                .warnings);
+  const LayerRead two = read_layers(write_layer("GPKG", "two.gpkg", house, wkbUnknown, {}, 32632, 2));
+  EXPECT_EQ(two.walls.size(), 6u);
+  expect_in("all 2 layers are read ('houses0', 'houses1')", two.warnings);
+}
+
+TEST(OutlineLayers, AShapefileNeedsNoTable) {
+  const std::string file =
+      write_layer("ESRI Shapefile", "alone.shp", {{"POLYGON ((0 0,0 900,900 0,0 0))", 9.0}}, wkbPolygon);
+  EXPECT_EQ(read_layers(file).walls[0][4], 9.0);
+  std::filesystem::remove(in_folder("alone.dbf"));
+  EXPECT_EQ(read_layers(file).walls.size(), 3u);
+  EXPECT_EQ(read_layers(file).walls[0][4], 3.0);
+}
+
+TEST(OutlineLayers, BrokenFilesAreErrors) {
+  const std::string file = write_layer("GPKG", "whole.gpkg", {{"LINESTRING (0 0,900 0)", 9.0}}, wkbUnknown);
+  std::filesystem::copy_file(file, in_folder("half.gpkg"), std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::resize_file(in_folder("half.gpkg"), std::filesystem::file_size(file) / 2);
+  expect_in("half.gpkg: ", sf::refusal_of([&] { read_layers(in_folder("half.gpkg")); }));
+  for (const char* text : {"{", "{}", "{\"type\": \"Topology\"}", "{\"type\": \"FeatureCollection\"}"})
+    expect_in("broken.json: ", sf::refusal_of([&] { read_layers_of("broken.json", text); }));
+  expect_in("broken.shp: cannot be read as a GeoPackage, shapefile or GeoJSON",
+            sf::refusal_of([&] { read_layers_of("broken.shp", std::string("\0\0\x27\x0A\0\0\0\0", 8)); }));
+}
+
+TEST(OutlineLayers, AFileDoesNotReachTheNetwork) {
+  const LayerRead found =
+      read_layers_of("link.json", R"({"type": "FeatureCollection", "crs": {"type": "link", "properties":
+      {"href": "http://127.0.0.1:9/system"}}, "features": [{"type": "Feature", "properties": {"height": "7"},
+      "geometry": {"type": "LineString", "coordinates": [[0, 0], [900, 0]]}}]})");
+  EXPECT_EQ(found.walls[0][4], 7.0);
+  expect_in("the file names a place in the network, which is not used", found.warnings);
+}
+
+}  // namespace
+
+}  // namespace sf::world

@@ -1,0 +1,168 @@
+// The plug-in with GDAL: features of GeoPackages, shapefiles and GeoJSON as rows.
+
+#include <cpl_error.h>
+#include <cpl_http.h>
+#include <fmt/format.h>
+#include <ogr_api.h>
+#include <ogr_srs_api.h>
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "base/error.h"
+#include "world/outline_rows.h"
+
+namespace sf::world {
+
+namespace {
+
+constexpr std::size_t kShownNames = 20;
+
+/// While one exists, GDAL's messages of this thread are collected, and its requests over the network fail: a GeoJSON
+/// file may name its coordinate system by a URL.
+class Guard {
+ public:
+  explicit Guard(std::string& messages) {
+    CPLPushErrorHandlerEx(collect, &messages);
+    CPLHTTPPushFetchCallback(refuse, nullptr);
+  }
+  ~Guard() {
+    CPLHTTPPopFetchCallback();
+    CPLPopErrorHandler();
+  }
+  Guard(const Guard&) = delete;
+
+ private:
+  static void collect(CPLErr kind, CPLErrorNum, const char* text) {
+    constexpr std::size_t kMost = 500;
+    auto& messages = *static_cast<std::string*>(CPLGetErrorHandlerUserData());
+    if (kind < CE_Warning || messages.size() > kMost || messages.find(text) != std::string::npos) return;
+    messages += (messages.empty() ? "" : "; ") + std::string(text).substr(0, kMost);
+  }
+  static CPLHTTPResult* refuse(const char*, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc, void*,
+                               void*) {
+    CPLError(CE_Failure, CPLE_AppDefined, "the file names a place in the network, which is not used");
+    auto* const result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
+    result->nStatus = 1;
+    return result;
+  }
+};
+
+std::string quoted(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kShownNames); ++i)
+    text += fmt::format("{}'{}'", i > 0 ? ", " : "", names[i]);
+  return names.size() > kShownNames ? text + ", ..." : text;
+}
+
+class Layers : public OutlineRows {
+ public:
+  explicit Layers(const std::string& file) : file_(file) {
+    const Guard guard(messages_);
+    // The absolute path is never one of GDAL's own forms of names.
+    dataset_ = GDALOpenEx(std::filesystem::absolute(file).c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr,
+                          nullptr);
+    if (dataset_ == nullptr)
+      throw base::InputError(file, 0, "cannot be read as a GeoPackage, shapefile or GeoJSON: " + messages_);
+    for (int i = 0; i < GDALDatasetGetLayerCount(dataset_); ++i) {
+      const OGRLayerH layer = GDALDatasetGetLayer(dataset_, i);
+      if (OGR_L_GetGeomType(layer) == wkbNone) continue;
+      layers_.push_back(layer);
+      names_.emplace_back(OGR_L_GetName(layer));
+    }
+  }
+  ~Layers() override {
+    const Guard guard(messages_);
+    OGR_F_Destroy(feature_);
+    GDALClose(dataset_);
+  }
+
+  bool next(OutlineRow& row) override {
+    const Guard guard(messages_);
+    for (; at_ < layers_.size(); ++at_, entered_ = false) {
+      if (!entered_) enter();
+      OGR_F_Destroy(feature_);
+      feature_ = OGR_L_GetNextFeature(layers_[at_]);
+      if (feature_ != nullptr) return read(row), true;
+    }
+    return false;
+  }
+  std::string columns() const override {
+    std::vector<std::string> fields;
+    for (const OGRLayerH layer : layers_)
+      for (int i = 0; i < OGR_FD_GetFieldCount(OGR_L_GetLayerDefn(layer)); ++i)
+        fields.emplace_back(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(OGR_L_GetLayerDefn(layer), i)));
+    return fmt::format("its layers are {}, their columns {}", layers_.empty() ? "none" : quoted(names_),
+                       fields.empty() ? "none" : quoted(fields));
+  }
+  std::string remark() const override {
+    std::string text = messages_.empty() ? "" : "GDAL: " + messages_;
+    if (layers_.size() > 1)
+      text += fmt::format("{}all {} layers are read ({}); keep one alone by ogr2ogr -f GPKG ONE.gpkg FILE LAYER",
+                          text.empty() ? "" : "; ", layers_.size(), quoted(names_));
+    return text;
+  }
+
+ private:
+  void enter() {
+    entered_ = true;
+    OGR_L_ResetReading(layers_[at_]);
+    const OGRFeatureDefnH definition = OGR_L_GetLayerDefn(layers_[at_]);
+    height_column_ = -1;
+    for (int i = OGR_FD_GetFieldCount(definition); i-- > 0;)
+      if (EQUAL(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(definition, i)), "height")) height_column_ = i;
+    const OGRSpatialReferenceH system = OGR_L_GetSpatialRef(layers_[at_]);
+    is_geographic_ = system != nullptr && OSRIsGeographic(system) != 0;
+  }
+  void read(OutlineRow& row) {
+    const OGRGeometryH geometry = OGR_F_GetGeometryRef(feature_);
+    bytes_.resize(geometry != nullptr ? OGR_G_WkbSizeEx(geometry) : 0);
+    if (geometry != nullptr) OGR_G_ExportToIsoWkb(geometry, wkbNDR, reinterpret_cast<unsigned char*>(bytes_.data()));
+    read_height();
+    row = {.geometry = bytes_,
+           .height = height_,
+           .place = fmt::format("feature {}", OGR_F_GetFID(feature_)),
+           .is_binary = true,
+           .is_geographic = is_geographic_};
+    if (layers_.size() > 1) row.place += " of layer '" + names_[at_] + "'";
+  }
+  /// Numbers with all of their digits.
+  void read_height() {
+    height_.clear();
+    if (height_column_ < 0 || OGR_F_IsFieldSetAndNotNull(feature_, height_column_) == 0) return;
+    const bool real = OGR_Fld_GetType(OGR_F_GetFieldDefnRef(feature_, height_column_)) == OFTReal;
+    height_ = real ? fmt::format("{}", OGR_F_GetFieldAsDouble(feature_, height_column_))
+                   : OGR_F_GetFieldAsString(feature_, height_column_);
+  }
+
+  std::string file_;
+  std::string messages_;  ///< of GDAL so far
+  GDALDatasetH dataset_ = nullptr;
+  std::vector<OGRLayerH> layers_;  ///< with geometries
+  std::vector<std::string> names_;
+  std::size_t at_ = 0;    ///< layer that is being read
+  bool entered_ = false;  ///< the following two are that layer's
+  int height_column_ = -1;
+  bool is_geographic_ = false;
+  OGRFeatureH feature_ = nullptr;
+  std::string bytes_, height_;  ///< of the feature
+};
+
+std::unique_ptr<OutlineRows> open_layers(const std::string& file) {
+  // These drivers alone: others open what the content names, elsewhere or over a network.
+  static const bool once =
+      (RegisterOGRGeoPackage(), RegisterOGRShape(), RegisterOGRGeoJSON(), RegisterOGRGeoJSONSeq(), true);
+  static_cast<void>(once);
+  return std::make_unique<Layers>(file);
+}
+
+}  // namespace
+
+}  // namespace sf::world
+
+extern "C" {
+extern const sf::world::GdalPlugin sensorfarm_gdal;
+const sf::world::GdalPlugin sensorfarm_gdal{.open = sf::world::open_layers};
+}

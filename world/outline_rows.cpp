@@ -1,0 +1,76 @@
+#include "world/outline_rows.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/plugin.h"
+
+namespace sf::world {
+
+namespace {
+
+using namespace std::string_view_literals;
+
+/// Formats by their first bytes.
+struct Signature {
+  std::string_view bytes;
+  bool gdal;
+  const char* what;  ///< and what to do, where it is not read
+};
+constexpr std::array kSignatures{
+    Signature{"SQLite format 3\0"sv, true, ""},
+    Signature{"\0\0\x27\x0A"sv, true, ""},
+    Signature{"\xFF\xFE"sv, false, "a text in UTF-16: save it as UTF-8"},
+    Signature{"\xFE\xFF"sv, false, "a text in UTF-16: save it as UTF-8"},
+    Signature{"PK\x03\x04"sv, false, "a ZIP archive (an XLSX file is one, too): unpack it, or save the table as CSV"},
+    Signature{"\x1F\x8B"sv, false, "compressed: unpack it with gunzip"},
+    Signature{"<"sv, false, "XML or HTML: convert it, e.g. with ogr2ogr -f GPKG"}};
+
+constexpr std::string_view kBeforeJson = " \t\r\n\x1E";  // and the mark of GeoJSON text sequences
+
+std::string first_bytes(const std::string& file) {
+  base::LineFile check(file);  // refuses devices and pipes
+  std::string bytes(512, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
+std::unique_ptr<OutlineRows> open_with_gdal(const std::string& file) {
+  static const GdalPlugin* plugin = nullptr;
+  try {
+    if (plugin == nullptr)
+      plugin = static_cast<const GdalPlugin*>(
+          base::load_plugin(kGdalSymbol, "outlines are read from tables in text alone", "GDAL 3.6"));
+  } catch (const base::InputError& error) {
+    throw base::InputError(file, 0, fmt::format("needs GDAL: {}", error.what()));
+  }
+  return plugin->open(file);
+}
+
+}  // namespace
+
+std::unique_ptr<OutlineRows> open_outline_rows(const std::string& file) {
+  const std::string bytes = first_bytes(file);
+  std::string_view text = bytes;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  for (const Signature& row : kSignatures) {
+    if (!text.starts_with(row.bytes)) continue;
+    if (row.gdal) return open_with_gdal(file);
+    throw base::InputError(file, 0, std::string("is ") + row.what);
+  }
+  const std::size_t start = text.find_first_not_of(kBeforeJson);
+  if (start != std::string_view::npos && text[start] == '{') return open_with_gdal(file);
+  if (text.find('\0') != std::string_view::npos)
+    throw base::InputError(file, 0,
+                           "is no text; expected a table with geometries in well-known text, a GeoPackage, a shapefile "
+                           "(.shp) or GeoJSON");
+  return open_outline_table(file);
+}
+
+}  // namespace sf::world

@@ -1,0 +1,48 @@
+#pragma once
+// Geometries in well-known text and binary (OGC 06-103r4, sections 7 and 8, with the curves of ISO 13249-3), and in the
+// forms of PostGIS: `SRID=n;` before a text, flags of EWKB, binary in hexadecimal digits.
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "base/pose.h"
+
+namespace sf::world {
+
+/// The lines and rings of one geometry, in its unit of length. Memory is kept from geometry to geometry.
+struct WellKnownGeometry {
+  enum class Kind : std::uint8_t { line, outer, inner };  ///< inner: a hole in the last outer ring
+  struct Part {
+    Kind kind;
+    std::size_t end;  ///< of its points, which begin at the end of the previous part's
+  };
+  std::vector<glm::dvec2> points;
+  std::vector<Part> parts;
+  std::uint32_t points_left_out = 0;  ///< members of the types POINT and MULTIPOINT
+  std::uint32_t srid = 0;             ///< 0: not stated
+  double chords_left = 2e7;  ///< that arcs of this and further geometries may become; bounds the work of a file
+
+  void clear();  ///< for the next geometry
+};
+
+/// What a text is by its first characters.
+struct GeometryGuess {
+  enum class Content : std::uint8_t { none, points, walls } content = Content::none;
+  /// characters of the geometry; npos where its parentheses do not close
+  std::size_t length = 0;
+};
+GeometryGuess guess_geometry(std::string_view text);
+
+/// Reads POLYGON, TRIANGLE, LINESTRING, their MULTI forms and collections; coordinates beyond x and y are ignored.
+/// Points have no walls and are counted alone. Arcs (CIRCULARSTRING, COMPOUNDCURVE, CURVEPOLYGON, MULTICURVE,
+/// MULTISURFACE) become chords.
+/// @param text well-known text, or binary in hexadecimal digits
+/// @param arc_error largest distance between an arc and its chords, in the geometry's unit
+/// @throws base::InputError with the reason alone: the caller knows file and line
+void read_geometry(std::string_view text, double arc_error, WellKnownGeometry& geometry);
+
+/// Likewise for well-known binary. @param bytes ISO WKB or EWKB, either byte order
+void read_binary_geometry(std::string_view bytes, double arc_error, WellKnownGeometry& geometry);
+
+}  // namespace sf::world
