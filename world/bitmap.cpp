@@ -63,9 +63,11 @@ std::vector<BoundaryRun> trace_boundary(const Bitmap& grid, std::size_t most) {
   return runs;
 }
 
-glm::dvec2 corner_position(const Bitmap& grid, Corner corner, double size_x, double size_y) {
-  return {size_x * (static_cast<double>(corner.i) / grid.width - 0.5),
-          size_y * (static_cast<double>(corner.j) / grid.height - 0.5)};
+glm::dvec2 corner_position(const PicturePart& part, Corner corner, double size_x, double size_y) {
+  const auto fraction = [](std::uint32_t at, std::uint32_t low, std::uint32_t high) {
+    return (static_cast<double>(at) - low) / (high - low) - 0.5;
+  };
+  return {size_x * fraction(corner.i, part.low.i, part.high.i), size_y * fraction(corner.j, part.low.j, part.high.j)};
 }
 
 }  // namespace sf::world

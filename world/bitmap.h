@@ -33,8 +33,14 @@ struct BoundaryRun {
 /// @param most largest number of runs; beyond it the trace ends early, and the result is larger than `most`.
 std::vector<BoundaryRun> trace_boundary(const Bitmap& grid, std::size_t most = SIZE_MAX);
 
-/// Position of a corner in the frame of a model that shows the grid on `size_x` x `size_y`, centred. Equal corners give
+/// A rectangle of cells, at least one.
+struct PicturePart {
+  Corner low;   ///< lower left
+  Corner high;  ///< upper right
+};
+
+/// Position of a corner in the frame of a model that shows `part` on `size_x` x `size_y`, centred. Equal corners give
 /// bitwise equal positions.
-glm::dvec2 corner_position(const Bitmap& grid, Corner corner, double size_x, double size_y);
+glm::dvec2 corner_position(const PicturePart& part, Corner corner, double size_x, double size_y);
 
 }  // namespace sf::world

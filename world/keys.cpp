@@ -14,7 +14,7 @@ using Words = std::span<const std::string_view>;
 
 // clang-format off
 // Keys with a reader of their own. world/fields.h has all others.
-constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy",
+constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy", "old_shapes",
   // known, not modelled
   "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
   "interval_real", "gui_disable", "gui_interval", "ppm"});
@@ -138,6 +138,14 @@ bool is_known_key(KeyScope where, std::string_view key, std::span<const std::str
   const std::string plain = without_indices(key);
   const auto words = keys_in(where);
   return has(own, plain) || std::any_of(words.begin(), words.end(), [&](Words list) { return has(list, plain); });
+}
+
+std::string_view unmodelled_effect(std::string_view key) {
+  if (key == "quit_time") return "a run ends by its own options (run --duration)";
+  if (key == "velocity") return "robots stand still until they are commanded";
+  if (key == "localization") return "robots know their true poses, without drift";
+  if (key == "joules" || key == "kjoules" || key == "joules_capacity") return "no robot runs out of energy";
+  return {};
 }
 
 std::string suggest_key(KeyScope where, std::string_view key, std::span<const std::string_view> own) {

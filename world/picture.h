@@ -1,27 +1,44 @@
 #pragma once
-// Pictures as brightness: PNG (all colour types) and PGM (P2, P5).
+// Pictures of floor plans and maps as grids of solid and free cells. PNG (all colour types) and Netpbm (P1 to P6) are
+// decoded row by row. JPEG, BMP and GIF are decoded by OpenCV, which takes 0.1 s to load: by a plug-in
+// (vision/pictures.cpp, `sensorfarm_pictures.so`) that is loaded with the first such picture.
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
-#include <vector>
+
+#include "world/bitmap.h"
 
 namespace sf::world {
 
-/// Row by row from the top.
-struct Picture {
-  std::uint32_t width = 0;           ///< [pixel] in [1, 16384]
-  std::uint32_t height = 0;          ///< [pixel] in [1, 16384]
-  std::vector<std::uint8_t> value;   ///< 0 black .. 255 white; deeper samples are scaled down
-  std::vector<std::uint8_t> opaque;  ///< 0 where a pixel is more than half transparent, else 1; empty when no pixel is
+/// One row of a picture. Valid during the call that has it as its argument.
+struct PixelRow {
+  std::span<const std::uint8_t> rgba;  ///< 4 bytes a pixel; deeper samples are scaled down, alpha 255 is opaque
+  bool has_alpha = false;              ///< whether the picture's format stores an alpha
 };
 
-/// The value taken from a coloured pixel: Stage uses the first channel, map_server the mean of red, green and blue.
-enum class Channel { first, mean };
+/// Sets `solid` for each pixel of a row: 1 solid, 0 free. Called for all rows, from the top.
+using SolidRule = std::function<void(const PixelRow& row, std::uint8_t* solid)>;
 
-/// @throws base::InputError when the file is missing, broken, neither PNG nor PGM, or larger than 16384 x 16384.
-Picture read_picture(const std::string& file, Channel channel);
+/// The picture as a grid of its size, 1 to 16384 pixels along each side; the picture's top row is the grid's last.
+/// @throws base::InputError when the file is missing, broken, cut short, of another format or too large, or when the
+/// plug-in for its format cannot be loaded. Sizes are checked before memory is allocated.
+Bitmap read_bitmap(const std::string& file, const SolidRule& rule);
 
-/// Likewise from memory. @param file name for errors
-Picture decode_picture(const std::string& file, const std::string& bytes, Channel channel);
+/// The same from memory. @param file name for errors
+Bitmap decode_bitmap(const std::string& file, const std::string& bytes, const SolidRule& rule);
+
+/// The plug-in's part of this module.
+struct PictureDecoder {
+  /// Calls `row` for each row from the top. The picture's header has been checked.
+  /// @param file read again for a GIF  @param bytes its content
+  /// @return empty, or the reason why the picture cannot be decoded
+  std::string (*decode)(const std::string& file, const std::string& bytes, std::uint32_t width, std::uint32_t height,
+                        const std::function<void(const PixelRow&)>& row);
+};
+
+/// The name of the plug-in's only symbol: `extern "C" const PictureDecoder sensorfarm_pictures`.
+inline constexpr const char* kPicturesSymbol = "sensorfarm_pictures";
 
 }  // namespace sf::world

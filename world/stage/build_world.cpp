@@ -4,9 +4,12 @@
 
 #include <filesystem>
 
+#include "base/error.h"
+#include "world/foreign_world.h"
 #include "world/free_space.h"
 #include "world/keys.h"
 #include "world/outlines.h"
+#include "world/overlaps.h"
 #include "world/stage/build_state.h"
 #include "world/stage/light_entities.h"
 #include "world/stage/mover_entities.h"
@@ -35,23 +38,72 @@ void read_units(StageContext& context, const Entity& root) {
   }
 }
 
-void warn_of_starts(BuildState& b) {
-  if (b.world.movers.empty()) return;
-  const PlaceCheck check(b.world);
-  for (std::size_t row = 0; row < b.world.movers.size(); ++row) {
-    const std::string problem = check.start_problem(b.world.movers[row]);
-    if (!problem.empty()) warn(b.context, b.locations[row], problem);
+// Player's configuration files have Stage's grammar, and name a world.
+void refuse_player_file(const Document& document) {
+  for (const Entity& child : document.root.children) {
+    if (child.type != "driver") continue;
+    const Property* world = find(child, "worldfile");
+    if (world == nullptr && find(child, "provides") == nullptr && find(child, "plugin") == nullptr) continue;
+    throw base::InputError(
+        document.files[child.at.file], child.at.line,
+        fmt::format("'driver' belongs to a configuration file of Player; expected a world: load {}",
+                    world != nullptr && !world->values.empty() ? '"' + world->values[0].text + '"'
+                                                               : std::string("the world that its `worldfile` names")));
   }
+}
+
+/// "'a', 'b', 'c' and 4 more".
+std::string names_of(const World& world, const std::vector<std::uint32_t>& rows) {
+  constexpr std::size_t kShown = 3;
+  std::string names;
+  for (std::size_t i = 0; i < rows.size() && i < kShown; ++i)
+    names += fmt::format("{}'{}'", i == 0 ? "" : ", ", world.movers[rows[i]].name);
+  return rows.size() <= kShown ? names : fmt::format("{} and {} more", names, rows.size() - kShown);
+}
+
+// One warning for each kind of place.
+void warn_of_places(BuildState& b) {
+  const PlaceCheck check(b.world);
+  std::map<std::string, std::vector<std::uint32_t>> rows_of;
+  for (std::uint32_t row = 0; row < b.world.movers.size(); ++row) {
+    const Mover& robot = b.world.movers[row];
+    const std::string problem = robot.is_tag ? "" : check.problem(robot, robot.X_WM);
+    if (!problem.empty()) rows_of[problem].push_back(row);
+  }
+  for (const auto& [problem, rows] : rows_of) {
+    const std::string first = check.start_problem(b.world.movers[rows[0]]);
+    warn(b.context, b.locations[rows[0]],
+         rows.size() == 1 ? first
+                          : fmt::format("{} robots start {}: {}; the first: {}", rows.size(), problem,
+                                        names_of(b.world, rows), first));
+  }
+}
+
+void warn_of_overlaps(BuildState& b) {
+  const Overlaps found = find_overlaps(b.world);
+  if (!found.complete)
+    warn(b.context, b.locations[0], "this world has too many robots near one another to look for overlaps of all");
+  if (found.robots.empty()) return;
+  const auto& [first, second] = found.pairs[0];
+  warn(b.context, b.locations[second],
+       fmt::format("{} robots overlap others at the start: {}; '{}' starts at ({:g}, {:g}), in '{}': expected poses "
+                   "apart",
+                   found.robots.size(), names_of(b.world, found.robots), b.world.movers[second].name,
+                   b.world.movers[second].X_WM.x, b.world.movers[second].X_WM.y, b.world.movers[first].name));
 }
 
 }  // namespace
 
 World build_world(const std::string& file, const std::string& content, const LoadOptions& options) {
+  refuse_foreign(file, content);
   const Document document = parse(file, content);
-  BuildState b{.options = options, .context = {document, 1.0, M_PI / 180.0, document.warnings}, .types = known_types()};
+  refuse_player_file(document);
+  BuildState b{
+      .options = options, .context = {.document = document, .warnings = document.warnings}, .types = known_types()};
   b.types.insert(b.types.end(), document.macros.begin(), document.macros.end());
 
   read_units(b.context, document.root);
+  b.context.old_shapes = flag(b.context, document.root, "old_shapes", false);
   check_keys(b.context, document.root, KeyScope::world);
   b.world.file = file;
   b.world.name = std::filesystem::path(file).stem().string();
@@ -64,7 +116,8 @@ World build_world(const std::string& file, const std::string& content, const Loa
 
   if (!options.leave_outlines) read_unread(b.world);
   update_extent_and_hash(b.world);
-  if (b.world.unread.empty()) warn_of_starts(b);
+  if (!b.world.movers.empty()) warn_of_overlaps(b);
+  if (!b.world.movers.empty() && b.world.unread.empty()) warn_of_places(b);
   b.world.warnings.insert(b.world.warnings.begin(), b.context.warnings.begin(), b.context.warnings.end());
   return std::move(b.world);
 }

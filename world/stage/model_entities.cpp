@@ -229,6 +229,16 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   add_children(b, entity, own);
 }
 
+// Keys that change what happens in Stage, and nothing here; once per key.
+void warn_of_effect(StageContext& context, const Property& property) {
+  const std::string_view effect = unmodelled_effect(property.key);
+  if (effect.empty()) return;
+  const auto matters = [](const Value& value) { return value.is_text ? value.text == "odom" : value.number != 0.0; };
+  if (std::none_of(property.values.begin(), property.values.end(), matters)) return;
+  if (context.effects.insert(effect).second)
+    warn(context, property.at, fmt::format("'{}' has no effect here: {}", property.key, effect));
+}
+
 }  // namespace
 
 std::string free_name(BuildState& b, const std::string& wanted) {
@@ -242,6 +252,7 @@ std::string free_name(BuildState& b, const std::string& wanted) {
 void check_keys(StageContext& context, const Entity& entity, KeyScope where, std::span<const std::string_view> own) {
   if (where == KeyScope::unmodelled) return;
   for (const Property& property : entity.properties) {
+    warn_of_effect(context, property);
     if (is_known_key(where, property.key, own)) continue;
     if (context.warnings.size() > kMaxSuggestions) {
       warn(context, property.at, fmt::format("unknown property '{}' of '{}' is ignored", property.key, entity.word));

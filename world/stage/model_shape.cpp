@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "base/error.h"
-#include "world/picture.h"
 #include "world/stage/polygon.h"
 
 namespace sf::world {
@@ -16,8 +16,7 @@ namespace {
 
 constexpr std::uint32_t kMaxPoints = 2'000;
 constexpr double kMaxCornerPairs = 1e8;  // of all blocks; the self-intersection check of a polygon is quadratic
-constexpr std::size_t kMaxRuns = 2'000'000;
-constexpr double kMaxSegments = kMaxRuns;
+constexpr double kMaxSegments = 2e6;
 constexpr double kBoundary = 0.01;  // [m] thickness of the walls that `boundary 1` adds
 
 struct Block {
@@ -52,6 +51,8 @@ Block read_block(StageContext& context, const Entity& entity, const std::string&
     block.z_min = to_metres(context, at, (*z)[0]);
     block.z_max = to_metres(context, at, (*z)[1]);
     if (block.z_max < block.z_min) fail(context, at, "'z' expects [min max] with min not above max");
+  } else if (prefix.empty()) {
+    warn(context, entity.at, "this block has no 'z': it is read as [0 1]; Stage 4 gives it no height");
   }
   return block;
 }
@@ -67,40 +68,57 @@ std::vector<Block> read_blocks(StageContext& context, const Entity& entity) {
   return blocks;
 }
 
-/// The bounding box of all blocks of a model.
+/// The bounding box of a body.
 struct Span {
   glm::dvec2 low{HUGE_VAL, HUGE_VAL};
   glm::dvec2 high{-HUGE_VAL, -HUGE_VAL};
-  double top = 0.0;  ///< [m]
+  double bottom = HUGE_VAL, top = 0.0;  ///< [m]
 
   Size size() const { return {high.x - low.x, high.y - low.y, top}; }
+  void add(glm::dvec2 p) { low = glm::min(low, p), high = glm::max(high, p); }
+  void add(double z_min, double z_max) { bottom = std::min(bottom, z_min), top = std::max(top, z_max); }
 };
 
 Span span_of(const std::vector<Block>& blocks) {
   Span span;
   for (const Block& block : blocks) {
-    for (const glm::dvec2& p : block.points) {
-      span.low = {std::min(span.low.x, p.x), std::min(span.low.y, p.y)};
-      span.high = {std::max(span.high.x, p.x), std::max(span.high.y, p.y)};
-    }
-    span.top = std::max(span.top, block.z_max);
+    for (const glm::dvec2& p : block.points) span.add(p);
+    span.add(block.z_min, block.z_max);
   }
   return span;
 }
 
-// All blocks of a model are scaled together: their bounding box becomes size.x by size.y about the origin, their
-// greatest height size.z. An extent of zero stays zero.
-void scale_to(std::vector<Block>& blocks, const Span& span, const Size& size) {
-  const auto scaled = [](double value, double from, double to, double target) {
+// All of a body is scaled together: its bounding box becomes size.x by size.y about the origin, its greatest height
+// size.z. An extent of zero stays zero.
+struct Scale {
+  Span span;
+  Size size;
+
+  static double scaled(double value, double from, double to, double target) {
     return to > from ? ((value - from) / (to - from) - 0.5) * target : 0.0;
-  };
-  for (Block& block : blocks) {
-    for (glm::dvec2& p : block.points)
-      p = {scaled(p.x, span.low.x, span.high.x, size.x), scaled(p.y, span.low.y, span.high.y, size.y)};
-    if (span.top <= 0.0) continue;
-    block.z_min *= size.z / span.top;
-    block.z_max *= size.z / span.top;
   }
+  void apply(glm::dvec2& p) const {
+    p = {scaled(p.x, span.low.x, span.high.x, size.x), scaled(p.y, span.low.y, span.high.y, size.y)};
+  }
+  void apply(double& z_min, double& z_max) const {
+    if (span.top <= 0.0) return;
+    z_min *= size.z / span.top;
+    z_max *= size.z / span.top;
+  }
+  void apply(std::vector<Segment>& segments) const {
+    for (Segment& s : segments) apply(s.a), apply(s.b), apply(s.z_min, s.z_max);
+  }
+};
+
+// Stage divides by the blocks' own height, and so raises them above `size`.
+void warn_raised(StageContext& context, const Entity& entity, const Span& span, const Size& size) {
+  if (span.bottom == 0.0 || span.top <= span.bottom || span.top <= 0.0) return;
+  const double ours = size.z / span.top, stages = size.z / (span.top - span.bottom);
+  warn(
+      context, entity.at,
+      fmt::format("the blocks of '{}' do not begin at z 0: they reach from {:.4g} to {:.4g} m, in Stage from {:.4g} to "
+                  "{:.4g} m",
+                  entity.word, ours * span.bottom, ours * span.top, stages * span.bottom, stages * span.top));
 }
 
 /// Warns about blocks that seem to be in metres: without a size they become a box of 10 cm.
@@ -142,63 +160,6 @@ void append_boundary(std::vector<Segment>& segments, const Size& size) {
   for (std::size_t i = inner; i < segments.size(); ++i) std::swap(segments[i].a, segments[i].b);
 }
 
-// Stage's rule: dark is solid. Transparent is free. The picture's top row is the plan's far (+y) edge. Converted in
-// place, since plans are large.
-Bitmap grid_of(Picture picture) {
-  std::vector<std::uint8_t>& cells = picture.value;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const bool opaque = picture.opaque.empty() || picture.opaque[i] != 0;
-    cells[i] = opaque && cells[i] <= 127 ? 1 : 0;
-  }
-  const auto row = [&](std::uint32_t y) { return cells.begin() + static_cast<std::ptrdiff_t>(y) * picture.width; };
-  for (std::uint32_t y = 0; y < picture.height / 2; ++y)
-    std::swap_ranges(row(y), row(y + 1), row(picture.height - 1 - y));
-  return {picture.width, picture.height, std::move(cells)};
-}
-
-const TracedBitmap& bitmap_of(StageContext& context, BitmapCache& bitmaps, const Entity& entity) {
-  const SourceLocation at = find(entity, "bitmap")->at;
-  const std::string file = file_of(context, entity, "bitmap");
-  auto& traced = bitmaps[file];
-  try {
-    if (!traced) traced = trace_bitmap(grid_of(read_picture(file, Channel::first)), file);
-  } catch (const base::InputError& error) {
-    fail(context, at, fmt::format("'bitmap': {}", error.what()));
-  }
-  return *traced;
-}
-
-}  // namespace
-
-std::shared_ptr<const TracedBitmap> trace_bitmap(Bitmap grid, const std::string& file) {
-  std::vector<BoundaryRun> runs = trace_boundary(grid, kMaxRuns);
-  if (runs.size() > kMaxRuns) {
-    throw base::InputError(file, 0,
-                           fmt::format("an outline of more than {} straight pieces; expected a floor plan, not a "
-                                       "photograph or noise: smooth the picture, or make it smaller",
-                                       kMaxRuns));
-  }
-  return std::make_shared<const TracedBitmap>(TracedBitmap{{grid.width, grid.height, {}}, std::move(runs)});
-}
-
-double pixel_of(StageContext& context, BitmapCache& bitmaps, const Entity& entity, const Size& size) {
-  if (find(entity, "bitmap") == nullptr) return 0.0;
-  const Bitmap& grid = bitmap_of(context, bitmaps, entity).grid;
-  return std::max(size.x / grid.width, size.y / grid.height);
-}
-
-std::vector<Segment> bitmap_segments(const TracedBitmap& traced, const Size& size) {
-  std::vector<Segment> segments(traced.runs.size());
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    segments[i].a = corner_position(traced.grid, traced.runs[i].a, size.x, size.y);
-    segments[i].b = corner_position(traced.grid, traced.runs[i].b, size.x, size.y);
-    segments[i].z_max = size.z;
-  }
-  return segments;
-}
-
-namespace {
-
 /// Charges the body's segments before they are created.
 void count_segments(StageContext& context, const Entity& entity, std::size_t runs, const std::vector<Block>& blocks) {
   double segments = static_cast<double>(runs) + 8.0;  // a boundary, or a box
@@ -213,35 +174,80 @@ void count_segments(StageContext& context, const Entity& entity, std::size_t run
   charge(context, entity.at, context.usage.corner_pairs, pairs, kMaxCornerPairs, "pairs of edges in blocks", remedy);
 }
 
+/// A body's own parts beside its blocks.
+struct Parts {
+  bool bitmap = false;
+  bool boundary = false;
+  bool noblocks = false;  ///< no default box
+
+  bool any() const { return bitmap || boundary; }
+};
+
+// Stage creates the box, bitmap and boundary of a model before it reads its blocks: the first block replaces the box,
+// and the boundary that was built around it.
+void warn_of_parts(StageContext& context, const Entity& entity, const Parts& parts, bool has_blocks) {
+  if (parts.noblocks && (parts.any() || has_blocks))
+    warn(context, location_of(entity, "noblocks"),
+         fmt::format("'noblocks' removes only the default box, as in Stage: the {} of '{}' stays; the world key "
+                     "old_shapes 1 removes everything",
+                     parts.bitmap     ? "bitmap"
+                     : parts.boundary ? "boundary"
+                                      : "block",
+                     entity.word));
+  if (parts.boundary && has_blocks && !parts.bitmap && !parts.noblocks)
+    warn(context, location_of(entity, "boundary"),
+         fmt::format("'{}' has a boundary and blocks: Stage leaves the boundary out, here both stay", entity.word));
+  if (has_blocks && (parts.bitmap || (parts.boundary && parts.noblocks)))
+    warn(context, location_of(entity, parts.bitmap ? "bitmap" : "boundary"),
+         fmt::format("'{}' has blocks, too: their points count in metres from its middle, as in Stage; the world key "
+                     "old_shapes 1 scales them to 'size'",
+                     entity.word));
+}
+
+/// The scale of a body's blocks. @param fills whether other parts fill `size`: then all is one body, in metres.
+Scale scale_of(StageContext& context, const Entity& entity, const std::vector<Block>& blocks, bool fills,
+               const Size& size) {
+  Scale scale{span_of(blocks), size};
+  if (blocks.empty()) return scale;
+  if (!fills) warn_unsized(context, entity, scale.span, size);
+  if (fills) {
+    scale.span.add({-size.x / 2, -size.y / 2});
+    scale.span.add({size.x / 2, size.y / 2});
+    scale.span.add(0.0, size.z);
+  }
+  warn_raised(context, entity, scale.span, size);
+  return scale;
+}
+
 }  // namespace
 
 std::vector<Segment> shape_of(StageContext& context, BitmapCache& bitmaps, const Entity& entity, const Size& size,
                               bool is_box) {
-  std::vector<Segment> segments;
-  if (flag(context, entity, "noblocks", false)) return segments;
-  const bool has_bitmap = find(entity, "bitmap") != nullptr;
-  const bool has_boundary = flag(context, entity, "boundary", false);
+  const Parts parts{find(entity, "bitmap") != nullptr, flag(context, entity, "boundary", false),
+                    flag(context, entity, "noblocks", false)};
+  if (parts.noblocks && context.old_shapes) return {};
   std::vector<Block> blocks = read_blocks(context, entity);
-
-  if (has_bitmap && (size.x <= 0.0 || size.y <= 0.0)) {
+  if (parts.bitmap && (size.x <= 0.0 || size.y <= 0.0))
     fail(context, find(entity, "bitmap")->at, "a bitmap needs a 'size' above zero in x and y");
-  }
-  const TracedBitmap* plan = has_bitmap ? &bitmap_of(context, bitmaps, entity) : nullptr;
+  const TracedBitmap* plan = parts.bitmap ? &bitmap_of(context, bitmaps, entity) : nullptr;
   count_segments(context, entity, plan != nullptr ? plan->runs.size() : 0, blocks);
-  if (plan != nullptr) {
-    segments = bitmap_segments(*plan, size);
-    if (find(entity, "size") == nullptr)
-      warn(context, find(entity, "bitmap")->at,
-           fmt::format("'{}' shows a picture of {} x {} pixels but has no 'size': it is {:g} x {:g} m; write size "
-                       "[x y z] of the whole picture",
-                       entity.word, plan->grid.width, plan->grid.height, size.x, size.y));
+  if (!context.old_shapes) warn_of_parts(context, entity, parts, !blocks.empty());
+
+  if (plan != nullptr) warn_of_picture(context, entity, *plan, size);
+
+  const bool fills = !context.old_shapes && (parts.bitmap || (parts.boundary && parts.noblocks));
+  const Scale scale = scale_of(context, entity, blocks, fills, size);
+  std::vector<Segment> segments, boundary;
+  if (plan != nullptr) segments = bitmap_segments(*plan, part_of(context, *plan), size);
+  if (parts.boundary) append_boundary(boundary, size);
+  if (fills && !blocks.empty()) scale.apply(segments), scale.apply(boundary);
+  for (Block& block : blocks) {
+    for (glm::dvec2& p : block.points) scale.apply(p);
+    scale.apply(block.z_min, block.z_max);
+    append(segments, block.points, block.z_min, block.z_max);
   }
-  const Span span = span_of(blocks);
-  if (!blocks.empty()) warn_unsized(context, entity, span, size);
-  scale_to(blocks, span, size);
-  for (const Block& block : blocks) append(segments, block.points, block.z_min, block.z_max);
-  if (has_boundary) append_boundary(segments, size);
-  if (is_box && !has_bitmap && !has_boundary && blocks.empty())
+  segments.insert(segments.end(), boundary.begin(), boundary.end());
+  if (is_box && !parts.noblocks && !parts.any() && blocks.empty())
     append(segments, rectangle(size.x, size.y), 0.0, size.z);
 
   const auto vanished = [](const Segment& s) { return s.a.x == s.b.x && s.a.y == s.b.y; };

@@ -77,18 +77,14 @@ Property read_property(ParseState& r) {
 
 void add_property(ParseState& r, Entity& entity, KeyRows& rows, std::unordered_set<std::string>& written,
                   Property property) {
-  if (!written.insert(property.key).second) {
-    if (property.key.find('[') != std::string::npos) {
-      fail(r, property.at.line,
-           fmt::format("'{}' is given twice in the same '{}'; number them one by one: [0], [1], [2] ...", property.key,
-                       entity.word));
-    }
-    warn(r, property.at.line, fmt::format("'{}' is given twice; the last one counts", property.key));
-  }
   const std::uint32_t weight = weight_of(property);
   entity.weight += weight;
   r.weight += weight;
   const auto [old, fresh] = rows.emplace(property.key, static_cast<std::uint32_t>(entity.properties.size()));
+  if (!written.insert(property.key).second)
+    warn(r, property.at.line,
+         fmt::format("'{}' is given twice in the same '{}': the last one counts, not that of line {}", property.key,
+                     entity.word, entity.properties[old->second].at.line));
   if (fresh) {
     entity.properties.push_back(std::move(property));
   } else {

@@ -45,7 +45,6 @@ Property read_property(ParseState& r);
 /// Adds a property. The last of two equal ones counts, with a warning when both stand in the same parentheses.
 /// @param rows rows of all properties of the entity
 /// @param written keys of these parentheses so far
-/// @throws base::InputError for two equal indices, since an element would be lost.
 void add_property(ParseState& r, Entity& entity, KeyRows& rows, std::unordered_set<std::string>& written,
                   Property property);
 

@@ -29,8 +29,10 @@ struct StageContext {
   const Document& document;
   double metres_per_unit = 1.0;            ///< [m] per unit of length of the file (`unit_length`)
   double radians_per_unit = M_PI / 180.0;  ///< [rad] per unit of angle of the file (`unit_angle`)
+  bool old_shapes = false;                 ///< bodies as up to version 0.2 (`old_shapes` of the world, docs/worlds.md)
   std::vector<Warning> warnings;
-  std::set<std::string> warned;  ///< one warning per place and text, also for a macro used many times
+  std::set<std::string> warned;        ///< one warning per place and text, also for a macro used many times
+  std::set<std::string_view> effects;  ///< of keys without an effect here, mentioned so far
   ResourceUsage usage;
 };
 

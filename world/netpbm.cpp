@@ -1,0 +1,120 @@
+// Netpbm's formats: bits (P1, P4), grey (P2, P5) and colour (P3, P6), as words (P1 to P3) or binary.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "world/picture_formats.h"
+
+namespace sf::world {
+
+namespace {
+
+struct Cursor {
+  const std::string& file;
+  std::string_view bytes;
+  std::size_t at = 0;
+};
+
+struct Format {
+  bool binary = false;
+  std::uint32_t channels = 1;  ///< 1 or 3
+  std::uint32_t white = 1;     ///< largest sample, up to 65535; 1: bits, of which 1 is black
+  bool bits = false;
+
+  std::size_t bytes_per_sample() const { return white > 255 ? 2 : 1; }
+};
+
+[[noreturn]] void fail(const Cursor& c, const std::string& message) {
+  throw base::InputError(c.file, 0, "broken Netpbm picture: " + message);
+}
+
+// Comments run to the end of the line.
+void skip_blanks(Cursor& c) {
+  const auto blank = [](char x) { return x == ' ' || x == '\t' || x == '\n' || x == '\r' || x == '\v' || x == '\f'; };
+  for (; c.at < c.bytes.size() && (blank(c.bytes[c.at]) || c.bytes[c.at] == '#'); ++c.at)
+    if (c.bytes[c.at] == '#') c.at = std::min(c.bytes.find('\n', c.at), c.bytes.size() - 1);
+}
+
+// The next decimal number of the header or of a picture in words.
+std::uint32_t next_number(Cursor& c) {
+  skip_blanks(c);
+  std::uint32_t value = 0;
+  const std::size_t begin = c.at;
+  for (; c.at < c.bytes.size() && c.bytes[c.at] >= '0' && c.bytes[c.at] <= '9'; ++c.at) {
+    value = value * 10 + static_cast<std::uint32_t>(c.bytes[c.at] - '0');
+    if (value > 1'000'000) fail(c, "a number is too large");
+  }
+  if (c.at == begin) fail(c, "expected a number; the file is cut short or not a picture of its kind");
+  return value;
+}
+
+// A bit of P1, which needs no blank before the next one.
+std::uint32_t next_bit(Cursor& c) {
+  skip_blanks(c);
+  if (c.at == c.bytes.size() || (c.bytes[c.at] != '0' && c.bytes[c.at] != '1'))
+    fail(c, "expected 0 or 1; the file is cut short or not a picture of its kind");
+  return static_cast<std::uint32_t>(c.bytes[c.at++] - '0');
+}
+
+// The next sample scaled to 255.
+std::uint8_t next_sample(Cursor& c, const Format& format) {
+  if (format.bits) return next_bit(c) == 0 ? 255 : 0;
+  std::uint32_t sample = 0;
+  if (!format.binary) {
+    sample = next_number(c);
+  } else {
+    for (std::size_t i = 0; i < format.bytes_per_sample(); ++i)
+      sample = sample * 256 + static_cast<std::uint8_t>(c.bytes[c.at++]);
+  }
+  if (sample > format.white) fail(c, fmt::format("a pixel of {}, above its largest value {}", sample, format.white));
+  return static_cast<std::uint8_t>(sample * 255 / format.white);
+}
+
+void read_row(Cursor& c, const Format& format, std::vector<std::uint8_t>& rgba) {
+  const std::size_t bits_at = c.at;  // of P4, whose rows begin with a byte
+  for (std::size_t x = 0; 4 * x < rgba.size(); ++x) {
+    std::uint8_t* const pixel = rgba.data() + 4 * x;
+    if (format.bits && format.binary) {
+      pixel[0] = (static_cast<std::uint8_t>(c.bytes[bits_at + x / 8]) >> (7 - x % 8) & 1) != 0 ? 0 : 255;
+    } else {
+      for (std::uint32_t i = 0; i < format.channels; ++i) pixel[i] = next_sample(c, format);
+    }
+    if (format.channels == 1) pixel[1] = pixel[2] = pixel[0];
+  }
+  if (format.bits && format.binary) c.at += (rgba.size() / 4 + 7) / 8;
+}
+
+/// Smallest number of bytes of all pixels.
+std::size_t least_bytes(const Format& format, const Bitmap& grid) {
+  if (format.bits && format.binary) return std::size_t{(grid.width + 7) / 8} * grid.height;
+  const std::size_t samples = std::size_t{grid.width} * grid.height * format.channels;
+  return format.binary ? samples * format.bytes_per_sample() : samples;
+}
+
+}  // namespace
+
+void decode_netpbm(const std::string& bytes, GridBuilder& grid) {
+  Cursor c{grid.file(), bytes, 2};
+  const int kind = bytes[1] - '0';
+  const std::uint32_t width = next_number(c);
+  grid.begin(width, next_number(c));
+  Format format{.binary = kind > 3, .channels = kind % 3 == 0 ? 3u : 1u, .white = 1, .bits = kind % 3 == 1};
+  if (!format.bits) format.white = next_number(c);
+  if (format.white < 1 || format.white > 65535)
+    fail(c, fmt::format("a largest value of {}; expected 1 to 65535", format.white));
+  if (format.binary) ++c.at;  // the single blank between header and pixels
+  if (bytes.size() - std::min(c.at, bytes.size()) < least_bytes(format, grid.grid()))
+    fail(c, "fewer pixels than in its header; it is cut short");
+
+  std::vector<std::uint8_t> rgba(std::size_t{width} * 4, 255);
+  for (std::uint32_t y = 0; y < grid.grid().height; ++y) {
+    read_row(c, format, rgba);
+    grid.add({rgba, false});
+  }
+}
+
+}  // namespace sf::world
