@@ -141,10 +141,8 @@ bool is_known_key(KeyScope where, std::string_view key, std::span<const std::str
 }
 
 std::string_view unmodelled_effect(std::string_view key) {
-  if (key == "quit_time") return "a run ends by its own options (run --duration)";
   if (key == "velocity") return "robots stand still until they are commanded";
   if (key == "localization") return "robots know their true poses, without drift";
-  if (key == "joules" || key == "kjoules" || key == "joules_capacity") return "no robot runs out of energy";
   return {};
 }
 

@@ -63,9 +63,14 @@ PictureSize jpeg_size(const Bytes& b) {
 
 // A negative height means that the top row comes first. The header of OS/2 has 16-bit sizes.
 PictureSize bmp_size(const Bytes& b) {
-  if (b.little32(14) == 12) return {b.little16(18), b.little16(20)};
-  const std::uint64_t height = b.little32(22);
-  return {b.little32(18), height < 0x80000000u ? height : 0x100000000u - height};
+  const bool is_os2 = b.little32(14) == 12;
+  const std::uint64_t up = is_os2 ? b.little16(20) : b.little32(22);
+  const PictureSize size{is_os2 ? b.little16(18) : b.little32(18), up < 0x80000000u ? up : 0x100000000u - up};
+  const std::uint64_t compression = is_os2 ? 0 : b.little32(30);
+  const std::uint64_t row = (size.width * b.little16(is_os2 ? 24 : 28) + 31) / 32 * 4;  // [byte]
+  const bool fixed = compression == 0 || compression == 3;                              // not run lengths
+  if (fixed && row * size.height > 0) b.byte(b.little32(10) + row * size.height - 1);
+  return size;
 }
 
 // libgif would leave the rest of a file that is cut short black.

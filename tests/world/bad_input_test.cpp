@@ -63,7 +63,6 @@ const std::vector<Bad>& corpus() {
       {"block with half a point", "model( block( points 2.5 ) )", 1, "whole number"},
       {"block that lacks a point", "model(\n block( points 3 point[0] [0 0] point[1] [1 0] ) )", 2, "point[2]"},
       {"block upside down", "model( block( points 2 point[0] [0 0] point[1] [1 0] z [1 0] ) )", 1, "min not above max"},
-      {"index given twice", "model( block( points 2\n point[0] [0 0]\n point[0] [1 0] ) )", 3, "given twice"},
       {"robot that cannot move", "position( velocity_bounds [0 0] )", 1,
        "xmax of 'velocity_bounds' is 0; expected more"},
       {"unknown drive", "position( drive \"legs\" )", 1, "\"diff\", \"omni\", \"car\" or \"skid\""},
@@ -121,14 +120,6 @@ TEST(BadInput, IsRefusedWithItsLineAndWhatWasExpected) {
     EXPECT_TRUE(error.starts_with(fmt::format("test.world:{}: ", bad.line))) << bad.reason << ": " << error;
     EXPECT_NE(error.find(bad.says), std::string::npos) << bad.reason << ": " << error;
   }
-}
-
-// The printed listing of a five-element array numbers all elements 0: four of them would be lost.
-TEST(BadInput, AnArrayThatRepeatsItsFirstElementIsRefused) {
-  const std::string error = error_of(
-      "define array magnetometer\n(\n scount 5\n spose[0] [ -0.15 0 0 ]\n spose[0] [ -0.075 0 0 ]\n spose[0] [ 0 0 0 "
-      "]\n)\n");
-  EXPECT_TRUE(error.starts_with("test.world:5: 'spose[0]' is given twice")) << error;
 }
 
 TEST(BadInput, AbsurdNestingIsRefusedNotAStackOverflow) {
@@ -205,7 +196,7 @@ TEST_F(Files, AnErrorInAnIncludeNamesTheInclude) {
 
 TEST_F(Files, APictureThatIsNoneIsNamed) {
   write("x.png", "hello");
-  EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("neither a PNG nor a PGM"), std::string::npos);
+  EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("is no picture in PNG"), std::string::npos);
 }
 
 TEST_F(Files, ABrokenPictureIsNamed) {

@@ -154,12 +154,20 @@ TEST(Bitmap, RandomGridsOfAllDensities) {
 }
 
 TEST(Bitmap, CornersSpanTheSizeAboutTheOrigin) {
-  const Bitmap grid = grid_of({"..", "..", ".."});
-  const auto low = corner_position(grid, {0, 0}, 4.0, 3.0), high = corner_position(grid, {2, 3}, 4.0, 3.0);
+  const PicturePart whole{{0, 0}, {2, 3}};
+  const auto low = corner_position(whole, {0, 0}, 4.0, 3.0), high = corner_position(whole, {2, 3}, 4.0, 3.0);
   EXPECT_EQ(low.x, -2.0);
   EXPECT_EQ(low.y, -1.5);
   EXPECT_EQ(high.x, 2.0);
   EXPECT_EQ(high.y, 1.5);
+}
+
+TEST(Bitmap, APartSpansTheSizeItself) {
+  const PicturePart part{{3, 1}, {7, 2}};
+  EXPECT_EQ(corner_position(part, {3, 1}, 8.0, 2.0), glm::dvec2(-4.0, -1.0));
+  EXPECT_EQ(corner_position(part, {7, 2}, 8.0, 2.0), glm::dvec2(4.0, 1.0));
+  EXPECT_EQ(corner_position(part, {4, 1}, 8.0, 2.0).x, -2.0);
+  EXPECT_EQ(corner_position(part, {0, 0}, 8.0, 2.0), glm::dvec2(-10.0, -3.0)) << "below the part";
 }
 
 }  // namespace

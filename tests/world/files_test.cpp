@@ -109,7 +109,7 @@ TEST(WorldFiles, CaveHasAHundredRobots) {
 TEST(WorldFiles, HospitalHasAThousandRobotsOfTwelveSensors) {
   NEED_SHARED();
   const World world = load_world(kShared + "/stage/benchmark/hospital.world", kWithLasers);
-  EXPECT_EQ(world.warnings.size(), 1u) << warnings_of(world);  // Stage's plug-in as the controller
+  EXPECT_EQ(world.warnings.size(), 2u) << warnings_of(world);  // Stage's plug-in as the controller, the plan's margins
   EXPECT_EQ(world.movers.size(), 1000u);
   EXPECT_EQ(count_lasers(world), 12'000u);
   EXPECT_EQ(world.extent.x_max, 70.0);

@@ -39,40 +39,86 @@ const std::vector<std::uint8_t> kInterlaced{
     0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0xe0, 0x62, 0x10, 0x61, 0x90, 0xd3, 0x00, 0x00, 0x00, 0xf7,
     0x00, 0x65, 0x26, 0x2e, 0x0e, 0x42, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
 
-class Pictures : public ::testing::Test {
- protected:
-  void TearDown() override { std::filesystem::remove(file_); }
-  Picture read(const std::string& bytes, Channel channel = Channel::first) {
-    std::ofstream(file_, std::ios::binary) << bytes;
-    return read_picture(file_, channel);
-  }
-  Picture read(const std::vector<std::uint8_t>& bytes, Channel channel = Channel::first) {
-    return read(std::string(bytes.begin(), bytes.end()), channel);
-  }
-  std::string file_ = ::testing::TempDir() + "/picture_" + std::to_string(::getpid());
-};
+// 16 x 8 in grey, the left half dark.
+const std::vector<std::uint8_t> kJpeg{
+    0xff, 0xd8, 0xff, 0xe0, 0x00, 0x10, 0x4a, 0x46, 0x49, 0x46, 0x00, 0x01, 0x01, 0x00, 0x00, 0x01, 0x00, 0x01,
+    0x00, 0x00, 0xff, 0xdb, 0x00, 0x43, 0x00, 0x0d, 0x09, 0x0a, 0x0b, 0x0a, 0x08, 0x0d, 0x0b, 0x0a, 0x0b, 0x0e,
+    0x0e, 0x0d, 0x0f, 0x13, 0x20, 0x15, 0x13, 0x12, 0x12, 0x13, 0x27, 0x1c, 0x1e, 0x17, 0x20, 0x2e, 0x29, 0x31,
+    0x30, 0x2e, 0x29, 0x2d, 0x2c, 0x33, 0x3a, 0x4a, 0x3e, 0x33, 0x36, 0x46, 0x37, 0x2c, 0x2d, 0x40, 0x57, 0x41,
+    0x46, 0x4c, 0x4e, 0x52, 0x53, 0x52, 0x32, 0x3e, 0x5a, 0x61, 0x5a, 0x50, 0x60, 0x4a, 0x51, 0x52, 0x4f, 0xff,
+    0xc0, 0x00, 0x0b, 0x08, 0x00, 0x08, 0x00, 0x10, 0x01, 0x01, 0x11, 0x00, 0xff, 0xc4, 0x00, 0x15, 0x00, 0x01,
+    0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x07, 0x08, 0xff,
+    0xc4, 0x00, 0x14, 0x10, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0xff, 0xda, 0x00, 0x08, 0x01, 0x01, 0x00, 0x00, 0x3f, 0x00, 0x3d, 0x50, 0x2f, 0xff, 0xd9};
+// 3 x 2: black, white, white, and a row of black.
+const std::vector<std::uint8_t> kGif{0x47, 0x49, 0x46, 0x38, 0x37, 0x61, 0x03, 0x00, 0x02, 0x00, 0x80, 0x00, 0x00,
+                                     0x00, 0x00, 0x00, 0xff, 0xff, 0xff, 0x2c, 0x00, 0x00, 0x00, 0x00, 0x03, 0x00,
+                                     0x02, 0x00, 0x00, 0x02, 0x05, 0x04, 0xc3, 0x10, 0x04, 0x51, 0x00, 0x3b};
+// 1 x 2 in 24 bits.
+const std::vector<std::uint8_t> kBmpBytes{0x42, 0x4d, 0x3e, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x36, 0x00, 0x00,
+                                          0x00, 0x28, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00,
+                                          0x01, 0x00, 0x18, 0x00, 0x00, 0x00, 0x00, 0x00, 0x08, 0x00, 0x00, 0x00, 0x00,
+                                          0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+                                          0x00, 0x00, 0x07, 0x08, 0x09, 0x00, 0x01, 0x02, 0x03, 0x00};
+const std::string kBmp(kBmpBytes.begin(), kBmpBytes.end());
 
 using Values = std::vector<std::uint8_t>;
 
-TEST_F(Pictures, ColourIsItsFirstChannelOrTheMean) {
-  EXPECT_EQ(read(kRgba).value, (Values{0, 200}));
-  EXPECT_EQ(read(kRgba, Channel::mean).value, (Values{0, 80}));
+/// A picture as its rule saw it, row by row from the top.
+struct Seen {
+  Bitmap grid;
+  Values rgba;
+  bool has_alpha = false;
+
+  Values channel(std::size_t k) const {
+    Values values;
+    for (std::size_t i = k; i < rgba.size(); i += 4) values.push_back(rgba[i]);
+    return values;
+  }
+};
+
+Seen read(const std::string& bytes, const std::string& file = "picture") {
+  Seen seen;
+  seen.grid = decode_bitmap(file, bytes, [&](const PixelRow& row, std::uint8_t* solid) {
+    seen.has_alpha = row.has_alpha;
+    seen.rgba.insert(seen.rgba.end(), row.rgba.begin(), row.rgba.end());
+    for (std::size_t i = 0; i < row.rgba.size(); i += 4) *solid++ = row.rgba[i] < 128 ? 1 : 0;
+  });
+  return seen;
+}
+Seen read(const Values& bytes) { return read(std::string(bytes.begin(), bytes.end())); }
+Values grey(const std::string& bytes) { return read(bytes).channel(0); }
+
+std::string error_of_picture(const std::string& bytes) {
+  try {
+    read(bytes);
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
-TEST_F(Pictures, TransparencyIsKeptWhereThereIsAny) {
-  EXPECT_EQ(read(kRgba).opaque, (Values{0, 1}));
-  EXPECT_TRUE(read(kOneBit).opaque.empty());
+TEST(Pictures, ColoursAreRedGreenBlueAndAlpha) {
+  const Seen seen = read(kRgba);
+  EXPECT_EQ(seen.rgba, (Values{0, 0, 0, 0, 200, 10, 30, 255}));
+  EXPECT_TRUE(seen.has_alpha);
+  EXPECT_FALSE(read(kOneBit).has_alpha);
 }
 
-TEST_F(Pictures, OneBitIsBlackAndWhite) { EXPECT_EQ(read(kOneBit).value, (Values{0, 255, 0})); }
+TEST(Pictures, TheTopRowIsTheGridsLast) { EXPECT_EQ(read("P2 1 2 255\n0 255").grid.solid, (Values{0, 1})); }
 
-TEST_F(Pictures, SixteenBitsAreScaledDown) { EXPECT_EQ(read(kDeepGray).value, (Values{0x80})); }
+TEST(Pictures, OneBitIsBlackAndWhite) { EXPECT_EQ(read(kOneBit).channel(0), (Values{0, 255, 0})); }
 
-TEST_F(Pictures, PalettesAreLookedUp) { EXPECT_EQ(read(kPalette).value, (Values{9, 255})); }
+TEST(Pictures, SixteenBitsAreScaledDown) { EXPECT_EQ(read(kDeepGray).channel(1), (Values{0x80})); }
 
-TEST_F(Pictures, InterlacedPicturesAreTheSame) { EXPECT_EQ(read(kInterlaced).value, (Values{10, 20, 30, 40})); }
+TEST(Pictures, PalettesAreLookedUp) {
+  EXPECT_EQ(read(kPalette).channel(0), (Values{9, 255}));
+  EXPECT_EQ(read(kPalette).channel(2), (Values{7, 255}));
+}
 
-TEST_F(Pictures, EveryCutOfAPngIsRefused) {
+TEST(Pictures, InterlacedPicturesAreTheSame) { EXPECT_EQ(read(kInterlaced).channel(0), (Values{10, 20, 30, 40})); }
+
+TEST(Pictures, EveryCutOfAPngIsRefused) {
   const std::size_t after_pixels = kRgba.size() - 16;  // then a checksum and the chunk IEND
   for (std::size_t size = 1; size < after_pixels; ++size) {
     EXPECT_THROW(read(Values(kRgba.begin(), kRgba.begin() + static_cast<std::ptrdiff_t>(size))), base::InputError)
@@ -80,19 +126,116 @@ TEST_F(Pictures, EveryCutOfAPngIsRefused) {
   }
 }
 
-TEST_F(Pictures, PgmInBinaryAndInWords) {
-  EXPECT_EQ(read(std::string("P5\n# made by hand\n2 1\n255\n\x05\xff")).value, (Values{5, 255}));
-  EXPECT_EQ(read(std::string("P2 3 1 # three\n10 0 5 10")).value, (Values{0, 127, 255}));
+// --- Netpbm
+
+TEST(Pictures, GreyInBinaryAndInWords) {
+  EXPECT_EQ(grey("P5\n# made by hand\n2 1\n255\n\x05\xff"), (Values{5, 255}));
+  EXPECT_EQ(grey("P2 3 1 # three\n10 0 5 10"), (Values{0, 127, 255}));
+  EXPECT_EQ(grey("P5 1 1 65535\n\x80\x01"), (Values{127})) << "two bytes a pixel, the first one high";
+  EXPECT_EQ(grey("P5 2 1 256\n" + std::string("\x01\x00\x00\x80", 4)), (Values{255, 127})) << "the least of two bytes";
+  EXPECT_EQ(grey("P5 1 1 # to the end\n255 #"), (Values{'#'})) << "one blank, then pixels";
+  EXPECT_EQ(grey("P2\r\n1 1\r\n1\r\n1\r\n"), (Values{255}));
 }
 
-TEST_F(Pictures, PgmOfTwoBytesAPixel) { EXPECT_EQ(read(std::string("P5 1 1 65535\n\x80\x01")).value, (Values{127})); }
+TEST(Pictures, BitsAreBlackWhereTheyAreOne) {
+  EXPECT_EQ(grey("P1 3 2 010\n1 # a comment\n 0 1"), (Values{255, 0, 255, 0, 255, 0})) << "blanks may be left out";
+  const std::string rows("\x40\x80\xff\x7f", 4);  // nine bits each: a row begins with a byte
+  EXPECT_EQ(grey("P4 9 2\n" + rows), (Values{255, 0, 255, 255, 255, 255, 255, 255, 0,  //
+                                             0, 0, 0, 0, 0, 0, 0, 0, 255}));
+  EXPECT_EQ(grey("P4 8 1\n\x0f"), (Values{255, 255, 255, 255, 0, 0, 0, 0})) << "no padding";
+}
 
-TEST_F(Pictures, PgmThatLiesIsRefused) {
-  for (const std::string bytes :
-       {"P5", "P5 2", "P5 0 1 255 ", "P5 1 1 0 x", "P5 1 1 70000 x", "P5 2 2 255 abc", "P2 1 1 5 6", "P2 2 1 255 1",
-        "P5 99999999999 1 255 ", "P5 1 1 65535 a", "", "P6 1 1 255 abc"}) {
+TEST(Pictures, ColourInBinaryAndInWords) {
+  EXPECT_EQ(read("P3 2 1 10 10 5 0 0 5 10").rgba, (Values{255, 127, 0, 255, 0, 127, 255, 255}));
+  EXPECT_EQ(read("P6 2 1 255\nabcdef").rgba, (Values{'a', 'b', 'c', 255, 'd', 'e', 'f', 255}));
+  EXPECT_EQ(read("P6 1 1 65535\naabbcc").rgba, (Values{97, 98, 99, 255})) << "97 * 257 of 65535 is 97 of 255";
+}
+
+TEST(Pictures, NetpbmThatLiesIsRefused) {
+  for (const std::string bytes : {"P5",
+                                  "P5 2",
+                                  "P5 0 1 255 ",
+                                  "P5 1 1 0 x",
+                                  "P5 1 1 70000 x",
+                                  "P5 2 2 255 abc",
+                                  "P2 1 1 5 6",
+                                  "P2 2 1 255 1",
+                                  "P5 99999999999 1 255 ",
+                                  "P5 1 1 65535 a",
+                                  "",
+                                  "P",
+                                  "P6 1 1 255 ab",
+                                  "P3 1 1 255 1 2",
+                                  "P4 9 1\n\x01",
+                                  "P4 1 1",
+                                  "P1 2 1 1",
+                                  "P1 1 1 2",
+                                  "P7\nWIDTH 1\n",
+                                  "P5 1 1 1 \x02"}) {
     EXPECT_THROW(read(bytes), base::InputError) << bytes;
   }
+}
+
+/// The sizes are refused before anything is allocated: 16384 along each side, and what the file cannot hold.
+TEST(Pictures, SizesAreLimited) {
+  EXPECT_NE(error_of_picture("P5 16385 1 255\n").find("16385 x 1 pixels; expected 1 to 16384"), std::string::npos);
+  EXPECT_NE(error_of_picture("P4 1 16385\n").find("1 x 16385 pixels"), std::string::npos);
+  EXPECT_NE(error_of_picture("P6 16384 16384 255\n").find("fewer pixels than in its header"), std::string::npos);
+  EXPECT_EQ(read("P4 16384 1\n" + std::string(2048, '\0')).grid.width, 16384u);
+  std::string bmp = kBmp;
+  bmp.replace(18, 8, std::string("\x00\x40\x00\x00\x00\x40\x00\x00", 8));  // 16384 x 16384
+  bmp[30] = 1;  // in run lengths: its bytes cannot be counted
+  EXPECT_NE(error_of_picture(bmp).find("expected at most 67108864 of them"), std::string::npos)
+      << error_of_picture(bmp);
+}
+
+// --- The plug-in's formats
+
+TEST(Pictures, AJpegIsRead) {
+  const Seen seen = read(std::string(kJpeg.begin(), kJpeg.end()));
+  ASSERT_EQ(seen.grid.width, 16u);
+  ASSERT_EQ(seen.grid.height, 8u);
+  EXPECT_FALSE(seen.has_alpha);
+  for (std::uint32_t y = 0; y < 8; ++y)
+    for (std::uint32_t x = 0; x < 16; ++x)
+      EXPECT_EQ(seen.grid.solid[y * 16 + x], x < 8 ? 1 : 0) << x << " " << y << ": the left half is dark";
+}
+
+TEST(Pictures, EveryCutOfAJpegIsRefused) {
+  for (std::size_t size = 3; size < kJpeg.size(); ++size)
+    EXPECT_NE(error_of_picture({kJpeg.begin(), kJpeg.begin() + static_cast<std::ptrdiff_t>(size)}), "") << size;
+}
+
+/// A progressive picture takes the time of the whole one for each of its scans.
+TEST(Pictures, AJpegOfManyScansIsRefused) {
+  std::string bytes(kJpeg.begin(), kJpeg.end() - 2);
+  const std::size_t scan = bytes.find("\xFF\xDA");
+  const std::string again = bytes.substr(scan);
+  for (int i = 0; i < 100; ++i) bytes += again;
+  EXPECT_NE(error_of_picture(bytes + "\xFF\xD9").find("more than 100 scans"), std::string::npos);
+}
+
+TEST(Pictures, ABmpIsReadFromBothEnds) {
+  EXPECT_EQ(read(kBmp).rgba, (Values{3, 2, 1, 255, 9, 8, 7, 255})) << "blue, green, red; the bottom row first";
+  std::string down = kBmp;
+  down.replace(22, 4, "\xFE\xFF\xFF\xFF");  // a height of -2: the top row first
+  EXPECT_EQ(read(down).rgba, (Values{9, 8, 7, 255, 3, 2, 1, 255}));
+  for (std::size_t size = 2; size + 1 < kBmp.size(); ++size)  // the last byte pads a row
+    EXPECT_NE(error_of_picture(kBmp.substr(0, size)), "") << size;
+}
+
+TEST(Pictures, AGifIsRead) {
+  const std::string file = ::testing::TempDir() + "/picture_" + std::to_string(::getpid()) + ".gif";
+  const std::string bytes(kGif.begin(), kGif.end());
+  std::ofstream(file, std::ios::binary) << bytes;
+  EXPECT_EQ(read(bytes, file).channel(0), (Values{0, 255, 255, 0, 0, 0}));
+  std::filesystem::remove(file);
+  EXPECT_NE(error_of_picture(bytes.substr(0, bytes.size() - 1)).find("cut short"), std::string::npos);
+}
+
+TEST(Pictures, OtherFormatsAreNamed) {
+  EXPECT_EQ(error_of_picture("hello"),
+            "picture: is no picture in PNG, Netpbm (P1 to P6), JPEG, BMP or GIF; convert it to PNG");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "base/error.h"
 #include "tests/robots/scenes.h"
@@ -46,6 +47,14 @@ class RosMap : public ::testing::Test {
   std::filesystem::path folder_ =
       std::filesystem::path(::testing::TempDir()) / ("ros_map_" + std::to_string(::getpid()));
 };
+
+// Six pixels in RGBA: transparent black, black, transparent white, grey 89, white, and grey 10 of alpha 127.
+const std::vector<std::uint8_t> kAlpha{
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00,
+    0x00, 0x00, 0x06, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00, 0x00, 0xfd, 0xc9, 0xdf, 0xf0, 0x00,
+    0x00, 0x00, 0x19, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x60, 0x80, 0x80, 0xff, 0x40, 0xc0, 0x10,
+    0x19, 0x19, 0x09, 0xa2, 0xff, 0x73, 0x71, 0x71, 0xd5, 0x03, 0x00, 0x6d, 0x0a, 0x0a, 0xa0, 0x2b, 0x5c,
+    0x77, 0x60, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
 
 const std::string kGood =
     "image: m.pgm\nresolution: 0.5\norigin: [10, 20, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
@@ -144,10 +153,109 @@ TEST_F(RosMap, TheKnownAreaTurnsWithTheMap) {
   EXPECT_EQ(winding_number(known, {9.25, 20.75}), 0) << "the unknown one";
 }
 
-TEST_F(RosMap, NegatedMapsAreBrightWhereTheyAreOccupied) {
+std::string with(const std::string& key, const std::string& instead) {
   std::string yaml = kGood;
-  yaml.replace(yaml.find("negate: 0"), 9, "negate: 1");
-  EXPECT_NEAR(area(load(yaml)), 0.25 * 4, 1e-12);
+  const auto at = yaml.find(key);
+  yaml.replace(at, yaml.find('\n', at) - at, instead);
+  return yaml;
+}
+
+/// Whole numbers as map_server takes them, and every word of YAML.
+TEST_F(RosMap, NegatedMapsAreBrightWhereTheyAreOccupied) {
+  for (const char* yes : {"1", "2", "-1", "true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "y"}) {
+    const World world = load(with("negate", std::string("negate: ") + yes));
+    EXPECT_NEAR(area(world), 0.25 * 4, 1e-12) << yes;
+    EXPECT_TRUE(world.warnings.empty()) << yes;
+  }
+  for (const char* no : {"0", "false", "False", "FALSE", "no", "No", "NO", "off", "n", "+0"})
+    EXPECT_NEAR(area(load(with("negate", std::string("negate: ") + no))), 0.25, 1e-12) << no;
+}
+
+/// map_server refuses them, so they are a warning.
+TEST_F(RosMap, NegateMayBeAFraction) {
+  for (const auto& [written, size] : std::map<std::string, double>{{"0.0", 0.25}, {"1.0", 1.0}, {"1e0", 1.0}}) {
+    const World world = load(with("negate", "negate: " + written));
+    EXPECT_NEAR(area(world), size, 1e-12) << written;
+    ASSERT_EQ(world.warnings.size(), 1u) << written;
+    EXPECT_EQ(world.warnings[0].line, 4) << written;
+  }
+  for (const char* bad : {".nan", ".inf", "[1]", "''", "~"})
+    EXPECT_EQ(error(with("negate", std::string("negate: ") + bad)).substr(0, 9), "m.yaml:4:") << bad;
+}
+
+TEST_F(RosMap, ModesAreWrittenInAnyCase) {
+  for (const char* mode : {"trinary", "Trinary", "TRINARY"}) {
+    const World world = load(kGood + "mode: " + mode + "\n");
+    EXPECT_NEAR(area(world), 0.25, 1e-12) << mode;
+    EXPECT_TRUE(world.warnings.empty()) << mode;
+  }
+  EXPECT_EQ(load(kGood + "mode: Scale\n").warnings.size(), 1u);
+  EXPECT_EQ(load(kGood + "mode: RAW\n").warnings.size(), 1u);
+}
+
+/// Percentages: 66 and 100 are above 0.65, 20 is between the thresholds, 101 and 255 are unknown, 19 is free.
+TEST_F(RosMap, RawPixelsArePercentages) {
+  write("m.pgm", "P2 6 1 255\n66 100 20 101 255 19\n");
+  const std::string yaml = with("negate", "negate: 1") + "mode: raw\n";
+  const World world = load(yaml);
+  EXPECT_NEAR(area(world), 0.5, 1e-12) << "'negate' has no meaning";
+  EXPECT_NEAR(world.extent.x_max, 11.0, 1e-12);
+  double sum = 0.0;
+  for (const Segment& edge : known_free(world)) sum += base::cross(edge.a, edge.b) / 2;
+  EXPECT_NEAR(sum, 0.25, 1e-12);
+}
+
+/// map_server averages alpha with the colours in mode trinary, of every picture that stores one: transparent black is
+/// 0, opaque black 64, transparent white 191 (unknown), opaque grey 89 is 130 (unknown; without alpha it is a wall).
+TEST_F(RosMap, AlphaIsAveragedInTrinaryMode) {
+  write("a.png", std::string(kAlpha.begin(), kAlpha.end()));
+  const std::string yaml = with("image", "image: a.png");
+  const World world = load(yaml);
+  EXPECT_NEAR(area(world), 3 * 0.25, 1e-12) << "transparent black, black, and grey 10";
+  ASSERT_EQ(world.warnings.size(), 1u);
+  EXPECT_EQ(world.warnings[0].line, 1);
+  EXPECT_NE(world.warnings[0].message.find("alpha decides 3 cells"), std::string::npos) << world.warnings[0].message;
+
+  const World old = load(yaml + "transparent: unknown\n");
+  EXPECT_NEAR(area(old), 2 * 0.25, 1e-12) << "black and grey 89";
+  EXPECT_TRUE(old.warnings.empty());
+  EXPECT_EQ(load(yaml + "transparent: averaged\n").hash, world.hash);
+  EXPECT_EQ(error(yaml + "transparent: no\n").substr(0, 9), "m.yaml:7:");
+}
+
+/// In mode scale all but opaque pixels are unknown, as in Nav2.
+TEST_F(RosMap, TransparentPixelsAreUnknownInModeScale) {
+  write("a.png", std::string(kAlpha.begin(), kAlpha.end()));
+  EXPECT_NEAR(area(load(with("image", "image: a.png") + "mode: scale\n")), 2 * 0.25, 1e-12) << "black and grey 89";
+}
+
+/// The mean of the colours is not rounded: (89 + 89 + 90) / 3 is 0.6497 occupied, and 89 would be 0.651.
+TEST_F(RosMap, TheMeanOfTheColoursIsExact) {
+  write("m.ppm", "P3 2 1 255\n89 89 90 89 89 89\n");
+  EXPECT_NEAR(area(load(with("image", "image: m.ppm"))), 0.25, 1e-12);
+}
+
+TEST_F(RosMap, UnknownKeysAndRepeatedOnesAreWarnings) {
+  const World world = load(kGood + "occupied_tresh: 0.9\nnegate: 1\n");
+  EXPECT_NEAR(area(world), 0.25, 1e-12);
+  ASSERT_EQ(world.warnings.size(), 2u);
+  EXPECT_EQ(world.warnings[0].line, 7);
+  EXPECT_EQ(world.warnings[0].message, "unknown key 'occupied_tresh' is ignored; did you mean 'occupied_thresh'?");
+  EXPECT_EQ(world.warnings[1].message, "'negate' is given twice; the first one counts");
+}
+
+TEST_F(RosMap, WorldsOfOtherSimulatorsAreNamed) {
+  const auto says = [&](const std::string& yaml, const std::string& text) {
+    EXPECT_NE(error(yaml).find(text), std::string::npos) << error(yaml);
+  };
+  says("properties: {}\nlayers:\n  - {name: a, map: one.yaml}\n  - {name: b, map: two.yaml}\n",
+       "m.yaml:3: is a file of flatland");
+  says("layers: [{map: one.yaml}, {map: two.yaml}]\n", "one of its layers: 'one.yaml', 'two.yaml';");
+  says("layers: []\n", "flatland");
+  says("bodies:\n  - name: base\n", "flatland (a model)");
+  says("world:\n  height: 10\nrobot:\n  - kinematics: {name: diff}\n", "m.yaml:2: is a file of ir-sim");
+  says("obstacle: [{shape: {name: circle}}]\n", "ir-sim");
+  says("robots: 3\n", "'image' is missing");
 }
 
 TEST_F(RosMap, TheYawTurnsAboutTheOrigin) {
@@ -178,28 +286,22 @@ TEST_F(RosMap, DefaultsAreMapServers) {
 }
 
 TEST_F(RosMap, BadMapsAreRefusedWithTheirLine) {
-  const auto without = [](const std::string& key, const std::string& instead) {
-    std::string yaml = kGood;
-    const auto at = yaml.find(key);
-    yaml.replace(at, yaml.find('\n', at) - at, instead);
-    return yaml;
-  };
-  EXPECT_EQ(error(without("image", "image: none.pgm")).substr(0, 9), "m.yaml:1:");
-  EXPECT_NE(error(without("image", "picture: m.pgm")).find("'image' is missing"), std::string::npos);
-  EXPECT_EQ(error(without("resolution", "resolution: 0")).substr(0, 9), "m.yaml:2:");
-  EXPECT_EQ(error(without("resolution", "resolution: fine")).substr(0, 9), "m.yaml:2:");
-  EXPECT_EQ(error(without("resolution", "resolution: .nan")).substr(0, 9), "m.yaml:2:");
-  EXPECT_EQ(error(without("origin", "origin: [1, 2]")).substr(0, 9), "m.yaml:3:");
-  EXPECT_EQ(error(without("origin", "origin: [1, 2, x]")).substr(0, 9), "m.yaml:3:");
-  EXPECT_EQ(error(without("origin", "origin: [1e300, 2, 0]")).substr(0, 9), "m.yaml:3:");
+  EXPECT_EQ(error(with("image", "image: none.pgm")).substr(0, 9), "m.yaml:1:");
+  EXPECT_NE(error(with("image", "picture: m.pgm")).find("'image' is missing"), std::string::npos);
+  EXPECT_EQ(error(with("resolution", "resolution: 0")).substr(0, 9), "m.yaml:2:");
+  EXPECT_EQ(error(with("resolution", "resolution: fine")).substr(0, 9), "m.yaml:2:");
+  EXPECT_EQ(error(with("resolution", "resolution: .nan")).substr(0, 9), "m.yaml:2:");
+  EXPECT_EQ(error(with("origin", "origin: [1, 2]")).substr(0, 9), "m.yaml:3:");
+  EXPECT_EQ(error(with("origin", "origin: [1, 2, x]")).substr(0, 9), "m.yaml:3:");
+  EXPECT_EQ(error(with("origin", "origin: [1e300, 2, 0]")).substr(0, 9), "m.yaml:3:");
   for (const char* origin : {"[.nan, 2, 0]", "[1, .nan, 0]", "[1, 2, .nan]", "[-.inf, 2, 0]", "[1, 2, .inf]"})
-    EXPECT_EQ(error(without("origin", std::string("origin: ") + origin)).substr(0, 9), "m.yaml:3:") << origin;
-  EXPECT_EQ(error(without("negate", "negate: maybe")).substr(0, 9), "m.yaml:4:");
-  EXPECT_EQ(error(without("occupied", "occupied_thresh: 2")).substr(0, 9), "m.yaml:5:");
-  EXPECT_EQ(error(without("occupied", "occupied_thresh: .nan")).substr(0, 9), "m.yaml:5:");
-  EXPECT_EQ(error(without("free", "free_thresh: 0.9")).substr(0, 9), "m.yaml:6:");
-  EXPECT_EQ(error(without("free", "free_thresh: -0.1")).substr(0, 9), "m.yaml:6:");
-  EXPECT_EQ(error(kGood + "mode: raw\n").substr(0, 9), "m.yaml:7:");
+    EXPECT_EQ(error(with("origin", std::string("origin: ") + origin)).substr(0, 9), "m.yaml:3:") << origin;
+  EXPECT_EQ(error(with("negate", "negate: maybe")).substr(0, 9), "m.yaml:4:");
+  EXPECT_EQ(error(with("occupied", "occupied_thresh: 2")).substr(0, 9), "m.yaml:5:");
+  EXPECT_EQ(error(with("occupied", "occupied_thresh: .nan")).substr(0, 9), "m.yaml:5:");
+  EXPECT_EQ(error(with("free", "free_thresh: 0.9")).substr(0, 9), "m.yaml:6:");
+  EXPECT_EQ(error(with("free", "free_thresh: -0.1")).substr(0, 9), "m.yaml:6:");
+  EXPECT_EQ(error(kGood + "mode: grey\n").substr(0, 9), "m.yaml:7:");
   EXPECT_NE(error("a: [1").find("not YAML"), std::string::npos);
   EXPECT_NE(error("- 1\n- 2\n").find("expected the YAML of a ROS map"), std::string::npos);
 }

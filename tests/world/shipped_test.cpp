@@ -111,7 +111,7 @@ TEST(Shipped, SimVillesLightsStandBesideTheirStopLinesAndLookAtWhoComes) {
 
 TEST(Shipped, RobotsAreWhatTheirDataSheetsSay) {
   const World world = read_world(R"(include "robots.inc"
-    create( name "roomba3" ) pioneer3at( name "pioneer4" ) khepera2( name "khepera5" ))");
+    create( name "roomba3" ) pioneer3at( name "pioneer4" pose [1 0 0 0] ) khepera2( name "khepera5" pose [2 0 0 0] ))");
   EXPECT_EQ(warnings_of(world), "");
   const Mover& create = world.movers.at(0);
   EXPECT_EQ(create.id, 3u);

@@ -42,7 +42,27 @@ TEST(Stage, TheFirstDefineCountsAndTheSecondIsMentioned) {
 TEST(Stage, TheLastOfTwoEqualPropertiesCounts) {
   const World world = read_world("model( size [1 1 1]\n size [2 2 2] )");
   EXPECT_EQ(world.models[0].size.x, 2.0);
-  EXPECT_NE(warnings_of(world).find("2: 'size' is given twice"), std::string::npos);
+  EXPECT_EQ(warnings_of(world),
+            "2: 'size' is given twice in the same 'model': the last one counts, not that of line 1\n");
+}
+
+/// As in a published benchmark world, whose fifth corner is written twice.
+TEST(Stage, TheLastOfTwoEqualIndicesCounts) {
+  const World world = read_world(
+      "model( size [1 1 1] block( points 3 z [0 1]\n point[0] [0 0]\n point[1] [1 0]\n point[2] [9 9]\n"
+      " point[2] [0 1] ) )");
+  EXPECT_EQ(world.hash, read_world("model( size [1 1 1] block( points 3 z [0 1] point[0] [0 0] point[1] [1 0] point[2] "
+                                   "[0 1] ) )")
+                            .hash);
+  EXPECT_EQ(warnings_of(world),
+            "5: 'point[2]' is given twice in the same 'block': the last one counts, not that of line "
+            "4\n");
+}
+
+TEST(Stage, WarningsOfRepeatedKeysAreLimited) {
+  std::string text = "model(";
+  for (int i = 0; i < 20'000; ++i) text += " mass 1\n";
+  EXPECT_EQ(read_world(text + ")").warnings.size(), 10'001u);
 }
 
 TEST(Stage, ExponentsAreNumbersToo) { EXPECT_EQ(read_world("model( size [1e-1 +2 .5] )").models[0].size.x, 0.1); }
@@ -71,8 +91,6 @@ TEST(Stage, AModelWithoutBlocksIsABoxOfItsSize) {
   EXPECT_EQ(world.walls[0].z_max, 0.5);
   EXPECT_TRUE(world.walls[0].solid_left);
 }
-
-TEST(Stage, NoblocksIsNoBody) { EXPECT_TRUE(read_world("model( noblocks 1 )").walls.empty()); }
 
 TEST(Stage, BlocksAreScaledTogetherToTheSize) {
   const World world = read_world(
@@ -279,8 +297,8 @@ TEST(Stage, NamesAreUnique) {
 // --- Kept, ignored and suggested entities ---
 
 TEST(Stage, TypesThatAreNotModelledAreKeptCountedAndMentionedOnce) {
-  const World world =
-      read_world("position( fiducial() camera() )\nposition( fiducial( fov 60 ) bumper( size [.1 .1 .1 0] ) )");
+  const World world = read_world(
+      "position( fiducial() camera() )\nposition( pose [1 0 0 0] fiducial( fov 60 ) bumper( size [.1 .1 .1 0] ) )");
   EXPECT_EQ(world.unmodelled, (std::map<std::string, int>{{"bumper", 1}, {"camera", 1}, {"fiducial", 2}}));
   EXPECT_EQ(world.warnings.size(), 3u) << warnings_of(world);
   EXPECT_EQ(world.movers[0].body.size(), 8u);  // the camera is a box; a fiducial finder has no body
@@ -326,7 +344,9 @@ TEST(Stage, BlocksWithoutASizeSayWhatToWrite) {
   EXPECT_NE(warnings_of(read_world("model( bitmap \"bitmaps/cave.png\" )")).find("has no 'size': it is 0.1 x 0.1 m"),
             std::string::npos);
   // As large as the resulting size: no misunderstanding.
-  EXPECT_EQ(warnings_of(read_world("model( block( points 3 point[0] [0 0] point[1] [0.1 0] point[2] [0 0.1] ) )")), "");
+  EXPECT_EQ(
+      warnings_of(read_world("model( block( points 3 z [0 1] point[0] [0 0] point[1] [0.1 0] point[2] [0 0.1] ) )")),
+      "");
 }
 
 TEST(Stage, PosesOfThreeNumbersSayWhatToWrite) {
@@ -349,7 +369,9 @@ TEST(Stage, OfStagesPluginsWanderIsOneOfOurs) {
       warnings_of(world),
       "3: ctrl \"fasr\" names a plug-in of Stage, which is not run; choose a controller with --controller NAME, or "
       "write ctrl \"wander\"\n"
-      "6: 'ctrl' is for robots, and 'e' is not a robot: write it into the robot's own parentheses\n");
+      "6: 'ctrl' is for robots, and 'e' is not a robot: write it into the robot's own parentheses\n"
+      "4: 5 robots overlap others at the start: 'a', 'b', 'c' and 2 more; 'c' starts at (0, 0), in 'a': expected poses "
+      "apart\n");
 }
 
 TEST(Stage, BlocksAndSensorsOutsideTheirPlaceAreMentioned) {
@@ -452,6 +474,15 @@ TEST(Stage, ARobotThatCannotStandWhereItStartsIsAWarning) {
   EXPECT_EQ(said("[9 9 0 0]"), "") << "there is no plan to be outside of";
   EXPECT_EQ(warnings_of(read_world("model( size [1 1 1] obstacle_return 0 ) position( )")), "") << "it stops nobody";
   EXPECT_EQ(warnings_of(read_world("model( size [1 1 1] ) position( name \"tag1\" )")), "") << "tags may be anywhere";
+}
+
+/// One warning for each kind of place.
+TEST(Stage, ManyRobotsInAWallAreOneWarning) {
+  std::string text = "model( name \"rock\" size [20 20 1] )\n";
+  for (int i = 0; i < 5; ++i) text += fmt::format("position( name \"r{0}\" pose [{0} 0 0 0] size [0.4 0.4 0.2] )\n", i);
+  EXPECT_EQ(warnings_of(read_world(text)),
+            "2: 5 robots start within a wall: 'r0', 'r1', 'r2' and 2 more; the first: 'r0' starts at (0, 0), within a "
+            "wall; expected a 'pose' in free space\n");
 }
 
 TEST(Stage, ARobotOutsideOfTheFloorPlanIsAWarning) {

@@ -138,7 +138,7 @@ TEST(FloorHole, IsOnePropertyAwayFromAWall) { EXPECT_EQ(read_world("model( cliff
 
 TEST(Position, SaysHowItMoves) {
   const World world = read_world(R"(position( drive "skid" track 0.4 acceleration_bounds [-1 2 0 0 0 0 -90 180]
-    command_law "player_create" ) position( ) position( acceleration_bounds [-1 2] ))");
+    command_law "player_create" ) position( pose [1 0 0 0] ) position( pose [2 0 0 0] acceleration_bounds [-1 2] ))");
   EXPECT_EQ(warnings_of(world), "");
   const Mover& skid = world.movers.at(0);
   EXPECT_EQ(skid.drive, Drive::skid);

@@ -11,6 +11,7 @@ namespace sf::world {
 namespace {
 
 constexpr std::size_t kFewKeys = 32;  // up to this number: linear search
+constexpr std::size_t kMaxWarnings = 10'000;
 
 }  // namespace
 
@@ -19,6 +20,9 @@ void fail(const ParseState& r, int line, const std::string& message) {
 }
 
 void warn(ParseState& r, int line, std::string message) {
+  if (r.document.warnings.size() > kMaxWarnings) return;
+  if (r.document.warnings.size() == kMaxWarnings)
+    message = fmt::format("more than {} warnings; from here on they are left out", kMaxWarnings);
   r.document.warnings.push_back({r.document.files[r.file], line, std::move(message)});
 }
 
