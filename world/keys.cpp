@@ -14,7 +14,7 @@ using Words = std::span<const std::string_view>;
 
 // clang-format off
 // Keys with a reader of their own. world/fields.h has all others.
-constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy", "old_shapes",
+constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy", "old_shapes", "stage_noise", "stage_obstacles",
   // known, not modelled
   "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
   "interval_real", "gui_disable", "gui_interval", "ppm"});
@@ -141,8 +141,8 @@ bool is_known_key(KeyScope where, std::string_view key, std::span<const std::str
 }
 
 std::string_view unmodelled_effect(std::string_view key) {
-  if (key == "velocity") return "robots stand still until they are commanded";
-  if (key == "localization") return "robots know their true poses, without drift";
+  if (key == "velocity") return "'velocity' has no effect here: robots stand still until they are commanded";
+  if (key == "localization") return "'localization' has no effect here: robots know their true poses, without drift";
   return {};
 }
 

@@ -27,8 +27,7 @@ std::vector<std::string_view> known_types();
 /// @param own further keys valid there, with empty indices.
 bool is_known_key(KeyScope where, std::string_view key, std::span<const std::string_view> own = {});
 
-/// What a key of Stage's that is known but not modelled would change: "robots know their true poses"; empty: nothing that a
-/// user would miss.
+/// A warning about a key of Stage's that is known, not modelled, and changes what happens in Stage; empty: none.
 std::string_view unmodelled_effect(std::string_view key);
 
 /// `; did you mean 'x'?` with the nearest of the keys valid there, or an empty text.

@@ -148,6 +148,20 @@ TEST_F(Bodies, TransparentDarkPixelsAreFreeWithAWarning) {
       "for walls\n1: the picture has no dark pixel, so it is no wall\n");
 }
 
+/// Stage looks beside the world file, also for what an include names.
+TEST_F(Bodies, AFileThatStageFindsElsewhereIsAWarning) {
+  std::filesystem::create_directories(folder_ / "inc");
+  std::filesystem::copy(folder_ / "pad.pgm", folder_ / "inc" / "full.pgm");
+  write("inc/other.inc", "");
+  write("inc/plan.inc", "# a plan\ndefine plan model( size [4 2 1] bitmap \"full.pgm\" )\n");
+  const World world = read("include \"inc/plan.inc\"\nplan( )");
+  EXPECT_EQ(world.walls.size(), 4u) << "the one beside the include";
+  const std::string warnings = warnings_of(world);
+  EXPECT_EQ(warnings.substr(0, 18), "2: the picture is ") << warnings;
+  EXPECT_NE(warnings.find("inc/full.pgm; Stage takes "), std::string::npos) << warnings;
+  EXPECT_EQ(warnings_of(read("include \"inc/plan.inc\"\nplan( bitmap \"full.pgm\" )")), "") << "written in the world";
+}
+
 /// Inputs of users' reports.
 TEST(BodyReports, AreReadAsInStage) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/reports/world/";

@@ -73,7 +73,7 @@ TEST(WorldFiles, OurRooms) {
 TEST(WorldFiles, SimpleHasTwoPioneersWithSonarAndLaser) {
   NEED_SHARED();
   const World world = load_world(kShared + "/stage/simple.world", kWithLasers);
-  EXPECT_TRUE(world.warnings.empty()) << warnings_of(world);
+  EXPECT_EQ(world.warnings.size(), 1u) << warnings_of(world);  // the floor plan stops robots
   EXPECT_EQ(world.movers.size(), 2u);
   EXPECT_EQ(count_lasers(world), 2u * 17u);
   EXPECT_EQ(world.movers[0].name, "r0");
@@ -90,7 +90,7 @@ TEST(WorldFiles, RoombaHasABumperThatIsKept) {
   const World world = load_world(kShared + "/stage/roomba.world", kWithLasers);
   EXPECT_EQ(world.movers.size(), 1u);
   EXPECT_EQ(world.unmodelled, (std::map<std::string, int>{{"bumper", 1}}));
-  EXPECT_EQ(world.warnings.size(), 1u) << warnings_of(world);
+  EXPECT_EQ(world.warnings.size(), 2u) << warnings_of(world);  // and the floor plan stops robots
   EXPECT_EQ(world.movers[0].body.size(), 16u);
   EXPECT_NEAR(world.movers[0].radius, 0.165, 1e-3);
 }
@@ -101,15 +101,16 @@ TEST(WorldFiles, CaveHasAHundredRobots) {
   EXPECT_EQ(world.movers.size(), 100u);
   EXPECT_EQ(count_lasers(world), 100u * 17u);
   EXPECT_EQ(world.models.size(), 1u + 100u * 3u);
-  // One robot defined twice, and Stage's plug-in as the controller of all robots.
-  EXPECT_EQ(world.warnings.size(), 2u) << warnings_of(world);
+  // One robot defined twice, a floor plan that stops robots, and Stage's plug-in as the controller of all robots.
+  EXPECT_EQ(world.warnings.size(), 3u) << warnings_of(world);
   expect_lasers_see_walls(world);
 }
 
 TEST(WorldFiles, HospitalHasAThousandRobotsOfTwelveSensors) {
   NEED_SHARED();
   const World world = load_world(kShared + "/stage/benchmark/hospital.world", kWithLasers);
-  EXPECT_EQ(world.warnings.size(), 2u) << warnings_of(world);  // Stage's plug-in as the controller, the plan's margins
+  // The plan's margins, the plan that stops robots, and Stage's plug-in as the controller.
+  EXPECT_EQ(world.warnings.size(), 3u) << warnings_of(world);
   EXPECT_EQ(world.movers.size(), 1000u);
   EXPECT_EQ(count_lasers(world), 12'000u);
   EXPECT_EQ(world.extent.x_max, 70.0);

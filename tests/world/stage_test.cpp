@@ -163,6 +163,27 @@ TEST(Stage, BitmapWallsStopRobotsUnlessStagesRuleIsAskedFor) {
   LoadOptions options;
   options.stage_obstacles = true;
   EXPECT_FALSE(read_world(text, options).walls.front().stops_robots);
+  EXPECT_FALSE(read_world("stage_obstacles 1 " + text).walls.front().stops_robots);
+  EXPECT_NE(warnings_of(ours).find("1: floor plans stop robots, also with 'obstacle_return 0'"), std::string::npos);
+  EXPECT_EQ(warnings_of(read_world("stage_obstacles 0 " + text)), "");
+  EXPECT_EQ(warnings_of(read_world(text, options)), "");
+}
+
+/// Only rangers' noise comes from Stage.
+TEST(Stage, NoiseThatIsAVarianceInStageIsAWarningUnlessTheFileSaysWhatItIs) {
+  const auto world = [](const char* key, const char* noise) {
+    return read_world(
+        fmt::format("{}\nposition( ranger( sensor( noise [{} 0 0] ) sensor( noise [{} 0 0] ) ) )", key, noise, noise));
+  };
+  EXPECT_EQ(
+      warnings_of(world("", "0.1")),
+      "2: the first number of 'noise' is a standard deviation, in Stage a variance: --stage-noise or the world key "
+      "stage_noise 1 reads it so, stage_noise 0 says that it is a standard deviation\n");
+  EXPECT_EQ(warnings_of(world("stage_noise 0", "0.1")), "");
+  EXPECT_EQ(warnings_of(world("", "0")), "");
+  EXPECT_EQ(world("stage_noise 0", "0.04").movers[0].sensors[0].settings[0].numbers[0], 0.04);
+  EXPECT_EQ(world("stage_noise 1", "0.04").movers[0].sensors[0].settings[0].numbers[0], 0.2);
+  EXPECT_EQ(warnings_of(read_world("position( laser( noise [0.1 0 0] ) )")), "");
 }
 
 TEST(Stage, ReturnsHideFromLasers) {

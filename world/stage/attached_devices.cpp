@@ -43,9 +43,13 @@ void add_settings(BuildState& b, const Entity& entity, std::span<const std::stri
       charge(b.context, property.at, b.context.usage.samples, std::max(0.0, setting.numbers[0]), kMaxSamples,
              "samples of sensors", "give fewer 'samples'");
     // Stage uses the first number of a laser's noise as a variance; settings are standard deviations.
-    const bool is_variance = b.options.stage_noise && (sensor.type == "laser" || sensor.type == "ranger");
-    if (is_variance && setting.key == "noise" && !setting.numbers.empty() && setting.numbers[0] > 0.0)
+    const bool has_noise = setting.key == "noise" && !setting.numbers.empty() && setting.numbers[0] > 0.0;
+    if (has_noise && b.context.noise.applies && (sensor.type == "laser" || sensor.type == "ranger"))
       setting.numbers[0] = std::sqrt(setting.numbers[0] / b.context.metres_per_unit);
+    if (has_noise && !b.context.noise.stated && sensor.type == "ranger")
+      warn_once(b.context, property.at,
+                "the first number of 'noise' is a standard deviation, in Stage a variance: --stage-noise or the world "
+                "key stage_noise 1 reads it so, stage_noise 0 says that it is a standard deviation");
     sensor.settings.push_back(std::move(setting));
   }
 }

@@ -38,6 +38,11 @@ void read_units(StageContext& context, const Entity& root) {
   }
 }
 
+/// @param option the user's, before the file's
+StageRule stage_rule(const StageContext& context, const Entity& root, std::string_view key, bool option) {
+  return {option || flag(context, root, key, false), option || find(root, key) != nullptr};
+}
+
 // Player's configuration files have Stage's grammar, and name a world.
 void refuse_player_file(const Document& document) {
   for (const Entity& child : document.root.children) {
@@ -103,6 +108,8 @@ World build_world(const std::string& file, const std::string& content, const Loa
   b.types.insert(b.types.end(), document.macros.begin(), document.macros.end());
 
   read_units(b.context, document.root);
+  b.context.obstacles = stage_rule(b.context, document.root, "stage_obstacles", options.stage_obstacles);
+  b.context.noise = stage_rule(b.context, document.root, "stage_noise", options.stage_noise);
   b.context.old_shapes = flag(b.context, document.root, "old_shapes", false);
   check_keys(b.context, document.root, KeyScope::world);
   b.world.file = file;

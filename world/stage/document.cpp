@@ -127,6 +127,8 @@ void read_include(ParseState& r) {
                      name));
   }
   if (std::find(r.open_files.begin(), r.open_files.end(), found) != r.open_files.end()) refuse_cycle(r, line, found);
+  if (const std::string other = file_in_stage(r.document, name, found); !other.empty())
+    warn(r, line, fmt::format("this includes {}; Stage includes {}", found, other));
   if (++r.includes > kMaxIncludes) fail(r, line, fmt::format("more than {} includes", kMaxIncludes));
 
   // The state of the including file is saved, and restored after the include.

@@ -58,6 +58,9 @@ Document parse(const std::string& file, const std::string& text);
 /// $STAGEPATH. Empty when none exists.
 std::string find_file(const Document& document, SourceLocation from, const std::string& name);
 
+/// Stage searches beside the world file first. The file that it reads in place of `found`; empty when it is the same.
+std::string file_in_stage(const Document& document, const std::string& name, const std::string& found);
+
 /// The property of that exact key, or null. Lives as long as the entity.
 const Property* find(const Entity& entity, std::string_view key);
 

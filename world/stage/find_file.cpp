@@ -35,4 +35,9 @@ std::string find_file(const Document& document, SourceLocation from, const std::
   return {};
 }
 
+std::string file_in_stage(const Document& document, const std::string& name, const std::string& found) {
+  const fs::path candidate = (fs::path(document.files[0]).parent_path() / name).lexically_normal();
+  return candidate != fs::path(found) && is_file(candidate) ? candidate.string() : std::string();
+}
+
 }  // namespace sf::world

@@ -96,15 +96,20 @@ Segment placed(const Segment& local, const Pose& X, const Segment& surface) {
 }
 
 /// Model and flags of a body's surface.
-Segment surface_of(const BuildState& b, const Entity& entity, const Model& model) {
-  const StageContext& context = b.context;
+Segment surface_of(BuildState& b, const Entity& entity, const Model& model) {
+  StageContext& context = b.context;
   Segment surface;
   surface.model = static_cast<std::uint32_t>(b.world.models.size());
   read_keys(context, entity, surface);
   surface.seen_by_laser =
       number(context, entity, "laser_return", 1.0) != 0.0 && number(context, entity, "ranger_return", 1.0) >= 0.0;
-  const bool is_plan = model.is_bitmap && !b.options.stage_obstacles;
-  surface.stops_robots |= is_plan;
+  if (!model.is_bitmap || surface.stops_robots || context.obstacles.applies) return surface;
+  surface.stops_robots = true;
+  if (!context.obstacles.stated)
+    warn_once(
+        context, location_of(entity, "obstacle_return"),
+        "floor plans stop robots, also with 'obstacle_return 0'; in Stage robots drive through this one: "
+        "--stage-obstacles or the world key stage_obstacles 1 lets them, stage_obstacles 0 says that it stops them");
   return surface;
 }
 
@@ -235,8 +240,7 @@ void warn_of_effect(StageContext& context, const Property& property) {
   if (effect.empty()) return;
   const auto matters = [](const Value& value) { return value.is_text ? value.text == "odom" : value.number != 0.0; };
   if (std::none_of(property.values.begin(), property.values.end(), matters)) return;
-  if (context.effects.insert(effect).second)
-    warn(context, property.at, fmt::format("'{}' has no effect here: {}", property.key, effect));
+  warn_once(context, property.at, effect);
 }
 
 }  // namespace

@@ -69,6 +69,8 @@ std::vector<Segment> bitmap_segments(const TracedBitmap& traced, const PicturePa
 const TracedBitmap& bitmap_of(StageContext& context, BitmapCache& bitmaps, const Entity& entity) {
   const SourceLocation at = find(entity, "bitmap")->at;
   const std::string file = file_of(context, entity, "bitmap");
+  const std::string other = file_in_stage(context.document, text(context, entity, "bitmap", ""), file);
+  if (!other.empty()) warn(context, at, fmt::format("the picture is {}; Stage takes {}", file, other));
   try {
     if (bitmaps.count(file) == 0) bitmaps.emplace(file, trace_plan(file));
   } catch (const base::InputError& error) {

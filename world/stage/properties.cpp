@@ -30,6 +30,10 @@ void warn(StageContext& context, SourceLocation at, const std::string& message) 
   context.warnings.push_back({context.document.files[at.file], at.line, message});
 }
 
+void warn_once(StageContext& context, SourceLocation at, std::string_view difference) {
+  if (context.differences.insert(difference).second) warn(context, at, std::string(difference));
+}
+
 void charge(const StageContext& context, SourceLocation at, double& used, double more, double most,
             std::string_view what, std::string_view remedy) {
   if (used + more > most)

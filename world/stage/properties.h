@@ -24,15 +24,23 @@ struct ResourceUsage {
   double roads = 0.0;
 };
 
+/// A rule of Stage's that differs from ours.
+struct StageRule {
+  bool applies = false;
+  bool stated = false;  ///< by the user or the file, so that a difference is no surprise
+};
+
 /// Context of all property readers. The document must outlive it.
 struct StageContext {
   const Document& document;
   double metres_per_unit = 1.0;            ///< [m] per unit of length of the file (`unit_length`)
   double radians_per_unit = M_PI / 180.0;  ///< [rad] per unit of angle of the file (`unit_angle`)
   bool old_shapes = false;                 ///< bodies as up to version 0.2 (`old_shapes` of the world, docs/worlds.md)
+  StageRule obstacles;                     ///< floor plans with `obstacle_return 0` stop no robots
+  StageRule noise;                         ///< the first number of a ranger's `noise` is a variance
   std::vector<Warning> warnings;
-  std::set<std::string> warned;        ///< one warning per place and text, also for a macro used many times
-  std::set<std::string_view> effects;  ///< of keys without an effect here, mentioned so far
+  std::set<std::string> warned;            ///< one warning per place and text, also for a macro used many times
+  std::set<std::string_view> differences;  ///< from Stage, mentioned so far
   ResourceUsage usage;
 };
 
@@ -40,6 +48,9 @@ struct StageContext {
 [[noreturn]] void fail(const StageContext& context, SourceLocation at, const std::string& message);
 /// Adds a warning. At most 10 000 warnings are kept.
 void warn(StageContext& context, SourceLocation at, const std::string& message);
+
+/// Adds a warning about a difference from Stage, once per world.
+void warn_once(StageContext& context, SourceLocation at, std::string_view difference);
 
 /// Adds `more` to `used` before the resource is created. @param remedy advice for the error
 /// @throws base::InputError when the total exceeds `most`.
