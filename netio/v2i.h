@@ -28,7 +28,7 @@ struct SignalApproach {
   std::uint8_t group = 1;              ///< [1, kMaxSignalGroup], unique in its intersection
   std::uint8_t state = 0;              ///< below kSignalStates, in their order
   std::uint8_t next = kNoSignalState;  ///< after the change
-  /// [s] >= 0 until the next change, to the millisecond; infinity: no change is known
+  /// [s] >= 0 until the next change, sent in ms, rounded up; infinity: no change is known
   double left = std::numeric_limits<double>::infinity();
   base::Pose X_WL;  ///< of the light; it faces along x. z and yaw to single precision
 };

@@ -21,8 +21,8 @@ using world::LightState;
 using world::PointRef;
 using world::RoadNetwork;
 
-constexpr std::int64_t kMinute = 60'000, kHour = 3'600'000;  ///< [ms]
-constexpr std::size_t kMaxGroups = 254;                      ///< signal groups 0 and 255 are reserved
+constexpr std::int64_t kMark = 100, kMinute = 60'000, kHour = 3'600'000;  ///< [ms]
+constexpr std::size_t kMaxGroups = 254;                                   ///< signal groups 0 and 255 are reserved
 
 /// The way into a lane behind a stop line.
 struct ExitPath {
@@ -84,18 +84,23 @@ std::vector<std::uint32_t> first_lights(std::size_t lights, std::span<const Ligh
   return first;
 }
 
+/// Rounds up: a receiver takes a mark before the message's own time for one of the next hour.
 v2x::TimeMark mark_of(std::int64_t utc, double left) {
+  constexpr double kRounding = 1e-6;  // [0.1 s] of sums of durations
   if (!std::isfinite(left)) return v2x::kUnknownTime;
-  const double ms = static_cast<double>(utc % kHour) + 1e3 * left;
-  if (1e3 * left >= static_cast<double>(kHour)) return v2x::kMoreThanAnHour;
-  return static_cast<v2x::TimeMark>(std::llround(ms / 100.0) % (kHour / 100));
+  const std::int64_t now = utc % kHour;
+  const double ms = 1e3 * std::max(left, 0.0);
+  if (ms >= static_cast<double>(kHour)) return v2x::kMoreThanAnHour;
+  const double end = (static_cast<double>(now) + ms) / static_cast<double>(kMark);
+  const auto mark = static_cast<std::int64_t>(std::ceil(end - kRounding));
+  return mark * kMark - now < kHour ? static_cast<v2x::TimeMark>(mark % (kHour / kMark)) : v2x::kMoreThanAnHour;
 }
 
 v2x::MovementEvent event_of(const world::Signal& signal, double latest, std::int64_t utc) {
   v2x::MovementEvent event;
   event.state = phase_of(signal.state);
   event.timing.emplace().min_end = mark_of(utc, signal.left);
-  event.timing->max_end = mark_of(utc, latest);
+  event.timing->max_end = mark_of(utc, std::max(signal.left, latest));
   return event;
 }
 
@@ -109,7 +114,7 @@ std::optional<std::int64_t> time_of(const v2x::IntersectionState& state) {
 double seconds_until(v2x::TimeMark mark, std::int64_t utc) {
   if (mark >= v2x::kMoreThanAnHour) return std::numeric_limits<double>::infinity();
   // A change that was due within the last half hour is late, not 59 minutes away.
-  const std::int64_t ahead = ((mark * 100 - utc % kHour) % kHour + kHour) % kHour;
+  const std::int64_t ahead = ((mark * kMark - utc % kHour) % kHour + kHour) % kHour;
   return ahead < kHour / 2 ? 1e-3 * static_cast<double>(ahead) : 0.0;
 }
 

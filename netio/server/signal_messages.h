@@ -35,7 +35,8 @@ struct Intersection {
 /// @throws base::InputError where an intersection has more than 254 lights
 std::vector<Intersection> intersections_of(const world::World& world, const world::RoadNetwork* roads);
 
-/// The present state of each light with the time of its change, and the state after that.
+/// The present state of each light with the time of its change, and the state after that. Marks are rounded up to
+/// 0.1 s: none is before `utc`, and start <= min_end <= max_end. Changes an hour ahead or later: `kMoreThanAnHour`.
 /// @param forecasts one per row of `World::lights` @param utc [ms] since 1970 at their time
 v2x::Spat spat_of(const Intersection& intersection, std::span<const world::SignalForecast> forecasts, std::int64_t utc);
 

@@ -109,6 +109,82 @@ TEST(SignalMessages, MarksAtTheirBorders) {
   EXPECT_EQ(spat_of(all[0], world::forecasts_at(world, 0.0), last).intersections[0].minute, 366u * 1440u - 1u);
 }
 
+/// [ms] from `utc` to a mark, by a receiver that takes every mark for one of the hour that begins now.
+std::int64_t ahead_of(v2x::TimeMark mark, std::int64_t utc) {
+  return ((mark * 100 - utc % 3'600'000) % 3'600'000 + 3'600'000) % 3'600'000;
+}
+
+/// The marks of an event, in tenths after `utc`.
+void expect_marks(const v2x::MovementEvent& event, double left, std::int64_t utc) {
+  const std::int64_t least = ahead_of(event.timing->min_end, utc), most = ahead_of(*event.timing->max_end, utc);
+  EXPECT_GE(static_cast<double>(least), 1e3 * left - 1e-3) << utc << ": earlier than the change";
+  EXPECT_LT(static_cast<double>(least), 1e3 * left + 100.0) << utc << ": as much as a mark too late";
+  EXPECT_GE(most, least) << utc;
+  if (event.timing->start) EXPECT_LE(ahead_of(*event.timing->start, utc), least) << utc;
+}
+
+/// At every 10 ms, across the hour, with phases that are no whole marks.
+TEST(SignalMessages, NoMarkIsBeforeTheMessage) {
+  world::World world;
+  world.lights.push_back(
+      light({{LightState::green, 8.04}, {LightState::yellow, 1.999}, {LightState::red, 14.0}}, 0.01));
+  const auto all = intersections_of(world, nullptr);
+  for (std::int64_t ms = 0; ms < 60'000; ms += 10) {
+    const std::int64_t utc = kNewYear2026 + 3'570'000 + ms;
+    const auto forecasts = world::forecasts_at(world, 1e-3 * static_cast<double>(ms));
+    const v2x::Spat spat = spat_of(all[0], forecasts, utc);
+    expect_marks(event(spat, 0), forecasts[0].now.left, utc);
+    expect_marks(event(spat, 1), forecasts[0].next->left, utc);
+    EXPECT_EQ(event(spat, 1).timing->start, event(spat, 0).timing->min_end);
+    std::vector<world::Signal> signals(1);
+    read(spat, all, utc, signals);
+    EXPECT_NEAR(signals[0].left, forecasts[0].now.left + 0.05, 0.0501) << ms;
+  }
+}
+
+/// Times that are left, each with a reason.
+TEST(SignalMessages, MarksOfTimesThatAreLeft) {
+  const world::World world = two_lights();
+  const auto all = intersections_of(world, nullptr);
+  const auto marks = [&](std::int64_t utc, double earliest, double latest) {
+    std::vector<world::SignalForecast> forecasts(2);
+    forecasts[0] = {{LightState::green, earliest}, latest, std::nullopt};
+    const v2x::Spat spat = spat_of(all[0], forecasts, kNewYear2026 + utc);
+    return std::pair<int, int>(event(spat, 0).timing->min_end, *event(spat, 0).timing->max_end);
+  };
+  using Marks = std::pair<int, int>;
+  EXPECT_EQ(marks(8'030, 0.01, 0.01), Marks(81, 81)) << "8.04 s, not 8.0, which is over";
+  EXPECT_EQ(marks(8'000, 0.0, 0.0), Marks(80, 80)) << "now, at a mark";
+  EXPECT_EQ(marks(8'001, 0.0, 0.0), Marks(81, 81)) << "now, behind a mark";
+  EXPECT_EQ(marks(8'000, -1.0, -1.0), Marks(80, 80)) << "overdue";
+  EXPECT_EQ(marks(0, 0.7 + 0.1 + 1e-10, 3.0), Marks(8, 30)) << "the rounding of sums is no tenth of a second";
+  EXPECT_EQ(marks(0, 3.0, 2.0), Marks(30, 30)) << "never the latest before the earliest";
+  EXPECT_EQ(marks(3'599'990, 0.02, 5.0), Marks(1, 50)) << "in the next hour";
+  EXPECT_EQ(marks(3'599'990, 0.01, 0.01), Marks(0, 0)) << "its first mark";
+  EXPECT_EQ(marks(50, 3'599.9, 3'599.9), Marks(0, 0)) << "59 min 59.95 s ahead";
+  EXPECT_EQ(marks(0, 3'599.9, 3'599.95), Marks(35'999, v2x::kMoreThanAnHour)) << "rounded up to an hour, not to 0";
+  EXPECT_EQ(marks(50, 3'599.96, 3'600.0), Marks(v2x::kMoreThanAnHour, v2x::kMoreThanAnHour)) << "0.1 s is over";
+  EXPECT_EQ(marks(0, 1.0, kForever), Marks(10, v2x::kUnknownTime));
+  EXPECT_EQ(marks(0, 1e300, kForever), Marks(v2x::kMoreThanAnHour, v2x::kUnknownTime));
+}
+
+/// Marks from 36000 on are no times.
+TEST(SignalMessages, MarksBeyondTheHourAreRead) {
+  const world::World world = two_lights();
+  const auto all = intersections_of(world, nullptr);
+  v2x::Spat spat = spat_of(all[0], world::forecasts_at(world, 0.0), kNewYear2026);
+  std::vector<world::Signal> signals(2);
+  const auto left = [&](v2x::TimeMark mark) {
+    spat.intersections[0].states[0].events[0].timing->min_end = mark;
+    read(spat, all, kNewYear2026, signals);
+    return signals[0].left;
+  };
+  EXPECT_NEAR(left(17'999), 1'799.9, 1e-9) << "the last one that is not late";
+  EXPECT_EQ(left(18'000), 0.0);
+  EXPECT_EQ(left(35'999), 0.0) << "0.1 s late";
+  for (const v2x::TimeMark mark : {36'000, 36'001, 36'111}) EXPECT_EQ(left(mark), kForever) << mark;
+}
+
 TEST(SignalMessages, StatesComeBackAtAnyTime) {
   const Town town;
   for (double time = 0.05; time < 30.0; time += 0.37) {
@@ -121,7 +197,7 @@ TEST(SignalMessages, StatesComeBackAtAnyTime) {
     for (std::size_t i = 0; i < signals.size(); ++i) {
       const world::Signal truth = signal_at(town.world.lights[i], time);
       EXPECT_EQ(signals[i].state, truth.state) << town.world.lights[i].name << " at " << time;
-      EXPECT_NEAR(signals[i].left, truth.left, 0.0501);
+      EXPECT_NEAR(signals[i].left, truth.left + 0.05, 0.0501) << "rounded up to 0.1 s";
     }
   }
 }
