@@ -38,6 +38,7 @@ struct McapSchema {
   std::string name;      ///< e.g. "nav_msgs/msg/Odometry"
   std::string encoding;  ///< "ros2msg"
   std::string text;
+  bool operator==(const McapSchema&) const = default;
 };
 
 struct McapChannel {
@@ -46,6 +47,7 @@ struct McapChannel {
   std::string topic;
   std::string encoding;  ///< "cdr"
   TextPairs metadata;
+  bool operator==(const McapChannel&) const = default;
 };
 
 struct McapMessage {

@@ -5,6 +5,8 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "record/crc32.h"
+#include "record/mcap_index.h"
+#include "record/mcap_scan.h"
 
 namespace sf::record {
 
@@ -13,33 +15,13 @@ using View = std::span<const std::uint8_t>;
 
 namespace {
 
-constexpr std::size_t kRecordHead = 9;  // opcode and length
-constexpr std::size_t kMaxDamage = 100;
-
-/// A record's place in the file and its content.
-struct Record {
-  Opcode opcode = Opcode::header;
-  std::size_t at = 0;  ///< [byte] of the opcode
-  View body;
-  bool whole = false;  ///< false: `body` is the rest before the cut
+/// A file as far as it has been read.
+struct Reading {
+  View file;
+  McapContents contents;
+  McapLayout layout;
+  MessageIndexCheck index{contents};
 };
-
-void note(McapContents& contents, std::size_t at, const std::string& what) {
-  if (contents.damage.size() < kMaxDamage) contents.damage.push_back("byte " + std::to_string(at) + ": " + what);
-}
-
-/// @returns false at the end, and when the rest is shorter than a head.
-bool next_record(View bytes, std::size_t offset, std::size_t at, Record& record) {
-  if (bytes.size() - at < kRecordHead) return false;
-  ByteReader in(bytes.subspan(at, kRecordHead));
-  record.opcode = static_cast<Opcode>(in.get<std::uint8_t>());
-  const auto length = in.get<std::uint64_t>();
-  const std::size_t left = bytes.size() - at - kRecordHead;
-  record.at = offset + at;
-  record.whole = length <= left;
-  record.body = bytes.subspan(at + kRecordHead, record.whole ? static_cast<std::size_t>(length) : left);
-  return true;
-}
 
 TextPairs get_pairs(ByteReader& in) {
   TextPairs pairs;
@@ -53,24 +35,26 @@ TextPairs get_pairs(ByteReader& in) {
   return pairs;
 }
 
-void read_header(const Record& record, McapContents& contents) {
+void read_header(const McapRecord& record, McapContents& contents) {
   ByteReader in(record.body);
   contents.profile = in.get_string();
   contents.library = in.get_string();
 }
 
-void read_schema(const Record& record, McapContents& contents) {
+void read_schema(const McapRecord& record, McapContents& contents) {
   ByteReader in(record.body);
   McapSchema schema;
   schema.id = in.get<std::uint16_t>();
   schema.name = in.get_string();
   schema.encoding = in.get_string();
   schema.text = in.get_string();
-  if (!in.good() || schema.id == 0) return note(contents, record.at, "malformed schema");
-  contents.schemas.emplace(schema.id, std::move(schema));
+  if (!in.good() || schema.id == 0) return note_damage(contents, record.at, "malformed schema");
+  const auto [known, is_new] = contents.schemas.try_emplace(schema.id, schema);
+  if (!is_new && !(known->second == schema))
+    note_damage(contents, record.at, "a schema is repeated with other content");
 }
 
-void read_channel(const Record& record, McapContents& contents) {
+void read_channel(const McapRecord& record, McapContents& contents) {
   ByteReader in(record.body);
   McapChannel channel;
   channel.id = in.get<std::uint16_t>();
@@ -79,11 +63,12 @@ void read_channel(const Record& record, McapContents& contents) {
   channel.encoding = in.get_string();
   channel.metadata = get_pairs(in);
   const bool known = channel.schema == 0 || contents.schemas.contains(channel.schema);
-  if (!in.good() || !known) return note(contents, record.at, "malformed channel");
-  contents.channels.emplace(channel.id, std::move(channel));
+  if (!in.good() || !known) return note_damage(contents, record.at, "malformed channel");
+  const auto [at, is_new] = contents.channels.try_emplace(channel.id, channel);
+  if (!is_new && !(at->second == channel)) note_damage(contents, record.at, "a channel is repeated with other content");
 }
 
-void read_message(const Record& record, McapContents& contents) {
+void read_message(const McapRecord& record, McapContents& contents) {
   ByteReader in(record.body);
   McapMessage message;
   message.channel = in.get<std::uint16_t>();
@@ -92,46 +77,69 @@ void read_message(const Record& record, McapContents& contents) {
   message.publish_time = in.get<std::uint64_t>();
   message.data = in.get_bytes(in.left());
   if (!in.good() || !contents.channels.contains(message.channel)) {
-    return note(contents, record.at, "message without a channel");
+    return note_damage(contents, record.at, "message without a channel");
   }
   contents.messages.push_back(message);
 }
 
-void read_chunk_records(View records, std::size_t offset, McapContents& contents) {
-  Record record;
-  for (std::size_t at = 0; next_record(records, offset, at, record); at += kRecordHead + record.body.size()) {
-    if (!record.whole) return;
+/// @param whole the chunk was not cut
+void read_chunk_records(View records, std::size_t offset, bool whole, Reading& reading) {
+  McapContents& contents = reading.contents;
+  McapRecord record;
+  std::size_t at = 0;
+  for (; next_record(records, offset, at, record) && record.whole; at += kRecordHead + record.body.size()) {
     if (record.opcode == Opcode::schema) read_schema(record, contents);
     if (record.opcode == Opcode::channel) read_channel(record, contents);
-    if (record.opcode == Opcode::message) read_message(record, contents);
-    if (record.opcode == Opcode::message_index) return;
+    if (record.opcode != Opcode::message) continue;
+    const std::size_t before = contents.messages.size();
+    read_message(record, contents);
+    if (contents.messages.size() == before) continue;
+    const McapMessage& message = contents.messages.back();
+    reading.index.add({message.channel, message.log_time, at});
   }
+  if (whole && at < records.size()) note_damage(contents, offset + at, "a record goes beyond its chunk");
+}
+
+McapLayout::Chunk read_chunk_head(ByteReader& in, const McapRecord& record, std::uint32_t& crc) {
+  McapLayout::Chunk chunk{.at = record.at, .length = record.end() - record.at};
+  chunk.first = in.get<std::uint64_t>();
+  chunk.last = in.get<std::uint64_t>();
+  chunk.size = in.get<std::uint64_t>();
+  crc = in.get<std::uint32_t>();
+  chunk.compression = in.get_string();
+  chunk.compressed = in.get<std::uint64_t>();
+  return chunk;
 }
 
 /// A truncated chunk gives its whole messages; its CRC cannot be checked then.
-void read_chunk(const Record& record, McapContents& contents) {
+void read_chunk(const McapRecord& record, Reading& reading) {
+  McapContents& contents = reading.contents;
+  reading.index.begin_lost_chunk(record);
   ByteReader in(record.body);
-  in.get<std::uint64_t>();  // first time
-  in.get<std::uint64_t>();  // last time
-  in.get<std::uint64_t>();  // uncompressed size
-  const auto crc = in.get<std::uint32_t>();
-  const std::string compression = in.get_string();
-  const auto size = in.get<std::uint64_t>();
+  std::uint32_t crc = 0;
+  const McapLayout::Chunk chunk = read_chunk_head(in, record, crc);
   if (!in.good()) {
-    if (record.whole) note(contents, record.at, "malformed chunk");
+    if (record.whole) note_damage(contents, record.at, "malformed chunk");
     return;
   }
-  if (!compression.empty()) return note(contents, record.at, "chunk compressed with '" + compression + "' left out");
+  if (!chunk.compression.empty())
+    return note_damage(contents, record.at, "chunk compressed with '" + chunk.compression + "' left out");
   const std::size_t offset = record.at + kRecordHead + in.position();
-  const View records = in.get_bytes(static_cast<std::size_t>(std::min<std::uint64_t>(size, in.left())));
-  if (record.whole && records.size() != size) return note(contents, record.at, "malformed chunk");
+  const View records = in.get_bytes(static_cast<std::size_t>(std::min<std::uint64_t>(chunk.compressed, in.left())));
+  const bool cut = records.size() != chunk.compressed;
+  if (cut == record.whole || in.left() > 0 || chunk.size != chunk.compressed)
+    return note_damage(contents, record.at, "malformed chunk");
   if (record.whole && crc != 0 && crc32_of(records) != crc) {
-    return note(contents, record.at, "chunk left out: its CRC does not fit");
+    return note_damage(contents, record.at, "chunk left out: its CRC does not fit");
   }
-  read_chunk_records(records, offset, contents);
+  if (record.whole) reading.index.begin_chunk(record);
+  read_chunk_records(records, offset, record.whole, reading);
+  if (record.whole) reading.index.end_chunk(chunk);
+  reading.layout.chunks.push_back(chunk);
 }
 
-void read_attachment(const Record& record, McapContents& contents) {
+void read_attachment(const McapRecord& record, Reading& reading) {
+  McapContents& contents = reading.contents;
   ByteReader in(record.body);
   McapAttachment attachment;
   attachment.log_time = in.get<std::uint64_t>();
@@ -141,74 +149,96 @@ void read_attachment(const Record& record, McapContents& contents) {
   attachment.data = in.get_bytes(static_cast<std::size_t>(in.get<std::uint64_t>()));
   const std::size_t covered = in.position();
   const auto crc = in.get<std::uint32_t>();
-  if (!in.good()) return note(contents, record.at, "malformed attachment");
+  if (!in.good()) return note_damage(contents, record.at, "malformed attachment");
   if (crc != 0 && crc != crc32_of(record.body.first(covered))) {
-    return note(contents, record.at, "attachment left out: its CRC does not fit");
+    return note_damage(contents, record.at, "attachment left out: its CRC does not fit");
   }
+  reading.layout.attachments.push_back({record.at, record.end() - record.at, attachment.log_time,
+                                        attachment.create_time, attachment.data.size(), attachment.name,
+                                        attachment.media_type});
   contents.attachments.push_back(std::move(attachment));
 }
 
-void read_metadata(const Record& record, McapContents& contents) {
+void read_metadata(const McapRecord& record, Reading& reading) {
+  McapContents& contents = reading.contents;
   ByteReader in(record.body);
   McapMetadata metadata;
   metadata.name = in.get_string();
   metadata.pairs = get_pairs(in);
-  if (!in.good()) return note(contents, record.at, "malformed metadata");
+  if (!in.good()) return note_damage(contents, record.at, "malformed metadata");
+  reading.layout.metadata.push_back({record.at, record.end() - record.at, metadata.name});
   contents.metadata.push_back(std::move(metadata));
 }
 
-void check_data_end(const Record& record, View file, McapContents& contents) {
-  const auto crc = ByteReader(record.body).get<std::uint32_t>();
-  if (crc != 0 && crc != crc32_of(file.first(record.at))) {
-    note(contents, record.at, "the data does not fit its CRC: bytes were changed after writing");
+void check_data_end(const McapRecord& record, Reading& reading) {
+  reading.layout.data_end = record.end();
+  ByteReader in(record.body);
+  const auto crc = in.get<std::uint32_t>();
+  if (!in.good() || in.left() > 0) return note_damage(reading.contents, record.at, "malformed end of the data");
+  if (crc != 0 && crc != crc32_of(reading.file.first(record.at)))
+    note_damage(reading.contents, record.at, "the data does not fit its CRC: bytes were changed after writing");
+}
+
+void read_record(const McapRecord& record, Reading& reading) {
+  if (record.opcode == Opcode::message_index)
+    return reading.index.add_index(record, reading.layout.chunks.empty() ? nullptr : &reading.layout.chunks.back());
+  reading.index.finish_index();
+  switch (record.opcode) {
+    case Opcode::header:
+      return read_header(record, reading.contents);
+    case Opcode::schema:
+      return read_schema(record, reading.contents);
+    case Opcode::channel:
+      return read_channel(record, reading.contents);
+    case Opcode::message:
+      return read_message(record, reading.contents);
+    case Opcode::chunk:
+      return read_chunk(record, reading);
+    case Opcode::attachment:
+      return read_attachment(record, reading);
+    case Opcode::metadata:
+      return read_metadata(record, reading);
+    case Opcode::data_end:
+      return check_data_end(record, reading);
+    default:
+      return;  // the summary is checked at the end; opcodes of later versions are skipped
   }
 }
 
-void read_record(const Record& record, View file, McapContents& contents) {
-  switch (record.opcode) {
-    case Opcode::header:
-      return read_header(record, contents);
-    case Opcode::schema:
-      return read_schema(record, contents);
-    case Opcode::channel:
-      return read_channel(record, contents);
-    case Opcode::message:
-      return read_message(record, contents);
-    case Opcode::chunk:
-      return read_chunk(record, contents);
-    case Opcode::attachment:
-      return read_attachment(record, contents);
-    case Opcode::metadata:
-      return read_metadata(record, contents);
-    case Opcode::data_end:
-      return check_data_end(record, file, contents);
-    default:
-      return;  // indexes, and opcodes of later versions, are skipped
-  }
+bool is_magic(View bytes) { return std::equal(bytes.begin(), bytes.end(), kMcapMagic.begin(), kMcapMagic.end()); }
+
+/// The magic ends a finished file; less of it is a cut one.
+void check_end(const McapRecord& footer, Reading& reading) {
+  check_summary(reading.file, footer, reading.layout, reading.contents);
+  const View end = reading.file.subspan(footer.end());
+  const bool begins = end.size() <= kMcapMagic.size() && std::equal(end.begin(), end.end(), kMcapMagic.begin());
+  reading.contents.truncated = begins && end.size() < kMcapMagic.size();
+  if (!begins) note_damage(reading.contents, footer.end(), "the file does not end with the magic of MCAP");
 }
 
 }  // namespace
 
 McapContents read_mcap(View file, const std::string& name) {
-  if (file.size() < kMcapMagic.size() || !std::equal(kMcapMagic.begin(), kMcapMagic.end(), file.begin())) {
+  if (file.size() < kMcapMagic.size() || !is_magic(file.first(kMcapMagic.size()))) {
     throw base::InputError(name, 0, "not an MCAP file: expected the bytes 89 4D 43 41 50 30 0D 0A at its start");
   }
-  McapContents contents;
+  Reading reading{.file = file, .contents = {}, .layout = {}};
+  McapContents& contents = reading.contents;
   contents.truncated = true;
-  Record record;
-  for (std::size_t at = kMcapMagic.size(); next_record(file, 0, at, record); at += kRecordHead + record.body.size()) {
-    if (!record.whole) {
-      if (record.opcode == Opcode::chunk) read_chunk(record, contents);
-      break;
-    }
-    if (record.opcode == Opcode::footer) {
-      const View end = file.subspan(at + kRecordHead + record.body.size());
-      contents.truncated = !std::equal(end.begin(), end.end(), kMcapMagic.begin(), kMcapMagic.end());
-      break;
-    }
-    read_record(record, file, contents);
+  McapRecord record;
+  std::size_t at = kMcapMagic.size();
+  for (; next_record(file, 0, at, record) && record.whole; at = record.end()) {
+    read_record(record, reading);
+    if (record.opcode != Opcode::footer) continue;
+    check_end(record, reading);
+    return std::move(contents);
   }
-  return contents;
+  if (at + kRecordHead <= file.size() && record.opcode == Opcode::chunk) read_chunk(record, reading);
+  if (file.size() > kMcapMagic.size() && is_magic(file.last(kMcapMagic.size()))) {
+    contents.truncated = false;
+    note_damage(contents, at, "no record fits here, before the end of the file: a length or an opcode was changed");
+  }
+  return std::move(contents);
 }
 
 }  // namespace sf::record

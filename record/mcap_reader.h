@@ -1,6 +1,8 @@
 #pragma once
 // Reads uncompressed MCAP, complete or truncated: sequentially, without the summary, so that a file cut at any byte
-// gives all records before the cut. Allocations are bounded by a small multiple of the file's size.
+// gives all records before the cut. Everything that the file states twice is compared, so that each flipped bit of a
+// finished file is damage: all CRCs, and lengths, times, counts and indexes by record/mcap_index.h. A CRC of 0 is none.
+// Allocations are bounded by a small multiple of the file's size.
 
 #include <cstdint>
 #include <map>
@@ -22,7 +24,7 @@ struct McapContents {
   std::vector<McapAttachment> attachments;        ///< attachments with a correct CRC
   std::vector<McapMetadata> metadata;
   bool truncated = false;           ///< the file lacks the end of a finished file
-  std::vector<std::string> damage;  ///< per omission or CRC error: byte and reason, at most 100 lines
+  std::vector<std::string> damage;  ///< per omission or contradiction: byte and reason, at most 100 lines
 };
 
 /// @param name of the file, for messages.

@@ -319,5 +319,119 @@ TEST(McapReader, ACutAtAnyByteGivesWhatWasWholeBeforeIt) {
   EXPECT_FALSE(read(file).truncated);
 }
 
+/// Two channels in two chunks, and all that stands before them; not finished.
+Bytes unfinished_file() {
+  McapWriter writer("p", "lib");
+  const auto schema = writer.add_schema("S", "ros2msg", "bool b\n");
+  const auto first = writer.add_channel(schema, "/t", "cdr", {{"k", "v"}}),
+             second = writer.add_channel(schema, "/u", "cdr");
+  const Bytes world = {7, 8}, data = {0, 1, 0, 0, 1};
+  writer.add_attachment({.log_time = 1, .create_time = 2, .name = "w", .media_type = "m", .data = world});
+  for (const std::uint64_t time : {1000u, 2000u}) {
+    writer.add_message({first, 3, time, 999, data});
+    writer.add_message({second, 4, time + 1, 999, data});
+    writer.end_chunk();
+  }
+  return {writer.pending().begin(), writer.pending().end()};
+}
+
+/// A record's opcode and the place of its content.
+struct Place {
+  Opcode opcode;
+  std::size_t begin, end;
+};
+
+std::vector<Place> places_in(const Bytes& file, std::size_t at, std::size_t end) {
+  std::vector<Place> places;
+  while (at < end) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, file.data() + at + 1, sizeof length);
+    places.push_back({static_cast<Opcode>(file[at]), at + 9, at + 9 + static_cast<std::size_t>(length)});
+    at = places.back().end;
+  }
+  return places;
+}
+
+/// Flips each bit of the bytes in turn. @param mend makes the file's checksum that of its new bytes
+template <class Mend>
+void expect_each_flip_told(Bytes file, std::size_t begin, std::size_t end, Mend mend) {
+  for (std::size_t at = begin; at < end; ++at)
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      file[at] ^= static_cast<std::uint8_t>(1u << bit);
+      mend(file);
+      try {
+        EXPECT_FALSE(read(file).damage.empty()) << "bit " << bit << " of byte " << at << " of " << file.size();
+      } catch (const base::InputError&) {
+        EXPECT_LT(at, kMagic.size()) << "only without the magic at its start it is another file";
+      }
+      file[at] ^= static_cast<std::uint8_t>(1u << bit);
+    }
+}
+
+TEST(McapReader, EachFlippedBitOfAFinishedFileIsTold) {
+  for (const Bytes& file : {tiny_file(), [] {
+                              McapWriter writer("", "");  // with nothing inside
+                              writer.finish();
+                              return Bytes(writer.pending().begin(), writer.pending().end());
+                            }()})
+    expect_each_flip_told(file, 0, file.size(), [](Bytes&) {});
+}
+
+/// Before its end, a file has CRCs and doubled numbers in attachments, chunks and their indexes. The rest (header,
+/// schemas, channels, metadata, heads of records) is stated once, and the index of the last chunk may be cut.
+TEST(McapReader, EachFlippedBitOfAnUnfinishedFileIsToldWhereItIsStatedTwice) {
+  Bytes file = unfinished_file();
+  const std::vector<Place> places = places_in(file, kMagic.size(), file.size());
+  ASSERT_EQ(places.back().opcode, Opcode::message_index);
+  std::size_t told = 0;
+  for (std::size_t i = 0; i + 2 < places.size(); ++i) {
+    const Opcode opcode = places[i].opcode;
+    if (opcode != Opcode::attachment && opcode != Opcode::chunk && opcode != Opcode::message_index) continue;
+    for (std::size_t at = places[i].begin; at < places[i].end; ++at)
+      for (unsigned bit = 0; bit < 8; ++bit, ++told) {
+        file[at] ^= static_cast<std::uint8_t>(1u << bit);
+        EXPECT_FALSE(read(file).damage.empty()) << "bit " << bit << " of byte " << at << ", opcode " << int(opcode);
+        file[at] ^= static_cast<std::uint8_t>(1u << bit);
+      }
+  }
+  EXPECT_GT(told, 8u * 250u);
+  EXPECT_TRUE(read(file).damage.empty());
+}
+
+/// A summary whose CRC is right, but whose content is not that of the data.
+TEST(McapReader, ASummaryThatDoesNotFitTheDataIsTold) {
+  const Bytes file = tiny_file();
+  std::uint64_t start = 0;
+  const std::size_t footer = file.size() - kMagic.size() - 20;
+  std::memcpy(&start, file.data() + footer, sizeof start);
+  const auto mend = [&](Bytes& changed) {
+    const std::uint32_t crc = slow_crc(std::span(changed).subspan(start, footer + 16 - start));
+    std::memcpy(changed.data() + footer + 16, &crc, sizeof crc);
+  };
+  for (const Place& place : places_in(file, start, footer + 20)) {
+    // The footer's own CRC is what is mended.
+    const std::size_t end = place.opcode == Opcode::footer ? place.end - 4 : place.end;
+    expect_each_flip_told(file, place.begin, end, mend);
+  }
+}
+
+TEST(McapReader, BytesBehindTheEndAreTold) {
+  Bytes file = tiny_file();
+  file.push_back(0);
+  EXPECT_EQ(read(file).damage.size(), 1u);
+  EXPECT_FALSE(read(file).truncated);
+}
+
+/// A CRC of 0 is none: MCAP permits files without.
+TEST(McapReader, AFileWithoutChecksumsIsRead) {
+  Bytes file = tiny_file();
+  const std::size_t footer_crc = file.size() - kMagic.size() - 4;
+  std::memset(file.data() + footer_crc, 0, 4);
+  const auto data_end = places_in(file, kMagic.size(), footer_crc - 25);
+  for (const Place& place : data_end)
+    if (place.opcode == Opcode::data_end) std::memset(file.data() + place.begin, 0, 4);
+  EXPECT_TRUE(read(file).damage.empty());
+}
+
 }  // namespace
 }  // namespace sf::record

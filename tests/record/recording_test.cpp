@@ -133,29 +133,19 @@ TEST(Recording, ACutAtAnyByteGivesAPrefixWithEveryWholeTick) {
   }
 }
 
-TEST(Recording, NoFlippedBitChangesANumberSilently) {
-  const Recording whole = read_recording(sample().bytes, "run.mcap");
+/// Of a finished file: one bit of each byte, a different one from byte to byte. `McapReader` has tests with all bits.
+TEST(Recording, AFlippedBitIsTold) {
   Bytes bytes = sample().bytes;
-  std::mt19937 random(1);
-  int told = 0;
-  constexpr int kFlips = 20'000;
-  for (int i = 0; i < kFlips; ++i) {
-    const std::size_t at = random() % bytes.size();
-    const auto bit = static_cast<std::uint8_t>(1u << (random() % 8));
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    const auto bit = static_cast<std::uint8_t>(1u << (5 * at % 8));
     bytes[at] ^= bit;
     try {
       const Recording part = read_recording(bytes, "run.mcap");
-      const bool tells = part.truncated || !part.damage.empty();
-      const bool equal =
-          is_prefix(part, whole) && part.ticks == whole.ticks && part.readings.size() == whole.readings.size();
-      EXPECT_TRUE(tells || equal) << "byte " << at;
-      told += tells ? 1 : 0;
+      EXPECT_FALSE(part.damage.empty()) << "byte " << at << " of " << bytes.size();
     } catch (const base::InputError&) {
-      ++told;
     }
     bytes[at] ^= bit;
   }
-  EXPECT_GT(told, kFlips / 2);  // most of the file is data
 }
 
 TEST(Recording, TornAndGarbledFilesNeitherCrashNorHang) {
