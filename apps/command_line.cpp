@@ -8,6 +8,7 @@
 
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
+#include "apps/stop_signals.h"
 #include "apps/subcommands.h"
 #include "apps/text.h"
 #include "base/suggest.h"
@@ -91,6 +92,12 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   Parsed parsed;
   CLI::App app{"sensorfarm: 2-D multi-robot simulator and virtual-sensor server", "sensorfarm"};
   app.set_version_flag("--version", std::string("sensorfarm ") + SF_VERSION);
+  app.add_option_function<int>("--interrupted-code", set_interrupted_code,
+                               "Exit code of a command that a signal stops before its work is complete (default: 128 "
+                               "and the signal's number, as 130 after Ctrl-C)")
+      ->check(whole(0, 255))
+      ->type_name("CODE");
+  wrap_help(app);
   app.require_subcommand(1);
   app.get_formatter()->column_width(kNameWidth);
   add_inspect_commands(app, parsed.call);

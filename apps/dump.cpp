@@ -252,6 +252,9 @@ int dump(const DumpOptions& options) {
   Printer printer(options.json);
   options.file.empty() ? dump_ports(options, printer) : dump_file(options, printer);
   print_message("{}: {}", counted(printer.datagrams(), "datagram"), printer.summary());
+  const bool counted_out = options.count > 0 && printer.datagrams() >= options.count;
+  const bool has_end = !options.file.empty() || options.count > 0;
+  if (stop_requested() && has_end && !counted_out) return interrupted_code();
   return printer.any_good() ? 0 : 1;
 }
 

@@ -67,10 +67,8 @@ int run_shared(const ExperimentOptions& options, cluster::Ranks* ranks) {
                                         if (ranks == nullptr || ranks->rank() == 0) progress.show(part, note);
                                       });
   } catch (const scenarios::Interrupted&) {
-    on_all(ranks, [&] {
-      throw base::InputError("interrupted: no report was written; " + options.out +
-                             " has the trials that were finished");
-    });
+    print_message("interrupted: no report was written; {} has the trials that were finished", options.out);
+    return interrupted_code();
   }
   for (const std::string& file : files) print_message("wrote {}", file);
   return 0;

@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "apps/command_line.h"
+#include "apps/stop_signals.h"
 #include "base/error.h"
 #include "control/own_controllers.h"
 
@@ -28,6 +29,8 @@ int main(int argc, char** argv) {
     // A full disk must not pass for an answer.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail(2, "standard output cannot be written");
     return code;
+  } catch (const sf::apps::Interrupted& stop) {
+    return fail(sf::apps::interrupted_code(), stop.what());
   } catch (const sf::base::InputError& error) {
     return fail(2, error.what());
   } catch (const sf::base::DeviceError& error) {

@@ -240,7 +240,7 @@ int map(const MapOptions& options) {
     display.save(options.out);
     print_message("wrote {}", options.out);
   }
-  return 0;
+  return stop_requested() && options.once && !display.all_whole() ? interrupted_code() : 0;
 }
 
 }  // namespace sf::apps

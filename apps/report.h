@@ -73,7 +73,9 @@ struct SelfTestReport {
   double seconds = 0.0;                                                    ///< [s] of all of them
 
   std::size_t passed() const;
-  bool sound() const { return !cases.empty() && passed() == cases.size(); }
+  bool interrupted() const { return cases.size() < asked; }
+  /// All cases were run, one at least, and passed.
+  bool sound() const { return !cases.empty() && passed() == cases.size() && !interrupted(); }
 };
 
 /// Says on standard error how many warnings there are, and the first three of them. @param file that `check` lists all

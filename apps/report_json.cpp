@@ -409,10 +409,9 @@ std::string json_of(const scenarios::Verification& verification) {
 }
 
 std::string json_of(const SelfTestReport& test) {
-  Json json{{"device", test.device.name}, {"software", test.device.software},
-            {"asked", test.asked},        {"run", test.cases.size()},
-            {"passed", test.passed()},    {"sound", test.sound()},
-            {"seconds", test.seconds},    {"cases", Json::array()}};
+  Json json{{"device", test.device.name}, {"software", test.device.software},  {"asked", test.asked},
+            {"run", test.cases.size()},   {"passed", test.passed()},           {"sound", test.sound()},
+            {"seconds", test.seconds},    {"interrupted", test.interrupted()}, {"cases", Json::array()}};
   for (const auto& [c, o] : test.cases)
     json["cases"].push_back({{"group", c->group},
                              {"case", c->name},

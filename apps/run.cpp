@@ -264,7 +264,8 @@ int simulate(const RunOptions& options, cluster::Ranks* ranks) {
   warnings.insert(warnings.end(), heard.begin(), heard.end());
   print(options.json ? with_warnings(json_of(facts), warnings) : text_of(facts));
   const netio::OutboxCounts& packets = facts.publisher.packets;
-  if (packets.failed == 0) return 0;
+  // Without an end of its own, a run is complete when its user ends it.
+  if (packets.failed == 0) return facts.interrupted && duration < kWithoutEnd ? interrupted_code() : 0;
   print_message("{} of {} packets were not sent: {}", packets.failed, packets.queued, packets.first_failure);
   return 1;
 }

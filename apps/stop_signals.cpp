@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <optional>
 #include <thread>
 
 namespace sf::apps {
@@ -9,13 +10,22 @@ namespace sf::apps {
 namespace {
 
 std::atomic<bool> stop{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
+std::atomic<int> stop_signal{SIGINT};  // of another rank's stop, too
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+std::optional<int> chosen_code;
 
-void on_signal(int) { stop = true; }
+void on_signal(int number) {
+  stop_signal = number;
+  stop = true;
+}
 
 }  // namespace
 
 const std::atomic<bool>& stop_requested() { return stop; }
+
+int interrupted_code() { return chosen_code.value_or(128 + stop_signal); }
+
+void set_interrupted_code(int code) { chosen_code = code; }
 
 void install_stop_handlers() {
   struct sigaction action {};

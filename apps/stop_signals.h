@@ -3,11 +3,23 @@
 
 #include <atomic>
 #include <chrono>
+#include <stdexcept>
 
 namespace sf::apps {
 
 /// Set once one of them came. A second one ends the program at once.
 const std::atomic<bool>& stop_requested();
+
+/// A command was stopped before its work was complete: `main` prints the message and exits with `interrupted_code`.
+class Interrupted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Exit code of such a command: as shells have it, 128 and the signal's number (130 after Ctrl-C).
+int interrupted_code();
+/// Another code for all signals (--interrupted-code). @param code in [0, 255]
+void set_interrupted_code(int code);
 
 /// Takes the signals over, but for a SIGHUP that is ignored (nohup). To be called once, before the loop.
 void install_stop_handlers();

@@ -189,7 +189,7 @@ int sweep(const SweepOptions& options) {
     if (!whole) {
       print_message("interrupted: {} of {} missing; the same command goes on", scenarios::counts_of(results).missing,
                     counted(results.size(), "job"));
-      return 1;
+      return interrupted_code();
     }
   }
   const bool complete = scenarios::counts_of(results).missing == 0;

@@ -167,14 +167,18 @@ int vps(const VpsOptions& options) {
   // Rendered images have no end.
   const bool limited = options.images > 0 || options.duration > 0.0 || options.real_time;
   const std::uint64_t most = fleet && !limited ? kRenderedImages : options.images;
+  const bool has_end = most > 0 || (!inputs->is_live() && (!fleet || options.duration > 0.0));
 
   VpsReport report;
   report.cameras = testbed.cameras.size();
   std::vector<vision::Frame> frames;
   const std::int64_t epoch = base::unix_time();
   const Clock::time_point start = Clock::now();
-  for (std::uint64_t n = 0; !stop_requested() && (most == 0 || n < most) && inputs->next(frames); ++n) {
-    if (options.duration > 0.0 && frames[0].time >= options.duration) break;
+  std::uint64_t n = 0;
+  bool complete = false;
+  for (; !stop_requested() && (most == 0 || n < most) && inputs->next(frames); ++n) {
+    complete = options.duration > 0.0 && frames[0].time >= options.duration;
+    if (complete) break;
     if (options.real_time && !inputs->is_live()) keep_pace(start, frames[0].time);
     if (stop_requested()) break;
     const auto tags = process(frames, positioning, report);
@@ -190,6 +194,8 @@ int vps(const VpsOptions& options) {
   report.unaddressed = sender.unaddressed();
   if (robots != nullptr) report.truth = robots->truth();
   print(options.json ? json_of(report) : text_of(report));
+  complete = complete || (most > 0 && n >= most);
+  if (stop_requested() && has_end && !complete) return interrupted_code();
   return report.counts.sightings > 0 ? 0 : 1;
 }
 

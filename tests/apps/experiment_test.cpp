@@ -129,7 +129,7 @@ TEST(Experiment, StoppedLeavesNoHalfTrial) {
   ASSERT_TRUE(recording()) << program.err();
   program.signal(SIGINT);
   const Outcome outcome = program.wait();
-  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
   EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path("out/report.md")));
   for (const auto& trial : std::filesystem::directory_iterator(folder.path("out"))) {

@@ -125,6 +125,18 @@ bool Program::says(const std::string& text) {
   return true;
 }
 
+bool Program::handles(int number) {
+  const auto deadline = Clock::now() + std::chrono::minutes(1);
+  for (; running() && Clock::now() < deadline; nap()) {
+    const std::string status = read_file("/proc/" + std::to_string(pid_) + "/status");
+    const std::size_t at = status.find("SigCgt:");
+    if (at == std::string::npos) continue;
+    const std::uint64_t handled = std::strtoull(status.c_str() + at + 7, nullptr, 16);
+    if ((handled >> (number - 1) & 1u) != 0) return true;
+  }
+  return false;
+}
+
 void Program::signal(int number) const { kill(pid_, number); }
 
 Outcome Program::wait() {

@@ -53,6 +53,8 @@ class Program {
   bool running();
   /// Until `text` stands on standard error; false when it ended before, or after a minute.
   bool says(const std::string& text);
+  /// Until it handles the signal; false when it ended before, or after a minute.
+  bool handles(int number);
   void signal(int number) const;
   /// Until it ends; killed after two minutes.
   Outcome wait();

@@ -426,14 +426,14 @@ TEST(Run, AKilledRunCanBeDrawn) {
   expect_pictures(folder.path("p"));
 }
 
-TEST(Run, StoppingIsNoFailure) {
+TEST(Run, StoppingEarlyIsToldByTheExitCode) {
   for (const int stop : {SIGINT, SIGTERM, SIGHUP}) {
     const Folder folder;
     Program program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
     ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 60'000)) << program.err();
     program.signal(stop);
     const Outcome outcome = program.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.code, 128 + stop) << outcome.err;
     const Json facts(outcome.out);
     EXPECT_TRUE(facts.flag("/interrupted"));
     EXPECT_GT(facts.number("/ticks"), 0);
@@ -504,7 +504,7 @@ TEST(Plot, StoppedLeavesNoTornPicture) {
   const Outcome outcome = plot.wait();
   EXPECT_EQ(outcome.signal, 0);
   if (outcome.code != 0) {
-    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.code, 130);
     EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
   }
   for (const auto& file : std::filesystem::directory_iterator(folder.path("p"))) {

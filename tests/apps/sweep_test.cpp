@@ -96,7 +96,7 @@ void interrupt_and_go_on(int end) {
   if (end == SIGKILL) {
     EXPECT_EQ(killed.signal, SIGKILL);
   } else {
-    EXPECT_EQ(killed.code, 1);
+    EXPECT_EQ(killed.code, 128 + end);
     EXPECT_NE(killed.err.find("interrupted: "), std::string::npos) << killed.err;
   }
 

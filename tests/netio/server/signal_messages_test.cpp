@@ -120,7 +120,7 @@ void expect_marks(const v2x::MovementEvent& event, double left, std::int64_t utc
   EXPECT_GE(static_cast<double>(least), 1e3 * left - 1e-3) << utc << ": earlier than the change";
   EXPECT_LT(static_cast<double>(least), 1e3 * left + 100.0) << utc << ": as much as a mark too late";
   EXPECT_GE(most, least) << utc;
-  if (event.timing->start) EXPECT_LE(ahead_of(*event.timing->start, utc), least) << utc;
+  EXPECT_LE(ahead_of(event.timing->start.value_or(event.timing->min_end), utc), least) << utc;
 }
 
 /// At every 10 ms, across the hour, with phases that are no whole marks.
@@ -182,7 +182,7 @@ TEST(SignalMessages, MarksBeyondTheHourAreRead) {
   EXPECT_NEAR(left(17'999), 1'799.9, 1e-9) << "the last one that is not late";
   EXPECT_EQ(left(18'000), 0.0);
   EXPECT_EQ(left(35'999), 0.0) << "0.1 s late";
-  for (const v2x::TimeMark mark : {36'000, 36'001, 36'111}) EXPECT_EQ(left(mark), kForever) << mark;
+  for (const int mark : {36'000, 36'001, 36'111}) EXPECT_EQ(left(static_cast<v2x::TimeMark>(mark)), kForever) << mark;
 }
 
 TEST(SignalMessages, StatesComeBackAtAnyTime) {

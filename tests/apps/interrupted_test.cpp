@@ -1,0 +1,111 @@
+// Commands that a signal stops before their work is complete: none of them claims success.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+namespace {
+
+/// Stops the command as soon as it handles the signal.
+Outcome stopped(const Words& words, int by = SIGINT) {
+  Program program(words);
+  EXPECT_TRUE(program.handles(by)) << words[0] << ": " << program.err();
+  program.signal(by);
+  return program.wait();
+}
+
+/// A recording of a minute of forty robots, long enough for every command that reads it.
+class Interrupted : public testing::Test {
+ protected:
+  std::string record() const {
+    const Outcome outcome = run_program(
+        {"run", our_world("cave.world"), "--robots", "40", "--duration", "60", "--record", folder.path("r")});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return folder.path("r");
+  }
+  std::string sweep() const {
+    folder.write("s.toml", "world = \"" + our_world("cave.world") + "\"\nrobots = 20\nduration = 60\n");
+    return folder.write("sweep.toml", "scenario = \"s.toml\"\nseeds = 40\n");
+  }
+  Folder folder;
+};
+
+TEST_F(Interrupted, EachCommandEndsWithTheSignalsCode) {
+  const std::string recording = record(), cave = our_world("cave.world");
+  const std::string port = std::to_string(free_ports(1)), map_port = std::to_string(free_ports(1));
+  const std::string pictures = folder.path("p");
+  const std::vector<Words> commands = {
+      {"selftest"},
+      {"verify", recording, "--all"},
+      {"verify", recording, "--accuracy", "skip2", "--sample", "1"},
+      {"tradeoff", cave, "--robots", "100"},
+      {"run", cave, "--robots", "10", "--duration", "1e6"},
+      {"run", cave, "--robots", "100", "--auto"},
+      {"plot", recording, "-o", pictures},
+      {"export", recording, "--vtk", "-o", folder.path("e")},
+      {"sweep", sweep(), "-o", folder.path("s"), "--jobs", "2"},
+      {"experiment", "lane-edge-p", "--trials", "200", "-o", folder.path("x"), "--files", SF_SOURCE_DIR "/experiments"},
+      {"dump", "--port", port, "--count", "3"},
+      {"map", map_port, "--once"},
+  };
+  for (const Words& words : commands) {
+    const Outcome outcome = stopped(words);
+    EXPECT_EQ(outcome.code, 130) << words[0] << " " << words[1] << ": " << outcome.signal << outcome.out << outcome.err;
+  }
+}
+
+TEST_F(Interrupted, ByOtherSignalsAndWithAnotherCode) {
+  const Words run{"run", our_world("cave.world"), "--robots", "3", "--duration", "1e6"};
+  EXPECT_EQ(stopped(run, SIGTERM).code, 128 + SIGTERM);
+  EXPECT_EQ(stopped(run, SIGHUP).code, 128 + SIGHUP);
+  for (const char* code : {"0", "1", "255"}) {
+    Words words{"--interrupted-code", code};
+    words.insert(words.end(), run.begin(), run.end());
+    EXPECT_EQ(stopped(words).code, std::stoi(code));
+    words.erase(words.begin() + 2, words.end());
+    words.push_back("selftest");
+    EXPECT_EQ(stopped(words).code, std::stoi(code)) << "also where a check was not completed";
+  }
+  for (const char* wrong : {"256", "-1", "x"}) {
+    const Outcome refused = run_program({"--interrupted-code", wrong, "devices"});
+    EXPECT_EQ(refused.code, 2) << wrong;
+    EXPECT_NE(refused.err.find("--interrupted-code"), std::string::npos) << refused.err;
+  }
+}
+
+/// The report of what was done says that it is not all.
+TEST_F(Interrupted, ReportsSayThatTheyAreNotWhole) {
+  const Outcome text = stopped({"selftest"});
+  EXPECT_NE(text.out.find("; interrupted, "), std::string::npos) << text.out;
+  const Json test(stopped({"selftest", "--json"}).out);
+  EXPECT_FALSE(test.flag("/sound"));
+  EXPECT_TRUE(test.flag("/interrupted"));
+  const std::string recording = record();
+  const Json verified(stopped({"verify", recording, "--all", "--json"}).out);
+  EXPECT_FALSE(verified.flag("/sound"));
+  EXPECT_TRUE(verified.flag("/interrupted"));
+}
+
+/// Services and listeners have no end of their own: to stop them is how they are used.
+TEST_F(Interrupted, WhatHasNoEndOfItsOwnIsComplete) {
+  const std::string rooms = our_world("rooms.world");
+  EXPECT_EQ(stopped({"serve", rooms, "--port", "0", "--laser-port", std::to_string(free_ports(64))}).code, 0);
+  EXPECT_EQ(stopped({"run", rooms, "--view", "127.0.0.1:0"}).code, 0) << "no --duration: until it is stopped";
+  EXPECT_EQ(stopped({"light", our_world("simville/simville.world"), "--send", "127.0.0.1", "--port",
+                     std::to_string(free_ports(1))})
+                .code,
+            0);
+}
+
+/// A signal that comes when all is done changes nothing.
+TEST_F(Interrupted, CompleteWorkIsComplete) {
+  const Outcome outcome = run_program({"selftest", "ranges"});
+  EXPECT_EQ(outcome.code, 0) << outcome.out;
+}
+
+}  // namespace
+}  // namespace sf
