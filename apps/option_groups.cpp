@@ -82,15 +82,19 @@ void add_world(CLI::App& app, WorldOptions& o) {
       ->group(kWorld);
 }
 
-void add_accuracy(CLI::App& app, WorldOptions& o) {
-  std::vector<std::string> words;
-  for (const std::string_view word : sensors::accuracy_words()) words.emplace_back(word);
-  app.add_option("--accuracy", o.load.accuracy,
-                 "Accuracy mode of all sensors, in place of the world's: " + join_or(words) +
-                     "; several for several types, as in \"laser:skip2 near3\" (docs/accuracy.md)")
+CLI::Option* add_accuracy(CLI::App& app, std::string& words, const std::string& help) {
+  std::vector<std::string> known;
+  for (const std::string_view word : sensors::accuracy_words()) known.emplace_back(word);
+  return app
+      .add_option(
+          "--accuracy", words,
+          help + ": " + join_or(known) + "; several for several types, as in \"laser:skip2 near3\" (docs/accuracy.md)")
       ->check(not_empty("a word"))
-      ->type_name("WORDS")
-      ->group(kAccuracy);
+      ->type_name("WORDS");
+}
+
+void add_accuracy(CLI::App& app, WorldOptions& o) {
+  add_accuracy(app, o.load.accuracy, "Accuracy mode of all sensors, in place of the world's")->group(kAccuracy);
 }
 
 void add_accuracy_target(CLI::App& app, AccuracyTargetOptions& o) {

@@ -56,6 +56,8 @@ void add_json(CLI::App& app, JsonOption& o);
 void add_device(CLI::App& app, DeviceOption& o);
 void add_world(CLI::App& app, WorldOptions& o);
 void add_accuracy(CLI::App& app, WorldOptions& o);
+/// @param help without the words that are known
+CLI::Option* add_accuracy(CLI::App& app, std::string& words, const std::string& help);
 /// `--max-error`, `--by` and `--min-rate`.
 void add_accuracy_target(CLI::App& app, AccuracyTargetOptions& o);
 /// `--auto`, with its target.

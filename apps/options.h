@@ -343,6 +343,7 @@ struct SweepOptions : DeviceOption {
 
 struct VerifyOptions : RecordingOption, ThreadsOption, JsonOption, DeviceOption {
   std::uint64_t sample = 500;  ///< scans that are cast again in plain C++; 0: all
+  std::string accuracy;        ///< modes whose errors are measured at the recorded poses; empty: none
 };
 
 struct MergeOptions {

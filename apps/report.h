@@ -19,6 +19,7 @@
 #include "netio/server/state_filter.h"
 #include "netio/stream_monitor.h"
 #include "scenarios/explanation.h"
+#include "scenarios/recorded_accuracy.h"
 #include "scenarios/tradeoff.h"
 #include "scenarios/verification.h"
 #include "selftest/case.h"
@@ -115,7 +116,9 @@ std::string text_of(const netio::StreamSummary& summary);
 std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading);
 /// @param recorded the run kept its readings
 std::string text_of(const scenarios::Verification& verification, bool recorded);
-std::string json_of(const scenarios::Verification& verification);
+/// @param accuracy null: none was asked for
+std::string json_of(const scenarios::Verification& verification, const scenarios::RecordedAccuracy* accuracy = nullptr);
+std::string text_of(const scenarios::RecordedAccuracy& accuracy);
 std::string text_of(const scenarios::Explanation& explanation);
 std::string json_of(const scenarios::Explanation& explanation);
 std::string text_of(const std::vector<scenarios::ModeResult>& results);

@@ -390,14 +390,46 @@ std::string json_of(const server::RobotClientStats& f) {
   return indented(json);
 }
 
-std::string json_of(const scenarios::Verification& verification) {
+namespace {
+
+Json accuracy_json(const scenarios::RecordedAccuracy& accuracy) {
+  Json json{{"mode", accuracy.words},
+            {"against", "exact"},
+            {"with_noise", false},
+            {"ticks", accuracy.ticks},
+            {"interrupted", accuracy.interrupted},
+            {"within_bounds", accuracy.within_bounds()},
+            {"notes", accuracy.notes},
+            {"types", Json::array()}};
+  for (const scenarios::ModeErrors& t : accuracy.types) {
+    const scenarios::ErrorDistribution& e = t.errors;
+    json["types"].push_back({{"sensor", t.sensor},
+                             {"mode", t.mode},
+                             {"unit", t.unit},
+                             {"recorded_with_noise", t.noisy},
+                             {"count", e.count()},
+                             {"zero", e.zero()},
+                             {"median", finite_json(e.quantile(0.5))},
+                             {"p99", finite_json(e.quantile(0.99))},
+                             {"max", finite_json(e.max())},
+                             {"covered", e.covered()},
+                             {"covered_max", e.covered() > 0.0 ? finite_json(e.covered_max()) : Json()},
+                             {"bound", finite_json(e.bound())}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string json_of(const scenarios::Verification& verification, const scenarios::RecordedAccuracy* accuracy) {
   const auto compared = [](const scenarios::Comparison& c) {
     return Json{{"type", c.type},           {"readings", c.readings}, {"numbers", c.values},
                 {"different", c.different}, {"largest", c.largest},   {"first", c.first}};
   };
   Json json{{"ticks", verification.ticks},
-            {"sound", verification.sound()},
+            {"sound", verification.sound() && !verification.interrupted},
             {"interrupted", verification.interrupted},
+            {"truncated", verification.truncated},
             {"missing", verification.missing},
             {"damage", verification.damage},
             {"scans", verification.scans},
@@ -405,6 +437,7 @@ std::string json_of(const scenarios::Verification& verification) {
             {"reference", compared(verification.reference)}};
   json["again"] = Json::array();
   for (const scenarios::Comparison& c : verification.recomputed) json["again"].push_back(compared(c));
+  if (accuracy != nullptr) json["accuracy"] = accuracy_json(*accuracy);
   return indented(json);
 }
 

@@ -138,6 +138,9 @@ void add_verify(CLI::App& app, Call& call) {
   sub->add_flag_callback(
          "--all", [&o] { o.sample = 0; }, "Recompute every laser scan in plain C++, which may take long")
       ->excludes(sample);
+  add_accuracy(
+      *sub, o.accuracy,
+      "Recompute the run in another accuracy mode too, and print the distribution of its errors against exact");
   add_threads(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);

@@ -235,6 +235,10 @@ void Merger::find_readings(const Part& part, std::uint64_t tick) {
 MergedRecording merge_recordings(std::span<const std::string> places, const std::string& folder) {
   const Parts parts = open_parts(places);
   MergedRecording merged;
+  for (const auto& part : parts) {
+    if (part->contents.truncated && part->ticks.size() == 1)
+      throw base::InputError(part->name, 0, "was cut off before its first tick: there is nothing to merge");
+  }
   record::GrowingFile file(folder + "/" + record::RecordingPart{}.file());
   Merger merger(parts, [&](std::span<const std::uint8_t> bytes) { file.append(bytes); });
   merger.write();

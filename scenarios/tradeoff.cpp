@@ -10,6 +10,7 @@
 #include "base/elapsed.h"
 #include "base/time.h"
 #include "farm/farm.h"
+#include "scenarios/error_distribution.h"
 #include "scenarios/recorded_paths.h"
 #include "sensors/accuracy.h"
 #include "sensors/laser.h"
@@ -78,9 +79,7 @@ class ModeEntrant {
     if (read.values.size() > kMostValues) return;
     for (std::size_t i = 0; i < block.values.size(); i += width()) {
       read.values.push_back(block.values[i]);
-      const bool flagged = !block.quality.empty() && block.quality[i / width()] != base::QualityFlag::none;
-      // A NaN value has no error to bound.
-      read.bounds.push_back(flagged || std::isnan(block.values[i]) ? HUGE_VAL : block.bound);
+      read.bounds.push_back(covering_bound(block, i / width(), block.values[i]));
     }
   }
 
@@ -100,16 +99,10 @@ class ModeEntrant {
   std::size_t elements_ = 0;  ///< per lap
 };
 
-double apart(double ours, double theirs) {
-  if (std::isnan(ours) && std::isnan(theirs)) return 0.0;
-  const double error = std::abs(ours - theirs);
-  return std::isnan(error) ? HUGE_VAL : error;
-}
-
 /// [m] Errors of a sample of scans in mode `exact` against the plain C++ reference, which is independent of the device.
-std::vector<double> laser_errors(const ModeEntrant& exact, const RecordedPaths& paths, const Read& read,
-                                 const sensors::SensorSet& sensor_set) {
-  std::vector<double> errors;
+ErrorDistribution laser_errors(const ModeEntrant& exact, const RecordedPaths& paths, const Read& read,
+                               const sensors::SensorSet& sensor_set) {
+  ErrorDistribution errors;
   sensors::LaserReference reference(exact.world(), 0, false);
   const auto& rows = sensor_set.group(sensors::kLaser)->rows;
   // Scans of the first tick: every laser has its first reading there unless it has a phase.
@@ -120,39 +113,25 @@ std::vector<double> laser_errors(const ModeEntrant& exact, const RecordedPaths& 
   for (std::size_t i = 0; i < std::min(rows.size(), kReferenceScans); ++i) {
     if (rows[i].phase > 0.0 || rows[i].latency > 0.0) return {};
     const auto scan = reference.scan(rows[i].mover, rows[i].sensor, 0);
-    for (const double range : scan.ranges) errors.push_back(apart(read.values[at++], range));
+    for (const double range : scan.ranges) errors.add(read.values[at++], range, HUGE_VAL);
   }
   return errors;
 }
 
-/// Quantile of the errors: the value at the fraction `part` of their ascending order.
-double part_of(std::vector<double>& errors, double part) {
-  if (errors.empty()) return 0.0;
-  const auto at = errors.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(errors.size() - 1));
-  std::nth_element(errors.begin(), at, errors.end());
-  return *at;
-}
-
-void grade_errors(std::vector<double> errors, ModeResult& grade) {
-  grade.median = part_of(errors, 0.5);
-  grade.p99 = part_of(errors, 0.99);
-  grade.max = part_of(errors, 1.0);
+void grade_errors(const ErrorDistribution& errors, ModeResult& grade) {
+  grade.median = errors.quantile(0.5);
+  grade.p99 = errors.quantile(0.99);
+  grade.max = errors.max();
 }
 
 void compare(const Read& read, const Read& exact, ModeResult& grade) {
-  std::vector<double> errors;
-  std::size_t covered = 0;
-  double bound = 0.0;
-  for (std::size_t i = 0; i < std::min(read.values.size(), exact.values.size()); ++i) {
-    errors.push_back(apart(read.values[i], exact.values[i]));
-    if (std::isinf(read.bounds[i])) continue;
-    ++covered;
-    bound = std::max(bound, read.bounds[i]);
-    grade.covered_max = std::max(grade.covered_max, errors.back());
-  }
-  if (covered > 0) grade.bound = bound;
-  grade.covered = errors.empty() ? 0.0 : static_cast<double>(covered) / static_cast<double>(errors.size());
-  grade_errors(std::move(errors), grade);
+  ErrorDistribution errors;
+  for (std::size_t i = 0; i < std::min(read.values.size(), exact.values.size()); ++i)
+    errors.add(read.values[i], exact.values[i], read.bounds[i]);
+  grade.bound = errors.bound();
+  grade.covered = errors.covered();
+  grade.covered_max = errors.covered_max();
+  grade_errors(errors, grade);
 }
 
 void find_front(std::vector<ModeResult>& results, std::size_t first) {

@@ -13,6 +13,7 @@
 #include "base/thread_pool.h"
 #include "farm/farm.h"
 #include "robots/kinematics.h"
+#include "scenarios/recorded_states.h"
 #include "sensors/bumper.h"
 #include "sensors/laser.h"
 #include "sensors/laser_noise.h"
@@ -71,7 +72,7 @@ class Verifier {
   Verifier(const record::Recording& recording, gpu::Device& device, const VerifyOptions& options)
       : recording_(recording),
         options_(options),
-        world_(world::from_snapshot(recording.info.snapshot)),
+        world_(recorded_world(recording)),
         farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads}),
         reference_(world_, recording.info.seed),
         infinite_(record::option_of(recording.info, record::kNoReturn) == "inf"),
@@ -86,7 +87,12 @@ class Verifier {
   Verification run() {
     result_.reference.type = "laser";
     result_.damage = recording_.damage;
-    if (!has_all_states()) {
+    result_.truncated = recording_.truncated;
+    if (recording_.truncated && recording_.ticks == 0) {
+      result_.damage.push_back("the recording was cut off before its first tick: nothing was compared");
+      return std::move(result_);
+    }
+    if (!has_all_states(recording_)) {
       result_.damage.push_back("ticks without the states of all movers: nothing was compared");
       return std::move(result_);
     }
@@ -155,12 +161,8 @@ class Verifier {
   }
 
   void look_at_tick(std::size_t tick) {
-    reports_.clear();
-    for (std::uint32_t m = 0; m < recording_.states.size(); ++m) {
-      const record::StateSample& s = recording_.states[m][tick];
-      reports_.push_back({m, s.time, s.X_WM, s.velocity});
-      farm_.set_absent(m, base::is_absent(s.X_WM));
-    }
+    recorded_reports(recording_, tick, reports_);
+    for (const base::Report& report : reports_) farm_.set_absent(report.mover, base::is_absent(report.X_WM));
     const std::int64_t time = reports_[0].time;
     const auto look_at = [this](std::span<const base::ReadingBlock> readings) {
       for (const base::ReadingBlock& reading : readings) check_reading(reading);
@@ -193,12 +195,6 @@ class Verifier {
       for (const sensors::SensorSpec& laser : lasers->rows)
         all += static_cast<std::size_t>(1.0 + laser.rate * 1e-9 * static_cast<double>(recording_.end_time));
     stride_ = options_.sample == 0 ? 1 : std::max<std::size_t>(1, all / options_.sample);
-  }
-
-  /// Each tick has the states of all movers.
-  bool has_all_states() const {
-    const auto& all = recording_.states;
-    return std::all_of(all.begin(), all.end(), [&](const auto& s) { return s.size() == all[0].size(); });
   }
 
   /// One of the recorded ticks has exactly this time.

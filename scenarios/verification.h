@@ -31,9 +31,11 @@ struct Verification {
   std::uint64_t missing = 0;         ///< recorded readings that were not due in the recomputation
   std::vector<std::string> skipped;  ///< sensor types that cannot be recomputed, and why
   std::vector<std::string> damage;   ///< of the recording, as reported by its reader
+  bool truncated = false;            ///< the recording was not finished; all of its whole ticks were compared
   bool interrupted = false;          ///< not all ticks were compared
-  bool sound() const;  ///< no difference, missing reading or damage, and something was compared unless the recording
-                       ///< has no ticks or only what is `skipped`
+  /// No difference, missing reading or damage, and something was compared unless the recording has no ticks (which is
+  /// damage where it was cut off) or only what is `skipped`. Of an interrupted verification: as far as it went.
+  bool sound() const;
 };
 
 struct VerifyOptions {

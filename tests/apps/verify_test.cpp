@@ -129,6 +129,83 @@ TEST(Verify, DamageIsTold) {
   EXPECT_EQ(facts.number("/reference/different"), 0);
 }
 
+/// Bits of the index and the summary, of lengths and of the end, all over the file.
+TEST(Verify, AFlippedBitAnywhereIsToldAndEndsWithAnError) {
+  const Folder folder;
+  const std::string file = altered(folder, 99) + "/run.mcap";
+  const std::string whole = read_file(file);
+  for (std::size_t i = 0; i < 24; ++i) {
+    std::string bytes = whole;
+    const std::size_t at = i < 4 ? bytes.size() - 8 + 2 * i : bytes.size() - 1 - i * i * bytes.size() / 540;
+    bytes[at] = static_cast<char>(bytes[at] ^ 1 << i % 8);
+    std::ofstream(file, std::ios::binary) << bytes;
+    const Outcome outcome = run_program({"verify", file});
+    EXPECT_TRUE(outcome.code == 1 || outcome.code == 2)
+        << "byte " << at << " of " << bytes.size() << ": " << outcome.out;
+    EXPECT_NE(outcome.err.find("run.mcap"), std::string::npos) << outcome.err;
+  }
+}
+
+/// A recording of a run that was killed: sound as far as its whole ticks go, and not at all without one.
+TEST(Verify, ACutRecordingIsNoWholeOne) {
+  const Folder folder;
+  const std::string file = altered(folder, 99) + "/run.mcap";
+  const auto whole = std::filesystem::file_size(file);
+  std::filesystem::resize_file(file, whole * 3 / 4);
+  const Outcome part = run_program({"verify", file});
+  EXPECT_EQ(part.code, 0) << part.out;
+  EXPECT_NE(part.out.find("verdict            sound up to its end: the recording was not finished"), std::string::npos)
+      << part.out;
+  EXPECT_TRUE(Json(run_program({"verify", file, "--json"}).out).flag("/truncated"));
+
+  // What stands before the first tick has no message of /fleet but the channel's.
+  const record::Recording run = record::open_recording(file);
+  std::uintmax_t size = whole * 3 / 4;
+  while (record::open_recording(file).ticks > 0) std::filesystem::resize_file(file, size -= 64);
+  const Outcome none = run_program({"verify", file});
+  EXPECT_EQ(none.code, 1) << none.out;
+  EXPECT_NE(none.out.find("cut off before its first tick: nothing was compared"), std::string::npos) << none.out;
+  EXPECT_NE(none.out.find("verdict            NOT SOUND"), std::string::npos) << none.out;
+  EXPECT_FALSE(Json(run_program({"verify", file, "--json"}).out).flag("/sound"));
+}
+
+TEST(Verify, AnotherAccuracyModeHasItsErrors) {
+  const Folder folder;
+  const std::string run = record(folder, {"--record-readings"});
+  const Outcome outcome = run_program({"verify", run, "--accuracy", "skip4 near1", "--json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_TRUE(facts.flag("/sound")) << "by the recorded mode";
+  EXPECT_EQ(facts.text("/accuracy/mode"), "skip4 near1");
+  EXPECT_EQ(facts.number("/accuracy/ticks"), facts.number("/ticks"));
+  EXPECT_TRUE(facts.flag("/accuracy/within_bounds"));
+  ASSERT_GE(facts.size("/accuracy/types"), 1u);
+  for (std::size_t i = 0; i < facts.size("/accuracy/types"); ++i) {
+    const std::string at = "/accuracy/types/" + std::to_string(i);
+    EXPECT_GT(facts.number(at + "/count"), 0.0) << outcome.out;
+    EXPECT_LE(facts.number(at + "/median"), facts.number(at + "/p99"));
+    EXPECT_LE(facts.number(at + "/p99"), facts.number(at + "/max"));
+  }
+  const Outcome text = run_program({"verify", run, "--accuracy", "exact"});
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_NE(text.out.find("Errors of \"exact\" against exact at the recorded poses, both without noise, "),
+            std::string::npos)
+      << text.out;
+  EXPECT_NE(text.out.find("100.00 %          0          0          0"), std::string::npos) << text.out;
+}
+
+TEST(Verify, UnknownModesAreRefusedWithTheKnownOnes) {
+  const Folder folder;
+  const std::string run = record(folder);
+  const Outcome unknown = run_program({"verify", run, "--accuracy", "skip3"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_EQ(unknown.out, "");
+  EXPECT_NE(unknown.err.find("--accuracy: there is no accuracy \"skip3\"; expected one of \"exact\", \"single\", "
+                             "\"skip2\", \"skip4\""),
+            std::string::npos)
+      << unknown.err;
+}
+
 TEST(Verify, WrongUsage) {
   const Outcome nothing = run_program({"verify", "/nowhere"});
   EXPECT_EQ(nothing.code, 2);

@@ -100,5 +100,21 @@ TEST(Merging, GivesTheBytesOfASingleProcess) {
   EXPECT_FALSE(merged.truncated);
 }
 
+/// Else the merged recording would be whole, and sound without a tick.
+TEST(Merging, ARankCutOffBeforeItsFirstTickIsRefused) {
+  const std::string ranks = merging_folder("cut");
+  record_merged(merging_folder("cut_whole"), ranks);
+  const std::string second = ranks + "/rank-1.mcap";
+  std::uintmax_t size = std::filesystem::file_size(second);
+  std::filesystem::resize_file(second, size * 3 / 4);
+  const MergedRecording part = merge_recordings(std::span(&ranks, 1), merging_folder("cut_merged"));
+  EXPECT_TRUE(part.truncated);
+  EXPECT_GT(part.ticks, 0u);
+  EXPECT_LT(part.ticks, 10u);
+  const std::string text = base::read_text(second);
+  std::filesystem::resize_file(second, text.find("/clock") + 100);  // behind the channel of the ticks' first message
+  EXPECT_THROW(merge_recordings(std::span(&ranks, 1), merging_folder("cut_none")), base::InputError);
+}
+
 }  // namespace
 }  // namespace sf::scenarios

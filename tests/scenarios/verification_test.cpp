@@ -10,7 +10,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/error.h"
 #include "record/recorder.h"
+#include "scenarios/recorded_accuracy.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 #include "sensors/accuracy.h"
@@ -211,6 +213,82 @@ TEST(Verification, StoppedIsNotUnsound) {
   EXPECT_EQ(v.ticks, 1u);
   EXPECT_TRUE(v.interrupted);
   EXPECT_EQ(v.missing, 0u) << "what was not looked at is not missing";
+}
+
+/// Nothing to compare is no proof.
+TEST(Verification, ARecordingCutOffBeforeItsFirstTickIsNotSound) {
+  record::Recording run = recorded(true);
+  for (auto& states : run.states) states.clear();
+  run.readings.clear();
+  run.ticks = 0;
+  EXPECT_TRUE(verify(run, device(), {}).sound()) << "a finished run of no ticks";
+  run.truncated = true;
+  const Verification v = verify(run, device(), {});
+  EXPECT_FALSE(v.sound());
+  EXPECT_TRUE(v.truncated);
+  ASSERT_EQ(v.damage.size(), 1u);
+}
+
+TEST(Verification, StatesOfAnotherWorldAreRefused) {
+  record::Recording run = recorded(true);
+  run.states.pop_back();
+  EXPECT_THROW(verify(run, device(), {}), base::InputError);
+  EXPECT_THROW(recorded_accuracy(run, device(), "skip2", {}), base::InputError);
+}
+
+/// Each mode against `exact`, at the poses of one noisy recording: as many values as were recorded.
+TEST(RecordedAccuracy, ModesHaveTheirErrors) {
+  const record::Recording run = recorded(true);
+  const auto errors = [&](const std::string& words) {
+    const RecordedAccuracy all = recorded_accuracy(run, device(), words, {});
+    EXPECT_EQ(all.ticks, 20u);
+    EXPECT_TRUE(all.within_bounds());
+    EXPECT_EQ(all.types.size(), 1u);
+    EXPECT_EQ(all.types[0].sensor, "laser");
+    EXPECT_EQ(all.types[0].mode, words.substr(words.find(':') + 1));
+    EXPECT_EQ(all.types[0].unit, "m");
+    EXPECT_TRUE(all.types[0].noisy);
+    EXPECT_EQ(all.types[0].errors.count(), 61 * run.readings.size());
+    return all.types[0].errors;
+  };
+  const ErrorDistribution exact = errors("exact"), single = errors("laser:single"), skip2 = errors("skip2"),
+                          skip4 = errors("skip4");
+  EXPECT_EQ(exact.max(), 0.0);
+  EXPECT_EQ(exact.zero(), 1.0);
+  EXPECT_EQ(exact.covered(), 1.0);
+  EXPECT_GT(single.max(), 0.0) << "32 bits show";
+  EXPECT_LE(single.max(), single.bound());
+  EXPECT_LT(single.max(), 1e-4) << "noise of 1 cm is in neither";
+  EXPECT_NEAR(skip2.covered(), 31.0 / 61.0, 1e-9) << "every other beam, and the last";
+  EXPECT_EQ(skip2.covered_max(), 0.0) << "beams that are cast are those of exact";
+  EXPECT_GE(skip2.zero(), skip2.covered());
+  EXPECT_GT(skip2.max(), 0.1) << "between boxes";
+  EXPECT_LT(skip4.zero(), skip2.zero());
+}
+
+/// The mode of the recording does not matter, only its poses do.
+TEST(RecordedAccuracy, OfARecordingInAnotherModeOrWithoutReadings) {
+  const RecordedAccuracy a = recorded_accuracy(recorded(true), device(), "skip4", {}),
+                         b = recorded_accuracy(recorded(true, "single"), device(), "skip4", {}),
+                         c = recorded_accuracy(recorded(false), device(), "skip4", {});
+  for (const RecordedAccuracy* other : {&b, &c}) {
+    EXPECT_EQ(other->types.at(0).errors.count(), a.types.at(0).errors.count());
+    EXPECT_EQ(other->types[0].errors.max(), a.types[0].errors.max());
+    EXPECT_EQ(other->types[0].errors.quantile(0.99), a.types[0].errors.quantile(0.99));
+  }
+}
+
+TEST(RecordedAccuracy, CanBeStopped) {
+  const RecordedAccuracy a =
+      recorded_accuracy(recorded(false), device(), "skip4", {.progress = [](double) { return false; }});
+  EXPECT_TRUE(a.interrupted);
+  EXPECT_EQ(a.ticks, 1u);
+}
+
+TEST(RecordedAccuracy, ModesThatNoSensorHasAreRefused) {
+  const record::Recording run = recorded(false);
+  EXPECT_THROW(recorded_accuracy(run, device(), "skip3", {}), base::InputError);
+  EXPECT_THROW(recorded_accuracy(run, device(), "near3", {}), base::InputError) << "of magnetometers";
 }
 
 }  // namespace

@@ -1,0 +1,33 @@
+#include "scenarios/recorded_states.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace sf::scenarios {
+
+world::World recorded_world(const record::Recording& recording) {
+  world::World world = world::from_snapshot(recording.info.snapshot);
+  if (world.movers.size() != recording.states.size())
+    throw base::InputError(recording.file, 0,
+                           fmt::format("has the states of {} movers, and its world has {}: not one recording",
+                                       recording.states.size(), world.movers.size()));
+  return world;
+}
+
+bool has_all_states(const record::Recording& recording) {
+  const auto& all = recording.states;
+  return std::all_of(all.begin(), all.end(), [&](const auto& s) { return s.size() == all[0].size(); });
+}
+
+void recorded_reports(const record::Recording& recording, std::size_t tick, std::vector<base::Report>& reports) {
+  reports.clear();
+  for (std::uint32_t m = 0; m < recording.states.size(); ++m) {
+    const record::StateSample& s = recording.states[m][tick];
+    reports.push_back({m, s.time, s.X_WM, s.velocity});
+  }
+}
+
+}  // namespace sf::scenarios
