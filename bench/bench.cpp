@@ -34,8 +34,6 @@ namespace sf::bench {
 
 namespace {
 
-constexpr const char* kReference = "embree, 8-ray packets";
-
 /// Results that are measured once and reported several times.
 struct Session {
   gpu::Device device;
@@ -56,7 +54,7 @@ struct ScanCase {
   std::size_t repeats;
 };
 constexpr ScanCase kScanCases[] = {{1'000, 8.0, 41}, {1'000, 0.75, 41}, {10'000, 8.0, 15}, {10'000, 0.75, 15}};
-constexpr std::size_t kMethods = 6;
+constexpr std::size_t kMethods = 8;
 
 const Comparison& scan_comparison(Session& session, const ScanCase& c) {
   const std::string name = fmt::format("{}/{}", c.robots, c.range);
@@ -67,9 +65,10 @@ const Comparison& scan_comparison(Session& session, const ScanCase& c) {
   casters.push_back(make_farm_caster(scans, session.device));
   casters.push_back(make_grid_caster(scans, "plain C++ grid", walk_portable));
   casters.push_back(make_grid_caster(scans, "plain C++ grid, -march=native", walk_native));
-  for (const EmbreeUse use : {EmbreeUse{true, false}, EmbreeUse{true, true}, EmbreeUse{false, false}})
+  for (const EmbreeUse use :
+       {EmbreeUse{8, false}, EmbreeUse{8, true}, EmbreeUse{16, false}, EmbreeUse{16, true}, EmbreeUse{1, false}})
     if (auto caster = make_embree_caster(scans, use)) casters.push_back(std::move(caster));
-  const Comparison comparison = compare(scans, casters, kReference, c.repeats);
+  const Comparison comparison = compare(scans, casters, "embree", c.repeats);
   session.book.scans.push_back(comparison);
   return session.comparisons[name] = comparison;
 }
@@ -218,7 +217,8 @@ void report_measurements(benchmark::State& state, std::vector<Measurement>& fact
 }
 
 const char* method_key(std::size_t which) {
-  constexpr const char* kKeys[kMethods] = {"farm", "grid", "grid_native", "embree8", "embree8_robust", "embree1"};
+  constexpr const char* kKeys[kMethods] = {"farm",           "grid",     "grid_native",     "embree8",
+                                           "embree8_robust", "embree16", "embree16_robust", "embree1"};
   return kKeys[which];
 }
 

@@ -17,10 +17,19 @@ Cost cast_once(Caster& caster, std::size_t round) {
   return cost;
 }
 
+/// Name of the fastest method whose name begins with `peer`; empty: none.
+std::string best_of(const std::vector<MethodResult>& results, const std::string& peer) {
+  const MethodResult* best = nullptr;
+  for (const MethodResult& result : results)
+    if (result.method.starts_with(peer) && (best == nullptr || result.typical.cpu_s < best->typical.cpu_s))
+      best = &result;
+  return best != nullptr ? best->method : "";
+}
+
 }  // namespace
 
-Comparison compare(const Scans& scans, const std::vector<std::unique_ptr<Caster>>& casters,
-                   const std::string& reference, std::size_t repeats) {
+Comparison compare(const Scans& scans, const std::vector<std::unique_ptr<Caster>>& casters, const std::string& peer,
+                   std::size_t repeats) {
   Comparison comparison{scans.scene, scans.robots(), scans.rays(), scans.laser.range_max, {}};
   for (const auto& caster : casters) {
     MethodResult method_result;
@@ -30,8 +39,9 @@ Comparison compare(const Scans& scans, const std::vector<std::unique_ptr<Caster>
     method_result.hash = caster->hash();
     comparison.method_results.push_back(std::move(method_result));
   }
-  take_turns(comparison.method_results, repeats, reference,
+  take_turns(comparison.method_results, repeats, "",
              [&](std::size_t k, std::size_t turn) { return cast_once(*casters[k], turn % scans.rounds.size()); });
+  set_ratios(comparison.method_results, best_of(comparison.method_results, peer));
   return comparison;
 }
 

@@ -27,9 +27,9 @@ struct Comparison {
 
 /// In every turn each caster casts the same round once, in rotating order. Only the cast is timed; results are poisoned
 /// before and checked after it. All rounds are cast once for warm-up.
-/// @param reference name of the caster that ratios refer to
-Comparison compare(const Scans& scans, const std::vector<std::unique_ptr<Caster>>& casters,
-                   const std::string& reference, std::size_t repeats);
+/// @param peer begins the names of the casters of which ratios refer to the best: the one with the least processor time
+Comparison compare(const Scans& scans, const std::vector<std::unique_ptr<Caster>>& casters, const std::string& peer,
+                   std::size_t repeats);
 
 /// [M/s] rays per second in the median turn.
 inline double mrays_per_s(std::size_t rays, const Cost& cost) { return 1e-6 * static_cast<double>(rays) / cost.wall_s; }

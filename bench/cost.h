@@ -41,6 +41,19 @@ struct Timing {
   double cpu_ratio = 0.0;     ///< [-] the same of CPU time on all cores
 };
 
+/// Sets the ratios to the method called `reference`; nothing without one.
+template <class Result>
+void set_ratios(std::vector<Result>& results, const std::string& reference) {
+  const auto known =
+      std::find_if(results.begin(), results.end(), [&](const Result& result) { return result.method == reference; });
+  if (known == results.end()) return;
+  for (Result& result : results) {
+    const Cost times = ratio(known->repeats, result.repeats);
+    result.ratio = times.wall_s;
+    result.cpu_ratio = times.cpu_s;
+  }
+}
+
 /// Runs each method once in every turn, in rotating order, so that changes in machine load affect all alike. `run(k,
 /// turn)` runs method k and returns its cost. Sets the medians, and the ratios to the method called `reference`.
 template <class Result, class Run>
@@ -51,14 +64,7 @@ void take_turns(std::vector<Result>& results, std::size_t turns, const std::stri
       results[k].repeats.push_back(run(k, turn));
     }
   for (Result& result : results) result.typical = median(result.repeats);
-  const auto known =
-      std::find_if(results.begin(), results.end(), [&](const Result& result) { return result.method == reference; });
-  if (known == results.end()) return;
-  for (Result& result : results) {
-    const Cost times = ratio(known->repeats, result.repeats);
-    result.ratio = times.wall_s;
-    result.cpu_ratio = times.cpu_s;
-  }
+  set_ratios(results, reference);
 }
 
 }  // namespace sf::bench

@@ -11,8 +11,15 @@ namespace sf::bench {
 
 namespace {
 
-constexpr std::size_t kPacket = 8;
-constexpr int kAllValid[kPacket] = {-1, -1, -1, -1, -1, -1, -1, -1};
+constexpr std::size_t kMostPacket = 16;
+alignas(64) constexpr int kAllValid[kMostPacket] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+
+void intersect(RTCScene scene, RTCIntersectContext& context, RTCRayHit8& packet) {
+  rtcIntersect8(kAllValid, scene, &context, &packet);
+}
+void intersect(RTCScene scene, RTCIntersectContext& context, RTCRayHit16& packet) {
+  rtcIntersect16(kAllValid, scene, &context, &packet);
+}
 
 class EmbreeCaster final : public Caster {
  public:
@@ -20,14 +27,13 @@ class EmbreeCaster final : public Caster {
   ~EmbreeCaster() override;
 
   std::string name() const override {
-    return std::string(use_.packets ? "embree, 8-ray packets" : "embree, single rays") +
+    return (use_.packet == 1 ? "embree, single rays" : "embree, " + std::to_string(use_.packet) + "-ray packets") +
            (use_.robust ? ", robust" : "");
   }
   void poison() override { results_.poison(); }
   void cast(std::size_t round) override {
     thread_pool_.parallel_for(scans_.robots(), kRobotsPerPiece, [&](std::size_t first, std::size_t last, unsigned) {
-      for (std::size_t i = first; i < last; ++i)
-        use_.packets ? cast_packets(i, scans_.X_WS(round, i)) : cast_single(i, scans_.X_WS(round, i));
+      for (std::size_t i = first; i < last; ++i) cast_robot(i, scans_.X_WS(round, i));
     });
   }
   std::size_t unwritten() const override { return results_.unwritten(); }
@@ -36,6 +42,12 @@ class EmbreeCaster final : public Caster {
 
  private:
   void add_walls(RTCGeometry geometry);
+  void cast_robot(std::size_t robot, const base::Pose& X_WS) {
+    if (use_.packet == 16) return cast_packets<RTCRayHit16, 16>(robot, X_WS);
+    if (use_.packet == 8) return cast_packets<RTCRayHit8, 8>(robot, X_WS);
+    cast_single(robot, X_WS);
+  }
+  template <class Packet, std::size_t width>
   void cast_packets(std::size_t robot, const base::Pose& X_WS);
   void cast_single(std::size_t robot, const base::Pose& X_WS);
   std::uint32_t model_of(unsigned primitive) const {
@@ -69,7 +81,7 @@ EmbreeCaster::EmbreeCaster(const Scans& scans, const EmbreeUse& use)
     beams_x_.push_back(static_cast<float>(beam.x));
     beams_y_.push_back(static_cast<float>(beam.y));
   }
-  const std::size_t padded = (beams_x_.size() + kPacket - 1) / kPacket * kPacket;
+  const std::size_t padded = (beams_x_.size() + use.packet - 1) / use.packet * use.packet;
   beams_x_.resize(padded, beams_x_.back());
   beams_y_.resize(padded, beams_y_.back());
 }
@@ -103,6 +115,7 @@ void EmbreeCaster::add_walls(RTCGeometry geometry) {
   }
 }
 
+template <class Packet, std::size_t width>
 void EmbreeCaster::cast_packets(std::size_t robot, const base::Pose& X_WS) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -114,9 +127,9 @@ void EmbreeCaster::cast_packets(std::size_t robot, const base::Pose& X_WS) {
   const auto range_max = static_cast<float>(scans_.laser.range_max);
   float* const ranges = results_.ranges(robot);
   std::uint32_t* const hits = results_.hits(robot);
-  RTCRayHit8 packet{};
-  for (std::size_t first = 0; first < beams_x_.size(); first += kPacket) {
-    for (std::size_t k = 0; k < kPacket; ++k) {
+  Packet packet{};
+  for (std::size_t first = 0; first < beams_x_.size(); first += width) {
+    for (std::size_t k = 0; k < width; ++k) {
       packet.ray.org_x[k] = x;
       packet.ray.org_y[k] = y;
       packet.ray.dir_x[k] = c * beams_x_[first + k] - s * beams_y_[first + k];
@@ -126,8 +139,8 @@ void EmbreeCaster::cast_packets(std::size_t robot, const base::Pose& X_WS) {
       packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
       packet.hit.primID[k] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect8(kAllValid, scene_, &context, &packet);
-    const std::size_t count = std::min(kPacket, scans_.beams.size() - first);
+    intersect(scene_, context, packet);
+    const std::size_t count = std::min(width, scans_.beams.size() - first);
     for (std::size_t k = 0; k < count; ++k) {
       ranges[first + k] = packet.ray.tfar[k];
       hits[first + k] = model_of(packet.hit.primID[k]);

@@ -5,10 +5,10 @@
 
 namespace sf::bench {
 
-/// Options of Embree.
+/// Options of Embree. Packets of 16 are native to processors with AVX-512.
 struct EmbreeUse {
-  bool packets = true;  ///< packets of eight adjacent beams, declared coherent; false: single beams
-  bool robust = false;  ///< slower intersection test without gaps at shared edges
+  std::size_t packet = 8;  ///< adjacent beams in a packet, declared coherent: 8 or 16; 1: single beams
+  bool robust = false;     ///< slower intersection test without gaps at shared edges
 };
 
 /// `scans` must outlive it. Null when the benchmarks are built without Embree.

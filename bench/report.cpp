@@ -32,8 +32,8 @@ std::string quoted(const std::string& text) { return "\"" + text + "\""; }
 
 std::string scans_csv(const std::vector<Comparison>& scans) {
   std::string text =
-      "scene,method,robots,rays,range_m,wall_ms_median,cpu_ms_median,mrays_per_s,ratio_to_embree8,"
-      "cpu_ratio_to_embree8,max_error_m,hash\n";
+      "scene,method,robots,rays,range_m,wall_ms_median,cpu_ms_median,mrays_per_s,ratio_to_embree,"
+      "cpu_ratio_to_embree,max_error_m,hash\n";
   for (const Comparison& o : scans)
     for (const MethodResult& e : o.method_results)
       text += fmt::format("{},{},{},{},{},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.3g},{}\n", quoted(o.scene),
