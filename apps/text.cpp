@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <iterator>
 
+#include "base/printable.h"
+
 namespace sf::apps {
 
 namespace {
@@ -18,7 +20,7 @@ void print(const std::string& text) {
 }
 
 void print_message(const std::string& text) {
-  if (!muted) std::fputs(("sensorfarm: " + text + "\n").c_str(), stderr);
+  if (!muted) std::fputs(("sensorfarm: " + base::printable(text) + "\n").c_str(), stderr);
 }
 
 std::string row(std::string_view name, std::string_view value) { return fmt::format("  {:<18} {}\n", name, value); }

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/printable.h"
+
 namespace sf::netio {
 
 bool write_nonblocking(int descriptor, std::string_view text) {
@@ -24,7 +26,7 @@ void RateLimitedLog::write(std::string_view text, std::int64_t now) {
   last_ = now;
   const std::uint64_t silent = left_out_ - reported_;
   const std::string line =
-      fmt::format("sensorfarm: {}{}\n", text,
+      fmt::format("sensorfarm: {}{}\n", base::one_line(text),
                   silent > 0 ? fmt::format(" ({} more lines were left out before this one)", silent) : "");
   if (allowed_ < 1.0 || !write_nonblocking(descriptor_, line)) {
     ++left_out_;
