@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <cstdio>
+#include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -56,11 +60,21 @@ struct ThreadPool::State {
   std::atomic<unsigned> busy{0};  ///< threads that work on the job, without the caller
   bool open = false;              ///< true: a thread that wakes may still join the job
   bool stop = false;
+  std::exception_ptr failure;  ///< of the job: the first that a piece threw
 
   void work(unsigned thread) {
     for (std::size_t k = 0, at = 0; k < shares.size(); ++k)
-      while (shares[(thread + k) % shares.size()].take(k == 0, at))
-        job.call(job.body, at * piece, std::min((at + 1) * piece, count), thread);
+      while (shares[(thread + k) % shares.size()].take(k == 0, at)) call(at, thread);
+  }
+
+  /// Exceptions, such as a lack of memory, wait for the end of the loop: others still work on its data.
+  void call(std::size_t at, unsigned thread) {
+    try {
+      job.call(job.body, at * piece, std::min((at + 1) * piece, count), thread);
+    } catch (...) {
+      const std::scoped_lock guard(lock);
+      if (!failure) failure = std::current_exception();
+    }
   }
 
   /// The shares of a loop differ by one piece at most.
@@ -95,10 +109,30 @@ struct ThreadPool::State {
   }
 };
 
+namespace {
+
+/// Once per process.
+void note_fewer_threads(unsigned got, unsigned wanted) {
+  static std::atomic<bool> noted{false};
+  if (!noted.exchange(true))
+    std::fprintf(
+        stderr,
+        "sensorfarm: only %u of %u threads can be started, so it is slower: the limits of processes (ulimit -u) "
+        "or of memory (ulimit -v) allow no more\n",
+        got, wanted);
+}
+
+}  // namespace
+
 ThreadPool::ThreadPool(unsigned threads) : state_(std::make_unique<State>()) {
   const unsigned wanted = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
   state_->shares = std::vector<Share>(wanted);
-  for (unsigned i = 1; i < wanted; ++i) state_->threads.emplace_back([this, i] { state_->serve(i); });
+  state_->threads.reserve(wanted);
+  try {
+    for (unsigned i = 1; i < wanted; ++i) state_->threads.emplace_back([this, i] { state_->serve(i); });
+  } catch (const std::system_error&) {  // a limit of processes or memory; `threads()` has what there is
+    note_fewer_threads(this->threads(), wanted);
+  }
 }
 
 ThreadPool::~ThreadPool() {
@@ -137,6 +171,7 @@ void ThreadPool::run_job(std::size_t count, std::size_t piece, Job job) {
   s.spin_until([&] { return s.busy == 0; });
   std::unique_lock guard(s.lock);
   s.done.wait(guard, [&] { return s.busy == 0; });
+  if (s.failure) std::rethrow_exception(std::exchange(s.failure, nullptr));
 }
 
 }  // namespace sf::base

@@ -3,8 +3,12 @@
 #include "base/thread_pool.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <fstream>
+#include <new>
 #include <vector>
 
 namespace sf::base {
@@ -25,6 +29,49 @@ TEST(ThreadPool, EveryItemOnceWhateverThePiecesAndThreads) {
         for (const auto& v : visits) EXPECT_EQ(v, 1);
       }
   }
+}
+
+/// On any thread, after the others have done their pieces; the next loop is as ever.
+TEST(ThreadPool, ExceptionsReachTheCaller) {
+  ThreadPool thread_pool(3);
+  for (const std::size_t bad : {0u, 50u, 99u}) {
+    std::vector<std::atomic<int>> visits(100);
+    EXPECT_THROW(thread_pool.parallel_for(visits.size(), 1,
+                                          [&](std::size_t first, std::size_t, unsigned) {
+                                            ++visits[first];
+                                            if (first == bad) throw std::bad_alloc();
+                                          }),
+                 std::bad_alloc);
+    for (const auto& v : visits) EXPECT_EQ(v, 1);
+  }
+  std::atomic<int> more{0};
+  thread_pool.parallel_for(100, 1, [&](std::size_t, std::size_t, unsigned) { ++more; });
+  EXPECT_EQ(more, 100);
+}
+
+/// As under `ulimit -u` or `ulimit -v`: a loop runs with the threads that there are. A thread's stack takes 8 MiB of
+/// addresses.
+TEST(ThreadPool, FewerThreadsAreEnough) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlimit small{pages * static_cast<rlim_t>(getpagesize()) + (40u << 20), before.rlim_max};
+  if (pages > (std::size_t{1} << 34) / 4096) GTEST_SKIP() << "sanitizers take all addresses";
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
+  testing::internal::CaptureStderr();
+  {
+    ThreadPool thread_pool(64);
+    ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+    EXPECT_LT(thread_pool.threads(), 64u);
+    std::vector<std::atomic<int>> visits(1000);
+    thread_pool.parallel_for(visits.size(), 7, [&](std::size_t first, std::size_t last, unsigned thread) {
+      EXPECT_LT(thread, thread_pool.threads());
+      for (std::size_t i = first; i < last; ++i) ++visits[i];
+    });
+    for (const auto& v : visits) EXPECT_EQ(v, 1);
+  }
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("of 64 threads can be started"), std::string::npos);
 }
 
 /// Many short loops in sequence: no loop is lost, and none starts before the previous one has ended.
