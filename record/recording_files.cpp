@@ -20,9 +20,9 @@ namespace {
 
 bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
 
-/// Whether a living process holds the lock of `path`.
+/// Whether a living process holds the lock of `path`. A link is nobody's recording.
 bool is_being_written(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
   if (descriptor < 0) return false;
   const bool held = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   ::close(descriptor);
@@ -31,8 +31,11 @@ bool is_being_written(const std::string& path) {
 
 }  // namespace
 
-GrowingFile::GrowingFile(const std::string& path) : path_(path), fresh_(path + ".new") {
+GrowingFile::GrowingFile(const std::string& path) : path_(path) {
   std::error_code error;
+  // A plug-in may change the working directory before `publish`.
+  whole_ = std::filesystem::absolute(path, error).string();
+  fresh_ = whole_ + ".new";
   const auto directory = std::filesystem::path(path).parent_path();
   if (!directory.empty()) std::filesystem::create_directories(directory, error);
   if (error)
@@ -40,15 +43,26 @@ GrowingFile::GrowingFile(const std::string& path) : path_(path), fresh_(path + "
         directory.string(), 0,
         "cannot be made a directory: " + error.message() + "; choose one in a directory that you may write to");
 
-  descriptor_ = ::open(fresh_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail("be written");
+  create();
   try {
     refuse_second_writer();
-    if (::ftruncate(descriptor_, 0) != 0) fail("be emptied");
   } catch (...) {
     ::close(descriptor_);
     throw;
   }
+}
+
+/// Never an existing file, nor what a link of that name points at. What an ended run has left is removed.
+void GrowingFile::create() {
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+  descriptor_ = ::open(fresh_.c_str(), kFlags, 0666);
+  if (descriptor_ < 0 && errno == EEXIST) {
+    if (is_being_written(fresh_)) refuse();
+    if (::unlink(fresh_.c_str()) != 0 && errno != ENOENT) fail("be written");
+    descriptor_ = ::open(fresh_.c_str(), kFlags, 0666);
+    if (descriptor_ < 0 && errno == EEXIST) refuse();
+  }
+  if (descriptor_ < 0) fail("be written");
 }
 
 void GrowingFile::refuse_second_writer() {
@@ -56,11 +70,15 @@ void GrowingFile::refuse_second_writer() {
   struct stat named = {};
   // File systems without locks refuse no writer.
   const bool held = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  // Between opening and locking, another writer may have renamed the file to `path_`.
+  // Between creating and locking, another writer may have taken the file for one of an ended run.
   const bool still_named =
-      !held && ::fstat(descriptor_, &mine) == 0 && ::stat(fresh_.c_str(), &named) == 0 && same_file(mine, named);
-  if (still_named && !is_being_written(path_)) return;
+      !held && ::fstat(descriptor_, &mine) == 0 && ::lstat(fresh_.c_str(), &named) == 0 && same_file(mine, named);
+  if (still_named && !is_being_written(whole_)) return;
   if (still_named) ::unlink(fresh_.c_str());
+  refuse();
+}
+
+void GrowingFile::refuse() const {
   throw base::InputError(path_, 0, "another run is being recorded here: wait for it, or choose another directory");
 }
 
@@ -80,7 +98,7 @@ void GrowingFile::append(std::span<const std::uint8_t> bytes) {
 }
 
 void GrowingFile::publish() {
-  if (std::rename(fresh_.c_str(), path_.c_str()) != 0) fail("be replaced");
+  if (std::rename(fresh_.c_str(), whole_.c_str()) != 0) fail("be replaced");
   published_ = true;
 }
 

@@ -29,11 +29,14 @@ class GrowingFile {
   std::uint64_t size() const { return size_; }  ///< [byte]
 
  private:
+  void create();
   void refuse_second_writer();
+  [[noreturn]] void refuse() const;
   [[noreturn]] void fail(const std::string& doing) const;
 
-  std::string path_;
-  std::string fresh_;  ///< the name before `publish`
+  std::string path_;   ///< for messages
+  std::string whole_;  ///< the same, absolute
+  std::string fresh_;  ///< the absolute name before `publish`
   int descriptor_ = -1;
   std::uint64_t size_ = 0;
   bool published_ = false;

@@ -229,6 +229,34 @@ TEST(Recorder, ARecordingThatCannotBeginLeavesTheOlderOne) {
   EXPECT_FALSE(fs::exists(directory + "/run.mcap.new"));
 }
 
+/// A link of that name, by whoever may write to the folder, is replaced: what it points at stays as it is.
+TEST(Recorder, ALinkIsNotFollowed) {
+  const std::string directory = fresh_directory("link");
+  const std::string target = directory + "/target";
+  std::ofstream(target) << "precious";
+  fs::create_symlink(target, directory + "/run.mcap.new");
+  {
+    Recorder recorder(directory, sample_info(false));
+    write_ticks(recorder, 0, 2);
+  }
+  EXPECT_EQ(fs::file_size(target), 8u);
+  EXPECT_FALSE(fs::is_symlink(directory + "/run.mcap"));
+  EXPECT_EQ(open_recording(directory).ticks, 2u);
+}
+
+/// A plug-in may change it before the file gets its name.
+TEST(Recorder, TheWorkingDirectoryMayChange) {
+  const std::string directory = fresh_directory("moved");
+  const fs::path here = fs::current_path();
+  {
+    Recorder recorder(fs::relative(directory, here).string(), sample_info(false));
+    fs::current_path("/");
+    write_ticks(recorder, 0, 2);
+  }
+  fs::current_path(here);
+  EXPECT_EQ(open_recording(directory).ticks, 2u);
+}
+
 TEST(Recorder, ASecondRecorderInTheSamePlaceIsRefusedWhileTheFirstLives) {
   const std::string directory = fresh_directory("second");
   {
