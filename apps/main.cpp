@@ -4,24 +4,26 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <new>
+#include <optional>
+#include <system_error>
 
 #include "apps/command_line.h"
 #include "apps/stop_signals.h"
+#include "apps/supervision.h"
 #include "base/error.h"
+#include "base/plugin_calls.h"
+#include "base/printable.h"
 #include "control/own_controllers.h"
 
 namespace {
 
 int fail(int code, const char* what) {
-  std::fprintf(stderr, "sensorfarm: %s\n", what);
+  std::fprintf(stderr, "sensorfarm: %s\n", sf::base::printable(what).c_str());
   return code;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  // A file that may not grow any more is an error with a message, as a full disk is.
-  std::signal(SIGXFSZ, SIG_IGN);
+int run(int argc, char** argv) {
   try {
     if (const char* const plugins = std::getenv("SENSORFARM_PLUGINS")) sf::control::load_plugin_list(plugins);
     const sf::apps::Parsed parsed = sf::apps::parse_command_line(argc, argv);
@@ -35,7 +37,25 @@ int main(int argc, char** argv) {
     return fail(2, error.what());
   } catch (const sf::base::DeviceError& error) {
     return fail(3, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(1, "not enough memory: free some, raise the limit (ulimit -v), or ask for less");
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again) return fail(1, error.what());
+    return fail(1, "no thread can be started: raise the limit of processes (ulimit -u) or of memory (ulimit -v)");
   } catch (const std::exception& error) {
     return fail(1, error.what());
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A file that may not grow any more is an error with a message, as a full disk is.
+  std::signal(SIGXFSZ, SIG_IGN);
+  if (sf::apps::needs_supervision(argc, argv))
+    if (const std::optional<int> code = sf::apps::supervise()) return *code;
+  sf::base::watch_plugin_calls();
+  const int code = run(argc, argv);
+  sf::base::finish_plugin_calls();
+  return code;
 }

@@ -324,6 +324,20 @@ void add_robots(CLI::App& app, CloneOptions& o) {
   add_seed(app, o, "Seed of poses, decisions and noise");
 }
 
+void add_in_process(CLI::App& app, InProcessOption& o) {
+  app.add_flag("--in-process", o.in_process,
+               "Run plug-ins and Python in this process, as for a debugger. Default: in a child process, whose end is "
+               "reported");
+}
+
+void add_timeout(CLI::App& app, double& seconds, const std::string& job) {
+  app.add_option(
+         "--timeout", seconds,
+         fmt::format("Seconds of wall-clock time per {}, after which it is ended and has failed (default: none)", job))
+      ->check(number(1e-3, 1e9))
+      ->type_name("S");
+}
+
 void add_controller(CLI::App& app, ControllerOptions& o) {
   std::vector<std::string> names;
   for (const control::ControllerType* type : control::controllers()) names.emplace_back(type->name);
@@ -342,6 +356,7 @@ void add_controller(CLI::App& app, ControllerOptions& o) {
   app.add_flag("--localize", o.localize,
                "The controller drives by the pose that the robot's own encoders, gyro and GPS receiver tell "
                "(same as --set localize=true)");
+  add_in_process(app, o);
 }
 
 }  // namespace sf::apps

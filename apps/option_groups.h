@@ -54,6 +54,9 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
 void add_json(CLI::App& app, JsonOption& o);
 /// Without `--device`, SENSORFARM_DEVICE counts.
 void add_device(CLI::App& app, DeviceOption& o);
+void add_in_process(CLI::App& app, InProcessOption& o);
+/// `--timeout` of a job, e.g. "scenario".
+void add_timeout(CLI::App& app, double& seconds, const std::string& job);
 void add_world(CLI::App& app, WorldOptions& o);
 void add_accuracy(CLI::App& app, WorldOptions& o);
 /// @param help without the words that are known

@@ -33,6 +33,10 @@ struct DeviceOption {
   std::string device;  ///< row or part of a name; empty: the best
 };
 
+struct InProcessOption {
+  bool in_process = false;  ///< users' code runs in this process, not in a child
+};
+
 struct WorldOptions {
   std::string world;  ///< world file
   world::LoadOptions load;
@@ -76,7 +80,7 @@ struct AccuracyTargetOptions {
   bool automatic = false;  ///< measure first, and take the modes that reach the target
 };
 
-struct ControllerOptions {
+struct ControllerOptions : InProcessOption {
   std::string controller = "wander";
   std::vector<std::string> set;  ///< its settings, "key=value" each
   bool localize = false;         ///< as the setting of this name
@@ -314,7 +318,7 @@ struct MapOptions : ReceiveOptions, WireOption, DurationOption, PageOption {
   bool once = false;                     ///< until every port has brought a complete map
 };
 
-struct ExperimentOptions : SeedOption, DeviceOption {
+struct ExperimentOptions : SeedOption, DeviceOption, InProcessOption {
   std::string experiment;  ///< by name
   bool list = false;       ///< print all names
   std::string out;         ///< folder
@@ -323,15 +327,18 @@ struct ExperimentOptions : SeedOption, DeviceOption {
   std::string experiments;                ///< folder of their files; empty: found
 };
 
-struct TestOptions : DeviceOption {
+struct TestOptions : DeviceOption, InProcessOption {
   std::vector<std::string> scenarios;  ///< files
   std::string junit;                   ///< file; empty: none
+  unsigned jobs = 1;                   ///< scenarios at a time
+  double timeout = 0.0;                ///< [s] of wall-clock time per scenario; 0: none
 };
 
-struct SweepOptions : DeviceOption {
+struct SweepOptions : DeviceOption, InProcessOption {
   std::string file;                 ///< of the sweep
   std::string out;                  ///< folder
   unsigned jobs = 0;                ///< processes; 0: one per core, or Slurm's CPUs per task
+  double timeout = 0.0;             ///< [s] of wall-clock time per job; 0: none
   std::string share;                ///< "K/N"; empty: all, or the task's of `srun`
   bool list = false;                ///< print the points
   bool retry = false;               ///< failed jobs once more

@@ -15,6 +15,10 @@ Progress::~Progress() {
   if (drawn_) netio::write_nonblocking(STDERR_FILENO, "\r\033[K");
 }
 
+void Progress::clear() {
+  if (isatty(STDERR_FILENO) == 1) netio::write_nonblocking(STDERR_FILENO, "\r\033[K");
+}
+
 void Progress::show(double part, const std::string& note) {
   const auto now = std::chrono::steady_clock::now();
   if (!on_terminal_ || now < next_) return;

@@ -13,6 +13,8 @@ class Progress {
 
   /// @param part [-] in [0, 1]. Draws at most ten times a second.
   void show(double part, const std::string& note = "");
+  /// Clears a line that another process has left.
+  static void clear();
 
  private:
   std::string what_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -11,8 +12,10 @@
 #include "apps/progress_line.h"
 #include "apps/rank_run.h"
 #include "apps/report.h"
+#include "apps/scenario_processes.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "base/printable.h"
 #include "cluster/shares.h"
 #include "scenarios/junit.h"
 
@@ -27,6 +30,8 @@ const char* word_of(scenarios::ScenarioStatus status) {
 }
 
 std::string text_of(const scenarios::ScenarioResult& result) {
+  if (!result.failure.empty())
+    return fmt::format("{} {}: {}\n  FAIL {}\n", word_of(result.status()), result.file, result.name, result.failure);
   std::string text = fmt::format("{} {}: {:.1f} s simulated in {:.2f} s, {}\n", word_of(result.status()), result.file,
                                  result.simulated, result.wall, result.name);
   for (const scenarios::ExpectationResult& o : result.outcomes)
@@ -62,7 +67,10 @@ bool agreed(bool passed, cluster::Ranks* ranks) {
   return ranks->exchange(word).front().front() != 0;
 }
 
-int test_all(const TestOptions& options, cluster::Ranks* ranks) {
+bool is_fine(const scenarios::ScenarioResult& result) { return result.status() != scenarios::ScenarioStatus::failed; }
+
+/// One after another in this process, which shares the fleets with others.
+int test_here(const TestOptions& options, cluster::Ranks* ranks) {
   const bool reports = ranks == nullptr || ranks->rank() == 0;
   std::vector<scenarios::Scenario> all;
   std::optional<gpu::Device> device;
@@ -74,7 +82,6 @@ int test_all(const TestOptions& options, cluster::Ranks* ranks) {
     device.emplace(options.device);
   });
   std::vector<scenarios::ScenarioResult> results;
-  bool passed = true;
   for (const scenarios::Scenario& scenario : all) {
     {
       Progress progress(scenario.name);
@@ -83,19 +90,37 @@ int test_all(const TestOptions& options, cluster::Ranks* ranks) {
       };
       results.push_back(scenarios::run_scenario(scenario, *device, show, cluster::threads_of(0, ranks), ranks));
     }
-    print(text_of(results.back()));
-    passed = passed && results.back().status() != scenarios::ScenarioStatus::failed;
+    print(base::printable(text_of(results.back())));
   }
   on_all(ranks, [&] {
     if (!options.junit.empty() && reports) write_junit(options.junit, results);
   });
-  return agreed(passed, ranks) ? 0 : 1;
+  return agreed(std::all_of(results.begin(), results.end(), is_fine), ranks) ? 0 : 1;
+}
+
+int test_in_processes(const TestOptions& options) {
+  std::vector<scenarios::ScenarioResult> results;
+  const bool whole = run_in_own_processes(
+      options,
+      [&] {
+        if (!options.junit.empty()) check_junit(options.junit);
+      },
+      [&](const scenarios::ScenarioResult& result) {
+        results.push_back(result);
+        print(base::printable(text_of(result)));
+      });
+  if (!whole) print_message("interrupted: {} of {} run", results.size(), counted(options.scenarios.size(), "scenario"));
+  for (std::size_t i = results.size(); i < options.scenarios.size(); ++i)
+    results.push_back({.name = options.scenarios[i], .file = options.scenarios[i], .failure = "interrupted"});
+  if (!options.junit.empty()) write_junit(options.junit, results);
+  return whole && std::all_of(results.begin(), results.end(), is_fine) ? 0 : 1;
 }
 
 }  // namespace
 
 int test_scenarios(const TestOptions& options) {
-  return with_ranks([&](cluster::Ranks* ranks) { return test_all(options, ranks); });
+  if (!cluster::is_rank() && !options.in_process) return test_in_processes(options);
+  return with_ranks([&](cluster::Ranks* ranks) { return test_here(options, ranks); });
 }
 
 }  // namespace sf::apps

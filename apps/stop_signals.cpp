@@ -14,9 +14,13 @@ std::atomic<int> stop_signal{SIGINT};  // of another rank's stop, too
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 std::optional<int> chosen_code;
 
+std::atomic<unsigned> own_count{0};
+std::atomic<unsigned>* stops = &own_count;
+
 void on_signal(int number) {
   stop_signal = number;
   stop = true;
+  ++*stops;
 }
 
 }  // namespace
@@ -26,6 +30,8 @@ const std::atomic<bool>& stop_requested() { return stop; }
 int interrupted_code() { return chosen_code.value_or(128 + stop_signal); }
 
 void set_interrupted_code(int code) { chosen_code = code; }
+
+void count_stops(std::atomic<unsigned>* count) { stops = count; }
 
 void install_stop_handlers() {
   struct sigaction action {};

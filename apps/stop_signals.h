@@ -21,6 +21,9 @@ int interrupted_code();
 /// Another code for all signals (--interrupted-code). @param code in [0, 255]
 void set_interrupted_code(int code);
 
+/// Where the handlers count the signals that come, for a parent that passes on others (apps/supervision.h).
+void count_stops(std::atomic<unsigned>* count);
+
 /// Takes the signals over, but for a SIGHUP that is ignored (nohup). To be called once, before the loop.
 void install_stop_handlers();
 

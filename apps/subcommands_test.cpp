@@ -45,6 +45,7 @@ void add_experiment(CLI::App& app, Call& call) {
   sub->add_option("--files", o.experiments, "Folder of the experiments' scenario files (default: those of sensorfarm)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
+  add_in_process(*sub, o);
   add_device(*sub, o);
 }
 
@@ -57,6 +58,12 @@ void add_test(CLI::App& app, Call& call) {
       ->transform(base::installed_file)
       ->type_name("FILE");
   sub->add_option("--junit", o.junit, "Write the results as JUnit XML")->check(not_empty("a file"))->type_name("FILE");
+  sub->add_option("--jobs", o.jobs, "Number of scenarios at a time, each in a process of its own")
+      ->check(whole(1, 1024))
+      ->type_name("N")
+      ->capture_default_str();
+  add_timeout(*sub, o.timeout, "scenario");
+  add_in_process(*sub, o);
   add_device(*sub, o);
 }
 
@@ -107,6 +114,8 @@ void add_sweep(CLI::App& app, Call& call) {
       ->needs(slurm)
       ->expected(1)
       ->type_name("OPTION");
+  add_timeout(*sub, o.timeout, "job");
+  add_in_process(*sub, o);
   add_device(*sub, o);
 }
 

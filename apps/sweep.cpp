@@ -108,7 +108,8 @@ bool run_jobs(const SweepOptions& options, const Sweep& sweep, const SweepFolder
              progress.show(static_cast<double>(done) / static_cast<double>(jobs.size()),
                            fmt::format("{} of {}", done, counted(jobs.size(), "job")));
            },
-       .stop = [] { return stop_requested().load(); }});
+       .stop = [] { return stop_requested().load(); },
+       .timeout = options.timeout});
 }
 
 /// Failures and missed expectations, on standard error.
@@ -148,6 +149,7 @@ std::vector<std::string> arguments_of(const SweepOptions& options, const SweepFo
                                  "--jobs", std::to_string(std::max(1u, options.jobs))};
   if (!options.device.empty()) words.insert(words.end(), {"--device", options.device});
   if (options.retry) words.emplace_back("--retry");
+  if (options.timeout > 0.0) words.insert(words.end(), {"--timeout", fmt::format("{}", options.timeout)});
   return words;
 }
 

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/plugin_calls.h"
+#include "base/printable.h"
 
 namespace sf::control {
 
@@ -66,14 +68,19 @@ sensorfarm::Robot robot_of(const ControllerContext& context) {
 
 namespace {
 
+std::string name_of(const ControllerContext& context) {
+  return base::one_line(
+      fmt::format("controller '{}' of robot '{}'", context.type->name, context.world.movers[context.mover].name));
+}
+
 class OwnController final : public Controller {
   void translate(const ControllerInput& input);
   [[noreturn]] void fail(const std::string& why) const {
-    throw base::InputError(fmt::format("controller '{}' of robot '{}' failed at {:.3f} s: {}", name_,
-                                       world_.movers[robot_].name, time_, why));
+    throw base::InputError(fmt::format("{} failed at {:.3f} s: {}", name_, time_, base::one_line(why)));
   }
   template <class Call>
   auto guarded(Call&& call) const {
+    const base::PluginCall under_way(name_, time_);
     try {
       return call();
     } catch (const std::exception& error) {
@@ -86,10 +93,16 @@ class OwnController final : public Controller {
  public:
   OwnController(const ControllerContext& context, std::unique_ptr<sensorfarm::Controller> inner)
       : world_(context.world),
-        robot_(context.mover),
-        name_(context.type->name),
+        name_(name_of(context)),
         inner_(std::move(inner)),
         range_(guarded([&] { return inner_->radio_range(); })) {}
+
+  ~OwnController() override {
+    const base::PluginCall under_way(name_, time_);
+    inner_.reset();
+  }
+  OwnController(const OwnController&) = delete;
+  OwnController& operator=(const OwnController&) = delete;
 
   base::Twist step(const ControllerInput& input) override;
   base::Intent intent() const override { return {}; }
@@ -103,8 +116,7 @@ class OwnController final : public Controller {
 
  private:
   const world::World& world_;
-  std::uint32_t robot_;
-  std::string_view name_;
+  std::string name_;  ///< "controller 'mine' of robot 'r0'"
   std::unique_ptr<sensorfarm::Controller> inner_;
   double time_ = 0.0;  ///< [s] of the last step
   double range_;
@@ -144,8 +156,9 @@ std::unique_ptr<Controller> make_own_controller(const ControllerContext& context
   PublicSettings keys(settings);
   const auto refuse = [&](const char* why) {
     throw base::InputError(fmt::format("controller '{}' refuses robot '{}': {}", entry.name,
-                                       context.world.movers[context.mover].name, why));
+                                       context.world.movers[context.mover].name, base::one_line(why)));
   };
+  const base::PluginCall under_way(name_of(context));
   std::unique_ptr<sensorfarm::Controller> inner;
   try {
     inner = entry.make(robot_of(context), keys);
@@ -153,6 +166,8 @@ std::unique_ptr<Controller> make_own_controller(const ControllerContext& context
     throw;  // a setting
   } catch (const std::exception& error) {
     refuse(error.what());
+  } catch (...) {
+    refuse("it threw something that is no std::exception");
   }
   if (inner == nullptr) refuse("it made none");
   return std::make_unique<OwnController>(context, std::move(inner));

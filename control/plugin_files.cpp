@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "base/plugin.h"
+#include "base/plugin_calls.h"
+#include "base/printable.h"
 #include "control/own_controllers.h"
 #include "sensors/own_sensors.h"
 
@@ -43,7 +45,7 @@ void fill_from_python(const std::string& file, const std::string& whole, sensorf
   try {
     fill(whole.c_str(), plugin);
   } catch (const std::exception& error) {
-    throw base::InputError(file, 0, fmt::format("cannot be loaded: {}", error.what()));
+    throw base::InputError(file, 0, "cannot be loaded: " + base::one_line(error.what()));
   }
 }
 
@@ -61,16 +63,22 @@ void fill_from_library(const std::string& file, sensorfarm::Plugin& plugin) {
   try {
     fill(plugin);
   } catch (const std::exception& error) {
-    throw base::InputError(file, 0, fmt::format("its SENSORFARM_PLUGIN failed: {}", error.what()));
+    throw base::InputError(file, 0, "its SENSORFARM_PLUGIN failed: " + base::one_line(error.what()));
+  } catch (...) {
+    throw base::InputError(file, 0, "its SENSORFARM_PLUGIN failed: it threw something that is no std::exception");
   }
 }
 
 std::vector<const ControllerType*> load(const std::string& file, const std::string& whole) {
   sensorfarm::Plugin plugin;
-  if (is_python(file))
-    fill_from_python(file, whole, plugin);
-  else
-    fill_from_library(file, plugin);
+  {
+    const base::PluginCall under_way(base::one_line("plug-in " + file));
+    if (is_python(file))
+      fill_from_python(file, whole, plugin);
+    else
+      fill_from_library(file, plugin);
+  }
+  base::renew_plugin_watch();
   std::vector<const ControllerType*> types;
   for (sensorfarm::ControllerEntry& entry : plugin.controllers)
     types.push_back(add_own_controller(std::move(entry), file));

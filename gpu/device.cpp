@@ -1,5 +1,7 @@
 #include "gpu/device.h"
 
+#include <sys/resource.h>
+
 #include <utility>
 
 #include "base/error.h"
@@ -10,13 +12,21 @@ namespace sf::gpu {
 
 namespace {
 
+/// Drivers fail without a reason where memory is limited; empty: it is not.
+std::string limits_text() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
+  return ", or raise the limit of memory (ulimit -v), which is " + std::to_string(limit.rlim_cur >> 20) + " MiB";
+}
+
 std::string no_device_message(const Instance& instance, const DeviceCandidates& candidates) {
   if (!instance.problem.empty())
-    return "no Vulkan device: " + instance.problem + "; install a driver (Debian: mesa-vulkan-drivers)";
-  if (candidates.info.empty()) return "no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers)";
+    return "no Vulkan device: " + instance.problem + "; install a driver (Debian: mesa-vulkan-drivers)" + limits_text();
+  if (candidates.info.empty())
+    return "no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers)" + limits_text();
   std::string line = "no usable Vulkan device among " + std::to_string(candidates.info.size()) + ":";
   for (const DeviceInfo& info : candidates.info) line += " " + info.name + " " + info.reason + ";";
-  return line + " name another with --device or SENSORFARM_DEVICE, or install a driver";
+  return line + " name another with --device or SENSORFARM_DEVICE, or install a driver" + limits_text();
 }
 
 /// Opens the device `vk.physical`. @return "" or the reason for the failure

@@ -25,6 +25,15 @@ std::string suite_of_nothing(const ScenarioResult& result) {
       escaped(result.name), result.wall, escaped(result.file));
 }
 
+/// An error: the scenario did not come to its end, so no expectation has a value.
+std::string suite_of_failure(const ScenarioResult& result) {
+  return fmt::format(
+      "  <testsuite name=\"{0}\" tests=\"1\" failures=\"0\" errors=\"1\" time=\"{1:.3f}\">\n"
+      "    <testcase classname=\"{0}\" name=\"run\" time=\"{1:.3f}\">\n"
+      "      <error message=\"{2}\">{3}</error>\n    </testcase>\n  </testsuite>\n",
+      escaped(result.name), result.wall, escaped(result.failure), escaped(result.file));
+}
+
 }  // namespace
 
 std::string escaped(std::string_view text) {
@@ -49,6 +58,10 @@ std::string escaped(std::string_view text) {
 std::string junit_of(std::span<const ScenarioResult> results) {
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
   for (const ScenarioResult& result : results) {
+    if (!result.failure.empty()) {
+      text += suite_of_failure(result);
+      continue;
+    }
     if (result.status() == ScenarioStatus::no_expectations) {
       text += suite_of_nothing(result);
       continue;

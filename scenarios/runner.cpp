@@ -286,6 +286,7 @@ class Run {
 }  // namespace
 
 ScenarioStatus ScenarioResult::status() const {
+  if (!failure.empty()) return ScenarioStatus::failed;
   if (outcomes.empty()) return ScenarioStatus::no_expectations;
   const bool met = std::all_of(outcomes.begin(), outcomes.end(), [](const ExpectationResult& o) { return o.met; });
   return met ? ScenarioStatus::passed : ScenarioStatus::failed;

@@ -40,7 +40,8 @@ struct ScenarioResult {
   std::uint64_t hash = 0;  ///< of all readings
   /// Those of every run, then the other ones that the scenario expects. No durations, so the same on any machine.
   std::vector<Metric> metrics;
-  ScenarioStatus status() const;
+  std::string failure = {};       ///< why it did not come to its end; empty: it did
+  ScenarioStatus status() const;  ///< failed with a failure, whatever it expects
 };
 
 /// Validates a scenario without a device: world, robots, controllers with their settings, and expectations.

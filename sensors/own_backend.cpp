@@ -8,6 +8,8 @@
 #include <mutex>
 
 #include "base/error.h"
+#include "base/plugin_calls.h"
+#include "base/printable.h"
 #include "base/random.h"
 #include "sensors/own_kernel.h"
 #include "sensors/settings.h"
@@ -68,12 +70,20 @@ class SensorSurroundings final : public sensorfarm::Surroundings {
   bool noise_;
 };
 
+/// "sensor 'nose' (compass)", for messages.
+std::string name_of(const SensorSpec& spec, const OwnType& type) {
+  return base::one_line(fmt::format("sensor '{}' ({})", spec.name, type.entry.name));
+}
+
 class OwnSensors final : public SensorBackend {
  public:
   OwnSensors(const SensorContext& context, const OwnType& type)
       : context_(context), type_(type), sensors_(own_sensors(context.world, type)), scene_(context) {
     std::size_t most = 1;
-    for (const OwnSensor& each : sensors_) most = std::max<std::size_t>(most, each.spec.elements);
+    for (const OwnSensor& each : sensors_) {
+      most = std::max<std::size_t>(most, each.spec.elements);
+      names_.push_back(name_of(each.spec, type));
+    }
     stride_ = most * type.columns.size();
     if (!type.spirv.empty()) kernel_ = std::make_unique<OwnKernel>(context, type, sensors_.size(), most);
     values_.resize(sensors_.size() * stride_);
@@ -101,6 +111,7 @@ class OwnSensors final : public SensorBackend {
   SensorContext context_;
   const OwnType& type_;
   std::vector<OwnSensor> sensors_;
+  std::vector<std::string> names_;  ///< of `sensors_`
   Scene scene_;
   std::unique_ptr<OwnKernel> kernel_;  ///< null: measured on the host alone
   std::size_t stride_;                 ///< values of the longest reading
@@ -138,12 +149,18 @@ void OwnSensors::measure(std::size_t i) {
                             own.spec.sensor | std::uint32_t{type_.entry.id} << 24, due.sequence};
   const SensorSurroundings around(scene_, key, context_.noise);
   const Pose& X = X_WS_[i];
-  try {
-    own.sensor->read({1e-9 * static_cast<double>(now_), {X.x, X.y, X.z, X.yaw}, around}, values);
-  } catch (const std::exception& error) {
+  const double now = 1e-9 * static_cast<double>(now_);
+  const base::PluginCall under_way(names_[due.row], now);
+  const auto fail = [&](const char* why) {
     const std::scoped_lock guard(failure_lock_);
-    failure_ = fmt::format("sensor '{}' ({}) failed at {:.3f} s: {}", own.spec.name, type_.entry.name,
-                           1e-9 * static_cast<double>(now_), error.what());
+    failure_ = fmt::format("{} failed at {:.3f} s: {}", names_[due.row], now, base::one_line(why));
+  };
+  try {
+    own.sensor->read({now, {X.x, X.y, X.z, X.yaw}, around}, values);
+  } catch (const std::exception& error) {
+    fail(error.what());
+  } catch (...) {
+    fail("it threw something that is no std::exception");
   }
 }
 
@@ -171,13 +188,14 @@ std::vector<OwnSensor> own_sensors(const world::World& world, const OwnType& typ
     own.spec.rate = rate_of(sensor, type.entry.rate);
     own.spec.sigma = HUGE_VAL;  // it may add noise
     const Pose& X = own.spec.X_MS;
+    const base::PluginCall under_way(name_of(own.spec, type));
     try {
       own.sensor = type.entry.make({own.spec.name, mover, number, {X.x, X.y, X.z, X.yaw}, sensor.height},
                                    PublicSensorSettings(sensor));
     } catch (const base::InputError&) {
       throw;  // a setting
     } catch (const std::exception& error) {
-      refuse(sensor, "", error.what());
+      refuse(sensor, "", base::one_line(error.what()));
     }
     if (own.sensor == nullptr) refuse(sensor, "", fmt::format("sensor type '{}' made none", type.entry.name));
     own.spec.elements = std::clamp(own.sensor->elements(), 1u, 1u << 20);

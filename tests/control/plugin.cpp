@@ -1,8 +1,17 @@
-// A plug-in of tests: two controllers.
+// A plug-in of tests: two controllers, and one that does to its process what its setting `how` says.
 
+#include <fcntl.h>
 #include <sensorfarm/plugin.h>
+#include <unistd.h>
 
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <map>
 #include <stdexcept>
+#include <string>
+#include <thread>
 
 namespace {
 
@@ -24,9 +33,79 @@ class Picky : public sensorfarm::Controller {
   sensorfarm::Twist step(const sensorfarm::Input&) override { return {}; }
 };
 
+volatile bool yes = true;
+
+int recurse(int depth) {
+  volatile char frame[4096] = {};
+  return yes ? recurse(depth + 1) + frame[depth % 4096] : 0;
+}
+
+/// Leaves a process behind, whose id is written to a file. @param away in a session of its own
+void leave_running(const std::string& file, bool away) {
+  const pid_t child = fork();
+  if (child > 0) return;
+  if (away) {
+    setsid();
+    if (fork() > 0) _exit(0);
+  }
+  std::ofstream(file) << getpid() << std::flush;
+  for (;;) pause();
+}
+
+void end_by(const std::string& how, const std::string& file) {
+  const std::map<std::string, void (*)()> ways{
+      {"exit 0", [] { std::exit(0); }},
+      {"exit 3", [] { std::exit(3); }},
+      {"quick_exit", [] { std::quick_exit(0); }},
+      {"_exit", [] { _exit(0); }},
+      {"abort", [] { std::abort(); }},
+      {"terminate", [] { std::terminate(); }},
+      {"segv", [] { raise(SIGSEGV); }},
+      {"null", [] { *static_cast<volatile int*>(nullptr) = 1; }},
+      {"bus", [] { raise(SIGBUS); }},
+      {"kill", [] { raise(SIGKILL); }},
+      {"term", [] { raise(SIGTERM); }},
+      {"recursion", [] { recurse(0); }},
+      {"thread", [] { std::thread([] { std::exit(0); }).join(); }},
+      {"loop",
+       [] {
+         while (yes) continue;
+       }},
+      {"sleep", [] { sleep(60); }},
+      {"number", [] { throw 7; }},
+      {"text", [] { throw std::runtime_error("\x1b[2Jred\x07\nsensorfarm: all is well"); }},
+      {"close", [] { close(0), close(1), close(2); }},
+      {"chdir", [] { static_cast<void>(chdir("/") == 0); }},
+      {"copy", [] { static_cast<void>(fork()); }},
+  };
+  if (how == "child" || how == "daemon") leave_running(file, how == "daemon");
+  if (const auto way = ways.find(how); way != ways.end()) way->second();
+}
+
+/// Drives straight on, and at 1 s does what `how` says.
+class Ends : public sensorfarm::Controller {
+ public:
+  Ends(const sensorfarm::Robot&, sensorfarm::Settings& settings)
+      : how_(settings.text("how", "")), file_(settings.text("file", "")) {
+    if (settings.flag("at_once", false)) end_by(how_, file_);
+  }
+  sensorfarm::Twist step(const sensorfarm::Input& input) override {
+    if (!done_ && input.time >= 0.999) {
+      done_ = true;
+      end_by(how_, file_);
+    }
+    return {0.1};
+  }
+
+ private:
+  std::string how_, file_;
+  bool done_ = false;
+};
+
 }  // namespace
 
 SENSORFARM_PLUGIN(plugin) {
   plugin.add_controller<Straight>("test-straight", "drives straight on", 5.0);
+  plugin.add_controller<Ends>("test-ends", "ends its process", 10.0);
   plugin.add_controller<Picky>("test-picky", "refuses every robot");
 }

@@ -2,10 +2,12 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 import venv
 
@@ -106,6 +108,42 @@ class Program(unittest.TestCase):
     def test_settings(self):
         self.assertIn("expects a number from 0 to 10; got '11'", self.fails("--controller", FILE + ":Careful", "--set", "near=11"))
         self.assertIn("has no setting 'far'", self.fails("--controller", FILE + ":Careful", "--set", "far=1"))
+
+    def test_end_of_the_process(self):
+        code, out, errors = run("--controller", FILE + ":Ends", "--set", "how=exit")
+        self.assertEqual(code, 1)
+        self.assertIn("controller 'Ends' of robot 'roomba1' ended the process (exit code 0) at 1.000 s simulated", errors)
+        self.assertIn("before the end", out)
+        errors = self.fails("--controller", FILE + ":Ends", "--set", "how=system_exit")
+        self.assertIn("SystemExit: 0", errors)
+        errors = self.fails("--controller", FILE + ":Ends", "--set", "how=escape")
+        self.assertIn("ValueError: \\x1b[2Jgone", errors)
+
+    def test_first_interrupt(self):
+        """Within half a second, by Python's loops and sleeps, too; the rest of the limit is for slow machines."""
+        for how in ("loop", "sleep"):
+            with tempfile.TemporaryDirectory() as folder:
+                started = subprocess.Popen([PROGRAM, "run", CAVE, "--robots", "20", "--duration", "5", "--controller",
+                                            FILE + ":Ends", "--set", "how=" + how, "--record", folder],
+                                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                while started.poll() is None and not os.path.exists(os.path.join(folder, "run.mcap")):
+                    time.sleep(0.01)
+                time.sleep(1)
+                begin = time.monotonic()
+                started.send_signal(signal.SIGINT)
+                errors = started.communicate()[1]
+                self.assertLess(time.monotonic() - begin, 4, how)
+                self.assertEqual(started.returncode, 1, how + errors)
+                self.assertIn("controller 'Ends' of robot 'roomba1' at 1.000 s simulated does not return", errors)
+
+    def test_children_end_with_the_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "pid")
+            code, _, errors = run("--controller", FILE + ":Ends", "--set", "how=child", "--set", "file=" + file)
+            self.assertEqual(code, 0, errors)
+            with open(file) as text:
+                with self.assertRaises(ProcessLookupError):
+                    os.kill(int(text.read()), 0)
 
     def test_names(self):
         self.assertIn("no controller 'Nobody'", self.fails("--controller", FILE + ":Nobody"))

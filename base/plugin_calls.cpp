@@ -1,0 +1,189 @@
+#include "base/plugin_calls.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "base/printable.h"
+
+namespace sf::base {
+
+namespace {
+
+constexpr std::array kFatal{SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL};
+constexpr int kNone = -1;
+
+PluginCalls own_calls;
+std::atomic<PluginCalls*> shared_calls{&own_calls};
+std::atomic<std::uint64_t> taken_rows{0};  ///< bit k: a thread has thread_row k
+static_assert(PluginCalls::kThreads == 64);
+thread_local int thread_row = kNone;  ///< of this thread
+bool is_watching = false;             ///< handlers are installed
+bool is_copy = false;                 ///< a call forked this process
+
+/// Returns the thread_row of a thread that ends.
+struct RowHolder {
+  ~RowHolder() {
+    if (thread_row != kNone) taken_rows &= ~(std::uint64_t{1} << thread_row);
+    thread_row = kNone;
+  }
+};
+
+/// @return kNone where all are taken_rows
+int take_row() {
+  static thread_local const RowHolder holder;
+  for (std::uint64_t before = taken_rows; ~before != 0;) {
+    const int first = __builtin_ctzll(~before);
+    if (taken_rows.compare_exchange_weak(before, before | std::uint64_t{1} << first)) return first;
+  }
+  return kNone;
+}
+
+bool is_under_way(const PluginCalls::Call& call) { return call.number % 2 != 0; }
+
+/// This thread's call under way; kNone: none.
+int call_of_thread() {
+  return thread_row != kNone && is_under_way(shared_calls.load()->calls[thread_row]) ? thread_row : kNone;
+}
+
+/// A copy that a call forked must not write where its original does.
+void note_fork() {
+  is_copy = call_of_thread() != kNone;
+  if (is_copy) shared_calls = &own_calls;
+}
+
+/// The line of a process without a parent that reports. Allocates nothing: the heap may be what is broken.
+void report_end(const char* how) {
+  const int blamed = own_calls.blamed;
+  const PluginCalls::Call* const call = blamed == kNone ? nullptr : &own_calls.calls[blamed];
+  std::array<char, 64> time{};
+  if (call != nullptr && !std::isnan(call->time))
+    std::snprintf(time.data(), time.size(), " at %.3f s simulated", call->time);
+  std::array<char, 512> line{};
+  std::snprintf(line.data(), line.size(), "sensorfarm: %s ended the process (%s)%s\n",
+                call == nullptr ? "a thread of a plug-in" : call->who, how, time.data());
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), std::strlen(line.data()));
+}
+
+/// @return users' code ends this process
+bool note_end() {
+  if (is_copy || shared_calls.load()->finished) return false;
+  shared_calls.load()->blamed = call_of_thread();
+  return true;
+}
+
+void on_exit_called(int code, void*) {
+  if (!note_end()) return;
+  std::fflush(nullptr);
+  if (shared_calls != &own_calls) _exit(code);
+  report_end(fmt::format("exit code {}", code).c_str());
+  _exit(EXIT_FAILURE);
+}
+
+void on_quick_exit_called() {
+  if (!note_end() || shared_calls != &own_calls) return;
+  report_end("quick_exit");
+  _exit(EXIT_FAILURE);
+}
+
+/// Not async-signal-safe, in a process that cannot go on.
+void on_fatal(int signal) {
+  std::signal(signal, SIG_DFL);
+  const char* const name = sigdescr_np(signal);
+  if (call_of_thread() != kNone && note_end() && shared_calls == &own_calls)
+    report_end(name != nullptr ? name : "signal");
+  raise(signal);
+}
+
+void install_handlers() {
+  pthread_atfork(nullptr, nullptr, note_fork);
+  std::at_quick_exit(on_quick_exit_called);
+  // A stack of its own, for recursion without end on the main thread.
+  static std::array<char, 1 << 16> stack;
+  stack_t other{};
+  other.ss_sp = stack.data();
+  other.ss_size = stack.size();
+  sigaltstack(&other, nullptr);
+  for (const int signal : kFatal) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_DFL) continue;  // a sanitizer's
+    struct sigaction action {};
+    action.sa_handler = on_fatal;
+    action.sa_flags = static_cast<int>(SA_ONSTACK | SA_NODEFER);
+    sigaction(signal, &action, nullptr);
+  }
+}
+
+std::string time_text(const PluginCalls::Call& call) {
+  return std::isnan(call.time) ? "" : fmt::format(" at {:.3f} s simulated", call.time);
+}
+
+std::string who_of(const PluginCalls::Call& call) { return one_line({call.who, strnlen(call.who, sizeof call.who)}); }
+
+/// Blamed calls, else all under way, with `what` behind their names and the time behind that.
+std::string named(const PluginCalls& calls, const std::string& what) {
+  const int blamed = calls.blamed;
+  std::vector<const PluginCalls::Call*> suspects;
+  for (int i = 0; i < PluginCalls::kThreads; ++i)
+    if (i == blamed || (blamed == kNone && is_under_way(calls.calls[i]))) suspects.push_back(&calls.calls[i]);
+  if (suspects.empty()) return "";
+  constexpr std::size_t kMost = 4;
+  std::string names = who_of(*suspects[0]);
+  for (std::size_t i = 1; i < std::min(suspects.size(), kMost); ++i) names += " or " + who_of(*suspects[i]);
+  if (suspects.size() > kMost) names += fmt::format(" or one of {} others", suspects.size() - kMost);
+  return names + what + time_text(*suspects[0]);
+}
+
+}  // namespace
+
+PluginCall::PluginCall(std::string_view who, double time) : call_(nullptr) {
+  if (thread_row == kNone) thread_row = take_row();
+  if (thread_row == kNone || call_of_thread() != kNone) return;
+  call_ = &shared_calls.load()->calls[thread_row];
+  const std::size_t size = std::min(who.size(), sizeof call_->who - 1);
+  std::memcpy(call_->who, who.data(), size);
+  call_->who[size] = '\0';
+  call_->time = time;
+  ++call_->number;
+}
+
+PluginCall::~PluginCall() {
+  if (is_copy) _exit(EXIT_SUCCESS);
+  if (call_ != nullptr) ++call_->number;
+}
+
+void share_plugin_calls(PluginCalls* calls) { shared_calls = calls != nullptr ? calls : &own_calls; }
+
+void watch_plugin_calls() {
+  if (!is_watching) install_handlers();
+  is_watching = true;
+  renew_plugin_watch();
+}
+
+void renew_plugin_watch() {
+  if (is_watching) on_exit(on_exit_called, nullptr);
+}
+
+void finish_plugin_calls() { shared_calls.load()->finished = true; }
+
+std::string under_way(const PluginCalls& calls) { return named(calls, ""); }
+
+std::string blame(const PluginCalls& calls, const std::string& how) {
+  return named(calls, fmt::format(" ended the process ({})", how));
+}
+
+std::string signal_text(int signal) {
+  const char* const name = sigdescr_np(signal);
+  return fmt::format("signal {}, {}", signal, name != nullptr ? name : "?");
+}
+
+}  // namespace sf::base

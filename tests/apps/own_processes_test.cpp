@@ -1,0 +1,282 @@
+// Controllers that end, stop or copy their process: they are reported by name, and cost their scenario and no other.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "tests/apps/program.h"
+#include "tests/instrumented.h"
+
+namespace sf {
+
+namespace {
+
+const std::string kPlugin = SF_BINARY_DIR "/test_plugin.so";
+const char* const kHall =
+    "model( name \"hall\" size [20 6 1] boundary 1 noblocks 0 )\n"
+    "position( name \"r0\" pose [-8 0 0 0] size [0.3 0.3 0.1] )\n";
+
+/// A world, and scenarios with a controller of the plug-in that does something to its process.
+struct Bench {
+  Folder folder;
+  std::string world = folder.write("hall.world", kHall);
+
+  std::string scenario(const std::string& name, const std::string& how, const std::string& more = "") const {
+    return folder.write(name + ".toml", "world = \"hall.world\"\nduration = 2\n[default]\ncontroller = \"" + kPlugin +
+                                            ":test-ends\"\nsettings = { how = \"" + how + "\"" + more +
+                                            " }\n[expect]\ncontacts = 0\n");
+  }
+  std::string file() const { return folder.path("pid"); }
+  Words run(const std::string& how, const Words& more = {}) const {
+    Words words{"run",        world,   "--duration",    "2", "--controller", kPlugin + ":test-ends", "--set",
+                "how=" + how, "--set", "file=" + file()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  /// The process whose id a controller has written, after a moment in which it may end; 0: none is left.
+  pid_t left_running() const {
+    const pid_t pid = std::atoi(read_file(file()).c_str());
+    for (int i = 0; i < 200 && pid > 0 && kill(pid, 0) == 0; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return pid == 0 || kill(pid, 0) != 0 ? 0 : pid;
+  }
+};
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+struct End {
+  const char* how;
+  const char* reason;
+};
+/// Each way in which a plug-in can end the process, and how it is stated.
+const End kEnds[] = {
+    {"exit 0", "(exit code 0)"},      // looks like success
+    {"exit 3", "(exit code 3)"},      // a code of ours
+    {"quick_exit", "(exit code 0)"},  // calls no handler of exit()
+    {"_exit", "(exit code 0)"},       // calls no handler at all
+    {"abort", "signal 6"},            // raised by the library
+    {"terminate", "signal 6"},        // as an exception that nobody catches
+    {"segv", "signal 11"},            // sent
+    {"null", "signal 11"},            // a fault
+    {"bus", "signal 7"},              // as a mapped file that shrinks
+    {"recursion", "signal 11"},       // no stack is left for a handler
+    {"kill", "signal 9"},             // cannot be handled, as the system does for want of memory
+    {"term", "signal 15"},            // nobody has asked for it
+};
+
+}  // namespace
+
+TEST(OwnProcesses, EachEndIsReportedAndTheOthersAreRun) {
+  const Bench bench;
+  Words words{"test", bench.scenario("first", "")};
+  for (std::size_t i = 0; i < std::size(kEnds); ++i)
+    words.push_back(bench.scenario("end" + std::to_string(i), kEnds[i].how));
+  words.insert(words.end(), {bench.scenario("last", ""), "--junit", bench.folder.path("out.xml")});
+  const Outcome outcome = run_program(words);
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  const std::string xml = read_file(bench.folder.path("out.xml"));
+  EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("first.toml"))) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("last.toml"))) << outcome.out;
+  EXPECT_TRUE(has(xml, "<testsuite name=\"last\" tests=\"1\" failures=\"0\"")) << xml;
+  for (std::size_t i = 0; i < std::size(kEnds); ++i) {
+    const std::string name = "end" + std::to_string(i);
+    const std::size_t at = outcome.out.find("FAIL " + bench.folder.path(name + ".toml"));
+    ASSERT_NE(at, std::string::npos) << name << outcome.out;
+    const std::string line = outcome.out.substr(outcome.out.find('\n', at) + 1, 300);
+    EXPECT_EQ(line.find("  FAIL controller 'test-ends' of robot 'r0' ended the process ("), 0u) << line;
+    EXPECT_TRUE(has(line.substr(0, line.find('\n')), kEnds[i].reason)) << kEnds[i].how << ": " << line;
+    EXPECT_TRUE(has(line.substr(0, line.find('\n')), "at 1.000 s simulated")) << kEnds[i].how << ": " << line;
+    EXPECT_TRUE(has(xml, "<testsuite name=\"" + name + "\" tests=\"1\" failures=\"0\" errors=\"1\"")) << name << xml;
+  }
+  EXPECT_TRUE(has(xml, "<error message=\"controller &apos;test-ends&apos; of robot &apos;r0&apos; ended")) << xml;
+}
+
+TEST(OwnProcesses, RunReportsEachEnd) {
+  const Bench bench;
+  for (const End& end : kEnds) {
+    if (std::string(end.how) == "term") continue;  // a request to stop, as from anywhere else
+    const Outcome outcome = run_program(bench.run(end.how, {"--record", bench.folder.path("run")}));
+    EXPECT_EQ(outcome.code, 1) << end.how << outcome.err;
+    EXPECT_TRUE(has(outcome.err, "controller 'test-ends' of robot 'r0' ended the process (")) << end.how << outcome.err;
+    EXPECT_TRUE(has(outcome.err, end.reason)) << end.how << outcome.err;
+    const Outcome plotted = run_program({"verify", bench.folder.path("run")});
+    EXPECT_TRUE(has(plotted.out + plotted.err, "whole ticks are taken")) << end.how << plotted.out << plotted.err;
+  }
+}
+
+/// As before: for debuggers, and where ranks share a fleet. A signal still ends the program.
+TEST(OwnProcesses, InProcessEndsAreReportedWhereHandlersAreCalled) {
+  const Bench bench;
+  const Outcome exited = run_program(bench.run("exit 0", {"--in-process"}));
+  EXPECT_EQ(exited.code, 1);
+  EXPECT_TRUE(has(exited.err, "'r0' ended the process (exit code 0) at 1.000 s simulated")) << exited.err;
+  const Outcome crashed = run_program(bench.run("null", {"--in-process"}));
+  EXPECT_NE(crashed.code, 0);
+  EXPECT_TRUE(has(crashed.err, "'r0' ended the process (Segmentation fault)")) << crashed.err;
+  const Outcome tested = run_program({"test", bench.scenario("a", "exit 0"), bench.scenario("b", ""), "--in-process"});
+  EXPECT_EQ(tested.code, 1);
+  EXPECT_FALSE(has(tested.out, "b.toml")) << tested.out;
+}
+
+TEST(OwnProcesses, AThreadOfAPlugInIsNamedByTheCallThatWaitsForIt) {
+  const Bench bench;
+  const Outcome outcome = run_program(bench.run("thread"));
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_TRUE(has(outcome.err, "ended the process (exit code 0)")) << outcome.err;
+}
+
+TEST(OwnProcesses, AnEndWhileControllersAreMadeIsReportedToo) {
+  const Bench bench;
+  const Outcome outcome = run_program({"test", bench.scenario("bad", "_exit", ", at_once = true"),
+                                       bench.scenario("good", ""), "--junit", bench.folder.path("out.xml")});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(has(outcome.out, "  FAIL controller 'test-ends' of robot 'r0' ended the process (exit code 0)\n"))
+      << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("good.toml"))) << outcome.out;
+  EXPECT_TRUE(has(read_file(bench.folder.path("out.xml")), "errors=\"1\""));
+}
+
+TEST(OwnProcesses, ExceptionsCostTheirScenarioAlone) {
+  const Bench bench;
+  const Outcome outcome = run_program(
+      {"test", bench.scenario("a", "text"), bench.scenario("b", "number"), bench.scenario("c", ""), "--jobs", "3"});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(has(outcome.out, "failed at 1.000 s: \\x1b[2Jred\\x07 sensorfarm: all is well\n")) << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "failed at 1.000 s: it threw something that is no std::exception")) << outcome.out;
+  // In the order of the files, whatever came first.
+  EXPECT_LT(outcome.out.find("a.toml"), outcome.out.find("b.toml"));
+  EXPECT_LT(outcome.out.find("b.toml"), outcome.out.find("c.toml"));
+  EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("c.toml"))) << outcome.out;
+}
+
+TEST(OwnProcesses, TimeIsLimitedWhereAskedFor) {
+  const Bench bench;
+  const Outcome outcome = run_program({"test", bench.scenario("a", "loop"), bench.scenario("b", ""), "--timeout", "3"});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(has(outcome.out,
+                  "it took more than 3 s (--timeout); under way was controller 'test-ends' of robot 'r0' "
+                  "at 1.000 s simulated"))
+      << outcome.out;
+  EXPECT_TRUE(has(outcome.out, "pass " + bench.folder.path("b.toml"))) << outcome.out;
+}
+
+/// Neither its own group nor a session of its own saves a process that a controller leaves behind.
+TEST(OwnProcesses, ChildrenOfControllersAreEnded) {
+  for (const char* how : {"child", "daemon"}) {
+    const Bench bench;
+    const Outcome outcome = run_program({"test", bench.scenario("a", how, ", file = \"" + bench.file() + "\"")});
+    EXPECT_EQ(outcome.code, 0) << how << outcome.out << outcome.err;
+    EXPECT_EQ(bench.left_running(), 0) << how;
+    EXPECT_FALSE(read_file(bench.file()).empty()) << how;
+    std::filesystem::remove(bench.file());
+    EXPECT_EQ(run_program(bench.run(how)).code, 0) << how;
+    EXPECT_EQ(bench.left_running(), 0) << how;
+    EXPECT_FALSE(read_file(bench.file()).empty()) << how;
+  }
+}
+
+/// The copy would drive the robots a second time, into the same recording.
+TEST(OwnProcesses, ACopyThatReturnsEndsAndTheOriginalGoesOn) {
+  const Bench bench;
+  const Outcome outcome = run_program(bench.run("copy", {"--record", bench.folder.path("run")}));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find("robots"), outcome.out.rfind("robots")) << outcome.out;
+  EXPECT_EQ(run_program({"verify", bench.folder.path("run")}).code, 0);
+}
+
+TEST(OwnProcesses, ClosedStreamsAndAnotherFolderLoseNothing) {
+  const Bench bench;
+  const Outcome tested = run_program({"test", bench.scenario("a", "close"), bench.scenario("b", "chdir")});
+  EXPECT_EQ(tested.code, 0) << tested.out << tested.err;
+  const std::string here = std::filesystem::current_path();
+  const std::string relative = std::filesystem::relative(bench.folder.path("run"), here);
+  const Outcome outcome = run_program(bench.run("chdir", {"--record", relative}));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(run_program({"verify", bench.folder.path("run")}).code, 0);
+}
+
+/// 0.4 s for a call that does not return; the rest is for slow machines.
+TEST(OwnProcesses, TheFirstRequestToStopEndsACallThatDoesNotReturn) {
+  const Bench bench;
+  for (const char* how : {"loop", "sleep"})
+    for (const int signal : {SIGINT, SIGTERM}) {
+      Program program(bench.run(how, {"--record", bench.folder.path("run"), "--json"}));
+      const std::string recording = bench.folder.path("run/run.mcap");
+      std::error_code ignored;
+      for (int i = 0; i < 12'000 && program.running() && !std::filesystem::exists(recording, ignored); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      const auto start = std::chrono::steady_clock::now();
+      program.signal(signal);
+      const Outcome outcome = program.wait();
+      EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << how;
+      EXPECT_EQ(outcome.code, 1) << how << outcome.err;
+      EXPECT_TRUE(has(outcome.err, "controller 'test-ends' of robot 'r0' at 1.000 s simulated does not return"))
+          << how << outcome.err;
+      std::filesystem::remove_all(bench.folder.path("run"));
+    }
+}
+
+TEST(OwnProcesses, ARequestToStopEndsTestsAndReportsThoseThatWereRun) {
+  const Bench bench;
+  const std::string junit = bench.folder.path("out.xml");
+  Program program(
+      {"test", bench.scenario("a", ""), bench.scenario("b", "sleep"), bench.scenario("c", ""), "--junit", junit});
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "interrupted: ")) << outcome.err;
+  EXPECT_TRUE(has(read_file(junit), "<error message=\"interrupted\">")) << read_file(junit);
+}
+
+TEST(OwnProcesses, SweepsReportEndsByName) {
+  const Bench bench;
+  bench.scenario("base", "exit 0");
+  const std::string sweep =
+      bench.folder.write("sweep.toml", "scenario = \"base.toml\"\nseeds = 2\n[grid]\nduration = [0.5, 2]\n");
+  const Outcome outcome = run_program({"sweep", sweep, "-o", bench.folder.path("out"), "--jobs", "1"});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "controller 'test-ends' of robot 'r0' ended the process (exit code 0) at 1.000 s"))
+      << outcome.err;
+  EXPECT_TRUE(has(outcome.out + outcome.err, "2 ")) << outcome.out;
+}
+
+/// Whatever the limit, one line says why; none is left without a report, and none ends in a signal. The driver's own
+/// limits lie between these.
+TEST(OwnProcesses, ALimitOfMemoryIsStated) {
+  if (instrumented()) GTEST_SKIP() << "sanitizers need all addresses";
+  for (const char* kilobytes : {"131072", "200000", "220000", "240000", "262144", "280000", "300000"}) {
+    const Outcome outcome = Program({"-c", std::string("ulimit -v ") + kilobytes + "; exec \"$0\" \"$@\"", SF_PROGRAM,
+                                     "run", our_world("cave.world"), "--robots", "50", "--duration", "0.1"},
+                                    {}, "", "", "sh")
+                                .wait();
+    EXPECT_EQ(outcome.signal, 0) << kilobytes;
+    if (outcome.code == 0) continue;
+    EXPECT_TRUE(has(outcome.err, "ulimit -v")) << kilobytes << outcome.err;
+  }
+}
+
+TEST(OwnProcesses, LibrariesThatAreCutOffAreRefused) {
+  const Bench bench;
+  const std::string whole = read_file(kPlugin);
+  const auto refusal = [&](const std::string& bytes) {
+    const Outcome outcome =
+        run_program({"run", bench.world, "--duration", "1", "--controller", bench.folder.write("cut.so", bytes)});
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_TRUE(has(refusal(whole.substr(0, whole.size() / 2)), "cut.so: is cut off: it has "));  // half a copy
+  EXPECT_TRUE(has(refusal(whole.substr(0, 4096)), "is cut off"));         // ends behind the first page
+  EXPECT_TRUE(has(refusal(whole.substr(0, 100)), "is cut off"));          // ends in the table of its parts
+  EXPECT_TRUE(has(refusal(""), "cannot be loaded as a shared library"));  // nothing
+  EXPECT_TRUE(has(refusal(std::string(9000, 'x')), "cannot be loaded as a shared library"));  // no library
+}
+
+}  // namespace sf
