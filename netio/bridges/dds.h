@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "base/bytes.h"
 
@@ -59,6 +60,8 @@ struct DdsOptions {
   bool loopback = false;     ///< on this machine only; false: on the default interface, or as CYCLONEDDS_URI says
   /// Takes what came. Called on threads of the library; returns soon.
   std::function<void(DdsMessage&&)> receive;
+  /// Takes a line of the library's log, such as one per malformed datagram. Called on threads of the library.
+  std::function<void(std::string_view)> log;
 };
 inline constexpr std::uint32_t kDdsMaxDomain = 232;  ///< ports of higher ones do not exist
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
@@ -83,6 +84,13 @@ std::uint64_t DdsInbox::left_out() const {
   return left_out_;
 }
 
+void DdsLog::write(std::string_view line) {
+  const std::lock_guard lock(mutex_);
+  line = line.substr(0, line.find_last_not_of('\n') + 1);
+  log_.write(fmt::format("DDS: {}", line),
+             std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1));
+}
+
 Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library)
     : options_(options),
       scene_(scene),
@@ -93,7 +101,8 @@ Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const Dds
     (message.reader < command_readers_ ? commands_ : requests_).add(std::move(message));
   };
   try {
-    participant_ = library.open({options.domain, "enclave=/;", options.loopback, receive});
+    participant_ = library.open(
+        {options.domain, "enclave=/;", options.loopback, receive, [this](std::string_view line) { log_.write(line); }});
     add_topics();
     add_commands();
     add_services();

@@ -13,6 +13,7 @@
 #include "netio/bridges/dds.h"
 #include "netio/bridges/dds_outbox.h"
 #include "netio/bridges/ros_services.h"
+#include "netio/rate_limited_log.h"
 #include "record/tick_messages.h"
 
 namespace sf::bridges {
@@ -43,6 +44,19 @@ class DdsInbox {
   std::deque<DdsMessage> messages_;
   std::size_t bytes_ = 0;
   std::uint64_t left_out_ = 0;
+};
+
+/// Lines of the DDS library on standard error, as few as of all that strangers can cause.
+class DdsLog {
+ public:
+  /// @param descriptor 2: standard error
+  explicit DdsLog(int descriptor = 2) : log_(descriptor) {}
+  /// From any thread.
+  void write(std::string_view line);
+
+ private:
+  std::mutex mutex_;
+  netio::RateLimitedLog log_;
 };
 
 class Ros2Bridge : public Bridge {
@@ -94,6 +108,7 @@ class Ros2Bridge : public Bridge {
   std::vector<DdsGuid> readers_, writers_;  ///< all of them
   std::uint32_t runs_ = 0;
   DdsBatch batch_;
+  DdsLog log_;
   std::unique_ptr<DdsParticipant> participant_;
   std::optional<DdsOutbox> outbox_;
 };

@@ -3,6 +3,7 @@
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
+#include <dds/ddsrt/log.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 
 #include "netio/bridges/dds.h"
 #include "netio/bridges/dds/byte_type.h"
+#include "netio/bridges/dds/open_sockets.h"
 
 namespace sf::bridges {
 
@@ -109,23 +111,26 @@ void receive_all(dds_entity_t entity, void* argument) {
   }
 }
 
+void pass_on(void* options, const dds_log_data_t* line) {
+  static_cast<const DdsOptions*>(options)->log({line->message, line->size});
+}
+
 class CycloneParticipant : public DdsParticipant {
  public:
   explicit CycloneParticipant(const DdsOptions& options) : options_(options) {
-    domain_ = dds_create_domain(options.domain, configuration_of(options).c_str());
-    if (domain_ != DDS_RETCODE_PRECONDITION_NOT_MET)  // this process is in that domain already
-      require(domain_, "does not start in domain " + std::to_string(options.domain) + "; check CYCLONEDDS_URI, if set");
-    Qos qos(dds_create_qos());
-    dds_qset_userdata(qos.get(), options.user_data.data(), options.user_data.size());
-    participant_ = dds_create_participant(options.domain, qos.get(), nullptr);
-    if (participant_ < 0) dds_delete(domain_);
-    require(participant_, "opens no participant in domain " + std::to_string(options.domain));
+    if (options_.log) dds_set_log_sink(pass_on, const_cast<DdsOptions*>(&options_));
+    try {
+      const OpenSockets before;
+      start();
+      if (options_.loopback) before.keep_new_ones_to_loopback();
+    } catch (...) {
+      end();
+      throw;
+    }
   }
   CycloneParticipant(const CycloneParticipant&) = delete;
-  ~CycloneParticipant() override {
-    dds_delete(participant_);
-    if (domain_ > 0) dds_delete(domain_);
-  }
+  CycloneParticipant& operator=(const CycloneParticipant&) = delete;
+  ~CycloneParticipant() override { end(); }
 
   DdsGuid guid() const override { return guid_of(participant_); }
 
@@ -174,6 +179,23 @@ class CycloneParticipant : public DdsParticipant {
   }
 
  private:
+  void start() {
+    domain_ = dds_create_domain(options_.domain, configuration_of(options_).c_str());
+    if (domain_ != DDS_RETCODE_PRECONDITION_NOT_MET)  // this process is in that domain already
+      require(domain_,
+              "does not start in domain " + std::to_string(options_.domain) + "; check CYCLONEDDS_URI, if set");
+    Qos qos(dds_create_qos());
+    dds_qset_userdata(qos.get(), options_.user_data.data(), options_.user_data.size());
+    participant_ = dds_create_participant(options_.domain, qos.get(), nullptr);
+    require(participant_, "opens no participant in domain " + std::to_string(options_.domain));
+  }
+
+  void end() {
+    if (participant_ > 0) dds_delete(participant_);
+    if (domain_ > 0) dds_delete(domain_);
+    dds_set_log_sink(nullptr, nullptr);
+  }
+
   /// @param type out: of the topic's samples, which lives as long as the topic
   dds_entity_t add_topic(const DdsEndpoint& endpoint, const ddsi_sertype** type) {
     ddsi_sertype* wanted = new_byte_type(endpoint.type.c_str());

@@ -1,0 +1,58 @@
+#include "netio/bridges/dds/open_sockets.h"
+
+#include <linux/filter.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+namespace sf::bridges {
+
+namespace {
+
+std::set<int> descriptors() {
+  std::set<int> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", error))
+    found.insert(std::atoi(entry.path().filename().c_str()));
+  return found;
+}
+
+/// UDP of IPv4, bound to all interfaces.
+bool is_open_to_all(int descriptor) {
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  int type = 0;
+  socklen_t type_size = sizeof type;
+  return getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &type_size) == 0 && type == SOCK_DGRAM &&
+         getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) == 0 && address.sin_family == AF_INET &&
+         address.sin_addr.s_addr == htonl(INADDR_ANY) && address.sin_port != 0;
+}
+
+/// A program of the kernel that drops datagrams that are not sent to 127.0.0.0/8, as a socket bound to there would.
+bool take_loopback_only(int descriptor) {
+  constexpr auto kTo = static_cast<std::uint32_t>(SKF_NET_OFF + 16);  // in the header of IPv4
+  sock_filter steps[] = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kTo), BPF_STMT(BPF_ALU | BPF_AND | BPF_K, 0xFF000000u),
+                         BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0x7F000000u, 0, 1), BPF_STMT(BPF_RET | BPF_K, 0xFFFFFFFFu),
+                         BPF_STMT(BPF_RET | BPF_K, 0)};
+  const sock_fprog program{sizeof steps / sizeof *steps, steps};
+  return setsockopt(descriptor, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program) == 0;
+}
+
+}  // namespace
+
+OpenSockets::OpenSockets() : before_(descriptors()) {}
+
+void OpenSockets::keep_new_ones_to_loopback() const {
+  for (const int descriptor : descriptors()) {
+    if (before_.count(descriptor) > 0 || !is_open_to_all(descriptor)) continue;
+    constexpr char kInterface[] = "lo";  // older kernels let only root do so; the filter is enough
+    setsockopt(descriptor, SOL_SOCKET, SO_BINDTODEVICE, kInterface, sizeof kInterface);
+    if (!take_loopback_only(descriptor))
+      throw std::runtime_error("its sockets cannot be kept to this machine; the kernel refuses filters");
+  }
+}
+
+}  // namespace sf::bridges

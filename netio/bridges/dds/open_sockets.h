@@ -1,0 +1,21 @@
+#pragma once
+// Sockets that a library opens, found by comparison.
+
+#include <set>
+
+namespace sf::bridges {
+
+/// Descriptors of this process at the time of its construction.
+class OpenSockets {
+ public:
+  OpenSockets();
+
+  /// Makes UDP sockets of IPv4 that were opened since, on all interfaces, receive from this machine's loopback alone:
+  /// Cyclone DDS binds those that receive to 0.0.0.0, whatever the interface.
+  void keep_new_ones_to_loopback() const;
+
+ private:
+  std::set<int> before_;
+};
+
+}  // namespace sf::bridges
