@@ -48,8 +48,12 @@ Socket listen_tcp(const Endpoint& bind) {
                   "; another program has this port; end it or choose another port");
 }
 
-Socket accept_tcp(const Socket& listener) {
-  Socket connection(accept4(listener.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+Socket accept_tcp(const Socket& listener, Endpoint& peer) {
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  Socket connection(
+      accept4(listener.descriptor(), reinterpret_cast<sockaddr*>(&address), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  peer = from_posix(address);
   const int on = 1;
   if (connection.descriptor() >= 0) setsockopt(connection.descriptor(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   return connection;

@@ -16,7 +16,8 @@ Socket listen_tcp(const Endpoint& bind);
 
 /// The next connection that waits, without delays for small messages. Its descriptor is -1 where none waits or none can
 /// be taken.
-Socket accept_tcp(const Socket& listener);
+/// @param peer out: its other end
+Socket accept_tcp(const Socket& listener, Endpoint& peer);
 
 /// [byte] received into `bytes`, which is not empty; 0: none wait; nullopt: the connection has ended.
 std::optional<std::size_t> receive_some(const Socket& connection, std::span<std::uint8_t> bytes);

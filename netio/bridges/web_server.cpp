@@ -5,6 +5,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -25,7 +26,8 @@ namespace websocket = beast::websocket;
 using tcp = asio::ip::tcp;
 using Error = beast::error_code;
 
-constexpr std::size_t kMaxHeader = 16 << 10;  // [byte]
+constexpr std::size_t kMaxHeader = 16 << 10;             // [byte]
+constexpr auto kPause = std::chrono::milliseconds(200);  // after a connection that could not be accepted
 constexpr auto kRequestTime = std::chrono::seconds(15);
 constexpr auto kSilence = std::chrono::seconds(60);  // without a message or an answer to a ping
 // [byte] What the kernel takes is not skipped any more: a second of a large fleet would be too much.
@@ -90,6 +92,7 @@ class WebServer::Implementation {
 
  private:
   void accept();
+  void accept_later();
 
   WebServer& server_;
   std::size_t connections_ = 0;
@@ -97,6 +100,7 @@ class WebServer::Implementation {
   std::map<ClientId, Connection*> clients_;
   asio::io_context context_{1};  // after all that connections use: they end with it
   tcp::acceptor acceptor_{context_};
+  asio::steady_timer pause_{context_};
   std::thread thread_;
 };
 
@@ -171,11 +175,20 @@ void WebServer::Implementation::start() {
 void WebServer::Implementation::accept() {
   acceptor_.async_accept([this](Error error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (!error && connections_ < options.limits.connections) {
+    if (error) return accept_later();
+    if (connections_ < options.limits.connections) {
       ++connections_;
       std::make_shared<Connection>(std::move(socket), *this)->read_request();
     }
     accept();
+  });
+}
+
+/// Where no descriptors are left, the connection keeps waiting, and each attempt would fail at once.
+void WebServer::Implementation::accept_later() {
+  pause_.expires_after(kPause);
+  pause_.async_wait([this](Error error) {
+    if (!error) accept();
   });
 }
 

@@ -13,8 +13,8 @@ constexpr std::uint32_t kEndOfRound = 1;    // subtype: nothing was lost
 
 }  // namespace
 
-Connection::Connection(netio::Socket socket, std::size_t port, const netio::Endpoint& local)
-    : socket_(std::move(socket)), port_(port), local_(local), out_(kBanner.begin(), kBanner.end()) {
+Connection::Connection(netio::Socket socket, std::size_t port, const netio::Endpoint& local, std::uint32_t host)
+    : socket_(std::move(socket)), port_(port), local_(local), host_(host), out_(kBanner.begin(), kBanner.end()) {
   out_.resize(kBannerBytes);
 }
 

@@ -5,6 +5,7 @@
 // push mode data goes out when it comes; in pull mode a round goes out when the client asks for one, and a message ends
 // it (docs/bridges.md).
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -32,7 +33,8 @@ struct Subscription {
 class Connection {
  public:
   /// Greets the client. @param port row of the port it came to  @param local address and port of this end
-  Connection(netio::Socket socket, std::size_t port, const netio::Endpoint& local);
+  /// @param host address of the client
+  Connection(netio::Socket socket, std::size_t port, const netio::Endpoint& local, std::uint32_t host);
 
   /// Passes each whole message to `take(const Header&, std::span<const std::uint8_t> payload)`, which returns false
   /// when it is malformed. @return false when the connection has ended, or is to end
@@ -44,6 +46,7 @@ class Connection {
       const Header header = read_header(std::span(in_).subspan(at));
       if (header.size > kMostRequest) return false;
       if (in_.size() - at < kHeaderBytes + header.size) break;
+      heard_ = std::chrono::steady_clock::now();
       if (!take(header, std::span<const std::uint8_t>(in_).subspan(at + kHeaderBytes, header.size))) return false;
       at += kHeaderBytes + header.size;
     }
@@ -66,6 +69,9 @@ class Connection {
   /// Something waits for room.
   bool is_full() const { return sent_ < out_.size(); }
 
+  std::uint32_t host() const { return host_; }
+  /// Of its last whole message, or of its beginning.
+  std::chrono::steady_clock::time_point heard() const { return heard_; }
   const netio::Socket& socket() const { return socket_; }
   std::size_t port() const { return port_; }
 
@@ -78,6 +84,8 @@ class Connection {
   netio::Socket socket_;
   std::size_t port_;
   netio::Endpoint local_;
+  std::uint32_t host_;
+  std::chrono::steady_clock::time_point heard_ = std::chrono::steady_clock::now();
   base::Bytes in_;   ///< received, not a whole message yet
   base::Bytes out_;  ///< of which `sent_` bytes are sent
   std::size_t sent_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/elapsed.h"
 #include "base/error.h"
 #include "netio/bridges/player/readings.h"
 #include "netio/bridges/player/xdr.h"
@@ -12,6 +13,7 @@ namespace sf::bridges::player {
 namespace {
 
 constexpr std::uint64_t kFirstConnection = 1u << 16;  // keys below are of ports
+constexpr double kQuiet = 1.0;                        // [s] after which a connection may make room
 
 }  // namespace
 
@@ -67,29 +69,58 @@ void Server::wake() {
 
 void Server::run() {
   while (!stop_) {
+    const std::size_t before = connections_.size();
     for (const std::uint64_t key : wait_.wait()) {
       if (key == netio::SocketWait::kWoken) publish();
       if (key < kFirstConnection) accept_all(key);
       if (key >= kFirstConnection && key != netio::SocketWait::kWoken) receive(key);
     }
     flush();
+    // A descriptor is free again: those that waited for one are not reported a second time.
+    if (connections_.size() < before)
+      for (std::size_t port = 0; port < ports_.size(); ++port) accept_all(port);
   }
 }
 
 void Server::accept_all(std::size_t port) {
   for (;;) {
-    netio::Socket socket = netio::accept_tcp(ports_[port].listener);
+    netio::Endpoint peer;
+    netio::Socket socket = netio::accept_tcp(ports_[port].listener, peer);
     if (socket.descriptor() < 0) return;
-    if (connections_.size() >= kMostClients) {
+    if (connections_.size() >= kMostClients && !make_room(peer.address)) {
       ++refused_;
       continue;
     }
     ++clients_;
     const std::uint64_t key = next_key_++;
     wait_.add(socket, key);
-    connections_.try_emplace(key, std::move(socket), port, ports_[port].endpoint);
+    connections_.try_emplace(key, std::move(socket), port, ports_[port].endpoint, peer.address);
     watched_ = true;
   }
+}
+
+/// Ends the connection that has been silent for longest among those that have opened no device, else among those of
+/// the host with most connections, unless that host has no more than `host` would have. Connections that were heard in
+/// the last second stay.
+bool Server::make_room(std::uint32_t host) {
+  std::map<std::uint32_t, std::size_t> counts;
+  for (const auto& [key, connection] : connections_) ++counts[connection.host()];
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  const bool is_greedy = most->second > counts[host] + 1;
+  auto oldest = connections_.end();
+  for (const bool open : {false, true}) {
+    for (auto at = connections_.begin(); at != connections_.end(); ++at) {
+      const bool is_open = !at->second.subscriptions().empty();
+      if (is_open != open || (open && (!is_greedy || at->second.host() != most->first))) continue;
+      if (oldest == connections_.end() || at->second.heard() < oldest->second.heard()) oldest = at;
+    }
+    if (oldest != connections_.end()) break;
+  }
+  if (oldest == connections_.end() || base::seconds_since(oldest->second.heard()) < kQuiet) return false;
+  ++evicted_;
+  end(oldest->first);
+  return true;
 }
 
 void Server::receive(std::uint64_t key) {

@@ -21,7 +21,8 @@ inline constexpr std::size_t kMostRobotPorts = 256;
 
 struct ServerCounts {
   std::uint64_t clients = 0;    ///< accepted since the start
-  std::uint64_t refused = 0;    ///< closed at once, since kMostClients are connected
+  std::uint64_t refused = 0;    ///< closed at once, since kMostClients are connected that are all in use
+  std::uint64_t evicted = 0;    ///< closed for a new client
   std::uint64_t malformed = 0;  ///< connections that a malformed message ended
 };
 
@@ -40,7 +41,7 @@ class Server {
   /// The first port.
   netio::Endpoint endpoint() const { return endpoint_; }
   std::size_t ports() const { return ports_.size(); }
-  ServerCounts counts() const { return {clients_, refused_, malformed_}; }
+  ServerCounts counts() const { return {clients_, refused_, evicted_, malformed_}; }
 
  private:
   struct Port {
@@ -52,6 +53,7 @@ class Server {
   void open_all(netio::Endpoint endpoint);
   void run();
   void accept_all(std::size_t port);
+  bool make_room(std::uint32_t host);
   void receive(std::uint64_t key);
   void publish();
   void publish(Connection& connection);
@@ -80,7 +82,7 @@ class Server {
   std::vector<std::uint32_t> users_;                 ///< per device
   base::Bytes payload_;
   std::uint64_t next_key_ = 0;
-  std::atomic<std::uint64_t> clients_ = 0, refused_ = 0, malformed_ = 0;
+  std::atomic<std::uint64_t> clients_ = 0, refused_ = 0, evicted_ = 0, malformed_ = 0;
   std::atomic<bool> watched_ = false;  ///< by a client
   std::atomic<bool> stop_ = false;
   std::thread thread_;

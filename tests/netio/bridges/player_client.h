@@ -103,7 +103,13 @@ struct Message {
 
 class TestClient {
  public:
-  explicit TestClient(const netio::Endpoint& server, int buffer = 0) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+  /// @param host its own address; 0: any
+  explicit TestClient(const netio::Endpoint& server, int buffer = 0, std::uint32_t host = 0)
+      : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in own{};
+    own.sin_family = AF_INET;
+    own.sin_addr.s_addr = htonl(host);
+    EXPECT_EQ(bind(socket_, reinterpret_cast<const sockaddr*>(&own), sizeof own), 0);
     if (buffer > 0) setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
     sockaddr_in address{};
     address.sin_family = AF_INET;

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <memory>
 #include <random>
+#include <thread>
 
 #include "sensors/laser.h"
 #include "tests/netio/bridges/player_client.h"
@@ -179,6 +182,45 @@ TEST(PlayerHostile, TooManyClientsAreRefused) {
   EXPECT_TRUE(TestClient(run.port()).receive().ended);
   EXPECT_EQ(run.bridge.counts().refused, 1u);
   EXPECT_EQ(clients[0]->request(kPosition, 1).header.type, MessageType::ack);
+}
+
+/// Connections that have opened nothing make room, the one that was silent for longest first; a client that is served
+/// stays. A second has to pass, in which a connection may be about to open its devices.
+TEST(PlayerHostile, IdleConnectionsLockNobodyOut) {
+  PlayerRun run;
+  TestClient served(run.port());
+  served.banner(), served.open(kPosition);
+  std::vector<std::unique_ptr<TestClient>> idle;
+  for (std::size_t i = 1; i < kMostClients; ++i) {
+    idle.push_back(std::make_unique<TestClient>(run.port()));
+    EXPECT_EQ(idle.back()->banner().size(), kBannerBytes);
+  }
+  std::unique_ptr<TestClient> late;
+  for (int attempt = 0; attempt < 600 && run.bridge.counts().evicted == 0; ++attempt) {
+    late = std::make_unique<TestClient>(run.port());
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  ASSERT_EQ(run.bridge.counts().evicted, 1u);
+  EXPECT_EQ(late->banner().size(), kBannerBytes);
+  EXPECT_EQ(late->request(kPosition, 1).header.type, MessageType::ack);
+  EXPECT_TRUE(idle.front()->receive().ended);
+  EXPECT_EQ(served.request(kPosition, 1).header.type, MessageType::ack) << "it has opened a device";
+}
+
+/// Where one host has opened devices on all connections, another host takes its place among them. 127.0.0.2 is one.
+TEST(PlayerHostile, OneHostDoesNotTakeAllPlaces) {
+  PlayerRun run;
+  std::vector<std::unique_ptr<TestClient>> greedy;
+  for (std::size_t i = 0; i < kMostClients; ++i) {
+    greedy.push_back(std::make_unique<TestClient>(run.port()));
+    greedy.back()->banner(), greedy.back()->open(kPosition);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  EXPECT_TRUE(TestClient(run.port()).receive().ended) << "of the same host";
+  TestClient other(run.port(), 0, netio::kLoopback + 1);
+  EXPECT_EQ(other.banner().size(), kBannerBytes);
+  EXPECT_EQ(run.bridge.counts().evicted, 1u);
+  EXPECT_EQ(run.bridge.counts().refused, 1u);
 }
 
 TEST(PlayerHostile, SlowClientsSkipAhead) {

@@ -18,16 +18,21 @@ namespace sf::bridges {
 
 class RawClient {
  public:
-  explicit RawClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  /// @param at_once false: `connect_now` connects
+  explicit RawClient(std::uint16_t port, bool at_once = true)
+      : socket_(::socket(AF_INET, SOCK_STREAM, 0)), port_(port) {
     // A guard against a server that does not answer; nothing is measured by it.
     const timeval limit{30, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
     ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));
+    if (at_once) connect_now();
+  }
+  bool connect_now() {
     sockaddr_in address{};
     address.sin_family = AF_INET;
-    address.sin_port = htons(port);
+    address.sin_port = htons(port_);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    connected_ = ::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0;
+    return connected_ = ::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0;
   }
   RawClient(const RawClient&) = delete;
   RawClient& operator=(const RawClient&) = delete;
@@ -134,6 +139,7 @@ class RawClient {
   }
 
   int socket_;
+  std::uint16_t port_;
   bool connected_ = false;
   std::string head_;
 };

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <ctime>
+#include <thread>
 
 #include "tests/netio/bridges/viewer_fixture.h"
 
@@ -139,6 +144,28 @@ TEST(ViewerBounds, SurvivesAnyBytes) {
   Watcher client(fixture, {"/fleet"});
   fixture.tick(1);
   EXPECT_EQ(said(client.receive_binary(1)), "101@1");
+}
+
+/// Without descriptors a connection waits, and the server waits with it: in half a second it uses little of a core's
+/// time. With descriptors again, it is served.
+TEST(ViewerBounds, ConnectionsWaitForDescriptors) {
+  ViewerFixture fixture;
+  RawClient first(fixture.port());
+  EXPECT_NE(first.request("/", "Host: localhost\r\n"), "");
+  RawClient waiting(fixture.port(), false);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int next = dup(0);  // the lowest that is free
+  close(next);
+  rlimit none{static_cast<rlim_t>(next), before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const std::clock_t start = std::clock();
+  ASSERT_TRUE(waiting.connect_now());
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  const double used = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_LT(used, 0.1) << "[s] of a core";
+  EXPECT_NE(waiting.request("/", "Host: localhost\r\n"), "");
 }
 
 TEST(ViewerBounds, AnAddressInUseIsNamed) {
