@@ -62,8 +62,12 @@ bool is_loopback(std::string_view host) {
 }
 
 std::string_view host_of(std::string_view authority) {
-  if (authority.starts_with('[')) return authority.substr(0, std::min(authority.size(), authority.find(']') + 1));
-  return authority.substr(0, authority.rfind(':'));
+  const std::size_t end =
+      authority.starts_with('[') ? std::min(authority.size(), authority.find(']') + 1) : authority.find(':');
+  const std::string_view rest = authority.substr(std::min(end, authority.size()));
+  const bool is_port = rest.empty() || rest == ":" ||
+                       (rest.front() == ':' && whole_number<std::uint16_t>(rest.substr(1), 65535).has_value());
+  return is_port ? authority.substr(0, end) : std::string_view();
 }
 
 bool is_own_name(std::string_view host) { return is_loopback(host_of(host)); }

@@ -73,8 +73,8 @@ void read_identity(const TomlReader& reader, const TomlNode& table, const WireNa
 }
 
 void read_address(const TomlReader& reader, const TomlNode& table, Peer& peer) {
+  if (world::find(table, "address") == nullptr) return;
   const std::string text = reader.text(table, "address", "");
-  if (text.empty()) return;
   peer.address = netio::parse_address(text);
   if (!peer.address)
     reader.fail(*world::find(table, "address"), "'address' expects an IPv4 address such as \"192.168.1.7\"");
@@ -82,8 +82,8 @@ void read_address(const TomlReader& reader, const TomlNode& table, Peer& peer) {
 
 /// Errors do not repeat the text: they may end in a log.
 void read_key(const TomlReader& reader, const TomlNode& table, Peer& peer) {
+  if (world::find(table, "key") == nullptr) return;
   const std::string text = reader.text(table, "key", "");
-  if (text.empty()) return;
   netio::SigningKey key{};
   bool fine = text.size() == 2 * key.size();
   for (std::size_t i = 0; fine && i < key.size(); ++i) {
@@ -130,6 +130,9 @@ std::vector<Peer> parse_peers(const std::string& file, std::string_view text, co
     read_key(reader, *table, peer);
     require_own_key(reader, *table, peer, keys);
   }
+  for (std::size_t i = 0; i < peers.size(); ++i)
+    if (!peers[i].address && !peers[i].key)
+      reader.fail(*tables[i], "a peer needs an address or a key, or both: without, nothing of it is checked");
   return peers;
 }
 

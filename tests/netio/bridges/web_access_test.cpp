@@ -28,8 +28,10 @@ TEST(WebAccess, KnowsItsOwnNames) {
   for (const char* own : {"localhost", "LOCALHOST:8765", "127.0.0.1:1", "127.1.2.3", "[::1]:8765", "[::1]"})
     EXPECT_TRUE(is_own_name(own)) << own;
   // A name that its owner pointed at 127.0.0.1 (DNS rebinding), and names that begin like ours.
-  for (const char* foreign :
-       {"", "evil.example:8765", "localhost.evil.example", "127.0.0.1.evil.example", "10.0.0.1", "["})
+  for (const char* foreign : {"", "evil.example:8765", "localhost.evil.example", "127.0.0.1.evil.example", "10.0.0.1",
+                              "[", "[::1].evil.example", "[::1].evil.example:8765", "[::1]evil", "[::1", "[::1]:80:80",
+                              "[::1]:evil", "localhost:80.evil.example", "localhost:evil", "localhost:65536",
+                              "127.0.0.1:80:evil.example", "localhost@evil", "evil@localhost", ":80"})
     EXPECT_FALSE(is_own_name(foreign)) << foreign;
 }
 
@@ -40,7 +42,8 @@ TEST(WebAccess, KnowsOriginsThatMayConnect) {
     EXPECT_TRUE(is_known_origin(known, host)) << known;
   for (const char* foreign :
        {"null", "https://evil.example", "http://192.168.1.5:80", "https://app.foxglove.dev.evil.example",
-        "http://localhost.evil.example", "https://evil.example/localhost"})
+        "http://localhost.evil.example", "https://evil.example/localhost", "http://[::1].evil.example",
+        "http://localhost:80.evil.example"})
     EXPECT_FALSE(is_known_origin(foreign, host)) << foreign;
 }
 

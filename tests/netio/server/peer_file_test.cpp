@@ -41,8 +41,9 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(PeerFile, HasAddressesAndKeys) {
-  const auto peers = parse(std::string("[[peer]]\nrobot = 2\nkey = \"") + kKey +
-                           "\"\n[[peer]]\ntag = 3\naddress = \"192.168.1.7\"\n[[peer]]\nstart = true\n");
+  const auto peers =
+      parse(std::string("[[peer]]\nrobot = 2\nkey = \"") + kKey +
+            "\"\n[[peer]]\ntag = 3\naddress = \"192.168.1.7\"\n[[peer]]\nstart = true\naddress = \"10.0.0.1\"\n");
   ASSERT_EQ(peers.size(), 3u);
   EXPECT_EQ(peers[0].kind, PeerKind::robot);
   EXPECT_EQ(peers[0].id, 2u);
@@ -83,6 +84,11 @@ TEST(PeerFile, ErrorsNameTheirLine) {
     expect(std::string("[[peer]]\nrobot = 1\naddress = \"") + address + "\"", "peers.toml:3", "IPv4 address");
   expect("[[peer]]\nrobot = 1\nkey = 12", "peers.toml:3", "text in quotes");
   expect("[[peer]]\nrobot = 1\nkey = \"\"", "peers.toml:3", "text in quotes");
+  // Nothing of such a peer would be checked, the last of two included.
+  expect("[[peer]]\nrobot = 1", "peers.toml:1", "needs an address or a key");
+  expect("[[peer]]\nstart = true", "peers.toml:1", "needs an address or a key");
+  expect("[[peer]]\nrobot = 1\naddress = \"10.0.0.1\"\n[[peer]]\nlight = 4", "peers.toml:4",
+         "needs an address or a key");
 }
 
 /// Boundaries: a digit less and more, and one that is none, at either place of a byte.
@@ -111,7 +117,8 @@ TEST(PeerFile, OnlyTagsShareAKey) {
 
 TEST(PeerFile, IsBounded) {
   std::string text;
-  for (std::size_t id = 0; id <= kMaxPeers; ++id) text += "[[peer]]\nrobot = " + std::to_string(id) + "\n";
+  for (std::size_t id = 0; id <= kMaxPeers; ++id)
+    text += "[[peer]]\nrobot = " + std::to_string(id) + "\naddress = \"10.0.0.1\"\n";
   EXPECT_THROW(parse_peers("peers.toml", text, nullptr), base::InputError);
   text.resize(text.rfind("[[peer]]"));
   EXPECT_EQ(parse_peers("peers.toml", text, nullptr).size(), kMaxPeers) << "without a world any id is known";
@@ -119,7 +126,7 @@ TEST(PeerFile, IsBounded) {
 
 TEST(PeerFile, ModesOpenToOthersAreSeen) {
   const std::string file = testing::TempDir() + "peers.toml";
-  std::ofstream(file) << "[[peer]]\nrobot = 1\n";
+  std::ofstream(file) << "[[peer]]\nrobot = 1\naddress = \"10.0.0.1\"\n";
   using std::filesystem::perms;
   const auto is_open = [&](perms mode) {
     std::filesystem::permissions(file, mode);
