@@ -16,6 +16,7 @@
 #include "base/files.h"
 #include "base/suggest.h"
 #include "netio/outbox.h"
+#include "netio/own_end.h"
 #include "netio/server/signal_messages.h"
 #include "netio/v2x/frame.h"
 #include "world/fields.h"
@@ -78,8 +79,9 @@ void require_farm(const LightOptions& options, const world::LightPlan& plan) {
 class Sender {
  public:
   Sender(const LightOptions& options, const world::World& world, const world::RoadNetwork* roads)
-      : ports_(options.ports) {
-    if (!options.send.empty()) address_ = netio::resolve(options.send);
+      : address_(options.send.empty() ? std::nullopt : std::optional(netio::resolve(options.send))),
+        ports_(options.ports),
+        outbox_({.bind = netio::own_end_for(address_.value_or(0))}) {
     for (server::Intersection& one : server::intersections_of(world, roads)) {
       const auto map = roads != nullptr ? map_of(*roads, one, {options.latitude, options.longitude}) : std::nullopt;
       if (map) maps_.push_back(encoded(*map, one));

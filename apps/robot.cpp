@@ -20,6 +20,7 @@
 #include "base/time.h"
 #include "netio/address_book.h"
 #include "netio/outbox.h"
+#include "netio/own_end.h"
 #include "netio/server/robot_client.h"
 
 namespace sf::apps {
@@ -52,7 +53,7 @@ server::CameraPositionsOptions cameras_of(const RobotOptions& options, const net
                                           const std::vector<netio::Peer>& peers, const world::Mover& mover) {
   constexpr double kForEver = 1e9;  // [s]
   server::CameraPositionsOptions cameras;
-  cameras.bind = {netio::is_loopback(farm.address) ? netio::kLoopback : 0, options.cameras};
+  cameras.bind = netio::own_end_for(farm.address, options.cameras);
   cameras.filter.clock.source = options.camera_clock;
   cameras.filter.stale_after = base::nanoseconds(options.stop_after > 0.0 ? options.stop_after : kForEver);
   const std::uint32_t id = options.tag > 0 ? options.tag : mover.id;
@@ -79,8 +80,7 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
   client.forget = options.forget;
   client.stop_after = options.stop_after;
   client.wait_for_start = waits_for_start(options);
-  if (options.spat > 0)
-    client.spat = netio::Endpoint{netio::is_loopback(client.link.farm.address) ? netio::kLoopback : 0, options.spat};
+  if (options.spat > 0) client.spat = netio::own_end_for(client.link.farm.address, options.spat);
   client.tag = options.tag;
   if (options.cameras > 0) client.cameras = cameras_of(options, client.link.farm, peers, mover);
   netio::AddressBook book;

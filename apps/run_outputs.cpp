@@ -6,6 +6,7 @@
 #include "base/elapsed.h"
 #include "base/time.h"
 #include "netio/address_token.h"
+#include "netio/own_end.h"
 #include "scenarios/run_info.h"
 
 namespace sf::apps {
@@ -20,7 +21,9 @@ RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sens
       session_token_{netio::random_session(), 0} {
   if (layout) {
     address_ = netio::resolve(options.send);
-    publisher_.emplace(world, sensor_set, *layout, netio::Outbox(server::outbox_options(sensor_set)));
+    netio::OutboxOptions outbox = server::outbox_options(sensor_set);
+    outbox.bind = netio::own_end_for(address_);
+    publisher_.emplace(world, sensor_set, *layout, netio::Outbox(outbox));
   }
   if (!record.empty())
     recorder_.emplace(record,

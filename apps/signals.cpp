@@ -12,6 +12,7 @@
 #include "apps/text.h"
 #include "base/error.h"
 #include "netio/outbox.h"
+#include "netio/own_end.h"
 #include "netio/packets.h"
 
 namespace sf::apps {
@@ -37,7 +38,7 @@ std::optional<netio::PacketSigner> signer_of(const PeersOption& options, const n
 template <class Body>
 void send_repeatedly(const netio::Endpoint& farm, netio::Header header, const Body& body,
                      std::optional<netio::PacketSigner> signer) {
-  netio::Outbox outbox;
+  netio::Outbox outbox({.bind = netio::own_end_for(farm.address)});
   base::Bytes packet;
   for (int i = 0; i < kRepetitions; ++i) {
     if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/elapsed.h"
 #include "base/error.h"
 
 namespace sf::netio {
@@ -97,6 +98,7 @@ PacketStatus Inbox::check_id(const Header& header) const {
       if (lockstep_) break;
       return lights_.row(header.robot) ? PacketStatus::accepted : PacketStatus::unknown_light;
     case Type::challenge:
+    case Type::refusal:
     case Type::neighbours:
     case Type::state:
     case Type::values:
@@ -124,6 +126,23 @@ PacketStatus Inbox::check_peer(const Header& header, std::span<const std::uint8_
   const PacketStatus status = peers_.check(claim, bytes, source, proven);
   if (bounded && (!proven || status == PacketStatus::wrong_signature)) ++doubtful_signatures_;
   return status;
+}
+
+/// Copies of a signed packet are no trouble of its sender, whose clock is behind by less than this.
+bool Inbox::is_notable(PacketStatus status, const Packet& packet) {
+  constexpr std::uint64_t kClockTrouble = 1'000'000;  // [us]
+  switch (status) {
+    case PacketStatus::unproven:
+    case PacketStatus::wrong_source:
+    case PacketStatus::not_signed:
+      return true;
+    case PacketStatus::wrong_signature:
+      return doubtful_signatures_ < kMaxDoubtfulSignatures;
+    case PacketStatus::replayed:
+      return peers_.lag(claim_of(packet.header)) >= kClockTrouble;
+    default:
+      return false;
+  }
 }
 
 PacketStatus Inbox::admit(Packet& packet, const Endpoint& source, std::int64_t now) {
@@ -195,11 +214,27 @@ bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t no
   return true;
 }
 
+bool Inbox::refuse(const Packet& packet, PacketStatus reason, std::int64_t now, base::Bytes& out) {
+  const PeerKind kind = claim_of(packet.header).kind;
+  if (packet.header.type == Type::leave || (kind != PeerKind::robot && kind != PeerKind::light)) return false;
+  begin_period(now);
+  if (refusals_ == kMaxRefusals) return false;
+  ++refusals_;
+  Header header;
+  header.robot = packet.header.robot;
+  header.time = base::unix_time();
+  header.session = session_;
+  header.token = packet.header.session;
+  encode(header, Refusal{reason}, out);
+  return true;
+}
+
 void Inbox::begin_period(std::int64_t now) {
   if (now - period_start_ < kPeriod) return;
   period_start_ = now;
   challenges_ = {};
   doubtful_signatures_ = 0;
+  refusals_ = 0;
 }
 
 SessionToken Inbox::session_token_for(std::uint32_t robot) const {

@@ -51,13 +51,15 @@ class Inbox {
   /// Maximum number of signatures checked in 0.1 s that are of unproven robots, or wrong ones of tags and of START.
   /// Further packets of tags, START and unproven robots with keys are dropped as wrong_signature.
   static constexpr std::size_t kMaxDoubtfulSignatures = 10'000;
+  static constexpr std::size_t kMaxRefusals = 100;  ///< REFUSAL packets in 0.1 s
 
   /// @throws base::InputError when the address cannot be bound or an id does not fit a packet
   explicit Inbox(const InboxOptions& options);
 
   /// Reads all waiting datagrams. Calls `take(const Packet&)` for each accepted one, in order of arrival, and
-  /// `on_rejected(PacketStatus, const Packet&, const Endpoint& source)` for each valid one that is unproven or from the
-  /// wrong source.
+  /// `on_rejected(PacketStatus, const Packet&, const Endpoint& source)` for each valid one that is unproven, from the
+  /// wrong source, or refused for its signature; not for copies of signed packets, nor where too many signatures are
+  /// doubtful to be checked.
   /// @return number of datagrams read
   template <class Take, class OnRejected>
   std::size_t receive(std::int64_t now, Take&& take, OnRejected&& on_rejected) {
@@ -65,7 +67,7 @@ class Inbox {
     return batch_.drain(socket_, kMaxPerReceive, [&](std::span<const std::uint8_t> bytes, const Endpoint& source) {
       const PacketStatus status = accept(bytes, source, now, packet);
       if (status == PacketStatus::accepted) take(packet);
-      if (status == PacketStatus::unproven || status == PacketStatus::wrong_source) on_rejected(status, packet, source);
+      if (is_notable(status, packet)) on_rejected(status, packet, source);
     });
   }
 
@@ -74,8 +76,8 @@ class Inbox {
     return receive(now, take, [](PacketStatus, const Packet&, const Endpoint&) {});
   }
 
-  /// Validates and counts one datagram from `source`. Fills `packet` when the status is accepted, unproven or
-  /// wrong_source (undefined otherwise). `receive` calls this for each datagram of the socket.
+  /// Validates and counts one datagram from `source`. Fills `packet` when the status is accepted, or one that
+  /// `on_rejected` is called for (undefined otherwise). `receive` calls this for each datagram of the socket.
   PacketStatus accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet);
 
   /// Renews the binding of `robot` to its last sender, where `source` is that one.
@@ -94,6 +96,12 @@ class Inbox {
 
   /// is_active, and the robot's last SUBSCRIBE since then requests the states of other robots.
   bool wants_neighbours(std::uint32_t robot, std::int64_t now) const;
+
+  /// Encodes the REFUSAL for a packet of a robot or light whose signature is refused, except LEAVE: unsigned, and no
+  /// larger than the packet. @return false if none is due or the limit of refusals is reached
+  bool refuse(const Packet& packet, PacketStatus reason, std::int64_t now, base::Bytes& out);
+  /// See `SignatureChecker::lag`, of the last checked packet with this claim.
+  std::uint64_t lag(const Claim& claim) { return peers_.lag(claim); }
 
   /// Address of `robot`; nullopt if it never sent or has left. Its readings go to this address, to each sensor's own
   /// port.
@@ -127,6 +135,7 @@ class Inbox {
  private:
   PacketStatus check(Packet& packet, std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now);
   PacketStatus check_id(const Header& header) const;
+  bool is_notable(PacketStatus status, const Packet& packet);
   bool is_proven(const Header& header, const Endpoint& source) const;
   PacketStatus check_peer(const Header& header, std::span<const std::uint8_t> bytes, const Endpoint& source,
                           bool proven, std::int64_t now);
@@ -152,6 +161,7 @@ class Inbox {
   std::int64_t period_start_ = 0;            ///< [ns]
   std::array<std::size_t, 2> challenges_{};  ///< in that period, without and with a key
   std::size_t doubtful_signatures_ = 0;      ///< in that period
+  std::size_t refusals_ = 0;                 ///< likewise
   PacketCounts counts_;
   Socket socket_;
   ReceiveBatch batch_;

@@ -15,11 +15,14 @@ constexpr std::size_t kTagBytes = 104;
 constexpr std::size_t kSubscribeBytes = 4;
 constexpr std::size_t kChallengeBytes = 4;
 constexpr std::size_t kObjectBytes = 4;
+constexpr std::size_t kRefusalBytes = 4;
 constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] of session and token
 constexpr std::uint32_t kDockingBit = 1;
 constexpr std::uint32_t kPresentBit = 1;
 constexpr std::uint16_t kStaleBit = 1;
 constexpr std::int64_t kAgeUnit = 1000;  ///< [ns]
+/// By number, from 1.
+constexpr std::array kRefusals{PacketStatus::not_signed, PacketStatus::wrong_signature, PacketStatus::replayed};
 
 PacketStatus check(std::span<const double> values, double limit) {
   for (const double value : values) {
@@ -118,6 +121,13 @@ PacketStatus read_object(base::ByteReader& reader, Packet& packet) {
   return flags <= kPresentBit && packet.header.robot >= kMinTag ? PacketStatus::accepted : PacketStatus::out_of_range;
 }
 
+PacketStatus read_refusal(base::ByteReader& reader, Packet& packet) {
+  const auto number = reader.get<std::uint32_t>();
+  if (number < 1 || number > kRefusals.size()) return PacketStatus::out_of_range;
+  packet.body = Refusal{kRefusals[number - 1]};
+  return PacketStatus::accepted;
+}
+
 PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
   base::ByteReader reader(payload);
   PacketStatus status = PacketStatus::accepted;
@@ -149,6 +159,9 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
     case Type::object:
       status = check_size(payload.size(), kObjectBytes);
       return status == PacketStatus::accepted ? read_object(reader, packet) : status;
+    case Type::refusal:
+      status = check_size(payload.size(), kRefusalBytes);
+      return status == PacketStatus::accepted ? read_refusal(reader, packet) : status;
     case Type::neighbours:
       packet.body = Neighbours{payload};
       if (payload.size() > kMaxNeighbours * kV2vBytes) return PacketStatus::too_long;
@@ -323,6 +336,13 @@ void encode(const Header& header, const Object& object, base::Bytes& out) {
   start(header, Type::object, out);
   base::ByteWriter writer(out);
   writer.put(object.present ? kPresentBit : std::uint32_t{0});
+}
+
+void encode(const Header& header, const Refusal& refusal, base::Bytes& out) {
+  const auto* const at = std::find(kRefusals.begin(), kRefusals.end(), refusal.reason);
+  SF_CHECK(at != kRefusals.end(), "REFUSAL for " + std::string(name(refusal.reason)));
+  start(header, Type::refusal, out);
+  base::ByteWriter(out).put(static_cast<std::uint32_t>(at - kRefusals.begin() + 1));
 }
 
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out) {

@@ -37,8 +37,9 @@ inline constexpr double kMaxYaw = 1e6;                       ///< [rad] covers h
 inline constexpr double kMaxSpeed = 1e3;                     ///< [m/s], and [rad/s]
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years; differences cannot overflow
 
-/// From 128: states and requests sent to the farm, of which it forwards V2V and START and sends V2I as well; from 140:
-/// its answers. Below 64: a reading of the sensor type with this wire id; the same plus 64: its second form.
+/// From 128: states and requests sent to the farm, of which it forwards V2V and START and sends V2I as well; CHALLENGE,
+/// REFUSAL and from 140: its answers. Below 64: a reading of the sensor type with this wire id; the same plus 64: its
+/// second form.
 enum class Type : std::uint8_t {
   v2v = 128,
   tag = 129,
@@ -51,6 +52,7 @@ enum class Type : std::uint8_t {
   fetch = 136,
   v2i = 137,
   object = 138,
+  refusal = 139,
   neighbours = 140,
   state = 141,
   values = 142
@@ -129,6 +131,12 @@ struct Challenge {
   std::uint32_t token = 0;
 };
 
+/// Unsigned answer of the farm to a packet whose signature it refuses, for messages to users only: anyone may have sent
+/// it. The header's time is the farm's Unix time.
+struct Refusal {
+  PacketStatus reason = PacketStatus::not_signed;  ///< or wrong_signature, replayed
+};
+
 inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;             ///< of a complete V2V packet
 inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;  ///< V2V packets in one NEIGHBOURS
 inline constexpr double kV2vRange = 50.0;  ///< [m] default radius within which the farm forwards V2V
@@ -146,7 +154,7 @@ struct Reading {
 struct Packet {
   Header header;
   std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, V2i, Object, Neighbours, Reading, Command, Step, Fetch,
-               State, Values>
+               State, Values, Refusal>
       body;
   bool late = false;  ///< a state whose sequence is not newer than the last of its sender (`InboxOptions::take_late`)
 };
@@ -163,6 +171,7 @@ void encode(const Header& header, const Leave& word, base::Bytes& out);
 void encode(const Header& header, const Challenge& challenge, base::Bytes& out);
 void encode(const Header& header, const V2i& signals, base::Bytes& out);
 void encode(const Header& header, const Object& object, base::Bytes& out);
+void encode(const Header& header, const Refusal& refusal, base::Bytes& out);
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out);
 void encode(const Header& header, const Command& command, base::Bytes& out);
 void encode(const Header& header, const Step& step, base::Bytes& out);

@@ -51,6 +51,11 @@ PacketStatus PeerTable::check(const Claim& claim, std::span<const std::uint8_t> 
   return proven ? row->checker->check(bytes) : row->checker->verify(bytes);
 }
 
+std::uint64_t PeerTable::lag(const Claim& claim) {
+  const Row* row = find_row(claim);
+  return row != nullptr && row->checker ? row->checker->lag() : 0;
+}
+
 PacketSigner* PeerTable::signer(const Claim& claim) {
   Row* row = find_row(claim);
   return row != nullptr && row->signer ? &*row->signer : nullptr;

@@ -45,6 +45,9 @@ class PeerTable {
   /// @return accepted, wrong_source, not_signed, wrong_signature or replayed
   PacketStatus check(const Claim& claim, std::span<const std::uint8_t> bytes, const Endpoint& source, bool proven);
 
+  /// See `SignatureChecker::lag`, of the peer's last checked packet; 0 without a key.
+  std::uint64_t lag(const Claim& claim);
+
   /// Signs packets to a peer; null without a key. Lives as long as the table.
   PacketSigner* signer(const Claim& claim);
 

@@ -2,6 +2,7 @@
 
 #include <sodium.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -83,6 +84,7 @@ PacketStatus SignatureChecker::check(std::span<const std::uint8_t> packet) {
   if (status != PacketStatus::accepted) return status;
   std::uint64_t counter = 0;
   std::memcpy(&counter, packet.data() + packet.size() - kSignatureBytes, sizeof counter);
+  lag_ = window_.newest() - std::min(counter, window_.newest());
   return window_.admit(counter) ? PacketStatus::accepted : PacketStatus::replayed;
 }
 

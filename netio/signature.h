@@ -45,6 +45,7 @@ class ReplayWindow {
   static constexpr std::uint64_t kSize = 64;
   /// Takes the counter of a valid signature. @return false if it came before, or is kSize or more behind the newest
   bool admit(std::uint64_t counter);
+  std::uint64_t newest() const { return newest_; }
 
  private:
   std::uint64_t newest_ = 0;
@@ -73,10 +74,13 @@ class SignatureChecker {
   PacketStatus check(std::span<const std::uint8_t> packet);
   /// The same without counters: a packet may come again. @return accepted, not_signed or wrong_signature
   PacketStatus verify(std::span<const std::uint8_t> packet) const;
+  /// How far the counter of the last checked packet was behind the newest one; senders count microseconds.
+  std::uint64_t lag() const { return lag_; }
 
  private:
   SigningKey key_;
   ReplayWindow window_;
+  std::uint64_t lag_ = 0;
 };
 
 }  // namespace sf::netio

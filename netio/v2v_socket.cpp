@@ -2,6 +2,8 @@
 
 #include <variant>
 
+#include "netio/own_end.h"
+
 namespace sf::netio {
 
 namespace {
@@ -14,7 +16,7 @@ constexpr std::size_t kV2vSendBuffer = 1u << 18;  ///< [byte]
 
 V2vSocket::V2vSocket(const V2vSocketOptions& options)
     : options_(options),
-      socket_(open_udp({0, 0}, {.receive = options.receive_buffer, .send = kV2vSendBuffer})),
+      socket_(open_udp(own_end_for(options.farm.address), {.receive = options.receive_buffer, .send = kV2vSendBuffer})),
       outbox_(duplicate(socket_), {.capacity = 4}),
       others_(options.others),
       lights_(options.lights),
@@ -37,6 +39,23 @@ PacketStatus V2vSocket::check_signature(std::span<const std::uint8_t> bytes) {
   const PacketStatus status = decode(bytes, packet);
   if (status != PacketStatus::accepted) return status;
   return packet.header.token == options_.session ? checker_->check(bytes) : PacketStatus::wrong_source;
+}
+
+/// Before signatures are checked: the farm has no valid one where keys differ. It changes nothing but a message.
+bool V2vSocket::take_refusal(std::span<const std::uint8_t> bytes) {
+  Packet packet;
+  if (decode(bytes, packet) != PacketStatus::accepted || packet.header.token != options_.session) return false;
+  const auto* const refusal = std::get_if<Refusal>(&packet.body);
+  if (refusal == nullptr) return false;
+  counts_.add(PacketStatus::accepted);
+  trouble_ = {refusal->reason, true, packet.header.time, trouble_.count + 1};
+  return true;
+}
+
+void V2vSocket::note_trouble(PacketStatus status) {
+  if (status != PacketStatus::not_signed && status != PacketStatus::wrong_signature && status != PacketStatus::replayed)
+    return;
+  trouble_ = {status, false, 0, trouble_.count + 1};
 }
 
 PacketStatus V2vSocket::accept(std::span<const std::uint8_t> bytes, std::int64_t now, Packet& packet) {

@@ -34,6 +34,15 @@ struct V2vSocketOptions {
   std::vector<std::uint32_t> lights;  ///< ids of the world's intersections
 };
 
+/// Why nothing signed passes between robot and farm.
+struct SignatureTrouble {
+  PacketStatus reason = PacketStatus::accepted;  ///< not_signed, wrong_signature or replayed; accepted: no trouble
+  bool of_farm = false;  ///< the farm refuses the robot's packets (as a REFUSAL states, which is not signed); false:
+                         ///< the robot refuses the farm's
+  std::int64_t farm_time = 0;  ///< [ns] Unix time of the REFUSAL; 0: none
+  std::uint64_t count = 0;     ///< packets refused so far, or REFUSALs
+};
+
 class V2vSocket {
  public:
   /// @throws base::InputError when no socket can be opened.
@@ -57,7 +66,9 @@ class V2vSocket {
   void receive(Take&& take) {
     constexpr std::size_t kMost = 65'536;
     batch_.drain(socket_, kMost, [&](std::span<const std::uint8_t> bytes, const Endpoint& source) {
+      if (source == options_.farm && take_refusal(bytes)) return;
       const PacketStatus status = source == options_.farm ? check_signature(bytes) : PacketStatus::wrong_source;
+      if (status != PacketStatus::wrong_source) note_trouble(status);
       if (status == PacketStatus::accepted)
         for_each_state(bytes, take);
       else
@@ -78,12 +89,16 @@ class V2vSocket {
   SessionToken farm_session_token() const { return {farm_session_, options_.session}; }
 
   const PacketCounts& counts() const { return counts_; }
+  /// The last one.
+  const SignatureTrouble& trouble() const { return trouble_; }
   OutboxCounts sent() const { return outbox_.counts(); }
   const Socket& socket() const { return socket_; }
 
  private:
   PacketStatus check(const Packet& packet, std::int64_t now);
   PacketStatus check_signature(std::span<const std::uint8_t> bytes);
+  bool take_refusal(std::span<const std::uint8_t> bytes);
+  void note_trouble(PacketStatus status);
 
   V2vSocketOptions options_;
   Socket socket_;
@@ -93,6 +108,7 @@ class V2vSocket {
   std::uint32_t farm_session_ = 0;
   std::uint32_t token_ = 0;
   PacketCounts counts_;
+  SignatureTrouble trouble_;
   ReceiveBatch batch_;
   std::optional<PacketSigner> signer_;
   std::optional<SignatureChecker> checker_;

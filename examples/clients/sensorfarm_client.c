@@ -35,7 +35,7 @@ enum {
   SF_MAX_SENSORS = 32,
   SF_SIGNATURE = 24
 };
-enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_V2I = 137, SF_OBJECT, SF_NEIGHBOURS = 140 };
+enum { SF_V2V = 128, SF_TAG, SF_SUBSCRIBE, SF_START, SF_LEAVE, SF_CHALLENGE, SF_V2I = 137, SF_OBJECT, SF_REFUSAL, SF_NEIGHBOURS };
 enum { SF_DARK, SF_RED, SF_YELLOW, SF_GREEN, SF_FLASHING_RED, SF_FLASHING_YELLOW, SF_STOP_LINE = 255 };
 enum { SF_COMMAND = 134, SF_STEP, SF_FETCH, SF_STATE = 141, SF_VALUES };  // lockstep
 enum { SF_MAX_COMMANDS = 38, SF_MAX_PART = 148, SF_MAX_DATAGRAM = 1400 };
@@ -87,6 +87,7 @@ static const sf_type sf_types[] = {
     // Rows of eight numbers: approaches, and behind them the stop lines of SF_STOP_LINE.
     {137, "V2I", 0, {0}, {{"group", 1, 1}, {"state", 1, 1}, {"next", 1, 1}, {"left_s", 1, 1e-3}, {"light", 4, 1}}},
     {138, "OBJECT", 0, {"present"}, {{0}}},
+    {139, "REFUSAL", 0, {"reason"}, {{0}}},
     {140, "NEIGHBOURS", 0, {0}, {{0}}},
     {141, "STATE", 0, {"index", "datagrams", "contact", "flags"}, {{"pose", 4, 1}, {"velocity", 3, 1}}},
     {142, "VALUES", 0, {"index", "datagrams", "values_type", "total", "first"}, {{"value", 1, 1}}},
@@ -291,6 +292,7 @@ static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t
     return in_range(!check_numbers(v, 3, 1e7) && !check_numbers(v + 7, 6, 1e3) && p->robot > 0 &&
                     fabs(hypot(hypot(v[3], v[4]), hypot(v[5], v[6])) - 1.0) <= 1e-3);
   if (p->type == SF_OBJECT) return in_range(p->words[0] <= 1 && p->robot > 0);
+  if (p->type == SF_REFUSAL) return in_range(p->words[0] >= 1 && p->words[0] <= 3);
   return NULL;
 }
 
@@ -768,11 +770,17 @@ static bool is_newer(sf_client* c, const sf_packet* p) {
   return true;
 }
 
+// Why the farm drops what this client sends; anyone may have sent this, so it is counted and changes nothing.
+static const char* refusal_text(const sf_packet* p) {
+  return p->words[0] == 1 ? "refused: not signed" : p->words[0] == 2 ? "refused: wrong signature" : "refused: clock behind";
+}
+
 static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size, const struct sockaddr_in* from,
                                  sf_window* window, sf_packet* p) {
   if (from->sin_addr.s_addr != c->farm.sin_addr.s_addr || from->sin_port != c->farm.sin_port) return "wrong source";
   const char* const status = sf_decode(bytes, size, p);
   if (status) return status;
+  if (p->token == c->session && p->type == SF_REFUSAL) return refusal_text(p);
   if (p->token != c->session || (p->type != SF_CHALLENGE && p->session != c->farm_session)) return "wrong source";
   const char* const forged = c->has_key ? sf_check_signature(window, bytes, size, c->key) : NULL;
   if (forged) return forged;

@@ -28,14 +28,17 @@ import sys
 import time
 
 LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
-V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, NEIGHBOURS = 128, 129, 130, 131, 132, 133, 137, 138, 140
+# Why the farm drops what this client sends; anyone may have sent this, so it is counted and changes nothing.
+REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused: clock behind"}
+V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS = (
+    128, 129, 130, 131, 132, 133, 137, 138, 139, 140)
 COMMAND, STEP, FETCH, STATE, VALUES = 134, 135, 136, 141, 142  # lockstep
 NONE = 2**32 - 1  # V2V: no leader, no checkpoint
 EVERY_ROBOT = 65535  # START: recipient
 HEADER_BYTES, V2V_BYTES, MAX_PAYLOAD, SIGNATURE_BYTES = 64, 132, 1256, 24
 HEADER = struct.Struct("<4sBBHHHIqIII6fHH")
 STATES = {V2V: "<7d3I", TAG: "<13d", SUBSCRIBE: "<I", START: "<", LEAVE: "<", CHALLENGE: "<I",
-          OBJECT: "<I"}  # payloads
+          OBJECT: "<I", REFUSAL: "<I"}  # payloads
 
 # Sensor types: name, base of the ports, columns of a row with the unit of each number on the wire.
 SENSORS = {
@@ -54,7 +57,7 @@ SENSORS = {
 }
 TYPE_NAMES = {**{k: s[0] for k, s in SENSORS.items()}, 65: "laser", 128: "V2V", 129: "TAG", 130: "SUBSCRIBE",
               131: "START", 132: "LEAVE", 133: "CHALLENGE", 134: "COMMAND", 135: "STEP", 136: "FETCH",
-              137: "V2I", 138: "OBJECT", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES"}
+              137: "V2I", 138: "OBJECT", 139: "REFUSAL", 140: "NEIGHBOURS", 141: "STATE", 142: "VALUES"}
 LIGHT_STATES = ("dark", "red", "yellow", "green", "flashing red", "flashing yellow")
 
 
@@ -225,7 +228,8 @@ def decode_state(type, robot, payload):
         return {"position": list(numbers[:3]), "orientation": list(numbers[3:7]), "linear": list(numbers[7:10]),
                 "angular": list(numbers[10:])}
     require(type != OBJECT or numbers[0] <= 1 and robot > 0)
-    name = {SUBSCRIBE: "types", OBJECT: "present"}.get(type, "challenge")
+    require(type != REFUSAL or 1 <= numbers[0] <= 3)
+    name = {SUBSCRIBE: "types", OBJECT: "present", REFUSAL: "reason"}.get(type, "challenge")
     return {name: number for number in numbers}
 
 
@@ -405,6 +409,7 @@ class Client:
         require(sender == self.farm, "wrong source")
         packet = decode(data)
         require(packet["token"] == self.session, "wrong source")
+        require(packet["type"] != REFUSAL, REFUSALS.get(packet.get("reason")))
         require(packet["type"] == CHALLENGE or packet["session"] == self.farm_session, "wrong source")
         if self.key:
             window.check(data, self.key)

@@ -172,6 +172,7 @@ static bool receive_all(sf_lockstep* l, double timeout) {
     const char* status = "wrong source";
     if (from.sin_addr.s_addr == l->link.farm.sin_addr.s_addr && from.sin_port == l->link.farm.sin_port)
       status = sf_decode(bytes, (size_t)size, &packet);
+    if (!status && packet.token == l->link.session && packet.type == SF_REFUSAL) status = refusal_text(&packet);
     const bool challenge = packet.type == SF_CHALLENGE;
     if (!status && (packet.token != l->link.session || (!challenge && packet.session != l->link.farm_session)))
       status = "wrong source";

@@ -24,9 +24,9 @@ import socket
 import sys
 import time
 
-from sensorfarm_client import (CHALLENGE, EVERY_ROBOT, LEAVE, SENSORS, STATE, VALUES, Client, Malformed, Window, decode,
-                               encode, encode_command, encode_fetch, encode_step, encode_subscribe, read_farm, read_key,
-                               require, sign)
+from sensorfarm_client import (CHALLENGE, EVERY_ROBOT, LEAVE, REFUSAL, REFUSALS, SENSORS, STATE, VALUES, Client,
+                               Malformed, Window, decode, encode, encode_command, encode_fetch, encode_step,
+                               encode_subscribe, read_farm, read_key, require, sign)
 
 ROWS, WINDOW, PUSHED = 38, 64, 64  # robots of a COMMAND; datagrams of a FETCH; datagrams that come without one
 PATIENCE = 0.02  # [s] of silence after which packets are repeated, doubled each time up to half a second
@@ -160,6 +160,7 @@ class Lockstep(Client):
         require(sender == self.farm, "wrong source")
         packet = decode(data)
         require(packet["token"] == self.session, "wrong source")
+        require(packet["type"] != REFUSAL, REFUSALS.get(packet.get("reason")))
         if self.keys:
             key = self.keys.get(packet["robot"] if packet["robot"] in self.ids else self.ids[0])
             if key:

@@ -28,6 +28,7 @@
 #include "netio/outbox.h"
 #include "netio/rate_limited_log.h"
 #include "netio/server/wire_ids.h"
+#include "netio/signature_trouble_log.h"
 #include "sensors/sensor_set.h"
 #include "world/world.h"
 
@@ -131,6 +132,7 @@ class Lockstep {
   netio::Inbox inbox_;
   netio::Outbox outbox_;  ///< from the port that the processes send to
   netio::RateLimitedLog log_;
+  netio::SignatureTroubleLog trouble_;
   std::map<Key, Process> processes_;
   std::vector<Process*> driver_;                         ///< per mover; null: nobody drives it
   std::vector<std::uint32_t> types_;                     ///< per mover: mask of its SUBSCRIBE

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "maps/map_packets.h"
 #include "netio/address_token.h"
+#include "netio/own_end.h"
 #include "netio/packets.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
@@ -62,7 +63,8 @@ OwnMap::OwnMap(const world::World& world, std::uint32_t mover, const OwnMapOptio
       robot_(static_cast<std::uint16_t>(world.movers[mover].id)),
       session_(netio::random_session()),
       map_({&settings_.settings, 1}, thread_pool_),
-      words_(settings_.row.elements) {
+      words_(settings_.row.elements),
+      outbox_({.bind = netio::own_end_for(options.receiver.address)}) {
   const std::string problem = sensors::occupancy_wire_problem(settings_.row, options.wire);
   if (!problem.empty()) throw base::InputError("--map: " + problem);
 }

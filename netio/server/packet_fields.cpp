@@ -73,6 +73,9 @@ void add_body(const netio::Tag& state, Fields& out) {
 void add_body(const netio::Subscribe& request, Fields& out) { add(out, "types", request.types); }
 void add_body(const netio::Start&, Fields&) {}
 void add_body(const netio::Leave&, Fields&) {}
+void add_body(const netio::Refusal& refusal, Fields& out) {
+  add(out, "reason", static_cast<int>(refusal.reason) - static_cast<int>(netio::PacketStatus::not_signed) + 1);
+}
 void add_body(const netio::Challenge& challenge, Fields& out) { add(out, "challenge", challenge.token); }
 
 /// Lists by robot, and per robot forward, left, turn.
@@ -244,6 +247,8 @@ std::string name_of(netio::Type type) {
       return "V2I";
     case netio::Type::object:
       return "OBJECT";
+    case netio::Type::refusal:
+      return "REFUSAL";
     case netio::Type::neighbours:
       return "NEIGHBOURS";
     case netio::Type::command:

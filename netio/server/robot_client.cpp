@@ -15,7 +15,9 @@ namespace sf::server {
 
 namespace {
 
-constexpr std::int64_t kAnswerIn = 3'000'000'000;  ///< [ns] without one, the user is told
+constexpr std::int64_t kAnswerIn = 3'000'000'000;       ///< [ns] without one, the user is told
+constexpr std::int64_t kTroubleIn = 1'000'000'000;      ///< [ns] likewise, of refused signatures
+constexpr std::int64_t kTroubleEvery = 10'000'000'000;  ///< [ns]
 
 /// [ns] Never shorter than two and a half periods of the fastest sensor, so that one lost reading stops nobody.
 std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mover, double seconds) {
@@ -41,6 +43,27 @@ LinkOptions with_lights(LinkOptions link, std::span<const Intersection> intersec
 
 /// [ms] since 1970
 std::int64_t utc_now() { return base::unix_time() / 1'000'000; }
+
+/// What the user has to change.
+std::string trouble_text(const netio::SignatureTrouble& trouble, std::uint32_t id, std::int64_t unix_time) {
+  const double behind = 1e-9 * static_cast<double>(trouble.farm_time - unix_time);
+  switch (trouble.reason) {
+    case netio::PacketStatus::not_signed:
+      return trouble.of_farm
+                 ? fmt::format("refuses packets without a signature of robot {}: start this one with --peers, too", id)
+                 : fmt::format("does not sign its packets: start `serve` with --peers and the key of robot {}, too",
+                               id);
+    case netio::PacketStatus::wrong_signature:
+      return fmt::format("has another key for robot {} than --peers here: compare both files", id);
+    default:
+      return trouble.of_farm
+                 ? fmt::format(
+                       "has had packets of robot {} with later times: this machine's clock was set back, and "
+                       "reads {:.1f} s {} than the farm's; set it, or restart `serve`",
+                       id, std::abs(behind), behind < 0.0 ? "more" : "less")
+                 : "sends times before those that it sent: its clock was set back; set it, or restart this robot";
+  }
+}
 
 }  // namespace
 
@@ -233,9 +256,23 @@ bool RobotClient::readings_timed_out(std::int64_t now) const {
   return reading_timeout_ > 0 && link_.listens() && now - link_.last_reading().value_or(0) > reading_timeout_;
 }
 
+/// Trouble with keys and clocks while nothing else comes: at once, then every ten seconds.
+void RobotClient::log_signature_trouble(std::int64_t now) {
+  const netio::SignatureTrouble& trouble = link_.trouble();
+  const bool is_new = trouble.count > std::exchange(troubles_, trouble.count);
+  if (!is_new || now < next_trouble_ || now - link_.last_answer().value_or(0) < kTroubleIn) return;
+  next_trouble_ = now + kTroubleEvery;
+  problem_logged_ = true;
+  stands_ = reading_timeout_ > 0;
+  log_.write(fmt::format("the farm at {} {}", netio::text(link_.farm()),
+                         trouble_text(trouble, world_.movers[mover_].id, base::unix_time())),
+             now);
+}
+
 /// Where nothing is heard any more, where something is again, and, once, where nothing ever was.
 void RobotClient::log_problems(std::int64_t now) {
   const std::string farm = netio::text(link_.farm());
+  log_signature_trouble(now);
   if (!problem_logged_ && link_.listens() && now - link_.last_answer().value_or(0) >= kAnswerIn) {
     problem_logged_ = true;
     stands_ = reading_timeout_ > 0;

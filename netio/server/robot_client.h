@@ -131,6 +131,7 @@ class RobotClient {
   /// No camera saw it for so long that its state is no ground to drive by.
   bool is_lost() const { return cameras_ && !cameras_->is_fresh(); }
   void log_problems(std::int64_t now);
+  void log_signature_trouble(std::int64_t now);
   void draw_map(std::int64_t now);
   void log_create(std::int64_t now);
 
@@ -147,8 +148,10 @@ class RobotClient {
   bool started_;
   std::int64_t reading_timeout_;  ///< [ns] without a reading; 0: for ever
   bool problem_logged_ = false;
-  bool stands_ = false;      ///< for want of readings or positions
-  std::uint64_t stops_ = 0;  ///< times that it came to that
+  std::uint64_t troubles_ = 0;     ///< refused packets that came before
+  std::int64_t next_trouble_ = 0;  ///< [ns] not logged before
+  bool stands_ = false;            ///< for want of readings or positions
+  std::uint64_t stops_ = 0;        ///< times that it came to that
   netio::RateLimitedLog log_;
   std::uint64_t steps_ = 0;
   base::ContactOnset contact_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "netio/own_end.h"
 #include "netio/server/wire_ids.h"
 
 namespace sf::server {
@@ -25,9 +26,6 @@ std::vector<std::uint32_t> others_of(const world::World& world, std::uint32_t id
   return ids;
 }
 
-/// A farm on this machine is heard on loopback alone.
-std::uint32_t listening_address(std::uint32_t farm) { return netio::is_loopback(farm) ? netio::kLoopback : 0; }
-
 }  // namespace
 
 RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
@@ -38,7 +36,7 @@ RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor
       farm_(options.farm),
       v2v_socket_(
           {.farm = farm_, .robot = id_, .others = others_of(world, id_), .key = options.key, .lights = options.lights}),
-      port_listener_(listening_address(farm_.address), std::size_t{1} << 20, specs(layout)),
+      port_listener_(netio::own_end_for(farm_.address).address, std::size_t{1} << 20, specs(layout)),
       receiver_(receiver_options(layout, options)),
       out_(options.model),
       in_(options.model),

@@ -76,6 +76,8 @@ class RobotLink {
   std::optional<std::int64_t> last_answer() const { return last_answer_; }
   /// [ns] when a whole reading came last; nothing where none did yet.
   std::optional<std::int64_t> last_reading() const { return last_reading_; }
+  /// Why nothing signed passes, as far as packets have shown.
+  const netio::SignatureTrouble& trouble() const { return v2v_socket_.trouble(); }
   bool listens() const { return !streams_.empty(); }  ///< to any sensor
   const netio::Endpoint& farm() const { return farm_; }
   LinkCounts counts() const;

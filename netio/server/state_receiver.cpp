@@ -47,6 +47,8 @@ void StateReceiver::receive_pending(std::int64_t now) {
   reports_.clear();
   const auto on_rejected = [&](netio::PacketStatus reason, const netio::Packet& packet, const netio::Endpoint& who) {
     if (reason == netio::PacketStatus::wrong_source) return log_wrong_source(packet, who, now);
+    if (reason != netio::PacketStatus::unproven)
+      return trouble_.note(reason, packet, who, name_of(packet.header), now, inbox_, answers_, log_);
     if (inbox_.challenge(packet, who, now, challenge_)) answers_.queue(who, challenge_);
   };
   inbox_.receive(
@@ -118,12 +120,19 @@ bool StateReceiver::update_absent_tag(std::uint32_t row) {
   return absent;
 }
 
+/// Of the mover that a packet claims to be from; empty: it is from none.
+std::string StateReceiver::name_of(const netio::Header& header) const {
+  const netio::Claim claim = netio::claim_of(header);
+  if (claim.kind != netio::PeerKind::robot && claim.kind != netio::PeerKind::tag) return "";
+  return world_.movers[(claim.kind == netio::PeerKind::tag ? names_.tags : names_.robots).at(claim.id)].name;
+}
+
 /// Once per binding, or once for the address in the table of peers.
 void StateReceiver::log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now) {
   const netio::Claim claim = netio::claim_of(packet.header);
   const bool tag = claim.kind == netio::PeerKind::tag;
   if (!tag && claim.kind != netio::PeerKind::robot) return;  // of no mover
-  const std::string& name = world_.movers[(tag ? names_.tags : names_.robots).at(claim.id)].name;
+  const std::string name = name_of(packet.header);
   const netio::Peer* peer = netio::find(peers_, claim.kind, claim.id);
   const bool refused = peer != nullptr && peer->address && *peer->address != who.address;
   const auto bound = packet.header.type == netio::Type::object ? inbox_.object_address(claim.id)

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/report.h"
@@ -15,6 +16,7 @@
 #include "netio/relay.h"
 #include "netio/server/state_filter.h"
 #include "netio/server/wire_ids.h"
+#include "netio/signature_trouble_log.h"
 #include "robots/fleet.h"
 #include "world/world.h"
 
@@ -71,6 +73,7 @@ class StateReceiver {
 
  private:
   void take(const netio::Packet& packet, std::int64_t now);
+  std::string name_of(const netio::Header& header) const;
   void log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now);
 
   static constexpr std::int64_t kNever = -1;
@@ -91,6 +94,7 @@ class StateReceiver {
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover
   std::vector<std::int64_t> last_state_;   ///< [ns] arrival, per mover, or kNever
   netio::RateLimitedLog log_;
+  netio::SignatureTroubleLog trouble_;
   // By id: the bound address whose other senders are in the log already.
   std::map<std::uint32_t, std::optional<netio::Endpoint>> logged_robots_;
   std::map<std::uint32_t, std::optional<netio::Endpoint>> logged_tags_;

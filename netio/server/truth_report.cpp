@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "netio/address_token.h"
+#include "netio/own_end.h"
 
 namespace sf::server {
 
@@ -19,7 +20,8 @@ netio::V2v v2v_of(const base::Report& report, const base::Intent& intent) {
   return state;
 }
 
-TruthReport::TruthReport(const netio::Endpoint& to, std::uint32_t tag) : to_(to) {
+TruthReport::TruthReport(const netio::Endpoint& to, std::uint32_t tag)
+    : to_(to), outbox_({.bind = netio::own_end_for(to.address)}) {
   header_.robot = static_cast<std::uint16_t>(tag);
   header_.session = netio::random_session();
 }

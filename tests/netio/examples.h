@@ -61,6 +61,13 @@ inline base::Bytes leave_example() {
   return out;
 }
 
+inline base::Bytes refusal_example() {
+  base::Bytes out;
+  encode({.robot = 7, .time = 1'500'000'000, .session = 0x11223344, .token = 0x55667788},
+         Refusal{PacketStatus::wrong_signature}, out);
+  return out;
+}
+
 inline base::Bytes challenge_example() {
   base::Bytes out;
   encode({.robot = 7, .session = 0x11223344, .token = 0x55667788}, Challenge{0x0BADF00D}, out);
@@ -104,7 +111,7 @@ inline std::vector<base::Bytes> states() {
 /// Packets from the farm, in order of type number.
 inline std::vector<base::Bytes> examples() {
   return {reading_example(), extended_example(),  v2v_example(), tag_example(),    subscribe_example(), start_example(),
-          leave_example(),   challenge_example(), v2i_example(), object_example(), neighbours_example()};
+          leave_example(),   challenge_example(), refusal_example(), v2i_example(), object_example(), neighbours_example()};
 }
 
 inline base::Bytes command_example() {

@@ -37,6 +37,7 @@ TEST(Packets, BytesAreTheDocumentedOnes) {
   EXPECT_EQ(start_example(), documented("start"));
   EXPECT_EQ(leave_example(), documented("leave"));
   EXPECT_EQ(challenge_example(), documented("challenge"));
+  EXPECT_EQ(refusal_example(), documented("refusal"));
   EXPECT_EQ(v2i_example(), documented("v2i"));
   EXPECT_EQ(object_example(), documented("object"));
   EXPECT_EQ(neighbours_example(), documented("neighbours"));

@@ -146,6 +146,41 @@ TEST_F(PeersTest, ChallengesAreSignedAndNoLarger) {
   EXPECT_EQ(std::get<Challenge>(packet.body).token, inbox.token(kPeerSource));
 }
 
+/// A REFUSAL is unsigned, no larger than the smallest packet that it answers, and no LEAVE, TAG or START gets one.
+TEST_F(PeersTest, RefusalsAreNoLargerAndLimited) {
+  base::Bytes request = subscribe_example(), answer;
+  ASSERT_EQ(accept(request), PacketStatus::not_signed);
+  ASSERT_TRUE(inbox.refuse(packet, PacketStatus::not_signed, 0, answer));
+  EXPECT_LE(answer.size(), request.size());
+  Packet refusal;
+  ASSERT_EQ(decode(answer, refusal), PacketStatus::accepted);
+  EXPECT_EQ(std::get<Refusal>(refusal.body).reason, PacketStatus::not_signed);
+  EXPECT_EQ(refusal.header.token, packet.header.session);
+  std::size_t more = 0;
+  while (inbox.refuse(packet, PacketStatus::not_signed, 1, answer)) ++more;
+  EXPECT_EQ(more + 1, Inbox::kMaxRefusals) << "in 0.1 s";
+  EXPECT_TRUE(inbox.refuse(packet, PacketStatus::not_signed, 100'000'000, answer));
+  for (const base::Bytes& bytes : {leave_example(), tag_example(), start_example()}) {
+    ASSERT_EQ(decode(bytes, packet), PacketStatus::accepted);
+    EXPECT_FALSE(inbox.refuse(packet, PacketStatus::not_signed, kSecond, answer));
+  }
+}
+
+/// Counters of a second or more behind are a clock that was set back; less are copies. Boundary: 1 s.
+TEST_F(PeersTest, TheLagOfACounterIsKnown) {
+  for (const std::uint64_t lag : {64u, 999'999u, 1'000'000u}) {
+    PacketSigner now(kRobotKey, 1u << 30), then(kRobotKey, (1u << 30) - lag);
+    Inbox fresh{peer_options()};
+    base::Bytes bytes = peer_v2v(7, 0);
+    write_session_token(bytes, {77, fresh.token(kPeerSource)});
+    base::Bytes late = bytes;
+    now.sign(bytes), then.sign(late);
+    ASSERT_EQ(fresh.accept(bytes, kPeerSource, 0, packet), PacketStatus::accepted);
+    ASSERT_EQ(fresh.accept(late, kPeerSource, 0, packet), PacketStatus::replayed);
+    EXPECT_EQ(fresh.lag({PeerKind::robot, 7}), lag);
+  }
+}
+
 TEST_F(PeersTest, UnknownIdsComeFirst) {
   EXPECT_EQ(say(peer_v2v(8, 0), nullptr), PacketStatus::unknown_robot);
   EXPECT_EQ(say(reading_example(), nullptr), PacketStatus::wrong_direction);
@@ -194,6 +229,19 @@ struct SignedSocketTest : testing::Test {
     return accepted;
   }
 };
+
+/// With this robot's session it is taken without a signature, for a message alone; with another it is not.
+TEST_F(SignedSocketTest, ARefusalChangesNothing) {
+  base::Bytes refusal;
+  encode({.robot = 7, .time = 9}, Refusal{PacketStatus::wrong_signature}, refusal);
+  EXPECT_EQ(hear(refusal, {kFarm, kOwn + 1}, nullptr), 0u);
+  EXPECT_EQ(socket.trouble().count, 0u) << "of another session";
+  EXPECT_EQ(hear(refusal, {kFarm + 1, kOwn}, nullptr), 0u);
+  EXPECT_TRUE(socket.trouble().of_farm);
+  EXPECT_EQ(socket.trouble().reason, PacketStatus::wrong_signature);
+  EXPECT_EQ(socket.trouble().farm_time, 9);
+  EXPECT_EQ(socket.farm_session_token().session, kFarm) << "as before";
+}
 
 base::Bytes neighbours() {
   base::Bytes state, out;

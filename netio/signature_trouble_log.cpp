@@ -1,0 +1,60 @@
+#include "netio/signature_trouble_log.h"
+
+#include <fmt/format.h>
+
+namespace sf::netio {
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;  ///< [ns]
+
+std::string peer_text(const Claim& claim, const std::string& name) {
+  const std::string in_brackets = name.empty() ? "" : fmt::format(" ({})", name);
+  switch (claim.kind) {
+    case PeerKind::robot:
+      return fmt::format("robot {}{}", claim.id, in_brackets);
+    case PeerKind::tag:
+      return fmt::format("tag {}{}", claim.id, in_brackets);
+    case PeerKind::light:
+      return fmt::format("intersection {}", claim.id);
+    case PeerKind::start:
+      break;
+  }
+  return "START";
+}
+
+/// @param lag [us] of the counter
+std::string reason_text(PacketStatus reason, std::uint64_t lag) {
+  if (reason == PacketStatus::not_signed)
+    return "without a signature: --peers has a key for it here, and the sender uses none (start it with --peers, too)";
+  if (reason == PacketStatus::wrong_signature)
+    return "with a wrong signature: the sender's key differs from the one in --peers here; compare both files";
+  return fmt::format(
+      "with a counter {:.1f} s behind an earlier one: the sender's clock was set back (or someone sends "
+      "old packets again); set that clock, or restart `serve`",
+      1e-6 * static_cast<double>(lag));
+}
+
+}  // namespace
+
+void SignatureTroubleLog::note(PacketStatus reason, const Packet& packet, const Endpoint& who, const std::string& name,
+                               std::int64_t now, Inbox& inbox, Outbox& answers, RateLimitedLog& log) {
+  if (reason != PacketStatus::not_signed && reason != PacketStatus::wrong_signature && reason != PacketStatus::replayed)
+    return;
+  const Claim claim = claim_of(packet.header);
+  Row& row = rows_[{claim.kind, claim.id, reason}];
+  ++row.count;
+  if (now >= row.next_answer && inbox.refuse(packet, reason, now, answer_)) {
+    row.next_answer = now + kSecond / 2;
+    answers.queue(who, answer_);
+  }
+  if (now < row.next_line) return;
+  row.next_line = now + 10 * kSecond;
+  log.write(fmt::format("{} at {}: {} dropped, {}", peer_text(claim, name), text(who),
+                        row.count == 1 ? "1 packet" : fmt::format("{} packets", row.count),
+                        reason_text(reason, inbox.lag(claim))),
+            now);
+  row.count = 0;
+}
+
+}  // namespace sf::netio

@@ -1,0 +1,37 @@
+#pragma once
+// What the farm says of peers whose signatures it refuses: with another key, without one, or with a clock that is
+// behind.
+
+#include <cstdint>
+#include <map>
+#include <tuple>
+
+#include "netio/inbox.h"
+#include "netio/outbox.h"
+#include "netio/rate_limited_log.h"
+
+namespace sf::netio {
+
+/// One thread.
+class SignatureTroubleLog {
+ public:
+  /// Logs the first packet of a peer and reason, then every ten seconds their number while more come. Answers a robot
+  /// or light by REFUSAL, at most twice a second.
+  /// @param reason not_signed, wrong_signature or replayed; others have no effect
+  /// @param name of the mover or light, in messages; may be empty
+  /// @param now [ns] of the inbox' clock
+  void note(PacketStatus reason, const Packet& packet, const Endpoint& who, const std::string& name, std::int64_t now,
+            Inbox& inbox, Outbox& answers, RateLimitedLog& log);
+
+ private:
+  struct Row {
+    std::uint64_t count = 0;       ///< since the last line
+    std::int64_t next_line = 0;    ///< [ns]
+    std::int64_t next_answer = 0;  ///< [ns]
+  };
+  std::map<std::tuple<PeerKind, std::uint32_t, PacketStatus>, Row>
+      rows_;  ///< of peers with a key: their number is known
+  base::Bytes answer_;
+};
+
+}  // namespace sf::netio
