@@ -1,6 +1,7 @@
 #include "apps/bridge_options.h"
 
 #include "apps/address.h"
+#include "apps/exposure_warning.h"
 #include "apps/text.h"
 #include "netio/bridges/player_bridge.h"
 #include "netio/bridges/ros2_bridge.h"
@@ -15,8 +16,12 @@ LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world
   record::name_frames(info_);
   const bridges::Scene scene{world, sensor_set, info_, simulated};
   if (options.ros2) bridges_.add(std::make_unique<bridges::Ros2Bridge>(bridges::ros2_options(*options.ros2), scene));
-  if (!options.player.empty())
-    bridges_.add(std::make_unique<bridges::PlayerBridge>(scene, read_own_address(options.player, "--player")));
+  if (!options.player.empty()) {
+    const netio::Endpoint bind = read_own_address(options.player, "--player");
+    bridges_.add(std::make_unique<bridges::PlayerBridge>(scene, bind));
+    warn_of_exposure(bind.address, simulated ? "read sensors and drive robots" : "read sensors",
+                     "Player has no passwords", "--player");
+  }
   if (options.view) {
     const bridges::ViewerOptions view{*options.view,
                                       simulated ? bridges::ViewerMode::run : bridges::ViewerMode::service};

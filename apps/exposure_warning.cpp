@@ -5,7 +5,8 @@
 
 namespace sf::apps {
 
-void warn_of_exposure(std::uint32_t address, const std::string& can) {
+void warn_of_exposure(std::uint32_t address, const std::string& can, const std::string& since,
+                      const std::string& option) {
   if (netio::is_loopback(address)) return;
   const std::string bound = netio::text_of(address);
   std::string reached = "whoever reaches " + bound;
@@ -15,9 +16,8 @@ void warn_of_exposure(std::uint32_t address, const std::string& can) {
     reached = own.empty() ? "every interface, of which this machine has none but loopback" : "whoever reaches " + own;
   }
   print_message(
-      "warning: --bind {} opens it to {}: anyone there can {}, since packets are not signed; "
-      "--bind 127.0.0.1 keeps it to this machine",
-      bound, reached, can);
+      "warning: {0} {1} opens it to {2}: anyone there can {3}, since {4}; {0} 127.0.0.1 keeps it to this machine",
+      option, bound, reached, can, since);
 }
 
 }  // namespace sf::apps

@@ -36,11 +36,11 @@ scenarios::LockstepServiceOptions lockstep_options(const ServeOptions& options, 
   return lockstep;
 }
 
-bool sign_all_robots(std::span<const netio::Peer> peers, const world::World& world) {
-  return std::all_of(world.movers.begin(), world.movers.end(), [&](const world::Mover& mover) {
-    const netio::Peer* peer = netio::find(peers, netio::PeerKind::robot, mover.id);
-    return mover.is_tag || (peer != nullptr && peer->key);
-  });
+std::vector<NamedPeer> robots_of(const world::World& world) {
+  std::vector<NamedPeer> robots;
+  for (const world::Mover& mover : world.movers)
+    if (!mover.is_tag) robots.push_back({netio::Claim{netio::PeerKind::robot, mover.id}, mover.name});
+  return robots;
 }
 
 RunReport lockstep_report(scenarios::LockstepService& service, const world::World& world,
@@ -76,8 +76,8 @@ int serve_lockstep(const ServeOptions& options) {
   choose_accuracy(world, device, options, options.seed, 0);
   try {
     scenarios::LockstepService service(world, device, chosen);
-    if (!sign_all_robots(chosen.lockstep.peers, world))
-      warn_of_exposure(chosen.lockstep.bind.address, "drive robots, and be sent readings");
+    const std::string since = why_unsigned(options, chosen.lockstep.peers, robots_of(world));
+    if (!since.empty()) warn_of_exposure(chosen.lockstep.bind.address, "drive robots, and be sent readings", since);
     std::optional<record::Recorder> recorder;
     if (!options.record.empty()) {
       const std::string caster = raycast::describe_caster(device.info().software);

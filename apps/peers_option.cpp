@@ -1,5 +1,7 @@
 #include "apps/peers_option.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "apps/text.h"
@@ -17,6 +19,23 @@ std::vector<netio::Peer> peers_of(const PeersOption& options, const world::World
     print_message("warning: {} has keys, and others may read or change it; `chmod 600 {}` keeps it to its owner",
                   options.peers, options.peers);
   return peers;
+}
+
+std::string why_unsigned(const PeersOption& options, std::span<const netio::Peer> peers,
+                         const std::vector<NamedPeer>& senders) {
+  if (std::none_of(peers.begin(), peers.end(), [](const netio::Peer& peer) { return peer.key.has_value(); }))
+    return "packets are not signed (--peers has keys)";
+  std::vector<std::string> without;
+  for (const NamedPeer& sender : senders) {
+    const netio::Peer* const peer = sender.claim ? netio::find(peers, sender.claim->kind, sender.claim->id) : nullptr;
+    if (peer == nullptr || !peer->key) without.push_back(sender.name);
+  }
+  if (without.empty()) return "";
+  constexpr std::size_t kMost = 4;
+  const std::size_t more = without.size() - std::min(without.size(), kMost);
+  without.resize(without.size() - more);
+  return fmt::format("{} has no key for {}{}", options.peers, fmt::join(without, ", "),
+                     more > 0 ? " and " + counted(more, "other") : "");
 }
 
 void require_signable(const std::vector<netio::Peer>& peers, sensors::WireFormat wire) {

@@ -57,18 +57,18 @@ server::ServiceOptions service_options(const ServeOptions& options, const world:
   return service;
 }
 
-/// Every robot, tag and intersection, and START, has a key; SPaT cannot be signed.
-bool signs_all(std::span<const netio::Peer> peers, const world::World& world, std::span<const std::uint32_t> lights) {
-  const auto has_key = [&](netio::PeerKind kind, std::uint32_t id) {
-    const netio::Peer* peer = netio::find(peers, kind, id);
-    return peer != nullptr && peer->key;
-  };
-  return has_key(netio::PeerKind::start, 0) &&
-         std::all_of(lights.begin(), lights.end(),
-                     [&](std::uint32_t id) { return has_key(netio::PeerKind::light, id); }) &&
-         std::all_of(world.movers.begin(), world.movers.end(), [&](const world::Mover& mover) {
-           return has_key(mover.is_tag ? netio::PeerKind::tag : netio::PeerKind::robot, mover.id);
-         });
+/// All that may send here and has to be signed; SPaT cannot be.
+std::vector<NamedPeer> senders_of(const ServeOptions& options, const world::World& world,
+                                  std::span<const std::uint32_t> lights) {
+  std::vector<NamedPeer> senders;
+  for (const world::Mover& mover : world.movers)
+    senders.push_back(
+        {netio::Claim{mover.is_tag ? netio::PeerKind::tag : netio::PeerKind::robot, mover.id}, mover.name});
+  for (const std::uint32_t id : lights)
+    senders.push_back({netio::Claim{netio::PeerKind::light, id}, fmt::format("intersection {}", id)});
+  senders.push_back({netio::Claim{netio::PeerKind::start, 0}, "START"});
+  if (options.spat > 0) senders.push_back({std::nullopt, "SPaT (--spat)"});
+  return senders;
 }
 
 /// @throws base::InputError for an intersection that the world does not have
@@ -152,8 +152,10 @@ int serve(const ServeOptions& options) {
   try {
     server::Service service(world, sensor_set, device, layout, chosen);
     require_lights(options, chosen.receiver.peers, service.lights().ids());
-    if (!signs_all(chosen.receiver.peers, world, service.lights().ids()))
-      warn_of_exposure(chosen.receiver.bind.address, "say where robots are, and be sent readings");
+    const std::string since =
+        why_unsigned(options, chosen.receiver.peers, senders_of(options, world, service.lights().ids()));
+    if (!since.empty())
+      warn_of_exposure(chosen.receiver.bind.address, "say where robots are, and be sent readings", since);
     if (!options.record.empty()) {
       recorder.emplace(options.record, run_info(world, sensor_set, options, device.info().software));
       service.record_to(*recorder);

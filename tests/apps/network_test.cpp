@@ -413,6 +413,40 @@ TEST(Serve, AddressesBeyondThisMachineAreWarnedOf) {
   EXPECT_EQ(run_program(listen).err.find("warning"), std::string::npos);
   const Outcome served = run_program({"serve", world, "--port", "0", "--duration", "0.1", "--bind", "0.0.0.0"});
   EXPECT_NE(served.err.find("anyone there can say where robots are"), std::string::npos) << served.err;
+  EXPECT_NE(served.err.find("since packets are not signed (--peers has keys)"), std::string::npos) << served.err;
+}
+
+/// A table with keys of some: what can come unsigned is named. With all keys there is nothing to warn of.
+TEST(Serve, TheWarningNamesWhoHasNoKey) {
+  const Folder folder;
+  const std::string world = folder.write("room.world", kRoom);
+  const auto key = [](char digit) { return "\nkey = \"" + std::string(64, digit) + "\"\n"; };
+  const std::string some = "[[peer]]\nrobot = 1" + key('1');
+  const auto err_with = [&](const std::string& peers, const Words& more = {}) {
+    Words words{"serve", world,    "--port",  "0",       "--duration",
+                "0.1",   "--bind", "0.0.0.0", "--peers", folder.write("peers.toml", peers)};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words).err;
+  };
+  const std::string err = err_with(some + "[[peer]]\nrobot = 2" + key('2'));
+  EXPECT_NE(err.find("peers.toml has no key for START; --bind 127.0.0.1 keeps it"), std::string::npos) << err;
+  EXPECT_NE(err_with(some).find("has no key for roomba2, START;"), std::string::npos) << err_with(some);
+  const std::string all = some + "[[peer]]\nrobot = 2" + key('2') + "[[peer]]\nstart = true" + key('3');
+  EXPECT_EQ(err_with(all).find("opens it to"), std::string::npos) << err_with(all);
+  EXPECT_NE(err_with(all, {"--spat", std::to_string(free_ports(1))}).find("has no key for SPaT (--spat);"),
+            std::string::npos);
+}
+
+TEST(Serve, APlayerServerBeyondThisMachineIsWarnedOf) {
+  const Folder folder;
+  const std::string world = folder.write("room.world", kRoom);
+  const auto err_at = [&](const std::string& place) {
+    return run_program({"run", world, "--duration", "0.1", "--player", place}).err;
+  };
+  const std::string err = err_at("0.0.0.0:0");
+  EXPECT_NE(err.find("warning: --player 0.0.0.0 opens it to "), std::string::npos) << err;
+  EXPECT_NE(err.find("read sensors and drive robots, since Player has no passwords"), std::string::npos) << err;
+  EXPECT_EQ(err_at("0").find("warning"), std::string::npos);
 }
 
 /// The default stride is 8 where that fits, and says so where it is another.
