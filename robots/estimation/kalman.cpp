@@ -172,7 +172,8 @@ Innovation innovation(const Estimate& predicted, const Measurement& measurement)
   const Measured measured = measured_components(measurement);
   const MeasuredMatrix S = select_block(matrix(predicted.covariance) + noise(measurement), measured);
   const MeasuredVector y = select_rows(difference(measurement, predicted), measured);
-  return {y.dot(S.llt().solve(y)), measured.count};
+  const Eigen::LLT<MeasuredMatrix> llt(S);
+  return {y.dot(llt.solve(y)), measured.count, 2.0 * llt.matrixLLT().diagonal().array().log().sum()};
 }
 
 Estimate correct(const Estimate& predicted, const Measurement& measurement) {

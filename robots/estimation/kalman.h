@@ -42,12 +42,14 @@ constexpr MotionModel free_body(double linear = 0.1, double turn = 1.0) {
 /// up to one radian.
 Estimate predict(const MotionModel& model, const Estimate& estimate, std::int64_t time);
 
-/// The first estimate of an object. @param measurement valid, with x and y
+/// The first estimate of an object. Without a yaw it is a single wide Gaussian, which is right until the object moves
+/// (hypotheses.h: beyond that). @param measurement valid, with x and y
 Estimate first_estimate(const MotionModel& model, const Measurement& measurement);
 
 struct Innovation {
   double squared = 0.0;  ///< normalised innovation squared (NIS): chi-square distributed where the model is true
   int degrees = 0;       ///< of freedom: measured components, 1 to 6
+  double log_determinant = 0.0;  ///< of the difference's covariance
 };
 
 /// The difference between a valid measurement and an estimate at its time, in units of its standard deviation.

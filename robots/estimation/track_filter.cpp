@@ -33,7 +33,14 @@ GateLimits gate_limits(double gate) {
   return limits;
 }
 
+TrackFilter::TrackFilter(const FilterOptions& options, const GateLimits& limits)
+    : options_(options), limits_(limits), entries_(options.capacity) {
+  for (Hypotheses* each : {&before_.hypotheses, &predicted_, &ahead_}) each->reserve(1);
+  for (Entry& each : entries_) each.after.hypotheses.reserve(1);
+}
+
 Verdict TrackFilter::take(const Measurement& measurement, std::int64_t now) {
+  ahead_.clear();
   if (!is_valid(measurement)) return count(Verdict::invalid);
   if (measurement.time > now + options_.max_future) return count(Verdict::future);
 
@@ -56,7 +63,7 @@ Verdict TrackFilter::take(const Measurement& measurement, std::int64_t now) {
 }
 
 void TrackFilter::drop_oldest() {
-  before_ = entry(0).after;
+  std::swap(before_, entry(0).after);
   last_left_ = entry(0).measurement;
   any_left_ = true;
   first_ = (first_ + 1) % entries_.size();
@@ -69,7 +76,7 @@ void TrackFilter::drop_before(std::int64_t time) {
 
 std::size_t TrackFilter::insert(const Measurement& measurement) {
   std::size_t place = size_++;
-  for (; place > 0 && measurement < entry(place - 1).measurement; --place) entry(place) = entry(place - 1);
+  for (; place > 0 && measurement < entry(place - 1).measurement; --place) std::swap(entry(place), entry(place - 1));
   entry(place).measurement = measurement;
   entry(place).verdict = Verdict::used;
   count(Verdict::used);
@@ -77,61 +84,82 @@ std::size_t TrackFilter::insert(const Measurement& measurement) {
 }
 
 void TrackFilter::replay(std::size_t from) {
-  State state = from > 0 ? entry(from - 1).after : before_;
   for (std::size_t k = from; k < size_; ++k) {
     Entry& next = entry(k);
+    next.after = k > 0 ? entry(k - 1).after : before_;
     --counts_[static_cast<std::size_t>(next.verdict)];
-    next.verdict = count(apply(next.measurement, state));
-    next.after = state;
+    next.verdict = count(apply(next.measurement, next.after));
   }
 }
 
 /// A refused measurement leaves every bit of the state as it was.
-Verdict TrackFilter::apply(const Measurement& m, State& state) const {
-  const auto start = [&] {
-    state = {true, m.time, first_estimate(options_.model, m)};
+Verdict TrackFilter::apply(const Measurement& m, State& state) {
+  const auto begin = [&] {
+    state.last_position = m.time;
+    start(options_.model, m, options_.hypotheses, state.hypotheses);
     return Verdict::started;
   };
   const bool position = has_position(m);
-  if (!state.known && !position) return Verdict::no_track;
-  if (!state.known || (position && m.time - state.estimate.time > options_.stale_after)) return start();
+  if (!state.known() && !position) return Verdict::no_track;
+  if (!state.known() || (position && m.time - state.time() > options_.stale_after)) return begin();
 
-  const Estimate predicted = estimation::predict(options_.model, state.estimate, m.time);
-  const Innovation surprise = innovation(predicted, m);
-  const bool far = distance(m, predicted) > options_.max_jump;
+  const HypothesesLimits limits{options_.hypotheses, state.time()};
+  predicted_ = state.hypotheses;
+  estimation::predict(options_.model, m.time, limits, predicted_);
+  const Innovation surprise = innovation(predicted_, m);
+  const bool far = distance(m, most_probable(predicted_)) > options_.max_jump;
   // `!(a <= b)` refuses NaN as well.
   if (far || !(surprise.squared <= limits_[surprise.degrees])) {
     // An object that was carried elsewhere: its positions are refused for stale_after, and then believed.
-    if (position && m.time - state.last_position > options_.stale_after) return start();
+    if (position && m.time - state.last_position > options_.stale_after) return begin();
     return far ? Verdict::jump : Verdict::outlier;
   }
-  state.estimate = correct(predicted, m);
+  correct(options_.model, m, limits, predicted_);
+  state.hypotheses = predicted_;
   if (position) state.last_position = m.time;
   return Verdict::used;
 }
 
 Prediction TrackFilter::predict(std::int64_t time) const {
-  const State* state = before_.known ? &before_ : nullptr;
+  const State* state = before_.known() ? &before_ : nullptr;
+  std::size_t place = entries_.size();
   for (std::size_t k = 0; k < size_; ++k) {
     const State& after = entry(k).after;
-    if (after.known && (state == nullptr || after.estimate.time <= time)) state = &after;
+    if (after.known() && (state == nullptr || after.time() <= time)) state = &after, place = k;
   }
   if (state == nullptr) return {};
 
-  Prediction prediction{Prediction::Status::fresh, time - state->estimate.time,
-                        estimation::predict(options_.model, state->estimate, time)};
+  const Estimate& last = most_probable(state->hypotheses);
+  Prediction prediction{Prediction::Status::fresh, time - last.time, estimation::predict(options_.model, last, time)};
+  const bool one = state->hypotheses.size() == 1 && has_certain_heading(prediction.estimate);
+  if (!one && options_.hypotheses > 1) prediction.estimate.covariance = spread(*state, place, prediction.estimate);
   if (prediction.age <= options_.stale_after) return prediction;
-  const std::int64_t end = state->estimate.time + options_.stale_after;
+  const std::int64_t end = last.time + options_.stale_after;
   prediction.status = Prediction::Status::stale;
-  prediction.estimate.X_WM = estimation::predict(options_.model, state->estimate, end).X_WM;
+  prediction.estimate.X_WM = estimation::predict(options_.model, last, end).X_WM;
   prediction.estimate.velocity = {};
   return prediction;
+}
+
+/// The covariance of `predicted` over all hypotheses. Later predictions go on from the last whole step of earlier ones.
+Covariance TrackFilter::spread(const State& newest, std::size_t place, const Estimate& predicted) const {
+  const HypothesesLimits limits{options_.hypotheses, newest.time()};
+  const std::int64_t steps = (predicted.time - limits.corrected) / kHypothesesStep;
+  const std::int64_t whole =
+      limits.corrected + std::clamp(steps, std::int64_t{0}, kMostHypothesesSteps) * kHypothesesStep;
+  if (ahead_.empty() || ahead_of_ != place || ahead_[0].estimate.time > whole) ahead_ = newest.hypotheses;
+  ahead_of_ = place;
+  advance(options_.model, whole, limits, ahead_);
+  predicted_ = ahead_;
+  advance(options_.model, predicted.time, limits, predicted_);
+  return covariance_about(predicted, predicted_);
 }
 
 void TrackFilter::reset() {
   first_ = 0;
   size_ = 0;
-  before_ = {};
+  before_.hypotheses.clear();
+  ahead_.clear();
   any_left_ = false;
 }
 

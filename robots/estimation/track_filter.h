@@ -9,13 +9,16 @@
 // is inserted at its place and the later ones are applied again. All decisions except `future`, `too_late`, `replayed`
 // and `invalid` are made in that order: measurements that arrive within the window give the same bytes in any order of
 // arrival.
+//
+// Measurements may have any of the components. Where they leave the heading open, as positions alone do, the filter
+// keeps several hypotheses of it.
 
 #include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
-#include "robots/estimation/kalman.h"
+#include "robots/estimation/hypotheses.h"
 #include "robots/estimation/state.h"
 
 namespace sf::estimation {
@@ -36,6 +39,9 @@ struct FilterOptions {
   std::int64_t window = 1'000'000'000;       ///< [ns] > 0; measurements older than the newest by more are refused
   std::size_t capacity = 64;                 ///< > 0 measurements in the window; with more, the window is shorter
   std::int64_t max_future = 20'000'000;      ///< [ns] >= 0 that a measurement may lie ahead of the clock
+  /// > 0 Gaussians that a state with an uncertain heading may have. With 1, the covariance is that of a linearised
+  /// path: too small when the heading is not measured for a second, or never.
+  std::size_t hypotheses = 64;
 };
 
 /// Result of a measurement.
@@ -65,7 +71,9 @@ struct Prediction {
   };
   Status status = Status::none;
   std::int64_t age = 0;  ///< [ns] since the last used measurement; < 0 for times before it
-  Estimate estimate;     ///< at the time asked for; the covariance grows with age, stale or not
+  /// At the time asked for, from the most probable hypothesis. Its covariance is that of all hypotheses around it, and
+  /// grows with age, stale or not. An unknown heading has a variance of pi^2 / 3 and more.
+  Estimate estimate;
 };
 
 /// Of the squared innovation, by degrees of freedom from 1 on.
@@ -73,13 +81,13 @@ using GateLimits = std::array<double, kComponents + 1>;
 /// @param gate as in FilterOptions
 GateLimits gate_limits(double gate);
 
-/// Allocates in the constructor alone. One thread.
+/// Allocates in the constructor alone, except for the second and further hypotheses of uncertain headings, once for
+/// each place in the window. One thread.
 class TrackFilter {
  public:
   explicit TrackFilter(const FilterOptions& options) : TrackFilter(options, gate_limits(options.gate)) {}
   /// @param limits of `options.gate`, computed once for several filters
-  TrackFilter(const FilterOptions& options, const GateLimits& limits)
-      : options_(options), limits_(limits), entries_(options.capacity) {}
+  TrackFilter(const FilterOptions& options, const GateLimits& limits);
 
   /// @param now [ns] on the clock of the measurements' times
   /// @return the measurement's verdict at its place in the window
@@ -95,9 +103,11 @@ class TrackFilter {
 
  private:
   struct State {
-    bool known = false;
     std::int64_t last_position = 0;  ///< [ns] of the last used one with a position
-    Estimate estimate;               ///< at the last used measurement
+    Hypotheses hypotheses;           ///< at the last used measurement
+
+    bool known() const { return !hypotheses.empty(); }
+    std::int64_t time() const { return hypotheses[0].estimate.time; }
   };
   struct Entry {
     Measurement measurement;
@@ -111,7 +121,8 @@ class TrackFilter {
   void drop_before(std::int64_t time);
   std::size_t insert(const Measurement& measurement);
   void replay(std::size_t from);
-  Verdict apply(const Measurement& measurement, State& state) const;
+  Verdict apply(const Measurement& measurement, State& state);
+  Covariance spread(const State& newest, std::size_t place, const Estimate& predicted) const;
   Verdict count(Verdict verdict);
 
   FilterOptions options_;
@@ -123,6 +134,11 @@ class TrackFilter {
   Measurement last_left_;  ///< the newest of them
   bool any_left_ = false;
   VerdictCounts counts_{};
+
+  // To allocate once. `ahead_`: at a whole step after the state at `ahead_of_`; empty after each measurement.
+  mutable Hypotheses predicted_;
+  mutable Hypotheses ahead_;
+  mutable std::size_t ahead_of_ = 0;
 };
 
 }  // namespace sf::estimation
