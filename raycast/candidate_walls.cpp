@@ -33,8 +33,9 @@ double asin_bound(double v) {
   return v * (1.0 + vv * (1.0 / 6.0 + vv * (0.075 + vv * 0.2)));
 }
 
-/// @param radius [m] of the disc that holds all viewers
-CandidateWall found(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius) {
+}  // namespace
+
+CandidateWall candidate_wall(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius) {
   CandidateWall f{a, b, row, std::max(0.0, world::distance({}, a, b) - radius), 0.0, 2.0 * M_PI, -1};
   const double share_a = radius / length(a), share_b = radius / length(b);
   if (f.nearest <= 0.0 || std::max(share_a, share_b) >= 1.0) return f;
@@ -47,8 +48,6 @@ CandidateWall found(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius
   f.bearing = base::wrap_angle(bearing_a + 0.5 * (low + high));
   return f;
 }
-
-}  // namespace
 
 bool clip(glm::dvec2& a, glm::dvec2& b, double reach) {
   const glm::dvec2 e = b - a;
@@ -81,9 +80,9 @@ void find_candidate_walls(const WallIndex& wall_index, const CellShape& shape, g
     const glm::dvec2 e = s.b - s.a;
     const double side = base::cross(e, centre - s.a) / length(e);
     const bool both = both_sides || !s.solid_left;
-    if (side < radius) walls.front_facing.push_back(found(a, b, s.row, radius));
-    if (side > -radius && both) walls.front_facing.push_back(found(b, a, s.row, radius));
-    if (side >= radius && !both) walls.back_facing.push_back(found(a, b, s.row, radius));
+    if (side < radius) walls.front_facing.push_back(candidate_wall(a, b, s.row, radius));
+    if (side > -radius && both) walls.front_facing.push_back(candidate_wall(b, a, s.row, radius));
+    if (side >= radius && !both) walls.back_facing.push_back(candidate_wall(a, b, s.row, radius));
   }
 }
 

@@ -38,6 +38,9 @@ struct CandidateWalls {
   std::vector<std::uint32_t> near;         ///< indices into the segments of the wall index
 };
 
+/// The segment ab seen by viewers in the disc of `radius` [m] round the origin.
+CandidateWall candidate_wall(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius);
+
 /// Clips ab to within `reach` [m] of the origin. @return false when nothing is left
 bool clip(glm::dvec2& a, glm::dvec2& b, double reach);
 

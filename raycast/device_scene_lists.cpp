@@ -121,7 +121,7 @@ void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
     for (std::uint32_t at = grid.begin_of(left, row); at < grid.begin_of(right + 1, row); ++at) {
       const float dx = grid.x[at] - x, dy = grid.y[at] - y, radius = 1.0001f * grid.radius[at] + tolerance;
       const float square = dx * dx + dy * dy, most = range + radius;
-      if (square > most * most * 1.0001f || grid.mover[at] == view.self) continue;
+      if (square > most * most * 1.0001f || grid.skips(at, view.self)) continue;
       ++s.movers_in_range;
       const float distance = std::sqrt(square);
       const bool around = radius > 0.8f * distance;

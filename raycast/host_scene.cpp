@@ -6,7 +6,8 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <tuple>
+
+#include "raycast/wall_blocks.h"
 
 namespace sf::raycast {
 
@@ -36,12 +37,14 @@ struct HostScene::Thread {
   CandidateWalls walls;
   std::vector<SegmentBlock> blocks;
   std::vector<BlockBounds> bounds;
+  std::vector<SegmentBlock> crowd;  ///< of a crowd without the viewer's own edges
 };
 
 HostScene::HostScene(const world::World& world, const ListConfigs& configs, base::ThreadPool& thread_pool)
     : thread_pool_(thread_pool),
       configs_(configs),
       movers_(world),
+      crowds_(movers_),
       cells_(configs, coarse_cell_size, CellCache(kFirstCells, kFirstBlocks, kPageBlocks)),
       lists_(kFirstCells),
       blocks_(kFirstBlocks),
@@ -65,29 +68,6 @@ void HostScene::place_movers(std::span<const base::Report> states) {
   if (movers_.segments() > 0) movers_.place(states, thread_pool_, std::span(exact_).subspan(configs_.walls().size()));
 }
 
-/// Appends `found` in order of rings and bearings, with the bounds of each block.
-void HostScene::add_blocks(std::vector<CandidateWall>& found, Thread& t) {
-  std::sort(found.begin(), found.end(), [](const CandidateWall& p, const CandidateWall& q) {
-    return std::tie(p.distance_ring, p.bearing, p.row, p.a.x, p.a.y) <
-           std::tie(q.distance_ring, q.bearing, q.row, q.a.x, q.a.y);
-  });
-  std::uint32_t used = kBlock;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    append(t.blocks, used, found[i].a, found[i].b, found[i].row);
-    if (used < kBlock && i + 1 < found.size()) continue;
-    const std::span<const CandidateWall> own = std::span(found).subspan(i + 1 - used, used);
-    double low = 0.0, high = 0.0, nearest = own[0].nearest;
-    for (const CandidateWall& f : own) {
-      const double offset = base::wrap_angle(f.bearing - own[0].bearing);
-      low = std::min(low, offset - f.half), high = std::max(high, offset + f.half);
-      nearest = std::min(nearest, f.nearest);
-    }
-    t.bounds.push_back({std::nextafter(static_cast<float>(nearest), 0.0f),
-                        static_cast<float>(own[0].bearing + 0.5 * (low + high)),
-                        static_cast<float>(0.5 * (high - low))});
-  }
-}
-
 /// Collects the blocks of a cell into the thread's scratch.
 HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
   const std::size_t config = ViewCells::config_of(key);
@@ -95,9 +75,9 @@ HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
                        ViewCells::in_solid(key), t.walls);
   Cell cell;
   t.blocks.clear(), t.bounds.clear();
-  add_blocks(t.walls.front_facing, t);
+  append_blocks(t.walls.front_facing, t.blocks, t.bounds);
   cell.front_facing = static_cast<std::uint32_t>(t.blocks.size());
-  add_blocks(t.walls.back_facing, t);
+  append_blocks(t.walls.back_facing, t.blocks, t.bounds);
   cell.all = static_cast<std::uint32_t>(t.blocks.size());
   t.bounds.resize(cell.all + kBlock);
   return cell;
@@ -133,6 +113,8 @@ void HostScene::build_missing_cells() {
 void HostScene::prepare(std::span<const Viewpoint> views) {
   views_.assign(views.begin(), views.end());
   cells_.find(views, thread_pool_);
+  if (movers_.segments() > 0)
+    crowds_.find(views, [this](std::uint32_t config) { return config_tables_[config].height; }, thread_pool_);
   static const std::uint32_t most = most_blocks();
   const std::uint64_t evicted = cells_.cache().evicted();
   for (build_missing_cells(); !cells_.missing().empty() && blocks_.size() < most; build_missing_cells()) grow();
@@ -156,6 +138,17 @@ void HostScene::prefetch(std::size_t i) const {
   raycast::prefetch(&blocks_[first], sizeof(SegmentBlock));
 }
 
+void HostScene::add_crowd(const CrowdCell& crowd, Thread& t, glm::dvec2 origin, ScanScene& scene) const {
+  std::span<const SegmentBlock> blocks = crowd.blocks;
+  scene.crowd_members = crowd.members;
+  if (scene.in_crowd(scene.self)) {
+    t.crowd.assign(blocks.begin(), blocks.end());
+    hide_rows(t.crowd, scene.first_rows[scene.self], scene.first_rows[scene.self + 1]);
+    blocks = t.crowd;
+  }
+  scene.crowd = {blocks, static_cast<std::uint32_t>(blocks.size()), crowd.bounds.data(), origin - crowd.centre};
+}
+
 bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, unsigned thread, const ScanOutput& out) {
   Thread& t = *threads_[thread];
   const Viewpoint& view = views_[i];
@@ -169,13 +162,10 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   const glm::dvec2 centre = cells_.centre_of(cells_.key(i));
   const glm::dvec2 origin{view.X_WS.x, view.X_WS.y};
   from.origin = origin;
-  from.offset = origin - centre;
   from.range_max = configs_[view.config].range;
   from.band = static_cast<float>(SF_COORDINATE_ERROR * (config.shape.reach() + 2.0 * movers_.largest_radius()));
   ScanScene scene;
-  scene.walls = blocks;
-  scene.front_facing = cell.front_facing;
-  scene.bounds = listed ? &bounds_[cell.first] : t.bounds.data();
+  scene.walls = {blocks, cell.front_facing, listed ? &bounds_[cell.first] : t.bounds.data(), origin - centre};
   scene.exact = exact_;
   scene.models = models_;
   scene.movers = movers_.segments() > 0 ? &movers_.grid() : nullptr;
@@ -184,6 +174,8 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   scene.headings = movers_.headings();
   scene.first_rows = movers_.first_rows();
   scene.self = view.self;
+  if (const CrowdCell* crowd = scene.movers != nullptr ? crowds_.of(i) : nullptr; crowd != nullptr)
+    add_crowd(*crowd, t, origin, scene);
   return t.rasterizer.scan(from, pattern, scene, out);
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/thread_pool.h"
 #include "raycast/candidate_walls.h"
+#include "raycast/crowds.h"
 #include "raycast/mover_geometry.h"
 #include "raycast/rasterizer.h"
 #include "raycast/scene_options.h"
@@ -44,14 +45,15 @@ class HostScene {
   };
   void build_missing_cells();
   void grow();
-  static void add_blocks(std::vector<CandidateWall>& found, Thread& thread);
   void prefetch(std::size_t i) const;
   Cell collect(const CellKey& key, Thread& thread) const;
+  void add_crowd(const CrowdCell& crowd, Thread& thread, glm::dvec2 origin, ScanScene& scene) const;
 
   base::ThreadPool& thread_pool_;
   const ListConfigs& configs_;
   std::vector<ConfigTables> config_tables_;  ///< per list config
   MoverGeometry movers_;
+  Crowds crowds_;
   std::vector<ExactSegment> exact_;  ///< walls, then movers
   std::vector<std::uint32_t> models_;
   ViewCells cells_;

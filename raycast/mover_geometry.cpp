@@ -1,10 +1,14 @@
 #include "raycast/mover_geometry.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <map>
+#include <tuple>
 
 #include "base/box.h"
+#include "world/wall_tree.h"
 
 namespace sf::raycast {
 
@@ -12,17 +16,41 @@ namespace {
 
 constexpr int kMaxCells = 256;  ///< along an axis
 constexpr std::uint32_t kNoCell = 0xFFFFFFFFu;
+constexpr std::size_t kLongestLoop = 64;  ///< bounds the pairs of edges and corners
+
+/// True for a closed convex outline, solid inside. Corners may lie outside by rounding.
+bool is_convex(std::span<const world::Segment> loop, double radius) {
+  if (loop.size() < 3 || loop.size() > kLongestLoop || loop.back().b != loop.front().a) return false;
+  return std::all_of(loop.begin(), loop.end(), [&](const world::Segment& s) {
+    const glm::dvec2 e = s.b - s.a;
+    return s.solid_left && std::all_of(loop.begin(), loop.end(), [&](const world::Segment& corner) {
+             return base::cross(e, corner.a - s.a) >= -1e-13 * radius * length(e);
+           });
+  });
+}
+
+/// Poses as words: equal for equal bits alone.
+std::array<std::uint64_t, 3> words_of(const Pose& X) {
+  return {std::bit_cast<std::uint64_t>(X.x), std::bit_cast<std::uint64_t>(X.y), std::bit_cast<std::uint64_t>(X.yaw)};
+}
 
 }  // namespace
 
 MoverGeometry::MoverGeometry(const world::World& world) : walls_(static_cast<std::uint32_t>(world.walls.size())) {
+  std::map<std::vector<double>, std::uint32_t> shapes;
   for (const world::Mover& mover : world.movers) {
     first_rows_.push_back(walls_ + static_cast<std::uint32_t>(local_.size()));
+    std::vector<double> shape{mover.radius, mover.X_WM.z};
+    double inner = mover.radius;
     for (const world::Segment& s : mover.body) {
       if (!s.seen_by_laser) continue;
       local_.push_back(s);
       models_.push_back(s.model);
+      inner = std::min(inner, world::distance({}, s.a, s.b));
+      shape.insert(shape.end(), {s.a.x, s.a.y, s.b.x, s.b.y, s.z_min, s.z_max, s.solid_left ? 1.0 : 0.0});
     }
+    inner_.push_back(inner);
+    shapes_.push_back(shapes.try_emplace(std::move(shape), static_cast<std::uint32_t>(shapes.size())).first->second);
     const bool met = first_rows_.back() - walls_ < local_.size();
     radii_.push_back(met ? mover.radius : 0.0);
     load_z_.push_back(mover.X_WM.z);
@@ -32,10 +60,15 @@ MoverGeometry::MoverGeometry(const world::World& world) : walls_(static_cast<std
   const std::size_t movers = world.movers.size(), padded = movers + kBlock;
   headings_.resize(movers);
   cells_.resize(movers);
-  grid_.mover.resize(padded);
-  grid_.x.resize(padded), grid_.y.resize(padded), grid_.radius.resize(padded);
+  twins_.resize(movers, kNoMover);
+  grid_.mover.resize(padded), grid_.twin.resize(padded);
+  grid_.x.resize(padded), grid_.y.resize(padded), grid_.radius.resize(padded), grid_.inner.resize(padded);
   grid_.first.reserve(std::size_t{kMaxCells} * kMaxCells + 1);
-  next_.reserve(grid_.first.capacity());
+  next_.reserve(std::max(grid_.first.capacity(), movers));
+}
+
+double MoverGeometry::smallest_inner() const {
+  return inner_.empty() ? 0.0 : *std::min_element(inner_.begin(), inner_.end());
 }
 
 std::uint32_t MoverGeometry::add_height(double z) {
@@ -51,12 +84,14 @@ OutlineTable MoverGeometry::outlines_at(double z) const {
   std::map<std::vector<double>, OutlineTable::Outline> known;
   for (std::size_t m = 0; m + 1 < first_rows_.size(); ++m) {
     std::vector<double> shape;
+    std::vector<std::uint32_t> edges;
     std::vector<SegmentBlock> outward, inward;
     std::uint32_t used_outward = 0, used_inward = 0;
     for (std::uint32_t row = first_rows_[m]; row < first_rows_[m + 1]; ++row) {
       const world::Segment& s = local_[row - walls_];
       if (z - load_z_[m] < s.z_min || z - load_z_[m] >= s.z_max) continue;
       const std::uint32_t number = row - first_rows_[m];
+      edges.push_back(number);
       append(outward, used_outward, s.a, s.b, number);
       s.solid_left ? append(inward, used_inward, s.b, s.a, number) : append(outward, used_outward, s.b, s.a, number);
       shape.insert(shape.end(), {s.a.x, s.a.y, s.b.x, s.b.y, static_cast<double>(number), s.solid_left ? 1.0 : 0.0});
@@ -66,17 +101,38 @@ OutlineTable MoverGeometry::outlines_at(double z) const {
       const auto first = static_cast<std::uint32_t>(table.blocks.size());
       table.blocks.insert(table.blocks.end(), outward.begin(), outward.end());
       table.blocks.insert(table.blocks.end(), inward.begin(), inward.end());
-      found->second = {first, static_cast<std::uint32_t>(outward.size()),
-                       static_cast<std::uint32_t>(outward.size() + inward.size())};
+      const auto first_edge = static_cast<std::uint32_t>(table.edges.size());
+      const auto first_loop = static_cast<std::uint32_t>(table.loops.size());
+      table.edges.insert(table.edges.end(), edges.begin(), edges.end());
+      add_loops(m, edges, table);
+      found->second = {first,
+                       static_cast<std::uint32_t>(outward.size()),
+                       static_cast<std::uint32_t>(outward.size() + inward.size()),
+                       first_edge,
+                       static_cast<std::uint32_t>(edges.size()),
+                       first_loop,
+                       static_cast<std::uint32_t>(table.loops.size()) - first_loop};
     }
     table.of_mover.push_back(found->second);
   }
   return table;
 }
 
+/// Appends the closed convex outlines among a mover's edges at one height.
+void MoverGeometry::add_loops(std::size_t mover, std::span<const std::uint32_t> edges, OutlineTable& table) const {
+  const std::span<const world::Segment> body = std::span(local_).subspan(first_rows_[mover] - walls_);
+  for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {
+    for (end = first + 1; end < edges.size() && edges[end] == edges[end - 1] + 1; ++end)
+      if (body[edges[end]].a != body[edges[end - 1]].b) break;
+    if (is_convex(body.subspan(edges[first], end - first), radii_[mover]))
+      table.loops.push_back({edges[first], static_cast<std::uint32_t>(end - first)});
+  }
+}
+
 void MoverGeometry::place(std::span<const base::Report> states, base::ThreadPool& thread_pool,
                           std::span<ExactSegment> exact) {
   states_ = states;
+  exact_ = exact;
   thread_pool.parallel_for(states_.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const Pose& X = states_[i].X_WM;
@@ -90,6 +146,13 @@ void MoverGeometry::place(std::span<const base::Report> states, base::ThreadPool
 }
 
 void MoverGeometry::build_grid() {
+  std::fill(twins_.begin(), twins_.end(), kNoMover);
+  find_cells();
+  sort_into_cells();
+  if (drop_twins()) sort_into_cells();
+}
+
+void MoverGeometry::find_cells() {
   base::Box all = base::empty_box();
   for (std::size_t i = 0; i < states_.size(); ++i) {
     if (!is_present(i)) continue;
@@ -105,25 +168,58 @@ void MoverGeometry::build_grid() {
   grid_.rows = static_cast<int>((high.y - low.y) / grid_.cell) + 1;
   // Covers the position of a mover, and of a viewer, which may lie outside the grid by its range.
   grid_.error = static_cast<float>(0x1p-21 * (extent + grid_.cell));
-  grid_.first.assign(static_cast<std::size_t>(grid_.columns) * static_cast<std::size_t>(grid_.rows) + 1, 0);
   for (std::size_t i = 0; i < states_.size(); ++i) {
-    cells_[i] = kNoCell;
-    if (!is_present(i)) continue;
     const Pose& X = states_[i].X_WM;
-    cells_[i] = static_cast<std::uint32_t>((X.y - low.y) / grid_.cell) * static_cast<std::uint32_t>(grid_.columns) +
-                static_cast<std::uint32_t>((X.x - low.x) / grid_.cell);
-    ++grid_.first[cells_[i] + 1];
+    cells_[i] = !is_present(i) ? kNoCell
+                               : static_cast<std::uint32_t>((X.y - low.y) / grid_.cell) *
+                                         static_cast<std::uint32_t>(grid_.columns) +
+                                     static_cast<std::uint32_t>((X.x - low.x) / grid_.cell);
   }
+}
+
+void MoverGeometry::sort_into_cells() {
+  grid_.first.assign(static_cast<std::size_t>(grid_.columns) * static_cast<std::size_t>(grid_.rows) + 1, 0);
+  for (const std::uint32_t cell : cells_)
+    if (cell != kNoCell) ++grid_.first[cell + 1];
   for (std::size_t i = 1; i < grid_.first.size(); ++i) grid_.first[i] += grid_.first[i - 1];
   next_.assign(grid_.first.begin(), grid_.first.end() - 1);
   for (std::uint32_t i = 0; i < states_.size(); ++i) {
     if (cells_[i] == kNoCell) continue;
     const std::uint32_t at = next_[cells_[i]]++;
     grid_.mover[at] = i;
-    grid_.x[at] = static_cast<float>(states_[i].X_WM.x - low.x);
-    grid_.y[at] = static_cast<float>(states_[i].X_WM.y - low.y);
+    grid_.twin[at] = twins_[i];
+    grid_.x[at] = static_cast<float>(states_[i].X_WM.x - grid_.low.x);
+    grid_.y[at] = static_cast<float>(states_[i].X_WM.y - grid_.low.y);
     grid_.radius[at] = static_cast<float>(radii_[i]);
+    grid_.inner[at] = static_cast<float>(inner_[i]);
   }
+}
+
+/// Takes all but the first two of coincident movers in crowded cells out of the grid. @return true where there are any
+bool MoverGeometry::drop_twins() {
+  bool any = false;
+  for (std::size_t cell = 0; cell + 1 < grid_.first.size(); ++cell) {
+    const std::uint32_t first = grid_.first[cell], count = grid_.first[cell + 1] - first;
+    if (count < kCrowd) continue;
+    next_.assign(&grid_.mover[first], &grid_.mover[first] + count);
+    any = drop_twins(next_) || any;
+  }
+  return any;
+}
+
+bool MoverGeometry::drop_twins(std::span<std::uint32_t> movers) {
+  const auto key_of = [this](std::uint32_t m) { return std::tuple(shapes_[m], words_of(states_[m].X_WM), m); };
+  const auto coincide = [this](std::uint32_t p, std::uint32_t q) {
+    return shapes_[p] == shapes_[q] && words_of(states_[p].X_WM) == words_of(states_[q].X_WM);
+  };
+  std::sort(movers.begin(), movers.end(), [&](std::uint32_t p, std::uint32_t q) { return key_of(p) < key_of(q); });
+  bool any = false;
+  for (std::size_t first = 0, end = 0; first < movers.size(); first = end) {
+    for (end = first + 1; end < movers.size() && coincide(movers[first], movers[end]); ++end)
+      end == first + 1 ? twins_[movers[end]] = movers[first] : cells_[movers[end]] = kNoCell;
+    any = any || end > first + 1;
+  }
+  return any;
 }
 
 }  // namespace sf::raycast

@@ -31,12 +31,14 @@ class MoverGeometry {
   /// `Segment::model` of each edge.
   const std::vector<std::uint32_t>& models() const { return models_; }
   double largest_radius() const { return grid_.largest_radius; }  ///< [m]
+  double smallest_inner() const;                                  ///< [m] of `MoverGrid::inner`
 
   const MoverGrid& grid() const { return grid_; }
   std::uint32_t heights() const { return static_cast<std::uint32_t>(heights_.size()); }
   const OutlineTable& outlines(std::uint32_t height) const { return heights_[height].outlines; }
   std::span<const base::Report> states() const { return states_; }
   std::span<const glm::dvec2> headings() const { return headings_; }
+  std::span<const ExactSegment> exact() const { return exact_; }  ///< the edges at this tick's poses
   /// Row of each mover's first edge in the table of exact segments, where walls come first; then the end.
   std::span<const std::uint32_t> first_rows() const { return first_rows_; }
 
@@ -46,17 +48,26 @@ class MoverGeometry {
     OutlineTable outlines;
   };
   OutlineTable outlines_at(double z) const;
+  void add_loops(std::size_t mover, std::span<const std::uint32_t> edges, OutlineTable& table) const;
   bool is_present(std::size_t mover) const { return radii_[mover] > 0.0 && !base::is_absent(states_[mover].X_WM); }
   void build_grid();
+  void find_cells();
+  void sort_into_cells();
+  bool drop_twins();
+  bool drop_twins(std::span<std::uint32_t> movers);
 
   std::vector<world::Segment> local_;  ///< mover frame
   std::vector<std::uint32_t> models_;
   std::vector<std::uint32_t> first_rows_;
   std::vector<double> radii_;   ///< [m] 0: no outline
+  std::vector<double> inner_;   ///< [m] distance of the nearest edge from the origin
+  std::vector<std::uint32_t> shapes_;  ///< equal where movers have equal outlines at all heights
+  std::vector<std::uint32_t> twins_;   ///< per mover, as MoverGrid::twin
   std::vector<double> load_z_;  ///< [m] heights at load; they do not change (2.5-D world)
   std::uint32_t walls_;
   std::vector<Height> heights_;
   std::span<const base::Report> states_;
+  std::span<const ExactSegment> exact_;
   std::vector<glm::dvec2> headings_;
   std::vector<std::uint32_t> cells_, next_;
   MoverGrid grid_;

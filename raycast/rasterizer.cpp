@@ -26,7 +26,11 @@ void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const Sc
     hn::StoreU(hn::Set(kI, -1), kI, &s.nearest_row[j]);
   }
   const Projection p = projection_of(view, pattern);
-  rasterize_walls(s, p, view, pattern, scene);
+  rasterize_cell(s, p, pattern, scene.crowd);
+  rasterize_cell(s, p, pattern, scene.walls);
+  s.order.clear();
+  s.horizon = static_cast<float>(view.range_max);
+  if (!scene.crowd_members.empty()) s.horizon = std::min(s.horizon, horizon_of(s, pattern));
   if (scene.movers != nullptr) rasterize_movers(s, p, view, pattern, scene);
 }
 

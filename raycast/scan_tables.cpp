@@ -5,13 +5,26 @@
 
 namespace sf::raycast {
 
+namespace {
+
+/// Fills a place with a segment that faces away from every viewer.
+void clear(SegmentBlock& block, std::uint32_t k) {
+  block.ax[k] = 0.0f, block.ay[k] = -1e15f, block.ex[k] = 1.0f, block.ey[k] = 0.0f;
+  block.row[k] = SF_NO_HIT;
+}
+
+}  // namespace
+
+void hide_rows(std::span<SegmentBlock> blocks, std::uint32_t first, std::uint32_t end) {
+  for (SegmentBlock& block : blocks)
+    for (std::uint32_t k = 0; k < kBlock; ++k)
+      if (block.row[k] >= first && block.row[k] < end) clear(block, k);
+}
+
 void append(std::vector<SegmentBlock>& blocks, std::uint32_t& used, glm::dvec2 a, glm::dvec2 b, std::uint32_t row) {
   if (blocks.empty() || used == kBlock) {
     SegmentBlock& fresh = blocks.emplace_back();
-    for (std::uint32_t k = 0; k < kBlock; ++k) {
-      fresh.ax[k] = 0.0f, fresh.ay[k] = -1e15f, fresh.ex[k] = 1.0f, fresh.ey[k] = 0.0f;
-      fresh.row[k] = SF_NO_HIT;
-    }
+    for (std::uint32_t k = 0; k < kBlock; ++k) clear(fresh, k);
     used = 0;
   }
   SegmentBlock& block = blocks.back();

@@ -35,6 +35,9 @@ inline void prefetch(const void* first, std::size_t bytes) {
   for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(static_cast<const char*>(first) + byte);
 }
 
+/// Hides the segments with rows in [first, end).
+void hide_rows(std::span<SegmentBlock> blocks, std::uint32_t first, std::uint32_t end);
+
 /// Appends one segment. `used` counts the places used in the last block.
 void append(std::vector<SegmentBlock>& blocks, std::uint32_t& used, glm::dvec2 a, glm::dvec2 b, std::uint32_t row);
 
@@ -61,15 +64,30 @@ struct ScanPattern {
 /// The outlines of movers at one height, in blocks. Rows count from the mover's first segment.
 struct OutlineTable {
   struct Outline {
-    std::uint32_t first = 0;    ///< index of the first block
-    std::uint32_t outward = 0;  ///< [blocks] visible from outside
-    std::uint32_t all = 0;      ///< [blocks] including those visible only from inside
+    std::uint32_t first = 0;       ///< index of the first block
+    std::uint32_t outward = 0;     ///< [blocks] visible from outside: every edge is in them
+    std::uint32_t all = 0;         ///< [blocks] including those visible only from inside
+    std::uint32_t first_edge = 0;  ///< in `edges`
+    std::uint32_t edges = 0;
+    std::uint32_t first_loop = 0;  ///< in `loops`
+    std::uint32_t loops = 0;
+  };
+  /// A closed convex outline, solid inside.
+  struct Loop {
+    std::uint32_t first, count;  ///< its edges: consecutive rows
   };
   std::vector<SegmentBlock> blocks;
+  std::vector<std::uint32_t> edges;  ///< rows
+  std::vector<Loop> loops;
   std::vector<Outline> of_mover;
 };
 
-/// Movers with outlines, sorted by cell of a grid in row-major order. Arrays are padded by a block.
+inline constexpr std::uint32_t kNoMover = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kCrowd = 8;  ///< [movers] at one place: more do not fit without overlaps, mostly
+
+/// Movers with outlines, sorted by cell of a grid in row-major order. Arrays are padded by a block. Of movers whose
+/// outlines coincide to the bit, the grid of a crowd holds the first two alone: of coincident surfaces the first in the
+/// world's table is named.
 struct MoverGrid {
   glm::dvec2 low;      ///< [m] corner
   double cell = 1.0;   ///< [m]
@@ -77,9 +95,16 @@ struct MoverGrid {
   int columns = 1, rows = 1;
   std::vector<std::uint32_t> first;  ///< of each cell, and the end
   std::vector<std::uint32_t> mover;
-  std::vector<float> x, y;    ///< [m] from `low`
-  std::vector<float> radius;  ///< [m]
+  std::vector<std::uint32_t> twin;  ///< a mover before this one with the same outline; kNoMover: none
+  std::vector<float> x, y;          ///< [m] from `low`
+  std::vector<float> radius;        ///< [m]
+  std::vector<float> inner;         ///< [m] distance of the nearest edge from the mover's origin
   double largest_radius = 0.0;
+
+  /// True when the mover at `at` is invisible to a sensor of mover `self`, or hidden by its twin.
+  bool skips(std::uint32_t at, std::uint32_t self) const {
+    return mover[at] == self || (twin[at] != kNoMover && twin[at] != self);
+  }
 
   /// Cell of a coordinate relative to `low` [m], clamped to the grid.
   int column_of(double at) const { return static_cast<int>(std::clamp(std::floor(at / cell), 0.0, columns - 1.0)); }
@@ -95,7 +120,6 @@ struct ScanView {
   glm::dvec2 origin;       ///< [m] world
   glm::dvec2 heading;      ///< unit vector: bearing 0 of the pattern
   double yaw = 0.0;        ///< [rad] of the heading
-  glm::dvec2 offset;       ///< [m] origin relative to the frame of the wall blocks
   double range_max = 0.0;  ///< [m]
   double range_min = 0.0;  ///< [m]
   float band = 0.0f;       ///< [m] error of 32-bit coordinates: SF_COORDINATE_ERROR times the largest coordinate
@@ -111,12 +135,20 @@ struct ScanView {
 /// instructions, whatever the value of -ffp-contract.
 glm::dvec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i);
 
+/// Surfaces round a cell.
+struct CellBlocks {
+  /// First those that face the cell, near to far; then back-facing ones, which decide only ties at corners.
+  std::span<const SegmentBlock> blocks;
+  std::uint32_t front_facing = 0;       ///< [blocks]
+  const BlockBounds* bounds = nullptr;  ///< of `blocks`, padded by kBlock
+  glm::dvec2 offset;                    ///< [m] the viewer relative to the cell's centre
+};
+
 /// All surfaces of a scan. Exact segments: walls first, then movers.
 struct ScanScene {
-  /// First the walls that face the cell, near to far; then back-facing walls, which decide only ties at corners.
-  std::span<const SegmentBlock> walls;
-  std::uint32_t front_facing = 0;         ///< [blocks]
-  const BlockBounds* bounds = nullptr;    ///< of `walls`, padded by kBlock
+  CellBlocks walls;
+  CellBlocks crowd;                             ///< of movers that hold the viewer (raycast/crowds.h)
+  std::span<const std::uint64_t> crowd_members;  ///< a bit per mover: its edges are in `crowd`; empty: no crowd
   std::span<const ExactSegment> exact;    ///< walls, then movers
   std::span<const std::uint32_t> models;  ///< `Segment::model` of each
   const MoverGrid* movers = nullptr;
@@ -124,7 +156,11 @@ struct ScanScene {
   std::span<const base::Report> states;       ///< of movers
   std::span<const glm::dvec2> headings;       ///< of movers: unit vectors
   std::span<const std::uint32_t> first_rows;  ///< first exact segment of each mover, and the end
-  std::uint32_t self = 0xFFFFFFFFu;           ///< the mover that carries the sensor: invisible
+  std::uint32_t self = kNoMover;              ///< the mover that carries the sensor: invisible
+
+  bool in_crowd(std::uint32_t mover) const {
+    return !crowd_members.empty() && (crowd_members[mover / 64] >> mover % 64 & 1) != 0;
+  }
 };
 
 /// Result arrays of a scan: one element per beam.

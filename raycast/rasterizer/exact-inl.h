@@ -45,19 +45,20 @@ void intersect_block(const ScanView& view, const ScanScene& scene, const Segment
   }
 }
 
-void intersect_walls(const ScanView& view, const ScanScene& scene, glm::dvec2 d, ClosestHit& best) {
+void intersect_cell(const ScanView& view, const ScanScene& scene, const CellBlocks& cell, glm::dvec2 d,
+                    ClosestHit& best) {
   VF unused;
   const VF bearing = bearing_of(constant(static_cast<float>(d.y)), constant(static_cast<float>(d.x)), unused);
-  for (std::size_t first = 0; first < scene.walls.size(); first += lanes()) {
+  for (std::size_t first = 0; first < cell.blocks.size(); first += lanes()) {
     VF nearest, middle, half;
-    hn::LoadInterleaved3(kF, &scene.bounds[first].nearest, nearest, middle, half);
+    hn::LoadInterleaved3(kF, &cell.bounds[first].nearest, nearest, middle, half);
     const VF turned = hn::Abs(middle - bearing), apart = hn::Min(turned, hn::Abs(constant(6.2831853f) - turned));
     std::uint32_t pending = bits_of(apart <= half + constant(1e-5f));
-    if (scene.walls.size() - first < lanes()) pending &= (1u << (scene.walls.size() - first)) - 1;
+    if (cell.blocks.size() - first < lanes()) pending &= (1u << (cell.blocks.size() - first)) - 1;
     for (; pending != 0; pending &= pending - 1) {
       const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(pending));
-      if (static_cast<double>(scene.bounds[i].nearest) > best.range) continue;
-      intersect_block(view, scene, scene.walls[i], -1.0 * view.offset, {1.0, 0.0}, 0, d, best);
+      if (static_cast<double>(cell.bounds[i].nearest) > best.range) continue;
+      intersect_block(view, scene, cell.blocks[i], -1.0 * cell.offset, {1.0, 0.0}, 0, d, best);
     }
   }
 }
@@ -78,12 +79,23 @@ void find_movers_on_beam(Scratch& s, const ScanView& view, const ScanScene& scen
     std::uint32_t pending = bits_of(across);
     if (end - at < lanes()) pending &= (1u << (end - at)) - 1;
     for (; pending != 0; pending &= pending - 1) {
-      const std::uint32_t mover = grid.mover[at + static_cast<std::uint32_t>(__builtin_ctz(pending))];
-      if (mover != scene.self) s.across.push_back(mover);
+      const std::uint32_t i = at + static_cast<std::uint32_t>(__builtin_ctz(pending));
+      if (!grid.skips(i, scene.self) && !scene.in_crowd(grid.mover[i])) s.across.push_back(grid.mover[i]);
     }
   }
 }
 
+void intersect_mover(const ScanView& view, const ScanScene& scene, std::uint32_t mover, glm::dvec2 d,
+                     ClosestHit& best) {
+  const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
+  const base::Pose& X = scene.states[mover].X_WM;
+  const glm::dvec2 place = glm::dvec2{X.x, X.y} - view.origin;
+  for (std::uint32_t i = outline.first; i < outline.first + outline.outward; ++i)
+    intersect_block(view, scene, scene.outlines->blocks[i], place, scene.headings[mover], scene.first_rows[mover], d,
+                    best);
+}
+
+/// Intersects the movers that the grid has along the beam.
 void intersect_movers(Scratch& s, const ScanView& view, const ScanScene& scene, glm::dvec2 d, ClosestHit& best) {
   const MoverGrid& grid = *scene.movers;
   const double margin = grid.largest_radius * 1.001 + 2.0 * static_cast<double>(grid.error);
@@ -93,23 +105,34 @@ void intersect_movers(Scratch& s, const ScanView& view, const ScanScene& scene, 
   s.across.clear();
   for (int row = y0; row <= y1; ++row)
     find_movers_on_beam(s, view, scene, d, best.range, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
-  for (const std::uint32_t mover : s.across) {
-    const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
-    const base::Pose& X = scene.states[mover].X_WM;
-    const glm::dvec2 place = glm::dvec2{X.x, X.y} - view.origin;
-    for (std::uint32_t i = outline.first; i < outline.first + outline.all; ++i)
-      intersect_block(view, scene, scene.outlines->blocks[i], place, scene.headings[mover], scene.first_rows[mover], d,
-                      best);
+  for (const std::uint32_t mover : s.across) intersect_mover(view, scene, mover, d, best);
+}
+
+/// Intersects the movers that the scan found round the beam at `place`, near to far.
+void intersect_near_movers(const Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
+                           float place, glm::dvec2 d, ClosestHit& best) {
+  const float turn = 6.2831853f * pattern.per_radian;
+  for (const std::uint64_t key : s.order) {
+    const NearMover& near = s.near[key & 0xFFFFFFFFu];
+    if (static_cast<double>(near.distance) > best.range * 1.0001) break;
+    const auto covers = [&](float at) { return at >= near.low && at <= near.high; };
+    if (covers(place) || covers(place - turn) || covers(place + turn))
+      intersect_mover(view, scene, near.mover, d, best);
   }
 }
 
 /// Writes the result of beam `i` from all segments that it may cross, in 64 bits. @return true when it grazes
+/// @param scanned the scratch has the movers that `scan` found
 bool intersect_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, std::size_t i,
-                    const ScanOutput& out) {
+                    bool scanned, const ScanOutput& out) {
   const glm::dvec2 d = direction_of(view, pattern, i);
   ClosestHit best{view.range_max};
-  intersect_walls(view, scene, d, best);
-  if (scene.movers != nullptr) intersect_movers(s, view, scene, d, best);
+  intersect_cell(view, scene, scene.crowd, d, best);
+  intersect_cell(view, scene, scene.walls, d, best);
+  if (scanned)
+    intersect_near_movers(s, view, pattern, scene, pattern.place[i], d, best);
+  else if (scene.movers != nullptr)
+    intersect_movers(s, view, scene, d, best);
   const bool grazes = best.grazes(static_cast<float>(view.min_sine));
   if (best.range >= view.range_max) best.id = SF_NO_HIT;
   if (view.single && best.id != SF_NO_HIT) {
@@ -126,7 +149,7 @@ bool intersect_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern
 bool intersect_all_beams(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
                          const ScanOutput& out) {
   bool grazes = false;
-  for (std::size_t i = 0; i < pattern.beams; ++i) grazes |= intersect_beam(s, view, pattern, scene, i, out);
+  for (std::size_t i = 0; i < pattern.beams; ++i) grazes |= intersect_beam(s, view, pattern, scene, i, false, out);
   return grazes;
 }
 
@@ -138,7 +161,7 @@ bool intersect_uncertain_beams(Scratch& s, const ScanView& view, const ScanPatte
   for (std::size_t w = 0; w < s.uncertain.size(); ++w)
     for (std::uint64_t pending = s.uncertain[w]; pending != 0; pending &= pending - 1) {
       const std::size_t i = 64 * w + static_cast<std::size_t>(__builtin_ctzll(pending));
-      grazes |= intersect_beam(s, view, pattern, scene, i, out);
+      grazes |= intersect_beam(s, view, pattern, scene, i, true, out);
       ++s.counts.uncertain;
     }
   return grazes;

@@ -72,11 +72,19 @@ HWY_INLINE bool may_be_visible(const Scratch& s, const ScanPattern& pattern, flo
   return false;
 }
 
-/// False when what covers the beams of `near` is hidden from all of them.
-inline bool may_be_visible(const Scratch& s, const ScanPattern& pattern, float turn, const NearMover& near) {
-  return may_be_visible(s, pattern, near.low, near.high, near.distance) ||
-         may_be_visible(s, pattern, near.low - turn, near.high - turn, near.distance) ||
-         may_be_visible(s, pattern, near.low + turn, near.high + turn, near.distance);
+/// The same for beams a whole turn away, too.
+inline bool may_be_visible(const Scratch& s, const ScanPattern& pattern, float turn, float low, float high,
+                           float distance) {
+  return may_be_visible(s, pattern, low, high, distance) ||
+         may_be_visible(s, pattern, low - turn, high - turn, distance) ||
+         may_be_visible(s, pattern, low + turn, high + turn, distance);
+}
+
+/// [m] Every beam certainly meets something within it.
+inline float horizon_of(const Scratch& s, const ScanPattern& pattern) {
+  VF least = load(&s.near_low[0]);
+  for (std::uint32_t j = 0; j < pattern.beams; j += lanes()) least = hn::Min(least, load(&s.near_low[j]));
+  return 1.0001f / hn::GetLane(hn::MinOfLanes(kF, least));
 }
 
 }  // namespace sf::raycast::HWY_NAMESPACE

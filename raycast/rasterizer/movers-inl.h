@@ -9,6 +9,7 @@
 #endif
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -23,13 +24,16 @@ void find_movers_in_row(Scratch& s, const Projection& p, const ScanView& view, c
   const MoverGrid& grid = *scene.movers;
   const VF x = constant(static_cast<float>(view.origin.x - grid.low.x)),
            y = constant(static_cast<float>(view.origin.y - grid.low.y));
-  const VF reach = constant(static_cast<float>(view.range_max) * 1.00001f), tolerance = constant(grid.error) + p.band;
+  const VF reach = constant(s.horizon * 1.00001f), tolerance = constant(grid.error) + p.band;
   for (std::uint32_t at = from; at < end; at += lanes()) {
     const VF dx = load(&grid.x[at]) - x, dy = load(&grid.y[at]) - y;
     const VF radius = load(&grid.radius[at]) * constant(1.0001f) + tolerance;
     const VF ahead = p.heading_cos * dx + p.heading_sin * dy, left = p.heading_cos * dy - p.heading_sin * dx;
     const VF distance = hn::Sqrt(ahead * ahead + left * left);
-    MF seen = distance - radius <= reach;
+    // Its edges are within its disc, and none is nearer to its origin than `inner`.
+    const VF inside = load(&grid.inner[at]) * constant(0.9999f) - tolerance - distance;
+    const VF gap = distance - radius, apart = hn::Max(gap, inside);
+    MF seen = apart <= reach;
     if (p.narrow) {
       seen = hn::And(seen, p.edge_sin * ahead - p.edge_cos * left >= hn::Neg(radius));
       seen = hn::And(seen, p.edge_sin * ahead + p.edge_cos * left >= hn::Neg(radius));
@@ -47,13 +51,14 @@ void find_movers_in_row(Scratch& s, const Projection& p, const ScanView& view, c
     const VF wide = hn::IfThenElse(
         around, p.turn, (turned * constant(1.0001f) + constant(4e-6f)) * p.per_radian + p.slack + constant(0.01f));
     HWY_ALIGN float nearest[kBlock], lows[kBlock], highs[kBlock];
-    store(distance - radius, nearest), store(place - wide, lows), store(place + wide, highs);
+    store(apart, nearest), store(place - wide, lows), store(place + wide, highs);
+    const std::uint32_t outside = bits_of(gap > constant(1e-4f));
     for (; pending != 0; pending &= pending - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctz(pending));
-      if (grid.mover[at + i] == scene.self) continue;
+      if (grid.skips(at + i, scene.self) || scene.in_crowd(grid.mover[at + i])) continue;
       ++s.counts.movers_in_range;
-      const NearMover near{nearest[i], grid.mover[at + i], lows[i], highs[i]};
-      if (may_be_visible(s, pattern, p.full, near)) s.near.push_back(near);
+      if (may_be_visible(s, pattern, p.full, lows[i], highs[i], nearest[i]))
+        s.near.push_back({nearest[i], lows[i], highs[i], grid.mover[at + i], (outside >> i & 1) != 0});
     }
   }
 }
@@ -61,7 +66,8 @@ void find_movers_in_row(Scratch& s, const Projection& p, const ScanView& view, c
 void find_movers_in_view(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                          const ScanScene& scene) {
   const MoverGrid& grid = *scene.movers;
-  const double reach = view.range_max * 1.00001 + grid.largest_radius + 2.0 * static_cast<double>(grid.error);
+  const double reach =
+      static_cast<double>(s.horizon) * 1.00001 + grid.largest_radius + 2.0 * static_cast<double>(grid.error);
   const glm::dvec2 v{view.origin.x - grid.low.x, view.origin.y - grid.low.y};
   const int x0 = grid.column_of(v.x - reach), x1 = grid.column_of(v.x + reach);
   s.near.clear();
@@ -76,7 +82,7 @@ void rasterize_mover(Scratch& s, const Projection& p, const ScanView& view, cons
   const VF c = constant(static_cast<float>(scene.headings[near.mover].x)),
            sn = constant(static_cast<float>(scene.headings[near.mover].y));
   const VF x = constant(static_cast<float>(X.x - view.origin.x)), y = constant(static_cast<float>(X.y - view.origin.y));
-  const std::uint32_t count = near.distance > 1e-4f ? outline.outward : outline.all;
+  const std::uint32_t count = near.outside ? outline.outward : outline.all;
   for (std::uint32_t i = outline.first; i < outline.first + count; ++i) {
     const SegmentBlock& block = scene.outlines->blocks[i];
     ProjectedBlock projected;
@@ -100,12 +106,15 @@ void rasterize_movers(Scratch& s, const Projection& p, const ScanView& view, con
     s.order.push_back(std::uint64_t{word} << 32 | i);
   }
   std::sort(s.order.begin(), s.order.end());
+  std::uint32_t visible = 0;
   for (const std::uint64_t key : s.order) {
     const NearMover& near = s.near[key & 0xFFFFFFFFu];
-    if (!may_be_visible(s, pattern, p.full, near)) continue;
-    ++s.counts.movers_visible;
+    if (near.distance > s.horizon) break;
+    if (!may_be_visible(s, pattern, p.full, near.low, near.high, near.distance)) continue;
     rasterize_mover(s, p, view, pattern, scene, near);
+    if (++visible >= kCrowd && std::has_single_bit(visible)) s.horizon = horizon_of(s, pattern);
   }
+  s.counts.movers_visible += visible;
 }
 
 }  // namespace sf::raycast::HWY_NAMESPACE

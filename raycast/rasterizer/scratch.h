@@ -10,9 +10,10 @@ namespace sf::raycast {
 
 /// A mover that may be visible, with the interval of beams that its disc covers. The interval may exceed the view.
 struct NearMover {
-  float distance;  ///< [m] lower bound of the distance to its nearest point
-  std::uint32_t mover;
+  float distance;   ///< [m] lower bound of the distance to its nearest edge
   float low, high;  ///< [places] as `ScanPattern::place`
+  std::uint32_t mover;
+  bool outside;  ///< the viewer is outside of its disc
 };
 
 struct Rasterizer::Scratch {
@@ -25,6 +26,7 @@ struct Rasterizer::Scratch {
   std::vector<NearMover> near;
   std::vector<std::uint64_t> order;   ///< of `near`, by distance
   std::vector<std::uint32_t> across;  ///< movers whose discs one beam crosses
+  float horizon = 0.0f;               ///< [m] movers beyond it are hidden
 
   ScanCounts counts;
 

@@ -1,4 +1,4 @@
-// Rasterizes the walls of a cell, near to far.
+// Rasterizes the surfaces round a cell: walls, and the edges of a crowd.
 // Compiled once per instruction set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_WALLS_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -36,23 +36,23 @@ HWY_INLINE std::uint32_t project_bounds(const Projection& p, const BlockBounds* 
   return bits_of(hn::Or(ahead, hn::Or(before, behind)));
 }
 
-void rasterize_walls(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
-                     const ScanScene& scene) {
-  const VF ox = constant(static_cast<float>(view.offset.x)), oy = constant(static_cast<float>(view.offset.y));
+/// Rasterizes the surfaces round a cell, near to far.
+void rasterize_cell(Scratch& s, const Projection& p, const ScanPattern& pattern, const CellBlocks& cell) {
+  const VF ox = constant(static_cast<float>(cell.offset.x)), oy = constant(static_cast<float>(cell.offset.y));
   BlockIntervals intervals;
   // Each block is projected before the previous one is rasterized: the processor overlaps both.
   ProjectedBlock projected[2];
   std::uint32_t spare = 0;
-  for (std::uint32_t first = 0; first < scene.front_facing; first += lanes()) {
-    std::uint32_t pending = project_bounds(p, &scene.bounds[first], intervals);
-    if (scene.front_facing - first < lanes()) pending &= (1u << (scene.front_facing - first)) - 1;
+  for (std::uint32_t first = 0; first < cell.front_facing; first += lanes()) {
+    std::uint32_t pending = project_bounds(p, &cell.bounds[first], intervals);
+    if (cell.front_facing - first < lanes()) pending &= (1u << (cell.front_facing - first)) - 1;
     for (; pending != 0; pending &= pending - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctz(pending));
-      if (!may_be_visible(s, pattern, p.full, {intervals.nearest[i], 0, intervals.low[i], intervals.high[i]})) continue;
-      const SegmentBlock& block = scene.walls[first + i];
+      if (!may_be_visible(s, pattern, p.full, intervals.low[i], intervals.high[i], intervals.nearest[i])) continue;
+      const SegmentBlock& block = cell.blocks[first + i];
       const std::uint32_t after = pending & (pending - 1);
       if (after != 0)
-        prefetch(&scene.walls[first + static_cast<std::uint32_t>(__builtin_ctz(after))], sizeof(SegmentBlock));
+        prefetch(&cell.blocks[first + static_cast<std::uint32_t>(__builtin_ctz(after))], sizeof(SegmentBlock));
       ProjectedBlock& next = projected[spare];
       next.count = 0;
       for (std::uint32_t k = 0; k < kBlock; k += lanes())

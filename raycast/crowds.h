@@ -1,0 +1,81 @@
+#pragma once
+// Crowds: places where viewers lie inside many movers at once.
+//
+// Needs: movers at this tick's poses. Result: for each small cell with viewers in a crowd, the edges that they may see.
+//
+// From inside a convex outline nothing is visible beyond the line through any of its edges. An edge of a mover is
+// therefore cut at the lines of two other movers, two so that one remains where the other carries the sensor. The cost
+// of a cell grows with the number of its movers, not with its viewers and beams; a scan from it then reads the few edges
+// that are left. Movers that hold no viewer, and outlines that are not convex, are scanned as outside of crowds.
+//
+// Lines hide what is beyond them by more than the rounding of 64-bit ranges, so that readings do not change.
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/thread_pool.h"
+#include "raycast/candidate_walls.h"
+#include "raycast/mover_geometry.h"
+#include "raycast/viewpoint.h"
+
+namespace sf::raycast {
+
+/// The edges that viewers in one cell of a crowd may see of the movers that hold the cell.
+struct CrowdCell {
+  glm::dvec2 centre;                   ///< [m] world
+  std::vector<SegmentBlock> blocks;    ///< relative to the centre; rows of exact segments
+  std::vector<BlockBounds> bounds;     ///< of `blocks`, padded by kBlock
+  std::vector<std::uint64_t> members;  ///< a bit per mover that holds the cell; empty: too few for a crowd
+};
+
+/// Not thread-safe. `movers` must outlive it.
+class Crowds {
+ public:
+  explicit Crowds(const MoverGeometry& movers) : movers_(movers) {}
+
+  /// Finds the crowds round `views`. @param height_of index of the height of a list config
+  void find(std::span<const Viewpoint> views, const std::function<std::uint32_t(std::uint32_t config)>& height_of,
+            base::ThreadPool& thread_pool);
+  /// Of a view of the last `find`; null: none.
+  const CrowdCell* of(std::size_t view) const {
+    if (places_.empty() || place_of_[view] == kNoPlace || cells_[place_of_[view]].members.empty()) return nullptr;
+    return &cells_[place_of_[view]];
+  }
+
+ private:
+  static constexpr std::uint32_t kNoPlace = 0xFFFFFFFFu;
+  /// A cell's key.
+  struct Place {
+    std::uint32_t height;
+    std::int64_t x, y;
+    auto operator<=>(const Place&) const = default;
+  };
+  struct Lines;
+  struct Scratch {
+    std::vector<std::uint32_t> members;
+    std::vector<CandidateWall> found;
+  };
+
+  bool is_crowded(glm::dvec2 p) const;
+  void build(const Place& place, Scratch& scratch, CrowdCell& cell) const;
+  void find_members(const Place& place, glm::dvec2 centre, std::vector<std::uint32_t>& members) const;
+  struct Edge {
+    glm::dvec2 a, b;
+  };
+  Edge edge_of(std::uint32_t mover, std::uint32_t number, glm::dvec2 centre) const;
+  bool holds(std::uint32_t mover, const OutlineTable::Loop& loop, glm::dvec2 centre) const;
+  void add_lines(std::uint32_t mover, const OutlineTable::Loop& loop, glm::dvec2 centre, Lines& lines) const;
+  void add_edges(std::uint32_t mover, const OutlineTable& outlines, const Lines& lines, glm::dvec2 centre,
+                 std::vector<CandidateWall>& found) const;
+
+  const MoverGeometry& movers_;
+  double size_ = 0.0;                     ///< [m] side of a cell
+  std::vector<Place> places_;             ///< of this tick, ascending
+  std::vector<std::uint32_t> place_of_;   ///< per view: row of `places_`
+  std::vector<Place> place_of_view_;      ///< scratch
+  std::vector<CrowdCell> cells_;          ///< per place; kept for their memory
+  std::vector<Scratch> scratch_;          ///< per thread
+};
+
+}  // namespace sf::raycast
