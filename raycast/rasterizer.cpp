@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
 
-void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene) {
+void scan(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene) {
   s.begin(pattern.beams);
   const auto inverse = static_cast<float>(1.0 / view.range_max);
   for (std::uint32_t j = 0; j < pattern.beams; j += lanes()) {
@@ -25,9 +25,8 @@ void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const Sc
     store(constant(0.0f), &s.others[j]);
     hn::StoreU(hn::Set(kI, -1), kI, &s.nearest_row[j]);
   }
-  const Projection p = projection_of(view, pattern);
-  rasterize_cell(s, p, pattern, scene.crowd);
-  rasterize_cell(s, p, pattern, scene.walls);
+  project_cell(s, p, pattern, scene.crowd, Draw{s, pattern});
+  project_cell(s, p, pattern, scene.walls, Draw{s, pattern});
   s.order.clear();
   s.horizon = static_cast<float>(view.range_max);
   if (!scene.crowd_members.empty()) s.horizon = std::min(s.horizon, horizon_of(s, pattern));
@@ -38,8 +37,10 @@ void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const Sc
 bool scan_all(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
               const ScanOutput& out) {
   if (pattern.beams <= kMaxExactBeams) return intersect_all_beams(s, view, pattern, scene, out);
-  scan(s, view, pattern, scene);
-  return write_certain_ranges(s, view, pattern, scene, out) && intersect_uncertain_beams(s, view, pattern, scene, out);
+  const Projection p = projection_of(view, pattern);
+  scan(s, p, view, pattern, scene);
+  return write_certain_ranges(s, view, pattern, scene, out) &&
+         intersect_uncertain_beams(s, p, view, pattern, scene, out);
 }
 
 const char* instructions() { return hwy::TargetName(HWY_TARGET); }

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raycast/rasterizer/vectors-inl.h"
+#include "raycast/rasterizer/movers-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
@@ -53,7 +53,8 @@ void intersect_cell(const ScanView& view, const ScanScene& scene, const CellBloc
     VF nearest, middle, half;
     hn::LoadInterleaved3(kF, &cell.bounds[first].nearest, nearest, middle, half);
     const VF turned = hn::Abs(middle - bearing), apart = hn::Min(turned, hn::Abs(constant(6.2831853f) - turned));
-    std::uint32_t pending = bits_of(apart <= half + constant(1e-5f));
+    const VF farthest = constant(static_cast<float>(best.range) * 1.00001f);
+    std::uint32_t pending = bits_of(hn::And(apart <= half + constant(1e-5f), nearest <= farthest));
     if (cell.blocks.size() - first < lanes()) pending &= (1u << (cell.blocks.size() - first)) - 1;
     for (; pending != 0; pending &= pending - 1) {
       const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(pending));
@@ -121,18 +122,9 @@ void intersect_near_movers(const Scratch& s, const ScanView& view, const ScanPat
   }
 }
 
-/// Writes the result of beam `i` from all segments that it may cross, in 64 bits. @return true when it grazes
-/// @param scanned the scratch has the movers that `scan` found
-bool intersect_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, std::size_t i,
-                    bool scanned, const ScanOutput& out) {
-  const glm::dvec2 d = direction_of(view, pattern, i);
-  ClosestHit best{view.range_max};
-  intersect_cell(view, scene, scene.crowd, d, best);
-  intersect_cell(view, scene, scene.walls, d, best);
-  if (scanned)
-    intersect_near_movers(s, view, pattern, scene, pattern.place[i], d, best);
-  else if (scene.movers != nullptr)
-    intersect_movers(s, view, scene, d, best);
+/// Writes the result of a beam. @return true when it grazes
+bool write_beam(const ScanView& view, const ScanScene& scene, std::size_t i, glm::dvec2 d, ClosestHit best,
+                const ScanOutput& out) {
   const bool grazes = best.grazes(static_cast<float>(view.min_sine));
   if (best.range >= view.range_max) best.id = SF_NO_HIT;
   if (view.single && best.id != SF_NO_HIT) {
@@ -149,21 +141,96 @@ bool intersect_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern
 bool intersect_all_beams(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
                          const ScanOutput& out) {
   bool grazes = false;
-  for (std::size_t i = 0; i < pattern.beams; ++i) grazes |= intersect_beam(s, view, pattern, scene, i, false, out);
+  for (std::size_t i = 0; i < pattern.beams; ++i) {
+    const glm::dvec2 d = direction_of(view, pattern, i);
+    ClosestHit best{view.range_max};
+    intersect_cell(view, scene, scene.crowd, d, best);
+    intersect_cell(view, scene, scene.walls, d, best);
+    if (scene.movers != nullptr) intersect_movers(s, view, scene, d, best);
+    grazes |= write_beam(view, scene, i, d, best, out);
+  }
   return grazes;
 }
 
-/// Intersects the uncertain beams in 64 bits. @return true when any grazes
-bool intersect_uncertain_beams(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
-                               const ScanOutput& out) {
-  std::fill_n(out.grazes, pattern.beams, std::uint8_t{0});
-  bool grazes = false;
+/// Calls `visit(i)` for every uncertain beam.
+template <class Visit>
+HWY_INLINE void each_uncertain(const Scratch& s, Visit visit) {
   for (std::size_t w = 0; w < s.uncertain.size(); ++w)
-    for (std::uint64_t pending = s.uncertain[w]; pending != 0; pending &= pending - 1) {
-      const std::size_t i = 64 * w + static_cast<std::size_t>(__builtin_ctzll(pending));
-      grazes |= intersect_beam(s, view, pattern, scene, i, true, out);
-      ++s.counts.uncertain;
+    for (std::uint64_t pending = s.uncertain[w]; pending != 0; pending &= pending - 1)
+      visit(64 * w + static_cast<std::size_t>(__builtin_ctzll(pending)));
+}
+
+/// Sink of projected blocks that intersects uncertain beams with the segments that may be their nearest.
+struct Decide {
+  Scratch& s;
+  const ScanView& view;
+  const ScanPattern& pattern;
+  const ScanScene& scene;
+
+  HWY_INLINE void operator()(const ProjectedBlock& block) const {
+    for (std::uint32_t i = 0; i < block.count; ++i) decide(block.parts[i]);
+  }
+  void decide(const Intervals& g) const {
+    const std::uint32_t step = lanes();
+    const VF first = hn::Load(kF, g.first), last = hn::Load(kF, g.last);
+    for (std::uint32_t j = g.from & ~(step - 1); j <= g.end; j += step) {
+      const auto open = static_cast<std::uint32_t>(s.uncertain[j >> 6] >> (j & 63)) & ((1u << step) - 1);
+      if (open == 0) continue;
+      const VF begin = constant(static_cast<float>(j)), end = constant(static_cast<float>(j + step - 1));
+      const VF place = load(&pattern.place[j]), cosine = load(&pattern.cos32[j]), sine = load(&pattern.sin32[j]);
+      const VF near_low = load(&s.near_low[j]);
+      for (std::uint32_t pending = bits_of(hn::And(first <= end, last >= begin)); pending != 0; pending &= pending - 1) {
+        const auto k = static_cast<std::uint32_t>(__builtin_ctz(pending));
+        const MF possible = hn::And(place >= constant(g.low_possible[k]), place <= constant(g.high_possible[k]));
+        const VF high = constant(g.a[k]) * cosine + constant(g.b[k]) * sine + constant(g.error[k]);
+        const auto row = static_cast<std::uint32_t>(g.row[k]);
+        for (std::uint32_t met = open & bits_of(hn::And(possible, high >= near_low)); met != 0; met &= met - 1) {
+          const std::size_t i = j + static_cast<std::size_t>(__builtin_ctz(met));
+          intersect({scene.exact[row], row}, view.origin, {s.x[i], s.y[i]}, s.closest[i]);
+        }
+      }
     }
+  }
+};
+
+/// Intersects the uncertain beams with the movers' segments, one segment after the other: where there are many, a
+/// segment is projected once for all beams.
+void decide_movers(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
+                   const ScanScene& scene) {
+  const Decide decide{s, view, pattern, scene};
+  project_cell(s, p, pattern, scene.crowd, decide);
+  for (const std::uint64_t key : s.order) {
+    const NearMover& near = s.near[key & 0xFFFFFFFFu];
+    if (near.distance > s.horizon) break;
+    if (may_be_visible(s, pattern, p.full, near.low, near.high, near.distance))
+      project_mover(p, view, scene, {near.distance, near.low, near.high, near.mover, false}, decide);
+  }
+}
+
+/// Intersects the uncertain beams in 64 bits. @return true when any grazes
+bool intersect_uncertain_beams(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
+                               const ScanScene& scene, const ScanOutput& out) {
+  std::fill_n(out.grazes, pattern.beams, std::uint8_t{0});
+  s.closest.resize(pattern.beams), s.x.resize(pattern.beams), s.y.resize(pattern.beams);
+  std::size_t uncertain = 0;
+  each_uncertain(s, [&](std::size_t i) {
+    const glm::dvec2 d = direction_of(view, pattern, i);
+    s.x[i] = d.x, s.y[i] = d.y;
+    s.closest[i] = {view.range_max};
+    ++uncertain;
+  });
+  const bool many = uncertain > kMaxSingleDecisions;
+  if (many) decide_movers(s, p, view, pattern, scene);
+  bool grazes = false;
+  each_uncertain(s, [&](std::size_t i) HWY_ATTR {
+    const glm::dvec2 d{s.x[i], s.y[i]};
+    ClosestHit& best = s.closest[i];
+    if (!many) intersect_cell(view, scene, scene.crowd, d, best);
+    intersect_cell(view, scene, scene.walls, d, best);
+    if (!many) intersect_near_movers(s, view, pattern, scene, pattern.place[i], d, best);
+    grazes |= write_beam(view, scene, i, d, best, out);
+  });
+  s.counts.uncertain += uncertain;
   return grazes;
 }
 

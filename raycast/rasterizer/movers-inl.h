@@ -75,8 +75,10 @@ void find_movers_in_view(Scratch& s, const Projection& p, const ScanView& view, 
     find_movers_in_row(s, p, view, pattern, scene, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
 }
 
-void rasterize_mover(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
-                     const ScanScene& scene, const NearMover& near) {
+/// Projects a mover's edges. @param sink called with each projected block
+template <class Sink>
+HWY_INLINE void project_mover(const Projection& p, const ScanView& view, const ScanScene& scene, const NearMover& near,
+                              Sink sink) {
   const OutlineTable::Outline& outline = scene.outlines->of_mover[near.mover];
   const base::Pose& X = scene.states[near.mover].X_WM;
   const VF c = constant(static_cast<float>(scene.headings[near.mover].x)),
@@ -91,7 +93,7 @@ void rasterize_mover(Scratch& s, const Projection& p, const ScanView& view, cons
       project(projected, p, x + (c * ax - sn * ay), y + (sn * ax + c * ay), c * ex - sn * ey, sn * ex + c * ey,
               block.row + k, scene.first_rows[near.mover]);
     }
-    rasterize(s, pattern, projected);
+    sink(projected);
   }
 }
 
@@ -111,7 +113,7 @@ void rasterize_movers(Scratch& s, const Projection& p, const ScanView& view, con
     const NearMover& near = s.near[key & 0xFFFFFFFFu];
     if (near.distance > s.horizon) break;
     if (!may_be_visible(s, pattern, p.full, near.low, near.high, near.distance)) continue;
-    rasterize_mover(s, p, view, pattern, scene, near);
+    project_mover(p, view, scene, near, Draw{s, pattern});
     if (++visible >= kCrowd && std::has_single_bit(visible)) s.horizon = horizon_of(s, pattern);
   }
   s.counts.movers_visible += visible;

@@ -127,9 +127,14 @@ inline void project(ProjectedBlock& out, const Projection& p, VF wx, VF wy, VF g
                      high_certain + p.turn, a, b, error, row);
 }
 
-inline void rasterize(Scratch& s, const ScanPattern& pattern, const ProjectedBlock& block) {
-  for (std::uint32_t i = 0; i < block.count; ++i) rasterize(s, pattern, block.parts[i]);
-}
+/// Sink of projected blocks that rasterizes them.
+struct Draw {
+  Scratch& s;
+  const ScanPattern& pattern;
+  HWY_INLINE void operator()(const ProjectedBlock& block) const {
+    for (std::uint32_t i = 0; i < block.count; ++i) rasterize(s, pattern, block.parts[i]);
+  }
+};
 
 }  // namespace sf::raycast::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

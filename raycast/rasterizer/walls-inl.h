@@ -36,11 +36,13 @@ HWY_INLINE std::uint32_t project_bounds(const Projection& p, const BlockBounds* 
   return bits_of(hn::Or(ahead, hn::Or(before, behind)));
 }
 
-/// Rasterizes the surfaces round a cell, near to far.
-void rasterize_cell(Scratch& s, const Projection& p, const ScanPattern& pattern, const CellBlocks& cell) {
+/// Projects the surfaces round a cell that may be visible, near to far. @param sink called with each projected block
+template <class Sink>
+HWY_INLINE void project_cell(Scratch& s, const Projection& p, const ScanPattern& pattern, const CellBlocks& cell,
+                             Sink sink) {
   const VF ox = constant(static_cast<float>(cell.offset.x)), oy = constant(static_cast<float>(cell.offset.y));
   BlockIntervals intervals;
-  // Each block is projected before the previous one is rasterized: the processor overlaps both.
+  // Each block is projected before the sink has the previous one: the processor overlaps both.
   ProjectedBlock projected[2];
   std::uint32_t spare = 0;
   for (std::uint32_t first = 0; first < cell.front_facing; first += lanes()) {
@@ -59,10 +61,10 @@ void rasterize_cell(Scratch& s, const Projection& p, const ScanPattern& pattern,
         project(next, p, load(block.ax + k) - ox, load(block.ay + k) - oy, load(block.ex + k), load(block.ey + k),
                 block.row + k, 0);
       spare ^= 1;
-      rasterize(s, pattern, projected[spare]);
+      sink(projected[spare]);
     }
   }
-  rasterize(s, pattern, projected[spare ^ 1]);
+  sink(projected[spare ^ 1]);
 }
 
 }  // namespace sf::raycast::HWY_NAMESPACE
