@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "base/box.h"
 #include "base/thread_pool.h"
 #include "raycast/candidate_walls.h"
 #include "raycast/mover_geometry.h"
@@ -24,6 +25,7 @@ namespace sf::raycast {
 /// The edges that viewers in one cell of a crowd may see of the movers that hold the cell.
 struct CrowdCell {
   glm::dvec2 centre;                   ///< [m] world
+  double horizon = 0.0;                ///< [m] every beam meets a member's edge within it
   std::vector<SegmentBlock> blocks;    ///< relative to the centre; rows of exact segments
   std::vector<BlockBounds> bounds;     ///< of `blocks`, padded by kBlock
   std::vector<std::uint64_t> members;  ///< a bit per mover that holds the cell; empty: too few for a crowd
@@ -51,6 +53,11 @@ class Crowds {
     std::int64_t x, y;
     auto operator<=>(const Place&) const = default;
   };
+  /// A disc that holds the viewers of a cell.
+  struct Disc {
+    glm::dvec2 centre;
+    double radius = 0.0;  ///< [m]
+  };
   struct Lines;
   struct Scratch {
     std::vector<std::uint32_t> members;
@@ -58,22 +65,25 @@ class Crowds {
   };
 
   bool is_crowded(glm::dvec2 p) const;
-  void build(const Place& place, Scratch& scratch, CrowdCell& cell) const;
-  void find_members(const Place& place, glm::dvec2 centre, std::vector<std::uint32_t>& members) const;
+  void find_places(std::span<const Viewpoint> views,
+                   const std::function<std::uint32_t(std::uint32_t config)>& height_of);
+  void build(const OutlineTable& outlines, const Disc& viewers, Scratch& scratch, CrowdCell& cell) const;
+  void find_members(const OutlineTable& outlines, const Disc& viewers, std::vector<std::uint32_t>& members) const;
   struct Edge {
     glm::dvec2 a, b;
   };
   Edge edge_of(std::uint32_t mover, std::uint32_t number, glm::dvec2 centre) const;
-  bool holds(std::uint32_t mover, const OutlineTable::Loop& loop, glm::dvec2 centre) const;
-  void add_lines(std::uint32_t mover, const OutlineTable::Loop& loop, glm::dvec2 centre, Lines& lines) const;
-  void add_edges(std::uint32_t mover, const OutlineTable& outlines, const Lines& lines, glm::dvec2 centre,
+  bool holds(std::uint32_t mover, const OutlineTable::Loop& loop, const Disc& viewers) const;
+  void add_loop(std::uint32_t mover, const OutlineTable::Loop& loop, const Disc& viewers, Lines& lines) const;
+  void add_edges(std::uint32_t mover, const OutlineTable& outlines, const Lines& lines, const Disc& viewers,
                  std::vector<CandidateWall>& found) const;
 
   const MoverGeometry& movers_;
-  double size_ = 0.0;                     ///< [m] side of a cell
+  double size_ = 0.0;                     ///< [m] side of a cell; viewers are an eighth of it from the edges of members
   std::vector<Place> places_;             ///< of this tick, ascending
   std::vector<std::uint32_t> place_of_;   ///< per view: row of `places_`
   std::vector<Place> place_of_view_;      ///< scratch
+  std::vector<base::Box> boxes_;          ///< per place: round its viewers
   std::vector<CrowdCell> cells_;          ///< per place; kept for their memory
   std::vector<Scratch> scratch_;          ///< per thread
 };

@@ -141,6 +141,7 @@ void HostScene::prefetch(std::size_t i) const {
 void HostScene::add_crowd(const CrowdCell& crowd, Thread& t, glm::dvec2 origin, ScanScene& scene) const {
   std::span<const SegmentBlock> blocks = crowd.blocks;
   scene.crowd_members = crowd.members;
+  scene.crowd_horizon = crowd.horizon;
   if (scene.in_crowd(scene.self)) {
     t.crowd.assign(blocks.begin(), blocks.end());
     hide_rows(t.crowd, scene.first_rows[scene.self], scene.first_rows[scene.self + 1]);

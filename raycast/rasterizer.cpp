@@ -18,7 +18,8 @@ namespace sf::raycast::HWY_NAMESPACE {
 
 void scan(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene) {
   s.begin(pattern.beams);
-  const auto inverse = static_cast<float>(1.0 / view.range_max);
+  s.horizon = static_cast<float>(std::min(view.range_max, scene.crowd_horizon));
+  const auto inverse = static_cast<float>(1.0 / std::min(view.range_max, scene.crowd_horizon));
   for (std::uint32_t j = 0; j < pattern.beams; j += lanes()) {
     store(constant(inverse * (1.0f - 1e-6f)), &s.near_low[j]);
     store(constant(inverse * (1.0f + 1e-6f)), &s.near_high[j]);
@@ -28,7 +29,6 @@ void scan(Scratch& s, const Projection& p, const ScanView& view, const ScanPatte
   project_cell(s, p, pattern, scene.crowd, Draw{s, pattern});
   project_cell(s, p, pattern, scene.walls, Draw{s, pattern});
   s.order.clear();
-  s.horizon = static_cast<float>(view.range_max);
   if (!scene.crowd_members.empty()) s.horizon = std::min(s.horizon, horizon_of(s, pattern));
   if (scene.movers != nullptr) rasterize_movers(s, p, view, pattern, scene);
 }
