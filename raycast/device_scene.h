@@ -37,7 +37,8 @@ class DeviceScene {
   /// @return true when tables were replaced, so that kernels must be bound again
   bool prepare(std::span<const Viewpoint> views, std::span<RayRow> rows);
 
-  /// True when the lists of view `i` of the last `prepare` would be too long. Its row then names empty lists.
+  /// True when the lists of view `i` of the last `prepare` would be too long, or movers round it overlap. Its row then
+  /// names empty lists.
   bool needs_host(std::size_t i) const { return needs_host_[i] != 0; }
   /// Adds copies of all tables that changed since the last call.
   void upload(gpu::Batch& batch);
@@ -96,7 +97,7 @@ class DeviceScene {
   std::vector<Cell> cell_tables_;                  ///< per slot
   std::vector<std::uint32_t> outlines_;            ///< per height: texel of the first block
   std::uint32_t pool_begin_ = SF_SECTORS;          ///< texel
-  std::vector<std::uint8_t> needs_host_;           ///< per view of this tick: its lists would be too long
+  std::vector<std::uint8_t> needs_host_;           ///< per view of this tick: the host scans it
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
   std::vector<std::uint32_t> new_slots_;           ///< cells built since the last upload
   std::uint32_t mover_texels_ = 0;                 ///< capacity for lists of movers, behind the pool

@@ -102,7 +102,7 @@ void DeviceScene::build_missing_cells() {
   cells_.drop_cached();
 }
 
-/// Lists the movers in range and in view, near to far.
+/// Lists the movers in range and in view, near to far, unless they are crowded.
 void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
   const MoverGrid& grid = movers_.grid();
   const ListConfig& config = configs_[view.config];
@@ -116,6 +116,8 @@ void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
       grid.error + static_cast<float>(SF_COORDINATE_ERROR * (config.range + 2.0 * grid.largest_radius));
   s.near.clear();
   s.mover_entries.clear();
+  s.crowded = false;
+  CrowdMeasure around_view, all;
   const int left = grid.column_of(from.x - reach), right = grid.column_of(from.x + reach);
   for (int row = grid.row_of(from.y - reach); row <= grid.row_of(from.y + reach); ++row)
     for (std::uint32_t at = grid.begin_of(left, row); at < grid.begin_of(right + 1, row); ++at) {
@@ -124,12 +126,16 @@ void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
       if (square > most * most * 1.0001f || grid.skips(at, view.self)) continue;
       ++s.movers_in_range;
       const float distance = std::sqrt(square);
+      if (distance < radius && around_view.add(radius, 0.0f)) {
+        s.crowded = true;
+        return;
+      }
       const bool around = radius > 0.8f * distance;
       const float half = around ? 4.0f : 1.0001f * std::asin(radius / distance) + 1e-5f;
       const float bearing = std::atan2(dy, dx);
       const float turned = std::abs(bearing - yaw);
       if (std::min(turned, 6.2831853f - turned) > most_turned + half) continue;
-      s.near.push_back({std::max(distance - radius, 0.0f) * 0.9999f, grid.mover[at], bearing, half});
+      s.near.push_back({std::max(distance - radius, 0.0f) * 0.9999f, radius, grid.mover[at], bearing, half});
     }
   std::sort(s.near.begin(), s.near.end(), [](const NearbyMover& p, const NearbyMover& q) {
     return p.nearest != q.nearest ? p.nearest < q.nearest : p.mover < q.mover;
@@ -137,6 +143,8 @@ void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
   s.front_facing.clear();
   for (std::uint32_t k = 0; k < s.near.size(); ++k) {
     NearbyMover& near = s.near[k];
+    s.crowded = all.add(near.radius, near.nearest);
+    if (s.crowded) return;
     find_front_edges(view, near, s);
     if (near.count == 0) continue;
     ++s.movers_visible;
@@ -223,7 +231,7 @@ bool DeviceScene::build_mover_lists(std::span<const Viewpoint> views, std::span<
       rows[i].movers = 0;  // empty lists
       if (!has_movers()) continue;
       find_nearby_movers(views[i], s);
-      const std::uint32_t size = s.near.empty() ? 0 : mover_lists_size(s, most);
+      const std::uint32_t size = s.crowded ? CellCache::kNone : s.near.empty() ? 0 : mover_lists_size(s, most);
       const std::uint32_t at = size == CellCache::kNone ? 0 : next.fetch_add(size);
       const bool fits = size != CellCache::kNone && at + size <= mover_texels_;
       needs_host_[i] = !fits && (size == CellCache::kNone || !more_room) ? 1 : 0;

@@ -1,6 +1,7 @@
 #pragma once
 // Parts that the sources of raycast::DeviceScene share.
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,9 +32,26 @@ inline constexpr ListEntry kPaddingEntry{0.0f, -1e15f, 0.5f, 0.0f};
 /// A mover that may be visible from a view.
 struct DeviceScene::NearbyMover {
   float nearest;  ///< [m]
+  float radius;   ///< [m]
   std::uint32_t mover;
   float bearing, half;                 ///< [rad] of its disc, in the world frame
   std::uint32_t first = 0, count = 0;  ///< entries that face the view, in the scratch's `mover_entries`
+};
+
+/// Sum of the squared radii of discs, to tell a crowd, whose discs overlap: with little overlap it is at most a few times
+/// the squared radius of the disc that holds them all.
+class CrowdMeasure {
+ public:
+  /// Adds discs by their distance from one point. @return true in a crowd
+  bool add(float radius, float distance) {
+    sum_ += radius * radius;
+    largest_ = std::max(largest_, radius);
+    const float reach = distance + 2.0f * largest_;
+    return sum_ > 4.0f * reach * reach;
+  }
+
+ private:
+  float sum_ = 0.0f, largest_ = 0.0f;
 };
 
 /// Scratch of one thread that builds lists.
@@ -47,6 +65,7 @@ struct DeviceScene::Scratch {
   ListHead heads[SF_SECTORS];
   std::vector<NearbyMover> near;
   std::vector<std::uint16_t> mover_entries;
+  bool crowded = false;  ///< movers overlap: no lists, since the host scans crowds at a bounded cost
   std::uint64_t movers_in_range = 0, movers_visible = 0;
 
   void add(std::vector<CandidateWall>& found, double spread, SectorLists& sectors);
