@@ -82,9 +82,8 @@ void Crowds::find(std::span<const Viewpoint> views, const std::function<std::uin
   thread_pool.parallel_for(places_.size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
     for (std::size_t k = first; k < last; ++k) {
       const base::Box& box = boxes_[k];
-      const Disc viewers{0.5 * (box.min + box.max),
-                         0.5 * length(box.max - box.min) * (1.0 + 1e-6) + 1e-9 +
-                             1e-15 * (std::abs(box.max.x) + std::abs(box.max.y))};
+      const Disc viewers{0.5 * (box.min + box.max), 0.5 * length(box.max - box.min) * (1.0 + 1e-6) + 1e-9 +
+                                                        1e-15 * (std::abs(box.max.x) + std::abs(box.max.y))};
       build(movers_.outlines(places_[k].height), viewers, scratch_[thread], cells_[k]);
     }
   });

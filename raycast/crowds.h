@@ -5,8 +5,8 @@
 //
 // From inside a convex outline nothing is visible beyond the line through any of its edges. An edge of a mover is
 // therefore cut at the lines of two other movers, two so that one remains where the other carries the sensor. The cost
-// of a cell grows with the number of its movers, not with its viewers and beams; a scan from it then reads the few edges
-// that are left. Movers that hold no viewer, and outlines that are not convex, are scanned as outside of crowds.
+// of a cell grows with the number of its movers, not with its viewers and beams; a scan from it then reads the few
+// edges that are left. Movers that hold no viewer, and outlines that are not convex, are scanned as outside of crowds.
 //
 // Lines hide what is beyond them by more than the rounding of 64-bit ranges, so that readings do not change.
 
@@ -79,13 +79,13 @@ class Crowds {
                  std::vector<CandidateWall>& found) const;
 
   const MoverGeometry& movers_;
-  double size_ = 0.0;                     ///< [m] side of a cell; viewers are an eighth of it from the edges of members
-  std::vector<Place> places_;             ///< of this tick, ascending
-  std::vector<std::uint32_t> place_of_;   ///< per view: row of `places_`
-  std::vector<Place> place_of_view_;      ///< scratch
-  std::vector<base::Box> boxes_;          ///< per place: round its viewers
-  std::vector<CrowdCell> cells_;          ///< per place; kept for their memory
-  std::vector<Scratch> scratch_;          ///< per thread
+  double size_ = 0.0;                    ///< [m] side of a cell; viewers are an eighth of it from the edges of members
+  std::vector<Place> places_;            ///< of this tick, ascending
+  std::vector<std::uint32_t> place_of_;  ///< per view: row of `places_`
+  std::vector<Place> place_of_view_;     ///< scratch
+  std::vector<base::Box> boxes_;         ///< per place: round its viewers
+  std::vector<CrowdCell> cells_;         ///< per place; kept for their memory
+  std::vector<Scratch> scratch_;         ///< per thread
 };
 
 }  // namespace sf::raycast

@@ -114,7 +114,8 @@ void HostScene::prepare(std::span<const Viewpoint> views) {
   views_.assign(views.begin(), views.end());
   cells_.find(views, thread_pool_);
   if (movers_.segments() > 0)
-    crowds_.find(views, [this](std::uint32_t config) { return config_tables_[config].height; }, thread_pool_);
+    crowds_.find(
+        views, [this](std::uint32_t config) { return config_tables_[config].height; }, thread_pool_);
   static const std::uint32_t most = most_blocks();
   const std::uint64_t evicted = cells_.cache().evicted();
   for (build_missing_cells(); !cells_.missing().empty() && blocks_.size() < most; build_missing_cells()) grow();

@@ -59,11 +59,11 @@ class MoverGeometry {
   std::vector<world::Segment> local_;  ///< mover frame
   std::vector<std::uint32_t> models_;
   std::vector<std::uint32_t> first_rows_;
-  std::vector<double> radii_;   ///< [m] 0: no outline
-  std::vector<double> inner_;   ///< [m] distance of the nearest edge from the origin
+  std::vector<double> radii_;          ///< [m] 0: no outline
+  std::vector<double> inner_;          ///< [m] distance of the nearest edge from the origin
   std::vector<std::uint32_t> shapes_;  ///< equal where movers have equal outlines at all heights
   std::vector<std::uint32_t> twins_;   ///< per mover, as MoverGrid::twin
-  std::vector<double> load_z_;  ///< [m] heights at load; they do not change (2.5-D world)
+  std::vector<double> load_z_;         ///< [m] heights at load; they do not change (2.5-D world)
   std::uint32_t walls_;
   std::vector<Height> heights_;
   std::span<const base::Report> states_;

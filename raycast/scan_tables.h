@@ -147,11 +147,11 @@ struct CellBlocks {
 /// All surfaces of a scan. Exact segments: walls first, then movers.
 struct ScanScene {
   CellBlocks walls;
-  CellBlocks crowd;                             ///< of movers that hold the viewer (raycast/crowds.h)
+  CellBlocks crowd;                              ///< of movers that hold the viewer (raycast/crowds.h)
   std::span<const std::uint64_t> crowd_members;  ///< a bit per mover: its edges are in `crowd`; empty: no crowd
-  double crowd_horizon = HUGE_VAL;              ///< [m] every beam meets an edge of the crowd within it
-  std::span<const ExactSegment> exact;    ///< walls, then movers
-  std::span<const std::uint32_t> models;  ///< `Segment::model` of each
+  double crowd_horizon = HUGE_VAL;               ///< [m] every beam meets an edge of the crowd within it
+  std::span<const ExactSegment> exact;           ///< walls, then movers
+  std::span<const std::uint32_t> models;         ///< `Segment::model` of each
   const MoverGrid* movers = nullptr;
   const OutlineTable* outlines = nullptr;
   std::span<const base::Report> states;       ///< of movers

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "base/report.h"
@@ -90,14 +91,26 @@ bool presses(const Footprint& outline, std::span<const FootprintEdge> edges, con
   return inside(outline.edges, 0.5 * (a + b), s.z_min, s.z_max);
 }
 
-std::uint32_t sectors_of(const Footprint& outline, const Surface& s) {
+/// The wanted sectors that the surface crosses.
+std::uint32_t sectors_crossed(const Surface& s, std::uint32_t wanted) {
+  std::uint32_t crossed = 0;
+  for (std::uint32_t left = wanted; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+    const Part part = within_sector(s, k);
+    if (part.from < part.to) crossed |= 1u << k;
+  }
+  return crossed;
+}
+
+std::uint32_t sectors_of(const Footprint& outline, const Surface& s, std::uint32_t wanted) {
   if (world::distance({0.0, 0.0}, s.a, s.b) > outline.radius + kContactDistance) return 0;
+  if (wanted != kAllSectors && sectors_crossed(s, wanted) == 0) return 0;
   const std::span<const FootprintEdge> edges = edges_near(outline, s);
   if (edges.empty() && !inside(outline.edges, s.a, s.z_min, s.z_max)) return 0;
   std::uint32_t sectors = 0;
-  for (std::uint32_t k = 0; k < kContactSectors; ++k) {
-    const Part part = within_sector(s, k);
-    if (part.from < part.to && presses(outline, edges, s, part)) sectors |= 1u << k;
+  for (std::uint32_t crossed = sectors_crossed(s, wanted); crossed != 0; crossed &= crossed - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(crossed));
+    if (presses(outline, edges, s, within_sector(s, k))) sectors |= 1u << k;
   }
   return sectors;
 }
@@ -106,12 +119,14 @@ std::uint32_t sectors_of(const Footprint& outline, const Surface& s) {
 
 std::uint32_t contact_sectors(const Footprint& outline, const base::Pose& X_WM, const world::Segment& wall) {
   const glm::dvec2 p{X_WM.x, X_WM.y};
-  return sectors_of(outline, {base::rotate(-X_WM.yaw, wall.a - p), base::rotate(-X_WM.yaw, wall.b - p),
-                              wall.z_min - X_WM.z, wall.z_max - X_WM.z});
+  return sectors_of(outline,
+                    {base::rotate(-X_WM.yaw, wall.a - p), base::rotate(-X_WM.yaw, wall.b - p), wall.z_min - X_WM.z,
+                     wall.z_max - X_WM.z},
+                    kAllSectors);
 }
 
 std::uint32_t contact_sectors(const Footprint& outline, const base::Pose& X_WM, const Footprint& other,
-                              const base::Pose& X_WO) {
+                              const base::Pose& X_WO, std::uint32_t wanted) {
   const glm::dvec2 apart = glm::dvec2{X_WO.x, X_WO.y} - glm::dvec2{X_WM.x, X_WM.y};
   const glm::dvec2 p_MO = base::rotate(-X_WM.yaw, apart);
   const double turn = X_WO.yaw - X_WM.yaw, lift = X_WO.z - X_WM.z;
@@ -120,11 +135,31 @@ std::uint32_t contact_sectors(const Footprint& outline, const base::Pose& X_WM, 
   const auto to_mover = [&](glm::dvec2 q) { return p_MO + glm::dvec2{c * q.x - s * q.y, s * q.x + c * q.y}; };
   std::uint32_t sectors = 0;
   for (const FootprintEdge& e : other.edges)
-    sectors |= sectors_of(outline, {to_mover(e.a), to_mover(e.b), e.z_min + lift, e.z_max + lift});
-  if (sectors != 0 || length(apart) > reach + other.radius || outline.edges.empty()) return sectors;
+    sectors |= sectors_of(outline, {to_mover(e.a), to_mover(e.b), e.z_min + lift, e.z_max + lift}, wanted);
+  if (wanted != kAllSectors || sectors != 0 || length(apart) > reach + other.radius || outline.edges.empty())
+    return sectors;
   const FootprintEdge& first = outline.edges.front();
   const glm::dvec2 q = base::rotate(X_WM.yaw - X_WO.yaw, first.a - p_MO);
-  return inside(other.edges, q, first.z_min - lift, first.z_max - lift) ? ~0u : 0u;
+  return inside(other.edges, q, first.z_min - lift, first.z_max - lift) ? kAllSectors : 0u;
+}
+
+std::uint32_t sectors_to_test(const Footprint& outline, const base::Pose& X_WM, const Footprint& other,
+                              const base::Pose& X_WO, std::uint32_t known) {
+  const glm::dvec2 apart{X_WO.x - X_WM.x, X_WO.y - X_WM.y};
+  const double d = length(apart), reach = outline.radius + 2.0 * kContactDistance, r = other.radius;
+  if (d > reach + r) return 0;
+  if (outline.inner == 0.0 || d + outline.inner <= r) return kAllSectors;
+  if (d <= r) return ~known;
+  // The part of the other's disc within reach: up to its tangents, or to where the two circles meet.
+  const bool holds_tangents = d * d <= reach * reach + r * r;
+  const double half =
+      holds_tangents ? std::asin(r / d) : std::acos(std::min((d * d + reach * reach - r * r) / (2.0 * d * reach), 1.0));
+  const double bearing = std::atan2(apart.y, apart.x) - X_WM.yaw, per_radian = kContactSectors / (2.0 * M_PI);
+  const auto first = static_cast<std::int64_t>(std::floor((bearing - half - 1e-6) * per_radian));
+  const auto last = static_cast<std::int64_t>(std::floor((bearing + half + 1e-6) * per_radian));
+  std::uint32_t sectors = 0;
+  for (std::int64_t k = first; k <= last; ++k) sectors |= 1u << (k & (kContactSectors - 1));
+  return sectors & ~known;
 }
 
 }  // namespace sf::robots

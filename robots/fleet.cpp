@@ -77,7 +77,7 @@ Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
   for (auto* rows : {&unfinished_, &round_rows_}) rows->reserve(count);
   for (Scratch& scratch : scratch_) {
     for (auto* memory : {&scratch.next, &scratch.now, &scratch.other}) memory->resize(edges);
-    for (auto* rows : {&scratch.near, &scratch.priority_movers}) rows->reserve(count);
+    for (auto* rows : {&scratch.near, &scratch.all_near, &scratch.priority_movers}) rows->reserve(count);
     scratch.walls.reserve(1'000);
   }
   neighbours_.build(reports_, 1.0);

@@ -111,7 +111,8 @@ class Fleet {
   /// Buffers of one thread.
   struct Scratch {
     std::vector<FootprintEdge> next, now, other;  ///< for place_footprint
-    std::vector<std::uint32_t> near;              ///< movers near this one's way
+    std::vector<std::uint32_t> near;              ///< movers near this one's way, or a piece of it
+    std::vector<std::uint32_t> all_near;          ///< movers near the whole way
     std::vector<const world::Segment*> walls;     ///< likewise
     std::vector<std::uint32_t>
         priority_movers;    ///< of these: movers with a smaller id and a different place after this round
@@ -139,7 +140,10 @@ class Fleet {
   bool comes_near(std::uint32_t row, const base::Pose& from, double sweep, std::uint32_t other,
                   const base::Pose& X_WO) const;
   Progress advance_mover(std::uint32_t row, bool last, Scratch& scratch) const;
-  Progress advance_in_steps(std::uint32_t row, double steps, bool last, Scratch& scratch) const;
+  bool find_obstacles(std::uint32_t row, const base::Pose& X_WM, double reach, std::span<const std::uint32_t> others,
+                      Scratch& scratch) const;
+  Progress advance_in_pieces(std::uint32_t row, double steps, bool last, Scratch& scratch) const;
+  Progress advance_in_steps(std::uint32_t row, Progress progress, double steps, bool last, Scratch& scratch) const;
   double advance_to_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const;
   bool turn_in_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const;
   bool push_off(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const;

@@ -15,9 +15,10 @@ using base::Pose;
 using base::Twist;
 using world::Segment;
 
-constexpr double kGap = 4e-4;      // [m] largest gap between a stopped mover and the obstacle
-constexpr double kWhole = 0x1p40;  // fixed point: sums of integers do not depend on their order
-constexpr std::uint32_t kEverywhere = 0xFFFFFFFFu;
+constexpr double kGap = 4e-4;            // [m] largest gap between a stopped mover and the obstacle
+constexpr double kWhole = 0x1p40;        // fixed point: sums of integers do not depend on their order
+constexpr double kPiece = 1024.0;        // [steps] of a long way that are tested together
+constexpr double kMostTested = 16384.0;  // [steps] with obstacles near, per call
 static_assert(base::kContactSectors == 32);
 
 glm::dvec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
@@ -95,7 +96,8 @@ void Fleet::find_free_disc(std::uint32_t row) {
 Fleet::Progress Fleet::advance_mover(std::uint32_t row, bool last, Scratch& scratch) const {
   Progress progress = progress_[row];
   const Pose& from = progress_[row].X_WM;
-  const double sweep = sweep_of(row);
+  const double sweep = sweep_of(row), steps = std::max(1.0, std::ceil(sweep / footprints_[row].step));
+  if (steps > kPiece) return advance_in_pieces(row, steps, last, scratch);
   const auto meets = [&](std::uint32_t other) { return comes_near(row, from, sweep, other, reports_[other].X_WM); };
   progress.free = std::none_of(scratch.near.begin(), scratch.near.end(), meets);
   scratch.walls.clear();
@@ -105,15 +107,74 @@ Fleet::Progress Fleet::advance_mover(std::uint32_t row, bool last, Scratch& scra
       progress.free = progress.free && gap > sweep;
       return false;
     });
-  if (!progress.free)
-    return advance_in_steps(row, std::max(1.0, std::ceil(sweep / footprints_[row].step)), last, scratch);
+  if (!progress.free) return advance_in_steps(row, progress, steps, last, scratch);
   progress.X_WM = advance(from, progress.velocity, progress.left);
   progress.left = 0.0;
   return progress;
 }
 
-Fleet::Progress Fleet::advance_in_steps(std::uint32_t row, double steps, bool last, Scratch& scratch) const {
+/// [m] Largest travel of the mover's origin in `seconds` of the rest of its way.
+double travel_of(const Twist& v, double seconds) {
+  const double speed = std::hypot(v.forward, v.left);
+  const double circle = v.turn != 0.0 ? 2.0 * speed / std::abs(v.turn) : HUGE_VAL;  // diameter
+  return std::min(speed * seconds, circle);
+}
+
+/// Lists the obstacles within `reach` [m] of the mover. @return true when there are any
+bool Fleet::find_obstacles(std::uint32_t row, const base::Pose& X_WM, double reach,
+                           std::span<const std::uint32_t> others, Scratch& scratch) const {
+  scratch.near.clear(), scratch.walls.clear();
+  for (const std::uint32_t other : others)
+    if (comes_near(row, X_WM, reach, other, reports_[other].X_WM)) scratch.near.push_back(other);
+  any_wall(row, X_WM, reach, [&](const Segment& wall, double gap) {
+    if (gap <= reach) scratch.walls.push_back(&wall);
+    return false;
+  });
+  return !scratch.near.empty() || !scratch.walls.empty() ||
+         std::any_of(scratch.priority_movers.begin(), scratch.priority_movers.end(), [&](std::uint32_t rival) {
+           return comes_near(row, X_WM, reach, rival, proposed_[rival].X_WM);
+         });
+}
+
+/// A way of thousands of steps: pieces without obstacles near them in one go, the others step by step. A mover that
+/// passes obstacles for too many steps ends its tick there.
+Fleet::Progress Fleet::advance_in_pieces(std::uint32_t row, double steps, bool last, Scratch& scratch) const {
   Progress progress = progress_[row];
+  const double dt = progress.left / steps;
+  std::vector<std::uint32_t>& others = scratch.all_near;
+  others = scratch.near;
+  double tested = 0.0;
+  for (double most = kPiece; steps > 0.0 && !scratch.yields && moves(progress.velocity);) {
+    const double piece = std::min(most, steps);
+    const double travel = travel_of(progress.velocity, piece * dt);
+    const bool free = !find_obstacles(row, progress.X_WM, travel, others, scratch);
+    if (!free && piece > kPiece) {
+      most = std::max(kPiece, 0.25 * piece);
+      continue;
+    }
+    if (free) {
+      progress.X_WM = advance(progress.X_WM, progress.velocity, piece * dt);
+      most *= 2.0;
+    } else {
+      if ((tested += piece) > kMostTested) break;
+      find_obstacles(row, progress.X_WM, travel + kMaxYield * (piece + kRounds), others, scratch);
+      progress.left = piece * dt;
+      progress = advance_in_steps(row, progress, piece, last, scratch);
+    }
+    steps -= piece;
+    if (!free && progress.left > 0.0) {
+      progress.left += steps * dt;
+      scratch.near = others;
+      return progress;
+    }
+  }
+  scratch.near = others;
+  progress.left = 0.0;
+  return progress;
+}
+
+Fleet::Progress Fleet::advance_in_steps(std::uint32_t row, Progress progress, double steps, bool last,
+                                        Scratch& scratch) const {
   const double dt = progress.left / steps;
   while (steps > 0.0 && !scratch.yields) {
     const Pose X_next = advance(progress.X_WM, progress.velocity, dt);
@@ -217,10 +278,13 @@ bool Fleet::is_stopped(std::uint32_t row, const Pose& from, const PlacedFootprin
   const glm::dvec2 d = origin(X_WO) - next.origin;
   const double apart = next.radius + footprints_[other].radius;
   if (dot(d, d) > apart * apart * (1.0 + 1e-12)) return false;
+  const double after = length(next.origin - origin(X_WO)), before = length(origin(from) - origin(X_WO));
+  const bool nearer = !no_nearer(after, before);
+  if (surely_overlap(footprints_[row], footprints_[other], nearer ? after : before, X_WO.z - from.z)) return nearer;
   const PlacedFootprint placed = place_footprint(footprints_[other], X_WO, scratch.other);
   if (!touches(next, placed)) return false;
   const PlacedFootprint now = place_footprint(footprints_[row], from, scratch.now);
-  return !touches(now, placed) || !no_nearer(length(next.origin - placed.origin), length(now.origin - placed.origin));
+  return nearer || !touches(now, placed);
 }
 
 /// True when the mover touches the wall already and its origin comes no closer to it.
@@ -247,17 +311,31 @@ Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std:
     if (sectors != 0) add(sectors, world::from_segment(p, wall.a, wall.b));
     return false;
   });
-  neighbours_.any(p, reach + widest_ + farthest_, [&](std::uint32_t other) {
-    const glm::dvec2 from_other = p - origin(reports[other].X_WM);
-    const double apart = reach + footprints_[other].radius;
-    if (other == row || absent_[other] != 0 || dot(from_other, from_other) > apart * apart) return false;
-    const std::uint32_t sectors = contact_sectors(outline, X_WM, footprints_[other], reports[other].X_WM);
+  const auto meet = [&](std::uint32_t other, glm::dvec2 from_other, bool deep) {
+    const Footprint& its = footprints_[other];
+    const Pose& X_WO = reports[other].X_WM;
+    // A mover placed from outside needs its contact sectors alone.
+    const std::uint32_t wanted =
+        reported_[row] != 0 ? sectors_to_test(outline, X_WM, its, X_WO, touch.sectors) : kAllSectors;
+    const bool known = deep && touch.sectors == kAllSectors;
+    const std::uint32_t sectors = known ? kAllSectors : contact_sectors(outline, X_WM, its, X_WO, wanted);
     if (sectors == 0) return false;
     add(sectors, from_other);
     if (!struck.empty()) std::atomic_ref(struck[other]).store(1, std::memory_order_relaxed);
-    // A mover placed from outside needs its contact sectors alone; in a crowd at one place all sectors are soon found.
-    return reported_[row] != 0 && touch.sectors == kEverywhere;
-  });
+    return reported_[row] != 0 && touch.sectors == kAllSectors;
+  };
+  // First the movers that overlap deeply: in a crowd at one place they soon touch all sectors.
+  for (const bool deeply : {true, false}) {
+    const bool done = neighbours_.any(p, reach + widest_ + farthest_, [&](std::uint32_t other) {
+      const glm::dvec2 from_other = p - origin(reports[other].X_WM);
+      const double apart = reach + footprints_[other].radius;
+      if (other == row || absent_[other] != 0 || dot(from_other, from_other) > apart * apart) return false;
+      const bool deep = surely_overlap(outline, footprints_[other], length(from_other), reports[other].X_WM.z - X_WM.z);
+      const bool first = deep && length(from_other) < 0.5 * outline.inner;
+      return first == deeply && meet(other, from_other, deep);
+    });
+    if (done) break;
+  }
   touch.away = 1.0 / kWhole * glm::dvec2{static_cast<double>(x), static_cast<double>(y)};
   return touch;
 }

@@ -10,13 +10,7 @@
 
 namespace sf::robots {
 
-namespace {
-
 using base::Twist;
-
-bool moves(const Twist& v) { return v.forward != 0.0 || v.left != 0.0 || v.turn != 0.0; }
-
-}  // namespace
 
 void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scratch& scratch) {
   waiting_[row] = 0;

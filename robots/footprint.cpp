@@ -75,7 +75,19 @@ bool apart(const PlacedFootprint& p, const PlacedFootprint& q, glm::dvec2 d) {
   return beyond(from_p) || beyond(glm::dvec2{} - from_q);
 }
 
+/// True for one closed chain of solid edges at equal heights.
+bool is_one_solid(std::span<const FootprintEdge> edges) {
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    if (!edges[i].solid || !follows(edges[i], i > 0 ? edges[i - 1] : edges.back())) return false;
+  return true;
+}
+
 }  // namespace
+
+bool surely_overlap(const Footprint& one, const Footprint& other, double apart, double lift) {
+  return one.inner > 0.0 && other.inner > 0.0 && apart < 0.999 * (one.inner + other.inner) &&
+         one.z_min < lift + other.z_max && lift + other.z_min < one.z_max;
+}
 
 bool inside(std::span<const FootprintEdge> edges, glm::dvec2 p, double z_min, double z_max) {
   int winding = 0;
@@ -102,6 +114,7 @@ Footprint footprint_of(const world::Mover& mover) {
   if (outline.edges.empty()) return {.step = 1.0};
   const double inner = largest_inradius(outline.edges);
   outline.step = inner > 0.0 ? inner / 4.0 : outline.radius / 16.0;
+  if (is_one_solid(outline.edges)) outline.inner = inner;
   return outline;
 }
 

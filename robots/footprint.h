@@ -25,7 +25,12 @@ struct Footprint {
   double z_min = 0.0;
   double z_max = 0.0;  ///< [m] of all edges
   double step = 0.0;   ///< [m] > 0, largest travel of any of its points between two tests
+  double inner = 0.0;  ///< [m] radius of a disc about the origin that is solid at all heights of the edges; 0: none
 };
+
+/// True where the inner discs of two footprints surely overlap, so that these touch. @param apart [m] of their origins
+/// @param lift [m] of the other above this one
+bool surely_overlap(const Footprint& one, const Footprint& other, double apart, double lift);
 
 /// Footprint of a mover. `step` is a quarter of the inradius, about the origin, of the outline that holds the origin
 /// (radius / 16 when none does), so no wall is skipped at the heights of that outline. Smaller parts on the mover are

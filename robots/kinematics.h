@@ -13,6 +13,8 @@ namespace sf::robots {
 /// [rad] steering limit of a car.
 inline constexpr double kMaxSteer = M_PI / 6.0;
 
+inline bool moves(const base::Twist& v) { return v.forward != 0.0 || v.left != 0.0 || v.turn != 0.0; }
+
 /// `twist` with 0 for NaN and infinity.
 base::Twist finite(const base::Twist& twist);
 

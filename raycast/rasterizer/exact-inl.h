@@ -179,7 +179,8 @@ struct Decide {
       const VF begin = constant(static_cast<float>(j)), end = constant(static_cast<float>(j + step - 1));
       const VF place = load(&pattern.place[j]), cosine = load(&pattern.cos32[j]), sine = load(&pattern.sin32[j]);
       const VF near_low = load(&s.near_low[j]);
-      for (std::uint32_t pending = bits_of(hn::And(first <= end, last >= begin)); pending != 0; pending &= pending - 1) {
+      for (std::uint32_t pending = bits_of(hn::And(first <= end, last >= begin)); pending != 0;
+           pending &= pending - 1) {
         const auto k = static_cast<std::uint32_t>(__builtin_ctz(pending));
         const MF possible = hn::And(place >= constant(g.low_possible[k]), place <= constant(g.high_possible[k]));
         const VF high = constant(g.a[k]) * cosine + constant(g.b[k]) * sine + constant(g.error[k]);

@@ -22,8 +22,8 @@ struct Rasterizer::Scratch {
   std::vector<std::int32_t> nearest_row;           ///< exact segment, or -1
   std::vector<std::uint64_t> ends, uncertain;      ///< one bit per beam
 
-  std::vector<ClosestHit> closest;                 ///< of uncertain beams, where `decide_segments` is used
-  std::vector<double> x, y;                        ///< likewise: their directions
+  std::vector<ClosestHit> closest;  ///< of uncertain beams, where `decide_segments` is used
+  std::vector<double> x, y;         ///< likewise: their directions
 
   // Movers.
   std::vector<NearMover> near;
