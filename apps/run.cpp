@@ -162,6 +162,7 @@ struct Course {
                 recording_folder(options, ranks, resets), part_of(options, ranks)) {
     // The simulation has its part of them, and a recording begins with all.
     if (options.tiles && ranks != nullptr && options.balance == 0.0) ground.world.walls = {};
+    if (ranks == nullptr) simulation.interrupt_on([] { return stop_requested().load(); });
   }
 
   double simulated() const { return static_cast<double>(ticks) * world.interval; }
@@ -244,7 +245,12 @@ int simulate(const RunOptions& options, cluster::Ranks* ranks) {
         continue;
       }
       if (stop_requested()) course->simulation.request_stop();
-      advised(ground->world, options, [&] { course->step(users); });
+      try {
+        advised(ground->world, options, [&] { course->step(users); });
+      } catch (const base::Interrupted&) {
+        next = scenarios::Operator::Next::stop;
+        break;
+      }
       all_stop = course->simulation.stop_agreed();
       const double simulated = course->simulated();
       if (duration < kWithoutEnd && (ranks == nullptr || ranks->rank() == 0))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdio>
 #include <exception>
@@ -60,11 +61,16 @@ struct ThreadPool::State {
   std::atomic<unsigned> busy{0};  ///< threads that work on the job, without the caller
   bool open = false;              ///< true: a thread that wakes may still join the job
   bool stop = false;
-  std::exception_ptr failure;  ///< of the job: the first that a piece threw
+  std::exception_ptr failure;                   ///< of the job: the first that a piece threw
+  std::function<bool()> interrupt;              ///< of `interrupt_on`
+  std::chrono::nanoseconds patience{};          ///< likewise
+  std::atomic<std::int64_t> interrupted_at{0};  ///< [ns] steady clock, when `interrupt` was first true; 0: never
+  std::atomic<bool> given_up{false};            ///< the job leaves pieces out
 
   void work(unsigned thread) {
     for (std::size_t k = 0, at = 0; k < shares.size(); ++k)
-      while (shares[(thread + k) % shares.size()].take(k == 0, at)) call(at, thread);
+      while (shares[(thread + k) % shares.size()].take(k == 0, at))
+        if (!gives_up()) call(at, thread);
   }
 
   /// Exceptions, such as a lack of memory, wait for the end of the loop: others still work on its data.
@@ -75,6 +81,15 @@ struct ThreadPool::State {
       const std::scoped_lock guard(lock);
       if (!failure) failure = std::current_exception();
     }
+  }
+
+  bool gives_up() {
+    if (!interrupt || !interrupt()) return false;
+    const std::int64_t now = std::chrono::steady_clock::now().time_since_epoch().count();
+    std::int64_t since = 0;
+    if (interrupted_at.compare_exchange_strong(since, now)) since = now;
+    if (now - since >= patience.count()) given_up = true;
+    return given_up;
   }
 
   /// The shares of a loop differ by one piece at most.
@@ -146,10 +161,21 @@ ThreadPool::~ThreadPool() {
 
 unsigned ThreadPool::threads() const { return static_cast<unsigned>(state_->threads.size()) + 1; }
 
+void ThreadPool::interrupt_on(std::function<bool()> stop, std::chrono::nanoseconds patience) {
+  state_->interrupt = std::move(stop);
+  state_->patience = patience;
+  state_->interrupted_at = 0;
+  state_->given_up = false;
+}
+
 void ThreadPool::run_job(std::size_t count, std::size_t piece, Job job) {
   State& s = *state_;
   if (s.threads.empty() || count <= piece) {
-    if (count > 0) job.call(job.body, 0, count, 0);
+    const std::size_t part = s.interrupt ? std::max<std::size_t>(1, piece) : count;
+    for (std::size_t first = 0; first < count; first += part) {
+      if (s.gives_up()) throw Interrupted();
+      job.call(job.body, first, std::min(first + part, count), 0);
+    }
     return;
   }
   {
@@ -172,6 +198,7 @@ void ThreadPool::run_job(std::size_t count, std::size_t piece, Job job) {
   std::unique_lock guard(s.lock);
   s.done.wait(guard, [&] { return s.busy == 0; });
   if (s.failure) std::rethrow_exception(std::exchange(s.failure, nullptr));
+  if (s.given_up) throw Interrupted();
 }
 
 }  // namespace sf::base

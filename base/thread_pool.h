@@ -1,11 +1,19 @@
 #pragma once
 // Fixed-size thread pool. Results of a loop must not depend on its partition.
 
+#include <chrono>
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <stdexcept>
 #include <type_traits>
 
 namespace sf::base {
+
+/// Work was stopped before its end, as its user asked.
+struct Interrupted : std::runtime_error {
+  Interrupted() : std::runtime_error("interrupted") {}
+};
 
 /// Threads that run the pieces of a loop. One caller at a time.
 class ThreadPool {
@@ -17,6 +25,11 @@ class ThreadPool {
   ThreadPool& operator=(const ThreadPool&) = delete;
 
   unsigned threads() const;
+
+  /// From now on a loop that is still running `patience` after `stop` was first seen to return true is given up: it
+  /// leaves pieces out, and `parallel_for` throws Interrupted. The data of the loop are then of no use. Shorter loops
+  /// end whole. @param stop called by all threads, before each piece; empty: never
+  void interrupt_on(std::function<bool()> stop, std::chrono::nanoseconds patience = std::chrono::milliseconds(250));
 
   /// Calls `body(first, last, thread)` on pieces of [0, count) and returns when all are done; `thread` < threads(). The
   /// assignment of pieces to threads varies, so results of `body` must not depend on it. Allocates nothing.

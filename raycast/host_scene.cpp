@@ -186,7 +186,7 @@ ScanCounts HostScene::counts() const {
   for (const auto& thread : threads_) {
     const ScanCounts& own = thread->rasterizer.counts();
     sum.uncertain += own.uncertain, sum.movers_in_range += own.movers_in_range,
-        sum.movers_visible += own.movers_visible;
+        sum.movers_visible += own.movers_visible, sum.blocks += own.blocks, sum.decisions += own.decisions;
   }
   return sum;
 }

@@ -176,6 +176,8 @@ struct ScanCounts {
   std::uint64_t uncertain = 0;        ///< beams that 32 bits could not certify
   std::uint64_t movers_in_range = 0;  ///< discs in range and in view
   std::uint64_t movers_visible = 0;   ///< of these, not hidden
+  std::uint64_t blocks = 0;           ///< blocks of segments projected
+  std::uint64_t decisions = 0;        ///< pairs of a beam and a segment intersected in 64 bits
 };
 
 }  // namespace sf::raycast

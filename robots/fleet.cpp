@@ -132,6 +132,12 @@ void Fleet::update_contacts() {
   });
 }
 
+std::uint64_t Fleet::steps_tested() const {
+  std::uint64_t sum = 0;
+  for (const Scratch& scratch : scratch_) sum += scratch.tested;
+  return sum;
+}
+
 std::size_t Fleet::apply(std::span<const base::Report> reports) {
   std::size_t taken = 0;
   for (const base::Report& report : reports) {

@@ -56,6 +56,9 @@ class Fleet {
   /// Afterwards `Report::contact_mask` has the touched sectors (robots/contact_sectors.h): of movers with a refused
   /// step, of the movers that refused it, and for as long as the contact lasts, also at rest. Passing by without a
   /// refused step does not count.
+  ///
+  /// The work is bounded: of a way of more than 1 024 substeps, pieces without obstacles near them are not tested, and
+  /// a mover that has passed obstacles for 16 384 substeps ends its tick there.
   /// @param commands one per mover; NaN and infinity count as 0
   void move(std::span<const base::Twist> commands, std::int64_t dt);
 
@@ -80,6 +83,9 @@ class Fleet {
   /// Contacts of movers with reports from outside are computed at these poses and added to the contacts in the reports.
   /// Valid until the next call.
   std::span<const base::Report> predict(std::int64_t time);
+
+  /// Substeps that `move` has tested against obstacles near them, in all ticks.
+  std::uint64_t steps_tested() const;
 
   /// One per mover: 1 when the last `move` refused it a step, or when it touches something (`Report::contact_mask`).
   std::span<const std::uint8_t> contacts() const { return contacts_; }
@@ -115,9 +121,10 @@ class Fleet {
     std::vector<std::uint32_t> all_near;          ///< movers near the whole way
     std::vector<const world::Segment*> walls;     ///< likewise
     std::vector<std::uint32_t>
-        priority_movers;    ///< of these: movers with a smaller id and a different place after this round
-    bool yields = false;    ///< its way meets the place of a priority mover
-    double farthest = 0.0;  ///< [m] largest travel of an origin in this tick, of all movers so far
+        priority_movers;       ///< of these: movers with a smaller id and a different place after this round
+    std::uint64_t tested = 0;  ///< [steps] as `steps_tested`
+    bool yields = false;       ///< its way meets the place of a priority mover
+    double farthest = 0.0;     ///< [m] largest travel of an origin in this tick, of all movers so far
   };
 
   void start(std::uint32_t row, const base::Twist& command, double seconds, Scratch& scratch);

@@ -131,9 +131,8 @@ bool Fleet::find_obstacles(std::uint32_t row, const base::Pose& X_WM, double rea
     return false;
   });
   return !scratch.near.empty() || !scratch.walls.empty() ||
-         std::any_of(scratch.priority_movers.begin(), scratch.priority_movers.end(), [&](std::uint32_t rival) {
-           return comes_near(row, X_WM, reach, rival, proposed_[rival].X_WM);
-         });
+         std::any_of(scratch.priority_movers.begin(), scratch.priority_movers.end(),
+                     [&](std::uint32_t rival) { return comes_near(row, X_WM, reach, rival, proposed_[rival].X_WM); });
 }
 
 /// A way of thousands of steps: pieces without obstacles near them in one go, the others step by step. A mover that
@@ -177,6 +176,7 @@ Fleet::Progress Fleet::advance_in_steps(std::uint32_t row, Progress progress, do
                                         Scratch& scratch) const {
   const double dt = progress.left / steps;
   while (steps > 0.0 && !scratch.yields) {
+    ++scratch.tested;
     const Pose X_next = advance(progress.X_WM, progress.velocity, dt);
     const Stop stop = stop_at(row, progress.X_WM, X_next, last, scratch);
     if (stop == Stop::none) {

@@ -64,11 +64,17 @@ bool LockstepService::advance(std::int64_t now) {
 
 void LockstepService::run(const std::atomic<bool>& stop, double duration) {
   const auto start = std::chrono::steady_clock::now();
-  for (wall_s_ = 0.0; !stop && (duration <= 0.0 || wall_s_ < duration); wall_s_ = base::seconds_since(start)) {
-    if (advance(static_cast<std::int64_t>(1e9 * wall_s_))) continue;
-    const double left = duration > 0.0 ? 1e3 * (duration - wall_s_) : kLongestWait;
-    lockstep_.wait(static_cast<int>(std::clamp(left, 1.0, double{kLongestWait})));
+  simulation_.interrupt_on([&stop] { return stop.load(); });
+  try {
+    for (wall_s_ = 0.0; !stop && (duration <= 0.0 || wall_s_ < duration); wall_s_ = base::seconds_since(start)) {
+      if (advance(static_cast<std::int64_t>(1e9 * wall_s_))) continue;
+      const double left = duration > 0.0 ? 1e3 * (duration - wall_s_) : kLongestWait;
+      lockstep_.wait(static_cast<int>(std::clamp(left, 1.0, double{kLongestWait})));
+    }
+  } catch (const base::Interrupted&) {
+    // The tick was long: it is given up.
   }
+  simulation_.interrupt_on({});
 }
 
 }  // namespace sf::scenarios

@@ -7,14 +7,17 @@
 // One tick: motion since the last one, readings, decisions. A command decided at a tick is executed until the next.
 // Sensors measure at their own due times, also between ticks.
 
+#include <chrono>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "base/thread_pool.h"
 #include "base/tick_record.h"
 #include "control/controllers.h"
 #include "farm/farm.h"
@@ -70,6 +73,11 @@ class Simulation {
   void settle();
   /// All ranks are to stop: `stop_agreed` says so on all of them, after the same tick.
   void request_stop() { stop_ = true; }
+  /// A step that takes long throws base::Interrupted soon after `stop` returns true (base::ThreadPool). No other step
+  /// may follow. Not with ranks, which would wait for each other.
+  void interrupt_on(std::function<bool()> stop, std::chrono::nanoseconds patience = std::chrono::milliseconds(250)) {
+    farm_.thread_pool().interrupt_on(std::move(stop), patience);
+  }
   bool stop_agreed() const { return stop_agreed_; }
 
   /// Sets the commands of movers without a controller, to be executed from the next step on until they are set again.

@@ -173,6 +173,7 @@ struct Course {
     simulation_options.ranks = options.ranks;
     cluster::agree(options.ranks, [&] {
       simulation.emplace(world, device, simulation_options);
+      if (options.ranks == nullptr) simulation->interrupt_on(options.stop);
       if (options.record.empty()) return;
       recorder.emplace(options.record,
                        run_info(world, simulation->farm().sensor_set(),

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/thread_pool.h"
 #include "cluster/ranks.h"
 #include "gpu/device.h"
 #include "maps/grid.h"
@@ -56,14 +57,12 @@ struct TrialOptions {
   bool maps = false;
   SupervisorSettings supervisor;  ///< default: no supervisor
   unsigned threads = 0;
-  std::function<bool()> stop;       ///< polled each tick; true stops the trial; may be empty
+  std::function<bool()> stop;       ///< polled each tick, and within long ones; true stops the trial; may be empty
   cluster::Ranks* ranks = nullptr;  ///< that share the fleet, and all run the trial; null: none
 };
 
 /// The trial was stopped by `TrialOptions::stop`.
-struct Interrupted : std::runtime_error {
-  Interrupted() : std::runtime_error("interrupted") {}
-};
+using base::Interrupted;
 
 /// The part of a recording with readings that this process writes. @param ranks may be null
 record::RecordingPart recording_part_of(const cluster::Ranks* ranks);

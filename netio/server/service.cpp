@@ -9,6 +9,7 @@
 
 #include "base/elapsed.h"
 #include "base/error.h"
+#include "base/thread_pool.h"
 #include "base/time.h"
 
 namespace sf::server {
@@ -56,6 +57,18 @@ Service::Service(const world::World& world, const sensors::SensorSet& sensor_set
 void Service::run(const std::atomic<bool>& stop, double duration) {
   const Clock clock;
   receiver_.filter().set_epoch(base::unix_time());
+  farm_.thread_pool().interrupt_on([&stop] { return stop.load(); });
+  try {
+    run_ticks(clock, stop, duration);
+  } catch (const base::Interrupted&) {
+    // The tick was long: it is given up.
+  }
+  farm_.thread_pool().interrupt_on({});
+  receive_pending(clock.now());  // datagrams that wait are counted too
+  wall_s_ = 1e-9 * static_cast<double>(clock.now());
+}
+
+void Service::run_ticks(const Clock& clock, const std::atomic<bool>& stop, double duration) {
   const std::int64_t step = base::nanoseconds(interval_);
   std::int64_t next = 0;  // [ns] of the tick
   while (!stop) {
@@ -70,8 +83,6 @@ void Service::run(const std::atomic<bool>& stop, double duration) {
     tick(now);
     next = std::max(next + step, clock.now() - step);
   }
-  receive_pending(clock.now());  // datagrams that wait are counted too
-  wall_s_ = 1e-9 * static_cast<double>(clock.now());
 }
 
 /// Sleeps until `when`, taking in what comes meanwhile. Never less: at a tick that is early, a sensor of the same rate

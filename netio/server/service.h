@@ -90,6 +90,7 @@ class Service {
 
  private:
   class Clock;
+  void run_ticks(const Clock& clock, const std::atomic<bool>& stop, double duration);
   void wait_until(const Clock& clock, std::int64_t when, const std::atomic<bool>& stop);
   void publish_due(std::int64_t now, bool between);
   std::uint32_t subscribed_types(std::uint32_t id, std::int64_t now) const;

@@ -9,6 +9,7 @@
 #endif
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "raycast/rasterizer/movers-inl.h"
@@ -36,16 +37,18 @@ inline std::uint32_t segments_crossing(const SegmentBlock& block, glm::dvec2 fro
 }
 
 /// Intersects beam `d` with the segments of a block that it may cross.
-void intersect_block(const ScanView& view, const ScanScene& scene, const SegmentBlock& block, glm::dvec2 from,
-                     glm::dvec2 heading, std::uint32_t first_row, glm::dvec2 d, ClosestHit& best) {
+void intersect_block(Scratch& s, const ScanView& view, const ScanScene& scene, const SegmentBlock& block,
+                     glm::dvec2 from, glm::dvec2 heading, std::uint32_t first_row, glm::dvec2 d, ClosestHit& best) {
   for (std::uint32_t pending = segments_crossing(block, from, heading, d, view.band); pending != 0;
        pending &= pending - 1) {
     const std::uint32_t number = block.row[__builtin_ctz(pending)];
-    if (number != SF_NO_HIT) intersect({scene.exact[first_row + number], first_row + number}, view.origin, d, best);
+    if (number == SF_NO_HIT) continue;
+    ++s.counts.decisions;
+    intersect({scene.exact[first_row + number], first_row + number}, view.origin, d, best);
   }
 }
 
-void intersect_cell(const ScanView& view, const ScanScene& scene, const CellBlocks& cell, glm::dvec2 d,
+void intersect_cell(Scratch& s, const ScanView& view, const ScanScene& scene, const CellBlocks& cell, glm::dvec2 d,
                     ClosestHit& best) {
   VF unused;
   const VF bearing = bearing_of(constant(static_cast<float>(d.y)), constant(static_cast<float>(d.x)), unused);
@@ -59,7 +62,7 @@ void intersect_cell(const ScanView& view, const ScanScene& scene, const CellBloc
     for (; pending != 0; pending &= pending - 1) {
       const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(pending));
       if (static_cast<double>(cell.bounds[i].nearest) > best.range) continue;
-      intersect_block(view, scene, cell.blocks[i], -1.0 * cell.offset, {1.0, 0.0}, 0, d, best);
+      intersect_block(s, view, scene, cell.blocks[i], -1.0 * cell.offset, {1.0, 0.0}, 0, d, best);
     }
   }
 }
@@ -86,13 +89,13 @@ void find_movers_on_beam(Scratch& s, const ScanView& view, const ScanScene& scen
   }
 }
 
-void intersect_mover(const ScanView& view, const ScanScene& scene, std::uint32_t mover, glm::dvec2 d,
+void intersect_mover(Scratch& s, const ScanView& view, const ScanScene& scene, std::uint32_t mover, glm::dvec2 d,
                      ClosestHit& best) {
   const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
   const base::Pose& X = scene.states[mover].X_WM;
   const glm::dvec2 place = glm::dvec2{X.x, X.y} - view.origin;
   for (std::uint32_t i = outline.first; i < outline.first + outline.outward; ++i)
-    intersect_block(view, scene, scene.outlines->blocks[i], place, scene.headings[mover], scene.first_rows[mover], d,
+    intersect_block(s, view, scene, scene.outlines->blocks[i], place, scene.headings[mover], scene.first_rows[mover], d,
                     best);
 }
 
@@ -106,11 +109,11 @@ void intersect_movers(Scratch& s, const ScanView& view, const ScanScene& scene, 
   s.across.clear();
   for (int row = y0; row <= y1; ++row)
     find_movers_on_beam(s, view, scene, d, best.range, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
-  for (const std::uint32_t mover : s.across) intersect_mover(view, scene, mover, d, best);
+  for (const std::uint32_t mover : s.across) intersect_mover(s, view, scene, mover, d, best);
 }
 
 /// Intersects the movers that the scan found round the beam at `place`, near to far.
-void intersect_near_movers(const Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
+void intersect_near_movers(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
                            float place, glm::dvec2 d, ClosestHit& best) {
   const float turn = 6.2831853f * pattern.per_radian;
   for (const std::uint64_t key : s.order) {
@@ -118,7 +121,7 @@ void intersect_near_movers(const Scratch& s, const ScanView& view, const ScanPat
     if (static_cast<double>(near.distance) > best.range * 1.0001) break;
     const auto covers = [&](float at) { return at >= near.low && at <= near.high; };
     if (covers(place) || covers(place - turn) || covers(place + turn))
-      intersect_mover(view, scene, near.mover, d, best);
+      intersect_mover(s, view, scene, near.mover, d, best);
   }
 }
 
@@ -144,8 +147,8 @@ bool intersect_all_beams(Scratch& s, const ScanView& view, const ScanPattern& pa
   for (std::size_t i = 0; i < pattern.beams; ++i) {
     const glm::dvec2 d = direction_of(view, pattern, i);
     ClosestHit best{view.range_max};
-    intersect_cell(view, scene, scene.crowd, d, best);
-    intersect_cell(view, scene, scene.walls, d, best);
+    intersect_cell(s, view, scene, scene.crowd, d, best);
+    intersect_cell(s, view, scene, scene.walls, d, best);
     if (scene.movers != nullptr) intersect_movers(s, view, scene, d, best);
     grazes |= write_beam(view, scene, i, d, best, out);
   }
@@ -185,7 +188,9 @@ struct Decide {
         const MF possible = hn::And(place >= constant(g.low_possible[k]), place <= constant(g.high_possible[k]));
         const VF high = constant(g.a[k]) * cosine + constant(g.b[k]) * sine + constant(g.error[k]);
         const auto row = static_cast<std::uint32_t>(g.row[k]);
-        for (std::uint32_t met = open & bits_of(hn::And(possible, high >= near_low)); met != 0; met &= met - 1) {
+        std::uint32_t met = open & bits_of(hn::And(possible, high >= near_low));
+        s.counts.decisions += static_cast<std::uint64_t>(std::popcount(met));
+        for (; met != 0; met &= met - 1) {
           const std::size_t i = j + static_cast<std::size_t>(__builtin_ctz(met));
           intersect({scene.exact[row], row}, view.origin, {s.x[i], s.y[i]}, s.closest[i]);
         }
@@ -204,7 +209,7 @@ void decide_movers(Scratch& s, const Projection& p, const ScanView& view, const 
     const NearMover& near = s.near[key & 0xFFFFFFFFu];
     if (near.distance > s.horizon) break;
     if (may_be_visible(s, pattern, p.full, near.low, near.high, near.distance))
-      project_mover(p, view, scene, {near.distance, near.low, near.high, near.mover, false}, decide);
+      project_mover(s, p, view, scene, {near.distance, near.low, near.high, near.mover, false}, decide);
   }
 }
 
@@ -226,8 +231,8 @@ bool intersect_uncertain_beams(Scratch& s, const Projection& p, const ScanView& 
   each_uncertain(s, [&](std::size_t i) HWY_ATTR {
     const glm::dvec2 d{s.x[i], s.y[i]};
     ClosestHit& best = s.closest[i];
-    if (!many) intersect_cell(view, scene, scene.crowd, d, best);
-    intersect_cell(view, scene, scene.walls, d, best);
+    if (!many) intersect_cell(s, view, scene, scene.crowd, d, best);
+    intersect_cell(s, view, scene, scene.walls, d, best);
     if (!many) intersect_near_movers(s, view, pattern, scene, pattern.place[i], d, best);
     grazes |= write_beam(view, scene, i, d, best, out);
   });

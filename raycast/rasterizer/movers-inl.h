@@ -77,14 +77,15 @@ void find_movers_in_view(Scratch& s, const Projection& p, const ScanView& view, 
 
 /// Projects a mover's edges. @param sink called with each projected block
 template <class Sink>
-HWY_INLINE void project_mover(const Projection& p, const ScanView& view, const ScanScene& scene, const NearMover& near,
-                              Sink sink) {
+HWY_INLINE void project_mover(Scratch& s, const Projection& p, const ScanView& view, const ScanScene& scene,
+                              const NearMover& near, Sink sink) {
   const OutlineTable::Outline& outline = scene.outlines->of_mover[near.mover];
   const base::Pose& X = scene.states[near.mover].X_WM;
   const VF c = constant(static_cast<float>(scene.headings[near.mover].x)),
            sn = constant(static_cast<float>(scene.headings[near.mover].y));
   const VF x = constant(static_cast<float>(X.x - view.origin.x)), y = constant(static_cast<float>(X.y - view.origin.y));
   const std::uint32_t count = near.outside ? outline.outward : outline.all;
+  s.counts.blocks += count;
   for (std::uint32_t i = outline.first; i < outline.first + count; ++i) {
     const SegmentBlock& block = scene.outlines->blocks[i];
     ProjectedBlock projected;
@@ -113,7 +114,7 @@ void rasterize_movers(Scratch& s, const Projection& p, const ScanView& view, con
     const NearMover& near = s.near[key & 0xFFFFFFFFu];
     if (near.distance > s.horizon) break;
     if (!may_be_visible(s, pattern, p.full, near.low, near.high, near.distance)) continue;
-    project_mover(p, view, scene, near, Draw{s, pattern});
+    project_mover(s, p, view, scene, near, Draw{s, pattern});
     if (++visible >= kCrowd && std::has_single_bit(visible)) s.horizon = horizon_of(s, pattern);
   }
   s.counts.movers_visible += visible;

@@ -55,6 +55,7 @@ HWY_INLINE void project_cell(Scratch& s, const Projection& p, const ScanPattern&
       const std::uint32_t after = pending & (pending - 1);
       if (after != 0)
         prefetch(&cell.blocks[first + static_cast<std::uint32_t>(__builtin_ctz(after))], sizeof(SegmentBlock));
+      ++s.counts.blocks;
       ProjectedBlock& next = projected[spare];
       next.count = 0;
       for (std::uint32_t k = 0; k < kBlock; k += lanes())
