@@ -40,7 +40,8 @@ std::vector<base::Report> states_at_load(const world::World& world);
 /// One caller at a time. Allocates nothing after construction, unless more than a thousand walls are near one mover.
 class Fleet {
  public:
-  static constexpr int kRounds = 4;  ///< per tick, at most
+  static constexpr int kRounds = 4;                ///< per tick, at most
+  static constexpr double kMostTested = 16'384.0;  ///< [substeps] with obstacles near, per mover and round
 
   /// All movers at rest at their poses at load, at time 0. `world` and `thread_pool` must outlive the fleet.
   /// @param thread_pool shares the work of `move` and `predict`, with the same results; null: the caller's thread alone

@@ -15,10 +15,9 @@ using base::Pose;
 using base::Twist;
 using world::Segment;
 
-constexpr double kGap = 4e-4;            // [m] largest gap between a stopped mover and the obstacle
-constexpr double kWhole = 0x1p40;        // fixed point: sums of integers do not depend on their order
-constexpr double kPiece = 1024.0;        // [steps] of a long way that are tested together
-constexpr double kMostTested = 16384.0;  // [steps] with obstacles near, per call
+constexpr double kGap = 4e-4;      // [m] largest gap between a stopped mover and the obstacle
+constexpr double kWhole = 0x1p40;  // fixed point: sums of integers do not depend on their order
+constexpr double kPiece = 1024.0;  // [steps] of a long way that are tested together
 static_assert(base::kContactSectors == 32);
 
 glm::dvec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }

@@ -1,5 +1,7 @@
 #include "scenarios/simulation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -85,6 +87,23 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
   for (auto& others : others_) others.reserve(v2v_range_ > 0.0 ? world.movers.size() : 0);
   sorted_.reserve(farm_.sensor_set().count());
   next_.reserve(first_.size());
+  warn_of_long_ways();
+}
+
+/// Names the first robot whose limits of speed allow ways that are longer than their tests for contacts.
+void Simulation::warn_of_long_ways() {
+  for (const world::Mover& mover : world_.movers) {
+    const robots::Footprint outline = robots::footprint_of(mover);
+    const double way = (mover.max_forward + mover.max_turn * outline.radius) * world_.interval;
+    if (outline.edges.empty() || way <= robots::Fleet::kMostTested * outline.step) continue;
+    warnings_.push_back(
+        {world_.file, 0,
+         fmt::format("'{}' may travel {:.4g} m in a tick of {:g} s: beside obstacles it ends a tick "
+                     "after {:.4g} m of it, tested in steps of {:.2g} m; lower its velocity_bounds, or "
+                     "the world's interval_sim",
+                     mover.name, way, world_.interval, robots::Fleet::kMostTested * outline.step, outline.step)});
+    return;
+  }
 }
 
 void Simulation::begin_sharing(const SimulationOptions& options) {

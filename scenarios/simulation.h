@@ -119,6 +119,7 @@ class Simulation {
   std::vector<world::Warning> warnings_of_starts();
 
  private:
+  void warn_of_long_ways();
   struct RobotControl {
     std::unique_ptr<control::Controller> controller;  ///< null: the mover stands
     double rate = 10.0;                               ///< [Hz]

@@ -190,12 +190,30 @@ struct Decide {
         const auto row = static_cast<std::uint32_t>(g.row[k]);
         std::uint32_t met = open & bits_of(hn::And(possible, high >= near_low));
         s.counts.decisions += static_cast<std::uint64_t>(std::popcount(met));
-        for (; met != 0; met &= met - 1) {
-          const std::size_t i = j + static_cast<std::size_t>(__builtin_ctz(met));
-          intersect({scene.exact[row], row}, view.origin, {s.x[i], s.y[i]}, s.closest[i]);
-        }
+        for (std::uint32_t i = 0; i < step; i += static_cast<std::uint32_t>(hn::Lanes(kD)), met >>= hn::Lanes(kD))
+          if ((met & ((1u << hn::Lanes(kD)) - 1)) != 0) intersect_vector(row, j + i);
       }
     }
+  }
+  /// `intersect` for a vector of beams that begins at `i`: the same operations in the same order.
+  HWY_INLINE void intersect_vector(std::uint32_t row, std::size_t i) const {
+    const ExactSegment& g = scene.exact[row];
+    const double wax = g.ax - view.origin.x, way = g.ay - view.origin.y;
+    const double wbx = g.bx - view.origin.x, wby = g.by - view.origin.y;
+    const double ex = g.bx - g.ax, ey = g.by - g.ay;
+    const VD x = hn::LoadU(kD, &s.x[i]), y = hn::LoadU(kD, &s.y[i]), zero = hn::Zero(kD);
+    const VD side_a = x * hn::Set(kD, way) - y * hn::Set(kD, wax), side_b = x * hn::Set(kD, wby) - y * hn::Set(kD, wbx);
+    const auto crosses = hn::Or(hn::And(side_a >= zero, side_b <= zero), hn::And(side_a <= zero, side_b >= zero));
+    const VD denominator = hn::Set(kD, ex) * y - hn::Set(kD, ey) * x;
+    const VD t = hn::Set(kD, ex * way - ey * wax) / denominator;
+    const auto into = hn::And(denominator > zero, t >= hn::Set(kD, -SF_CONTACT_DISTANCE));
+    const auto ahead = hn::And(denominator != zero, hn::Or(t > hn::Set(kD, SF_CONTACT_DISTANCE), into));
+    const VD range = hn::IfThenElse(t > zero, t, zero), best = hn::LoadU(kD, &s.range[i]);
+    const auto number = hn::Set(kRows, static_cast<std::int64_t>(row)), known = hn::LoadU(kRows, &s.row[i]);
+    const auto before = hn::And(range == best, hn::RebindMask(kD, number < known));
+    const auto nearer = hn::And(hn::And(crosses, ahead), hn::Or(range < best, before));
+    hn::StoreU(hn::IfThenElse(nearer, range, best), kD, &s.range[i]);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(kRows, nearer), number, known), kRows, &s.row[i]);
   }
 };
 
@@ -203,6 +221,13 @@ struct Decide {
 /// segment is projected once for all beams.
 void decide_movers(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                    const ScanScene& scene) {
+  const std::size_t padded = pattern.beams + kBlock;
+  s.x.resize(padded), s.y.resize(padded);
+  s.range.assign(padded, view.range_max), s.row.assign(padded, std::int64_t{SF_NO_HIT});
+  each_uncertain(s, [&](std::size_t i) {
+    const glm::dvec2 d = direction_of(view, pattern, i);
+    s.x[i] = d.x, s.y[i] = d.y;
+  });
   const Decide decide{s, view, pattern, scene};
   project_cell(s, p, pattern, scene.crowd, decide);
   for (const std::uint64_t key : s.order) {
@@ -217,26 +242,25 @@ void decide_movers(Scratch& s, const Projection& p, const ScanView& view, const 
 bool intersect_uncertain_beams(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                                const ScanScene& scene, const ScanOutput& out) {
   std::fill_n(out.grazes, pattern.beams, std::uint8_t{0});
-  s.closest.resize(pattern.beams), s.x.resize(pattern.beams), s.y.resize(pattern.beams);
-  std::size_t uncertain = 0;
-  each_uncertain(s, [&](std::size_t i) {
-    const glm::dvec2 d = direction_of(view, pattern, i);
-    s.x[i] = d.x, s.y[i] = d.y;
-    s.closest[i] = {view.range_max};
-    ++uncertain;
-  });
+  std::uint64_t uncertain = 0;
+  for (const std::uint64_t word : s.uncertain) uncertain += static_cast<std::uint64_t>(std::popcount(word));
+  s.counts.uncertain += uncertain;
   const bool many = uncertain > kMaxSingleDecisions;
   if (many) decide_movers(s, p, view, pattern, scene);
   bool grazes = false;
   each_uncertain(s, [&](std::size_t i) HWY_ATTR {
-    const glm::dvec2 d{s.x[i], s.y[i]};
-    ClosestHit& best = s.closest[i];
-    if (!many) intersect_cell(s, view, scene, scene.crowd, d, best);
+    const glm::dvec2 d = direction_of(view, pattern, i);
+    ClosestHit best{view.range_max};
+    if (many) {
+      const auto row = static_cast<std::uint32_t>(s.row[i]);
+      if (row != SF_NO_HIT) intersect({scene.exact[row], row}, view.origin, d, best);
+    } else {
+      intersect_cell(s, view, scene, scene.crowd, d, best);
+    }
     intersect_cell(s, view, scene, scene.walls, d, best);
     if (!many) intersect_near_movers(s, view, pattern, scene, pattern.place[i], d, best);
     grazes |= write_beam(view, scene, i, d, best, out);
   });
-  s.counts.uncertain += uncertain;
   return grazes;
 }
 

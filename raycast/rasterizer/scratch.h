@@ -22,8 +22,9 @@ struct Rasterizer::Scratch {
   std::vector<std::int32_t> nearest_row;           ///< exact segment, or -1
   std::vector<std::uint64_t> ends, uncertain;      ///< one bit per beam
 
-  std::vector<ClosestHit> closest;  ///< of uncertain beams, where `decide_segments` is used
-  std::vector<double> x, y;         ///< likewise: their directions
+  std::vector<double> x, y;       ///< directions, where many beams are uncertain
+  std::vector<double> range;      ///< [m] likewise: nearest intersection so far
+  std::vector<std::int64_t> row;  ///< its exact segment, or SF_NO_HIT
 
   // Movers.
   std::vector<NearMover> near;

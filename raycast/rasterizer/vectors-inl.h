@@ -27,6 +27,7 @@ constexpr hn::RebindToUnsigned<F> kU;
 constexpr hn::ScalableTag<double> kD;
 using VD = hn::Vec<decltype(kD)>;
 constexpr hn::Rebind<std::uint32_t, decltype(kD)> kModels;  // one per range
+constexpr hn::Rebind<std::int64_t, decltype(kD)> kRows;     // likewise
 
 inline std::uint32_t lanes() { return static_cast<std::uint32_t>(hn::Lanes(kF)); }
 inline VF constant(float value) { return hn::Set(kF, value); }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <fstream>
 #include <new>
 #include <vector>
@@ -86,6 +87,37 @@ TEST(ThreadPool, ManyShortLoops) {
 }
 
 TEST(ThreadPool, AsManyAsTheMachineHasByDefault) { EXPECT_GE(ThreadPool().threads(), 1u); }
+
+/// A loop that is still running when a stop is asked for leaves pieces out and throws; the next one runs.
+TEST(ThreadPool, AnInterruptedLoopEndsEarly) {
+  for (const unsigned threads : {1u, 3u}) {
+    ThreadPool thread_pool(threads);
+    std::atomic<bool> stop{false};
+    std::atomic<int> pieces{0};
+    const auto loop = [&](int stop_after) {
+      pieces = 0;
+      thread_pool.parallel_for(10'000, 1, [&](std::size_t, std::size_t, unsigned) {
+        if (++pieces == stop_after) stop = true;
+      });
+    };
+    thread_pool.interrupt_on([&] { return stop.load(); }, std::chrono::nanoseconds(0));
+    EXPECT_THROW(loop(10), Interrupted);
+    EXPECT_LT(pieces, 10 + static_cast<int>(threads));
+    EXPECT_THROW(loop(0), Interrupted) << "nothing runs until the stop is taken back";
+    thread_pool.interrupt_on({});
+    loop(0);
+    EXPECT_EQ(pieces, 10'000);
+  }
+}
+
+/// Loops that end within the patience end whole.
+TEST(ThreadPool, APatientStopWaitsForTheLoop) {
+  ThreadPool thread_pool(2);
+  thread_pool.interrupt_on([] { return true; }, std::chrono::hours(1));
+  std::atomic<int> pieces{0};
+  thread_pool.parallel_for(1'000, 1, [&](std::size_t, std::size_t, unsigned) { ++pieces; });
+  EXPECT_EQ(pieces, 1'000);
+}
 
 }  // namespace
 }  // namespace sf::base

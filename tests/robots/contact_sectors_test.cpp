@@ -145,5 +145,43 @@ TEST(Sectors, AgreeWithPointsAlongTheWall) {
   EXPECT_GT(pressed, 300) << "the walls should touch something";
 }
 
+/// Random pairs of discs and squares of all sizes: the tests that save work agree with those that they save.
+TEST(Sectors, QuickTestsAgreeWithWholeOnes) {
+  int deep = 0, fewer = 0;
+  for (std::uint32_t k = 0; k < 20'000; ++k) {
+    const auto u = base::random_uniform({.seed = 4, .a = k}, 0), v = base::random_uniform({.seed = 4, .a = k}, 1);
+    Footprint outlines[2] = {k % 2 == 0 ? disc() : square(), k % 3 == 0 ? square() : disc()};
+    world::World world = scenes::empty_world();
+    world::Mover& mover = scenes::add_square(world, {});
+    for (world::Segment& s : mover.body) s.a = (0.1 + 3.0 * u[0]) * s.a, s.b = (0.1 + 3.0 * u[0]) * s.b;
+    if (k % 5 == 0) outlines[1] = footprint_of(mover);
+    const Pose X{3.0, -2.0, 0.0, 6.0 * v[0]};
+    const double apart = u[1] * (outlines[0].radius + outlines[1].radius), bearing = 6.28 * v[1];
+    const Pose other{X.x + apart * std::cos(bearing), X.y + apart * std::sin(bearing), 0.0, 5.0 * u[0]};
+    const std::uint32_t sectors = contact_sectors(outlines[0], X, outlines[1], other);
+    const std::uint32_t asked = sectors_to_test(outlines[0], X, outlines[1], other, 0);
+    EXPECT_EQ(sectors & ~asked, 0u) << k;
+    for (const std::uint32_t known : {0x0000FFFFu, 0x55555555u, sectors}) {
+      const std::uint32_t left = sectors_to_test(outlines[0], X, outlines[1], other, known);
+      EXPECT_EQ(contact_sectors(outlines[0], X, outlines[1], other, left) | known, sectors | known) << k;
+    }
+    fewer += asked != kAllSectors;
+    if (!surely_overlap(outlines[0], outlines[1], apart, 0.0)) continue;
+    ++deep;
+    std::vector<FootprintEdge> p(16), q(16);
+    EXPECT_TRUE(touches(place_footprint(outlines[0], X, p), place_footprint(outlines[1], other, q))) << k;
+    EXPECT_NE(sectors, 0u) << k;
+  }
+  EXPECT_GT(deep, 5'000);
+  EXPECT_GT(fewer, 5'000);
+}
+
+TEST(Sectors, MoversAboveEachOtherDoNotSurelyOverlap) {
+  EXPECT_TRUE(surely_overlap(disc(), disc(), 0.1, 0.099)) << "heights overlap by a millimetre";
+  EXPECT_FALSE(surely_overlap(disc(), disc(), 0.1, 0.1)) << "one ends where the other begins";
+  EXPECT_FALSE(surely_overlap(disc(), disc(), 0.1, -0.1));
+  EXPECT_FALSE(surely_overlap(disc(), disc(), 0.33, 0.0)) << "the discs inside the outlines do not meet";
+}
+
 }  // namespace
 }  // namespace sf::robots

@@ -303,5 +303,75 @@ TEST(Fleet, PredictsAlongTheArcForAWhile) {
   EXPECT_EQ(fleet.reports()[0].X_WM.x, 0.0) << "what is known stays";
 }
 
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// 10 km/s with ticks of a second: a free way is not tested at all.
+TEST(Fleet, ALongFreeWayIsNotTested) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {-1, 5}, {20'000, 5});
+  scenes::add_square(world, {0, 0, 0, 0}).max_forward = 1e4;
+  Fleet fleet(world);
+  fleet.move(std::vector<Twist>{{1e4, 0, 0}}, kSecond);
+  EXPECT_NEAR(fleet.reports()[0].X_WM.x, 1e4, 1e-8);
+  EXPECT_EQ(fleet.reports()[0].velocity.forward, 1e4);
+  EXPECT_EQ(fleet.steps_tested(), 0u);
+  EXPECT_EQ(fleet.contacts()[0], 0);
+}
+
+/// Walls and robots at the end of a long way stop it, near them step by step.
+TEST(Fleet, ALongWayEndsAtWhatIsInIt) {
+  for (const bool robot : {false, true}) {
+    world::World world = scenes::empty_world();
+    scenes::add_square(world, {0, 0, 0, 0}).max_forward = 1e4;
+    if (robot) scenes::add_square(world, {7'000.2, 0, 0, 0});
+    if (!robot) scenes::add_wall(world, {7'000, -1}, {7'000, 1});
+    Fleet fleet(world);
+    std::vector<Twist> commands(world.movers.size());
+    commands[0] = {1e4, 0, 0};
+    fleet.move(commands, kSecond);
+    EXPECT_LE(fleet.reports()[0].X_WM.x, 6'999.8) << robot;
+    EXPECT_GE(fleet.reports()[0].X_WM.x, 6'999.7995) << robot;
+    EXPECT_EQ(fleet.contacts()[0], 1) << robot;
+    EXPECT_LE(fleet.steps_tested(), 4'096u) << robot;
+  }
+}
+
+/// The bound of work: a mover that passes a wall closely for kilometres ends its tick after 16 384 substeps.
+TEST(Fleet, ALongWayBesideAWallEndsAtTheBoundOfWork) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {-1, 0.21}, {20'000, 0.21});
+  scenes::add_square(world, {0, 0, 0, 0}).max_forward = 1e4;
+  Fleet fleet(world);
+  fleet.move(std::vector<Twist>{{1e4, 0, 0}}, kSecond);
+  EXPECT_NEAR(fleet.reports()[0].X_WM.x, 16'384 * 0.05, 1.0);
+  EXPECT_EQ(fleet.reports()[0].velocity.forward, 1e4) << "it goes on in the next tick";
+  EXPECT_EQ(fleet.contacts()[0], 0);
+  EXPECT_LE(fleet.steps_tested(), Fleet::kRounds * 16'384u);
+}
+
+/// A million radians a second: in place, the disc of the body is free or not.
+TEST(Fleet, ASpinInTheOpenIsNotTested) {
+  world::World world = scenes::boxed_world(2, 2);
+  scenes::add_square(world, {1, 1, 0, 0}).max_turn = 1e6;
+  Fleet fleet(world);
+  fleet.move(std::vector<Twist>{{0, 0, 1e6}}, kSecond);
+  EXPECT_EQ(fleet.steps_tested(), 0u);
+  EXPECT_NEAR(std::abs(base::wrap_angle(fleet.reports()[0].X_WM.yaw - base::wrap_angle(1e6))), 0.0, 1e-9);
+}
+
+/// Just below and above 1 024 substeps, where ways are tested in pieces, the way is the same but for rounding.
+TEST(Fleet, PiecesOfAWayAreTheWay) {
+  for (const double speed : {51.0, 51.3, 60.0, 200.0}) {
+    world::World world = scenes::empty_world();
+    scenes::add_wall(world, {-1, 0.4}, {300, 0.4});
+    scenes::add_wall(world, {speed - 0.5, -1}, {speed - 0.5, 1});
+    scenes::add_square(world, {0, 0, 0, 0}).max_forward = speed;
+    Fleet fleet(world);
+    fleet.move(std::vector<Twist>{{speed, 0, 0}}, kSecond);
+    EXPECT_NEAR(fleet.reports()[0].X_WM.x, speed - 0.7, 5e-4) << speed;
+    EXPECT_EQ(fleet.contacts()[0], 1) << speed;
+  }
+}
+
 }  // namespace
 }  // namespace sf::robots

@@ -1,0 +1,213 @@
+// Crowds: movers inside, round and behind each other. Scans equal those of 64-bit intersection with everything, bit by
+// bit, and their work stays near that of the same movers spread out.
+
+#include "raycast/crowds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "tests/raycast/host_scan.h"
+#include "tests/sensors/chance.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::raycast {
+namespace {
+
+using trial::Chance;
+
+constexpr double kHeight = 0.1;  // [m] of all beams
+
+void set_body(world::Mover& mover, const std::vector<std::vector<glm::dvec2>>& loops) {
+  world::Segment s = mover.body.front();
+  mover.body.clear();
+  mover.radius = 0.0;
+  for (const auto& loop : loops)
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      s.a = loop[i], s.b = loop[(i + 1) % loop.size()];
+      mover.body.push_back(s);
+      mover.radius = std::max(mover.radius, length(s.a));
+    }
+}
+
+void scale(world::Mover& mover, double factor) {
+  for (world::Segment& s : mover.body) s.a = factor * s.a, s.b = factor * s.b;
+  mover.radius *= factor;
+}
+
+std::vector<glm::dvec2> box(double x0, double y0, double x1, double y1) {
+  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
+
+/// Poses of a layout by the number of the mover.
+using Layout = Pose (*)(int i, Chance& chance);
+
+world::World crowd(int movers, Layout layout) {
+  world::World world;
+  scenes::add_room(world, {}, 100.0);
+  Chance chance(5);
+  for (int i = 0; i < movers; ++i) scenes::add_robot(world, layout(i, chance), scenes::laser());
+  return world;
+}
+
+Pose spread_out(int i, Chance&) { return {3.0 * (i % 30) - 45.0, 3.0 * (i / 30) - 45.0, 0.0, 0.1 * i}; }
+Pose at_one_pose(int, Chance&) { return {0.5, 0.25, 0.0, 0.3}; }
+Pose turned_at_one_place(int, Chance& c) { return {0.5, 0.25, 0.0, c.between(-3.0, 3.0)}; }
+template <int kNanometres>
+Pose nearly_at_one_pose(int, Chance& c) {
+  return {0.5 + 1e-9 * kNanometres * c.between(-1.0, 1.0), 0.25 + 1e-9 * kNanometres * c.between(-1.0, 1.0), 0.0, 0.3};
+}
+Pose in_a_line(int i, Chance&) { return {0.01 * i, 0.0, 0.0, M_PI}; }
+Pose two_groups(int i, Chance& c) {
+  return i % 2 == 0 ? Pose{0.01 * c.between(-1.0, 1.0), 0.01 * c.between(-1.0, 1.0), 0.0, 0.2}
+                    : Pose{0.35 + 0.1 * c.between(0.0, 1.0), 0.3 * c.between(-1.0, 1.0), 0.0, 3.0};
+}
+
+/// One tick of scans from every mover.
+struct Swarm {
+  explicit Swarm(const world::World& w, std::size_t beams = 181, double fov = M_PI, double range = 8.0)
+      : world(w),
+        configs(world),
+        states(robots::states_at_load(world)),
+        pattern(pattern_of(even_bearings(beams, fov))) {
+    const std::uint32_t config = configs.add({kHeight, range, 0.0, 2.0 * M_PI});
+    for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+      Pose X = world.movers[m].X_WM;
+      X.z = kHeight;
+      views.push_back({config, m, X, {std::cos(X.yaw), std::sin(X.yaw)}});
+    }
+    scene.emplace(world, configs, thread_pool);
+    scene->place_movers(states);
+    scene->prepare(views);
+  }
+  Scan scan(std::size_t i) {
+    Scan found{std::vector<double>(pattern.beams), std::vector<std::uint32_t>(pattern.beams)};
+    std::vector<std::uint8_t> grazes(pattern.beams);
+    scene->scan(i, {.heading = views[i].heading, .yaw = views[i].X_WS.yaw, .min_sine = 1e-3}, pattern, 0,
+                {found.ranges.data(), found.models.data(), grazes.data()});
+    return found;
+  }
+  /// Segments projected or intersected, by all scans.
+  std::uint64_t work() {
+    for (std::size_t i = 0; i < views.size(); ++i) scan(i);
+    const ScanCounts counts = scene->counts();
+    return kBlock * counts.blocks + counts.decisions;
+  }
+
+  world::World world;
+  base::ThreadPool thread_pool{2};
+  ListConfigs configs;
+  std::vector<base::Report> states;
+  ScanPattern pattern;
+  std::vector<Viewpoint> views;
+  std::optional<HostScene> scene;
+};
+
+void expect_exact(const world::World& world, const ScanPattern& pattern, double range, std::uint32_t step,
+                  const std::string& name) {
+  Swarm swarm(world, 3, 1.0, range);
+  swarm.pattern = pattern;
+  for (std::uint32_t m = 0; m < world.movers.size(); m += step)
+    ASSERT_EQ(swarm.scan(m), intersect_everything(world, swarm.views[m].X_WS, m, pattern, range)) << name << ", " << m;
+}
+
+/// A thousand robots at one pose are less work than a thousand that see each other at a distance.
+TEST(Crowds, AThousandAtOnePoseAreNoMoreWorkThanSpreadOut) {
+  EXPECT_LE(Swarm(crowd(1'000, at_one_pose)).work(), Swarm(crowd(1'000, spread_out)).work());
+}
+
+/// The work of a scan does not grow with the crowd, or hardly: 32 segments a beam, where the crowd has up to 16 000.
+TEST(Crowds, TheWorkOfAScanIsBoundedByItsBeams) {
+  const Layout layouts[] = {nearly_at_one_pose<1>,
+                            nearly_at_one_pose<1'000>,
+                            nearly_at_one_pose<1'000'000>,
+                            nearly_at_one_pose<10'000'000>,
+                            in_a_line,
+                            two_groups};
+  for (std::size_t k = 0; k < std::size(layouts); ++k)
+    EXPECT_LE(Swarm(crowd(1'000, layouts[k])).work(), 1'000u * 181u * 32u) << k;
+}
+
+/// All headings at one place: every edge of the thousand is the nearest somewhere, so each is projected.
+TEST(Crowds, EdgesThatAreTheNearestSomewhereAreProjectedOnce) {
+  EXPECT_LE(Swarm(crowd(1'000, turned_at_one_place)).work(), 1'000u * (16'000u + 181u * 64u));
+}
+
+/// Of movers that coincide to the bit the grid holds two: for all scans the first, for its own scans the second.
+TEST(Crowds, OfCoincidentMoversTheFirstInTheTableIsNamed) {
+  const world::World world = crowd(100, at_one_pose);
+  Swarm swarm(world);
+  EXPECT_EQ(swarm.scan(0).models[90], world.movers[1].model);
+  EXPECT_EQ(swarm.scan(1).models[90], world.movers[0].model);
+  EXPECT_EQ(swarm.scan(99).models[90], world.movers[0].model);
+  MoverGeometry movers(world);
+  movers.add_height(kHeight);
+  std::vector<ExactSegment> exact(movers.segments());
+  movers.place(swarm.states, swarm.thread_pool, exact);
+  EXPECT_EQ(movers.grid().first.back(), 2u);
+}
+
+/// Equal poses with other outlines, or at other heights, do not coincide.
+TEST(Crowds, OnlyEqualOutlinesCoincide) {
+  world::World world = crowd(40, at_one_pose);
+  for (std::uint32_t m = 10; m < 20; ++m) scale(world.movers[m], 0.9);
+  for (std::uint32_t m = 20; m < 30; ++m) world.movers[m].X_WM.z = 0.05;
+  for (std::uint32_t m = 30; m < 40; ++m)
+    for (world::Segment& s : world.movers[m].body) s.z_max = 0.05;
+  expect_exact(world, pattern_of(even_bearings(91, 6.0)), 8.0, 5, "mixed outlines");
+}
+
+/// Patterns of every kind in crowds of every layout, robots of other sizes inside and outside among them.
+TEST(Crowds, AreExactForEveryPattern) {
+  const Layout layouts[] = {at_one_pose, turned_at_one_place, nearly_at_one_pose<1>, nearly_at_one_pose<1'000'000>,
+                            in_a_line,   two_groups};
+  for (const Layout layout : layouts)
+    for (const double size : {1.0, 3.0}) {
+      world::World world = crowd(60, layout);
+      for (std::uint32_t m = 0; m < 60; m += 3) scale(world.movers[m], size);
+      for (const std::size_t beams : {1, 3, 4, 64, 361})
+        for (const double fov : {0.0, 0.3, M_PI, 2.0 * M_PI})
+          expect_exact(world, pattern_of(even_bearings(beams, fov)), 8.0, 13, "a pattern");
+    }
+}
+
+/// Random crowds: groups with offsets from picometres to metres, any headings or none, discs, boxes, bodies of two
+/// parts, sizes, walls through them, near the origin and far away, ranges shorter than the bodies.
+TEST(Crowds, RandomCrowdsAreExact) {
+  for (std::uint64_t seed = 1; seed <= 80; ++seed) {
+    Chance chance(seed);
+    world::World world = scenes::boxes(6, 8.0, seed);
+    const double far = seed % 5 == 0 ? 1e5 : 0.0;
+    const std::uint32_t groups = 1 + chance.below(3);
+    const double offset = std::pow(10.0, chance.between(-12.0, 0.5)), turn = seed % 3 == 0 ? 0.0 : chance.between(0, 3);
+    for (int i = 0; i < 40; ++i) {
+      const glm::dvec2 group{0.3 * static_cast<double>(chance.below(groups)), 0.0}, p = chance.in_square(offset);
+      const Pose X{group.x + p.x, group.y + p.y, 0.0, 0.3 + turn * chance.between(-1.0, 1.0)};
+      world::Mover& mover = world.movers[scenes::add_robot(world, X, scenes::laser())];
+      const std::uint32_t body = chance.below(seed % 4 + 1);
+      if (body == 1) set_body(mover, {box(-0.2, -0.15, 0.25, 0.15)});
+      if (body == 2) set_body(mover, {box(-0.2, -0.1, 0.2, 0.1), box(0.22, -0.2, 0.3, 0.2)});
+      if (body == 3) scale(mover, chance.between(0.3, 2.0));
+    }
+    world::translate(world, far, -far);
+    const std::string name = "crowd " + std::to_string(seed);
+    expect_exact(world, pattern_of(even_bearings(61, 2.0 * M_PI)), seed % 7 == 0 ? 0.1 : 8.0, 7, name);
+    expect_exact(world, pattern_of(even_bearings(2, 0.4)), 8.0, 7, name + ", two beams");
+  }
+}
+
+/// Corners that all robots of a crowd share, aimed at from lattice points.
+TEST(Crowds, BeamsThroughSharedCornersAreExact) {
+  world::World world;
+  for (int i = 0; i < 30; ++i) {
+    world::Mover& mover =
+        world.movers[scenes::add_robot(world, {0.25 * (i % 3), 0.25 * (i / 3 % 3), 0.0, M_PI_2 * (i % 4)}, {})];
+    set_body(mover, {box(-1.0, -1.0, 1.0, 1.0)});
+  }
+  expect_exact(world, pattern_of(even_bearings(33, 2.0 * M_PI)), 8.0, 4, "a lattice");
+}
+
+}  // namespace
+}  // namespace sf::raycast
