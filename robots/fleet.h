@@ -148,7 +148,9 @@ class Fleet {
   bool comes_near(std::uint32_t row, const base::Pose& from, double sweep, std::uint32_t other,
                   const base::Pose& X_WO) const;
   Progress advance_mover(std::uint32_t row, bool last, Scratch& scratch) const;
-  bool find_obstacles(std::uint32_t row, const base::Pose& X_WM, double reach, std::span<const std::uint32_t> others,
+  bool is_free(std::uint32_t row, const Progress& from, double seconds, std::span<const std::uint32_t> others,
+               std::span<const std::uint32_t> rivals) const;
+  void find_obstacles(std::uint32_t row, const base::Pose& X_WM, double reach, std::span<const std::uint32_t> others,
                       Scratch& scratch) const;
   Progress advance_in_pieces(std::uint32_t row, double steps, bool last, Scratch& scratch) const;
   Progress advance_in_steps(std::uint32_t row, Progress progress, double steps, bool last, Scratch& scratch) const;

@@ -15,9 +15,10 @@ using base::Pose;
 using base::Twist;
 using world::Segment;
 
-constexpr double kGap = 4e-4;      // [m] largest gap between a stopped mover and the obstacle
-constexpr double kWhole = 0x1p40;  // fixed point: sums of integers do not depend on their order
-constexpr double kPiece = 1024.0;  // [steps] of a long way that are tested together
+constexpr double kGap = 4e-4;              // [m] largest gap between a stopped mover and the obstacle
+constexpr double kWhole = 0x1p40;          // fixed point: sums of integers do not depend on their order
+constexpr double kLongestTested = 1024.0;  // [steps] longer ways are tested in pieces
+constexpr double kPiece = 64.0;            // [steps] of a piece with obstacles near
 static_assert(base::kContactSectors == 32);
 
 glm::dvec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
@@ -96,7 +97,7 @@ Fleet::Progress Fleet::advance_mover(std::uint32_t row, bool last, Scratch& scra
   Progress progress = progress_[row];
   const Pose& from = progress_[row].X_WM;
   const double sweep = sweep_of(row), steps = std::max(1.0, std::ceil(sweep / footprints_[row].step));
-  if (steps > kPiece) return advance_in_pieces(row, steps, last, scratch);
+  if (steps > kLongestTested) return advance_in_pieces(row, steps, last, scratch);
   const auto meets = [&](std::uint32_t other) { return comes_near(row, from, sweep, other, reports_[other].X_WM); };
   progress.free = std::none_of(scratch.near.begin(), scratch.near.end(), meets);
   scratch.walls.clear();
@@ -112,16 +113,31 @@ Fleet::Progress Fleet::advance_mover(std::uint32_t row, bool last, Scratch& scra
   return progress;
 }
 
-/// [m] Largest travel of the mover's origin in `seconds` of the rest of its way.
-double travel_of(const Twist& v, double seconds) {
-  const double speed = std::hypot(v.forward, v.left);
-  const double circle = v.turn != 0.0 ? 2.0 * speed / std::abs(v.turn) : HUGE_VAL;  // diameter
-  return std::min(speed * seconds, circle);
+/// Whether the obstacles of a piece of a way are far from it: the way of the origin lies within `bulge` of the line
+/// from `from` to its end.
+bool Fleet::is_free(std::uint32_t row, const Progress& from, double seconds, std::span<const std::uint32_t> others,
+                    std::span<const std::uint32_t> rivals) const {
+  const Twist& v = from.velocity;
+  const double travel = std::hypot(v.forward, v.left) * seconds, turn = std::abs(v.turn) * seconds;
+  const glm::dvec2 a = origin(from.X_WM), b = turn < 1.0 ? origin(advance(from.X_WM, v, seconds)) : a;
+  const double circle = turn > 0.0 ? 2.0 * travel / turn : 0.0;  // [m] diameter
+  const double bulge = 1e-6 + (turn < 1.0 ? 0.25 * turn * travel : std::min(travel, circle));
+  const double clear = footprints_[row].radius + bulge;
+  const auto meets = [&](std::uint32_t other, const Pose& X_WO) {
+    return world::distance(origin(X_WO), a, b) <= clear + footprints_[other].radius;
+  };
+  return std::none_of(others.begin(), others.end(), [&](auto other) { return meets(other, reports_[other].X_WM); }) &&
+         std::none_of(rivals.begin(), rivals.end(), [&](auto rival) { return meets(rival, proposed_[rival].X_WM); }) &&
+         !any_wall(row, from.X_WM, travel + bulge, [&](const Segment& wall, double) {
+           return world::segments_meet(a, b, wall.a, wall.b) || world::distance(a, wall.a, wall.b) <= clear ||
+                  world::distance(b, wall.a, wall.b) <= clear || world::distance(wall.a, a, b) <= clear ||
+                  world::distance(wall.b, a, b) <= clear;
+         });
 }
 
-/// Lists the obstacles within `reach` [m] of the mover. @return true when there are any
-bool Fleet::find_obstacles(std::uint32_t row, const base::Pose& X_WM, double reach,
-                           std::span<const std::uint32_t> others, Scratch& scratch) const {
+/// Lists the obstacles within `reach` [m] of the mover.
+void Fleet::find_obstacles(std::uint32_t row, const Pose& X_WM, double reach, std::span<const std::uint32_t> others,
+                           Scratch& scratch) const {
   scratch.near.clear(), scratch.walls.clear();
   for (const std::uint32_t other : others)
     if (comes_near(row, X_WM, reach, other, reports_[other].X_WM)) scratch.near.push_back(other);
@@ -129,45 +145,39 @@ bool Fleet::find_obstacles(std::uint32_t row, const base::Pose& X_WM, double rea
     if (gap <= reach) scratch.walls.push_back(&wall);
     return false;
   });
-  return !scratch.near.empty() || !scratch.walls.empty() ||
-         std::any_of(scratch.priority_movers.begin(), scratch.priority_movers.end(),
-                     [&](std::uint32_t rival) { return comes_near(row, X_WM, reach, rival, proposed_[rival].X_WM); });
 }
 
-/// A way of thousands of steps: pieces without obstacles near them in one go, the others step by step. A mover that
-/// passes obstacles for too many steps ends its tick there.
+/// A way of thousands of steps: free pieces in one go, the others step by step. A mover that passes obstacles for too
+/// many steps ends its tick there.
 Fleet::Progress Fleet::advance_in_pieces(std::uint32_t row, double steps, bool last, Scratch& scratch) const {
   Progress progress = progress_[row];
   const double dt = progress.left / steps;
-  std::vector<std::uint32_t>& others = scratch.all_near;
-  others = scratch.near;
+  scratch.all_near = scratch.near;
+  const std::span<const std::uint32_t> others = scratch.all_near;
   double tested = 0.0;
-  for (double most = kPiece; steps > 0.0 && !scratch.yields && moves(progress.velocity);) {
+  bool waits = false;
+  for (double most = kLongestTested; steps > 0.0 && !waits && !scratch.yields && moves(progress.velocity);) {
     const double piece = std::min(most, steps);
-    const double travel = travel_of(progress.velocity, piece * dt);
-    const bool free = !find_obstacles(row, progress.X_WM, travel, others, scratch);
-    if (!free && piece > kPiece) {
-      most = std::max(kPiece, 0.25 * piece);
-      continue;
-    }
+    const bool free = is_free(row, progress, piece * dt, others, scratch.priority_movers);
     if (free) {
       progress.X_WM = advance(progress.X_WM, progress.velocity, piece * dt);
       most *= 2.0;
+    } else if (piece > kPiece) {
+      most = std::max(kPiece, 0.25 * piece);
+      continue;
     } else {
       if ((tested += piece) > kMostTested) break;
+      const double travel = std::hypot(progress.velocity.forward, progress.velocity.left) * piece * dt;
       find_obstacles(row, progress.X_WM, travel + kMaxYield * (piece + kRounds), others, scratch);
       progress.left = piece * dt;
       progress = advance_in_steps(row, progress, piece, last, scratch);
     }
     steps -= piece;
-    if (!free && progress.left > 0.0) {
-      progress.left += steps * dt;
-      scratch.near = others;
-      return progress;
-    }
+    waits = !free && progress.left > 0.0;
+    if (waits) progress.left += steps * dt;
   }
-  scratch.near = others;
-  progress.left = 0.0;
+  if (!waits) progress.left = 0.0;
+  scratch.near = scratch.all_near;
   return progress;
 }
 

@@ -96,8 +96,9 @@ TEST(ThreadPool, AnInterruptedLoopEndsEarly) {
     std::atomic<int> pieces{0};
     const auto loop = [&](int stop_after) {
       pieces = 0;
-      thread_pool.parallel_for(10'000, 1, [&](std::size_t, std::size_t, unsigned) {
-        if (++pieces == stop_after) stop = true;
+      thread_pool.parallel_for(10'000, 1, [&](std::size_t first, std::size_t last, unsigned) {
+        pieces += static_cast<int>(last - first);
+        if (pieces == stop_after) stop = true;
       });
     };
     thread_pool.interrupt_on([&] { return stop.load(); }, std::chrono::nanoseconds(0));
