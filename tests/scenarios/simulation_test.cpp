@@ -325,5 +325,27 @@ TEST(Simulation, ATickAllocatesNothingAfterWarmUp) {
   EXPECT_EQ(counted::allocations, 0u);
 }
 
+/// A step that takes long ends soon after a stop is asked for.
+TEST(Simulation, ALongStepIsGivenUp) {
+  const world::World world = our_world("rooms.world", 3);
+  Simulation simulation(world, device(), {});
+  simulation.step();
+  simulation.interrupt_on([] { return true; }, std::chrono::nanoseconds(0));
+  EXPECT_THROW(simulation.step(), base::Interrupted);
+}
+
+/// A robot whose ways are tested for too many substeps a tick is named once, with what to change.
+TEST(Simulation, WarnsOfRobotsTooFastForTheirTicks) {
+  world::World world = our_world("rooms.world", 3);
+  EXPECT_TRUE(Simulation(world, device(), {}).warnings().empty());
+  world.movers[1].max_forward = world.movers[2].max_forward = 1e5;
+  const Simulation simulation(world, device(), {});
+  ASSERT_EQ(simulation.warnings().size(), 1u);
+  EXPECT_NE(simulation.warnings()[0].message.find("'" + world.movers[1].name + "' may travel 1e+04 m in a tick"),
+            std::string::npos)
+      << simulation.warnings()[0].message;
+  EXPECT_NE(simulation.warnings()[0].message.find("velocity_bounds"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace sf::scenarios

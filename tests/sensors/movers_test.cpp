@@ -197,5 +197,41 @@ TEST(Movers, LongThinMovers) {
   expect_exact("long thin movers", sweep(world));
 }
 
+/// Crowds, where robots at one place see each other from inside: at one pose, turned, nearly at one pose, in a line
+/// along their beams, some inside a large one, and two groups side by side.
+TEST(Movers, CrowdsOfEveryKind) {
+  const auto pose = [](int layout, int i, Chance& chance) -> Pose {
+    const double x = chance.between(-1.0, 1.0), y = chance.between(-1.0, 1.0);
+    switch (layout) {
+      case 0:
+        return {0.5, 0.25, 0.0, 0.3};
+      case 1:
+        return {0.5, 0.25, 0.0, 3.0 * x};
+      case 2:
+        return {0.5 + 1e-9 * x, 0.25 + 1e-9 * y, 0.0, 0.3};
+      case 3:
+        return {0.5 + 1e-4 * x, 0.25 + 1e-4 * y, 0.0, x};
+      case 4:
+        return {0.01 * i, 0.0, 0.0, M_PI};
+      case 5:
+        return {1.5 * x, 1.5 * y, 0.0, 3.0 * x};
+      default:
+        return {i % 2 == 0 ? 0.0 : 0.34 + 0.01 * x, 0.01 * y, 0.0, i % 2 == 0 ? 0.0 : 3.0};
+    }
+  };
+  for (int layout = 0; layout < 7; ++layout) {
+    world::World world;
+    scenes::add_room(world, {}, 10.0);
+    Chance chance(3);
+    for (int i = 0; i < 40; ++i) scenes::add_robot(world, pose(layout, i, chance), scenes::laser(91, 2.0 * M_PI, 8.0));
+    if (layout == 5) {
+      world::Mover& large = world.movers[0];
+      for (world::Segment& s : large.body) s.a = 20.0 * s.a, s.b = 20.0 * s.b;
+      large.radius *= 20.0;
+    }
+    expect_exact("crowd " + std::to_string(layout), sweep(world));
+  }
+}
+
 }  // namespace
 }  // namespace sf::trial
