@@ -21,7 +21,7 @@ void withdraw_bound(double sigma, base::ReadingBlock& block) {
 }  // namespace
 
 SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& g)
-    : group(&g), backend(g.type->make(context)), cache(g.rows, context.noise), noise(context.noise) {
+    : group(&g), backend(g.type->make(context)), cache(g.rows, context.noise) {
   for (std::uint32_t i = 0; i < g.rows.size(); ++i) {
     const sensors::SensorSpec& row = g.rows[i];
     if (timings.empty() || timings.back().rate != row.rate || timings.back().phase != row.phase)
@@ -29,6 +29,9 @@ SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sens
     timings.back().end = i + 1;
     movers.push_back(row.mover);
   }
+  const auto is_noisy = [](const sensors::SensorSpec& row) { return row.sigma > 0.0; };
+  if (context.noise && std::ranges::any_of(g.rows, is_noisy))
+    for (const sensors::SensorSpec& row : g.rows) sigmas.push_back(row.sigma);
   due.reserve(g.rows.size());
   to_measure.reserve(g.rows.size());
   blocks.reserve(g.rows.size());
@@ -106,7 +109,7 @@ std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Repo
       block.time = now;
       block.sequence = static_cast<std::uint32_t>(due[i].sequence);
       block.X_WM = states[block.mover].X_WM;
-      withdraw_bound(noise ? group->rows[due[i].row].sigma : 0.0, block);
+      withdraw_bound(sigmas.empty() ? 0.0 : sigmas[due[i].row], block);
     }
   });
   return again;

@@ -17,7 +17,7 @@ struct SensorPipeline {
   const sensors::SensorSet::Group* group = nullptr;
   std::unique_ptr<sensors::SensorBackend> backend;
   ReadingCache cache;
-  bool noise;  ///< noisy sensors are noisy
+  std::vector<double> sigmas;  ///< SensorSpec::sigma per row; empty: no sensor is noisy
   /// The due times of consecutive sensors with the same rate and phase.
   struct Timing {
     double rate, phase;        ///< [Hz], [s]

@@ -103,8 +103,8 @@ base::QualityFlag quality_of(const EdgeReading& reading, double error, double bo
 ErrorBound bound_of_lane_edge(const world::World& world, const SensorSpec& row) {
   if (uses_raster(world)) return {HUGE_VAL, "markings in pixels: each reading carries its sigma"};
   if (row.sigma > 0.0) return {HUGE_VAL, "noise affects the line: each reading carries its sigma"};
+  if (row.mode > 0) return {HUGE_VAL, "skipped rays may have met another edge: each reading carries its sigma"};
   ErrorBound bound{0.0, "one straight edge, visible on both sides; other readings are flagged"};
-  if (row.mode > 0) bound.condition = "one straight edge; all readings are flagged: skipped rays may have met another";
   const double longest = reaches_of(filter_scene(world, true).world).longest;
   for_each_of(world, "laneedge", [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
     if (mover != row.mover || number != row.sensor) return;

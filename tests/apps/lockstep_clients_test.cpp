@@ -119,6 +119,48 @@ TEST(LockstepClients, DriveLikeTheSameControllerInProcess) {
   EXPECT_EQ(both.end().text("/hash"), expected);
 }
 
+/// Both clients have the flag, and no error where the bound does not hold for every beam.
+TEST(LockstepClients, HaveFlagsAndErrors) {
+  if (!have_python()) GTEST_SKIP() << "this machine has no python3";
+  if (!succeeds("cc --version")) GTEST_SKIP() << "this machine has no C compiler called cc";
+  const Folder folder;
+  const std::string python = folder.write("look.py", R"(
+import sys
+sys.path.insert(0, sys.argv[1])
+from sensorfarm_lockstep import Lockstep
+fleet = Lockstep([1], ("127.0.0.1", int(sys.argv[2])), ["laser"])
+reading = fleet.readings[1, "laser", 0]
+print(reading.unsure, "none" if reading.error is None else "within 2 nm" if reading.error < 2e-9 else "large")
+fleet.leave()
+)");
+  const std::string c = folder.write("look.c", R"(
+#define SENSORFARM_LOCKSTEP_NO_MAIN
+#include ")" + kLockstepClients + R"(.c"
+int main(int argc, char** argv) {
+  static sf_lockstep l;
+  if (argc < 2 || !sf_lockstep_open(&l, 1, 1, "127.0.0.1", argv[1], 1u << SF_LASER, 60)) return 1;
+  const sf_reading* const reading = sf_find_reading(&l.robots[0], SF_LASER, 0);
+  printf("%d %s\n", reading->unsure, isinf(reading->error) ? "none" : reading->error < 2e-9 ? "within 2 nm" : "large");
+  sf_lockstep_close(&l);
+  return 0;
+}
+)");
+  const std::string program = folder.path("look"), log = folder.path("log");
+  ASSERT_EQ(std::system(("cc -std=c11 -w -o " + program + " " + c + " -lm >" + log + " 2>&1").c_str()), 0)
+      << read_file(log);
+  const std::string clients = kLockstepClients.substr(0, kLockstepClients.rfind('/'));
+  for (const bool skips : {false, true})
+    for (const bool is_python : {true, false}) {
+      LockstepServer server(skips ? Words{"--accuracy", "skip2"} : Words{});
+      ASSERT_NE(server.port, 0u) << server.program.err();
+      const std::string port = std::to_string(server.port);
+      const Outcome client = is_python ? Program({"-B", python, clients, port}, {}, "", "", "python3").wait()
+                                       : Program({port}, {}, "", "", program).wait();
+      EXPECT_EQ(client.out, skips ? "1 none\n" : "0 within 2 nm\n") << client.err << (is_python ? "Python" : "C");
+      server.end();
+    }
+}
+
 TEST(LockstepClients, PythonDrivesRobotsWithKeys) {
   if (!have_python()) GTEST_SKIP() << "this machine has no python3";
   const Folder folder;

@@ -449,6 +449,9 @@ TEST(Accuracy, FewerRaysFindAStraightEdgeAsWell) {
     EXPECT_LT(some.values[1], exact.values[1]) << "fewer points";
     EXPECT_EQ(some.quality, std::vector<QualityFlag>(4, QualityFlag::not_cast))
         << "rays left out may have met something else";
+    EXPECT_TRUE(std::isinf(some.bound)) << mode;
+    sensors::set_accuracy(world, mode);
+    EXPECT_TRUE(std::isinf(sensors::accuracy_statements(world, sensors::SensorSet(world)).at(0).error())) << mode;
   }
 }
 
