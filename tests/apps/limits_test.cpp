@@ -95,7 +95,8 @@ class Limits : public testing::Test {
   }
   /// Records one tick of all robots, which stand.
   record::Recording recorded(const Words& more = {}) const {
-    Words words{"run", "--duration", "0.1", "--record", folder.path("r"), "--record-readings", "--set", "speed=0"};
+    Words words{"run",          "--controller", "avoid", "--set",    "speed=0",        "--set",
+                "slow_speed=0", "--duration",   "0.1",   "--record", folder.path("r"), "--record-readings"};
     words.insert(words.end(), more.begin(), more.end());
     run(words);
     return record::open_recording(folder.path("r"));

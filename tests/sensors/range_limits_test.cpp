@@ -67,16 +67,18 @@ class LaserLimits : public testing::TestWithParam<std::tuple<raycast::CasterChoi
 
 TEST_P(LaserLimits, ValueFlagAndModel) {
   const auto& [caster, mode] = GetParam();
+  const bool single = mode == std::string("single");
   for (const Case& c : kCases) {
+    // Ranges in 32 bits do not tell a number from the next one.
+    if (single && c.wall != kMin && std::abs(c.wall - kMin) < 1e-9) continue;
     world::World world = wall_at(c.wall);
     add_eye(world, {}, limited(5, 0.2));
     sensors::set_accuracy(world, mode);
     const Glance glance(world, {.scene = {.caster = caster}});
     const base::ReadingBlock& reading = glance.readings[0];
-    EXPECT_NEAR(reading.values[2], c.range, mode == std::string("single") ? 1e-3 : 0.0) << c.why;
-    if (c.flag == too_near || !c.named) {
-      EXPECT_EQ(reading.values[2], c.range) << c.why;
-    }
+    EXPECT_NEAR(reading.values[2], c.range, single ? 1e-3 : 1e-15) << c.why;
+    EXPECT_EQ(reading.values[2] == kMax, !c.named) << c.why;
+    EXPECT_EQ(reading.values[2] == kMin, c.range == kMin) << c.why;
     EXPECT_EQ(flag_of(reading, 2), c.flag) << c.why;
     EXPECT_EQ(reading.hits[2], c.named ? world.walls[0].model : base::kNoHit) << c.why;
   }
