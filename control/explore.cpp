@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/marked_values.h"
 #include "control/drive_to_point.h"
 #include "sensors/laser.h"
 
@@ -77,7 +78,8 @@ bool Explore::update_map(const ControllerInput& input) {
     return false;
   sequence_ = reading->sequence;
   X_WS_ = reading->X_WS;
-  return map_.add({reading->X_WS, reading->values, settings_.beams, settings_.range_min, settings_.eye.range});
+  const auto ranges = base::marked_values(*reading, ranges_);
+  return map_.add({reading->X_WS, ranges, settings_.beams, settings_.range_min, settings_.eye.range});
 }
 
 // One full turn in place at the start.

@@ -84,6 +84,7 @@ class Explore final : public Controller {
   double turned_ = 0.0, last_yaw_ = 0.0;
   std::optional<std::uint32_t> sequence_;  ///< of the last scan
   base::Pose X_WS_;                        ///< of the last scan
+  std::vector<double> ranges_;             ///< [m] of the last scan with flags
   std::int64_t last_time_ = 0;
   std::vector<LatticeState> path_;  ///< to the goal, which is its last state
   std::vector<Leg> legs_;           ///< remaining legs, the next one last

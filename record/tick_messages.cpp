@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "base/echo.h"
 #include "base/error.h"
+#include "base/marked_values.h"
 #include "record/fleet_message.h"
 #include "record/lights_message.h"
 #include "record/reading_messages.h"
@@ -193,7 +193,7 @@ void TickMessages::send_reading(const base::ReadingBlock& reading, const Output&
   for (SensorTopics& each : movers_[reading.mover].sensors) {
     if (each.type->id != reading.type || before++ < reading.sensor) continue;
     each.header.time = reading.time;
-    const std::span<const double> values = marked(reading);
+    const auto values = marks_too_near_ ? base::marked_values(reading, marked_) : reading.values;
     out.send(each.topic, reading.sequence, reading.time, [&](base::Bytes& bytes) {
       each.type->is_scan ? encode_scan(each.header, values, bytes)
                          : encode_reading(*each.type, reading.time, each.header.frame, values, bytes);
@@ -206,14 +206,6 @@ void TickMessages::send_reading(const base::ReadingBlock& reading, const Output&
   }
   SF_CHECK(false, "mover " + std::to_string(reading.mover) + " type " + std::to_string(reading.type) + " sensor " +
                       std::to_string(reading.sensor));
-}
-
-/// The values of a reading as messages have them, which state no flags.
-std::span<const double> TickMessages::marked(const base::ReadingBlock& reading) {
-  if (!marks_too_near_ || reading.quality.empty()) return reading.values;
-  marked_.assign(reading.values.begin(), reading.values.end());
-  base::mark_too_near(reading.quality, marked_);
-  return marked_;
 }
 
 }  // namespace sf::record

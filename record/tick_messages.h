@@ -80,7 +80,6 @@ class TickMessages {
   void send_odometry(const Output& out);
   void send_qualities(const Output& out) const;
   void send_reading(const base::ReadingBlock& reading, const Output& out);
-  std::span<const double> marked(const base::ReadingBlock& reading);
 
   const RunInfo& info_;
   std::map<std::string, std::string, std::less<>> schemas_;  ///< by type

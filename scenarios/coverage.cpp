@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/marked_values.h"
 #include "control/explore.h"
 #include "maps/grid_update.h"
 #include "sensors/laser.h"
@@ -172,7 +173,7 @@ RobotMap::RobotMap(const world::World& world, std::uint32_t mover, double cell)
 void RobotMap::add(const base::ReadingBlock& reading) {
   if (reading.mover != mover_ || reading.type != sensors::kLaser || reading.sensor != 0) return;
   if (reading.values.size() != beams_.size()) return;
-  maps::add_scan(grid_, {reading.X_WS, reading.values, beams_, range_min_, range_max_});
+  maps::add_scan(grid_, {reading.X_WS, base::marked_values(reading, ranges_), beams_, range_min_, range_max_});
 }
 
 void add_scans(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, RobotMap>& maps) {

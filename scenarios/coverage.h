@@ -32,6 +32,7 @@ class RobotMap {
   maps::OccupancyGrid grid_;
   std::vector<glm::dvec2> beams_;
   double range_min_ = 0.0, range_max_ = 0.0;  ///< [m]
+  std::vector<double> ranges_;                ///< [m] of the last scan with flags
 };
 
 /// Adds each scan to the map of its mover, if there is one. @param maps by row of the mover

@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "base/marked_values.h"
 #include "maps/map_packets.h"
 #include "raycast/caster_choice.h"
 #include "sensors/laser.h"
@@ -35,6 +36,7 @@ class Occupancies : public SensorBackend {
   std::multimap<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> of_laser_;  ///< (mover, laser) to its maps
   std::vector<DueSample> due_;
   std::vector<MapScan> scans_;
+  std::vector<std::vector<double>> marked_;  ///< per map: ranges of a scan with flags
   std::vector<std::uint32_t> wanted_;
   std::vector<std::size_t> first_;  ///< per map: index of its first value
   std::vector<double> values_;      ///< of all maps
@@ -62,6 +64,7 @@ Occupancies::Occupancies(const SensorContext& context)
     values += maps_[i].row.elements;
   }
   values_.resize(values);
+  marked_.resize(maps_.size());
   scans_.reserve(maps_.size());
   wanted_.reserve(maps_.size());
 }
@@ -72,7 +75,8 @@ void Occupancies::observe(std::span<const base::ReadingBlock> readings) {
   for (const base::ReadingBlock& r : readings) {
     if (r.type != kLaser) continue;
     const auto [first, last] = of_laser_.equal_range({r.mover, r.sensor});
-    for (auto it = first; it != last; ++it) scans_.push_back({it->second, r.X_WS, r.values});
+    for (auto it = first; it != last; ++it)
+      scans_.push_back({it->second, r.X_WS, base::marked_values(r, marked_[it->second])});
   }
   for (const DueSample& due : due_) wanted_.push_back(due.row);
   batch_.update(scans_, wanted_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/echo.h"
 #include "sensors/laser_settings.h"
 
 namespace sf::viz {
@@ -35,6 +36,7 @@ void ScanMap::add(const world::World& world, const base::ReadingBlock& scan) {
   const double range_min = laser.range_min > 0.0 ? laser.range_min + behind : 0.0;
   const double range_max = std::min(laser.range_max, maps::kMaxRangeCells * odds_.geometry.cell);
   ranges_.assign(scan.values.begin(), scan.values.end());
+  base::mark_too_near(scan.quality, ranges_);
   for (double& range : ranges_) range += behind;
   ends_.resize(ranges_.size());
   std::vector<glm::dvec2>& beams = beams_[{laser.fov, laser.samples}];

@@ -78,8 +78,8 @@ std::string world_of(const std::vector<LimitRow>& rows) {
     if (!std::isnan(d))
       text << "model( name \"w" << i << "\" pose [" << d + 0.5 << " " << y << " 0 0] size [1 4 1] )\n";
     text << "position( name \"r" << i << "\" pose [0 " << y << " 0 0] size [0.1 0.1 0.1]\n"
-         << "  laser( samples 1 fov 180 range_min 0.5 range_max 4 )\n"
-         << "  sonar( fov 0 range [0.5 4] ) infrared( fov 0 range [0.5 4] ) )\n";
+         << "  laser( name \"laser\" samples 1 fov 180 range_min 0.5 range_max 4 )\n"
+         << "  sonar( name \"sonar\" fov 0 range [0.5 4] ) infrared( name \"infrared\" fov 0 range [0.5 4] ) )\n";
   }
   return text.str();
 }
