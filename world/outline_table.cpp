@@ -125,7 +125,7 @@ class OutlineTable : public OutlineRows {
   void read_record() {
     const bool closed = split(lines_.number() >= joined_);
     if (closed && (lines_.last_number() == lines_.number() || geometry_ends_well())) return;
-    joined_ = lines_.last_number();
+    joined_ = std::max(joined_, lines_.last_number());
     lines_.shrink(line_);
     drop_mark();
     split(false);

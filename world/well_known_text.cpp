@@ -38,13 +38,18 @@ constexpr std::array<TypeName, 15> kTypes{{{"POINT", GeometryType::point},
                                            {"TIN", GeometryType::tin},
                                            {"TRIANGLE", GeometryType::triangle}}};
 
+bool equals(std::string_view word, std::string_view capitals) {
+  return std::equal(word.begin(), word.end(), capitals.begin(), capitals.end(),
+                    [](unsigned char a, char b) { return std::toupper(a) == b; });
+}
+bool is_dimensions(std::string_view word) { return equals(word, "Z") || equals(word, "M") || equals(word, "ZM"); }
+
 /// With or without the letters of its dimensions, as in POLYGONZ.
 const TypeName* find_type(std::string_view word) {
-  for (const TypeName& row : kTypes) {
-    if (!word.starts_with(row.name)) continue;
-    const std::string_view rest = word.substr(row.name.size());
-    if (rest.empty() || rest == "Z" || rest == "M" || rest == "ZM") return &row;
-  }
+  for (const TypeName& row : kTypes)
+    if (equals(word.substr(0, row.name.size()), row.name) &&
+        (word.size() == row.name.size() || is_dimensions(word.substr(row.name.size()))))
+      return &row;
   return nullptr;
 }
 
@@ -62,7 +67,7 @@ class TextReader {
   std::uint32_t srid() {
     const std::size_t start = at_;
     std::uint32_t value = 0;
-    if (word() == "SRID" && take('=')) {
+    if (equals(word(), "SRID") && take('=')) {
       skip_blanks();
       const char* const begin = text_.data() + at_;
       at_ += static_cast<std::size_t>(std::from_chars(begin, text_.data() + text_.size(), value).ptr - begin);
@@ -78,13 +83,12 @@ class TextReader {
     if (type == nullptr) at_ = start;
     if (type == nullptr) return nullptr;
     const std::size_t after = at_;
-    const std::string dimensions = word();
-    if (dimensions != "Z" && dimensions != "M" && dimensions != "ZM") at_ = after;
+    if (!is_dimensions(word())) at_ = after;
     return type;
   }
   bool take_empty() {
     const std::size_t start = at_;
-    if (word() == "EMPTY") return true;
+    if (equals(word(), "EMPTY")) return true;
     at_ = start;
     return false;
   }
@@ -137,13 +141,12 @@ class TextReader {
   void skip_blanks() {
     while (at_ < text_.size() && (text_[at_] == ' ' || (text_[at_] >= '\t' && text_[at_] <= '\r'))) ++at_;
   }
-  /// The next word in capital letters; empty before anything else.
-  std::string word() {
+  /// The next word; empty before anything else.
+  std::string_view word() {
     skip_blanks();
-    std::string word;
-    for (; at_ < text_.size() && std::isalpha(static_cast<unsigned char>(text_[at_])); ++at_)
-      word += static_cast<char>(std::toupper(static_cast<unsigned char>(text_[at_])));
-    return word;
+    const std::size_t start = at_;
+    while (at_ < text_.size() && std::isalpha(static_cast<unsigned char>(text_[at_]))) ++at_;
+    return text_.substr(start, at_ - start);
   }
   double number(bool finite) {
     skip_blanks();
@@ -191,9 +194,11 @@ HexGeometry hex_geometry(std::string_view text) {
 
 /// Where the parenthesis at `open` closes.
 std::size_t closing_parenthesis(std::string_view text, std::size_t open) {
-  int depth = 0;
-  for (std::size_t at = open; at != std::string_view::npos; at = text.find_first_of("()", at + 1))
-    if ((depth += text[at] == '(' ? 1 : -1) == 0) return at + 1;
+  std::ptrdiff_t depth = 0;
+  for (std::size_t at = open, close = 0; (close = text.find(')', at)) != std::string_view::npos; at = close + 1) {
+    depth += std::count(text.begin() + at, text.begin() + close, '(') - 1;
+    if (depth == 0) return close + 1;
+  }
   return std::string_view::npos;
 }
 

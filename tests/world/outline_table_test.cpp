@@ -146,10 +146,9 @@ TEST(OutlineTable, AQuoteThatIsNeverClosedCostsItsRowAlone) {
   EXPECT_EQ(read_table("\"WKT,name\nLINESTRING (0 0,1 0),a\n").walls.size(), 1u) << "in the header";
 }
 
-TEST(OutlineTable,
-     OpenQuotesAreScannedOnce) {  // each line leaves a quote open: joined anew from each, this takes hours
+TEST(OutlineTable, OpenQuotesAreJoinedOnce) {  // each line leaves one open; joined again from each, it takes a minute
   std::string text = "LINESTRING (0 0,1 0)\n";
-  for (int i = 0; i < 300'000; ++i) text += "a\",\"\n";
+  for (int i = 0; i < 100'000; ++i) text += "a\",\"\n";
   EXPECT_EQ(read_table(text).walls.size(), 1u);
 }
 

@@ -60,6 +60,7 @@ struct EdgeSpan {
 /// By their lower ends, so that those that overlap one follow it.
 std::vector<EdgeSpan> spans_of(const std::vector<PolygonEdge>& edges) {
   std::vector<EdgeSpan> spans;
+  spans.reserve(edges.size());
   for (const PolygonEdge& e : edges) spans.push_back({std::min(e.a.x, e.b.x), std::max(e.a.x, e.b.x), spans.size()});
   std::sort(spans.begin(), spans.end(), [](const EdgeSpan& s, const EdgeSpan& t) { return s.min < t.min; });
   return spans;
@@ -97,6 +98,7 @@ std::optional<Polygon> make_polygon(std::vector<glm::dvec2> points, double& pair
   const double area = twice_area(points);
   if (area < 0.0) std::reverse(points.begin(), points.end());
   Polygon outline;
+  outline.edges.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) outline.edges.push_back({points[i], points[(i + 1) % points.size()]});
   const double size = extent(points);
   outline.solid_left = std::abs(area) > 1e-12 * size * size;
