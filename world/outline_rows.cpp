@@ -41,12 +41,16 @@ std::string first_bytes(const std::string& file) {
   return bytes;
 }
 
+const GdalPlugin& gdal_plugin() {
+  static const auto* const loaded = static_cast<const GdalPlugin*>(
+      base::load_plugin(kGdalSymbol, "outlines are read from tables in text alone", "GDAL 3.6"));
+  return *loaded;
+}
+
 std::unique_ptr<OutlineRows> open_with_gdal(const std::string& file) {
-  static const GdalPlugin* plugin = nullptr;
+  const GdalPlugin* plugin = nullptr;
   try {
-    if (plugin == nullptr)
-      plugin = static_cast<const GdalPlugin*>(
-          base::load_plugin(kGdalSymbol, "outlines are read from tables in text alone", "GDAL 3.6"));
+    plugin = &gdal_plugin();
   } catch (const base::InputError& error) {
     throw base::InputError(file, 0, fmt::format("needs GDAL: {}", error.what()));
   }

@@ -164,13 +164,20 @@ TEST(Outlines, ARowThatCannotBeReadIsLeftOutWithItsLine) {
       {"CURVEPOLYGON (POLYGON ((0 0, 1 1, 1 0)))", "expected a line, arcs or a COMPOUNDCURVE"},
   };
   for (const auto& [text, message] : cases) expect_in(message, faults_of(text));
-  std::string deep;
-  for (int i = 0; i < 40; ++i) deep += "GEOMETRYCOLLECTION (";
-  expect_in("2: collections within 32 collections", faults_of(deep + "POINT (0 0)" + std::string(40, ')')));
+  const auto nested = [](int collections) {
+    std::string text;
+    for (int i = 0; i < collections; ++i) text += "GEOMETRYCOLLECTION (";
+    return text + "LINESTRING (0 0, 1 0)" + std::string(static_cast<std::size_t>(collections), ')');
+  };
+  EXPECT_EQ(faults_of(nested(32)), "") << "the limit";
+  expect_in("2: collections within 32 collections", faults_of(nested(33)));
+  EXPECT_EQ(faults_of("LINESTRING (0 0, 1e7 0)"), "") << "the limit";
+  expect_in("a corner is 1.00001e+07 m from", faults_of("LINESTRING (0 0, 0 -10000100)"));
 }
 
 TEST(Outlines, AHeightThatCannotBeReadIsThatOfTheModel) {
-  for (const char* height : {"12 m", "\"3,5\"", "5e70", "1e999", "-1", "nan", "inf", "high", "0x10", "12'6\""}) {
+  for (const char* height :
+       {"12 m", "\"3,5\"", "5e70", "1e999", "-1", "nan", "inf", "10000001", "-1e-300", "high", "0x10", "12'6\""}) {
     const World world =
         town_of("WKT,height\n\"LINESTRING (0 0,1 0)\",9\n\"LINESTRING (0 0,2 0)\"," + std::string(height));
     ASSERT_EQ(world.walls.size(), 2u) << height;
@@ -178,6 +185,7 @@ TEST(Outlines, AHeightThatCannotBeReadIsThatOfTheModel) {
     EXPECT_EQ(world.walls[1].z_max, 3.0) << height;
     expect_in("3: the height is '", warnings_of(world));
   }
+  EXPECT_EQ(town_of("WKT,height\n\"LINESTRING (0 0,1 0)\",1e7").walls[0].z_max, 1e7) << "the limit";
   for (const char* height : {"+7", " 7 ", "7.", "\"7\"", "7e0"}) {
     const World world = town_of("WKT,height\n\"LINESTRING (0 0,1 0)\"," + std::string(height));
     EXPECT_EQ(world.walls[0].z_max, 7.0) << height;
@@ -246,7 +254,18 @@ TEST(Outlines, DegreesAreNoMetres) {
   expect_in("0: the coordinates are degrees", warnings_of(town_of("SRID=4326;LINESTRING (0 0, 12 0)")));
   EXPECT_EQ(warnings_of(town_of("SRID=32632;LINESTRING (0 0, 12 0)")), "");
   EXPECT_EQ(warnings_of(town_of("SRID=4087;LINESTRING (0 0, 1200 0)")), "") << "a projection among EPSG's angles";
-  EXPECT_EQ(warnings_of(town_of(house + "LINESTRING (0 0, 0.02 0)")), "");
+  expect_in("degrees", warnings_of(town_of(house + "LINESTRING (0 0, 0.0099 0)")));
+  EXPECT_EQ(warnings_of(town_of(house + "LINESTRING (0 0, 0 -0.01)")), "") << "the limit";
+  const std::pair<int, bool> systems[] = {{4000, false}, {4001, true}, {4999, true}, {5000, false}};  // EPSG's angles
+  for (const auto& [srid, angles] : systems)
+    EXPECT_EQ(town_of(fmt::format("SRID={};LINESTRING (0 0, 1 0)", srid)).warnings.size(), angles ? 1u : 0u) << srid;
+  const std::pair<const char*, bool> places[] = {{"-180 -90, 360 90", true},
+                                                 {"0 0, 360.1 0", false},
+                                                 {"0 0, -180.1 0", false},
+                                                 {"0 0, 0 90.1", false},
+                                                 {"0 0, 0 -90.1", false}};
+  for (const auto& [place, angles] : places)
+    EXPECT_EQ(town_of(fmt::format("SRID=4326;LINESTRING ({})", place)).warnings.size(), angles ? 1u : 0u) << place;
 }
 
 TEST(Outlines, TheWorkForCrossingsIsBounded) {  // it is quadratic where all edges overlap

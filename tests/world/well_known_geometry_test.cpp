@@ -170,6 +170,16 @@ TEST(WellKnownBinary, FaultsAreRefusedWithTheirByte) {
   expect_in("faces in three dimensions", refusal(BinaryWriter{}.type(15).put(std::uint32_t{0}).bytes));
 }
 
+TEST(WellKnownBinary, DigitsAreGeometriesFromTheShortestOn) {
+  const auto content = [](const char* text) { return guess_geometry(text).content; };
+  EXPECT_EQ(content("010200000000000000"), GeometryGuess::Content::walls) << "LINESTRING EMPTY";
+  EXPECT_EQ(content("0102000000000000"), GeometryGuess::Content::none) << "a byte less";
+  EXPECT_EQ(content("01020000000000000"), GeometryGuess::Content::none) << "half a byte less";
+  EXPECT_EQ(content("000000000400000000"), GeometryGuess::Content::points);
+  EXPECT_EQ(content("010000000000000042"), GeometryGuess::Content::none) << "a key of digits";
+  EXPECT_EQ(content("020200000000000000"), GeometryGuess::Content::none) << "no byte order";
+}
+
 /// Largest distance of corners and of middles of chords from a circle.
 double off_circle(const std::vector<glm::dvec2>& line, glm::dvec2 centre, double radius) {
   double most = 0.0;
@@ -241,6 +251,11 @@ TEST(Arcs, InGeometries) {
   const std::string found = geometry_words(geometry);
   read_as("CURVEPOLYGON (COMPOUNDCURVE (CIRCULARSTRING (1 0, 0 1, -1 0), (-1 0, 1 0)))");
   EXPECT_EQ(found, geometry_words(geometry));
+  geometry.chords_left = 100.0;  // of a file
+  read_as("CIRCULARSTRING (1 0, 0 1, -1 0)");
+  EXPECT_EQ(geometry.chords_left, 100.0 - static_cast<double>(geometry.points.size() - 1));
+  expect_in("or too many in the file", refusal_of([&] { read_as("CIRCULARSTRING (100 0, 0 100, -100 0)"); }));
+  geometry.chords_left = 1e9;
   expect_in("arcs of more than 1e+06 chords",
             refusal_of([&] { read_geometry("CIRCULARSTRING (0 0, 1e6 1e6, 2e6 0)", 1e-9, geometry); }));
 }
