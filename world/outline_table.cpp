@@ -70,6 +70,10 @@ class OutlineTable : public OutlineRows {
       text += fmt::format("{}'{}'", i > 0 ? ", " : "", names_[i].substr(0, kShownCharacters));
     return text + (names_.size() > kShownColumns ? ", ..." : "");
   }
+  std::string remark() const override {
+    if (!unnamed_) return {};
+    return "the first line does not name the columns, so those without geometries are ignored, heights too";
+  }
 
  private:
   void drop_mark() {  // byte order mark
@@ -92,7 +96,10 @@ class OutlineTable : public OutlineRows {
     if (separator_ == 0) choose_separator();
     read_record();
     for (std::size_t i = 0; i < fields_.size(); ++i)
-      if (guess_geometry(without_blanks(field(i))).content != GeometryGuess::Content::none) return true;
+      if (guess_geometry(without_blanks(field(i))).content != GeometryGuess::Content::none) {
+        unnamed_ = fields_.size() > 1;
+        return true;
+      }
     for (std::size_t i = 0; i < fields_.size(); ++i) {  // the first of equal names counts
       names_.emplace_back(without_blanks(field(i)));
       if (height_ == kNoColumn && same_letters(names_[i], "height")) height_ = i;
@@ -204,6 +211,7 @@ class OutlineTable : public OutlineRows {
   std::vector<std::string> names_;
   char separator_ = 0;  ///< 0: not known yet
   bool begun_ = false;
+  bool unnamed_ = false;              ///< several columns without names
   int joined_ = 0;                    ///< lines before this one are not joined with the following ones
   std::size_t named_ = kNoColumn;     ///< column with a name for geometries
   std::size_t geometry_ = kNoColumn;  ///< column with geometries, once one was found

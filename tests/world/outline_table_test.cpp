@@ -108,10 +108,16 @@ TEST(OutlineTable, AnySeparatorAnyColumnAnyName) {
 }
 
 TEST(OutlineTable, WithoutAHeaderTheGeometryIsFound) {
-  for (const std::string& text : {kSquare, "\"" + kSquare + "\"", "7;" + kSquare + ";hall, old;6", "7|hall|" + kSquare,
-                                  "\xEF\xBB\xBF" + kSquare, "sep=;\n1;" + kSquare, "SRID=32632;" + kSquare + ";hall"}) {
+  for (const std::string& text : {kSquare, "\"" + kSquare + "\"", "\xEF\xBB\xBF" + kSquare, "SRID=32632;" + kSquare}) {
     EXPECT_EQ(read_table(text).area(), 96.0) << text;
     EXPECT_EQ(read_table(text).warnings, "") << text;
+  }
+  for (const std::string& text : {"7;" + kSquare + ";hall, old;6", "7|hall|" + kSquare, "sep=;\n1;" + kSquare,
+                                  "SRID=32632;" + kSquare + ";hall"}) {
+    EXPECT_EQ(read_table(text).area(), 96.0) << text;
+    EXPECT_EQ(read_table(text).warnings,
+              "0: the first line does not name the columns, so those without geometries are ignored, heights too\n")
+        << text;
   }
   EXPECT_EQ(read_table("sep=;\nid;WKT;height\n1;" + kSquare + ";4").heights(), "4 ");
 }
