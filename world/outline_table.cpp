@@ -17,6 +17,7 @@ namespace {
 constexpr std::string_view kSeparators = ",;\t|";
 constexpr std::array<std::string_view, 8> kGeometryNames{"wkt",          "geom",  "geometry", "the_geom",
                                                          "wkb_geometry", "shape", "way",      "wkt_geom"};
+constexpr std::string_view kContinuations = "0123456789+-.,()";  // first characters of lines within a geometry
 constexpr std::size_t kNoColumn = std::string_view::npos;
 constexpr std::size_t kKnownField = 1'000'000;  // weighs more than any number of fields
 constexpr std::size_t kMaxFields = 10'000;      // of a row; those beyond are ignored
@@ -155,8 +156,12 @@ class OutlineTable : public OutlineRows {
         fields_.push_back({at, end});
         at = line_.find(separator_, end);
       } else {
-        const GeometryGuess guess = guess_geometry(line_.substr(at));
-        end = guess.length == kNoColumn ? kNoColumn : line_.find(separator_, at + guess.length);
+        std::size_t length = guess_geometry(line_.substr(at)).length;
+        if (length == kNoColumn && joins && fields_.empty()) {
+          closed = close_parentheses(at);
+          length = guess_geometry(line_.substr(at)).length;
+        }
+        end = length == kNoColumn ? kNoColumn : line_.find(separator_, at + length);
         fields_.push_back({at, std::min(end, line_.size())});
         at = end;
       }
@@ -179,6 +184,21 @@ class OutlineTable : public OutlineRows {
       } else {
         return at;
       }
+    }
+  }
+
+  /// Appends lines to a geometry without quotes that begins a row, as long as they go on with it.
+  bool close_parentheses(std::size_t from) {
+    std::ptrdiff_t open = 0;
+    for (;;) {
+      const std::string_view text = line_.substr(from);
+      open += std::count(text.begin(), text.end(), '(') - std::count(text.begin(), text.end(), ')');
+      if (open <= 0) return true;
+      from = line_.size();
+      const bool more = lines_.extend(line_);
+      drop_mark();
+      const std::string_view next = without_blanks(line_.substr(from));
+      if (!more || (!next.empty() && kContinuations.find(next.front()) == std::string_view::npos)) return false;
     }
   }
 

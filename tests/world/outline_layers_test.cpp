@@ -213,6 +213,8 @@ TEST(OutlineLayers, BrokenFilesAreErrors) {
   expect_in("half.gpkg: ", sf::refusal_of([&] { read_layers(in_folder("half.gpkg")); }));
   for (const char* text : {"{", "{}", "{\"type\": \"Topology\"}", "{\"type\": \"FeatureCollection\"}"})
     expect_in("broken.json: ", sf::refusal_of([&] { read_layers_of("broken.json", text); }));
+  expect_in("broken.gpkg: cannot be read as a GeoPackage, shapefile or GeoJSON: no driver of GDAL recognises it",
+            sf::refusal_of([&] { read_layers_of("broken.gpkg", std::string("SQLite format 3\0aaaa", 20)); }));
   expect_in("broken.shp: cannot be read as a GeoPackage, shapefile or GeoJSON",
             sf::refusal_of([&] { read_layers_of("broken.shp", std::string("\0\0\x27\x0A\0\0\0\0", 8)); }));
 }

@@ -139,6 +139,17 @@ TEST(OutlineTable, LineEndsInQuotes) {
   EXPECT_EQ(read.warnings, "6: points have no walls: left out\n") << "lines count, not records";
 }
 
+TEST(OutlineTable, AGeometryWithoutQuotesMayTakeSeveralLines) {
+  const std::string pretty = "POLYGON (\n  (0 0,\n\n   12 0,\r\n   12 8, 0 8)\n)\n", line = "LINESTRING (0 0, 1 0)\n";
+  TableRead read = read_table(pretty + line + pretty + "POINT (0 0)\n");
+  EXPECT_EQ(read.area(), 192.0);
+  EXPECT_EQ(read.warnings, "14: points have no walls: left out\n");
+  read = read_table(line + "POLYGON ((0 0, 12 0,\n" + line + "POLYGON ((0 0, 12 0,\n 12 8");
+  EXPECT_EQ(read.walls.size(), 2u) << "one that does not end costs its lines alone";
+  EXPECT_EQ(read.warnings.substr(0, 2), "2:");
+  EXPECT_EQ(read_table("id,WKT\n1,POLYGON ((0 0, 12 0,\n2," + line).walls.size(), 1u) << "a number that begins a row";
+}
+
 TEST(OutlineTable, AQuoteThatIsNeverClosedCostsItsRowAlone) {
   const std::string good = "\"LINESTRING (0 0,1 0)\",a\n";
   TableRead read = read_table("WKT,name\n" + good + "\"LINESTRING (0 0,1 0),b\n" + good + good);

@@ -65,7 +65,9 @@ class Layers : public OutlineRows {
     dataset_ = GDALOpenEx(std::filesystem::absolute(file).c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr,
                           nullptr);
     if (dataset_ == nullptr)
-      throw base::InputError(file, 0, "cannot be read as a GeoPackage, shapefile or GeoJSON: " + messages_);
+      throw base::InputError(file, 0,
+                             "cannot be read as a GeoPackage, shapefile or GeoJSON: " +
+                                 (messages_.empty() ? "no driver of GDAL recognises it" : messages_));
     for (int i = 0; i < GDALDatasetGetLayerCount(dataset_); ++i) {
       const OGRLayerH layer = GDALDatasetGetLayer(dataset_, i);
       if (OGR_L_GetGeomType(layer) == wkbNone) continue;
