@@ -72,9 +72,7 @@ std::string text_of(const scenarios::RecordedAccuracy& a) {
   }
   if (a.types.empty()) text += "no sensor of the recorded world has accuracy modes\n";
   for (const scenarios::ModeErrors& t : a.types)
-    if (t.noisy)
-      text +=
-          fmt::format("{}: recorded with noise, which its readings have on top and these errors do not\n", t.sensor);
+    if (t.noisy) text += fmt::format("{}: the recorded sensors have noise, which these errors leave out\n", t.sensor);
   for (const std::string& note : a.notes) text += note + "\n";
   if (a.interrupted) text += "interrupted: not all ticks were computed\n";
   return text + (a.within_bounds() ? "\n" : "AN ERROR IS BEYOND ITS STATED BOUND\n\n");

@@ -50,7 +50,7 @@ TEST_F(Interrupted, EachCommandEndsWithTheSignalsCode) {
       {"sweep", sweep(), "-o", folder.path("s"), "--jobs", "2"},
       {"experiment", "lane-edge-p", "--trials", "200", "-o", folder.path("x"), "--files", SF_SOURCE_DIR "/experiments"},
       {"dump", "--port", port, "--count", "3"},
-      {"map", map_port, "--once"},
+      {"map", "--listen", map_port, "--once"},
   };
   for (const Words& words : commands) {
     const Outcome outcome = stopped(words);

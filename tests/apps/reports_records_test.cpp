@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "apps/report.h"
@@ -152,6 +153,14 @@ TEST(ReportRecords, AVerificationShowsDifferencesDamageAndVerdict) {
   std::string text;
   for (const auto& [different, largest] : {std::pair<std::uint64_t, double>{0, 0.0}, {0, 0.125}, {1, 0.5}, {2, 3.0}})
     text += text_of(verification(different, largest), different == 0) + json_of(verification(different, largest));
+  scenarios::RecordedAccuracy accuracy{.words = "skip2", .ticks = 30, .types = {}, .notes = {"a note"}};
+  text += text_of(accuracy);
+  accuracy.types = {{.sensor = "laser", .mode = "skip2", .unit = "m", .noisy = true, .errors = {}},
+                    {.sensor = "magnetometer", .mode = "near1", .unit = "T", .errors = {}}};
+  for (const double error : {0.0, 0.25, 0.5}) accuracy.types[0].errors.add(error, 0.0, error < 0.5 ? 0.125 : HUGE_VAL);
+  accuracy.types[1].errors.add(NAN, 1e-6, HUGE_VAL);
+  accuracy.interrupted = true;
+  text += text_of(accuracy) + json_of(verification(0, 0.0), &accuracy);
   expect_golden("report_verification", text);
 }
 

@@ -413,6 +413,26 @@ TEST(Packets, ATagsVelocityTurnsIntoItsOwnFrame) {
   EXPECT_EQ(got.velocity.turn, 0.5);
 }
 
+/// [s] that a V2I row says of `left`.
+double sent_left(double left) {
+  base::Bytes rows;
+  put(SignalApproach{.left = left}, rows);
+  return approach_at({rows, {}}, 0).left;
+}
+
+/// No change is announced before it happens, and none a millisecond late.
+TEST(Packets, TheTimeToAChangeIsRoundedUp) {
+  for (int tenth = 0; tenth < 100'000; ++tenth) {  // of a millisecond
+    const double left = 1e-4 * tenth;
+    ASSERT_GE(sent_left(left), left - 1e-7);
+    ASSERT_LT(sent_left(left), left + 0.001);
+  }
+  EXPECT_EQ(sent_left(0.0), 0.0);
+  EXPECT_EQ(sent_left(6.5 + 1e-12), 6.5) << "the rounding of sums is no millisecond";
+  EXPECT_DOUBLE_EQ(sent_left(1e9), 1e-3 * 0xFFFFFFFE) << "49 days at most";
+  EXPECT_EQ(sent_left(std::numeric_limits<double>::infinity()), std::numeric_limits<double>::infinity());
+}
+
 /// Without an offset the tag's own numbers, bitwise.
 TEST(Packets, ATagAtItsModelsOriginSaysTheModelsPose) {
   Packet packet;
