@@ -235,12 +235,13 @@ int map(const MapOptions& options) {
   }
   display.print_maps();
   display.print_status();
-  if (!display.any()) return 1;
+  const bool cut = stop_requested() && options.once && !display.all_whole();
+  if (!display.any()) return cut ? interrupted_code() : 1;
   if (!options.out.empty()) {
     display.save(options.out);
     print_message("wrote {}", options.out);
   }
-  return stop_requested() && options.once && !display.all_whole() ? interrupted_code() : 0;
+  return cut ? interrupted_code() : 0;
 }
 
 }  // namespace sf::apps
