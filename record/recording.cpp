@@ -123,16 +123,17 @@ void read_messages(const McapContents& contents, Recording& recording) {
 
 RunInfo run_info_of(const McapContents& contents, const std::string& name) {
   RunInfo info;
+  const std::string cause = contents.damage.empty() ? "" : "; damaged at " + contents.damage.front();
   const auto found = std::find_if(contents.messages.begin(), contents.messages.end(),
                                   [&](const McapMessage& message) { return type_of(contents, message) == kRunInfo; });
   if (found == contents.messages.end() || !decode_run_info(found->data, info)) {
-    throw base::InputError(name, 0,
-                           "not a sensorfarm recording: expected a readable " + std::string(kRunInfo) + " message");
+    throw base::InputError(
+        name, 0, "not a sensorfarm recording: expected a readable " + std::string(kRunInfo) + " message" + cause);
   }
   const auto world = std::find_if(contents.attachments.begin(), contents.attachments.end(),
                                   [](const McapAttachment& attachment) { return attachment.name == "world.bin"; });
   if (world == contents.attachments.end() || world->data.empty()) {
-    throw base::InputError(name, 0, "no complete world inside: expected an attachment world.bin");
+    throw base::InputError(name, 0, "no complete world inside: expected an attachment world.bin" + cause);
   }
   info.snapshot.assign(world->data.begin(), world->data.end());
   return info;

@@ -201,6 +201,17 @@ TEST(Recording, OtherRecordingsAreRefusedWithTheReason) {
   EXPECT_NE(refusal(finished(empty_world)).find("no complete world inside"), std::string::npos);
 }
 
+TEST(Recording, ADamagedWorldIsRefusedWithTheCause) {
+  McapWriter writer("ros2", "sensorfarm");
+  const Bytes world(100, 7);
+  writer.add_attachment({.name = "world.bin", .data = world});
+  add_run_info(writer, {});
+  Bytes bytes = finished(writer);
+  *std::search_n(bytes.begin(), bytes.end(), 50, 7) ^= 1;
+  EXPECT_NE(refusal(bytes).find("attachment world.bin; damaged at byte "), std::string::npos) << refusal(bytes);
+  EXPECT_NE(refusal(bytes).find("attachment left out: its CRC does not fit"), std::string::npos);
+}
+
 TEST(Recording, AStateOfAMoverThatIsNotThereIsLeftOutAndTold) {
   McapWriter writer("ros2", "sensorfarm");
   const Bytes world = {1};
