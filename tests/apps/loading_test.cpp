@@ -28,6 +28,38 @@ TEST(Loading, CommandsWithoutPicturesLoadNoDrawingLibrary) {
   }
 }
 
+/// PNG and Netpbm are read by the program itself; OpenCV takes 0.1 s to load.
+TEST(Loading, OnlyPicturesOfOtherFormatsLoadOpenCv) {
+  const Folder folder;
+  folder.write("plan.gif", std::string("GIF87a\1\0\1\0\0\0\0;", 14));
+  folder.write("plan.pgm", "P2 1 1 255\n0\n");
+  const std::string pgm = folder.write("pgm.world", "model( size [1 1 1] bitmap \"plan.pgm\" )\n");
+  const std::string gif = folder.write("gif.world", "model( size [1 1 1]\nbitmap \"plan.gif\" )\n");
+  for (const std::string& world : {pgm, our_world("cave.world")}) {
+    const std::string said = loaded_by({"check", world});
+    for (const char* library : {"sensorfarm_pictures", "libopencv", "libgdal"})
+      EXPECT_EQ(said.find(library), std::string::npos) << world << " loads " << library;
+  }
+  const Outcome outcome = run_program({"check", gif}, {{"LD_DEBUG", "files"}});
+  EXPECT_NE(outcome.err.find("libopencv_imgcodecs"), std::string::npos);
+  EXPECT_NE(outcome.err.find("gif.world:2: 'bitmap': "), std::string::npos) << "its only picture is missing";
+}
+
+/// A program without the plug-in reads all other worlds, and says what to do.
+TEST(Loading, APictureWithoutItsPlugInIsAnError) {
+  const Folder folder;
+  const std::string alone = folder.path("alone");
+  std::filesystem::copy_file(SF_PROGRAM, alone);
+  folder.write("plan.gif", std::string("GIF87a\1\0\1\0\0\0\0;", 14));
+  const std::string world = folder.write("w.world", "model( size [1 1 1]\nbitmap \"plan.gif\" )\n");
+  const Outcome outcome = Program({"check", world}, {}, "", "", alone).wait();
+  EXPECT_NE(outcome.code, 0);
+  EXPECT_NE(outcome.err.find("w.world:2: 'bitmap': sensorfarm_pictures.so: cannot be loaded, so only PNG and Netpbm"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(Program({"check", our_world("cave.world")}, {}, "", "", alone).wait().code, 0);
+}
+
 TEST(Loading, DrawingLoadsCairoAndNothingOfVtk) {
   const Folder folder;
   const std::string said = loaded_by({"draw", our_world("rooms.world"), "-o", folder.path("rooms.png")});

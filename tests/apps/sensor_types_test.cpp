@@ -388,7 +388,7 @@ TEST(LaneEdge, ARoadMayBeAPicture) {
   for (int row = 0; row < 200; ++row)
     for (int column = 0; column < 200; ++column) picture += row >= 48 && row < 52 ? '\0' : '\xff';
   folder.write("road.pgm", picture);
-  const std::string world = folder.write("road.world", R"(
+  const std::string world = folder.write("road.world", R"(old_shapes 1
 position( name "a" laneedge( pose [0 0 -0.1 90] size [0.03 0.03 0.01] ) size [0.1 0.1 0.1] )
 model( name "road" bitmap "road.pgm" size [1 1 0.01] )
 )");

@@ -313,7 +313,8 @@ TEST(LaneEdgeRaster, AStageBitmapReadsAsTheRasterDoes) {
   picture.close();
   std::ofstream file(folder / "road.world");
   file.precision(17);
-  file << "model( name \"road\" bitmap \"road.pgm\" size [" << width * kPixel << " " << height * kPixel
+  file << "old_shapes 1\n"  // the picture's margins count
+       << "model( name \"road\" bitmap \"road.pgm\" size [" << width * kPixel << " " << height * kPixel
        << " 0.01] pose [" << (static_cast<double>(raster.first_column()) + 0.5 * width) * kPixel << " "
        << (static_cast<double>(raster.first_row()) + 0.5 * height) * kPixel << " 0 0] boundary 0 gui_nose 0 )\n";
   file.close();

@@ -118,7 +118,7 @@ TEST_F(Bodies, BlocksThatHangInTheAirAreAWarning) {
   const World world = read(block(" z [0.5 1]"));
   EXPECT_EQ(world.walls[0].z_min, 0.5);
   EXPECT_EQ(warnings_of(world),
-            "1: the blocks of 'model' do not begin at z 0: they reach from 0.5 to 1 m, in Stage from 1 to 2 m\n");
+            "1: the blocks of 'model' do not begin at z 0: they reach from 0.5 to 1 m, in Stage 4 from 1 to 2 m\n");
   EXPECT_EQ(warnings_of(read(block(" z [0 0.5]"))), "");
   EXPECT_EQ(warnings_of(read(block(""))),
             "1: this block has no 'z': it is read as [0 1]; Stage 4 gives it no height\n");

@@ -235,6 +235,24 @@ TEST_F(RosMap, TheMeanOfTheColoursIsExact) {
   EXPECT_NEAR(area(load(with("image", "image: m.ppm"))), 0.25, 1e-12);
 }
 
+/// A wall pixel among white ones, 3 x 2, in every format that a test can write by hand.
+TEST_F(RosMap, PicturesOfEveryFormatAreTheSameMap) {
+  const std::uint64_t hash = load(with("image", "image: m.pgm")).hash;
+  const std::string white(3, '\xff'), black(3, '\0'), pad(3, '\0');  // a row of a BMP is a multiple of 4 bytes
+  const std::string rows = white + white + white + pad + black + white + white + pad;  // the bottom row first
+  const std::string bmp = std::string("BM") + std::string("\x4e\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0", 16) +
+                          std::string("\3\0\0\0\2\0\0\0\1\0\x18\0", 12) + std::string(24, '\0') + rows;
+  write("p1", "P1 3 2\n100 000");
+  write("p2", "P2 3 2 1\n0 1 1\n1 1 1");
+  write("p3", "P3 3 2 9\n0 0 0 9 9 9 9 9 9\n9 9 9 9 9 9 9 9 9");
+  write("p4", std::string("P4 3 2\n\x80\0", 9));
+  write("p5", std::string("P5 3 2 1\n\0\1\1\1\1\1", 15));
+  write("p6", "P6 3 2 255\n" + black + white + white + white + white + white);
+  write("bmp", bmp);
+  for (const char* name : {"p1", "p2", "p3", "p4", "p5", "p6", "bmp"})
+    EXPECT_EQ(load(with("image", std::string("image: ") + name)).hash, hash) << name;
+}
+
 TEST_F(RosMap, UnknownKeysAndRepeatedOnesAreWarnings) {
   const World world = load(kGood + "occupied_tresh: 0.9\nnegate: 1\n");
   EXPECT_NEAR(area(world), 0.25, 1e-12);

@@ -110,15 +110,15 @@ struct Scale {
   }
 };
 
-// Stage divides by the blocks' own height, and so raises them above `size`.
+// Stage 4 divides by the blocks' own height, and so raises them above `size`.
 void warn_raised(StageContext& context, const Entity& entity, const Span& span, const Size& size) {
   if (span.bottom == 0.0 || span.top <= span.bottom || span.top <= 0.0) return;
   const double ours = size.z / span.top, stages = size.z / (span.top - span.bottom);
-  warn(
-      context, entity.at,
-      fmt::format("the blocks of '{}' do not begin at z 0: they reach from {:.4g} to {:.4g} m, in Stage from {:.4g} to "
-                  "{:.4g} m",
-                  entity.word, ours * span.bottom, ours * span.top, stages * span.bottom, stages * span.top));
+  warn(context, entity.at,
+       fmt::format(
+           "the blocks of '{}' do not begin at z 0: they reach from {:.4g} to {:.4g} m, in Stage 4 from {:.4g} to "
+           "{:.4g} m",
+           entity.word, ours * span.bottom, ours * span.top, stages * span.bottom, stages * span.top));
 }
 
 /// Warns about blocks that seem to be in metres: without a size they become a box of 10 cm.
