@@ -8,6 +8,7 @@
 
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
+#include "tests/refusal.h"
 #include "tests/viz/png.h"
 
 namespace sf {
@@ -162,6 +163,7 @@ TEST(Check, EveryWorldOfStageAndRosLoads) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
     const std::string ending = entry.path().extension().string();
     if (ending != ".world" && ending != ".yaml") continue;
+    if (entry.path().string().find("/reports/") != std::string::npos) continue;  // files with something to complain of
     ++seen;
     const Outcome outcome = run_program({"check", entry.path().string(), "--json"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -173,6 +175,35 @@ TEST(Check, EveryWorldOfStageAndRosLoads) {
     }
   }
   EXPECT_GE(seen, 5u);
+}
+
+/// Files from users' reports, each with what is said of it.
+TEST(Check, ReportedFilesAreReadOrNamed) {
+  const std::string reports = SF_SOURCE_DIR "/../shared/data/reports/";
+  if (!std::filesystem::exists(reports)) GTEST_SKIP() << "no shared data here";
+  struct Report {
+    const char* file;
+    int code;
+    const char* says;
+  };
+  for (const auto& [file, code, says] :
+       std::vector<Report>{{"world/gazebo.world", 2, "is a file of Gazebo (SDFormat)"},
+                           {"world/x.argos", 2, "is a file of ARGoS"},
+                           {"world/flatland.yaml", 2, "flatland.yaml:4: is a file of flatland"},
+                           {"world/jpg.world", 2, "cannot find the bitmap \"maps/jpg.jpg\""},
+                           {"world/pad.png", 2, "is a picture; expected a world"},
+                           {"world/noblocks_bitmap.world", 0, "removes only the default box"},
+                           {"world/boundary_noblocks.world", 0, "removes only the default box"},
+                           {"world/pad.world", 0, "its margins of 20 (left), 20 (right), 10 (below) and 10 (above)"},
+                           {"world/overlap.world", 0, "4 robots overlap others at the start"},
+                           {"maps/alpha.yaml", 0, "alpha decides 130 cells"},
+                           {"maps/neg_float.yaml", 0, "'negate: 1.0' is read as true"},
+                           {"maps/neg_true.yaml", 0, "warnings           0"},
+                           {"maps/negv.yaml", 0, "warnings           0"}}) {
+    const Outcome outcome = run_program({"check", reports + file});
+    EXPECT_EQ(outcome.code, code) << file;
+    expect_in(says, outcome.out + outcome.err);
+  }
 }
 
 TEST(Draw, WritesAPictureWithoutADisplay) {

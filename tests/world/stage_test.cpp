@@ -504,6 +504,12 @@ TEST(Stage, ManyRobotsInAWallAreOneWarning) {
   EXPECT_EQ(warnings_of(read_world(text)),
             "2: 5 robots start within a wall: 'r0', 'r1', 'r2' and 2 more; the first: 'r0' starts at (0, 0), within a "
             "wall; expected a 'pose' in free space\n");
+  EXPECT_EQ(
+      warnings_of(read_world("model( name \"a\" size [1 1 1] )\nmodel( name \"b\" size [1 1 1] pose [5 0 0 0] )\n"
+                             "position( name \"p\" pose [0.5 0.5 0 0] size [0.4 0.4 0.2] )\n"
+                             "position( name \"q\" pose [5.5 0.6 0 0] size [0.4 0.4 0.2] )\n")),
+      "3: 2 robots start partly in a wall: 'p', 'q'; the first: 'p' starts at (0.5, 0.5), partly in a wall of 'a'; "
+      "expected a 'pose' in free space\n");
 }
 
 TEST(Stage, ARobotOutsideOfTheFloorPlanIsAWarning) {

@@ -66,6 +66,12 @@ std::string names_of(const World& world, const std::vector<std::uint32_t>& rows)
   return rows.size() <= kShown ? names : fmt::format("{} and {} more", names, rows.size() - kShown);
 }
 
+// The walls of all models are one kind of place.
+std::string kind_of(const std::string& problem) {
+  constexpr std::string_view kPartly = "partly in a wall";
+  return problem.starts_with(kPartly) ? std::string(kPartly) : problem;
+}
+
 // One warning for each kind of place.
 void warn_of_places(BuildState& b) {
   const PlaceCheck check(b.world);
@@ -73,14 +79,14 @@ void warn_of_places(BuildState& b) {
   for (std::uint32_t row = 0; row < b.world.movers.size(); ++row) {
     const Mover& robot = b.world.movers[row];
     const std::string problem = robot.is_tag ? "" : check.problem(robot, robot.X_WM);
-    if (!problem.empty()) rows_of[problem].push_back(row);
+    if (!problem.empty()) rows_of[kind_of(problem)].push_back(row);
   }
-  for (const auto& [problem, rows] : rows_of) {
+  for (const auto& [kind, rows] : rows_of) {
     const std::string first = check.start_problem(b.world.movers[rows[0]]);
     warn(b.context, b.locations[rows[0]],
-         rows.size() == 1 ? first
-                          : fmt::format("{} robots start {}: {}; the first: {}", rows.size(), problem,
-                                        names_of(b.world, rows), first));
+         rows.size() == 1
+             ? first
+             : fmt::format("{} robots start {}: {}; the first: {}", rows.size(), kind, names_of(b.world, rows), first));
   }
 }
 
