@@ -12,7 +12,7 @@ namespace sf::world {
 struct Overlap {
   std::uint32_t a = 0;  ///< row in World::movers
   std::uint32_t b = 0;  ///< row in World::movers, above `a`
-  auto operator<=>(const Overlap&) const = default;
+  bool operator<(const Overlap& other) const { return a != other.a ? a < other.a : b < other.b; }
 };
 
 struct Overlaps {
