@@ -23,5 +23,19 @@ TEST(EstimationAllocation, NothingIsAllocatedAfterConstruction) {
   EXPECT_EQ(counted::when_warm(1, lap), 0u);
 }
 
+TEST(EstimationAllocation, HypothesesAreAllocatedOnce) {
+  // Positions of a robot at rest: all headings, in the same places of the window again and again.
+  TrackFilter filter({.capacity = 8});
+  std::int64_t t = 0;
+  const auto lap = [&] {
+    for (int k = 0; k < 50; ++k) {
+      t += 50'000'000;
+      filter.take({.time = t, .components = kPositionBits}, t);
+      filter.predict(t + 130'000'000);
+    }
+  };
+  EXPECT_EQ(counted::when_warm(5, lap), 0u);
+}
+
 }  // namespace
 }  // namespace sf::estimation

@@ -11,6 +11,7 @@
 #include "robots/estimation/chi_square.h"
 #include "robots/estimation/kalman.h"
 #include "tests/robots/estimation/reference.h"
+#include "tests/robots/estimation/truth.h"
 
 namespace sf::estimation {
 namespace {
@@ -19,41 +20,6 @@ constexpr int kRuns = 1000;
 constexpr int kSteps = 30;
 constexpr std::int64_t kInterval = 100'000'000;
 
-/// The truth, moved in small steps of its own equations.
-struct Truth {
-  reference::Vector s{};
-  std::mt19937_64& random;
-
-  std::normal_distribution<double> standard;
-
-  double normal(double variance) { return std::sqrt(variance) * standard(random); }
-
-  void move(const MotionModel& model, double seconds) {
-    constexpr int kParts = 8;
-    const double h = seconds / kParts;
-    for (int k = 0; k < kParts; ++k) {
-      // Half of each part's noise before the motion and half after it: the midpoint rule.
-      const reference::Vector noise{normal(model.slip * h),    normal(model.slip * h), 0.0,
-                                    normal(model.forward * h), normal(model.left * h), normal(model.turn * h)};
-      for (int i = 0; i < 6; ++i) s[i] += 0.5 * noise[i];
-      const reference::Vector first = reference::rate(model.path, s);
-      reference::Vector middle = s;
-      for (int i = 0; i < 6; ++i) middle[i] += 0.5 * h * first[i];
-      const reference::Vector d = reference::rate(model.path, middle);
-      for (int i = 0; i < 6; ++i) s[i] += h * d[i] + 0.5 * noise[i];
-    }
-  }
-
-  Measurement measure(std::uint8_t components, std::int64_t time) {
-    Measurement m{.time = time, .components = components};
-    m.pose_covariance = {4e-4, 0, 0, 4e-4, 0, 1e-4};
-    m.twist_variance = {1e-3, 1e-3, 4e-3};
-    m.X_WM = {s[kX] + normal(4e-4), s[kY] + normal(4e-4), 0.0, s[kYaw] + normal(1e-4)};
-    m.velocity = {s[kForward] + normal(1e-3), s[kLeft] + normal(1e-3), s[kTurn] + normal(4e-3)};
-    return m;
-  }
-};
-
 struct Sums {
   std::array<double, kSteps> nees{};  ///< over runs, per step
   std::array<double, kSteps> nis{};
@@ -61,34 +27,12 @@ struct Sums {
   int nis_degrees = 0;
 };
 
-/// Normalised estimation error squared. Components that are certain take no part.
-double nees(const Estimate& e, const Truth& truth, int& degrees) {
-  const reference::Vector estimated = reference::state_of(e);
-  reference::Matrix P = reference::covariance_of(e);
-  reference::Vector error{};
-  degrees = 0;
-  for (int i = 0; i < 6; ++i) {
-    error[i] = i == kYaw ? base::wrap_angle(estimated[i] - truth.s[i]) : estimated[i] - truth.s[i];
-    if (P[i][i] == 0.0) {
-      P[i][i] = 1.0;
-      EXPECT_EQ(error[i], 0.0);
-    } else {
-      ++degrees;
-    }
-  }
-  const reference::Matrix inverse = reference::inverse(P);
-  double sum = 0.0;
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) sum += error[i] * inverse[i][j] * error[j];
-  return sum;
-}
-
 /// @param assumed the filter's model; `model` is the truth's
 Sums simulate(const MotionModel& model, const MotionModel& assumed, std::uint8_t components) {
   Sums sums;
   std::mt19937_64 random(1);
   for (int run = 0; run < kRuns; ++run) {
-    Truth truth{{1e4, -2e4, 3.0, 0.5, 0.0, 0.3}, random, {}};
+    reference::Truth truth{{1e4, -2e4, 3.0, 0.5, 0.0, 0.3}, random, {}};
     Estimate e = first_estimate(assumed, truth.measure(kPoseBits | kTwistBits, 0));
     for (int k = 0; k < kSteps; ++k) {
       truth.move(model, 1e-9 * kInterval);
@@ -98,7 +42,7 @@ Sums simulate(const MotionModel& model, const MotionModel& assumed, std::uint8_t
       sums.nis[k] += surprise.squared;
       sums.nis_degrees = surprise.degrees;
       e = correct(e, m);
-      sums.nees[k] += nees(e, truth, sums.nees_degrees);
+      sums.nees[k] += reference::nees(e, truth.s, sums.nees_degrees);
     }
   }
   return sums;

@@ -1,0 +1,185 @@
+// Consistency of TrackFilter with any measured components, over 300 simulated runs each: from the first measurement on,
+// the errors are as large as the covariance says, true measurements are used, and false ones are refused.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "robots/estimation/chi_square.h"
+#include "robots/estimation/track_filter.h"
+#include "tests/robots/estimation/truth.h"
+#include "tests/units.h"
+
+namespace sf::estimation::track_consistency {
+namespace {
+
+constexpr int kRuns = 300;
+constexpr std::uint8_t kAny = 0x80;  // other components at each time, drawn at random
+
+const MotionModel kDrive = differential_drive();
+const MotionModel kBody = free_body();
+const MotionModel kOmni{MotionModel::Path::arc, 0.1, 0.1, 1.0};
+
+struct Case {
+  std::string name;
+  MotionModel model;
+  std::uint8_t first = kPositionBits;  ///< components of the first measurement
+  std::uint8_t components = kPositionBits;
+  reference::Variances variances{1e-4, 4e-4, 25e-4, 1e-2};
+  double rate = 15.0;  ///< [Hz]
+  int steps = 20;
+  double loss = 0.0;        ///< probability
+  double delay = 0.0;       ///< [s] at most, uniform: measurements overtake each other
+  double outliers = 0.0;    ///< probability of an error of 3 m
+  double most_tail = 1.25;  ///< 99.9 % quantile of the errors in units of the chi-square one
+};
+
+struct Arrival {
+  std::int64_t time = 0;
+  Measurement measurement;
+  bool is_true = true;
+};
+
+struct Result {
+  std::vector<double> sums;    ///< NEES over runs, per step
+  std::vector<double> errors;  ///< NEES of all runs and steps
+  int degrees = 0;
+  int refused = 0, measured = 0;  ///< true measurements
+  int used = 0;                   ///< outliers
+};
+
+std::vector<Arrival> measure(const Case& c, reference::Truth truth, std::vector<reference::Vector>& states) {
+  std::uniform_real_distribution<double> uniform;
+  std::vector<Arrival> arrivals;
+  for (int k = 0; k < c.steps; ++k) {
+    const std::int64_t time = kSecond + static_cast<std::int64_t>(1e9 * k / c.rate);
+    if (k > 0) truth.move(c.model, 1.0 / c.rate);
+    states.push_back(truth.s);
+    if (k > 0 && uniform(truth.random) < c.loss) continue;
+    const auto any = static_cast<std::uint8_t>(1 + truth.random() % 63);
+    Arrival a{time, truth.measure(k == 0 ? c.first : c.components == kAny ? any : c.components, time, c.variances)};
+    if (k > 0) a.time += static_cast<std::int64_t>(1e9 * c.delay * uniform(truth.random));
+    if (k > 0 && uniform(truth.random) < c.outliers) {
+      a.is_true = false;
+      const double direction = 2.0 * M_PI * uniform(truth.random);
+      a.measurement.X_WM.x += 3.0 * std::cos(direction);
+      a.measurement.X_WM.y += 3.0 * std::sin(direction);
+    }
+    arrivals.push_back(a);
+  }
+  std::stable_sort(arrivals.begin(), arrivals.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  return arrivals;
+}
+
+/// The state at the first measurement is drawn from what the model says of it.
+Result simulate(const Case& c) {
+  Result r{std::vector<double>(c.steps), {}};
+  std::mt19937_64 random(20);
+  for (int run = 0; run < kRuns; ++run) {
+    reference::Truth truth{{}, random, {}};
+    const auto& [yaw, speed, turn] = c.model.unknown;
+    const bool sideways = c.model.left > 0.0;
+    truth.s = {100.0,
+               -200.0,
+               yaw * (2.0 * static_cast<double>(random() >> 11) * 0x1p-53 - 1.0),
+               truth.normal(speed * speed),
+               sideways ? truth.normal(speed * speed) : 0.0,
+               truth.normal(turn * turn)};
+    std::vector<reference::Vector> states;
+    const std::vector<Arrival> arrivals = measure(c, truth, states);
+    TrackFilter filter({.model = c.model});
+    auto next = arrivals.begin();
+    for (int k = 0; k < c.steps; ++k) {
+      const std::int64_t now = kSecond + static_cast<std::int64_t>(1e9 * k / c.rate);
+      for (; next != arrivals.end() && next->time <= now; ++next) {
+        const bool used = filter.take(next->measurement, now) <= Verdict::used;
+        if (next->is_true)
+          r.refused += !used, ++r.measured;
+        else
+          r.used += used;
+      }
+      r.errors.push_back(reference::nees(filter.predict(now).estimate, states[k], r.degrees));
+      r.sums[k] += r.errors.back();
+    }
+  }
+  return r;
+}
+
+double mean(const std::vector<double>& v) {
+  double sum = 0.0;
+  for (const double each : v) sum += each;
+  return sum / static_cast<double>(v.size());
+}
+
+/// NEES of all runs: in the central 99 % of its chi-square distribution in all but 15 % of the steps
+/// (neighbours are correlated), 1 in the mean, and with the distribution's tail.
+void expect_consistent(const Case& c) {
+  SCOPED_TRACE(c.name);
+  Result r = simulate(c);
+  const double low = chi_square_limit(kRuns * r.degrees, 0.995), high = chi_square_limit(kRuns * r.degrees, 0.005);
+  const auto outside = std::count_if(r.sums.begin(), r.sums.end(), [&](double s) { return s < low || s > high; });
+  EXPECT_LE(outside, c.steps * 3 / 20);
+  EXPECT_NEAR(mean(r.errors) / r.degrees, 1.0, 0.06);
+  std::sort(r.errors.begin(), r.errors.end());
+  const double tail = r.errors[r.errors.size() * 999 / 1000] / chi_square_limit(r.degrees, 1e-3);
+  EXPECT_GT(tail, 0.8);
+  EXPECT_LT(tail, c.most_tail);
+  // The gate refuses 1e-4 of true measurements.
+  EXPECT_LE(r.refused, 1e-4 * r.measured + 4.0 * std::sqrt(1e-4 * r.measured));
+  EXPECT_EQ(r.used, 0);
+}
+
+TEST(TrackConsistency, PositionsAlone) {
+  expect_consistent({.name = "differential drive", .model = kDrive, .steps = 90});
+  expect_consistent({.name = "free body", .model = kBody});
+  expect_consistent({.name = "omnidirectional", .model = kOmni});
+  expect_consistent({.name = "5 Hz, 0.3 m", .model = kDrive, .variances = {0.09}, .rate = 5.0});
+}
+
+TEST(TrackConsistency, PositionsWithLossDelayAndOutliers) {
+  for (const MotionModel& model : {kDrive, kOmni})
+    expect_consistent({.name = "loss and delay", .model = model, .loss = 0.3, .delay = 0.2, .most_tail = 1.6});
+  expect_consistent({.name = "outliers", .model = kDrive, .outliers = 0.05});
+}
+
+TEST(TrackConsistency, PositionsAndSomeOtherComponent) {
+  for (const Component also : {kYaw, kForward, kTurn})
+    expect_consistent({.name = "and component " + std::to_string(also),
+                       .model = kDrive,
+                       .components = static_cast<std::uint8_t>(kPositionBits | 1u << also)});
+  for (const MotionModel& model : {kBody, kOmni})
+    expect_consistent({.name = "and twist",
+                       .model = model,
+                       .first = kPositionBits | kTwistBits,
+                       .components = kPositionBits | kTwistBits});
+}
+
+TEST(TrackConsistency, AnyComponentsAfterAPosition) {
+  for (const MotionModel& model : {kDrive, kBody, kOmni})
+    expect_consistent({.name = "any components", .model = model, .components = kAny, .most_tail = 1.6});
+}
+
+TEST(TrackConsistency, HeadingMeasuredOnce) {
+  expect_consistent({.name = "a pose, then positions", .model = kDrive, .first = kPoseBits, .steps = 45});
+}
+
+TEST(TrackConsistency, PosesWithLossAndDelay) {
+  // Between poses the heading is uncertain, and the position lies on an arc: its errors are no Gaussian ones, and
+  // although their mean squares are right the tail is longer than the chi-square one.
+  for (const MotionModel& model : {kDrive, kBody})
+    for (const std::uint8_t components : {kPoseBits, static_cast<std::uint8_t>(kPoseBits | kTwistBits)})
+      expect_consistent({.name = "poses",
+                         .model = model,
+                         .first = components,
+                         .components = components,
+                         .loss = 0.3,
+                         .delay = 0.2,
+                         .most_tail = 1.6});
+}
+
+}  // namespace
+}  // namespace sf::estimation::track_consistency
