@@ -128,6 +128,7 @@ struct FilterOptions {
   double link_delay = 0.0;   ///< [s] least delay of the link, for estimated clocks
   double stale_after = 1.0;  ///< [s] without a used state
   estimation::StalePolicy stale = estimation::StalePolicy::freeze;
+  std::size_t hypotheses = 16;  ///< > 0 of a state with an uncertain heading
 };
 
 struct PeersOption {

@@ -54,6 +54,7 @@ server::ServiceOptions service_options(const ServeOptions& options, const world:
   filter.clock.least_delay = base::nanoseconds(options.link_delay);
   filter.stale_after = base::nanoseconds(options.stale_after);
   filter.policy = options.stale;
+  filter.hypotheses = options.hypotheses;
   return service;
 }
 

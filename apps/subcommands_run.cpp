@@ -113,6 +113,15 @@ void add_filter(CLI::App& app, FilterOptions& o) {
       ->type_name("S")
       ->capture_default_str()
       ->group(kGroup);
+  app.add_option(
+         "--hypotheses", o.hypotheses,
+         "Gaussians of a state whose heading is uncertain after losses; 1: a single one, with a covariance that "
+         "is too small then")
+      ->check(whole(1, 64))
+      ->needs(filter)
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(kGroup);
 }
 
 /// Options of `serve` without a meaning where the farm itself moves the robots.

@@ -6,9 +6,6 @@ namespace sf::server {
 
 namespace {
 
-/// Enough for headings that are uncertain after a loss; packets always contain one.
-constexpr std::size_t kHypotheses = 16;
-
 /// A car or a wheeled robot drives on arcs. A tag may be on anything.
 estimation::MotionModel motion_model(const world::Mover& mover) {
   if (mover.is_tag) return estimation::free_body();
@@ -45,7 +42,7 @@ void StateFilter::take(const base::Report& report, const netio::Header& header, 
     mover.track.emplace(estimation::FilterOptions{.model = motion_model(world_.movers[report.mover]),
                                                   .stale_after = options_.stale_after,
                                                   .max_future = options_.clock.max_future,
-                                                  .hypotheses = kHypotheses},
+                                                  .hypotheses = options_.hypotheses},
                         gate_limits_);
   if (header.session != mover.session) forget(mover);  // its sender restarted
   mover.session = header.session;

@@ -19,6 +19,8 @@ struct StateFilterOptions {
   estimation::ClockOptions clock;
   std::int64_t stale_after = 1'000'000'000;  ///< [ns] > 0
   estimation::StalePolicy policy = estimation::StalePolicy::freeze;
+  /// > 0 (estimation::FilterOptions). Packets always contain a heading, so that it is uncertain after losses alone.
+  std::size_t hypotheses = 16;
   /// [ns] on the senders' common clock at time 0 of the receiver's, for estimation::ClockSource::trusted.
   std::int64_t epoch = 0;
   // Standard deviations of reported states, which packets do not contain.

@@ -101,6 +101,7 @@ TEST(Usage, OptionsThatNeedAnotherOneAreRefusedWithoutIt) {
                           {{"serve", world, "--stale", "hide"}, "--stale requires --filter"},
                           {{"serve", world, "--clock", "estimated"}, "--clock requires --filter"},
                           {{"serve", world, "--link-delay", "1"}, "--link-delay requires --filter"},
+                          {{"serve", world, "--hypotheses", "1"}, "--hypotheses requires --filter"},
                           {{"serve", world, "--wait-for", "1"}, "--wait-for requires --lockstep"},
                           {{"serve", world, "--lockstep-timeout", "1"}, "--lockstep-timeout requires --lockstep"},
                           {{"robot", world, "--name", "roomba1", "--clock", "estimated"}, "--clock requires --cameras"},
