@@ -27,9 +27,9 @@ namespace sf::raycast {
 /// Up to this number of beams, a scan intersects each beam in 64 bits instead of projecting all segments.
 inline constexpr std::uint32_t kMaxExactBeams = 3;
 
-/// Beyond this number of uncertain beams a scan projects the movers' segments once more, to intersect each with the
+/// Beyond this number of uncertain beams a scan projects all segments once more, to intersect each with the
 /// beams whose nearest it may be. Up to it, each beam is intersected with what it crosses.
-inline constexpr std::size_t kMaxSingleDecisions = 8;
+inline constexpr std::size_t kMaxSingleDecisions = 24;
 
 /// Scans of one thread, with their scratch memory. Not thread-safe.
 class Rasterizer {

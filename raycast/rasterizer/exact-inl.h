@@ -188,6 +188,7 @@ struct Decide {
         const MF possible = hn::And(place >= constant(g.low_possible[k]), place <= constant(g.high_possible[k]));
         const VF high = constant(g.a[k]) * cosine + constant(g.b[k]) * sine + constant(g.error[k]);
         const auto row = static_cast<std::uint32_t>(g.row[k]);
+        if (row == SF_NO_HIT) continue;
         std::uint32_t met = open & bits_of(hn::And(possible, high >= near_low));
         s.counts.decisions += static_cast<std::uint64_t>(std::popcount(met));
         for (std::uint32_t i = 0; i < step; i += static_cast<std::uint32_t>(hn::Lanes(kD)), met >>= hn::Lanes(kD))
@@ -217,10 +218,10 @@ struct Decide {
   }
 };
 
-/// Intersects the uncertain beams with the movers' segments, one segment after the other: where there are many, a
-/// segment is projected once for all beams.
-void decide_movers(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
-                   const ScanScene& scene) {
+/// Intersects the uncertain beams with all segments, one segment after the other: where there are many, a segment is
+/// projected once for all beams.
+void decide_segments(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
+                     const ScanScene& scene) {
   const std::size_t padded = pattern.beams + kBlock;
   s.x.resize(padded), s.y.resize(padded);
   s.range.assign(padded, view.range_max), s.row.assign(padded, std::int64_t{SF_NO_HIT});
@@ -230,6 +231,9 @@ void decide_movers(Scratch& s, const Projection& p, const ScanView& view, const 
   });
   const Decide decide{s, view, pattern, scene};
   project_cell(s, p, pattern, scene.crowd, decide);
+  project_cell(s, p, pattern, scene.walls, decide);
+  const auto walls = static_cast<std::uint32_t>(scene.walls.blocks.size());
+  project_blocks(s, p, pattern, scene.walls, scene.walls.front_facing, walls, true, decide);
   for (const std::uint64_t key : s.order) {
     const NearMover& near = s.near[key & 0xFFFFFFFFu];
     if (near.distance > s.horizon) break;
@@ -246,7 +250,7 @@ bool intersect_uncertain_beams(Scratch& s, const Projection& p, const ScanView& 
   for (const std::uint64_t word : s.uncertain) uncertain += static_cast<std::uint64_t>(std::popcount(word));
   s.counts.uncertain += uncertain;
   const bool many = uncertain > kMaxSingleDecisions;
-  if (many) decide_movers(s, p, view, pattern, scene);
+  if (many) decide_segments(s, p, view, pattern, scene);
   bool grazes = false;
   each_uncertain(s, [&](std::size_t i) HWY_ATTR {
     const glm::dvec2 d = direction_of(view, pattern, i);
@@ -256,9 +260,9 @@ bool intersect_uncertain_beams(Scratch& s, const Projection& p, const ScanView& 
       if (row != SF_NO_HIT) intersect({scene.exact[row], row}, view.origin, d, best);
     } else {
       intersect_cell(s, view, scene, scene.crowd, d, best);
+      intersect_cell(s, view, scene, scene.walls, d, best);
+      intersect_near_movers(s, view, pattern, scene, pattern.place[i], d, best);
     }
-    intersect_cell(s, view, scene, scene.walls, d, best);
-    if (!many) intersect_near_movers(s, view, pattern, scene, pattern.place[i], d, best);
     grazes |= write_beam(view, scene, i, d, best, out);
   });
   return grazes;

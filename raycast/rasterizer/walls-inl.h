@@ -36,18 +36,19 @@ HWY_INLINE std::uint32_t project_bounds(const Projection& p, const BlockBounds* 
   return bits_of(hn::Or(ahead, hn::Or(before, behind)));
 }
 
-/// Projects the surfaces round a cell that may be visible, near to far. @param sink called with each projected block
+/// Projects the blocks [from, end) of a cell that may be visible, near to far. @param sink called with each
+/// @param reversed segments are seen from their left
 template <class Sink>
-HWY_INLINE void project_cell(Scratch& s, const Projection& p, const ScanPattern& pattern, const CellBlocks& cell,
-                             Sink sink) {
+HWY_INLINE void project_blocks(Scratch& s, const Projection& p, const ScanPattern& pattern, const CellBlocks& cell,
+                               std::uint32_t from, std::uint32_t end, bool reversed, Sink sink) {
   const VF ox = constant(static_cast<float>(cell.offset.x)), oy = constant(static_cast<float>(cell.offset.y));
   BlockIntervals intervals;
   // Each block is projected before the sink has the previous one: the processor overlaps both.
   ProjectedBlock projected[2];
   std::uint32_t spare = 0;
-  for (std::uint32_t first = 0; first < cell.front_facing; first += lanes()) {
+  for (std::uint32_t first = from; first < end; first += lanes()) {
     std::uint32_t pending = project_bounds(p, &cell.bounds[first], intervals);
-    if (cell.front_facing - first < lanes()) pending &= (1u << (cell.front_facing - first)) - 1;
+    if (end - first < lanes()) pending &= (1u << (end - first)) - 1;
     for (; pending != 0; pending &= pending - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctz(pending));
       if (!may_be_visible(s, pattern, p.full, intervals.low[i], intervals.high[i], intervals.nearest[i])) continue;
@@ -58,14 +59,26 @@ HWY_INLINE void project_cell(Scratch& s, const Projection& p, const ScanPattern&
       ++s.counts.blocks;
       ProjectedBlock& next = projected[spare];
       next.count = 0;
-      for (std::uint32_t k = 0; k < kBlock; k += lanes())
-        project(next, p, load(block.ax + k) - ox, load(block.ay + k) - oy, load(block.ex + k), load(block.ey + k),
-                block.row + k, 0);
+      for (std::uint32_t k = 0; k < kBlock; k += lanes()) {
+        const VF ax = load(block.ax + k) - ox, ay = load(block.ay + k) - oy;
+        const VF ex = load(block.ex + k), ey = load(block.ey + k);
+        if (reversed)
+          project(next, p, ax + ex, ay + ey, hn::Neg(ex), hn::Neg(ey), block.row + k, 0);
+        else
+          project(next, p, ax, ay, ex, ey, block.row + k, 0);
+      }
       spare ^= 1;
       sink(projected[spare]);
     }
   }
   sink(projected[spare ^ 1]);
+}
+
+/// Projects the surfaces that face a cell.
+template <class Sink>
+HWY_INLINE void project_cell(Scratch& s, const Projection& p, const ScanPattern& pattern, const CellBlocks& cell,
+                             Sink sink) {
+  project_blocks(s, p, pattern, cell, 0, cell.front_facing, false, sink);
 }
 
 }  // namespace sf::raycast::HWY_NAMESPACE
