@@ -44,7 +44,7 @@ std::vector<std::string> accuracy_rows(const world::World& world, const sensors:
         rounding = std::max(rounding, 0x1p-24 * row.limit);
     rows.push_back(fmt::format(
         R"({{"type":"{}","sensors":{},"mode":"{}","bound":{},"bound_without_noise":{},"sigma":{},"unit":"{}",)"
-        R"("condition":"{}"}})",
+        R"("condition":"{}","flags":"not recorded"}})",
         s.type->name, s.sensors, sensors::word_of(*s.type, s.mode),
         number_or_null(sigma > 0.0 ? HUGE_VAL : without_noise + rounding), number_or_null(without_noise + rounding),
         number_or_null(sigma), sensors::unit_of(*s.type), s.bound.condition));
