@@ -14,36 +14,42 @@ constexpr std::array<std::array<const char*, 2>, 5> kFaultWords{
     {{": left out", "rows more are left out that cannot be read"},
      {": left out", "rows more are left out without a geometry"},
      {": left out", "rows more have points, which are left out"},
-     {"", "heights more are no numbers or out of range"},
-     {"", "rows more have inner rings that leave their outer ring"}}};
+     {": the model's height counts", "heights more are no numbers or out of range"},
+     {": its walls are thin ones", "rows more have inner rings that leave their outer ring"}}};
 
 }  // namespace
 
 void OutlineFaults::add(OutlineFault kind, const OutlineRow& row, const std::string& reason) {
-  const auto i = static_cast<std::size_t>(kind);
-  const std::string message = row.place.empty() ? reason : row.place + ": " + reason;
-  if (strict_) throw base::InputError(file_, row.line, message);
-  if (counts_[i]++ < kListedFaults) warnings_.push_back({file_, row.line, message + kFaultWords[i][0]});
+  if (counts_[static_cast<std::size_t>(kind)]++ >= kListedFaults) return;
+  faults_.push_back({kind, row.line, row.place.empty() ? reason : row.place + ": " + reason});
 }
 
 void OutlineFaults::note(const std::string& message) {
-  if (!message.empty()) warnings_.push_back({file_, 0, message});
+  if (!message.empty()) notes_.push_back(message);
+}
+
+void OutlineFaults::refuse() const {
+  if (!faults_.empty()) throw base::InputError(file_, faults_.front().line, faults_.front().reason);
 }
 
 void OutlineFaults::fail(const std::string& columns) const {
   throw base::InputError(
-      file_, warnings_.empty() ? 0 : warnings_.front().line,
+      file_, faults_.empty() ? 0 : faults_.front().line,
       fmt::format(
           "{}the file has no outlines with walls; {}; expected geometries in well-known text or binary: POLYGON, "
           "MULTIPOLYGON, LINESTRING or MULTILINESTRING",
-          warnings_.empty() ? "" : warnings_.front().message + "; ", columns));
+          faults_.empty() ? "" : faults_.front().reason + "; ", columns));
 }
 
-std::vector<Warning> OutlineFaults::take() {
+std::vector<Warning> OutlineFaults::warnings() const {
+  std::vector<Warning> all;
+  for (const Fault& fault : faults_)
+    all.push_back({file_, fault.line, fault.reason + kFaultWords[static_cast<std::size_t>(fault.kind)][0]});
   for (std::size_t i = 0; i < kFaultWords.size(); ++i)
     if (counts_[i] > kListedFaults)
-      warnings_.push_back({file_, 0, fmt::format("{} {}", counts_[i] - kListedFaults, kFaultWords[i][1])});
-  return std::move(warnings_);
+      all.push_back({file_, 0, fmt::format("{} {}", counts_[i] - kListedFaults, kFaultWords[i][1])});
+  for (const std::string& note : notes_) all.push_back({file_, 0, note});
+  return all;
 }
 
 }  // namespace sf::world

@@ -16,24 +16,29 @@ enum class OutlineFault : std::uint8_t { unreadable, empty, points, height, hole
 
 class OutlineFaults {
  public:
-  /// @param strict the first fault is an error
-  OutlineFaults(std::string file, bool strict) : file_(std::move(file)), strict_(strict) {}
+  explicit OutlineFaults(std::string file) : file_(std::move(file)) {}
 
   /// The first three of a kind become warnings of their own, further ones are counted.
-  /// @throws base::InputError where faults are errors
   void add(OutlineFault kind, const OutlineRow& row, const std::string& reason);
-  /// Of the whole file; empty: none.
+  /// Of the whole file, no fault of a row; empty: none.
   void note(const std::string& message);
+  /// @throws base::InputError with the first fault, if there is one
+  void refuse() const;
   /// For a file without walls. @throws base::InputError, always, with the first fault. @param columns the file's
   [[noreturn]] void fail(const std::string& columns) const;
-  /// All warnings, once.
-  std::vector<Warning> take();
+  /// Faults, then notes.
+  std::vector<Warning> warnings() const;
 
  private:
+  struct Fault {
+    OutlineFault kind;
+    int line;
+    std::string reason;
+  };
   std::string file_;
-  bool strict_;
-  std::vector<Warning> warnings_;
+  std::vector<Fault> faults_;
   std::array<std::uint64_t, 5> counts_{};  ///< by kind
+  std::vector<std::string> notes_;
 };
 
 }  // namespace sf::world

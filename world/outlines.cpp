@@ -170,24 +170,25 @@ double height_of(const OutlineFile& file, std::string_view text) {
   const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
   const double height = value * file.metres_per_unit;
   if (error == std::errc() && end == text.data() + text.size() && height >= 0.0 && height <= kMaxLength) return height;
-  throw base::InputError(
-      fmt::format("the height is '{}'; expected a number alone, such as 3.5, from 0 to {:g}: the model's height counts",
-                  text.substr(0, kShownHeight), kMaxLength / file.metres_per_unit));
+  throw base::InputError(fmt::format("the height is '{}'; expected a number alone, such as 3.5, from 0 to {:g}",
+                                     text.substr(0, kShownHeight), kMaxLength / file.metres_per_unit));
 }
 
 /// Reads rows one by one into walls and faults.
 class OutlineReader {
  public:
   OutlineReader(const OutlineFile& file, const TakeOutline& take)
-      : file_(file), builder_(file, take), faults_(file.file, file.strict) {}
+      : file_(file), builder_(file, take), faults_(file.file) {}
 
   void read(const OutlineRow& row) {
+    bool built = false;
     try {
-      if (!build(row)) return;
+      built = build(row);
     } catch (const base::InputError& error) {
-      return faults_.add(OutlineFault::unreadable, row, error.what());
+      faults_.add(OutlineFault::unreadable, row, error.what());
     }
-    builder_.finish();
+    if (file_.strict) faults_.refuse();
+    if (built) builder_.finish();
   }
 
   std::vector<Warning> finish(const OutlineRows& rows) {
@@ -197,7 +198,7 @@ class OutlineReader {
       faults_.note(
           "the coordinates are degrees, as it seems, but count as lengths; project them first, such as by "
           "ogr2ogr -t_srs EPSG:32632");
-    return faults_.take();
+    return faults_.warnings();
   }
 
  private:
@@ -221,8 +222,7 @@ class OutlineReader {
       faults_.add(OutlineFault::height, row, error.what());
     }
     builder_.build(geometry_, height);
-    if (builder_.holes_outside() > 0)
-      faults_.add(OutlineFault::hole, row, "an inner ring leaves its outer ring: its walls are thin ones");
+    if (builder_.holes_outside() > 0) faults_.add(OutlineFault::hole, row, "an inner ring leaves its outer ring");
     degrees_.add(geometry_, row.is_geographic);
     return true;
   }

@@ -19,6 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(::ftruncate(memory, 0) == 0 && ::pwrite(memory, data, size, 0) == static_cast<ssize_t>(size));
   world::OutlineFile outlines;
   outlines.file = file;
+  outlines.metres_per_unit = 1e-6;  // arcs of few chords
   outlines.surface.z_max = 3.0;
   try {
     std::vector<world::Warning> warnings;

@@ -217,11 +217,19 @@ TEST(Outlines, WarningsComeOnceHoweverOftenAFileIsRead) {  // for extent, for th
 TEST(Outlines, StrictlyTheFirstFaultIsAnError) {  // as before rows could be left out
   LoadOptions strict = kWithLasers;
   strict.strict = true;
-  for (const char* row : {"POINT (1 2)", "LINESTRING (0 0, 1)", "POLYGON EMPTY"}) {
-    const std::string file = outlines_file("LINESTRING (0 0, 1 0)\n" + std::string(row));
-    expect_in("outlines.csv:2: ",
-              sf::refusal_of([&] { read_world("model( outlines \"" + file + "\" size [0 0 3] )", strict); }));
+  const std::pair<const char*, const char*> cases[] = {
+      {"POINT (1 2),", "points have no walls"},
+      {"LINESTRING (0 0),x", "the height is 'x'; expected a number alone, such as 3.5, from 0 to 1e+07"},
+      {"POLYGON EMPTY,x", "the geometry is EMPTY"},
+      {"\"POLYGON ((0 0, 3 0, 3 3), (4 4, 5 4, 5 5))\",", "an inner ring leaves its outer ring"}};
+  for (const auto& [row, reason] : cases) {
+    const std::string file = outlines_file("WKT,height\n\"LINESTRING (0 0, 1 0)\",\n" + std::string(row));
+    EXPECT_EQ(sf::refusal_of([&] { read_world("model( outlines \"" + file + "\" size [0 0 3] )", strict); }),
+              file + ":3: " + reason);
   }
+  const std::string file = outlines_file("SRID=4326;LINESTRING (0 0, 1 0)");
+  EXPECT_EQ(read_world("model( outlines \"" + file + "\" size [0 0 3] )", strict).warnings.size(), 1u)
+      << "no row's fault";
 }
 
 TEST(Outlines, AFileWithoutWallsIsAnErrorThatNamesItsColumns) {
@@ -229,12 +237,11 @@ TEST(Outlines, AFileWithoutWallsIsAnErrorThatNamesItsColumns) {
       {"", "outlines.csv: the file has no outlines with walls; its first line does not name its columns; expected"},
       {"\n  \n", "outlines.csv: the file has no outlines"},
       {"id;name\n1;hall\n",
-       "outlines.csv:2: has no geometry: left out; the file has no outlines with walls; its columns are 'id', 'name'; "
+       "outlines.csv:2: has no geometry; the file has no outlines with walls; its columns are 'id', 'name'; "
        "expected"},
       {"WKT,height\n", "outlines.csv: the file has no outlines with walls; its columns are 'WKT', 'height'"},
-      {"WKT,name\nPOINT (1 2),tree\n",
-       "outlines.csv:2: points have no walls: left out; the file has no outlines with walls"},
-      {"POLYGON EMPTY", "outlines.csv:1: the geometry is EMPTY: left out; the file"},
+      {"WKT,name\nPOINT (1 2),tree\n", "outlines.csv:2: points have no walls; the file has no outlines with walls"},
+      {"POLYGON EMPTY", "outlines.csv:1: the geometry is EMPTY; the file"},
       {"LINESTRING (0 0, 0 0)", "outlines.csv: the file has no outlines with walls"},
       {"W\0K\0T", "outlines.csv: the file has no outlines with walls; its columns are 'W'"},
       {"\xFF\xFEW", "outlines.csv: is a text in UTF-16: save it as UTF-8"},
