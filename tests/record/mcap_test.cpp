@@ -319,7 +319,7 @@ TEST(McapReader, ACutAtAnyByteGivesWhatWasWholeBeforeIt) {
   EXPECT_FALSE(read(file).truncated);
 }
 
-/// Two channels in two chunks, and all that stands before them; not finished.
+/// Two channels in two chunks, and all records that come before chunks; not finished.
 Bytes unfinished_file() {
   McapWriter writer("p", "lib");
   const auto schema = writer.add_schema("S", "ros2msg", "bool b\n");

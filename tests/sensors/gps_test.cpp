@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/files.h"
 #include "sensors/gnss_visibility.h"
 #include "tests/sensors/host_trial.h"
 #include "tests/sensors/statistics.h"
@@ -41,6 +42,22 @@ TEST(Gps, SatellitesStandAboveTheMaskAllRound) {
       sum = sum + s.horizontal;
     }
     EXPECT_LT(glm::length(sum), 2.0) << "evenly";
+  }
+}
+
+/// Azimuths and elevations as docs/sensors.md has them.
+TEST(Gps, SatellitesStandWhereTheDocumentSays) {
+  const std::string text = base::read_text(SF_SOURCE_DIR "/docs/sensors.md"), said = "that is i · ";
+  ASSERT_NE(text.find(said), std::string::npos);
+  const double degrees = std::strtod(text.c_str() + text.find(said) + said.size(), nullptr);
+  const auto all = constellation(8);
+  const double lowest = std::sin(15.0 * M_PI / 180.0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double turned =
+        std::atan2(all[i].horizontal.y, all[i].horizontal.x) - static_cast<double>(i) * degrees * M_PI / 180.0;
+    EXPECT_NEAR(std::remainder(turned, 2.0 * M_PI), 0.0, 1e-4) << i << ": 0.0005 degrees a satellite";
+    EXPECT_NEAR(std::sin(std::atan(all[i].tan_elevation)),
+                lowest + (1.0 - lowest) * (static_cast<double>(i) + 0.5) / 8.0, 1e-12);
   }
 }
 
