@@ -10,6 +10,7 @@ namespace {
 constexpr double kCertain = 0.05;      // [rad] headings within which a path is as good as linear
 constexpr std::size_t kHeadings = 24;  // hypotheses of a heading that is not measured
 constexpr double kLeastWeight = 1e-5;
+constexpr double kFarthest = 1e15;  // [rad]
 
 /// [rad] distance of headings among `count` hypotheses: the fewer there are, the narrower and more exact they can be.
 double heading_distance(std::size_t count) { return std::clamp(0.011 * static_cast<double>(count), 0.08, 0.26); }
@@ -32,7 +33,7 @@ void normalise(Hypotheses& all) {
 void reduce(const MotionModel& model, const HypothesesLimits& limits, Hypotheses& all) {
   normalise(all);
   const double half = 0.5e-9 * static_cast<double>(all[0].estimate.time - limits.corrected);
-  for (double near = 0.77 * heading_distance(all.size()); all.size() > 1; near *= 1.5) {
+  for (double near = 0.77 * heading_distance(all.size()); all.size() > 1 && near < kFarthest; near *= 1.5) {
     std::size_t count = 0;
     for (auto from = all.begin(); from != all.end(); ++count) {
       std::iter_swap(from, std::max_element(from, all.end(), lighter));
@@ -47,6 +48,9 @@ void reduce(const MotionModel& model, const HypothesesLimits& limits, Hypotheses
     all.resize(count);
     if (count <= limits.most) return;
   }
+  // Numbers beyond all measures, which are near nothing.
+  all.resize(std::min(all.size(), limits.most));
+  normalise(all);
 }
 
 /// Splits wide headings on the way. Headings that are a little uncertain are split, and merged at the end of the step.
@@ -127,8 +131,9 @@ Innovation innovation(const Hypotheses& predicted, const Measurement& measuremen
 
 void correct(const MotionModel& model, const Measurement& measurement, const HypothesesLimits& limits,
              Hypotheses& all) {
-  if (limits.most == 1) {
-    all[0].estimate = correct(all[0].estimate, measurement);
+  if (all.size() == 1) {
+    Estimate& one = all[0].estimate;
+    one = limits.most == 1 ? correct(one, measurement) : correct(model, one, measurement);
     return;
   }
   // Logarithms, since all likelihoods may underflow.
