@@ -132,7 +132,10 @@ void run(const LightOptions& options, Sender& sender, LightRadio* radio, world::
   for (double at = 0.0; !stop_requested() && (options.duration <= 0.0 || at < options.duration);) {
     const double elapsed = base::seconds_since(start), time = options.time + elapsed;
     const std::int64_t now = static_cast<std::int64_t>(1e9 * elapsed);
-    if (radio != nullptr) radio->receive(now, [&](glm::dvec2 p) { actuator.detect(p, time); });
+    if (radio != nullptr) {
+      radio->receive(now, [&](glm::dvec2 p) { actuator.detect(p, time); });
+      radio->report_trouble(now);
+    }
     actuator.step(time);
     const std::vector<world::SignalForecast> forecasts = actuator.forecasts(time);
     if (at >= static_cast<double>(next_map)) {

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "apps/text.h"
+#include "base/elapsed.h"
 #include "base/error.h"
 #include "netio/address_book.h"
 #include "netio/server/wire_ids.h"
+#include "netio/signature_trouble_log.h"
 
 namespace sf::apps {
 
@@ -35,6 +39,21 @@ void LightRadio::receive(std::int64_t now, const std::function<void(glm::dvec2)>
       hear({state->X_WR.x, state->X_WR.y});
       ++heard_;
     });
+}
+
+void LightRadio::report_trouble(std::int64_t now) {
+  const netio::SignatureTrouble* last = nullptr;
+  std::string who;
+  std::uint64_t count = 0;
+  for (std::size_t k = 0; k < sockets_.size(); ++k) {
+    const netio::SignatureTrouble& trouble = sockets_[k].trouble();
+    count += trouble.count;
+    if (trouble.count > 0) last = &trouble, who = fmt::format("intersection {}", messages_.intersections()[k].id);
+  }
+  const bool is_new = count > std::exchange(troubles_, count);
+  if (!is_new || (answered_ && !last->of_farm) || now < next_trouble_) return;
+  next_trouble_ = now + 10'000'000'000;
+  print_message("the farm at {} {}", farm_, netio::trouble_text(*last, who, base::unix_time()));
 }
 
 void LightRadio::send(std::span<const world::SignalForecast> forecasts, std::int64_t now) {

@@ -27,6 +27,9 @@ class LightRadio {
   /// @param forecasts one per row of `World::lights`
   void send(std::span<const world::SignalForecast> forecasts, std::int64_t now);
 
+  /// States on standard error why the farm does not take the states, at once and then every ten seconds.
+  void report_trouble(std::int64_t now);
+
   const std::string& to() const { return farm_; }
   /// "V2I to 127.0.0.1:9000: sent 12; heard 30 states"
   std::string summary() const;
@@ -37,6 +40,8 @@ class LightRadio {
   std::deque<netio::V2vSocket> sockets_;  ///< per intersection; they do not move
   std::uint64_t heard_ = 0;               ///< states
   bool answered_ = false;
+  std::uint64_t troubles_ = 0;     ///< refused packets that came before, of all
+  std::int64_t next_trouble_ = 0;  ///< [ns] not stated before
 };
 
 }  // namespace sf::apps

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace sf::netio {
 
 namespace {
@@ -36,6 +38,25 @@ std::string reason_text(PacketStatus reason, std::uint64_t lag) {
 }
 
 }  // namespace
+
+std::string trouble_text(const SignatureTrouble& trouble, const std::string& who, std::int64_t unix_time) {
+  const double behind = 1e-9 * static_cast<double>(trouble.farm_time - unix_time);
+  switch (trouble.reason) {
+    case PacketStatus::not_signed:
+      return trouble.of_farm
+                 ? fmt::format("refuses packets without a signature of {}: start this one with --peers, too", who)
+                 : fmt::format("does not sign its packets: start `serve` with --peers and the key of {}, too", who);
+    case PacketStatus::wrong_signature:
+      return fmt::format("has another key for {} than --peers here: compare both files", who);
+    default:
+      return trouble.of_farm
+                 ? fmt::format(
+                       "has had packets of {} with later times: this machine's clock was set back, and "
+                       "reads {:.1f} s {} than the farm's; set it, or restart `serve`",
+                       who, std::abs(behind), behind < 0.0 ? "more" : "less")
+                 : "sends times before those that it sent: its clock was set back; set it, or restart this process";
+  }
+}
 
 void SignatureTroubleLog::note(PacketStatus reason, const Packet& packet, const Endpoint& who, const std::string& name,
                                std::int64_t now, Inbox& inbox, Outbox& answers, RateLimitedLog& log) {

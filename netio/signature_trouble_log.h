@@ -4,13 +4,19 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
 #include <tuple>
 
 #include "netio/inbox.h"
 #include "netio/outbox.h"
 #include "netio/rate_limited_log.h"
+#include "netio/v2v_socket.h"
 
 namespace sf::netio {
+
+/// For a sender's user, behind "the farm at 127.0.0.1:9000 ": what has to be changed.
+/// @param who "robot 7"  @param unix_time [ns] of this machine's clock
+std::string trouble_text(const SignatureTrouble& trouble, const std::string& who, std::int64_t unix_time);
 
 /// One thread.
 class SignatureTroubleLog {

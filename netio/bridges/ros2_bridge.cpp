@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "netio/bridges/ros_types.h"
+#include "netio/open_sockets.h"
 #include "record/cdr.h"
 #include "record/schemas.h"
 
@@ -101,8 +102,10 @@ Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const Dds
     (message.reader < command_readers_ ? commands_ : requests_).add(std::move(message));
   };
   try {
+    const netio::OpenSockets before;
     participant_ = library.open(
         {options.domain, "enclave=/;", options.loopback, receive, [this](std::string_view line) { log_.write(line); }});
+    if (options.loopback) before.keep_new_ones_to_loopback();
     add_topics();
     add_commands();
     add_services();

@@ -9,6 +9,7 @@
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "base/time.h"
+#include "netio/signature_trouble_log.h"
 #include "world/roads/roads.h"
 
 namespace sf::server {
@@ -43,27 +44,6 @@ LinkOptions with_lights(LinkOptions link, std::span<const Intersection> intersec
 
 /// [ms] since 1970
 std::int64_t utc_now() { return base::unix_time() / 1'000'000; }
-
-/// What the user has to change.
-std::string trouble_text(const netio::SignatureTrouble& trouble, std::uint32_t id, std::int64_t unix_time) {
-  const double behind = 1e-9 * static_cast<double>(trouble.farm_time - unix_time);
-  switch (trouble.reason) {
-    case netio::PacketStatus::not_signed:
-      return trouble.of_farm
-                 ? fmt::format("refuses packets without a signature of robot {}: start this one with --peers, too", id)
-                 : fmt::format("does not sign its packets: start `serve` with --peers and the key of robot {}, too",
-                               id);
-    case netio::PacketStatus::wrong_signature:
-      return fmt::format("has another key for robot {} than --peers here: compare both files", id);
-    default:
-      return trouble.of_farm
-                 ? fmt::format(
-                       "has had packets of robot {} with later times: this machine's clock was set back, and "
-                       "reads {:.1f} s {} than the farm's; set it, or restart `serve`",
-                       id, std::abs(behind), behind < 0.0 ? "more" : "less")
-                 : "sends times before those that it sent: its clock was set back; set it, or restart this robot";
-  }
-}
 
 }  // namespace
 
@@ -264,9 +244,10 @@ void RobotClient::log_signature_trouble(std::int64_t now) {
   next_trouble_ = now + kTroubleEvery;
   problem_logged_ = true;
   stands_ = reading_timeout_ > 0;
-  log_.write(fmt::format("the farm at {} {}", netio::text(link_.farm()),
-                         trouble_text(trouble, world_.movers[mover_].id, base::unix_time())),
-             now);
+  log_.write(
+      fmt::format("the farm at {} {}", netio::text(link_.farm()),
+                  netio::trouble_text(trouble, fmt::format("robot {}", world_.movers[mover_].id), base::unix_time())),
+      now);
 }
 
 /// Where nothing is heard any more, where something is again, and, once, where nothing ever was.

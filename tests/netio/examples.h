@@ -110,8 +110,9 @@ inline std::vector<base::Bytes> states() {
 
 /// Packets from the farm, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(), extended_example(),  v2v_example(), tag_example(),    subscribe_example(), start_example(),
-          leave_example(),   challenge_example(), refusal_example(), v2i_example(), object_example(), neighbours_example()};
+  return {reading_example(),   extended_example(), v2v_example(),     tag_example(),
+          subscribe_example(), start_example(),    leave_example(),   challenge_example(),
+          v2i_example(),       object_example(),   refusal_example(), neighbours_example()};
 }
 
 inline base::Bytes command_example() {

@@ -243,6 +243,17 @@ TEST_F(SignedSocketTest, ARefusalChangesNothing) {
   EXPECT_EQ(socket.farm_session_token().session, kFarm) << "as before";
 }
 
+/// Nothing beyond this machine reaches a robot whose farm is on it. Boundary: any address of 127.0.0.0/8.
+TEST(V2vSocket, IsBoundWhereItsFarmIs) {
+  const auto own_address = [](std::uint32_t farm) {
+    return bound_endpoint(V2vSocket({.farm = {farm, 9000}, .robot = 7}).socket()).address;
+  };
+  EXPECT_EQ(own_address(kLoopback), kLoopback);
+  EXPECT_EQ(own_address(0x7FFFFFFE), kLoopback);
+  EXPECT_EQ(own_address(0x80000001), 0u);
+  EXPECT_EQ(own_address(0xC0A80107), 0u);
+}
+
 base::Bytes neighbours() {
   base::Bytes state, out;
   encode({.robot = 3, .session = kFarm, .token = kOwn}, V2v{}, state);

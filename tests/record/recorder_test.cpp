@@ -233,6 +233,7 @@ TEST(Recorder, ARecordingThatCannotBeginLeavesTheOlderOne) {
 TEST(Recorder, ALinkIsNotFollowed) {
   const std::string directory = fresh_directory("link");
   const std::string target = directory + "/target";
+  fs::create_directories(directory);
   std::ofstream(target) << "precious";
   fs::create_symlink(target, directory + "/run.mcap.new");
   {

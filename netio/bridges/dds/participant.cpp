@@ -15,7 +15,6 @@
 
 #include "netio/bridges/dds.h"
 #include "netio/bridges/dds/byte_type.h"
-#include "netio/bridges/dds/open_sockets.h"
 
 namespace sf::bridges {
 
@@ -120,9 +119,7 @@ class CycloneParticipant : public DdsParticipant {
   explicit CycloneParticipant(const DdsOptions& options) : options_(options) {
     if (options_.log) dds_set_log_sink(pass_on, const_cast<DdsOptions*>(&options_));
     try {
-      const OpenSockets before;
       start();
-      if (options_.loopback) before.keep_new_ones_to_loopback();
     } catch (...) {
       end();
       throw;

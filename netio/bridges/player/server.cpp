@@ -77,8 +77,9 @@ void Server::run() {
     }
     flush();
     // A descriptor is free again: those that waited for one are not reported a second time.
-    if (connections_.size() < before)
-      for (std::size_t port = 0; port < ports_.size(); ++port) accept_all(port);
+    if (connections_.size() >= before) continue;
+    for (std::size_t port = 0; port < ports_.size(); ++port) accept_all(port);
+    flush();
   }
 }
 

@@ -250,7 +250,7 @@ TEST(PlayerHostile, DataThatWaitsIsBounded) {
   std::array<int, 2> ends{};
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends.data()), 0);
   const netio::Socket other(ends[1]);
-  Connection connection(netio::Socket{ends[0]}, 0, netio::Endpoint{});
+  Connection connection(netio::Socket{ends[0]}, 0, netio::Endpoint{}, netio::kLoopback);
   const auto put = [&](std::uint32_t index, std::size_t size = 6u << 20) {
     Subscription& subscription = connection.subscriptions()[{Interface::laser, index}];
     connection.put_data({Interface::laser, index}, subscription, 1, 0.0, base::Bytes(size));

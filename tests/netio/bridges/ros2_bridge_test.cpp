@@ -2,8 +2,12 @@
 
 #include "netio/bridges/ros2_bridge.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <condition_variable>
 #include <cstdlib>
 #include <map>
@@ -463,6 +467,23 @@ TEST_F(Ros2BridgeTest, AnyBytesAreSurvived) {
   }
   EXPECT_GT(bridge->counts().malformed, 500u);
   EXPECT_LT(bridge->counts().malformed, 4000u);
+}
+
+/// What strangers send fills no log: of 100 000 lines at once the first are written, then five a second.
+TEST(Ros2Bridge, TheLogOfDdsIsLimited) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe2(ends.data(), O_NONBLOCK), 0);
+  {
+    DdsLog log(ends[1]);
+    for (int i = 0; i < 100'000; ++i) log.write("malformed packet received\x1b[2J\n");
+  }
+  std::string text(1 << 20, '\0');
+  const ssize_t size = read(ends[0], text.data(), text.size());
+  close(ends[0]), close(ends[1]);
+  ASSERT_GT(size, 0);
+  text.resize(static_cast<std::size_t>(size));
+  EXPECT_EQ(text.find("sensorfarm: DDS: malformed packet received\\x1b[2J\n"), 0u) << text.substr(0, 200);
+  EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 500);
 }
 
 TEST(Ros2Options, AreReadAsNodesReadThem) {

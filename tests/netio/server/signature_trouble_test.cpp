@@ -30,6 +30,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 
 /// Lines of a farm and its robot in 3 s.
 std::string lines_with(Fixture& f, const std::optional<netio::SigningKey>& key) {
+  f.client.reset();  // which has its port
   f.client = f.make_client(0, key);
   f.run(3 * kSeconds);
   EXPECT_EQ(f.client->stats().answered, false);
@@ -86,6 +87,7 @@ TEST(SignatureTrouble, AClockThatWasSetBackIsStatedByBoth) {
 /// 65 s of refused packets, ten and more a second: a line at once, then one every ten seconds with their number.
 TEST(SignatureTrouble, LinesAreRare) {
   Fixture f(with_key());
+  f.client.reset();
   f.client = f.make_client(0, kOtherKey);
   f.run(65 * kSeconds);
   const std::string log = f.log.read_all();

@@ -1,14 +1,17 @@
-#include "netio/bridges/dds/open_sockets.h"
+#include "netio/open_sockets.h"
 
+#include <fcntl.h>
 #include <linux/filter.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <cstdlib>
 #include <filesystem>
-#include <stdexcept>
+#include <system_error>
 
-namespace sf::bridges {
+#include "base/error.h"
+
+namespace sf::netio {
 
 namespace {
 
@@ -17,6 +20,7 @@ std::set<int> descriptors() {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", error))
     found.insert(std::atoi(entry.path().filename().c_str()));
+  std::erase_if(found, [](int descriptor) { return fcntl(descriptor, F_GETFD) < 0; });  // that of the folder itself
   return found;
 }
 
@@ -51,8 +55,8 @@ void OpenSockets::keep_new_ones_to_loopback() const {
     constexpr char kInterface[] = "lo";  // older kernels let only root do so; the filter is enough
     setsockopt(descriptor, SOL_SOCKET, SO_BINDTODEVICE, kInterface, sizeof kInterface);
     if (!take_loopback_only(descriptor))
-      throw std::runtime_error("its sockets cannot be kept to this machine; the kernel refuses filters");
+      throw base::InputError("sockets cannot be kept to this machine: the kernel refuses filters");
   }
 }
 
-}  // namespace sf::bridges
+}  // namespace sf::netio

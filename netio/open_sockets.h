@@ -3,7 +3,7 @@
 
 #include <set>
 
-namespace sf::bridges {
+namespace sf::netio {
 
 /// Descriptors of this process at the time of its construction.
 class OpenSockets {
@@ -12,10 +12,11 @@ class OpenSockets {
 
   /// Makes UDP sockets of IPv4 that were opened since, on all interfaces, receive from this machine's loopback alone:
   /// Cyclone DDS binds those that receive to 0.0.0.0, whatever the interface.
+  /// @throws base::InputError where the kernel refuses
   void keep_new_ones_to_loopback() const;
 
  private:
   std::set<int> before_;
 };
 
-}  // namespace sf::bridges
+}  // namespace sf::netio

@@ -1,0 +1,47 @@
+// Sockets of a library that are kept to this machine.
+
+#include "netio/open_sockets.h"
+
+#include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <sys/socket.h>
+
+#include <array>
+
+#include "netio/outbox.h"
+#include "netio/socket.h"
+
+namespace sf::netio {
+namespace {
+
+bool has_filter(const Socket& socket) {
+  std::array<sock_filter, 16> steps{};
+  socklen_t count = steps.size();
+  EXPECT_EQ(getsockopt(socket.descriptor(), SOL_SOCKET, SO_GET_FILTER, steps.data(), &count), 0);
+  return count > 0;
+}
+
+TEST(OpenSockets, NewOnesOnAllInterfacesReceiveFromThisMachineAlone) {
+  const Socket old = open_udp({0, 0});
+  const OpenSockets before;
+  const Socket open_to_all = open_udp({0, 0}), kept = open_udp({kLoopback, 0});
+  before.keep_new_ones_to_loopback();
+  EXPECT_FALSE(has_filter(old)) << "of somebody else";
+  EXPECT_FALSE(has_filter(kept)) << "bound to loopback already";
+  ASSERT_TRUE(has_filter(open_to_all));
+  // What is sent to loopback still arrives.
+  Outbox sender;
+  const std::array<std::uint8_t, 3> bytes{1, 2, 3};
+  for (const std::uint32_t to : {kLoopback, kLoopback + 1}) sender.queue({to, bound_endpoint(open_to_all).port}, bytes);
+  sender.flush();
+  ReceiveBatch batch(4);
+  std::size_t came = 0;
+  for (int i = 0; i < 100 && came < 2; ++i) {
+    wait_readable(open_to_all, open_to_all, 100);
+    came += batch.drain(open_to_all, 4, [](std::span<const std::uint8_t>, const Endpoint&) {});
+  }
+  EXPECT_EQ(came, 2u);
+}
+
+}  // namespace
+}  // namespace sf::netio
