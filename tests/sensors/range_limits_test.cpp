@@ -183,7 +183,9 @@ TEST(RangeLimits, OfSonarAndInfrared) {
       world::World world = wall_at(c.wall);
       add_ranger(world, {}, cones(type, {Pose{}}, {cone_setting("range", {kMin, kMax})}));
       const Glance glance(world);
-      EXPECT_EQ(glance.readings[0].values[0], c.range) << type << ": " << c.why;
+      const double range = glance.readings[0].values[0];
+      EXPECT_NEAR(range, c.range, 1e-15) << type << ": " << c.why;
+      EXPECT_EQ(range == kMax, !c.named) << type << ": " << c.why;
       EXPECT_EQ(flag_of(glance.readings[0], 0), c.flag) << type << ": " << c.why;
     }
 }
