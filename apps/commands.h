@@ -1,6 +1,6 @@
 #pragma once
 // The subcommands. Each returns the exit code: 0 when all went well. They throw base::InputError (2),
-// base::DeviceError (3) and Interrupted (apps/stop_signals.h). docs/ci.md has all codes.
+// base::DeviceError (3) and Incomplete (apps/stop_signals.h). docs/ci.md has all codes.
 
 #include "apps/options.h"
 

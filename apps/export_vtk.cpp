@@ -69,7 +69,7 @@ viz::GridData grid_of(const maps::OccupancyGrid& map) {
 }
 
 void heed_stop() {
-  if (stop_requested()) throw Interrupted("interrupted: the files that were written are whole, others are not there");
+  if (stop_requested()) throw Incomplete("interrupted: the files that were written are whole, others are not there");
 }
 
 std::vector<std::string> write_scans(const RecordingPart& part, const world::World& world, gpu::Device& device,

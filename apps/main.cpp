@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/plugin_calls.h"
 #include "base/printable.h"
+#include "base/thread_pool.h"
 #include "control/own_controllers.h"
 
 namespace {
@@ -31,7 +32,9 @@ int run(int argc, char** argv) {
     // A full disk must not pass for an answer.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail(2, "standard output cannot be written");
     return code;
-  } catch (const sf::apps::Interrupted& stop) {
+  } catch (const sf::apps::Incomplete& stop) {
+    return fail(sf::apps::interrupted_code(), stop.what());
+  } catch (const sf::base::Interrupted& stop) {
     return fail(sf::apps::interrupted_code(), stop.what());
   } catch (const sf::base::InputError& error) {
     return fail(2, error.what());

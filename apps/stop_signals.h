@@ -11,7 +11,7 @@ namespace sf::apps {
 const std::atomic<bool>& stop_requested();
 
 /// A command was stopped before its work was complete: `main` prints the message and exits with `interrupted_code`.
-class Interrupted : public std::runtime_error {
+class Incomplete : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

@@ -119,7 +119,7 @@ void choose_accuracy(world::World& world, gpu::Device& device, const AccuracyTar
   install_stop_handlers();
   const scenarios::AccuracyTarget target = wish_of(options);
   const auto results = measure(world, device, seed, threads);
-  if (stop_requested()) throw Interrupted("interrupted while accuracy modes were measured: nothing was run");
+  if (stop_requested()) throw Incomplete("interrupted while accuracy modes were measured: nothing was run");
   const std::string words = scenarios::accuracy_words(results, scenarios::select_modes(results, target));
   print_message("measured; {}: --accuracy \"{}\"", target_text(target), words);
   sensors::set_accuracy(world, words);
@@ -133,7 +133,7 @@ int measure_alone(const TradeoffOptions& options) {
   install_stop_handlers();
   const scenarios::AccuracyTarget target = wish_of(options);
   const auto results = measure(world, device, options.seed, options.threads);
-  if (stop_requested()) throw Interrupted("interrupted: nothing was written");
+  if (stop_requested()) throw Incomplete("interrupted: nothing was written");
   if (results.empty())
     throw base::InputError(world.file, 0,
                            "has no sensor that can be measured in more than one way; give a robot a laser( ), a "

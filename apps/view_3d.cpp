@@ -62,7 +62,7 @@ int view_3d(const ViewOptions& options) {
   }
   viz::PixelImage picture;
   viz::show_window(scene, &picture);
-  if (stop_requested()) throw Interrupted("interrupted: no picture was written");
+  if (stop_requested()) throw Incomplete("interrupted: no picture was written");
   viz::write_png(options.screenshot, picture.rgb, picture.width, picture.height);
   print_message("wrote {}", options.screenshot);
   return 0;
