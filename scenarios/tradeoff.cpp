@@ -194,7 +194,7 @@ std::string csv_of(const std::vector<ModeResult>& results) {
   std::string text =
       "sensor,mode,rate_per_s,covered,covered_max_error,covered_bound,all_median_error,all_p99_error,all_max_error\n";
   for (const ModeResult& g : results) {
-    const std::string covered = g.covered > 0.0 ? fmt::format("{},{}", g.covered_max, g.bound) : ",";
+    const std::string covered = g.covered > 0.0 ? fmt::format("{:.6g},{}", g.covered_max, g.bound) : ",";
     text += fmt::format("{},{},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g}\n", g.sensor, g.mode, g.rate, g.covered, covered,
                         g.median, g.p99, g.max);
   }

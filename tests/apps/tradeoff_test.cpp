@@ -135,7 +135,7 @@ TEST(AccuracyOption, ChangesWhatIsReadAndSaysSo) {
   expect_says(some, "\"accuracy\":\"skip2\"");
   expect_says(some, "\"unsure\":\"not cast\"");
   EXPECT_EQ(exact.out.find("\"unsure\""), std::string::npos);
-  expect_says(run_program({"check", our_world("rooms.world"), "--accuracy", "single"}), "laser single, within 998 um");
+  expect_says(run_program({"check", our_world("rooms.world"), "--accuracy", "single"}), "laser single, within 999 um");
 }
 
 TEST(AccuracyOption, WrongWords) {
