@@ -32,7 +32,7 @@ ROWS, WINDOW, PUSHED = 38, 64, 64  # robots of a COMMAND; datagrams of a FETCH; 
 PATIENCE = 0.02  # [s] of silence after which packets are repeated, doubled each time up to half a second
 
 State = collections.namedtuple("State", "pose velocity contact")  # x, y, z, yaw; forward, left, turn; 0 or 1
-# error: the largest of the first column of all elements; None: no bound is stated. unsure: 1: the sensor type's bound does
+# error: the largest of the first column of all elements; None: no bound is stated. unsure: 1: the type's bound does
 # not hold for all of them (noise, a bend of a lane edge, beams that graze or were not cast).
 Reading = collections.namedtuple("Reading", "time_ns pose values error tick unsure")
 
