@@ -33,7 +33,7 @@ class Pair {
                                .mode = std::string(sensors::word_of(*group.type, group.rows.front().mode)),
                                .unit = std::string(sensors::unit_of(*group.type)),
                                .errors = {}});
-      for (const sensors::SensorSpec& row : group.rows) result_.types.back().noisy |= row.noisy;
+      for (const sensors::SensorSpec& row : group.rows) result_.types.back().noisy |= row.sigma > 0.0;
       rows_.push_back({group.type, sensors::element_width(*group.type)});
     }
     for (std::uint32_t m = 0; m < world_.movers.size(); ++m)

@@ -157,6 +157,7 @@ TEST(Outlines, ARowThatCannotBeReadIsLeftOutWithItsLine) {
       {"POLYGON (0 0, 1 1)", "expected '(', found '0 0, 1 1)'"},
       {"POLYGON (EMPTY, (0 0, 1 0, 1 1))", "expected an outer ring with points before inner ones"},
       {"POLYGON EMPTY", "2: the geometry is EMPTY: left out\n"},
+      {"POLYGON ((5 5, 5 5, 5 5))", "2: the geometry has no extent: left out\n"},
       {"LINESTRING (0 0, 1e8 0)", "2: a corner is 1e+08 m from the origin"},
       {"TIN (((0 0 0, 1 0 0, 1 1 1, 0 0 0)))", "2: faces in three dimensions have no outline"},
       {"CIRCULARSTRING (0 0, 1 1)", "expected an odd number of points in a CIRCULARSTRING"},
@@ -219,7 +220,7 @@ TEST(Outlines, StrictlyTheFirstFaultIsAnError) {  // as before rows could be lef
   strict.strict = true;
   const std::pair<const char*, const char*> cases[] = {
       {"POINT (1 2),", "points have no walls"},
-      {"LINESTRING (0 0),x", "the height is 'x'; expected a number alone, such as 3.5, from 0 to 1e+07"},
+      {"LINESTRING (0 0, 2 0),x", "the height is 'x'; expected a number alone, such as 3.5, from 0 to 1e+07"},
       {"POLYGON EMPTY,x", "the geometry is EMPTY"},
       {"\"POLYGON ((0 0, 3 0, 3 3), (4 4, 5 4, 5 5))\",", "an inner ring leaves its outer ring"}};
   for (const auto& [row, reason] : cases) {
@@ -242,7 +243,7 @@ TEST(Outlines, AFileWithoutWallsIsAnErrorThatNamesItsColumns) {
       {"WKT,height\n", "outlines.csv: the file has no outlines with walls; its columns are 'WKT', 'height'"},
       {"WKT,name\nPOINT (1 2),tree\n", "outlines.csv:2: points have no walls; the file has no outlines with walls"},
       {"POLYGON EMPTY", "outlines.csv:1: the geometry is EMPTY; the file"},
-      {"LINESTRING (0 0, 0 0)", "outlines.csv: the file has no outlines with walls"},
+      {"LINESTRING (0 0, 0 0)", "outlines.csv:1: the geometry has no extent; the file has no outlines with walls"},
       {"W\0K\0T", "outlines.csv: the file has no outlines with walls; its columns are 'W'"},
       {"\xFF\xFEW", "outlines.csv: is a text in UTF-16: save it as UTF-8"},
       {"\xFE\xFF", "outlines.csv: is a text in UTF-16: save it as UTF-8"},

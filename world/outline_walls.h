@@ -1,0 +1,48 @@
+#pragma once
+// The walls of a file of outlines.
+
+#include <vector>
+
+#include "world/outlines.h"
+#include "world/stage/polygon.h"
+#include "world/well_known_geometry.h"
+
+namespace sf::world {
+
+/// Makes walls in the world frame of one row after the other.
+class OutlineWalls {
+ public:
+  /// Both live longer. @param take gets the walls
+  OutlineWalls(const OutlineFile& file, const TakeOutline& take) : file_(file), take_(take) {}
+
+  /// Builds the walls of one row. @param height [m] of them  @return whether there are any
+  /// @throws base::InputError with the reason alone for a row that cannot be built
+  bool build(const WellKnownGeometry& geometry, double height);
+  /// Hands on the walls of the row that was built. @throws base::InputError for too many in the file
+  void finish();
+
+  double count() const { return count_; }               ///< of walls handed on
+  int holes_outside() const { return holes_outside_; }  ///< inner rings of the row that leave their outer ring
+
+ private:
+  Polygon polygon_of(std::span<const glm::dvec2> points);
+  void add_outer_ring(std::span<const glm::dvec2> points);
+  void add_hole(std::span<const glm::dvec2> points);
+  bool is_outside(const Polygon& hole);
+  glm::dvec2 placed(glm::dvec2 p) const;
+  void add_wall(glm::dvec2 a, glm::dvec2 b, bool solid);
+
+  const OutlineFile& file_;
+  const TakeOutline& take_;
+  std::vector<Segment> walls_;     ///< of the row in work
+  std::vector<std::size_t> ends_;  ///< of its rings and lines in `walls_`
+  struct {
+    std::size_t begin = 0, end = 0;
+    bool solid = false;
+  } outer_;  ///< the last outer ring, in `walls_`
+  int holes_outside_ = 0;
+  double count_ = 0.0;  ///< of all rows
+  double pairs_ = 1e9;  ///< of edges that may still be compared in the file
+};
+
+}  // namespace sf::world
