@@ -18,6 +18,7 @@
 #include "sensors/laser.h"
 #include "sensors/laser_noise.h"
 #include "sensors/laser_reference.h"
+#include "sensors/occupancy.h"
 
 namespace sf::scenarios {
 
@@ -58,6 +59,10 @@ bool any_marked(const record::Recording& recording) {
   });
 }
 
+bool has_near(const base::ReadingBlock& scan) {
+  return std::find(scan.quality.begin(), scan.quality.end(), base::QualityFlag::too_near) != scan.quality.end();
+}
+
 /// A scan to be recomputed by plain C++.
 struct Asked {
   std::uint32_t mover, sensor, sequence;
@@ -76,7 +81,9 @@ class Verifier {
         farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads}),
         reference_(world_, recording.info.seed),
         infinite_(record::option_of(recording.info, record::kNoReturn) == "inf"),
-        marks_too_near_(any_marked(recording)) {
+        marks_too_near_(any_marked(recording)),
+        is_earlier_(!marks_too_near_ && record::option_of(recording.info, record::kTooNear).empty()),
+        near_(world_.movers.size()) {
     for (std::size_t i = 0; i < recording.readings.size(); ++i) {
       const record::ReadingSample& r = recording.readings[i];
       readings_[{r.type, r.mover, r.sensor, r.sequence}] = i;
@@ -122,6 +129,9 @@ class Verifier {
     if (unfelt_ > 0)
       result_.skipped.push_back(
           fmt::format("{} readings of bumpers: where a robot was touched is not recorded", unfelt_));
+    if (near_maps_ > 0)
+      result_.skipped.push_back(fmt::format(
+          "{} occupancy maps: earlier versions took surfaces nearer than a laser's minimum for obstacles", near_maps_));
     if (recording_.readings.empty() && farm_.sensor_set().group(sensors::kLaser) == nullptr)
       result_.skipped.emplace_back(
           "all readings: the run kept none, and no robot has a laser to compare with plain C++");
@@ -229,6 +239,11 @@ class Verifier {
       ++unfelt_;
       return;
     }
+    near_[reading.mover] = near_[reading.mover] || (is_scan && has_near(reading));
+    if (reading.type == sensors::kOccupancy && is_earlier_ && near_[reading.mover]) {
+      ++near_maps_;
+      return;
+    }
     if (!is_scan)
       return compare(told_values(reading.values, reading.quality), theirs, place_of(reading), compared(reading.type));
     const std::vector<double> told = told_scan(reading.mover, reading.sensor, reading.values, reading.quality);
@@ -329,13 +344,15 @@ class Verifier {
   sensors::LaserReference reference_;
   const bool infinite_;                   ///< beams without a return are recorded as infinity
   const bool marks_too_near_;             ///< ranges of surfaces that are too near are recorded as -infinity
+  const bool is_earlier_;                 ///< of a version that marks none of them, or without such surfaces
+  std::vector<bool> near_;                ///< per mover: its lasers had such surfaces
   bool recorded_ = false;                 ///< the recording has scans
   std::map<Name, std::size_t> readings_;  ///< recorded readings not compared yet
   std::vector<base::Report> reports_;     ///< of one tick
   std::map<std::uint8_t, Comparison> again_;
   std::vector<Asked> asked_;
   std::size_t stride_ = 1, seen_ = 0;
-  std::uint64_t unfelt_ = 0;
+  std::uint64_t unfelt_ = 0, near_maps_ = 0;
   Verification result_;
 };
 
