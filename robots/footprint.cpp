@@ -75,18 +75,34 @@ bool apart(const PlacedFootprint& p, const PlacedFootprint& q, glm::dvec2 d) {
   return beyond(from_p) || beyond(glm::dvec2{} - from_q);
 }
 
-/// True for one closed chain of solid edges at equal heights.
-bool is_one_solid(std::span<const FootprintEdge> edges) {
-  for (std::size_t i = 0; i < edges.size(); ++i)
-    if (!edges[i].solid || !follows(edges[i], i > 0 ? edges[i - 1] : edges.back())) return false;
+/// Length of the chain of consecutive edges that begins at `first`.
+std::size_t chain_length(std::span<const FootprintEdge> edges, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < edges.size() && follows(edges[end], edges[end - 1])) ++end;
+  return end - first;
+}
+
+/// True where every chain with a solid edge is a closed outline, the solid inside.
+bool are_solids(std::span<const FootprintEdge> edges) {
+  for (std::size_t first = 0; first < edges.size();) {
+    const auto chain = edges.subspan(first, chain_length(edges, first));
+    first += chain.size();
+    const auto solid = [](const FootprintEdge& e) { return e.solid; };
+    if (std::none_of(chain.begin(), chain.end(), solid)) continue;
+    double area = 0.0;
+    for (const FootprintEdge& e : chain) area += base::cross(e.a, e.b);
+    if (!std::all_of(chain.begin(), chain.end(), solid) || !follows(chain.front(), chain.back()) || area <= 0.0)
+      return false;
+  }
   return true;
 }
 
 }  // namespace
 
 bool surely_overlap(const Footprint& one, const Footprint& other, double apart, double lift) {
-  return one.inner > 0.0 && other.inner > 0.0 && apart < 0.999 * (one.inner + other.inner) &&
-         one.z_min < lift + other.z_max && lift + other.z_min < one.z_max;
+  if (one.inner == 0.0 || other.inner == 0.0 || apart >= 0.999 * (one.inner + other.inner)) return false;
+  const FootprintEdge &p = one.edges.front(), &q = other.edges.front();
+  return p.z_min < lift + q.z_max && lift + q.z_min < p.z_max;
 }
 
 bool inside(std::span<const FootprintEdge> edges, glm::dvec2 p, double z_min, double z_max) {
@@ -114,7 +130,8 @@ Footprint footprint_of(const world::Mover& mover) {
   if (outline.edges.empty()) return {.step = 1.0};
   const double inner = largest_inradius(outline.edges);
   outline.step = inner > 0.0 ? inner / 4.0 : outline.radius / 16.0;
-  if (is_one_solid(outline.edges)) outline.inner = inner;
+  if (outline.edges.front().solid && are_solids(outline.edges))
+    outline.inner = inradius(std::span(outline.edges).first(chain_length(outline.edges, 0)));
   return outline;
 }
 
