@@ -10,7 +10,7 @@ namespace {
 constexpr double kCertain = 0.05;      // [rad] headings within which a path is as good as linear
 constexpr std::size_t kHeadings = 24;  // hypotheses of a heading that is not measured
 constexpr double kLeastWeight = 1e-5;
-constexpr double kFarthest = 1e15;  // [rad]
+constexpr double kFarthest = 10.0;  // [rad] beyond all distances of headings
 
 /// [rad] distance of headings among `count` hypotheses: the fewer there are, the narrower and more exact they can be.
 double heading_distance(std::size_t count) { return std::clamp(0.011 * static_cast<double>(count), 0.08, 0.26); }
@@ -38,7 +38,7 @@ void reduce(const MotionModel& model, const HypothesesLimits& limits, Hypotheses
     for (auto from = all.begin(); from != all.end(); ++count) {
       std::iter_swap(from, std::max_element(from, all.end(), lighter));
       const auto is_near = [&, yaw = from->estimate.X_WM.yaw, turn = from->estimate.velocity.turn](const auto& h) {
-        const double by_turn = half * (h.estimate.velocity.turn - turn);
+        const double by_turn = std::min(std::abs(half * (h.estimate.velocity.turn - turn)), M_PI);
         return std::hypot(base::wrap_angle(h.estimate.X_WM.yaw - yaw), by_turn) < near;
       };
       const auto end = std::partition(from + 1, all.end(), is_near);
@@ -48,7 +48,7 @@ void reduce(const MotionModel& model, const HypothesesLimits& limits, Hypotheses
     all.resize(count);
     if (count <= limits.most) return;
   }
-  // Numbers beyond all measures, which are near nothing.
+  // More are left where numbers are not finite, which are near nothing.
   all.resize(std::min(all.size(), limits.most));
   normalise(all);
 }

@@ -77,7 +77,8 @@ void split(const MotionModel& model, const Hypothesis& whole, double dt, double 
   const double apart = 1.75 * narrow, rest = variance - narrow * narrow;
   const auto density = [&](int k) { return std::exp(-0.5 * apart * apart * k * k / rest); };
 
-  const int most = std::max(1, static_cast<int>(std::min(2.5 * std::sqrt(rest), M_PI) / apart));
+  // Wider headings are split again in the next step.
+  const int most = static_cast<int>(std::clamp(2.5 * std::sqrt(rest) / apart, 1.0, 4.0));
   double total = 1.0, spread = 0.0;
   for (int k = 1; k <= most; ++k) total += 2.0 * density(k), spread += 2.0 * density(k) * apart * apart * k * k;
   const Matrix6 P_part = P - Pa * Pa.transpose() * (spread / total / (variance * variance));

@@ -19,7 +19,7 @@ struct Hypothesis {
 /// [rad] standard deviation of the heading in the middle of a step of `dt` [s]: the direction of the path.
 double middle_heading_sigma(const Estimate& estimate, double dt);
 
-/// Appends three or more parts with `narrow` headings in the middle of a step of `dt`; the middle part first. Together
+/// Appends three to nine parts with `narrow` headings in the middle of a step of `dt`; the middle part first. Together
 /// they have the mean and the covariance of the whole. @param narrow [rad] in (0, middle_heading_sigma)
 void split(const MotionModel& model, const Hypothesis& whole, double dt, double narrow, std::vector<Hypothesis>& parts);
 
