@@ -23,21 +23,24 @@ constexpr int kNone = -1;
 
 PluginCalls own_calls;
 std::atomic<PluginCalls*> shared_calls{&own_calls};
-std::atomic<std::uint64_t> taken_rows{0};  ///< bit k: a thread has thread_row k
+std::atomic<std::uint64_t> taken_rows{0};  ///< bit k: a thread has row k
 static_assert(PluginCalls::kThreads == 64);
-thread_local int thread_row = kNone;  ///< of this thread
+thread_local int thread_row = kNone;  ///< of this thread in the calls
 bool is_watching = false;             ///< handlers are installed
 bool is_copy = false;                 ///< a call forked this process
 
-/// Returns the thread_row of a thread that ends.
+bool is_under_way(const PluginCalls::Call& call) { return call.number % 2 != 0; }
+
+/// Returns the row of a thread that ends; not where a call on it has called exit(), whose handlers come later.
 struct RowHolder {
   ~RowHolder() {
-    if (thread_row != kNone) taken_rows &= ~(std::uint64_t{1} << thread_row);
+    if (thread_row == kNone || is_under_way(shared_calls.load()->calls[thread_row])) return;
+    taken_rows &= ~(std::uint64_t{1} << thread_row);
     thread_row = kNone;
   }
 };
 
-/// @return kNone where all are taken_rows
+/// @return kNone where all are taken
 int take_row() {
   static thread_local const RowHolder holder;
   for (std::uint64_t before = taken_rows; ~before != 0;) {
@@ -46,8 +49,6 @@ int take_row() {
   }
   return kNone;
 }
-
-bool is_under_way(const PluginCalls::Call& call) { return call.number % 2 != 0; }
 
 /// This thread's call under way; kNone: none.
 int call_of_thread() {

@@ -43,7 +43,10 @@ int recurse(int depth) {
 /// Leaves a process behind, whose id is written to a file. @param away in a session of its own
 void leave_running(const std::string& file, bool away) {
   const pid_t child = fork();
-  if (child > 0) return;
+  if (child > 0) {
+    for (std::string text; text.empty(); usleep(1000)) std::ifstream(file) >> text;
+    return;
+  }
   if (away) {
     setsid();
     if (fork() > 0) _exit(0);
@@ -71,7 +74,10 @@ void end_by(const std::string& how, const std::string& file) {
        [] {
          while (yes) continue;
        }},
-      {"sleep", [] { sleep(60); }},
+      {"sleep",
+       [] {
+         while (yes) sleep(60);  // signals interrupt it
+       }},
       {"number", [] { throw 7; }},
       {"text", [] { throw std::runtime_error("\x1b[2Jred\x07\nsensorfarm: all is well"); }},
       {"close", [] { close(0), close(1), close(2); }},

@@ -71,7 +71,7 @@ void Server::run() {
   while (!stop_) {
     const std::size_t before = connections_.size();
     for (const std::uint64_t key : wait_.wait()) {
-      if (key == netio::SocketWait::kWoken) publish();
+      if (key == netio::SocketWait::kWoken) publish(), flush();  // ahead of answers to requests that came later
       if (key < kFirstConnection) accept_all(key);
       if (key >= kFirstConnection && key != netio::SocketWait::kWoken) receive(key);
     }
