@@ -189,7 +189,10 @@ TEST(SweepCommand, AProcessThatDiesCostsItsJobAlone) {
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_NE(outcome.out.find("3 jobs: 2 without expectations, 1 failed"), std::string::npos)
       << outcome.out << outcome.err;
-  EXPECT_NE(outcome.err.find("job 1 failed: its process was ended by signal 9"), std::string::npos) << outcome.err;
+  EXPECT_NE(
+      outcome.err.find("job 1 failed: controller 'Crash' of robot 'roomba1' ended the process (signal 9, Killed)"),
+      std::string::npos)
+      << outcome.err;
 }
 
 TEST(SweepCommand, SlurmScriptsNameWhatIsMissing) {
