@@ -18,7 +18,8 @@ struct Interrupted : std::runtime_error {
 /// Threads that run the pieces of a loop. One caller at a time.
 class ThreadPool {
  public:
-  /// @param threads number of threads in a loop, including the caller; 0: one per core of the machine.
+  /// @param threads number of threads in a loop, including the caller; 0: one per core of the machine. Where the system
+  /// starts no more, there are fewer, with a note on standard error.
   explicit ThreadPool(unsigned threads = 0);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -33,6 +34,7 @@ class ThreadPool {
 
   /// Calls `body(first, last, thread)` on pieces of [0, count) and returns when all are done; `thread` < threads(). The
   /// assignment of pieces to threads varies, so results of `body` must not depend on it. Allocates nothing.
+  /// @throws what a piece threw first, once all pieces are done
   template <class Body>
   void parallel_for(std::size_t count, std::size_t piece, Body&& body) {
     using Plain = std::remove_reference_t<Body>;

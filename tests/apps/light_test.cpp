@@ -52,6 +52,22 @@ TEST(Light, EndsAfterItsDuration) {
   EXPECT_NE(outcome.err.find("sent "), std::string::npos) << outcome.err;
 }
 
+/// On both sides, as for robots.
+TEST(Light, AnotherKeyThanTheFarmsIsStated) {
+  const Folder folder;
+  const std::string port = std::to_string(free_ports(1));
+  const auto peers = [&](const std::string& name, char digit) {
+    return folder.write(name, "[[peer]]\nlight = 1\nkey = \"" + std::string(64, digit) + "\"\n");
+  };
+  Program farm(with({"serve", our_world("simville/simville.world"), "--port", port, "--peers", peers("farm.toml", '1')},
+                    town_ports()));
+  ASSERT_TRUE(farm.says("Ctrl-C ends it")) << farm.err();
+  Program light(
+      {"light", our_world("simville/lights.toml"), "--farm", "127.0.0.1:" + port, "--peers", peers("light.toml", '2')});
+  EXPECT_TRUE(light.says("has another key for intersection 1 than --peers here")) << light.err();
+  EXPECT_TRUE(farm.says("intersection 1 at 127.0.0.1:")) << farm.err();
+}
+
 /// Two seconds of a plan by detectors, beside a farm whose robot stands where one is.
 TEST(Light, APlanIsRunBesideAFarm) {
   const std::string port = std::to_string(free_ports(1));
