@@ -1,6 +1,6 @@
 // CPU time of ticks with movers in crowds, beside the same movers spread out, with both casters.
 //
-//   build/bench/crowd_cost [ROBOTS...]
+//   build/release/crowd_cost [ROBOTS...]
 
 #include <fmt/format.h>
 

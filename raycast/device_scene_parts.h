@@ -38,8 +38,8 @@ struct DeviceScene::NearbyMover {
   std::uint32_t first = 0, count = 0;  ///< entries that face the view, in the scratch's `mover_entries`
 };
 
-/// Sum of the squared radii of discs, to tell a crowd, whose discs overlap: with little overlap it is at most a few
-/// times the squared radius of the disc that holds them all.
+/// Detects crowds by the sum of the squared radii of discs: where discs overlap little it is at most a few times the
+/// squared radius of the disc that holds them all.
 class CrowdMeasure {
  public:
   /// Adds discs by their distance from one point. @return true in a crowd

@@ -14,6 +14,8 @@ namespace sf::raycast {
 
 using base::Pose;
 
+inline constexpr int kMaxGridCells = 256;  ///< along an axis
+
 /// Outlines of all movers, without edges that lasers do not see.
 class MoverGeometry {
  public:

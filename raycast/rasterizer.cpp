@@ -9,8 +9,7 @@
 #define HWY_TARGET_INCLUDE "raycast/rasterizer.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h: the code that is compiled per instruction set.
-#include "raycast/rasterizer/exact-inl.h"
-#include "raycast/rasterizer/movers-inl.h"
+#include "raycast/rasterizer/decide-inl.h"
 #include "raycast/rasterizer/ranges-inl.h"
 
 HWY_BEFORE_NAMESPACE();
