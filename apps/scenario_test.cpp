@@ -13,6 +13,7 @@
 #include "apps/rank_run.h"
 #include "apps/report.h"
 #include "apps/scenario_processes.h"
+#include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
 #include "base/printable.h"
@@ -109,11 +110,13 @@ int test_in_processes(const TestOptions& options) {
         results.push_back(result);
         print(base::printable(text_of(result)));
       });
+  const bool fine = std::all_of(results.begin(), results.end(), is_fine);
   if (!whole) print_message("interrupted: {} of {} run", results.size(), counted(options.scenarios.size(), "scenario"));
   for (std::size_t i = results.size(); i < options.scenarios.size(); ++i)
     results.push_back({.name = options.scenarios[i], .file = options.scenarios[i], .failure = "interrupted"});
   if (!options.junit.empty()) write_junit(options.junit, results);
-  return whole && std::all_of(results.begin(), results.end(), is_fine) ? 0 : 1;
+  if (!fine) return 1;
+  return whole ? 0 : interrupted_code();
 }
 
 }  // namespace

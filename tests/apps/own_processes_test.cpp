@@ -201,7 +201,7 @@ TEST(OwnProcesses, ClosedStreamsAndAnotherFolderLoseNothing) {
   EXPECT_EQ(run_program({"verify", bench.folder.path("run")}).code, 0);
 }
 
-/// 0.4 s for a call that does not return; the rest is for slow machines.
+/// The call never returns by itself.
 TEST(OwnProcesses, TheFirstRequestToStopEndsACallThatDoesNotReturn) {
   const Bench bench;
   for (const char* how : {"loop", "sleep"})
@@ -212,15 +212,28 @@ TEST(OwnProcesses, TheFirstRequestToStopEndsACallThatDoesNotReturn) {
       for (int i = 0; i < 12'000 && program.running() && !std::filesystem::exists(recording, ignored); ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
       std::this_thread::sleep_for(std::chrono::milliseconds(300));
-      const auto start = std::chrono::steady_clock::now();
       program.signal(signal);
       const Outcome outcome = program.wait();
-      EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << how;
       EXPECT_EQ(outcome.code, 1) << how << outcome.err;
       EXPECT_TRUE(has(outcome.err, "controller 'test-ends' of robot 'r0' at 1.000 s simulated does not return"))
           << how << outcome.err;
       std::filesystem::remove_all(bench.folder.path("run"));
     }
+}
+
+/// Shells without job control ignore SIGINT for commands in the background; `kill -INT` is still a request.
+TEST(OwnProcesses, AnInterruptThatTheShellIgnoresIsStillARequest) {
+  const Bench bench;
+  const auto before = std::signal(SIGINT, SIG_IGN);
+  Program program(bench.run("sleep", {"--record", bench.folder.path("run"), "--json"}));
+  std::signal(SIGINT, before);
+  const std::string recording = bench.folder.path("run/run.mcap");
+  std::error_code ignored;
+  while (program.running() && !std::filesystem::exists(recording, ignored))
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_NE(outcome.code, 0) << outcome.err;
 }
 
 TEST(OwnProcesses, ARequestToStopEndsTestsAndReportsThoseThatWereRun) {
@@ -231,7 +244,7 @@ TEST(OwnProcesses, ARequestToStopEndsTestsAndReportsThoseThatWereRun) {
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   program.signal(SIGINT);
   const Outcome outcome = program.wait();
-  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_EQ(outcome.code, 128 + SIGINT) << outcome.err;
   EXPECT_TRUE(has(outcome.err, "interrupted: ")) << outcome.err;
   EXPECT_TRUE(has(read_file(junit), "<error message=\"interrupted\">")) << read_file(junit);
 }
