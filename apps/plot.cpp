@@ -66,8 +66,7 @@ std::vector<viz::LightRow> light_rows(const record::Recording& recording, const 
 /// Pictures are written whole: a stop is heeded between two.
 /// @throws Incomplete when one was asked for.
 void go_on() {
-  if (stop_requested())
-    throw Incomplete("interrupted: the pictures that were written are whole, others are not there");
+  if (stop_requested()) throw Incomplete("interrupted: the pictures that were written are whole, others are not there");
 }
 
 /// Computes every chosen laser's scan once a simulated second from where its robot was.

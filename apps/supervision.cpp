@@ -58,7 +58,8 @@ std::optional<rlim_t> memory_limit() {
   return least;
 }
 
-/// SIGHUP alone: shells let SIGINT be ignored in the background, where `kill` still asks for a stop (apps/stop_signals.h).
+/// SIGHUP alone: shells let SIGINT be ignored in the background, where `kill` still asks for a stop
+/// (apps/stop_signals.h).
 bool is_blocked_by_nohup(int signal) {
   struct sigaction action {};
   sigaction(signal, nullptr, &action);
