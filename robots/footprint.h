@@ -25,7 +25,8 @@ struct Footprint {
   double z_min = 0.0;
   double z_max = 0.0;  ///< [m] of all edges
   double step = 0.0;   ///< [m] > 0, largest travel of any of its points between two tests
-  double inner = 0.0;  ///< [m] radius of a disc about the origin that is solid at the heights of the first edge; 0: none
+  double inner =
+      0.0;  ///< [m] radius of a disc about the origin that is solid at the heights of the first edge; 0: none
 };
 
 /// True where the inner discs of two footprints surely overlap, so that these touch. @param apart [m] of their origins
