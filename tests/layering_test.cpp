@@ -74,7 +74,7 @@ const std::vector<Heavy> kHeavy{{"CLI/", "apps", 7},
                                 {"spng.h", "", 2},
                                 {"yaml-cpp/", ""},
                                 {"toml++/", ""},
-                                {"Eigen/", "robots/estimation"},
+                                {"Eigen/", "robots/estimation", 2},
                                 {"spdlog/", "base"},
                                 {"embree", "bench"}};
 
