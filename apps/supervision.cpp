@@ -58,12 +58,10 @@ std::optional<rlim_t> memory_limit() {
   return least;
 }
 
-/// SIGHUP alone: shells let SIGINT be ignored in the background, where `kill` still asks for a stop
-/// (apps/stop_signals.h).
-bool is_blocked_by_nohup(int signal) {
+bool is_ignored(int signal) {
   struct sigaction action {};
   sigaction(signal, nullptr, &action);
-  return signal == SIGHUP && action.sa_handler == SIG_IGN;
+  return action.sa_handler == SIG_IGN;
 }
 
 class Supervisor {
@@ -85,7 +83,9 @@ class Supervisor {
 
  private:
   void note_stop(int signal) {
-    if (is_blocked_by_nohup(signal)) return;
+    // `nohup` ignores SIGHUP. Shells ignore SIGINT for commands in the background, which the program handles all the
+    // same.
+    if (signal == SIGHUP && is_ignored(signal)) return;
     if (stops_++ == 0)
       for (int i = 0; i < base::PluginCalls::kThreads; ++i) at_stop_[i] = page_.calls.calls[i].number;
     last_ = signal;
