@@ -153,9 +153,8 @@ bool needs_supervision(int argc, const char* const* argv) {
   const auto any = [&](auto&& test) { return std::any_of(argv + 1, argv + argc, test); };
   if (any([](std::string_view word) { return word == "--in-process"; })) return false;
   const char* const plugins = std::getenv("SENSORFARM_PLUGINS");
-  // Files of sweeps and experiments may name controllers, too.
-  return memory_limit() || (plugins != nullptr && *plugins != '\0') || command == "sweep" || command == "experiment" ||
-         any(is_code);
+  // Files of experiments may name controllers, too; sweeps have processes of their own.
+  return memory_limit() || (plugins != nullptr && *plugins != '\0') || command == "experiment" || any(is_code);
 }
 
 std::optional<int> supervise() {

@@ -59,6 +59,19 @@ Jobs pending_jobs(const SweepOptions& options, const Results& results, const Sha
   return jobs;
 }
 
+/// In a process of its own, which makes controllers. @throws base::InputError also where one of them ends it
+void check_in_process(const SweepOptions& options, const Sweep& sweep) {
+  const auto check = [&] { print_warnings(sweep.scenario, check_sweep(sweep)); };
+  if (options.in_process) return check();
+  run_in_processes(1, 1,
+                   {.begin = [] {},
+                    .run = [&](std::size_t) { check(); },
+                    .died = [&](std::size_t, const std::string& why) { throw base::InputError(options.file, 0, why); },
+                    .wait = [](std::size_t) {},
+                    .stop = [] { return false; },
+                    .own_processes = true});
+}
+
 int list_points(const Sweep& sweep) {
   std::string text = fmt::format("{}: {} x {} = {}\n", sweep.name, counted(sweep.points(), "point"),
                                  counted(sweep.seeds.size(), "seed"), counted(sweep.jobs(), "job"));
@@ -178,7 +191,7 @@ int write_batch_script(const SweepOptions& options, const Sweep& sweep, const Sw
 
 int sweep(const SweepOptions& options) {
   const Sweep sweep = scenarios::read_sweep(options.file);
-  print_warnings(sweep.scenario, check_sweep(sweep));
+  check_in_process(options, sweep);
   if (options.list) return list_points(sweep);
   const Share share = share_of(options);
   const SweepFolder folder(sweep, fs::absolute(options.out).lexically_normal().string());
