@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "record/recorder.h"
+#include "record/recording.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 #include "sensors/sensor_type.h"
