@@ -125,14 +125,25 @@ bool Program::says(const std::string& text) {
   return true;
 }
 
+namespace {
+
+bool has_handler(const std::string& process, int signal) {
+  const std::string status = read_file(process + "/status");
+  const std::size_t at = status.find("SigCgt:");
+  if (at == std::string::npos) return false;
+  return (std::strtoull(status.c_str() + at + 7, nullptr, 16) >> (signal - 1) & 1u) != 0;
+}
+
+}  // namespace
+
 bool Program::handles(int number) {
   const auto deadline = Clock::now() + std::chrono::minutes(1);
   for (; running() && Clock::now() < deadline; nap()) {
-    const std::string status = read_file("/proc/" + std::to_string(pid_) + "/status");
-    const std::size_t at = status.find("SigCgt:");
-    if (at == std::string::npos) continue;
-    const std::uint64_t handled = std::strtoull(status.c_str() + at + 7, nullptr, 16);
-    if ((handled >> (number - 1) & 1u) != 0) return true;
+    const std::string process = "/proc/" + std::to_string(pid_);
+    if (has_handler(process, number)) return true;
+    // A parent that supervises passes signals on (apps/supervision.h).
+    const int child = std::atoi(read_file(process + "/task/" + std::to_string(pid_) + "/children").c_str());
+    if (child > 0 && has_handler("/proc/" + std::to_string(child), number)) return true;
   }
   return false;
 }
