@@ -27,7 +27,8 @@ std::atomic<std::uint64_t> taken_rows{0};  ///< bit k: a thread has row k
 static_assert(PluginCalls::kThreads == 64);
 thread_local int thread_row = kNone;  ///< of this thread in the calls
 bool is_watching = false;             ///< handlers are installed
-bool is_copy = false;                 ///< a call forked this process
+thread_local bool forked_in_call = false;
+bool is_copy = false;  ///< a call forked this process
 
 bool is_under_way(const PluginCalls::Call& call) { return call.number % 2 != 0; }
 
@@ -55,9 +56,12 @@ int call_of_thread() {
   return thread_row != kNone && is_under_way(shared_calls.load()->calls[thread_row]) ? thread_row : kNone;
 }
 
+/// Asked before the fork: the original may return from its call before the copy runs.
+void note_fork() { forked_in_call = call_of_thread() != kNone; }
+
 /// A copy that a call forked must not write where its original does.
-void note_fork() {
-  is_copy = call_of_thread() != kNone;
+void note_copy() {
+  is_copy = forked_in_call;
   if (is_copy) shared_calls = &own_calls;
 }
 
@@ -105,7 +109,7 @@ void on_fatal(int signal) {
 }
 
 void install_handlers() {
-  pthread_atfork(nullptr, nullptr, note_fork);
+  pthread_atfork(note_fork, nullptr, note_copy);
   std::at_quick_exit(on_quick_exit_called);
   // A stack of its own, for recursion without end on the main thread.
   static std::array<char, 1 << 16> stack;
