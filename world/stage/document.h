@@ -9,6 +9,8 @@
 
 namespace sf::world {
 
+inline constexpr std::size_t kMaxWarnings = 10'000;  ///< of the grammar, and of what keys mean; the rest is left out
+
 /// A place in a file.
 struct SourceLocation {
   std::uint32_t file = 0;  ///< row in `Document::files`

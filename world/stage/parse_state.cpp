@@ -11,7 +11,6 @@ namespace sf::world {
 namespace {
 
 constexpr std::size_t kFewKeys = 32;  // up to this number: linear search
-constexpr std::size_t kMaxWarnings = 10'000;
 
 }  // namespace
 

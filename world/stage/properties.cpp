@@ -8,12 +8,6 @@
 
 namespace sf::world {
 
-namespace {
-
-constexpr std::size_t kMaxWarnings = 10'000;
-
-}  // namespace
-
 void fail(const StageContext& context, SourceLocation at, const std::string& message) {
   throw base::InputError(context.document.files[at.file], at.line, message);
 }
