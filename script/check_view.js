@@ -84,14 +84,15 @@ async function watchRun(browser, requests) {
   await until(page, "not restarted", (before) => view.fleet.tick < before, tick);
 
   // A click on a robot selects it; a click beside all selects none.
-  const at = await page.evaluate(() => { const [x, y] = view.camera.toScreen(view.fleet.shownX[1], view.fleet.shownY[1]), box = document.getElementById("view").getBoundingClientRect(); return [box.x + x, box.y + y]; });
   await page.evaluate(() => view.connection.set(["/paused", true]));
+  await until(page, "not at rest", () => view.paused && view.fleet.shownX[1] === view.fleet.x[1] && view.fleet.shownY[1] === view.fleet.y[1]);
+  const at = await page.evaluate(() => { const [x, y] = view.camera.toScreen(view.fleet.shownX[1], view.fleet.shownY[1]), box = document.getElementById("view").getBoundingClientRect(); return [box.x + x, box.y + y]; });
   await page.mouse.click(...at);
   await until(page, "not picked", () => view.drawing.selected >= 0 && view.drawing.drawn.selected >= 0);
   await page.keyboard.press("Escape");
   await until(page, "not left", () => view.drawing.selected === -1);
 
-  check((await server.end()) === 0, "the program failed");
+  check((await server.end()) === 130, "the program did not exit as interrupted before its --duration");
   await until(page, "the end is not shown", () => document.getElementById("status").dataset.state === "lost");
   await page.close();
 }
