@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "sensors/laneedge.h"
+#include "sensors/wire_error.h"
 
 namespace sf::sensors {
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "sensors/laser.h"
+#include "sensors/wire_error.h"
 
 namespace sf::sensors {
 

@@ -188,10 +188,6 @@ inline std::size_t element_width(const SensorType& type) {
   return width;
 }
 
-/// `SensorType::wire_error` of a wire with steps of `step`, rounded to nearest, for values in [least, most], all in the
-/// unit of the first column. Infinite values have words of their own. @param width numbers per element
-double wire_error(std::span<const double> values, std::size_t width, double step, double least, double most);
-
 /// `SensorType::make` for a backend that needs only the context.
 template <class Made>
 std::unique_ptr<SensorBackend> make_backend(const SensorContext& context) {
