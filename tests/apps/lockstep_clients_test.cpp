@@ -134,8 +134,6 @@ print(reading.unsure, "none" if reading.error is None else "within 2 nm" if read
 fleet.leave()
 )");
   const std::string c = folder.write("look.c", R"(
-#define SENSORFARM_LOCKSTEP_NO_MAIN
-#include LOCKSTEP_CLIENT
 int main(int argc, char** argv) {
   static sf_lockstep l;
   if (argc < 2 || !sf_lockstep_open(&l, 1, 1, "127.0.0.1", argv[1], 1u << SF_LASER, 60)) return 1;
@@ -146,8 +144,8 @@ int main(int argc, char** argv) {
 }
 )");
   const std::string program = folder.path("look"), log = folder.path("log");
-  ASSERT_EQ(std::system(("cc -std=c11 -w -DLOCKSTEP_CLIENT='\"" + kLockstepClients + ".c\"' -o " + program + " " + c +
-                         " -lm >" + log + " 2>&1")
+  ASSERT_EQ(std::system(("cc -std=c11 -w -DSENSORFARM_LOCKSTEP_NO_MAIN -include " + kLockstepClients + ".c -o " +
+                         program + " " + c + " -lm >" + log + " 2>&1")
                             .c_str()),
             0)
       << read_file(log);
