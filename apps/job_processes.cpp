@@ -37,7 +37,7 @@ enum Code : int { kFine = 0, kFailed = 1, kInput = 2, kDevice = 3 };
 /// A child's part of the memory that parent and children share.
 struct Seat {
   std::atomic<std::size_t> row{kNoRow};  ///< its job; kNoRow: between two
-  char error[1024] = {};                 ///< what it threw
+  char error[1024] = {};                 ///< text of the exception
   base::PluginCalls calls;
 };
 

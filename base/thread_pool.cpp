@@ -63,7 +63,7 @@ struct ThreadPool::State {
   bool stop = false;
   std::exception_ptr failure;                   ///< of the job: the first that a piece threw
   std::function<bool()> interrupt;              ///< of `interrupt_on`
-  std::chrono::nanoseconds patience{};          ///< likewise
+  std::chrono::nanoseconds patience{};          ///< of `interrupt_on`
   std::atomic<std::int64_t> interrupted_at{0};  ///< [ns] steady clock, when `interrupt` was first true; 0: never
   std::atomic<bool> given_up{false};            ///< the job leaves pieces out
 

@@ -161,7 +161,7 @@ class Inbox {
   std::int64_t period_start_ = 0;            ///< [ns]
   std::array<std::size_t, 2> challenges_{};  ///< in that period, without and with a key
   std::size_t doubtful_signatures_ = 0;      ///< in that period
-  std::size_t refusals_ = 0;                 ///< likewise
+  std::size_t refusals_ = 0;                 ///< in that period
   PacketCounts counts_;
   Socket socket_;
   ReceiveBatch batch_;

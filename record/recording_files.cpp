@@ -20,7 +20,7 @@ namespace {
 
 bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
 
-/// Whether a living process holds the lock of `path`. A link is nobody's recording.
+/// Whether a living process holds the lock of `path`. A link is no recording.
 bool is_being_written(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
   if (descriptor < 0) return false;

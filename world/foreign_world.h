@@ -1,5 +1,5 @@
 #pragma once
-// Files that are no worlds of ours: worlds of other simulators, and pictures, maps and programs' settings beside them.
+// Files that are not Stage worlds: worlds of other simulators, pictures, maps and settings of programs.
 // Each is recognised by its content and refused by its name, with the way in which its geometry can be used.
 
 #include <string>

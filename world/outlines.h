@@ -3,7 +3,7 @@
 //
 // A table in text has a geometry a row in one of its columns, whichever that is, in well-known text or binary
 // (world/well_known_geometry.h), and the heights of its walls in a column `height`; its first line may name the
-// columns. GeoPackage, shapefiles and GeoJSON are read through GDAL, likewise. Coordinates are plane, in the unit of
+// columns. GeoPackage, shapefiles and GeoJSON are read through GDAL. Coordinates are plane, in the unit of
 // length of the world file.
 
 #include <functional>

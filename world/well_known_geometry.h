@@ -42,7 +42,7 @@ GeometryGuess guess_geometry(std::string_view text);
 /// @throws base::InputError with the reason alone: the caller knows file and line
 void read_geometry(std::string_view text, double arc_error, WellKnownGeometry& geometry);
 
-/// Likewise for well-known binary. @param bytes ISO WKB or EWKB, either byte order
+/// The same for well-known binary. @param bytes ISO WKB or EWKB, either byte order
 void read_binary_geometry(std::string_view bytes, double arc_error, WellKnownGeometry& geometry);
 
 }  // namespace sf::world

@@ -16,8 +16,8 @@ namespace sf::server {
 
 namespace {
 
-constexpr std::int64_t kAnswerIn = 3'000'000'000;       ///< [ns] without one, the user is told
-constexpr std::int64_t kTroubleIn = 1'000'000'000;      ///< [ns] likewise, of refused signatures
+constexpr std::int64_t kAnswerIn = 3'000'000'000;       ///< [ns] of silence before a message
+constexpr std::int64_t kTroubleIn = 1'000'000'000;      ///< [ns] of refused signatures before a message
 constexpr std::int64_t kTroubleEvery = 10'000'000'000;  ///< [ns]
 
 /// [ns] Never shorter than two and a half periods of the fastest sensor, so that one lost reading stops nobody.

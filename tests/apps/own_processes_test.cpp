@@ -57,17 +57,17 @@ struct End {
 /// Each way in which a plug-in can end the process, and how it is stated.
 const End kEnds[] = {
     {"exit 0", "(exit code 0)"},      // looks like success
-    {"exit 3", "(exit code 3)"},      // a code of ours
+    {"exit 3", "(exit code 3)"},      // a code that the program uses
     {"quick_exit", "(exit code 0)"},  // calls no handler of exit()
     {"_exit", "(exit code 0)"},       // calls no handler at all
     {"abort", "signal 6"},            // raised by the library
-    {"terminate", "signal 6"},        // as an exception that nobody catches
+    {"terminate", "signal 6"},        // as an exception that is not caught
     {"segv", "signal 11"},            // sent
     {"null", "signal 11"},            // a fault
     {"bus", "signal 7"},              // as a mapped file that shrinks
     {"recursion", "signal 11"},       // no stack is left for a handler
     {"kill", "signal 9"},             // cannot be handled, as the system does for want of memory
-    {"term", "signal 15"},            // nobody has asked for it
+    {"term", "signal 15"},            // without a request to stop
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ TEST(Overlaps, RobotsInOneAnother) {
   EXPECT_EQ(overlapping("bot( size [4 4 0.3] ) bot( pose [1 1 0 0] )"), (Rows{0, 1})) << "one inside the other";
   EXPECT_EQ(overlapping("bot( ) bot( pose [0 0 0.3 0] )"), (Rows{})) << "one on top of the other";
   EXPECT_EQ(overlapping("bot( ) bot( pose [0 0 0.29 0] )"), (Rows{0, 1}));
-  EXPECT_EQ(overlapping("bot( obstacle_return 0 ) bot( )"), (Rows{})) << "it stops nobody";
+  EXPECT_EQ(overlapping("bot( obstacle_return 0 ) bot( )"), (Rows{})) << "it stops no robot";
   EXPECT_EQ(overlapping("bot( name \"tag1\" ) bot( )"), (Rows{})) << "tags can be anywhere";
   EXPECT_EQ(overlapping("bot( noblocks 1 ) bot( )"), (Rows{})) << "without a body";
 }

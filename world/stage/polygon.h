@@ -24,7 +24,7 @@ struct Polygon {
 /// `solid_left`.
 Polygon make_polygon(std::vector<glm::dvec2> points);
 
-/// Likewise, with bounded work. @param pairs of edges that may still be compared; lowered by those that are
+/// The same with bounded work. @param pairs of edges that may still be compared; lowered by those that are
 /// @return nothing where more would have to be: all whose extents along x overlap, at most half the square of the edges
 std::optional<Polygon> make_polygon(std::vector<glm::dvec2> points, double& pairs);
 

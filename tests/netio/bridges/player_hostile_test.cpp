@@ -186,7 +186,7 @@ TEST(PlayerHostile, TooManyClientsAreRefused) {
 
 /// Connections that have opened nothing make room, the one that was silent for longest first; a client that is served
 /// stays. A second has to pass, in which a connection may be about to open its devices.
-TEST(PlayerHostile, IdleConnectionsLockNobodyOut) {
+TEST(PlayerHostile, IdleConnectionsDoNotLockOthersOut) {
   PlayerRun run;
   TestClient served(run.port());
   served.banner(), served.open(kPosition);
