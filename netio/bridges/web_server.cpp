@@ -27,7 +27,7 @@ using tcp = asio::ip::tcp;
 using Error = beast::error_code;
 
 constexpr std::size_t kMaxHeader = 16 << 10;             // [byte]
-constexpr auto kPause = std::chrono::milliseconds(200);  // after a connection that could not be accepted
+constexpr auto kAcceptPause = std::chrono::milliseconds(200);  // after a connection that could not be accepted
 constexpr auto kRequestTime = std::chrono::seconds(15);
 constexpr auto kSilence = std::chrono::seconds(60);  // without a message or an answer to a ping
 // [byte] What the kernel takes is not skipped any more: a second of a large fleet would be too much.
@@ -186,7 +186,7 @@ void WebServer::Implementation::accept() {
 
 /// Where no descriptors are left, the connection keeps waiting, and each attempt would fail at once.
 void WebServer::Implementation::accept_later() {
-  pause_.expires_after(kPause);
+  pause_.expires_after(kAcceptPause);
   pause_.async_wait([this](Error error) {
     if (!error) accept();
   });
