@@ -26,7 +26,7 @@ namespace websocket = beast::websocket;
 using tcp = asio::ip::tcp;
 using Error = beast::error_code;
 
-constexpr std::size_t kMaxHeader = 16 << 10;             // [byte]
+constexpr std::size_t kMaxHeader = 16 << 10;                   // [byte]
 constexpr auto kAcceptPause = std::chrono::milliseconds(200);  // after a connection that could not be accepted
 constexpr auto kRequestTime = std::chrono::seconds(15);
 constexpr auto kSilence = std::chrono::seconds(60);  // without a message or an answer to a ping
