@@ -18,7 +18,7 @@ std::vector<netio::Peer> peers_of(const PeersOption& options, const world::World
 
 /// One that may send, by the name that users have for it.
 struct NamedPeer {
-  std::optional<netio::Claim> claim;  ///< nullopt: what it sends has no signatures
+  std::optional<netio::Claim> claim;  ///< nullopt: its packets are unsigned
   std::string name;
 };
 /// Why strangers can speak for some of `senders`; empty: all have a key.

@@ -27,7 +27,7 @@ namespace {
 
 using scenarios::ScenarioResult;
 
-/// What `test` shows of a result. `row` comes first, then the size of the rest.
+/// The part of a result that `test` prints. `row` comes first, then the size of the rest.
 base::Bytes bytes_of(std::size_t row, const ScenarioResult& result) {
   base::Bytes body, bytes;
   base::ByteWriter out(body);
@@ -96,7 +96,7 @@ class ResultFile {
 
  private:
   int descriptor_;
-  off_t position_ = 0;  ///< of what is not yet taken
+  off_t position_ = 0;  ///< offset of the first unread byte
 };
 
 /// The scenarios of one command.
@@ -177,7 +177,7 @@ class OwnProcesses {
     return result;
   }
 
-  /// Those whose predecessors are shown.
+  /// Prints results in the order of the files.
   void show() {
     const std::size_t shown = shown_;
     for (; shown_ < results_.size() && results_[shown_]; ++shown_) show_(*results_[shown_]);

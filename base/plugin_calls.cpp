@@ -65,7 +65,7 @@ void note_copy() {
   if (is_copy) shared_calls = &own_calls;
 }
 
-/// The line of a process without a parent that reports. Allocates nothing: the heap may be what is broken.
+/// Prints how an unsupervised process ended. Allocates nothing, since the heap may be corrupt.
 void report_end(const char* how) {
   const int blamed = own_calls.blamed;
   const PluginCalls::Call* const call = blamed == kNone ? nullptr : &own_calls.calls[blamed];

@@ -54,7 +54,7 @@ void renew_plugin_watch();
 /// From now on exit() is the program's own.
 void finish_plugin_calls();
 
-/// Who ended the process, how and when: "controller 'a' of robot 'b' ended the process (exit code 0) at 3.200 s
+/// Names the call that ended the process: "controller 'a' of robot 'b' ended the process (exit code 0) at 3.200 s
 /// simulated". Empty: no call was under way.
 /// @param how "exit code 0"
 std::string blame(const PluginCalls& calls, const std::string& how);

@@ -1,4 +1,4 @@
-// CPU time of ticks with movers in crowds, beside the same movers spread out, with both casters.
+// CPU time of ticks with movers in crowds and with the same movers spread out, for both casters.
 //
 //   build/release/crowd_cost [ROBOTS...]
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the farm says of peers whose signatures it refuses: with another key, without one, or with a clock that is
+// Reports peers whose signatures the farm refuses: with another key, without one, or with a clock that is
 // behind.
 
 #include <cstdint>

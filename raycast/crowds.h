@@ -8,7 +8,7 @@
 // of a cell grows with the number of its movers, not with its viewers and beams; a scan from it then reads the few
 // edges that are left. Movers that hold no viewer, and outlines that are not convex, are scanned as outside of crowds.
 //
-// Lines hide what is beyond them by more than the rounding of 64-bit ranges, so that readings do not change.
+// A line hides only points that lie beyond it by more than the rounding of 64-bit ranges, so readings do not change.
 
 #include <functional>
 #include <span>

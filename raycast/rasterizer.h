@@ -27,8 +27,8 @@ namespace sf::raycast {
 /// Up to this number of beams, a scan intersects each beam in 64 bits instead of projecting all segments.
 inline constexpr std::uint32_t kMaxExactBeams = 3;
 
-/// Beyond this number of uncertain beams a scan projects all segments once more, to intersect each with the
-/// beams whose nearest it may be. Up to it, each beam is intersected with what it crosses.
+/// With more uncertain beams than this, a scan projects all segments again and intersects each with the beams that it
+/// may be nearest to. With fewer, each beam is intersected with the segments that it crosses.
 inline constexpr std::size_t kMaxSingleDecisions = 24;
 
 /// Scans of one thread, with their scratch memory. Not thread-safe.
