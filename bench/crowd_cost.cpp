@@ -1,10 +1,11 @@
 // CPU time of ticks with movers in crowds and with the same movers spread out, for both casters.
 //
-//   build/release/crowd_cost [ROBOTS...]
+//   build/release/crowd_cost [ROBOTS|LAYOUT...], where LAYOUT is a part of the name of a layout: default all
 
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <string_view>
 #include <vector>
 
 #include "base/hash.h"
@@ -53,6 +54,18 @@ constexpr Layout kLayouts[] = {
      [](int, Chance& c) {
        return base::Pose{0.5, 0.25, 0.0, c.between(-3, 3)};
      }},
+    {"turned within 1 um",
+     [](int, Chance& c) {
+       return base::Pose{0.5 + 1e-6 * c.between(-1, 1), 0.25 + 1e-6 * c.between(-1, 1), 0.0, c.between(-3, 3)};
+     }},
+    {"turned within 1 mm",
+     [](int, Chance& c) {
+       return base::Pose{0.5 + 1e-3 * c.between(-1, 1), 0.25 + 1e-3 * c.between(-1, 1), 0.0, c.between(-3, 3)};
+     }},
+    {"turned within 0.1 m",
+     [](int, Chance& c) {
+       return base::Pose{0.1 * c.between(-1, 1), 0.1 * c.between(-1, 1), 0.0, c.between(-3, 3)};
+     }},
     {"in a line, 1 cm apart",
      [](int i, Chance&) {
        return base::Pose{0.01 * i, 0.0, 0.0, M_PI};
@@ -87,9 +100,16 @@ void measure(gpu::Device& device, const Layout& layout, int robots, raycast::Cas
 int main(int argc, char** argv) {
   sf::gpu::Device device;
   std::vector<int> sizes;
-  for (int k = 1; k < argc; ++k) sizes.push_back(std::atoi(argv[k]));
+  std::string_view chosen;
+  for (int k = 1; k < argc; ++k)
+    if (const int size = std::atoi(argv[k]); size > 0)
+      sizes.push_back(size);
+    else
+      chosen = argv[k];
   if (sizes.empty()) sizes = {50, 200, 800, 1'000};
   for (const auto caster : {sf::raycast::CasterChoice::host, sf::raycast::CasterChoice::vulkan})
     for (const int robots : sizes)
-      for (const sf::bench::Layout& layout : sf::bench::kLayouts) sf::bench::measure(device, layout, robots, caster);
+      for (const sf::bench::Layout& layout : sf::bench::kLayouts)
+        if (std::string_view(layout.name).find(chosen) != std::string_view::npos)
+          sf::bench::measure(device, layout, robots, caster);
 }

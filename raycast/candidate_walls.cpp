@@ -12,7 +12,16 @@ namespace {
 /// [rad] error bound of the bearings below.
 constexpr double kSlack = 1e-5;
 
-/// Bearing [rad] of p with error below 2e-6: arc tangent after Abramowitz and Stegun 4.4.49.
+/// [rad] upper bound, but for rounding, of the arc sine of v in [0, 1).
+double asin_bound(double v) {
+  if (v > 0.8) return std::asin(v);
+  const double vv = v * v;
+  return v * (1.0 + vv * (1.0 / 6.0 + vv * (0.075 + vv * 0.2)));
+}
+
+}  // namespace
+
+/// Arc tangent after Abramowitz and Stegun 4.4.49.
 double fast_bearing(glm::dvec2 p) {
   const double along = std::abs(p.x), across = std::abs(p.y);
   const double q = std::min(along, across) / std::max(along, across), z = q * q;
@@ -25,15 +34,6 @@ double fast_bearing(glm::dvec2 p) {
   if (p.x < 0.0) t = M_PI - t;
   return std::copysign(t, p.y);
 }
-
-/// [rad] upper bound, but for rounding, of the arc sine of v in [0, 1).
-double asin_bound(double v) {
-  if (v > 0.8) return std::asin(v);
-  const double vv = v * v;
-  return v * (1.0 + vv * (1.0 / 6.0 + vv * (0.075 + vv * 0.2)));
-}
-
-}  // namespace
 
 CandidateWall candidate_wall(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius) {
   CandidateWall f{a, b, row, std::max(0.0, world::distance({}, a, b) - radius), 0.0, 2.0 * M_PI, -1};

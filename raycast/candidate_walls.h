@@ -41,6 +41,9 @@ struct CandidateWalls {
 /// The segment ab seen by viewers in the disc of `radius` [m] round the origin.
 CandidateWall candidate_wall(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius);
 
+/// Bearing [rad] of p with an error below 2e-6. `CandidateWall` allows for the errors of its own and of a beam.
+double fast_bearing(glm::dvec2 p);
+
 /// Clips ab to within `reach` [m] of the origin. @return false when nothing is left
 bool clip(glm::dvec2& a, glm::dvec2& b, double reach);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "raycast/wall_blocks.h"
@@ -10,13 +11,18 @@ namespace sf::raycast {
 
 namespace {
 
-constexpr std::size_t kDirections = 256;  ///< of lines
+/// Directions of lines: few find a line that hides an edge at a large angle, many one of hundreds at a small angle.
+constexpr std::size_t kFewDirections = 256;
+constexpr std::size_t kMostDirections = 16384;
+/// To either side of an edge's direction lines are looked for until there are so many, or so many directions are done.
+constexpr int kLinesAside = 3;
+constexpr std::size_t kMostTurns = 12;
 
 /// Index of a direction: monotonic in its bearing, so that neighbours lie within a few degrees.
-std::size_t direction_of(glm::dvec2 n) {
+std::size_t direction_of(glm::dvec2 n, std::size_t directions) {
   const double part = n.y / (std::abs(n.x) + std::abs(n.y));
   const double turn = n.x < 0.0 ? 2.0 - part : part + (n.y < 0.0 ? 4.0 : 0.0);  // [quarters] in [0, 4]
-  return static_cast<std::size_t>(turn * (kDirections / 4.0)) % kDirections;
+  return static_cast<std::size_t>(turn * (static_cast<double>(directions) / 4.0)) % directions;
 }
 
 /// The two least of values that belong to different movers.
@@ -46,12 +52,23 @@ struct Crowds::Lines {
     double offset = HUGE_VAL;  ///< [m] from the cell's centre
     std::uint32_t mover = kNoMover;
   };
-  std::array<std::array<Line, 2>, kDirections> nearest;
-  double margin;             ///< [m] beyond a line, more than the rounding of 64-bit ranges
-  TwoLeast reach{HUGE_VAL};  ///< [m] farthest corners of the outlines that hold the viewers
+  using Nearest = std::vector<std::array<Line, 2>>;  ///< by direction
+  std::array<Nearest, 2> tables;                     ///< of few and of many directions; the second may be empty
+  double margin = 0.0;                               ///< [m] beyond a line, more than the rounding of 64-bit ranges
+  TwoLeast reach{HUGE_VAL};                          ///< [m] farthest corners of the outlines that hold the viewers
 
+  /// Removes all lines. @param expected number of lines to be added
+  void clear(std::size_t expected) {
+    tables[0].assign(kFewDirections, {});
+    tables[1].assign(expected > kFewDirections ? std::min(kMostDirections, std::bit_ceil(expected)) : 0, {});
+    reach = TwoLeast(HUGE_VAL);
+  }
   void add(const Line& line) {
-    auto& [first, second] = nearest[direction_of(line.normal)];
+    for (Nearest& table : tables)
+      if (!table.empty()) add(line, table[direction_of(line.normal, table.size())]);
+  }
+  static void add(const Line& line, std::array<Line, 2>& nearest) {
+    auto& [first, second] = nearest;
     if (line.offset < first.offset) {
       if (line.mover != first.mover) second = first;
       first = line;
@@ -63,56 +80,111 @@ struct Crowds::Lines {
   /// Finds what lines of about the direction `normal` leave of ab: parts of its length, up to its end but for what is
   /// hidden at its start, and the other way round.
   void find_hidden(glm::dvec2 a, glm::dvec2 b, glm::dvec2 normal, TwoLeast& start, TwoLeast& end) const {
-    const std::size_t direction = direction_of(normal);
-    for (const std::size_t turn : {kDirections - 1, std::size_t{0}, std::size_t{1}})
-      for (const Line& line : nearest[(direction + turn) % kDirections]) {
+    const auto cut_by = [&](const std::array<Line, 2>& nearest) {
+      int lines = 0;
+      for (const Line& line : nearest) {
         if (line.mover == kNoMover) continue;
+        ++lines;
         const double at_a = dot(line.normal, a) - line.offset, at_b = dot(line.normal, b) - line.offset;
         if (at_a > margin) start.add(at_b > margin ? 0.0 : (margin - at_b) / (at_a - at_b), line.mover);
         if (at_b > margin) end.add(at_a > margin ? 0.0 : (margin - at_a) / (at_b - at_a), line.mover);
       }
+      return lines;
+    };
+    const auto cut_to_side = [&](const Nearest& table, std::size_t direction, std::size_t turn, std::size_t most) {
+      int lines = 0;
+      for (std::size_t k = 1; k <= most && lines < kLinesAside; ++k)
+        lines += cut_by(table[(direction + k * turn) % table.size()]);
+    };
+    for (const Nearest& table : tables) {
+      if (table.empty() || start.second + end.second <= 1.0) return;
+      const std::size_t direction = direction_of(normal, table.size()), most = &table == &tables[0] ? 1 : kMostTurns;
+      cut_by(table[direction]);
+      cut_to_side(table, direction, 1, most);
+      cut_to_side(table, direction, table.size() - 1, most);
+    }
   }
 };
 
+struct Crowds::Scratch {
+  std::vector<std::uint32_t> members;
+  Lines lines;
+  std::vector<CandidateWall> found;
+  BearingIndex::Scratch index;
+};
+
+Crowds::Crowds(const MoverGeometry& movers) : movers_(movers) {}
+Crowds::~Crowds() = default;
+
 void Crowds::find(std::span<const Viewpoint> views, const std::function<std::uint32_t(std::uint32_t)>& height_of,
                   base::ThreadPool& thread_pool) {
-  find_places(views, height_of);
-  if (cells_.size() < places_.size()) cells_.resize(places_.size());
   scratch_.resize(thread_pool.threads());
+  find_places(views, height_of, thread_pool);
+  if (cells_.size() < places_.size()) cells_.resize(places_.size());
   thread_pool.parallel_for(places_.size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
-    for (std::size_t k = first; k < last; ++k) {
-      const base::Box& box = boxes_[k];
-      const Disc viewers{0.5 * (box.min + box.max), 0.5 * length(box.max - box.min) * (1.0 + 1e-6) + 1e-9 +
-                                                        1e-15 * (std::abs(box.max.x) + std::abs(box.max.y))};
-      build(movers_.outlines(places_[k].height), viewers, scratch_[thread], cells_[k]);
-    }
+    for (std::size_t k = first; k < last; ++k)
+      build(movers_.outlines(places_[k].height), viewers_of(k), scratch_[thread], cells_[k]);
   });
 }
 
-void Crowds::find_places(std::span<const Viewpoint> views,
-                         const std::function<std::uint32_t(std::uint32_t)>& height_of) {
+/// Divides the crowded views among large cells where nearly all movers hold these, and small ones elsewhere.
+void Crowds::find_places(std::span<const Viewpoint> views, const std::function<std::uint32_t(std::uint32_t)>& height_of,
+                         base::ThreadPool& thread_pool) {
   if (size_ == 0.0) size_ = std::max(0.25 * movers_.smallest_inner(), movers_.largest_radius() / 64.0);
-  constexpr Place kNowhere{kNoPlace, 0, 0};
-  const auto cell_of = [this](double at) { return std::llround(std::floor(std::clamp(at / size_, -4e15, 4e15))); };
   place_of_view_.assign(views.size(), kNowhere);
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (is_crowded({views[i].X_WS.x, views[i].X_WS.y}))
+      place_of_view_[i] = place_of(views[i], height_of(views[i].config), kLarge);
+  collect_places(views);
+  serves_.assign(places_.size(), 0);
+  thread_pool.parallel_for(places_.size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
+    for (std::size_t k = first; k < last; ++k)
+      serves_[k] = serves(movers_.outlines(places_[k].height), viewers_of(k), scratch_[thread]) ? 1 : 0;
+  });
+  if (std::all_of(serves_.begin(), serves_.end(), [](std::uint8_t serves) { return serves != 0; })) return;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    if (place_of_[i] != kNoPlace && serves_[place_of_[i]] == 0)
+      place_of_view_[i] = place_of(views[i], place_of_view_[i].height, 1);
+  collect_places(views);
+}
+
+Crowds::Place Crowds::place_of(const Viewpoint& view, std::uint32_t height, std::int32_t scale) const {
+  const auto cell_of = [&](double at) {
+    return std::llround(std::floor(std::clamp(at / (scale * size_), -4e15, 4e15)));
+  };
+  return {height, scale, cell_of(view.X_WS.x), cell_of(view.X_WS.y)};
+}
+
+/// Lists the places of the views, and draws a box round the viewers of each.
+void Crowds::collect_places(std::span<const Viewpoint> views) {
   places_.clear();
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const Pose& X = views[i].X_WS;
-    if (!is_crowded({X.x, X.y})) continue;
-    places_.push_back(place_of_view_[i] = {height_of(views[i].config), cell_of(X.x), cell_of(X.y)});
-  }
-  if (places_.empty()) return;
+  std::copy_if(place_of_view_.begin(), place_of_view_.end(), std::back_inserter(places_),
+               [](const Place& place) { return place != kNowhere; });
   std::sort(places_.begin(), places_.end());
   places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
-  place_of_.assign(views.size(), kNoPlace);
+  place_of_.assign(places_.empty() ? 0 : views.size(), kNoPlace);
   boxes_.assign(places_.size(), base::empty_box());
-  for (std::size_t i = 0; i < views.size(); ++i) {
+  for (std::size_t i = 0; i < place_of_.size(); ++i) {
     if (place_of_view_[i] == kNowhere) continue;
     const auto place = std::lower_bound(places_.begin(), places_.end(), place_of_view_[i]) - places_.begin();
     const glm::dvec2 p{views[i].X_WS.x, views[i].X_WS.y};
     place_of_[i] = static_cast<std::uint32_t>(place);
     boxes_[place_of_[i]] = base::united(boxes_[place_of_[i]], base::box_of(p, p));
   }
+}
+
+Crowds::Disc Crowds::viewers_of(std::size_t place) const {
+  const base::Box& box = boxes_[place];
+  return {0.5 * (box.min + box.max),
+          0.5 * length(box.max - box.min) * (1.0 + 1e-6) + 1e-9 + 1e-15 * (std::abs(box.max.x) + std::abs(box.max.y))};
+}
+
+/// Whether as many movers hold all viewers of a large cell as hold its centre, but for a few.
+bool Crowds::serves(const OutlineTable& outlines, const Disc& viewers, Scratch& s) const {
+  find_members(outlines, {viewers.centre, 0.0}, s.members);
+  const std::size_t most = s.members.size();
+  find_members(outlines, viewers, s.members);
+  return s.members.size() >= kCrowd && s.members.size() + most / 16 >= most;
 }
 
 /// Whether enough movers for a crowd are near `p`.
@@ -132,8 +204,11 @@ void Crowds::build(const OutlineTable& outlines, const Disc& viewers, Scratch& s
   find_members(outlines, viewers, s.members);
   if (s.members.size() < kCrowd) return;
 
+  std::size_t edges = 0;
+  for (const std::uint32_t m : s.members) edges += outlines.of_mover[m].edges;
   const double most = movers_.largest_radius();
-  Lines lines;
+  Lines& lines = s.lines;
+  lines.clear(edges);
   lines.margin = 1e-12 * most * (1.0 + most / size_);
   cell.members.resize((movers_.states().size() + 63) / 64);
   for (const std::uint32_t m : s.members) {
@@ -145,6 +220,9 @@ void Crowds::build(const OutlineTable& outlines, const Disc& viewers, Scratch& s
   cell.horizon = lines.reach.second;
   s.found.clear();
   for (const std::uint32_t m : s.members) add_edges(m, outlines, lines, viewers, s.found);
+  cell.by_bearing.build(
+      s.found, viewers.radius, [&](std::uint32_t row) { return movers_.exact()[row - movers_.first_rows().front()]; },
+      s.index);
   append_blocks(s.found, cell.blocks, cell.bounds);
   cell.bounds.resize(cell.blocks.size() + kBlock);
 }

@@ -6,7 +6,8 @@
 // From inside a convex outline nothing is visible beyond the line through any of its edges. An edge of a mover is
 // therefore cut at the lines of two other movers, two so that one remains where the other carries the sensor. The cost
 // of a cell grows with the number of its movers, not with its viewers and beams; a scan from it then reads the few
-// edges that are left. Movers that hold no viewer, and outlines that are not convex, are scanned as outside of crowds.
+// edges that are left, or, where many are left, for each beam those of its bearing. Movers that hold no viewer, and
+// outlines that are not convex, are scanned as outside of crowds.
 //
 // A line hides only points that lie beyond it by more than the rounding of 64-bit ranges, so readings do not change.
 
@@ -16,6 +17,7 @@
 
 #include "base/box.h"
 #include "base/thread_pool.h"
+#include "raycast/bearing_index.h"
 #include "raycast/candidate_walls.h"
 #include "raycast/mover_geometry.h"
 #include "raycast/viewpoint.h"
@@ -28,13 +30,15 @@ struct CrowdCell {
   double horizon = 0.0;                ///< [m] every beam meets a member's edge within it
   std::vector<SegmentBlock> blocks;    ///< relative to the centre; rows of exact segments
   std::vector<BlockBounds> bounds;     ///< of `blocks`, padded by kBlock
+  BearingIndex by_bearing;             ///< of the same segments
   std::vector<std::uint64_t> members;  ///< a bit per mover that holds the cell; empty: too few for a crowd
 };
 
 /// Not thread-safe. `movers` must outlive it.
 class Crowds {
  public:
-  explicit Crowds(const MoverGeometry& movers) : movers_(movers) {}
+  explicit Crowds(const MoverGeometry& movers);
+  ~Crowds();
 
   /// Finds the crowds round `views`. @param height_of index of the height of a list config
   void find(std::span<const Viewpoint> views, const std::function<std::uint32_t(std::uint32_t config)>& height_of,
@@ -47,26 +51,30 @@ class Crowds {
 
  private:
   static constexpr std::uint32_t kNoPlace = 0xFFFFFFFFu;
+  static constexpr std::int32_t kLarge = 8;  ///< [size_] side of a large cell: about a robot's
   /// A cell's key.
   struct Place {
     std::uint32_t height;
+    std::int32_t scale;  ///< [size_] side: kLarge or 1
     std::int64_t x, y;
     auto operator<=>(const Place&) const = default;
   };
+  static constexpr Place kNowhere{kNoPlace, 0, 0, 0};
   /// A disc that holds the viewers of a cell.
   struct Disc {
     glm::dvec2 centre;
     double radius = 0.0;  ///< [m]
   };
   struct Lines;
-  struct Scratch {
-    std::vector<std::uint32_t> members;
-    std::vector<CandidateWall> found;
-  };
+  struct Scratch;
 
   bool is_crowded(glm::dvec2 p) const;
+  Place place_of(const Viewpoint& view, std::uint32_t height, std::int32_t scale) const;
+  Disc viewers_of(std::size_t place) const;
+  void collect_places(std::span<const Viewpoint> views);
+  bool serves(const OutlineTable& outlines, const Disc& viewers, Scratch& scratch) const;
   void find_places(std::span<const Viewpoint> views,
-                   const std::function<std::uint32_t(std::uint32_t config)>& height_of);
+                   const std::function<std::uint32_t(std::uint32_t config)>& height_of, base::ThreadPool& thread_pool);
   void build(const OutlineTable& outlines, const Disc& viewers, Scratch& scratch, CrowdCell& cell) const;
   void find_members(const OutlineTable& outlines, const Disc& viewers, std::vector<std::uint32_t>& members) const;
   struct Edge {
@@ -79,10 +87,11 @@ class Crowds {
                  std::vector<CandidateWall>& found) const;
 
   const MoverGeometry& movers_;
-  double size_ = 0.0;                    ///< [m] side of a cell; viewers are an eighth of it from the edges of members
+  double size_ = 0.0;                    ///< [m] side of a small cell; viewers are an eighth of it from members' edges
   std::vector<Place> places_;            ///< of this tick, ascending
   std::vector<std::uint32_t> place_of_;  ///< per view: row of `places_`
   std::vector<Place> place_of_view_;     ///< scratch
+  std::vector<std::uint8_t> serves_;     ///< scratch, per place
   std::vector<base::Box> boxes_;         ///< per place: round its viewers
   std::vector<CrowdCell> cells_;         ///< per place; kept for their memory
   std::vector<Scratch> scratch_;         ///< per thread

@@ -14,6 +14,8 @@ namespace sf::raycast {
 namespace {
 
 constexpr std::uint32_t kPageBlocks = 4;
+/// Blocks that are projected to all beams in the time in which one beam finds its nearest segment by an index.
+constexpr double kBlocksPerIndexedBeam = 0.4;
 constexpr std::uint32_t kFirstCells = 256, kFirstBlocks = 1u << 11;
 /// [blocks] Robots return to their cells: up to this size per view (21 KiB), and 42 MiB in all, the cache grows rather
 /// than evict cells again.
@@ -23,6 +25,12 @@ constexpr std::size_t kKeptPerView = 64, kMostKept = 1u << 17;
 std::uint32_t most_blocks() {
   const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   return static_cast<std::uint32_t>(std::clamp(0.25 * memory / sizeof(SegmentBlock), 0x1p21, 0x1p23));
+}
+
+/// Whether a scan of so many beams is faster by the index of a crowd than by its blocks.
+bool reads_by_bearing(const CrowdCell& crowd, std::size_t beams) {
+  return !crowd.by_bearing.empty() &&
+         kBlocksPerIndexedBeam * static_cast<double>(beams) < static_cast<double>(crowd.blocks.size());
 }
 
 }  // namespace
@@ -139,16 +147,24 @@ void HostScene::prefetch(std::size_t i) const {
   raycast::prefetch(&blocks_[first], sizeof(SegmentBlock));
 }
 
-void HostScene::add_crowd(const CrowdCell& crowd, Thread& t, glm::dvec2 origin, ScanScene& scene) const {
+void HostScene::add_crowd(const CrowdCell& crowd, std::size_t beams, Thread& t, glm::dvec2 origin,
+                          ScanScene& scene) const {
   std::span<const SegmentBlock> blocks = crowd.blocks;
   scene.crowd_members = crowd.members;
   scene.crowd_horizon = crowd.horizon;
+  scene.crowd.offset = origin - crowd.centre;
+  if (reads_by_bearing(crowd, beams)) {
+    scene.crowd_index = &crowd.by_bearing;
+    return;
+  }
   if (scene.in_crowd(scene.self)) {
     t.crowd.assign(blocks.begin(), blocks.end());
-    hide_rows(t.crowd, scene.first_rows[scene.self], scene.first_rows[scene.self + 1]);
+    hide_rows(t.crowd, scene.own_first, scene.own_end);
     blocks = t.crowd;
   }
-  scene.crowd = {blocks, static_cast<std::uint32_t>(blocks.size()), crowd.bounds.data(), origin - crowd.centre};
+  scene.crowd.blocks = blocks;
+  scene.crowd.front_facing = static_cast<std::uint32_t>(blocks.size());
+  scene.crowd.bounds = crowd.bounds.data();
 }
 
 bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, unsigned thread, const ScanOutput& out) {
@@ -176,8 +192,10 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   scene.headings = movers_.headings();
   scene.first_rows = movers_.first_rows();
   scene.self = view.self;
+  if (view.self != kNoMover)
+    scene.own_first = scene.first_rows[view.self], scene.own_end = scene.first_rows[view.self + 1];
   if (const CrowdCell* crowd = scene.movers != nullptr ? crowds_.of(i) : nullptr; crowd != nullptr)
-    add_crowd(*crowd, t, origin, scene);
+    add_crowd(*crowd, pattern.beams, t, origin, scene);
   return t.rasterizer.scan(from, pattern, scene, out);
 }
 

@@ -47,7 +47,7 @@ class HostScene {
   void grow();
   void prefetch(std::size_t i) const;
   Cell collect(const CellKey& key, Thread& thread) const;
-  void add_crowd(const CrowdCell& crowd, Thread& thread, glm::dvec2 origin, ScanScene& scene) const;
+  void add_crowd(const CrowdCell& crowd, std::size_t beams, Thread& thread, glm::dvec2 origin, ScanScene& scene) const;
 
   base::ThreadPool& thread_pool_;
   const ListConfigs& configs_;

@@ -25,7 +25,10 @@ void scan(Scratch& s, const Projection& p, const ScanView& view, const ScanPatte
     store(constant(0.0f), &s.others[j]);
     hn::StoreU(hn::Set(kI, -1), kI, &s.nearest_row[j]);
   }
-  project_cell(s, p, pattern, scene.crowd, Draw{s, pattern});
+  if (scene.crowd_index != nullptr)
+    draw_indexed_crowd(s, view, pattern, scene);
+  else
+    project_cell(s, p, pattern, scene.crowd, Draw{s, pattern});
   project_cell(s, p, pattern, scene.walls, Draw{s, pattern});
   s.order.clear();
   if (!scene.crowd_members.empty()) s.horizon = std::min(s.horizon, horizon_of(s, pattern));

@@ -144,10 +144,13 @@ struct CellBlocks {
   glm::dvec2 offset;                    ///< [m] the viewer relative to the cell's centre
 };
 
+class BearingIndex;
+
 /// All surfaces of a scan. Exact segments: walls first, then movers.
 struct ScanScene {
   CellBlocks walls;
   CellBlocks crowd;                              ///< of movers that hold the viewer (raycast/crowds.h)
+  const BearingIndex* crowd_index = nullptr;     ///< in place of the blocks of `crowd`; with the viewer's own edges
   std::span<const std::uint64_t> crowd_members;  ///< a bit per mover: its edges are in `crowd`; empty: no crowd
   double crowd_horizon = HUGE_VAL;               ///< [m] every beam meets an edge of the crowd within it
   std::span<const ExactSegment> exact;           ///< walls, then movers
@@ -158,6 +161,7 @@ struct ScanScene {
   std::span<const glm::dvec2> headings;       ///< of movers: unit vectors
   std::span<const std::uint32_t> first_rows;  ///< first exact segment of each mover, and the end
   std::uint32_t self = kNoMover;              ///< the mover that carries the sensor: invisible
+  std::uint32_t own_first = 0, own_end = 0;   ///< rows of its exact segments
 
   bool in_crowd(std::uint32_t mover) const {
     return !crowd_members.empty() && (crowd_members[mover / 64] >> mover % 64 & 1) != 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Items sorted by the sectors of directions in which they may be visible: the source of the device's lists.
+// Items sorted by the sectors of directions in which they may be visible.
 
 #include <cstdint>
 #include <span>
@@ -12,7 +12,8 @@ namespace sf::raycast {
 /// Keeps its memory between uses.
 class SectorLists {
  public:
-  void clear() { items_.clear(); }
+  /// Removes all items. @param sectors a power of two; sector 0 begins at bearing 0
+  void clear(std::uint32_t sectors = SF_SECTORS) { items_.clear(), sectors_ = sectors; }
   /// Adds `item` to every sector within `half` of `bearing` [rad]; to all sectors where `half` > pi.
   void add(double bearing, double half, std::uint32_t item);
   /// Call after the last `add`.
@@ -28,7 +29,9 @@ class SectorLists {
   };
   std::vector<Item> items_;
   std::vector<std::uint32_t> order_;
-  std::uint32_t first_[SF_SECTORS + 1] = {};
+  std::uint32_t sectors_ = SF_SECTORS;
+  std::vector<std::uint32_t> first_ = std::vector<std::uint32_t>(SF_SECTORS + 1);  ///< in `order_`, and the end
+  std::vector<std::uint32_t> next_;                                                ///< scratch
 };
 
 }  // namespace sf::raycast

@@ -24,7 +24,7 @@ std::string escaped(std::string_view text) {
       out += "&lt;";
     } else if (c == '>') {
       out += "&gt;";
-    } else if (c >= 0 && c < 32) {
+    } else if (static_cast<unsigned char>(c) < 32) {
       out += fmt::format("<{}/>", kControls[static_cast<std::size_t>(c)]);
     } else {
       out += c;

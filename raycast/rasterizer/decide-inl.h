@@ -89,6 +89,10 @@ void decide_segments(Scratch& s, const Projection& p, const ScanView& view, cons
   each_uncertain(s, [&](std::size_t i) {
     const glm::dvec2 d = direction_of(view, pattern, i);
     s.x[i] = d.x, s.y[i] = d.y;
+    if (scene.crowd_index == nullptr) return;
+    ClosestHit best{view.range_max};
+    intersect_crowd(s, view, scene, d, best);
+    s.range[i] = best.range, s.row[i] = std::int64_t{best.id};
   });
   const Decide decide{s, view, pattern, scene};
   project_cell(s, p, pattern, scene.crowd, decide);
@@ -120,7 +124,7 @@ bool intersect_uncertain_beams(Scratch& s, const Projection& p, const ScanView& 
       const auto row = static_cast<std::uint32_t>(s.row[i]);
       if (row != SF_NO_HIT) intersect({scene.exact[row], row}, view.origin, d, best);
     } else {
-      intersect_cell(s, view, scene, scene.crowd, d, best);
+      intersect_crowd(s, view, scene, d, best);
       intersect_cell(s, view, scene, scene.walls, d, best);
       intersect_near_movers(s, view, pattern, scene, pattern.place[i], d, best);
     }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raycast/bearing_index.h"
 #include "raycast/rasterizer/movers-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -64,6 +65,32 @@ void intersect_cell(Scratch& s, const ScanView& view, const ScanScene& scene, co
       intersect_block(s, view, scene, cell.blocks[i], -1.0 * cell.offset, {1.0, 0.0}, 0, d, best);
     }
   }
+}
+
+void intersect_crowd(Scratch& s, const ScanView& view, const ScanScene& scene, glm::dvec2 d, ClosestHit& best) {
+  if (scene.crowd_index != nullptr)
+    s.counts.decisions +=
+        scene.crowd_index->intersect(scene.crowd.offset, view.origin, d, {scene.own_first, scene.own_end}, best);
+  else
+    intersect_cell(s, view, scene, scene.crowd, d, best);
+}
+
+/// Begins each beam with its nearest segment of the crowd, found by its index. Beams that graze it, or begin on it, are
+/// left to `intersect_uncertain_beams`.
+void draw_indexed_crowd(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene) {
+  constexpr float kMinSine = 2e-3f;
+  constexpr double kNearest = 1e-6;  // [m]
+  for (std::size_t i = 0; i < pattern.beams; ++i) {
+    ClosestHit best{view.range_max};
+    intersect_crowd(s, view, scene, direction_of(view, pattern, i), best);
+    if (best.id == SF_NO_HIT) continue;
+    const auto inverse = static_cast<float>(1.0 / std::max(best.range, kNearest));
+    s.near_low[i] = inverse * (1.0f - 1e-6f), s.near_high[i] = inverse * (1.0f + 1e-6f);
+    s.nearest_row[i] = static_cast<std::int32_t>(best.id);
+    if (best.grazes(kMinSine) || best.range <= kNearest) s.others[i] = HUGE_VALF;
+  }
+  const std::size_t last = pattern.beams - 1;
+  for (std::size_t i = last + 1; i <= last + lanes(); ++i) s.near_low[i] = s.near_low[last];
 }
 
 /// Lists the movers in grid entries [from, end) whose discs beam `d` may cross within `range`.
@@ -146,7 +173,7 @@ bool intersect_all_beams(Scratch& s, const ScanView& view, const ScanPattern& pa
   for (std::size_t i = 0; i < pattern.beams; ++i) {
     const glm::dvec2 d = direction_of(view, pattern, i);
     ClosestHit best{view.range_max};
-    intersect_cell(s, view, scene, scene.crowd, d, best);
+    intersect_crowd(s, view, scene, d, best);
     intersect_cell(s, view, scene, scene.walls, d, best);
     if (scene.movers != nullptr) intersect_movers(s, view, scene, d, best);
     grazes |= write_beam(view, scene, i, d, best, out);
