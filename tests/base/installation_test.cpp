@@ -32,7 +32,10 @@ TEST(Installation, FilesThatExistAreTakenAsTheyAre) {
 }
 
 TEST(Installation, PluginsStandBesideTheProgram) {
-  EXPECT_EQ(plugin_file("sensorfarm_opencv"), SF_BINARY_DIR "/sensorfarm_opencv.so");
+  const fs::path plugin = SF_BINARY_DIR "/sensorfarm_of_a_test.so";
+  std::ofstream{plugin} << "";
+  EXPECT_EQ(plugin_file("sensorfarm_of_a_test"), plugin.string());
+  fs::remove(plugin);
   EXPECT_EQ(plugin_file("sensorfarm_nothing"), "sensorfarm_nothing.so");
 }
 
