@@ -16,6 +16,7 @@
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "base/installation.h"
 #include "cluster/shares.h"
 #include "scenarios/trial.h"
 
@@ -25,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder asked for, or `experiments` here, or above the program.
+/// The folder asked for, or `experiments` here, above the program, or installed with it.
 std::string folder_of(const ExperimentOptions& options) {
   if (!options.experiments.empty()) return options.experiments;
   std::error_code error;
@@ -35,7 +36,10 @@ std::string folder_of(const ExperimentOptions& options) {
     folders.push_back(at);
   for (const fs::path& folder : folders)
     if (fs::exists(folder / "experiments" / "lane-edge-p.toml", error)) return (folder / "experiments").string();
-  throw base::InputError("the folder 'experiments' is neither here nor above the program; name it with --files");
+  if (const fs::path shipped = base::installed_file("experiments/lane-edge-p.toml"); fs::exists(shipped, error))
+    return shipped.parent_path().string();
+  throw base::InputError(
+      "the folder 'experiments' is neither here, above the program nor installed; name it with --files");
 }
 
 int list_all() {

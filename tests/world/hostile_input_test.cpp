@@ -56,6 +56,17 @@ TEST_F(HostileFiles, OnlyRegularFilesAreRead) {
   expect_error(write("b.world", "\ninclude \"pipe\"\n"), "b.world:2: cannot find the include \"pipe\"");
 }
 
+/// `include "robots.inc"` in a world of the user's own works in any folder, as `run worlds/cave.world` does.
+TEST_F(HostileFiles, IncludesAreFoundAmongTheInstalledWorlds) {
+  const std::string world = write("own.world", "include \"shipped.inc\"\nposition( name \"mine\" )\n");
+  expect_error(world, "or among the installed worlds");
+  std::filesystem::create_directories(path("data/worlds"));
+  write("data/worlds/shipped.inc", "define wheels position( size [0.3 0.3 0.2] )\n");
+  setenv("SENSORFARM_DATA", path("data").c_str(), 1);
+  EXPECT_EQ(load_world(world).movers.size(), 1u);
+  unsetenv("SENSORFARM_DATA");
+}
+
 TEST_F(HostileFiles, NothingIsNoWorld) {
   for (const char* name : {"a.world", "a.yaml"}) {
     expect_error(write(name, ""), "is empty");

@@ -49,7 +49,7 @@ TEST(Road, ErrorsNameTheirLine) {
   EXPECT_EQ(error_of("\nroad( )"), "test.world:2: a road needs its network: rndf \"FILE\"");
   EXPECT_EQ(error_of("road(\nrndf \"nowhere.rndf\" )"),
             "test.world:2: cannot find the road network \"nowhere.rndf\"; expected it beside this file, beside the "
-            "world file or along $STAGEPATH");
+            "world file, along $STAGEPATH or among the installed worlds");
   const std::string unknown = error_of(road("magnetic_moment 1 magnet_spacing 0.1 magnet_lanes \"6.1 99.1\""));
   EXPECT_EQ(unknown.substr(0, unknown.find(" has")),
             "test.world:2: 'magnet_lanes' is \"6.1 99.1\"; expected \"all\", or lanes that " SF_SOURCE_DIR

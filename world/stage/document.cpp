@@ -122,8 +122,8 @@ void read_include(ParseState& r) {
   const std::string found = find_file(r.document, {r.file, line}, name);
   if (found.empty()) {
     fail(r, line,
-         fmt::format("cannot find the include \"{}\"; expected it beside this file, beside the world file or along "
-                     "$STAGEPATH",
+         fmt::format("cannot find the include \"{}\"; expected it beside this file, beside the world file, "
+                     "along $STAGEPATH or among the installed worlds",
                      name));
   }
   if (std::find(r.open_files.begin(), r.open_files.end(), found) != r.open_files.end()) refuse_cycle(r, line, found);

@@ -52,12 +52,12 @@ struct Document {
 };
 
 /// Parses `text`, the content of the world file `file`. The file need not exist: its name is used for errors, and its
-/// folder for the search of includes (beside the including file, beside `file`, then along $STAGEPATH).
+/// folder for the search of includes (beside the including file, beside `file`, along $STAGEPATH, then among the installed worlds).
 /// @throws base::InputError with file and line.
 Document parse(const std::string& file, const std::string& text);
 
 /// Path of `name`: itself when absolute, else the first existing file beside `from`, beside the world file, along
-/// $STAGEPATH. Empty when none exists.
+/// $STAGEPATH, or among the worlds that are installed with the program. Empty when none exists.
 std::string find_file(const Document& document, SourceLocation from, const std::string& name);
 
 /// Stage searches beside the world file first. The file that it reads in place of `found`; empty when it is the same.

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "base/installation.h"
 #include "world/stage/document.h"
 
 namespace sf::world {
@@ -32,7 +33,8 @@ std::string find_file(const Document& document, SourceLocation from, const std::
     const fs::path candidate = (folder / wanted).lexically_normal();
     if (is_file(candidate)) return candidate.string();
   }
-  return {};
+  const std::string shipped = base::installed_file("worlds/" + name);
+  return is_file(shipped) ? shipped : std::string();
 }
 
 std::string file_in_stage(const Document& document, const std::string& name, const std::string& found) {

@@ -95,8 +95,8 @@ std::string file_of(const StageContext& context, const Entity& entity, std::stri
   const std::string file = find_file(context.document, at, name);
   if (file.empty()) {
     fail(context, at,
-         fmt::format("cannot find the {} \"{}\"; expected {} beside this file, beside the world file or along "
-                     "$STAGEPATH",
+         fmt::format("cannot find the {} \"{}\"; expected {} beside this file, beside the world file, "
+                     "along $STAGEPATH or among the installed worlds",
                      key, name, key.ends_with('s') ? "them" : "it"));
   }
   return file;

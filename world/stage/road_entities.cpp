@@ -19,11 +19,10 @@ RoadNetwork read_network(BuildState& b, const Entity& entity) {
   if (rndf == nullptr || name.empty()) fail(b.context, entity.at, "a road needs its network: rndf \"FILE\"");
   const std::string file = find_file(b.context.document, rndf->at, name);
   if (file.empty())
-    fail(
-        b.context, rndf->at,
-        fmt::format("cannot find the road network \"{}\"; expected it beside this file, beside the world file or along "
-                    "$STAGEPATH",
-                    name));
+    fail(b.context, rndf->at,
+         fmt::format("cannot find the road network \"{}\"; expected it beside this file, beside the world file, "
+                     "along $STAGEPATH or among the installed worlds",
+                     name));
   return load_roads(file, b.context.warnings, b.options.strict);
 }
 
