@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "apps/help_page.h"
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
 #include "apps/stop_signals.h"
@@ -24,6 +25,18 @@ std::vector<std::string> options_of(const CLI::App& sub) {
   for (const CLI::Option* option : sub.get_options())
     names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
   return names;
+}
+
+/// A misspelt option among the arguments, which CLI11 would report after a missing world; else "".
+std::string unknown_option(const CLI::App& sub, int argc, const char* const* argv) {
+  const std::vector<std::string> known = options_of(sub);
+  for (int i = 2; i < argc; ++i) {
+    const std::string_view word(argv[i]);
+    const std::string_view name = word.substr(0, word.find('='));
+    if (name.size() < 3 || name.substr(0, 2) != "--") continue;
+    if (std::find(known.begin(), known.end(), name.substr(2)) == known.end()) return std::string(name);
+  }
+  return {};
 }
 
 /// The first argument that nobody wanted; CLI11 names all, from the last on.
@@ -81,6 +94,9 @@ std::string explain_refusal(const CLI::App& app, const CLI::ParseError& error, i
   }
   std::string what = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) what = explain_extras(app, *used[0], argc, argv);
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
+    if (const std::string word = unknown_option(*used[0], argc, argv); !word.empty())
+      what = fmt::format("'{}' was not expected{}", word, suggest_option(word, options_of(*used[0])));
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
     what = what.substr(0, what.find(':')) + " needs a value after it";
   return fmt::format("{}; see `sensorfarm {} --help`", what, used[0]->get_name());
@@ -91,6 +107,9 @@ std::string explain_refusal(const CLI::App& app, const CLI::ParseError& error, i
 Parsed parse_command_line(int argc, const char* const* argv) {
   Parsed parsed;
   CLI::App app{"sensorfarm: 2-D multi-robot simulator and virtual-sensor server", "sensorfarm"};
+  app.formatter(std::make_shared<HelpPage>());
+  app.get_formatter()->column_width(kNameWidth);
+  app.set_help_all_flag("--help-all", "Print this message with all options and exit");
   app.set_version_flag("--version", std::string("sensorfarm ") + SF_VERSION);
   app.add_option_function<int>("--interrupted-code", set_interrupted_code,
                                "Exit code of a command that a signal stops before its work is complete (default: 128 "
@@ -99,7 +118,6 @@ Parsed parse_command_line(int argc, const char* const* argv) {
       ->type_name("CODE");
   wrap_help(app);
   app.require_subcommand(1);
-  app.get_formatter()->column_width(kNameWidth);
   add_inspect_commands(app, parsed.call);
   add_export_commands(app, parsed.call);
   add_run_commands(app, parsed.call);

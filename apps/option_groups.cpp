@@ -178,13 +178,13 @@ void add_from(CLI::App& app, ReceiveOptions& o) {
 
 void add_silence(CLI::App& app, ReceiveOptions& o) {
   app.add_option("--silence", o.silence, "Stop after this long without packets [s], counted from the first packet on")
-      ->check(number(0.1, 1e6))
+      ->check(in_seconds(0.1, 1e6))
       ->type_name("S")
       ->capture_default_str();
 }
 
 void add_until(CLI::App& app, DurationOption& o, const std::string& help) {
-  app.add_option("--duration", o.duration, help)->check(number(0.0, 1e9))->type_name("S");
+  app.add_option("--duration", o.duration, help)->check(in_seconds(0.0, 1e9))->type_name("S");
 }
 
 void add_origin(CLI::App& app, OriginOption& o, const std::string& group) {
@@ -292,15 +292,15 @@ void add_part(CLI::App& app, PartOption& o) {
       ->allow_extra_args(false)
       ->type_name("NAME,...");
   app.add_option("--from", o.from, "Begin of the part to take [s] (default: 0)")
-      ->check(number(0.0, 1e9))
+      ->check(in_seconds(0.0, 1e9))
       ->type_name("S");
   app.add_option("--to", o.to, "End of the part to take [s] (default: the recording's)")
-      ->check(number(0.0, 1e9))
+      ->check(in_seconds(0.0, 1e9))
       ->type_name("S");
 }
 
 void add_recording(CLI::App& app, RecordingOption& o) {
-  app.add_option("recording", o.recording, "Folder of the recording")->required()->type_name("DIR");
+  app.add_option("recording", o.recording, "Folder of the recording")->required()->check(recording())->type_name("DIR");
 }
 
 void add_sensor_type(CLI::App& app, SenseOptions& o) {
@@ -334,7 +334,7 @@ void add_timeout(CLI::App& app, double& seconds, const std::string& job) {
   app.add_option(
          "--timeout", seconds,
          fmt::format("Seconds of wall-clock time per {}, after which it is ended and has failed (default: none)", job))
-      ->check(number(1e-3, 1e9))
+      ->check(in_seconds(1e-3, 1e9))
       ->type_name("S");
 }
 

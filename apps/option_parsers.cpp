@@ -73,10 +73,29 @@ Validator number(double first, double last) {
   };
 }
 
+Validator in_seconds(double first, double last) {
+  return [=, is_number = number(first, last)](const std::string& text) {
+    if (is_number(text).empty()) return std::string();
+    return fmt::format("expected seconds from {:g} to {:g}, such as 90, got '{}'", first, last, text);
+  };
+}
+
+Validator recording() {
+  return [](const std::string& text) {
+    const std::string suffix = std::filesystem::path(text).extension().string();
+    for (const char* world : {".world", ".yaml", ".yml", ".rndf", ".mdf", ".toml", ".csv"})
+      if (suffix == world)
+        return fmt::format("expected a recording, such as the folder that `run --record` writes, got '{}'", text);
+    return std::string();
+  };
+}
+
 Validator one_of(std::vector<std::string> words) {
   return [words = std::move(words)](const std::string& text) {
     const bool known = std::find(words.begin(), words.end(), text) != words.end();
-    return known ? std::string() : fmt::format("expected {}, got '{}'", join_or(words), text);
+    if (known) return std::string();
+    const std::vector<std::string_view> candidates(words.begin(), words.end());
+    return fmt::format("expected {}, got '{}'{}", join_or(words), text, base::suggest(text, candidates));
   };
 }
 

@@ -22,6 +22,10 @@ using Validator = std::function<std::string(const std::string&)>;
 Validator whole(std::uint64_t first, std::uint64_t last);
 /// A number in [first, last]; not-a-number is in no range.
 Validator number(double first, double last);
+/// The same for a time, whose message states the unit.
+Validator in_seconds(double first, double last);
+/// The folder or file of a recorded run: no world, scenario or table.
+Validator recording();
 /// @param words at least one
 Validator one_of(std::vector<std::string> words);
 /// @param expected with its article

@@ -19,7 +19,7 @@ CLI::Option* add_height(CLI::App& app, double& height) {
 }
 
 CLI::Option* add_every(CLI::App& app, double& every, const std::string& help) {
-  return app.add_option("--every", every, help)->check(number(1e-3, 1e6))->type_name("S")->capture_default_str();
+  return app.add_option("--every", every, help)->check(in_seconds(1e-3, 1e6))->type_name("S")->capture_default_str();
 }
 
 void add_export(CLI::App& app, Call& call) {
@@ -61,7 +61,7 @@ void add_view(CLI::App& app, Call& call) {
   add_height(*sub, o.height)->needs(window)->group(kGroup);
   sub->add_option("--time", o.time, "Simulated time to begin with [s]")
       ->needs(window)
-      ->check(number(0.0, 1e9))
+      ->check(in_seconds(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str()
       ->group(kGroup);

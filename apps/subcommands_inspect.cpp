@@ -141,7 +141,7 @@ void add_v2x(CLI::App& app, Call& call) {
       ->type_name("FILE");
   sub->add_flag("--xml", o.xml, "Decode to XML (XER) in place of JSON");
   sub->add_option("--time", o.time, "Simulated time [s] of the SPaT; time 0 is the year's start in UTC")
-      ->check(number(0.0, 31'536'000.0))
+      ->check(in_seconds(0.0, 31'536'000.0))
       ->type_name("S")
       ->capture_default_str()
       ->group("Export");

@@ -31,7 +31,7 @@ void add_run(CLI::App& app, Call& call) {
   add_no_return(*sub, o);
   add_ports(*sub, o);
   sub->add_option("--duration", o.duration, "Simulated time [s] (default: 60; without end beside bridges)")
-      ->check(number(0.0, 1e9))
+      ->check(in_seconds(0.0, 1e9))
       ->type_name("S");
   add_threads(*sub, o);
   auto* record = sub->add_option("--record", o.record, "Folder to record the run into (run.mcap)")
@@ -41,7 +41,7 @@ void add_run(CLI::App& app, Call& call) {
                 "Record the readings too, not only the states from which they can be computed")
       ->needs(record);
   sub->add_option("--checkpoint", o.checkpoint, "Keep a check point of the run every S simulated seconds (--record)")
-      ->check(number(0.001, 1e9))
+      ->check(in_seconds(0.001, 1e9))
       ->needs(record)
       ->type_name("S");
   sub->add_flag("--resume", o.resume,
@@ -49,7 +49,7 @@ void add_run(CLI::App& app, Call& call) {
       ->needs(record);
   auto* tiles = sub->add_flag("--tiles", o.tiles, "Ranks (mpirun) each know and sense one part of the world");
   sub->add_option("--balance", o.balance, "Cut the parts anew every S simulated seconds, by the time they take")
-      ->check(number(0.001, 1e9))
+      ->check(in_seconds(0.001, 1e9))
       ->needs(tiles)
       ->type_name("S");
   auto* speed = sub->add_option("--speed", o.speed,
@@ -67,7 +67,7 @@ void add_run(CLI::App& app, Call& call) {
 
 void add_forget(CLI::App& app, ForgetOption& o) {
   app.add_option("--forget", o.forget, "Silence after which a robot is no obstacle any more [s], at least 2 (0: never)")
-      ->check(number(0.0, 1e9))
+      ->check(in_seconds(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str();
 }
@@ -89,7 +89,7 @@ void add_filter(CLI::App& app, FilterOptions& o) {
   constexpr const char* kGroup = "States of robots and tags (docs/estimation.md)";
   app.add_option("--stale-after", o.stale_after,
                  "Readings say that their robot's state is stale when it is older than this [s]")
-      ->check(number(0.01, 1e6))
+      ->check(in_seconds(0.01, 1e6))
       ->type_name("S")
       ->capture_default_str()
       ->group(kGroup);
@@ -108,7 +108,7 @@ void add_filter(CLI::App& app, FilterOptions& o) {
   add_clock(app, "--clock", o.clock)->needs(filter)->group(kGroup);
   app.add_option("--link-delay", o.link_delay,
                  "Least delay of packets to the farm [s], which packets cannot show (--clock estimated)")
-      ->check(number(0.0, 10.0))
+      ->check(in_seconds(0.0, 10.0))
       ->needs(filter)
       ->type_name("S")
       ->capture_default_str()
@@ -153,7 +153,7 @@ void add_lockstep(CLI::App& app, ServeOptions& o) {
   app.add_option("--lockstep-timeout", o.lockstep_timeout,
                  "Time that clients wait for another [s]; then its robots are left out and stand, the others go on, "
                  "and the exit code is 1 (0: without end)")
-      ->check(number(0.0, 1e6))
+      ->check(in_seconds(0.0, 1e6))
       ->needs(lockstep)
       ->type_name("S")
       ->capture_default_str()
@@ -228,12 +228,12 @@ void add_farm(CLI::App& app, FarmOptions& o) {
 void add_link(CLI::App& app, LinkOptions& o) {
   constexpr const char* kGroup = "Faults injected into the link";
   app.add_option("--delay", o.delay, "Injected delay of every packet, in each direction [s]")
-      ->check(number(0.0, 3600.0))
+      ->check(in_seconds(0.0, 3600.0))
       ->type_name("S")
       ->group(kGroup);
   app.add_option("--jitter", o.jitter,
                  "Additional random delay, uniform from 0 to this; packets may overtake each other [s]")
-      ->check(number(0.0, 3600.0))
+      ->check(in_seconds(0.0, 3600.0))
       ->type_name("S")
       ->group(kGroup);
   const auto add_fraction = [&](const char* name, double& value, const char* text) {
@@ -285,7 +285,7 @@ void add_robot(CLI::App& app, Call& call) {
       ->check(number(0.1, 1000.0))
       ->type_name("HZ");
   sub->add_option("--stop-after", o.stop_after, "Silence of the farm after which the robot stands [s] (0: never)")
-      ->check(number(0.0, 1e9))
+      ->check(in_seconds(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str();
   add_forget(*sub, o);
@@ -342,7 +342,7 @@ void add_light(CLI::App& app, Call& call) {
       ->type_name("HZ")
       ->capture_default_str();
   sub->add_option("--time", o.time, "Time of the plans at the start [s]")
-      ->check(number(0.0, 1e9))
+      ->check(in_seconds(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str();
   sub->add_option("--set", o.set,

@@ -61,7 +61,7 @@ TEST(Usage, ExamplesNameFilesThatAreThere) {
 }
 
 TEST(Usage, PortsAreAGroupAtTheEndOfTheHelp) {
-  const std::string help = run_program({"run", "--help"}).out;
+  const std::string help = run_program({"run", "--help-all"}).out;
   const std::size_t group = help.find("\nPorts of sensor packets");
   ASSERT_NE(group, std::string::npos) << help;
   EXPECT_LT(help.find("--duration"), group);
@@ -69,11 +69,53 @@ TEST(Usage, PortsAreAGroupAtTheEndOfTheHelp) {
   EXPECT_GT(help.find("--ports-per-robot"), group);
 }
 
+/// Of commands with many options: ten, after the examples, and how to list the others.
+TEST(Usage, HelpBeginsWithExamplesAndOptionsOfEveryDay) {
+  for (const std::string name : {"run", "serve", "robot", "listen", "vps", "tradeoff"}) {
+    const std::string help = run_program({name, "--help"}).out;
+    std::size_t options = 0;
+    for (std::size_t at = help.find("\n  -"); at != std::string::npos; at = help.find("\n  -", at + 1)) ++options;
+    EXPECT_LE(options, 10u) << name;
+    EXPECT_GE(options, 9u) << name;
+    EXPECT_LT(help.find("Examples:"), help.find("\nOptions:")) << name;
+    EXPECT_NE(help.find(" more options: sensorfarm " + name + " --help-all\n"), std::string::npos) << help;
+  }
+}
+
+/// The commands of every day come first.
+TEST(Usage, HelpGroupsTheCommands) {
+  const std::string help = run_program({"help"}).out;
+  std::size_t before = 0;
+  for (const char* text :
+       {"\nEvery day:\n  run ", "\nRun:\n", "\nLook:\n", "\nTestbed:\n", "\nAnalyse:\n", "\nCheck:\n"}) {
+    const std::size_t at = help.find(text);
+    ASSERT_NE(at, std::string::npos) << text;
+    EXPECT_GT(at, before) << text;
+    before = at;
+  }
+}
+
+TEST(Usage, MistakesAreExplained) {
+  const std::string world = our_world("rooms.world");
+  for (const auto& [arguments, said] : std::vector<Wrong>{
+           {{"run", "--hlep"}, "'--hlep' was not expected; did you mean '--help'?"},
+           {{"run", "--durration=3"}, "'--durration' was not expected; did you mean '--duration'?"},
+           {{"run", world, "--duration", "1m"}, "--duration: expected seconds from 0 to 1e+09, such as 90, got '1m'"},
+           {{"run", world, "--controller", "wandr"}, "did you mean 'wander'?"},
+           {{"help", "rnu"}, "did you mean 'run'?"},
+           {{"export", world}, "expected a recording, such as the folder that `run --record` writes, got"},
+           {{"plot", "m.yaml"}, "expected a recording"}}) {
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+  }
+}
+
 /// The options of each command, in order, and a hash of its whole help.
 TEST(Usage, HelpIsAsRecorded) {
   std::string record;
   for (const std::string& name : kSubcommands) {
-    const std::string help = run_program({name, "--help"}).out;
+    const std::string help = run_program({name, "--help-all"}).out;
     std::string options;
     std::istringstream lines(help);
     for (std::string line; std::getline(lines, line);)
