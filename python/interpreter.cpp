@@ -85,24 +85,31 @@ py::object module_of(const std::string& file) {
   return module;
 }
 
-bool is_controller(py::handle value, const std::string& file) {
-  return PyType_Check(value.ptr()) != 0 && py::hasattr(value, "step") &&
-         py::str(value.attr("__module__")).cast<std::string>() == file &&
+bool is_class_of(py::handle value, const std::string& file) {
+  return PyType_Check(value.ptr()) != 0 && py::str(value.attr("__module__")).cast<std::string>() == file &&
          py::str(value.attr("__name__")).cast<std::string>().front() != '_';
 }
 
 void fill(const std::string& file, Plugin& plugin) {
   if (Py_IsInitialized() == 0) start();
   const py::gil_scoped_acquire gil;
+  std::string without_step;
   try {
     prepare();
     const py::object module = module_of(file);
-    for (const py::handle value : module.attr("__dict__").attr("values")())
-      if (is_controller(value, file)) plugin.controllers.push_back(entry_of(value));
+    for (const py::handle value : module.attr("__dict__").attr("values")()) {
+      if (!is_class_of(value, file)) continue;
+      if (py::hasattr(value, "step"))
+        plugin.controllers.push_back(entry_of(value));
+      else if (without_step.empty())
+        without_step =
+            "; " + place_of(value) + "class " + py::str(value.attr("__name__")).cast<std::string>() + " has none";
+    }
   } catch (py::error_already_set& error) {
     throw std::runtime_error(last_line(error, file));
   }
-  if (plugin.controllers.empty()) throw std::runtime_error("it has no class with a method step(self, input)");
+  if (plugin.controllers.empty())
+    throw std::runtime_error("it has no class with a method step(self, input)" + without_step);
 }
 
 }  // namespace

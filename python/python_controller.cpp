@@ -33,12 +33,12 @@ constexpr const char* expected_of(const Twist&) { return "three numbers (forward
 constexpr const char* expected_of(bool) { return "True or False"; }
 constexpr const char* expected_of(double) { return "a number"; }
 
-/// @param from with its file, such as "mine.py: step() returned "
-template <class Value>
-Value value_of(const py::object& given, const std::string& from) {
+/// @param from where it is from, asked where it is of another type: "mine.py:7: step() returned "
+template <class Value, class From>
+Value value_of(const py::object& given, const From& from) {
   py::detail::make_caster<Value> value;
   if (!value.load(given, true))
-    throw std::runtime_error(from + text_of(py::repr(given)) + "; expected " + expected_of(Value{}));
+    throw std::runtime_error(from() + text_of(py::repr(given)) + "; expected " + expected_of(Value{}));
   return py::detail::cast_op<Value&>(value);
 }
 
@@ -78,7 +78,8 @@ class PythonController final : public Controller {
  private:
   template <class Value, class... Arguments>
   Value returned(const char* method, const Arguments&... arguments) const {
-    return value_of<Value>(object_.attr(method)(arguments...), file_ + ": " + method + "() returned ");
+    const py::object bound = object_.attr(method);
+    return value_of<Value>(bound(arguments...), [&] { return place_of(bound) + method + "() returned "; });
   }
 
   std::string file_;
@@ -86,6 +87,55 @@ class PythonController final : public Controller {
   py::object object_;
   bool has_done_, has_error_;
 };
+
+/// A call of Python that `bind` refuses has arguments that the callable does not take. Callables without a signature,
+/// such as those of extension modules, are left to the call itself.
+bool takes(const py::object& callable, int arguments) {
+  const py::module_ inspect = py::module_::import("inspect");
+  try {
+    const py::object signature = inspect.attr("signature")(callable);
+    const py::object values = py::reinterpret_steal<py::object>(PyTuple_New(arguments));
+    for (int i = 0; i < arguments; ++i) PyTuple_SET_ITEM(values.ptr(), i, py::none().release().ptr());
+    try {
+      signature.attr("bind")(*values);
+    } catch (py::error_already_set& error) {
+      return !error.matches(PyExc_TypeError);
+    }
+  } catch (py::error_already_set&) {
+  }
+  return true;
+}
+
+constexpr const char* kConstructor = "expected def __init__(self, robot, settings)";
+
+void check_constructor(py::handle type) {
+  if (takes(py::reinterpret_borrow<py::object>(type), 2)) return;
+  const std::string name = text_of(type.attr("__name__"));
+  const py::object made = type.attr("__init__");
+  if (!py::hasattr(made, "__code__"))
+    throw std::runtime_error(place_of(type) + "class " + name + " has no __init__; " + kConstructor);
+  throw std::runtime_error(place_of(made) + name + ".__init__" +
+                           text_of(py::str(py::module_::import("inspect").attr("signature")(made))) +
+                           " has other parameters; " + kConstructor);
+}
+
+void check_method(const py::object& object, const char* method, const char* parameters, int arguments) {
+  if (!py::hasattr(object, method)) return;
+  const py::object bound = object.attr(method);
+  const bool callable = PyCallable_Check(bound.ptr()) != 0;
+  if (callable && takes(bound, arguments)) return;
+  const std::string name = text_of(py::type::of(object).attr("__name__")) + "." + method;
+  throw std::runtime_error(place_of(py::hasattr(bound, "__code__") ? bound : py::type::of(object)) + name +
+                           (callable ? " has other parameters" : " is no method") + "; expected def " + method +
+                           parameters);
+}
+
+/// @throws std::runtime_error with the place and the expected signature of the first method that cannot be called
+py::object with_checked_methods(py::object object) {
+  check_method(object, "step", "(self, input)", 1);
+  for (const char* method : {"radio_range", "done", "error"}) check_method(object, method, "(self)", 0);
+  return object;
+}
 
 std::string file_of(py::handle type) {
   const py::object module = py::module_::import("sys").attr("modules").attr("get")(type.attr("__module__"));
@@ -95,8 +145,9 @@ std::string file_of(py::handle type) {
 template <class Value>
 Value attribute(py::handle type, const char* name, Value fallback) {
   if (!py::hasattr(type, name)) return fallback;
-  return value_of<Value>(type.attr(name),
-                         std::string("'") + name + "' of class " + text_of(type.attr("__name__")) + " is ");
+  return value_of<Value>(type.attr(name), [&] {
+    return place_of(type) + "'" + name + "' of class " + text_of(type.attr("__name__")) + " is ";
+  });
 }
 
 std::string first_line(py::handle text) {
@@ -124,6 +175,21 @@ std::string last_line(py::error_already_set& error, const std::string& file) {
   return place + text_of(lines[lines.size() - 1].attr("strip")());
 }
 
+std::string place_of(py::handle thing) {
+  const py::module_ inspect = py::module_::import("inspect");
+  try {
+    const py::object plain = inspect.attr("unwrap")(thing);
+    const auto text = [](const py::object& file, const py::object& line) {
+      return py::str("{}:{}: ").format(file, line).cast<std::string>();
+    };
+    if (py::hasattr(plain, "__code__"))
+      return text(plain.attr("__code__").attr("co_filename"), plain.attr("__code__").attr("co_firstlineno"));
+    return text(inspect.attr("getsourcefile")(plain), inspect.attr("getsourcelines")(plain)[py::int_(1)]);
+  } catch (py::error_already_set&) {  // a class without source
+    return "";
+  }
+}
+
 ControllerEntry entry_of(py::handle type) {
   ControllerEntry entry;
   entry.name = type.attr("__name__").cast<std::string>();
@@ -131,9 +197,13 @@ ControllerEntry entry_of(py::handle type) {
   entry.rate = attribute(type, "rate", entry.rate);
   entry.stops_on_bumper = attribute(type, "stops_on_bumper", entry.stops_on_bumper);
   type.inc_ref();
-  entry.make = [type, file = file_of(type)](const Robot& robot, Settings& settings) {
+  entry.make = [type, file = file_of(type), checked = false](const Robot& robot, Settings& settings) mutable {
     return in_python(file, [&]() -> std::unique_ptr<Controller> {
-      return std::make_unique<PythonController>(file, robot, with_settings(settings, type, robot));
+      if (!checked) check_constructor(type);
+      py::object object = with_settings(settings, type, robot);
+      if (!checked) object = with_checked_methods(std::move(object));
+      checked = true;
+      return std::make_unique<PythonController>(file, robot, std::move(object));
     });
   };
   return entry;

@@ -1,5 +1,7 @@
 """Controllers in Python: in a simulation, from a file, and in the program."""
 
+import functools
+import importlib.util
 import json
 import os
 import signal
@@ -82,6 +84,15 @@ class OneHash(unittest.TestCase):
         self.assertNotEqual(f"{simulated(controller=Careful, settings={'near': 2.5}):016x}", self.expected)
 
 
+def class_of(file):
+    """Class A of a file, loaded as a module of its own."""
+    spec = importlib.util.spec_from_file_location(os.path.dirname(file).replace("/", "_"), file)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module.A
+
+
 class Program(unittest.TestCase):
     def fails(self, *arguments):
         code, _, errors = run(*arguments)
@@ -104,6 +115,48 @@ class Program(unittest.TestCase):
             errors = self.fails("--controller", FILE + ":Returns", "--set", "what=" + what)
             self.assertIn(said, errors)
             self.assertIn("expected", errors)
+            if what != "nan":
+                self.assertIn(f"{FILE}:{line_of('return self.what') - 1}: step() returned", errors)
+
+    def test_signatures(self):
+        """Place and expected signature of constructors and methods that cannot be called, in the program and in process."""
+        maker, drives = "def __init__(self, robot, settings): pass", "def step(self, input): return 0, 0, 0"
+        for first, second, line, said in (
+                ("pass", drives, 2, "class A has no __init__; expected def __init__(self, robot, settings)"),
+                ("def __init__(self): pass", drives, 3, "A.__init__(self) has other parameters; expected def __init__(self, robot, "),
+                (maker, "def step(self): return 0, 0, 0", 4, "A.step has other parameters; expected def step(self, input)"),
+                (maker, "def step(self, input, more): pass", 4, "A.step has other parameters; expected def step(self, input)"),
+                (maker, "step = 5", 2, "A.step is no method; expected def step(self, input)"),
+                (maker + "\n  def done(self, input): pass", drives, 4, "A.done has other parameters; expected def done(self)"),
+                (maker + "\n  def error(self, input): pass", drives, 4, "A.error has other parameters; expected def error(self)")):
+            with tempfile.TemporaryDirectory() as folder:
+                file = os.path.join(folder, "wrong.py")
+                with open(file, "w") as out:
+                    out.write(f"\nclass A:\n  {first}\n  {second}\n")
+                self.assertIn(f"{file}:{line}: {said}", self.fails("--controller", file + ":A"))
+                with self.assertRaises(sensorfarm.Error) as raised:
+                    simulated(controller=class_of(file))
+                self.assertIn(f"{file}:{line}: {said}", str(raised.exception))
+
+    def test_other_shapes_of_the_same_signatures(self):
+        """Arguments of any number or with defaults, methods of the class, callables."""
+        class Any:
+            def __init__(self, *all, **named):
+                pass
+
+            @staticmethod
+            def step(input, more=0):
+                return 0, 0, 0
+
+            @classmethod
+            def done(cls):
+                return False
+
+        class Called(Any):
+            def __init__(self, robot, settings, extra=1):
+                self.step = functools.partial(lambda speed, input: (speed, 0, 0), 0.1)
+        for controller in (Any, Called):
+            simulated(controller=controller)
 
     def test_settings(self):
         self.assertIn("expects a number from 0 to 10; got '11'", self.fails("--controller", FILE + ":Careful", "--set", "near=11"))
@@ -154,6 +207,7 @@ class Program(unittest.TestCase):
     def test_bad_files(self):
         with tempfile.TemporaryDirectory() as folder:
             for text, said in (("def f(:\n", ":1: SyntaxError"), ("x = 1\n", "no class with a method step"),
+                               ("\nclass A:\n  pass\n", ":2: class A has none"),
                                ("\nimport nowhere\n", ":2: ModuleNotFoundError"), ("\0", "null bytes"),
                                ("class A:\n  rate = 'x'\n  def step(self, i): pass\n", "'rate' of class A is 'x'"),
                                ("class A:\n  rate = -1\n  def step(self, i): pass\n", "rate of -1 Hz")):
@@ -224,6 +278,8 @@ class InProcess(unittest.TestCase):
                 simulated(controller=made(**members))
         with self.assertRaisesRegex(TypeError, "'int' is no controller"):
             simulated(controller=int)
+        with self.assertRaisesRegex(TypeError, r"test_controllers.py:\d+: 'InProcess' is no controller: .* step\(self, input\)"):
+            simulated(controller=InProcess)
         with self.assertRaisesRegex(ValueError, "without a controller"):
             simulated(settings={"near": 1})
 
