@@ -1,11 +1,13 @@
 #include "library/loading.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "base/error.h"
 #include "base/installation.h"
@@ -32,9 +34,10 @@ world::World load(const WorldSource& source, const sensorfarm::Options& options)
 
 std::shared_ptr<gpu::Device> shared_device(const std::string& wanted) {
   static std::mutex lock;
-  static std::map<std::string, std::weak_ptr<gpu::Device>> open;
+  // A process that was forked has devices of its parent, whose threads it lacks: it opens its own.
+  static std::map<std::pair<pid_t, std::string>, std::weak_ptr<gpu::Device>> open;
   const std::scoped_lock guard(lock);
-  std::weak_ptr<gpu::Device>& known = open[wanted];
+  std::weak_ptr<gpu::Device>& known = open[{getpid(), wanted}];
   if (auto device = known.lock()) return device;
   auto device = std::make_shared<gpu::Device>(wanted);
   known = device;

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <tuple>
 
 #include "base/bytes.h"
 #include "base/error.h"
@@ -22,6 +23,7 @@
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 #include "sensors/own_sensors.h"
+#include "viz/top_view.h"
 #include "viz/world_figure.h"
 
 namespace sensorfarm {
@@ -52,6 +54,7 @@ struct Simulation::State {
   void put(std::size_t row, const Pose& pose);
   void take(const base::TickRecord& tick);
   const library::ReadingTable& table(std::string_view type) const;
+  const viz::TopView& top_view(const ImageOptions& wanted);
 
   library::WorldSource source;
   Options options;
@@ -70,7 +73,8 @@ struct Simulation::State {
   std::vector<Pose> poses;
   std::vector<Twist> velocities;
   std::vector<std::uint8_t> contacts, done, owned;
-  std::vector<base::ReadingBlock> of_type;  ///< scratch
+  std::vector<base::ReadingBlock> of_type;                       ///< scratch
+  std::vector<std::pair<ImageOptions, viz::TopView>> top_views;  ///< of the last images, the newest at the end
   std::uint64_t tick = 0;
   double time = 0.0;
 };
@@ -210,6 +214,23 @@ const library::ReadingTable& Simulation::State::table(std::string_view type) con
                                      known.empty() ? "none" : known));
 }
 
+const viz::TopView& Simulation::State::top_view(const ImageOptions& wanted) {
+  constexpr std::size_t kKept = 4;
+  const auto same = std::find_if(top_views.begin(), top_views.end(), [&](const auto& known) {
+    return std::tie(known.first.width, known.first.height, known.first.view) ==
+           std::tie(wanted.width, wanted.height, wanted.view);
+  });
+  if (same != top_views.end()) {
+    std::rotate(same, same + 1, top_views.end());
+    return top_views.back().second;
+  }
+  viz::TopViewOptions shown{.width = wanted.width, .height = wanted.height, .extent = {}};
+  if (const auto& v = wanted.view) shown.extent = {(*v)[0], (*v)[1], (*v)[2], (*v)[3]};
+  viz::TopView view(world, shown);
+  if (top_views.size() == kKept) top_views.erase(top_views.begin());
+  return top_views.emplace_back(wanted, std::move(view)).second;
+}
+
 Simulation::Simulation(const std::string& world, const Options& options)
     : state_(library::translated([&] {
         return std::make_shared<State>(library::WorldSource{library::found(world), ""}, options);
@@ -298,6 +319,15 @@ void Simulation::draw(const std::string& file) const {
     now.movers[i].X_WM = {pose.x, pose.y, pose.z, pose.yaw};
   }
   library::translated([&] { viz::draw_world(now, file); });
+}
+
+Image Simulation::image(const ImageOptions& options) const {
+  std::vector<base::Pose> X_WM;
+  for (const Pose& pose : state_->poses) X_WM.push_back({pose.x, pose.y, pose.z, pose.yaw});
+  return library::translated([&] {
+    viz::PixelImage image = state_->top_view(options).paint(X_WM, state_->time);
+    return Image{image.width, image.height, std::move(image.rgb)};
+  });
 }
 
 std::shared_ptr<const void> Simulation::memory() const { return state_; }

@@ -1,7 +1,11 @@
 // sensorfarm._sensorfarm: sensorfarm/simulation.h for Python. Arrays are views of the farm's memory, which they keep.
 
+#include <unistd.h>
+
+#include <array>
 #include <atomic>
 #include <map>
+#include <optional>
 
 #include "python/controllers.h"
 #include "python/types.h"
@@ -44,9 +48,26 @@ auto in_farm(Call&& call) {
 }
 
 struct PySimulation {
+  PySimulation(Simulation made, bool views_writable) : farm(std::move(made)), writable(views_writable) {}
+  PySimulation(PySimulation&&) noexcept = default;
+  PySimulation& operator=(PySimulation&&) noexcept = default;
+  /// A process that was forked cannot end threads that it does not have, so it keeps the memory.
+  ~PySimulation() {
+    if (process != getpid()) new Simulation(std::move(farm));
+  }
+
   Simulation farm;
   bool writable;  ///< arrays can be written to
+  pid_t process = getpid();
 };
+
+/// A call of this simulation without the GIL.
+template <class Call>
+auto in_farm(const PySimulation& s, Call&& call) {
+  if (s.process != getpid())
+    throw Error("this simulation was made before the process was forked; expected one that this process has made");
+  return in_farm(call);
+}
 
 /// Options of the constructor by keyword, checked as Python checks them.
 class Keywords {
@@ -103,7 +124,7 @@ PySimulation made(const py::kwargs& keywords, Make&& make) {
   bool writable = false;
   given.read("writable", writable);
   given.finish();
-  PySimulation s = in_farm([&] { return PySimulation{make(options), writable}; });
+  PySimulation s = in_farm([&] { return PySimulation(make(options), writable); });
   if (s.farm.ranks() > 1) py::module_::import("sensorfarm").attr("_end_all_by_errors")();
   return s;
 }
@@ -116,7 +137,7 @@ std::string controller_name(py::handle controller) {
   const auto known = names.find(controller.ptr());
   if (known != names.end()) return known->second;
   if (!py::hasattr(controller, "step"))
-    throw py::type_error("'" + std::string(py::str(controller.attr("__name__"))) +
+    throw py::type_error(place_of(controller) + "'" + std::string(py::str(controller.attr("__name__"))) +
                          "' is no controller: it has no method step(self, input)");
   ControllerEntry entry = entry_of(controller);
   entry.name = std::string(py::str(controller.attr("__module__"))) + "." + entry.name;
@@ -180,7 +201,7 @@ py::array flags(const PySimulation& s, Text type) {
 using Commands = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 void step(PySimulation& s, const py::object& twists) {
-  if (twists.is_none()) return in_farm([&] { s.farm.step(); });
+  if (twists.is_none()) return in_farm(s, [&] { s.farm.step(); });
   const Commands commands = Commands::ensure(twists);
   if (!commands || commands.ndim() != 2 || commands.shape(1) != 3 || commands.shape(0) != count(s.farm.size()))
     throw py::value_error("twists have " +
@@ -190,7 +211,13 @@ void step(PySimulation& s, const py::object& twists) {
                           ", 3): forward [m/s], left [m/s], turn [rad/s] per row");
   static_assert(sizeof(Twist) == 3 * sizeof(double));
   const auto* const first = reinterpret_cast<const Twist*>(commands.data());
-  in_farm([&] { s.farm.step({first, s.farm.size()}); });
+  in_farm(s, [&] { s.farm.step({first, s.farm.size()}); });
+}
+
+py::array image(const PySimulation& s, int width, int height, const std::optional<std::array<double, 4>>& view) {
+  auto* const made = new Image(in_farm(s, [&] { return s.farm.image({width, height, view}); }));
+  const py::capsule owner(made, [](void* image) { delete static_cast<Image*>(image); });
+  return py::array_t<std::uint8_t>({made->height, made->width, 3}, made->rgb.data(), owner);
 }
 
 void add_state(py::class_<PySimulation>& c) {
@@ -283,16 +310,19 @@ void add_simulation(py::module_& module) {
       .def(
           "reset",
           [](PySimulation& s, std::optional<std::uint64_t> seed) {
-            in_farm([&] { seed ? s.farm.reset(*seed) : s.farm.reset(); });
+            in_farm(s, [&] { seed ? s.farm.reset(*seed) : s.farm.reset(); });
           },
           py::arg("seed") = py::none())
       .def(
-          "put", [](PySimulation& s, std::size_t row, const Pose& pose) { in_farm([&] { s.farm.put(row, pose); }); },
+          "put", [](PySimulation& s, std::size_t row, const Pose& pose) { in_farm(s, [&] { s.farm.put(row, pose); }); },
           py::arg("row"), py::arg("pose"), "Places a robot at (x, y, z [m], yaw [rad]), at rest.")
       .def(
-          "draw", [](const PySimulation& s, Text file) { in_farm([&] { s.farm.draw(file); }); }, py::arg("file"),
+          "draw", [](const PySimulation& s, Text file) { in_farm(s, [&] { s.farm.draw(file); }); }, py::arg("file"),
           "Writes a picture of the world at this time: PNG, SVG or PDF by its suffix.")
-      .def("finish_recording", [](PySimulation& s) { in_farm([&] { s.farm.finish_recording(); }); });
+      .def("image", &image, py::arg("width") = 640, py::arg("height") = 480, py::arg("view") = py::none(),
+           "(height, width, 3) uint8: the world from above at this time, of which view = (x_min, y_min, x_max, y_max) "
+           "[m] is shown at least.")
+      .def("finish_recording", [](PySimulation& s) { in_farm(s, [&] { s.farm.finish_recording(); }); });
   add_state(c), add_readings(c);
 }
 

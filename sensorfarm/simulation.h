@@ -11,8 +11,11 @@
 //
 // Link with libsensorfarm (CMake: find_package(sensorfarm), sensorfarm::sensorfarm).
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -81,6 +84,18 @@ struct Readings {
   std::span<const std::uint32_t> hits_of(std::size_t i) const { return {hits + i * hit_stride, elements}; }
 };
 
+/// What an image shows.
+struct ImageOptions {
+  int width = 640, height = 480;  ///< [px] in [1, 4096]
+  std::optional<std::array<double, 4>>
+      view;  ///< [m] x_min, y_min, x_max, y_max to show at least; none: the whole world
+};
+
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  ///< red, green and blue of each pixel, row by row, the top row first
+};
+
 /// One thread at a time, also for several simulations of one process, which share their device. Time 0 is simulated at
 /// construction, so there are readings at once.
 class SENSORFARM_API Simulation {
@@ -133,6 +148,10 @@ class SENSORFARM_API Simulation {
   /// Draws walls, robots and tags at their present poses, and fields of view, to a PNG, SVG or PDF file by its suffix.
   /// @throws Error when it cannot be written, and without Cairo
   void draw(const std::string& file) const;
+  /// The world from above at this time, north (+y) up, as pixels: ground, walls, traffic lights and the bodies of
+  /// robots and tags, without texts and fields of view. What stands is painted for the first image of a size and view,
+  /// and kept for the last four. @throws Error for options out of range, and without Cairo
+  Image image(const ImageOptions& options = {}) const;
   /// Keeps the memory behind spans and readings, whose content changes with the next step, beyond the simulation.
   std::shared_ptr<const void> memory() const;
 

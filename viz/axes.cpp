@@ -93,6 +93,10 @@ Axes::Axes(FigureOptions options)
   draw_grid(canvas_, layout_);
 }
 
+Axes::Axes(const FigureLayout& layout) : layout_(layout), canvas_(layout_.width, layout_.height, theme::kWhite) {
+  canvas_.clip(layout_.plot);
+}
+
 void Axes::save(const std::string& path) {
   canvas_.unclip();
   draw_frame(canvas_, layout_.plot);

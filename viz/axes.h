@@ -47,6 +47,8 @@ class Axes {
  public:
   /// Paints background and grid. Until `save`, drawing on the canvas is clipped to the plot.
   explicit Axes(FigureOptions options);
+  /// A bare picture: the plot alone, white and without grid, which is not to be saved as a figure.
+  explicit Axes(const FigureLayout& layout);
 
   Canvas& canvas() { return canvas_; }
   const FigureLayout& layout() const { return layout_; }

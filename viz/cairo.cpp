@@ -151,14 +151,14 @@ bool pixels(const Drawing& drawing, double scale, std::vector<std::uint8_t>& rgb
   cairo_scale(to.get(), scale, scale);
   if (!paint(to.get(), drawing, scale)) return false;
   cairo_surface_flush(page.get());
-  rgb.clear();
-  rgb.reserve(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  rgb.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  std::uint8_t* out = rgb.data();
   for (int j = 0; j < height; ++j) {
     const auto* row = reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(page.get()) +
                                                              static_cast<std::ptrdiff_t>(j) *
                                                                  cairo_image_surface_get_stride(page.get()));
     for (int i = 0; i < width; ++i)
-      for (const int shift : {16, 8, 0}) rgb.push_back(static_cast<std::uint8_t>(row[i] >> shift));
+      for (const int shift : {16, 8, 0}) *out++ = static_cast<std::uint8_t>(row[i] >> shift);
   }
   return true;
 }

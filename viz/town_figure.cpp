@@ -136,9 +136,7 @@ void draw_town(const World& world, std::span<const Track> tracks, const TownFina
   draw_lights(axes, world, end.time);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (tracks[i].poses.empty()) continue;
-    world::Mover mover = world.movers[end.movers[i]];
-    mover.X_WM = tracks[i].poses.back();
-    draw_body(axes, mover, color_of(groups[i]));
+    draw_body(axes, world.movers[end.movers[i]], tracks[i].poses.back(), color_of(groups[i]));
   }
   draw_convoys(axes, world, tracks, end);
   for (const Track& track : tracks) draw_contacts(axes, track, 5.0, 1.6);

@@ -35,10 +35,6 @@ constexpr std::size_t kOutlinedViews = 300;
 
 bool crowded(const World& world) { return world.movers.size() > kNamedMovers; }
 
-std::uint32_t color_of(const World& world, const Mover& mover) {
-  return mover.model < world.models.size() ? world.models[mover.model].color | theme::kBlack : theme::kNeutral;
-}
-
 /// [px] The outline of a laser's visible area, counter-clockwise in the world; a full turn has no corner at the sensor.
 std::vector<glm::dvec2> view_outline(const Axes& axes, const World& world, const Pose& X_WS,
                                      const LaserSettings& laser) {
@@ -187,7 +183,7 @@ void draw_world(const World& world, const std::string& path, const Page& page) {
   draw_views(axes, world);
   draw_walls(axes, world, WallColors::of_models);
   draw_lights(axes, world);
-  for (const Mover& mover : world.movers) draw_body(axes, mover, color_of(world, mover));
+  for (const Mover& mover : world.movers) draw_body(axes, mover, mover.X_WM, color_of(world, mover));
   if (!crowded(world)) draw_sensors(axes, world);
   for (const Mover& mover : world.movers)
     if (mover.is_tag) draw_tag(axes, mover);

@@ -212,6 +212,12 @@ class Simulation:
         """Places a robot at (x, y, z, yaw), at rest. Its sensors see it from the next step on."""
     def draw(self, file: str) -> None:
         """Writes a PNG of the world at this time."""
+    def image(self, width: int = 640, height: int = 480,
+              view: tuple[float, float, float, float] | None = None) -> NDArray[np.uint8]:
+        """(height, width, 3) red, green, blue: the world from above at this time, +y up, without texts and fields of view;
+        a new array. view: (x_min, y_min, x_max, y_max) [m] to show at least; None: the whole world. The first image of a
+        size and view paints what stands, later ones only what moves; the last four are kept. Sides are 1 to 4096 pixels.
+        Raises Error for options out of range, and without Cairo."""
     def finish_recording(self) -> None:
         """Ends the recording, with its index."""
     def __len__(self) -> int:

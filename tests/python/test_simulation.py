@@ -235,6 +235,79 @@ class Steps(unittest.TestCase):
         self.assertGreater(len(picture), 5000)
 
 
+class Images(unittest.TestCase):
+    """Of the room of 4 m, with 100 pixels to the metre."""
+    WHOLE = dict(width=400, height=400, view=(-2, -2, 2, 2))
+
+    def test_what_is_where(self):
+        """White where nothing is; walls along the edges, robots at their poses, +y up."""
+        sim = room()
+        sim.put(1, (1, 1, 0, 0))
+        image = sim.image(**self.WHOLE)
+        self.assertEqual((image.shape, image.dtype, image.flags.writeable), ((400, 400, 3), numpy.uint8, True))
+        for x, y, free in ((0, 0, True), (1, -1, True), (-1, 0, False), (1, 1, False), (1.9, 1.9, True), (-1.995, 0, False)):
+            pixel = image[int(200 - 100 * y), int(200 + 100 * x)]
+            self.assertEqual((pixel == 255).all(), free, (x, y, pixel))
+
+    def test_views(self):
+        """A view twice as long as high is shown whole, in the middle, in the picture's own shape."""
+        sim = room()
+        sim.put(0, (0, 0, 0, 0))
+        image = sim.image(100, 100, (-0.5, -0.25, 0.5, 0.25))
+        self.assertFalse((image[50, 50] == 255).all())
+        self.assertTrue((image[50, 20] == 255).all(), "0.3 m from the middle, where the body ends at 0.15 m")
+        self.assertFalse((image[50, 37] == 255).all())
+        self.assertEqual(sim.image().shape, (480, 640, 3))
+
+    def test_traffic_lights_change(self):
+        sim = sensorfarm.Simulation("worlds/simville/simville.world")
+        before, poses = sim.image(), sim.poses.copy()
+        for _ in range(200):
+            sim.step()
+        numpy.testing.assert_array_equal(sim.poses, poses)
+        self.assertTrue((sim.image() != before).any())
+
+    def test_images_are_apart_and_repeat(self):
+        """Kept layers do not change the picture, whichever came before."""
+        sim, views = room(), [(-k, -k, k, k) for k in (1, 2, 3, 4, 5, 6)]
+        first = [sim.image(50, 40, view) for view in views]
+        for view, known in reversed(list(zip(views, first))):
+            numpy.testing.assert_array_equal(sim.image(50, 40, view), known)
+        first[0][:] = 0
+        self.assertTrue(sim.image(50, 40, views[0]).any())
+        sim.step([[0.3, 0, 0], [0, 0, 0]])
+        self.assertTrue((sim.image(50, 40, views[1]) != first[1]).any())
+
+    def test_faults(self):
+        sim = room()
+        for size in ((0, 10), (10, -1), (4097, 10)):
+            with self.assertRaisesRegex(sensorfarm.Error, "expected 1 to 4096 along each side"):
+                sim.image(*size)
+        for view in ((0, 0, 0, 1), (0, 1, 1, 0), (0, 0, 1, float("inf")), (float("nan"), 0, 1, 1)):
+            with self.assertRaisesRegex(sensorfarm.Error, "expected finite x_min, y_min, x_max, y_max"):
+                sim.image(10, 10, view)
+        self.assertEqual(sim.image(1, 1).shape, (1, 1, 3))
+
+
+class Processes(unittest.TestCase):
+    def test_a_forked_process_makes_its_own(self):
+        """A simulation of its parent is refused, and a new one has the parent's readings, by either caster."""
+        for caster in ("host", "vulkan"):
+            sim = room(caster=caster)
+            reader, writer = os.pipe()
+            child = os.fork()
+            if child == 0:
+                try:
+                    sim.step()
+                except sensorfarm.Error as error:
+                    os.write(writer, f"{error} {room(caster=caster).hash == sim.hash}".encode())
+                os._exit(0)
+            os.close(writer)
+            with os.fdopen(reader) as answer:
+                self.assertRegex(answer.read(), "made before the process was forked; .* True$")
+            os.waitpid(child, 0)
+
+
 class Faults(unittest.TestCase):
     def test_messages(self):
         sim = room()

@@ -1,0 +1,43 @@
+#pragma once
+// A camera above a world, for pictures of a run at many frames a second: pixels without frame and texts.
+//
+//   TopView view(world, {.width = 640, .height = 480});
+//   while (running) show(view.paint(poses, time));
+//
+// The layer of all that stands is painted once, at construction.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "viz/axes.h"
+#include "viz/picture_file.h"
+#include "world/world.h"
+
+namespace sf::viz {
+
+struct TopViewOptions {
+  static constexpr int kLongestSide = 4096;
+  int width = 640, height = 480;        ///< [px] in [1, kLongestSide]
+  std::optional<world::Extent> extent;  ///< [m] area to show at least, finite and not empty; none: the whole world
+};
+
+class TopView {
+ public:
+  /// @param world must outlive it, unchanged but for the poses of movers
+  /// @throws base::InputError for options out of range, and without Cairo
+  TopView(const world::World& world, const TopViewOptions& options);
+
+  /// Ground, walls and traffic lights, and the body of each mover.
+  /// @param X_WM one per mover, in the order of `World::movers`
+  /// @param time [s] of the traffic lights
+  PixelImage paint(std::span<const base::Pose> X_WM, double time) const;
+
+ private:
+  const world::World* world_;
+  FigureLayout layout_;
+  std::vector<std::uint32_t> standing_;  ///< 0xFFRRGGBB of ground and walls, row by row
+};
+
+}  // namespace sf::viz
