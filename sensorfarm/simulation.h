@@ -87,8 +87,8 @@ struct Readings {
 /// What an image shows.
 struct ImageOptions {
   int width = 640, height = 480;  ///< [px] in [1, 4096]
-  std::optional<std::array<double, 4>>
-      view;  ///< [m] x_min, y_min, x_max, y_max to show at least; none: the whole world
+  /// [m] x_min, y_min, x_max, y_max to show at least; none: the whole world
+  std::optional<std::array<double, 4>> view;
 };
 
 struct Image {
@@ -149,8 +149,8 @@ class SENSORFARM_API Simulation {
   /// @throws Error when it cannot be written, and without Cairo
   void draw(const std::string& file) const;
   /// The world from above at this time, north (+y) up, as pixels: ground, walls, traffic lights and the bodies of
-  /// robots and tags, without texts and fields of view. What stands is painted for the first image of a size and view,
-  /// and kept for the last four. @throws Error for options out of range, and without Cairo
+  /// robots and tags, without texts and fields of view. The static layer is painted for the first image of a size and
+  /// view, and kept for the last four. @throws Error for options out of range, and without Cairo
   Image image(const ImageOptions& options = {}) const;
   /// Keeps the memory behind spans and readings, whose content changes with the next step, beyond the simulation.
   std::shared_ptr<const void> memory() const;

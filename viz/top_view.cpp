@@ -69,13 +69,13 @@ TopView::TopView(const world::World& world, const TopViewOptions& options)
   draw_magnets(axes, world);
   draw_emitters(axes, world);
   draw_walls(axes, world, WallColors::of_models);
-  standing_ = colors_of(paint_pixels(axes.canvas().drawing()));
+  static_layer_ = colors_of(paint_pixels(axes.canvas().drawing()));
 }
 
 PixelImage TopView::paint(std::span<const base::Pose> X_WM, double time) const {
   SF_CHECK(X_WM.size() == world_->movers.size(), "poses: expected one per mover");
   Axes axes(layout_);
-  axes.canvas().image({0.0, 0.0}, {layout_.width, layout_.height}, {layout_.width, layout_.height, standing_});
+  axes.canvas().image({0.0, 0.0}, {layout_.width, layout_.height}, {layout_.width, layout_.height, static_layer_});
   draw_lights(axes, *world_, time);
   for (std::size_t i = 0; i < X_WM.size(); ++i)
     draw_body(axes, world_->movers[i], X_WM[i], color_of(*world_, world_->movers[i]));

@@ -4,7 +4,7 @@
 //   TopView view(world, {.width = 640, .height = 480});
 //   while (running) show(view.paint(poses, time));
 //
-// The layer of all that stands is painted once, at construction.
+// The static layer, ground and walls, is painted once, at construction.
 
 #include <cstdint>
 #include <optional>
@@ -37,7 +37,7 @@ class TopView {
  private:
   const world::World* world_;
   FigureLayout layout_;
-  std::vector<std::uint32_t> standing_;  ///< 0xFFRRGGBB of ground and walls, row by row
+  std::vector<std::uint32_t> static_layer_;  ///< 0xFFRRGGBB of ground and walls, row by row
 };
 
 }  // namespace sf::viz

@@ -216,7 +216,7 @@ class Simulation:
               view: tuple[float, float, float, float] | None = None) -> NDArray[np.uint8]:
         """(height, width, 3) red, green, blue: the world from above at this time, +y up, without texts and fields of view;
         a new array. view: (x_min, y_min, x_max, y_max) [m] to show at least; None: the whole world. The first image of a
-        size and view paints what stands, later ones only what moves; the last four are kept. Sides are 1 to 4096 pixels.
+        size and view paints the static layer, which is kept for the last four. Sides are 1 to 4096 pixels.
         Raises Error for options out of range, and without Cairo."""
     def finish_recording(self) -> None:
         """Ends the recording, with its index."""

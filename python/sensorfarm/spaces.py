@@ -20,6 +20,8 @@ except ImportError:
             return seed
 
         def sample(self, mask=None):
+            if not (numpy.isfinite(self.low).all() and numpy.isfinite(self.high).all()):
+                raise ValueError(f"{self} has no bounds, so it has no samples")
             return self._np_random.uniform(self.low, self.high).astype(self.dtype)
 
         def contains(self, x):
@@ -35,6 +37,11 @@ except ImportError:
 
         def __repr__(self):
             return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
+
+
+def another(box):
+    """An equal space with samples of its own."""
+    return Box(box.low, box.high, dtype=box.dtype)
 
 
 def batched(box, count):

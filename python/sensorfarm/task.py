@@ -16,6 +16,9 @@ def simulation(world, text, **options):
 class Task:
     """Drive far without contact. Override `observe`, `reward` and `terminated` for a task of your own.
 
+    Resets of some robots of a world observe them by a second task, with a simulation of its own: `observe` may use `sim`
+    and what __init__ and `begin` set.
+
     sim: the Simulation; rows: its robots with sensors of this type, which are the agents; starts: their poses at the
     last reset, (agents, 4).
     """

@@ -1,4 +1,4 @@
-"""The interfaces of Gymnasium (vector) and PettingZoo (parallel), held without these packages, which Debian 12 lacks."""
+"""The interfaces of Gymnasium (vector) and PettingZoo (parallel), covered without these packages, which Debian 12 lacks."""
 
 import subprocess
 import sys
@@ -36,7 +36,7 @@ class Vector(unittest.TestCase):
         self.assertEqual(env.single_action_space.shape, (2,))
         for name in ("metadata", "spec", "render_mode", "closed", "np_random", "unwrapped"):
             self.assertTrue(hasattr(env, name), name)
-        self.assertEqual(env.metadata["render_modes"], [])
+        self.assertEqual(env.metadata["render_modes"], ["rgb_array"])
 
     def test_random_actions(self):
         env = vector(worlds=2, max_steps=15)
@@ -179,19 +179,22 @@ class Vector(unittest.TestCase):
     def test_registers_with_gymnasium(self):
         """With a stand-in for the package, since it is not there."""
         text = """
-import sys, types
+import enum, sys, types
 made = []
 gymnasium, vector, spaces = (types.ModuleType(n) for n in ("gymnasium", "gymnasium.vector", "gymnasium.spaces"))
 class VectorEnv: pass
-class AutoresetMode: NEXT_STEP = "next"
+class Env: pass
+class AutoresetMode(enum.Enum): NEXT_STEP, DISABLED = "NextStep", "Disabled"
 import sensorfarm.spaces
 spaces.Box, vector.VectorEnv, vector.AutoresetMode = sensorfarm.spaces.Box, VectorEnv, AutoresetMode
-gymnasium.vector, gymnasium.register = vector, lambda **entry: made.append(entry)
+gymnasium.Env, gymnasium.vector, gymnasium.register = Env, vector, lambda **entry: made.append(entry)
 sys.modules.update({"gymnasium": gymnasium, "gymnasium.vector": vector, "gymnasium.spaces": spaces})
 import sensorfarm.gym
-assert made == [{"id": "sensorfarm/Drive-v0", "vector_entry_point": "sensorfarm.gym:VectorEnv"}], made
+assert made == [{"id": "sensorfarm/Drive-v0", "entry_point": "sensorfarm.gym:Env",
+                 "vector_entry_point": "sensorfarm.gym:VectorEnv"}], made
 env = sensorfarm.gym.VectorEnv(num_envs=2)
-assert isinstance(env, VectorEnv) and env.metadata["autoreset_mode"] == "next"
+assert isinstance(env, VectorEnv) and env.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+assert isinstance(sensorfarm.gym.Env(), Env)
 env.reset(); env.step(env.action_space.sample())
 """
         done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True)
