@@ -187,6 +187,21 @@ TEST(Library, Records) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(Library, AnImageShowsRobotsAtTheirPoses) {
+  Simulation simulation(kCave, {.robots = 1});
+  const auto at = [&](double x) {
+    simulation.put(0, {x, 0.0, 0.0, 0.0});
+    return simulation.image({.width = 40, .height = 30, .view = {{-4.0, -3.0, 4.0, 3.0}}});
+  };
+  const Image there = at(1.0);
+  EXPECT_EQ(there.width, 40);
+  EXPECT_EQ(there.rgb.size(), 3u * 40u * 30u);
+  EXPECT_NE(at(-1.0).rgb, there.rgb);
+  EXPECT_EQ(at(1.0).rgb, there.rgb);
+  expect_in("40 x 0 pixels; expected 1 to 4096",
+            refusal_of<Error>([&] { simulation.image({.width = 40, .height = 0, .view = {}}); }));
+}
+
 TEST(Library, AControllerThatFailsEndsTheStepWithTheFirstRobotsName) {
   struct Fails : Controller {
     Twist step(const Input& input) override {
