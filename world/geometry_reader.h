@@ -90,9 +90,8 @@ class GeometryReader {
         return members({});
       case T::polyhedralsurface:
       case T::tin:
-        break;
+        return skip_faces([&] { members(type == T::tin ? T::triangle : T::polygon); });
     }
-    throw base::InputError("faces in three dimensions have no outline; expected the polygons that they cover");
   }
 
  private:
@@ -151,6 +150,14 @@ class GeometryReader {
       end_part(first ? WellKnownGeometry::Kind::outer : WellKnownGeometry::Kind::inner);
       first = false;
     });
+  }
+  template <class Members>
+  void skip_faces(const Members& members) {
+    const std::size_t points = out_.points.size(), parts = out_.parts.size();
+    members();
+    if (out_.points.size() > points) ++out_.faces_left_out;
+    out_.points.resize(points);
+    out_.parts.resize(parts);
   }
   std::size_t begin() const { return out_.parts.empty() ? 0 : out_.parts.back().end; }
   void end_part(WellKnownGeometry::Kind kind) {

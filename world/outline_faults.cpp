@@ -10,12 +10,14 @@ namespace {
 
 constexpr std::uint64_t kListedFaults = 3;  // of a kind
 /// The consequence, and what further faults are.
-constexpr std::array<std::array<const char*, 2>, 5> kFaultWords{
+constexpr std::array<std::array<const char*, 2>, 7> kFaultWords{
     {{": left out", "rows more are left out that cannot be read"},
      {": left out", "rows more are left out without a geometry"},
      {": left out", "rows more have points, which are left out"},
+     {": left out", "rows more have faces in three dimensions, which are left out"},
      {": the model's height counts", "heights more are no numbers or out of range"},
-     {": its walls are thin ones", "rows more have inner rings that leave their outer ring"}}};
+     {": its walls are thin ones", "rows more have inner rings that leave their outer ring"},
+     {": ignored", "rows more have text behind a closing quote"}}};
 
 }  // namespace
 

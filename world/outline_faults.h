@@ -11,8 +11,8 @@
 
 namespace sf::world {
 
-/// The first three leave the row out, or a part of it.
-enum class OutlineFault : std::uint8_t { unreadable, empty, points, height, hole };
+/// The first four leave the row out, or a part of it.
+enum class OutlineFault : std::uint8_t { unreadable, empty, points, faces, height, hole, quote };
 
 class OutlineFaults {
  public:
@@ -37,7 +37,7 @@ class OutlineFaults {
   };
   std::string file_;
   std::vector<Fault> faults_;
-  std::array<std::uint64_t, 5> counts_{};  ///< by kind
+  std::array<std::uint64_t, 7> counts_{};  ///< by kind
   std::vector<std::string> notes_;
 };
 

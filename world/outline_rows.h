@@ -14,12 +14,14 @@
 namespace sf::world {
 
 struct OutlineRow {
-  std::string_view geometry;   ///< text, or the bytes of well-known binary; empty: none. Lives until the next row
-  std::string_view height;     ///< as written; empty: none
-  int line = 0;                ///< 1-based, where the row begins; 0: not a text
-  std::string place;           ///< of a feature, for messages, e.g. "feature 3"
-  bool is_binary = false;      ///< `geometry` is well-known binary
-  bool is_geographic = false;  ///< coordinates are degrees, by the file's own words
+  std::string_view geometry;      ///< text, or the bytes of well-known binary; empty: none. Lives until the next row
+  std::string_view height;        ///< as written; empty: none
+  int line = 0;                   ///< 1-based, where the row begins; 0: not a text
+  std::string place;              ///< of a feature, for messages, e.g. "feature 3"
+  bool is_binary = false;         ///< `geometry` is well-known binary
+  std::string_view behind_quote;  ///< text between a closing quote and the next separator, which is ignored
+  std::string_view degrees;       ///< why coordinates are degrees, for a warning; empty: nothing states it
+  double metres_per_unit = 0.0;   ///< [m] of coordinates, by the file's own words; 0: it states none
 };
 
 class OutlineRows {

@@ -6,59 +6,58 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/files.h"
+#include "base/printable.h"
 #include "world/outline_rows.h"
+#include "world/table_record.h"
 #include "world/well_known_geometry.h"
 
 namespace sf::world {
 
 namespace {
 
-constexpr std::string_view kSeparators = ",;\t|";
+constexpr std::string_view kSeparators = ",;\t| ";
 constexpr std::array<std::string_view, 8> kGeometryNames{"wkt",          "geom",  "geometry", "the_geom",
                                                          "wkb_geometry", "shape", "way",      "wkt_geom"};
-constexpr std::string_view kContinuations = "0123456789+-.,()";  // first characters of lines within a geometry
 constexpr std::size_t kNoColumn = std::string_view::npos;
-constexpr std::size_t kKnownField = 1'000'000;  // weighs more than any number of fields
-constexpr std::size_t kMaxFields = 10'000;      // of a row; those beyond are ignored
+constexpr std::size_t kKnownField = 1'000'000;    // weighs more than any number of fields
+constexpr std::size_t kMaxLookahead = 64u << 20;  // characters of lines that are joined to find the separator
 constexpr std::size_t kShownColumns = 20;
 constexpr std::size_t kShownCharacters = 32;
 
-std::string_view without_blanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == kNoColumn) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") + 1 - first);
-}
-
-bool same_letters(std::string_view text, std::string_view word) {
-  return std::equal(text.begin(), text.end(), word.begin(), word.end(),
-                    [](unsigned char a, unsigned char b) { return std::tolower(a) == b; });
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
 }
 
 bool is_geometry_name(std::string_view name) {
-  return std::any_of(kGeometryNames.begin(), kGeometryNames.end(),
-                     [&](std::string_view known) { return same_letters(name, known); });
+  return name.size() <= kShownCharacters &&
+         std::find(kGeometryNames.begin(), kGeometryNames.end(), lower_case(name)) != kGeometryNames.end();
 }
+bool is_height_name(std::string_view name) { return name.size() == 6 && lower_case(name) == "height"; }
+bool is_known_name(std::string_view name) { return is_geometry_name(name) || is_height_name(name); }
 
+bool may_be_geometry(std::string_view text) { return guess_geometry(text).content != GeometryGuess::Content::none; }
 /// The whole text is one, as far as its parentheses show.
-bool is_geometry(std::string_view text) {
-  const GeometryGuess guess = guess_geometry(text);
-  return guess.content != GeometryGuess::Content::none && guess.length == text.size();
-}
+bool is_geometry(std::string_view text) { return !text.empty() && guess_geometry(text).length == text.size(); }
 
-/// Separated values: RFC 4180, with any of four separators, and geometries whose commas are not quoted.
+/// Separated values with a column of geometries, whose first lines state how they are written.
 class OutlineTable : public OutlineRows {
  public:
-  explicit OutlineTable(const std::string& file) : file_(file), lines_(file) {}
+  explicit OutlineTable(const std::string& file) : file_(file), record_(file) {}
 
   bool next(OutlineRow& row) override {
-    while (lines_.next(line_)) {
-      drop_mark();
-      if (without_blanks(line_).empty() || (!begun_ && !begin())) continue;
-      read_record();
-      row.line = lines_.number();
+    while (record_.next()) {
+      if (searching_) {
+        if (!begin()) continue;
+      } else {
+        read_record();
+      }
+      row.line = record_.first_line();
       row.geometry = geometry_of_record();
-      row.height = without_blanks(field(height_));
+      row.height = record_.field(height_);
+      row.behind_quote = record_.behind_quote();
       return true;
     }
     return false;
@@ -68,174 +67,191 @@ class OutlineTable : public OutlineRows {
     if (names_.empty()) return "its first line does not name its columns";
     std::string text = "its columns are ";
     for (std::size_t i = 0; i < std::min(names_.size(), kShownColumns); ++i)
-      text += fmt::format("{}'{}'", i > 0 ? ", " : "", names_[i].substr(0, kShownCharacters));
+      text += fmt::format("{}{}", i > 0 ? ", " : "", shown(i));
     return text + (names_.size() > kShownColumns ? ", ..." : "");
   }
-  std::string remark() const override {
-    if (!unnamed_) return {};
-    return "the first line does not name the columns, so those without geometries are ignored, heights too";
-  }
+  std::string remark() const override { return fmt::format("{}", fmt::join(remarks_, "; ")); }
 
  private:
-  void drop_mark() {  // byte order mark
-    if (lines_.number() == 1 && line_.starts_with("\xEF\xBB\xBF")) line_.remove_prefix(3);
-  }
-  std::string_view field(std::size_t column) const {
-    return column < fields_.size() ? line_.substr(fields_[column].begin, fields_[column].end - fields_[column].begin)
-                                   : std::string_view();
+  /// Of a column, on one line.
+  std::string shown(std::size_t column) const {
+    if (column >= names_.size()) return fmt::format("{}", column + 1);
+    return "'" + base::one_line(std::string_view(names_[column]).substr(0, kShownCharacters)) + "'";
   }
 
-  /// Reads how the table is written from its first line. @return whether that is a row, too
+  /// Reads how the table is written from a line before the first geometry: from that with known names, also below a
+  /// title or a comment, or else from the first one. @return whether the line is a row
   bool begin() {
-    if (line_.size() == 5 && line_.starts_with("sep=")) {  // as Excel writes and reads it
-      separator_ = line_.back();
-      return false;
-    }
-    if (line_.find('\r') != kNoColumn)
-      throw base::InputError(file_, 1, "a line ends in CR alone; convert the ends of lines to LF (tr '\\r' '\\n')");
-    begun_ = true;
-    if (separator_ == 0) choose_separator();
+    if (takes_separator()) return false;
+    if (record_.line().find('\r') != kNoColumn)
+      throw base::InputError(file_, record_.first_line(),
+                             "a line ends in CR alone; convert the ends of lines to LF (tr '\\r' '\\n')");
+    const char before = separator_;
+    if (!is_stated_) choose_separator();
     read_record();
-    for (std::size_t i = 0; i < fields_.size(); ++i)
-      if (guess_geometry(without_blanks(field(i))).content != GeometryGuess::Content::none) {
-        unnamed_ = fields_.size() > 1;
-        return true;
-      }
-    for (std::size_t i = 0; i < fields_.size(); ++i) {  // the first of equal names counts
-      names_.emplace_back(without_blanks(field(i)));
-      if (height_ == kNoColumn && same_letters(names_[i], "height")) height_ = i;
+    bool has_geometry = false, has_name = false, has_number = false;
+    for (std::size_t i = 0; i < record_.size(); ++i) {
+      const std::string_view text = record_.field(i);
+      has_geometry = has_geometry || may_be_geometry(text);
+      has_name = has_name || is_known_name(text);
+      has_number = has_number || (!text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0);
+    }
+    if (has_geometry) return end_search(), true;
+    if (names_.empty() || (has_name && !has_number)) return take_names(), false;
+    separator_ = before;
+    return true;
+  }
+
+  /// `sep=;`, as Excel writes and reads it.
+  bool takes_separator() {
+    std::string_view line = record_.line();
+    if (line.size() == 7 && line.starts_with('"') && line.ends_with('"')) line = line.substr(1, 5);
+    if (!names_.empty() || line.size() != 5 || lower_case(line.substr(0, 4)) != "sep=") return false;
+    separator_ = line.back();
+    return is_stated_ = true;
+  }
+
+  void end_search() {
+    searching_ = false;
+    if (record_.size() < 2) return;
+    if (names_.empty()) {
+      remarks_.emplace_back(
+          "the first line does not name the columns, so those without geometries are ignored, heights too");
+    } else {
+      remarks_.push_back(fmt::format(
+          "no line before the first geometry has a known name of a column, such as 'WKT' or 'height' ({}), so "
+          "heights are not read",
+          columns()));
+    }
+  }
+
+  void take_names() {
+    if (std::any_of(names_.begin(), names_.end(), [](const std::string& name) { return !name.empty(); }))
+      remarks_.push_back(fmt::format("line {} names the columns; what is before it is not read", record_.first_line()));
+    names_.clear();
+    for (std::size_t i = 0; i < record_.size(); ++i) {  // the first of equal names counts
+      names_.emplace_back(record_.field(i));
+      if (height_ == kNoColumn && is_height_name(names_[i])) height_ = i;
       if (named_ == kNoColumn && is_geometry_name(names_[i])) named_ = i;
     }
-    return false;
+    if (!record_.behind_quote().empty())
+      remarks_.push_back(fmt::format("line {}: the text behind a closing quote is ignored", record_.first_line()));
+    searching_ = named_ == kNoColumn && height_ == kNoColumn;
+    const auto like = std::find_if(names_.begin(), names_.end(), [](const std::string& name) {
+      return lower_case(name).find("height") != std::string::npos;
+    });
+    if (height_ == kNoColumn && like != names_.end())
+      remarks_.push_back(fmt::format("no column is named 'height', so heights are not read, such as those of {}",
+                                     shown(static_cast<std::size_t>(like - names_.begin()))));
   }
 
-  /// That which makes known names or geometries of the line, else the most fields.
+  /// That which makes known names or geometries of the line, else the most fields of the first line.
   void choose_separator() {
+    const std::string candidates = (separator_ != 0 ? std::string(1, separator_) : "") + std::string(kSeparators);
     std::size_t best = 0;
-    char chosen = ',';
-    for (const char separator : kSeparators) {
-      separator_ = separator;
-      split(false);
-      std::size_t score = fields_.size();
-      for (std::size_t i = 0; i < fields_.size(); ++i) {
-        const std::string_view text = without_blanks(field(i));
-        if (is_geometry_name(text) || same_letters(text, "height") || is_geometry(text)) score += kKnownField;
-      }
+    char chosen = candidates.front();
+    for (const char separator : candidates) {
+      const std::size_t score = score_of(separator);
       if (score > best) chosen = separator;
       best = std::max(best, score);
     }
     separator_ = chosen;
   }
 
+  /// Blanks separate only known fields that no other separator would: names and titles have blanks, too.
+  std::size_t score_of(char separator) {
+    const bool is_closed = record_.split(separator, lookahead_left_ > 0);
+    if (record_.is_joined()) lookahead_left_ -= std::min(lookahead_left_, record_.line().size());
+    if (!is_closed || (record_.is_joined() && !record_.behind_quote().empty())) {
+      record_.part();
+      record_.split(separator, false);
+    }
+    std::size_t known = 0;
+    bool fits = true;
+    for (std::size_t i = 0; i < record_.size(); ++i) {
+      const std::string_view text = record_.field(i);
+      if (is_known_name(text) || is_geometry(text)) {
+        ++known;
+      } else if (separator == ' ' && !record_.is_quoted(i)) {
+        fits = fits && text.find_first_of(kSeparators) == kNoColumn;
+      }
+    }
+    const std::size_t fields = names_.empty() && (separator != ' ' || known > 0) ? record_.size() : 0;
+    const bool is_clean = record_.behind_quote().empty();
+    record_.part();
+    return fits ? known * kKnownField / (is_clean ? 1 : 2) + (is_clean ? fields : 0) : 0;
+  }
+
   /// A record of several lines whose geometry does not end well has a quote that was never closed: its first line is
   /// then a record of its own. The lines after it up to the next quote are not joined again, so that each line is
   /// scanned twice at most.
   void read_record() {
-    const bool closed = split(lines_.number() >= joined_);
-    if (closed && (lines_.last_number() == lines_.number() || geometry_ends_well())) return;
-    joined_ = std::max(joined_, lines_.last_number());
-    lines_.shrink(line_);
-    drop_mark();
-    split(false);
+    const bool is_closed = record_.split(separator_, record_.first_line() >= joined_);
+    if (is_closed && (!record_.is_joined() || ends_well())) return;
+    joined_ = std::max(joined_, record_.last_line());
+    record_.part();
+    record_.split(separator_, false);
   }
-  bool geometry_ends_well() {
+  bool ends_well() {
+    if (searching_ && !record_.behind_quote().empty()) return false;  // names
     const std::string_view text = geometry_of_record();
     return text.empty() || is_geometry(text);
   }
 
-  /// Sets `fields_`. @param joins appends following lines where a quote is open  @return whether all quotes are closed
-  bool split(bool joins) {
-    fields_.clear();
-    bool closed = true;
-    for (std::size_t at = 0; at != kNoColumn && fields_.size() < kMaxFields;) {
-      while (at < line_.size() && (line_[at] == ' ' || (line_[at] == '\t' && separator_ != '\t'))) ++at;
-      std::size_t end = at;
-      if (at < line_.size() && line_[at] == '"') {
-        end = closing_quote(++at, joins);
-        closed = closed && end < line_.size();
-        fields_.push_back({at, end});
-        at = line_.find(separator_, end);
-      } else {
-        std::size_t length = guess_geometry(line_.substr(at)).length;
-        if (length == kNoColumn && joins && fields_.empty()) {
-          closed = close_parentheses(at);
-          length = guess_geometry(line_.substr(at)).length;
-        }
-        end = length == kNoColumn ? kNoColumn : line_.find(separator_, at + length);
-        fields_.push_back({at, std::min(end, line_.size())});
-        at = end;
-      }
-      if (at != kNoColumn) ++at;
-    }
-    return closed;
-  }
-
-  /// The first quote that ends a field; two in a row stand for one within it. The end of the line where there is none.
-  std::size_t closing_quote(std::size_t from, bool joins) {
-    for (;;) {
-      const std::size_t at = line_.find('"', from);
-      if (at == kNoColumn) {
-        from = line_.size();
-        const bool more = joins && lines_.extend(line_);
-        drop_mark();
-        if (!more) return from;
-      } else if (at + 1 < line_.size() && line_[at + 1] == '"') {
-        from = at + 2;
-      } else {
-        return at;
-      }
-    }
-  }
-
-  /// Appends lines to a geometry without quotes that begins a row, as long as they go on with it.
-  bool close_parentheses(std::size_t from) {
-    std::ptrdiff_t open = 0;
-    for (;;) {
-      const std::string_view text = line_.substr(from);
-      open += std::count(text.begin(), text.end(), '(') - std::count(text.begin(), text.end(), ')');
-      if (open <= 0) return true;
-      from = line_.size();
-      const bool more = lines_.extend(line_);
-      drop_mark();
-      const std::string_view next = without_blanks(line_.substr(from));
-      if (!more || (!next.empty() && kContinuations.find(next.front()) == std::string_view::npos)) return false;
-    }
-  }
-
   /// The column of the first row that has walls is the column of all; a name decides between several.
   std::string_view geometry_of_record() {
-    if (geometry_ != kNoColumn) return without_blanks(field(geometry_));
+    if (geometry_ == kNoColumn) return record_.field(choose_column());
+    if (rival_ == kNoColumn && named_ != kNoColumn && geometry_ != named_ && has_walls(named_)) add_rival(named_);
+    return record_.field(geometry_);
+  }
+  std::size_t choose_column() {
     std::size_t best = named_;
     int most = 0;
-    for (std::size_t i = 0; i < fields_.size(); ++i) {
-      const auto content = guess_geometry(without_blanks(field(i))).content;
-      if (content == GeometryGuess::Content::none) continue;
-      const int score = (content == GeometryGuess::Content::walls ? 4 : 2) + (is_geometry_name(name(i)) ? 1 : 0);
+    for (std::size_t i = 0; i < record_.size(); ++i) {
+      const GeometryGuess guess = guess_geometry(record_.field(i));
+      const bool is_broken = guess.length != record_.field(i).size();
+      if (guess.content == GeometryGuess::Content::none || (is_broken && named_ != kNoColumn && i != named_)) continue;
+      const int type = guess.content == GeometryGuess::Content::walls ? 8 : 4;
+      const int score = type + (i < names_.size() && is_geometry_name(names_[i]) ? 2 : 0) + (has_walls(i) ? 1 : 0);
       if (score > most) best = i;
       most = std::max(most, score);
     }
-    if (most >= 4) geometry_ = best;
-    return without_blanks(field(best));
+    if (!has_walls(best)) return best;  // an empty one, say
+    geometry_ = best;
+    for (std::size_t i = 0; i < record_.size() && best != named_ && rival_ == kNoColumn; ++i)
+      if (i != best && has_walls(i)) add_rival(i);
+    return best;
   }
-  std::string_view name(std::size_t column) const {
-    return column < names_.size() ? names_[column] : std::string_view();
+  bool has_walls(std::size_t column) {
+    try {
+      read_geometry(record_.field(column), 1.0, scratch_);
+      return !scratch_.parts.empty();
+    } catch (const base::InputError&) {
+      return false;
+    }
+  }
+  void add_rival(std::size_t column) {
+    rival_ = column;
+    remarks_.push_back(
+        fmt::format("columns {0} and {1} both have walls: those of {0} are read, which has them first; name the right "
+                    "one 'WKT', or leave the other out",
+                    shown(geometry_), shown(column)));
   }
 
-  struct Span {
-    std::size_t begin, end;
-  };
   std::string file_;
-  base::LineFile lines_;
-  std::string_view line_;     ///< or several, where a field contains line ends
-  std::vector<Span> fields_;  ///< of `line_`, without their quotes
+  TableRecord record_;
   std::vector<std::string> names_;
-  char separator_ = 0;  ///< 0: not known yet
-  bool begun_ = false;
-  bool unnamed_ = false;              ///< several columns without names
+  std::vector<std::string> remarks_;
+  char separator_ = 0;                ///< 0: not known yet
+  bool is_stated_ = false;            ///< by `sep=`
+  bool searching_ = true;             ///< for the names of columns: neither a known one nor a geometry was found
   int joined_ = 0;                    ///< lines before this one are not joined with the following ones
   std::size_t named_ = kNoColumn;     ///< column with a name for geometries
   std::size_t geometry_ = kNoColumn;  ///< column with geometries, once one was found
+  std::size_t rival_ = kNoColumn;     ///< another one
   std::size_t height_ = kNoColumn;
+  std::size_t lookahead_left_ = kMaxLookahead;
+  WellKnownGeometry scratch_;
 };
 
 }  // namespace

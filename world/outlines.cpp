@@ -23,12 +23,16 @@ namespace {
 constexpr std::size_t kShownHeight = 24;  // characters of a field in messages
 constexpr double kMaxInDegrees = 0.01;    // largest outline where small numbers are taken for degrees; 1 km on Earth
 
-/// Finds coordinates in degrees: by the file's own words, or since all are small and no outline has any size.
-class DegreeCheck {
+/// Finds coordinates that are not in the world's unit: by the file's own words, or since all are small and no outline
+/// has any size, as in degrees.
+class UnitCheck {
  public:
-  void add(const WellKnownGeometry& geometry, bool is_geographic) {
+  void add(const WellKnownGeometry& geometry, const OutlineRow& row) {
     constexpr std::uint32_t kFirst = 4001, kLast = 4999;  // EPSG's range of geographic systems
-    stated_ = stated_ || is_geographic || (geometry.srid >= kFirst && geometry.srid <= kLast);
+    if (geometry.srid >= kFirst && geometry.srid <= kLast)
+      degrees_ = "the SRID states that the coordinates are degrees";
+    if (!row.degrees.empty()) degrees_ = row.degrees;
+    if (row.metres_per_unit > 0.0) metres_per_unit_ = row.metres_per_unit;
     std::size_t begin = 0;
     for (const WellKnownGeometry::Part& part : geometry.parts) {
       base::Box box = base::empty_box();
@@ -37,10 +41,23 @@ class DegreeCheck {
       in_range_ = in_range_ && box.min.x >= -180.0 && box.max.x <= 360.0 && box.min.y >= -90.0 && box.max.y <= 90.0;
     }
   }
-  bool finds() const { return in_range_ && (stated_ || largest_ < kMaxInDegrees); }
+  /// A warning; empty: none.
+  std::string remark(double metres_per_unit) const {
+    const bool is_small = largest_ < kMaxInDegrees;
+    if (in_range_ && (is_small || !degrees_.empty()))
+      return fmt::format("{}, but they count as lengths; project them first, such as by ogr2ogr -t_srs EPSG:32632",
+                         degrees_.empty() ? "the coordinates are degrees, as it seems" : degrees_);
+    if (metres_per_unit_ == 0.0 || std::abs(metres_per_unit_ / metres_per_unit - 1.0) < 1e-9) return {};
+    return fmt::format(
+        "the file's coordinate system has a unit of {:.8g} m, but its coordinates count in the world's, {:g} m; "
+        "project "
+        "them first, such as by ogr2ogr -t_srs EPSG:32632, or set unit_length",
+        metres_per_unit_, metres_per_unit);
+  }
 
  private:
-  bool stated_ = false;
+  std::string degrees_;           ///< why they are degrees; empty: nothing states it
+  double metres_per_unit_ = 0.0;  ///< that the file states; 0: none
   bool in_range_ = true;
   double largest_ = 0.0;  ///< extent of a ring or line along x or y
 };
@@ -65,6 +82,10 @@ class OutlineReader {
 
   void read(const OutlineRow& row) {
     bool built = false;
+    if (!row.behind_quote.empty())
+      faults_.add(OutlineFault::quote, row,
+                  fmt::format("text behind a closing quote, '{}'; expected a separator or the end of the line",
+                              row.behind_quote.substr(0, kShownHeight)));
     try {
       built = build(row);
     } catch (const base::InputError& error) {
@@ -77,10 +98,7 @@ class OutlineReader {
   std::vector<Warning> finish(const OutlineRows& rows) {
     if (walls_.count() == 0.0) faults_.fail(rows.columns());
     faults_.note(rows.remark());
-    if (degrees_.finds())
-      faults_.note(
-          "the coordinates are degrees, as it seems, but count as lengths; project them first, such as by "
-          "ogr2ogr -t_srs EPSG:32632");
+    faults_.note(units_.remark(file_.metres_per_unit));
     return faults_.warnings();
   }
 
@@ -95,7 +113,10 @@ class OutlineReader {
       read_geometry(row.geometry, arc_error, geometry_);
     }
     if (geometry_.points_left_out > 0) faults_.add(OutlineFault::points, row, "points have no walls");
-    if (geometry_.parts.empty() && geometry_.points_left_out == 0)
+    if (geometry_.faces_left_out > 0)
+      faults_.add(OutlineFault::faces, row,
+                  "faces in three dimensions have no outline; expected the polygons that they cover");
+    if (geometry_.parts.empty() && geometry_.points_left_out == 0 && geometry_.faces_left_out == 0)
       faults_.add(OutlineFault::empty, row, "the geometry is EMPTY");
     if (geometry_.parts.empty()) return false;
     double height = file_.surface.z_max;
@@ -106,13 +127,13 @@ class OutlineReader {
     }
     if (!walls_.build(geometry_, height)) faults_.add(OutlineFault::empty, row, "the geometry has no extent");
     if (walls_.holes_outside() > 0) faults_.add(OutlineFault::hole, row, "an inner ring leaves its outer ring");
-    degrees_.add(geometry_, row.is_geographic);
+    units_.add(geometry_, row);
     return true;
   }
 
   const OutlineFile& file_;
   OutlineWalls walls_;
-  DegreeCheck degrees_;
+  UnitCheck units_;
   OutlineFaults faults_;
   WellKnownGeometry geometry_;
 };

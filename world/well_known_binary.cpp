@@ -74,7 +74,7 @@ class BinaryReader {
 void WellKnownGeometry::clear() {
   points.clear();
   parts.clear();
-  points_left_out = srid = 0;
+  points_left_out = faces_left_out = srid = 0;
 }
 
 void read_binary_geometry(std::string_view bytes, double arc_error, WellKnownGeometry& geometry) {

@@ -20,23 +20,24 @@ struct WellKnownGeometry {
   std::vector<glm::dvec2> points;
   std::vector<Part> parts;
   std::uint32_t points_left_out = 0;  ///< members of the types POINT and MULTIPOINT
+  std::uint32_t faces_left_out = 0;   ///< members of the types TIN and POLYHEDRALSURFACE
   std::uint32_t srid = 0;             ///< 0: not stated
   double chords_left = 2e7;  ///< that arcs of this and further geometries may become; bounds the work of a file
 
   void clear();  ///< for the next geometry
 };
 
-/// What a text is by its first characters.
+/// What a text is by its first characters: a type, and a number, a member or the end of the text behind parentheses.
 struct GeometryGuess {
   enum class Content : std::uint8_t { none, points, walls } content = Content::none;
-  /// characters of the geometry; npos where its parentheses do not close
-  std::size_t length = 0;
+  std::size_t length = 0;  ///< characters up to its last parenthesis; 0 where that or something else is amiss
+  bool is_open = false;    ///< the text ends before the last parenthesis, and is right so far
 };
 GeometryGuess guess_geometry(std::string_view text);
 
 /// Reads POLYGON, TRIANGLE, LINESTRING, their MULTI forms and collections; coordinates beyond x and y are ignored.
-/// Points have no walls and are counted alone. Arcs (CIRCULARSTRING, COMPOUNDCURVE, CURVEPOLYGON, MULTICURVE,
-/// MULTISURFACE) become chords.
+/// Points and faces in three dimensions (TIN, POLYHEDRALSURFACE) have no walls and are counted alone. Arcs
+/// (CIRCULARSTRING, COMPOUNDCURVE, CURVEPOLYGON, MULTICURVE, MULTISURFACE) become chords.
 /// @param text well-known text, or binary in hexadecimal digits
 /// @param arc_error largest distance between an arc and its chords, in the geometry's unit
 /// @throws base::InputError with the reason alone: the caller knows file and line

@@ -22,8 +22,9 @@ struct TypeName {
   std::string_view name;
   GeometryType type;
 };
-constexpr std::array<TypeName, 15> kTypes{{{"POINT", GeometryType::point},
+constexpr std::array<TypeName, 16> kTypes{{{"POINT", GeometryType::point},
                                            {"LINESTRING", GeometryType::linestring},
+                                           {"LINEARRING", GeometryType::linestring},
                                            {"POLYGON", GeometryType::polygon},
                                            {"MULTIPOINT", GeometryType::multipoint},
                                            {"MULTILINESTRING", GeometryType::multilinestring},
@@ -192,15 +193,65 @@ HexGeometry hex_geometry(std::string_view text) {
   return code.valid() ? HexGeometry{digits, code} : HexGeometry{};
 }
 
-/// Where the parenthesis at `open` closes.
-std::size_t closing_parenthesis(std::string_view text, std::size_t open) {
-  std::ptrdiff_t depth = 0;
-  for (std::size_t at = open, close = 0; (close = text.find(')', at)) != std::string_view::npos; at = close + 1) {
-    depth += std::count(text.begin() + at, text.begin() + close, '(') - 1;
-    if (depth == 0) return close + 1;
-  }
-  return std::string_view::npos;
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Words between parentheses.
+bool is_number(std::string_view word) { return equals(word, "NAN") || equals(word, "INF") || equals(word, "INFINITY"); }
+bool is_member(std::string_view word) {
+  return find_type(word) != nullptr || is_dimensions(word) || equals(word, "EMPTY");
 }
+
+/// Follows the text between parentheses as far as it can be a geometry's.
+class Follower {
+ public:
+  Follower(std::string_view text, std::size_t open) : text_(text), at_(open) {
+    while (at_ < text_.size() && (depth_ > 0 || at_ == open) && step()) {
+    }
+  }
+  std::size_t length() const { return depth_ == 0 ? at_ : 0; }  ///< up to the last parenthesis; 0: not reached
+  bool is_open() const { return depth_ > 0 && at_ == text_.size(); }
+  bool begins() const { return has_content_ || is_open(); }  ///< with a number or a member
+
+ private:
+  bool is_after(std::string_view characters) const { return characters.find(before_) != std::string_view::npos; }
+
+  /// @return false: what follows belongs to no geometry
+  bool step() {
+    const char c = text_[at_];
+    if (kTextBlanks.find(c) != std::string_view::npos) return ++at_, true;
+    if (is_letter(c)) return word();
+    if (c == '(' || c == ')' || c == ',') {
+      if (c == '(' ? is_after(")0") : is_after("(,")) return false;
+      depth_ += c == '(' ? 1 : c == ')' ? -1 : 0;
+    } else if (!is_digit(c) && c != '+' && c != '-' && c != '.') {
+      return false;
+    }
+    const bool is_part_of_number = c != '(' && c != ')' && c != ',';
+    if (is_part_of_number && is_after(")a")) return false;
+    has_content_ = has_content_ || is_part_of_number;
+    before_ = is_part_of_number ? '0' : c;
+    return ++at_, true;
+  }
+  bool word() {
+    std::size_t end = at_;
+    while (end < text_.size() && is_letter(text_[end])) ++end;
+    const std::string_view word = text_.substr(at_, end - at_);
+    const bool is_exponent = equals(word, "E") && (is_digit(text_[at_ - 1]) || text_[at_ - 1] == '.');
+    const bool is_value = is_exponent || is_number(word);
+    if (!is_value && (!is_member(word) || is_after(")0"))) return false;
+    has_content_ = true;
+    before_ = is_value ? '0' : 'a';
+    at_ = end;
+    return true;
+  }
+
+  std::string_view text_;
+  std::size_t at_;
+  std::ptrdiff_t depth_ = 0;
+  char before_ = 'a';  ///< last character that is no blank: '0' for a number, 'a' for a word
+  bool has_content_ = false;
+};
 
 GeometryGuess::Content content_of(GeometryType type) {
   const bool points = type == GeometryType::point || type == GeometryType::multipoint;
@@ -218,7 +269,11 @@ GeometryGuess guess_geometry(std::string_view text) {
   in.srid();
   const TypeName* const type = in.tag();
   if (type == nullptr) return {};
-  if (in.is('(')) return {content_of(type->type), closing_parenthesis(text, in.at())};
+  if (in.is('(')) {
+    const Follower inside(text, in.at());
+    if (!inside.begins()) return {};
+    return {content_of(type->type), inside.length(), inside.is_open()};
+  }
   if (in.take_empty()) return {content_of(type->type), in.at()};
   return {};
 }

@@ -186,15 +186,33 @@ TEST(OutlineLayers, CurvesAreChordsWithinAMicrometre) {
 
 TEST(OutlineLayers, SystemsInDegreesAndSeveralLayersAreNamed) {
   const std::vector<Feature> house{{"POLYGON ((11 48,11 49,12 49,11 48))", NAN}};
-  expect_in("the coordinates are degrees",
+  expect_in("the file states that the coordinates are degrees, but they count as lengths",
             read_layers(write_layer("GPKG", "degrees.gpkg", house, wkbUnknown, {}, 4326)).warnings);
-  expect_in("the coordinates are degrees",
+  expect_in("coordinates of GeoJSON are degrees unless its member 'crs' states another system",
             read_layers_of("degrees.json",
                            R"({"type": "Polygon", "coordinates": [[[11, 48], [11, 49], [12, 49], [11, 48]]]})")
                 .warnings);
   const LayerRead two = read_layers(write_layer("GPKG", "two.gpkg", house, wkbUnknown, {}, 32632, 2));
   EXPECT_EQ(two.walls.size(), 6u);
   expect_in("all 2 layers are read ('houses0', 'houses1')", two.warnings);
+}
+
+TEST(OutlineLayers, UnitsOtherThanTheWorldsAreNamed) {  // New York in US survey feet, Germany in metres
+  const std::vector<Feature> house{{"POLYGON ((0 0,12 0,12 8,0 0))", 5.0}};
+  const std::string feet = "the file's coordinate system has a unit of 0.30480061 m, but its coordinates count in";
+  expect_in(feet, read_layers(write_layer("GPKG", "feet.gpkg", house, wkbUnknown, {}, 2263)).warnings);
+  expect_in(feet, read_layers(write_layer("ESRI Shapefile", "feet.shp", house, wkbPolygon, {}, 2263)).warnings);
+  expect_in(feet, read_layers(write_layer("GeoJSON", "feet.geojson", house, wkbUnknown, {}, 2263)).warnings);
+  const std::string metres = write_layer("GPKG", "metres.gpkg", house, wkbUnknown);
+  EXPECT_EQ(read_layers(metres).warnings, "");
+  expect_in("has a unit of 1 m, but its coordinates count in the world's, 0.01 m", read_layers(metres, 0.01).warnings);
+}
+
+TEST(OutlineLayers, AFlagIsNoHeight) {
+  const LayerRead found = read_layers_of("flag.json", R"({"type": "Feature", "properties": {"height": true},
+      "geometry": {"type": "LineString", "coordinates": [[0, 0], [900, 0]]}})");
+  EXPECT_EQ(found.walls[0][4], 3.0);
+  expect_in("the height is 'true'", found.warnings);
 }
 
 TEST(OutlineLayers, AShapefileNeedsNoTable) {

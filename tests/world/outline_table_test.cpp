@@ -4,53 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
-#include "world/outlines.h"
-#include "world/stage/properties.h"
+#include "tests/world/read_table.h"
 
 namespace sf::world {
 
 namespace {
 
 const std::string kSharedTables = SF_SOURCE_DIR "/../shared/data/reports/wkt/";
-const std::string kSquare = "POLYGON ((0 0,12 0,12 8,0 8,0 0))";
-
-struct TableRead {
-  std::vector<Segment> walls;
-  std::string warnings;  ///< "2: ...", one a line
-
-  double area() const {
-    double area = 0.0;
-    for (const Segment& wall : walls) area += 0.5 * base::cross(wall.a, wall.b);
-    return area;
-  }
-  std::string heights() const {  ///< of consecutive walls
-    std::string text;
-    for (std::size_t i = 0; i < walls.size(); ++i)
-      if (i == 0 || walls[i].z_max != walls[i - 1].z_max) text += fmt::format("{} ", walls[i].z_max);
-    return text;
-  }
-};
-
-TableRead read_table_file(const std::string& file) {
-  OutlineFile outlines;
-  outlines.file = file;
-  outlines.surface.z_max = 3.0;
-  TableRead read;
-  std::vector<Warning> warnings;
-  read_outlines(
-      outlines, [&](std::span<const Segment> more) { read.walls.insert(read.walls.end(), more.begin(), more.end()); },
-      &warnings);
-  for (const Warning& w : warnings) read.warnings += fmt::format("{}: {}\n", w.line, w.message);
-  return read;
-}
-
-TableRead read_table(const std::string& text) {
-  const std::string file = (std::filesystem::temp_directory_path() / "table.csv").string();
-  std::ofstream(file, std::ios::binary) << text;
-  return read_table_file(file);
-}
 
 TEST(OutlineTable, FilesOfOtherProgramsHaveTheirWalls) {
   if (!std::filesystem::exists(kSharedTables)) GTEST_SKIP() << "no shared data beside the sources";

@@ -167,7 +167,11 @@ TEST(WellKnownBinary, FaultsAreRefusedWithTheirByte) {
   expect_in("8 bytes more", refusal(BinaryWriter{}.type(2).put(0xFFFFFFFFu).bytes));
   expect_in("expected finite coordinates",
             refusal(BinaryWriter{}.type(2).put(std::uint32_t{2}).point(0, 0).point(INFINITY, 0).bytes));
-  expect_in("faces in three dimensions", refusal(BinaryWriter{}.type(15).put(std::uint32_t{0}).bytes));
+  EXPECT_EQ(refusal(BinaryWriter{}.type(7).put(std::uint32_t{2}).bytes +
+                    BinaryWriter{}.type(15).put(std::uint32_t{1}).bytes + good.bytes + good.bytes),
+            "");
+  EXPECT_EQ(geometry.faces_left_out, 1u);
+  EXPECT_EQ(geometry.parts.size(), 1u) << "the faces are left out, the other member is not";
 }
 
 TEST(WellKnownBinary, DigitsAreGeometriesFromTheShortestOn) {

@@ -68,6 +68,7 @@ class Layers : public OutlineRows {
       throw base::InputError(file, 0,
                              "cannot be read as a GeoPackage, shapefile or GeoJSON: " +
                                  (messages_.empty() ? "no driver of GDAL recognises it" : messages_));
+    is_json_ = std::string_view(GDALGetDriverShortName(GDALGetDatasetDriver(dataset_))).starts_with("GeoJSON");
     for (int i = 0; i < GDALDatasetGetLayerCount(dataset_); ++i) {
       const OGRLayerH layer = GDALDatasetGetLayer(dataset_, i);
       if (OGR_L_GetGeomType(layer) == wkbNone) continue;
@@ -116,7 +117,16 @@ class Layers : public OutlineRows {
     for (int i = OGR_FD_GetFieldCount(definition); i-- > 0;)
       if (EQUAL(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(definition, i)), "height")) height_column_ = i;
     const OGRSpatialReferenceH system = OGR_L_GetSpatialRef(layers_[at_]);
-    is_geographic_ = system != nullptr && OSRIsGeographic(system) != 0;
+    degrees_ = {};
+    metres_per_unit_ = 0.0;
+    if (system == nullptr) return;
+    // A GeoPackage that states no system has this one.
+    if (OSRIsGeographic(system) != 0 && std::string_view(OSRGetName(system)) != "Undefined geographic SRS")
+      degrees_ = is_json_
+                     ? "coordinates of GeoJSON are degrees unless its member 'crs' states another system (RFC 7946)"
+                     : "the file states that the coordinates are degrees";
+    const double unit = OSRGetLinearUnits(system, nullptr);
+    if (OSRIsProjected(system) != 0 || (OSRIsLocal(system) != 0 && unit != 1.0)) metres_per_unit_ = unit;
   }
   void read(OutlineRow& row) {
     const OGRGeometryH geometry = OGR_F_GetGeometryRef(feature_);
@@ -127,27 +137,33 @@ class Layers : public OutlineRows {
            .height = height_,
            .place = fmt::format("feature {}", OGR_F_GetFID(feature_)),
            .is_binary = true,
-           .is_geographic = is_geographic_};
+           .degrees = degrees_,
+           .metres_per_unit = metres_per_unit_};
     if (layers_.size() > 1) row.place += " of layer '" + names_[at_] + "'";
   }
   /// Numbers with all of their digits.
   void read_height() {
     height_.clear();
     if (height_column_ < 0 || OGR_F_IsFieldSetAndNotNull(feature_, height_column_) == 0) return;
-    const bool real = OGR_Fld_GetType(OGR_F_GetFieldDefnRef(feature_, height_column_)) == OFTReal;
-    height_ = real ? fmt::format("{}", OGR_F_GetFieldAsDouble(feature_, height_column_))
-                   : OGR_F_GetFieldAsString(feature_, height_column_);
+    const OGRFieldDefnH field = OGR_F_GetFieldDefnRef(feature_, height_column_);
+    const bool is_flag = OGR_Fld_GetSubType(field) == OFSTBoolean;
+    if (is_flag) height_ = OGR_F_GetFieldAsInteger(feature_, height_column_) != 0 ? "true" : "false";
+    if (is_flag) return;
+    height_ = OGR_Fld_GetType(field) == OFTReal ? fmt::format("{}", OGR_F_GetFieldAsDouble(feature_, height_column_))
+                                                : OGR_F_GetFieldAsString(feature_, height_column_);
   }
 
   std::string file_;
   std::string messages_;  ///< of GDAL so far
   GDALDatasetH dataset_ = nullptr;
+  bool is_json_ = false;
   std::vector<OGRLayerH> layers_;  ///< with geometries
   std::vector<std::string> names_;
   std::size_t at_ = 0;    ///< layer that is being read
-  bool entered_ = false;  ///< the following two are that layer's
+  bool entered_ = false;  ///< the following three are that layer's
   int height_column_ = -1;
-  bool is_geographic_ = false;
+  std::string_view degrees_;
+  double metres_per_unit_ = 0.0;
   OGRFeatureH feature_ = nullptr;
   std::string bytes_, height_;  ///< of the feature
 };
