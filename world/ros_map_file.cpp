@@ -67,18 +67,19 @@ Pose origin_of(const Yaml& yaml) {
   return X_WL;
 }
 
-// YAML's words and numbers; map_server takes 0, other whole numbers and words.
+// YAML's words and numbers; map_server takes whole numbers, also hexadecimal ones, and words.
 bool negate_of(const Yaml& yaml, std::vector<Warning>& warnings) {
   const YAML::Node node = yaml.root["negate"];
   bool word = false;
+  long long whole = 0;
   double number = 0.0;
   if (!node || (node.IsScalar() && YAML::convert<bool>::decode(node, word))) return word;
+  if (node.IsScalar() && YAML::convert<long long>::decode(node, whole)) return whole != 0;
   if (!node.IsScalar() || !YAML::convert<double>::decode(node, number) || !std::isfinite(number))
     fail(yaml, node, "'negate' expects 0 or 1, false or true");
-  if (number != std::floor(number) || node.Scalar().find_first_of(".eE") != std::string::npos)
-    warn(yaml, node, warnings,
-         fmt::format("'negate: {}' is read as {}; map_server expects a whole number, false or true", node.Scalar(),
-                     number != 0.0));
+  warn(yaml, node, warnings,
+       fmt::format("'negate: {}' is read as {}; map_server expects a whole number, false or true", node.Scalar(),
+                   number != 0.0));
   return number != 0.0;
 }
 
@@ -160,6 +161,9 @@ void refuse_foreign_yaml(const Yaml& yaml) {
                                 "LINESTRINGs for `outlines`",
                                 maps.empty() ? "" : ": ", maps));
   }
+  if (const YAML::Node models = root["models"]; models && models.IsSequence())
+    refuse_world_of(yaml.file, models.Mark().line + 1, "flatland",
+                    "write each of its models as a position( ) or model( ), and load the ROS map that they move in");
   if (root["bodies"] && root["bodies"].IsSequence())
     refuse_world_of(yaml.file, root["bodies"].Mark().line + 1, "flatland (a model)",
                     "write its footprints as block( ... ) of a position( ), with laser( ) for its sensors");

@@ -21,6 +21,9 @@ TEST(ForeignWorlds, AreNamedByTheirRootElement) {
   expect_said("\n  <argos-configuration>", "ARGoS");
   expect_said("<mujoco model=\"a\">", "MuJoCo");
   expect_said("<mujoco/>", "MuJoCo");
+  expect_said("<mujocoinclude>\n</mujocoinclude>", "MuJoCo");
+  expect_said("<!DOCTYPE sdf [<!ENTITY a \"b>c]\"> <!ENTITY d '>'>]>\n<sdf version='1.6'/>", "Gazebo");
+  expect_said("<!DOCTYPE svg PUBLIC \"-//W3C//DTD SVG 1.1//EN\" \"http://w\">\n<svg/>", "SVG");
   expect_said("<robot name=\"r\">", "URDF");
   expect_said("<launch>", "a launch file");
   expect_said("<osm version=\"0.6\">", "OpenStreetMap");
@@ -35,6 +38,33 @@ TEST(ForeignWorlds, AreNamedByTheirFirstBytes) {
   expect_said("#VRML V2.0 utf8\n", "a file of VRML");
   expect_said("#usda 1.0\n(\n)\n", "Universal Scene Description");
   expect_said("PXR-USDC\n", "Universal Scene Description");
+  expect_said("\n\r\n#VRML_SIM R2023b utf8\n", "a file of Webots");
+  expect_said("# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n", "point clouds (PCD)");
+  expect_said("ply\nformat ascii 1.0\n", "a file of PLY");
+}
+
+TEST(ForeignWorlds, AreNamedByWhatIsInThem) {
+  expect_said("solid cube\nfacet normal 0 0 0\n", "a file of STL");
+  expect_said(std::string(80, 'x') + std::string("\1\0\0\0", 4) + std::string(50, '\0'), "a file of STL");
+  expect_said("# Blender\n\nmtllib a.mtl\no Cube\nv 1.0 1.0 -1.0\nf 1 2 3\n", "Wavefront OBJ");
+  expect_said("v 0 0 0\nv 1 0 0\n", "Wavefront OBJ");
+  expect_said("%YAML 1.1\n%TAG !u! tag:unity3d.com,2011:\n--- !u!29 &1\n", "a file of Unity");
+  expect_said("---\nimage: a.pgm\n", "is YAML; expected a Stage world, or a ROS map in a file that ends in .yaml");
+  expect_said("{\"asset\": {\"version\": \"2.0\"}, \"meshes\": []}", "a file of glTF");
+  expect_said("{\"world\": {}}", "is JSON of no known program");
+}
+
+TEST(ForeignWorlds, AreNamedInUtf16) {
+  const auto wide = [](const std::string& text, bool little) {
+    std::string bytes;
+    for (const char c : text) bytes += little ? std::string{c, '\0'} : std::string{'\0', c};
+    return bytes;
+  };
+  for (const std::string mark : {"", "\xFF\xFE"}) {
+    expect_said(mark + wide("<?xml version='1.0'?><sdf/>", true), "Gazebo");
+    expect_said(mark.empty() ? wide("<sdf/>", false) : "\xFE\xFF" + wide("<sdf/>", false), "Gazebo");
+  }
+  expect_said("\xFF\xFE" + wide("model( )", true), "is a text in UTF-16: save it as UTF-8");
 }
 
 TEST(ForeignWorlds, PicturesAndOutlinesSayWhereTheyBelong) {
@@ -43,6 +73,7 @@ TEST(ForeignWorlds, PicturesAndOutlinesSayWhereTheyBelong) {
   expect_said("POLYGON ((0 0, 1 0, 1 1))", "by model( outlines");
   expect_said("WKT,height\n\"POINT (0 0)\",1\n", "by model( outlines");
   expect_said("{ \"type\": \"FeatureCollection\" }", "by model( outlines");
+  expect_said("{ \"type\": \"Point\", \"coordinates\": [0, 0] }", "by model( outlines");
 }
 
 TEST(ForeignWorlds, PlayersConfigurationNamesItsWorld) {
@@ -58,6 +89,8 @@ TEST(ForeignWorlds, OurOwnWorldsAreNone) {
   EXPECT_EQ(error_of("# <sdf>\nmodel( name \"sdf\" )"), "");
   EXPECT_EQ(error_of("# VRML_SIM\nmodel( )"), "");
   EXPECT_EQ(error_of("P5( )"), "");
+  EXPECT_EQ(error_of("solid( )"), "");
+  EXPECT_EQ(error_of("v 0\no( )"), "");
   EXPECT_EQ(error_of("driver( )"), "") << "an unknown type, with a warning";
   EXPECT_NE(error_of("model( ) <sdf>").find("unexpected '<'"), std::string::npos);
 }

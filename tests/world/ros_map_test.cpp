@@ -162,12 +162,13 @@ std::string with(const std::string& key, const std::string& instead) {
 
 /// Whole numbers as map_server takes them, and every word of YAML.
 TEST_F(RosMap, NegatedMapsAreBrightWhereTheyAreOccupied) {
-  for (const char* yes : {"1", "2", "-1", "true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "y"}) {
+  for (const char* yes :
+       {"1", "2", "-1", "true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "y", "0x1", "+1", "010"}) {
     const World world = load(with("negate", std::string("negate: ") + yes));
     EXPECT_NEAR(area(world), 0.25 * 4, 1e-12) << yes;
     EXPECT_TRUE(world.warnings.empty()) << yes;
   }
-  for (const char* no : {"0", "false", "False", "FALSE", "no", "No", "NO", "off", "n", "+0"})
+  for (const char* no : {"0", "false", "False", "FALSE", "no", "No", "NO", "off", "n", "+0", "0x0", "00"})
     EXPECT_NEAR(area(load(with("negate", std::string("negate: ") + no))), 0.25, 1e-12) << no;
 }
 
@@ -270,6 +271,7 @@ TEST_F(RosMap, WorldsOfOtherSimulatorsAreNamed) {
        "m.yaml:3: is a file of flatland");
   says("layers: [{map: one.yaml}, {map: two.yaml}]\n", "one of its layers: 'one.yaml', 'two.yaml';");
   says("layers: []\n", "flatland");
+  says("models:\n  - name: turtlebot\n    model: turtlebot.yaml\n", "flatland; expected");
   says("bodies:\n  - name: base\n", "flatland (a model)");
   says("world:\n  height: 10\nrobot:\n  - kinematics: {name: diff}\n", "m.yaml:2: is a file of ir-sim");
   says("obstacle: [{shape: {name: circle}}]\n", "ir-sim");

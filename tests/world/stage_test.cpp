@@ -116,6 +116,17 @@ TEST(Stage, BlocksOfTheOldestFormAreTheSame) {
   EXPECT_EQ(warnings_of(old_form), "");
 }
 
+TEST(Stage, AMissingPointIsTheOriginAsInStage) {  // Block::Load of Stage 3 and 4: (0, 0) unless the file has it
+  const World world = read_world(
+      "model( size [2 1 1]\n block( points 4 point[1] [2 0] point[2] [2 1] z [0 1] ) )");  // point[0], point[3]
+  const World whole = read_world(
+      "model( size [2 1 1]\n block( points 4 point[0] [0 0] point[1] [2 0] point[2] [2 1] point[3] [0 0] z [0 1] ) )");
+  EXPECT_EQ(world.hash, whole.hash);
+  EXPECT_EQ(warnings_of(world),
+            "2: 'point[0]' (and 1 more) of this 'block' is missing: it counts as [0 0], as in Stage\n");
+  EXPECT_EQ(warnings_of(whole), "");
+}
+
 TEST(Stage, AClockwiseBlockIsTurnedSoThatItsSolidIsOnTheLeft) {
   const World world =
       read_world("model( size [1 1 1] block( points 3 point[0] [0 0] point[1] [0 1] point[2] [1 0] ) )");
@@ -475,6 +486,13 @@ TEST(Stage, AnEmptyWorldIsAWorld) {
   EXPECT_TRUE(world.models.empty());
   EXPECT_EQ(world.extent.x_max, 0.0);
   EXPECT_EQ(world.name, "test");
+  const std::string nothing = "0: nothing in this file is known as a wall, a robot or any other model";
+  EXPECT_NE(warnings_of(world).find(nothing), std::string::npos);
+  for (const char* text : {"FORMAT 0.7", "window( size [1 1] )", "define a model( )", "bumper2( size [0 0 0] )"})
+    EXPECT_NE(warnings_of(read_world(text)).find(nothing), std::string::npos) << text;
+  for (const char* text :
+       {"model( )", "define a model( )\na( )", "position( )", "light( phases 1 phase[0] [\"red\" 1] )"})
+    EXPECT_EQ(warnings_of(read_world(text)).find(nothing), std::string::npos) << text;
 }
 
 /// A room of 4 m with walls of 0.2 m, like a floor plan; robots are discs of 0.2 m or points without a body.

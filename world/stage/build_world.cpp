@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/error.h"
@@ -36,6 +37,17 @@ void read_units(StageContext& context, const Entity& root) {
     fail(context, find(root, "unit_angle")->at,
          fmt::format("'unit_angle' is \"{}\"; expected \"degrees\" or \"radians\"", angle_unit));
   }
+}
+
+// Files of other programs may have Stage's grammar by chance.
+void warn_of_nothing(BuildState& b, const Entity& root) {
+  const bool has_known = std::any_of(root.children.begin(), root.children.end(), [](const Entity& child) {
+    const EntityKind kind = entity_kind(child.type);
+    return kind != EntityKind::unknown && kind != EntityKind::ignored;
+  });
+  if (has_known || !b.world.walls.empty() || !b.world.movers.empty()) return;
+  warn(b.context, {0, 0},
+       "nothing in this file is known as a wall, a robot or any other model: is it a Stage world? The world is empty");
 }
 
 /// @param option the user's, before the file's
@@ -129,6 +141,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
 
   if (!options.leave_outlines) read_unread(b.world);
   update_extent_and_hash(b.world);
+  warn_of_nothing(b, document.root);
   if (!b.world.movers.empty()) warn_of_overlaps(b);
   if (!b.world.movers.empty() && b.world.unread.empty()) warn_of_places(b);
   b.world.warnings.insert(b.world.warnings.begin(), b.context.warnings.begin(), b.context.warnings.end());
