@@ -32,11 +32,26 @@ struct Format {
   throw base::InputError(c.file, 0, "broken Netpbm picture: " + message);
 }
 
-// Comments run to the end of the line.
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
+
+// To the end of a comment, which is that of its line, if one begins here.
+void skip_comment(Cursor& c) {
+  if (c.at < c.bytes.size() && c.bytes[c.at] == '#')
+    c.at = std::min(c.bytes.find_first_of("\n\r", c.at), c.bytes.size());
+}
+
 void skip_blanks(Cursor& c) {
-  const auto blank = [](char x) { return x == ' ' || x == '\t' || x == '\n' || x == '\r' || x == '\v' || x == '\f'; };
-  for (; c.at < c.bytes.size() && (blank(c.bytes[c.at]) || c.bytes[c.at] == '#'); ++c.at)
-    if (c.bytes[c.at] == '#') c.at = std::min(c.bytes.find('\n', c.at), c.bytes.size() - 1);
+  for (skip_comment(c); c.at < c.bytes.size() && is_blank(c.bytes[c.at]); skip_comment(c)) ++c.at;
+}
+
+// The single blank between header and pixels, which may also end a comment (255#text), as in Netpbm. CRLF, which is two
+// there and shifts the picture, counts as one where all pixels follow it.
+void end_header(Cursor& c, std::size_t least_bytes) {
+  skip_comment(c);
+  if (c.at == c.bytes.size() || !is_blank(c.bytes[c.at])) fail(c, "expected a blank between its header and its pixels");
+  ++c.at;
+  const bool is_crlf = c.bytes[c.at - 1] == '\r' && c.at < c.bytes.size() && c.bytes[c.at] == '\n';
+  if (is_crlf && c.bytes.size() - c.at > least_bytes) ++c.at;
 }
 
 // The next decimal number of the header or of a picture in words.
@@ -106,8 +121,8 @@ void decode_netpbm(const std::string& bytes, GridBuilder& grid) {
   if (!format.bits) format.white = next_number(c);
   if (format.white < 1 || format.white > 65535)
     fail(c, fmt::format("a largest value of {}; expected 1 to 65535", format.white));
-  if (format.binary) ++c.at;  // the single blank between header and pixels
-  if (bytes.size() - std::min(c.at, bytes.size()) < least_bytes(format, grid.grid()))
+  if (format.binary) end_header(c, least_bytes(format, grid.grid()));
+  if (bytes.size() - c.at < least_bytes(format, grid.grid()))
     fail(c, "fewer pixels than in its header; it is cut short");
 
   std::vector<std::uint8_t> rgba(std::size_t{width} * 4, 255);

@@ -137,6 +137,19 @@ TEST(Pictures, GreyInBinaryAndInWords) {
   EXPECT_EQ(grey("P2\r\n1 1\r\n1\r\n1\r\n"), (Values{255}));
 }
 
+TEST(Pictures, PixelsBeginBehindTheHeadersLastBlank) {
+  EXPECT_EQ(grey("P5\r\n2 1\r\n255\r\n\x05\xff"), (Values{5, 255})) << "CRLF counts as one";
+  EXPECT_EQ(grey("P5\n2 1\n255\r\n\x05"), (Values{'\n', 5})) << "CR alone: no byte is left for LF";
+  EXPECT_EQ(grey("P5 2 1 255#made by hand\n\x05\xff"), (Values{5, 255})) << "a comment behind the last number";
+  EXPECT_EQ(grey("P5 2 1 255#made by hand\r\n\x05\xff"), (Values{5, 255}));
+  EXPECT_EQ(grey("P5 # a\r2 1 255 \x05\xff"), (Values{5, 255})) << "CR ends a comment, too";
+  EXPECT_EQ(read("P6\r\n1 1\r\n255\r\nabc").rgba, (Values{'a', 'b', 'c', 255}));
+  EXPECT_EQ(grey("P4 8 1\r\n\x0f"), (Values{255, 255, 255, 255, 0, 0, 0, 0}));
+  EXPECT_EQ(grey("P4 8 1#c\n\x0f"), (Values{255, 255, 255, 255, 0, 0, 0, 0}));
+  EXPECT_THROW(read("P5 1 1 255x\x05"), base::InputError) << "no blank";
+  EXPECT_THROW(read("P5 1 1 255# no line end"), base::InputError);
+}
+
 TEST(Pictures, BitsAreBlackWhereTheyAreOne) {
   EXPECT_EQ(grey("P1 3 2 010\n1 # a comment\n 0 1"), (Values{255, 0, 255, 0, 255, 0})) << "blanks may be left out";
   const std::string rows("\x40\x80\xff\x7f", 4);  // nine bits each: a row begins with a byte
