@@ -61,7 +61,6 @@ const std::vector<Bad>& corpus() {
       {"block without points", "model(\n block( z [0 1] ) )", 2, "'points' is missing"},
       {"block with one point", "model( block( points 1 point[0] [0 0] ) )", 1, "from 2"},
       {"block with half a point", "model( block( points 2.5 ) )", 1, "whole number"},
-      {"block that lacks a point", "model(\n block( points 3 point[0] [0 0] point[1] [1 0] ) )", 2, "point[2]"},
       {"block upside down", "model( block( points 2 point[0] [0 0] point[1] [1 0] z [1 0] ) )", 1, "min not above max"},
       {"robot that cannot move", "position( velocity_bounds [0 0] )", 1,
        "xmax of 'velocity_bounds' is 0; expected more"},

@@ -25,11 +25,13 @@ struct Block {
   double z_max = 1.0;
 };
 
-glm::dvec2 read_point(const StageContext& context, const Entity& entity, const std::string& key) {
+/// @return whether there is one
+bool read_point(const StageContext& context, const Entity& entity, const std::string& key, glm::dvec2& out) {
   const auto point = tuple(context, entity, key, 2, "[x y]");
-  if (!point) fail(context, entity.at, fmt::format("'{}' of this '{}' is missing", key, entity.word));
+  if (!point) return false;
   const SourceLocation at = find(entity, key)->at;
-  return {to_metres(context, at, (*point)[0]), to_metres(context, at, (*point)[1])};
+  out = {to_metres(context, at, (*point)[0]), to_metres(context, at, (*point)[1])};
+  return true;
 }
 
 /// @param prefix empty for `block( ... )`, `block[2].` for the older form inside the model.
@@ -39,9 +41,16 @@ Block read_block(StageContext& context, const Entity& entity, const std::string&
     fail(context, entity.at, fmt::format("'{}points' is missing; expected the number of corners", prefix));
   }
   const std::uint32_t count = whole(context, entity, prefix + "points", 0, 2, kMaxPoints);
+  block.points.resize(count);
+  std::vector<std::string> missing;
   for (std::uint32_t i = 0; i < count; ++i) {
-    block.points.push_back(read_point(context, entity, fmt::format("{}point[{}]", prefix, i)));
+    std::string key = fmt::format("{}point[{}]", prefix, i);
+    if (!read_point(context, entity, key, block.points[i])) missing.push_back(std::move(key));
   }
+  if (!missing.empty())
+    warn(context, entity.at,
+         fmt::format("'{}'{} of this '{}' is missing: it counts as [0 0], as in Stage", missing[0],
+                     missing.size() > 1 ? fmt::format(" (and {} more)", missing.size() - 1) : "", entity.word));
   const std::string beyond = fmt::format("{}point[{}]", prefix, count);
   if (const Property* extra = find(entity, beyond)) {
     warn(context, extra->at, fmt::format("'{}' is not used: 'points' says {}", beyond, count));
