@@ -213,6 +213,17 @@ TEST(OutlineLayers, AFlagIsNoHeight) {
       "geometry": {"type": "LineString", "coordinates": [[0, 0], [900, 0]]}})");
   EXPECT_EQ(found.walls[0][4], 3.0);
   expect_in("the height is 'true'", found.warnings);
+  const auto feature = [](const char* height) {
+    return fmt::format(R"({{"type": "Feature", "properties": {{"Height" : {}}},
+      "geometry": {{"type": "LineString", "coordinates": [[0, 0], [900, 0]]}}}})",
+                       height);
+  };
+  const std::string word = "a height is true or false, and counts as 1 or 0 like a number";
+  for (const char* number : {"5", "5.5"})  // GDAL makes one column of both
+    expect_in(word, read_layers_of("flags.json", R"({"type": "FeatureCollection", "features": [)" + feature("true") +
+                                                     "," + feature(number) + "]}")
+                        .warnings);
+  EXPECT_EQ(read_layers_of("number.json", feature("5")).warnings.find(word), std::string::npos);
 }
 
 TEST(OutlineLayers, AShapefileNeedsNoTable) {

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -55,6 +57,28 @@ std::string quoted(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < std::min(names.size(), kShownNames); ++i)
     text += fmt::format("{}'{}'", i > 0 ? ", " : "", names[i]);
   return names.size() > kShownNames ? text + ", ..." : text;
+}
+
+/// Whether a property `height` of a GeoJSON file is true or false: among numbers GDAL reads them as 1 and 0.
+bool has_flags(const std::string& file) {
+  constexpr std::string_view kName = "\"height\"";
+  constexpr std::size_t kBlock = 1u << 20, kKept = 256;  // bytes
+  const auto same = [](char a, char b) { return (a | 0x20) == b; };
+  std::ifstream in(file, std::ios::binary);
+  std::string text, block(kBlock, '\0');
+  while (in.read(block.data(), kBlock), in.gcount() > 0) {
+    text.append(block, 0, static_cast<std::size_t>(in.gcount()));
+    for (auto at = text.begin();;) {
+      at = std::search(at, text.end(), kName.begin(), kName.end(), same);
+      if (at == text.end()) break;
+      at += kName.size();
+      const std::string_view rest = std::string_view(text).substr(static_cast<std::size_t>(at - text.begin()));
+      const std::string_view value = rest.substr(std::min(rest.find_first_not_of(" \t\r\n:"), rest.size()));
+      if (value.starts_with("true") || value.starts_with("false")) return true;
+    }
+    text.erase(0, text.size() - std::min(text.size(), kKept));
+  }
+  return false;
 }
 
 class Layers : public OutlineRows {
@@ -105,6 +129,9 @@ class Layers : public OutlineRows {
     if (layers_.size() > 1)
       text += fmt::format("{}all {} layers are read ({}); keep one alone by ogr2ogr -f GPKG ONE.gpkg FILE LAYER",
                           text.empty() ? "" : "; ", layers_.size(), quoted(names_));
+    if (is_json_ && has_numbers_ && has_flags(file_))
+      text += fmt::format("{}a height is true or false, and counts as 1 or 0 like a number; expected numbers",
+                          text.empty() ? "" : "; ");
     return text;
   }
 
@@ -146,17 +173,24 @@ class Layers : public OutlineRows {
     height_.clear();
     if (height_column_ < 0 || OGR_F_IsFieldSetAndNotNull(feature_, height_column_) == 0) return;
     const OGRFieldDefnH field = OGR_F_GetFieldDefnRef(feature_, height_column_);
-    const bool is_flag = OGR_Fld_GetSubType(field) == OFSTBoolean;
-    if (is_flag) height_ = OGR_F_GetFieldAsInteger(feature_, height_column_) != 0 ? "true" : "false";
-    if (is_flag) return;
-    height_ = OGR_Fld_GetType(field) == OFTReal ? fmt::format("{}", OGR_F_GetFieldAsDouble(feature_, height_column_))
-                                                : OGR_F_GetFieldAsString(feature_, height_column_);
+    const bool is_real = OGR_Fld_GetType(field) == OFTReal;
+    if (OGR_Fld_GetSubType(field) == OFSTBoolean) {
+      height_ = OGR_F_GetFieldAsInteger(feature_, height_column_) != 0 ? "true" : "false";
+      return;
+    }
+    if (is_real) {
+      height_ = fmt::format("{}", OGR_F_GetFieldAsDouble(feature_, height_column_));
+    } else {
+      height_ = OGR_F_GetFieldAsString(feature_, height_column_);
+    }
+    has_numbers_ = has_numbers_ || is_real || OGR_Fld_GetType(field) == OFTInteger;
   }
 
   std::string file_;
   std::string messages_;  ///< of GDAL so far
   GDALDatasetH dataset_ = nullptr;
   bool is_json_ = false;
+  bool has_numbers_ = false;       ///< heights may be numbers or flags
   std::vector<OGRLayerH> layers_;  ///< with geometries
   std::vector<std::string> names_;
   std::size_t at_ = 0;    ///< layer that is being read
