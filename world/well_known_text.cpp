@@ -220,18 +220,22 @@ class Follower {
   bool step() {
     const char c = text_[at_];
     if (kTextBlanks.find(c) != std::string_view::npos) return ++at_, true;
+    if (is_part_of_number(c)) return number();
     if (is_letter(c)) return word();
-    if (c == '(' || c == ')' || c == ',') {
-      if (c == '(' ? is_after(")0") : is_after("(,")) return false;
-      depth_ += c == '(' ? 1 : c == ')' ? -1 : 0;
-    } else if (!is_digit(c) && c != '+' && c != '-' && c != '.') {
-      return false;
-    }
-    const bool is_part_of_number = c != '(' && c != ')' && c != ',';
-    if (is_part_of_number && is_after(")a")) return false;
-    has_content_ = has_content_ || is_part_of_number;
-    before_ = is_part_of_number ? '0' : c;
+    if (c != '(' && c != ')' && c != ',') return false;
+    if (c == '(' ? is_after(")0") : is_after("(,")) return false;
+    depth_ += c == '(' ? 1 : c == ')' ? -1 : 0;
+    before_ = c;
     return ++at_, true;
+  }
+  static bool is_part_of_number(char c) { return is_digit(c) || c == '+' || c == '-' || c == '.'; }
+  /// Numbers up to the next parenthesis, comma or letter.
+  bool number() {
+    if (is_after(")a")) return false;
+    while (at_ < text_.size() && (is_part_of_number(text_[at_]) || text_[at_] == ' ')) ++at_;
+    has_content_ = true;
+    before_ = '0';
+    return true;
   }
   bool word() {
     std::size_t end = at_;
