@@ -59,6 +59,15 @@ std::unique_ptr<OutlineRows> open_with_gdal(const std::string& file) {
 
 }  // namespace
 
+SystemUnits units_of_epsg(std::uint32_t number) {
+  try {
+    if (const SystemUnits units = gdal_plugin().units_of_epsg(number); units.is_degrees || units.metres_per_unit > 0.0)
+      return units;
+  } catch (const base::InputError&) {  // no GDAL
+  }
+  return {.is_degrees = number >= 4001 && number <= 4999};
+}
+
 std::unique_ptr<OutlineRows> open_outline_rows(const std::string& file) {
   const std::string bytes = first_bytes(file);
   std::string_view text = bytes;

@@ -7,6 +7,7 @@
 // with the first such file. Both hand on rows alone; what a geometry means is decided in one place
 // (world/well_known_geometry.h).
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -41,9 +42,19 @@ std::unique_ptr<OutlineRows> open_outline_rows(const std::string& file);
 /// A table in text; its first lines state how it is written.
 std::unique_ptr<OutlineRows> open_outline_table(const std::string& file);
 
-/// GDAL's part. Functions throw base::InputError with GDAL's reasons.
+/// Of a coordinate system.
+struct SystemUnits {
+  bool is_degrees = false;
+  double metres_per_unit = 0.0;  ///< [m]; 0: not known, or degrees
+};
+/// Of the system with this number of EPSG, by GDAL's tables. Nothing is known where the plug-in or its tables are
+/// missing, but that numbers from 4001 to 4999 are degrees.
+SystemUnits units_of_epsg(std::uint32_t number);
+
+/// GDAL's part. `open` throws base::InputError with GDAL's reasons.
 struct GdalPlugin {
   std::unique_ptr<OutlineRows> (*open)(const std::string& file);
+  SystemUnits (*units_of_epsg)(std::uint32_t number);
 };
 /// The name of the plug-in's only symbol: `extern "C" const GdalPlugin sensorfarm_gdal`.
 inline constexpr const char* kGdalSymbol = "sensorfarm_gdal";

@@ -94,7 +94,7 @@ class OutlineTable : public OutlineRows {
       const std::string_view text = record_.field(i);
       has_geometry = has_geometry || may_be_geometry(text);
       has_name = has_name || is_known_name(text);
-      has_number = has_number || (!text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0);
+      has_number = has_number || (!text.empty() && text.find_first_not_of("0123456789.+-eE") == kNoColumn);
     }
     if (has_geometry) return end_search(), true;
     if (names_.empty() || (has_name && !has_number)) return take_names(), false;

@@ -28,9 +28,12 @@ constexpr double kMaxInDegrees = 0.01;    // largest outline where small numbers
 class UnitCheck {
  public:
   void add(const WellKnownGeometry& geometry, const OutlineRow& row) {
-    constexpr std::uint32_t kFirst = 4001, kLast = 4999;  // EPSG's range of geographic systems
-    if (geometry.srid >= kFirst && geometry.srid <= kLast)
-      degrees_ = "the SRID states that the coordinates are degrees";
+    if (geometry.srid != 0 && srid_ == 0) {
+      srid_ = geometry.srid;
+      const SystemUnits units = units_of_epsg(srid_);
+      metres_per_unit_ = units.metres_per_unit;
+      if (units.is_degrees) degrees_ = "the SRID states that the coordinates are degrees";
+    }
     if (!row.degrees.empty()) degrees_ = row.degrees;
     if (row.metres_per_unit > 0.0) metres_per_unit_ = row.metres_per_unit;
     std::size_t begin = 0;
@@ -43,21 +46,21 @@ class UnitCheck {
   }
   /// A warning; empty: none.
   std::string remark(double metres_per_unit) const {
-    const bool is_small = largest_ < kMaxInDegrees;
+    const bool is_small = largest_ < kMaxInDegrees && metres_per_unit_ == 0.0;
     if (in_range_ && (is_small || !degrees_.empty()))
       return fmt::format("{}, but they count as lengths; project them first, such as by ogr2ogr -t_srs EPSG:32632",
                          degrees_.empty() ? "the coordinates are degrees, as it seems" : degrees_);
     if (metres_per_unit_ == 0.0 || std::abs(metres_per_unit_ / metres_per_unit - 1.0) < 1e-9) return {};
     return fmt::format(
         "the file's coordinate system has a unit of {:.8g} m, but its coordinates count in the world's, {:g} m; "
-        "project "
-        "them first, such as by ogr2ogr -t_srs EPSG:32632, or set unit_length",
+        "project them first, such as by ogr2ogr -t_srs EPSG:32632 for metres",
         metres_per_unit_, metres_per_unit);
   }
 
  private:
   std::string degrees_;           ///< why they are degrees; empty: nothing states it
   double metres_per_unit_ = 0.0;  ///< that the file states; 0: none
+  std::uint32_t srid_ = 0;        ///< the first one of the file
   bool in_range_ = true;
   double largest_ = 0.0;  ///< extent of a ring or line along x or y
 };

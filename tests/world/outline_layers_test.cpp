@@ -208,6 +208,18 @@ TEST(OutlineLayers, UnitsOtherThanTheWorldsAreNamed) {  // New York in US survey
   expect_in("has a unit of 1 m, but its coordinates count in the world's, 0.01 m", read_layers(metres, 0.01).warnings);
 }
 
+TEST(OutlineLayers, TheSridOfATableStatesItsUnit) {
+  const auto warnings = [](const char* srid) {
+    return read_layers_of("srid.csv", fmt::format("SRID={};LINESTRING (0 0,12 0)\n", srid)).warnings;
+  };
+  EXPECT_EQ(warnings("32632"), "");
+  EXPECT_EQ(warnings("999999"), "") << "an unknown one";
+  EXPECT_EQ(warnings("4294967295"), "");
+  expect_in("has a unit of 0.30480061 m", warnings("2263"));
+  expect_in("the SRID states that the coordinates are degrees", warnings("4326"));
+  expect_in("the SRID states that the coordinates are degrees", warnings("7844"));  // Australia
+}
+
 TEST(OutlineLayers, AFlagIsNoHeight) {
   const LayerRead found = read_layers_of("flag.json", R"({"type": "Feature", "properties": {"height": true},
       "geometry": {"type": "LineString", "coordinates": [[0, 0], [900, 0]]}})");

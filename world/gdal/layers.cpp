@@ -8,6 +8,7 @@
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
+#include <climits>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -57,6 +58,26 @@ std::string quoted(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < std::min(names.size(), kShownNames); ++i)
     text += fmt::format("{}'{}'", i > 0 ? ", " : "", names[i]);
   return names.size() > kShownNames ? text + ", ..." : text;
+}
+
+/// @param system null: none
+SystemUnits units_of(OGRSpatialReferenceH system) {
+  if (system == nullptr) return {};
+  // A GeoPackage that states no system has this one.
+  if (std::string_view(OSRGetName(system)) == "Undefined geographic SRS") return {};
+  if (OSRIsGeographic(system) != 0) return {.is_degrees = true};
+  const double unit = OSRGetLinearUnits(system, nullptr);
+  return {.metres_per_unit = OSRIsProjected(system) != 0 || (OSRIsLocal(system) != 0 && unit != 1.0) ? unit : 0.0};
+}
+
+SystemUnits units_of_epsg_by_gdal(std::uint32_t number) {
+  std::string messages;
+  const Guard guard(messages);
+  const OGRSpatialReferenceH system = OSRNewSpatialReference(nullptr);
+  const bool is_known = number <= INT_MAX && OSRImportFromEPSG(system, static_cast<int>(number)) == OGRERR_NONE;
+  const SystemUnits units = is_known ? units_of(system) : SystemUnits();
+  OSRDestroySpatialReference(system);
+  return units;
 }
 
 /// Whether a property `height` of a GeoJSON file is true or false: among numbers GDAL reads them as 1 and 0.
@@ -143,17 +164,13 @@ class Layers : public OutlineRows {
     height_column_ = -1;
     for (int i = OGR_FD_GetFieldCount(definition); i-- > 0;)
       if (EQUAL(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(definition, i)), "height")) height_column_ = i;
-    const OGRSpatialReferenceH system = OGR_L_GetSpatialRef(layers_[at_]);
+    const SystemUnits units = units_of(OGR_L_GetSpatialRef(layers_[at_]));
+    metres_per_unit_ = units.metres_per_unit;
     degrees_ = {};
-    metres_per_unit_ = 0.0;
-    if (system == nullptr) return;
-    // A GeoPackage that states no system has this one.
-    if (OSRIsGeographic(system) != 0 && std::string_view(OSRGetName(system)) != "Undefined geographic SRS")
+    if (units.is_degrees)
       degrees_ = is_json_
                      ? "coordinates of GeoJSON are degrees unless its member 'crs' states another system (RFC 7946)"
                      : "the file states that the coordinates are degrees";
-    const double unit = OSRGetLinearUnits(system, nullptr);
-    if (OSRIsProjected(system) != 0 || (OSRIsLocal(system) != 0 && unit != 1.0)) metres_per_unit_ = unit;
   }
   void read(OutlineRow& row) {
     const OGRGeometryH geometry = OGR_F_GetGeometryRef(feature_);
@@ -216,5 +233,6 @@ std::unique_ptr<OutlineRows> open_layers(const std::string& file) {
 
 extern "C" {
 extern const sf::world::GdalPlugin sensorfarm_gdal;
-const sf::world::GdalPlugin sensorfarm_gdal{.open = sf::world::open_layers};
+const sf::world::GdalPlugin sensorfarm_gdal{.open = sf::world::open_layers,
+                                            .units_of_epsg = sf::world::units_of_epsg_by_gdal};
 }
