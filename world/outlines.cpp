@@ -9,6 +9,7 @@
 
 #include "base/box.h"
 #include "base/error.h"
+#include "base/printable.h"
 #include "world/arc.h"
 #include "world/outline_faults.h"
 #include "world/outline_rows.h"
@@ -74,7 +75,7 @@ double height_of(const OutlineFile& file, std::string_view text) {
   const double height = value * file.metres_per_unit;
   if (error == std::errc() && end == text.data() + text.size() && height >= 0.0 && height <= kMaxLength) return height;
   throw base::InputError(fmt::format("the height is '{}'; expected a number alone, such as 3.5, from 0 to {:g}",
-                                     text.substr(0, kShownHeight), kMaxLength / file.metres_per_unit));
+                                     base::one_line(text.substr(0, kShownHeight)), kMaxLength / file.metres_per_unit));
 }
 
 /// Reads rows one by one into walls and faults.
@@ -88,7 +89,7 @@ class OutlineReader {
     if (!row.behind_quote.empty())
       faults_.add(OutlineFault::quote, row,
                   fmt::format("text behind a closing quote, '{}'; expected a separator or the end of the line",
-                              row.behind_quote.substr(0, kShownHeight)));
+                              base::one_line(row.behind_quote.substr(0, kShownHeight))));
     try {
       built = build(row);
     } catch (const base::InputError& error) {

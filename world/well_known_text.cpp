@@ -291,6 +291,10 @@ void read_geometry(std::string_view text, double arc_error, WellKnownGeometry& g
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(byte_at(binary, i));
     return read_binary_geometry(bytes, arc_error, geometry);
   }
+  if (binary.size() >= kMinDigits && binary.size() % 2 == 1 &&
+      binary.find_first_not_of(kDigits) == std::string_view::npos)
+    throw base::InputError(
+        fmt::format("expected an even number of hexadecimal digits, found {}; is the field cut short?", binary.size()));
   TextReader in(text);
   geometry.clear();
   geometry.srid = in.srid();

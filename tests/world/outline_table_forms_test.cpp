@@ -72,6 +72,8 @@ TEST(OutlineTableForms, EmptyFieldsBeforeAGeometryInTabs) {
   EXPECT_EQ(read_table("id\theight\tgeom\n1\t5\t" + kLine + "\n2\t\t" + kLine).heights(), "5 3 ");
   EXPECT_EQ(read_table("name\tgeom\theight\n\t" + kLine + "\t5\n").heights(), "5 ");
   EXPECT_EQ(read_table("name\theight\tgeom\nx\t\t" + kHex).walls.size(), 1u);
+  expect_in("2: expected an even number of hexadecimal digits, found 83",
+            read_table("geom\n" + kHex + "0\n" + kHex).warnings);
 }
 
 TEST(OutlineTableForms, BlanksSeparateWhereNothingElseDoes) {
