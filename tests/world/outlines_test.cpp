@@ -259,7 +259,8 @@ TEST(Outlines, AFileWithoutWallsIsAnErrorThatNamesItsColumns) {
 TEST(Outlines, DegreesAreNoMetres) {
   const std::string house = "POLYGON ((11.5755 48.1372, 11.5756 48.1372, 11.5756 48.1373))\n";
   expect_in("0: the coordinates are degrees", warnings_of(town_of(house)));
-  expect_in("0: the SRID states that the coordinates are degrees", warnings_of(town_of("SRID=4326;LINESTRING (0 0, 12 0)")));
+  expect_in("0: the SRID states that the coordinates are degrees",
+            warnings_of(town_of("SRID=4326;LINESTRING (0 0, 12 0)")));
   EXPECT_EQ(warnings_of(town_of("SRID=32632;LINESTRING (0 0, 12 0)")), "");
   EXPECT_EQ(warnings_of(town_of("SRID=4087;LINESTRING (0 0, 1200 0)")), "") << "a projection among EPSG's angles";
   expect_in("degrees", warnings_of(town_of(house + "LINESTRING (0 0, 0.0099 0)")));
