@@ -54,6 +54,7 @@ class OutlineTable : public OutlineRows {
       } else {
         read_record();
       }
+      check_blanks();
       row.line = record_.first_line();
       row.geometry = geometry_of_record();
       row.height = record_.field(height_);
@@ -100,6 +101,16 @@ class OutlineTable : public OutlineRows {
     if (names_.empty() || (has_name && !has_number)) return take_names(), false;
     separator_ = before;
     return true;
+  }
+
+  /// Blanks that align columns would shift the fields behind them.
+  void check_blanks() {
+    if (separator_ != ' ' || names_.empty() || is_uneven_ || record_.size() == names_.size()) return;
+    is_uneven_ = true;
+    remarks_.push_back(
+        fmt::format("line {} has {} fields under {} names, since two blanks have an empty field between them: heights "
+                    "may not be read; separate fields by tabs, or by one blank each",
+                    record_.first_line(), record_.size(), names_.size()));
   }
 
   /// `sep=;`, as Excel writes and reads it.
@@ -244,6 +255,7 @@ class OutlineTable : public OutlineRows {
   std::vector<std::string> remarks_;
   char separator_ = 0;                ///< 0: not known yet
   bool is_stated_ = false;            ///< by `sep=`
+  bool is_uneven_ = false;            ///< a row has more or fewer fields than names, between blanks
   bool searching_ = true;             ///< for the names of columns: neither a known one nor a geometry was found
   int joined_ = 0;                    ///< lines before this one are not joined with the following ones
   std::size_t named_ = kNoColumn;     ///< column with a name for geometries

@@ -80,6 +80,8 @@ TEST(OutlineTableForms, BlanksSeparateWhereNothingElseDoes) {
   EXPECT_EQ(read_table("WKT WKT name height\n\"" + kLine + "\" \"" + kLine + "\" \"a, \"\"b\"\"\" 6.5\n").heights(),
             "6.5 ");
   EXPECT_EQ(read_table("WKT name height\n\"" + kLine + "\"  7\n").heights(), "7 ") << "an empty name";
+  expect_in("line 2 has 4 fields under 3 names, since two blanks have an empty field between them",
+            read_table("WKT name height\n\"" + kLine + "\" hall  7\n").warnings);
   EXPECT_EQ(read_table("WKT \"a, b\" height\n\"" + kLine + "\" hall 7\n").heights(), "7 ");
   EXPECT_EQ(read_table("roof height,the wkt,height\n2,\"" + kLine + "\",7\n").heights(), "7 ") << "names with blanks";
   EXPECT_EQ(read_table("the wkt\n" + kLine + "\n").walls.size(), 1u) << "one column";
