@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -19,6 +20,16 @@ namespace sf::base {
 namespace {
 
 constexpr int kTurnsAwake = 4000;  ///< about 60 us
+
+/// [ns] when this thread last looked for a stop, or began a loop.
+thread_local std::int64_t looked_at = 0;
+
+/// [ns] of the steady clock, to 4 ms: it is read before each item of a loop.
+std::int64_t coarse_time() {
+  timespec time{};
+  clock_gettime(CLOCK_MONOTONIC_COARSE, &time);
+  return 1'000'000'000 * static_cast<std::int64_t>(time.tv_sec) + time.tv_nsec;
+}
 
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -64,10 +75,11 @@ struct ThreadPool::State {
   std::exception_ptr failure;                   ///< of the job: the first that a piece threw
   std::function<bool()> interrupt;              ///< of `interrupt_on`
   std::chrono::nanoseconds patience{};          ///< of `interrupt_on`
-  std::atomic<std::int64_t> interrupted_at{0};  ///< [ns] steady clock, when `interrupt` was first true; 0: never
+  std::atomic<std::int64_t> interrupted_at{0};  ///< [ns] `coarse_time` before which it was false; 0: it still is
   std::atomic<bool> given_up{false};            ///< the job leaves pieces out
 
   void work(unsigned thread) {
+    if (interrupt) looked_at = coarse_time();
     for (std::size_t k = 0, at = 0; k < shares.size(); ++k)
       while (shares[(thread + k) % shares.size()].take(k == 0, at))
         if (!gives_up()) call(at, thread);
@@ -84,11 +96,12 @@ struct ThreadPool::State {
   }
 
   bool gives_up() {
-    if (!interrupt || !interrupt()) return false;
-    const std::int64_t now = std::chrono::steady_clock::now().time_since_epoch().count();
+    if (!interrupt) return false;
+    const std::int64_t now = coarse_time(), before = std::exchange(looked_at, now);
+    if (!interrupt()) return false;
     std::int64_t since = 0;
-    if (interrupted_at.compare_exchange_strong(since, now)) since = now;
-    if (now - since >= patience.count()) given_up = true;
+    if (interrupted_at.compare_exchange_strong(since, before)) since = before;
+    if (now - since + (now - before) >= patience.count()) given_up = true;
     return given_up;
   }
 
@@ -168,14 +181,18 @@ void ThreadPool::interrupt_on(std::function<bool()> stop, std::chrono::nanosecon
   state_->given_up = false;
 }
 
+bool ThreadPool::gives_up() { return state_->gives_up(); }
+
 void ThreadPool::run_job(std::size_t count, std::size_t piece, Job job) {
   State& s = *state_;
   if (s.threads.empty() || count <= piece) {
     const std::size_t part = s.interrupt ? std::max<std::size_t>(1, piece) : count;
+    if (s.interrupt) looked_at = coarse_time();
     for (std::size_t first = 0; first < count; first += part) {
       if (s.gives_up()) throw Interrupted();
       job.call(job.body, first, std::min(first + part, count), 0);
     }
+    if (s.given_up) throw Interrupted();
     return;
   }
   {

@@ -15,6 +15,10 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
+/// A request to stop takes effect within this time. Loops are given up after half of it, and processes whose calls of
+/// users' code go on end shortly before it is over (apps/supervision.h).
+inline constexpr std::chrono::milliseconds kStopLimit{500};
+
 /// Threads that run the pieces of a loop. One caller at a time.
 class ThreadPool {
  public:
@@ -27,10 +31,10 @@ class ThreadPool {
 
   unsigned threads() const;
 
-  /// From now on a loop that is still running `patience` after `stop` was first seen to return true is given up: it
-  /// leaves pieces out, and `parallel_for` throws Interrupted. The data of the loop are then of no use. Shorter loops
-  /// end whole. @param stop called by all threads, before each piece; empty: never
-  void interrupt_on(std::function<bool()> stop, std::chrono::nanoseconds patience = std::chrono::milliseconds(250));
+  /// From now on a loop is given up where its next piece, if it takes as long as the last, ends later than `patience`
+  /// after `stop` returns true: it leaves pieces out, and `parallel_for` throws Interrupted. The data of the loop are
+  /// then of no use. Shorter loops end whole. @param stop called by all threads, before each piece; empty: never
+  void interrupt_on(std::function<bool()> stop, std::chrono::nanoseconds patience = kStopLimit / 2);
 
   /// Calls `body(first, last, thread)` on pieces of [0, count) and returns when all are done; `thread` < threads(). The
   /// assignment of pieces to threads varies, so results of `body` must not depend on it. Allocates nothing.
@@ -45,12 +49,22 @@ class ThreadPool {
              }});
   }
 
+  /// Calls `body(item, thread)` for each item of [0, count), as `parallel_for` does for pieces. `stop` of
+  /// `interrupt_on` is called before each item: for items that may take long.
+  template <class Body>
+  void parallel_for_each(std::size_t count, std::size_t piece, Body&& body) {
+    parallel_for(count, piece, [&](std::size_t first, std::size_t last, unsigned thread) {
+      for (std::size_t i = first; i < last && !gives_up(); ++i) body(i, thread);
+    });
+  }
+
  private:
   struct Job {
     void* body;
     void (*call)(void* body, std::size_t first, std::size_t last, unsigned thread);
   };
   void run_job(std::size_t count, std::size_t piece, Job job);
+  bool gives_up();
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -236,15 +236,13 @@ std::span<const double> Farm::State::sent(const base::ReadingBlock& reading, uns
 
 void Farm::State::add_to_hash(std::int64_t now, std::span<const base::ReadingBlock> readings) {
   hashes.resize(readings.size());
-  thread_pool.parallel_for(readings.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
-    for (std::size_t i = first; i < last; ++i) {
-      const base::ReadingBlock& r = readings[i];
-      const std::uint64_t head[] = {r.mover, r.type, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
-      hashes[i] = base::hash_bytes(head, sizeof head);
-      const std::span<const double> values = sent(r, thread);
-      hashes[i] = base::hash_bytes(values.data(), values.size_bytes(), hashes[i]);
-      hashes[i] = base::hash_bytes(r.hits.data(), r.hits.size_bytes(), hashes[i]);
-    }
+  thread_pool.parallel_for_each(readings.size(), 16, [&](std::size_t i, unsigned thread) {
+    const base::ReadingBlock& r = readings[i];
+    const std::uint64_t head[] = {r.mover, r.type, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
+    hashes[i] = base::hash_bytes(head, sizeof head);
+    const std::span<const double> values = sent(r, thread);
+    hashes[i] = base::hash_bytes(values.data(), values.size_bytes(), hashes[i]);
+    hashes[i] = base::hash_bytes(r.hits.data(), r.hits.size_bytes(), hashes[i]);
   });
   if (shared)
     shared->add_call(now, readings, hashes);

@@ -207,13 +207,9 @@ class Fleet {
 template <class Body>
 void Fleet::for_rows(std::size_t count, Body&& body) {
   constexpr std::size_t kGrain = 32;
-  const auto piece = [&](std::size_t first, std::size_t end, unsigned thread) {
-    for (std::size_t i = first; i < end; ++i) body(static_cast<std::uint32_t>(i), scratch_[thread]);
-  };
-  if (thread_pool_ != nullptr)
-    thread_pool_->parallel_for(count, kGrain, piece);
-  else
-    piece(0, count, 0);
+  const auto row = [&](std::size_t i, unsigned thread) { body(static_cast<std::uint32_t>(i), scratch_[thread]); };
+  if (thread_pool_ != nullptr) return thread_pool_->parallel_for_each(count, kGrain, row);
+  for (std::size_t i = 0; i < count; ++i) row(i, 0);
 }
 
 }  // namespace sf::robots

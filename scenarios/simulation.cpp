@@ -269,8 +269,8 @@ void Simulation::decide(std::int64_t time) {
     light_states_[i] = world::status_of(signals_[i]);
   }
   if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
-  farm_.thread_pool().parallel_for(controls_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
-    for (std::size_t m = begin; m < end; ++m) try_to_decide(static_cast<std::uint32_t>(m), time, thread);
+  farm_.thread_pool().parallel_for_each(controls_.size(), 16, [&](std::size_t m, unsigned thread) {
+    try_to_decide(static_cast<std::uint32_t>(m), time, thread);
   });
   if (exchange_) return;  // errors and intents of all ranks: `settle`
   if (failure_) std::rethrow_exception(failure_);

@@ -75,7 +75,7 @@ class Simulation {
   void request_stop() { stop_ = true; }
   /// A step that takes long throws base::Interrupted soon after `stop` returns true (base::ThreadPool). No other step
   /// may follow. Not with ranks, which would wait for each other.
-  void interrupt_on(std::function<bool()> stop, std::chrono::nanoseconds patience = std::chrono::milliseconds(250)) {
+  void interrupt_on(std::function<bool()> stop, std::chrono::nanoseconds patience = base::kStopLimit / 2) {
     farm_.thread_pool().interrupt_on(std::move(stop), patience);
   }
   bool stop_agreed() const { return stop_agreed_; }

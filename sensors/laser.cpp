@@ -186,12 +186,10 @@ void Lasers::write(std::size_t i, base::ReadingBlock& block) const {
 
 void Lasers::collect(std::span<base::ReadingBlock> out) {
   caster_.take_flags();
-  thread_pool_.parallel_for(due_.size(), 32, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) {
-      mark(i);
-      if (rows_[due_[i].row].reworked) shape(i);
-      write(i, out[i]);
-    }
+  thread_pool_.parallel_for_each(due_.size(), 32, [&](std::size_t i, unsigned) {
+    mark(i);
+    if (rows_[due_[i].row].reworked) shape(i);
+    write(i, out[i]);
   });
 }
 

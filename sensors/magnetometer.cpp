@@ -189,9 +189,7 @@ void Magnetometers::read(std::size_t i) {
 }
 
 void Magnetometers::collect(std::span<base::ReadingBlock> out) {
-  thread_pool_.parallel_for(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) read(i);
-  });
+  thread_pool_.parallel_for_each(due_.size(), 64, [this](std::size_t i, unsigned) { read(i); });
   for (std::size_t i = 0; i < due_.size(); ++i) {
     const Array& array = arrays_[due_[i].row];
     base::ReadingBlock block;

@@ -165,9 +165,7 @@ void OwnSensors::measure(std::size_t i) {
 }
 
 void OwnSensors::collect(std::span<base::ReadingBlock> out) {
-  context_.thread_pool.parallel_for(due_.size(), 16, [this](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) measure(i);
-  });
+  context_.thread_pool.parallel_for_each(due_.size(), 16, [this](std::size_t i, unsigned) { measure(i); });
   if (!failure_.empty()) throw base::InputError(failure_);
   for (std::size_t i = 0; i < due_.size(); ++i) {
     const SensorSpec& spec = sensors_[due_[i].row].spec;

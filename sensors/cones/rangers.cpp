@@ -146,9 +146,7 @@ void Rangers::read_state(std::uint32_t row, base::ByteReader& in) {
 }
 
 void Rangers::collect(std::span<base::ReadingBlock> out) {
-  thread_pool_.parallel_for(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) write_reading(i);
-  });
+  thread_pool_.parallel_for_each(due_.size(), 64, [this](std::size_t i, unsigned) { write_reading(i); });
   cones_.take_flags();
   for (std::size_t i = 0; i < due_.size(); ++i) {
     const ConeArray& array = arrays_[due_[i].row];

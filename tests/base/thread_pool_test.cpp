@@ -114,6 +114,35 @@ TEST(ThreadPool, AnInterruptedLoopEndsEarly) {
   }
 }
 
+/// A stop is seen between any two items of a piece.
+TEST(ThreadPool, AnInterruptedLoopEndsWithinAPiece) {
+  for (const unsigned threads : {1u, 3u}) {
+    ThreadPool thread_pool(threads);
+    std::atomic<bool> stop{false};
+    std::atomic<unsigned> items{0};
+    thread_pool.interrupt_on([&] { return stop.load(); }, std::chrono::nanoseconds(0));
+    EXPECT_THROW(thread_pool.parallel_for_each(1000, 1000, [&](std::size_t, unsigned) { ++items, stop = true; }),
+                 Interrupted);
+    EXPECT_EQ(items, 1u) << "one piece is one thread's";
+  }
+}
+
+/// An item that takes as long as the last would end beyond the patience: it is not begun.
+TEST(ThreadPool, LongItemsAreNotBegunAfterAStop) {
+  constexpr std::chrono::milliseconds kPatience(50);
+  ThreadPool thread_pool(1);
+  std::atomic<bool> stop{false};
+  int items = 0;
+  thread_pool.interrupt_on([&] { return stop.load(); }, kPatience);
+  EXPECT_THROW(thread_pool.parallel_for_each(10, 10,
+                                             [&](std::size_t, unsigned) {
+                                               ++items, stop = true;
+                                               std::this_thread::sleep_for(kPatience);
+                                             }),
+               Interrupted);
+  EXPECT_EQ(items, 1);
+}
+
 /// Loops that end within the patience end whole.
 TEST(ThreadPool, APatientStopWaitsForTheLoop) {
   ThreadPool thread_pool(2);

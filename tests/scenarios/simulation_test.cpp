@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <memory>
+
 #include "base/error.h"
+#include "control/own_controllers.h"
 #include "farm/schedule.h"
 #include "robots/kinematics.h"
 #include "scenarios/run_metrics.h"
@@ -332,6 +336,26 @@ TEST(Simulation, ALongStepIsGivenUp) {
   simulation.step();
   simulation.interrupt_on([] { return true; }, std::chrono::nanoseconds(0));
   EXPECT_THROW(simulation.step(), base::Interrupted);
+}
+
+/// A stop is seen between two robots: the decisions of many together take long where each takes little.
+TEST(Simulation, AStopIsSeenBetweenTwoRobots) {
+  static std::atomic<int> steps{0};
+  struct Counts : sensorfarm::Controller {
+    sensorfarm::Twist step(const sensorfarm::Input&) override { return ++steps, sensorfarm::Twist{}; }
+  };
+  control::add_own_controller(
+      {"counts", "of a test", 10.0, false,
+       [](const sensorfarm::Robot&, sensorfarm::Settings&) { return std::make_unique<Counts>(); }},
+      "test");
+  const world::World world = our_world("rooms.world", 30);
+  Simulation simulation(world, device(), {.threads = 2, .actor = {.controller = config_of("counts")}});
+  simulation.step();
+  const int before = steps;
+  ASSERT_EQ(before, 30);
+  simulation.interrupt_on([] { return steps > 30; }, std::chrono::nanoseconds(0));
+  EXPECT_THROW(while (steps < 1000) simulation.step(), base::Interrupted);
+  EXPECT_LE(steps, before + 2) << "one for each thread";
 }
 
 /// A robot whose ways are tested for too many substeps a tick is named once, with what to change.
