@@ -137,7 +137,8 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     // CLI11 has a code for each mistake; ours is 2 for all of them.
     const bool fine = error.get_exit_code() == 0;
-    if (fine) app.exit(error);
+    std::ostringstream text;
+    if (fine) app.exit(error, text), print(text.str());
     if (!fine) print_message(explain_refusal(app, error, argc, argv));
     parsed.exit_code = fine ? 0 : 2;
   }

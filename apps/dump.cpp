@@ -240,7 +240,7 @@ void dump_ports(const DumpOptions& options, Printer& printer) {
       printer.print({base::unix_time(), netio::text(source), netio::text(netio::Endpoint{address, ports[i]}),
                      static_cast<std::uint32_t>(bytes.size()), bytes});
     });
-    std::fflush(stdout);
+    flush_output();
   }
   if (const std::uint64_t drops = listener.socket_drops(); drops > 0)
     print_message("{} dropped by the operating system", counted(drops, "datagram"));

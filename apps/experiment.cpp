@@ -44,7 +44,7 @@ std::string folder_of(const ExperimentOptions& options) {
 
 int list_all() {
   for (const scenarios::ExperimentType* type : scenarios::experiments())
-    std::fputs(fmt::format("{:<14} {}; plant {}\n", type->name, type->summary, name_of(type->plant)).c_str(), stdout);
+    print(fmt::format("{:<14} {}; plant {}\n", type->name, type->summary, name_of(type->plant)));
   return 0;
 }
 

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "apps/descendants.h"
+#include "apps/memory_limit.h"
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "base/plugin_calls.h"
@@ -30,7 +31,6 @@ namespace {
 
 constexpr std::size_t kNoRow = SIZE_MAX;
 constexpr std::size_t kMostProcesses = 1024;
-constexpr double kSecondsToEnd = 10.0;  ///< for what plug-ins do as the process ends
 using Clock = std::chrono::steady_clock;
 enum Code : int { kFine = 0, kFailed = 1, kInput = 2, kDevice = 3 };
 
@@ -88,6 +88,8 @@ int work(const Board& board, Seat& seat, std::size_t count, const JobCalls& call
     return fail(kInput, error.what());
   } catch (const base::DeviceError& error) {
     return fail(kDevice, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kFailed, kNoMemory);
   } catch (const std::exception& error) {
     return fail(kFailed, error.what());
   }
@@ -126,6 +128,7 @@ class Children {
     if (calls_.own_processes) std::signal(SIGTERM, SIG_DFL);  // nothing but a job itself sends it to one alone
     base::share_plugin_calls(&seat.calls);
     const int code = work(board_, seat, count_, calls_);
+    seat.calls.code = code;
     seat.calls.finished = true;
     if (calls_.own_processes) std::exit(code);
     std::fflush(nullptr);
@@ -171,7 +174,7 @@ class Children {
     const bool ends = seat.calls.finished;
     const std::size_t row = seat.row;
     if (row != std::exchange(child.row, row) || ends != std::exchange(child.ends, ends)) child.since = Clock::now();
-    const double most = ends ? kSecondsToEnd : calls_.timeout;
+    const double most = ends ? base::kSecondsToEnd : calls_.timeout;
     if (most == 0.0 || row == kNoRow || child.late || base::seconds_since(child.since) < most) return;
     child.late = true;
     kill(child.pid, SIGKILL);
@@ -180,30 +183,34 @@ class Children {
   std::string cause_of(std::size_t slot, int status) const {
     const Seat& seat = board_.seat(slot);
     if (children_[slot].late && seat.calls.finished)
-      return fmt::format("its process did not end within {:g} s: a thread of a controller goes on", kSecondsToEnd);
+      return fmt::format("its process did not end within {:g} s: {}", base::kSecondsToEnd, base::goes_on(seat.calls));
     if (children_[slot].late) {
       const std::string who = base::under_way(seat.calls);
       return fmt::format("it took more than {:g} s (--timeout){}", calls_.timeout,
                          who.empty() ? "" : "; under way was " + who);
     }
+    const std::string limit = WIFSIGNALED(status) ? memory_limit_note() : "";
     if (!seat.calls.finished) {
       const std::string how =
           WIFSIGNALED(status) ? base::signal_text(WTERMSIG(status)) : fmt::format("exit code {}", WEXITSTATUS(status));
-      if (const std::string who = base::blame(seat.calls, how); !who.empty()) return who;
+      if (const std::string who = base::blame(seat.calls, how); !who.empty()) return who + limit;
     }
     if (WIFSIGNALED(status))
-      return fmt::format("its process was ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
-    const bool failed = seat.calls.finished && WEXITSTATUS(status) == kFailed;
-    return fmt::format("its process ended with exit code {}{}{}", WEXITSTATUS(status), failed ? ": " : "",
+      return fmt::format("its process was ended by signal {} ({}){}", WTERMSIG(status), strsignal(WTERMSIG(status)),
+                         limit);
+    const bool failed = seat.calls.finished && seat.calls.code == kFailed;
+    return fmt::format("its process ended with exit code {}{}{}",
+                       seat.calls.finished ? seat.calls.code.load() : WEXITSTATUS(status), failed ? ": " : "",
                        failed ? seat.error : "");
   }
 
   void take_leave(std::size_t slot, int status) {
     const Seat& seat = board_.seat(slot);
-    const int code = seat.calls.finished && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    const int own = seat.calls.finished ? seat.calls.code.load() : -1;
+    const int code = WIFEXITED(status) ? own : -1;  // exit handlers may crash
     const std::size_t row = seat.row;
-    if (code == kInput) throw base::InputError(seat.error);
-    if (code == kDevice) throw base::DeviceError(seat.error);
+    if (own == kInput) throw base::InputError(seat.error);
+    if (own == kDevice) throw base::DeviceError(seat.error);
     if (calls_.own_processes && code == kFine) {
       if (row != kNoRow && calls_.ended) calls_.ended(row);
       if (row != kNoRow) ++board_.done();

@@ -1,16 +1,23 @@
 // sensorfarm: one program, its subcommands, and what becomes of errors.
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "apps/command_line.h"
+#include "apps/memory_limit.h"
 #include "apps/stop_signals.h"
 #include "apps/supervision.h"
+#include "apps/text.h"
 #include "base/error.h"
 #include "base/plugin_calls.h"
 #include "base/printable.h"
@@ -24,13 +31,25 @@ int fail(int code, const char* what) {
   return code;
 }
 
+/// Descriptors that are closed become ones that fail all the same: else files and sockets of ours would be taken for
+/// standard streams. Processes that are started have them closed.
+void fill_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0) open("/dev/null", (stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) | O_CLOEXEC);
+}
+
+bool wants_json(int argc, const char* const* argv) {
+  return std::any_of(argv, argv + argc, [](std::string_view word) { return word.substr(0, 6) == "--json"; });
+}
+
 int run(int argc, char** argv) {
   try {
+    if (wants_json(argc, argv)) sf::apps::keep_output_apart();
     if (const char* const plugins = std::getenv("SENSORFARM_PLUGINS")) sf::control::load_plugin_list(plugins);
     const sf::apps::Parsed parsed = sf::apps::parse_command_line(argc, argv);
     const int code = parsed.exit_code ? *parsed.exit_code : parsed.call();
     // A full disk must not pass for an answer.
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail(2, "standard output cannot be written");
+    if (!sf::apps::flush_output()) return fail(2, "standard output cannot be written");
     return code;
   } catch (const sf::apps::Incomplete& stop) {
     return fail(sf::apps::interrupted_code(), stop.what());
@@ -41,7 +60,7 @@ int run(int argc, char** argv) {
   } catch (const sf::base::DeviceError& error) {
     return fail(3, error.what());
   } catch (const std::bad_alloc&) {
-    return fail(1, "not enough memory: free some, raise the limit (ulimit -v), or ask for less");
+    return fail(1, sf::apps::kNoMemory);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::resource_unavailable_try_again) return fail(1, error.what());
     return fail(1, "no thread can be started: raise the limit of processes (ulimit -u) or of memory (ulimit -v)");
@@ -53,12 +72,14 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  fill_standard_streams();
   // A file that may not grow any more is an error with a message, as a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);
   if (sf::apps::needs_supervision(argc, argv))
     if (const std::optional<int> code = sf::apps::supervise()) return *code;
   sf::base::watch_plugin_calls();
   const int code = run(argc, argv);
-  sf::base::finish_plugin_calls();
+  sf::apps::remove_stop_handlers();
+  sf::base::finish_plugin_calls(code);
   return code;
 }

@@ -175,7 +175,7 @@ void Display::redraw() {
   std::string text = "\x1b[H\x1b[2J";  // home, and nothing left of the last one
   for (const maps::OccupancyGrid& grid : all) text += maps::text_within(grid, size.ws_col, down);
   print(text);
-  std::fflush(stdout);
+  flush_output();
 }
 
 void Display::print_maps() const {

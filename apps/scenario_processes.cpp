@@ -10,14 +10,17 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "apps/job_processes.h"
+#include "apps/memory_limit.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
+#include "apps/text.h"
 #include "base/bytes.h"
 #include "base/error.h"
 
@@ -171,6 +174,8 @@ class OwnProcesses {
       return scenarios::run_scenario(scenario, device, show, std::max(1u, cores / options_.jobs));
     } catch (const base::DeviceError&) {
       throw;
+    } catch (const std::bad_alloc&) {
+      result.failure = kNoMemory;
     } catch (const std::exception& error) {
       result.failure = error.what();
     }
@@ -181,7 +186,7 @@ class OwnProcesses {
   void show() {
     const std::size_t shown = shown_;
     for (; shown_ < results_.size() && results_[shown_]; ++shown_) show_(*results_[shown_]);
-    if (shown_ > shown) std::fflush(stdout);
+    if (shown_ > shown) flush_output();
   }
 
   const TestOptions& options_;

@@ -45,6 +45,15 @@ void install_stop_handlers() {
   if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // else `nohup` said not to
 }
 
+void remove_stop_handlers() {
+  if (stops != &own_count) return;
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    sigaction(number, nullptr, &action);
+    if (action.sa_handler == on_signal) std::signal(number, SIG_DFL);
+  }
+}
+
 void keep_pace(std::chrono::steady_clock::time_point start, double seconds) {
   using Clock = std::chrono::steady_clock;
   const auto due = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));

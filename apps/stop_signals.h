@@ -27,6 +27,10 @@ void count_stops(std::atomic<unsigned>* count);
 /// Takes the signals over, but for a SIGHUP that is ignored (nohup). To be called once, before the loop.
 void install_stop_handlers();
 
+/// To be called after the program's end, when nothing looks at `stop_requested` any more: the signals end the process,
+/// unless a parent counts them and does.
+void remove_stop_handlers();
+
 /// Sleeps until `seconds` [s] have passed since `start`, not at all when they have; ends within 50 ms of a request to
 /// stop.
 void keep_pace(std::chrono::steady_clock::time_point start, double seconds);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,11 +16,13 @@
 #include <string_view>
 
 #include "apps/descendants.h"
+#include "apps/memory_limit.h"
 #include "apps/progress_line.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/elapsed.h"
 #include "base/plugin_calls.h"
+#include "base/thread_pool.h"
 #include "cluster/ranks.h"
 
 namespace sf::apps {
@@ -31,7 +32,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::array kStops{SIGINT, SIGTERM, SIGHUP};
 constexpr double kForwardAfter = 0.1;  ///< [s] the terminal, or `timeout`, signals parent and child alike
-constexpr double kPatience = 0.4;      ///< [s] with a call that was under way when the stop was requested
+/// [s] with calls that go on after a request to stop; the rest of the limit is for the end of the process
+constexpr double kPatience = 0.8 * std::chrono::duration<double>(base::kStopLimit).count();
+constexpr timespec kTurn{0, 20'000'000};
+constexpr int kTurnsInCalls = 5;  ///< calls that are shorter than these are not what the process is kept by
 
 /// In memory that parent and child share.
 struct Page {
@@ -45,17 +49,6 @@ bool is_code(std::string_view argument) {
   const std::size_t colon = argument.find(':', slash == std::string_view::npos ? 0 : slash);
   argument = argument.substr(0, colon);
   return argument.ends_with(".so") || argument.ends_with(".py");
-}
-
-/// [byte] that addresses or data are limited to; nullopt: nothing is limited. Drivers crash where they end.
-std::optional<rlim_t> memory_limit() {
-  std::optional<rlim_t> least;
-  for (const auto resource : {RLIMIT_AS, RLIMIT_DATA}) {
-    rlimit limit{};
-    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) continue;
-    least = std::min(least.value_or(RLIM_INFINITY), limit.rlim_cur);
-  }
-  return least;
 }
 
 bool is_ignored(int signal) {
@@ -72,10 +65,10 @@ class Supervisor {
   int run() {
     int status = 0;
     for (pid_t ended = 0; ended == 0; ended = waitpid(child_, &status, WNOHANG)) {
-      const timespec turn{0, 20'000'000};
-      const int signal = sigtimedwait(&signals_, nullptr, &turn);
+      const int signal = sigtimedwait(&signals_, nullptr, &kTurn);
       if (std::find(kStops.begin(), kStops.end(), signal) != kStops.end()) note_stop(signal);
-      if (stops_ > 0) hurry();
+      if (stops_ > 0) pass_on();
+      if (!killed_) end_where_late();
     }
     descendants_.end();
     return code_of(status);
@@ -86,34 +79,48 @@ class Supervisor {
     // `nohup` ignores SIGHUP. Shells ignore SIGINT for commands in the background, which the program handles all the
     // same.
     if (signal == SIGHUP && is_ignored(signal)) return;
-    if (stops_++ == 0)
-      for (int i = 0; i < base::PluginCalls::kThreads; ++i) at_stop_[i] = page_.calls.calls[i].number;
+    ++stops_;
     last_ = signal;
     since_ = Clock::now();
   }
 
-  /// Passes on what the child did not get from elsewhere, and ends it where a call does not return.
-  void hurry() {
-    const double waited = base::seconds_since(since_);
-    if (waited > kForwardAfter && page_.stops < stops_ && forwarded_ < stops_) {
-      forwarded_ = stops_;
-      kill(child_, last_);
+  /// Passes on what the child did not get from elsewhere.
+  void pass_on() {
+    if (base::seconds_since(since_) <= kForwardAfter || page_.stops >= stops_ || forwarded_ >= stops_) return;
+    forwarded_ = stops_;
+    kill(child_, last_);
+  }
+
+  /// Ends the child where a call, or one after the other, keeps it from its end, and where a thread does.
+  void end_where_late() {
+    if (page_.calls.finished && !finished_at_) finished_at_ = Clock::now();
+    if (finished_at_) {
+      const double most = stops_ > 0 ? kPatience : base::kSecondsToEnd;
+      if (base::seconds_since(std::max(*finished_at_, since_)) < most) return;
+      return end(fmt::format("{}, {:g} s after {}: it ends with the process", base::goes_on(page_.calls), most,
+                             stops_ > 0 ? "the request to stop" : "the end of the program"));
     }
-    if (waited < kPatience || killed_) return;
-    for (int i = 0; i < base::PluginCalls::kThreads; ++i)
-      if (at_stop_[i] % 2 != 0 && page_.calls.calls[i].number == at_stop_[i]) killed_ = true;
-    if (!killed_) return;
+    const std::string calls = base::under_way(page_.calls);
+    turns_in_calls_ = calls.empty() ? 0 : turns_in_calls_ + 1;
+    if (stops_ == 0 || base::seconds_since(since_) < kPatience || turns_in_calls_ < kTurnsInCalls) return;
+    end(fmt::format("{} does not return, {:g} s after the request to stop: it ends without a report", calls,
+                    kPatience));
+  }
+
+  void end(const std::string& why) {
+    killed_ = true;
     Progress::clear();
-    print_message("{} does not return, {:g} s after the request to stop: it ends without a report",
-                  base::under_way(page_.calls), kPatience);
+    print_message("{}", why);
     kill(child_, SIGKILL);
   }
 
   int code_of(int status) const {
-    if (killed_) return EXIT_FAILURE;
+    const int own = page_.calls.code;  // 0 before its end
+    const int failed = own != EXIT_SUCCESS ? own : EXIT_FAILURE;
+    if (killed_) return failed;
     const bool by_signal = WIFSIGNALED(status);
     const int number = by_signal ? WTERMSIG(status) : WEXITSTATUS(status);
-    if (!by_signal && page_.calls.finished) return number;
+    if (!by_signal && page_.calls.finished) return own;
     const bool passed_on = stops_ > 0 && std::find(kStops.begin(), kStops.end(), number) != kStops.end();
     if (by_signal && (passed_on || number == SIGPIPE || number == SIGQUIT)) {  // as without a child
       std::signal(number, SIG_DFL);
@@ -125,24 +132,23 @@ class Supervisor {
     const std::string how = by_signal ? base::signal_text(number) : fmt::format("exit code {}", number);
     std::string what = base::blame(page_.calls, how);
     if (what.empty()) what = fmt::format("the process was ended ({}), outside of any call of a plug-in", how);
-    if (const std::optional<rlim_t> limit = memory_limit(); limit && by_signal)
-      what += fmt::format("; memory is limited to {} MiB (ulimit -v), which not all libraries survive: raise it",
-                          *limit >> 20);
+    if (by_signal) what += memory_limit_note();
     Progress::clear();
     print_message("{}", what);
-    return EXIT_FAILURE;
+    return failed;
   }
 
   pid_t child_;
   const Page& page_;
   sigset_t signals_;
   Descendants descendants_;
-  std::array<std::uint32_t, base::PluginCalls::kThreads> at_stop_{};  ///< numbers of calls
-  unsigned stops_ = 0;                                                ///< signals that came
-  unsigned forwarded_ = 0;                                            ///< of these
+  unsigned stops_ = 0;      ///< signals that came
+  unsigned forwarded_ = 0;  ///< of these
   int last_ = 0;
-  Clock::time_point since_;
-  bool killed_ = false;  ///< for a call that did not return
+  Clock::time_point since_;                       ///< when the last of them came
+  std::optional<Clock::time_point> finished_at_;  ///< when the program was seen at its end
+  int turns_in_calls_ = 0;                        ///< in a row, in each of which a call was under way
+  bool killed_ = false;                           ///< as it was late
 };
 
 }  // namespace
@@ -154,7 +160,8 @@ bool needs_supervision(int argc, const char* const* argv) {
   if (any([](std::string_view word) { return word == "--in-process"; })) return false;
   const char* const plugins = std::getenv("SENSORFARM_PLUGINS");
   // Files of experiments may name controllers, too; sweeps have processes of their own.
-  return memory_limit() || (plugins != nullptr && *plugins != '\0') || command == "experiment" || any(is_code);
+  return !memory_limit_note().empty() || (plugins != nullptr && *plugins != '\0') || command == "experiment" ||
+         any(is_code);
 }
 
 std::optional<int> supervise() {

@@ -12,8 +12,9 @@ bool needs_supervision(int argc, const char* const* argv);
 
 /// Continues in a child, with the same terminal, and passes signals and the exit code on. An end that is not the
 /// program's own is reported on standard error, as exit code 1: exit() and _exit() in a plug-in, crashes, SIGKILL.
-/// After a request to stop (SIGINT, SIGTERM, SIGHUP) a call that does not return for 0.4 s ends the child. Processes
-/// that it leaves running are killed. To be called before threads exist.
+/// After a request to stop (SIGINT, SIGTERM, SIGHUP) calls that go on ahead of base::kStopLimit end the child. So does
+/// a thread that goes on after the program's end, which is given base::kSecondsToEnd where no stop was requested.
+/// Processes that it leaves running are killed. To be called before threads exist.
 /// @return in the parent the exit code; none: this is the child, or no child could be started
 std::optional<int> supervise();
 

@@ -1,22 +1,40 @@
 #include "apps/text.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <iterator>
 
+#include "base/error.h"
 #include "base/printable.h"
 
 namespace sf::apps {
 
 namespace {
 bool muted = false;
+std::FILE* apart = nullptr;  ///< standard output of `keep_output_apart`
+
+std::FILE* output() { return apart != nullptr ? apart : stdout; }
 }  // namespace
+
+void keep_output_apart() {
+  const int own = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  const bool is_apart = own >= 0 && dup2(STDERR_FILENO, STDOUT_FILENO) >= 0 && (apart = fdopen(own, "w")) != nullptr;
+  if (!is_apart)
+    throw base::InputError(std::string("standard output cannot be kept for JSON: ") + std::strerror(errno));
+}
+
+bool flush_output() { return std::fflush(output()) == 0 && std::ferror(output()) == 0; }
 
 void mute(bool on) { muted = on; }
 
 void print(const std::string& text) {
-  if (!muted) std::fputs(text.c_str(), stdout);
+  if (!muted) std::fputs(text.c_str(), output());
 }
 
 void print_message(const std::string& text) {

@@ -12,6 +12,12 @@
 
 namespace sf::apps {
 
+/// From now on standard output is `print`'s alone: what others write there, such as controllers that print, goes to
+/// standard error. For output that programs read. To be called before anything is written.
+void keep_output_apart();
+/// Writes what `print` has written so far. @return false when some of it could not be written
+bool flush_output();
+
 /// From now on `print` and `print_message` do nothing: of several ranks, one speaks.
 void mute(bool on);
 /// To standard output.

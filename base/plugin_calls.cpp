@@ -85,6 +85,13 @@ bool note_end() {
   return true;
 }
 
+std::string late_line;  ///< made before it is needed: the heap may be locked then
+
+void on_late(int) {
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, late_line.data(), late_line.size());
+  _exit(own_calls.code != EXIT_SUCCESS ? own_calls.code.load() : EXIT_FAILURE);
+}
+
 void on_exit_called(int code, void*) {
   if (!note_end()) return;
   std::fflush(nullptr);
@@ -134,18 +141,35 @@ std::string time_text(const PluginCalls::Call& call) {
 
 std::string who_of(const PluginCalls::Call& call) { return one_line({call.who, strnlen(call.who, sizeof call.who)}); }
 
-/// Blamed calls, else all under way, with `what` behind their names and the time behind that.
-std::string named(const PluginCalls& calls, const std::string& what) {
-  const int blamed = calls.blamed;
-  std::vector<const PluginCalls::Call*> suspects;
+using Suspects = std::vector<const PluginCalls::Call*>;
+
+template <class Test>
+Suspects suspects_of(const PluginCalls& calls, Test&& test) {
+  Suspects suspects;
   for (int i = 0; i < PluginCalls::kThreads; ++i)
-    if (i == blamed || (blamed == kNone && is_under_way(calls.calls[i]))) suspects.push_back(&calls.calls[i]);
-  if (suspects.empty()) return "";
+    if (test(i)) suspects.push_back(&calls.calls[i]);
+  return suspects;
+}
+
+/// @param suspects not empty
+std::string names_of(const Suspects& suspects) {
   constexpr std::size_t kMost = 4;
   std::string names = who_of(*suspects[0]);
   for (std::size_t i = 1; i < std::min(suspects.size(), kMost); ++i) names += " or " + who_of(*suspects[i]);
   if (suspects.size() > kMost) names += fmt::format(" or one of {} others", suspects.size() - kMost);
-  return names + what + time_text(*suspects[0]);
+  return names;
+}
+
+/// Blamed calls, else all under way, with `what` behind their names and the time behind that.
+std::string named(const PluginCalls& calls, const std::string& what) {
+  const int blamed = calls.blamed;
+  const Suspects suspects =
+      suspects_of(calls, [&](int i) { return i == blamed || (blamed == kNone && is_under_way(calls.calls[i])); });
+  return suspects.empty() ? "" : names_of(suspects) + what + time_text(*suspects[0]);
+}
+
+Suspects called(const PluginCalls& calls) {
+  return suspects_of(calls, [&](int i) { return calls.calls[i].number > 0; });
 }
 
 }  // namespace
@@ -178,7 +202,20 @@ void renew_plugin_watch() {
   if (is_watching) on_exit(on_exit_called, nullptr);
 }
 
-void finish_plugin_calls() { shared_calls.load()->finished = true; }
+void finish_plugin_calls(int code) {
+  PluginCalls& calls = *shared_calls.load();
+  calls.code = code;
+  calls.finished = true;
+  if (&calls != &own_calls || called(calls).empty()) return;
+  late_line = fmt::format("sensorfarm: {}, {:g} s after the end of the program\n", goes_on(calls), kSecondsToEnd);
+  std::signal(SIGALRM, on_late);
+  alarm(static_cast<unsigned>(kSecondsToEnd));
+}
+
+std::string goes_on(const PluginCalls& calls) {
+  const Suspects suspects = called(calls);
+  return fmt::format("a thread of {} goes on", suspects.empty() ? "a plug-in" : names_of(suspects));
+}
 
 std::string under_way(const PluginCalls& calls) { return named(calls, ""); }
 

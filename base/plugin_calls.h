@@ -15,6 +15,8 @@
 namespace sf::base {
 
 /// The calls of one process. Its parent can read them where they are in shared memory.
+inline constexpr double kSecondsToEnd = 10.0;  ///< for exit handlers: those of Python wait for its threads
+
 struct PluginCalls {
   static constexpr int kThreads = 64;
   struct Call {
@@ -25,6 +27,7 @@ struct PluginCalls {
   Call calls[kThreads];               ///< per living thread that has made one; more threads are not seen
   std::atomic<int> blamed{-1};        ///< row of the call that called exit() or got a fatal signal; -1: none
   std::atomic<bool> finished{false};  ///< the program has come to its own end
+  std::atomic<int> code{0};           ///< [1] exit code of that end, whatever exit handlers make of it
 };
 
 /// One call, on the thread that makes it. Within another call it has no effect. Where the call returns in a copy of the
@@ -51,8 +54,9 @@ void watch_plugin_calls();
 /// Without `watch_plugin_calls` it does nothing.
 void renew_plugin_watch();
 
-/// From now on exit() is the program's own.
-void finish_plugin_calls();
+/// From now on exit() is the program's own. Without a parent that watches, a process whose plug-ins were called and
+/// that goes on for kSecondsToEnd ends with one line. @param code exit code
+void finish_plugin_calls(int code);
 
 /// Names the call that ended the process: "controller 'a' of robot 'b' ended the process (exit code 0) at 3.200 s
 /// simulated". Empty: no call was under way.
@@ -61,6 +65,10 @@ std::string blame(const PluginCalls& calls, const std::string& how);
 
 /// Calls under way: "controller 'a' of robot 'b' at 3.200 s simulated". Empty: none.
 std::string under_way(const PluginCalls& calls);
+
+/// "a thread of controller 'a' of robot 'b' goes on": plug-ins that were called last, one of which keeps the process
+/// from its end.
+std::string goes_on(const PluginCalls& calls);
 
 /// "signal 11, Segmentation fault"
 std::string signal_text(int signal);

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/instrumented.h"
 
@@ -227,6 +228,91 @@ TEST(OwnProcesses, TheFirstRequestToStopEndsACallThatDoesNotReturn) {
     }
 }
 
+/// One that began after the request is as late.
+TEST(OwnProcesses, ARequestToStopEndsCallsThatBeginLater) {
+  const Bench bench;
+  const std::string two = bench.folder.write(
+      "two.world", std::string(kHall) + "position( name \"r1\" pose [8 0 0 0] size [0.3 0.3 0.1] )\n");
+  Words words = bench.run("follow");
+  words[1] = two;
+  const Outcome outcome = run_program(words);
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "of robot 'r1' at 1.000 s simulated does not return")) << outcome.err;
+}
+
+/// An exit handler that waits for a thread, as Python's does: the report is there, and a request to stop ends it.
+TEST(OwnProcesses, AThreadThatGoesOnIsEndedByARequestToStop) {
+  const Bench bench;
+  for (const bool here : {false, true}) {
+    const std::string report = bench.folder.path(here ? "here" : "child");
+    Program program(bench.run("linger", here ? Words{"--in-process"} : Words{}), {}, report);
+    for (int i = 0; i < 12'000 && program.running() && read_file(report).empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_TRUE(has(read_file(report), "robots"));
+    program.signal(SIGINT);
+    const Outcome outcome = program.wait();
+    if (here) continue;  // as any program: by the signal, or with a code where it came before the end
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_TRUE(has(outcome.err, "a thread of controller 'test-ends' of robot 'r0' goes on")) << outcome.err;
+  }
+}
+
+/// Without one, too, after the seconds that exit handlers are given; all three wait at once.
+TEST(OwnProcesses, AThreadThatGoesOnIsEnded) {
+  const Bench bench;
+  Program child(bench.run("linger")), here(bench.run("linger", {"--in-process"})),
+      test({"test", bench.scenario("a", "linger")});
+  for (Program* program : {&child, &here, &test}) {
+    const Outcome outcome = program->wait();
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_TRUE(has(outcome.out + outcome.err, "a thread of controller 'test-ends' of robot 'r0' goes on"))
+        << outcome.out << outcome.err;
+  }
+}
+
+/// Exit handlers of plug-ins do not turn a failure into success, nor into an error of another kind.
+TEST(OwnProcesses, ExitHandlersDoNotChangeTheCode) {
+  const Bench bench;
+  const Outcome outcome = run_program(bench.run("cover"));
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "failed at 1.000 s: out of luck")) << outcome.err;
+  const Outcome tested = run_program({"test", bench.scenario("a", "cover")});
+  EXPECT_EQ(tested.code, 1) << tested.err;
+  EXPECT_TRUE(has(tested.out, "failed at 1.000 s: out of luck")) << tested.out;
+  const Outcome refused = run_program({"test", bench.scenario("b", "cover", ", at_once = true")});
+  EXPECT_EQ(refused.code, 2) << refused.out;
+  EXPECT_TRUE(has(refused.err, "out of luck")) << refused.err;
+}
+
+/// Standard output is the report's alone.
+TEST(OwnProcesses, WhatControllersPrintIsNoPartOfJson) {
+  const Bench bench;
+  for (const Words& more : {Words{"--json"}, Words{"--json", "--in-process"}}) {
+    const Outcome outcome = run_program(bench.run("print", more));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(Json(outcome.out).number("/robots"), 1.0) << outcome.out;
+    EXPECT_TRUE(has(outcome.err, "a controller prints")) << outcome.err;
+  }
+  EXPECT_TRUE(has(run_program(bench.run("print")).out, "a controller prints"));
+}
+
+/// Files are not opened in the place of streams that are closed.
+TEST(OwnProcesses, ClosedStandardStreamsStayClosed) {
+  const Bench bench;
+  const std::string junit = bench.folder.path("out.xml");
+  for (const char* closed : {"<&-", ">&-", "2>&-", "<&- >&- 2>&-"}) {
+    std::filesystem::remove(junit);
+    const Outcome outcome = Program({"-c", std::string("exec \"$0\" \"$@\" ") + closed, SF_PROGRAM, "test",
+                                     bench.scenario("a", ""), "--junit", junit},
+                                    {}, "", "", "sh")
+                                .wait();
+    const bool has_output = !has(std::string(" ") + closed, " >&-");
+    EXPECT_EQ(outcome.code, has_output ? 0 : 2) << closed << outcome.err;
+    EXPECT_TRUE(has(read_file(junit), "<testsuite name=\"a\" tests=\"1\" failures=\"0\"")) << closed;
+    if (std::string(closed) == ">&-") EXPECT_TRUE(has(outcome.err, "standard output cannot be written")) << outcome.err;
+  }
+}
+
 /// As shells start commands in the background, of which scripts end some by `kill -INT`.
 TEST(OwnProcesses, SigintIsTakenWhereItWasIgnored) {
   const Bench bench;
@@ -280,6 +366,24 @@ TEST(OwnProcesses, ALimitOfMemoryIsStated) {
     if (outcome.code == 0) continue;
     EXPECT_TRUE(has(outcome.err, "ulimit -v")) << kilobytes << outcome.err;
   }
+}
+
+/// Tests and sweeps state it, too, for the scenario or job that it cost.
+TEST(OwnProcesses, ALimitOfMemoryIsStatedOfChildren) {
+  if (instrumented()) GTEST_SKIP() << "sanitizers need all addresses";
+  const Folder folder;
+  const std::string scenario = folder.write(
+      "a.toml", "world = \"" + our_world("cave.world") + "\"\nrobots = 50\nduration = 0.1\n[expect]\ncontacts = 99\n");
+  const std::string sweep = folder.write("s.toml", "scenario = \"a.toml\"\nseeds = 1\n");
+  for (const char* kilobytes : {"200000", "240000", "262144", "280000"})
+    for (const Words& words : {Words{"test", scenario}, Words{"sweep", sweep, "-o", folder.path(kilobytes)}}) {
+      Words all{"-c", std::string("ulimit -v ") + kilobytes + "; exec \"$0\" \"$@\"", SF_PROGRAM};
+      all.insert(all.end(), words.begin(), words.end());
+      const Outcome outcome = Program(all, {}, "", "", "sh").wait();
+      EXPECT_EQ(outcome.signal, 0) << kilobytes << words[0];
+      if (outcome.code != 0)
+        EXPECT_TRUE(has(outcome.out + outcome.err, "ulimit -v")) << kilobytes << outcome.out << outcome.err;
+    }
 }
 
 TEST(OwnProcesses, LibrariesThatAreCutOffAreRefused) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
@@ -55,6 +56,19 @@ void leave_running(const std::string& file, bool away) {
   for (;;) pause();
 }
 
+void forever() {
+  while (yes) sleep(60);  // signals interrupt it
+}
+
+/// The first call asks for a stop, and returns when the parent has seen it; the next one does not return.
+void follow_a_stop() {
+  static bool asked = false;
+  if (asked) forever();
+  asked = true;
+  kill(getppid(), SIGINT);
+  usleep(50'000);
+}
+
 void end_by(const std::string& how, const std::string& file) {
   const std::map<std::string, void (*)()> ways{
       {"exit 0", [] { std::exit(0); }},
@@ -74,12 +88,17 @@ void end_by(const std::string& how, const std::string& file) {
        [] {
          while (yes) continue;
        }},
-      {"sleep",
-       [] {
-         while (yes) sleep(60);  // signals interrupt it
-       }},
+      {"sleep", [] { forever(); }},
       {"number", [] { throw 7; }},
       {"text", [] { throw std::runtime_error("\x1b[2Jred\x07\nsensorfarm: all is well"); }},
+      {"print", [] { std::puts("a controller prints"), std::fflush(stdout); }},
+      {"linger", [] { std::atexit([] { forever(); }); }},
+      {"cover",
+       [] {
+         std::atexit([] { _exit(0); });
+         throw std::runtime_error("out of luck");
+       }},
+      {"follow", [] { follow_a_stop(); }},
       {"close", [] { close(0), close(1), close(2); }},
       {"chdir", [] { static_cast<void>(chdir("/") == 0); }},
       {"copy", [] { static_cast<void>(fork()); }},
