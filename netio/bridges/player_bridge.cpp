@@ -4,8 +4,10 @@
 
 namespace sf::bridges {
 
-PlayerBridge::PlayerBridge(const Scene& scene, const netio::Endpoint& bind)
-    : devices_(scene.world, scene.sensor_set), exchange_(scene, devices_), server_(scene, devices_, exchange_, bind) {}
+PlayerBridge::PlayerBridge(const Scene& scene, const netio::Endpoint& bind, double silent, int log_descriptor)
+    : devices_(scene.world, scene.sensor_set),
+      exchange_(scene, devices_),
+      server_(scene, devices_, exchange_, bind, silent, log_descriptor) {}
 
 void PlayerBridge::publish(const base::TickRecord& tick, const RunState& state) {
   exchange_.publish(tick, state);

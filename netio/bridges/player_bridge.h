@@ -13,9 +13,10 @@ namespace sf::bridges {
 /// `publish` copies the readings that clients want.
 class PlayerBridge : public Bridge {
  public:
-  /// @param bind see player::Server
+  /// @param bind, silent, log_descriptor see player::Server
   /// @throws base::InputError when a port is in use
-  PlayerBridge(const Scene& scene, const netio::Endpoint& bind);
+  PlayerBridge(const Scene& scene, const netio::Endpoint& bind, double silent = player::kSilent,
+               int log_descriptor = 2);
 
   void publish(const base::TickRecord& tick, const RunState& state) override;
   void publish(const RunState& state) override;

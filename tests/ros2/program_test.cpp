@@ -47,6 +47,18 @@ TEST(Ros2Program, ARunIsSeenDrivenAndPaused) {
   EXPECT_EQ(run.wait().code, 0);
 }
 
+/// Cyclone DDS crashes where it opens no more. Below 8, other parts state it.
+TEST(Ros2Program, TooFewDescriptorsAreStated) {
+  for (const char* most : {"8", "9", "10", "11", "12", "13", "16", "20"}) {
+    const Outcome outcome = Program({"-c", std::string("ulimit -n ") + most + "; exec \"$0\" \"$@\"", SF_PROGRAM, "run",
+                                     our_world("rooms.world"), "--duration", "0.1", "--ros2", domain_of_program()},
+                                    kHere, "", "", "sh")
+                                .wait();
+    EXPECT_EQ(outcome.signal, 0) << most << outcome.err;
+    if (outcome.code != 0) EXPECT_NE(outcome.err.find("ulimit -n"), std::string::npos) << most << outcome.err;
+  }
+}
+
 TEST(Ros2Program, AServiceAnswersQuestions) {
   const std::string domain = domain_of_program();
   Program serve({"serve", our_world("rooms.world"), "--port", "0", "--ros2", domain}, kHere);

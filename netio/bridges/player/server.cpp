@@ -1,5 +1,7 @@
 #include "netio/bridges/player/server.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -17,13 +19,16 @@ constexpr double kQuiet = 1.0;                        // [s] after which a conne
 
 }  // namespace
 
-Server::Server(const Scene& scene, const Devices& devices, Exchange& exchange, const netio::Endpoint& bind)
+Server::Server(const Scene& scene, const Devices& devices, Exchange& exchange, const netio::Endpoint& bind,
+               double silent, int log_descriptor)
     : scene_(scene),
       devices_(devices),
       exchange_(exchange),
       requester_(scene, devices, exchange),
       users_(devices.rows().size()),
-      next_key_(kFirstConnection) {
+      next_key_(kFirstConnection),
+      silent_(silent),
+      log_(log_descriptor) {
   open(bind);
   exchange_.look(snapshot_);
   thread_ = std::thread([this] { run(); });
@@ -90,6 +95,7 @@ void Server::accept_all(std::size_t port) {
     if (socket.descriptor() < 0) return;
     if (connections_.size() >= kMostClients && !make_room(peer.address)) {
       ++refused_;
+      note_full(peer);
       continue;
     }
     ++clients_;
@@ -101,8 +107,8 @@ void Server::accept_all(std::size_t port) {
 }
 
 /// Ends the connection that has been silent for longest among those that have opened no device, else among those of
-/// the host with most connections, unless that host has no more than `host` would have. Connections that were heard in
-/// the last second stay.
+/// the host with most connections; where that host has no more than `host` would have, among all, of those that have
+/// been silent for `silent_`. Connections that were heard in the last second stay.
 bool Server::make_room(std::uint32_t host) {
   std::map<std::uint32_t, std::size_t> counts;
   for (const auto& [key, connection] : connections_) ++counts[connection.host()];
@@ -113,15 +119,32 @@ bool Server::make_room(std::uint32_t host) {
   for (const bool open : {false, true}) {
     for (auto at = connections_.begin(); at != connections_.end(); ++at) {
       const bool is_open = !at->second.subscriptions().empty();
-      if (is_open != open || (open && (!is_greedy || at->second.host() != most->first))) continue;
+      if (is_open != open || (open && is_greedy && at->second.host() != most->first)) continue;
       if (oldest == connections_.end() || at->second.heard() < oldest->second.heard()) oldest = at;
     }
     if (oldest != connections_.end()) break;
   }
-  if (oldest == connections_.end() || base::seconds_since(oldest->second.heard()) < kQuiet) return false;
+  if (oldest == connections_.end()) return false;
+  const bool is_open = !oldest->second.subscriptions().empty();
+  if (base::seconds_since(oldest->second.heard()) < (is_open && !is_greedy ? std::max(kQuiet, silent_) : kQuiet))
+    return false;
   ++evicted_;
   end(oldest->first);
   return true;
+}
+
+/// The first one, then every ten seconds their number while more come.
+void Server::note_full(const netio::Endpoint& peer) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_line_) return;
+  next_line_ = now + std::chrono::seconds(10);
+  const std::uint64_t count = refused_ - std::exchange(stated_, refused_.load());
+  log_.write(
+      fmt::format("Player: {} refused, the last from {}: {} are connected, the most at a time, of which none has "
+                  "been silent for long enough ({:g} s) to make room",
+                  count == 1 ? "1 program" : fmt::format("{} programs", count), netio::text(peer), connections_.size(),
+                  silent_),
+      std::chrono::nanoseconds(now.time_since_epoch()).count());
 }
 
 void Server::receive(std::uint64_t key) {

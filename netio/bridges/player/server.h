@@ -2,6 +2,7 @@
 // The Player server: its ports, its clients and their messages, on a thread of its own.
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <thread>
@@ -12,12 +13,14 @@
 #include "netio/bridges/player/exchange.h"
 #include "netio/bridges/player/requests.h"
 #include "netio/bridges/player/xdr.h"
+#include "netio/rate_limited_log.h"
 #include "netio/tcp.h"
 
 namespace sf::bridges::player {
 
 inline constexpr std::size_t kMostClients = 64;
 inline constexpr std::size_t kMostRobotPorts = 256;
+inline constexpr double kSilent = 10.0;  ///< [s] without a message after which any connection may make room
 
 struct ServerCounts {
   std::uint64_t clients = 0;    ///< accepted since the start
@@ -30,8 +33,10 @@ class Server {
  public:
   /// All robots are at the first port, robot k from 1 on alone at the k-th port after it, up to kMostRobotPorts.
   /// @param bind its port is 0: any free ones in a row
+  /// @param silent [s] in place of kSilent
   /// @throws base::InputError when a port is in use
-  Server(const Scene& scene, const Devices& devices, Exchange& exchange, const netio::Endpoint& bind);
+  Server(const Scene& scene, const Devices& devices, Exchange& exchange, const netio::Endpoint& bind,
+         double silent = kSilent, int log_descriptor = 2);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
@@ -54,6 +59,7 @@ class Server {
   void run();
   void accept_all(std::size_t port);
   bool make_room(std::uint32_t host);
+  void note_full(const netio::Endpoint& peer);
   void receive(std::uint64_t key);
   void publish();
   void publish(Connection& connection);
@@ -85,6 +91,10 @@ class Server {
   std::atomic<std::uint64_t> clients_ = 0, refused_ = 0, evicted_ = 0, malformed_ = 0;
   std::atomic<bool> watched_ = false;  ///< by a client
   std::atomic<bool> stop_ = false;
+  const double silent_;
+  netio::RateLimitedLog log_;
+  std::chrono::steady_clock::time_point next_line_;  ///< of a client that is refused
+  std::uint64_t stated_ = 0;                         ///< of `refused_`, by the last line
   std::thread thread_;
 };
 

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdio>
 #include <memory>
 #include <random>
 #include <thread>
@@ -221,6 +224,33 @@ TEST(PlayerHostile, OneHostDoesNotTakeAllPlaces) {
   EXPECT_EQ(other.banner().size(), kBannerBytes);
   EXPECT_EQ(run.bridge.counts().evicted, 1u);
   EXPECT_EQ(run.bridge.counts().refused, 1u);
+}
+
+/// Nor do silent programs of one host lock its others out for long: the one that was silent for longest makes room, and
+/// until then one line states the reason.
+TEST(PlayerHostile, SilentProgramsOfOneHostMakeRoom) {
+  PlayerRun run;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> log(std::tmpfile(), std::fclose);
+  PlayerBridge bridge(run.scene, {}, 0.0, fileno(log.get()));
+  const std::uint16_t port = bridge.endpoint().port;
+  std::vector<std::unique_ptr<TestClient>> silent;
+  for (std::size_t i = 0; i < kMostClients; ++i) {
+    silent.push_back(std::make_unique<TestClient>(port));
+    silent.back()->banner(), silent.back()->open(kPosition);
+  }
+  std::unique_ptr<TestClient> late;
+  std::size_t refused = 0;
+  for (; refused < 600 && bridge.counts().evicted == 0; ++refused) {
+    late = std::make_unique<TestClient>(port);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  EXPECT_EQ(late->banner().size(), kBannerBytes);
+  EXPECT_TRUE(silent.front()->receive().ended);
+  std::rewind(log.get());
+  std::array<char, 4096> text{};
+  const std::string lines(text.data(), std::fread(text.data(), 1, text.size(), log.get()));
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), refused > 1 ? 1 : 0) << lines;
+  if (refused > 1) EXPECT_NE(lines.find("1 program refused, the last from 127.0.0.1:"), std::string::npos) << lines;
 }
 
 TEST(PlayerHostile, SlowClientsSkipAhead) {
