@@ -66,6 +66,7 @@ PacketStatus Inbox::check(Packet& packet, std::span<const std::uint8_t> bytes, c
   PacketStatus status = check_id(packet.header);
   if (status != PacketStatus::accepted) return status;
   const bool proven = is_proven(packet.header, source);
+  packet.unchecked = has_signature(bytes) && !peers_.has_key(claim_of(packet.header));
   status = check_peer(packet.header, bytes, source, proven, now);
   if (status != PacketStatus::accepted) return status;
   return proven ? admit(packet, source, now) : PacketStatus::unproven;
@@ -132,6 +133,8 @@ PacketStatus Inbox::check_peer(const Header& header, std::span<const std::uint8_
 bool Inbox::is_notable(PacketStatus status, const Packet& packet) {
   constexpr std::uint64_t kClockTrouble = 1'000'000;  // [us]
   switch (status) {
+    case PacketStatus::accepted:
+      return packet.unchecked;
     case PacketStatus::unproven:
     case PacketStatus::wrong_source:
     case PacketStatus::not_signed:

@@ -57,17 +57,17 @@ class Inbox {
   explicit Inbox(const InboxOptions& options);
 
   /// Reads all waiting datagrams. Calls `take(const Packet&)` for each accepted one, in order of arrival, and
-  /// `on_rejected(PacketStatus, const Packet&, const Endpoint& source)` for each valid one that is unproven, from the
-  /// wrong source, or refused for its signature; not for copies of signed packets, nor where too many signatures are
-  /// doubtful to be checked.
+  /// `on_notable(PacketStatus, const Packet&, const Endpoint& source)` for each valid one that is unproven, from the
+  /// wrong source, or refused for its signature, and for accepted ones that are `unchecked`; not for copies of signed
+  /// packets, nor where too many signatures are doubtful to be checked.
   /// @return number of datagrams read
-  template <class Take, class OnRejected>
-  std::size_t receive(std::int64_t now, Take&& take, OnRejected&& on_rejected) {
+  template <class Take, class OnNotable>
+  std::size_t receive(std::int64_t now, Take&& take, OnNotable&& on_notable) {
     Packet packet;
     return batch_.drain(socket_, kMaxPerReceive, [&](std::span<const std::uint8_t> bytes, const Endpoint& source) {
       const PacketStatus status = accept(bytes, source, now, packet);
       if (status == PacketStatus::accepted) take(packet);
-      if (is_notable(status, packet)) on_rejected(status, packet, source);
+      if (is_notable(status, packet)) on_notable(status, packet, source);
     });
   }
 
@@ -77,7 +77,7 @@ class Inbox {
   }
 
   /// Validates and counts one datagram from `source`. Fills `packet` when the status is accepted, or one that
-  /// `on_rejected` is called for (undefined otherwise). `receive` calls this for each datagram of the socket.
+  /// `on_notable` is called for (undefined otherwise). `receive` calls this for each datagram of the socket.
   PacketStatus accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet);
 
   /// Renews the binding of `robot` to its last sender, where `source` is that one.
@@ -97,8 +97,8 @@ class Inbox {
   /// is_active, and the robot's last SUBSCRIBE since then requests the states of other robots.
   bool wants_neighbours(std::uint32_t robot, std::int64_t now) const;
 
-  /// Encodes the REFUSAL for a packet of a robot or light whose signature is refused, except LEAVE: unsigned, and no
-  /// larger than the packet. @return false if none is due or the limit of refusals is reached
+  /// Encodes the REFUSAL for a packet of a robot or light whose signature or source is refused, except LEAVE: unsigned,
+  /// and no larger than the packet. @return false if none is due or the limit of refusals is reached
   bool refuse(const Packet& packet, PacketStatus reason, std::int64_t now, base::Bytes& out);
   /// See `SignatureChecker::lag`, of the last checked packet with this claim.
   std::uint64_t lag(const Claim& claim) { return peers_.lag(claim); }

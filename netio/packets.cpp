@@ -22,7 +22,8 @@ constexpr std::uint32_t kPresentBit = 1;
 constexpr std::uint16_t kStaleBit = 1;
 constexpr std::int64_t kAgeUnit = 1000;  ///< [ns]
 /// By number, from 1.
-constexpr std::array kRefusals{PacketStatus::not_signed, PacketStatus::wrong_signature, PacketStatus::replayed};
+constexpr std::array kRefusals{PacketStatus::not_signed, PacketStatus::wrong_signature, PacketStatus::replayed,
+                               PacketStatus::wrong_source};
 
 PacketStatus check(std::span<const double> values, double limit) {
   for (const double value : values) {

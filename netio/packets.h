@@ -131,10 +131,10 @@ struct Challenge {
   std::uint32_t token = 0;
 };
 
-/// Unsigned answer of the farm to a packet whose signature it refuses, for messages to users only: anyone may have sent
-/// it. The header's time is the farm's Unix time.
+/// Unsigned answer of the farm to a packet whose signature or address it refuses, for messages to users only: anyone
+/// may have sent it. The header's time is the farm's Unix time.
 struct Refusal {
-  PacketStatus reason = PacketStatus::not_signed;  ///< or wrong_signature, replayed
+  PacketStatus reason = PacketStatus::not_signed;  ///< or wrong_signature, replayed, wrong_source
 };
 
 inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;             ///< of a complete V2V packet
@@ -157,6 +157,7 @@ struct Packet {
                State, Values, Refusal>
       body;
   bool late = false;  ///< a state whose sequence is not newer than the last of its sender (`InboxOptions::take_late`)
+  bool unchecked = false;  ///< it has a signature, and the farm no key to check it with (set by Inbox)
 };
 
 /// Decodes any bytes. Fills `packet` only when the result is PacketStatus::accepted.

@@ -66,12 +66,15 @@ bool ReplayWindow::admit(std::uint64_t counter) {
   return true;
 }
 
-PacketStatus SignatureChecker::verify(std::span<const std::uint8_t> packet) const {
+bool has_signature(std::span<const std::uint8_t> packet) {
   std::uint16_t trailer = 0;
-  if (packet.size() < kHeaderBytes + kSignatureBytes) return PacketStatus::not_signed;
+  if (packet.size() < kHeaderBytes + kSignatureBytes) return false;
   std::memcpy(&trailer, packet.data() + kTrailerAt, sizeof trailer);
-  if (trailer != kTrailer) return PacketStatus::not_signed;
+  return trailer == kTrailer;
+}
 
+PacketStatus SignatureChecker::verify(std::span<const std::uint8_t> packet) const {
+  if (!has_signature(packet)) return PacketStatus::not_signed;
   const std::size_t covered = packet.size() - sizeof(TruncatedHmac);
   const TruncatedHmac expected = hmac_sha256(key_, packet.first(covered));
   if (sodium_memcmp(expected.data(), packet.data() + covered, expected.size()) != 0)

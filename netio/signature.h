@@ -66,6 +66,9 @@ class PacketSigner {
   std::uint64_t next_;
 };
 
+/// The packet states that it ends with a signature; whose and whether it is right remains open.
+bool has_signature(std::span<const std::uint8_t> packet);
+
 /// A key with the counters that came under it.
 class SignatureChecker {
  public:

@@ -25,8 +25,20 @@ std::string peer_text(const Claim& claim, const std::string& name) {
   return "START";
 }
 
+bool is_refusal(PacketStatus reason) {
+  return reason == PacketStatus::not_signed || reason == PacketStatus::wrong_signature ||
+         reason == PacketStatus::replayed || reason == PacketStatus::wrong_source;
+}
+
 /// @param lag [us] of the counter
 std::string reason_text(PacketStatus reason, std::uint64_t lag) {
+  if (reason == PacketStatus::accepted)
+    return "whose signature is not checked: --peers has no key for it here, and the sender uses one; start `serve` "
+           "with "
+           "--peers and that key, or the sender without";
+  if (reason == PacketStatus::wrong_source)
+    return "from another address than --peers has for it here, or than another sender with this id has until it leaves "
+           "or is silent for 2 s";
   if (reason == PacketStatus::not_signed)
     return "without a signature: --peers has a key for it here, and the sender uses none (start it with --peers, too)";
   if (reason == PacketStatus::wrong_signature)
@@ -48,6 +60,11 @@ std::string trouble_text(const SignatureTrouble& trouble, const std::string& who
                  : fmt::format("does not sign its packets: start `serve` with --peers and the key of {}, too", who);
     case PacketStatus::wrong_signature:
       return fmt::format("has another key for {} than --peers here: compare both files", who);
+    case PacketStatus::wrong_source:
+      return fmt::format(
+          "takes {} from another address: --peers has one for it there, or another sender has this id until it leaves "
+          "or is silent for 2 s",
+          who);
     default:
       return trouble.of_farm
                  ? fmt::format(
@@ -60,22 +77,28 @@ std::string trouble_text(const SignatureTrouble& trouble, const std::string& who
 
 void SignatureTroubleLog::note(PacketStatus reason, const Packet& packet, const Endpoint& who, const std::string& name,
                                std::int64_t now, Inbox& inbox, Outbox& answers, RateLimitedLog& log) {
-  if (reason != PacketStatus::not_signed && reason != PacketStatus::wrong_signature && reason != PacketStatus::replayed)
-    return;
+  if (!is_refusal(reason) && !packet.unchecked) return;
+  if (!is_refusal(reason)) reason = PacketStatus::accepted;
+  answer(reason, packet, who, now, inbox, answers);
   const Claim claim = claim_of(packet.header);
   Row& row = rows_[{claim.kind, claim.id, reason}];
   ++row.count;
-  if (now >= row.next_answer && inbox.refuse(packet, reason, now, answer_)) {
-    row.next_answer = now + kSecond / 2;
-    answers.queue(who, answer_);
-  }
   if (now < row.next_line) return;
   row.next_line = now + 10 * kSecond;
-  log.write(fmt::format("{} at {}: {} dropped, {}", peer_text(claim, name), text(who),
+  log.write(fmt::format("{} at {}: {}{}, {}", peer_text(claim, name), text(who),
                         row.count == 1 ? "1 packet" : fmt::format("{} packets", row.count),
-                        reason_text(reason, inbox.lag(claim))),
+                        is_refusal(reason) ? " dropped" : "", reason_text(reason, inbox.lag(claim))),
             now);
   row.count = 0;
+}
+
+void SignatureTroubleLog::answer(PacketStatus reason, const Packet& packet, const Endpoint& who, std::int64_t now,
+                                 Inbox& inbox, Outbox& answers) {
+  const Claim claim = claim_of(packet.header);
+  Row& row = rows_[{claim.kind, claim.id, reason}];
+  if (!is_refusal(reason) || now < row.next_answer || !inbox.refuse(packet, reason, now, answer_)) return;
+  row.next_answer = now + kSecond / 2;
+  answers.queue(who, answer_);
 }
 
 }  // namespace sf::netio

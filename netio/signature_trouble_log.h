@@ -1,6 +1,6 @@
 #pragma once
 // Reports peers whose signatures the farm refuses: with another key, without one, or with a clock that is
-// behind.
+// behind; those whose signatures it has no key for; and those at another address than is expected of them.
 
 #include <cstdint>
 #include <map>
@@ -21,13 +21,15 @@ std::string trouble_text(const SignatureTrouble& trouble, const std::string& who
 /// One thread.
 class SignatureTroubleLog {
  public:
-  /// Logs the first packet of a peer and reason, then every ten seconds their number while more come. Answers a robot
-  /// or light by REFUSAL, at most twice a second.
-  /// @param reason not_signed, wrong_signature or replayed; others have no effect
+  /// Logs the first packet of a peer and reason, then every ten seconds their number while more come, and answers it.
+  /// @param reason not_signed, wrong_signature, replayed or wrong_source; others: where the packet is `unchecked`
   /// @param name of the mover or light, in messages; may be empty
   /// @param now [ns] of the inbox' clock
   void note(PacketStatus reason, const Packet& packet, const Endpoint& who, const std::string& name, std::int64_t now,
             Inbox& inbox, Outbox& answers, RateLimitedLog& log);
+  /// Answers a robot or light by REFUSAL, at most twice a second.
+  void answer(PacketStatus reason, const Packet& packet, const Endpoint& who, std::int64_t now, Inbox& inbox,
+              Outbox& answers);
 
  private:
   struct Row {
@@ -36,7 +38,7 @@ class SignatureTroubleLog {
     std::int64_t next_answer = 0;  ///< [ns]
   };
   std::map<std::tuple<PeerKind, std::uint32_t, PacketStatus>, Row>
-      rows_;  ///< of peers with a key: their number is known
+      rows_;  ///< of the world's ids, whose number is known
   base::Bytes answer_;
 };
 

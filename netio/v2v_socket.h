@@ -36,7 +36,8 @@ struct V2vSocketOptions {
 
 /// Why nothing signed passes between robot and farm.
 struct SignatureTrouble {
-  PacketStatus reason = PacketStatus::accepted;  ///< not_signed, wrong_signature or replayed; accepted: no trouble
+  PacketStatus reason = PacketStatus::accepted;  ///< not_signed, wrong_signature or replayed, of the
+                                                 ///< farm also wrong_source; accepted: no trouble
   bool of_farm = false;  ///< the farm refuses the robot's packets (as a REFUSAL states, which is not signed); false:
                          ///< the robot refuses the farm's
   std::int64_t farm_time = 0;  ///< [ns] Unix time of the REFUSAL; 0: none

@@ -292,7 +292,7 @@ static const char* decode_state(sf_packet* p, const sf_type* type, const uint8_t
     return in_range(!check_numbers(v, 3, 1e7) && !check_numbers(v + 7, 6, 1e3) && p->robot > 0 &&
                     fabs(hypot(hypot(v[3], v[4]), hypot(v[5], v[6])) - 1.0) <= 1e-3);
   if (p->type == SF_OBJECT) return in_range(p->words[0] <= 1 && p->robot > 0);
-  if (p->type == SF_REFUSAL) return in_range(p->words[0] >= 1 && p->words[0] <= 3);
+  if (p->type == SF_REFUSAL) return in_range(p->words[0] >= 1 && p->words[0] <= 4);
   return NULL;
 }
 
@@ -772,7 +772,9 @@ static bool is_newer(sf_client* c, const sf_packet* p) {
 
 // Why the farm drops what this client sends; anyone may have sent this, so it is counted and changes nothing.
 static const char* refusal_text(const sf_packet* p) {
-  return p->words[0] == 1 ? "refused: not signed" : p->words[0] == 2 ? "refused: wrong signature" : "refused: clock behind";
+  static const char* const kReasons[] = {"refused: not signed", "refused: wrong signature", "refused: clock behind",
+                                         "refused: wrong address"};
+  return kReasons[p->words[0] - 1];
 }
 
 static const char* accept_packet(sf_client* c, const uint8_t* bytes, size_t size, const struct sockaddr_in* from,

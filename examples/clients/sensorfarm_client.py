@@ -29,7 +29,8 @@ import time
 
 LASER, LANE_EDGE, MAGNETOMETER, OCCUPANCY, LASER_EXTENDED = 1, 2, 3, 12, 65
 # Why the farm drops what this client sends; anyone may have sent this, so it is counted and changes nothing.
-REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused: clock behind"}
+REFUSALS = {1: "refused: not signed", 2: "refused: wrong signature", 3: "refused: clock behind",
+            4: "refused: wrong address"}
 V2V, TAG, SUBSCRIBE, START, LEAVE, CHALLENGE, V2I, OBJECT, REFUSAL, NEIGHBOURS = (
     128, 129, 130, 131, 132, 133, 137, 138, 139, 140)
 COMMAND, STEP, FETCH, STATE, VALUES = 134, 135, 136, 141, 142  # lockstep
@@ -228,7 +229,7 @@ def decode_state(type, robot, payload):
         return {"position": list(numbers[:3]), "orientation": list(numbers[3:7]), "linear": list(numbers[7:10]),
                 "angular": list(numbers[10:])}
     require(type != OBJECT or numbers[0] <= 1 and robot > 0)
-    require(type != REFUSAL or 1 <= numbers[0] <= 3)
+    require(type != REFUSAL or 1 <= numbers[0] <= 4)
     name = {SUBSCRIBE: "types", OBJECT: "present", REFUSAL: "reason"}.get(type, "challenge")
     return {name: number for number in numbers}
 

@@ -48,14 +48,14 @@ Lockstep::Lockstep(const world::World& world, const sensors::SensorSet& sensor_s
 
 void Lockstep::receive(std::int64_t now) {
   again_ = 0;
-  const auto on_rejected = [&](netio::PacketStatus reason, const netio::Packet& packet, const netio::Endpoint& who) {
+  const auto on_notable = [&](netio::PacketStatus reason, const netio::Packet& packet, const netio::Endpoint& who) {
     trouble_.note(reason, packet, who, world_.movers[names_.robots.at(packet.header.robot)].name, now, inbox_, outbox_,
                   log_);
     if (reason != netio::PacketStatus::unproven || !inbox_.challenge(packet, who, now, packet_)) return;
     outbox_.queue(who, packet_);
   };
   inbox_.receive(
-      now, [&](const netio::Packet& packet) { take(packet, now); }, on_rejected);
+      now, [&](const netio::Packet& packet) { take(packet, now); }, on_notable);
   acknowledge();
   outbox_.flush();
   check_timeout(now);

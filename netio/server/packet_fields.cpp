@@ -74,7 +74,9 @@ void add_body(const netio::Subscribe& request, Fields& out) { add(out, "types", 
 void add_body(const netio::Start&, Fields&) {}
 void add_body(const netio::Leave&, Fields&) {}
 void add_body(const netio::Refusal& refusal, Fields& out) {
-  add(out, "reason", static_cast<int>(refusal.reason) - static_cast<int>(netio::PacketStatus::not_signed) + 1);
+  const bool by_source = refusal.reason == netio::PacketStatus::wrong_source;
+  add(out, "reason",
+      by_source ? 4 : static_cast<int>(refusal.reason) - static_cast<int>(netio::PacketStatus::not_signed) + 1);
 }
 void add_body(const netio::Challenge& challenge, Fields& out) { add(out, "challenge", challenge.token); }
 

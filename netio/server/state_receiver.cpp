@@ -45,14 +45,17 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
 
 void StateReceiver::receive_pending(std::int64_t now) {
   reports_.clear();
-  const auto on_rejected = [&](netio::PacketStatus reason, const netio::Packet& packet, const netio::Endpoint& who) {
-    if (reason == netio::PacketStatus::wrong_source) return log_wrong_source(packet, who, now);
-    if (reason != netio::PacketStatus::unproven)
-      return trouble_.note(reason, packet, who, name_of(packet.header), now, inbox_, answers_, log_);
-    if (inbox_.challenge(packet, who, now, challenge_)) answers_.queue(who, challenge_);
+  const auto on_notable = [&](netio::PacketStatus reason, const netio::Packet& packet, const netio::Endpoint& who) {
+    if (reason == netio::PacketStatus::wrong_source) {
+      trouble_.answer(reason, packet, who, now, inbox_, answers_);
+      return log_wrong_source(packet, who, now);
+    }
+    trouble_.note(reason, packet, who, name_of(packet.header), now, inbox_, answers_, log_);
+    if (reason != netio::PacketStatus::unproven || !inbox_.challenge(packet, who, now, challenge_)) return;
+    answers_.queue(who, challenge_);
   };
   inbox_.receive(
-      now, [&](const netio::Packet& packet) { take(packet, now); }, on_rejected);
+      now, [&](const netio::Packet& packet) { take(packet, now); }, on_notable);
   answers_.flush();
   fleet_.apply(reports_);
 }
@@ -127,27 +130,38 @@ std::string StateReceiver::name_of(const netio::Header& header) const {
   return world_.movers[(claim.kind == netio::PeerKind::tag ? names_.tags : names_.robots).at(claim.id)].name;
 }
 
+/// Whom a packet claims to be from.
+std::string StateReceiver::sender_text(const netio::Header& header) const {
+  const netio::Claim claim = netio::claim_of(header);
+  if (claim.kind == netio::PeerKind::start) return "the sender of START";
+  if (claim.kind == netio::PeerKind::light) return fmt::format("intersection {}", claim.id);
+  return fmt::format("{} ({} {})", name_of(header), claim.kind == netio::PeerKind::tag ? "tag" : "id", claim.id);
+}
+
+/// The address that its id is bound to.
+std::optional<netio::Endpoint> StateReceiver::bound_address(const netio::Header& header, std::int64_t now) const {
+  const netio::Claim claim = netio::claim_of(header);
+  if (claim.kind == netio::PeerKind::light) return inbox_.light_address(claim.id, now);
+  if (claim.kind == netio::PeerKind::robot) return inbox_.address(claim.id);
+  return header.type == netio::Type::object ? inbox_.object_address(claim.id) : inbox_.tag_address(claim.id);
+}
+
 /// Once per binding, or once for the address in the table of peers.
 void StateReceiver::log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now) {
   const netio::Claim claim = netio::claim_of(packet.header);
-  const bool tag = claim.kind == netio::PeerKind::tag;
-  if (!tag && claim.kind != netio::PeerKind::robot) return;  // of no mover
-  const std::string name = name_of(packet.header);
   const netio::Peer* peer = netio::find(peers_, claim.kind, claim.id);
   const bool refused = peer != nullptr && peer->address && *peer->address != who.address;
-  const auto bound = packet.header.type == netio::Type::object ? inbox_.object_address(claim.id)
-                     : tag                                     ? inbox_.tag_address(claim.id)
-                                                               : inbox_.address(claim.id);
-  const netio::Endpoint expected = refused ? netio::Endpoint{*peer->address, 0} : *bound;
-  auto& logged = (tag ? logged_tags_ : logged_robots_)[claim.id];
+  const auto expected =
+      refused ? netio::Endpoint{*peer->address, 0} : bound_address(packet.header, now).value_or(netio::Endpoint{});
+  auto& logged = logged_[{claim.kind, claim.id}];
   if (logged == expected) return;
   logged = expected;
-  const std::string_view space = tag ? "tag" : "id";
-  log_.write(refused ? fmt::format("{} ({} {}) is at {} by the table of peers; what {} says as the same is dropped",
-                                   name, space, claim.id, netio::text_of(expected.address), netio::text(who))
-                     : fmt::format("{} ({} {}) is heard from {}; what {} says as the same is dropped until that one "
-                                   "leaves or is silent for 2 s",
-                                   name, space, claim.id, netio::text(expected), netio::text(who)),
+  const std::string sender = sender_text(packet.header);
+  log_.write(refused ? fmt::format("{} is at {} by the table of peers; what {} says as the same is dropped", sender,
+                                   netio::text_of(expected.address), netio::text(who))
+                     : fmt::format("{} is heard from {}; what {} says as the same is dropped until that one leaves or "
+                                   "is silent for 2 s",
+                                   sender, netio::text(expected), netio::text(who)),
              now);
 }
 

@@ -74,6 +74,8 @@ class StateReceiver {
  private:
   void take(const netio::Packet& packet, std::int64_t now);
   std::string name_of(const netio::Header& header) const;
+  std::string sender_text(const netio::Header& header) const;
+  std::optional<netio::Endpoint> bound_address(const netio::Header& header, std::int64_t now) const;
   void log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now);
 
   static constexpr std::int64_t kNever = -1;
@@ -95,9 +97,8 @@ class StateReceiver {
   std::vector<std::int64_t> last_state_;   ///< [ns] arrival, per mover, or kNever
   netio::RateLimitedLog log_;
   netio::SignatureTroubleLog trouble_;
-  // By id: the bound address whose other senders are in the log already.
-  std::map<std::uint32_t, std::optional<netio::Endpoint>> logged_robots_;
-  std::map<std::uint32_t, std::optional<netio::Endpoint>> logged_tags_;
+  /// The bound address whose other senders are in the log already.
+  std::map<std::pair<netio::PeerKind, std::uint32_t>, std::optional<netio::Endpoint>> logged_;
 };
 
 }  // namespace sf::server

@@ -156,10 +156,15 @@ TEST_F(PeersTest, RefusalsAreNoLargerAndLimited) {
   ASSERT_EQ(decode(answer, refusal), PacketStatus::accepted);
   EXPECT_EQ(std::get<Refusal>(refusal.body).reason, PacketStatus::not_signed);
   EXPECT_EQ(refusal.header.token, packet.header.session);
+  ASSERT_TRUE(inbox.refuse(packet, PacketStatus::wrong_source, 100'000'000, answer));
+  ASSERT_EQ(decode(answer, refusal), PacketStatus::accepted);
+  EXPECT_EQ(std::get<Refusal>(refusal.body).reason, PacketStatus::wrong_source);
+  ++answer[kHeaderBytes];
+  EXPECT_EQ(decode(answer, refusal), PacketStatus::out_of_range) << "a reason of later versions is no reason yet";
   std::size_t more = 0;
-  while (inbox.refuse(packet, PacketStatus::not_signed, 1, answer)) ++more;
+  while (inbox.refuse(packet, PacketStatus::not_signed, 100'000'001, answer)) ++more;
   EXPECT_EQ(more + 1, Inbox::kMaxRefusals) << "in 0.1 s";
-  EXPECT_TRUE(inbox.refuse(packet, PacketStatus::not_signed, 100'000'000, answer));
+  EXPECT_TRUE(inbox.refuse(packet, PacketStatus::not_signed, 200'000'000, answer));
   for (const base::Bytes& bytes : {leave_example(), tag_example(), start_example()}) {
     ASSERT_EQ(decode(bytes, packet), PacketStatus::accepted);
     EXPECT_FALSE(inbox.refuse(packet, PacketStatus::not_signed, kSecond, answer));

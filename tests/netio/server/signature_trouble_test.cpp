@@ -6,7 +6,9 @@
 
 #include "base/elapsed.h"
 #include "netio/outbox.h"
+#include "netio/server/state_receiver.h"
 #include "netio/signature.h"
+#include "netio/v2i.h"
 #include "tests/netio/server/fixture.h"
 #include "tests/units.h"
 
@@ -54,11 +56,45 @@ TEST(SignatureTrouble, NoKeyIsStatedByBoth) {
   EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
 }
 
-/// The farm does not see it: a trailer without a key is dropped unread.
-TEST(SignatureTrouble, AFarmWithoutTheKeyIsStatedByTheRobot) {
+TEST(SignatureTrouble, AFarmWithoutTheKeyIsStatedByBoth) {
   Fixture f;
   const std::string log = lines_with(f, kKey);
+  EXPECT_EQ(count(log, "whose signature is not checked: --peers has no key for it here"), 1u) << log;
   EXPECT_EQ(count(log, "does not sign its packets: start `serve` with --peers and the key of robot 1, too"), 1u) << log;
+}
+
+TEST(SignatureTrouble, AnotherAddressIsStatedByBoth) {
+  Settings settings;
+  settings.peers = {{netio::PeerKind::robot, 1, netio::kLoopback + 1, std::nullopt}};
+  Fixture f(settings);
+  const std::string log = lines_with(f, std::nullopt);
+  EXPECT_EQ(count(log, "is at 127.0.0.2 by the table of peers"), 1u) << log;
+  EXPECT_EQ(count(log, "takes robot 1 from another address: --peers has one for it there"), 1u) << log;
+  EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
+}
+
+/// START and lights have no robot that could be named.
+TEST(SignatureTrouble, OtherSendersAtAnotherAddressAreStatedOnce) {
+  const world::World world = room();
+  LogPipe log;
+  StateReceiver receiver(world, {.bind = {netio::kLoopback, 0},
+                                 .log_descriptor = log.descriptor(),
+                                 .peers = {{netio::PeerKind::start, 0, netio::kLoopback + 1, std::nullopt},
+                                           {netio::PeerKind::light, 7, netio::kLoopback + 1, std::nullopt}},
+                                 .lights = {7}});
+  netio::Outbox sender({.bind = {netio::kLoopback, 0}});
+  base::Bytes start, approaches, signals;
+  netio::encode({.robot = netio::kBroadcastId}, netio::Start{}, start);
+  put(netio::SignalApproach{.group = 1, .state = 3, .next = 2, .left = 6.5}, approaches);
+  netio::encode({.robot = 7}, netio::V2i{approaches, {}}, signals);
+  for (int i = 0; i < 3; ++i)
+    for (const base::Bytes* packet : {&start, &signals})
+      sender.queue({netio::kLoopback, receiver.inbox().port()}, *packet);
+  sender.flush();
+  receiver.receive_pending(0);
+  const std::string lines = log.read_all();
+  EXPECT_EQ(count(lines, "the sender of START is at 127.0.0.2 by the table of peers"), 1u) << lines;
+  EXPECT_EQ(count(lines, "intersection 7 is at 127.0.0.2 by the table of peers"), 1u) << lines;
 }
 
 /// A robot whose clock was an hour ahead has left; now its clock is right.
