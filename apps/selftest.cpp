@@ -9,6 +9,7 @@
 #include "apps/report.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
+#include "base/thread_pool.h"
 #include "selftest/suite.h"
 
 namespace sf::apps {
@@ -73,7 +74,7 @@ std::string text_of(const SelfTestReport& test) {
 int selftest(const SelfTestOptions& options) {
   if (options.list) return list_cases();
   gpu::Device device(options.device);
-  selftest::Fixture fixture(device);
+  selftest::Fixture fixture(device, [] { return stop_requested().load(); });
   const std::vector<const Case*> some = chosen(options.cases);
   SelfTestReport test{.device = device.info(), .asked = some.size()};
   install_stop_handlers();
@@ -81,7 +82,11 @@ int selftest(const SelfTestOptions& options) {
     Progress progress("selftest");
     for (std::size_t i = 0; i < some.size() && !stop_requested(); ++i) {
       progress.show(static_cast<double>(i) / static_cast<double>(some.size()), std::string(some[i]->name));
-      test.cases.emplace_back(some[i], selftest::run(*some[i], fixture));
+      try {
+        test.cases.emplace_back(some[i], selftest::run(*some[i], fixture));
+      } catch (const base::Interrupted&) {
+        break;
+      }
       test.seconds += test.cases.back().second.seconds;
     }
   }

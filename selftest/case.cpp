@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "base/error.h"
+#include "base/thread_pool.h"
 
 namespace sf::selftest {
 
@@ -17,6 +18,7 @@ std::string named(std::string_view what, std::uint64_t index) { return fmt::form
 }  // namespace
 
 void Checks::count(bool good, double error, double allowed, const std::function<std::string()>& failure) {
+  if (stop_ && stop_()) throw base::Interrupted();
   ++outcome_.checks;
   constexpr double kBeyond = std::numeric_limits<double>::infinity();
   const double share = error == 0.0 ? 0.0 : allowed > 0.0 ? error / allowed : kBeyond;

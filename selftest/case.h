@@ -33,6 +33,9 @@ struct Outcome {
 /// Collects the checks of a case. One thread.
 class Checks {
  public:
+  /// @param stop looked at with each check, which throws base::Interrupted once it returns true; empty: never
+  explicit Checks(std::function<bool()> stop = {}) : stop_(std::move(stop)) {}
+
   /// Checks |got - exact| <= allowed. @param what and @param index identify the check in messages
   void near(double got, Real exact, double allowed, std::string_view what, std::uint64_t index = 0);
   /// Bitwise equal, or both NaN.
@@ -58,6 +61,7 @@ class Checks {
  private:
   void count(bool good, double error, double allowed, const std::function<std::string()>& failure);
 
+  std::function<bool()> stop_;
   Outcome outcome_;
   double nearest_ = -1.0;  ///< largest error divided by its allowed error
 };

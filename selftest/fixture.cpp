@@ -11,6 +11,7 @@ TestFarm Fixture::measure(world::World world, farm::FarmOptions options) const {
   TestFarm test;
   test.world = std::make_unique<world::World>(std::move(world));
   test.farm = std::make_unique<farm::Farm>(*test.world, device_, options);
+  test.farm->thread_pool().interrupt_on(stop_);
   test.farm->subscribe_all();
   test.readings = test.farm->tick(0, {});
   return test;

@@ -2,6 +2,7 @@
 // Helpers of the cases: worlds made in memory, and farms that are ticked once.
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -34,7 +35,10 @@ struct TestFarm {
 /// One thread. The device must outlive it.
 class Fixture {
  public:
-  explicit Fixture(gpu::Device& device) : device_(device) {}
+  /// @param stop ends a case soon after it returns true; empty: never
+  explicit Fixture(gpu::Device& device, std::function<bool()> stop = {}) : device_(device), stop_(std::move(stop)) {}
+
+  const std::function<bool()>& stop() const { return stop_; }
 
   gpu::Device& device() const { return device_; }
   /// Makes a farm with small pools and ticks it once at time 0.
@@ -42,6 +46,7 @@ class Fixture {
 
  private:
   gpu::Device& device_;
+  std::function<bool()> stop_;
 };
 
 /// Adds a thin wall, visible from both sides, 1 m high.

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <exception>
 
+#include "base/thread_pool.h"
+
 namespace sf::selftest {
 
 std::span<const Case> cases() {
@@ -33,11 +35,13 @@ const Case* find_case(std::string_view name) {
 }
 
 Outcome run(const Case& c, Fixture& fixture) {
-  Checks checks;
+  Checks checks(fixture.stop());
   const auto begun = std::chrono::steady_clock::now();
   std::string thrown;
   try {
     c.run(fixture, checks);
+  } catch (const base::Interrupted&) {
+    throw;
   } catch (const std::exception& error) {
     thrown = error.what();
   }

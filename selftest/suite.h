@@ -20,7 +20,7 @@ const Case& failing_case();
 /// @return null for an unknown name
 const Case* find_case(std::string_view name);
 
-/// Runs a case. An exception is a failure of the case.
+/// Runs a case. An exception is a failure of the case. @throws base::Interrupted where the fixture's `stop` ended it
 Outcome run(const Case& c, Fixture& fixture);
 
 // The groups, each in its own source file.

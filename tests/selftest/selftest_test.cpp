@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/thread_pool.h"
 #include "selftest/suite.h"
 #include "tests/golden.h"
 #include "tests/instrumented.h"
@@ -159,6 +160,13 @@ TEST(Suite, EveryKindOfCheckNamesWhatFailed) {
             "call: expected a refusal that names 'x', not: y [0]");
   EXPECT_EQ(outcome_of([](Fixture&, Checks&) { throw base::InputError("thrown"); }).failure,
             "it ended with: thrown [0]");
+}
+
+/// Each case looks for a stop with each of its checks.
+TEST(Suite, AStopEndsEachCase) {
+  const Fixture& all = all_fixture();
+  Fixture stopped(all.device(), [] { return true; });
+  for (const Case& c : cases()) EXPECT_THROW(run(c, stopped), base::Interrupted) << c.name;
 }
 
 TEST(Suite, RefusalsOfInputsAndDevicesPass) {
