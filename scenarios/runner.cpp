@@ -294,6 +294,12 @@ ScenarioStatus ScenarioResult::status() const {
 
 std::vector<world::Warning> check_scenario(const Scenario& scenario) {
   world::World world = world_of(scenario);
+  if (std::llround(scenario.duration / world.interval) < 1)
+    throw base::InputError(
+        scenario.file, scenario.duration_line,
+        fmt::format("'duration' {:g} s is less than a tick of {:g} s, so nothing would be simulated; "
+                    "expected at least one tick",
+                    scenario.duration, world.interval));
   const SimulationOptions options = simulation_of(scenario, world);
   const std::optional<world::RoadNetwork> roads = world::roads_of(world);
   std::vector<control::ConfiguredController> made;  // kept to the end: robots of one shape share their corridors

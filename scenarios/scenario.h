@@ -73,8 +73,10 @@ struct Scenario {
   std::string file;    ///< empty: made in memory
   std::string world;   ///< path of the world file
   int world_line = 0;  ///< line that names it
-  /// [s] simulated, at most; with the expectation `done` the run ends when all controllers have finished.
+  /// [s] simulated, at least a tick and at most this; with the expectation `done` the run ends when all controllers
+  /// have finished.
   double duration = 60.0;
+  int duration_line = 0;  ///< that states it
   std::uint64_t seed = 1;
   double tick = 0.0;                       ///< [s]; 0: the world's
   FleetSpawn fleet;                        ///< replaces the world's robots

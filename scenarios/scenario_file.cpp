@@ -285,6 +285,7 @@ Scenario parse_scenario(const std::string& file, const TomlNode& root) {
   scenario.world = world_file(reader, root);
   scenario.world_line = world::find(root, "world")->line;
   scenario.duration = reader.number(root, "duration", scenario.duration, 0.0, kLongest);
+  if (const TomlNode* duration = world::find(root, "duration")) scenario.duration_line = duration->line;
   scenario.seed = reader.whole(root, "seed", scenario.seed, kMostWhole);
   if (world::find(root, "tick") != nullptr) scenario.tick = reader.number(root, "tick", 0.0, 1e-3, 10.0);
   scenario.fleet = crowd_of(reader, root);

@@ -43,12 +43,17 @@ TEST(CheckScenario, ErrorsOfARunAreFoundAtTheirLines) {
       {path + "[expect]\nlights_obeyed = true\n", "test.toml:3: "},
       {path + "[default]\ncontroller = \"none\"\n[expect]\nmean_error = 1\n",
        "test.toml:5: 'mean_error' of a robot without a controller"},
+      // Nothing would be simulated, and `no_collision` be met: none of a tick of 0.1 s, and less than half of it.
+      {rooms + "duration = 0\n", "test.toml:2: 'duration' 0 s is less than a tick of 0.1 s"},
+      {rooms + "duration = 1e-9\n", "test.toml:2: 'duration' 1e-09 s is less than a tick of 0.1 s"},
+      {rooms + "duration = 0.049\n", "test.toml:2: 'duration' 0.049 s is less than a tick of 0.1 s"},
   };
   for (const auto& [text, said] : kCorpus) EXPECT_EQ(run_refusal(text).substr(0, said.size()), said) << text;
 }
 
 TEST(CheckScenario, AValidScenarioPasses) {
   EXPECT_EQ(run_refusal(std::string(kRooms) + "robots = 2\n"), "");
+  EXPECT_EQ(run_refusal(std::string(kRooms) + "duration = 0.1\n"), "") << "a single tick";
   EXPECT_EQ(run_refusal(std::string(kPath) + "[default]\ncontroller = \"lane-keeping\"\n[expect]\nmean_error = 1\n"),
             "");
 }
