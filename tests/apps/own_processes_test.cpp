@@ -309,7 +309,9 @@ TEST(OwnProcesses, ClosedStandardStreamsStayClosed) {
     const bool has_output = !has(std::string(" ") + closed, " >&-");
     EXPECT_EQ(outcome.code, has_output ? 0 : 2) << closed << outcome.err;
     EXPECT_TRUE(has(read_file(junit), "<testsuite name=\"a\" tests=\"1\" failures=\"0\"")) << closed;
-    if (std::string(closed) == ">&-") EXPECT_TRUE(has(outcome.err, "standard output cannot be written")) << outcome.err;
+    if (std::string(closed) == ">&-") {
+      EXPECT_TRUE(has(outcome.err, "standard output cannot be written")) << outcome.err;
+    }
   }
 }
 
@@ -381,8 +383,9 @@ TEST(OwnProcesses, ALimitOfMemoryIsStatedOfChildren) {
       all.insert(all.end(), words.begin(), words.end());
       const Outcome outcome = Program(all, {}, "", "", "sh").wait();
       EXPECT_EQ(outcome.signal, 0) << kilobytes << words[0];
-      if (outcome.code != 0)
+      if (outcome.code != 0) {
         EXPECT_TRUE(has(outcome.out + outcome.err, "ulimit -v")) << kilobytes << outcome.out << outcome.err;
+      }
     }
 }
 

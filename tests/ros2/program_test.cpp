@@ -55,7 +55,9 @@ TEST(Ros2Program, TooFewDescriptorsAreStated) {
                                     kHere, "", "", "sh")
                                 .wait();
     EXPECT_EQ(outcome.signal, 0) << most << outcome.err;
-    if (outcome.code != 0) EXPECT_NE(outcome.err.find("ulimit -n"), std::string::npos) << most << outcome.err;
+    if (outcome.code != 0) {
+      EXPECT_NE(outcome.err.find("ulimit -n"), std::string::npos) << most << outcome.err;
+    }
   }
 }
 

@@ -232,16 +232,16 @@ TEST(PlayerHostile, SilentProgramsOfOneHostMakeRoom) {
   PlayerRun run;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> log(std::tmpfile(), std::fclose);
   PlayerBridge bridge(run.scene, {}, 0.0, fileno(log.get()));
-  const std::uint16_t port = bridge.endpoint().port;
+  const netio::Endpoint server = bridge.endpoint();
   std::vector<std::unique_ptr<TestClient>> silent;
   for (std::size_t i = 0; i < kMostClients; ++i) {
-    silent.push_back(std::make_unique<TestClient>(port));
+    silent.push_back(std::make_unique<TestClient>(server));
     silent.back()->banner(), silent.back()->open(kPosition);
   }
   std::unique_ptr<TestClient> late;
   std::size_t refused = 0;
   for (; refused < 600 && bridge.counts().evicted == 0; ++refused) {
-    late = std::make_unique<TestClient>(port);
+    late = std::make_unique<TestClient>(server);
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   EXPECT_EQ(late->banner().size(), kBannerBytes);
@@ -250,7 +250,9 @@ TEST(PlayerHostile, SilentProgramsOfOneHostMakeRoom) {
   std::array<char, 4096> text{};
   const std::string lines(text.data(), std::fread(text.data(), 1, text.size(), log.get()));
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), refused > 1 ? 1 : 0) << lines;
-  if (refused > 1) EXPECT_NE(lines.find("1 program refused, the last from 127.0.0.1:"), std::string::npos) << lines;
+  if (refused > 1) {
+    EXPECT_NE(lines.find("1 program refused, the last from 127.0.0.1:"), std::string::npos) << lines;
+  }
 }
 
 TEST(PlayerHostile, SlowClientsSkipAhead) {
