@@ -47,6 +47,7 @@ void Checks::same(double got, double expected, std::string_view what, std::uint6
 }
 
 void Checks::holds(bool it, std::string_view what, std::uint64_t index) {
+  if (stop_ && stop_()) throw base::Interrupted();
   ++outcome_.checks;
   if (it) return;
   if (outcome_.failed++ == 0) outcome_.failure = named(what, index);
