@@ -6,8 +6,7 @@
 namespace sf::apps {
 
 /// In place of the text of std::bad_alloc.
-inline constexpr const char* kNoMemory =
-    "not enough memory: free some, raise the limit (ulimit -v), or ask for less";
+inline constexpr const char* kNoMemory = "not enough memory: free some, raise the limit (ulimit -v), or ask for less";
 
 /// "; memory is limited to 256 MiB (ulimit -v), ...", to be put behind how a process was ended: drivers and libraries
 /// crash where memory ends. Empty: neither addresses nor data are limited.
