@@ -19,7 +19,7 @@ void draw_heading(Axes& axes, const base::Pose& X_WM, double reach, double line_
 
 }  // namespace
 
-std::uint32_t color_of(const world::World& world, const Mover& mover) {
+std::uint32_t body_color(const world::World& world, const Mover& mover) {
   return mover.model < world.models.size() ? world.models[mover.model].color | theme::kBlack : theme::kNeutral;
 }
 

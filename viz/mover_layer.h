@@ -12,7 +12,7 @@ namespace sf::viz {
 inline constexpr double kSmallestMark = 4.0;
 
 /// The colour of the mover's model, or a neutral one.
-std::uint32_t color_of(const world::World& world, const world::Mover& mover);
+std::uint32_t body_color(const world::World& world, const world::Mover& mover);
 
 /// The filled outline of the mover at the given pose, with a line towards its front.
 void draw_body(Axes& axes, const world::Mover& mover, const base::Pose& X_WM, std::uint32_t color);

@@ -78,7 +78,7 @@ PixelImage TopView::paint(std::span<const base::Pose> X_WM, double time) const {
   axes.canvas().image({0.0, 0.0}, {layout_.width, layout_.height}, {layout_.width, layout_.height, static_layer_});
   draw_lights(axes, *world_, time);
   for (std::size_t i = 0; i < X_WM.size(); ++i)
-    draw_body(axes, world_->movers[i], X_WM[i], color_of(*world_, world_->movers[i]));
+    draw_body(axes, world_->movers[i], X_WM[i], body_color(*world_, world_->movers[i]));
   return paint_pixels(axes.canvas().drawing());
 }
 

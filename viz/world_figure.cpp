@@ -139,7 +139,7 @@ std::vector<LegendItem> legend_of(const World& world) {
     return std::find_if(world.movers.begin(), world.movers.end(), [&](const Mover& m) { return m.is_tag == tag; });
   };
   if (const auto robot = first(false); robot != world.movers.end())
-    items.push_back({LegendMark::robot, color_of(world, *robot), "robot and heading"});
+    items.push_back({LegendMark::robot, body_color(world, *robot), "robot and heading"});
   if (first(true) != world.movers.end()) items.push_back({LegendMark::dashed, theme::kTag, "follows a tag"});
   const auto views = view_legend(world);
   items.insert(items.end(), views.begin(), views.end());
@@ -183,7 +183,7 @@ void draw_world(const World& world, const std::string& path, const Page& page) {
   draw_views(axes, world);
   draw_walls(axes, world, WallColors::of_models);
   draw_lights(axes, world);
-  for (const Mover& mover : world.movers) draw_body(axes, mover, mover.X_WM, color_of(world, mover));
+  for (const Mover& mover : world.movers) draw_body(axes, mover, mover.X_WM, body_color(world, mover));
   if (!crowded(world)) draw_sensors(axes, world);
   for (const Mover& mover : world.movers)
     if (mover.is_tag) draw_tag(axes, mover);
