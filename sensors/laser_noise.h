@@ -46,12 +46,15 @@ struct FinishedScan {
 bool finish_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::RandomKey& draw, bool noise,
                  const CastScan& cast, const FinishedScan& scan);
 
-/// Copies a scan's ranges with infinity for no echo. @param ranges out: one per sample
-inline void mark_no_return(const base::ReadingBlock& scan, double range_max, std::span<double> ranges) {
-  const auto marked = [&](double range) {
-    return base::echo_of(range, {.max = range_max}) == base::Echo::none ? HUGE_VAL : range;
+/// Copies a reading's values; in a scan, infinity replaces the range of a beam without an echo. Other types, which have
+/// no hits, have no beams either: sonar and infrared keep `range_max`.
+/// @param values out: as many as the reading has
+inline void mark_no_return(const base::ReadingBlock& reading, double range_max, std::span<double> values) {
+  const bool scan = !reading.hits.empty();
+  const auto marked = [&](double value) {
+    return scan && base::echo_of(value, {.max = range_max}) == base::Echo::none ? HUGE_VAL : value;
   };
-  std::transform(scan.values.begin(), scan.values.end(), ranges.begin(), marked);
+  std::transform(reading.values.begin(), reading.values.end(), values.begin(), marked);
 }
 
 }  // namespace sf::sensors

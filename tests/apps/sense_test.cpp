@@ -5,6 +5,7 @@
 #include <cmath>
 #include <regex>
 
+#include "sensors/sensor_type.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/units.h"
@@ -101,6 +102,23 @@ TEST(Sense, EveryBeamOfAFanFollowsTheCosine) {
       EXPECT_TRUE(scan.is_null(beam(i, "range_m"))) << i;
       EXPECT_TRUE(scan.is_null(beam(i, "hit"))) << i;
     }
+  }
+}
+
+/// In a world without surfaces, where every value of some types is their sensor's `limit` or more.
+TEST(Sense, NoReturnIsOfLasersAlone) {
+  const Folder folder;
+  std::string robot = "position( name \"scout\"\n";
+  for (const sensors::SensorType* type : sensors::built_in_sensor_types())
+    robot += std::string(type->word.type) + "( )\n";
+  const std::string world = folder.write("empty.world", robot + ")\n");
+  for (const sensors::SensorType* type : sensors::built_in_sensor_types()) {
+    const Words words{"sense", world, "--type", std::string(type->name)};
+    Words infinite = words;
+    infinite.insert(infinite.end(), {"--no-return", "inf"});
+    const Outcome plain = run_program(words), marked = run_program(infinite);
+    EXPECT_EQ(plain.code, 0) << plain.err;
+    EXPECT_EQ(marked.out != plain.out, type->is_scan) << type->name << "\n" << marked.out;
   }
 }
 
