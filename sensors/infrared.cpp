@@ -32,7 +32,7 @@ constexpr RangerType kRanger{kInfrared, kInfraredColumns, {"infrared", infrared_
 
 constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize", "sview", "fov", "range", "rays"};
 constexpr Column kColumns[] = {{"range_m"}, {"value", 1, true}};
-constexpr PlainNumber kNumbers[] = {{1e-6, 0.0, 1e4}, {1.0, 0.0, kMostResponse}};
+constexpr PlainNumber kNumbers[] = {{1e-6, 0.0, 1e4, true}, {1.0, 0.0, kMostResponse}};
 constexpr PlainForm kForm{kInfrared, "infrared", kNumbers};
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "sensors/laser.h"
 #include "sensors/wire_error.h"
+#include "sensors/wire_limits.h"
 
 namespace sf::sensors {
 
@@ -35,6 +36,18 @@ std::uint16_t plain_word(double metres) { return to_word<std::uint16_t>(metres, 
 std::uint32_t extended_word(double metres) {
   if (metres == std::numeric_limits<double>::infinity()) return kNoReturn;
   return to_word<std::uint32_t>(metres, kExtendedPerMetre, kNoReturn - 1);
+}
+
+/// [m] The number of the largest word that is a range.
+double largest_range(bool extended) { return extended ? (kNoReturn - 1) / kExtendedPerMetre : kPlainRange; }
+
+/// A range_max that is unknown (0) or beyond the largest word has no word of its own.
+WireLimits wire_limits(const SensorSpec& sensor, bool extended) {
+  const auto rounded = [&](double metres) {
+    return extended ? extended_word(metres) / kExtendedPerMetre : plain_word(metres) / kPlainPerMetre;
+  };
+  const bool has_word = sensor.limit > 0.0 && sensor.limit <= largest_range(extended);
+  return {limits_of(sensor), {rounded(sensor.range_min), has_word ? rounded(sensor.limit) : HUGE_VAL}};
 }
 
 void put_plain(std::span<const double> ranges, base::ByteWriter& writer) {
@@ -141,8 +154,10 @@ std::uint8_t encode_laser(const SensorSpec& sensor, const base::ReadingBlock& sc
 }
 
 double laser_wire_error(const SensorSpec& sensor, const base::ReadingBlock& scan) {
-  if (fits_plain(sensor)) return wire_error(scan.values, 1, 1.0 / kPlainPerMetre, 0.0, kPlainRange);
-  return wire_error(scan.values, 1, 1.0 / kExtendedPerMetre, 0.0, (kNoReturn - 1) / kExtendedPerMetre);
+  const bool plain = fits_plain(sensor);
+  const double step = 1.0 / (plain ? kPlainPerMetre : kExtendedPerMetre);
+  return std::max(wire_error(scan.values, 1, step, 0.0, largest_range(!plain)),
+                  wire_limits(sensor, !plain).error(scan.values, step));
 }
 
 PayloadPart decode_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
@@ -168,11 +183,12 @@ void fill_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload,
   SF_CHECK(fault == PayloadError::none && scan.first + scan.count <= values.size(),
            "a payload of rays " + std::to_string(scan.first) + " to " + std::to_string(scan.first + scan.count) +
                " for a scan of " + std::to_string(values.size()));
-  const bool beyond = sensor.limit > 0.0 && sensor.limit + kRangeSlack < kPlainRange;
+  const WireLimits limits = wire_limits(sensor, scan.extended);
+  const bool beyond = !scan.extended && limits.rounded.max < kPlainRange;
   for (std::uint32_t i = 0; i < scan.count; ++i) {
     const double metres = range_of(scan, i);
-    const bool no_return = beyond && !scan.extended && metres >= kPlainRange;
-    values[scan.first + i] = no_return ? std::numeric_limits<double>::infinity() : metres;
+    const bool no_return = beyond && metres >= kPlainRange;
+    values[scan.first + i] = no_return ? std::numeric_limits<double>::infinity() : limits.range(metres);
   }
 }
 

@@ -2,8 +2,8 @@
 // Laser scans as payloads, in three forms; docs/packets.md gives every byte. Readings are in metres, payloads in
 // integer wire units, rounded to nearest (half up); values saturate at both ends and never wrap.
 //
-// The first six functions are the wire part of the laser's SensorType. Of a spec they read `elements` (samples) and
-// `limit` (range_max).
+// The first six functions are the wire part of the laser's SensorType. Of a spec they read `elements` (samples),
+// `range_min` and `limit` (range_max).
 
 #include <cstdint>
 #include <span>
@@ -33,7 +33,8 @@ std::uint32_t laser_parts(const SensorSpec& sensor, WireFormat wire);
 std::uint8_t encode_laser(const SensorSpec& sensor, const base::ReadingBlock& scan, WireFormat wire, std::uint32_t part,
                           base::Bytes& out);
 
-/// SensorType::wire_error: half a millimetre, or a twentieth of one in the extended form.
+/// SensorType::wire_error: half a millimetre, or a twentieth of one in the extended form; up to twice as much of a
+/// range that is received as a limit (WireLimits).
 double laser_wire_error(const SensorSpec& sensor, const base::ReadingBlock& scan);
 
 /// Validates a payload against this laser: equal number of rays, none beyond range_max by more than 1 mm (except
@@ -41,8 +42,9 @@ double laser_wire_error(const SensorSpec& sensor, const base::ReadingBlock& scan
 PayloadPart decode_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                          WireFormat wire);
 
-/// Fills in this part's ranges of a scan's `values`, from a payload that `decode_laser` accepted. A saturated plain
-/// word becomes infinity for a laser of smaller range.
+/// Fills in this part's ranges of a scan's `values`, from a payload that `decode_laser` accepted. A word becomes
+/// range_max or range_min where it is that of this limit or beyond; a saturated plain word becomes infinity for a laser
+/// of smaller range.
 void fill_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
                 std::span<double> values);
 

@@ -56,8 +56,8 @@ SensorType functions_of() {
                    base::Bytes& out) { return encode_plain(added[kId]->form, sensor, reading, out); };
   type.decode = [](const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t packet,
                    WireFormat wire) { return decode_plain(added[kId]->form, sensor, payload, packet, wire); };
-  type.read = [](const SensorSpec&, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat,
-                 std::span<double> values) { read_plain(added[kId]->form, payload, values); };
+  type.read = [](const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat,
+                 std::span<double> values) { read_plain(added[kId]->form, sensor, payload, values); };
   return type;
 }
 

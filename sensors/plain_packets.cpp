@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "sensors/wire_limits.h"
 
 namespace sf::sensors {
 
@@ -24,6 +25,11 @@ Word to_word(double value, const PlainNumber& number) {
 
 double from_word(Word word, const PlainNumber& number) {
   return word == kNoNumber ? std::numeric_limits<double>::quiet_NaN() : word * number.unit;
+}
+
+WireLimits wire_limits(const SensorSpec& sensor, const PlainNumber& number) {
+  const auto rounded = [&](double value) { return from_word(to_word(value, number), number); };
+  return {limits_of(sensor), {rounded(sensor.range_min), rounded(sensor.limit)}};
 }
 
 /// A saturated word means "this or more". The tolerance is one unit of rounding.
@@ -72,12 +78,16 @@ PayloadPart decode_plain(const PlainForm& form, const SensorSpec& sensor, std::s
   return {.elements = count};
 }
 
-void read_plain(const PlainForm& form, std::span<const std::uint8_t> payload, std::span<double> values) {
+void read_plain(const PlainForm& form, const SensorSpec& sensor, std::span<const std::uint8_t> payload,
+                std::span<double> values) {
   SF_CHECK(payload.size() == kHeader + kWord * values.size(),
            fmt::format("{} bytes of {} for {} values", payload.size(), form.name, values.size()));
   base::ByteReader reader(payload.subspan(kHeader));
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = from_word(reader.get<Word>(), form.numbers[i % form.numbers.size()]);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const PlainNumber& number = form.numbers[i % form.numbers.size()];
+    values[i] = from_word(reader.get<Word>(), number);
+    if (number.range && sensor.limit > 0.0) values[i] = wire_limits(sensor, number).range(values[i]);
+  }
 }
 
 }  // namespace sf::sensors

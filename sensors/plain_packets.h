@@ -27,6 +27,8 @@ struct PlainNumber {
   double unit = 1.0;  ///< > 0, in units of the column
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();  ///< in units of the column; beyond: invalid
+  bool range =
+      false;  ///< of a range sensor, read as a limit where its word is that of the limit or beyond (WireLimits)
 };
 
 /// Wire form of one sensor type.
@@ -45,7 +47,8 @@ std::uint8_t encode_plain(const PlainForm& form, const SensorSpec& sensor, const
 /// Accepts any bytes. A spec with 0 elements disables the check of their number.
 PayloadPart decode_plain(const PlainForm& form, const SensorSpec& sensor, std::span<const std::uint8_t> payload,
                          std::uint8_t type, WireFormat wire);
-void read_plain(const PlainForm& form, std::span<const std::uint8_t> payload, std::span<double> values);
+void read_plain(const PlainForm& form, const SensorSpec& sensor, std::span<const std::uint8_t> payload,
+                std::span<double> values);
 
 /// `type` with the id, name and wire part of kForm.
 template <const PlainForm& kForm>
@@ -58,8 +61,8 @@ consteval SensorType plain(SensorType sensor_type) {
                           base::Bytes& out) { return encode_plain(kForm, sensor, reading, out); };
   sensor_type.decode = [](const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                           WireFormat wire) { return decode_plain(kForm, sensor, payload, type, wire); };
-  sensor_type.read = [](const SensorSpec&, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat,
-                        std::span<double> values) { read_plain(kForm, payload, values); };
+  sensor_type.read = [](const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat,
+                        std::span<double> values) { read_plain(kForm, sensor, payload, values); };
   return sensor_type;
 }
 

@@ -59,7 +59,7 @@ constexpr RangerType kRanger{kSonar, 1, {"sonar", sonar_comp_spv, true}, tell_ra
 constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize",  "sview",    "fov",
                                       "range",  "rays",    "firing",   "arrays", "incidence"};
 constexpr Column kColumns[] = {{"range_m"}};
-constexpr PlainNumber kNumbers[] = {{1e-3, 0.0, kLongest}};
+constexpr PlainNumber kNumbers[] = {{1e-3, 0.0, kLongest, true}};
 constexpr PlainForm kForm{kSonar, "sonar", kNumbers};
 
 }  // namespace

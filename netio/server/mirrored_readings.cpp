@@ -80,8 +80,9 @@ void MirroredReadings::add_scan(const sensors::SensorSpec& laser, const base::Po
     echoes.points.clear();
   };
   for (std::uint32_t i = 0; i < laser.elements; ++i) {
-    const bool returned = ranges[i] < laser.limit;
-    const double range = returned ? ranges[i] : laser.limit;
+    const bool too_near = laser.range_min > 0.0 && ranges[i] <= laser.range_min;  // or there: no place is known
+    const bool returned = !too_near && ranges[i] < laser.limit;
+    const double range = std::min(ranges[i], laser.limit);
     const glm::dvec2 end = base::transform(X_WS, base::rotate(sensors::bearing_of(laser, i), {range, 0.0}));
     if (i % every == 0) lines.push_back({SightLine::Kind::beam, {{X_WS.x, X_WS.y}, end}, X_WS.z});
     // A step of range that no surface at up to 80 degrees explains is the edge of one.

@@ -18,18 +18,19 @@ namespace {
 
 using Kind = SightLine::Kind;
 
-world::World with_sensors() {
+world::World with_sensors(double least, double most) {
   world::World world;
   scenes::add_room(world, {0.0, 0.0}, 8.0);
   const std::uint32_t robot = scenes::add_robot(world, {0.0, 0.0, 0.0, 0.0}, {});
   world::Sensor laser{.type = "laser", .name = "laser", .X_MS = {0.1, 0.0, 0.0, 0.0}, .height = 0.2};
-  laser.settings = {{"samples", {5}, ""}, {"fov", {M_PI}, ""}, {"range_max", {4}, ""}};
+  laser.settings = {{"samples", {5}, ""}, {"fov", {M_PI}, ""}, {"range", {least, most}, ""}};
   world::Sensor edge{.type = "laneedge", .name = "edge", .X_MS = {0.0, 0.0, 0.0, M_PI / 2}};
   world.movers[robot].sensors = {laser, edge};
   return world;
 }
 
 struct MirroredReadingsTest : testing::Test {
+  explicit MirroredReadingsTest(double least = 0.0, double most = 4.0) : world(with_sensors(least, most)) {}
   base::Bytes packet(std::uint8_t type, const std::vector<double>& values, std::uint32_t sequence = 0) const {
     base::ReadingBlock block;
     block.type = type, block.values = values;
@@ -48,9 +49,14 @@ struct MirroredReadingsTest : testing::Test {
     readings.add_lines(0, X_WM, now, all);
     return all;
   }
-  const world::World world = with_sensors();
+  const world::World world;
   const sensors::SensorSet sensor_set{world};
   MirroredReadings readings{world, sensor_set};
+};
+
+/// Limits that are no whole millimetres: 4.0004 is sent as 4000, 0.2036 as 204.
+struct OddLimits : MirroredReadingsTest {
+  OddLimits() : MirroredReadingsTest(0.2036, 4.0004) {}
 };
 
 void expect_near(glm::dvec2 p, glm::dvec2 q) { EXPECT_NEAR(glm::distance(p, q), 0.0, 2e-3) << p.x << " " << p.y; }
@@ -78,6 +84,11 @@ TEST_F(MirroredReadingsTest, EchoesOfTwoSurfacesAreTwoLines) {
   for (const SightLine& line : lines({}))
     if (line.kind == Kind::echoes) sizes.push_back(line.points.size());
   EXPECT_EQ(sizes, (std::vector<std::size_t>{2, 3}));
+}
+
+TEST_F(OddLimits, AreNoEchoes) {
+  readings.accept(packet(sensors::kLaser, {4.0004, 4.0004, 0.2036, 0.2036, 4.0004}), 0);
+  for (const SightLine& line : lines({})) EXPECT_EQ(line.kind, Kind::beam);
 }
 
 TEST_F(MirroredReadingsTest, EdgesLieAcrossTheirPerpendicular) {
