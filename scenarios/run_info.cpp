@@ -41,7 +41,7 @@ std::vector<std::string> accuracy_rows(const world::World& world, const sensors:
     double rounding = 0.0;
     if (s.type->is_scan)
       for (const sensors::SensorSpec& row : sensor_set.group(s.type->id)->rows)
-        rounding = std::max(rounding, 0x1p-24 * row.limit);
+        rounding = std::max(rounding, recorded_rounding(row.limit));
     rows.push_back(fmt::format(
         R"({{"type":"{}","sensors":{},"mode":"{}","bound":{},"bound_without_noise":{},"sigma":{},"unit":"{}",)"
         R"("condition":"{}","flags":"not recorded"}})",

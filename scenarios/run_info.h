@@ -20,6 +20,10 @@ struct RunSettings {
   bool too_near_min = false;   ///< surfaces nearer than a sensor's minimum read that minimum in messages
 };
 
+/// [m] Largest rounding of a recorded range by base::rep117_range: one step of float32 below range_max, where a range
+/// that would be rounded to a limit is rounded to its other side; elsewhere half as much.
+inline double recorded_rounding(double range_max) { return 0x1p-23 * range_max; }
+
 record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const RunSettings& settings);
 
 }  // namespace sf::scenarios

@@ -14,6 +14,7 @@
 #include "farm/farm.h"
 #include "robots/kinematics.h"
 #include "scenarios/recorded_states.h"
+#include "scenarios/run_info.h"
 #include "sensors/bumper.h"
 #include "sensors/laser.h"
 #include "sensors/laser_noise.h"
@@ -256,7 +257,7 @@ class Verifier {
     const sensors::CastLaser& cast = reference_.laser(reading.mover, reading.sensor);
     // Noise proportional to the range scales with the error of the range.
     const double stretch = 1.0 + 8.0 * cast.laser.noise.range_proportional;
-    return cast.single ? stretch * reading.bound_without_noise + cast.laser.range_max * 0x1p-24 : 0.0;
+    return cast.single ? stretch * reading.bound_without_noise + recorded_rounding(cast.laser.range_max) : 0.0;
   }
 
   /// Values as messages have them. @param flags of the reading's elements; empty: none

@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <random>
 
+#include "base/echo.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "record/recorder.h"
@@ -76,7 +79,7 @@ TEST(RunInfo, HasTheBoundsOfRecordedReadings) {
   const auto number = [](const std::string& row, const std::string& key) {
     return std::stod(row.substr(row.find("\"" + key + "\":") + key.size() + 3));
   };
-  const double rounding = 0x1p-24 * sensor_set.group(sensors::kLaser)->rows[0].limit;
+  const double rounding = 0x1p-23 * sensor_set.group(sensors::kLaser)->rows[0].limit;
   EXPECT_GE(number(rows[0], "bound"), 1e-9 + rounding) << "of 32 bits";
   EXPECT_LE(number(rows[0], "bound"), 2e-9 + rounding);
   EXPECT_EQ(number(rows[0], "sigma"), 0.0);
@@ -84,6 +87,22 @@ TEST(RunInfo, HasTheBoundsOfRecordedReadings) {
   EXPECT_EQ(number(rows[1], "bound_without_noise"), number(rows[0], "bound"));
   EXPECT_EQ(number(rows[1], "sigma"), 0.2);
   EXPECT_EQ(run_info(world, sensor_set, {.noise = false}).accuracy[1].find("null"), std::string::npos);
+}
+
+TEST(RunInfo, TheBoundCoversRoundingAtTheLimits) {
+  EXPECT_GT(std::abs(base::rep117_range(4.999999999, {.max = 5.0}) - 4.999999999), 0x1p-24 * 5.0)
+      << "more than to nearest";
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (int i = 0; i < 100'000; ++i) {
+    const double max = std::exp2(24.0 * share(engine) - 6.0), min = max * share(engine);
+    const double step = 0x1p-24 * max * share(engine);
+    for (const double range :
+         {min, min + step, max - step, std::nextafter(max, 0.0), min + (max - min) * share(engine)})
+      if (range >= min && range < max) {
+        ASSERT_LE(std::abs(base::rep117_range(range, {min, max}) - range), recorded_rounding(max)) << range;
+      }
+  }
 }
 
 TEST(Merging, GivesTheBytesOfASingleProcess) {
