@@ -43,7 +43,8 @@ std::vector<LaserReference::Seen> LaserReference::in_sight(std::uint32_t self, c
   return surfaces;
 }
 
-LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t number, std::uint64_t sequence) const {
+LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t number, std::uint64_t sequence,
+                                          double slack) const {
   const CastLaser& cast = laser(mover, number);
   const LaserSettings& l = cast.laser;
   const raycast::BeamPlan plan = raycast::plan_beams(l, noise_);
@@ -69,7 +70,8 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t num
       intersect(seen.surface, {scan.X_WS.x, scan.X_WS.y}, d, nearest);
       if (nearest.id != before) model = seen.model;
     }
-    ranges[plan.place(k)] = std::max(nearest.range, least);
+    const bool at_least = std::abs(nearest.range - l.range_min) < std::abs(slack);
+    ranges[plan.place(k)] = at_least ? (slack > 0.0 ? l.range_min : least) : std::max(nearest.range, least);
     hits[plan.place(k)] = nearest.range < l.range_max ? model : SF_NO_HIT;
   }
   finish_scan(cast, plan, {seed_, base::RandomStream::range_noise, mover, number, sequence}, noise_,

@@ -35,7 +35,9 @@ class LaserReference {
     std::vector<base::QualityFlag> quality;  ///< per sample: too_near or none
   };
   /// One reading of a mover's laser. @param sequence key of its noise
-  Scan scan(std::uint32_t mover, std::uint32_t number, std::uint64_t sequence) const;
+  /// @param slack [m] surfaces less than this from range_min are at range_min, or just nearer where it is negative:
+  /// the two readings that errors of ranges in 32 bits may give there
+  Scan scan(std::uint32_t mover, std::uint32_t number, std::uint64_t sequence, double slack = 0.0) const;
 
  private:
   struct Seen {
