@@ -50,7 +50,7 @@ ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor) {
   const CastLaser cast = cast_laser(world, lasers_of(world.movers[sensor.mover])[sensor.sensor]);
   const Reaches reaches = reaches_of(world);
   return {laser_bound(cast.laser.range_max, cast.single, reaches.longest, reaches.farthest + cast.laser.range_max),
-          "cast beams that do not graze; the others are flagged"};
+          "cast beams that do not graze and are not nearer than range_min; the others are flagged"};
 }
 
 }  // namespace sf::sensors
