@@ -35,7 +35,8 @@ std::string error_text(double error, const std::string& unit) {
 }
 
 std::string verdict_of(const scenarios::Verification& v) {
-  if (!v.sound()) return "NOT SOUND";
+  if (v.faulty()) return "NOT SOUND";
+  if (!v.sound()) return v.interrupted ? "nothing was compared: interrupted" : "nothing could be compared";
   if (v.interrupted) return "sound as far as it went: interrupted";
   return v.truncated ? "sound up to its end: the recording was not finished" : "sound";
 }
@@ -108,8 +109,10 @@ int verify(const VerifyOptions& options) {
   const bool recorded = recording.info.estimated || !recording.readings.empty();
   print(options.json ? json_of(verification, accuracy ? &*accuracy : nullptr)
                      : (accuracy ? text_of(*accuracy) : "") + text_of(verification, recorded));
-  if (!verification.sound() || (accuracy && !accuracy->within_bounds())) return 1;
-  return verification.interrupted || (accuracy && accuracy->interrupted) ? interrupted_code() : 0;
+  if (verification.faulty() || (accuracy && !accuracy->within_bounds())) return 1;
+  if (verification.interrupted || (accuracy && accuracy->interrupted)) return interrupted_code();
+  // Readings that are there must be checked; without any, the file and its states were.
+  return verification.sound() || recording.readings.empty() ? 0 : 1;
 }
 
 }  // namespace sf::apps

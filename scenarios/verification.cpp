@@ -81,6 +81,7 @@ class Verifier {
         world_(recorded_world(recording)),
         farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads}),
         reference_(world_, recording.info.seed),
+        longest_(sensors::reaches_of(world_).longest),
         infinite_(record::option_of(recording.info, record::kNoReturn) == "inf"),
         marks_too_near_(any_marked(recording)),
         is_earlier_(!marks_too_near_ && record::option_of(recording.info, record::kTooNear).empty()),
@@ -141,16 +142,15 @@ class Verifier {
   /// Readings of a service are those that robots asked for, at times of its clock: scans, and nothing else, can be
   /// computed again, each from the states of its own time.
   void verify_estimated() {
-    std::uint64_t others = 0, single = 0, lost = 0;
+    std::uint64_t others = 0, lost = 0;
     for (const record::ReadingSample& r : recording_.readings) {
       if (r.type != sensors::kLaser) {
         ++others;
-      } else if (reference_.laser(r.mover, r.sensor).single) {
-        ++single;
       } else if (!has_states_at(r.time)) {
         ++lost;
       } else if (seen_++ % stride_ == 0) {
-        asked_.push_back({r.mover, r.sensor, r.sequence, tick_at(r.time), r.time, r.values, 0.0});
+        const std::size_t tick = tick_at(r.time);
+        asked_.push_back({r.mover, r.sensor, r.sequence, tick, r.time, r.values, allowed_at(r.mover, r.sensor, tick)});
       }
       if (asked_.size() < kBatch) continue;
       cast_again();
@@ -164,8 +164,6 @@ class Verifier {
     if (recording_.readings.empty()) result_.skipped.push_back("no robot asked for readings");
     if (lost > 0)
       result_.skipped.push_back(fmt::format("{} scans: the states at their times are missing or damaged", lost));
-    if (single > 0)
-      result_.skipped.push_back(fmt::format("{} scans of 32-bit modes: their bounds are not recorded", single));
     if (others > 0)
       result_.skipped.push_back(
           fmt::format("{} readings of other sensors: a service measures when it is asked", others));
@@ -253,11 +251,20 @@ class Verifier {
   }
 
   /// Allowed difference: the bound of 32-bit modes and the precision of recordings. Other modes are recomputed bitwise.
-  double allowed_of(const base::ReadingBlock& reading) const {
-    const sensors::CastLaser& cast = reference_.laser(reading.mover, reading.sensor);
+  /// @param bound [m] base::ReadingBlock::bound_without_noise
+  double allowed_of(std::uint32_t mover, std::uint32_t sensor, double bound) const {
+    const sensors::CastLaser& cast = reference_.laser(mover, sensor);
     // Noise proportional to the range scales with the error of the range.
     const double stretch = 1.0 + 8.0 * cast.laser.noise.range_proportional;
-    return cast.single ? stretch * reading.bound_without_noise + recorded_rounding(cast.laser.range_max) : 0.0;
+    return cast.single ? stretch * bound + recorded_rounding(cast.laser.range_max) : 0.0;
+  }
+
+  /// The same of a reading of which only the scan is recorded, from the sensor's place at a tick.
+  double allowed_at(std::uint32_t mover, std::uint32_t sensor, std::size_t tick) const {
+    const sensors::LaserSettings& laser = reference_.laser(mover, sensor).laser;
+    const base::Pose X_WS = base::compose(recording_.states[mover][tick].X_WM, laser.X_MS);
+    const double farthest = std::max(std::abs(X_WS.x), std::abs(X_WS.y)) + laser.range_max;
+    return allowed_of(mover, sensor, sensors::laser_bound(laser.range_max, true, longest_, farthest));
   }
 
   /// Values as messages have them. @param flags of the reading's elements; empty: none
@@ -297,7 +304,7 @@ class Verifier {
   void ask(const base::ReadingBlock& reading, const std::vector<double>& ranges) {
     if (seen_++ % stride_ == 0)
       asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), reading.time, ranges,
-                        allowed_of(reading)});
+                        allowed_of(reading.mover, reading.sensor, reading.bound_without_noise)});
   }
 
   /// Recomputes the collected scans in plain C++, grouped by time, since scans of one time share the movers' poses.
@@ -361,6 +368,7 @@ class Verifier {
   const world::World world_;
   farm::Farm farm_;
   sensors::LaserReference reference_;
+  const double longest_;                  ///< [m] surface of the world
   const bool infinite_;                   ///< beams without a return are recorded as infinity
   const bool marks_too_near_;             ///< ranges of surfaces that are too near are recorded as -infinity
   const bool is_earlier_;                 ///< of a version that marks none of them, or without such surfaces
@@ -377,10 +385,16 @@ class Verifier {
 
 }  // namespace
 
-bool Verification::sound() const {
-  std::uint64_t readings = reference.readings, different = reference.different;
-  for (const Comparison& c : recomputed) readings += c.readings, different += c.different;
-  return (readings > 0 || ticks == 0 || !skipped.empty()) && different == 0 && missing == 0 && damage.empty();
+std::uint64_t Verification::compared() const {
+  std::uint64_t readings = reference.readings;
+  for (const Comparison& c : recomputed) readings += c.readings;
+  return readings;
+}
+
+bool Verification::faulty() const {
+  const auto differs = [](const Comparison& c) { return c.different > 0; };
+  return differs(reference) || std::any_of(recomputed.begin(), recomputed.end(), differs) || missing > 0 ||
+         !damage.empty();
 }
 
 Verification verify(const record::Recording& recording, gpu::Device& device, const VerifyOptions& options) {

@@ -33,9 +33,11 @@ struct Verification {
   std::vector<std::string> damage;   ///< of the recording, as reported by its reader
   bool truncated = false;            ///< the recording was not finished; all of its whole ticks were compared
   bool interrupted = false;          ///< not all ticks were compared
-  /// No difference, missing reading or damage, and something was compared unless the recording has no ticks (which is
-  /// damage where it was cut off) or only what is `skipped`. Of an interrupted verification: as far as it went.
-  bool sound() const;
+  std::uint64_t compared() const;    ///< readings in all; those compared both here and in plain C++ count twice
+  bool faulty() const;               ///< a difference, a missing reading or damage was found
+  /// Something was compared, unless the recording has no ticks (which is damage where it was cut off), and nothing was
+  /// faulty. Of an interrupted verification: as far as it went.
+  bool sound() const { return !faulty() && (compared() > 0 || (ticks == 0 && !interrupted)); }
 };
 
 struct VerifyOptions {

@@ -109,7 +109,18 @@ TEST(Verify, WithoutReadingsAndLasers) {
   EXPECT_EQ(outcome.out,
             "  ticks              10\n"
             "  skipped            all readings: the run kept none, and no robot has a laser to compare with plain C++\n"
-            "  verdict            sound\n");
+            "  verdict            nothing could be compared\n");
+  EXPECT_FALSE(Json(run_program({"verify", run, "--json"}).out).flag("/sound"));
+}
+
+/// Readings that are there and are all left out are not verified.
+TEST(Verify, ReadingsOfWhichNoneCanBeComparedEndWithOne) {
+  const Folder folder;
+  const std::string world = folder.write("bumper.world", "position( bumper( ) )\n"), run = folder.path("run");
+  ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", run, "--record-readings"}).code, 0);
+  const Outcome outcome = run_program({"verify", run});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.out.find("verdict            nothing could be compared\n"), std::string::npos) << outcome.out;
 }
 
 /// A flipped bit in a scan is behind a checksum: it is told as damage, and what is left is verified.

@@ -14,8 +14,10 @@ namespace sf::scenarios {
 namespace {
 
 /// Two robots drive, with samples between ticks; one falls silent and is out of the world before the end.
-record::Recording recorded() {
-  server::Fixture f({.sensor_rate = 13.0, .filter = {.enabled = true, .policy = estimation::StalePolicy::hide}});
+record::Recording recorded(const std::string& accuracy = "exact") {
+  server::Fixture f({.sensor_rate = 13.0,
+                     .filter = {.enabled = true, .policy = estimation::StalePolicy::hide},
+                     .accuracy = accuracy});
   world::update_extent_and_hash(f.world);
   const std::string folder = (std::filesystem::temp_directory_path() / "service_recording").string();
   record::Recorder recorder(folder,
@@ -46,6 +48,28 @@ TEST(ServiceRecording, ItsScansAreThoseOfPlainCpp) {
   EXPECT_TRUE(v.sound()) << v.reference.first;
   EXPECT_GT(v.reference.readings, 90u);
   EXPECT_EQ(v.reference.readings, recording.readings.size());
+}
+
+/// Within the bound that each reading had, which the metadata states and which follows from the sensor's place.
+TEST(ServiceRecording, ScansIn32BitsAreComparedWithinTheirBound) {
+  record::Recording recording = recorded("single");
+  const Verification v = verify(recording, server::Fixture::device(), {});
+  EXPECT_TRUE(v.sound()) << v.reference.first;
+  EXPECT_TRUE(v.skipped.empty());
+  EXPECT_EQ(v.compared(), recording.readings.size());
+  EXPECT_GT(v.reference.largest, 0.0) << "or it was not measured in 32 bits";
+  recording.readings[20].values[7] += 2e-3;
+  EXPECT_EQ(verify(recording, server::Fixture::device(), {}).reference.different, 1u);
+}
+
+/// A service's readings of other types cannot be computed again.
+TEST(ServiceRecording, NothingComparedIsNotSound) {
+  record::Recording recording = recorded();
+  for (record::ReadingSample& reading : recording.readings) reading.type = sensors::kLaser + 1;
+  const Verification v = verify(recording, server::Fixture::device(), {});
+  EXPECT_EQ(v.compared(), 0u);
+  EXPECT_FALSE(v.faulty());
+  EXPECT_FALSE(v.sound());
 }
 
 TEST(ServiceRecording, AWrongRangeIsFound) {

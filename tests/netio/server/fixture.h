@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "netio/server/robot_client.h"
 #include "netio/server/service.h"
+#include "sensors/accuracy.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "tests/robots/scenes.h"
@@ -52,12 +53,20 @@ struct Settings {
   StateFilterOptions filter;
   double latency = 0.0;  ///< [s] of sensors
   std::vector<netio::Peer> peers;
-  std::uint32_t samples = 91;  ///< of each laser
+  std::uint32_t samples = 91;      ///< of each laser
+  std::string accuracy = "exact";  ///< of the sensors
 };
+
+inline world::World in_mode(world::World world, const std::string& accuracy) {
+  sensors::set_accuracy(world, accuracy);
+  return world;
+}
 
 struct Fixture {
   explicit Fixture(const Settings& chosen = {})
-      : settings(chosen), world(room(chosen.sensor_rate, chosen.latency, chosen.samples)), sensor_set(world) {
+      : settings(chosen),
+        world(in_mode(room(chosen.sensor_rate, chosen.latency, chosen.samples), chosen.accuracy)),
+        sensor_set(world) {
     // Reading ports have no option for "any free one": tests that run at once start to look at different places, and
     // have ports for four robots there, as those of another are only taken later.
     layout.stride = 8;
