@@ -7,6 +7,7 @@
 #include "apps/commands.h"
 #include "apps/export_vtk.h"
 #include "apps/recording_csv.h"
+#include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "scenarios/experiment.h"
 
@@ -24,6 +25,7 @@ std::vector<std::string> write_csv(const RecordingPart& part, const std::string&
 }  // namespace
 
 int export_recording(const ExportOptions& options) {
+  install_stop_handlers();
   const RecordingPart part = open_part(options.recording, options);
   scenarios::make_folder(options.out);
   const std::vector<std::string> files = options.vtk ? write_vtk(part, options) : write_csv(part, options.out);

@@ -68,10 +68,6 @@ viz::GridData grid_of(const maps::OccupancyGrid& map) {
   return grid;
 }
 
-void heed_stop() {
-  if (stop_requested()) throw Incomplete("interrupted: the files that were written are whole, others are not there");
-}
-
 std::vector<std::string> write_scans(const RecordingPart& part, const world::World& world, gpu::Device& device,
                                      const ExportOptions& options) {
   ScanReplay replay(part, world, device);
@@ -97,20 +93,20 @@ std::vector<std::string> write_scans(const RecordingPart& part, const world::Wor
 }  // namespace
 
 std::vector<std::string> write_vtk(const RecordingPart& part, const ExportOptions& options) {
-  install_stop_handlers();
   const world::World world = world::from_snapshot(part.recording.info.snapshot);
   std::vector<std::string> files;
   const auto write = [&](const viz::PolyData& data, const char* name) {
     if (data.points.empty()) return;
     files.push_back(options.out + "/" + name);
     viz::write_poly_data(data, files.back());
+    heed_stop();
   };
   write(viz::walls_geometry(world), "walls.vtp");
   write(viz::roads_geometry(world), "roads.vtp");
   write(viz::trajectories_geometry(world, motions_of(part, world)), "trajectories.vtp");
   FileSeries robots(options.out, "robots");
   for (const std::size_t tick : ticks_apart(part, options.every))
-    robots.add(time_at(part, tick), viz::bodies_geometry(world, poses_at(part, tick)));
+    robots.add(time_at(part, tick), viz::bodies_geometry(world, poses_at(part, tick))), heed_stop();
   files.push_back(robots.close());
   if (!has_laser(part, world) && world.magnets.empty()) return files;
 

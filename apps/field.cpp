@@ -9,6 +9,7 @@
 #include "apps/commands.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
+#include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
 #include "viz/field_figure.h"
@@ -18,6 +19,7 @@ namespace sf::apps {
 namespace {
 
 constexpr double kGauss = 1e-4;  // [T]
+constexpr const char* kNothing = "interrupted: nothing was written";
 
 void refuse_without_magnets(const world::World& world) {
   const bool carried = std::any_of(world.movers.begin(), world.movers.end(),
@@ -42,6 +44,7 @@ void write_csv(const std::string& path, const viz::FieldView& view, const viz::F
 }  // namespace
 
 int field(const FieldOptions& options) {
+  install_stop_handlers();
   const world::World world = world::load_world(options.world, options.load);
   print_warnings(options.world, world.warnings);
   refuse_without_magnets(world);
@@ -49,7 +52,11 @@ int field(const FieldOptions& options) {
 
   gpu::Device device(options.device);
   Progress progress("summing magnets");
-  const viz::FieldSamples samples = viz::sample_field(world, device, view, [&](double part) { progress.show(part); });
+  const viz::FieldSamples samples = viz::sample_field(world, device, view, [&](double part) {
+    progress.show(part);
+    heed_stop(kNothing);
+  });
+  heed_stop(kNothing);
   viz::draw_field(world, view, samples, options.out, options.page);
   print_message("wrote {}", options.out);
   if (options.csv.empty()) return 0;

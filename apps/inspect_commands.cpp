@@ -7,6 +7,7 @@
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
 #include "apps/road_commands.h"
+#include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
 #include "sensors/laser_noise.h"
@@ -112,9 +113,11 @@ int check(const CheckOptions& options) {
 }
 
 int draw(const DrawOptions& options) {
+  install_stop_handlers();
   if (const auto code = draw_roads(options)) return *code;
   const world::World world = world::load_world(options.world, options.load);
   print_warnings(options.world, world.warnings);
+  heed_stop("interrupted: nothing was written");
   viz::draw_world(world, options.out, options.page);
   print_message("wrote {}", options.out);
   return 0;

@@ -1,13 +1,28 @@
 // `merge`: recordings of the ranks that shared a fleet, as one.
 
 #include "apps/commands.h"
+#include "apps/stop_signals.h"
 #include "apps/text.h"
+#include "base/thread_pool.h"
 #include "scenarios/merging.h"
 
 namespace sf::apps {
 
+namespace {
+
+scenarios::MergedRecording merge_until_stopped(const MergeOptions& options) {
+  try {
+    return scenarios::merge_recordings(options.places, options.out, [] { return stop_requested().load(); });
+  } catch (const base::Interrupted&) {
+    throw Incomplete("interrupted: nothing was written, and what was there stays");
+  }
+}
+
+}  // namespace
+
 int merge(const MergeOptions& options) {
-  const scenarios::MergedRecording merged = scenarios::merge_recordings(options.places, options.out);
+  install_stop_handlers();
+  const scenarios::MergedRecording merged = merge_until_stopped(options);
   for (const std::string& damage : merged.damage) print_message("{}", damage);
   if (merged.truncated)
     print_message("a rank did not finish its recording: merged are the {} ticks that all have", merged.ticks);

@@ -63,12 +63,6 @@ std::vector<viz::LightRow> light_rows(const record::Recording& recording, const 
   return rows;
 }
 
-/// Pictures are written whole: a stop is heeded between two.
-/// @throws Incomplete when one was asked for.
-void go_on() {
-  if (stop_requested()) throw Incomplete("interrupted: the pictures that were written are whole, others are not there");
-}
-
 /// Computes every chosen laser's scan once a simulated second from where its robot was.
 void map_scans(const RecordingPart& part, const world::World& world, gpu::Device& device, viz::ScanMap& map) {
   ScanReplay replay(part, world, device);
@@ -77,7 +71,7 @@ void map_scans(const RecordingPart& part, const world::World& world, gpu::Device
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     for (const base::ReadingBlock& scan : replay.scans_at(ticks[i])) map.add(world, scan);
     progress.show(static_cast<double>(i) / static_cast<double>(ticks.size()));
-    go_on();
+    heed_stop();
   }
 }
 
@@ -85,7 +79,7 @@ void map_scans(const RecordingPart& part, const world::World& world, gpu::Device
 struct Written {
   void operator()(const std::string& file) const {
     print_message("wrote {}", file);
-    go_on();
+    heed_stop();
   }
 };
 
@@ -123,13 +117,13 @@ void draw_occupancy(const RecordingPart& part, const world::World& world, const 
 }  // namespace
 
 int plot(const PlotOptions& options) {
+  install_stop_handlers();
   const RecordingPart part = open_part(options.recording, options);
   const world::World world = world::from_snapshot(part.recording.info.snapshot);
   const std::string folder =
       options.out.empty() ? std::filesystem::path(part.recording.file).parent_path().string() : options.out;
   scenarios::make_folder(folder);
 
-  install_stop_handlers();
   draw_paths(part, world, options, folder);
   for (const std::string& file : draw_readings(part.recording, options, folder)) Written{}(file);
   draw_lights(part, world, options, folder);

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "apps/csv_text.h"
+#include "apps/stop_signals.h"
 #include "base/bearing.h"
 #include "base/error.h"
 #include "record/reading_messages.h"
@@ -15,20 +17,35 @@ namespace sf::apps {
 
 namespace {
 
-/// A file of rows of fields.
+/// A file of rows of fields, which has its name once it is whole: until `close` it is FILE.new.
 class CsvFile {
  public:
-  explicit CsvFile(const std::string& path) : path_(path), file_(path, std::ios::trunc) {}
+  explicit CsvFile(const std::string& path) : path_(path), file_(fresh(), std::ios::trunc) {}
+  CsvFile(const CsvFile&) = delete;
+  CsvFile& operator=(const CsvFile&) = delete;
+  ~CsvFile() {
+    std::error_code ignored;
+    if (!whole_) std::filesystem::remove(fresh(), ignored);
+  }
   /// @throws base::InputError when a row could not be written
   void close() {
     file_.close();
-    if (!file_) throw base::InputError(path_, 0, "cannot be written; name a folder that can be written and has room");
+    std::error_code error;
+    if (file_) std::filesystem::rename(fresh(), path_, error);
+    whole_ = file_ && !error;
+    if (!whole_) throw base::InputError(path_, 0, "cannot be written; name a folder that can be written and has room");
   }
-  void row(const std::string& text) { file_ << text << '\n'; }
+  /// @throws Incomplete when a stop was requested
+  void row(const std::string& text) {
+    heed_stop();
+    file_ << text << '\n';
+  }
 
  private:
+  std::string fresh() const { return path_ + ".new"; }
   std::string path_;
   std::ofstream file_;
+  bool whole_ = false;
 };
 
 std::string seconds(std::int64_t time) { return csv_number(1e-9 * static_cast<double>(time)); }

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "apps/report.h"
+#include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
 #include "viz/road_figure.h"
@@ -100,6 +101,7 @@ std::optional<int> draw_roads(const DrawOptions& options) {
   std::vector<world::Warning> warnings;
   const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict);
   print_warnings(options.world, warnings);
+  heed_stop("interrupted: nothing was written");
   viz::draw_roads(network, options.out, options.page);
   print_message("wrote {}", options.out);
   return 0;

@@ -17,6 +17,7 @@
 #include "apps/text.h"
 #include "base/error.h"
 #include "base/printable.h"
+#include "base/thread_pool.h"
 #include "cluster/shares.h"
 #include "scenarios/junit.h"
 
@@ -70,9 +71,38 @@ bool agreed(bool passed, cluster::Ranks* ranks) {
 
 bool is_fine(const scenarios::ScenarioResult& result) { return result.status() != scenarios::ScenarioStatus::failed; }
 
+/// Scenarios that were not run to their end are failures in JUnit.
+void add_interrupted(const TestOptions& options, std::vector<scenarios::ScenarioResult>& results) {
+  print_message("interrupted: {} of {} run", results.size(), counted(options.scenarios.size(), "scenario"));
+  for (std::size_t i = results.size(); i < options.scenarios.size(); ++i)
+    results.push_back({.name = options.scenarios[i], .file = options.scenarios[i], .failure = "interrupted"});
+}
+
+/// Runs the scenarios until a stop is requested. @return false then
+bool run_all(const std::vector<scenarios::Scenario>& all, gpu::Device& device, cluster::Ranks* ranks, bool reports,
+             std::vector<scenarios::ScenarioResult>& results) {
+  try {
+    for (const scenarios::Scenario& scenario : all) {
+      {
+        Progress progress(scenario.name);
+        const auto show = [&](double part) {
+          if (reports) progress.show(part);
+        };
+        results.push_back(scenarios::run_scenario(scenario, device, show, cluster::threads_of(0, ranks), ranks,
+                                                  [] { return stop_requested().load(); }));
+      }
+      print(base::printable(text_of(results.back())));
+    }
+  } catch (const base::Interrupted&) {
+    return false;
+  }
+  return true;
+}
+
 /// One after another in this process, which shares the fleets with others.
 int test_here(const TestOptions& options, cluster::Ranks* ranks) {
   const bool reports = ranks == nullptr || ranks->rank() == 0;
+  install_stop_handlers();
   std::vector<scenarios::Scenario> all;
   std::optional<gpu::Device> device;
   // All files are read, and what they ask for is tried, before any is run: a slip in the last is known at once.
@@ -83,20 +113,14 @@ int test_here(const TestOptions& options, cluster::Ranks* ranks) {
     device.emplace(options.device);
   });
   std::vector<scenarios::ScenarioResult> results;
-  for (const scenarios::Scenario& scenario : all) {
-    {
-      Progress progress(scenario.name);
-      const auto show = [&](double part) {
-        if (reports) progress.show(part);
-      };
-      results.push_back(scenarios::run_scenario(scenario, *device, show, cluster::threads_of(0, ranks), ranks));
-    }
-    print(base::printable(text_of(results.back())));
-  }
+  const bool whole = run_all(all, *device, ranks, reports, results);
+  const bool fine = std::all_of(results.begin(), results.end(), is_fine);
+  if (!whole && reports) add_interrupted(options, results);
   on_all(ranks, [&] {
     if (!options.junit.empty() && reports) write_junit(options.junit, results);
   });
-  return agreed(std::all_of(results.begin(), results.end(), is_fine), ranks) ? 0 : 1;
+  if (!agreed(fine, ranks)) return 1;
+  return whole ? 0 : interrupted_code();
 }
 
 int test_in_processes(const TestOptions& options) {
@@ -111,9 +135,7 @@ int test_in_processes(const TestOptions& options) {
         print(base::printable(text_of(result)));
       });
   const bool fine = std::all_of(results.begin(), results.end(), is_fine);
-  if (!whole) print_message("interrupted: {} of {} run", results.size(), counted(options.scenarios.size(), "scenario"));
-  for (std::size_t i = results.size(); i < options.scenarios.size(); ++i)
-    results.push_back({.name = options.scenarios[i], .file = options.scenarios[i], .failure = "interrupted"});
+  if (!whole) add_interrupted(options, results);
   if (!options.junit.empty()) write_junit(options.junit, results);
   if (!fine) return 1;
   return whole ? 0 : interrupted_code();

@@ -27,6 +27,10 @@ void on_signal(int number) {
 
 const std::atomic<bool>& stop_requested() { return stop; }
 
+void heed_stop(const char* what) {
+  if (stop) throw Incomplete(what);
+}
+
 int interrupted_code() { return chosen_code.value_or(128 + stop_signal); }
 
 void set_interrupted_code(int code) { chosen_code = code; }

@@ -16,6 +16,9 @@ class Incomplete : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// For commands that write several files, each of them whole. @throws Incomplete when a stop was requested
+void heed_stop(const char* what = "interrupted: the files that were written are whole, others are not there");
+
 /// Exit code of such a command: as shells have it, 128 and the signal's number (130 after Ctrl-C).
 int interrupted_code();
 /// Another code for all signals (--interrupted-code). @param code in [0, 255]

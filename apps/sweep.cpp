@@ -137,6 +137,7 @@ void print_failures(const Results& results) {
 }
 
 int write_tables(const Sweep& sweep, const SweepFolder& folder, const Results& results) {
+  install_stop_handlers();  // the tables are written whole, whatever comes
   const std::vector<std::string> files = write_sweep_tables(sweep, folder, results);
   const scenarios::JobCounts counts = scenarios::counts_of(results);
   print(markdown_of_points(sweep, results, kRowsShown) + "\n" + text_of(counts) + "\n");

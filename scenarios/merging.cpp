@@ -134,8 +134,11 @@ class Merger {
     return least - 1;
   }
 
-  void write() {
-    for (std::uint64_t tick = 0; tick < ticks(); ++tick) write_tick(tick);
+  void write(const std::function<bool()>& stop) {
+    for (std::uint64_t tick = 0; tick < ticks(); ++tick) {
+      if (stop && stop()) throw base::Interrupted();
+      write_tick(tick);
+    }
     mcap_.finish();
     flush();
   }
@@ -232,7 +235,8 @@ void Merger::find_readings(const Part& part, std::uint64_t tick) {
 
 }  // namespace
 
-MergedRecording merge_recordings(std::span<const std::string> places, const std::string& folder) {
+MergedRecording merge_recordings(std::span<const std::string> places, const std::string& folder,
+                                 const std::function<bool()>& stop) {
   const Parts parts = open_parts(places);
   MergedRecording merged;
   for (const auto& part : parts) {
@@ -241,7 +245,7 @@ MergedRecording merge_recordings(std::span<const std::string> places, const std:
   }
   record::GrowingFile file(folder + "/" + record::RecordingPart{}.file());
   Merger merger(parts, [&](std::span<const std::uint8_t> bytes) { file.append(bytes); });
-  merger.write();
+  merger.write(stop);
   file.sync();
   file.publish();
   merged.file = file.path();
@@ -263,7 +267,7 @@ record::Recording open_run(const std::string& place) {
   base::Bytes bytes;
   Merger(parts, [&](std::span<const std::uint8_t> more) {
     bytes.insert(bytes.end(), more.begin(), more.end());
-  }).write();
+  }).write({});
   record::Recording recording = record::read_recording(bytes, parts[0]->name);
   for (const auto& part : parts) {
     recording.truncated = recording.truncated || part->contents.truncated;

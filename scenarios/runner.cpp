@@ -106,15 +106,20 @@ class Run {
             maps_.try_emplace(row, world_, row);
   }
 
-  void go(const std::function<void(double)>& progress, ScenarioResult& result) {
+  void go(const std::function<void(double)>& progress, const std::function<bool()>& stop, ScenarioResult& result) {
+    if (stop && ranks_ == nullptr) simulation_.interrupt_on(stop);
     const auto ticks = static_cast<std::uint64_t>(std::llround(scenario_.duration / world_.interval));
     const bool until_done = expects(scenario_, Kind::done);
     const auto start = Clock::now();
     for (; result.ticks < ticks && !(until_done && simulation_.all_done()); ++result.ticks) {
       change_objects(static_cast<double>(result.ticks) * world_.interval);
+      const bool stops = stop && stop();
+      if (stops && ranks_ == nullptr) throw base::Interrupted();
+      if (stops) simulation_.request_stop();
       const auto begin = Clock::now();
       const base::TickRecord tick = simulation_.step();
       simulation_.settle();
+      if (simulation_.stop_agreed()) throw base::Interrupted();
       tick_ms_.push_back(1e3 * base::seconds_since(begin));
       metrics_.update(tick);
       add_scans(tick.readings, maps_);
@@ -314,14 +319,14 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
 }
 
 ScenarioResult run_scenario(const Scenario& scenario, gpu::Device& device, const std::function<void(double)>& progress,
-                            unsigned threads, cluster::Ranks* ranks) {
+                            unsigned threads, cluster::Ranks* ranks, const std::function<bool()>& stop) {
   ScenarioResult result{.name = scenario.name, .file = scenario.file};
   std::optional<Run> run;
   cluster::agree(ranks, [&] {
     check_scenario(scenario);
     run.emplace(scenario, device, threads, ranks);
   });
-  run->go(progress, result);
+  run->go(progress, stop, result);
   return result;
 }
 

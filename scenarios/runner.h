@@ -52,9 +52,11 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario);
 /// @param progress called with the completed part in [0, 1]; may be empty
 /// @param threads of the host's part; 0: all. Does not affect results
 /// @param ranks that share the fleet, and all call this; null: none. The first one's result has the hash of readings
-/// @throws base::InputError when the world or a robot lacks something required; with ranks cluster::Failure on all
+/// @param stop polled each tick, and within long ones; may be empty
+/// @throws base::InputError when the world or a robot lacks something required; with ranks cluster::Failure on all.
+/// base::Interrupted when `stop` returns true, with ranks on all where it does on one
 ScenarioResult run_scenario(const Scenario& scenario, gpu::Device& device,
                             const std::function<void(double)>& progress = {}, unsigned threads = 0,
-                            cluster::Ranks* ranks = nullptr);
+                            cluster::Ranks* ranks = nullptr, const std::function<bool()>& stop = {});
 
 }  // namespace sf::scenarios

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <filesystem>
 
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
@@ -27,8 +28,18 @@ class Interrupted : public testing::Test {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return folder.path("r");
   }
+  std::string scenario() const {
+    return folder.write("s.toml", "world = \"" + our_world("cave.world") + "\"\nrobots = 20\nduration = 60\n");
+  }
+  /// A world that takes a while to load, and whose field takes one.
+  std::string crowded() const {
+    std::string text = "define box model( size [0.1 0.1 0.1] magnetic_moment 100 )\n";
+    for (int i = 0; i < 20'000; ++i)
+      text += "box( pose [" + std::to_string(i % 150) + " " + std::to_string(i / 150) + " 0 0] )\n";
+    return folder.write("crowded.world", text);
+  }
   std::string sweep() const {
-    folder.write("s.toml", "world = \"" + our_world("cave.world") + "\"\nrobots = 20\nduration = 60\n");
+    scenario();
     return folder.write("sweep.toml", "scenario = \"s.toml\"\nseeds = 40\n");
   }
   Folder folder;
@@ -47,6 +58,10 @@ TEST_F(Interrupted, EachCommandEndsWithTheSignalsCode) {
       {"run", cave, "--robots", "100", "--auto"},
       {"plot", recording, "-o", pictures},
       {"export", recording, "--vtk", "-o", folder.path("e")},
+      {"export", recording, "-o", folder.path("csv")},
+      {"draw", crowded(), "-o", folder.path("d.png")},
+      {"field", crowded(), "--height", "0.1", "-o", folder.path("f.png")},
+      {"test", "--in-process", scenario(), "--junit", folder.path("j.xml")},
       {"sweep", sweep(), "-o", folder.path("s"), "--jobs", "2"},
       {"experiment", "lane-edge-p", "--trials", "200", "-o", folder.path("x"), "--files", SF_SOURCE_DIR "/experiments"},
       {"dump", "--port", port, "--count", "3"},
@@ -56,6 +71,23 @@ TEST_F(Interrupted, EachCommandEndsWithTheSignalsCode) {
     const Outcome outcome = stopped(words);
     EXPECT_EQ(outcome.code, 130) << words[0] << " " << words[1] << ": " << outcome.signal << outcome.out << outcome.err;
   }
+}
+
+TEST_F(Interrupted, FilesAreWholeOrNotThere) {
+  const Outcome exported = stopped({"export", record(), "-o", folder.path("csv")});
+  EXPECT_NE(exported.err.find("interrupted: the files that were written are whole"), std::string::npos) << exported.err;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path("csv"))) {
+    EXPECT_EQ(entry.path().extension(), ".csv");
+    EXPECT_TRUE(read_file(entry.path()).ends_with("\n"));
+  }
+  EXPECT_NE(stopped({"draw", crowded(), "-o", folder.path("d.png")}).err.find("nothing was written"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder.path("d.png")));
+  const Outcome tested =
+      stopped({"--interrupted-code", "7", "test", "--in-process", scenario(), "--junit", folder.path("j.xml")});
+  EXPECT_EQ(tested.code, 7);
+  EXPECT_NE(tested.err.find("interrupted: 0 of 1 scenario run"), std::string::npos) << tested.err;
+  EXPECT_NE(read_file(folder.path("j.xml")).find("interrupted"), std::string::npos);
 }
 
 TEST_F(Interrupted, ByOtherSignalsAndWithAnotherCode) {

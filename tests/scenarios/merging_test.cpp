@@ -13,6 +13,7 @@
 #include "base/echo.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "base/thread_pool.h"
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
@@ -117,6 +118,13 @@ TEST(Merging, GivesTheBytesOfASingleProcess) {
   EXPECT_EQ(merged.bytes, bytes.size());
   EXPECT_EQ(merged.ticks, 10u);
   EXPECT_FALSE(merged.truncated);
+}
+
+TEST(Merging, StoppedLeavesWhatWasThere) {
+  const std::string ranks = merging_folder("stopped"), merged = merging_folder("stopped_merged");
+  record_merged(merging_folder("stopped_whole"), ranks);
+  EXPECT_THROW(merge_recordings(std::span(&ranks, 1), merged, [] { return true; }), base::Interrupted);
+  EXPECT_TRUE(std::filesystem::is_empty(merged));
 }
 
 /// Else the merged recording would be whole, and sound without a tick.
