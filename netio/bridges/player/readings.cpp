@@ -9,9 +9,14 @@ namespace sf::bridges::player {
 
 namespace {
 
-/// [m] Player's ranges are finite and lie within the sensor's limits; NaN becomes the largest.
-double clean(double range, const base::RangeLimits& limits) {
-  return std::isnan(range) ? limits.max : std::clamp(range, limits.min, limits.max);
+/// [m] Player's ranges are finite and lie within the sensor's limits; NaN becomes the largest. A valid range is less
+/// than the largest as it is sent, in float32 too.
+template <class Number>
+Number clean(double range, const base::RangeLimits& limits) {
+  const auto most = static_cast<Number>(limits.max);
+  if (std::isnan(range) || range >= limits.max) return most;
+  const auto nearest = static_cast<Number>(std::max(range, limits.min));
+  return nearest < most ? nearest : std::nextafter(most, Number{0});
 }
 
 /// Numbers per element, of which the first is its range.
@@ -22,7 +27,7 @@ void put_ranges(const Device& device, const LastReading& reading, XdrWriter& xdr
   const std::size_t width = width_of(device);
   xdr.put_count(reading.values.size() / width);
   for (std::size_t i = 0; i < reading.values.size(); i += width)
-    xdr.put(static_cast<Number>(clean(reading.values[i], limits_of(*device.sensor))));
+    xdr.put(clean<Number>(reading.values[i], limits_of(*device.sensor)));
 }
 
 void put_scan(const Device& device, const LastReading& reading, XdrWriter& xdr) {

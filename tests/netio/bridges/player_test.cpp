@@ -179,6 +179,30 @@ TEST_F(PlayerTest, ScansHaveNoNaNAndNoNegativeRange) {
   EXPECT_TRUE(xdr.done());
 }
 
+/// Sonars, infrared sensors and lasers: float32 holds 8 and 0.7 or the numbers on either side of 3.3.
+TEST(PlayerRangers, AValidRangeIsLessThanTheLargestAsItIsSent) {
+  for (const double max : {8.0, 0.7, 3.3, 5.1}) {
+    const sensors::SensorSpec sensor{.limit = max, .range_min = 0.3};
+    const Device device{.interf = Interface::sonar, .sensor = &sensor, .type = sensors::kSonar};
+    LastReading reading;
+    reading.values = {std::nextafter(max, 0.0), max * (1.0 - 0x1p-26), max * (1.0 - 0x1p-22), max, kInf, 0.3, 0.1};
+    base::Bytes bytes;
+    XdrWriter writer(bytes);
+    put_reading(device, reading, {}, false, writer);
+    XdrReader xdr(bytes);
+    const std::vector<double> sent = floats(xdr);
+    const auto most = static_cast<double>(static_cast<float>(max)), least = static_cast<double>(0.3F);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_LT(sent[i], most) << max;
+      EXPECT_NEAR(sent[i], reading.values[i], 0x1p-23 * max);
+    }
+    EXPECT_EQ(sent[3], most) << "no echo";
+    EXPECT_EQ(sent[4], most);
+    EXPECT_EQ(sent[5], least);
+    EXPECT_EQ(sent[6], least) << "too near";
+  }
+}
+
 TEST_F(PlayerTest, FirstRangesOfARangerDescribeIt) {
   const Address ranger{Interface::ranger, 0};
   client.access(kPosition, Access::close);
