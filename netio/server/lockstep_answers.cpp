@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "netio/packets.h"
@@ -116,7 +117,9 @@ void Lockstep::encode(Process& process, std::uint32_t index) {
   // Receivers do not see which elements have a flag, so `error` is stated only where it holds for all of them.
   const bool unsure = base::is_unsure(reading);
   const double error = unsure ? HUGE_VAL : reading.bound;
-  header.accuracy = netio::encode_accuracy({reading.mode, unsure, reading.bound});
+  // A bound of 0, as without magnets, is the least that the word states: 0 stands for none there.
+  const double bound = std::max(reading.bound, std::numeric_limits<double>::min());
+  header.accuracy = netio::encode_accuracy({reading.mode, unsure, bound});
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes());
   netio::encode(header, netio::Values{place, reading.type, total, part.first, reading.X_WS, error, bytes}, packet_);
 }

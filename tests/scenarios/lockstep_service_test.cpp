@@ -9,6 +9,7 @@
 #include "control/own_controllers.h"
 #include "sensors/laneedge.h"
 #include "sensors/laser.h"
+#include "sensors/magnetometer.h"
 #include "sensors/sensor_type.h"
 #include "tests/netio/server/fixture.h"
 #include "tests/scenarios/lockstep_driver.h"
@@ -222,6 +223,7 @@ world::World bounds_world(const sensors::LaserSettings& settings) {
   world::World world = server::room();
   world.movers[0].sensors = {sensors::laser_sensor(settings)};
   for (world::Mover& mover : world.movers) mover.sensors.push_back({"laneedge", "edge", {}, 0.1, 1.0, 1.0, {}, 0, ""});
+  world.movers[0].sensors.push_back({"magnetometer", "array", {}, 0.1, 1.0, 1.0, {}, 0, ""});
   world.lane_markings.push_back({{{-1.5, -1.0}, {-1.5, 1.0}}, 0.1, 0xFFFFFFFFu});
   world::LaneMarking bend{{}, 0.1, 0xFFFFFFFFu};
   for (double angle = -1.5; angle < 1.5; angle += 0.01)
@@ -251,6 +253,8 @@ TEST(LockstepService, ErrorsHoldForEveryValueOrAreLeftOut) {
     EXPECT_EQ(std::isfinite(straight.errors.at(sensors::kLaser)), c.error) << c.mode;
     EXPECT_EQ(laser.unsure, c.unsure) << c.mode;
     EXPECT_EQ(std::isfinite(laser.bound), c.bound) << c.mode;
+    EXPECT_EQ(straight.errors.at(sensors::kMagnetometer), 0.0) << "there are no magnets";
+    EXPECT_LT(straight.accuracies.at(sensors::kMagnetometer).bound, 1e-18) << "the least that the word states";
     EXPECT_LT(straight.errors.at(sensors::kLaneEdge), 1.1e-8);
     EXPECT_FALSE(straight.accuracies.at(sensors::kLaneEdge).unsure);
     EXPECT_FALSE(std::isnan(bend.readings.at(sensors::kLaneEdge)[0]));

@@ -37,10 +37,13 @@ function longest(list, width) {
   return found;
 }
 
-/** Ranges without an echo are infinite, those of surfaces that are too near -infinite (REP 117). */
-function valueText(value, unit, isRange) {
-  if (isRange && value === -Infinity) return 'too near';
-  return isRange && value === Infinity ? 'no echo' : `${short(value)} ${unit}`.trim();
+/**
+ * Ranges without an echo are infinite in scans and `most` in other readings; those of surfaces that are too near are
+ * -infinite (REP 117). @param most range_max of a range; undefined: the value is none
+ */
+function valueText(value, unit, most) {
+  if (most !== undefined && value === -Infinity) return 'too near';
+  return value >= most ? 'no echo' : `${short(value)} ${unit}`.trim();
 }
 
 class Card {
@@ -69,7 +72,8 @@ class Card {
   }
   draw(extra) {
     if (!this.message) { this.rows.replaceChildren(element('dt', { textContent: this.waiting })); return; }
-    const rows = extra ?? this.quantities.map(({ label, unit, of }) => [label, valueText(of(this.message), unit, this.type.scan || this.sensor.cones)]);
+    const isRange = this.type.scan || this.sensor.cones;
+    const rows = extra ?? this.quantities.map(({ label, unit, of }) => [label, valueText(of(this.message), unit, isRange && unit === 'm' ? this.sensor.range_max : undefined)]);
     this.rows.replaceChildren(...rows.flatMap(([name, value]) => [element('dt', { textContent: name }), element('dd', { textContent: value })]));
     if (this.plot.isConnected) plotHistory(this.plot, this.histories[this.chosen], this.quantities[this.chosen].unit);
     if (!this.bars) return;
