@@ -18,6 +18,24 @@ double distance(const Measurement& m, const Estimate& e) {
   return std::hypot(x ? m.X_WM.x - e.X_WM.x : 0.0, y ? m.X_WM.y - e.X_WM.y : 0.0);
 }
 
+/// The model for a track that starts anew: speeds as large as those of its last state, which wander on, are as probable
+/// as the model's unknown ones.
+MotionModel with_speeds_of(const MotionModel& model, const Hypotheses& last, std::int64_t time) {
+  constexpr double kLongest = 10.0;  // [s] of wandering
+  const double seconds = std::clamp(1e-9 * static_cast<double>(time - last[0].estimate.time), 0.0, kLongest);
+  std::array<double, kComponents> squares{};
+  for (const auto& [weight, e] : last) {
+    const std::array<double, kComponents> speeds{0.0, 0.0, 0.0, e.velocity.forward, e.velocity.left, e.velocity.turn};
+    for (std::size_t k = kForward; k <= kTurn; ++k)
+      squares[k] += weight * (speeds[k] * speeds[k] + e.covariance[k * kComponents + k]);
+  }
+  const double speed = std::max(squares[kForward] + model.forward * seconds, squares[kLeft] + model.left * seconds);
+  MotionModel wide = model;
+  wide.unknown[1] = std::max(model.unknown[1], std::sqrt(speed));
+  wide.unknown[2] = std::max(model.unknown[2], std::sqrt(squares[kTurn] + model.turn * seconds));
+  return wide;
+}
+
 }  // namespace
 
 std::string_view name(Verdict verdict) {
@@ -96,7 +114,8 @@ void TrackFilter::replay(std::size_t from) {
 Verdict TrackFilter::apply(const Measurement& m, State& state) {
   const auto begin = [&] {
     state.last_position = m.time;
-    start(options_.model, m, options_.hypotheses, state.hypotheses);
+    const MotionModel model = state.known() ? with_speeds_of(options_.model, state.hypotheses, m.time) : options_.model;
+    start(model, m, options_.hypotheses, state.hypotheses);
     return Verdict::started;
   };
   const bool position = has_position(m);
@@ -131,28 +150,34 @@ Prediction TrackFilter::predict(std::int64_t time) const {
 
   const Estimate& last = most_probable(state->hypotheses);
   Prediction prediction{Prediction::Status::fresh, time - last.time, estimation::predict(options_.model, last, time)};
-  const bool one = state->hypotheses.size() == 1 && has_certain_heading(prediction.estimate);
-  if (!one && options_.hypotheses > 1) prediction.estimate.covariance = spread(*state, place, prediction.estimate);
-  if (prediction.age <= options_.stale_after) return prediction;
-  const std::int64_t end = last.time + options_.stale_after;
-  prediction.status = Prediction::Status::stale;
-  prediction.estimate.X_WM = estimation::predict(options_.model, last, end).X_WM;
-  prediction.estimate.velocity = {};
+  Estimate& estimate = prediction.estimate;
+  const bool stale = prediction.age > options_.stale_after;
+  const bool one = state->hypotheses.size() == 1 && has_certain_heading(estimate);
+  const bool many = !one && options_.hypotheses > 1;
+  if (many)
+    advance_to(time, *state, place);
+  else if (stale)
+    predicted_.assign(1, {1.0, estimate});
+  if (stale) {
+    prediction.status = Prediction::Status::stale;
+    estimate.X_WM = estimation::predict(options_.model, last, last.time + options_.stale_after).X_WM;
+    estimate.velocity = {};
+  }
+  if (many || stale) estimate.covariance = covariance_about(estimate, predicted_);
   return prediction;
 }
 
-/// The covariance of `predicted` over all hypotheses. Later predictions go on from the last whole step of earlier ones.
-Covariance TrackFilter::spread(const State& newest, std::size_t place, const Estimate& predicted) const {
+/// Makes `predicted_` the hypotheses at `time`. Later predictions go on from the last whole step of earlier ones.
+void TrackFilter::advance_to(std::int64_t time, const State& newest, std::size_t place) const {
   const HypothesesLimits limits{options_.hypotheses, newest.time()};
-  const std::int64_t steps = (predicted.time - limits.corrected) / kHypothesesStep;
+  const std::int64_t steps = (time - limits.corrected) / kHypothesesStep;
   const std::int64_t whole =
       limits.corrected + std::clamp(steps, std::int64_t{0}, kMostHypothesesSteps) * kHypothesesStep;
   if (ahead_.empty() || ahead_of_ != place || ahead_[0].estimate.time > whole) ahead_ = newest.hypotheses;
   ahead_of_ = place;
   advance(options_.model, whole, limits, ahead_);
   predicted_ = ahead_;
-  advance(options_.model, predicted.time, limits, predicted_);
-  return covariance_about(predicted, predicted_);
+  advance(options_.model, time, limits, predicted_);
 }
 
 void TrackFilter::reset() {

@@ -71,8 +71,9 @@ struct Prediction {
   };
   Status status = Status::none;
   std::int64_t age = 0;  ///< [ns] since the last used measurement; < 0 for times before it
-  /// At the time asked for, from the most probable hypothesis. Its covariance is that of all hypotheses around it, and
-  /// grows with age, stale or not. An unknown heading has a variance of pi^2 / 3 and more.
+  /// At the time asked for, from the most probable hypothesis. Its covariance is that of all hypotheses around it.
+  /// Stale: around the pose at rest, so that it has the way and the speeds since then as errors, and grows with age. An
+  /// unknown heading has a variance of pi^2 / 3 and more.
   Estimate estimate;
 };
 
@@ -122,7 +123,7 @@ class TrackFilter {
   std::size_t insert(const Measurement& measurement);
   void replay(std::size_t from);
   Verdict apply(const Measurement& measurement, State& state);
-  Covariance spread(const State& newest, std::size_t place, const Estimate& predicted) const;
+  void advance_to(std::int64_t time, const State& newest, std::size_t place) const;
   Verdict count(Verdict verdict);
 
   FilterOptions options_;

@@ -183,5 +183,34 @@ TEST(TrackConsistency, PosesWithLossAndDelay) {
                          .most_tail = 1.6});
 }
 
+/// Ten poses in a second and none for three more: the frozen pose is wrong by the way since it was frozen, and the
+/// velocity of 0 by the whole one.
+TEST(TrackConsistency, StaleStates) {
+  std::mt19937_64 random(21);
+  for (const MotionModel& model : {kDrive, kBody, kOmni}) {
+    std::vector<double> errors;
+    int degrees = 0;
+    for (int run = 0; run < kRuns; ++run) {
+      reference::Truth truth{{}, random, {}};
+      truth.s[kYaw] = 2.0 * M_PI * static_cast<double>(random() >> 11) * 0x1p-53 - M_PI;
+      truth.s[kForward] = truth.normal(0.25), truth.s[kTurn] = truth.normal(0.25);
+      TrackFilter filter({.model = model});
+      for (int k = 0; k < 40; ++k) {
+        const std::int64_t now = kSecond + k * 100'000'000ll;
+        if (k > 0) truth.move(model, 0.1);
+        if (k <= 10) filter.take(truth.measure(kPoseBits, now, {1e-4, 4e-4}), now);
+        const Prediction seen = filter.predict(now);
+        if (seen.status != Prediction::Status::stale) continue;
+        EXPECT_EQ(seen.estimate.velocity.forward, 0.0);
+        errors.push_back(reference::nees(seen.estimate, truth.s, degrees));
+      }
+    }
+    EXPECT_GE(errors.size(), 19u * static_cast<std::size_t>(kRuns));
+    if (!instrumented()) {
+      EXPECT_NEAR(mean(errors) / degrees, 1.0, 0.15);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sf::estimation::track_consistency
