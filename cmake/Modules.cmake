@@ -18,14 +18,14 @@ if(SENSORFARM_BUILD_PLUGINS)
 endif()
 
 # Build flags of all targets. Contraction is off so that host and device round alike. Code can be part of a shared library
-# (-fPIC; one form for all, as precompiled headers need). g++ 12 warns falsely of overlapping strings (-Wrestrict) and,
-# with precompiled headers, of array bounds.
+# (-fPIC; one form for all, as precompiled headers need). g++ 12 warns falsely of overlapping strings (-Wrestrict), of
+# array bounds with precompiled headers, and of variants that are moved before they are set (-Wmaybe-uninitialized).
 add_library(project_options INTERFACE)
 target_include_directories(project_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_link_libraries(project_options INTERFACE glm::glm)
 target_compile_definitions(project_options INTERFACE GLM_FORCE_CTOR_INIT)  # vectors start at zero
 target_compile_options(project_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers
-                       "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>" -ffp-contract=off -fPIC -fno-semantic-interposition
+                       "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-maybe-uninitialized>" -ffp-contract=off -fPIC -fno-semantic-interposition
                        $<$<BOOL:${SENSORFARM_WERROR}>:-Werror>)
 if(SENSORFARM_SANITIZE)
   target_compile_options(project_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
