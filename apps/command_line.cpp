@@ -107,8 +107,7 @@ std::string explain_refusal(const CLI::App& app, const CLI::ParseError& error, i
 Parsed parse_command_line(int argc, const char* const* argv) {
   Parsed parsed;
   CLI::App app{"sensorfarm: 2-D multi-robot simulator and virtual-sensor server", "sensorfarm"};
-  app.formatter(std::make_shared<HelpPage>());
-  app.get_formatter()->column_width(kNameWidth);
+  app.formatter(help_page(kNameWidth));
   app.set_help_all_flag("--help-all", "Print this message with all options and exit");
   app.set_version_flag("--version", std::string("sensorfarm ") + SF_VERSION);
   app.add_option_function<int>("--interrupted-code", set_interrupted_code,

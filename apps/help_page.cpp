@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <span>
+#include <CLI/CLI.hpp>
 #include <string_view>
 #include <vector>
 
@@ -48,7 +48,14 @@ const Section* everyday_of(const CLI::App& app) {
   return nullptr;
 }
 
-}  // namespace
+class HelpPage : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override;
+  std::string make_subcommands(const CLI::App* app, CLI::AppFormatMode mode) const override;
+
+ private:
+  std::string make_everyday(const CLI::App& app) const;
+};
 
 std::string HelpPage::make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const {
   if (mode == CLI::AppFormatMode::Sub) return make_expanded(app);
@@ -77,6 +84,14 @@ std::string HelpPage::make_subcommands(const CLI::App* app, CLI::AppFormatMode m
     for (const char* name : section.names) text += make_subcommand(app->get_subcommand(name));
   }
   return text;
+}
+
+}  // namespace
+
+std::shared_ptr<CLI::FormatterBase> help_page(std::size_t column_width) {
+  const auto page = std::make_shared<HelpPage>();
+  page->column_width(column_width);
+  return page;
 }
 
 }  // namespace sf::apps

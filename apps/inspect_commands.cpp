@@ -9,6 +9,7 @@
 #include "apps/road_commands.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
+#include "base/box.h"
 #include "base/error.h"
 #include "sensors/laser_noise.h"
 #include "viz/world_figure.h"
@@ -17,6 +18,8 @@
 namespace sf::apps {
 
 namespace {
+
+constexpr double kArea = 2.0;  ///< [m] least sides of what walls enclose
 
 /// Whether the mover has a sensor of that type; 0: of any.
 bool has_type(const sensors::SensorSet& sensor_set, std::uint8_t type, std::uint32_t mover) {
@@ -86,8 +89,19 @@ Chosen require_sensor(const world::World& world, const sensors::SensorSet& senso
                              std::to_string(options.sensor) + "; it has " + has + " (--type, --sensor)");
 }
 
+/// Where a place beyond walls that enclose an area is, such as one in millimetres; else "".
+std::string beyond_walls(const world::World& world, const base::Pose& X) {
+  base::Box walls = base::empty_box();
+  for (const world::Segment& wall : world.walls) walls = base::united(walls, base::box_of(wall.a, wall.b));
+  const glm::dvec2 p{X.x, X.y}, size = walls.max - walls.min;
+  if (!(std::min(size.x, size.y) >= kArea) || base::meet(walls, base::box_of(p, p))) return "";
+  return fmt::format("outside of all walls (x {:g} to {:g} m, y {:g} to {:g} m)", walls.min.x, walls.max.x, walls.min.y,
+                     walls.max.y);
+}
+
 void warn_of_pose(const world::World& world, const world::Mover& robot, const base::Pose& X_WM) {
-  const std::string where = world::PlaceCheck(world).problem(robot, X_WM);
+  std::string where = world::PlaceCheck(world).problem(robot, X_WM);
+  if (where.empty()) where = beyond_walls(world, X_WM);
   if (!where.empty()) print_message("warning: at ({:g}, {:g}) '{}' is {}", X_WM.x, X_WM.y, robot.name, where);
 }
 

@@ -76,7 +76,7 @@ Validator number(double first, double last) {
 Validator in_seconds(double first, double last) {
   return [=, is_number = number(first, last)](const std::string& text) {
     if (is_number(text).empty()) return std::string();
-    return fmt::format("expected seconds from {:g} to {:g}, such as 90, got '{}'", first, last, text);
+    return fmt::format("expected seconds from {:g} to {:g}, got '{}'", first, last, text);
   };
 }
 

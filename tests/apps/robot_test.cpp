@@ -208,7 +208,7 @@ TEST(Robot, WrongWordsAreRefusedWithWhatWasExpected) {
       {{"--name", "roomba2", "--set", "speed"}, "expected KEY=VALUE"},
       {{"--name", "roomba2", "--set", "sped=1"}, "has no setting 'sped'"},
       {{"--name", "roomba2", "--loss", "1.5"}, "expected a number from 0 to 1"},
-      {{"--name", "roomba2", "--delay", "-1"}, "expected a number from 0 to 3600"},
+      {{"--name", "roomba2", "--delay", "-1"}, "expected seconds from 0 to 3600"},
       {{"--name", "roomba2", "--port", "0"}, "expected a whole number from 1 to 65535"},
       {{"--name", "roomba2", "--map", "52000"}, "expected HOST:PORT"},
       {{"--name", "roomba2", "--map", "127.0.0.1:0"}, "expected HOST:PORT"},

@@ -66,6 +66,10 @@ TEST(Sense, APoseThatNoRobotCanHaveIsAWarning) {
   EXPECT_NE(run_program({"sense", world, "--pose", "-0.1,0,0"}).err.find("is partly in a wall of 'long wall'"),
             std::string::npos);
   EXPECT_EQ(run_program({"sense", world, "--pose", "-1,0,0"}).err.find("warning"), std::string::npos);
+  const std::string rooms = our_world("rooms.world");
+  EXPECT_NE(run_program({"sense", rooms, "--pose", "1000,2000,0"}).err.find("is outside of all walls (x "),
+            std::string::npos);
+  EXPECT_EQ(run_program({"sense", rooms, "--pose", "1,2,0"}).err.find("warning"), std::string::npos);
 }
 
 TEST(Sense, ARobotOneMetreFromAWallReadsOneMetre) {

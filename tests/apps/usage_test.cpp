@@ -100,7 +100,7 @@ TEST(Usage, MistakesAreExplained) {
   for (const auto& [arguments, said] : std::vector<Wrong>{
            {{"run", "--hlep"}, "'--hlep' was not expected; did you mean '--help'?"},
            {{"run", "--durration=3"}, "'--durration' was not expected; did you mean '--duration'?"},
-           {{"run", world, "--duration", "1m"}, "--duration: expected seconds from 0 to 1e+09, such as 90, got '1m'"},
+           {{"run", world, "--duration", "1m"}, "--duration: expected seconds from 0 to 1e+09, got '1m'"},
            {{"run", world, "--controller", "wandr"}, "did you mean 'wander'?"},
            {{"help", "rnu"}, "did you mean 'run'?"},
            {{"export", world}, "expected a recording, such as the folder that `run --record` writes, got"},
