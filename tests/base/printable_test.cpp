@@ -2,6 +2,7 @@
 
 #include "base/printable.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace sf::base {
@@ -33,6 +34,34 @@ TEST(Printable, InvalidUtf8IsWrittenAsNumbers) {
   EXPECT_EQ(printable("\xe0\x80\x9b"), "\\xe0\\x80\\x9b");           // in three
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // half of a pair of UTF-16
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond the last character
+}
+
+/// The first and the last sequence of each size and of each range that UTF-8 leaves out, with their neighbours.
+TEST(Printable, SequencesEndAtTheirLimits) {
+  const char* const valid[] = {"\x7e",
+                               "\xc2\xa0",
+                               "\xdf\xbf",
+                               "\xe0\xa0\x80",
+                               "\xed\x9f\xbf",
+                               "\xee\x80\x80",
+                               "\xef\xbf\xbf",
+                               "\xf0\x90\x80\x80",
+                               "\xf3\x8f\xbf\xbf",
+                               "\xf0\xbf\xbf\xbf",
+                               "\xf4\x8f\xbf\xbf",
+                               "\xf4\x80\x80\x80"};
+  for (const char* text : valid) EXPECT_EQ(printable(text), text);
+  const char* const others[] = {
+      "\xc1\xbf",     "\xe0\x9f\xbf", "\xed\xa0\x80", "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80", "\xf5\x80\x80\x80",
+      "\xe2\x82\xc0", "\xc3\x7f",     "\xff",         "\xf0\x90\x80"};
+  for (const char* text : others) {
+    std::string numbers;
+    for (const char* at = text; *at != 0; ++at) numbers += fmt::format("\\x{:02x}", static_cast<unsigned char>(*at));
+    EXPECT_EQ(printable(text), numbers);
+  }
+  for (const char* text : {"\x1f", "\x01", "\xc2\x9f", "\xc2\x80"})
+    EXPECT_EQ(printable(text).front(), '\\') << "controls";
+  EXPECT_EQ(printable(" "), " ");
 }
 
 TEST(Printable, OneLineHasNoBreaks) {

@@ -26,6 +26,13 @@ TEST(Shares, MoreSharesThanItems) {  // some ranks have no robot
   EXPECT_EQ(first.back(), 2u);
 }
 
+/// An item whose middle is exactly where two shares meet goes to the second one.
+TEST(Shares, AnItemInTheMiddleGoesToTheLaterShare) {
+  EXPECT_EQ(equal_shares(std::vector<double>{1, 1, 1}, 2), (Firsts{0, 1, 3}));
+  EXPECT_EQ(equal_shares(std::vector<double>{2, 2, 2, 2, 2}, 2), (Firsts{0, 2, 5}));
+  EXPECT_EQ(equal_shares(std::vector<double>{4}, 2), (Firsts{0, 0, 1}));
+}
+
 TEST(Shares, NoItems) { EXPECT_EQ(equal_shares({}, 2), (Firsts{0, 0, 0})); }
 
 TEST(Shares, EachMissesItsPartByLessThanTwoHalves) {  // both ends are off by half an item at most

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 
 #include "sensors/own_sensors.h"
@@ -126,6 +127,42 @@ TEST(ReadingOrder, FollowsTheFarm) {
     check(farm.tick(k * 100'000'000LL, reports));
   }
   EXPECT_GT(readings, 100u);
+}
+
+/// Late readings that are due at once come by robot, then by type, then by sensor, and before all others.
+TEST(ReadingOrder, LateReadingsComeByRobotTypeAndSensor) {
+  world::World world = small_world(3, {});
+  for (world::Mover& mover : world.movers) {
+    mover.sensors.clear();
+    for (const char* type : {"sonar", "infrared", "sonar", "infrared"})
+      mover.sensors.push_back(trial::fitted(type, {trial::setting("latency", {0.05})}));
+    mover.sensors.push_back(trial::fitted("bumper"));
+  }
+  const sensors::SensorSet sensor_set(world);
+  const ReadingOrder order(sensor_set);
+  struct Row {
+    bool prompt;
+    std::uint32_t mover;
+    std::uint8_t type;
+    std::uint32_t sensor;
+    auto operator<=>(const Row&) const = default;
+  };
+  std::map<Row, ReadingOrder::Key> keys;
+  for (const auto& group : sensor_set.groups())
+    for (const auto& row : group.rows) {
+      const std::uint32_t number = order.sensor_of(group.type->id, row.mover, row.sensor);
+      EXPECT_EQ(order.is_late(number), row.latency > 0.0);
+      const std::int64_t time = row.latency > 0.0 ? 50'000'000 : 100'000'000;  // all are due at 0.1 s
+      keys[{row.latency == 0.0, row.mover, group.type->id, row.sensor}] = order.key(number, time);
+    }
+  ASSERT_EQ(keys.size(), 15u);
+  EXPECT_EQ(order.sensors(), 15u);
+  ReadingOrder::Key last{-1, 0};
+  for (const auto& [row, key] : keys) {
+    EXPECT_EQ(key.due, 100'000'000);
+    EXPECT_LT(last, key) << "mover " << row.mover << ", type " << int{row.type} << ", sensor " << row.sensor;
+    last = key;
+  }
 }
 
 }  // namespace

@@ -271,6 +271,7 @@ TEST(McapReader, BadRecordsAreLeftOutAndTold) {
        Hand().record(0x09, 36).u64(0).u64(0).text("").text("").u64(~0ull).u32(0).bytes},
       {"attachment with a wrong CRC", Hand().record(0x09, 36).u64(0).u64(0).text("").text("").u64(0).u32(1).bytes},
       {"metadata without its map", Hand().record(0x0C, 4).text("").bytes},
+      {"message index without a chunk", Hand().record(0x07, 6).u16(1).u32(0).bytes},
       {"data end with a wrong CRC", Hand().record(0x0F, 4).u32(1).bytes},
   };
   for (const auto& [reason, bytes] : corpus) {
@@ -413,6 +414,51 @@ TEST(McapReader, ASummaryThatDoesNotFitTheDataIsTold) {
     const std::size_t end = place.opcode == Opcode::footer ? place.end - 4 : place.end;
     expect_each_flip_told(file, place.begin, end, mend);
   }
+}
+
+/// A chunk of one message and its index as `rest` writes it: a count of bytes, and what follows.
+TEST(McapReader, MessageIndexesEndWithTheirEntries) {
+  const auto damage = [](const Bytes& rest) {
+    Hand file = opening();
+    const Bytes message = Hand().record(0x05, 22).u16(1).u32(9).u64(5).u64(5).bytes;
+    file.record(0x06, 40 + 31).u64(5).u64(5).u64(31).u32(slow_crc(message)).text("").u64(31).raw(message);
+    file.record(0x07, 2 + rest.size()).u16(1).raw(rest);
+    return read(file.record(0x05, 22).u16(1).u32(10).u64(6).u64(6).bytes).damage;  // ends the chunk's indexes
+  };
+  const struct {
+    const char* reason;
+    Bytes rest;
+  } malformed[] = {{"a byte behind the entries", Hand().u32(16).u64(5).u64(0).u8({0}).bytes},
+                   {"a byte behind none", Hand().u32(0).u8({0}).bytes},
+                   {"less than an entry", Hand().u32(15).u64(5).u32(0).u8({0, 0, 0}).bytes},
+                   {"more than an entry", Hand().u32(17).u64(5).u64(0).u8({0}).bytes},
+                   {"more than there is", Hand().u32(32).u64(5).u64(0).bytes},
+                   {"no count", Hand().u8({0, 0}).bytes}};
+  for (const auto& [reason, rest] : malformed) {
+    const auto found = damage(rest);
+    ASSERT_FALSE(found.empty()) << reason;
+    EXPECT_NE(found[0].find("malformed message index"), std::string::npos) << reason << ": " << found[0];
+  }
+  EXPECT_TRUE(damage(Hand().u32(16).u64(5).u64(0).bytes).empty()) << "as it is";
+  EXPECT_TRUE(damage(Hand().u32(0).bytes).empty()) << "it may list nothing";
+  for (const Bytes& other : {Hand().u32(16).u64(6).u64(0).bytes, Hand().u32(16).u64(5).u64(1).bytes,
+                             Hand().u32(32).u64(5).u64(0).u64(5).u64(0).bytes})
+    EXPECT_EQ(damage(other).size(), 1u) << "another time or place, or an entry twice";
+}
+
+/// A chunk states the times of its first and its last message.
+TEST(McapReader, TheTimesOfAChunkAreThoseOfItsMessages) {
+  const auto damaged = [](std::uint64_t first, std::uint64_t last) {
+    Hand file = opening();
+    Hand messages;
+    for (const std::uint64_t time : {7u, 5u, 6u}) messages.record(0x05, 22).u16(1).u32(0).u64(time).u64(time);
+    file.record(0x06, 40 + 93).u64(first).u64(last).u64(93).u32(slow_crc(messages.bytes)).text("").u64(93);
+    return !read(file.raw(messages.bytes).bytes).damage.empty();
+  };
+  EXPECT_FALSE(damaged(5, 7));
+  for (const auto& [first, last] : {std::pair{4, 7}, {6, 7}, {5, 6}, {5, 8}, {7, 5}})
+    EXPECT_TRUE(damaged(static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(last)))
+        << first << " to " << last;
 }
 
 TEST(McapReader, BytesBehindTheEndAreTold) {

@@ -105,5 +105,34 @@ TEST(Thesis, TablesAreThoseOfTheThesis) {
   }
 }
 
+/// Rows in the table's order, and "-" as the ratio to a mean of the thesis that is 0.
+TEST(Statistics, TheTableHasTheRatiosOfTheMeans) {
+  ThesisTable table{.experiment = "e", .number = 1, .unit = "m", .trials = {}};
+  for (ThesisRow& row : table.trials) row = {0.0, 2.0, -4.0, 4.0, 0.0, 1.0, 0.5, 8.0};
+  const ErrorStatistics one{.count = 2,
+                            .mean = 1.0,
+                            .deviation = 1.0,
+                            .least = -1.0,
+                            .most = 3.0,
+                            .abs_mean = 0.5,
+                            .abs_deviation = 0.25,
+                            .abs_least = 0.5,
+                            .abs_most = 2.0};
+  ErrorStatistics other = one;
+  other.mean = 3.0;
+  const std::string text = table_of(std::vector{one, other}, table);
+  EXPECT_EQ(text,
+            "| [m] | mean | std | min | max | abs_mean | abs_std | abs_min | abs_max |\n"
+            "|---|---|---|---|---|---|---|---|---|\n"
+            "| here, trial 1 | 1.000 | 1.000 | -1.000 | 3.000 | 0.500 | 0.250 | 0.500 | 2.000 |\n"
+            "| here, trial 2 | 3.000 | 1.000 | -1.000 | 3.000 | 0.500 | 0.250 | 0.500 | 2.000 |\n"
+            "| thesis, trial 1 | 0.000 | 2.000 | -4.000 | 4.000 | 0.000 | 1.000 | 0.500 | 8.000 |\n"
+            "| thesis, trial 2 | 0.000 | 2.000 | -4.000 | 4.000 | 0.000 | 1.000 | 0.500 | 8.000 |\n"
+            "| thesis, trial 3 | 0.000 | 2.000 | -4.000 | 4.000 | 0.000 | 1.000 | 0.500 | 8.000 |\n"
+            "| **here, mean** | 2.000 | 1.000 | -1.000 | 3.000 | 0.500 | 0.250 | 0.500 | 2.000 |\n"
+            "| **thesis, mean** | 0.000 | 2.000 | -4.000 | 4.000 | 0.000 | 1.000 | 0.500 | 8.000 |\n"
+            "| ratio | - | 0.50 | 0.25 | 0.75 | - | 0.25 | 1.00 | 0.25 |\n");
+}
+
 }  // namespace
 }  // namespace sf::scenarios

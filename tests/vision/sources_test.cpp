@@ -70,6 +70,33 @@ TEST_F(Sources, FoldersAreReadInOrderWithoutSpecialFiles) {
   EXPECT_EQ(seen, (std::vector<int>{10, 20, 20}));
 }
 
+/// Motion JPEG as `--overlay` writes it: images in order, in grey, and the rate.
+TEST_F(Sources, VideosAreReadAsTheyWereWritten) {
+  {
+    const auto video = opencv().open_video(path("v.avi"), 32, 16, 12.0);
+    for (int k = 0; k < 3; ++k) {
+      Image image{32, 16, 3, std::vector<std::uint8_t>(32 * 16 * 3, static_cast<std::uint8_t>(60 + 50 * k))};
+      video->write(image);
+    }
+  }
+  std::unique_ptr<ImageSource> source;
+  try {
+    source = opencv().open_source(path("v.avi"), 0, 0, 0.0);
+  } catch (const base::InputError&) {
+    GTEST_SKIP() << "this OpenCV has no FFmpeg";
+  }
+  EXPECT_FALSE(source->is_live());
+  EXPECT_NEAR(source->rate(), 12.0, 1e-6);
+  int count = 0;
+  for (Image image; source->next(image); ++count) {
+    ASSERT_EQ(image.width, 32);
+    ASSERT_EQ(image.height, 16);
+    EXPECT_EQ(image.channels, 1);
+    EXPECT_NEAR(*image.at(7, 5), 60 + 50 * count, 4) << count;
+  }
+  EXPECT_EQ(count, 3);
+}
+
 TEST_F(Sources, RefuseSpecialFiles) {
   ASSERT_EQ(mkfifo(path("f.png").c_str(), 0600), 0);
   ASSERT_EQ(mkfifo(path("f.avi").c_str(), 0600), 0);

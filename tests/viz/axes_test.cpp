@@ -38,6 +38,36 @@ TEST(Ticks, EndsAreIncluded) {
   EXPECT_DOUBLE_EQ(ticks.at.back(), 1.0);
 }
 
+/// Steps at and just beyond 1, 2 and 5, with the digits that distinguish them.
+TEST(Ticks, StepsAndDigitsAtTheirLimits) {
+  struct Case {
+    double smallest, step;
+    int decimals;
+    std::size_t count;  ///< within [0, 10 smallest]
+  };
+  for (const Case& c : {Case{1.0, 1.0, 0, 11},
+                        {1.0001, 2.0, 0, 6},
+                        {2.0, 2.0, 0, 11},
+                        {2.0001, 5.0, 0, 5},
+                        {5.0, 5.0, 0, 11},
+                        {5.0001, 10.0, 0, 6},
+                        {0.1, 0.1, 1, 11},
+                        {0.11, 0.2, 1, 6},
+                        {0.05, 0.05, 2, 11},
+                        {0.051, 0.1, 1, 6},
+                        {0.002, 0.002, 3, 11},
+                        {100.0, 100.0, 0, 11}}) {
+    const Ticks ticks = make_ticks(0.0, 10.0 * c.smallest, c.smallest);
+    EXPECT_NEAR(ticks.step, c.step, 1e-9 * c.step) << c.smallest;
+    EXPECT_EQ(ticks.decimals, c.decimals) << c.smallest;
+    EXPECT_EQ(ticks.at.size(), c.count) << c.smallest;
+  }
+  const Ticks between = make_ticks(-1.0001, 0.9999, 1.0);
+  ASSERT_EQ(between.at.size(), 2u);
+  EXPECT_EQ(between.at[0], -1.0);
+  EXPECT_EQ(between.at[1], 0.0);
+}
+
 TEST(Ticks, TextHasNoMinusZero) {
   EXPECT_EQ(tick_text(-0.0, 1), "0.0");
   EXPECT_EQ(tick_text(-0.04, 1), "0.0");

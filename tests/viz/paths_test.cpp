@@ -83,6 +83,19 @@ TEST(Paths, OutlinesTouchingInAPointKeepTheirArea) {  // at (2, 2) two edges beg
   EXPECT_DOUBLE_EQ(area_within(join_edges(edges)), 2.0);
 }
 
+/// What is left of an outline is kept from two points on, and unchanged where all of it lies in the box, borders
+/// included.
+TEST(Paths, CutOutlinesKeepTwoPoints) {
+  const std::vector<glm::dvec2> bar{{2, 5}, {8, 5}}, across{{5, 5}, {15, 5}}, dot{{5, 5}}, outside{{11, 1}, {12, 1}};
+  EXPECT_EQ(cut_outlines({bar}, kBox), (Paths{bar}));
+  EXPECT_TRUE(cut_outlines({dot, outside, {}}, kBox).empty());
+  const Paths cut = cut_outlines({across}, kBox);
+  ASSERT_EQ(cut.size(), 1u);
+  for (const glm::dvec2& p : cut[0]) EXPECT_TRUE(p.x >= 5 && p.x <= 10 && p.y == 5);
+  const std::vector<glm::dvec2> whole{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+  EXPECT_EQ(cut_outlines({whole}, kBox), (Paths{whole}));
+}
+
 /// A rectangle's part in the box is the rectangle of what both cover, whatever the rectangle.
 RC_GTEST_PROP(Paths, CutOutlinesKeepTheAreaInside, ()) {
   const auto side = [] { return *rc::gen::inRange(-200, 200) / 10.0; };

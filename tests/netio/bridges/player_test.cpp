@@ -568,6 +568,45 @@ TEST_F(PlayerTest, MapsAreTilesAndSegments) {
   EXPECT_EQ(client.request(map, 3).payload.size(), 16 + 8 + 8 * 32u) << "two walls of four sides";
 }
 
+/// Of each interface, the requests without a payload that are granted; all other numbers are refused, and 0 always is.
+TEST_F(PlayerTest, OtherRequestsOfEachInterfaceAreRefused) {
+  run.tick();
+  const struct {
+    Interface interf;
+    std::vector<std::uint32_t> granted, with_payload;
+  } rows[] = {{Interface::position2d, {1, 6}, {2, 3, 4, 5}},
+              {Interface::laser, {1, 3}, {2, 4}},
+              {Interface::ranger, {1, 5}, {2, 4}},
+              {Interface::sonar, {1}, {2}},
+              {Interface::ir, {1}, {2}},
+              {Interface::bumper, {1}, {}},
+              {Interface::gps, {}, {}},
+              {Interface::simulation, {}, {1, 2, 3, 4}},
+              {Interface::map, {1, 3}, {2}}};
+  for (const auto& row : rows)
+    for (const std::uint32_t subtype : {0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 255u}) {
+      if (std::count(row.with_payload.begin(), row.with_payload.end(), subtype) > 0) continue;
+      const bool granted = std::count(row.granted.begin(), row.granted.end(), subtype) > 0;
+      EXPECT_EQ(ask({row.interf, 0}, subtype), granted ? MessageType::ack : MessageType::nack)
+          << name_of(row.interf) << " " << subtype;
+    }
+  for (const std::uint32_t subtype : {0u, 6u, 7u, 8u, 9u, 11u})
+    EXPECT_EQ(ask({}, subtype), MessageType::nack) << subtype;
+  EXPECT_EQ(ask({}, 10, xdr_of(0u, 0u, 0u, 0u, 0u)), MessageType::ack) << "a rule for newer data";
+  for (const Address& unknown : {Address{Interface::laser, 2}, {Interface::gps, 1}, {Interface::player, 1}})
+    EXPECT_EQ(client.request({}, 2, xdr_of(0u, 0u, static_cast<std::uint32_t>(unknown.interf), unknown.index, 0u, 0u))
+                  .header.type,
+              MessageType::nack);
+  EXPECT_EQ(run.bridge.counts().malformed, 0u);
+  // Places without a pose, and tiles at the map's borders.
+  EXPECT_EQ(ask(kSimulation, 1, named_pose("eve", 0.0, 0.0, 0.0)), MessageType::nack);
+  EXPECT_EQ(ask(kSimulation, 3, named_pose("eve", 0.0, 0.0, 0.0)), MessageType::nack);
+  const Address map{Interface::map, 0};
+  EXPECT_EQ(ask(map, 2, xdr_of(2u, 1u, 1u, 1u, 0u, 0u, 0u)), MessageType::ack) << "the last cell";
+  EXPECT_EQ(ask(map, 2, xdr_of(2u, 2u, 1u, 1u, 0u, 0u, 0u)), MessageType::nack);
+  EXPECT_EQ(ask(map, 2, xdr_of(2u, 1u, 1u, 0u, 0u, 0u, 0u)), MessageType::nack);
+}
+
 TEST_F(PlayerTest, PortsInUseAreNamed) {
   const std::string refusal = refusal_of([&] { PlayerBridge(run.scene, run.bridge.endpoint()); });
   expect_in(std::to_string(run.bridge.endpoint().port), refusal);
