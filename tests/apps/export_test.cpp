@@ -1,5 +1,6 @@
 // `export`, `plot` and `view --3d` of a recorded run.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -356,6 +357,28 @@ TEST(Export, TagsHaveNoWaysAndMagnetsAField) {
   EXPECT_EQ(csv.code, 0);
   expect_in("no readings: the run was not recorded with --record-readings", csv.err);
   EXPECT_FALSE(std::filesystem::exists(folder.path("c/lights.csv"))) << "no lights";
+}
+
+/// Cells are a 400th of the longer side, at least 1 mm, and cover the world.
+TEST(Export, CellsOfAFieldAreAtLeastAMillimetre) {
+  const Folder folder;
+  for (const auto& [size, cell] : {std::pair{"0.1", 1e-3}, {"0.4", 1e-3}, {"0.8", 2e-3}, {"0.6", 1.5e-3}}) {
+    const std::string world = folder.write(
+        "w.world",
+        fmt::format("position( name \"one\" size [0.01 0.01 0.1] )\n"
+                    "model( name \"floor\" size [{0} {0} 0.01] boundary 1 )\n"
+                    "model( pose [0 0 -0.1 0] size [0.01 0.01 0.1] magnetic_moment 10 magnetometer_return 1 )\n",
+                    size));
+    ASSERT_EQ(run_program({"run", world, "--duration", "0.2", "--record", folder.path(size)}).code, 0);
+    const std::string out = folder.path(std::string("v") + size);
+    ASSERT_EQ(run_program({"export", folder.path(size), "--vtk", "-o", out, "--height", "0.1"}).code, 0);
+    const std::vector<glm::dvec2> middles = vtk_middles(out + "/field.vti");
+    ASSERT_GT(middles.size(), 1u);
+    EXPECT_NEAR(middles[1].x - middles[0].x, cell, 1e-9) << size;
+    const double half = 0.5 * std::atof(size);
+    EXPECT_GE(middles.back().x, half - 1e-9) << size;
+    EXPECT_LT(middles.back().x, half + 2.0 * cell) << size;
+  }
 }
 
 /// An X server without a screen, on a display of its own.

@@ -219,6 +219,26 @@ TEST(SweepCommand, SlurmScriptsNameWhatIsMissing) {
   EXPECT_NE(run_program(words).out.find("24 jobs: "), std::string::npos) << "nothing is missing: the tables";
 }
 
+/// Fifty points are listed, and the number of the others.
+TEST(SweepCommand, ListsFiftyPoints) {
+  const Folder folder;
+  folder.write("small.toml", "world = \"" + our_world("rooms.world") + "\"\nduration = 0.1\n");
+  for (const int points : {49, 50, 51}) {
+    std::string values = "1";
+    for (int i = 2; i <= points; ++i) values += ", " + std::to_string(i);
+    const std::string file =
+        folder.write("sweep.toml", "scenario = \"small.toml\"\n[grid]\nrobots = [" + values + "]\n");
+    const Outcome list = run_program({"sweep", file, "--list"}, no_device());
+    ASSERT_EQ(list.code, 0) << list.err;
+    EXPECT_EQ(count_lines(list.out), 1u + std::min(points, 50) + (points > 50 ? 1u : 0u)) << list.out;
+    EXPECT_NE(list.out.find("     0  robots = 1\n"), std::string::npos) << list.out;
+    EXPECT_NE(list.out.find("    48  robots = 49\n"), std::string::npos) << list.out;
+    EXPECT_EQ(list.out.find("    49  robots = 50\n") != std::string::npos, points >= 50) << list.out;
+    EXPECT_EQ(list.out.find("    50  ") != std::string::npos, false) << list.out;
+    EXPECT_EQ(list.out.find("\n1 points more\n") != std::string::npos, points == 51) << list.out;
+  }
+}
+
 TEST(SweepCommand, WrongUsageIsExplained) {
   const Folder folder;
   const std::string file = write_sweep(folder);

@@ -120,6 +120,15 @@ TEST(V2x, XmlIsOneDocument) {
   const Outcome two = run_program({"v2x", "decode", "--xml", folder.write("two.hex", hex + hex)});
   EXPECT_EQ(two.out.find("<?xml version=\"1.0\"?>\n<MessageFrames>\n  <MessageFrame>\n"), 0u) << two.out;
   EXPECT_EQ(two.out.substr(two.out.size() - 17), "</MessageFrames>\n");
+  const auto frames_in = [](const std::string& text) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find("<MessageFrame>", at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  EXPECT_EQ(frames_in(one.out), 1u);
+  EXPECT_EQ(frames_in(two.out), 2u);
+  const Outcome three = run_program({"v2x", "decode", "--xml", folder.write("three.hex", hex + hex + hex)});
+  EXPECT_EQ(frames_in(three.out), 3u);
 }
 
 TEST(V2x, BadFramesAreNamedAndTheOthersDecoded) {

@@ -258,6 +258,34 @@ TEST(Vps, ARobotDrivesByItsPackets) {
   EXPECT_GT(served.number("/received/accepted"), 0);
 }
 
+/// Times count from the first image on, whatever the machine's speed, with a period of the cameras between images at
+/// least.
+TEST(Vps, LiveImagesHaveTheTimeSinceTheFirst) {
+  const Folder folder;
+  const vision::Testbed testbed = vision::read_testbed(
+      folder.write("t.toml",
+                   "dictionary = \"aruco_4x4_50\"\ntag_side = 0.15\n[[camera]]\nname = \"a\"\nrate = 200\n"
+                   "size = [32, 24]\nfocal = [40, 40]\nposition = [0, 0, 2]\n"));
+  std::atomic<bool> stop{false};
+  const auto inputs = apps::robot_inputs(testbed, {netio::kLoopback, 0}, 1, stop);
+  EXPECT_TRUE(inputs->is_live());
+  std::vector<vision::Frame> frames;
+  const std::int64_t begin = base::unix_time();
+  ASSERT_TRUE(inputs->next(frames));
+  const std::int64_t begun = base::unix_time();
+  double last = frames.at(0).time;
+  for (int k = 1; k <= 5; ++k) {
+    const std::int64_t before = base::unix_time();
+    ASSERT_TRUE(inputs->next(frames));
+    EXPECT_GE(frames[0].time, 1e-9 * static_cast<double>(before - begun) - 1e-6) << k;
+    EXPECT_LE(frames[0].time, 1e-9 * static_cast<double>(base::unix_time() - begin) + 1e-6) << k;
+    EXPECT_GE(frames[0].time - last, 0.005 - 1e-6) << k;
+    last = frames[0].time;
+  }
+  stop = true;
+  EXPECT_FALSE(inputs->next(frames));
+}
+
 TEST(Calibrate, NamesWhatIsWrong) {
   const Folder folder;
   const std::string testbed = folder.write("t.toml", kTestbed);

@@ -149,6 +149,36 @@ TEST(Convoy, LetsARobotInBetween) {
   EXPECT_GT(trail.nearest(t.pose(1)), trail.nearest(t.pose(2)));
 }
 
+/// Distances from which on room is made for a newcomer and a follower counts as behind, in both directions of the
+/// world.
+TEST(Convoy, DistancesAtTheirLimits) {
+  Streets t;
+  const control::LaneCorridors corridors(t.roads, t.world, {.radius = 0.2});
+  const auto others_at = [](glm::dvec2 d, std::uint32_t follows) {
+    std::vector<control::RoadUser> users(3);
+    users[0].id = 10, users[1].id = 11, users[2].id = 12;
+    users[0].X_WM = {5.0, -3.0, 0.0, 0.0}, users[1].X_WM = users[0].X_WM;
+    users[2].X_WM = {5.0 + d.x, -3.0 + d.y, 0.0, 0.0}, users[2].follows = follows;
+    return users;
+  };
+  for (const glm::dvec2& out : {glm::dvec2{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {0.6, 0.8}}) {
+    const auto gap = [&](double distance, bool merges = false, std::uint32_t leader = 11) {
+      return opened_gap({leader, merges}, corridors, others_at(distance * out, 11));
+    };
+    EXPECT_DOUBLE_EQ(gap(2.49), 0.7) << "two radii and 0.3 m";
+    EXPECT_EQ(gap(2.51), 0.0);
+    EXPECT_EQ(gap(1.0, true), 0.0) << "it merges itself";
+    EXPECT_EQ(gap(1.0, false, 12), 0.0) << "follows another";
+    EXPECT_EQ(gap(1.0, false, base::kNoId), 0.0);
+    EXPECT_FALSE(control::follower_lags(others_at(1.19 * out, 10)));
+    EXPECT_TRUE(control::follower_lags(others_at(1.21 * out, 10)));
+    EXPECT_FALSE(control::follower_lags(others_at(1.21 * out, 11))) << "another's follower";
+  }
+  EXPECT_EQ(control::row_of(others_at({}, 0), 11), 1u);
+  EXPECT_EQ(control::row_of(others_at({}, 0), 12), 2u);
+  EXPECT_EQ(control::row_of(others_at({}, 0), 10), std::nullopt) << "the robot itself";
+}
+
 // It comes to its last goal where it has just merged: that goal is no longer its own.
 TEST(Convoy, WhoHasMergedForgetsItsGoals) {
   Streets t;

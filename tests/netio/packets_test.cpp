@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "tests/netio/documented.h"
@@ -510,6 +513,88 @@ TEST(Packets, LockstepEndsAtItsLimits) {
     EXPECT_EQ(with(l.most), PacketStatus::accepted) << l.at;
     EXPECT_EQ(with(l.most + 1), PacketStatus::out_of_range) << l.at;
     EXPECT_EQ(with(l.least - 1), PacketStatus::out_of_range) << l.at << ": 0 is too few, -1 too many";
+  }
+}
+
+/// VALUES and rows of COMMAND at the limits that docs/packets.md states, each number alone.
+TEST(Packets, ValuesAndCommandsEndAtTheirLimits) {
+  using Status = PacketStatus;
+  const base::Bytes values = values_example();  // three values of type 1, part 1 of 3
+  const auto with = [&](std::size_t at, auto value) { return reason_of(patched(values, at, value)); };
+  for (const auto& [type, status] : {std::pair{0, Status::out_of_range},
+                                     {1, Status::accepted},
+                                     {31, Status::accepted},
+                                     {32, Status::out_of_range},
+                                     {257, Status::out_of_range}})
+    EXPECT_EQ(with(80, static_cast<std::uint16_t>(type)), status) << type;
+  for (const std::uint32_t total : {0u, 2u, 4u, 148u, 149u, 16'777'217u})
+    EXPECT_EQ(with(84, total), Status::out_of_range) << total;
+  for (const std::uint32_t first : {1u, 3u, 148u}) EXPECT_EQ(with(88, first), Status::out_of_range) << first;
+  for (const std::uint32_t index : {0u, 2u}) EXPECT_EQ(with(72, index), Status::accepted) << index;
+  EXPECT_EQ(with(72, std::uint32_t{3}), Status::out_of_range);
+  EXPECT_EQ(with(82, std::uint16_t{2}), Status::too_long);
+  EXPECT_EQ(with(82, std::uint16_t{4}), Status::too_short);
+  for (const std::size_t at : {96u, 104u, 112u, 120u})
+    for (const double bad : {kNan, kInf}) EXPECT_EQ(with(at, bad), Status::not_finite) << at;
+  EXPECT_EQ(with(128, kNan), Status::not_finite);
+  EXPECT_EQ(with(128, -1e-300), Status::out_of_range);
+  EXPECT_EQ(with(128, 0.0), Status::accepted);
+  EXPECT_EQ(with(128, kInf), Status::accepted) << "no bound is stated";
+  for (const auto& [total, first, count] : {std::array{16'777'216u, 16'777'132u, 84u},
+                                            {149u, 148u, 1u},
+                                            {296u, 148u, 148u},
+                                            {297u, 148u, 148u},
+                                            {148u, 0u, 148u}}) {
+    base::Bytes part = patched(patched(values, 84, total), 88, first);
+    part = patched(part, 82, static_cast<std::uint16_t>(count));
+    part.resize(136 + 8 * std::size_t{count});
+    EXPECT_EQ(reason_of(part), Status::accepted) << total << " from " << first;
+  }
+  for (std::size_t row = 0; row < 2; ++row) {
+    for (const std::size_t at : {80u, 88u, 96u}) {
+      const auto speed = [&](double v) { return reason_of(patched(command_example(), at + 32 * row, v)); };
+      EXPECT_EQ(speed(1000.0), Status::accepted);
+      EXPECT_EQ(speed(-1000.0), Status::accepted);
+      EXPECT_EQ(speed(1000.1), Status::out_of_range);
+      EXPECT_EQ(speed(-1000.1), Status::out_of_range);
+      EXPECT_EQ(speed(kNan), Status::not_finite);
+    }
+    const auto robot = [&](std::uint32_t id) { return reason_of(patched(command_example(), 104 + 32 * row, id)); };
+    EXPECT_EQ(robot(65'535), Status::accepted);
+    EXPECT_EQ(robot(65'536), Status::out_of_range);
+  }
+  for (const std::uint32_t count : {0u, 1u, 38u, 39u}) {
+    base::Bytes command = patched(command_example(), 72, count);
+    command.resize(80 + 32 * std::size_t{count});
+    EXPECT_EQ(reason_of(command), count == 1 || count == 38 ? Status::accepted : Status::out_of_range) << count;
+  }
+}
+
+/// The numbers of packet types and of refusals as docs/packets.md lists them.
+TEST(PacketsPage, NumbersAreThoseOfThePrograms) {
+  const std::pair<const char*, Type> types[] = {
+      {"V2V", Type::v2v},         {"TAG", Type::tag},       {"SUBSCRIBE", Type::subscribe},
+      {"START", Type::start},     {"LEAVE", Type::leave},   {"CHALLENGE", Type::challenge},
+      {"COMMAND", Type::command}, {"STEP", Type::step},     {"FETCH", Type::fetch},
+      {"V2I", Type::v2i},         {"OBJECT", Type::object}, {"REFUSAL", Type::refusal},
+      {"STATE", Type::state},     {"VALUES", Type::values}, {"NEIGHBOURS", Type::neighbours}};
+  std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
+  const std::string page((std::istreambuf_iterator<char>(file)), {});
+  const std::string row = page.substr(page.find("| 5 | u8 | type |"), 500);
+  for (const auto& [name, type] : types) {
+    const std::string number = std::to_string(static_cast<int>(type));
+    EXPECT_NE(row.find(" " + number + " " + name), std::string::npos) << name;
+    EXPECT_NE(page.find("## " + std::string(name) + " (type " + number), std::string::npos) << name;
+  }
+  const auto refused = [](std::uint32_t reason) {
+    for (const base::Bytes& example : all_examples())
+      if (Type{example[5]} == Type::refusal) return reason_of(patched(example, kHeaderBytes, reason));
+    return PacketStatus::unknown_type;
+  };
+  const std::string reasons = page.substr(page.find("| 64 | u32 | reason |"), 600);
+  for (std::uint32_t reason = 0; reason <= 6; ++reason) {
+    const bool listed = reasons.find(" " + std::to_string(reason) + ": ") != std::string::npos;
+    EXPECT_EQ(refused(reason), listed ? PacketStatus::accepted : PacketStatus::out_of_range) << reason;
   }
 }
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "raycast/candidate_walls.h"
+#include "raycast/wall_blocks.h"
 #include "tests/sensors/brute_force.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/scenes.h"
@@ -90,6 +91,38 @@ TEST(CandidateWalls, IntervalsAndDistancesHoldForTheCellsCorners) {
 }
 
 /// Lists must be far shorter than the set of all walls.
+/// Blocks are those of the sorted walls, whatever order they were found in, and their bounds hold for each of their
+/// walls.
+TEST(CandidateWalls, BlocksDoNotDependOnTheOrderOfFinding) {
+  const world::World world = scenes::cave(300, 16.0, 3);
+  const WallIndex wall_index(world.walls, 0.1);
+  CandidateWalls walls;
+  find_candidate_walls(wall_index, {0.25, 8.0}, {0.5, 0.25}, false, walls);
+  ASSERT_GT(walls.front_facing.size(), 3u * kBlock);
+  std::vector<CandidateWall> found = walls.front_facing, backwards(found.rbegin(), found.rend());
+  std::vector<SegmentBlock> blocks, others;
+  std::vector<BlockBounds> bounds, other_bounds;
+  append_blocks(found, blocks, bounds);
+  append_blocks(backwards, others, other_bounds);
+  ASSERT_EQ(blocks.size(), (found.size() + kBlock - 1) / kBlock);
+  ASSERT_EQ(bounds.size(), blocks.size());
+  ASSERT_EQ(others.size(), blocks.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::size_t block = i / kBlock;
+    EXPECT_EQ(blocks[block].row[i % kBlock], found[i].row) << i;
+    EXPECT_EQ(others[block].row[i % kBlock], found[i].row) << i;
+    EXPECT_LE(found[i > 0 ? i - 1 : 0].distance_ring, found[i].distance_ring) << "nearest first";
+    EXPECT_LE(bounds[block].nearest, found[i].nearest);
+    const double offset = std::abs(base::wrap_angle(found[i].bearing - double{bounds[block].bearing}));
+    EXPECT_LE(offset + found[i].half, double{bounds[block].half} + 1e-6) << i;
+  }
+  for (std::size_t k = 0; k < bounds.size(); ++k) {
+    EXPECT_EQ(bounds[k].nearest, other_bounds[k].nearest);
+    EXPECT_EQ(bounds[k].bearing, other_bounds[k].bearing);
+    EXPECT_EQ(bounds[k].half, other_bounds[k].half);
+  }
+}
+
 TEST(Sectors, ListsAreShort) {
   const world::World world = scenes::cave(300, 16.0, 3);
   const WallIndex wall_index(world.walls, 0.1);

@@ -78,6 +78,25 @@ TEST(MagnetGrid, LeavesMostOthersOut) {
   EXPECT_LT(found / 100, 1.25 * M_PI * 100.0) << "314 are within 10 m";
 }
 
+/// Room for the spans of a search: the rows that it crosses with one at each end, and never more than there are.
+TEST(MagnetGrid, NeedsRoomForTheRowsItCrosses) {
+  std::vector<glm::dvec2> magnets;
+  for (int i = 0; i < 64; ++i)
+    for (int j = 0; j < 64; ++j) magnets.push_back({1.0 * i, 1.0 * j});
+  sensors::MagnetGrid grid;
+  for (const std::size_t most : {1u, 4u, 1u << 20}) {
+    grid.build(magnets, 1.0, most);
+    const std::uint32_t rows = grid.most_spans(1e6), few = grid.most_spans(1.0);
+    EXPECT_LE(rows, std::max<std::size_t>(most, 1)) << "as many rows as cells at most";
+    EXPECT_LE(few, rows);
+    for (const glm::dvec2& centre : {glm::dvec2{31.5, 31.5}, {0, 0}, {63, 63}})
+      expect_found(magnets, grid, centre, 40.0);
+  }
+  EXPECT_GT(grid.most_spans(20.0), grid.most_spans(1.0));
+  grid.build(magnets, 0.0, 100);
+  EXPECT_EQ(grid.most_spans(1e6), 1u) << "without a cut-off all are one span";
+}
+
 TEST(MagnetGrid, HoldsNone) {
   sensors::MagnetGrid grid;
   EXPECT_EQ(grid.most_spans(1.0), 0u) << "before it is built";

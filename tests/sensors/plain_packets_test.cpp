@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
 #include "tests/netio/documented.h"
 #include "tests/sensors/chance.h"
@@ -154,6 +157,39 @@ TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
     EXPECT_EQ(type->decode(plain_row(rows), bytes, id, WireFormat::farm).fault, PayloadError::none) << example;
     EXPECT_NE(type->wire_problem(plain_row(rows), WireFormat::thesis), "") << example;
   }
+}
+
+/// Ports, ids and numbers of rows as the tables of docs/packets.md have them.
+TEST(PacketsPage, SensorTypesAreThoseOfTheProgram) {
+  std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
+  std::size_t ports = 0, rows = 0;
+  for (std::string line; std::getline(file, line);) {
+    std::vector<std::string> cells;
+    std::istringstream text(line);
+    for (std::string cell; std::getline(text, cell, '|');)
+      cells.push_back(cell.size() > 2 ? cell.substr(1, cell.size() - 2) : "");
+    for (const SensorType* type : built_in_sensor_types()) {
+      std::string upper(type->name);
+      for (char& c : upper) c = static_cast<char>(std::toupper(c));
+      if (cells.size() == 5 && cells[1] == type->name) {
+        ++ports;
+        EXPECT_EQ(cells[2], std::to_string(type->base_port));
+        EXPECT_EQ(cells[3], "`--" + std::string(type->name) + "-port`");
+        EXPECT_EQ(cells[4], std::to_string(type->base_port + 56));
+      }
+      if (cells.size() != 5 || cells[2] != upper) continue;
+      ++rows;
+      EXPECT_EQ(cells[1], std::to_string(type->id)) << upper;
+      std::size_t numbers = 1;  // each behind a comma or a semicolon, those in brackets aside
+      for (std::size_t at = 0, open = 0; at < cells[4].size(); ++at) {
+        open += cells[4][at] == '(', open -= cells[4][at] == ')';
+        numbers += open == 0 && (cells[4][at] == ',' || cells[4][at] == ';');
+      }
+      EXPECT_EQ(numbers, type->columns.size()) << upper << ": " << cells[4];
+    }
+  }
+  EXPECT_EQ(ports, built_in_sensor_types().size());
+  EXPECT_EQ(rows, 8u) << "plain readings";
 }
 
 }  // namespace

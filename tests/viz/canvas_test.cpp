@@ -311,5 +311,43 @@ TEST(Canvas, FullDiskIsAnError) {  // the bytes fit into the stream's buffer, no
   EXPECT_THROW(save_picture(Canvas(4, 4, kWhite).drawing(), "/dev/full"), base::InputError);
 }
 
+/// The first and the last characters of each size, and those on either side of what is left out.
+TEST(Canvas, CharactersEndAtTheirLimits) {
+  const auto drawn = [](const std::string& text) {
+    Canvas canvas(100, 100, kWhite);
+    canvas.text({10, 50}, text, {});
+    return std::get<Lettering>(canvas.drawing().shapes.back()).text;
+  };
+  for (const char* text : {" ", "~", "\u00a0", "\u07ff", "\u0800", "\ud7ff", "\ue000", "\ufdcf", "\ufdf0", "\ufffd",
+                           "\U00010000", "\U0001fffd", "\U0010fffd"})
+    EXPECT_EQ(drawn(text), text);
+  const std::pair<const char*, std::size_t> others[] = {
+      {"\x1f", 1},         {"\x7f", 1},         {"\xc2\x9f", 2},     {"\xc1\xbf", 2},         {"\xe0\x9f\xbf", 3},
+      {"\xed\xa0\x80", 3}, {"\xed\xbf\xbf", 3}, {"\xef\xb7\x90", 3}, {"\xef\xb7\xaf", 3},     {"\xef\xbf\xbe", 3},
+      {"\xef\xbf\xbf", 3}, {"\xe2\x82", 2},     {"\xc3(", 1},        {"\xf0\x8f\xbf\xbf", 4}, {"\xf4\x90\x80\x80", 4},
+      {"\xf8\x80", 2},     {"\x80", 1}};
+  for (const auto& [text, marks] : others)
+    EXPECT_EQ(drawn(text).substr(0, marks), std::string(marks, '?')) << drawn(text);
+}
+
+/// Corners of a circle: four for each pixel of its radius, from 16 to 360.
+TEST(Canvas, CirclesHaveCornersByTheirSize) {
+  for (const auto& [radius, corners] :
+       {std::pair{0.5, 16u}, {4.0, 16u}, {4.2, 16u}, {4.25, 17u}, {89.9, 359u}, {90.0, 360u}, {120.0, 360u}}) {
+    Canvas canvas(400, 400, kWhite);
+    canvas.disc({200, 200}, radius, kBlack);
+    const auto& paths = std::get<Fill>(canvas.drawing().shapes.back()).paths;
+    ASSERT_EQ(paths.size(), 1u);
+    EXPECT_EQ(paths[0].size(), corners) << radius;
+  }
+}
+
+TEST(Canvas, SidesEndAtTheirLimits) {
+  EXPECT_EQ(Canvas(1, 16384, kWhite).height(), 16384);
+  EXPECT_EQ(Canvas(16384, 1, kWhite).width(), 16384);
+  for (const auto& [width, height] : {std::pair{0, 5}, {5, 0}, {16385, 5}, {5, 16385}})
+    EXPECT_DEATH(Canvas(width, height, kWhite), "a canvas of") << width << " x " << height;
+}
+
 }  // namespace
 }  // namespace sf::viz

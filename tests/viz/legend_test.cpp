@@ -2,10 +2,13 @@
 
 #include "viz/legend.h"
 #include "tests/viz/png.h"
+#include "viz/labels.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace sf::viz {
@@ -157,6 +160,58 @@ TEST(Legend, SamplesStandInTheirPlaces) {
   EXPECT_LT(first.back(), 10 + kLegendRow);
   EXPECT_GE(second.front(), 10 + kLegendRow);
   EXPECT_LT(second.back(), 10 + 2 * kLegendRow);
+}
+
+/// Labels stay 2 px inside the plot, off cells of 4 px that others cover.
+TEST(Labels, BoxesAreBareUpToTheirNeighbours) {
+  Labels labels({100, 50, 300, 250});
+  const auto bare = [&](double x0, double y0, double x1, double y1) { return labels.is_bare({{x0, y0}, {x1, y1}}); };
+  EXPECT_TRUE(bare(102.1, 52.1, 297.9, 247.9)) << "the whole plot but its rim";
+  EXPECT_FALSE(bare(102.0, 60, 120, 80));
+  EXPECT_FALSE(bare(110, 52.0, 120, 80));
+  EXPECT_FALSE(bare(110, 60, 298.0, 80));
+  EXPECT_FALSE(bare(110, 60, 120, 248.0));
+  labels.forbid({{140, 90}, {159, 109}});  // cells 10 to 14 in both directions
+  EXPECT_TRUE(bare(120, 70, 139.9, 180));
+  EXPECT_FALSE(bare(120, 70, 140, 180));
+  EXPECT_TRUE(bare(160, 70, 200, 180));
+  EXPECT_FALSE(bare(159.9, 70, 200, 180));
+  EXPECT_TRUE(bare(120, 70, 200, 89.9));
+  EXPECT_FALSE(bare(120, 70, 200, 90));
+  EXPECT_TRUE(bare(120, 110, 200, 120));
+  EXPECT_FALSE(bare(120, 109.9, 200, 120));
+  labels.forbid({{0, 0}, {99, 300}}), labels.forbid({{NAN, 0}, {1, 1}}), labels.forbid({{301, 0}, {400, 300}});
+  labels.forbid({{0, 0}, {300, 49}}), labels.forbid({{0, 251}, {300, 400}});
+  EXPECT_TRUE(bare(103, 53, 139, 247)) << "what is outside covers nothing";
+  EXPECT_TRUE(bare(161, 53, 297, 247));
+  const glm::dvec2 line[] = {{200.0, 150.0}, {280.0, 150.0}};
+  labels.avoid(line, 8.0);  // 4 px to either side
+  EXPECT_FALSE(bare(240, 140, 244, 146));
+  EXPECT_TRUE(bare(240, 140, 244, 145.9));
+  EXPECT_FALSE(bare(240, 154, 244, 160));
+  EXPECT_TRUE(bare(240, 158, 244, 160));
+}
+
+/// The nearest place on free space; none where no place is left, and then nothing is drawn.
+TEST(Labels, ArePlacedOnceEach) {
+  Canvas canvas(400, 300, kWhite);
+  Labels labels({0, 0, 400, 300});
+  const glm::dvec2 mark[] = {{200, 150}};
+  const std::size_t before = canvas.drawing().shapes.size();
+  std::size_t placed = 0;
+  while (placed < 100 && labels.place(canvas, mark, "a label", small_text(), {.leader = 1e9})) ++placed;
+  EXPECT_GT(placed, 3u);
+  EXPECT_LT(placed, 100u);
+  EXPECT_EQ(canvas.drawing().shapes.size(), before + placed) << "one text each, and no leader";
+  const auto* first = std::get_if<Lettering>(&canvas.drawing().shapes[before]);
+  ASSERT_NE(first, nullptr);
+  EXPECT_LT(length(first->at - mark[0]), 90.0);
+  Canvas other(400, 300, kWhite);
+  Labels free({0, 0, 400, 300});
+  ASSERT_TRUE(free.place(other, mark, "far", small_text(), {.nearest = 14.0, .farthest = 14.0}));
+  EXPECT_EQ(other.drawing().shapes.size(), 2u) << "no leader at its limit";
+  ASSERT_TRUE(free.place(other, mark, "far", small_text(), {.nearest = 14.5, .farthest = 14.5}));
+  EXPECT_EQ(other.drawing().shapes.size(), 4u) << "a leader beyond it";
 }
 
 }  // namespace
