@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "tests/control/traffic.h"
 
 namespace sf::control {
 namespace {
@@ -97,6 +98,61 @@ TEST(Settings, WithoutTheKeyTheFallbackCounts) {
   EXPECT_EQ(none.text("key", "fallback"), "fallback");
   EXPECT_EQ(none.numbers("key", {4, 5}), (Numbers{4, 5}));
   none.require_all_read();
+}
+
+/// Each number of a controller at its limits, and the next ones beyond.
+TEST(Settings, NumbersOfControllersEndAtTheirLimits) {
+  traffic::Streets streets;
+  streets.add(traffic::on_lane(streets.roads, "1.1", 4.0), "wander", {});
+  world::Mover& mover = streets.world.movers[0];
+  mover.sensors.emplace_back().type = "laser";
+  const double fastest = mover.max_forward, turning = mover.max_turn;
+  struct Range {
+    const char *controller, *key;
+    double below, first, last, above;
+  };
+  for (const Range& r : std::initializer_list<Range>{{"avoid", "speed", -0.1, 0.0, fastest, 1.001 * fastest},
+                                                     {"avoid", "slow", -0.1, 0.0, 1e3, 1000.1},
+                                                     {"avoid", "turn", -0.1, 0.0, 1e3, 1000.1},
+                                                     {"avoid", "clear", -0.1, 500.0, 1e3, 1000.1},
+                                                     {"avoid", "turn_speed", 0.0009, 0.001, turning, 1.001 * turning},
+                                                     {"explore", "cell", 0.0049, 0.005, 1.0, 1.001},
+                                                     {"explore", "speed", 0.0009, 1e-3, fastest, 1.001 * fastest},
+                                                     {"explore", "slow", -0.1, 0.0, 1.0, 1.001},
+                                                     {"explore", "turn_speed", 0.009, 1e-2, turning, 1.001 * turning},
+                                                     {"explore", "margin", -0.1, 0.5, 1.0, 1.001},
+                                                     {"explore", "map_width", 0.02, 0.03, 3.6, 1000.1},
+                                                     {"explore", "map_left", -1.001e6, -1e6, 1e6, 1.001e6},
+                                                     {"explore", "map_top", -1.001e6, -1e6, 1e6, 1.001e6},
+                                                     {"patrol", "speed", 0.00009, 1e-4, fastest, 1.001 * fastest},
+                                                     {"patrol", "turn_speed", 0.0009, 1e-3, turning, 1.001 * turning},
+                                                     {"patrol", "pause", -0.1, 0.0, 1e6, 1.001e6},
+                                                     {"patrol", "keep", -0.1, 0.0, 1e3, 1000.1},
+                                                     {"route", "speed", 0.009, 0.01, fastest, 1.001 * fastest},
+                                                     {"route", "gap", 0.009, 0.01, 100.0, 100.1},
+                                                     {"route", "headway", 0.29, 0.3, 10.0, 10.1},
+                                                     {"route", "radio", 0.49, 0.5, 1e6, 1.001e6},
+                                                     {"route", "merge_behind", -1.0, 0.0, 4294967294.0, 4294967295.0},
+                                                     {"convoy", "leader", -1.0, 0.0, 4294967294.0, 4294967295.0}}) {
+    const auto refused = [&](double value) {
+      const std::string name = r.controller;
+      std::vector<Setting> all{{r.key, value, "f:1: "}};
+      for (const std::string size : {"map_width", "map_height"})  // small maps
+        if (name == "explore" && r.key != size) all.push_back({size, 2.0, ""});
+      if (name == "patrol") all.push_back({"points", Numbers{0, 0, 1, 0}, ""});
+      if (name == "route") all.push_back({"checkpoints", Numbers{6, 7}, ""});
+      if (name == "convoy" && std::string(r.key) != "leader") all.push_back({"leader", 2.0, ""});
+      Settings settings("controller '" + name + "'", std::move(all));
+      const std::string said = refusal(std::move(settings), [&](Settings& s) {
+        find_controller(name)->make({streets.world, 0, 1, &streets.roads}, s);
+      });
+      return said.find(std::string("'") + r.key + "' of controller") != std::string::npos;
+    };
+    EXPECT_FALSE(refused(r.first)) << r.controller << " " << r.key;
+    EXPECT_FALSE(refused(r.last)) << r.controller << " " << r.key;
+    EXPECT_TRUE(refused(r.below)) << r.controller << " " << r.key;
+    EXPECT_TRUE(refused(r.above)) << r.controller << " " << r.key;
+  }
 }
 
 }  // namespace

@@ -267,5 +267,40 @@ TEST(ScenarioFile, OursAreRead) {
   EXPECT_GE(found, 7);
 }
 
+/// The least and the greatest number of each key, and the next ones beyond.
+TEST(ScenarioFile, NumbersEndAtTheirLimits) {
+  struct Range {
+    const char *table, *key, *below, *first, *last, *above;
+  };
+  for (const Range& r : std::initializer_list<Range>{{"", "robots", "-1", "0", "65535", "65536"},
+                                                     {"", "duration", "-0.1", "0", "1e9", "1.001e9"},
+                                                     {"", "seed", "-1", "0", "9000000000000000", "9000000000000002"},
+                                                     {"", "tick", "0.0009", "0.001", "10", "10.001"},
+                                                     {"", "start_at", "-0.1", "0", "1e9", "1.001e9"},
+                                                     {"[default]\n", "rate", "0.009", "0.01", "10000", "10000.1"},
+                                                     {"[link]\n", "delay", "-0.1", "0", "3600", "3600.1"},
+                                                     {"[link]\n", "jitter", "-0.1", "0", "3600", "3600.1"},
+                                                     {"[link]\n", "loss", "-0.1", "0", "1", "1.001"},
+                                                     {"[states]\n", "rate", "0.009", "0.01", "10000", "10000.1"},
+                                                     {"[states]\n", "position_sigma", "-0.1", "0", "1", "1.001"},
+                                                     {"[states]\n", "yaw_sigma", "-0.1", "0", "1", "1.001"},
+                                                     {"[states]\n", "loss", "-0.1", "0", "1", "1.001"},
+                                                     {"[expect]\n", "contacts", "-1", "0", "1e9", "1.001e9"},
+                                                     {"[expect]\n", "mean_error", "-0.1", "0", "1e6", "1.001e6"},
+                                                     {"[expect]\n", "mean_abs_error", "-0.1", "0", "1e6", "1.001e6"},
+                                                     {"[expect]\n", "map_coverage", "-0.1", "0", "1", "1.001"},
+                                                     {"[expect]\n", "distance", "-0.1", "0", "1e9", "1.001e9"},
+                                                     {"[expect]\n", "checkpoints", "-1", "0", "1e9", "1.001e9"},
+                                                     {"[expect]\n", "all_checkpoints", "-1", "0", "1e9", "1.001e9"},
+                                                     {"[expect]\n", "tick_p99_ms", "-0.1", "0", "1e9", "1.001e9"}}) {
+    const auto refused = [&](const char* value) {
+      const std::string text = std::string(kWorld) + r.table + r.key + " = " + value + "\n";
+      return refusal(text).find(std::string("'") + r.key + "'") != std::string::npos;
+    };
+    EXPECT_FALSE(refused(r.first) || refused(r.last)) << r.table << r.key;
+    EXPECT_TRUE(refused(r.below) && refused(r.above)) << r.table << r.key;
+  }
+}
+
 }  // namespace
 }  // namespace sf::scenarios

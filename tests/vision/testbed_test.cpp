@@ -188,4 +188,43 @@ TEST(Testbed, WritesCamerasThatItReads) {
   EXPECT_NEAR(read.forward.y, camera.forward.y, 1e-11);
 }
 
+/// The least and the greatest number of each key, and the next ones beyond.
+TEST(Testbed, NumbersEndAtTheirLimits) {
+  struct Range {
+    const char *key, *below, *first, *last, *above;
+  };
+  const auto is_taken = [](const std::string& text) { return error_of(text) == "no error"; };
+  const auto expect_range = [&](const Range& r, const std::string& before, const std::string& behind) {
+    for (const auto& [value, taken] : {std::pair{r.below, false}, {r.first, true}, {r.last, true}, {r.above, false}})
+      EXPECT_EQ(is_taken(before + r.key + " = " + value + "\n" + behind), taken) << r.key << " = " << value;
+  };
+  for (const Range& r : {Range{"tag_side", "0.0009", "0.001", "10", "10.001"},
+                         Range{"tag_height", "-100.001", "-100", "100", "100.001"}})
+    expect_range(r, "", kCamera);
+  for (const Range& r :
+       {Range{"rate", "0.09", "0.1", "1000", "1000.1"}, Range{"exposure", "-0.1", "0", "1", "1.001"},
+        Range{"readout", "-0.1", "0", "1", "1.001"},
+        Range{"center", "[-0.1, 0]", "[0, 0]", "[1279, 1023]", "[1279.1, 1023]"},
+        Range{"center", "[0, -0.1]", "[0, 1023]", "[1279, 0]", "[1279, 1023.1]"},
+        Range{"orientation", "[0, 0, 0, 0.9989]", "[0, 0, 0, 0.9991]", "[0.6, 0, 0, 0.8]", "[0.61, 0, 0, 0.8]"}})
+    expect_range(r, kCamera, "");
+  for (const Range& r : {Range{"id", "-1", "0", "65535", "65536"}}) expect_range(r, kCamera + "[[tag]]\n", "");
+  for (const Range& r :
+       {Range{"side", "0.0009", "0.001", "10", "10.001"}, Range{"height", "-100.001", "-100", "100", "100.001"},
+        Range{"robot", "-1", "0", "65534", "65535"},
+        Range{"offset", "[-1000.1, 0, 0]", "[-1000, 0, 0]", "[0, 1000, 1000]", "[0, 0, 1000.1]"}})
+    expect_range(r, kCamera + "[[tag]]\nid = 1\n", "");
+  for (const Range& r :
+       {Range{"heading", "-360.1", "-360", "360", "360.1"},
+        Range{"position", "[-10000.1, 0, 0]", "[-10000, 0, 0]", "[0, 10000, 10000]", "[0, 0, 10000.1]"}})
+    expect_range(r, kCamera + "[[survey]]\nid = 1\n" + (r.key[0] == 'h' ? "position = [0, 0, 0]\n" : ""), "");
+  const std::string name = "[[camera]]\nname = \"a\"\nposition = [0, 0, 3]\n";
+  for (const Range& r : {Range{"size", "[15, 16]", "[16, 16]", "[16384, 4096]", "[16385, 16]"},
+                         Range{"size", "[16, 15]", "[16, 17]", "[4096, 16384]", "[16, 16385]"}})
+    expect_range(r, name + "focal = [9000, 9000]\n", "");
+  for (const Range& r : {Range{"focal", "[0.9, 1000]", "[1000, 1000]", "[1e6, 1e6]", "[1000001, 1e6]"},
+                         Range{"focal", "[1000, 0.9]", "[1000, 2000]", "[1e6, 1000]", "[1e6, 1000001]"}})
+    expect_range(r, name + "size = [64, 48]\n", "");
+}
+
 }  // namespace sf::vision
