@@ -143,6 +143,17 @@ std::string both(const Report& report) {
 
 TEST(ReportRecords, ARunShowsEveryCountThatItHas) { expect_golden("report_run", both(full_report())); }
 
+/// From a million rays a second on, rates are in millions.
+TEST(ReportRecords, RatesAreInMillionsFromOneOn) {
+  for (const auto& [rays, text] :
+       {std::pair{999'999u, "999999/s of"}, {1'000'000u, "1.0 million/s of"}, {1'250'000u, "1.2 million/s of"}}) {
+    RunReport f{.device = "GPU", .caster = "host"};
+    f.wall_s = 1.0;
+    f.farm.work.rays = rays;
+    EXPECT_NE(text_of(f).find(std::string(", ") + text), std::string::npos) << text_of(f);
+  }
+}
+
 TEST(ReportRecords, AnEmptyRunShowsNoRowsOfServices) { expect_golden("report_run_empty", both(RunReport{})); }
 
 TEST(ReportRecords, ARobotShowsEveryCountThatItHas) {

@@ -121,7 +121,7 @@ TEST(Settings, NumbersOfControllersEndAtTheirLimits) {
                                                      {"explore", "slow", -0.1, 0.0, 1.0, 1.001},
                                                      {"explore", "turn_speed", 0.009, 1e-2, turning, 1.001 * turning},
                                                      {"explore", "margin", -0.1, 0.5, 1.0, 1.001},
-                                                     {"explore", "map_width", 0.02, 0.03, 3.6, 1000.1},
+                                                     {"explore", "map_width", 0.02, 0.03, 1.0, 1000.1},
                                                      {"explore", "map_left", -1.001e6, -1e6, 1e6, 1.001e6},
                                                      {"explore", "map_top", -1.001e6, -1e6, 1e6, 1.001e6},
                                                      {"patrol", "speed", 0.00009, 1e-4, fastest, 1.001 * fastest},
@@ -138,7 +138,7 @@ TEST(Settings, NumbersOfControllersEndAtTheirLimits) {
       const std::string name = r.controller;
       std::vector<Setting> all{{r.key, value, "f:1: "}};
       for (const std::string size : {"map_width", "map_height"})  // small maps
-        if (name == "explore" && r.key != size) all.push_back({size, 2.0, ""});
+        if (name == "explore" && r.key != size) all.push_back({size, 0.4, ""});
       if (name == "patrol") all.push_back({"points", Numbers{0, 0, 1, 0}, ""});
       if (name == "route") all.push_back({"checkpoints", Numbers{6, 7}, ""});
       if (name == "convoy" && std::string(r.key) != "leader") all.push_back({"leader", 2.0, ""});

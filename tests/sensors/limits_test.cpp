@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <tuple>
+
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/edit_laser.h"
+#include "tests/sensors/host_trial.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::trial {
@@ -108,6 +112,75 @@ TEST(Limits, ShortRangesFarAway) {
     expect_exact("a range of 2 cm at " + std::to_string(far) + " m", tally);
     EXPECT_EQ(tally.met, 5u);
   }
+}
+
+/// Settings of world files at their limits, in metres and degrees, and the next values beyond.
+TEST(Limits, SettingsEndAtThem) {
+  const auto refused = [](const std::string& type, const std::string& key, std::vector<double> values) {
+    try {
+      const sensors::SensorSet sensor_set(carriers(fitted(type, {setting(key, std::move(values))})));
+    } catch (const base::InputError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with("park.world:8: ")) << error.what();
+      return true;
+    }
+    return false;
+  };
+  struct Range {
+    const char *type, *key;
+    double below, first, last, above;
+  };
+  for (const Range& r : std::initializer_list<Range>{{"encoder", "per_count", 0.99e-7, 1e-7, 1e3, 1000.1},
+                                                     {"encoder", "slip", -0.1, 0.0, 1.0, 1.001},
+                                                     {"encoder", "scrub", 0.099, 0.1, 10.0, 10.01},
+                                                     {"encoder", "track", 0.00099, 1e-3, 1e3, 1000.1},
+                                                     {"gyro", "bias", -0.1, 0.0, 57295.7, 57295.9},
+                                                     {"gyro", "noise", -0.1, 0.0, 57295.7, 57295.9},
+                                                     {"gyro", "scale_error", -0.1, 0.0, 1.0, 1.001},
+                                                     {"gyro", "range", 5.7e-5, 5.8e-5, 57295.7, 57295.9},
+                                                     {"gps", "satellites", 3, 4, 64, 65},
+                                                     {"gps", "noise", -0.1, 0.0, 1e6, 1.001e6},
+                                                     {"gps", "rate", 0.99e-6, 1e-6, 1e6, 1.001e6},
+                                                     {"gps", "update_interval", 0.00099, 1e-3, 1e9, 1.001e9},
+                                                     {"gps", "phase", -0.1, 0.0, 1e6, 1.001e6},
+                                                     {"gps", "latency", -0.1, 0.0, 1e6, 1.001e6},
+                                                     {"infrared", "noise", -0.1, 0.0, 1e3, 1000.1},
+                                                     {"infrared", "fov", -0.1, 0.0, 360.0, 360.1},
+                                                     {"infrared", "rays", 0, 1, 1025, 1026},
+                                                     {"sonar", "fov", -0.1, 0.0, 360.0, 360.1},
+                                                     {"sonar", "rays", 0, 1, 1025, 1026},
+                                                     {"sonar", "incidence", 0.00099, 0.00101, 90.0, 90.1},
+                                                     {"laser", "samples", 0, 1, 1e6, 1'000'001},
+                                                     {"laser", "fov", -0.1, 0.0, 360.0, 360.1},
+                                                     {"laser", "range_max", 0.0, 1e-3, 1e7, 1.0001e7},
+                                                     {"laser", "range_min", -0.1, 0.0, 1.0, 1e7},
+                                                     {"laser", "resolution", 0, 1, 1e6, 1'000'001},
+                                                     {"laneedge", "samples", 0, 1, 1024, 1025},
+                                                     {"laneedge", "fov", -0.1, 30.0, 360.0, 360.1},
+                                                     {"laneedge", "range_max", 0.99e-6, 1e-6, 1e4, 10000.1},
+                                                     {"laneedge", "range_min", -0.1, 0.0, 1.0, 1.001},
+                                                     {"laneedge", "perpendicular", -720.1, -720.0, 720.0, 720.1},
+                                                     {"magnetometer", "noise", -0.1, 0.0, 1e9, 1.001e9}}) {
+    EXPECT_FALSE(refused(r.type, r.key, {r.first})) << r.type << " " << r.key;
+    EXPECT_FALSE(refused(r.type, r.key, {r.last})) << r.type << " " << r.key;
+    EXPECT_TRUE(refused(r.type, r.key, {r.below})) << r.type << " " << r.key;
+    EXPECT_TRUE(refused(r.type, r.key, {r.above})) << r.type << " " << r.key;
+  }
+  for (const auto& [left, right, out] : {std::tuple{0.1, 10.0, false},
+                                         {10.0, 0.1, false},
+                                         {0.099, 1.0, true},
+                                         {1.0, 0.099, true},
+                                         {10.01, 1.0, true},
+                                         {1.0, 10.01, true}})
+    EXPECT_EQ(refused("encoder", "scale", {left, right}), out) << left << " " << right;
+  for (const std::size_t i : {0u, 1u, 2u})
+    for (const auto& [values, out] : {std::pair{std::array{0.0, 0.0, 0.0}, false},
+                                      {{1e7, 1e3, 359.9}, false},
+                                      {{-1e-9, -1e-9, -1e-9}, true},
+                                      {{1.001e7, 1.001e3, 360.1}, true}}) {
+      std::vector<double> noise{0.01, 0.01, 0.01};
+      noise[i] = values[i];
+      EXPECT_EQ(refused("laser", "noise", noise), out) << i << ": " << noise[i];
+    }
 }
 
 }  // namespace
