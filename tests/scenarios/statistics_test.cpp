@@ -8,6 +8,7 @@
 
 #include "base/random.h"
 #include "scenarios/path_report.h"
+#include "scenarios/world_shape.h"
 
 namespace sf::scenarios {
 namespace {
@@ -132,6 +133,27 @@ TEST(Statistics, TheTableHasTheRatiosOfTheMeans) {
             "| **here, mean** | 2.000 | 1.000 | -1.000 | 3.000 | 0.500 | 0.250 | 0.500 | 2.000 |\n"
             "| **thesis, mean** | 0.000 | 2.000 | -4.000 | 4.000 | 0.000 | 1.000 | 0.500 | 8.000 |\n"
             "| ratio | - | 0.50 | 0.25 | 0.75 | - | 0.25 | 1.00 | 0.25 |\n");
+}
+
+/// Viewers get walls as lines up to 100 000 of them, and cells of 5 cm, or larger ones for at most 2^18.
+TEST(WorldShape, HasLinesAndCellsUpToTheirLimits) {
+  world::World world;
+  world.models.resize(1);
+  world.extent = {0.0, 0.0, 12.0, 6.0};
+  world.walls.resize(100'000, {.a = {1.0, 1.0}, .b = {2.0, 1.0}, .z_max = 1.0, .model = 0});
+  EXPECT_FALSE(shape_of(world).walls.empty());
+  EXPECT_EQ(shape_of(world).cell, 0.05);
+  world.walls.push_back(world.walls.front());
+  EXPECT_TRUE(shape_of(world).walls.empty());
+  world.walls.resize(1);
+  for (const double side : {25.0, 26.0, 1000.0}) {
+    world.extent = {0.0, 0.0, side, side};
+    const record::WorldShape shape = shape_of(world);
+    EXPECT_LE(std::size_t{shape.columns} * shape.rows, 1u << 18) << side;
+    EXPECT_GE(shape.cell, 0.05) << side;
+    EXPECT_LT(shape.cell, std::max(0.05, side / 500.0) + 1e-9) << side;
+    EXPECT_EQ(shape.occupied.size(), std::size_t{shape.columns} * shape.rows);
+  }
 }
 
 }  // namespace
