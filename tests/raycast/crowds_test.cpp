@@ -139,6 +139,13 @@ TEST(Crowds, ManyVisibleEdgesAreReadByBearing) {
       expect_exact(world, pattern_of(even_bearings(beams, fov)), 8.0, 43, std::to_string(beams));
 }
 
+/// Bodies of two outlines: the viewers are in the first one of each, and outside of the second one, in front of them.
+TEST(Crowds, EdgesOfOtherOutlinesAreSeenFromOutside) {
+  world::World world = crowd(300, nearly_at_one_pose<1'000'000>);
+  for (world::Mover& mover : world.movers) set_body(mover, {box(-1, -1, 1, 1), box(0.4, -0.3, 0.6, 0.3)});
+  for (const double fov : {0.5, 2.0 * M_PI}) expect_exact(world, pattern_of(even_bearings(61, fov)), 8.0, 43, "two");
+}
+
 /// A wall in front of the crowd's edges, touching them, or through the viewers.
 TEST(Crowds, WallsHideEdgesThatAreReadByBearing) {
   for (const double x : {0.5, 0.55, 0.5 + 0.17}) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include "tests/viz/png.h"
@@ -166,6 +168,18 @@ TEST(Axes, TitleAndLegendAreThere) {
   const scenes::Picture p = scenes::read_png(path);
   EXPECT_GT(p.count(0xFF202020u, 0, 0, p.width, at.plot.y_min - 2), 100) << "the title's own colour";
   EXPECT_GT(p.count(0xFF00AA00u, 0, at.plot.y_max, p.width, p.height), 300) << "the legend's block";
+}
+
+/// The scale bar is a sixth of the plot, rounded down, in kilometres from one on.
+TEST(Axes, TheScaleBarHasItsUnit) {
+  for (const auto& [metres, text] : {std::pair{5'500.0, ">500 m<"}, {8'000.0, ">1 km<"}, {16'000.0, ">2 km<"}}) {
+    const std::string file = testing::TempDir() + "scale_bar.svg";
+    Axes axes({.title = "t", .extent = {0.0, 0.0, metres, 0.5 * metres}, .margin = 0.0});
+    axes.save(file);
+    std::ifstream in(file);
+    const std::string svg((std::istreambuf_iterator<char>(in)), {});
+    EXPECT_NE(svg.find(text), std::string::npos) << metres;
+  }
 }
 
 }  // namespace
