@@ -117,7 +117,7 @@ static bool takes(const std::string& command, const std::string& option, const s
   parse_command_line(3, words);
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_EQ(said.find("was not expected"), std::string::npos) << said;
-  return said.find(option + ": expected a") == std::string::npos;
+  return said.find(option + ": expected ") == std::string::npos;
 }
 
 /// The least and the greatest value of options, and the next ones beyond.
