@@ -31,8 +31,8 @@ int fail(int code, const char* what) {
   return code;
 }
 
-/// Descriptors that are closed become ones that fail all the same: else files and sockets of ours would be taken for
-/// standard streams. Processes that are started have them closed.
+/// Opens closed standard streams as descriptors whose reads and writes fail. Otherwise the next file or socket that the
+/// program opens would become a standard stream. Child processes inherit none of them.
 void fill_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) < 0) open("/dev/null", (stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) | O_CLOEXEC);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <span>
 
 #include "apps/commands.h"
 #include "apps/progress_line.h"
@@ -69,7 +70,11 @@ bool agreed(bool passed, cluster::Ranks* ranks) {
   return ranks->exchange(word).front().front() != 0;
 }
 
-bool is_fine(const scenarios::ScenarioResult& result) { return result.status() != scenarios::ScenarioStatus::failed; }
+bool none_failed(std::span<const scenarios::ScenarioResult> results) {
+  return std::all_of(results.begin(), results.end(), [](const scenarios::ScenarioResult& result) {
+    return result.status() != scenarios::ScenarioStatus::failed;
+  });
+}
 
 /// Scenarios that were not run to their end are failures in JUnit.
 void add_interrupted(const TestOptions& options, std::vector<scenarios::ScenarioResult>& results) {
@@ -114,7 +119,7 @@ int test_here(const TestOptions& options, cluster::Ranks* ranks) {
   });
   std::vector<scenarios::ScenarioResult> results;
   const bool whole = run_all(all, *device, ranks, reports, results);
-  const bool fine = std::all_of(results.begin(), results.end(), is_fine);
+  const bool fine = none_failed(results);
   if (!whole && reports) add_interrupted(options, results);
   on_all(ranks, [&] {
     if (!options.junit.empty() && reports) write_junit(options.junit, results);
@@ -134,7 +139,7 @@ int test_in_processes(const TestOptions& options) {
         results.push_back(result);
         print(base::printable(text_of(result)));
       });
-  const bool fine = std::all_of(results.begin(), results.end(), is_fine);
+  const bool fine = none_failed(results);
   if (!whole) add_interrupted(options, results);
   if (!options.junit.empty()) write_junit(options.junit, results);
   if (!fine) return 1;

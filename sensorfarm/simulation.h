@@ -84,7 +84,7 @@ struct Readings {
   std::span<const std::uint32_t> hits_of(std::size_t i) const { return {hits + i * hit_stride, elements}; }
 };
 
-/// What an image shows.
+/// Size and view of an image.
 struct ImageOptions {
   int width = 640, height = 480;  ///< [px] in [1, 4096]
   /// [m] x_min, y_min, x_max, y_max to show at least; none: the whole world

@@ -27,7 +27,7 @@ struct WellKnownGeometry {
   void clear();  ///< for the next geometry
 };
 
-/// What a text is by its first characters: a type, and a number, a member or the end of the text behind parentheses.
+/// Classifies a text by its first characters: a geometry type, then a number, a member or the end behind parentheses.
 struct GeometryGuess {
   enum class Content : std::uint8_t { none, points, walls } content = Content::none;
   std::size_t length = 0;  ///< characters up to its last parenthesis; 0 where that or something else is amiss

@@ -18,8 +18,8 @@ double distance(const Measurement& m, const Estimate& e) {
   return std::hypot(x ? m.X_WM.x - e.X_WM.x : 0.0, y ? m.X_WM.y - e.X_WM.y : 0.0);
 }
 
-/// The model for a track that starts anew: speeds as large as those of its last state, which wander on, are as probable
-/// as the model's unknown ones.
+/// The motion model of a restarted track. Its prior on speeds is at least as wide as the speeds of the last state plus
+/// their random walk since then.
 MotionModel with_speeds_of(const MotionModel& model, const Hypotheses& last, std::int64_t time) {
   constexpr double kLongest = 10.0;  // [s] of wandering
   const double seconds = std::clamp(1e-9 * static_cast<double>(time - last[0].estimate.time), 0.0, kLongest);

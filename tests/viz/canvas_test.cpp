@@ -311,7 +311,7 @@ TEST(Canvas, FullDiskIsAnError) {  // the bytes fit into the stream's buffer, no
   EXPECT_THROW(save_picture(Canvas(4, 4, kWhite).drawing(), "/dev/full"), base::InputError);
 }
 
-/// The first and the last characters of each size, and those on either side of what is left out.
+/// Draws the first and last code points of each encoded length, and the neighbours of excluded ranges.
 TEST(Canvas, CharactersEndAtTheirLimits) {
   const auto drawn = [](const std::string& text) {
     Canvas canvas(100, 100, kWhite);

@@ -83,8 +83,7 @@ TEST(Paths, OutlinesTouchingInAPointKeepTheirArea) {  // at (2, 2) two edges beg
   EXPECT_DOUBLE_EQ(area_within(join_edges(edges)), 2.0);
 }
 
-/// What is left of an outline is kept from two points on, and unchanged where all of it lies in the box, borders
-/// included.
+/// A clipped outline is kept if it has at least two points. An outline inside the box, borders included, is unchanged.
 TEST(Paths, CutOutlinesKeepTwoPoints) {
   const std::vector<glm::dvec2> bar{{2, 5}, {8, 5}}, across{{5, 5}, {15, 5}}, dot{{5, 5}}, outside{{11, 1}, {12, 1}};
   EXPECT_EQ(cut_outlines({bar}, kBox), (Paths{bar}));

@@ -52,7 +52,7 @@ struct Document {
 };
 
 /// Parses `text`, the content of the world file `file`. The file need not exist: its name is used for errors, and its
-/// folder for the search of includes (beside the including file, beside `file`, along $STAGEPATH, then among the
+/// folder to search for includes (the including file's folder, the folder of `file`, $STAGEPATH, then the
 /// installed worlds).
 /// @throws base::InputError with file and line.
 Document parse(const std::string& file, const std::string& text);

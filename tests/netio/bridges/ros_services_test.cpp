@@ -128,7 +128,7 @@ TEST_F(RosServicesTest, Changes) {
   EXPECT_TRUE(asked.paused && !*asked.paused);
 }
 
-/// Positions and turns at the limits of what is placed.
+/// SetEntityState accepts positions and rotations up to their limits and rejects those beyond.
 TEST_F(RosServicesTest, PosesUpToTheirLimits) {
   const auto code = [&](double x, double y, double tilt, double length) {
     return result("/set_entity_state",

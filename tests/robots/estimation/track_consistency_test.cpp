@@ -184,8 +184,7 @@ TEST(TrackConsistency, PosesWithLossAndDelay) {
                          .most_tail = 1.6});
 }
 
-/// Some gaps are longer than `stale_after`: the track starts anew, and its speeds have wandered beyond the model's
-/// unknown ones.
+/// Gaps longer than `stale_after` restart the track, after its speeds have drifted beyond the prior of the model.
 TEST(TrackConsistency, PosesWithGapsNearTheStaleTime) {
   for (const auto& [rate, loss] : {std::pair(5.0, 0.5), {15.0, 0.8}})
     expect_consistent({.name = "gaps",
