@@ -20,7 +20,7 @@ world::World load_with_robots(const std::string& file, const world::LoadOptions&
   if (added)
     print_message(
         "{} has no robot; it is lent 'roomba1' (id 1), a Create with a laser of 361 rays, 180 "
-        "degrees, 8 m",
+        "degrees, 8 m; for a robot of yours, write a world that includes this file (docs/worlds.md)",
         file);
   if (count > 0 || added) world::clone_robots(world, std::max(1u, count), seed, of);
   print_warnings(file, world.warnings);

@@ -38,9 +38,11 @@ struct RunReport {
   double simulated_s = 0.0;
   double wall_s = 0.0;
   std::uint64_t contacts = 0;  ///< of robots, that began
-  ControlReport control;       ///< no robots: others decide
-  double move_s = 0.0;         ///< [s] controllers and motion
-  double out_s = 0.0;          ///< [s] packets and recording
+  /// Robots that have been outside of the known space of the world's ROS map; nullopt: it has none.
+  std::optional<std::vector<std::string>> strayed;
+  ControlReport control;  ///< no robots: others decide
+  double move_s = 0.0;    ///< [s] controllers and motion
+  double out_s = 0.0;     ///< [s] packets and recording
   farm::FarmStats farm;
   std::uint64_t hash = 0;
   bool interrupted = false;

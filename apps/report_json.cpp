@@ -271,6 +271,7 @@ std::string json_of(const RunReport& f) {
   if (f.shared && f.shared->passed_on) json["shared"]["passed_on"] = *f.shared->passed_on;
   if (f.farm.work.dipoles > 0) json["dipoles"] = f.farm.work.dipoles;
   if (f.control.robots > 0) json["control"] = control_json(f.control);
+  if (f.strayed) json["outside_known_space"] = *f.strayed;
   if (f.sent)
     json["packets"] = {{"sent", f.publisher.packets.sent},       {"bytes", f.publisher.packets.sent_bytes},
                        {"failed", f.publisher.packets.failed},   {"dropped", f.publisher.packets.dropped},

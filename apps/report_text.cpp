@@ -209,6 +209,13 @@ std::string lockstep_text(const server::LockstepCounts& counts) {
   return text;
 }
 
+std::string strayed_text(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 5;
+  const auto shown = std::span(names).first(std::min(names.size(), kShown));
+  return row("left known space", "{}: {}{}", counted(names.size(), "robot"), fmt::join(shown, ", "),
+             names.size() > kShown ? fmt::format(" and {} more (--json has all)", names.size() - kShown) : "");
+}
+
 }  // namespace
 
 std::string text_of(const RunReport& f) {
@@ -223,6 +230,7 @@ std::string text_of(const RunReport& f) {
               f.wall_s > 0.0 ? f.simulated_s / f.wall_s : 0.0);
   text += work_text(f);
   if (f.contacts > 0) text += row("contacts", "{} that began", f.contacts);
+  if (f.strayed && !f.strayed->empty()) text += strayed_text(*f.strayed);
   text += control_text(f.control);
   if (f.sent) text += packets_text(f.publisher);
   if (f.received) text += row("packets received", netio::text(f.inbox));

@@ -18,6 +18,7 @@
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
+#include "apps/strayed_robots.h"
 #include "apps/text.h"
 #include "base/error.h"
 #include "base/time.h"
@@ -161,6 +162,8 @@ int serve(const ServeOptions& options) {
       recorder.emplace(options.record, run_info(world, sensor_set, options, device.info().software));
       service.record_to(*recorder);
     }
+    StrayedRobots strayed(world);
+    if (strayed.names()) service.record_to(strayed);
     LiveBridges live(options, world, sensor_set, run_settings(options, device.info().software), false);
     if (!live.empty()) service.record_to(live);
     install_stop_handlers();
@@ -168,6 +171,7 @@ int serve(const ServeOptions& options) {
                   world.file, options.bind, service.port(), 1.0 / service.interval(), device.info().name);
     service.run(stop_requested(), options.duration);
     RunReport facts = report_of(service.stats(), world, device.info());
+    facts.strayed = strayed.names();
     if (recorder) {
       recorder->finish();
       facts.recording = recorder->path();

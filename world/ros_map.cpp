@@ -68,6 +68,7 @@ std::vector<Segment> outlines_of(const RosMap& map, Bitmap grid) {
 }
 
 void add_walls(World& world, const RosMap& map, Bitmap grid) {
+  const auto row = static_cast<std::uint32_t>(world.models.size());
   Model model;
   model.name = "map";
   model.type = "map";
@@ -76,7 +77,36 @@ void add_walls(World& world, const RosMap& map, Bitmap grid) {
   model.color = 0xFF4D4D4Du;
   model.is_bitmap = true;
   world.models.push_back(model);
-  world.walls = outlines_of(map, std::move(grid));
+  std::vector<Segment> walls = outlines_of(map, std::move(grid));
+  for (Segment& wall : walls) wall.model = row;
+  world.walls.insert(world.walls.end(), walls.begin(), walls.end());
+}
+
+void add_map(World& world, const std::string& file, const std::string& text, const LoadOptions& options) {
+  const RosMap map = read_ros_map_file(file, text, world.warnings);
+  world.ros_map = file;
+  try {
+    std::size_t changed = 0;
+    const auto is_wall = [&](Ground ground) {
+      return ground == Ground::wall || (ground == Ground::unknown && options.unknown_is_wall);
+    };
+    add_walls(world, map, read_grid(map, is_wall, &changed));
+    if (changed > 0)
+      world.warnings.push_back(
+          {file, map.image_line,
+           fmt::format("alpha decides {} cells: it is averaged with the colours, as in map_server, so that transparent "
+                       "black is occupied; with 'transparent: unknown' in this file, transparent cells are unknown, as "
+                       "in newer versions of Nav2",
+                       changed)});
+  } catch (const base::InputError& error) {
+    throw base::InputError(file, map.image_line, fmt::format("'image': {}", error.what()));
+  }
+}
+
+/// Of a world with a map.
+RosMap map_of(const World& world) {
+  std::vector<Warning> said;
+  return read_ros_map_file(world.ros_map, base::read_text(world.ros_map, kMaxYaml), said);
 }
 
 }  // namespace
@@ -97,32 +127,34 @@ World build_ros_map(const std::string& file, const std::string& text, const Load
   world.file = file;
   world.accuracy.word = options.accuracy;
   world.name = std::filesystem::path(file).stem().string();
-  const RosMap map = read_ros_map_file(file, text, world.warnings);
-  try {
-    std::size_t changed = 0;
-    const auto is_wall = [&](Ground ground) {
-      return ground == Ground::wall || (ground == Ground::unknown && options.unknown_is_wall);
-    };
-    add_walls(world, map, read_grid(map, is_wall, &changed));
-    if (changed > 0)
-      world.warnings.push_back(
-          {file, map.image_line,
-           fmt::format("alpha decides {} cells: it is averaged with the colours, as in map_server, so that transparent "
-                       "black is occupied; with 'transparent: unknown' in this file, transparent cells are unknown, as "
-                       "in newer versions of Nav2",
-                       changed)});
-  } catch (const base::InputError& error) {
-    throw base::InputError(file, map.image_line, fmt::format("'image': {}", error.what()));
-  }
+  add_map(world, file, text, options);
   update_extent_and_hash(world);
   return world;
 }
 
+void add_ros_map(World& world, const std::string& file, const LoadOptions& options) {
+  add_map(world, file, base::read_text(file, kMaxYaml), options);
+}
+
 std::vector<Segment> known_free(const World& world) {
-  if (!is_ros_map(world.file)) return {};
-  std::vector<Warning> said;
-  const RosMap map = read_ros_map_file(world.file, base::read_text(world.file, kMaxYaml), said);
+  if (world.ros_map.empty()) return {};
+  const RosMap map = map_of(world);
   return outlines_of(map, read_grid(map, [](Ground ground) { return ground == Ground::free; }));
+}
+
+KnownSpace::KnownSpace(const World& world) : limited_(!world.ros_map.empty()) {
+  if (!limited_) return;
+  const RosMap map = map_of(world);
+  X_WL_ = map.X_WL;
+  resolution_ = map.resolution;
+  known_ = read_grid(map, [](Ground ground) { return ground != Ground::unknown; });
+}
+
+bool KnownSpace::contains(glm::dvec2 at) const {
+  if (!limited_) return true;
+  const glm::dvec2 cell = base::rotate(-X_WL_.yaw, at - glm::dvec2{X_WL_.x, X_WL_.y}) / resolution_;
+  if (!(cell.x >= 0.0 && cell.y >= 0.0 && cell.x < known_.width && cell.y < known_.height)) return false;
+  return known_.solid[static_cast<std::size_t>(cell.y) * known_.width + static_cast<std::size_t>(cell.x)] != 0;
 }
 
 }  // namespace sf::world

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "world/bitmap.h"
 #include "world/world.h"
 
 namespace sf::world {
@@ -20,8 +21,27 @@ World load_ros_map(const std::string& file, const LoadOptions& options);
 /// Likewise from a text. `file` is the name for errors; the picture is searched in the folder of `file`.
 World build_ros_map(const std::string& file, const std::string& text, const LoadOptions& options);
 
-/// Outlines of the known free area of the map that `world` was loaded from, solid on their left. Reads the map's files
-/// again. Empty for a world that is not a map, and for a map without known free cells.
+/// Adds the map to a world without one, in the world's frame: its walls and warnings.
+/// @throws base::InputError with file and line
+void add_ros_map(World& world, const std::string& file, const LoadOptions& options);
+
+/// Outlines of the known free area of the world's map, solid on their left. Reads the map's files again. Empty for a
+/// world without a map, and for a map without known free cells.
 std::vector<Segment> known_free(const World& world);
+
+/// The space that a ROS map knows: its cells that are not unknown.
+class KnownSpace {
+ public:
+  /// Reads the files of the world's map again. Everything is known where it has none.
+  explicit KnownSpace(const World& world);
+  /// @param at [m] in the world. False outside of the picture, too
+  bool contains(glm::dvec2 at) const;
+
+ private:
+  bool limited_ = false;
+  Pose X_WL_;                ///< lower left corner
+  double resolution_ = 1.0;  ///< [m]
+  Bitmap known_;
+};
 
 }  // namespace sf::world

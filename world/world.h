@@ -213,6 +213,8 @@ struct OutlineFile {
 struct World {
   std::string name;
   std::string file;  ///< as given by the user
+  /// YAML file of its ROS map, which may be `file`; empty: none, also of a world from a snapshot
+  std::string ros_map;
   std::vector<Model> models;
   std::vector<Segment> walls;       ///< static segments in the world frame
   std::vector<OutlineFile> unread;  ///< follow `walls`; `extent` and `hash` count them (LoadOptions::leave_outlines)

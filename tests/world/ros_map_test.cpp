@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +11,7 @@
 
 #include "base/error.h"
 #include "tests/robots/scenes.h"
+#include "tests/world/read_world.h"
 #include "world/free_space.h"
 #include "world/wall_tree.h"
 
@@ -304,6 +306,64 @@ TEST_F(RosMap, ScaleIsReadAsTrinaryWithAWarning) {
 TEST_F(RosMap, DefaultsAreMapServers) {
   EXPECT_EQ(load("image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n").walls.size(), 4u);
 }
+
+// A world file with the user's robot in a map: `include "m.yaml"`.
+TEST_F(RosMap, AWorldIncludesItAmongItsOwnModels) {
+  const World map = load(kGood);
+  write("mine.world",
+        "model( name \"box\" size [0.1 0.1 1] pose [11 20.2 0 0] )\ninclude \"m.yaml\"\n"
+        "position( name \"mine\" size [0.1 0.1 0.1] pose [10.7 20.3 0 0] )\n");
+  const World world = load_world((folder_ / "mine.world").string());
+  EXPECT_EQ(world.walls.size(), map.walls.size() + 4) << "the map's and the box'";
+  for (const Segment& wall : map.walls)
+    EXPECT_EQ(std::count_if(world.walls.begin(), world.walls.end(),
+                            [&](const Segment& w) {
+                              return w.a == wall.a && w.b == wall.b && world.models.at(w.model).type == "map";
+                            }),
+              1);
+  ASSERT_EQ(world.movers.size(), 1u);
+  EXPECT_EQ(world.movers[0].name, "mine");
+  EXPECT_EQ(known_free(world).size(), known_free(map).size()) << "free places are those of the map";
+  EXPECT_EQ(warnings_of(world), "") << "it starts in known free space";
+}
+
+TEST_F(RosMap, AWorldIncludesOneAtMost) {
+  write("m.yaml", kGood);
+  const auto error_of_text = [&](const std::string& text) -> std::string {
+    write("two.world", text);
+    try {
+      load_world((folder_ / "two.world").string());
+    } catch (const base::InputError& caught) {
+      return std::string(caught.what()).substr(folder_.string().size() + 1);
+    }
+    return {};
+  };
+  EXPECT_EQ(error_of_text("include \"m.yaml\"\ninclude \"m.yaml\"\n"),
+            "two.world:2: a second ROS map; expected one per world");
+  write("m.yaml", "image: none.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n");
+  EXPECT_EQ(error_of_text("include \"m.yaml\"\n").substr(0, 17), "m.yaml:1: 'image'") << "the map's own file and line";
+}
+
+// Cells of half a metre: wall, unknown, free; below them three free ones. Origin (10, 20).
+TEST_F(RosMap, KnownSpaceIsAllButUnknownCells) {
+  const KnownSpace known(load(kGood));
+  EXPECT_TRUE(known.contains({10.25, 20.75})) << "a wall is known";
+  EXPECT_FALSE(known.contains({10.75, 20.75})) << "unknown";
+  EXPECT_TRUE(known.contains({11.25, 20.75}));
+  EXPECT_TRUE(known.contains({10.75, 20.25}));
+  EXPECT_TRUE(known.contains({10.0, 20.0})) << "its lower left corner";
+  for (const glm::dvec2& outside : {glm::dvec2{9.99, 20.25}, {11.5, 20.25}, {10.25, 19.99}, {10.25, 21.0}})
+    EXPECT_FALSE(known.contains(outside)) << outside.x << " " << outside.y;
+  EXPECT_FALSE(known.contains({std::nan(""), 20.25}));
+}
+
+TEST_F(RosMap, KnownSpaceTurnsWithItsOrigin) {
+  const KnownSpace known(load(with("origin", "origin: [10, 20, 1.5707963267948966]")));
+  EXPECT_FALSE(known.contains({9.25, 20.75})) << "the unknown cell, a quarter turn on";
+  EXPECT_TRUE(known.contains({9.75, 20.75}));
+}
+
+TEST_F(RosMap, WithoutAMapAllIsKnown) { EXPECT_TRUE(KnownSpace(World{}).contains({1e9, 0.0})); }
 
 TEST_F(RosMap, BadMapsAreRefusedWithTheirLine) {
   EXPECT_EQ(error(with("image", "image: none.pgm")).substr(0, 9), "m.yaml:1:");

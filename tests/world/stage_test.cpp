@@ -59,6 +59,34 @@ TEST(Stage, TheLastOfTwoEqualIndicesCounts) {
             "4\n");
 }
 
+// Radians of an angle in degrees, millimetres of a range in metres.
+TEST(Stage, WarnsOfLikelyUnits) {
+  const auto said = [](const std::string& keys, const std::string& root = "") {
+    return warnings_of(read_world(root + "position( laser( " + keys + " ) )"));
+  };
+  EXPECT_EQ(said("fov 3.14"), "1: 'fov' is in degrees, and 3.14 looks like radians: write 180 if it is\n");
+  EXPECT_EQ(said("range_max 8000"),
+            "1: 'range_max' is in metres, and 8000 m looks like millimetres: write 8 if it is\n");
+  for (const char* fov : {"1.57", "4.71", "6.283", "2.094", "4.18879"})
+    EXPECT_NE(said(std::string("fov ") + fov), "") << fov;
+  for (const char* fov : {"3", "3.2", "0.25", "1.66", "180", "360", "6.5"})
+    EXPECT_EQ(said(std::string("fov ") + fov), "") << fov << " may be degrees";
+  EXPECT_EQ(said("range_max 999"), "");
+  EXPECT_NE(said("range_max 1000"), "");
+  EXPECT_EQ(said("fov 3.14", "unit_angle \"radians\" "), "");
+  EXPECT_EQ(said("range_max 8000", "unit_length \"mm\" "), "");
+  const auto ranger = [](const std::string& keys) {
+    return warnings_of(read_world("position( ranger( sensor( " + keys + " ) ) )"));
+  };
+  EXPECT_NE(ranger("range [0 5000]"), "");
+  EXPECT_NE(ranger("view [0 5 3.14]"), "");
+  EXPECT_EQ(ranger("range [0 5] fov 20"), "");
+}
+
+TEST(Stage, WarnsOfUnitsOncePerLine) {
+  EXPECT_EQ(read_world("define r position( laser( fov 3.14 ) )\nr()\nr( pose [3 0 0 0] )\n").warnings.size(), 1u);
+}
+
 TEST(Stage, WarningsOfRepeatedKeysAreLimited) {
   std::string text = "model(";
   for (int i = 0; i < 20'000; ++i) text += " mass 1\n";

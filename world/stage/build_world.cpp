@@ -11,6 +11,7 @@
 #include "world/keys.h"
 #include "world/outlines.h"
 #include "world/overlaps.h"
+#include "world/ros_map.h"
 #include "world/stage/build_state.h"
 #include "world/stage/light_entities.h"
 #include "world/stage/mover_entities.h"
@@ -136,6 +137,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   b.world.accuracy = accuracy(b.context, options, document.root);
   Parent nowhere;
   add_children(b, document.root, nowhere);
+  if (!document.ros_map.empty()) add_ros_map(b.world, document.ros_map, options);
   number_movers(b);
   check_stop_lines(b);
 

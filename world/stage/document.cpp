@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "base/files.h"
+#include "world/ros_map.h"
 #include "world/stage/parse_state.h"
 
 namespace sf::world {
@@ -125,6 +126,12 @@ void read_include(ParseState& r) {
          fmt::format("cannot find the include \"{}\"; expected it beside this file, beside the world file, "
                      "along $STAGEPATH or among the installed worlds",
                      name));
+  }
+  if (is_ros_map(found)) {
+    if (!r.document.ros_map.empty()) fail(r, line, "a second ROS map; expected one per world");
+    r.document.ros_map = found;
+    r.document.ros_map_at = {r.file, line};
+    return;
   }
   if (std::find(r.open_files.begin(), r.open_files.end(), found) != r.open_files.end()) refuse_cycle(r, line, found);
   if (const std::string other = file_in_stage(r.document, name, found); !other.empty())

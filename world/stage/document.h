@@ -46,6 +46,8 @@ struct Entity {
 
 struct Document {
   std::vector<std::string> files;   ///< [0] is the world file
+  std::string ros_map;              ///< YAML file that is included; empty: none
+  SourceLocation ros_map_at;        ///< of its include
   Entity root;                      ///< the world's own properties and top-level entities
   std::vector<std::string> macros;  ///< defined names, sorted, for suggestions
   std::vector<Warning> warnings;

@@ -1,0 +1,29 @@
+#pragma once
+// Robots outside of the known space of a ROS map, where readings are of walls that nobody has mapped.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/tick_record.h"
+#include "world/ros_map.h"
+
+namespace sf::apps {
+
+class StrayedRobots final : public base::Sink {
+ public:
+  /// @param world must outlive it
+  explicit StrayedRobots(const world::World& world);
+
+  /// Notes robots whose origin is outside now. Standard error states the first.
+  void write(const base::TickRecord& tick) override;
+  /// All that have been outside so far, in file order; nullopt: the world has no ROS map.
+  std::optional<std::vector<std::string>> names() const;
+
+ private:
+  const world::World& world_;
+  world::KnownSpace known_;
+  std::vector<bool> outside_;  ///< per mover, at some time
+};
+
+}  // namespace sf::apps
