@@ -29,11 +29,13 @@ WanderSettings wander_settings(const world::Mover& mover, double range) {
   return s;
 }
 
-Wander::Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed)
+Wander::Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed, std::optional<double> speed)
     : clearance_estimator_(mover),
       settings_(wander_settings(mover, clearance_estimator_.range())),
       robot_(robot),
-      seed_(seed) {}
+      seed_(seed) {
+  if (speed) settings_.speed = *speed;
+}
 
 double Wander::random() {
   return base::random_uniform({.seed = seed_, .stream = base::RandomStream::wander, .a = robot_, .c = draws_++}, 0)[0];
@@ -132,8 +134,10 @@ base::Twist Wander::cruise(const Clearance& clearance, std::int64_t time) {
 
 namespace {
 
-std::unique_ptr<Controller> make_wander(const ControllerContext& context, Settings&) {
-  return std::make_unique<Wander>(context.world.movers[context.mover], context.mover, context.seed);
+std::unique_ptr<Controller> make_wander(const ControllerContext& context, Settings& settings) {
+  const world::Mover& mover = context.world.movers[context.mover];
+  const double speed = settings.number("speed", 0.8 * mover.max_forward, 0.0, mover.max_forward);
+  return std::make_unique<Wander>(mover, context.mover, context.seed, speed);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 // Works with any laser, several, or none.
 
 #include <cstdint>
+#include <optional>
 
 #include "control/clearance_estimator.h"
 #include "control/controllers.h"
@@ -26,7 +27,8 @@ WanderSettings wander_settings(const world::Mover& mover, double range);
 class Wander final : public Controller {
  public:
   /// @param robot row of the mover; selects the robot's random numbers
-  Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed);
+  /// @param speed [m/s] on free ground; none: that of `wander_settings`
+  Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed, std::optional<double> speed = {});
 
   /// Depends on the inputs so far and on (seed, robot) alone.
   base::Twist step(const ControllerInput& input) override;

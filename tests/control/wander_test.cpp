@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "base/error.h"
 #include "robots/fleet.h"
 #include "sensors/laser_settings.h"
 #include "tests/robots/scenes.h"
@@ -304,6 +305,22 @@ struct Eyes {
   world::World world = scenes::empty_world();
   std::optional<Wander> wander;
 };
+
+// `--set speed=0.1`; at most the robot's maximum.
+TEST(Wander, TakesASpeed) {
+  world::World world = scenes::boxed_world(6.0, 4.0, {-3.0, -2.0});
+  scenes::add_mover(world, {0.0, 0.0, 0.0, 0.0}, scenes::rectangle({0.0, 0.0}, 0.3, 0.3));
+  const auto first_command = [&](std::vector<Setting> settings) {
+    auto made = make_controller({.world = world}, {"wander", 0.0, Settings("wander", std::move(settings))});
+    ControllerInput input{};
+    return made.controller->step(input).forward;
+  };
+  EXPECT_DOUBLE_EQ(first_command({}), 0.8 * world.movers[0].max_forward);
+  EXPECT_DOUBLE_EQ(first_command({{"speed", 0.1, ""}}), 0.1);
+  EXPECT_DOUBLE_EQ(first_command({{"speed", world.movers[0].max_forward, ""}}), world.movers[0].max_forward);
+  EXPECT_THROW(first_command({{"speed", world.movers[0].max_forward + 0.01, ""}}), base::InputError);
+  EXPECT_THROW(first_command({{"speed", -0.1, ""}}), base::InputError);
+}
 
 TEST(Wander, SlowsDownInProportionAndTurnsWhereItIsBlocked) {
   // 0.4 m/s from 1 m on, a quarter of it at 0.2 m; below that the robot turns.
