@@ -87,6 +87,7 @@ std::string quality_words(const netio::Header& header) {
   if (accuracy.unsure) text += ", not for every element";
   const netio::StateQuality& state = header.state;
   if (!state.stated) return text;
+  if (state.age == base::kNoStateYet) return text + "; no state of the robot has arrived yet";
   text += fmt::format("; state {:.1f} ms old{}", 1e-6 * static_cast<double>(state.age), state.stale ? ", stale" : "");
   const auto& c = state.covariance;
   if (c[0] + c[3] + c[5] > 0.0f)

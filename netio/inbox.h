@@ -61,19 +61,23 @@ class Inbox {
   /// wrong source, or refused for its signature, and for accepted ones that are `unchecked`; not for copies of signed
   /// packets, nor where too many signatures are doubtful to be checked.
   /// @return number of datagrams read
-  template <class Take, class OnNotable>
-  std::size_t receive(std::int64_t now, Take&& take, OnNotable&& on_notable) {
+  /// @param on_dropped called for every datagram that is dropped: (PacketStatus, bytes, const Endpoint& source)
+  template <class Take, class OnNotable, class OnDropped>
+  std::size_t receive(std::int64_t now, Take&& take, OnNotable&& on_notable, OnDropped&& on_dropped) {
     Packet packet;
     return batch_.drain(socket_, kMaxPerReceive, [&](std::span<const std::uint8_t> bytes, const Endpoint& source) {
       const PacketStatus status = accept(bytes, source, now, packet);
       if (status == PacketStatus::accepted) take(packet);
       if (is_notable(status, packet)) on_notable(status, packet, source);
+      if (status != PacketStatus::accepted) on_dropped(status, bytes, source);
     });
   }
 
   template <class Take>
   std::size_t receive(std::int64_t now, Take&& take) {
-    return receive(now, take, [](PacketStatus, const Packet&, const Endpoint&) {});
+    return receive(
+        now, take, [](PacketStatus, const Packet&, const Endpoint&) {},
+        [](PacketStatus, std::span<const std::uint8_t>, const Endpoint&) {});
   }
 
   /// Validates and counts one datagram from `source`. Fills `packet` when the status is accepted, or one that

@@ -11,15 +11,12 @@ namespace sf::netio {
 
 namespace {
 
-constexpr std::size_t kTagBytes = 104;
-constexpr std::size_t kSubscribeBytes = 4;
 constexpr std::size_t kChallengeBytes = 4;
-constexpr std::size_t kObjectBytes = 4;
 constexpr std::size_t kRefusalBytes = 4;
 constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] of session and token
 constexpr std::uint32_t kDockingBit = 1;
 constexpr std::uint32_t kPresentBit = 1;
-constexpr std::uint16_t kStaleBit = 1;
+constexpr std::uint16_t kStaleBit = 1, kNoStateBit = 2;
 constexpr std::int64_t kAgeUnit = 1000;  ///< [ns]
 /// By number, from 1.
 constexpr std::array kRefusals{PacketStatus::not_signed, PacketStatus::wrong_signature, PacketStatus::replayed,
@@ -208,7 +205,9 @@ PacketStatus read_header(base::ByteReader& reader, Header& header, std::size_t& 
   StateQuality state{.stated = age > 0, .age = kAgeUnit * age};
   read_covariance(reader, state.covariance);
   trailer = reader.get<std::uint16_t>();
-  state.stale = (reader.get<std::uint16_t>() & kStaleBit) != 0;
+  const auto flags = reader.get<std::uint16_t>();
+  state.stale = (flags & kStaleBit) != 0;
+  if ((flags & kNoStateBit) != 0) state.age = base::kNoStateYet;
   if (state.stated && sensor_type_of(header.type) != 0) header.state = state;
   return PacketStatus::accepted;
 }
@@ -217,6 +216,10 @@ PacketStatus read_header(base::ByteReader& reader, Header& header, std::size_t& 
 std::uint32_t age_word(std::int64_t age) {
   constexpr std::int64_t kMost = 0xFFFFFFFF;
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(age / kAgeUnit + (age % kAgeUnit > 0 ? 1 : 0), 1, kMost));
+}
+
+std::uint16_t flags_of(const StateQuality& state) {
+  return static_cast<std::uint16_t>((state.stale ? kStaleBit : 0) | (state.age == base::kNoStateYet ? kNoStateBit : 0));
 }
 
 void start(Header header, Type type, base::Bytes& out) {
@@ -277,7 +280,7 @@ void put_header(const Header& header, base::ByteWriter& writer) {
   writer.put(state.stated ? age_word(state.age) : std::uint32_t{0});
   for (const float each : state.covariance) writer.put(state.stated ? each : 0.0f);
   writer.put(std::uint16_t{0});
-  writer.put(state.stated && state.stale ? kStaleBit : std::uint16_t{0});
+  writer.put(state.stated ? flags_of(state) : std::uint16_t{0});
 }
 
 void write_session_token(std::span<std::uint8_t> packet, const SessionToken& session_token) {

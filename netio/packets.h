@@ -24,8 +24,9 @@ inline constexpr std::array<std::uint8_t, 4> kMagic = {'S', 'F', 'P', 'K'};
 inline constexpr std::uint8_t kVersion = 2;
 inline constexpr std::size_t kHeaderBytes = 64;
 inline constexpr std::size_t kMaxDatagram = 1400;  ///< [byte] of the farm's packets, which avoids fragmentation
-inline constexpr std::size_t kTrailerAt = 60;      ///< [byte] place of the trailer's size, u16, in the header
-inline constexpr std::size_t kMaxTrailer = 80;     ///< [byte] behind the payload: a signature (netio/signature.h)
+inline constexpr std::size_t kVersionAt = 4, kTypeAt = 5, kRobotAt = 6;  ///< [byte] in the header; robot: u16
+inline constexpr std::size_t kTrailerAt = 60;   ///< [byte] place of the trailer's size, u16, in the header
+inline constexpr std::size_t kMaxTrailer = 80;  ///< [byte] behind the payload: a signature (netio/signature.h)
 inline constexpr std::size_t kMaxPayload = kMaxDatagram - kHeaderBytes - kMaxTrailer;  ///< [byte]
 inline constexpr std::size_t kMaxHeaderlessDatagram = 2046;  ///< [byte] except the thesis' halves of a map
 inline constexpr std::uint32_t kMaxId = 0xFFFFu;             ///< of a robot, and of a sensor
@@ -137,8 +138,9 @@ struct Refusal {
   PacketStatus reason = PacketStatus::not_signed;  ///< or wrong_signature, replayed, wrong_source
 };
 
-inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;             ///< of a complete V2V packet
-inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;  ///< V2V packets in one NEIGHBOURS
+inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;                           ///< of a complete V2V packet
+inline constexpr std::size_t kTagBytes = 104, kSubscribeBytes = 4, kObjectBytes = 4;  ///< of their payloads
+inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;                ///< V2V packets in one NEIGHBOURS
 inline constexpr double kV2vRange = 50.0;  ///< [m] default radius within which the farm forwards V2V
 
 /// Forwarded states of other robots: complete V2V datagrams, one after another.

@@ -162,7 +162,7 @@ void TickMessages::send_qualities(const Output& out) const {
   SF_CHECK(record.qualities.size() == record.reports.size(), std::to_string(record.qualities.size()));
   for (std::size_t i = 0; i < record.reports.size(); ++i) {
     const std::uint32_t mover = record.reports[i].mover;
-    if (record.qualities[i].stated)
+    if (record.qualities[i].stated && record.qualities[i].age != base::kNoStateYet)
       out.send(movers_[mover].quality, ticks_, record.time, [&](base::Bytes& bytes) {
         encode_state_quality(record.time, info_.movers[mover].frame, record.qualities[i], bytes);
       });

@@ -103,6 +103,7 @@ typedef struct {
   double bound;                  // of the error, in the unit of the first column; NAN: not stated
   uint32_t age_us;               // of the robot's state behind the reading; 0: not stated
   unsigned stale;                // 1: that state is too old to be relied on
+  unsigned no_state;             // 1: no state has arrived yet; the robot is where the world file places it
   float covariance[6];           // of that state, x, y [m], yaw [rad]: xx, xy, x yaw, yy, y yaw, yaw yaw; 0: not known
   uint32_t words[5];             // the integers that sf_types names
   double corner[3];              // OCCUPANCY: left, top, cell [m]
@@ -362,6 +363,7 @@ static void decode_state_quality(sf_packet* p, const uint8_t* b) {
   p->age_us = (uint32_t)get(b + 32, 4);
   if (p->age_us == 0) return;
   p->stale = b[62] & 1;
+  p->no_state = b[62] >> 1 & 1;
   bool known = true;
   for (unsigned i = 0; i < 6; ++i) {
     const uint32_t word = (uint32_t)get(b + 36 + 4 * i, 4);
@@ -511,7 +513,10 @@ void sf_print(FILE* out, const sf_packet* p) {
   sf_print_body(out, p, "; ", "");
   if (has_accuracy(p)) fprintf(out, "; mode %u%s", p->mode, p->unsure ? ", not for every element" : "");
   if (has_accuracy(p) && !isnan(p->bound)) print_bound(out, p->bound);
-  if (p->age_us > 0) fprintf(out, "; state %.1f ms old%s", p->age_us * 1e-3, p->stale ? ", stale" : "");
+  if (p->no_state)
+    fprintf(out, "; no state of the robot has arrived yet");
+  else if (p->age_us > 0)
+    fprintf(out, "; state %.1f ms old%s", p->age_us * 1e-3, p->stale ? ", stale" : "");
   if (p->covariance[0] + p->covariance[3] + p->covariance[5] > 0)
     fprintf(out, ", sigma %.3g m, %.3g m, %.3g rad", sqrt(p->covariance[0]), sqrt(p->covariance[3]),
             sqrt(p->covariance[5]));

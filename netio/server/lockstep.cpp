@@ -32,6 +32,7 @@ Lockstep::Lockstep(const world::World& world, const sensors::SensorSet& sensor_s
       inbox_({.bind = options.bind, .robots = ids_of(names_.robots), .peers = options.peers, .lockstep = true}),
       outbox_(inbox_.socket()),
       log_(options.log_descriptor),
+      rejections_(ids_of(names_.robots)),
       driver_(world.movers.size(), nullptr),
       types_(world.movers.size(), 0),
       told_(world.movers.size()),
@@ -55,7 +56,10 @@ void Lockstep::receive(std::int64_t now) {
     outbox_.queue(who, packet_);
   };
   inbox_.receive(
-      now, [&](const netio::Packet& packet) { take(packet, now); }, on_notable);
+      now, [&](const netio::Packet& packet) { take(packet, now); }, on_notable,
+      [&](netio::PacketStatus reason, std::span<const std::uint8_t> bytes, const netio::Endpoint& who) {
+        rejections_.note(reason, bytes, who, now, log_);
+      });
   acknowledge();
   outbox_.flush();
   check_timeout(now);

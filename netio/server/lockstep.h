@@ -27,6 +27,7 @@
 #include "netio/inbox.h"
 #include "netio/outbox.h"
 #include "netio/rate_limited_log.h"
+#include "netio/rejection_log.h"
 #include "netio/server/wire_ids.h"
 #include "netio/signature_trouble_log.h"
 #include "sensors/sensor_set.h"
@@ -133,6 +134,7 @@ class Lockstep {
   netio::Outbox outbox_;  ///< from the port that the processes send to
   netio::RateLimitedLog log_;
   netio::SignatureTroubleLog trouble_;
+  netio::RejectionLog rejections_;
   std::map<Key, Process> processes_;
   std::vector<Process*> driver_;                         ///< per mover; null: nobody drives it
   std::vector<std::uint32_t> types_;                     ///< per mover: mask of its SUBSCRIBE

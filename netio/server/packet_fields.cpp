@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -52,7 +53,8 @@ void add_header(const netio::Header& header, Fields& out) {
   add(out, "unsure", accuracy.unsure);
   add(out, "bound", std::isinf(accuracy.bound) ? kNan : accuracy.bound);
   if (!is_reading) return;
-  add(out, "age_us", header.state.age / 1000);
+  constexpr std::int64_t kMost = 0xFFFFFFFF;  // says more, too
+  add(out, "age_us", std::min(header.state.age / 1000, kMost));
   add(out, "stale", header.state.stale);
   add(out, "covariance", header.state.covariance);
 }

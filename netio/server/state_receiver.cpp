@@ -39,7 +39,8 @@ StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptio
       removed_(world.movers.size(), false),
       last_active_(world.movers.size(), kNever),
       last_state_(world.movers.size(), kNever),
-      log_(options.log_descriptor) {
+      log_(options.log_descriptor),
+      rejections_(ids_of(names_.robots)) {
   reports_.reserve(netio::Inbox::kMaxPerReceive);
 }
 
@@ -55,7 +56,10 @@ void StateReceiver::receive_pending(std::int64_t now) {
     answers_.queue(who, challenge_);
   };
   inbox_.receive(
-      now, [&](const netio::Packet& packet) { take(packet, now); }, on_notable);
+      now, [&](const netio::Packet& packet) { take(packet, now); }, on_notable,
+      [&](netio::PacketStatus reason, std::span<const std::uint8_t> bytes, const netio::Endpoint& who) {
+        rejections_.note(reason, bytes, who, now, log_);
+      });
   answers_.flush();
   fleet_.apply(reports_);
 }
@@ -91,8 +95,12 @@ void StateReceiver::predict(std::int64_t now) {
 }
 
 netio::StateQuality StateReceiver::quality(std::uint32_t row, std::int64_t now) const {
-  if (filter_.options().enabled) return filter_.quality(row);
-  if (last_state_[row] == kNever) return {};
+  constexpr netio::StateQuality kNone{.stated = true, .stale = true, .age = base::kNoStateYet};
+  if (filter_.options().enabled) {
+    const netio::StateQuality predicted = filter_.quality(row);
+    return predicted.stated ? predicted : kNone;
+  }
+  if (last_state_[row] == kNever) return kNone;
   const std::int64_t age = now - last_state_[row];
   return {.stated = true, .stale = age > filter_.options().stale_after, .age = age};
 }

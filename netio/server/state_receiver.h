@@ -13,6 +13,7 @@
 #include "netio/inbox.h"
 #include "netio/outbox.h"
 #include "netio/rate_limited_log.h"
+#include "netio/rejection_log.h"
 #include "netio/relay.h"
 #include "netio/server/state_filter.h"
 #include "netio/server/wire_ids.h"
@@ -97,6 +98,7 @@ class StateReceiver {
   std::vector<std::int64_t> last_state_;   ///< [ns] arrival, per mover, or kNever
   netio::RateLimitedLog log_;
   netio::SignatureTroubleLog trouble_;
+  netio::RejectionLog rejections_;
   /// The bound address whose other senders are in the log already.
   std::map<std::pair<netio::PeerKind, std::uint32_t>, std::optional<netio::Endpoint>> logged_;
 };

@@ -69,6 +69,17 @@ TEST(Dump, SignalMessagesAreWordsToo) {
   EXPECT_EQ(run_program({"dump", folder.write("lights.pcap", signal_capture(hex[0], 1))}).code, 1);
 }
 
+// `serve` before any state of the robot was accepted.
+TEST(Dump, SaysThatNoStateHasArrived) {
+  base::Bytes packet = vector_of("laser", 1);
+  packet[62] |= 2;
+  test::PcapFile file({.big_endian = true, .nanoseconds = true, .link = 101});
+  file.add(test::ipv4(test::udp(9000, 10'056, packet)), 1'700'000'000, 1000);
+  const Folder folder;
+  const Outcome outcome = run_program({"dump", folder.write("a.pcap", file.text())});
+  EXPECT_NE(outcome.out.find("; no state of the robot has arrived yet\n"), std::string::npos) << outcome.out;
+}
+
 TEST(Dump, ACaptureIsPrintedInWords) {
   const Folder folder;
   test::PcapFile file({.big_endian = true, .nanoseconds = true, .link = 101});

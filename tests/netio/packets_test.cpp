@@ -98,6 +98,15 @@ TEST(Packets, AgeIsRoundedUpAndNeverZero) {
   EXPECT_EQ(received({.stated = true, .age = kMaxTime}).age, 4'294'967'295'000);
 }
 
+// Older clients read a stale state of the largest age.
+TEST(Packets, ThatNoStateHasArrivedComesBack) {
+  base::Bytes bytes;
+  encode_reading({.robot = 7, .state = {.stated = true, .stale = true, .age = base::kNoStateYet}}, 1, {}, bytes);
+  EXPECT_EQ(base::ByteReader(std::span(bytes).subspan(32)).get<std::uint32_t>(), 0xFFFFFFFFu);
+  EXPECT_EQ(base::ByteReader(std::span(bytes).subspan(62)).get<std::uint16_t>(), 3u);
+  EXPECT_EQ(received({.stated = true, .stale = true, .age = base::kNoStateYet}).age, base::kNoStateYet);
+}
+
 TEST(Packets, CovarianceThatIsNoneIsLeftOut) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   for (const std::array<float, 6>& bad :

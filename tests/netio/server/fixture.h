@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <fcntl.h>
 #include <unistd.h>
 
-#include <array>
 #include <memory>
 #include <string>
 
@@ -16,24 +14,13 @@
 #include "sensors/accuracy.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
+#include "tests/netio/log_pipe.h"
 #include "tests/robots/scenes.h"
 #include "tests/units.h"
 
 namespace sf::server {
 
-/// Lines of a log.
-struct LogPipe {
-  std::array<int, 2> ends{};
-  LogPipe() { EXPECT_EQ(pipe2(ends.data(), O_NONBLOCK), 0); }
-  ~LogPipe() { close(ends[0]), close(ends[1]); }
-  int descriptor() const { return ends[1]; }
-  std::string read_all() const {
-    std::string text;
-    char bytes[4096];
-    for (ssize_t n = 0; (n = read(ends[0], bytes, sizeof bytes)) > 0;) text.append(bytes, static_cast<std::size_t>(n));
-    return text;
-  }
-};
+using netio::LogPipe;
 
 /// A room of 6 m by 4 m with robots of 0.3 m by 0.3 m that have a laser each, at the world's 10 Hz.
 inline world::World room(double rate = 10.0, double latency = 0.0, std::uint32_t samples = 91) {

@@ -107,14 +107,18 @@ TEST(Service, ReadsBetweenTicksWhatIsDueThere) {
 TEST(Service, StatesHaveAnAgeWithAndWithoutFilter) {
   for (const bool filtered : {false, true}) {
     Fixture f({.filter = {.enabled = filtered}});
-    EXPECT_FALSE(f.service->receiver().quality(0, f.now).stated) << "nothing came yet";
+    const auto no_state = [&](std::uint32_t row) {
+      const netio::StateQuality q = f.service->receiver().quality(row, f.now);
+      return q.stated && q.stale && q.age == base::kNoStateYet;
+    };
+    EXPECT_TRUE(no_state(0)) << "nothing came yet";
     f.run(10);
     const auto quality = [&] { return f.service->receiver().quality(0, f.now - kTick); };
     EXPECT_TRUE(quality().stated);
     EXPECT_EQ(quality().age, 0);
     EXPECT_FALSE(quality().stale);
     EXPECT_EQ(quality().covariance[0] > 0.0f, filtered);
-    EXPECT_FALSE(f.service->receiver().quality(1, f.now).stated) << "the other robot is silent";
+    EXPECT_TRUE(no_state(1)) << "the other robot is silent";
     for (int i = 0; i < 15; ++i, f.now += kTick) f.service->tick(f.now);
     EXPECT_TRUE(quality().stale);
     EXPECT_EQ(quality().age, 15 * kTick);
@@ -304,7 +308,7 @@ TEST(Service, ASinkTakesStatesTheirQualityAndReadings) {
   ASSERT_EQ(sink.qualities.size(), 2u);
   EXPECT_TRUE(sink.qualities[0].stated);
   EXPECT_GT(sink.qualities[0].covariance[0], 0.0f);
-  EXPECT_FALSE(sink.qualities[1].stated) << "the other robot is silent";
+  EXPECT_EQ(sink.qualities[1].age, base::kNoStateYet) << "the other robot is silent";
   EXPECT_FALSE(base::is_absent(sink.reports[1].X_WM)) << "it stands where the world has it";
   for (int i = 0; i < 15; ++i, f.now += kTick) f.service->tick(f.now);
   EXPECT_TRUE(sink.qualities[0].stale);

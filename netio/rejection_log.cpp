@@ -1,0 +1,125 @@
+#include "netio/rejection_log.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "base/time.h"
+#include "netio/packets.h"
+
+namespace sf::netio {
+
+namespace {
+
+constexpr std::int64_t kPeriod = 10 * base::kSecond;  ///< [ns] between lines of one row
+
+struct Form {
+  Type type;
+  const char* name;
+  std::size_t bytes;  ///< header included; 0: not of one size
+};
+constexpr Form kForms[] = {{Type::v2v, "V2V", kV2vBytes},
+                           {Type::tag, "TAG", kHeaderBytes + kTagBytes},
+                           {Type::subscribe, "SUBSCRIBE", kHeaderBytes + kSubscribeBytes},
+                           {Type::start, "START", kHeaderBytes},
+                           {Type::leave, "LEAVE", kHeaderBytes},
+                           {Type::object, "OBJECT", kHeaderBytes + kObjectBytes},
+                           {Type::v2i, "V2I", 0}};
+
+/// "a V2V of 131 bytes", with the size that it should have.
+std::string size_text(std::span<const std::uint8_t> bytes, bool is_short) {
+  if (bytes.size() < kHeaderBytes)
+    return fmt::format("{} bytes: every packet begins with a header of {} bytes", bytes.size(), kHeaderBytes);
+  const auto form = std::find_if(std::begin(kForms), std::end(kForms),
+                                 [&](const Form& f) { return static_cast<std::uint8_t>(f.type) == bytes[kTypeAt]; });
+  const std::string size = form == std::end(kForms)
+                               ? fmt::format("a packet of type {} and {} bytes", bytes[kTypeAt], bytes.size())
+                               : fmt::format("a {} of {} bytes", form->name, bytes.size());
+  const std::string fault = fmt::format("{} is too {}", size, is_short ? "short" : "long");
+  return form == std::end(kForms) || form->bytes == 0 ? fault : fmt::format("{}: expected {}", fault, form->bytes);
+}
+
+std::string ids_text(std::span<const std::uint32_t> ids) {
+  if (ids.empty()) return "none";
+  constexpr std::size_t kShown = 8;
+  return fmt::format("{}{}", fmt::join(ids.first(std::min(ids.size(), kShown)), ", "),
+                     ids.size() > kShown ? fmt::format(" and {} more", ids.size() - kShown) : "");
+}
+
+/// As `PacketStatus` orders them: those of signatures and sources have a log of their own.
+bool is_reported(PacketStatus reason) {
+  return (reason >= PacketStatus::too_short && reason <= PacketStatus::unknown_light) ||
+         reason == PacketStatus::unproven || reason == PacketStatus::stale;
+}
+
+bool is_tolerated(PacketStatus reason) { return reason == PacketStatus::unproven || reason == PacketStatus::stale; }
+
+}  // namespace
+
+std::string rejection_text(PacketStatus reason, std::span<const std::uint8_t> bytes,
+                           std::span<const std::uint32_t> robots) {
+  const bool whole = bytes.size() >= kHeaderBytes;
+  const unsigned type = whole ? bytes[kTypeAt] : 0;
+  const unsigned id = whole ? bytes[kRobotAt] + 256u * bytes[kRobotAt + 1] : 0;
+  switch (reason) {
+    case PacketStatus::too_short:
+    case PacketStatus::too_long:
+      return size_text(bytes, reason == PacketStatus::too_short);
+    case PacketStatus::bad_magic:
+      return "it does not begin with SFPK: is it meant for another program, or in the form of --wire thesis?";
+    case PacketStatus::unknown_version:
+      return fmt::format("version {} of the protocol: expected {}; update the sender", unsigned{bytes[kVersionAt]},
+                         unsigned{kVersion});
+    case PacketStatus::unknown_type:
+      return fmt::format("type {} is unknown", type);
+    case PacketStatus::not_finite:
+      return "it contains NaN or infinity";
+    case PacketStatus::out_of_range:
+      return "a number in it is out of range";
+    case PacketStatus::wrong_direction:
+      return fmt::format(
+          "type {} is not for this service: it is the farm's own, or the other of lockstep and real time", type);
+    case PacketStatus::unknown_robot:
+      return fmt::format("the world has no robot with id {}; it has {}", id, ids_text(robots));
+    case PacketStatus::unknown_tag:
+      return fmt::format("the world has no tag with id {}; give it a model named tag{}", id, id);
+    case PacketStatus::unknown_light:
+      return fmt::format("the world has no intersection with id {}", id);
+    case PacketStatus::unproven:
+      return "they lack the token of their address: the sender has to copy it from the CHALLENGE that answers them";
+    case PacketStatus::stale:
+      return "their sequence is not newer than that of an accepted one: it has to grow with every packet of a session";
+    default:
+      return std::string(name(reason));
+  }
+}
+
+RejectionLog::Row& RejectionLog::row_of(const Endpoint& who, PacketStatus reason, std::int64_t now) {
+  const std::tuple key{who.address, who.port, reason};
+  const auto found = rows_.find(key);
+  if (found != rows_.end()) return found->second;
+  if (rows_.size() == kMaxRows) std::erase_if(rows_, [&](const auto& row) { return row.second.next_line < now; });
+  return rows_.size() == kMaxRows ? others_ : rows_[key];
+}
+
+void RejectionLog::note(PacketStatus reason, std::span<const std::uint8_t> bytes, const Endpoint& who, std::int64_t now,
+                        RateLimitedLog& log) {
+  if (!is_reported(reason)) return;
+  Row& row = row_of(who, reason, now);
+  if (row.count == 0 || (is_tolerated(reason) && now - row.since > kPeriod)) {
+    row.count = 0;
+    row.since = now;
+  }
+  ++row.count;
+  if (now < row.next_line || (is_tolerated(reason) && row.count < kTolerated)) return;
+  row.next_line = now + kPeriod;
+  log.write(fmt::format("{} from {} dropped: {} (docs/packets.md)",
+                        row.count == 1 ? "1 packet" : fmt::format("{} packets", row.count),
+                        &row == &others_ ? text(who) + " and other senders" : text(who),
+                        rejection_text(reason, bytes, robots_)),
+            now);
+  row.count = 0;
+}
+
+}  // namespace sf::netio

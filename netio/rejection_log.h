@@ -1,0 +1,51 @@
+#pragma once
+// Reports senders whose datagrams a service drops: malformed ones, those for nobody in the world, and those that never
+// become valid (unproven, stale).
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "netio/endpoint.h"
+#include "netio/packet_status.h"
+#include "netio/rate_limited_log.h"
+
+namespace sf::netio {
+
+/// The fault of a datagram and the remedy, as in "a V2V of 131 bytes is too short: expected 132".
+/// @param robots ids of the world's robots
+std::string rejection_text(PacketStatus reason, std::span<const std::uint8_t> bytes,
+                           std::span<const std::uint32_t> robots);
+
+/// One thread. Allocates for new senders alone, up to a limit.
+class RejectionLog {
+ public:
+  static constexpr std::size_t kMaxRows = 256;  ///< pairs of sender and reason; those beyond share one
+  /// Unproven and stale packets also occur with sound clients: as many in ten seconds are reported.
+  static constexpr std::uint64_t kTolerated = 20;
+
+  explicit RejectionLog(std::vector<std::uint32_t> robots) : robots_(std::move(robots)) {}
+
+  /// Logs the first datagram of a sender and reason, then every ten seconds their number while more come. Reasons that
+  /// SignatureTroubleLog reports are ignored. @param now [ns] of any clock that does not decrease
+  void note(PacketStatus reason, std::span<const std::uint8_t> bytes, const Endpoint& who, std::int64_t now,
+            RateLimitedLog& log);
+
+ private:
+  struct Row {
+    std::uint64_t count = 0;     ///< since the last line
+    std::int64_t since = 0;      ///< [ns] of the first of them
+    std::int64_t next_line = 0;  ///< [ns]
+  };
+  Row& row_of(const Endpoint& who, PacketStatus reason, std::int64_t now);
+
+  std::vector<std::uint32_t> robots_;
+  std::map<std::tuple<std::uint32_t, std::uint16_t, PacketStatus>, Row> rows_;  ///< by address, port and reason
+  Row others_;
+};
+
+}  // namespace sf::netio
