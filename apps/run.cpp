@@ -22,15 +22,19 @@
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
 #include "apps/run_outputs.h"
+#include "apps/run_scenario.h"
 #include "apps/stop_signals.h"
+#include "apps/strayed_robots.h"
 #include "apps/text.h"
 #include "base/contact_onset.h"
 #include "base/elapsed.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "base/hash.h"
 #include "cluster/failure.h"
 #include "raycast/caster_choice.h"
 #include "scenarios/operator.h"
+#include "scenarios/scenario_events.h"
 #include "scenarios/simulation.h"
 
 namespace sf::apps {
@@ -39,18 +43,26 @@ namespace {
 
 /// `refusal` of a controller names one of several robots that are driven.
 bool names_one_of_several(const std::string& refusal, const world::World& world, const RunOptions& options) {
+  if (is_scenario(options.world)) return false;
   const std::size_t driven = options.drive.empty() ? count_robots(world) : options.drive.size();
   return driven > 1 && std::any_of(world.movers.begin(), world.movers.end(), [&](const world::Mover& mover) {
            return refusal.find("'" + mover.name + "'") != std::string::npos;
          });
 }
 
+/// @param scenario null: a fleet as the options say
 scenarios::SimulationOptions simulation_options(const world::World& world, const RunOptions& options,
-                                                cluster::Ranks* ranks) {
-  scenarios::SimulationOptions simulation{
-      .seed = options.seed, .threads = threads_of(options, ranks), .no_return_inf = options.no_return_inf};
-  simulation.actor.controller = controller_config_of(options);
-  simulation.actors = make_actors(world, options);
+                                                cluster::Ranks* ranks, const scenarios::Scenario* scenario) {
+  scenarios::SimulationOptions simulation;
+  if (scenario != nullptr) {
+    simulation = scenarios::simulation_of(*scenario, world);
+  } else {
+    simulation.seed = options.seed;
+    simulation.actor.controller = controller_config_of(options);
+    simulation.actors = make_actors(world, options);
+  }
+  simulation.threads = threads_of(options, ranks);
+  simulation.no_return_inf = options.no_return_inf;
   simulation.ranks = ranks;
   simulation.tiles = options.tiles && ranks != nullptr;
   simulation.balance = options.balance;
@@ -76,15 +88,17 @@ auto advised(const world::World& world, const RunOptions& options, Act&& act) {
 
 /// What a run stands on.
 struct Ground {
+  std::optional<scenarios::Scenario> scenario;
   world::World world;
   std::optional<server::StreamLayout> layout;
   gpu::Device device;
   sensors::SensorSet sensor_set;
   std::string caster;
 
-  /// @param ranks may be null
-  Ground(const RunOptions& options, const cluster::Ranks* ranks)
-      : world(load_with_robots(options.world, load_options(options, ranks), options.robots, options.seed, options.of)),
+  /// @param options its seed and duration become those of a scenario. @param ranks may be null
+  Ground(RunOptions& options, const cluster::Ranks* ranks)
+      : scenario(scenario_of(options)),
+        world(load(options, ranks)),
         layout(layout_of(world, options)),
         device(options.device),
         sensor_set(with_accuracy(options)),
@@ -104,6 +118,10 @@ struct Ground {
     if (options.send.empty()) return std::nullopt;
     return stream_layout_of(world, sensors::SensorSet(world), options);
   }
+  world::World load(const RunOptions& options, const cluster::Ranks* ranks) const {
+    if (scenario) return load_scenario_world(*scenario, options.load);
+    return load_with_robots(options.world, load_options(options, ranks), options.robots, options.seed, options.of);
+  }
   const world::World& with_accuracy(const RunOptions& options) {
     choose_accuracy(world, device, options, options.seed, options.threads);
     return world;
@@ -116,6 +134,7 @@ std::uint64_t hash_of(const world::World& world, const RunOptions& options) {
                                  options.seed, options.controller, options.localize, options.no_return_inf);
   for (const auto* words : {&options.set, &options.drive})
     for (const std::string& word : *words) text += "\n" + word;
+  if (is_scenario(options.world)) text += base::read_text(options.world);
   return base::hash_bytes(text.data(), text.size());
 }
 
@@ -145,7 +164,9 @@ struct Course {
   cluster::Ranks* ranks;
   scenarios::Simulation simulation;
   ControlMetrics tally;
+  std::optional<scenarios::ScenarioEvents> events;
   std::vector<base::ContactOnset> contacts;
+  StrayedRobots strayed;
   std::optional<Checkpoints> checkpoints;
   RunOutputs outputs;
   std::uint64_t ticks = 0;
@@ -154,26 +175,35 @@ struct Course {
   Course(Ground& ground, const RunOptions& options, cluster::Ranks* of, std::uint32_t resets)
       : world(ground.world),
         ranks(of),
-        simulation(world, ground.device, simulation_options(world, options, ranks)),
-        tally(simulation, world.movers.size(), options.controller),
+        simulation(world, ground.device, simulation_options(world, options, ranks, scenario_in(ground))),
+        tally(simulation, world.movers.size(),
+              ground.scenario ? controllers_of(*ground.scenario, world) : options.controller),
         contacts(world.movers.size()),
+        strayed(world),
         checkpoints(checkpoints_of(world, options, ranks, recording_folder(options, ranks, resets))),
         outputs(world, ground.sensor_set, ground.layout, ground.caster, options,
                 recording_folder(options, ranks, resets), part_of(options, ranks)) {
     // The simulation has its part of them, and a recording begins with all.
     if (options.tiles && ranks != nullptr && options.balance == 0.0) ground.world.walls = {};
+    if (ground.scenario) events.emplace(*ground.scenario, world, scenarios::simulation_of(*ground.scenario, world));
     if (ranks == nullptr) simulation.interrupt_on([] { return stop_requested().load(); });
+  }
+
+  static const scenarios::Scenario* scenario_in(const Ground& ground) {
+    return ground.scenario ? &*ground.scenario : nullptr;
   }
 
   double simulated() const { return static_cast<double>(ticks) * world.interval; }
 
   /// Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
   void step(scenarios::Operator& users) {
+    if (events) events->apply(simulation, simulated());
     const base::TickRecord tick = simulation.step();
     users.publish(tick);
     outputs.write(tick, [&](std::int64_t time) { users.keep_pace(1e-9 * static_cast<double>(time) + world.interval); });
     simulation.settle();
     tally.update(tick);
+    strayed.write(tick);
     for (std::size_t m = 0; m < contacts.size(); ++m)
       contacts_begun += !world.movers[m].is_tag && contacts[m].begins(tick.contacts[m] != 0);
     ++ticks;
@@ -184,6 +214,7 @@ struct Course {
     facts.ticks = ticks;
     facts.simulated_s = simulated();
     facts.contacts = contacts_begun;
+    facts.strayed = strayed.names();
     facts.control = tally.facts(world, ranks);
     facts.move_s = simulation.move_seconds();
     facts.farm = simulation.farm().stats();
@@ -201,7 +232,7 @@ double speed_of(const RunOptions& options, bool watched) {
   return speed > 0.0 ? speed : std::numeric_limits<double>::infinity();
 }
 
-int simulate(const RunOptions& options, cluster::Ranks* ranks) {
+int simulate(RunOptions options, cluster::Ranks* ranks) {
   std::optional<Ground> ground;
   std::optional<Course> course;
   std::optional<LiveBridges> live;

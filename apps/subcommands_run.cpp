@@ -16,8 +16,9 @@ void add_run(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("run", "Simulate a fleet with its sensors and controllers, as fast as possible");
   auto& o = add_command(*sub, call, run);
   add_examples(*sub, {"worlds/cave.world --robots 50 --duration 30", "worlds/cave.world --robots 4 --record out/run",
-                      "worlds/cave.world --robots 4 --send 127.0.0.1 --real-time"});
+                      "worlds/cave.world --robots 4 --send 127.0.0.1 --real-time", "experiments/simville.toml --view"});
   add_world(*sub, o);
+  sub->get_option("world")->description("World file (.world of Stage, .yaml of ROS maps), or scenario (.toml)");
   add_accuracy(*sub, o);
   add_automatic(*sub, o);
   add_json(*sub, o);

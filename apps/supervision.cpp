@@ -159,7 +159,8 @@ bool needs_supervision(int argc, const char* const* argv) {
   const auto any = [&](auto&& test) { return std::any_of(argv + 1, argv + argc, test); };
   if (any([](std::string_view word) { return word == "--in-process"; })) return false;
   const char* const plugins = std::getenv("SENSORFARM_PLUGINS");
-  // Files of experiments may name controllers, too; sweeps have processes of their own.
+  // Scenarios may name controllers, too; `test` and sweeps have processes of their own.
+  if (command == "run" && any([](std::string_view word) { return word.ends_with(".toml"); })) return true;
   return !memory_limit_note().empty() || (plugins != nullptr && *plugins != '\0') || command == "experiment" ||
          any(is_code);
 }

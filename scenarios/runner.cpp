@@ -14,6 +14,7 @@
 #include "cluster/failure.h"
 #include "scenarios/coverage.h"
 #include "scenarios/run_metrics.h"
+#include "scenarios/scenario_events.h"
 #include "scenarios/statistics.h"
 #include "sensors/laser_settings.h"
 #include "world/roads/roads.h"
@@ -57,18 +58,6 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
     refuse(world.file + " has no lights to be obeyed; leave this out");
 }
 
-/// Row of an event's object. @throws base::InputError for a mover that senses or drives: a robot cannot vanish from its
-/// controller
-std::uint32_t object_of(const Scenario& scenario, const world::World& world, const SimulationOptions& options,
-                        const ObjectEvent& event) {
-  const std::uint32_t row = row_of(scenario, world, event.object, event.line);
-  if (world.movers[row].sensors.empty() && options.actors[row].controller.name.empty()) return row;
-  throw base::InputError(scenario.file, event.line,
-                         fmt::format("'{}' has sensors or a controller; expected an object without, such as a model "
-                                     "named tag1",
-                                     event.object));
-}
-
 /// Line of the file that sets the mover's controller.
 int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
   for (const RobotSetup& setup : scenario.robot_setups)
@@ -96,9 +85,8 @@ class Run {
         ranks_(ranks),
         world_(world_of(scenario)),
         simulation_(world_, device, options_of(scenario, world_, threads, ranks)),
+        events_(scenario, world_, simulation_of(scenario, world_)),
         metrics_(world_, simulation_) {
-    const SimulationOptions options = simulation_of(scenario, world_);
-    for (const ObjectEvent& event : scenario.events) objects_.push_back(object_of(scenario, world_, options, event));
     for (const Expectation& e : scenario.expect)
       if (e.kind == Kind::map_coverage)
         for (const std::uint32_t row : rows_of(scenario, world_, e))
@@ -112,7 +100,7 @@ class Run {
     const bool until_done = expects(scenario_, Kind::done);
     const auto start = Clock::now();
     for (; result.ticks < ticks && !(until_done && simulation_.all_done()); ++result.ticks) {
-      change_objects(static_cast<double>(result.ticks) * world_.interval);
+      events_.apply(simulation_, static_cast<double>(result.ticks) * world_.interval);
       const bool stops = stop && stop();
       if (stops && ranks_ == nullptr) throw base::Interrupted();
       if (stops) simulation_.request_stop();
@@ -165,12 +153,6 @@ class Run {
 
   static std::string what_of(const Expectation& e) {
     return std::string(name_of(e.kind)) + (e.robot.empty() ? "" : " of " + e.robot);
-  }
-
-  /// Events that are due at `time` [s], to half a nanosecond.
-  void change_objects(double time) {
-    for (; next_event_ < objects_.size() && scenario_.events[next_event_].at <= time + 5e-10; ++next_event_)
-      simulation_.set_absent(objects_[next_event_], !scenario_.events[next_event_].present);
   }
 
   /// Worst value of a measure over the expectation's robots, ignoring NaN; NaN without a value.
@@ -279,9 +261,8 @@ class Run {
   const Scenario& scenario_;
   cluster::Ranks* ranks_;
   world::World world_;
-  std::vector<std::uint32_t> objects_;  ///< per event: its mover
-  std::size_t next_event_ = 0;
   Simulation simulation_;
+  ScenarioEvents events_;
   RunMetrics metrics_;
   std::map<std::uint32_t, RobotMap> maps_;     ///< by row of the mover, of this rank
   std::map<std::uint32_t, double> coverages_;  ///< [-] likewise, of all ranks, after the run
@@ -314,7 +295,7 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
       made.push_back(try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, config));
   }
   for (const Expectation& e : scenario.expect) check_expectation(scenario, world, options, e);
-  for (const ObjectEvent& event : scenario.events) object_of(scenario, world, options, event);
+  ScenarioEvents(scenario, world, options);
   return std::move(world.warnings);
 }
 

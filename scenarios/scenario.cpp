@@ -24,8 +24,10 @@ std::uint32_t row_of(const Scenario& scenario, const world::World& world, const 
 }
 
 world::World world_of(const Scenario& scenario) {
-  world::LoadOptions load;
-  load.sensors = sensors::world_file_words();
+  return world_of(scenario, {.sensors = sensors::world_file_words()});
+}
+
+world::World world_of(const Scenario& scenario, const world::LoadOptions& load) {
   if (!std::filesystem::is_regular_file(scenario.world) && !scenario.file.empty())
     throw base::InputError(
         scenario.file, scenario.world_line,

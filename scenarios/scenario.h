@@ -98,6 +98,7 @@ Scenario read_scenario(const std::string& file);
 
 /// The world with the scenario's changes. @throws base::InputError for unknown robots or lack of room.
 world::World world_of(const Scenario& scenario);
+world::World world_of(const Scenario& scenario, const world::LoadOptions& load);
 
 /// One actor per mover of `world_of`, with links seeded by the scenario's seed.
 /// @throws base::InputError for unknown robots.

@@ -1,0 +1,95 @@
+// `run` with a scenario file in place of a world.
+
+#include <gtest/gtest.h>
+
+#include "base/hash.h"
+#include "scenarios/runner.h"
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+#include "tests/apps/refused.h"
+#include "tests/device.h"
+
+namespace sf {
+namespace {
+
+const std::string kTown = SF_SOURCE_DIR "/experiments/simville.toml";
+
+// Two robots in a room and a door that goes after a second.
+const char* const kDoorRoom = R"(
+model( size [0.1 4 1] pose [2 0 0 0] )
+model( size [0.1 4 1] pose [-2 0 0 0] )
+model( name "tag1" size [0.1 1 1] pose [0.5 0 0 0] )
+define robot position( size [0.3 0.3 0.3] laser( samples 9 fov 90 range_max 5 ) )
+robot( name "a" pose [-1 0 0 0] )
+robot( name "b" pose [-1 1 0 0] )
+)";
+const std::string kDoorScenario = R"(
+world = "room.world"
+duration = 2
+seed = 7
+[default]
+controller = "none"
+[[robot]]
+name = "b"
+controller = "wander"
+settings = { speed = 0.2 }
+)";
+const std::string kDoor = R"([[event]]
+at = 1
+object = "tag1"
+present = false
+)";
+
+Json run_json(const Words& arguments) {
+  const Outcome outcome = run_program(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return Json(outcome.out);
+}
+
+TEST(RunScenario, TheTownOfTheReadmeDrivesAMinuteWithoutContact) {
+  const Json facts = run_json({"run", kTown, "--duration", "60", "--json"});
+  EXPECT_EQ(facts.number("/contacts"), 0);
+  EXPECT_EQ(facts.number("/robots"), 50);
+}
+
+// Fleet, controllers, seed, duration and events are those of `test`: so are all readings.
+TEST(RunScenario, GivesTheReadingsOfTest) {
+  const Folder folder;
+  folder.write("room.world", kDoorRoom);
+  const std::string file = folder.write("door.toml", kDoorScenario + kDoor);
+  const std::string without = folder.write("wall.toml", kDoorScenario);
+  const Json facts = run_json({"run", file, "--json"});
+  const scenarios::ScenarioResult tested = scenarios::run_scenario(scenarios::read_scenario(file), device());
+  EXPECT_EQ(facts.text("/hash"), base::hash_hex(tested.hash));
+  EXPECT_EQ(facts.number("/ticks"), static_cast<double>(tested.ticks));
+  EXPECT_NE(facts.text("/hash"), run_json({"run", without, "--json"}).text("/hash")) << "the door stays";
+}
+
+TEST(RunScenario, RefusesOptionsThatTheScenarioSettles) {
+  for (const Words& option :
+       {Words{"--robots", "3"}, Words{"--robots", "3", "--of", "roomba0"}, Words{"--seed", "2"}, Words{"--controller", "avoid"},
+        Words{"--set", "speed=0.1"}, Words{"--localize"}, Words{"--drive", "roomba0"}}) {
+    Words arguments{"run", kTown, "--duration", "1"};
+    arguments.insert(arguments.end(), option.begin(), option.end());
+    expect_refused(arguments, option[0] + " is for worlds");
+  }
+}
+
+TEST(RunScenario, SaysThatExpectationsAreNotJudged) {
+  const Outcome outcome = run_program({"run", kTown, "--duration", "1"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.err.find("9 expectations are not judged"), std::string::npos) << outcome.err;
+}
+
+// A recording of it is verified like that of a world.
+TEST(RunScenario, RecordsWhatVerifies) {
+  const Folder folder;
+  folder.write("room.world", kDoorRoom);
+  const std::string file = folder.write("door.toml", kDoorScenario + kDoor);
+  ASSERT_EQ(run_program({"run", file, "--record", folder.path("r"), "--record-readings"}).code, 0);
+  const Outcome outcome = run_program({"verify", folder.path("r")});
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+}
+
+}  // namespace
+}  // namespace sf
