@@ -76,6 +76,7 @@ void record_copies(VkCommandBuffer commands, std::vector<Copies>& all) {
 
 Batch::Batch(Device& device) : vk_(std::make_unique<Vk>()) {
   vk_->device = &device.vk();
+  if (device.is_host()) return;
   VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   pool.queueFamilyIndex = vk_->device->family;
@@ -91,11 +92,13 @@ Batch::Batch(Device& device) : vk_(std::make_unique<Vk>()) {
 
 Batch::~Batch() {
   wait();
+  if (vk_->device->is_host()) return;
   vkDestroyFence(vk_->device->device, vk_->done, nullptr);
   vkDestroyCommandPool(vk_->device->device, vk_->pool, nullptr);
 }
 
 void Batch::begin() {
+  if (vk_->device->is_host()) return;
   start(vk_->run(), 0);
   wait_between(vk_->run(), kTransfer | VK_PIPELINE_STAGE_HOST_BIT,
                VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_HOST_WRITE_BIT, kCompute | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
@@ -104,17 +107,20 @@ void Batch::begin() {
 
 void Batch::dispatch(const Kernel& kernel, const Buffer& counts, std::size_t offset) {
   const Kernel::Vk& k = kernel.vk();
+  SF_CHECK(!vk_->device->is_host(), "a kernel is dispatched on the host");
   vkCmdBindPipeline(vk_->run(), VK_PIPELINE_BIND_POINT_COMPUTE, k.pipeline);
   vkCmdBindDescriptorSets(vk_->run(), VK_PIPELINE_BIND_POINT_COMPUTE, k.layout, 0, 1, &k.set, 0, nullptr);
   vkCmdDispatchIndirect(vk_->run(), counts.vk().table.buffer, offset);
 }
 
 void Batch::barrier() {
+  if (vk_->device->is_host()) return;
   wait_between(vk_->run(), kCompute, VK_ACCESS_SHADER_WRITE_BIT, kCompute | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
                VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
 }
 
 void Batch::end() {
+  if (vk_->device->is_host()) return;
   wait_between(vk_->run(), kCompute, VK_ACCESS_SHADER_WRITE_BIT, kTransfer | VK_PIPELINE_STAGE_HOST_BIT,
                VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_HOST_READ_BIT);
   check_vk(vkEndCommandBuffer(vk_->run()), "vkEndCommandBuffer");
@@ -134,6 +140,7 @@ void Batch::download(const Buffer& table, std::size_t offset, std::size_t size) 
 
 void Batch::submit() {
   SF_CHECK(!vk_->submitted, "a batch is submitted again before it was waited for");
+  if (vk_->device->is_host()) return;
   std::array<VkCommandBuffer, 3> used{};
   std::uint32_t count = 0;
   const auto add_copies = [&](std::vector<Copies>& copies, VkCommandBuffer commands, bool before) {

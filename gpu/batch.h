@@ -10,7 +10,8 @@
 
 namespace sf::gpu {
 
-/// Kernels are recorded once, copies are named each tick (and cost nothing on unified devices). Not thread-safe.
+/// Kernels are recorded once, copies are named each tick (and cost nothing on unified devices). On the host, a batch is
+/// empty. Not thread-safe.
 class Batch {
  public:
   explicit Batch(Device& device);

@@ -1,5 +1,7 @@
 #include "gpu/buffer.h"
 
+#include <new>
+
 #include "base/error.h"
 #include "gpu/buffer_vk.h"
 
@@ -53,6 +55,15 @@ void release(const Device::Vk& vk, const Storage& storage) {
   vkFreeMemory(vk.device, storage.memory, nullptr);
 }
 
+/// [bytes] alignment of tables on the host: a cache line.
+constexpr std::align_val_t kHostAlignment{64};
+
+void allocate_on_host(Buffer::Vk& vk, std::size_t size) {
+  vk.mapped = ::operator new[](size, kHostAlignment, std::nothrow);
+  if (vk.mapped == nullptr)
+    throw base::DeviceError("no room for " + std::to_string(size >> 20) + " MiB; use fewer robots or beams");
+}
+
 void make_storage(Buffer::Vk& vk, const Device& device, VkDeviceSize size) {
   const VkBufferUsageFlags table = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                    VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
@@ -81,22 +92,27 @@ Buffer::Buffer(Device& device, std::string_view name, Role role, Texel texel, st
   vk_->texels = texels;
   const std::size_t limit = device.vk().properties.limits.maxTexelBufferElements;
   if (texels > limit)
-    throw base::DeviceError("the Vulkan device " + device.info().name + " holds at most " + std::to_string(limit) +
+    throw base::DeviceError("the device " + device.info().name + " holds at most " + std::to_string(limit) +
                             " elements in one table, " + std::to_string(texels) +
                             " are needed; use fewer robots or beams");
-  make_storage(*vk_, device, bytes());
+  device.is_host() ? allocate_on_host(*vk_, bytes()) : make_storage(*vk_, device, bytes());
+  vk_->device->add_allocation(vk_.get(), name, bytes(), false);
+  if (device.is_host()) return;
 
   VkBufferViewCreateInfo view{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
   view.buffer = vk_->table.buffer;
   view.format = format_of(texel);
   view.range = VK_WHOLE_SIZE;
   check_vk(vkCreateBufferView(vk_->device->device, &view, nullptr, &vk_->view), "vkCreateBufferView");
-  vk_->device->add_allocation(vk_.get(), name, bytes(), false);
 }
 
 Buffer::~Buffer() {
   if (!vk_) return;
   vk_->device->remove_allocation(vk_.get());
+  if (vk_->device->is_host()) {
+    ::operator delete[](vk_->mapped, kHostAlignment);
+    return;
+  }
   vkDestroyBufferView(vk_->device->device, vk_->view, nullptr);
   release(*vk_->device, vk_->table);
   release(*vk_->device, vk_->staging);

@@ -95,7 +95,28 @@ void Device::Vk::remove_allocation(const void* what) {
   std::erase_if(allocations, [&](const auto& entry) { return entry.first == what; });
 }
 
-DeviceList list_devices(const std::string& wanted) {
+namespace {
+
+DeviceInfo host_info() {
+  return {.name = std::string(kHostDevice),
+          .driver = "sensorfarm's own code",
+          .kind = "CPU",
+          .software = true,
+          .chosen = true,
+          .self_check = "not needed"};
+}
+
+/// Why the host is not the chosen device; "" where it is.
+std::string refusal_of_host(const std::string& wanted, bool require_vulkan, bool named, bool other_chosen) {
+  if (!named && !wanted.empty()) return "does not match '" + wanted + "'";
+  if (require_vulkan)
+    return "is no Vulkan device, and one is required (--require-vulkan, SENSORFARM_REQUIRE_VULKAN or --caster vulkan)";
+  return other_chosen ? "usable, but a Vulkan device ranks higher; name it with --device host" : "";
+}
+
+}  // namespace
+
+DeviceList list_devices(const std::string& wanted, bool require_vulkan) {
   Device probe(std::make_unique<Device::Vk>());
   DeviceCandidates candidates = find_candidates(*probe.vk().instance);
   for (std::size_t row = 0; row < candidates.info.size(); ++row) {
@@ -103,23 +124,71 @@ DeviceList list_devices(const std::string& wanted) {
     candidates.info[row].reason = start(probe, candidates, row);
     close(probe.vk());
   }
-  choose_device(candidates, wanted);
+  const bool named = wanted == kHostDevice;
+  for (DeviceInfo& info : candidates.info)
+    if (named && info.reason.empty()) info.reason = "does not match '" + wanted + "'";
+  const int row = choose_device(candidates, wanted);
+  DeviceInfo host = host_info();
+  host.reason = refusal_of_host(wanted, require_vulkan || is_set("SENSORFARM_REQUIRE_VULKAN"), named, row >= 0);
+  host.chosen = host.reason.empty();
+  candidates.info.push_back(host);
   return {candidates.info, probe.vk().instance->problem};
 }
 
 Device::Device(std::unique_ptr<Vk> vk) : vk_(std::move(vk)) { vk_->instance = std::make_unique<Instance>(); }
 
-Device::Device(const std::string& wanted) : Device(std::make_unique<Vk>()) {
-  DeviceCandidates candidates = find_candidates(*vk_->instance);
-  const int row = choose_device(candidates, wanted,
-                                [&](DeviceCandidates& tried, std::size_t at) { return start(*this, tried, at); });
-  if (row < 0) throw base::DeviceError(no_device_message(*vk_->instance, candidates));
-  vk_->info = candidates.info[static_cast<std::size_t>(row)];
+void Device::Vk::become_host() {
+  instance.reset();
+  info = host_info();
+  unified = rounds32 = true;
+  properties.limits.maxTexelBufferElements = properties.limits.maxStorageBufferRange = UINT32_MAX;
 }
 
-Device::~Device() { close(*vk_); }
+Device Device::or_host(const std::string& wanted, bool require_vulkan) {
+  require_vulkan = require_vulkan || is_set("SENSORFARM_REQUIRE_VULKAN");
+  try {
+    Device device(wanted);
+    if (device.is_host() && require_vulkan)
+      throw base::DeviceError(
+          "a Vulkan device is required (--require-vulkan, SENSORFARM_REQUIRE_VULKAN or --caster vulkan), but the host "
+          "is "
+          "named (--device, SENSORFARM_DEVICE); leave out one of them");
+    return device;
+  } catch (const base::DeviceError& error) {
+    if (!wanted.empty() || require_vulkan) throw;
+    Device device{std::string(kHostDevice)};
+    device.vk_->notice =
+        std::string(error.what()) + "; computing on the host, with the same results (--require-vulkan refuses that)";
+    return device;
+  }
+}
+
+Device::Device(const std::string& wanted) : vk_(std::make_unique<Vk>()) {
+  if (wanted == kHostDevice) {
+    vk_->become_host();
+    return;
+  }
+  vk_->instance = std::make_unique<Instance>();
+  DeviceCandidates candidates = find_candidates(*vk_->instance);
+  std::string failed;
+  const int row = choose_device(candidates, wanted, [&](DeviceCandidates& tried, std::size_t at) {
+    std::string fault = start(*this, tried, at);
+    if (!fault.empty()) failed += tried.info[at].name + " " + fault + "; ";
+    return fault;
+  });
+  if (row < 0) throw base::DeviceError(no_device_message(*vk_->instance, candidates));
+  vk_->info = candidates.info[static_cast<std::size_t>(row)];
+  if (!failed.empty()) vk_->notice = failed + "using " + vk_->info.name + " instead";
+}
+
+Device::~Device() {
+  if (vk_) close(*vk_);
+}
+Device::Device(Device&&) noexcept = default;
 
 const DeviceInfo& Device::info() const { return vk_->info; }
+bool Device::is_host() const { return vk_->is_host(); }
+const std::string& Device::notice() const { return vk_->notice; }
 
 bool Device::unified() const { return vk_->unified; }
 bool Device::is_gpu() const { return !vk_->info.software || vk_->as_gpu; }
@@ -134,6 +203,7 @@ std::vector<DeviceAllocation> Device::allocations() const {
 void Device::set_owner(std::string_view owner) { vk_->owner = owner; }
 
 std::string Device::validation_messages() const {
+  if (is_host()) return "";
   const std::scoped_lock guard(vk_->instance->lock);
   return vk_->instance->messages;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// The Vulkan device that computes, and the reasons against the others. No Vulkan type leaves this module.
+// The Vulkan device that computes, and the reasons against the others, or the host in its place. No Vulkan type leaves
+// this module.
 
 #include <cstdint>
 #include <memory>
@@ -9,27 +10,33 @@
 
 namespace sf::gpu {
 
-/// One Vulkan device with the result of its check.
+/// Name of the host as a device: no kernel runs, and sensors are computed by the host's code, with the same bytes.
+inline constexpr std::string_view kHostDevice = "host";
+
+/// One Vulkan device with the result of its check, or the host.
 struct DeviceInfo {
-  std::string name;       ///< as reported by the driver
+  std::string name;       ///< as reported by the driver; `kHostDevice`
   std::string driver;     ///< driver name and version
-  std::string api;        ///< Vulkan version, e.g. "1.3.230"
+  std::string api;        ///< Vulkan version, e.g. "1.3.230"; empty for the host
   std::string kind;       ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"
   bool software = false;  ///< true: implemented on the CPU
   bool chosen = false;
   std::string reason;                  ///< why it was refused or not chosen; empty for the chosen one
-  std::string self_check = "not run";  ///< "passed", "failed" (with the difference in `reason`) or "not run"
+  std::string self_check = "not run";  ///< "passed", "failed" (with the difference in `reason`), "not run" or, for the
+                                       ///< host, "not needed"
 };
 
 /// The devices of this machine.
 struct DeviceList {
-  std::vector<DeviceInfo> devices;
-  std::string problem;  ///< failure of Vulkan itself; empty when it opened
+  std::vector<DeviceInfo> devices;  ///< the last one is the host
+  std::string problem;              ///< failure of Vulkan itself; empty when it opened
 };
 /// Opens Vulkan, checks every device, and runs the self-check on each suitable one.
-/// @param wanted empty (best usable device), a row number of the list, or a part of a device's name
+/// @param wanted empty (best usable device, else the host), a row number of the list, a part of a device's name, or
+/// `kHostDevice`
+/// @param require_vulkan as in `Device::or_host`
 /// @return without a usable device, a list without a chosen row; does not throw
-DeviceList list_devices(const std::string& wanted);
+DeviceList list_devices(const std::string& wanted, bool require_vulkan = false);
 
 /// A table or a kernel on a device.
 struct DeviceAllocation {
@@ -39,17 +46,27 @@ struct DeviceAllocation {
   bool is_kernel = false;
 };
 
-/// One open device with one compute queue. Not thread-safe; must outlive all objects made on it.
+/// One open device with one compute queue, or the host. Not thread-safe; must outlive all objects made on it.
 class Device {
  public:
-  /// Opens the best device that matches `wanted` and passes the self-check.
+  /// Opens the best Vulkan device that matches `wanted` and passes the self-check. `kHostDevice` names the host.
   /// @throws base::DeviceError: one line with every device and the reason for its refusal
   explicit Device(const std::string& wanted = "");
+  /// The same; without a usable Vulkan device the host, with a `notice`, where nothing asks for a device.
+  /// @param wanted empty: nothing asks for one by name
+  /// @param require_vulkan the host is refused, as it is where the environment variable SENSORFARM_REQUIRE_VULKAN=1 is
+  /// set
+  /// @throws base::DeviceError as above, and for a host that is refused
+  static Device or_host(const std::string& wanted, bool require_vulkan);
   ~Device();
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
+  /// Only before anything was made on it.
+  Device(Device&&) noexcept;
+  Device& operator=(Device&&) = delete;
 
   const DeviceInfo& info() const;
+  bool is_host() const;  ///< no kernel may be dispatched: backends compute on the host
+  /// One line for the user: why a device that ranks higher is not used; "" where there is none.
+  const std::string& notice() const;
   /// True when host and device share memory, so that uploads and downloads copy nothing. Always false when
   /// SENSORFARM_STAGING=1 was set at construction, which has any device treated as a GPU with its own memory.
   bool unified() const;

@@ -1,8 +1,6 @@
 #pragma once
 // The Vulkan handles behind gpu::Device, for the sources of this module only.
 
-#include <vulkan/vulkan.h>
-
 #include <functional>
 #include <mutex>
 #include <span>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "gpu/device.h"
+#include "gpu/vulkan_functions.h"
 
 namespace sf::gpu {
 
@@ -33,7 +32,7 @@ struct Instance {
 };
 
 struct Device::Vk {
-  std::unique_ptr<Instance> instance;
+  std::unique_ptr<Instance> instance;  ///< null: the host
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
@@ -44,9 +43,12 @@ struct Device::Vk {
   bool unified = false;
   bool rounds32 = false;
   DeviceInfo info;
+  std::string notice;  ///< Device::notice
   std::string owner;
   std::vector<std::pair<const void*, DeviceAllocation>> allocations;  ///< in order of construction
 
+  void become_host();
+  bool is_host() const { return instance == nullptr; }
   void add_allocation(const void* what, std::string_view name, std::size_t bytes, bool is_kernel);
   void remove_allocation(const void* what);
   /// Row of a memory type with all of `wanted` among `allowed`, or -1.

@@ -44,6 +44,8 @@ void check_vk(VkResult result, const char* call) {
 }
 
 Instance::Instance() {
+  problem = open_vulkan_loader();
+  if (!problem.empty()) return;
   const bool wanted = is_set("SENSORFARM_VALIDATE");
   const bool validate = wanted && has_layer(kValidationLayer);
   if (wanted && !validate) messages = "SENSORFARM_VALIDATE is set, but the validation layer is not installed\n";

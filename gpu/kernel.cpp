@@ -105,6 +105,7 @@ Kernel::Kernel(Device& device, std::string_view name, std::span<const std::uint3
   vk_->device = &device.vk();
   vk_->declared = interface_of(spirv);
   SF_CHECK(vk_->declared.group_size > 0, "a SPIR-V module without LocalSize");
+  if (device.is_host()) return;
   make_layout(*vk_);
   make_set(*vk_);
   make_pipeline(*vk_, spirv, constants);
@@ -112,6 +113,7 @@ Kernel::Kernel(Device& device, std::string_view name, std::span<const std::uint3
 }
 
 Kernel::~Kernel() {
+  if (vk_->device->is_host()) return;
   vk_->device->remove_allocation(vk_.get());
   const VkDevice device = vk_->device->device;
   vkDestroyPipeline(device, vk_->pipeline, nullptr);
@@ -139,6 +141,7 @@ void Kernel::bind(const std::vector<TableBinding>& tables) {
     writes[i].pBufferInfo = &buffers[i];
     writes[i].pTexelBufferView = &table.view;
   }
+  if (vk_->device->is_host()) return;
   vkUpdateDescriptorSets(vk_->device->device, static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }
 

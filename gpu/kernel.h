@@ -32,6 +32,7 @@ struct TableBinding {
   const Buffer* table;
 };
 
+/// On a device that is the host, a kernel has its group size and checks its tables, but cannot be dispatched.
 class Kernel {
  public:
   /// @param name for Device::allocations

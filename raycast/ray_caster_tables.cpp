@@ -42,6 +42,16 @@ constexpr std::size_t kMostFetched = 1024;
 /// Scanners with equal beams share beam tables.
 using BeamTableKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 
+/// True for the caster of Vulkan kernels. @throws base::DeviceError where it is asked for on the host
+bool kernels_cast(const SensorContext& context) {
+  const bool kernels = choose_caster(context.device.info().software, context.scene.caster) == CasterChoice::vulkan;
+  if (kernels && context.device.is_host())
+    throw base::DeviceError(
+        "the caster 'vulkan' needs a Vulkan device, but the device is the host; choose the caster 'host' or 'auto', or "
+        "a Vulkan device (Debian: mesa-vulkan-drivers)");
+  return kernels;
+}
+
 }  // namespace
 
 RayCaster::Tables::Tables(const SensorContext& context, const world::World& world, std::vector<Scanner> f)
@@ -53,7 +63,7 @@ RayCaster::Tables::Tables(const SensorContext& context, const world::World& worl
       scanners(std::move(f)) {
   plan(world);
   host = std::make_unique<HostScene>(world, configs, thread_pool);
-  if (choose_caster(context.device.info().software, context.scene.caster) == CasterChoice::vulkan)
+  if (kernels_cast(context))
     scene = std::make_unique<DeviceScene>(world, configs, context.device, thread_pool, context.scene,
                                           count_sensing_movers(scanners));
   scratch.resize(thread_pool.threads());

@@ -44,16 +44,17 @@ class LaneEdges : public SensorBackend {
   bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch& batch) override;
   void record_derive(gpu::Batch& batch) override {
-    if (on_device()) fit_.record(batch);
+    if (on_device_) fit_.record(batch);
   }
   void add_copies(gpu::Batch& batch) override;
   void collect(std::span<base::ReadingBlock> out) override;
   SensorStats stats() const override { return caster_.stats(); }
-  bool on_device() const override { return !exact_ || caster_.on_device(); }
+  bool on_device() const override { return on_device_; }
 
  private:
   void make_raster_caster(const SensorContext& context);
   void bind();
+  void fit_on_host(std::size_t i);
   void write(std::size_t i, base::ReadingBlock& block);
   void state(std::size_t i, base::ReadingBlock& block);
 
@@ -64,7 +65,8 @@ class LaneEdges : public SensorBackend {
   FilteredScene scene_;
   double longest_;  ///< [m] longest surface in it
   raycast::RayCaster caster_;
-  bool casting_;  ///< `caster_` has surfaces to meet
+  bool casting_;    ///< `caster_` has surfaces to meet
+  bool on_device_;  ///< lines are fitted there, and rays cast through the raster
   std::optional<RasterCaster> raster_caster_;
   EdgeFit fit_;
   std::vector<DueSample> due_;
@@ -81,6 +83,7 @@ LaneEdges::LaneEdges(const SensorContext& context)
       longest_(reaches_of(scene_.world).longest),
       caster_(context, scene_.world, scanners_of(edges_)),
       casting_(exact_ || anything_else(scene_.world)),
+      on_device_(caster_.on_device() || (!exact_ && !context.device.is_host())),
       fit_(context, edges_, scene_.grains, !on_device()) {
   if (!exact_) make_raster_caster(context);
 }
@@ -89,7 +92,7 @@ void LaneEdges::make_raster_caster(const SensorContext& context) {
   double longest = 0.0;
   for (const LaneEdge& edge : edges_) longest = std::max(longest, edge.fan.range_max);
   const MarkingRaster raster(scene_.paint, context.world.road_resolution, longest, context.world.file);
-  raster_caster_.emplace(context, raster, caster_, scene_.paint_tag, casting_);
+  raster_caster_.emplace(context, raster, caster_, scene_.paint_tag, casting_, !on_device_);
 }
 
 bool LaneEdges::prepare(std::span<const DueSample> due) {
@@ -99,7 +102,7 @@ bool LaneEdges::prepare(std::span<const DueSample> due) {
   for (std::size_t i = 0; i < due.size(); ++i) lanes_[i] = caster_.results(i).lane;
   if (raster_caster_) raster_caster_->prepare(due.size());
   fit_.prepare(due, lanes_);
-  if (!on_device()) return false;
+  if (!on_device_) return false;
   if (again) bind();
   return again;
 }
@@ -113,7 +116,7 @@ void LaneEdges::bind() {
 }
 
 void LaneEdges::record_measure(gpu::Batch& batch) {
-  if (!on_device()) return;
+  if (!on_device_) return;
   if (casting_) caster_.record(batch);
   if (casting_) batch.barrier();
   if (raster_caster_)
@@ -123,7 +126,7 @@ void LaneEdges::record_measure(gpu::Batch& batch) {
 }
 
 void LaneEdges::add_copies(gpu::Batch& batch) {
-  if (!on_device()) return;
+  if (!on_device_) return;
   caster_.add_copies(batch, false);
   if (raster_caster_) raster_caster_->add_copies(batch);
   fit_.add_copies(batch);
@@ -150,10 +153,16 @@ void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   block.bound_without_noise = block.bound;
 }
 
+void LaneEdges::fit_on_host(std::size_t i) {
+  if (!raster_caster_)
+    return fit_.fit_on_host(i, lanes_[i], caster_.ranges().host<double>(), caster_.hits().host<std::uint32_t>());
+  raster_caster_->cast_on_host(i);
+  fit_.fit_on_host(i, lanes_[i], raster_caster_->ranges(), raster_caster_->tags());
+}
+
 void LaneEdges::write(std::size_t i, base::ReadingBlock& block) {
   const LaneEdge& edge = edges_[due_[i].row];
-  if (!on_device())
-    fit_.fit_on_host(i, lanes_[i], caster_.ranges().host<double>(), caster_.hits().host<std::uint32_t>());
+  if (!on_device_) fit_on_host(i);
   block = {};
   block.mover = edge.row.mover;
   block.sensor = edge.row.sensor;

@@ -73,6 +73,7 @@ class Magnetometers : public SensorBackend {
   }
   bool prepare(std::span<const DueSample> due) override;
   void record_measure(gpu::Batch& batch) override {
+    if (!on_device_) return;
     for (auto& [mode, wave] : waves_) wave.field.record(batch);
   }
   void add_copies(gpu::Batch& batch) override {
@@ -80,6 +81,7 @@ class Magnetometers : public SensorBackend {
   }
   void collect(std::span<base::ReadingBlock> out) override;
   SensorStats stats() const override;
+  bool on_device() const override { return on_device_; }
 
  private:
   void bound_errors(const world::World& world);
@@ -90,6 +92,7 @@ class Magnetometers : public SensorBackend {
   std::span<const base::Report> states_;
   std::uint64_t seed_;
   bool noise_;
+  bool on_device_;
   std::vector<Array> arrays_;
   std::map<std::uint8_t, Wave> waves_;  ///< by mode
   std::vector<DueSample> due_;
@@ -103,6 +106,7 @@ Magnetometers::Magnetometers(const SensorContext& context)
       states_(context.states),
       seed_(context.seed),
       noise_(context.noise),
+      on_device_(!context.device.is_host()),
       arrays_(arrays_of(context.world)) {
   const bool magnitudes = any_magnitudes(arrays_);
   for (const Array& array : arrays_)
@@ -189,6 +193,8 @@ void Magnetometers::read(std::size_t i) {
 }
 
 void Magnetometers::collect(std::span<base::ReadingBlock> out) {
+  for (auto& [mode, wave] : waves_)
+    if (!on_device_) wave.field.sum_on_host();
   thread_pool_.parallel_for_each(due_.size(), 64, [this](std::size_t i, unsigned) { read(i); });
   for (std::size_t i = 0; i < due_.size(); ++i) {
     const Array& array = arrays_[due_[i].row];

@@ -85,6 +85,11 @@ class OwnSensors final : public SensorBackend {
       names_.push_back(name_of(each.spec, type));
     }
     stride_ = most * type.columns.size();
+    if (!type.spirv.empty() && context.device.is_host())
+      throw base::DeviceError(
+          fmt::format("{} has a kernel of its own ({}), which needs a Vulkan device; install a "
+                      "driver (Debian: mesa-vulkan-drivers), or leave out --device host",
+                      names_.front(), type.entry.kernel));
     if (!type.spirv.empty()) kernel_ = std::make_unique<OwnKernel>(context, type, sensors_.size(), most);
     values_.resize(sensors_.size() * stride_);
   }

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "sensors/lane_markings/host_raster.h"
 #include "shaders/marking_raster.comp.h"
 
 namespace sf::sensors {
@@ -31,7 +32,7 @@ void refuse_long_rays(const SensorContext& context, const raycast::RayCaster& ca
 }  // namespace
 
 RasterCaster::RasterCaster(const SensorContext& context, const MarkingRaster& raster, raycast::RayCaster& caster,
-                           std::uint32_t tag, bool with_casts)
+                           std::uint32_t tag, bool with_casts, bool on_host)
     : thread_pool_(context.thread_pool),
       caster_(caster),
       cell_(raster.cell()),
@@ -53,6 +54,9 @@ RasterCaster::RasterCaster(const SensorContext& context, const MarkingRaster& ra
   SF_CHECK(kernel_.group_size() == SF_LANES_PER_GROUP, "the raster's rays are the cast's lanes, beam by beam");
   std::memcpy(directory_.host<std::uint32_t>().data(), raster.directory().data(), 4 * raster.directory().size());
   std::memcpy(blocks_.host<std::uint32_t>().data(), raster.blocks().data(), 4 * raster.blocks().size());
+  if (!on_host) return;
+  ranges_.resize(caster.ranges().host<double>().size());
+  tags_.resize(ranges_.size());
 }
 
 RasterRow RasterCaster::row_of(std::size_t i) const {
@@ -94,6 +98,24 @@ void RasterCaster::prepare(std::size_t due) {
   groups[0] = lanes[0];
   groups[1] = SF_BEAMS_PER_LANE * lanes[1];
   groups[2] = lanes[2];
+}
+
+void RasterCaster::cast_on_host(std::size_t i) {
+  const raycast::ScanResult results = caster_.results(i);
+  const RasterRow& row = place_.host<RasterRow>()[i];
+  const RasterTables tables{directory_.host<std::uint32_t>(), blocks_.host<std::uint32_t>()};
+  const std::size_t bearings = SF_BEAMS_PER_LANE * std::size_t{row.beams};
+  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{row.lane};
+  const auto directions = caster_.directions64().host<raycast::BeamDirection>();
+  const auto cast_ranges = caster_.ranges().host<double>();
+  const auto cast_tags = caster_.hits().host<std::uint32_t>();
+  for (std::size_t k = 0; k < results.plan->samples.size(); ++k) {
+    const std::size_t place = results.plan->place(k), at = first + place;
+    const RasterHit hit =
+        cast_through_raster(tables, row, directions[bearings + place], {cast_ranges[at], cast_tags[at]});
+    ranges_[at] = hit.range;
+    tags_[at] = hit.tag;
+  }
 }
 
 void RasterCaster::bind(const PointTables& out) {

@@ -1,5 +1,5 @@
 #pragma once
-// The road raster on the device, and the rays of lane edge sensors through it.
+// The road raster, and the rays of lane edge sensors through it, on the device or on the host.
 
 #include <cstdint>
 #include <memory>
@@ -16,13 +16,14 @@
 
 namespace sf::sensors {
 
-/// Casts the beams of a `raycast::RayCaster` through a raster, after that caster's own dispatch. Not thread-safe.
+/// Casts the beams of a `raycast::RayCaster` through a raster, after that caster's own cast. Not thread-safe.
 class RasterCaster {
  public:
   /// @param tag tag of paint  @param with_casts whether hits of `caster` count
+  /// @param on_host nothing is bound or recorded: `cast_on_host` for each due scanner after `prepare`
   /// @throws base::DeviceError when the device cannot hold the tables
   RasterCaster(const SensorContext& context, const MarkingRaster& raster, raycast::RayCaster& caster, std::uint32_t tag,
-               bool with_casts);
+               bool with_casts, bool on_host);
 
   /// Computes the poses of the due scanners; call after `caster.prepare` with the same number.
   void prepare(std::size_t due);
@@ -30,6 +31,12 @@ class RasterCaster {
   void bind(const PointTables& out);
   void record(gpu::Batch& batch);
   void add_copies(gpu::Batch& batch);
+
+  /// Casts the beams of the i-th due scanner; several threads may cast different ones.
+  void cast_on_host(std::size_t i);
+  /// Results on the host, in the places that those of `caster` have: ranges [m] and tags.
+  std::span<const double> ranges() const { return ranges_; }
+  std::span<const std::uint32_t> tags() const { return tags_; }
 
  private:
   RasterRow row_of(std::size_t i) const;
@@ -46,6 +53,8 @@ class RasterCaster {
   bool fresh_ = true;  ///< the raster is not yet on the device
   gpu::Kernel kernel_;
   gpu::Buffer place_, groups_, directory_, blocks_;
+  std::vector<double> ranges_;       ///< on the host
+  std::vector<std::uint32_t> tags_;  ///< likewise
 };
 
 }  // namespace sf::sensors

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "robots/fleet.h"
+#include "sensors/magnetic_field/host_sums.h"
 #include "sensors/magnetic_field/tables.h"
 #include "shaders/magnetometer.comp.h"
 
@@ -40,8 +41,8 @@ MagneticField::MagneticField(const world::World& world, gpu::Device& device, bas
 MagneticField::MagneticField(MagneticField&&) noexcept = default;
 MagneticField::~MagneticField() = default;
 
-MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::ThreadPool& k, bool magnitudes, double c)
-    : world(w), device(d), thread_pool(k), cutoff(c) {
+MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::ThreadPool& k, bool has_magnitudes, double c)
+    : world(w), device(d), thread_pool(k), cutoff(c), magnitudes(has_magnitudes) {
   using gpu::Role;
   using gpu::Texel;
   fixed_magnets = count_of(world.magnets);
@@ -110,6 +111,8 @@ bool MagneticField::prepare(std::span<const FieldPoint> points, std::span<const 
   return again;
 }
 
+bool MagneticField::on_device() const { return !t_->device.is_host(); }
+
 void MagneticField::record(gpu::Batch& batch) { batch.dispatch(*t_->kernel, *t_->groups, 0); }
 
 void MagneticField::add_copies(gpu::Batch& batch) {
@@ -123,6 +126,22 @@ void MagneticField::add_copies(gpu::Batch& batch) {
   batch.upload(*t.points, 0, t.point_groups.size() * SF_FIELD_POINTS * sizeof(FieldPointRow));
   batch.upload(*t.groups, 0, t.groups->bytes());
   batch.download(*t.results, 0, t.planned.size() * SF_FIELD_POINTS * sizeof(FieldSum));
+}
+
+void MagneticField::sum_on_host() {
+  Tables& t = *t_;
+  const std::span<const MagnetSpan> spans = t.spans->host<MagnetSpan>();
+  const std::span<const DipoleRow> dipoles = t.dipoles->host<DipoleRow>();
+  const std::span<const FieldPointRow> points = t.points->host<FieldPointRow>();
+  const std::span<FieldSum> results = t.results->host<FieldSum>();
+  // Longest first, one item at a time: no thread is left with the long ones.
+  t.thread_pool.parallel_for_each(t.sorted.size(), 4, [&](std::size_t i, unsigned) {
+    const FieldItem& item = t.planned[t.sorted[i]].item;
+    sum_fields(spans.subspan(item.first, item.end - item.first), dipoles,
+               points.subspan(std::size_t{item.group} * SF_FIELD_POINTS, SF_FIELD_POINTS),
+               t.point_groups[item.group].points, t.magnitudes,
+               results.subspan(std::size_t{item.sums} * SF_FIELD_POINTS, SF_FIELD_POINTS));
+  });
 }
 
 FieldSum MagneticField::at(std::size_t group, std::size_t i) const {

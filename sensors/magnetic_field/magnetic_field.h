@@ -1,5 +1,5 @@
 #pragma once
-// The field of all magnets of a world at many points, on the device.
+// The field of all magnets of a world at many points, on the device, or on the host with the same bytes.
 //
 // Sums are accurate to 1e-12 of the sum of magnitudes, for points and moments in device precision (`field_bound`
 // includes all errors): points in 64 bits, with an error of 4e-18 m over the distance when nearer than 4 um to a
@@ -54,9 +54,11 @@ class MagneticField {
   /// @param ends index behind the last point of each group, ascending
   /// @return true when the batch must be recorded again
   bool prepare(std::span<const FieldPoint> points, std::span<const std::uint32_t> ends);
+  bool on_device() const;  ///< false: `sum_on_host` takes the place of the batch
   void record(gpu::Batch& batch);
   void add_copies(gpu::Batch& batch);
-  /// Field at point `i` of group `group`, after the batch.
+  void sum_on_host();
+  /// Field at point `i` of group `group`, after the batch or `sum_on_host`.
   FieldSum at(std::size_t group, std::size_t i) const;
 
   std::uint64_t dipoles() const;  ///< pairs of a magnet and a point summed since construction

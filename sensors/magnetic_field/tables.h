@@ -41,6 +41,7 @@ struct MagneticField::Tables {
   gpu::Device& device;
   base::ThreadPool& thread_pool;
   double cutoff;
+  bool magnitudes;
   std::uint32_t fixed_magnets = 0;  ///< magnets of the world; those of movers follow
   std::uint32_t moving_magnets = 0;
   MagnetGrid fixed_grid, moving_grid;
@@ -59,7 +60,7 @@ struct MagneticField::Tables {
   std::uint32_t stride = 1;                   ///< capacity of a group, in spans
   std::uint64_t dipoles_summed = 0;
 
-  Tables(const world::World& w, gpu::Device& d, base::ThreadPool& k, bool magnitudes, double c);
+  Tables(const world::World& w, gpu::Device& d, base::ThreadPool& k, bool has_magnitudes, double c);
   void write_fixed();
   void write_moving();
   void gather(std::span<const FieldPoint> at, std::span<const std::uint32_t> ends);
