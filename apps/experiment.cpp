@@ -1,6 +1,7 @@
 // `experiment`: trials of one of the experiments, in one folder.
 
 #include "scenarios/experiment.h"
+#include "apps/open_device.h"
 
 #include <fmt/format.h>
 
@@ -60,7 +61,7 @@ int run_shared(const ExperimentOptions& options, cluster::Ranks* ranks) {
   std::optional<gpu::Device> device;
   on_all(ranks, [&] {
     experiment_options.folder = folder_of(options);
-    device.emplace(options.device);
+    device.emplace(open_device(options));
   });
   install_stop_handlers();
   std::vector<std::string> files;

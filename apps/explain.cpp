@@ -6,6 +6,7 @@
 
 #include "apps/commands.h"
 #include "apps/default_robot.h"
+#include "apps/open_device.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/text.h"
@@ -82,7 +83,7 @@ std::string text_of(const scenarios::Explanation& e) {
 
 int explain(const ExplainOptions& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   scenarios::Explanation explanation;
   {
     Progress progress("measuring");

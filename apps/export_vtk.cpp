@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "apps/field_grid.h"
+#include "apps/open_device.h"
 #include "apps/progress_line.h"
 #include "apps/scan_replay.h"
 #include "apps/stop_signals.h"
@@ -110,7 +111,7 @@ std::vector<std::string> write_vtk(const RecordingPart& part, const ExportOption
   files.push_back(robots.close());
   if (!has_laser(part, world) && world.magnets.empty()) return files;
 
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   if (has_laser(part, world))
     for (std::string& file : write_scans(part, world, device, options)) files.push_back(std::move(file));
   if (const auto field = field_grid(world, device, options.height)) {

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "apps/commands.h"
+#include "apps/open_device.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
@@ -50,7 +51,7 @@ int field(const FieldOptions& options) {
   refuse_without_magnets(world);
   const viz::FieldView view = viz::field_view(world, {options.height, options.line, options.extent, options.page});
 
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   Progress progress("summing magnets");
   const viz::FieldSamples samples = viz::sample_field(world, device, view, [&](double part) {
     progress.show(part);

@@ -4,6 +4,7 @@
 
 #include "apps/commands.h"
 #include "apps/default_robot.h"
+#include "apps/open_device.h"
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
 #include "apps/road_commands.h"
@@ -108,11 +109,11 @@ void warn_of_pose(const world::World& world, const world::Mover& robot, const ba
 }  // namespace
 
 int devices(const DevicesOptions& options) {
-  const gpu::DeviceList list = gpu::list_devices(options.device);
+  const gpu::DeviceList list = gpu::list_devices(options.device, options.require_vulkan);
   const bool any = std::any_of(list.devices.begin(), list.devices.end(), [](const auto& d) { return d.chosen; });
   print(options.json ? json_of(list) : text_of(list));
-  // Says in one line why there is none.
-  const gpu::Device device(options.device);
+  // Says in one line why there is none, or why it is the host.
+  const gpu::Device device = open_device(options);
   return any ? 0 : 3;
 }
 
@@ -146,7 +147,7 @@ int sense(const SenseOptions& options) {
   if (options.pose) X_WM = {options.pose->x, options.pose->y, X_WM.z, options.pose->yaw};
   if (options.pose) warn_of_pose(world, world.movers[mover], X_WM);
 
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);

@@ -9,6 +9,7 @@
 #include "apps/automatic_accuracy.h"
 #include "apps/default_robot.h"
 #include "apps/exposure_warning.h"
+#include "apps/open_device.h"
 #include "apps/peers_option.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
@@ -72,7 +73,7 @@ RunReport lockstep_report(scenarios::LockstepService& service, const world::Worl
 int serve_lockstep(const ServeOptions& options) {
   world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   const scenarios::LockstepServiceOptions chosen = lockstep_options(options, world);
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   choose_accuracy(world, device, options, options.seed, 0);
   try {
     scenarios::LockstepService service(world, device, chosen);

@@ -49,9 +49,16 @@ void add_json(CLI::App& app, JsonOption& o) {
 }
 
 void add_device(CLI::App& app, DeviceOption& o) {
-  app.add_option("--device", o.device, "Vulkan device: its row in `devices`, or part of its name (default: the best)")
+  app.add_option("--device", o.device,
+                 "Vulkan device, by its row in `devices` or part of its name, or host: no device, with the same "
+                 "results (default: the "
+                 "best device; without any, the host)")
       ->envname("SENSORFARM_DEVICE")
       ->type_name("NAME")
+      ->group(kDevice);
+  app.add_flag("--require-vulkan", o.require_vulkan,
+               "Without a usable Vulkan device, end with exit code 3 rather than compute on the host (also "
+               "SENSORFARM_REQUIRE_VULKAN=1)")
       ->group(kDevice);
   // Farms look it up where they are made (raycast/caster_choice.h).
   add_choice(

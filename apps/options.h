@@ -30,7 +30,8 @@ struct JsonOption {
 };
 
 struct DeviceOption {
-  std::string device;  ///< row or part of a name; empty: the best
+  std::string device;           ///< row or part of a name, or gpu::kHostDevice; empty: the best
+  bool require_vulkan = false;  ///< the host is no device
 };
 
 struct InProcessOption {

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "apps/open_device.h"
 #include "apps/plot_maps.h"
 #include "apps/plot_readings.h"
 #include "apps/progress_line.h"
@@ -106,7 +107,7 @@ void draw_occupancy(const RecordingPart& part, const world::World& world, const 
                     const std::string& folder) {
   if (!has_laser(part, world))
     return print_message("no occupancy.{}: none of these robots has a laser", options.format);
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   viz::ScanMap map(viz::grid_over(world.extent));
   map_scans(part, world, device, map);
   const std::string occupancy = folder + "/occupancy." + options.format;

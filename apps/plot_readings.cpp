@@ -98,12 +98,12 @@ viz::SeriesOptions fields(const record::Recording& recording, const std::vector<
 
 /// "left counts" as "left [counts]", "x_m" as "x [m]".
 std::string axis_name(const std::string& column) {
-  constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+  constexpr std::pair<std::string_view, std::string_view> kUnitsOfEndings[] = {
       {"_rad_s", "rad/s"},   {"_m_s2", "m/s^2"}, {"_m_s", "m/s"}, {"_deg", "deg"}, {"_rad", "rad"},
       {"_counts", "counts"}, {"_m", "m"},        {"_s", "s"},     {"_T", "T"},     {"_V", "V"}};
   std::string name = column;
   std::string unit;
-  for (const auto& [ending, text] : kUnits) {
+  for (const auto& [ending, text] : kUnitsOfEndings) {
     if (!column.ends_with(ending)) continue;
     name.resize(column.size() - ending.size());
     unit = fmt::format(" [{}]", text);

@@ -94,9 +94,11 @@ std::string text_of(const gpu::DeviceList& list) {
   std::string text;
   for (std::size_t i = 0; i < list.devices.size(); ++i) {
     const gpu::DeviceInfo& d = list.devices[i];
-    text += fmt::format("{} {}  {}\n", d.chosen ? "*" : " ", i, d.name);
-    text += fmt::format("     {}, Vulkan {}, {}{}\n", d.kind, d.api, d.driver,
-                        d.software ? " (software: computed on the CPU)" : "");
+    const bool host = d.name == gpu::kHostDevice;
+    text += fmt::format("{} {}  {}\n", d.chosen ? "*" : " ", host ? " " : std::to_string(i), d.name);
+    text += host ? fmt::format("     {}, {}\n", d.kind, d.driver)
+                 : fmt::format("     {}, Vulkan {}, {}{}\n", d.kind, d.api, d.driver,
+                               d.software ? " (software: computed on the CPU)" : "");
     text += fmt::format("     self-check {}\n", d.self_check);
     if (d.chosen) text += fmt::format("     rays are cast by: {}\n", raycast::describe_caster(d.software));
     text += d.chosen ? "     chosen\n" : fmt::format("     refused: {}\n", d.reason);

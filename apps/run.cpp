@@ -17,6 +17,7 @@
 #include "apps/controller_options.h"
 #include "apps/default_robot.h"
 #include "apps/layout_options.h"
+#include "apps/open_device.h"
 #include "apps/progress_line.h"
 #include "apps/rank_run.h"
 #include "apps/rate_warnings.h"
@@ -100,7 +101,7 @@ struct Ground {
       : scenario(scenario_of(options)),
         world(load(options, ranks)),
         layout(layout_of(world, options)),
-        device(options.device),
+        device(open_device(options)),
         sensor_set(with_accuracy(options)),
         caster(raycast::describe_caster(device.info().software)) {
     warn_of_many_times(sensor_set);

@@ -17,6 +17,7 @@
 
 #include "apps/job_processes.h"
 #include "apps/memory_limit.h"
+#include "apps/open_device.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
@@ -123,8 +124,9 @@ class OwnProcesses {
     std::erase_if(rows_, [&](std::size_t row) { return results_[row].has_value(); });
     show();
     std::unique_ptr<gpu::Device> device;  // of a child
-    JobCalls all = calls([&] { device = std::make_unique<gpu::Device>(options_.device); },
+    JobCalls all = calls([&] { device = std::make_unique<gpu::Device>(open_device_silently(options_)); },
                          [&](std::size_t job) {
+                           if (job == 0) print_notice(*device);  // of all processes, one
                            file_.put(rows_[job], result_of_run(rows_[job], *device));
                            device.reset();
                          });

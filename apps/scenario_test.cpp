@@ -10,6 +10,7 @@
 #include <span>
 
 #include "apps/commands.h"
+#include "apps/open_device.h"
 #include "apps/progress_line.h"
 #include "apps/rank_run.h"
 #include "apps/report.h"
@@ -115,7 +116,7 @@ int test_here(const TestOptions& options, cluster::Ranks* ranks) {
     for (const std::string& file : options.scenarios) all.push_back(scenarios::read_scenario(file));
     for (const scenarios::Scenario& scenario : all) print_warnings(scenario.world, scenarios::check_scenario(scenario));
     if (!options.junit.empty() && reports) check_junit(options.junit);
-    device.emplace(options.device);
+    device.emplace(open_device(options));
   });
   std::vector<scenarios::ScenarioResult> results;
   const bool whole = run_all(all, *device, ranks, reports, results);

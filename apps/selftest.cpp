@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "apps/commands.h"
+#include "apps/open_device.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
@@ -73,7 +74,7 @@ std::string text_of(const SelfTestReport& test) {
 
 int selftest(const SelfTestOptions& options) {
   if (options.list) return list_cases();
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   selftest::Fixture fixture(device, [] { return stop_requested().load(); });
   const std::vector<const Case*> some = chosen(options.cases);
   SelfTestReport test{.device = device.info(), .asked = some.size()};

@@ -14,6 +14,7 @@
 #include "apps/exposure_warning.h"
 #include "apps/layout_options.h"
 #include "apps/lockstep.h"
+#include "apps/open_device.h"
 #include "apps/peers_option.h"
 #include "apps/rate_warnings.h"
 #include "apps/report.h"
@@ -145,7 +146,7 @@ int serve(const ServeOptions& options) {
   world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   const server::StreamLayout layout = stream_layout_of(world, sensors::SensorSet(world), options);
   const server::ServiceOptions chosen = service_options(options, world);
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   choose_accuracy(world, device, options, options.seed, 0);
   const sensors::SensorSet sensor_set(world);
   if (options.rate > 0.0) warn_of_fast_sensors(sensor_set, options.rate);

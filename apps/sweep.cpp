@@ -1,6 +1,7 @@
 // `sweep`: a scenario over a grid or a sample of its keys, in processes, by shares, or as a Slurm job array.
 
 #include "scenarios/sweep.h"
+#include "apps/open_device.h"
 
 #include <fmt/format.h>
 
@@ -108,9 +109,10 @@ bool run_jobs(const SweepOptions& options, const Sweep& sweep, const SweepFolder
   Progress progress(sweep.name);
   return run_in_processes(
       jobs.size(), processes,
-      {.begin = [&] { device = std::make_unique<gpu::Device>(options.device); },
+      {.begin = [&] { device = std::make_unique<gpu::Device>(open_device_silently(options)); },
        .run =
            [&](std::size_t row) {
+             if (row == 0) print_notice(*device);  // of all processes, one
              const std::uint64_t job = jobs[row];
              if (!replace && folder.read(job)) return;  // by another process, meanwhile
              folder.write(job, run_job(sweep, job, *device, alone ? 0 : 1));
@@ -162,6 +164,7 @@ std::vector<std::string> arguments_of(const SweepOptions& options, const SweepFo
                                  "-o",     folder.path(),
                                  "--jobs", std::to_string(std::max(1u, options.jobs))};
   if (!options.device.empty()) words.insert(words.end(), {"--device", options.device});
+  if (options.require_vulkan) words.emplace_back("--require-vulkan");
   if (options.retry) words.emplace_back("--retry");
   if (options.timeout > 0.0) words.insert(words.end(), {"--timeout", fmt::format("{}", options.timeout)});
   return words;

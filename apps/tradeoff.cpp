@@ -10,6 +10,7 @@
 
 #include "apps/commands.h"
 #include "apps/default_robot.h"
+#include "apps/open_device.h"
 #include "apps/progress_line.h"
 #include "apps/rank_run.h"
 #include "apps/report.h"
@@ -129,7 +130,7 @@ namespace {
 
 int measure_alone(const TradeoffOptions& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   install_stop_handlers();
   const scenarios::AccuracyTarget target = wish_of(options);
   const auto results = measure(world, device, options.seed, options.threads);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "apps/commands.h"
+#include "apps/open_device.h"
 #include "apps/progress_line.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
@@ -98,7 +99,7 @@ std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
 int verify(const VerifyOptions& options) {
   const record::Recording recording = scenarios::open_run(options.recording);
   print_damage(recording);
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   install_stop_handlers();
   const auto accuracy = measure_accuracy(options, recording, device);
   scenarios::Verification verification;

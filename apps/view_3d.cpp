@@ -4,6 +4,7 @@
 
 #include "apps/commands.h"
 #include "apps/field_grid.h"
+#include "apps/open_device.h"
 #include "apps/scan_replay.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
@@ -38,7 +39,7 @@ int view_3d(const ViewOptions& options) {
   scene.times = times_of(part, ticks);
   if (scene.times.empty()) throw base::InputError(part.recording.file, 0, "has no tick, so there is nothing to see");
 
-  gpu::Device device(options.device);
+  gpu::Device device = open_device(options);
   ScanReplay replay(part, world, device);
   scene.title = "sensorfarm: " + part.recording.info.world;
   scene.walls = viz::walls_geometry(world);

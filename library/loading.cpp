@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <tuple>
 #include <utility>
 
 #include "base/error.h"
@@ -32,14 +33,16 @@ world::World load(const WorldSource& source, const sensorfarm::Options& options)
   return world;
 }
 
-std::shared_ptr<gpu::Device> shared_device(const std::string& wanted) {
+std::shared_ptr<gpu::Device> shared_device(const sensorfarm::Options& options) {
   static std::mutex lock;
   // A process that was forked has devices of its parent, whose threads it lacks: it opens its own.
-  static std::map<std::pair<pid_t, std::string>, std::weak_ptr<gpu::Device>> open;
+  static std::map<std::tuple<pid_t, std::string, bool>, std::weak_ptr<gpu::Device>> open;
+  const bool require_vulkan = options.require_vulkan ||
+                              raycast::choose_caster(true, caster_of(options.caster)) == raycast::CasterChoice::vulkan;
   const std::scoped_lock guard(lock);
-  std::weak_ptr<gpu::Device>& known = open[{getpid(), wanted}];
+  std::weak_ptr<gpu::Device>& known = open[{getpid(), options.device, require_vulkan}];
   if (auto device = known.lock()) return device;
-  auto device = std::make_shared<gpu::Device>(wanted);
+  auto device = std::make_shared<gpu::Device>(gpu::Device::or_host(options.device, require_vulkan));
   known = device;
   return device;
 }

@@ -24,8 +24,9 @@ std::string found(const std::string& file);
 /// Loads, lends a robot to a world without one, and clones. @throws base::InputError
 world::World load(const WorldSource& source, const sensorfarm::Options& options);
 
-/// The open device that matches `wanted`, shared by all that ask while one of them lives. @throws base::DeviceError
-std::shared_ptr<gpu::Device> shared_device(const std::string& wanted);
+/// The open device that `options` choose, shared by all that ask for it while one of them lives.
+/// @throws base::DeviceError
+std::shared_ptr<gpu::Device> shared_device(const sensorfarm::Options& options);
 
 /// @throws base::InputError for a word that is no caster
 raycast::CasterChoice caster_of(const std::string& word);

@@ -86,7 +86,7 @@ Simulation::State::State(library::WorldSource from, const Options& given)
 }
 
 void Simulation::State::prepare() {
-  device = library::shared_device(options.device);
+  device = library::shared_device(options);
   world = library::load(source, options);
   simulation.emplace(world, *device, simulation_options(options, ranks));
   const sensors::SensorSet& sensor_set = simulation->farm().sensor_set();
@@ -94,6 +94,7 @@ void Simulation::State::prepare() {
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)
     robots.push_back(control::robot_of({world, row, options.seed, nullptr, nullptr, &sensor_set}));
   for (const world::Model& model : world.models) models.push_back(model.name);
+  if (!device->notice().empty()) warnings.push_back(device->notice());
   for (const world::Warning& w : world.warnings)
     warnings.push_back(fmt::format("{}:{}: {}", w.file, w.line, w.message));
   commands.assign(world.movers.size(), {});

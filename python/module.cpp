@@ -108,6 +108,7 @@ Options options_of(Keywords& given) {
   given.read("robots", options.robots), given.read("of", options.of), given.read("seed", options.seed);
   given.read("threads", options.threads), given.read("noise", options.noise);
   given.read("accuracy", options.accuracy), given.read("device", options.device), given.read("caster", options.caster);
+  given.read("require_vulkan", options.require_vulkan);
   given.read("controller", controller), given.read_settings(options.settings);
   given.read("record", options.record), given.read("record_readings", options.record_readings);
   given.read("ranks", options.ranks), given.read("too_near_min", options.too_near_min);
@@ -257,7 +258,7 @@ void add_state(py::class_<PySimulation>& c) {
       .def_property_readonly(
           "description", [](const PySimulation& s) { return s.farm.description(); }, "Device and caster, in one line.")
       .def_property_readonly(
-          "warnings", [](const PySimulation& s) { return s.farm.warnings(); }, "Of the world file.")
+          "warnings", [](const PySimulation& s) { return s.farm.warnings(); }, "Of the world file, and of the device.")
       .def("__len__", [](const PySimulation& s) { return s.farm.size(); });
 }
 
@@ -297,6 +298,7 @@ void add_simulation(py::module_& module) {
        }),
        py::arg("world"),
        "world: a file; options: robots=0, of='', seed=1, threads=0, noise=True, accuracy='', device='', caster='auto', "
+       "require_vulkan=False, "
        "controller='', settings={}, record='', record_readings=False, ranks=False, too_near_min=False, "
        "writable=False (docs/python.md)")
       .def_static(

@@ -36,7 +36,7 @@ class SENSORFARM_API Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// No usable Vulkan device; one line with every device and the reason for its refusal.
+/// No usable Vulkan device, where one is asked for; one line with every device and the reason for its refusal.
 class SENSORFARM_API DeviceError : public Error {
  public:
   using Error::Error;
@@ -49,7 +49,8 @@ struct Options {
   unsigned threads = 0;      ///< 0: all cores. Results are the same for any number
   bool noise = true;         ///< false: no noise, whatever the world file says
   std::string accuracy;      ///< accuracy mode of all sensors (docs/accuracy.md); empty: as the world says
-  std::string device;        ///< row or part of the name of a Vulkan device; empty: the best
+  std::string device;  ///< row or part of the name of a Vulkan device, or "host": none, with the same bytes; empty:
+                       ///< the best, or the host (as `warnings` states) where no device is usable
   std::string caster = "auto";  ///< "auto", "vulkan" or "host" (docs/performance.md); the bytes are the same
   std::string controller;       ///< of all robots, by name or file; empty: commands drive them
   std::vector<std::pair<std::string, std::string>> settings;  ///< of that controller
@@ -58,7 +59,8 @@ struct Options {
   /// Processes that mpirun has started share the fleet (docs/cluster.md): each has the readings of its own robots alone
   /// and commands these; the rest is known to all. All make the same calls with the same arguments, commands apart.
   bool ranks = false;
-  bool too_near_min = false;  ///< recorded ranges of surfaces that are too near are range_min, not -infinity
+  bool too_near_min = false;    ///< recorded ranges of surfaces that are too near are range_min, not -infinity
+  bool require_vulkan = false;  ///< without a usable Vulkan device DeviceError, not the host
 };
 
 /// The newest readings of all sensors of one type, as one table with a row per sensor. A view: valid until the next
@@ -139,7 +141,7 @@ class SENSORFARM_API Simulation {
   std::uint64_t tick() const;       ///< its number, from 0
   std::uint64_t hash() const;       ///< of all readings so far; that of `sensorfarm run`. @throws Error on ranks but 0
   std::string description() const;  ///< device and caster, in one line
-  const std::vector<std::string>& warnings() const;  ///< of the world file
+  const std::vector<std::string>& warnings() const;  ///< of the world file, and of the device
   unsigned rank() const;                             ///< of this process, below `ranks`
   unsigned ranks() const;                            ///< that share the fleet; 1: none but this
   std::span<const std::uint8_t> owned() const;       ///< per row: 1 where this rank senses and commands

@@ -189,12 +189,14 @@ class Simulation:
     read them anew after it, and copy what you keep. They cannot be written to, unless `writable`."""
 
     def __init__(self, world: str, *, robots: int = 0, of: str = "", seed: int = 1, threads: int = 0, noise: bool = True,
-                 accuracy: str = "", device: str = "", caster: str = "auto", controller: str | type[Controller] = "",
+                 accuracy: str = "", device: str = "", caster: str = "auto",
+                 require_vulkan: bool = False, controller: str | type[Controller] = "",
                  settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,
                  ranks: bool = False, too_near_min: bool = False, writable: bool = False) -> None:
         """world: a world file or ROS map (.yaml), also one of the installed worlds. robots: clones of one robot (`of`;
         else the first with sensors) at free poses; 0: the world's own. seed: of poses, noise and controllers. threads: 0
-        for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row or part of a device's name. caster:
+        for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row or part of a device's name, or
+        "host". require_vulkan: without a usable device DeviceError, not the host. caster:
         auto, vulkan or host. controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty:
         twists drive them. record: folder of a recording. too_near_min: ranges of surfaces that
         are too near are recorded as range_min, not as -infinity (docs/sensors.md). ranks: processes of mpirun share the fleet; all make the same
@@ -267,7 +269,7 @@ class Simulation:
         """Device and caster, in one line."""
     @property
     def warnings(self) -> list[str]:
-        """Of the world file."""
+        """Of the world file, and of the device."""
     def readings(self, type: str) -> NDArray[np.float64]:
         """(sensors, elements), or (sensors, elements, columns) for types with several columns: the newest reading of each
         sensor of the type. Shorter readings end in NaN. A range without a return is the sensor's limit, and that of a
