@@ -34,10 +34,17 @@ fs::path prefix() {
 
 }  // namespace
 
+std::vector<std::string> plugin_folders() {
+  std::vector<std::string> folders{own_folder().string()};
+  if (const fs::path installed = prefix(); !installed.empty())
+    folders.push_back((installed / SF_LIBDIR / "sensorfarm").string());
+  return folders;
+}
+
 std::string plugin_file(const std::string& name) {
   std::error_code ignored;
   const std::string file = name + ".so";
-  for (const fs::path& folder : {own_folder(), prefix() / SF_LIBDIR / "sensorfarm"})
+  for (const fs::path folder : plugin_folders())
     if (fs::exists(folder / file, ignored)) return (folder / file).string();
   return file;
 }

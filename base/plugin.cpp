@@ -54,9 +54,15 @@ const void* load_plugin(const char* name, const char* without, const char* libra
   const void* symbol = module != nullptr ? dlsym(module, name) : nullptr;
   if (symbol != nullptr) return symbol;
   const char* const why = dlerror();
+  const std::string remedy =
+      file.find('/') != std::string::npos
+          ? fmt::format("install {}", library)
+          : fmt::format(
+                "this installation lacks it; install the Debian package of sensorfarm, or put the file into {}; "
+                "it needs {}",
+                fmt::join(plugin_folders(), " or "), library);
   throw InputError(file, 0,
-                   fmt::format("cannot be loaded, so {} ({}): keep it beside the program, and {} installed", without,
-                               why != nullptr ? why : "?", library));
+                   fmt::format("cannot be loaded, so {} ({}): {}", without, why != nullptr ? why : "?", remedy));
 }
 
 SharedLibrary::SharedLibrary(const std::string& file) {

@@ -39,8 +39,8 @@ bool is_python(const std::string& file) { return file.ends_with(".py"); }
 
 /// The classes of a Python file (python/interpreter.cpp). @param whole its canonical path
 void fill_from_python(const std::string& file, const std::string& whole, sensorfarm::Plugin& plugin) {
-  const void* const symbol =
-      base::load_plugin("sensorfarm_python", "controllers in Python cannot run", "libpython3 and NumPy");
+  const void* const symbol = base::load_plugin("sensorfarm_python", "controllers in Python cannot run",
+                                               "libpython3 and NumPy (Debian: libpython3.11 python3-numpy)");
   const auto fill = reinterpret_cast<void (*)(const char*, sensorfarm::Plugin&)>(const_cast<void*>(symbol));
   try {
     fill(whole.c_str(), plugin);

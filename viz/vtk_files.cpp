@@ -20,7 +20,7 @@ void expect_written(bool written, const std::string& path) {
 
 const VtkPlugin& vtk_plugin() {
   static const auto* const loaded = static_cast<const VtkPlugin*>(
-      base::load_plugin(kVtkSymbol, "no VTK file can be written and no window opened", "VTK 9.1"));
+      base::load_plugin(kVtkSymbol, "no VTK file can be written and no window opened", "VTK 9.1 (Debian: libvtk9.1)"));
   return *loaded;
 }
 

@@ -43,7 +43,7 @@ std::string first_bytes(const std::string& file) {
 
 const GdalPlugin& gdal_plugin() {
   static const auto* const loaded = static_cast<const GdalPlugin*>(
-      base::load_plugin(kGdalSymbol, "outlines are read from tables in text alone", "GDAL 3.6"));
+      base::load_plugin(kGdalSymbol, "outlines are read from tables in text alone", "GDAL 3.6 (Debian: libgdal32)"));
   return *loaded;
 }
 

@@ -17,8 +17,9 @@ constexpr std::uint32_t kMaxPixels = 16384;    // per side
 constexpr std::size_t kMaxBytes = 300u << 20;  // of a file; the largest 8-bit PGM has 256 MiB
 
 const PictureDecoder& plugin() {
-  static const auto* const loaded = static_cast<const PictureDecoder*>(base::load_plugin(
-      kPicturesSymbol, "only PNG and Netpbm pictures can be read; convert this one to PNG", "OpenCV 4.6"));
+  static const auto* const loaded = static_cast<const PictureDecoder*>(
+      base::load_plugin(kPicturesSymbol, "only PNG and Netpbm pictures can be read; convert this one to PNG",
+                        "OpenCV 4.6 (Debian: libopencv-imgcodecs406)"));
   return *loaded;
 }
 
