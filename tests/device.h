@@ -1,5 +1,7 @@
 #pragma once
-// One Vulkan device per test program.
+// One Vulkan device per test program, and the host in its place.
+
+#include <string>
 
 #include "gpu/device.h"
 
@@ -8,6 +10,11 @@ namespace sf {
 inline gpu::Device& device() {
   static gpu::Device device;
   return device;
+}
+
+inline gpu::Device& host_device() {
+  static gpu::Device host{std::string(gpu::kHostDevice)};
+  return host;
 }
 
 }  // namespace sf

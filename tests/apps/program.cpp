@@ -40,7 +40,8 @@ std::vector<std::string> environment_of(const Environment& added) {
   for (char** word = environ; *word != nullptr; ++word) {
     const std::string text = *word;
     const std::string name = text.substr(0, text.find('='));
-    bool keep = name != "DISPLAY" && name != "WAYLAND_DISPLAY" && name != "SENSORFARM_DEVICE";
+    bool keep = name != "DISPLAY" && name != "WAYLAND_DISPLAY" && name != "SENSORFARM_DEVICE" &&
+                name != "SENSORFARM_REQUIRE_VULKAN";
     for (const auto& [key, value] : added) keep = keep && name != key;
     if (keep) words.push_back(text);
   }

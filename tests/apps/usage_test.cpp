@@ -300,21 +300,94 @@ TEST(Usage, AnAnswerThatCannotBeWrittenIsNoSuccess) {
   EXPECT_NE(outcome.err.find("standard output"), std::string::npos);
 }
 
-TEST(NoDevice, EndsWithThreeAndOneLine) {
+/// Commands that compute readings.
+std::vector<Words> sensing_commands() {
   const std::string world = our_world("rooms.world");
-  const Folder folder;
-  for (const Words& words : std::vector<Words>{{"devices"},
-                                               {"sense", world},
-                                               {"sense", world, "--json"},
-                                               {"run", world, "--duration", "0.1"},
-                                               {"run", world, "--duration", "0.1", "--json"},
-                                               {"serve", world, "--port", "0", "--duration", "0.1"}}) {
-    const Outcome outcome = run_program(words, no_device());
-    EXPECT_EQ(outcome.code, 3) << words[0];
-    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  return {{"sense", world},
+          {"sense", world, "--json"},
+          {"run", world, "--duration", "0.1"},
+          {"run", world, "--duration", "0.1", "--json"},
+          {"serve", world, "--port", "0", "--duration", "0.1"}};
+}
+
+Environment with(Environment environment, const Environment& more) {
+  environment.insert(environment.end(), more.begin(), more.end());
+  return environment;
+}
+
+TEST(NoDevice, WhereOneIsAskedForEndsWithThreeAndOneLine) {
+  struct Ask {
+    Words words;
+    Environment environment;
+  };
+  const Ask asks[] = {{{"--require-vulkan"}, {}},
+                      {{"--device", "0"}, {}},
+                      {{"--device", "llvmpipe"}, {}},
+                      {{"--caster", "vulkan"}, {}},
+                      {{}, {{"SENSORFARM_REQUIRE_VULKAN", "1"}}},
+                      {{}, {{"SENSORFARM_DEVICE", "0"}}},
+                      {{}, {{"SENSORFARM_CASTER", "vulkan"}}}};
+  std::vector<Words> commands = sensing_commands();
+  commands.push_back({"devices"});
+  for (std::size_t i = 0; i < std::size(asks); ++i)
+    for (Words words : commands) {
+      if (i > 0 && words[0] == "serve") continue;
+      words.insert(words.end(), asks[i].words.begin(), asks[i].words.end());
+      const Outcome outcome = run_program(words, with(no_device(), asks[i].environment));
+      EXPECT_EQ(outcome.code, 3) << words[0] << ", way " << i;
+      EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+      EXPECT_NE(outcome.err.find("no Vulkan device"), std::string::npos) << outcome.err;
+      // Never an empty scan, nor a summary of nothing.
+      if (words[0] != "devices") EXPECT_EQ(outcome.out, "") << words[0];
+    }
+}
+
+TEST(NoDevice, ElseTheHostComputesAndOneLineSaysSo) {
+  std::vector<Words> commands = sensing_commands();
+  commands.push_back({"devices"});
+  for (const Words& words : commands) {
+    const Outcome outcome = run_program(words, with(no_device(), {{"SENSORFARM_CASTER", "auto"}}));
+    EXPECT_EQ(outcome.code, 0) << words[0] << ": " << outcome.err;
     EXPECT_NE(outcome.err.find("no Vulkan device"), std::string::npos) << outcome.err;
-    // Never an empty scan, nor a summary of nothing.
-    EXPECT_EQ(outcome.out, "") << words[0];
+    EXPECT_NE(outcome.err.find("computing on the host"), std::string::npos) << outcome.err;
+    if (words[0] == "sense" && words.back() == "--json")
+      EXPECT_EQ(outcome.out, run_program(words).out) << "the bytes of a device";
+  }
+  const Outcome named = run_program({"sense", our_world("rooms.world"), "--device", "host", "--json"},
+                                    with(no_device(), {{"SENSORFARM_CASTER", "auto"}}));
+  EXPECT_EQ(named.err.find("Vulkan"), std::string::npos) << "the host that is named needs no line: " << named.err;
+}
+
+TEST(NoDevice, TheHostThatIsNamedContradictsTheRequirement) {
+  for (const Words& more : std::vector<Words>{{"--require-vulkan"}, {"--caster", "vulkan"}}) {
+    Words words{"run", our_world("rooms.world"), "--duration", "0.1", "--device", "host"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_NE(outcome.err.find("but the host is named"), std::string::npos) << outcome.err;
+  }
+}
+
+/// As script/hashes: every sensor type with a kernel, 32-bit ranges, and markings as a raster.
+TEST(NoDevice, TheHostHasTheHashesOfTheKernels) {
+  const Folder folder;
+  const std::string raster = folder.path("raster.world");
+  std::ofstream(raster) << "road_resolution 0.005\ninclude \"" << our_world("simville/simville.world") << "\"\n";
+  for (Words words : std::vector<Words>{{our_world("cave.world"), "--robots", "20"},
+                                        {our_world("cave.world"), "--robots", "20", "--accuracy", "single"},
+                                        {our_world("simville/simville.world")},
+                                        {raster},
+                                        {our_world("mapping/mapping.world")},
+                                        {our_world("minimagic/minimagic.world")}}) {
+    words.insert(words.begin(), "run");
+    words.insert(words.end(), {"--duration", "0.5", "--json"});
+    const Outcome kernels = run_program(words, {{"SENSORFARM_CASTER", "vulkan"}});
+    words.insert(words.end(), {"--device", "host"});
+    const Outcome host = run_program(words, with(no_device(), {{"SENSORFARM_CASTER", "auto"}}));
+    ASSERT_EQ(host.code, 0) << words[1] << ": " << host.err;
+    const Json facts(host.out), expected(kernels.out);
+    EXPECT_EQ(facts.text("/hash"), expected.text("/hash")) << words[1];
+    EXPECT_EQ(facts.text("/device"), "host");
   }
 }
 
@@ -340,6 +413,7 @@ TEST(Devices, TheChosenOneIsNamed) {
     if (!is_chosen) continue;
     EXPECT_EQ(facts.text(row + "/self_check"), "passed");
   }
+  EXPECT_EQ(facts.text("/devices/" + std::to_string(facts.size("/devices") - 1) + "/name"), "host");
   EXPECT_EQ(chosen, 1u);
   EXPECT_NE(run_program({"devices"}).out.find("self-check passed"), std::string::npos);
 }
@@ -360,6 +434,9 @@ TEST(Devices, TheEnvironmentChoosesAndTheOptionOverrules) {
   EXPECT_EQ(run_program({"devices"}, wrong).code, 3);
   EXPECT_EQ(run_program({"devices", "--device", "0"}, wrong).code, 0);
   EXPECT_EQ(run_program({"devices"}, {{"SENSORFARM_DEVICE", "0"}}).code, 0);
+  const Outcome host = run_program({"devices", "--device", "host"}, {{"SENSORFARM_CASTER", "auto"}});
+  EXPECT_EQ(host.code, 0) << host.err;
+  EXPECT_NE(host.out.find("*    host"), std::string::npos) << host.out;
 }
 
 }  // namespace sf

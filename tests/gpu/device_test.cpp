@@ -7,6 +7,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "gpu/batch.h"
+#include "gpu/buffer.h"
 
 namespace sf::gpu {
 namespace {
@@ -36,7 +38,7 @@ TEST(Device, AnUnknownNameIsRefusedWithEveryDeviceAndItsReason) {
     FAIL() << "opened " << device.info().name;
   } catch (const base::DeviceError& error) {
     const std::string text = error.what();
-    const std::size_t devices = list_devices("").devices.size();
+    const std::size_t devices = list_devices("").devices.size() - 1;  // without the host
     EXPECT_EQ(text.find("no usable Vulkan device among " + std::to_string(devices) + ": "), 0u) << text;
     EXPECT_NE(text.find("does not match 'no such device';"), std::string::npos) << text;
     EXPECT_NE(text.find("name another with --device"), std::string::npos) << text;
@@ -48,7 +50,20 @@ TEST(Device, WithoutADriverItSaysWhatToInstall) {
   const std::string before = set ? set : "";
   setenv("VK_DRIVER_FILES", "/no/such/driver.json", 1);
   const DeviceList survey = list_devices("");
-  EXPECT_TRUE(survey.devices.empty());
+  ASSERT_EQ(survey.devices.size(), 1u);
+  EXPECT_EQ(survey.devices[0].name, kHostDevice);
+  EXPECT_TRUE(survey.devices[0].chosen);
+  EXPECT_FALSE(list_devices("", true).devices[0].chosen) << "a Vulkan device is required";
+  EXPECT_FALSE(list_devices("0").devices[0].chosen) << "a row asks for a Vulkan device";
+  const Device host = Device::or_host("", false);
+  EXPECT_TRUE(host.is_host());
+  EXPECT_NE(host.notice().find("computing on the host"), std::string::npos) << host.notice();
+  EXPECT_THROW(Device::or_host("", true), base::DeviceError);
+  EXPECT_THROW(Device::or_host("0", false), base::DeviceError);
+  setenv("SENSORFARM_REQUIRE_VULKAN", "1", 1);
+  EXPECT_THROW(Device::or_host("", false), base::DeviceError);
+  EXPECT_THROW(Device::or_host("host", false), base::DeviceError);
+  unsetenv("SENSORFARM_REQUIRE_VULKAN");
   EXPECT_EQ(survey.problem.find("Vulkan has no usable driver"), 0u) << survey.problem;
   try {
     Device device;
@@ -58,6 +73,21 @@ TEST(Device, WithoutADriverItSaysWhatToInstall) {
               "no Vulkan device: " + survey.problem + "; install a driver (Debian: mesa-vulkan-drivers)");
   }
   before.empty() ? unsetenv("VK_DRIVER_FILES") : setenv("VK_DRIVER_FILES", before.c_str(), 1);
+}
+
+TEST(Device, TheHostHasTablesAndKernelsThatAreNotRun) {
+  Device host{std::string(kHostDevice)};
+  EXPECT_EQ(host.info().name, "host");
+  EXPECT_TRUE(host.info().software && host.unified() && host.rounds32() && !host.is_gpu());
+  EXPECT_EQ(host.notice(), "");
+  Buffer table(host, "table", Role::upload, Texel::u32, 1000);
+  table.host<std::uint32_t>()[999] = 7;
+  Batch batch(host);
+  batch.begin(), batch.barrier(), batch.end();
+  batch.upload(table, 0, table.bytes());
+  batch.run();
+  EXPECT_EQ(table.host<std::uint32_t>()[999], 7u);
+  EXPECT_EQ(host.allocations().size(), 1u) << "of the table alone";
 }
 
 TEST(Device, WithoutTheValidationLayerItSaysSo) {

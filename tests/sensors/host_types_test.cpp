@@ -1,17 +1,23 @@
-// Common tests of sensor types without device work: equal bytes for any number of threads, no allocation when warm.
+// Common tests of sensor types without device work: equal bytes for any number of threads, no allocation when warm. And
+// all types without a device: the host gives the bytes of the kernels, and refuses where only a kernel would do.
 
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <fstream>
 
+#include "base/error.h"
 #include "sensors/bumper.h"
 #include "sensors/cliff.h"
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
 #include "sensors/irreceiver.h"
+#include "tests/sensors/compare.h"
 #include "tests/sensors/host_trial.h"
+#include "tests/sensors/laneedge_trial.h"
+#include "tests/sensors/magnet_scenes.h"
+#include "tests/sensors/scenes.h"
 
 namespace sf::trial {
 namespace {
@@ -222,6 +228,86 @@ TEST(HostKinds, TheReadyMadeOnesAreRead) {
   }
   EXPECT_DOUBLE_EQ(sensors::read_encoder(fitted[5], world.movers[0]).track, 1.5 * 0.394);
   EXPECT_DOUBLE_EQ(sensors::read_encoder(fitted[6], world.movers[0]).per_count, 1e-3 / 12);
+}
+
+/// Two farms of one world, with noise, that are driven alike.
+void expect_same_readings(const world::World& world, raycast::CasterChoice caster, int ticks = 4) {
+  farm::Farm kernels(world, device(), {.scene = {.caster = caster}}), host(world, host_device());
+  kernels.subscribe_all(), host.subscribe_all();
+  Chance chance(3);
+  std::size_t readings = 0;
+  for (int tick = 0; tick < ticks; ++tick) {
+    std::vector<base::Report> reports;
+    for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+      const base::Pose& X = world.movers[m].X_WM;
+      reports.push_back(
+          {m, 0, {X.x + chance.between(-0.3, 0.3), X.y + chance.between(-0.3, 0.3), 0.0, chance.between(-4, 4)}, {}});
+    }
+    const auto by_kernels = kernels.tick(tick * 1'000'000'000ll, reports);
+    readings += by_kernels.size();
+    expect_same_bits(host.tick(tick * 1'000'000'000ll, reports), by_kernels);
+  }
+  EXPECT_GT(readings, 0u);
+  EXPECT_EQ(host.hash(), kernels.hash());
+  EXPECT_EQ(host.stats().batches, 0u) << "nothing is submitted";
+}
+
+/// Paint at random, with walls and robots before it, and every kind of scan: one beam, few in one lane, many with
+/// noise.
+world::World rasters(double resolution, bool with_bodies, std::uint64_t seed) {
+  Chance chance(seed);
+  world::World world = with_bodies ? scenes::boxes(6, 6.0, seed) : world::World{};
+  world.road_resolution = resolution;
+  for (int i = 0; i < 12; ++i)
+    world.lane_markings.push_back(marking(chance.in_square(2.5), chance.in_square(2.5), chance.between(0.02, 0.2)));
+  add_dashes(world, {-2.5, 0.3}, {2.5, 0.3}, 0.1, 0.3, 0.2);
+  if (with_bodies) scenes::add_robots(world, 6, scenes::laser(3), seed);
+  for (int i = 0; i < 60; ++i) {
+    const glm::dvec2 p = chance.in_square(i % 10 == 9 ? 40.0 : 3.0);                         // some far from all paint
+    const double yaw = i % 4 == 0 ? 0.5 * M_PI * (i / 4 % 4) : chance.between(-M_PI, M_PI);  // some along pixels
+    Settings settings{{"samples", {static_cast<double>(1 + i % 7 * (i % 5) * 9)}}, {"range_max", {1.0 + i % 3}}};
+    if (i % 2 == 1) settings.push_back({"noise", {0.01, 0.002, i % 4 == 1 ? 0.5 : 0.0}});
+    add_edge_eye(world, {p.x, p.y, 0.0, yaw}, settings);
+  }
+  return world;
+}
+
+TEST(HostDevice, LaneEdgesOnRastersHaveTheBytesOfTheKernels) {
+  for (const double resolution : {0.002, 0.005, 0.02, 0.13})
+    for (const bool with_bodies : {false, true})
+      for (const auto caster : {raycast::CasterChoice::host, raycast::CasterChoice::vulkan})
+        expect_same_readings(rasters(resolution, with_bodies, 7), caster);
+}
+
+TEST(HostDevice, MagnetometersHaveTheBytesOfTheKernelsInAllModes) {
+  for (const bool sum : {false, true}) {
+    world::World world = scenes::sheet(20'000, 8.0, 5, true);
+    Chance chance(6);
+    for (const std::string_view mode : {"exact", "near1", "near3", "near10"})
+      for (int elements = 1; elements <= 7; ++elements) {
+        std::vector<base::Pose> at;
+        for (int e = 0; e < elements; ++e) at.push_back({0.1, 0.05 * e, 0.01 * e, 0.3 * e});
+        world::Sensor sensor = scenes::array(at);
+        sensor.settings.push_back(scenes::text("accuracy", std::string(mode)));
+        sensor.settings.push_back(scenes::setting("noise", {1e-7}));
+        if (sum) sensor.settings.push_back(scenes::text("sum", "magnitude"));
+        const glm::dvec2 p = chance.in_square(3.0);
+        const auto row = scenes::add_carrier(world, {p.x, p.y, 0.0, 0.0}, sensor);
+        world.movers[row].magnets.push_back(scenes::magnet({0.1, 0.0}, 0.05, 2.0));
+      }
+    expect_same_readings(world, raycast::CasterChoice::automatic);
+  }
+}
+
+TEST(HostDevice, TheCasterOfKernelsIsRefused) {
+  world::World world = scenes::boxes(2, 6.0, 1);
+  scenes::add_robots(world, 1, scenes::laser(), 1);
+  try {
+    const farm::Farm farm(world, host_device(), {.scene = {.caster = raycast::CasterChoice::vulkan}});
+    ADD_FAILURE() << "no scan is cast by kernels on the host";
+  } catch (const base::DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("mesa-vulkan-drivers"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace

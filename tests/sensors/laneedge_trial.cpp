@@ -1,6 +1,9 @@
 #include "tests/sensors/laneedge_trial.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
+#include <cstring>
 
 #include "robots/fleet.h"
 #include "sensors/laneedge_settings.h"
@@ -61,19 +64,27 @@ struct EdgeRig::State {
   gpu::Batch batch;
   std::size_t rows;
   std::vector<base::ReadingBlock> blocks;
+  std::unique_ptr<EdgeRig> twin;  ///< on the host, of a raster; null for rigs on a chosen device
 
   State(const world::World& w, std::uint64_t seed, unsigned threads, bool noise, gpu::Device* on)
       : world(w),
         thread_pool(threads),
         states(robots::states_at_load(world)),
-        context{
-            world,       on != nullptr ? *on : device(),
-            thread_pool, states,
-            seed,        noise,
-            true,        {.caster = on != nullptr ? raycast::CasterChoice::vulkan : raycast::CasterChoice::automatic}},
+        context{world,
+                on != nullptr ? *on : device(),
+                thread_pool,
+                states,
+                seed,
+                noise,
+                true,
+                {.caster = on != nullptr && !on->is_host() ? raycast::CasterChoice::vulkan
+                                                           : raycast::CasterChoice::automatic}},
         backend(sensors::laneedge_type.make(context)),
         batch(context.device),
-        rows(sensors::laneedge_type.specs(world).size()) {}
+        rows(sensors::laneedge_type.specs(world).size()) {
+    if (on == nullptr && w.road_resolution > 0.0)
+      twin = std::make_unique<EdgeRig>(w, seed, threads, noise, &host_device());
+  }
 };
 
 EdgeRig::EdgeRig(const world::World& world, std::uint64_t seed, unsigned threads, bool noise, gpu::Device* on)
@@ -115,7 +126,12 @@ std::vector<sensors::EdgeReading> EdgeRig::read(std::uint64_t sequence, std::vec
     for (const world::Mover& mover : s_->world.movers) poses.push_back(mover.X_WM);
   std::vector<sensors::DueSample> due;
   for (std::uint32_t row = 0; row < s_->rows; ++row) due.push_back({row, sequence});
-  return read_some(due, poses);
+  std::vector<sensors::EdgeReading> readings = read_some(due, poses);
+  if (s_->twin == nullptr) return readings;
+  const auto on_host = s_->twin->read_some(due, poses);
+  EXPECT_EQ(std::memcmp(on_host.data(), readings.data(), readings.size() * sizeof readings[0]), 0)
+      << "the host's bytes differ";
+  return readings;
 }
 
 std::vector<sensors::EdgeReading> read_edges(const world::World& world) { return EdgeRig(world).read(); }

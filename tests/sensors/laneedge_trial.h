@@ -39,7 +39,8 @@ class EdgeRig {
   ~EdgeRig();
   EdgeRig(const EdgeRig&) = delete;
   EdgeRig& operator=(const EdgeRig&) = delete;
-  /// One reading of each sensor, in order of rows; poses default to those at load.
+  /// One reading of each sensor, in order of rows; poses default to those at load. Through a raster, the bytes of the
+  /// kernels and of the host are compared.
   std::vector<sensors::EdgeReading> read(std::uint64_t sequence = 0, std::vector<base::Pose> poses = {});
   /// Readings of the given rows.
   std::vector<sensors::EdgeReading> read_some(const std::vector<sensors::DueSample>& due,

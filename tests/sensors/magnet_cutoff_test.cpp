@@ -7,10 +7,10 @@
 #include <iostream>
 
 #include "sensors/magnetic_field/magnet_tree.h"
-#include "sensors/magnetic_field/sampling.h"
 #include "sensors/magnetic_field/truncation.h"
 #include "tests/instrumented.h"
 #include "tests/sensors/compare.h"
+#include "tests/sensors/field_on_both.h"
 #include "tests/sensors/magnet_scenes.h"
 
 namespace sf::trial {
@@ -22,7 +22,7 @@ using sensors::FieldPoint;
 // --- Which magnets count.
 
 double field_z(const world::World& world, const FieldPoint& point) {
-  return sensors::sample_field(world, device(), {&point, 1})[0].z;
+  return sample_on_both(world, {&point, 1})[0].z;
 }
 
 /// The distance is along the ground, at any height. A magnet at exactly the cut-off counts; a unit in the last place
@@ -48,7 +48,7 @@ TEST(MagnetCutoff, SumsTheMagnetsThatAreNearEnough) {
       std::vector<FieldPoint> points;
       for (int i = 0; i < 250; ++i)
         points.push_back({offset + chance.between(-12, 12), offset + chance.between(-12, 12), 0.1});
-      const auto sums = sensors::sample_field(world, device(), points);
+      const auto sums = sample_on_both(world, points);
       for (std::size_t i = 0; i < points.size(); ++i) {
         const scenes::Exact truth = scenes::exact(world, points[i], cutoff);
         ASSERT_LE(scenes::apart(truth, sums[i]), 1e-7 * static_cast<double>(truth.magnitudes))
@@ -91,10 +91,10 @@ Measured measure(world::World world, double half, double height, std::uint32_t c
     const bool at_rim = i % 2 == 0;
     points.push_back({at_rim ? m.x + r * std::cos(a) : p.x, at_rim ? m.y + r * std::sin(a) : p.y, height});
   }
-  const auto cut = sensors::sample_field(world, device(), points);
+  const auto cut = sample_on_both(world, points);
   Measured result{sensors::truncation_bound(world, height), 0.0};
   world.magnet_cutoff = 0.0;
-  const auto all = sensors::sample_field(world, device(), points);
+  const auto all = sample_on_both(world, points);
   for (std::size_t i = 0; i < points.size(); ++i)
     result.worst = std::max(result.worst, std::hypot(all[i].x - cut[i].x, all[i].y - cut[i].y, all[i].z - cut[i].z));
   return result;

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "sensors/magnetic_field/sampling.h"
 #include "tests/sensors/compare.h"
+#include "tests/sensors/field_on_both.h"
 #include "tests/sensors/magnet_scenes.h"
 
 namespace sf::trial {
@@ -27,7 +27,7 @@ world::World one(const world::Magnet& m) {
 }
 
 FieldSum field(const world::World& world, const FieldPoint& point) {
-  return sensors::sample_field(world, device(), {&point, 1}, {.magnitudes = true})[0];
+  return sample_on_both(world, {&point, 1}, {.magnitudes = true})[0];
 }
 
 TEST(MagnetField, AboveAndBelowItIsTwiceTheStrengthByTheCube) {

@@ -7,10 +7,10 @@
 #include <cstring>
 #include <iostream>
 
-#include "sensors/magnetic_field/sampling.h"
 #include "sensors/magnetic_field/tables.h"
 #include "tests/instrumented.h"
 #include "tests/sensors/compare.h"
+#include "tests/sensors/field_on_both.h"
 #include "tests/sensors/magnet_scenes.h"
 
 namespace sf::trial {
@@ -24,7 +24,7 @@ using sensors::FieldSum;
 constexpr double kSumGauss = 1e-4;
 
 FieldSum summed_field(const world::World& world, const FieldPoint& point) {
-  return sensors::sample_field(world, device(), {&point, 1}, {.magnitudes = true})[0];
+  return sample_on_both(world, {&point, 1}, {.magnitudes = true})[0];
 }
 
 TEST(MagnetSum, TheSumOfMagnitudesIsThat) {
@@ -45,8 +45,8 @@ TEST(MagnetSum, MagnitudesDoNotChangeVectors) {
   Chance chance(6);
   std::vector<FieldPoint> points;
   for (int i = 0; i < 203; ++i) points.push_back({chance.between(-2, 2), chance.between(-2, 2), 0.1});
-  const auto plain = sensors::sample_field(world, device(), points);
-  const auto both = sensors::sample_field(world, device(), points, {.magnitudes = true});
+  const auto plain = sample_on_both(world, points);
+  const auto both = sample_on_both(world, points, {.magnitudes = true});
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(std::memcmp(&plain[i].x, &both[i].x, 3 * sizeof(double)), 0);
     EXPECT_EQ(plain[i].magnitudes, 0.0);
@@ -59,7 +59,7 @@ struct SumErrors {
 };
 
 SumErrors errors(const world::World& world, std::span<const FieldPoint> points) {
-  const auto sums = sensors::sample_field(world, device(), points, {.magnitudes = true});
+  const auto sums = sample_on_both(world, points, {.magnitudes = true});
   SumErrors e;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const scenes::Exact truth = scenes::exact(world, points[i]);
@@ -112,7 +112,7 @@ TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
       world::World world = scenes::sheet(kMany, 400.0, 7);
       for (world::Magnet& m : world.magnets) m.p = m.p + glm::dvec2{offset, -offset};
       const auto points = places_over(world, kSumPlaces, 100.0, height);
-      const auto sums = sensors::sample_field(world, device(), points);
+      const auto sums = sample_on_both(world, points);
       const auto truths = direct_sums(world, points);
       double worst = 0.0, largest = 0.0;
       for (std::size_t i = 0; i < points.size(); ++i) {
@@ -179,7 +179,7 @@ FieldSum mirrored(const sensors::DipoleRow& m, const FieldPoint& p) {
 TEST(MagnetSum, TheKernelIsItsMirrorToTheBit) {
   const world::World world = scenes::sheet(50, 1.0, 9, true);
   const auto points = places_over(world, 301, 0.6, 0.05);
-  const auto sums = sensors::sample_field(world, device(), points, {.magnitudes = true});
+  const auto sums = sample_on_both(world, points, {.magnitudes = true});
   for (std::size_t i = 0; i < points.size(); ++i) {
     FieldSum sum;
     for (const world::Magnet& m : world.magnets) {
@@ -196,12 +196,12 @@ TEST(MagnetSum, ThreadsAndCompanyChangeNothing) {
     world::World world = scenes::sheet(3000, 10.0, 10, true);
     world.magnet_cutoff = cutoff;
     const auto points = places_over(world, 400, 5.0, 0.1);
-    const auto all = sensors::sample_field(world, device(), points, {.threads = 1});
-    const auto threaded = sensors::sample_field(world, device(), points, {.threads = 3});
+    const auto all = sample_on_both(world, points, {.threads = 1});
+    const auto threaded = sample_on_both(world, points, {.threads = 3});
     EXPECT_EQ(std::memcmp(all.data(), threaded.data(), all.size() * sizeof all[0]), 0);
     for (std::size_t i = 0; i < points.size(); i += 40) {
       const auto group = std::span(points).subspan(i / 5 * 5, 5);
-      const auto alone = sensors::sample_field(world, device(), group);
+      const auto alone = sample_on_both(world, group);
       EXPECT_EQ(std::memcmp(&all[i / 5 * 5], alone.data(), 5 * sizeof alone[0]), 0) << cutoff << ", point " << i;
     }
   }

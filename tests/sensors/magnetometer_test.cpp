@@ -187,8 +187,8 @@ void expect_moving_magnets(double cutoff) {
         scenes::add_carrier(world, {chance.between(-2, 2), chance.between(-2, 2), 0.01 * i, 0}, scenes::five());
     for (int k = 0; k < i % 4; ++k) world.movers[m].magnets.push_back(magnet(chance.in_square(0.2), 0.05, k + 1.0));
   }
-  farm::Farm farm(world, device());
-  farm.subscribe_all();
+  farm::Farm farm(world, device()), on_host(world, host_device());
+  farm.subscribe_all(), on_host.subscribe_all();
   for (int tick = 0; tick < 5; ++tick) {
     std::vector<base::Report> reports;
     world::World now = world;
@@ -203,6 +203,7 @@ void expect_moving_magnets(double cutoff) {
     }
     const auto readings = farm.tick(tick * 100'000'000ll, reports);
     ASSERT_EQ(readings.size(), 9u);
+    expect_same_bits(on_host.tick(tick * 100'000'000ll, reports), readings);
     for (const base::ReadingBlock& r : readings)
       for (std::size_t e = 0; e < 5; ++e) {
         const Pose X_WE = base::compose(r.X_WS, {0.2, 0.075 * (static_cast<double>(e) - 2), 0, 0});

@@ -77,9 +77,10 @@ TEST(OwnSensors, AreReadWithTheirOwnRateRowsAndPose) {
     values[0] = m.time;
   };
   const world::World world = world_with("scripted( rows 3 pose [0.1 0 0.05 90] )");
-  farm::Farm farm(world, device());
-  farm.subscribe_all();
+  farm::Farm farm(world, device()), on_host(world, host_device());
+  farm.subscribe_all(), on_host.subscribe_all();
   const auto reports = standing(world);
+  ASSERT_EQ(on_host.tick(0, reports).size(), 1u);
   ASSERT_EQ(farm.tick(0, reports).size(), 1u);
   EXPECT_EQ(farm.tick(49'000'000, reports).size(), 0u);
   const auto readings = farm.tick(50'000'000, reports);
@@ -89,6 +90,7 @@ TEST(OwnSensors, AreReadWithTheirOwnRateRowsAndPose) {
   ASSERT_EQ(readings[0].values.size(), 6u);
   EXPECT_EQ(readings[0].values[0], 0.05);
   EXPECT_EQ(readings[0].values[5], 5.0 + readings[0].X_WS.z);
+  EXPECT_TRUE(std::ranges::equal(on_host.tick(50'000'000, reports)[0].values, readings[0].values));
 }
 
 TEST(OwnSensors, CastAsLasersDo) {
@@ -187,6 +189,14 @@ TEST(OwnSensors, KernelsMeasureAndTheHostMayFinish) {
       const bool meets = c > 0 && std::abs(1.95 / c * s) <= 2.0 && 1.95 / c < 4.0;
       EXPECT_NEAR(readings[2].values[2 * i], meets ? 1.95 / c : 4.0, 1e-5) << i;
     }
+  }
+  // Without a device there is nothing that could run it.
+  try {
+    const farm::Farm none(world, host_device());
+    ADD_FAILURE() << "a kernel ran on the host";
+  } catch (const base::DeviceError& error) {
+    expect_in("(openness) has a kernel of its own", error.what());
+    expect_in("mesa-vulkan-drivers", error.what());
   }
   std::filesystem::remove(file);
 }

@@ -1,0 +1,25 @@
+#pragma once
+// The field of a world, summed by the kernel and by the host's code, which give the same bytes.
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "sensors/magnetic_field/sampling.h"
+#include "tests/device.h"
+
+namespace sf::trial {
+
+inline std::vector<sensors::FieldSum> sample_on_both(const world::World& world,
+                                                     std::span<const sensors::FieldPoint> points,
+                                                     const sensors::FieldSampleOptions& options = {}) {
+  auto sums = sensors::sample_field(world, device(), points, options);
+  const auto on_host = sensors::sample_field(world, host_device(), points, options);
+  EXPECT_EQ(on_host.size(), sums.size());
+  EXPECT_EQ(std::memcmp(on_host.data(), sums.data(), sums.size() * sizeof sums[0]), 0) << "the host's bytes differ";
+  return sums;
+}
+
+}  // namespace sf::trial
