@@ -74,10 +74,12 @@ FieldScene sheet_scene(std::uint32_t arrays, std::uint32_t magnets, double cutof
 }
 
 FieldComparison compare(const FieldScene& scene, gpu::Device& device) {
+  gpu::Device host{std::string(gpu::kHostDevice)};  // outlives what is made on it
   std::vector<std::unique_ptr<FieldMethod>> methods;
   methods.push_back(make_farm_method(scene, device));
   methods.push_back(make_plain_method(scene, kReference, sum_portable));
   methods.push_back(make_plain_method(scene, "plain C++, -O3 -march=native", sum_native));
+  methods.push_back(make_farm_method(scene, host));
   FieldComparison comparison{
       scene.name, scene.world.movers.size(), scene.world.magnets.size(), scene.world.magnet_cutoff, 0.0, {}};
   for (const auto& method : methods) {

@@ -15,8 +15,9 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class FarmMethod final : public FieldMethod {
  public:
-  FarmMethod(const FieldScene& scene, gpu::Device& device) : farm_(scene.world, device, scene.rounds, 100'000'000) {}
-  std::string name() const override { return "farm"; }
+  FarmMethod(const FieldScene& scene, gpu::Device& device)
+      : farm_(scene.world, device, scene.rounds, 100'000'000), on_host_(device.is_host()) {}
+  std::string name() const override { return on_host_ ? "farm, host" : "farm"; }
   void poison() override { farm_.poison(); }
   void sum(std::size_t repeat) override { farm_.tick(repeat); }
   FieldVector value(std::size_t robot, std::size_t e) const override {
@@ -27,6 +28,7 @@ class FarmMethod final : public FieldMethod {
 
  private:
   FarmRounds farm_;
+  bool on_host_;
 };
 
 class PlainMethod final : public FieldMethod {

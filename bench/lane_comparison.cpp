@@ -63,10 +63,12 @@ void check_accuracy(const LaneReader& reader, const std::vector<sensors::EdgeRea
 
 LaneComparison compare_lanes(gpu::Device& device, const LaneScene& scene, std::size_t repeats) {
   const auto known = know(scene);
+  gpu::Device host{std::string(gpu::kHostDevice)};  // outlives what is made on it
   std::vector<std::unique_ptr<LaneReader>> readers;
   readers.push_back(make_farm_lanes(scene, device));
   readers.push_back(make_plain_lanes(scene, *known, false));
   readers.push_back(make_plain_lanes(scene, *known, true));
+  readers.push_back(make_farm_lanes(scene, host));
   const std::size_t sensors = known->rows.size();
   LaneComparison comparison{sensors, sensors * known->job.beams.size(), scene.world.road_resolution, 0, {}};
 

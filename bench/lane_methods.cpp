@@ -20,7 +20,7 @@ class FarmLanes final : public LaneReader {
     for (std::uint32_t row = 0; row < scene.world.movers.size(); ++row) due_.push_back({row, 0});
   }
 
-  std::string name() const override { return "farm"; }
+  std::string name() const override { return context_.device.is_host() ? "farm, host" : "farm"; }
   void poison() override {
     for (const base::ReadingBlock& block : blocks_) const_cast<double&>(block.values[0]) = kPoisonDistance;
   }

@@ -46,7 +46,8 @@ bool RayCaster::prepare(std::span<const DueSample> due, bool cast) {
   if (t.scene) t.begin_uncertain();
   const bool replaced = t.scene && t.prepare();
   t.write_lanes();
-  if (t.scene && t.any_angle_noise)
+  // Scans on the host turn their beams themselves.
+  if ((t.scene || !cast) && t.any_angle_noise)
     t.thread_pool.parallel_for(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
       for (std::size_t i = first; i < last; ++i)
         if (t.scanner_rows[t.due[i].row].angle_noise) t.apply_angle_noise(t.due[i], thread);

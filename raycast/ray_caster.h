@@ -71,7 +71,8 @@ class RayCaster {
 
   /// Moves the movers to the poses of `SensorContext::states`, before `prepare`.
   void place_movers();
-  /// @param due rows of scanners  @param cast false: no scan on the host; the caller records no cast
+  /// @param due rows of scanners  @param cast false: no scan on the host; the caller records no cast,
+  /// and reads the beams' directions alone
   /// @return true when kernels must be recorded again
   bool prepare(std::span<const DueSample> due, bool cast = true);
   void record(gpu::Batch& batch);

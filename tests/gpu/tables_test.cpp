@@ -186,6 +186,7 @@ TEST(SelfCheck, AKernelThatComputesOtherwiseIsFound) {
 
 TEST(SelfCheck, TheSurveyHasItOfEveryDeviceThatLacksNothing) {
   for (const DeviceInfo& info : list_devices("").devices) {
+    if (info.name == kHostDevice) continue;
     EXPECT_NE(info.self_check, "") << info.name;
     EXPECT_EQ(info.self_check == "passed", info.chosen || info.reason.find("usable") == 0) << info.name;
   }
