@@ -54,6 +54,7 @@ int run_shared(const ExperimentOptions& options, cluster::Ranks* ranks) {
                                                   .seed = options.seed,
                                                   .plant = options.plant,
                                                   .out = options.out,
+                                                  .compression = options.compression,
                                                   .threads = cluster::threads_of(0, ranks),
                                                   .ranks = ranks,
                                                   .warn = print_warnings,

@@ -82,12 +82,14 @@ int serve_lockstep(const ServeOptions& options) {
     std::optional<record::Recorder> recorder;
     if (!options.record.empty()) {
       const std::string caster = raycast::describe_caster(device.info().software);
-      recorder.emplace(options.record, scenarios::run_info(world, service.simulation().farm().sensor_set(),
-                                                           {.seed = options.seed,
-                                                            .record_readings = true,
-                                                            .no_return_inf = options.no_return_inf,
-                                                            .caster = caster,
-                                                            .too_near_min = options.too_near_min}));
+      recorder.emplace(options.record,
+                       scenarios::run_info(world, service.simulation().farm().sensor_set(),
+                                           {.seed = options.seed,
+                                            .record_readings = true,
+                                            .no_return_inf = options.no_return_inf,
+                                            .caster = caster,
+                                            .too_near_min = options.too_near_min}),
+                       record::RecordingPart{.compression = options.compression});
       service.record_to(*recorder);
     }
     install_stop_handlers();

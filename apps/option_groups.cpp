@@ -155,6 +155,14 @@ void add_no_return(CLI::App& app, NoReturnOption& o) {
       ->default_str("inf");
 }
 
+CLI::Option* add_compression(CLI::App& app, CompressionOption& o) {
+  using record::Compression;
+  return add_choice<Compression, Compression>(
+             app, "--compression", o.compression, {{"zstd", Compression::zstd}, {"none", Compression::none}},
+             "Compression of recordings: zstd, or none, twice as large, of which a kill loses no tick")
+      ->default_str("zstd");
+}
+
 void add_wire(CLI::App& app, WireOption& o) {
   using sensors::WireFormat;
   add_choice<WireFormat, WireFormat>(app, "--wire", o.wire,

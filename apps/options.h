@@ -14,6 +14,7 @@
 #include "netio/packets.h"
 #include "netio/ports.h"
 #include "netio/server/light_listener.h"
+#include "record/mcap.h"
 #include "robots/estimation/sender_clock.h"
 #include "robots/estimation/track_filter.h"
 #include "scenarios/plant.h"
@@ -49,6 +50,10 @@ struct RecordingOption {
 
 struct PageOption {
   viz::Page page;
+};
+
+struct CompressionOption {
+  record::Compression compression = record::Compression::zstd;  ///< of recordings
 };
 
 /// The part of a recording that a command is about.
@@ -221,6 +226,7 @@ struct RunOptions : WorldOptions,
                     NoReturnOption,
                     PortOptions,
                     ThreadsOption,
+                    CompressionOption,
                     BridgeOptions {
   std::vector<std::string> drive;  ///< robots that the controller drives, by name; empty: every robot
   std::optional<double> duration;  ///< [s]; nullopt: 60, and without end beside bridges
@@ -246,6 +252,7 @@ struct ServeOptions : WorldOptions,
                       FilterOptions,
                       CloneOptions,
                       DurationOption,
+                      CompressionOption,
                       BridgeOptions {
   std::uint32_t port = netio::kInboxPort;  ///< 0: any free one
   double rate = 0.0;                       ///< [Hz]; 0: the world's own
@@ -320,7 +327,7 @@ struct MapOptions : ReceiveOptions, WireOption, DurationOption, PageOption {
   bool once = false;                     ///< until every port has brought a complete map
 };
 
-struct ExperimentOptions : SeedOption, DeviceOption, InProcessOption {
+struct ExperimentOptions : SeedOption, DeviceOption, InProcessOption, CompressionOption {
   std::string experiment;  ///< by name
   bool list = false;       ///< print all names
   std::string out;         ///< folder

@@ -149,8 +149,8 @@ std::optional<Checkpoints> checkpoints_of(const world::World& world, const RunOp
 
 /// Readings of other ranks are in their own recordings; without readings, one recording has all.
 record::RecordingPart part_of(const RunOptions& options, const cluster::Ranks* ranks) {
-  return ranks != nullptr && options.record_readings ? record::RecordingPart{ranks->rank(), ranks->size()}
-                                                     : record::RecordingPart{};
+  if (ranks == nullptr || !options.record_readings) return {.compression = options.compression};
+  return {ranks->rank(), ranks->size(), options.compression};
 }
 
 /// Folder of the recording after `resets`: each begins one of its own. Empty: this rank records nothing.

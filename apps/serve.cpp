@@ -160,7 +160,8 @@ int serve(const ServeOptions& options) {
     if (!since.empty())
       warn_of_exposure(chosen.receiver.bind.address, "say where robots are, and be sent readings", since);
     if (!options.record.empty()) {
-      recorder.emplace(options.record, run_info(world, sensor_set, options, device.info().software));
+      recorder.emplace(options.record, run_info(world, sensor_set, options, device.info().software),
+                       record::RecordingPart{.compression = options.compression});
       service.record_to(*recorder);
     }
     StrayedRobots strayed(world);

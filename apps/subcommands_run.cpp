@@ -41,6 +41,7 @@ void add_run(CLI::App& app, Call& call) {
   sub->add_flag("--record-readings", o.record_readings,
                 "Record the readings too, not only the states from which they can be computed")
       ->needs(record);
+  add_compression(*sub, o)->needs(record);
   sub->add_option("--checkpoint", o.checkpoint, "Keep a check point of the run every S simulated seconds (--record)")
       ->check(in_seconds(0.001, 1e9))
       ->needs(record)
@@ -207,9 +208,11 @@ void add_serve(CLI::App& app, Call& call) {
       "A light that was heard and is silent for 2 s is dark, which robots treat as a stop sign, or follows the world's "
       "plan")
       ->default_str("dark");
-  sub->add_option("--record", o.record, "Folder to record states, their quality, and readings into (run.mcap)")
-      ->check(not_empty("a folder"))
-      ->type_name("DIR");
+  auto* record =
+      sub->add_option("--record", o.record, "Folder to record states, their quality, and readings into (run.mcap)")
+          ->check(not_empty("a folder"))
+          ->type_name("DIR");
+  add_compression(*sub, o)->needs(record);
   add_robots(*sub, o);
   add_bridges(*sub, o);
   add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");

@@ -42,6 +42,7 @@ void add_experiment(CLI::App& app, Call& call) {
       "Actuator model of the robots: ideal (commands are executed unchanged) or thesis (Player's driver for the "
       "Create). "
       "Default: thesis for paths, sweeps and mapping; ideal for towns and Pioneers");
+  add_compression(*sub, o);
   sub->add_option("--files", o.experiments, "Folder of the experiments' scenario files (default: those of sensorfarm)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");

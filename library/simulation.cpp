@@ -110,8 +110,11 @@ void Simulation::State::prepare() {
 
 /// Readings of other ranks are in their own parts; without readings the first rank records all.
 void Simulation::State::record() {
+  if (options.compression != "zstd" && options.compression != "none")
+    throw base::InputError(fmt::format("compression: expected \"zstd\" or \"none\", got \"{}\"", options.compression));
   record::RecordingPart part;
   if (ranks != nullptr && options.record_readings) part = {ranks->rank(), ranks->size()};
+  if (options.compression == "none") part.compression = record::Compression::none;
   if (ranks != nullptr && !options.record_readings && ranks->rank() > 0) return;
   recorder.emplace(options.record,
                    scenarios::run_info(world, simulation->farm().sensor_set(),

@@ -112,6 +112,7 @@ Options options_of(Keywords& given) {
   given.read("controller", controller), given.read_settings(options.settings);
   given.read("record", options.record), given.read("record_readings", options.record_readings);
   given.read("ranks", options.ranks), given.read("too_near_min", options.too_near_min);
+  given.read("compression", options.compression);
   options.controller = controller_name(controller);
   if (options.controller.empty() && !options.settings.empty())
     throw py::value_error("'settings' are given without a controller");
@@ -300,7 +301,7 @@ void add_simulation(py::module_& module) {
        "world: a file; options: robots=0, of='', seed=1, threads=0, noise=True, accuracy='', device='', caster='auto', "
        "require_vulkan=False, "
        "controller='', settings={}, record='', record_readings=False, ranks=False, too_near_min=False, "
-       "writable=False (docs/python.md)")
+       "compression='zstd', writable=False (docs/python.md)")
       .def_static(
           "from_text",
           [](Text text, Text name, const py::kwargs& options) {

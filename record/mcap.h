@@ -31,6 +31,10 @@ enum class Opcode : std::uint8_t {
   data_end = 0x0F,
 };
 
+/// Of the messages in chunks.
+enum class Compression : std::uint8_t { none, zstd };
+inline constexpr const char* kZstd = "zstd";  ///< in a chunk
+
 using TextPairs = std::vector<std::pair<std::string, std::string>>;
 
 struct McapSchema {

@@ -4,6 +4,8 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
+#include "base/printable.h"
+#include "record/compression.h"
 #include "record/crc32.h"
 #include "record/mcap_index.h"
 #include "record/mcap_scan.h"
@@ -21,6 +23,8 @@ struct Reading {
   McapContents contents;
   McapLayout layout;
   MessageIndexCheck index{contents};
+  ZstdDecompressor zstd;
+  std::uint64_t decompressed = 0;  ///< [byte]
 };
 
 TextPairs get_pairs(ByteReader& in) {
@@ -111,7 +115,27 @@ McapLayout::Chunk read_chunk_head(ByteReader& in, const McapRecord& record, std:
   return chunk;
 }
 
-/// A truncated chunk gives its whole messages; its CRC cannot be checked then.
+/// @param bytes of a chunk, whole if it is compressed; out: its records @return why it cannot be read; empty: it was
+std::string decompress(const McapLayout::Chunk& chunk, View& bytes, Reading& reading) {
+  if (chunk.compression.empty()) return chunk.size == chunk.compressed ? "" : "malformed chunk";
+  if (chunk.compression != kZstd)
+    return "chunk compressed with '" + base::printable(chunk.compression) +
+           "' left out: expected zstd or none; `mcap decompress FILE -o OUT` (mcap.dev) converts the file";
+  const std::uint64_t most = (std::uint64_t{1} << 30) + kMaxDecompressed * reading.file.size() - reading.decompressed;
+  if (chunk.size > most)
+    return "chunk left out: it states " + std::to_string(chunk.size) + " bytes of records, and at most " +
+           std::to_string(most) + " more are decompressed of a file of this size";
+  const auto size = static_cast<std::size_t>(chunk.size);
+  // Memory that nothing is written to costs nothing: malformed chunks may state any size.
+  auto records = std::make_unique_for_overwrite<std::uint8_t[]>(size);
+  if (!reading.zstd.decompress(bytes, {records.get(), size})) return "chunk left out: its zstd frame is malformed";
+  reading.decompressed += size;
+  bytes = {records.get(), size};
+  reading.contents.decompressed.push_back(std::move(records));
+  return "";
+}
+
+/// A truncated chunk gives its whole messages, and none where it is compressed; its CRC cannot be checked then.
 void read_chunk(const McapRecord& record, Reading& reading) {
   McapContents& contents = reading.contents;
   reading.index.begin_lost_chunk(record);
@@ -122,19 +146,20 @@ void read_chunk(const McapRecord& record, Reading& reading) {
     if (record.whole) note_damage(contents, record.at, "malformed chunk");
     return;
   }
-  if (!chunk.compression.empty())
-    return note_damage(contents, record.at, "chunk compressed with '" + chunk.compression + "' left out");
   const std::size_t offset = record.at + kRecordHead + in.position();
-  const View records = in.get_bytes(static_cast<std::size_t>(std::min<std::uint64_t>(chunk.compressed, in.left())));
+  View records = in.get_bytes(static_cast<std::size_t>(std::min<std::uint64_t>(chunk.compressed, in.left())));
   const bool cut = records.size() != chunk.compressed;
-  if (cut == record.whole || in.left() > 0 || chunk.size != chunk.compressed)
-    return note_damage(contents, record.at, "malformed chunk");
+  if (cut == record.whole || in.left() > 0) return note_damage(contents, record.at, "malformed chunk");
+  if (!record.whole && !chunk.compression.empty()) return;
+  const std::string wrong = decompress(chunk, records, reading);
+  if (!wrong.empty()) return note_damage(contents, record.at, wrong);
   if (record.whole && crc != 0 && crc32_of(records) != crc) {
     return note_damage(contents, record.at, "chunk left out: its CRC does not fit");
   }
   if (record.whole) reading.index.begin_chunk(record);
   read_chunk_records(records, offset, record.whole, reading);
   if (record.whole) reading.index.end_chunk(chunk);
+  if (record.whole) contents.compression = chunk.compression.empty() ? Compression::none : Compression::zstd;
   reading.layout.chunks.push_back(chunk);
 }
 
@@ -222,7 +247,7 @@ McapContents read_mcap(View file, const std::string& name) {
   if (file.size() < kMcapMagic.size() || !is_magic(file.first(kMcapMagic.size()))) {
     throw base::InputError(name, 0, "not an MCAP file: expected the bytes 89 4D 43 41 50 30 0D 0A at its start");
   }
-  Reading reading{.file = file, .contents = {}, .layout = {}};
+  Reading reading{.file = file};
   McapContents& contents = reading.contents;
   contents.truncated = true;
   McapRecord record;

@@ -1,11 +1,14 @@
 #pragma once
-// Reads uncompressed MCAP, complete or truncated: sequentially, without the summary, so that a file cut at any byte
-// gives all records before the cut. Everything that the file states twice is compared, so that each flipped bit of a
-// finished file is damage: all CRCs, and lengths, times, counts and indexes by record/mcap_index.h. A CRC of 0 is none.
-// Allocations are bounded by a small multiple of the file's size.
+// Reads MCAP, complete or truncated, uncompressed or with chunks of zstd: sequentially, without the summary, so that a
+// file cut at any byte gives all records before the cut. Everything that the file states twice is compared, so that
+// each flipped bit of a finished file is damage: all CRCs, and lengths, times, counts and indexes by
+// record/mcap_index.h. A CRC of 0 is none. Allocations are bounded by a small multiple of the file's size and of its
+// chunks', of which at most `kMaxDecompressed` bytes per byte of the file, and 1 GiB more, are decompressed.
 
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,7 +17,11 @@
 
 namespace sf::record {
 
-/// Views point into the input bytes and live as long as they do.
+/// [byte] Decompressed per byte of a file, beyond the first GiB: readings compress to a half, maps and robots that
+/// stand still to 1/100.
+inline constexpr std::uint64_t kMaxDecompressed = 256;
+
+/// Views point into the input bytes and into `decompressed`, and live as long as both do.
 struct McapContents {
   std::string profile;
   std::string library;
@@ -23,7 +30,9 @@ struct McapContents {
   std::vector<McapMessage> messages;              ///< in file order; `channels` has the channel of each
   std::vector<McapAttachment> attachments;        ///< attachments with a correct CRC
   std::vector<McapMetadata> metadata;
-  bool truncated = false;           ///< the file lacks the end of a finished file
+  std::vector<std::unique_ptr<std::uint8_t[]>> decompressed;  ///< records of compressed chunks
+  std::optional<Compression> compression;                     ///< of the last whole chunk; none: there is no chunk
+  bool truncated = false;                                     ///< the file lacks the end of a finished file
   std::vector<std::string> damage;  ///< per omission or contradiction: byte and reason, at most 100 lines
 };
 

@@ -11,7 +11,8 @@ namespace sf::record {
 using base::Bytes;
 using base::ByteWriter;
 
-McapWriter::McapWriter(std::string_view profile, std::string_view library) {
+McapWriter::McapWriter(std::string_view profile, std::string_view library, Compression compression) {
+  if (compression == Compression::zstd) zstd_.emplace();
   append(pending_, kMcapMagic);
   const OpenRecord record(pending_, Opcode::header);
   ByteWriter out(pending_);
@@ -96,20 +97,10 @@ void McapWriter::add_metadata(const McapMetadata& metadata) {
   out.put_string(metadata.name);
 }
 
-void McapWriter::add_message(const McapMessage& message) {
-  SF_CHECK(message.channel >= 1 && message.channel <= channel_messages_.size(),
-           "channel " + std::to_string(message.channel));
-  const std::uint64_t time = message.log_time;
-  chunk_first_ = index_.empty() ? time : std::min(chunk_first_, time);
-  chunk_last_ = index_.empty() ? time : std::max(chunk_last_, time);
-  first_time_ = message_count_ == 0 ? time : std::min(first_time_, time);
-  last_time_ = std::max(last_time_, time);
-  ++message_count_;
-  ++channel_messages_[message.channel - 1];
-  index_.push_back({message.channel, time, chunk_.size()});
-
-  const OpenRecord record(chunk_, Opcode::message);
-  ByteWriter out(chunk_);
+void McapChunk::add(const McapMessage& message) {
+  index_.push_back({message.channel, message.log_time, records_.size()});
+  const OpenRecord record(records_, Opcode::message);
+  ByteWriter out(records_);
   out.put(message.channel);
   out.put(message.sequence);
   out.put(message.log_time);
@@ -117,34 +108,65 @@ void McapWriter::add_message(const McapMessage& message) {
   out.put_bytes(message.data.data(), message.data.size());
 }
 
-void McapWriter::end_chunk() {
-  if (index_.empty()) return;
-  const std::uint64_t start = position();
+/// Of a sealed chunk, as the summary states it.
+struct McapWriter::ChunkPlace {
+  std::uint64_t first = 0, last = 0;  ///< [ns]
+  std::uint64_t start = 0, length = 0, index_length = 0;
+  std::uint64_t compressed = 0, size = 0;  ///< [byte]
+};
+
+void McapWriter::count(const McapChunk& chunk, ChunkPlace& place) {
+  place.first = place.last = chunk.index_[0].time;
+  for (const auto& message : chunk.index_) {
+    SF_CHECK(message.channel >= 1 && message.channel <= channel_messages_.size(),
+             "channel " + std::to_string(message.channel));
+    ++channel_messages_[message.channel - 1];
+    place.first = std::min(place.first, message.time);
+    place.last = std::max(place.last, message.time);
+  }
+  first_time_ = message_count_ == 0 ? place.first : std::min(first_time_, place.first);
+  last_time_ = std::max(last_time_, place.last);
+  message_count_ += chunk.index_.size();
+  ++chunk_count_;
+}
+
+std::span<const std::uint8_t> McapWriter::compressed(const McapChunk& chunk) {
+  if (!zstd_) return chunk.records_;
+  zstd_->compress(chunk.records_, compressed_);
+  return compressed_;
+}
+
+void McapWriter::write(McapChunk& chunk) {
+  if (chunk.index_.empty()) return;
+  const std::span<const std::uint8_t> bytes = compressed(chunk);
+  ChunkPlace place{.start = position(), .compressed = bytes.size(), .size = chunk.records_.size()};
+  count(chunk, place);
   {
     const OpenRecord record(pending_, Opcode::chunk);
     ByteWriter out(pending_);
-    out.put(chunk_first_);
-    out.put(chunk_last_);
-    out.put(static_cast<std::uint64_t>(chunk_.size()));
-    out.put(crc32_of(chunk_));
-    out.put_string("");
-    out.put(static_cast<std::uint64_t>(chunk_.size()));
-    out.put_bytes(chunk_.data(), chunk_.size());
+    out.put(place.first);
+    out.put(place.last);
+    out.put(place.size);
+    out.put(crc32_of(chunk.records_));
+    out.put_string(zstd_ ? kZstd : "");
+    out.put(place.compressed);
+    out.put_bytes(bytes.data(), bytes.size());
   }
-  const std::uint64_t length = position() - start;
-  write_chunk_index(start, length, write_message_indexes());
-  ++chunk_count_;
-  chunk_.clear();
-  index_.clear();
+  place.length = position() - place.start;
+  place.index_length = write_message_indexes(chunk);
+  write_chunk_index(place);
+  chunk.records_.clear();
+  chunk.index_.clear();
 }
 
-std::uint64_t McapWriter::write_message_indexes() {
+std::uint64_t McapWriter::write_message_indexes(McapChunk& chunk) {
+  auto& index = chunk.index_;
   const std::uint64_t start = position();
-  std::sort(index_.begin(), index_.end());
+  std::sort(index.begin(), index.end());
   index_offsets_.clear();
-  for (std::size_t first = 0, last = 0; first < index_.size(); first = last) {
-    const std::uint16_t channel = index_[first].channel;
-    while (last < index_.size() && index_[last].channel == channel) ++last;
+  for (std::size_t first = 0, last = 0; first < index.size(); first = last) {
+    const std::uint16_t channel = index[first].channel;
+    while (last < index.size() && index[last].channel == channel) ++last;
     index_offsets_.emplace_back(channel, position());
 
     const OpenRecord record(pending_, Opcode::message_index);
@@ -152,29 +174,29 @@ std::uint64_t McapWriter::write_message_indexes() {
     out.put(channel);
     out.put(static_cast<std::uint32_t>(16 * (last - first)));
     for (std::size_t i = first; i < last; ++i) {
-      out.put(index_[i].time);
-      out.put(index_[i].offset);
+      out.put(index[i].time);
+      out.put(index[i].offset);
     }
   }
   return position() - start;
 }
 
-void McapWriter::write_chunk_index(std::uint64_t chunk_start, std::uint64_t chunk_length, std::uint64_t index_length) {
+void McapWriter::write_chunk_index(const ChunkPlace& place) {
   const OpenRecord record(chunk_indexes_, Opcode::chunk_index);
   ByteWriter out(chunk_indexes_);
-  out.put(chunk_first_);
-  out.put(chunk_last_);
-  out.put(chunk_start);
-  out.put(chunk_length);
+  out.put(place.first);
+  out.put(place.last);
+  out.put(place.start);
+  out.put(place.length);
   out.put(static_cast<std::uint32_t>(10 * index_offsets_.size()));
   for (const auto& [channel, offset] : index_offsets_) {
     out.put(channel);
     out.put(offset);
   }
-  out.put(index_length);
-  out.put_string("");
-  out.put(static_cast<std::uint64_t>(chunk_.size()));
-  out.put(static_cast<std::uint64_t>(chunk_.size()));
+  out.put(place.index_length);
+  out.put_string(zstd_ ? kZstd : "");
+  out.put(place.compressed);
+  out.put(place.size);
 }
 
 void McapWriter::drained() {

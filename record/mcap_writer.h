@@ -1,23 +1,43 @@
 #pragma once
-// Writes MCAP, uncompressed, into memory. The owner of the file drains `pending` into it.
+// Writes MCAP into memory. The owner of the file drains `pending` into it.
 //
-// Messages are collected in a chunk; `end_chunk` seals it with its CRC and its message indexes. When the caller ends a
-// chunk and drains once per tick, the file is readable up to the last whole tick, wherever it is cut.
+// Messages are collected in a chunk; `end_chunk` compresses it and seals it with its CRC and its message indexes. When
+// the caller ends a chunk and drains once per tick, the file is readable up to the last whole tick, wherever it is cut.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "base/bytes.h"
+#include "record/compression.h"
 #include "record/mcap.h"
 
 namespace sf::record {
 
+/// Messages of one chunk. One thread.
+class McapChunk {
+ public:
+  /// The data is copied. Rule: the channel is one of the writer that takes the chunk.
+  void add(const McapMessage& message);
+
+ private:
+  friend class McapWriter;
+  struct IndexEntry {
+    std::uint16_t channel;
+    std::uint64_t time;
+    std::uint64_t offset;
+    auto operator<=>(const IndexEntry&) const = default;
+  };
+  base::Bytes records_;
+  std::vector<IndexEntry> index_;
+};
+
 /// One thread. Order: schemas, channels, attachments and metadata, then messages; `finish` last and once.
 class McapWriter {
  public:
-  McapWriter(std::string_view profile, std::string_view library);
+  McapWriter(std::string_view profile, std::string_view library, Compression compression = Compression::none);
 
   /// @returns the schema's id, from 1.
   std::uint16_t add_schema(std::string_view name, std::string_view encoding, std::string_view text);
@@ -28,9 +48,11 @@ class McapWriter {
   void add_metadata(const McapMetadata& metadata);
 
   /// Adds to the open chunk. The data is copied.
-  void add_message(const McapMessage& message);
+  void add_message(const McapMessage& message) { chunk_.add(message); }
   /// Seals the open chunk; does nothing when it is empty.
-  void end_chunk();
+  void end_chunk() { write(chunk_); }
+  /// Seals a chunk of the caller's and clears it; does nothing when it is empty.
+  void write(McapChunk& chunk);
   /// Seals the file: DataEnd, summary, footer.
   void finish();
 
@@ -40,16 +62,12 @@ class McapWriter {
   void drained();
 
  private:
-  struct IndexEntry {
-    std::uint16_t channel;
-    std::uint64_t time;
-    std::uint64_t offset;
-    auto operator<=>(const IndexEntry&) const = default;
-  };
-
   std::uint64_t position() const { return drained_ + pending_.size(); }
-  std::uint64_t write_message_indexes();
-  void write_chunk_index(std::uint64_t chunk_start, std::uint64_t chunk_length, std::uint64_t index_length);
+  struct ChunkPlace;
+  void count(const McapChunk& chunk, ChunkPlace& place);
+  std::span<const std::uint8_t> compressed(const McapChunk& chunk);
+  std::uint64_t write_message_indexes(McapChunk& chunk);
+  void write_chunk_index(const ChunkPlace& place);
   void write_statistics(base::Bytes& out) const;
   void write_summary();
 
@@ -57,8 +75,9 @@ class McapWriter {
   std::uint64_t drained_ = 0;      ///< [byte] drained so far
   std::uint32_t drained_crc_ = 0;  ///< of the drained bytes
 
-  base::Bytes chunk_;                                                   ///< the open chunk's records
-  std::vector<IndexEntry> index_;                                       ///< the open chunk's messages
+  std::optional<ZstdCompressor> zstd_;                                  ///< none: chunks are not compressed
+  base::Bytes compressed_;                                              ///< of the sealed chunk
+  McapChunk chunk_;                                                     ///< the open one
   std::vector<std::pair<std::uint16_t, std::uint64_t>> index_offsets_;  ///< of the sealed chunk: channel, file offset
 
   // Records that the summary repeats, complete.
@@ -66,7 +85,6 @@ class McapWriter {
   std::uint16_t schema_count_ = 0;
   std::uint32_t attachment_count_ = 0, metadata_count_ = 0, chunk_count_ = 0;
   std::uint64_t message_count_ = 0, first_time_ = 0, last_time_ = 0;
-  std::uint64_t chunk_first_ = 0, chunk_last_ = 0;
   std::vector<std::uint64_t> channel_messages_;  ///< by channel id - 1
 };
 

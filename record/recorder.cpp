@@ -63,7 +63,7 @@ std::vector<std::uint16_t> add_channels(McapWriter& mcap, std::span<const Topic>
 Recorder::Recorder(const std::string& directory, RunInfo info, const RecordingPart& part)
     : info_(named(std::move(info))),
       file_(directory + "/" + part.file()),
-      mcap_("ros2", "sensorfarm"),
+      mcap_("ros2", "sensorfarm " SF_VERSION, part.compression),
       messages_(info_) {
   if (messages_.topics().size() > kMaxChannels) {
     throw base::InputError(file_.path(), 0,
@@ -79,6 +79,7 @@ Recorder::Recorder(const std::string& directory, RunInfo info, const RecordingPa
   messages_.begin([this](const TopicMessage& message) { add(message); });
   flush();
   file_.publish();
+  if (part.compression != Compression::none) writer_.emplace(mcap_, file_);
   // Another run's whole recording would be taken for this one's.
   if (part.parts > 1 && part.part == 0) std::remove((directory + "/" + RecordingPart{}.file()).c_str());
   info_.snapshot = {};
@@ -103,25 +104,30 @@ void Recorder::write(const base::TickRecord& record) {
 void Recorder::add(const TopicMessage& message) {
   SF_CHECK(message.log_time >= 0 && message.time >= 0,
            std::to_string(message.log_time) + " ns, " + std::to_string(message.time) + " ns");
-  mcap_.add_message({.channel = channels_[message.topic],
-                     .sequence = message.sequence,
-                     .log_time = static_cast<std::uint64_t>(message.log_time),
-                     .publish_time = static_cast<std::uint64_t>(message.time),
-                     .data = message.bytes});
+  chunk_.add({.channel = channels_[message.topic],
+              .sequence = message.sequence,
+              .log_time = static_cast<std::uint64_t>(message.log_time),
+              .publish_time = static_cast<std::uint64_t>(message.time),
+              .data = message.bytes});
 }
 
 void Recorder::flush() {
-  mcap_.end_chunk();
-  finished_ = true;  // reset when the bytes are in the file: a failure is final
-  file_.append(mcap_.pending());
+  finished_ = true;  // reset when the bytes are in the file, or on their way: a failure is final
+  if (writer_) {
+    writer_->add(chunk_);
+  } else {
+    mcap_.write(chunk_);
+    file_.append(mcap_.pending());
+    mcap_.drained();
+  }
   finished_ = false;
-  mcap_.drained();
 }
 
 void Recorder::finish() {
   if (finished_) return;
-  mcap_.finish();
   finished_ = true;
+  if (writer_) writer_->finish();
+  mcap_.finish();
   file_.append(mcap_.pending());
   file_.sync();
 }

@@ -2,16 +2,20 @@
 // Records a run in DIR/run.mcap while it runs:
 //
 //   Recorder recorder(dir, info);           // world and run info are in the file, which has its final name
-//   for (...) recorder.write(tick_record);  // one chunk, one write(2)
+//   for (...) recorder.write(tick_record);  // one chunk
 //   recorder.finish();                      // summary and indexes
 //
-// A process killed at any time leaves a file with all ticks whose `write` returned.
+// A process killed at any time leaves a file with all ticks whose `write` returned, but for the last
+// `ChunkWriter::kMaxWaiting` + 1, which a thread compresses and writes. Without compression `write` itself writes them,
+// and no tick is lost.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/tick_record.h"
+#include "record/chunk_writer.h"
 #include "record/mcap_writer.h"
 #include "record/recording_files.h"
 #include "record/run_info.h"
@@ -19,10 +23,11 @@
 
 namespace sf::record {
 
-/// Part of a recording that a process writes, where several share a fleet (scenarios/merging.h).
+/// Part of a recording that a process writes, where several share a fleet (scenarios/merging.h), and its form.
 struct RecordingPart {
   unsigned part = 0;   ///< below `parts`; 0 has all but the others' readings, the others have theirs and /clock
   unsigned parts = 1;  ///< 1: DIR/run.mcap; else DIR/rank-0.mcap and so on
+  Compression compression = Compression::zstd;
 
   std::string file() const { return parts == 1 ? "run.mcap" : "rank-" + std::to_string(part) + ".mcap"; }
 };
@@ -43,15 +48,15 @@ class Recorder : public base::Sink {
 
   /// Rule: every report's mover is a row of `info.movers`, its quality is there if `info.estimated`, every reading's
   /// sensor one of its sensors; time is non-decreasing.
-  /// @throws base::InputError when the tick could not be written whole (a full disk). All earlier ticks are in the
-  /// file; the recorder accepts no more.
+  /// @throws base::InputError when this tick, or one of the last three with compression, could not be written whole (a
+  /// full disk). All ticks before that are in the file; the recorder accepts no more.
   void write(const base::TickRecord& record) override;
   /// Seals the file. Further calls, and a call after a failed `write`, do nothing. @throws base::InputError when that
   /// fails.
   void finish();
 
   const std::string& path() const { return file_.path(); }
-  std::uint64_t size() const { return file_.size(); }  ///< [byte] in the file
+  std::uint64_t size() const { return file_.size(); }  ///< [byte] in the file so far
 
  private:
   void add(const TopicMessage& message);
@@ -60,10 +65,12 @@ class Recorder : public base::Sink {
   RunInfo info_;
   GrowingFile file_;
   McapWriter mcap_;
+  McapChunk chunk_;  ///< of the tick
   TickMessages messages_;
   std::vector<std::uint16_t> channels_;  ///< per topic
   std::vector<bool> wanted_;             ///< per topic, of ticks; empty: all
   bool finished_ = false;
+  std::optional<ChunkWriter> writer_;  ///< none: `flush` writes
 };
 
 }  // namespace sf::record

@@ -1,6 +1,7 @@
 #pragma once
 // Files for recordings: one to write, which appears under its name only when it is usable, and one to read.
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -26,7 +27,7 @@ class GrowingFile {
   void sync();
 
   const std::string& path() const { return path_; }
-  std::uint64_t size() const { return size_; }  ///< [byte]
+  std::uint64_t size() const { return size_; }  ///< [byte]; for any thread
 
  private:
   void create();
@@ -38,7 +39,7 @@ class GrowingFile {
   std::string whole_;  ///< the same, absolute
   std::string fresh_;  ///< the absolute name before `publish`
   int descriptor_ = -1;
-  std::uint64_t size_ = 0;
+  std::atomic<std::uint64_t> size_ = 0;
   bool published_ = false;
 };
 

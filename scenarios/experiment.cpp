@@ -69,7 +69,8 @@ std::vector<Trial> run_trials(const ExperimentContext& context, const TrialOptio
       trials.push_back(run_trial(scenario, disturbed_world(scenario, options.disturbance), context.device, own));
     } catch (const Interrupted&) {
       std::error_code ignored;
-      std::filesystem::remove(std::filesystem::path(own.record) / recording_part_of(own.ranks).file(), ignored);
+      std::filesystem::remove(std::filesystem::path(own.record) / recording_part_of(own.ranks, own.compression).file(),
+                              ignored);
       std::filesystem::remove(own.record, ignored);  // fails and keeps the folder when it holds other files
       throw;
     }
@@ -82,7 +83,10 @@ bool reports(const ExperimentContext& context) {
 }
 
 TrialOptions trial_options(const ExperimentContext& context) {
-  return {.threads = context.options.threads, .stop = context.options.stop, .ranks = context.options.ranks};
+  return {.compression = context.options.compression,
+          .threads = context.options.threads,
+          .stop = context.options.stop,
+          .ranks = context.options.ranks};
 }
 
 std::string in_folder(const ExperimentContext& context, const std::string& name) {

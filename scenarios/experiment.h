@@ -16,10 +16,11 @@ namespace sf::scenarios {
 
 struct ExperimentOptions {
   std::uint32_t trials = 3;
-  std::uint64_t seed = 1;      ///< trial k has seed + k
-  std::optional<Plant> plant;  ///< none: the experiment's own
-  std::string folder;          ///< contains the scenario files
-  std::string out;             ///< output folder
+  std::uint64_t seed = 1;                                       ///< trial k has seed + k
+  std::optional<Plant> plant;                                   ///< none: the experiment's own
+  std::string folder;                                           ///< contains the scenario files
+  std::string out;                                              ///< output folder
+  record::Compression compression = record::Compression::zstd;  ///< of recordings
   unsigned threads = 0;
   cluster::Ranks* ranks = nullptr;  ///< that share the fleets of all trials; null: none
   /// Receives warnings of the world file.

@@ -121,8 +121,10 @@ void check_same_run(const Part& first, const Part& other) {
 /// Writes the parts as one.
 class Merger {
  public:
-  Merger(const Parts& parts, Sink sink)
-      : parts_(parts), sink_(std::move(sink)), mcap_(parts[0]->contents.profile, parts[0]->contents.library) {
+  Merger(const Parts& parts, record::Compression compression, Sink sink)
+      : parts_(parts),
+        sink_(std::move(sink)),
+        mcap_(parts[0]->contents.profile, parts[0]->contents.library, compression) {
     for (const auto& part : parts) check_same_run(*parts[0], *part);
     find_sensors();
     write_head();
@@ -244,7 +246,8 @@ MergedRecording merge_recordings(std::span<const std::string> places, const std:
       throw base::InputError(part->name, 0, "was cut off before its first tick: there is nothing to merge");
   }
   record::GrowingFile file(folder + "/" + record::RecordingPart{}.file());
-  Merger merger(parts, [&](std::span<const std::uint8_t> bytes) { file.append(bytes); });
+  const record::Compression compression = parts[0]->contents.compression.value_or(record::Compression::none);
+  Merger merger(parts, compression, [&](std::span<const std::uint8_t> bytes) { file.append(bytes); });
   merger.write(stop);
   file.sync();
   file.publish();
@@ -265,7 +268,7 @@ record::Recording open_run(const std::string& place) {
     return record::open_recording(place);
   const Parts parts = open_parts(std::span(&place, 1));
   base::Bytes bytes;
-  Merger(parts, [&](std::span<const std::uint8_t> more) {
+  Merger(parts, record::Compression::none, [&](std::span<const std::uint8_t> more) {
     bytes.insert(bytes.end(), more.begin(), more.end());
   }).write({});
   record::Recording recording = record::read_recording(bytes, parts[0]->name);

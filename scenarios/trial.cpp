@@ -156,8 +156,9 @@ world::World disturbed_world(const Scenario& scenario, const Disturbance& distur
   return world;
 }
 
-record::RecordingPart recording_part_of(const cluster::Ranks* ranks) {
-  return ranks == nullptr ? record::RecordingPart{} : record::RecordingPart{ranks->rank(), ranks->size()};
+record::RecordingPart recording_part_of(const cluster::Ranks* ranks, record::Compression compression) {
+  if (ranks == nullptr) return {.compression = compression};
+  return {ranks->rank(), ranks->size(), compression};
 }
 
 namespace {
@@ -180,7 +181,7 @@ struct Course {
                                 {.seed = scenario.seed,
                                  .record_readings = true,
                                  .caster = raycast::describe_caster(device.info().software)}),
-                       recording_part_of(options.ranks));
+                       recording_part_of(options.ranks, options.compression));
     });
   }
 

@@ -53,7 +53,8 @@ struct Trial {
 
 struct TrialOptions {
   Disturbance disturbance;
-  std::string record;  ///< folder of the recording; empty: none
+  std::string record;                                           ///< folder of the recording; empty: none
+  record::Compression compression = record::Compression::zstd;  ///< of the recording
   bool maps = false;
   SupervisorSettings supervisor;  ///< default: no supervisor
   unsigned threads = 0;
@@ -65,7 +66,7 @@ struct TrialOptions {
 using base::Interrupted;
 
 /// The part of a recording with readings that this process writes. @param ranks may be null
-record::RecordingPart recording_part_of(const cluster::Ranks* ranks);
+record::RecordingPart recording_part_of(const cluster::Ranks* ranks, record::Compression compression);
 
 /// The scenario's world with the disturbance drawn from its seed.
 world::World disturbed_world(const Scenario& scenario, const Disturbance& disturbance);

@@ -59,8 +59,9 @@ struct Options {
   /// Processes that mpirun has started share the fleet (docs/cluster.md): each has the readings of its own robots alone
   /// and commands these; the rest is known to all. All make the same calls with the same arguments, commands apart.
   bool ranks = false;
-  bool too_near_min = false;    ///< recorded ranges of surfaces that are too near are range_min, not -infinity
-  bool require_vulkan = false;  ///< without a usable Vulkan device DeviceError, not the host
+  bool require_vulkan = false;       ///< without a usable Vulkan device DeviceError, not the host
+  bool too_near_min = false;         ///< recorded ranges of surfaces that are too near are range_min, not -infinity
+  std::string compression = "zstd";  ///< of the recording: "zstd" or "none", of which a kill loses no tick
 };
 
 /// The newest readings of all sensors of one type, as one table with a row per sensor. A view: valid until the next

@@ -192,14 +192,15 @@ class Simulation:
                  accuracy: str = "", device: str = "", caster: str = "auto",
                  require_vulkan: bool = False, controller: str | type[Controller] = "",
                  settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,
-                 ranks: bool = False, too_near_min: bool = False, writable: bool = False) -> None:
+                 ranks: bool = False, too_near_min: bool = False, compression: str = "zstd", writable: bool = False) -> None:
         """world: a world file or ROS map (.yaml), also one of the installed worlds. robots: clones of one robot (`of`;
         else the first with sensors) at free poses; 0: the world's own. seed: of poses, noise and controllers. threads: 0
         for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row or part of a device's name, or
         "host". require_vulkan: without a usable device DeviceError, not the host. caster:
         auto, vulkan or host. controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty:
         twists drive them. record: folder of a recording. too_near_min: ranges of surfaces that
-        are too near are recorded as range_min, not as -infinity (docs/sensors.md). ranks: processes of mpirun share the fleet; all make the same
+        are too near are recorded as range_min, not as -infinity (docs/sensors.md). compression: of the recording, zstd or none
+        (docs/recordings.md). ranks: processes of mpirun share the fleet; all make the same
         calls, and each has the readings of its own robots alone and commands these (docs/cluster.md). Raises Error, DeviceError, TypeError."""
     @staticmethod
     def from_text(text: str, name: str = "given.world", **options: Any) -> Simulation:

@@ -325,6 +325,20 @@ TEST(Run, MoreRobotsThanFitAreRefused) {
   EXPECT_NE(outcome.err.find("no free place"), std::string::npos) << outcome.err;
 }
 
+TEST(Run, RecordingsAreCompressedUnlessAskedOtherwise) {
+  const Folder folder;
+  const auto bytes = [&](const std::string& name, Words options) {
+    Words words{"--robots", "4", "--duration", "3", "--record", folder.path(name)};
+    words.insert(words.end(), options.begin(), options.end());
+    return run("cave.world", words).number("/recording_bytes");
+  };
+  const double compressed = bytes("a", {}), plain = bytes("b", {"--compression", "none"});
+  EXPECT_LT(compressed, 0.8 * plain);
+  EXPECT_EQ(bytes("c", {"--compression", "zstd"}), compressed);
+  EXPECT_TRUE(read_file(folder.path("a/run.mcap")) == read_file(folder.path("c/run.mcap")));
+  for (const char* name : {"a", "b"}) EXPECT_EQ(run_program({"verify", folder.path(name)}).code, 0) << name;
+}
+
 TEST(Run, ARecordingIsDrawnElsewhere) {
   const Folder folder;
   const Json facts = run("cave.world", {"--robots", "4", "--duration", "5", "--record", folder.path("here")});
@@ -417,7 +431,7 @@ TEST(Run, TheHashCoversBeamsWithoutReturn) {
 TEST(Run, AKilledRunCanBeDrawn) {
   const Folder folder;
   Program program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
-  ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 60'000)) << program.err();
+  ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 120'000)) << program.err();
   program.signal(SIGKILL);
   EXPECT_EQ(program.wait().signal, SIGKILL);
   const Outcome outcome = run_program({"plot", folder.path("r"), "-o", folder.path("p")});
@@ -430,7 +444,7 @@ TEST(Run, StoppingEarlyIsToldByTheExitCode) {
   for (const int stop : {SIGINT, SIGTERM, SIGHUP}) {
     const Folder folder;
     Program program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
-    ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 60'000)) << program.err();
+    ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 120'000)) << program.err();
     program.signal(stop);
     const Outcome outcome = program.wait();
     EXPECT_EQ(outcome.code, 128 + stop) << outcome.err;

@@ -187,6 +187,20 @@ TEST(Library, Records) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(Library, RecordsInEitherForm) {
+  const auto folder = std::filesystem::temp_directory_path() / "sensorfarm_library_form";
+  const auto size = [&](const std::string& compression) {
+    std::filesystem::remove_all(folder);
+    Simulation simulation(kCave, {.robots = 2, .record = folder.string(), .compression = compression});
+    drive(simulation, 30);
+    simulation.finish_recording();
+    return std::filesystem::file_size(folder / "run.mcap");
+  };
+  EXPECT_LT(size("zstd") + 5'000, size("none"));
+  EXPECT_THROW(size("lz4"), Error);
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Library, AnImageShowsRobotsAtTheirPoses) {
   Simulation simulation(kCave, {.robots = 1});
   const auto at = [&](double x) {

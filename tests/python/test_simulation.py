@@ -228,6 +228,8 @@ class Steps(unittest.TestCase):
             sim.step()
             sim.finish_recording()
             self.assertGreater(os.path.getsize(os.path.join(folder, "run", "run.mcap")), 1000)
+            with self.assertRaisesRegex(sensorfarm.Error, "compression: expected"):
+                room(record=os.path.join(folder, "other"), compression="lz4")
 
     def test_picture(self):
         picture = room()._repr_png_()

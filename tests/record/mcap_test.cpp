@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "record/compression.h"
 #include "record/crc32.h"
 #include "record/mcap_reader.h"
 #include "record/mcap_writer.h"
@@ -52,8 +53,8 @@ struct Hand {
 
 const Bytes kMagic = {0x89, 0x4D, 0x43, 0x41, 0x50, 0x30, 0x0D, 0x0A};
 
-Bytes tiny_file() {
-  McapWriter writer("p", "lib");
+Bytes tiny_file(Compression compression = Compression::none) {
+  McapWriter writer("p", "lib", compression);
   const auto schema = writer.add_schema("S", "ros2msg", "bool b\n");
   const auto channel = writer.add_channel(schema, "/t", "cdr", {{"k", "v"}});
   const Bytes world = {7, 8};
@@ -310,14 +311,94 @@ TEST(McapReader, DamageIsToldAHundredTimesAndNoMore) {
   EXPECT_EQ(read(file.bytes).damage.size(), 100u);
 }
 
-TEST(McapReader, ACutAtAnyByteGivesWhatWasWholeBeforeIt) {
-  const Bytes file = tiny_file();
+void expect_cuts_read(const Bytes& file) {
   for (std::size_t size = kMagic.size(); size < file.size(); ++size) {
     const McapContents contents = read(Bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)));
     EXPECT_TRUE(contents.truncated) << size;
     EXPECT_TRUE(contents.damage.empty()) << size << ": " << contents.damage.front();
   }
   EXPECT_FALSE(read(file).truncated);
+}
+
+TEST(McapReader, ACutAtAnyByteGivesWhatWasWholeBeforeIt) {
+  for (const Compression compression : {Compression::none, Compression::zstd}) expect_cuts_read(tiny_file(compression));
+}
+
+/// A chunk of 100 messages, compressed by `writer`.
+Bytes compressed_records(Bytes& records) {
+  Hand all;
+  for (std::uint64_t i = 0; i < 100; ++i) all.record(0x05, 22).u16(1).u32(i).u64(5).u64(5);
+  records = all.bytes;
+  Bytes frame;
+  ZstdCompressor().compress(records, frame);
+  return frame;
+}
+
+TEST(McapReader, CompressedChunks) {
+  Bytes records;
+  const Bytes frame = compressed_records(records);
+  ASSERT_LT(frame.size(), records.size() / 4);
+  const auto with = [&](std::uint64_t size, std::uint32_t crc, const std::string& form, const Bytes& bytes) {
+    Hand file = opening();
+    file.record(0x06, 40 + form.size() + bytes.size()).u64(5).u64(5).u64(size).u32(crc).text(form).u64(bytes.size());
+    file.raw(bytes).record(0x05, 22).u16(1).u32(1000).u64(6).u64(6);
+    return read(file.bytes);
+  };
+  const std::uint32_t crc = slow_crc(records);
+  const auto good = with(records.size(), crc, "zstd", frame);
+  EXPECT_TRUE(good.damage.empty()) << good.damage[0];
+  ASSERT_EQ(good.messages.size(), 101u);
+  EXPECT_EQ(good.messages[99].sequence, 99u);
+  EXPECT_TRUE(with(records.size(), 0, "zstd", frame).damage.empty()) << "a CRC of 0 is none";
+
+  Bytes cut = frame, longer = frame, twice = frame, other = frame;
+  cut.pop_back();
+  longer.push_back(0);
+  twice.insert(twice.end(), frame.begin(), frame.end());
+  other.back() ^= 1;
+  const struct {
+    const char* reason;
+    std::uint64_t size;
+    std::uint32_t crc;
+    std::string form;
+    Bytes bytes;
+    const char* told;
+  } bad[] = {{"one byte less than there is", records.size() - 1, crc, "zstd", frame, "malformed"},
+             {"one byte more than there is", records.size() + 1, crc, "zstd", frame, "malformed"},
+             {"more than memory", ~0ull, crc, "zstd", frame, "at most"},
+             {"more than a file of this size may have", (1ull << 30) + 300 * 2000, crc, "zstd", frame, "at most"},
+             {"as much as it may have", 1ull << 30, crc, "zstd", frame, "malformed"},
+             {"another CRC", records.size(), crc ^ 1, "zstd", frame, "CRC"},
+             {"a cut frame", records.size(), crc, "zstd", cut, "malformed"},
+             {"a byte behind the frame", records.size(), crc, "zstd", longer, "malformed"},
+             {"two frames", records.size(), crc, "zstd", twice, "malformed"},
+             {"no frame", records.size(), crc, "zstd", {}, "malformed"},
+             {"another form", records.size(), crc, "lz4", frame, "mcap decompress"},
+             {"a form with control characters", records.size(), crc, "\x1b[2J", frame, "\\x1b[2J"}};
+  for (const auto& [reason, size, sum, form, bytes, told] : bad) {
+    const McapContents contents = with(size, sum, form, bytes);
+    ASSERT_EQ(contents.damage.size(), 1u) << reason;
+    EXPECT_NE(contents.damage[0].find(told), std::string::npos) << reason << ": " << contents.damage[0];
+    ASSERT_EQ(contents.messages.size(), 1u) << reason;
+    EXPECT_EQ(contents.messages[0].sequence, 1000u) << "the next records are read";
+  }
+}
+
+/// Frames from anywhere, with one byte changed or cut: no read beyond their ends, and no message that is not there.
+TEST(McapReader, AnyCompressedBytesAreBounded) {
+  Bytes records;
+  const Bytes frame = compressed_records(records);
+  ZstdDecompressor zstd;
+  Bytes out(records.size());
+  for (std::size_t at = 0; at < frame.size(); ++at)
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      Bytes changed = frame;
+      changed[at] ^= static_cast<std::uint8_t>(1u << bit);
+      zstd.decompress(changed, out);
+      zstd.decompress(std::span(frame).first(at), out);
+    }
+  EXPECT_TRUE(zstd.decompress(frame, out));
+  EXPECT_EQ(out, records);
 }
 
 /// Two channels in two chunks, and all records that come before chunks; not finished.
@@ -370,7 +451,7 @@ void expect_each_flip_told(Bytes file, std::size_t begin, std::size_t end, Mend 
 }
 
 TEST(McapReader, EachFlippedBitOfAFinishedFileIsTold) {
-  for (const Bytes& file : {tiny_file(), [] {
+  for (const Bytes& file : {tiny_file(), tiny_file(Compression::zstd), [] {
                               McapWriter writer("", "");  // with nothing inside
                               writer.finish();
                               return Bytes(writer.pending().begin(), writer.pending().end());

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <functional>
 #include <map>
+#include <tuple>
 
 #include "base/error.h"
 #include "record/mcap_reader.h"
@@ -36,6 +37,8 @@ std::string message_of(const std::function<void()>& call) {
   }
   return "nothing thrown";
 }
+
+constexpr RecordingPart kUncompressed{.compression = Compression::none};
 
 std::map<std::string, std::size_t> topics_of(const base::Bytes& file) {
   const McapContents contents = read_mcap(file, "run.mcap");
@@ -67,9 +70,9 @@ TEST(Recorder, TheWorldIsInTheFileBeforeTheFirstTick) {
   EXPECT_FALSE(fs::exists(directory + "/run.mcap.new"));
 }
 
-TEST(Recorder, EveryTickIsReadableAsSoonAsWriteReturns) {
+TEST(Recorder, UncompressedEveryTickIsReadableAsSoonAsWriteReturns) {
   const std::string directory = fresh_directory("live");
-  Recorder recorder(directory, sample_info(false));
+  Recorder recorder(directory, sample_info(false), kUncompressed);
   for (std::uint64_t tick = 0; tick < 4; ++tick) {
     write_ticks(recorder, tick, 1);
     EXPECT_EQ(open_recording(directory).ticks, tick + 1);
@@ -153,7 +156,7 @@ TEST(Recorder, WithoutReadingsAndOdometryOnlyTheExactStatesAndFramesRemain) {
 }
 
 TEST(Recorder, EverySensorHasAFrameWhateverItsKind) {
-  Recorder recorder(fresh_directory("frames"), sample_info(false));
+  Recorder recorder(fresh_directory("frames"), sample_info(false), kUncompressed);
   recorder.finish();
   const base::Bytes file = bytes_of(recorder.path());
   const std::string text(file.begin(), file.end());
@@ -186,22 +189,51 @@ TEST(Recorder, FinishingTwiceIsFinishingOnce) {
   EXPECT_EQ(recorder.size(), size);
 }
 
+/// With compression all but those that its thread has.
 TEST(Recorder, AKilledProcessLeavesEveryTickItWrote) {
-  const std::string directory = fresh_directory("killed");
-  const pid_t child = ::fork();
-  if (child == 0) {
-    Recorder recorder(directory, sample_info(true));
-    write_ticks(recorder, 0, 7);
-    ::raise(SIGKILL);
+  for (const Compression compression : {Compression::none, Compression::zstd}) {
+    const std::string directory = fresh_directory("killed");
+    const pid_t child = ::fork();
+    if (child == 0) {
+      Recorder recorder(directory, sample_info(true), {.compression = compression});
+      write_ticks(recorder, 0, 7);
+      ::raise(SIGKILL);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    const Recording recording = open_recording(directory);
+    EXPECT_TRUE(recording.truncated);
+    EXPECT_TRUE(recording.damage.empty());
+    EXPECT_LE(recording.ticks, 7u);
+    EXPECT_GE(recording.ticks, compression == Compression::none ? 7u : 7u - ChunkWriter::kMaxWaiting - 1);
+    EXPECT_EQ(recording.readings.size(), 6 * recording.ticks);
   }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status));
-  const Recording recording = open_recording(directory);
-  EXPECT_TRUE(recording.truncated);
-  EXPECT_TRUE(recording.damage.empty());
-  EXPECT_EQ(recording.ticks, 7u);
-  EXPECT_EQ(recording.readings.size(), 42u);
+}
+
+/// The same messages in both forms, and the version that wrote them.
+TEST(Recorder, CompressedChunksHoldTheSameMessages) {
+  McapContents contents[2];
+  base::Bytes files[2];
+  for (const bool zstd : {false, true}) {
+    Recorder recorder(fresh_directory("form"), sample_info(true), zstd ? RecordingPart{} : kUncompressed);
+    write_ticks(recorder, 0, 20);
+    recorder.finish();
+    files[zstd] = bytes_of(recorder.path());
+    contents[zstd] = read_mcap(files[zstd], "run.mcap");
+    EXPECT_TRUE(contents[zstd].damage.empty()) << contents[zstd].damage[0];
+    EXPECT_FALSE(contents[zstd].truncated);
+    EXPECT_EQ(contents[zstd].compression, zstd ? Compression::zstd : Compression::none);
+    EXPECT_EQ(contents[zstd].library, "sensorfarm " SF_VERSION);
+  }
+  EXPECT_LT(files[1].size(), files[0].size() * 3 / 4);
+  ASSERT_EQ(contents[0].messages.size(), contents[1].messages.size());
+  for (std::size_t i = 0; i < contents[0].messages.size(); ++i) {
+    const McapMessage &a = contents[0].messages[i], &b = contents[1].messages[i];
+    EXPECT_EQ(std::tie(a.channel, a.sequence, a.log_time, a.publish_time),
+              std::tie(b.channel, b.sequence, b.log_time, b.publish_time));
+    EXPECT_TRUE(std::equal(a.data.begin(), a.data.end(), b.data.begin(), b.data.end())) << i;
+  }
 }
 
 TEST(Recorder, AnOlderRecordingIsReplacedWhole) {
@@ -304,7 +336,7 @@ TEST(Recorder, AFullDiskIsToldAndLosesNoTickBeforeIt) {
   std::uint64_t kept = 0;
   std::string told;
   {
-    Recorder recorder(directory, sample_info(true));
+    Recorder recorder(directory, sample_info(true), kUncompressed);
     write_ticks(recorder, 0, 2);
     const std::uint64_t whole = recorder.size();
     const FullDisk disk(whole + 5000);
@@ -319,6 +351,29 @@ TEST(Recorder, AFullDiskIsToldAndLosesNoTickBeforeIt) {
   EXPECT_TRUE(recording.truncated);
   EXPECT_GE(recording.ticks, kept);
   EXPECT_LE(recording.ticks, kept + 1);  // the whole messages of the truncated chunk
+}
+
+/// The error of the thread is that of a later tick, or of the end.
+TEST(Recorder, AFullDiskIsToldOfCompressedTicksToo) {
+  const std::string directory = fresh_directory("full_compressed");
+  std::uint64_t written = 0;
+  std::string told;
+  {
+    Recorder recorder(directory, sample_info(true));
+    const FullDisk disk(recorder.size() + 5000);
+    told = message_of([&] {
+      for (; written < 100; ++written) write_ticks(recorder, written, 1);
+    });
+    EXPECT_NO_THROW(recorder.finish());
+  }
+  EXPECT_NE(told.find("run.mcap: cannot take more than"), std::string::npos) << told;
+  EXPECT_LT(written, 100u);
+  const Recording recording = open_recording(directory);
+  EXPECT_TRUE(recording.truncated);
+  EXPECT_TRUE(recording.damage.empty());
+  EXPECT_LT(recording.ticks, written + 1);
+  EXPECT_GE(recording.ticks + ChunkWriter::kMaxWaiting + 1, written);
+  EXPECT_GT(recording.ticks, 0u);
 }
 
 TEST(Recorder, AFullDiskAtTheEndIsTold) {
@@ -368,7 +423,7 @@ TEST(Recorder, BytesPerTickOfAHundredRobots) {
   for (std::uint32_t i = 0; i < 100; ++i) {
     info.movers.push_back({.name = "robot" + std::to_string(i), .id = i, .sensors = {{.type = 1, .name = "laser0"}}});
   }
-  Recorder recorder(fresh_directory("hundred"), info);
+  Recorder recorder(fresh_directory("hundred"), info, kUncompressed);
   const auto start = recorder.size();
   for (std::uint64_t tick = 0; tick < 600; ++tick) {
     SampleTick sample(tick, 100);

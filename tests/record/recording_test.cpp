@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <random>
+#include <thread>
 
 #include "base/error.h"
 #include "record/mcap_writer.h"
@@ -25,23 +26,25 @@ struct Sample {
   std::vector<std::size_t> sizes;
 };
 
-const Sample& sample() {
-  static const Sample kept = [] {
+const Sample& sample(Compression compression = Compression::zstd) {
+  const auto make = [](Compression form) {
     Sample sample;
     // Tests may run in parallel, each in its own process.
     const std::string directory = test::fresh_directory("to_read_" + std::to_string(::getpid()));
-    Recorder recorder(directory, test::sample_info(true));
+    Recorder recorder(directory, test::sample_info(true), {.compression = form});
     sample.sizes.push_back(recorder.size());
     for (std::uint64_t tick = 0; tick < 3; ++tick) {
       recorder.write(SampleTick(tick).record);
+      while (recorder.size() == sample.sizes.back()) std::this_thread::yield();
       sample.sizes.push_back(recorder.size());
     }
     recorder.finish();
     sample.bytes = test::bytes_of(recorder.path());
     std::filesystem::remove_all(directory);
     return sample;
-  }();
-  return kept;
+  };
+  static const Sample plain = make(Compression::none), compressed = make(Compression::zstd);
+  return compression == Compression::none ? plain : compressed;
 }
 
 bool same(const StateSample& a, const StateSample& b) {
@@ -112,12 +115,12 @@ TEST(Recording, ReadingsComeBackToTheBitAndScansAsFloat32) {
   }
 }
 
-TEST(Recording, ACutAtAnyByteGivesAPrefixWithEveryWholeTick) {
-  const Recording whole = read_recording(sample().bytes, "run.mcap");
-  const std::vector<std::size_t>& sizes = sample().sizes;
-  for (std::size_t size = 0; size < sample().bytes.size(); ++size) {
+void expect_prefixes(const Sample& of) {
+  const Recording whole = read_recording(of.bytes, "run.mcap");
+  const std::vector<std::size_t>& sizes = of.sizes;
+  for (std::size_t size = 0; size < of.bytes.size(); ++size) {
     // A buffer of exactly this size, so that the sanitizer detects reads past the cut.
-    const Bytes cut(sample().bytes.begin(), sample().bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    const Bytes cut(of.bytes.begin(), of.bytes.begin() + static_cast<std::ptrdiff_t>(size));
     Recording part;
     try {
       part = read_recording(cut, "run.mcap");
@@ -133,9 +136,12 @@ TEST(Recording, ACutAtAnyByteGivesAPrefixWithEveryWholeTick) {
   }
 }
 
-/// Of a finished file: one bit of each byte, a different one from byte to byte. `McapReader` has tests with all bits.
-TEST(Recording, AFlippedBitIsTold) {
-  Bytes bytes = sample().bytes;
+TEST(Recording, ACutAtAnyByteGivesAPrefixWithEveryWholeTick) {
+  expect_prefixes(sample(Compression::none));
+  expect_prefixes(sample(Compression::zstd));
+}
+
+void expect_flips_told(Bytes bytes) {
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     const auto bit = static_cast<std::uint8_t>(1u << (5 * at % 8));
     bytes[at] ^= bit;
@@ -148,10 +154,16 @@ TEST(Recording, AFlippedBitIsTold) {
   }
 }
 
+/// Of a finished file: one bit of each byte, a different one from byte to byte. `McapReader` has tests with all bits.
+TEST(Recording, AFlippedBitIsTold) {
+  expect_flips_told(sample(Compression::none).bytes);
+  expect_flips_told(sample(Compression::zstd).bytes);
+}
+
 TEST(Recording, TornAndGarbledFilesNeitherCrashNorHang) {
   std::mt19937 random(2);
   for (int i = 0; i < 3000; ++i) {
-    Bytes bytes = sample().bytes;
+    Bytes bytes = sample(i % 4 < 2 ? Compression::none : Compression::zstd).bytes;
     for (int k = 0; k < 20; ++k) bytes[8 + random() % (bytes.size() - 8)] = static_cast<std::uint8_t>(random());
     if (i % 2 == 0) bytes.resize(9 + random() % (bytes.size() - 8));
     if (i % 3 == 0) bytes.insert(bytes.begin() + 8 + random() % (bytes.size() - 8), 1 + random() % 50, 0xFF);
@@ -286,6 +298,7 @@ TEST(Recording, APlaceWithoutARecordingIsRefusedWithAdvice) {
 TEST(Recording, TheFileItselfMayBeNamed) {
   Recorder recorder(test::fresh_directory("by_name"), test::sample_info(false));
   recorder.write(SampleTick(0).record);
+  recorder.finish();
   EXPECT_EQ(open_recording(recorder.path()).ticks, 1u);
 }
 

@@ -49,11 +49,13 @@ world::World merged_world() {
 }
 
 /// Ten ticks: whole in WHOLE/run.mcap, and in RANKS by two ranks, of which the second has the odd robots.
-void record_merged(const std::string& whole, const std::string& ranks, std::uint64_t seed = 9) {
+void record_merged(const std::string& whole, const std::string& ranks, std::uint64_t seed = 9,
+                   record::Compression compression = record::Compression::zstd) {
   const world::World world = merged_world();
   Simulation simulation(world, device(), {.seed = seed});
   const record::RunInfo info = run_info(world, simulation.farm().sensor_set(), {seed, true});
-  record::Recorder one(whole, info), first(ranks, info, {0, 2}), second(ranks, info, {1, 2});
+  record::Recorder one(whole, info, {.compression = compression}), first(ranks, info, {0, 2, compression}),
+      second(ranks, info, {1, 2, compression});
   for (int tick = 0; tick < 10; ++tick) {
     base::TickRecord record = simulation.step();
     one.write(record);
@@ -106,9 +108,9 @@ TEST(RunInfo, TheBoundCoversRoundingAtTheLimits) {
   }
 }
 
-TEST(Merging, GivesTheBytesOfASingleProcess) {
+void expect_bytes_of_one(record::Compression compression) {
   const std::string whole = merging_folder("whole"), ranks = merging_folder("ranks");
-  record_merged(whole, ranks);
+  record_merged(whole, ranks, 9, compression);
   const record::Recording expected = record::open_recording(whole), read = open_run(ranks);
   ASSERT_GT(expected.readings.size(), 40u);
   EXPECT_EQ(read.readings.size(), expected.readings.size()) << "as if it were merged";
@@ -118,6 +120,11 @@ TEST(Merging, GivesTheBytesOfASingleProcess) {
   EXPECT_EQ(merged.bytes, bytes.size());
   EXPECT_EQ(merged.ticks, 10u);
   EXPECT_FALSE(merged.truncated);
+}
+
+TEST(Merging, GivesTheBytesOfASingleProcess) {
+  expect_bytes_of_one(record::Compression::zstd);
+  expect_bytes_of_one(record::Compression::none);
 }
 
 TEST(Merging, StoppedLeavesWhatWasThere) {
@@ -130,7 +137,7 @@ TEST(Merging, StoppedLeavesWhatWasThere) {
 /// Else the merged recording would be whole, and sound without a tick.
 TEST(Merging, ARankCutOffBeforeItsFirstTickIsRefused) {
   const std::string ranks = merging_folder("cut");
-  record_merged(merging_folder("cut_whole"), ranks);
+  record_merged(merging_folder("cut_whole"), ranks, 9, record::Compression::none);
   const std::string second = ranks + "/rank-1.mcap";
   std::uintmax_t size = std::filesystem::file_size(second);
   std::filesystem::resize_file(second, size * 3 / 4);
