@@ -6,6 +6,10 @@ const { McapIndexedReader, McapStreamReader } = require("@mcap/core");
 const { crc32 } = require("@foxglove/crc");
 const { parse } = require("@foxglove/rosmsg");
 const { MessageReader } = require("@foxglove/rosmsg2-serialization");
+const { decompress } = require("fzstd");
+
+/** By the name in a chunk. */
+const decompressHandlers = { zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size))) };
 
 const FOOTER = 1 + 8 + 8 + 8 + 4;
 const MAGIC = 8;
@@ -16,9 +20,9 @@ function check(condition, message) {
 
 /** Front to back, every CRC looked at: records by type, messages by topic. */
 function readStream(bytes) {
-  const reader = new McapStreamReader({ includeChunks: true, validateCrcs: true });
+  const reader = new McapStreamReader({ includeChunks: true, validateCrcs: true, decompressHandlers });
   reader.append(bytes);
-  const seen = { schemas: new Map(), channels: new Map(), topics: new Map(), records: new Map(), messages: [] };
+  const seen = { compression: new Set(), schemas: new Map(), channels: new Map(), topics: new Map(), records: new Map(), messages: [] };
   for (let record; (record = reader.nextRecord()); ) {
     seen.records.set(record.type, (seen.records.get(record.type) ?? 0) + 1);
     if (record.type === "Schema") seen.schemas.set(record.id, record);
@@ -26,6 +30,7 @@ function readStream(bytes) {
     if (record.type === "Message") seen.messages.push(record);
     if (record.type === "DataEnd") seen.dataEnd = record;
     if (record.type === "Footer") seen.footer = record;
+    if (record.type === "Chunk") seen.compression.add(record.compression || "none");
     if (record.type === "Chunk") check(record.uncompressedCrc !== 0 || record.records.length === 0, "a chunk has no CRC");
   }
   check(reader.done(), "the stream reader did not reach the end of the file");
@@ -85,7 +90,7 @@ async function readIndexed(bytes) {
     size: async () => BigInt(bytes.length),
     read: async (offset, size) => bytes.subarray(Number(offset), Number(offset + size)),
   };
-  const reader = await McapIndexedReader.Initialize({ readable });
+  const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });
   const counts = new Map();
   let previous = 0n;
   for await (const message of reader.readMessages({ validateCrcs: true })) {
@@ -103,6 +108,7 @@ async function readIndexed(bytes) {
 
 function checkIndexed({ reader, counts, attachments, metadata }, seen) {
   check(reader.header.profile === "ros2", `profile ${reader.header.profile}`);
+  check(/^sensorfarm \d+\.\d+\.\d+$/.test(reader.header.library), `library ${reader.header.library}`);
   for (const [name, topic] of seen.topics) {
     check(counts.get(name) === topic.count, `${name}: ${counts.get(name)} by the index, ${topic.count} front to back`);
   }
@@ -128,7 +134,7 @@ async function main(file) {
   console.table(rows.slice(0, 40));
   if (rows.length > 40) console.log(`... and ${rows.length - 40} more topics`);
   console.log(Object.fromEntries(indexed.metadata[0].metadata));
-  console.log(`${file}: ${bytes.length} bytes, ${seen.messages.length} messages, ${seen.records.get("Chunk")} chunks: sound`);
+  console.log(`${file}: ${bytes.length} bytes, ${seen.messages.length} messages, ${seen.records.get("Chunk")} chunks (${[...seen.compression]}): sound`);
 }
 
 main(process.argv[2]).catch((error) => {
