@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <tuple>
 
 #include "apps/option_parsers.h"
 #include "apps/text.h"
@@ -20,6 +21,7 @@ namespace {
 constexpr const char* kWorld = "World file";
 constexpr const char* kAccuracy = "Accuracy";
 constexpr const char* kDevice = "Device";
+constexpr const char* kVideoGroup = "Video (docs/figures.md)";
 constexpr const char* kPorts = "Ports of sensor packets (first + robot id * ports per robot + sensor)";
 
 }  // namespace
@@ -299,6 +301,51 @@ void add_format(CLI::App& app, std::string& format) {
       app, "--format", {"png", "svg", "pdf"}, [&format](const std::string& word) { format = word; },
       "Kind of the pictures (default: png)")
       ->group("Picture");
+}
+
+void add_video_look(CLI::App& app, VideoOptions& o, CLI::Option* wanted) {
+  const auto add_names = [&](const char* name, std::vector<std::string>& names, const char* help) {
+    return app.add_option(name, names, help)
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->needs(wanted)
+        ->type_name("NAME,...")
+        ->group(kVideoGroup);
+  };
+  const auto in_group = [&](CLI::Option* option, const char* type) {
+    option->needs(wanted)->type_name(type)->group(kVideoGroup);
+  };
+  in_group(app.add_option("--video-fps", o.video_fps, "Frames per second of video")
+               ->check(whole(1, 120))
+               ->capture_default_str(),
+           "N");
+  in_group(app.add_option("--video-speed", o.video_speed, "Simulated seconds per second of video")
+               ->check(number(0.001, 1e6))
+               ->capture_default_str(),
+           "X");
+  in_group(app.add_option_function<std::string>(
+                  "--video-size",
+                  [&o](const std::string& text) { std::tie(o.video_width, o.video_height) = *read_pixels(text); },
+                  "Width and height of a frame [px], even (default: 1280x720)")
+               ->check(readable(read_pixels, "WxH [px], even numbers from 16 to 4096, such as 1280x720")),
+           "WxH");
+  CLI::Option* const extent =
+      app.add_option_function<std::string>(
+             "--video-extent", [&o](const std::string& text) { o.video_extent = read_extent(text); },
+             "Area of the world to show [m] (default: all of it)")
+          ->check(readable(read_extent, "XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1"));
+  in_group(extent, "XMIN,YMIN,XMAX,YMAX");
+  add_names("--video-follow", o.video_follow, "Robots that the camera follows")->excludes(extent);
+  in_group(app.add_option("--video-around", o.video_around, "Area shown around the followed robots [m]")
+               ->check(number(0.01, 1e6))
+               ->capture_default_str(),
+           "M");
+  add_names("--video-readings", o.video_readings, "Robots whose scans and cones are shown");
+}
+
+void add_video(CLI::App& app, VideoOptions& o, const std::string& help) {
+  add_video_look(app, o,
+                 app.add_option("--video", o.video, help)->check(video())->type_name("FILE.webm")->group(kVideoGroup));
 }
 
 void add_part(CLI::App& app, PartOption& o) {

@@ -93,6 +93,10 @@ void add_extent(CLI::App& app, PageOption& o);
 /// `--format` of pictures in a folder.
 void add_format(CLI::App& app, std::string& format);
 /// `--robots` (names), `--from` and `--to`.
+/// How a video looks. @param wanted the option that asks for it
+void add_video_look(CLI::App& app, VideoOptions& o, CLI::Option* wanted);
+void add_video(CLI::App& app, VideoOptions& o, const std::string& help);
+
 void add_part(CLI::App& app, PartOption& o);
 /// The folder of a recorded run.
 void add_recording(CLI::App& app, RecordingOption& o);

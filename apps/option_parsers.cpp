@@ -12,6 +12,8 @@
 #include "base/suggest.h"
 #include "control/raw_text.h"
 #include "viz/picture_file.h"
+#include "viz/top_view.h"
+#include "viz/video_file.h"
 
 namespace sf::apps {
 
@@ -114,6 +116,15 @@ Validator picture() {
   };
 }
 
+Validator video() {
+  return [](const std::string& text) {
+    std::filesystem::path file(text);
+    if (text.empty()) return std::string("expected a file, got ''");
+    if (file.extension() == viz::kVideoSuffix) return std::string();
+    return fmt::format("videos are WebM files; write {}", file.replace_extension(viz::kVideoSuffix).string());
+  };
+}
+
 std::optional<std::pair<std::string, std::string>> read_setting(const std::string& text) {
   const std::size_t at = text.find('=');
   if (at == std::string::npos || at == 0) return std::nullopt;
@@ -146,6 +157,16 @@ std::optional<glm::dvec2> read_size(const std::string& text) {
   if (!width || !height || width->front() < 85.0 || width->front() > 1000.0) return std::nullopt;
   if (x != std::string::npos && (height->front() < 60.0 || height->front() > 1000.0)) return std::nullopt;
   return glm::dvec2{width->front(), height->front()};
+}
+
+std::optional<std::pair<int, int>> read_pixels(const std::string& text) {
+  constexpr std::uint64_t kShortest = 16, kLongest = viz::TopViewOptions::kLongestSide;
+  const std::size_t x = text.find('x');
+  if (x == std::string::npos) return std::nullopt;
+  const auto width = read_integer(text.substr(0, x)), height = read_integer(text.substr(x + 1));
+  for (const auto& side : {width, height})
+    if (!side || *side < kShortest || *side > kLongest || *side % 2 != 0) return std::nullopt;
+  return std::pair{static_cast<int>(*width), static_cast<int>(*height)};
 }
 
 std::optional<std::vector<std::uint16_t>> read_ports(const std::string& text) {

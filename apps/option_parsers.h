@@ -32,6 +32,8 @@ Validator one_of(std::vector<std::string> words);
 Validator not_empty(const std::string& expected);
 /// A file that a picture is written to: its suffix is one of viz::format_of.
 Validator picture();
+/// A file that a video is written to.
+Validator video();
 /// An argument that `read` understands. @param expected with its article
 template <class Read>
 Validator readable(Read read, const char* expected) {
@@ -52,6 +54,8 @@ std::optional<viz::Line> read_line(const std::string& text);
 std::optional<world::Extent> read_extent(const std::string& text);
 /// "85" or "170x120" [mm] as width in [85, 1000] and height in [60, 1000]; the height is 0 where there is none.
 std::optional<glm::dvec2> read_size(const std::string& text);
+/// "1280x720" [px], both even, in [16, 4096].
+std::optional<std::pair<int, int>> read_pixels(const std::string& text);
 /// "52000" or "52000-52016" (both ends included, at most 1024) as ports from 1 on.
 std::optional<std::vector<std::uint16_t>> read_ports(const std::string& text);
 

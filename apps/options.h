@@ -56,6 +56,19 @@ struct CompressionOption {
   record::Compression compression = record::Compression::zstd;  ///< of recordings
 };
 
+/// A video of a run, or its frames.
+struct VideoOptions {
+  std::string video;                           ///< file; empty: none
+  std::string frames;                          ///< folder of PNG files in its place; empty: none
+  int video_fps = 25;                          ///< [Hz] frames per second of video
+  double video_speed = 1.0;                    ///< [1] simulated time over the video's
+  int video_width = 1280, video_height = 720;  ///< [px] even
+  std::optional<world::Extent> video_extent;   ///< [m] area shown at least; nullopt: the whole world
+  std::vector<std::string> video_follow;       ///< robots that the camera follows; empty: it stays
+  double video_around = 5.0;                   ///< [m] shown around them
+  std::vector<std::string> video_readings;     ///< robots whose ranges are shown
+};
+
 /// The part of a recording that a command is about.
 struct PartOption {
   std::vector<std::string> robots;  ///< names; empty: all
@@ -185,7 +198,7 @@ struct SenseOptions : WorldOptions, JsonOption, DeviceOption, NoReturnOption {
   std::uint32_t sensor = 0;        ///< among its sensors of that type
 };
 
-struct PlotOptions : RecordingOption, PartOption, DeviceOption, PageOption {
+struct PlotOptions : RecordingOption, PartOption, DeviceOption, PageOption, VideoOptions {
   std::string out;             ///< folder; empty: the recording's
   std::string format = "png";  ///< suffix of the pictures
   bool csv = false;            ///< the curves as CSV files, too
@@ -198,7 +211,7 @@ struct ExportOptions : RecordingOption, PartOption, DeviceOption {
   double height = 0.1;  ///< [m] of the field's plane
 };
 
-struct ViewOptions : RecordingOption, PartOption, DeviceOption {
+struct ViewOptions : RecordingOption, PartOption, DeviceOption, VideoOptions {
   bridges::WebAddress port;  ///< of the page in a browser
   bool three_d = false;      ///< VTK's window instead
   double every = 0.1;        ///< [s] between frames
@@ -227,6 +240,7 @@ struct RunOptions : WorldOptions,
                     PortOptions,
                     ThreadsOption,
                     CompressionOption,
+                    VideoOptions,
                     BridgeOptions {
   std::vector<std::string> drive;  ///< robots that the controller drives, by name; empty: every robot
   std::optional<double> duration;  ///< [s]; nullopt: 60, and without end beside bridges

@@ -11,6 +11,7 @@
 #include "apps/plot_maps.h"
 #include "apps/plot_readings.h"
 #include "apps/progress_line.h"
+#include "apps/recorded_video.h"
 #include "apps/recording_csv.h"
 #include "apps/recording_part.h"
 #include "apps/report.h"
@@ -119,7 +120,8 @@ void draw_occupancy(const RecordingPart& part, const world::World& world, const 
 
 int plot(const PlotOptions& options) {
   install_stop_handlers();
-  const RecordingPart part = open_part(options.recording, options);
+  RecordingPart part = open_part(options.recording, options);
+  if (!options.video.empty()) return write_recorded_video(part, options, options.device), 0;
   const world::World world = world::from_snapshot(part.recording.info.snapshot);
   const std::string folder =
       options.out.empty() ? std::filesystem::path(part.recording.file).parent_path().string() : options.out;

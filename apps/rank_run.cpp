@@ -65,6 +65,9 @@ unsigned threads_of(const RunOptions& options, const cluster::Ranks* ranks) {
 void check_for_ranks(const RunOptions& options) {
   if (options.automatic)
     throw base::InputError("--auto measures each machine: with several ranks, name the accuracy modes themselves");
+  if (!options.video.empty())
+    throw base::InputError(
+        "a video shows the fleet of one process: record the run (--record DIR), and then `plot DIR --video FILE`");
   if (options.BridgeOptions::any())
     throw base::InputError("bridges show the fleet of one process: leave them out, or run without mpirun");
 }

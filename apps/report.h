@@ -8,6 +8,7 @@
 
 #include "apps/control_report.h"
 #include "apps/rank_run.h"
+#include "apps/run_video.h"
 #include "base/reading.h"
 #include "farm/farm.h"
 #include "gpu/device.h"
@@ -63,6 +64,7 @@ struct RunReport {
   std::uint64_t lines_left_out = 0;                ///< of the log
   std::string recording;                           ///< file; empty: none
   std::uint64_t recorded_bytes = 0;                ///< its size
+  VideoFacts video;                                ///< without a file: none
   std::string recording_error;                     ///< why it ends before the run; empty: it does not
   std::optional<server::LockstepCounts> lockstep;  ///< of a service in lockstep
   std::optional<RankReport> shared;                ///< by several ranks; times are means of theirs, counts sums

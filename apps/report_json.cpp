@@ -303,6 +303,9 @@ std::string json_of(const RunReport& f) {
     json["recording_bytes"] = f.recorded_bytes;
     if (!f.recording_error.empty()) json["recording_error"] = f.recording_error;
   }
+  if (!f.video.file.empty())
+    json["video"] = {
+        {"file", f.video.file}, {"frames", f.video.frames}, {"seconds", f.video.seconds}, {"bytes", f.video.bytes}};
   return indented(json);
 }
 

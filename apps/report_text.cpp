@@ -254,6 +254,7 @@ std::string text_of(const RunReport& f) {
   if (!f.recording.empty())
     text += row("recording", "{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6);
   if (!f.recording_error.empty()) text += row("", "NOT WHOLE: {}", f.recording_error);
+  if (!f.video.file.empty()) text += row("video", "{} ({})", f.video.file, text_of(f.video));
   text += row("time: move", stage(f.move_s));
   text += row("  place movers", stage(f.farm.place_s));
   text += row("  lists, scans", stage(f.farm.lists_s));

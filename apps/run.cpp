@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -159,6 +160,14 @@ std::string recording_folder(const RunOptions& options, const cluster::Ranks* ra
   return options.record.empty() || resets == 0 ? options.record : fmt::format("{}-{}", options.record, resets + 1);
 }
 
+/// File of the video, numbered likewise.
+std::string video_file(const RunOptions& options, std::uint32_t resets) {
+  if (options.video.empty() || resets == 0) return options.video;
+  std::filesystem::path file(options.video);
+  const std::string suffix = file.extension().string();
+  return fmt::format("{}-{}{}", file.replace_extension().string(), resets + 1, suffix);
+}
+
 /// A fleet from time 0 on, with what follows it.
 struct Course {
   const world::World& world;
@@ -183,7 +192,7 @@ struct Course {
         strayed(world),
         checkpoints(checkpoints_of(world, options, ranks, recording_folder(options, ranks, resets))),
         outputs(world, ground.sensor_set, ground.layout, ground.caster, options,
-                recording_folder(options, ranks, resets), part_of(options, ranks)) {
+                recording_folder(options, ranks, resets), part_of(options, ranks), video_file(options, resets)) {
     // The simulation has its part of them, and a recording begins with all.
     if (options.tiles && ranks != nullptr && options.balance == 0.0) ground.world.walls = {};
     if (ground.scenario) events.emplace(*ground.scenario, world, scenarios::simulation_of(*ground.scenario, world));

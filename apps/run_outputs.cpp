@@ -15,7 +15,8 @@ using Clock = std::chrono::steady_clock;
 
 RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sensor_set,
                        const std::optional<server::StreamLayout>& layout, const std::string& caster,
-                       const RunOptions& options, const std::string& record, const record::RecordingPart& part)
+                       const RunOptions& options, const std::string& record, const record::RecordingPart& part,
+                       const std::string& video)
     : sensor_set_(sensor_set),
       no_return_filter_(sensor_set, options.no_return_inf),
       session_token_{netio::random_session(), 0} {
@@ -25,15 +26,17 @@ RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sens
     outbox.bind = netio::own_end_for(address_);
     publisher_.emplace(world, sensor_set, *layout, netio::Outbox(outbox));
   }
-  if (!record.empty())
-    recorder_.emplace(record,
-                      scenarios::run_info(world, sensor_set,
-                                          {.seed = options.seed,
-                                           .record_readings = options.record_readings,
-                                           .no_return_inf = options.no_return_inf,
-                                           .caster = caster,
-                                           .too_near_min = options.too_near_min}),
-                      part);
+  if (record.empty() && video.empty()) return;
+  const record::RunInfo info = scenarios::run_info(world, sensor_set,
+                                                   {.seed = options.seed,
+                                                    .record_readings = options.record_readings,
+                                                    .no_return_inf = options.no_return_inf,
+                                                    .caster = caster,
+                                                    .too_near_min = options.too_near_min});
+  VideoOptions shown = options;
+  shown.video = video;
+  if (!video.empty()) video_.emplace(world, info, shown);
+  if (!record.empty()) recorder_.emplace(record, info, part);
 }
 
 void RunOutputs::write(base::TickRecord tick, const std::function<void(std::int64_t)>& wait) {
@@ -54,6 +57,7 @@ void RunOutputs::write(base::TickRecord tick, const std::function<void(std::int6
   }
   if (publisher_) send();
   if (recorder_) recorder_->write(tick);
+  if (video_) video_->write(tick);
   seconds_ += base::seconds_since(start) - waited;
 }
 
@@ -63,6 +67,7 @@ void RunOutputs::finish(RunReport& facts) {
     facts.sent = true;
     facts.publisher = publisher_->counts();
   }
+  if (video_) facts.video = video_->finish();
   if (!recorder_) return;
   recorder_->finish();
   facts.recording = recorder_->path();

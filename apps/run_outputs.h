@@ -1,5 +1,5 @@
 #pragma once
-// Where a run's ticks go: a recording, the network, both or neither.
+// Where a run's ticks go: a recording, a video, the network, all or none of them.
 
 #include <chrono>
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "apps/options.h"
 #include "apps/report.h"
+#include "apps/run_video.h"
 #include "netio/server/no_return_filter.h"
 #include "netio/server/reading_publisher.h"
 #include "record/recorder.h"
@@ -20,16 +21,16 @@ class RunOutputs {
  public:
   /// World, sensor set and layout must outlive it.
   /// @param layout of the packets; nullopt: none are sent. @param caster description of the ray caster
-  /// @param record folder of the recording; empty: none. @param part of it that this process records. @throws
-  /// base::InputError where it cannot be written
+  /// @param record folder of the recording; empty: none. @param part of it that this process records
+  /// @param video file of the video; empty: none. @throws base::InputError where one of them cannot be written
   RunOutputs(const world::World& world, const sensors::SensorSet& sensor_set,
              const std::optional<server::StreamLayout>& layout, const std::string& caster, const RunOptions& options,
-             const std::string& record, const record::RecordingPart& part = {});
+             const std::string& record, const record::RecordingPart& part, const std::string& video);
 
   /// @param wait called with the time [ns] at which a reading is delivered, before it is sent: the tick's, or one
   /// before it
   void write(base::TickRecord tick, const std::function<void(std::int64_t)>& wait);
-  /// Ends the recording. @param facts out: what was sent and recorded
+  /// Ends recording and video. @param facts out: what was sent and recorded
   void finish(RunReport& facts);
 
  private:
@@ -42,6 +43,7 @@ class RunOutputs {
   netio::SessionToken session_token_;
   std::optional<server::ReadingPublisher> publisher_;
   std::optional<record::Recorder> recorder_;
+  std::optional<RunVideo> video_;
   double seconds_ = 0.0;
 };
 

@@ -45,17 +45,24 @@ void add_view(CLI::App& app, Call& call) {
       "view", "Show a recorded run in a browser, with its time to choose, and to Foxglove's viewers, or in a window");
   auto& o = add_command(*sub, call, view, [sub] {
     for (const char* name : {"--robots", "--from", "--to"})
-      if (sub->count(name) > 0 && sub->count("--3d") == 0) throw CLI::RequiresError(name, "--3d");
+      if (sub->count(name) > 0 && sub->count("--3d") + sub->count("--frames") == 0)
+        throw CLI::RequiresError(name, "--3d or --frames");
   });
-  add_examples(*sub, {"out/run", "out/run --port 8800", "out/run --3d"});
+  add_examples(*sub, {"out/run", "out/run --port 8800", "out/run --3d", "out/run --frames out/frames"});
   add_recording(*sub, o);
   sub->add_option_function<std::string>(
          "--port", [&o](const std::string& text) { o.port = *bridges::read_web_address(text); },
          "TCP port, and address where others are to see it (default 127.0.0.1:8765; port 0: any free one)")
       ->check(readable(bridges::read_web_address, "[HOST:]PORT such as 8765 or 0.0.0.0:8765"))
       ->type_name("[HOST:]PORT");
+  auto* frames = sub->add_option("--frames", o.frames,
+                                 "Folder for the frames of a video as PNG files, for any encoder, in place of the page")
+                     ->check(not_empty("a folder"))
+                     ->type_name("DIR");
+  add_video_look(*sub, o, frames);
   auto* window =
       sub->add_flag("--3d", o.three_d, "In three dimensions (VTK): walls, robots, beams, magnetic field, a time slider")
+          ->excludes(frames)
           ->group(kGroup);
   add_every(*sub, o.every, "Simulated time between two frames [s]")->needs(window)->group(kGroup);
   add_height(*sub, o.height)->needs(window)->group(kGroup);

@@ -109,6 +109,7 @@ void add_plot(CLI::App& app, Call& call) {
   sub->add_flag("--csv", o.csv, "Write every plotted curve as a CSV file beside its figure")->group("Picture");
   add_page(*sub, o);
   add_extent(*sub, o);
+  add_video(*sub, o, "Video to write in place of the pictures (VP9 in WebM, by FFmpeg)");
   add_part(*sub, o);
   add_device(*sub, o);
 }

@@ -16,6 +16,7 @@ void add_run(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("run", "Simulate a fleet with its sensors and controllers, as fast as possible");
   auto& o = add_command(*sub, call, run);
   add_examples(*sub, {"worlds/cave.world --robots 50 --duration 30", "worlds/cave.world --robots 4 --record out/run",
+                      "worlds/cave.world --robots 9 --duration 20 --video run.webm",
                       "worlds/cave.world --robots 4 --send 127.0.0.1 --real-time", "experiments/simville.toml --view"});
   add_world(*sub, o);
   sub->get_option("world")->description("World file (.world of Stage, .yaml of ROS maps), or scenario (.toml)");
@@ -49,6 +50,7 @@ void add_run(CLI::App& app, Call& call) {
   sub->add_flag("--resume", o.resume,
                 "Compute a run that was cut short again, with the same bytes, and compare it with its check points")
       ->needs(record);
+  add_video(*sub, o, "Video of the run to write (VP9 in WebM, by FFmpeg)");
   auto* tiles = sub->add_flag("--tiles", o.tiles, "Ranks (mpirun) each know and sense one part of the world");
   sub->add_option("--balance", o.balance, "Cut the parts anew every S simulated seconds, by the time they take")
       ->check(in_seconds(0.001, 1e9))

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "apps/commands.h"
+#include "apps/recorded_video.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
 #include "apps/text.h"
@@ -71,10 +72,18 @@ class Playback {
   std::chrono::steady_clock::time_point looked_at_ = std::chrono::steady_clock::now();
 };
 
+int write_frames(const ViewOptions& options) {
+  install_stop_handlers();
+  RecordingPart part = open_part(options.recording, options);
+  write_recorded_video(part, options, options.device);
+  return 0;
+}
+
 }  // namespace
 
 int view(const ViewOptions& options) {
   if (options.three_d) return view_3d(options);
+  if (!options.frames.empty()) return write_frames(options);
   const record::Recording recording = scenarios::open_run(options.recording);
   print_damage(recording);
   const world::World world = world::from_snapshot(recording.info.snapshot);

@@ -13,7 +13,7 @@ find_library(ZSTD zstd REQUIRED)  # libzstd-dev
 find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-dev)
 
 # Without plug-ins, the program does all that needs no heavy library, and names the plug-in that a command lacks.
-option(SENSORFARM_BUILD_PLUGINS "Build the plug-ins: figures, VTK, OpenCV, GDAL, ROS 2, MPI, Python" ON)
+option(SENSORFARM_BUILD_PLUGINS "Build the plug-ins: figures, videos, VTK, OpenCV, GDAL, ROS 2, MPI, Python" ON)
 if(SENSORFARM_BUILD_PLUGINS)
   include(PluginLibraries)
 endif()

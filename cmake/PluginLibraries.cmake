@@ -3,6 +3,9 @@
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo cairo-ft cairo-pdf)  # libcairo2-dev
 
+# Videos of runs. Debian's FFmpeg is a GPL build (docs/figures.md); without it, `run --video` says so.
+pkg_check_modules(FFMPEG IMPORTED_TARGET libavcodec libavformat libavutil libswscale)
+
 # Ranks (cluster/) work without it as one process each. Debian's VTK 9.1 looks for it, too.
 find_package(MPI QUIET COMPONENTS C)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML FiltersCore FiltersFlowPaths InteractionWidgets RenderingOpenGL2 RenderingFreeType)
@@ -38,6 +41,9 @@ function(link_plugins)
   target_include_directories(sensorfarm_dds SYSTEM PRIVATE ${CYCLONEDDS_INCLUDE})
   target_compile_definitions(sensorfarm_dds PRIVATE DDS_NDEBUG)  # as the library was built
   target_link_libraries(sensorfarm_dds PRIVATE fmt::fmt ${CYCLONEDDS})
+  if(FFMPEG_FOUND)
+    target_link_libraries(sensorfarm_ffmpeg PRIVATE PkgConfig::FFMPEG)
+  endif()
   if(MPI_C_FOUND)
     target_link_libraries(sensorfarm_mpi PRIVATE MPI::MPI_C)
     target_compile_definitions(sensorfarm_mpi PRIVATE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)

@@ -29,6 +29,14 @@ bool is_known(const record::ReadingSample& reading, const record::RunInfo& recor
   return reading.sensor < count && (now->list.empty() ? size == width : size % width == 0);
 }
 
+/// X_MS of the sensor of a reading.
+base::Pose mount_of(const record::RunInfo& info, const record::ReadingSample& reading) {
+  std::uint32_t before = 0;  // sensors of the same type before it
+  for (const record::SensorInfo& sensor : info.movers[reading.mover].sensors)
+    if (sensor.type == reading.type && before++ == reading.sensor) return sensor.X_MS;
+  return {};
+}
+
 }  // namespace
 
 Replay::Replay(const record::Recording& recording, const record::RunInfo& info)
@@ -103,6 +111,18 @@ void Replay::add_states(std::size_t number) {
   }
 }
 
+/// Sensors measure between ticks, too: of the way from tick to tick.
+base::Pose Replay::pose_at(std::uint32_t mover, std::int64_t time) const {
+  const auto& states = recording_.states[mover];
+  const auto after = std::upper_bound(states.begin(), states.end(), time,
+                                      [](std::int64_t t, const record::StateSample& state) { return t < state.time; });
+  if (after == states.begin() || after == states.end()) return (after == states.begin() ? *after : after[-1]).X_WM;
+  const base::Pose &from = after[-1].X_WM, &to = after->X_WM;
+  const double part = static_cast<double>(time - after[-1].time) / static_cast<double>(after->time - after[-1].time);
+  return {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y), from.z + part * (to.z - from.z),
+          from.yaw + part * base::wrap_angle(to.yaw - from.yaw)};
+}
+
 void Replay::add_reading(std::size_t row) {
   const record::ReadingSample& reading = recording_.readings[row];
   base::ReadingBlock& block = readings_.emplace_back();
@@ -112,6 +132,8 @@ void Replay::add_reading(std::size_t row) {
   block.sequence = reading.sequence;
   block.time = reading.time;
   block.values = reading.values;
+  block.X_WM = pose_at(reading.mover, reading.time);
+  block.X_WS = compose(block.X_WM, mount_of(recording_.info, reading));
 }
 
 }  // namespace sf::scenarios

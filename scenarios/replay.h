@@ -26,7 +26,7 @@ class Replay {
   /// The last tick at or before `time` [ns]; the first one for earlier times.
   std::size_t tick_at(std::int64_t time) const;
   /// @param shown tick that was shown last: readings delivered since then are in the result; nullopt, or a later tick:
-  /// every sensor's newest reading is. Spans live until the next call.
+  /// every sensor's newest reading is. Their poses are interpolated between ticks. Spans live until the next call.
   base::TickRecord tick(std::size_t number, std::optional<std::size_t> shown);
   /// Recorded readings that cannot be shown.
   std::size_t left_out() const { return left_out_; }
@@ -34,6 +34,7 @@ class Replay {
  private:
   void add_states(std::size_t number);
   void add_reading(std::size_t row);
+  base::Pose pose_at(std::uint32_t mover, std::int64_t time) const;
 
   const record::Recording& recording_;
   std::size_t lights_;             ///< of the world

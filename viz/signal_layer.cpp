@@ -73,10 +73,17 @@ void draw_emitters(Axes& axes, const world::World& world) {
 }
 
 void draw_lights(Axes& axes, const world::World& world, double time) {
-  for (const world::Light& light : world.lights) {
+  std::vector<LightState> states;
+  for (const world::Light& light : world.lights) states.push_back(signal_at(light, time).state);
+  draw_lights(axes, world, states);
+}
+
+void draw_lights(Axes& axes, const world::World& world, std::span<const LightState> states) {
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const world::Light& light = world.lights[i];
     const glm::dvec2 at = axes.pixel({light.X_WL.x, light.X_WL.y});
     axes.canvas().line(at, at + base::rotate(-light.X_WL.yaw, {2.2 * kLightRadius, 0.0}), theme::kBold, theme::kInk);
-    const LightMark& shown = mark_of(signal_at(light, time).state);
+    const LightMark& shown = mark_of(states[i]);
     draw_signal(axes.canvas(), at, kLightRadius, shown.mark, shown.color);
   }
 }

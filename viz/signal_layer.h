@@ -1,6 +1,7 @@
 #pragma once
 // Traffic lights, infrared emitters and holes in the floor.
 
+#include <span>
 #include <vector>
 
 #include "viz/axes.h"
@@ -18,6 +19,8 @@ void draw_emitters(Axes& axes, const world::World& world);
 /// One mark per light in its state at `time` [s]: a dot for green, a diamond for yellow, a square for red, hollow ones
 /// for flashing, a crossed dot for dark; with a short line in the direction of its lamps.
 void draw_lights(Axes& axes, const world::World& world, double time = 0.0);
+/// The same with one state per light, as a run had them.
+void draw_lights(Axes& axes, const world::World& world, std::span<const world::LightState> states);
 
 /// Items for the parts of this layer in the world; lights as at time 0.
 std::vector<LegendItem> signal_layer_legend(const world::World& world);

@@ -62,23 +62,45 @@ std::vector<std::uint32_t> colors_of(const PixelImage& image) {
 }  // namespace
 
 TopView::TopView(const world::World& world, const TopViewOptions& options)
-    : world_(&world), layout_(layout_of(world, options)) {
+    : world_(&world), options_(options), layout_(layout_of(world, options)) {
+  paint_static_layer();
+}
+
+void TopView::paint_static_layer() {
   Axes axes(layout_);
-  draw_lane_markings(axes, world);
-  draw_floor_holes(axes, world);
-  draw_magnets(axes, world);
-  draw_emitters(axes, world);
-  draw_walls(axes, world, WallColors::of_models);
+  draw_lane_markings(axes, *world_);
+  draw_floor_holes(axes, *world_);
+  draw_magnets(axes, *world_);
+  draw_emitters(axes, *world_);
+  draw_walls(axes, *world_, WallColors::of_models);
   static_layer_ = colors_of(paint_pixels(axes.canvas().drawing()));
 }
 
-PixelImage TopView::paint(std::span<const base::Pose> X_WM, double time) const {
-  SF_CHECK(X_WM.size() == world_->movers.size(), "poses: expected one per mover");
+void TopView::look_at(const world::Extent& extent) {
+  options_.extent = extent;
+  const FigureLayout next = layout_of(*world_, options_);
+  const world::Extent &a = next.shown, &b = layout_.shown;
+  if (a.x_min == b.x_min && a.y_min == b.y_min && a.x_max == b.x_max && a.y_max == b.y_max) return;
+  layout_ = next;
+  paint_static_layer();
+}
+
+Axes TopView::begin() const {
   Axes axes(layout_);
   axes.canvas().image({0.0, 0.0}, {layout_.width, layout_.height}, {layout_.width, layout_.height, static_layer_});
-  draw_lights(axes, *world_, time);
+  return axes;
+}
+
+void TopView::draw_bodies(Axes& axes, std::span<const base::Pose> X_WM) const {
+  SF_CHECK(X_WM.size() == world_->movers.size(), "poses: expected one per mover");
   for (std::size_t i = 0; i < X_WM.size(); ++i)
     draw_body(axes, world_->movers[i], X_WM[i], body_color(*world_, world_->movers[i]));
+}
+
+PixelImage TopView::paint(std::span<const base::Pose> X_WM, double time) const {
+  Axes axes = begin();
+  draw_lights(axes, *world_, time);
+  draw_bodies(axes, X_WM);
   return paint_pixels(axes.canvas().drawing());
 }
 

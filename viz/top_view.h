@@ -34,8 +34,17 @@ class TopView {
   /// @param time [s] of the traffic lights
   PixelImage paint(std::span<const base::Pose> X_WM, double time) const;
 
+  // For pictures with more layers: bare axes, ground and walls, and the bodies, each drawn onto the one before.
+  Axes begin() const;
+  void draw_bodies(Axes& axes, std::span<const base::Pose> X_WM) const;
+  /// Moves the camera: another area is in the middle from now on. Paints the static layer again where it differs.
+  void look_at(const world::Extent& extent);
+
  private:
+  void paint_static_layer();
+
   const world::World* world_;
+  TopViewOptions options_;
   FigureLayout layout_;
   std::vector<std::uint32_t> static_layer_;  ///< 0xFFRRGGBB of ground and walls, row by row
 };

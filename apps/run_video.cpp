@@ -1,0 +1,215 @@
+#include "apps/run_video.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "apps/frame_writer.h"
+#include "apps/report.h"
+#include "apps/text.h"
+#include "base/echo.h"
+#include "base/time.h"
+#include "scenarios/experiment.h"
+#include "viz/png.h"
+#include "viz/video_file.h"
+
+namespace sf::apps {
+
+namespace {
+
+std::vector<std::size_t> rows_of(const world::World& world, const std::vector<std::string>& names) {
+  std::vector<std::size_t> rows;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(world.movers.begin(), world.movers.end(),
+                                    [&](const world::Mover& mover) { return mover.name == name; });
+    std::vector<std::string_view> known;
+    for (const world::Mover& mover : world.movers) known.push_back(mover.name);
+    if (found == world.movers.end()) refuse_robot(world, name, known);
+    rows.push_back(static_cast<std::size_t>(found - world.movers.begin()));
+  }
+  return rows;
+}
+
+viz::RunViewOptions view_options(const world::World& world, const VideoOptions& options) {
+  return {.view = {.width = options.video_width, .height = options.video_height, .extent = options.video_extent},
+          .followed = rows_of(world, options.video_follow),
+          .around = options.video_around,
+          .note = options.video_speed == 1.0 ? "" : fmt::format("  (x {:g})", options.video_speed)};
+}
+
+/// States of all movers at a tick.
+struct Moment {
+  std::int64_t time = 0;  ///< [ns]
+  std::vector<base::Pose> X_WM;
+  std::vector<double> speed;  ///< [m/s]
+  std::vector<std::uint8_t> contacts;
+  std::vector<world::LightState> lights;
+};
+
+void store(const base::TickRecord& tick, const std::vector<std::uint8_t>& hidden, std::size_t movers, Moment& to) {
+  to.time = tick.time;
+  to.X_WM.assign(movers, base::kAbsent);
+  to.speed.assign(movers, 0.0);
+  to.contacts.assign(movers, 0);
+  for (std::size_t i = 0; i < tick.reports.size(); ++i) {
+    const base::Report& report = tick.reports[i];
+    if (!hidden.empty() && hidden[report.mover] != 0) continue;
+    to.X_WM[report.mover] = report.X_WM;
+    to.speed[report.mover] = std::hypot(report.velocity.forward, report.velocity.left);
+    if (i < tick.contacts.size()) to.contacts[report.mover] = tick.contacts[i];
+  }
+  to.lights.clear();
+  for (const base::LightStatus& light : tick.lights) to.lights.push_back(static_cast<world::LightState>(light.state));
+}
+
+/// A mover that went farther than it drives was placed, and stays until then.
+base::Pose pose_between(const Moment& a, const Moment& b, std::size_t mover, double part) {
+  constexpr double kPlaced = 0.5;  // [m]
+  const base::Pose &from = a.X_WM[mover], &to = b.X_WM[mover];
+  const double seconds = 1e-9 * static_cast<double>(b.time - a.time);
+  const double reach = kPlaced + 2.0 * seconds * std::max(a.speed[mover], b.speed[mover]);
+  if (part >= 1.0) return to;
+  if (base::is_absent(from) || base::is_absent(to) || std::hypot(to.x - from.x, to.y - from.y) > reach) return from;
+  return {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y), from.z + part * (to.z - from.z),
+          from.yaw + part * base::wrap_angle(to.yaw - from.yaw)};
+}
+
+/// Readings of one sensor.
+struct Shown {
+  std::size_t mover = 0;
+  const record::SensorInfo* sensor = nullptr;
+  std::optional<viz::RangeReading> newest;                          ///< at the last frame's time
+  std::vector<std::pair<std::int64_t, viz::RangeReading>> arrived;  ///< since, with their times [ns]
+};
+
+void bring_up_to(std::int64_t time, Shown& shown) {
+  const auto later = std::find_if(shown.arrived.begin(), shown.arrived.end(),
+                                  [&](const auto& reading) { return reading.first > time; });
+  if (later == shown.arrived.begin()) return;
+  shown.newest = std::move((later - 1)->second);
+  shown.arrived.erase(shown.arrived.begin(), later);
+}
+
+}  // namespace
+
+class RunVideo::Work {
+ public:
+  Work(const world::World& world, record::RunInfo info, const VideoOptions& options, std::vector<std::uint8_t> hidden)
+      : world_(world), info_(std::move(info)), options_(options), hidden_(std::move(hidden)) {
+    choose_sensors(rows_of(world, options.video_readings));
+    viz::RunView view(world, view_options(world, options));
+    if (options.frames.empty())
+      file_.emplace(options.video, viz::VideoFormat{options.video_width, options.video_height, options.video_fps});
+    else
+      scenarios::make_folder(options.frames);
+    writer_.emplace(std::move(view), [this, number = 0](const viz::PixelImage& image) mutable {
+      if (file_) return file_->add(image);
+      viz::write_png(fmt::format("{}/{:06}.png", options_.frames, number++), image.rgb, image.width, image.height);
+    });
+  }
+
+  void write(const base::TickRecord& tick) {
+    std::swap(before_, now_);
+    store(tick, hidden_, world_.movers.size(), now_);
+    if (!started_) start_ = tick.time, before_ = now_, started_ = true;
+    for (const base::ReadingBlock& reading : tick.readings) keep(reading);
+    while (frame_time() <= now_.time) add_frame(frame_time());
+    for (auto& [key, shown] : shown_) bring_up_to(now_.time, shown);
+  }
+
+  VideoFacts finish() {
+    if (started_) {
+      const std::int64_t end = now_.time + base::nanoseconds(info_.interval);
+      while (frame_time() < end - 1) add_frame(frame_time());
+    }
+    writer_->finish();
+    if (file_) file_->finish();
+    VideoFacts facts{file_ ? options_.video : options_.frames, frames_,
+                     static_cast<double>(frames_) / options_.video_fps};
+    std::error_code ignored;
+    if (file_) facts.bytes = std::filesystem::file_size(options_.video, ignored);
+    return facts;
+  }
+
+ private:
+  using Key = std::tuple<std::uint32_t, std::uint8_t, std::uint32_t>;  // mover, type, sensor of it
+
+  void choose_sensors(const std::vector<std::size_t>& movers) {
+    for (const std::size_t mover : movers) {
+      std::map<std::uint8_t, std::uint32_t> count;
+      for (const record::SensorInfo& sensor : info_.movers[mover].sensors) {
+        const std::uint32_t number = count[sensor.type]++;
+        if (viz::has_ranges(info_, sensor))
+          shown_[{static_cast<std::uint32_t>(mover), sensor.type, number}] = {mover, &sensor, {}, {}};
+      }
+    }
+  }
+
+  void keep(const base::ReadingBlock& reading) {
+    const auto found = shown_.find({reading.mover, reading.type, reading.sensor});
+    if (found == shown_.end()) return;
+    viz::RangeReading kept{found->second.sensor, reading.X_WS, {reading.values.begin(), reading.values.end()}};
+    base::mark_too_near(reading.quality, kept.values);
+    found->second.arrived.emplace_back(reading.time, std::move(kept));
+  }
+
+  /// [ns] simulated, of the next frame.
+  std::int64_t frame_time() const {
+    return start_ + base::nanoseconds(static_cast<double>(frames_) * options_.video_speed /
+                                      static_cast<double>(options_.video_fps));
+  }
+
+  void add_frame(std::int64_t time) {
+    viz::RunFrame frame;
+    frame.time = 1e-9 * static_cast<double>(time);
+    const std::int64_t whole = now_.time - before_.time;
+    const double part =
+        whole > 0 ? std::min(1.0, static_cast<double>(time - before_.time) / static_cast<double>(whole)) : 1.0;
+    for (std::size_t m = 0; m < world_.movers.size(); ++m) frame.X_WM.push_back(pose_between(before_, now_, m, part));
+    const Moment& newest = time >= now_.time ? now_ : before_;
+    frame.contacts = newest.contacts;
+    frame.lights = newest.lights;
+    for (auto& [key, shown] : shown_) {
+      bring_up_to(time, shown);
+      if (shown.newest && !base::is_absent(frame.X_WM[shown.mover])) frame.ranges.push_back(*shown.newest);
+    }
+    writer_->add(std::move(frame));
+    ++frames_;
+  }
+
+  const world::World& world_;
+  const record::RunInfo info_;
+  const VideoOptions options_;
+  const std::vector<std::uint8_t> hidden_;
+  std::map<Key, Shown> shown_;
+  Moment before_, now_;  ///< the last two ticks
+  bool started_ = false;
+  std::int64_t start_ = 0;    ///< [ns] of the first tick
+  std::uint64_t frames_ = 0;  ///< so far
+  std::optional<viz::VideoFile> file_;
+  std::optional<FrameWriter> writer_;  ///< ends before the file
+};
+
+RunVideo::RunVideo(const world::World& world, record::RunInfo info, const VideoOptions& options,
+                   std::vector<std::uint8_t> hidden)
+    : work_(std::make_unique<Work>(world, std::move(info), options, std::move(hidden))) {}
+
+RunVideo::~RunVideo() = default;
+
+void RunVideo::write(const base::TickRecord& tick) { work_->write(tick); }
+
+VideoFacts RunVideo::finish() { return work_->finish(); }
+
+std::string text_of(const VideoFacts& facts) {
+  std::string text = fmt::format("{}, {:g} s", counted(facts.frames, "frame"), facts.seconds);
+  if (facts.bytes > 0) text += fmt::format(", {:.2f} MB", 1e-6 * static_cast<double>(facts.bytes));
+  return text;
+}
+
+}  // namespace sf::apps

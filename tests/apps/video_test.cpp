@@ -1,0 +1,151 @@
+// `run --video`, `plot --video` and `view --frames`.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/installation.h"
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+namespace {
+
+class Video : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::filesystem::path program = SF_PROGRAM;
+    if (!std::filesystem::exists(program.parent_path() / "sensorfarm_ffmpeg.so"))
+      GTEST_SKIP() << "built without FFmpeg";
+  }
+  /// Of two robots that wander for `seconds`.
+  Words run(const std::string& video, const std::string& seconds, const Words& more = {}) const {
+    Words words{"run", our_world("cave.world"), "--robots", "2",     "--duration", seconds, "--video",
+                video, "--video-size",          "160x120",  "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  std::string record(const std::string& seconds) const {
+    const Outcome outcome = run_program(
+        {"run", our_world("cave.world"), "--robots", "2", "--duration", seconds, "--record", folder.path("r")});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return folder.path("r");
+  }
+  /// "codec,frames" and the duration, by another program; empty without it.
+  std::string probe(const std::string& file) const {
+    if (!succeeds("ffprobe -version")) return {};
+    EXPECT_TRUE(
+        succeeds("ffprobe -v error -count_frames -of csv=p=0 -show_entries "
+                 "stream=codec_name,nb_read_frames:format=duration '" +
+                 file + "' > '" + folder.path("probe") + "'"));
+    return read_file(folder.path("probe"));
+  }
+  Folder folder;
+};
+
+/// Ten seconds of ticks are ten seconds of video, at another speed as many times fewer.
+TEST_F(Video, DurationIsThatOfTheRunOverTheSpeed) {
+  const Outcome one = run_program(run(folder.path("one.webm"), "10"));
+  ASSERT_EQ(one.code, 0) << one.err;
+  EXPECT_NE(one.out.find("\"frames\": 250"), std::string::npos) << one.out;
+  EXPECT_NE(one.out.find("\"seconds\": 10.0"), std::string::npos) << one.out;
+  EXPECT_EQ(one.err.find('\r'), std::string::npos) << "progress in a pipe";
+  const Outcome four = run_program(run(folder.path("four.webm"), "10", {"--video-speed", "4", "--video-fps", "10"}));
+  ASSERT_EQ(four.code, 0) << four.err;
+  EXPECT_NE(four.out.find("\"frames\": 25,"), std::string::npos) << four.out;
+  if (const std::string found = probe(folder.path("one.webm")); !found.empty())
+    EXPECT_EQ(found, "vp9,250\n10.000000\n");
+  if (const std::string found = probe(folder.path("four.webm")); !found.empty()) EXPECT_EQ(found, "vp9,25\n2.500000\n");
+}
+
+/// Frames follow from states alone: those of the run and of its recording are the same.
+TEST_F(Video, ARecordingHasTheSameVideoAsItsRun) {
+  const Outcome ran = run_program(run(folder.path("run.webm"), "4", {"--record", folder.path("r")}));
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const Outcome plotted =
+      run_program({"plot", folder.path("r"), "--video", folder.path("plot.webm"), "--video-size", "160x120"});
+  ASSERT_EQ(plotted.code, 0) << plotted.err;
+  EXPECT_NE(plotted.err.find("plot.webm: 100 frames, 4 s"), std::string::npos) << plotted.err;
+  EXPECT_FALSE(read_file(folder.path("run.webm")).empty());
+  EXPECT_TRUE(read_file(folder.path("run.webm")) == read_file(folder.path("plot.webm")));
+}
+
+/// A video changes nothing of the run.
+TEST_F(Video, ReadingsDoNotDependOnIt) {
+  const Outcome with = run_program(run(folder.path("v.webm"), "2", {"--video-readings", "roomba1"}));
+  ASSERT_EQ(with.code, 0) << with.err;
+  const Outcome without = run_program({"run", our_world("cave.world"), "--robots", "2", "--duration", "2", "--json"});
+  const auto hash = [](const Outcome& outcome) {
+    return outcome.out.substr(outcome.out.find("\"hash\"")).substr(0, 30);
+  };
+  EXPECT_EQ(hash(with), hash(without));
+}
+
+TEST_F(Video, FramesArePngFilesForOtherEncoders) {
+  const std::string recording = record("2");
+  const Outcome outcome = run_program({"view", recording, "--frames", folder.path("f"), "--video-fps", "10",
+                                       "--video-size", "160x120", "--from", "0.5", "--video-readings", "roomba1"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path("f")))
+    count += entry.path().extension() == ".png";
+  EXPECT_EQ(count, 15u) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(folder.path("f/000014.png")));
+  EXPECT_NE(read_file(folder.path("f/000000.png")), read_file(folder.path("f/000014.png")));
+}
+
+TEST_F(Video, AStopLeavesAVideoThatPlays) {
+  Program program(run(folder.path("v.webm"), "1e6"));
+  ASSERT_TRUE(program.handles(SIGINT)) << program.err();
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_NE(outcome.out.find("\"video\""), std::string::npos) << outcome.out;
+  if (const std::string found = probe(folder.path("v.webm")); !found.empty())
+    EXPECT_EQ(found.substr(0, 4), "vp9,") << found;
+}
+
+/// The plug-in or FFmpeg may be missing: the message names the package, and frames need neither.
+TEST_F(Video, WithoutFfmpegTheMessageNamesItsPackage) {
+  const std::filesystem::path program = SF_PROGRAM;
+  const std::string alone = folder.path("alone");
+  std::filesystem::copy_file(program, alone);
+  std::filesystem::copy_file(program.parent_path() / "sensorfarm_cairo.so", folder.path("sensorfarm_cairo.so"));
+  const Outcome outcome = Program(run(folder.path("v.webm"), "1"), {}, "", "", alone).wait();
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  for (const char* part : {"no video can be written", "apt-get install ffmpeg", "--frames"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  const Outcome frames =
+      Program({"view", record("0.5"), "--frames", folder.path("f"), "--video-size", "64x64"}, {}, "", "", alone).wait();
+  EXPECT_EQ(frames.code, 0) << frames.err;
+}
+
+TEST_F(Video, WrongOptionsAreNamed) {
+  const std::string world = our_world("cave.world");
+  const auto message = [&](const Words& more) {
+    Words words{"run", world, "--robots", "2", "--duration", "0.1"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 2) << more.front();
+    return outcome.err;
+  };
+  const std::string video = folder.path("v.webm");
+  for (const auto& [more, part] : std::vector<std::pair<Words, std::string>>{
+           {{"--video", "v.mp4"}, "videos are WebM files; write v.webm"},
+           {{"--video", ""}, "expected a file"},
+           {{"--video", video, "--video-size", "161x120"}, "even numbers from 16 to 4096"},
+           {{"--video", video, "--video-size", "160"}, "even numbers from 16 to 4096"},
+           {{"--video", video, "--video-size", "8192x120"}, "even numbers from 16 to 4096"},
+           {{"--video", video, "--video-fps", "0"}, "expected a whole number from 1 to 120"},
+           {{"--video", video, "--video-speed", "0"}, "expected a number from 0.001"},
+           {{"--video", video, "--video-follow", "nobody"}, "has no robot 'nobody'"},
+           {{"--video", video, "--video-readings", "roomba3"}, "has no robot 'roomba3'"},
+           {{"--video", "/nowhere/v.webm"}, "/nowhere/v.webm: the video cannot be written: No such file"},
+           {{"--video-fps", "10"}, "--video-fps requires --video"}})
+    EXPECT_NE(message(more).find(part), std::string::npos) << part;
+}
+
+}  // namespace
+}  // namespace sf

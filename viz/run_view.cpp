@@ -1,0 +1,122 @@
+#include "viz/run_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/report.h"
+#include "viz/mover_layer.h"
+#include "viz/signal_layer.h"
+#include "viz/theme.h"
+#include "viz/ticks.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr std::size_t kMostNames = 12;
+constexpr double kEdge = 14.0;         // [px] between texts and the picture's edge
+constexpr double kSmallestRing = 6.0;  // [px]
+
+TextStyle text_style(const FigureLayout& layout, double part) {
+  TextStyle style;
+  style.size = std::clamp(static_cast<int>(part * layout.height), 9, 48);
+  style.halo = theme::kWhite;
+  return style;
+}
+
+}  // namespace
+
+RunView::RunView(const world::World& world, const RunViewOptions& options)
+    : world_(world), options_(options), view_(world, options.view) {}
+
+/// The box of all followed movers with a margin; while none of them is there, the camera stays.
+void RunView::follow(const RunFrame& frame) {
+  std::optional<world::Extent> box;
+  for (const std::size_t mover : options_.followed) {
+    const base::Pose& at = frame.X_WM[mover];
+    if (base::is_absent(at)) continue;
+    if (!box) box = {at.x, at.y, at.x, at.y};
+    *box = {std::min(box->x_min, at.x), std::min(box->y_min, at.y), std::max(box->x_max, at.x),
+            std::max(box->y_max, at.y)};
+  }
+  const double around = options_.around;
+  if (box) view_.look_at({box->x_min - around, box->y_min - around, box->x_max + around, box->y_max + around});
+}
+
+void RunView::draw_contacts(Axes& axes, const RunFrame& frame) const {
+  for (std::size_t i = 0; i < frame.contacts.size(); ++i) {
+    const base::Pose& at = frame.X_WM[i];
+    if (frame.contacts[i] == 0 || world_.movers[i].is_tag || base::is_absent(at)) continue;
+    axes.canvas().ring(axes.pixel({at.x, at.y}), std::max(world_.movers[i].radius * axes.scale() + 3.0, kSmallestRing),
+                       theme::kBold, theme::kContact);
+  }
+}
+
+/// Below the robots, where no other name is.
+void RunView::draw_names(Axes& axes, const RunFrame& frame) const {
+  const world::Extent& shown = axes.layout().shown;
+  std::vector<std::size_t> seen;
+  for (std::size_t i = 0; i < frame.X_WM.size(); ++i) {
+    const base::Pose& at = frame.X_WM[i];
+    if (!world_.movers[i].is_tag && at.x > shown.x_min && at.x < shown.x_max && at.y > shown.y_min &&
+        at.y < shown.y_max)
+      seen.push_back(i);
+  }
+  if (seen.size() > kMostNames) return;
+  TextStyle style = text_style(axes.layout(), 0.022);
+  style.across = Anchor::middle;
+  style.down = Anchor::start;
+  std::vector<glm::dvec2> taken, sizes;
+  for (const std::size_t i : seen) {
+    const std::string& name = world_.movers[i].name;
+    const double below = std::max(world_.movers[i].radius * axes.scale(), kSmallestRing) + 4.0;
+    const glm::dvec2 at = axes.pixel({frame.X_WM[i].x, frame.X_WM[i].y}) + glm::dvec2{0.0, below};
+    const glm::dvec2 size = text_size(name, style);
+    bool is_free = true;
+    for (std::size_t k = 0; k < taken.size(); ++k)
+      is_free = is_free && (std::abs(at.x - taken[k].x) > 0.5 * (size.x + sizes[k].x) ||
+                            std::abs(at.y - taken[k].y) > 0.5 * (size.y + sizes[k].y));
+    if (!is_free) continue;
+    axes.canvas().text(at, name, style);
+    taken.push_back(at);
+    sizes.push_back(size);
+  }
+}
+
+/// Time at the upper left, scale bar at the lower right.
+void RunView::draw_texts(Axes& axes, const RunFrame& frame) const {
+  Canvas& canvas = axes.canvas();
+  TextStyle style = text_style(axes.layout(), 0.03);
+  style.down = Anchor::start;
+  canvas.text({kEdge, kEdge}, fmt::format("{:.1f} s{}", frame.time, options_.note), style);
+
+  const double metres = round_down(canvas.width() / axes.scale() / 6.0);
+  const double right = crisp(canvas.width() - kEdge), left = crisp(right - metres * axes.scale());
+  const double y = crisp(canvas.height() - kEdge);
+  const Line strokes[] = {{{left, y}, {right, y}}, {{left, y - 5}, {left, y + 5}}, {{right, y - 5}, {right, y + 5}}};
+  canvas.lines(strokes, 5.0, theme::kWhite);
+  canvas.lines(strokes, theme::kCurve, theme::kFrame);
+  style = text_style(axes.layout(), 0.022);
+  style.across = Anchor::end;
+  style.down = Anchor::end;
+  canvas.text({right, y - 7.0},
+              metres >= 1000.0 ? fmt::format("{:g} km", metres / 1000.0) : fmt::format("{:g} m", metres), style);
+}
+
+PixelImage RunView::paint(const RunFrame& frame) {
+  if (!options_.followed.empty()) follow(frame);
+  Axes axes = view_.begin();
+  for (const RangeReading& reading : frame.ranges) draw_ranges(axes, reading);
+  if (frame.lights.empty())
+    draw_lights(axes, world_, frame.time);
+  else
+    draw_lights(axes, world_, frame.lights);
+  view_.draw_bodies(axes, frame.X_WM);
+  draw_contacts(axes, frame);
+  draw_names(axes, frame);
+  draw_texts(axes, frame);
+  return paint_pixels(axes.canvas().drawing());
+}
+
+}  // namespace sf::viz
