@@ -23,6 +23,12 @@ std::vector<std::string> drivers_of(const Scene& scene, ViewerMode mode) {
   return topics;
 }
 
+std::uint32_t row_of(std::string_view name, std::span<const record::Topic> topics) {
+  const auto found =
+      std::find_if(topics.begin(), topics.end(), [&](const record::Topic& topic) { return topic.name == name; });
+  return static_cast<std::uint32_t>(found - topics.begin());
+}
+
 }  // namespace
 
 Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
@@ -33,6 +39,7 @@ Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
       sessions_({"sensorfarm: " + scene.info.world, options.mode, options.start, options.end,
                  drivers_of(scene, options.mode)},
                 messages_.topics(), wishes_),
+      fleet_(row_of("/fleet", messages_.topics())),
       wanted_(messages_.topics().size()),
       next_(messages_.topics().size()) {
   std::vector<SharedMessage> latched;
@@ -92,6 +99,8 @@ void Viewer::show(const RunState& state) {
   server_->post([this, next, time = last_.time()] { sessions_.show(next, time); });
 }
 
+/// Topics go with the states of the same tick, or readings would be drawn where their robots have been: they wait for
+/// them, but no longer than one interval more, since a seldom reading is in one tick only.
 /// @param all topics that are subscribed, though it may not be their turn
 void Viewer::choose_topics(bool all) {
   topics_.clear();
@@ -99,8 +108,11 @@ void Viewer::choose_topics(bool all) {
   due_.clear();
   wishes_.topics(topics_, fresh_);
   const Clock::time_point now = Clock::now();
-  for (const std::uint32_t topic : topics_)
-    if (all || now >= next_[topic] || std::binary_search(fresh_.begin(), fresh_.end(), topic)) due_.push_back(topic);
+  const bool waits = std::binary_search(topics_.begin(), topics_.end(), fleet_) && now < next_[fleet_];
+  for (const std::uint32_t topic : topics_) {
+    const Clock::time_point turn = next_[topic] + (waits && topic != fleet_ ? kLeastInterval : milliseconds(0));
+    if (all || now >= turn || std::binary_search(fresh_.begin(), fresh_.end(), topic)) due_.push_back(topic);
+  }
 }
 
 /// Sends the tick's time, and what it has to say on the topics of `due_`.

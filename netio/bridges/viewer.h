@@ -63,6 +63,7 @@ class Viewer : public Bridge {
   RunState state_;
   bool shown_ = false;
   Clock::time_point next_state_, next_time_;
+  std::uint32_t fleet_;                              ///< topic of the states
   std::vector<std::uint32_t> topics_, fresh_, due_;  ///< `due_`: to be sent, those of `fresh_` among them
   std::vector<bool> wanted_;
   std::vector<Clock::time_point> next_;                ///< per topic: earliest time of its next message

@@ -15,7 +15,7 @@ export class Camera {
     this.x += x - nx;
     this.y += y - ny;
   }
-  fit([x0, y0, x1, y1], margin = 40) {
+  fit([x0, y0, x1, y1], margin = Math.min(40, this.width / 20)) {
     this.x = (x0 + x1) / 2;
     this.y = (y0 + y1) / 2;
     const wide = Math.max(x1 - x0, 0.1), high = Math.max(y1 - y0, 0.1);

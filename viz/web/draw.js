@@ -1,6 +1,6 @@
 // Draws a frame: what does not move, then trails, robots, lights, and the selected robot's readings.
 
-import { theme, fade, darker, onPaper } from './theme.js';
+import { theme, fade, edgeOf, headingOn, moverColors, onPaper } from './theme.js';
 import { drawReadingAbove, drawReadingBelow } from './sensors.js';
 
 const smallest = 3;  // [px] radius below which a robot is a dot
@@ -12,20 +12,26 @@ export class Drawing {
   constructor(canvas, camera, scene, layer, fleet) {
     Object.assign(this, { canvas, camera, scene, layer, fleet });
     this.context = canvas.getContext('2d', { alpha: false });
-    this.layers = { trails: true, beams: true, maps: true, names: true, lights: true, contacts: true };
+    this.layers = { trails: true, beams: true, maps: true, names: true, lights: true, contacts: true, colors: true };
     this.lights = [];
     this.selected = -1;
     this.held = new Map();  // by topic: {message, pose}
     this.maps = new Map();  // by topic: MapPicture
     /** What the last frame shows, for tests. */
     this.drawn = {};
+    this.restyle();
+  }
+
+  /** Takes the colours in use. */
+  restyle() {
     this.sprites = new Map();
     this.byColor = new Map();
-    scene.movers.forEach((mover, i) => {
-      const color = mover.color || theme.wall;
+    this.colors = moverColors(this.scene.movers, this.layers.colors);
+    this.colors.forEach((color, i) => {
       if (!this.byColor.has(color)) this.byColor.set(color, []);
       this.byColor.get(color).push(i);
     });
+    this.layer.restyle();
   }
 
   resize() {
@@ -105,13 +111,13 @@ export class Drawing {
     for (const i of robots) this.#outline(c, i, this.camera.toScreen(this.fleet.shownX[i], this.fleet.shownY[i]), this.fleet.shownYaw[i]);
     c.fillStyle = fade(color, 0.85);
     c.fill();
-    c.strokeStyle = darker(color, 0.55);
+    c.strokeStyle = edgeOf(color, 0.55);
     c.lineWidth = 1.2;
     c.stroke();
     c.beginPath();
     for (const i of robots) this.#heading(c, i, this.camera.toScreen(this.fleet.shownX[i], this.fleet.shownY[i]), this.fleet.shownYaw[i]);
     c.lineWidth = 2;
-    c.strokeStyle = darker(color, 0.7);
+    c.strokeStyle = headingOn(color);
     c.stroke();
   }
 
@@ -140,13 +146,13 @@ export class Drawing {
     this.#outline(c, i, [0, 0], yaw);
     c.fillStyle = fade(color, 0.85);
     c.fill();
-    c.strokeStyle = darker(color, 0.55);
+    c.strokeStyle = edgeOf(color, 0.55);
     c.lineWidth = 1.2;
     c.stroke();
     c.beginPath();
     this.#heading(c, i, [0, 0], yaw);
     c.lineWidth = 2;
-    c.strokeStyle = darker(color, 0.7);
+    c.strokeStyle = headingOn(color);
     c.stroke();
     return { canvas, half };
   }
@@ -211,7 +217,7 @@ export class Drawing {
     const i = this.selected;
     if (i < 0 || this.fleet.absent[i]) return;
     const [x, y] = this.camera.toScreen(this.fleet.shownX[i], this.fleet.shownY[i]), r = Math.max(8, this.fleet.radius[i] * this.camera.scale + 5);
-    for (const [color, width] of [['#ffffff', 5], [theme.selected, 2.5]]) {
+    for (const [color, width] of [[theme.paper, 5], [theme.selected, 2.5]]) {
       c.strokeStyle = color;
       c.lineWidth = width;
       c.beginPath();
@@ -245,7 +251,7 @@ function label(c, text, x, y, align, strong = false) {
   c.textBaseline = 'middle';
   c.lineJoin = 'round';
   c.lineWidth = 3.5;
-  c.strokeStyle = 'rgba(255,255,255,.9)';
+  c.strokeStyle = theme.halo;
   c.strokeText(text, x, y);
   c.fillStyle = theme.ink;
   c.fillText(text, x, y);
@@ -258,7 +264,7 @@ export function drawSignal(c, x, y, r, state, blink = true) {
   if (state === 1 || state === 4) c.rect(x - 0.9 * r, y - 0.9 * r, 1.8 * r, 1.8 * r);
   else if (state === 2 || state === 5) { c.moveTo(x, y - 1.25 * r); c.lineTo(x + 1.25 * r, y); c.lineTo(x, y + 1.25 * r); c.lineTo(x - 1.25 * r, y); c.closePath(); }
   else c.arc(x, y, r, 0, 2 * Math.PI);
-  c.fillStyle = state >= 4 ? (blink ? color : '#ffffff') : color;
+  c.fillStyle = state >= 4 && !blink ? theme.paper : color;
   c.fill();
   c.lineWidth = 1.8;
   c.strokeStyle = theme.ink;
@@ -268,6 +274,6 @@ export function drawSignal(c, x, y, r, state, blink = true) {
   c.beginPath();
   c.moveTo(x - d, y - d); c.lineTo(x + d, y + d);
   c.moveTo(x - d, y + d); c.lineTo(x + d, y - d);
-  c.strokeStyle = '#ffffff';
+  c.strokeStyle = theme.paper;
   c.stroke();
 }

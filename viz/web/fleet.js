@@ -2,6 +2,18 @@
 
 const snapDistance = 2;  // [m] between two updates: the robot was placed
 const longestGap = 0.6;  // [s] of real time between updates that are shown as a motion
+const longestStep = 0.25;  // [s] simulated, likewise: farther apart, states say nothing of the way between them
+const past = 16;         // updates that are kept, for readings that were measured at their times
+const stuckAfter = 3;    // [s] simulated
+
+/** Whether the robot is to move and hardly does: below a tenth of its command, and below 1 cm/s and 0.02 rad/s. */
+function isHeld({ velocity, command }) {
+  const drives = Math.hypot(command.forward, command.left), turns = Math.abs(command.turn);
+  if (drives < 0.02 && turns < 0.05) return false;
+  return Math.hypot(velocity.forward, velocity.left) < Math.max(0.01, 0.1 * drives) && Math.abs(velocity.turn) < Math.max(0.02, 0.1 * turns);
+}
+
+const shortestTurn = (angle) => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
 
 export class Fleet {
   constructor(scene) {
@@ -13,6 +25,11 @@ export class Fleet {
     this.absent = new Uint8Array(this.count).fill(1);
     this.contact = new Uint8Array(this.count);
     this.states = new Array(this.count);
+    this.heldSince = new Float64Array(this.count).fill(NaN);  // [s] simulated; NaN: it moves, or stands as commanded
+    this.past = [];       // {time, states} of the last updates, the newest at the end
+    this.fromTime = 0;    // [s] simulated, of the poses that the shown ones come from
+    this.shownTime = 0;   // [s] simulated, of those shown
+    this.extent = scene.extent;
     this.tick = -1;
     this.time = 0;
     this.updates = 0;
@@ -26,17 +43,58 @@ export class Fleet {
   /** @param message sensorfarm_msgs/msg/Fleet  @param now [s] of real time */
   update(message, time, now) {
     const back = time < this.time;
-    if (back) this.trailCount.fill(0);
+    if (back) {
+      this.trailCount.fill(0);
+      this.heldSince.fill(NaN);
+      this.past = [];
+    }
     const gap = this.updates > 0 && !back ? now - this.arrived : longestGap;
-    this.duration = gap < longestGap ? gap : 0;
+    this.duration = gap < longestGap && time - this.time <= longestStep ? gap : 0;
     this.arrived = now;
+    this.fromTime = this.duration > 0 ? this.shownTime : time;
     this.time = time;
     this.tick = message.tick;
     ++this.updates;
     const seen = new Uint8Array(this.count);
     for (const state of message.states) this.#take(state, seen);
     for (let i = 0; i < this.count; ++i) if (!seen[i]) this.absent[i] = 1;
+    const states = new Array(this.count);
+    for (const state of message.states) if (!Number.isNaN(state.pose.x)) states[state.mover] = state;
+    this.past.push({ time, states });
+    if (this.past.length > past) this.past.shift();
   }
+
+  /** Updates before a jump in time are no neighbours of those after it. */
+  forget() {
+    this.past = [];
+    this.trailCount.fill(0);
+    this.heldSince.fill(NaN);
+  }
+
+  /**
+   * [x, y, yaw] of a robot at a time [s]: between updates on the way from one to the next, before the first one that is
+   * kept as its twist says; null: no update is as late.
+   */
+  poseAt(i, time) {
+    const after = this.past.findIndex((update) => update.time >= time - 1e-6), next = this.past[after]?.states[i];
+    if (!next) return null;
+    const { x, y, yaw } = next.pose, late = Math.max(0, this.past[after].time - time);
+    const before = this.past[after - 1], last = before?.states[i]?.pose;
+    if (last) {
+      const share = late / (this.past[after].time - before.time);
+      return [x + share * (last.x - x), y + share * (last.y - y), yaw + share * shortestTurn(last.yaw - yaw)];
+    }
+    const { forward, left, turn } = next.velocity, middle = yaw - 0.5 * late * turn;
+    return [x - late * (forward * Math.cos(middle) - left * Math.sin(middle)), y - late * (forward * Math.sin(middle) + left * Math.cos(middle)), yaw - late * turn];
+  }
+
+  isStuck(i) { return !this.absent[i] && this.time - this.heldSince[i] >= stuckAfter; }
+  /** Beyond the box around everything that the world has. */
+  isOutside(i) {
+    const [x0, y0, x1, y1] = this.extent;
+    return !this.absent[i] && (this.x[i] < x0 || this.x[i] > x1 || this.y[i] < y0 || this.y[i] > y1);
+  }
+  inContact(i) { return !this.absent[i] && this.contact[i] === 1; }
 
   #take(state, seen) {
     const i = state.mover, { x, y, yaw } = state.pose;
@@ -50,6 +108,8 @@ export class Fleet {
     this.absent[i] = 0;
     this.contact[i] = state.contact ? 1 : 0;
     this.states[i] = state;
+    if (!isHeld(state)) this.heldSince[i] = NaN;
+    else if (Number.isNaN(this.heldSince[i])) this.heldSince[i] = this.time;
     this.#extendTrail(i, x - this.origin[0], y - this.origin[1]);
   }
 
@@ -79,11 +139,11 @@ export class Fleet {
   /** Moves the shown poses on. @return true while they move */
   animate(now) {
     const share = this.duration > 0 ? Math.min(1, (now - this.arrived) / this.duration) : 1;
+    this.shownTime = this.fromTime + share * (this.time - this.fromTime);
     for (let i = 0; i < this.count; ++i) {
       this.shownX[i] = this.fromX[i] + share * (this.x[i] - this.fromX[i]);
       this.shownY[i] = this.fromY[i] + share * (this.y[i] - this.fromY[i]);
-      const turn = this.yaw[i] - this.fromYaw[i];
-      this.shownYaw[i] = this.fromYaw[i] + share * (turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI)));
+      this.shownYaw[i] = this.fromYaw[i] + share * shortestTurn(this.yaw[i] - this.fromYaw[i]);
     }
     return share < 1;
   }

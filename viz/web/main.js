@@ -8,7 +8,7 @@ import { Panel } from './panel.js';
 import { Connection } from './protocol.js';
 import { StaticLayer, loadScene } from './scene.js';
 import { MapPicture, compose } from './sensors.js';
-import { theme } from './theme.js';
+import { fade, isDark, theme, useTheme } from './theme.js';
 
 const $ = (id) => document.getElementById(id);
 const token = new URLSearchParams(location.search).get('token') ?? '';
@@ -18,6 +18,7 @@ let scene, camera, fleet, drawing, panel, connection;
 let paused = false, speed = 1, following = false, driving = false, sliding = false, dirty = true, time = 0;
 let runs = null, range = [0, 0];
 const pressed = new Set();
+const waiting = new Map();  // by topic: readings {sensor, message, at}, the one that is shown first
 
 function notice(text, lasts = 6) {
   $('notice').textContent = text;
@@ -96,6 +97,7 @@ function select(row) {
   stopDriving();
   drawing.selected = row;
   drawing.held.clear();
+  waiting.clear();
   drawing.maps.clear();
   const actions = [];
   if (row >= 0 && scene.mode === 'run' && !scene.movers[row].tag) {
@@ -105,25 +107,43 @@ function select(row) {
   }
   panel.last = row >= 0 ? fleet.states[row] : null;
   panel.show(row, actions);
-  for (const sensor of row < 0 ? [] : scene.movers[row].sensors) connection.subscribe(sensor.topic, (message) => hold(row, sensor, message));
+  for (const sensor of row < 0 ? [] : scene.movers[row].sensors) connection.subscribe(sensor.topic, (message) => hold(sensor, message));
   $('follow').disabled = row < 0;
   if (row < 0) setFollowing(false);
   dirty = true;
 }
 
-/** Keeps a reading with the sensor's pose when it measured: the robot has moved since. */
-function hold(row, sensor, message) {
+/** Keeps a reading until the robots that are shown have come to its time. */
+function hold(sensor, message) {
   const at = message.header ? message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec : fleet.time;
-  const state = fleet.states[row];
   if (sensor.map) {
     drawing.maps.set(sensor.topic, new MapPicture(message, sensor.map));
-  } else if (state) {
-    const late = Math.min(1, Math.max(0, fleet.time - at)), { velocity, pose } = state;
-    const robot = compose([pose.x - scene.origin[0], pose.y - scene.origin[1], pose.yaw], [-late * velocity.forward, -late * velocity.left, -late * velocity.turn]);
-    drawing.held.set(sensor.topic, { message, pose: compose(robot, sensor.pose) });
+  } else {
+    const queue = waiting.get(sensor.topic) ?? [];
+    if (queue.length > 0 && at < queue[queue.length - 1].at) queue.length = 0;
+    queue.push({ sensor, message, at });
+    if (queue.length > 32) queue.shift();
+    waiting.set(sensor.topic, queue);
   }
   panel.reading(sensor.topic, message, at);
   dirty = true;
+}
+
+/**
+ * Shows each sensor's reading that is nearest to the time of the shown robots, with the sensor's pose when it measured:
+ * robots move from update to update, and an update may have readings that are newer than its states.
+ */
+function showReadings() {
+  const nearer = (a, b) => Math.abs(a.at - fleet.shownTime) <= Math.abs(b.at - fleet.shownTime);
+  for (const [topic, queue] of waiting) {
+    while (queue.length > 1 && queue[1].at <= fleet.time + 1e-6 && nearer(queue[1], queue[0])) queue.shift();
+    const [{ sensor, message, at }] = queue;
+    if (drawing.held.get(topic)?.message === message) continue;
+    const robot = fleet.poseAt(drawing.selected, at);
+    if (!robot) continue;
+    drawing.held.set(topic, { message, at, pose: compose([robot[0] - scene.origin[0], robot[1] - scene.origin[1], robot[2]], sensor.pose) });
+    dirty = true;
+  }
 }
 
 function nextRobot(by) {
@@ -171,6 +191,40 @@ function sendDrive() {
 
 // View
 
+const systemDark = matchMedia('(prefers-color-scheme: dark)'), themeKey = 'sensorfarm-theme';
+let chosenTheme = null;  // 'dark' or 'light'; null: the system's
+try { chosenTheme = localStorage.getItem(themeKey); } catch { /* storage is refused: a choice lasts as long as the page */ }
+
+function restyle() {
+  const name = chosenTheme ?? (systemDark.matches ? 'dark' : 'light');
+  useTheme(name);
+  document.documentElement.dataset.theme = name;
+  $('theme').setAttribute('aria-pressed', String(name === 'dark'));
+  if (!drawing) return;
+  drawing.restyle();
+  for (const [topic, { message, geometry }] of drawing.maps) drawing.maps.set(topic, new MapPicture(message, geometry));
+  panel.fill();
+  panel.dirty = true;
+  showLegend.key = null;
+  dirty = true;
+}
+
+/** A choice that is the system's own follows the system from then on. */
+function toggleTheme() {
+  const next = isDark() ? 'light' : 'dark';
+  chosenTheme = (next === 'dark') === systemDark.matches ? null : next;
+  try {
+    if (chosenTheme) localStorage.setItem(themeKey, chosenTheme); else localStorage.removeItem(themeKey);
+  } catch { /* as above */ }
+  restyle();
+}
+
+/** On narrow screens the panel takes a part of the map's height. */
+function showPanel(open) {
+  document.body.dataset.panel = open ? 'open' : 'closed';
+  $('show-panel').setAttribute('aria-expanded', String(open));
+}
+
 function fitAll() {
   setFollowing(false);
   camera.fit(scene.extent);
@@ -197,7 +251,7 @@ function showLegend() {
   if (drawing.drawn.hits > 0) items.push([swatch((c) => { c.fillStyle = theme.view; c.fillRect(9, 5, 4, 4); }), 'echo of the laser']);
   if (drawing.drawn.edges > 0) items.push([line(theme.lane, 3), 'lane edge as sensed']);
   if (drawing.drawn.fields > 0) items.push([line(theme.magnetometer, 2), 'magnetic field']);
-  if (drawing.drawn.maps > 0) items.push([swatch((c) => { c.fillStyle = theme.map; c.fillRect(4, 2, 7, 10); c.fillStyle = '#cfe9f8'; c.fillRect(11, 2, 7, 10); }), 'map: occupied, free']);
+  if (drawing.drawn.maps > 0) items.push([swatch((c) => { c.fillStyle = theme.map; c.fillRect(4, 2, 7, 10); c.fillStyle = fade(theme.mapFree, 0.35); c.fillRect(11, 2, 7, 10); }), 'map: occupied, free']);
   if (drawing.drawn.contacts > 0) items.push([swatch((c) => { c.strokeStyle = theme.contact; c.lineWidth = 1.8; c.arc(11, 7, 5, 0, 7); c.moveTo(8.5, 4.5); c.lineTo(13.5, 9.5); c.moveTo(8.5, 9.5); c.lineTo(13.5, 4.5); c.stroke(); }), 'contact']);
   const key = items.map(([, text]) => text).join();
   if (key === showLegend.key) return;
@@ -208,6 +262,7 @@ function showLegend() {
 function animate() {
   requestAnimationFrame(animate);
   const now = seconds(), moving = fleet.animate(now);
+  showReadings();
   if (following && drawing.selected >= 0 && !fleet.absent[drawing.selected]) {
     camera.x = fleet.shownX[drawing.selected];
     camera.y = fleet.shownY[drawing.selected];
@@ -221,6 +276,7 @@ function animate() {
     ++counters.frames;
   }
   panel.draw(now, drawing.maps);
+  panel.summary(now, fleet);
 }
 
 function openPopup(id, open = $(`${id}-list`).hidden) {
@@ -233,14 +289,14 @@ function openPopup(id, open = $(`${id}-list`).hidden) {
 }
 
 function fillPopups() {
-  const words = { trails: 'Trails', beams: 'Beams and fields of the selected robot', maps: 'Its occupancy map', names: 'Names', lights: 'Traffic lights', contacts: 'Contacts' };
+  const words = { trails: 'Trails', beams: 'Beams and fields of the selected robot', maps: 'Its occupancy map', names: 'Names', lights: 'Traffic lights', contacts: 'Contacts', colors: 'Own colours of robots that look alike' };
   $('layers-list').replaceChildren(...Object.entries(words).map(([key, text]) => {
-    const box = Object.assign(document.createElement('input'), { type: 'checkbox', checked: true, onchange: () => { drawing.layers[key] = box.checked; dirty = true; } });
+    const box = Object.assign(document.createElement('input'), { type: 'checkbox', checked: true, onchange: () => { drawing.layers[key] = box.checked; if (key === 'colors') restyle(); dirty = true; } });
     const label = document.createElement('label');
     label.append(box, text);
     return label;
   }));
-  const keys = [['Space', 'pause or continue'], ['N', 'one tick'], ['Shift R', 'restart'], ['1 … 4', 'speed 1/4, 1, 4, max'], ['Arrows', 'pan; while driving: drive'], ['+ −', 'zoom'], ['0', 'show all'], ['[ ]', 'previous, next robot'], ['F', 'follow it'], ['D', 'drive it'], ['/', 'find a robot'], ['L', 'layers'], [', .', 'a recording: one second back, on'], ['Esc', 'close, end driving, select none']];
+  const keys = [['Space', 'pause or continue'], ['N', 'one tick'], ['Shift R', 'restart'], ['1 … 4', 'speed 1/4, 1, 4, max'], ['Arrows', 'pan; while driving: drive'], ['+ −', 'zoom'], ['0', 'show all'], ['[ ]', 'previous, next robot'], ['F', 'follow it'], ['D', 'drive it'], ['/', 'find a robot'], ['L', 'layers'], ['T', 'dark or light'], [', .', 'a recording: one second back, on'], ['Esc', 'close, end driving, select none']];
   const table = document.createElement('table');
   for (const [key, text] of keys) {
     const row = table.insertRow();
@@ -258,8 +314,9 @@ function escape() {
   else select(-1);
 }
 
+// Letters as they are without caps lock.
 const keys = {
-  ' ': () => setPaused(!paused), n: step, N: step, R: reset, f: () => setFollowing(!following), d: toggleDriving,
+  ' ': () => setPaused(!paused), n: step, 'Shift r': reset, t: toggleTheme, f: () => setFollowing(!following), d: toggleDriving,
   '+': () => zoom(1.25), '=': () => zoom(1.25), '-': () => zoom(0.8), '0': fitAll, Home: fitAll,
   '[': () => nextRobot(-1), ']': () => nextRobot(1), l: () => openPopup('layers'), '?': () => openPopup('help'),
   '/': () => $('search').focus(), Escape: escape, ',': () => isRecording() && seek(time - 1), '.': () => isRecording() && seek(time + 1),
@@ -272,9 +329,16 @@ function zoom(factor, x, y) {
   dirty = true;
 }
 
+/** Caps lock changes the letter and not whether Shift is held; signs are as the keyboard's layout has them. */
+function keyName({ key, shiftKey }) {
+  const letter = key.toLowerCase();
+  return key.length === 1 && letter !== key.toUpperCase() ? (shiftKey && letter === 'r' ? 'Shift ' : '') + letter : key;
+}
+
 function keyDown(event) {
   const typing = event.target.matches('input[type=search], select, #slider');
-  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  const forSigns = event.getModifierState('AltGraph');  // some layouts have brackets with it, as Ctrl and Alt
+  if (!forSigns && (event.ctrlKey || event.metaKey || event.altKey)) return;
   if (typing && event.key === 'Escape') return event.target.blur();
   if (typing || (event.key === ' ' && event.target.matches('button, input'))) return;
   if (driving && event.key in pans) { pressed.add(event.key); event.preventDefault(); return; }
@@ -282,8 +346,8 @@ function keyDown(event) {
     setFollowing(false);
     camera.pan(60 * pans[event.key][0], 60 * pans[event.key][1]);
     dirty = true;
-  } else if (keys[event.key]) {
-    keys[event.key]();
+  } else if (keys[keyName(event)]) {
+    keys[keyName(event)]();
   } else {
     return;
   }
@@ -298,7 +362,7 @@ function listenToPointer(canvas) {
     canvas.setPointerCapture(event.pointerId);
     fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
     from = [event.offsetX, event.offsetY];
-    moved = false;
+    moved = fingers.size > 1;
     openPopup('', false);
   };
   canvas.onpointermove = (event) => {
@@ -306,8 +370,13 @@ function listenToPointer(canvas) {
     fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
     if (fingers.size === 2) {
       const [a, b] = [...fingers.values()], apart = Math.hypot(a[0] - b[0], a[1] - b[1]);
-      if (pinch > 0) zoom(apart / pinch, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2);
+      const middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+      if (pinch > 0) {
+        zoom(apart / pinch, ...middle);
+        if (!following) camera.pan(middle[0] - from[0], middle[1] - from[1]);
+      }
       pinch = apart;
+      from = middle;
       moved = true;
       return;
     }
@@ -322,6 +391,7 @@ function listenToPointer(canvas) {
   canvas.onpointerup = canvas.onpointercancel = (event) => {
     fingers.delete(event.pointerId);
     pinch = 0;
+    if (fingers.size > 0) { [from] = fingers.values(); return; }  // the other finger goes on from where it is
     if (moved || event.type === 'pointercancel') return;
     const [x, y] = camera.toWorld(event.offsetX, event.offsetY);
     select(fleet.pick(x, y, 10 / camera.scale));
@@ -342,6 +412,9 @@ function listen() {
   $('follow').onclick = () => setFollowing(!following);
   $('layers').onclick = () => openPopup('layers');
   $('help').onclick = () => openPopup('help');
+  $('theme').onclick = toggleTheme;
+  $('show-panel').onclick = () => showPanel(document.body.dataset.panel === 'closed');
+  systemDark.onchange = restyle;
   $('zoom-in').onclick = () => zoom(1.4);
   $('zoom-out').onclick = () => zoom(1 / 1.4);
   $('slider').oninput = () => { sliding = true; $('at').textContent = clockText(Number($('slider').value)); seek(Number($('slider').value)); };
@@ -388,7 +461,7 @@ function connect() {
     $('speed').value = String(speed);
     showPaused();
     if (paused) showTime(detail.time);
-    if (detail.sought) { panel.clear(); fleet.trailCount.fill(0); }
+    if (detail.sought) { panel.clear(); fleet.forget(); }
   });
   connection.addEventListener('status', ({ detail }) => notice(detail.message));
   connection.subscribe('/fleet', (message, t) => {
@@ -417,6 +490,7 @@ async function reconnect() {
 const counters = { updates: 0, frames: 0, info: null };
 
 async function start() {
+  restyle();
   try {
     scene = await loadScene(token);
   } catch (error) {
@@ -429,7 +503,7 @@ async function start() {
   camera = new Camera();
   fleet = new Fleet(scene);
   drawing = new Drawing($('view'), camera, scene, new StaticLayer(scene), fleet);
-  panel = new Panel(scene, select);
+  panel = new Panel(scene, select, (row) => drawing.colors[row]);
   drawing.resize();
   camera.fit(scene.extent);
   fillPopups();

@@ -87,9 +87,10 @@ export class Panel {
   #rows = [];
   #drawnAt = 0;
 
-  /** @param choose called with the row of a robot, -1: none */
-  constructor(scene, choose) {
+  /** @param choose called with the row of a robot, -1: none  @param colorOf with a row: its colour */
+  constructor(scene, choose, colorOf) {
     this.scene = scene;
+    this.colorOf = colorOf;
     this.list = document.getElementById('robots');
     this.search = document.getElementById('search');
     this.section = document.getElementById('selected');
@@ -105,6 +106,7 @@ export class Panel {
       choose(this.#rows[Math.min(this.#rows.length - 1, Math.max(0, at < 0 ? 0 : at + by))]);
     };
     this.selected = -1;
+    this.#makeSummary();
     this.fill();
     this.show(-1);
   }
@@ -120,10 +122,38 @@ export class Panel {
     document.getElementById('count').textContent = wanted ? `${found.length} of ${count}` : `${count} ${count === 1 ? 'robot' : 'robots'}`;
   }
 
+  /** Counts of the whole fleet; a click selects the next robot that is counted. Commands of robots elsewhere are not known. */
+  #makeSummary() {
+    const rows = [['contact', 'in contact', (fleet, i) => fleet.inContact(i), 'Robots that a wall or a robot stops now'], ['outside', 'outside', (fleet, i) => fleet.isOutside(i), 'Robots beyond the box around the world']];
+    if (this.scene.mode !== 'service') rows.splice(1, 0, ['stuck', 'stuck', (fleet, i) => fleet.isStuck(i), 'Robots that are commanded to move and have hardly moved for 3 s of simulated time']);
+    this.counts = rows.map(([id, text, counts, title]) => {
+      const button = element('button', { title, disabled: true, onclick: () => {
+        if (button.rows.length > 0) this.choose(button.rows.find((row) => row > this.selected) ?? button.rows[0]);
+      } });
+      button.dataset.count = id;
+      button.rows = [];
+      return { button, text, counts };
+    });
+    document.getElementById('fleet').replaceChildren(...this.counts.map(({ button }) => button));
+  }
+
+  summary(now, fleet) {
+    if (now - (this.summedAt ?? -1) < 0.25) return;
+    this.summedAt = now;
+    for (const { button, text, counts } of this.counts) {
+      button.rows = [];
+      for (let i = 0; i < fleet.count; ++i) if (!this.scene.movers[i].tag && counts(fleet, i)) button.rows.push(i);
+      const label = `${button.rows.length} ${text}`;
+      if (button.textContent === label) continue;
+      button.textContent = label;
+      button.disabled = button.rows.length === 0;
+    }
+  }
+
   #item(row) {
-    const { name, tag, color } = this.scene.movers[row];
+    const { name, tag } = this.scene.movers[row];
     const mark = element('span', { className: 'mark' });
-    mark.style.background = color || '#808080';
+    mark.style.background = this.colorOf(row);
     const item = element('li', { onclick: () => this.choose(row) }, mark, element('span', { textContent: name }));
     item.setAttribute('role', 'option');
     item.setAttribute('aria-selected', String(row === this.selected));

@@ -1,6 +1,6 @@
 // Small plots: a quantity over the last minute, and the elements of a reading side by side.
 
-import { theme, series, fade } from './theme.js';
+import { theme, fade } from './theme.js';
 
 const span = 60;  // [s] simulated
 const kept = 2000;
@@ -62,7 +62,7 @@ export function plotHistory(canvas, history, unit) {
   c.fillText(`−${(end - begin).toFixed(0)} s`, left, height - 5);
   c.textAlign = 'right';
   c.fillText(unit ? `now, ${unit}` : 'now', right, height - 5);
-  c.strokeStyle = series[0];
+  c.strokeStyle = theme.curve;
   c.lineWidth = 1.6;
   c.lineJoin = 'round';
   c.beginPath();
@@ -82,7 +82,7 @@ export function plotBars(canvas, values, most) {
   const count = values.length, room = width / count, gap = room > 6 ? 2 : 0;
   const limit = most || Math.max(1e-12, ...values.filter(Number.isFinite).map(Math.abs));
   const floor = room > 14 ? height - 12 : height;
-  c.fillStyle = fade('#808a96', 0.16);
+  c.fillStyle = fade(theme.bar, 0.16);
   c.fillRect(0, 0, width, floor);
   c.fillStyle = theme.view;
   for (let i = 0; i < count; ++i) {

@@ -1,6 +1,6 @@
 // The world as the page draws it: /scene.json, and the parts of it that never move, drawn once per view.
 
-import { theme, fade, darker } from './theme.js';
+import { theme, fade, edgeOf } from './theme.js';
 
 export async function loadScene(token) {
   const response = await fetch('scene.json' + (token ? `?token=${encodeURIComponent(token)}` : ''));
@@ -40,7 +40,7 @@ export class StaticLayer {
         addLine(path, line, origin, closed);
         this.segments += line.length / 2 - 1;
       }
-      this.#groups.push({ kind, closed, path, color: color || theme.wall });
+      this.#groups.push({ kind, closed, path, color });
     }
     const order = ['unseen', 'overhead', 'passable', 'solid'];
     this.#groups.sort((a, b) => order.indexOf(a.kind) - order.indexOf(b.kind));
@@ -50,6 +50,9 @@ export class StaticLayer {
       return { path, width, color };
     });
   }
+
+  /** Draws it again at the next frame, in other colours. */
+  restyle() { this.#area = null; }
 
   /** Copies the layer onto `context`, drawn again where the view left what was drawn. */
   draw(context, camera, ratio) {
@@ -130,7 +133,7 @@ export class StaticLayer {
   #emitters(c, px) {
     c.lineWidth = px;
     for (const { kind, pose, range, fov, halo } of this.scene.emitters) {
-      const color = kind === 'dock' ? '#2e7d32' : theme.virtualWall;
+      const color = kind === 'dock' ? theme.dock : theme.virtualWall;
       const x = pose[0] - this.scene.origin[0], y = pose[1] - this.scene.origin[1];
       const parts = [sectorPath(x, y, pose[2], fov, range)];
       if (halo > 0) parts.push(sectorPath(x, y, 0, 2 * Math.PI, halo));
@@ -146,12 +149,13 @@ export class StaticLayer {
   #walls(c, px) {
     const dashes = { solid: [], passable: [8, 4], overhead: [8, 4], unseen: [1.5, 4] };
     const alpha = { solid: 0.75, passable: 0.3, overhead: 0.15, unseen: 0 };
-    for (const { kind, color, closed, path } of this.#groups) {
+    for (const { kind, color: own, closed, path } of this.#groups) {
+      const color = own || theme.wall;
       if (closed && alpha[kind] > 0) {
         c.fillStyle = fade(color, alpha[kind]);
         c.fill(path);
       }
-      c.strokeStyle = kind === 'unseen' ? theme.unseen : darker(color, 0.4);
+      c.strokeStyle = kind === 'unseen' ? theme.unseen : edgeOf(color, 0.4);
       c.lineWidth = 1.4 * px;
       c.setLineDash(dashes[kind].map((length) => length * px));
       c.stroke(path);

@@ -123,11 +123,15 @@ export class MapPicture {
   #canvas = document.createElement('canvas');
   cells = { occupied: 0, free: 0 };
 
-  constructor(message, { left, top, cell, words }) {
+  constructor(message, geometry) {
+    Object.assign(this, { message, geometry });
+    const { left, top, cell, words } = geometry;
     const data = message.word, columns = 4 * words, rows = 4 * Math.ceil(data.length / words);
     Object.assign(this, { left, top, width: columns * cell, height: rows * cell });
     this.#canvas.width = columns;
     this.#canvas.height = rows;
+    const rgb = (color, alpha) => [1, 3, 5].map((k) => parseInt(color.slice(k, k + 2), 16)).concat(alpha);
+    const occupied = rgb(theme.map, 235), free = rgb(theme.mapFree, 70);
     const context = this.#canvas.getContext('2d'), image = context.createImageData(columns, rows);
     for (let word = 0; word < data.length; ++word) {
       const bits = data[word], column = 4 * (word % words), row = 4 * Math.floor(word / words);
@@ -135,7 +139,7 @@ export class MapPicture {
         const state = (bits >>> (2 * k)) & 3;
         if (state === 0) continue;
         const at = 4 * ((row + (k >> 2)) * columns + column + (k & 3));
-        const [r, g, b, a] = state === 1 ? [23, 72, 209, 235] : [86, 180, 233, 70];
+        const [r, g, b, a] = state === 1 ? occupied : free;
         image.data[at] = r; image.data[at + 1] = g; image.data[at + 2] = b; image.data[at + 3] = a;
         ++this.cells[state === 1 ? 'occupied' : 'free'];
       }
