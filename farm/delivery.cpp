@@ -8,8 +8,10 @@
 
 namespace sf::farm {
 
-Delivery::Delivery(const sensors::SensorSet& sensor_set) : sensor_set_(sensor_set) {
-  for (const auto& group : sensor_set.groups())
+Delivery::Delivery(const sensors::SensorSet& sensor_set) : sensor_set_(sensor_set) { add_sensors(); }
+
+void Delivery::add_sensors() {
+  for (const auto& group : sensor_set_.groups())
     for (const sensors::SensorSpec& row : group.rows) any_ = any_ || base::nanoseconds(row.latency) > 0;
 }
 

@@ -18,6 +18,9 @@ class Delivery {
   /// `sensor_set` must outlive it.
   explicit Delivery(const sensors::SensorSet& sensor_set);
 
+  /// The sensor set has got more sensors.
+  void add_sensors();
+
   /// Takes the readings measured at `now` [ns] and returns those delivered at `now`: first the delayed ones, in order
   /// of their delivery times, then those without latency. Blocks live until the next call.
   std::span<const base::ReadingBlock> deliver(std::int64_t now, std::span<const base::ReadingBlock> measured);

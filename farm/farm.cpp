@@ -50,9 +50,9 @@ struct Farm::State {
   bool no_return_inf;
   std::vector<std::vector<double>> marked;  ///< per thread: ranges as sent
   std::vector<SensorPipeline> pipelines;
-  gpu::Batch batch;
+  std::unique_ptr<gpu::Batch> batch;
   Delivery delivery;
-  PoseChanges pose_changes;               ///< of this tick
+  std::unique_ptr<PoseChanges> pose_changes;  ///< of this tick
   std::vector<base::Report> states;       ///< per mover, as sensed in this tick or sample; backends have a view of it
   std::vector<base::Report> tick_states;  ///< of the last tick, while samples follow it
   bool between = false;                   ///< `states` are those of a sample
@@ -68,39 +68,39 @@ struct Farm::State {
   SensorPipeline* lender = nullptr;   ///< `blocks` are its vector of readings, and it has theirs
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
   FarmStats stats;
+  sensors::SensorStats earlier_work;  ///< of backends that were replaced
   std::uint64_t hash = 0;
   std::optional<SharedHash> shared;
+  FarmOptions options;
+  std::int64_t last_call = -1;  ///< [ns] of a tick or sample; -1: there was none
+  std::int64_t last_tick = -1;  ///< [ns] likewise, of a tick
 
-  State(const world::World& w, gpu::Device& d, const FarmOptions& options)
+  State(const world::World& w, gpu::Device& d, const FarmOptions& given)
       : world(w),
         device(d),
-        thread_pool(options.threads),
+        thread_pool(given.threads),
         sensor_set(w),
-        reuse_unchanged(options.reuse_unchanged),
-        no_return_inf(options.no_return_inf),
+        reuse_unchanged(given.reuse_unchanged),
+        no_return_inf(given.no_return_inf),
         marked(thread_pool.threads()),
-        batch(device),
         delivery(sensor_set),
-        pose_changes(w),
         states(robots::states_at_load(w)),
         subscribed(w.movers.size(), 0),
         measured_types(w.movers.size(), 0),
         delivered_types(w.movers.size(), 0),
         measures(w.movers.size(), 1),
         delivers(w.movers.size(), 1),
-        gone(w.movers.size(), 0) {
+        gone(w.movers.size(), 0),
+        options(given) {
     SF_CHECK(w.unread.empty(), "the walls of " + w.unread.front().file + " are not read");
-    const sensors::SensorContext context{
-        w, device, thread_pool, states, options.seed, options.noise, options.true_poses, options.scene};
-    for (const auto& group : sensor_set.groups()) {
-      device.set_owner(group.type->name);
-      pipelines.emplace_back(context, group);
-    }
+    pipelines = make_pipelines(sensor_set, states);
+    batch = std::make_unique<gpu::Batch>(device);
+    pose_changes = std::make_unique<PoseChanges>(world);
     if (options.shared) shared.emplace(sensor_set);
-    blocks.reserve(sensor_set.count());
-    hashes.reserve(sensor_set.count());
   }
 
+  std::vector<SensorPipeline> make_pipelines(const sensors::SensorSet& of, std::span<const base::Report> sensed);
+  std::shared_ptr<const void> add_mover();
   void begin_tick(bool is_sample);
   void apply(const base::Report& report);
   std::span<const base::ReadingBlock> read(std::int64_t now);
@@ -117,6 +117,52 @@ struct Farm::State {
   std::span<const double> sent(const base::ReadingBlock& reading, unsigned thread);
 };
 
+/// @param of outlives them, as do the states
+std::vector<SensorPipeline> Farm::State::make_pipelines(const sensors::SensorSet& of,
+                                                        std::span<const base::Report> sensed) {
+  const sensors::SensorContext context{world,        device,        thread_pool,        sensed,
+                                       options.seed, options.noise, options.true_poses, options.scene};
+  std::vector<SensorPipeline> made;
+  for (const auto& group : of.groups()) {
+    device.set_owner(group.type->name);
+    made.emplace_back(context, group);
+  }
+  blocks.reserve(of.count());
+  hashes.reserve(of.count());
+  return made;
+}
+
+/// All that can fail comes first.
+std::shared_ptr<const void> Farm::State::add_mover() {
+  SF_CHECK(states.size() + 1 == world.movers.size() && exchange == nullptr, std::to_string(states.size()));
+  clear_blocks();
+  sensors::SensorSet all(world);
+  const base::Report absent{.mover = static_cast<std::uint32_t>(states.size()), .X_WM = base::kAbsent, .velocity = {}};
+  std::vector<base::Report> sensed = states;
+  sensed.push_back(absent);
+  auto made = make_pipelines(all, sensed);
+  auto before = std::make_shared<std::vector<SensorPipeline>>(std::move(pipelines));
+  batch = std::make_unique<gpu::Batch>(device);
+  pipelines = std::move(made);
+  states.swap(sensed);
+  const sensors::SensorSet earlier = std::exchange(sensor_set, std::move(all));  // `before` points into it
+  if (between) tick_states.push_back(absent);
+  for (auto* const bits : {&subscribed, &measured_types, &delivered_types}) bits->push_back(0);
+  for (auto* const flags : {&measures, &delivers}) flags->push_back(1);
+  gone.push_back(0);
+  if (!qualities.empty()) qualities.resize(gone.size());
+  pose_changes = std::make_unique<PoseChanges>(world);
+  delivery.add_sensors();
+  if (shared) shared->add_sensors(sensor_set);
+  for (SensorPipeline& pipeline : pipelines) {
+    const auto same = [&](const SensorPipeline& other) { return other.group->type == pipeline.group->type; };
+    const auto old = std::find_if(before->begin(), before->end(), same);
+    pipeline.go_on(old == before->end() ? nullptr : &*old, last_tick, last_call);
+  }
+  for (const SensorPipeline& pipeline : *before) earlier_work += pipeline.backend->stats();
+  return before;
+}
+
 bool Farm::State::find_due(std::int64_t now) {
   for (SensorPipeline& pipeline : pipelines)
     stats.missed += pipeline.find_due(now, pipeline.derived() ? delivered_types : measured_types);
@@ -126,11 +172,11 @@ bool Farm::State::find_due(std::int64_t now) {
 void Farm::State::begin_tick(bool is_sample) {
   if (is_sample && !between) tick_states = states;
   between = is_sample;
-  pose_changes.begin();
+  pose_changes->begin();
   for (std::uint32_t m = 0; m < gone.size(); ++m) {
     base::Pose& X = states[m].X_WM;
     if (gone[m] == 0 || base::is_absent(X)) continue;
-    pose_changes.add(m, X, base::kAbsent);
+    pose_changes->add(m, X, base::kAbsent);
     X = base::kAbsent;
   }
 }
@@ -139,7 +185,7 @@ void Farm::State::apply(const base::Report& report) {
   if (gone.at(report.mover) != 0) return;
   const base::Pose& X = report.X_WM;
   SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
-  pose_changes.add(report.mover, states[report.mover].X_WM, X);
+  pose_changes->add(report.mover, states[report.mover].X_WM, X);
   states[report.mover] = report;
 }
 
@@ -151,20 +197,20 @@ void Farm::State::prepare() {
   }
   if (!rerecord) return;
   // A kernel is compiled when it is first recorded, so kernels that were never needed are left out.
-  batch.begin();
+  batch->begin();
   for (SensorPipeline& pipeline : pipelines)
-    if (pipeline.active) pipeline.backend->record_measure(batch);
-  batch.barrier();
+    if (pipeline.active) pipeline.backend->record_measure(*batch);
+  batch->barrier();
   for (SensorPipeline& pipeline : pipelines)
-    if (pipeline.active) pipeline.backend->record_derive(batch);
-  batch.end();
+    if (pipeline.active) pipeline.backend->record_derive(*batch);
+  batch->end();
 }
 
 void Farm::State::submit() {
   if (std::none_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return s.needs_device(); }))
     return;
-  for (SensorPipeline& pipeline : pipelines) pipeline.add_copies(batch);
-  batch.submit();
+  for (SensorPipeline& pipeline : pipelines) pipeline.add_copies(*batch);
+  batch->submit();
   ++stats.batches;
 }
 
@@ -186,7 +232,7 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
   };
   collect_all(false);
   watch.lap(stats.collect_s);
-  batch.wait();
+  batch->wait();
   watch.lap(stats.device_s);
   collect_all(true);
   for (SensorPipeline& pipeline : pipelines)
@@ -257,8 +303,9 @@ void Farm::State::subscribe(std::uint32_t mover, std::uint32_t types) {
 }
 
 std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
+  last_call = now;
   for (SensorPipeline& pipeline : pipelines) {
-    pipeline.cache.invalidate(pose_changes, states);
+    pipeline.cache.invalidate(*pose_changes, states);
     pipeline.backend->accumulate(now, between);
   }
   clear_blocks();
@@ -295,6 +342,7 @@ void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
   if (gone) s_->subscribe(mover, 0);
 }
+std::shared_ptr<const void> Farm::add_mover() { return s_->add_mover(); }
 void Farm::set_state_quality(std::uint32_t mover, const base::StateQuality& quality) {
   s_->qualities.resize(s_->gone.size());
   s_->qualities.at(mover) = quality;
@@ -308,6 +356,7 @@ base::ThreadPool& Farm::thread_pool() { return s_->thread_pool; }
 
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
   ++s_->stats.ticks;
+  s_->last_tick = now;
   s_->begin_tick(false);
   for (const base::Report& report : reports) s_->apply(report);
   return s_->read(now);
@@ -371,6 +420,7 @@ void Farm::read_sensors(std::uint32_t mover, base::ByteReader& in) {
 
 FarmStats Farm::stats() const {
   FarmStats stats = s_->stats;
+  stats.work += s_->earlier_work;
   for (const SensorPipeline& pipeline : s_->pipelines) stats.work += pipeline.backend->stats();
   return stats;
 }

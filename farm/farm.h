@@ -81,6 +81,12 @@ class Farm {
   /// An absent mover is not sensed and loses its subscription. The first report after its return sets its pose.
   void set_absent(std::uint32_t mover, bool gone);
 
+  /// The world has got one more mover, in its last row, which is absent here until its first report. Makes the tables
+  /// of all sensors again: takes time in proportion to the fleet. States, schedules, random streams and held readings
+  /// of all others go on, so that their readings have the same bytes. Not while readings of others are exchanged.
+  /// @return the memory of readings that were returned before, which lasts as long as this
+  std::shared_ptr<const void> add_mover();
+
   /// Sets what the readings of a mover state from now on of the state that they are computed from; initially nothing.
   void set_state_quality(std::uint32_t mover, const base::StateQuality& quality);
 

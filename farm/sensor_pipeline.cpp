@@ -37,6 +37,20 @@ SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sens
   blocks.reserve(g.rows.size());
 }
 
+void SensorPipeline::go_on(SensorPipeline* before, std::int64_t last_tick, std::int64_t last_call) {
+  if (last_tick >= 0) backend->accumulate(last_tick, false);
+  // A time that has passed is found in two steps at most, as rounding may put it before its reading.
+  const std::vector<std::uint32_t> none(movers.empty() ? 0 : movers.back() + 1, 0u);
+  for (int step = 0; step < 2 && last_call >= 0; ++step) find_due(last_call, none);
+  due.clear();
+  if (before == nullptr) return;
+  const auto rows = static_cast<std::uint32_t>(before->movers.size());
+  for (Timing& timing : timings)
+    for (const Timing& old : before->timings)
+      if (old.first == timing.first) timing.started = old.started, timing.next = old.next;
+  backend->take_over(*before->backend, rows);
+}
+
 std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::uint32_t> subscribed) {
   due.clear();
   std::uint64_t missed = 0;

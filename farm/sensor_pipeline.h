@@ -45,6 +45,10 @@ struct SensorPipeline {
     for (; row != group->rows.end() && row->mover == mover; ++row)
       visit(static_cast<std::uint32_t>(row - group->rows.begin()));
   }
+  /// Goes on where the pipeline before a new mover was: its sensors are the first rows of this one.
+  /// @param before its backend is of no use afterwards, but its readings are; null: there was none
+  /// @param last_tick, last_call [ns] of the farm's last tick, and of that or a later sample; -1: there was none
+  void go_on(SensorPipeline* before, std::int64_t last_tick, std::int64_t last_call);
   bool derived() const { return group->type->derived_from != 0; }
   /// Finds the sensors of this type due at `now` [ns].
   /// @param subscribed per mover: bits of sensor types

@@ -17,6 +17,8 @@ class SharedHash {
  public:
   explicit SharedHash(const sensors::SensorSet& sensor_set) : order_(sensor_set) {}
 
+  /// The fleet has got more sensors.
+  void add_sensors(const sensors::SensorSet& sensor_set) { order_ = ReadingOrder(sensor_set); }
   /// Adds a call's readings. @param now [ns] @param hashes one per reading
   void add_call(std::int64_t now, std::span<const base::ReadingBlock> readings, std::span<const std::uint64_t> hashes);
   /// Writes all calls since the last `write`.

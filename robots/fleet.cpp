@@ -61,7 +61,26 @@ Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
       predicted_(reports_),
       rank_(ranks_of(world)),
       scratch_(thread_pool != nullptr ? thread_pool->threads() : 1) {
-  const std::size_t count = world.movers.size();
+  make_room();
+  neighbours_.build(reports_, 1.0);
+}
+
+void Fleet::add_mover() {
+  const std::size_t row = reports_.size();
+  SF_CHECK(row + 1 == world_.movers.size(), std::to_string(row));
+  footprints_.push_back(footprint_of(world_.movers[row]));
+  reports_.push_back({.mover = static_cast<std::uint32_t>(row),
+                      .time = reports_.empty() ? 0 : reports_.front().time,
+                      .X_WM = world_.movers[row].X_WM,
+                      .velocity = {}});
+  predicted_ = reports_;
+  rank_ = ranks_of(world_);
+  make_room();
+}
+
+/// For all movers, so that ticks allocate nothing.
+void Fleet::make_room() {
+  const std::size_t count = reports_.size();
   std::size_t edges = 0;
   for (std::uint32_t row = 0; row < count; ++row) {
     widest_ = std::max(widest_, footprints_[row].radius);
@@ -80,7 +99,6 @@ Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
     for (auto* rows : {&scratch.near, &scratch.all_near, &scratch.priority_movers}) rows->reserve(count);
     scratch.walls.reserve(1'000);
   }
-  neighbours_.build(reports_, 1.0);
 }
 
 void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {

@@ -73,6 +73,9 @@ class Fleet {
   /// Until it is set present again, no mover meets an absent one, `move` lets it stand, and it has no contacts.
   void set_absent(std::uint32_t row, bool gone) { absent_[row] = gone ? 1 : 0; }
 
+  /// The world has got one more mover, in its last row: at rest at its pose at load, at the time of the others.
+  void add_mover();
+
   /// Takes the state of a mover as another process' `move` left it. @param contact its entry in `contacts`
   void set_moved(const base::Report& report, bool contact);
 
@@ -128,6 +131,7 @@ class Fleet {
     double farthest = 0.0;     ///< [m] largest travel of an origin in this tick, of all movers so far
   };
 
+  void make_room();
   void start(std::uint32_t row, const base::Twist& command, double seconds, Scratch& scratch);
   void run_round(bool last);
   void find_next();

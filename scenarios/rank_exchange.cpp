@@ -1,5 +1,6 @@
 #include "scenarios/rank_exchange.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -45,6 +46,24 @@ RankExchange::RankExchange(cluster::Ranks& ranks, std::span<const unsigned> home
     owned_.push_back(homes[m] == ranks.rank());
     movers_[homes[m]].push_back(m);
   }
+}
+
+void RankExchange::add_mover() {
+  const auto fewest = std::min_element(movers_.begin(), movers_.end(),
+                                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  fewest->push_back(static_cast<std::uint32_t>(owned_.size()));
+  owned_.push_back(static_cast<unsigned>(fewest - movers_.begin()) == ranks_.rank() ? 1 : 0);
+  sent_commands_.emplace_back();
+  sent_intents_.emplace_back();
+}
+
+void RankExchange::remove_last() {
+  const auto row = static_cast<std::uint32_t>(owned_.size() - 1);
+  for (auto& movers : movers_)
+    if (!movers.empty() && movers.back() == row) movers.pop_back();
+  owned_.pop_back();
+  sent_commands_.pop_back();
+  sent_intents_.pop_back();
 }
 
 void RankExchange::begin(const FleetDecisions& own, farm::Farm& farm, std::uint32_t failed,

@@ -45,6 +45,10 @@ class RankExchange {
   /// This rank decides for the mover, and delivers its readings.
   bool owns(std::uint32_t mover) const { return owned_[mover] != 0; }
 
+  /// One more mover, in the last row, decided for by the rank with the fewest.
+  void add_mover();
+  void remove_last();  ///< takes that back
+
   /// Sends the decisions for the own share, and its readings' hashes. @param failed mover whose controller threw
   /// `failure`; null: none did @param stop a user asks for the end of the run
   void begin(const FleetDecisions& own, farm::Farm& farm, std::uint32_t failed, const std::exception_ptr& failure,

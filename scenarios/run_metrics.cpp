@@ -33,6 +33,12 @@ RunMetrics::RunMetrics(const world::World& world, const Simulation& simulation)
   add_lines();
 }
 
+void RunMetrics::add_mover() {
+  before_.emplace_back();
+  counts_.emplace_back();
+  fronts_.push_back(front_of(world_.movers.back()));
+}
+
 void RunMetrics::add_lines() {
   const world::RoadNetwork* roads = simulation_.roads();
   if (roads == nullptr) return;
@@ -72,6 +78,10 @@ void RunMetrics::update(const base::TickRecord& tick) {
     RobotMetrics& counts = counts_[m];
     PreviousTick& before = before_[m];
     const base::Pose& X_WM = tick.reports[m].X_WM;
+    if (base::is_absent(X_WM)) {
+      before = {};
+      continue;
+    }
     counts.contacts += before.contact.begins(tick.contacts[m] != 0);
     if (before.seen) {
       counts.travelled += std::hypot(X_WM.x - before.X_WM.x, X_WM.y - before.X_WM.y);

@@ -35,6 +35,9 @@ class RunMetrics {
  public:
   RunMetrics(const world::World& world, const Simulation& simulation);
 
+  /// The world has got one more mover, in its last row.
+  void add_mover();
+
   /// Called after every `Simulation::step` with its result, and with ranks after `Simulation::settle`.
   void update(const base::TickRecord& tick);
 

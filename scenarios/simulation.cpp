@@ -13,8 +13,10 @@
 #include "base/thread_pool.h"
 #include "base/time.h"
 #include "farm/schedule.h"
+#include "netio/packets.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
+#include "world/append_robot.h"
 #include "world/roads/roads.h"
 
 namespace sf::scenarios {
@@ -74,6 +76,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       signals_(world.lights.size()),
       light_states_(world.lights.size()),
       absent_(world.movers.size(), false),
+      seed_(options.seed),
       start_at_(base::nanoseconds(options.start_at)),
       interval_(base::nanoseconds(world.interval)) {
   SF_CHECK(options.actors.empty() || options.actors.size() == world.movers.size(),
@@ -81,12 +84,12 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
   if (options.states) states_.emplace(world, *options.states);
   farm_.subscribe_all();
   if (options.ranks != nullptr) begin_sharing(options);
-  for (std::uint32_t i = 0; i < world.movers.size(); ++i) controls_.push_back(make_control(i, options));
-  for (const RobotControl& robot : controls_)
-    if (robot.controller) v2v_range_ = std::max(v2v_range_, robot.controller->v2v_range());
-  for (auto& others : others_) others.reserve(v2v_range_ > 0.0 ? world.movers.size() : 0);
-  sorted_.reserve(farm_.sensor_set().count());
-  next_.reserve(first_.size());
+  const Actor none{.controller = {.name = ""}, .link = {}};
+  for (std::uint32_t i = 0; i < world.movers.size(); ++i)
+    use_control(make_control(i, !options.actors.empty()  ? options.actors[i]
+                                : world.movers[i].is_tag ? none
+                                                         : options.actor));
+  make_room();
   warn_of_long_ways();
 }
 
@@ -133,14 +136,27 @@ void Simulation::balance_tiles() {
   tiles_->cut_anew(sensing_s - std::exchange(balanced_s_, sensing_s));
 }
 
-Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const SimulationOptions& options) {
+void Simulation::use_control(RobotControl control) {
+  if (control.controller) v2v_range_ = std::max(v2v_range_, control.controller->v2v_range());
+  controls_.push_back(std::move(control));
+}
+
+/// For all movers and sensors, so that ticks allocate nothing.
+void Simulation::make_room() {
+  for (auto& others : others_) others.reserve(v2v_range_ > 0.0 ? world_.movers.size() : 0);
+  sorted_.reserve(farm_.sensor_set().count());
+  next_.reserve(first_.size());
+}
+
+Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Actor& actor) {
   RobotControl robot;
-  const Actor& actor = options.actors.empty() ? options.actor : options.actors[mover];
-  if (actor.controller.name.empty() || (options.actors.empty() && world_.movers[mover].is_tag)) return robot;
+  if (actor.controller.name.empty()) return robot;
   if (exchange_) statuses_[mover].drives = true;
   if (!owns(mover)) return robot;
   std::vector<world::Warning> warnings;
-  const control::ControllerContext site{world_, mover, options.seed, roads(), &warnings, &farm_.sensor_set()};
+  const bool joins = mover >= absent_.size();  // before the farm has its sensors
+  const control::ControllerContext site{world_,  mover,     seed_,
+                                        roads(), &warnings, joins ? nullptr : &farm_.sensor_set()};
   control::ConfiguredController made = control::make_controller(site, actor.controller);
   if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same settings read the same files
   robot.controller = std::move(made.controller);
@@ -155,7 +171,7 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Sim
 bool Simulation::all_done() const {
   bool any = false;
   for (std::uint32_t m = 0; m < controls_.size() && tick_ > 0; ++m) {
-    if (controls_[m].driven) continue;
+    if (controls_[m].driven || absent_[m]) continue;
     const ControlStatus robot = status(m);
     if (robot.drives && !robot.done) return false;
     any = any || robot.drives;
@@ -187,10 +203,79 @@ std::span<const base::Report> Simulation::recorded_reports() {
 }
 
 void Simulation::set_absent(std::uint32_t mover, bool gone) {
-  SF_CHECK(mover < absent_.size() && world_.movers[mover].sensors.empty(), "mover " + std::to_string(mover));
+  SF_CHECK(mover < absent_.size(), "mover " + std::to_string(mover));
   absent_[mover] = gone;
+  commands_[mover] = {};
+  intents_[mover] = next_intents_[mover] = {};
   fleet_.set_absent(mover, gone);
   farm_.set_absent(mover, gone);
+  if (!gone) farm_.subscribe(mover, farm::kAllSensorTypes);
+}
+
+void Simulation::check_joining(const world::World& world, const JoiningRobot& robot) const {
+  SF_CHECK(&world == &world_ || tiles_, "another world");
+  if (tiles_)
+    throw base::InputError("robots cannot join or leave a run with --tiles; expected ranks that share the whole world");
+  const base::Pose& X = robot.X_WM;
+  if (!(std::abs(X.x) <= netio::kMaxPosition && std::abs(X.y) <= netio::kMaxPosition && std::isfinite(X.yaw)))
+    throw base::InputError(
+        fmt::format("'{}' cannot join at ({}, {}, {}); expected finite numbers, x and y within {:g} m", robot.name, X.x,
+                    X.y, X.yaw, netio::kMaxPosition));
+}
+
+std::uint32_t Simulation::add_robot(world::World& world, const JoiningRobot& robot) {
+  check_joining(world, robot);
+  settle();
+  const std::uint32_t original = world::robot_like(world, robot.like);
+  for (std::uint32_t row = 0; row < absent_.size(); ++row)
+    if (absent_[row] && world.movers[row].name == robot.name && world::is_same_kind(world, row, original))
+      return bring_back(row, robot);
+  world::check_name(world, robot.name);
+  const std::size_t models = world.models.size();
+  const std::uint32_t row = world::append_robot(world, original, robot.name, robot.X_WM);
+  if (exchange_) exchange_->add_mover(), statuses_.emplace_back();
+  try {
+    RobotControl control = make_control(row, robot.actor);
+    earlier_readings_ = farm_.add_mover();
+    use_control(std::move(control));
+  } catch (...) {
+    world.movers.pop_back();
+    world.models.resize(models);
+    world::update_extent_and_hash(world);
+    if (exchange_) exchange_->remove_last(), statuses_.pop_back();
+    throw;
+  }
+  fleet_.add_mover();
+  if (states_) states_->add_mover(fleet_.reports()[row]);
+  for (auto* const twists : {&commands_, &executed_commands_}) twists->emplace_back();
+  for (auto* const intents : {&intents_, &next_intents_}) intents->emplace_back();
+  first_.push_back(0);
+  absent_.push_back(false);
+  if (exchange_ && !exchange_->owns(row)) farm_.leave_to_others(row);
+  farm_.subscribe(row, farm::kAllSensorTypes);
+  make_room();
+  joined_.push_back({original, robot.name, world.movers[row].X_WM});
+  return row;
+}
+
+std::uint32_t Simulation::bring_back(std::uint32_t mover, const JoiningRobot& robot) {
+  controls_[mover] = make_control(mover, robot.actor);
+  if (const auto& controller = controls_[mover].controller) v2v_range_ = std::max(v2v_range_, controller->v2v_range());
+  make_room();
+  set_absent(mover, false);
+  put(mover, {robot.X_WM.x, robot.X_WM.y, world_.movers[mover].X_WM.z, robot.X_WM.yaw});
+  return mover;
+}
+
+void Simulation::remove_robot(std::uint32_t mover) {
+  if (tiles_)
+    throw base::InputError("robots cannot join or leave a run with --tiles; expected ranks that share the whole world");
+  if (mover >= absent_.size() || absent_[mover])
+    throw base::InputError(fmt::format("there is no robot in row {} to be removed", mover));
+  settle();
+  set_absent(mover, true);
+  controls_[mover] = {};
+  if (exchange_) statuses_[mover] = {};
 }
 
 std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
@@ -314,7 +399,7 @@ void Simulation::try_to_decide(std::uint32_t mover, std::int64_t time, unsigned 
 void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thread) {
   RobotControl& robot = controls_[mover];
   robot.stepped = false;
-  if (!robot.controller || robot.driven) return;
+  if (!robot.controller || robot.driven || absent_[mover]) return;
   const std::uint32_t first = first_[mover], count = first_[mover + 1] - first;
   std::span<const base::ReadingBlock> fresh = by_mover_.subspan(first, count);
   if (robot.mailbox) {
@@ -361,7 +446,7 @@ bool Simulation::due(RobotControl& robot, std::span<const base::ReadingBlock> fr
 void Simulation::find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const {
   const std::span<const base::Report> reports = fleet_.reports();
   const auto add = [&](const base::Report& other) {
-    if (other.mover != mover && !world_.movers[other.mover].is_tag)
+    if (other.mover != mover && !world_.movers[other.mover].is_tag && !absent_[other.mover])
       others.push_back({world_.movers[other.mover].id, other, intents_[other.mover]});
   };
   const glm::dvec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};

@@ -23,6 +23,7 @@
 #include "farm/farm.h"
 #include "farm/stored_reading.h"
 #include "netio/link_model.h"
+#include "record/run_info.h"
 #include "robots/fleet.h"
 #include "robots/neighbour_grid.h"
 #include "scenarios/fleet_tiles.h"
@@ -39,6 +40,14 @@ namespace sf::scenarios {
 struct Actor {
   control::ControllerConfig controller{.name = "wander"};  ///< empty name: the robot stands
   netio::LinkModel link;  ///< of the readings; V2V states and the robot's own state are not delayed
+};
+
+/// A robot that joins a run.
+struct JoiningRobot {
+  std::string name;  ///< see world::check_name
+  std::string like;  ///< name of a robot of the world, or of its type, that it is a copy of
+  base::Pose X_WM;   ///< finite; its height is that of the original
+  Actor actor{.controller = {.name = ""}, .link = {}};  ///< none by default: it stands until it is commanded
 };
 
 struct SimulationOptions {
@@ -91,9 +100,27 @@ class Simulation {
   /// Places the mover at a pose, at rest. Called between two steps.
   void put(std::uint32_t mover, const base::Pose& X_WM);
 
-  /// Takes a mover without sensors out of the world, or puts it back where it was. Called between two steps: sensors
-  /// see the change from the last step on.
+  /// Takes a mover out of the world, or puts it back where it was, at rest. An absent mover has no readings, decides
+  /// nothing and stands. Called between two steps: sensors see the change from the next step on.
   void set_absent(std::uint32_t mover, bool gone);
+
+  /// Adds a robot to the world and the run, between two steps: its sensors are read from the next step on. Nobody
+  /// else's readings change but by its body. A robot that was removed returns under its name, if it is of the same
+  /// kind: in its row, with its id, its random numbers and its counts going on. Time in proportion to the fleet and the
+  /// world. With ranks, all call this alike. @param world the one given to the constructor; rows that it has keep their
+  /// places
+  /// @return its row, the last one for a new robot
+  /// @throws base::InputError, with nothing changed: for a name that is taken or invalid, no such original, a pose that
+  /// is not finite, invalid settings of its controller, more than world::kMostMovers, and with tiles
+  std::uint32_t add_robot(world::World& world, const JoiningRobot& robot);
+  /// Takes a robot out of the run between two steps. Its row, its id and its name stay its own. With ranks, all call
+  /// this alike. @throws base::InputError for a row without a present robot, and with tiles
+  void remove_robot(std::uint32_t mover);
+  /// Robots that joined, in the order of their rows.
+  const std::vector<record::JoinedMover>& joined() const { return joined_; }
+  bool is_absent(std::uint32_t mover) const { return absent_[mover]; }
+  /// The memory of the readings that were returned before the last `add_robot`.
+  std::shared_ptr<const void> earlier_readings() const { return earlier_readings_; }
 
   const farm::Farm& farm() const { return farm_; }
   double move_seconds() const { return move_s_; }  ///< [s] wall time of controllers and motion
@@ -129,7 +156,11 @@ class Simulation {
     std::uint64_t begun = 0;         ///< number of steps at its rate
     std::optional<Mailbox> mailbox;  ///< none: readings arrive immediately
   };
-  RobotControl make_control(std::uint32_t mover, const SimulationOptions& options);
+  RobotControl make_control(std::uint32_t mover, const Actor& actor);
+  void use_control(RobotControl control);
+  void make_room();
+  void check_joining(const world::World& world, const JoiningRobot& robot) const;
+  std::uint32_t bring_back(std::uint32_t mover, const JoiningRobot& robot);
   void move();
   std::span<const base::ReadingBlock> sense(std::int64_t time);
   void sort_by_mover(std::span<const base::ReadingBlock> readings);
@@ -178,6 +209,9 @@ class Simulation {
   std::exception_ptr failure_;           ///< of a controller in this tick
   std::uint32_t failed_ = world::kNone;  ///< its mover, the first that failed
   double v2v_range_ = 0.0;               ///< [m] largest of all controllers
+  std::shared_ptr<const void> earlier_readings_;
+  std::vector<record::JoinedMover> joined_;
+  std::uint64_t seed_;
   std::int64_t start_at_;
   std::int64_t interval_;  ///< [ns]
   std::uint64_t tick_ = 0;

@@ -33,6 +33,12 @@ StateLink::StateLink(const world::World& world, const StateLinkOptions& options)
       newest_(robots::states_at_load(world)),
       sequences_(world.movers.size()) {}
 
+void StateLink::add_mover(const base::Report& state) {
+  filter_.add_mover();
+  newest_.push_back(state);
+  sequences_.emplace_back();
+}
+
 std::span<const base::Report> StateLink::pass(std::int64_t time, std::span<const base::Report> truth) {
   if (farm::readings_started(time, options_.rate, 0.0) > sent_) send(time, truth);
   std::sort(on_the_way_.begin(), on_the_way_.end(), [](const Message& a, const Message& b) {

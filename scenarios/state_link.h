@@ -28,6 +28,9 @@ class StateLink {
  public:
   StateLink(const world::World& world, const StateLinkOptions& options);
 
+  /// The world has got one more mover, in its last row. @param state as the farm assumes it until its first message
+  void add_mover(const base::Report& state);
+
   /// Reports the true states of time `time` [ns], as far as they are due, and returns those that the farm assumes.
   /// @param truth one per mover; tags are passed through
   /// @return likewise, at `time`; lives until the next call

@@ -26,6 +26,9 @@ class Occupancies : public SensorBackend {
   void add_copies(gpu::Batch&) override {}
   void observe(std::span<const base::ReadingBlock> readings) override;
   void collect(std::span<base::ReadingBlock> out) override;
+  void take_over(SensorBackend& before, std::uint32_t rows) override {
+    batch_.take_over(dynamic_cast<Occupancies&>(before).batch_, rows);
+  }
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return false; }  // has a batch of its own
 

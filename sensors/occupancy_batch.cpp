@@ -202,6 +202,23 @@ void MapBatch::Tables::update(std::span<const MapScan> some, std::span<const std
   batch.run();
 }
 
+/// The first maps of both have the same places. The new tables go to the device with the first update.
+void MapBatch::Tables::take_over(Tables& before) {
+  if (!before.blank && !unified) {
+    gpu::Batch copies(own_device);
+    copies.begin();
+    copies.end();
+    copies.download(*before.words, 0, before.words->bytes());
+    if (before.odds) copies.download(*before.odds, 0, before.odds->bytes());
+    copies.run();
+  }
+  const auto copy = [](gpu::Buffer& from, gpu::Buffer& to, std::size_t count) {
+    std::copy_n(from.host<std::uint32_t>().begin(), count, to.host<std::uint32_t>().begin());
+  };
+  copy(*before.words, *words, before.all_words);
+  if (before.odds) copy(*before.odds, *odds, 4 * SF_ODDS_TEXELS * before.all_words);
+}
+
 MapBatch::MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapSettings> map_settings,
                    bool on_host)
     : maps_(map_settings.size()) {
@@ -229,6 +246,13 @@ void MapBatch::update(std::span<const MapScan> scans, std::span<const std::uint3
     host_->update(scans);
   else
     t_->update(scans, wanted);
+}
+
+void MapBatch::take_over(MapBatch& before, std::uint32_t maps) {
+  if (host_)
+    host_->take_over(*before.host_, maps);
+  else
+    t_->take_over(*before.t_);
 }
 
 std::span<const std::uint32_t> MapBatch::words(std::uint32_t map) const {

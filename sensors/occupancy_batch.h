@@ -50,6 +50,10 @@ class MapBatch {
   /// Enters scans, at most one per map. @param wanted maps whose words will be read
   void update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted);
 
+  /// Goes on with the first `maps` maps of another batch of the same device, which is of no further use. Before the
+  /// first update.
+  void take_over(MapBatch& before, std::uint32_t maps);
+
   /// Words of a map in the last `wanted`, packed as in maps/grid.h. Valid until the next update.
   std::span<const std::uint32_t> words(std::uint32_t map) const;
 

@@ -1,5 +1,7 @@
 #include "sensors/occupancy_host.h"
 
+#include <utility>
+
 namespace sf::sensors {
 
 HostMaps::HostMaps(std::span<const MapSettings> map_settings, base::ThreadPool& thread_pool)
@@ -27,6 +29,10 @@ void HostMaps::update(std::span<const MapScan> scans) {
       if (!map.odds) maps::add_traced_scan(map.grid, scan, ends);
     }
   });
+}
+
+void HostMaps::take_over(HostMaps& before, std::uint32_t maps) {
+  for (std::uint32_t i = 0; i < maps; ++i) std::swap(maps_[i], before.maps_[i]);
 }
 
 std::span<const std::uint32_t> HostMaps::words(std::uint32_t map) const {

@@ -18,6 +18,8 @@ class HostMaps {
 
   /// Enters scans, at most one per map.
   void update(std::span<const MapScan> scans);
+  /// Takes the first `maps` maps of `before`.
+  void take_over(HostMaps& before, std::uint32_t maps);
   /// Words of a map. Valid until the next update.
   std::span<const std::uint32_t> words(std::uint32_t map) const;
 

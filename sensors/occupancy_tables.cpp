@@ -29,7 +29,7 @@ std::size_t strip_blocks(const maps::GridGeometry& geometry) {
 }  // namespace
 
 MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapSettings> map_settings)
-    : thread_pool(w), unified(device.unified()), batch(device) {
+    : own_device(device), thread_pool(w), unified(device.unified()), batch(device) {
   lay_out(std::move(map_settings));
   assign_layout();
   rows = std::make_unique<gpu::Buffer>(device, "due maps", Role::upload, Texel::u32x4,

@@ -54,6 +54,7 @@ inline std::uint32_t units_of(std::int64_t cells, std::int64_t unit) {
 inline std::uint32_t pairs_of(const MapSettings& settings) { return (settings.samples + 1) / 2; }
 
 struct MapBatch::Tables {
+  gpu::Device& own_device;
   base::ThreadPool& thread_pool;
   bool unified;
   std::vector<MapLayout> all;
@@ -76,6 +77,7 @@ struct MapBatch::Tables {
 
   Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapSettings> map_settings);
   void update(std::span<const MapScan> some, std::span<const std::uint32_t> read);
+  void take_over(Tables& before);
   void lay_out(std::vector<MapSettings> map_settings);
   void assign_layout();
   std::size_t make_dispatch(gpu::Device& device, const char* name, MapDispatch& dispatch,

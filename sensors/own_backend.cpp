@@ -107,6 +107,11 @@ class OwnSensors final : public SensorBackend {
     if (kernel_) kernel_->add_copies(batch);
   }
   void collect(std::span<base::ReadingBlock> out) override;
+  /// Users' sensors may have a state.
+  void take_over(SensorBackend& before, std::uint32_t rows) override {
+    for (std::uint32_t i = 0; i < rows; ++i)
+      sensors_[i].sensor.swap(dynamic_cast<OwnSensors&>(before).sensors_[i].sensor);
+  }
   SensorStats stats() const override { return {}; }
   bool on_device() const override { return kernel_ != nullptr; }
 

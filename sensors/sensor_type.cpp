@@ -4,6 +4,14 @@
 
 namespace sf::sensors {
 
+void SensorBackend::take_over(SensorBackend& before, std::uint32_t rows) {
+  base::Bytes state;
+  base::ByteWriter out(state);
+  for (std::uint32_t row = 0; row < rows; ++row) before.write_state(row, out);
+  base::ByteReader in(state);
+  for (std::uint32_t row = 0; row < rows; ++row) read_state(row, in);
+}
+
 const SensorType* find_sensor_type(std::uint8_t id) {
   const auto all = sensor_types();
   const auto found = std::find_if(all.begin(), all.end(), [&](const SensorType* type) { return type->id == id; });

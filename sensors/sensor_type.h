@@ -107,6 +107,9 @@ class SensorBackend {
   /// process that goes on with this sensor; initially none. @param row among the world's sensors of this type
   virtual void write_state(std::uint32_t /*row*/, base::ByteWriter& /*out*/) const {}
   virtual void read_state(std::uint32_t /*row*/, base::ByteReader& /*in*/) {}
+  /// Goes on for the sensors of `before`, its first `rows` rows: with what `write_state` has of each, and with what
+  /// only this process has. `before` is of no further use.
+  virtual void take_over(SensorBackend& before, std::uint32_t rows);
   virtual SensorStats stats() const = 0;
   /// True when the due readings need the farm's batch.
   virtual bool on_device() const { return true; }

@@ -1,13 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 #include <string>
 #include <string_view>
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "world/append_robot.h"
 #include "world/free_space.h"
+#include "world/serialization.h"
 #include "world/world.h"
 
 namespace sf::world {
@@ -105,6 +108,49 @@ Mover kept_one(const Mover& mover, const Kept& kept) {
   return same;
 }
 
+/// Appends the models of `original`, renamed and moved with it. @return new rows by old row
+std::vector<std::uint32_t> append_models(World& world, std::uint32_t original, const std::string& name,
+                                         const Pose& X_WM) {
+  const Mover& mover = world.movers[original];
+  const std::string before = world.models[mover.model].name;
+  const auto row = static_cast<std::uint32_t>(world.movers.size());
+  std::vector<std::uint32_t> rows(world.models.size(), kNone);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (world.models[i].mover != original) continue;
+    rows[i] = static_cast<std::uint32_t>(world.models.size());
+    Model model = world.models[i];
+    const bool is_nested = model.name == before || model.name.starts_with(before + ".");
+    model.name = name + (is_nested ? model.name.substr(before.size()) : "." + model.name);
+    model.X_WM = compose(X_WM, compose(inverse(mover.X_WM), model.X_WM));
+    if (model.parent != kNone && rows[model.parent] != kNone) model.parent = rows[model.parent];
+    model.mover = row;
+    world.models.push_back(std::move(model));
+  }
+  return rows;
+}
+
+std::uint32_t next_id(const World& world) {
+  std::set<std::uint32_t> taken;
+  for (const Mover& mover : world.movers)
+    if (!mover.is_tag) taken.insert(mover.id);
+  std::uint32_t id = 1;
+  while (taken.contains(id)) ++id;
+  return id;
+}
+
+/// All of a mover that a reading depends on, apart from its place, its name and its rows.
+base::Bytes kind_of(const World& world, std::uint32_t row) {
+  Mover mover = world.movers[row];
+  mover.name.clear();
+  mover.id = 0, mover.X_WM = {}, mover.model = 0;
+  for (Segment& side : mover.body) side.model = 0;
+  for (Magnet& magnet : mover.magnets) magnet.model = 0;
+  base::Bytes bytes;
+  base::ByteWriter out(bytes);
+  RowWriter{out, RowFields::physics}.put(mover);
+  return bytes;
+}
+
 }  // namespace
 
 std::uint32_t robot_to_copy(const World& world, const std::string& name) {
@@ -161,6 +207,65 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
   world.models = std::move(models);
   world.movers = std::move(movers);
   update_extent_and_hash(world);
+}
+
+bool is_robot_name(const std::string& name) {
+  const auto is_plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  return !name.empty() && name.size() <= kMostNameLength && std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
+         std::all_of(name.begin(), name.end(), is_plain);
+}
+
+std::uint32_t robot_like(const World& world, const std::string& like) {
+  std::vector<std::string_view> names;
+  std::uint32_t of_type = kNone;
+  for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
+    const Mover& mover = world.movers[row];
+    if (mover.is_tag) continue;
+    if (mover.name == like) return row;
+    names.emplace_back(mover.name);
+    if (of_type == kNone && world.models[mover.model].type == like) of_type = row;
+  }
+  if (of_type != kNone) return of_type;
+  throw base::InputError(
+      world.file, 0,
+      fmt::format("has no robot or type of robots '{}'{}; expected the name of a robot of this world", like,
+                  base::suggest(like, names)));
+}
+
+void check_name(const World& world, const std::string& name) {
+  if (!is_robot_name(name)) throw base::InputError(fmt::format("no robot can join as '{}'; {}", name, kNameRule));
+  for (const Model& model : world.models)
+    if (model.name == name)
+      throw base::InputError(
+          fmt::format("the name '{}' is taken; expected one that no model of {} has", name, world.file));
+}
+
+std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM) {
+  SF_CHECK(original < world.movers.size(), "a copy of a robot that does not exist");
+  if (world.movers.size() >= kMostMovers)
+    throw base::InputError(
+        fmt::format("'{}' cannot join: a run has at most {} robots, counting those that left", name, kMostMovers));
+  const auto row = static_cast<std::uint32_t>(world.movers.size());
+  const Pose X_join{X_WM.x, X_WM.y, world.movers[original].X_WM.z, X_WM.yaw};
+  const std::vector<std::uint32_t> rows = append_models(world, original, name, X_join);
+  Mover copy = world.movers[original];
+  copy.name = name;
+  copy.X_WM = X_join;
+  copy.id = next_id(world);
+  copy.model = rows[copy.model];
+  for (Segment& side : copy.body) side.model = rows[side.model];
+  for (Magnet& magnet : copy.magnets) magnet.model = rows[magnet.model];
+  world.movers.push_back(std::move(copy));
+  update_extent_and_hash(world);
+  return row;
+}
+
+bool is_same_kind(const World& world, std::uint32_t a, std::uint32_t b) {
+  const auto type = [&](std::uint32_t row) {
+    const std::uint32_t model = world.movers[row].model;
+    return model < world.models.size() ? world.models[model].type : std::string();
+  };
+  return type(a) == type(b) && kind_of(world, a) == kind_of(world, b);
 }
 
 }  // namespace sf::world

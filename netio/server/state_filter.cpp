@@ -31,6 +31,10 @@ StateFilter::StateFilter(const world::World& world, const StateFilterOptions& op
   reports_.reserve(movers_.size());
 }
 
+void StateFilter::add_mover() {
+  if (options_.enabled) movers_.emplace_back().clock = estimation::SenderClock(options_.clock);
+}
+
 void StateFilter::take(const base::Report& report, const netio::Header& header, std::int64_t now) {
   using estimation::ClockSource, estimation::ClockVerdict;
   MoverState& mover = movers_[report.mover];

@@ -51,6 +51,9 @@ class StateFilter {
 
   StateFilter(const world::World& world, const StateFilterOptions& options);
 
+  /// The world has got one more mover, in its last row.
+  void add_mover();
+
   /// Takes a mover's state, late ones too. @param report at the sender's time `header.time`
   void take(const base::Report& report, const netio::Header& header, std::int64_t now);
 

@@ -1,0 +1,35 @@
+#pragma once
+// Robots that join a world after it was loaded.
+
+#include <cstdint>
+#include <string>
+
+#include "world/world.h"
+
+namespace sf::world {
+
+inline constexpr std::size_t kMostMovers = 65'534;  ///< rows of a world that robots join, since ids have 16 bits
+inline constexpr std::size_t kMostNameLength = 64;  ///< of a robot that joins
+
+inline constexpr const char* kNameRule = "expected 1 to 64 letters, digits or '_', and no digit first";
+bool is_robot_name(const std::string& name);
+
+/// The row of the robot that `like` names: by its name, else the first with that word for its type.
+/// @throws base::InputError with the names that exist
+std::uint32_t robot_like(const World& world, const std::string& like);
+
+/// @throws base::InputError where a robot cannot join under `name`, which must consist of 1 to kMostNameLength letters,
+/// digits and '_', begin with no digit, and be the name of no other model
+void check_name(const World& world, const std::string& name);
+
+/// Appends a copy of the robot in row `original` at rest at `X_WM` (its height above ground stays that of the
+/// original), with all models that it carries. Rows that exist keep their places; its id is the smallest from 1 that no
+/// row has. Updates extent and hash: takes time in proportion to the world.
+/// Rule: `check_name` accepts the name.
+/// @return its row @throws base::InputError beyond kMostMovers
+std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM);
+
+/// Both rows have the same type, body, drive and sensors.
+bool is_same_kind(const World& world, std::uint32_t a, std::uint32_t b);
+
+}  // namespace sf::world
