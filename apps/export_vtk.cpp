@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "gpu/device.h"
 #include "scenarios/experiment.h"
+#include "scenarios/recorded_states.h"
 #include "viz/scan_map.h"
 #include "viz/vtk_files.h"
 #include "viz/world_geometry.h"
@@ -94,7 +95,7 @@ std::vector<std::string> write_scans(const RecordingPart& part, const world::Wor
 }  // namespace
 
 std::vector<std::string> write_vtk(const RecordingPart& part, const ExportOptions& options) {
-  const world::World world = world::from_snapshot(part.recording.info.snapshot);
+  const world::World world = scenarios::recorded_world(part.recording);
   std::vector<std::string> files;
   const auto write = [&](const viz::PolyData& data, const char* name) {
     if (data.points.empty()) return;

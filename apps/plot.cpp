@@ -20,6 +20,7 @@
 #include "apps/text.h"
 #include "base/error.h"
 #include "scenarios/experiment.h"
+#include "scenarios/recorded_states.h"
 #include "viz/lights_figure.h"
 #include "viz/occupancy_figure.h"
 #include "viz/scan_map.h"
@@ -122,7 +123,7 @@ int plot(const PlotOptions& options) {
   install_stop_handlers();
   RecordingPart part = open_part(options.recording, options);
   if (!options.video.empty()) return write_recorded_video(part, options, options.device), 0;
-  const world::World world = world::from_snapshot(part.recording.info.snapshot);
+  const world::World world = scenarios::recorded_world(part.recording);
   const std::string folder =
       options.out.empty() ? std::filesystem::path(part.recording.file).parent_path().string() : options.out;
   scenarios::make_folder(folder);

@@ -10,6 +10,7 @@
 #include "base/bearing.h"
 #include "base/error.h"
 #include "record/reading_messages.h"
+#include "scenarios/recorded_states.h"
 #include "world/lights.h"
 #include "world/world.h"
 
@@ -113,7 +114,7 @@ std::string write_trajectories_csv(const RecordingPart& part, const std::string&
 
 std::string write_lights_csv(const RecordingPart& part, const std::string& folder) {
   const std::string path = folder + "/lights.csv";
-  const world::World world = world::from_snapshot(part.recording.info.snapshot);
+  const world::World world = scenarios::recorded_world(part.recording);
   CsvFile file(path);
   file.row("time_s,light,state,seconds_to_change");
   for (const record::LightsSample& sample : part.recording.lights)

@@ -15,6 +15,7 @@
 #include "netio/bridges/viewer.h"
 #include "record/recording.h"
 #include "scenarios/merging.h"
+#include "scenarios/recorded_states.h"
 #include "scenarios/replay.h"
 #include "scenarios/run_info.h"
 
@@ -86,7 +87,7 @@ int view(const ViewOptions& options) {
   if (!options.frames.empty()) return write_frames(options);
   const record::Recording recording = scenarios::open_run(options.recording);
   print_damage(recording);
-  const world::World world = world::from_snapshot(recording.info.snapshot);
+  const world::World world = scenarios::recorded_world(recording);
   const sensors::SensorSet sensor_set(world);
   record::RunInfo info = scenarios::run_info(
       world, sensor_set, {.seed = recording.info.seed, .record_readings = !recording.readings.empty()});

@@ -10,6 +10,7 @@
 #include "apps/text.h"
 #include "base/error.h"
 #include "gpu/device.h"
+#include "scenarios/recorded_states.h"
 #include "viz/png.h"
 #include "viz/vtk_window.h"
 #include "viz/world_geometry.h"
@@ -33,7 +34,7 @@ std::vector<double> times_of(const RecordingPart& part, const std::vector<std::s
 
 int view_3d(const ViewOptions& options) {
   const RecordingPart part = open_part(options.recording, options);
-  const world::World world = world::from_snapshot(part.recording.info.snapshot);
+  const world::World world = scenarios::recorded_world(part.recording);
   const std::vector<std::size_t> ticks = ticks_apart(part, options.every);
   viz::Scene3d scene;
   scene.times = times_of(part, ticks);

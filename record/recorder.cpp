@@ -1,9 +1,12 @@
 #include "record/recorder.h"
 
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
 #include <cstdio>
-#include <map>
 #include <span>
-#include <string_view>
+#include <utility>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -46,37 +49,48 @@ const TextPairs kLatched = {
      "  lifespan:\n    sec: 0\n    nsec: 0\n  liveliness: 1\n  liveliness_lease_duration:\n"
      "    sec: 0\n    nsec: 0\n  avoid_ros_namespace_conventions: false\n"}};
 
-/// @return per topic, the id of its channel
-std::vector<std::uint16_t> add_channels(McapWriter& mcap, std::span<const Topic> topics) {
-  std::map<std::string_view, std::uint16_t> schemas;
-  std::vector<std::uint16_t> channels;
-  for (const Topic& topic : topics) {
-    const auto [schema, is_new] = schemas.try_emplace(topic.type, std::uint16_t{0});
-    if (is_new) schema->second = mcap.add_schema(topic.type, "ros2msg", topic.schema);
-    channels.push_back(mcap.add_channel(schema->second, topic.name, "cdr", topic.latched ? kLatched : kPlain));
-  }
-  return channels;
+/// Numbers as text that gives the same doubles again.
+TextPairs pairs_of(const JoinedMover& mover) {
+  TextPairs pairs = {{"name", mover.name}, {"like", std::to_string(mover.original)}};
+  const base::Pose& X = mover.X_WM;
+  for (const auto& [key, value] : {std::pair{"x", X.x}, {"y", X.y}, {"z", X.z}, {"yaw", X.yaw}})
+    pairs.emplace_back(key, fmt::format("{}", value));
+  return pairs;
 }
 
 }  // namespace
+
+std::optional<JoinedMover> joined_mover_of(const TextPairs& pairs) {
+  JoinedMover mover;
+  int found = 0;
+  const auto read = [&](const std::string& text, auto& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    found += error == std::errc() && end == text.data() + text.size();
+  };
+  base::Pose& X = mover.X_WM;
+  for (const auto& [key, value] : pairs) {
+    if (key == "name") mover.name = value;
+    if (key == "like") read(value, mover.original);
+    for (const auto& [name, number] : {std::pair{"x", &X.x}, {"y", &X.y}, {"z", &X.z}, {"yaw", &X.yaw}})
+      if (key == name) read(value, *number);
+  }
+  const bool finite = std::isfinite(X.x + X.y + X.z + X.yaw);
+  return found == 5 && finite ? std::optional(std::move(mover)) : std::nullopt;
+}
 
 Recorder::Recorder(const std::string& directory, RunInfo info, const RecordingPart& part)
     : info_(named(std::move(info))),
       file_(directory + "/" + part.file()),
       mcap_("ros2", "sensorfarm " SF_VERSION, part.compression),
-      messages_(info_) {
-  if (messages_.topics().size() > kMaxChannels) {
-    throw base::InputError(file_.path(), 0,
-                           "needs " + std::to_string(messages_.topics().size()) +
-                               " topics, and a file holds 65535: record fewer robots, or no readings");
-  }
+      messages_(std::in_place, info_) {
+  check_topics(*messages_);
   mcap_.add_attachment({.name = "world.bin", .media_type = "application/octet-stream", .data = info_.snapshot});
   mcap_.add_metadata({"sensorfarm", summary_of(info_)});
   if (part.parts > 1)
     mcap_.add_metadata({kPartMetadata, {{"part", std::to_string(part.part)}, {"parts", std::to_string(part.parts)}}});
-  if (part.part > 0) wanted_ = messages_.readings_and_clock();
-  channels_ = add_channels(mcap_, messages_.topics());
-  messages_.begin([this](const TopicMessage& message) { add(message); });
+  if (part.part > 0) wanted_ = messages_->readings_and_clock();
+  add_channels();
+  messages_->begin([this](const TopicMessage& message) { add(message); });
   flush();
   file_.publish();
   if (part.compression != Compression::none) writer_.emplace(mcap_, file_);
@@ -96,9 +110,55 @@ Recorder::~Recorder() {
 
 void Recorder::write(const base::TickRecord& record) {
   SF_CHECK(!finished_, "tick " + std::to_string(record.tick) + " after the end of the recording");
-  messages_.encode(
+  time_ = record.time;
+  messages_->encode(
       record, [this](const TopicMessage& message) { add(message); }, wanted_);
   flush();
+}
+
+void Recorder::check_topics(const TickMessages& messages) const {
+  std::size_t count = channels_of_.size();
+  for (const Topic& topic : messages.topics()) count += channels_of_.contains(topic.name) ? 0 : 1;
+  if (count <= kMaxChannels) return;
+  throw base::InputError(
+      file_.path(), 0,
+      "needs " + std::to_string(count) + " topics, and a file holds 65535: record fewer robots, or no readings");
+}
+
+/// For the topics that have none yet.
+void Recorder::add_channels() {
+  channels_.clear();
+  for (const Topic& topic : messages_->topics()) {
+    const auto [schema, is_new_type] = schemas_.try_emplace(std::string(topic.type), std::uint16_t{0});
+    if (is_new_type) schema->second = mcap_.add_schema(topic.type, "ros2msg", topic.schema);
+    const auto [channel, is_new] = channels_of_.try_emplace(topic.name, std::uint16_t{0});
+    if (is_new)
+      channel->second = mcap_.add_channel(schema->second, topic.name, "cdr", topic.latched ? kLatched : kPlain);
+    channels_.push_back(channel->second);
+  }
+}
+
+void Recorder::add_movers(RunInfo info) {
+  SF_CHECK(!finished_ && wanted_.empty(), "movers join a part of a recording, or after its end");
+  info = named(std::move(info));
+  check_topics(TickMessages(info));
+  const std::size_t known = info_.joined.size();
+  const TickMessages before = std::move(*messages_);  // of which only its counts are used
+  info_ = std::move(info);
+  info_.snapshot = {};
+  info_.shape = {};
+  messages_.emplace(info_);
+  const bool threaded = writer_.has_value();
+  finished_ = true;                 // reset when the writer has done its part: a failure is final
+  if (threaded) writer_->finish();  // the file is ours until it goes on
+  writer_.reset();
+  finished_ = false;
+  for (std::size_t i = known; i < info_.joined.size(); ++i)
+    mcap_.add_metadata({kJoinedMetadata, pairs_of(info_.joined[i])});
+  add_channels();
+  messages_->go_on(before, time_, [this](const TopicMessage& message) { add(message); });
+  flush();
+  if (threaded) writer_.emplace(mcap_, file_);
 }
 
 void Recorder::add(const TopicMessage& message) {

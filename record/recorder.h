@@ -10,6 +10,7 @@
 // and no tick is lost.
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,10 @@ struct RecordingPart {
 
 /// Name of the metadata with number and count of parts, in recordings with several.
 inline constexpr const char* kPartMetadata = "sensorfarm.part";
+/// Name of the metadata of a robot that joined: name, row of its original, pose. In the order of joining.
+inline constexpr const char* kJoinedMetadata = "sensorfarm.joined";
+/// The robot of such metadata; none where it is malformed.
+std::optional<JoinedMover> joined_mover_of(const TextPairs& pairs);
 
 /// One thread. A recording already in the directory is replaced in one step, once the new one contains its world.
 class Recorder : public base::Sink {
@@ -51,6 +56,10 @@ class Recorder : public base::Sink {
   /// @throws base::InputError when this tick, or one of the last three with compression, could not be written whole (a
   /// full disk). All ticks before that are in the file; the recorder accepts no more.
   void write(const base::TickRecord& record) override;
+  /// The run has got more movers, which are the last rows of `info.movers`: they are recorded from the next tick on.
+  /// Rule: all else is as in the info before; `info.joined` begins with what was there.
+  /// @throws base::InputError as `write`, and where the file cannot hold the topics; then nothing was written
+  void add_movers(RunInfo info);
   /// Seals the file. Further calls, and a call after a failed `write`, do nothing. @throws base::InputError when that
   /// fails.
   void finish();
@@ -60,15 +69,20 @@ class Recorder : public base::Sink {
 
  private:
   void add(const TopicMessage& message);
+  void check_topics(const TickMessages& messages) const;
+  void add_channels();
   void flush();
 
   RunInfo info_;
   GrowingFile file_;
   McapWriter mcap_;
   McapChunk chunk_;  ///< of the tick
-  TickMessages messages_;
-  std::vector<std::uint16_t> channels_;  ///< per topic
-  std::vector<bool> wanted_;             ///< per topic, of ticks; empty: all
+  std::optional<TickMessages> messages_;
+  std::map<std::string, std::uint16_t> schemas_;      ///< by type
+  std::map<std::string, std::uint16_t> channels_of_;  ///< by topic, of all that ever were
+  std::vector<std::uint16_t> channels_;               ///< per topic
+  std::int64_t time_ = 0;                             ///< [ns] of the last tick
+  std::vector<bool> wanted_;                          ///< per topic, of ticks; empty: all
   bool finished_ = false;
   std::optional<ChunkWriter> writer_;  ///< none: `flush` writes
 };

@@ -10,6 +10,7 @@
 #include "record/lights_message.h"
 #include "record/mcap_reader.h"
 #include "record/reading_messages.h"
+#include "record/recorder.h"
 #include "record/recording_files.h"
 #include "record/ros_messages.h"
 #include "record/schemas.h"
@@ -57,6 +58,11 @@ Topics sensor_topics(const RunInfo& info) {
   return topics;
 }
 
+bool is_before_joining(const Recording& recording, std::size_t row) {
+  return recording.states[row].size() == recording.ticks &&
+         (recording.states[row].empty() || base::is_absent(recording.states[row].back().X_WM));
+}
+
 bool read_fleet(const McapMessage& message, FleetState& fleet, Recording& recording) {
   if (!decode_fleet(message.data, fleet)) return false;
   const auto known = [&](const MoverState& state) { return state.mover < recording.states.size(); };
@@ -65,6 +71,10 @@ bool read_fleet(const McapMessage& message, FleetState& fleet, Recording& record
     recording.states[state.mover].push_back(
         {fleet.tick, fleet.time, state.contact, state.X_WM, state.velocity, state.command});
   }
+  // Robots that join later.
+  for (std::size_t row = recording.states.size() - recording.info.joined.size(); row < recording.states.size(); ++row)
+    if (is_before_joining(recording, row))
+      recording.states[row].push_back({fleet.tick, fleet.time, false, base::kAbsent, {}, {}});
   ++recording.ticks;
   recording.end_time = fleet.time;
   return true;
@@ -122,13 +132,23 @@ void read_messages(const McapContents& contents, Recording& recording) {
 }  // namespace
 
 RunInfo run_info_of(const McapContents& contents, const std::string& name) {
-  RunInfo info;
+  RunInfo info, first;
   const std::string cause = contents.damage.empty() ? "" : "; damaged at " + contents.damage.front();
-  const auto found = std::find_if(contents.messages.begin(), contents.messages.end(),
-                                  [&](const McapMessage& message) { return type_of(contents, message) == kRunInfo; });
-  if (found == contents.messages.end() || !decode_run_info(found->data, info)) {
+  const auto is_info = [&](const McapMessage& message) { return type_of(contents, message) == kRunInfo; };
+  const auto found = std::find_if(contents.messages.begin(), contents.messages.end(), is_info);
+  if (found == contents.messages.end() || !decode_run_info(found->data, first)) {
     throw base::InputError(
         name, 0, "not a sensorfarm recording: expected a readable " + std::string(kRunInfo) + " message" + cause);
+  }
+  info = first;
+  // Each time that robots joined, another message has them, too.
+  for (auto later = found;
+       (later = std::find_if(later + 1, contents.messages.end(), is_info)) != contents.messages.end();)
+    if (RunInfo more; decode_run_info(later->data, more) && more.movers.size() >= info.movers.size())
+      info = std::move(more);
+  for (const McapMetadata& metadata : contents.metadata) {
+    if (metadata.name != kJoinedMetadata || first.movers.size() + info.joined.size() == info.movers.size()) continue;
+    if (auto joined = joined_mover_of(metadata.pairs)) info.joined.push_back(std::move(*joined));
   }
   const auto world = std::find_if(contents.attachments.begin(), contents.attachments.end(),
                                   [](const McapAttachment& attachment) { return attachment.name == "world.bin"; });

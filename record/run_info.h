@@ -86,6 +86,13 @@ struct MoverInfo {
   std::vector<Outline> body;        ///< in its frame; not read back, since the world has it
 };
 
+/// A robot that joined the run: a copy of an earlier row, appended to the world's movers.
+struct JoinedMover {
+  std::uint32_t original = 0;  ///< row of the mover that it copies
+  std::string name;
+  base::Pose X_WM;  ///< where it joined
+};
+
 struct RunInfo {
   std::string world;  ///< name
   std::uint64_t world_hash = 0;
@@ -100,6 +107,7 @@ struct RunInfo {
   std::vector<std::pair<std::string, std::string>> options;  ///< further options of the run
   std::vector<std::string> accuracy;  ///< JSON objects: error bounds of its readings; not read back, for readers alone
   base::Bytes snapshot;               ///< the world, not empty
+  std::vector<JoinedMover> joined;    ///< of `movers`, the last rows: in the order in which they joined the snapshot's
   WorldShape shape;
   std::vector<std::string> lights;  ///< names of the world's traffic lights; not read back, since the world has them
 };

@@ -116,6 +116,19 @@ void TickMessages::begin(const Emit& emit) {
   out.send(kBodies, 0, 0, [&](base::Bytes& bytes) { encode_bodies(info_.movers, bytes); });
 }
 
+void TickMessages::go_on(const TickMessages& before, std::int64_t time, const Emit& emit) {
+  next_odometry_ = before.next_odometry_;
+  ticks_ = before.ticks_;
+  odometries_ = before.odometries_;
+  base::TickRecord last;
+  last.time = time;
+  const std::vector<bool> all;
+  const Output out{last, emit, all, message_};
+  out.send(kRun, 0, time, [&](base::Bytes& bytes) { encode_run_info(info_, bytes); });
+  send_frames(out);
+  out.send(kBodies, 0, time, [&](base::Bytes& bytes) { encode_bodies(info_.movers, bytes); });
+}
+
 /// Of sensors and of their elements.
 void TickMessages::send_frames(const Output& out) {
   transforms_.clear();

@@ -52,6 +52,9 @@ class TickMessages {
 
   /// Latched topics. The next tick is the first of a run: its time may be earlier than that of the last one.
   void begin(const Emit& emit);
+  /// Goes on where `before` was, which had fewer movers: sends what is latched, but not map and walls.
+  /// @param time [ns] of the last tick
+  void go_on(const TickMessages& before, std::int64_t time, const Emit& emit);
   /// Rule: every report's mover is a row of `info.movers`, its quality is there if `info.estimated`, every reading's
   /// sensor one of its sensors; time is non-decreasing and not negative.
   /// @param wanted per topic, for those that nobody listens to; empty: all are

@@ -64,8 +64,7 @@ class Pair {
 
   void step(std::size_t tick) {
     recorded_reports(recording_, tick, reports_);
-    for (farm::Farm* farm : {&farm_, &exact_})
-      for (const base::Report& report : reports_) farm->set_absent(report.mover, base::is_absent(report.X_WM));
+    for (farm::Farm* farm : {&farm_, &exact_}) set_absent(reports_, *farm);
     const std::int64_t time = reports_[0].time;
     for (std::int64_t due = farm_.next_due(); tick > 0 && due < time; due = farm_.next_due())
       compare(farm_.sample_between(due, reports_), exact_.sample_between(due, reports_));

@@ -5,11 +5,19 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "world/append_robot.h"
 
 namespace sf::scenarios {
 
 world::World recorded_world(const record::Recording& recording) {
   world::World world = world::from_snapshot(recording.info.snapshot);
+  for (const record::JoinedMover& joined : recording.info.joined) {
+    if (joined.original >= world.movers.size())
+      throw base::InputError(
+          recording.file, 0,
+          fmt::format("'{}' joined as a copy of row {}, which its world lacks", joined.name, joined.original));
+    world::append_robot(world, joined.original, joined.name, joined.X_WM);
+  }
   if (world.movers.size() != recording.states.size())
     throw base::InputError(recording.file, 0,
                            fmt::format("has the states of {} movers, and its world has {}: not one recording",
@@ -27,6 +35,14 @@ void recorded_reports(const record::Recording& recording, std::size_t tick, std:
   for (std::uint32_t m = 0; m < recording.states.size(); ++m) {
     const record::StateSample& s = recording.states[m][tick];
     reports.push_back({m, s.time, s.X_WM, s.velocity});
+  }
+}
+
+void set_absent(std::span<const base::Report> reports, farm::Farm& farm) {
+  for (const base::Report& report : reports) {
+    const bool gone = base::is_absent(report.X_WM);
+    farm.set_absent(report.mover, gone);
+    if (!gone) farm.subscribe(report.mover, farm::kAllSensorTypes);
   }
 }
 

@@ -69,6 +69,7 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   info.accuracy = accuracy_rows(world, sensor_set, settings.noise);
   if (settings.too_near_min) info.options.emplace_back(record::kTooNear, "min");
   info.snapshot = world::snapshot(world);
+  info.joined = settings.joined;
   for (const world::Mover& mover : world.movers)
     info.movers.push_back({mover.name, "", mover.id, {}, body_of(world, mover)});
   info.shape = shape_of(world);

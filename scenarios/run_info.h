@@ -13,11 +13,12 @@ namespace sf::scenarios {
 struct RunSettings {
   std::uint64_t seed = 0;
   bool record_readings = false;
-  bool no_return_inf = false;  ///< beams without a return read infinity
-  std::string caster;          ///< description of the ray caster, from `raycast::describe_caster`
-  bool estimated = false;      ///< states are estimates, recorded with their quality
-  bool noise = true;           ///< noisy sensors are noisy
-  bool too_near_min = false;   ///< surfaces nearer than a sensor's minimum read that minimum in messages
+  bool no_return_inf = false;                    ///< beams without a return read infinity
+  std::string caster;                            ///< description of the ray caster, from `raycast::describe_caster`
+  bool estimated = false;                        ///< states are estimates, recorded with their quality
+  bool noise = true;                             ///< noisy sensors are noisy
+  std::vector<record::JoinedMover> joined = {};  ///< of the world's movers, those that a recording's world lacks
+  bool too_near_min = false;  ///< surfaces nearer than a sensor's minimum read that minimum in messages
 };
 
 /// [m] Largest rounding of a recorded range by base::rep117_range: one step of float32 below range_max, where a range

@@ -171,7 +171,7 @@ class Verifier {
 
   void look_at_tick(std::size_t tick) {
     recorded_reports(recording_, tick, reports_);
-    for (const base::Report& report : reports_) farm_.set_absent(report.mover, base::is_absent(report.X_WM));
+    set_absent(reports_, farm_);
     const std::int64_t time = reports_[0].time;
     const auto look_at = [this](std::span<const base::ReadingBlock> readings) {
       for (const base::ReadingBlock& reading : readings) check_reading(reading);

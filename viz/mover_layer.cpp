@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/report.h"
 #include "viz/color.h"
 #include "viz/theme.h"
 
@@ -24,6 +25,7 @@ std::uint32_t body_color(const world::World& world, const Mover& mover) {
 }
 
 void draw_body(Axes& axes, const Mover& mover, const base::Pose& X_WM, std::uint32_t color) {
+  if (base::is_absent(X_WM)) return;
   const std::uint32_t edge = mix(color, theme::kBlack, 0.45);
   const double radius = mover.radius * axes.scale();
   Canvas& canvas = axes.canvas();
