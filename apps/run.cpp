@@ -195,7 +195,7 @@ struct Course {
                 recording_folder(options, ranks, resets), part_of(options, ranks), video_file(options, resets)) {
     // The simulation has its part of them, and a recording begins with all.
     if (options.tiles && ranks != nullptr && options.balance == 0.0) ground.world.walls = {};
-    if (ground.scenario) events.emplace(*ground.scenario, world, scenarios::simulation_of(*ground.scenario, world));
+    if (ground.scenario) events.emplace(*ground.scenario);
     if (ranks == nullptr) simulation.interrupt_on([] { return stop_requested().load(); });
   }
 

@@ -62,6 +62,8 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
 int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
   for (const RobotSetup& setup : scenario.robot_setups)
     if (setup.actor && setup.name == mover.name) return setup.controller_line;
+  for (const ObjectEvent& event : scenario.events)
+    if (event.kind == ObjectEvent::Kind::add && event.object == mover.name) return event.line;
   return scenario.default_line;
 }
 
@@ -85,13 +87,9 @@ class Run {
         ranks_(ranks),
         world_(world_of(scenario)),
         simulation_(world_, device, options_of(scenario, world_, threads, ranks)),
-        events_(scenario, world_, simulation_of(scenario, world_)),
+        events_(scenario),
         metrics_(world_, simulation_) {
-    for (const Expectation& e : scenario.expect)
-      if (e.kind == Kind::map_coverage)
-        for (const std::uint32_t row : rows_of(scenario, world_, e))
-          if (simulation_.owns(row) && !sensors::lasers_of(world_.movers[row]).empty())
-            maps_.try_emplace(row, world_, row);
+    for (std::uint32_t row = 0; row < world_.movers.size(); ++row) add_map(row);
   }
 
   void go(const std::function<void(double)>& progress, const std::function<bool()>& stop, ScenarioResult& result) {
@@ -100,7 +98,10 @@ class Run {
     const bool until_done = expects(scenario_, Kind::done);
     const auto start = Clock::now();
     for (; result.ticks < ticks && !(until_done && simulation_.all_done()); ++result.ticks) {
-      events_.apply(simulation_, static_cast<double>(result.ticks) * world_.interval);
+      events_.apply(simulation_, world_, static_cast<double>(result.ticks) * world_.interval, [&](std::uint32_t row) {
+        metrics_.add_mover();
+        add_map(row);
+      });
       const bool stops = stop && stop();
       if (stops && ranks_ == nullptr) throw base::Interrupted();
       if (stops) simulation_.request_stop();
@@ -153,6 +154,15 @@ class Run {
 
   static std::string what_of(const Expectation& e) {
     return std::string(name_of(e.kind)) + (e.robot.empty() ? "" : " of " + e.robot);
+  }
+
+  /// Of a robot whose map is expected.
+  void add_map(std::uint32_t row) {
+    const world::Mover& mover = world_.movers[row];
+    const bool expected = std::any_of(scenario_.expect.begin(), scenario_.expect.end(), [&](const Expectation& e) {
+      return e.kind == Kind::map_coverage && (e.robot.empty() ? !mover.is_tag : e.robot == mover.name);
+    });
+    if (expected && simulation_.owns(row) && !sensors::lasers_of(mover).empty()) maps_.try_emplace(row, world_, row);
   }
 
   /// Worst value of a measure over the expectation's robots, ignoring NaN; NaN without a value.
@@ -286,7 +296,8 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
         fmt::format("'duration' {:g} s is less than a tick of {:g} s, so nothing would be simulated; "
                     "expected at least one tick",
                     scenario.duration, world.interval));
-  const SimulationOptions options = simulation_of(scenario, world);
+  SimulationOptions options = simulation_of(scenario, world);
+  check_events(scenario, world, options);
   const std::optional<world::RoadNetwork> roads = world::roads_of(world);
   std::vector<control::ConfiguredController> made;  // kept to the end: robots of one shape share their corridors
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
@@ -295,7 +306,6 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
       made.push_back(try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, config));
   }
   for (const Expectation& e : scenario.expect) check_expectation(scenario, world, options, e);
-  ScenarioEvents(scenario, world, options);
   return std::move(world.warnings);
 }
 

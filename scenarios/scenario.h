@@ -60,12 +60,15 @@ struct FleetSpawn {
   int line = 0;  ///< of `robots` in the file
 };
 
-/// A change of an object during the run.
+/// A change of an object during the run, or of the fleet.
 struct ObjectEvent {
-  std::string object;   ///< name of a mover without sensors and controller
+  enum class Kind : std::uint8_t { object, add, remove };
+  std::string object;   ///< name of a mover without sensors and controller, or of the robot that joins or leaves
   double at = 0.0;      ///< [s] simulated; from the first tick not before it on
   bool present = true;  ///< in the world
   int line = 0;
+  Kind kind = Kind::object;
+  JoiningRobot joining = {};  ///< for `add`
 };
 
 struct Scenario {

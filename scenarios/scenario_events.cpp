@@ -2,26 +2,84 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.h"
+#include "world/append_robot.h"
 
 namespace sf::scenarios {
 
-ScenarioEvents::ScenarioEvents(const Scenario& scenario, const world::World& world, const SimulationOptions& options)
-    : events_(scenario.events) {
-  for (const ObjectEvent& event : events_) {
+namespace {
+
+/// `act()`, whose errors get the event's line.
+template <class Act>
+void at_line(const Scenario& scenario, const ObjectEvent& event, Act&& act) {
+  try {
+    act();
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    if (what.starts_with(scenario.file + ":")) throw;
+    throw base::InputError(scenario.file, event.line, what);
+  }
+}
+
+/// A robot of that name is there until then.
+bool returns(const Scenario& scenario, const ObjectEvent& event, const world::World& world) {
+  return std::any_of(world.movers.begin(), world.movers.end(),
+                     [&](const world::Mover& mover) { return mover.name == event.object; }) &&
+         std::any_of(scenario.events.begin(), scenario.events.end(), [&](const ObjectEvent& other) {
+           return other.kind == ObjectEvent::Kind::remove && other.object == event.object && other.at <= event.at;
+         });
+}
+
+void join(const Scenario& scenario, const ObjectEvent& event, world::World& world, SimulationOptions& options) {
+  if (event.at >= scenario.duration)
+    throw base::InputError(scenario.file, event.line,
+                           fmt::format("'{}' would join after the end; expected 'at' below the duration of {:g} s",
+                                       event.object, scenario.duration));
+  at_line(scenario, event, [&] {
+    const std::uint32_t original = world::robot_like(world, event.joining.like);
+    if (returns(scenario, event, world)) return;
+    world::check_name(world, event.object);
+    world::append_robot(world, original, event.object, event.joining.X_WM);
+    options.actors.push_back(event.joining.actor);
+  });
+}
+
+}  // namespace
+
+void check_events(const Scenario& scenario, world::World& world, SimulationOptions& options) {
+  for (const ObjectEvent& event : scenario.events)
+    if (event.kind == ObjectEvent::Kind::add) join(scenario, event, world, options);
+  for (const ObjectEvent& event : scenario.events) {
+    if (event.kind == ObjectEvent::Kind::add) continue;
     const std::uint32_t row = row_of(scenario, world, event.object, event.line);
+    if (event.kind == ObjectEvent::Kind::remove) continue;
     if (!world.movers[row].sensors.empty() || !options.actors[row].controller.name.empty())
       throw base::InputError(scenario.file, event.line,
                              fmt::format("'{}' has sensors or a controller; expected an object without, such as a "
                                          "model named tag1",
                                          event.object));
-    objects_.push_back(row);
   }
 }
 
-void ScenarioEvents::apply(Simulation& simulation, double time) {
-  for (; next_ < events_.size() && events_[next_].at <= time + 5e-10; ++next_)
-    simulation.set_absent(objects_[next_], !events_[next_].present);
+void ScenarioEvents::apply(Simulation& simulation, world::World& world, double time,
+                           const std::function<void(std::uint32_t)>& joined) {
+  for (; next_ < scenario_.events.size() && scenario_.events[next_].at <= time + 5e-10; ++next_) {
+    const ObjectEvent& event = scenario_.events[next_];
+    const std::size_t before = world.movers.size();
+    if (event.kind == ObjectEvent::Kind::add) {
+      std::uint32_t row = 0;
+      at_line(scenario_, event, [&] { row = simulation.add_robot(world, event.joining); });
+      if (row >= before) joined(row);
+      continue;
+    }
+    const std::uint32_t row = row_of(scenario_, world, event.object, event.line);
+    if (event.kind == ObjectEvent::Kind::object)
+      simulation.set_absent(row, !event.present);
+    else
+      at_line(scenario_, event, [&] { simulation.remove_robot(row); });
+  }
 }
 
 }  // namespace sf::scenarios

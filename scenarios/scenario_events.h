@@ -1,26 +1,33 @@
 #pragma once
-// The events of a scenario in a run: objects that come and go.
+// The events of a scenario in a run: objects that come and go, robots that join and leave.
 
 #include <cstdint>
-#include <vector>
+#include <functional>
 
 #include "scenarios/scenario.h"
 
 namespace sf::scenarios {
 
+/// Adds the robots that join later to `world` and `options`, for a check of their controllers, and checks all events.
+/// @param options one actor per mover
+/// @throws base::InputError at the event's line: an unknown object, one with sensors or a controller (a robot cannot
+/// vanish from its controller), an invalid robot, one that would join after the end
+void check_events(const Scenario& scenario, world::World& world, SimulationOptions& options);
+
 class ScenarioEvents {
  public:
-  /// @param scenario must outlive it
-  /// @throws base::InputError for an unknown object, and for one with sensors or a controller: a robot cannot vanish
-  /// from its controller
-  ScenarioEvents(const Scenario& scenario, const world::World& world, const SimulationOptions& options);
+  /// @param scenario checked; must outlive it
+  explicit ScenarioEvents(const Scenario& scenario) : scenario_(scenario) {}
 
   /// Applies the events that are due at `time` [s], to half a nanosecond. Called before each step, with growing times.
-  void apply(Simulation& simulation, double time);
+  /// @param world of the simulation, which grows with robots that join
+  /// @param joined called with the row of each new mover
+  /// @throws base::InputError at the event's line
+  void apply(Simulation& simulation, world::World& world, double time,
+             const std::function<void(std::uint32_t)>& joined);
 
  private:
-  const std::vector<ObjectEvent>& events_;
-  std::vector<std::uint32_t> objects_;  ///< per event: its mover
+  const Scenario& scenario_;
   std::size_t next_ = 0;
 };
 

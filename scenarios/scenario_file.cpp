@@ -33,6 +33,9 @@ constexpr std::array<std::string_view, 16> kKeys{"name", "world", "duration", "s
                                                  "of",   "place", "plant",    "start_at", "default", "states",
                                                  "link", "robot", "expect",   "event"};
 constexpr std::array<std::string_view, 3> kEventKeys{"at", "object", "present"};
+constexpr std::array<std::string_view, 8> kAddKeys{"at",         "add",  "like",     "pose",
+                                                   "controller", "rate", "settings", "link"};
+constexpr std::array<std::string_view, 2> kRemoveKeys{"at", "remove"};
 constexpr std::array<std::string_view, 3> kDefaultKeys{"controller", "rate", "settings"};
 constexpr std::array<std::string_view, 6> kRobotKeys{"name", "controller", "rate", "settings", "link", "pose"};
 constexpr std::array<std::string_view, 7> kStatesKeys{"rate",   "delay",          "jitter",   "loss",
@@ -232,16 +235,41 @@ void read_plant(const Reader& reader, const TomlNode& root, Scenario& scenario) 
   if (!scenario.plant) reader.fail(*node, "'plant' expects \"thesis\" or \"ideal\"");
 }
 
+void require_keys(const Reader& reader, const TomlNode& table, std::span<const std::string_view> known,
+                  std::span<const std::string_view> needed, const std::string& form) {
+  reader.require_known(table, known);
+  for (const std::string_view key : needed)
+    if (world::find(table, key) == nullptr)
+      reader.fail(table, fmt::format("'{}' is missing; an event has {}", key, form));
+}
+
+/// A robot that joins has the scenario's controller unless the event names another.
+ObjectEvent read_joining(const Reader& reader, const TomlNode& table, const Scenario& scenario) {
+  require_keys(reader, table, kAddKeys, std::span(kAddKeys).first(4),
+               "at = SECONDS, add = \"NAME\", like = \"ROBOT\" and pose = [x, y, yaw]");
+  ObjectEvent event{reader.text(table, "add", ""), reader.number(table, "at", 0.0, 0.0, kLongest), true, table.line,
+                    ObjectEvent::Kind::add};
+  event.joining = {event.object, reader.text(table, "like", ""), pose_of(reader, *world::find(table, "pose")),
+                   Actor{controller_config_of(reader, table, scenario.actor.controller),
+                         link_of(reader, reader.table(table, "link"), scenario.actor.link)}};
+  event.joining.actor.link.seed = scenario.seed;
+  return event;
+}
+
 void read_events(const Reader& reader, const TomlNode& root, Scenario& scenario) {
   for (const TomlNode* table : reader.tables(root, "event")) {
-    reader.require_known(*table, kEventKeys);
-    for (const std::string_view key : kEventKeys)
-      if (world::find(*table, key) == nullptr)
-        reader.fail(*table, fmt::format("'{}' is missing; an event has at = SECONDS, object = \"NAME\" and present = "
-                                        "true or false",
-                                        key));
-    scenario.events.push_back({reader.text(*table, "object", ""), reader.number(*table, "at", 0.0, 0.0, kLongest),
-                               reader.flag(*table, "present"), table->line});
+    if (world::find(*table, "add") != nullptr) {
+      scenario.events.push_back(read_joining(reader, *table, scenario));
+    } else if (world::find(*table, "remove") != nullptr) {
+      require_keys(reader, *table, kRemoveKeys, kRemoveKeys, "at = SECONDS and remove = \"NAME\"");
+      scenario.events.push_back({reader.text(*table, "remove", ""), reader.number(*table, "at", 0.0, 0.0, kLongest),
+                                 false, table->line, ObjectEvent::Kind::remove});
+    } else {
+      require_keys(reader, *table, kEventKeys, kEventKeys,
+                   "at = SECONDS, object = \"NAME\" and present = true or false");
+      scenario.events.push_back({reader.text(*table, "object", ""), reader.number(*table, "at", 0.0, 0.0, kLongest),
+                                 reader.flag(*table, "present"), table->line});
+    }
   }
   std::stable_sort(scenario.events.begin(), scenario.events.end(),
                    [](const ObjectEvent& a, const ObjectEvent& b) { return a.at < b.at; });
