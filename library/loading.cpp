@@ -59,12 +59,11 @@ std::string describe_caster(bool software, const std::string& word) {
   return host ? std::string("host, ") + raycast::vector_instructions() : "Vulkan kernels";
 }
 
-control::ControllerConfig controller_of(const sensorfarm::Options& options) {
+control::ControllerConfig controller_of(const std::string& name, const SettingTexts& texts) {
   std::vector<control::Setting> settings;
-  for (const auto& [key, value] : options.settings)
+  for (const auto& [key, value] : texts)
     settings.push_back({key, control::RawText{value}, fmt::format("setting {}: ", key)});
-  return {options.controller, 0.0,
-          control::Settings(fmt::format("controller '{}'", options.controller), std::move(settings))};
+  return {name, 0.0, control::Settings(fmt::format("controller '{}'", name), std::move(settings))};
 }
 
 }  // namespace sf::library

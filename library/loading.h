@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "control/controllers.h"
 #include "gpu/device.h"
@@ -34,6 +36,7 @@ raycast::CasterChoice caster_of(const std::string& word);
 /// As raycast::describe_caster, of the caster that `word` asks for.
 std::string describe_caster(bool software, const std::string& word);
 
-control::ControllerConfig controller_of(const sensorfarm::Options& options);
+using SettingTexts = std::vector<std::pair<std::string, std::string>>;
+control::ControllerConfig controller_of(const std::string& name, const SettingTexts& settings);
 
 }  // namespace sf::library

@@ -106,4 +106,19 @@ void ReadingTable::take(std::span<const base::ReadingBlock> readings) {
     copy(readings);
 }
 
+void ReadingTable::go_on(const ReadingTable& before) {
+  const sensorfarm::Readings& old = before.view_;
+  const auto take = [](auto& rows, const auto& from) { std::copy(from.begin(), from.end(), rows.begin()); };
+  take(times_, before.times_), take(bounds_, before.bounds_), take(fresh_, before.fresh_);
+  take(bound_without_noise_, before.bound_without_noise_), take(sigma_, before.sigma_);
+  take(flagged_, before.flagged_);
+  copy({});
+  for (std::size_t row = 0; row < old.sensors && old.values != nullptr; ++row) {
+    std::copy_n(old.values + row * old.stride, old.elements * old.columns, values_.begin() + row * view_.stride);
+    std::copy_n(before.flags_.begin() + row * old.elements, old.elements, flags_.begin() + row * view_.elements);
+    if (old.hits != nullptr)
+      std::copy_n(old.hits + row * old.hit_stride, old.elements, hits_.begin() + row * view_.hit_stride);
+  }
+}
+
 }  // namespace sf::library

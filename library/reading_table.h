@@ -21,6 +21,9 @@ class ReadingTable {
   /// Takes a tick's readings of this type, in order of delivery. Their memory must last until the next call.
   void take(std::span<const base::ReadingBlock> readings);
 
+  /// Takes the rows of a table of the same type, which had fewer sensors.
+  void go_on(const ReadingTable& before);
+
   std::uint8_t type() const { return group_.type->id; }
   sensorfarm::Readings view() const { return view_; }
 

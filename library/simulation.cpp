@@ -37,11 +37,28 @@ scenarios::SimulationOptions simulation_options(const Options& options, cluster:
   simulation.ranks = ranks;
   simulation.noise = options.noise;
   simulation.caster = library::caster_of(options.caster);
-  simulation.actor.controller = library::controller_of(options);
+  simulation.actor.controller = library::controller_of(options.controller, options.settings);
   return simulation;
 }
 
 }  // namespace
+
+/// What views showed before a robot joined: they keep it.
+struct Earlier {
+  std::vector<Pose> poses;
+  std::vector<Twist> velocities;
+  std::vector<std::uint8_t> contacts, done, owned, present;
+  std::vector<library::ReadingTable> tables;
+  std::shared_ptr<const void> readings;
+};
+
+/// The rows with one more, whose memory stays in `before`.
+template <class Row>
+void add_row(std::vector<Row>& rows, const Row& row, std::vector<Row>& before) {
+  before = rows;
+  before.push_back(row);
+  rows.swap(before);
+}
 
 /// World, simulation and tables of readings, at one address.
 struct Simulation::State {
@@ -52,6 +69,10 @@ struct Simulation::State {
   void set(std::span<const Twist> given);
   void exchange(std::span<const Twist> given);
   void put(std::size_t row, const Pose& pose);
+  std::size_t add(const NewRobot& robot);
+  void add_tables(std::vector<library::ReadingTable>& before);
+  void remove(std::size_t row);
+  record::RunInfo run_info() const;
   void take(const base::TickRecord& tick);
   const library::ReadingTable& table(std::string_view type) const;
   const viz::TopView& top_view(const ImageOptions& wanted);
@@ -72,9 +93,10 @@ struct Simulation::State {
   bool commanded = false;         ///< some row has no controller
   std::vector<Pose> poses;
   std::vector<Twist> velocities;
-  std::vector<std::uint8_t> contacts, done, owned;
-  std::vector<base::ReadingBlock> of_type;                       ///< scratch
-  std::vector<std::pair<ImageOptions, viz::TopView>> top_views;  ///< of the last images, the newest at the end
+  std::vector<std::uint8_t> contacts, done, owned, present;
+  std::shared_ptr<Earlier> earlier = std::make_shared<Earlier>();  ///< of the next robot that joins
+  std::vector<base::ReadingBlock> of_type;                         ///< scratch
+  std::vector<std::pair<ImageOptions, viz::TopView>> top_views;    ///< of the last images, the newest at the end
   std::uint64_t tick = 0;
   double time = 0.0;
 };
@@ -105,6 +127,7 @@ void Simulation::State::prepare() {
   }
   poses.resize(world.movers.size()), velocities.resize(poses.size());
   contacts.resize(poses.size()), done.resize(poses.size());
+  present.assign(poses.size(), 1);
   if (!options.record.empty()) record();
 }
 
@@ -116,14 +139,17 @@ void Simulation::State::record() {
   if (ranks != nullptr && options.record_readings) part = {ranks->rank(), ranks->size()};
   if (options.compression == "none") part.compression = record::Compression::none;
   if (ranks != nullptr && !options.record_readings && ranks->rank() > 0) return;
-  recorder.emplace(options.record,
-                   scenarios::run_info(world, simulation->farm().sensor_set(),
-                                       {.seed = options.seed,
-                                        .record_readings = options.record_readings,
-                                        .caster = library::describe_caster(device->info().software, options.caster),
-                                        .noise = options.noise,
-                                        .too_near_min = options.too_near_min}),
-                   part);
+  recorder.emplace(options.record, run_info(), part);
+}
+
+record::RunInfo Simulation::State::run_info() const {
+  return scenarios::run_info(world, simulation->farm().sensor_set(),
+                             {.seed = options.seed,
+                              .record_readings = options.record_readings,
+                              .caster = library::describe_caster(device->info().software, options.caster),
+                              .noise = options.noise,
+                              .joined = simulation->joined(),
+                              .too_near_min = options.too_near_min});
 }
 
 void Simulation::State::step(std::span<const Twist> given) {
@@ -184,6 +210,57 @@ void Simulation::State::put(std::size_t row, const Pose& pose) {
     throw base::InputError(fmt::format("the pose of '{}' is not finite", robots[row].name));
   simulation->put(static_cast<std::uint32_t>(row), {pose.x, pose.y, pose.z, pose.yaw});
   poses[row] = pose, velocities[row] = {};
+}
+
+std::size_t Simulation::State::add(const NewRobot& robot) {
+  if (ranks != nullptr && !options.record.empty() && options.record_readings)
+    throw base::InputError(
+        fmt::format("'{}' cannot join while several ranks record readings; expected a recording "
+                    "without readings, or one process",
+                    robot.name));
+  scenarios::JoiningRobot joining{
+      .name = robot.name, .like = robot.like, .X_WM = {robot.pose.x, robot.pose.y, robot.pose.z, robot.pose.yaw}};
+  joining.actor.controller = library::controller_of(robot.controller, robot.settings);
+  const std::uint32_t row = simulation->add_robot(world, joining);
+  commanded = commanded || !simulation->status(row).drives;
+  const base::Pose& X = world.movers[row].X_WM;
+  const Pose pose{robot.pose.x, robot.pose.y, X.z, robot.pose.yaw};
+  if (row < poses.size()) {
+    present[row] = 1, poses[row] = pose;
+    return row;
+  }
+  robots.push_back(control::robot_of({world, row, options.seed, nullptr, nullptr, &simulation->farm().sensor_set()}));
+  models.clear();
+  for (const world::Model& model : world.models) models.push_back(model.name);
+  top_views.clear();
+  for (auto* const twists : {&commands, &sent}) twists->emplace_back();
+  add_row(poses, pose, earlier->poses), add_row(velocities, {}, earlier->velocities);
+  for (const auto& [rows, before] : {std::pair{&contacts, &earlier->contacts}, {&done, &earlier->done}})
+    add_row(*rows, std::uint8_t{0}, *before);
+  add_row(present, std::uint8_t{1}, earlier->present);
+  add_row(owned, static_cast<std::uint8_t>(simulation->owns(row)), earlier->owned);
+  add_tables(earlier->tables);
+  earlier->readings = simulation->earlier_readings();
+  earlier = std::make_shared<Earlier>();
+  if (recorder) recorder->add_movers(run_info());
+  return row;
+}
+
+void Simulation::State::add_tables(std::vector<library::ReadingTable>& before) {
+  before.swap(tables);
+  for (const sensors::SensorSet::Group& group : simulation->farm().sensor_set().groups()) {
+    library::ReadingTable& table = tables.emplace_back(group, world.interval);
+    for (const library::ReadingTable& old : before)
+      if (old.view().type == table.view().type) table.go_on(old);
+  }
+}
+
+void Simulation::State::remove(std::size_t row) {
+  if (row >= poses.size() || present[row] == 0)
+    throw base::InputError(fmt::format("there is no robot in row {} to be removed", row));
+  simulation->remove_robot(static_cast<std::uint32_t>(row));
+  present[row] = 0, contacts[row] = 0, done[row] = 0;
+  poses[row] = {NAN, NAN, NAN, NAN}, velocities[row] = {};
 }
 
 void Simulation::State::take(const base::TickRecord& record) {
@@ -268,6 +345,13 @@ void Simulation::reset(std::uint64_t seed) {
   });
 }
 
+std::size_t Simulation::add_robot(const NewRobot& robot) {
+  return library::translated([&] { return state_->add(robot); });
+}
+void Simulation::remove_robot(std::size_t row) {
+  library::translated([&] { state_->remove(row); });
+}
+
 void Simulation::put(std::size_t row, const Pose& pose) {
   library::translated([&] { state_->put(row, pose); });
 }
@@ -278,6 +362,7 @@ std::span<const Pose> Simulation::poses() const { return state_->poses; }
 std::span<const Twist> Simulation::velocities() const { return state_->velocities; }
 std::span<const std::uint8_t> Simulation::contacts() const { return state_->contacts; }
 std::span<const std::uint8_t> Simulation::done() const { return state_->done; }
+std::span<const std::uint8_t> Simulation::present() const { return state_->present; }
 
 std::vector<std::string> Simulation::types() const {
   std::vector<std::string> names;
@@ -322,6 +407,7 @@ void Simulation::draw(const std::string& file) const {
     const Pose& pose = state_->poses[i];
     now.movers[i].X_WM = {pose.x, pose.y, pose.z, pose.yaw};
   }
+  std::erase_if(now.movers, [](const world::Mover& mover) { return base::is_absent(mover.X_WM); });
   library::translated([&] { viz::draw_world(now, file); });
 }
 
@@ -334,7 +420,9 @@ Image Simulation::image(const ImageOptions& options) const {
   });
 }
 
-std::shared_ptr<const void> Simulation::memory() const { return state_; }
+std::shared_ptr<const void> Simulation::memory() const {
+  return std::make_shared<std::pair<std::shared_ptr<State>, std::shared_ptr<Earlier>>>(state_, state_->earlier);
+}
 
 void add_controller(ControllerEntry entry) {
   library::translated([&] { control::add_own_controller(std::move(entry), "add_controller"); });

@@ -69,6 +69,15 @@ auto in_farm(const PySimulation& s, Call&& call) {
   return in_farm(call);
 }
 
+std::vector<std::pair<std::string, std::string>> texts_of(const py::dict& settings) {
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (const auto& [key, value] : settings) {
+    const std::string text = py::str(value);
+    texts.emplace_back(py::str(key), PyBool_Check(value.ptr()) ? (text == "True" ? "true" : "false") : text);
+  }
+  return texts;
+}
+
 /// Options of the constructor by keyword, checked as Python checks them.
 class Keywords {
  public:
@@ -85,10 +94,7 @@ class Keywords {
   void read_settings(std::vector<std::pair<std::string, std::string>>& settings) {
     py::dict given;
     read("settings", given);
-    for (const auto& [key, value] : given) {
-      const std::string text = py::str(value);
-      settings.emplace_back(py::str(key), PyBool_Check(value.ptr()) ? (text == "True" ? "true" : "false") : text);
-    }
+    settings = texts_of(given);
   }
   void finish() const {
     for (const auto& [key, value] : left_)
@@ -216,6 +222,15 @@ void step(PySimulation& s, const py::object& twists) {
   in_farm(s, [&] { s.farm.step({first, s.farm.size()}); });
 }
 
+std::size_t add_robot(PySimulation& s, Text name, Text like, const Pose& pose, const py::object& controller,
+                      const py::dict& settings) {
+  NewRobot robot{name, like, pose, controller_name(controller)};
+  robot.settings = texts_of(settings);
+  if (robot.controller.empty() && !robot.settings.empty())
+    throw py::value_error("'settings' are given without a controller");
+  return in_farm(s, [&] { return s.farm.add_robot(robot); });
+}
+
 py::array image(const PySimulation& s, int width, int height, const std::optional<std::array<double, 4>>& view) {
   auto* const made = new Image(in_farm(s, [&] { return s.farm.image({width, height, view}); }));
   const py::capsule owner(made, [](void* image) { delete static_cast<Image*>(image); });
@@ -234,6 +249,8 @@ void add_state(py::class_<PySimulation>& c) {
           "(robots,): a wall or a robot stopped it.")
       .def_property_readonly(
           "done", [](const PySimulation& s) { return truth(s, s.farm.done()); }, "(robots,): its controller is done.")
+      .def_property_readonly(
+          "present", [](const PySimulation& s) { return truth(s, s.farm.present()); }, "(robots,): it was not removed.")
       .def_property_readonly(
           "robots", [](const PySimulation& s) { return s.farm.robots(); }, "Of each row, as at the start.")
       .def_property_readonly(
@@ -319,6 +336,12 @@ void add_simulation(py::module_& module) {
       .def(
           "put", [](PySimulation& s, std::size_t row, const Pose& pose) { in_farm(s, [&] { s.farm.put(row, pose); }); },
           py::arg("row"), py::arg("pose"), "Places a robot at (x, y, z [m], yaw [rad]), at rest.")
+      .def("add_robot", &add_robot, py::arg("name"), py::arg("like"), py::arg("pose"), py::kw_only(),
+           py::arg("controller") = "", py::arg("settings") = py::dict(),
+           "Adds a copy of a robot at (x, y, z [m], yaw [rad]), at rest, and returns its row.")
+      .def(
+          "remove_robot", [](PySimulation& s, std::size_t row) { in_farm(s, [&] { s.farm.remove_robot(row); }); },
+          py::arg("row"), "Takes a robot out of the world; its row stays.")
       .def(
           "draw", [](const PySimulation& s, Text file) { in_farm(s, [&] { s.farm.draw(file); }); }, py::arg("file"),
           "Writes a picture of the world at this time: PNG, SVG or PDF by its suffix.")

@@ -65,7 +65,7 @@ struct Options {
 };
 
 /// The newest readings of all sensors of one type, as one table with a row per sensor. A view: valid until the next
-/// step, put or reset of its simulation; memory that it points to is kept as long as Simulation::memory.
+/// step, put, add_robot or reset of its simulation; memory that it points to is kept as long as Simulation::memory.
 struct Readings {
   std::string_view type;
   std::size_t sensors = 0;              ///< rows: by robot, and in the order of the world file
@@ -85,6 +85,15 @@ struct Readings {
 
   std::span<const double> row(std::size_t i) const { return {values + i * stride, elements * columns}; }
   std::span<const std::uint32_t> hits_of(std::size_t i) const { return {hits + i * hit_stride, elements}; }
+};
+
+/// A robot that joins a simulation.
+struct NewRobot {
+  std::string name;        ///< 1 to 64 letters, digits or '_', no digit first; of no other model of the world
+  std::string like;        ///< robot of the world, or word of its type, that it is a copy of
+  Pose pose;               ///< finite; its height is that of the original
+  std::string controller;  ///< by name or file; empty: commands drive it
+  std::vector<std::pair<std::string, std::string>> settings = {};  ///< of that controller
 };
 
 /// Size and view of an image.
@@ -123,6 +132,17 @@ class SENSORFARM_API Simulation {
   /// Begins anew at time 0, with another seed where one is given: poses of clones, noise, controllers.
   void reset();
   void reset(std::uint64_t seed);
+  /// Adds a robot, at rest, between two steps: its sensors are read from the next step on. All other rows, and the
+  /// bytes of readings that do not see it, stay as they are. A robot that was removed returns under its name to its
+  /// row. Views of tables before stay as they were. Takes time in proportion to the fleet (docs/own_controller.md).
+  /// With ranks, all call this alike. A reset forgets it.
+  /// @return its row, the last one for a new name
+  /// @throws Error, with nothing changed, for a name that is taken or none, an unknown original, a pose that is not
+  /// finite, a controller that refuses, beyond 65 534 rows, and where several ranks record readings
+  std::size_t add_robot(const NewRobot& robot);
+  /// Removes a robot or tag between two steps: from the next one on it has a pose of NaN, no body and no readings. Its
+  /// row stays, and no other robot gets its row, id or name. @throws Error for a row without a present robot
+  void remove_robot(std::size_t row);
   /// Places a robot or tag, at rest, between two steps. Its sensors see it from the next step on.
   void put(std::size_t row, const Pose& pose);
 
@@ -132,6 +152,7 @@ class SENSORFARM_API Simulation {
   std::span<const Twist> velocities() const;       ///< per row
   std::span<const std::uint8_t> contacts() const;  ///< per row: 1 where a wall or a robot stopped it
   std::span<const std::uint8_t> done() const;      ///< per row: 1 where its controller is done
+  std::span<const std::uint8_t> present() const;   ///< per row: 0 where it was removed
 
   std::vector<std::string> types() const;          ///< sensor types of this world: "laser", ...
   Readings readings(std::string_view type) const;  ///< @throws Error for a type that the world does not have

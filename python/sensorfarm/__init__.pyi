@@ -211,6 +211,15 @@ class Simulation:
         read. None: twists stay as they are. Rows with a controller ignore theirs. Other threads of Python run meanwhile."""
     def reset(self, seed: int | None = None) -> None:
         """Begins anew at time 0. Arrays read before keep the old run."""
+    def add_robot(self, name: str, like: str, pose: Sequence[float], *, controller: str | type = "",
+                  settings: Mapping[str, Any] = ...) -> int:
+        """Adds a copy of the robot `like` (its name, or the word of its type) at (x, y, z, yaw), at rest: its sensors are
+        read from the next step on. Returns its row: the last one, or that of a removed robot of the same name and kind,
+        which returns. Other rows and the bytes of readings that do not see it stay as they are. name: 1 to 64 letters,
+        digits or '_'. Arrays read before keep the rows that they had. A reset forgets it. Raises Error, with nothing changed."""
+    def remove_robot(self, row: int) -> None:
+        """Takes a robot out of the world: its pose is NaN, its readings stay as they were. Its row, id and name stay its own.
+        Raises Error for a row without a present robot."""
     def put(self, row: int, pose: Sequence[float]) -> None:
         """Places a robot at (x, y, z, yaw), at rest. Its sensors see it from the next step on."""
     def draw(self, file: str) -> None:
@@ -237,6 +246,9 @@ class Simulation:
     @property
     def done(self) -> NDArray[np.bool_]:
         """(robots,): its controller is done."""
+    @property
+    def present(self) -> NDArray[np.bool_]:
+        """(robots,): False where remove_robot took it out of the world."""
     @property
     def robots(self) -> list[Robot]: ...
     @property

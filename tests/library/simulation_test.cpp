@@ -51,6 +51,48 @@ TEST(Library, CommandsAndControllersGiveOneHash) {
   EXPECT_NE(other.hash(), commanded.hash());
 }
 
+/// Rows, readings of before and views of before stay as they were; the new row is read from the next step on.
+TEST(Library, RobotsJoinAndLeave) {
+  Simulation simulation(kCave, {.robots = 5, .seed = 4}), alone(kCave, {.robots = 5, .seed = 4});
+  drive(simulation, 10), drive(alone, 10);
+  const Readings before = simulation.readings("laser");
+  const std::shared_ptr<const void> memory = simulation.memory();
+  const std::span<const Pose> poses = simulation.poses();
+  const std::vector<double> ranges(before.row(0).begin(), before.row(0).end());
+  const std::string like = simulation.robots()[0].name;
+  EXPECT_EQ(simulation.add_robot({"late", like, {1e5, 1e5, 0.0, 0.0}, "", {}}), 5u);
+  EXPECT_TRUE(std::equal(ranges.begin(), ranges.end(), before.row(0).begin()));
+  EXPECT_EQ(poses.size(), 5u);
+  EXPECT_TRUE(std::isfinite(poses[4].x));
+  const Readings after = simulation.readings("laser");
+  ASSERT_EQ(after.sensors, 6u);
+  EXPECT_TRUE(std::equal(ranges.begin(), ranges.end(), after.row(0).begin()));
+  EXPECT_TRUE(std::isnan(after.times[5]));
+  EXPECT_EQ(simulation.size(), 6u);
+  EXPECT_EQ(simulation.robots()[5].name, "late");
+  EXPECT_EQ(simulation.poses()[5].x, 1e5);
+
+  drive(simulation, 10), drive(alone, 10);
+  const Readings scans = simulation.readings("laser"), expected = alone.readings("laser");
+  EXPECT_FALSE(std::isnan(scans.times[5]));
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_TRUE(std::equal(expected.row(i).begin(), expected.row(i).end(), scans.row(i).begin())) << i;
+
+  simulation.remove_robot(5);
+  EXPECT_EQ(simulation.present()[5], 0);
+  simulation.step(std::vector<Twist>(6));
+  EXPECT_TRUE(std::isnan(simulation.poses()[5].x));
+  EXPECT_EQ(simulation.readings("laser").fresh[5], 0);
+  EXPECT_GT(simulation.image().rgb.size(), 0u);
+  EXPECT_THROW(simulation.remove_robot(5), Error);
+  EXPECT_THROW(simulation.remove_robot(6), Error);
+  EXPECT_THROW(simulation.add_robot({like, like, {}, "", {}}), Error);
+  EXPECT_EQ(simulation.add_robot({"late", like, {1e5, 2.0, 0.0, 0.0}, "", {}}), 5u);
+  EXPECT_EQ(simulation.present()[5], 1);
+  simulation.reset();
+  EXPECT_EQ(simulation.size(), 5u);
+}
+
 TEST(Library, WithoutMpirunOneRankHasAll) {
   Simulation alone(kCave, {.robots = 5});
   Simulation shared(kCave, {.robots = 5, .ranks = true});

@@ -237,6 +237,38 @@ class Steps(unittest.TestCase):
         self.assertGreater(len(picture), 5000)
 
 
+class Joining(unittest.TestCase):
+    def test_robots_join_and_leave(self):
+        """Arrays of before keep their rows and values; commands have a row more."""
+        sim = room()
+        sim.step()
+        poses, ranges = sim.poses, sim.readings("laser")
+        old = ranges.copy()
+        self.assertEqual(sim.add_robot("late", "lead", (0, 1.2, 0, 1.5)), 2)
+        numpy.testing.assert_array_equal(ranges, old)
+        self.assertEqual((poses.shape, sim.poses.shape, len(sim)), ((2, 4), (3, 4), 3))
+        numpy.testing.assert_array_equal(sim.readings("laser")[:2], old)
+        sim.step(numpy.zeros((3, 3)))
+        self.assertTrue(numpy.isfinite(sim.readings("laser")[2]).all())
+        numpy.testing.assert_array_equal(ranges, old)
+        sim.remove_robot(2)
+        sim.step()
+        numpy.testing.assert_array_equal(sim.present, [True, True, False])
+        self.assertTrue(numpy.isnan(sim.poses[2]).all())
+
+    def test_refusals(self):
+        sim = room()
+        for arguments, said in ((("lead", "lead", (0, 0, 0, 0)), "taken"), (("a b", "lead", (0, 0, 0, 0)), "letters"),
+                                (("a", "leed", (0, 0, 0, 0)), "lead"), (("a", "lead", (0, float("nan"), 0, 0)), "finite")):
+            with self.assertRaisesRegex(sensorfarm.Error, said):
+                sim.add_robot(*arguments)
+        with self.assertRaises(sensorfarm.Error):
+            sim.remove_robot(7)
+        with self.assertRaises(ValueError):
+            sim.add_robot("a", "lead", (0, 0, 0, 0), settings={"speed": 1})
+        self.assertEqual(len(sim), 2)
+
+
 class Images(unittest.TestCase):
     """Of the room of 4 m, with 100 pixels to the metre."""
     WHOLE = dict(width=400, height=400, view=(-2, -2, 2, 2))
