@@ -170,6 +170,7 @@ std::string video_file(const RunOptions& options, std::uint32_t resets) {
 
 /// A fleet from time 0 on, with what follows it.
 struct Course {
+  world::World& ground_world;
   const world::World& world;
   cluster::Ranks* ranks;
   scenarios::Simulation simulation;
@@ -183,7 +184,8 @@ struct Course {
   std::uint64_t contacts_begun = 0;
 
   Course(Ground& ground, const RunOptions& options, cluster::Ranks* of, std::uint32_t resets)
-      : world(ground.world),
+      : ground_world(ground.world),
+        world(ground.world),
         ranks(of),
         simulation(world, ground.device, simulation_options(world, options, ranks, scenario_in(ground))),
         tally(simulation, world.movers.size(),
@@ -207,7 +209,7 @@ struct Course {
 
   /// Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
   void step(scenarios::Operator& users) {
-    if (events) events->apply(simulation, simulated());
+    if (events) events->apply(simulation, ground_world, simulated(), [](std::uint32_t) {});
     const base::TickRecord tick = simulation.step();
     users.publish(tick);
     outputs.write(tick, [&](std::int64_t time) { users.keep_pace(1e-9 * static_cast<double>(time) + world.interval); });

@@ -53,7 +53,8 @@ std::string installed_file(const std::string& file) {
   std::error_code ignored;
   if (fs::path(file).is_absolute() || fs::exists(file, ignored)) return file;
   const char* const data = std::getenv("SENSORFARM_DATA");
-  for (const fs::path& folder : {fs::path(data != nullptr ? data : ""), prefix() / "share" / "sensorfarm"})
+  const fs::path share = fs::path("share") / "sensorfarm";  // in a build folder: links to the sources
+  for (const fs::path& folder : {fs::path(data != nullptr ? data : ""), prefix() / share, own_folder() / share})
     if (folder.is_absolute() && fs::exists(folder / file, ignored)) return (folder / file).string();
   return file;
 }

@@ -14,7 +14,7 @@ std::vector<std::string> plugin_folders();
 std::string plugin_file(const std::string& name);
 
 /// `file` where it exists or is absolute; else that file below SENSORFARM_DATA, or below share/sensorfarm/ of the
-/// installation, if it exists there; else `file`.
+/// installation or build folder, if it exists there; else `file`.
 std::string installed_file(const std::string& file);
 
 }  // namespace sf::base

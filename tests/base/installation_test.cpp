@@ -31,6 +31,15 @@ TEST(Installation, FilesThatExistAreTakenAsTheyAre) {
   fs::remove_all(data);
 }
 
+// Users of a build folder work in folders of their own.
+TEST(Installation, ABuildFolderHasTheWorldsAndExperimentsOfItsSources) {
+  const fs::path before = fs::current_path();
+  fs::current_path(fs::temp_directory_path());
+  for (const char* file : {"worlds/robots.inc", "worlds/cave.world", "experiments/simville.toml"})
+    EXPECT_TRUE(fs::equivalent(installed_file(file), fs::path(SF_SOURCE_DIR) / file)) << file;
+  fs::current_path(before);
+}
+
 TEST(Installation, PluginsStandBesideTheProgram) {
   const fs::path plugin = SF_BINARY_DIR "/sensorfarm_of_a_test.so";
   std::ofstream{plugin} << "";
