@@ -1,33 +1,94 @@
 #include "apps/bridge_options.h"
 
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
 #include "apps/address.h"
 #include "apps/exposure_warning.h"
 #include "apps/text.h"
+#include "base/error.h"
+#include "base/installation.h"
 #include "netio/bridges/player_bridge.h"
 #include "netio/bridges/ros2_bridge.h"
 #include "netio/bridges/viewer.h"
 
 namespace sf::apps {
 
+namespace {
+
+/// Whose worlds users of bridges may load: those beside the run's, and those that are installed.
+std::vector<std::string> world_folders(const world::World& world) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> folders;
+  std::error_code ignored;
+  const fs::path own = fs::path(world.file).parent_path();
+  for (const fs::path& folder : {own.empty() ? fs::path(".") : own, fs::path(base::installed_file("worlds"))})
+    if (fs::is_directory(folder, ignored) &&
+        std::none_of(folders.begin(), folders.end(),
+                     [&](const std::string& other) { return fs::equivalent(other, folder, ignored); }))
+      folders.push_back(folder.string());
+  return folders;
+}
+
+}  // namespace
+
 LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world, const sensors::SensorSet& sensor_set,
-                         const scenarios::RunSettings& settings, bool simulated) {
+                         const scenarios::RunSettings& settings, bool simulated)
+    : options_(options), world_(world), sensor_set_(sensor_set), settings_(settings), simulated_(simulated) {
   if (!options.any()) return;
   info_ = scenarios::run_info(world, sensor_set, settings);
   record::name_frames(info_);
-  const bridges::Scene scene{world, sensor_set, info_, simulated};
-  if (options.ros2) bridges_.add(std::make_unique<bridges::Ros2Bridge>(bridges::ros2_options(*options.ros2), scene));
+  if (options.ros2) open_ros2();
   if (!options.player.empty()) {
-    const netio::Endpoint bind = read_own_address(options.player, "--player");
-    bridges_.add(std::make_unique<bridges::PlayerBridge>(scene, bind));
-    warn_of_exposure(bind.address, simulated ? "read sensors and drive robots" : "read sensors",
-                     "Player has no passwords", "--player");
+    open_player();
+    warn_of_exposure(read_own_address(options.player, "--player").address,
+                     simulated ? "read sensors and drive robots" : "read sensors", "Player has no passwords",
+                     "--player");
   }
-  if (options.view) {
-    const bridges::ViewerOptions view{*options.view,
-                                      simulated ? bridges::ViewerMode::run : bridges::ViewerMode::service};
-    bridges_.add(std::make_unique<bridges::Viewer>(scene, view));
-  }
+  if (options.view) open_view();
   for (const std::string& line : bridges_.describe()) print_message("{}", line);
+}
+
+void LiveBridges::open_ros2() {
+  const bridges::Scene scene{world_, sensor_set_, info_, simulated_,
+                             simulated_ ? world_folders(world_) : std::vector<std::string>()};
+  bridges_.add(std::make_unique<bridges::Ros2Bridge>(bridges::ros2_options(*options_.ros2), scene));
+}
+
+void LiveBridges::open_player() {
+  const netio::Endpoint bind = read_own_address(options_.player, "--player");
+  auto player = std::make_unique<bridges::PlayerBridge>(bridges::Scene{world_, sensor_set_, info_, simulated_}, bind);
+  options_.player = netio::text(player->endpoint());
+  bridges_.add(std::move(player));
+}
+
+void LiveBridges::open_view() {
+  const bridges::ViewerOptions view{*options_.view,
+                                    simulated_ ? bridges::ViewerMode::run : bridges::ViewerMode::service};
+  auto viewer = std::make_unique<bridges::Viewer>(bridges::Scene{world_, sensor_set_, info_, simulated_}, view);
+  options_.view->port = viewer->server().port();
+  bridges_.add(std::move(viewer));
+}
+
+void LiveBridges::prepare_change() {
+  bridges_.remove_if([](const bridges::Bridge& bridge) { return !bridge.keeps_on(); });
+}
+
+void LiveBridges::show_scene(bool is_new) {
+  if (!options_.any()) return;
+  info_ = scenarios::run_info(world_, sensor_set_, settings_);
+  record::name_frames(info_);
+  bridges_.show_scene(is_new);
+  const auto reopen = [](auto&& open) {
+    try {
+      open();
+    } catch (const base::InputError& error) {
+      print_message("{}", error.what());  // another program took its port
+    }
+  };
+  if (!options_.player.empty()) reopen([this] { open_player(); });
+  if (options_.view) reopen([this] { open_view(); });
 }
 
 void LiveBridges::write(const base::TickRecord& record) {

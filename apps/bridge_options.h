@@ -20,10 +20,24 @@ class LiveBridges : public base::Sink {
   /// Shows a tick of a service, which nobody pauses or drives.
   void write(const base::TickRecord& record) override;
 
+  /// Before world and sensor set change, in place: bridges that cannot go on are closed, until `show_scene`.
+  void prepare_change();
+  /// @param is_new it is another world
+  void show_scene(bool is_new);
+
   bridges::Bridges& bridges() { return bridges_; }
   bool empty() const { return bridges_.empty(); }
 
  private:
+  void open_ros2();
+  void open_player();
+  void open_view();
+
+  BridgeOptions options_;  ///< with the ports that were chosen
+  const world::World& world_;
+  const sensors::SensorSet& sensor_set_;
+  const scenarios::RunSettings settings_;
+  const bool simulated_;
   record::RunInfo info_;
   bridges::Bridges bridges_;
   bridges::Requests ignored_;

@@ -28,6 +28,11 @@ ControlMetrics::ControlMetrics(const scenarios::Simulation& simulation, std::siz
   for (std::uint32_t m = 0; m < movers; ++m) facts_.robots += simulation.status(m).drives;
 }
 
+void ControlMetrics::add_mover() {
+  goals_.emplace_back();
+  rests_.emplace_back();
+}
+
 void ControlMetrics::update(const base::TickRecord& tick) {
   time_ = tick.time;
   for (std::uint32_t m = 0; m < goals_.size(); ++m) {

@@ -49,6 +49,8 @@ class ControlMetrics {
  public:
   ControlMetrics(const scenarios::Simulation& simulation, std::size_t movers, std::string controller);
 
+  /// A robot joined, in the last row.
+  void add_mover();
   /// After every `Simulation::step`, with what it gave.
   void update(const base::TickRecord& tick);
   /// @param ranks that share the fleet, which all call this; null: none

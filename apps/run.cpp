@@ -106,9 +106,45 @@ struct Ground {
         sensor_set(with_accuracy(options)),
         caster(raycast::describe_caster(device.info().software)) {
     warn_of_many_times(sensor_set);
+    note_size();
+  }
+
+  /// A world, and the layout of its packets.
+  struct Scenery {
+    world::World world;
+    std::optional<server::StreamLayout> layout;
+  };
+  /// @param file of a world; empty: one without anything @throws base::InputError
+  Scenery load(const RunOptions& options, const std::string& file) const {
+    Scenery scenery;
+    scenery.world.interval = world.interval;
+    if (file.empty())
+      world::update_extent_and_hash(scenery.world);
+    else
+      scenery.world = load_with_robots(file, load_options(options, nullptr), 0, options.seed);
+    scenery.layout = layout_of(scenery.world, options);
+    return scenery;
+  }
+  void swap(Scenery& scenery) {
+    std::swap(world, scenery.world);
+    std::swap(layout, scenery.layout);
+    sensor_set = sensors::SensorSet(world);
+    note_size();
+  }
+  /// Robots that joined are in the last rows.
+  bool has_joined() const { return world.movers.size() > movers_; }
+  void forget_joined() {
+    if (!has_joined()) return;
+    world.movers.resize(movers_);
+    world.models.resize(models_);
+    world::update_extent_and_hash(world);
+    sensor_set = sensors::SensorSet(world);
   }
 
  private:
+  void note_size() { movers_ = world.movers.size(), models_ = world.models.size(); }
+  std::size_t movers_ = 0, models_ = 0;  ///< of the world at load
+
   /// Ranks with tiles read outlines when they know their part, except where each keeps the whole world, and its
   /// recording.
   static world::LoadOptions load_options(const RunOptions& options, const cluster::Ranks* ranks) {
@@ -207,6 +243,17 @@ struct Course {
 
   double simulated() const { return static_cast<double>(ticks) * world.interval; }
 
+  /// A robot that stands until it is commanded. @throws base::InputError, with nothing changed
+  void add(Ground& ground, const bridges::Joining& robot) {
+    const std::size_t before = world.movers.size();
+    simulation.add_robot(ground.world, {.name = robot.name, .like = robot.like, .X_WM = robot.X_WM});
+    if (world.movers.size() == before) return;  // it returned
+    ground.sensor_set = sensors::SensorSet(world);
+    contacts.emplace_back();
+    tally.add_mover();
+    outputs.add_movers(simulation.joined());
+  }
+
   /// Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
   void step(scenarios::Operator& users) {
     if (events) events->apply(simulation, ground_world, simulated(), [](std::uint32_t) {});
@@ -244,6 +291,30 @@ double speed_of(const RunOptions& options, bool watched) {
   return speed > 0.0 ? speed : std::numeric_limits<double>::infinity();
 }
 
+/// `act()`, with its fault in the outcome.
+template <class Act>
+void attempt(bridges::Outcome& outcome, bridges::Outcome::Fault fault, Act&& act) {
+  outcome.done = true;
+  try {
+    act();
+  } catch (const base::InputError& error) {
+    outcome = {true, fault, error.what()};
+  } catch (const base::DeviceError& error) {
+    outcome = {true, fault, error.what()};
+  }
+}
+
+void change_fleet(Course& course, Ground& ground, LiveBridges& live, const std::vector<bridges::Joining>& joining,
+                  const std::vector<bridges::Leaving>& leaving) {
+  using Fault = bridges::Outcome::Fault;
+  for (const bridges::Leaving& each : leaving)
+    attempt(*each.outcome, Fault::failed, [&] { course.simulation.remove_robot(each.mover); });
+  if (joining.empty()) return;
+  live.prepare_change();
+  for (const bridges::Joining& each : joining) attempt(*each.outcome, Fault::failed, [&] { course.add(ground, each); });
+  live.show_scene(false);
+}
+
 int simulate(RunOptions options, cluster::Ranks* ranks) {
   std::optional<Ground> ground;
   std::optional<Course> course;
@@ -270,6 +341,45 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
   std::atomic<bool> all_stop = false;
   scenarios::Operator users(live->bridges(), ranks != nullptr ? all_stop : stop_requested(),
                             speed_of(options, !live->empty()));
+  if (ranks == nullptr) {
+    users.on_fleet_changes(
+        [&](const auto& joining, const auto& leaving) { change_fleet(*course, *ground, *live, joining, leaving); });
+    users.set_loads_worlds(true);
+  }
+  const auto reset = [&] {
+    users.begin_again();
+    course.reset();
+    if (!ground->has_joined()) return begin(users.resets());
+    live->prepare_change();
+    ground->forget_joined();
+    begin(users.resets());
+    live->show_scene(true);
+  };
+  /// The world that a user asked for. Where it is refused, the run goes on.
+  const auto change_world = [&] {
+    const bridges::WorldChange change = users.take_world();
+    using Fault = bridges::Outcome::Fault;
+    Ground::Scenery next;
+    attempt(*change.outcome, Fault::unreadable, [&] { next = ground->load(options, change.file); });
+    if (change.outcome->fault != Fault::none) return;
+    if (change.strict && !next.world.warnings.empty()) {
+      const world::Warning& first = next.world.warnings.front();
+      *change.outcome = {true, Fault::unsupported, fmt::format("{}:{}: {}", first.file, first.line, first.message)};
+      return;
+    }
+    course.reset();
+    live->prepare_change();
+    ground->forget_joined();
+    ground->swap(next);
+    users.begin_again();
+    attempt(*change.outcome, Fault::failed, [&] { begin(users.resets()); });
+    if (change.outcome->fault != Fault::none) {
+      ground->swap(next);
+      begin(users.resets());
+    }
+    users.pause();
+    live->show_scene(true);
+  };
   install_stop_handlers();
 
   const double duration = options.duration.value_or(live->empty() ? 60.0 : kWithoutEnd);
@@ -283,8 +393,11 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
       next = users.wait(course->simulation, course->simulated());
       if (next == scenarios::Operator::Next::stop) break;
       if (next == scenarios::Operator::Next::reset) {
-        users.begin_again();
-        begin(users.resets());
+        reset();
+        continue;
+      }
+      if (next == scenarios::Operator::Next::world) {
+        change_world();
         continue;
       }
       if (stop_requested()) course->simulation.request_stop();

@@ -7,7 +7,6 @@
 #include "base/time.h"
 #include "netio/address_token.h"
 #include "netio/own_end.h"
-#include "scenarios/run_info.h"
 
 namespace sf::apps {
 
@@ -17,9 +16,16 @@ RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sens
                        const std::optional<server::StreamLayout>& layout, const std::string& caster,
                        const RunOptions& options, const std::string& record, const record::RecordingPart& part,
                        const std::string& video)
-    : sensor_set_(sensor_set),
+    : world_(world),
+      sensor_set_(sensor_set),
+      settings_{.seed = options.seed,
+                .record_readings = options.record_readings,
+                .no_return_inf = options.no_return_inf,
+                .caster = caster,
+                .too_near_min = options.too_near_min},
       no_return_filter_(sensor_set, options.no_return_inf),
-      session_token_{netio::random_session(), 0} {
+      session_token_{netio::random_session(), 0},
+      sent_movers_(world.movers.size()) {
   if (layout) {
     address_ = netio::resolve(options.send);
     netio::OutboxOptions outbox = server::outbox_options(sensor_set);
@@ -27,12 +33,7 @@ RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sens
     publisher_.emplace(world, sensor_set, *layout, netio::Outbox(outbox));
   }
   if (record.empty() && video.empty()) return;
-  const record::RunInfo info = scenarios::run_info(world, sensor_set,
-                                                   {.seed = options.seed,
-                                                    .record_readings = options.record_readings,
-                                                    .no_return_inf = options.no_return_inf,
-                                                    .caster = caster,
-                                                    .too_near_min = options.too_near_min});
+  const record::RunInfo info = scenarios::run_info(world, sensor_set, settings_);
   VideoOptions shown = options;
   shown.video = video;
   if (!video.empty()) video_.emplace(world, info, shown);
@@ -53,12 +54,17 @@ void RunOutputs::write(base::TickRecord tick, const std::function<void(std::int6
       wait(time);
       waited += base::seconds_since(before);
     }
-    addressed_readings_.push_back({&reading, address_, session_token_});
+    if (reading.mover < sent_movers_) addressed_readings_.push_back({&reading, address_, session_token_});
   }
   if (publisher_) send();
   if (recorder_) recorder_->write(tick);
   if (video_) video_->write(tick);
   seconds_ += base::seconds_since(start) - waited;
+}
+
+void RunOutputs::add_movers(const std::vector<record::JoinedMover>& joined) {
+  settings_.joined = joined;
+  if (recorder_) recorder_->add_movers(scenarios::run_info(world_, sensor_set_, settings_));
 }
 
 void RunOutputs::finish(RunReport& facts) {

@@ -14,6 +14,7 @@
 #include "netio/server/no_return_filter.h"
 #include "netio/server/reading_publisher.h"
 #include "record/recorder.h"
+#include "scenarios/run_info.h"
 
 namespace sf::apps {
 
@@ -30,13 +31,17 @@ class RunOutputs {
   /// @param wait called with the time [ns] at which a reading is delivered, before it is sent: the tick's, or one
   /// before it
   void write(base::TickRecord tick, const std::function<void(std::int64_t)>& wait);
+  /// Robots joined, in the world's last rows. They are recorded; packets of their readings are not sent.
+  void add_movers(const std::vector<record::JoinedMover>& joined);
   /// Ends recording and video. @param facts out: what was sent and recorded
   void finish(RunReport& facts);
 
  private:
   void send();
 
+  const world::World& world_;
   const sensors::SensorSet& sensor_set_;
+  scenarios::RunSettings settings_;
   server::NoReturnFilter no_return_filter_;
   std::vector<server::AddressedReading> addressed_readings_;  ///< that go at one time
   std::uint32_t address_ = 0;
@@ -44,6 +49,7 @@ class RunOutputs {
   std::optional<server::ReadingPublisher> publisher_;
   std::optional<record::Recorder> recorder_;
   std::optional<RunVideo> video_;
+  std::size_t sent_movers_;  ///< whose readings have ports
   double seconds_ = 0.0;
 };
 

@@ -24,6 +24,7 @@ Operator::Next Operator::wait(Simulation& simulation, double simulated) {
   measure(simulated);
   while (!stop_) {
     apply(simulation, simulated);
+    if (world_) return Next::world;
     if (reset_) return Next::reset;
     if (state_.paused) {
       if (steps_ > 0) return --steps_, Next::tick;
@@ -65,7 +66,33 @@ void Operator::apply(Simulation& simulation, double simulated) {
   }
   if (requests_.paused) state_.paused = *requests_.paused;
   steps_ = state_.paused ? steps_ + requests_.steps : 0;
+  steps_ -= std::min(steps_, requests_.dropped_steps);
+  apply_fleet_changes();
   reset_ = requests_.reset;
+}
+
+void Operator::apply_fleet_changes() {
+  const auto refuse = [](bridges::Outcome& outcome, const char* why) {
+    outcome = {true, bridges::Outcome::Fault::failed, why};
+  };
+  if (change_fleet_ && !(requests_.joining.empty() && requests_.leaving.empty()))
+    change_fleet_(requests_.joining, requests_.leaving);
+  const auto refuse_rest = [&](const auto& all) {
+    for (const auto& each : all)
+      if (!each.outcome->done) refuse(*each.outcome, "robots cannot join or leave this run");
+  };
+  refuse_rest(requests_.joining), refuse_rest(requests_.leaving);
+  if (!requests_.world) return;
+  if (loads_worlds_)
+    world_ = std::move(requests_.world);
+  else
+    refuse(*requests_.world->outcome, "this run loads no other world");
+}
+
+bridges::WorldChange Operator::take_world() {
+  bridges::WorldChange world = std::move(*world_);
+  world_.reset();
+  return world;
 }
 
 void Operator::set_anchor(double simulated) {

@@ -4,6 +4,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "netio/bridges/bridge.h"
 #include "scenarios/simulation.h"
@@ -16,7 +20,15 @@ class Operator {
   /// @param stop ends all waiting; it and the bridges outlive the operator
   Operator(bridges::Bridges& bridges, const std::atomic<bool>& stop, double speed);
 
-  enum class Next { tick, reset, stop };
+  /// Changes of the fleet between two ticks, whose outcomes it writes.
+  using ChangeFleet =
+      std::function<void(const std::vector<bridges::Joining>& joining, const std::vector<bridges::Leaving>& leaving)>;
+  /// Without it, and with null, such requests are refused.
+  void on_fleet_changes(ChangeFleet change) { change_fleet_ = std::move(change); }
+  /// Whether `wait` returns `Next::world`; else such requests are refused.
+  void set_loads_worlds(bool loads) { loads_worlds_ = loads; }
+
+  enum class Next { tick, reset, world, stop };
   /// Does what users asked for, and waits until the run's next tick is due, or asked for.
   /// @param simulated [s] simulated so far, which is to take as long in real time at speed 1
   Next wait(Simulation& simulation, double simulated);
@@ -26,12 +38,17 @@ class Operator {
   void publish(const base::TickRecord& tick);
   /// The run begins again.
   void begin_again();
+  /// The world that a user asked for, after `Next::world`: the caller writes the outcome, and begins again and pauses
+  /// where it is good.
+  bridges::WorldChange take_world();
+  void pause() { state_.paused = true; }
 
   std::uint32_t resets() const { return state_.runs; }
 
  private:
   using Clock = std::chrono::steady_clock;
   void apply(Simulation& simulation, double simulated);
+  void apply_fleet_changes();
   void set_anchor(double simulated);
   void measure(double simulated);
   Clock::time_point due_at(double simulated) const;
@@ -40,6 +57,9 @@ class Operator {
   const std::atomic<bool>& stop_;
   bridges::Requests requests_;
   bridges::RunState state_;
+  ChangeFleet change_fleet_;
+  bool loads_worlds_ = false;
+  std::optional<bridges::WorldChange> world_;
   std::uint32_t steps_ = 0;  ///< ticks to be made although paused
   bool reset_ = false;
   Clock::time_point since_;  ///< since then the run keeps its speed, from `from_` on

@@ -7,7 +7,10 @@ void Requests::clear() {
   placements.clear();
   paused.reset();
   speed.reset();
-  steps = 0;
+  steps = dropped_steps = 0;
+  joining.clear();
+  leaving.clear();
+  world.reset();
   reset = false;
   time.reset();
 }
@@ -18,13 +21,21 @@ void Requests::add(Requests& later) {
   if (later.paused) paused = later.paused;
   if (later.speed) speed = later.speed;
   if (later.time) time = later.time;
+  for (Joining& each : later.joining) joining.push_back(std::move(each));
+  for (Leaving& each : later.leaving) leaving.push_back(std::move(each));
+  if (later.world) world = std::move(later.world);
   steps += later.steps;
+  dropped_steps += later.dropped_steps;
   reset = reset || later.reset;
   later.clear();
 }
 
 void Bridges::publish(const base::TickRecord& tick, const RunState& state) {
   for (const auto& bridge : bridges_) bridge->publish(tick, state);
+}
+
+void Bridges::show_scene(bool is_new) {
+  for (const auto& bridge : bridges_) bridge->show_scene(is_new);
 }
 
 void Bridges::publish(const RunState& state) {

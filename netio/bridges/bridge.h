@@ -29,6 +29,34 @@ struct Scene {
   const sensors::SensorSet& sensor_set;
   const record::RunInfo& info;  ///< with frames and topics (`record::name_frames`); movers are rows of the world's
   bool simulated = true;        ///< robots are moved by the simulation and take commands; false: `serve`
+  std::vector<std::string> world_folders = {};  ///< whose worlds users may load; empty: none
+};
+
+/// What became of a request that the run may refuse: written before the next `publish`.
+struct Outcome {
+  enum class Fault : std::uint8_t { none, failed, unreadable, unsupported };
+  bool done = false;
+  Fault fault = Fault::none;
+  std::string reason;  ///< of a fault
+};
+
+/// A robot that is to join, a copy of another.
+struct Joining {
+  std::string name, like;  ///< see world::append_robot
+  base::Pose X_WM;         ///< finite
+  std::shared_ptr<Outcome> outcome;
+};
+
+struct Leaving {
+  std::uint32_t mover = 0;
+  std::shared_ptr<Outcome> outcome;
+};
+
+/// A world to go on with, from time 0, paused.
+struct WorldChange {
+  std::string file;     ///< empty: a world without anything
+  bool strict = false;  ///< files with warnings are refused
+  std::shared_ptr<Outcome> outcome;
 };
 
 /// A mover's velocity, in its frame, in force until the next one.
@@ -48,8 +76,12 @@ struct Requests {
   std::vector<Command> commands;  ///< from its first on, a robot is driven from outside, no longer by its controller
   std::vector<Placement> placements;
   std::optional<bool> paused;
-  std::optional<double> speed;       ///< [1] simulated over real time, > 0; infinity: as fast as the machine allows
-  std::uint32_t steps = 0;           ///< ticks to be made while paused
+  std::optional<double> speed;      ///< [1] simulated over real time, > 0; infinity: as fast as the machine allows
+  std::uint32_t steps = 0;          ///< ticks to be made while paused
+  std::uint32_t dropped_steps = 0;  ///< of those that were asked for before
+  std::vector<Joining> joining;
+  std::vector<Leaving> leaving;
+  std::optional<WorldChange> world;
   bool reset = false;                ///< begins again at time 0, with the same seed
   std::optional<std::int64_t> time;  ///< [ns] of a recording, to go to
 
@@ -76,6 +108,11 @@ class Bridge {
   virtual void publish(const RunState& state) = 0;
   /// Appends requests. Never waits.
   virtual void take(Requests& requests) = 0;
+  /// Whether it goes on when its scene changes. Else it is closed before, and another one is opened.
+  virtual bool keeps_on() const { return false; }
+  /// World, sensor set and info of its scene have more or other movers than before: they were changed in place, between
+  /// two ticks. @param is_new it is another world
+  virtual void show_scene(bool /*is_new*/) {}
   /// What it is and where, as a line for users: "view on http://127.0.0.1:8765".
   virtual std::string describe() const = 0;
 };
@@ -84,6 +121,12 @@ class Bridge {
 class Bridges {
  public:
   void add(std::unique_ptr<Bridge> bridge) { bridges_.push_back(std::move(bridge)); }
+  /// Those for which `condition` holds are closed.
+  template <class Condition>
+  void remove_if(Condition&& condition) {
+    std::erase_if(bridges_, [&](const auto& bridge) { return condition(*bridge); });
+  }
+  void show_scene(bool is_new);
   bool empty() const { return bridges_.empty(); }
 
   void publish(const base::TickRecord& tick, const RunState& state);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <shared_mutex>
 #include <utility>
 
 #include "base/error.h"
@@ -40,11 +41,36 @@ std::string service_id(DdsGuid guid, std::size_t number) {
   return text + ";";
 }
 
-/// Tags follow packets; all other movers can be driven.
-std::size_t count_driven(const world::World& world) {
-  return static_cast<std::size_t>(
-      std::count_if(world.movers.begin(), world.movers.end(), [](const world::Mover& mover) { return !mover.is_tag; }));
-}
+/// A participant that gets more readers and writers while another thread writes.
+class GrowingParticipant : public DdsParticipant {
+ public:
+  explicit GrowingParticipant(std::unique_ptr<DdsParticipant> inner) : inner_(std::move(inner)) {}
+  DdsGuid guid() const override { return inner_->guid(); }
+  std::size_t add_writer(const DdsEndpoint& endpoint, DdsGuid& guid) override {
+    const std::unique_lock lock(mutex_);
+    return inner_->add_writer(endpoint, guid);
+  }
+  std::size_t add_reader(const DdsEndpoint& endpoint, DdsGuid& guid) override {
+    const std::unique_lock lock(mutex_);
+    return inner_->add_reader(endpoint, guid);
+  }
+  bool write(std::size_t writer, const base::Bytes& message) override {
+    const std::shared_lock lock(mutex_);
+    return inner_->write(writer, message);
+  }
+  std::size_t count_readers(std::size_t writer) const override {
+    const std::shared_lock lock(mutex_);
+    return inner_->count_readers(writer);
+  }
+  bool can_answer(std::size_t writer, std::size_t reader, std::uint64_t sender) const override {
+    const std::shared_lock lock(mutex_);
+    return inner_->can_answer(writer, reader, sender);
+  }
+
+ private:
+  mutable std::shared_mutex mutex_;
+  std::unique_ptr<DdsParticipant> inner_;
+};
 
 }  // namespace
 
@@ -93,27 +119,26 @@ void DdsLog::write(std::string_view line) {
 }
 
 Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library)
-    : options_(options),
-      scene_(scene),
-      services_(scene),
-      messages_(scene.info),
-      command_readers_(scene.simulated ? 2 * count_driven(scene.world) : 0) {
+    : options_(options), scene_(scene), services_(scene), messages_(std::in_place, scene.info) {
+  // Requests of services wait apart from commands, which are taken in every tick.
   const auto receive = [this](DdsMessage&& message) {
-    (message.reader < command_readers_ ? commands_ : requests_).add(std::move(message));
+    const bool is_request = message.reader < services_.types().size();
+    (is_request ? requests_ : commands_).add(std::move(message));
   };
   try {
     const netio::OpenSockets before;
-    participant_ = library.open(
-        {options.domain, "enclave=/;", options.loopback, receive, [this](std::string_view line) { log_.write(line); }});
+    participant_ =
+        std::make_unique<GrowingParticipant>(library.open({options.domain, "enclave=/;", options.loopback, receive,
+                                                           [this](std::string_view line) { log_.write(line); }}));
     if (options.loopback) before.keep_new_ones_to_loopback();
+    add_services();
     add_topics();
     add_commands();
-    add_services();
     announce();
   } catch (const std::runtime_error& error) {
     throw base::InputError(fmt::format("--ros2: {}", error.what()));
   }
-  messages_.begin([this](const record::TopicMessage& message) { add(message); });
+  messages_->begin([this](const record::TopicMessage& message) { add(message); });
   outbox_.emplace(*participant_);
   outbox_->add(batch_);
 }
@@ -123,12 +148,31 @@ std::string Ros2Bridge::describe() const {
                      options_.loopback ? ", on this machine" : "");
 }
 
+void Ros2Bridge::show_scene(bool is_new) {
+  const record::TickMessages before = std::move(*messages_);  // of which only its counts are used
+  messages_.emplace(scene_.info);
+  try {
+    add_topics();
+    add_commands();
+  } catch (const std::runtime_error& error) {
+    throw base::InputError(fmt::format("--ros2: {}", error.what()));
+  }
+  announce();
+  const auto emit = [this](const record::TopicMessage& message) { add(message); };
+  is_new ? messages_->begin(emit) : messages_->go_on(before, time_, emit);
+  outbox_->add(batch_);
+  services_.show_scene(is_new);
+}
+
 void Ros2Bridge::add_topics() {
-  for (const record::Topic& topic : messages_.topics()) {
+  writer_of_.clear();
+  for (const record::Topic& topic : messages_->topics()) {
     const bool is_command = topic.type == record::kTwistStamped;  // of a controller; those of others are heard there
     const int depth = topic.latched ? 1 : topic.name == "/tf" ? kTransformsDepth : kDepth;
-    writer_of_.push_back(is_command ? kNone
-                                    : add_writer("rt" + topic.name, topic.type, topic.schema, depth, topic.latched));
+    const auto [known, is_new] = writer_of_topic_.try_emplace(topic.name, kNone);
+    if (is_new && !is_command)
+      known->second = add_writer("rt" + topic.name, topic.type, topic.schema, depth, topic.latched);
+    writer_of_.push_back(known->second);
   }
   wanted_.assign(writer_of_.size(), false);
 }
@@ -137,12 +181,18 @@ void Ros2Bridge::add_commands() {
   if (!scene_.simulated) return;
   const std::string plain = record::schema_text("geometry_msgs/msg/Twist");
   const std::string stamped = record::schema_text(record::kTwistStamped);
+  for (std::size_t reader = services_.types().size(); reader < reader_of_.size(); ++reader)
+    reader_of_[reader].mover = world::kNone;  // until a mover of this scene has them
   for (std::uint32_t row = 0; row < scene_.info.movers.size(); ++row) {
-    if (scene_.world.movers[row].is_tag) continue;
+    if (scene_.world.movers[row].is_tag) continue;  // tags follow packets
     const std::string topic = "rt/" + scene_.info.movers[row].frame + "/cmd_vel";
-    add_reader(topic, "geometry_msgs/msg/Twist", plain);
-    add_reader(topic, record::kTwistStamped, stamped);
-    driven_.push_back(row);
+    const auto [known, is_new] = commands_of_.try_emplace(topic, reader_of_.size());
+    if (is_new) {
+      add_reader(topic, "geometry_msgs/msg/Twist", plain);
+      add_reader(topic, record::kTwistStamped, stamped);
+      reader_of_.push_back({row, false}), reader_of_.push_back({row, true});
+    }
+    for (const std::size_t reader : {known->second, known->second + 1}) reader_of_[reader].mover = row;
   }
 }
 
@@ -151,16 +201,23 @@ void Ros2Bridge::add_services() {
     const std::string id = service_id(participant_->guid(), reply_writers_.size());
     const std::string type(service.type), name(service.name);
     add_reader("rq" + name + "Request", type + "_Request", ros_definition(service.request), id);
+    reader_of_.emplace_back();
     reply_writers_.push_back(
         add_writer("rr" + name + "Reply", type + "_Response", ros_definition(service.response), kDepth, false, id));
   }
+  if (!scene_.simulated) return;
+  for (const ActionTopic& topic : StepsAction::kTopics)
+    action_writers_.push_back(add_writer("rt" + std::string(topic.name), topic.type, ros_definition(topic.fields),
+                                         topic.latched ? 1 : kDepth, topic.latched));
 }
 
 /// What `ros2 node list` reads: the participant's nodes, and their readers and writers.
 void Ros2Bridge::announce() {
-  const std::size_t writer = add_writer("ros_discovery_info", kDiscovery, ros_definition(kDiscoveryFields), 1, true);
-  writers_.pop_back();  // it is the participant's, not the node's
-  record::CdrWriter cdr(batch_.add(writer));
+  if (discovery_ == kNone) {
+    discovery_ = add_writer("ros_discovery_info", kDiscovery, ros_definition(kDiscoveryFields), 1, true);
+    writers_.pop_back();  // it is the participant's, not the node's
+  }
+  record::CdrWriter cdr(batch_.add(discovery_));
   const auto put = [&cdr](const DdsGuid& guid) {
     for (const std::uint8_t byte : guid) cdr.put(byte);
   };
@@ -191,11 +248,12 @@ std::size_t Ros2Bridge::add_reader(const std::string& topic, std::string_view ty
 
 void Ros2Bridge::publish(const base::TickRecord& tick, const RunState& state) {
   const auto emit = [this](const record::TopicMessage& message) { add(message); };
-  if (state.runs != runs_) messages_.begin(emit);
+  if (state.runs != runs_) messages_->begin(emit);
   runs_ = state.runs;
+  time_ = tick.time;
   for (std::size_t row = 0; row < writer_of_.size(); ++row)
     wanted_[row] = writer_of_[row] != kNone && participant_->count_readers(writer_of_[row]) > 0;
-  messages_.encode(tick, emit, wanted_);
+  messages_->encode(tick, emit, wanted_);
   if (!batch_.messages().empty()) outbox_->add(batch_);
   services_.observe(&tick, state);
   send_answers();
@@ -217,7 +275,7 @@ void Ros2Bridge::take(Requests& requests) {
   if (pending_.empty()) requests_.take(pending_);
   for (std::size_t count = 0; !pending_.empty() && count < kMaxRequests; ++count, pending_.pop_front()) {
     const DdsMessage& message = pending_.front();
-    if (!services_.take(message.reader - command_readers_, message.bytes, message.writer, requests)) ++malformed_;
+    if (!services_.take(message.reader, message.bytes, message.writer, requests)) ++malformed_;
   }
   send_answers();
 }
@@ -225,8 +283,10 @@ void Ros2Bridge::take(Requests& requests) {
 bool Ros2Bridge::take_command(const DdsMessage& message, Requests& requests) const {
   record::CdrReader cdr(message.bytes);
   std::int64_t time = 0;
-  if (message.reader % 2 == 1) record::get_header(cdr, time);
-  Command command{.mover = driven_[message.reader / 2]};
+  const Reader& reader = reader_of_[message.reader];
+  if (reader.mover == world::kNone) return false;  // of a world before
+  if (reader.stamped) record::get_header(cdr, time);
+  Command command{.mover = reader.mover};
   command.twist.forward = cdr.get<double>();
   command.twist.left = cdr.get<double>();
   for (int i = 0; i < 3; ++i) cdr.get<double>();  // upwards, and turns about x and y
@@ -239,8 +299,12 @@ bool Ros2Bridge::take_command(const DdsMessage& message, Requests& requests) con
 
 void Ros2Bridge::send_answers() {
   for (Answer& answer : services_.answers())
-    outbox_->add(DdsReply{reply_writers_[answer.service], command_readers_ + answer.service, answer.caller.writer,
-                          std::move(answer.message)});
+    outbox_->add(
+        DdsReply{reply_writers_[answer.service], answer.service, answer.caller.writer, std::move(answer.message)});
+  if (action_writers_.empty()) return;
+  for (ActionMessage& message : services_.messages())
+    batch_.add(action_writers_[message.topic]) = std::move(message.bytes);
+  if (!batch_.messages().empty()) outbox_->add(batch_);
 }
 
 Ros2Bridge::Counts Ros2Bridge::counts() const {

@@ -3,6 +3,7 @@
 // are geometry_msgs/Twist and TwistStamped on /ROBOT/cmd_vel, its services those of `RosServices`.
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -70,6 +71,9 @@ class Ros2Bridge : public Bridge {
   void publish(const base::TickRecord& tick, const RunState& state) override;
   void publish(const RunState& state) override;
   void take(Requests& requests) override;
+  bool keeps_on() const override { return true; }
+  /// Adds readers and writers of topics that are new. Those of movers that left stay, and are silent.
+  void show_scene(bool is_new) override;
   std::string describe() const override;
 
   struct Counts {
@@ -96,17 +100,26 @@ class Ros2Bridge : public Bridge {
   const Ros2Options options_;
   const Scene scene_;
   RosServices services_;
-  record::TickMessages messages_;
-  const std::size_t command_readers_;      ///< they come before those of services: for each robot Twist, TwistStamped
+  std::optional<record::TickMessages> messages_;
   DdsInbox commands_, requests_;           // outlive the participant, which fills them
   std::deque<DdsMessage> come_, pending_;  ///< taken from these
   std::uint64_t malformed_ = 0;
-  std::vector<std::size_t> writer_of_;      ///< by row of `messages_.topics()`; kNone: it has none
-  std::vector<bool> wanted_;                ///< likewise: somebody reads it
-  std::vector<std::uint32_t> driven_;       ///< by pair of readers of commands: row of the mover
-  std::vector<std::size_t> reply_writers_;  ///< by service
-  std::vector<DdsGuid> readers_, writers_;  ///< all of them
+  std::vector<std::size_t> writer_of_;  ///< by row of `messages_.topics()`; kNone: it has none
+  std::vector<bool> wanted_;            ///< likewise: somebody reads it
+  /// Of commands to a mover; those of services come first.
+  struct Reader {
+    std::uint32_t mover = 0;  ///< row; world::kNone: it is of another world
+    bool stamped = false;
+  };
+  std::vector<Reader> reader_of_;                       ///< by reader
+  std::map<std::string, std::size_t> writer_of_topic_;  ///< of all topics that ever were
+  std::map<std::string, std::size_t> commands_of_;      ///< first reader of the topic's commands
+  std::vector<std::size_t> reply_writers_;              ///< by service
+  std::vector<std::size_t> action_writers_;             ///< by topic of actions
+  std::size_t discovery_ = kNone;                       ///< writer
+  std::vector<DdsGuid> readers_, writers_;              ///< all of them
   std::uint32_t runs_ = 0;
+  std::int64_t time_ = 0;  ///< [ns] of the last tick
   DdsBatch batch_;
   DdsLog log_;
   std::unique_ptr<DdsParticipant> participant_;

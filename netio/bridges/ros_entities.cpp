@@ -82,18 +82,23 @@ void put_entity_state(record::CdrWriter& cdr, std::int64_t time, const base::Rep
   for (int i = 0; i < 6; ++i) cdr.put(0.0);  // accelerations are not known
 }
 
-EntityState get_entity_state(record::CdrReader& cdr, double z) {
+EntityState get_stamped_pose(record::CdrReader& cdr, double z) {
   EntityState state;
   std::int64_t time = 0;
   state.frame = record::get_header(cdr, time);
   const auto x = cdr.get<double>(), y = cdr.get<double>();
   cdr.get<double>();  // height
   const auto a = cdr.get<double>(), b = cdr.get<double>(), c = cdr.get<double>(), d = cdr.get<double>();
-  for (int i = 0; i < 12; ++i) cdr.get<double>();  // velocity and acceleration
   const std::optional<double> yaw = yaw_of(a, b, c, d);
   state.valid = std::abs(x) <= netio::kMaxPosition && std::abs(y) <= netio::kMaxPosition && yaw;
   if (state.valid) state.X_WM = {x, y, z, *yaw};
-  if (cdr.left() == 0) return state;  // version 1.0 sets the pose always
+  return state;
+}
+
+EntityState get_entity_state(record::CdrReader& cdr, double z) {
+  EntityState state = get_stamped_pose(cdr, z);
+  for (int i = 0; i < 12; ++i) cdr.get<double>();  // velocity and acceleration
+  if (cdr.left() == 0) return state;               // version 1.0 sets the pose always
   state.pose = cdr.get<bool>();
   state.twist = cdr.get<bool>();
   state.acceleration = cdr.get<bool>();

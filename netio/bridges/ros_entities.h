@@ -29,6 +29,9 @@ struct EntityState {
   bool pose = true, twist = false, acceleration = false;  ///< that are to be set
 };
 
+/// Reads a `geometry_msgs/PoseStamped`.
+EntityState get_stamped_pose(record::CdrReader& cdr, double z = 0.0);
+
 /// Reads a `simulation_interfaces/EntityState` and, where bytes are left, the three flags behind it.
 /// @param z [m] of the mover, which it keeps
 EntityState get_entity_state(record::CdrReader& cdr, double z);

@@ -15,8 +15,9 @@ using record::CdrWriter;
 
 namespace {
 
-// simulation_interfaces/msg/Result, and further codes of SetSimulationState and SetEntityState
-constexpr std::uint8_t kUnsupported = 0, kOk = 1, kNotFound = 2, kFailed = 4, kAlready = 101, kInvalidPose = 101;
+// Further codes: of SetSimulationState, SetEntityState, SpawnEntities, GetCurrentWorld and UnloadWorld, LoadWorld
+constexpr std::uint8_t kAlready = 101, kInvalidPose = 101, kSpawnFailed = 150, kNoWorld = 101, kParseError = 103,
+                       kUnsupportedElements = 106;
 
 // simulation_interfaces/msg/SimulationState
 constexpr std::uint8_t kStopped = 0, kPlaying = 1, kPaused = 2;
@@ -24,18 +25,43 @@ constexpr std::uint8_t kStopped = 0, kPlaying = 1, kPaused = 2;
 // simulation_interfaces/srv/ResetSimulation: all; time and state; both, and what was spawned
 constexpr std::array<std::uint8_t, 4> kScopes = {0, 3, 7, 255};
 
-// simulation_interfaces/msg/SimulatorFeatures: states of entities and of the run are given; where it is simulated,
-// entities are placed, and the run is reset (its time, its state), begun and paused, and makes one step or many.
-constexpr std::array<std::uint16_t, 2> kFeatures = {10, 24};
-constexpr std::array<std::uint16_t, 8> kFeaturesSimulated = {11, 20, 21, 22, 25, 26, 31, 32};
+// simulation_interfaces/msg/SimulatorFeatures: named poses with bounds, bounds, states and infos of entities, state and
+// world of the run are given. Where it is simulated, entities are spawned, also several at once, from spawnables, and
+// deleted and placed, the run is reset (its time, its state, what was spawned), begun and paused, and makes one step or
+// many, also as an action, and worlds are listed, loaded and unloaded.
+constexpr std::array<std::uint16_t, 7> kFeatures = {2, 3, 5, 10, 12, 24, 44};
+constexpr std::array<std::uint16_t, 17> kFeaturesSimulated = {0,  1,  11, 14, 20, 21, 22, 23, 25,
+                                                              26, 31, 32, 33, 40, 43, 45, 50};
 
 constexpr std::string_view kResult = "simulation_interfaces/Result result\n";
+constexpr std::string_view kBounds = "simulation_interfaces/Result result\nsimulation_interfaces/Bounds bounds\n";
+constexpr std::string_view kWorld = "simulation_interfaces/Result result\nsimulation_interfaces/WorldResource world\n";
+constexpr std::string_view kSpawn =
+    "string name\nbool allow_renaming\nsimulation_interfaces/Resource entity_resource\n"
+    "string entity_namespace\ngeometry_msgs/PoseStamped initial_pose\n";
+constexpr std::string_view kUuid = "unique_identifier_msgs/UUID goal_id\n";
+constexpr const char* kNoEntity = "no entity of that name is present";
+constexpr std::size_t kMostSpawns = 64;  // of one request
+constexpr std::size_t kLeastSpawn = 90;  // [byte] of a SpawnEntity
 constexpr std::string_view kSuccess = "bool success\nstring message\n";
 
-std::size_t row_of(const record::RunInfo& info, const std::string& frame) {
-  const auto found = std::find_if(info.movers.begin(), info.movers.end(),
-                                  [&](const record::MoverInfo& mover) { return mover.frame == frame; });
-  return static_cast<std::size_t>(found - info.movers.begin());
+std::uint8_t code_of(const Outcome& outcome) {
+  switch (outcome.fault) {
+    case Outcome::Fault::none:
+      return kOk;
+    case Outcome::Fault::unreadable:
+      return kParseError;
+    case Outcome::Fault::unsupported:
+      return kUnsupportedElements;
+    case Outcome::Fault::failed:
+      return kFailed;
+  }
+  return kFailed;
+}
+
+void put_result(CdrWriter& cdr, std::uint8_t code, std::string_view message = {}) {
+  cdr.put(code);
+  cdr.put(message);
 }
 
 }  // namespace
@@ -48,7 +74,7 @@ struct RosServices::Handlers {
     Handler handler;
     bool simulated;
   };
-  static const std::array<Row, 12> kRows;
+  static const std::array<Row, 27> kRows;
 
   static bool get_features(RosServices& of, Call call, CdrReader&, Requests&) {
     CdrWriter cdr = of.begin_answer(call);
@@ -93,30 +119,247 @@ struct RosServices::Handlers {
   static bool get_entity(RosServices& of, Call call, CdrReader& request, Requests&) {
     const std::string name = request.get_string();
     if (!request.good()) return false;
-    const std::size_t row = row_of(of.scene_.info, name);
-    const bool found = row < of.movers_.size() && !base::is_absent(of.movers_[row].X_WM);
+    const std::uint32_t row = of.row_of(name);
+    const bool found = row < of.movers_.size();
     CdrWriter cdr = of.begin_answer(call);
     cdr.put(found ? kOk : kNotFound);
-    cdr.put(found ? "" : "no entity of that name is present");
+    cdr.put(found ? "" : kNoEntity);
     put_entity_state(cdr, of.time_, found ? of.movers_[row] : base::Report{});
     return true;
   }
 
   static bool set_entity(RosServices& of, Call call, CdrReader& request, Requests& requests) {
     const std::string name = request.get_string();
-    const std::size_t row = row_of(of.scene_.info, name);
-    const bool found = row < of.movers_.size() && !base::is_absent(of.movers_[row].X_WM);
+    const std::uint32_t row = of.row_of(name);
+    const bool found = row < of.movers_.size();
     const EntityState wanted = get_entity_state(request, found ? of.movers_[row].X_WM.z : 0.0);
     if (!request.good()) return false;
-    if (!found) return of.add_result(call, kNotFound, "no entity of that name is present"), true;
+    if (!found) return of.add_result(call, kNotFound, kNoEntity), true;
     if (!wanted.frame.empty() && wanted.frame != "world")
       return of.add_result(call, kUnsupported, "poses are in the frame \"world\""), true;
     if (!wanted.pose || wanted.twist || wanted.acceleration)
       return of.add_result(call, kUnsupported, "only poses are set; velocities are commanded by cmd_vel"), true;
     if (!wanted.valid)
       return of.add_result(call, kInvalidPose, "expected a finite position, and a turn about z of length 1"), true;
-    requests.placements.push_back({static_cast<std::uint32_t>(row), wanted.X_WM});
+    requests.placements.push_back({row, wanted.X_WM});
     of.add_result(call, kOk);
+    return true;
+  }
+
+  static bool get_info(RosServices& of, Call call, CdrReader& request, Requests&) {
+    const std::uint32_t row = of.row_of(request.get_string());
+    if (!request.good()) return false;
+    const bool found = row < of.movers_.size();
+    CdrWriter cdr = of.begin_answer(call);
+    put_result(cdr, found ? kOk : kNotFound, found ? "" : kNoEntity);
+    if (found) return put_entity_info(cdr, of.scene_, row), true;
+    cdr.put(std::uint8_t{0});
+    cdr.put("");
+    cdr.put_count(0);
+    return true;
+  }
+
+  static bool answer_bounds(RosServices& of, const Call& call, std::uint32_t row, const char* fault) {
+    CdrWriter cdr = of.begin_answer(call);
+    put_result(cdr, fault == nullptr ? kOk : kNotFound, fault == nullptr ? "" : fault);
+    put_bounds(cdr, of.scene_, row);
+    return true;
+  }
+  static bool get_bounds(RosServices& of, Call call, CdrReader& request, Requests&) {
+    const std::uint32_t row = of.row_of(request.get_string());
+    return request.good() && answer_bounds(of, call, row, row < of.movers_.size() ? nullptr : kNoEntity);
+  }
+
+  static bool get_poses(RosServices& of, Call call, CdrReader& request, Requests&) {
+    const TagsFilter filter = get_tags_filter(request);
+    if (!request.good()) return false;
+    std::vector<NamedPose> poses = named_poses_of(of.scene_);
+    std::erase_if(poses, [&](const NamedPose& pose) { return !filter.matches(pose.tags); });
+    CdrWriter cdr = of.begin_answer(call);
+    put_result(cdr, kOk);
+    cdr.put_count(poses.size());
+    for (const NamedPose& pose : poses) put_named_pose(cdr, pose);
+    return true;
+  }
+  static bool get_pose_bounds(RosServices& of, Call call, CdrReader& request, Requests&) {
+    const std::string name = request.get_string();
+    if (!request.good()) return false;
+    for (const NamedPose& pose : named_poses_of(of.scene_))
+      if (pose.name == name) return answer_bounds(of, call, pose.mover, nullptr);
+    return answer_bounds(of, call, ~0u, "no pose of that name is known");
+  }
+
+  static bool get_spawnables(RosServices& of, Call call, CdrReader& request, Requests&) {
+    std::string unknown;
+    for (std::uint32_t left = request.get_count(5); left > 0 && request.good(); --left)
+      unknown += (unknown.empty() ? "not searched: " : ", ") + request.get_string();
+    if (!request.good()) return false;
+    CdrWriter cdr = of.begin_answer(call);
+    put_result(cdr, kOk, unknown.substr(0, 1000));
+    cdr.put_count(of.kinds_.size());
+    for (const std::uint32_t row : of.kinds_) put_spawnable(cdr, of.scene_, row);
+    return true;
+  }
+
+  /// Where nothing is to be done, it is answered at once.
+  static bool wait_for(RosServices& of, Call call) {
+    call.until = Until::outcomes;
+    return call.outcomes.empty() ? call.answer(of, call), true : of.wait(call);
+  }
+  static void ask(Call& call, std::vector<Spawn> spawns, Requests& requests) {
+    for (const Spawn& spawn : spawns) {
+      if (spawn.code != kOk) continue;
+      requests.joining.push_back(spawn.joining);
+      call.outcomes.push_back(spawn.joining.outcome);
+    }
+    call.spawns = std::move(spawns);
+  }
+  static void put_spawned(CdrWriter& cdr, const Spawn& spawn) {
+    const bool asked = spawn.code == kOk;
+    const std::uint8_t code = asked ? code_of(*spawn.joining.outcome) : spawn.code;
+    put_result(cdr, code, asked ? spawn.joining.outcome->reason : spawn.message);
+    cdr.put(code == kOk ? spawn.joining.name : "");
+  }
+  static bool spawn(RosServices& of, Call call, CdrReader& request, Requests& requests) {
+    std::set<std::string> taken;
+    Spawn wanted = get_spawn(request, of.scene_, of.movers_, taken);
+    if (!request.good()) return false;
+    ask(call, {std::move(wanted)}, requests);
+    call.answer = [](RosServices& to, const Call& done) {
+      CdrWriter cdr = to.begin_answer(done);
+      put_spawned(cdr, done.spawns.front());
+    };
+    return wait_for(of, call);
+  }
+  static bool spawn_several(RosServices& of, Call call, CdrReader& request, Requests& requests) {
+    std::set<std::string> taken;
+    const std::uint32_t count = request.get_count(kLeastSpawn);
+    std::vector<Spawn> all;
+    for (std::uint32_t i = 0; i < count && request.good(); ++i)
+      all.push_back(i < kMostSpawns ? get_spawn(request, of.scene_, of.movers_, taken)
+                                    : Spawn{kFailed, fmt::format("a request spawns {} at most", kMostSpawns), {}});
+    if (!request.good()) return false;
+    ask(call, std::move(all), requests);
+    call.answer = [](RosServices& to, const Call& done) {
+      const bool good = std::all_of(done.spawns.begin(), done.spawns.end(), [](const Spawn& each) {
+        return each.code == kOk && each.joining.outcome->fault == Outcome::Fault::none;
+      });
+      CdrWriter cdr = to.begin_answer(done);
+      put_result(cdr, good ? kOk : kSpawnFailed, good ? "" : "see the results");
+      cdr.put_count(done.spawns.size());
+      for (const Spawn& each : done.spawns) put_spawned(cdr, each);
+    };
+    return wait_for(of, call);
+  }
+
+  static bool remove(RosServices& of, Call call, CdrReader& request, Requests& requests) {
+    const std::uint32_t row = of.row_of(request.get_string());
+    if (!request.good()) return false;
+    if (row >= of.movers_.size()) return of.add_result(call, kNotFound, kNoEntity), true;
+    requests.leaving.push_back({row, call.outcomes.emplace_back(std::make_shared<Outcome>())});
+    call.answer = [row](RosServices& to, const Call& done) {
+      const Outcome& outcome = *done.outcomes.front();
+      if (outcome.fault == Outcome::Fault::none && row < to.movers_.size()) to.movers_[row].X_WM = base::kAbsent;
+      to.add_result(done, code_of(outcome), outcome.reason);
+    };
+    return wait_for(of, call);
+  }
+
+  static void answer_world(RosServices& of, const Call& call, std::uint8_t code, const std::string& message) {
+    CdrWriter cdr = of.begin_answer(call);
+    put_result(cdr, code, message);
+    const bool good = code == kOk;
+    put_world(cdr, good ? of.world_uri() : "", good ? of.scene_.info.world : "");
+  }
+  static bool get_world(RosServices& of, Call call, CdrReader&, Requests&) {
+    return answer_world(of, call, of.unloaded_ ? kNoWorld : kOk, of.unloaded_ ? "no world is loaded" : ""), true;
+  }
+  static bool get_worlds(RosServices& of, Call call, CdrReader& request, Requests&) {
+    std::string unknown;
+    for (std::uint32_t left = request.get_count(5); left > 0 && request.good(); --left)
+      unknown += (unknown.empty() ? "not searched: " : ", ") + request.get_string();
+    const TagsFilter filter = get_tags_filter(request);
+    request.get<bool>(), request.get<bool>();  // local sources alone; to go on after errors
+    if (!request.good()) return false;
+    const std::vector<AvailableWorld> worlds =
+        filter.matches({}) ? worlds_in(of.scene_.world_folders) : std::vector<AvailableWorld>();
+    CdrWriter cdr = of.begin_answer(call);
+    put_result(cdr, kOk, unknown.substr(0, 1000));
+    cdr.put_count(worlds.size());
+    for (const AvailableWorld& each : worlds) put_world(cdr, each.uri, each.uri);
+    return true;
+  }
+  static bool load_world(RosServices& of, Call call, CdrReader& request, Requests& requests) {
+    const std::string uri = request.get_string(), text = request.get_string();
+    const bool strict = request.get<bool>();
+    request.get<bool>();  // assets that are missing: a world without its files is no world
+    if (!request.good()) return false;
+    const auto refuse = [&](std::uint8_t code, const std::string& why) { answer_world(of, call, code, why); };
+    constexpr std::uint8_t kFormat = 101, kNone = 102;
+    if (uri.empty() && text.empty()) return refuse(kNone, "expected a URI that /get_available_worlds lists"), true;
+    if (uri.empty()) return refuse(kUnsupported, "worlds are loaded by their URIs, not from text"), true;
+    const std::vector<AvailableWorld> worlds = worlds_in(of.scene_.world_folders);
+    const auto found = std::find_if(worlds.begin(), worlds.end(), [&](const auto& each) { return each.uri == uri; });
+    const bool is_format = uri.ends_with(".world") || uri.ends_with(".yaml");
+    if (found == worlds.end() && !is_format)
+      return refuse(kFormat, "expected a world file (.world) or a ROS map (.yaml)"), true;
+    if (found == worlds.end()) return refuse(kNotFound, "expected a URI that /get_available_worlds lists"), true;
+    requests.world = WorldChange{found->file, strict, call.outcomes.emplace_back(std::make_shared<Outcome>())};
+    call.answer = [](RosServices& to, const Call& done) {
+      const Outcome& outcome = *done.outcomes.front();
+      if (outcome.fault == Outcome::Fault::none) to.stopped_ = true, to.unloaded_ = false;
+      answer_world(to, done, code_of(outcome), outcome.reason);
+    };
+    return wait_for(of, call);
+  }
+  static bool unload_world(RosServices& of, Call call, CdrReader&, Requests& requests) {
+    if (of.unloaded_) return of.add_result(call, kNoWorld, "no world is loaded"), true;
+    requests.world = WorldChange{"", false, call.outcomes.emplace_back(std::make_shared<Outcome>())};
+    call.answer = [](RosServices& to, const Call& done) {
+      const Outcome& outcome = *done.outcomes.front();
+      if (outcome.fault == Outcome::Fault::none) to.stopped_ = to.unloaded_ = true;
+      to.add_result(done, code_of(outcome), outcome.reason);
+    };
+    return wait_for(of, call);
+  }
+
+  static bool send_goal(RosServices& of, Call call, CdrReader& request, Requests& requests) {
+    call.goal = StepsAction::get_id(request);
+    const auto steps = request.get<std::uint64_t>();
+    if (!request.good()) return false;
+    const bool accepted = of.steps_.accept(call.goal, steps, of.time_);
+    CdrWriter cdr = of.begin_answer(call);
+    cdr.put(accepted);
+    cdr.put(static_cast<std::int32_t>(of.time_ / 1'000'000'000));
+    cdr.put(static_cast<std::uint32_t>(of.time_ % 1'000'000'000));
+    if (!accepted) return true;
+    StepsAction::Goal& goal = *of.steps_.find(call.goal);
+    const auto abort = [&](const std::string& why) {
+      of.steps_.end(goal, StepsAction::Status::aborted, kFailed, why);
+      return true;
+    };
+    if (!of.state_.paused) return abort("the run is not paused");
+    if (steps == 0 || steps > kMaxSteps) return abort(fmt::format("expected 1 to {} steps", kMaxSteps));
+    requests.steps += static_cast<std::uint32_t>(steps);
+    call.until = Until::goal;
+    return of.wait(call);
+  }
+  static bool cancel_goal(RosServices& of, Call call, CdrReader& request, Requests& requests) {
+    base::Bytes fields;
+    CdrWriter cdr = of.begin_answer(call);
+    const std::uint64_t left = of.steps_.cancel(request, cdr);
+    if (!request.good()) return of.answers_.pop_back(), false;
+    requests.dropped_steps += static_cast<std::uint32_t>(left);
+    return true;
+  }
+  static bool get_result(RosServices& of, Call call, CdrReader& request, Requests&) {
+    call.goal = StepsAction::get_id(request);
+    if (!request.good()) return false;
+    const StepsAction::Goal* const goal = of.steps_.find(call.goal);
+    call.until = Until::result;
+    if (goal != nullptr && goal->is_active()) return of.wait(call);
+    CdrWriter cdr = of.begin_answer(call);
+    StepsAction::put_result(cdr, goal != nullptr ? *goal : StepsAction::Goal{.status = StepsAction::Status::unknown});
     return true;
   }
 
@@ -168,6 +411,8 @@ struct RosServices::Handlers {
     if (!request.good()) return false;
     if (std::find(kScopes.begin(), kScopes.end(), scope) == kScopes.end())
       return of.add_result(call, kUnsupported, "time and state are reset together only: scope 0, 3, 7 or 255"), true;
+    if (scope == 3 && of.movers_.size() > of.loaded_)
+      return of.add_result(call, kUnsupported, "what was spawned goes with every reset: scope 0, 7 or 255"), true;
     return reset(of, call, request, requests);
   }
 
@@ -181,7 +426,7 @@ struct RosServices::Handlers {
   }
 };
 
-const std::array<RosServices::Handlers::Row, 12> RosServices::Handlers::kRows = {{
+const std::array<RosServices::Handlers::Row, 27> RosServices::Handlers::kRows = {{
     {{"/get_simulator_features", "simulation_interfaces/srv/GetSimulatorFeatures", "",
       "simulation_interfaces/SimulatorFeatures features\n"},
      get_features,
@@ -203,6 +448,61 @@ const std::array<RosServices::Handlers::Row, 12> RosServices::Handlers::kRows = 
       "simulation_interfaces/Result result\nsimulation_interfaces/EntityState state\n"},
      get_entity,
      false},
+    {{"/get_entity_info", "simulation_interfaces/srv/GetEntityInfo", "string entity\n",
+      "simulation_interfaces/Result result\nsimulation_interfaces/EntityInfo info\n"},
+     get_info,
+     false},
+    {{"/get_entity_bounds", "simulation_interfaces/srv/GetEntityBounds", "string entity\n", kBounds},
+     get_bounds,
+     false},
+    {{"/get_named_poses", "simulation_interfaces/srv/GetNamedPoses", "simulation_interfaces/TagsFilter tags\n",
+      "simulation_interfaces/Result result\nsimulation_interfaces/NamedPose[] poses\n"},
+     get_poses,
+     false},
+    {{"/get_named_pose_bounds", "simulation_interfaces/srv/GetNamedPoseBounds", "string name\n", kBounds},
+     get_pose_bounds,
+     false},
+    {{"/get_current_world", "simulation_interfaces/srv/GetCurrentWorld", "", kWorld}, get_world, false},
+    {{"/get_spawnables", "simulation_interfaces/srv/GetSpawnables", "string[] sources\n",
+      "simulation_interfaces/Result result\nsimulation_interfaces/Spawnable[] spawnables\n"},
+     get_spawnables,
+     true},
+    {{"/spawn_entity", "simulation_interfaces/srv/SpawnEntity", kSpawn,
+      "simulation_interfaces/Result result\nstring entity_name\n"},
+     spawn,
+     true},
+    {{"/spawn_entities", "simulation_interfaces/srv/SpawnEntities",
+      "simulation_interfaces/SpawnEntity[] spawn_requests\n",
+      "simulation_interfaces/Result result\nsimulation_interfaces/SpawnResult[] results\n"},
+     spawn_several,
+     true},
+    {{"/delete_entity", "simulation_interfaces/srv/DeleteEntity", "string entity\n", kResult}, remove, true},
+    {{"/get_available_worlds", "simulation_interfaces/srv/GetAvailableWorlds",
+      "string[] additional_sources\nsimulation_interfaces/TagsFilter filter\n"
+      "bool offline_only\nbool continue_on_error\n",
+      "simulation_interfaces/Result result\nsimulation_interfaces/WorldResource[] worlds\n"},
+     get_worlds,
+     true},
+    {{"/load_world", "simulation_interfaces/srv/LoadWorld",
+      "simulation_interfaces/Resource world_resource\nbool fail_on_unsupported_element\n"
+      "bool ignore_missing_or_unsupported_assets\n",
+      kWorld},
+     load_world,
+     true},
+    {{"/unload_world", "simulation_interfaces/srv/UnloadWorld", "", kResult}, unload_world, true},
+    {{"/simulate_steps/_action/send_goal", "simulation_interfaces/action/SimulateSteps_SendGoal",
+      "unique_identifier_msgs/UUID goal_id\nsimulation_interfaces/action/SimulateSteps_Goal goal\n",
+      "bool accepted\nbuiltin_interfaces/Time stamp\n"},
+     send_goal,
+     true},
+    {{"/simulate_steps/_action/cancel_goal", "action_msgs/srv/CancelGoal", "action_msgs/GoalInfo goal_info\n",
+      "int8 return_code\naction_msgs/GoalInfo[] goals_canceling\n"},
+     cancel_goal,
+     true},
+    {{"/simulate_steps/_action/get_result", "simulation_interfaces/action/SimulateSteps_GetResult", kUuid,
+      "int8 status\nsimulation_interfaces/action/SimulateSteps_Result result\n"},
+     get_result,
+     true},
     {{"/set_entity_state", "simulation_interfaces/srv/SetEntityState",
       "string entity\nsimulation_interfaces/EntityState state\n"
       "bool set_pose\nbool set_twist\nbool set_acceleration\n",
@@ -228,8 +528,27 @@ const std::array<RosServices::Handlers::Row, 12> RosServices::Handlers::kRows = 
 RosServices::RosServices(const Scene& scene) : scene_(scene) {
   for (const Handlers::Row& row : Handlers::kRows)
     if (scene.simulated || !row.simulated) types_.push_back(row.type);
-  for (const world::Mover& mover : scene.world.movers)
-    movers_.push_back({.mover = static_cast<std::uint32_t>(movers_.size()), .X_WM = mover.X_WM});
+  show_scene(true);
+}
+
+void RosServices::show_scene(bool is_new) {
+  if (is_new) movers_.clear(), time_ = 0, loaded_ = scene_.world.movers.size();
+  for (std::size_t row = movers_.size(); row < scene_.world.movers.size(); ++row)
+    movers_.push_back({.mover = static_cast<std::uint32_t>(row), .X_WM = scene_.world.movers[row].X_WM});
+  movers_.resize(scene_.world.movers.size());
+  kinds_ = kinds_of(scene_.world);
+}
+
+std::uint32_t RosServices::row_of(const std::string& name) const {
+  for (std::uint32_t row = 0; row < movers_.size(); ++row)
+    if (scene_.info.movers[row].frame == name && !base::is_absent(movers_[row].X_WM)) return row;
+  return static_cast<std::uint32_t>(movers_.size());
+}
+
+std::string RosServices::world_uri() const {
+  for (const AvailableWorld& each : worlds_in(scene_.world_folders))
+    if (each.file == scene_.world.file) return each.uri;
+  return scene_.info.world;
 }
 
 bool RosServices::take(std::size_t service, std::span<const std::uint8_t> message, std::uint64_t writer,
@@ -251,7 +570,8 @@ void RosServices::observe(const base::TickRecord* tick, const RunState& state) {
   state_ = state;
   if (tick != nullptr) {
     time_ = tick->time;
-    for (const base::Report& report : tick->reports) movers_[report.mover] = report;
+    for (const base::Report& report : tick->reports)
+      if (report.mover < movers_.size()) movers_[report.mover] = report;
   }
   if (tick != nullptr || !state.paused) stopped_ = false;
   bool ticked = tick != nullptr;
@@ -281,7 +601,31 @@ bool RosServices::wait(const Call& call) {
   return true;
 }
 
+bool RosServices::finish_goal(Call& call, bool& ticked, bool began_again) {
+  StepsAction::Goal* const goal = steps_.find(call.goal);
+  if (goal == nullptr || !goal->is_active()) return true;
+  if (began_again || !state_.paused)
+    return steps_.end(*goal, StepsAction::Status::aborted, kFailed, "the run went on or began again"), true;
+  if (!std::exchange(ticked, false)) return false;
+  steps_.step(*goal);
+  if (goal->completed < goal->steps) return false;
+  return steps_.end(*goal, StepsAction::Status::succeeded, kOk, ""), true;
+}
+
 bool RosServices::finish(Call& call, bool& ticked, bool began_again) {
+  if (call.until == Until::goal) return finish_goal(call, ticked, began_again);
+  if (call.until == Until::outcomes) {
+    const auto done = [](const auto& outcome) { return outcome->done; };
+    if (!std::all_of(call.outcomes.begin(), call.outcomes.end(), done)) return false;
+    return call.answer(*this, call), true;
+  }
+  if (call.until == Until::result) {
+    const StepsAction::Goal* const goal = steps_.find(call.goal);
+    if (goal != nullptr && goal->is_active()) return false;
+    CdrWriter cdr = begin_answer(call);
+    StepsAction::put_result(cdr, goal != nullptr ? *goal : StepsAction::Goal{.status = StepsAction::Status::unknown});
+    return true;
+  }
   if (call.until == Until::reset) {
     if (!began_again) return false;
     stopped_ = call.paused && state_.paused;

@@ -1,9 +1,12 @@
 #pragma once
-// Services of a run for nodes of ROS 2: those of simulation_interfaces 2.1 that fit, which serve clients of 1.0 too,
-// and three of std_srvs for users without that package. One thread: requests come between two ticks, and those that
-// change the run are answered when it has changed.
+// Services of a run for nodes of ROS 2: those of simulation_interfaces 2.1 (github.com/ros-simulation/
+// simulation_interfaces, 172a1b1), which serve clients of 1.0 too, its action, and three of std_srvs for users without
+// that package. One thread: requests come between two ticks, and those that change the run are answered when it has
+// changed.
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +14,8 @@
 
 #include "base/bytes.h"
 #include "netio/bridges/bridge.h"
+#include "netio/bridges/steps_action.h"
+#include "netio/bridges/world_services.h"
 #include "record/cdr.h"
 
 namespace sf::bridges {
@@ -41,6 +46,9 @@ class RosServices {
 
   explicit RosServices(const Scene& scene);
 
+  /// The scene has other movers than before. @param is_new it is another world
+  void show_scene(bool is_new);
+
   /// Those of this run: where robots are not simulated, those that change nothing.
   std::span<const ServiceType> types() const { return types_; }
 
@@ -51,17 +59,23 @@ class RosServices {
   void observe(const base::TickRecord* tick, const RunState& state);
   /// Gives those that came to be since the last call.
   std::vector<Answer> answers();
+  /// Likewise of topics of actions.
+  std::vector<ActionMessage> messages() { return steps_.messages(); }
 
  private:
   struct Handlers;
-  enum class Until { state, reset, steps };
+  enum class Until { state, reset, steps, outcomes, goal, result };
   /// A request, and what it waits for.
   struct Call {
     std::size_t service = 0;
     Caller caller;
     Until until = Until::state;
-    bool paused = false;      ///< the state that it wants
-    std::uint32_t steps = 0;  ///< that are left
+    bool paused = false;             ///< the state that it wants
+    std::uint32_t steps = 0;         ///< that are left
+    std::vector<Spawn> spawns = {};  ///< of which those that are wanted have outcomes
+    std::vector<std::shared_ptr<Outcome>> outcomes = {};
+    std::function<void(RosServices&, const Call&)> answer = {};  ///< when all outcomes are there
+    StepsAction::Id goal = {};
   };
 
   record::CdrWriter begin_answer(const Call& call);
@@ -71,6 +85,9 @@ class RosServices {
   /// @param ticked a tick was made, which no call before this one has counted; false once it is counted
   /// @return whether it waits no more
   bool finish(Call& call, bool& ticked, bool began_again);
+  bool finish_goal(Call& call, bool& ticked, bool began_again);
+  std::uint32_t row_of(const std::string& name) const;  ///< of a mover that is present; else the number of rows
+  std::string world_uri() const;
 
   const Scene scene_;
   std::vector<ServiceType> types_;
@@ -80,6 +97,10 @@ class RosServices {
   bool stopped_ = false;              ///< paused at the begin, by STATE_STOPPED
   std::int64_t time_ = 0;             ///< [ns] of the last tick
   std::vector<base::Report> movers_;  ///< by row, as of the last tick
+  std::vector<std::uint32_t> kinds_;  ///< see kinds_of
+  std::size_t loaded_ = 0;            ///< movers of the world at load
+  bool unloaded_ = false;             ///< by UnloadWorld
+  StepsAction steps_;
 };
 
 }  // namespace sf::bridges

@@ -39,9 +39,10 @@ std::optional<std::uint32_t> number(std::string_view digits) {
   return value;
 }
 
-/// "package/Name" as "package/msg/Name".
+/// "package/Name" as "package/msg/Name"; parts of actions have their whole names.
 std::string whole_name(std::string_view type) {
   const std::size_t slash = type.find('/');
+  if (type.find('/', slash + 1) != std::string_view::npos) return std::string(type);
   return std::string(type.substr(0, slash)) + "/msg" + std::string(type.substr(slash));
 }
 

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
 
+#include "record/cdr.h"
+#include "record/ros_messages.h"
 #include "tests/apps/program.h"
 #include "tests/ros2/fast_peer.h"
 
@@ -45,6 +48,66 @@ TEST(Ros2Program, ARunIsSeenDrivenAndPaused) {
   }));
   run.signal(SIGINT);
   EXPECT_EQ(run.wait().code, 0);
+}
+
+/// A robot joins the run, then another world replaces it. Files outside its folders cannot be named.
+TEST(Ros2Program, ARunGetsRobotsAndWorlds) {
+  const std::string domain = domain_of_program();
+  Program run({"run", our_world("rooms.world"), "--ros2", domain}, kHere);
+  ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
+  FastPeer peer(static_cast<std::uint32_t>(std::stoul(domain)));
+  std::int64_t calls = 0;
+  /// Code of the answer, 0 without one.
+  const auto call = [&](const std::string& name, const std::string& type, const auto& put) {
+    base::Bytes fields;
+    record::CdrWriter cdr(fields);
+    put(cdr);
+    const std::size_t ask =
+        peer.advertise("rq/" + name + "Request", "simulation_interfaces::srv::dds_::" + type + "_Request_");
+    const std::size_t answers =
+        peer.subscribe("rr/" + name + "Reply", "simulation_interfaces::srv::dds_::" + type + "_Response_");
+    int code = 0;
+    peer.wait([&] { return peer.matched_writer(ask) && peer.matched_reader(answers); });
+    const std::int64_t first = ++calls;
+    peer.send(ask, encode_request(17, first, {fields.begin() + 4, fields.end()}));
+    EXPECT_TRUE(peer.wait([&] {
+      for (const base::Bytes& message : peer.messages(answers))
+        if (const auto reply = decode_reply(message); reply && reply->sequence == first)
+          return code = reply->code, true;
+      return false;
+    })) << name;
+    return code;
+  };
+  const auto load = [&](const char* uri) {
+    return [uri](record::CdrWriter& cdr) {
+      cdr.put(uri);
+      cdr.put("");
+      cdr.put(false);
+      cdr.put(false);
+    };
+  };
+  const auto seen = [&](const std::string& topic) {
+    return peer.wait([&] {
+      const auto known = peer.endpoints();
+      return std::any_of(known.begin(), known.end(), [&](const Endpoint& one) { return one.topic == topic; });
+    });
+  };
+  EXPECT_EQ(call("spawn_entity", "SpawnEntity",
+                 [](record::CdrWriter& cdr) {
+                   cdr.put("late");
+                   cdr.put(false);
+                   cdr.put("roomba1");
+                   cdr.put("");
+                   cdr.put("");
+                   record::put_header(cdr, 0, "");
+                   for (const double value : {1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}) cdr.put(value);
+                 }),
+            1);
+  EXPECT_TRUE(seen("rt/late/odom"));
+  EXPECT_EQ(call("load_world", "LoadWorld", load("cave.world")), 1);
+  EXPECT_EQ(call("unload_world", "UnloadWorld", [](record::CdrWriter& cdr) { cdr.put(std::uint8_t{0}); }), 1);
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait().code, 0) << run.err();
 }
 
 /// Cyclone DDS crashes where it opens no more. Below 8, other parts state it.

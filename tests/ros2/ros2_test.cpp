@@ -14,6 +14,7 @@
 #include "netio/bridges/ros2_bridge.h"
 #include "record/recorder.h"
 #include "record/recording.h"
+#include "record/ros_messages.h"
 #include "scenarios/operator.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
@@ -84,9 +85,13 @@ struct Ros2Test : testing::Test {
     return held;
   }
 
-  const world::World world = room();
-  const sensors::SensorSet sensor_set{world};
-  const record::RunInfo info = named(scenarios::run_info(world, sensor_set, {1, true, false, "test"}));
+  record::RunInfo info_of_run() const {
+    return named(scenarios::run_info(world, sensor_set, {1, true, false, "test"}));
+  }
+
+  world::World world = room();
+  sensors::SensorSet sensor_set{world};
+  record::RunInfo info = info_of_run();
   scenarios::Simulation simulation{world, device(), {.seed = 1}};
   bridges::Bridges all;
   bridges::Ros2Bridge* bridge = nullptr;
@@ -392,6 +397,79 @@ TEST_F(Ros2Test, AServicePlacesARobot) {
   }));
   ASSERT_TRUE(run_until([&] { return place.reply().has_value(); }));
   EXPECT_EQ(place.reply()->code, 1) << place.reply()->message;
+}
+
+/// Fields of a request, whose first ones are the caller's two numbers.
+std::vector<std::uint8_t> fields_of(const std::function<void(record::CdrWriter&)>& put) {
+  base::Bytes bytes;
+  record::CdrWriter cdr(bytes);
+  put(cdr);
+  return {bytes.begin() + 4, bytes.end()};
+}
+
+/// A robot that joins has topics of its own, and takes commands; one that leaves is silent.
+TEST_F(Ros2Test, ServicesAddAndRemoveRobots) {
+  users.on_fleet_changes([&](const auto& joining, const auto& leaving) {
+    for (const bridges::Leaving& each : leaving) simulation.remove_robot(each.mover), each.outcome->done = true;
+    for (const bridges::Joining& each : joining) {
+      simulation.add_robot(world, {.name = each.name, .like = each.like, .X_WM = each.X_WM});
+      each.outcome->done = true;
+    }
+    sensor_set = sensors::SensorSet(world);
+    info = info_of_run();
+    all.show_scene(false);
+  });
+  Client spawn(peer, "spawn_entity", "simulation_interfaces::srv::dds_::SpawnEntity");
+  const auto request = fields_of([](record::CdrWriter& cdr) {
+    cdr.put("late");
+    cdr.put(false);
+    cdr.put("scout");
+    cdr.put("");
+    cdr.put("");
+    record::put_header(cdr, 0, "world");
+    for (const double value : {2.0, -2.0, 0.0, 0.0, 0.0, 0.0, 1.0}) cdr.put(value);
+  });
+  ASSERT_TRUE(spawn.connect(request, [&] { go_on(); }));
+  ASSERT_TRUE(run_until([&] { return spawn.reply().has_value(); }));
+  EXPECT_EQ(world.movers.size(), 3u);
+  const std::size_t scans = peer.subscribe("rt/late/laser/scan", kScan);
+  const std::size_t odometry = peer.subscribe("rt/late/odom", kOdometry);
+  const std::size_t drive = peer.advertise("rt/late/cmd_vel", "geometry_msgs::msg::dds_::Twist_");
+  EXPECT_TRUE(run_until([&] { return !peer.messages(scans).empty(); }));
+  EXPECT_TRUE(peer.wait([&] {
+    peer.send(drive, encode_twist(0.0, 0.0, 0.5));
+    go_on();
+    const auto messages = peer.messages(odometry);
+    const auto last = messages.empty() ? std::nullopt : decode_odometry(messages.back());
+    return last && std::abs(last->velocity[5] - 0.5) < 1e-9;
+  }));
+
+  Client remove(peer, "delete_entity", "simulation_interfaces::srv::dds_::DeleteEntity");
+  ASSERT_TRUE(remove.connect(fields_of([](record::CdrWriter& cdr) { cdr.put("late"); }), [&] { go_on(); }));
+  EXPECT_TRUE(simulation.is_absent(2));
+}
+
+/// Feedback after each step, then the result.
+TEST_F(Ros2Test, AnActionMakesSteps) {
+  Client set(peer, "set_simulation_state", "simulation_interfaces::srv::dds_::SetSimulationState");
+  Client send(peer, "simulate_steps/_action/send_goal", "simulation_interfaces::action::dds_::SimulateSteps_SendGoal");
+  Client get(peer, "simulate_steps/_action/get_result", "simulation_interfaces::action::dds_::SimulateSteps_GetResult");
+  const std::size_t feedback = peer.subscribe("rt/simulate_steps/_action/feedback",
+                                              "simulation_interfaces::action::dds_::SimulateSteps_FeedbackMessage_");
+  ASSERT_TRUE(set.connect({9}, [&] { go_on(); }));
+  ASSERT_TRUE(peer.wait([&] { return send.known() && get.known() && peer.matched_reader(feedback); }));
+  set.call({2});
+  ASSERT_TRUE(run_paused_until([&] { return set.reply().has_value(); }));
+  const int before = ticks;
+  std::vector<std::uint8_t> goal(16, 7);
+  get.call(goal);  // not known yet: answered at once, or after the goal
+  goal.insert(goal.end(), {3, 0, 0, 0, 0, 0, 0, 0});
+  send.call(goal);
+  ASSERT_TRUE(run_paused_until([&] { return peer.messages(feedback).size() >= 3; }));
+  EXPECT_EQ(ticks, before + 3);
+  get.call(std::vector<std::uint8_t>(16, 7));
+  ASSERT_TRUE(run_paused_until([&] { return get.reply().has_value(); }));
+  EXPECT_EQ(get.reply()->code, 4) << "succeeded";
 }
 
 }  // namespace

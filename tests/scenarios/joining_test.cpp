@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -16,6 +17,7 @@
 #include "scenarios/simulation.h"
 #include "scenarios/verification.h"
 #include "sensors/sensor_type.h"
+#include "tests/cluster/thread_ranks.h"
 #include "tests/device.h"
 #include "tests/farm/small_farm.h"
 #include "world/append_robot.h"
@@ -320,6 +322,39 @@ TEST(Joining, ErrorsOfEventsNameLineAndRemedy) {
       {later + "remove = \"a\"\n" + later + "remove = \"a\"\n", "joining.toml:8: there is no robot in row 0"},
   };
   for (const auto& [text, said] : kCorpus) EXPECT_EQ(event_refusal(text).substr(0, said.size()), said) << text;
+}
+
+/// Ranks that share a fleet give the readings of one process, whoever joins and leaves.
+TEST(Joining, RanksAgree) {
+  const auto go = [](Simulation& simulation, world::World& world) {
+    for (int tick = 0; tick < 40; ++tick) {
+      for (int k = 0; k < 3; ++k)
+        if (tick == 7 + 5 * k) {
+          JoiningRobot robot{
+              .name = "late" + std::to_string(k), .like = "a", .X_WM = {2.0 * k, 6.0, 0.0, 0.0}, .actor = {}};
+          simulation.add_robot(world, robot);
+        }
+      if (tick == 20) simulation.remove_robot(1);
+      if (tick == 26)
+        simulation.add_robot(world, {.name = "late0", .like = "a", .X_WM = {0.0, 8.0, 0.0, 0.0}, .actor = {}});
+      simulation.step();
+    }
+    simulation.settle();
+  };
+  SimulationOptions options{.seed = 5, .threads = 1};
+  world::World alone = world_of("probe ( name \"z\" pose [10 0 0 0] )\n");
+  Simulation one(alone, device(), options);
+  go(one, alone);
+  std::vector<std::unique_ptr<gpu::Device>> devices;
+  for (int rank = 0; rank < 3; ++rank) devices.push_back(std::make_unique<gpu::Device>());
+  cluster::ThreadRanks(3).run([&](cluster::Ranks& rank) {
+    world::World world = world_of("probe ( name \"z\" pose [10 0 0 0] )\n");
+    SimulationOptions shared = options;
+    shared.ranks = &rank;
+    Simulation simulation(world, *devices[rank.rank()], shared);
+    go(simulation, world);
+    if (rank.rank() == 0) EXPECT_EQ(simulation.farm().hash(), one.farm().hash());
+  });
 }
 
 }  // namespace

@@ -77,6 +77,7 @@ struct RosServicesTest : testing::Test {
   static Fields number(Value value) {
     return [value](record::CdrWriter& cdr) { cdr.put(value); };
   }
+  static Fields text(std::string_view value) { return number(value); }
   static Fields state(int value) { return number(static_cast<std::uint8_t>(value)); }
   std::function<void()> look(bool paused, std::uint32_t runs = 0) {
     return [=, this] { services.observe(nullptr, {.paused = paused, .runs = runs}); };
@@ -90,8 +91,22 @@ struct RosServicesTest : testing::Test {
   base::TickRecord tick;
   const world::World world = [] {
     world::World made;
+    made.file = "room.world";
+    made.models = {{.name = "scout", .type = "probe", .mover = 0},
+                   {.name = "robot 2", .type = "probe", .mover = 1},
+                   {.name = "tag", .type = "model", .mover = 2}};
     made.movers.resize(3);
+    for (std::uint32_t row = 0; row < 3; ++row) {
+      made.movers[row].name = made.models[row].name;
+      made.movers[row].model = row;
+      made.movers[row].id = row + 1;
+      if (row < 2) made.movers[row].body = {{.a = {-0.5, -0.25}, .b = {0.75, 0.25}, .z_min = 0.125, .z_max = 0.5}};
+    }
+    made.movers[0].X_WM = {1.0, 2.0, 0.0, 0.5};
     made.movers[1].X_WM = base::kAbsent;
+    made.movers[2].is_tag = true;
+    made.emitters.push_back({.kind = world::Emitter::Kind::dock, .model = 2, .X_WE = {3.0, 0.0, 0.0, 0.0}});
+    made.paths.push_back({.name = "tour", .pieces = {{.X_WP = {4.0, 0.0, 0.0, 0.0}}}});
     return made;
   }();
   sensors::SensorSet sensor_set{world};

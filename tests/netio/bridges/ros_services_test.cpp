@@ -12,11 +12,12 @@ namespace sf::bridges {
 namespace {
 
 TEST_F(RosServicesTest, FeaturesAndStates) {
-  const std::vector<int> watched{10, 24}, driven{10, 24, 11, 20, 21, 22, 25, 26, 31, 32};
+  const std::vector<int> watched{2, 3, 5, 10, 12, 24, 44},
+      driven{2, 3, 5, 10, 12, 24, 44, 0, 1, 11, 14, 20, 21, 22, 23, 25, 26, 31, 32, 33, 40, 43, 45, 50};
   for (const bool simulated : {false, true}) {
     std::destroy_at(&services);
     std::construct_at(&services, Scene{world, sensor_set, info, simulated});
-    EXPECT_EQ(services.types().size(), simulated ? 12u : 5u);
+    EXPECT_EQ(services.types().size(), simulated ? 27u : 10u);
     Reply features(ask("/get_simulator_features"));
     std::vector<int> all(features.cdr.get_count(2));
     for (int& feature : all) feature = features.cdr.get<std::uint16_t>();
