@@ -194,7 +194,7 @@ void Magnetometers::read(std::size_t i) {
 
 void Magnetometers::collect(std::span<base::ReadingBlock> out) {
   for (auto& [mode, wave] : waves_)
-    if (!on_device_) wave.field.sum_on_host();
+    if (!on_device_ && !due_.empty()) wave.field.sum_on_host();
   thread_pool_.parallel_for_each(due_.size(), 64, [this](std::size_t i, unsigned) { read(i); });
   for (std::size_t i = 0; i < due_.size(); ++i) {
     const Array& array = arrays_[due_[i].row];

@@ -299,6 +299,21 @@ TEST(HostDevice, MagnetometersHaveTheBytesOfTheKernelsInAllModes) {
   }
 }
 
+/// Types without subscribers are not prepared, and collect nothing.
+TEST(HostDevice, ATypeAloneIsReadAmongAll) {
+  world::World world = rasters(0.01, true, 4);
+  scenes::add_carrier(world, {}, scenes::five());
+  scenes::add_carrier(world, {}, fitted("sonar"));
+  world.magnets.push_back(scenes::magnet({0.2, 0.0}));
+  const sensors::SensorSet all(world);
+  ASSERT_GE(all.groups().size(), 4u);
+  for (const auto& group : all.groups()) {
+    farm::Farm farm(world, host_device());
+    for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.subscribe(m, 1u << group.type->id);
+    EXPECT_EQ(farm.tick(0, {}).size(), group.rows.size()) << group.type->name;
+  }
+}
+
 TEST(HostDevice, TheCasterOfKernelsIsRefused) {
   world::World world = scenes::boxes(2, 6.0, 1);
   scenes::add_robots(world, 1, scenes::laser(), 1);
