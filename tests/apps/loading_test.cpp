@@ -14,7 +14,7 @@ namespace {
 std::string loaded_by(const Words& arguments) {
   const Outcome outcome = run_program(arguments, {{"LD_DEBUG", "files"}});
   EXPECT_EQ(outcome.code, 0) << outcome.err.substr(0, 2000);
-  EXPECT_NE(outcome.err.find("libvulkan.so"), std::string::npos) << "the linker says nothing";
+  EXPECT_NE(outcome.err.find("libfmt.so"), std::string::npos) << "the linker says nothing";
   return outcome.err;
 }
 
@@ -57,7 +57,19 @@ TEST(Loading, APictureWithoutItsPlugInIsAnError) {
   EXPECT_NE(outcome.err.find("w.world:2: 'bitmap': sensorfarm_pictures.so: cannot be loaded, so only PNG and Netpbm"),
             std::string::npos)
       << outcome.err;
+  EXPECT_NE(outcome.err.find("install the Debian package of sensorfarm, or put the file into " + folder.path("")),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.err.find("Debian: libopencv-imgcodecs406"), std::string::npos) << outcome.err;
   EXPECT_EQ(Program({"check", our_world("cave.world")}, {}, "", "", alone).wait().code, 0);
+}
+
+/// The loader need not be installed where no device is opened.
+TEST(Loading, OnlyDevicesLoadVulkan) {
+  const std::string world = our_world("rooms.world");
+  for (const Words& arguments : {Words{"--version"}, Words{"check", world}, Words{"sense", world, "--device", "host"}})
+    EXPECT_EQ(loaded_by(arguments).find("libvulkan"), std::string::npos) << arguments[0];
+  EXPECT_NE(loaded_by({"devices"}).find("libvulkan.so.1"), std::string::npos);
 }
 
 TEST(Loading, DrawingLoadsCairoAndNothingOfVtk) {

@@ -338,7 +338,9 @@ TEST(NoDevice, WhereOneIsAskedForEndsWithThreeAndOneLine) {
       EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
       EXPECT_NE(outcome.err.find("no Vulkan device"), std::string::npos) << outcome.err;
       // Never an empty scan, nor a summary of nothing.
-      if (words[0] != "devices") EXPECT_EQ(outcome.out, "") << words[0];
+      if (words[0] != "devices") {
+        EXPECT_EQ(outcome.out, "") << words[0];
+      }
     }
 }
 
@@ -350,8 +352,9 @@ TEST(NoDevice, ElseTheHostComputesAndOneLineSaysSo) {
     EXPECT_EQ(outcome.code, 0) << words[0] << ": " << outcome.err;
     EXPECT_NE(outcome.err.find("no Vulkan device"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find("computing on the host"), std::string::npos) << outcome.err;
-    if (words[0] == "sense" && words.back() == "--json")
+    if (words[0] == "sense" && words.back() == "--json") {
       EXPECT_EQ(outcome.out, run_program(words).out) << "the bytes of a device";
+    }
   }
   const Outcome named = run_program({"sense", our_world("rooms.world"), "--device", "host", "--json"},
                                     with(no_device(), {{"SENSORFARM_CASTER", "auto"}}));
