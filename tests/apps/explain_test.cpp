@@ -95,7 +95,7 @@ TEST(Explain, SizesHaveTheLargestUnitThatTheyFill) {
 TEST(Explain, WrongUsage) {
   EXPECT_EQ(run_program({"explain"}).code, 2);
   EXPECT_EQ(run_program({"explain", "/nowhere.world"}).code, 2);
-  EXPECT_EQ(run_program({"explain", our_world("rooms.world")}, no_device()).code, 3);
+  EXPECT_EQ(run_program({"explain", our_world("rooms.world"), "--require-vulkan"}, no_device()).code, 3);
 }
 
 }  // namespace

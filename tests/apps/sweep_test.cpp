@@ -258,7 +258,7 @@ TEST(SweepCommand, WrongUsageIsExplained) {
   EXPECT_NE(refused({"-o", folder.path("out")}, {{"SLURM_STEP_ID", "0"}, {"SLURM_PROCID", "2"}, {"SLURM_NTASKS", "2"}})
                 .find("SLURM_PROCID is '2'"),
             std::string::npos);
-  EXPECT_EQ(run_program({"sweep", file, "-o", folder.path("out")}, no_device()).code, 3);
+  EXPECT_EQ(run_program({"sweep", file, "-o", folder.path("out"), "--require-vulkan"}, no_device()).code, 3);
   const Outcome list = run_program({"sweep", file, "--list"}, no_device());
   EXPECT_EQ(list.code, 0) << "needs no device: " << list.err;
   EXPECT_NE(list.out.find("12 points x 2 seeds = 24 jobs"), std::string::npos) << list.out;

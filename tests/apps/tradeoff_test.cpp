@@ -119,7 +119,7 @@ TEST(Tradeoff, WrongUsage) {
   EXPECT_EQ(unit.code, 2);
   expect_says(unit, "with its unit such as 5mm");
   EXPECT_EQ(run_program({"tradeoff", our_world("rooms.world"), "--min-rate", "fast"}).code, 2);
-  EXPECT_EQ(run_program({"tradeoff", our_world("rooms.world")}, no_device()).code, 3);
+  EXPECT_EQ(run_program({"tradeoff", our_world("rooms.world"), "--require-vulkan"}, no_device()).code, 3);
   const Outcome nowhere = run_program({"tradeoff", our_world("rooms.world"), "-o", "/proc/none"});
   EXPECT_EQ(nowhere.code, 2);
   expect_says(nowhere, "/proc/none");
