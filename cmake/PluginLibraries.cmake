@@ -27,6 +27,13 @@ find_library(GDAL gdal REQUIRED)
 find_path(CYCLONEDDS_INCLUDE dds/dds.h REQUIRED)
 find_library(CYCLONEDDS ddsc REQUIRED)
 
+# Fast DDS (libfastrtps-dev). Without it, services do not answer clients of rmw_fastrtps, and no test is a peer.
+find_library(FASTDDS fastrtps)
+find_library(FASTCDR fastcdr)
+if(NOT FASTDDS OR NOT FASTCDR)
+  message(STATUS "libfastrtps-dev is missing: no sensorfarm_fastdds, no ros2_tests")
+endif()
+
 # Links each plug-in, once add_module() has made its target.
 function(link_plugins)
   target_link_libraries(sensorfarm_cairo PRIVATE PkgConfig::CAIRO)
@@ -43,6 +50,9 @@ function(link_plugins)
   target_link_libraries(sensorfarm_dds PRIVATE fmt::fmt ${CYCLONEDDS})
   if(FFMPEG_FOUND)
     target_link_libraries(sensorfarm_ffmpeg PRIVATE PkgConfig::FFMPEG)
+  endif()
+  if(TARGET sensorfarm_fastdds)
+    target_link_libraries(sensorfarm_fastdds PRIVATE fmt::fmt ${FASTDDS} ${FASTCDR})
   endif()
   if(MPI_C_FOUND)
     target_link_libraries(sensorfarm_mpi PRIVATE MPI::MPI_C)

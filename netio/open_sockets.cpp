@@ -1,5 +1,6 @@
 #include "netio/open_sockets.h"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <linux/filter.h>
 #include <netinet/in.h>
@@ -7,6 +8,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "base/error.h"
@@ -24,15 +26,21 @@ std::set<int> descriptors() {
   return found;
 }
 
-/// UDP of IPv4, bound to all interfaces.
-bool is_open_to_all(int descriptor) {
+/// The address that a UDP socket of IPv4 is bound to; nullopt: it is another descriptor, or not bound.
+std::optional<sockaddr_in> bound_udp(int descriptor) {
   sockaddr_in address{};
   socklen_t size = sizeof address;
   int type = 0;
   socklen_t type_size = sizeof type;
-  return getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &type_size) == 0 && type == SOCK_DGRAM &&
-         getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) == 0 && address.sin_family == AF_INET &&
-         address.sin_addr.s_addr == htonl(INADDR_ANY) && address.sin_port != 0;
+  const bool found = getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &type_size) == 0 && type == SOCK_DGRAM &&
+                     getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
+                     address.sin_family == AF_INET && address.sin_port != 0;
+  return found ? std::optional(address) : std::nullopt;
+}
+
+bool is_open_to_all(int descriptor) {
+  const auto bound = bound_udp(descriptor);
+  return bound && bound->sin_addr.s_addr == htonl(INADDR_ANY);
 }
 
 /// A program of the kernel that drops datagrams that are not sent to 127.0.0.0/8, as a socket bound to there would.
@@ -57,6 +65,18 @@ void OpenSockets::keep_new_ones_to_loopback() const {
     if (!take_loopback_only(descriptor))
       throw base::InputError("sockets cannot be kept to this machine: the kernel refuses filters");
   }
+}
+
+std::set<std::string> OpenSockets::addresses() const {
+  std::set<std::string> found;
+  for (const int descriptor : descriptors()) {
+    const auto bound = before_.count(descriptor) > 0 ? std::nullopt : bound_udp(descriptor);
+    const bool is_one =
+        bound && bound->sin_addr.s_addr != htonl(INADDR_ANY) && !IN_MULTICAST(ntohl(bound->sin_addr.s_addr));
+    char text[INET_ADDRSTRLEN] = {};
+    if (is_one && inet_ntop(AF_INET, &bound->sin_addr, text, sizeof text) != nullptr) found.insert(text);
+  }
+  return found;
 }
 
 }  // namespace sf::netio

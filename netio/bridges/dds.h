@@ -1,12 +1,14 @@
 #pragma once
 // DDS, the network of ROS 2, as far as a bridge needs it: bytes go out on writers and come in on readers. Cyclone DDS
-// is in a plug-in (dds/, `sensorfarm_dds.so`) that is loaded with the first participant.
+// is in a plug-in (dds/, `sensorfarm_dds.so`) that is loaded with the first participant; so is Fast DDS (fastdds/,
+// `sensorfarm_fastdds.so`), with which services also answer clients of rmw_fastrtps.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -19,6 +21,14 @@ using DdsGuid = std::array<std::uint8_t, 16>;
 
 inline constexpr std::size_t kDdsMaxReceived = 1 << 20;  ///< [byte] longer messages come as empty ones
 
+/// Whether a client with this writer puts the header of rmw_cyclonedds before its requests, and reads it before
+/// replies. All others are expected to do as DDS-RPC says, and as rmw_fastrtps does: the participant of Fast DDS takes
+/// these alone, and that of Cyclone DDS the former alone, so that each request is executed once. A GUID begins with the
+/// number of the implementation (RTPS 2.2, 8.2.4.2).
+inline bool has_request_header(const DdsGuid& writer) {
+  return writer[0] == 0x01 && writer[1] == 0x10;  // Eclipse Cyclone DDS
+}
+
 /// A writer or a reader. Both are reliable; a reader matches writers of any kind.
 struct DdsEndpoint {
   std::string topic;      ///< name in DDS, e.g. "rt/robot/odom"
@@ -27,12 +37,21 @@ struct DdsEndpoint {
   int depth = 10;         ///< messages kept for slow readers, > 0
   bool latched = false;   ///< of writers: late readers are given the last `depth` messages
   bool best_effort = false;
+  bool requests = false;  ///< of readers: of a service's requests; see `has_request_header`
+};
+
+/// Of a message.
+struct DdsSender {
+  DdsSender(std::uint64_t of_writer = 0) : writer(of_writer) {}
+  std::uint64_t writer = 0;  ///< as in `can_answer`
+  bool fast = false;         ///< it came by the participant of Fast DDS
+  bool operator==(const DdsSender&) const = default;
 };
 
 struct DdsMessage {
   std::size_t reader = 0;
-  std::uint64_t writer = 0;  ///< its sender, as in `can_answer`
-  base::Bytes bytes;         ///< with encapsulation; empty where longer than kDdsMaxReceived
+  DdsSender sender;
+  base::Bytes bytes;  ///< with encapsulation; empty where longer than kDdsMaxReceived
 };
 
 /// Adding is for one thread, before the first write. All other functions are for any thread, one at a time per writer.
@@ -50,7 +69,7 @@ class DdsParticipant {
   /// Of readers that are known at present; never waits.
   virtual std::size_t count_readers(std::size_t writer) const = 0;
   /// Whether the sender's participant reads what `writer` writes, or is gone.
-  /// @param sender `DdsMessage::writer` of a message of `reader`
+  /// @param sender `DdsSender::writer` of a message of `reader`
   virtual bool can_answer(std::size_t writer, std::size_t reader, std::uint64_t sender) const = 0;
 };
 
@@ -58,6 +77,7 @@ struct DdsOptions {
   std::uint32_t domain = 0;  ///< [0, kDdsMaxDomain]
   std::string user_data;     ///< of the participant
   bool loopback = false;     ///< on this machine only; false: on the default interface, or as CYCLONEDDS_URI says
+  std::set<std::string> addresses;  ///< IPv4, of the interfaces of Fast DDS without `loopback`; not empty
   /// Takes what came. Called on threads of the library; returns soon.
   std::function<void(DdsMessage&&)> receive;
   /// Takes a line of the library's log, such as one per malformed datagram. Called on threads of the library.
@@ -73,7 +93,12 @@ struct DdsLibrary {
 /// The name of the plug-in's only symbol: `extern "C" const DdsLibrary sensorfarm_dds`.
 inline constexpr const char* kDdsSymbol = "sensorfarm_dds";
 
+inline constexpr const char* kFastDdsSymbol = "sensorfarm_fastdds";  ///< likewise
+
 /// Loads the plug-in, once. @throws base::InputError naming the file when it cannot be loaded
 const DdsLibrary& dds_library();
+/// That of Fast DDS, whose participants have endpoints of services alone. Messages are as clients of rmw_cyclonedds
+/// write and read them, with a header before their fields: a number of the request, and its sequence number.
+const DdsLibrary& fast_dds_library();
 
 }  // namespace sf::bridges

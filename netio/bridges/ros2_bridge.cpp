@@ -72,6 +72,24 @@ class GrowingParticipant : public DdsParticipant {
   std::unique_ptr<DdsParticipant> inner_;
 };
 
+/// Requests come from reliable writers. @param id in front of its user data
+DdsEndpoint request_reader(const ServiceType& service, const std::string& id) {
+  const std::string type = std::string(service.type) + "_Request";
+  return {.topic = "rq" + std::string(service.name) + "Request",
+          .type = dds_type(type),
+          .user_data = id + type_user_data(type, ros_definition(service.request)),
+          .depth = kDepth,
+          .requests = true};
+}
+
+DdsEndpoint reply_writer(const ServiceType& service, const std::string& id) {
+  const std::string type = std::string(service.type) + "_Response";
+  return {.topic = "rr" + std::string(service.name) + "Reply",
+          .type = dds_type(type),
+          .user_data = id + type_user_data(type, ros_definition(service.response)),
+          .depth = kDepth};
+}
+
 }  // namespace
 
 Ros2Options ros2_options(std::string domain) {
@@ -118,7 +136,8 @@ void DdsLog::write(std::string_view line) {
              std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1));
 }
 
-Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library)
+Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library,
+                       const DdsLibrary& (*fast_library)())
     : options_(options), scene_(scene), services_(scene), messages_(std::in_place, scene.info) {
   // Requests of services wait apart from commands, which are taken in every tick.
   const auto receive = [this](DdsMessage&& message) {
@@ -127,25 +146,30 @@ Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const Dds
   };
   try {
     const netio::OpenSockets before;
-    participant_ =
-        std::make_unique<GrowingParticipant>(library.open({options.domain, "enclave=/;", options.loopback, receive,
-                                                           [this](std::string_view line) { log_.write(line); }}));
+    participant_ = std::make_unique<GrowingParticipant>(
+        library.open({options.domain, "enclave=/;", options.loopback, {}, receive, [this](std::string_view line) {
+                        log_.write(line);
+                      }}));
+    const std::set<std::string> addresses = before.addresses();
     if (options.loopback) before.keep_new_ones_to_loopback();
     add_services();
     add_topics();
     add_commands();
+    open_fast(fast_library, addresses);
+    if (options.loopback) before.keep_new_ones_to_loopback();  // those of Fast DDS, too
     announce();
   } catch (const std::runtime_error& error) {
     throw base::InputError(fmt::format("--ros2: {}", error.what()));
   }
   messages_->begin([this](const record::TopicMessage& message) { add(message); });
   outbox_.emplace(*participant_);
+  if (fast_) fast_outbox_.emplace(*fast_);
   outbox_->add(batch_);
 }
 
 std::string Ros2Bridge::describe() const {
-  return fmt::format("ROS 2: node /{} in domain {}{}", kNode, options_.domain,
-                     options_.loopback ? ", on this machine" : "");
+  return fmt::format("ROS 2: node /{} in domain {}{}{}", kNode, options_.domain,
+                     options_.loopback ? ", on this machine" : "", why_no_fast_);
 }
 
 void Ros2Bridge::show_scene(bool is_new) {
@@ -199,16 +223,40 @@ void Ros2Bridge::add_commands() {
 void Ros2Bridge::add_services() {
   for (const ServiceType& service : services_.types()) {
     const std::string id = service_id(participant_->guid(), reply_writers_.size());
-    const std::string type(service.type), name(service.name);
-    add_reader("rq" + name + "Request", type + "_Request", ros_definition(service.request), id);
+    participant_->add_reader(request_reader(service, id), readers_.emplace_back());
     reader_of_.emplace_back();
-    reply_writers_.push_back(
-        add_writer("rr" + name + "Reply", type + "_Response", ros_definition(service.response), kDepth, false, id));
+    reply_writers_.push_back(participant_->add_writer(reply_writer(service, id), writers_.emplace_back()));
   }
   if (!scene_.simulated) return;
   for (const ActionTopic& topic : StepsAction::kTopics)
     action_writers_.push_back(add_writer("rt" + std::string(topic.name), topic.type, ros_definition(topic.fields),
                                          topic.latched ? 1 : kDepth, topic.latched));
+}
+
+/// The same services once more, for clients that the participant above leaves out.
+void Ros2Bridge::open_fast(const DdsLibrary& (*library)(), const std::set<std::string>& addresses) {
+  const DdsLibrary* loaded = nullptr;
+  try {
+    loaded = &library();
+  } catch (const base::InputError& error) {
+    why_no_fast_ = fmt::format("; {}", error.what());
+    return;
+  }
+  if (!options_.loopback && addresses.empty()) {
+    why_no_fast_ = "; services do not answer clients of rmw_fastrtps, as Cyclone DDS uses no address of IPv4 here";
+    return;
+  }
+  const auto receive = [this](DdsMessage&& message) {
+    message.sender.fast = true;
+    requests_.add(std::move(message));
+  };
+  const auto log = [this](std::string_view line) { log_.write(line); };
+  fast_ = loaded->open({options_.domain, "enclave=/;", options_.loopback, addresses, receive, log});
+  DdsGuid guid{};
+  for (const ServiceType& service : services_.types()) {
+    fast_->add_reader(request_reader(service, {}), guid);
+    fast_->add_writer(reply_writer(service, {}), guid);
+  }
 }
 
 /// What `ros2 node list` reads: the participant's nodes, and their readers and writers.
@@ -232,18 +280,19 @@ void Ros2Bridge::announce() {
 }
 
 std::size_t Ros2Bridge::add_writer(const std::string& topic, std::string_view type, std::string_view definition,
-                                   int depth, bool latched, const std::string& user_data) {
-  return participant_->add_writer({topic, dds_type(type), user_data + type_user_data(type, definition), depth, latched},
+                                   int depth, bool latched) {
+  return participant_->add_writer({topic, dds_type(type), type_user_data(type, definition), depth, latched},
                                   writers_.emplace_back());
 }
 
-std::size_t Ros2Bridge::add_reader(const std::string& topic, std::string_view type, std::string_view definition,
-                                   const std::string& user_data) {
-  // Commands of writers of any kind are taken; requests come from reliable writers.
-  const bool any = user_data.empty();
-  return participant_->add_reader(
-      {topic, dds_type(type), user_data + type_user_data(type, definition), kDepth, false, any},
-      readers_.emplace_back());
+std::size_t Ros2Bridge::add_reader(const std::string& topic, std::string_view type, std::string_view definition) {
+  // Commands of writers of any kind are taken.
+  return participant_->add_reader({.topic = topic,
+                                   .type = dds_type(type),
+                                   .user_data = type_user_data(type, definition),
+                                   .depth = kDepth,
+                                   .best_effort = true},
+                                  readers_.emplace_back());
 }
 
 void Ros2Bridge::publish(const base::TickRecord& tick, const RunState& state) {
@@ -275,7 +324,7 @@ void Ros2Bridge::take(Requests& requests) {
   if (pending_.empty()) requests_.take(pending_);
   for (std::size_t count = 0; !pending_.empty() && count < kMaxRequests; ++count, pending_.pop_front()) {
     const DdsMessage& message = pending_.front();
-    if (!services_.take(message.reader, message.bytes, message.writer, requests)) ++malformed_;
+    if (!services_.take(message.reader, message.bytes, message.sender, requests)) ++malformed_;
   }
   send_answers();
 }
@@ -298,9 +347,13 @@ bool Ros2Bridge::take_command(const DdsMessage& message, Requests& requests) con
 }
 
 void Ros2Bridge::send_answers() {
-  for (Answer& answer : services_.answers())
-    outbox_->add(
-        DdsReply{reply_writers_[answer.service], answer.service, answer.caller.writer, std::move(answer.message)});
+  for (Answer& answer : services_.answers()) {
+    const std::uint64_t writer = answer.caller.sender.writer;
+    if (answer.caller.sender.fast)
+      fast_outbox_->add(DdsReply{answer.service, answer.service, writer, std::move(answer.message)});
+    else
+      outbox_->add(DdsReply{reply_writers_[answer.service], answer.service, writer, std::move(answer.message)});
+  }
   if (action_writers_.empty()) return;
   for (ActionMessage& message : services_.messages())
     batch_.add(action_writers_[message.topic]) = std::move(message.bytes);
@@ -308,7 +361,13 @@ void Ros2Bridge::send_answers() {
 }
 
 Ros2Bridge::Counts Ros2Bridge::counts() const {
-  return {outbox_->counts(), malformed_, commands_.left_out() + requests_.left_out()};
+  DdsOutbox::Counts sent = outbox_->counts();
+  if (fast_outbox_) {
+    const DdsOutbox::Counts more = fast_outbox_->counts();
+    sent.written += more.written;
+    sent.left_out += more.left_out;
+  }
+  return {sent, malformed_, commands_.left_out() + requests_.left_out()};
 }
 
 }  // namespace sf::bridges

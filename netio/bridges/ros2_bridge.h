@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -65,8 +66,10 @@ class Ros2Bridge : public Bridge {
   static constexpr std::size_t kNone = ~std::size_t{0};
   static constexpr std::size_t kMaxRequests = 32;  ///< of services, taken per tick; further ones wait
 
+  /// @param fast_library gives that of Fast DDS; services do not answer clients of rmw_fastrtps where it throws
   /// @throws base::InputError where DDS cannot be used
-  Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library = dds_library());
+  Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library = dds_library(),
+             const DdsLibrary& (*fast_library)() = fast_dds_library);
 
   void publish(const base::TickRecord& tick, const RunState& state) override;
   void publish(const RunState& state) override;
@@ -87,11 +90,11 @@ class Ros2Bridge : public Bridge {
   void add_topics();
   void add_commands();
   void add_services();
+  void open_fast(const DdsLibrary& (*library)(), const std::set<std::string>& addresses);
   void announce();
   std::size_t add_writer(const std::string& topic, std::string_view type, std::string_view definition, int depth,
-                         bool latched, const std::string& user_data = {});
-  std::size_t add_reader(const std::string& topic, std::string_view type, std::string_view definition,
-                         const std::string& user_data = {});
+                         bool latched);
+  std::size_t add_reader(const std::string& topic, std::string_view type, std::string_view definition);
   void add(const record::TopicMessage& message);
   /// @return false: it cannot be read
   bool take_command(const DdsMessage& message, Requests& requests) const;
@@ -114,7 +117,7 @@ class Ros2Bridge : public Bridge {
   std::vector<Reader> reader_of_;                       ///< by reader
   std::map<std::string, std::size_t> writer_of_topic_;  ///< of all topics that ever were
   std::map<std::string, std::size_t> commands_of_;      ///< first reader of the topic's commands
-  std::vector<std::size_t> reply_writers_;              ///< by service
+  std::vector<std::size_t> reply_writers_;              ///< by service; those of Fast DDS are in order of services
   std::vector<std::size_t> action_writers_;             ///< by topic of actions
   std::size_t discovery_ = kNone;                       ///< writer
   std::vector<DdsGuid> readers_, writers_;              ///< all of them
@@ -122,8 +125,9 @@ class Ros2Bridge : public Bridge {
   std::int64_t time_ = 0;  ///< [ns] of the last tick
   DdsBatch batch_;
   DdsLog log_;
-  std::unique_ptr<DdsParticipant> participant_;
-  std::optional<DdsOutbox> outbox_;
+  std::string why_no_fast_;                             ///< empty: clients of rmw_fastrtps are answered
+  std::unique_ptr<DdsParticipant> participant_, fast_;  ///< the latter has services alone; null: there is none
+  std::optional<DdsOutbox> outbox_, fast_outbox_;
 };
 
 }  // namespace sf::bridges

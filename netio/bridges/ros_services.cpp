@@ -551,13 +551,13 @@ std::string RosServices::world_uri() const {
   return scene_.info.world;
 }
 
-bool RosServices::take(std::size_t service, std::span<const std::uint8_t> message, std::uint64_t writer,
+bool RosServices::take(std::size_t service, std::span<const std::uint8_t> message, const DdsSender& sender,
                        Requests& requests) {
   CdrReader cdr(message);
   Call call{.service = service};
   call.caller.client = cdr.get<std::uint64_t>();
   call.caller.sequence = cdr.get<std::int64_t>();
-  call.caller.writer = writer;
+  call.caller.sender = sender;
   if (!cdr.good()) return false;
   const Handlers::Row& row = Handlers::kRows[service];
   if (!row.simulated || waiting_.size() < kMaxWaiting) return row.handler(*this, call, cdr, requests);

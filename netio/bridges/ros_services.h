@@ -14,6 +14,7 @@
 
 #include "base/bytes.h"
 #include "netio/bridges/bridge.h"
+#include "netio/bridges/dds.h"
 #include "netio/bridges/steps_action.h"
 #include "netio/bridges/world_services.h"
 #include "record/cdr.h"
@@ -30,7 +31,7 @@ struct ServiceType {
 struct Caller {
   std::uint64_t client = 0;
   std::int64_t sequence = 0;
-  std::uint64_t writer = 0;  ///< `DdsMessage::writer`
+  DdsSender sender;
 };
 
 struct Answer {
@@ -52,9 +53,9 @@ class RosServices {
   /// Those of this run: where robots are not simulated, those that change nothing.
   std::span<const ServiceType> types() const { return types_; }
 
-  /// Takes one request, with encapsulation. @param writer see Caller @param requests out: what it asks of the run
+  /// Takes one request, with encapsulation. @param sender see Caller @param requests out: what it asks of the run
   /// @return false: it cannot be read, and is dropped
-  bool take(std::size_t service, std::span<const std::uint8_t> message, std::uint64_t writer, Requests& requests);
+  bool take(std::size_t service, std::span<const std::uint8_t> message, const DdsSender& sender, Requests& requests);
   /// Called with every tick, or while the run is paused without one, when the requests above were done.
   void observe(const base::TickRecord* tick, const RunState& state);
   /// Gives those that came to be since the last call.

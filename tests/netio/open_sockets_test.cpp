@@ -43,5 +43,16 @@ TEST(OpenSockets, NewOnesOnAllInterfacesReceiveFromThisMachineAlone) {
   EXPECT_EQ(came, 2u);
 }
 
+TEST(OpenSockets, AddressesAreThoseThatNewOnesAreBoundTo) {
+  const Socket old = open_udp({kLoopback + 1, 0});
+  const OpenSockets before;
+  EXPECT_TRUE(before.addresses().empty());
+  const Socket to_all = open_udp({0, 0});
+  EXPECT_TRUE(before.addresses().empty()) << "0.0.0.0 is no address of an interface";
+  const Socket one = open_udp({kLoopback + 2, 0}), again = open_udp({kLoopback + 2, 0}),
+               other = open_udp({kLoopback + 3, 0});
+  EXPECT_EQ(before.addresses(), (std::set<std::string>{"127.0.0.3", "127.0.0.4"}));
+}
+
 }  // namespace
 }  // namespace sf::netio

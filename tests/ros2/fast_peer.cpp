@@ -1,5 +1,6 @@
 #include "tests/ros2/fast_peer.h"
 
+#include <fastdds/rtps/common/WriteParams.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -95,6 +96,7 @@ struct FastPeer::Impl : dds::DomainParticipantListener {
   std::vector<dds::DataReader*> readers;
   std::vector<dds::DataWriter*> writers;
   std::map<const dds::DataReader*, std::vector<Bytes>> come;
+  std::map<const dds::DataReader*, std::vector<std::pair<std::int64_t, Bytes>>> replies;
   std::map<const void*, int> matched;
   dds::DomainParticipant* participant = nullptr;
   dds::Publisher* publisher = nullptr;
@@ -138,7 +140,13 @@ struct FastPeer::Impl : dds::DomainParticipantListener {
     Bytes message;
     dds::SampleInfo info;
     while (reader->take_next_sample(&message, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK)
-      if (info.valid_data) note([&] { come[reader].push_back(message); });
+      if (info.valid_data)
+        note([&] {
+          come[reader].push_back(message);
+          const rtps::SampleIdentity& to = info.related_sample_identity;
+          if (to.writer_guid() == reader->guid())
+            replies[reader].emplace_back(static_cast<std::int64_t>(to.sequence_number().to64long()), message);
+        });
   }
 
   dds::Topic* topic(const std::string& name, const std::string& type) {
@@ -188,14 +196,29 @@ void FastPeer::send(std::size_t writer, const Bytes& message) {
   if (!impl_->writers[writer]->write(&copy)) throw std::runtime_error("Fast DDS does not write");
 }
 
-bool FastPeer::matched_reader(std::size_t reader) const {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->matched[impl_->readers[reader]] > 0;
+std::int64_t FastPeer::call(std::size_t writer, std::size_t reader, const Bytes& message) {
+  Bytes copy = message;
+  rtps::WriteParams params;
+  params.related_sample_identity().writer_guid(impl_->readers[reader]->guid());
+  if (!impl_->writers[writer]->write(&copy, params)) throw std::runtime_error("Fast DDS does not write");
+  return static_cast<std::int64_t>(params.sample_identity().sequence_number().to64long());
 }
-bool FastPeer::matched_writer(std::size_t writer) const {
+
+std::vector<std::pair<std::int64_t, Bytes>> FastPeer::replies(std::size_t reader) const {
   const std::lock_guard lock(impl_->mutex);
-  return impl_->matched[impl_->writers[writer]] > 0;
+  return impl_->replies[impl_->readers[reader]];
 }
+
+int FastPeer::count_matched_reader(std::size_t reader) const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->matched[impl_->readers[reader]];
+}
+int FastPeer::count_matched_writer(std::size_t writer) const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->matched[impl_->writers[writer]];
+}
+bool FastPeer::matched_reader(std::size_t reader) const { return count_matched_reader(reader) > 0; }
+bool FastPeer::matched_writer(std::size_t writer) const { return count_matched_writer(writer) > 0; }
 std::vector<Bytes> FastPeer::messages(std::size_t reader) const {
   const std::lock_guard lock(impl_->mutex);
   return impl_->come[impl_->readers[reader]];

@@ -30,6 +30,13 @@ class FastPeer {
   /// @return the writer's number
   std::size_t advertise(const std::string& topic, const std::string& type, bool reliable = true);
   void send(std::size_t writer, const base::Bytes& message);
+  /// Sends a request as clients of rmw_fastrtps do, naming the reader of its reply. @return its sequence number
+  std::int64_t call(std::size_t writer, std::size_t reader, const base::Bytes& message);
+  /// Replies that name this reader, as these clients look for them: sequence number and message.
+  std::vector<std::pair<std::int64_t, base::Bytes>> replies(std::size_t reader) const;
+  /// Others' endpoints that match.
+  int count_matched_reader(std::size_t reader) const;
+  int count_matched_writer(std::size_t writer) const;
 
   bool matched_reader(std::size_t reader) const;
   bool matched_writer(std::size_t writer) const;
@@ -80,6 +87,8 @@ std::optional<std::vector<Node>> decode_nodes(const base::Bytes& message);
 base::Bytes encode_twist(double forward, double left, double turn);
 base::Bytes encode_twist_stamped(double forward, double left, double turn);
 
+/// A request of a client of rmw_fastrtps: its fields alone.
+base::Bytes encode_fields(const std::vector<std::uint8_t>& fields);
 /// A request of a client of rmw_cyclonedds: its number and the request's before the request itself.
 base::Bytes encode_request(std::uint64_t client, std::int64_t sequence, const std::vector<std::uint8_t>& fields);
 /// Likewise a SetEntityState of version 2.1 that sets the pose.
@@ -94,5 +103,7 @@ struct Reply {
 };
 /// A reply that consists of a byte and a text: simulation_interfaces/Result, or std_srvs' success and message.
 std::optional<Reply> decode_reply(const base::Bytes& message);
+/// Likewise without the numbers of rmw_cyclonedds.
+std::optional<Reply> decode_fields_of_reply(const base::Bytes& message);
 
 }  // namespace sf::ros2

@@ -134,10 +134,9 @@ TEST(Ros2Program, AServiceAnswersQuestions) {
   const std::size_t answers =
       peer.subscribe("rr/get_simulation_stateReply", "simulation_interfaces::srv::dds_::GetSimulationState_Response_");
   ASSERT_TRUE(peer.wait([&] { return peer.matched_writer(ask) && peer.matched_reader(answers); }));
-  std::int64_t calls = 0;
   EXPECT_TRUE(peer.wait([&] {
-    peer.send(ask, encode_request(17, ++calls, {0}));
-    return !peer.messages(answers).empty();
+    peer.call(ask, answers, encode_fields({0}));
+    return !peer.replies(answers).empty();
   }));
   for (const Endpoint& one : peer.endpoints())
     EXPECT_EQ(one.topic.find("cmd_vel"), std::string::npos) << "robots of a service live elsewhere";

@@ -121,6 +121,12 @@ Bytes encode_twist_stamped(double forward, double left, double turn) {
   });
 }
 
+Bytes encode_fields(const std::vector<std::uint8_t>& fields) {
+  return encode([&](Cdr& cdr) {
+    for (const std::uint8_t byte : fields) cdr << byte;
+  });
+}
+
 Bytes encode_request(std::uint64_t client, std::int64_t sequence, const std::vector<std::uint8_t>& fields) {
   return encode([&](Cdr& cdr) {
     cdr << client << sequence;
@@ -141,6 +147,10 @@ Bytes encode_set_pose(std::uint64_t client, std::int64_t sequence, const std::st
 std::optional<Reply> decode_reply(const Bytes& message) {
   return decode<Reply>(
       message, [](Cdr& cdr, Reply& reply) { cdr >> reply.client >> reply.sequence >> reply.code >> reply.message; });
+}
+
+std::optional<Reply> decode_fields_of_reply(const Bytes& message) {
+  return decode<Reply>(message, [](Cdr& cdr, Reply& reply) { cdr >> reply.code >> reply.message; });
 }
 
 }  // namespace sf::ros2

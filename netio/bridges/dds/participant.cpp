@@ -4,9 +4,7 @@
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsrt/log.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -17,6 +15,7 @@
 
 #include "netio/bridges/dds.h"
 #include "netio/bridges/dds/byte_type.h"
+#include "netio/bridges/dds/descriptors.h"
 
 namespace sf::bridges {
 
@@ -90,7 +89,17 @@ struct Reader {
   dds_entity_t entity = 0;
   std::size_t number = 0;
   const DdsOptions* options = nullptr;
+  bool requests = false;
 };
+
+/// Of a writer that is gone, nothing is known, and nobody waits for an answer.
+bool is_of_own_kind(dds_entity_t reader, dds_instance_handle_t writer) {
+  const EndpointData data(dds_get_matched_publication_data(reader, writer));
+  if (data == nullptr) return false;
+  DdsGuid guid{};
+  std::memcpy(guid.data(), data->key.v, guid.size());
+  return has_request_header(guid);
+}
 
 void count_readers_of(dds_entity_t, const dds_publication_matched_status_t status, void* writer) {
   static_cast<Writer*>(writer)->readers = status.current_count;
@@ -105,8 +114,9 @@ void receive_all(dds_entity_t entity, void* argument) {
   while ((count = dds_takecdr(entity, samples, kAtOnce, infos, DDS_ANY_STATE)) > 0) {
     for (dds_return_t i = 0; i < count; ++i) {
       const auto bytes = bytes_of(samples[i]);
-      if (infos[i].valid_data)
-        reader.options->receive({reader.number, infos[i].publication_handle, {bytes.begin(), bytes.end()}});
+      const auto sender = infos[i].publication_handle;
+      if (infos[i].valid_data && (!reader.requests || is_of_own_kind(entity, sender)))
+        reader.options->receive({reader.number, sender, {bytes.begin(), bytes.end()}});
       ddsi_serdata_unref(samples[i]);
     }
   }
@@ -148,6 +158,7 @@ class CycloneParticipant : public DdsParticipant {
     auto& reader = *readers_.emplace_back(std::make_unique<Reader>());
     reader.number = readers_.size() - 1;
     reader.options = &options_;
+    reader.requests = endpoint.requests;
     Listener listener(dds_create_listener(&reader));
     dds_lset_data_available(listener.get(), receive_all);
     reader.entity =
@@ -212,23 +223,8 @@ class CycloneParticipant : public DdsParticipant {
   std::vector<std::unique_ptr<Reader>> readers_;
 };
 
-/// Cyclone DDS does not survive it where descriptors run out as it starts.
-void require_descriptors() {
-  constexpr std::size_t kNeeded = 16;
-  std::vector<int> opened;
-  while (opened.size() < kNeeded) {
-    const int one = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    if (one < 0) break;
-    opened.push_back(one);
-  }
-  for (const int one : opened) ::close(one);
-  if (opened.size() < kNeeded)
-    throw std::runtime_error("only " + std::to_string(opened.size()) + " more files and sockets may be opened, and " +
-                             std::to_string(kNeeded) + " are needed; raise the limit (ulimit -n)");
-}
-
 std::unique_ptr<DdsParticipant> open(const DdsOptions& options) {
-  require_descriptors();
+  require_descriptors(16);
   return std::make_unique<CycloneParticipant>(options);
 }
 

@@ -86,6 +86,16 @@ const DdsLibrary kFake{[](const DdsOptions& options) -> std::unique_ptr<DdsParti
   return std::make_unique<FakeParticipant>(*network_of_test);
 }};
 
+Network* fast_of_test = nullptr;  ///< of Fast DDS; null: it is not installed
+const DdsLibrary kFakeFast{[](const DdsOptions& options) -> std::unique_ptr<DdsParticipant> {
+  fast_of_test->receive = options.receive;
+  return std::make_unique<FakeParticipant>(*fast_of_test);
+}};
+const DdsLibrary& fake_fast() {
+  if (fast_of_test == nullptr) throw base::InputError("it is not installed");
+  return kFakeFast;
+}
+
 world::World two_robots() {
   world::World world;
   world.movers.resize(3);
@@ -117,7 +127,7 @@ struct Ros2BridgeTest : testing::Test {
     bridge->publish(tick, {.paused = paused, .runs = runs});
   }
   void open(bool simulated = true) {
-    bridge.emplace(Ros2Options{7, true}, Scene{world, sensor_set, info, simulated}, kFake);
+    bridge.emplace(Ros2Options{7, true}, Scene{world, sensor_set, info, simulated}, kFake, fake_fast);
   }
   /// A request as rmw_cyclonedds writes it. @param body appends the request's fields
   base::Bytes request(std::int64_t sequence, const std::function<void(record::CdrWriter&)>& body) {
@@ -169,7 +179,7 @@ TEST_F(Ros2BridgeTest, NamesTopicsAsRos2Does) {
   EXPECT_EQ(network.writer("rt/scout/cmd_vel"), network.writers.size()) << "commands are heard there";
   EXPECT_LT(network.reader("rt/scout/cmd_vel"), network.readers.size());
   EXPECT_EQ(network.reader("rt/tag/cmd_vel"), network.readers.size()) << "tags are not driven";
-  EXPECT_EQ(bridge->describe(), "ROS 2: node /sensorfarm in domain 7, on this machine");
+  EXPECT_EQ(bridge->describe(), "ROS 2: node /sensorfarm in domain 7, on this machine; it is not installed");
 }
 
 TEST_F(Ros2BridgeTest, OfAServiceNothingCanBeChanged) {
@@ -405,6 +415,50 @@ TEST_F(Ros2BridgeTest, RobotsArePlacedWhereThatCanBe) {
   const auto done = answers("set_entity_state", cases.size());
   ASSERT_EQ(done.size(), cases.size());
   for (std::size_t i = 0; i < cases.size(); ++i) EXPECT_EQ(done[i].first, cases[i].code) << i << done[i].second;
+}
+
+/// Clients of Fast DDS are answered by its participant, which has the same endpoints of services, and nothing else.
+TEST_F(Ros2BridgeTest, AnswersGoWhereTheirRequestsCameFrom) {
+  open();
+  EXPECT_NE(bridge->describe().find("it is not installed"), std::string::npos) << bridge->describe();
+  bridge.reset();
+  network.readers.clear(), network.writers.clear();
+  Network fast;
+  fast_of_test = &fast;
+  open();
+  fast_of_test = nullptr;
+  EXPECT_EQ(bridge->describe().find("installed"), std::string::npos) << bridge->describe();
+  const auto services = [](const std::vector<DdsEndpoint>& all) {
+    std::vector<std::pair<std::string, std::string>> found;
+    for (const DdsEndpoint& one : all)
+      if (one.topic.starts_with("rq/") || one.topic.starts_with("rr/")) found.emplace_back(one.topic, one.type);
+    return found;
+  };
+  EXPECT_EQ(services(fast.readers), services(network.readers));
+  EXPECT_EQ(services(fast.writers), services(network.writers));
+  EXPECT_EQ(fast.readers.size() + fast.writers.size(), services(fast.readers).size() + services(fast.writers).size());
+  for (const DdsEndpoint& one : fast.readers) EXPECT_TRUE(one.requests && !one.best_effort) << one.topic;
+
+  const std::string topic = "rq/get_simulation_stateRequest", reply = "rr/get_simulation_stateReply";
+  fast.receive({fast.reader(topic), 5, request(1, kNothing)});
+  network.receive({network.reader(topic), 5, request(2, kNothing)});
+  fast.receive({fast.reader(topic), 6, request(3, kNothing)});
+  take();
+  const auto sequences = [&](Network& of, std::size_t count) {
+    std::vector<std::int64_t> found;
+    for (const base::Bytes& bytes : of.wait(of.writer(reply), count)) {
+      record::CdrReader cdr(bytes);
+      cdr.get<std::uint64_t>();
+      found.push_back(cdr.get<std::int64_t>());
+    }
+    return found;
+  };
+  EXPECT_EQ(sequences(fast, 2), (std::vector<std::int64_t>{1, 3}));
+  EXPECT_EQ(sequences(network, 1), (std::vector<std::int64_t>{2}));
+  EXPECT_TRUE(has_request_header({0x01, 0x10})) << "Cyclone DDS";
+  for (const DdsGuid& other : {DdsGuid{0x01, 0x0f}, {0x01, 0x01}, {0x10, 0x01}, {}})
+    EXPECT_FALSE(has_request_header(other)) << "Fast DDS, Connext, and others";
+  bridge.reset();  // before `fast`
 }
 
 TEST_F(Ros2BridgeTest, AnAnswerWaitsForItsReaderNotForEver) {
