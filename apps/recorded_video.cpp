@@ -62,7 +62,7 @@ void write_recorded_video(RecordingPart& part, const VideoOptions& options, cons
   }
   {
     Progress progress(options.frames.empty() ? "encoding" : "painting");
-    for (std::size_t i = 0; i < replay.ticks() && !stop_requested(); ++i) {
+    for (std::size_t i = 0; i < replay.ticks() && (i == 0 || !stop_requested()); ++i) {
       base::TickRecord tick = replay.tick(i, i == 0 ? std::nullopt : std::optional(i - 1));
       if (scans) scans->add_to(tick, i);
       video.write(tick);

@@ -14,6 +14,7 @@
 #include "apps/report.h"
 #include "apps/text.h"
 #include "base/echo.h"
+#include "base/error.h"
 #include "base/time.h"
 #include "scenarios/experiment.h"
 #include "viz/png.h"
@@ -102,7 +103,10 @@ class RunVideo::Work {
  public:
   Work(const world::World& world, record::RunInfo info, const VideoOptions& options, std::vector<std::uint8_t> hidden)
       : world_(world), info_(std::move(info)), options_(options), hidden_(std::move(hidden)) {
-    choose_sensors(rows_of(world, options.video_readings));
+    std::vector<std::size_t> chosen = rows_of(world, options.video_readings);
+    std::sort(chosen.begin(), chosen.end());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    choose_sensors(chosen);
     viz::RunView view(world, view_options(world, options));
     if (options.frames.empty())
       file_.emplace(options.video, viz::VideoFormat{options.video_width, options.video_height, options.video_fps});
@@ -124,7 +128,12 @@ class RunVideo::Work {
   }
 
   VideoFacts finish() {
-    if (started_) {
+    if (!started_) {  // stopped before its first tick: players refuse files without a frame
+      for (const world::Mover& mover : world_.movers) now_.X_WM.push_back(mover.X_WM);
+      now_.speed.resize(world_.movers.size());
+      before_ = now_;
+      add_frame(0);
+    } else {
       const std::int64_t end = now_.time + base::nanoseconds(info_.interval);
       while (frame_time() < end - 1) add_frame(frame_time());
     }
@@ -142,12 +151,17 @@ class RunVideo::Work {
 
   void choose_sensors(const std::vector<std::size_t>& movers) {
     for (const std::size_t mover : movers) {
+      const std::size_t before = shown_.size();
       std::map<std::uint8_t, std::uint32_t> count;
       for (const record::SensorInfo& sensor : info_.movers[mover].sensors) {
         const std::uint32_t number = count[sensor.type]++;
         if (viz::has_ranges(info_, sensor))
           shown_[{static_cast<std::uint32_t>(mover), sensor.type, number}] = {mover, &sensor, {}, {}};
       }
+      if (shown_.size() == before)
+        throw base::InputError(world_.file, 0,
+                               fmt::format("'{}' has no laser, sonar or infrared sensor, whose readings a video shows",
+                                           world_.movers[mover].name));
     }
   }
 

@@ -58,6 +58,7 @@ void add_view(CLI::App& app, Call& call) {
   auto* frames = sub->add_option("--frames", o.frames,
                                  "Folder for the frames of a video as PNG files, for any encoder, in place of the page")
                      ->check(not_empty("a folder"))
+                     ->excludes("--port")
                      ->type_name("DIR");
   add_video_look(*sub, o, frames);
   auto* window =

@@ -99,7 +99,11 @@ void add_sense(CLI::App& app, Call& call) {
 void add_plot(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("plot", "Draw trajectories, an occupancy map, readings and lights from a recorded run");
-  auto& o = add_command(*sub, call, plot);
+  auto& o = add_command(*sub, call, plot, [sub] {
+    for (const std::string option : {"--out", "--format", "--csv", "--size", "--dpi", "--no-title", "--extent"})
+      if (sub->count(option) > 0 && sub->count("--video") > 0)
+        throw CLI::ValidationError(option, "is of figures, and --video writes a video alone");
+  });
   add_examples(*sub, {"out/run", "out/run -o figures --format pdf --size 85 --no-title --robots robot1,robot2"});
   add_recording(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")

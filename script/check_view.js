@@ -97,6 +97,40 @@ async function watchRun(browser, requests) {
   await page.close();
 }
 
+/**
+ * In the page, for 4 s: the largest distance of an echo from the nearest wall or robot, as they were when it was
+ * measured, and of the sensor's pose in the picture from the drawn robot's.
+ */
+async function measureEchoes() {
+  const walls = [], [ox, oy] = view.scene.origin, { fleet, drawing } = view, me = drawing.selected;
+  for (const { lines } of view.scene.walls) for (const line of lines) for (let k = 0; k + 3 < line.length; k += 2) walls.push([line[k], line[k + 1], line[k + 2], line[k + 3]]);
+  const offWall = (x, y, [ax, ay, bx, by]) => { const dx = bx - ax, dy = by - ay, t = Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1))); return Math.hypot(ax + t * dx - x, ay + t * dy - y); };
+  const found = { surface: 0, apart: 0, turned: 0, scans: 0 };
+  let last = null;
+  for (const begin = performance.now(); performance.now() - begin < 4000; await new Promise(requestAnimationFrame)) {
+    const held = [...drawing.held.values()].find(({ message }) => message.ranges);
+    const mount = view.scene.movers[me].sensors.find(({ fov }) => fov).pose, yaw = fleet.shownYaw[me];
+    const x = fleet.shownX[me] + Math.cos(yaw) * mount[0] - Math.sin(yaw) * mount[1] - ox, y = fleet.shownY[me] + Math.sin(yaw) * mount[0] + Math.cos(yaw) * mount[1] - oy;
+    const turned = held.pose[2] - yaw - mount[2];
+    found.apart = Math.max(found.apart, Math.hypot(held.pose[0] - x, held.pose[1] - y));
+    found.turned = Math.max(found.turned, Math.abs(turned - 2 * Math.PI * Math.round(turned / (2 * Math.PI))));
+    if (held === last) continue;
+    last = held;
+    ++found.scans;
+    const robots = view.scene.movers.map((_, i) => (i === me ? null : fleet.poseAt(i, held.at))), { message, pose } = held;
+    for (let i = 0; i < message.ranges.length; i += 5) {
+      const range = message.ranges[i], angle = pose[2] + message.angle_min + i * message.angle_increment;
+      if (!(range >= message.range_min && range < message.range_max)) continue;
+      const ex = pose[0] + ox + range * Math.cos(angle), ey = pose[1] + oy + range * Math.sin(angle);
+      let least = Infinity;
+      for (const wall of walls) least = Math.min(least, offWall(ex, ey, wall));
+      robots.forEach((robot, k) => { if (robot) least = Math.min(least, Math.abs(Math.hypot(robot[0] - ex, robot[1] - ey) - fleet.radius[k])); });
+      found.surface = Math.max(found.surface, least);
+    }
+  }
+  return found;
+}
+
 async function watchManyRobots(browser, requests) {
   const server = start(program, ["run", "worlds/cave.world", "--robots", "300", "--view", "0"]);
   const page = await open(browser, await server.url, requests);
@@ -105,8 +139,108 @@ async function watchManyRobots(browser, requests) {
   await page.keyboard.press("Enter");
   await until(page, "no scan", () => view.drawing.drawn.hits > 0);
   check((await countPixels(page, [179, 89, 0])) > 20, "no echoes on the map");
+
+  // Robots of one model have colours of their own, the same in the list and on the map.
+  const marks = await page.evaluate(() => { document.getElementById("search").value = ""; view.panel.fill(); return [...document.querySelectorAll("#robots .mark")].slice(0, 24).map((mark) => getComputedStyle(mark).backgroundColor); });
+  check(new Set(marks).size === 24 && (await page.evaluate(() => view.drawing.byColor.size)) === 24, `colours ${marks}`);
+  check((await page.evaluate(() => view.fleet.count === 300 && [...document.querySelectorAll("#fleet button")].map(({ textContent }) => /^\d+ (in contact|stuck|outside)$/.test(textContent)).join())) === "true,true,true", "no counts of the fleet");
+  const { surface, apart, turned, scans } = await page.evaluate(measureEchoes);
+  console.log(`${scans} scans: echoes at most ${surface.toFixed(4)} m off walls and robots, sensors ${apart.toFixed(3)} m and ${turned.toFixed(3)} rad off robots`);
+  check(scans > 20 && surface < 0.02, "echoes are not where surfaces are");
+  check(apart < 0.03 && turned < 0.1, "readings are not where their robot is drawn");
+  await page.selectOption("#speed", "0");  // ticks between updates, which are left out
+  await until(page, "not faster", () => Number.parseFloat(document.getElementById("pace").textContent) > 1.5);
+  const fast = await page.evaluate(measureEchoes);
+  console.log(`${fast.scans} scans at full speed: echoes at most ${fast.surface.toFixed(4)} m off walls and robots`);
+  check(fast.scans > 20 && fast.surface < 0.02, "echoes are not where surfaces are, at full speed");
   await page.close();
   check((await server.end()) === 0, "the program failed");
+}
+
+/** Dark or light as the system has it, until the user chooses; on a phone everything is within reach; caps lock. */
+async function watchThemesAndPhones(browser, requests) {
+  const server = start(program, ["run", "worlds/rooms.world", "--view", "0", "--duration", "600"]);
+  const page = await open(browser, await server.url, requests);
+  const themeOf = () => page.evaluate(() => document.documentElement.dataset.theme);
+  const paper = () => page.evaluate(() => [...view.drawing.context.getImageData(3, view.drawing.canvas.height - 3, 1, 1).data].slice(0, 3).join());
+  check((await themeOf()) === "light" && (await paper()) === "255,255,255", "not light");
+  await page.emulateMedia({ colorScheme: "dark" });
+  await until(page, "not dark", () => document.documentElement.dataset.theme === "dark");
+  await until(page, "the map is not dark", () => view.drawing.context.getImageData(3, view.drawing.canvas.height - 3, 1, 1).data[0] === 20);
+  await page.keyboard.press("t");
+  check((await themeOf()) === "light", "T does not choose");
+  await page.reload();
+  await until(page, "no updates", () => window.view?.counters?.updates > 2);
+  check((await themeOf()) === "light", "the choice is forgotten");
+  await page.click("#theme");
+  await page.emulateMedia({ colorScheme: "light" });
+  await until(page, "the system is not followed again", () => document.documentElement.dataset.theme === "light");
+
+  // As the keyboard sends them with caps lock on.
+  const press = (key, shiftKey) => page.evaluate(([k, s]) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key: k, shiftKey: s, bubbles: true })), [key, shiftKey]);
+  await page.keyboard.press("]");
+  await press("F", false);
+  await until(page, "F with caps lock does not follow", () => document.getElementById("follow").getAttribute("aria-pressed") === "true");
+  const { tick } = await page.evaluate(() => ({ tick: view.fleet.tick }));
+  await press("R", false);
+  await until(page, "no ticks", (before) => view.fleet.tick > before + 3, tick);  // R without Shift restarts nothing
+  await press("r", true);
+  await until(page, "Shift and R with caps lock do not restart", (before) => view.fleet.tick < before, tick);
+
+  await page.setViewportSize({ width: 360, height: 640 });
+  await until(page, "the map has no room", () => document.getElementById("view").clientHeight > 200 && document.getElementById("view").clientWidth === 360);
+  const beyond = await page.evaluate(() => [...document.querySelectorAll("#bar button, #bar select, #clock, #status, #zoom button, #fleet button, #search")].filter((each) => { const box = each.getBoundingClientRect(); return box.width > 0 && (box.left < 0 || box.right > 360 || box.bottom > 640); }).map(({ id }) => id));
+  check(beyond.length === 0 && (await page.evaluate(() => document.documentElement.scrollWidth)) === 360, `beyond the screen: ${beyond}`);
+  await page.click("#show-panel");
+  await until(page, "the panel does not give way", () => document.getElementById("view").clientHeight > 480);
+  await page.setViewportSize({ width: 1366, height: 768 });
+  await page.close();
+  await server.end();
+}
+
+/** A robot that is driven into a wall is in contact, then stuck; its count selects it. */
+async function countFleet(browser, requests) {
+  const server = start(program, ["run", "worlds/rooms.world", "--view", "0", "--speed", "8", "--duration", "6000"]);
+  const page = await open(browser, await server.url, requests);
+  const robot = await page.evaluate(() => { const row = view.scene.movers.findIndex(({ tag }) => !tag); view.select(row); return row; });
+  await page.keyboard.press("d");
+  await page.keyboard.down("ArrowUp");
+  await until(page, "not stuck", (row) => view.fleet.isStuck(row) && document.querySelector("#fleet [data-count=stuck]").textContent === "1 stuck", robot);
+  check(await page.evaluate((row) => view.fleet.inContact(row) && !view.fleet.isOutside(row), robot), "stuck without contact");
+  await page.keyboard.up("ArrowUp");
+  await page.evaluate(() => view.select(-1));
+  await page.click("#fleet [data-count=contact]");
+  check((await page.evaluate(() => view.drawing.selected)) >= 0, "the count selects none");
+  await page.close();
+  await server.end();
+}
+
+/** Two fingers, one of which is lifted before the other: the map neither jumps nor stays behind. */
+async function touchMap(browser, requests) {
+  const server = start(program, ["run", "worlds/rooms.world", "--view", "0", "--duration", "600"]);
+  const page = await open(browser, await server.url, requests);
+  const at = () => page.evaluate(() => ({ x: view.camera.x, y: view.camera.y, scale: view.camera.scale, ground: view.camera.toWorld(300, 300) }));
+  const touch = (type, pointerId, x, y) => page.evaluate(([kind, id, px, py]) => {
+    const canvas = document.getElementById("view"), box = canvas.getBoundingClientRect();
+    canvas.setPointerCapture = () => {};
+    canvas.dispatchEvent(new PointerEvent(kind, { pointerId: id, pointerType: "touch", clientX: box.x + px, clientY: box.y + py, bubbles: true }));
+  }, [type, pointerId, x, y]);
+  const before = await at();
+  await touch("pointerdown", 1, 250, 300);
+  await touch("pointerdown", 2, 350, 300);
+  await touch("pointermove", 1, 250, 300);
+  await touch("pointermove", 2, 450, 300);
+  const apart = await at();
+  check(Math.abs(apart.scale / before.scale - 2) < 0.01, `pinch ${apart.scale / before.scale}`);
+  await touch("pointerup", 2, 450, 300);
+  await touch("pointermove", 1, 252, 300);
+  await touch("pointermove", 1, 260, 300);
+  const after = await at();
+  check(Math.abs((apart.x - after.x) * after.scale - 10) < 1, `the map jumped by ${(apart.x - after.x) * after.scale} px`);
+  await touch("pointerup", 1, 260, 300);
+  check((await look(page)).selected === -1, "lifting a finger selects");
+  await page.close();
+  await server.end();
 }
 
 async function watchRecording(browser, requests) {
@@ -134,7 +268,7 @@ async function main() {
   const profile = fs.mkdtempSync(path.join(os.tmpdir(), "chromium-"));
   const browser = await chromium.launchPersistentContext(profile, { executablePath: process.env.CHROMIUM, headless: true, args: flags, viewport: { width: 1366, height: 768 } });
   const requests = [];
-  for (const part of [watchRun, watchManyRobots, watchRecording]) {
+  for (const part of [watchRun, watchManyRobots, watchThemesAndPhones, countFleet, touchMap, watchRecording]) {
     const since = Date.now();
     await part(browser, requests);
     console.log(`${part.name}: ${((Date.now() - since) / 1000).toFixed(1)} s`);

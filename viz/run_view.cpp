@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
+#include <span>
 
 #include "base/report.h"
+#include "viz/labels.h"
 #include "viz/mover_layer.h"
 #include "viz/signal_layer.h"
 #include "viz/theme.h"
@@ -23,6 +25,17 @@ TextStyle text_style(const FigureLayout& layout, double part) {
   style.size = std::clamp(static_cast<int>(part * layout.height), 9, 48);
   style.halo = theme::kWhite;
   return style;
+}
+
+std::vector<std::size_t> robots_in_view(const world::World& world, const world::Extent& shown,
+                                        std::span<const base::Pose> X_WM) {
+  std::vector<std::size_t> seen;
+  for (std::size_t i = 0; i < X_WM.size(); ++i) {
+    const base::Pose& at = X_WM[i];
+    if (!world.movers[i].is_tag && at.x > shown.x_min && at.x < shown.x_max && at.y > shown.y_min && at.y < shown.y_max)
+      seen.push_back(i);
+  }
+  return seen;
 }
 
 }  // namespace
@@ -55,32 +68,20 @@ void RunView::draw_contacts(Axes& axes, const RunFrame& frame) const {
 
 /// Below the robots, where no other name is.
 void RunView::draw_names(Axes& axes, const RunFrame& frame) const {
-  const world::Extent& shown = axes.layout().shown;
-  std::vector<std::size_t> seen;
-  for (std::size_t i = 0; i < frame.X_WM.size(); ++i) {
-    const base::Pose& at = frame.X_WM[i];
-    if (!world_.movers[i].is_tag && at.x > shown.x_min && at.x < shown.x_max && at.y > shown.y_min &&
-        at.y < shown.y_max)
-      seen.push_back(i);
-  }
+  const std::vector<std::size_t> seen = robots_in_view(world_, axes.layout().shown, frame.X_WM);
   if (seen.size() > kMostNames) return;
   TextStyle style = text_style(axes.layout(), 0.022);
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  std::vector<glm::dvec2> taken, sizes;
+  Labels labels(axes.layout().plot);
   for (const std::size_t i : seen) {
-    const std::string& name = world_.movers[i].name;
     const double below = std::max(world_.movers[i].radius * axes.scale(), kSmallestRing) + 4.0;
     const glm::dvec2 at = axes.pixel({frame.X_WM[i].x, frame.X_WM[i].y}) + glm::dvec2{0.0, below};
-    const glm::dvec2 size = text_size(name, style);
-    bool is_free = true;
-    for (std::size_t k = 0; k < taken.size(); ++k)
-      is_free = is_free && (std::abs(at.x - taken[k].x) > 0.5 * (size.x + sizes[k].x) ||
-                            std::abs(at.y - taken[k].y) > 0.5 * (size.y + sizes[k].y));
-    if (!is_free) continue;
-    axes.canvas().text(at, name, style);
-    taken.push_back(at);
-    sizes.push_back(size);
+    const glm::dvec2 size = text_size(world_.movers[i].name, style);
+    const LabelBox box{at - glm::dvec2{0.5 * size.x, 0.0}, at + glm::dvec2{0.5 * size.x, size.y}};
+    if (!labels.is_bare(box)) continue;
+    axes.canvas().text(at, world_.movers[i].name, style);
+    labels.forbid(box);
   }
 }
 

@@ -2,7 +2,7 @@
 // Frames of a video of a run: the world from above with its robots, contacts and lights, readings of some robots, names
 // where they are few, the simulated time and a scale bar.
 
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,7 +11,7 @@
 
 namespace sf::viz {
 
-/// What one frame shows.
+/// Contents of one frame.
 struct RunFrame {
   double time = 0.0;                      ///< [s] simulated
   std::vector<base::Pose> X_WM;           ///< one per mover; absent ones are not drawn

@@ -95,6 +95,40 @@ TEST_F(Video, FramesArePngFilesForOtherEncoders) {
   EXPECT_NE(read_file(folder.path("f/000000.png")), read_file(folder.path("f/000014.png")));
 }
 
+/// At any frame rate, between ticks and at them, after the begin that was asked for.
+TEST_F(Video, FramesOfOneTimeAreTheSame) {
+  const std::string recording = record("2");
+  const auto write = [&](const std::string& fps, const std::string& name) {
+    EXPECT_EQ(run_program({"view", recording, "--frames", folder.path(name), "--video-fps", fps, "--video-size",
+                           "160x120", "--from", "0.5"})
+                  .code,
+              0);
+  };
+  write("10", "a");
+  write("40", "b");
+  for (const auto& [tick, frame] : {std::pair{"000000", "000000"}, {"000001", "000004"}, {"000012", "000048"}})
+    EXPECT_TRUE(read_file(folder.path("a/") + tick + ".png") == read_file(folder.path("b/") + frame + ".png")) << tick;
+  EXPECT_FALSE(read_file(folder.path("b/000004.png")) == read_file(folder.path("b/000005.png"))) << "between ticks";
+}
+
+/// Another program's decoder and measure, frame by frame.
+TEST_F(Video, DecodedFramesResembleThePaintedOnes) {
+  if (!succeeds("ffmpeg -version")) GTEST_SKIP() << "no FFmpeg on this machine (Debian: ffmpeg)";
+  const std::string recording = record("3"), video = folder.path("v.webm"), frames = folder.path("f");
+  const Words look{"--video-size", "640x360", "--video-readings", "roomba1", "--video-follow", "roomba1"};
+  for (Words words : {Words{"plot", recording, "--video", video}, Words{"view", recording, "--frames", frames}}) {
+    words.insert(words.end(), look.begin(), look.end());
+    ASSERT_EQ(run_program(words).code, 0) << words[0];
+  }
+  ASSERT_TRUE(succeeds("ffmpeg -v error -i '" + video + "' -framerate 25 -i '" + frames +
+                       "/%06d.png' -lavfi '[0:v]format=rgb24[a];[1:v]format=rgb24[b];[a][b]psnr=" +
+                       folder.path("psnr") + "' -f null -"));
+  const std::string log = read_file(folder.path("psnr"));
+  EXPECT_EQ(count_lines(log), 75u);
+  for (std::size_t at = 0; (at = log.find("psnr_avg:", at)) != std::string::npos; at += 9)
+    EXPECT_GT(std::strtod(log.c_str() + at + 9, nullptr), 33.0) << log.substr(at, 16);
+}
+
 TEST_F(Video, AStopLeavesAVideoThatPlays) {
   Program program(run(folder.path("v.webm"), "1e6"));
   ASSERT_TRUE(program.handles(SIGINT)) << program.err();
@@ -102,6 +136,17 @@ TEST_F(Video, AStopLeavesAVideoThatPlays) {
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.code, 130) << outcome.err;
   EXPECT_NE(outcome.out.find("\"video\""), std::string::npos) << outcome.out;
+  expect_probed(folder.path("v.webm"), "vp9,");
+}
+
+TEST_F(Video, AStoppedPlotSaysThatItsVideoEndsEarly) {
+  const std::string recording = record("600");
+  Program program({"plot", recording, "--video", folder.path("v.webm"), "--video-size", "160x120"});
+  ASSERT_TRUE(program.handles(SIGINT)) << program.err();
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("the video ends early"), std::string::npos) << outcome.err;
   expect_probed(folder.path("v.webm"), "vp9,");
 }
 
@@ -138,11 +183,18 @@ TEST_F(Video, WrongOptionsAreNamed) {
            {{"--video", video, "--video-size", "8192x120"}, "even numbers from 16 to 4096"},
            {{"--video", video, "--video-fps", "0"}, "expected a whole number from 1 to 120"},
            {{"--video", video, "--video-speed", "0"}, "expected a number from 0.001"},
-           {{"--video", video, "--video-follow", "nobody"}, "has no robot 'nobody'"},
+           {{"--video", video, "--video-follow", "roomba9"}, "has no robot 'roomba9'"},
            {{"--video", video, "--video-readings", "roomba3"}, "has no robot 'roomba3'"},
            {{"--video", "/nowhere/v.webm"}, "/nowhere/v.webm: the video cannot be written: No such file"},
            {{"--video-fps", "10"}, "--video-fps requires --video"}})
     EXPECT_NE(message(more).find(part), std::string::npos) << part;
+  const std::string blind = folder.write("w.world", "position( name \"a\" pose [0 0 0 0] gps( ) )\n");
+  const Outcome refused = run_program({"run", blind, "--duration", "0.1", "--video", video, "--video-readings", "a"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("'a' has no laser, sonar or infrared sensor"), std::string::npos) << refused.err;
+  const Outcome plotted = run_program({"plot", record("0.1"), "--video", video, "--csv"});
+  EXPECT_EQ(plotted.code, 2);
+  EXPECT_NE(plotted.err.find("--csv: is of figures"), std::string::npos) << plotted.err;
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/error.h"
 #include "scenarios/replay.h"
 
@@ -63,6 +65,26 @@ TEST(Replay, GivesStatesAndReadingsSinceTheTickShown) {
   EXPECT_EQ(read_value(last), 0.0) << "none since tick 2";
   EXPECT_EQ(read_value(replay.tick(2, 1)), 8.0);
   EXPECT_EQ(read_value(replay.tick(3, 0)), 8.0) << "of the ticks between, too";
+}
+
+/// Sensors measure between ticks, too; their poses are not recorded.
+TEST(Replay, GivesThePoseOfASensorWhenItMeasured) {
+  record::Recording recording = small_recording();
+  recording.info.movers[0].sensors[0].X_MS = {0.5, 0.0, 0.0, 0.0};
+  recording.states[0][1].X_WM.yaw = 3.0;
+  recording.states[0][2].X_WM.yaw = -3.0;  // by 0.28 rad across pi
+  const auto pose_at = [&](std::int64_t time) {
+    recording.readings = {{0, 6, 0, 0, 3 * kStep, time, {7.0}}};
+    Replay replay(recording, recording.info);
+    const base::ReadingBlock& reading = replay.tick(3, 2).readings[0];
+    EXPECT_NEAR(reading.X_WS.x, reading.X_WM.x + 0.5 * std::cos(reading.X_WM.yaw), 1e-12);
+    return reading.X_WM;
+  };
+  EXPECT_EQ(pose_at(kStep).x, 1.0);                                // at a tick
+  EXPECT_NEAR(pose_at(3 * kStep / 2).x, 1.5, 1e-12);               // between two
+  EXPECT_NEAR(std::cos(pose_at(3 * kStep / 2).yaw), -1.0, 1e-12);  // the shorter way round
+  EXPECT_EQ(pose_at(-5).x, 0.0);                                   // before the first
+  EXPECT_EQ(pose_at(9 * kStep).x, 3.0);                            // after the last
 }
 
 TEST(Replay, GivesEachSensorsNewestReadingAfterAJump) {

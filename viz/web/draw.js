@@ -9,13 +9,13 @@ const paths = 60;  // robots drawn as paths; more of them as pictures, and their
 const headings = 64;  // of such pictures
 
 export class Drawing {
-  constructor(canvas, camera, scene, layer, fleet) {
-    Object.assign(this, { canvas, camera, scene, layer, fleet });
+  /** @param held by topic: {message, pose} */
+  constructor(canvas, camera, scene, layer, fleet, held) {
+    Object.assign(this, { canvas, camera, scene, layer, fleet, held });
     this.context = canvas.getContext('2d', { alpha: false });
     this.layers = { trails: true, beams: true, maps: true, names: true, lights: true, contacts: true, colors: true };
     this.lights = [];
     this.selected = -1;
-    this.held = new Map();  // by topic: {message, pose}
     this.maps = new Map();  // by topic: MapPicture
     /** What the last frame shows, for tests. */
     this.drawn = {};
@@ -102,7 +102,7 @@ export class Drawing {
   #robots(c) {
     const all = [...this.byColor].map(([color, robots]) => [color, robots.filter((i) => this.#visible(i))]);
     for (const [, seen] of all) this.drawn.robots += seen.length;
-    for (const [color, seen] of all) (this.drawn.robots > paths ? this.#pictures : this.#bodies).call(this, c, color, seen);
+    for (const [color, seen] of all) if (seen.length > 0) (this.drawn.robots > paths ? this.#pictures : this.#bodies).call(this, c, color, seen);
     c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
   }
 
@@ -116,8 +116,7 @@ export class Drawing {
     c.stroke();
     c.beginPath();
     for (const i of robots) this.#heading(c, i, this.camera.toScreen(this.fleet.shownX[i], this.fleet.shownY[i]), this.fleet.shownYaw[i]);
-    c.lineWidth = 2;
-    c.strokeStyle = headingOn(color);
+    this.#styleHeading(c, color, robots[0]);
     c.stroke();
   }
 
@@ -151,8 +150,7 @@ export class Drawing {
     c.stroke();
     c.beginPath();
     this.#heading(c, i, [0, 0], yaw);
-    c.lineWidth = 2;
-    c.strokeStyle = headingOn(color);
+    this.#styleHeading(c, color, i);
     c.stroke();
     return { canvas, half };
   }
@@ -169,6 +167,13 @@ export class Drawing {
     for (const line of closed.concat(open))
       for (let k = 0; k < line.length; k += 2)
         c[k === 0 ? 'moveTo' : 'lineTo'](x + cos * line[k] - sin * line[k + 1], y - sin * line[k] - cos * line[k + 1]);
+  }
+
+  /** Of dots the heading is beyond the body. */
+  #styleHeading(c, color, i) {
+    const radius = this.fleet.radius[i] * this.camera.scale;
+    c.lineWidth = radius < 6 ? 1.2 : 2;
+    c.strokeStyle = radius < smallest ? edgeOf(color, 0.55) : headingOn(color);
   }
 
   #heading(c, i, [x, y], yaw) {

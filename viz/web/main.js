@@ -4,10 +4,12 @@ import { Camera } from './camera.js';
 import { twistBytes } from './cdr.js';
 import { Drawing, drawSignal } from './draw.js';
 import { Fleet } from './fleet.js';
+import { HeldReadings } from './held.js';
+import { keyName } from './keys.js';
 import { Panel } from './panel.js';
 import { Connection } from './protocol.js';
 import { StaticLayer, loadScene } from './scene.js';
-import { MapPicture, compose } from './sensors.js';
+import { MapPicture } from './sensors.js';
 import { fade, isDark, theme, useTheme } from './theme.js';
 
 const $ = (id) => document.getElementById(id);
@@ -18,7 +20,7 @@ let scene, camera, fleet, drawing, panel, connection;
 let paused = false, speed = 1, following = false, driving = false, sliding = false, dirty = true, time = 0;
 let runs = null, range = [0, 0];
 const pressed = new Set();
-const waiting = new Map();  // by topic: readings {sensor, message, at}, the one that is shown first
+const readings = new HeldReadings();
 
 function notice(text, lasts = 6) {
   $('notice').textContent = text;
@@ -96,8 +98,7 @@ function select(row) {
   for (const topic of topicsOf(drawing.selected)) connection.unsubscribe(topic);
   stopDriving();
   drawing.selected = row;
-  drawing.held.clear();
-  waiting.clear();
+  readings.clear();
   drawing.maps.clear();
   const actions = [];
   if (row >= 0 && scene.mode === 'run' && !scene.movers[row].tag) {
@@ -113,37 +114,12 @@ function select(row) {
   dirty = true;
 }
 
-/** Keeps a reading until the robots that are shown have come to its time. */
 function hold(sensor, message) {
   const at = message.header ? message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec : fleet.time;
-  if (sensor.map) {
-    drawing.maps.set(sensor.topic, new MapPicture(message, sensor.map));
-  } else {
-    const queue = waiting.get(sensor.topic) ?? [];
-    if (queue.length > 0 && at < queue[queue.length - 1].at) queue.length = 0;
-    queue.push({ sensor, message, at });
-    if (queue.length > 32) queue.shift();
-    waiting.set(sensor.topic, queue);
-  }
+  if (sensor.map) drawing.maps.set(sensor.topic, new MapPicture(message, sensor.map));
+  else readings.add(sensor, message, at);
   panel.reading(sensor.topic, message, at);
   dirty = true;
-}
-
-/**
- * Shows each sensor's reading that is nearest to the time of the shown robots, with the sensor's pose when it measured:
- * robots move from update to update, and an update may have readings that are newer than its states.
- */
-function showReadings() {
-  const nearer = (a, b) => Math.abs(a.at - fleet.shownTime) <= Math.abs(b.at - fleet.shownTime);
-  for (const [topic, queue] of waiting) {
-    while (queue.length > 1 && queue[1].at <= fleet.time + 1e-6 && nearer(queue[1], queue[0])) queue.shift();
-    const [{ sensor, message, at }] = queue;
-    if (drawing.held.get(topic)?.message === message) continue;
-    const robot = fleet.poseAt(drawing.selected, at);
-    if (!robot) continue;
-    drawing.held.set(topic, { message, at, pose: compose([robot[0] - scene.origin[0], robot[1] - scene.origin[1], robot[2]], sensor.pose) });
-    dirty = true;
-  }
 }
 
 function nextRobot(by) {
@@ -262,7 +238,7 @@ function showLegend() {
 function animate() {
   requestAnimationFrame(animate);
   const now = seconds(), moving = fleet.animate(now);
-  showReadings();
+  dirty = readings.update(fleet, drawing.selected, scene.origin) || dirty;
   if (following && drawing.selected >= 0 && !fleet.absent[drawing.selected]) {
     camera.x = fleet.shownX[drawing.selected];
     camera.y = fleet.shownY[drawing.selected];
@@ -327,12 +303,6 @@ const pans = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDow
 function zoom(factor, x, y) {
   camera.zoom(factor, following ? undefined : x, following ? undefined : y);
   dirty = true;
-}
-
-/** Caps lock changes the letter and not whether Shift is held; signs are as the keyboard's layout has them. */
-function keyName({ key, shiftKey }) {
-  const letter = key.toLowerCase();
-  return key.length === 1 && letter !== key.toUpperCase() ? (shiftKey && letter === 'r' ? 'Shift ' : '') + letter : key;
 }
 
 function keyDown(event) {
@@ -502,7 +472,7 @@ async function start() {
   $('world').title = scene.world;
   camera = new Camera();
   fleet = new Fleet(scene);
-  drawing = new Drawing($('view'), camera, scene, new StaticLayer(scene), fleet);
+  drawing = new Drawing($('view'), camera, scene, new StaticLayer(scene), fleet, readings.shown);
   panel = new Panel(scene, select, (row) => drawing.colors[row]);
   drawing.resize();
   camera.fit(scene.extent);

@@ -164,7 +164,7 @@ export class StaticLayer {
   }
 
   #magnets(c, px) {
-    const radius = Math.max(0.02, 3 * px);
+    const radius = Math.max(0.02, Math.min(3, Math.max(1.2, 0.04 / px)) * px);  // rows of them stay apart from far
     for (const [x, y, moment] of this.scene.magnets) {
       c.fillStyle = moment > 0 ? theme.magnetUp : theme.magnetDown;
       c.beginPath();

@@ -57,7 +57,7 @@ export function onPaper(color) {
 export function edgeOf(color, share) { return onPaper(mix(color, isDark() ? '#ffffff' : '#000000', share)); }
 
 /** Black or white, whichever is clearer on that colour. */
-export const headingOn = (color) => (contrast(color, '#ffffff') > contrast(color, '#101010') ? '#ffffff' : '#101010');
+export const headingOn = (color) => (contrast(color, '#ffffff') > contrast(color, '#000000') ? '#ffffff' : '#000000');
 
 const alikeColors = 24;
 

@@ -37,13 +37,13 @@ struct ViewerFixture {
     return info;
   }
   /// Paused ticks are not paced, so that tests depend on no clock.
-  void tick(std::uint64_t number) {
+  void tick(std::uint64_t number, bool paused = true) {
     const std::vector<base::Report> reports = states();
     base::TickRecord tick;
     tick.tick = number;
     tick.time = static_cast<std::int64_t>(number) * 100'000'000;
     tick.reports = reports;
-    viewer->publish(tick, {.paused = true});
+    viewer->publish(tick, {.paused = paused});
   }
   std::vector<base::Report> states() const {
     std::vector<base::Report> reports(world.movers.size());

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <thread>
 
 #include "record/cdr.h"
 #include "tests/netio/bridges/viewer_fixture.h"
@@ -112,6 +115,35 @@ TEST(Viewer, SaysWhatItCanDo) {
   EXPECT_TRUE(has(recording, "playbackControl") && has(recording, "\"dataEndTime\":{\"sec\":5,\"nsec\":0}"))
       << recording;
   EXPECT_FALSE(has(greeting(ViewerMode::recording, kWebSocketV1), "playbackControl")) << "it does not know that";
+}
+
+/// Whatever their turns are: readings are drawn where the states of the same tick have the robots.
+TEST(Viewer, TopicsGoWithTheStatesOfTheirTick) {
+  ViewerFixture fixture;
+  Watcher watcher(fixture, {"/clock"});
+  std::atomic<bool> stop = false;
+  std::thread run([&] {
+    for (std::uint64_t number = 1; !stop; ++number) {
+      fixture.tick(number, false);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(said(watcher.receive_binary(1)).substr(0, 4), "101@");
+  watcher.subscribe(102, fixture.channel("/fleet"));
+  std::string last = said(watcher.receive_binary(1));
+  while (last.substr(0, 4) != "102@") last = said(watcher.receive_binary(1));
+  int clocks = 0;
+  for (int i = 0; i < 40; ++i) {
+    const std::string now = said(watcher.receive_binary(1));
+    if (now.substr(0, 4) == "101@") {
+      EXPECT_EQ(now.substr(4), last.substr(4)) << "after " << last;
+      ++clocks;
+    }
+    last = now;
+  }
+  EXPECT_GT(clocks, 10) << "each topic has its turn";
+  stop = true;
+  run.join();
 }
 
 TEST(Viewer, SendsWhatIsSubscribedAndTheTime) {
