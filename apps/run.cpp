@@ -113,6 +113,7 @@ struct Ground {
   struct Scenery {
     world::World world;
     std::optional<server::StreamLayout> layout;
+    std::optional<scenarios::Scenario> scenario = {};
   };
   /// @param file of a world; empty: one without anything @throws base::InputError
   Scenery load(const RunOptions& options, const std::string& file) const {
@@ -128,6 +129,7 @@ struct Ground {
   void swap(Scenery& scenery) {
     std::swap(world, scenery.world);
     std::swap(layout, scenery.layout);
+    std::swap(scenario, scenery.scenario);
     sensor_set = sensors::SensorSet(world);
     note_size();
   }
@@ -206,7 +208,6 @@ std::string video_file(const RunOptions& options, std::uint32_t resets) {
 
 /// A fleet from time 0 on, with what follows it.
 struct Course {
-  world::World& ground_world;
   const world::World& world;
   cluster::Ranks* ranks;
   scenarios::Simulation simulation;
@@ -220,8 +221,7 @@ struct Course {
   std::uint64_t contacts_begun = 0;
 
   Course(Ground& ground, const RunOptions& options, cluster::Ranks* of, std::uint32_t resets)
-      : ground_world(ground.world),
-        world(ground.world),
+      : world(ground.world),
         ranks(of),
         simulation(world, ground.device, simulation_options(world, options, ranks, scenario_in(ground))),
         tally(simulation, world.movers.size(),
@@ -247,7 +247,20 @@ struct Course {
   void add(Ground& ground, const bridges::Joining& robot) {
     const std::size_t before = world.movers.size();
     simulation.add_robot(ground.world, {.name = robot.name, .like = robot.like, .X_WM = robot.X_WM});
-    if (world.movers.size() == before) return;  // it returned
+    if (world.movers.size() > before) grow(ground);  // else it returned
+  }
+
+  /// The events of the scenario that are due. @throws base::InputError at an event's line
+  void apply_events(Ground& ground, LiveBridges& live) {
+    if (!events) return;
+    const bool joins = events->joins(simulated());
+    if (joins) live.prepare_change();
+    events->apply(simulation, ground.world, simulated(), [&](std::uint32_t) { grow(ground); });
+    if (joins) live.show_scene(false);
+  }
+
+  /// A mover is new, in the last row.
+  void grow(Ground& ground) {
     ground.sensor_set = sensors::SensorSet(world);
     contacts.emplace_back();
     tally.add_mover();
@@ -256,7 +269,6 @@ struct Course {
 
   /// Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
   void step(scenarios::Operator& users) {
-    if (events) events->apply(simulation, ground_world, simulated(), [](std::uint32_t) {});
     const base::TickRecord tick = simulation.step();
     users.publish(tick);
     outputs.write(tick, [&](std::int64_t time) { users.keep_pace(1e-9 * static_cast<double>(time) + world.interval); });
@@ -402,6 +414,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
       }
       if (stop_requested()) course->simulation.request_stop();
       try {
+        course->apply_events(*ground, *live);
         advised(ground->world, options, [&] { course->step(users); });
       } catch (const base::Interrupted&) {
         next = scenarios::Operator::Next::stop;

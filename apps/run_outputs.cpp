@@ -65,6 +65,7 @@ void RunOutputs::write(base::TickRecord tick, const std::function<void(std::int6
 void RunOutputs::add_movers(const std::vector<record::JoinedMover>& joined) {
   settings_.joined = joined;
   if (recorder_) recorder_->add_movers(scenarios::run_info(world_, sensor_set_, settings_));
+  if (video_) video_->add_movers(world_);
 }
 
 void RunOutputs::finish(RunReport& facts) {

@@ -40,9 +40,6 @@ std::optional<scenarios::Scenario> scenario_of(RunOptions& options) {
   refuse_settled(options);
   scenarios::Scenario scenario = scenarios::read_scenario(options.world);
   scenarios::check_scenario(scenario);
-  for (const scenarios::ObjectEvent& event : scenario.events)
-    if (event.kind == scenarios::ObjectEvent::Kind::add)
-      throw base::InputError(options.world, event.line, "`run` has no robots that join later: use `sensorfarm test`");
   options.seed = scenario.seed;
   if (!options.duration && !options.BridgeOptions::any()) options.duration = scenario.duration;
   if (!scenario.expect.empty())

@@ -60,7 +60,7 @@ void store(const base::TickRecord& tick, const std::vector<std::uint8_t>& hidden
   to.contacts.assign(movers, 0);
   for (std::size_t i = 0; i < tick.reports.size(); ++i) {
     const base::Report& report = tick.reports[i];
-    if (!hidden.empty() && hidden[report.mover] != 0) continue;
+    if (report.mover < hidden.size() && hidden[report.mover] != 0) continue;
     to.X_WM[report.mover] = report.X_WM;
     to.speed[report.mover] = std::hypot(report.velocity.forward, report.velocity.left);
     if (i < tick.contacts.size()) to.contacts[report.mover] = tick.contacts[i];
@@ -107,15 +107,23 @@ class RunVideo::Work {
     std::sort(chosen.begin(), chosen.end());
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     choose_sensors(chosen);
-    viz::RunView view(world, view_options(world, options));
     if (options.frames.empty())
       file_.emplace(options.video, viz::VideoFormat{options.video_width, options.video_height, options.video_fps});
     else
       scenarios::make_folder(options.frames);
-    writer_.emplace(std::move(view), [this, number = 0](const viz::PixelImage& image) mutable {
-      if (file_) return file_->add(image);
-      viz::write_png(fmt::format("{}/{:06}.png", options_.frames, number++), image.rgb, image.width, image.height);
-    });
+    start_writer();
+  }
+
+  void add_movers(const world::World& world) {
+    writer_->finish();  // whose thread reads the world
+    writer_.reset();
+    world_ = world;
+    for (Moment* moment : {&before_, &now_}) {
+      moment->X_WM.resize(world_.movers.size(), base::kAbsent);
+      moment->speed.resize(world_.movers.size());
+      moment->contacts.resize(world_.movers.size());
+    }
+    start_writer();
   }
 
   void write(const base::TickRecord& tick) {
@@ -147,6 +155,13 @@ class RunVideo::Work {
   }
 
  private:
+  void start_writer() {
+    writer_.emplace(viz::RunView(world_, view_options(world_, options_)), [this](const viz::PixelImage& image) {
+      if (file_) return file_->add(image);
+      viz::write_png(fmt::format("{}/{:06}.png", options_.frames, images_++), image.rgb, image.width, image.height);
+    });
+  }
+
   using Key = std::tuple<std::uint32_t, std::uint8_t, std::uint32_t>;  // mover, type, sensor of it
 
   void choose_sensors(const std::vector<std::size_t>& movers) {
@@ -197,7 +212,7 @@ class RunVideo::Work {
     ++frames_;
   }
 
-  const world::World& world_;
+  world::World world_;  ///< a copy: the run's may grow while frames are painted
   const record::RunInfo info_;
   const VideoOptions options_;
   const std::vector<std::uint8_t> hidden_;
@@ -206,6 +221,7 @@ class RunVideo::Work {
   bool started_ = false;
   std::int64_t start_ = 0;    ///< [ns] of the first tick
   std::uint64_t frames_ = 0;  ///< so far
+  std::uint64_t images_ = 0;  ///< files written by the writer
   std::optional<viz::VideoFile> file_;
   std::optional<FrameWriter> writer_;  ///< ends before the file
 };
@@ -217,6 +233,8 @@ RunVideo::RunVideo(const world::World& world, record::RunInfo info, const VideoO
 RunVideo::~RunVideo() = default;
 
 void RunVideo::write(const base::TickRecord& tick) { work_->write(tick); }
+
+void RunVideo::add_movers(const world::World& world) { work_->add_movers(world); }
 
 VideoFacts RunVideo::finish() { return work_->finish(); }
 

@@ -27,7 +27,7 @@ std::string text_of(const VideoFacts& facts);
 /// frame is left out: where encoding is slower, `write` waits.
 class RunVideo {
  public:
-  /// @param world must outlive it. @param info of the same world, with all of its sensors
+  /// @param world copied. @param info of the same world, with all of its sensors
   /// @param hidden one per mover: 1 where it is not drawn; empty: all are drawn
   /// @throws base::InputError for robots that the world lacks, without the plug-ins, and for files that cannot be
   /// written
@@ -37,6 +37,8 @@ class RunVideo {
 
   /// Ticks in order of time. @throws base::InputError where a frame could not be written
   void write(const base::TickRecord& tick);
+  /// Movers joined: the last rows of `world`, which has the others in their places. Between two ticks.
+  void add_movers(const world::World& world);
   /// Shows the last tick for its interval, and ends the file. @throws base::InputError likewise
   VideoFacts finish();
 

@@ -7,10 +7,11 @@
 
 namespace sf::apps {
 
-StrayedRobots::StrayedRobots(const world::World& world)
-    : world_(world), known_(world), outside_(world.ros_map.empty() ? 0 : world.movers.size()) {}
+StrayedRobots::StrayedRobots(const world::World& world) : world_(world), known_(world) {}
 
 void StrayedRobots::write(const base::TickRecord& tick) {
+  if (world_.ros_map.empty()) return;
+  outside_.resize(world_.movers.size());  // robots may join
   for (std::size_t m = 0; m < outside_.size(); ++m) {
     const base::Pose& X_WM = tick.reports[m].X_WM;
     if (outside_[m] || world_.movers[m].is_tag || std::isnan(X_WM.x) || known_.contains({X_WM.x, X_WM.y})) continue;

@@ -63,9 +63,19 @@ void check_events(const Scenario& scenario, world::World& world, SimulationOptio
   }
 }
 
+bool ScenarioEvents::is_due(std::size_t event, double time) const {
+  return event < scenario_.events.size() && scenario_.events[event].at <= time + 5e-10;
+}
+
+bool ScenarioEvents::joins(double time) const {
+  for (std::size_t event = next_; is_due(event, time); ++event)
+    if (scenario_.events[event].kind == ObjectEvent::Kind::add) return true;
+  return false;
+}
+
 void ScenarioEvents::apply(Simulation& simulation, world::World& world, double time,
                            const std::function<void(std::uint32_t)>& joined) {
-  for (; next_ < scenario_.events.size() && scenario_.events[next_].at <= time + 5e-10; ++next_) {
+  for (; is_due(next_, time); ++next_) {
     const ObjectEvent& event = scenario_.events[next_];
     const std::size_t before = world.movers.size();
     if (event.kind == ObjectEvent::Kind::add) {

@@ -19,6 +19,8 @@ class ScenarioEvents {
   /// @param scenario checked; must outlive it
   explicit ScenarioEvents(const Scenario& scenario) : scenario_(scenario) {}
 
+  /// A robot joins by `time` [s] that has not joined yet.
+  bool joins(double time) const;
   /// Applies the events that are due at `time` [s], to half a nanosecond. Called before each step, with growing times.
   /// @param world of the simulation, which grows with robots that join
   /// @param joined called with the row of each new mover
@@ -27,6 +29,8 @@ class ScenarioEvents {
              const std::function<void(std::uint32_t)>& joined);
 
  private:
+  bool is_due(std::size_t event, double time) const;
+
   const Scenario& scenario_;
   std::size_t next_ = 0;
 };

@@ -65,10 +65,34 @@ TEST(RunScenario, GivesTheReadingsOfTest) {
   EXPECT_NE(facts.text("/hash"), run_json({"run", without, "--json"}).text("/hash")) << "the door stays";
 }
 
+// Robots that join and leave are recorded, verified and painted; all readings are those of `test`.
+TEST(RunScenario, RobotsJoinAndLeave) {
+  const Folder folder;
+  folder.write("room.world", kDoorRoom);
+  const std::string file = folder.write("join.toml", kDoorScenario + R"([[event]]
+at = 0.5
+add = "c"
+like = "a"
+pose = [-1, -1, 0]
+controller = "wander"
+[[event]]
+at = 1.5
+remove = "b"
+)");
+  const scenarios::ScenarioResult tested = scenarios::run_scenario(scenarios::read_scenario(file), device());
+  const Json facts = run_json({"run", file, "--json", "--record", folder.path("r"), "--record-readings"});
+  EXPECT_EQ(facts.text("/hash"), base::hash_hex(tested.hash));
+  EXPECT_EQ(facts.number("/robots"), 3);
+  EXPECT_EQ(run_program({"verify", folder.path("r")}).code, 0);
+  const std::string frames = folder.path("frames");
+  EXPECT_EQ(run_program({"run", file, "--video", folder.path("run.webm")}).code, 0);
+  EXPECT_EQ(run_program({"view", folder.path("r"), "--frames", frames}).code, 0);
+}
+
 TEST(RunScenario, RefusesOptionsThatTheScenarioSettles) {
-  for (const Words& option :
-       {Words{"--robots", "3"}, Words{"--robots", "3", "--of", "roomba0"}, Words{"--seed", "2"}, Words{"--controller", "avoid"},
-        Words{"--set", "speed=0.1"}, Words{"--localize"}, Words{"--drive", "roomba0"}}) {
+  for (const Words& option : {Words{"--robots", "3"}, Words{"--robots", "3", "--of", "roomba0"}, Words{"--seed", "2"},
+                              Words{"--controller", "avoid"}, Words{"--set", "speed=0.1"}, Words{"--localize"},
+                              Words{"--drive", "roomba0"}}) {
     Words arguments{"run", kTown, "--duration", "1"};
     arguments.insert(arguments.end(), option.begin(), option.end());
     expect_refused(arguments, option[0] + " is for worlds");
