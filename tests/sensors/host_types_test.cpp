@@ -230,9 +230,11 @@ TEST(HostKinds, TheReadyMadeOnesAreRead) {
   EXPECT_DOUBLE_EQ(sensors::read_encoder(fitted[6], world.movers[0]).per_count, 1e-3 / 12);
 }
 
+const farm::FarmOptions kWithoutDevice{.scene = {.caster = raycast::CasterChoice::host}};
+
 /// Two farms of one world, with noise, that are driven alike.
 void expect_same_readings(const world::World& world, raycast::CasterChoice caster, int ticks = 4) {
-  farm::Farm kernels(world, device(), {.scene = {.caster = caster}}), host(world, host_device());
+  farm::Farm kernels(world, device(), {.scene = {.caster = caster}}), host(world, host_device(), kWithoutDevice);
   kernels.subscribe_all(), host.subscribe_all();
   Chance chance(3);
   std::size_t readings = 0;
@@ -308,7 +310,7 @@ TEST(HostDevice, ATypeAloneIsReadAmongAll) {
   const sensors::SensorSet all(world);
   ASSERT_GE(all.groups().size(), 4u);
   for (const auto& group : all.groups()) {
-    farm::Farm farm(world, host_device());
+    farm::Farm farm(world, host_device(), kWithoutDevice);
     for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.subscribe(m, 1u << group.type->id);
     EXPECT_EQ(farm.tick(0, {}).size(), group.rows.size()) << group.type->name;
   }

@@ -55,6 +55,15 @@ world::LaneMarking arc(glm::dvec2 centre, double radius, double from, double to,
   return s;
 }
 
+namespace {
+
+raycast::CasterChoice caster_of(const gpu::Device* on) {
+  if (on == nullptr) return raycast::CasterChoice::automatic;
+  return on->is_host() ? raycast::CasterChoice::host : raycast::CasterChoice::vulkan;
+}
+
+}  // namespace
+
 struct EdgeRig::State {
   world::World world;
   base::ThreadPool thread_pool;
@@ -70,15 +79,8 @@ struct EdgeRig::State {
       : world(w),
         thread_pool(threads),
         states(robots::states_at_load(world)),
-        context{world,
-                on != nullptr ? *on : device(),
-                thread_pool,
-                states,
-                seed,
-                noise,
-                true,
-                {.caster = on != nullptr && !on->is_host() ? raycast::CasterChoice::vulkan
-                                                           : raycast::CasterChoice::automatic}},
+        context{world, on != nullptr ? *on : device(), thread_pool, states, seed, noise,
+                true,  {.caster = caster_of(on)}},
         backend(sensors::laneedge_type.make(context)),
         batch(context.device),
         rows(sensors::laneedge_type.specs(world).size()) {
