@@ -21,9 +21,7 @@ using sensors::FieldPoint;
 
 // --- Which magnets count.
 
-double field_z(const world::World& world, const FieldPoint& point) {
-  return sample_on_both(world, {&point, 1})[0].z;
-}
+double field_z(const world::World& world, const FieldPoint& point) { return sample_on_both(world, {&point, 1})[0].z; }
 
 /// The distance is along the ground, at any height. A magnet at exactly the cut-off counts; a unit in the last place
 /// farther it does not.
