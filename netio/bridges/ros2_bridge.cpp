@@ -152,8 +152,8 @@ Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const Dds
                       }}));
     const std::set<std::string> addresses = before.addresses();
     if (options.loopback) before.keep_new_ones_to_loopback();
-    add_services();
     add_topics();
+    add_services();
     add_commands();
     open_fast(fast_library, addresses);
     if (options.loopback) before.keep_new_ones_to_loopback();  // those of Fast DDS, too

@@ -15,9 +15,9 @@ using eprosima::fastcdr::FastBuffer;
 
 namespace {
 
-/// Nullopt unless `read` takes all bytes, up to padding to a multiple of 4.
+/// Nullopt unless `read` takes all bytes, up to padding to a multiple of 4. @param whole false: more may follow
 template <class T, class Read>
-std::optional<T> decode(const Bytes& message, Read&& read) {
+std::optional<T> decode(const Bytes& message, Read&& read, bool whole = true) {
   Bytes copy = message;
   FastBuffer buffer(reinterpret_cast<char*>(copy.data()), copy.size());
   Cdr cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
@@ -28,7 +28,7 @@ std::optional<T> decode(const Bytes& message, Read&& read) {
   } catch (const eprosima::fastcdr::exception::Exception&) {
     return std::nullopt;
   }
-  if (copy.size() - cdr.getSerializedDataLength() > 3) return std::nullopt;
+  if (whole && copy.size() - cdr.getSerializedDataLength() > 3) return std::nullopt;
   return value;
 }
 
@@ -146,7 +146,8 @@ Bytes encode_set_pose(std::uint64_t client, std::int64_t sequence, const std::st
 
 std::optional<Reply> decode_reply(const Bytes& message) {
   return decode<Reply>(
-      message, [](Cdr& cdr, Reply& reply) { cdr >> reply.client >> reply.sequence >> reply.code >> reply.message; });
+      message, [](Cdr& cdr, Reply& reply) { cdr >> reply.client >> reply.sequence >> reply.code >> reply.message; },
+      false);
 }
 
 std::optional<Reply> decode_fields_of_reply(const Bytes& message) {

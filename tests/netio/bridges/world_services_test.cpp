@@ -193,16 +193,15 @@ TEST_F(WorldServicesTest, DeletesEntities) {
                    }),
             "1 ");
   EXPECT_EQ(asked.leaving[0].mover, 0u);
-  EXPECT_EQ(Reply(ask("/get_entities",
-                      [](record::CdrWriter& cdr) {
-                        cdr.put("");
-                        for (int i = 0; i < 2; ++i) cdr.put_count(0);
-                        cdr.put(std::uint8_t{0});
-                        cdr.put(std::uint8_t{0});
-                        cdr.put_count(0);
-                      }))
-                    .bytes.size() > 0,
-            true);
+  Reply left(ask("/get_entities", [](record::CdrWriter& cdr) {
+    cdr.put("");
+    for (int i = 0; i < 2; ++i) cdr.put_count(0);
+    cdr.put(std::uint8_t{0});
+    cdr.put(std::uint8_t{0});
+    cdr.put_count(0);
+  }));
+  EXPECT_EQ(left.result(), "1 ");
+  EXPECT_EQ(left.names(), "tag ");
 }
 
 /// Files in folders of worlds, and nothing else, can be named.
@@ -266,7 +265,9 @@ TEST_F(WorldServicesTest, LoadsListedWorldsOnly) {
   EXPECT_EQ(load("a.world", "", answer(Outcome::Fault::failed)), "4");
   EXPECT_EQ(load("a.world", "", answer(Outcome::Fault::none)), "1");
   EXPECT_EQ(fs::path(asked.world->file), folder / "a.world");
-  EXPECT_EQ(Reply(ask("/get_simulation_state")).cdr.get<std::uint8_t>(), 0) << "stopped";
+  Reply present(ask("/get_simulation_state"));
+  EXPECT_EQ(present.cdr.get<std::uint8_t>(), 0) << "stopped";
+  EXPECT_EQ(present.result(), "1 ");
 }
 
 TEST_F(WorldServicesTest, TheWorldCanBeUnloadedOnce) {
