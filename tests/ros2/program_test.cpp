@@ -11,6 +11,7 @@
 #include "record/cdr.h"
 #include "record/ros_messages.h"
 #include "tests/apps/program.h"
+#include "tests/netio/bridges/raw_client.h"
 #include "tests/ros2/fast_peer.h"
 
 namespace sf::ros2 {
@@ -53,8 +54,17 @@ TEST(Ros2Program, ARunIsSeenDrivenAndPaused) {
 /// A robot joins the run, then another world replaces it. Files outside its folders cannot be named.
 TEST(Ros2Program, ARunGetsRobotsAndWorlds) {
   const std::string domain = domain_of_program();
-  Program run({"run", our_world("rooms.world"), "--ros2", domain}, kHere);
-  ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
+  Program run({"run", our_world("rooms.world"), "--ros2", domain, "--view", "127.0.0.1:0", "--player", "127.0.0.1:0"},
+              kHere);
+  const std::string before_port = "view on http://127.0.0.1:";
+  ASSERT_TRUE(run.says(before_port)) << run.err();
+  const int port = std::atoi(run.err().c_str() + run.err().find(before_port) + before_port.size());
+  /// What the live view tells its pages of topics.
+  const auto greeting = [port] {
+    bridges::RawClient client(static_cast<std::uint16_t>(port));
+    EXPECT_EQ(client.upgrade("foxglove.websocket.v1").substr(9, 3), "101");
+    return client.settle();
+  };
   FastPeer peer(static_cast<std::uint32_t>(std::stoul(domain)));
   std::int64_t calls = 0;
   /// Code of the answer, 0 without one.
@@ -104,8 +114,10 @@ TEST(Ros2Program, ARunGetsRobotsAndWorlds) {
                  }),
             1);
   EXPECT_TRUE(seen("rt/late/odom"));
+  EXPECT_NE(greeting().find("\"/late/odom\""), std::string::npos) << "on the same port";
   EXPECT_EQ(call("load_world", "LoadWorld", load("cave.world")), 1);
   EXPECT_EQ(call("unload_world", "UnloadWorld", [](record::CdrWriter& cdr) { cdr.put(std::uint8_t{0}); }), 1);
+  EXPECT_EQ(greeting().find("/odom\""), std::string::npos) << "without a world there are no robots";
   run.signal(SIGINT);
   EXPECT_EQ(run.wait().code, 0) << run.err();
 }
