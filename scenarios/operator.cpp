@@ -75,13 +75,16 @@ void Operator::apply_fleet_changes() {
   const auto refuse = [](bridges::Outcome& outcome, const char* why) {
     outcome = {true, bridges::Outcome::Fault::failed, why};
   };
-  if (change_fleet_ && !(requests_.joining.empty() && requests_.leaving.empty()))
-    change_fleet_(requests_.joining, requests_.leaving);
+  for (bridges::Joining& each : requests_.joining) joining_.push_back(std::move(each));
+  const auto end = joining_.begin() + static_cast<std::ptrdiff_t>(std::min(joining_.size(), kMostJoining));
+  const std::vector<bridges::Joining> joining(joining_.begin(), end);
+  joining_.erase(joining_.begin(), end);
+  if (change_fleet_ && !(joining.empty() && requests_.leaving.empty())) change_fleet_(joining, requests_.leaving);
   const auto refuse_rest = [&](const auto& all) {
     for (const auto& each : all)
       if (!each.outcome->done) refuse(*each.outcome, "robots cannot join or leave this run");
   };
-  refuse_rest(requests_.joining), refuse_rest(requests_.leaving);
+  refuse_rest(joining), refuse_rest(requests_.leaving);
   if (!requests_.world) return;
   if (loads_worlds_)
     world_ = std::move(requests_.world);

@@ -20,6 +20,7 @@ class Operator {
   /// @param stop ends all waiting; it and the bridges outlive the operator
   Operator(bridges::Bridges& bridges, const std::atomic<bool>& stop, double speed);
 
+  static constexpr std::size_t kMostJoining = 4;  ///< robots in one tick, each of which takes time; others wait
   /// Changes of the fleet between two ticks, whose outcomes it writes.
   using ChangeFleet =
       std::function<void(const std::vector<bridges::Joining>& joining, const std::vector<bridges::Leaving>& leaving)>;
@@ -58,6 +59,7 @@ class Operator {
   bridges::Requests requests_;
   bridges::RunState state_;
   ChangeFleet change_fleet_;
+  std::vector<bridges::Joining> joining_;  ///< that wait for their turn
   bool loads_worlds_ = false;
   std::optional<bridges::WorldChange> world_;
   std::uint32_t steps_ = 0;  ///< ticks to be made although paused

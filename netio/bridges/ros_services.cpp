@@ -41,7 +41,7 @@ constexpr std::string_view kSpawn =
     "string entity_namespace\ngeometry_msgs/PoseStamped initial_pose\n";
 constexpr std::string_view kUuid = "unique_identifier_msgs/UUID goal_id\n";
 constexpr const char* kNoEntity = "no entity of that name is present";
-constexpr std::size_t kMostSpawns = 64;  // of one request
+constexpr const char* kManySpawns = "64 robots wait to join; ask again";
 constexpr std::size_t kLeastSpawn = 90;  // [byte] of a SpawnEntity
 constexpr std::string_view kSuccess = "bool success\nstring message\n";
 
@@ -221,9 +221,11 @@ struct RosServices::Handlers {
     cdr.put(code == kOk ? spawn.joining.name : "");
   }
   static bool spawn(RosServices& of, Call call, CdrReader& request, Requests& requests) {
-    std::set<std::string> taken;
+    std::set<std::string> taken = of.waiting_names();
+    const bool room = taken.size() < kMaxSpawns;
     Spawn wanted = get_spawn(request, of.scene_, of.movers_, taken);
     if (!request.good()) return false;
+    if (!room) wanted = {kFailed, kManySpawns, {}};
     ask(call, {std::move(wanted)}, requests);
     call.answer = [](RosServices& to, const Call& done) {
       CdrWriter cdr = to.begin_answer(done);
@@ -232,13 +234,14 @@ struct RosServices::Handlers {
     return wait_for(of, call);
   }
   static bool spawn_several(RosServices& of, Call call, CdrReader& request, Requests& requests) {
-    std::set<std::string> taken;
+    std::set<std::string> taken = of.waiting_names();
+    const std::size_t room = kMaxSpawns - std::min(kMaxSpawns, taken.size());
     const std::uint32_t count = request.get_count(kLeastSpawn);
     std::vector<Spawn> all;
-    for (std::uint32_t i = 0; i < count && request.good(); ++i)
-      all.push_back(i < kMostSpawns ? get_spawn(request, of.scene_, of.movers_, taken)
-                                    : Spawn{kFailed, fmt::format("a request spawns {} at most", kMostSpawns), {}});
+    for (std::uint32_t i = 0; i < std::min<std::size_t>(count, room) && request.good(); ++i)
+      all.push_back(get_spawn(request, of.scene_, of.movers_, taken));
     if (!request.good()) return false;
+    all.resize(count, {kFailed, kManySpawns, {}});
     ask(call, std::move(all), requests);
     call.answer = [](RosServices& to, const Call& done) {
       const bool good = std::all_of(done.spawns.begin(), done.spawns.end(), [](const Spawn& each) {
@@ -281,8 +284,7 @@ struct RosServices::Handlers {
     const TagsFilter filter = get_tags_filter(request);
     request.get<bool>(), request.get<bool>();  // local sources alone; to go on after errors
     if (!request.good()) return false;
-    const std::vector<AvailableWorld> worlds =
-        filter.matches({}) ? worlds_in(of.scene_.world_folders) : std::vector<AvailableWorld>();
+    const std::vector<AvailableWorld> worlds = filter.matches({}) ? of.worlds() : std::vector<AvailableWorld>();
     CdrWriter cdr = of.begin_answer(call);
     put_result(cdr, kOk, unknown.substr(0, 1000));
     cdr.put_count(worlds.size());
@@ -298,7 +300,7 @@ struct RosServices::Handlers {
     constexpr std::uint8_t kFormat = 101, kNone = 102;
     if (uri.empty() && text.empty()) return refuse(kNone, "expected a URI that /get_available_worlds lists"), true;
     if (uri.empty()) return refuse(kUnsupported, "worlds are loaded by their URIs, not from text"), true;
-    const std::vector<AvailableWorld> worlds = worlds_in(of.scene_.world_folders);
+    const std::vector<AvailableWorld>& worlds = of.worlds();
     const auto found = std::find_if(worlds.begin(), worlds.end(), [&](const auto& each) { return each.uri == uri; });
     const bool is_format = uri.ends_with(".world") || uri.ends_with(".yaml");
     if (found == worlds.end() && !is_format)
@@ -545,10 +547,23 @@ std::uint32_t RosServices::row_of(const std::string& name) const {
   return static_cast<std::uint32_t>(movers_.size());
 }
 
-std::string RosServices::world_uri() const {
-  for (const AvailableWorld& each : worlds_in(scene_.world_folders))
+const std::vector<AvailableWorld>& RosServices::worlds() {
+  if (!worlds_) worlds_ = worlds_in(scene_.world_folders);
+  return *worlds_;
+}
+
+std::string RosServices::world_uri() {
+  for (const AvailableWorld& each : worlds())
     if (each.file == scene_.world.file) return each.uri;
   return scene_.info.world;
+}
+
+std::set<std::string> RosServices::waiting_names() const {
+  std::set<std::string> names;
+  for (const Call& call : waiting_)
+    for (const Spawn& spawn : call.spawns)
+      if (spawn.code == kOk) names.insert(spawn.joining.name);
+  return names;
 }
 
 bool RosServices::take(std::size_t service, std::span<const std::uint8_t> message, const DdsSender& sender,
@@ -567,6 +582,7 @@ bool RosServices::take(std::size_t service, std::span<const std::uint8_t> messag
 
 void RosServices::observe(const base::TickRecord* tick, const RunState& state) {
   const bool began_again = state.runs != state_.runs;
+  worlds_.reset();
   state_ = state;
   if (tick != nullptr) {
     time_ = tick->time;

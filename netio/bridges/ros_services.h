@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,6 +46,7 @@ class RosServices {
  public:
   static constexpr std::size_t kMaxWaiting = 64;       ///< requests that wait for the run; more are refused
   static constexpr std::uint32_t kMaxSteps = 1000000;  ///< of one request
+  static constexpr std::size_t kMaxSpawns = 64;        ///< robots that wait to join; more are refused
 
   explicit RosServices(const Scene& scene);
 
@@ -88,19 +91,22 @@ class RosServices {
   bool finish(Call& call, bool& ticked, bool began_again);
   bool finish_goal(Call& call, bool& ticked, bool began_again);
   std::uint32_t row_of(const std::string& name) const;  ///< of a mover that is present; else the number of rows
-  std::string world_uri() const;
+  std::string world_uri();
+  const std::vector<AvailableWorld>& worlds();
+  std::set<std::string> waiting_names() const;  ///< of robots that wait to join
 
   const Scene scene_;
   std::vector<ServiceType> types_;
   std::vector<Call> waiting_;
   std::vector<Answer> answers_;
   RunState state_;
-  bool stopped_ = false;              ///< paused at the begin, by STATE_STOPPED
-  std::int64_t time_ = 0;             ///< [ns] of the last tick
-  std::vector<base::Report> movers_;  ///< by row, as of the last tick
-  std::vector<std::uint32_t> kinds_;  ///< see kinds_of
-  std::size_t loaded_ = 0;            ///< movers of the world at load
-  bool unloaded_ = false;             ///< by UnloadWorld
+  bool stopped_ = false;                               ///< paused at the begin, by STATE_STOPPED
+  std::int64_t time_ = 0;                              ///< [ns] of the last tick
+  std::vector<base::Report> movers_;                   ///< by row, as of the last tick
+  std::vector<std::uint32_t> kinds_;                   ///< see kinds_of
+  std::size_t loaded_ = 0;                             ///< movers of the world at load
+  bool unloaded_ = false;                              ///< by UnloadWorld
+  std::optional<std::vector<AvailableWorld>> worlds_;  ///< read once per tick
   StepsAction steps_;
 };
 

@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 
 // simulation_interfaces/msg/EntityCategory and Bounds
 constexpr std::uint8_t kRobotCategory = 1, kDynamicObject = 4, kEmpty = 0, kBox = 1;
-constexpr std::size_t kLeastText = 5;         // [byte] of a string
-constexpr std::size_t kMostVisited = 20'000;  // files of the folders with worlds
+constexpr std::size_t kLeastText = 5;        // [byte] of a string
+constexpr std::size_t kMostVisited = 5'000;  // files of the folders with worlds
 
 void put_texts(CdrWriter& cdr, const std::vector<std::string>& texts) {
   cdr.put_count(texts.size());

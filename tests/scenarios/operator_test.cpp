@@ -170,5 +170,71 @@ TEST(Operator, WithoutBridgesARunNeverWaits) {
   EXPECT_EQ(users.wait(simulation, 1e9), Operator::Next::tick);
 }
 
+bridges::Joining joining(const std::string& name) { return {name, "", {}, std::make_shared<bridges::Outcome>()}; }
+
+/// A run that takes no robots and worlds refuses them, each with a reason.
+TEST_F(OperatorTest, RefusesChangesThatTheRunDoesNotTake) {
+  const bridges::Joining late = joining("late");
+  const bridges::Leaving first{0, std::make_shared<bridges::Outcome>()};
+  const auto other = std::make_shared<bridges::Outcome>();
+  script->act = [&](bridges::Requests& requests) {
+    requests.joining = {late};
+    requests.leaving = {first};
+    requests.world = bridges::WorldChange{"a.world", false, other};
+  };
+  EXPECT_EQ(wait(), Operator::Next::tick);
+  for (const auto& outcome : {late.outcome, first.outcome, other}) {
+    EXPECT_TRUE(outcome->done);
+    EXPECT_EQ(outcome->fault, bridges::Outcome::Fault::failed);
+    EXPECT_NE(outcome->reason, "");
+  }
+}
+
+/// Each robot that joins takes time: a few do in a tick, in their order.
+TEST_F(OperatorTest, LetsAFewRobotsJoinPerTick) {
+  std::vector<std::string> joined;
+  users.on_fleet_changes([&](const auto& robots, const auto&) {
+    for (const bridges::Joining& each : robots) {
+      joined.push_back(each.name);
+      each.outcome->done = true;
+    }
+  });
+  script->act = [&](bridges::Requests& requests) {
+    for (int k = 0; k < 6; ++k) requests.joining.push_back(joining(std::to_string(k)));
+    script->act = [](bridges::Requests&) {};
+  };
+  EXPECT_EQ(wait(), Operator::Next::tick);
+  EXPECT_EQ(joined, (std::vector<std::string>{"0", "1", "2", "3"}));
+  EXPECT_EQ(wait(), Operator::Next::tick);
+  EXPECT_EQ(joined.size(), 6u);
+}
+
+TEST_F(OperatorTest, GivesTheWorldThatAUserAskedFor) {
+  users.set_loads_worlds(true);
+  script->act = [&](bridges::Requests& requests) {
+    requests.world = bridges::WorldChange{"a.world", true, std::make_shared<bridges::Outcome>()};
+    script->act = [](bridges::Requests&) {};
+  };
+  EXPECT_EQ(wait(), Operator::Next::world);
+  EXPECT_EQ(users.take_world().file, "a.world");
+  EXPECT_EQ(wait(), Operator::Next::tick);
+}
+
+/// Of ten steps of a paused run six are dropped after one.
+TEST_F(OperatorTest, DropsSteps) {
+  script->act = [&](bridges::Requests& requests) {
+    requests.paused = true;
+    requests.steps = 10;
+    script->act = [&](bridges::Requests& later) {
+      later.dropped_steps = 6;
+      script->act = [](bridges::Requests&) {};
+    };
+  };
+  int made = 0;
+  for (; made < 4; ++made) EXPECT_EQ(wait(), Operator::Next::tick);
+  script->act = [&](bridges::Requests&) { stop = true; };
+  EXPECT_EQ(wait(), Operator::Next::stop);
+}
+
 }  // namespace
 }  // namespace sf::scenarios

@@ -182,6 +182,28 @@ TEST_F(WorldServicesTest, SpawnsSeveral) {
   EXPECT_EQ(several(0, true), "1 ");
 }
 
+/// Further ones are refused while 64 wait.
+TEST_F(WorldServicesTest, WaitingRobotsAreBounded) {
+  Reply many(ask(
+      "/spawn_entities",
+      [&](record::CdrWriter& cdr) {
+        cdr.put_count(66);
+        for (int i = 0; i < 66; ++i) put(cdr, {.name = "late" + std::to_string(i)});
+      },
+      [&] {
+        EXPECT_EQ(asked.joining.size(), 64u);
+        for (const Joining& each : asked.joining) each.outcome->done = true;
+        step(false)();
+      }));
+  EXPECT_EQ(many.result(), "150 see the results");
+  std::string codes;
+  for (std::uint32_t left = many.cdr.get_count(10); left > 0; --left) {
+    codes += std::to_string(many.cdr.get<std::uint8_t>());
+    many.cdr.get_string(), many.cdr.get_string();
+  }
+  EXPECT_EQ(codes, std::string(64, '1') + "44");
+}
+
 TEST_F(WorldServicesTest, DeletesEntities) {
   EXPECT_EQ(result("/delete_entity", text("nobody")), "2 no entity of that name is present");
   EXPECT_EQ(result("/delete_entity", text("robot_2")), "2 no entity of that name is present");
