@@ -10,10 +10,4 @@ const DdsLibrary& dds_library() {
   return *loaded;
 }
 
-const DdsLibrary& fast_dds_library() {
-  static const auto* const loaded = static_cast<const DdsLibrary*>(base::load_plugin(
-      kFastDdsSymbol, "services do not answer clients of rmw_fastrtps", "Fast DDS 2.9 (libfastrtps2.9)"));
-  return *loaded;
-}
-
 }  // namespace sf::bridges

@@ -1,7 +1,7 @@
 #pragma once
 // DDS, the network of ROS 2, as far as a bridge needs it: bytes go out on writers and come in on readers. Cyclone DDS
-// is in a plug-in (dds/, `sensorfarm_dds.so`) that is loaded with the first participant; so is Fast DDS (fastdds/,
-// `sensorfarm_fastdds.so`), with which services also answer clients of rmw_fastrtps.
+// is in a plug-in (dds/, `sensorfarm_dds.so`) that is loaded with the first participant. Fast DDS, with which services
+// also answer clients of rmw_fastrtps, is in a process (fast_services.h).
 
 #include <array>
 #include <cstddef>
@@ -93,12 +93,7 @@ struct DdsLibrary {
 /// The name of the plug-in's only symbol: `extern "C" const DdsLibrary sensorfarm_dds`.
 inline constexpr const char* kDdsSymbol = "sensorfarm_dds";
 
-inline constexpr const char* kFastDdsSymbol = "sensorfarm_fastdds";  ///< likewise
-
 /// Loads the plug-in, once. @throws base::InputError naming the file when it cannot be loaded
 const DdsLibrary& dds_library();
-/// That of Fast DDS, whose participants have endpoints of services alone. Messages are as clients of rmw_cyclonedds
-/// write and read them, with a header before their fields: a number of the request, and its sequence number.
-const DdsLibrary& fast_dds_library();
 
 }  // namespace sf::bridges

@@ -137,7 +137,7 @@ void DdsLog::write(std::string_view line) {
 }
 
 Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library,
-                       const DdsLibrary& (*fast_library)())
+                       OpenFastServices open_fast)
     : options_(options), scene_(scene), services_(scene), messages_(std::in_place, scene.info) {
   // Requests of services wait apart from commands, which are taken in every tick.
   const auto receive = [this](DdsMessage&& message) {
@@ -152,18 +152,16 @@ Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const Dds
                       }}));
     const std::set<std::string> addresses = before.addresses();
     if (options.loopback) before.keep_new_ones_to_loopback();
-    add_topics();
     add_services();
+    add_topics();
     add_commands();
-    open_fast(fast_library, addresses);
-    if (options.loopback) before.keep_new_ones_to_loopback();  // those of Fast DDS, too
+    add_fast(open_fast, addresses);
     announce();
   } catch (const std::runtime_error& error) {
     throw base::InputError(fmt::format("--ros2: {}", error.what()));
   }
   messages_->begin([this](const record::TopicMessage& message) { add(message); });
   outbox_.emplace(*participant_);
-  if (fast_) fast_outbox_.emplace(*fast_);
   outbox_->add(batch_);
 }
 
@@ -234,28 +232,25 @@ void Ros2Bridge::add_services() {
 }
 
 /// The same services once more, for clients that the participant above leaves out.
-void Ros2Bridge::open_fast(const DdsLibrary& (*library)(), const std::set<std::string>& addresses) {
-  const DdsLibrary* loaded = nullptr;
+void Ros2Bridge::add_fast(OpenFastServices open, const std::set<std::string>& addresses) {
+  FastOptions options;
+  options.dds = {.domain = options_.domain,
+                 .user_data = "enclave=/;",
+                 .loopback = options_.loopback,
+                 .addresses = addresses,
+                 .receive =
+                     [this](DdsMessage&& message) {
+                       message.reader += command_readers_;
+                       requests_.add(std::move(message));
+                     },
+                 .log = [this](std::string_view line) { log_.write(line); }};
+  for (const ServiceType& service : services_.types())
+    options.services.push_back({request_reader(service, {}), reply_writer(service, {})});
   try {
-    loaded = &library();
-  } catch (const base::InputError& error) {
-    why_no_fast_ = fmt::format("; {}", error.what());
-    return;
-  }
-  if (!options_.loopback && addresses.empty()) {
-    why_no_fast_ = "; services do not answer clients of rmw_fastrtps, as Cyclone DDS uses no address of IPv4 here";
-    return;
-  }
-  const auto receive = [this](DdsMessage&& message) {
-    message.sender.fast = true;
-    requests_.add(std::move(message));
-  };
-  const auto log = [this](std::string_view line) { log_.write(line); };
-  fast_ = loaded->open({options_.domain, "enclave=/;", options_.loopback, addresses, receive, log});
-  DdsGuid guid{};
-  for (const ServiceType& service : services_.types()) {
-    fast_->add_reader(request_reader(service, {}), guid);
-    fast_->add_writer(reply_writer(service, {}), guid);
+    if (!options_.loopback && addresses.empty()) throw std::runtime_error("Cyclone DDS uses no address of IPv4 here");
+    fast_ = open(options);
+  } catch (const std::runtime_error& error) {
+    why_no_fast_ = fmt::format("; services do not answer clients of rmw_fastrtps: {}", error.what());
   }
 }
 
@@ -350,7 +345,7 @@ void Ros2Bridge::send_answers() {
   for (Answer& answer : services_.answers()) {
     const std::uint64_t writer = answer.caller.sender.writer;
     if (answer.caller.sender.fast)
-      fast_outbox_->add(DdsReply{answer.service, answer.service, writer, std::move(answer.message)});
+      fast_->add(DdsReply{answer.service, answer.service, writer, std::move(answer.message)});
     else
       outbox_->add(DdsReply{reply_writers_[answer.service], answer.service, writer, std::move(answer.message)});
   }
@@ -362,8 +357,8 @@ void Ros2Bridge::send_answers() {
 
 Ros2Bridge::Counts Ros2Bridge::counts() const {
   DdsOutbox::Counts sent = outbox_->counts();
-  if (fast_outbox_) {
-    const DdsOutbox::Counts more = fast_outbox_->counts();
+  if (fast_) {
+    const DdsOutbox::Counts more = fast_->counts();
     sent.written += more.written;
     sent.left_out += more.left_out;
   }

@@ -14,6 +14,7 @@
 #include "netio/bridges/bridge.h"
 #include "netio/bridges/dds.h"
 #include "netio/bridges/dds_outbox.h"
+#include "netio/bridges/fast_services.h"
 #include "netio/bridges/ros_services.h"
 #include "netio/rate_limited_log.h"
 #include "record/tick_messages.h"
@@ -66,10 +67,10 @@ class Ros2Bridge : public Bridge {
   static constexpr std::size_t kNone = ~std::size_t{0};
   static constexpr std::size_t kMaxRequests = 32;  ///< of services, taken per tick; further ones wait
 
-  /// @param fast_library gives that of Fast DDS; services do not answer clients of rmw_fastrtps where it throws
+  /// @param open_fast where it throws, services do not answer clients of rmw_fastrtps
   /// @throws base::InputError where DDS cannot be used
   Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library = dds_library(),
-             const DdsLibrary& (*fast_library)() = fast_dds_library);
+             OpenFastServices open_fast = open_fast_services);
 
   void publish(const base::TickRecord& tick, const RunState& state) override;
   void publish(const RunState& state) override;
@@ -90,7 +91,7 @@ class Ros2Bridge : public Bridge {
   void add_topics();
   void add_commands();
   void add_services();
-  void open_fast(const DdsLibrary& (*library)(), const std::set<std::string>& addresses);
+  void add_fast(OpenFastServices open, const std::set<std::string>& addresses);
   void announce();
   std::size_t add_writer(const std::string& topic, std::string_view type, std::string_view definition, int depth,
                          bool latched);
@@ -125,9 +126,10 @@ class Ros2Bridge : public Bridge {
   std::int64_t time_ = 0;  ///< [ns] of the last tick
   DdsBatch batch_;
   DdsLog log_;
-  std::string why_no_fast_;                             ///< empty: clients of rmw_fastrtps are answered
-  std::unique_ptr<DdsParticipant> participant_, fast_;  ///< the latter has services alone; null: there is none
-  std::optional<DdsOutbox> outbox_, fast_outbox_;
+  std::string why_no_fast_;  ///< empty: clients of rmw_fastrtps are answered
+  std::unique_ptr<DdsParticipant> participant_;
+  std::unique_ptr<FastServices> fast_;  ///< null: they are not
+  std::optional<DdsOutbox> outbox_;
 };
 
 }  // namespace sf::bridges

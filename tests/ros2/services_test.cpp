@@ -81,6 +81,30 @@ struct CycloneClient {
   std::vector<std::int64_t> calls;
 };
 
+/// The first one; empty: none, or the kernel does not list them.
+std::string child_of(const std::string& process) {
+  std::string child;
+  std::ifstream("/proc/" + process + "/task/" + process + "/children") >> child;
+  return child;
+}
+
+/// With Fast DDS, below this process or the one that it has started.
+std::string fast_process() {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::string name, parent;
+    std::ifstream(entry.path() / "comm") >> name;
+    if (name != "sensorfarm_fast") continue;  // cut to 15 characters
+    std::ifstream stat(entry.path() / "stat");
+    for (int i = 0; i < 4; ++i) stat >> parent;
+    std::string grandparent;
+    std::ifstream above("/proc/" + parent + "/stat");
+    for (int i = 0; i < 4; ++i) above >> grandparent;
+    const std::string self = std::to_string(getpid());
+    if (grandparent == self || parent == self) return entry.path().filename().string();
+  }
+  return {};
+}
+
 struct Ros2Services : testing::Test {
   /// Calls until an answer comes, as a participant may know the other before it is known.
   template <class Client>
@@ -191,16 +215,50 @@ TEST_F(Ros2Services, NoSharedMemoryIsUsed) {
   ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
   FastClient client(fast, "get_simulation_state", kGetState);
   ASSERT_TRUE(connect(client, {0}));
-  const std::string self = std::to_string(getpid());
-  std::string child;
-  std::ifstream("/proc/" + self + "/task/" + self + "/children") >> child;
-  if (child.empty()) GTEST_SKIP() << "this kernel does not list child processes";
-  const std::string process = "/proc/" + child;
-  std::ifstream maps(process + "/maps");
-  for (std::string line; std::getline(maps, line);) EXPECT_EQ(line.find("/dev/shm"), std::string::npos) << line;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(process + "/fd"))
-    EXPECT_EQ(std::filesystem::read_symlink(entry, ignored).string().find("/dev/shm"), std::string::npos);
+  for (const std::string& process : {child_of(std::to_string(getpid())), fast_process()}) {
+    std::ifstream maps("/proc/" + process + "/maps");
+    for (std::string line; std::getline(maps, line);) EXPECT_EQ(line.find("/dev/shm"), std::string::npos) << line;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/" + process + "/fd", ignored))
+      EXPECT_EQ(std::filesystem::read_symlink(entry, ignored).string().find("/dev/shm"), std::string::npos);
+  }
+}
+
+/// Some malformed datagrams end Fast DDS 2.9.1. The run goes on, and its services are answered again.
+TEST_F(Ros2Services, TheRunOutlivesFastDds) {
+  ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
+  FastClient before(fast, "get_simulation_state", kGetState);
+  CycloneClient other(cyclone, "get_simulation_state", kGetState);
+  ASSERT_TRUE(connect(before, {0}));
+  ASSERT_TRUE(connect(other, {0}));
+  const std::string process = fast_process();
+  ASSERT_FALSE(process.empty());
+  ASSERT_EQ(kill(std::stoi(process), SIGSEGV), 0);
+  ASSERT_TRUE(run.says("the process with Fast DDS was ended by signal 11")) << run.err();
+  other.call({0});
+  EXPECT_TRUE(fast.wait([&] { return other.answered(); })) << "clients of Cyclone DDS are answered meanwhile";
+  EXPECT_TRUE(fast.wait([&] {
+    before.call({0});
+    return before.answered();
+  }));
+  EXPECT_NE(fast_process(), process);
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait().code, 0);
+}
+
+/// A process that is killed leaves none behind.
+TEST_F(Ros2Services, FastDdsEndsWithTheRun) {
+  ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
+  const std::string process = fast_process();
+  ASSERT_FALSE(process.empty());
+  run.signal(SIGKILL);
+  run.wait();
+  EXPECT_TRUE(fast.wait([&] {
+    std::ifstream state("/proc/" + process + "/stat");
+    std::string text;
+    std::getline(state, text);
+    return text.empty() || text.find(") Z ") != std::string::npos;
+  }));
 }
 
 /// Clients of rmw_cyclonedds are answered as before.

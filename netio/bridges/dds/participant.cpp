@@ -4,7 +4,9 @@
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsrt/log.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -15,7 +17,6 @@
 
 #include "netio/bridges/dds.h"
 #include "netio/bridges/dds/byte_type.h"
-#include "netio/bridges/dds/descriptors.h"
 
 namespace sf::bridges {
 
@@ -223,8 +224,23 @@ class CycloneParticipant : public DdsParticipant {
   std::vector<std::unique_ptr<Reader>> readers_;
 };
 
+/// Cyclone DDS does not survive it where descriptors run out as it starts.
+void require_descriptors() {
+  constexpr std::size_t kNeeded = 16;
+  std::vector<int> opened;
+  while (opened.size() < kNeeded) {
+    const int one = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (one < 0) break;
+    opened.push_back(one);
+  }
+  for (const int one : opened) ::close(one);
+  if (opened.size() < kNeeded)
+    throw std::runtime_error("only " + std::to_string(opened.size()) + " more files and sockets may be opened, and " +
+                             std::to_string(kNeeded) + " are needed; raise the limit (ulimit -n)");
+}
+
 std::unique_ptr<DdsParticipant> open(const DdsOptions& options) {
-  require_descriptors(16);
+  require_descriptors();
   return std::make_unique<CycloneParticipant>(options);
 }
 

@@ -1,11 +1,13 @@
-// The plug-in: participants of Fast DDS with the endpoints of services, for clients of rmw_fastrtps. These name the
+// Participants of Fast DDS with the endpoints of services, for clients of rmw_fastrtps. These name the
 // reader of their reply beside a request, and look for the request's number beside the reply (`related_sample_identity`
 // of DDS-RPC), where Cyclone DDS neither reads nor writes. Here both become the header of rmw_cyclonedds.
 
+#include "netio/bridges/fastdds/participant.h"
 #include <fastdds/rtps/common/WriteParams.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fmt/format.h>
+
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
@@ -24,9 +26,6 @@
 #include <set>
 #include <stdexcept>
 #include <vector>
-
-#include "netio/bridges/dds.h"
-#include "netio/bridges/dds/descriptors.h"
 
 namespace sf::bridges {
 
@@ -302,15 +301,10 @@ class FastParticipant : public DdsParticipant, dds::DomainParticipantListener {
   std::uint64_t last_ = 0;
 };
 
-std::unique_ptr<DdsParticipant> open(const DdsOptions& options) {
-  require_descriptors(24);
+}  // namespace
+
+std::unique_ptr<DdsParticipant> open_fast_dds(const DdsOptions& options) {
   return std::make_unique<FastParticipant>(options);
 }
 
-}  // namespace
 }  // namespace sf::bridges
-
-extern "C" {
-extern const sf::bridges::DdsLibrary sensorfarm_fastdds;
-const sf::bridges::DdsLibrary sensorfarm_fastdds{sf::bridges::open};
-}

@@ -86,14 +86,23 @@ const DdsLibrary kFake{[](const DdsOptions& options) -> std::unique_ptr<DdsParti
   return std::make_unique<FakeParticipant>(*network_of_test);
 }};
 
-Network* fast_of_test = nullptr;  ///< of Fast DDS; null: it is not installed
-const DdsLibrary kFakeFast{[](const DdsOptions& options) -> std::unique_ptr<DdsParticipant> {
-  fast_of_test->receive = options.receive;
-  return std::make_unique<FakeParticipant>(*fast_of_test);
-}};
-const DdsLibrary& fake_fast() {
-  if (fast_of_test == nullptr) throw base::InputError("it is not installed");
-  return kFakeFast;
+/// The process with Fast DDS; null: it is not installed.
+struct FakeFast {
+  FastOptions options;
+  std::vector<DdsReply> replies;
+};
+FakeFast* fast_of_test = nullptr;
+
+struct FakeFastServices : FastServices {
+  explicit FakeFastServices(FakeFast& of) : fast(of) {}
+  void add(DdsReply&& reply) override { fast.replies.push_back(std::move(reply)); }
+  DdsOutbox::Counts counts() const override { return {}; }
+  FakeFast& fast;
+};
+std::unique_ptr<FastServices> fake_fast(const FastOptions& options) {
+  if (fast_of_test == nullptr) throw std::runtime_error("it is not installed");
+  fast_of_test->options = options;
+  return std::make_unique<FakeFastServices>(*fast_of_test);
 }
 
 world::World two_robots() {
@@ -179,7 +188,9 @@ TEST_F(Ros2BridgeTest, NamesTopicsAsRos2Does) {
   EXPECT_EQ(network.writer("rt/scout/cmd_vel"), network.writers.size()) << "commands are heard there";
   EXPECT_LT(network.reader("rt/scout/cmd_vel"), network.readers.size());
   EXPECT_EQ(network.reader("rt/tag/cmd_vel"), network.readers.size()) << "tags are not driven";
-  EXPECT_EQ(bridge->describe(), "ROS 2: node /sensorfarm in domain 7, on this machine; it is not installed");
+  EXPECT_EQ(bridge->describe(),
+            "ROS 2: node /sensorfarm in domain 7, on this machine; services do not answer clients of rmw_fastrtps: it "
+            "is not installed");
 }
 
 TEST_F(Ros2BridgeTest, OfAServiceNothingCanBeChanged) {
@@ -417,44 +428,46 @@ TEST_F(Ros2BridgeTest, RobotsArePlacedWhereThatCanBe) {
   for (std::size_t i = 0; i < cases.size(); ++i) EXPECT_EQ(done[i].first, cases[i].code) << i << done[i].second;
 }
 
-/// Clients of Fast DDS are answered by its participant, which has the same endpoints of services, and nothing else.
+/// Clients of Fast DDS are answered by its process, which has the same endpoints of services.
 TEST_F(Ros2BridgeTest, AnswersGoWhereTheirRequestsCameFrom) {
-  open();
-  EXPECT_NE(bridge->describe().find("it is not installed"), std::string::npos) << bridge->describe();
-  bridge.reset();
-  network.readers.clear(), network.writers.clear();
-  Network fast;
+  FakeFast fast;
   fast_of_test = &fast;
   open();
   fast_of_test = nullptr;
   EXPECT_EQ(bridge->describe().find("installed"), std::string::npos) << bridge->describe();
-  const auto services = [](const std::vector<DdsEndpoint>& all) {
-    std::vector<std::pair<std::string, std::string>> found;
-    for (const DdsEndpoint& one : all)
-      if (one.topic.starts_with("rq/") || one.topic.starts_with("rr/")) found.emplace_back(one.topic, one.type);
-    return found;
-  };
-  EXPECT_EQ(services(fast.readers), services(network.readers));
-  EXPECT_EQ(services(fast.writers), services(network.writers));
-  EXPECT_EQ(fast.readers.size() + fast.writers.size(), services(fast.readers).size() + services(fast.writers).size());
-  for (const DdsEndpoint& one : fast.readers) EXPECT_TRUE(one.requests && !one.best_effort) << one.topic;
+  EXPECT_EQ(fast.options.dds.domain, 7u);
+  EXPECT_TRUE(fast.options.dds.loopback);
+  std::vector<std::string> expected, found;
+  for (const auto* all : {&network.readers, &network.writers})
+    for (const DdsEndpoint& one : *all)
+      if (one.topic.starts_with("rq/") || one.topic.starts_with("rr/")) expected.push_back(one.topic + " " + one.type);
+  for (const FastService& one : fast.options.services) found.push_back(one.requests.topic + " " + one.requests.type);
+  for (const FastService& one : fast.options.services) found.push_back(one.replies.topic + " " + one.replies.type);
+  EXPECT_EQ(found, expected);
 
   const std::string topic = "rq/get_simulation_stateRequest", reply = "rr/get_simulation_stateReply";
-  fast.receive({fast.reader(topic), 5, request(1, kNothing)});
-  network.receive({network.reader(topic), 5, request(2, kNothing)});
-  fast.receive({fast.reader(topic), 6, request(3, kNothing)});
-  take();
-  const auto sequences = [&](Network& of, std::size_t count) {
-    std::vector<std::int64_t> found;
-    for (const base::Bytes& bytes : of.wait(of.writer(reply), count)) {
-      record::CdrReader cdr(bytes);
-      cdr.get<std::uint64_t>();
-      found.push_back(cdr.get<std::int64_t>());
-    }
-    return found;
+  const auto& services = fast.options.services;
+  const auto service = static_cast<std::size_t>(
+      std::find_if(services.begin(), services.end(), [&](const auto& one) { return one.requests.topic == topic; }) -
+      services.begin());
+  const auto ask = [&](std::uint64_t sender, std::int64_t sequence) {
+    DdsMessage message{service, sender, request(sequence, kNothing)};
+    message.sender.fast = true;
+    fast.options.dds.receive(std::move(message));
   };
-  EXPECT_EQ(sequences(fast, 2), (std::vector<std::int64_t>{1, 3}));
-  EXPECT_EQ(sequences(network, 1), (std::vector<std::int64_t>{2}));
+  ask(5, 1);
+  send(topic, request(2, kNothing));
+  ask(6, 3);
+  take();
+  ASSERT_EQ(fast.replies.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(fast.replies[i].writer, service);
+    EXPECT_EQ(fast.replies[i].sender, 5 + i);
+    record::CdrReader cdr(fast.replies[i].message);
+    cdr.get<std::uint64_t>();
+    EXPECT_EQ(cdr.get<std::int64_t>(), static_cast<std::int64_t>(1 + 2 * i));
+  }
+  EXPECT_EQ(network.wait(network.writer(reply), 1).size(), 1u);
   EXPECT_TRUE(has_request_header({0x01, 0x10})) << "Cyclone DDS";
   for (const DdsGuid& other : {DdsGuid{0x01, 0x0f}, {0x01, 0x01}, {0x10, 0x01}, {}})
     EXPECT_FALSE(has_request_header(other)) << "Fast DDS, Connext, and others";
