@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "viz/color.h"
+#include "viz/scales.h"
 #include "viz/theme.h"
-#include "viz/ticks.h"
 
 namespace sf::viz {
 namespace {
@@ -30,17 +30,14 @@ void draw_grid(Canvas& canvas, const FigureLayout& at) {
 }
 
 void draw_ticks(Canvas& canvas, const FigureLayout& at) {
-  TextStyle style = small_text();
-  style.across = Anchor::middle;
-  style.down = Anchor::start;
   const Ticks xs = ticks_x(at);
   for (const double x : xs.at) {
     const double px = crisp(at.plot.x_min + (x - at.shown.x_min) * at.scale);
     canvas.line({px, at.plot.y_max + 1.0}, {px, at.plot.y_max + 6.0}, theme::kHairline, theme::kFrame);
-    canvas.text({px, at.plot.y_max + 11.0}, tick_text(x, xs.decimals), style);
+    draw_label_across(canvas, {px, at.plot.y_max + 11.0}, tick_text(x, xs));
   }
+  TextStyle style = small_text();
   style.across = Anchor::end;
-  style.down = Anchor::middle;
   const Ticks ys = ticks_y(at);
   for (const double y : ys.at) {
     const double py = crisp(at.plot.y_max - (y - at.shown.y_min) * at.scale);
@@ -49,24 +46,20 @@ void draw_ticks(Canvas& canvas, const FigureLayout& at) {
   }
 }
 
-void draw_frame(Canvas& canvas, const PixelBox& plot) {
-  const double x0 = plot.x_min - 0.5;
-  const double y0 = plot.y_min - 0.5;
-  const double x1 = plot.x_max + 0.5;
-  const double y1 = plot.y_max + 0.5;
-  const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
-  canvas.polyline(corners, theme::kHairline, theme::kFrame);
-}
-
-void draw_axis_names(Canvas& canvas, const FigureLayout& at) {
+/// @param room [px] right end of the free part of the row of the x axis' name
+void draw_axis_names(Canvas& canvas, const FigureLayout& at, double edge, double room) {
+  const std::string x_name = "x [m]";
   TextStyle style = small_text();
   style.across = Anchor::middle;
-  canvas.text({0.5 * (at.plot.x_min + at.plot.x_max), at.plot.y_max + 52.0}, "x [m]", style);
+  const double half = 0.5 * text_size(x_name, style).x;
+  const double middle = std::min(0.5 * (at.plot.x_min + at.plot.x_max), room - half);
+  canvas.text({std::max(middle, at.plot.x_min + half), at.plot.y_max + 52.0}, x_name, style);
   style.upwards = true;
-  canvas.text({38.0, 0.5 * (at.plot.y_min + at.plot.y_max)}, "y [m]", style);
+  canvas.text({edge + 12.0, 0.5 * (at.plot.y_min + at.plot.y_max)}, "y [m]", style);
 }
 
-void draw_scale_bar(Canvas& canvas, const FigureLayout& at) {
+/// @return [px] left end of the bar with its text
+double draw_scale_bar(Canvas& canvas, const FigureLayout& at) {
   const double metres = round_down((at.plot.x_max - at.plot.x_min) / at.scale / 6.0);
   const double right = crisp(at.plot.x_max);
   const double left = crisp(right - metres * at.scale);
@@ -75,8 +68,9 @@ void draw_scale_bar(Canvas& canvas, const FigureLayout& at) {
   canvas.lines(strokes, theme::kCurve, theme::kFrame);
   TextStyle style = small_text();
   style.across = Anchor::end;
-  canvas.text({left - 10.0, y},
-              metres >= 1000.0 ? fmt::format("{:g} km", metres / 1000.0) : fmt::format("{:g} m", metres), style);
+  const std::string text = metres >= 1000.0 ? fmt::format("{:g} km", metres / 1000.0) : fmt::format("{:g} m", metres);
+  canvas.text({left - 10.0, y}, text, style);
+  return left - 10.0 - text_size(text, style).x;
 }
 
 }  // namespace
@@ -102,9 +96,10 @@ void Axes::save(const std::string& path) {
   draw_frame(canvas_, layout_.plot);
   draw_ticks(canvas_, layout_);
   draw_heading(canvas_, layout_.plot.x_min, layout_.heading);
-  draw_axis_names(canvas_, layout_);
-  draw_scale_bar(canvas_, layout_);
-  draw_legend(canvas_, {layout_.plot.x_min + 0.0, layout_.legend_top}, options_.legend, layout_.legend);
+  const double bar = draw_scale_bar(canvas_, layout_);
+  draw_axis_names(canvas_, layout_, page_edge(options_.page), bar - 20.0);
+  draw_legend(canvas_, {legend_left(options_.page, layout_.plot.x_min), layout_.legend_top}, options_.legend,
+              layout_.legend);
   save_picture(canvas_.drawing(), path, options_.page);
 }
 

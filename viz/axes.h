@@ -7,6 +7,7 @@
 //   axes.save("cave.png");
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,11 @@ struct FigureLayout {
   Heading heading;
 };
 FigureLayout lay_out(const FigureOptions& options);
+
+/// True where the box of `points` reaches into `shown` [m].
+bool is_in_view(std::span<const glm::dvec2> points, const world::Extent& shown, double reach = 0.0);
+/// The world with those of its objects that the figure shows, for its legend: all where the page has no extent.
+world::World in_view(const world::World& world, const FigureOptions& options);
 
 class Axes {
  public:

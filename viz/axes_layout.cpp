@@ -3,14 +3,15 @@
 
 #include "base/error.h"
 #include "viz/axes.h"
-#include "viz/ticks.h"
+#include "viz/scales.h"
 
 namespace sf::viz {
 namespace {
 
-constexpr double kEdge = 26.0;        // around the whole figure
 constexpr double kTicksBelow = 68.0;  // tick labels and the axis' name
 constexpr double kAxisName = 34.0;    // left of the tick labels
+constexpr double kLowestMap = 60.0;   // of a page with a height
+constexpr double kLowestPart = 0.4;   // of the width, else
 constexpr double kSmallestWide = 620.0;
 constexpr double kSmallestHigh = 260.0;
 
@@ -31,11 +32,7 @@ world::Extent padded(const FigureOptions& options) {
 
 /// [px] of the labels of one axis.
 double widest_label(double from, double to, double smallest_step) {
-  const Ticks ticks = make_ticks(from, to, smallest_step);
-  double widest = 0.0;
-  for (const double value : ticks.at)
-    widest = std::max(widest, text_size(tick_text(value, ticks.decimals), small_text()).x);
-  return widest;
+  return widest_label(make_ticks(from, to, smallest_step));
 }
 
 /// Grows one side of `shown` about its middle so that it fills `plot` at `scale`.
@@ -47,26 +44,56 @@ void fill_plot(world::Extent& shown, Size plot, double scale) {
 
 }  // namespace
 
+bool is_in_view(std::span<const glm::dvec2> points, const world::Extent& shown, double reach) {
+  glm::dvec2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+  for (const glm::dvec2& p : points) low = glm::min(low, p), high = glm::max(high, p);
+  return high.x + reach >= shown.x_min && low.x - reach <= shown.x_max && high.y + reach >= shown.y_min &&
+         low.y - reach <= shown.y_max;
+}
+
+world::World in_view(const world::World& world, const FigureOptions& options) {
+  world::World seen = world;
+  if (!options.page.extent) return seen;
+  const world::Extent shown = lay_out(options).shown;
+  const auto hidden = [&](glm::dvec2 p, double reach) { return !is_in_view({&p, 1}, shown, reach); };
+  std::erase_if(seen.walls, [&](const world::Segment& s) {
+    const glm::dvec2 ends[] = {s.a, s.b};
+    return !is_in_view(ends, shown);
+  });
+  std::erase_if(seen.lane_markings, [&](const auto& m) { return !is_in_view(m.line, shown, 0.5 * m.width); });
+  std::erase_if(seen.floor_holes, [&](const auto& hole) { return !is_in_view(hole.outline, shown); });
+  std::erase_if(seen.magnets, [&](const auto& m) { return hidden(m.p, m.radius); });
+  std::erase_if(seen.movers, [&](const auto& m) { return hidden({m.X_WM.x, m.X_WM.y}, m.radius); });
+  std::erase_if(seen.lights, [&](const auto& l) { return hidden({l.X_WL.x, l.X_WL.y}, 0.0); });
+  std::erase_if(seen.emitters, [&](const auto& e) { return hidden({e.X_WE.x, e.X_WE.y}, std::max(e.range, e.halo)); });
+  return seen;
+}
+
 FigureLayout lay_out(const FigureOptions& options) {
   SF_CHECK(options.long_side >= 600 && options.long_side <= 8000,
            "long side " + std::to_string(options.long_side) + " px");
   const world::Extent wanted = padded(options);
   const Size extent{std::max(wanted.x_max - wanted.x_min, 1e-9), std::max(wanted.y_max - wanted.y_min, 1e-9)};
-  const double width = page_pixels(options.page.width, options.long_side);
-  // A column is narrow beside its texts: a figure of a given width alone may be higher than wide.
-  const double height =
-      page_pixels(options.page.height, static_cast<int>(options.page.width > 0.0 ? 1.6 * width : width));
+  const Page& page = options.page;
+  const double width = page_pixels(page, page.width, options.long_side);
+  // A column is narrow beside its texts: a figure of a given width alone may be higher than wide, up to a column's end.
+  const double height = page.height > 0.0  ? page_pixels(page, page.height, 0)
+                        : page.width > 0.0 ? std::min(1.6 * width, page_pixels(page, kLargestColumn, 0) + 0.0)
+                                           : width;
+  const double edge = page_edge(page);
 
   // Labels, legend and scale depend on each other; two iterations suffice.
   FigureLayout layout;
-  double left = kEdge + kAxisName + 40.0;
-  double footer = kTicksBelow + kLegendRow + kEdge;
-  double heading_width = width - left - kEdge;
+  double left = edge + kAxisName + 40.0;
+  double footer = kTicksBelow + kLegendRow + edge;
+  double heading_width = width - left - edge;
   for (int round = 0; round < 3; ++round) {
-    layout.heading = make_heading(options.title, options.subtitle, heading_width, options.page);
+    layout.heading = make_heading(options.title, options.subtitle, heading_width, page);
     const double header = layout.heading.height;
-    const Size room{width - left - kEdge, std::max(height - header - footer, 1.0)};
+    const double lowest = page.height > 0.0 ? kLowestMap : kLowestPart * (width - left - edge);
+    const Size room{width - left - edge, std::max(height - header - footer, lowest)};
     layout.scale = std::min(room.x / extent.x, room.y / extent.y);
+    if (round == 0) layout.tick_spacing = std::min(layout.tick_spacing, room.x / 4.0);
     const Size plot{std::clamp(std::round(extent.x * layout.scale), std::min(kSmallestWide, room.x), room.x),
                     std::clamp(std::round(extent.y * layout.scale), std::min(kSmallestHigh, room.y), room.y)};
     layout.shown = wanted;
@@ -76,17 +103,23 @@ FigureLayout lay_out(const FigureOptions& options) {
     layout.plot.y_max = layout.plot.y_min + static_cast<int>(plot.y);
 
     // The scale bar is in the row of the axis' name, so the legend has the whole width.
-    layout.legend = place_legend(options.legend, plot.x);
+    layout.legend = place_legend(options.legend, layout.plot.x_max - legend_left(page, layout.plot.x_min));
     const int rows = layout.legend.empty() ? 0 : layout.legend.back().row + 1;
     const double x_label = widest_label(layout.shown.x_min, layout.shown.x_max, layout.tick_spacing / layout.scale);
     layout.tick_spacing = std::max(layout.tick_spacing, x_label + 20.0);
-    left = kEdge + kAxisName +
-           widest_label(layout.shown.y_min, layout.shown.y_max, layout.tick_spacing / layout.scale) + 14.0;
-    footer = kTicksBelow + rows * kLegendRow + kEdge;
-    heading_width = layout.plot.x_max + kEdge - left - kEdge;
+    left = edge + kAxisName + widest_label(layout.shown.y_min, layout.shown.y_max, layout.tick_spacing / layout.scale) +
+           14.0;
+    footer = kTicksBelow + rows * kLegendRow + edge;
+    heading_width = layout.plot.x_max + edge - left - edge;
   }
+  // Two labels along x at least, where they have room.
+  const auto ticks_x = [&] {
+    return make_ticks(layout.shown.x_min, layout.shown.x_max, layout.tick_spacing / layout.scale);
+  };
+  const double least = widest_label(ticks_x()) + 14.0;
+  while (ticks_x().at.size() < 2 && 0.8 * layout.tick_spacing > least) layout.tick_spacing *= 0.8;
   layout.legend_top = layout.plot.y_max + kTicksBelow + 8.0;
-  layout.width = static_cast<int>(std::ceil(layout.plot.x_max + kEdge));
+  layout.width = static_cast<int>(std::ceil(layout.plot.x_max + edge));
   layout.height = static_cast<int>(std::ceil(layout.plot.y_max + footer));
   return layout;
 }

@@ -82,7 +82,9 @@ struct Painter {
     add_paths(to, stroke.paths, false);
     cairo_set_line_width(to, stroke.width);
     set_color(to, stroke.color);
+    cairo_set_dash(to, stroke.dash.data(), static_cast<int>(stroke.dash.size()), 0.0);
     cairo_stroke(to);
+    cairo_set_dash(to, nullptr, 0, 0.0);
   }
   void operator()(const Fill& fill) const {
     add_paths(to, fill.paths, true);
@@ -168,16 +170,16 @@ cairo_status_t append(void* to, const unsigned char* bytes, unsigned count) {
   return CAIRO_STATUS_SUCCESS;
 }
 
-bool pdf(const Drawing& drawing, std::string& bytes) {
-  constexpr double kScale = kPoints / kPixelsPerInch;
+bool pdf(const Drawing& drawing, double scale, std::string& bytes) {
+  const double points = scale * kPoints / kPixelsPerInch;  // per layout pixel
   const Surface page(
-      cairo_pdf_surface_create_for_stream(append, &bytes, drawing.width * kScale, drawing.height * kScale),
+      cairo_pdf_surface_create_for_stream(append, &bytes, drawing.width * points, drawing.height * points),
       &cairo_surface_destroy);
   // The same figure is the same bytes: no date.
   cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");
   {
     const Context to(cairo_create(page.get()), &cairo_destroy);
-    cairo_scale(to.get(), kScale, kScale);
+    cairo_scale(to.get(), points, points);
     if (!paint(to.get(), drawing, 0.0)) return false;
     cairo_show_page(to.get());
   }

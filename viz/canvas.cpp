@@ -90,16 +90,18 @@ PathBox Canvas::visible(double beyond) const {
   return {{clip_.x_min - beyond, clip_.y_min - beyond}, {clip_.x_max + beyond, clip_.y_max + beyond}};
 }
 
-void Canvas::polyline(std::span<const glm::dvec2> points, double line_width, std::uint32_t color) {
+void Canvas::polyline(std::span<const glm::dvec2> points, double line_width, std::uint32_t color,
+                      std::span<const double> dash) {
   std::vector<Line> parts;
   if (points.size() == 1) parts.push_back({points[0], points[0]});
   for (std::size_t i = 0; i + 1 < points.size(); ++i) parts.push_back({points[i], points[i + 1]});
-  lines(parts, line_width, color);
+  lines(parts, line_width, color, dash);
 }
 
-void Canvas::lines(std::span<const Line> lines, double line_width, std::uint32_t color) {
+void Canvas::lines(std::span<const Line> lines, double line_width, std::uint32_t color, std::span<const double> dash) {
   Paths paths = cut_lines(lines, visible(line_width));
-  if (!paths.empty()) drawing_.shapes.push_back(Stroke{std::move(paths), line_width, color});
+  if (!paths.empty())
+    drawing_.shapes.push_back(Stroke{std::move(paths), line_width, color, {dash.begin(), dash.end()}});
 }
 
 void Canvas::line(glm::dvec2 a, glm::dvec2 b, double line_width, std::uint32_t color) {

@@ -58,9 +58,10 @@ class Canvas {
   void unclip();
 
   /// A line through all points, with round joins and ends. @param line_width [px] > 0
-  void polyline(std::span<const glm::dvec2> points, double line_width, std::uint32_t color);
-  /// The union of many lines, painted once. @param line_width [px] > 0
-  void lines(std::span<const Line> lines, double line_width, std::uint32_t color);
+  void polyline(std::span<const glm::dvec2> points, double line_width, std::uint32_t color,
+                std::span<const double> dash = {});
+  /// The union of many lines, painted once. @param line_width [px] > 0 @param dash as in `Stroke`
+  void lines(std::span<const Line> lines, double line_width, std::uint32_t color, std::span<const double> dash = {});
   void line(glm::dvec2 a, glm::dvec2 b, double line_width, std::uint32_t color);
 
   /// A closed polygon, first point not repeated.

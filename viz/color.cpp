@@ -44,7 +44,20 @@ std::uint32_t oklch(double lightness, double chroma, double hue) {
   return pack(to_srgb(rgb[0]), to_srgb(rgb[1]), to_srgb(rgb[2]));
 }
 
+/// A curve in OKLab whose lightness rises linearly from 0.22 to 0.91 while its hue turns from violet through blue and
+/// green to yellow, as saturated as sRGB allows without a kink.
+constexpr std::array<std::uint32_t, 21> kAnchors{
+    0xFF250146u, 0xFF250F55u, 0xFF241E62u, 0xFF202C6Bu, 0xFF1C3A71u, 0xFF184776u, 0xFF13547Cu,
+    0xFF0C6082u, 0xFF076D87u, 0xFF0D798Au, 0xFF1B858Du, 0xFF29918Fu, 0xFF379D90u, 0xFF44A98Fu,
+    0xFF52B58Cu, 0xFF62C184u, 0xFF76CD76u, 0xFF92D663u, 0xFFB3DD54u, 0xFFD4E24Cu, 0xFFF3E749u};
+
 }  // namespace
+
+std::uint32_t scale_color(double t) {
+  const double at = (t > 0.0 ? std::min(t, 1.0) : 0.0) * (kAnchors.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(at), kAnchors.size() - 2);
+  return mix(kAnchors[below], kAnchors[below + 1], at - static_cast<double>(below));
+}
 
 std::uint32_t with_opacity(std::uint32_t color, double opacity) { return byte(opacity) << 24 | (color & 0x00FFFFFFu); }
 

@@ -12,6 +12,9 @@ std::uint32_t with_opacity(std::uint32_t color, double opacity);
 /// The opaque colour `t` of the way from `a` to `b`, t in [0, 1], evenly in sRGB.
 std::uint32_t mix(std::uint32_t a, std::uint32_t b, double t);
 
+/// The colour of a value, t in [0, 1] from the least to the greatest. Greater values are lighter, in grey print too.
+std::uint32_t scale_color(double t);
+
 /// Coordinates of an opaque colour in OKLab, in which equal distances look equally different (Ottosson, "A perceptual
 /// color space for image processing", 2020).
 struct OklabColor {

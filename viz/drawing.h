@@ -33,6 +33,7 @@ struct Stroke {
   Paths paths;
   double width = 1.0;  ///< [px] > 0
   std::uint32_t color = 0;
+  std::vector<double> dash;  ///< [px] lengths of dash, gap, dash, ... along each path, > 0; empty: solid
 };
 /// Closed outlines, first points not repeated, filled by the non-zero winding rule.
 struct Fill {

@@ -17,8 +17,9 @@ struct DrawingBackend {
   /// Red, green and blue of each pixel, row by row, the top row first, `scale` pixels per layout pixel; the picture's
   /// sides are rounded up. @return false when there is no memory for it.
   bool (*pixels)(const Drawing& drawing, double scale, std::vector<std::uint8_t>& rgb);
-  /// The bytes of a PDF file with embedded fonts. @return false when it cannot be made.
-  bool (*pdf)(const Drawing& drawing, std::string& bytes);
+  /// The bytes of a PDF file with embedded fonts. @param scale of its size on paper: 1 is 180 layout pixels per inch.
+  /// @return false when it cannot be made.
+  bool (*pdf)(const Drawing& drawing, double scale, std::string& bytes);
 };
 
 /// The name of the plug-in's only symbol: `extern "C" const DrawingBackend sensorfarm_cairo`.

@@ -10,8 +10,8 @@
 #include "viz/color.h"
 #include "viz/heading.h"
 #include "viz/legend.h"
+#include "viz/scales.h"
 #include "viz/theme.h"
-#include "viz/ticks.h"
 
 namespace sf::viz {
 
@@ -23,9 +23,8 @@ constexpr std::size_t kShades = 160;
 // [px]
 constexpr double kRoomForMarks = 9.0;  // per magnet; in denser places marks would hide the field
 constexpr double kGap = 96.0;          // from the map to the profile
-constexpr double kProfileHeight = 300.0;
 constexpr double kLegendBelow = 72.0;  // the profile's labels
-constexpr double kFieldEdge = 18.0;
+constexpr double kFieldFoot = 18.0;
 
 /// A plot: its box of pixels and the values at its edges.
 struct Plot {
@@ -38,55 +37,38 @@ struct Plot {
   }
 };
 
-void draw_box(Canvas& canvas, const PixelBox& b) {
-  const double x0 = b.x_min - 0.5, y0 = b.y_min - 0.5, x1 = b.x_max + 0.5, y1 = b.y_max + 0.5;
-  const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
-  canvas.polyline(corners, theme::kHairline, theme::kFrame);
-}
-
-void draw_axes(Canvas& canvas, const Plot& plot, const std::string& x_name, const std::string& y_name, bool grid) {
+void draw_axes(Canvas& canvas, const Plot& plot, const std::string& x_name, const std::string& y_name, bool grid,
+               double edge) {
   const PixelBox& b = plot.box;
   TextStyle style = small_text();
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  const Ticks xs = make_ticks(plot.x0, plot.x1,
-                              std::min(110.0, (b.x_max - b.x_min) / 4.0) * (plot.x1 - plot.x0) / (b.x_max - b.x_min));
+  const Ticks xs = ticks_across(plot.x0, plot.x1, b.x_max - b.x_min);
   for (const double x : xs.at) {
     const double px = crisp(plot.pixel({x, plot.y0}).x);
     if (grid) canvas.line({px, b.y_min + 0.0}, {px, b.y_max + 0.0}, theme::kHairline, theme::kGridLine);
     canvas.line({px, b.y_max + 1.0}, {px, b.y_max + 6.0}, theme::kHairline, theme::kFrame);
-    canvas.text({px, b.y_max + 11.0}, tick_text(x, xs.decimals), style);
+    draw_label_across(canvas, {px, b.y_max + 11.0}, tick_text(x, xs));
   }
-  canvas.text({0.5 * (b.x_min + b.x_max), b.y_max + 40.0}, x_name, style);
+  canvas.text({0.5 * (b.x_min + b.x_max), b.y_max + 40.0}, axis_name(x_name, xs.exponent), style);
   style.across = Anchor::end;
   style.down = Anchor::middle;
-  const Ticks ys = make_ticks(plot.y0, plot.y1, 44.0 * (plot.y1 - plot.y0) / (b.y_max - b.y_min));
+  const Ticks ys = ticks_up(plot.y0, plot.y1, b.y_max - b.y_min);
   for (const double y : ys.at) {
     const double py = crisp(plot.pixel({plot.x0, y}).y);
     if (grid) canvas.line({b.x_min + 0.0, py}, {b.x_max + 0.0, py}, theme::kHairline, theme::kGridLine);
     canvas.line({b.x_min - 6.0, py}, {b.x_min - 1.0, py}, theme::kHairline, theme::kFrame);
-    canvas.text({b.x_min - 11.0, py}, tick_text(y, ys.decimals), style);
+    canvas.text({b.x_min - 11.0, py}, tick_text(y, ys), style);
   }
   style.across = Anchor::middle;
   style.upwards = true;
-  canvas.text({26.0, 0.5 * (b.y_min + b.y_max)}, y_name, style);
-  draw_box(canvas, b);
+  canvas.text({edge, 0.5 * (b.y_min + b.y_max)}, axis_name(y_name, ys.exponent), style);
+  draw_frame(canvas, b);
 }
-
-/// Colours of |B| from zero to the maximum: a curve in OKLab (viz/color.h) whose lightness rises linearly from 0.22 to
-/// 0.91 while its hue turns from violet through blue and green to yellow, as saturated as sRGB allows without a kink.
-constexpr std::array<std::uint32_t, 21> kAnchors{
-    0xFF250146u, 0xFF250F55u, 0xFF241E62u, 0xFF202C6Bu, 0xFF1C3A71u, 0xFF184776u, 0xFF13547Cu,
-    0xFF0C6082u, 0xFF076D87u, 0xFF0D798Au, 0xFF1B858Du, 0xFF29918Fu, 0xFF379D90u, 0xFF44A98Fu,
-    0xFF52B58Cu, 0xFF62C184u, 0xFF76CD76u, 0xFF92D663u, 0xFFB3DD54u, 0xFFD4E24Cu, 0xFFF3E749u};
 
 std::vector<std::uint32_t> shades() {
   std::vector<std::uint32_t> colors;
-  for (std::size_t i = 0; i < kShades; ++i) {
-    const double at = static_cast<double>(i) / (kShades - 1) * (kAnchors.size() - 1);
-    const auto below = std::min(static_cast<std::size_t>(at), kAnchors.size() - 2);
-    colors.push_back(mix(kAnchors[below], kAnchors[below + 1], at - static_cast<double>(below)));
-  }
+  for (std::size_t i = 0; i < kShades; ++i) colors.push_back(scale_color(static_cast<double>(i) / (kShades - 1)));
   return colors;
 }
 
@@ -97,24 +79,23 @@ double top_of(const FieldSamples& samples) {
 }
 
 void draw_bar(Canvas& canvas, const Plot& map, double top) {
-  const Plot bar{{map.box.x_max + 26, map.box.y_min, map.box.x_max + 46, map.box.y_max}, 0.0, 1.0, 0.0, top};
+  const Plot bar{{map.box.x_max + 16, map.box.y_min, map.box.x_max + 34, map.box.y_max}, 0.0, 1.0, 0.0, top};
   std::vector<std::uint32_t> colors = shades();
   std::reverse(colors.begin(), colors.end());
   canvas.image({bar.box.x_min + 0.0, bar.box.y_min + 0.0}, {bar.box.x_max + 0.0, bar.box.y_max + 0.0},
                {1, static_cast<int>(colors.size()), colors});
-  draw_box(canvas, bar.box);
-  double widest = 0.0;
-  const Ticks ticks = make_ticks(0.0, top, 44.0 * top / (bar.box.y_max - bar.box.y_min));
+  draw_frame(canvas, bar.box);
+  const Ticks ticks = ticks_up(0.0, top, bar.box.y_max - bar.box.y_min);
   for (const double value : ticks.at) {
     const double y = crisp(bar.pixel({0.0, value}).y);
     canvas.line({bar.box.x_max + 1.0, y}, {bar.box.x_max + 6.0, y}, theme::kHairline, theme::kFrame);
-    canvas.text({bar.box.x_max + 11.0, y}, tick_text(value, ticks.decimals), small_text());
-    widest = std::max(widest, text_size(tick_text(value, ticks.decimals), small_text()).x);
+    canvas.text({bar.box.x_max + 11.0, y}, tick_text(value, ticks), small_text());
   }
   TextStyle style = small_text();
   style.across = Anchor::middle;
   style.upwards = true;
-  canvas.text({bar.box.x_max + widest + 32.0, 0.5 * (bar.box.y_min + bar.box.y_max)}, "|B| [Gauss]", style);
+  canvas.text({bar.box.x_max + widest_label(ticks) + 28.0, 0.5 * (bar.box.y_min + bar.box.y_max)},
+              axis_name("|B| [G]", ticks.exponent), style);
 }
 
 std::vector<world::Magnet> all_magnets(const world::World& world) {
@@ -153,7 +134,7 @@ void draw_marks(Canvas& canvas, const world::World& world, const Plot& map) {
 }
 
 void draw_map(Canvas& canvas, const world::World& world, const FieldView& view, const FieldSamples& samples,
-              const Plot& map) {
+              const Plot& map, double edge) {
   const double top = top_of(samples);
   const std::vector<std::uint32_t> colors = shades();
   std::vector<std::uint32_t> cells;
@@ -168,38 +149,47 @@ void draw_map(Canvas& canvas, const world::World& world, const FieldView& view, 
   canvas.lines(across, 3.0, with_opacity(theme::kMapHalo, 0.35));
   draw_dashes(canvas, across, 1.4, 9.0, 6.0, with_opacity(theme::kMapInk, 0.8));
   canvas.unclip();
-  draw_axes(canvas, map, "x [m]", "y [m]", false);
+  draw_axes(canvas, map, "x [m]", "y [m]", false, edge);
   draw_bar(canvas, map, top);
 }
 
 void draw_curve(Canvas& canvas, const Plot& plot, const std::vector<ProfilePoint>& profile, std::uint32_t color,
-                double (*value)(const ProfilePoint&)) {
+                double (*value)(const ProfilePoint&), std::span<const double> dash = {}) {
   std::vector<glm::dvec2> points;
   for (const ProfilePoint& p : profile) points.push_back(plot.pixel({p.along, value(p)}));
-  canvas.polyline(points, 2.2, color);
+  canvas.polyline(points, 2.2, color, dash);
 }
 
 double vectors(const ProfilePoint& p) { return std::hypot(p.field.x, p.field.y, p.field.z) / kGauss; }
 double magnitudes(const ProfilePoint& p) { return p.field.magnitudes / kGauss; }
 
-const std::array<LegendItem, 2> kCurves{{{LegendMark::line, theme::kBlue, "magnets summed as vectors, as on the map"},
-                                         {LegendMark::line, theme::kVermillion, "their magnitudes summed"}}};
+std::array<LegendItem, 2> curves(const Page& page) {
+  LegendItem sum{LegendMark::line, theme::kBlue, "vector sum, as on the map"};
+  LegendItem sizes{LegendMark::line, theme::kVermillion, "sum of magnitudes"};
+  if (page.line_styles) sizes.dash = line_style(1);
+  return {sum, sizes};
+}
 
-void draw_profile(Canvas& canvas, const FieldView& view, const FieldSamples& samples, Plot plot) {
+std::string profile_name(const FieldView& view, double width) {
+  const std::string text = with_minus(fmt::format("along the line from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) [m]",
+                                                  view.line.a.x, view.line.a.y, view.line.b.x, view.line.b.y));
+  return text_size(text, small_text()).x <= width ? text : "along the line [m]";
+}
+
+void draw_profile(Canvas& canvas, const FieldView& view, const FieldSamples& samples, Plot plot, const Page& page) {
   double top = 0.0;
   for (const ProfilePoint& p : samples.profile) top = std::max({top, vectors(p), magnitudes(p)});
   plot.x1 = glm::length(view.line.b - view.line.a);
   plot.y1 = top > 0.0 ? 1.06 * top : 1.0;
-  draw_axes(canvas, plot,
-            fmt::format("along the line from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) [m]", view.line.a.x, view.line.a.y,
-                        view.line.b.x, view.line.b.y),
-            "|B| [Gauss]", true);
+  draw_axes(canvas, plot, profile_name(view, plot.box.x_max - plot.box.x_min), "|B| [G]", true, page_edge(page));
+  const auto legend = curves(page);
   canvas.clip(plot.box);
-  draw_curve(canvas, plot, samples.profile, theme::kVermillion, magnitudes);
+  draw_curve(canvas, plot, samples.profile, theme::kVermillion, magnitudes, legend[1].dash);
   draw_curve(canvas, plot, samples.profile, theme::kBlue, vectors);
   canvas.unclip();
-  const auto places = place_legend(kCurves, plot.box.x_max - plot.box.x_min);
-  draw_legend(canvas, {plot.box.x_min + 0.0, plot.box.y_max + kLegendBelow}, kCurves, places);
+  const double left = legend_left(page, plot.box.x_min);
+  const auto places = place_legend(legend, canvas.width() - left - page_edge(page));
+  draw_legend(canvas, {left, plot.box.y_max + kLegendBelow}, legend, places);
 }
 
 std::string title_of(const world::World& world) {
@@ -220,21 +210,23 @@ std::string subtitle_of(const world::World& world, const FieldView& view, const 
 
 void draw_field(const world::World& world, const FieldView& view, const FieldSamples& samples, const std::string& path,
                 const Page& page) {
+  const double left = legend_left(page, view.map.x_min);
   const Heading heading = make_heading(title_of(world), subtitle_of(world, view, samples),
-                                       view.map.x_max + kFieldRight - view.map.x_min - kFieldEdge, page);
+                                       view.map.x_max + view.right - left - page_edge(page), page);
   PixelBox place = view.map;  // below the heading, whatever its lines
   place.y_max += static_cast<int>(heading.height) - place.y_min;
   place.y_min = static_cast<int>(heading.height);
   const double top = place.y_max + kGap;
   const Plot map{place, view.extent.x_min, view.extent.x_max, view.extent.y_min, view.extent.y_max};
   const Plot profile{
-      {place.x_min, static_cast<int>(top), place.x_max, static_cast<int>(top + kProfileHeight)}, 0, 1, 0, 1};
-  const int rows = place_legend(kCurves, place.x_max - place.x_min).back().row + 1;
-  const double high = top + kProfileHeight + kLegendBelow + rows * kLegendRow + kFieldEdge;
-  Canvas canvas(place.x_max + kFieldRight, static_cast<int>(high), theme::kWhite);
-  draw_heading(canvas, place.x_min, heading);
-  draw_map(canvas, world, view, samples, map);
-  draw_profile(canvas, view, samples, profile);
+      {place.x_min, static_cast<int>(top), place.x_max, static_cast<int>(top) + view.profile}, 0, 1, 0, 1};
+  const int width = place.x_max + view.right;
+  const int rows = place_legend(curves(page), width - legend_left(page, place.x_min) - page_edge(page)).back().row + 1;
+  const double high = top + view.profile + kLegendBelow + rows * kLegendRow + kFieldFoot;
+  Canvas canvas(width, static_cast<int>(high), theme::kWhite);
+  draw_heading(canvas, left, heading);
+  draw_map(canvas, world, view, samples, map, page_edge(page));
+  draw_profile(canvas, view, samples, profile, page);
   save_picture(canvas.drawing(), path, page);
 }
 

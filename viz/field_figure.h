@@ -17,9 +17,6 @@
 
 namespace sf::viz {
 
-/// [px] right of the map: the bar of colours
-inline constexpr int kFieldRight = 150;
-
 /// The requested view.
 struct FieldRequest {
   double height = 0.0;                  ///< [m] in the world
@@ -34,6 +31,8 @@ struct FieldView {
   Line line;             ///< [m] of the profile
   world::Extent extent;  ///< [m] of the map
   PixelBox map;          ///< the map's place on the picture below a heading of two lines
+  int right = 150;       ///< [px] beside the map: the bar of colours
+  int profile = 300;     ///< [px] height of the profile
 };
 
 /// Completes a request. The default map contains all magnets at load and the area around them in which the field decays

@@ -14,11 +14,14 @@ namespace {
 using world::Extent;
 
 // [px] of the map.
-constexpr int kLeft = 104;
+constexpr int kLeft = 78;              // with the page's edge: labels and name of the axis
 constexpr int kTop = 100;              // a heading of two lines
-constexpr double kFieldBelow = 620.0;  // heading, profile and legend
+constexpr double kFieldBelow = 320.0;  // heading, labels and legend, without the profile
+constexpr double kMapPart = 0.65;      // of a page's height that map and profile share
+constexpr double kLowestProfile = 90.0;
 constexpr double kNarrowest = 640.0;
-constexpr double kWidest = 1180.0;
+constexpr int kWidest = 1180;
+constexpr double kUsualEdge = 26.0;
 constexpr double kLowest = 220.0;
 constexpr double kHighest = 900.0;
 
@@ -66,18 +69,25 @@ Line default_line(const MagnetBox& box, const Extent& shown) {
 }
 
 /// Extends the shorter side, for a limited aspect ratio of the map.
-PixelBox place_map(Extent& shown, const Page& page) {
+void place_map(FieldView& view, const Page& page) {
+  Extent& shown = view.extent;
   const double wide = shown.x_max - shown.x_min;
   const double high = shown.y_max - shown.y_min;
-  const double widest = page.width > 0.0 ? page_pixels(page.width, 0) - kLeft - kFieldRight : kWidest;
-  const double highest = page.height > 0.0 ? std::max(page_pixels(page.height, 0) - kFieldBelow, kLowest) : kHighest;
+  const int left = kLeft + static_cast<int>(page_edge(page));
+  if (page_edge(page) < kUsualEdge) view.right = 112;
+  const double widest = page_pixels(page, page.width, kWidest + left + view.right) - left - view.right;
+  const double both = page_pixels(page, page.height, 0) - kFieldBelow;
+  const double highest = page.height > 0.0 ? std::max(kMapPart * both, kLowestProfile) : kHighest;
+  const double lowest = std::min({kLowest, highest, 0.8 * widest});
   const double scale = std::min(widest / wide, highest / high);
   const double width = std::round(std::max(wide * scale, std::min(kNarrowest, widest)));
-  const double height = std::round(std::max(high * scale, kLowest));
+  const double height = std::round(std::max(high * scale, lowest));
+  const double profile = std::min(view.profile + 0.0, 0.75 * width);
+  view.profile = static_cast<int>(page.height > 0.0 ? std::clamp(both - height, kLowestProfile, profile) : profile);
   const double more_x = 0.5 * (width / scale - wide);
   const double more_y = 0.5 * (height / scale - high);
   shown = {shown.x_min - more_x, shown.y_min - more_y, shown.x_max + more_x, shown.y_max + more_y};
-  return {kLeft, kTop, kLeft + static_cast<int>(width), kTop + static_cast<int>(height)};
+  view.map = {left, kTop, left + static_cast<int>(width), kTop + static_cast<int>(height)};
 }
 
 /// Approximate number of magnets summed per cell.
@@ -113,7 +123,7 @@ FieldView field_view(const world::World& world, const FieldRequest& wish) {
   view.height = wish.height;
   view.extent = wish.extent.value_or(default_extent(box, wish.height));
   const Extent wanted = view.extent;
-  view.map = place_map(view.extent, wish.page);
+  place_map(view, wish.page);
   view.line = wish.line.value_or(default_line(box, wanted));
   return view;
 }

@@ -6,7 +6,6 @@ namespace sf::viz {
 namespace {
 
 // [px]
-constexpr double kMargin = 26.0;
 constexpr double kTitleLine = 36.0;
 constexpr double kSubtitleLine = 26.0;
 
@@ -24,14 +23,18 @@ TextStyle subtitle_style() {
   return style;
 }
 
-/// `text` shortened until it is at most `width` [px] wide.
-std::string fitted(std::string text, const TextStyle& style, double width) {
+}  // namespace
+
+std::string fitted_text(std::string text, const TextStyle& style, double width) {
   if (text_size(text, style).x <= width) return text;
-  while (!text.empty() && text_size(text + "...", style).x > width) text.pop_back();
+  while (!text.empty() && text_size(text + "...", style).x > width) {
+    while (text.size() > 1 && (static_cast<unsigned char>(text.back()) & 0xC0) == 0x80) text.pop_back();
+    text.pop_back();
+  }
   return text + "...";
 }
 
-std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width) {
+std::vector<std::string> wrapped_text(const std::string& text, const TextStyle& style, double width) {
   std::vector<std::string> lines;
   for (std::size_t from = 0; from < text.size();) {
     const std::size_t to = std::min(text.find(' ', from), text.size());
@@ -39,25 +42,25 @@ std::vector<std::string> wrapped(const std::string& text, const TextStyle& style
     if (!lines.empty() && text_size(lines.back() + " " + word, style).x <= width)
       lines.back() += " " + word;
     else
-      lines.push_back(fitted(word, style, width));
+      lines.push_back(fitted_text(word, style, width));
     from = to + 1;
   }
   return lines;
 }
 
-}  // namespace
-
 Heading make_heading(const std::string& title, const std::string& subtitle, double width, const Page& page) {
   Heading heading;
-  if (page.title) heading = {wrapped(title, title_style(), width), wrapped(subtitle, subtitle_style(), width), 0.0};
-  heading.height = kMargin + kTitleLine * static_cast<double>(heading.title.size()) +
+  if (page.title)
+    heading = {wrapped_text(title, title_style(), width), wrapped_text(subtitle, subtitle_style(), width)};
+  heading.edge = page_edge(page);
+  heading.height = heading.edge + kTitleLine * static_cast<double>(heading.title.size()) +
                    kSubtitleLine * static_cast<double>(heading.subtitle.size());
   if (!heading.title.empty() || !heading.subtitle.empty()) heading.height += 12.0;
   return heading;
 }
 
 void draw_heading(Canvas& canvas, double left, const Heading& heading) {
-  double y = kMargin;
+  double y = heading.edge;
   for (const std::string& line : heading.title) {
     canvas.text({left, y + 0.45 * kTitleLine}, line, title_style());
     y += kTitleLine;

@@ -12,7 +12,14 @@ namespace sf::viz {
 struct Heading {
   std::vector<std::string> title, subtitle;  ///< lines
   double height = 0.0;                       ///< [px] with the margins above and below
+  double edge = 26.0;                        ///< [px] margin above
 };
+
+/// `text`, shortened until it is at most `width` [px] wide.
+std::string fitted_text(std::string text, const TextStyle& style, double width);
+
+/// `text` in lines of at most `width` [px], broken at spaces; a longer word is shortened.
+std::vector<std::string> wrapped_text(const std::string& text, const TextStyle& style, double width);
 
 /// Breaks both texts at spaces into lines of at most `width` [px]; a longer word is shortened. Without lines where the
 /// page has no title.

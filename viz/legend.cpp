@@ -1,9 +1,11 @@
 #include "viz/legend.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "viz/color.h"
+#include "viz/heading.h"
 #include "viz/theme.h"
 
 namespace sf::viz {
@@ -12,6 +14,7 @@ namespace {
 constexpr double kSampleWidth = 34.0;
 constexpr double kTextGap = 9.0;
 constexpr double kItemGap = 30.0;
+constexpr double kMarker = 5.5;
 
 void draw_sample(Canvas& canvas, glm::dvec2 left, const LegendItem& item) {
   const glm::dvec2 right = left + glm::dvec2{kSampleWidth, 0.0};
@@ -26,7 +29,15 @@ void draw_sample(Canvas& canvas, glm::dvec2 left, const LegendItem& item) {
       return;
     }
     case LegendMark::line:
-      return canvas.line(left, right, theme::kBold, item.color);
+      canvas.lines({&line, 1}, theme::kBold, item.color, item.dash);
+      if (item.row >= 0) draw_marker(canvas, middle, kMarker, item.row, item.color);
+      return;
+    case LegendMark::hatched: {
+      const glm::dvec2 low = left + glm::dvec2{0, -9}, high = right + glm::dvec2{0, 9};
+      draw_hatching(canvas, low, high);
+      return canvas.polyline(std::array{low, glm::dvec2{high.x, low.y}, high, glm::dvec2{low.x, high.y}, low},
+                             theme::kHairline, theme::kFrame);
+    }
     case LegendMark::dashed:
       return draw_dashes(canvas, {&line, 1}, 2.0, 9.0, 3.5, item.color);
     case LegendMark::dotted:
@@ -78,7 +89,8 @@ void draw_legend(Canvas& canvas, glm::dvec2 at, std::span<const LegendItem> item
   for (std::size_t i = 0; i < items.size(); ++i) {
     const glm::dvec2 left = at + glm::dvec2{places[i].x, (places[i].row + 0.5) * kLegendRow};
     draw_sample(canvas, left, items[i]);
-    canvas.text(left + glm::dvec2{kSampleWidth + kTextGap, 0.0}, items[i].text, small_text());
+    const glm::dvec2 text = left + glm::dvec2{kSampleWidth + kTextGap, 0.0};
+    canvas.text(text, fitted_text(items[i].text, small_text(), canvas.width() - text.x - 4.0), small_text());
   }
 }
 
@@ -86,6 +98,39 @@ void draw_cross(Canvas& canvas, glm::dvec2 at, double reach, double line_width, 
   const std::array<Line, 2> strokes{Line{at - glm::dvec2{reach, reach}, at + glm::dvec2{reach, reach}},
                                     Line{at - glm::dvec2{reach, -reach}, at + glm::dvec2{reach, -reach}}};
   canvas.lines(strokes, line_width, color);
+}
+
+std::span<const double> line_style(std::size_t row) {
+  constexpr std::array<std::span<const double>, 7> kStyles{
+      std::span<const double>{}, theme::kDashed,     theme::kDotted,     theme::kDashDot,
+      theme::kLongDashed,        theme::kDashDotDot, theme::kShortDashed};
+  return kStyles[row % kStyles.size()];
+}
+
+void draw_marker(Canvas& canvas, glm::dvec2 at, double radius, int row, std::uint32_t color) {
+  constexpr int kShapes = 4;
+  const auto fill = [&](double r, std::uint32_t with) {
+    if (row % kShapes == 0) return canvas.disc(at, r, with);
+    const int corners = row % kShapes == 3 ? 3 : 4;
+    const double first = row % kShapes == 1 ? 0.25 * M_PI : -0.5 * M_PI;
+    std::vector<glm::dvec2> outline;
+    for (int k = 0; k < corners; ++k)
+      outline.push_back(at + base::rotate(first + 2.0 * M_PI * k / corners, {1.2 * r, 0.0}));
+    canvas.polygon(outline, with);
+  };
+  fill(radius, color);
+  if (row / kShapes % 2 == 1) fill(0.55 * radius, theme::kWhite);
+}
+
+void draw_hatching(Canvas& canvas, glm::dvec2 low, glm::dvec2 high) {
+  constexpr double kApart = 9.0;
+  std::vector<Line> strokes;
+  const glm::dvec2 size = high - low;
+  for (double x = kApart; x < size.x + size.y; x += kApart) {  // from the left or lower side up to the right
+    const double from = std::max(0.0, x - size.y), to = std::min(x, size.x);
+    strokes.push_back({{low.x + from, low.y + x - from}, {low.x + to, low.y + x - to}});
+  }
+  canvas.lines(strokes, theme::kHairline, theme::kNoReading);
 }
 
 void draw_signal(Canvas& canvas, glm::dvec2 at, double radius, LegendMark mark, std::uint32_t color) {

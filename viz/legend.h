@@ -26,7 +26,8 @@ enum class LegendMark {
   hollow_square,
   hollow_diamond,
   outlined_dot,
-  crossed_dot
+  crossed_dot,
+  hatched  ///< where nothing was measured
 };
 
 struct LegendItem {
@@ -34,6 +35,8 @@ struct LegendItem {
   std::uint32_t color = theme::kBlack;
   std::string text;
   std::uint32_t edge = theme::kNone;  ///< outline of a block; alpha 0: none
+  std::span<const double> dash = {};  ///< of a line; empty: solid
+  int row = -1;                       ///< of a line with a marker (`draw_marker`); -1: without
 };
 
 /// The style of all small text beside a figure.
@@ -57,6 +60,15 @@ void draw_cross(Canvas& canvas, glm::dvec2 at, double reach, double line_width, 
 
 /// The mark of a traffic light, with a dark outline. @param radius [px] of the dot; all have its area
 void draw_signal(Canvas& canvas, glm::dvec2 at, double radius, LegendMark mark, std::uint32_t color);
+
+/// Dashes of curve `row` [px]: solid, dashed, dotted and so on, in turn. Empty: solid.
+std::span<const double> line_style(std::size_t row);
+
+/// The point of curve `row` on its line: a disc, a square, a diamond, a triangle, and the same hollow, in turn.
+void draw_marker(Canvas& canvas, glm::dvec2 at, double radius, int row, std::uint32_t color);
+
+/// Diagonal lines over a box.
+void draw_hatching(Canvas& canvas, glm::dvec2 low, glm::dvec2 high);
 
 /// A polyline in dashes. @param on, off [px] lengths of dash and gap
 void draw_dashes(Canvas& canvas, std::span<const Line> lines, double line_width, double on, double off,

@@ -7,8 +7,8 @@
 #include "viz/color.h"
 #include "viz/heading.h"
 #include "viz/legend.h"
+#include "viz/scales.h"
 #include "viz/signal_layer.h"
-#include "viz/ticks.h"
 
 namespace sf::viz {
 namespace {
@@ -17,7 +17,6 @@ using world::LightState;
 
 // [px]
 constexpr int kOwnWidth = 1600;
-constexpr double kSide = 26.0;
 constexpr double kRow = 34.0;
 constexpr double kBar = 22.0;  ///< height of a bar of red
 constexpr double kBelow = 76.0;
@@ -55,13 +54,13 @@ void draw_times(Canvas& canvas, const PixelBox& plot, double from, double to) {
   TextStyle style = small_text();
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  const Ticks ticks = make_ticks(from, to, 110.0 / (plot.x_max - plot.x_min) * (to - from));
+  const Ticks ticks = ticks_across(from, to, plot.x_max - plot.x_min);
   for (const double time : ticks.at) {
     const double x = crisp(plot.x_min + (time - from) / (to - from) * (plot.x_max - plot.x_min));
     canvas.line({x, plot.y_min + 0.0}, {x, plot.y_max + 0.0}, theme::kHairline, theme::kGridLine);
-    canvas.text({x, plot.y_max + 9.0}, tick_text(time, ticks.decimals), style);
+    draw_label_across(canvas, {x, plot.y_max + 9.0}, tick_text(time, ticks));
   }
-  canvas.text({0.5 * (plot.x_min + plot.x_max), plot.y_max + 36.0}, "time [s]", style);
+  canvas.text({0.5 * (plot.x_min + plot.x_max), plot.y_max + 36.0}, axis_name("time [s]", ticks.exponent), style);
 }
 
 std::vector<LegendItem> legend_of(std::span<const LightRow> rows) {
@@ -77,32 +76,34 @@ std::vector<LegendItem> legend_of(std::span<const LightRow> rows) {
 
 void draw_light_states(std::span<const LightRow> rows, const std::string& subtitle, const std::string& path,
                        const Page& page) {
-  const int width = page_pixels(page.width, kOwnWidth);
+  const int width = page_pixels(page, page.width, kOwnWidth);
+  const double side = page_edge(page);
   double from = HUGE_VAL, to = -HUGE_VAL, left = 0.0;
   for (const LightRow& row : rows) {
     left = std::max(left, text_size(row.name, small_text()).x);
     for (const LightSpan& span : row.spans) from = std::min(from, span.from), to = std::max(to, span.to);
   }
   if (!(to > from)) from = std::isfinite(from) ? from - 0.5 : 0.0, to = from + 1.0;
-  left = kSide + std::min(left, 0.4 * width) + 12.0;
-  const Heading heading = make_heading("Traffic lights", subtitle, width - left - kSide, page);
-  const PixelBox plot{static_cast<int>(left), static_cast<int>(heading.height), width - static_cast<int>(kSide),
+  left = side + std::min(left, 0.4 * width) + 12.0;
+  const Heading heading = make_heading("Traffic lights", subtitle, width - left - side, page);
+  const PixelBox plot{static_cast<int>(left), static_cast<int>(heading.height), width - static_cast<int>(side),
                       static_cast<int>(heading.height + kRow * static_cast<double>(rows.size()))};
   const std::vector<LegendItem> legend = legend_of(rows);
-  const auto places = place_legend(legend, plot.x_max - plot.x_min);
+  const double legend_at = legend_left(page, plot.x_min);
+  const auto places = place_legend(legend, plot.x_max - legend_at);
   const int legend_rows = places.empty() ? 0 : places.back().row + 1;
-  Canvas canvas(width, static_cast<int>(plot.y_max + kBelow + legend_rows * kLegendRow + kSide), theme::kWhite);
+  Canvas canvas(width, static_cast<int>(plot.y_max + kBelow + legend_rows * kLegendRow + side), theme::kWhite);
   draw_heading(canvas, left, heading);
   draw_times(canvas, plot, from, to);
   TextStyle style = small_text();
   style.across = Anchor::end;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double y = plot.y_min + kRow * (static_cast<double>(i) + 0.5);
-    canvas.text({left - 10.0, y}, rows[i].name, style);
+    canvas.text({left - 10.0, y}, fitted_text(rows[i].name, style, left - side - 10.0), style);
     const auto x = [&](double time) { return plot.x_min + (time - from) / (to - from) * (plot.x_max - plot.x_min); };
     for (const LightSpan& span : rows[i].spans) draw_span(canvas, x(span.from), x(span.to), y, span.state);
   }
-  draw_legend(canvas, {plot.x_min + 0.0, plot.y_max + kBelow}, legend, places);
+  draw_legend(canvas, {legend_at, plot.y_max + kBelow}, legend, places);
   save_picture(canvas.drawing(), path, page);
 }
 

@@ -11,8 +11,8 @@
 #include "viz/heading.h"
 #include "viz/legend.h"
 #include "viz/map_cells.h"
+#include "viz/scales.h"
 #include "viz/theme.h"
-#include "viz/ticks.h"
 
 namespace sf::viz {
 
@@ -24,8 +24,8 @@ constexpr std::size_t kNamedPlaces = 7;
 constexpr int kPitch = 5;  // a cell of 4 and a line of 1
 constexpr std::int64_t kMaxWithGrid = 1600;
 constexpr double kLongestMap = 8000.0;
-constexpr double kMapLeft = 86.0;
-constexpr double kMapRight = 40.0;
+constexpr double kMapLeft = 60.0;    // with the page's edge: labels and name of the axis
+constexpr double kMapRight = 14.0;   // with the page's edge
 constexpr double kMapLabels = 70.0;  // below the map
 constexpr double kNarrowestMap = 640.0;
 
@@ -39,43 +39,48 @@ struct Layout {
   double height = 0.0;
   std::vector<LegendPlace> legend;
   Heading heading;
+  double left = 0.0, right = 0.0;  ///< [px] beside the map
 };
 
 Layout lay_out(const maps::GridGeometry& geometry, std::span<const LegendItem> legend, const MapFigure& figure,
                const std::string& subtitle, const Page& page) {
   Layout l;
+  l.left = kMapLeft + page_edge(page);
+  l.right = kMapRight + page_edge(page);
   const std::int64_t longest = std::max(maps::columns(geometry), maps::rows(geometry));
-  l.grid = longest <= kMaxWithGrid;
-  if (!l.grid) l.scale = std::min(static_cast<double>(kPitch), kLongestMap / static_cast<double>(longest));
-  const double narrowest = page_pixels(page.width, static_cast<int>(kNarrowestMap));
+  l.grid = longest <= kMaxWithGrid && page.map_colors == MapColors::thesis;
+  if (longest > kMaxWithGrid)
+    l.scale = std::min(static_cast<double>(kPitch), kLongestMap / static_cast<double>(longest));
+  const double narrowest = page_pixels(page, page.width, static_cast<int>(kNarrowestMap));
   if (page.width > 0.0) {
-    const double room = page.height > 0.0 ? page_pixels(page.height, 0) - kMapLabels - 3.0 * kLegendRow : HUGE_VAL;
-    l.scale = std::min((narrowest - kMapLeft - kMapRight - 1.0) / static_cast<double>(maps::columns(geometry)),
+    const double room =
+        page.height > 0.0 ? page_pixels(page, page.height, 0) - kMapLabels - 3.0 * kLegendRow : HUGE_VAL;
+    l.scale = std::min((narrowest - l.left - l.right - 1.0) / static_cast<double>(maps::columns(geometry)),
                        std::max(room, 100.0) / static_cast<double>(maps::rows(geometry)));
     l.grid = false;
   }
   const double line = l.grid ? 1.0 : 0.0;
   const double wide = std::ceil(l.scale * static_cast<double>(maps::columns(geometry))) + line;
   const double high = std::ceil(l.scale * static_cast<double>(maps::rows(geometry))) + line;
-  l.width = std::max(narrowest, kMapLeft + wide + kMapRight);
-  l.heading = make_heading(figure.title, subtitle, l.width - 2.0 * kMapRight, page);
-  l.low = {std::floor(kMapLeft + 0.5 * (l.width - kMapLeft - kMapRight - wide)), std::ceil(l.heading.height)};
+  l.width = std::max(narrowest, l.left + wide + l.right);
+  l.heading = make_heading(figure.title, subtitle, l.width - 2.0 * l.right, page);
+  l.low = {std::floor(l.left + 0.5 * (l.width - l.left - l.right - wide)), std::ceil(l.heading.height)};
   l.high = l.low + glm::dvec2{wide, high};
-  l.legend = place_legend(legend, l.width - 2.0 * kMapRight);
+  l.legend = place_legend(legend, l.width - 2.0 * l.right);
   l.height = l.high.y + kMapLabels + kLegendRow * (l.legend.back().row + 1) + 12.0;
   return l;
 }
 
-std::vector<LegendItem> legend_of(const maps::CellCounts& census, const MapFigure& figure) {
-  std::vector<LegendItem> items = state_legend(census);
+std::vector<LegendItem> legend_of(const maps::CellCounts& census, const MapFigure& figure, MapColors colors) {
+  std::vector<LegendItem> items = state_legend(census, colors);
   const std::size_t named = std::min(figure.places.size(), kNamedPlaces);
   for (std::size_t i = 0; i < named; ++i)
     items.push_back({LegendMark::robot, row_color(i + 1, named + 1), figure.places[i].name});
   return items;
 }
 
-void draw_cells(Canvas& canvas, const maps::OccupancyGrid& grid, const Layout& l) {
-  const std::vector<std::uint32_t> pixels = pixels_of(grid);
+void draw_cells(Canvas& canvas, const maps::OccupancyGrid& grid, const Layout& l, MapColors colors) {
+  const std::vector<std::uint32_t> pixels = pixels_of(grid, colors);
   const glm::dvec2 line = l.grid ? glm::dvec2{1.0, 1.0} : glm::dvec2{};
   canvas.image(l.low + line, l.high,
                {static_cast<int>(maps::columns(grid.geometry)), static_cast<int>(maps::rows(grid.geometry)), pixels});
@@ -105,24 +110,24 @@ void draw_axes(Canvas& canvas, const maps::GridGeometry& geometry, const Layout&
   const double right = geometry.left + geometry.cell * static_cast<double>(maps::columns(geometry));
   const double bottom = geometry.top - geometry.cell * static_cast<double>(maps::rows(geometry));
   const double metre = l.scale / geometry.cell;  // [px]
-  const Ticks xs = make_ticks(geometry.left, right, 110.0 / metre);
+  const Ticks xs = ticks_across(geometry.left, right, metre * (right - geometry.left));
   for (const double x : xs.at) {
     const double px = std::floor(pixel(geometry, l, {x, 0.0}).x) + 0.5;
     canvas.line({px, l.high.y + 1.0}, {px, l.high.y + 6.0}, theme::kHairline, theme::kFrame);
-    canvas.text({px, l.high.y + 10.0}, tick_text(x, xs.decimals), style);
+    draw_label_across(canvas, {px, l.high.y + 10.0}, tick_text(x, xs));
   }
   canvas.text({0.5 * (l.low.x + l.high.x), l.high.y + 36.0}, "x [m]", style);
   style.across = Anchor::end;
   style.down = Anchor::middle;
-  const Ticks ys = make_ticks(bottom, geometry.top, 70.0 / metre);
+  const Ticks ys = ticks_up(bottom, geometry.top, metre * (geometry.top - bottom));
   for (const double y : ys.at) {
     const double py = std::floor(pixel(geometry, l, {0.0, y}).y) + 0.5;
     canvas.line({l.low.x - 6.0, py}, {l.low.x - 1.0, py}, theme::kHairline, theme::kFrame);
-    canvas.text({l.low.x - 10.0, py}, tick_text(y, ys.decimals), style);
+    canvas.text({l.low.x - 10.0, py}, tick_text(y, ys), style);
   }
   style.across = Anchor::middle;
   style.upwards = true;
-  canvas.text({l.low.x - 66.0, 0.5 * (l.low.y + l.high.y)}, "y [m]", style);
+  canvas.text({std::max(l.low.x - 66.0, 12.0), 0.5 * (l.low.y + l.high.y)}, "y [m]", style);
 }
 
 void draw_places(Canvas& canvas, const maps::GridGeometry& geometry, const Layout& l, const MapFigure& figure) {
@@ -145,7 +150,7 @@ void draw_places(Canvas& canvas, const maps::GridGeometry& geometry, const Layou
 
 void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& path, const Page& page) {
   const maps::CellCounts census = maps::count(grid);
-  const std::vector<LegendItem> legend = legend_of(census, figure);
+  const std::vector<LegendItem> legend = legend_of(census, figure, page.map_colors);
   const double all = static_cast<double>(census.all());
   const double known = 100.0 * static_cast<double>(census.occupied + census.free) / all;
   const std::string subtitle = fmt::format("{}{}{} x {} cells of {:g} m, {:.1f} % explored", figure.subtitle,
@@ -153,11 +158,11 @@ void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const st
                                            maps::rows(grid.geometry), grid.geometry.cell, known);
   const Layout l = lay_out(grid.geometry, legend, figure, subtitle, page);
   Canvas canvas(static_cast<int>(std::ceil(l.width)), static_cast<int>(std::ceil(l.height)), theme::kWhite);
-  draw_heading(canvas, kMapRight, l.heading);
-  draw_cells(canvas, grid, l);
+  draw_heading(canvas, l.right, l.heading);
+  draw_cells(canvas, grid, l, page.map_colors);
   draw_places(canvas, grid.geometry, l, figure);
   draw_axes(canvas, grid.geometry, l);
-  draw_legend(canvas, {kMapRight, l.high.y + kMapLabels}, legend, l.legend);
+  draw_legend(canvas, {l.right, l.high.y + kMapLabels}, legend, l.legend);
   save_picture(canvas.drawing(), path, page);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// A robot's own map in the style of the thesis (figure 45): cells of 4 x 4 pixels with a grid of one pixel between
-// them, unexplored dark grey, occupied blue, free white.
+// A robot's own map in the colours of viz/occupancy_figure.h; in those of the thesis also in its style (figure 45):
+// cells of 4 x 4 pixels with a grid of one pixel between them.
 
 #include <string>
 #include <vector>

@@ -31,7 +31,7 @@ void draw_cell_borders(Axes& axes, const maps::GridGeometry& geometry) {
   axes.canvas().lines(lines, theme::kHairline, theme::kCellBorder);
 }
 
-FigureOptions options_of(const world::World& world, const maps::OccupancyGrid& grid) {
+FigureOptions options_of(const world::World& world, const maps::OccupancyGrid& grid, const Page& page) {
   const maps::CellCounts cells = maps::count(grid);
   const double explored = 100.0 * static_cast<double>(cells.free + cells.occupied) / static_cast<double>(cells.all());
   FigureOptions options;
@@ -41,8 +41,9 @@ FigureOptions options_of(const world::World& world, const maps::OccupancyGrid& g
                   explored, maps::columns(grid.geometry), maps::rows(grid.geometry), grid.geometry.cell);
   options.extent = extent_of(grid.geometry);
   options.margin = 0.0;
-  options.background = theme::kMapStates[SF_CELL_UNEXPLORED];
-  options.legend = state_legend(cells);
+  options.background = map_states(page.map_colors)[SF_CELL_UNEXPLORED];
+  options.legend = state_legend(cells, page.map_colors);
+  options.page = page;
   return options;
 }
 
@@ -50,15 +51,13 @@ FigureOptions options_of(const world::World& world, const maps::OccupancyGrid& g
 
 void draw_occupancy(const world::World& world, const maps::OccupancyGrid& grid, const std::string& path,
                     const Page& page) {
-  FigureOptions options = options_of(world, grid);
-  options.page = page;
-  Axes axes(std::move(options));
+  Axes axes(options_of(world, grid, page));
   const world::Extent e = extent_of(grid.geometry);
-  const std::vector<std::uint32_t> pixels = pixels_of(grid);
+  const std::vector<std::uint32_t> pixels = pixels_of(grid, page.map_colors);
   axes.canvas().image(
       axes.pixel({e.x_min, e.y_max}), axes.pixel({e.x_max, e.y_min}),
       {static_cast<int>(maps::columns(grid.geometry)), static_cast<int>(maps::rows(grid.geometry)), pixels});
-  draw_cell_borders(axes, grid.geometry);
+  if (page.map_colors == MapColors::thesis) draw_cell_borders(axes, grid.geometry);  // free cells of ROS are white
   axes.save(path);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// A map of scans in the colours of Vernier's thesis (Virtual Sensor System, 2010, figure 44): unexplored dark grey,
-// occupied blue, free white.
+// A map of scans in the greys of ROS' map_server: unknown 205, occupied black, free white. Or in the colours of
+// Vernier's thesis (Virtual Sensor System, 2010, figure 44): unknown dark grey, occupied blue, free white.
 
 #include <string>
 

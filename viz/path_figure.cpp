@@ -29,12 +29,12 @@ void draw_middle(Axes& axes, const world::Path& path) {
   draw_dashes(axes.canvas(), lines, 1.4, 9.0, 7.0, theme::kReferencePath);
 }
 
-void draw_track(Axes& axes, const Track& track, std::uint32_t color) {
+void draw_track(Axes& axes, const Track& track, std::uint32_t color, std::span<const double> dash) {
   std::vector<glm::dvec2> points;
   for (const base::Pose& pose : track.poses)
     if (is_finite(pose)) points.push_back(axes.pixel({pose.x, pose.y}));
   if (points.empty()) return;
-  axes.canvas().polyline(points, 2.4, color);
+  axes.canvas().polyline(points, 2.4, color, dash);
   axes.canvas().disc(points.front(), 5.0, theme::kWhite);
   axes.canvas().ring(points.front(), 4.2, 1.6, color);
   axes.canvas().disc(points.back(), 5.0, color);
@@ -44,19 +44,20 @@ void draw_track(Axes& axes, const Track& track, std::uint32_t color) {
 
 void draw_along_paths(const world::World& world, std::span<const Track> tracks, const std::string& title,
                       const std::string& subtitle, const std::string& file, const Page& page) {
-  FigureOptions options{
-      .title = title, .subtitle = subtitle, .extent = extent_of(world, tracks), .legend = road_legend(world)};
+  FigureOptions options{.title = title, .subtitle = subtitle, .extent = extent_of(world, tracks), .page = page};
+  options.legend = road_legend(in_view(world, options));
   if (!world.paths.empty()) options.legend.push_back({LegendMark::dashed, theme::kReferencePath, "middle of the lane"});
   const auto color = [&](std::size_t i) { return tracks[i].color.value_or(row_color(i, tracks.size())); };
+  const auto dash = [&](std::size_t i) { return page.line_styles ? line_style(i) : std::span<const double>(); };
   for (std::size_t i = 0; i < std::min<std::size_t>(tracks.size(), 7); ++i)
-    options.legend.push_back({LegendMark::line, color(i), tracks[i].name});
-  options.page = page;
+    if (std::any_of(tracks[i].poses.begin(), tracks[i].poses.end(), is_finite))
+      options.legend.push_back({LegendMark::line, color(i), tracks[i].name, theme::kNone, dash(i)});
   Axes axes(std::move(options));
   draw_lane_markings(axes, world);
   draw_magnets(axes, world);
   draw_walls(axes, world, WallColors::quiet);
   for (const world::Path& path : world.paths) draw_middle(axes, path);
-  for (std::size_t i = 0; i < tracks.size(); ++i) draw_track(axes, tracks[i], color(i));
+  for (std::size_t i = 0; i < tracks.size(); ++i) draw_track(axes, tracks[i], color(i), dash(i));
   axes.save(file);
 }
 

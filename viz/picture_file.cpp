@@ -28,8 +28,13 @@ std::optional<PictureFormat> format_of(const std::string& path) {
   return std::nullopt;
 }
 
-int page_pixels(double millimetres, int otherwise) {
-  return millimetres > 0.0 ? static_cast<int>(millimetres * kPixelsPerMillimetre) : otherwise;
+int page_pixels(const Page& page, double millimetres, int otherwise) {
+  return static_cast<int>((millimetres > 0.0 ? millimetres * kPixelsPerMillimetre : otherwise) / page_scale(page));
+}
+
+double page_edge(const Page& page) {
+  constexpr int kNarrow = 600;
+  return page.width > 0.0 && page_pixels(page, page.width, 0) < kNarrow ? 12.0 : 26.0;
 }
 
 PixelImage paint_pixels(const Drawing& drawing, double scale) {
@@ -45,13 +50,13 @@ PixelImage paint_pixels(const Drawing& drawing, double scale) {
 
 void save_picture(const Drawing& drawing, const std::string& path, const Page& page) {
   const PictureFormat format = format_of(path).value_or(PictureFormat::png);
-  if (format == PictureFormat::svg) return write_picture(path, to_svg(drawing));
+  if (format == PictureFormat::svg) return write_picture(path, to_svg(drawing, page_scale(page)));
   if (format == PictureFormat::pdf) {
     std::string bytes;
-    SF_CHECK(drawing_backend().pdf(drawing, bytes), "Cairo made no PDF");
+    SF_CHECK(drawing_backend().pdf(drawing, page_scale(page), bytes), "Cairo made no PDF");
     return write_picture(path, bytes);
   }
-  const double scale = page.dpi / kPixelsPerInch;
+  const double scale = page_scale(page) * page.dpi / kPixelsPerInch;
   if (scale * std::max(drawing.width, drawing.height) > kLargestPicture)
     throw base::InputError(path, 0,
                            fmt::format("the picture would be {:.0f} x {:.0f} pixels, more than {:g} along a side; take "

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -152,20 +153,34 @@ void draw_inset(const RoadView& view, const RoadNetwork& network, const Inset& i
 
 // ------------------------------------------------------------------------------------------------- figure
 
-std::vector<LegendItem> legend_of(const RoadNetwork& network) {
-  std::vector<LegendItem> items{{LegendMark::block, theme::kAsphalt, "lane", theme::kLaneEdge}};
+/// @param shown [m] area of the figure: the legend has what is in it
+std::vector<LegendItem> legend_of(const RoadNetwork& network, const Extent& shown) {
+  const auto any = [](const auto& all, auto&& in_view) { return std::any_of(all.begin(), all.end(), in_view); };
+  const auto has = [&](glm::dvec2 a, glm::dvec2 b) { return is_in_view(std::array{a, b}, shown); };
+  std::vector<LegendItem> items;
+  if (any(network.lanes, [&](const auto& l) { return is_in_view(l.centre.points, shown, 0.5 * l.width); }))
+    items.push_back({LegendMark::block, theme::kAsphalt, "lane", theme::kLaneEdge});
   const auto paint = world::lane_markings_of(network);
   const auto painted = [&](std::uint32_t color) {
-    return std::any_of(paint.begin(), paint.end(), [&](const world::LaneMarking& s) { return s.color == color; });
+    return any(paint, [&](const auto& s) { return s.color == color && is_in_view(s.line, shown); });
   };
   if (painted(world::kYellowPaint)) items.push_back({LegendMark::line, world::kYellowPaint, "yellow lines"});
   if (painted(world::kWhitePaint))
     items.push_back({LegendMark::block, world::kWhitePaint, "white lines", theme::kLaneEdge});
-  if (!network.exits.empty()) items.push_back({LegendMark::line, theme::kExit, "exit"});
-  if (!network.stops.empty()) items.push_back({LegendMark::line, theme::kStop, "stop line"});
-  if (!network.checkpoints.empty()) items.push_back({LegendMark::dot, theme::kCheckpoint, "checkpoint and its id"});
-  if (!network.zones.empty()) items.push_back({LegendMark::block, theme::kZone, "zone", theme::kZoneEdge});
-  if (!network.spots.empty()) items.push_back({LegendMark::block, theme::kSpot, "parking spot"});
+  if (any(network.exits, [&](const auto& e) { return is_in_view(exit_curve(network, e).points, shown); }))
+    items.push_back({LegendMark::line, theme::kExit, "exit"});
+  if (any(network.stops, [&](const auto& s) { return has(s.left, s.right); }))
+    items.push_back({LegendMark::line, theme::kStop, "stop line"});
+  if (any(network.checkpoints, [&](const auto& c) { return has(c.p, c.p); }))
+    items.push_back({LegendMark::dot, theme::kCheckpoint, "checkpoint and its id"});
+  const auto in_zone = [&](const world::RoadZone& zone) {
+    std::vector<glm::dvec2> outline;
+    for (const auto& point : zone.perimeter) outline.push_back(point.p);
+    return is_in_view(outline, shown);
+  };
+  if (any(network.zones, in_zone)) items.push_back({LegendMark::block, theme::kZone, "zone", theme::kZoneEdge});
+  if (any(network.spots, [&](const auto& s) { return has(s.entry, s.end); }))
+    items.push_back({LegendMark::block, theme::kSpot, "parking spot"});
   return items;
 }
 
@@ -189,9 +204,9 @@ void draw_roads(const RoadNetwork& network, const std::string& path, const Page&
   options.subtitle = subtitle_of(network);
   options.extent = network.extent;
   options.background = theme::kRoadGround;
-  options.legend = legend_of(network);
   options.long_side = picture_size(network);
   options.page = page;
+  options.legend = legend_of(network, lay_out(options).shown);
   Axes axes(std::move(options));
   const FigureLayout& layout = axes.layout();
   const RoadView view{axes.canvas(), layout.plot, {layout.shown.x_min, layout.shown.y_min}, layout.scale};

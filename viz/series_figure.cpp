@@ -9,8 +9,8 @@
 #include "viz/color.h"
 #include "viz/heading.h"
 #include "viz/legend.h"
+#include "viz/scales.h"
 #include "viz/theme.h"
-#include "viz/ticks.h"
 
 namespace sf::viz {
 namespace {
@@ -18,12 +18,10 @@ namespace {
 constexpr std::size_t kNamed = 7;
 
 // [px]
-constexpr double kSeriesEdge = 26.0;
 constexpr double kPanelTitle = 34.0;      ///< above each plot
 constexpr double kSeriesTicks = 68.0;     ///< labels and the axis' name, below the last plot
 constexpr double kSeriesAxisName = 34.0;  ///< left of the labels
-constexpr double kSmallestTick = 60.0;
-constexpr double kLowestPlot = 120.0;
+constexpr double kLowestPlot = 70.0;
 constexpr double kLoneDot = 2.2;
 constexpr double kSmallestMove = 0.3;  ///< shorter steps of a curve are left out
 
@@ -39,6 +37,7 @@ struct SeriesPlot {
   std::vector<LegendItem> legend;
   std::vector<LegendPlace> legend_at;
   double legend_top = 0.0;
+  std::vector<std::string> y_name;  ///< lines
 
   glm::dvec2 pixel(double t, double value) const {
     return {plot.x_min + (t - time.from) / (time.to - time.from) * (plot.x_max - plot.x_min),
@@ -62,8 +61,10 @@ Span with_zero(Span span) {
 
 Span time_span(const SeriesOptions& options) {
   std::optional<Span> span;
-  for (const Panel& panel : options.panels)
+  for (const Panel& panel : options.panels) {
+    if (panel.map) widen(span, panel.map->times, [](double t) { return std::isfinite(t); });
     for (const Series& series : panel.series) widen(span, series.times, [](double t) { return std::isfinite(t); });
+  }
   if (!span) return {0.0, 1.0};
   if (!(span->to > span->from)) return {span->from - 0.5, span->to + 0.5};
   return options.from_zero ? with_zero(*span) : *span;
@@ -77,36 +78,48 @@ Span value_span(const Panel& panel, bool from_zero) {
   if (panel.from_zero) span->from = std::min(span->from, 0.0);
   if (from_zero) span = with_zero(*span);
   const double size = span->to - span->from;
+  if (panel.whole && size == 0.0) return {span->from - 0.1, span->from + 1.1};  // two integers
   const double pad = size > 0.0 ? 0.06 * size : std::max(0.05 * std::abs(span->from), 1e-12);
   if ((from_zero || panel.from_zero) && span->from == 0.0) return {0.0, span->to + pad};
   return {span->from - pad, span->to + pad};
 }
 
-/// Rows of the named series: all, or seven from the first to the last.
-std::vector<std::size_t> named_rows(std::size_t count) {
-  std::vector<std::size_t> rows;
-  for (std::size_t k = 0; k < std::min(count, kNamed); ++k)
-    rows.push_back(count <= kNamed ? k : k * (count - 1) / (kNamed - 1));
-  return rows;
+bool has_value(const Series& series) {
+  return std::any_of(series.values.begin(), series.values.end(), [](double v) { return std::isfinite(v); });
 }
 
-/// [px] smallest distance of labels along an axis of values.
-double value_step(double height) { return std::min(kSmallestTick, height / 3.0); }
-
-double widest_label(const Span& shown, double height) {
-  const Ticks ticks = make_ticks(shown.from, shown.to, value_step(height) / height * (shown.to - shown.from));
-  double widest = 0.0;
-  for (const double value : ticks.at)
-    widest = std::max(widest, text_size(tick_text(value, ticks.decimals), small_text()).x);
-  return widest;
+/// Rows of the named series: all, or seven from the first to the last.
+std::vector<std::size_t> named_rows(const Panel& panel) {
+  std::vector<std::size_t> drawn, rows;
+  for (std::size_t row = 0; row < panel.series.size(); ++row)
+    if (has_value(panel.series[row])) drawn.push_back(row);
+  const std::size_t count = drawn.size();
+  for (std::size_t k = 0; k < std::min(count, kNamed); ++k)
+    rows.push_back(drawn[count <= kNamed ? k : k * (count - 1) / (kNamed - 1)]);
+  return rows;
 }
 
 double plot_height(std::size_t panels) { return panels == 1 ? 620.0 : panels == 2 ? 420.0 : 300.0; }
 
+std::span<const double> style_of(std::size_t row, const Page& page) {
+  return page.line_styles ? line_style(row) : std::span<const double>();
+}
+
+/// What the legend of a panel shows.
+std::vector<LegendItem> legend_of(const Panel& panel, const Span& time, const Page& page) {
+  if (panel.map) return heat_legend(*panel.map, time.from, time.to);
+  std::vector<LegendItem> items;
+  for (const std::size_t row : named_rows(panel))
+    items.push_back({LegendMark::line, row_color(row, panel.series.size()), panel.series[row].name, theme::kNone,
+                     style_of(row, page)});
+  return items;
+}
+
 /// One legend below both then suffices.
-bool same_names(const Panel& a, const Panel& b) {
-  return std::equal(a.series.begin(), a.series.end(), b.series.begin(), b.series.end(),
-                    [](const Series& one, const Series& other) { return one.name == other.name; });
+bool same_legend(const std::vector<LegendItem>& a, const std::vector<LegendItem>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const LegendItem& one, const LegendItem& other) {
+    return one.sample == other.sample && one.color == other.color && one.text == other.text;
+  });
 }
 
 /// The picture's width, its heading, and its panels.
@@ -116,77 +129,135 @@ struct SeriesLayout {
   std::vector<SeriesPlot> places;
 };
 
+/// The lines of a panel's name of its axis. The gap below a plot is room for it, too.
+std::vector<std::string> y_lines(const Panel& panel, const Span& shown, double height) {
+  const int exponent = panel.map ? 0 : ticks_up(shown.from, shown.to, height, panel.whole).exponent;
+  return name_lines(axis_name(panel.y_name, exponent), height + 24.0);
+}
+
 /// [px] left end of the plots, right of the widest label.
-double plots_left(const SeriesOptions& options, double height) {
+double plots_left(const SeriesOptions& options, double height, double edge) {
   double widest = 0.0;
-  for (const Panel& panel : options.panels)
-    widest = std::max(widest, widest_label(value_span(panel, options.from_zero), height));
-  return widest + kSeriesEdge + kSeriesAxisName + 14.0;
-}
-
-/// [px] height of one plot on a page of a given height.
-double plot_height(const SeriesOptions& options, const Page& page, double heading) {
-  if (!(page.height > 0.0)) return plot_height(options.panels.size());
-  const double room = page_pixels(page.height, 0) - heading - kSeriesTicks - kSeriesEdge;
-  return std::max(kLowestPlot, room / static_cast<double>(options.panels.size()) - kPanelTitle - kLegendRow - 34.0);
-}
-
-SeriesLayout lay_out(const SeriesOptions& options, const Page& page) {
-  SeriesLayout layout;
-  layout.width = page_pixels(page.width, options.width);
-  double left = plots_left(options, plot_height(options.panels.size()));
-  layout.heading = make_heading(options.title, options.subtitle, layout.width - left - kSeriesEdge, page);
-  const double height = plot_height(options, page, layout.heading.height);
-  left = plots_left(options, height);
-
-  std::vector<SeriesPlot>& places = layout.places;
-  double top = layout.heading.height;
+  std::size_t lines = 1;
   for (const Panel& panel : options.panels) {
+    const Span span = value_span(panel, options.from_zero);
+    lines = std::max(lines, y_lines(panel, span, height).size());
+    if (!panel.map) widest = std::max(widest, widest_label(ticks_up(span.from, span.to, height, panel.whole)));
+    for (const std::string& row : panel.map ? panel.map->rows : std::vector<std::string>())
+      widest = std::max(widest, text_size(row, small_text()).x);
+  }
+  return widest + edge + kSeriesAxisName + kNameLine * (static_cast<double>(lines) - 1.0) + 14.0;
+}
+
+/// [px] right of the plots.
+double plots_right(const SeriesOptions& options, double height, double edge) {
+  double room = edge;
+  for (const Panel& panel : options.panels)
+    if (panel.map) room = std::max(room, edge + bar_room(*panel.map, height) - 12.0);
+  return room;
+}
+
+/// [px] height of one plot: of the page's height, or in proportion to a narrow page, as far as a column is high.
+/// @param width of the plots
+double plot_height(const SeriesOptions& options, const Page& page, double heading, double width) {
+  const auto panels = static_cast<double>(options.panels.size());
+  const auto part_of = [&](double millimetres) {
+    const double room = page_pixels(page, millimetres, 0) - heading - kSeriesTicks - page_edge(page);
+    return std::max(kLowestPlot, room / panels - kPanelTitle - kLegendRow - 34.0);
+  };
+  if (page.height > 0.0) return part_of(page.height);
+  const double own = plot_height(options.panels.size());
+  if (!(page.width > 0.0)) return own;
+  return std::min({own, std::max(0.62 * width, 2.0 * kLowestPlot), part_of(kLargestColumn)});
+}
+
+/// [px] height of the picture.
+double picture_height(const SeriesLayout& layout, double edge) {
+  const SeriesPlot& last = layout.places.back();
+  const int rows = last.legend_at.empty() ? 0 : last.legend_at.back().row + 1;
+  return last.legend_top + rows * kLegendRow + edge;
+}
+
+/// Places the panels, each with a plot of `height` [px] from `left` to `right`.
+void place_panels(SeriesLayout& layout, const SeriesOptions& options, const Page& page, double height) {
+  const double edge = page_edge(page), left = plots_left(options, height, edge);
+  const double right = layout.width - plots_right(options, height, edge);
+  const Span time = time_span(options);
+  std::vector<std::vector<LegendItem>> legends;
+  for (const Panel& panel : options.panels) legends.push_back(legend_of(panel, time, page));
+  std::vector<SeriesPlot>& places = layout.places;
+  places.clear();
+  double top = layout.heading.height;
+  for (std::size_t i = 0; i < options.panels.size(); ++i) {
     SeriesPlot& place = places.emplace_back();
-    place.time = time_span(options);
-    place.shown = value_span(panel, options.from_zero);
-    if (!panel.title.empty()) top += kPanelTitle;
-    place.plot = {static_cast<int>(left), static_cast<int>(top), layout.width - static_cast<int>(kSeriesEdge),
+    place.time = time;
+    place.shown = value_span(options.panels[i], options.from_zero);
+    if (!options.panels[i].title.empty()) top += kPanelTitle;
+    place.plot = {static_cast<int>(left), static_cast<int>(top), static_cast<int>(right),
                   static_cast<int>(top + height)};
-    const bool last = &panel == &options.panels.back();
-    for (const std::size_t row : named_rows(panel.series.size()))
-      if (last || !same_names(panel, *(&panel + 1)))
-        place.legend.push_back({LegendMark::line, row_color(row, panel.series.size()), panel.series[row].name});
-    place.legend_at = place_legend(place.legend, place.plot.x_max - place.plot.x_min);
+    const bool last = i + 1 == options.panels.size();
+    if (last || !same_legend(legends[i], legends[i + 1])) place.legend = legends[i];
+    place.y_name = y_lines(options.panels[i], place.shown, height);
+    place.legend_at = place_legend(place.legend, layout.width - edge - legend_left(page, left));
     place.legend_top = place.plot.y_max + (last ? kSeriesTicks + 8.0 : 20.0);
     const int rows = place.legend_at.empty() ? 0 : place.legend_at.back().row + 1;
     top = place.legend_top + rows * kLegendRow + 14.0;
   }
+}
+
+SeriesLayout lay_out(const SeriesOptions& options, const Page& page) {
+  const double edge = page_edge(page);
+  SeriesLayout layout;
+  layout.width = page_pixels(page, page.width, options.width);
+  double height = plot_height(options.panels.size());
+  for (int round = 0; round < 3; ++round) {  // labels, heading and plots depend on each other
+    const double left = plots_left(options, height, edge), right = layout.width - plots_right(options, height, edge);
+    layout.heading = make_heading(options.title, options.subtitle, layout.width - legend_left(page, left) - edge, page);
+    height = plot_height(options, page, layout.heading.height, right - left);
+  }
+  place_panels(layout, options, page, height);
+  if (!(page.height > 0.0)) return layout;
+  // Legends and titles have their heights now.
+  const double more = page_pixels(page, page.height, 0) - picture_height(layout, edge);
+  height = std::max(kLowestPlot, height + std::floor(more / static_cast<double>(options.panels.size())));
+  place_panels(layout, options, page, height);
   return layout;
 }
 
-Ticks ticks_of(const Span& span, double pixels, double smallest) {
-  return make_ticks(span.from, span.to, smallest / pixels * (span.to - span.from));
-}
-
-/// @param x_name name of the axis; empty: neither name nor labels
-void draw_series_scales(Canvas& canvas, const SeriesPlot& at, const std::string& x_name) {
+void draw_values(Canvas& canvas, const Panel& panel, const SeriesPlot& at) {
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
   style.across = Anchor::end;
-  const Ticks values = ticks_of(at.shown, p.y_max - p.y_min, value_step(p.y_max - p.y_min));
+  const Ticks values = ticks_up(at.shown.from, at.shown.to, p.y_max - p.y_min, panel.whole);
   for (const double value : values.at) {
     const double y = crisp(at.pixel(at.time.from, value).y);
     canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, theme::kHairline, theme::kGridLine);
-    canvas.text({p.x_min - 11.0, y}, tick_text(value, values.decimals), style);
+    canvas.text({p.x_min - 11.0, y}, tick_text(value, values), style);
   }
-  style.across = Anchor::middle;
-  style.down = Anchor::start;
-  const Ticks times = ticks_of(at.time, p.x_max - p.x_min, 110.0);
-  for (const double time : times.at) {
-    const double x = crisp(at.pixel(time, at.shown.from).x);
-    canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, theme::kHairline, theme::kGridLine);
-    if (!x_name.empty()) canvas.text({x, p.y_max + 11.0}, tick_text(time, times.decimals), style);
-  }
-  if (!x_name.empty()) canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, x_name, style);
 }
 
-void draw_curve(Canvas& canvas, const SeriesPlot& at, const Series& series, std::uint32_t color) {
+/// @param x_name name of the axis; empty: neither name nor labels
+void draw_times(Canvas& canvas, const SeriesPlot& at, const std::string& x_name, bool grid) {
+  const PixelBox& p = at.plot;
+  TextStyle style = small_text();
+  style.across = Anchor::middle;
+  style.down = Anchor::start;
+  const Ticks times = ticks_across(at.time.from, at.time.to, p.x_max - p.x_min);
+  for (const double time : times.at) {
+    const double x = crisp(at.pixel(time, at.shown.from).x);
+    if (grid)
+      canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, theme::kHairline, theme::kGridLine);
+    else
+      canvas.line({x, p.y_max + 1.0}, {x, p.y_max + 6.0}, theme::kHairline, theme::kFrame);
+    if (!x_name.empty()) draw_label_across(canvas, {x, p.y_max + 11.0}, tick_text(time, times));
+  }
+  if (!x_name.empty())
+    canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, axis_name(x_name, times.exponent), style);
+}
+
+/// @param steps each value lasts until the next one
+void draw_curve(Canvas& canvas, const SeriesPlot& at, const Series& series, bool steps, std::uint32_t color,
+                std::span<const double> dash) {
   std::vector<Line> lines;
   std::optional<glm::dvec2> last;
   const auto known = [&](std::size_t i) {
@@ -200,30 +271,36 @@ void draw_curve(Canvas& canvas, const SeriesPlot& at, const Series& series, std:
     const glm::dvec2 here = at.pixel(series.times[i], series.values[i]);
     if (!last && !known(i + 1)) canvas.disc(here, kLoneDot, color);
     if (last && length(here - *last) < kSmallestMove && known(i + 1)) continue;
-    lines.push_back({last.value_or(here), here});
+    if (steps && last) {
+      const glm::dvec2 corner{here.x, last->y};
+      lines.push_back({*last, corner});
+      if (corner.y != here.y) lines.push_back({corner, here});
+    } else {
+      lines.push_back({last.value_or(here), here});
+    }
     last = here;
   }
-  canvas.lines(lines, theme::kCurve, color);
+  canvas.lines(lines, theme::kCurve, color, dash);
 }
 
-void draw_panel(Canvas& canvas, const Panel& panel, const SeriesPlot& at, const std::string& x_name) {
-  draw_series_scales(canvas, at, x_name);
+void draw_panel(Canvas& canvas, const Panel& panel, const SeriesPlot& at, const std::string& x_name, const Page& page) {
+  if (!panel.map) draw_values(canvas, panel, at);
+  draw_times(canvas, at, x_name, !panel.map);
+  if (panel.map) draw_heat_map(canvas, *panel.map, at.plot, at.time.from, at.time.to);
   canvas.clip(at.plot);
   for (std::size_t i = 0; i < panel.series.size(); ++i)
-    draw_curve(canvas, at, panel.series[i], row_color(i, panel.series.size()));
+    draw_curve(canvas, at, panel.series[i], panel.whole, row_color(i, panel.series.size()), style_of(i, page));
   canvas.unclip();
 
-  const double x0 = at.plot.x_min - 0.5, y0 = at.plot.y_min - 0.5, x1 = at.plot.x_max + 0.5, y1 = at.plot.y_max + 0.5;
-  const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
-  canvas.polyline(corners, theme::kHairline, theme::kFrame);
+  draw_frame(canvas, at.plot);
   TextStyle style = small_text();
   style.bold = true;
-  canvas.text({x0, y0 - 0.5 * kPanelTitle}, panel.title, style);
-  style.bold = false;
-  style.across = Anchor::middle;
-  style.upwards = true;
-  canvas.text({38.0, 0.5 * (y0 + y1)}, panel.y_name, style);
-  draw_legend(canvas, {at.plot.x_min + 0.0, at.legend_top}, at.legend, at.legend_at);
+  const double room = canvas.width() - page_edge(page) - at.plot.x_min;
+  const double left = text_size(panel.title, style).x <= room ? at.plot.x_min - 0.5 : page_edge(page);
+  canvas.text({left, at.plot.y_min - 0.5 - 0.5 * kPanelTitle},
+              fitted_text(panel.title, style, canvas.width() - page_edge(page) - left), style);
+  draw_name_up(canvas, page_edge(page), 0.5 * (at.plot.y_min + at.plot.y_max), at.y_name);
+  draw_legend(canvas, {legend_left(page, at.plot.x_min), at.legend_top}, at.legend, at.legend_at);
 }
 
 }  // namespace
@@ -240,11 +317,10 @@ void draw_series(const SeriesOptions& options, const std::string& path, const Pa
   const SeriesLayout layout = lay_out(options, page);
   const std::vector<SeriesPlot>& places = layout.places;
   const SeriesPlot& last = places.back();
-  const int rows = last.legend_at.empty() ? 0 : last.legend_at.back().row + 1;
-  Canvas canvas(layout.width, static_cast<int>(last.legend_top + rows * kLegendRow + kSeriesEdge), theme::kWhite);
-  draw_heading(canvas, last.plot.x_min, layout.heading);
+  Canvas canvas(layout.width, static_cast<int>(picture_height(layout, page_edge(page))), theme::kWhite);
+  draw_heading(canvas, legend_left(page, last.plot.x_min), layout.heading);
   for (std::size_t i = 0; i < places.size(); ++i)
-    draw_panel(canvas, options.panels[i], places[i], i + 1 == places.size() ? options.x_name : "");
+    draw_panel(canvas, options.panels[i], places[i], i + 1 == places.size() ? options.x_name : "", page);
   save_picture(canvas.drawing(), path, page);
 }
 

@@ -2,10 +2,12 @@
 // Values over time: panels one below another, over one axis of seconds (or of another quantity).
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "viz/heat_map.h"
 #include "viz/picture_file.h"
 
 namespace sf::viz {
@@ -21,7 +23,9 @@ struct Panel {
   std::string title;   ///< above its plot; may be empty
   std::string y_name;  ///< name of its axis with the unit: `distance [m]`
   std::vector<Series> series;
-  bool from_zero = false;  ///< its axis begins at 0 in any case, so that small differences look small
+  bool from_zero = false;      ///< its axis begins at 0 in any case, so that small differences look small
+  bool whole = false;          ///< values are integers, which last until the next one: steps, and integer ticks
+  std::optional<HeatMap> map;  ///< in place of curves; y_name is then the name of its rows
 };
 
 struct SeriesOptions {
@@ -33,8 +37,9 @@ struct SeriesOptions {
   int width = 1600;        ///< [px] of the picture, in [600, 8000]
 };
 
-/// Draws each series in the colour of its row. Up to seven are named below their panel; of more, seven from the first
-/// to the last. Neighbouring panels with the same names have one legend, below the last of them.
+/// Draws each series in the colour and the dashes of its row. Up to seven are named below their panel; of more, seven
+/// from the first to the last; those without a value are not. Neighbouring panels with the same names have one legend,
+/// below the last of them. Plots are lower where the page is narrow, or has a height.
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_series(const SeriesOptions& options, const std::string& path, const Page& page = {});
 

@@ -75,8 +75,10 @@ struct SvgWriter {
     out += fmt::format("<g clip-path=\"url(#c{})\">\n", clips);
   }
   void operator()(const Stroke& s) {
-    out += fmt::format("<path d=\"{}\"{} stroke-width=\"{}\"/>\n", path_data(s.paths, false), paint("stroke", s.color),
+    out += fmt::format("<path d=\"{}\"{} stroke-width=\"{}\"", path_data(s.paths, false), paint("stroke", s.color),
                        number(s.width));
+    if (!s.dash.empty()) out += fmt::format(" stroke-dasharray=\"{:g}\"", fmt::join(s.dash, " "));
+    out += "/>\n";
   }
   void operator()(const Fill& f) {
     out += fmt::format("<path d=\"{}\"{} stroke=\"none\"/>\n", path_data(f.paths, true), paint("fill", f.color));
@@ -104,15 +106,15 @@ struct SvgWriter {
 
 }  // namespace
 
-std::string to_svg(const Drawing& drawing) {
+std::string to_svg(const Drawing& drawing, double scale) {
   SvgWriter writer;
   writer.out = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{2:.2f}mm\" height=\"{3:.2f}mm\" viewBox=\"0 0 {0} {1}\" "
       "fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" font-family=\"'DejaVu Sans', sans-serif\" "
       "xml:space=\"preserve\">\n<rect width=\"{0}\" height=\"{1}\"{4}/>\n",
-      drawing.width, drawing.height, drawing.width / kPixelsPerMillimetre, drawing.height / kPixelsPerMillimetre,
-      paint("fill", drawing.background));
+      drawing.width, drawing.height, scale * drawing.width / kPixelsPerMillimetre,
+      scale * drawing.height / kPixelsPerMillimetre, paint("fill", drawing.background));
   for (const Shape& shape : drawing.shapes) std::visit(writer, shape);
   return writer.out + (writer.clips > 0 ? "</g>\n</svg>\n" : "</svg>\n");
 }

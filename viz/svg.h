@@ -7,7 +7,7 @@
 
 namespace sf::viz {
 
-/// An SVG 1.1 document of the drawing's size on paper.
-std::string to_svg(const Drawing& drawing);
+/// An SVG 1.1 document of the drawing's size on paper. @param scale of that size: 1 is 180 layout pixels per inch
+std::string to_svg(const Drawing& drawing, double scale = 1.0);
 
 }  // namespace sf::viz

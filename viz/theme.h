@@ -27,6 +27,7 @@ inline constexpr std::uint32_t kBlue = 0xFF0072B2u;
 inline constexpr std::uint32_t kVermillion = 0xFFD55E00u;
 inline constexpr std::array<std::uint32_t, 7> kSeries{kBlue,       kVermillion, 0xFF009E73u, 0xFFCC79A7u,
                                                       0xFFE69F00u, 0xFF56B4E9u, kBlack};
+inline constexpr std::uint32_t kNoReading = 0xFF9A9A9Au;  ///< hatching where nothing was measured
 inline constexpr std::uint32_t kDominated = 0xFF909090u;  ///< modes that are not Pareto-optimal
 inline constexpr std::uint32_t kReferencePath = kNeutral;
 inline constexpr std::uint32_t kMapInk = 0xFF15181Cu;   ///< marks on a colour map
@@ -70,7 +71,8 @@ inline constexpr std::uint32_t kStop = 0xFFD7191Cu;
 inline constexpr std::uint32_t kCheckpoint = 0xFF7A1FA2u;
 
 // Occupancy maps: unknown, occupied, free, and conflict where maps contradict each other
-inline constexpr std::array<std::uint32_t, 4> kMapStates{0xFF474B50u, 0xFF1748D1u, 0xFFFFFFFFu, 0xFFFF00FFu};
+inline constexpr std::array<std::uint32_t, 4> kThesisMapStates{0xFF474B50u, 0xFF1748D1u, 0xFFFFFFFFu, 0xFFFF00FFu};
+inline constexpr std::array<std::uint32_t, 4> kRosMapStates{0xFFCDCDCDu, 0xFF000000u, 0xFFFEFEFEu, 0xFFFF00FFu};
 inline constexpr std::uint32_t kMapGrid = 0xFFA9AEB5u;
 inline constexpr std::uint32_t kCellBorder = 0xFF8A8F96u;
 
@@ -79,5 +81,13 @@ inline constexpr double kHairline = 1.0;  ///< frames, ticks, grids
 inline constexpr double kOutline = 1.5;
 inline constexpr double kCurve = 2.0;
 inline constexpr double kBold = 2.5;
+
+/// Dashes of curves by their row: on, off, ... [px]; with round ends, so each is visible a line's width longer.
+inline constexpr double kDashed[] = {11.0, 7.0};
+inline constexpr double kDotted[] = {0.1, 5.0};
+inline constexpr double kDashDot[] = {13.0, 6.0, 0.1, 6.0};
+inline constexpr double kLongDashed[] = {20.0, 8.0};
+inline constexpr double kDashDotDot[] = {11.0, 5.0, 0.1, 5.0, 0.1, 5.0};
+inline constexpr double kShortDashed[] = {5.0, 6.0};
 
 }  // namespace sf::viz::theme

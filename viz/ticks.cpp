@@ -4,8 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace sf::viz {
+namespace {
+
+/// Digits after the point that distinguish multiples of a round step.
+int decimals_of(double step) { return std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9))); }
+
+}  // namespace
 
 double round_down(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
@@ -17,16 +24,36 @@ Ticks make_ticks(double from, double to, double smallest_step) {
   Ticks ticks;
   ticks.step = round_down(smallest_step);
   while (ticks.step < smallest_step * (1.0 - 1e-9)) ticks.step = round_down(ticks.step * 2.5);
-  ticks.decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(ticks.step) - 1e-9)));
+  ticks.decimals = decimals_of(ticks.step);
   const double slack = 1e-9 * (to - from);
   for (double k = std::ceil((from - slack) / ticks.step); k * ticks.step <= to + slack; ++k)
     ticks.at.push_back(k * ticks.step);
   return ticks;
 }
 
+std::string with_minus(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '-' ? std::string("\u2212") : std::string(1, c);
+  return out;
+}
+
 std::string tick_text(double value, int decimals) {
   const std::string text = fmt::format("{:.{}f}", value, decimals);
-  return text.find_first_not_of("-0.") == std::string::npos && text.front() == '-' ? text.substr(1) : text;
+  const bool zero = text.find_first_not_of("-0.") == std::string::npos && text.front() == '-';
+  return with_minus(zero ? text.substr(1) : text);
+}
+
+std::string tick_text(double value, const Ticks& ticks) {
+  const double unit = std::pow(10.0, ticks.exponent);
+  return tick_text(value / unit, ticks.exponent == 0 ? ticks.decimals : decimals_of(ticks.step / unit));
+}
+
+std::string power_of_ten(int exponent) {
+  constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  if (exponent == 0) return "1";
+  std::string text = exponent < 0 ? "10⁻" : "10";
+  for (const char digit : std::to_string(std::abs(exponent))) text += kDigits[digit - '0'];
+  return text;
 }
 
 }  // namespace sf::viz

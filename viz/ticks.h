@@ -1,5 +1,6 @@
 #pragma once
-// Round numbers along an axis.
+// Round numbers along an axis, and numbers as texts of a figure: with true minus signs (U+2212), which are as wide as a
+// plus sign and do not break lines.
 
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@ struct Ticks {
   double step = 1.0;  ///< 1, 2 or 5 times a power of ten, in the axis' unit
   int decimals = 0;   ///< digits after the point, enough to distinguish the ticks
   std::vector<double> at;
+  int exponent = 0;  ///< labels are numbers of 10^exponent, a multiple of 3; stated with the axis' name (viz/scales.h)
 };
 
 /// The largest 1, 2 or 5 times a power of ten that is at most `value` > 0.
@@ -19,5 +21,13 @@ double round_down(double value);
 Ticks make_ticks(double from, double to, double smallest_step);
 
 std::string tick_text(double value, int decimals);
+/// The label of one of the ticks.
+std::string tick_text(double value, const Ticks& ticks);
+
+/// `text` with U+2212 for each hyphen: for texts of numbers alone.
+std::string with_minus(const std::string& text);
+
+/// "10⁻⁶"; "1" for 0.
+std::string power_of_ten(int exponent);
 
 }  // namespace sf::viz

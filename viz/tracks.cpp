@@ -29,7 +29,7 @@ world::Extent extent_of(const world::World& world, std::span<const Track> tracks
   return e;
 }
 
-void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t color) {
+void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t color, std::span<const double> dash) {
   std::vector<Line> path;
   std::optional<glm::dvec2> last;
   for (std::size_t i = 0; i < track.poses.size(); ++i) {
@@ -43,7 +43,7 @@ void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t 
     path.push_back({last.value_or(at), at});
     last = at;
   }
-  axes.canvas().lines(path, line_width, color);
+  axes.canvas().lines(path, line_width, color, dash);
 }
 
 void draw_contacts(Axes& axes, const Track& track, double reach, double line_width) {

@@ -32,7 +32,8 @@ std::size_t contact_count(const Track& track);
 /// [m] Extent of the world and all tracks.
 world::Extent extent_of(const world::World& world, std::span<const Track> tracks);
 
-void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t color);
+void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t color,
+               std::span<const double> dash = {});
 /// One cross at the begin of each contact, unless it would lie on the track's previous cross.
 /// @param reach [px] from its middle to its ends
 void draw_contacts(Axes& axes, const Track& track, double reach, double line_width);

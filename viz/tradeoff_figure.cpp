@@ -10,20 +10,21 @@
 #include "viz/heading.h"
 #include "viz/labels.h"
 #include "viz/legend.h"
+#include "viz/scales.h"
 #include "viz/theme.h"
-#include "viz/ticks.h"
 
 namespace sf::viz {
 namespace {
 
 // [px]
 constexpr int kTradeoffWidth = 1400;
-constexpr int kTradeoffLeft = 150;
-constexpr int kTradeoffRight = 40;
+constexpr int kTradeoffLeft = 124;       ///< with the page's edge
+constexpr int kTradeoffRight = 14;       ///< likewise
+constexpr double kErrorNameLine = 24.0;  ///< of an axis' name of several lines
 constexpr int kPlot = 400;
-constexpr int kLowestPanel = 200;
+constexpr int kLowestPanel = 120;
 constexpr int kBetween = 150;       ///< title of a panel, and labels below its plot
-constexpr double kNothing = 120.0;  ///< column of errors that are 0
+constexpr double kNothing = 120.0;  ///< column of errors that are 0, at most a quarter of the plot
 
 /// Errors below this are rounding errors and count as 0.
 constexpr double kLeast = 1e-12;
@@ -49,18 +50,18 @@ Decades decades_of(const std::vector<TradeoffPoint>& points) {
 struct PlotArea {
   PixelBox plot;
   Decades error;
+  double edge = 0.0;     ///< [px] of the page
   double fastest = 1.0;  ///< [1/s] upper end; the lower one is 0
 
+  double nothing() const { return std::min(kNothing, 0.25 * (plot.x_max - plot.x_min)); }
   double x(double error_value) const {
-    if (!(error_value >= kLeast)) return plot.x_min + 0.5 * kNothing;
+    if (!(error_value >= kLeast)) return plot.x_min + 0.5 * nothing();
     if (std::isinf(error_value)) return plot.x_max;
     const double part = (std::log10(error_value) - error.from) / (error.to - error.from);
-    return plot.x_min + kNothing + part * (plot.x_max - plot.x_min - kNothing);
+    return plot.x_min + nothing() + part * (plot.x_max - plot.x_min - nothing());
   }
   double y(double value) const { return plot.y_max - value / fastest * (plot.y_max - plot.y_min); }
 };
-
-std::string power(int exponent) { return exponent == 0 ? "1" : fmt::format("1e{}", exponent); }
 
 /// "40 M", "5 k", "0".
 std::string rate_text(double rate) {
@@ -73,7 +74,7 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
   style.across = Anchor::end;
-  const Ticks rates = make_ticks(0.0, at.fastest, at.fastest * 60.0 / (p.y_max - p.y_min));
+  const Ticks rates = ticks_up(0.0, at.fastest, p.y_max - p.y_min);
   for (const double rate : rates.at) {
     const double y = std::floor(at.y(rate)) + 0.5;
     canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, theme::kHairline, theme::kGridLine);
@@ -81,20 +82,28 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   }
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  const int most = std::clamp((p.x_max - p.x_min) / 100, 3, 12);  // labels
+  const int most = std::clamp((p.x_max - p.x_min) / 100, 2, 12);  // labels
   const int step = std::max(1, (at.error.to - at.error.from + most - 1) / most);
+  double labelled = at.x(0.0) + 0.5 * text_size("none", style).x;  // [px] right end of the last label
   for (int decade = at.error.from; decade <= at.error.to; decade += step) {
     const double x = std::floor(at.x(std::pow(10.0, decade))) + 0.5;
     canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, theme::kHairline, theme::kGridLine);
-    canvas.text({x, p.y_max + 11.0}, power(decade), style);
+    const double half = 0.5 * text_size(power_of_ten(decade), style).x;
+    if (x - half < labelled + 6.0) continue;
+    draw_label_across(canvas, {x, p.y_max + 11.0}, power_of_ten(decade));
+    labelled = x + half;
   }
   canvas.text({at.x(0.0), p.y_max + 11.0}, "none", style);
-  canvas.line({p.x_min + kNothing, p.y_min + 0.0}, {p.x_min + kNothing, p.y_max + 0.0}, theme::kHairline,
+  canvas.line({p.x_min + at.nothing(), p.y_min + 0.0}, {p.x_min + at.nothing(), p.y_max + 0.0}, theme::kHairline,
               theme::kZeroLine);
-  canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, panel.error_name, style);
+  double y = p.y_max + 42.0;
+  for (const std::string& line : wrapped_text(panel.error_name, style, p.x_max - p.x_min)) {
+    canvas.text({0.5 * (p.x_min + p.x_max), y}, line, style);
+    y += kErrorNameLine;
+  }
   style.upwards = true;
   style.down = Anchor::middle;
-  canvas.text({46.0, 0.5 * (p.y_min + p.y_max)}, panel.rate_name, style);
+  canvas.text({at.edge + 20.0, 0.5 * (p.y_min + p.y_max)}, panel.rate_name, style);
 }
 
 /// The line through the Pareto-optimal modes.
@@ -132,6 +141,7 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
       keep_free(at.x(point.covered.bound), mark.y);
     }
     canvas.disc(mark, 6.0, color);
+    if (!point.front) canvas.disc(mark, 3.5, theme::kWhite);
     keep_free(mark.x, mark.y);
   }
   for (const TradeoffPoint& point : panel.points) {
@@ -151,37 +161,43 @@ void draw_panel(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) 
   draw_front(canvas, panel, at);
   draw_points(canvas, panel, at);
   canvas.unclip();
-  const double x0 = p.x_min - 0.5, y0 = p.y_min - 0.5, x1 = p.x_max + 0.5, y1 = p.y_max + 0.5;
-  const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
-  canvas.polyline(corners, theme::kHairline, theme::kFrame);
+  draw_frame(canvas, p);
   TextStyle style = small_text();
   style.bold = true;
-  canvas.text({x0, y0 - 20.0}, panel.title, style);
+  canvas.text({p.x_min - 0.5, p.y_min - 20.5}, panel.title, style);
 }
 
 }  // namespace
 
 void draw_tradeoff(const std::string& title, const std::string& subtitle, std::span<const TradeoffPanel> panels,
                    const std::string& path, const Page& page) {
-  const int width = page_pixels(page.width, kTradeoffWidth);
-  const Heading heading = make_heading(title, subtitle, width - kTradeoffLeft - kTradeoffRight, page);
-  int plot = kPlot;
+  const int width = page_pixels(page, page.width, kTradeoffWidth);
+  const int left = kTradeoffLeft + static_cast<int>(page_edge(page));
+  const int right = width - kTradeoffRight - static_cast<int>(page_edge(page));
+  const double heading_left = legend_left(page, left);
+  const Heading heading = make_heading(title, subtitle, right - heading_left, page);
+  const auto between = [&](const TradeoffPanel& panel) {
+    const std::size_t lines = wrapped_text(panel.error_name, small_text(), right - left).size();
+    return kBetween + static_cast<int>(kErrorNameLine * (static_cast<double>(lines) - 1.0));
+  };
+  int all_between = 0;
+  for (const TradeoffPanel& panel : panels) all_between += between(panel);
+  int plot = page.width > 0.0 ? std::clamp(right - left, kLowestPanel, kPlot) : kPlot;
   if (page.height > 0.0 && !panels.empty())
-    plot = std::max(
-        kLowestPanel,
-        (page_pixels(page.height, 0) - static_cast<int>(heading.height)) / static_cast<int>(panels.size()) - kBetween);
-  const int height = static_cast<int>(heading.height) + static_cast<int>(panels.size()) * (plot + kBetween);
+    plot = std::max(kLowestPanel, (page_pixels(page, page.height, 0) - static_cast<int>(heading.height) - all_between) /
+                                      static_cast<int>(panels.size()));
+  const int height = static_cast<int>(heading.height) + static_cast<int>(panels.size()) * plot + all_between;
   Canvas canvas(width, std::max(height, 1), theme::kWhite);
-  draw_heading(canvas, kTradeoffLeft, heading);
+  draw_heading(canvas, heading_left, heading);
   int top = static_cast<int>(heading.height) + 50;
   for (const TradeoffPanel& panel : panels) {
-    PlotArea at{{kTradeoffLeft, top, width - kTradeoffRight, top + plot}, {}};
+    PlotArea at{{left, top, right, top + plot}, {}, page_edge(page)};
     at.error = decades_of(panel.points);
     double fastest = 0.0;
     for (const TradeoffPoint& point : panel.points) fastest = std::max(fastest, point.rate);
     if (fastest > 0.0) at.fastest = 1.3 * fastest;
     draw_panel(canvas, panel, at);
-    top += plot + kBetween;
+    top += plot + between(panel);
   }
   save_picture(canvas.drawing(), path, page);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 
 #include "base/error.h"
 #include "viz/axes.h"
@@ -22,9 +23,23 @@ using world::World;
 
 constexpr std::size_t kNamedTracks = 7;
 constexpr std::size_t kNamedEnds = 150;
+constexpr std::uint32_t kOtherTrack = 0xFF9AA0A8u;  ///< beside labelled ones
 
-std::uint32_t color_of(std::span<const Track> tracks, std::size_t i) {
-  return tracks[i].color.value_or(row_color(i, tracks.size()));
+bool is_labelled(const Track& track, const TrackLabels& labels) {
+  return std::find(labels.names.begin(), labels.names.end(), track.name) != labels.names.end();
+}
+
+/// Labelled tracks have the colours of a figure of their own.
+std::uint32_t color_of(std::span<const Track> tracks, std::size_t i, const TrackLabels& labels) {
+  if (labels.names.empty()) return tracks[i].color.value_or(row_color(i, tracks.size()));
+  if (!is_labelled(tracks[i], labels)) return kOtherTrack;
+  const auto before = std::count_if(tracks.begin(), tracks.begin() + static_cast<std::ptrdiff_t>(i),
+                                    [&](const Track& t) { return is_labelled(t, labels); });
+  return tracks[i].color.value_or(row_color(static_cast<std::size_t>(before), labels.names.size()));
+}
+
+std::span<const double> dash_of(std::span<const Track> tracks, std::size_t i, const Page& page) {
+  return page.line_styles && tracks.size() <= kNamedTracks ? line_style(i) : std::span<const double>();
 }
 
 /// Widths of lines and marks, thinner for many tracks.
@@ -66,25 +81,49 @@ std::string subtitle_of(const World& world, std::span<const Track> tracks, std::
   return world.name.empty() ? text : world.name + ": " + text;
 }
 
-FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::string_view what, const Page& page) {
+/// @param world its part that the figure shows
+std::vector<LegendItem> legend_of(const World& world, const world::Extent& shown, std::span<const Track> tracks,
+                                  const TrackLabels& labels, const Page& page) {
+  const auto visible = [&](const Pose& pose) {
+    const glm::dvec2 p{pose.x, pose.y};
+    return is_finite(pose) && is_in_view({&p, 1}, shown);
+  };
+  const auto drawn = [&](const Track& t) { return std::any_of(t.poses.begin(), t.poses.end(), visible); };
+  const auto touched = [&](const Track& t) {
+    for (std::size_t i = 0; i < t.contacts.size(); ++i)
+      if (t.contacts[i] != 0 && visible(t.poses[i])) return true;
+    return false;
+  };
+  std::vector<LegendItem> items = wall_legend(world, WallColors::quiet);
+  for (const LegendItem& item : road_legend(world)) items.push_back(item);
+  if (std::any_of(tracks.begin(), tracks.end(), drawn)) {
+    items.push_back({LegendMark::ring, theme::kFrame, "start"});
+    items.push_back({LegendMark::dot, theme::kFrame, "end"});
+  }
+  if (std::any_of(tracks.begin(), tracks.end(), touched))
+    items.push_back({LegendMark::cross, theme::kContact, "contact"});
+  for (std::size_t i = 0; i < tracks.size() && tracks.size() <= kNamedTracks; ++i)
+    if (drawn(tracks[i]))
+      items.push_back(
+          {LegendMark::line, color_of(tracks, i, labels), tracks[i].name, theme::kNone, dash_of(tracks, i, page)});
+  return items;
+}
+
+FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::string_view what, const Page& page,
+                      const TrackLabels& labels) {
   FigureOptions options;
   options.page = page;
   options.title = "Trajectories";
   options.subtitle = subtitle_of(world, tracks, what);
   options.extent = extent_of(world, tracks);
-  options.legend = wall_legend(world, WallColors::quiet);
-  for (const LegendItem& item : road_legend(world)) options.legend.push_back(item);
-  options.legend.push_back({LegendMark::ring, theme::kFrame, "start"});
-  options.legend.push_back({LegendMark::dot, theme::kFrame, "end"});
-  options.legend.push_back({LegendMark::cross, theme::kContact, "contact"});
-  for (std::size_t i = 0; i < tracks.size() && tracks.size() <= kNamedTracks; ++i)
-    options.legend.push_back({LegendMark::line, color_of(tracks, i), tracks[i].name});
+  options.legend = legend_of(in_view(world, options), lay_out(options).shown, tracks, labels, page);
   return options;
 }
 
 /// Names of more tracks than the legend has room for, in their colours beside their ends, as far as there is room.
-void draw_end_names(Axes& axes, std::span<const Track> tracks) {
-  if (tracks.size() <= kNamedTracks || tracks.size() > kNamedEnds) return;
+void draw_end_names(Axes& axes, std::span<const Track> tracks, const TrackLabels& wanted) {
+  const std::size_t most = wanted.all ? kNamedEnds : kLabelledTracks;
+  if (wanted.names.empty() && (tracks.size() <= kNamedTracks || tracks.size() > most)) return;
   Labels labels(axes.layout().plot);
   std::vector<std::optional<glm::dvec2>> ends;
   for (const Track& track : tracks) {
@@ -93,10 +132,10 @@ void draw_end_names(Axes& axes, std::span<const Track> tracks) {
     if (ends.back()) labels.forbid({*ends.back() - glm::dvec2{4.0, 4.0}, *ends.back() + glm::dvec2{4.0, 4.0}});
   }
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (!ends[i]) continue;
+    if (!ends[i] || (!wanted.names.empty() && !is_labelled(tracks[i], wanted))) continue;
     TextStyle style = small_text();
-    style.size = 14;
-    style.color = mix(color_of(tracks, i), theme::kBlack, 0.25);
+    style.size = wanted.names.empty() ? 14 : style.size;
+    style.color = mix(color_of(tracks, i, wanted), theme::kBlack, 0.25);
     style.halo = theme::kWhite;
     labels.place(axes.canvas(), {&*ends[i], 1}, tracks[i].name, style, {6.0, 30.0, 14.0, 0.0});
   }
@@ -105,21 +144,28 @@ void draw_end_names(Axes& axes, std::span<const Track> tracks) {
 }  // namespace
 
 void draw_trajectories(const World& world, std::span<const Track> tracks, const std::string& path,
-                       std::string_view what, const Page& page) {
+                       std::string_view what, const Page& page, const TrackLabels& labels) {
   for (const Track& track : tracks)
     SF_CHECK(track.contacts.empty() || track.contacts.size() == track.poses.size(),
              "track " + track.name + " has " + std::to_string(track.contacts.size()) + " contacts for " +
                  std::to_string(track.poses.size()) + " poses");
   const Weight weight = weight_for(tracks.size());
-  Axes axes(plan_of(world, tracks, what, page));
+  Axes axes(plan_of(world, tracks, what, page, labels));
   draw_lane_markings(axes, world);
   draw_magnets(axes, world);
   draw_walls(axes, world, WallColors::quiet);
-  for (std::size_t i = 0; i < tracks.size(); ++i)
-    draw_path(axes, tracks[i], weight.line, with_opacity(color_of(tracks, i), weight.opacity));
-  for (std::size_t i = 0; i < tracks.size(); ++i) draw_ends(axes, tracks[i], weight.mark, color_of(tracks, i));
+  // Labelled tracks over the others.
+  std::vector<std::size_t> order(tracks.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return !is_labelled(tracks[i], labels); });
+  for (const std::size_t i : order)
+    draw_path(axes, tracks[i], is_labelled(tracks[i], labels) ? theme::kCurve : weight.line,
+              with_opacity(color_of(tracks, i, labels), weight.opacity), dash_of(tracks, i, page));
+  for (const std::size_t i : order)
+    draw_ends(axes, tracks[i], is_labelled(tracks[i], labels) ? Weight().mark : weight.mark,
+              color_of(tracks, i, labels));
   for (const Track& track : tracks) draw_contacts(axes, track, weight.cross, weight.cross_line);
-  draw_end_names(axes, tracks);
+  draw_end_names(axes, tracks, labels);
   axes.save(path);
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "viz/picture_file.h"
 #include "viz/tracks.h"
@@ -11,12 +12,20 @@
 
 namespace sf::viz {
 
+inline constexpr std::size_t kLabelledTracks = 10;  ///< more have no labels unless these are asked for
+
+/// Tracks named beside their ends, as far as there is room.
+struct TrackLabels {
+  bool all = false;                ///< of up to 150 tracks
+  std::vector<std::string> names;  ///< these are drawn over the others, which are grey
+};
+
 /// Draws the walls, each track in its own colour with its start, its end and its contacts (one mark per contact), later
-/// tracks over earlier ones. Up to seven tracks are named in the legend, more beside their ends, as
-/// far as there is room.
+/// tracks over earlier ones. Up to seven tracks are named in the legend, up to ten beside their ends; of more only
+/// those of `labels`.
 /// @param what meaning of one track, for the subtitle: robots of one run, or trials of one robot
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_trajectories(const world::World& world, std::span<const Track> tracks, const std::string& path,
-                       std::string_view what = "robot", const Page& page = {});
+                       std::string_view what = "robot", const Page& page = {}, const TrackLabels& labels = {});
 
 }  // namespace sf::viz

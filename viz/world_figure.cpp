@@ -106,13 +106,15 @@ void draw_names(Axes& axes, const World& world) {
 }
 
 /// "laser 270 deg, 8 m": the common value of all lasers of one colour, or their range.
-std::vector<LegendItem> view_legend(const World& world) {
+std::vector<LegendItem> view_legend(const World& world, const world::Extent& shown) {
   struct Seen {
     std::set<double> fovs, ranges;
   };
   std::map<std::uint32_t, Seen> by_color;
   for (const Mover& mover : world.movers)
     for (const LaserSettings& laser : lasers_of(mover)) {
+      const glm::dvec2 at{mover.X_WM.x, mover.X_WM.y};
+      if (!is_in_view({&at, 1}, shown, laser.range_max)) continue;
       Seen& seen = by_color[laser.color | theme::kBlack];
       seen.fovs.insert(std::round(laser.fov * 1800.0 / M_PI) / 10.0);
       seen.ranges.insert(laser.range_max);
@@ -129,7 +131,8 @@ std::vector<LegendItem> view_legend(const World& world) {
   return items;
 }
 
-std::vector<LegendItem> legend_of(const World& world) {
+/// @param world its part that the figure shows
+std::vector<LegendItem> legend_of(const World& world, const World& whole, const world::Extent& shown) {
   std::vector<LegendItem> items = wall_legend(world, WallColors::of_models);
   const auto ground = road_legend(world);
   items.insert(items.end(), ground.begin(), ground.end());
@@ -141,9 +144,9 @@ std::vector<LegendItem> legend_of(const World& world) {
   if (const auto robot = first(false); robot != world.movers.end())
     items.push_back({LegendMark::robot, body_color(world, *robot), "robot and heading"});
   if (first(true) != world.movers.end()) items.push_back({LegendMark::dashed, theme::kTag, "follows a tag"});
-  const auto views = view_legend(world);
+  const auto views = view_legend(whole, shown);
   items.insert(items.end(), views.begin(), views.end());
-  const auto carried = sensor_legend(world);
+  const auto carried = crowded(whole) ? std::vector<LegendItem>() : sensor_legend(world);
   items.insert(items.end(), carried.begin(), carried.end());
   return items;
 }
@@ -173,8 +176,8 @@ void draw_world(const World& world, const std::string& path, const Page& page) {
   options.title = world.name.empty() ? std::filesystem::path(world.file).filename().string() : world.name;
   options.subtitle = subtitle_of(world);
   options.extent = world.extent;
-  options.legend = legend_of(world);
   options.page = page;
+  options.legend = legend_of(in_view(world, options), world, lay_out(options).shown);
   Axes axes(std::move(options));
   draw_lane_markings(axes, world);
   draw_floor_holes(axes, world);

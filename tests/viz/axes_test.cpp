@@ -73,7 +73,7 @@ TEST(Ticks, StepsAndDigitsAtTheirLimits) {
 TEST(Ticks, TextHasNoMinusZero) {
   EXPECT_EQ(tick_text(-0.0, 1), "0.0");
   EXPECT_EQ(tick_text(-0.04, 1), "0.0");
-  EXPECT_EQ(tick_text(-0.4, 1), "-0.4");
+  EXPECT_EQ(tick_text(-0.4, 1), "\u22120.4");
   EXPECT_EQ(tick_text(100000.25, 2), "100000.25");
 }
 

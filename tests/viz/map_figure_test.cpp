@@ -12,6 +12,7 @@ namespace sf::viz {
 namespace {
 
 constexpr std::uint32_t kDark = 0xFF474B50u, kBlue = 0xFF1748D1u;
+const Page kThesis{.map_colors = MapColors::thesis};
 
 std::string out(const std::string& name) { return scenes::own_file(name); }
 
@@ -26,7 +27,7 @@ maps::OccupancyGrid striped(std::uint32_t columns, std::uint32_t rows) {
 
 TEST(MapFigure, CellsAreFourPixelsWithALineBetween) {
   const maps::OccupancyGrid grid = striped(30, 30);
-  draw_map(grid, {"Title", "", {}}, out("cells.png"));
+  draw_map(grid, {"Title", "", {}}, out("cells.png"), kThesis);
   const scenes::Picture picture = scenes::read_png(out("cells.png"));
   // The map's left side: the first column in the colour of grid lines over a map's height.
   const int left = 86, top = 100, pitch = 5;  // below a title and a subtitle
@@ -43,8 +44,8 @@ TEST(MapFigure, CellsAreFourPixelsWithALineBetween) {
 
 TEST(MapFigure, RobotsAreMarkedWhereTheyAre) {
   maps::OccupancyGrid grid(maps::GridGeometry{-1.0, 2.0, 0.1, 10, 10});
-  draw_map(grid, {"", "", {}}, out("bare.png"));
-  draw_map(grid, {"", "", {{"one", {0.0, 0.0, 0.0, 0.0}}, {"far", {99.0, 0.0, 0.0, 0.0}}}}, out("robot.png"));
+  draw_map(grid, {"", "", {}}, out("bare.png"), kThesis);
+  draw_map(grid, {"", "", {{"one", {0.0, 0.0, 0.0, 0.0}}, {"far", {99.0, 0.0, 0.0, 0.0}}}}, out("robot.png"), kThesis);
   const scenes::Picture bare = scenes::read_png(out("bare.png"));
   const scenes::Picture robot = scenes::read_png(out("robot.png"));
   EXPECT_EQ(robot.width, bare.width);
@@ -68,7 +69,7 @@ TEST(MapFigure, RobotsAreMarkedWhereTheyAre) {
 }
 
 TEST(MapFigure, LargeMapsAreDrawnSmaller) {
-  draw_map(striped(500, 3), {"Large", "", {}}, out("large.png"));
+  draw_map(striped(500, 3), {"Large", "", {}}, out("large.png"), kThesis);
   const scenes::Picture picture = scenes::read_png(out("large.png"));
   EXPECT_LE(picture.width, 8200);
   EXPECT_GT(picture.width, 7000) << "as large as it may be";
@@ -76,10 +77,19 @@ TEST(MapFigure, LargeMapsAreDrawnSmaller) {
   const int cells = picture.count(kDark) + picture.count(kBlue);
   EXPECT_NEAR(picture.count(kDark), 0.5 * cells, 0.02 * cells);
   EXPECT_GT(cells, 2 * 500 * 9) << "nine pixels a cell at least";
-  draw_map(striped(1, 1), {"Small", "with a name", {}}, out("small.png"));
+  draw_map(striped(1, 1), {"Small", "with a name", {}}, out("small.png"), kThesis);
   const scenes::Picture small = scenes::read_png(out("small.png"));
   EXPECT_EQ(small.width, 640);
   EXPECT_GE(small.count(kDark), 16) << "its one cell, which is unexplored";
+}
+
+TEST(MapFigure, RosHasGreysWithoutLines) {
+  draw_map(striped(30, 30), {"Title", "", {}}, out("greys.png"));
+  const scenes::Picture picture = scenes::read_png(out("greys.png"));
+  constexpr int kOfEach = 300 * 5 * 5;
+  EXPECT_GE(picture.count(0xFFCDCDCDu), kOfEach) << "unknown: 205 as in map_server";
+  EXPECT_GE(picture.count(0xFF000000u), kOfEach) << "occupied";
+  EXPECT_GE(picture.count(0xFFFEFEFEu), kOfEach) << "free: 254";
 }
 
 TEST(MapFigure, APathThatCannotBeWritten) {

@@ -157,7 +157,7 @@ TEST(MapRecord, FollowsItsPage) {
 
 TEST(LegendRecord, DrawsEachMark) {
   std::vector<LegendItem> items;
-  for (int mark = 0; mark <= static_cast<int>(LegendMark::crossed_dot); ++mark)
+  for (int mark = 0; mark <= static_cast<int>(LegendMark::hatched); ++mark)
     items.push_back({static_cast<LegendMark>(mark), 0xFF204060u + static_cast<std::uint32_t>(mark),
                      fmt::format("mark number {}", mark), 0xFF808080u});
   Canvas canvas(600, 300, theme::kWhite);

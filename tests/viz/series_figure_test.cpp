@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <set>
 
 #include "base/error.h"
+#include "tests/golden.h"
 #include "tests/viz/png.h"
 #include "viz/color.h"
 
@@ -91,20 +94,20 @@ TEST(SeriesFigure, PanelsStandBelowEachOther) {
     EXPECT_GT(three.count(color, 0, third * three.height / 3, three.width, (third + 1) * three.height / 3), 100);
 }
 
-/// Pixels in the first series' blue, or half of it: lines are thin and lie between pixels.
+/// Pixels above the legend in the first series' blue, or half of it: lines are thin and lie between pixels.
 int blue(const scenes::Picture& p) {
+  constexpr int kLegend = 60;
   int n = 0;
-  for (std::size_t i = 0; i < p.rgb.size(); i += 3) n += p.rgb[i + 2] > p.rgb[i] + 60 ? 1 : 0;
+  for (std::size_t i = 0; i < p.rgb.size() - 3u * p.width * kLegend; i += 3) n += p.rgb[i + 2] > p.rgb[i] + 60 ? 1 : 0;
   return n;
 }
 
 TEST(SeriesFigure, OddDataIsDrawnAllTheSame) {
   struct Case {
     Series series;
-    int least, most;  ///< blue pixels without the legend's
+    int least, most;  ///< blue pixels
   };
   EXPECT_EQ(blue(drawn(one_panel({}), "nobody.png")), 0);
-  const int legend = blue(drawn(one_panel({Series{"a", {}, {}}}), "silent.png"));
   EXPECT_GT(drawn(one_panel({per_second("a", {1e300, -1e300})}), "labels.png").height, 600) << "no room but for labels";
   for (const Case& c : {Case{per_second("a", {7}), 2, 20},                  // one value: a dot
                         Case{per_second("a", {kNan, kNan}), 0, 0},          // no finite value
@@ -115,14 +118,112 @@ TEST(SeriesFigure, OddDataIsDrawnAllTheSame) {
                         Case{Series{"a", {1e9, 1e9 + 1}, {1e9, 1e9 + 1}}, 1000, 10000}}) {  // far from zero
     const scenes::Picture p = drawn(one_panel({c.series}), "odd.png");
     EXPECT_GT(p.height, 600);
-    EXPECT_GE(blue(p) - legend, c.least);
-    EXPECT_LE(blue(p) - legend, c.most);
+    EXPECT_GE(blue(p), c.least);
+    EXPECT_LE(blue(p), c.most);
   }
 }
 
 TEST(SeriesFigure, ThePictureIsAFunctionOfTheNumbers) {
   const SeriesOptions options = one_panel({per_second("a", {1, 2, kNan, 4}), per_second("b", {2, 1, 0, 3})});
   EXPECT_EQ(drawn(options, "same1.png").rgb, drawn(options, "same2.png").rgb);
+}
+
+std::string svg_of(const SeriesOptions& options, const Page& page = {}) {
+  draw_series(options, scenes::own_file("series.svg"), page);
+  return golden::read(scenes::own_file("series.svg"));
+}
+
+/// Points of the path in the first series' colour.
+std::vector<glm::dvec2> curve_of(const std::string& svg) {
+  std::vector<glm::dvec2> points;
+  const std::size_t end = svg.find("\" stroke=\"#0072b2\"");
+  for (std::size_t at = svg.rfind("d=\"", end); at < end; ++at) {
+    if (svg[at] != 'M' && svg[at] != 'L') continue;
+    char* next = nullptr;
+    const double x = std::strtod(svg.c_str() + at + 1, &next);
+    points.push_back({x, std::strtod(next, nullptr)});
+  }
+  return points;
+}
+
+TEST(SeriesFigure, IntegersAreSteps) {
+  SeriesOptions options = one_panel({per_second("a", {0, 1, 1, 3, 0})});
+  options.panels[0].whole = true;
+  const std::vector<glm::dvec2> steps = curve_of(svg_of(options));
+  ASSERT_EQ(steps.size(), 8u) << "two more for each of three jumps, and one for a value that stays";
+  for (std::size_t i = 0; i + 1 < steps.size(); ++i)
+    EXPECT_TRUE(steps[i].x == steps[i + 1].x || steps[i].y == steps[i + 1].y) << i;
+  EXPECT_EQ(steps[1].y, steps[0].y) << "a value lasts until the next one";
+  options.panels[0].whole = false;
+  EXPECT_EQ(curve_of(svg_of(options)).size(), 5u);
+}
+
+TEST(SeriesFigure, CurvesDifferInTheirDashes) {
+  const SeriesOptions options = one_panel({per_second("a", {1, 2}), per_second("b", {2, 1}), per_second("c", {3, 1})});
+  const auto dashes = [](const std::string& svg) {
+    std::set<std::string> seen;
+    for (std::size_t at = svg.find("stroke-dasharray"); at != std::string::npos;
+         at = svg.find("stroke-dasharray", at + 1))
+      seen.insert(svg.substr(at, svg.find("/>", at) - at));
+    return seen.size();
+  };
+  EXPECT_EQ(dashes(svg_of(options)), 2u) << "the first is solid";
+  EXPECT_EQ(dashes(svg_of(options, {.line_styles = false})), 0u);
+}
+
+TEST(SeriesFigure, LegendsOmitCurvesWithoutAValue) {
+  const std::string svg = svg_of(one_panel({per_second("drawn", {1, 2}), per_second("silent", {kNan, HUGE_VAL})}));
+  EXPECT_NE(svg.find(">drawn<"), std::string::npos);
+  EXPECT_EQ(svg.find(">silent<"), std::string::npos);
+}
+
+/// Two elements over three readings, of which the last comes late.
+HeatMap small_map() {
+  HeatMap map{.value_name = "range [m]", .rows = {"0 (90°)", "1 (\u221290°)"}, .times = {0.0, 1.0, 4.0}};
+  map.readings = {{1.0, -HUGE_VAL}, {2.0, 5.0}, {3.0, 1.0}};
+  map.limit = 5.0;
+  map.too_near = "too near";
+  map.no_return = "no return";
+  map.longest_hold = 1.5;
+  return map;
+}
+
+TEST(HeatMapFigure, MarksLimitsAndGaps) {
+  SeriesOptions options{"t", "s", {{"ring", "element (bearing)", {}, false, false, small_map()}}};
+  std::string svg = svg_of(options);
+  for (const char* text : {"0 (90°)", "1 (\u221290°)", "range [m]", "too near", "no return", "no reading"})
+    EXPECT_NE(svg.find(">" + std::string(text) + "<"), std::string::npos) << text;
+  options.panels[0].map->readings = {{1.0, 1.5}, {2.0, 4.0}, {3.0, 1.0}};
+  options.panels[0].map->times = {0.0, 1.0, 2.0};
+  svg = svg_of(options);
+  for (const char* text : {"too near", "no return", "no reading"})
+    EXPECT_EQ(svg.find(">" + std::string(text) + "<"), std::string::npos) << text << " is not drawn";
+}
+
+TEST(HeatMapFigure, CellsHaveTheirColours) {
+  const scenes::Picture p = drawn({"t", "s", {{"", "element", {}, false, false, small_map()}}}, "heat.png");
+  const double left = 150, right = p.width - 200, top = 110, bottom = 600;
+  const auto part = [&](std::uint32_t color, double x0, double x1, double y0, double y1) {
+    const int a = static_cast<int>(left + x0 * (right - left)), b = static_cast<int>(left + x1 * (right - left));
+    const int c = static_cast<int>(top + y0 * (bottom - top)), d = static_cast<int>(top + y1 * (bottom - top));
+    return static_cast<double>(p.count(color, a, c, b, d)) / ((b - a) * (d - c));
+  };
+  EXPECT_GT(part(kBlack, 0.05, 0.2, 0.6, 0.9), 0.95) << "too near, in the lower row's first second";
+  EXPECT_GT(part(kWhite, 0.3, 0.55, 0.6, 0.9), 0.95) << "no return, for as long as a reading lasts";
+  EXPECT_LT(part(kWhite, 0.05, 0.2, 0.1, 0.4), 0.01);
+  EXPECT_GT(part(kWhite, 0.75, 0.95, 0.1, 0.9), 0.5) << "hatching where the next reading is late";
+  EXPECT_LT(part(kWhite, 0.75, 0.95, 0.1, 0.9), 0.98);
+}
+
+/// Greater values are lighter, so they are told apart in grey print.
+TEST(HeatMapFigure, ColoursGrowLighter) {
+  double last = 0.0;
+  for (int i = 0; i <= 100; ++i) {
+    const double lightness = to_oklab(scale_color(0.01 * i)).lightness;
+    EXPECT_GE(lightness, last - 1e-3) << i;
+    last = lightness;
+  }
+  EXPECT_EQ(scale_color(NAN), scale_color(0.0)) << "never out of the table";
 }
 
 TEST(SeriesFigure, BrokenContractsAbort) {

@@ -111,21 +111,29 @@ TEST(TrajectoryFigure, ManyTracksAreThinner) {
     std::vector<Track> tracks = tracks_of(static_cast<std::size_t>(each.count));
     for (Track& track : tracks) track.color = 0xFF123456u;
     const std::string file = scenes::own_file("weights.svg");
-    draw_trajectories(scenes::rich_world(), tracks, file);
+    draw_trajectories(scenes::rich_world(), tracks, file, "robot", {.line_styles = false});
     EXPECT_EQ(strokes(file, "123456")[" " + each.line + "/>"], each.count);
     const int in_legend = each.cross == "2" ? 1 : 0;
     EXPECT_EQ(strokes(file, "d4351c")[" stroke-width=\"" + each.cross + "\"/>"], 2 * each.count + in_legend);
   }
 }
 
-/// Boundary: more than 7 tracks are named at their ends, more than 150 nowhere.
-TEST(TrajectoryFigure, VeryManyTracksHaveNoNames) {
-  for (const std::size_t count : {7u, 8u, 150u, 151u}) {
+/// Boundary: 8 to 10 tracks are named at their ends, with `all` up to 150, and those that are asked for.
+TEST(TrajectoryFigure, ManyTracksHaveTheNamesAskedFor) {
+  const auto drawn = [](std::size_t count, const TrackLabels& labels) {
     const std::string file = scenes::own_file("names.svg");
-    draw_trajectories(scenes::rich_world(), tracks_of(count), file);
-    const std::string svg = golden::read(file);
-    EXPECT_EQ(svg.find(">run 1</text>") != std::string::npos, count <= 150) << count;
-    EXPECT_EQ(svg.find("font-size=\"14\"") != std::string::npos, count == 8 || count == 150) << count;
+    draw_trajectories(scenes::rich_world(), tracks_of(count), file, "robot", {}, labels);
+    return golden::read(file);
+  };
+  const auto names = [](const std::string& svg, const std::string& name) {
+    return svg.find(">" + name + "</text>") != std::string::npos;
+  };
+  for (const std::size_t count : {7u, 8u, 10u, 11u, 150u, 151u}) {
+    EXPECT_EQ(names(drawn(count, {}), "run 1"), count <= 10) << count;
+    EXPECT_EQ(names(drawn(count, {.all = true, .names = {}}), "run 1"), count <= 150) << count;
+    const std::string one = drawn(count, {.all = false, .names = {"run 2"}});
+    EXPECT_TRUE(names(one, "run 2")) << count;
+    EXPECT_EQ(names(one, "run 1"), count <= 7) << count << ": in the legend";
   }
 }
 

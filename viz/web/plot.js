@@ -37,17 +37,19 @@ export function plotHistory(canvas, history, unit) {
   const { c, width, height } = prepare(canvas);
   if (width === 0) return;
   const { times, values } = history, end = times.length ? times[times.length - 1] : 0, begin = Math.max(times.length ? times[0] : 0, end - span);
-  let low = Infinity, high = -Infinity;
+  let low = Infinity, high = -Infinity, whole = true;
   for (let i = times.length - 1; i >= 0 && times[i] >= begin; --i) {
     if (!Number.isFinite(values[i])) continue;
     low = Math.min(low, values[i]); high = Math.max(high, values[i]);
+    whole = whole && Number.isInteger(values[i]);
   }
   c.font = '11px system-ui, "DejaVu Sans", sans-serif';
   c.fillStyle = theme.quiet;
   c.textBaseline = 'middle';
   if (low > high) { c.textAlign = 'center'; c.fillText('no value yet', width / 2, height / 2); return; }
   const flat = high - low < 1e-9 * Math.max(1, Math.abs(high));
-  if (flat) { const half = Math.max(Math.abs(high) * 0.05, 1e-3); low -= half; high += half; }
+  if (flat) { const half = whole ? 1 : Math.max(Math.abs(high) * 0.05, 1e-3); low -= half; high += half; }
+  const label = (v) => whole && Math.abs(v) < 1e6 ? String(v).replace('-', '−') : short(v);
   const left = 50, right = width - 4, top = 7, bottom = height - 14;
   const x = (t) => left + (right - left) * (end > begin ? (t - begin) / (end - begin) : 1), y = (v) => bottom - (bottom - top) * (v - low) / (high - low);
   c.strokeStyle = theme.grid;
@@ -56,8 +58,8 @@ export function plotHistory(canvas, history, unit) {
   for (const at of [top, (top + bottom) / 2, bottom]) { c.moveTo(left, Math.round(at) + 0.5); c.lineTo(right, Math.round(at) + 0.5); }
   c.stroke();
   c.textAlign = 'right';
-  c.fillText(short(high), left - 5, top);
-  c.fillText(short(low), left - 5, bottom);
+  c.fillText(label(high), left - 5, top);
+  c.fillText(label(low), left - 5, bottom);
   c.textAlign = 'left';
   c.fillText(`−${(end - begin).toFixed(0)} s`, left, height - 5);
   c.textAlign = 'right';
@@ -66,12 +68,14 @@ export function plotHistory(canvas, history, unit) {
   c.lineWidth = 1.6;
   c.lineJoin = 'round';
   c.beginPath();
-  let open = false;
+  let open = false, last = 0;
   for (let i = 0; i < times.length; ++i) {
     if (times[i] < begin) continue;
     if (!Number.isFinite(values[i])) { open = false; continue; }
+    if (open && whole) c.lineTo(x(times[i]), y(last));  // an integer lasts until the next one
     c[open ? 'lineTo' : 'moveTo'](x(times[i]), y(values[i]));
     open = true;
+    last = values[i];
   }
   c.stroke();
 }

@@ -1,0 +1,57 @@
+#include "viz/scales.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "viz/legend.h"
+
+namespace sf::viz {
+namespace {
+
+/// Over widths from that of a small multiple on, and ranges of very different numbers.
+TEST(Scales, LabelsAlongXNeverTouch) {
+  for (const double pixels : {40.0, 90.0, 150.0, 400.0, 1500.0})
+    for (const auto& [from, to] :
+         {std::pair{0.0, 1.0}, {-1e6, 1e6}, {1e5, 1e5 + 3.0}, {-0.003, 0.001}, {0.0, 86400.0}}) {
+      const Ticks ticks = ticks_across(from, to, pixels);
+      for (std::size_t i = 0; i + 1 < ticks.at.size(); ++i) {
+        const double apart = (ticks.at[i + 1] - ticks.at[i]) / (to - from) * pixels;
+        const double half = 0.5 * (text_size(tick_text(ticks.at[i], ticks), small_text()).x +
+                                   text_size(tick_text(ticks.at[i + 1], ticks), small_text()).x);
+        EXPECT_GT(apart, half + 8.0) << from << " to " << to << " on " << pixels;
+      }
+    }
+}
+
+TEST(Scales, IntegersHaveIntegerTicks) {
+  for (const auto& [from, to] : {std::pair{-0.1, 1.1}, {0.0, 3.0}, {2.5, 3.5}, {0.0, 1023.0}}) {
+    for (const Ticks& ticks : {ticks_up(from, to, 600.0, true), ticks_across(from, to, 600.0, true)})
+      for (const double at : ticks.at) EXPECT_EQ(at, std::round(at)) << from << " to " << to;
+    EXPECT_NE(ticks_up(from, to, 600.0).at.size(), 0u);
+  }
+  EXPECT_EQ(ticks_up(-0.1, 1.1, 600.0, true).at.size(), 2u) << "pressed: 0 and 1";
+}
+
+TEST(Scales, LargeAndSmallNumbersHaveAnExponentInTheUnit) {
+  EXPECT_EQ(ticks_up(0.0, 5.0, 300.0).exponent, 0);
+  EXPECT_EQ(ticks_up(0.0, 99999.0, 300.0).exponent, 0) << "the last without one";
+  const Ticks large = ticks_up(0.0, 2.5e6, 300.0);
+  EXPECT_EQ(large.exponent, 6);
+  EXPECT_EQ(tick_text(2.5e6, large), "2.5");
+  const Ticks small = ticks_up(-3e-6, 3e-6, 300.0);
+  EXPECT_EQ(small.exponent, -6);
+  EXPECT_EQ(tick_text(-2e-6, small), "\u22122");
+  EXPECT_EQ(axis_name("distance [m]", -6), "distance [10⁻⁶ m]");
+  EXPECT_EQ(axis_name("contacts", 3), "contacts [10³]") << "a number without a unit";
+  EXPECT_EQ(axis_name("distance [m]", 0), "distance [m]");
+}
+
+TEST(Scales, NumbersHaveTrueMinusSigns) {
+  EXPECT_EQ(with_minus("-1.5e-07"), "\u22121.5e\u221207");
+  EXPECT_EQ(power_of_ten(-12), "10⁻¹²");
+  EXPECT_EQ(power_of_ten(0), "1");
+}
+
+}  // namespace
+}  // namespace sf::viz
