@@ -11,6 +11,7 @@
 #include "base/csv.h"
 #include "base/hash.h"
 #include "scenarios/experiment.h"
+#include "scenarios/intervals.h"
 #include "scenarios/statistics.h"
 
 namespace sf::scenarios {
@@ -58,11 +59,25 @@ JobResults of_point(const Sweep& sweep, JobResults results, std::uint64_t point)
   return results.subspan(point * sweep.seeds.size(), sweep.seeds.size());
 }
 
-ErrorStatistics over_seeds(JobResults results, const std::string& metric) {
+std::vector<double> values_over_seeds(JobResults results, const std::string& metric) {
   std::vector<double> values;
   for (const auto& result : results)
     if (result) values.push_back(value_of_metric(*result, metric));
-  return statistics_of(values);
+  return values;
+}
+
+ErrorStatistics over_seeds(JobResults results, const std::string& metric) {
+  return statistics_of(values_over_seeds(results, metric));
+}
+
+/// Of the jobs that were to meet expectations; a failed one did not.
+Interval met_interval(const JobCounts& counts) {
+  return proportion_interval(counts.passed, counts.passed + counts.missed + counts.failed);
+}
+
+void add_ends(std::vector<std::string>& row, const Interval& interval) {
+  row.push_back(number_or_empty(interval.low));
+  row.push_back(number_or_empty(interval.high));
 }
 
 /// "0.0341 ± 0.0012"; the deviation is left out where there is none.
@@ -150,6 +165,10 @@ std::string csv_of_points(const Sweep& sweep, JobResults results) {
   head.insert(head.end(), {"jobs", "pass", "missed", "none", "failed", "missing"});
   for (const std::string& name : metrics)
     for (const char* part : {"_mean", "_std", "_min", "_max"}) head.push_back(name + part);
+  head.insert(head.end(), {"met", "met_low95", "met_high95"});
+  for (const std::string& name : metrics)
+    for (const char* part : {"_n", "_low95", "_high95"}) head.push_back(name + part);
+  const bool expects = counts_of(results).passed + counts_of(results).missed > 0;
   std::string text = csv_row(head);
   for (std::uint64_t point = 0; point < sweep.points(); ++point) {
     const JobResults own = of_point(sweep, results, point);
@@ -162,6 +181,14 @@ std::string csv_of_points(const Sweep& sweep, JobResults results) {
     for (const std::string& name : metrics) {
       const ErrorStatistics s = over_seeds(own, name);
       for (const double value : {s.mean, s.deviation, s.least, s.most}) row.push_back(number_or_empty(value));
+    }
+    const Interval met = expects ? met_interval(counts) : proportion_interval(0, 0);
+    row.push_back(number_or_empty(met.mean));
+    add_ends(row, met);
+    for (const std::string& name : metrics) {
+      const Interval interval = metric_interval(name, values_over_seeds(own, name));
+      row.push_back(std::to_string(interval.count));
+      add_ends(row, interval);
     }
     text += csv_row(row);
   }
@@ -192,16 +219,34 @@ std::string markdown_of_points(const Sweep& sweep, JobResults results, std::size
   return text;
 }
 
+std::vector<std::string> missing_values(JobResults results, std::size_t most) {
+  std::vector<std::string> lines;
+  std::size_t count = 0;
+  for (const std::string& name : measured_names(results))
+    for (std::size_t job = 0; job < results.size(); ++job) {
+      if (!results[job] || results[job]->status == JobStatus::failed) continue;
+      const double value = value_of_metric(*results[job], name);
+      if (std::isfinite(value) || ++count > most) continue;
+      lines.push_back(fmt::format("job {}: {} is {}", job, name, std::isnan(value) ? "empty" : number_or_empty(value)));
+    }
+  if (count > most) lines.push_back(fmt::format("and {} more, in jobs.csv", count - most));
+  return lines;
+}
+
 std::vector<std::string> write_sweep_tables(const Sweep& sweep, const SweepFolder& folder, JobResults results) {
   const std::string report = fmt::format(
       "# Sweep {}\n\n{} of {}, seeds {}. {}. Values are means over the seeds, ± the standard deviation of a "
-      "sample.\n\n",
+      "sample. points.csv has 95 % intervals of the means.\n\n",
       sweep.name, counted(sweep.points(), "point"), std::filesystem::path(sweep.scenario).filename().string(),
       seeds_text(sweep), text_of(counts_of(results)));
   std::vector<std::string> files{folder.file("jobs.csv"), folder.file("points.csv"), folder.file("report.md")};
   write_whole(files[0], csv_of_jobs(sweep, results));
   write_whole(files[1], csv_of_points(sweep, results));
-  write_whole(files[2], report + markdown_of_points(sweep, results, 1000));
+  std::string missing;
+  for (const std::string& line : missing_values(results, 1000)) missing += "- " + line + "\n";
+  if (!missing.empty())
+    missing = "\nResults that are no finite numbers, which means and intervals leave out:\n\n" + missing;
+  write_whole(files[2], report + markdown_of_points(sweep, results, 1000) + missing);
   return files;
 }
 

@@ -25,10 +25,16 @@ std::string text_of(const JobCounts& counts);
 /// `job,point,PARAMETERS,seed,status,METRICS,simulated_s,hash,message`.
 std::string csv_of_jobs(const Sweep& sweep, JobResults results);
 /// `point,PARAMETERS,jobs,pass,missed,none,failed,missing`, and of each metric `_mean,_std,_min,_max` over the seeds
-/// that have a value; the sample deviation is empty for a single one.
+/// that have a value; the sample deviation is empty for a single one. Then `met,met_low95,met_high95`, the part of the
+/// jobs that met their expectations, and of each metric `_n,_low95,_high95`: the number of finite values, and the 95 %
+/// interval of their mean (of a metric that is 0 or 1, that of a proportion).
 std::string csv_of_points(const Sweep& sweep, JobResults results);
 /// The same for readers, as Markdown. @param most rows; more are cut, and say so
 std::string markdown_of_points(const Sweep& sweep, JobResults results, std::size_t most);
+
+/// "job 4: mean_error is inf", or "is empty": the results that means and intervals leave out, but for metrics that no
+/// job has and failed and missing jobs. @param most lines; the last says how many are left out
+std::vector<std::string> missing_values(JobResults results, std::size_t most);
 
 /// Writes jobs.csv, points.csv and report.md. @return their paths
 std::vector<std::string> write_sweep_tables(const Sweep& sweep, const SweepFolder& folder, JobResults results);

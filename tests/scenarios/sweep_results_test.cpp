@@ -101,6 +101,21 @@ TEST(SweepFolder, AFileThatCannotBeReplacedLeavesNoPart) {
   EXPECT_EQ(std::distance(fs::directory_iterator(path), {}), 1);
 }
 
+/// Each row of points.csv up to its column `met`, and the numbers behind it.
+std::vector<std::pair<std::string, std::vector<double>>> table_rows(const std::string& text) {
+  std::vector<std::pair<std::string, std::vector<double>>> rows;
+  for (std::size_t at = text.find('\n') + 1; at < text.size(); at = text.find('\n', at) + 1) {
+    const std::string row = text.substr(at, text.find('\n', at) - at);
+    std::size_t from = row.size();
+    for (int k = 0; k < 8; ++k) from = row.rfind(',', from - 1);
+    std::vector<double> numbers;
+    for (std::size_t k = from; k != std::string::npos; k = row.find(',', k + 1))
+      numbers.push_back(std::strtod(row.c_str() + k + 1, nullptr));
+    rows.emplace_back(row.substr(0, from), numbers);
+  }
+  return rows;
+}
+
 TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
   const Sweep sweep = two_points();
   std::vector<std::optional<JobResult>> results(4);
@@ -114,12 +129,31 @@ TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
             "1,0,\"a, b\",2,missed,4,,2.5,ffffffffffffffff,\"x: expected <= 2, got 4\"\n"
             "2,1,c|d,1,failed,,,,,\"it said \"\"no\"\"\"\n"
             "3,1,c|d,2,missing,,,,,\n");
-  // Mean 2.5, deviation 1.5 sqrt(2); nothing where no job has a value.
-  EXPECT_EQ(csv_of_points(sweep, results),
+  // Mean 2.5, deviation 1.5 sqrt(2), half an interval 12.7062 times 1.5; nothing where no job has a value. One job of
+  // two met its expectations, and none of one.
+  const std::string text = csv_of_points(sweep, results);
+  EXPECT_EQ(text.substr(0, text.find('\n')),
             "point,name_of,jobs,pass,missed,none,failed,missing,x_mean,x_std,x_min,x_max,y of r1_mean,y of r1_std,y of "
-            "r1_min,y of r1_max\n"
-            "0,\"a, b\",2,1,1,0,0,0,2.5,2.1213203435596424,1,4,,,,\n"
-            "1,c|d,2,0,0,0,1,1,,,,,,,,\n");
+            "r1_min,y of r1_max,met,met_low95,met_high95,x_n,x_low95,x_high95,y of r1_n,y of r1_low95,y of r1_high95");
+  const auto rows = table_rows(text);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].first, "0,\"a, b\",2,1,1,0,0,0,2.5,2.1213203435596424,1,4,,,,,0.5");
+  EXPECT_EQ(rows[1].first, "1,c|d,2,0,0,0,1,1,,,,,,,,,0");
+  EXPECT_NEAR(rows[0].second[0], 0.09453, 1e-5);  // Wilson, 1 of 2
+  EXPECT_NEAR(rows[0].second[1], 0.90547, 1e-5);
+  EXPECT_EQ(rows[0].second[2], 2.0);
+  EXPECT_NEAR(rows[0].second[3], 2.5 - 1.5 * 12.70620473617471, 1e-9);
+  EXPECT_NEAR(rows[0].second[4], 2.5 + 1.5 * 12.70620473617471, 1e-9);
+  EXPECT_EQ(rows[0].second[5], 0.0) << "no value of y";
+  EXPECT_NEAR(rows[1].second[1], 0.79345, 1e-5);  // 0 of 1
+  EXPECT_TRUE(missing_values(results, 10).empty()) << "no job has a y";
+  results[0]->metrics[1].value = std::numeric_limits<double>::infinity();
+  results[3] = result_of_job(JobStatus::passed, 1.0, 2.0);
+  EXPECT_EQ(missing_values(results, 10),
+            (std::vector<std::string>{"job 0: y of r1 is inf", "job 1: y of r1 is empty"}));
+  EXPECT_EQ(missing_values(results, 1).back(), "and 1 more, in jobs.csv");
+  results[0]->metrics[1].value = std::nan("");
+  results[3].reset();
   EXPECT_EQ(markdown_of_points(sweep, results, 1),
             "| point | name_of | pass | missed | failed | missing | x |\n|---|---|---|---|---|---|---|\n"
             "| 0 | a, b | 1 | 1 | 0 | 0 | 2.5 ± 2.1 |\n\nMore in points.csv: 1 point.\n");
