@@ -268,15 +268,38 @@ CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& he
   return app.add_option("-o,--out", file, help)->check(picture())->type_name("FILE");
 }
 
+namespace {
+
+void refuse_large_font(const viz::Page& page) {
+  if (page.width == 0.0 || page.width >= viz::kWidthPerPoint * page.font_size) return;
+  throw CLI::ValidationError(
+      "--font-size",
+      fmt::format("{:g} points need a width of {:g} mm or more; --size {:g} has room for {:.3g} points", page.font_size,
+                  viz::kWidthPerPoint * page.font_size, page.width, page.width / viz::kWidthPerPoint));
+}
+
+}  // namespace
+
 void add_page(CLI::App& app, PageOption& o) {
   app.add_option_function<std::string>(
          "--size",
          [&o](const std::string& text) {
            if (const auto size = read_size(text)) o.page.width = size->x, o.page.height = size->y;
+           refuse_large_font(o.page);
          },
-         "Width of the picture on paper, or width and greatest height [mm]; 85 is one column (default: 226 or so)")
-      ->check(readable(read_size, "W or WxH [mm] with W from 85 to 1000 and H from 60 to 1000, such as 85 or 170x120"))
+         "Width of the picture on paper, or width and greatest height [mm]; 88 is one column (default: 226 or so)")
+      ->check(readable(read_size, "W or WxH [mm] with W from 50 to 1000 and H from 30 to 1000, such as 88 or 170x120"))
       ->type_name("W[xH]")
+      ->group("Picture");
+  app.add_option_function<double>(
+         "--font-size",
+         [&o](const double& points) {
+           o.page.font_size = points;
+           refuse_large_font(o.page);
+         },
+         "Size of the letters of axes and legends [pt], with which lines and marks grow (default: 7.2)")
+      ->check(number(5.0, 24.0))
+      ->type_name("PT")
       ->group("Picture");
   app.add_option("--dpi", o.page.dpi, "Dots per inch of PNG pictures (default: 180)")
       ->check(number(50.0, 1200.0))
@@ -284,6 +307,20 @@ void add_page(CLI::App& app, PageOption& o) {
       ->group("Picture");
   app.add_flag_callback(
          "--no-title", [&o] { o.page.title = false; }, "Neither title nor subtitle, for a caption's sake")
+      ->group("Picture");
+}
+
+void add_line_styles(CLI::App& app, PageOption& o) {
+  add_choice<bool, bool>(app, "--line-styles", o.page.line_styles, {{"varied", true}, {"solid", false}},
+                         "Dashes of curves: varied (known without colours, too) or solid (default: varied)")
+      ->group("Picture");
+}
+
+void add_map_colors(CLI::App& app, PageOption& o) {
+  using viz::MapColors;
+  add_choice<MapColors, MapColors>(
+      app, "--map-colors", o.page.map_colors, {{"ros", MapColors::ros}, {"thesis", MapColors::thesis}},
+      "Colours of occupancy maps: ros (greys: occupied black, free white) or thesis (occupied blue) (default: ros)")
       ->group("Picture");
 }
 

@@ -86,8 +86,12 @@ void add_bridges(CLI::App& app, BridgeOptions& o);
 /// `--out FILE` of one picture.
 CLI::Option* add_picture(CLI::App& app, std::string& file,
                          const std::string& help = "Picture to write: .png, .svg or .pdf");
-/// `--size`, `--dpi` and `--no-title`.
+/// `--size`, `--font-size`, `--dpi` and `--no-title`.
 void add_page(CLI::App& app, PageOption& o);
+/// `--line-styles` of figures with curves.
+void add_line_styles(CLI::App& app, PageOption& o);
+/// `--map-colors` of occupancy maps.
+void add_map_colors(CLI::App& app, PageOption& o);
 /// `--extent` of figures of a world.
 void add_extent(CLI::App& app, PageOption& o);
 /// `--format` of pictures in a folder.

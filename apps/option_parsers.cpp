@@ -154,8 +154,8 @@ std::optional<glm::dvec2> read_size(const std::string& text) {
   const auto width = read_coordinates(text.substr(0, x), 1);
   const auto height =
       x == std::string::npos ? std::optional(std::vector{0.0}) : read_coordinates(text.substr(x + 1), 1);
-  if (!width || !height || width->front() < 85.0 || width->front() > 1000.0) return std::nullopt;
-  if (x != std::string::npos && (height->front() < 60.0 || height->front() > 1000.0)) return std::nullopt;
+  if (!width || !height || width->front() < 50.0 || width->front() > 1000.0) return std::nullopt;
+  if (x != std::string::npos && (height->front() < 30.0 || height->front() > 1000.0)) return std::nullopt;
   return glm::dvec2{width->front(), height->front()};
 }
 

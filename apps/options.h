@@ -20,6 +20,7 @@
 #include "scenarios/plant.h"
 #include "scenarios/tradeoff.h"
 #include "sensors/sensor_type.h"
+#include "viz/interval_figure.h"
 #include "viz/paths.h"
 #include "viz/picture_file.h"
 #include "world/world.h"
@@ -198,10 +199,19 @@ struct SenseOptions : WorldOptions, JsonOption, DeviceOption, NoReturnOption {
   std::uint32_t sensor = 0;        ///< among its sensors of that type
 };
 
-struct PlotOptions : RecordingOption, PartOption, DeviceOption, PageOption, VideoOptions {
-  std::string out;             ///< folder; empty: the recording's
-  std::string format = "png";  ///< suffix of the pictures
-  bool csv = false;            ///< the curves as CSV files, too
+/// The choices of a user about plots of sweeps.
+struct SweepPlotOptions {
+  std::string over;  ///< parameter along x; empty: the first with numbers that differ
+  viz::AxisScale x_axis = viz::AxisScale::automatic;
+};
+
+struct PlotOptions : RecordingOption, PartOption, DeviceOption, PageOption, SweepPlotOptions, VideoOptions {
+  std::string out;                      ///< folder; empty: the recording's
+  std::string format = "png";           ///< suffix of the pictures
+  bool csv = false;                     ///< the curves as CSV files, too
+  std::vector<std::string> labels;      ///< robots named in the trajectories, or "all"
+  std::vector<std::uint32_t> elements;  ///< of sensors, as curves; empty: all
+  bool curves = false;                  ///< readings of many elements as curves in place of heat maps
 };
 
 struct ExportOptions : RecordingOption, PartOption, DeviceOption {
@@ -366,6 +376,7 @@ struct SweepOptions : DeviceOption, InProcessOption {
   bool list = false;                ///< print the points
   bool retry = false;               ///< failed jobs once more
   bool merge = false;               ///< write the tables of what is there
+  bool plots = true;                ///< draw its metrics
   bool slurm = false;               ///< write a batch script
   std::uint64_t tasks = 100;        ///< of its job array, at most
   std::vector<std::string> sbatch;  ///< its options of sbatch

@@ -19,8 +19,10 @@
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "scenarios/experiment.h"
 #include "scenarios/recorded_states.h"
+#include "scenarios/sweep_plots.h"
 #include "viz/lights_figure.h"
 #include "viz/occupancy_figure.h"
 #include "viz/scan_map.h"
@@ -29,6 +31,8 @@
 namespace sf::apps {
 
 namespace {
+
+constexpr std::size_t kLargestTable = 1u << 30;  // bytes of jobs.csv
 
 std::vector<viz::Track> tracks_of(const RecordingPart& part, const world::World& world) {
   std::vector<viz::Track> tracks;
@@ -86,11 +90,27 @@ struct Written {
   }
 };
 
+/// @throws base::InputError for the name of a robot that is not drawn
+viz::TrackLabels labels_of(const RecordingPart& part, const PlotOptions& options,
+                           const std::vector<viz::Track>& tracks) {
+  if (options.labels == std::vector<std::string>{"all"}) return {.all = true, .names = {}};
+  std::vector<std::string_view> names;
+  for (const viz::Track& track : tracks) names.push_back(track.name);
+  for (const std::string& label : options.labels)
+    if (std::find(names.begin(), names.end(), label) == names.end())
+      throw base::InputError(part.recording.file, 0,
+                             fmt::format("--label: no robot '{}' is drawn; there is {}", label, list_names(names)));
+  return {.all = false, .names = options.labels};
+}
+
 void draw_paths(const RecordingPart& part, const world::World& world, const PlotOptions& options,
                 const std::string& folder) {
   const std::string trajectories = folder + "/trajectories." + options.format;
-  viz::draw_trajectories(world, tracks_of(part, world), trajectories, "robot", options.page);
+  const std::vector<viz::Track> tracks = tracks_of(part, world);
+  viz::draw_trajectories(world, tracks, trajectories, "robot", options.page, labels_of(part, options, tracks));
   Written{}(trajectories);
+  if (tracks.size() > viz::kLabelledTracks && options.labels.empty())
+    print_message("{} robots have no labels in it; --label NAME,... or --label all names them", tracks.size());
   if (options.csv) Written{}(write_trajectories_csv(part, folder));
 }
 
@@ -119,8 +139,29 @@ void draw_occupancy(const RecordingPart& part, const world::World& world, const 
 
 }  // namespace
 
+namespace {
+
+/// A folder of `sweep`.
+int plot_sweep(const PlotOptions& options, const std::string& jobs) {
+  if (!options.robots.empty() || !options.labels.empty() || !options.elements.empty() || options.curves || options.csv)
+    throw base::InputError(options.recording, 0,
+                           "is a sweep's folder; --robots, --label, --elements, --curves and --csv go with recordings");
+  const std::string folder = options.out.empty() ? options.recording + "/plots" : options.out;
+  const scenarios::SweepPlots plots = scenarios::draw_sweep(
+      jobs, base::read_text(jobs, kLargestTable), folder, {options.over, options.x_axis, options.format, options.page});
+  for (const std::string& note : plots.notes) print_message(note);
+  for (const std::string& file : plots.files) Written{}(file);
+  return 0;
+}
+
+}  // namespace
+
 int plot(const PlotOptions& options) {
   install_stop_handlers();
+  if (const std::string jobs = options.recording + "/jobs.csv"; std::filesystem::is_regular_file(jobs))
+    return plot_sweep(options, jobs);
+  if (!options.over.empty() || options.x_axis != viz::AxisScale::automatic)
+    throw base::InputError(options.recording, 0, "--over and --x-axis go with the folder of a sweep");
   RecordingPart part = open_part(options.recording, options);
   if (!options.video.empty()) return write_recorded_video(part, options, options.device), 0;
   const world::World world = scenarios::recorded_world(part.recording);
@@ -129,7 +170,7 @@ int plot(const PlotOptions& options) {
   scenarios::make_folder(folder);
 
   draw_paths(part, world, options, folder);
-  for (const std::string& file : draw_readings(part.recording, options, folder)) Written{}(file);
+  for (const std::string& file : draw_readings(part.recording, world, options, folder)) Written{}(file);
   draw_lights(part, world, options, folder);
   for (const std::string& file : draw_maps(part.recording, world, options, folder)) Written{}(file);
   draw_occupancy(part, world, options, folder);

@@ -58,6 +58,7 @@ void add_field(CLI::App& app, Call& call) {
       ->type_name("Z");
   add_picture(*sub, o.out)->required();
   add_page(*sub, o);
+  add_line_styles(*sub, o);
   sub->add_option_function<std::string>(
          "--line", [&o](const std::string& text) { o.line = read_line(text); },
          "Ends of the profile's line [m] (default: along the magnets)")
@@ -97,14 +98,16 @@ void add_sense(CLI::App& app, Call& call) {
 }
 
 void add_plot(CLI::App& app, Call& call) {
-  CLI::App* sub =
-      app.add_subcommand("plot", "Draw trajectories, an occupancy map, readings and lights from a recorded run");
+  CLI::App* sub = app.add_subcommand(
+      "plot", "Draw trajectories, an occupancy map, readings and lights from a recorded run, or metrics of a sweep");
   auto& o = add_command(*sub, call, plot, [sub] {
-    for (const std::string option : {"--out", "--format", "--csv", "--size", "--dpi", "--no-title", "--extent"})
+    for (const std::string option : {"--out", "--format", "--csv", "--size", "--dpi", "--no-title", "--extent",
+                                     "--font-size", "--label", "--elements", "--curves", "--over", "--x-axis"})
       if (sub->count(option) > 0 && sub->count("--video") > 0)
         throw CLI::ValidationError(option, "is of figures, and --video writes a video alone");
   });
-  add_examples(*sub, {"out/run", "out/run -o figures --format pdf --size 85 --no-title --robots robot1,robot2"});
+  add_examples(*sub, {"out/run", "out/run -o figures --format pdf --size 88 --no-title --robots robot1,robot2",
+                      "out/sweep --format pdf --size 88"});
   add_recording(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
       ->check(not_empty("a folder"))
@@ -112,7 +115,34 @@ void add_plot(CLI::App& app, Call& call) {
   add_format(*sub, o.format);
   sub->add_flag("--csv", o.csv, "Write every plotted curve as a CSV file beside its figure")->group("Picture");
   add_page(*sub, o);
+  add_line_styles(*sub, o);
+  add_map_colors(*sub, o);
   add_extent(*sub, o);
+  sub->add_option("--label", o.labels,
+                  "Robots to name in the trajectories, in colours over the others, or all (default: up to ten)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(not_empty("the name of a robot, or all"))
+      ->type_name("NAME,...");
+  auto* elements =
+      sub->add_option("--elements", o.elements,
+                      "Elements of sensors to draw, as curves (default: all; of more than seven a heat map)")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(whole(0, UINT32_MAX))
+          ->type_name("N,...");
+  sub->add_flag("--curves", o.curves, "Readings of many elements as curves in place of heat maps")->excludes(elements);
+  constexpr const char* kSweeps = "Sweeps (docs/sweeps.md)";
+  sub->add_option("--over", o.over, "Parameter along x (default: the first whose values are numbers and differ)")
+      ->check(not_empty("the name of a parameter"))
+      ->type_name("PARAMETER")
+      ->group(kSweeps);
+  using viz::AxisScale;
+  add_choice<AxisScale, AxisScale>(
+      *sub, "--x-axis", o.x_axis,
+      {{"auto", AxisScale::automatic}, {"linear", AxisScale::linear}, {"log", AxisScale::logarithmic}},
+      "Scale of x: auto is log where successive values have about equal ratios (default: auto)")
+      ->group(kSweeps);
   add_video(*sub, o, "Video to write in place of the pictures (VP9 in WebM, by FFmpeg)");
   add_part(*sub, o);
   add_device(*sub, o);

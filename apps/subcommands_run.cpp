@@ -451,6 +451,7 @@ void add_map(CLI::App& app, Call& call) {
   sub->add_flag("--merge", o.merge, "Merge all maps: a cell that any robot saw occupied is occupied");
   add_picture(*sub, o.out, "Picture to write at the end: .png, .svg or .pdf; without --merge one per map");
   add_page(*sub, o);
+  add_map_colors(*sub, o);
   add_until(*sub, o, "Stop after this long [s] (0: at --silence or Ctrl-C)");
   sub->add_flag("--once", o.once, "Stop when every port has received a complete map");
   add_silence(*sub, o);

@@ -100,6 +100,9 @@ void add_sweep(CLI::App& app, Call& call) {
                     ->excludes(list)
                     ->excludes(share)
                     ->excludes(retry);
+  sub->add_flag_callback(
+         "--no-plots", [&o] { o.plots = false; }, "Tables alone; `plot DIR` draws the plots later")
+      ->excludes(list);
   auto* slurm =
       sub->add_flag("--slurm", o.slurm, "Run nothing: write the batch script of a Slurm job array for what is missing")
           ->excludes(list)

@@ -18,6 +18,7 @@
 #include "apps/stop_signals.h"
 #include "apps/text.h"
 #include "base/error.h"
+#include "scenarios/sweep_plots.h"
 #include "scenarios/sweep_results.h"
 #include "scenarios/sweep_tables.h"
 
@@ -138,13 +139,22 @@ void print_failures(const Results& results) {
   if (count > kMost) print_message("{} more: see jobs.csv", counted(count - kMost, "job"));
 }
 
-int write_tables(const Sweep& sweep, const SweepFolder& folder, const Results& results) {
+/// Into `plots` of the folder.
+void draw_plots(const SweepFolder& folder, const std::string& jobs) {
+  const scenarios::SweepPlots plots = scenarios::draw_sweep(folder.file("jobs.csv"), jobs, folder.file("plots"), {});
+  for (const std::string& note : plots.notes) print_message(note);
+  if (!plots.files.empty()) print_message("wrote {} in {}", counted(plots.files.size(), "plot"), folder.file("plots"));
+}
+
+int write_tables(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder, const Results& results) {
   install_stop_handlers();  // the tables are written whole, whatever comes
   const std::vector<std::string> files = write_sweep_tables(sweep, folder, results);
   const scenarios::JobCounts counts = scenarios::counts_of(results);
   print(markdown_of_points(sweep, results, kRowsShown) + "\n" + text_of(counts) + "\n");
   print_failures(results);
+  for (const std::string& line : scenarios::missing_values(results, 10)) print_message("left out of means: {}", line);
   for (const std::string& file : files) print_message("wrote {}", file);
+  if (options.plots) draw_plots(folder, csv_of_jobs(sweep, results));
   return counts.good() ? 0 : 1;
 }
 
@@ -212,7 +222,7 @@ int sweep(const SweepOptions& options) {
     }
   }
   const bool complete = scenarios::counts_of(results).missing == 0;
-  if (complete || options.merge) return write_tables(sweep, folder, results);
+  if (complete || options.merge) return write_tables(options, sweep, folder, results);
   return report_share(options, results, share);
 }
 

@@ -71,7 +71,7 @@ TEST(Map, ComesFromARunInBothForms) {
     expect_map(outcome.out, 20, 16);
     EXPECT_NE(outcome.err.find("3 complete maps, 0 incomplete"), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.err.find("true poses") != std::string::npos, wire == "farm") << outcome.err;
-    scenes::expect_painted(folder.path(wire + ".png"), {{0xFF1748D1u, 16}, {0xFF474B50u, 300}, {0xFFFFFFFFu, 300}});
+    scenes::expect_painted(folder.path(wire + ".png"), {{0xFF000000u, 16}, {0xFFCDCDCDu, 300}, {0xFFFEFEFEu, 300}});
   }
 }
 
@@ -224,7 +224,7 @@ TEST(Map, IsDrawnFromARecording) {
   const Outcome outcome = run_program({"plot", folder.path("r")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("map.png"), std::string::npos) << outcome.err;
-  scenes::expect_painted(folder.path("r/map.png"), {{0xFF1748D1u, 16}, {0xFF474B50u, 300}, {0xFFFFFFFFu, 300}});
+  scenes::expect_painted(folder.path("r/map.png"), {{0xFF000000u, 16}, {0xFFCDCDCDu, 300}, {0xFFFEFEFEu, 300}});
   ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", folder.path("q")}).code, 0);
   EXPECT_EQ(run_program({"plot", folder.path("q")}).err.find("map.png"), std::string::npos) << "no readings, no map";
 }

@@ -38,7 +38,7 @@ std::string hash(const std::string& world, const Words& more) { return run(world
 void expect_pictures(const std::string& folder) {
   scenes::expect_painted(folder + "/trajectories.png", {{0xFF0072B2u, 60}, {0xFFD55E00u, 60}, {0xFF009E73u, 60}});
   // Occupied, unexplored, free.
-  scenes::expect_painted(folder + "/occupancy.png", {{0xFF1748D1u, 500}, {0xFF474B50u, 5000}, {0xFFFFFFFFu, 5000}});
+  scenes::expect_painted(folder + "/occupancy.png", {{0xFF000000u, 500}, {0xFFCDCDCDu, 5000}, {0xFFFEFEFEu, 5000}});
 }
 
 /// Until the recording holds more than the world: the loop is running then.
@@ -379,7 +379,7 @@ TEST(Run, ItsPictureIsOfItsRobots) {
   EXPECT_LT(tracks.size(), recording.states.size());
   viz::draw_trajectories(world, tracks, folder.path("expected.png"));
   EXPECT_TRUE(read_file(folder.path("r/trajectories.png")) == read_file(folder.path("expected.png")));
-  scenes::expect_painted(folder.path("r/occupancy.png"), {{0xFF1748D1u, 4000}});  // what stands still is occupied
+  scenes::expect_painted(folder.path("r/occupancy.png"), {{0xFF000000u, 4000}});  // what stands still is occupied
 }
 
 /// A scan a simulated second: at a tick of 0.1 s, of the first tick and of the eleventh.

@@ -253,14 +253,14 @@ TEST(Usage, ThePicturesSuffixIsItsFormat) {
 TEST(Usage, SizesOfPicturesHaveBounds) {
   const Folder folder;
   const std::string world = our_world("six_magnets.world"), file = folder.path("x.png");
-  for (const char* size : {"84", "1001", "85x59", "85x1001", "85x", "x60", "85,60", "wide", "nan", "85x60x70", ""})
-    expect_refused({"draw", world, "-o", file, "--size", size}, "such as 85 or 170x120");
+  for (const char* size : {"49.9", "1001", "85x29.9", "85x1001", "85x", "x60", "85,60", "wide", "nan", "85x60x70", ""})
+    expect_refused({"draw", world, "-o", file, "--size", size}, "such as 88 or 170x120");
   for (const char* dpi : {"49", "1201", "nan"})
     expect_refused({"draw", world, "-o", file, "--dpi", dpi}, "from 50 to 1200");
   expect_refused({"draw", world, "-o", file, "--extent", "1,1,0,2"}, "expected XMIN,YMIN,XMAX,YMAX");  // turned round
   expect_refused({"draw", world, "-o", file, "--size", "1000", "--dpi", "1200"}, "fewer dots per inch");
   EXPECT_FALSE(std::filesystem::exists(file));
-  for (const char* size : {"85", "1000x60"})  // the smallest, and the widest with the lowest
+  for (const char* size : {"50", "1000x30"})  // the smallest, and the widest with the lowest
     EXPECT_EQ(run_program({"draw", world, "-o", file, "--size", size, "--dpi", "50"}).code, 0) << size;
 }
 

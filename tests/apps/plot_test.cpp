@@ -1,0 +1,169 @@
+// `plot` and the plots of `sweep` as an author of a paper types them.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/apps/program.h"
+
+namespace sf {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Eleven robots, of which the first has a ring of 16 sonars, a bumper and two magnetometer elements.
+std::string world_text() {
+  std::string text =
+      "define magnet model( size [0.025 0.025 0.1] magnetic_moment 10000 )\n"
+      "model( name \"room\" size [9 9 1] boundary 1 obstacle_return 1 ) magnet( pose [-1 -2 0 0] )\n"
+      "position( name \"one\" pose [-2 -2 0 10] laser( samples 181 fov 180 range_max 3 rate 2 )\n"
+      "  bumper( ) sonar( scount 16 range [0.1 4] ";
+  for (int i = 0; i < 16; ++i) text += "spose[" + std::to_string(i) + "] [0.1 0 " + std::to_string(90 - 12 * i) + "] ";
+  text +=
+      ")\n  magnetometer( pose [0.3 0 -0.1 0] size [0.02 0.3 0.1] scount 2 spose[0] [0 0.1 0] spose[1] [0 -0.1 0] ) "
+      ")\n";
+  for (int i = 2; i <= 11; ++i)
+    text += "position( name \"other" + std::to_string(i) + "\" pose [" + std::to_string(i - 6) + " 3 0 270] )\n";
+  return text;
+}
+
+class PaperFigures : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new Folder;
+    const Outcome ran = run_program({"run", folder_->write("w.world", world_text()), "--duration", "3", "--record",
+                                     folder_->path("r"), "--record-readings"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+
+  /// Plots with these words, and returns one of the figures.
+  static std::string figure(const std::string& name, Words words = {}) {
+    words.insert(words.begin(), {"plot", folder_->path("r"), "-o", folder_->path("p"), "--format", "svg"});
+    const Outcome plotted = run_program(words);
+    EXPECT_EQ(plotted.code, 0) << plotted.err;
+    return read_file(folder_->path("p/" + name + ".svg"));
+  }
+  static std::string refusal(Words words) {
+    words.insert(words.begin(), {"plot", folder_->path("r"), "-o", folder_->path("p")});
+    const Outcome plotted = run_program(words);
+    EXPECT_EQ(plotted.code, 2) << plotted.err;
+    return plotted.err;
+  }
+  static Folder* folder_;
+};
+Folder* PaperFigures::folder_ = nullptr;
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_F(PaperFigures, ManyElementsAreAHeatMapOrChosenCurves) {
+  const std::string map = figure("sonar");
+  EXPECT_TRUE(contains(map, "<image ") && contains(map, ">range [m]<") && contains(map, ">element (bearing)<"));
+  EXPECT_TRUE(contains(map, ">0 (90°)<") && contains(map, ">15 (\u221290°)<")) << "bearings, with true minus signs";
+  EXPECT_TRUE(contains(map, ">no return (≥ 4 m)<") || !contains(map, "no return"));
+  EXPECT_FALSE(contains(figure("sonar", {"--curves"}), "<image "));
+  const std::string chosen = figure("sonar", {"--elements", "0,3,7"});
+  EXPECT_FALSE(contains(chosen, "<image "));
+  for (const char* name : {">one 0<", ">one 3<", ">one 7<"}) EXPECT_TRUE(contains(chosen, name)) << name;
+  EXPECT_FALSE(contains(chosen, ">one 1<"));
+  EXPECT_TRUE(contains(chosen, "stroke-dasharray")) << "known in grey print";
+  EXPECT_FALSE(contains(figure("sonar", {"--elements", "0,3,7", "--line-styles", "solid"}), "stroke-dasharray"));
+  EXPECT_TRUE(
+      contains(refusal({"--elements", "500"}), "has no sensor with an element 500; they are numbered from 0 to 180"));
+  EXPECT_TRUE(contains(figure("laser"), ">element (bearing)<")) << "scans, too";
+}
+
+TEST_F(PaperFigures, CsvOfAHeatMapHasACurvePerElement) {
+  figure("sonar", {"--csv"});
+  const std::string csv = read_file(folder_->path("p/sonar.csv"));
+  EXPECT_TRUE(contains(csv, "\nrange [m],one 0,") && contains(csv, "\nrange [m],one 15,")) << csv.substr(0, 300);
+}
+
+TEST_F(PaperFigures, ADifferenceOfMagnitudesIsNoMagnitude) {
+  const std::string svg = figure("magnetometer");
+  EXPECT_TRUE(contains(svg, ">|B| [G]<") && contains(svg, ">difference of |B| [G]<"));
+}
+
+TEST_F(PaperFigures, ElevenRobotsHaveTheLabelsAskedFor) {
+  EXPECT_FALSE(contains(figure("trajectories"), ">other3<"));
+  const Outcome plotted = run_program({"plot", folder_->path("r"), "-o", folder_->path("p")});
+  EXPECT_TRUE(contains(plotted.err, "11 robots have no labels in it; --label NAME,...")) << plotted.err;
+  const std::string some = figure("trajectories", {"--label", "one,other3"});
+  EXPECT_TRUE(contains(some, ">one<") && contains(some, ">other3<"));
+  EXPECT_FALSE(contains(some, ">other4<"));
+  const std::string all = figure("trajectories", {"--label", "all"});
+  EXPECT_TRUE(contains(all, ">other3<") && contains(all, ">other4<"));
+  EXPECT_TRUE(contains(refusal({"--label", "nobody"}), "--label: no robot 'nobody' is drawn; there is one, other2"));
+  EXPECT_TRUE(contains(figure("trajectories", {"--robots", "one,other3"}), ">other3<")) << "up to ten are named";
+}
+
+TEST_F(PaperFigures, LegendsHaveWhatIsDrawn) {
+  EXPECT_FALSE(contains(figure("trajectories", {"--extent", "-0.5,-0.5,0.5,0.5"}), ">wall<")) << "none in that area";
+  EXPECT_FALSE(contains(figure("occupancy", {"--robots", "one"}), "0.0 %<")) << "no state without a cell";
+}
+
+TEST_F(PaperFigures, OccupancyHasTheGreysOfRos) {
+  EXPECT_TRUE(contains(figure("occupancy"), "fill=\"#cdcdcd\""));
+  EXPECT_TRUE(contains(figure("occupancy", {"--map-colors", "thesis"}), "fill=\"#474b50\""));
+}
+
+TEST_F(PaperFigures, FiguresFitAColumnAndItsLetters) {
+  EXPECT_TRUE(contains(figure("bumper", {"--size", "50", "--font-size", "8"}).substr(0, 300), "width=\"49."));
+  EXPECT_TRUE(contains(figure("bumper", {"--size", "88x40", "--no-title"}).substr(0, 300), "height=\"39."));
+  EXPECT_TRUE(contains(refusal({"--size", "50", "--font-size", "12"}), "12 points need a width of 72 mm or more"));
+  EXPECT_TRUE(contains(refusal({"--font-size", "12", "--size", "50"}), "has room for 8.33 points")) << "in any order";
+  EXPECT_TRUE(contains(refusal({"--size", "49"}), "W from 50 to 1000"));
+  EXPECT_TRUE(contains(refusal({"--size", "50x29"}), "H from 30 to 1000"));
+  EXPECT_TRUE(contains(refusal({"--font-size", "4"}), "--font-size"));
+}
+
+TEST_F(PaperFigures, IntegersAreSteps) {
+  const std::string svg = figure("bumper");
+  EXPECT_TRUE(contains(svg, ">0<") && contains(svg, ">1<")) << "integer ticks";
+}
+
+TEST_F(PaperFigures, OptionsOfSweepsAreRefused) {
+  EXPECT_TRUE(contains(refusal({"--over", "kp"}), "--over and --x-axis go with the folder of a sweep"));
+}
+
+TEST(SweepPlotsCommand, AreDrawnAtItsEndAndAgainByPlot) {
+  const Folder folder;
+  folder.write("small.toml", "world = \"" + our_world("rooms.world") + "\"\nduration = 1\n[expect]\ncontacts = 1000\n");
+  const std::string file = folder.write("sweep.toml",
+                                        "scenario = \"small.toml\"\nseeds = 2\n[grid]\nrobots = [1, 2, 3]\n"
+                                        "link.delay = [0, 0.5]\n");
+  const Outcome ran = run_program({"sweep", file, "-o", folder.path("out")});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(contains(ran.err, " plots in ")) << ran.err;
+  for (const char* name : {"distance.png", "distance_multiples.png", "met.png", "contacts.png"})
+    EXPECT_TRUE(fs::exists(folder.path("out/plots/" + std::string(name)))) << name;
+  EXPECT_FALSE(fs::exists(folder.path("out/plots/mean_error.png"))) << "no job has one";
+  const std::string before = read_file(folder.path("out/plots/distance.png"));
+  fs::remove_all(folder.path("out/plots"));
+  ASSERT_EQ(run_program({"plot", folder.path("out")}, no_device()).code, 0) << "needs no device";
+  EXPECT_EQ(read_file(folder.path("out/plots/distance.png")), before);
+
+  const Outcome paper = run_program({"plot", folder.path("out"), "-o", folder.path("figures"), "--format", "svg",
+                                     "--size", "50", "--font-size", "8", "--over", "link.delay"},
+                                    no_device());
+  ASSERT_EQ(paper.code, 0) << paper.err;
+  const std::string svg = read_file(folder.path("figures/distance.svg"));
+  EXPECT_TRUE(contains(svg, ">link.delay [s]<") && contains(svg, ">distance [m]<") && contains(svg, ">robots = 2<"));
+
+  ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("bare"), "--no-plots"}).code, 0);
+  EXPECT_FALSE(fs::exists(folder.path("bare/plots")));
+  for (const Words& words : {Words{"--over", "kp"}, {"--robots", "one"}, {"--elements", "1"}, {"--label", "one"}}) {
+    Words plot{"plot", folder.path("out")};
+    plot.insert(plot.end(), words.begin(), words.end());
+    const Outcome refused = run_program(plot, no_device());
+    EXPECT_EQ(refused.code, 2) << words[0];
+    EXPECT_EQ(count_lines(refused.err), 1u) << refused.err;
+  }
+}
+
+}  // namespace
+}  // namespace sf
