@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "record/topic_names.h"
 
 namespace sf::record {
 
@@ -17,9 +19,17 @@ namespace {
 
 constexpr std::size_t kMaxChannels = 0xFFFF;
 
-RunInfo named(RunInfo info) {
+RunInfo named(RunInfo info, const RecordingPart& part) {
   SF_CHECK(!info.snapshot.empty(), "a recording without its world");
   SF_CHECK(info.interval > 0.0 && info.odometry_rate >= 0.0, std::to_string(info.interval));
+  const bool has_encoders = std::any_of(info.movers.begin(), info.movers.end(),
+                                        [](const MoverInfo& mover) { return mover.encoder.has_value(); });
+  if (part.parts > 1 && has_encoders && naming_of(info).odometry == OdometrySource::encoders) {
+    // A robot's readings come on the rank that has it, which changes with tiles.
+    Naming exact;
+    exact.odometry = OdometrySource::exact;
+    put_naming(exact, info);
+  }
   name_frames(info);
   if (info.estimated) info.options.emplace_back("states", "estimated");  // read back by decode_run_info
   return info;
@@ -79,7 +89,7 @@ std::optional<JoinedMover> joined_mover_of(const TextPairs& pairs) {
 }
 
 Recorder::Recorder(const std::string& directory, RunInfo info, const RecordingPart& part)
-    : info_(named(std::move(info))),
+    : info_(named(std::move(info), part)),
       file_(directory + "/" + part.file()),
       mcap_("ros2", "sensorfarm " SF_VERSION, part.compression),
       messages_(std::in_place, info_) {
@@ -140,7 +150,7 @@ void Recorder::add_channels() {
 
 void Recorder::add_movers(RunInfo info) {
   SF_CHECK(!finished_ && wanted_.empty(), "movers join a part of a recording, or after its end");
-  info = named(std::move(info));
+  info = named(std::move(info), {});
   check_topics(TickMessages(info));
   const std::size_t known = info_.joined.size();
   const TickMessages before = std::move(*messages_);  // of which only its counts are used

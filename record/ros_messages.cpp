@@ -1,5 +1,6 @@
 #include "record/ros_messages.h"
 
+#include <array>
 #include <cmath>
 
 #include "base/error.h"
@@ -40,16 +41,29 @@ void put_twist(CdrWriter& cdr, const Twist& twist) {
   for (const double value : {twist.forward, twist.left, 0.0, 0.0, 0.0, twist.turn}) cdr.put(value);
 }
 
+/// 6 x 6 of x, y, z and turns about them, from x, y and the turn about z: xx, xy, x yaw, yy, y yaw, yaw yaw.
+void put_planar(CdrWriter& cdr, const std::array<double, 6>& P, double fixed) {
+  std::array<double, 36> all{};
+  constexpr std::size_t kAxes[3] = {0, 1, 5};
+  for (std::size_t i = 0, k = 0; i < 3; ++i)
+    for (std::size_t j = i; j < 3; ++j, ++k) all[6 * kAxes[i] + kAxes[j]] = all[6 * kAxes[j] + kAxes[i]] = P[k];
+  for (const std::size_t axis : {2, 3, 4}) all[7 * axis] = fixed;
+  for (const double value : all) cdr.put(value);
+}
+
 }  // namespace
 
-void encode_odometry(const Transform& transform, const Twist& velocity, Bytes& out) {
+void encode_odometry(const Transform& transform, const Twist& velocity, const OdometryCovariance& covariance,
+                     Bytes& out) {
+  const auto& [xx, xy, xa, yy, ya, aa] = covariance.pose;
+  const auto& [ff, ft, tt] = covariance.twist;
   CdrWriter cdr(out);
   put_header(cdr, transform.time, transform.parent);
   cdr.put(transform.child);
   put_pose(cdr, transform.X_PC);
-  put_zeros(cdr, 36);
+  put_planar(cdr, {xx, xy, xa, yy, ya, aa}, covariance.fixed);
   put_twist(cdr, velocity);
-  put_zeros(cdr, 36);
+  put_planar(cdr, {ff, 0.0, ft, covariance.fixed, 0.0, tt}, covariance.fixed);
 }
 
 void encode_twist(std::int64_t time, std::string_view frame, const Twist& twist, Bytes& out) {

@@ -14,6 +14,7 @@
 #include "base/pose.h"
 #include "base/state_quality.h"
 #include "record/cdr.h"
+#include "record/odometry.h"
 
 namespace sf::record {
 
@@ -46,9 +47,9 @@ void put_pose(CdrWriter& cdr, const base::Pose& pose);
 /// `count` zeros, as of a covariance that is zero or unknown.
 void put_zeros(CdrWriter& cdr, int count);
 
-/// True state, not wheel odometry: the covariances are zero.
-/// @param velocity in the child frame.
-void encode_odometry(const Transform& transform, const base::Twist& velocity, base::Bytes& out);
+/// @param velocity in the child frame
+void encode_odometry(const Transform& transform, const base::Twist& velocity, const OdometryCovariance& covariance,
+                     base::Bytes& out);
 
 void encode_twist(std::int64_t time, std::string_view frame, const base::Twist& twist, base::Bytes& out);
 

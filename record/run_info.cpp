@@ -1,8 +1,6 @@
 #include "record/run_info.h"
 
 #include <algorithm>
-#include <cctype>
-#include <map>
 
 #include "base/error.h"
 #include "record/cdr.h"
@@ -10,27 +8,6 @@
 namespace sf::record {
 
 namespace {
-
-/// ROS names: letters, digits, '_'; no digit first.
-std::string ros_name(const std::string& name, const std::string& otherwise) {
-  std::string text;
-  for (const char c : name) text += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  if (text.empty()) return otherwise;
-  return std::isdigit(static_cast<unsigned char>(text[0])) != 0 ? "_" + text : text;
-}
-
-/// Names in use, each with the next number for a duplicate.
-using Taken = std::map<std::string, int>;
-
-std::string unique(const std::string& name, Taken& taken) {
-  const auto [known, is_new] = taken.try_emplace(name, 2);
-  if (is_new) return name;
-  std::string candidate;
-  do {
-    candidate = name + "_" + std::to_string(known->second++);
-  } while (!taken.try_emplace(candidate, 2).second);
-  return candidate;
-}
 
 void put_plain_pose(CdrWriter& cdr, const base::Pose& pose) {
   for (const double value : {pose.x, pose.y, pose.z, pose.yaw}) cdr.put(value);
@@ -99,34 +76,6 @@ SensorInfo get_sensor(CdrReader& cdr, bool is_scan) {
   return sensor;
 }
 
-const char* name_of(StandardTopic::Message message) {
-  switch (message) {
-    case StandardTopic::Message::range:
-      return "range";
-    case StandardTopic::Message::magnetic_field:
-      return "field";
-    case StandardTopic::Message::fix:
-      return "fix";
-    case StandardTopic::Message::imu:
-      return "imu";
-    case StandardTopic::Message::map:
-      return "map";
-  }
-  return "";
-}
-
-/// "/robot/sonar/range_3" and the frame "robot/sonar/range_3"; of a sensor of one element "/robot/gps/fix" in the frame
-/// "robot/gps".
-void name_standard_topics(SensorInfo& sensor) {
-  const std::string frame = frame_of(sensor);
-  for (StandardTopic& each : sensor.standard) {
-    const std::string name = name_of(each.message);
-    const bool single = sensor.standard.size() == 1;
-    each.frame = single ? frame : frame + "/" + name + "_" + std::to_string(each.element);
-    each.topic = "/" + (single ? frame + "/" + name : each.frame);
-  }
-}
-
 const SensorTypeInfo& type_of(const RunInfo& info, const SensorInfo& sensor) {
   const SensorTypeInfo* type = find_sensor_type(info, sensor.type);
   SF_CHECK(type != nullptr, "sensor type " + std::to_string(sensor.type));
@@ -135,7 +84,7 @@ const SensorTypeInfo& type_of(const RunInfo& info, const SensorInfo& sensor) {
 
 void put_mover(CdrWriter& cdr, const RunInfo& info, const MoverInfo& mover) {
   cdr.put(std::string_view(mover.name));
-  cdr.put(std::string_view(mover.frame));
+  cdr.put(std::string_view(mover.base_frame));
   cdr.put(mover.id);
   for (const bool scans : {true, false}) {
     const auto listed = [&](const SensorInfo& sensor) { return type_of(info, sensor).is_scan == scans; };
@@ -149,7 +98,7 @@ MoverInfo get_mover(CdrReader& cdr) {
   constexpr std::size_t kLeastLaser = 80, kLeastSensor = 50;  // [byte]
   MoverInfo mover;
   mover.name = cdr.get_string();
-  mover.frame = cdr.get_string();
+  mover.base_frame = cdr.get_string();
   mover.id = cdr.get<std::uint32_t>();
   for (const bool scans : {true, false})
     for (std::size_t left = cdr.get_count(scans ? kLeastLaser : kLeastSensor); left > 0; --left)
@@ -158,8 +107,6 @@ MoverInfo get_mover(CdrReader& cdr) {
 }
 
 }  // namespace
-
-std::string frame_of(const SensorInfo& sensor) { return sensor.topic.substr(1, sensor.topic.rfind('/') - 1); }
 
 std::string_view option_of(const RunInfo& info, std::string_view key) {
   const auto found =
@@ -171,20 +118,6 @@ const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id) {
   for (const SensorTypeInfo& type : info.sensor_types)
     if (type.id == id) return &type;
   return nullptr;
-}
-
-void name_frames(RunInfo& info) {
-  Taken frames = {{"world", 2}, {"run", 2}, {"fleet", 2}, {"clock", 2}, {"map", 2}, {"walls", 2}, {"bodies", 2}};
-  for (MoverInfo& mover : info.movers) {
-    mover.frame = unique(ros_name(mover.name, "robot"), frames);
-    Taken sensors = {{"odom", 2}, {"cmd_vel", 2}};
-    for (SensorInfo& sensor : mover.sensors) {
-      const SensorTypeInfo& type = type_of(info, sensor);
-      sensor.topic = "/" + mover.frame + "/" + unique(ros_name(sensor.name, type.name), sensors) + "/" +
-                     (type.is_scan ? "scan" : type.name);
-      name_standard_topics(sensor);
-    }
-  }
 }
 
 void encode_run_info(const RunInfo& info, base::Bytes& out) {

@@ -2,6 +2,8 @@
 // Description of a run. With the world and the states, it suffices to recompute all scans.
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,7 +38,7 @@ struct StandardTopic {
   Message message = Message::range;
   std::uint32_t element = 0;  ///< of the reading
   std::string topic;          ///< set by `name_frames`, as `frame`
-  std::string frame;          ///< equal to the sensor's for a sensor of one element
+  std::string frame;          ///< equal to the sensor's for a sensor of one element; of maps `world`
   base::Pose X_SE;            ///< element in the sensor's frame
 
   // Ranges.
@@ -46,12 +48,15 @@ struct StandardTopic {
   double range_max = 0.0;  ///< [m]
 
   maps::GridGeometry grid;  ///< of maps
+
+  /// Standard deviation of a turn rate [rad/s], of a fix [m] at an HDOP of 1; 0: none is stated.
+  double sigma = 0.0;
 };
 
 struct SensorInfo {
   std::uint8_t type = 0;  ///< id of a row of `RunInfo::sensor_types`
   std::string name;
-  std::string topic;   ///< of its readings; set by the recorder
+  std::string topic;   ///< of its readings; set by `name_frames`, as `frame`
   base::Pose X_MS;     ///< sensor in the mover's frame
   double rate = 10.0;  ///< [Hz] > 0
   double fov = 0.0;    ///< [rad] of scans, as all below
@@ -59,6 +64,15 @@ struct SensorInfo {
   double range_min = 0.0;               ///< [m]
   double range_max = 0.0;               ///< [m]
   std::vector<StandardTopic> standard;  ///< not read back, since the world has them
+  std::string frame;                    ///< not read back
+};
+
+/// Wheel encoders, as far as their robot knows them.
+struct EncoderInfo {
+  std::uint8_t type = 0;    ///< id of a row of `RunInfo::sensor_types`: the first columns are left_m and right_m
+  double per_count = 1e-3;  ///< [m] that a wheel rolls per count
+  double slip = 0.0;        ///< [m^(1/2)] standard deviation of a wheel's counted way after one metre
+  double track = 0.3;       ///< [m] > 0 between the wheels
 };
 
 /// Surfaces as lines at their upper ends, in one colour.
@@ -80,10 +94,18 @@ struct WorldShape {
 
 struct MoverInfo {
   std::string name;                 ///< as in the world
-  std::string frame;                ///< its name as ROS allows it, unique in the run; set by the recorder
+  std::string frame;                ///< its name as ROS allows it, unique in the run; set by `name_frames`
   std::uint32_t id = 0;             ///< id in packets
   std::vector<SensorInfo> sensors;  ///< those of one type in the order of `base::ReadingBlock::sensor`
-  std::vector<Outline> body;        ///< in its frame; not read back, since the world has it
+
+  // Not read back, since the world has it, or `name_frames` sets it.
+  std::vector<Outline> body;  ///< in its frame
+  std::string space;          ///< in front of its topics: "/robot", or empty
+  std::string base_frame;     ///< of the mover itself: "robot/base_link"
+  std::string odom_frame;     ///< that its odometry is in
+  bool plain = false;         ///< with TopicStyle::plain: the robot without a namespace
+  double max_forward = std::numeric_limits<double>::infinity();  ///< [m/s]
+  std::optional<EncoderInfo> encoder;                            ///< the first ones
 };
 
 /// A robot that joined the run: a copy of an earlier row, appended to the world's movers.
@@ -122,13 +144,6 @@ std::string_view option_of(const RunInfo& info, std::string_view key);
 
 /// @return null when the run has no sensors of that type.
 const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id);
-
-/// The frame of a sensor with the topic "/robot/laser/scan" is "robot/laser".
-std::string frame_of(const SensorInfo& sensor);
-
-/// Gives every mover a frame, and every sensor and its standard topics theirs: names with all characters but
-/// [A-Za-z0-9_] replaced by '_', made unique.
-void name_frames(RunInfo& info);
 
 /// `sensorfarm_msgs/msg/RunInfo`, without the snapshot. Sensors with scans are its `sensorfarm_msgs/Laser` rows, which
 /// name no type: a run has at most one type of scans, which is read back as type 1, `laser`.

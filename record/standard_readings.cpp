@@ -45,7 +45,7 @@ Degrees degrees_at(double east, double north) {
   return {std::atan2(a * a * north, b * b * from_axis) * 180.0 / M_PI, std::atan2(east, up) * 180.0 / M_PI};
 }
 
-void put_fix(CdrWriter& cdr, std::span<const double> values) {
+void put_fix(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
   constexpr std::uint16_t kGps = 1;
   const bool fix = std::isfinite(values[0]);
   const Degrees at = fix ? degrees_at(values[0], values[1]) : Degrees{values[0], values[0]};
@@ -54,6 +54,12 @@ void put_fix(CdrWriter& cdr, std::span<const double> values) {
   cdr.put(at.latitude);
   cdr.put(at.longitude);
   cdr.put(std::numeric_limits<double>::quiet_NaN());  // altitude: not measured
+  if (topic.sigma > 0.0 && fix) {
+    constexpr double kUnmeasured = 1e6;                                            // [m^2] of the altitude
+    const double error = topic.sigma * values[2], variance = 0.5 * error * error;  // HDOP is that of both axes
+    for (const double term : {variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, kUnmeasured}) cdr.put(term);
+    return cdr.put(std::uint8_t{1});  // approximated
+  }
   put_zeros(cdr, 9);
   cdr.put(std::uint8_t{0});  // covariance: unknown
 }
@@ -64,11 +70,12 @@ void put_unmeasured(CdrWriter& cdr) {
   put_zeros(cdr, 8);
 }
 
-void put_imu(CdrWriter& cdr, std::span<const double> values) {
+void put_imu(CdrWriter& cdr, const StandardTopic& topic, std::span<const double> values) {
   for (const double part : {0.0, 0.0, 0.0, 1.0}) cdr.put(part);
   put_unmeasured(cdr);
   for (const double rate : {0.0, 0.0, values[0]}) cdr.put(rate);
-  put_zeros(cdr, 9);
+  const double variance = topic.sigma * topic.sigma, fixed = variance > 0.0 ? kLeastVariance : 0.0;
+  for (const double term : {fixed, 0.0, 0.0, 0.0, fixed, 0.0, 0.0, 0.0, variance}) cdr.put(term);
   put_zeros(cdr, 3);
   put_unmeasured(cdr);
 }
@@ -112,16 +119,16 @@ std::string_view type_of(Message message) {
 
 void encode_standard(const StandardTopic& topic, std::int64_t time, std::span<const double> values, base::Bytes& out) {
   CdrWriter cdr(out);
-  put_header(cdr, time, topic.message == Message::map ? "world" : topic.frame);
+  put_header(cdr, time, topic.frame);
   switch (topic.message) {
     case Message::range:
       return put_range(cdr, topic, values);
     case Message::magnetic_field:
       return put_field(cdr, topic, values);
     case Message::fix:
-      return put_fix(cdr, values);
+      return put_fix(cdr, topic, values);
     case Message::imu:
-      return put_imu(cdr, values);
+      return put_imu(cdr, topic, values);
     case Message::map:
       return put_map(cdr, topic, time, values);
   }

@@ -17,10 +17,10 @@ namespace sf::record {
 
 namespace {
 
-enum Row : std::uint32_t { kRun, kFleetRow, kTf, kTfStatic, kClockRow, kMap, kWalls, kBodies, kLightsRow };
+enum Row : std::uint32_t { kRun, kFleetRow, kClockRow, kWalls, kLightsRow };
 
 Scan header_of(const SensorInfo& sensor) {
-  return {.frame = frame_of(sensor),
+  return {.frame = sensor.frame,
           .fov = static_cast<float>(sensor.fov),
           .scan_time = static_cast<float>(1.0 / sensor.rate),
           .range_min = sensor.range_min,
@@ -47,20 +47,36 @@ struct TickMessages::Output {
   }
 };
 
-TickMessages::TickMessages(const RunInfo& info) : info_(info), marks_too_near_(option_of(info, kTooNear) != "min") {
+TickMessages::TickMessages(const RunInfo& info)
+    : info_(info),
+      naming_(naming_of(info)),
+      odometry_(info.record_readings ? naming_.odometry : OdometrySource::truth),
+      root_(naming_.style == TopicStyle::sensor ? "world" : "map"),
+      places_odometry_(naming_.style != TopicStyle::sensor && !naming_.localizer && !naming_.mapper),
+      marks_too_near_(option_of(info, kTooNear) != "min") {
   add("/run", kRunInfo, true);
   add("/fleet", kFleet);
-  add("/tf", kTransforms);
-  add("/tf_static", kTransforms, true);
   add("/clock", kClock);
-  add("/map", kOccupancyGrid, true);
   add("/walls", kMarkers, true);
-  add("/bodies", kMarkers, true);
   if (!info.lights.empty()) add("/lights", kLights);
-  for (const MoverInfo& mover : info.movers) add_mover(mover);
+  if (naming_.style != TopicStyle::nav2) add_tree("", 0, info.movers.size());
+  for (std::size_t row = 0; row < info.movers.size(); ++row) {
+    if (naming_.style == TopicStyle::nav2) add_tree(info.movers[row].space, row, row + 1);
+    add_mover(info.movers[row]);
+  }
   first_reading_ = topics_.size();
   if (info.record_readings)
     for (std::size_t row = 0; row < info.movers.size(); ++row) add_readings(row);
+}
+
+/// @param prefix of its topics
+void TickMessages::add_tree(const std::string& prefix, std::size_t first, std::size_t end) {
+  Tree& tree = trees_.emplace_back();
+  tree.first = first, tree.end = end;
+  tree.transforms = add(prefix + "/tf", kTransforms);
+  tree.fixed = add(prefix + "/tf_static", kTransforms, true);
+  if (!naming_.mapper) tree.map = add(prefix + "/map", kOccupancyGrid, true);
+  tree.bodies = add(prefix + "/bodies", kMarkers, true);
 }
 
 std::uint32_t TickMessages::add(std::string name, std::string_view type, bool latched) {
@@ -76,15 +92,22 @@ std::uint32_t TickMessages::add(std::string name, const SensorTypeInfo& type) {
 }
 
 void TickMessages::add_mover(const MoverInfo& mover) {
-  MoverTopics& row = movers_.emplace_back();
-  const std::string topic = "/" + mover.frame;
+  MoverTopics& row = movers_.emplace_back(MoverTopics{.odometer = Odometer(mover, odometry_)});
+  const std::string& base = mover.base_frame;
+  if (naming_.style != TopicStyle::sensor) row.footprint = base.substr(0, base.rfind('/') + 1) + "base_footprint";
   if (info_.odometry_rate > 0.0) {
-    row.odometry = add(topic + "/odom", kOdometry);
-    row.command = add(topic + "/cmd_vel", kTwistStamped);
+    row.odometry = add(mover.space + "/odom", kOdometry);
+    if (has_truth()) row.truth = add(mover.space + "/ground_truth/odom", kOdometry);
+    row.command = add(mover.space + "/cmd_vel", kTwistStamped);
   }
-  if (info_.estimated) row.quality = add(topic + "/state_quality", kStateQuality);
+  if (info_.estimated) row.quality = add(mover.space + "/state_quality", kStateQuality);
   for (const SensorInfo& sensor : mover.sensors)
     row.sensors.push_back({find_sensor_type(info_, sensor.type), &sensor, 0, header_of(sensor)});
+}
+
+/// Recordings without readings have it in /fleet, services do not know it.
+bool TickMessages::has_truth() const {
+  return info_.record_readings && !info_.estimated && naming_.style != TopicStyle::sensor;
 }
 
 void TickMessages::add_readings(std::size_t row) {
@@ -109,65 +132,114 @@ void TickMessages::begin(const Emit& emit) {
   const std::vector<bool> all;
   const Output out{start, emit, all, message_};
   out.send(kRun, 0, 0, [&](base::Bytes& bytes) { encode_run_info(info_, bytes); });
-  send_frames(out);
-  const WorldShape& shape = info_.shape;
-  if (shape.columns > 0) out.send(kMap, 0, 0, [&](base::Bytes& bytes) { encode_map(shape, bytes); });
-  if (!shape.walls.empty()) out.send(kWalls, 0, 0, [&](base::Bytes& bytes) { encode_walls(shape, bytes); });
-  out.send(kBodies, 0, 0, [&](base::Bytes& bytes) { encode_bodies(info_.movers, bytes); });
+  for (MoverTopics& mover : movers_) mover.odometer.begin();
+  for (const Tree& tree : trees_) send_tree(tree, out);
+  if (!info_.shape.walls.empty()) out.send(kWalls, 0, 0, [&](base::Bytes& bytes) { encode_walls(info_.shape, bytes); });
 }
 
 void TickMessages::go_on(const TickMessages& before, std::int64_t time, const Emit& emit) {
   next_odometry_ = before.next_odometry_;
   ticks_ = before.ticks_;
   odometries_ = before.odometries_;
+  for (MoverTopics& mover : movers_) mover.odometer.begin();
+  for (std::size_t row = 0; row < before.movers_.size(); ++row) movers_[row].odometer = before.movers_[row].odometer;
   base::TickRecord last;
   last.time = time;
   const std::vector<bool> all;
   const Output out{last, emit, all, message_};
   out.send(kRun, 0, time, [&](base::Bytes& bytes) { encode_run_info(info_, bytes); });
-  send_frames(out);
-  out.send(kBodies, 0, time, [&](base::Bytes& bytes) { encode_bodies(info_.movers, bytes); });
+  for (const Tree& tree : trees_) send_tree(tree, out);
 }
 
-/// Of sensors and of their elements.
-void TickMessages::send_frames(const Output& out) {
+/// Frames that do not move, the map and the bodies.
+void TickMessages::send_tree(const Tree& tree, const Output& out) {
   transforms_.clear();
-  for (std::size_t row = 0; row < movers_.size(); ++row)
-    for (const SensorTopics& each : movers_[row].sensors) {
-      transforms_.push_back({0, info_.movers[row].frame, each.header.frame, each.sensor->X_MS});
-      for (const StandardTopic& element : each.sensor->standard)
-        if (element.frame != each.header.frame)
-          transforms_.push_back({0, each.header.frame, element.frame, element.X_SE});
-    }
-  out.send(kTfStatic, 0, 0, [&](base::Bytes& bytes) { encode_transforms(transforms_, bytes); });
+  // Walls, /fleet and services are in `world`. A mapper's map is at another place.
+  if (naming_.style != TopicStyle::sensor && !naming_.mapper) transforms_.push_back({0, root_, "world", {}});
+  for (std::size_t row = tree.first; row < tree.end; ++row) add_fixed(info_.movers[row], movers_[row]);
+  out.send(tree.fixed, 0, out.record.time, [&](base::Bytes& bytes) { encode_transforms(transforms_, bytes); });
+  if (info_.shape.columns > 0 && !naming_.mapper)
+    out.send(tree.map, 0, out.record.time, [&](base::Bytes& bytes) { encode_map(info_.shape, root_, bytes); });
+  const auto movers = std::span(info_.movers).subspan(tree.first, tree.end - tree.first);
+  out.send(tree.bodies, 0, out.record.time, [&](base::Bytes& bytes) { encode_bodies(movers, bytes); });
+}
+
+/// Frames of a mover's sensors and of their elements, that of its place on the ground, and that of true odometry.
+void TickMessages::add_fixed(const MoverInfo& mover, const MoverTopics& topics) {
+  if (places_odometry_ && odometry_ == OdometrySource::truth) transforms_.push_back({0, root_, mover.odom_frame, {}});
+  if (!topics.footprint.empty()) transforms_.push_back({0, mover.base_frame, topics.footprint, {}});
+  for (const SensorTopics& each : topics.sensors) {
+    transforms_.push_back({0, mover.base_frame, each.header.frame, each.sensor->X_MS});
+    for (const StandardTopic& element : each.sensor->standard)
+      if (element.message != StandardTopic::Message::map && element.frame != each.header.frame)
+        transforms_.push_back({0, each.header.frame, element.frame, element.X_SE});
+  }
 }
 
 void TickMessages::encode(const base::TickRecord& record, const Emit& emit, const std::vector<bool>& wanted) {
   for (const base::Report& report : record.reports)
     SF_CHECK(report.mover < movers_.size(), "mover " + std::to_string(report.mover));
   const Output out{record, emit, wanted, message_};
+  find_odometry(record);
   out.send(kFleetRow, ticks_, record.time, [&](base::Bytes& bytes) { encode_fleet(record, bytes); });
   send_transforms(out);
   out.send(kClockRow, ticks_, record.time, [&](base::Bytes& bytes) { encode_clock(record.time, bytes); });
   if (!record.lights.empty())
     out.send(kLightsRow, ticks_, record.time,
              [&](base::Bytes& bytes) { encode_lights(record.time, info_.lights, record.lights, bytes); });
-  if (info_.odometry_rate > 0.0 && record.time >= next_odometry_) send_odometry(out);
+  if (info_.odometry_rate > 0.0 && record.time >= next_odometry_) {
+    send_odometry(out);
+    send_truth(out);
+    ++odometries_;
+    const auto period = std::max<std::int64_t>(1, std::llround(1e9 / info_.odometry_rate));
+    next_odometry_ = (record.time / period + 1) * period;
+  }
   if (info_.estimated) send_qualities(out);
   if (info_.record_readings)
     for (const base::ReadingBlock& reading : record.readings) send_reading(reading, out);
   ++ticks_;
 }
 
-void TickMessages::send_transforms(const Output& out) {
-  if (!out.wants(kTf)) return;
-  const base::TickRecord& record = out.record;
-  transforms_.clear();
-  for (const base::Report& report : record.reports) {
-    if (base::is_absent(report.X_WM)) continue;
-    transforms_.push_back({record.time, "world", info_.movers[report.mover].frame, report.X_WM});
+/// Of encoders at the times of their readings, of other movers at the tick's.
+void TickMessages::find_odometry(const base::TickRecord& record) {
+  news_.clear();
+  for (std::size_t i = 0; i < record.reports.size(); ++i) {
+    const base::Report& report = record.reports[i];
+    Odometer& odometer = movers_[report.mover].odometer;
+    if (odometer.has_encoders() || base::is_absent(report.X_WM)) continue;
+    const auto quality = record.qualities.empty() ? base::StateQuality{} : record.qualities[i];
+    odometer.move(record.time, report.X_WM, report.velocity, quality);
+    news_.push_back({report.mover, odometer.state()});
   }
-  out.send(kTf, ticks_, record.time, [&](base::Bytes& bytes) { encode_transforms(transforms_, bytes); });
+  for (const base::ReadingBlock& reading : record.readings) {
+    SF_CHECK(reading.mover < movers_.size(), "mover " + std::to_string(reading.mover));
+    Odometer& odometer = movers_[reading.mover].odometer;
+    if (odometer.reads(reading) && odometer.roll(reading)) news_.push_back({reading.mover, odometer.state()});
+  }
+}
+
+void TickMessages::send_transforms(const Output& out) {
+  const auto send = [&](const Tree& tree) {
+    out.send(tree.transforms, ticks_, out.record.time,
+             [&](base::Bytes& bytes) { encode_transforms(transforms_, bytes); });
+    transforms_.clear();
+  };
+  transforms_.clear();
+  const bool is_shared = naming_.style != TopicStyle::nav2;
+  for (const Odometry& odometry : news_) {
+    add_transforms(odometry);
+    if (!is_shared && !transforms_.empty()) send(trees_[odometry.mover]);
+  }
+  if (is_shared) send(trees_[0]);
+}
+
+/// Of map -> odom -> base_link, those that no node elsewhere publishes.
+void TickMessages::add_transforms(const Odometry& odometry) {
+  const MoverInfo& mover = info_.movers[odometry.mover];
+  const OdometryState& state = odometry.state;
+  if (places_odometry_ && odometry_ != OdometrySource::truth)
+    transforms_.push_back({state.time, root_, mover.odom_frame, state.X_WO});
+  if (!naming_.filter) transforms_.push_back({state.time, mover.odom_frame, mover.base_frame, state.X_OM});
 }
 
 void TickMessages::send_qualities(const Output& out) const {
@@ -177,27 +249,37 @@ void TickMessages::send_qualities(const Output& out) const {
     const std::uint32_t mover = record.reports[i].mover;
     if (record.qualities[i].stated && record.qualities[i].age != base::kNoStateYet)
       out.send(movers_[mover].quality, ticks_, record.time, [&](base::Bytes& bytes) {
-        encode_state_quality(record.time, info_.movers[mover].frame, record.qualities[i], bytes);
+        encode_state_quality(record.time, info_.movers[mover].base_frame, record.qualities[i], bytes);
       });
   }
 }
 
 void TickMessages::send_odometry(const Output& out) {
+  for (const auto& [row, state] : news_) {
+    const MoverInfo& mover = info_.movers[row];
+    out.send(movers_[row].odometry, odometries_, state.time, [&, &state = state](base::Bytes& bytes) {
+      encode_odometry({state.time, mover.odom_frame, mover.base_frame, state.X_OM}, state.velocity, state.covariance,
+                      bytes);
+    });
+  }
+}
+
+/// True poses and commands.
+void TickMessages::send_truth(const Output& out) {
   const base::TickRecord& record = out.record;
   for (std::size_t i = 0; i < record.reports.size(); ++i) {
     const base::Report& report = record.reports[i];
     if (base::is_absent(report.X_WM)) continue;
-    const std::string& frame = info_.movers[report.mover].frame;
-    out.send(movers_[report.mover].odometry, odometries_, record.time, [&](base::Bytes& bytes) {
-      encode_odometry({record.time, "world", frame, report.X_WM}, report.velocity, bytes);
-    });
-    if (record.commands.empty()) continue;
-    out.send(movers_[report.mover].command, odometries_, record.time,
-             [&](base::Bytes& bytes) { encode_twist(record.time, frame, record.commands[i], bytes); });
+    const MoverTopics& topics = movers_[report.mover];
+    const std::string& frame = info_.movers[report.mover].base_frame;
+    if (has_truth())
+      out.send(topics.truth, odometries_, record.time, [&](base::Bytes& bytes) {
+        encode_odometry({record.time, "world", frame, report.X_WM}, report.velocity, {}, bytes);
+      });
+    if (!record.commands.empty())
+      out.send(topics.command, odometries_, record.time,
+               [&](base::Bytes& bytes) { encode_twist(record.time, frame, record.commands[i], bytes); });
   }
-  ++odometries_;
-  const auto period = std::max<std::int64_t>(1, std::llround(1e9 / info_.odometry_rate));
-  next_odometry_ = (record.time / period + 1) * period;
 }
 
 void TickMessages::send_reading(const base::ReadingBlock& reading, const Output& out) {

@@ -15,14 +15,16 @@
 #include <vector>
 
 #include "base/tick_record.h"
+#include "record/odometry.h"
 #include "record/ros_messages.h"
 #include "record/run_info.h"
+#include "record/topic_names.h"
 
 namespace sf::record {
 
 /// Lives as long as its TickMessages.
 struct Topic {
-  std::string name;         ///< "/robot/laser/scan"
+  std::string name;         ///< "/robot/scan"
   std::string_view type;    ///< "sensor_msgs/msg/LaserScan"
   std::string_view schema;  ///< its definition as `ros2msg`
   bool latched = false;     ///< the message of `begin` holds for the whole run
@@ -69,25 +71,49 @@ class TickMessages {
     std::uint32_t standard = 0;  ///< first of the rows of its standard topics
   };
   struct MoverTopics {
-    std::uint32_t odometry = 0, command = 0, quality = 0;
+    std::uint32_t odometry = 0, truth = 0, command = 0, quality = 0;
+    std::string footprint;  ///< frame
+    Odometer odometer;
     std::vector<SensorTopics> sensors;
+  };
+  /// A tree of frames, with the movers [first, end): all of them, or one.
+  struct Tree {
+    std::size_t first = 0, end = 0;
+    std::uint32_t transforms = 0, fixed = 0, map = 0, bodies = 0;
+  };
+  /// New odometry of this tick.
+  struct Odometry {
+    std::uint32_t mover = 0;
+    OdometryState state;
   };
   struct Output;
 
   std::uint32_t add(std::string name, std::string_view type, bool latched = false);
   std::uint32_t add(std::string name, const SensorTypeInfo& type);
+  void add_tree(const std::string& prefix, std::size_t first, std::size_t end);
   void add_mover(const MoverInfo& mover);
+  bool has_truth() const;
   void add_readings(std::size_t row);
-  void send_frames(const Output& out);
+  void send_tree(const Tree& tree, const Output& out);
+  void add_fixed(const MoverInfo& mover, const MoverTopics& topics);
+  void find_odometry(const base::TickRecord& record);
   void send_transforms(const Output& out);
+  void add_transforms(const Odometry& odometry);
   void send_odometry(const Output& out);
+  void send_truth(const Output& out);
   void send_qualities(const Output& out) const;
   void send_reading(const base::ReadingBlock& reading, const Output& out);
 
   const RunInfo& info_;
+  const Naming naming_;
+  const OdometrySource odometry_;
+  const std::string_view root_;                              ///< frame of all trees
+  const bool places_odometry_;                               ///< publishes map -> odom
   std::map<std::string, std::string, std::less<>> schemas_;  ///< by type
   std::vector<Topic> topics_;
+  std::vector<Tree> trees_;
   std::vector<MoverTopics> movers_;
+  std::vector<Odometry> news_;
   std::size_t first_reading_ = 0;   ///< row of the first topic of readings; all topics from it on are theirs
   std::int64_t next_odometry_ = 0;  ///< [ns]
   std::uint32_t ticks_ = 0, odometries_ = 0;

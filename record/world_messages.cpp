@@ -55,9 +55,9 @@ void put_lines(CdrWriter& cdr, const Marker& marker, const Outline& outline) {
 
 }  // namespace
 
-void encode_map(const WorldShape& shape, base::Bytes& out) {
+void encode_map(const WorldShape& shape, std::string_view frame, base::Bytes& out) {
   CdrWriter cdr(out);
-  put_header(cdr, 0, "world");
+  put_header(cdr, 0, frame);
   cdr.put(std::int32_t{0});
   cdr.put(std::uint32_t{0});
   cdr.put(static_cast<float>(shape.cell));
@@ -82,7 +82,7 @@ void encode_bodies(std::span<const MoverInfo> movers, base::Bytes& out) {
   cdr.put_count(count);
   std::int32_t id = 0;
   for (const MoverInfo& mover : movers)
-    for (const Outline& part : mover.body) put_lines(cdr, {mover.frame, "bodies", id++, true}, part);
+    for (const Outline& part : mover.body) put_lines(cdr, {mover.base_frame, "bodies", id++, true}, part);
 }
 
 }  // namespace sf::record

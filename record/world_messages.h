@@ -3,6 +3,7 @@
 // is sent once.
 
 #include <span>
+#include <string_view>
 
 #include "base/bytes.h"
 #include "record/run_info.h"
@@ -10,7 +11,8 @@
 namespace sf::record {
 
 /// `nav_msgs/OccupancyGrid`: 100 where a wall passes, 0 elsewhere. Appends one message. Rule: `shape` has a map.
-void encode_map(const WorldShape& shape, base::Bytes& out);
+/// @param frame at the place of the world's
+void encode_map(const WorldShape& shape, std::string_view frame, base::Bytes& out);
 
 /// `visualization_msgs/MarkerArray`: one list of lines per model, in the frame "world".
 void encode_walls(const WorldShape& shape, base::Bytes& out);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/error.h"
 #include "scenarios/standard_topics.h"
 #include "scenarios/world_shape.h"
 #include "sensors/accuracy.h"
@@ -52,6 +53,27 @@ std::vector<std::string> accuracy_rows(const world::World& world, const sensors:
   return rows;
 }
 
+void check_names(const record::Naming& naming) {
+  const bool unknown = naming.odometry == record::OdometrySource::exact || naming.localizer || naming.filter;
+  if (naming.style == record::TopicStyle::sensor && unknown)
+    throw base::InputError(
+        "--topics sensor has no frame odom, and true odometry: leave out --odometry exact, --external localizer and "
+        "--external filter, or choose other names");
+}
+
+/// The robot without a namespace: the only one. Tags and objects keep theirs.
+void choose_plain(const world::World& world, record::RunInfo& info) {
+  std::vector<std::size_t> robots;
+  for (std::size_t row = 0; row < world.movers.size(); ++row)
+    if (!world.movers[row].is_tag) robots.push_back(row);
+  if (robots.size() != 1)
+    throw base::InputError(world.file, 0,
+                           fmt::format("has {} robots, and plain names of topics are for one: expected --topics robot "
+                                       "or nav2, or a world with one robot",
+                                       robots.size()));
+  info.movers[robots[0]].plain = true;
+}
+
 }  // namespace
 
 record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const RunSettings& settings) {
@@ -68,10 +90,15 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
                   {"caster", settings.caster}};
   info.accuracy = accuracy_rows(world, sensor_set, settings.noise);
   if (settings.too_near_min) info.options.emplace_back(record::kTooNear, "min");
+  check_names(settings.naming);
+  record::put_naming(settings.naming, info);
   info.snapshot = world::snapshot(world);
   info.joined = settings.joined;
-  for (const world::Mover& mover : world.movers)
+  for (const world::Mover& mover : world.movers) {
     info.movers.push_back({mover.name, "", mover.id, {}, body_of(world, mover)});
+    info.movers.back().max_forward = mover.max_forward;
+  }
+  if (settings.naming.style == record::TopicStyle::plain) choose_plain(world, info);
   info.shape = shape_of(world);
   for (const world::Light& light : world.lights) info.lights.push_back(light.name);
   add_type(sensor_set, info);

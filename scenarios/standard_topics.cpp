@@ -1,7 +1,9 @@
 #include "scenarios/standard_topics.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "sensors/encoder.h"
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
 #include "sensors/host_backend.h"
@@ -47,6 +49,15 @@ void add_fields(const world::World& world, record::RunInfo& info) {
   });
 }
 
+/// Of a robot's first encoders, which its odometry is from.
+void add_encoders(const world::World& world, record::RunInfo& info) {
+  sensors::for_each_sensor(world, sensors::encoder_type, [&](const sensors::MountedSensor& mounted) {
+    if (mounted.row.sensor > 0) return;
+    const sensors::Encoder e = sensors::read_encoder(mounted.settings, world.movers[mounted.row.mover]);
+    info.movers[mounted.row.mover].encoder = {sensors::kEncoder, e.per_count, e.slip, e.track};
+  });
+}
+
 }  // namespace
 
 void add_standard_topics(const world::World& world, record::RunInfo& info) {
@@ -54,14 +65,20 @@ void add_standard_topics(const world::World& world, record::RunInfo& info) {
   add_ranges(sensors::cone_arrays_of(world, sensors::infrared_type.word.type, sensors::read_infrared),
              sensors::kInfrared, info);
   add_fields(world, info);
+  add_encoders(world, info);
   for (const sensors::Occupancy& map : sensors::occupancies_of(world))
     find(info, map.row.mover, sensors::kOccupancy, map.row.sensor)
         .standard.push_back({.message = Message::map, .grid = map.settings.grid});
-  for (record::MoverInfo& mover : info.movers)
-    for (record::SensorInfo& sensor : mover.sensors) {
-      if (sensor.type == sensors::kGps) sensor.standard.push_back({.message = Message::fix});
-      if (sensor.type == sensors::kGyro) sensor.standard.push_back({.message = Message::imu});
-    }
+  sensors::for_each_sensor(world, sensors::gps_type, [&](const sensors::MountedSensor& mounted) {
+    const double sigma = sensors::read_gps(mounted.settings).noise;
+    find(info, mounted.row.mover, sensors::kGps, mounted.row.sensor)
+        .standard.push_back({.message = Message::fix, .sigma = sigma});
+  });
+  sensors::for_each_sensor(world, sensors::gyro_type, [&](const sensors::MountedSensor& mounted) {
+    const sensors::Gyro gyro = sensors::read_gyro(mounted.settings);
+    find(info, mounted.row.mover, sensors::kGyro, mounted.row.sensor)
+        .standard.push_back({.message = Message::imu, .sigma = std::hypot(gyro.noise, gyro.bias)});
+  });
 }
 
 }  // namespace sf::scenarios

@@ -190,7 +190,7 @@ void Ros2Bridge::add_topics() {
   writer_of_.clear();
   for (const record::Topic& topic : messages_->topics()) {
     const bool is_command = topic.type == record::kTwistStamped;  // of a controller; those of others are heard there
-    const int depth = topic.latched ? 1 : topic.name == "/tf" ? kTransformsDepth : kDepth;
+    const int depth = topic.latched ? 1 : topic.type == record::kTransforms ? kTransformsDepth : kDepth;
     const auto [known, is_new] = writer_of_topic_.try_emplace(topic.name, kNone);
     if (is_new && !is_command)
       known->second = add_writer("rt" + topic.name, topic.type, topic.schema, depth, topic.latched);
@@ -207,7 +207,7 @@ void Ros2Bridge::add_commands() {
     reader_of_[reader].mover = world::kNone;  // until a mover of this scene has them
   for (std::uint32_t row = 0; row < scene_.info.movers.size(); ++row) {
     if (scene_.world.movers[row].is_tag) continue;  // tags follow packets
-    const std::string topic = "rt/" + scene_.info.movers[row].frame + "/cmd_vel";
+    const std::string topic = "rt" + scene_.info.movers[row].space + "/cmd_vel";
     const auto [known, is_new] = commands_of_.try_emplace(topic, reader_of_.size());
     if (is_new) {
       add_reader(topic, "geometry_msgs/msg/Twist", plain);

@@ -1,6 +1,6 @@
 #pragma once
 // A run as a node of ROS 2, `/sensorfarm`, without a ROS installation: its topics are those of recordings, its commands
-// are geometry_msgs/Twist and TwistStamped on /ROBOT/cmd_vel, its services those of `RosServices`.
+// are geometry_msgs/Twist and TwistStamped on the topics cmd_vel, its services those of `RosServices`.
 
 #include <deque>
 #include <map>

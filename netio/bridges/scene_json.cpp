@@ -219,7 +219,8 @@ void add_movers(const Scene& scene, Json& json) {
   for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
     const world::Mover& mover = world.movers[row];
     movers.push_back({{"name", mover.name},
-                      {"frame", scene.info.movers[row].frame},
+                      {"frame", scene.info.movers[row].base_frame},
+                      {"space", scene.info.movers[row].space},
                       {"id", mover.id},
                       {"tag", mover.is_tag},
                       {"pose", pose_json(mover.X_WM)},

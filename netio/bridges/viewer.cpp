@@ -19,7 +19,7 @@ constexpr int kMostWaiting = 4;
 std::vector<std::string> drivers_of(const Scene& scene, ViewerMode mode) {
   std::vector<std::string> topics;
   if (mode != ViewerMode::run || !scene.simulated) return topics;
-  for (const record::MoverInfo& mover : scene.info.movers) topics.push_back("/" + mover.frame + "/cmd_vel");
+  for (const record::MoverInfo& mover : scene.info.movers) topics.push_back(mover.space + "/cmd_vel");
   return topics;
 }
 

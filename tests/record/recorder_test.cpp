@@ -95,17 +95,35 @@ TEST(Recorder, TopicsAreAsDocumented) {
       {"/tf", 10},
       {"/clock", 10},
       {"/roomba_1/odom", 5},  // 5 Hz of 10
+      {"/roomba_1/ground_truth/odom", 5},
       {"/roomba_1/cmd_vel", 5},
-      {"/roomba_1/front/scan", 10},
-      {"/roomba_1/front_2/scan", 10},
-      {"/roomba_1/front_3/array", 10},
-      {"/roomba_1/_3rd_edge/edge", 10},
-      {"/roomba_1/rear/array", 10},
+      {"/roomba_1/scan", 10},
+      {"/roomba_1/scan_1", 10},
+      {"/roomba_1/array", 10},
+      {"/roomba_1/edge", 10},
+      {"/roomba_1/array_1", 10},
       {"/roomba_1_2/odom", 5},
+      {"/roomba_1_2/ground_truth/odom", 5},
       {"/roomba_1_2/cmd_vel", 5},
-      {"/roomba_1_2/laser/scan", 10},
+      {"/roomba_1_2/scan", 10},
   };
   EXPECT_EQ(topics, expected);
+}
+
+/// Names of earlier versions, where they are asked for.
+TEST(Recorder, TopicsMayBeNamedAfterSensors) {
+  RunInfo info = sample_info(true);
+  put_naming({.style = TopicStyle::sensor}, info);
+  Recorder recorder(fresh_directory("sensor_names"), info);
+  write_ticks(recorder, 0, 1);
+  recorder.finish();
+  std::map<std::string, std::size_t> expected;
+  for (const char* name :
+       {"/run", "/tf_static", "/bodies", "/fleet", "/tf", "/clock", "/roomba_1/odom", "/roomba_1/cmd_vel",
+        "/roomba_1/front/scan", "/roomba_1/front_2/scan", "/roomba_1/front_3/array", "/roomba_1/_3rd_edge/edge",
+        "/roomba_1/rear/array", "/roomba_1_2/odom", "/roomba_1_2/cmd_vel", "/roomba_1_2/laser/scan"})
+    expected[name] = 1;
+  EXPECT_EQ(topics_of(bytes_of(recorder.path())), expected);
 }
 
 TEST(Recorder, EstimatedStatesHaveTheirQuality) {
@@ -131,7 +149,7 @@ TEST(Recorder, EstimatedStatesHaveTheirQuality) {
     if (contents.channels.at(message.channel).topic != "/roomba_1/state_quality") continue;
     CdrReader cdr(message.data);
     std::int64_t time = 0;
-    EXPECT_EQ(get_header(cdr, time), "roomba_1");
+    EXPECT_EQ(get_header(cdr, time), "roomba_1/base_link");
     EXPECT_TRUE(cdr.get<bool>());
     EXPECT_EQ(cdr.get<double>(), 0.25);
     for (int i = 1; i <= 6; ++i) EXPECT_EQ(cdr.get<float>(), static_cast<float>(i));
@@ -160,7 +178,8 @@ TEST(Recorder, EverySensorHasAFrameWhateverItsKind) {
   recorder.finish();
   const base::Bytes file = bytes_of(recorder.path());
   const std::string text(file.begin(), file.end());
-  for (const char* frame : {"roomba_1/front", "roomba_1/front_2", "roomba_1/front_3", "roomba_1/_3rd_edge"})
+  for (const char* frame :
+       {"roomba_1/laser", "roomba_1/laser_1", "roomba_1/array", "roomba_1/array_1", "roomba_1/edge"})
     EXPECT_NE(text.find(std::string(frame) + '\0'), std::string::npos) << frame;
 }
 

@@ -238,6 +238,28 @@ TEST(Recording, AStateOfAMoverThatIsNotThereIsLeftOutAndTold) {
   EXPECT_EQ(recording.damage.size(), 1u);
 }
 
+/// Earlier versions named topics after sensors, and no option says so.
+TEST(Recording, TopicsOfEarlierVersionsAreRead) {
+  McapWriter writer("ros2", "sensorfarm");
+  const Bytes world = {1};
+  writer.add_attachment({.name = "world.bin", .data = world});
+  RunInfo info = test::sample_info(true);
+  put_naming({.style = TopicStyle::sensor}, info);
+  name_frames(info);
+  info.options.pop_back();
+  add_run_info(writer, info);
+  const SensorTypeInfo edge = test::edge_type();
+  Bytes message;
+  encode_reading(edge, 0, "f", std::vector<double>{1, 2, 3, 4, 5}, message);
+  const auto schema = writer.add_schema(type_of(edge), "ros2msg", schema_text(edge));
+  writer.add_message({.channel = writer.add_channel(schema, "/roomba_1/_3rd_edge/edge", "cdr"), .data = message});
+  writer.end_chunk();
+  const Recording recording = read_recording(finished(writer), "run.mcap");
+  EXPECT_TRUE(recording.damage.empty());
+  ASSERT_EQ(recording.readings.size(), 1u);
+  EXPECT_EQ(recording.readings[0].type, 2);
+}
+
 TEST(Recording, AReadingThatItsKindDoesNotExplainIsLeftOutAndTold) {
   McapWriter writer("ros2", "sensorfarm");
   const Bytes world = {1};

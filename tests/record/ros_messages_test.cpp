@@ -102,7 +102,8 @@ TEST(Messages, NoCutOfAMessageIsTakenForOne) {
 
 TEST(Messages, OdometryLiesWhereROSExpectsIt) {
   Bytes out;
-  encode_odometry({1'500'000'000, "world", "r", {1.0, 2.0, 3.0, M_PI / 2}}, {0.5, -0.25, 0.125}, out);
+  encode_odometry({1'500'000'000, "world", "r", {1.0, 2.0, 3.0, M_PI / 2}}, {0.5, -0.25, 0.125},
+                  {{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}, 0.5}, out);
   // 4 + stamp 8 + "world" 4 + 6 | 22 -> 24: "r" 4 + 2 | 30 -> 36: the pose, 8-aligned behind the encapsulation
   EXPECT_EQ(at<std::uint32_t>(out, 8), 500'000'000u);
   EXPECT_EQ(std::memcmp(out.data() + 16, "world", 6), 0);
@@ -114,7 +115,16 @@ TEST(Messages, OdometryLiesWhereROSExpectsIt) {
   EXPECT_EQ(at<double>(out, 68), 0.0);                    // y
   EXPECT_DOUBLE_EQ(at<double>(out, 76), std::sqrt(0.5));  // z
   EXPECT_DOUBLE_EQ(at<double>(out, 84), std::sqrt(0.5));  // w
+  const auto covariance = [&](std::size_t begin, std::size_t row, std::size_t column) {
+    return at<double>(out, begin + 8 * (6 * row + column));
+  };
+  const double pose[3][3] = {{1.0, 2.0, 3.0}, {2.0, 4.0, 5.0}, {3.0, 5.0, 6.0}};  // x, y and the turn about z
+  for (const std::size_t i : {0, 1, 2})
+    for (const std::size_t j : {0, 1, 2}) EXPECT_EQ(covariance(92, i == 2 ? 5 : i, j == 2 ? 5 : j), pose[i][j]);
+  for (const std::size_t axis : {2, 3, 4}) EXPECT_EQ(covariance(92, axis, axis), 0.5);
   const std::size_t twist = 92 + 36 * 8;
+  for (const auto& [row, column, value] : {std::tuple{0, 0, 7.0}, {0, 5, 8.0}, {5, 0, 8.0}, {5, 5, 9.0}, {1, 1, 0.5}})
+    EXPECT_EQ(covariance(twist + 48, row, column), value);
   EXPECT_EQ(at<double>(out, twist), 0.5);
   EXPECT_EQ(at<double>(out, twist + 8), -0.25);
   EXPECT_EQ(at<double>(out, twist + 40), 0.125);
@@ -220,6 +230,7 @@ TEST(Messages, RunInfoComesBack) {
   EXPECT_EQ(back.options, info.options);
   ASSERT_EQ(back.movers.size(), 2u);
   EXPECT_EQ(back.movers[0].name, "roomba:1");
+  EXPECT_EQ(back.movers[0].base_frame, "roomba_1/base_link");
   EXPECT_EQ(back.movers[1].id, 9u);
   ASSERT_EQ(back.sensor_types.size(), 3u);
   EXPECT_TRUE(back.sensor_types[0].is_scan);
@@ -239,7 +250,7 @@ TEST(Messages, RunInfoComesBack) {
   EXPECT_EQ(back.movers[0].sensors[1].rate, 5.0);
   EXPECT_EQ(back.movers[0].sensors[2].X_MS.x, 0.5);
   EXPECT_EQ(back.movers[0].sensors[3].type, 2);
-  EXPECT_EQ(back.movers[0].sensors[3].topic, "/roomba_1/_3rd_edge/edge");
+  EXPECT_EQ(back.movers[0].sensors[3].topic, "/roomba_1/edge");
   EXPECT_EQ(back.movers[0].sensors[3].rate, 4.0);
   EXPECT_EQ(back.movers[1].sensors.size(), 1u);
 }
@@ -251,32 +262,6 @@ TEST(Messages, ARunInfoWithAnotherType1IsRefused) {
   Bytes out;
   encode_run_info(info, out);
   EXPECT_FALSE(decode_run_info(out, info));
-}
-
-TEST(RunInfo, NamesBecomeUniqueROSNames) {
-  RunInfo info;
-  const auto frame_of = [&](const std::string& name) {
-    info.movers.push_back({.name = name});
-    name_frames(info);
-    return info.movers.back().frame;
-  };
-  EXPECT_EQ(frame_of("roomba1"), "roomba1");
-  EXPECT_EQ(frame_of("roomba:1"), "roomba_1");    // a colon is no ROS character
-  EXPECT_EQ(frame_of("roomba.1"), "roomba_1_2");  // and the result must be unique
-  EXPECT_EQ(frame_of("3at"), "_3at");             // no digit first
-  EXPECT_EQ(frame_of(""), "robot");               // empty name
-  EXPECT_EQ(frame_of("world"), "world_2");        // the root's name is taken
-  EXPECT_EQ(frame_of("f\xC3\xBC"), "f__");        // bytes beyond ASCII
-}
-
-TEST(RunInfo, ALaserDoesNotTakeTheTopicsOfItsRobot) {
-  RunInfo info;
-  info.sensor_types = {test::scan_type()};
-  info.movers = {{.name = "r", .sensors = {{1, "odom"}, {1, "a b"}, {1, "a b"}}}};
-  name_frames(info);
-  EXPECT_EQ(info.movers[0].sensors[0].topic, "/r/odom_2/scan");
-  EXPECT_EQ(info.movers[0].sensors[1].topic, "/r/a_b/scan");
-  EXPECT_EQ(info.movers[0].sensors[2].topic, "/r/a_b_2/scan");
 }
 
 TEST(Messages, ATimeBeforeZeroIsOurBug) {

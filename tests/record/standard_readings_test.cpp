@@ -93,6 +93,24 @@ TEST(StandardReadings, AFixLiesOnTheEllipsoidOverItsPoint) {
   }
 }
 
+TEST(StandardReadings, ErrorsThatAreKnownAreStated) {
+  Encoded fix = of({.message = Message::fix, .sigma = 2.0}, {1.0, 2.0, 1.5, 7});
+  fix.cdr.get<std::int8_t>();
+  fix.cdr.get<std::uint16_t>();
+  fix.skip(3);
+  EXPECT_EQ(fix.cdr.get<double>(), 4.5) << "east: half of (2 m x 1.5)^2";
+  fix.skip(3);
+  EXPECT_EQ(fix.cdr.get<double>(), 4.5) << "north";
+  fix.skip(4);
+  EXPECT_EQ(fix.cdr.get<std::uint8_t>(), 1) << "approximated";
+  EXPECT_TRUE(fix.cdr.good());
+  Encoded imu = of({.message = Message::imu, .sigma = 0.5}, {0.75});
+  imu.skip(4 + 9 + 3);
+  EXPECT_EQ(imu.cdr.get<double>(), kLeastVariance) << "no turn but about z";
+  imu.skip(7);
+  EXPECT_EQ(imu.cdr.get<double>(), 0.25);
+}
+
 TEST(StandardReadings, WithoutAFixThereIsNoPosition) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Encoded message = of({.message = Message::fix}, {nan, nan, nan, 3});
@@ -119,7 +137,7 @@ TEST(StandardReadings, AMapIsTurnedOver) {
   maps::OccupancyGrid grid({.left = -1.0, .top = 3.0, .cell = 0.5, .word_columns = 2, .word_rows = 1});
   grid.set({0, 0}, maps::Cell::occupied);  // upper left
   grid.set({7, 3}, maps::Cell::free);      // lower right
-  Encoded message({.message = Message::map, .frame = "robot/x", .grid = grid.geometry},
+  Encoded message({.message = Message::map, .frame = "world", .grid = grid.geometry},
                   {grid.words.begin(), grid.words.end()}, "world");
   EXPECT_EQ(message.cdr.get<std::int32_t>(), 3);
   EXPECT_EQ(message.cdr.get<std::uint32_t>(), 21u);

@@ -57,8 +57,8 @@ TEST(TickMessages, LatchedTopicsComeAtTheBeginningAlone) {
   messages.encode(test::SampleTick(0).record, count_in(then));
   EXPECT_EQ(first, (Counts{{"/run", 1}, {"/tf_static", 1}, {"/map", 1}, {"/walls", 1}, {"/bodies", 1}}));
   for (const Topic& topic : messages.topics()) EXPECT_EQ(topic.latched, first.contains(topic.name)) << topic.name;
-  EXPECT_EQ(then["/roomba_1/front_3/field_0"], 1);
-  EXPECT_EQ(then["/roomba_1/front_3/field_1"], 1);
+  EXPECT_EQ(then["/roomba_1/array/field_0"], 1);
+  EXPECT_EQ(then["/roomba_1/array/field_1"], 1);
   EXPECT_EQ(then["/clock"], 1);
 }
 
@@ -77,9 +77,159 @@ TEST(TickMessages, ElementsHaveFramesBelowTheirSensor) {
     }
     EXPECT_TRUE(cdr.good());
   });
-  EXPECT_EQ(parents.at("roomba_1/front_3"), "roomba_1");
-  EXPECT_EQ(parents.at("roomba_1/front_3/field_1"), "roomba_1/front_3");
-  EXPECT_EQ(parents.size(), 8u) << "six sensors, two elements";
+  EXPECT_EQ(parents.at("roomba_1/array"), "roomba_1/base_link");
+  EXPECT_EQ(parents.at("roomba_1/array/field_1"), "roomba_1/array");
+  EXPECT_EQ(parents.at("roomba_1/base_footprint"), "roomba_1/base_link");
+  EXPECT_EQ(parents.at("world"), "map");
+  EXPECT_EQ(parents.size(), 11u) << "six sensors, two elements, two places on the ground, the world";
+}
+
+/// Frames as listeners of tf see them, by topic.
+struct Frames {
+  std::map<std::string, std::string> parents;  ///< by child
+  std::map<std::string, base::Pose> poses;     ///< in the parent, the newest
+  std::map<std::string, std::int64_t> stamps;  ///< the newest
+  bool sound = true;                           ///< one parent each, later stamps
+
+  void read(std::span<const std::uint8_t> message) {
+    CdrReader cdr(message);
+    for (std::uint32_t left = cdr.get_count(60); left > 0; --left) {
+      std::int64_t time = 0;
+      const std::string parent = get_header(cdr, time), child = cdr.get_string();
+      double numbers[7];
+      for (double& number : numbers) number = cdr.get<double>();
+      sound = sound && parents.try_emplace(child, parent).first->second == parent;
+      const auto [last, is_new] = stamps.try_emplace(child, time);
+      sound = sound && (is_new || time > last->second);
+      last->second = time;
+      poses[child] = {numbers[0], numbers[1], numbers[2], 2.0 * std::atan2(numbers[5], numbers[6])};
+    }
+  }
+  /// @return the pose in the frame at the top, whose name is `root` out
+  base::Pose pose(std::string frame, std::string& root) const {
+    base::Pose X;
+    for (int depth = 0; parents.contains(frame) && depth < 10; ++depth) {
+      X = base::compose(poses.at(frame), X);
+      frame = parents.at(frame);
+    }
+    root = frame;
+    return X;
+  }
+};
+
+/// By topics of tf, without their last part.
+std::map<std::string, Frames> frames_of(const RunInfo& info, int ticks) {
+  TickMessages messages(info);
+  std::map<std::string, Frames> trees;
+  const auto read = [&](const TopicMessage& message) {
+    const Topic& topic = messages.topics()[message.topic];
+    if (topic.type == kTransforms) trees[topic.name.substr(0, topic.name.rfind('/'))].read(message.bytes);
+  };
+  messages.begin(read);
+  for (int tick = 0; tick < ticks; ++tick)
+    messages.encode(test::SampleTick(static_cast<std::uint64_t>(tick)).record, read);
+  return trees;
+}
+
+RunInfo info_with(const Naming& naming) {
+  RunInfo info = test::sample_info(true);
+  put_naming(naming, info);
+  info.movers[0].plain = naming.style == TopicStyle::plain;
+  name_frames(info);
+  return info;
+}
+
+TEST(TickMessages, EveryFrameHasOneParentAndLeadsToTheMap) {
+  const test::SampleTick last(4);
+  for (const auto& [word, style] : kTopicStyles)
+    for (const auto& [source_word, source] : kOdometrySources) {
+      const RunInfo info = info_with({style, source});
+      const auto trees = frames_of(info, 5);
+      EXPECT_EQ(trees.size(), style == TopicStyle::nav2 ? 2u : 1u) << word;
+      for (std::size_t row = 0; row < 2; ++row) {
+        const MoverInfo& mover = info.movers[row];
+        const Frames& frames = trees.at(style == TopicStyle::nav2 ? mover.space : "");
+        EXPECT_TRUE(frames.sound) << word << source_word;
+        for (const auto& [child, parent] : frames.parents) {
+          std::string root;
+          frames.pose(child, root);
+          EXPECT_EQ(root, style == TopicStyle::sensor ? "world" : "map") << word << child;
+        }
+        std::string root;
+        const base::Pose X = frames.pose(mover.base_frame, root), &truth = last.reports[row].X_WM;
+        EXPECT_NEAR(std::hypot(X.x - truth.x, X.y - truth.y), 0.0, 1e-9) << word << source_word;
+        EXPECT_NEAR(base::wrap_angle(X.yaw - truth.yaw), 0.0, 1e-9) << word << source_word;
+      }
+    }
+}
+
+/// A transform that a node elsewhere publishes would be a second parent.
+TEST(TickMessages, TransformsOfNodesElsewhereAreLeftOut) {
+  const auto children = [](const Naming& naming) {
+    const RunInfo info = info_with(naming);
+    std::string text;
+    const auto trees = frames_of(info, 3);
+    for (const auto& [child, parent] : trees.at("").parents)
+      if (child == "roomba_1/odom" || child == "roomba_1/base_link" || child == "world") text += child + " ";
+    const TickMessages messages(info);
+    for (const Topic& topic : messages.topics())
+      if (topic.name == "/map") text += topic.name;
+    return text;
+  };
+  for (const OdometrySource source : {OdometrySource::encoders, OdometrySource::truth}) {
+    EXPECT_EQ(children({.odometry = source}), "roomba_1/base_link roomba_1/odom world /map");
+    EXPECT_EQ(children({.odometry = source, .localizer = true}), "roomba_1/base_link world /map");
+    EXPECT_EQ(children({.odometry = source, .mapper = true}), "roomba_1/base_link ");
+    EXPECT_EQ(children({.odometry = source, .filter = true}), "roomba_1/odom world /map");
+    EXPECT_EQ(children({.odometry = source, .mapper = true, .filter = true}), "");
+  }
+}
+
+/// A robot with encoders has the odometry of their readings, at the times of these; others that of each tick.
+TEST(TickMessages, OdometryIsThatOfEncoders) {
+  RunInfo info = test::sample_info(true);
+  info.sensor_types.push_back({.id = 8, .name = "encoder", .columns = {{"left_m"}, {"right_m"}}});
+  info.movers[0].sensors.push_back({.type = 8, .name = "wheels"});
+  info.movers[0].encoder = EncoderInfo{8, 1e-3, 0.0, 0.5};
+  name_frames(info);
+  TickMessages messages(info);
+  test::SampleTick tick(1);
+  const double rolled[2] = {0.2, 0.2};
+  tick.readings.push_back({.mover = 0, .type = 8, .time = 50'000'000, .X_WM = {3.0, 1.0, 0.0, 0.0}, .values = rolled});
+  tick.record.readings = tick.readings;
+  std::map<std::string, std::pair<std::string, double>> told;  // frame and x by topic
+  std::map<std::string, std::int64_t> times;
+  Frames frames;
+  messages.begin([&](const TopicMessage&) {});
+  messages.encode(tick.record, [&](const TopicMessage& message) {
+    const Topic& topic = messages.topics()[message.topic];
+    if (topic.name == "/tf") frames.read(message.bytes);
+    if (topic.type != kOdometry) return;
+    CdrReader cdr(message.bytes);
+    const std::string frame = get_header(cdr, times[topic.name]), child = cdr.get_string();
+    told[topic.name] = {frame + " " + child, cdr.get<double>()};
+    EXPECT_EQ(message.time, times[topic.name]);
+  });
+  EXPECT_EQ(told.at("/roomba_1/odom"), std::pair(std::string("roomba_1/odom roomba_1/base_link"), 0.2));
+  EXPECT_EQ(times.at("/roomba_1/odom"), 50'000'000);
+  EXPECT_EQ(told.at("/roomba_1/ground_truth/odom"),
+            std::pair(std::string("world roomba_1/base_link"), tick.reports[0].X_WM.x));
+  EXPECT_EQ(times.at("/roomba_1/ground_truth/odom"), tick.record.time);
+  EXPECT_EQ(told.at("/roomba_1_2/odom").second, 0.0) << "exact, from where it begins";
+  EXPECT_EQ(frames.stamps.at("roomba_1/base_link"), 50'000'000);
+  EXPECT_EQ(frames.stamps.at("roomba_1/odom"), 50'000'000);
+  EXPECT_EQ(frames.stamps.at("roomba_1_2/base_link"), tick.record.time);
+  std::string root;
+  EXPECT_NEAR(frames.pose("roomba_1/base_link", root).x, 3.0, 1e-12) << "where it was at the reading";
+}
+
+TEST(TickMessages, RecordingsWithoutReadingsHaveTrueOdometry) {
+  RunInfo info = test::sample_info(false);
+  info.movers[0].encoder = EncoderInfo{};
+  name_frames(info);
+  const auto trees = frames_of(info, 2);
+  EXPECT_EQ(trees.at("").poses.at("roomba_1/odom").x, 0.0);
+  EXPECT_EQ(trees.at("").poses.at("roomba_1/base_link").x, test::SampleTick(1).reports[0].X_WM.x);
 }
 
 TEST(TickMessages, AfterAResetOdometryIsDueAtOnce) {
@@ -101,11 +251,10 @@ std::pair<float, double> told_values(const RunInfo& info, const base::TickRecord
   std::pair<float, double> told{NAN, NAN};
   messages.encode(record, [&](const TopicMessage& message) {
     const std::string& topic = messages.topics()[message.topic].name;
-    if (topic == "/roomba_1/front_2/scan") told.first = decode_scan(message.bytes)->ranges.at(0);
+    if (topic == "/roomba_1/scan_1") told.first = decode_scan(message.bytes)->ranges.at(0);
     std::int64_t time = 0;
     std::vector<double> values;
-    if (topic != "/roomba_1/front_3/array" || !decode_reading(info.sensor_types[2], message.bytes, time, values))
-      return;
+    if (topic != "/roomba_1/array" || !decode_reading(info.sensor_types[2], message.bytes, time, values)) return;
     told.second = values.at(0);
   });
   return told;

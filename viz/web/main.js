@@ -155,9 +155,9 @@ function stopDriving() {
   $('drive')?.setAttribute('aria-pressed', 'false');
 }
 function sendTwist() {
-  const { frame, max } = scene.movers[drawing.selected];
+  const { space, max } = scene.movers[drawing.selected];
   const ahead = (pressed.has('ArrowUp') ? 1 : 0) - (pressed.has('ArrowDown') ? 1 : 0), turn = (pressed.has('ArrowLeft') ? 1 : 0) - (pressed.has('ArrowRight') ? 1 : 0);
-  connection.drive(`/${frame}/cmd_vel`, twistBytes(0.7 * ahead * max[0], 0, 0.6 * turn * max[1]));
+  connection.drive(`${space}/cmd_vel`, twistBytes(0.7 * ahead * max[0], 0, 0.6 * turn * max[1]));
 }
 function sendDrive() {
   if (!driving) return;

@@ -33,7 +33,8 @@ struct ViewerFixture {
     info.world = world.name;
     info.record_readings = true;
     info.odometry_rate = 10.0;
-    for (const world::Mover& mover : world.movers) info.movers.push_back({mover.name, mover.name, 0, {}});
+    for (const world::Mover& mover : world.movers) info.movers.push_back({mover.name, "", 0, {}});
+    record::name_frames(info);
     return info;
   }
   /// Paused ticks are not paced, so that tests depend on no clock.
