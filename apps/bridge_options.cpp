@@ -31,6 +31,13 @@ std::vector<std::string> world_folders(const world::World& world) {
   return folders;
 }
 
+/// Of names that are taken: a fleet may have many.
+void print_notes(const std::vector<std::string>& notes) {
+  constexpr std::size_t kMost = 3;
+  for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i) print_message("topics: {}", notes[i]);
+  if (notes.size() > kMost) print_message("topics: {} more names are taken", notes.size() - kMost);
+}
+
 }  // namespace
 
 LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world, const sensors::SensorSet& sensor_set,
@@ -38,7 +45,7 @@ LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world
     : options_(options), world_(world), sensor_set_(sensor_set), settings_(settings), simulated_(simulated) {
   if (!options.any()) return;
   info_ = scenarios::run_info(world, sensor_set, settings);
-  record::name_frames(info_);
+  print_notes(record::name_frames(info_));
   if (options.ros2) open_ros2();
   if (!options.player.empty()) {
     open_player();

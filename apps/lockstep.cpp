@@ -88,7 +88,8 @@ int serve_lockstep(const ServeOptions& options) {
                                             .record_readings = true,
                                             .no_return_inf = options.no_return_inf,
                                             .caster = caster,
-                                            .too_near_min = options.too_near_min}),
+                                            .too_near_min = options.too_near_min,
+                                            .naming = options.naming}),
                        record::RecordingPart{.compression = options.compression});
       service.record_to(*recorder);
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <tuple>
 
@@ -22,6 +23,7 @@ constexpr const char* kWorld = "World file";
 constexpr const char* kAccuracy = "Accuracy";
 constexpr const char* kDevice = "Device";
 constexpr const char* kVideoGroup = "Video (docs/figures.md)";
+constexpr const char* kNaming = "Names of topics and frames (docs/bridges.md)";
 constexpr const char* kPorts = "Ports of sensor packets (first + robot id * ports per robot + sensor)";
 
 }  // namespace
@@ -256,6 +258,41 @@ void add_bridges(CLI::App& app, BridgeOptions& o) {
       ->default_str("8765")
       ->type_name("[HOST:]PORT")
       ->group(kBridgeGroup);
+}
+
+void add_naming(CLI::App& app, NamingOption& o) {
+  const auto choices = [](const auto& table) {
+    std::vector<std::pair<std::string, std::decay_t<decltype(table[0].second)>>> words;
+    for (const auto& [word, value] : table) words.emplace_back(word, value);
+    return words;
+  };
+  add_choice(
+      app, "--topics", o.naming.style, choices(record::kTopicStyles),
+      "Names of topics and frames in ROS 2, Foxglove and recordings: robot (/ROBOT/scan), nav2 (the same, with a "
+      "/ROBOT/tf for each), plain (/scan, for one robot) or sensor (/ROBOT/SENSOR/scan, robots in the frame "
+      "world, true odometry)")
+      ->default_str("robot")
+      ->group(kNaming);
+  add_choice(app, "--odometry", o.naming.odometry, choices(record::kOdometrySources),
+             "The topic odom, and odom -> base_link: encoders (of robots without them: exact), exact (without errors, "
+             "from the start pose on) or truth (the pose in the world)")
+      ->default_str("encoders")
+      ->group(kNaming);
+  std::vector<std::string> nodes;
+  for (const auto& [word, member] : record::kExternalNodes) nodes.emplace_back(word);
+  const auto set = [&o](const std::vector<std::string>& words) {
+    for (const auto& [word, member] : record::kExternalNodes)
+      o.naming.*member = std::find(words.begin(), words.end(), word) != words.end();
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--external", set,
+         "Nodes elsewhere: localizer (the farm leaves out map -> odom), mapper (map -> odom and /map) or filter "
+         "(odom -> base_link), or several")
+      ->check(one_of(nodes))
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NODE,...")
+      ->group(kNaming);
 }
 
 void add_threads(CLI::App& app, ThreadsOption& o) {

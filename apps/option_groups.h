@@ -83,6 +83,8 @@ void add_threads(CLI::App& app, ThreadsOption& o);
 /// Other programs beside `run` and `serve`, as options of this group.
 inline constexpr const char* kBridgeGroup = "Bridges to other programs (docs/bridges.md)";
 void add_bridges(CLI::App& app, BridgeOptions& o);
+/// `--topics`, `--odometry` and `--external`.
+void add_naming(CLI::App& app, NamingOption& o);
 /// `--out FILE` of one picture.
 CLI::Option* add_picture(CLI::App& app, std::string& file,
                          const std::string& help = "Picture to write: .png, .svg or .pdf");

@@ -15,6 +15,7 @@
 #include "netio/ports.h"
 #include "netio/server/light_listener.h"
 #include "record/mcap.h"
+#include "record/topic_names.h"
 #include "robots/estimation/sender_clock.h"
 #include "robots/estimation/track_filter.h"
 #include "scenarios/plant.h"
@@ -232,6 +233,11 @@ struct ViewOptions : RecordingOption, PartOption, DeviceOption, VideoOptions {
 
 struct ExplainOptions : WorldOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {};
 
+/// Names of topics and frames, in recordings too.
+struct NamingOption {
+  record::Naming naming;
+};
+
 /// Connections to other programs (netio/bridges); each is an address, or a number, as its option's help says.
 struct BridgeOptions {
   std::optional<std::string> ros2;          ///< domain; empty: that of the environment, or 0
@@ -251,6 +257,7 @@ struct RunOptions : WorldOptions,
                     ThreadsOption,
                     CompressionOption,
                     VideoOptions,
+                    NamingOption,
                     BridgeOptions {
   std::vector<std::string> drive;  ///< robots that the controller drives, by name; empty: every robot
   std::optional<double> duration;  ///< [s]; nullopt: 60, and without end beside bridges
@@ -277,6 +284,7 @@ struct ServeOptions : WorldOptions,
                       CloneOptions,
                       DurationOption,
                       CompressionOption,
+                      NamingOption,
                       BridgeOptions {
   std::uint32_t port = netio::kInboxPort;  ///< 0: any free one
   double rate = 0.0;                       ///< [Hz]; 0: the world's own

@@ -344,7 +344,8 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
                                         .record_readings = true,
                                         .no_return_inf = options.no_return_inf,
                                         .caster = ground->caster,
-                                        .too_near_min = options.too_near_min},
+                                        .too_near_min = options.too_near_min,
+                                        .naming = options.naming},
                  true);
   });
   std::vector<world::Warning> heard = course->simulation.warnings();

@@ -22,7 +22,8 @@ RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sens
                 .record_readings = options.record_readings,
                 .no_return_inf = options.no_return_inf,
                 .caster = caster,
-                .too_near_min = options.too_near_min},
+                .too_near_min = options.too_near_min,
+                .naming = options.naming},
       no_return_filter_(sensor_set, options.no_return_inf),
       session_token_{netio::random_session(), 0},
       sent_movers_(world.movers.size()) {

@@ -90,7 +90,8 @@ scenarios::RunSettings run_settings(const ServeOptions& options, bool software) 
           .no_return_inf = options.no_return_inf,
           .caster = raycast::describe_caster(software),
           .estimated = true,
-          .too_near_min = options.too_near_min};
+          .too_near_min = options.too_near_min,
+          .naming = options.naming};
 }
 
 /// The recording of a service: its states are estimates, its ticks and samples are at times of its clock.

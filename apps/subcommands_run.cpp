@@ -64,6 +64,7 @@ void add_run(CLI::App& app, Call& call) {
          "--real-time", [&o] { o.speed = 1.0; }, "Run in real time: --speed 1")
       ->excludes(speed);
   add_bridges(*sub, o);
+  add_naming(*sub, o);
   sub->add_option("--send", o.send, "Send every reading as UDP packets to this host")
       ->check(not_empty("a host"))
       ->type_name("HOST");
@@ -217,6 +218,7 @@ void add_serve(CLI::App& app, Call& call) {
   add_compression(*sub, o)->needs(record);
   add_robots(*sub, o);
   add_bridges(*sub, o);
+  add_naming(*sub, o);
   add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");
 }
 

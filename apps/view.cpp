@@ -89,8 +89,11 @@ int view(const ViewOptions& options) {
   print_damage(recording);
   const world::World world = scenarios::recorded_world(recording);
   const sensors::SensorSet sensor_set(world);
+  record::Naming naming = record::naming_of(recording.info);
+  naming.odometry = record::OdometrySource::truth;  // at any time that users go to
   record::RunInfo info = scenarios::run_info(
-      world, sensor_set, {.seed = recording.info.seed, .record_readings = !recording.readings.empty()});
+      world, sensor_set,
+      {.seed = recording.info.seed, .record_readings = !recording.readings.empty(), .naming = naming});
   record::name_frames(info);
   info.world = recording.info.world;
   scenarios::Replay replay(recording, info);

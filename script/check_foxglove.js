@@ -71,12 +71,12 @@ async function main() {
   client.setParameters([{ name: "/speed", value: 2 }], "speed");
   await next(client, "parameterValues", ({ id, parameters }) => id === "speed" && parameters[0].value === 2);
   const driven = fleet.states.length - 1;
-  const name = [...reader.channels.keys()].filter((topic) => topic.endsWith("/odom"))[driven].replace("/odom", "");
+  const name = [...reader.channels.keys()].filter((topic) => topic.endsWith("/ground_truth/odom"))[driven].replace("/ground_truth/odom", "");
   const channel = client.advertise({ topic: `${name}/cmd_vel`, encoding: "cdr", schemaName: "geometry_msgs/msg/Twist" });
   const zero = { x: 0, y: 0, z: 0 };
   client.sendMessage(channel, new MessageWriter(twist).writeMessage({ linear: zero, angular: { ...zero, z: 0.3125 } }));
-  const odometry = await reader.next(`${name}/odom`, (odom) => Math.abs(odom.twist.twist.angular.z - 0.3125) < 1e-9);
-  check(odometry.child_frame_id === name.slice(1), odometry.child_frame_id);
+  const odometry = await reader.next(`${name}/ground_truth/odom`, (odom) => Math.abs(odom.twist.twist.angular.z - 0.3125) < 1e-9);
+  check(odometry.child_frame_id === `${name.slice(1)}/base_link`, odometry.child_frame_id);
 
   const paused = next(client, "parameterValues", ({ parameters }) => parameters.some((p) => p.name === "/paused" && p.value === true));
   const call = (service, request) => {

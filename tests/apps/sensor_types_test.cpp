@@ -283,7 +283,7 @@ TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
   EXPECT_EQ(all.size(), 4u * 20u) << "scans and fields";
   ASSERT_EQ(std::count_if(all.begin(), all.end(), is_field), 2 * 20);
   ASSERT_EQ(recording.info.movers[0].sensors.size(), 2u);
-  EXPECT_EQ(recording.info.movers[0].sensors[1].topic, "/one/array/magnetometer");
+  EXPECT_EQ(recording.info.movers[0].sensors[1].topic, "/one/magnetometer");
   EXPECT_EQ(recording.info.movers[2].sensors.size(), 0u);
   const record::ReadingSample& first = *std::find_if(all.begin(), all.end(), is_field);
   ASSERT_EQ(first.values.size(), 8u);
