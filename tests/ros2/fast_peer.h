@@ -68,13 +68,22 @@ struct Transform {
 
 struct Odometry {
   Transform pose;
+  double pose_covariance[36] = {};
   double velocity[6] = {};
+  double velocity_covariance[36] = {};
+};
+
+/// The begin of most messages.
+struct Header {
+  std::int64_t time = 0;
+  std::string frame;
 };
 
 // Nullopt where fastcdr finds that the bytes end too early, or bytes are left.
 std::optional<LaserScan> decode_scan(const base::Bytes& message);
 std::optional<Odometry> decode_odometry(const base::Bytes& message);
 std::optional<std::vector<Transform>> decode_transforms(const base::Bytes& message);
+std::optional<Header> decode_header(const base::Bytes& message);  ///< whatever comes behind it
 std::optional<std::int64_t> decode_clock(const base::Bytes& message);
 
 /// A node of ros_discovery_info, with the number of its readers and writers.

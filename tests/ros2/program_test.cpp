@@ -166,6 +166,10 @@ TEST(Ros2Program, SaysInOneLineWhyItCannot) {
     EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
     return outcome.err;
   };
+  EXPECT_NE(refusal({"--ros2", "--topics", "plain"}, {}).find("has 2 robots"), std::string::npos);
+  EXPECT_NE(refusal({"--ros2", "--topics", "sensor", "--external", "filter"}, {}).find("no frame odom"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--ros2", "--external", "mapper,amcl"}, {}).find("'amcl'"), std::string::npos);
   EXPECT_NE(refusal({"--ros2", "233"}, {}).find("from 0 to 232"), std::string::npos);
   EXPECT_NE(refusal({"--ros2"}, {{"ROS_DOMAIN_ID", "home"}}).find("ROS_DOMAIN_ID 'home'"), std::string::npos);
 }

@@ -154,10 +154,10 @@ TEST_F(Ros2Test, EndpointsAreNamedAsNodesOfRos2NameThem) {
   };
   ASSERT_TRUE(peer.wait([&] { return find("ros_discovery_info", kDiscovery).has_value(); })) << "made last";
   ASSERT_TRUE(peer.wait([&] {
-    return find("rt/scout/laser/scan", kScan) && find("rt/robot_2/cmd_vel", "geometry_msgs::msg::dds_::Twist_") &&
+    return find("rt/scout/scan", kScan) && find("rt/robot_2/cmd_vel", "geometry_msgs::msg::dds_::Twist_") &&
            find("rq/set_simulation_stateRequest", "simulation_interfaces::srv::dds_::SetSimulationState_Request_");
   }));
-  const Endpoint scan = *find("rt/scout/laser/scan", kScan);
+  const Endpoint scan = *find("rt/scout/scan", kScan);
   EXPECT_EQ(scan.user_data, "typehash=RIHS01_64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828;");
   EXPECT_TRUE(scan.writes && scan.reliable && !scan.latched);
   ASSERT_TRUE(peer.wait([&] { return find("rt/tf_static", kTransforms).has_value(); }));
@@ -212,10 +212,13 @@ TEST_F(Ros2Test, LateReadersAreGivenTheFramesOfSensors) {
   ASSERT_TRUE(peer.wait([&] { return !peer.messages(reader).empty(); }));
   const auto frames = decode_transforms(peer.messages(reader).front());
   ASSERT_TRUE(frames);
-  ASSERT_EQ(frames->size(), 2u);
-  EXPECT_EQ((*frames)[0].frame, "scout");
-  EXPECT_EQ((*frames)[0].child, "scout/laser");
-  EXPECT_EQ((*frames)[1].child, "robot_2/laser");
+  std::map<std::string, std::string> parents;
+  for (const Transform& frame : *frames) parents[frame.child] = frame.frame;
+  EXPECT_EQ(parents, (std::map<std::string, std::string>{{"world", "map"},
+                                                         {"scout/base_footprint", "scout/base_link"},
+                                                         {"scout/laser", "scout/base_link"},
+                                                         {"robot_2/base_footprint", "robot_2/base_link"},
+                                                         {"robot_2/laser", "robot_2/base_link"}}));
 }
 
 /// Of each topic one reader, and a recording of the same ticks.
@@ -241,8 +244,8 @@ struct Ros2Readings : Ros2Test {
     return nullptr;
   }
 
-  const std::size_t scans = peer.subscribe("rt/scout/laser/scan", kScan);
-  const std::size_t odometry = peer.subscribe("rt/robot_2/odom", kOdometry, false, false);
+  const std::size_t scans = peer.subscribe("rt/scout/scan", kScan);
+  const std::size_t odometry = peer.subscribe("rt/robot_2/ground_truth/odom", kOdometry, false, false);
   const std::size_t clock = peer.subscribe("rt/clock", kClock, false, false);
   const std::size_t transforms = peer.subscribe("rt/tf", kTransforms);
   record::Recording recording;
@@ -279,12 +282,18 @@ TEST_F(Ros2Readings, AreThoseOfTheRecording) {
   for (const base::Bytes& message : peer.messages(transforms)) {
     const auto poses = decode_transforms(message);
     ASSERT_TRUE(poses);
-    ASSERT_EQ(poses->size(), 2u);
+    ASSERT_EQ(poses->size(), 4u);
     for (std::size_t mover = 0; mover < 2; ++mover) {
-      const auto* const state = state_at(mover, (*poses)[mover].time);
+      const Transform &odom = (*poses)[2 * mover], &robot = (*poses)[2 * mover + 1];
+      const auto* const state = state_at(mover, robot.time);
       ASSERT_NE(state, nullptr);
-      EXPECT_EQ((*poses)[mover].frame, "world");
-      EXPECT_EQ((*poses)[mover].position[0], state->X_WM.x);
+      EXPECT_EQ(odom.frame, "map");
+      EXPECT_EQ(odom.child, robot.frame);
+      EXPECT_EQ(odom.time, robot.time);
+      const double yaw = 2.0 * std::atan2(odom.rotation[2], odom.rotation[3]);
+      const glm::dvec2 p = base::rotate(yaw, {robot.position[0], robot.position[1]});
+      EXPECT_NEAR(odom.position[0] + p.x, state->X_WM.x, 1e-9);
+      EXPECT_NEAR(odom.position[1] + p.y, state->X_WM.y, 1e-9);
     }
   }
 }
@@ -393,7 +402,7 @@ TEST_F(Ros2Test, StandardServicesPauseAndBeginAgain) {
 }
 
 TEST_F(Ros2Test, AServicePlacesARobot) {
-  const std::size_t odometry = peer.subscribe("rt/scout/odom", kOdometry);
+  const std::size_t odometry = peer.subscribe("rt/scout/ground_truth/odom", kOdometry);
   Client place(peer, cyclone, "set_entity_state", "simulation_interfaces::srv::dds_::SetEntityState");
   ASSERT_TRUE(peer.wait([&] { return place.known() && peer.matched_reader(odometry); }));
   EXPECT_TRUE(peer.wait([&] {

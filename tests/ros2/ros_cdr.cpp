@@ -72,11 +72,10 @@ std::optional<LaserScan> decode_scan(const Bytes& message) {
 
 std::optional<Odometry> decode_odometry(const Bytes& message) {
   return decode<Odometry>(message, [](Cdr& cdr, Odometry& odometry) {
-    double ignored = 0.0;
     read_transform(cdr, odometry.pose);
-    for (int i = 0; i < 36; ++i) cdr >> ignored;
+    for (double& value : odometry.pose_covariance) cdr >> value;
     for (double& value : odometry.velocity) cdr >> value;
-    for (int i = 0; i < 36; ++i) cdr >> ignored;
+    for (double& value : odometry.velocity_covariance) cdr >> value;
   });
 }
 
@@ -86,6 +85,16 @@ std::optional<std::vector<Transform>> decode_transforms(const Bytes& message) {
     cdr >> count;
     for (; count > 0; --count) read_transform(cdr, transforms.emplace_back());
   });
+}
+
+std::optional<Header> decode_header(const Bytes& message) {
+  return decode<Header>(
+      message,
+      [](Cdr& cdr, Header& header) {
+        header.time = read_time(cdr);
+        cdr >> header.frame;
+      },
+      false);
 }
 
 std::optional<std::int64_t> decode_clock(const Bytes& message) {
