@@ -139,11 +139,16 @@ void print_failures(const Results& results) {
   if (count > kMost) print_message("{} more: see jobs.csv", counted(count - kMost, "job"));
 }
 
-/// Into `plots` of the folder.
+/// Into `plots` of the folder. The tables are the result: without plots (a node without Cairo) it is whole, too.
 void draw_plots(const SweepFolder& folder, const std::string& jobs) {
-  const scenarios::SweepPlots plots = scenarios::draw_sweep(folder.file("jobs.csv"), jobs, folder.file("plots"), {});
-  for (const std::string& note : plots.notes) print_message(note);
-  if (!plots.files.empty()) print_message("wrote {} in {}", counted(plots.files.size(), "plot"), folder.file("plots"));
+  const std::string plots_folder = folder.file("plots");
+  try {
+    const scenarios::SweepPlots plots = scenarios::draw_sweep(folder.file("jobs.csv"), jobs, plots_folder, {});
+    for (const std::string& note : plots.notes) print_message(note);
+    if (!plots.files.empty()) print_message("wrote {} in {}", counted(plots.files.size(), "plot"), plots_folder);
+  } catch (const base::InputError& error) {
+    print_message("no plots, `plot {}` draws them later: {}", folder.path(), error.what());
+  }
 }
 
 int write_tables(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder, const Results& results) {

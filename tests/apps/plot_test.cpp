@@ -156,6 +156,10 @@ TEST(SweepPlotsCommand, AreDrawnAtItsEndAndAgainByPlot) {
 
   ASSERT_EQ(run_program({"sweep", file, "-o", folder.path("bare"), "--no-plots"}).code, 0);
   EXPECT_FALSE(fs::exists(folder.path("bare/plots")));
+  folder.write("bare/plots", "");  // a file in the way
+  const Outcome blocked = run_program({"sweep", file, "-o", folder.path("bare")});
+  EXPECT_EQ(blocked.code, 0) << "the tables are written: " << blocked.err;
+  EXPECT_TRUE(contains(blocked.err, "no plots, `plot ")) << blocked.err;
   for (const Words& words : {Words{"--over", "kp"}, {"--robots", "one"}, {"--elements", "1"}, {"--label", "one"}}) {
     Words plot{"plot", folder.path("out")};
     plot.insert(plot.end(), words.begin(), words.end());
