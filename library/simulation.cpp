@@ -43,7 +43,7 @@ scenarios::SimulationOptions simulation_options(const Options& options, cluster:
 
 }  // namespace
 
-/// What views showed before a robot joined: they keep it.
+/// Memory of views from before a robot joined. They keep it alive.
 struct Earlier {
   std::vector<Pose> poses;
   std::vector<Twist> velocities;

@@ -181,6 +181,7 @@ bool Simulation::all_done() const {
 
 base::TickRecord Simulation::step() {
   const std::int64_t time = static_cast<std::int64_t>(tick_) * interval_;
+  earlier_readings_.reset();
   settle();
   if (tiles_ && tick_ == 0) begin_tiles();
   if (balance_ > 0 && tick_ > 0 && tick_ % balance_ == 0) balance_tiles();

@@ -104,8 +104,8 @@ class Simulation {
   /// nothing and stands. Called between two steps: sensors see the change from the next step on.
   void set_absent(std::uint32_t mover, bool gone);
 
-  /// Adds a robot to the world and the run, between two steps: its sensors are read from the next step on. Nobody
-  /// else's readings change but by its body. A robot that was removed returns under its name, if it is of the same
+  /// Adds a robot to the world and the run, between two steps: its sensors are read from the next step on. It
+  /// changes the readings of others by its body alone. A robot that was removed returns under its name, if it is of the same
   /// kind: in its row, with its id, its random numbers and its counts going on. Time in proportion to the fleet and the
   /// world. With ranks, all call this alike. @param world the one given to the constructor; rows that it has keep their
   /// places
@@ -119,7 +119,7 @@ class Simulation {
   /// Robots that joined, in the order of their rows.
   const std::vector<record::JoinedMover>& joined() const { return joined_; }
   bool is_absent(std::uint32_t mover) const { return absent_[mover]; }
-  /// The memory of the readings that were returned before the last `add_robot`.
+  /// The memory of the readings that were returned before the last `add_robot`; null after the next step.
   std::shared_ptr<const void> earlier_readings() const { return earlier_readings_; }
 
   const farm::Farm& farm() const { return farm_; }
@@ -209,7 +209,7 @@ class Simulation {
   std::exception_ptr failure_;           ///< of a controller in this tick
   std::uint32_t failed_ = world::kNone;  ///< its mover, the first that failed
   double v2v_range_ = 0.0;               ///< [m] largest of all controllers
-  std::shared_ptr<const void> earlier_readings_;
+  std::shared_ptr<const void> earlier_readings_;  ///< until the next step
   std::vector<record::JoinedMover> joined_;
   std::uint64_t seed_;
   std::int64_t start_at_;

@@ -32,7 +32,7 @@ struct Scene {
   std::vector<std::string> world_folders = {};  ///< whose worlds users may load; empty: none
 };
 
-/// What became of a request that the run may refuse: written before the next `publish`.
+/// Outcome of a request that the run may refuse, written before the next `publish`.
 struct Outcome {
   enum class Fault : std::uint8_t { none, failed, unreadable, unsupported };
   bool done = false;

@@ -1,6 +1,5 @@
 #pragma once
-// What a run offers to users of simulation_interfaces: its robots as entities, places for new ones, kinds of robots,
-// and worlds.
+// Robots of a run as entities of simulation_interfaces, places for new ones, kinds of robots, and worlds.
 
 #include <cstdint>
 #include <set>
@@ -42,7 +41,7 @@ std::vector<NamedPose> named_poses_of(const Scene& scene);
 /// Appends a `simulation_interfaces/NamedPose`.
 void put_named_pose(record::CdrWriter& cdr, const NamedPose& pose);
 
-/// Rows of the first robots of each kind, at most kMostKinds: what can be spawned.
+/// Rows of the robots that can be spawned: the first of each kind, at most kMostKinds.
 inline constexpr std::size_t kMostKinds = 64;
 std::vector<std::uint32_t> kinds_of(const world::World& world);
 /// Appends a `simulation_interfaces/Spawnable`, whose URI is the robot's name.

@@ -59,7 +59,7 @@ TEST(Ros2Program, ARunGetsRobotsAndWorlds) {
   const std::string before_port = "view on http://127.0.0.1:";
   ASSERT_TRUE(run.says(before_port)) << run.err();
   const int port = std::atoi(run.err().c_str() + run.err().find(before_port) + before_port.size());
-  /// What the live view tells its pages of topics.
+  /// The topics that the live view advertises.
   const auto greeting = [port] {
     bridges::RawClient client(static_cast<std::uint16_t>(port));
     EXPECT_EQ(client.upgrade("foxglove.websocket.v1").substr(9, 3), "101");

@@ -1,4 +1,4 @@
-// Every answer of the services for ROS 2 that tell of entities, places and worlds, and change them.
+// Every answer of the services for ROS 2 that describe or change entities, places and worlds.
 
 #include "netio/bridges/world_services.h"
 
