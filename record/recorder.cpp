@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "base/error.h"
@@ -103,7 +104,7 @@ Recorder::Recorder(const std::string& directory, RunInfo info, const RecordingPa
   messages_->begin([this](const TopicMessage& message) { add(message); });
   flush();
   file_.publish();
-  if (part.compression != Compression::none) writer_.emplace(mcap_, file_);
+  if (part.compression != Compression::none) start_writer();
   // Another run's whole recording would be taken for this one's.
   if (part.parts > 1 && part.part == 0) std::remove((directory + "/" + RecordingPart{}.file()).c_str());
   info_.snapshot = {};
@@ -124,6 +125,14 @@ void Recorder::write(const base::TickRecord& record) {
   messages_->encode(
       record, [this](const TopicMessage& message) { add(message); }, wanted_);
   flush();
+}
+
+void Recorder::start_writer() {
+  try {
+    writer_.emplace(mcap_, file_);
+  } catch (const std::system_error&) {
+    // The system starts no more threads: `write` compresses and writes.
+  }
 }
 
 void Recorder::check_topics(const TickMessages& messages) const {
@@ -168,7 +177,7 @@ void Recorder::add_movers(RunInfo info) {
   add_channels();
   messages_->go_on(before, time_, [this](const TopicMessage& message) { add(message); });
   flush();
-  if (threaded) writer_.emplace(mcap_, file_);
+  if (threaded) start_writer();
 }
 
 void Recorder::add(const TopicMessage& message) {

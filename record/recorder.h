@@ -72,6 +72,7 @@ class Recorder : public base::Sink {
   void check_topics(const TickMessages& messages) const;
   void add_channels();
   void flush();
+  void start_writer();
 
   RunInfo info_;
   GrowingFile file_;
