@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint32_t kMaxFrame = kDdsMaxReceived + 64;   // [byte] from the process
 constexpr std::size_t kMaxQueued = DdsOutbox::kMaxReplies;  // replies; more are left out
 constexpr std::chrono::milliseconds kLeave{250};            // for the process to end by itself
-constexpr std::chrono::seconds kBeforeRestart{1};                    // before it is started again
+constexpr std::chrono::seconds kBeforeRestart{1};           // before it is started again
 
 /// One end of a pipe.
 class PipeEnd {

@@ -190,7 +190,7 @@ TEST_F(Ros2Services, UnreadableRequestsOfFastDdsAreDropped) {
   };
   for (const base::Bytes& bytes : faulty) fast.call(client.requests, client.replies, bytes);
   client.call(steps(0));
-  ASSERT_TRUE(fast.wait([&] { return client.answered(); })) << "others are heard as before";
+  ASSERT_TRUE(fast.wait([&] { return client.answered(); })) << "later requests are answered";
   expect_each_answered_once(client, from);
 }
 

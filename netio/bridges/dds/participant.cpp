@@ -93,7 +93,7 @@ struct Reader {
   bool requests = false;
 };
 
-/// Of a writer that is gone, nothing is known, and nobody waits for an answer.
+/// False for a writer that is gone, whose client waits for no answer.
 bool is_of_own_kind(dds_entity_t reader, dds_instance_handle_t writer) {
   const EndpointData data(dds_get_matched_publication_data(reader, writer));
   if (data == nullptr) return false;
