@@ -23,9 +23,7 @@ std::uint32_t row_of(const Scenario& scenario, const world::World& world, const 
                                      base::suggest(robot, names)));
 }
 
-world::World world_of(const Scenario& scenario) {
-  return world_of(scenario, {.sensors = sensors::world_file_words()});
-}
+world::World world_of(const Scenario& scenario) { return world_of(scenario, {.sensors = sensors::world_file_words()}); }
 
 world::World world_of(const Scenario& scenario, const world::LoadOptions& load) {
   if (!std::filesystem::is_regular_file(scenario.world) && !scenario.file.empty())

@@ -105,10 +105,10 @@ class Simulation {
   void set_absent(std::uint32_t mover, bool gone);
 
   /// Adds a robot to the world and the run, between two steps: its sensors are read from the next step on. It
-  /// changes the readings of others by its body alone. A robot that was removed returns under its name, if it is of the same
-  /// kind: in its row, with its id, its random numbers and its counts going on. Time in proportion to the fleet and the
-  /// world. With ranks, all call this alike. @param world the one given to the constructor; rows that it has keep their
-  /// places
+  /// changes the readings of others by its body alone. A robot that was removed returns under its name, if it is of the
+  /// same kind: in its row, with its id, its random numbers and its counts going on. Time in proportion to the fleet
+  /// and the world. With ranks, all call this alike. @param world the one given to the constructor; rows that it has
+  /// keep their places
   /// @return its row, the last one for a new robot
   /// @throws base::InputError, with nothing changed: for a name that is taken or invalid, no such original, a pose that
   /// is not finite, invalid settings of its controller, more than world::kMostMovers, and with tiles
@@ -206,9 +206,9 @@ class Simulation {
   std::vector<base::Report> present_;            ///< reports with kAbsent, of one tick; empty: all are present
   std::vector<world::Warning> warnings_;
   std::mutex failure_lock_;
-  std::exception_ptr failure_;           ///< of a controller in this tick
-  std::uint32_t failed_ = world::kNone;  ///< its mover, the first that failed
-  double v2v_range_ = 0.0;               ///< [m] largest of all controllers
+  std::exception_ptr failure_;                    ///< of a controller in this tick
+  std::uint32_t failed_ = world::kNone;           ///< its mover, the first that failed
+  double v2v_range_ = 0.0;                        ///< [m] largest of all controllers
   std::shared_ptr<const void> earlier_readings_;  ///< until the next step
   std::vector<record::JoinedMover> joined_;
   std::uint64_t seed_;

@@ -238,11 +238,7 @@ void Ros2Bridge::add_fast(OpenFastServices open, const std::set<std::string>& ad
                  .user_data = "enclave=/;",
                  .loopback = options_.loopback,
                  .addresses = addresses,
-                 .receive =
-                     [this](DdsMessage&& message) {
-                       message.reader += command_readers_;
-                       requests_.add(std::move(message));
-                     },
+                 .receive = [this](DdsMessage&& message) { requests_.add(std::move(message)); },
                  .log = [this](std::string_view line) { log_.write(line); }};
   for (const ServiceType& service : services_.types())
     options.services.push_back({request_reader(service, {}), reply_writer(service, {})});

@@ -19,7 +19,8 @@ struct LogPipe {
   std::string read_all() const {
     std::string text;
     char bytes[4096];
-    for (ssize_t n = 0; (n = ::read(ends[0], bytes, sizeof bytes)) > 0;) text.append(bytes, static_cast<std::size_t>(n));
+    for (ssize_t n = 0; (n = ::read(ends[0], bytes, sizeof bytes)) > 0;)
+      text.append(bytes, static_cast<std::size_t>(n));
     return text;
   }
 };

@@ -440,7 +440,7 @@ TEST_F(Ros2Test, ServicesAddAndRemoveRobots) {
     info = info_of_run();
     all.show_scene(false);
   });
-  Client spawn(peer, "spawn_entity", "simulation_interfaces::srv::dds_::SpawnEntity");
+  Client spawn(peer, cyclone, "spawn_entity", "simulation_interfaces::srv::dds_::SpawnEntity");
   const auto request = fields_of([](record::CdrWriter& cdr) {
     cdr.put("late");
     cdr.put(false);
@@ -453,7 +453,7 @@ TEST_F(Ros2Test, ServicesAddAndRemoveRobots) {
   ASSERT_TRUE(spawn.connect(request, [&] { go_on(); }));
   ASSERT_TRUE(run_until([&] { return spawn.reply().has_value(); }));
   EXPECT_EQ(world.movers.size(), 3u);
-  const std::size_t scans = peer.subscribe("rt/late/laser/scan", kScan);
+  const std::size_t scans = peer.subscribe("rt/late/scan", kScan);
   const std::size_t odometry = peer.subscribe("rt/late/odom", kOdometry);
   const std::size_t drive = peer.advertise("rt/late/cmd_vel", "geometry_msgs::msg::dds_::Twist_");
   EXPECT_TRUE(run_until([&] { return !peer.messages(scans).empty(); }));
@@ -465,16 +465,18 @@ TEST_F(Ros2Test, ServicesAddAndRemoveRobots) {
     return last && std::abs(last->velocity[5] - 0.5) < 1e-9;
   }));
 
-  Client remove(peer, "delete_entity", "simulation_interfaces::srv::dds_::DeleteEntity");
+  Client remove(peer, cyclone, "delete_entity", "simulation_interfaces::srv::dds_::DeleteEntity");
   ASSERT_TRUE(remove.connect(fields_of([](record::CdrWriter& cdr) { cdr.put("late"); }), [&] { go_on(); }));
   EXPECT_TRUE(simulation.is_absent(2));
 }
 
 /// Feedback after each step, then the result.
 TEST_F(Ros2Test, AnActionMakesSteps) {
-  Client set(peer, "set_simulation_state", "simulation_interfaces::srv::dds_::SetSimulationState");
-  Client send(peer, "simulate_steps/_action/send_goal", "simulation_interfaces::action::dds_::SimulateSteps_SendGoal");
-  Client get(peer, "simulate_steps/_action/get_result", "simulation_interfaces::action::dds_::SimulateSteps_GetResult");
+  Client set(peer, cyclone, "set_simulation_state", "simulation_interfaces::srv::dds_::SetSimulationState");
+  Client send(peer, cyclone, "simulate_steps/_action/send_goal",
+              "simulation_interfaces::action::dds_::SimulateSteps_SendGoal");
+  Client get(peer, cyclone, "simulate_steps/_action/get_result",
+             "simulation_interfaces::action::dds_::SimulateSteps_GetResult");
   const std::size_t feedback = peer.subscribe("rt/simulate_steps/_action/feedback",
                                               "simulation_interfaces::action::dds_::SimulateSteps_FeedbackMessage_");
   ASSERT_TRUE(set.connect({9}, [&] { go_on(); }));

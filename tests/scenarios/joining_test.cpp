@@ -21,6 +21,7 @@
 #include "tests/device.h"
 #include "tests/farm/small_farm.h"
 #include "world/append_robot.h"
+#include "world/stage/stage.h"
 
 namespace sf::scenarios {
 namespace {
@@ -287,7 +288,7 @@ ScenarioResult run_events(const std::string& events) {
   return run_scenario(parse_scenario(folder + "/joining.toml", scenario_text(events)), device());
 }
 
-std::string event_refusal(const std::string& events) {
+std::string joining_refusal(const std::string& events) {
   try {
     run_events(events);
   } catch (const base::InputError& error) {
@@ -321,7 +322,7 @@ TEST(Joining, ErrorsOfEventsNameLineAndRemedy) {
        "joining.toml:5: 'b' would join after the end"},
       {later + "remove = \"a\"\n" + later + "remove = \"a\"\n", "joining.toml:8: there is no robot in row 0"},
   };
-  for (const auto& [text, said] : kCorpus) EXPECT_EQ(event_refusal(text).substr(0, said.size()), said) << text;
+  for (const auto& [text, said] : kCorpus) EXPECT_EQ(joining_refusal(text).substr(0, said.size()), said) << text;
 }
 
 /// Ranks that share a fleet give the readings of one process, whoever joins and leaves.
