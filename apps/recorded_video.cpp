@@ -10,6 +10,7 @@
 #include "apps/text.h"
 #include "base/error.h"
 #include "gpu/device.h"
+#include "scenarios/recorded_states.h"
 #include "scenarios/replay.h"
 #include "scenarios/run_info.h"
 
@@ -46,7 +47,7 @@ class MissingScans {
 
 void write_recorded_video(RecordingPart& part, const VideoOptions& options, const std::string& device) {
   const record::Recording& recording = part.recording;
-  const world::World world = world::from_snapshot(recording.info.snapshot);
+  const world::World world = scenarios::recorded_world(recording);
   const record::RunInfo info =
       scenarios::run_info(world, sensors::SensorSet(world), {.seed = recording.info.seed, .record_readings = true});
   std::vector<std::uint8_t> hidden;

@@ -180,7 +180,8 @@ struct Course {
                        run_info(world, simulation->farm().sensor_set(),
                                 {.seed = scenario.seed,
                                  .record_readings = true,
-                                 .caster = raycast::describe_caster(device.info().software)}),
+                                 .caster = raycast::describe_caster(device.info().software),
+                                 .naming = {.odometry = record::OdometrySource::exact}}),  // also with ranks
                        recording_part_of(options.ranks, options.compression));
     });
   }

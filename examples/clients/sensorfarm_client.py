@@ -253,7 +253,7 @@ def decode(data):
         packet.update(mode=accuracy & 15, unsure=accuracy >> 4 & 1, bound=bound)
     if type < 128:
         known = all(map(math.isfinite, covariance)) and min(covariance[0], covariance[3], covariance[5]) >= 0
-        packet.update(age_us=age, stale=flags & 1 if age else 0, no_state=flags >> 1 & 1 if age else 0,
+        packet.update(age_us=age, stale=flags & 1 if age else 0,
                       covariance=list(covariance) if age and known else [0.0] * 6)
     if type in (COMMAND, STEP, FETCH, STATE, VALUES):
         packet.update(decode_lockstep(type, payload))
@@ -467,7 +467,7 @@ def words(packet):
         line += "; mode %d" % packet["mode"] + (", not for every element" if packet["unsure"] else "")
         line += "; error up to " + rounded_up(packet["bound"]) if packet["bound"] else ""
     if packet.get("age_us"):
-        line += ("; no state of the robot has arrived yet" if packet["no_state"] else
+        line += ("; no state of the robot has arrived yet" if packet["age_us"] == 2**32 - 1 and packet["stale"] else
                  "; state %.1f ms old" % (packet["age_us"] * 1e-3) + (", stale" if packet["stale"] else ""))
         sigmas = [math.sqrt(packet["covariance"][i]) for i in (0, 3, 5)]
         line += ", sigma %.3g m, %.3g m, %.3g rad" % tuple(sigmas) if any(sigmas) else ""

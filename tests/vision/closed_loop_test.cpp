@@ -170,7 +170,7 @@ TEST(ClosedLoop, ARobotKeepsItsLaneByCamerasAlone) {
   EXPECT_LT(stats.cameras->errors.rms(), 0.003) << "1.2 mm";
   EXPECT_LT(stats.cameras->errors.largest, 0.02) << "12 mm, while it sets out";
   EXPECT_LT(stats.error.abs_mean, 0.02) << "offset in the lane, by readings: 12 mm";
-  EXPECT_EQ(stats.link.stale, 0u);
+  EXPECT_LE(stats.link.stale, 3u) << "readings before its first state";
 }
 
 /// By its own pose alone: the points are reached in truth.
