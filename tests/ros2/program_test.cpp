@@ -80,11 +80,13 @@ TEST(Ros2Program, ARunGetsRobotsAndWorlds) {
         cyclone.subscribe("rr/" + name + "Reply", "simulation_interfaces::srv::dds_::" + type + "_Response_");
     int code = 0;
     peer.wait([&] { return cyclone.matched_writer(ask); });
-    const std::int64_t first = ++calls;
-    cyclone.send(ask, encode_request(17, first, {fields.begin() + 4, fields.end()}));
+    // Again and again: a participant may know the other before it is known.
+    const std::int64_t first = calls + 1;
+    int looked = 0;
     EXPECT_TRUE(peer.wait([&] {
+      if (looked++ % 50 == 0) cyclone.send(ask, encode_request(17, ++calls, {fields.begin() + 4, fields.end()}));
       for (const base::Bytes& message : cyclone.messages(answers))
-        if (const auto reply = decode_reply(message); reply && reply->sequence == first)
+        if (const auto reply = decode_reply(message); reply && reply->sequence >= first)
           return code = reply->code, true;
       return false;
     })) << name;
@@ -104,17 +106,16 @@ TEST(Ros2Program, ARunGetsRobotsAndWorlds) {
       return std::any_of(known.begin(), known.end(), [&](const Endpoint& one) { return one.topic == topic; });
     });
   };
-  EXPECT_EQ(call("spawn_entity", "SpawnEntity",
-                 [](record::CdrWriter& cdr) {
-                   cdr.put("late");
-                   cdr.put(false);
-                   cdr.put("roomba1");
-                   cdr.put("");
-                   cdr.put("");
-                   record::put_header(cdr, 0, "");
-                   for (const double value : {1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}) cdr.put(value);
-                 }),
-            1);
+  const int spawned = call("spawn_entity", "SpawnEntity", [](record::CdrWriter& cdr) {
+    cdr.put("late");
+    cdr.put(false);
+    cdr.put("roomba1");
+    cdr.put("");
+    cdr.put("");
+    record::put_header(cdr, 0, "");
+    for (const double value : {1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}) cdr.put(value);
+  });
+  EXPECT_TRUE(spawned == 1 || spawned == 101) << spawned << ": taken, by a call whose answer came too early to be read";
   EXPECT_TRUE(seen("rt/late/odom"));
   EXPECT_NE(greeting().find("\"/late/odom\""), std::string::npos) << "on the same port";
   EXPECT_EQ(call("load_world", "LoadWorld", load("cave.world")), 1);
