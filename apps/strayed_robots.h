@@ -1,5 +1,5 @@
 #pragma once
-// Robots outside of the known space of a ROS map, where readings are of walls that nobody has mapped.
+// Robots outside of the known space of a ROS map, where walls are missing.
 
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// Reports senders whose datagrams a service drops: malformed ones, those for nobody in the world, and those that never
+// Reports senders whose datagrams a service drops: malformed ones, those with an unknown id, and those that never
 // become valid (unproven, stale).
 
 #include <cstdint>
