@@ -143,9 +143,11 @@ namespace {
 
 /// A folder of `sweep`.
 int plot_sweep(const PlotOptions& options, const std::string& jobs) {
-  if (!options.robots.empty() || !options.labels.empty() || !options.elements.empty() || options.curves || options.csv)
+  if (!options.robots.empty() || !options.labels.empty() || !options.elements.empty() || options.curves ||
+      options.csv || !options.video.empty() || options.from > 0.0 || std::isfinite(options.to))
     throw base::InputError(options.recording, 0,
-                           "is a sweep's folder; --robots, --label, --elements, --curves and --csv go with recordings");
+                           "is a sweep's folder; --robots, --label, --elements, --curves, --csv, --video, --from and "
+                           "--to go with recordings");
   const std::string folder = options.out.empty() ? options.recording + "/plots" : options.out;
   const scenarios::SweepPlots plots = scenarios::draw_sweep(
       jobs, base::read_text(jobs, kLargestTable), folder, {options.over, options.x_axis, options.format, options.page});

@@ -266,7 +266,8 @@ std::optional<viz::SeriesOptions> figure_of(const record::Recording& recording, 
   if (type.name == "laneedge") return lane_edges(recording, channels);
   if (type.name == "magnetometer") return fields(recording, channels, width, options);
   if (as_heat_map(most, options)) return heat_maps_of(recording, world, type, channels, width);
-  if (type.is_scan && options.elements.empty()) return std::nullopt;  // beams of few samples are on the map
+  if (type.is_scan && options.elements.empty() && !options.curves)
+    return std::nullopt;  // beams of few samples are on the map
   return columns_of(recording, type, channels, width, options);
 }
 

@@ -72,7 +72,8 @@ void write_recorded_video(RecordingPart& part, const VideoOptions& options, cons
   }
   const VideoFacts facts = video.finish();
   print_message("wrote {}: {}", facts.file, text_of(facts));
-  heed_stop("interrupted: the video ends early, and can be played");
+  heed_stop(options.frames.empty() ? "interrupted: the video ends early, and can be played"
+                                   : "interrupted: the frames end early");
 }
 
 }  // namespace sf::apps

@@ -49,10 +49,12 @@ RecordingPart open_part(const std::string& directory, const PartOption& wanted) 
     first = std::min(first, states.front().time);
     last = std::max(last, states.back().time);
   }
+  const std::string until = std::isfinite(wanted.to) ? fmt::format(" to {:g} s", wanted.to) : " on";
   if (last < first && recording.ticks > 0)
     throw base::InputError(recording.file, 0,
-                           fmt::format("has no tick from {:g} s to {:g} s; it lasts from 0 to {:g} s", wanted.from,
-                                       wanted.to, 1e-9 * static_cast<double>(recording.end_time)));
+                           fmt::format("has no tick from {:g} s{}; it lasts from 0 to {:g} s{}", wanted.from, until,
+                                       1e-9 * static_cast<double>(recording.end_time),
+                                       wanted.from > wanted.to ? ", and --from must be below --to" : ""));
   std::erase_if(recording.lights, outside);
   std::erase_if(recording.readings,
                 [&](const auto& reading) { return outside(reading) || part.chosen[reading.mover] == 0; });

@@ -13,8 +13,8 @@ namespace sf::apps {
 bool is_scenario(const std::string& file);
 
 /// The scenario of a run, checked; none: its file is a world. The seed becomes the scenario's, and so does the duration
-/// where none is given and no bridge is open.
-/// @throws base::InputError for a scenario that cannot be run, and for options that it settles itself
+/// where none is given, except beside bridges without a recording or video.
+/// @throws base::InputError for a scenario that cannot be run
 std::optional<scenarios::Scenario> scenario_of(RunOptions& options);
 
 /// The scenario's world, after its warnings are printed.

@@ -1,10 +1,13 @@
 // Subcommands that run: the farm, robots, receivers.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "apps/commands.h"
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
+#include "apps/run_scenario.h"
 #include "apps/subcommands.h"
 #include "base/installation.h"
 
@@ -12,9 +15,24 @@ namespace sf::apps {
 
 namespace {
 
+/// Where a scenario takes the place of the world, it states these.
+void refuse_options_of_worlds(const CLI::App& run) {
+  const auto world = run.get_option("world")->as<std::string>();
+  if (!is_scenario(world)) return;
+  for (const auto& [option, key] : {std::pair{"--robots", "robots"},
+                                    {"--of", "of"},
+                                    {"--seed", "seed"},
+                                    {"--controller", "controller"},
+                                    {"--set", "settings"},
+                                    {"--localize", "settings"},
+                                    {"--drive", "controller"}})
+    if (run.count(option) > 0)
+      throw CLI::ValidationError(option, fmt::format("is for worlds; a scenario states `{}`: change {}", key, world));
+}
+
 void add_run(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("run", "Simulate a fleet with its sensors and controllers, as fast as possible");
-  auto& o = add_command(*sub, call, run);
+  auto& o = add_command(*sub, call, run, [sub] { refuse_options_of_worlds(*sub); });
   add_examples(*sub, {"worlds/cave.world --robots 50 --duration 30", "worlds/cave.world --robots 4 --record out/run",
                       "worlds/cave.world --robots 9 --duration 20 --video run.webm",
                       "worlds/cave.world --robots 4 --send 127.0.0.1 --real-time", "experiments/simville.toml --view"});

@@ -206,6 +206,8 @@ void Simulation::State::exchange(std::span<const Twist> given) {
 void Simulation::State::put(std::size_t row, const Pose& pose) {
   if (row >= poses.size())
     throw base::InputError(fmt::format("there is no row {}; expected less than {}", row, poses.size()));
+  if (!present[row])
+    throw base::InputError(fmt::format("'{}' was removed; add it again to place it", robots[row].name));
   if (!std::isfinite(pose.x + pose.y + pose.z + pose.yaw))
     throw base::InputError(fmt::format("the pose of '{}' is not finite", robots[row].name));
   simulation->put(static_cast<std::uint32_t>(row), {pose.x, pose.y, pose.z, pose.yaw});

@@ -45,6 +45,7 @@ void Odometer::begin() {
   state_ = {};
   walked_ = {};
   left_ = right_ = 0.0;
+  away_ = false;
 }
 
 void Odometer::move(std::int64_t time, const base::Pose& X_WM, const base::Twist& velocity,
@@ -54,7 +55,7 @@ void Odometer::move(std::int64_t time, const base::Pose& X_WM, const base::Twist
     const base::Pose before = base::compose(state_.X_WO, state_.X_OM);
     const double seconds = 1e-9 * static_cast<double>(time - state_.time);
     const double way = std::hypot(X_WM.x - before.x, X_WM.y - before.y);
-    if (state_.time < 0 || way > kAlwaysDriven + 2.0 * max_forward_ * seconds)
+    if (state_.time < 0 || std::exchange(away_, false) || way > kAlwaysDriven + 2.0 * max_forward_ * seconds)
       state_.X_WO = base::compose(X_WM, inverse(state_.X_OM));
   }
   state_.X_OM = base::compose(inverse(state_.X_WO), X_WM);

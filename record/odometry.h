@@ -58,6 +58,8 @@ class Odometer {
             const base::StateQuality& quality = {});
   /// A reading of the encoders. @return false: it is earlier than the last one, which may come twice, and left out
   bool roll(const base::ReadingBlock& encoder);
+  /// The mover is out of the world, and may return elsewhere.
+  void leave() { away_ = true; }
   const OdometryState& state() const { return state_; }
 
  private:
@@ -66,6 +68,7 @@ class Odometer {
 
   std::optional<EncoderInfo> encoder_;
   bool truth_;
+  bool away_ = false;
   double max_forward_;  ///< [m/s]
   OdometryState state_;
   std::array<double, 6> walked_{};   ///< covariance of the pose, without the rounding of the last counts

@@ -103,6 +103,7 @@ struct MoverInfo {
   std::string space;          ///< in front of its topics: "/robot", or empty
   std::string base_frame;     ///< of the mover itself: "robot/base_link"
   std::string odom_frame;     ///< that its odometry is in
+  bool tag = false;           ///< no node elsewhere localizes it
   bool plain = false;         ///< with TopicStyle::plain: the robot without a namespace
   double max_forward = std::numeric_limits<double>::infinity();  ///< [m/s]
   std::optional<EncoderInfo> encoder;                            ///< the first ones

@@ -52,7 +52,6 @@ TickMessages::TickMessages(const RunInfo& info)
       naming_(naming_of(info)),
       odometry_(info.record_readings ? naming_.odometry : OdometrySource::truth),
       root_(naming_.style == TopicStyle::sensor ? "world" : "map"),
-      places_odometry_(naming_.style != TopicStyle::sensor && !naming_.localizer && !naming_.mapper),
       marks_too_near_(option_of(info, kTooNear) != "min") {
   add("/run", kRunInfo, true);
   add("/fleet", kFleet);
@@ -166,7 +165,8 @@ void TickMessages::send_tree(const Tree& tree, const Output& out) {
 
 /// Frames of a mover's sensors and of their elements, that of its place on the ground, and that of true odometry.
 void TickMessages::add_fixed(const MoverInfo& mover, const MoverTopics& topics) {
-  if (places_odometry_ && odometry_ == OdometrySource::truth) transforms_.push_back({0, root_, mover.odom_frame, {}});
+  if (places_odometry(mover) && odometry_ == OdometrySource::truth)
+    transforms_.push_back({0, root_, mover.odom_frame, {}});
   if (!topics.footprint.empty()) transforms_.push_back({0, mover.base_frame, topics.footprint, {}});
   for (const SensorTopics& each : topics.sensors) {
     transforms_.push_back({0, mover.base_frame, each.header.frame, each.sensor->X_MS});
@@ -206,6 +206,7 @@ void TickMessages::find_odometry(const base::TickRecord& record) {
   for (std::size_t i = 0; i < record.reports.size(); ++i) {
     const base::Report& report = record.reports[i];
     Odometer& odometer = movers_[report.mover].odometer;
+    if (base::is_absent(report.X_WM)) odometer.leave();
     if (odometer.has_encoders() || base::is_absent(report.X_WM)) continue;
     const auto quality = record.qualities.empty() ? base::StateQuality{} : record.qualities[i];
     odometer.move(record.time, report.X_WM, report.velocity, quality);
@@ -233,13 +234,18 @@ void TickMessages::send_transforms(const Output& out) {
   if (is_shared) send(trees_[0]);
 }
 
+/// The farm publishes its map -> odom. A mapper's map is at another place than the farm's.
+bool TickMessages::places_odometry(const MoverInfo& mover) const {
+  return naming_.style != TopicStyle::sensor && !naming_.mapper && (!naming_.localizer || mover.tag);
+}
+
 /// Of map -> odom -> base_link, those that no node elsewhere publishes.
 void TickMessages::add_transforms(const Odometry& odometry) {
   const MoverInfo& mover = info_.movers[odometry.mover];
   const OdometryState& state = odometry.state;
-  if (places_odometry_ && odometry_ != OdometrySource::truth)
+  if (places_odometry(mover) && odometry_ != OdometrySource::truth)
     transforms_.push_back({state.time, root_, mover.odom_frame, state.X_WO});
-  if (!naming_.filter) transforms_.push_back({state.time, mover.odom_frame, mover.base_frame, state.X_OM});
+  if (!naming_.filter || mover.tag) transforms_.push_back({state.time, mover.odom_frame, mover.base_frame, state.X_OM});
 }
 
 void TickMessages::send_qualities(const Output& out) const {

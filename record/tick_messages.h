@@ -93,6 +93,7 @@ class TickMessages {
   void add_tree(const std::string& prefix, std::size_t first, std::size_t end);
   void add_mover(const MoverInfo& mover);
   bool has_truth() const;
+  bool places_odometry(const MoverInfo& mover) const;
   void add_readings(std::size_t row);
   void send_tree(const Tree& tree, const Output& out);
   void add_fixed(const MoverInfo& mover, const MoverTopics& topics);
@@ -108,7 +109,6 @@ class TickMessages {
   const Naming naming_;
   const OdometrySource odometry_;
   const std::string_view root_;                              ///< frame of all trees
-  const bool places_odometry_;                               ///< publishes map -> odom
   std::map<std::string, std::string, std::less<>> schemas_;  ///< by type
   std::vector<Topic> topics_;
   std::vector<Tree> trees_;

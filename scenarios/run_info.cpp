@@ -61,10 +61,10 @@ void check_names(const record::Naming& naming) {
         "--external filter, or choose other names");
 }
 
-/// The robot without a namespace: the only one. Tags and objects keep theirs.
+/// The robot without a namespace: the only one. Tags, objects and robots that join keep theirs.
 void choose_plain(const world::World& world, record::RunInfo& info) {
   std::vector<std::size_t> robots;
-  for (std::size_t row = 0; row < world.movers.size(); ++row)
+  for (std::size_t row = 0; row + info.joined.size() < world.movers.size(); ++row)
     if (!world.movers[row].is_tag) robots.push_back(row);
   if (robots.size() != 1)
     throw base::InputError(world.file, 0,
@@ -97,6 +97,7 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   for (const world::Mover& mover : world.movers) {
     info.movers.push_back({mover.name, "", mover.id, {}, body_of(world, mover)});
     info.movers.back().max_forward = mover.max_forward;
+    info.movers.back().tag = mover.is_tag;
   }
   if (settings.naming.style == record::TopicStyle::plain) choose_plain(world, info);
   info.shape = shape_of(world);

@@ -296,6 +296,9 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
         fmt::format("'duration' {:g} s is less than a tick of {:g} s, so nothing would be simulated; "
                     "expected at least one tick",
                     scenario.duration, world.interval));
+  if (std::all_of(world.movers.begin(), world.movers.end(), [](const world::Mover& mover) { return mover.is_tag; }))
+    world.warnings.push_back(
+        {scenario.world, 0, "has no robot, so nothing drives: add one to a world that includes it"});
   SimulationOptions options = simulation_of(scenario, world);
   check_events(scenario, world, options);
   const std::optional<world::RoadNetwork> roads = world::roads_of(world);

@@ -333,6 +333,11 @@ Scenario parse_scenario(const std::string& file, const TomlNode& root) {
   return scenario;
 }
 
-Scenario read_scenario(const std::string& file) { return parse_scenario(file, base::read_text(file)); }
+Scenario read_scenario(const std::string& file) {
+  for (const char* ending : {".world", ".yaml", ".yml"})
+    if (file.ends_with(ending))
+      throw base::InputError(file, 0, "is a world; expected a scenario (.toml), which names it: world = \"FILE\"");
+  return parse_scenario(file, base::read_text(file));
+}
 
 }  // namespace sf::scenarios

@@ -46,7 +46,7 @@ struct Range {
     if (i + 1 == count) return to;
     const double u = static_cast<double>(i) / static_cast<double>(count - 1);
     const double x = log ? from * std::pow(to / from, u) : from + u * (to - from);
-    return whole ? std::round(x) : x;
+    return whole ? std::round(x) : std::stod(fmt::format("{:.12g}", x));  // 0.1, not 0.09999999999999999
   }
 };
 

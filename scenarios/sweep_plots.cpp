@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -67,10 +68,23 @@ std::string parameter_name(const std::string& name) {
   return key == "position_sigma" ? name + " [m]" : key == "yaw_sigma" ? name + " [rad]" : name;
 }
 
+/// The end of a parameter's name that no other parameter has: "kp", or "link.delay" beside "states.delay".
+std::string short_name(const SweepJobs& jobs, std::size_t row) {
+  const std::string& name = jobs.parameters[row];
+  for (std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0; dot = name.rfind('.', dot - 1)) {
+    const std::string end = name.substr(dot);
+    const auto ends = std::count_if(jobs.parameters.begin(), jobs.parameters.end(), [&](const std::string& other) {
+      return other.ends_with(end) || "." + other == end;
+    });
+    if (ends == 1) return end.substr(1);
+  }
+  return name;
+}
+
 /// "kp = 0.5".
 std::string value_name(const SweepJobs& jobs, const Parameter& p, const std::string& value) {
-  const std::string& name = jobs.parameters[p.row];
-  return fmt::format("{} = {}", name.substr(name.rfind('.') + 1), p.numeric ? viz::with_minus(value) : value);
+  return fmt::format("{} = {}", short_name(jobs, p.row),
+                     p.numeric ? viz::with_minus(fmt::format("{:.6g}", std::strtod(value.c_str(), nullptr))) : value);
 }
 
 /// A metric as the name of an axis.

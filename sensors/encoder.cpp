@@ -21,6 +21,7 @@ struct Track {
   Pose X_WM;
   std::int64_t since = 0;  ///< [ns] time of that pose
   bool moved = false;      ///< since the start
+  bool away = false;       ///< the mover is out of the world
 };
 
 /// State of one robot's encoders.
@@ -86,8 +87,20 @@ void Encoders::accumulate(std::int64_t now, bool between) {
     const std::uint32_t mover = rows()[i].mover;
     const Pose& X_WM = states()[mover].X_WM;
     Track& track = tracks_[i];
-    if (base::is_absent(X_WM)) continue;
-    if (X_WM.x == track.X_WM.x && X_WM.y == track.X_WM.y && X_WM.yaw == track.X_WM.yaw) continue;
+    // Of this time: a mover that stood, or was out of the world, and is elsewhere, was put there. Others may be late.
+    const bool fresh = states()[mover].time == now;
+    if (base::is_absent(X_WM)) {
+      if (!between) track.away = true;
+      continue;
+    }
+    if (track.away && fresh) {
+      if (!between) track = {X_WM, now, true};
+      continue;
+    }
+    if (X_WM.x == track.X_WM.x && X_WM.y == track.X_WM.y && X_WM.yaw == track.X_WM.yaw) {
+      if (!between && fresh) track.since = now;
+      continue;
+    }
     if (drove(track, X_WM, world().movers[mover].max_forward, now)) {
       Wheels& wheels = (between ? ahead_ : wheels_)[i];
       const Rolled rolled = roll(track.X_WM, X_WM, wheels.settings.track);

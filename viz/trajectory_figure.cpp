@@ -123,7 +123,7 @@ FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::st
 /// Names of more tracks than the legend has room for, in their colours beside their ends, as far as there is room.
 void draw_end_names(Axes& axes, std::span<const Track> tracks, const TrackLabels& wanted) {
   const std::size_t most = wanted.all ? kNamedEnds : kLabelledTracks;
-  if (wanted.names.empty() && (tracks.size() <= kNamedTracks || tracks.size() > most)) return;
+  if (wanted.names.empty() && ((!wanted.all && tracks.size() <= kNamedTracks) || tracks.size() > most)) return;
   Labels labels(axes.layout().plot);
   std::vector<std::optional<glm::dvec2>> ends;
   for (const Track& track : tracks) {

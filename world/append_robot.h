@@ -11,15 +11,16 @@ namespace sf::world {
 inline constexpr std::size_t kMostMovers = 65'534;  ///< rows of a world that robots join, since ids have 16 bits
 inline constexpr std::size_t kMostNameLength = 64;  ///< of a robot that joins
 
-inline constexpr const char* kNameRule = "expected 1 to 64 letters, digits or '_', and no digit first";
+inline constexpr const char* kNameRule =
+    "expected 1 to 64 letters, digits or '_', a letter first, and no '_' last or twice in a row";
 bool is_robot_name(const std::string& name);
 
 /// The row of the robot that `like` names: by its name, else the first with that word for its type.
 /// @throws base::InputError with the names that exist
 std::uint32_t robot_like(const World& world, const std::string& like);
 
-/// @throws base::InputError where a robot cannot join under `name`, which must consist of 1 to kMostNameLength letters,
-/// digits and '_', begin with no digit, and be the name of no other model
+/// @throws base::InputError where a robot cannot join under `name`, which must be a robot name, such as topics of ROS
+/// have, and the name of no other model
 void check_name(const World& world, const std::string& name);
 
 /// Appends a copy of the robot in row `original` at rest at `X_WM` (its height above ground stays that of the

@@ -211,8 +211,8 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
 
 bool is_robot_name(const std::string& name) {
   const auto is_plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-  return !name.empty() && name.size() <= kMostNameLength && std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
-         std::all_of(name.begin(), name.end(), is_plain);
+  return !name.empty() && name.size() <= kMostNameLength && std::isalpha(static_cast<unsigned char>(name[0])) != 0 &&
+         name.back() != '_' && name.find("__") == std::string::npos && std::all_of(name.begin(), name.end(), is_plain);
 }
 
 std::uint32_t robot_like(const World& world, const std::string& like) {

@@ -192,7 +192,7 @@ TEST(Joining, RefusalsSayWhyAndChangeNothing) {
   EXPECT_PRED2(has, said({.name = "a", .like = "a", .X_WM = {}}), "the name 'a' is taken");
   EXPECT_PRED2(has, said({.name = "a.front", .like = "a", .X_WM = {}}), "letters, digits or '_'");
   EXPECT_PRED2(has, said({.name = "", .like = "a", .X_WM = {}}), "letters, digits or '_'");
-  EXPECT_PRED2(has, said({.name = "9", .like = "a", .X_WM = {}}), "no digit first");
+  EXPECT_PRED2(has, said({.name = "9", .like = "a", .X_WM = {}}), "a letter first");
   EXPECT_PRED2(has, said({.name = std::string(65, 'x'), .like = "a", .X_WM = {}}), "1 to 64");
   EXPECT_PRED2(has, said({.name = "b", .like = "prob", .X_WM = {}}), "has no robot or type of robots 'prob'");
   EXPECT_PRED2(has, said({.name = "b", .like = "a", .X_WM = {NAN, 0.0, 0.0, 0.0}}), "expected finite numbers");

@@ -333,6 +333,29 @@ TEST(Encoder, ARelocatedRobotHasNotRolled) {
   EXPECT_EQ(counts(10'400, 10.6), 10'700.0) << "silent for ten seconds, so it may have driven";
 }
 
+/// In a simulation, states are of the tick's time: a robot that stood, or was out of the world, was put where it is.
+TEST(Encoder, ASimulatedRobotThatIsPutElsewhereHasNotRolled) {
+  for (const bool removed : {false, true}) {
+    const world::World world = one_robot();
+    farm::Farm farm(world, device());
+    farm.subscribe_all();
+    std::vector<base::Report> states = to_occupancy(world);
+    const auto tick = [&](std::int64_t ms, double x) {
+      states[0].X_WM.x = x;
+      states[0].time = ms * 1'000'000;
+      return farm.tick(states[0].time, states);
+    };
+    tick(0, 0.0);
+    EXPECT_EQ(tick(100, 0.1)[0].values[2], 100.0);
+    if (removed) farm.set_absent(0, true);
+    tick(10'000, 0.1);
+    tick(20'000, 0.1);
+    if (removed) farm.set_absent(0, false), farm.subscribe_all();
+    EXPECT_EQ(tick(20'100, 5.0)[0].values[2], 100.0) << removed;
+    EXPECT_EQ(tick(20'200, 5.1)[0].values[2], 200.0) << "it drives on from there";
+  }
+}
+
 /// Unsubscribed readings do not stop the count.
 TEST(Encoder, CountsWhetherHeardOrNot) {
   const world::World world = one_robot();
