@@ -17,7 +17,7 @@ namespace sf::apps {
 
 namespace {
 
-/// Whose worlds users of bridges may load: those beside the run's, and those that are installed.
+/// Folders from which users of bridges may load worlds: that of the run's world, and the installed one.
 std::vector<std::string> world_folders(const world::World& world) {
   namespace fs = std::filesystem;
   std::vector<std::string> folders;

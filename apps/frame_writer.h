@@ -22,7 +22,7 @@ class FrameWriter {
 
   /// Waits while `kMostWaiting` frames wait. @throws what writing an earlier frame threw
   void add(viz::RunFrame frame);
-  /// Waits until all frames are written. @throws likewise
+  /// Waits until all frames are written. @throws as `add`
   void finish();
 
   static constexpr std::size_t kMostWaiting = 4;

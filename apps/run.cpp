@@ -198,7 +198,7 @@ std::string recording_folder(const RunOptions& options, const cluster::Ranks* ra
   return options.record.empty() || resets == 0 ? options.record : fmt::format("{}-{}", options.record, resets + 1);
 }
 
-/// File of the video, numbered likewise.
+/// File of the video after `resets`, numbered like the recording.
 std::string video_file(const RunOptions& options, std::uint32_t resets) {
   if (options.video.empty() || resets == 0) return options.video;
   std::filesystem::path file(options.video);

@@ -13,9 +13,11 @@
 #include "apps/frame_writer.h"
 #include "apps/report.h"
 #include "apps/text.h"
+#include "base/displacement.h"
 #include "base/echo.h"
 #include "base/error.h"
 #include "base/time.h"
+#include "robots/kinematics.h"
 #include "scenarios/experiment.h"
 #include "viz/png.h"
 #include "viz/video_file.h"
@@ -44,41 +46,46 @@ viz::RunViewOptions view_options(const world::World& world, const VideoOptions& 
           .note = options.video_speed == 1.0 ? "" : fmt::format("  (x {:g})", options.video_speed)};
 }
 
-/// States of all movers at a tick.
+/// All movers at a tick.
 struct Moment {
-  std::int64_t time = 0;  ///< [ns]
-  std::vector<base::Pose> X_WM;
-  std::vector<double> speed;  ///< [m/s]
+  std::int64_t time = 0;             ///< [ns]
+  std::vector<base::Report> states;  ///< of this time; absent where the tick has none
   std::vector<std::uint8_t> contacts;
   std::vector<world::LightState> lights;
 };
 
+/// Movers without a state are absent.
+void fill_up(std::size_t movers, Moment& moment) {
+  moment.states.resize(movers, {.X_WM = base::kAbsent});
+  moment.contacts.resize(movers);
+}
+
 void store(const base::TickRecord& tick, const std::vector<std::uint8_t>& hidden, std::size_t movers, Moment& to) {
   to.time = tick.time;
-  to.X_WM.assign(movers, base::kAbsent);
-  to.speed.assign(movers, 0.0);
-  to.contacts.assign(movers, 0);
+  to.states.clear();
+  to.contacts.clear();
+  fill_up(movers, to);
   for (std::size_t i = 0; i < tick.reports.size(); ++i) {
     const base::Report& report = tick.reports[i];
     if (report.mover < hidden.size() && hidden[report.mover] != 0) continue;
-    to.X_WM[report.mover] = report.X_WM;
-    to.speed[report.mover] = std::hypot(report.velocity.forward, report.velocity.left);
+    to.states[report.mover] = report;
+    to.states[report.mover].time = tick.time;
     if (i < tick.contacts.size()) to.contacts[report.mover] = tick.contacts[i];
   }
   to.lights.clear();
   for (const base::LightStatus& light : tick.lights) to.lights.push_back(static_cast<world::LightState>(light.state));
 }
 
-/// A mover that went farther than it drives was placed, and stays until then.
-base::Pose pose_between(const Moment& a, const Moment& b, std::size_t mover, double part) {
-  constexpr double kPlaced = 0.5;  // [m]
-  const base::Pose &from = a.X_WM[mover], &to = b.X_WM[mover];
-  const double seconds = 1e-9 * static_cast<double>(b.time - a.time);
-  const double reach = kPlaced + 2.0 * seconds * std::max(a.speed[mover], b.speed[mover]);
-  if (part >= 1.0) return to;
-  if (base::is_absent(from) || base::is_absent(to) || std::hypot(to.x - from.x, to.y - from.y) > reach) return from;
-  return {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y), from.z + part * (to.z - from.z),
-          from.yaw + part * base::wrap_angle(to.yaw - from.yaw)};
+/// A mover that is farther away than it drives was put there, and is shown at its earlier place until then.
+base::Pose pose_between(const base::Report& before, const base::Report& after, std::int64_t time) {
+  const base::Pose &from = before.X_WM, &to = after.X_WM;
+  if (time >= after.time) return to;
+  const auto speed = [](const base::Report& state) { return std::hypot(state.velocity.forward, state.velocity.left); };
+  const double seconds = 1e-9 * static_cast<double>(after.time - before.time);
+  if (base::is_absent(from) || base::is_absent(to) ||
+      !base::is_drivable(from, to, std::max(speed(before), speed(after)), seconds))
+    return from;
+  return robots::interpolate(before, after, time).X_WM;
 }
 
 /// Readings of one sensor.
@@ -118,11 +125,7 @@ class RunVideo::Work {
     writer_->finish();  // whose thread reads the world
     writer_.reset();
     world_ = world;
-    for (Moment* moment : {&before_, &now_}) {
-      moment->X_WM.resize(world_.movers.size(), base::kAbsent);
-      moment->speed.resize(world_.movers.size());
-      moment->contacts.resize(world_.movers.size());
-    }
+    for (Moment* moment : {&before_, &now_}) fill_up(world_.movers.size(), *moment);
     start_writer();
   }
 
@@ -137,8 +140,8 @@ class RunVideo::Work {
 
   VideoFacts finish() {
     if (!started_) {  // stopped before its first tick: players refuse files without a frame
-      for (const world::Mover& mover : world_.movers) now_.X_WM.push_back(mover.X_WM);
-      now_.speed.resize(world_.movers.size());
+      fill_up(world_.movers.size(), now_);
+      for (std::size_t m = 0; m < world_.movers.size(); ++m) now_.states[m].X_WM = world_.movers[m].X_WM;
       before_ = now_;
       add_frame(0);
     } else {
@@ -197,10 +200,8 @@ class RunVideo::Work {
   void add_frame(std::int64_t time) {
     viz::RunFrame frame;
     frame.time = 1e-9 * static_cast<double>(time);
-    const std::int64_t whole = now_.time - before_.time;
-    const double part =
-        whole > 0 ? std::min(1.0, static_cast<double>(time - before_.time) / static_cast<double>(whole)) : 1.0;
-    for (std::size_t m = 0; m < world_.movers.size(); ++m) frame.X_WM.push_back(pose_between(before_, now_, m, part));
+    for (std::size_t m = 0; m < world_.movers.size(); ++m)
+      frame.X_WM.push_back(pose_between(before_.states[m], now_.states[m], time));
     const Moment& newest = time >= now_.time ? now_ : before_;
     frame.contacts = newest.contacts;
     frame.lights = newest.lights;

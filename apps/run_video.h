@@ -39,7 +39,7 @@ class RunVideo {
   void write(const base::TickRecord& tick);
   /// Movers joined: the last rows of `world`, which has the others in their places. Between two ticks.
   void add_movers(const world::World& world);
-  /// Shows the last tick for its interval, and ends the file. @throws base::InputError likewise
+  /// Shows the last tick for its interval, and ends the file. @throws base::InputError as `write`
   VideoFacts finish();
 
  private:

@@ -74,7 +74,7 @@ FieldScene sheet_scene(std::uint32_t arrays, std::uint32_t magnets, double cutof
 }
 
 FieldComparison compare(const FieldScene& scene, gpu::Device& device) {
-  gpu::Device host{std::string(gpu::kHostDevice)};  // outlives what is made on it
+  gpu::Device host{std::string(gpu::kHostDevice)};  // outlives its farm
   std::vector<std::unique_ptr<FieldMethod>> methods;
   methods.push_back(make_farm_method(scene, device));
   methods.push_back(make_plain_method(scene, kReference, sum_portable));

@@ -73,7 +73,7 @@ struct Farm::State {
   std::optional<SharedHash> shared;
   FarmOptions options;
   std::int64_t last_call = -1;  ///< [ns] of a tick or sample; -1: there was none
-  std::int64_t last_tick = -1;  ///< [ns] likewise, of a tick
+  std::int64_t last_tick = -1;  ///< [ns] of a tick; -1: there was none
 
   State(const world::World& w, gpu::Device& d, const FarmOptions& given)
       : world(w),

@@ -5,10 +5,12 @@
 
 #include <limits.h>
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/printable.h"
+#include "base/time.h"
 
 namespace sf::netio {
 
@@ -35,5 +37,19 @@ void RateLimitedLog::write(std::string_view text, std::int64_t now) {
   allowed_ -= 1.0;
   reported_ = left_out_;
 }
+
+std::uint64_t RepeatedEvent::count(std::int64_t now, std::uint64_t tolerated) {
+  constexpr std::int64_t kPeriod = 10 * base::kSecond;
+  if (count_ == 0 || (tolerated > 0 && now - since_ > kPeriod)) {
+    count_ = 0;
+    since_ = now;
+  }
+  ++count_;
+  if (now < next_line_ || count_ < tolerated) return 0;
+  next_line_ = now + kPeriod;
+  return std::exchange(count_, 0);
+}
+
+std::string packets_text(std::uint64_t count) { return count == 1 ? "1 packet" : fmt::format("{} packets", count); }
 
 }  // namespace sf::netio

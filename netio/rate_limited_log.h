@@ -33,4 +33,23 @@ class RateLimitedLog {
   std::uint64_t reported_ = 0;  ///< of `left_out_`
 };
 
+/// Occurrences of one event that is logged: the first, then every ten seconds their number while more come.
+class RepeatedEvent {
+ public:
+  /// @param now [ns] of any clock that does not decrease
+  /// @param tolerated fewer than so many in ten seconds are not logged
+  /// @return number to log, this one included; 0: nothing is due
+  std::uint64_t count(std::int64_t now, std::uint64_t tolerated = 0);
+  /// [ns] Nothing is due before this time.
+  std::int64_t next_line() const { return next_line_; }
+
+ private:
+  std::uint64_t count_ = 0;     ///< since the last line
+  std::int64_t since_ = 0;      ///< [ns] of the first of them
+  std::int64_t next_line_ = 0;  ///< [ns]
+};
+
+/// "1 packet", "12 packets".
+std::string packets_text(std::uint64_t count);
+
 }  // namespace sf::netio

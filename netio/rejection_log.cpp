@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <iterator>
 
-#include "base/time.h"
 #include "netio/packets.h"
 
 namespace sf::netio {
 
 namespace {
-
-constexpr std::int64_t kPeriod = 10 * base::kSecond;  ///< [ns] between lines of one row
 
 struct Form {
   Type type;
@@ -95,31 +92,24 @@ std::string rejection_text(PacketStatus reason, std::span<const std::uint8_t> by
   }
 }
 
-RejectionLog::Row& RejectionLog::row_of(const Endpoint& who, PacketStatus reason, std::int64_t now) {
+RepeatedEvent& RejectionLog::row_of(const Endpoint& who, PacketStatus reason, std::int64_t now) {
   const std::tuple key{who.address, who.port, reason};
   const auto found = rows_.find(key);
   if (found != rows_.end()) return found->second;
-  if (rows_.size() == kMaxRows) std::erase_if(rows_, [&](const auto& row) { return row.second.next_line < now; });
+  if (rows_.size() == kMaxRows) std::erase_if(rows_, [&](const auto& row) { return row.second.next_line() < now; });
   return rows_.size() == kMaxRows ? others_ : rows_[key];
 }
 
 void RejectionLog::note(PacketStatus reason, std::span<const std::uint8_t> bytes, const Endpoint& who, std::int64_t now,
                         RateLimitedLog& log) {
   if (!is_reported(reason)) return;
-  Row& row = row_of(who, reason, now);
-  if (row.count == 0 || (is_tolerated(reason) && now - row.since > kPeriod)) {
-    row.count = 0;
-    row.since = now;
-  }
-  ++row.count;
-  if (now < row.next_line || (is_tolerated(reason) && row.count < kTolerated)) return;
-  row.next_line = now + kPeriod;
-  log.write(fmt::format("{} from {} dropped: {} (docs/packets.md)",
-                        row.count == 1 ? "1 packet" : fmt::format("{} packets", row.count),
+  RepeatedEvent& row = row_of(who, reason, now);
+  const std::uint64_t count = row.count(now, is_tolerated(reason) ? kTolerated : 0);
+  if (count == 0) return;
+  log.write(fmt::format("{} from {} dropped: {} (docs/packets.md)", packets_text(count),
                         &row == &others_ ? text(who) + " and other senders" : text(who),
                         rejection_text(reason, bytes, robots_)),
             now);
-  row.count = 0;
 }
 
 }  // namespace sf::netio

@@ -36,16 +36,12 @@ class RejectionLog {
             RateLimitedLog& log);
 
  private:
-  struct Row {
-    std::uint64_t count = 0;     ///< since the last line
-    std::int64_t since = 0;      ///< [ns] of the first of them
-    std::int64_t next_line = 0;  ///< [ns]
-  };
-  Row& row_of(const Endpoint& who, PacketStatus reason, std::int64_t now);
+  RepeatedEvent& row_of(const Endpoint& who, PacketStatus reason, std::int64_t now);
 
   std::vector<std::uint32_t> robots_;
-  std::map<std::tuple<std::uint32_t, std::uint16_t, PacketStatus>, Row> rows_;  ///< by address, port and reason
-  Row others_;
+  std::map<std::tuple<std::uint32_t, std::uint16_t, PacketStatus>, RepeatedEvent>
+      rows_;  ///< by address, port and reason
+  RepeatedEvent others_;
 };
 
 }  // namespace sf::netio

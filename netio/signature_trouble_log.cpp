@@ -81,15 +81,11 @@ void SignatureTroubleLog::note(PacketStatus reason, const Packet& packet, const 
   if (!is_refusal(reason)) reason = PacketStatus::accepted;
   answer(reason, packet, who, now, inbox, answers);
   const Claim claim = claim_of(packet.header);
-  Row& row = rows_[{claim.kind, claim.id, reason}];
-  ++row.count;
-  if (now < row.next_line) return;
-  row.next_line = now + 10 * kSecond;
-  log.write(fmt::format("{} at {}: {}{}, {}", peer_text(claim, name), text(who),
-                        row.count == 1 ? "1 packet" : fmt::format("{} packets", row.count),
+  const std::uint64_t count = rows_[{claim.kind, claim.id, reason}].packets.count(now);
+  if (count == 0) return;
+  log.write(fmt::format("{} at {}: {}{}, {}", peer_text(claim, name), text(who), packets_text(count),
                         is_refusal(reason) ? " dropped" : "", reason_text(reason, inbox.lag(claim))),
             now);
-  row.count = 0;
 }
 
 void SignatureTroubleLog::answer(PacketStatus reason, const Packet& packet, const Endpoint& who, std::int64_t now,

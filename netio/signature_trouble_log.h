@@ -33,8 +33,7 @@ class SignatureTroubleLog {
 
  private:
   struct Row {
-    std::uint64_t count = 0;       ///< since the last line
-    std::int64_t next_line = 0;    ///< [ns]
+    RepeatedEvent packets;
     std::int64_t next_answer = 0;  ///< [ns]
   };
   std::map<std::tuple<PeerKind, std::uint32_t, PacketStatus>, Row>

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/displacement.h"
+
 namespace sf::record {
 
 namespace {
@@ -50,12 +52,10 @@ void Odometer::begin() {
 
 void Odometer::move(std::int64_t time, const base::Pose& X_WM, const base::Twist& velocity,
                     const base::StateQuality& quality) {
-  constexpr double kAlwaysDriven = 0.5;  // [m]
   if (!truth_) {
     const base::Pose before = base::compose(state_.X_WO, state_.X_OM);
     const double seconds = 1e-9 * static_cast<double>(time - state_.time);
-    const double way = std::hypot(X_WM.x - before.x, X_WM.y - before.y);
-    if (state_.time < 0 || std::exchange(away_, false) || way > kAlwaysDriven + 2.0 * max_forward_ * seconds)
+    if (state_.time < 0 || std::exchange(away_, false) || !base::is_drivable(before, X_WM, max_forward_, seconds))
       state_.X_WO = base::compose(X_WM, inverse(state_.X_OM));
   }
   state_.X_OM = base::compose(inverse(state_.X_WO), X_WM);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/displacement.h"
 #include "sensors/host_backend.h"
 #include "sensors/odometer.h"
 #include "sensors/plain_packets.h"
@@ -13,8 +14,7 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kSkidScrub = 1.5;     // of a Pioneer 3-AT: docs/sensors.md
-constexpr double kAlwaysRolled = 0.5;  // [m] a shorter displacement is never a relocation
+constexpr double kSkidScrub = 1.5;  // of a Pioneer 3-AT: docs/sensors.md
 
 /// Last pose of a mover.
 struct Track {
@@ -76,8 +76,7 @@ Encoders::Encoders(const SensorContext& context) : HostBackend(context, encoder_
 /// movement it counts from the last tick.
 bool Encoders::drove(const Track& track, const Pose& X_WM, double max_forward, std::int64_t now) const {
   const double seconds = 1e-9 * static_cast<double>(now - (track.moved ? track.since : last_));
-  const double way = std::hypot(X_WM.x - track.X_WM.x, X_WM.y - track.X_WM.y);
-  return way <= kAlwaysRolled + 2.0 * max_forward * std::max(0.0, seconds);
+  return base::is_drivable(track.X_WM, X_WM, max_forward, std::max(0.0, seconds));
 }
 
 void Encoders::accumulate(std::int64_t now, bool between) {

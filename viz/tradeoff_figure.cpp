@@ -19,7 +19,7 @@ namespace {
 // [px]
 constexpr int kTradeoffWidth = 1400;
 constexpr int kTradeoffLeft = 124;       ///< with the page's edge
-constexpr int kTradeoffRight = 14;       ///< likewise
+constexpr int kTradeoffRight = 14;       ///< with the page's edge
 constexpr double kErrorNameLine = 24.0;  ///< of an axis' name of several lines
 constexpr int kPlot = 400;
 constexpr int kLowestPanel = 120;

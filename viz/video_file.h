@@ -23,7 +23,7 @@ class VideoFile {
 
   /// The next frame. @param image of the format's size. @throws base::InputError where the file cannot be written
   void add(const PixelImage& image);
-  /// Writes what is left, and the index that players seek by. @throws base::InputError likewise
+  /// Writes what is left, and the index that players seek by. @throws base::InputError as above
   void finish();
 
  private:

@@ -121,7 +121,7 @@ class Bridge {
 class Bridges {
  public:
   void add(std::unique_ptr<Bridge> bridge) { bridges_.push_back(std::move(bridge)); }
-  /// Those for which `condition` holds are closed.
+  /// Closes the bridges for which `condition` holds.
   template <class Condition>
   void remove_if(Condition&& condition) {
     std::erase_if(bridges_, [&](const auto& bridge) { return condition(*bridge); });

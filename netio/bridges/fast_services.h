@@ -36,7 +36,7 @@ class FastServices {
 
 /// @throws std::runtime_error saying why there are none
 using OpenFastServices = std::unique_ptr<FastServices> (*)(const FastOptions& options);
-/// In a process, `sensorfarm_fastdds` beside the plug-ins.
+/// Starts the process `sensorfarm_fastdds`, which is installed beside the plug-ins.
 std::unique_ptr<FastServices> open_fast_services(const FastOptions& options);
 
 }  // namespace sf::bridges

@@ -15,7 +15,7 @@ enum class FrameKind : std::uint8_t {
   ready,    ///< from it, once: its endpoints are there
   failed,   ///< from it, instead: why not
   request,  ///< from it: of `service`, by `sender`
-  reply,    ///< to it: likewise
+  reply,    ///< to it: of `service`, to `sender`
   log,      ///< from it: a line
 };
 

@@ -109,7 +109,7 @@ class Ros2Bridge : public Bridge {
   std::deque<DdsMessage> come_, pending_;  ///< taken from these
   std::uint64_t malformed_ = 0;
   std::vector<std::size_t> writer_of_;  ///< by row of `messages_.topics()`; kNone: it has none
-  std::vector<bool> wanted_;            ///< likewise: somebody reads it
+  std::vector<bool> wanted_;            ///< by row of `messages_.topics()`: it has readers
   /// Of commands to a mover; those of services come first.
   struct Reader {
     std::uint32_t mover = 0;  ///< row; world::kNone: it is of another world

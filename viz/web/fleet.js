@@ -2,7 +2,7 @@
 
 const snapDistance = 2;  // [m] between two updates: the robot was placed
 const longestGap = 0.6;  // [s] of real time between updates that are shown as a motion
-const longestStep = 0.25;  // [s] simulated, likewise: farther apart, states say nothing of the way between them
+const longestStep = 0.25;  // [s] simulated: states farther apart do not determine the way between them
 const past = 16;         // updates that are kept, for readings that were measured at their times
 const stuckAfter = 3;    // [s] simulated
 
