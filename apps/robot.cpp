@@ -114,8 +114,9 @@ int robot(const RobotOptions& options) {
         "signed",
         options.spat);
   install_stop_handlers();
-  print_message("{} (id {}) drives by '{}' at {:g} Hz beside the farm at {}{}; Ctrl-C ends it",
-                world.movers[mover].name, world.movers[mover].id, options.controller, process.rate(),
+  print_message("{} (id {}) drives by '{}' {} beside the farm at {}{}; Ctrl-C ends it", world.movers[mover].name,
+                world.movers[mover].id, options.controller,
+                process.on_scans() ? "on each new scan" : fmt::format("at {:g} Hz", process.rate()),
                 netio::text(process.link().farm()),
                 waits_for_start(options) ? ", once it is given the start signal" : "");
   process.run(stop_requested(), options.duration);

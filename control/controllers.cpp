@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "control/control_shell.h"
 #include "control/own_controllers.h"
+#include "sensors/laser_settings.h"
 
 namespace sf::control {
 
@@ -58,10 +59,12 @@ ConfiguredController make_controller(const ControllerContext& context, Controlle
   own.type = type;
   std::unique_ptr<Controller> inner = type->make(own, config.settings);
   config.settings.require_all_read();
+  const world::Mover& mover = context.world.movers[context.mover];
+  const bool on_scans = type->on_scans && config.rate == 0.0 && !sensors::lasers_of(mover).empty();
   std::optional<OwnLocalization> localization;
-  if (shell.localize) localization.emplace(context.world.movers[context.mover]);
+  if (shell.localize) localization.emplace(mover);
   return {std::make_unique<ControlShell>(std::move(inner), shell, std::move(localization)),
-          config.rate > 0.0 ? config.rate : type->rate};
+          config.rate > 0.0 ? config.rate : type->rate, on_scans};
 }
 
 }  // namespace sf::control

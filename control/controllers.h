@@ -39,6 +39,8 @@ struct ControllerType {
   std::string_view summary;     ///< one line for help
   double rate = 10.0;           ///< [Hz] default
   bool stops_on_bumper = true;  ///< default of the shell's `wait_on_bumper`
+  bool on_scans = false;        ///< without a configured rate, steps on each new scan and on contact, if the robot has
+                                ///< a laser
   /// @throws base::InputError for invalid settings, or when the world or the robot lacks something required.
   std::unique_ptr<Controller> (*make)(const ControllerContext& context, Settings& settings);
   const sensorfarm::ControllerEntry* entry = nullptr;  ///< of a user's own controller (control/own_controllers.h)
@@ -64,7 +66,8 @@ struct ControllerConfig {
 
 struct ConfiguredController {
   std::unique_ptr<Controller> controller;
-  double rate = 10.0;  ///< [Hz]
+  double rate = 10.0;     ///< [Hz]
+  bool on_scans = false;  ///< steps on each new scan and on contact instead of at its rate
 };
 
 /// @throws base::InputError for an unknown name (the message lists all names) and for settings that no code has read.

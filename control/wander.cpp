@@ -147,6 +147,7 @@ constinit const ControllerType wander_controller{
     .summary = "wanders without a map: drives where there is room, turns away from obstacles",
     .rate = 10.0,
     .stops_on_bumper = false,
+    .on_scans = true,
     .make = make_wander,
 };
 

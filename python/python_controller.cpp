@@ -196,6 +196,7 @@ ControllerEntry entry_of(py::handle type) {
   entry.summary = first_line(type.attr("__doc__"));
   entry.rate = attribute(type, "rate", entry.rate);
   entry.stops_on_bumper = attribute(type, "stops_on_bumper", entry.stops_on_bumper);
+  entry.on_scans = attribute(type, "on_scans", entry.on_scans);
   type.inc_ref();
   entry.make = [type, file = file_of(type), checked = false](const Robot& robot, Settings& settings) mutable {
     return in_python(file, [&]() -> std::unique_ptr<Controller> {

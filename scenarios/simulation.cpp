@@ -15,7 +15,6 @@
 #include "farm/schedule.h"
 #include "netio/packets.h"
 #include "sensors/laser.h"
-#include "sensors/laser_settings.h"
 #include "world/append_robot.h"
 #include "world/roads/roads.h"
 
@@ -161,10 +160,8 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Act
   if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same settings read the same files
   robot.controller = std::move(made.controller);
   robot.rate = made.rate;
-  // `wander` without a configured rate decides once per scan.
-  robot.by_lasers = actor.controller.name == "wander" && actor.controller.rate == 0.0 &&
-                    !sensors::lasers_of(world_.movers[mover]).empty();
-  if (!(robot.by_lasers && actor.link.perfect())) robot.mailbox.emplace(actor.link, world_.movers[mover].id);
+  robot.on_scans = made.on_scans;
+  if (!(robot.on_scans && actor.link.perfect())) robot.mailbox.emplace(actor.link, world_.movers[mover].id);
   return robot;
 }
 
@@ -430,7 +427,7 @@ std::int64_t Simulation::leaves_at(const base::ReadingBlock& reading) const {
 /// The controller steps at this tick. Otherwise its last command remains in effect.
 bool Simulation::due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time,
                      bool contact) const {
-  if (robot.by_lasers) {
+  if (robot.on_scans) {
     if (robot.mailbox) robot.mailbox->receive(time);
     const bool looked = robot.mailbox ? robot.mailbox->renewed(sensors::kLaser)
                                       : std::any_of(fresh.begin(), fresh.end(), [](const base::ReadingBlock& r) {

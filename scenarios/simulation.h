@@ -150,7 +150,7 @@ class Simulation {
   struct RobotControl {
     std::unique_ptr<control::Controller> controller;  ///< null: the mover stands
     double rate = 10.0;                               ///< [Hz]
-    bool by_lasers = false;                           ///< steps on new scans and on contacts instead of at its rate
+    bool on_scans = false;                            ///< steps on new scans and on contact instead of at its rate
     bool stepped = false;
     bool driven = false;             ///< from outside (`drive`)
     std::uint64_t begun = 0;         ///< number of steps at its rate

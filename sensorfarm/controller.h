@@ -146,6 +146,8 @@ struct ControllerEntry {
                                 ///< `wait_on_bumper` decides)
   /// An exception refuses the robot, with its message.
   std::function<std::unique_ptr<Controller>(const Robot&, Settings&)> make;
+  /// Unless the user sets a rate, a robot with a laser calls it on each new scan and on contact instead of at `rate`.
+  bool on_scans = false;
 };
 
 }  // namespace sensorfarm

@@ -88,6 +88,8 @@ void RobotClient::move(std::int64_t now) {
 
 void RobotClient::step(std::int64_t now) {
   move(now);
+  scans_ = link_.scans();
+  next_ = next_step(now);
   if (cameras_) cameras_->predict(now);
   if (cameras_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
   command_ = {};
@@ -111,11 +113,17 @@ void RobotClient::send_state(std::int64_t now) {
 
 void RobotClient::wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock) {
   receive(clock());
-  for (std::int64_t time = clock(); time < until && !stop; time = clock()) {
+  for (std::int64_t time = clock(); time < until && !stop && !is_due(time); time = clock()) {
     if (truth_ && truth_->is_due(time)) move(time);
     link_.wait(time, truth_ ? std::min(until, truth_->due()) : until);
     receive(clock());
   }
+}
+
+/// [ns] The farm loses a robot that sends no states: without scans, steps go on at half the rate.
+std::int64_t RobotClient::next_step(std::int64_t now) const {
+  const std::int64_t period = std::llround(1e9 / rate());
+  return made_.on_scans ? now + 2 * period : std::max(next_ + period, now - period);
 }
 
 void RobotClient::run(const std::atomic<bool>& stop, double duration) {
@@ -125,10 +133,9 @@ void RobotClient::run(const std::atomic<bool>& stop, double duration) {
   };
   epoch_ = base::unix_time();
   if (cameras_) cameras_->set_epoch(epoch_);
-  const std::int64_t period = std::llround(1e9 / rate());
   const std::int64_t end = duration > 0.0 ? base::nanoseconds(duration) : INT64_MAX;
-  for (std::int64_t next = 0; !stop && !done(); next = std::max(next + period, clock() - period)) {
-    wait_until(std::min(next, end), stop, clock);
+  while (!stop && !done()) {
+    wait_until(std::min(next_, end), stop, clock);
     if (stop || clock() >= end) break;
     step(clock());
   }

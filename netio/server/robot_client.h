@@ -92,7 +92,7 @@ class RobotClient {
   RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
               const StreamLayout& layout, const RobotClientOptions& options);
 
-  /// Steps at its rate by the machine's clock until `stop` is set, the controller is done, or `duration` [s] have
+  /// Steps at its rate by the machine's clock, or on each new scan (ControllerType::on_scans), until `stop` is set, the controller is done, or `duration` [s] have
   /// passed (0: without end); then leaves.
   void run(const std::atomic<bool>& stop, double duration);
 
@@ -101,13 +101,16 @@ class RobotClient {
 
   /// Moves as it decided last, and reports the truth. `step` does it too; between steps it makes the truth finer.
   void move(std::int64_t now);
-  /// Moves as it decided last, decides anew, and says where it is.
+  /// The next step is due: by its rate, or because a new scan has arrived.
+  bool is_due(std::int64_t now) const { return now >= next_ || (made_.on_scans && link_.scans() > scans_); }
+  /// Executes the last command until `now`, decides, and sends its state.
   void step(std::int64_t now);
 
   /// The last packet, after which the farm accepts another process with this id at once.
   void leave(std::int64_t now);
 
-  double rate() const { return made_.rate; }  ///< [Hz] of turns
+  double rate() const { return made_.rate; }         ///< [Hz] of steps
+  bool on_scans() const { return made_.on_scans; }  ///< steps on each new scan, in the absence of scans at half its rate
   bool done() const { return started_ && made_.controller->done(); }
   const RobotLink& link() const { return link_; }
   const CameraPositions* cameras() const { return cameras_ ? &*cameras_ : nullptr; }  ///< null: it has none
@@ -118,6 +121,7 @@ class RobotClient {
  private:
   using Clock = std::function<std::int64_t()>;
   void wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock);
+  std::int64_t next_step(std::int64_t now) const;
   void on_packet(const netio::Packet& packet, std::int64_t now);
   void decide(std::int64_t now);
   void send_state(std::int64_t now);
@@ -154,6 +158,8 @@ class RobotClient {
   std::uint64_t stops_ = 0;        ///< times that it came to that
   netio::RateLimitedLog log_;
   std::uint64_t steps_ = 0;
+  std::uint64_t scans_ = 0;  ///< that had arrived at the last step
+  std::int64_t next_ = 0;    ///< [ns] of the next step by its rate
   base::ContactOnset contact_;
   std::uint64_t contacts_ = 0;
   control::ErrorSummary error_;

@@ -186,6 +186,13 @@ void RobotLink::handle_challenge(const netio::SessionToken& before) {
   clock_ = {};
 }
 
+std::uint64_t RobotLink::scans() const {
+  std::uint64_t scans = 0;
+  for (const Stream& stream : streams_)
+    if (stream.source.type->id == sensors::kLaser) scans += stream.whole;
+  return scans;
+}
+
 namespace {
 
 /// Packets do not say which elements have a flag: a bound is stated where it holds for all of them. Without one, the

@@ -78,6 +78,8 @@ class RobotLink {
   std::optional<std::int64_t> last_reading() const { return last_reading_; }
   /// Why nothing signed passes, as far as packets have shown.
   const netio::SignatureTrouble& trouble() const { return v2v_socket_.trouble(); }
+  /// Whole readings of lasers that came so far.
+  std::uint64_t scans() const;
   bool listens() const { return !streams_.empty(); }  ///< to any sensor
   const netio::Endpoint& farm() const { return farm_; }
   LinkCounts counts() const;

@@ -178,8 +178,8 @@ class Settings:
     def numbers(self, key: str, fallback: Sequence[float]) -> list[float]: ...
 
 class Controller(Protocol):
-    """A controller of your own: this shape, not this class. Optional: `rate` [Hz] (10) and `stops_on_bumper` (True) of the
-    class; methods radio_range() [m], done() and error()."""
+    """A controller of your own: this shape, not this class. Optional: `rate` [Hz] (10), `on_scans` (False: steps
+    at `rate`, not on each new scan) and `stops_on_bumper` (True) of the class; methods radio_range() [m], done() and error()."""
     def __init__(self, robot: Robot, settings: Settings) -> None: ...
     def step(self, input: Input) -> tuple[float, float, float]:
         """Forward [m/s], left [m/s], turn [rad/s] until the next call."""

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "sensors/laser_settings.h"
 #include "tests/refusal.h"
 
 namespace sf::control {
@@ -50,6 +51,25 @@ TEST(OwnController, ComesFromAPluginWithItsRateAndSettings) {
   EXPECT_EQ(made.controller->step({}).forward, 0.5);
   // Loaded once: the same type again, now also by its plain name.
   EXPECT_EQ(find_controller("test-straight"), find_controller(kPlugin + ":test-straight"));
+}
+
+/// A configured rate overrides it; without a laser there are no scans.
+TEST(OwnController, StepsOnScansWhereItSaysSo) {
+  world::World world = one_robot();
+  const auto on_scans = [&](const char* name, double rate) {
+    return make_controller({world}, {.name = name, .rate = rate}).on_scans;
+  };
+  scripted(world, "at-rate", [](const sensorfarm::Input&) { return sensorfarm::Twist{}; });
+  sensorfarm::ControllerEntry entry = *find_controller("at-rate")->entry;
+  entry.name = "by-scans";
+  entry.on_scans = true;
+  add_own_controller(entry, "test");
+  EXPECT_FALSE(on_scans("by-scans", 0.0)) << "no laser";
+  world.movers[0].sensors.push_back(sensors::laser_sensor({}));
+  EXPECT_TRUE(on_scans("by-scans", 0.0));
+  EXPECT_FALSE(on_scans("by-scans", 10.0)) << "a configured rate, also the default one";
+  EXPECT_FALSE(on_scans("at-rate", 0.0));
+  EXPECT_TRUE(on_scans("wander", 0.0));
 }
 
 TEST(OwnController, SettingsAreReadAndRefusedLikeThoseOfOurs) {

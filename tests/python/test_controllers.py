@@ -283,6 +283,23 @@ class InProcess(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "without a controller"):
             simulated(settings={"near": 1})
 
+    def test_steps_on_scans(self):
+        class OnScans:
+            rate = 2.0
+            on_scans = True
+
+            def __init__(self, robot, settings):
+                self.times = OnScans.times = []
+
+            def step(self, input):
+                self.times.append(round(input.time, 6))
+                return 0.1, 0, 0
+
+        sim = sensorfarm.Simulation(CAVE, robots=1, controller=OnScans)
+        for _ in range(4):
+            sim.step()
+        self.assertEqual(OnScans.times, [0.0, 0.1, 0.2, 0.3])
+
     def test_inputs(self):
         seen = {}
 

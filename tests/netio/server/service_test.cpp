@@ -159,6 +159,22 @@ TEST(Service, ARobotWithAKeyDrivesBesideOneWithout) {
   EXPECT_EQ(inbox.dropped(), inbox[netio::PacketStatus::unproven]) << text(inbox);
 }
 
+/// A wanderer steps when its scan arrives, and at 5 Hz while none do, so that the farm does not lose it.
+TEST(Service, ARobotThatStepsOnScansIsDueWithEachScan) {
+  constexpr std::int64_t kMilli = 1'000'000;
+  Fixture f;
+  EXPECT_TRUE(f.client->is_due(0)) << "the first step";
+  f.run(5);
+  f.client->step(f.now);
+  EXPECT_FALSE(f.client->is_due(f.now + 199 * kMilli)) << "no scan";
+  EXPECT_TRUE(f.client->is_due(f.now + 200 * kMilli)) << "half its rate";
+  f.service->tick(f.now);
+  f.client->receive(f.now + kMilli);
+  EXPECT_TRUE(f.client->is_due(f.now + kMilli)) << "a scan has arrived";
+  f.client->step(f.now + kMilli);
+  EXPECT_FALSE(f.client->is_due(f.now + kMilli)) << "one step per scan";
+}
+
 /// Boundary: no key, another key, and a key that the farm does not know.
 TEST(Service, ARobotIsServedWithItsKeyAlone) {
   using netio::PacketStatus;
