@@ -40,7 +40,7 @@ const ControllerType* add_own_controller(sensorfarm::ControllerEntry entry, cons
   check_entry(entry, from);
   static std::deque<Added> added;
   Added& one = added.emplace_back(Added{std::move(entry), {}});
-  one.type = {one.entry.name,      one.entry.summary, one.entry.rate, one.entry.stops_on_bumper,
+  one.type = {one.entry.name,     one.entry.summary,   one.entry.rate, one.entry.stops_on_bumper,
               one.entry.on_scans, make_own_controller, &one.entry};
   add_controller(&one.type);
   return &one.type;

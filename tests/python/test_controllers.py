@@ -163,7 +163,8 @@ class Program(unittest.TestCase):
         self.assertIn("has no setting 'far'", self.fails("--controller", FILE + ":Careful", "--set", "far=1"))
 
     def test_end_of_the_process(self):
-        code, out, errors = run("--controller", FILE + ":Ends", "--set", "how=exit")
+        # One thread: of several, another robot's may wait for the interpreter in its call.
+        code, out, errors = run("--controller", FILE + ":Ends", "--set", "how=exit", "--threads", "1")
         self.assertEqual(code, 1)
         self.assertIn("controller 'Ends' of robot 'roomba1' ended the process (exit code 0) at 1.000 s simulated", errors)
         self.assertIn("before the end", out)
@@ -298,7 +299,7 @@ class InProcess(unittest.TestCase):
         sim = sensorfarm.Simulation(CAVE, robots=1, controller=OnScans)
         for _ in range(4):
             sim.step()
-        self.assertEqual(OnScans.times, [0.0, 0.1, 0.2, 0.3])
+        self.assertEqual(OnScans.times, [0.0, 0.1, 0.2, 0.3, 0.4])
 
     def test_inputs(self):
         seen = {}
