@@ -13,11 +13,11 @@
 #include <string_view>
 #include <system_error>
 
-#include "apps/command_line.h"
-#include "apps/memory_limit.h"
-#include "apps/stop_signals.h"
-#include "apps/supervision.h"
-#include "apps/text.h"
+#include "apps/options/command_line.h"
+#include "apps/processes/memory_limit.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/processes/supervision.h"
+#include "apps/reports/text.h"
 #include "base/error.h"
 #include "base/plugin_calls.h"
 #include "base/printable.h"

@@ -16,7 +16,7 @@ struct Interrupted : std::runtime_error {
 };
 
 /// A request to stop takes effect within this time. Loops are given up after half of it, and processes whose calls of
-/// users' code go on end shortly before it is over (apps/supervision.h).
+/// users' code go on end shortly before it is over (apps/processes/supervision.h).
 inline constexpr std::chrono::milliseconds kStopLimit{500};
 
 /// Threads that run the pieces of a loop. One caller at a time.

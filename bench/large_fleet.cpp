@@ -8,8 +8,8 @@
 #include "base/hash.h"
 #include "bench/report.h"
 #include "bench/tiles.h"
-#include "netio/server/reading_publisher.h"
 #include "scenarios/simulation.h"
+#include "server/reading_publisher.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::bench {

@@ -19,10 +19,10 @@
 
 #include "bench/cost.h"
 #include "bench/tiles.h"
-#include "netio/bridges/viewer.h"
+#include "bridges/viewer.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
-#include "tests/netio/bridges/raw_client.h"
+#include "tests/bridges/raw_client.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::bench {

@@ -7,7 +7,7 @@ foreach(file ${FILES})
   string(APPEND rows "    {\"${name}\", R\"--page--(${text})--page--\"},\n")
   math(EXPR count "${count} + 1")
 endforeach()
-file(WRITE ${OUT} "#include \"netio/bridges/web_files.h\"
+file(WRITE ${OUT} "#include \"bridges/web_files.h\"
 
 namespace sf::bridges {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Controllers written in Python: a class with __init__(self, robot, settings) and step(self, input) -> (forward, left,
-// turn). Optional: `rate` [Hz], `on_scans` and `stops_on_bumper` of the class, methods radio_range(), done() and error()
-// (sensorfarm/controller.h).
+// turn). Optional: `rate` [Hz], `on_scans` and `stops_on_bumper` of the class, methods radio_range(), done() and
+// error() (sensorfarm/controller.h).
 
 #include <pybind11/pybind11.h>
 

@@ -12,9 +12,9 @@
 
 #include "base/contact_onset.h"
 #include "base/tick_record.h"
-#include "netio/server/lockstep.h"
-#include "netio/server/no_return_filter.h"
 #include "scenarios/simulation.h"
+#include "server/lockstep.h"
+#include "server/no_return_filter.h"
 
 namespace sf::scenarios {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "netio/bridges/bridge.h"
+#include "bridges/bridge.h"
 #include "scenarios/simulation.h"
 
 namespace sf::scenarios {

@@ -8,7 +8,7 @@
 
 #include "base/report.h"
 #include "netio/link_model.h"
-#include "netio/server/state_filter.h"
+#include "server/state_filter.h"
 #include "world/world.h"
 
 namespace sf::scenarios {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/report.h"
+#include "apps/reports/report.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 

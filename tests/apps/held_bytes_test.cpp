@@ -7,11 +7,11 @@
 
 #include "base/hash.h"
 #include "gpu/device.h"
-#include "netio/server/reading_publisher.h"
 #include "netio/socket.h"
 #include "record/mcap_reader.h"
 #include "scenarios/simulation.h"
 #include "sensors/sensor_type.h"
+#include "server/reading_publisher.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "world/world.h"

@@ -1,4 +1,4 @@
-#include "apps/job_processes.h"
+#include "apps/processes/job_processes.h"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>

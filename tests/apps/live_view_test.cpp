@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "tests/apps/program.h"
-#include "tests/netio/bridges/raw_client.h"
+#include "tests/bridges/raw_client.h"
 
 namespace sf {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <limits>
 
-#include "apps/command_line.h"
-#include "apps/option_parsers.h"
-#include "apps/slurm.h"
-#include "apps/text.h"
+#include "apps/options/command_line.h"
+#include "apps/options/option_parsers.h"
+#include "apps/processes/slurm.h"
+#include "apps/reports/text.h"
 #include "tests/apps/golden.h"
 
 namespace sf::apps {

@@ -6,7 +6,7 @@
 #include <csignal>
 
 #include "tests/apps/program.h"
-#include "tests/netio/bridges/player_client.h"
+#include "tests/bridges/player_client.h"
 #include "tests/refusal.h"
 
 namespace sf {

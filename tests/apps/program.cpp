@@ -142,7 +142,7 @@ bool Program::handles(int number) {
   for (; running() && Clock::now() < deadline; nap()) {
     const std::string process = "/proc/" + std::to_string(pid_);
     if (has_handler(process, number)) return true;
-    // A parent that supervises passes signals on (apps/supervision.h).
+    // A parent that supervises passes signals on (apps/processes/supervision.h).
     const int child = std::atoi(read_file(process + "/task/" + std::to_string(pid_) + "/children").c_str());
     if (child > 0 && has_handler("/proc/" + std::to_string(child), number)) return true;
   }

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/report.h"
-#include "apps/robot_report.h"
-#include "apps/vps_report.h"
+#include "apps/reports/report.h"
+#include "apps/reports/robot_report.h"
+#include "apps/reports/vps_report.h"
 #include "tests/apps/golden.h"
 
 namespace sf::apps {

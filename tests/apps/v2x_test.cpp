@@ -11,7 +11,7 @@ namespace sf {
 
 namespace {
 
-const char* const kVectors = SF_SOURCE_DIR "/tests/netio/v2x/vectors/asn1c.txt";
+const char* const kVectors = SF_SOURCE_DIR "/tests/v2x/vectors/asn1c.txt";
 
 /// The frames of the vectors, one a line.
 std::string frames() {

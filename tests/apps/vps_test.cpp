@@ -11,7 +11,7 @@
 #include <map>
 #include <thread>
 
-#include "apps/camera_inputs.h"
+#include "apps/options/camera_inputs.h"
 #include "base/elapsed.h"
 #include "netio/outbox.h"
 #include "netio/packets.h"

@@ -13,10 +13,10 @@
 #include <cstdlib>
 #include <optional>
 
-#include "netio/server/sensor_streams.h"
-#include "netio/server/service.h"
 #include "netio/v2v_socket.h"
 #include "sensors/laser.h"
+#include "server/sensor_streams.h"
+#include "server/service.h"
 #include "tests/fuzz/require.h"
 #include "tests/robots/scenes.h"
 #include "tests/sensors/edit_laser.h"

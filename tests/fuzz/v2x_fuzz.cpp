@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "netio/v2x/xml.h"
 #include "tests/fuzz/require.h"
+#include "v2x/xml.h"
 
 using namespace sf;
 

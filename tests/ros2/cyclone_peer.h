@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "netio/bridges/dds.h"
+#include "bridges/dds.h"
 
 namespace sf::ros2 {
 

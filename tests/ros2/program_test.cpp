@@ -11,7 +11,7 @@
 #include "record/cdr.h"
 #include "record/ros_messages.h"
 #include "tests/apps/program.h"
-#include "tests/netio/bridges/raw_client.h"
+#include "tests/bridges/raw_client.h"
 #include "tests/ros2/cyclone_peer.h"
 #include "tests/ros2/fast_peer.h"
 

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "base/error.h"
-#include "netio/bridges/ros2_bridge.h"
+#include "bridges/ros2_bridge.h"
 #include "record/recorder.h"
 #include "record/recording.h"
 #include "record/ros_messages.h"

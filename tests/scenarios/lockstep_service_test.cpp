@@ -11,8 +11,8 @@
 #include "sensors/laser.h"
 #include "sensors/magnetometer.h"
 #include "sensors/sensor_type.h"
-#include "tests/netio/server/fixture.h"
 #include "tests/scenarios/lockstep_driver.h"
+#include "tests/server/fixture.h"
 #include "world/free_space.h"
 
 namespace sf::scenarios {

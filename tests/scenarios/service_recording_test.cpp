@@ -8,7 +8,7 @@
 #include "record/recording.h"
 #include "scenarios/run_info.h"
 #include "scenarios/verification.h"
-#include "tests/netio/server/fixture.h"
+#include "tests/server/fixture.h"
 
 namespace sf::scenarios {
 namespace {

@@ -11,9 +11,9 @@
 #include <memory>
 
 #include "base/error.h"
-#include "netio/server/robot_client.h"
-#include "netio/server/service.h"
 #include "sensors/sensor_type.h"
+#include "server/robot_client.h"
+#include "server/service.h"
 #include "tests/device.h"
 #include "vision/positioning.h"
 #include "vision/rendered_robots.h"

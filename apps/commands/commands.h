@@ -1,0 +1,38 @@
+#pragma once
+// The subcommands. Each returns the exit code: 0 when all went well. They throw base::InputError (2),
+// base::DeviceError (3) and Incomplete (apps/processes/stop_signals.h). docs/ci.md has all codes.
+
+#include "apps/options/options.h"
+
+namespace sf::apps {
+
+int devices(const DevicesOptions& options);
+int check(const CheckOptions& options);
+int draw(const DrawOptions& options);
+int field(const FieldOptions& options);
+int sense(const SenseOptions& options);
+int run(const RunOptions& options);
+int serve(const ServeOptions& options);
+int robot(const RobotOptions& options);
+int light(const LightOptions& options);
+int start(const StartOptions& options);
+int object(const ObjectOptions& options);
+int plot(const PlotOptions& options);
+int export_recording(const ExportOptions& options);
+int view(const ViewOptions& options);
+int listen(const ListenOptions& options);
+int dump(const DumpOptions& options);
+int experiment(const ExperimentOptions& options);
+int test_scenarios(const TestOptions& options);
+int sweep(const SweepOptions& options);
+int map(const MapOptions& options);
+int verify(const VerifyOptions& options);
+int merge(const MergeOptions& options);
+int explain(const ExplainOptions& options);
+int tradeoff(const TradeoffOptions& options);
+int v2x_messages(const V2xOptions& options);
+int selftest(const SelfTestOptions& options);
+int vps(const VpsOptions& options);
+int calibrate(const CalibrateOptions& options);
+
+}  // namespace sf::apps

@@ -1,0 +1,97 @@
+// `explain`: what a world makes the farm build and do, and what each part costs here.
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "apps/commands/commands.h"
+#include "apps/options/default_robot.h"
+#include "apps/options/open_device.h"
+#include "apps/reports/progress_line.h"
+#include "apps/reports/report.h"
+#include "apps/reports/text.h"
+#include "scenarios/explanation.h"
+
+namespace sf::apps {
+
+namespace {
+
+std::string bytes_text(std::size_t bytes) {
+  if (bytes >= 1u << 20) return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20));
+  return bytes >= 1u << 10 ? fmt::format("{:.1f} KiB", static_cast<double>(bytes) / (1 << 10))
+                           : fmt::format("{} B", bytes);
+}
+
+std::string rates_of(const scenarios::SensorTypeCost& k) {
+  return k.least_rate == k.most_rate ? fmt::format("{:g} Hz", k.most_rate)
+                                     : fmt::format("{:g} to {:g} Hz", k.least_rate, k.most_rate);
+}
+
+std::string work_of(const scenarios::SensorTypeCost& k, double ticks) {
+  const auto each = [&](std::uint64_t count) { return static_cast<double>(count) / ticks; };
+  std::string text = fmt::format("{:.4g} readings", k.readings);
+  if (k.reused > 0.0) text += fmt::format(", {:.4g} of them given again since nothing moved", k.reused);
+  if (k.work.rays > 0)
+    text += fmt::format(", {:.4g} rays, {:.3g} lists built anew", each(k.work.rays), each(k.work.cells_built));
+  if (k.work.uncertain > 0)
+    text += fmt::format(", {:.2g} % of beams decided in 64 bits against all",
+                        100.0 * static_cast<double>(k.work.uncertain) / static_cast<double>(k.work.rays));
+  if (k.work.movers_in_range > 0)
+    text += fmt::format(
+        ", {:.4g} movers near, {:.0f} % of them hidden or out of view", each(k.work.movers_in_range),
+        100.0 - 100.0 * static_cast<double>(k.work.movers_visible) / static_cast<double>(k.work.movers_in_range));
+  if (k.work.host_scans > 0) text += fmt::format(", {:.4g} scans cast on the host", each(k.work.host_scans));
+  if (k.work.dipoles > 0) text += fmt::format(", {:.4g} magnets summed", each(k.work.dipoles));
+  return text;
+}
+
+std::string costs_of(const scenarios::SensorTypeCost& k, const scenarios::Explanation& e) {
+  std::string text =
+      fmt::format("{}: {} on {}, {}\n", k.type, counted(k.sensors, "sensor"), counted(k.robots, "robot"), rates_of(k));
+  text += row("a tick", "{:.3f} ms subscribed {}, {:.3f} ms more than without subscribers", 1e3 * k.tick,
+              k.source.empty() ? "alone" : fmt::format("with the {}s", k.source), 1e3 * (k.tick - e.silent));
+  text += row("", work_of(k, static_cast<double>(e.ticks)));
+  std::string_view label = "accuracy";
+  for (const sensors::AccuracyStatement& s : e.statements)
+    if (s.type->name == k.type) text += row(std::exchange(label, ""), apps::text_of(s));
+  text += row("kernels",
+              k.kernels.empty() ? "none: it is read on the host" : fmt::format("{}", fmt::join(k.kernels, ", ")));
+  if (k.tables.empty()) return text;
+  std::string tables;
+  for (const gpu::DeviceAllocation& h : k.tables)
+    tables += fmt::format("{}{} {}", tables.empty() ? "" : ", ", h.name, bytes_text(h.bytes));
+  return text + row("tables", "{}: {}", bytes_text(k.bytes), tables);
+}
+
+}  // namespace
+
+std::string text_of(const scenarios::Explanation& e) {
+  std::string text;
+  for (const scenarios::SensorTypeCost& cost : e.types) text += costs_of(cost, e);
+  text += "together\n";
+  text += row("a tick", "{:.3f} ms with all subscribed, {:.4f} ms without subscribers", 1e3 * e.all, 1e3 * e.silent);
+  text += row("caster", e.caster);
+  text += row("to start", "{:.0f} ms to build, {:.0f} ms the first tick", 1e3 * e.build, 1e3 * e.first);
+  if (e.resident > 0)
+    text += row("memory", bytes_text(e.resident) + " resident, the driver and this measurement included");
+  for (const scenarios::WallSlice& s : e.slices)
+    text += row("slice", "z = {:g} m: {} of {} wall segments can be met by {}", s.z, s.walls, e.walls,
+                counted(s.sensors, "laser"));
+  if (!e.absent.empty()) text += row("not built", "{}: the world has none", fmt::join(e.absent, ", "));
+  return text;
+}
+
+int explain(const ExplainOptions& options) {
+  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
+  gpu::Device device = open_device(options);
+  scenarios::Explanation explanation;
+  {
+    Progress progress("measuring");
+    explanation =
+        scenarios::explain(world, device, options.seed, options.threads, [&](double part) { progress.show(part); });
+  }
+  print(options.json ? with_warnings(json_of(explanation), world.warnings) : text_of(explanation));
+  return 0;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,69 @@
+// `field`: the field of a world's magnets as a picture, and as numbers along a line.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "apps/commands/commands.h"
+#include "apps/options/open_device.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/progress_line.h"
+#include "apps/reports/report.h"
+#include "apps/reports/text.h"
+#include "base/error.h"
+#include "viz/field_figure.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr double kGauss = 1e-4;  // [T]
+constexpr const char* kNothing = "interrupted: nothing was written";
+
+void refuse_without_magnets(const world::World& world) {
+  const bool carried = std::any_of(world.movers.begin(), world.movers.end(),
+                                   [](const world::Mover& mover) { return !mover.magnets.empty(); });
+  if (world.magnets.empty() && !carried)
+    throw base::InputError(world.file, 0,
+                           "has no magnets, so it has no field; give a model a 'magnetic_moment' (10000 is 1 A m^2)");
+}
+
+void write_csv(const std::string& path, const viz::FieldView& view, const viz::FieldSamples& samples) {
+  std::ofstream file(path, std::ios::trunc);
+  file << "along_m,x_m,y_m,z_m,field_gauss,x_gauss,y_gauss,z_gauss,magnitudes_gauss\n";
+  for (const viz::ProfilePoint& p : samples.profile)
+    file << fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", p.along, p.p.x, p.p.y,
+                        view.height, std::hypot(p.field.x, p.field.y, p.field.z) / kGauss, p.field.x / kGauss,
+                        p.field.y / kGauss, p.field.z / kGauss, p.field.magnitudes / kGauss);
+  file.close();
+  if (!file)
+    throw base::InputError(path, 0, "cannot be written; name a file in a folder that exists and can be written");
+}
+
+}  // namespace
+
+int field(const FieldOptions& options) {
+  install_stop_handlers();
+  const world::World world = world::load_world(options.world, options.load);
+  print_warnings(options.world, world.warnings);
+  refuse_without_magnets(world);
+  const viz::FieldView view = viz::field_view(world, {options.height, options.line, options.extent, options.page});
+
+  gpu::Device device = open_device(options);
+  Progress progress("summing magnets");
+  const viz::FieldSamples samples = viz::sample_field(world, device, view, [&](double part) {
+    progress.show(part);
+    heed_stop(kNothing);
+  });
+  heed_stop(kNothing);
+  viz::draw_field(world, view, samples, options.out, options.page);
+  print_message("wrote {}", options.out);
+  if (options.csv.empty()) return 0;
+  write_csv(options.csv, view, samples);
+  print_message("wrote {}", options.csv);
+  return 0;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,34 @@
+// `merge`: recordings of the ranks that shared a fleet, as one.
+
+#include "apps/commands/commands.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/text.h"
+#include "base/thread_pool.h"
+#include "scenarios/merging.h"
+
+namespace sf::apps {
+
+namespace {
+
+scenarios::MergedRecording merge_until_stopped(const MergeOptions& options) {
+  try {
+    return scenarios::merge_recordings(options.places, options.out, [] { return stop_requested().load(); });
+  } catch (const base::Interrupted&) {
+    throw Incomplete("interrupted: nothing was written, and what was there stays");
+  }
+}
+
+}  // namespace
+
+int merge(const MergeOptions& options) {
+  install_stop_handlers();
+  const scenarios::MergedRecording merged = merge_until_stopped(options);
+  for (const std::string& damage : merged.damage) print_message("{}", damage);
+  if (merged.truncated)
+    print_message("a rank did not finish its recording: merged are the {} ticks that all have", merged.ticks);
+  print(row("ticks", merged.ticks) +
+        row("recording", "{} ({:.1f} MB)", merged.file, static_cast<double>(merged.bytes) * 1e-6));
+  return merged.damage.empty() ? 0 : 1;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,182 @@
+// `plot`: pictures from a recording, later and elsewhere. Scans are computed again from the recorded poses and world.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "apps/commands/commands.h"
+#include "apps/commands/plot_maps.h"
+#include "apps/commands/plot_readings.h"
+#include "apps/commands/recorded_video.h"
+#include "apps/commands/scan_replay.h"
+#include "apps/options/open_device.h"
+#include "apps/options/recording_part.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/progress_line.h"
+#include "apps/reports/recording_csv.h"
+#include "apps/reports/report.h"
+#include "apps/reports/text.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "scenarios/experiment.h"
+#include "scenarios/recorded_states.h"
+#include "scenarios/sweep_plots.h"
+#include "viz/lights_figure.h"
+#include "viz/occupancy_figure.h"
+#include "viz/scan_map.h"
+#include "viz/trajectory_figure.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr std::size_t kLargestTable = 1u << 30;  // bytes of jobs.csv
+
+std::vector<viz::Track> tracks_of(const RecordingPart& part, const world::World& world) {
+  std::vector<viz::Track> tracks;
+  for (std::size_t m = 0; m < part.recording.states.size(); ++m) {
+    if (world.movers[m].is_tag || part.chosen[m] == 0) continue;
+    viz::Track track{world.movers[m].name, std::nullopt, {}, {}, part.seconds};
+    for (const record::StateSample& s : part.recording.states[m]) {
+      if (base::is_absent(s.X_WM)) continue;
+      track.poses.push_back(s.X_WM);
+      track.contacts.push_back(s.contact);
+    }
+    tracks.push_back(std::move(track));
+  }
+  return tracks;
+}
+
+/// Successive states of each light that are equal make one span.
+std::vector<viz::LightRow> light_rows(const record::Recording& recording, const world::World& world) {
+  std::vector<viz::LightRow> rows;
+  for (const world::Light& light : world.lights) rows.push_back({light.name, {}});
+  for (std::size_t t = 0; t < recording.lights.size(); ++t) {
+    const record::LightsSample& sample = recording.lights[t];
+    const double time = 1e-9 * static_cast<double>(sample.time);
+    const double end = t + 1 < recording.lights.size() ? 1e-9 * static_cast<double>(recording.lights[t + 1].time)
+                                                       : time + recording.info.interval;
+    for (std::size_t k = 0; k < std::min(rows.size(), sample.lights.size()); ++k) {
+      const auto state = static_cast<world::LightState>(sample.lights[k].state);
+      std::vector<viz::LightSpan>& spans = rows[k].spans;
+      if (!spans.empty() && spans.back().state == state)
+        spans.back().to = end;
+      else
+        spans.push_back({time, end, state});
+    }
+  }
+  return rows;
+}
+
+/// Computes every chosen laser's scan once a simulated second from where its robot was.
+void map_scans(const RecordingPart& part, const world::World& world, gpu::Device& device, viz::ScanMap& map) {
+  ScanReplay replay(part, world, device);
+  const std::vector<std::size_t> ticks = ticks_apart(part, 1.0);
+  Progress progress("mapping");
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    for (const base::ReadingBlock& scan : replay.scans_at(ticks[i])) map.add(world, scan);
+    progress.show(static_cast<double>(i) / static_cast<double>(ticks.size()));
+    heed_stop();
+  }
+}
+
+/// Names of the files written, each at once.
+struct Written {
+  void operator()(const std::string& file) const {
+    print_message("wrote {}", file);
+    heed_stop();
+  }
+};
+
+/// @throws base::InputError for the name of a robot that is not drawn
+viz::TrackLabels labels_of(const RecordingPart& part, const PlotOptions& options,
+                           const std::vector<viz::Track>& tracks) {
+  if (options.labels == std::vector<std::string>{"all"}) return {.all = true, .names = {}};
+  std::vector<std::string_view> names;
+  for (const viz::Track& track : tracks) names.push_back(track.name);
+  for (const std::string& label : options.labels)
+    if (std::find(names.begin(), names.end(), label) == names.end())
+      throw base::InputError(part.recording.file, 0,
+                             fmt::format("--label: no robot '{}' is drawn; there is {}", label, list_names(names)));
+  return {.all = false, .names = options.labels};
+}
+
+void draw_paths(const RecordingPart& part, const world::World& world, const PlotOptions& options,
+                const std::string& folder) {
+  const std::string trajectories = folder + "/trajectories." + options.format;
+  const std::vector<viz::Track> tracks = tracks_of(part, world);
+  viz::draw_trajectories(world, tracks, trajectories, "robot", options.page, labels_of(part, options, tracks));
+  Written{}(trajectories);
+  if (tracks.size() > viz::kLabelledTracks && options.labels.empty())
+    print_message("{} robots have no labels in it; --label NAME,... or --label all names them", tracks.size());
+  if (options.csv) Written{}(write_trajectories_csv(part, folder));
+}
+
+void draw_lights(const RecordingPart& part, const world::World& world, const PlotOptions& options,
+                 const std::string& folder) {
+  if (part.recording.lights.empty() || world.lights.empty()) return;
+  const std::string lights = folder + "/lights." + options.format;
+  const std::vector<viz::LightRow> rows = light_rows(part.recording, world);
+  viz::draw_light_states(rows, fmt::format("{}: {}", part.recording.info.world, counted(rows.size(), "light")), lights,
+                         options.page);
+  Written{}(lights);
+  if (options.csv) Written{}(write_lights_csv(part, folder));
+}
+
+void draw_occupancy(const RecordingPart& part, const world::World& world, const PlotOptions& options,
+                    const std::string& folder) {
+  if (!has_laser(part, world))
+    return print_message("no occupancy.{}: none of these robots has a laser", options.format);
+  gpu::Device device = open_device(options);
+  viz::ScanMap map(viz::grid_over(world.extent));
+  map_scans(part, world, device, map);
+  const std::string occupancy = folder + "/occupancy." + options.format;
+  viz::draw_occupancy(world, map.states(), occupancy, options.page);
+  print_message("wrote {}", occupancy);
+}
+
+}  // namespace
+
+namespace {
+
+/// A folder of `sweep`.
+int plot_sweep(const PlotOptions& options, const std::string& jobs) {
+  if (!options.robots.empty() || !options.labels.empty() || !options.elements.empty() || options.curves ||
+      options.csv || !options.video.empty() || options.from > 0.0 || std::isfinite(options.to))
+    throw base::InputError(options.recording, 0,
+                           "is a sweep's folder; --robots, --label, --elements, --curves, --csv, --video, --from and "
+                           "--to go with recordings");
+  const std::string folder = options.out.empty() ? options.recording + "/plots" : options.out;
+  const scenarios::SweepPlots plots = scenarios::draw_sweep(
+      jobs, base::read_text(jobs, kLargestTable), folder, {options.over, options.x_axis, options.format, options.page});
+  for (const std::string& note : plots.notes) print_message(note);
+  for (const std::string& file : plots.files) Written{}(file);
+  return 0;
+}
+
+}  // namespace
+
+int plot(const PlotOptions& options) {
+  install_stop_handlers();
+  if (const std::string jobs = options.recording + "/jobs.csv"; std::filesystem::is_regular_file(jobs))
+    return plot_sweep(options, jobs);
+  if (!options.over.empty() || options.x_axis != viz::AxisScale::automatic)
+    throw base::InputError(options.recording, 0, "--over and --x-axis go with the folder of a sweep");
+  RecordingPart part = open_part(options.recording, options);
+  if (!options.video.empty()) return write_recorded_video(part, options, options.device), 0;
+  const world::World world = scenarios::recorded_world(part.recording);
+  const std::string folder =
+      options.out.empty() ? std::filesystem::path(part.recording.file).parent_path().string() : options.out;
+  scenarios::make_folder(folder);
+
+  draw_paths(part, world, options, folder);
+  for (const std::string& file : draw_readings(part.recording, world, options, folder)) Written{}(file);
+  draw_lights(part, world, options, folder);
+  for (const std::string& file : draw_maps(part.recording, world, options, folder)) Written{}(file);
+  draw_occupancy(part, world, options, folder);
+  return 0;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,328 @@
+#include "apps/commands/plot_readings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "apps/options/reading_elements.h"
+#include "apps/reports/csv_text.h"
+#include "apps/reports/text.h"
+#include "base/error.h"
+#include "record/reading_messages.h"
+#include "scenarios/experiment.h"
+#include "sensors/occupancy.h"
+#include "viz/series_figure.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr double kPlottedGauss = 1e4;          ///< per tesla
+constexpr std::size_t kMostMagnetometers = 4;  ///< panels of their own
+constexpr std::size_t kMostPanels = 16;
+constexpr std::size_t kMostCurves = 32;  ///< in a panel, where a sensor has fewer
+constexpr std::size_t kNamedCurves = 7;  ///< sensors of more elements are drawn as heat maps
+constexpr std::size_t kMostHeatMaps = 4;
+constexpr std::size_t kMostRows = 240;  ///< of a heat map; of more elements every second one, or third, ...
+
+/// Readings of one sensor, in order of time.
+struct Channel {
+  std::string name;  ///< its robot's; with the sensor's where the robot has several
+  std::uint32_t mover = 0, sensor = 0;
+  std::vector<const record::ReadingSample*> readings;
+};
+
+/// Every sensor of a type that said something.
+std::vector<Channel> channels_of(const record::Recording& recording, const record::SensorTypeInfo& type) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Channel> rows;
+  for (const record::ReadingSample& reading : recording.readings)
+    if (reading.type == type.id) rows[{reading.mover, reading.sensor}].readings.push_back(&reading);
+  std::vector<Channel> channels;
+  for (auto& [key, channel] : rows) {
+    channel.name = recording.info.movers[key.first].name;
+    if (rows.count({key.first, 1}) > 0) channel.name += fmt::format(" sensor {}", key.second);
+    channel.mover = key.first;
+    channel.sensor = key.second;
+    channels.push_back(std::move(channel));
+  }
+  return channels;
+}
+
+/// `value(reading)` of every reading.
+template <class Value>
+viz::Series series_of(const std::string& name, const Channel& channel, Value&& value) {
+  viz::Series series{name, {}, {}};
+  for (const record::ReadingSample* reading : channel.readings) {
+    series.times.push_back(1e-9 * static_cast<double>(reading->time));
+    series.values.push_back(value(*reading));
+  }
+  return series;
+}
+
+viz::SeriesOptions lane_edges(const record::Recording& recording, const std::vector<Channel>& channels) {
+  viz::Panel panel{"", "distance [m]", {}};
+  std::size_t readings = 0, seen = 0;
+  for (const Channel& channel : channels) {
+    panel.series.push_back(series_of(channel.name, channel, [](const auto& r) { return r.values[0]; }));
+    readings += channel.readings.size();
+    for (const double distance : panel.series.back().values) seen += std::isfinite(distance);
+  }
+  return {"Distance to the lane edge",
+          fmt::format("{}: {}, {}, an edge in {} of them", recording.info.world, counted(channels.size(), "sensor"),
+                      counted(readings, "reading"), seen),
+          {panel}};
+}
+
+std::size_t element_count(const Channel& channel, std::size_t width) {
+  return std::max<std::size_t>(1, channel.readings.front()->values.size() / width);
+}
+
+/// The elements to draw of a sensor that has `count`.
+std::vector<std::size_t> chosen_elements(std::size_t count, const PlotOptions& options) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t e = 0; e < count; ++e)
+    if (options.elements.empty() ||
+        std::find(options.elements.begin(), options.elements.end(), e) != options.elements.end())
+      chosen.push_back(e);
+  return chosen;
+}
+
+bool as_heat_map(std::size_t elements, const PlotOptions& options) {
+  return elements > kNamedCurves && options.elements.empty() && !options.curves;
+}
+
+/// [s] in which a reading is succeeded by the next one: one and a half times the usual interval.
+double longest_hold(const std::vector<double>& times) {
+  std::vector<double> intervals;
+  for (std::size_t i = 0; i + 1 < times.size(); ++i) intervals.push_back(times[i + 1] - times[i]);
+  if (intervals.empty()) return HUGE_VAL;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return 1.5 * *middle + 1e-9;
+}
+
+/// One number per element: a column, or a part of one.
+struct ElementColumn {
+  std::size_t offset = 0;  ///< in the element
+  std::string name;        ///< with its unit
+  bool whole = false, range = false;
+  double scale = 1.0;
+};
+
+viz::Panel heat_panel(const Channel& channel, const SensorElements& elements, std::size_t width,
+                      const ElementColumn& column) {
+  const std::size_t count = element_count(channel, width), every = (count + kMostRows - 1) / kMostRows;
+  viz::HeatMap map{.value_name = column.name, .whole = column.whole};
+  // Left is on top: bearings grow to the left.
+  const std::vector<double>& bearings = elements.bearings;
+  const bool upwards = bearings.size() == count && bearings.front() < bearings.back();
+  std::vector<std::size_t> order;
+  for (std::size_t e = 0; e < count; e += every) order.push_back(e);
+  if (upwards) std::reverse(order.begin(), order.end());
+  for (const std::size_t e : order) map.rows.push_back(element_name(elements, e));
+  for (const record::ReadingSample* reading : channel.readings) {
+    map.times.push_back(1e-9 * static_cast<double>(reading->time));
+    std::vector<double>& row = map.readings.emplace_back();
+    for (const std::size_t e : order) {
+      const std::size_t at = e * width + column.offset;
+      row.push_back(at < reading->values.size() ? column.scale * reading->values[at] : NAN);
+    }
+  }
+  map.longest_hold = longest_hold(map.times);
+  if (column.range) map.limit = elements.range_max;
+  map.too_near = fmt::format("too near (< {:g} m)", elements.range_min);
+  map.no_return =
+      std::isfinite(elements.range_max) ? fmt::format("no return (≥ {:g} m)", elements.range_max) : "no return";
+  const char* name = elements.bearings.empty() ? "element" : "element (bearing)";
+  return {channel.name, every == 1 ? name : fmt::format("{}, 1 of {}", name, every), {}, false, false, std::move(map)};
+}
+
+/// |B| of each element of one sensor.
+viz::Panel fields_of(const Channel& channel, std::size_t width, const PlotOptions& options) {
+  const std::size_t elements = element_count(channel, width);
+  if (as_heat_map(elements, options))
+    return heat_panel(channel, {}, width, {0, "|B| [G]", false, false, kPlottedGauss});
+  viz::Panel panel{channel.name, "|B| [G]", {}};
+  for (const std::size_t e : chosen_elements(elements, options))
+    panel.series.push_back(series_of(fmt::format("element {}", e), channel, [=](const record::ReadingSample& r) {
+      return e * width < r.values.size() ? kPlottedGauss * r.values[e * width] : NAN;
+    }));
+  return panel;
+}
+
+/// A reading's row is |B|, then the vector. Path followers steer by how much stronger the last element's field is than
+/// the first's.
+viz::SeriesOptions fields(const record::Recording& recording, const std::vector<Channel>& channels, std::size_t width,
+                          const PlotOptions& options) {
+  viz::SeriesOptions figure{"Magnetic field", "", {}};
+  // Signed: a difference of magnitudes is no magnitude.
+  viz::Panel difference{"last element less the first", "difference of |B| [G]", {}};
+  const std::size_t drawn = std::min(channels.size(), kMostMagnetometers);
+  for (std::size_t i = 0; i < drawn; ++i) {
+    figure.panels.push_back(fields_of(channels[i], width, options));
+    difference.series.push_back(series_of(channels[i].name, channels[i], [=](const record::ReadingSample& r) {
+      return r.values.size() > width ? kPlottedGauss * (r.values[r.values.size() - width] - r.values[0]) : NAN;
+    }));
+  }
+  if (options.elements.empty()) figure.panels.push_back(std::move(difference));
+  figure.subtitle = fmt::format("{}: {}", recording.info.world, counted(channels.size(), "sensor"));
+  if (drawn < channels.size()) figure.subtitle += fmt::format(", the first {} shown", drawn);
+  return figure;
+}
+
+/// "left counts" as "left [counts]", "x_m" as "x [m]".
+std::string axis_name(const std::string& column) {
+  constexpr std::pair<std::string_view, std::string_view> kUnitsOfEndings[] = {
+      {"_rad_s", "rad/s"},   {"_m_s2", "m/s²"}, {"_m_s", "m/s"}, {"_deg", "deg"}, {"_rad", "rad"},
+      {"_counts", "counts"}, {"_m", "m"},       {"_s", "s"},     {"_T", "T"},     {"_V", "V"}};
+  std::string name = column;
+  std::string unit;
+  for (const auto& [ending, text] : kUnitsOfEndings) {
+    if (!column.ends_with(ending)) continue;
+    name.resize(column.size() - ending.size());
+    unit = fmt::format(" [{}]", text);
+    break;
+  }
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name + unit;
+}
+
+/// "robot1", "robot1 3 x": the element of a list, and the part of a vector.
+std::string part_name(const Channel& channel, std::size_t element, std::size_t elements, std::uint32_t part,
+                      std::uint32_t width) {
+  std::string name = channel.name;
+  if (elements > 1) name += fmt::format(" {}", element);
+  if (width > 1) name += width <= 3 ? fmt::format(" {}", "xyz"[part]) : fmt::format(" {}", part);
+  return name;
+}
+
+bool is_whole(const record::ColumnInfo& column) { return column.whole || column.name.ends_with("_counts"); }
+
+std::string subtitle_of(const record::Recording& recording, std::size_t sensors, std::size_t drawn) {
+  const std::string text = fmt::format("{}: {}", recording.info.world, counted(sensors, "sensor"));
+  return drawn < sensors ? text + fmt::format(", the first {} shown", drawn) : text;
+}
+
+/// A panel per column and sensor, of the first sensors.
+viz::SeriesOptions heat_maps_of(const record::Recording& recording, const world::World& world,
+                                const record::SensorTypeInfo& type, const std::vector<Channel>& channels,
+                                std::size_t width) {
+  viz::SeriesOptions figure{"Readings of " + type.name, "", {}};
+  const std::size_t drawn = std::min({channels.size(), kMostHeatMaps, std::max<std::size_t>(1, kMostPanels / width)});
+  for (std::size_t i = 0; i < drawn; ++i) {
+    const SensorElements elements = elements_of(world, type, channels[i].mover, channels[i].sensor);
+    std::size_t offset = 0;
+    for (const record::ColumnInfo& column : type.columns)
+      for (std::uint32_t k = 0; k < column.width && figure.panels.size() < kMostPanels; ++k)
+        figure.panels.push_back(
+            heat_panel(channels[i], elements, width,
+                       {offset++, axis_name(column.name) + (column.width > 1 ? fmt::format(" {}", "xyz"[k % 3]) : ""),
+                        is_whole(column), column.name == "range_m" || type.is_scan}));
+  }
+  figure.subtitle = subtitle_of(recording, channels.size(), drawn);
+  return figure;
+}
+
+/// Any sensor type: a panel per column, a curve per sensor, element and part of a vector.
+viz::SeriesOptions columns_of(const record::Recording& recording, const record::SensorTypeInfo& type,
+                              const std::vector<Channel>& channels, std::size_t width, const PlotOptions& options) {
+  viz::SeriesOptions figure{"Readings of " + type.name, "", {}};
+  std::size_t drawn = 0, offset = 0;
+  for (const record::ColumnInfo& column : type.columns) {
+    if (figure.panels.size() == kMostPanels) break;
+    viz::Panel panel{"", axis_name(column.name), {}, false, is_whole(column)};
+    drawn = 0;
+    for (const Channel& channel : channels) {
+      const std::size_t elements = element_count(channel, width);
+      const std::vector<std::size_t> chosen = chosen_elements(elements, options);
+      if (drawn > 0 && panel.series.size() + chosen.size() * column.width > kMostCurves) break;
+      for (const std::size_t e : chosen)
+        for (std::uint32_t k = 0; k < column.width; ++k)
+          panel.series.push_back(series_of(part_name(channel, e, elements, k, column.width), channel,
+                                           [at = e * width + offset + k](const record::ReadingSample& r) {
+                                             return at < r.values.size() ? r.values[at] : NAN;
+                                           }));
+      ++drawn;
+    }
+    offset += column.width;
+    figure.panels.push_back(std::move(panel));
+  }
+  figure.subtitle = subtitle_of(recording, channels.size(), drawn);
+  return figure;
+}
+
+/// Empty where nothing is to be drawn of the sensor type.
+std::optional<viz::SeriesOptions> figure_of(const record::Recording& recording, const world::World& world,
+                                            const record::SensorTypeInfo& type, const PlotOptions& options) {
+  const std::vector<Channel> channels = channels_of(recording, type);
+  if (channels.empty() || type.id == sensors::kOccupancy) return std::nullopt;  // maps have figures of their own
+  const std::size_t width = record::element_width(type);
+  std::size_t most = 0;
+  for (const Channel& channel : channels) most = std::max(most, element_count(channel, width));
+  if (!options.elements.empty() && chosen_elements(most, options).empty()) return std::nullopt;
+  if (type.name == "laneedge") return lane_edges(recording, channels);
+  if (type.name == "magnetometer") return fields(recording, channels, width, options);
+  if (as_heat_map(most, options)) return heat_maps_of(recording, world, type, channels, width);
+  if (type.is_scan && options.elements.empty() && !options.curves)
+    return std::nullopt;  // beams of few samples are on the map
+  return columns_of(recording, type, channels, width, options);
+}
+
+/// @throws base::InputError for an element that no recorded sensor has
+void check_elements(const record::Recording& recording, const PlotOptions& options) {
+  std::size_t most = 0;
+  for (const record::SensorTypeInfo& type : recording.info.sensor_types)
+    if (type.id != sensors::kOccupancy)
+      for (const Channel& channel : channels_of(recording, type))
+        most = std::max(most, element_count(channel, record::element_width(type)));
+  for (const std::uint32_t element : options.elements)
+    if (element >= most)
+      throw base::InputError(recording.file, 0,
+                             most == 0 ? "has no readings for --elements; record them with `run --record-readings`"
+                                       : fmt::format("has no sensor with an element {}; they are numbered from 0 to {}",
+                                                     element, most - 1));
+}
+
+std::string csv_of(const viz::SeriesOptions& figure) {
+  std::string text = "panel,curve,time_s,value\n";
+  for (const viz::Panel& panel : figure.panels) {
+    const std::string& y_name = panel.map ? panel.map->value_name : panel.y_name;
+    const std::string name = csv_field(panel.title.empty() || panel.map ? y_name : panel.title + ": " + y_name);
+    for (const viz::Series& series : panel.series)
+      for (std::size_t i = 0; i < series.times.size(); ++i)
+        text += fmt::format("{},{},{},{}\n", name, csv_field(series.name), csv_number(series.times[i]),
+                            csv_number(series.values[i]));
+    for (std::size_t row = 0; panel.map && row < panel.map->rows.size(); ++row) {
+      const std::string& label = panel.map->rows[row];  // the element's number, and its bearing
+      const std::string curve = csv_field(panel.title + " " + label.substr(0, label.find(' ')));
+      for (std::size_t i = 0; i < panel.map->times.size(); ++i)
+        text += fmt::format("{},{},{},{}\n", name, curve, csv_number(panel.map->times[i]),
+                            csv_number(panel.map->readings[i][row]));
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> draw_readings(const record::Recording& recording, const world::World& world,
+                                       const PlotOptions& options, const std::string& folder) {
+  if (!options.elements.empty()) check_elements(recording, options);
+  std::vector<std::string> files;
+  for (const record::SensorTypeInfo& type : recording.info.sensor_types) {
+    const std::optional<viz::SeriesOptions> figure = figure_of(recording, world, type, options);
+    if (!figure) continue;
+    const std::string path = folder + "/" + (type.name == "laneedge" ? "lane_edge" : type.name) + ".";
+    files.push_back(path + options.format);
+    viz::draw_series(*figure, files.back(), options.page);
+    if (!options.csv) continue;
+    files.push_back(path + "csv");
+    scenarios::write_text(files.back(), csv_of(*figure));
+  }
+  return files;
+}
+
+}  // namespace sf::apps

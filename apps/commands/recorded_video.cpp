@@ -1,0 +1,79 @@
+#include "apps/commands/recorded_video.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "apps/commands/scan_replay.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/progress_line.h"
+#include "apps/reports/text.h"
+#include "base/error.h"
+#include "gpu/device.h"
+#include "scenarios/recorded_states.h"
+#include "scenarios/replay.h"
+#include "scenarios/run_info.h"
+
+namespace sf::apps {
+
+namespace {
+
+/// Scans of the robots whose readings are shown, at the last tick before each frame.
+class MissingScans {
+ public:
+  MissingScans(const RecordingPart& part, const world::World& world, const VideoOptions& options,
+               const std::string& device)
+      : device_(device),
+        replay_(part, world, device_),
+        ticks_(
+            ticks_apart(part, std::max(0.0, options.video_speed / options.video_fps - part.recording.info.interval))) {}
+
+  void add_to(base::TickRecord& tick, std::size_t number) {
+    if (!std::binary_search(ticks_.begin(), ticks_.end(), number)) return;
+    const std::span<const base::ReadingBlock> scans = replay_.scans_at(number);
+    scans_.assign(scans.begin(), scans.end());
+    for (base::ReadingBlock& scan : scans_) scan.time = tick.time;
+    tick.readings = scans_;
+  }
+
+ private:
+  gpu::Device device_;
+  ScanReplay replay_;
+  std::vector<std::size_t> ticks_;
+  std::vector<base::ReadingBlock> scans_;
+};
+
+}  // namespace
+
+void write_recorded_video(RecordingPart& part, const VideoOptions& options, const std::string& device) {
+  const record::Recording& recording = part.recording;
+  const world::World world = scenarios::recorded_world(recording);
+  const record::RunInfo info =
+      scenarios::run_info(world, sensors::SensorSet(world), {.seed = recording.info.seed, .record_readings = true});
+  std::vector<std::uint8_t> hidden;
+  for (const std::uint8_t chosen : part.chosen) hidden.push_back(chosen == 0);
+  RunVideo video(world, info, options, hidden);
+  scenarios::Replay replay(recording, info);
+  std::optional<MissingScans> scans;
+  if (recording.readings.empty() && !options.video_readings.empty()) {
+    for (std::size_t m = 0; m < part.chosen.size(); ++m)
+      part.chosen[m] =
+          std::count(options.video_readings.begin(), options.video_readings.end(), world.movers[m].name) > 0;
+    if (has_laser(part, world)) scans.emplace(part, world, options, device);
+  }
+  {
+    Progress progress(options.frames.empty() ? "encoding" : "painting");
+    for (std::size_t i = 0; i < replay.ticks() && (i == 0 || !stop_requested()); ++i) {
+      base::TickRecord tick = replay.tick(i, i == 0 ? std::nullopt : std::optional(i - 1));
+      if (scans) scans->add_to(tick, i);
+      video.write(tick);
+      progress.show(static_cast<double>(i) / static_cast<double>(replay.ticks()));
+    }
+  }
+  const VideoFacts facts = video.finish();
+  print_message("wrote {}: {}", facts.file, text_of(facts));
+  heed_stop(options.frames.empty() ? "interrupted: the video ends early, and can be played"
+                                   : "interrupted: the frames end early");
+}
+
+}  // namespace sf::apps

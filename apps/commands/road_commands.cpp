@@ -1,0 +1,110 @@
+#include "apps/commands/road_commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/report.h"
+#include "apps/reports/text.h"
+#include "base/error.h"
+#include "viz/road_figure.h"
+#include "world/roads/roads.h"
+
+namespace sf::apps {
+
+namespace {
+
+std::string ending_of(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+bool is_network(const std::string& file) { return ending_of(file) == ".rndf" || ending_of(file) == ".rdf"; }
+bool is_mission(const std::string& file) { return ending_of(file) == ".mdf"; }
+
+void append(std::vector<world::Warning>& all, const std::vector<world::Warning>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+int check_network(const CheckOptions& options) {
+  std::vector<world::Warning> warnings;
+  const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict);
+  const RoadReport facts{network, world::lane_markings_of(network).size(), warnings};
+  print(options.json ? json_of(facts) : text_of(facts));
+  return 0;
+}
+
+int check_mission(const CheckOptions& options) {
+  const world::Mdf mission = world::read_mdf(options.world, options.load.strict);
+  std::vector<world::Warning> warnings = mission.warnings;
+  if (!options.rndf.empty()) {
+    const world::Rndf rndf = world::read_rndf(options.rndf, options.load.strict);
+    append(warnings, rndf.warnings);
+    append(warnings, world::check_against(mission, rndf));
+  }
+  const MissionReport facts{mission, options.rndf, warnings};
+  print(options.json ? json_of(facts) : text_of(facts));
+  return 0;
+}
+
+}  // namespace
+
+std::string text_of(const RoadReport& facts) {
+  const world::RoadNetwork& network = facts.network;
+  const world::RoadCounts& c = network.counts;
+  const world::Extent& e = network.extent;
+  double length = 0.0;
+  for (const world::RoadLane& lane : network.lanes) length += length_of(lane);
+  std::string text = text_of(facts.warnings);
+  text += fmt::format("{}\n", network.name.empty() ? network.file : network.name);
+  text += row("segments", c.segments);
+  text += row("lanes", "{} ({:.1f} m in all)", c.lanes, length);
+  text += row("zones", c.zones);
+  text += row("spots", c.spots);
+  text += row("points", "{} ({} of lanes)", c.points, c.lane_waypoints);
+  text += row("exits", c.exits);
+  text += row("stops", c.stops);
+  text += row("checkpoints", c.checkpoints);
+  text += row("painted lines", facts.lane_markings);
+  text += row("scale", "{:g}", network.scale);
+  text += row("extent", "x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max);
+  return text + row("warnings", facts.warnings.size());
+}
+
+std::string text_of(const MissionReport& facts) {
+  const world::Mdf& mission = facts.mission;
+  std::string text = text_of(facts.warnings);
+  text += fmt::format("{}\n", mission.name.empty() ? mission.file : mission.name);
+  text += row("made for", mission.rndf_name.empty() ? "-" : mission.rndf_name);
+  text += row("checked against", facts.network.empty() ? "nothing (--rndf FILE)" : facts.network);
+  text += row("checkpoints", mission.checkpoints.size());
+  text += row("speed limits", mission.speed_limits.size());
+  return text + row("warnings", facts.warnings.size());
+}
+
+std::optional<int> check_roads(const CheckOptions& options) {
+  if (is_mission(options.world)) return check_mission(options);
+  if (!options.rndf.empty())
+    throw base::InputError(options.world, 0, "is no mission; --rndf goes with `check` of an .mdf file");
+  if (is_network(options.world)) return check_network(options);
+  return std::nullopt;
+}
+
+std::optional<int> draw_roads(const DrawOptions& options) {
+  if (is_mission(options.world))
+    throw base::InputError(options.world, 0, "a mission has no picture; draw the .rndf file that it was made for");
+  if (!is_network(options.world)) return std::nullopt;
+  std::vector<world::Warning> warnings;
+  const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict);
+  print_warnings(options.world, warnings);
+  heed_stop("interrupted: nothing was written");
+  viz::draw_roads(network, options.out, options.page);
+  print_message("wrote {}", options.out);
+  return 0;
+}
+
+}  // namespace sf::apps

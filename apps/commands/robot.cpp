@@ -1,0 +1,128 @@
+// `robot`: one simulated robot as a process of its own, beside a farm that serves.
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "apps/commands/commands.h"
+#include "apps/options/address.h"
+#include "apps/options/controller_options.h"
+#include "apps/options/default_robot.h"
+#include "apps/options/farm_endpoint.h"
+#include "apps/options/layout_options.h"
+#include "apps/options/peers_option.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/report.h"
+#include "apps/reports/robot_report.h"
+#include "apps/reports/text.h"
+#include "base/error.h"
+#include "base/time.h"
+#include "netio/address_book.h"
+#include "netio/outbox.h"
+#include "netio/own_end.h"
+#include "server/robot_client.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr std::string_view kStart = "start=";
+
+/// By its own option, or by the control shell's setting.
+bool waits_for_start(const RobotOptions& options) {
+  return options.wait_for_start || std::any_of(options.set.begin(), options.set.end(), [](const std::string& text) {
+           return text.compare(0, kStart.size(), kStart) == 0 &&
+                  control::read_text(std::string_view(text).substr(kStart.size())) == "signal";
+         });
+}
+
+/// The robot's own; warns where the table has none.
+std::optional<netio::SigningKey> key_of(const RobotOptions& options, const std::vector<netio::Peer>& peers,
+                                        const world::Mover& mover) {
+  const netio::Peer* own = netio::find(peers, netio::PeerKind::robot, mover.id);
+  const std::optional<netio::SigningKey> key = own != nullptr ? own->key : std::nullopt;
+  if (key) require_signable({*own}, options.wire);
+  if (!options.peers.empty() && !key)
+    print_message("warning: {} has no key of {} (id {}): its packets are not signed", options.peers, mover.name,
+                  mover.id);
+  return key;
+}
+
+server::CameraPositionsOptions cameras_of(const RobotOptions& options, const netio::Endpoint& farm,
+                                          const std::vector<netio::Peer>& peers, const world::Mover& mover) {
+  constexpr double kForEver = 1e9;  // [s]
+  server::CameraPositionsOptions cameras;
+  cameras.bind = netio::own_end_for(farm.address, options.cameras);
+  cameras.filter.clock.source = options.camera_clock;
+  cameras.filter.stale_after = base::nanoseconds(options.stop_after > 0.0 ? options.stop_after : kForEver);
+  const std::uint32_t id = options.tag > 0 ? options.tag : mover.id;
+  if (const netio::Peer* tag = netio::find(peers, netio::PeerKind::tag, id)) cameras.peers = {*tag};
+  return cameras;
+}
+
+server::RobotClientOptions client_options(const RobotOptions& options, const world::World& world,
+                                          const world::Mover& mover) {
+  server::RobotClientOptions client;
+  client.link.farm = farm_of(options);
+  // The tag of a robot is none of the world's.
+  const std::vector<netio::Peer> peers = peers_of(options, options.cameras > 0 ? nullptr : &world);
+  client.link.key = key_of(options, peers, mover);
+  client.link.model = {.delay = options.delay,
+                       .jitter = options.jitter,
+                       .loss = options.loss,
+                       .seed = options.seed,
+                       .duplicate = options.duplicate,
+                       .corrupt = options.corrupt};
+  client.controller = controller_config_of(options);
+  client.controller.rate = options.rate;
+  client.seed = options.seed;
+  client.forget = options.forget;
+  client.stop_after = options.stop_after;
+  client.wait_for_start = waits_for_start(options);
+  if (options.spat > 0) client.spat = netio::own_end_for(client.link.farm.address, options.spat);
+  client.tag = options.tag;
+  if (options.cameras > 0) client.cameras = cameras_of(options, client.link.farm, peers, mover);
+  netio::AddressBook book;
+  if (!options.truth.empty()) client.truth = read_address(book, options.truth, "--truth");
+  if (!options.map.empty()) client.map = server::OwnMapOptions{read_address(book, options.map, "--map"), options.wire};
+  if (!options.serial.empty()) client.create = server::CreateOptions{options.serial, options.baud};
+  return client;
+}
+
+std::uint32_t find_robot(const world::World& world, const std::string& name) {
+  std::vector<std::string_view> names;
+  for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
+    if (world.movers[i].is_tag) continue;
+    if (world.movers[i].name == name) return i;
+    names.emplace_back(world.movers[i].name);
+  }
+  refuse_robot(world, name, names);
+}
+
+}  // namespace
+
+int robot(const RobotOptions& options) {
+  const world::World world = load_with_robots(options.world, options.load);
+  const sensors::SensorSet sensor_set(world);
+  const std::uint32_t mover = find_robot(world, options.robot);
+  server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options),
+                              client_options(options, world, world.movers[mover]));
+  if (options.spat > 0 && !netio::is_loopback(process.link().farm().address))
+    print_message(
+        "warning: --spat {} takes the states of lights from whoever reaches this machine, since these messages are not "
+        "signed",
+        options.spat);
+  install_stop_handlers();
+  print_message("{} (id {}) drives by '{}' {} beside the farm at {}{}; Ctrl-C ends it", world.movers[mover].name,
+                world.movers[mover].id, options.controller,
+                process.on_scans() ? "on each new scan" : fmt::format("at {:g} Hz", process.rate()),
+                netio::text(process.link().farm()),
+                waits_for_start(options) ? ", once it is given the start signal" : "");
+  process.run(stop_requested(), options.duration);
+  const server::RobotClientStats facts = process.stats();
+  print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
+  return facts.answered || !facts.listens ? 0 : 1;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,455 @@
+// `run`: a simulated fleet in the loop, recorded and sent as asked.
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "apps/commands/commands.h"
+#include "apps/commands/rank_run.h"
+#include "apps/commands/run_outputs.h"
+#include "apps/commands/run_scenario.h"
+#include "apps/options/automatic_accuracy.h"
+#include "apps/options/bridge_options.h"
+#include "apps/options/controller_options.h"
+#include "apps/options/default_robot.h"
+#include "apps/options/layout_options.h"
+#include "apps/options/open_device.h"
+#include "apps/processes/checkpoints.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/progress_line.h"
+#include "apps/reports/rate_warnings.h"
+#include "apps/reports/report.h"
+#include "apps/reports/strayed_robots.h"
+#include "apps/reports/text.h"
+#include "base/contact_onset.h"
+#include "base/elapsed.h"
+#include "base/error.h"
+#include "base/files.h"
+#include "base/hash.h"
+#include "cluster/failure.h"
+#include "raycast/caster_choice.h"
+#include "scenarios/operator.h"
+#include "scenarios/scenario_events.h"
+#include "scenarios/simulation.h"
+
+namespace sf::apps {
+
+namespace {
+
+/// `refusal` of a controller names one of several robots that are driven.
+bool names_one_of_several(const std::string& refusal, const world::World& world, const RunOptions& options) {
+  if (is_scenario(options.world)) return false;
+  const std::size_t driven = options.drive.empty() ? count_robots(world) : options.drive.size();
+  return driven > 1 && std::any_of(world.movers.begin(), world.movers.end(), [&](const world::Mover& mover) {
+           return refusal.find("'" + mover.name + "'") != std::string::npos;
+         });
+}
+
+/// @param scenario null: a fleet as the options say
+scenarios::SimulationOptions simulation_options(const world::World& world, const RunOptions& options,
+                                                cluster::Ranks* ranks, const scenarios::Scenario* scenario) {
+  scenarios::SimulationOptions simulation;
+  if (scenario != nullptr) {
+    simulation = scenarios::simulation_of(*scenario, world);
+  } else {
+    simulation.seed = options.seed;
+    simulation.actor.controller = controller_config_of(options);
+    simulation.actors = make_actors(world, options);
+  }
+  simulation.threads = threads_of(options, ranks);
+  simulation.no_return_inf = options.no_return_inf;
+  simulation.ranks = ranks;
+  simulation.tiles = options.tiles && ranks != nullptr;
+  simulation.balance = options.balance;
+  return simulation;
+}
+
+const char* const kRemedy = "; or name the robots that are driven (--drive NAME)";
+
+/// `act()`; where a controller refuses one of several robots, with a remedy. Some do when they are made, some when they
+/// start.
+template <class Act>
+auto advised(const world::World& world, const RunOptions& options, Act&& act) {
+  try {
+    return act();
+  } catch (const base::InputError& error) {
+    if (!names_one_of_several(error.what(), world, options)) throw;
+    throw base::InputError(std::string(error.what()) + kRemedy);
+  } catch (const cluster::Failure& failure) {
+    if (!names_one_of_several(failure.what(), world, options)) throw;
+    throw cluster::Failure(failure.code(), std::string(failure.what()) + kRemedy);
+  }
+}
+
+/// What a run stands on.
+struct Ground {
+  std::optional<scenarios::Scenario> scenario;
+  world::World world;
+  std::optional<server::StreamLayout> layout;
+  gpu::Device device;
+  sensors::SensorSet sensor_set;
+  std::string caster;
+
+  /// @param options its seed and duration become those of a scenario. @param ranks may be null
+  Ground(RunOptions& options, const cluster::Ranks* ranks)
+      : scenario(scenario_of(options)),
+        world(load(options, ranks)),
+        layout(layout_of(world, options)),
+        device(open_device(options)),
+        sensor_set(with_accuracy(options)),
+        caster(raycast::describe_caster(device.info().software)) {
+    warn_of_many_times(sensor_set);
+    note_size();
+  }
+
+  /// A world, and the layout of its packets.
+  struct Scenery {
+    world::World world;
+    std::optional<server::StreamLayout> layout;
+    std::optional<scenarios::Scenario> scenario = {};
+  };
+  /// @param file of a world; empty: one without anything @throws base::InputError
+  Scenery load(const RunOptions& options, const std::string& file) const {
+    Scenery scenery;
+    scenery.world.interval = world.interval;
+    if (file.empty())
+      world::update_extent_and_hash(scenery.world);
+    else
+      scenery.world = load_with_robots(file, load_options(options, nullptr), 0, options.seed);
+    scenery.layout = layout_of(scenery.world, options);
+    return scenery;
+  }
+  void swap(Scenery& scenery) {
+    std::swap(world, scenery.world);
+    std::swap(layout, scenery.layout);
+    std::swap(scenario, scenery.scenario);
+    sensor_set = sensors::SensorSet(world);
+    note_size();
+  }
+  /// Robots that joined are in the last rows.
+  bool has_joined() const { return world.movers.size() > movers_; }
+  void forget_joined() {
+    if (!has_joined()) return;
+    world.movers.resize(movers_);
+    world.models.resize(models_);
+    world::update_extent_and_hash(world);
+    sensor_set = sensors::SensorSet(world);
+  }
+
+ private:
+  void note_size() { movers_ = world.movers.size(), models_ = world.models.size(); }
+  std::size_t movers_ = 0, models_ = 0;  ///< of the world at load
+
+  /// Ranks with tiles read outlines when they know their part, except where each keeps the whole world, and its
+  /// recording.
+  static world::LoadOptions load_options(const RunOptions& options, const cluster::Ranks* ranks) {
+    world::LoadOptions load = options.load;
+    load.leave_outlines = ranks != nullptr && options.tiles && options.balance == 0.0 && options.record.empty();
+    return load;
+  }
+  static std::optional<server::StreamLayout> layout_of(const world::World& world, const RunOptions& options) {
+    if (options.send.empty()) return std::nullopt;
+    return stream_layout_of(world, sensors::SensorSet(world), options);
+  }
+  world::World load(const RunOptions& options, const cluster::Ranks* ranks) const {
+    if (scenario) return load_scenario_world(*scenario, options.load);
+    return load_with_robots(options.world, load_options(options, ranks), options.robots, options.seed, options.of);
+  }
+  const world::World& with_accuracy(const RunOptions& options) {
+    choose_accuracy(world, device, options, options.seed, options.threads);
+    return world;
+  }
+};
+
+/// What results depend on.
+std::uint64_t hash_of(const world::World& world, const RunOptions& options) {
+  std::string text = fmt::format("{} {} {} {} {} {} {}", base::hash_hex(world.hash), world.movers.size(), options.of,
+                                 options.seed, options.controller, options.localize, options.no_return_inf);
+  for (const auto* words : {&options.set, &options.drive})
+    for (const std::string& word : *words) text += "\n" + word;
+  if (is_scenario(options.world)) text += base::read_text(options.world);
+  return base::hash_bytes(text.data(), text.size());
+}
+
+/// The first rank keeps them.
+std::optional<Checkpoints> checkpoints_of(const world::World& world, const RunOptions& options,
+                                          const cluster::Ranks* ranks, const std::string& folder) {
+  if ((options.checkpoint == 0.0 && !options.resume) || (ranks != nullptr && ranks->rank() > 0)) return std::nullopt;
+  const auto every = options.checkpoint == 0.0 ? 0.0 : std::max(1.0, std::round(options.checkpoint / world.interval));
+  return Checkpoints(folder, hash_of(world, options), static_cast<std::uint64_t>(every), options.resume);
+}
+
+/// Readings of other ranks are in their own recordings; without readings, one recording has all.
+record::RecordingPart part_of(const RunOptions& options, const cluster::Ranks* ranks) {
+  if (ranks == nullptr || !options.record_readings) return {.compression = options.compression};
+  return {ranks->rank(), ranks->size(), options.compression};
+}
+
+/// Folder of the recording after `resets`: each begins one of its own. Empty: this rank records nothing.
+std::string recording_folder(const RunOptions& options, const cluster::Ranks* ranks, std::uint32_t resets) {
+  if (ranks != nullptr && ranks->rank() > 0 && !options.record_readings) return "";
+  return options.record.empty() || resets == 0 ? options.record : fmt::format("{}-{}", options.record, resets + 1);
+}
+
+/// File of the video after `resets`, numbered like the recording.
+std::string video_file(const RunOptions& options, std::uint32_t resets) {
+  if (options.video.empty() || resets == 0) return options.video;
+  std::filesystem::path file(options.video);
+  const std::string suffix = file.extension().string();
+  return fmt::format("{}-{}{}", file.replace_extension().string(), resets + 1, suffix);
+}
+
+/// A fleet from time 0 on, with what follows it.
+struct Course {
+  const world::World& world;
+  cluster::Ranks* ranks;
+  scenarios::Simulation simulation;
+  ControlMetrics tally;
+  std::optional<scenarios::ScenarioEvents> events;
+  std::vector<base::ContactOnset> contacts;
+  StrayedRobots strayed;
+  std::optional<Checkpoints> checkpoints;
+  RunOutputs outputs;
+  std::uint64_t ticks = 0;
+  std::uint64_t contacts_begun = 0;
+
+  Course(Ground& ground, const RunOptions& options, cluster::Ranks* of, std::uint32_t resets)
+      : world(ground.world),
+        ranks(of),
+        simulation(world, ground.device, simulation_options(world, options, ranks, scenario_in(ground))),
+        tally(simulation, world.movers.size(),
+              ground.scenario ? controllers_of(*ground.scenario, world) : options.controller),
+        contacts(world.movers.size()),
+        strayed(world),
+        checkpoints(checkpoints_of(world, options, ranks, recording_folder(options, ranks, resets))),
+        outputs(world, ground.sensor_set, ground.layout, ground.caster, options,
+                recording_folder(options, ranks, resets), part_of(options, ranks), video_file(options, resets)) {
+    // The simulation has its part of them, and a recording begins with all.
+    if (options.tiles && ranks != nullptr && options.balance == 0.0) ground.world.walls = {};
+    if (ground.scenario) events.emplace(*ground.scenario);
+    if (ranks == nullptr) simulation.interrupt_on([] { return stop_requested().load(); });
+  }
+
+  static const scenarios::Scenario* scenario_in(const Ground& ground) {
+    return ground.scenario ? &*ground.scenario : nullptr;
+  }
+
+  double simulated() const { return static_cast<double>(ticks) * world.interval; }
+
+  /// A robot that stands until it is commanded. @throws base::InputError, with nothing changed
+  void add(Ground& ground, const bridges::Joining& robot) {
+    const std::size_t before = world.movers.size();
+    simulation.add_robot(ground.world, {.name = robot.name, .like = robot.like, .X_WM = robot.X_WM});
+    if (world.movers.size() > before) grow(ground);  // else it returned
+  }
+
+  /// The events of the scenario that are due. @throws base::InputError at an event's line
+  void apply_events(Ground& ground, LiveBridges& live) {
+    if (!events) return;
+    const bool joins = events->joins(simulated());
+    if (joins) live.prepare_change();
+    events->apply(simulation, ground.world, simulated(), [&](std::uint32_t) { grow(ground); });
+    if (joins) live.show_scene(false);
+  }
+
+  /// A mover is new, in the last row.
+  void grow(Ground& ground) {
+    ground.sensor_set = sensors::SensorSet(world);
+    contacts.emplace_back();
+    tally.add_mover();
+    outputs.add_movers(simulation.joined());
+  }
+
+  /// Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
+  void step(scenarios::Operator& users) {
+    const base::TickRecord tick = simulation.step();
+    users.publish(tick);
+    outputs.write(tick, [&](std::int64_t time) { users.keep_pace(1e-9 * static_cast<double>(time) + world.interval); });
+    simulation.settle();
+    tally.update(tick);
+    strayed.write(tick);
+    for (std::size_t m = 0; m < contacts.size(); ++m)
+      contacts_begun += !world.movers[m].is_tag && contacts[m].begins(tick.contacts[m] != 0);
+    ++ticks;
+    if (checkpoints) checkpoints->update(ticks, simulation.farm().hash(), tick.reports);
+  }
+
+  void report(RunReport& facts) {
+    facts.ticks = ticks;
+    facts.simulated_s = simulated();
+    facts.contacts = contacts_begun;
+    facts.strayed = strayed.names();
+    facts.control = tally.facts(world, ranks);
+    facts.move_s = simulation.move_seconds();
+    facts.farm = simulation.farm().stats();
+    facts.hash = simulation.farm().hash();
+    outputs.finish(facts);
+    if (ranks != nullptr) add_up(*ranks, facts, simulation.passed_on());
+  }
+};
+
+constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
+
+/// [1] Simulated over real time. @param watched by users of bridges
+double speed_of(const RunOptions& options, bool watched) {
+  const double speed = options.speed.value_or(watched ? 1.0 : 0.0);
+  return speed > 0.0 ? speed : std::numeric_limits<double>::infinity();
+}
+
+/// `act()`, with its fault in the outcome.
+template <class Act>
+void attempt(bridges::Outcome& outcome, bridges::Outcome::Fault fault, Act&& act) {
+  outcome.done = true;
+  try {
+    act();
+  } catch (const base::InputError& error) {
+    outcome = {true, fault, error.what()};
+  } catch (const base::DeviceError& error) {
+    outcome = {true, fault, error.what()};
+  }
+}
+
+void change_fleet(Course& course, Ground& ground, LiveBridges& live, const std::vector<bridges::Joining>& joining,
+                  const std::vector<bridges::Leaving>& leaving) {
+  using Fault = bridges::Outcome::Fault;
+  for (const bridges::Leaving& each : leaving)
+    attempt(*each.outcome, Fault::failed, [&] { course.simulation.remove_robot(each.mover); });
+  if (joining.empty()) return;
+  live.prepare_change();
+  for (const bridges::Joining& each : joining) attempt(*each.outcome, Fault::failed, [&] { course.add(ground, each); });
+  live.show_scene(false);
+}
+
+int simulate(RunOptions options, cluster::Ranks* ranks) {
+  std::optional<Ground> ground;
+  std::optional<Course> course;
+  std::optional<LiveBridges> live;
+  const auto begin = [&](std::uint32_t resets) {
+    course.reset();
+    advised(ground->world, options, [&] { course.emplace(*ground, options, ranks, resets); });
+  };
+  on_all(ranks, [&] {
+    if (ranks != nullptr) check_for_ranks(options);
+    ground.emplace(options, ranks);
+    begin(0);
+    live.emplace(options, ground->world, ground->sensor_set,
+                 scenarios::RunSettings{.seed = options.seed,
+                                        .record_readings = true,
+                                        .no_return_inf = options.no_return_inf,
+                                        .caster = ground->caster,
+                                        .too_near_min = options.too_near_min,
+                                        .naming = options.naming},
+                 true);
+  });
+  std::vector<world::Warning> heard = course->simulation.warnings();
+  for (world::Warning& warning : course->simulation.warnings_of_starts()) heard.push_back(std::move(warning));
+  if (!heard.empty()) print_warnings(heard.front().file, heard);
+  std::atomic<bool> all_stop = false;
+  scenarios::Operator users(live->bridges(), ranks != nullptr ? all_stop : stop_requested(),
+                            speed_of(options, !live->empty()));
+  if (ranks == nullptr) {
+    users.on_fleet_changes(
+        [&](const auto& joining, const auto& leaving) { change_fleet(*course, *ground, *live, joining, leaving); });
+    users.set_loads_worlds(true);
+  }
+  const auto reset = [&] {
+    users.begin_again();
+    course.reset();
+    if (!ground->has_joined()) return begin(users.resets());
+    live->prepare_change();
+    ground->forget_joined();
+    begin(users.resets());
+    live->show_scene(true);
+  };
+  /// The world that a user asked for. Where it is refused, the run goes on.
+  const auto change_world = [&] {
+    const bridges::WorldChange change = users.take_world();
+    using Fault = bridges::Outcome::Fault;
+    Ground::Scenery next;
+    attempt(*change.outcome, Fault::unreadable, [&] { next = ground->load(options, change.file); });
+    if (change.outcome->fault != Fault::none) return;
+    if (change.strict && !next.world.warnings.empty()) {
+      const world::Warning& first = next.world.warnings.front();
+      *change.outcome = {true, Fault::unsupported, fmt::format("{}:{}: {}", first.file, first.line, first.message)};
+      return;
+    }
+    course.reset();
+    live->prepare_change();
+    ground->forget_joined();
+    ground->swap(next);
+    users.begin_again();
+    attempt(*change.outcome, Fault::failed, [&] { begin(users.resets()); });
+    if (change.outcome->fault != Fault::none) {
+      ground->swap(next);
+      begin(users.resets());
+    }
+    users.pause();
+    live->show_scene(true);
+  };
+  install_stop_handlers();
+
+  const double duration = options.duration.value_or(live->empty() ? 60.0 : kWithoutEnd);
+  const double ticks = std::round(duration / ground->world.interval);
+  RunReport facts;
+  const auto start = std::chrono::steady_clock::now();
+  {
+    Progress progress("simulating");
+    auto next = scenarios::Operator::Next::tick;
+    while (static_cast<double>(course->ticks) < ticks) {
+      next = users.wait(course->simulation, course->simulated());
+      if (next == scenarios::Operator::Next::stop) break;
+      if (next == scenarios::Operator::Next::reset) {
+        reset();
+        continue;
+      }
+      if (next == scenarios::Operator::Next::world) {
+        change_world();
+        continue;
+      }
+      if (stop_requested()) course->simulation.request_stop();
+      try {
+        course->apply_events(*ground, *live);
+        advised(ground->world, options, [&] { course->step(users); });
+      } catch (const base::Interrupted&) {
+        next = scenarios::Operator::Next::stop;
+        break;
+      }
+      all_stop = course->simulation.stop_agreed();
+      const double simulated = course->simulated();
+      if (duration < kWithoutEnd && (ranks == nullptr || ranks->rank() == 0))
+        progress.show(simulated / duration, fmt::format("{:.0f} s of {:g} s", simulated, duration));
+    }
+    facts.interrupted = next == scenarios::Operator::Next::stop;
+    users.keep_pace(course->simulated());  // a tick lasts until the next one would begin
+  }
+  facts.wall_s = base::seconds_since(start);
+  const gpu::DeviceInfo& device = ground->device.info();
+  facts.device = device.name;
+  facts.software = device.software;
+  facts.caster = ground->caster;
+  facts.robots = static_cast<std::uint32_t>(count_robots(ground->world));
+  course->report(facts);
+  std::vector<world::Warning> warnings = ground->world.warnings;
+  warnings.insert(warnings.end(), heard.begin(), heard.end());
+  print(options.json ? with_warnings(json_of(facts), warnings) : text_of(facts));
+  const netio::OutboxCounts& packets = facts.publisher.packets;
+  // Without an end of its own, a run is complete when its user ends it.
+  if (packets.failed == 0) return facts.interrupted && duration < kWithoutEnd ? interrupted_code() : 0;
+  print_message("{} of {} packets were not sent: {}", packets.failed, packets.queued, packets.first_failure);
+  return 1;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  return with_ranks([&](cluster::Ranks* ranks) { return simulate(options, ranks); });
+}
+
+}  // namespace sf::apps

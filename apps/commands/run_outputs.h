@@ -1,0 +1,56 @@
+#pragma once
+// Where a run's ticks go: a recording, a video, the network, all or none of them.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/commands/run_video.h"
+#include "apps/options/options.h"
+#include "apps/reports/report.h"
+#include "record/recorder.h"
+#include "scenarios/run_info.h"
+#include "server/no_return_filter.h"
+#include "server/reading_publisher.h"
+
+namespace sf::apps {
+
+class RunOutputs {
+ public:
+  /// World, sensor set and layout must outlive it.
+  /// @param layout of the packets; nullopt: none are sent. @param caster description of the ray caster
+  /// @param record folder of the recording; empty: none. @param part of it that this process records
+  /// @param video file of the video; empty: none. @throws base::InputError where one of them cannot be written
+  RunOutputs(const world::World& world, const sensors::SensorSet& sensor_set,
+             const std::optional<server::StreamLayout>& layout, const std::string& caster, const RunOptions& options,
+             const std::string& record, const record::RecordingPart& part, const std::string& video);
+
+  /// @param wait called with the time [ns] at which a reading is delivered, before it is sent: the tick's, or one
+  /// before it
+  void write(base::TickRecord tick, const std::function<void(std::int64_t)>& wait);
+  /// Robots joined, in the world's last rows. They are recorded; packets of their readings are not sent.
+  void add_movers(const std::vector<record::JoinedMover>& joined);
+  /// Ends recording and video. @param facts out: what was sent and recorded
+  void finish(RunReport& facts);
+
+ private:
+  void send();
+
+  const world::World& world_;
+  const sensors::SensorSet& sensor_set_;
+  scenarios::RunSettings settings_;
+  server::NoReturnFilter no_return_filter_;
+  std::vector<server::AddressedReading> addressed_readings_;  ///< that go at one time
+  std::uint32_t address_ = 0;
+  netio::SessionToken session_token_;
+  std::optional<server::ReadingPublisher> publisher_;
+  std::optional<record::Recorder> recorder_;
+  std::optional<RunVideo> video_;
+  std::size_t sent_movers_;  ///< whose readings have ports
+  double seconds_ = 0.0;
+};
+
+}  // namespace sf::apps

@@ -1,0 +1,191 @@
+// `serve`: robots live elsewhere. Their states come in, readings go back to them.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "apps/commands/commands.h"
+#include "apps/commands/lockstep.h"
+#include "apps/options/address.h"
+#include "apps/options/automatic_accuracy.h"
+#include "apps/options/bridge_options.h"
+#include "apps/options/default_robot.h"
+#include "apps/options/layout_options.h"
+#include "apps/options/open_device.h"
+#include "apps/options/peers_option.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/exposure_warning.h"
+#include "apps/reports/rate_warnings.h"
+#include "apps/reports/report.h"
+#include "apps/reports/strayed_robots.h"
+#include "apps/reports/text.h"
+#include "base/error.h"
+#include "base/time.h"
+#include "raycast/caster_choice.h"
+#include "record/recorder.h"
+#include "scenarios/run_info.h"
+#include "server/service.h"
+
+namespace sf::apps {
+
+namespace {
+
+std::optional<netio::Endpoint> mirror_of(const ServeOptions& options) {
+  if (options.mirror.empty()) return std::nullopt;
+  if (options.wire == sensors::WireFormat::thesis)
+    throw base::InputError("--mirror: the thesis' packets do not say whose readings they are; use `--wire farm`");
+  netio::AddressBook book;
+  return read_address(book, options.mirror, "--mirror");
+}
+
+server::ServiceOptions service_options(const ServeOptions& options, const world::World& world) {
+  server::ServiceOptions service{.rate = options.rate, .seed = options.seed, .no_return_inf = options.no_return_inf};
+  service.receiver = {.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
+                      .radio = options.radio,
+                      .forget = options.forget};
+  service.receiver.peers = peers_of(options, &world);
+  require_signable(service.receiver.peers, options.wire);
+  if (options.spat > 0) service.spat = netio::Endpoint{service.receiver.bind.address, options.spat};
+  service.stale_lights = options.stale_lights;
+  service.mirror = mirror_of(options);
+  server::StateFilterOptions& filter = service.receiver.filter;
+  filter.enabled = options.filter;
+  filter.clock.source = options.clock;
+  filter.clock.least_delay = base::nanoseconds(options.link_delay);
+  filter.stale_after = base::nanoseconds(options.stale_after);
+  filter.policy = options.stale;
+  filter.hypotheses = options.hypotheses;
+  return service;
+}
+
+/// All that may send here and has to be signed; SPaT cannot be.
+std::vector<NamedPeer> senders_of(const ServeOptions& options, const world::World& world,
+                                  std::span<const std::uint32_t> lights) {
+  std::vector<NamedPeer> senders;
+  for (const world::Mover& mover : world.movers)
+    senders.push_back(
+        {netio::Claim{mover.is_tag ? netio::PeerKind::tag : netio::PeerKind::robot, mover.id}, mover.name});
+  for (const std::uint32_t id : lights)
+    senders.push_back({netio::Claim{netio::PeerKind::light, id}, fmt::format("intersection {}", id)});
+  senders.push_back({netio::Claim{netio::PeerKind::start, 0}, "START"});
+  if (options.spat > 0) senders.push_back({std::nullopt, "SPaT (--spat)"});
+  return senders;
+}
+
+/// @throws base::InputError for an intersection that the world does not have
+void require_lights(const ServeOptions& options, std::span<const netio::Peer> peers,
+                    std::span<const std::uint32_t> lights) {
+  for (const netio::Peer& peer : peers)
+    if (peer.kind == netio::PeerKind::light && std::find(lights.begin(), lights.end(), peer.id) == lights.end())
+      throw base::InputError(options.peers, 0,
+                             fmt::format("the world has no intersection with the id {}; it has {}", peer.id,
+                                         lights.empty() ? "none" : fmt::format("{}", fmt::join(lights, ", "))));
+}
+
+scenarios::RunSettings run_settings(const ServeOptions& options, bool software) {
+  return {.seed = options.seed,
+          .record_readings = true,
+          .no_return_inf = options.no_return_inf,
+          .caster = raycast::describe_caster(software),
+          .estimated = true,
+          .too_near_min = options.too_near_min,
+          .naming = options.naming};
+}
+
+/// The recording of a service: its states are estimates, its ticks and samples are at times of its clock.
+record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const ServeOptions& options,
+                         bool software) {
+  record::RunInfo info = scenarios::run_info(world, sensor_set, run_settings(options, software));
+  if (options.rate > 0.0) info.interval = 1.0 / options.rate;
+  return info;
+}
+
+/// The error with its remedy, which is an option of the command line.
+base::InputError port_in_use(const netio::Endpoint& bind) {
+  return base::InputError(netio::text(bind) +
+                          " is taken, by another `sensorfarm serve` perhaps: end that one, or serve on another port "
+                          "(--port N, or --port 0 for any free one) and tell the robots (robot --port N)");
+}
+
+/// With the names of the movers.
+std::vector<RunReport::Clock> clocks_of(const server::ServiceStats& stats, const world::World& world) {
+  std::vector<RunReport::Clock> clocks;
+  for (const server::SenderClockState& each : stats.clocks)
+    clocks.push_back({world.movers[each.mover].name, each.clock});
+  return clocks;
+}
+
+RunReport report_of(const server::ServiceStats& stats, const world::World& world, const gpu::DeviceInfo& device) {
+  RunReport facts;
+  facts.device = device.name;
+  facts.software = device.software;
+  facts.caster = raycast::describe_caster(device.software);
+  facts.robots = stats.robots;
+  facts.ticks = stats.ticks;
+  facts.wall_s = facts.simulated_s = stats.wall_s;
+  facts.farm = stats.farm;
+  facts.hash = stats.hash;
+  facts.sent = facts.received = true;
+  facts.publisher = stats.publisher;
+  facts.inbox = stats.inbox;
+  facts.socket_drops = stats.socket_drops;
+  facts.relayed = stats.relayed;
+  facts.lights = stats.lights;
+  facts.filtered = stats.filtered;
+  facts.states = stats.states;
+  facts.clocks = clocks_of(stats, world);
+  facts.lines_left_out = stats.lines_left_out;
+  return facts;
+}
+
+}  // namespace
+
+int serve(const ServeOptions& options) {
+  if (options.lockstep) return serve_lockstep(options);
+  world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
+  const server::StreamLayout layout = stream_layout_of(world, sensors::SensorSet(world), options);
+  const server::ServiceOptions chosen = service_options(options, world);
+  gpu::Device device = open_device(options);
+  choose_accuracy(world, device, options, options.seed, 0);
+  const sensors::SensorSet sensor_set(world);
+  if (options.rate > 0.0) warn_of_fast_sensors(sensor_set, options.rate);
+  if (options.rate == 0.0) warn_of_many_times(sensor_set);
+  std::optional<record::Recorder> recorder;
+  try {
+    server::Service service(world, sensor_set, device, layout, chosen);
+    require_lights(options, chosen.receiver.peers, service.lights().ids());
+    const std::string since =
+        why_unsigned(options, chosen.receiver.peers, senders_of(options, world, service.lights().ids()));
+    if (!since.empty())
+      warn_of_exposure(chosen.receiver.bind.address, "say where robots are, and be sent readings", since);
+    if (!options.record.empty()) {
+      recorder.emplace(options.record, run_info(world, sensor_set, options, device.info().software),
+                       record::RecordingPart{.compression = options.compression});
+      service.record_to(*recorder);
+    }
+    StrayedRobots strayed(world);
+    if (strayed.names()) service.record_to(strayed);
+    LiveBridges live(options, world, sensor_set, run_settings(options, device.info().software), false);
+    if (!live.empty()) service.record_to(live);
+    install_stop_handlers();
+    print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; Ctrl-C ends it", counted(service.robots(), "robot"),
+                  world.file, options.bind, service.port(), 1.0 / service.interval(), device.info().name);
+    service.run(stop_requested(), options.duration);
+    RunReport facts = report_of(service.stats(), world, device.info());
+    facts.strayed = strayed.names();
+    if (recorder) {
+      recorder->finish();
+      facts.recording = recorder->path();
+      facts.recorded_bytes = recorder->size();
+      facts.recording_error = service.stats().recording_error;
+    }
+    print(options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts));
+    return facts.recording_error.empty() ? 0 : 1;
+  } catch (const netio::PortInUse&) {
+    throw port_in_use(chosen.receiver.bind);
+  }
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,76 @@
+// `start` and `object`: one word to a farm, several times, since one may be lost on the way.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "apps/commands/commands.h"
+#include "apps/options/farm_endpoint.h"
+#include "apps/options/peers_option.h"
+#include "apps/reports/text.h"
+#include "base/error.h"
+#include "netio/outbox.h"
+#include "netio/own_end.h"
+#include "netio/packets.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr int kRepetitions = 3;
+
+/// @throws base::InputError for a table without the key: the farm that has one would drop the packet
+std::optional<netio::PacketSigner> signer_of(const PeersOption& options, const netio::Claim& claim) {
+  if (options.peers.empty()) return std::nullopt;
+  const std::vector<netio::Peer> peers = peers_of(options, nullptr);
+  const netio::Peer* own = netio::find(peers, claim.kind, claim.id);
+  const bool start = claim.kind == netio::PeerKind::start;
+  if (own == nullptr || !own->key)
+    throw base::InputError(
+        options.peers, 0,
+        fmt::format("has no key for {}; expected a section [[peer]] with {} and key", start ? "START" : "the object",
+                    start ? "start = true" : fmt::format("tag = {}", claim.id)));
+  return netio::PacketSigner(*own->key);
+}
+
+template <class Body>
+void send_repeatedly(const netio::Endpoint& farm, netio::Header header, const Body& body,
+                     std::optional<netio::PacketSigner> signer) {
+  netio::Outbox outbox({.bind = netio::own_end_for(farm.address)});
+  base::Bytes packet;
+  for (int i = 0; i < kRepetitions; ++i) {
+    if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    header.sequence = static_cast<std::uint32_t>(i);
+    netio::encode(header, body, packet);
+    if (signer) signer->sign(packet);
+    outbox.queue(farm, packet);
+    outbox.flush();
+  }
+  if (outbox.counts().sent == 0) throw base::InputError("nothing was sent: " + outbox.counts().first_failure);
+}
+
+}  // namespace
+
+int start(const StartOptions& options) {
+  const netio::Endpoint farm = farm_of(options);
+  send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.start_id)}, netio::Start{},
+                  signer_of(options, {netio::PeerKind::start, 0}));
+  print_message("start signal sent to {} for {}, {} times; nobody acknowledges it", netio::text(farm),
+                options.start_id == netio::kBroadcastId ? "all robots" : ("robot " + std::to_string(options.start_id)),
+                kRepetitions);
+  return 0;
+}
+
+int object(const ObjectOptions& options) {
+  const netio::Endpoint farm = farm_of(options);
+  const bool present = options.state == ObjectOptions::State::present;
+  send_repeatedly(farm, {.robot = static_cast<std::uint16_t>(options.tag)}, netio::Object{present},
+                  signer_of(options, {netio::PeerKind::tag, options.tag}));
+  print_message("'{}' sent to {} for the object of tag {}, {} times; nobody acknowledges it",
+                present ? "present" : "absent", netio::text(farm), options.tag, kRepetitions);
+  return 0;
+}
+
+}  // namespace sf::apps

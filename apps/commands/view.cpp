@@ -1,0 +1,111 @@
+// `view`: a recorded run in the page of the live view, with its time to choose.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "apps/commands/commands.h"
+#include "apps/commands/recorded_video.h"
+#include "apps/commands/view_3d.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/report.h"
+#include "apps/reports/text.h"
+#include "base/elapsed.h"
+#include "bridges/viewer.h"
+#include "record/recording.h"
+#include "scenarios/merging.h"
+#include "scenarios/recorded_states.h"
+#include "scenarios/replay.h"
+#include "scenarios/run_info.h"
+
+namespace sf::apps {
+
+namespace {
+
+using bridges::RunState;
+
+constexpr std::chrono::milliseconds kLook{15};  // between two looks at requests and time
+constexpr double kFastest = 1000.0;             // [1] recorded over real time
+
+/// What users watch of a recording, and how its time runs.
+class Playback {
+ public:
+  Playback(scenarios::Replay& replay, bridges::Bridge& viewer)
+      : replay_(replay), viewer_(viewer), time_(static_cast<double>(replay.start())) {}
+
+  void look() {
+    requests_.clear();
+    viewer_.take(requests_);
+    const bool moved = apply();
+    if (!state_.paused) time_ += 1e9 * state_.speed * base::seconds_since(looked_at_);
+    looked_at_ = std::chrono::steady_clock::now();
+    const auto end = static_cast<double>(replay_.end());
+    if (!state_.paused && time_ >= end) state_.paused = true;
+    time_ = std::min(time_, end);
+    const std::size_t tick = replay_.tick_at(static_cast<std::int64_t>(time_));
+    if (shown_ == tick && !moved) return viewer_.publish(state_);
+    viewer_.publish(replay_.tick(tick, moved ? std::nullopt : shown_), state_);
+    shown_ = tick;
+  }
+
+ private:
+  /// @return true when the time was set
+  bool apply() {
+    if (requests_.speed) state_.speed = std::min(*requests_.speed, kFastest);
+    if (requests_.paused) state_.paused = *requests_.paused;
+    const std::size_t last = replay_.ticks() - 1;
+    if (requests_.steps > 0) {
+      const std::size_t next = std::min(last, shown_.value_or(0) + requests_.steps);
+      time_ = static_cast<double>(replay_.time_of(next));
+    }
+    if (requests_.reset) time_ = static_cast<double>(replay_.start());
+    if (requests_.time) time_ = static_cast<double>(*requests_.time);
+    return requests_.reset || requests_.time;
+  }
+
+  scenarios::Replay& replay_;
+  bridges::Bridge& viewer_;
+  bridges::Requests requests_;
+  RunState state_;
+  double time_;  ///< [ns] of the recording
+  std::optional<std::size_t> shown_;
+  std::chrono::steady_clock::time_point looked_at_ = std::chrono::steady_clock::now();
+};
+
+int write_frames(const ViewOptions& options) {
+  install_stop_handlers();
+  RecordingPart part = open_part(options.recording, options);
+  write_recorded_video(part, options, options.device);
+  return 0;
+}
+
+}  // namespace
+
+int view(const ViewOptions& options) {
+  if (options.three_d) return view_3d(options);
+  if (!options.frames.empty()) return write_frames(options);
+  const record::Recording recording = scenarios::open_run(options.recording);
+  print_damage(recording);
+  const world::World world = scenarios::recorded_world(recording);
+  const sensors::SensorSet sensor_set(world);
+  record::Naming naming = record::naming_of(recording.info);
+  naming.odometry = record::OdometrySource::truth;  // at any time that users go to
+  record::RunInfo info = scenarios::run_info(
+      world, sensor_set,
+      {.seed = recording.info.seed, .record_readings = !recording.readings.empty(), .naming = naming});
+  record::name_frames(info);
+  info.world = recording.info.world;
+  scenarios::Replay replay(recording, info);
+  if (replay.left_out() > 0)
+    print_message("{} are left out: their sensors are of types that this program has otherwise, or not at all",
+                  counted(replay.left_out(), "reading"));
+  bridges::Viewer viewer({world, sensor_set, info, false},
+                         {options.port, bridges::ViewerMode::recording, replay.start(), replay.end()});
+  install_stop_handlers();
+  print_message("{}", viewer.describe());
+  for (Playback playback(replay, viewer); !stop_requested(); std::this_thread::sleep_for(kLook)) playback.look();
+  return 0;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,69 @@
+#include "apps/commands/vps_readings.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "apps/commands/tag_sender.h"
+
+namespace sf::apps {
+
+namespace {
+
+using Color = std::array<std::uint8_t, 3>;
+constexpr Color kBeam{235, 200, 70}, kEcho{255, 255, 255}, kEdge{255, 110, 220};
+constexpr std::size_t kReceiveBuffer = 4u << 20;  // [byte]
+constexpr std::size_t kMostAtOnce = 4096;         // datagrams between two images
+
+std::int64_t now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+vision::PlaneLine drawn(const server::SightLine& line) {
+  using Kind = server::SightLine::Kind;
+  const Color color = line.kind == Kind::beam ? kBeam : line.kind == Kind::echoes ? kEcho : kEdge;
+  return {line.points, line.z, color, line.kind == Kind::beam ? 1 : 2};
+}
+
+/// The mover from its tag's object: the world may mount the tag as well (`tag_pose`).
+base::Pose mover_pose(const netio::Tag& object, const world::Mover& mover) {
+  const double object_yaw = 2.0 * std::atan2(object.orientation[2], object.orientation[3]);
+  const double yaw = object_yaw - mover.X_MT.yaw;
+  const glm::dvec2 arm = base::rotate(yaw, {mover.X_MT.x, mover.X_MT.y});
+  return {object.position[0] - arm.x, object.position[1] - arm.y, mover.X_WM.z, yaw};
+}
+
+}  // namespace
+
+SeenReadings::SeenReadings(const std::string& world_file, const netio::Endpoint& bind, const vision::Testbed& testbed)
+    : testbed_(testbed),
+      world_(world::load_world(world_file, {.sensors = sensors::world_file_words()})),
+      sensor_set_(world_),
+      readings_(world_, sensor_set_),
+      socket_(netio::open_udp(bind, {.receive = kReceiveBuffer})) {}
+
+std::optional<std::uint32_t> SeenReadings::mover_of(std::uint32_t tag) const {
+  const std::uint32_t robot = testbed_.mount(tag).robot.value_or(tag);
+  std::optional<std::uint32_t> found;
+  for (std::uint32_t m = 0; m < world_.movers.size(); ++m) {
+    const world::Mover& mover = world_.movers[m];
+    if (mover.id == (mover.is_tag ? tag : robot) && (!found || mover.is_tag)) found = m;
+  }
+  return found;
+}
+
+std::span<const vision::PlaneLine> SeenReadings::lines(std::span<const vision::TrackedTag> tags) {
+  const std::int64_t time = now();
+  batch_.drain(socket_, kMostAtOnce,
+               [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) { readings_.accept(bytes, time); });
+  sights_.clear();
+  for (const vision::TrackedTag& tag : tags)
+    if (const auto mover = mover_of(tag.id))
+      readings_.add_lines(*mover, mover_pose(object_state(tag, testbed_.mount(tag.id)), world_.movers[*mover]), time,
+                          sights_);
+  lines_.clear();
+  for (const server::SightLine& sight : sights_) lines_.push_back(drawn(sight));
+  return lines_;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,23 @@
+#include "apps/options/open_device.h"
+
+#include "apps/reports/text.h"
+#include "raycast/caster_choice.h"
+
+namespace sf::apps {
+
+gpu::Device open_device_silently(const DeviceOption& options) {
+  const bool kernels_cast = raycast::choose_caster(true) == raycast::CasterChoice::vulkan;
+  return gpu::Device::or_host(options.device, options.require_vulkan || kernels_cast);
+}
+
+void print_notice(const gpu::Device& device) {
+  if (!device.notice().empty()) print_message(device.notice());
+}
+
+gpu::Device open_device(const DeviceOption& options) {
+  gpu::Device device = open_device_silently(options);
+  print_notice(device);
+  return device;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,114 @@
+#pragma once
+// The groups of options that subcommands share.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/options/options.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace sf::apps {
+
+/// A command with its options. Returns the exit code.
+using Call = std::function<int()>;
+
+/// When `sub` is parsed, `check` (which may throw CLI::Error), then `set`.
+void on_parsed(CLI::App& sub, std::function<void()> set, std::function<void()> check);
+
+/// Values for the options of `sub`, with which `call` is to run `command`. They live as long as either.
+template <class CommandOptions>
+CommandOptions& add_command(CLI::App& sub, Call& call, int (*command)(const CommandOptions&),
+                            std::function<void()> check = {}) {
+  const auto options = std::make_shared<CommandOptions>();
+  on_parsed(
+      sub, [options, &call, command] { call = [options, command] { return command(*options); }; }, std::move(check));
+  return *options;
+}
+
+/// The end of the command's help. @param arguments of one call each
+void add_examples(CLI::App& sub, const std::vector<std::string>& arguments);
+
+/// An option whose argument is one of `words`, which is given to `set`.
+CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
+                        const std::function<void(const std::string&)>& set, const std::string& help);
+/// The same where each word stands for a value.
+template <class Target, class Value>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
+                        const std::vector<std::pair<std::string, Value>>& choices, const std::string& help) {
+  std::vector<std::string> words;
+  for (const auto& [word, value] : choices) words.push_back(word);
+  const auto set = [&target, choices](const std::string& text) {
+    for (const auto& [word, value] : choices)
+      if (word == text) target = value;
+  };
+  return add_choice(app, name, words, set, help);
+}
+
+void add_json(CLI::App& app, JsonOption& o);
+CLI::Option* add_compression(CLI::App& app, CompressionOption& o);
+/// Without `--device`, SENSORFARM_DEVICE counts.
+void add_device(CLI::App& app, DeviceOption& o);
+void add_in_process(CLI::App& app, InProcessOption& o);
+/// `--timeout` of a job, e.g. "scenario".
+void add_timeout(CLI::App& app, double& seconds, const std::string& job);
+void add_world(CLI::App& app, WorldOptions& o);
+void add_accuracy(CLI::App& app, WorldOptions& o);
+/// @param help without the words that are known
+CLI::Option* add_accuracy(CLI::App& app, std::string& words, const std::string& help);
+/// `--max-error`, `--by` and `--min-rate`.
+void add_accuracy_target(CLI::App& app, AccuracyTargetOptions& o);
+/// `--auto`, with its target.
+void add_automatic(CLI::App& app, AccuracyTargetOptions& o);
+void add_no_return(CLI::App& app, NoReturnOption& o);
+void add_wire(CLI::App& app, WireOption& o);
+void add_bind(CLI::App& app, BindOption& o);
+/// `--peers`: the table of addresses and keys.
+void add_peers(CLI::App& app, PeersOption& o);
+/// `--from`: the host that packets are taken from.
+void add_from(CLI::App& app, ReceiveOptions& o);
+void add_silence(CLI::App& app, ReceiveOptions& o);
+/// `--duration`, without which the command goes on.
+void add_until(CLI::App& app, DurationOption& o, const std::string& help);
+/// `--latitude` and `--longitude`.
+void add_origin(CLI::App& app, OriginOption& o, const std::string& group = "Options");
+void add_ports(CLI::App& app, PortOptions& o);
+void add_threads(CLI::App& app, ThreadsOption& o);
+/// Other programs beside `run` and `serve`, as options of this group.
+inline constexpr const char* kBridgeGroup = "Bridges to other programs (docs/bridges.md)";
+void add_bridges(CLI::App& app, BridgeOptions& o);
+/// `--topics`, `--odometry` and `--external`.
+void add_naming(CLI::App& app, NamingOption& o);
+/// `--out FILE` of one picture.
+CLI::Option* add_picture(CLI::App& app, std::string& file,
+                         const std::string& help = "Picture to write: .png, .svg or .pdf");
+/// `--size`, `--font-size`, `--dpi` and `--no-title`.
+void add_page(CLI::App& app, PageOption& o);
+/// `--line-styles` of figures with curves.
+void add_line_styles(CLI::App& app, PageOption& o);
+/// `--map-colors` of occupancy maps.
+void add_map_colors(CLI::App& app, PageOption& o);
+/// `--extent` of figures of a world.
+void add_extent(CLI::App& app, PageOption& o);
+/// `--format` of pictures in a folder.
+void add_format(CLI::App& app, std::string& format);
+/// `--robots` (names), `--from` and `--to`.
+/// How a video looks. @param wanted the option that asks for it
+void add_video_look(CLI::App& app, VideoOptions& o, CLI::Option* wanted);
+void add_video(CLI::App& app, VideoOptions& o, const std::string& help);
+
+void add_part(CLI::App& app, PartOption& o);
+/// The folder of a recorded run.
+void add_recording(CLI::App& app, RecordingOption& o);
+void add_sensor_type(CLI::App& app, SenseOptions& o);
+void add_seed(CLI::App& app, SeedOption& o, const std::string& what);
+void add_robots(CLI::App& app, CloneOptions& o);
+void add_controller(CLI::App& app, ControllerOptions& o);
+
+}  // namespace sf::apps

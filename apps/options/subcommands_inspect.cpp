@@ -1,0 +1,213 @@
+// Subcommands that look at worlds, devices and recordings.
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands/commands.h"
+#include "apps/options/option_groups.h"
+#include "apps/options/option_parsers.h"
+#include "apps/options/subcommands.h"
+
+namespace sf::apps {
+
+namespace {
+
+void add_devices(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("devices",
+                                     "List the Vulkan devices with their self-checks, the chosen one, and why others "
+                                     "are refused (exit 3 when none is usable)");
+  auto& o = add_command(*sub, call, devices);
+  add_examples(*sub, {"--json"});
+  add_json(*sub, o);
+  add_device(*sub, o);
+}
+
+void add_check(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("check", "Summarize a world as read, with the line of every warning");
+  auto& o = add_command(*sub, call, check);
+  add_examples(*sub, {"worlds/cave.world", "worlds/simville/simville.mdf --rndf worlds/simville/simville.rndf"});
+  add_world(*sub, o);
+  add_accuracy(*sub, o);
+  sub->add_option("--rndf", o.rndf, "Road network that a mission (.mdf) is checked against")
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+  sub->add_option("--rate", o.rate, "Ticks per second of a later `serve --rate`: names the sensors that are faster")
+      ->check(number(0.1, 10000.0))
+      ->type_name("HZ");
+  add_json(*sub, o);
+}
+
+void add_draw(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("draw", "Draw a world as read, seen from above");
+  auto& o = add_command(*sub, call, draw);
+  add_examples(*sub, {"worlds/simville/simville.world -o simville.png"});
+  add_world(*sub, o);
+  add_picture(*sub, o.out)->required();
+  add_page(*sub, o);
+  add_extent(*sub, o);
+}
+
+void add_field(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("field", "Draw the magnetic field of a world at one height, and along a line");
+  auto& o = add_command(*sub, call, field);
+  add_examples(*sub, {"worlds/six_magnets.world --height 0.05 -o field.png"});
+  add_world(*sub, o);
+  add_device(*sub, o);
+  sub->add_option("--height", o.height, "Height in the world [m]")
+      ->required()
+      ->check(number(-1e6, 1e6))
+      ->type_name("Z");
+  add_picture(*sub, o.out)->required();
+  add_page(*sub, o);
+  add_line_styles(*sub, o);
+  sub->add_option_function<std::string>(
+         "--line", [&o](const std::string& text) { o.line = read_line(text); },
+         "Ends of the profile's line [m] (default: along the magnets)")
+      ->check(readable(read_line, "X0,Y0,X1,Y1 of two points such as -1,0,2,0.5"))
+      ->type_name("X0,Y0,X1,Y1");
+  sub->add_option_function<std::string>(
+         "--extent", [&o](const std::string& text) { o.extent = read_extent(text); },
+         "Area that the map must show [m] (default: all magnets)")
+      ->check(readable(read_extent, "XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1"))
+      ->type_name("XMIN,YMIN,XMAX,YMAX");
+  sub->add_option("--csv", o.csv, "CSV file to write with the profile's numbers")
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+}
+
+void add_sense(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("sense", "Take one reading of one sensor, without noise, to check a world");
+  auto& o = add_command(*sub, call, sense);
+  add_examples(*sub, {"worlds/rooms.world --pose 1,2,90", "worlds/rooms.world --robot roomba1 --type laser --json"});
+  add_world(*sub, o);
+  add_accuracy(*sub, o);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_no_return(*sub, o);
+  sub->add_option_function<std::string>(
+         "--pose", [&o](const std::string& text) { o.pose = read_pose(text); },
+         "Pose of the robot [m, degrees] (default: its own)")
+      ->check(readable(read_pose, "X,Y,YAW_DEG such as 1.5,-2,90"))
+      ->type_name("X,Y,YAW_DEG");
+  sub->add_option("--robot", o.robot, "Name of the robot (default: the first that has a sensor)")->type_name("NAME");
+  add_sensor_type(*sub, o);
+  sub->add_option("--sensor", o.sensor,
+                  "Number of its sensor, from 0: of that type, or through all its types where none is named")
+      ->check(whole(0, 65535))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_plot(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "plot", "Draw trajectories, an occupancy map, readings and lights from a recorded run, or metrics of a sweep");
+  auto& o = add_command(*sub, call, plot, [sub] {
+    for (const std::string option : {"--out", "--format", "--csv", "--size", "--dpi", "--no-title", "--extent",
+                                     "--font-size", "--label", "--elements", "--curves", "--over", "--x-axis"})
+      if (sub->count(option) > 0 && sub->count("--video") > 0)
+        throw CLI::ValidationError(option, "is of figures, and --video writes a video alone");
+  });
+  add_examples(*sub, {"out/run", "out/run -o figures --format pdf --size 88 --no-title --robots robot1,robot2",
+                      "out/sweep --format pdf --size 88"});
+  add_recording(*sub, o);
+  sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
+  add_format(*sub, o.format);
+  sub->add_flag("--csv", o.csv, "Write every plotted curve as a CSV file beside its figure")->group("Picture");
+  add_page(*sub, o);
+  add_line_styles(*sub, o);
+  add_map_colors(*sub, o);
+  add_extent(*sub, o);
+  sub->add_option("--label", o.labels,
+                  "Robots to name in the trajectories, in colours over the others, or all (default: up to ten)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(not_empty("the name of a robot, or all"))
+      ->type_name("NAME,...");
+  auto* elements =
+      sub->add_option("--elements", o.elements,
+                      "Elements of sensors to draw, as curves (default: all; of more than seven a heat map)")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(whole(0, UINT32_MAX))
+          ->type_name("N,...");
+  sub->add_flag("--curves", o.curves, "Readings of many elements as curves in place of heat maps")->excludes(elements);
+  constexpr const char* kSweeps = "Sweeps (docs/sweeps.md)";
+  sub->add_option("--over", o.over, "Parameter along x (default: the first whose values are numbers and differ)")
+      ->check(not_empty("the name of a parameter"))
+      ->type_name("PARAMETER")
+      ->group(kSweeps);
+  using viz::AxisScale;
+  add_choice<AxisScale, AxisScale>(
+      *sub, "--x-axis", o.x_axis,
+      {{"auto", AxisScale::automatic}, {"linear", AxisScale::linear}, {"log", AxisScale::logarithmic}},
+      "Scale of x: auto is log where successive values have about equal ratios (default: auto)")
+      ->group(kSweeps);
+  add_video(*sub, o, "Video to write in place of the pictures (VP9 in WebM, by FFmpeg)");
+  add_part(*sub, o);
+  add_device(*sub, o);
+}
+
+void add_v2x(CLI::App& app, Call& call) {
+  using Action = V2xOptions::Action;
+  CLI::App* sub = app.add_subcommand("v2x",
+                                     "Decode SAE J2735 SPaT and MAP messages (UPER) to JSON or XML, encode JSON, or "
+                                     "export a world's traffic lights as messages");
+  auto& o = add_command(*sub, call, v2x_messages, [sub] {
+    const auto action = sub->get_option("action")->as<std::string>();
+    if (sub->count("--xml") > 0 && action != "decode") throw CLI::ValidationError("--xml", "goes with decode");
+    for (const std::string option : {"--time", "--latitude", "--longitude"})
+      if (sub->count(option) > 0 && action != "export") throw CLI::ValidationError(option, "goes with export");
+  });
+  add_examples(*sub, {"decode spat.hex", "decode --xml map.bin", "encode spat.json > spat.hex",
+                      "export worlds/simville/simville.world --time 9"});
+  const std::vector<std::pair<std::string, Action>> actions{
+      {"decode", Action::decode}, {"encode", Action::encode}, {"export", Action::export_world}};
+  add_choice(*sub, "action", o.action, actions,
+             "decode: frames to one line of JSON each; encode: the reverse; export: MAP and SPaT of each intersection "
+             "of a world in hexadecimal digits")
+      ->required();
+  sub->add_option(
+         "file", o.file,
+         "To decode: hexadecimal digits, one frame a line, or binary, one frame after another; to encode: JSON "
+         "as decode prints it (both: - is standard input); to export: a world file")
+      ->required()
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+  sub->add_flag("--xml", o.xml, "Decode to XML (XER) in place of JSON");
+  sub->add_option("--time", o.time, "Simulated time [s] of the SPaT; time 0 is the year's start in UTC")
+      ->check(in_seconds(0.0, 31'536'000.0))
+      ->type_name("S")
+      ->capture_default_str()
+      ->group("Export");
+  add_origin(*sub, o, "Export");
+}
+
+void add_explain(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "explain",
+      "Report what a world makes the farm build and compute, and the cost of each sensor type on this machine");
+  auto& o = add_command(*sub, call, explain);
+  add_examples(*sub, {"worlds/simville/simville.world"});
+  add_world(*sub, o);
+  add_accuracy(*sub, o);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_robots(*sub, o);
+  add_threads(*sub, o);
+}
+
+}  // namespace
+
+void add_inspect_commands(CLI::App& app, Call& call) {
+  add_devices(app, call);
+  add_check(app, call);
+  add_draw(app, call);
+  add_field(app, call);
+  add_sense(app, call);
+  add_plot(app, call);
+  add_explain(app, call);
+  add_v2x(app, call);
+}
+
+}  // namespace sf::apps

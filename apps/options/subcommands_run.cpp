@@ -1,0 +1,495 @@
+// Subcommands that run: the farm, robots, receivers.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/commands/commands.h"
+#include "apps/commands/run_scenario.h"
+#include "apps/options/option_groups.h"
+#include "apps/options/option_parsers.h"
+#include "apps/options/subcommands.h"
+#include "base/installation.h"
+
+namespace sf::apps {
+
+namespace {
+
+/// Where a scenario takes the place of the world, it states these.
+void refuse_options_of_worlds(const CLI::App& run) {
+  const auto world = run.get_option("world")->as<std::string>();
+  if (!is_scenario(world)) return;
+  for (const auto& [option, key] : {std::pair{"--robots", "robots"},
+                                    {"--of", "of"},
+                                    {"--seed", "seed"},
+                                    {"--controller", "controller"},
+                                    {"--set", "settings"},
+                                    {"--localize", "settings"},
+                                    {"--drive", "controller"}})
+    if (run.count(option) > 0)
+      throw CLI::ValidationError(option, fmt::format("is for worlds; a scenario states `{}`: change {}", key, world));
+}
+
+void add_run(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("run", "Simulate a fleet with its sensors and controllers, as fast as possible");
+  auto& o = add_command(*sub, call, run, [sub] { refuse_options_of_worlds(*sub); });
+  add_examples(*sub, {"worlds/cave.world --robots 50 --duration 30", "worlds/cave.world --robots 4 --record out/run",
+                      "worlds/cave.world --robots 9 --duration 20 --video run.webm",
+                      "worlds/cave.world --robots 4 --send 127.0.0.1 --real-time", "experiments/simville.toml --view"});
+  add_world(*sub, o);
+  sub->get_option("world")->description("World file (.world of Stage, .yaml of ROS maps), or scenario (.toml)");
+  add_accuracy(*sub, o);
+  add_automatic(*sub, o);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_robots(*sub, o);
+  add_controller(*sub, o);
+  sub->add_option("--drive", o.drive, "Robot to drive; all others stand (may be repeated; default: every robot)")
+      ->check(not_empty("the name of a robot"))
+      ->allow_extra_args(false)
+      ->type_name("NAME");
+  add_no_return(*sub, o);
+  add_ports(*sub, o);
+  sub->add_option("--duration", o.duration, "Simulated time [s] (default: 60; without end beside bridges)")
+      ->check(in_seconds(0.0, 1e9))
+      ->type_name("S");
+  add_threads(*sub, o);
+  auto* record = sub->add_option("--record", o.record, "Folder to record the run into (run.mcap)")
+                     ->check(not_empty("a folder"))
+                     ->type_name("DIR");
+  sub->add_flag("--record-readings", o.record_readings,
+                "Record the readings too, not only the states from which they can be computed")
+      ->needs(record);
+  add_compression(*sub, o)->needs(record);
+  sub->add_option("--checkpoint", o.checkpoint, "Keep a check point of the run every S simulated seconds (--record)")
+      ->check(in_seconds(0.001, 1e9))
+      ->needs(record)
+      ->type_name("S");
+  sub->add_flag("--resume", o.resume,
+                "Compute a run that was cut short again, with the same bytes, and compare it with its check points")
+      ->needs(record);
+  add_video(*sub, o, "Video of the run to write (VP9 in WebM, by FFmpeg)");
+  auto* tiles = sub->add_flag("--tiles", o.tiles, "Ranks (mpirun) each know and sense one part of the world");
+  sub->add_option("--balance", o.balance, "Cut the parts anew every S simulated seconds, by the time they take")
+      ->check(in_seconds(0.001, 1e9))
+      ->needs(tiles)
+      ->type_name("S");
+  auto* speed = sub->add_option("--speed", o.speed,
+                                "Simulated over real time (0: as fast as possible; default: 0, and 1 beside bridges)")
+                    ->check(number(0.0, 1e6))
+                    ->type_name("X");
+  sub->add_flag_callback(
+         "--real-time", [&o] { o.speed = 1.0; }, "Run in real time: --speed 1")
+      ->excludes(speed);
+  add_bridges(*sub, o);
+  add_naming(*sub, o);
+  sub->add_option("--send", o.send, "Send every reading as UDP packets to this host")
+      ->check(not_empty("a host"))
+      ->type_name("HOST");
+}
+
+void add_forget(CLI::App& app, ForgetOption& o) {
+  app.add_option("--forget", o.forget, "Silence after which a robot is no obstacle any more [s], at least 2 (0: never)")
+      ->check(in_seconds(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+}
+
+CLI::Option* add_clock(CLI::App& app, const std::string& name, estimation::ClockSource& clock) {
+  using estimation::ClockSource;
+  return add_choice<ClockSource, ClockSource>(
+             app, name, clock,
+             {{"estimated", ClockSource::estimated},
+              {"trusted", ClockSource::trusted},
+              {"arrival", ClockSource::arrival}},
+             "Time of states: timestamps, on clocks estimated from the packets or trusted (Unix time, by PTP or NTP), "
+             "or the time of arrival")
+      ->default_str("estimated");
+}
+
+void add_filter(CLI::App& app, FilterOptions& o) {
+  using estimation::StalePolicy;
+  constexpr const char* kGroup = "States of robots and tags (docs/estimation.md)";
+  app.add_option("--stale-after", o.stale_after,
+                 "Readings say that their robot's state is stale when it is older than this [s]")
+      ->check(in_seconds(0.01, 1e6))
+      ->type_name("S")
+      ->capture_default_str()
+      ->group(kGroup);
+  auto* filter = app.add_flag("--filter", o.filter,
+                              "Filter states (extended Kalman filter): late ones count at the time of their timestamp, "
+                              "wrong ones are refused, and each reading has the state predicted to its time")
+                     ->group(kGroup);
+  add_choice<StalePolicy, StalePolicy>(
+      app, "--stale", o.stale,
+      {{"freeze", StalePolicy::freeze}, {"hide", StalePolicy::hide}, {"drop", StalePolicy::drop}},
+      "A stale robot or tag stands (freeze), is out of the world (hide), or likewise with its sender's clock forgotten "
+      "(drop)")
+      ->default_str("freeze")
+      ->needs(filter)
+      ->group(kGroup);
+  add_clock(app, "--clock", o.clock)->needs(filter)->group(kGroup);
+  app.add_option("--link-delay", o.link_delay,
+                 "Least delay of packets to the farm [s], which packets cannot show (--clock estimated)")
+      ->check(in_seconds(0.0, 10.0))
+      ->needs(filter)
+      ->type_name("S")
+      ->capture_default_str()
+      ->group(kGroup);
+  app.add_option(
+         "--hypotheses", o.hypotheses,
+         "Gaussians of a state whose heading is uncertain after losses; 1: a single one, with a covariance that "
+         "is too small then")
+      ->check(whole(1, 64))
+      ->needs(filter)
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(kGroup);
+}
+
+/// Options of `serve` without a meaning where the farm itself moves the robots.
+void refuse_with_lockstep(const CLI::App& sub) {
+  if (sub.count("--lockstep") == 0) return;
+  for (const CLI::Option* option : sub.get_options()) {
+    const std::string name = option->get_name();
+    const bool of_ports =
+        (name != "--port" && name.ends_with("-port")) || name == "--ports-per-robot" || name == "--wire";
+    if (option->count() > 0 &&
+        (of_ports || name == "--rate" || name == "--radio" || name == "--forget" || name == "--mirror" ||
+         name == "--filter" || name == "--stale-after" || option->get_group() == kBridgeGroup))
+      throw CLI::ValidationError(name, "does not go with --lockstep");
+  }
+}
+
+void add_lockstep(CLI::App& app, ServeOptions& o) {
+  constexpr const char* kGroup = "Lockstep (docs/packets.md)";
+  auto* lockstep = app.add_flag("--lockstep", o.lockstep,
+                                "Move the robots: clients command them tick by tick (COMMAND, STEP), as fast as the "
+                                "machine allows, with the same readings in each run")
+                       ->group(kGroup);
+  app.add_option("--wait-for", o.wait_for, "Robots that clients have subscribed before the first tick")
+      ->check(whole(1, 65536))
+      ->needs(lockstep)
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(kGroup);
+  app.add_option("--lockstep-timeout", o.lockstep_timeout,
+                 "Time that clients wait for another [s]; then its robots are left out and stand, the others go on, "
+                 "and the exit code is 1 (0: without end)")
+      ->check(in_seconds(0.0, 1e6))
+      ->needs(lockstep)
+      ->type_name("S")
+      ->capture_default_str()
+      ->group(kGroup);
+}
+
+void add_serve(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "serve", "Serve virtual sensors to robots in other processes: V2V packets in, sensor packets out");
+  auto& o = add_command(*sub, call, serve, [sub] { refuse_with_lockstep(*sub); });
+  add_examples(*sub, {"worlds/rooms.world", "worlds/rooms.world --bind 0.0.0.0 --port 9001",
+                      "worlds/rooms.world --filter --record out/service", "worlds/cave.world --lockstep --robots 50"});
+  add_world(*sub, o);
+  add_accuracy(*sub, o);
+  add_automatic(*sub, o);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_no_return(*sub, o);
+  add_ports(*sub, o);
+  add_bind(*sub, o);
+  sub->add_option("--port", o.port, "UDP port to listen on (0: any free one)")
+      ->check(whole(0, 65535))
+      ->type_name("PORT")
+      ->capture_default_str();
+  sub->add_option("--rate", o.rate,
+                  "Ticks per second; sensors are then read at ticks only (default: the world's interval_sim, with "
+                  "sensors at their own times)")
+      ->check(number(0.1, 10000.0))
+      ->type_name("HZ");
+  sub->add_option("--radio", o.radio, "Radio range of V2V [m]: states of robots within it are relayed (0: none)")
+      ->check(number(0.0, 1e9))
+      ->type_name("M")
+      ->capture_default_str();
+  add_forget(*sub, o);
+  add_peers(*sub, o);
+  add_lockstep(*sub, o);
+  add_filter(*sub, o);
+  sub->add_option("--mirror", o.mirror,
+                  "Address of an observer that gets a copy of every packet of a reading (`vps --readings`)")
+      ->check(not_empty("HOST:PORT"))
+      ->type_name("HOST:PORT");
+  sub->add_option("--spat", o.spat,
+                  "UDP port on which to listen for SPaT of traffic lights, which replace the world's plans, as V2I at "
+                  "the farm's port do")
+      ->check(whole(1, 65535))
+      ->type_name("PORT");
+  using server::StaleLights;
+  add_choice<StaleLights, StaleLights>(
+      *sub, "--stale-lights", o.stale_lights, {{"dark", StaleLights::dark}, {"plan", StaleLights::plan}},
+      "A light that was heard and is silent for 2 s is dark, which robots treat as a stop sign, or follows the world's "
+      "plan")
+      ->default_str("dark");
+  auto* record =
+      sub->add_option("--record", o.record, "Folder to record states, their quality, and readings into (run.mcap)")
+          ->check(not_empty("a folder"))
+          ->type_name("DIR");
+  add_compression(*sub, o)->needs(record);
+  add_robots(*sub, o);
+  add_bridges(*sub, o);
+  add_naming(*sub, o);
+  add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");
+}
+
+void add_farm(CLI::App& app, FarmOptions& o) {
+  app.add_option("--server", o.server, "Host of the farm that serves")
+      ->check(not_empty("a host"))
+      ->type_name("HOST")
+      ->capture_default_str();
+  app.add_option("--port", o.port, "UDP port of the farm")
+      ->check(whole(1, 65535))
+      ->type_name("PORT")
+      ->capture_default_str();
+}
+
+void add_link(CLI::App& app, LinkOptions& o) {
+  constexpr const char* kGroup = "Faults injected into the link";
+  app.add_option("--delay", o.delay, "Injected delay of every packet, in each direction [s]")
+      ->check(in_seconds(0.0, 3600.0))
+      ->type_name("S")
+      ->group(kGroup);
+  app.add_option("--jitter", o.jitter,
+                 "Additional random delay, uniform from 0 to this; packets may overtake each other [s]")
+      ->check(in_seconds(0.0, 3600.0))
+      ->type_name("S")
+      ->group(kGroup);
+  const auto add_fraction = [&](const char* name, double& value, const char* text) {
+    app.add_option(name, value, text)->check(number(0.0, 1.0))->type_name("P")->group(kGroup);
+  };
+  add_fraction("--loss", o.loss, "Fraction of packets lost in each direction, 0 to 1");
+  add_fraction("--duplicate", o.duplicate, "Fraction of packets that come twice, 0 to 1");
+  add_fraction("--corrupt", o.corrupt, "Fraction of packets of which one bit is flipped, 0 to 1");
+}
+
+void add_cameras(CLI::App& app, RobotOptions& o) {
+  constexpr const char* kGroup = "Positions from cameras (docs/vps.md)";
+  auto* cameras =
+      app.add_option("--cameras", o.cameras,
+                     "Know its own pose by TAG packets to this UDP port alone (`sensorfarm vps --send`), and "
+                     "stand while they fail; what it says to the farm is this pose, filtered")
+          ->check(whole(1, 65535))
+          ->type_name("PORT")
+          ->group(kGroup);
+  add_clock(app, "--clock", o.camera_clock)->needs(cameras)->group(kGroup);
+  app.add_option("--tag", o.tag, "Id of the tag that it carries (default: the robot's id)")
+      ->check(whole(1, 65535))
+      ->type_name("ID")
+      ->group(kGroup);
+  app.add_option(
+         "--truth", o.truth,
+         "Report its true state, as the light that cameras see, to a renderer (`sensorfarm vps --robots PORT`); "
+         "clocks of both machines must agree")
+      ->check(not_empty("HOST:PORT"))
+      ->type_name("HOST:PORT")
+      ->group(kGroup);
+}
+
+void add_robot(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("robot",
+                                     "Run one simulated robot as a process of its own, with sensors from a farm that "
+                                     "serves (exit 1 when nothing came from the farm)");
+  auto& o = add_command(*sub, call, robot);
+  add_examples(*sub, {"worlds/testpath/testpath.world --name roomba0 --controller lane-keeping --duration 30",
+                      "worlds/rooms.world --name roomba1 --server 192.168.1.5 --loss 0.1 --delay 0.05"});
+  add_world(*sub, o);
+  add_json(*sub, o);
+  add_controller(*sub, o);
+  add_farm(*sub, o);
+  add_link(*sub, o);
+  add_ports(*sub, o);
+  sub->add_option("--name", o.robot, "Name of the robot in the world")->required()->type_name("NAME");
+  sub->add_option("--rate", o.rate, "Decisions and packets per second (default: the controller's own)")
+      ->check(number(0.1, 1000.0))
+      ->type_name("HZ");
+  sub->add_option("--stop-after", o.stop_after, "Silence of the farm after which the robot stands [s] (0: never)")
+      ->check(in_seconds(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+  add_forget(*sub, o);
+  add_peers(*sub, o);
+  sub->add_option("--spat", o.spat,
+                  "UDP port on which to listen for SPaT of traffic lights (`sensorfarm light`, 9010), in place of the "
+                  "farm's lights")
+      ->check(whole(1, 65535))
+      ->type_name("PORT");
+  add_cameras(*sub, o);
+  sub->add_option("--map", o.map,
+                  "Make a map of the robot's own scans and send it there (`sensorfarm map --listen PORT`)")
+      ->check(not_empty("HOST:PORT"))
+      ->type_name("HOST:PORT");
+  auto* serial = sub->add_option("--serial", o.serial,
+                                 "Serial line of a real iRobot Create, which drives in place of the simulated robot")
+                     ->check(not_empty("a device such as /dev/ttyUSB0"))
+                     ->type_name("DEVICE");
+  sub->add_option("--baud", o.baud, "Speed of the serial line: 57600 (Create) or 115200 (Create 2)")
+      ->check(one_of({"9600", "19200", "38400", "57600", "115200"}))
+      ->needs(serial)
+      ->type_name("BAUD")
+      ->capture_default_str();
+  sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal arrives (`sensorfarm start`)");
+  add_seed(*sub, o, "Seed of decisions and of injected faults");
+  add_until(*sub, o, "Stop after this long [s] (0: when done, or at Ctrl-C)");
+}
+
+void add_light(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand("light",
+                                     "Send traffic lights, of a world or a plan, as SAE J2735 messages over UDP, as "
+                                     "lights of streets do (SPaT at a rate, MAP once a second), and as V2I to a farm");
+  auto& o = add_command(*sub, call, light);
+  add_examples(*sub, {"worlds/simville/simville.world --send 127.0.0.1",
+                      "worlds/simville/simville.world --send 192.168.1.7 --set 'light1=flashing red'",
+                      "worlds/simville/lights.toml --farm 127.0.0.1:9000"});
+  sub->add_option("file", o.file, "World file with the lights and their plans, or a plan (.toml) that names its world")
+      ->required()
+      ->transform(base::installed_file)
+      ->type_name("FILE");
+  sub->add_option("--send", o.send, "Host to send SPaT and MAP to")->check(not_empty("a host"))->type_name("HOST");
+  sub->add_option("--farm", o.farm,
+                  "Farm (`sensorfarm serve`) to send V2I to, and to hear robots from for the plan's detectors")
+      ->check(not_empty("HOST:PORT"))
+      ->type_name("HOST:PORT");
+  add_peers(*sub, o);
+  sub->add_option("--port", o.ports, "UDP port there; may be repeated, one per receiver")
+      ->check(whole(1, 65535))
+      ->allow_extra_args(false)
+      ->type_name("PORT")
+      ->capture_default_str();
+  sub->add_option("--rate", o.rate, "SPaT and V2I per second of each intersection")
+      ->check(number(0.1, 100.0))
+      ->type_name("HZ")
+      ->capture_default_str();
+  sub->add_option("--time", o.time, "Time of the plans at the start [s]")
+      ->check(in_seconds(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+  sub->add_option("--set", o.set,
+                  "Hold a light in one state, in place of its plan: green, yellow, red, flashing red, "
+                  "flashing yellow or dark; may be repeated")
+      ->check(readable(read_setting, "NAME=STATE such as 'light1=flashing red'"))
+      ->allow_extra_args(false)
+      ->type_name("NAME=STATE");
+  add_origin(*sub, o);
+  add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");
+}
+
+void add_start(CLI::App& app, Call& call) {
+  CLI::App* sub =
+      app.add_subcommand("start", "Send the start signal to waiting robots, through the farm (not acknowledged)");
+  auto& o = add_command(*sub, call, start);
+  add_examples(*sub, {"--robot 2"});
+  add_farm(*sub, o);
+  add_peers(*sub, o);
+  sub->add_option("--robot", o.start_id, "Id of the robot (default: all)")->check(whole(0, 65535))->type_name("ID");
+}
+
+void add_object(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "object", "Open and close doors: take an object out of a farm's world, or put it back (not acknowledged)");
+  auto& o = add_command(*sub, call, object);
+  add_examples(*sub, {"absent --tag 3", "present --tag 3 --server 192.168.1.5"});
+  add_farm(*sub, o);
+  add_peers(*sub, o);
+  using State = ObjectOptions::State;
+  add_choice<State, State>(*sub, "state", o.state, {{"present", State::present}, {"absent", State::absent}},
+                           "What the object is to be")
+      ->required();
+  sub->add_option("--tag", o.tag, "Id of the object's tag (tag<ID> in the world file)")
+      ->required()
+      ->check(whole(netio::kMinTag, netio::kMaxId))
+      ->type_name("ID");
+}
+
+void add_listen(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "listen",
+      "Receive the packets of `run --send` on every robot's ports, count and check them (exit 1 when none was valid)");
+  auto& o = add_command(*sub, call, listen);
+  add_examples(*sub, {"worlds/cave.world --robots 4"});
+  add_world(*sub, o);
+  add_json(*sub, o);
+  add_robots(*sub, o);
+  add_ports(*sub, o);
+  add_bind(*sub, o);
+  add_from(*sub, o);
+  add_silence(*sub, o);
+  add_until(*sub, o, "Stop after this long [s] (0: at --silence or Ctrl-C)");
+}
+
+CLI::Option* add_ports_to_bind(CLI::App& app, const std::string& name, std::vector<std::uint16_t>& ports,
+                               const std::string& help) {
+  const auto read = [&ports](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      const std::vector<std::uint16_t> some = *read_ports(text);
+      ports.insert(ports.end(), some.begin(), some.end());
+    }
+  };
+  return app.add_option_function<std::vector<std::string>>(name, read, help)
+      ->check(readable(read_ports, "a port or a range of at most 1024 such as 52000-52008"))
+      ->type_name("PORT");
+}
+
+void add_dump(CLI::App& app, Call& call) {
+  CLI::App* sub = app.add_subcommand(
+      "dump",
+      "Print packets in words, one line each: those of a capture file (tcpdump -w) or those that come to ports "
+      "(exit 1 when none was valid)");
+  auto& o = add_command(*sub, call, dump, [sub] {
+    if (sub->count("file") + sub->count("--port") == 0) throw CLI::RequiredError("file (or --port)");
+    for (const std::string option : {"--bind", "--duration"})
+      if (sub->count("file") > 0 && sub->count(option) > 0) throw CLI::ValidationError(option, "goes with --port");
+  });
+  add_examples(*sub, {"traffic.pcap", "--port 9000 --json"});
+  auto* file = sub->add_option("file", o.file, "Capture file in the classic pcap format")->type_name("FILE");
+  add_ports_to_bind(*sub, "--port", o.ports, "UDP port to listen on, or a range of ports A-B (may be repeated)")
+      ->excludes(file);
+  add_json(*sub, o);
+  add_bind(*sub, o);
+  sub->add_option("--count", o.count, "Stop after this number of datagrams (0: never)")
+      ->check(whole(0, 1'000'000'000'000))
+      ->type_name("N");
+  add_until(*sub, o, "Stop listening after this long [s] (0: at Ctrl-C)");
+}
+
+void add_map(CLI::App& app, Call& call) {
+  CLI::App* sub =
+      app.add_subcommand("map", "Show the occupancy maps that robots send, live in a terminal, and draw them");
+  auto& o = add_command(*sub, call, map);
+  add_examples(*sub, {"--listen 52008 -o map.png"});
+  add_ports_to_bind(*sub, "--listen", o.map_ports, "Port of a robot's map, or a range of ports A-B (may be repeated)")
+      ->required();
+  add_bind(*sub, o);
+  add_from(*sub, o);
+  sub->add_flag("--merge", o.merge, "Merge all maps: a cell that any robot saw occupied is occupied");
+  add_picture(*sub, o.out, "Picture to write at the end: .png, .svg or .pdf; without --merge one per map");
+  add_page(*sub, o);
+  add_map_colors(*sub, o);
+  add_until(*sub, o, "Stop after this long [s] (0: at --silence or Ctrl-C)");
+  sub->add_flag("--once", o.once, "Stop when every port has received a complete map");
+  add_silence(*sub, o);
+  add_wire(*sub, o);
+}
+
+}  // namespace
+
+void add_run_commands(CLI::App& app, Call& call) {
+  add_run(app, call);
+  add_serve(app, call);
+  add_robot(app, call);
+  add_light(app, call);
+  add_start(app, call);
+  add_object(app, call);
+  add_listen(app, call);
+  add_dump(app, call);
+  add_map(app, call);
+}
+
+}  // namespace sf::apps

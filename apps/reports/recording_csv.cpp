@@ -1,0 +1,146 @@
+#include "apps/reports/recording_csv.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/csv_text.h"
+#include "base/bearing.h"
+#include "base/error.h"
+#include "record/reading_messages.h"
+#include "scenarios/recorded_states.h"
+#include "world/lights.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+namespace {
+
+/// A file of rows of fields, which has its name once it is whole: until `close` it is FILE.new.
+class CsvFile {
+ public:
+  explicit CsvFile(const std::string& path) : path_(path), file_(fresh(), std::ios::trunc) {}
+  CsvFile(const CsvFile&) = delete;
+  CsvFile& operator=(const CsvFile&) = delete;
+  ~CsvFile() {
+    std::error_code ignored;
+    if (!whole_) std::filesystem::remove(fresh(), ignored);
+  }
+  /// @throws base::InputError when a row could not be written
+  void close() {
+    file_.close();
+    std::error_code error;
+    if (file_) std::filesystem::rename(fresh(), path_, error);
+    whole_ = file_ && !error;
+    if (!whole_) throw base::InputError(path_, 0, "cannot be written; name a folder that can be written and has room");
+  }
+  /// @throws Incomplete when a stop was requested
+  void row(const std::string& text) {
+    heed_stop();
+    file_ << text << '\n';
+  }
+
+ private:
+  std::string fresh() const { return path_ + ".new"; }
+  std::string path_;
+  std::ofstream file_;
+  bool whole_ = false;
+};
+
+std::string seconds(std::int64_t time) { return csv_number(1e-9 * static_cast<double>(time)); }
+
+std::string twist_fields(const base::Twist& v) {
+  return csv_number(v.forward) + "," + csv_number(v.left) + "," + csv_number(v.turn);
+}
+
+/// "range_m", "vector_T_x".
+std::string column_names(const record::SensorTypeInfo& type) {
+  std::string text;
+  for (const record::ColumnInfo& column : type.columns)
+    for (std::uint32_t k = 0; k < column.width; ++k)
+      text += "," + csv_field(column.width == 1   ? column.name
+                              : column.width <= 3 ? fmt::format("{}_{}", column.name, "xyz"[k])
+                                                  : fmt::format("{}_{}", column.name, k));
+  return text;
+}
+
+const record::SensorInfo* sensor_of(const record::MoverInfo& mover, const record::ReadingSample& reading) {
+  std::uint32_t k = 0;
+  for (const record::SensorInfo& sensor : mover.sensors)
+    if (sensor.type == reading.type && k++ == reading.sensor) return &sensor;
+  return nullptr;
+}
+
+void write_reading(CsvFile& file, const record::RunInfo& info, const record::SensorTypeInfo& type,
+                   const record::ReadingSample& reading) {
+  const record::MoverInfo& mover = info.movers[reading.mover];
+  const record::SensorInfo* sensor = sensor_of(mover, reading);
+  const std::string begin =
+      fmt::format("{},{},{},{},{},", seconds(reading.time), seconds(reading.delivered), csv_field(mover.name),
+                  csv_field(sensor != nullptr ? sensor->name : ""), reading.sequence);
+  const std::size_t width = record::element_width(type), elements = reading.values.size() / width;
+  for (std::size_t e = 0; e < elements; ++e) {
+    std::string row = begin + std::to_string(e);
+    if (type.is_scan)
+      row += "," + csv_number(sensor == nullptr ? NAN
+                                                : base::bearing_of(sensor->fov, static_cast<std::uint32_t>(elements),
+                                                                   static_cast<std::uint32_t>(e)));
+    for (std::size_t k = 0; k < width; ++k) row += "," + csv_number(reading.values[e * width + k]);
+    file.row(row);
+  }
+}
+
+}  // namespace
+
+std::string write_trajectories_csv(const RecordingPart& part, const std::string& folder) {
+  const std::string path = folder + "/trajectories.csv";
+  CsvFile file(path);
+  file.row(
+      "time_s,robot,x_m,y_m,z_m,yaw_rad,forward_m_s,left_m_s,turn_rad_s,command_forward_m_s,command_left_m_s,"
+      "command_turn_rad_s,contact");
+  for (std::size_t m = 0; m < part.recording.states.size(); ++m) {
+    if (part.chosen[m] == 0) continue;
+    const std::string name = csv_field(part.recording.info.movers[m].name);
+    for (const record::StateSample& s : part.recording.states[m])
+      file.row(fmt::format("{},{},{},{},{},{},{},{},{:d}", seconds(s.time), name, csv_number(s.X_WM.x),
+                           csv_number(s.X_WM.y), csv_number(s.X_WM.z), csv_number(s.X_WM.yaw), twist_fields(s.velocity),
+                           twist_fields(s.command), s.contact));
+  }
+  file.close();
+  return path;
+}
+
+std::string write_lights_csv(const RecordingPart& part, const std::string& folder) {
+  const std::string path = folder + "/lights.csv";
+  const world::World world = scenarios::recorded_world(part.recording);
+  CsvFile file(path);
+  file.row("time_s,light,state,seconds_to_change");
+  for (const record::LightsSample& sample : part.recording.lights)
+    for (std::size_t k = 0; k < std::min(world.lights.size(), sample.lights.size()); ++k)
+      file.row(fmt::format("{},{},{},{}", seconds(sample.time), csv_field(world.lights[k].name),
+                           world::name_of(static_cast<world::LightState>(sample.lights[k].state)),
+                           csv_number(sample.lights[k].left)));
+  file.close();
+  return path;
+}
+
+std::vector<std::string> write_readings_csv(const RecordingPart& part, const std::string& folder) {
+  const record::Recording& recording = part.recording;
+  std::vector<std::string> files;
+  for (const record::SensorTypeInfo& type : recording.info.sensor_types) {
+    const auto is_one = [&](const record::ReadingSample& r) { return r.type == type.id; };
+    if (std::none_of(recording.readings.begin(), recording.readings.end(), is_one)) continue;
+    files.push_back(folder + "/" + type.name + ".csv");
+    CsvFile file(files.back());
+    file.row("time_s,delivered_s,robot,sensor,sequence,element" + std::string(type.is_scan ? ",bearing_rad" : "") +
+             column_names(type));
+    for (const record::ReadingSample& reading : recording.readings)
+      if (is_one(reading)) write_reading(file, recording.info, type, reading);
+    file.close();
+  }
+  return files;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,62 @@
+#include "apps/reports/report.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "apps/reports/text.h"
+#include "base/error.h"
+#include "base/suggest.h"
+
+namespace sf::apps {
+
+void print_warnings(const std::string& file, const std::vector<world::Warning>& warnings) {
+  constexpr std::size_t kFirst = 3;
+  const std::size_t count = warnings.size();
+  if (count == 0) return;
+  std::string lines = text_of(std::span(warnings).first(std::min(count, kFirst)));
+  lines.pop_back();  // `print_message` ends the line
+  print_message("{}{}:\n{}", counted(count, "warning"),
+                count > kFirst ? fmt::format(", the first 3 here, all with `sensorfarm check {}`", file) : "", lines);
+}
+
+std::string text_of(std::span<const world::Warning> warnings) {
+  std::string text;
+  for (const world::Warning& w : warnings)
+    text += fmt::format("{}{}: warning: {}\n", w.file, w.line > 0 ? fmt::format(":{}", w.line) : "", w.message);
+  return text;
+}
+
+void print_damage(const record::Recording& recording) {
+  for (const std::string& damage : recording.damage) print_message("{}: {}", recording.file, damage);
+  if (recording.truncated)
+    print_message("{} was not finished; its {} whole ticks are taken", recording.file, recording.ticks);
+}
+
+std::size_t count_robots(const world::World& world) {
+  std::size_t robots = 0;
+  for (const world::Mover& mover : world.movers) robots += !mover.is_tag;
+  return robots;
+}
+
+void refuse_robot(const world::World& world, const std::string& name, const std::vector<std::string_view>& names) {
+  std::vector<std::string_view> robots;
+  for (const world::Mover& mover : world.movers)
+    if (!mover.is_tag) robots.push_back(mover.name);
+  throw base::InputError(
+      world.file, 0,
+      fmt::format("has no robot '{}'{}; it has {}", name, base::suggest(name, names), list_names(robots)));
+}
+
+std::size_t count_docks(const world::World& world) {
+  return static_cast<std::size_t>(
+      std::count_if(world.emitters.begin(), world.emitters.end(),
+                    [](const world::Emitter& e) { return e.kind == world::Emitter::Kind::dock; }));
+}
+
+std::size_t count_magnets(const world::World& world) {
+  std::size_t magnets = world.magnets.size();
+  for (const world::Mover& mover : world.movers) magnets += mover.magnets.size();
+  return magnets;
+}
+
+}  // namespace sf::apps

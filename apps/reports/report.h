@@ -1,0 +1,136 @@
+#pragma once
+// Reports of commands, as rows of a table or as JSON. nlohmann/json stays in the source.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/commands/rank_run.h"
+#include "apps/commands/run_video.h"
+#include "apps/reports/control_report.h"
+#include "base/reading.h"
+#include "farm/farm.h"
+#include "gpu/device.h"
+#include "netio/inbox.h"
+#include "netio/relay.h"
+#include "netio/stream_monitor.h"
+#include "scenarios/explanation.h"
+#include "scenarios/recorded_accuracy.h"
+#include "scenarios/tradeoff.h"
+#include "scenarios/verification.h"
+#include "selftest/case.h"
+#include "sensors/sensor_set.h"
+#include "server/light_service.h"
+#include "server/lockstep.h"
+#include "server/reading_publisher.h"
+#include "server/state_filter.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+/// How a run or a service went.
+struct RunReport {
+  std::string device;
+  bool software = false;
+  std::string caster;  ///< what casts rays
+  std::uint32_t robots = 0;
+  std::uint64_t ticks = 0;
+  double simulated_s = 0.0;
+  double wall_s = 0.0;
+  std::uint64_t contacts = 0;  ///< of robots, that began
+  /// Robots that have been outside of the known space of the world's ROS map; nullopt: it has none.
+  std::optional<std::vector<std::string>> strayed;
+  ControlReport control;  ///< no robots: others decide
+  double move_s = 0.0;    ///< [s] controllers and motion
+  double out_s = 0.0;     ///< [s] packets and recording
+  farm::FarmStats farm;
+  std::uint64_t hash = 0;
+  bool interrupted = false;
+  bool sent = false;  ///< `publisher` counts
+  server::PublisherCounts publisher;
+  bool received = false;  ///< `inbox` counts
+  netio::PacketCounts inbox;
+  std::uint64_t socket_drops = 0;  ///< datagrams that came while the inbox' buffer was full
+  netio::RelayCounts relayed;      ///< to robots, of others' states and start signals
+  server::LightServiceCounts lights;
+  bool filtered = false;  ///< `states` and `clocks` count
+  server::StateFilterCounts states;
+  struct Clock {
+    std::string name;  ///< of the mover
+    estimation::ClockState clock;
+  };
+  std::vector<Clock> clocks;                       ///< of senders of states
+  std::uint64_t lines_left_out = 0;                ///< of the log
+  std::string recording;                           ///< file; empty: none
+  std::uint64_t recorded_bytes = 0;                ///< its size
+  VideoFacts video;                                ///< without a file: none
+  std::string recording_error;                     ///< why it ends before the run; empty: it does not
+  std::optional<server::LockstepCounts> lockstep;  ///< of a service in lockstep
+  std::optional<RankReport> shared;                ///< by several ranks; times are means of theirs, counts sums
+};
+
+/// Results of `selftest`.
+struct SelfTestReport {
+  gpu::DeviceInfo device;
+  std::vector<std::pair<const selftest::Case*, selftest::Outcome>> cases;  ///< that were run
+  std::size_t asked = 0;                                                   ///< to be run; more, where interrupted
+  double seconds = 0.0;                                                    ///< [s] of all of them
+
+  std::size_t passed() const;
+  bool interrupted() const { return cases.size() < asked; }
+  /// All cases were run, one at least, and passed.
+  bool sound() const { return !cases.empty() && passed() == cases.size() && !interrupted(); }
+};
+
+/// Says on standard error how many warnings there are, and the first three of them. @param file that `check` lists all
+/// of
+void print_warnings(const std::string& file, const std::vector<world::Warning>& warnings);
+/// "file:line: warning: message", one a line.
+std::string text_of(std::span<const world::Warning> warnings);
+/// The JSON object with the list of all of them at its end.
+std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings);
+
+/// Says on standard error what a recording lacks.
+void print_damage(const record::Recording& recording);
+
+std::size_t count_robots(const world::World& world);
+/// Ends with the names of the world's robots. @param names that may be suggested for `name`
+[[noreturn]] void refuse_robot(const world::World& world, const std::string& name,
+                               const std::vector<std::string_view>& names);
+/// All that stand still or are carried.
+std::size_t count_magnets(const world::World& world);
+/// Of the infrared emitters; the others are virtual walls.
+std::size_t count_docks(const world::World& world);
+
+std::string json_of(const gpu::DeviceList& list);
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set);
+std::string json_of(const RunReport& facts);
+std::string json_of(const netio::StreamSummary& summary);
+/// One reading; what is infinite or missing is null.
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading);
+
+std::string text_of(const gpu::DeviceList& list);
+std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set);
+std::string text_of(const RunReport& facts);
+/// "5 lasers exact, within 1.03 nm: beams that graze nothing".
+std::string text_of(const sensors::AccuracyStatement& statement);
+std::string text_of(const netio::StreamSummary& summary);
+/// Comma-separated: a heading, then one line per element; what is missing is left out between its commas.
+std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading);
+/// @param recorded the run kept its readings
+std::string text_of(const scenarios::Verification& verification, bool recorded);
+/// @param accuracy null: none was asked for
+std::string json_of(const scenarios::Verification& verification, const scenarios::RecordedAccuracy* accuracy = nullptr);
+std::string text_of(const scenarios::RecordedAccuracy& accuracy);
+std::string text_of(const scenarios::Explanation& explanation);
+std::string json_of(const scenarios::Explanation& explanation);
+std::string text_of(const std::vector<scenarios::ModeResult>& results);
+std::string json_of(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target);
+std::string text_of(const SelfTestReport& test);
+std::string json_of(const SelfTestReport& test);
+/// Where robot and sensor stood, in one line for people.
+std::string place_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                     const base::ReadingBlock& reading);
+
+}  // namespace sf::apps

@@ -1,0 +1,520 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "apps/reports/rate_warnings.h"
+#include "apps/reports/report.h"
+#include "apps/reports/robot_report.h"
+#include "base/hash.h"
+#include "sensors/accuracy.h"
+#include "sensors/laser.h"
+#include "sensors/magnetic_field/truncation.h"
+
+namespace sf::apps {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Names are whatever bytes a world file holds: what is no UTF-8 is replaced.
+std::string dump_json(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string indented(const Json& json) { return dump_json(json, 2) + "\n"; }
+
+Json pose_json(const base::Pose& X) { return {X.x, X.y, base::wrap_angle(X.yaw)}; }
+
+Json reasons(const netio::PacketCounts& counts) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < netio::kPacketStatuses; ++i) {
+    const auto reason = static_cast<netio::PacketStatus>(i);
+    if (counts[reason] > 0) json[std::string(name(reason))] = counts[reason];
+  }
+  return json;
+}
+
+Json spat_json(const server::LightCounts& heard) {
+  return {{"messages", heard.messages},
+          {"states", heard.states},
+          {"others", heard.others},
+          {"invalid", heard.invalid},
+          {"refused", heard.refused}};
+}
+
+std::uint64_t count_rays(const netio::StreamSummary& summary) {
+  const auto lasers = summary.of.find(std::string(sensors::laser_type.name));
+  return lasers == summary.of.end() ? 0 : lasers->second.elements;
+}
+
+Json warnings_json(const std::vector<world::Warning>& warnings) {
+  Json json = Json::array();
+  for (const world::Warning& w : warnings) json.push_back({{"file", w.file}, {"line", w.line}, {"message", w.message}});
+  return json;
+}
+
+/// JSON has no infinite numbers: these become null.
+Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// Of a noisy sensor.
+Json noise_json(double bound_without_noise, double sigma) {
+  return {{"bound_without_noise", finite_json(bound_without_noise)}, {"sigma", finite_json(sigma)}};
+}
+
+Json statements_json(const std::vector<sensors::AccuracyStatement>& statements) {
+  Json json = Json::array();
+  for (const sensors::AccuracyStatement& s : statements) {
+    json.push_back({{"type", s.type->name},
+                    {"sensors", s.sensors},
+                    {"mode", sensors::word_of(*s.type, s.mode)},
+                    {"bound", finite_json(s.error())},
+                    {"unit", sensors::unit_of(*s.type)},
+                    {"condition", s.bound.condition}});
+    if (s.sigma > 0.0) json.back().update(noise_json(s.bound.error, s.sigma));
+  }
+  return json;
+}
+
+Json number_json(double value, bool whole) {
+  if (whole && std::isfinite(value)) return static_cast<std::int64_t>(value);
+  return value;  // printed as null where it is not finite
+}
+
+std::string_view word_of(base::QualityFlag quality) {
+  constexpr std::string_view kWords[] = {"no", "not cast", "grazing", "not straight", "extrapolated", "too near"};
+  return kWords[static_cast<std::size_t>(quality)];
+}
+
+/// One element's columns, by name. Beams have their bearing and the model that they met too.
+Json element_json(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading,
+                  std::uint32_t i) {
+  const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
+  Json json = Json::object();
+  if (type.is_scan) json["bearing_rad"] = bearing_of(sensor_set.row(reading), i);
+  std::size_t at = i * element_width(type);
+  for (const sensors::Column& column : type.columns) {
+    Json numbers = Json::array();
+    for (std::uint32_t k = 0; k < column.width; ++k) numbers.push_back(number_json(reading.values[at++], column.whole));
+    json[std::string(column.name)] = column.width == 1 ? numbers[0] : numbers;
+  }
+  if (type.is_scan) json["hit"] = reading.hits[i] == base::kNoHit ? Json() : Json(world.models[reading.hits[i]].name);
+  if (!type.list.empty() && !reading.quality.empty() && reading.quality[i] != base::QualityFlag::none)
+    json["unsure"] = word_of(reading.quality[i]);
+  return json;
+}
+
+Json error_json(const control::ErrorSummary& f) {
+  return {{"steps", f.steps}, {"mean", f.mean}, {"abs_mean", f.abs_mean}};
+}
+
+Json localization_json(const control::LocalizationError& f) {
+  return {{"steps", f.steps}, {"rms_m", f.rms()}, {"rms_deg", f.yaw_rms() * 180.0 / M_PI}, {"largest_m", f.max}};
+}
+
+Json control_json(const ControlReport& f) {
+  Json json{{"controller", f.controller}, {"robots", f.robots}, {"done", f.done}};
+  if (f.error.steps > 0) json["error"] = error_json(f.error);
+  if (f.localization.steps > 0) json["localization"] = localization_json(f.localization);
+  if (f.has_goals) json["checkpoints"] = f.checkpoints;
+  json["standing"] = Json::array();
+  for (const Standing& s : f.standing)
+    json["standing"].push_back(
+        {{"reason", s.reason}, {"robots", s.robots}, {"names", s.names}, {"longest_s", s.seconds}});
+  return json;
+}
+
+/// Non-zero counts by verdict, states beyond the limit of a tick, and the senders' clocks.
+Json states_json(const RunReport& f) {
+  Json json{{"by_verdict", Json::object()},
+            {"by_clock", Json::object()},
+            {"beyond_limit", f.states.flooded},
+            {"clocks", Json::array()}};
+  for (std::size_t k = 0; k < f.states.states.size(); ++k)
+    if (f.states.states[k] > 0)
+      json["by_verdict"][std::string(name(static_cast<estimation::Verdict>(k)))] = f.states.states[k];
+  for (std::size_t k = 0; k < f.states.clocks.size(); ++k)
+    if (f.states.clocks[k] > 0)
+      json["by_clock"][std::string(name(static_cast<estimation::ClockVerdict>(k)))] = f.states.clocks[k];
+  for (const RunReport::Clock& each : f.clocks)
+    json["clocks"].push_back({{"name", each.name},
+                              {"offset_s", 1e-9 * static_cast<double>(each.clock.offset)},
+                              {"drift_ppm", each.clock.drift_known ? Json(1e6 * each.clock.drift) : Json()},
+                              {"steps", each.clock.steps}});
+  return json;
+}
+
+Json injected(const netio::DelayCounts& counts) {
+  return {{"passed", counts.passed},
+          {"lost", counts.lost},
+          {"full", counts.full},
+          {"duplicated", counts.duplicated},
+          {"corrupted", counts.corrupted}};
+}
+
+Json link_json(const server::LinkCounts& link) {
+  const netio::ReceiverCounts& in = link.readings;
+  return {{"sent", {{"packets", link.sent.sent}, {"failed", link.sent.failed}, {"dropped", link.sent.dropped}}},
+          {"readings", link.whole},
+          {"stale_readings", link.stale},
+          {"sensor_packets",
+           {{"packets", in.packets.total()},
+            {"by_reason", reasons(in.packets)},
+            {"late", in.late},
+            {"duplicates", in.duplicates},
+            {"leaps", in.jumps},
+            {"lost", in.lost},
+            {"restarts", in.restarts}}},
+          {"relayed", {{"packets", link.packets.total()}, {"by_reason", reasons(link.packets)}}},
+          {"socket_drops", link.socket_drops},
+          {"injected", {{"out", injected(link.out)}, {"in", injected(link.in)}}}};
+}
+
+}  // namespace
+
+std::string json_of(const gpu::DeviceList& list) {
+  Json rows = Json::array();
+  for (const gpu::DeviceInfo& d : list.devices)
+    rows.push_back({{"name", d.name},
+                    {"driver", d.driver},
+                    {"api", d.api},
+                    {"kind", d.kind},
+                    {"software", d.software},
+                    {"self_check", d.self_check},
+                    {"chosen", d.chosen},
+                    {"reason", d.reason}});
+  Json json{{"devices", rows}};
+  if (!list.problem.empty()) json["problem"] = list.problem;
+  return indented(json);
+}
+
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set) {
+  Json sensors = Json::object(), rates = Json::object();
+  for (const sensors::SensorType* type : sensors::sensor_types()) {
+    const auto* group = sensor_set.group(type->id);
+    sensors[std::string(type->name)] = group == nullptr ? 0 : group->rows.size();
+    if (group == nullptr) continue;
+    const auto [least, most] = rates_of(*group);
+    rates[std::string(type->name)] = {least, most};
+  }
+  const sensors::MagnetSummary field = sensors::summarize_magnets(world);
+  const std::size_t docks = count_docks(world);
+  std::size_t segments = world.walls.size();
+  for (const world::Mover& mover : world.movers) segments += mover.body.size();
+  const world::Extent& e = world.extent;
+  return indented({{"world", world.name},
+                   {"models", world.models.size()},
+                   {"robots", count_robots(world)},
+                   {"tags", world.movers.size() - count_robots(world)},
+                   {"sensors", sensors},
+                   {"rates_hz", rates},
+                   {"between_ticks", types_between_ticks(sensor_set, world.interval)},
+                   {"segments", world.walls.size()},
+                   {"segments_with_movers", segments},
+                   {"magnets", count_magnets(world)},
+                   {"magnet_cutoff_m", field.cutoff_m},
+                   {"field_truncation_T", field.bound_T},
+                   {"field_truncation_height_m", field.height_m},
+                   {"paint", world.lane_markings.size()},
+                   {"lights", world.lights.size()},
+                   {"docks", docks},
+                   {"virtual_walls", world.emitters.size() - docks},
+                   {"drops", world.floor_holes.size()},
+                   {"paths", world.paths.size()},
+                   {"road_resolution_m", world.road_resolution},
+                   {"extent", {e.x_min, e.y_min, e.x_max, e.y_max}},
+                   {"interval_s", world.interval},
+                   {"accuracy", statements_json(sensors::accuracy_statements(world, sensor_set))},
+                   {"kept", world.unmodelled},
+                   {"hash", base::hash_hex(world.hash)},
+                   {"warnings", warnings_json(world.warnings)}});
+}
+
+std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings) {
+  const std::size_t end = json.find_last_not_of(" \n", json.rfind('}') - 1) + 1;
+  return json.insert(end, ",\n  \"warnings\": " + dump_json(warnings_json(warnings)));
+}
+
+std::string json_of(const RunReport& f) {
+  Json json{{"device", f.device},
+            {"software_device", f.software},
+            {"caster", f.caster},
+            {"robots", f.robots},
+            {"ticks", f.ticks},
+            {"simulated_s", f.simulated_s},
+            {"wall_s", f.wall_s},
+            {"real_time_factor", f.wall_s > 0.0 ? f.simulated_s / f.wall_s : 0.0},
+            {"rays", f.farm.work.rays},
+            {"rays_per_s", f.wall_s > 0.0 ? static_cast<double>(f.farm.work.rays) / f.wall_s : 0.0},
+            {"readings", f.farm.readings},
+            {"given_again", f.farm.reused},
+            {"missed", f.farm.missed},
+            {"batches", f.farm.batches},
+            {"beams_in_doubt", f.farm.work.uncertain},
+            {"cells_built", f.farm.work.cells_built},
+            {"host_scans", f.farm.work.host_scans},
+            {"contacts", f.contacts},
+            {"hash", base::hash_hex(f.hash)},
+            {"interrupted", f.interrupted},
+            {"stages_s",
+             {{"move", f.move_s},
+              {"place", f.farm.place_s},
+              {"lists", f.farm.lists_s},
+              {"device", f.farm.device_s},
+              {"collect", f.farm.collect_s},
+              {"out", f.out_s}}}};
+  if (f.shared)
+    json["shared"] = {{"ranks", f.shared->ranks},
+                      {"bytes_per_robot_and_tick", f.shared->bytes},
+                      {"wait_s", f.shared->wait_s},
+                      {"imbalance", f.shared->imbalance}};
+  if (f.shared && f.shared->passed_on) json["shared"]["passed_on"] = *f.shared->passed_on;
+  if (f.farm.work.dipoles > 0) json["dipoles"] = f.farm.work.dipoles;
+  if (f.control.robots > 0) json["control"] = control_json(f.control);
+  if (f.strayed) json["outside_known_space"] = *f.strayed;
+  if (f.sent)
+    json["packets"] = {{"sent", f.publisher.packets.sent},       {"bytes", f.publisher.packets.sent_bytes},
+                       {"failed", f.publisher.packets.failed},   {"dropped", f.publisher.packets.dropped},
+                       {"not_numbers", f.publisher.not_numbers}, {"first_failure", f.publisher.packets.first_failure}};
+  if (f.received) {
+    json["received"] = reasons(f.inbox);
+    json["socket_drops"] = f.socket_drops;
+    const server::LightCounts& heard = f.lights.heard;
+    json["lights"] = {{"packets", heard.packets},
+                      {"states", heard.states},
+                      {"spat", spat_json(heard)},
+                      {"silences", heard.silences},
+                      {"sent", f.lights.sent}};
+    json["relayed"] = {{"states", f.relayed.states},
+                       {"datagrams", f.relayed.datagrams},
+                       {"waited", f.relayed.waited},
+                       {"starts", f.relayed.starts}};
+    if (f.filtered) json["states"] = states_json(f);
+    json["log_lines_left_out"] = f.lines_left_out;
+  }
+  if (f.lockstep)
+    json["lockstep"] = {{"commands", f.lockstep->commands},
+                        {"repeated", f.lockstep->repeated},
+                        {"refused", f.lockstep->refused},
+                        {"fetched", f.lockstep->fetched},
+                        {"lost_robots", f.lockstep->lost_robots}};
+  if (!f.recording.empty()) {
+    json["recording"] = f.recording;
+    json["recording_bytes"] = f.recorded_bytes;
+    if (!f.recording_error.empty()) json["recording_error"] = f.recording_error;
+  }
+  if (!f.video.file.empty())
+    json["video"] = {
+        {"file", f.video.file}, {"frames", f.video.frames}, {"seconds", f.video.seconds}, {"bytes", f.video.bytes}};
+  return indented(json);
+}
+
+std::string json_of(const netio::StreamSummary& s) {
+  Json sensors = Json::object();
+  for (const auto& [type, share] : s.of) sensors[type] = {{"good", share.good}, {"elements", share.elements}};
+  return indented({{"packets", s.datagrams},
+                   {"bytes", s.bytes},
+                   {"good", s.good},
+                   {"rays", count_rays(s)},
+                   {"sensors", sensors},
+                   {"stale_states", s.stale_states},
+                   {"oldest_state_s", 1e-9 * static_cast<double>(s.oldest_state)},
+                   {"lost", s.lost},
+                   {"duplicates", s.duplicates},
+                   {"reordered", s.reordered},
+                   {"ports", s.ports},
+                   {"silent_ports", s.silent_ports},
+                   {"socket_drops", s.socket_drops},
+                   {"by_reason", reasons(s.counts)}});
+}
+
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                    const base::ReadingBlock& reading) {
+  const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
+  Json head{{"robot", world.movers[reading.mover].name},
+            {"sensor", reading.sensor},
+            {"sensor_name", sensor_set.row(reading).name},
+            {"type", type.name},
+            {"pose", pose_json(reading.X_WM)},
+            {"sensor_pose", pose_json(reading.X_WS)}};
+  if (type.bound != nullptr) {
+    head["accuracy"] = sensors::word_of(type, reading.mode);
+    const double sigma = sensor_set.row(reading).sigma;
+    head["bound"] = sigma > 0.0 ? Json() : finite_json(reading.bound);
+    if (sigma > 0.0) head.update(noise_json(reading.bound_without_noise, sigma));
+  }
+  if (type.list.empty() && !reading.quality.empty()) head["unsure"] = word_of(reading.quality.front());
+  if (type.list.empty()) {
+    head.update(element_json(world, sensor_set, reading, 0));
+    return dump_json(head) + "\n";
+  }
+  // Elements are lines of their own.
+  std::string text = dump_json(head);
+  text.back() = ',';
+  text += fmt::format("\n\"{}\": [", type.list);
+  for (std::uint32_t i = 0; i < reading.values.size() / element_width(type); ++i)
+    text += (i == 0 ? "\n  " : ",\n  ") + dump_json(element_json(world, sensor_set, reading, i));
+  return text + "\n]}\n";
+}
+
+std::string json_of(const server::RobotClientStats& f) {
+  Json json{{"robot", f.robot},       {"id", f.id},         {"controller", f.controller},
+            {"farm", f.farm},         {"wall_s", f.wall_s}, {"steps", f.steps},
+            {"started", f.started},   {"done", f.done},     {"answered", f.answered},
+            {"contacts", f.contacts}, {"stops", f.stops},   {"log_lines_left_out", f.lines_left_out}};
+  json.update(link_json(f.link));
+  if (f.cameras) {
+    const server::PositionErrors& e = f.cameras->errors;
+    json["positions"] = {{"packets", f.cameras->packets.total()},
+                         {"by_reason", reasons(f.cameras->packets)},
+                         {"compared", e.count},
+                         {"rms_m", e.rms()},
+                         {"largest_m", e.largest},
+                         {"largest_rad", e.largest_heading}};
+  }
+  if (f.map)
+    json["own_map"] = {{"scans", f.map->scans},
+                       {"maps", f.map->maps},
+                       {"packets", f.map->sent.sent},
+                       {"failed", f.map->sent.failed},
+                       {"dropped", f.map->sent.dropped}};
+  if (f.create)
+    json["create"] = {{"frames", f.create->frames},
+                      {"wrong_checksums", f.create->wrong_checksums},
+                      {"skipped_bytes", f.create->skipped_bytes},
+                      {"starts", f.create->starts},
+                      {"lines", f.create->lines},
+                      {"refused", f.create->refused}};
+  if (f.listens_for_spat) json["spat"] = spat_json(f.lights);
+  json["lights"] = {{"packets", f.lights.packets}, {"states", f.lights.states}, {"silences", f.lights.silences}};
+  json["distance_m"] = f.distance_m;
+  json["pose"] = pose_json(f.pose);
+  if (f.error.steps > 0) json["error"] = error_json(f.error);
+  if (f.localization.steps > 0) json["localization"] = localization_json(f.localization);
+  return indented(json);
+}
+
+namespace {
+
+Json accuracy_json(const scenarios::RecordedAccuracy& accuracy) {
+  Json json{{"mode", accuracy.words},
+            {"against", "exact"},
+            {"with_noise", false},
+            {"ticks", accuracy.ticks},
+            {"interrupted", accuracy.interrupted},
+            {"within_bounds", accuracy.within_bounds()},
+            {"notes", accuracy.notes},
+            {"types", Json::array()}};
+  for (const scenarios::ModeErrors& t : accuracy.types) {
+    const scenarios::ErrorDistribution& e = t.errors;
+    json["types"].push_back({{"sensor", t.sensor},
+                             {"mode", t.mode},
+                             {"unit", t.unit},
+                             {"recorded_with_noise", t.noisy},
+                             {"count", e.count()},
+                             {"zero", e.zero()},
+                             {"median", finite_json(e.quantile(0.5))},
+                             {"p99", finite_json(e.quantile(0.99))},
+                             {"max", finite_json(e.max())},
+                             {"covered", e.covered()},
+                             {"covered_max", e.covered() > 0.0 ? finite_json(e.covered_max()) : Json()},
+                             {"bound", finite_json(e.bound())}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string json_of(const scenarios::Verification& verification, const scenarios::RecordedAccuracy* accuracy) {
+  const auto compared = [](const scenarios::Comparison& c) {
+    return Json{{"type", c.type},           {"readings", c.readings}, {"numbers", c.values},
+                {"different", c.different}, {"largest", c.largest},   {"first", c.first}};
+  };
+  Json json{{"ticks", verification.ticks},
+            {"sound", verification.sound() && !verification.interrupted},
+            {"interrupted", verification.interrupted},
+            {"truncated", verification.truncated},
+            {"missing", verification.missing},
+            {"damage", verification.damage},
+            {"scans", verification.scans},
+            {"skipped", verification.skipped},
+            {"reference", compared(verification.reference)}};
+  json["again"] = Json::array();
+  for (const scenarios::Comparison& c : verification.recomputed) json["again"].push_back(compared(c));
+  if (accuracy != nullptr) json["accuracy"] = accuracy_json(*accuracy);
+  return indented(json);
+}
+
+std::string json_of(const SelfTestReport& test) {
+  Json json{{"device", test.device.name}, {"software", test.device.software},  {"asked", test.asked},
+            {"run", test.cases.size()},   {"passed", test.passed()},           {"sound", test.sound()},
+            {"seconds", test.seconds},    {"interrupted", test.interrupted()}, {"cases", Json::array()}};
+  for (const auto& [c, o] : test.cases)
+    json["cases"].push_back({{"group", c->group},
+                             {"case", c->name},
+                             {"why", c->why},
+                             {"ok", o.passed()},
+                             {"checks", o.checks},
+                             {"failed", o.failed},
+                             {"error", o.error},
+                             {"allowed", o.allowed},
+                             {"unit", c->unit},
+                             {"failure", o.failure},
+                             {"notes", o.notes},
+                             {"seconds", o.seconds}});
+  return indented(json);
+}
+
+std::string json_of(const scenarios::Explanation& e) {
+  Json json{{"ticks", e.ticks},        {"build_s", e.build},
+            {"first_tick_s", e.first}, {"silent_tick_s", e.silent},
+            {"tick_s", e.all},         {"caster", e.caster},
+            {"walls", e.walls},        {"resident_bytes", e.resident},
+            {"absent", e.absent},      {"types", Json::array()},
+            {"slices", Json::array()}, {"accuracy", statements_json(e.statements)}};
+  for (const scenarios::WallSlice& s : e.slices)
+    json["slices"].push_back({{"z_m", s.z}, {"sensors", s.sensors}, {"walls", s.walls}});
+  for (const scenarios::SensorTypeCost& k : e.types) {
+    Json tables = Json::array();
+    for (const gpu::DeviceAllocation& h : k.tables) tables.push_back({{"name", h.name}, {"bytes", h.bytes}});
+    json["types"].push_back({{"type", k.type},
+                             {"sensors", k.sensors},
+                             {"robots", k.robots},
+                             {"rate_hz", {k.least_rate, k.most_rate}},
+                             {"tick_s", k.tick},
+                             {"readings_per_tick", k.readings},
+                             {"given_again_per_tick", k.reused},
+                             {"rays", k.work.rays},
+                             {"doubts", k.work.uncertain},
+                             {"cells_built", k.work.cells_built},
+                             {"dipoles", k.work.dipoles},
+                             {"movers_near", k.work.movers_in_range},
+                             {"movers_met", k.work.movers_visible},
+                             {"host_scans", k.work.host_scans},
+                             {"kernels", k.kernels},
+                             {"bytes", k.bytes},
+                             {"tables", tables}});
+  }
+  return indented(json);
+}
+
+std::string json_of(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target) {
+  Json json{{"modes", Json::array()},
+            {"advice", scenarios::accuracy_words(results, scenarios::select_modes(results, target))}};
+  for (const scenarios::ModeResult& g : results)
+    json["modes"].push_back({{"sensor", g.sensor},
+                             {"mode", g.mode},
+                             {"unit", g.unit},
+                             {"rate_per_s", g.rate},
+                             {"tick_s", g.tick},
+                             {"covered", g.covered},
+                             {"covered_max_error", g.covered > 0.0 ? finite_json(g.covered_max) : Json()},
+                             {"covered_bound", finite_json(g.bound)},
+                             {"all_median_error", finite_json(g.median)},
+                             {"all_p99_error", finite_json(g.p99)},
+                             {"all_max_error", finite_json(g.max)},
+                             {"pareto", g.front}});
+  return indented(json);
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,88 @@
+#include "apps/reports/robot_report.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "apps/reports/control_report.h"
+#include "apps/reports/text.h"
+
+namespace sf::apps {
+
+namespace {
+
+/// "laser 120, laneedge 30".
+std::string types_text(const server::LinkCounts& link) {
+  std::string text;
+  for (const auto& [type, count] : link.whole) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", type, count);
+  return text.empty() ? "it has no sensors" : text;
+}
+
+std::string injected_text(const netio::DelayCounts& counts) {
+  return fmt::format("{} passed, {} lost{}", counts.passed, counts.lost,
+                     counts.full > 0 ? fmt::format(", {} too many at once", counts.full) : "");
+}
+
+std::string link_text(const server::LinkCounts& link) {
+  const netio::ReceiverCounts& in = link.readings;
+  std::string text = row("packets sent", link.sent.sent);
+  if (link.sent.failed + link.sent.dropped > 0)
+    text += row("packets not sent", "{} failed ({}), {} dropped", link.sent.failed, link.sent.first_failure,
+                link.sent.dropped);
+  text += row("readings", types_text(link));
+  text += row("sensor packets", netio::text(in.packets));
+  if (link.stale > 0) text += row("", counted(link.stale, "reading") + " of a stale state");
+  text += row("", "{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost);
+  if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " too far ahead to be believed");
+  if (link.socket_drops > 0) text += row("", counted(link.socket_drops, "packet") + " dropped by the operating system");
+  if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " began anew");
+  text += row("V2V and START", netio::text(link.packets));
+  if (link.out.lost + link.in.lost > 0) {
+    text += row("injected link, out", injected_text(link.out));
+    text += row("  in", injected_text(link.in));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const server::RobotClientStats& f) {
+  std::string text = f.answered ? "" : fmt::format("Nothing came from the farm at {}.\n", f.farm);
+  if (!f.started) text += "The start signal did not come.\n";
+  text += row("robot", "{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : "");
+  text += row("ran", "{:.2f} s, {}", f.wall_s, counted(f.steps, "step"));
+  text += link_text(f.link);
+  if (f.map) {
+    text += row("own map", "{} entered, {} sent in {}", counted(f.map->scans, "scan"), counted(f.map->maps, "map"),
+                counted(f.map->sent.sent, "packet"));
+    if (f.map->sent.failed + f.map->sent.dropped > 0)
+      text += row("", "{} failed ({}), {} dropped", f.map->sent.failed, f.map->sent.first_failure, f.map->sent.dropped);
+  }
+  if (f.create)
+    text += row("Create", "{}, {} with a wrong checksum, {} outside of frames; started {}, line opened {}",
+                counted(f.create->frames, "frame"), f.create->wrong_checksums, counted(f.create->skipped_bytes, "byte"),
+                counted(f.create->starts, "time"), counted(f.create->lines, "time"));
+  if (f.listens_for_spat)
+    text += row("SPaT", "{}, {} of other lights or MAP, {} invalid", counted(f.lights.messages, "message"),
+                f.lights.others, f.lights.invalid);
+  if (f.lights.packets > 0) text += row("V2I", "{} of lights", counted(f.lights.packets, "packet"));
+  if (f.lights.silences > 0) text += row("  silent", counted(f.lights.silences, "time") + " a light that was heard");
+  text += row("driven", "{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
+              f.pose.yaw * 180.0 / M_PI);
+  if (f.cameras) {
+    text += row("positions", "{} by TAG packets, of which {} used", netio::text(f.cameras->packets),
+                f.cameras->states.states[static_cast<std::size_t>(estimation::Verdict::used)]);
+    const server::PositionErrors& e = f.cameras->errors;
+    if (e.count > 0)
+      text += row("position error", "{:.1f} mm RMS, {:.1f} mm and {:.2f} degrees largest", 1e3 * e.rms(),
+                  1e3 * e.largest, e.largest_heading * 180.0 / M_PI);
+  }
+  text += row("contacts", "{} that began", f.contacts);
+  if (f.stops > 0) text += row("stood", counted(f.stops, "time") + " for want of readings or positions");
+  if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
+  if (f.error.steps > 0) text += row("control error", text_of(f.error));
+  if (f.localization.steps > 0) text += row("localization error", text_of(f.localization));
+  return text;
+}
+
+}  // namespace sf::apps

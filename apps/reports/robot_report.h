@@ -1,0 +1,13 @@
+#pragma once
+// How a robot's process went, printed.
+
+#include <string>
+
+#include "server/robot_client.h"
+
+namespace sf::apps {
+
+std::string json_of(const server::RobotClientStats& facts);
+std::string text_of(const server::RobotClientStats& facts);
+
+}  // namespace sf::apps

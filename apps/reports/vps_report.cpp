@@ -1,0 +1,66 @@
+#include "apps/reports/vps_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/reports/text.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+
+std::string error_row(std::string_view name, const vision::RmsError& error, double scale, std::string_view unit) {
+  if (error.count == 0) return "";
+  return row(name, "{:.3f} {} RMS, {:.3f} largest", scale * error.rms(), unit, scale * error.largest);
+}
+
+std::string accuracy_text(const vision::Accuracy& a) {
+  return error_row("position error", a.position, 1e3, "mm") +
+         error_row("heading error", a.heading, kDegrees, "degrees") +
+         error_row("velocity error", a.velocity, 1e3, "mm/s") +
+         error_row("turn rate error", a.turn, kDegrees, "degrees/s") +
+         row("missed, false", "{}, {} of {} reported", a.missed, a.wrong, a.position.count + a.wrong);
+}
+
+}  // namespace
+
+std::string text_of(const VpsReport& r) {
+  const auto images = static_cast<double>(r.counts.images);
+  std::string text = row("cameras", r.cameras) + row("images", r.counts.images);
+  if (r.counts.unreadable > 0) text += row("", "{} of them unreadable", r.counts.unreadable);
+  if (r.counts.frozen > 0)
+    text += row("", "{} of them the same as the one before: a camera is frozen", r.counts.frozen);
+  if (r.truth) {
+    text += row("robots", "{} rendered, by {}", r.truth->robots, counted(r.truth->accepted, "packet"));
+    if (r.truth->refused > 0)
+      text += row("", "{} refused: no V2V, or of a robot without a tag in the dictionary", r.truth->refused);
+  }
+  if (r.counts.images > 0)
+    text += row("processing", "{:.1f} images/s, {:.1f} ms of CPU time an image", images / r.processing_s,
+                1e3 * r.processing_cpu_s / images);
+  text += row("sightings", "{}; {} tracked", r.counts.sightings, counted(r.tags.size(), "tag"));
+  if (r.counts.unlisted > 0) text += row("", "{} with ids that the file does not list", r.counts.unlisted);
+  if (r.counts.unfitted > 0) text += row("", "{} refused: fewer than three sides with an edge", r.counts.unfitted);
+  if (r.counts.misfitted > 0)
+    text += row("", "{} refused: side or shape not as stated (tag_side, tag_height, calibration?)", r.counts.misfitted);
+  if (r.refused > 0) text += row("", "{} refused: too far from the tag's last place, or out of order", r.refused);
+  if (r.accuracy) text += accuracy_text(*r.accuracy);
+  if (r.sent) {
+    text += row("packets", "{} sent, {} failed", r.sent->sent, r.sent->failed + r.sent->dropped);
+    if (r.unaddressed > 0) text += row("", "{} not sent: no address, or id 0", r.unaddressed);
+    if (!r.sent->first_failure.empty()) text += row("", r.sent->first_failure);
+  }
+  if (r.tags.empty()) return text;
+  text += fmt::format("\n{:>6} {:>9} {:>9} {:>9} {:>8} {:>10} {:>8}\n", "tag", "x m", "y m", "yaw deg", "m/s", "deg/s",
+                      "states");
+  for (const auto& [id, tag] : r.tags)
+    text += fmt::format("{:>6} {:>9.4f} {:>9.4f} {:>9.2f} {:>8.3f} {:>10.2f} {:>8}\n", id, tag.X_WT.x, tag.X_WT.y,
+                        kDegrees * tag.X_WT.yaw, std::hypot(tag.velocity.x, tag.velocity.y), kDegrees * tag.turn,
+                        r.reported.at(id));
+  return text;
+}
+
+}  // namespace sf::apps

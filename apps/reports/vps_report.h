@@ -1,0 +1,31 @@
+#pragma once
+// The report of `vps`.
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "apps/options/camera_inputs.h"
+#include "netio/outbox.h"
+#include "vision/accuracy.h"
+
+namespace sf::apps {
+
+struct VpsReport {
+  std::size_t cameras = 0;
+  vision::DetectionCounts counts;
+  std::uint64_t refused = 0;                         ///< by the tracker
+  double processing_s = 0.0;                         ///< [s] of detection and tracking, on all cores
+  double processing_cpu_s = 0.0;                     ///< [s] CPU time of the same
+  std::map<std::uint32_t, vision::TrackedTag> tags;  ///< the newest state of each
+  std::map<std::uint32_t, std::uint64_t> reported;   ///< states of each
+  std::optional<vision::Accuracy> accuracy;          ///< of rendered images
+  std::optional<netio::OutboxCounts> sent;
+  std::uint64_t unaddressed = 0;
+  std::optional<TruthCounts> truth;  ///< of rendered robots
+};
+
+std::string text_of(const VpsReport& report);
+std::string json_of(const VpsReport& report);
+
+}  // namespace sf::apps

@@ -1,0 +1,42 @@
+#pragma once
+// Services for clients of rmw_fastrtps, by Fast DDS in a process of its own: a datagram of a stranger may end that
+// process, which is then started again, and never the run.
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bridges/dds.h"
+#include "bridges/dds_outbox.h"
+#include "bridges/pipe_frames.h"
+
+namespace sf::bridges {
+
+struct FastService {
+  DdsEndpoint requests, replies;
+};
+
+struct FastOptions {
+  DdsOptions dds;  ///< messages that it receives have `DdsSender::fast`, and the number of their service as `reader`
+  std::vector<FastService> services;
+};
+
+class FastServices {
+ public:
+  virtual ~FastServices() = default;  ///< after it, nothing is received
+  /// Takes the answer to a request. Never waits. @param reply its writer is the number of the service
+  virtual void add(DdsReply&& reply) = 0;
+  virtual DdsOutbox::Counts counts() const = 0;
+};
+
+/// @throws std::runtime_error saying why there are none
+using OpenFastServices = std::unique_ptr<FastServices> (*)(const FastOptions& options);
+/// Starts the process `sensorfarm_fastdds`, which is installed beside the plug-ins.
+std::unique_ptr<FastServices> open_fast_services(const FastOptions& options);
+
+}  // namespace sf::bridges

@@ -1,0 +1,48 @@
+#pragma once
+// Requests and commands of Player's clients to devices.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bridges/player/devices.h"
+#include "bridges/player/exchange.h"
+
+namespace sf::bridges::player {
+
+/// The answer to a request.
+struct Answer {
+  enum class Kind { granted, refused, malformed } kind = Kind::refused;
+  base::Bytes payload;  ///< where granted
+};
+
+/// One thread.
+class Requester {
+ public:
+  Requester(const Scene& scene, const Devices& devices, Exchange& exchange);
+
+  Answer request(std::uint32_t device, std::uint32_t subtype, std::span<const std::uint8_t> payload);
+  /// @return false when it is malformed. Commands that a device does not know, or that are not finite, are ignored
+  bool command(std::uint32_t device, std::uint32_t subtype, std::span<const std::uint8_t> payload);
+  /// False after a client has turned the device off, until one turns it on.
+  bool is_on(std::uint32_t device) const { return on_[device] != 0; }
+
+ private:
+  Answer to_sensor(std::uint32_t device, std::uint32_t subtype, std::span<const std::uint8_t> payload);
+  Answer to_position(const Device& device, std::uint32_t subtype, std::span<const std::uint8_t> payload);
+  Answer to_simulation(std::uint32_t subtype, std::span<const std::uint8_t> payload);
+  Answer to_map(std::uint32_t subtype, std::span<const std::uint8_t> payload);
+  std::optional<base::Pose> pose_of(const std::string& name);
+  std::optional<std::uint32_t> find_mover(const std::string& name) const;
+  bool drive(const Device& device, std::uint32_t subtype, XdrReader& xdr);
+  void drive(std::uint32_t mover, position2d::Command command, const std::array<double, 6>& numbers);
+
+  const Scene scene_;
+  const Devices& devices_;
+  Exchange& exchange_;
+  std::vector<char> on_;  ///< per device
+};
+
+}  // namespace sf::bridges::player

@@ -1,0 +1,25 @@
+#pragma once
+// The walls of a world as Player's map: line segments, and a grid of free and occupied cells.
+
+#include <cstdint>
+
+#include "bridges/player/xdr.h"
+#include "record/run_info.h"
+#include "world/world.h"
+
+namespace sf::bridges::player {
+
+/// A part of the grid.
+struct Tile {
+  std::uint32_t col = 0, row = 0, width = 0, height = 0;  ///< [cells]
+};
+
+/// player_map_info
+void put_map_info(const record::WorldShape& shape, XdrWriter& xdr);
+/// player_map_data of the part of `tile` that is in the grid, compressed: 1 for occupied cells, else -1.
+/// @return false when it is empty
+bool put_map_tile(const record::WorldShape& shape, const Tile& tile, XdrWriter& xdr);
+/// player_map_data_vector of the walls that stop robots, as many as fit into a message.
+void put_map_segments(const world::World& world, XdrWriter& xdr);
+
+}  // namespace sf::bridges::player

@@ -1,0 +1,35 @@
+#pragma once
+// A Player server (playerstage.sourceforge.net): programs for a Create, a Pioneer or Stage read virtual sensors and
+// drive robots (docs/bridges.md).
+
+#include <memory>
+
+#include "bridges/bridge.h"
+#include "bridges/player/server.h"
+#include "netio/endpoint.h"
+
+namespace sf::bridges {
+
+/// `publish` copies the readings that clients want.
+class PlayerBridge : public Bridge {
+ public:
+  /// @param bind, silent, log_descriptor see player::Server
+  /// @throws base::InputError when a port is in use
+  PlayerBridge(const Scene& scene, const netio::Endpoint& bind, double silent = player::kSilent,
+               int log_descriptor = 2);
+
+  void publish(const base::TickRecord& tick, const RunState& state) override;
+  void publish(const RunState& state) override;
+  void take(Requests& requests) override;
+  std::string describe() const override;
+
+  netio::Endpoint endpoint() const { return server_.endpoint(); }
+  player::ServerCounts counts() const { return server_.counts(); }
+
+ private:
+  player::Devices devices_;
+  player::Exchange exchange_;
+  player::Server server_;
+};
+
+}  // namespace sf::bridges

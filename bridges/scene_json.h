@@ -1,0 +1,13 @@
+#pragma once
+// What the page draws of a world, as JSON: everything that messages do not say, since it does not change.
+
+#include <string>
+
+#include "bridges/viewer_sessions.h"
+
+namespace sf::bridges {
+
+/// The keys are described in docs/bridges.md. Lengths in m, angles in rad, colours as "#rrggbb".
+std::string scene_json(const Scene& scene, ViewerMode mode);
+
+}  // namespace sf::bridges

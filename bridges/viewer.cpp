@@ -1,0 +1,159 @@
+#include "bridges/viewer.h"
+
+#include <algorithm>
+
+#include "bridges/scene_json.h"
+#include "bridges/web_files.h"
+
+namespace sf::bridges {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+// Ticks at 30 Hz come every 33 ms, more or less; none of them is left out.
+constexpr milliseconds kLeastInterval(25);
+constexpr milliseconds kStateInterval(500);  // of the measured speed
+constexpr int kMostWaiting = 4;
+
+std::vector<std::string> drivers_of(const Scene& scene, ViewerMode mode) {
+  std::vector<std::string> topics;
+  if (mode != ViewerMode::run || !scene.simulated) return topics;
+  for (const record::MoverInfo& mover : scene.info.movers) topics.push_back(mover.space + "/cmd_vel");
+  return topics;
+}
+
+std::uint32_t row_of(std::string_view name, std::span<const record::Topic> topics) {
+  const auto found =
+      std::find_if(topics.begin(), topics.end(), [&](const record::Topic& topic) { return topic.name == name; });
+  return static_cast<std::uint32_t>(found - topics.begin());
+}
+
+}  // namespace
+
+Viewer::Viewer(const Scene& scene, const ViewerOptions& options)
+    : messages_(scene.info),
+      scene_json_(scene_json(scene, options.mode)),
+      mode_(options.mode),
+      wishes_(messages_.topics().size()),
+      sessions_({"sensorfarm: " + scene.info.world, options.mode, options.start, options.end,
+                 drivers_of(scene, options.mode)},
+                messages_.topics(), wishes_),
+      fleet_(row_of("/fleet", messages_.topics())),
+      wanted_(messages_.topics().size()),
+      next_(messages_.topics().size()) {
+  std::vector<SharedMessage> latched;
+  messages_.begin([&](const record::TopicMessage& message) {
+    latched.push_back({message.topic, message.log_time,
+                       std::make_shared<const base::Bytes>(message.bytes.begin(), message.bytes.end())});
+  });
+  WebOptions web{options.address, {kSdkV1, kWebSocketV1}, web_files(), options.limits};
+  web.files["/scene.json"] = {"application/json", scene_json_, true};
+  server_ = std::make_unique<WebServer>(std::move(web), sessions_);
+  server_->post([this, latched = std::move(latched)] { sessions_.start(*server_, latched); });
+}
+
+Viewer::~Viewer() = default;
+
+std::string Viewer::describe() const { return "view on " + server_->url(); }
+
+void Viewer::publish(const base::TickRecord& tick, const RunState& state) {
+  if (!last_.empty() && tick.time < last_.time()) messages_.begin([](const record::TopicMessage&) {});  // a new run
+  const bool is_watched = !sessions_.empty();
+  // Copying all readings of a large fleet in every tick would cost more than showing them.
+  is_kept_ = state.paused || pausing_ || (mode_ == ViewerMode::recording && is_watched);
+  last_.store(tick, is_kept_);
+  show(state);
+  paused_shown_ = state.paused;
+  if (!is_watched) return;
+  choose_topics(state.paused);
+  if (!due_.empty() || Clock::now() >= next_time_) send(is_kept_ && !fresh_.empty() ? last_.record() : tick);
+}
+
+void Viewer::take(Requests& requests) {
+  wishes_.take(requests_);
+  const bool waits = requests_.paused.value_or(false) && !state_.paused && !is_kept_ && !last_.empty() &&
+                     mode_ == ViewerMode::run && !sessions_.empty();
+  pausing_ = waits;
+  if (!waits) requests.add(requests_);
+}
+
+void Viewer::publish(const RunState& state) {
+  show(state);
+  if (sessions_.empty() || last_.empty()) return;
+  choose_topics(!paused_shown_);  // ticks may have been left out before the pause
+  paused_shown_ = true;
+  if (!due_.empty()) send(last_.record());
+}
+
+void Viewer::show(const RunState& state) {
+  const Clock::time_point now = Clock::now();
+  RunState next = state;
+  if (now < next_state_) next.measured = state_.measured;
+  const bool changed = next.paused != state_.paused || next.speed != state_.speed || next.runs != state_.runs ||
+                       next.measured != state_.measured;
+  if (shown_ && !changed) return;
+  if (next.measured != state_.measured) next_state_ = now + kStateInterval;
+  shown_ = true;
+  state_ = next;
+  server_->post([this, next, time = last_.time()] { sessions_.show(next, time); });
+}
+
+/// Topics go with the states of the same tick, or readings would be drawn where their robots have been: they wait for
+/// them, but no longer than one interval more, since a seldom reading is in one tick only.
+/// @param all topics that are subscribed, though it may not be their turn
+void Viewer::choose_topics(bool all) {
+  topics_.clear();
+  fresh_.clear();
+  due_.clear();
+  wishes_.topics(topics_, fresh_);
+  const Clock::time_point now = Clock::now();
+  const bool waits = std::binary_search(topics_.begin(), topics_.end(), fleet_) && now < next_[fleet_];
+  for (const std::uint32_t topic : topics_) {
+    const Clock::time_point turn = next_[topic] + (waits && topic != fleet_ ? kLeastInterval : milliseconds(0));
+    if (all || now >= turn || std::binary_search(fresh_.begin(), fresh_.end(), topic)) due_.push_back(topic);
+  }
+}
+
+/// Sends the tick's time, and what it has to say on the topics of `due_`.
+void Viewer::send(const base::TickRecord& tick) {
+  if (waiting_ >= kMostWaiting) {
+    ++dropped_;
+    return;
+  }
+  // A tick that is late does not hold back the next one, which comes sooner after it.
+  const Clock::time_point now = Clock::now();
+  const auto next = [now](Clock::time_point last) { return std::max(last, now - kLeastInterval) + kLeastInterval; };
+  next_time_ = next(next_time_);
+  std::vector<SharedMessage> update;
+  for (const std::uint32_t topic : due_) wanted_[topic] = true;
+  const auto add = [&](const record::TopicMessage& message) {
+    next_[message.topic] = next(next_[message.topic]);
+    update.push_back({message.topic, message.log_time, copy_of(message.bytes)});
+  };
+  messages_.encode(tick, add, wanted_);
+  for (const std::uint32_t topic : due_) wanted_[topic] = false;
+  ++waiting_;
+  server_->post([this, time = tick.time, update = std::move(update)] {
+    --waiting_;
+    sessions_.update(time, update);
+  });
+}
+
+/// Large messages take buffers that all clients have done with: new memory costs more than filling it.
+std::shared_ptr<const base::Bytes> Viewer::copy_of(std::span<const std::uint8_t> message) {
+  constexpr std::size_t kLarge = 16 << 10, kMostBuffers = 8;
+  if (message.size() < kLarge) return std::make_shared<const base::Bytes>(message.begin(), message.end());
+  const auto is_free = [](const std::shared_ptr<base::Bytes>& buffer) { return buffer.use_count() == 1; };
+  const auto free = std::find_if(buffers_.begin(), buffers_.end(), is_free);
+  if (free == buffers_.end()) {
+    auto made = std::make_shared<base::Bytes>(message.begin(), message.end());
+    if (buffers_.size() < kMostBuffers) buffers_.push_back(made);
+    return made;
+  }
+  std::atomic_thread_fence(std::memory_order_acquire);  // the last reader was the server's thread
+  (*free)->assign(message.begin(), message.end());
+  return *free;
+}
+
+}  // namespace sf::bridges

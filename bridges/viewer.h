@@ -1,0 +1,80 @@
+#pragma once
+// The live view: a page in the browser, and Foxglove's own viewers, over one socket.
+//
+//   Viewer viewer(scene, {.address = {"127.0.0.1", 8765}});
+//   puts(viewer.describe());   // view on http://127.0.0.1:8765/
+//
+// The run's thread encodes messages of subscribed topics, each at most 40 times a second of real time; the rest is on
+// the server's thread.
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bridges/bridge.h"
+#include "bridges/last_tick.h"
+#include "bridges/viewer_sessions.h"
+#include "bridges/web_server.h"
+#include "record/tick_messages.h"
+
+namespace sf::bridges {
+
+struct ViewerOptions {
+  WebAddress address;
+  ViewerMode mode = ViewerMode::run;
+  std::int64_t start = 0, end = 0;  ///< [ns] of a recording
+  WebLimits limits;
+};
+
+class Viewer : public Bridge {
+ public:
+  /// @throws base::InputError when the address cannot be had
+  Viewer(const Scene& scene, const ViewerOptions& options);
+  ~Viewer() override;
+
+  void publish(const base::TickRecord& tick, const RunState& state) override;
+  void publish(const RunState& state) override;
+  /// A pause waits for one more tick, of which all readings are kept for those who look at robots meanwhile.
+  void take(Requests& requests) override;
+  std::string describe() const override;
+
+  const WebServer& server() const { return *server_; }
+  /// Updates that no client was sent, since the server's thread was behind.
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void show(const RunState& state);
+  void choose_topics(bool all);
+  void send(const base::TickRecord& tick);
+  std::shared_ptr<const base::Bytes> copy_of(std::span<const std::uint8_t> message);
+
+  record::TickMessages messages_;
+  std::string scene_json_;
+  const ViewerMode mode_;
+  ViewerWishes wishes_;
+  ViewerSessions sessions_;
+  LastTick last_;
+  RunState state_;
+  bool shown_ = false;
+  Clock::time_point next_state_, next_time_;
+  std::uint32_t fleet_;                              ///< topic of the states
+  std::vector<std::uint32_t> topics_, fresh_, due_;  ///< `due_`: to be sent, those of `fresh_` among them
+  std::vector<bool> wanted_;
+  std::vector<Clock::time_point> next_;                ///< per topic: earliest time of its next message
+  std::vector<std::shared_ptr<base::Bytes>> buffers_;  ///< of large messages, used again
+  Requests requests_;
+  bool pausing_ = false;          ///< a pause waits for a tick
+  bool is_kept_ = false;          ///< `last_` has the newest tick's readings
+  bool paused_shown_ = false;     ///< the last tick before the pause was sent
+  std::atomic<int> waiting_ = 0;  ///< updates on their way to the server's thread
+  std::uint64_t dropped_ = 0;
+  std::unique_ptr<WebServer> server_;  ///< last: its thread uses the others
+};
+
+}  // namespace sf::bridges

@@ -1,0 +1,127 @@
+#pragma once
+// Clients of Foxglove's protocol: what each was told, subscribed to and asked for. On the server's thread, but for the
+// functions of `ViewerWishes`.
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "bridges/bridge.h"
+#include "bridges/foxglove_bytes.h"
+#include "bridges/foxglove_messages.h"
+#include "bridges/web_server.h"
+#include "record/tick_messages.h"
+
+namespace sf::bridges {
+
+/// What a bridge shows: how its time runs, and what its users may change.
+enum class ViewerMode {
+  run,       ///< pause, speed, steps, reset; robots take commands
+  service,   ///< nothing
+  recording  ///< pause, speed, steps, and any time of the recording
+};
+
+/// What all clients want, between the server's thread and the run's. Every function returns at once.
+class ViewerWishes {
+ public:
+  explicit ViewerWishes(std::size_t topics) : subscribers_(topics, 0) {}
+
+  void subscribe(std::uint32_t topic, bool on);
+  /// Appends the topics with subscribers to `all`, and those with new ones since the last call to `fresh`.
+  void topics(std::vector<std::uint32_t>& all, std::vector<std::uint32_t>& fresh);
+
+  void command(const Command& command);  ///< a newer one of the same mover replaces it
+  void pause(bool paused);
+  void step();
+  void speed(double speed);
+  void reset();
+  void seek(std::int64_t time);
+  /// Moves all requests to the end of `requests`.
+  void take(Requests& requests);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::uint32_t> subscribers_;  ///< per topic
+  std::set<std::uint32_t> subscribed_, fresh_;
+  Requests requests_;
+};
+
+/// One message of a topic, for all of its subscribers.
+struct SharedMessage {
+  std::uint32_t topic = 0;
+  std::int64_t time = 0;  ///< [ns]
+  std::shared_ptr<const base::Bytes> bytes;
+};
+
+class ViewerSessions : public WebApplication {
+ public:
+  struct About {
+    std::string name;
+    ViewerMode mode = ViewerMode::run;
+    std::int64_t start = 0, end = 0;   ///< [ns] of a recording
+    std::vector<std::string> drivers;  ///< topics that take commands, by mover; empty: none does
+  };
+  ViewerSessions(About about, std::span<const record::Topic> topics, ViewerWishes& wishes);
+
+  /// Set once, before the first client. @param latched messages, at most one per topic
+  void start(WebServer& server, std::vector<SharedMessage> latched);
+
+  void opened(ClientId client, const std::string& protocol) override;
+  void received(ClientId client, bool is_text, std::span<const std::uint8_t> bytes) override;
+  void closed(ClientId client) override;
+
+  bool empty() const { return count_ == 0; }  ///< any thread
+
+  /// Sends one update to all clients: what they subscribed to of `messages`, and the time.
+  void update(std::int64_t time, const std::vector<SharedMessage>& messages);
+  /// Tells clients what changed. @param time [ns]
+  void show(const RunState& state, std::int64_t time);
+
+ private:
+  struct Client {
+    bool is_sdk = false;
+    std::unordered_map<std::uint32_t, std::uint32_t> subscription_of;  ///< by topic
+    std::unordered_map<std::uint32_t, std::uint32_t> topic_of;         ///< by subscription
+    std::map<std::uint32_t, ClientText::Advertised> channels;          ///< that it publishes, by id
+    std::set<std::string> watched;                                     ///< parameters
+  };
+
+  void received_text(ClientId id, Client& client, std::string_view text);
+  void subscribe(ClientId id, Client& client, const ClientText::Subscription& subscription);
+  void unsubscribe(Client& client, std::uint32_t subscription);
+  void advertise(ClientId id, Client& client, const ClientText::Advertised& channel);
+  void published(ClientId id, const Client& client, const ClientPublish& publish);
+  void call(ClientId id, const ServiceCall& call);
+  void play(ClientId id, const PlaybackRequest& request);
+  std::string set(const Parameter& parameter);
+  void watch(Client& client, const ClientText& message);
+  std::vector<Parameter> parameters(const std::vector<std::string>& names) const;
+
+  void send(ClientId id, std::string text);
+  void send(ClientId id, base::Bytes bytes);
+  void complain(ClientId id, const std::string& what);
+  bool is_controlled() const { return about_.mode != ViewerMode::service; }
+  PlaybackState playback() const;
+
+  const About about_;
+  ViewerWishes& wishes_;
+  WebServer* server_ = nullptr;
+  std::vector<std::shared_ptr<const base::Bytes>> greetings_;  ///< channels and services
+  std::size_t topic_count_ = 0;
+  std::unordered_map<std::uint32_t, SharedMessage> latched_;
+  std::unordered_map<std::string, std::uint32_t> movers_;  ///< by topic of commands
+  std::string session_;
+  std::map<ClientId, Client> clients_;
+  std::atomic<std::size_t> count_ = 0;  ///< of clients
+  RunState state_;
+  std::int64_t time_ = 0;
+};
+
+}  // namespace sf::bridges

@@ -1,0 +1,163 @@
+#pragma once
+// Lockstep by UDP: processes elsewhere command simulated robots, and the farm simulates a tick when all of them have
+// asked for it. Commands come in, states and readings go out; the caller simulates.
+//
+//   Lockstep lockstep(world, sensor_set, {});
+//   lockstep.publish(simulation.step(), now);            // tick 0
+//   lockstep.receive(now);                               // as long as it is not ready
+//   if (lockstep.ready()) simulation.command(lockstep.commands()), lockstep.publish(simulation.step(), now);
+//
+// A process is an address and port. It subscribes robots, and after each tick that it asked for is sent one answer:
+// a STATE of each of its robots and the VALUES of their readings. Every packet names its tick and may be repeated:
+// results depend neither on loss nor on order (docs/packets.md, Lockstep). A process says in STEP how many commands it
+// has sent, and the farm waits for all of them.
+//
+// Algorithm: conservative synchronisation of simulations (IEEE 1516, time advance request and grant).
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/tick_record.h"
+#include "farm/stored_reading.h"
+#include "netio/inbox.h"
+#include "netio/outbox.h"
+#include "netio/rate_limited_log.h"
+#include "netio/rejection_log.h"
+#include "netio/signature_trouble_log.h"
+#include "sensors/sensor_set.h"
+#include "server/wire_ids.h"
+#include "world/world.h"
+
+namespace sf::server {
+
+struct LockstepOptions {
+  netio::Endpoint bind = {netio::kLoopback, netio::kInboxPort};
+  std::uint32_t robots = 1;  ///< the first tick waits until this many are subscribed
+  double timeout = 5.0;      ///< [s] that processes wait for another, which is then left out; 0: without end
+  int log_descriptor = 2;    ///< -1: no log
+  std::vector<netio::Peer> peers;
+};
+
+struct LockstepCounts {
+  std::uint64_t commands = 0;     ///< rows that were taken
+  std::uint64_t repeated = 0;     ///< rows, STEP and SUBSCRIBE that had come before, or came too late
+  std::uint64_t refused = 0;      ///< rows for robots of another process, or with another key
+  std::uint64_t fetched = 0;      ///< datagrams sent on request
+  std::uint64_t lost_robots = 0;  ///< whose process timed out
+};
+
+/// World and sensor set must outlive it. One thread. Times are of one clock [ns] that does not go back.
+class Lockstep {
+ public:
+  /// Datagrams of an answer that are sent at once; the process fetches the others.
+  static constexpr std::uint32_t kPushed = 64;
+  /// Most datagrams sent on request in one `receive`; requests beyond are dropped, and repeated by their process.
+  static constexpr std::uint64_t kMaxAnswers = 16'384;
+
+  /// @throws netio::PortInUse, base::InputError when the address cannot be bound
+  Lockstep(const world::World& world, const sensors::SensorSet& sensor_set, const LockstepOptions& options);
+
+  /// Takes all datagrams that wait, and leaves out processes that hold up others for too long.
+  void receive(std::int64_t now);
+  /// Every process has asked for the tick after the published one, and all of its commands have come.
+  bool ready() const;
+  /// Per mover: the twist until the next tick. Lives until the next `receive`.
+  std::span<const base::Twist> commands() const { return commands_; }
+  /// Takes the results of a tick, and answers the processes that asked to come this far.
+  void publish(const base::TickRecord& record, std::int64_t now);
+
+  void wait(int timeout_ms) const { inbox_.wait(timeout_ms); }
+  std::size_t robots() const { return names_.robots.size(); }
+  const netio::Inbox& inbox() const { return inbox_; }
+  netio::OutboxCounts sent() const { return outbox_.counts(); }
+  const LockstepCounts& counts() const { return counts_; }
+  std::uint64_t lines_left_out() const { return log_.left_out(); }
+
+ private:
+  /// A datagram of an answer: a mover's state, or one part of a reading.
+  struct Part {
+    std::uint32_t mover = 0;
+    std::uint32_t reading = 0;  ///< row in `newest_`, or kState
+    std::uint32_t first = 0;    ///< value
+  };
+  struct Process {
+    netio::Endpoint endpoint;
+    std::uint32_t session = 0;
+    std::vector<std::uint32_t> movers;     ///< rows, by id
+    std::uint64_t answered = 0;            ///< tick of `answer`
+    bool built = false;                    ///< `answer` is that of its robots
+    std::vector<Part> answer;              ///< valid until the next tick is simulated
+    std::optional<netio::Step> step;       ///< that waits, or is being simulated
+    std::uint32_t commands = 0;            ///< robots with a command of tick `answered`
+    std::uint32_t states = 0, values = 0;  ///< datagrams sent
+    std::int64_t renewed = 0;              ///< [ns] when the inbox was last told that its robots are driven
+  };
+  /// The newest reading of a sensor.
+  struct Newest {
+    farm::StoredReading reading;
+    std::optional<std::uint64_t> tick;  ///< of its delivery; none: nothing was delivered
+  };
+  using Key = std::pair<std::uint32_t, std::uint16_t>;  ///< address and port
+  static constexpr std::uint32_t kState = 0xFFFFFFFFu;
+
+  void take(const netio::Packet& packet, std::int64_t now);
+  void take(Process& process, const netio::Command& command, const netio::Header& header);
+  void take(Process& process, const netio::Step& step, std::int64_t now);
+  void take(Process& process, const netio::Fetch& fetch);
+  void subscribe(const netio::Header& header, std::uint32_t types, std::int64_t now);
+  void acknowledge();
+  void release(std::uint32_t mover);
+  void release_all(Process& process);
+  Process* find(const netio::Endpoint& endpoint);
+  bool answerable(const Process& process) const { return process.answered == tick_; }
+  bool is_done(const Process& process) const;
+  void grant(Process& process);
+  void build_answer(Process& process);
+  void add_readings(std::uint32_t mover, std::vector<Part>& parts) const;
+  void send(Process& process, std::uint32_t first, std::uint32_t count);
+  void encode(Process& process, std::uint32_t index);
+  void answer_again(Process& process, std::uint32_t first, std::uint32_t count);
+  void check_timeout(std::int64_t now);
+  std::string names_of(std::span<const std::uint32_t> movers) const;
+  std::uint32_t row_of(const base::ReadingBlock& reading) const;
+
+  const world::World& world_;
+  const sensors::SensorSet& sensor_set_;
+  LockstepOptions options_;
+  WireNames names_;
+  netio::Inbox inbox_;
+  netio::Outbox outbox_;  ///< from the port that the processes send to
+  netio::RateLimitedLog log_;
+  netio::SignatureTroubleLog trouble_;
+  netio::RejectionLog rejections_;
+  std::map<Key, Process> processes_;
+  std::vector<Process*> driver_;                         ///< per mover; null: nobody drives it
+  std::vector<std::uint32_t> types_;                     ///< per mover: mask of its SUBSCRIBE
+  std::vector<std::optional<std::uint64_t>> told_;       ///< per mover: tick of its newest answer; none: none yet
+  std::vector<std::optional<std::uint64_t>> since_;      ///< per mover: tick of the answer before that one
+  std::vector<std::optional<std::uint64_t>> commanded_;  ///< per mover: tick of its last command
+  std::vector<base::Twist> commands_;                    ///< per mover
+  std::vector<std::uint32_t> first_reading_;             ///< per group of sensors: its first row in `newest_`
+  std::vector<Newest> newest_;                           ///< per sensor
+  std::vector<base::Report> reports_;                    ///< of the published tick
+  std::vector<std::uint8_t> contacts_;
+  std::vector<std::uint32_t> missing_;         ///< scratch
+  std::vector<std::uint32_t> unacknowledged_;  ///< movers that were subscribed in this `receive`
+  std::size_t driven_ = 0;                     ///< movers with a process
+  std::uint64_t tick_ = 0;
+  std::int64_t time_ = 0;                   ///< [ns] simulated
+  bool begun_ = false;                      ///< enough robots have subscribed
+  std::int64_t changed_ = 0;                ///< [ns] when the tick was published, or a process joined after it
+  std::optional<std::int64_t> first_step_;  ///< [ns] since when a process waits for the next tick
+  std::optional<std::uint64_t> warned_;     ///< tick of the last warning that all are silent
+  std::uint64_t again_ = 0;                 ///< datagrams sent on request in this `receive`
+  LockstepCounts counts_;
+  base::Bytes packet_;
+};
+
+}  // namespace sf::server

@@ -1,0 +1,127 @@
+// Packets that lockstep sends: the answer of a tick as numbered datagrams, encoded when they are sent.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "netio/packets.h"
+#include "server/lockstep.h"
+
+namespace sf::server {
+
+void Lockstep::publish(const base::TickRecord& record, std::int64_t now) {
+  tick_ = record.tick;
+  time_ = record.time;
+  changed_ = now;
+  reports_.assign(record.reports.begin(), record.reports.end());
+  contacts_.assign(record.contacts.begin(), record.contacts.end());
+  for (const base::ReadingBlock& reading : record.readings) {
+    Newest& newest = newest_[row_of(reading)];
+    newest.reading.take(reading);
+    newest.tick = tick_;
+  }
+  first_step_.reset();
+  for (auto& [key, process] : processes_) {
+    if (process.step && tick_ == process.step->tick + process.step->ticks) grant(process);
+    if (process.step) first_step_ = now;
+  }
+  outbox_.flush();
+}
+
+std::uint32_t Lockstep::row_of(const base::ReadingBlock& reading) const {
+  const auto groups = sensor_set_.groups();
+  const auto at = std::find_if(groups.begin(), groups.end(),
+                               [&](const sensors::SensorSet::Group& group) { return group.type->id == reading.type; });
+  return first_reading_[static_cast<std::size_t>(at - groups.begin())] + at->first[reading.mover] + reading.sensor;
+}
+
+void Lockstep::grant(Process& process) {
+  for (const std::uint32_t mover : process.movers) since_[mover] = std::exchange(told_[mover], tick_);
+  process.answered = tick_;
+  process.step.reset();
+  process.commands = 0;
+  process.built = false;
+  send(process, 0, kPushed);
+}
+
+/// States and readings of its robots; with bit 0 of a SUBSCRIBE, then the states of all others.
+void Lockstep::build_answer(Process& process) {
+  if (std::exchange(process.built, true)) return;
+  process.answer.clear();
+  bool others = false;
+  for (const std::uint32_t mover : process.movers) {
+    process.answer.push_back({mover, kState, 0});
+    add_readings(mover, process.answer);
+    others = others || (types_[mover] & netio::kNeighboursBit) != 0;
+  }
+  for (const auto& [id, mover] : names_.robots)
+    if (others && driver_[mover] != &process) process.answer.push_back({mover, kState, 0});
+}
+
+/// The newest reading of each sensor that was delivered since the answer before.
+void Lockstep::add_readings(std::uint32_t mover, std::vector<Part>& parts) const {
+  const std::uint32_t types = types_[mover] == 0 ? ~netio::kNeighboursBit : types_[mover];
+  const auto groups = sensor_set_.groups();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if ((types >> groups[g].type->id & 1u) == 0) continue;
+    for (std::uint32_t row = groups[g].first[mover]; row < groups[g].first[mover + 1]; ++row) {
+      const Newest& newest = newest_[first_reading_[g] + row];
+      if (!newest.tick || (since_[mover] && *newest.tick <= *since_[mover])) continue;
+      const auto total = static_cast<std::uint32_t>(newest.reading.block().values.size());
+      for (std::uint32_t first = 0; first < total; first += netio::kMaxValues)
+        parts.push_back({mover, first_reading_[g] + row, first});
+    }
+  }
+}
+
+void Lockstep::answer_again(Process& process, std::uint32_t first, std::uint32_t count) {
+  if (again_ >= kMaxAnswers) return;
+  const std::uint64_t before = process.states + process.values;
+  send(process, first, count);
+  again_ += process.states + process.values - before;
+  counts_.fetched += process.states + process.values - before;
+}
+
+void Lockstep::send(Process& process, std::uint32_t first, std::uint32_t count) {
+  build_answer(process);
+  const std::uint64_t end = std::min<std::uint64_t>(process.answer.size(), std::uint64_t{first} + count);
+  for (std::uint64_t i = first; i < end; ++i) {
+    encode(process, static_cast<std::uint32_t>(i));
+    // States of robots of others are signed like those of the first of its own.
+    const std::uint32_t mover = process.answer[i].mover;
+    const std::uint32_t signs = driver_[mover] == &process ? mover : process.movers.front();
+    outbox_.queue(process.endpoint, packet_, {inbox_.session(), process.session},
+                  inbox_.signer(world_.movers[signs].id));
+  }
+}
+
+void Lockstep::encode(Process& process, std::uint32_t index) {
+  const Part& part = process.answer[index];
+  const netio::AnswerPart place{tick_, index, static_cast<std::uint32_t>(process.answer.size())};
+  netio::Header header{.robot = static_cast<std::uint16_t>(world_.movers[part.mover].id), .time = time_};
+  if (part.reading == kState) {
+    header.sequence = process.states++;
+    const base::Report& report = reports_[part.mover];
+    return netio::encode(header,
+                         netio::State{place, report.X_WM, report.velocity, contacts_[part.mover] != 0 ? 1u : 0u,
+                                      counts_.lost_robots > 0 ? netio::kDriverLostBit : 0u},
+                         packet_);
+  }
+  const base::ReadingBlock& reading = newest_[part.reading].reading.block();
+  const auto total = static_cast<std::uint32_t>(reading.values.size());
+  const auto values = reading.values.subspan(part.first, netio::count_values(total, part.first));
+  header.sensor = static_cast<std::uint16_t>(reading.sensor);
+  header.sequence = process.values++;
+  header.time = reading.time;
+  // Receivers do not see which elements have a flag, so `error` is stated only where it holds for all of them.
+  const bool unsure = base::is_unsure(reading);
+  const double error = unsure ? HUGE_VAL : reading.bound;
+  // A bound of 0, as without magnets, is the least that the word states: 0 stands for none there.
+  const double bound = std::max(reading.bound, std::numeric_limits<double>::min());
+  header.accuracy = netio::encode_accuracy({reading.mode, unsure, bound});
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes());
+  netio::encode(header, netio::Values{place, reading.type, total, part.first, reading.X_WS, error, bytes}, packet_);
+}
+
+}  // namespace sf::server

@@ -1,0 +1,105 @@
+#include "server/own_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "maps/map_packets.h"
+#include "netio/address_token.h"
+#include "netio/own_end.h"
+#include "netio/packets.h"
+#include "sensors/laser.h"
+#include "sensors/laser_settings.h"
+#include "sensors/occupancy_packets.h"
+
+namespace sf::server {
+
+namespace {
+
+constexpr double kCell = 0.03;  // [m] the thesis'
+
+/// A map of the whole world, on the lattice of all maps of its cells.
+world::Sensor whole_world(const world::Extent& extent, double range) {
+  const auto words = [](double low, double high, double cell) {
+    return std::ceil(std::ceil(high / cell) / 4.0 - std::floor(low / cell) / 4.0);
+  };
+  double cell = kCell, columns = 0.0, rows = 0.0;
+  for (;; cell *= 2.0) {
+    columns = std::max(words(extent.x_min, extent.x_max, cell), 1.0);
+    rows = std::max(words(extent.y_min, extent.y_max, cell), 1.0);
+    const bool held = columns <= maps::kMaxWordColumns && rows <= maps::kMaxWordColumns &&
+                      columns * rows <= maps::kMaxWords && range <= maps::kMaxRangeCells * cell;
+    if (held || cell > 100.0) break;
+  }
+  world::Sensor sensor;
+  sensor.type = "occupancy";
+  sensor.name = "map";
+  sensor.settings = {
+      {"cell", {cell}, "", 0, ""},
+      {"words", {columns, rows}, "", 0, ""},
+      {"offset", {-cell * std::floor(extent.x_min / cell), -cell * std::ceil(extent.y_max / cell)}, "", 0, ""}};
+  return sensor;
+}
+
+sensors::Occupancy settings_of(const world::World& world, std::uint32_t mover) {
+  for (sensors::Occupancy& map : sensors::occupancies_of(world))
+    if (map.row.mover == mover) return map;
+  const std::vector<sensors::LaserSettings> lasers = sensors::lasers_of(world.movers[mover]);
+  if (lasers.empty())
+    throw base::InputError("--map: '" + world.movers[mover].name +
+                           "' has no laser to make a map with; expected laser( ... ) in its definition");
+  world::World with;
+  with.movers = {world.movers[mover]};
+  with.movers[0].sensors.push_back(whole_world(world.extent, lasers[0].range_max));
+  return sensors::occupancies_of(with).front();
+}
+
+}  // namespace
+
+OwnMap::OwnMap(const world::World& world, std::uint32_t mover, const OwnMapOptions& options)
+    : settings_(settings_of(world, mover)),
+      X_ML_(sensors::lasers_of(world.movers[mover])[settings_.laser].X_MS),
+      options_(options),
+      robot_(static_cast<std::uint16_t>(world.movers[mover].id)),
+      session_(netio::random_session()),
+      map_({&settings_.settings, 1}, thread_pool_),
+      words_(settings_.row.elements),
+      outbox_({.bind = netio::own_end_for(options.receiver.address)}) {
+  const std::string problem = sensors::occupancy_wire_problem(settings_.row, options.wire);
+  if (!problem.empty()) throw base::InputError("--map: " + problem);
+}
+
+void OwnMap::add(const base::ReadingBlock& reading, const base::Pose& X_WM) {
+  if (reading.type != sensors::kLaser || reading.sensor != settings_.laser) return;
+  if ((last_scan_ && reading.time <= *last_scan_) || reading.values.size() != settings_.settings.samples) return;
+  last_scan_ = reading.time;
+  const sensors::MapScan scan{0, base::compose(X_WM, X_ML_), reading.values};
+  map_.update({&scan, 1});
+  ++scans_;
+}
+
+void OwnMap::send(std::int64_t now, bool true_poses) {
+  if (now < next_ || scans_ == 0) return;
+  next_ = now + std::llround(1e9 / settings_.row.rate);
+  const std::span<const std::uint32_t> words = map_.words(0);
+  std::copy(words.begin(), words.end(), words_.begin());
+
+  const maps::GridGeometry& grid = settings_.settings.grid;
+  const base::ReadingBlock reading{.type = sensors::kOccupancy,
+                                   .time = now,
+                                   .X_WS = {grid.left, grid.top, 0.0, 0.0},
+                                   .values = words_,
+                                   .flags = true_poses ? maps::kTruePoses : 0u};
+  const netio::Header header{.robot = robot_, .sequence = sequence_++, .time = now, .session = session_};
+  for (std::uint32_t part = 0; part < sensors::occupancy_parts(settings_.row, options_.wire); ++part) {
+    payload_.clear();
+    const std::uint8_t type = sensors::encode_occupancy(settings_.row, reading, options_.wire, part, payload_);
+    if (options_.wire == sensors::WireFormat::farm) netio::encode_reading(header, type, payload_, packet_);
+    outbox_.queue(options_.receiver, options_.wire == sensors::WireFormat::farm ? packet_ : payload_);
+  }
+  outbox_.flush();
+}
+
+OwnMapCounts OwnMap::counts() const { return {scans_, sequence_, outbox_.counts()}; }
+
+}  // namespace sf::server

@@ -1,0 +1,308 @@
+#include "server/packet_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "maps/map_packets.h"
+#include "sensors/laser_packets.h"
+#include "sensors/occupancy.h"
+#include "server/sensor_streams.h"
+
+namespace sf::server {
+
+namespace {
+
+using netio::PacketStatus;
+using Fields = std::vector<PacketField>;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+std::string number_text(double value) { return std::isnan(value) ? "none" : fmt::format("{:.10g}", value); }
+
+template <class Whole>
+requires std::is_integral_v<Whole>
+void add(Fields& out, std::string name, Whole value) {
+  out.push_back({std::move(name), static_cast<std::int64_t>(value)});
+}
+void add(Fields& out, std::string name, double value) { out.push_back({std::move(name), value}); }
+template <class Numbers>
+requires std::ranges::range<Numbers>
+void add(Fields& out, std::string name, const Numbers& numbers) {
+  out.push_back({std::move(name), std::vector<double>(numbers.begin(), numbers.end())});
+}
+void add_id(Fields& out, std::string name, std::uint32_t id) {
+  if (id == netio::kNone) return add(out, std::move(name), kNan);
+  add(out, std::move(name), id);
+}
+
+void add_header(const netio::Header& header, Fields& out) {
+  add(out, "type", static_cast<int>(header.type));
+  add(out, "robot", header.robot);
+  add(out, "sensor", header.sensor);
+  add(out, "sequence", header.sequence);
+  add(out, "time_ns", header.time);
+  add(out, "session", header.session);
+  add(out, "token", header.token);
+  const bool is_reading = netio::sensor_type_of(header.type) != 0;
+  if (!is_reading && header.type != netio::Type::values) return;
+  const netio::Accuracy accuracy = netio::decode_accuracy(header.accuracy);
+  add(out, "mode", accuracy.mode);
+  add(out, "unsure", accuracy.unsure);
+  add(out, "bound", std::isinf(accuracy.bound) ? kNan : accuracy.bound);
+  if (!is_reading) return;
+  constexpr std::int64_t kMost = 0xFFFFFFFF;  // says more, too
+  add(out, "age_us", std::min(header.state.age / 1000, kMost));
+  add(out, "stale", header.state.stale);
+  add(out, "covariance", header.state.covariance);
+}
+
+void add_body(const netio::V2v& state, Fields& out) {
+  add_id(out, "follows", state.follows);
+  add_id(out, "checkpoint", state.checkpoint);
+  add(out, "docking", state.docking);
+  add(out, "pose", std::array{state.X_WR.x, state.X_WR.y, state.X_WR.z, state.X_WR.yaw});
+  add(out, "velocity", std::array{state.velocity.forward, state.velocity.left, state.velocity.turn});
+}
+void add_body(const netio::Tag& state, Fields& out) {
+  add(out, "position", state.position);
+  add(out, "orientation", state.orientation);
+  add(out, "linear", state.linear);
+  add(out, "angular", state.angular);
+}
+void add_body(const netio::Subscribe& request, Fields& out) { add(out, "types", request.types); }
+void add_body(const netio::Start&, Fields&) {}
+void add_body(const netio::Leave&, Fields&) {}
+void add_body(const netio::Refusal& refusal, Fields& out) {
+  const bool by_source = refusal.reason == netio::PacketStatus::wrong_source;
+  add(out, "reason",
+      by_source ? 4 : static_cast<int>(refusal.reason) - static_cast<int>(netio::PacketStatus::not_signed) + 1);
+}
+void add_body(const netio::Challenge& challenge, Fields& out) { add(out, "challenge", challenge.token); }
+
+/// Lists by robot, and per robot forward, left, turn.
+void add_body(const netio::Command& command, Fields& out) {
+  std::vector<double> robots, twists;
+  for (std::size_t i = 0; i < netio::count_rows(command); ++i) {
+    const netio::CommandRow row = netio::row_of(command, i);
+    robots.push_back(row.robot);
+    twists.insert(twists.end(), {row.twist.forward, row.twist.left, row.twist.turn});
+  }
+  add(out, "tick", command.tick);
+  add(out, "robots", robots);
+  add(out, "twists", twists);
+}
+void add_body(const netio::Step& step, Fields& out) {
+  add(out, "tick", step.tick);
+  add(out, "ticks", step.ticks);
+  add(out, "commands", step.commands);
+}
+void add_body(const netio::Fetch& fetch, Fields& out) {
+  add(out, "tick", fetch.tick);
+  add(out, "first", fetch.first);
+  add(out, "count", fetch.count);
+}
+void add_part(const netio::AnswerPart& part, Fields& out) {
+  add(out, "tick", part.tick);
+  add(out, "index", part.index);
+  add(out, "datagrams", part.datagrams);
+}
+void add_body(const netio::State& state, Fields& out) {
+  add_part(state.part, out);
+  add(out, "contact", state.contact);
+  add(out, "flags", state.flags);
+  add(out, "pose", std::array{state.X_WR.x, state.X_WR.y, state.X_WR.z, state.X_WR.yaw});
+  add(out, "velocity", std::array{state.velocity.forward, state.velocity.left, state.velocity.turn});
+}
+void add_body(const netio::Values& values, Fields& out) {
+  add_part(values.part, out);
+  add(out, "values_type", values.type);
+  add(out, "total", values.total);
+  add(out, "first", values.first);
+  add(out, "sensor_pose", std::array{values.X_WS.x, values.X_WS.y, values.X_WS.z, values.X_WS.yaw});
+  add(out, "error", std::isinf(values.bound) ? kNan : values.bound);
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < values.values.size() / sizeof(double); ++i) numbers.push_back(netio::value_of(values, i));
+  add(out, "value", numbers);
+}
+
+/// Approaches, then stop lines, each column by itself.
+void add_body(const netio::V2i& signals, Fields& out) {
+  std::vector<double> group, state, next, left, light, stop_group, stop_point, stop_line;
+  for (std::size_t k = 0; k < netio::count(signals.approaches); ++k) {
+    const netio::SignalApproach a = netio::approach_at(signals, k);
+    group.push_back(a.group);
+    state.push_back(a.state);
+    next.push_back(a.next == netio::kNoSignalState ? kNan : a.next);
+    left.push_back(std::isinf(a.left) ? kNan : a.left);
+    light.insert(light.end(), {a.X_WL.x, a.X_WL.y, a.X_WL.z, a.X_WL.yaw});
+  }
+  for (std::size_t k = 0; k < netio::count(signals.stops); ++k) {
+    const netio::SignalStop s = netio::stop_at(signals, k);
+    stop_group.push_back(s.group);
+    for (const std::uint16_t id : {s.segment, s.lane, s.point}) stop_point.push_back(id);
+    stop_line.insert(stop_line.end(), {s.x, s.y, s.heading, s.width});
+  }
+  add(out, "group", group);
+  add(out, "state", state);
+  add(out, "next", next);
+  add(out, "left_s", left);
+  add(out, "light", light);
+  add(out, "stop_group", stop_group);
+  add(out, "stop_point", stop_point);
+  add(out, "stop_line", stop_line);
+}
+void add_body(const netio::Object& object, Fields& out) { add(out, "present", object.present); }
+
+/// The states by their place: "0.robot", ... Those that are no V2V are left out.
+void add_body(const netio::Neighbours& neighbours, Fields& out) {
+  for (std::size_t i = 0; i < neighbours.states.size() / netio::kV2vBytes; ++i) {
+    netio::Packet packet;
+    const auto bytes = neighbours.states.subspan(i * netio::kV2vBytes, netio::kV2vBytes);
+    if (netio::decode(bytes, packet) != PacketStatus::accepted) continue;
+    const auto* state = std::get_if<netio::V2v>(&packet.body);
+    if (state == nullptr) continue;
+    Fields fields;
+    add_header(packet.header, fields);
+    add_body(*state, fields);
+    for (PacketField& field : fields) out.push_back({fmt::format("{}.{}", i, field.name), std::move(field.value)});
+  }
+}
+
+void add_scan(std::span<const std::uint8_t> payload, bool extended, Fields& out) {
+  sensors::LaserPart scan;
+  sensors::read_laser(payload, extended, scan);
+  if (extended) {
+    add(out, "total", scan.total);
+    add(out, "first", scan.first);
+    add(out, "part", scan.part);
+    add(out, "parts", scan.parts);
+  }
+  std::vector<double> ranges;
+  for (std::uint32_t i = 0; i < scan.count; ++i) ranges.push_back(sensors::range_of(scan, i));
+  add(out, "range_m", ranges);
+}
+
+void add_map(std::span<const std::uint8_t> payload, Fields& out) {
+  maps::MapPart map;
+  maps::read_part(payload, map);
+  add(out, "left_m", map.geometry.left);
+  add(out, "top_m", map.geometry.top);
+  add(out, "cell_m", map.geometry.cell);
+  add(out, "part", map.part);
+  add(out, "parts", map.parts);
+  add(out, "word_columns", map.geometry.word_columns);
+  add(out, "word_rows", map.geometry.word_rows);
+  add(out, "flags", map.flags);
+  std::vector<double> words;
+  for (std::uint32_t i = 0; i < map.count; ++i) words.push_back(maps::word_of(map, i));
+  add(out, "word", words);
+}
+
+/// The columns of a reading that is one datagram. @param elements its rows
+void add_columns(const sensors::SensorType& type, std::uint32_t elements, std::span<const std::uint8_t> payload,
+                 Fields& out) {
+  const std::size_t width = sensors::element_width(type);
+  std::vector<double> values(elements * width);
+  type.read({.elements = elements}, payload, type.id, sensors::WireFormat::farm, values);
+  std::size_t first = 0;
+  for (const sensors::Column& column : type.columns) {
+    std::vector<double> numbers;
+    for (std::size_t row = 0; row < elements; ++row)
+      for (std::size_t k = 0; k < column.width; ++k) numbers.push_back(values[row * width + first + k]);
+    add(out, std::string(column.name), numbers);
+    first += column.width;
+  }
+}
+
+PacketStatus add_reading(const netio::Header& header, std::span<const std::uint8_t> payload,
+                         const sensors::SensorType& type, Fields& out) {
+  const sensors::SensorSpec any{.elements = 0};
+  const netio::PayloadInfo info = inspect_payload({&type, &any}, sensors::WireFormat::farm, header, payload);
+  if (info.status != PacketStatus::accepted) return info.status;
+  const bool extended = static_cast<std::uint8_t>(header.type) >= sensors::kExtended;
+  if (type.is_scan) {
+    add_scan(payload, extended, out);
+  } else if (type.id == sensors::kOccupancy) {
+    add_map(payload, out);
+  } else {
+    add_columns(type, info.elements, payload, out);
+  }
+  return PacketStatus::accepted;
+}
+
+std::string name_of(netio::Type type) {
+  switch (type) {
+    case netio::Type::v2v:
+      return "V2V";
+    case netio::Type::tag:
+      return "TAG";
+    case netio::Type::subscribe:
+      return "SUBSCRIBE";
+    case netio::Type::start:
+      return "START";
+    case netio::Type::leave:
+      return "LEAVE";
+    case netio::Type::challenge:
+      return "CHALLENGE";
+    case netio::Type::v2i:
+      return "V2I";
+    case netio::Type::object:
+      return "OBJECT";
+    case netio::Type::refusal:
+      return "REFUSAL";
+    case netio::Type::neighbours:
+      return "NEIGHBOURS";
+    case netio::Type::command:
+      return "COMMAND";
+    case netio::Type::step:
+      return "STEP";
+    case netio::Type::fetch:
+      return "FETCH";
+    case netio::Type::state:
+      return "STATE";
+    case netio::Type::values:
+      return "VALUES";
+  }
+  return std::string(sensors::find_sensor_type(netio::sensor_type_of(type))->name);
+}
+
+}  // namespace
+
+std::string text_of(const PacketField& field) {
+  if (const auto* whole = std::get_if<std::int64_t>(&field.value)) return std::to_string(*whole);
+  if (const auto* number = std::get_if<double>(&field.value)) return number_text(*number);
+  std::string text;
+  for (const double number : std::get<std::vector<double>>(field.value))
+    text += (text.empty() ? "" : " ") + number_text(number);
+  return text;
+}
+
+PacketDescription describe_packet(std::span<const std::uint8_t> bytes) {
+  PacketDescription out;
+  netio::Packet packet;
+  out.status = netio::decode(bytes, packet);
+  if (out.status != PacketStatus::accepted) return out;
+  const std::uint8_t id = netio::sensor_type_of(packet.header.type);
+  const sensors::SensorType* type = sensors::find_sensor_type(id);
+  if (id != 0 && type == nullptr) out.status = PacketStatus::unknown_type;
+  if (out.status != PacketStatus::accepted) return out;
+  out.header = packet.header;
+  out.name = name_of(packet.header.type);
+  add_header(packet.header, out.fields);
+  out.header_fields = out.fields.size();
+  std::visit(
+      [&](const auto& body) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(body)>, netio::Reading>) {
+          out.status = add_reading(packet.header, body.payload, *type, out.fields);
+        } else {
+          add_body(body, out.fields);
+        }
+      },
+      packet.body);
+  return out;
+}
+
+}  // namespace sf::server

@@ -1,0 +1,142 @@
+#include "server/reading_publisher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "netio/packets.h"
+
+namespace sf::server {
+
+namespace {
+
+/// The bound of the numbers that packets carry, which are rounded.
+netio::Accuracy accuracy_on_wire(const sensors::SensorType& type, const sensors::SensorSpec& row,
+                                 const base::ReadingBlock& reading) {
+  const bool stated = type.wire_error != nullptr && std::isfinite(reading.bound);
+  const double error = stated ? type.wire_error(row, reading) : 0.0;
+  return {reading.mode, base::is_unsure(reading) || std::isinf(error), reading.bound + error};
+}
+
+}  // namespace
+
+netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set) {
+  netio::OutboxOptions options;
+  if (sensor_set.count() <= kLargeFleet) return options;
+  options.backlog = 64;
+  options.patience_ms = 50;
+  return options;
+}
+
+ReadingPublisher::ReadingPublisher(const world::World& world, const sensors::SensorSet& sensor_set, StreamLayout layout,
+                                   netio::Outbox outbox, std::optional<netio::Endpoint> mirror)
+    : world_(world),
+      sensor_set_(sensor_set),
+      layout_(std::move(layout)),
+      outbox_(std::move(outbox)),
+      mirror_(mirror),
+      thread_pool_(sensor_set.count() > kLargeFleet ? 0 : 1),
+      memory_(thread_pool_.threads()) {
+  SF_CHECK(!mirror_ || layout_.wire == sensors::WireFormat::farm, "copies of packets without headers");
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : group.rows)
+      streams_[group.type->id].push_back(
+          {0, layout_.sends(*group.type, row) ? group.type->parts(row, layout_.wire) : 0});
+  for (Memory& memory : memory_) {
+    memory.payload.reserve(netio::kMaxHeaderlessDatagram);
+    memory.packet.reserve(netio::kMaxDatagram);
+  }
+}
+
+ReadingPublisher::Job ReadingPublisher::make_job(const AddressedReading& addressed) {
+  const sensors::SensorSet::Group& group = *sensor_set_.group(addressed.reading->type);
+  const sensors::SensorSpec& row = sensor_set_.row(*addressed.reading);
+  Stream& stream = streams_.at(addressed.reading->type)[static_cast<std::size_t>(&row - group.rows.data())];
+  return {addressed, group.type, &row, &stream, stream.sent, 0, 0, true};
+}
+
+/// @return how many parts could not be made; each of the others is put: (datagram, endpoint, bytes).
+template <class Put>
+std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put) const {
+  const base::ReadingBlock& reading = *job.addressed.reading;
+  netio::Header header;
+  header.robot = static_cast<std::uint16_t>(world_.movers[reading.mover].id);
+  header.sensor = static_cast<std::uint16_t>(reading.sensor);
+  header.sequence = job.sequence;
+  header.time = reading.time;
+  header.accuracy = netio::encode_accuracy(accuracy_on_wire(*job.type, *job.row, reading));
+  header.session = job.addressed.session_token.session;
+  header.token = job.addressed.session_token.token;
+  header.state = job.addressed.reading->state;
+  const auto port = static_cast<std::uint16_t>(netio::port(layout_.ports(*job.type), header.robot, reading.sensor));
+
+  std::uint32_t failed = 0;
+  for (std::uint32_t part = 0; part < job.stream->parts; ++part) {
+    memory.payload.clear();
+    const std::uint8_t type = job.type->encode(*job.row, reading, layout_.wire, part, memory.payload);
+    if (type == 0) {
+      ++failed;
+    } else if (layout_.wire == sensors::WireFormat::thesis) {
+      put(part, netio::Endpoint{job.addressed.address, port}, memory.payload);
+    } else {
+      netio::encode_reading(header, type, memory.payload, memory.packet);
+      const netio::PacketSigner* signer = job.addressed.signer;
+      if (signer != nullptr) netio::sign(memory.packet, signer->key(), job.counter + part);
+      put(part, netio::Endpoint{job.addressed.address, port}, memory.packet);
+      if (mirror_) put(job.stream->parts + part, *mirror_, memory.packet);
+    }
+  }
+  return failed;
+}
+
+void ReadingPublisher::queue(std::span<const AddressedReading> readings) {
+  std::size_t datagrams = 0;
+  jobs_.clear();
+  for (const AddressedReading& addressed : readings) {
+    Job job = make_job(addressed);
+    if (job.stream->parts == 0) continue;
+    if (datagrams + datagrams_of(*job.stream) > outbox_.capacity()) {
+      encode_all();
+      datagrams = 0;
+    }
+    job.place = datagrams;
+    // Before the threads begin: signatures do not depend on their order.
+    if (job.addressed.signer != nullptr) job.counter = job.addressed.signer->take(job.stream->parts);
+    datagrams += datagrams_of(*job.stream);
+    ++job.stream->sent;
+    jobs_.push_back(job);
+  }
+  encode_all();
+}
+
+/// All at once; where a part is not numbers, one by one, since what is not sent is not numbered.
+void ReadingPublisher::encode_all() {
+  if (jobs_.empty()) return;
+  const std::size_t datagrams = jobs_.back().place + datagrams_of(*jobs_.back().stream);
+  const bool fits = datagrams <= outbox_.capacity();
+  const std::size_t first = fits ? outbox_.claim(datagrams) : 0;
+  if (fits)
+    thread_pool_.parallel_for(jobs_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
+      for (Job& job : std::span(jobs_).subspan(begin, end - begin))
+        job.whole = encode(job, memory_[thread], [&](std::uint32_t part, const netio::Endpoint& to, const auto& bytes) {
+                      outbox_.put(first + job.place + part, to, bytes);
+                    }) == 0;
+    });
+  if (!fits || std::any_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.whole; })) {
+    if (fits) outbox_.give_back(datagrams);
+    for (auto job = jobs_.rbegin(); job != jobs_.rend(); ++job) --job->stream->sent;
+    for (Job& job : jobs_) encode_and_queue(job);
+  }
+  jobs_.clear();
+}
+
+void ReadingPublisher::encode_and_queue(Job& job) {
+  job.sequence = job.stream->sent;
+  const std::uint32_t failed = encode(
+      job, memory_[0], [&](std::uint32_t, const netio::Endpoint& to, const auto& bytes) { outbox_.queue(to, bytes); });
+  not_numbers_ += failed;
+  job.stream->sent += failed < job.stream->parts ? 1 : 0;
+}
+
+}  // namespace sf::server

@@ -1,0 +1,301 @@
+#include "server/robot_client.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/elapsed.h"
+#include "base/error.h"
+#include "base/time.h"
+#include "netio/signature_trouble_log.h"
+#include "world/roads/roads.h"
+
+namespace sf::server {
+
+namespace {
+
+constexpr std::int64_t kAnswerIn = 3'000'000'000;       ///< [ns] of silence before a message
+constexpr std::int64_t kTroubleIn = 1'000'000'000;      ///< [ns] of refused signatures before a message
+constexpr std::int64_t kTroubleEvery = 10'000'000'000;  ///< [ns]
+
+/// [ns] Never shorter than two and a half periods of the fastest sensor, so that one lost reading stops nobody.
+std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mover, double seconds) {
+  double fastest = 0.0;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : sensor_set.of(group.type->id, mover)) fastest = std::max(fastest, row.rate);
+  return seconds > 0.0 && fastest > 0.0 ? base::nanoseconds(std::max(seconds, 2.5 / fastest)) : 0;
+}
+
+std::uint32_t tag_of(const RobotClientOptions& options, const world::Mover& mover) {
+  const std::uint32_t tag = options.tag > 0 ? options.tag : mover.id;
+  if (tag >= netio::kMinTag && tag <= netio::kMaxId) return tag;
+  throw base::InputError(
+      fmt::format("{} has the id {}, which no tag has; expected the id of the tag that it carries (robot --tag), from "
+                  "{} to {}",
+                  mover.name, mover.id, netio::kMinTag, netio::kMaxId));
+}
+
+LinkOptions with_lights(LinkOptions link, std::span<const Intersection> intersections) {
+  for (const Intersection& one : intersections) link.lights.push_back(one.id);
+  return link;
+}
+
+/// [ms] since 1970
+std::int64_t utc_now() { return base::unix_time() / 1'000'000; }
+
+}  // namespace
+
+RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
+                         const StreamLayout& sent, const RobotClientOptions& options)
+    : world_(world),
+      names_(wire_names(world)),
+      mover_(mover),
+      body_(world, mover, base::nanoseconds(options.forget)),
+      roads_(world::roads_of(world)),
+      lights_(world, roads_ ? &*roads_ : nullptr, {.spat = options.spat}),
+      link_(world, sensor_set, mover, sent, with_lights(options.link, lights_.intersections()),
+            [this](const netio::Packet& packet, std::int64_t now) { on_packet(packet, now); }),
+      intents_(world.movers.size()),
+      started_(!options.wait_for_start),
+      reading_timeout_(patience_of(sensor_set, mover, options.stop_after)),
+      log_(options.log_descriptor),
+      controller_(options.controller.name),
+      utc_(options.utc ? options.utc : utc_now) {
+  if (options.cameras) cameras_.emplace(world, mover, tag_of(options, world.movers[mover]), *options.cameras);
+  if (options.truth) truth_.emplace(*options.truth, tag_of(options, world.movers[mover]));
+  if (options.map) map_.emplace(world, mover, *options.map);
+  if (options.create) create_.emplace(*options.create, world.movers[mover].X_WM, world.movers[mover].track);
+  made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, options.controller);
+}
+
+void RobotClient::receive(std::int64_t now) {
+  link_.run(now);
+  if (cameras_) cameras_->receive(now);
+}
+
+void RobotClient::move(std::int64_t now) {
+  if (create_) {
+    create_->update(now);
+    body_.follow(create_->state().X_WM, create_->state().velocity, create_->contact(), now);
+  } else {
+    body_.move(command_, now);
+  }
+  contacts_ += contact_.begins(body_.contact());
+  if (truth_) truth_->send(body_.state(), now, epoch_);
+}
+
+void RobotClient::step(std::int64_t now) {
+  move(now);
+  scans_ = link_.scans();
+  next_ = next_step(now);
+  if (cameras_) cameras_->predict(now);
+  if (cameras_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
+  command_ = {};
+  if (started_ && !is_lost() && !readings_timed_out(now) && (!create_ || create_->ready(now))) decide(now);
+  if (create_) create_->drive(command_, now);
+  send_state(now);
+  log_problems(now);
+  if (create_) log_create(now);
+}
+
+void RobotClient::leave(std::int64_t now) {
+  if (create_) create_->stop();
+  link_.leave(now);
+}
+
+/// A robot that does not know where it is does not say so: the farm's state of it grows stale, as do its readings.
+void RobotClient::send_state(std::int64_t now) {
+  if (is_lost()) return link_.send_request(now);
+  link_.send_state(v2v_of(own_state(), made_.controller->intent()), now);
+}
+
+void RobotClient::wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock) {
+  receive(clock());
+  for (std::int64_t time = clock(); time < until && !stop && !is_due(time); time = clock()) {
+    if (truth_ && truth_->is_due(time)) move(time);
+    link_.wait(time, truth_ ? std::min(until, truth_->due()) : until);
+    receive(clock());
+  }
+}
+
+/// [ns] The farm loses a robot that sends no states: without scans, steps go on at half the rate.
+std::int64_t RobotClient::next_step(std::int64_t now) const {
+  const std::int64_t period = std::llround(1e9 / rate());
+  return made_.on_scans ? now + 2 * period : std::max(next_ + period, now - period);
+}
+
+void RobotClient::run(const std::atomic<bool>& stop, double duration) {
+  const auto start = std::chrono::steady_clock::now();
+  const Clock clock = [start] {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count();
+  };
+  epoch_ = base::unix_time();
+  if (cameras_) cameras_->set_epoch(epoch_);
+  const std::int64_t end = duration > 0.0 ? base::nanoseconds(duration) : INT64_MAX;
+  while (!stop && !done()) {
+    wait_until(std::min(next_, end), stop, clock);
+    if (stop || clock() >= end) break;
+    step(clock());
+  }
+  leave(clock());
+  wall_s_ = 1e-9 * static_cast<double>(clock());
+}
+
+RobotClientStats RobotClient::stats() const {
+  RobotClientStats stats;
+  stats.robot = world_.movers[mover_].name;
+  stats.id = world_.movers[mover_].id;
+  stats.controller = controller_;
+  stats.farm = netio::text(link_.farm());
+  stats.wall_s = wall_s_;
+  stats.steps = steps_;
+  stats.started = started_;
+  stats.done = done();
+  stats.answered = link_.last_answer().has_value();
+  stats.listens = link_.listens();
+  stats.link = link_.counts();
+  stats.contacts = contacts_;
+  stats.distance_m = body_.distance();
+  stats.pose = body_.state().X_WM;
+  stats.error = error_;
+  if (const control::OwnLocalization* own = control::localization_of(*made_.controller))
+    stats.localization = own->error();
+  if (map_) stats.map = map_->counts();
+  if (create_) stats.create = create_->counts();
+  if (cameras_) stats.cameras = {cameras_->packets(), cameras_->states(), position_errors_};
+  stats.listens_for_spat = lights_.listens();
+  stats.lights = lights_.counts();
+  stats.stops = stops_;
+  stats.lines_left_out = log_.left_out();
+  return stats;
+}
+
+void RobotClient::on_packet(const netio::Packet& packet, std::int64_t now) {
+  if (const auto* signals = std::get_if<netio::V2i>(&packet.body)) {
+    if (!lights_.listens()) lights_.accept(packet.header, *signals, now);
+    return;
+  }
+  const auto* state = std::get_if<netio::V2v>(&packet.body);
+  if (state == nullptr) {
+    started_ = true;
+    return;
+  }
+  const std::uint32_t row = names_.robots.at(packet.header.robot);
+  intents_[row] = {state->follows, state->checkpoint, state->docking};
+  body_.update_other(row, state->X_WR, state->velocity, now);
+}
+
+void RobotClient::decide(std::int64_t now) {
+  gather_readings();
+  gather_others(now);
+  gather_signals(now);
+  control::ControllerInput input{now, own_state(), readings_, body_.contact(), started_, others_, signals_};
+  input.state.time = now;
+  command_ = made_.controller->step(input);
+  ++steps_;
+  control::add(error_, made_.controller->error());
+  if (map_) draw_map(now);
+}
+
+/// From the poses that the controller drives by.
+void RobotClient::draw_map(std::int64_t now) {
+  const control::OwnLocalization* own = control::localization_of(*made_.controller);
+  for (const base::ReadingBlock& reading : readings_)
+    map_->add(reading, own != nullptr ? own->pose_at(reading.time) : reading.X_WM);
+  map_->send(now, own == nullptr && !create_);
+}
+
+/// Packets do not state the pose that the farm read from: the robot takes its own at that time.
+void RobotClient::gather_readings() {
+  readings_.clear();
+  for (RobotLink::Newest& newest : link_.readings()) {
+    base::ReadingBlock& block = readings_.emplace_back(newest.block);
+    block.X_WM = cameras_ ? cameras_->pose_at(block.time) : body_.pose_at(block.time);
+    block.X_WS = base::compose(block.X_WM, newest.row->X_MS);
+  }
+}
+
+void RobotClient::gather_others(std::int64_t now) {
+  others_.clear();
+  const double radio = made_.controller->v2v_range();
+  if (radio <= 0.0) return;
+  const base::Pose& own = own_state().X_WM;
+  for (const auto& [id, row] : names_.robots) {
+    if (row == mover_ || !link_.is_active(id, now)) continue;
+    base::Report state = body_.state(row);
+    state.time = now;
+    if (std::hypot(state.X_WM.x - own.x, state.X_WM.y - own.y) <= radio) others_.push_back({id, state, intents_[row]});
+  }
+}
+
+/// Lights go by the farm's clock, and by what they say.
+void RobotClient::gather_signals(std::int64_t now) {
+  const double time = 1e-9 * static_cast<double>(link_.clock().to_farm(now));
+  signals_.clear();
+  for (const world::Light& light : world_.lights) signals_.push_back(world::signal_at(light, time));
+  if (lights_.listens()) lights_.receive(now, utc_());
+  lights_.apply(now, signals_);
+}
+
+bool RobotClient::readings_timed_out(std::int64_t now) const {
+  return reading_timeout_ > 0 && link_.listens() && now - link_.last_reading().value_or(0) > reading_timeout_;
+}
+
+/// Trouble with keys and clocks while nothing else comes: at once, then every ten seconds.
+void RobotClient::log_signature_trouble(std::int64_t now) {
+  const netio::SignatureTrouble& trouble = link_.trouble();
+  const bool is_new = trouble.count > std::exchange(troubles_, trouble.count);
+  if (!is_new || now < next_trouble_ || now - link_.last_answer().value_or(0) < kTroubleIn) return;
+  next_trouble_ = now + kTroubleEvery;
+  problem_logged_ = true;
+  stands_ = reading_timeout_ > 0;
+  log_.write(
+      fmt::format("the farm at {} {}", netio::text(link_.farm()),
+                  netio::trouble_text(trouble, fmt::format("robot {}", world_.movers[mover_].id), base::unix_time())),
+      now);
+}
+
+/// Where nothing is heard any more, where something is again, and, once, where nothing ever was.
+void RobotClient::log_problems(std::int64_t now) {
+  const std::string farm = netio::text(link_.farm());
+  log_signature_trouble(now);
+  if (!problem_logged_ && link_.listens() && now - link_.last_answer().value_or(0) >= kAnswerIn) {
+    problem_logged_ = true;
+    stands_ = reading_timeout_ > 0;
+    log_.write(fmt::format("nothing came from the farm at {} for 3 s; is `sensorfarm serve` running there with this "
+                           "world and these ports? {}",
+                           farm, reading_timeout_ > 0 ? "Standing until readings come" : "Going on"),
+               now);
+  }
+  const std::string& name = world_.movers[mover_].name;
+  if (cameras_ && was_lost_ != is_lost()) {
+    was_lost_ = is_lost();
+    stops_ += was_lost_ ? 1 : 0;
+    log_.write(was_lost_ ? fmt::format("no camera sees {} any more: it stands until one does", name)
+                         : fmt::format("cameras see {}", name),
+               now);
+  }
+  if (stands_ == readings_timed_out(now) || !link_.last_reading()) return;
+  stands_ = !stands_;
+  stops_ += stands_ ? 1 : 0;
+  log_.write(stands_ ? fmt::format("no reading came from the farm at {} for {:g} s: {} stands until one comes", farm,
+                                   1e-9 * static_cast<double>(reading_timeout_), name)
+                     : fmt::format("readings come: {} goes on", name),
+             now);
+}
+
+/// Logs the reason for which the real robot does not drive, each time that it changes; not the silence before its first
+/// answer is due.
+void RobotClient::log_create(std::int64_t now) {
+  const std::string problem = create_->problem(now);
+  if (problem == create_problem_ || (create_->counts().frames == 0 && now < kAnswerIn)) return;
+  create_problem_ = problem;
+  const std::string& name = world_.movers[mover_].name;
+  log_.write(problem.empty() ? fmt::format("the Create is ready: {} goes on", name)
+                             : fmt::format("{}: {} stands", problem, name),
+             now);
+}
+
+}  // namespace sf::server

@@ -1,0 +1,234 @@
+#include "server/robot_link.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "netio/own_end.h"
+#include "server/wire_ids.h"
+
+namespace sf::server {
+
+namespace {
+
+constexpr std::int64_t kMilli = 1'000'000;            ///< [ns]
+constexpr std::int64_t kRequest = 500 * kMilli;       ///< [ns] between two SUBSCRIBEs: four within the farm's patience
+constexpr std::int64_t kLongestSleep = 100 * kMilli;  ///< [ns] a request to stop is seen soon enough
+constexpr std::uint32_t kRelayed = 1;                 ///< among the streams of a type: passed on by the farm
+
+std::uint32_t stream_number(netio::Type type, std::uint32_t low) {
+  return static_cast<std::uint32_t>(type) << 16 | low;
+}
+
+std::vector<std::uint32_t> others_of(const world::World& world, std::uint32_t id) {
+  std::vector<std::uint32_t> ids = ids_of(wire_names(world).robots);
+  ids.erase(std::remove(ids.begin(), ids.end(), id), ids.end());
+  return ids;
+}
+
+}  // namespace
+
+RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
+                     const StreamLayout& layout, const LinkOptions& options, PacketHandler handler)
+    : mover_(mover),
+      id_(world.movers[mover].id),
+      streams_(streams_of(sensor_set, layout, mover)),
+      farm_(options.farm),
+      v2v_socket_(
+          {.farm = farm_, .robot = id_, .others = others_of(world, id_), .key = options.key, .lights = options.lights}),
+      port_listener_(netio::own_end_for(farm_.address).address, std::size_t{1} << 20, specs(layout)),
+      receiver_(receiver_options(layout, options)),
+      out_(options.model),
+      in_(options.model),
+      handler_(std::move(handler)) {
+  receiver_.set_session(v2v_socket_.farm_session_token());
+}
+
+std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
+                                                     std::uint32_t mover) {
+  std::vector<Stream> streams;
+  for (const SensorStream& source : sensor_streams(sensor_set, layout, mover))
+    if (source.type->read != nullptr) streams.push_back({source});
+  return streams;
+}
+
+std::vector<netio::StreamSpec> RobotLink::specs(const StreamLayout& layout) const {
+  std::vector<netio::StreamSpec> specs;
+  for (const Stream& stream : streams_) {
+    const sensors::SensorType& type = *stream.source.type;
+    specs.push_back({id_, stream.source.row->sensor, layout.ports(type), std::string(type.name)});
+  }
+  return specs;
+}
+
+netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& layout, const LinkOptions& options) {
+  netio::ReceiverOptions receiver;
+  receiver.key = options.key;
+  const std::vector<netio::StreamSpec> all = specs(layout);
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    const SensorStream& source = streams_[i].source;
+    receiver.streams.push_back({all[i], source.row->elements * element_width(*source.type)});
+  }
+  receiver.headerless = layout.wire == sensors::WireFormat::thesis;
+  const sensors::WireFormat wire = layout.wire;
+  receiver.inspect = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
+    return inspect_payload(streams_[i].source, wire, header, payload);
+  };
+  receiver.read = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload,
+                               std::span<double> values) {
+    part_is_stale_ = header.state.stated && header.state.stale;
+    decode_payload(streams_[i].source, wire, header, payload, values);
+  };
+  return receiver;
+}
+
+void RobotLink::send_request(std::int64_t now) {
+  if (now < next_request_) return;
+  netio::Subscribe request{netio::kNeighboursBit};
+  for (const Stream& stream : streams_) request.types |= 1u << stream.source.type->id;
+  netio::encode({.robot = static_cast<std::uint16_t>(id_), .sequence = requests_, .time = now}, request, packet_);
+  send(netio::Type::subscribe, requests_++, now);
+  next_request_ = now + kRequest;
+}
+
+void RobotLink::send_state(const netio::V2v& state, std::int64_t now) {
+  send_request(now);
+  netio::Header header;
+  header.robot = static_cast<std::uint16_t>(id_);
+  header.time = now;
+  header.sequence = states_;
+  netio::encode(header, state, packet_);
+  send(netio::Type::v2v, states_++, now);
+}
+
+void RobotLink::send(netio::Type type, std::uint32_t sequence, std::int64_t now) {
+  out_.send({id_, stream_number(type, 0), sequence}, now, 0, packet_);
+  flush_due(now);
+}
+
+void RobotLink::flush_due(std::int64_t until) {
+  out_.release(until, [&](std::size_t, std::span<const std::uint8_t> bytes) { v2v_socket_.send(bytes); });
+}
+
+void RobotLink::leave(std::int64_t now) {
+  if (states_ + requests_ == 0) return;
+  netio::Header header;
+  header.robot = static_cast<std::uint16_t>(id_);
+  header.time = now;
+  netio::encode(header, netio::Leave{}, packet_);
+  out_.send({id_, stream_number(netio::Type::leave, 0), 0}, now, 0, packet_);
+  flush_due(std::numeric_limits<std::int64_t>::max());
+}
+
+void RobotLink::wait(std::int64_t now, std::int64_t until) const {
+  const std::int64_t next = std::min({until, out_.next(), in_.next(), now + kLongestSleep});
+  if (next <= now) return;
+  netio::wait_readable(v2v_socket_.socket(), port_listener_.epoll(),
+                       static_cast<int>((next - now + kMilli - 1) / kMilli));
+}
+
+void RobotLink::run(std::int64_t now) {
+  flush_due(now);
+  port_listener_.drain(0, [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& source) {
+    if (source != farm_) return receiver_.reject_source();
+    in_.send(reading_id(streams_[i], bytes), now, i, bytes);
+  });
+  v2v_socket_.receive(
+      [&](std::span<const std::uint8_t> bytes) { in_.send(packet_id(bytes), now, streams_.size(), bytes); });
+  in_.release(now, [&](std::size_t tag, std::span<const std::uint8_t> bytes) { take(tag, bytes, now); });
+}
+
+/// The first datagram of a reading has the fate that the reading has in a simulation with the same link.
+netio::MessageId RobotLink::reading_id(Stream& stream, std::span<const std::uint8_t> bytes) const {
+  netio::Packet packet;
+  if (netio::decode(bytes, packet) == netio::PacketStatus::accepted && packet.header.sequence != stream.sequence) {
+    stream.sequence = packet.header.sequence;
+    stream.piece = 0;
+  }
+  const std::uint32_t low = stream.source.row->sensor;
+  return {id_, std::uint32_t{stream.source.type->id} << 16 | low, stream.piece++ << 32 | stream.sequence};
+}
+
+netio::MessageId RobotLink::packet_id(std::span<const std::uint8_t> bytes) {
+  netio::Packet packet;
+  if (netio::decode(bytes, packet) == netio::PacketStatus::accepted && packet.header.type == netio::Type::v2v)
+    return {id_, stream_number(netio::Type::v2v, kRelayed),
+            std::uint64_t{packet.header.robot} << 32 | packet.header.sequence};
+  return {id_, stream_number(netio::Type::start, kRelayed), other_packets_++};
+}
+
+void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now) {
+  if (tag == streams_.size()) return take_packet(bytes, now);
+  const netio::PartStatus part_status = receiver_.accept(tag, bytes, now);
+  if (part_status == netio::PartStatus::rejected) return;
+  last_answer_ = now;
+  if (part_status != netio::PartStatus::complete) return;
+  last_reading_ = now;
+  ++streams_[tag].whole;
+  stale_ += part_is_stale_ ? 1 : 0;
+  clock_.update(receiver_.newest(tag)->time, now);
+}
+
+void RobotLink::take_packet(std::span<const std::uint8_t> bytes, std::int64_t now) {
+  netio::Packet packet;
+  const netio::SessionToken before = v2v_socket_.farm_session_token();
+  if (v2v_socket_.accept(bytes, now, packet) != netio::PacketStatus::accepted) return;
+  if (std::holds_alternative<netio::Challenge>(packet.body)) return handle_challenge(before);
+  last_answer_ = now;
+  handler_(packet, now);
+}
+
+/// The requests before it were dropped. A new session is a new farm, with a clock and sequences of its own.
+void RobotLink::handle_challenge(const netio::SessionToken& before) {
+  next_request_ = 0;
+  if (v2v_socket_.farm_session_token().session == before.session) return;
+  receiver_.set_session(v2v_socket_.farm_session_token());
+  clock_ = {};
+}
+
+std::uint64_t RobotLink::scans() const {
+  std::uint64_t scans = 0;
+  for (const Stream& stream : streams_)
+    if (stream.source.type->id == sensors::kLaser) scans += stream.whole;
+  return scans;
+}
+
+namespace {
+
+/// Packets do not say which elements have a flag: a bound is stated where it holds for all of them. Without one, the
+/// sensor may be noisy.
+void state_bound(const netio::Accuracy& accuracy, double sigma, base::ReadingBlock& block) {
+  block.bound = block.bound_without_noise = accuracy.unsure ? HUGE_VAL : accuracy.bound;
+  block.sigma = std::isinf(block.bound) ? sigma : 0.0;
+}
+
+}  // namespace
+
+std::span<RobotLink::Newest> RobotLink::readings() {
+  newest_.clear();
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    const auto whole = receiver_.newest(i);
+    if (!whole) continue;
+    const SensorStream& source = streams_[i].source;
+    Newest& newest = newest_.emplace_back();
+    newest.row = source.row;
+    newest.block.mover = mover_;
+    newest.block.sensor = source.row->sensor;
+    newest.block.type = source.type->id;
+    newest.block.sequence = whole->sequence;
+    newest.block.time = clock_.to_own(whole->time);
+    newest.block.values = whole->values;
+    state_bound(netio::decode_accuracy(whole->accuracy), source.row->sigma, newest.block);
+  }
+  return newest_;
+}
+
+LinkCounts RobotLink::counts() const {
+  LinkCounts counts{
+      v2v_socket_.sent(), out_.counts(), in_.counts(), receiver_.counts(), v2v_socket_.counts(), 0, {}, stale_};
+  counts.socket_drops = port_listener_.socket_drops() + netio::socket_drops(v2v_socket_.socket());
+  for (const Stream& stream : streams_) counts.whole[std::string(stream.source.type->name)] += stream.whole;
+  return counts;
+}
+
+}  // namespace sf::server

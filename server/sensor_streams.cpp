@@ -1,0 +1,58 @@
+#include "server/sensor_streams.h"
+
+namespace sf::server {
+
+namespace {
+
+netio::PacketStatus reason_of(sensors::PayloadError fault) {
+  switch (fault) {
+    case sensors::PayloadError::none:
+      return netio::PacketStatus::accepted;
+    case sensors::PayloadError::too_short:
+      return netio::PacketStatus::too_short;
+    case sensors::PayloadError::too_long:
+      return netio::PacketStatus::too_long;
+    case sensors::PayloadError::out_of_range:
+      break;
+  }
+  return netio::PacketStatus::out_of_range;
+}
+
+/// The thesis' datagrams do not tell their type: the port does.
+std::uint8_t type_of(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header) {
+  return wire == sensors::WireFormat::farm ? static_cast<std::uint8_t>(header.type) : source.type->id;
+}
+
+}  // namespace
+
+std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& layout) {
+  std::vector<SensorStream> sources;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : group.rows)
+      if (layout.sends(*group.type, row)) sources.push_back({group.type, &row});
+  return sources;
+}
+
+std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
+                                         std::uint32_t mover) {
+  std::vector<SensorStream> sources;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : sensor_set.of(group.type->id, mover))
+      if (layout.sends(*group.type, row)) sources.push_back({group.type, &row});
+  return sources;
+}
+
+netio::PayloadInfo inspect_payload(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header,
+                                   std::span<const std::uint8_t> payload) {
+  if (wire == sensors::WireFormat::farm && netio::sensor_type_of(header.type) != source.type->id)
+    return {netio::PacketStatus::wrong_source};
+  const sensors::PayloadPart part = source.type->decode(*source.row, payload, type_of(source, wire, header), wire);
+  return {reason_of(part.fault), part.elements, part.part, part.parts};
+}
+
+void decode_payload(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header,
+                    std::span<const std::uint8_t> payload, std::span<double> values) {
+  source.type->read(*source.row, payload, type_of(source, wire, header), wire, values);
+}
+
+}  // namespace sf::server

@@ -1,0 +1,224 @@
+#include "server/service.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "base/elapsed.h"
+#include "base/error.h"
+#include "base/thread_pool.h"
+#include "base/time.h"
+
+namespace sf::server {
+
+class Service::Clock {
+ public:
+  std::int64_t now() const {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+namespace {
+
+StateReceiverOptions with_lights(StateReceiverOptions options, std::vector<std::uint32_t> ids) {
+  options.lights = std::move(ids);
+  return options;
+}
+
+}  // namespace
+
+Service::Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
+                 const StreamLayout& layout, const ServiceOptions& options)
+    : world_(world),
+      sensor_set_(sensor_set),
+      layout_(layout),
+      lights_(world, {.spat = options.spat, .stale = options.stale_lights, .peers = options.receiver.peers},
+              options.receiver.radio),
+      receiver_(world, with_lights(options.receiver, lights_.ids())),
+      publisher_(world, sensor_set, layout, netio::Outbox(receiver_.inbox().socket(), outbox_options(sensor_set)),
+                 options.mirror),
+      farm_(world, device,
+            farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
+      absent_(world.movers.size(), false),
+      no_return_filter_(sensor_set, options.no_return_inf),
+      interval_(options.rate > 0.0 ? 1.0 / options.rate : world.interval),
+      only_at_ticks_(options.rate > 0.0) {
+  receiver_.set_light_handler([this](const netio::Header& header, const netio::V2i& signals, std::int64_t now) {
+    lights_.accept(header, signals, now);
+  });
+}
+
+void Service::run(const std::atomic<bool>& stop, double duration) {
+  const Clock clock;
+  receiver_.filter().set_epoch(base::unix_time());
+  farm_.thread_pool().interrupt_on([&stop] { return stop.load(); });
+  try {
+    run_ticks(clock, stop, duration);
+  } catch (const base::Interrupted&) {
+    // The tick was long: it is given up.
+  }
+  farm_.thread_pool().interrupt_on({});
+  receive_pending(clock.now());  // datagrams that wait are counted too
+  wall_s_ = 1e-9 * static_cast<double>(clock.now());
+}
+
+void Service::run_ticks(const Clock& clock, const std::atomic<bool>& stop, double duration) {
+  const std::int64_t step = base::nanoseconds(interval_);
+  std::int64_t next = 0;  // [ns] of the tick
+  while (!stop) {
+    wait_until(clock, std::min(next, next_due()), stop);
+    if (stop) break;
+    const std::int64_t now = clock.now();
+    if (duration > 0.0 && 1e-9 * static_cast<double>(now) >= duration) break;
+    if (now < next) {
+      sample(now);
+      continue;
+    }
+    tick(now);
+    next = std::max(next + step, clock.now() - step);
+  }
+}
+
+/// Sleeps until `when`, taking in what comes meanwhile. Never less: at a tick that is early, a sensor of the same rate
+/// would not be due yet.
+void Service::wait_until(const Clock& clock, std::int64_t when, const std::atomic<bool>& stop) {
+  for (;;) {
+    const std::int64_t left = when - clock.now();
+    if (left <= 0 || stop) return;
+    const std::int64_t whole = left / 1'000'000;  // [ms]
+    if (whole == 0) std::this_thread::sleep_for(std::chrono::nanoseconds(left));
+    if (whole > 0) receiver_.inbox().wait(static_cast<int>(std::min<std::int64_t>(whole, 100)));
+    receive_pending(clock.now());
+  }
+}
+
+std::int64_t Service::next_due() const {
+  return only_at_ticks_ ? farm::kNever : std::min(farm_.next_due(), farm_.next_delivery());
+}
+
+void Service::tick(std::int64_t now) {
+  publish_due(now, false);
+  lights_.publish(now, receiver_);
+  receiver_.relay(now);
+  ++ticks_;
+}
+
+void Service::publish_due(std::int64_t now, bool between) {
+  receive_pending(now);
+  lights_.update(now);
+  receiver_.predict(now);
+  const auto states = update_movers(now);
+  const auto readings = no_return_filter_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
+  address(readings);
+  publisher_.queue(addressed_readings_);
+  publisher_.flush();
+  addressed_readings_.clear();
+  if (!sinks_.empty()) record(now, states, readings);
+  warn_of_missed(now);
+}
+
+/// Takes movers in and out of the world, with what they ask for. @return the newest states
+std::span<const base::Report> Service::update_movers(std::int64_t now) {
+  for (const auto& [id, row] : receiver_.robots()) {
+    absent_[row] = receiver_.update_absent(id, now);
+    farm_.set_absent(row, absent_[row]);
+    farm_.subscribe(row, subscribed_types(id, now));
+    farm_.set_state_quality(row, receiver_.quality(row, now));
+  }
+  for (const auto& [id, row] : receiver_.tags()) {
+    absent_[row] = receiver_.update_absent_tag(row);
+    farm_.set_absent(row, absent_[row]);
+  }
+  return receiver_.states(now);
+}
+
+void Service::address(std::span<const base::ReadingBlock> readings) {
+  for (const base::ReadingBlock& reading : readings) {
+    // A delayed reading of a robot that left meanwhile has no address.
+    const std::uint32_t id = world_.movers[reading.mover].id;
+    const auto to = receiver_.inbox().address(id);
+    if (to)
+      addressed_readings_.push_back(
+          {&reading, to->address, receiver_.inbox().session_token_for(id), receiver_.inbox().signer(id)});
+  }
+}
+
+void Service::record(std::int64_t now, std::span<const base::Report> states,
+                     std::span<const base::ReadingBlock> readings) {
+  states_.assign(states.begin(), states.end());
+  qualities_.clear();
+  for (base::Report& state : states_) {
+    if (absent_[state.mover]) state.X_WM = base::kAbsent;
+    qualities_.push_back(receiver_.quality(state.mover, now));
+  }
+  light_states_.clear();
+  for (const world::Signal& signal : lights_.signals()) light_states_.push_back(world::status_of(signal));
+  const base::TickRecord tick{.tick = records_++,
+                              .time = now,
+                              .reports = states_,
+                              .readings = readings,
+                              .qualities = qualities_,
+                              .lights = light_states_};
+  std::erase_if(sinks_, [&](base::Sink* sink) { return !write(*sink, tick); });
+}
+
+/// @return false: the sink takes no more
+bool Service::write(base::Sink& sink, const base::TickRecord& record) {
+  try {
+    sink.write(record);
+    return true;
+  } catch (const base::InputError& error) {
+    recording_error_ = error.what();
+    receiver_.log().write(fmt::format("recording ends here: {}", error.what()), record.time);
+    return false;
+  }
+}
+
+/// Bit k: robot `id` is active, and wants its sensors of type k.
+std::uint32_t Service::subscribed_types(std::uint32_t id, std::int64_t now) const {
+  std::uint32_t types = 0;
+  for (const sensors::SensorSet::Group& group : sensor_set_.groups())
+    if (receiver_.inbox().is_subscribed(id, group.type->id, now) && layout_.sends_any(group))
+      types |= 1u << group.type->id;
+  return types;
+}
+
+/// Once, when more than one reading in twenty is missed.
+void Service::warn_of_missed(std::int64_t now) {
+  const farm::FarmStats stats = farm_.stats();
+  if (warned_of_missed_ || only_at_ticks_ || stats.missed < 20 || 20 * stats.missed < stats.readings) return;
+  warned_of_missed_ = true;
+  receiver_.log().write(
+      "this machine is too slow for the sensors' rates: readings are missed; lower the rates, or let fewer robots ask "
+      "for them",
+      now);
+}
+
+ServiceStats Service::stats() const {
+  ServiceStats stats;
+  stats.robots = static_cast<std::uint32_t>(robots());
+  stats.ticks = ticks_;
+  stats.wall_s = wall_s_;
+  stats.farm = farm_.stats();
+  stats.hash = farm_.hash();
+  stats.publisher = publisher_.counts();
+  stats.inbox = receiver_.inbox().counts();
+  stats.socket_drops = receiver_.inbox().socket_drops();
+  stats.relayed = receiver_.relayed();
+  stats.lights = lights_.counts();
+  stats.answers = receiver_.answered();
+  stats.lines_left_out = receiver_.log().left_out();
+  stats.filtered = receiver_.filter().options().enabled;
+  stats.states = receiver_.filter().counts();
+  stats.clocks = receiver_.filter().clocks();
+  stats.recording_error = recording_error_;
+  return stats;
+}
+
+}  // namespace sf::server

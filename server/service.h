@@ -1,0 +1,126 @@
+#pragma once
+// `serve` without its command line: robots' states come in, readings go back to them.
+//
+//   Service service(world, sensor_set, device, layout, {});
+//   service.run(stop, 0.0);        // by the machine's clock, or, by any clock:
+//   service.receive_pending(now);
+//   service.tick(now);
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/tick_record.h"
+#include "farm/farm.h"
+#include "gpu/device.h"
+#include "sensors/sensor_set.h"
+#include "server/light_service.h"
+#include "server/no_return_filter.h"
+#include "server/reading_publisher.h"
+#include "server/state_receiver.h"
+#include "server/stream_layout.h"
+#include "world/world.h"
+
+namespace sf::server {
+
+struct ServiceOptions {
+  StateReceiverOptions receiver;
+  /// [Hz] of ticks, at which sensors are read when due; 0: the world's ticks, sensors at their own rates.
+  double rate = 0.0;
+  std::uint64_t seed = 1;
+  bool no_return_inf = false;
+  /// Lights of the world; peers are those of `receiver`.
+  std::optional<netio::Endpoint> spat;  ///< where to listen for SPaT; nullopt: nowhere
+  StaleLights stale_lights = StaleLights::dark;
+  std::optional<netio::Endpoint> mirror;  ///< where a copy of each reading's packets goes; nullopt: nowhere
+};
+
+struct ServiceStats {
+  std::uint32_t robots = 0;  ///< of the world, connected or not
+  std::uint64_t ticks = 0;
+  double wall_s = 0.0;  ///< [s] of `run`
+  farm::FarmStats farm;
+  std::uint64_t hash = 0;
+  PublisherCounts publisher;
+  netio::PacketCounts inbox;
+  std::uint64_t socket_drops = 0;  ///< datagrams that came while the inbox' buffer was full
+  netio::RelayCounts relayed;
+  LightServiceCounts lights;
+  netio::OutboxCounts answers;       ///< challenges, and datagrams of the relay
+  std::uint64_t lines_left_out = 0;  ///< of the log
+  bool filtered = false;             ///< `states` and `clocks` count
+  StateFilterCounts states;
+  std::vector<SenderClockState> clocks;
+  std::string recording_error;  ///< why the recording ends before the service; empty: it does not
+};
+
+/// Times are of one clock [ns] that begins at 0 and does not go back. World, sensor set, device and layout must outlive
+/// it. One caller at a time.
+class Service {
+ public:
+  /// @throws netio::PortInUse, base::InputError when the address cannot be bound, and as `farm::Farm`.
+  Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
+          const StreamLayout& layout, const ServiceOptions& options);
+
+  /// From now on `sink`, too, takes each tick, and each sample between two ticks as a tick of its own. It must outlive
+  /// the service. Once it throws base::InputError, which is logged, it takes no more; robots are served all the same.
+  void record_to(base::Sink& sink) { sinks_.push_back(&sink); }
+
+  /// Serves by the machine's clock, which begins at 0, until `stop` is set or `duration` [s] have passed (0: without
+  /// end). Once only, and not after `tick`.
+  void run(const std::atomic<bool>& stop, double duration);
+
+  /// Reads and sends all due sensors, and relays states of neighbours.
+  void tick(std::int64_t now);
+  /// Reads and sends the sensors that are due between two ticks.
+  void sample(std::int64_t now) { publish_due(now, true); }
+  void receive_pending(std::int64_t now) { receiver_.receive_pending(now); }
+  /// [ns] Time of the next reading or delivery; farm::kNever: none, or `ServiceOptions::rate` is set.
+  std::int64_t next_due() const;
+
+  double interval() const { return interval_; }  ///< [s] of a tick
+  std::uint16_t port() const { return receiver_.inbox().port(); }
+  std::size_t robots() const { return receiver_.robots().size(); }
+  StateReceiver& receiver() { return receiver_; }
+  const LightService& lights() const { return lights_; }
+  ServiceStats stats() const;
+
+ private:
+  class Clock;
+  void run_ticks(const Clock& clock, const std::atomic<bool>& stop, double duration);
+  void wait_until(const Clock& clock, std::int64_t when, const std::atomic<bool>& stop);
+  void publish_due(std::int64_t now, bool between);
+  std::uint32_t subscribed_types(std::uint32_t id, std::int64_t now) const;
+  void warn_of_missed(std::int64_t now);
+  std::span<const base::Report> update_movers(std::int64_t now);
+  void address(std::span<const base::ReadingBlock> readings);
+  void record(std::int64_t now, std::span<const base::Report> states, std::span<const base::ReadingBlock> readings);
+  bool write(base::Sink& sink, const base::TickRecord& record);
+
+  const world::World& world_;
+  const sensors::SensorSet& sensor_set_;
+  const StreamLayout& layout_;
+  LightService lights_;
+  StateReceiver receiver_;
+  ReadingPublisher publisher_;
+  farm::Farm farm_;
+  std::vector<base::Sink*> sinks_;
+  std::vector<base::Report> states_;             ///< per mover, of one tick or sample
+  std::vector<base::StateQuality> qualities_;    ///< likewise
+  std::vector<bool> absent_;                     ///< per mover
+  std::vector<base::LightStatus> light_states_;  ///< per light, of one tick or sample
+  std::string recording_error_;
+  std::uint64_t records_ = 0;  ///< written to the sinks
+  NoReturnFilter no_return_filter_;
+  std::vector<AddressedReading> addressed_readings_;  ///< of one tick
+  double interval_;
+  bool only_at_ticks_;  ///< `ServiceOptions::rate` is set
+  bool warned_of_missed_ = false;
+  std::uint64_t ticks_ = 0;
+  double wall_s_ = 0.0;
+};
+
+}  // namespace sf::server

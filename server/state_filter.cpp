@@ -1,0 +1,121 @@
+#include "server/state_filter.h"
+
+#include <cmath>
+
+namespace sf::server {
+
+namespace {
+
+/// A car or a wheeled robot drives on arcs. A tag may be on anything.
+estimation::MotionModel motion_model(const world::Mover& mover) {
+  if (mover.is_tag) return estimation::free_body();
+  estimation::MotionModel model = estimation::differential_drive();
+  if (mover.drive == world::Drive::omni) model.left = model.forward;
+  return model;
+}
+
+netio::StateQuality quality_of(const estimation::Prediction& p) {
+  using enum estimation::Component;
+  const auto c = [&](int i, int j) { return static_cast<float>(p.estimate.covariance[6 * i + j]); };
+  return {.stated = true,
+          .stale = p.status == estimation::Prediction::Status::stale,
+          .age = p.age,
+          .covariance = {c(kX, kX), c(kX, kY), c(kX, kYaw), c(kY, kY), c(kY, kYaw), c(kYaw, kYaw)}};
+}
+
+}  // namespace
+
+StateFilter::StateFilter(const world::World& world, const StateFilterOptions& options)
+    : world_(world), options_(options), movers_(options.enabled ? world.movers.size() : 0) {
+  for (MoverState& mover : movers_) mover.clock = estimation::SenderClock(options.clock);
+  reports_.reserve(movers_.size());
+}
+
+void StateFilter::add_mover() {
+  if (options_.enabled) movers_.emplace_back().clock = estimation::SenderClock(options_.clock);
+}
+
+void StateFilter::take(const base::Report& report, const netio::Header& header, std::int64_t now) {
+  using estimation::ClockSource, estimation::ClockVerdict;
+  MoverState& mover = movers_[report.mover];
+  if (++mover.taken > kMostBetweenPredictions) {
+    ++flooded_;
+    return;
+  }
+  if (!mover.track)
+    mover.track.emplace(estimation::FilterOptions{.model = motion_model(world_.movers[report.mover]),
+                                                  .stale_after = options_.stale_after,
+                                                  .max_future = options_.clock.max_future,
+                                                  .hypotheses = options_.hypotheses},
+                        gate_limits_);
+  if (header.session != mover.session) forget(mover);  // its sender restarted
+  mover.session = header.session;
+
+  const ClockVerdict verdict = mover.clock.take(header.time, now + epoch());
+  ++clock_counts_[static_cast<std::size_t>(verdict)];
+  if (verdict == ClockVerdict::stepped) mover.track->reset();
+  if (verdict != ClockVerdict::used && verdict != ClockVerdict::stepped) return;
+
+  // The track's times are the sender's: an estimate of its clock that changes moves no measurement.
+  const std::int64_t sender_now = mover.clock.to_sender(now + epoch());
+  estimation::Measurement m = measurement(report, header);
+  m.time = options_.clock.source == ClockSource::arrival ? now : header.time;
+  mover.track->take(m, sender_now);
+}
+
+estimation::Measurement StateFilter::measurement(const base::Report& report, const netio::Header& header) const {
+  const auto square = [](double sigma) { return sigma * sigma; };
+  const double position = square(options_.position_sigma);
+  const double speed = square(options_.speed_sigma);
+  estimation::Measurement m{.sequence = header.sequence, .X_WM = report.X_WM, .velocity = report.velocity};
+  m.pose_covariance = {position, 0.0, 0.0, position, 0.0, square(options_.yaw_sigma)};
+  m.twist_variance = {speed, speed, square(options_.turn_sigma)};
+  // Cameras that measure no velocities send zeros.
+  const base::Twist& v = report.velocity;
+  if (world_.movers[report.mover].is_tag && v.forward == 0.0 && v.left == 0.0 && v.turn == 0.0)
+    m.components = estimation::kPoseBits;
+  return m;
+}
+
+const std::vector<base::Report>& StateFilter::predict(std::int64_t now) {
+  using Status = estimation::Prediction::Status;
+  reports_.clear();
+  for (std::uint32_t row = 0; row < movers_.size(); ++row) {
+    MoverState& mover = movers_[row];
+    mover.taken = 0;
+    if (!mover.track) continue;
+    const estimation::Prediction prediction = mover.track->predict(mover.clock.to_sender(now + epoch()));
+    if (prediction.status == Status::none) continue;
+    const bool stale = prediction.status == Status::stale;
+    mover.quality = quality_of(prediction);
+    mover.gone = stale && options_.policy != estimation::StalePolicy::freeze;
+    reports_.push_back({row, now, prediction.estimate.X_WM, prediction.estimate.velocity});
+    if (stale && options_.policy == estimation::StalePolicy::drop) forget(mover);
+  }
+  return reports_;
+}
+
+std::int64_t StateFilter::epoch() const {
+  return options_.clock.source == estimation::ClockSource::trusted ? options_.epoch : 0;
+}
+
+void StateFilter::forget(MoverState& mover) {
+  mover.track->reset();
+  mover.clock.reset();
+}
+
+StateFilterCounts StateFilter::counts() const {
+  StateFilterCounts counts{.clocks = clock_counts_, .flooded = flooded_};
+  for (const MoverState& mover : movers_)
+    for (std::size_t k = 0; mover.track && k < estimation::kVerdicts; ++k) counts.states[k] += mover.track->counts()[k];
+  return counts;
+}
+
+std::vector<SenderClockState> StateFilter::clocks() const {
+  std::vector<SenderClockState> clocks;
+  for (std::uint32_t row = 0; row < movers_.size(); ++row)
+    if (movers_[row].clock.state().synchronised) clocks.push_back({row, movers_[row].clock.state()});
+  return clocks;
+}
+
+}  // namespace sf::server

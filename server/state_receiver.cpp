@@ -1,0 +1,176 @@
+#include "server/state_receiver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "base/time.h"
+
+namespace sf::server {
+
+namespace {
+
+/// By time of arrival no state is late: an overtaken one would count as the newest.
+bool takes_late(const StateFilterOptions& filter) {
+  return filter.enabled && filter.clock.source != estimation::ClockSource::arrival;
+}
+
+}  // namespace
+
+StateReceiver::StateReceiver(const world::World& world, const StateReceiverOptions& options)
+    : world_(world),
+      names_(wire_names(world)),
+      inbox_({.bind = options.bind,
+              .robots = ids_of(names_.robots),
+              .tags = ids_of(names_.tags),
+              .peers = options.peers,
+              .take_late = takes_late(options.filter),
+              .lights = options.lights}),
+      peers_(options.peers),
+      answers_(inbox_.socket()),
+      relay_(ids_of(names_.robots), {.range = options.radio}, options.lights),
+      fleet_(world),
+      filter_(world, options.filter),
+      forget_(options.forget > 0.0
+                  ? std::max<std::int64_t>(0, base::nanoseconds(options.forget) - netio::kClientTimeout)
+                  : kNever),
+      removed_(world.movers.size(), false),
+      last_active_(world.movers.size(), kNever),
+      last_state_(world.movers.size(), kNever),
+      log_(options.log_descriptor),
+      rejections_(ids_of(names_.robots)) {
+  reports_.reserve(netio::Inbox::kMaxPerReceive);
+}
+
+void StateReceiver::receive_pending(std::int64_t now) {
+  reports_.clear();
+  const auto on_notable = [&](netio::PacketStatus reason, const netio::Packet& packet, const netio::Endpoint& who) {
+    if (reason == netio::PacketStatus::wrong_source) {
+      trouble_.answer(reason, packet, who, now, inbox_, answers_);
+      return log_wrong_source(packet, who, now);
+    }
+    trouble_.note(reason, packet, who, name_of(packet.header), now, inbox_, answers_, log_);
+    if (reason != netio::PacketStatus::unproven || !inbox_.challenge(packet, who, now, challenge_)) return;
+    answers_.queue(who, challenge_);
+  };
+  inbox_.receive(
+      now, [&](const netio::Packet& packet) { take(packet, now); }, on_notable,
+      [&](netio::PacketStatus reason, std::span<const std::uint8_t> bytes, const netio::Endpoint& who) {
+        rejections_.note(reason, bytes, who, now, log_);
+      });
+  answers_.flush();
+  fleet_.apply(reports_);
+}
+
+void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
+  if (!packet.late) relay_.take(packet);
+  if (const auto* signals = std::get_if<netio::V2i>(&packet.body)) {
+    if (light_handler_) light_handler_(packet.header, *signals, now);
+    return;
+  }
+  if (const auto* object = std::get_if<netio::Object>(&packet.body)) {
+    removed_[names_.tags.at(packet.header.robot)] = !object->present;
+    return;
+  }
+  base::Report report;
+  if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
+    report = netio::report(packet.header, *state, names_.robots.at(packet.header.robot));
+  } else if (const auto* tag = std::get_if<netio::Tag>(&packet.body)) {
+    const std::uint32_t row = names_.tags.at(packet.header.robot);
+    report = netio::report(packet.header, *tag, row, world_.movers[row].X_MT);
+  } else {
+    return;
+  }
+  last_state_[report.mover] = now;
+  if (filter_.options().enabled) return filter_.take(report, packet.header, now);
+  // Senders' clocks are their own: a state is true when it arrives.
+  report.time = now;
+  reports_.push_back(report);
+}
+
+void StateReceiver::predict(std::int64_t now) {
+  if (filter_.options().enabled) fleet_.apply(filter_.predict(now));
+}
+
+netio::StateQuality StateReceiver::quality(std::uint32_t row, std::int64_t now) const {
+  constexpr netio::StateQuality kNone{.stated = true, .stale = true, .age = base::kNoStateYet};
+  if (filter_.options().enabled) {
+    const netio::StateQuality predicted = filter_.quality(row);
+    return predicted.stated ? predicted : kNone;
+  }
+  if (last_state_[row] == kNever) return kNone;
+  const std::int64_t age = now - last_state_[row];
+  return {.stated = true, .stale = age > filter_.options().stale_after, .age = age};
+}
+
+void StateReceiver::queue(std::uint32_t id, std::span<const std::uint8_t> packet) {
+  answers_.queue(*inbox_.address(id), packet, inbox_.session_token_for(id), inbox_.signer(id));
+}
+
+void StateReceiver::relay(std::int64_t now) {
+  relay_.forward(inbox_, now, answers_);
+  answers_.flush();
+}
+
+bool StateReceiver::update_absent(std::uint32_t id, std::int64_t now) {
+  const std::uint32_t row = names_.robots.at(id);
+  std::int64_t& last = last_active_[row];
+  const bool active = inbox_.is_active(id, now);
+  const bool forgotten = !active && forget_ != kNever && last != kNever && now - last >= forget_;
+  const bool absent = forgotten || (filter_.options().enabled && filter_.is_gone(row));
+  if (active) last = now;
+  fleet_.set_absent(row, absent);
+  return absent;
+}
+
+bool StateReceiver::update_absent_tag(std::uint32_t row) {
+  const bool absent = removed_[row] || (filter_.options().enabled && filter_.is_gone(row));
+  fleet_.set_absent(row, absent);
+  return absent;
+}
+
+/// Of the mover that a packet claims to be from; empty: it is from none.
+std::string StateReceiver::name_of(const netio::Header& header) const {
+  const netio::Claim claim = netio::claim_of(header);
+  if (claim.kind != netio::PeerKind::robot && claim.kind != netio::PeerKind::tag) return "";
+  return world_.movers[(claim.kind == netio::PeerKind::tag ? names_.tags : names_.robots).at(claim.id)].name;
+}
+
+/// Whom a packet claims to be from.
+std::string StateReceiver::sender_text(const netio::Header& header) const {
+  const netio::Claim claim = netio::claim_of(header);
+  if (claim.kind == netio::PeerKind::start) return "the sender of START";
+  if (claim.kind == netio::PeerKind::light) return fmt::format("intersection {}", claim.id);
+  return fmt::format("{} ({} {})", name_of(header), claim.kind == netio::PeerKind::tag ? "tag" : "id", claim.id);
+}
+
+/// The address that its id is bound to.
+std::optional<netio::Endpoint> StateReceiver::bound_address(const netio::Header& header, std::int64_t now) const {
+  const netio::Claim claim = netio::claim_of(header);
+  if (claim.kind == netio::PeerKind::light) return inbox_.light_address(claim.id, now);
+  if (claim.kind == netio::PeerKind::robot) return inbox_.address(claim.id);
+  return header.type == netio::Type::object ? inbox_.object_address(claim.id) : inbox_.tag_address(claim.id);
+}
+
+/// Once per binding, or once for the address in the table of peers.
+void StateReceiver::log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now) {
+  const netio::Claim claim = netio::claim_of(packet.header);
+  const netio::Peer* peer = netio::find(peers_, claim.kind, claim.id);
+  const bool refused = peer != nullptr && peer->address && *peer->address != who.address;
+  const auto expected =
+      refused ? netio::Endpoint{*peer->address, 0} : bound_address(packet.header, now).value_or(netio::Endpoint{});
+  auto& logged = logged_[{claim.kind, claim.id}];
+  if (logged == expected) return;
+  logged = expected;
+  const std::string sender = sender_text(packet.header);
+  log_.write(refused ? fmt::format("{} is at {} by the table of peers; what {} says as the same is dropped", sender,
+                                   netio::text_of(expected.address), netio::text(who))
+                     : fmt::format("{} is heard from {}; what {} says as the same is dropped until that one leaves or "
+                                   "is silent for 2 s",
+                                   sender, netio::text(expected), netio::text(who)),
+             now);
+}
+
+}  // namespace sf::server

@@ -1,0 +1,199 @@
+// The driver of a Create beside a simulated one, over a pseudo-terminal.
+
+#include "server/create_drive.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "base/error.h"
+#include "tests/create_simulator.h"
+
+namespace sf::server {
+namespace {
+
+constexpr std::int64_t kTenth = 100'000'000;
+
+struct CreateTest : testing::Test {
+  CreateTest() : drive(std::make_unique<CreateDrive>(CreateOptions{create.device()}, base::Pose{1, 2, 0, 0.5}, 0.258)) {
+    create.X = {1, 2, 0, 0.5};
+    EXPECT_TRUE(create.streaming());
+  }
+
+  /// A tenth of a second, nearly.
+  void step(const base::Twist& twist = {}, CreateSimulator::Bytes noise = {}) {
+    create.run(3);
+    if (!noise.empty()) create.send(noise);
+    create.run(4);
+    drive->update(now += kTenth);
+    drive->drive(twist, now);
+    EXPECT_TRUE(create.driven(create.drives + 1));
+  }
+
+  CreateSimulator create;
+  std::unique_ptr<CreateDrive> drive;
+  std::int64_t now = 0;
+};
+
+TEST_F(CreateTest, DrivesAndKnowsWhereItIs) {
+  EXPECT_FALSE(drive->ready(0)) << "nothing came yet";
+  for (int k = 0; k < 50; ++k) step({0.3, 0, k < 25 ? 0.8 : -0.4});
+  EXPECT_TRUE(drive->ready(now));
+  create.run(7);
+  drive->update(now += kTenth);
+  EXPECT_EQ(create.mode, CreateSimulator::safe);
+  const base::Pose& X = drive->state().X_WM;
+  EXPECT_GT(std::hypot(create.X.x - 1, create.X.y - 2), 0.5) << "it moved";
+  EXPECT_NEAR(X.x, create.X.x, 0.02) << "whole millimetres and degrees, none lost";
+  EXPECT_NEAR(X.y, create.X.y, 0.02);
+  EXPECT_NEAR(base::wrap_angle(X.yaw - create.X.yaw), 0.0, 0.02);
+  EXPECT_NEAR(drive->state().velocity.forward, 0.3, 0.05);
+  EXPECT_EQ(drive->counts().starts, 1u);
+  EXPECT_EQ(drive->counts().skipped_bytes, 0u);
+  EXPECT_EQ(create.unknown, 0u);
+}
+
+TEST_F(CreateTest, KeepsItsVelocityWithinOneInstant) {
+  for (int k = 0; k < 10; ++k) step({0.3, 0, 0});
+  const base::Twist before = drive->state().velocity;
+  EXPECT_GT(before.forward, 0.0);
+  drive->update(now);
+  EXPECT_EQ(drive->state().velocity.forward, before.forward);
+  EXPECT_EQ(drive->state().velocity.turn, before.turn);
+}
+
+TEST_F(CreateTest, ReportsABumpThatWasShort) {
+  create.run(2);
+  create.bumps = 2;
+  create.run(1);
+  create.bumps = 0;
+  create.run(2);
+  drive->update(now += kTenth);
+  EXPECT_TRUE(drive->contact());
+  step();
+  EXPECT_FALSE(drive->contact());
+}
+
+TEST_F(CreateTest, StandsWhileLiftedAndGoesOnWhereItIsPutDown) {
+  step({0.2, 0, 0});
+  step({0.2, 0, 0});
+  EXPECT_EQ(create.right, 200);
+  create.drops = 1;
+  step({0.2, 0, 0});
+  EXPECT_EQ(drive->problem(now), "the Create is lifted");
+  EXPECT_TRUE(drive->contact());
+  EXPECT_EQ(create.right, 0);
+  create.drops = 0;
+  step({0.2, 0, 0});
+  EXPECT_TRUE(create.comes_to(CreateSimulator::safe));
+  step({0.2, 0, 0});
+  step({0.2, 0, 0});
+  EXPECT_EQ(create.right, 200);
+}
+
+TEST_F(CreateTest, WaitsForPeopleAtACliff) {
+  step();
+  create.mode = CreateSimulator::passive;
+  for (int k = 0; k < 20; ++k) step({0.2, 0, 0});
+  EXPECT_NE(drive->problem(now).find("at a cliff"), std::string::npos);
+  EXPECT_EQ(create.mode, CreateSimulator::passive) << "else it would creep over the edge";
+}
+
+TEST_F(CreateTest, LeavesOutDamagedFrames) {
+  step();
+  CreateSimulator::Bytes wrong = create.frame(), cut = create.frame();
+  wrong.back() ^= 1;
+  cut.erase(cut.begin() + 6);
+  step({}, wrong);
+  step({}, cut);
+  step({}, {'s', 'l', 'e', 'e', 'p', 19, 19});
+  EXPECT_TRUE(drive->ready(now));
+  EXPECT_GE(drive->counts().wrong_checksums, 1u) << "a frame that lost a byte may look like one, too";
+  EXPECT_EQ(drive->counts().frames, 4 * 7u);
+  EXPECT_EQ(drive->counts().skipped_bytes, 13u + 12u + 7u);
+}
+
+TEST_F(CreateTest, StartsARobotThatWasSwitchedOffAndOn) {
+  step();
+  create.restart();
+  for (int k = 0; k < 5; ++k) drive->update(now += kTenth);
+  EXPECT_TRUE(drive->ready(now)) << "half a second";
+  drive->update(now += kTenth);
+  EXPECT_NE(drive->problem(now).find("is silent"), std::string::npos);
+  EXPECT_TRUE(create.streaming());
+  EXPECT_EQ(create.mode, CreateSimulator::safe);
+  EXPECT_EQ(drive->counts().starts, 2u);
+  for (int k = 0; k < 9; ++k) drive->update(now += kTenth);
+  EXPECT_EQ(drive->counts().starts, 2u) << "once a second";
+  step({0.1, 0, 0});
+  EXPECT_TRUE(drive->ready(now));
+}
+
+TEST_F(CreateTest, ForgetsAFrameThatASwitchOffCutShort) {
+  step();
+  CreateSimulator::Bytes cut = create.frame();
+  cut.resize(6);
+  create.send(cut);
+  create.restart();
+  for (int k = 0; k < 6; ++k) drive->update(now += kTenth);
+  EXPECT_TRUE(create.streaming());
+  step();
+  EXPECT_EQ(drive->counts().starts, 2u);
+  EXPECT_EQ(drive->counts().frames, 2 * 7u);
+  EXPECT_EQ(drive->counts().skipped_bytes, 0u);
+}
+
+TEST(CreateDrive, OpensALineThatHungUpAnew) {
+  const std::filesystem::path name = std::filesystem::path(testing::TempDir()) / ("create-" + std::to_string(getpid()));
+  auto create = std::make_unique<CreateSimulator>();
+  std::filesystem::create_symlink(create->device(), name);
+  CreateDrive drive({name.string()}, {}, 0.258);
+  EXPECT_TRUE(create->streaming());
+  create->hang_up();
+  drive.update(kTenth);
+  EXPECT_NE(drive.problem(kTenth).find("is lost"), std::string::npos);
+  drive.drive({0.1, 0, 0}, kTenth);
+  std::filesystem::remove(name);
+  for (int k = 2; k < 30; ++k) drive.update(k * kTenth);
+  EXPECT_EQ(drive.counts().lines, 1u) << "it is unplugged still";
+  create = std::make_unique<CreateSimulator>();
+  std::filesystem::create_symlink(create->device(), name);
+  drive.update(40 * kTenth);
+  EXPECT_TRUE(create->streaming());
+  EXPECT_EQ(drive.counts().lines, 2u);
+  create->run(7);
+  drive.update(41 * kTenth);
+  EXPECT_TRUE(drive.ready(41 * kTenth));
+  std::filesystem::remove(name);
+}
+
+TEST_F(CreateTest, StopsTheRobotAtItsEnd) {
+  step({0.2, 0, 0});
+  step({0.2, 0, 0});
+  EXPECT_EQ(create.right, 200);
+  drive.reset();
+  EXPECT_TRUE(create.comes_to(CreateSimulator::passive));
+  EXPECT_EQ(create.right, 0);
+  EXPECT_TRUE(create.streams.empty());
+}
+
+std::string refusal_of(const std::string& device, unsigned baud = 57600) {
+  try {
+    CreateDrive drive({device, baud}, {}, 0.258);
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CreateDrive, RefusesWhatIsNoLine) {
+  EXPECT_NE(refusal_of("/dev/ttyNONE0").find("`ls /dev/ttyUSB*"), std::string::npos);
+  EXPECT_NE(refusal_of("/dev/null").find("is no serial line"), std::string::npos);
+  CreateSimulator create;
+  EXPECT_NE(refusal_of(create.device(), 12345).find("expected 9600"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sf::server

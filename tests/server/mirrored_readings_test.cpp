@@ -1,0 +1,129 @@
+// Mirrored packets of readings, and the lines that they become.
+
+#include "server/mirrored_readings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "netio/packets.h"
+#include "sensors/laneedge_settings.h"
+#include "sensors/laser.h"
+#include "tests/sensors/scenes.h"
+#include "tests/units.h"
+
+namespace sf::server {
+namespace {
+
+using Kind = SightLine::Kind;
+
+world::World with_sensors(double least, double most) {
+  world::World world;
+  scenes::add_room(world, {0.0, 0.0}, 8.0);
+  const std::uint32_t robot = scenes::add_robot(world, {0.0, 0.0, 0.0, 0.0}, {});
+  world::Sensor laser{.type = "laser", .name = "laser", .X_MS = {0.1, 0.0, 0.0, 0.0}, .height = 0.2};
+  laser.settings = {{"samples", {5}, ""}, {"fov", {M_PI}, ""}, {"range", {least, most}, ""}};
+  world::Sensor edge{.type = "laneedge", .name = "edge", .X_MS = {0.0, 0.0, 0.0, M_PI / 2}};
+  world.movers[robot].sensors = {laser, edge};
+  return world;
+}
+
+struct MirroredReadingsTest : testing::Test {
+  explicit MirroredReadingsTest(double least = 0.0, double most = 4.0) : world(with_sensors(least, most)) {}
+  base::Bytes packet(std::uint8_t type, const std::vector<double>& values, std::uint32_t sequence = 0) const {
+    base::ReadingBlock block;
+    block.type = type, block.values = values;
+    const sensors::SensorType& sensor_type = *sensor_set.group(type)->type;
+    base::Bytes payload, bytes;
+    const std::uint8_t packet_type =
+        sensor_type.encode(sensor_set.row(block), block, sensors::WireFormat::farm, 0, payload);
+    netio::Header header;
+    header.robot = static_cast<std::uint16_t>(world.movers[0].id);
+    header.sequence = sequence;
+    netio::encode_reading(header, packet_type, payload, bytes);
+    return bytes;
+  }
+  std::vector<SightLine> lines(const base::Pose& X_WM, std::int64_t now = 0) const {
+    std::vector<SightLine> all;
+    readings.add_lines(0, X_WM, now, all);
+    return all;
+  }
+  const world::World world;
+  const sensors::SensorSet sensor_set{world};
+  MirroredReadings readings{world, sensor_set};
+};
+
+/// Limits that are no whole millimetres: 4.0004 is sent as 4000, 0.2036 as 204.
+struct OddLimits : MirroredReadingsTest {
+  OddLimits() : MirroredReadingsTest(0.2036, 4.0004) {}
+};
+
+void expect_near(glm::dvec2 p, glm::dvec2 q) { EXPECT_NEAR(glm::distance(p, q), 0.0, 2e-3) << p.x << " " << p.y; }
+
+}  // namespace
+
+TEST_F(MirroredReadingsTest, BeamsStartAtTheSensorOfTheSeenRobot) {
+  EXPECT_TRUE(lines({}).empty()) << "nothing came";
+  readings.accept(packet(sensors::kLaser, {1.0, 1.0, 4.0, 2.0, 2.0}), 0);
+  const auto all = lines({2.0, 3.0, 0.0, M_PI / 2});  // the robot looks along +y
+  ASSERT_EQ(all.size(), 7u) << "five beams, and echoes on each side of the one without";
+  for (const SightLine& line : all) EXPECT_DOUBLE_EQ(line.z, sensor_set.of(sensors::kLaser, 0)[0].X_MS.z);
+  expect_near(all[0].points[0], {2.0, 3.1});
+  expect_near(all[0].points[1], {3.0, 3.1});  // the first beam looks to the right
+  const auto echoes = std::count_if(all.begin(), all.end(), [](const SightLine& line) {
+    return line.kind == Kind::echoes && line.points.size() == 2;
+  });
+  EXPECT_EQ(echoes, 2);
+}
+
+/// The third beam passes the near surface that the first two meet.
+TEST_F(MirroredReadingsTest, EchoesOfTwoSurfacesAreTwoLines) {
+  readings.accept(packet(sensors::kLaser, {0.1, 0.1, 3.0, 3.0, 3.0}), 0);
+  std::vector<std::size_t> sizes;
+  for (const SightLine& line : lines({}))
+    if (line.kind == Kind::echoes) sizes.push_back(line.points.size());
+  EXPECT_EQ(sizes, (std::vector<std::size_t>{2, 3}));
+}
+
+TEST_F(OddLimits, AreNoEchoes) {
+  readings.accept(packet(sensors::kLaser, {4.0004, 4.0004, 0.2036, 0.2036, 4.0004}), 0);
+  for (const SightLine& line : lines({})) EXPECT_EQ(line.kind, Kind::beam);
+}
+
+TEST_F(MirroredReadingsTest, EdgesLieAcrossTheirPerpendicular) {
+  readings.accept(packet(sensors::kLaneEdge, {0.5, 30, 0.0, 0.0}), 0);
+  const auto all = lines({1.0, 0.0, 0.0, 0.0});
+  ASSERT_EQ(all.size(), 2u);
+  expect_near(all[0].points[1], {1.0, 0.5});  // to the left
+  EXPECT_EQ(all[1].kind, Kind::lane_edge);
+  EXPECT_NEAR(all[1].points[0].y, 0.5, 2e-3);
+  EXPECT_NEAR(all[1].points[1].y, 0.5, 2e-3);
+  EXPECT_NEAR(glm::distance(all[1].points[0], all[1].points[1]), 0.3, 1e-9);
+  readings.accept(packet(sensors::kLaneEdge, {kNaN, 0, 0.0, 0.0}, 1), 0);
+  EXPECT_TRUE(lines({}).empty()) << "no edge in sight";
+}
+
+TEST_F(MirroredReadingsTest, OldReadingsAreNotDrawn) {
+  readings.accept(packet(sensors::kLaser, {1.0, 1.0, 1.0, 1.0, 1.0}), 0);
+  EXPECT_FALSE(lines({}, MirroredReadings::kFresh).empty());
+  EXPECT_TRUE(lines({}, MirroredReadings::kFresh + 1).empty());
+}
+
+TEST_F(MirroredReadingsTest, AnyBytesAreTaken) {
+  const base::Bytes good = packet(sensors::kLaser, {1.0, 1.0, 1.0, 1.0, 1.0});
+  std::mt19937 random(1);
+  for (int round = 0; round < 2000; ++round) {
+    base::Bytes bytes = good;
+    bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
+    bytes.resize(random() % (bytes.size() + 1));
+    readings.accept(bytes, 0);
+  }
+  const std::uint64_t before = readings.unknown();
+  readings.accept({}, 0);
+  EXPECT_EQ(readings.unknown(), before + 1);
+  for (const SightLine& line : lines({}))
+    for (const glm::dvec2& p : line.points) EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
+}
+
+}  // namespace sf::server

@@ -1,0 +1,182 @@
+// A robot's own map: its settings, its scans, and the packets that `sensorfarm map` reads.
+
+#include "server/own_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "maps/map_assembler.h"
+#include "maps/map_packets.h"
+#include "netio/packets.h"
+#include "netio/socket.h"
+#include "sensors/laser.h"
+#include "sensors/laser_settings.h"
+#include "tests/robots/scenes.h"
+
+namespace sf::server {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+sensors::LaserSettings map_laser() {
+  sensors::LaserSettings laser;
+  laser.samples = 91;
+  laser.range_max = 2.0;
+  laser.X_MS = {0.1, 0.0, 0.1, 0.2};
+  return laser;
+}
+
+/// A room of 6 m by 4 m with a Create that looks around.
+world::World map_world(std::vector<world::Setting> settings = {}, bool has_map = false) {
+  world::World world = scenes::boxed_world(6.0, 4.0, {-3.0, -2.0});
+  world::Mover& robot = scenes::add_create(world, {-1.0, 0.5, 0.0, 0.3});
+  robot.sensors.push_back(sensors::laser_sensor(map_laser()));
+  if (has_map) robot.sensors.push_back({.type = "occupancy", .name = "map", .settings = std::move(settings)});
+  world::update_extent_and_hash(world);
+  return world;
+}
+
+struct MapTest : testing::Test {
+  OwnMapOptions options(sensors::WireFormat wire = sensors::WireFormat::farm) const {
+    return {netio::bound_endpoint(receiver), wire};
+  }
+  /// Datagrams that came since the last call.
+  std::vector<base::Bytes> datagrams() {
+    std::vector<base::Bytes> all;
+    batch.drain(receiver, 10'000, [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) {
+      all.emplace_back(bytes.begin(), bytes.end());
+    });
+    return all;
+  }
+  /// @return complete maps so far
+  std::uint64_t receive() {
+    for (const base::Bytes& bytes : datagrams()) {
+      EXPECT_EQ(netio::decode(bytes, packet), netio::PacketStatus::accepted);
+      assembler.add_part(packet.header.sequence, std::get<netio::Reading>(packet.body).payload);
+    }
+    return assembler.complete_maps();
+  }
+  base::ReadingBlock scan(std::int64_t time) const { return {.type = sensors::kLaser, .time = time, .values = ranges}; }
+
+  netio::Socket receiver = netio::open_udp({netio::kLoopback, 0}, {.receive = 1u << 20});
+  netio::ReceiveBatch batch{64};
+  maps::MapAssembler assembler;
+  netio::Packet packet;
+  std::vector<double> ranges = std::vector<double>(91, 1.2);
+};
+
+TEST_F(MapTest, SendsWhatTheRuleMakesOfItsScans) {
+  const world::World world = map_world();
+  OwnMap map(world, 0, options());
+  map.send(0, true);
+  EXPECT_EQ(receive(), 0u) << "no scan yet";
+
+  const base::Pose X_WM{-1.0, 0.5, 0.0, 0.3}, further{-0.5, 0.6, 0.0, 0.8};
+  ranges[40] = 0.4;
+  map.add(scan(kSecond), X_WM);
+  ranges[41] = 2.0;  // no echo
+  map.add(scan(2 * kSecond), further);
+  map.send(2 * kSecond, true);
+  ASSERT_EQ(receive(), 1u);
+
+  const maps::GridGeometry& grid = assembler.map()->geometry;
+  EXPECT_LE(grid.left, world.extent.x_min);
+  EXPECT_GE(grid.top, world.extent.y_max);
+  EXPECT_GE(grid.left + grid.cell * static_cast<double>(maps::columns(grid)), world.extent.x_max);
+  EXPECT_LE(grid.top - grid.cell * static_cast<double>(maps::rows(grid)), world.extent.y_min);
+  EXPECT_EQ(grid.cell, 0.03);
+  maps::OccupancyGrid expected(grid);
+  const std::vector<glm::dvec2> beams = maps::beam_directions(map_laser().fov, 91);
+  for (const base::Pose& X : {X_WM, further}) {
+    ranges[41] = X.x == further.x ? 2.0 : 1.2;
+    maps::add_scan(expected, {base::compose(X, map_laser().X_MS), ranges, beams, 0.0, 2.0});
+  }
+  EXPECT_EQ(assembler.map()->words, expected.words);
+  EXPECT_TRUE(assembler.true_poses());
+  EXPECT_EQ(packet.header.type, netio::Type{sensors::kOccupancy});
+  EXPECT_EQ(packet.header.robot, world.movers[0].id);
+  EXPECT_NE(packet.header.session, 0u);
+  EXPECT_EQ(map.counts().scans, 2u);
+}
+
+TEST_F(MapTest, IsSentAtItsRate) {
+  OwnMap map(map_world(), 0, options());
+  map.add(scan(0), {});
+  for (std::int64_t time = 0; time < 3 * kSecond; time += kSecond / 10) map.send(time, false);
+  EXPECT_EQ(receive(), 3u);
+  EXPECT_EQ(map.counts().maps, 3u);
+  EXPECT_FALSE(assembler.true_poses());
+}
+
+TEST_F(MapTest, TakesNewScansOfItsLaserAlone) {
+  OwnMap map(map_world(), 0, options());
+  map.add(scan(kSecond), {});
+  base::ReadingBlock other = scan(2 * kSecond);
+  other.sensor = 1;
+  map.add(other, {});
+  other = scan(2 * kSecond);
+  other.type = sensors::kLaser + 1;
+  map.add(other, {});
+  map.add(scan(kSecond), {});      // given before
+  map.add(scan(kSecond - 1), {});  // older
+  ranges.pop_back();
+  map.add(scan(3 * kSecond), {});  // of another length
+  EXPECT_EQ(map.counts().scans, 1u);
+  ranges.assign(91, NAN);
+  map.add(scan(4 * kSecond), {1e9, 0, 0, 0});  // nowhere
+  map.send(4 * kSecond, false);
+  EXPECT_EQ(receive(), 1u);
+}
+
+TEST_F(MapTest, HasTheSettingsOfItsOccupancy) {
+  OwnMap map(map_world({{"cell", {0.1}, "", 0, ""}, {"words", {4, 3}, "", 0, ""}, {"rate", {5}, "", 0, ""}}, true), 0,
+             options());
+  EXPECT_EQ(map.settings().settings.grid.word_columns, 4u);
+  EXPECT_EQ(map.settings().settings.grid.cell, 0.1);
+  map.add(scan(0), {});
+  for (std::int64_t time = 0; time < kSecond; time += kSecond / 10) map.send(time, false);
+  EXPECT_EQ(receive(), 5u);
+}
+
+TEST_F(MapTest, SendsTheThesisLayout) {
+  OwnMap map(map_world({{"words", {30, 30}, "", 0, ""}}, true), 0, options(sensors::WireFormat::thesis));
+  map.add(scan(0), {-1, 0.5, 0, 0});
+  map.send(0, true);
+  for (const base::Bytes& bytes : datagrams()) assembler.add_plain_part(bytes);
+  EXPECT_EQ(assembler.complete_maps(), 1u);
+}
+
+TEST_F(MapTest, CoversLargeWorldsAndFarLasersByLargerCells) {
+  world::World world = map_world();
+  world.extent = {-4000.0, -4000.0, 4000.0, 4000.0};
+  const OwnMap wide(world, 0, options());
+  EXPECT_TRUE(maps::is_valid(wide.settings().settings.grid));
+  EXPECT_EQ(wide.settings().settings.grid.cell, 3.84) << "3 cm times 128: at most 1024 x 1024 words of 4 cells";
+  world = map_world();
+  sensors::LaserSettings far = map_laser();
+  far.range_max = 80.0;
+  world.movers[0].sensors = {sensors::laser_sensor(far)};
+  EXPECT_EQ(OwnMap(world, 0, options()).settings().settings.grid.cell, 0.12) << "at most 1022 cells of range";
+}
+
+std::string map_refusal(const world::World& world, const OwnMapOptions& options) {
+  try {
+    OwnMap map(world, 0, options);
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(MapTest, RefusesWhatItCannotMake) {
+  world::World blind = map_world();
+  blind.movers[0].sensors.clear();
+  EXPECT_NE(map_refusal(blind, options()).find("has no laser to make a map with"), std::string::npos);
+  EXPECT_NE(map_refusal(map_world(), options(sensors::WireFormat::thesis)).find("does not fit the thesis' layout"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace sf::server

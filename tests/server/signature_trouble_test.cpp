@@ -1,0 +1,153 @@
+// Trouble with keys and clocks: both sides state it, rarely, and nothing else changes.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/elapsed.h"
+#include "netio/outbox.h"
+#include "netio/signature.h"
+#include "netio/v2i.h"
+#include "server/state_receiver.h"
+#include "tests/server/fixture.h"
+#include "tests/units.h"
+
+namespace sf::server {
+namespace {
+
+constexpr netio::SigningKey kKey{1}, kOtherKey{2};
+constexpr int kSeconds = 10;  // ticks
+
+Settings with_key() {
+  Settings settings;
+  settings.peers = {{netio::PeerKind::robot, 1, std::nullopt, kKey}};
+  return settings;
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+/// Lines of a farm and its robot in 3 s.
+std::string lines_with(Fixture& f, const std::optional<netio::SigningKey>& key) {
+  f.client.reset();  // which has its port
+  f.client = f.make_client(0, key);
+  f.run(3 * kSeconds);
+  EXPECT_EQ(f.client->stats().answered, false);
+  return f.log.read_all();
+}
+
+TEST(SignatureTrouble, AnotherKeyIsStatedByBoth) {
+  Fixture f(with_key());
+  const std::string log = lines_with(f, kOtherKey);
+  EXPECT_EQ(count(log, "robot 1 ("), 1u) << log;
+  EXPECT_EQ(count(log, "with a wrong signature: the sender's key differs from the one in --peers here"), 1u) << log;
+  EXPECT_EQ(count(log, "has another key for robot 1 than --peers here"), 1u) << log;
+  EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
+}
+
+TEST(SignatureTrouble, NoKeyIsStatedByBoth) {
+  Fixture f(with_key());
+  const std::string log = lines_with(f, std::nullopt);
+  EXPECT_EQ(count(log, "without a signature: --peers has a key for it here"), 1u) << log;
+  EXPECT_EQ(count(log, "refuses packets without a signature of robot 1: start this one with --peers, too"), 1u) << log;
+  EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
+}
+
+TEST(SignatureTrouble, AFarmWithoutTheKeyIsStatedByBoth) {
+  Fixture f;
+  const std::string log = lines_with(f, kKey);
+  EXPECT_EQ(count(log, "whose signature is not checked: --peers has no key for it here"), 1u) << log;
+  EXPECT_EQ(count(log, "does not sign its packets: start `serve` with --peers and the key of robot 1, too"), 1u) << log;
+}
+
+TEST(SignatureTrouble, AnotherAddressIsStatedByBoth) {
+  Settings settings;
+  settings.peers = {{netio::PeerKind::robot, 1, netio::kLoopback + 1, std::nullopt}};
+  Fixture f(settings);
+  const std::string log = lines_with(f, std::nullopt);
+  EXPECT_EQ(count(log, "is at 127.0.0.2 by the table of peers"), 1u) << log;
+  EXPECT_EQ(count(log, "takes robot 1 from another address: --peers has one for it there"), 1u) << log;
+  EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
+}
+
+/// START and lights have no robot that could be named.
+TEST(SignatureTrouble, OtherSendersAtAnotherAddressAreStatedOnce) {
+  const world::World world = room();
+  LogPipe log;
+  StateReceiver receiver(world, {.bind = {netio::kLoopback, 0},
+                                 .log_descriptor = log.descriptor(),
+                                 .peers = {{netio::PeerKind::start, 0, netio::kLoopback + 1, std::nullopt},
+                                           {netio::PeerKind::light, 7, netio::kLoopback + 1, std::nullopt}},
+                                 .lights = {7}});
+  netio::Outbox sender({.bind = {netio::kLoopback, 0}});
+  base::Bytes start, approaches, signals;
+  netio::encode({.robot = netio::kBroadcastId}, netio::Start{}, start);
+  put(netio::SignalApproach{.group = 1, .state = 3, .next = 2, .left = 6.5}, approaches);
+  netio::encode({.robot = 7}, netio::V2i{approaches, {}}, signals);
+  for (int i = 0; i < 3; ++i)
+    for (const base::Bytes* packet : {&start, &signals})
+      sender.queue({netio::kLoopback, receiver.inbox().port()}, *packet);
+  sender.flush();
+  receiver.receive_pending(0);
+  const std::string lines = log.read_all();
+  EXPECT_EQ(count(lines, "the sender of START is at 127.0.0.2 by the table of peers"), 1u) << lines;
+  EXPECT_EQ(count(lines, "intersection 7 is at 127.0.0.2 by the table of peers"), 1u) << lines;
+}
+
+/// A robot whose clock was an hour ahead has left; now its clock is right.
+TEST(SignatureTrouble, AClockThatWasSetBackIsStatedByBoth) {
+  Fixture f(with_key());
+  netio::Outbox before({.bind = {netio::kLoopback, 0}});
+  netio::PacketSigner signer(kKey, netio::unix_microseconds() + 3'600'000'000u);
+  base::Bytes packet;
+  const netio::SessionToken proof{5, f.service->receiver().inbox().token(before.endpoint())};
+  const auto send = [&] {
+    before.queue({netio::kLoopback, f.service->port()}, packet, proof, &signer);
+    before.flush();
+    f.service->receive_pending(0);
+  };
+  netio::encode({.robot = 1}, netio::Subscribe{}, packet);
+  send();
+  netio::encode({.robot = 1}, netio::Leave{}, packet);
+  send();
+  ASSERT_EQ(f.service->stats().inbox[netio::PacketStatus::accepted], 2u);
+  const std::string log = lines_with(f, kKey);
+  EXPECT_EQ(count(log, "with a counter 3600.0 s behind an earlier one: the sender's clock was set back"), 1u) << log;
+  EXPECT_EQ(count(log, "has had packets of robot 1 with later times: this machine's clock was set back"), 1u) << log;
+  EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
+}
+
+/// 65 s of refused packets, ten and more a second: a line at once, then one every ten seconds with their number.
+TEST(SignatureTrouble, LinesAreRare) {
+  Fixture f(with_key());
+  f.client.reset();
+  f.client = f.make_client(0, kOtherKey);
+  f.run(65 * kSeconds);
+  const std::string log = f.log.read_all();
+  EXPECT_EQ(count(log, "with a wrong signature"), 7u) << log;
+  EXPECT_EQ(count(log, "has another key"), 7u) << log;
+  EXPECT_EQ(count(log, ": 1 packet dropped"), 1u) << log;
+  EXPECT_GE(f.service->stats().inbox[netio::PacketStatus::wrong_signature], 120u);
+}
+
+/// Copies of signed packets, as networks make them, are no trouble.
+TEST(SignatureTrouble, CopiesAreNone) {
+  Fixture f(with_key());
+  netio::Outbox sender({.bind = {netio::kLoopback, 0}});
+  base::Bytes packet;
+  netio::encode({.robot = 1}, netio::Subscribe{}, packet);
+  netio::write_session_token(packet, {5, f.service->receiver().inbox().token(sender.endpoint())});
+  netio::sign(packet, kKey, netio::unix_microseconds());
+  for (int copy = 0; copy < 3; ++copy) sender.queue({netio::kLoopback, f.service->port()}, packet);
+  sender.flush();
+  f.service->receive_pending(0);
+  EXPECT_EQ(f.service->stats().inbox[netio::PacketStatus::replayed], 2u);
+  EXPECT_EQ(f.service->stats().answers.queued, 0u);
+  EXPECT_EQ(f.log.read_all(), "");
+}
+
+}  // namespace
+}  // namespace sf::server
