@@ -14,7 +14,6 @@
 #include "farm/delivery.h"
 #include "farm/pose_changes.h"
 #include "farm/sensor_pipeline.h"
-#include "farm/shared_hash.h"
 #include "gpu/batch.h"
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
@@ -57,12 +56,7 @@ struct Farm::State {
   std::vector<base::Report> tick_states;  ///< of the last tick, while samples follow it
   bool between = false;                   ///< `states` are those of a sample
   std::vector<std::uint32_t> subscribed;  ///< per mover: bits of sensor types
-  std::vector<std::uint32_t> measured_types;   ///< likewise, of those that are measured here
-  std::vector<std::uint32_t> delivered_types;  ///< likewise, of those whose readings are delivered here
-  std::vector<std::uint8_t> measures;          ///< per mover: its sensors are measured here
-  std::vector<std::uint8_t> delivers;          ///< per mover: its readings are delivered here
-  ReadingExchange* exchange = nullptr;
-  std::vector<std::uint8_t> gone;             ///< per mover
+  std::vector<std::uint8_t> gone;         ///< per mover
   std::vector<base::StateQuality> qualities;  ///< per mover; empty: none was set
   std::vector<base::ReadingBlock> blocks;
   SensorPipeline* lender = nullptr;   ///< `blocks` are its vector of readings, and it has theirs
@@ -70,7 +64,7 @@ struct Farm::State {
   FarmStats stats;
   sensors::SensorStats earlier_work;  ///< of backends that were replaced
   std::uint64_t hash = 0;
-  std::optional<SharedHash> shared;
+  std::optional<Sharing> sharing;  ///< none: this farm senses the whole fleet
   FarmOptions options;
   std::int64_t last_call = -1;  ///< [ns] of a tick or sample; -1: there was none
   std::int64_t last_tick = -1;  ///< [ns] of a tick; -1: there was none
@@ -86,21 +80,19 @@ struct Farm::State {
         delivery(sensor_set),
         states(robots::states_at_load(w)),
         subscribed(w.movers.size(), 0),
-        measured_types(w.movers.size(), 0),
-        delivered_types(w.movers.size(), 0),
-        measures(w.movers.size(), 1),
-        delivers(w.movers.size(), 1),
         gone(w.movers.size(), 0),
         options(given) {
     SF_CHECK(w.unread.empty(), "the walls of " + w.unread.front().file + " are not read");
     pipelines = make_pipelines(sensor_set, states);
     batch = std::make_unique<gpu::Batch>(device);
     pose_changes = std::make_unique<PoseChanges>(world);
-    if (options.shared) shared.emplace(sensor_set);
+    if (options.shared) sharing.emplace(sensor_set, w.movers.size());
   }
 
   std::vector<SensorPipeline> make_pipelines(const sensors::SensorSet& of, std::span<const base::Report> sensed);
   std::shared_ptr<const void> add_mover();
+  ReadingExchange* exchange() const { return sharing ? sharing->exchange() : nullptr; }
+  bool is_gone(std::uint32_t mover) const { return gone.at(mover) != 0 || (sharing && sharing->is_hidden(mover)); }
   void begin_tick(bool is_sample);
   void apply(const base::Report& report);
   std::span<const base::ReadingBlock> read(std::int64_t now);
@@ -134,7 +126,7 @@ std::vector<SensorPipeline> Farm::State::make_pipelines(const sensors::SensorSet
 
 /// All that can fail comes first.
 std::shared_ptr<const void> Farm::State::add_mover() {
-  SF_CHECK(states.size() + 1 == world.movers.size() && exchange == nullptr, std::to_string(states.size()));
+  SF_CHECK(states.size() + 1 == world.movers.size() && exchange() == nullptr, std::to_string(states.size()));
   clear_blocks();
   sensors::SensorSet all(world);
   const base::Report absent{.mover = static_cast<std::uint32_t>(states.size()), .X_WM = base::kAbsent, .velocity = {}};
@@ -147,13 +139,12 @@ std::shared_ptr<const void> Farm::State::add_mover() {
   states.swap(sensed);
   const sensors::SensorSet earlier = std::exchange(sensor_set, std::move(all));  // `before` points into it
   if (between) tick_states.push_back(absent);
-  for (auto* const bits : {&subscribed, &measured_types, &delivered_types}) bits->push_back(0);
-  for (auto* const flags : {&measures, &delivers}) flags->push_back(1);
+  subscribed.push_back(0);
   gone.push_back(0);
   if (!qualities.empty()) qualities.resize(gone.size());
   pose_changes = std::make_unique<PoseChanges>(world);
   delivery.add_sensors();
-  if (shared) shared->add_sensors(sensor_set);
+  if (sharing) sharing->add_mover(sensor_set);
   for (SensorPipeline& pipeline : pipelines) {
     const auto same = [&](const SensorPipeline& other) { return other.group->type == pipeline.group->type; };
     const auto old = std::find_if(before->begin(), before->end(), same);
@@ -165,7 +156,9 @@ std::shared_ptr<const void> Farm::State::add_mover() {
 
 bool Farm::State::find_due(std::int64_t now) {
   for (SensorPipeline& pipeline : pipelines)
-    stats.missed += pipeline.find_due(now, pipeline.derived() ? delivered_types : measured_types);
+    stats.missed += pipeline.find_due(now, !sharing             ? std::span<const std::uint32_t>(subscribed)
+                                           : pipeline.derived() ? sharing->delivered_types()
+                                                                : sharing->measured_types());
   return std::any_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return !s.due.empty(); });
 }
 
@@ -175,14 +168,14 @@ void Farm::State::begin_tick(bool is_sample) {
   pose_changes->begin();
   for (std::uint32_t m = 0; m < gone.size(); ++m) {
     base::Pose& X = states[m].X_WM;
-    if (gone[m] == 0 || base::is_absent(X)) continue;
+    if (!is_gone(m) || base::is_absent(X)) continue;
     pose_changes->add(m, X, base::kAbsent);
     X = base::kAbsent;
   }
 }
 
 void Farm::State::apply(const base::Report& report) {
-  if (gone.at(report.mover) != 0) return;
+  if (is_gone(report.mover)) return;
   const base::Pose& X = report.X_WM;
   SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
   pose_changes->add(report.mover, states[report.mover].X_WM, X);
@@ -238,7 +231,7 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
   for (SensorPipeline& pipeline : pipelines)
     if (!pipeline.derived()) append(pipeline);
   watch.lap(stats.collect_s);
-  if (exchange != nullptr) exchange->exchange(blocks);
+  if (exchange() != nullptr) exchange()->exchange(blocks);
   watch.lap(stats.exchange_s);
   const std::size_t known = blocks.size();
   for (SensorPipeline& pipeline : pipelines) {
@@ -263,7 +256,7 @@ void Farm::State::clear_blocks() {
 
 /// Copies a type's readings behind those of the types before it. Those of the first are swapped, not copied.
 void Farm::State::append(SensorPipeline& pipeline) {
-  if (blocks.empty() && exchange == nullptr) {
+  if (blocks.empty() && exchange() == nullptr) {
     blocks.swap(pipeline.blocks);
     lender = &pipeline;
     return;
@@ -290,16 +283,15 @@ void Farm::State::add_to_hash(std::int64_t now, std::span<const base::ReadingBlo
     hashes[i] = base::hash_bytes(values.data(), values.size_bytes(), hashes[i]);
     hashes[i] = base::hash_bytes(r.hits.data(), r.hits.size_bytes(), hashes[i]);
   });
-  if (shared)
-    shared->add_call(now, readings, hashes);
+  if (sharing)
+    sharing->add_call(now, readings, hashes);
   else
     hash = base::hash_bytes(hashes.data(), hashes.size() * sizeof hashes[0], hash);
 }
 
 void Farm::State::subscribe(std::uint32_t mover, std::uint32_t types) {
   subscribed.at(mover) = types;
-  measured_types[mover] = measures[mover] != 0 ? types : 0;
-  delivered_types[mover] = delivers[mover] != 0 ? types : 0;
+  if (sharing) sharing->subscribe(mover, types);
 }
 
 std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
@@ -309,7 +301,7 @@ std::span<const base::ReadingBlock> Farm::State::read(std::int64_t now) {
     pipeline.backend->accumulate(now, between);
   }
   clear_blocks();
-  if (find_due(now) || exchange != nullptr) measure(now, reuse_unchanged);
+  if (find_due(now) || exchange() != nullptr) measure(now, reuse_unchanged);
   if (!qualities.empty())
     for (base::ReadingBlock& block : blocks) block.state = qualities[block.mover];
   Stopwatch watch;
@@ -328,16 +320,6 @@ Farm::~Farm() = default;
 void Farm::subscribe(std::uint32_t mover, std::uint32_t types) {
   s_->subscribe(mover, s_->gone.at(mover) != 0 ? 0 : types);
 }
-void Farm::leave_to_others(std::uint32_t mover) {
-  s_->delivers.at(mover) = 0;
-  set_measured_here(mover, false);
-}
-void Farm::set_measured_here(std::uint32_t mover, bool here) {
-  s_->measures.at(mover) = here ? 1 : 0;
-  s_->subscribe(mover, s_->subscribed[mover]);
-}
-void Farm::set_exchange(ReadingExchange* exchange) { s_->exchange = exchange; }
-void Farm::set_hidden(std::uint32_t mover, bool hidden) { s_->gone.at(mover) = hidden ? 1 : 0; }
 void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
   if (gone) s_->subscribe(mover, 0);
@@ -405,9 +387,11 @@ base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t type, std::uint
   return s.blocks.front();
 }
 
-std::uint64_t Farm::hash() const { return s_->hash; }
-void Farm::write_shared(base::Bytes& out) { s_->shared.value().write(out); }
-void Farm::add_shared(std::span<base::ByteReader> parts) { s_->hash = s_->shared.value().chain(parts); }
+std::uint64_t Farm::hash() const { return s_->sharing ? s_->sharing->hash() : s_->hash; }
+Sharing& Farm::sharing() {
+  SF_CHECK(s_->sharing.has_value(), "the farm is not shared");
+  return *s_->sharing;
+}
 
 void Farm::write_sensors(std::uint32_t mover, base::ByteWriter& out) const {
   for (const SensorPipeline& pipeline : s_->pipelines)

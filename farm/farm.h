@@ -21,8 +21,8 @@
 #include "base/bytes.h"
 #include "base/reading.h"
 #include "base/report.h"
-#include "farm/reading_exchange.h"
 #include "farm/schedule.h"
+#include "farm/sharing.h"
 #include "gpu/device.h"
 #include "sensors/sensor_set.h"
 #include "world/world.h"
@@ -43,7 +43,7 @@ struct FarmOptions {
                                ///< them behind server::NoReturnFilter; readings are unchanged
   unsigned threads = 0;        ///< of the host's part; 0: all of the machine. Does not affect readings
   raycast::SceneOptions scene;
-  bool shared = false;  ///< other processes measure the rest of the fleet: their readings belong to the hash
+  bool shared = false;  ///< with other processes, each of which senses a part of the fleet: see `Farm::sharing`
 };
 
 /// Costs and counts of all ticks so far.
@@ -90,17 +90,9 @@ class Farm {
   /// Sets what the readings of a mover state from now on of the state that they are computed from; initially nothing.
   void set_state_quality(std::uint32_t mover, const base::StateQuality& quality);
 
-  /// From now on another process delivers the mover's readings, and measures its subscribed sensors: they are due here,
-  /// too, for `next_due` and the numbers of readings, but not read.
-  void leave_to_others(std::uint32_t mover);
-  /// This process measures the mover's subscribed sensors, or does not, whichever process delivers their readings.
-  void set_measured_here(std::uint32_t mover, bool here);
-  /// Passes readings between the process that measures and the one that delivers. It must outlive the farm; null: none.
-  void set_exchange(ReadingExchange* exchange);
-  /// Another process knows where the mover is, this one does not: nothing here senses it until it is shown again. The
-  /// first report after that sets its pose.
-  void set_hidden(std::uint32_t mover, bool hidden);
-  /// The state of the mover's sensors for a process that measures them from now on (SensorBackend::write_state).
+  /// @pre FarmOptions::shared
+  Sharing& sharing();
+  /// The state of the mover's sensors, for a farm that measures them from now on (SensorBackend::write_state).
   void write_sensors(std::uint32_t mover, base::ByteWriter& out) const;
   void read_sensors(std::uint32_t mover, base::ByteReader& in);
 
@@ -134,12 +126,8 @@ class Farm {
   base::ReadingBlock sense(std::uint32_t mover, std::uint8_t type, std::uint32_t sensor, const base::Pose& X_WM);
 
   /// Hash of the values and hits of all readings delivered so far, call by call: a call without readings counts too.
-  /// Of a shared farm: of those chained by `add_shared`.
+  /// Of a shared farm: of those chained by `Sharing::add_hashes`.
   std::uint64_t hash() const;
-  /// Shared farms: hashes of this process' readings since the last call, for the others (farm/shared_hash.h).
-  void write_shared(base::Bytes& out);
-  /// @param parts what `write_shared` of all processes wrote, one reader each; out: behind it
-  void add_shared(std::span<base::ByteReader> parts);
   FarmStats stats() const;
 
  private:

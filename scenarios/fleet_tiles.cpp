@@ -136,10 +136,10 @@ void FleetTiles::begin(robots::Fleet& fleet, farm::Farm& farm, std::span<double>
   share_v2v_ranges(v2v_ranges);
   fleet_ = &fleet;
   farm_ = &farm;
-  farm.set_exchange(this);
+  farm.sharing().set_exchange(this);
   for (std::uint32_t m = 0; m < homes_.size(); ++m) {
     measured_[m] = homes_[m] == ranks_.rank();
-    farm.set_measured_here(m, measured_[m] != 0);
+    farm.sharing().set_measured_here(m, measured_[m] != 0);
     if (measured_[m] != 0) own_.push_back(m);
     present_[m] = 1;
     set_present(m, near_tile(ranks_.rank(), m, place_of(fleet.reports()[m].X_WM)));
@@ -155,7 +155,7 @@ void FleetTiles::set_present(std::uint32_t mover, bool here) {
   if (present(mover) == here) return;
   present_[mover] = here ? 1 : 0;
   fleet_->set_absent(mover, !here);
-  farm_->set_hidden(mover, !here);
+  farm_->sharing().set_hidden(mover, !here);
 }
 
 void FleetTiles::clear_blocks() {
@@ -180,7 +180,7 @@ void FleetTiles::take_state(base::ByteReader& in) {
   set_present(mover, seen_[mover] != 0);
   if ((state & kMovesIn) == 0) return;
   farm_->read_sensors(mover, in);
-  farm_->set_measured_here(mover, true);
+  farm_->sharing().set_measured_here(mover, true);
   measured_[mover] = 1;
   own_.push_back(mover);
 }
@@ -200,7 +200,7 @@ void FleetTiles::share_states() {
         send_state(m, rank, rank == tile);
     seen_[m] = near_tile(ranks_.rank(), m, p) ? 1 : 0;
     if (tile == ranks_.rank()) continue;
-    farm_->set_measured_here(m, false);
+    farm_->sharing().set_measured_here(m, false);
     measured_[m] = 0;
     ++passed_on_;
   }

@@ -83,7 +83,7 @@ void RankExchange::begin(const FleetDecisions& own, farm::Farm& farm, std::uint3
   }
   for (const std::uint32_t m : movers_[ranks_.rank()])
     if (own.statuses[m].drives) put_mover(m, own, out);
-  farm.write_shared(block_);
+  farm.sharing().write_hashes(block_);
   ranks_.begin(block_);
 }
 
@@ -109,7 +109,7 @@ bool RankExchange::finish(const FleetDecisions& all, farm::Farm& farm) {
     SF_CHECK(in.good(), "the decisions of rank " + std::to_string(rank) + " end early");
   }
   if (code != 0) throw cluster::Failure(code, message);
-  if (ranks_.rank() == 0) farm.add_shared(readers_);
+  if (ranks_.rank() == 0) farm.sharing().add_hashes(readers_);
   return stop;
 }
 

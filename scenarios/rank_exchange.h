@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <exception>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -12,16 +11,9 @@
 #include "base/report.h"
 #include "cluster/ranks.h"
 #include "farm/farm.h"
+#include "scenarios/fleet_share.h"
 
 namespace sf::scenarios {
-
-/// A robot's controller as other ranks know it.
-struct ControlStatus {
-  bool drives = false;   ///< the robot has a controller
-  bool stepped = false;  ///< in the last tick
-  bool done = false;
-  double error = std::numeric_limits<double>::quiet_NaN();  ///< see control::Controller
-};
 
 /// One row per mover of the world, which all ranks agree on after `RankExchange::finish`.
 struct FleetDecisions {

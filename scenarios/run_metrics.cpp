@@ -98,7 +98,7 @@ void RunMetrics::update(const base::TickRecord& tick) {
 }
 
 void RunMetrics::update_checkpoints(std::uint32_t mover) {
-  if (simulation_.owns(mover) && !simulation_.stepped(mover)) return;
+  if (simulation_.share().owns(mover) && !simulation_.stepped(mover)) return;
   const ControlStatus status = simulation_.status(mover);
   if (!status.stepped) return;
   RobotMetrics& counts = counts_[mover];

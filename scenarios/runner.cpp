@@ -104,11 +104,11 @@ class Run {
       });
       const bool stops = stop && stop();
       if (stops && ranks_ == nullptr) throw base::Interrupted();
-      if (stops) simulation_.request_stop();
+      if (stops) simulation_.share().request_stop();
       const auto begin = Clock::now();
       const base::TickRecord tick = simulation_.step();
       simulation_.settle();
-      if (simulation_.stop_agreed()) throw base::Interrupted();
+      if (simulation_.share().stop_agreed()) throw base::Interrupted();
       tick_ms_.push_back(1e3 * base::seconds_since(begin));
       metrics_.update(tick);
       add_scans(tick.readings, maps_);
@@ -162,7 +162,8 @@ class Run {
     const bool expected = std::any_of(scenario_.expect.begin(), scenario_.expect.end(), [&](const Expectation& e) {
       return e.kind == Kind::map_coverage && (e.robot.empty() ? !mover.is_tag : e.robot == mover.name);
     });
-    if (expected && simulation_.owns(row) && !sensors::lasers_of(mover).empty()) maps_.try_emplace(row, world_, row);
+    if (expected && simulation_.share().owns(row) && !sensors::lasers_of(mover).empty())
+      maps_.try_emplace(row, world_, row);
   }
 
   /// Worst value of a measure over the expectation's robots, ignoring NaN; NaN without a value.

@@ -47,22 +47,12 @@ std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) 
   return readings.first(kept);
 }
 
-/// This rank's part of the world, with tiles.
-std::optional<world::World> own_part_of(const world::World& world, const std::optional<FleetTiles>& tiles,
-                                        const SimulationOptions& options) {
-  if (!tiles || options.balance > 0.0) return std::nullopt;
-  std::optional<world::World> part = world;
-  tiles->keep_own_part(*part);
-  return part;
-}
-
 }  // namespace
 
 Simulation::Simulation(const world::World& world, gpu::Device& device, SimulationOptions options)
-    : tiles_(options.tiles ? std::optional<FleetTiles>(std::in_place, *options.ranks, world) : std::nullopt),
-      part_(own_part_of(world, tiles_, options)),
-      starts_unchecked_(!world.unread.empty()),
-      world_(part_ ? *part_ : world),
+    : share_(make_fleet_share(world, {options.ranks, options.tiles, options.balance})),
+      whole_(world),
+      world_(share_->part_of(world)),
       roads_(world::roads_of(world_)),
       farm_(world_, device, farm_options(options)),
       fleet_(world_, &farm_.thread_pool()),
@@ -82,7 +72,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
            "actors: expected none or one per mover");
   if (options.states) states_.emplace(world, *options.states);
   farm_.subscribe_all();
-  if (options.ranks != nullptr) begin_sharing(options);
+  share_->attach(world_, farm_);
   const Actor none{.controller = {.name = ""}, .link = {}};
   for (std::uint32_t i = 0; i < world.movers.size(); ++i)
     use_control(make_control(i, !options.actors.empty()  ? options.actors[i]
@@ -108,31 +98,11 @@ void Simulation::warn_of_long_ways() {
   }
 }
 
-void Simulation::begin_sharing(const SimulationOptions& options) {
-  const std::vector<unsigned> equal = equal_homes(costs_of(world_, farm_.sensor_set()), options.ranks->size());
-  exchange_.emplace(*options.ranks, tiles_ ? tiles_->homes() : equal);
-  statuses_.resize(world_.movers.size());
-  if (tiles_ && options.balance > 0.0)
-    balance_ = static_cast<std::uint64_t>(std::max(2.0, std::round(options.balance / world_.interval)));
-  for (std::uint32_t i = 0; i < world_.movers.size(); ++i)
-    if (!exchange_->owns(i)) farm_.leave_to_others(i);
-}
-
-std::vector<world::Warning> Simulation::warnings_of_starts() {
-  return starts_unchecked_ ? tiles_->warnings_of_starts(world_) : std::vector<world::Warning>();
-}
-
-/// At the first step, when no rank has failed to begin.
-void Simulation::begin_tiles() {
+void Simulation::begin() {
   std::vector<double> ranges;
   for (const RobotControl& robot : controls_) ranges.push_back(robot.controller ? robot.controller->v2v_range() : 0.0);
-  tiles_->begin(fleet_, farm_, ranges);
+  share_->begin(fleet_, ranges);
   for (const double range : ranges) v2v_range_ = std::max(v2v_range_, range);
-}
-
-void Simulation::balance_tiles() {
-  const double sensing_s = farm_.stats().sensing_s();
-  tiles_->cut_anew(sensing_s - std::exchange(balanced_s_, sensing_s));
 }
 
 void Simulation::use_control(RobotControl control) {
@@ -150,8 +120,8 @@ void Simulation::make_room() {
 Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Actor& actor) {
   RobotControl robot;
   if (actor.controller.name.empty()) return robot;
-  if (exchange_) statuses_[mover].drives = true;
-  if (!owns(mover)) return robot;
+  share_->set_status(mover, {.drives = true});
+  if (!share_->owns(mover)) return robot;
   std::vector<world::Warning> warnings;
   const bool joins = mover >= absent_.size();  // before the farm has its sensors
   const control::ControllerContext site{world_,  mover,     seed_,
@@ -180,15 +150,15 @@ base::TickRecord Simulation::step() {
   const std::int64_t time = static_cast<std::int64_t>(tick_) * interval_;
   earlier_readings_.reset();
   settle();
-  if (tiles_ && tick_ == 0) begin_tiles();
-  if (balance_ > 0 && tick_ > 0 && tick_ % balance_ == 0) balance_tiles();
+  if (tick_ == 0) begin();
+  share_->begin_step(tick_);
   if (tick_ > 0) move();
   const auto readings = sense(time);
   const auto start = std::chrono::steady_clock::now();
   sort_by_mover(readings);
   decide(time);
   move_s_ += base::seconds_since(start);
-  if (exchange_) begin_exchange();
+  share_->end_step({commands_, next_intents_}, {[this](std::uint32_t m) { return own_status(m); }, failed_, failure_});
   return {tick_++, time, recorded_reports(), executed_commands_, fleet_.contacts(), readings, {}, light_states_};
 }
 
@@ -211,9 +181,8 @@ void Simulation::set_absent(std::uint32_t mover, bool gone) {
 }
 
 void Simulation::check_joining(const world::World& world, const JoiningRobot& robot) const {
-  SF_CHECK(&world == &world_ || tiles_, "another world");
-  if (tiles_)
-    throw base::InputError("robots cannot join or leave a run with --tiles; expected ranks that share the whole world");
+  SF_CHECK(&world == &whole_, "another world");
+  share_->check_may_join();
   const base::Pose& X = robot.X_WM;
   if (!(std::abs(X.x) <= netio::kMaxPosition && std::abs(X.y) <= netio::kMaxPosition && std::isfinite(X.yaw)))
     throw base::InputError(
@@ -231,7 +200,7 @@ std::uint32_t Simulation::add_robot(world::World& world, const JoiningRobot& rob
   world::check_name(world, robot.name);
   const std::size_t models = world.models.size();
   const std::uint32_t row = world::append_robot(world, original, robot.name, robot.X_WM);
-  if (exchange_) exchange_->add_mover(), statuses_.emplace_back();
+  share_->add_mover();
   try {
     RobotControl control = make_control(row, robot.actor);
     earlier_readings_ = farm_.add_mover();
@@ -240,7 +209,7 @@ std::uint32_t Simulation::add_robot(world::World& world, const JoiningRobot& rob
     world.movers.pop_back();
     world.models.resize(models);
     world::update_extent_and_hash(world);
-    if (exchange_) exchange_->remove_last(), statuses_.pop_back();
+    share_->remove_last();
     throw;
   }
   fleet_.add_mover();
@@ -249,7 +218,7 @@ std::uint32_t Simulation::add_robot(world::World& world, const JoiningRobot& rob
   for (auto* const intents : {&intents_, &next_intents_}) intents->emplace_back();
   first_.push_back(0);
   absent_.push_back(false);
-  if (exchange_ && !exchange_->owns(row)) farm_.leave_to_others(row);
+  if (!share_->owns(row)) farm_.sharing().leave_to_others(row);
   farm_.subscribe(row, farm::kAllSensorTypes);
   make_room();
   joined_.push_back({original, robot.name, world.movers[row].X_WM});
@@ -266,14 +235,13 @@ std::uint32_t Simulation::bring_back(std::uint32_t mover, const JoiningRobot& ro
 }
 
 void Simulation::remove_robot(std::uint32_t mover) {
-  if (tiles_)
-    throw base::InputError("robots cannot join or leave a run with --tiles; expected ranks that share the whole world");
+  share_->check_may_join();
   if (mover >= absent_.size() || absent_[mover])
     throw base::InputError(fmt::format("there is no robot in row {} to be removed", mover));
   settle();
   set_absent(mover, true);
   controls_[mover] = {};
-  if (exchange_) statuses_[mover] = {};
+  share_->set_status(mover, {});
 }
 
 std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
@@ -296,8 +264,7 @@ void Simulation::move() {
   const auto start = std::chrono::steady_clock::now();
   fleet_.move(commands_, interval_);
   executed_commands_ = commands_;
-  if (tiles_) tiles_->share_states();
-  if (tiles_ && v2v_range_ > 0.0) tiles_->share_neighbours();
+  share_->after_motion(v2v_range_ > 0.0);
   move_s_ += base::seconds_since(start);
 }
 
@@ -355,31 +322,22 @@ void Simulation::decide(std::int64_t time) {
   farm_.thread_pool().parallel_for_each(controls_.size(), 16, [&](std::size_t m, unsigned thread) {
     try_to_decide(static_cast<std::uint32_t>(m), time, thread);
   });
-  if (exchange_) return;  // errors and intents of all ranks: `settle`
-  if (failure_) std::rethrow_exception(failure_);
-  std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());
-}
-
-void Simulation::begin_exchange() {
-  for (std::uint32_t m = 0; m < controls_.size(); ++m)
-    if (controls_[m].controller)
-      statuses_[m] = {true, controls_[m].stepped, controls_[m].controller->done(), controls_[m].controller->error()};
-  exchange_->begin(decisions(), farm_, failed_, failure_, stop_);
-  exchanging_ = true;
 }
 
 void Simulation::settle() {
-  if (!exchanging_) return;
-  exchanging_ = false;
-  stop_agreed_ = exchange_->finish(decisions(), farm_);
+  share_->finish_step({commands_, next_intents_});
   std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());
 }
 
-ControlStatus Simulation::status(std::uint32_t mover) const {
-  if (exchange_) return statuses_[mover];
+ControlStatus Simulation::own_status(std::uint32_t mover) const {
   const RobotControl& robot = controls_[mover];
   if (!robot.controller) return {};
   return {true, robot.stepped, robot.controller->done(), robot.controller->error()};
+}
+
+ControlStatus Simulation::status(std::uint32_t mover) const {
+  const ControlStatus* agreed = share_->status(mover);
+  return agreed != nullptr ? *agreed : own_status(mover);
 }
 
 /// `decide_one`; keeps the error of the first mover that fails, since none may leave a thread of the pool.
@@ -448,13 +406,12 @@ void Simulation::find_others(std::uint32_t mover, double v2v_range, std::vector<
       others.push_back({world_.movers[other.mover].id, other, intents_[other.mover]});
   };
   const glm::dvec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
-  if (tiles_ && !tiles_->measures(mover))
-    for (const base::Report& other : tiles_->neighbours(mover)) add(other);
+  if (const auto remote = share_->remote_neighbours(mover))
+    for (const base::Report& other : *remote) add(other);
   else
     neighbours_.any(here, v2v_range, [&](std::uint32_t row) {
       const base::Pose& X_WM = reports[row].X_WM;
-      const bool known = !tiles_ || tiles_->present(row);
-      if (known && glm::length(glm::dvec2{X_WM.x, X_WM.y} - here) <= v2v_range) add(reports[row]);
+      if (share_->knows(row) && glm::length(glm::dvec2{X_WM.x, X_WM.y} - here) <= v2v_range) add(reports[row]);
       return false;
     });
   std::sort(others.begin(), others.end(),

@@ -26,9 +26,8 @@
 #include "record/run_info.h"
 #include "robots/fleet.h"
 #include "robots/neighbour_grid.h"
-#include "scenarios/fleet_tiles.h"
+#include "scenarios/fleet_share.h"
 #include "scenarios/mailbox.h"
-#include "scenarios/rank_exchange.h"
 #include "scenarios/state_link.h"
 #include "world/lights.h"
 #include "world/roads/network.h"
@@ -77,17 +76,17 @@ class Simulation {
   /// @throws base::InputError where a controller fails; the first robot's error
   base::TickRecord step();
 
-  /// Ends the last tick's exchange with other ranks, which goes on meanwhile; else the next step does. Without ranks
-  /// nothing is to be done. @throws cluster::Failure on all ranks where a controller failed on one
+  /// Completes the last step's exchange with other ranks, which otherwise runs until the next step.
+  /// @throws cluster::Failure on all ranks if a controller failed on one
   void settle();
-  /// All ranks are to stop: `stop_agreed` says so on all of them, after the same tick.
-  void request_stop() { stop_ = true; }
+  /// How this process shares the fleet with others, and what only their exchange knows.
+  FleetShare& share() { return *share_; }
+  const FleetShare& share() const { return *share_; }
   /// A step that takes long throws base::Interrupted soon after `stop` returns true (base::ThreadPool). No other step
   /// may follow. Not with ranks, which would wait for each other.
   void interrupt_on(std::function<bool()> stop, std::chrono::nanoseconds patience = base::kStopLimit / 2) {
     farm_.thread_pool().interrupt_on(std::move(stop), patience);
   }
-  bool stop_agreed() const { return stop_agreed_; }
 
   /// Sets the commands of movers without a controller, to be executed from the next step on until they are set again.
   /// @param commands one per mover, finite; those of other movers are ignored
@@ -129,11 +128,7 @@ class Simulation {
   const control::Controller* controller(std::uint32_t mover) const { return controls_[mover].controller.get(); }
   /// The last tick called the mover's controller.
   bool stepped(std::uint32_t mover) const { return controls_[mover].stepped; }
-  /// This process decides for the mover and delivers its readings.
-  bool owns(std::uint32_t mover) const { return !exchange_ || exchange_->owns(mover); }
-  /// Movers that this rank has passed on to other tiles so far; none without tiles.
-  std::optional<std::uint64_t> passed_on() const { return tiles_ ? std::optional(tiles_->passed_on()) : std::nullopt; }
-  /// The mover's controller, of whatever rank, after `settle`.
+  /// The status of the mover's controller, on whichever rank it runs, after `settle`.
   ControlStatus status(std::uint32_t mover) const;
   const base::Intent& intent(std::uint32_t mover) const { return next_intents_[mover]; }
   /// All controllers that decide are done, of all ranks after `settle`; false without any, and before the first tick.
@@ -141,9 +136,6 @@ class Simulation {
   const world::RoadNetwork* roads() const { return roads_ ? &*roads_ : nullptr; }
   /// Warnings of the first files that a controller has read (a mission).
   const std::vector<world::Warning>& warnings() const { return warnings_; }
-  /// With tiles, robots that cannot stand where they start, if the world's files of outlines were not read at load,
-  /// when nobody could tell; all ranks call this, before the first step.
-  std::vector<world::Warning> warnings_of_starts();
 
  private:
   void warn_of_long_ways();
@@ -171,17 +163,13 @@ class Simulation {
   void try_to_decide(std::uint32_t mover, std::int64_t time, unsigned thread);
   std::int64_t leaves_at(const base::ReadingBlock& reading) const;
   bool due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
-  void begin_exchange();
-  void begin_sharing(const SimulationOptions& options);
-  void begin_tiles();
-  void balance_tiles();
-  FleetDecisions decisions() { return {commands_, next_intents_, statuses_}; }
+  void begin();
+  ControlStatus own_status(std::uint32_t mover) const;
   void find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const;
 
-  std::optional<FleetTiles> tiles_;   ///< none: this process knows the whole world
-  std::optional<world::World> part_;  ///< of this rank's tile
-  bool starts_unchecked_ = false;     ///< the world's walls were not known at load
-  const world::World& world_;
+  std::unique_ptr<FleetShare> share_;
+  const world::World& whole_;  ///< as loaded
+  const world::World& world_;  ///< the part of it that this process needs
   std::optional<world::RoadNetwork> roads_;
   farm::Farm farm_;
   robots::Fleet fleet_;
@@ -216,13 +204,6 @@ class Simulation {
   std::int64_t interval_;  ///< [ns]
   std::uint64_t tick_ = 0;
   double move_s_ = 0.0;
-  std::uint64_t balance_ = 0;             ///< ticks between new cuts of tiles; 0: they stay
-  double balanced_s_ = 0.0;               ///< [s] of sensing until the last cut
-  std::optional<RankExchange> exchange_;  ///< none: this process has the whole fleet
-  std::vector<ControlStatus> statuses_;   ///< per mover, with an exchange
-  bool exchanging_ = false;
-  bool stop_ = false;
-  bool stop_agreed_ = false;
 };
 
 }  // namespace sf::scenarios

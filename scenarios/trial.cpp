@@ -48,7 +48,7 @@ class Keeper {
       tracks_.push_back({.name = world.movers[row].name});
       dead_end_detectors_.emplace_back(2.0 * world.movers[row].radius, world.interval);
       helped_.push_back(0);
-      if (maps && simulation.owns(row) && !sensors::lasers_of(world.movers[row]).empty())
+      if (maps && simulation.share().owns(row) && !sensors::lasers_of(world.movers[row]).empty())
         maps_.try_emplace(row, world, row);
     }
   }
@@ -190,11 +190,11 @@ struct Course {
   base::TickRecord step(const TrialOptions& options) {
     const bool stop = options.stop && options.stop();
     if (stop && options.ranks == nullptr) throw Interrupted();
-    if (stop) simulation->request_stop();
+    if (stop) simulation->share().request_stop();
     const base::TickRecord record = simulation->step();
     if (recorder) recorder->write(record);
     simulation->settle();
-    if (simulation->stop_agreed()) throw Interrupted();
+    if (simulation->share().stop_agreed()) throw Interrupted();
     return record;
   }
 };

@@ -291,7 +291,7 @@ struct Course {
     facts.farm = simulation.farm().stats();
     facts.hash = simulation.farm().hash();
     outputs.finish(facts);
-    if (ranks != nullptr) add_up(*ranks, facts, simulation.passed_on());
+    if (ranks != nullptr) add_up(*ranks, facts, simulation.share().passed_on());
   }
 };
 
@@ -349,7 +349,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
                  true);
   });
   std::vector<world::Warning> heard = course->simulation.warnings();
-  for (world::Warning& warning : course->simulation.warnings_of_starts()) heard.push_back(std::move(warning));
+  for (world::Warning& warning : course->simulation.share().warnings_of_starts()) heard.push_back(std::move(warning));
   if (!heard.empty()) print_warnings(heard.front().file, heard);
   std::atomic<bool> all_stop = false;
   scenarios::Operator users(live->bridges(), ranks != nullptr ? all_stop : stop_requested(),
@@ -413,7 +413,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
         change_world();
         continue;
       }
-      if (stop_requested()) course->simulation.request_stop();
+      if (stop_requested()) course->simulation.share().request_stop();
       try {
         course->apply_events(*ground, *live);
         advised(ground->world, options, [&] { course->step(users); });
@@ -421,7 +421,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
         next = scenarios::Operator::Next::stop;
         break;
       }
-      all_stop = course->simulation.stop_agreed();
+      all_stop = course->simulation.share().stop_agreed();
       const double simulated = course->simulated();
       if (duration < kWithoutEnd && (ranks == nullptr || ranks->rank() == 0))
         progress.show(simulated / duration, fmt::format("{:.0f} s of {:g} s", simulated, duration));

@@ -47,16 +47,16 @@ std::uint64_t hash_of_parts(const world::World& world, unsigned parts, bool sile
     farms.push_back(std::make_unique<Farm>(world, device(), FarmOptions{.seed = 3, .shared = true}));
     farms.back()->subscribe_all();
     for (std::uint32_t m = 0; m < world.movers.size(); ++m)
-      if (m % parts != part) farms.back()->leave_to_others(m);
+      if (m % parts != part) farms.back()->sharing().leave_to_others(m);
   }
   for (int k = 0; k < 12; ++k) {
     std::vector<base::Bytes> written(all);
     for (unsigned part = 0; part < all; ++part) {
       step(*farms[part], world, k);
-      farms[part]->write_shared(written[part]);
+      farms[part]->sharing().write_hashes(written[part]);
     }
     std::vector<base::ByteReader> readers(written.begin(), written.end());
-    farms[0]->add_shared(readers);
+    farms[0]->sharing().add_hashes(readers);
     for (const base::ByteReader& reader : readers) EXPECT_EQ(reader.left(), 0u);
   }
   return farms[0]->hash();
@@ -77,14 +77,14 @@ TEST(SharedHash, AReadingLeftOutShows) {
   alone.subscribe_all();
   Farm part(world, device(), {.seed = 3, .shared = true});
   part.subscribe_all();
-  part.leave_to_others(2);
+  part.sharing().leave_to_others(2);
   std::uint64_t hashes[2];
   for (Farm* farm : {&alone, &part}) {
     step(*farm, world, 0);
     base::Bytes written;
-    farm->write_shared(written);
+    farm->sharing().write_hashes(written);
     std::vector<base::ByteReader> readers{base::ByteReader(written)};
-    farm->add_shared(readers);
+    farm->sharing().add_hashes(readers);
     hashes[farm == &part] = farm->hash();
   }
   EXPECT_NE(hashes[0], hashes[1]);

@@ -62,7 +62,7 @@ Course run(const world::World& world, gpu::Device& on, SimulationOptions options
     simulation.settle();
   }
   course.hash = simulation.farm().hash();
-  course.passed_on = simulation.passed_on().value_or(0);
+  course.passed_on = simulation.share().passed_on().value_or(0);
   return course;
 }
 
