@@ -122,7 +122,7 @@ void Simulation::State::prepare() {
   commands.assign(world.movers.size(), {});
   sent = commands;
   for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
-    owned.push_back(simulation->owns(row));
+    owned.push_back(simulation->share().owns(row));
     commanded = commanded || !simulation->status(row).drives;
   }
   poses.resize(world.movers.size()), velocities.resize(poses.size());
@@ -240,7 +240,7 @@ std::size_t Simulation::State::add(const NewRobot& robot) {
   for (const auto& [rows, before] : {std::pair{&contacts, &earlier->contacts}, {&done, &earlier->done}})
     add_row(*rows, std::uint8_t{0}, *before);
   add_row(present, std::uint8_t{1}, earlier->present);
-  add_row(owned, static_cast<std::uint8_t>(simulation->owns(row)), earlier->owned);
+  add_row(owned, static_cast<std::uint8_t>(simulation->share().owns(row)), earlier->owned);
   add_tables(earlier->tables);
   earlier->readings = simulation->earlier_readings();
   earlier = std::make_shared<Earlier>();

@@ -76,13 +76,6 @@ CommandRow row_of(const Command& command, std::size_t i) {
   return row;
 }
 
-void add_row(const CommandRow& row, base::Bytes& rows) {
-  base::ByteWriter writer(rows);
-  put_twist(row.twist, writer);
-  writer.put(row.robot);
-  writer.put(std::uint32_t{0});
-}
-
 double value_of(const Values& values, std::size_t i) {
   return base::ByteReader(values.values.subspan(i * sizeof(double))).get<double>();
 }

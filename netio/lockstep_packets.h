@@ -35,8 +35,6 @@ struct Command {
 inline std::size_t count_rows(const Command& command) { return command.rows.size() / kCommandRowBytes; }
 /// @pre i < count_rows(command)
 CommandRow row_of(const Command& command, std::size_t i);
-/// Appends an encoded row.
-void add_row(const CommandRow& row, base::Bytes& rows);
 
 /// To the farm: simulate from `tick` to `tick + ticks`.
 struct Step {

@@ -28,12 +28,6 @@ const Case& failing_case() {
   return kFailure;
 }
 
-const Case* find_case(std::string_view name) {
-  const auto all = cases();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Case& c) { return c.name == name; });
-  return found == all.end() ? nullptr : &*found;
-}
-
 Outcome run(const Case& c, Fixture& fixture) {
   Checks checks(fixture.stop());
   const auto begun = std::chrono::steady_clock::now();

@@ -17,8 +17,6 @@ namespace sf::selftest {
 std::span<const Case> cases();
 /// A case that fails on purpose, to demonstrate the output of a failure and exit code 1. Not part of cases().
 const Case& failing_case();
-/// @return null for an unknown name
-const Case* find_case(std::string_view name);
 
 /// Runs a case. An exception is a failure of the case. @throws base::Interrupted where the fixture's `stop` ended it
 Outcome run(const Case& c, Fixture& fixture);

@@ -93,9 +93,4 @@ void read_magnetometer_payload(const SensorSpec&, std::span<const std::uint8_t> 
     for (std::size_t k = 0; k < words; ++k) values[kMagnetometerColumns * e + k] = reader.get<Word>() * kUnit;
 }
 
-double magnetometer_word(std::span<const std::uint8_t> payload, WireFormat wire, std::uint32_t i) {
-  base::ByteReader reader(payload.subspan(header_of(wire) + kWord * std::size_t{i}));
-  return reader.get<Word>() * kUnit;
-}
-
 }  // namespace sf::sensors

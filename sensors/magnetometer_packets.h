@@ -40,7 +40,4 @@ PayloadPart decode_magnetometer(const SensorSpec& sensor, std::span<const std::u
 void read_magnetometer_payload(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                                WireFormat wire, std::span<double> values);
 
-/// [T] word `i` of a payload that `decode_magnetometer` accepted: four per element, or one in the thesis format.
-double magnetometer_word(std::span<const std::uint8_t> payload, WireFormat wire, std::uint32_t i);
-
 }  // namespace sf::sensors

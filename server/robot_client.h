@@ -116,7 +116,6 @@ class RobotClient {
   bool done() const { return started_ && made_.controller->done(); }
   const RobotLink& link() const { return link_; }
   const CameraPositions* cameras() const { return cameras_ ? &*cameras_ : nullptr; }  ///< null: it has none
-  const base::Report& true_state() const { return body_.state(); }
   const LightListener& lights() const { return lights_; }
   RobotClientStats stats() const;
 

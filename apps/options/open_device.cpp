@@ -12,6 +12,12 @@ gpu::Device open_device_silently(const DeviceOption& options) {
 
 void print_notice(const gpu::Device& device) {
   if (!device.notice().empty()) print_message(device.notice());
+  const std::string messages = device.validation_messages();
+  for (std::string_view rest = messages; !rest.empty();) {
+    const std::size_t end = rest.find('\n');
+    print_message("{}", rest.substr(0, end));
+    rest.remove_prefix(end == rest.npos ? rest.size() : end + 1);
+  }
 }
 
 gpu::Device open_device(const DeviceOption& options) {

@@ -7,6 +7,7 @@
 
 #include "base/bytes.h"
 #include "netio/packets.h"
+#include "tests/netio/command_rows.h"
 
 namespace sf::netio {
 

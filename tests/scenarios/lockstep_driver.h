@@ -12,6 +12,7 @@
 #include "netio/outbox.h"
 #include "netio/packets.h"
 #include "netio/socket.h"
+#include "tests/netio/command_rows.h"
 
 namespace sf::scenarios {
 

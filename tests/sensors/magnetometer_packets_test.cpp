@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "sensors/magnetometer.h"
@@ -26,6 +27,13 @@ base::Bytes bytes_of(std::vector<double> values, WireFormat wire, std::uint8_t e
   base::Bytes out;
   EXPECT_EQ(encode_magnetometer(row(static_cast<std::uint32_t>(values.size() / 4)), reading, wire, 0, out), expected);
   return out;
+}
+
+/// [T] Word `i` of a payload: four per element behind a head of four bytes, or one per element without a head.
+double magnetometer_word(const base::Bytes& payload, WireFormat wire, std::uint32_t i) {
+  std::int32_t word = 0;
+  std::memcpy(&word, payload.data() + (wire == WireFormat::farm ? 4 : 0) + 4 * i, sizeof word);
+  return 1e-8 * word;
 }
 
 TEST(MagnetometerPackets, EveryByteOfTheFarmsForm) {

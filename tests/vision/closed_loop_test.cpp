@@ -144,7 +144,7 @@ struct Loop {
       cameras.look(now + kExposure, {netio::kLoopback, client->cameras()->port()});
     }
   }
-  glm::dvec2 place() const { return {client->true_state().X_WM.x, client->true_state().X_WM.y}; }
+  glm::dvec2 place() const { return {client->stats().pose.x, client->stats().pose.y}; }
 
   world::World world;
   sensors::SensorSet sensor_set;

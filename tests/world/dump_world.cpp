@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <type_traits>
 
+#include "tests/world/successors.h"
 #include "world/fields.h"
 
 namespace sf::world {

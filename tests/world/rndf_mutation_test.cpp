@@ -8,6 +8,7 @@
 #include "base/files.h"
 #include "base/random.h"
 #include "tests/world/rndf_text.h"
+#include "tests/world/successors.h"
 #include "world/roads/mdf.h"
 #include "world/roads/roads.h"
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/world/rndf_text.h"
+#include "tests/world/successors.h"
 #include "world/roads/mdf.h"
 #include "world/roads/network.h"
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "tests/world/rndf_text.h"
+#include "tests/world/successors.h"
 #include "world/roads/lane_markings.h"
 #include "world/roads/roads.h"
 

@@ -7,39 +7,6 @@
 
 namespace sf::world {
 
-namespace {
-
-bool before(const PointRef& a, const PointRef& b) {
-  if (a.kind != b.kind) return a.kind < b.kind;
-  return a.row != b.row ? a.row < b.row : a.index < b.index;
-}
-
-struct ByFrom {
-  bool operator()(const RoadExit& a, const PointRef& b) const { return before(a.from, b); }
-  bool operator()(const PointRef& a, const RoadExit& b) const { return before(a, b.from); }
-};
-
-std::pair<std::vector<RoadExit>::const_iterator, std::vector<RoadExit>::const_iterator> exits_from(
-    const RoadNetwork& network, PointRef at) {
-  return std::equal_range(network.exits.begin(), network.exits.end(), at, ByFrom{});
-}
-
-Transition across(const RoadNetwork& network, PointRef from, PointRef to) {
-  return {Transition::Kind::zone, to, length(position_of(network, to) - position_of(network, from))};
-}
-
-/// Adds transitions across a zone to all of its perimeter points with exits.
-void add_ways_out(const RoadNetwork& network, std::uint32_t zone, PointRef from, std::vector<Transition>& steps) {
-  const auto points = static_cast<std::uint32_t>(network.zones[zone].perimeter.size());
-  for (std::uint32_t i = 0; i < points; ++i) {
-    const PointRef to{PointRef::Kind::perimeter, zone, i};
-    const auto [first, last] = exits_from(network, to);
-    if (first != last && to != from) steps.push_back(across(network, from, to));
-  }
-}
-
-}  // namespace
-
 std::optional<PointRef> find_point(const RoadNetwork& network, PointId id) {
   const auto found = std::lower_bound(network.index.begin(), network.index.end(), id,
                                       [](const auto& row, PointId wanted) { return row.first < wanted; });
@@ -80,29 +47,6 @@ std::optional<double> yaw_of(const RoadNetwork& network, PointRef at) {
 
 std::string name_of(const RoadNetwork& network, const RoadLane& lane) {
   return fmt::format("{}.{}", network.segments[lane.segment].id, lane.number);
-}
-
-std::vector<Transition> successors(const RoadNetwork& network, PointRef at) {
-  std::vector<Transition> steps;
-  if (at.kind == PointRef::Kind::lane) {
-    const std::vector<LanePoint>& points = network.lanes[at.row].points;
-    if (at.index + 1 < points.size())
-      steps.push_back({Transition::Kind::lane,
-                       {PointRef::Kind::lane, at.row, at.index + 1},
-                       points[at.index + 1].s - points[at.index].s});
-  }
-  const auto [first, last] = exits_from(network, at);
-  for (auto exit = first; exit != last; ++exit) steps.push_back({Transition::Kind::exit, exit->to, exit->length});
-  if (at.kind == PointRef::Kind::perimeter) {
-    const RoadZone& zone = network.zones[at.row];
-    for (std::uint32_t i = 0; i < zone.spots; ++i)
-      steps.push_back(across(network, at, {PointRef::Kind::spot, zone.first_spot + i, 0}));
-    add_ways_out(network, at.row, at, steps);
-  } else if (at.kind == PointRef::Kind::spot) {
-    if (at.index == 0) steps.push_back(across(network, at, {PointRef::Kind::spot, at.row, 1}));
-    if (at.index == 1) add_ways_out(network, network.spots[at.row].zone, at, steps);
-  }
-  return steps;
 }
 
 Curve exit_curve(const RoadNetwork& network, const RoadExit& exit) {

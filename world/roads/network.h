@@ -3,7 +3,7 @@
 // lanes. Tables of rows in file order, joined by row number; immutable after it is built.
 //
 //   RoadNetwork roads = load_roads("site.rndf", warnings);         // world/roads/roads.h
-//   for (const Step& step : successors(roads, *find_point(roads, {1, 2, 3}))) ... step.to, step.length
+//   const glm::dvec2 p = position_of(roads, *find_point(roads, {1, 2, 3}));
 
 #include <optional>
 #include <string>
@@ -145,13 +145,9 @@ struct Transition {
   double length = 0.0;  ///< [m] along the lane; of the connection of an exit or change; straight across a zone
 };
 
-/// Transitions from `at`: along the lane and by its exits; from a perimeter point also to each spot of the zone and to
-/// each perimeter point with exits; within a spot to its end, and from its end to each perimeter point with exits.
-std::vector<Transition> successors(const RoadNetwork& network, PointRef at);
-
 /// Lane changes from `at`: to lanes of the same segment that run beside it in the same direction, with a broken line or
 /// no known marking between them. Each change ends at the first point of the other lane at least three lane widths
-/// farther on. Empty for points of zones and spots. Not part of `successors`.
+/// farther on. Empty for points of zones and spots.
 std::vector<Transition> lane_changes(const RoadNetwork& network, PointRef at);
 
 /// The curve of a lane change, from one lane's direction into the other's.
