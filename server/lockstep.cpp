@@ -26,26 +26,15 @@ bool same_key(std::span<const netio::Peer> peers, std::uint32_t one, std::uint32
 
 Lockstep::Lockstep(const world::World& world, const sensors::SensorSet& sensor_set, const LockstepOptions& options)
     : world_(world),
-      sensor_set_(sensor_set),
       options_(options),
       names_(wire_names(world)),
       inbox_({.bind = options.bind, .robots = ids_of(names_.robots), .peers = options.peers, .lockstep = true}),
       outbox_(inbox_.socket()),
       log_(options.log_descriptor),
       rejections_(ids_of(names_.robots)),
-      driver_(world.movers.size(), nullptr),
-      types_(world.movers.size(), 0),
-      told_(world.movers.size()),
-      since_(world.movers.size()),
-      commanded_(world.movers.size()),
-      commands_(world.movers.size()) {
-  std::size_t rows = 0;
-  for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
-    first_reading_.push_back(static_cast<std::uint32_t>(rows));
-    rows += group.rows.size();
-  }
-  newest_.resize(rows);
-}
+      seats_(world.movers.size()),
+      commands_(world.movers.size()),
+      published_(sensor_set) {}
 
 void Lockstep::receive(std::int64_t now) {
   again_ = 0;
@@ -85,13 +74,14 @@ void Lockstep::take(Process& process, const netio::Command& command, const netio
   for (std::size_t i = 0; i < netio::count_rows(command); ++i) {
     const netio::CommandRow row = netio::row_of(command, i);
     const auto at = names_.robots.find(row.robot);
-    if (at == names_.robots.end() || driver_[at->second] != &process ||
+    if (at == names_.robots.end() || seats_[at->second].driver != &process ||
         !same_key(options_.peers, header.robot, row.robot)) {
       ++counts_.refused;
-    } else if (command.tick != tick_ || !answerable(process) || commanded_[at->second] == tick_) {
+    } else if (command.tick != published_.tick() || !answerable(process) ||
+               seats_[at->second].commanded == published_.tick()) {
       ++counts_.repeated;
     } else {
-      commanded_[at->second] = tick_;
+      seats_[at->second].commanded = published_.tick();
       commands_[at->second] = row.twist;
       ++process.commands;
       ++counts_.commands;
@@ -100,43 +90,44 @@ void Lockstep::take(Process& process, const netio::Command& command, const netio
 }
 
 void Lockstep::take(Process& process, const netio::Step& step, std::int64_t now) {
-  if (step.tick == tick_ && answerable(process) && !process.step) {
+  if (step.tick == published_.tick() && answerable(process) && !process.step) {
     process.step = step;
     if (!first_step_) first_step_ = now;
     return;
   }
   ++counts_.repeated;
   // The answer was lost, or others are waited for: its first datagram shows that the farm is there.
-  if (answerable(process)) answer_again(process, 0, step.tick < tick_ ? kPushed : 1);
+  if (answerable(process)) answer_again(process, 0, step.tick < published_.tick() ? kPushed : 1);
 }
 
 void Lockstep::take(Process& process, const netio::Fetch& fetch) {
-  if (fetch.tick == tick_ && answerable(process)) answer_again(process, fetch.first, fetch.count);
+  if (fetch.tick == published_.tick() && answerable(process)) answer_again(process, fetch.first, fetch.count);
 }
 
 void Lockstep::subscribe(const netio::Header& header, std::uint32_t types, std::int64_t now) {
   const std::uint32_t mover = names_.robots.at(header.robot);
   const netio::Endpoint endpoint = *inbox_.address(header.robot);
   if (Process* old = find(endpoint); old != nullptr && old->session != header.session) release_all(*old);
-  if (driver_[mover] != nullptr && driver_[mover]->endpoint != endpoint) release(mover);
+  if (seats_[mover].driver != nullptr && seats_[mover].driver->endpoint != endpoint) release(mover);
   Process& process = processes_[{endpoint.address, endpoint.port}];
   if (process.movers.empty()) {
-    process = {.endpoint = endpoint, .session = header.session, .movers = {}, .answered = tick_, .renewed = now};
+    process = {
+        .endpoint = endpoint, .session = header.session, .movers = {}, .answered = published_.tick(), .renewed = now};
     changed_ = now;  // others begin to wait for this one
   }
-  const bool added = driver_[mover] == nullptr;
+  const bool added = seats_[mover].driver == nullptr;
   counts_.repeated += added ? 0 : 1;
   if (added) {
-    driver_[mover] = &process;
+    seats_[mover].driver = &process;
     ++driven_;
-    told_[mover] = answerable(process) ? std::optional(tick_) : std::nullopt;
-    since_[mover].reset();
-    commanded_[mover].reset();
+    seats_[mover].answered = answerable(process) ? std::optional(published_.tick()) : std::nullopt;
+    seats_[mover].before.reset();
+    seats_[mover].commanded.reset();
     const auto by_id = [&](std::uint32_t a, std::uint32_t b) { return world_.movers[a].id < world_.movers[b].id; };
     process.movers.insert(std::lower_bound(process.movers.begin(), process.movers.end(), mover, by_id), mover);
   }
-  process.built = process.built && !added && types_[mover] == types;
-  types_[mover] = types;
+  process.built = process.built && !added && seats_[mover].types == types;
+  seats_[mover].types = types;
   begun_ = begun_ || driven_ >= options_.robots;
   unacknowledged_.push_back(mover);
 }
@@ -151,7 +142,7 @@ void Lockstep::acknowledge() {
     for (std::uint32_t i = 0; i < process.answer.size(); ++i) {
       const Part& part = process.answer[i];
       const bool asked = std::binary_search(unacknowledged_.begin(), unacknowledged_.end(), part.mover);
-      if (asked && part.reading == kState && driver_[part.mover] == &process) send(process, i, 1);
+      if (asked && part.reading == kState && seats_[part.mover].driver == &process) send(process, i, 1);
     }
   }
   unacknowledged_.clear();
@@ -159,11 +150,11 @@ void Lockstep::acknowledge() {
 
 /// The robot stands from now on; its process is gone with its last robot.
 void Lockstep::release(std::uint32_t mover) {
-  Process* process = std::exchange(driver_[mover], nullptr);
+  Process* process = std::exchange(seats_[mover].driver, nullptr);
   commands_[mover] = {};
   if (process == nullptr) return;
   --driven_;
-  if (commanded_[mover] == tick_ && process->commands > 0) --process->commands;
+  if (seats_[mover].commanded == published_.tick() && process->commands > 0) --process->commands;
   std::erase(process->movers, mover);
   process->built = false;
   if (process->movers.empty()) processes_.erase({process->endpoint.address, process->endpoint.port});
@@ -179,7 +170,7 @@ Lockstep::Process* Lockstep::find(const netio::Endpoint& endpoint) {
 }
 
 bool Lockstep::is_done(const Process& process) const {
-  return process.step && (tick_ > process.step->tick || process.commands >= process.step->commands);
+  return process.step && (published_.tick() > process.step->tick || process.commands >= process.step->commands);
 }
 
 bool Lockstep::ready() const {
@@ -199,14 +190,14 @@ void Lockstep::check_timeout(std::int64_t now) {
   if (held_up && first_step_ && now - std::max(*first_step_, changed_) >= limit) {
     log_.write(fmt::format("tick {}: no command or STEP for {:g} s from {}; left out and standing from now on, while "
                            "the others go on",
-                           tick_, options_.timeout, names_of(missing_)),
+                           published_.tick(), options_.timeout, names_of(missing_)),
                now);
     counts_.lost_robots += missing_.size();
     for (const std::uint32_t mover : std::vector(missing_)) release(mover);
-  } else if (!held_up && now - changed_ >= limit && warned_ != tick_) {
-    warned_ = tick_;
-    log_.write(fmt::format("tick {}: waiting for {:g} s for the commands or STEP of {}", tick_, options_.timeout,
-                           names_of(missing_)),
+  } else if (!held_up && now - changed_ >= limit && warned_ != published_.tick()) {
+    warned_ = published_.tick();
+    log_.write(fmt::format("tick {}: waiting for {:g} s for the commands or STEP of {}", published_.tick(),
+                           options_.timeout, names_of(missing_)),
                now);
   }
 }

@@ -23,13 +23,13 @@
 #include <vector>
 
 #include "base/tick_record.h"
-#include "farm/stored_reading.h"
 #include "netio/inbox.h"
 #include "netio/outbox.h"
 #include "netio/rate_limited_log.h"
 #include "netio/rejection_log.h"
 #include "netio/signature_trouble_log.h"
 #include "sensors/sensor_set.h"
+#include "server/published_tick.h"
 #include "server/wire_ids.h"
 #include "world/world.h"
 
@@ -82,7 +82,7 @@ class Lockstep {
   /// A datagram of an answer: a mover's state, or one part of a reading.
   struct Part {
     std::uint32_t mover = 0;
-    std::uint32_t reading = 0;  ///< row in `newest_`, or kState
+    std::uint32_t reading = 0;  ///< row of `published_`, or kState
     std::uint32_t first = 0;    ///< value
   };
   struct Process {
@@ -97,10 +97,13 @@ class Lockstep {
     std::uint32_t states = 0, values = 0;  ///< datagrams sent
     std::int64_t renewed = 0;              ///< [ns] when the inbox was last told that its robots are driven
   };
-  /// The newest reading of a sensor.
-  struct Newest {
-    farm::StoredReading reading;
-    std::optional<std::uint64_t> tick;  ///< of its delivery; none: nothing was delivered
+  /// A mover as seen by the process that drives it.
+  struct Seat {
+    Process* driver = nullptr;               ///< null: the mover stands
+    std::uint32_t types = 0;                 ///< mask of its SUBSCRIBE
+    std::optional<std::uint64_t> answered;   ///< tick of its newest answer; none: none yet
+    std::optional<std::uint64_t> before;     ///< tick of the answer before that one
+    std::optional<std::uint64_t> commanded;  ///< tick of its last command
   };
   using Key = std::pair<std::uint32_t, std::uint16_t>;  ///< address and port
   static constexpr std::uint32_t kState = 0xFFFFFFFFu;
@@ -114,20 +117,18 @@ class Lockstep {
   void release(std::uint32_t mover);
   void release_all(Process& process);
   Process* find(const netio::Endpoint& endpoint);
-  bool answerable(const Process& process) const { return process.answered == tick_; }
+  bool answerable(const Process& process) const { return process.answered == published_.tick(); }
   bool is_done(const Process& process) const;
   void grant(Process& process);
   void build_answer(Process& process);
-  void add_readings(std::uint32_t mover, std::vector<Part>& parts) const;
+  void add_readings(std::uint32_t mover, std::vector<Part>& parts);
   void send(Process& process, std::uint32_t first, std::uint32_t count);
   void encode(Process& process, std::uint32_t index);
   void answer_again(Process& process, std::uint32_t first, std::uint32_t count);
   void check_timeout(std::int64_t now);
   std::string names_of(std::span<const std::uint32_t> movers) const;
-  std::uint32_t row_of(const base::ReadingBlock& reading) const;
 
   const world::World& world_;
-  const sensors::SensorSet& sensor_set_;
   LockstepOptions options_;
   WireNames names_;
   netio::Inbox inbox_;
@@ -136,26 +137,18 @@ class Lockstep {
   netio::SignatureTroubleLog trouble_;
   netio::RejectionLog rejections_;
   std::map<Key, Process> processes_;
-  std::vector<Process*> driver_;                         ///< per mover; null: nobody drives it
-  std::vector<std::uint32_t> types_;                     ///< per mover: mask of its SUBSCRIBE
-  std::vector<std::optional<std::uint64_t>> told_;       ///< per mover: tick of its newest answer; none: none yet
-  std::vector<std::optional<std::uint64_t>> since_;      ///< per mover: tick of the answer before that one
-  std::vector<std::optional<std::uint64_t>> commanded_;  ///< per mover: tick of its last command
-  std::vector<base::Twist> commands_;                    ///< per mover
-  std::vector<std::uint32_t> first_reading_;             ///< per group of sensors: its first row in `newest_`
-  std::vector<Newest> newest_;                           ///< per sensor
-  std::vector<base::Report> reports_;                    ///< of the published tick
-  std::vector<std::uint8_t> contacts_;
+  std::vector<Seat> seats_;            ///< per mover
+  std::vector<base::Twist> commands_;  ///< per mover
+  PublishedTick published_;
+  std::vector<std::uint32_t> rows_;            ///< scratch
   std::vector<std::uint32_t> missing_;         ///< scratch
   std::vector<std::uint32_t> unacknowledged_;  ///< movers that were subscribed in this `receive`
   std::size_t driven_ = 0;                     ///< movers with a process
-  std::uint64_t tick_ = 0;
-  std::int64_t time_ = 0;                   ///< [ns] simulated
-  bool begun_ = false;                      ///< enough robots have subscribed
-  std::int64_t changed_ = 0;                ///< [ns] when the tick was published, or a process joined after it
-  std::optional<std::int64_t> first_step_;  ///< [ns] since when a process waits for the next tick
-  std::optional<std::uint64_t> warned_;     ///< tick of the last warning that all are silent
-  std::uint64_t again_ = 0;                 ///< datagrams sent on request in this `receive`
+  bool begun_ = false;                         ///< enough robots have subscribed
+  std::int64_t changed_ = 0;                   ///< [ns] when the tick was published, or a process joined after it
+  std::optional<std::int64_t> first_step_;     ///< [ns] since when a process waits for the next tick
+  std::optional<std::uint64_t> warned_;        ///< tick of the last warning that all are silent
+  std::uint64_t again_ = 0;                    ///< datagrams sent on request in this `receive`
   LockstepCounts counts_;
   base::Bytes packet_;
 };

@@ -11,34 +11,20 @@
 namespace sf::server {
 
 void Lockstep::publish(const base::TickRecord& record, std::int64_t now) {
-  tick_ = record.tick;
-  time_ = record.time;
+  published_.take(record);
   changed_ = now;
-  reports_.assign(record.reports.begin(), record.reports.end());
-  contacts_.assign(record.contacts.begin(), record.contacts.end());
-  for (const base::ReadingBlock& reading : record.readings) {
-    Newest& newest = newest_[row_of(reading)];
-    newest.reading.take(reading);
-    newest.tick = tick_;
-  }
   first_step_.reset();
   for (auto& [key, process] : processes_) {
-    if (process.step && tick_ == process.step->tick + process.step->ticks) grant(process);
+    if (process.step && published_.tick() == process.step->tick + process.step->ticks) grant(process);
     if (process.step) first_step_ = now;
   }
   outbox_.flush();
 }
 
-std::uint32_t Lockstep::row_of(const base::ReadingBlock& reading) const {
-  const auto groups = sensor_set_.groups();
-  const auto at = std::find_if(groups.begin(), groups.end(),
-                               [&](const sensors::SensorSet::Group& group) { return group.type->id == reading.type; });
-  return first_reading_[static_cast<std::size_t>(at - groups.begin())] + at->first[reading.mover] + reading.sensor;
-}
-
 void Lockstep::grant(Process& process) {
-  for (const std::uint32_t mover : process.movers) since_[mover] = std::exchange(told_[mover], tick_);
-  process.answered = tick_;
+  for (const std::uint32_t mover : process.movers)
+    seats_[mover].before = std::exchange(seats_[mover].answered, published_.tick());
+  process.answered = published_.tick();
   process.step.reset();
   process.commands = 0;
   process.built = false;
@@ -53,25 +39,20 @@ void Lockstep::build_answer(Process& process) {
   for (const std::uint32_t mover : process.movers) {
     process.answer.push_back({mover, kState, 0});
     add_readings(mover, process.answer);
-    others = others || (types_[mover] & netio::kNeighboursBit) != 0;
+    others = others || (seats_[mover].types & netio::kNeighboursBit) != 0;
   }
   for (const auto& [id, mover] : names_.robots)
-    if (others && driver_[mover] != &process) process.answer.push_back({mover, kState, 0});
+    if (others && seats_[mover].driver != &process) process.answer.push_back({mover, kState, 0});
 }
 
 /// The newest reading of each sensor that was delivered since the answer before.
-void Lockstep::add_readings(std::uint32_t mover, std::vector<Part>& parts) const {
-  const std::uint32_t types = types_[mover] == 0 ? ~netio::kNeighboursBit : types_[mover];
-  const auto groups = sensor_set_.groups();
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    if ((types >> groups[g].type->id & 1u) == 0) continue;
-    for (std::uint32_t row = groups[g].first[mover]; row < groups[g].first[mover + 1]; ++row) {
-      const Newest& newest = newest_[first_reading_[g] + row];
-      if (!newest.tick || (since_[mover] && *newest.tick <= *since_[mover])) continue;
-      const auto total = static_cast<std::uint32_t>(newest.reading.block().values.size());
-      for (std::uint32_t first = 0; first < total; first += netio::kMaxValues)
-        parts.push_back({mover, first_reading_[g] + row, first});
-    }
+void Lockstep::add_readings(std::uint32_t mover, std::vector<Part>& parts) {
+  const Seat& seat = seats_[mover];
+  rows_.clear();
+  published_.find_new(mover, seat.types == 0 ? ~netio::kNeighboursBit : seat.types, seat.before, rows_);
+  for (const std::uint32_t row : rows_) {
+    const auto total = static_cast<std::uint32_t>(published_.reading(row).values.size());
+    for (std::uint32_t first = 0; first < total; first += netio::kMaxValues) parts.push_back({mover, row, first});
   }
 }
 
@@ -90,7 +71,7 @@ void Lockstep::send(Process& process, std::uint32_t first, std::uint32_t count) 
     encode(process, static_cast<std::uint32_t>(i));
     // States of robots of others are signed like those of the first of its own.
     const std::uint32_t mover = process.answer[i].mover;
-    const std::uint32_t signs = driver_[mover] == &process ? mover : process.movers.front();
+    const std::uint32_t signs = seats_[mover].driver == &process ? mover : process.movers.front();
     outbox_.queue(process.endpoint, packet_, {inbox_.session(), process.session},
                   inbox_.signer(world_.movers[signs].id));
   }
@@ -98,17 +79,17 @@ void Lockstep::send(Process& process, std::uint32_t first, std::uint32_t count) 
 
 void Lockstep::encode(Process& process, std::uint32_t index) {
   const Part& part = process.answer[index];
-  const netio::AnswerPart place{tick_, index, static_cast<std::uint32_t>(process.answer.size())};
-  netio::Header header{.robot = static_cast<std::uint16_t>(world_.movers[part.mover].id), .time = time_};
+  const netio::AnswerPart place{published_.tick(), index, static_cast<std::uint32_t>(process.answer.size())};
+  netio::Header header{.robot = static_cast<std::uint16_t>(world_.movers[part.mover].id), .time = published_.time()};
   if (part.reading == kState) {
     header.sequence = process.states++;
-    const base::Report& report = reports_[part.mover];
+    const base::Report& report = published_.report(part.mover);
     return netio::encode(header,
-                         netio::State{place, report.X_WM, report.velocity, contacts_[part.mover] != 0 ? 1u : 0u,
+                         netio::State{place, report.X_WM, report.velocity, published_.contact(part.mover) ? 1u : 0u,
                                       counts_.lost_robots > 0 ? netio::kDriverLostBit : 0u},
                          packet_);
   }
-  const base::ReadingBlock& reading = newest_[part.reading].reading.block();
+  const base::ReadingBlock& reading = published_.reading(part.reading);
   const auto total = static_cast<std::uint32_t>(reading.values.size());
   const auto values = reading.values.subspan(part.first, netio::count_values(total, part.first));
   header.sensor = static_cast<std::uint16_t>(reading.sensor);

@@ -9,16 +9,11 @@
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "base/time.h"
-#include "netio/signature_trouble_log.h"
 #include "world/roads/roads.h"
 
 namespace sf::server {
 
 namespace {
-
-constexpr std::int64_t kAnswerIn = 3'000'000'000;       ///< [ns] of silence before a message
-constexpr std::int64_t kTroubleIn = 1'000'000'000;      ///< [ns] of refused signatures before a message
-constexpr std::int64_t kTroubleEvery = 10'000'000'000;  ///< [ns]
 
 /// [ns] Never shorter than two and a half periods of the fastest sensor, so that one lost reading stops nobody.
 std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mover, double seconds) {
@@ -59,8 +54,8 @@ RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& se
             [this](const netio::Packet& packet, std::int64_t now) { on_packet(packet, now); }),
       intents_(world.movers.size()),
       started_(!options.wait_for_start),
-      reading_timeout_(patience_of(sensor_set, mover, options.stop_after)),
-      log_(options.log_descriptor),
+      log_(world.movers[mover].name, world.movers[mover].id, options.log_descriptor,
+           patience_of(sensor_set, mover, options.stop_after)),
       controller_(options.controller.name),
       utc_(options.utc ? options.utc : utc_now) {
   if (options.cameras) cameras_.emplace(world, mover, tag_of(options, world.movers[mover]), *options.cameras);
@@ -93,11 +88,11 @@ void RobotClient::step(std::int64_t now) {
   if (cameras_) cameras_->predict(now);
   if (cameras_ && !is_lost()) add(position_errors_, own_state().X_WM, body_.state().X_WM);
   command_ = {};
-  if (started_ && !is_lost() && !readings_timed_out(now) && (!create_ || create_->ready(now))) decide(now);
+  if (started_ && !is_lost() && !log_.readings_timed_out(link_, now) && (!create_ || create_->ready(now))) decide(now);
   if (create_) create_->drive(command_, now);
   send_state(now);
-  log_problems(now);
-  if (create_) log_create(now);
+  log_.note_link(link_, cameras_ ? std::optional(is_lost()) : std::nullopt, now);
+  if (create_) log_.note_create(create_->problem(now), create_->counts().frames > 0, now);
 }
 
 void RobotClient::leave(std::int64_t now) {
@@ -167,7 +162,7 @@ RobotClientStats RobotClient::stats() const {
   if (cameras_) stats.cameras = {cameras_->packets(), cameras_->states(), position_errors_};
   stats.listens_for_spat = lights_.listens();
   stats.lights = lights_.counts();
-  stats.stops = stops_;
+  stats.stops = log_.stops();
   stats.lines_left_out = log_.left_out();
   return stats;
 }
@@ -237,65 +232,6 @@ void RobotClient::gather_signals(std::int64_t now) {
   for (const world::Light& light : world_.lights) signals_.push_back(world::signal_at(light, time));
   if (lights_.listens()) lights_.receive(now, utc_());
   lights_.apply(now, signals_);
-}
-
-bool RobotClient::readings_timed_out(std::int64_t now) const {
-  return reading_timeout_ > 0 && link_.listens() && now - link_.last_reading().value_or(0) > reading_timeout_;
-}
-
-/// Trouble with keys and clocks while nothing else comes: at once, then every ten seconds.
-void RobotClient::log_signature_trouble(std::int64_t now) {
-  const netio::SignatureTrouble& trouble = link_.trouble();
-  const bool is_new = trouble.count > std::exchange(troubles_, trouble.count);
-  if (!is_new || now < next_trouble_ || now - link_.last_answer().value_or(0) < kTroubleIn) return;
-  next_trouble_ = now + kTroubleEvery;
-  problem_logged_ = true;
-  stands_ = reading_timeout_ > 0;
-  log_.write(
-      fmt::format("the farm at {} {}", netio::text(link_.farm()),
-                  netio::trouble_text(trouble, fmt::format("robot {}", world_.movers[mover_].id), base::unix_time())),
-      now);
-}
-
-/// Where nothing is heard any more, where something is again, and, once, where nothing ever was.
-void RobotClient::log_problems(std::int64_t now) {
-  const std::string farm = netio::text(link_.farm());
-  log_signature_trouble(now);
-  if (!problem_logged_ && link_.listens() && now - link_.last_answer().value_or(0) >= kAnswerIn) {
-    problem_logged_ = true;
-    stands_ = reading_timeout_ > 0;
-    log_.write(fmt::format("nothing came from the farm at {} for 3 s; is `sensorfarm serve` running there with this "
-                           "world and these ports? {}",
-                           farm, reading_timeout_ > 0 ? "Standing until readings come" : "Going on"),
-               now);
-  }
-  const std::string& name = world_.movers[mover_].name;
-  if (cameras_ && was_lost_ != is_lost()) {
-    was_lost_ = is_lost();
-    stops_ += was_lost_ ? 1 : 0;
-    log_.write(was_lost_ ? fmt::format("no camera sees {} any more: it stands until one does", name)
-                         : fmt::format("cameras see {}", name),
-               now);
-  }
-  if (stands_ == readings_timed_out(now) || !link_.last_reading()) return;
-  stands_ = !stands_;
-  stops_ += stands_ ? 1 : 0;
-  log_.write(stands_ ? fmt::format("no reading came from the farm at {} for {:g} s: {} stands until one comes", farm,
-                                   1e-9 * static_cast<double>(reading_timeout_), name)
-                     : fmt::format("readings come: {} goes on", name),
-             now);
-}
-
-/// Logs the reason for which the real robot does not drive, each time that it changes; not the silence before its first
-/// answer is due.
-void RobotClient::log_create(std::int64_t now) {
-  const std::string problem = create_->problem(now);
-  if (problem == create_problem_ || (create_->counts().frames == 0 && now < kAnswerIn)) return;
-  create_problem_ = problem;
-  const std::string& name = world_.movers[mover_].name;
-  log_.write(problem.empty() ? fmt::format("the Create is ready: {} goes on", name)
-                             : fmt::format("{}: {} stands", problem, name),
-             now);
 }
 
 }  // namespace sf::server

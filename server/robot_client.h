@@ -13,13 +13,13 @@
 #include "control/controllers.h"
 #include "control/error_summary.h"
 #include "control/own_localization.h"
-#include "netio/rate_limited_log.h"
 #include "robots/robot_body.h"
 #include "sensors/sensor_set.h"
 #include "server/camera_positions.h"
 #include "server/create_drive.h"
 #include "server/light_listener.h"
 #include "server/own_map.h"
+#include "server/robot_client_log.h"
 #include "server/robot_link.h"
 #include "server/truth_report.h"
 #include "server/wire_ids.h"
@@ -131,14 +131,9 @@ class RobotClient {
   void gather_readings();
   void gather_others(std::int64_t now);
   void gather_signals(std::int64_t now);
-  /// No reading came for so long that the last one is no ground to drive by.
-  bool readings_timed_out(std::int64_t now) const;
   /// No camera saw it for so long that its state is no ground to drive by.
   bool is_lost() const { return cameras_ && !cameras_->is_fresh(); }
-  void log_problems(std::int64_t now);
-  void log_signature_trouble(std::int64_t now);
   void draw_map(std::int64_t now);
-  void log_create(std::int64_t now);
 
   const world::World& world_;
   WireNames names_;
@@ -151,13 +146,7 @@ class RobotClient {
   std::vector<base::Intent> intents_;  ///< per mover, as told
   base::Twist command_;
   bool started_;
-  std::int64_t reading_timeout_;  ///< [ns] without a reading; 0: for ever
-  bool problem_logged_ = false;
-  std::uint64_t troubles_ = 0;     ///< refused packets that came before
-  std::int64_t next_trouble_ = 0;  ///< [ns] not logged before
-  bool stands_ = false;            ///< for want of readings or positions
-  std::uint64_t stops_ = 0;        ///< times that it came to that
-  netio::RateLimitedLog log_;
+  RobotClientLog log_;
   std::uint64_t steps_ = 0;
   std::uint64_t scans_ = 0;  ///< that had arrived at the last step
   std::int64_t next_ = 0;    ///< [ns] of the next step by its rate
@@ -171,13 +160,11 @@ class RobotClient {
   std::vector<world::Signal> signals_;
   std::function<std::int64_t()> utc_;
   std::optional<CameraPositions> cameras_;
-  bool was_lost_ = true;  ///< at the last step; no camera has seen it at the start
   PositionErrors position_errors_;
   std::optional<TruthReport> truth_;
   std::int64_t epoch_ = 0;             ///< [ns] Unix time at time 0 of its clock, in `run`
   std::optional<CreateDrive> create_;  ///< none: the body is a model
   std::optional<OwnMap> map_;          ///< none: it makes no map
-  std::string create_problem_;         ///< as logged last
 };
 
 }  // namespace sf::server

@@ -1,0 +1,75 @@
+#include "server/robot_client_log.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/elapsed.h"
+#include "netio/signature_trouble_log.h"
+
+namespace sf::server {
+
+namespace {
+
+constexpr std::int64_t kAnswerIn = 3'000'000'000;       ///< [ns] of silence before a message
+constexpr std::int64_t kTroubleIn = 1'000'000'000;      ///< [ns] of refused signatures before a message
+constexpr std::int64_t kTroubleEvery = 10'000'000'000;  ///< [ns]
+
+}  // namespace
+
+RobotClientLog::RobotClientLog(std::string robot, std::uint32_t id, int descriptor, std::int64_t reading_timeout)
+    : robot_(std::move(robot)), id_(id), reading_timeout_(reading_timeout), log_(descriptor) {}
+
+bool RobotClientLog::readings_timed_out(const RobotLink& link, std::int64_t now) const {
+  return reading_timeout_ > 0 && link.listens() && now - link.last_reading().value_or(0) > reading_timeout_;
+}
+
+/// Refused signatures while nothing else arrives: at once, then every ten seconds.
+void RobotClientLog::note_signatures(const RobotLink& link, std::int64_t now) {
+  const netio::SignatureTrouble& trouble = link.trouble();
+  const bool is_new = trouble.count > std::exchange(troubles_, trouble.count);
+  if (!is_new || now < next_trouble_ || now - link.last_answer().value_or(0) < kTroubleIn) return;
+  next_trouble_ = now + kTroubleEvery;
+  problem_logged_ = true;
+  stands_ = reading_timeout_ > 0;
+  log_.write(fmt::format("the farm at {} {}", netio::text(link.farm()),
+                         netio::trouble_text(trouble, fmt::format("robot {}", id_), base::unix_time())),
+             now);
+}
+
+void RobotClientLog::note_link(const RobotLink& link, std::optional<bool> lost, std::int64_t now) {
+  const std::string farm = netio::text(link.farm());
+  note_signatures(link, now);
+  if (!problem_logged_ && link.listens() && now - link.last_answer().value_or(0) >= kAnswerIn) {
+    problem_logged_ = true;
+    stands_ = reading_timeout_ > 0;
+    log_.write(fmt::format("nothing came from the farm at {} for 3 s; is `sensorfarm serve` running there with this "
+                           "world and these ports? {}",
+                           farm, reading_timeout_ > 0 ? "Standing until readings come" : "Going on"),
+               now);
+  }
+  if (lost && was_lost_ != *lost) {
+    was_lost_ = *lost;
+    stops_ += was_lost_ ? 1 : 0;
+    log_.write(was_lost_ ? fmt::format("no camera sees {} any more: it stands until one does", robot_)
+                         : fmt::format("cameras see {}", robot_),
+               now);
+  }
+  if (stands_ == readings_timed_out(link, now) || !link.last_reading()) return;
+  stands_ = !stands_;
+  stops_ += stands_ ? 1 : 0;
+  log_.write(stands_ ? fmt::format("no reading came from the farm at {} for {:g} s: {} stands until one comes", farm,
+                                   1e-9 * static_cast<double>(reading_timeout_), robot_)
+                     : fmt::format("readings come: {} goes on", robot_),
+             now);
+}
+
+void RobotClientLog::note_create(const std::string& problem, bool answered, std::int64_t now) {
+  if (problem == create_problem_ || (!answered && now < kAnswerIn)) return;
+  create_problem_ = problem;
+  log_.write(problem.empty() ? fmt::format("the Create is ready: {} goes on", robot_)
+                             : fmt::format("{}: {} stands", problem, robot_),
+             now);
+}
+
+}  // namespace sf::server
