@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "netio/own_end.h"
+#include "sensors/laser.h"
 #include "server/wire_ids.h"
 
 namespace sf::server {
