@@ -1,5 +1,7 @@
 #include "viz/heading.h"
 
+#include <string_view>
+
 #include "viz/legend.h"
 
 namespace sf::viz {
@@ -32,6 +34,16 @@ std::string fitted_text(std::string text, const TextStyle& style, double width) 
     text.pop_back();
   }
   return text + "...";
+}
+
+std::string fitted_name(const std::string& name, const TextStyle& style, double width) {
+  constexpr std::size_t kShortWord = 4;
+  std::size_t end = name.rfind(' ');
+  if (end == std::string::npos || name.size() - end > kShortWord + 1) return fitted_text(name, style, width);
+  if (constexpr std::string_view kSensor = " sensor"; name.substr(0, end).ends_with(kSensor)) end -= kSensor.size();
+  if (text_size(name, style).x <= width) return name;
+  const std::string last = name.substr(end);
+  return fitted_text(name.substr(0, end), style, width - text_size(last, style).x) + last;
 }
 
 std::vector<std::string> wrapped_text(const std::string& text, const TextStyle& style, double width) {

@@ -18,6 +18,9 @@ struct Heading {
 /// `text`, shortened until it is at most `width` [px] wide.
 std::string fitted_text(std::string text, const TextStyle& style, double width);
 
+/// The same for the name of one of several things: a short last word ("robot 3", "robot sensor 1") stays.
+std::string fitted_name(const std::string& name, const TextStyle& style, double width);
+
 /// `text` in lines of at most `width` [px], broken at spaces; a longer word is shortened.
 std::vector<std::string> wrapped_text(const std::string& text, const TextStyle& style, double width);
 

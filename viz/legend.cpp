@@ -16,11 +16,16 @@ constexpr double kTextGap = 9.0;
 constexpr double kItemGap = 30.0;
 constexpr double kMarker = 5.5;
 
+/// [px] room for the sample left of a text.
+double sample_room(const LegendItem& item) { return item.sample == LegendMark::none ? 0.0 : kSampleWidth + kTextGap; }
+
 void draw_sample(Canvas& canvas, glm::dvec2 left, const LegendItem& item) {
   const glm::dvec2 right = left + glm::dvec2{kSampleWidth, 0.0};
   const glm::dvec2 middle = 0.5 * (left + right);
   const Line line{left, right};
   switch (item.sample) {
+    case LegendMark::none:
+      return;
     case LegendMark::block: {
       const std::array<glm::dvec2, 5> box{left + glm::dvec2{0, -9}, right + glm::dvec2{0, -9}, right + glm::dvec2{0, 9},
                                           left + glm::dvec2{0, 9}, left + glm::dvec2{0, -9}};
@@ -65,6 +70,10 @@ void draw_sample(Canvas& canvas, glm::dvec2 left, const LegendItem& item) {
 
 }  // namespace
 
+LegendItem more_item(std::size_t count) {
+  return {LegendMark::none, theme::kBlack, "and " + std::to_string(count) + " more"};
+}
+
 TextStyle small_text() {
   TextStyle style;
   style.size = 18;
@@ -76,7 +85,7 @@ std::vector<LegendPlace> place_legend(std::span<const LegendItem> items, double 
   std::vector<LegendPlace> places;
   LegendPlace next;
   for (const LegendItem& item : items) {
-    const double wide = kSampleWidth + kTextGap + text_size(item.text, small_text()).x;
+    const double wide = sample_room(item) + text_size(item.text, small_text()).x;
     if (next.x > 0.0 && next.x + wide > width) next = {0.0, next.row + 1};
     places.push_back(next);
     next.x += wide + kItemGap;
@@ -89,8 +98,8 @@ void draw_legend(Canvas& canvas, glm::dvec2 at, std::span<const LegendItem> item
   for (std::size_t i = 0; i < items.size(); ++i) {
     const glm::dvec2 left = at + glm::dvec2{places[i].x, (places[i].row + 0.5) * kLegendRow};
     draw_sample(canvas, left, items[i]);
-    const glm::dvec2 text = left + glm::dvec2{kSampleWidth + kTextGap, 0.0};
-    canvas.text(text, fitted_text(items[i].text, small_text(), canvas.width() - text.x - 4.0), small_text());
+    const glm::dvec2 text = left + glm::dvec2{sample_room(items[i]), 0.0};
+    canvas.text(text, fitted_name(items[i].text, small_text(), canvas.width() - text.x - 4.0), small_text());
   }
 }
 

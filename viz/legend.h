@@ -27,7 +27,8 @@ enum class LegendMark {
   hollow_diamond,
   outlined_dot,
   crossed_dot,
-  hatched  ///< where nothing was measured
+  hatched,  ///< where nothing was measured
+  none      ///< a text alone
 };
 
 struct LegendItem {
@@ -38,6 +39,9 @@ struct LegendItem {
   std::span<const double> dash = {};  ///< of a line; empty: solid
   int row = -1;                       ///< of a line with a marker (`draw_marker`); -1: without
 };
+
+/// "and 9 more": of drawn things that the legend does not name.
+LegendItem more_item(std::size_t count);
 
 /// The style of all small text beside a figure.
 TextStyle small_text();

@@ -36,6 +36,20 @@ TEST(Heading, AWordWiderThanTheFigureIsShortened) {
   EXPECT_LT(heading.title[0].size(), 20u);
 }
 
+/// Names of several things differ in their ends.
+TEST(Heading, ShortenedNamesKeepTheirNumbers) {
+  const TextStyle style = small_text();
+  for (const auto& [name, end] : {std::pair{"one_robot_with_a_long_name 15", "... 15"},
+                                  {"one_robot_with_a_long_name sensor 1", "... sensor 1"},
+                                  {"one_robot_with_a_long_name 3 x", "... x"},
+                                  {"one_robot_with a_long_name", "..."}}) {
+    const std::string fitted = fitted_name(name, style, 160.0);
+    EXPECT_TRUE(fitted.starts_with("one") && fitted.ends_with(end)) << fitted;
+    EXPECT_LE(text_size(fitted, style).x, 160.0) << fitted;
+    EXPECT_EQ(fitted_name(name, style, 1000.0), name);
+  }
+}
+
 TEST(Heading, TextsAsWideAsTheFigureStayWhole) {
   TextStyle style;
   style.size = 28;
