@@ -84,7 +84,7 @@ std::string short_name(const SweepJobs& jobs, std::size_t row) {
 /// "kp = 0.5".
 std::string value_name(const SweepJobs& jobs, const Parameter& p, const std::string& value) {
   return fmt::format("{} = {}", short_name(jobs, p.row),
-                     p.numeric ? viz::with_minus(fmt::format("{:.6g}", std::strtod(value.c_str(), nullptr))) : value);
+                     p.numeric ? viz::number_text(std::strtod(value.c_str(), nullptr)) : value);
 }
 
 /// A metric as the name of an axis.

@@ -13,16 +13,13 @@
 namespace sf::viz {
 namespace {
 
-Ticks ticks_x(const FigureLayout& at) { return make_ticks(at.shown.x_min, at.shown.x_max, at.tick_spacing / at.scale); }
-Ticks ticks_y(const FigureLayout& at) { return make_ticks(at.shown.y_min, at.shown.y_max, at.tick_spacing / at.scale); }
-
 void draw_grid(Canvas& canvas, const FigureLayout& at) {
   std::vector<Line> lines;
-  for (const double x : ticks_x(at).at) {
+  for (const double x : at.x.at) {
     const double px = crisp(at.plot.x_min + (x - at.shown.x_min) * at.scale);
     lines.push_back({{px, at.plot.y_min + 0.0}, {px, at.plot.y_max + 0.0}});
   }
-  for (const double y : ticks_y(at).at) {
+  for (const double y : at.y.at) {
     const double py = crisp(at.plot.y_max - (y - at.shown.y_min) * at.scale);
     lines.push_back({{at.plot.x_min + 0.0, py}, {at.plot.x_max + 0.0, py}});
   }
@@ -30,32 +27,30 @@ void draw_grid(Canvas& canvas, const FigureLayout& at) {
 }
 
 void draw_ticks(Canvas& canvas, const FigureLayout& at) {
-  const Ticks xs = ticks_x(at);
-  for (const double x : xs.at) {
+  for (const double x : at.x.at) {
     const double px = crisp(at.plot.x_min + (x - at.shown.x_min) * at.scale);
     canvas.line({px, at.plot.y_max + 1.0}, {px, at.plot.y_max + 6.0}, theme::kHairline, theme::kFrame);
-    draw_label_across(canvas, {px, at.plot.y_max + 11.0}, tick_text(x, xs));
+    draw_label_across(canvas, {px, at.plot.y_max + 11.0}, tick_text(x, at.x));
   }
   TextStyle style = small_text();
   style.across = Anchor::end;
-  const Ticks ys = ticks_y(at);
-  for (const double y : ys.at) {
+  for (const double y : at.y.at) {
     const double py = crisp(at.plot.y_max - (y - at.shown.y_min) * at.scale);
     canvas.line({at.plot.x_min - 6.0, py}, {at.plot.x_min - 1.0, py}, theme::kHairline, theme::kFrame);
-    canvas.text({at.plot.x_min - 11.0, py}, tick_text(y, ys.decimals), style);
+    canvas.text({at.plot.x_min - 11.0, py}, tick_text(y, at.y), style);
   }
 }
 
 /// @param room [px] right end of the free part of the row of the x axis' name
 void draw_axis_names(Canvas& canvas, const FigureLayout& at, double edge, double room) {
-  const std::string x_name = "x [m]";
+  const std::string x_name = axis_name("x [m]", at.x);
   TextStyle style = small_text();
   style.across = Anchor::middle;
   const double half = 0.5 * text_size(x_name, style).x;
   const double middle = std::min(0.5 * (at.plot.x_min + at.plot.x_max), room - half);
   canvas.text({std::max(middle, at.plot.x_min + half), at.plot.y_max + 52.0}, x_name, style);
   style.upwards = true;
-  canvas.text({edge + 12.0, 0.5 * (at.plot.y_min + at.plot.y_max)}, "y [m]", style);
+  canvas.text({edge + 12.0, 0.5 * (at.plot.y_min + at.plot.y_max)}, axis_name("y [m]", at.y), style);
 }
 
 /// @return [px] left end of the bar with its text

@@ -15,6 +15,7 @@
 #include "viz/heading.h"
 #include "viz/legend.h"
 #include "viz/theme.h"
+#include "viz/ticks.h"
 #include "world/world.h"
 
 namespace sf::viz {
@@ -38,6 +39,7 @@ struct FigureLayout {
   world::Extent shown;         ///< [m] area of the plot; contains the requested extent
   double scale = 1.0;          ///< [px/m] the same along x and y
   double tick_spacing = 90.0;  ///< at least; wide enough for the widest label along x
+  Ticks x, y;                  ///< of equal spacing, but for a side with room for less than two
   std::vector<LegendPlace> legend;
   double legend_top = 0.0;
   Heading heading;

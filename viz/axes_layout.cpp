@@ -30,9 +30,14 @@ world::Extent padded(const FigureOptions& options) {
   return e;
 }
 
-/// [px] of the labels of one axis.
-double widest_label(double from, double to, double smallest_step) {
-  return widest_label(make_ticks(from, to, smallest_step));
+/// Ticks of the layout's spacing, or closer ones.
+Ticks ticks_x(const FigureLayout& at) {
+  const Ticks ticks = make_ticks(at.shown.x_min, at.shown.x_max, at.tick_spacing / at.scale);
+  return ticks.at.size() > 1 ? ticks : ticks_across(at.shown.x_min, at.shown.x_max, at.plot.x_max - at.plot.x_min);
+}
+Ticks ticks_y(const FigureLayout& at) {
+  const Ticks ticks = make_ticks(at.shown.y_min, at.shown.y_max, at.tick_spacing / at.scale);
+  return ticks.at.size() > 1 ? ticks : ticks_up(at.shown.y_min, at.shown.y_max, at.plot.y_max - at.plot.y_min);
 }
 
 /// Grows one side of `shown` about its middle so that it fills `plot` at `scale`.
@@ -105,19 +110,19 @@ FigureLayout lay_out(const FigureOptions& options) {
     // The scale bar is in the row of the axis' name, so the legend has the whole width.
     layout.legend = place_legend(options.legend, layout.plot.x_max - legend_left(page, layout.plot.x_min));
     const int rows = layout.legend.empty() ? 0 : layout.legend.back().row + 1;
-    const double x_label = widest_label(layout.shown.x_min, layout.shown.x_max, layout.tick_spacing / layout.scale);
-    layout.tick_spacing = std::max(layout.tick_spacing, x_label + 20.0);
-    left = edge + kAxisName + widest_label(layout.shown.y_min, layout.shown.y_max, layout.tick_spacing / layout.scale) +
-           14.0;
+    layout.tick_spacing = std::max(layout.tick_spacing, widest_label(ticks_x(layout)) + 20.0);
+    left = edge + kAxisName + widest_label(ticks_y(layout)) + 14.0;
     footer = kTicksBelow + rows * kLegendRow + edge;
     heading_width = layout.plot.x_max + edge - left - edge;
   }
   // Two labels along x at least, where they have room.
-  const auto ticks_x = [&] {
+  const auto equal = [&] {
     return make_ticks(layout.shown.x_min, layout.shown.x_max, layout.tick_spacing / layout.scale);
   };
-  const double least = widest_label(ticks_x()) + 14.0;
-  while (ticks_x().at.size() < 2 && 0.8 * layout.tick_spacing > least) layout.tick_spacing *= 0.8;
+  const double least = widest_label(equal()) + 14.0;
+  while (equal().at.size() < 2 && 0.8 * layout.tick_spacing > least) layout.tick_spacing *= 0.8;
+  layout.x = ticks_x(layout);
+  layout.y = ticks_y(layout);
   layout.legend_top = layout.plot.y_max + kTicksBelow + 8.0;
   layout.width = static_cast<int>(std::ceil(layout.plot.x_max + edge));
   layout.height = static_cast<int>(std::ceil(layout.plot.y_max + footer));

@@ -50,7 +50,7 @@ void draw_axes(Canvas& canvas, const Plot& plot, const std::string& x_name, cons
     canvas.line({px, b.y_max + 1.0}, {px, b.y_max + 6.0}, theme::kHairline, theme::kFrame);
     draw_label_across(canvas, {px, b.y_max + 11.0}, tick_text(x, xs));
   }
-  canvas.text({0.5 * (b.x_min + b.x_max), b.y_max + 40.0}, axis_name(x_name, xs.exponent), style);
+  canvas.text({0.5 * (b.x_min + b.x_max), b.y_max + 40.0}, axis_name(x_name, xs), style);
   style.across = Anchor::end;
   style.down = Anchor::middle;
   const Ticks ys = ticks_up(plot.y0, plot.y1, b.y_max - b.y_min);
@@ -62,7 +62,7 @@ void draw_axes(Canvas& canvas, const Plot& plot, const std::string& x_name, cons
   }
   style.across = Anchor::middle;
   style.upwards = true;
-  canvas.text({edge, 0.5 * (b.y_min + b.y_max)}, axis_name(y_name, ys.exponent), style);
+  canvas.text({edge, 0.5 * (b.y_min + b.y_max)}, axis_name(y_name, ys), style);
   draw_frame(canvas, b);
 }
 
@@ -95,7 +95,7 @@ void draw_bar(Canvas& canvas, const Plot& map, double top) {
   style.across = Anchor::middle;
   style.upwards = true;
   canvas.text({bar.box.x_max + widest_label(ticks) + 28.0, 0.5 * (bar.box.y_min + bar.box.y_max)},
-              axis_name("|B| [G]", ticks.exponent), style);
+              axis_name("|B| [G]", ticks), style);
 }
 
 std::vector<world::Magnet> all_magnets(const world::World& world) {

@@ -36,11 +36,15 @@ struct Limits {
   double from = 0.0, to = 1.0;
 };
 
+/// Along an axis: where, and the text.
+using AxisLabels = std::vector<std::pair<double, std::string>>;
+
 /// What all plots of the figure share.
 struct IntervalAxes {
   Limits x, y;  ///< x of a logarithmic axis: powers of ten
   Ticks values;
-  std::vector<std::pair<double, std::string>> labels;  ///< along x
+  AxisLabels labels;  ///< along x
+  Ticks unit;         ///< of the labels along x: exponent and offset alone
   bool upright = false;
 };
 
@@ -94,19 +98,50 @@ Limits y_limits(const IntervalFigure& figure) {
   if (y.from > y.to) return {};
   const bool zero = y.from >= 0.0 && y.from <= 0.5 * y.to;  // less than half of the axis would be empty
   if (zero) y.from = 0.0;
-  const double pad = y.to > y.from ? 0.06 * (y.to - y.from) : std::max(0.05 * std::abs(y.from), 1e-12);
-  return {zero && y.to > 0.0 ? 0.0 : y.from - pad, y.to + pad};
+  const double pad = y.to > y.from ? 0.06 * (y.to - y.from) : y.to != 0.0 ? 0.05 * std::abs(y.to) : 1.0;
+  return {zero ? 0.0 : y.from - pad, y.to + pad};
 }
 
-std::string number_label(double value) {
-  const double power = value > 0.0 ? std::round(std::log10(value)) : 0.0;
-  if (std::abs(power) >= 4.0 && std::abs(value - std::pow(10.0, power)) < 1e-9 * value)
-    return power_of_ten(static_cast<int>(power));
-  return with_minus(fmt::format("{:.4g}", value));
+bool is_power_of_ten(double value) {
+  const double power = value > 0.0 ? std::pow(10.0, std::round(std::log10(value))) : 0.0;
+  return power > 0.0 && std::abs(value - power) < 1e-9 * power;
+}
+
+/// "0.35", "20000": with four significant digits or all before the point.
+std::string plain_number(double value) {
+  const double before = value == 0.0 ? 0.0 : std::floor(std::log10(std::abs(value)) + 1e-9) + 1.0;
+  return fmt::format("{:.{}g}", value, static_cast<int>(std::clamp(before, 4.0, 15.0)));
+}
+
+/// Labels of one form: powers of ten where all are and some are large or small, else plain numbers in a common unit.
+/// Empty where they have none, since their sizes differ too much.
+AxisLabels number_labels(const IntervalFigure& figure, const std::vector<double>& values, Ticks& unit) {
+  constexpr double kSmall = 1.0001e-4, kLarge = 0.9999e4;
+  double most = 0.0;
+  std::size_t decimals = 0;
+  bool extreme = false;
+  for (const double value : values) {
+    const std::string text = plain_number(value);
+    most = std::max(most, std::abs(value));
+    decimals = std::max(decimals,
+                        text.find('e') != text.npos ? 9 : text.size() - 1 - std::min(text.find('.'), text.size() - 1));
+    extreme = extreme || value < kSmall || value > kLarge;
+  }
+  const bool powers = extreme && std::all_of(values.begin(), values.end(), is_power_of_ten);
+  unit = {};
+  if (!powers) unit.exponent = label_exponent(most, static_cast<int>(decimals));
+  AxisLabels labels;
+  for (const double value : values) {
+    const std::string text = powers ? power_of_ten(static_cast<int>(std::lround(std::log10(value))))
+                                    : plain_number(value / std::pow(10.0, unit.exponent));
+    if (text.find('e') != text.npos) return {};
+    labels.emplace_back(place_of(figure, value), with_minus(text));
+  }
+  return labels;
 }
 
 /// True where labels centred at their values do not touch on `pixels`.
-bool labels_fit(const std::vector<std::pair<double, std::string>>& labels, const Limits& x, double pixels) {
+bool labels_fit(const AxisLabels& labels, const Limits& x, double pixels) {
   double last = -HUGE_VAL;
   for (const auto& [value, text] : labels) {
     const double at = (value - x.from) / (x.to - x.from) * pixels, half = 0.5 * text_size(text, small_text()).x;
@@ -116,39 +151,43 @@ bool labels_fit(const std::vector<std::pair<double, std::string>>& labels, const
   return true;
 }
 
-/// Labels of 1, 2 and 5 times powers of ten, of 1 alone, or of every second power and so on, as many as fit.
-std::vector<std::pair<double, std::string>> log_labels(const Limits& x, double pixels) {
-  std::vector<std::pair<double, std::string>> labels;
-  const std::vector<double> fine{1.0, 2.0, 5.0}, coarse{1.0};
-  for (int every = 0; every < 40; ++every) {
-    labels.clear();
-    for (int decade = static_cast<int>(std::floor(x.from)); decade <= x.to; decade += std::max(every, 1))
-      for (const double digit : every == 0 ? fine : coarse) {
-        const double at = std::log10(digit) + decade;
-        if (at >= x.from && at <= x.to) labels.emplace_back(at, number_label(digit * std::pow(10.0, decade)));
-      }
-    if (labels_fit(labels, x, pixels)) break;
+/// 1, 2 and 5 times powers of ten, 1 alone, or 1 times every second power and so on, within the axis.
+std::vector<double> log_values(const Limits& x, int every) {
+  std::vector<double> values;
+  for (int decade = static_cast<int>(std::floor(x.from)); decade <= x.to; decade += std::max(every, 1))
+    for (const double digit : every == 0 ? std::vector<double>{1.0, 2.0, 5.0} : std::vector<double>{1.0})
+      if (const double at = std::log10(digit) + decade; at >= x.from && at <= x.to)
+        values.push_back(digit * std::pow(10.0, decade));
+  return values;
+}
+
+/// Round numbers, two or more: as many as fit.
+void label_round_numbers(const IntervalFigure& figure, double pixels, IntervalAxes& axes) {
+  for (int every = 0; figure.logarithmic && every < 40; ++every) {
+    axes.labels = number_labels(figure, log_values(axes.x, every), axes.unit);
+    if (axes.labels.size() > 1 && labels_fit(axes.labels, axes.x, pixels)) return;
   }
-  return labels;
+  const auto value_of = [&](double place) { return figure.logarithmic ? std::pow(10.0, place) : place; };
+  axes.unit = ticks_across(value_of(axes.x.from), value_of(axes.x.to), pixels);
+  axes.labels.clear();
+  for (const double value : axes.unit.at)
+    axes.labels.emplace_back(place_of(figure, value), tick_text(value, axes.unit));
+  if (figure.logarithmic && !labels_fit(axes.labels, axes.x, pixels))
+    axes.labels = {axes.labels.front(), axes.labels.back()};
 }
 
 /// The swept values where their labels fit, else round numbers.
-void label_x(const IntervalFigure& figure, double pixels, IntervalAxes& axes, int& exponent) {
+void label_x(const IntervalFigure& figure, double pixels, IntervalAxes& axes) {
+  constexpr std::size_t kMostLabels = 8;
   axes.labels.clear();
   for (std::size_t i = 0; i < figure.categories.size(); ++i)
     axes.labels.emplace_back(static_cast<double>(i), figure.categories[i]);
   axes.upright = !labels_fit(axes.labels, axes.x, pixels);
   if (!figure.categories.empty()) return;
-  for (const double value : shown_values(figure))
-    axes.labels.emplace_back(place_of(figure, value), number_label(value));
   axes.upright = false;
-  if (axes.labels.size() <= 8 && labels_fit(axes.labels, axes.x, pixels)) return;
-  axes.labels.clear();
-  if (figure.logarithmic) axes.labels = log_labels(axes.x, pixels);
-  if (figure.logarithmic) return;
-  const Ticks ticks = ticks_across(axes.x.from, axes.x.to, pixels);
-  for (const double value : ticks.at) axes.labels.emplace_back(value, tick_text(value, ticks));
-  exponent = ticks.exponent;
+  axes.labels = number_labels(figure, shown_values(figure), axes.unit);
+  if (axes.labels.size() < 2 || axes.labels.size() > kMostLabels || !labels_fit(axes.labels, axes.x, pixels))
+    label_round_numbers(figure, pixels, axes);
 }
 
 double labels_height(const IntervalAxes& axes) {
@@ -189,7 +228,7 @@ bool has_titles(const IntervalFigure& figure) {
   return std::any_of(figure.plots.begin(), figure.plots.end(), [](const IntervalPlot& p) { return !p.title.empty(); });
 }
 
-IntervalLayout lay_out(const IntervalFigure& figure, const Page& page, int& x_exponent) {
+IntervalLayout lay_out(const IntervalFigure& figure, const Page& page) {
   IntervalLayout l;
   const double edge = page_edge(page);
   l.width = page_pixels(page, page.width, kIntervalWidth);
@@ -203,7 +242,7 @@ IntervalLayout lay_out(const IntervalFigure& figure, const Page& page, int& x_ex
   std::size_t rows = 1;
   for (int round = 0; round < 3; ++round) {  // labels and plots depend on each other
     l.axes.values = ticks_up(l.axes.y.from, l.axes.y.to, high);
-    l.y_name = name_lines(axis_name(figure.y_name, l.axes.values.exponent),
+    l.y_name = name_lines(axis_name(figure.y_name, l.axes.values),
                           static_cast<double>(rows) * (high + title) + kLabelsBelow + kNameHeight);
     l.left =
         edge + 26.0 + kNameLine * (static_cast<double>(l.y_name.size()) - 1.0) + widest_label(l.axes.values) + 16.0;
@@ -214,7 +253,7 @@ IntervalLayout lay_out(const IntervalFigure& figure, const Page& page, int& x_ex
     rows = (figure.plots.size() + l.columns - 1) / l.columns;
     wide = (room + kPlotGap) / static_cast<double>(l.columns) - kPlotGap;
     if (figure.plots.size() > 1) wide = std::min(wide, kWidestOfMany);
-    label_x(figure, wide, l.axes, x_exponent);
+    label_x(figure, wide, l.axes);
     l.heading = make_heading(figure.title, figure.subtitle, l.width - legend_left(page, l.left) - edge, page);
     const double fixed = l.heading.height + labels_height(l.axes) + kNameHeight + legend + edge;
     const auto part_of = [&](double millimetres) {
@@ -314,7 +353,7 @@ void draw_interval_plot(Canvas& canvas, const IntervalFigure& figure, const Inte
   draw_frame(canvas, box);
   TextStyle style = small_text();
   style.bold = true;
-  canvas.text({box.x_min - 0.5, box.y_min - 0.5 * kPlotTitle}, fitted_text(plot.title, style, box.x_max - box.x_min),
+  canvas.text({box.x_min - 0.5, box.y_min - 0.5 * kPlotTitle}, fitted_name(plot.title, style, box.x_max - box.x_min),
               style);
 }
 
@@ -349,15 +388,14 @@ bool is_geometric(std::vector<double> values) {
 
 void draw_intervals(const IntervalFigure& figure, const std::string& path, const Page& page) {
   SF_CHECK(!figure.plots.empty(), "a figure of intervals without a plot");
-  int x_exponent = 0;
-  const IntervalLayout l = lay_out(figure, page, x_exponent);
+  const IntervalLayout l = lay_out(figure, page);
   Canvas canvas(l.width, l.height, theme::kWhite);
   draw_heading(canvas, legend_left(page, l.left), l.heading);
   for (std::size_t i = 0; i < l.plots.size(); ++i) {
     draw_interval_scales(canvas, l.axes, l.plots[i], i % l.columns == 0, i + l.columns >= l.plots.size());
     draw_interval_plot(canvas, figure, l.axes, figure.plots[i], l.plots[i], page);
   }
-  draw_x_name(canvas, axis_name(figure.x_name, x_exponent), l, page_edge(page));
+  draw_x_name(canvas, axis_name(figure.x_name, l.axes.unit), l, page_edge(page));
   const double middle = 0.5 * (l.plots.front().y_min + l.plots.back().y_max);
   double longest = 0.0;
   for (const std::string& line : l.y_name) longest = std::max(longest, text_size(line, small_text()).x);

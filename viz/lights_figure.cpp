@@ -60,7 +60,7 @@ void draw_times(Canvas& canvas, const PixelBox& plot, double from, double to) {
     canvas.line({x, plot.y_min + 0.0}, {x, plot.y_max + 0.0}, theme::kHairline, theme::kGridLine);
     draw_label_across(canvas, {x, plot.y_max + 9.0}, tick_text(time, ticks));
   }
-  canvas.text({0.5 * (plot.x_min + plot.x_max), plot.y_max + 36.0}, axis_name("time [s]", ticks.exponent), style);
+  canvas.text({0.5 * (plot.x_min + plot.x_max), plot.y_max + 36.0}, axis_name("time [s]", ticks), style);
 }
 
 std::vector<LegendItem> legend_of(std::span<const LightRow> rows) {

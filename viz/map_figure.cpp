@@ -28,14 +28,15 @@ constexpr double kMapLeft = 60.0;    // with the page's edge: labels and name of
 constexpr double kMapRight = 14.0;   // with the page's edge
 constexpr double kMapLabels = 70.0;  // below the map
 constexpr double kNarrowestMap = 640.0;
+constexpr glm::dvec2 kShortestAxes{60.0, 40.0};
 
 /// The map's place in the picture.
 struct Layout {
   double scale = kPitch;  ///< [px/cell]
   bool grid = true;
-  glm::dvec2 low;  ///< [px] upper left corner of the map
-  glm::dvec2 high;
-  double width = 0.0;  ///< [px] of the picture
+  glm::dvec2 low, high;            ///< [px] upper left and lower right corner of the map
+  glm::dvec2 axes_low, axes_high;  ///< [px] the same of the axes, which are longer where a map is flat
+  double width = 0.0;              ///< [px] of the picture
   double height = 0.0;
   std::vector<LegendPlace> legend;
   Heading heading;
@@ -64,10 +65,13 @@ Layout lay_out(const maps::GridGeometry& geometry, std::span<const LegendItem> l
   const double high = std::ceil(l.scale * static_cast<double>(maps::rows(geometry))) + line;
   l.width = std::max(narrowest, l.left + wide + l.right);
   l.heading = make_heading(figure.title, subtitle, l.width - 2.0 * l.right, page);
-  l.low = {std::floor(l.left + 0.5 * (l.width - l.left - l.right - wide)), std::ceil(l.heading.height)};
-  l.high = l.low + glm::dvec2{wide, high};
+  const glm::dvec2 size{wide, high}, axes = glm::max(size, kShortestAxes);
+  l.axes_low = {std::floor(l.left + 0.5 * (l.width - l.left - l.right - axes.x)), std::ceil(l.heading.height)};
+  l.axes_high = l.axes_low + axes;
+  l.low = l.axes_low + glm::floor(0.5 * (axes - size));
+  l.high = l.low + size;
   l.legend = place_legend(legend, l.width - 2.0 * l.right);
-  l.height = l.high.y + kMapLabels + kLegendRow * (l.legend.back().row + 1) + 12.0;
+  l.height = l.axes_high.y + kMapLabels + kLegendRow * (l.legend.back().row + 1) + 12.0;
   return l;
 }
 
@@ -76,6 +80,7 @@ std::vector<LegendItem> legend_of(const maps::CellCounts& census, const MapFigur
   const std::size_t named = std::min(figure.places.size(), kNamedPlaces);
   for (std::size_t i = 0; i < named; ++i)
     items.push_back({LegendMark::robot, row_color(i + 1, named + 1), figure.places[i].name});
+  if (named < figure.places.size()) items.push_back(more_item(figure.places.size() - named));
   return items;
 }
 
@@ -107,27 +112,29 @@ void draw_axes(Canvas& canvas, const maps::GridGeometry& geometry, const Layout&
   TextStyle style = small_text();
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  const double right = geometry.left + geometry.cell * static_cast<double>(maps::columns(geometry));
-  const double bottom = geometry.top - geometry.cell * static_cast<double>(maps::rows(geometry));
   const double metre = l.scale / geometry.cell;  // [px]
-  const Ticks xs = ticks_across(geometry.left, right, metre * (right - geometry.left));
+  const double left = geometry.left - (l.low.x - l.axes_low.x) / metre,
+               top = geometry.top + (l.low.y - l.axes_low.y) / metre;
+  const double wide = l.axes_high.x - l.axes_low.x, high = l.axes_high.y - l.axes_low.y;
+  const Ticks xs = ticks_across(left, left + wide / metre, wide);
   for (const double x : xs.at) {
     const double px = std::floor(pixel(geometry, l, {x, 0.0}).x) + 0.5;
-    canvas.line({px, l.high.y + 1.0}, {px, l.high.y + 6.0}, theme::kHairline, theme::kFrame);
-    draw_label_across(canvas, {px, l.high.y + 10.0}, tick_text(x, xs));
+    canvas.line({px, l.axes_high.y + 1.0}, {px, l.axes_high.y + 6.0}, theme::kHairline, theme::kFrame);
+    draw_label_across(canvas, {px, l.axes_high.y + 10.0}, tick_text(x, xs));
   }
-  canvas.text({0.5 * (l.low.x + l.high.x), l.high.y + 36.0}, "x [m]", style);
+  canvas.text({0.5 * (l.axes_low.x + l.axes_high.x), l.axes_high.y + 36.0}, axis_name("x [m]", xs), style);
   style.across = Anchor::end;
   style.down = Anchor::middle;
-  const Ticks ys = ticks_up(bottom, geometry.top, metre * (geometry.top - bottom));
+  const Ticks ys = ticks_up(top - high / metre, top, high);
   for (const double y : ys.at) {
     const double py = std::floor(pixel(geometry, l, {0.0, y}).y) + 0.5;
-    canvas.line({l.low.x - 6.0, py}, {l.low.x - 1.0, py}, theme::kHairline, theme::kFrame);
-    canvas.text({l.low.x - 10.0, py}, tick_text(y, ys), style);
+    canvas.line({l.axes_low.x - 6.0, py}, {l.axes_low.x - 1.0, py}, theme::kHairline, theme::kFrame);
+    canvas.text({l.axes_low.x - 10.0, py}, tick_text(y, ys), style);
   }
   style.across = Anchor::middle;
   style.upwards = true;
-  canvas.text({std::max(l.low.x - 66.0, 12.0), 0.5 * (l.low.y + l.high.y)}, "y [m]", style);
+  canvas.text({std::max(l.axes_low.x - 66.0, 12.0), 0.5 * (l.axes_low.y + l.axes_high.y)}, axis_name("y [m]", ys),
+              style);
 }
 
 void draw_places(Canvas& canvas, const maps::GridGeometry& geometry, const Layout& l, const MapFigure& figure) {
@@ -162,7 +169,7 @@ void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const st
   draw_cells(canvas, grid, l, page.map_colors);
   draw_places(canvas, grid.geometry, l, figure);
   draw_axes(canvas, grid.geometry, l);
-  draw_legend(canvas, {l.right, l.high.y + kMapLabels}, legend, l.legend);
+  draw_legend(canvas, {l.right, l.axes_high.y + kMapLabels}, legend, l.legend);
   save_picture(canvas.drawing(), path, page);
 }
 

@@ -1,8 +1,9 @@
 #include "viz/scales.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "viz/heading.h"
 #include "viz/legend.h"
@@ -15,16 +16,15 @@ namespace {
 constexpr double kUsualTickAcross = 110.0;
 constexpr double kUsualTickUp = 60.0;
 constexpr double kLowestTickUp = 20.0;
-constexpr double kLabelGap = 16.0;  ///< between neighbouring labels
+constexpr double kLabelGap = 16.0;    ///< between neighbouring labels
+constexpr double kSmallestGap = 9.0;  ///< of the only two
 
 constexpr int kMostDecimals = 4;
 constexpr double kLargeNumber = 1e5;  ///< labels from here on take an exponent
 
-/// Labels of very large or very small numbers are in thousands, millionths and so on.
-Ticks with_exponent(Ticks ticks, double from, double to) {
-  const double most = std::max(std::abs(from), std::abs(to));
-  if ((most < kLargeNumber && ticks.decimals <= kMostDecimals) || !(most > 0.0)) return ticks;
-  ticks.exponent = 3 * static_cast<int>(std::floor(std::log10(most) / 3.0 + 1e-9));
+/// @param always also where labels are short without
+Ticks with_exponent(Ticks ticks, double from, double to, bool always = false) {
+  ticks.exponent = label_exponent(std::max(std::abs(from), std::abs(to)), always ? kMostDecimals + 1 : ticks.decimals);
   return ticks;
 }
 
@@ -33,18 +33,67 @@ Ticks ticks_apart(double from, double to, double pixels, double apart, bool whol
   return with_exponent(make_ticks(from, to, whole ? std::max(step, 1.0) : step), from, to);
 }
 
+/// [px] between neighbouring ticks; infinite where there are less than two.
+double spacing(const Ticks& ticks, double from, double to, double pixels) {
+  return ticks.at.size() < 2 ? HUGE_VAL : (ticks.at[1] - ticks.at[0]) / (to - from) * pixels;
+}
+
+/// Every `every`-th of the ticks: the multiples of that number where there are two, else those about the middle.
+Ticks every_nth(const Ticks& all, std::size_t every) {
+  const auto first_multiple = static_cast<std::size_t>(
+      std::fmod(static_cast<double>(every) - std::fmod(std::round(all.at[0] / all.step), static_cast<double>(every)),
+                static_cast<double>(every)));
+  const std::size_t first = first_multiple + every < all.at.size() ? first_multiple : (all.at.size() - 1) % every / 2;
+  Ticks ticks = all;
+  ticks.at.clear();
+  for (std::size_t i = first; i < all.at.size(); i += every) ticks.at.push_back(all.at[i]);
+  return ticks;
+}
+
+/// Short axes, on which multiples of no round step have room: two or more multiples of a finer one, as coarse as can
+/// be. Empty where none `fit`.
+template <class Fit>
+Ticks sparse_ticks(double from, double to, bool whole, Fit&& fit, bool exponent = false) {
+  constexpr int kSteps = 7;
+  double step = round_down(to - from);
+  const double least = std::max(whole ? 1.0 : 0.0, 1e-13 * std::max(std::abs(from), std::abs(to)));  // of doubles
+  for (int i = 0; i < kSteps && step >= least; ++i, step = round_down(0.51 * step)) {
+    const Ticks fine = with_exponent(make_ticks(from, to, step), from, to, exponent);
+    for (std::size_t every = 1; every < fine.at.size(); ++every)
+      if (const Ticks ticks = every_nth(fine, every); fit(ticks)) return ticks;
+  }
+  return {};
+}
+
+/// Labels as differences from a round number below all of them, for values that differ in their last digits only.
+template <class Fit>
+Ticks offset_ticks(double from, double to, bool whole, Fit&& fit) {
+  const double round = std::pow(10.0, std::ceil(std::log10(to - from)));
+  const double offset = round * std::floor(from / round);
+  const auto moved = [&](Ticks ticks) {
+    for (double& at : ticks.at) at += offset;
+    ticks.offset = offset;
+    return ticks;
+  };
+  const auto fit_moved = [&](const Ticks& ticks) { return fit(moved(ticks)); };
+  Ticks ticks = sparse_ticks(from - offset, to - offset, whole, fit_moved);
+  if (ticks.at.size() < 2) ticks = sparse_ticks(from - offset, to - offset, whole, fit_moved, true);
+  return moved(ticks);
+}
+
 }  // namespace
 
 Ticks ticks_across(double from, double to, double pixels, bool whole) {
   double apart = std::min(kUsualTickAcross, pixels / 3.0);
   Ticks ticks = ticks_apart(from, to, pixels, apart, whole);
-  const auto touch = [&] { return ticks.step / (to - from) * pixels < widest_label(ticks) + kLabelGap; };
-  while (ticks.at.size() > 1 && touch()) ticks = ticks_apart(from, to, pixels, apart *= 1.3, whole);
-  for (double closer = apart; ticks.at.size() < 2 && closer > kLowestTickUp;) {
-    const Ticks sparse = std::exchange(ticks, ticks_apart(from, to, pixels, closer *= 0.8, whole));
-    if (ticks.at.size() < 2 || !touch()) continue;
-    return sparse;
-  }
+  const auto fits = [&](double gap) {
+    return [=](const Ticks& t) { return spacing(t, from, to, pixels) >= widest_label(t) + gap; };
+  };
+  while (ticks.at.size() > 1 && !fits(kLabelGap)(ticks)) ticks = ticks_apart(from, to, pixels, apart *= 1.3, whole);
+  if (ticks.at.size() < 2) ticks = sparse_ticks(from, to, whole, fits(kLabelGap));
+  if (ticks.at.size() < 2) ticks = sparse_ticks(from, to, whole, fits(kSmallestGap));
+  if (ticks.at.size() < 2) ticks = sparse_ticks(from, to, whole, fits(kSmallestGap), true);
+  if (ticks.at.size() < 2) ticks = offset_ticks(from, to, whole, fits(kSmallestGap));
   return ticks;
 }
 
@@ -55,7 +104,8 @@ Ticks ticks_up(double from, double to, double pixels, bool whole) {
     apart = std::max(0.8 * apart, kLowestTickUp);
     ticks = ticks_apart(from, to, pixels, apart, whole);
   }
-  return ticks;
+  if (ticks.at.size() > 1) return ticks;
+  return sparse_ticks(from, to, whole, [&](const Ticks& t) { return spacing(t, from, to, pixels) >= kLowestTickUp; });
 }
 
 double widest_label(const Ticks& ticks) {
@@ -64,11 +114,24 @@ double widest_label(const Ticks& ticks) {
   return widest;
 }
 
+/// Labels of very large or very small numbers are in thousands, millionths and so on.
+int label_exponent(double most, int decimals) {
+  if ((most < kLargeNumber && decimals <= kMostDecimals) || !(most > 0.0)) return 0;
+  return 3 * static_cast<int>(std::floor(std::log10(most) / 3.0 + 1e-9));
+}
+
 std::string axis_name(const std::string& name, int exponent) {
   if (exponent == 0) return name;
   const std::size_t unit = name.rfind('[');
   if (unit == std::string::npos) return name + " [" + power_of_ten(exponent) + "]";
   return name.substr(0, unit + 1) + power_of_ten(exponent) + " " + name.substr(unit + 1);
+}
+
+std::string axis_name(const std::string& name, const Ticks& ticks) {
+  if (ticks.offset == 0.0) return axis_name(name, ticks.exponent);
+  const std::size_t unit = std::min(name.rfind(" ["), name.size());
+  const std::string offset = fmt::format(" {} {:.15g}", ticks.offset > 0.0 ? "\u2212" : "+", std::abs(ticks.offset));
+  return axis_name(name.substr(0, unit) + offset + name.substr(unit), ticks.exponent);
 }
 
 std::vector<std::string> name_lines(const std::string& name, double height) {

@@ -10,18 +10,23 @@
 
 namespace sf::viz {
 
-/// Ticks for an axis of `pixels` [px] along x: labels side by side never touch, however narrow the plot.
+/// Ticks for an axis of `pixels` [px] along x: two or more, whose labels never touch, from 40 px on.
 /// @param from, to ends of the axis, from < to
-/// @param whole the values are integers, and so are the ticks
+/// @param whole the values are integers, and so are the ticks: two where [from, to] has two integers
 Ticks ticks_across(double from, double to, double pixels, bool whole = false);
-/// The same along y: labels one above another.
+/// The same along y: labels one above another, from 40 px on.
 Ticks ticks_up(double from, double to, double pixels, bool whole = false);
 
 /// [px] width of the widest label.
 double widest_label(const Ticks& ticks);
 
+/// Exponent of labels up to `most` > 0 whose multiples have that many `decimals`: 0 unless they would be long.
+int label_exponent(double most, int decimals);
+
 /// "distance [m]" as "distance [10⁻⁶ m]", the unit of labels with that exponent.
 std::string axis_name(const std::string& name, int exponent);
+/// The same with the offset of the labels: "time \u2212 1000 [s]".
+std::string axis_name(const std::string& name, const Ticks& ticks);
 
 inline constexpr double kNameLine = 22.0;  ///< [px] between the lines of an axis' name along y
 

@@ -45,7 +45,8 @@ std::string tick_text(double value, int decimals) {
 
 std::string tick_text(double value, const Ticks& ticks) {
   const double unit = std::pow(10.0, ticks.exponent);
-  return tick_text(value / unit, ticks.exponent == 0 ? ticks.decimals : decimals_of(ticks.step / unit));
+  return tick_text((value - ticks.offset) / unit,
+                   ticks.exponent == 0 ? ticks.decimals : decimals_of(ticks.step / unit));
 }
 
 std::string power_of_ten(int exponent) {
@@ -54,6 +55,14 @@ std::string power_of_ten(int exponent) {
   std::string text = exponent < 0 ? "10⁻" : "10";
   for (const char digit : std::to_string(std::abs(exponent))) text += kDigits[digit - '0'];
   return text;
+}
+
+std::string number_text(double value, int digits) {
+  const std::string text = fmt::format("{:.{}g}", value, digits);
+  const std::size_t e = text.find('e');
+  if (e == std::string::npos) return with_minus(text);
+  const std::string power = power_of_ten(std::atoi(text.c_str() + e + 1)), factor = with_minus(text.substr(0, e));
+  return factor == "1" ? power : factor + "×" + power;
 }
 
 }  // namespace sf::viz

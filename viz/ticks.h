@@ -11,7 +11,9 @@ struct Ticks {
   double step = 1.0;  ///< 1, 2 or 5 times a power of ten, in the axis' unit
   int decimals = 0;   ///< digits after the point, enough to distinguish the ticks
   std::vector<double> at;
-  int exponent = 0;  ///< labels are numbers of 10^exponent, a multiple of 3; stated with the axis' name (viz/scales.h)
+  // Stated with the axis' name (viz/scales.h): labels are (value - offset) / 10^exponent.
+  int exponent = 0;     ///< a multiple of 3
+  double offset = 0.0;  ///< 0 but where labels of the values themselves would be too wide
 };
 
 /// The largest 1, 2 or 5 times a power of ten that is at most `value` > 0.
@@ -29,5 +31,8 @@ std::string with_minus(const std::string& text);
 
 /// "10⁻⁶"; "1" for 0.
 std::string power_of_ten(int exponent);
+
+/// A number in a sentence, with `digits` significant digits: "0.5", "\u22122×10⁻⁶", "10⁻⁶".
+std::string number_text(double value, int digits = 6);
 
 }  // namespace sf::viz

@@ -23,8 +23,9 @@ constexpr int kTradeoffRight = 14;       ///< with the page's edge
 constexpr double kErrorNameLine = 24.0;  ///< of an axis' name of several lines
 constexpr int kPlot = 400;
 constexpr int kLowestPanel = 120;
-constexpr int kBetween = 150;       ///< title of a panel, and labels below its plot
-constexpr double kNothing = 120.0;  ///< column of errors that are 0, at most a quarter of the plot
+constexpr int kBetween = 150;            ///< title of a panel, and labels below its plot
+constexpr double kNothing = 120.0;       ///< column of errors that are 0, at most a quarter of the plot,
+constexpr double kLeastNothing = 104.0;  ///< but wide enough for its label and that of the next power of ten
 
 /// Errors below this are rounding errors and count as 0.
 constexpr double kLeast = 1e-12;
@@ -53,7 +54,7 @@ struct PlotArea {
   double edge = 0.0;     ///< [px] of the page
   double fastest = 1.0;  ///< [1/s] upper end; the lower one is 0
 
-  double nothing() const { return std::min(kNothing, 0.25 * (plot.x_max - plot.x_min)); }
+  double nothing() const { return std::clamp(0.25 * (plot.x_max - plot.x_min), kLeastNothing, kNothing); }
   double x(double error_value) const {
     if (!(error_value >= kLeast)) return plot.x_min + 0.5 * nothing();
     if (std::isinf(error_value)) return plot.x_max;
@@ -70,6 +71,17 @@ std::string rate_text(double rate) {
   return fmt::format("{:g}", std::abs(rate));  // no -0
 }
 
+/// Powers of ten from one label to the next: two labels at least, at most twelve.
+int decades_apart(const PlotArea& at) {
+  constexpr double kUsual = 100.0, kGap = 6.0;  // [px]
+  const int all = at.error.to - at.error.from;
+  const double room = at.plot.x_max - at.plot.x_min - at.nothing();
+  const double widest = std::max(text_size(power_of_ten(at.error.from), small_text()).x,
+                                 text_size(power_of_ten(at.error.to), small_text()).x);
+  const int apart = static_cast<int>(std::ceil((room >= kUsual ? kUsual : widest + kGap) / room * all));
+  return std::clamp(std::max(apart, (all + 11) / 12), 1, std::max(1, all));
+}
+
 void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) {
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
@@ -82,16 +94,11 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   }
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  const int most = std::clamp((p.x_max - p.x_min) / 100, 2, 12);  // labels
-  const int step = std::max(1, (at.error.to - at.error.from + most - 1) / most);
-  double labelled = at.x(0.0) + 0.5 * text_size("none", style).x;  // [px] right end of the last label
+  const int step = decades_apart(at);
   for (int decade = at.error.from; decade <= at.error.to; decade += step) {
     const double x = std::floor(at.x(std::pow(10.0, decade))) + 0.5;
     canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, theme::kHairline, theme::kGridLine);
-    const double half = 0.5 * text_size(power_of_ten(decade), style).x;
-    if (x - half < labelled + 6.0) continue;
     draw_label_across(canvas, {x, p.y_max + 11.0}, power_of_ten(decade));
-    labelled = x + half;
   }
   canvas.text({at.x(0.0), p.y_max + 11.0}, "none", style);
   canvas.line({p.x_min + at.nothing(), p.y_min + 0.0}, {p.x_min + at.nothing(), p.y_max + 0.0}, theme::kHairline,

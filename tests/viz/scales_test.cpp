@@ -24,6 +24,50 @@ TEST(Scales, LabelsAlongXNeverTouch) {
     }
 }
 
+/// From the shortest axes of figures on, along both, for numbers of all sizes and of all places in their decade.
+TEST(Scales, EveryAxisHasTwoLabelsThatDoNotTouch) {
+  for (const double pixels : {60.0, 72.0, 100.0, 134.0, 250.0, 700.0})
+    for (const double size : {1e-12, 1e-6, 1e-3, 0.3, 0.7, 1.0, 1.9, 4.7, 20.0, 97.0, 1e4, 3e5, 1e9})
+      for (const double begin : {0.0, -0.5, 0.03, 0.11, -0.97, 3.3, -41.7, 1000.3}) {
+        const double from = begin * size, to = from + size;
+        const Ticks across = ticks_across(from, to, pixels), up = ticks_up(from, to, pixels);
+        const auto what = [&] { return testing::Message() << from << " to " << to << " on " << pixels; };
+        ASSERT_GE(across.at.size(), 2u) << what();
+        ASSERT_GE(up.at.size(), 2u) << what();
+        for (const Ticks& ticks : {across, up}) {
+          EXPECT_GE(ticks.at.front(), from - 1e-9 * size) << what();
+          EXPECT_LE(ticks.at.back(), to + 1e-9 * size) << what();
+          EXPECT_NE(tick_text(ticks.at[0], ticks), tick_text(ticks.at[1], ticks)) << what();
+        }
+        EXPECT_GE((across.at[1] - across.at[0]) / size * pixels, widest_label(across) + 9.0) << what();
+        EXPECT_GE((up.at[1] - up.at[0]) / size * pixels, 19.99) << what();
+      }
+}
+
+TEST(Scales, IntegersOfShortAxesHaveTwoLabels) {
+  for (const auto& [from, to] : {std::pair{-0.1, 1.1}, {254.9, 256.1}, {3.4, 17.6}, {-1.0, 1.0}, {0.0, 1.0}})
+    for (const Ticks& ticks : {ticks_up(from, to, 60.0, true), ticks_across(from, to, 110.0, true)}) {
+      EXPECT_GE(ticks.at.size(), 2u) << from << " to " << to;
+      for (const double at : ticks.at) EXPECT_EQ(at, std::round(at)) << from << " to " << to;
+    }
+}
+
+TEST(Scales, LongLabelsOfShortAxesHaveAnOffset) {
+  const Ticks ticks = ticks_across(1.7e9 + 0.25, 1.7e9 + 0.75, 100.0);
+  ASSERT_GE(ticks.at.size(), 2u);
+  EXPECT_EQ(ticks.offset, 1.7e9);
+  EXPECT_EQ(axis_name("time [s]", ticks), "time \u2212 1700000000 [s]");
+  EXPECT_EQ(tick_text(ticks.at[0], ticks).substr(0, 2), "0.");
+  EXPECT_EQ(ticks_across(0.0, 20.0, 61.0).offset, 0.0) << "only where there is need";
+}
+
+TEST(Scales, NumbersInSentencesHavePowersOfTen) {
+  EXPECT_EQ(number_text(0.5), "0.5");
+  EXPECT_EQ(number_text(1e-6), "10⁻⁶");
+  EXPECT_EQ(number_text(-2e-6), "\u22122×10⁻⁶");
+  EXPECT_EQ(number_text(1.5e7), "1.5×10⁷");
+}
+
 TEST(Scales, IntegersHaveIntegerTicks) {
   for (const auto& [from, to] : {std::pair{-0.1, 1.1}, {0.0, 3.0}, {2.5, 3.5}, {0.0, 1023.0}}) {
     for (const Ticks& ticks : {ticks_up(from, to, 600.0, true), ticks_across(from, to, 600.0, true)})
