@@ -111,26 +111,33 @@ struct Painter {
   void operator()(const CellImage& cells) const;
 };
 
-/// Cells larger than a pixel keep their edges; smaller ones are averaged.
+/// Cells larger than a pixel keep their edges; smaller ones are averaged. Those that are smaller along one side alone
+/// are repeated along the other, since filters have no direction.
 void Painter::operator()(const CellImage& cells) const {
-  const Surface image(cairo_image_surface_create(CAIRO_FORMAT_RGB24, cells.columns, cells.rows),
+  glm::dvec2 cell{(cells.to.x - cells.from.x) / cells.columns, (cells.to.y - cells.from.y) / cells.rows};
+  const bool large = scale * std::min(cell.x, cell.y) >= 1.0 || scale == 0.0;
+  const auto repeats = [&](double size) {
+    return large ? std::size_t{1} : static_cast<std::size_t>(std::max(1.0, scale * size));
+  };
+  const std::size_t wide = repeats(cell.x), high = repeats(cell.y), row = static_cast<std::size_t>(cells.columns);
+  const std::size_t columns = wide * row, rows = high * static_cast<std::size_t>(cells.rows);
+  cell = {cell.x / static_cast<double>(wide), cell.y / static_cast<double>(high)};
+  const Surface image(cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(columns), static_cast<int>(rows)),
                       &cairo_surface_destroy);
   if (cairo_surface_status(image.get()) != CAIRO_STATUS_SUCCESS) return;
-  const auto columns = static_cast<std::size_t>(cells.columns);
   const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(image.get()));
-  for (std::size_t j = 0; j < static_cast<std::size_t>(cells.rows); ++j)
-    std::copy_n(&cells.colors[j * columns], columns,
-                reinterpret_cast<std::uint32_t*>(cairo_image_surface_get_data(image.get()) + j * stride));
+  for (std::size_t j = 0; j < rows; ++j) {
+    auto* to_row = reinterpret_cast<std::uint32_t*>(cairo_image_surface_get_data(image.get()) + j * stride);
+    for (std::size_t i = 0; i < columns; ++i) to_row[i] = cells.colors[j / high * row + i / wide];
+  }
   cairo_surface_mark_dirty(image.get());
-  const glm::dvec2 cell{(cells.to.x - cells.from.x) / cells.columns, (cells.to.y - cells.from.y) / cells.rows};
-  const bool large = scale * std::min(cell.x, cell.y) >= 1.0 || scale == 0.0;
   cairo_save(to);
   cairo_translate(to, cells.from.x, cells.from.y);
   cairo_scale(to, cell.x, cell.y);
   cairo_set_source_surface(to, image.get(), 0.0, 0.0);
   cairo_pattern_set_filter(cairo_get_source(to), large ? CAIRO_FILTER_NEAREST : CAIRO_FILTER_GOOD);
   cairo_pattern_set_extend(cairo_get_source(to), CAIRO_EXTEND_PAD);
-  cairo_rectangle(to, 0.0, 0.0, cells.columns, cells.rows);
+  cairo_rectangle(to, 0.0, 0.0, static_cast<double>(columns), static_cast<double>(rows));
   cairo_fill(to);
   cairo_restore(to);
 }

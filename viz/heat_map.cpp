@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "viz/color.h"
+#include "viz/heading.h"
 #include "viz/scales.h"
 #include "viz/theme.h"
 
@@ -33,8 +34,9 @@ HeatSpan span_of(const HeatMap& map) {
   for (const auto& reading : map.readings)
     for (const double value : reading)
       if (std::isfinite(value) && value < map.limit) least = std::min(least, value), most = std::max(most, value);
-  if (least > most) return {};
-  const double pad = most > least ? 0.0 : map.whole ? 1.0 : std::max(0.05 * std::abs(most), 1e-12);
+  if (least > most) return {0.0, std::isfinite(map.limit) && map.limit > 0.0 ? map.limit : 1.0};
+  if (least == 0.0 && most == 0.0) return {};
+  const double pad = most > least ? 0.0 : map.whole ? 1.0 : 0.05 * std::abs(most);
   return {least - pad, most + pad};
 }
 
@@ -115,8 +117,9 @@ void draw_bar(Canvas& canvas, const HeatMap& map, const PixelBox& plot, const He
   TextStyle style = small_text();
   style.across = Anchor::middle;
   style.upwards = true;
-  canvas.text({bar.x_max + widest_label(ticks) + 28.0, 0.5 * (bar.y_min + bar.y_max)},
-              axis_name(map.value_name, ticks.exponent), style);
+  const std::string name = fitted_text(axis_name(map.value_name, ticks), small_text(), bar.y_max - bar.y_min + 24.0);
+  const double middle = std::max(0.5 * (bar.y_min + bar.y_max), bar.y_min + 0.5 * text_size(name, small_text()).x);
+  canvas.text({bar.x_max + widest_label(ticks) + 28.0, middle}, name, style);
 }
 
 template <class Is>
@@ -132,6 +135,12 @@ bool has_gaps(const HeatMap& map, double from, double to) {
 }
 
 }  // namespace
+
+double rows_room(const HeatMap& map) {
+  double widest = 0.0;
+  for (const std::string& row : map.rows) widest = std::max(widest, text_size(row, small_text()).x);
+  return widest;
+}
 
 double bar_room(const HeatMap& map, double height) {
   return kBarGap + kBarWidth + widest_label(bar_ticks(map, span_of(map), height)) + 40.0;

@@ -14,6 +14,9 @@ namespace sf::viz {
 struct HeatMap {
   std::string value_name;                     ///< with its unit, beside the bar of colours: `range [m]`
   std::vector<std::string> rows;              ///< label of each element, the upper row first
+  std::vector<std::size_t> elements = {};     ///< number of each row's element, for tables; may be empty
+  std::vector<std::string> short_rows = {};   ///< the same for narrow pictures; empty: `rows`
+  std::string short_name = {};                ///< of the rows' axis where these are used
   std::vector<double> times;                  ///< [s] of each reading, in order
   std::vector<std::vector<double>> readings;  ///< by reading and row. NaN: no value; -infinity: too near
   double limit = HUGE_VAL;                    ///< values from here on are those of no return
@@ -21,6 +24,9 @@ struct HeatMap {
   double longest_hold = 0.0;                  ///< [s] a reading lasts until the next one, at most as long as this
   bool whole = false;                         ///< values are integers
 };
+
+/// [px] of the widest label of a row.
+double rows_room(const HeatMap& map);
 
 /// [px] room for the bar of colours right of the plot, with its labels.
 double bar_room(const HeatMap& map, double height);

@@ -22,6 +22,8 @@ constexpr double kPanelTitle = 34.0;      ///< above each plot
 constexpr double kSeriesTicks = 68.0;     ///< labels and the axis' name, below the last plot
 constexpr double kSeriesAxisName = 34.0;  ///< left of the labels
 constexpr double kLowestPlot = 70.0;
+constexpr double kNameBelow = 24.0;   ///< of an axis' name below its plot, at most
+constexpr double kTitleLifted = 4.0;  ///< above labels of its axis
 constexpr double kLoneDot = 2.2;
 constexpr double kSmallestMove = 0.3;  ///< shorter steps of a curve are left out
 
@@ -79,7 +81,7 @@ Span value_span(const Panel& panel, bool from_zero) {
   if (from_zero) span = with_zero(*span);
   const double size = span->to - span->from;
   if (panel.whole && size == 0.0) return {span->from - 0.1, span->from + 1.1};  // two integers
-  const double pad = size > 0.0 ? 0.06 * size : std::max(0.05 * std::abs(span->from), 1e-12);
+  const double pad = size > 0.0 ? 0.06 * size : span->from != 0.0 ? 0.05 * std::abs(span->from) : 1.0;
   if ((from_zero || panel.from_zero) && span->from == 0.0) return {0.0, span->to + pad};
   return {span->from - pad, span->to + pad};
 }
@@ -88,14 +90,14 @@ bool has_value(const Series& series) {
   return std::any_of(series.values.begin(), series.values.end(), [](double v) { return std::isfinite(v); });
 }
 
-/// Rows of the named series: all, or seven from the first to the last.
+/// Rows of the named series: all of up to eight, or seven from the first to the last.
 std::vector<std::size_t> named_rows(const Panel& panel) {
   std::vector<std::size_t> drawn, rows;
   for (std::size_t row = 0; row < panel.series.size(); ++row)
     if (has_value(panel.series[row])) drawn.push_back(row);
   const std::size_t count = drawn.size();
-  for (std::size_t k = 0; k < std::min(count, kNamed); ++k)
-    rows.push_back(drawn[count <= kNamed ? k : k * (count - 1) / (kNamed - 1)]);
+  if (count <= kNamed + 1) return drawn;  // the place of "and 1 more"
+  for (std::size_t k = 0; k < kNamed; ++k) rows.push_back(drawn[k * (count - 1) / (kNamed - 1)]);
   return rows;
 }
 
@@ -109,9 +111,12 @@ std::span<const double> style_of(std::size_t row, const Page& page) {
 std::vector<LegendItem> legend_of(const Panel& panel, const Span& time, const Page& page) {
   if (panel.map) return heat_legend(*panel.map, time.from, time.to);
   std::vector<LegendItem> items;
-  for (const std::size_t row : named_rows(panel))
+  const std::vector<std::size_t> named = named_rows(panel);
+  for (const std::size_t row : named)
     items.push_back({LegendMark::line, row_color(row, panel.series.size()), panel.series[row].name, theme::kNone,
                      style_of(row, page)});
+  const auto drawn = static_cast<std::size_t>(std::count_if(panel.series.begin(), panel.series.end(), has_value));
+  if (named.size() < drawn) items.push_back(more_item(drawn - named.size()));
   return items;
 }
 
@@ -131,8 +136,8 @@ struct SeriesLayout {
 
 /// The lines of a panel's name of its axis. The gap below a plot is room for it, too.
 std::vector<std::string> y_lines(const Panel& panel, const Span& shown, double height) {
-  const int exponent = panel.map ? 0 : ticks_up(shown.from, shown.to, height, panel.whole).exponent;
-  return name_lines(axis_name(panel.y_name, exponent), height + 24.0);
+  if (panel.map) return name_lines(panel.y_name, height + kNameBelow);
+  return name_lines(axis_name(panel.y_name, ticks_up(shown.from, shown.to, height, panel.whole)), height + kNameBelow);
 }
 
 /// [px] left end of the plots, right of the widest label.
@@ -142,9 +147,8 @@ double plots_left(const SeriesOptions& options, double height, double edge) {
   for (const Panel& panel : options.panels) {
     const Span span = value_span(panel, options.from_zero);
     lines = std::max(lines, y_lines(panel, span, height).size());
-    if (!panel.map) widest = std::max(widest, widest_label(ticks_up(span.from, span.to, height, panel.whole)));
-    for (const std::string& row : panel.map ? panel.map->rows : std::vector<std::string>())
-      widest = std::max(widest, text_size(row, small_text()).x);
+    widest = std::max(
+        widest, panel.map ? rows_room(*panel.map) : widest_label(ticks_up(span.from, span.to, height, panel.whole)));
   }
   return widest + edge + kSeriesAxisName + kNameLine * (static_cast<double>(lines) - 1.0) + 14.0;
 }
@@ -205,6 +209,19 @@ void place_panels(SeriesLayout& layout, const SeriesOptions& options, const Page
   }
 }
 
+/// Heat maps have short labels of their rows where the long ones would take half of the picture.
+SeriesOptions with_fitting_rows(SeriesOptions options, const Page& page) {
+  const double edge = page_edge(page), width = page_pixels(page, page.width, options.width);
+  const double height = plot_height(options.panels.size());
+  if (width - plots_left(options, height, edge) - plots_right(options, height, edge) > 0.5 * width) return options;
+  for (Panel& panel : options.panels) {
+    if (!panel.map || panel.map->short_rows.empty()) continue;
+    panel.map->rows = panel.map->short_rows;
+    panel.y_name = panel.map->short_name;
+  }
+  return options;
+}
+
 SeriesLayout lay_out(const SeriesOptions& options, const Page& page) {
   const double edge = page_edge(page);
   SeriesLayout layout;
@@ -251,8 +268,7 @@ void draw_times(Canvas& canvas, const SeriesPlot& at, const std::string& x_name,
       canvas.line({x, p.y_max + 1.0}, {x, p.y_max + 6.0}, theme::kHairline, theme::kFrame);
     if (!x_name.empty()) draw_label_across(canvas, {x, p.y_max + 11.0}, tick_text(time, times));
   }
-  if (!x_name.empty())
-    canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, axis_name(x_name, times.exponent), style);
+  if (!x_name.empty()) canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, axis_name(x_name, times), style);
 }
 
 /// @param steps each value lasts until the next one
@@ -295,17 +311,22 @@ void draw_panel(Canvas& canvas, const Panel& panel, const SeriesPlot& at, const 
   draw_frame(canvas, at.plot);
   TextStyle style = small_text();
   style.bold = true;
-  const double room = canvas.width() - page_edge(page) - at.plot.x_min;
-  const double left = text_size(panel.title, style).x <= room ? at.plot.x_min - 0.5 : page_edge(page);
-  canvas.text({left, at.plot.y_min - 0.5 - 0.5 * kPanelTitle},
-              fitted_text(panel.title, style, canvas.width() - page_edge(page) - left), style);
-  draw_name_up(canvas, page_edge(page), 0.5 * (at.plot.y_min + at.plot.y_max), at.y_name);
+  const double edge = page_edge(page), room = canvas.width() - edge - at.plot.x_min;
+  const bool above_labels = text_size(panel.title, style).x > room;
+  const double left = above_labels ? edge : at.plot.x_min - 0.5;
+  canvas.text({left, at.plot.y_min - 0.5 - 0.5 * kPanelTitle - (above_labels ? kTitleLifted : 0.0)},
+              fitted_name(panel.title, style, canvas.width() - edge - left), style);
+  double longest = 0.0;
+  for (const std::string& line : at.y_name) longest = std::max(longest, text_size(line, small_text()).x);
+  const double middle = 0.5 * (at.plot.y_min + at.plot.y_max);
+  draw_name_up(canvas, edge, above_labels ? std::max(middle, at.plot.y_min + 0.5 * longest) : middle, at.y_name);
   draw_legend(canvas, {legend_left(page, at.plot.x_min), at.legend_top}, at.legend, at.legend_at);
 }
 
 }  // namespace
 
-void draw_series(const SeriesOptions& options, const std::string& path, const Page& page) {
+void draw_series(const SeriesOptions& wanted, const std::string& path, const Page& page) {
+  const SeriesOptions options = with_fitting_rows(wanted, page);
   SF_CHECK(!options.panels.empty() && options.panels.size() <= 16, std::to_string(options.panels.size()) + " panels");
   SF_CHECK(options.width >= 600 && options.width <= 8000, "width " + std::to_string(options.width) + " px");
   for (const Panel& panel : options.panels)

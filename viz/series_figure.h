@@ -37,9 +37,9 @@ struct SeriesOptions {
   int width = 1600;        ///< [px] of the picture, in [600, 8000]
 };
 
-/// Draws each series in the colour and the dashes of its row. Up to seven are named below their panel; of more, seven
-/// from the first to the last; those without a value are not. Neighbouring panels with the same names have one legend,
-/// below the last of them. Plots are lower where the page is narrow, or has a height.
+/// Draws each series in the colour and the dashes of its row. Up to eight are named below their panel; of more, seven
+/// from the first to the last, and the number of the others; those without a value are not. Neighbouring panels with
+/// the same names have one legend, below the last of them. Plots are lower where the page is narrow, or has a height.
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_series(const SeriesOptions& options, const std::string& path, const Page& page = {});
 

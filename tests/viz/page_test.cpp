@@ -51,6 +51,20 @@ HeatMap ranges() {
   return map;
 }
 
+/// Names as long as users give them, over heat maps and flat panels.
+SeriesOptions long_names() {
+  HeatMap map = ranges();
+  for (const std::string& row : map.rows)
+    map.short_rows.push_back(row.substr(row.find('(') + 1, row.size() - row.find('(') - 2));
+  map.short_name = "bearing";
+  const std::string name = "one_robot_with_a_long_name_of_its_own";
+  SeriesOptions options{.title = "Magnetic field", .subtitle = "a world: 2 sensors"};
+  options.panels = {{name, "element (bearing)", {}, false, false, map},
+                    {name, "difference of |B| [G]", {wave("a", 0.004)}},
+                    {name, "element (bearing)", {}, false, false, map}};
+  return options;
+}
+
 SeriesOptions series() {
   SeriesOptions options{.title = "Readings of several kinds",
                         .subtitle = "a world: three sensors, of which all are shown"};
@@ -74,6 +88,16 @@ IntervalFigure intervals(std::size_t plots) {
     }
     figure.plots.push_back(plot);
   }
+  return figure;
+}
+
+/// Over values of x that need an exponent.
+IntervalFigure small_steps(bool logarithmic) {
+  IntervalFigure figure = intervals(1);
+  figure.x_name = "link.delay [s]";
+  figure.logarithmic = logarithmic;
+  for (IntervalLine& line : figure.plots[0].lines)
+    for (std::size_t i = 0; i < line.points.size(); ++i) line.points[i].x = std::vector{1e-6, 2e-6, 5e-6, 1e-5}[i];
   return figure;
 }
 
@@ -115,6 +139,13 @@ const std::vector<Figure>& figures() {
       {"intervals", [](const auto& file, const Page& page) { draw_intervals(intervals(1), file, page); }},
       {"multiples", [](const auto& file, const Page& page) { draw_intervals(intervals(5), file, page); }},
       {"categories", [](const auto& file, const Page& page) { draw_intervals(categories(), file, page); }},
+      {"small steps", [](const auto& file, const Page& page) { draw_intervals(small_steps(true), file, page); }},
+      {"long names", [](const auto& file, const Page& page) { draw_series(long_names(), file, page); }},
+      {"corridor",
+       [](const auto& file, const Page& page) {
+         maps::OccupancyGrid made({-1.0, 2.0, 0.25, 30, 1});
+         draw_map(made, {"A map", "one", {{"robot 1", {0.0, 1.0, 0.0, 0.0}}}}, file, page);
+       }},
       {"world", [](const auto& file, const Page& page) { draw_world(scenes::rich_world(), file, page); }},
       {"trajectories",
        [](const auto& file, const Page& page) {
@@ -164,6 +195,73 @@ TEST(Page, TextsAreInsideAndApartOnEachPage) {
         scenes::expect_legible(drawn(draw, figure.name), fmt::format("{} on {} x {} mm, {} pt{}", figure.name, width,
                                                                      height, font, title ? "" : ", no title"));
       }
+}
+
+/// A tick's label has another one of its axis: in one row, or in one column at the left or the right end.
+TEST(Page, NoTickIsAlone) {
+  const auto is_number = [](const scenes::LetterBox& letter) {
+    return letter.text.find_first_not_of("0123456789.\u2212° kM") == std::string::npos;
+  };
+  for (const auto& [width, height, font] :
+       {std::tuple{50.0, 0.0, 7.2}, {50.0, 50.0, 7.2}, {50.0, 30.0, 8.0}, {88.0, 0.0, 8.0}, {0.0, 0.0, 7.2}})
+    for (const Figure& figure : figures()) {
+      const Page page{.width = width, .height = height, .font_size = font};
+      const auto letters = scenes::letters_of(drawn([&](const auto& file) { figure.draw(file, page); }, figure.name));
+      for (const scenes::LetterBox& a : letters) {
+        if (!is_number(a)) continue;
+        const auto near = [](double x, double y) { return std::abs(x - y) < 1.0; };
+        const bool paired = std::any_of(letters.begin(), letters.end(), [&](const scenes::LetterBox& b) {
+          return &a != &b && is_number(b) &&
+                 (near(a.low.y, b.low.y) || near(a.high.x, b.high.x) || near(a.low.x, b.low.x));
+        });
+        EXPECT_TRUE(paired) << figure.name << " on " << width << " x " << height << " mm: '" << a.text << "'";
+      }
+    }
+}
+
+std::vector<std::string> texts_of(const IntervalFigure& figure, double width) {
+  const Page page{.width = width};
+  std::vector<std::string> texts;
+  for (const auto& letter :
+       scenes::letters_of(drawn([&](const auto& file) { draw_intervals(figure, file, page); }, "texts")))
+    texts.push_back(letter.text);
+  return texts;
+}
+
+/// Swept values have labels of one form.
+TEST(Page, SmallSweptValuesHaveOneUnit) {
+  const auto has = [](const std::vector<std::string>& texts, const std::string& text) {
+    return std::find(texts.begin(), texts.end(), text) != texts.end();
+  };
+  for (const double width : {50.0, 0.0})
+    for (const bool logarithmic : {true, false}) {
+      const std::vector<std::string> texts = texts_of(small_steps(logarithmic), width);
+      EXPECT_TRUE(has(texts, "link.delay [10⁻⁶ s]")) << width << fmt::format(": {}", fmt::join(texts, ", "));
+      EXPECT_TRUE(has(texts, "10")) << width;
+      for (const std::string& text : texts) EXPECT_EQ(text.find("e\u2212"), std::string::npos) << text;
+    }
+  IntervalFigure powers = small_steps(true);
+  for (IntervalLine& line : powers.plots[0].lines)
+    for (std::size_t i = 0; i < line.points.size(); ++i)
+      line.points[i].x = std::pow(10.0, -6.0 + 2.0 * static_cast<double>(i));
+  std::vector<std::string> texts = texts_of(powers, 0.0);
+  for (const char* text : {"10⁻⁶", "10⁻⁴", "10⁻²", "1"}) EXPECT_TRUE(has(texts, text)) << text;
+  for (IntervalLine& line : powers.plots[0].lines) line.points[1].x = 3e-4;  // between powers: neither form fits all
+  texts = texts_of(powers, 0.0);
+  for (const char* text : {"10⁻⁶", "1", "link.delay [s]"}) EXPECT_TRUE(has(texts, text)) << text;
+  IntervalFigure one = small_steps(false);
+  for (IntervalLine& line : one.plots[0].lines) line.points.resize(1);
+  EXPECT_TRUE(has(texts_of(one, 50.0), "1.0") || has(texts_of(one, 50.0), "0.5")) << "ticks beside the only value";
+}
+
+/// Rows have short labels where long ones would take half of the picture.
+TEST(Page, RowsOfNarrowHeatMapsHaveShortLabels) {
+  const auto svg = [](double width) {
+    return drawn([&](const auto& file) { draw_series(long_names(), file, {.width = width}); }, "rows");
+  };
+  EXPECT_NE(svg(50.0).find(">90°<"), std::string::npos);
+  EXPECT_EQ(svg(50.0).find(">0 (90°)<"), std::string::npos);
+  EXPECT_NE(svg(0.0).find(">0 (90°)<"), std::string::npos);
 }
 
 double millimetres(const std::string& svg, const std::string& side) {

@@ -177,6 +177,30 @@ TEST(SeriesFigure, LegendsOmitCurvesWithoutAValue) {
   EXPECT_EQ(svg.find(">silent<"), std::string::npos);
 }
 
+TEST(SeriesFigure, LegendsCountTheCurvesThatTheyDoNotName) {
+  std::vector<Series> many;
+  for (int i = 0; i < 8; ++i) many.push_back(per_second("curve " + std::to_string(i), {1.0 * i, i + 0.5}));
+  const std::string eight = svg_of(one_panel(many));
+  for (const Series& series : many) EXPECT_NE(eight.find(">" + series.name + "<"), std::string::npos) << series.name;
+  for (int i = 8; i < 16; ++i) many.push_back(per_second("curve " + std::to_string(i), {1.0 * i, i + 0.5}));
+  many.push_back(per_second("silent", {kNan}));
+  const std::string more = svg_of(one_panel(many));
+  EXPECT_NE(more.find(">and 9 more<"), std::string::npos) << "of 16 that are drawn";
+}
+
+/// Cells narrower than a pixel of the file and higher than one keep their rows apart.
+TEST(HeatMapFigure, RowsStaySharpInCoarseFiles) {
+  HeatMap map{.value_name = "v", .rows = {"0", "1"}};
+  for (int i = 0; i < 3000; ++i) map.times.push_back(i), map.readings.push_back({0.0, 1.0});
+  map.longest_hold = 2.0;
+  draw_series({"t", "s", {{"", "element", {}, false, false, map}}}, scenes::own_file("coarse.png"), {.dpi = 90.0});
+  const scenes::Picture p = scenes::read_png(scenes::own_file("coarse.png"));
+  int between = 0;
+  const int x = p.width / 2, height = p.height * 3 / 4;
+  for (int y = p.height / 4; y + 1 < height; ++y) between += p.at(x, y) != p.at(x, y + 1);
+  EXPECT_LE(between, 3) << "one border, of two pixels at most";
+}
+
 /// Two elements over three readings, of which the last comes late.
 HeatMap small_map() {
   HeatMap map{.value_name = "range [m]", .rows = {"0 (90°)", "1 (\u221290°)"}, .times = {0.0, 1.0, 4.0}};
