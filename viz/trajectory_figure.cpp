@@ -121,9 +121,11 @@ FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::st
 }
 
 /// Names of more tracks than the legend has room for, in their colours beside their ends, as far as there is room.
-void draw_end_names(Axes& axes, std::span<const Track> tracks, const TrackLabels& wanted) {
+/// @return the number of those without
+std::size_t draw_end_names(Axes& axes, std::span<const Track> tracks, const TrackLabels& wanted) {
   const std::size_t most = wanted.all ? kNamedEnds : kLabelledTracks;
-  if (wanted.names.empty() && ((!wanted.all && tracks.size() <= kNamedTracks) || tracks.size() > most)) return;
+  if (wanted.names.empty() && ((!wanted.all && tracks.size() <= kNamedTracks) || tracks.size() > most))
+    return wanted.all ? tracks.size() : 0;
   Labels labels(axes.layout().plot);
   std::vector<std::optional<glm::dvec2>> ends;
   for (const Track& track : tracks) {
@@ -131,20 +133,22 @@ void draw_end_names(Axes& axes, std::span<const Track> tracks, const TrackLabels
     ends.push_back(last == track.poses.rend() ? std::nullopt : std::optional(axes.pixel({last->x, last->y})));
     if (ends.back()) labels.forbid({*ends.back() - glm::dvec2{4.0, 4.0}, *ends.back() + glm::dvec2{4.0, 4.0}});
   }
+  std::size_t left_out = 0;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!ends[i] || (!wanted.names.empty() && !is_labelled(tracks[i], wanted))) continue;
     TextStyle style = small_text();
     style.size = wanted.names.empty() ? 14 : style.size;
     style.color = mix(color_of(tracks, i, wanted), theme::kBlack, 0.25);
     style.halo = theme::kWhite;
-    labels.place(axes.canvas(), {&*ends[i], 1}, tracks[i].name, style, {6.0, 30.0, 14.0, 0.0});
+    left_out += !labels.place(axes.canvas(), {&*ends[i], 1}, tracks[i].name, style, {6.0, 30.0, 14.0, 0.0});
   }
+  return left_out;
 }
 
 }  // namespace
 
-void draw_trajectories(const World& world, std::span<const Track> tracks, const std::string& path,
-                       std::string_view what, const Page& page, const TrackLabels& labels) {
+std::size_t draw_trajectories(const World& world, std::span<const Track> tracks, const std::string& path,
+                              std::string_view what, const Page& page, const TrackLabels& labels) {
   for (const Track& track : tracks)
     SF_CHECK(track.contacts.empty() || track.contacts.size() == track.poses.size(),
              "track " + track.name + " has " + std::to_string(track.contacts.size()) + " contacts for " +
@@ -165,8 +169,9 @@ void draw_trajectories(const World& world, std::span<const Track> tracks, const 
     draw_ends(axes, tracks[i], is_labelled(tracks[i], labels) ? Weight().mark : weight.mark,
               color_of(tracks, i, labels));
   for (const Track& track : tracks) draw_contacts(axes, track, weight.cross, weight.cross_line);
-  draw_end_names(axes, tracks, labels);
+  const std::size_t left_out = draw_end_names(axes, tracks, labels);
   axes.save(path);
+  return left_out;
 }
 
 }  // namespace sf::viz

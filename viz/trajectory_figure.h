@@ -24,8 +24,9 @@ struct TrackLabels {
 /// tracks over earlier ones. Up to seven tracks are named in the legend, up to ten beside their ends; of more only
 /// those of `labels`.
 /// @param what meaning of one track, for the subtitle: robots of one run, or trials of one robot
+/// @return the number of `labels` without room.
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_trajectories(const world::World& world, std::span<const Track> tracks, const std::string& path,
-                       std::string_view what = "robot", const Page& page = {}, const TrackLabels& labels = {});
+std::size_t draw_trajectories(const world::World& world, std::span<const Track> tracks, const std::string& path,
+                              std::string_view what = "robot", const Page& page = {}, const TrackLabels& labels = {});
 
 }  // namespace sf::viz
