@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "apps/commands/field_grid.h"
-#include "apps/commands/scan_replay.h"
+#include "apps/commands/numbered_files.h"
 #include "apps/options/open_device.h"
-#include "apps/processes/stop_signals.h"
 #include "apps/reports/progress_line.h"
+#include "apps/commands/scan_replay.h"
+#include "apps/processes/stop_signals.h"
 #include "base/error.h"
 #include "gpu/device.h"
-#include "scenarios/experiment.h"
 #include "scenarios/recorded_states.h"
 #include "viz/scan_map.h"
 #include "viz/vtk_files.h"
@@ -42,7 +42,7 @@ double time_at(const RecordingPart& part, std::size_t tick) {
 class FileSeries {
  public:
   FileSeries(std::string folder, std::string name) : folder_(std::move(folder)), name_(std::move(name)) {
-    scenarios::make_folder(folder_ + "/" + name_);
+    begin_numbered_files(folder_ + "/" + name_, name_ + "_", ".vtp");
   }
   void add(double time, const viz::PolyData& data) {
     files_.push_back({time, fmt::format("{0}/{0}_{1:06}.vtp", name_, files_.size())});

@@ -7,16 +7,17 @@
 #include <filesystem>
 
 #include "apps/commands/commands.h"
+#include "apps/options/open_device.h"
 #include "apps/commands/plot_maps.h"
 #include "apps/commands/plot_readings.h"
-#include "apps/commands/recorded_video.h"
-#include "apps/commands/scan_replay.h"
-#include "apps/options/open_device.h"
-#include "apps/options/recording_part.h"
-#include "apps/processes/stop_signals.h"
 #include "apps/reports/progress_line.h"
+#include "apps/commands/recorded_video.h"
 #include "apps/reports/recording_csv.h"
+#include "apps/options/recording_part.h"
 #include "apps/reports/report.h"
+#include "apps/commands/robot_names.h"
+#include "apps/commands/scan_replay.h"
+#include "apps/processes/stop_signals.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
 #include "base/files.h"
@@ -96,21 +97,27 @@ viz::TrackLabels labels_of(const RecordingPart& part, const PlotOptions& options
   if (options.labels == std::vector<std::string>{"all"}) return {.all = true, .names = {}};
   std::vector<std::string_view> names;
   for (const viz::Track& track : tracks) names.push_back(track.name);
-  for (const std::string& label : options.labels)
+  const std::vector<std::string> labels = robot_names(options.labels, names);
+  for (const std::string& label : labels)
     if (std::find(names.begin(), names.end(), label) == names.end())
       throw base::InputError(part.recording.file, 0,
                              fmt::format("--label: no robot '{}' is drawn; there is {}", label, list_names(names)));
-  return {.all = false, .names = options.labels};
+  return {.all = false, .names = labels};
 }
 
 void draw_paths(const RecordingPart& part, const world::World& world, const PlotOptions& options,
                 const std::string& folder) {
   const std::string trajectories = folder + "/trajectories." + options.format;
   const std::vector<viz::Track> tracks = tracks_of(part, world);
-  viz::draw_trajectories(world, tracks, trajectories, "robot", options.page, labels_of(part, options, tracks));
+  const std::size_t left_out =
+      viz::draw_trajectories(world, tracks, trajectories, "robot", options.page, labels_of(part, options, tracks));
   Written{}(trajectories);
   if (tracks.size() > viz::kLabelledTracks && options.labels.empty())
     print_message("{} robots have no labels in it; --label NAME,... or --label all names them", tracks.size());
+  if (left_out > 0 && !options.labels.empty())
+    print_message(
+        "{} of the labels are left out, for want of room; --label NAME,... of fewer robots, or a larger --size",
+        left_out);
   if (options.csv) Written{}(write_trajectories_csv(part, folder));
 }
 

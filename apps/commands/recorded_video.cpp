@@ -56,9 +56,8 @@ void write_recorded_video(RecordingPart& part, const VideoOptions& options, cons
   scenarios::Replay replay(recording, info);
   std::optional<MissingScans> scans;
   if (recording.readings.empty() && !options.video_readings.empty()) {
-    for (std::size_t m = 0; m < part.chosen.size(); ++m)
-      part.chosen[m] =
-          std::count(options.video_readings.begin(), options.video_readings.end(), world.movers[m].name) > 0;
+    part.chosen.assign(part.chosen.size(), 0);
+    for (const std::size_t row : rows_of(world, options.video_readings)) part.chosen[row] = 1;
     if (has_laser(part, world)) scans.emplace(part, world, options, device);
   }
   {

@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "apps/commands/frame_writer.h"
+#include "apps/commands/numbered_files.h"
 #include "apps/reports/report.h"
+#include "apps/commands/robot_names.h"
 #include "apps/reports/text.h"
 #include "base/displacement.h"
 #include "base/echo.h"
@@ -24,20 +26,19 @@
 
 namespace sf::apps {
 
-namespace {
-
-std::vector<std::size_t> rows_of(const world::World& world, const std::vector<std::string>& names) {
+std::vector<std::size_t> rows_of(const world::World& world, const std::vector<std::string>& texts) {
+  std::vector<std::string_view> known;
+  for (const world::Mover& mover : world.movers) known.push_back(mover.name);
   std::vector<std::size_t> rows;
-  for (const std::string& name : names) {
-    const auto found = std::find_if(world.movers.begin(), world.movers.end(),
-                                    [&](const world::Mover& mover) { return mover.name == name; });
-    std::vector<std::string_view> known;
-    for (const world::Mover& mover : world.movers) known.push_back(mover.name);
-    if (found == world.movers.end()) refuse_robot(world, name, known);
-    rows.push_back(static_cast<std::size_t>(found - world.movers.begin()));
+  for (const std::string& name : robot_names(texts, known)) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) refuse_robot(world, name, known);
+    rows.push_back(static_cast<std::size_t>(found - known.begin()));
   }
   return rows;
 }
+
+namespace {
 
 viz::RunViewOptions view_options(const world::World& world, const VideoOptions& options) {
   return {.view = {.width = options.video_width, .height = options.video_height, .extent = options.video_extent},
@@ -117,7 +118,7 @@ class RunVideo::Work {
     if (options.frames.empty())
       file_.emplace(options.video, viz::VideoFormat{options.video_width, options.video_height, options.video_fps});
     else
-      scenarios::make_folder(options.frames);
+      begin_numbered_files(options.frames, "", ".png");
     start_writer();
   }
 

@@ -12,6 +12,9 @@
 
 namespace sf::apps {
 
+/// Rows of the movers that an option names (apps/robot_names.h). @throws base::InputError for one that the world lacks
+std::vector<std::size_t> rows_of(const world::World& world, const std::vector<std::string>& texts);
+
 struct VideoFacts {
   std::string file;  ///< or folder of the frames; empty: none
   std::uint64_t frames = 0;

@@ -8,17 +8,17 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apps/commands/commands.h"
-#include "apps/commands/tag_sender.h"
-#include "apps/commands/vps_readings.h"
 #include "apps/options/camera_inputs.h"
+#include "apps/commands/commands.h"
+#include "apps/commands/numbered_files.h"
 #include "apps/options/peers_option.h"
 #include "apps/processes/stop_signals.h"
+#include "apps/commands/tag_sender.h"
 #include "apps/reports/text.h"
+#include "apps/commands/vps_readings.h"
 #include "apps/reports/vps_report.h"
 #include "base/elapsed.h"
 #include "base/error.h"
-#include "scenarios/experiment.h"
 #include "vision/overlay.h"
 #include "viz/png.h"
 
@@ -65,10 +65,12 @@ class Overlay {
   Overlay(const VpsOptions& options, const vision::Testbed& testbed)
       : testbed_(testbed), path_(options.overlay), every_(options.every) {
     if (path_.empty()) return;
+    refuse_inputs(options);
     if (std::filesystem::path(path_).extension() == ".avi")
       open_videos();
     else
-      scenarios::make_folder(path_);
+      for (const vision::TestbedCamera& each : testbed.cameras)
+        begin_numbered_files(path_, each.camera.name + "-", ".png");
     if (options.readings > 0)
       readings_.emplace(options.world, netio::Endpoint{netio::resolve(options.bind), options.readings}, testbed);
     if (options.world.empty()) return;
@@ -99,6 +101,15 @@ class Overlay {
   }
 
  private:
+  /// Pictures are not written among the images that they are made of.
+  void refuse_inputs(const VpsOptions& options) const {
+    auto sources = options.inputs;
+    if (sources.empty())
+      for (const vision::TestbedCamera& each : testbed_.cameras) sources.emplace_back(each.camera.name, each.source);
+    for (const auto& [camera, source] : sources)
+      if (std::error_code ignored; std::filesystem::equivalent(source, path_, ignored))
+        throw base::InputError(path_, 0, "holds the images of camera '" + camera + "'; name another --overlay");
+  }
   /// One of each camera: tags.avi, or with several tags-north.avi and so on.
   void open_videos() {
     const std::string stem = path_.substr(0, path_.size() - 4);

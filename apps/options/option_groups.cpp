@@ -377,14 +377,17 @@ void add_format(CLI::App& app, std::string& format) {
       ->group("Picture");
 }
 
+CLI::Option* add_robot_names(CLI::App& app, const std::string& option, std::vector<std::string>& names,
+                             const std::string& help) {
+  return app.add_option(option, names, help)
+      ->allow_extra_args(false)
+      ->check(not_empty("the name of a robot"))
+      ->type_name("NAME,...");
+}
+
 void add_video_look(CLI::App& app, VideoOptions& o, CLI::Option* wanted) {
   const auto add_names = [&](const char* name, std::vector<std::string>& names, const char* help) {
-    return app.add_option(name, names, help)
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->needs(wanted)
-        ->type_name("NAME,...")
-        ->group(kVideoGroup);
+    return add_robot_names(app, name, names, help)->needs(wanted)->group(kVideoGroup);
   };
   const auto in_group = [&](CLI::Option* option, const char* type) {
     option->needs(wanted)->type_name(type)->group(kVideoGroup);
@@ -423,10 +426,8 @@ void add_video(CLI::App& app, VideoOptions& o, const std::string& help) {
 }
 
 void add_part(CLI::App& app, PartOption& o) {
-  app.add_option("--robots", o.robots, "Names of the robots to take (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAME,...");
+  add_robot_names(app, "--robots", o.robots,
+                  "Names of the robots to take; may be repeated, and names may have commas (default: all)");
   app.add_option("--from", o.from, "Begin of the part to take [s] (default: 0)")
       ->check(in_seconds(0.0, 1e9))
       ->type_name("S");

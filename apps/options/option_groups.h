@@ -103,6 +103,9 @@ void add_format(CLI::App& app, std::string& format);
 void add_video_look(CLI::App& app, VideoOptions& o, CLI::Option* wanted);
 void add_video(CLI::App& app, VideoOptions& o, const std::string& help);
 
+/// Names of robots, separated by commas; resolved by apps/robot_names.h, since names have commas, too.
+CLI::Option* add_robot_names(CLI::App& app, const std::string& option, std::vector<std::string>& names,
+                             const std::string& help);
 void add_part(CLI::App& app, PartOption& o);
 /// The folder of a recorded run.
 void add_recording(CLI::App& app, RecordingOption& o);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/reports/report.h"
+#include "apps/commands/robot_names.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
 #include "scenarios/merging.h"
@@ -17,15 +18,15 @@ namespace {
 std::vector<std::uint8_t> chosen_of(const record::Recording& recording, const std::vector<std::string>& robots) {
   const auto& movers = recording.info.movers;
   std::vector<std::uint8_t> chosen(movers.size(), robots.empty());
-  for (const std::string& name : robots) {
+  std::vector<std::string_view> names;
+  for (const auto& mover : movers) names.push_back(mover.name);
+  for (const std::string& name : robot_names(robots, names)) {
     const auto found =
         std::find_if(movers.begin(), movers.end(), [&](const auto& mover) { return mover.name == name; });
     if (found != movers.end()) {
       chosen[static_cast<std::size_t>(found - movers.begin())] = 1;
       continue;
     }
-    std::vector<std::string_view> names;
-    for (const auto& mover : movers) names.push_back(mover.name);
     throw base::InputError(recording.file, 0, fmt::format("has no robot '{}'; it has {}", name, list_names(names)));
   }
   return chosen;

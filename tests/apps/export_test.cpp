@@ -211,6 +211,14 @@ TEST_F(Recorded, ParaViewGetsSeries) {
     EXPECT_TRUE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000002.vtp")));
     EXPECT_FALSE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000003.vtp")));
   }
+  const Outcome shorter = run_program(with("export", {"--vtk", "-o", folder_.path("v"), "--every", "2"}));
+  ASSERT_EQ(shorter.code, 0) << shorter.err;
+  expect_in("removed 3 files of an earlier call, robots_NNNNNN.vtp", shorter.err);
+  for (const std::string name : {"robots", "scans"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000001.vtp")));
+    EXPECT_FALSE(std::filesystem::exists(folder_.path("v/" + name + "/" + name + "_000002.vtp")))
+        << "of the longer one";
+  }
 }
 
 /// An attribute in the head of a VTK file, of an array or of the whole: `key="VALUE"` behind `after`.

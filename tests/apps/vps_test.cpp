@@ -147,10 +147,29 @@ TEST(Vps, DrawsEachSecondImage) {
   ASSERT_EQ(run_program(to_folder).code, 0);
   for (int i = 0; i < 5; ++i)
     EXPECT_EQ(std::filesystem::exists(folder.path(fmt::format("p/a-00000{}.png", i))), i % 2 == 0) << i;
+  folder.write("p/a-000001.png", "of an earlier call");
+  folder.write("p/b-000001.png", "of no camera");
+  const Outcome again = run_program(to_folder);
+  EXPECT_NE(again.err.find("removed 4 files of an earlier call, a-NNNNNN.png"), std::string::npos) << again.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path("p/a-000001.png")));
+  EXPECT_TRUE(std::filesystem::exists(folder.path("p/a-000004.png")));
+  EXPECT_TRUE(std::filesystem::exists(folder.path("p/b-000001.png")));
   const Outcome video = run_program(to_video);
   ASSERT_EQ(video.code, 0) << video.err;
   const Outcome read = run_program({"vps", testbed, "--input", "a=" + folder.path("tags.avi"), "--json"});
   EXPECT_NE(read.out.find("\"images\": 3,\n  \"unreadable\": 0"), std::string::npos) << read.out << read.err;
+}
+
+/// Photographs are not overwritten by pictures of them.
+TEST(Vps, AFolderOfImagesIsNoFolderForPictures) {
+  const Folder folder;
+  const std::string testbed = write_pictures(folder);
+  const Outcome outcome =
+      run_program({"vps", testbed, "--input", "a=" + folder.path("p"), "--overlay", folder.path("p")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("holds the images of camera 'a'; name another --overlay"), std::string::npos)
+      << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(folder.path("p/a-000002.png")));
 }
 
 TEST(Vps, CountsPicturesThatCannotBeRead) {
