@@ -116,17 +116,16 @@ viz::Panel heat_panel(const Channel& channel, const SensorElements& elements, st
                       const ElementColumn& column) {
   const std::size_t count = element_count(channel, width), every = (count + kMostRows - 1) / kMostRows;
   viz::HeatMap map{.value_name = column.name, .whole = column.whole};
-  // Left is on top: bearings grow to the left.
-  const std::vector<double>& bearings = elements.bearings;
-  const bool upwards = bearings.size() == count && bearings.front() < bearings.back();
-  std::vector<std::size_t> order;
-  for (std::size_t e = 0; e < count; e += every) order.push_back(e);
-  if (upwards) std::reverse(order.begin(), order.end());
-  for (const std::size_t e : order) map.rows.push_back(element_name(elements, e));
+  const bool has_bearings = elements.bearings.size() == count;
+  map.elements = element_rows(elements, count, every);
+  for (const std::size_t e : map.elements) {
+    map.short_rows.push_back(bearing_name(elements, e));
+    map.rows.push_back(has_bearings ? fmt::format("{} ({})", map.short_rows.back(), e) : map.short_rows.back());
+  }
   for (const record::ReadingSample* reading : channel.readings) {
     map.times.push_back(1e-9 * static_cast<double>(reading->time));
     std::vector<double>& row = map.readings.emplace_back();
-    for (const std::size_t e : order) {
+    for (const std::size_t e : map.elements) {
       const std::size_t at = e * width + column.offset;
       row.push_back(at < reading->values.size() ? column.scale * reading->values[at] : NAN);
     }
@@ -136,8 +135,9 @@ viz::Panel heat_panel(const Channel& channel, const SensorElements& elements, st
   map.too_near = fmt::format("too near (< {:g} m)", elements.range_min);
   map.no_return =
       std::isfinite(elements.range_max) ? fmt::format("no return (≥ {:g} m)", elements.range_max) : "no return";
-  const char* name = elements.bearings.empty() ? "element" : "element (bearing)";
-  return {channel.name, every == 1 ? name : fmt::format("{}, 1 of {}", name, every), {}, false, false, std::move(map)};
+  const std::string part = every == 1 ? "" : fmt::format(", 1 of {}", every);
+  map.short_name = (has_bearings ? "bearing" : "element") + part;
+  return {channel.name, (has_bearings ? "bearing (element)" : "element") + part, {}, false, false, std::move(map)};
 }
 
 /// |B| of each element of one sensor.
@@ -201,9 +201,13 @@ std::string part_name(const Channel& channel, std::size_t element, std::size_t e
 
 bool is_whole(const record::ColumnInfo& column) { return column.whole || column.name.ends_with("_counts"); }
 
-std::string subtitle_of(const record::Recording& recording, std::size_t sensors, std::size_t drawn) {
-  const std::string text = fmt::format("{}: {}", recording.info.world, counted(sensors, "sensor"));
-  return drawn < sensors ? text + fmt::format(", the first {} shown", drawn) : text;
+/// @param panels of all columns of those sensors
+std::string subtitle_of(const record::Recording& recording, std::size_t sensors, std::size_t drawn,
+                        std::size_t panels) {
+  std::string text = fmt::format("{}: {}", recording.info.world, counted(sensors, "sensor"));
+  if (drawn < sensors) text += fmt::format(", the first {} shown", drawn);
+  if (panels > kMostPanels) text += fmt::format(", {} of {} quantities shown", kMostPanels, panels);
+  return text;
 }
 
 /// A panel per column and sensor, of the first sensors.
@@ -222,7 +226,7 @@ viz::SeriesOptions heat_maps_of(const record::Recording& recording, const world:
                        {offset++, axis_name(column.name) + (column.width > 1 ? fmt::format(" {}", "xyz"[k % 3]) : ""),
                         is_whole(column), column.name == "range_m" || type.is_scan}));
   }
-  figure.subtitle = subtitle_of(recording, channels.size(), drawn);
+  figure.subtitle = subtitle_of(recording, channels.size(), drawn, drawn * width);
   return figure;
 }
 
@@ -250,7 +254,7 @@ viz::SeriesOptions columns_of(const record::Recording& recording, const record::
     offset += column.width;
     figure.panels.push_back(std::move(panel));
   }
-  figure.subtitle = subtitle_of(recording, channels.size(), drawn);
+  figure.subtitle = subtitle_of(recording, channels.size(), drawn, type.columns.size());
   return figure;
 }
 
@@ -296,8 +300,7 @@ std::string csv_of(const viz::SeriesOptions& figure) {
         text += fmt::format("{},{},{},{}\n", name, csv_field(series.name), csv_number(series.times[i]),
                             csv_number(series.values[i]));
     for (std::size_t row = 0; panel.map && row < panel.map->rows.size(); ++row) {
-      const std::string& label = panel.map->rows[row];  // the element's number, and its bearing
-      const std::string curve = csv_field(panel.title + " " + label.substr(0, label.find(' ')));
+      const std::string curve = csv_field(fmt::format("{} {}", panel.title, panel.map->elements[row]));
       for (std::size_t i = 0; i < panel.map->times.size(); ++i)
         text += fmt::format("{},{},{},{}\n", name, curve, csv_number(panel.map->times[i]),
                             csv_number(panel.map->readings[i][row]));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/bearing.h"
@@ -31,6 +32,12 @@ SensorElements beams_of(const sensors::LaserSettings& laser) {
   return elements;
 }
 
+/// [deg] in (-180, 180], rounded to tenths.
+double degrees_of(double bearing) {
+  const double degrees = std::round(std::remainder(bearing, 2.0 * M_PI) * 1800.0 / M_PI) / 10.0 + 0.0;
+  return degrees == -180.0 ? 180.0 : degrees;
+}
+
 }  // namespace
 
 SensorElements elements_of(const world::World& world, const record::SensorTypeInfo& type, std::uint32_t mover,
@@ -44,10 +51,19 @@ SensorElements elements_of(const world::World& world, const record::SensorTypeIn
   return sensor < lasers.size() ? beams_of(lasers[sensor]) : SensorElements{};
 }
 
-std::string element_name(const SensorElements& elements, std::size_t element) {
+std::vector<std::size_t> element_rows(const SensorElements& elements, std::size_t count, std::size_t every) {
+  std::vector<std::size_t> rows;
+  for (std::size_t e = 0; e < count; e += every) rows.push_back(e);
+  if (elements.bearings.size() != count) return rows;
+  std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
+    return degrees_of(elements.bearings[a]) > degrees_of(elements.bearings[b]);
+  });
+  return rows;
+}
+
+std::string bearing_name(const SensorElements& elements, std::size_t element) {
   if (element >= elements.bearings.size()) return std::to_string(element);
-  const double degrees = std::round(std::remainder(elements.bearings[element], 2.0 * M_PI) * 1800.0 / M_PI) / 10.0;
-  return fmt::format("{} ({}°)", element, viz::with_minus(fmt::format("{:g}", degrees + 0.0)));
+  return viz::with_minus(fmt::format("{:g}°", degrees_of(elements.bearings[element])));
 }
 
 }  // namespace sf::apps

@@ -20,7 +20,11 @@ struct SensorElements {
 SensorElements elements_of(const world::World& world, const record::SensorTypeInfo& type, std::uint32_t mover,
                            std::uint32_t sensor);
 
-/// "3", or "3 (−45°)" where it has a bearing.
-std::string element_name(const SensorElements& elements, std::size_t element);
+/// Every `every`-th of `count` elements as rows from above: by bearing in (−180°, 180°], the leftmost first; in the
+/// order of their numbers where they have none.
+std::vector<std::size_t> element_rows(const SensorElements& elements, std::size_t count, std::size_t every);
+
+/// "−45°"; "3" where it has no bearing.
+std::string bearing_name(const SensorElements& elements, std::size_t element);
 
 }  // namespace sf::apps
