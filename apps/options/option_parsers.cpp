@@ -105,11 +105,21 @@ Validator not_empty(const std::string& expected) {
   return [expected](const std::string& text) { return text.empty() ? "expected " + expected + ", got ''" : ""; };
 }
 
+Validator new_file(const std::string& example) {
+  return [example](const std::string& text) {
+    std::error_code ignored;
+    if (text.empty()) return std::string("expected a file, got ''");
+    if (text.back() != '/' && !std::filesystem::is_directory(text, ignored)) return std::string();
+    return fmt::format("expected a file, and '{}' is a folder; write {}", text,
+                       (std::filesystem::path(text) / example).string());
+  };
+}
+
 Validator picture() {
-  return [](const std::string& text) {
+  return [is_file = new_file("picture.png")](const std::string& text) {
     std::filesystem::path file(text);
     const std::string suffix = file.extension().string();
-    if (text.empty()) return std::string("expected a file, got ''");
+    if (const std::string problem = is_file(text); !problem.empty()) return problem;
     if (viz::format_of(text)) return std::string();
     return fmt::format("pictures are PNG, SVG or PDF files, and '{}' ends in {}; write {}", text, suffix,
                        file.replace_extension(".png").string());
@@ -117,9 +127,9 @@ Validator picture() {
 }
 
 Validator video() {
-  return [](const std::string& text) {
+  return [is_file = new_file(std::string("run") + viz::kVideoSuffix)](const std::string& text) {
     std::filesystem::path file(text);
-    if (text.empty()) return std::string("expected a file, got ''");
+    if (const std::string problem = is_file(text); !problem.empty()) return problem;
     if (file.extension() == viz::kVideoSuffix) return std::string();
     return fmt::format("videos are WebM files; write {}", file.replace_extension(viz::kVideoSuffix).string());
   };

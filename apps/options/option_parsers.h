@@ -30,6 +30,8 @@ Validator recording();
 Validator one_of(std::vector<std::string> words);
 /// @param expected with its article
 Validator not_empty(const std::string& expected);
+/// A file that is written: no folder. @param example its name in the advice
+Validator new_file(const std::string& example);
 /// A file that a picture is written to: its suffix is one of viz::format_of.
 Validator picture();
 /// A file that a video is written to.

@@ -75,7 +75,7 @@ void add_view(CLI::App& app, Call& call) {
       ->group(kGroup);
   sub->add_option("--screenshot", o.screenshot, "PNG file to write instead of opening the window for a user")
       ->needs(window)
-      ->check(not_empty("a file"))
+      ->check(new_file("view.png"))
       ->type_name("FILE")
       ->group(kGroup);
   add_part(*sub, o);

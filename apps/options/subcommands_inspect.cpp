@@ -1,6 +1,9 @@
 // Subcommands that look at worlds, devices and recordings.
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
+
+#include <filesystem>
 
 #include "apps/commands/commands.h"
 #include "apps/options/option_groups.h"
@@ -70,7 +73,7 @@ void add_field(CLI::App& app, Call& call) {
       ->check(readable(read_extent, "XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1"))
       ->type_name("XMIN,YMIN,XMAX,YMAX");
   sub->add_option("--csv", o.csv, "CSV file to write with the profile's numbers")
-      ->check(not_empty("a file"))
+      ->check(new_file("profile.csv"))
       ->type_name("FILE");
 }
 
@@ -101,10 +104,18 @@ void add_plot(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "plot", "Draw trajectories, an occupancy map, readings and lights from a recorded run, or metrics of a sweep");
   auto& o = add_command(*sub, call, plot, [sub] {
-    for (const std::string option : {"--out", "--format", "--csv", "--size", "--dpi", "--no-title", "--extent",
-                                     "--font-size", "--label", "--elements", "--curves", "--over", "--x-axis"})
-      if (sub->count(option) > 0 && sub->count("--video") > 0)
-        throw CLI::ValidationError(option, "is of figures, and --video writes a video alone");
+    if (sub->count("--video") == 0) return;
+    for (const std::string option :
+         {"--format", "--csv", "--size", "--dpi", "--no-title", "--extent", "--font-size", "--line-styles",
+          "--map-colors", "--label", "--elements", "--curves", "--over", "--x-axis"})
+      if (sub->count(option) > 0)
+        throw CLI::ValidationError(option, "changes figures, and --video writes no figures; leave one of the two out");
+    if (sub->count("--out") == 0) return;
+    const std::filesystem::path folder = sub->get_option("--out")->as<std::string>();
+    const std::filesystem::path file = sub->get_option("--video")->as<std::string>();
+    throw CLI::ValidationError("--out",
+                               fmt::format("is the folder of figures, and --video writes no figures; write --video {}",
+                                           (folder / file.filename()).string()));
   });
   add_examples(*sub, {"out/run", "out/run -o figures --format pdf --size 88 --no-title --robots robot1,robot2",
                       "out/sweep --format pdf --size 88"});
@@ -118,12 +129,8 @@ void add_plot(CLI::App& app, Call& call) {
   add_line_styles(*sub, o);
   add_map_colors(*sub, o);
   add_extent(*sub, o);
-  sub->add_option("--label", o.labels,
-                  "Robots to name in the trajectories, in colours over the others, or all (default: up to ten)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(not_empty("the name of a robot, or all"))
-      ->type_name("NAME,...");
+  add_robot_names(*sub, "--label", o.labels,
+                  "Robots to name in the trajectories, in colours over the others, or all (default: up to ten)");
   auto* elements =
       sub->add_option("--elements", o.elements,
                       "Elements of sensors to draw, as curves (default: all; of more than seven a heat map)")

@@ -58,7 +58,9 @@ void add_test(CLI::App& app, Call& call) {
       ->required()
       ->transform(base::installed_file)
       ->type_name("FILE");
-  sub->add_option("--junit", o.junit, "Write the results as JUnit XML")->check(not_empty("a file"))->type_name("FILE");
+  sub->add_option("--junit", o.junit, "Write the results as JUnit XML")
+      ->check(new_file("junit.xml"))
+      ->type_name("FILE");
   sub->add_option("--jobs", o.jobs, "Number of scenarios at a time, each in a process of its own")
       ->check(whole(1, 1024))
       ->type_name("N")

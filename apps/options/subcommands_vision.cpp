@@ -83,7 +83,7 @@ void add_vps(CLI::App& app, Call& call) {
       ->type_name("HOST:PORT");
   add_peers(*sub, o);
   sub->add_option("--track", o.track, "CSV file to write every pose and velocity to")
-      ->check(not_empty("a file"))
+      ->check(new_file("track.csv"))
       ->type_name("FILE");
   auto* overlay =
       sub->add_option("--overlay", o.overlay,

@@ -1,12 +1,12 @@
 // The order and the names of a sensor's elements in figures.
 
-#include "apps/reading_elements.h"
+#include "apps/options/reading_elements.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "apps/robot_names.h"
+#include "apps/commands/robot_names.h"
 
 namespace sf::apps {
 namespace {

@@ -95,6 +95,29 @@ TEST_F(Video, FramesArePngFilesForOtherEncoders) {
   EXPECT_NE(read_file(folder.path("f/000000.png")), read_file(folder.path("f/000014.png")));
 }
 
+/// Frames of a longer call before would be read as the end of this one's video; other files are the user's.
+TEST_F(Video, FramesOfAnEarlierCallAreRemoved) {
+  const std::string recording = record("2"), frames = folder.path("f");
+  const auto write = [&](const std::string& fps) {
+    const Outcome outcome =
+        run_program({"view", recording, "--frames", frames, "--video-fps", fps, "--video-size", "64x64"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_EQ(write("20").find("earlier"), std::string::npos);
+  ASSERT_TRUE(std::filesystem::exists(frames + "/000039.png"));
+  const Words others{"00039.png", "x000039.png", "000039.jpg", "000039", "0000a9.png"};
+  for (const std::string& name : others) folder.write("f/" + name, "");
+  folder.write("f/1000000.png", "");  // the frame after 999999
+  const std::string message = write("5");
+  EXPECT_NE(message.find("removed 41 files of an earlier call, NNNNNN.png, from " + frames), std::string::npos)
+      << message;
+  EXPECT_TRUE(std::filesystem::exists(frames + "/000009.png"));
+  EXPECT_FALSE(std::filesystem::exists(frames + "/000010.png"));
+  EXPECT_FALSE(std::filesystem::exists(frames + "/1000000.png"));
+  for (const std::string& name : others) EXPECT_TRUE(std::filesystem::exists(frames + "/" + name)) << name;
+}
+
 /// At any frame rate, between ticks and at them, after the begin that was asked for.
 TEST_F(Video, FramesOfOneTimeAreTheSame) {
   const std::string recording = record("2");
@@ -178,6 +201,8 @@ TEST_F(Video, WrongOptionsAreNamed) {
   for (const auto& [more, part] : std::vector<std::pair<Words, std::string>>{
            {{"--video", "v.mp4"}, "videos are WebM files; write v.webm"},
            {{"--video", ""}, "expected a file"},
+           {{"--video", "."}, "'.' is a folder; write ./run.webm"},
+           {{"--video", "/tmp/"}, "'/tmp/' is a folder; write /tmp/run.webm"},
            {{"--video", video, "--video-size", "161x120"}, "even numbers from 16 to 4096"},
            {{"--video", video, "--video-size", "160"}, "even numbers from 16 to 4096"},
            {{"--video", video, "--video-size", "8192x120"}, "even numbers from 16 to 4096"},
@@ -194,7 +219,7 @@ TEST_F(Video, WrongOptionsAreNamed) {
   EXPECT_NE(refused.err.find("'a' has no laser, sonar or infrared sensor"), std::string::npos) << refused.err;
   const Outcome plotted = run_program({"plot", record("0.1"), "--video", video, "--csv"});
   EXPECT_EQ(plotted.code, 2);
-  EXPECT_NE(plotted.err.find("--csv: is of figures"), std::string::npos) << plotted.err;
+  EXPECT_NE(plotted.err.find("--csv: changes figures"), std::string::npos) << plotted.err;
 }
 
 }  // namespace
