@@ -62,10 +62,12 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 
 TEST_F(PaperFigures, ManyElementsAreAHeatMapOrChosenCurves) {
   const std::string map = figure("sonar");
-  EXPECT_TRUE(contains(map, "<image ") && contains(map, ">range [m]<") && contains(map, ">element (bearing)<"));
-  EXPECT_TRUE(contains(map, ">0 (90°)<") && contains(map, ">15 (\u221290°)<")) << "bearings, with true minus signs";
+  EXPECT_TRUE(contains(map, "<image ") && contains(map, ">range [m]<") && contains(map, ">bearing (element)<"));
+  EXPECT_TRUE(contains(map, ">90° (0)<") && contains(map, ">\u221290° (15)<")) << "bearings, with true minus signs";
   EXPECT_TRUE(contains(map, ">no return (≥ 4 m)<") || !contains(map, "no return"));
-  EXPECT_FALSE(contains(figure("sonar", {"--curves"}), "<image "));
+  const std::string curves = figure("sonar", {"--curves"});
+  EXPECT_FALSE(contains(curves, "<image "));
+  EXPECT_TRUE(contains(curves, ">one 15<") && contains(curves, ">and 9 more<")) << "of 16";
   const std::string chosen = figure("sonar", {"--elements", "0,3,7"});
   EXPECT_FALSE(contains(chosen, "<image "));
   for (const char* name : {">one 0<", ">one 3<", ">one 7<"}) EXPECT_TRUE(contains(chosen, name)) << name;
@@ -74,7 +76,7 @@ TEST_F(PaperFigures, ManyElementsAreAHeatMapOrChosenCurves) {
   EXPECT_FALSE(contains(figure("sonar", {"--elements", "0,3,7", "--line-styles", "solid"}), "stroke-dasharray"));
   EXPECT_TRUE(
       contains(refusal({"--elements", "500"}), "has no sensor with an element 500; they are numbered from 0 to 180"));
-  EXPECT_TRUE(contains(figure("laser"), ">element (bearing)<")) << "scans, too";
+  EXPECT_TRUE(contains(figure("laser"), ">bearing (element)<")) << "scans, too";
 }
 
 TEST_F(PaperFigures, CsvOfAHeatMapHasACurvePerElement) {
@@ -99,6 +101,34 @@ TEST_F(PaperFigures, ElevenRobotsHaveTheLabelsAskedFor) {
   EXPECT_TRUE(contains(all, ">other3<") && contains(all, ">other4<"));
   EXPECT_TRUE(contains(refusal({"--label", "nobody"}), "--label: no robot 'nobody' is drawn; there is one, other2"));
   EXPECT_TRUE(contains(figure("trajectories", {"--robots", "one,other3"}), ">other3<")) << "up to ten are named";
+}
+
+TEST_F(PaperFigures, LabelsWithoutRoomAreCounted) {
+  const Outcome plotted = run_program({"plot", folder_->path("r"), "-o", folder_->path("p"), "--size", "50x30",
+                                       "--font-size", "8.3", "--label", "all"});
+  EXPECT_EQ(plotted.code, 0) << plotted.err;
+  EXPECT_TRUE(contains(plotted.err, " of the labels are left out, for want of room")) << plotted.err;
+}
+
+/// A video is one file, and no figure is drawn beside it.
+TEST_F(PaperFigures, OptionsOfFiguresAreNotOfVideos) {
+  const Words video{"plot", folder_->path("r"), "--video"};
+  const auto message = [&](const std::string& file, const Words& more) {
+    Words words = video;
+    words.push_back(file);
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome refused = run_program(words);
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    return refused.err;
+  };
+  EXPECT_TRUE(contains(message("x.webm", {"-o", "d"}),
+                       "--out: is the folder of figures, and --video writes no figures; "
+                       "write --video d/x.webm"));
+  EXPECT_TRUE(contains(message("x.webm", {"--line-styles", "solid"}),
+                       "--line-styles: changes figures, and --video writes no figures; leave one of the two out"));
+  EXPECT_TRUE(contains(message("x", {"-o", "d"}), "videos are WebM files; write x.webm"));
+  EXPECT_TRUE(contains(message(".", {}), "expected a file, and '.' is a folder; write ./run.webm"));
+  EXPECT_TRUE(contains(message(folder_->path(""), {}), folder_->path("run.webm")));
 }
 
 TEST_F(PaperFigures, LegendsHaveWhatIsDrawn) {
@@ -128,6 +158,43 @@ TEST_F(PaperFigures, IntegersAreSteps) {
 
 TEST_F(PaperFigures, OptionsOfSweepsAreRefused) {
   EXPECT_TRUE(contains(refusal({"--over", "kp"}), "--over and --x-axis go with the folder of a sweep"));
+}
+
+/// Names may have commas; each option that takes several names has one rule for them.
+TEST(NamesWithCommas, AreTakenByEveryOption) {
+  const Folder folder;
+  const std::string world = folder.write("w.world",
+                                         "position( name \"a,b\" pose [0 0 0 0] gps( ) )\n"
+                                         "position( name \"a\" pose [1 0 0 0] gps( ) )\n"
+                                         "position( name \"c, d\" pose [2 0 0 0] gps( ) )\n");
+  const std::string record = folder.path("r"), out = folder.path("p");
+  ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", record}).code, 0);
+  const auto svg = [&](const Words& more) {
+    Words words{"plot", record, "-o", out, "--format", "svg"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome plotted = run_program(words);
+    EXPECT_EQ(plotted.code, 0) << plotted.err;
+    return read_file(out + "/trajectories.svg");
+  };
+  const auto shows = [&](const std::string& text, const char* name) {
+    return contains(text, ">" + std::string(name) + "<");
+  };
+  const std::string first = svg({"--robots", "a,b"});
+  EXPECT_TRUE(shows(first, "a,b") && !shows(first, "a") && !shows(first, "c, d"));
+  const std::string two = svg({"--robots", "a,c, d"});
+  EXPECT_TRUE(shows(two, "a") && shows(two, "c, d") && !shows(two, "a,b"));
+  const std::string repeated = svg({"--robots", "a", "--robots", "a,b"});
+  EXPECT_TRUE(shows(repeated, "a") && shows(repeated, "a,b") && !shows(repeated, "c, d"));
+  svg({"--label", "a,b,c, d"});
+  const Outcome unknown = run_program({"plot", record, "-o", out, "--label", "a,x"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_TRUE(contains(unknown.err, "no robot 'x' is drawn")) << unknown.err;
+  const Outcome frames = run_program({"view", record, "--frames", folder.path("f"), "--video-size", "64x64",
+                                      "--video-follow", "a,b,c, d", "--robots", "c, d"});
+  EXPECT_EQ(frames.code, 0) << frames.err;
+  const Outcome empty = run_program({"plot", record, "-o", out, "--robots", "a,,c, d"});
+  EXPECT_EQ(empty.code, 2);
+  EXPECT_TRUE(contains(empty.err, "has no robot ''")) << empty.err;
 }
 
 TEST(SweepPlotsCommand, AreDrawnAtItsEndAndAgainByPlot) {
