@@ -114,7 +114,7 @@ std::string plain_number(double value) {
 }
 
 /// Labels of one form: powers of ten where all are and some are large or small, else plain numbers in a common unit.
-/// Empty where they have none, since their sizes differ too much.
+/// Empty where they have none, since their sizes differ too much or their last digits alone.
 AxisLabels number_labels(const IntervalFigure& figure, const std::vector<double>& values, Ticks& unit) {
   constexpr double kSmall = 1.0001e-4, kLarge = 0.9999e4;
   double most = 0.0;
@@ -134,7 +134,7 @@ AxisLabels number_labels(const IntervalFigure& figure, const std::vector<double>
   for (const double value : values) {
     const std::string text = powers ? power_of_ten(static_cast<int>(std::lround(std::log10(value))))
                                     : plain_number(value / std::pow(10.0, unit.exponent));
-    if (text.find('e') != text.npos) return {};
+    if (text.find('e') != text.npos || (!labels.empty() && labels.back().second == with_minus(text))) return {};
     labels.emplace_back(place_of(figure, value), with_minus(text));
   }
   return labels;

@@ -379,7 +379,7 @@ void add_format(CLI::App& app, std::string& format) {
 
 CLI::Option* add_robot_names(CLI::App& app, const std::string& option, std::vector<std::string>& names,
                              const std::string& help) {
-  return app.add_option(option, names, help)
+  return app.add_option(option, names, help + "; may be repeated, and names may have commas")
       ->allow_extra_args(false)
       ->check(not_empty("the name of a robot"))
       ->type_name("NAME,...");
@@ -426,8 +426,7 @@ void add_video(CLI::App& app, VideoOptions& o, const std::string& help) {
 }
 
 void add_part(CLI::App& app, PartOption& o) {
-  add_robot_names(app, "--robots", o.robots,
-                  "Names of the robots to take; may be repeated, and names may have commas (default: all)");
+  add_robot_names(app, "--robots", o.robots, "Names of the robots to take (default: all)");
   app.add_option("--from", o.from, "Begin of the part to take [s] (default: 0)")
       ->check(in_seconds(0.0, 1e9))
       ->type_name("S");

@@ -249,6 +249,10 @@ TEST(Page, SmallSweptValuesHaveOneUnit) {
   for (IntervalLine& line : powers.plots[0].lines) line.points[1].x = 3e-4;  // between powers: neither form fits all
   texts = texts_of(powers, 0.0);
   for (const char* text : {"10⁻⁶", "1", "link.delay [s]"}) EXPECT_TRUE(has(texts, text)) << text;
+  for (IntervalLine& line : powers.plots[0].lines)
+    for (std::size_t i = 0; i < line.points.size(); ++i) line.points[i].x = 1.0 + 1e-5 * static_cast<double>(i);
+  powers.logarithmic = false;
+  EXPECT_TRUE(has(texts_of(powers, 0.0), "1.000010")) << "four digits would not tell them apart";
   IntervalFigure one = small_steps(false);
   for (IntervalLine& line : one.plots[0].lines) line.points.resize(1);
   EXPECT_TRUE(has(texts_of(one, 50.0), "1.0") || has(texts_of(one, 50.0), "0.5")) << "ticks beside the only value";
