@@ -6,10 +6,10 @@
 
 #include "apps/commands/field_grid.h"
 #include "apps/commands/numbered_files.h"
-#include "apps/options/open_device.h"
-#include "apps/reports/progress_line.h"
 #include "apps/commands/scan_replay.h"
+#include "apps/options/open_device.h"
 #include "apps/processes/stop_signals.h"
+#include "apps/reports/progress_line.h"
 #include "base/error.h"
 #include "gpu/device.h"
 #include "scenarios/recorded_states.h"

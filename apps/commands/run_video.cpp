@@ -12,8 +12,8 @@
 
 #include "apps/commands/frame_writer.h"
 #include "apps/commands/numbered_files.h"
+#include "apps/options/robot_names.h"
 #include "apps/reports/report.h"
-#include "apps/commands/robot_names.h"
 #include "apps/reports/text.h"
 #include "base/displacement.h"
 #include "base/echo.h"

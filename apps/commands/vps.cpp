@@ -8,14 +8,14 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apps/options/camera_inputs.h"
 #include "apps/commands/commands.h"
 #include "apps/commands/numbered_files.h"
+#include "apps/commands/tag_sender.h"
+#include "apps/commands/vps_readings.h"
+#include "apps/options/camera_inputs.h"
 #include "apps/options/peers_option.h"
 #include "apps/processes/stop_signals.h"
-#include "apps/commands/tag_sender.h"
 #include "apps/reports/text.h"
-#include "apps/commands/vps_readings.h"
 #include "apps/reports/vps_report.h"
 #include "base/elapsed.h"
 #include "base/error.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/options/robot_names.h"
 #include "apps/reports/report.h"
-#include "apps/commands/robot_names.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
 #include "scenarios/merging.h"

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "apps/commands/robot_names.h"
+#include "apps/options/robot_names.h"
 
 namespace sf::apps {
 namespace {

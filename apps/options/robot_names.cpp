@@ -1,4 +1,4 @@
-#include "apps/commands/robot_names.h"
+#include "apps/options/robot_names.h"
 
 #include <algorithm>
 
