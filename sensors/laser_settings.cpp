@@ -46,7 +46,8 @@ void check(const world::Sensor& sensor, LaserSettings& laser) {
         fmt::format("a smallest range of {:g} m; expected 0 to the largest, {:g} m", laser.range_min, laser.range_max));
   if (!(laser.fov >= 0.0 && laser.fov <= kTurn * (1.0 + 1e-12)))
     refuse(sensor, present(sensor, {"fov", "view", "sview"}),
-           fmt::format("a field of view of {:g} degrees; expected 0 to 360", laser.fov * 180.0 / M_PI));
+           fmt::format("a field of view of {:g} degrees; expected 0 to 360{}", laser.fov * 180.0 / M_PI,
+                       hint_of_radians(sensor, laser.fov)));
   laser.fov = std::min(laser.fov, kTurn);
 }
 

@@ -24,7 +24,7 @@ const std::vector<double>& numbers(const world::Sensor& sensor, const world::Set
 
 /// `unit` is one unit of the file in SI; bounds and fallback are in SI.
 double scaled(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most,
-              double unit, const char* name) {
+              double unit, const std::string& name) {
   const world::Setting* setting = find(sensor, key);
   if (setting == nullptr) return fallback;
   const double value = unit * numbers(sensor, *setting, 1, "a number").front();
@@ -57,7 +57,15 @@ double length(const world::Sensor& sensor, std::string_view key, double fallback
 }
 
 double angle(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most) {
-  return scaled(sensor, key, fallback, least, most, sensor.radians_per_unit, "");
+  const world::Setting* setting = find(sensor, key);
+  const double written = setting == nullptr || setting->numbers.empty() ? 0.0 : setting->numbers.front();
+  return scaled(sensor, key, fallback, least, most, sensor.radians_per_unit, hint_of_radians(sensor, written));
+}
+
+std::string hint_of_radians(const world::Sensor& sensor, double angle) {
+  if (sensor.radians_per_unit != 1.0 || std::abs(angle) <= 2.0 * M_PI) return "";
+  return fmt::format("; angles of this file are in radians (unit_angle): write {:.4g} if {:g} is in degrees",
+                     angle * M_PI / 180.0, angle);
 }
 
 std::uint32_t whole(const world::Sensor& sensor, std::string_view key, std::uint32_t fallback, std::uint32_t least,

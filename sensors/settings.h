@@ -26,6 +26,8 @@ double number(const world::Sensor& sensor, std::string_view key, double fallback
 double length(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most);
 /// [rad], including bounds and fallback.
 double angle(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most);
+/// For the error of an angle [rad] beyond its bounds: that the file's angles are in radians, if they are; else empty.
+std::string hint_of_radians(const world::Sensor& sensor, double angle);
 std::uint32_t whole(const world::Sensor& sensor, std::string_view key, std::uint32_t fallback, std::uint32_t least,
                     std::uint32_t most);
 /// One of `words`. @return its index

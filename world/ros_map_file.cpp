@@ -20,6 +20,8 @@ namespace sf::world {
 namespace {
 
 constexpr std::size_t kMaxKeyWarnings = 1000;  // keys that are compared with the known ones
+constexpr double kTurn = 6.2832;               // [rad] a whole turn, rounded up
+constexpr double kCoarsest = 1.0;              // [m] a coarser resolution is likely to be in another unit
 
 struct Yaml {
   const std::string& file;
@@ -54,7 +56,7 @@ double threshold(const Yaml& yaml, const std::string& key, double fallback) {
   fail(yaml, node, fmt::format("'{}' is {}; expected 0 to 1", key, value));
 }
 
-Pose origin_of(const Yaml& yaml) {
+Pose origin_of(const Yaml& yaml, std::vector<Warning>& warnings) {
   const YAML::Node node = need(yaml, "origin", "[x, y, yaw] of the lower left corner");
   if (!node.IsSequence() || node.size() != 3) fail(yaml, node, "'origin' expects [x, y, yaw]");
   Pose X_WL;
@@ -64,6 +66,10 @@ Pose origin_of(const Yaml& yaml) {
   if (std::abs(X_WL.x) > kMaxLength || std::abs(X_WL.y) > kMaxLength || std::abs(X_WL.yaw) > 1e6) {
     fail(yaml, node, "'origin' is out of range");
   }
+  if (std::abs(X_WL.yaw) > kTurn)
+    warn(yaml, node, warnings,
+         fmt::format("yaw of 'origin' is in radians, and {:g} looks like degrees: write {:.5g} if it is", X_WL.yaw,
+                     X_WL.yaw * M_PI / 180.0));
   return X_WL;
 }
 
@@ -186,7 +192,12 @@ RosMap read_map(const Yaml& yaml, std::vector<Warning>& warnings) {
   map.resolution = finite(yaml, resolution, "'resolution'");
   if (!(map.resolution > 0.0 && map.resolution <= 1000.0))
     fail(yaml, resolution, "'resolution' expects metres per pixel above 0");
-  map.X_WL = origin_of(yaml);
+  if (map.resolution > kCoarsest)
+    warn(yaml, resolution, warnings,
+         fmt::format("'resolution' is in metres per pixel, and {:g} looks like another unit: write {:g} if it is in "
+                     "millimetres, {:g} if in centimetres, or {:g} if in pixels per metre",
+                     map.resolution, map.resolution / 1000.0, map.resolution / 100.0, 1.0 / map.resolution));
+  map.X_WL = origin_of(yaml, warnings);
   map.negate = negate_of(yaml, warnings);
   map.occupied = threshold(yaml, "occupied_thresh", map.occupied);
   map.free = threshold(yaml, "free_thresh", map.free);

@@ -193,8 +193,8 @@ HexGeometry hex_geometry(std::string_view text) {
   return code.valid() ? HexGeometry{digits, code} : HexGeometry{};
 }
 
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_word_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+bool is_decimal(char c) { return c >= '0' && c <= '9'; }
 
 /// Words between parentheses.
 bool is_number(std::string_view word) { return equals(word, "NAN") || equals(word, "INF") || equals(word, "INFINITY"); }
@@ -221,14 +221,14 @@ class Follower {
     const char c = text_[at_];
     if (kTextBlanks.find(c) != std::string_view::npos) return ++at_, true;
     if (is_part_of_number(c)) return number();
-    if (is_letter(c)) return word();
+    if (is_word_letter(c)) return word();
     if (c != '(' && c != ')' && c != ',') return false;
     if (c == '(' ? is_after(")0") : is_after("(,")) return false;
     depth_ += c == '(' ? 1 : c == ')' ? -1 : 0;
     before_ = c;
     return ++at_, true;
   }
-  static bool is_part_of_number(char c) { return is_digit(c) || c == '+' || c == '-' || c == '.'; }
+  static bool is_part_of_number(char c) { return is_decimal(c) || c == '+' || c == '-' || c == '.'; }
   /// Numbers up to the next parenthesis, comma or letter.
   bool number() {
     if (is_after(")a")) return false;
@@ -239,9 +239,9 @@ class Follower {
   }
   bool word() {
     std::size_t end = at_;
-    while (end < text_.size() && is_letter(text_[end])) ++end;
+    while (end < text_.size() && is_word_letter(text_[end])) ++end;
     const std::string_view word = text_.substr(at_, end - at_);
-    const bool is_exponent = equals(word, "E") && (is_digit(text_[at_ - 1]) || text_[at_ - 1] == '.');
+    const bool is_exponent = equals(word, "E") && (is_decimal(text_[at_ - 1]) || text_[at_ - 1] == '.');
     const bool is_value = is_exponent || is_number(word);
     if (!is_value && (!is_member(word) || is_after(")0"))) return false;
     has_content_ = true;

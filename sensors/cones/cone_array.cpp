@@ -35,7 +35,8 @@ double read_fov(const world::Sensor& sensor, double usual) {
   if (!staged) return angle(sensor, "fov", usual, 0.0, 2.0 * M_PI);
   const double fov = sensor.radians_per_unit * (*tuple(sensor, "sview", 3, "[min max fov]"))[2];
   if (fov >= 0.0 && fov <= 2.0 * M_PI) return fov;
-  refuse(sensor, "sview", "the third number of 'sview' is its field of view; expected 0 to a whole turn");
+  refuse(sensor, "sview",
+         "the third number of 'sview' is its field of view; expected 0 to a whole turn" + hint_of_radians(sensor, fov));
 }
 
 std::uint32_t read_rays(const world::Sensor& sensor, double fov) {

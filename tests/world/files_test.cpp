@@ -119,6 +119,29 @@ TEST(WorldFiles, HospitalHasAThousandRobotsOfTwelveSensors) {
   expect_closed(world);
 }
 
+/// Plausible numbers are no mistakes of units.
+TEST(WorldFiles, NoUnitOfStagesWorldsOrOfRosMapsIsDoubted) {
+  NEED_SHARED();
+  static constexpr std::string_view kKeys[] = {"fov", "range", "sview", "view", "range_max", "scount", "spose[]"};
+  static constexpr SensorKeyword kWords[] = {
+      {"laser", kKeys}, {"ranger", kKeys, kKeys}, {"sonar", kKeys}, {"infrared", kKeys}};
+  std::size_t loaded = 0;
+  for (const char* folder : {"/stage", "/maps"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(kShared + folder)) {
+      const std::string ending = entry.path().extension().string();
+      if (ending != ".world" && ending != ".inc" && ending != ".yaml") continue;
+      World world;
+      try {
+        world = load_world(entry.path().string(), LoadOptions{.sensors = kWords});
+      } catch (const base::InputError&) {
+        continue;  // its picture is not here, or it is no world on its own
+      }
+      EXPECT_EQ(warnings_of(world).find("looks like"), std::string::npos) << entry.path() << warnings_of(world);
+      ++loaded;
+    }
+  EXPECT_GE(loaded, 8u);
+}
+
 TEST(WorldFiles, EveryIncludeOfStageLoadsAndEveryDefinitionInItToo) {
   NEED_SHARED();
   std::string all;

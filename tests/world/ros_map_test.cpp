@@ -13,6 +13,7 @@
 #include "tests/robots/scenes.h"
 #include "tests/world/read_world.h"
 #include "world/free_space.h"
+#include "world/stage/stage.h"
 #include "world/wall_tree.h"
 
 namespace sf::world {
@@ -160,6 +161,48 @@ std::string with(const std::string& key, const std::string& instead) {
   const auto at = yaml.find(key);
   yaml.replace(at, yaml.find('\n', at) - at, instead);
   return yaml;
+}
+
+/// Degrees of a yaw in radians, centimetres, millimetres and pixels per metre of a resolution in metres.
+TEST_F(RosMap, LikelyUnitsAreWarnedOf) {
+  const auto said = [&](const std::string& yaml) {
+    const World world = load(yaml);
+    return world.warnings.empty() ? "" : world.warnings[0].message;
+  };
+  EXPECT_EQ(said(with("origin", "origin: [10, 20, 90]")),
+            "yaw of 'origin' is in radians, and 90 looks like degrees: write 1.5708 if it is");
+  EXPECT_NE(said(with("origin", "origin: [10, 20, -45]")), "");
+  EXPECT_EQ(said(with("origin", "origin: [10, 20, 6.2832]")), "") << "a whole turn";
+  EXPECT_EQ(said(with("origin", "origin: [10, 20, -3.14]")), "");
+  EXPECT_EQ(said(with("resolution", "resolution: 50")),
+            "'resolution' is in metres per pixel, and 50 looks like another unit: write 0.05 if it is in millimetres, "
+            "0.5 if in centimetres, or 0.02 if in pixels per metre");
+  EXPECT_EQ(said(with("resolution", "resolution: 1")), "");
+  EXPECT_NE(said(with("resolution", "resolution: 1.01")), "");
+  EXPECT_EQ(load(with("resolution", "resolution: 5")).warnings[0].line, 2);
+}
+
+TEST_F(RosMap, PicturesAreNoIncludes) {
+  write("house.yaml", kGood);
+  write("house.pgm", "P2 1 1 255\n0\n");
+  write("alone.PNG", "\x89PNG");
+  const auto refusal = [&](const std::string& text) {
+    try {
+      build_world((folder_ / "w.world").string(), text);
+    } catch (const base::InputError& caught) {
+      const std::string what = caught.what();
+      return what.substr(what.rfind("w.world"));
+    }
+    return std::string();
+  };
+  EXPECT_EQ(
+      refusal("\ninclude \"house.pgm\"\n"),
+      "w.world:2: \"house.pgm\" is a picture; expected the file of the ROS map: include \"house.yaml\"; or name it "
+      "as a floor plan: model( bitmap \"house.pgm\" size [x y z] )");
+  EXPECT_NE(refusal("include \"alone.PNG\"").find("expected the .yaml file of the ROS map, which names the picture"),
+            std::string::npos);
+  EXPECT_NE(refusal("include \"none.pgm\"").find("is a picture"), std::string::npos) << "whether it is there or not";
+  EXPECT_EQ(refusal("include \"house.yaml\""), "");
 }
 
 /// Whole numbers as map_server takes them, and every word of YAML.

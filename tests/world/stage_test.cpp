@@ -67,13 +67,30 @@ TEST(Stage, WarnsOfLikelyUnits) {
   EXPECT_EQ(said("fov 3.14"), "1: 'fov' is in degrees, and 3.14 looks like radians: write 180 if it is\n");
   EXPECT_EQ(said("range_max 8000"),
             "1: 'range_max' is in metres, and 8000 m looks like millimetres: write 8 if it is\n");
-  for (const char* fov : {"1.57", "4.71", "6.283", "2.094", "4.18879"})
+  for (const char* fov : {"1.57", "4.71", "6.283", "2.094", "4.18879", "4.18"})
     EXPECT_NE(said(std::string("fov ") + fov), "") << fov;
-  for (const char* fov : {"3", "3.2", "0.25", "1.66", "180", "360", "6.5"})
+  for (const auto& [fov, degrees] : {std::pair{"0.44", "25"},
+                                     {"0.4363", "25"},    // rounded
+                                     {"0.43", "25"},      // cut off
+                                     {"3.84", "220"},     // a step of 20 degrees
+                                     {"4.363", "250"},    // the same, finer
+                                     {"0.96", "55"},      // of two decimals only rounder angles count
+                                     {"0.9599", "55"},    // finer
+                                     {"1.0123", "58"},    // a camera's
+                                     {"6.2832", "360"}})  // all around
+    if (std::string(fov) == "0.96")
+      EXPECT_EQ(said(std::string("fov ") + fov), "");
+    else
+      EXPECT_NE(said(std::string("fov ") + fov).find(fmt::format("write {} if", degrees)), std::string::npos) << fov;
+  for (const char* fov :
+       {"3", "3.2", "0.25", "1.66", "180", "360", "6.5", "0.35", "1.75", "3.75", "5.73", "2.5", "4.2"})
     EXPECT_EQ(said(std::string("fov ") + fov), "") << fov << " may be degrees";
   EXPECT_EQ(said("range_max 999"), "");
   EXPECT_NE(said("range_max 1000"), "");
   EXPECT_EQ(said("fov 3.14", "unit_angle \"radians\" "), "");
+  EXPECT_EQ(said("fov 6.2832", "unit_angle \"radians\" "), "");
+  EXPECT_EQ(said("fov 220", "unit_angle \"radians\" "),
+            "1: 'fov' is in radians (unit_angle), and 220 looks like degrees: write 3.84 if it is\n");
   EXPECT_EQ(said("range_max 8000", "unit_length \"mm\" "), "");
   const auto ranger = [](const std::string& keys) {
     return warnings_of(read_world("position( ranger( sensor( " + keys + " ) ) )"));
@@ -81,6 +98,29 @@ TEST(Stage, WarnsOfLikelyUnits) {
   EXPECT_NE(ranger("range [0 5000]"), "");
   EXPECT_NE(ranger("view [0 5 3.14]"), "");
   EXPECT_EQ(ranger("range [0 5] fov 20"), "");
+}
+
+// Sensors of short range: millimetres are likely long before a kilometre.
+TEST(Stage, WarnsOfLikelyUnitsOfConesAndEmitters) {
+  static constexpr std::string_view kKeys[] = {"fov", "range", "sview"};
+  static constexpr SensorKeyword kCones[] = {{"sonar", kKeys}, {"infrared", kKeys}};
+  const auto said = [](const std::string& sensor) {
+    return warnings_of(read_world("position( " + sensor + " )", LoadOptions{.sensors = kCones}));
+  };
+  EXPECT_EQ(said("infrared( range [0 800] )"),
+            "1: 'range' is in metres, and 800 m looks like millimetres: write 0.8 if it is\n");
+  EXPECT_NE(said("infrared( range [20 100] )"), "");
+  EXPECT_EQ(said("infrared( range [0 60] )"), "") << "the farthest that are sold";
+  EXPECT_NE(said("sonar( range [0 400] )"), "");
+  EXPECT_NE(said("sonar( sview [0 6450 15] )"), "");
+  EXPECT_EQ(said("sonar( range [0 150] )"), "") << "under water";
+  EXPECT_NE(said("sonar( fov 0.44 )").find("write 25 if"), std::string::npos);
+  const auto emitter = [](const std::string& keys) {
+    return warnings_of(read_world("model( ir_emitter \"dock\" " + keys + " )"));
+  };
+  EXPECT_EQ(emitter("ir_range 1.8 ir_fov 40"), "");
+  EXPECT_NE(emitter("ir_range 1800").find("write 1.8 if"), std::string::npos);
+  EXPECT_NE(emitter("ir_fov 0.698").find("write 40 if"), std::string::npos);
 }
 
 TEST(Stage, WarnsOfUnitsOncePerLine) {

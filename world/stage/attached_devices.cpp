@@ -7,6 +7,7 @@
 
 #include "world/keys.h"
 #include "world/stage/entity_color.h"
+#include "world/stage/unit_hints.h"
 
 namespace sf::world {
 
@@ -21,37 +22,6 @@ namespace {
 constexpr double kBlockHeight = 0.02;  // [m] of a `sensor( )` block without a size
 constexpr double kMaxSamples = 1e7;
 
-/// [m] a longer range is likely to be meant in millimetres
-constexpr double kLongRange = 1000.0;
-
-/// An angle that is a multiple of 15 degrees if it is in radians, with two decimals at least.
-bool looks_like_radians(double angle) {
-  constexpr double kStep = M_PI / 12.0;
-  const double tenths = 10.0 * angle;
-  return angle > 2.0 * kStep && angle < 6.3 && std::abs(tenths - std::round(tenths)) > 1e-6 &&
-         std::abs(angle - kStep * std::round(angle / kStep)) < 5e-3;
-}
-
-/// Warns of a field of view or range that is likely to be in another unit, once per line of the file.
-void warn_of_units(BuildState& b, const Property& property) {
-  const bool view = property.key == "view" || property.key == "sview";  // [min max fov]
-  const auto number = [&](bool single, std::size_t place) {
-    place = single ? 0 : view || property.key == "range" ? place : property.values.size();
-    return place < property.values.size() && !property.values[place].is_text ? property.values[place].number : 0.0;
-  };
-  std::string text;
-  const bool degrees = std::abs(b.context.radians_per_unit - M_PI / 180.0) < 1e-9;
-  if (const double fov = number(property.key == "fov", 2); degrees && looks_like_radians(fov))
-    text = fmt::format("'{}' is in degrees, and {:g} looks like radians: write {:.0f} if it is", property.key, fov,
-                       fov * 180.0 / M_PI);
-  const double range = b.context.metres_per_unit * number(property.key == "range_max", 1);
-  if (range >= kLongRange)
-    text = fmt::format("'{}' is in metres, and {:g} m looks like millimetres: write {:g} if it is", property.key, range,
-                       range / 1000.0);
-  const std::string place = fmt::format("units {} {} {}", property.at.file, property.at.line, property.key);
-  if (!text.empty() && b.warned_types.insert(place).second) warn(b.context, property.at, text);
-}
-
 /// The value of a setting that stands in for others: `rate` and `update_interval` are one.
 std::string_view meaning_of(std::string_view key) { return key == "update_interval" ? "rate" : key; }
 
@@ -65,7 +35,7 @@ void add_settings(BuildState& b, const Entity& entity, std::span<const std::stri
     if (overridden || property.key == "laser_color") continue;
     const auto same = [&](const Setting& s) { return meaning_of(s.key) == meaning_of(property.key); };
     if (std::any_of(before.begin(), before.end(), same)) continue;
-    warn_of_units(b, property);
+    warn_of_units(b, property, sensor.type);
     Setting setting{property.key, {}, "", property.at.line, b.context.document.files[property.at.file]};
     for (const Value& value : property.values) {
       if (!value.is_text) setting.numbers.push_back(value.number);

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <filesystem>
 #include <unordered_set>
 
 #include "base/files.h"
+#include "world/foreign_world.h"
 #include "world/ros_map.h"
 #include "world/stage/parse_state.h"
 
@@ -114,6 +117,24 @@ void read_file(ParseState& r, const std::string& file, const std::string& text);
   fail(r, line, "this include is circular: " + chain + file);
 }
 
+// A ROS map is included by its YAML file, not by its picture.
+void refuse_picture(const ParseState& r, int line, const std::string& name, const std::string& found) {
+  constexpr auto kPictures = std::to_array<std::string_view>(
+      {".pgm", ".pbm", ".ppm", ".pnm", ".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".svg"});
+  std::string ending = std::filesystem::path(name).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (std::find(kPictures.begin(), kPictures.end(), ending) == kPictures.end()) return;
+  std::string yaml = "the .yaml file of the ROS map, which names the picture";
+  for (const char* suffix : {".yaml", ".yml"})
+    if (std::filesystem::is_regular_file(std::filesystem::path(found).replace_extension(suffix)))
+      yaml = fmt::format("the file of the ROS map: include \"{}\"",
+                         std::filesystem::path(name).replace_extension(suffix).string());
+  fail(r, line,
+       fmt::format("\"{}\" is a picture; expected {}; or name it as a floor plan: model( bitmap \"{}\" size [x y z] )",
+                   name, yaml, name));
+}
+
 void read_include(ParseState& r) {
   const int line = now(r).line;
   ++r.at;
@@ -121,6 +142,7 @@ void read_include(ParseState& r) {
   const std::string name = now(r).text;
   ++r.at;
   const std::string found = find_file(r.document, {r.file, line}, name);
+  refuse_picture(r, line, name, found);
   if (found.empty()) {
     fail(r, line,
          fmt::format("cannot find the include \"{}\"; expected it beside this file, beside the world file, "
@@ -142,7 +164,9 @@ void read_include(ParseState& r) {
   const std::uint32_t outer_file = r.file;
   const std::size_t outer_at = r.at;
   std::vector<Token> outer_tokens = std::move(r.tokens);
-  read_file(r, found, base::read_text(found));
+  const std::string text = base::read_text(found);
+  refuse_foreign(found, text);
+  read_file(r, found, text);
   r.tokens = std::move(outer_tokens);
   r.at = outer_at;
   r.file = outer_file;
@@ -180,7 +204,10 @@ Document parse(const std::string& file, const std::string& text) {
   r.document.root.word = "the world";
   read_file(r, file, text);
   sort_keys(r.document.root);
-  for (const auto& [name, entity] : r.macros) r.document.macros.push_back(name);
+  for (const auto& [name, entity] : r.macros) {
+    r.document.macros.push_back(name);
+    if (entity.type == "position") r.document.robots.push_back(name);
+  }
   return std::move(r.document);
 }
 

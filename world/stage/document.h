@@ -50,6 +50,7 @@ struct Document {
   SourceLocation ros_map_at;        ///< of its include
   Entity root;                      ///< the world's own properties and top-level entities
   std::vector<std::string> macros;  ///< defined names, sorted, for suggestions
+  std::vector<std::string> robots;  ///< those of them that define robots
   std::vector<Warning> warnings;
 };
 

@@ -1,6 +1,7 @@
 #include "world/stage/floor_entities.h"
 
 #include "world/stage/read_keys.h"
+#include "world/stage/unit_hints.h"
 
 namespace sf::world {
 
@@ -47,6 +48,8 @@ void add_emitter(BuildState& b, const Entity& entity, const Model& model, const 
   if (property == nullptr) return;
   if (model.mover != kNone)
     fail(context, property->at, "an infrared emitter stands still; expected it outside of moving models");
+  for (const char* key : {"ir_fov", "ir_range"})
+    if (const Property* said = find(entity, key); said != nullptr) warn_of_units(b, *said, property->key);
   Emitter emitter = kVirtualWall;
   read_keys(context, entity, emitter);
   if (emitter.kind == Emitter::Kind::dock) read_keys(context, entity, emitter = kDock);
