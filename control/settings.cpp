@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/suggest.h"
 
 namespace sf::control {
 
@@ -30,6 +31,10 @@ std::optional<T> value_as(const Value& value, Read&& read) {
   if (const auto* raw = std::get_if<RawText>(&value)) return read(raw->text);
   const T* typed = std::get_if<T>(&value);
   return typed != nullptr ? std::optional<T>(*typed) : std::nullopt;
+}
+
+std::string suggest(const std::string& word, const std::vector<std::string>& words) {
+  return base::suggest(word, std::vector<std::string_view>(words.begin(), words.end()));
 }
 
 }  // namespace
@@ -88,7 +93,8 @@ std::string Settings::text(std::string_view key, const std::string& fallback) {
 std::string Settings::choice(std::string_view key, const std::string& fallback, const std::vector<std::string>& words) {
   const std::string word = text(key, fallback);
   if (std::find(words.begin(), words.end(), word) == words.end())
-    refuse(key, fmt::format("'{}' of {} is '{}'; expected one of: {}", key, owner_, word, fmt::join(words, ", ")));
+    refuse(key, fmt::format("'{}' of {} is '{}'{}; expected one of: {}", key, owner_, word, suggest(word, words),
+                            fmt::join(words, ", ")));
   return word;
 }
 
@@ -118,8 +124,10 @@ void Settings::require_all_read() const {
     std::vector<std::string> known = asked_;
     std::sort(known.begin(), known.end());
     known.erase(std::unique(known.begin(), known.end()), known.end());
-    refuse(settings_[i].key, fmt::format("{} has no setting '{}'; expected one of: {}", owner_, settings_[i].key,
-                                         fmt::join(known, ", ")));
+    const std::string suggestion = suggest(settings_[i].key, known);
+    if (known.empty()) refuse(settings_[i].key, fmt::format("{} has no settings, nor '{}'", owner_, settings_[i].key));
+    refuse(settings_[i].key, fmt::format("{} has no setting '{}'{}; expected one of: {}", owner_, settings_[i].key,
+                                         suggestion, fmt::join(known, ", ")));
   }
 }
 

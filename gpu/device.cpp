@@ -2,9 +2,12 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "gpu/device_vk.h"
 #include "gpu/self_check.h"
 
@@ -19,14 +22,29 @@ std::string limits_text() {
   return ", or raise the limit of memory (ulimit -v), which is " + std::to_string(limit.rlim_cur >> 20) + " MiB";
 }
 
-std::string no_device_message(const Instance& instance, const DeviceCandidates& candidates) {
+/// In any case of its letters.
+bool names_host(const std::string& wanted) {
+  return std::equal(wanted.begin(), wanted.end(), kHostDevice.begin(), kHostDevice.end(),
+                    [](unsigned char a, char b) { return std::tolower(a) == b; });
+}
+
+/// Of a name that no device has; else "".
+std::string suggest_device(const std::string& wanted, const DeviceCandidates& candidates) {
+  std::vector<std::string_view> names{kHostDevice};
+  for (const DeviceInfo& info : candidates.info) names.emplace_back(info.name);
+  return wanted.empty() ? "" : base::suggest(wanted, names);
+}
+
+std::string no_device_message(const Instance& instance, const DeviceCandidates& candidates, const std::string& wanted) {
+  const std::string suggestion = suggest_device(wanted, candidates);
   if (!instance.problem.empty())
-    return "no Vulkan device: " + instance.problem + "; install a driver (Debian: mesa-vulkan-drivers)" + limits_text();
+    return "no Vulkan device: " + instance.problem + "; install a driver (Debian: mesa-vulkan-drivers)" +
+           limits_text() + suggestion;
   if (candidates.info.empty())
-    return "no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers)" + limits_text();
+    return "no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers)" + limits_text() + suggestion;
   std::string line = "no usable Vulkan device among " + std::to_string(candidates.info.size()) + ":";
   for (const DeviceInfo& info : candidates.info) line += " " + info.name + " " + info.reason + ";";
-  return line + " name another with --device or SENSORFARM_DEVICE, or install a driver" + limits_text();
+  return line + " name another with --device or SENSORFARM_DEVICE, or install a driver" + limits_text() + suggestion;
 }
 
 /// Opens the device `vk.physical`. @return "" or the reason for the failure
@@ -124,7 +142,7 @@ DeviceList list_devices(const std::string& wanted, bool require_vulkan) {
     candidates.info[row].reason = start(probe, candidates, row);
     close(probe.vk());
   }
-  const bool named = wanted == kHostDevice;
+  const bool named = names_host(wanted);
   for (DeviceInfo& info : candidates.info)
     if (named && info.reason.empty()) info.reason = "does not match '" + wanted + "'";
   const int row = choose_device(candidates, wanted);
@@ -164,7 +182,7 @@ Device Device::or_host(const std::string& wanted, bool require_vulkan) {
 }
 
 Device::Device(const std::string& wanted) : vk_(std::make_unique<Vk>()) {
-  if (wanted == kHostDevice) {
+  if (names_host(wanted)) {
     vk_->become_host();
     return;
   }
@@ -176,7 +194,7 @@ Device::Device(const std::string& wanted) : vk_(std::make_unique<Vk>()) {
     if (!fault.empty()) failed += tried.info[at].name + " " + fault + "; ";
     return fault;
   });
-  if (row < 0) throw base::DeviceError(no_device_message(*vk_->instance, candidates));
+  if (row < 0) throw base::DeviceError(no_device_message(*vk_->instance, candidates, wanted));
   vk_->info = candidates.info[static_cast<std::size_t>(row)];
   if (!failed.empty()) vk_->notice = failed + "using " + vk_->info.name + " instead";
 }

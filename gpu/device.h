@@ -11,6 +11,7 @@
 namespace sf::gpu {
 
 /// Name of the host as a device: no kernel runs, and sensors are computed by the host's code, with the same bytes.
+/// In any case of its letters.
 inline constexpr std::string_view kHostDevice = "host";
 
 /// One Vulkan device with the result of its check, or the host.

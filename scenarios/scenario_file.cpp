@@ -104,15 +104,16 @@ control::ControllerConfig controller_config_of(const Reader& reader, const TomlN
                                                const control::ControllerConfig& fallback) {
   control::ControllerConfig config = fallback;
   config.name = controller_of(reader, table, fallback.name);
-  config.rate = reader.number(table, "rate", config.name == fallback.name ? fallback.rate : 0.0, 0.01, 1e4);
+  config.rate = reader.number(table, "rate", config.name == fallback.name ? fallback.rate : 0.0, 0.01, 1e4, "Hz");
   const TomlNode* settings = reader.table(table, "settings");
   if (settings != nullptr || config.name != fallback.name) config.settings = settings_of(reader, settings, config.name);
   return config;
 }
 
 netio::LinkModel read_link(const Reader& reader, const TomlNode& table) {
-  return {reader.number(table, "delay", 0.0, 0.0, kLongestDelay),
-          reader.number(table, "jitter", 0.0, 0.0, kLongestDelay), reader.number(table, "loss", 0.0, 0.0, 1.0)};
+  return {reader.number(table, "delay", 0.0, 0.0, kLongestDelay, "seconds"),
+          reader.number(table, "jitter", 0.0, 0.0, kLongestDelay, "seconds"),
+          reader.number(table, "loss", 0.0, 0.0, 1.0)};
 }
 
 netio::LinkModel link_of(const Reader& reader, const TomlNode* table, const netio::LinkModel& fallback) {
@@ -125,11 +126,11 @@ std::optional<StateLinkOptions> states_of(const Reader& reader, const TomlNode* 
   if (table == nullptr) return std::nullopt;
   reader.require_known(*table, kStatesKeys);
   StateLinkOptions states;
-  states.rate = reader.number(*table, "rate", states.rate, 0.01, 1e4);
+  states.rate = reader.number(*table, "rate", states.rate, 0.01, 1e4, "Hz");
   states.link = read_link(reader, *table);
   states.filter = reader.flag(*table, "filter");
-  states.position_sigma = reader.number(*table, "position_sigma", 0.0, 0.0, 1.0);
-  states.yaw_sigma = reader.number(*table, "yaw_sigma", 0.0, 0.0, 1.0);
+  states.position_sigma = reader.number(*table, "position_sigma", 0.0, 0.0, 1.0, "metres");
+  states.yaw_sigma = reader.number(*table, "yaw_sigma", 0.0, 0.0, 1.0, "radians");
   return states;
 }
 
@@ -247,8 +248,8 @@ void require_keys(const Reader& reader, const TomlNode& table, std::span<const s
 ObjectEvent read_joining(const Reader& reader, const TomlNode& table, const Scenario& scenario) {
   require_keys(reader, table, kAddKeys, std::span(kAddKeys).first(4),
                "at = SECONDS, add = \"NAME\", like = \"ROBOT\" and pose = [x, y, yaw]");
-  ObjectEvent event{reader.text(table, "add", ""), reader.number(table, "at", 0.0, 0.0, kLongest), true, table.line,
-                    ObjectEvent::Kind::add};
+  ObjectEvent event{reader.text(table, "add", ""), reader.number(table, "at", 0.0, 0.0, kLongest, "seconds"), true,
+                    table.line, ObjectEvent::Kind::add};
   event.joining = {event.object, reader.text(table, "like", ""), pose_of(reader, *world::find(table, "pose")),
                    Actor{controller_config_of(reader, table, scenario.actor.controller),
                          link_of(reader, reader.table(table, "link"), scenario.actor.link)}};
@@ -262,12 +263,14 @@ void read_events(const Reader& reader, const TomlNode& root, Scenario& scenario)
       scenario.events.push_back(read_joining(reader, *table, scenario));
     } else if (world::find(*table, "remove") != nullptr) {
       require_keys(reader, *table, kRemoveKeys, kRemoveKeys, "at = SECONDS and remove = \"NAME\"");
-      scenario.events.push_back({reader.text(*table, "remove", ""), reader.number(*table, "at", 0.0, 0.0, kLongest),
-                                 false, table->line, ObjectEvent::Kind::remove});
+      scenario.events.push_back({reader.text(*table, "remove", ""),
+                                 reader.number(*table, "at", 0.0, 0.0, kLongest, "seconds"), false, table->line,
+                                 ObjectEvent::Kind::remove});
     } else {
       require_keys(reader, *table, kEventKeys, kEventKeys,
                    "at = SECONDS, object = \"NAME\" and present = true or false");
-      scenario.events.push_back({reader.text(*table, "object", ""), reader.number(*table, "at", 0.0, 0.0, kLongest),
+      scenario.events.push_back({reader.text(*table, "object", ""),
+                                 reader.number(*table, "at", 0.0, 0.0, kLongest, "seconds"),
                                  reader.flag(*table, "present"), table->line});
     }
   }
@@ -307,17 +310,18 @@ Scenario parse_scenario(const std::string& file, std::string_view text) {
 
 Scenario parse_scenario(const std::string& file, const TomlNode& root) {
   const Reader reader(file);
+  reader.require_kind(root, "a scenario");
   reader.require_known(root, kKeys);
   Scenario scenario{.file = file};
   scenario.name = reader.text(root, "name", std::filesystem::path(file).stem().string());
   scenario.world = world_file(reader, root);
   scenario.world_line = world::find(root, "world")->line;
-  scenario.duration = reader.number(root, "duration", scenario.duration, 0.0, kLongest);
+  scenario.duration = reader.number(root, "duration", scenario.duration, 0.0, kLongest, "seconds");
   if (const TomlNode* duration = world::find(root, "duration")) scenario.duration_line = duration->line;
   scenario.seed = reader.whole(root, "seed", scenario.seed, kMostWhole);
-  if (world::find(root, "tick") != nullptr) scenario.tick = reader.number(root, "tick", 0.0, 1e-3, 10.0);
+  if (world::find(root, "tick") != nullptr) scenario.tick = reader.number(root, "tick", 0.0, 1e-3, 10.0, "seconds");
   scenario.fleet = crowd_of(reader, root);
-  scenario.start_at = reader.number(root, "start_at", 0.0, 0.0, kLongest);
+  scenario.start_at = reader.number(root, "start_at", 0.0, 0.0, kLongest, "seconds");
   read_plant(reader, root, scenario);
   scenario.states = states_of(reader, reader.table(root, "states"));
   scenario.actor.link = link_of(reader, reader.table(root, "link"), {});

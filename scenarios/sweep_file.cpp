@@ -234,6 +234,7 @@ std::string scenario_file_of(const TomlReader& reader, const TomlNode& root) {
 Sweep parse_sweep(const std::string& file, std::string_view text) {
   const TomlNode root = world::parse_toml(file, text);
   const TomlReader reader(file);
+  reader.require_kind(root, "a sweep");
   reader.require_known(root, kSweepKeys);
   Sweep sweep{.file = file};
   sweep.name = reader.text(root, "name", std::filesystem::path(file).stem().string());

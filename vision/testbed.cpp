@@ -93,9 +93,9 @@ TestbedCamera read_camera(const TomlReader& reader, const TomlNode& table, const
       reader.fail(*world::find(table, "name"), fmt::format("two cameras have the name '{}'", camera.name));
   read_intrinsics(reader, table, camera.intrinsics);
   read_pose(reader, table, camera);
-  camera.rate = reader.number(table, "rate", 15.0, 0.1, 1000.0);
-  camera.exposure = reader.number(table, "exposure", 0.0, 0.0, 1.0);
-  camera.readout = reader.number(table, "readout", 0.0, 0.0, 1.0);
+  camera.rate = reader.number(table, "rate", 15.0, 0.1, 1000.0, "Hz");
+  camera.exposure = reader.number(table, "exposure", 0.0, 0.0, 1.0, "seconds");
+  camera.readout = reader.number(table, "readout", 0.0, 0.0, 1.0, "seconds");
   read.source = reader.text(table, "source", "");
   return read;
 }
@@ -122,8 +122,8 @@ std::vector<TestbedCamera> read_cameras(const TomlReader& reader, const TomlNode
 
 TagMount read_tag(const TomlReader& reader, const TomlNode& table, const TagMount& fallback) {
   TagMount tag = fallback;
-  tag.side = reader.number(table, "side", tag.side, 1e-3, 10.0);
-  tag.height = reader.number(table, "height", tag.height, -100.0, 100.0);
+  tag.side = reader.number(table, "side", tag.side, 1e-3, 10.0, "metres");
+  tag.height = reader.number(table, "height", tag.height, -100.0, 100.0, "metres");
   tag.address = reader.text(table, "address", tag.address);
   std::array<double, 3> offset{};
   reader.numbers(table, "offset", offset, 1e3, "[x, y, yaw] of the tag on its object in metres and degrees");
@@ -146,7 +146,7 @@ void read_survey(const TomlReader& reader, const TomlNode& root, std::map<std::u
     reader.numbers(*table, "position", position, kMaxPosition, "[x, y, z] in metres");
     SurveyedTag tag{{position[0], position[1], position[2]}, std::nullopt};
     if (world::find(*table, "heading") != nullptr)
-      tag.heading = reader.number(*table, "heading", 0.0, -360.0, 360.0) * kDegree;
+      tag.heading = reader.number(*table, "heading", 0.0, -360.0, 360.0, "degrees") * kDegree;
     const auto number = static_cast<std::uint32_t>(reader.whole(*table, "id", 0, 65535));
     if (!into.emplace(number, tag).second)
       reader.fail(id, fmt::format("two sections [[survey]] have the id {}", number));
@@ -165,10 +165,11 @@ Testbed parse_testbed(const std::string& file, std::string_view text) {
   testbed.file = file;
   const TomlNode root = world::parse_toml(file, text);
   const TomlReader reader(file);
+  reader.require_kind(root, "a testbed");
   reader.require_known(root, kKeys);
   testbed.dictionary = reader.text(root, "dictionary", testbed.dictionary);
-  testbed.tag.side = reader.number(root, "tag_side", testbed.tag.side, 1e-3, 10.0);
-  testbed.tag.height = reader.number(root, "tag_height", testbed.tag.height, -100.0, 100.0);
+  testbed.tag.side = reader.number(root, "tag_side", testbed.tag.side, 1e-3, 10.0, "metres");
+  testbed.tag.height = reader.number(root, "tag_height", testbed.tag.height, -100.0, 100.0, "metres");
   testbed.tag.address = reader.text(root, "address", "");
   testbed.only_listed = reader.flag(root, "only_listed");
   testbed.cameras = read_cameras(reader, root);

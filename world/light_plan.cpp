@@ -99,7 +99,7 @@ LightDetector PlanReader::read_detector(const TomlNode& table) const {
     reader_.numbers(table, "at", p, kMaxMetres, "[x, y] in metres");
     detector.p = {p[0], p[1]};
     required(table, "radius", "radius = 0.3, in metres");
-    detector.radius = reader_.number(table, "radius", 0.0, 1e-3, 1e3);
+    detector.radius = reader_.number(table, "radius", 0.0, 1e-3, 1e3, "metres");
   }
   const TomlNode* calls = find(table, "calls");
   if (calls == nullptr && !detector.p) reader_.fail(table, "a detector needs a place ('at', 'radius') or 'calls'");
@@ -109,8 +109,8 @@ LightDetector PlanReader::read_detector(const TomlNode& table) const {
   for (const TomlNode& item : calls->items) {
     const bool fine = item.kind == Kind::list && item.items.size() == 2;
     if (!fine) reader_.fail(item, "'calls' expects times such as [[10, 12.5]], in seconds");
-    const double from = reader_.number(item.items[0], "calls", 0.0, 1e9);
-    detector.calls.emplace_back(from, reader_.number(item.items[1], "calls", from, 1e9));
+    const double from = reader_.number(item.items[0], "calls", 0.0, 1e9, "seconds");
+    detector.calls.emplace_back(from, reader_.number(item.items[1], "calls", from, 1e9, "seconds"));
   }
   return detector;
 }
@@ -125,12 +125,13 @@ void PlanReader::read_length(const TomlNode& table, LightStage& stage) const {
     if (duration != nullptr && find(table, key) != nullptr)
       reader_.fail(*find(table, key), fmt::format("a stage with a 'duration' has no '{}'", key));
   if (duration != nullptr) {
-    stage.shortest = stage.longest = reader_.number(*duration, "duration", kLeast, kMaxSeconds);
+    stage.shortest = stage.longest = reader_.number(*duration, "duration", kLeast, kMaxSeconds, "seconds");
     return;
   }
-  stage.shortest = reader_.number(*least, "min", kLeast, kMaxSeconds);
-  stage.longest = reader_.number(required(table, "max", "max = 20, in seconds"), "max", stage.shortest, kMaxSeconds);
-  stage.gap = reader_.number(required(table, "gap", "gap = 2, in seconds"), "gap", 0.0, kMaxSeconds);
+  stage.shortest = reader_.number(*least, "min", kLeast, kMaxSeconds, "seconds");
+  stage.longest =
+      reader_.number(required(table, "max", "max = 20, in seconds"), "max", stage.shortest, kMaxSeconds, "seconds");
+  stage.gap = reader_.number(required(table, "gap", "gap = 2, in seconds"), "gap", 0.0, kMaxSeconds, "seconds");
   if (stage.detectors.empty()) reader_.fail(*least, "a stage with 'min' and 'max' needs 'detectors'");
 }
 
@@ -162,8 +163,8 @@ LightStage PlanReader::read_stage(const TomlNode& table, const LightProgram& pro
   if (stage.on_call && stage.detectors.empty()) reader_.fail(table, "a stage that is 'on_call' needs 'detectors'");
   if (!stage.detectors.empty() && stage.shortest == stage.longest && !stage.on_call)
     reader_.fail(*find(table, "detectors"), "a stage of fixed length has 'detectors' only with on_call = true");
-  stage.yellow = reader_.number(table, "yellow", 2.0, 0.0, kMaxSeconds);
-  stage.clear = reader_.number(table, "clear", 1.0, 0.0, kMaxSeconds);
+  stage.yellow = reader_.number(table, "yellow", 2.0, 0.0, kMaxSeconds, "seconds");
+  stage.clear = reader_.number(table, "clear", 1.0, 0.0, kMaxSeconds, "seconds");
   return stage;
 }
 
@@ -180,7 +181,7 @@ LightProgram PlanReader::read_program(const TomlNode& table) {
   if (stages.empty() || stages.size() > kMaxStages)
     reader_.fail(table, fmt::format("a program needs [[program.stage]], 1 to {} of them", kMaxStages));
   for (const TomlNode* stage : stages) program.stages.push_back(read_stage(*stage, program));
-  program.offset = reader_.number(table, "offset", 0.0, -kMaxSeconds, kMaxSeconds);
+  program.offset = reader_.number(table, "offset", 0.0, -kMaxSeconds, kMaxSeconds, "seconds");
   if (is_actuated(program) && find(table, "offset") != nullptr)
     reader_.fail(*find(table, "offset"), "an actuated program has no 'offset': its stages have no fixed times");
   const auto always = [](const LightStage& stage) { return !stage.on_call; };
@@ -196,7 +197,7 @@ double PlanReader::distance(const TomlNode& table, const std::vector<std::uint32
     if (given->kind != Kind::list || given->items.size() + 1 != lights.size())
       reader_.fail(*given, fmt::format("'distances' expects {} numbers, one from each light to the next, in metres",
                                        lights.size() - 1));
-    return reader_.number(given->items[k - 1], "distances", 0.0, kMaxMetres);
+    return reader_.number(given->items[k - 1], "distances", 0.0, kMaxMetres, "metres");
   }
   const Pose &a = world_.lights[lights[k - 1]].X_WL, &b = world_.lights[lights[k]].X_WL;
   return std::hypot(b.x - a.x, b.y - a.y);
@@ -205,8 +206,8 @@ double PlanReader::distance(const TomlNode& table, const std::vector<std::uint32
 /// Shifts programs so that each light of the wave turns green when a robot at its speed comes from the one before.
 void PlanReader::read_wave(const TomlNode& table, LightPlan& plan) const {
   reader_.require_known(table, kWaveKeys);
-  const double speed = reader_.number(required(table, "speed", "speed = 0.2, in m/s"), "speed", 1e-3, 1e3);
-  double green_at = reader_.number(table, "start", 0.0, -kMaxSeconds, kMaxSeconds);
+  const double speed = reader_.number(required(table, "speed", "speed = 0.2, in m/s"), "speed", 1e-3, 1e3, "m/s");
+  double green_at = reader_.number(table, "start", 0.0, -kMaxSeconds, kMaxSeconds, "seconds");
   std::vector<std::uint32_t> lights;
   const auto names = texts(table, "lights", true);
   for (const TomlNode* name : names) lights.push_back(row(*name, name->text, lights_, "light of the world"));
@@ -231,6 +232,7 @@ void PlanReader::read_wave(const TomlNode& table, LightPlan& plan) const {
 }
 
 LightPlan PlanReader::read(const TomlNode& root) {
+  reader_.require_kind(root, "a plan of traffic lights");
   reader_.require_known(root, kKeys);
   LightPlan plan;
   const auto detectors = reader_.tables(root, "detector"), programs = reader_.tables(root, "program");

@@ -11,6 +11,9 @@
 
 namespace sf::world {
 
+/// The value as quoted in errors: a number, up to 40 characters of a text in quotes, true, false, or its kind.
+std::string shown_toml(const TomlNode& node);
+
 /// Functions with a key return the fallback, or null, where `table` does not have it. @throws base::InputError
 class TomlReader {
  public:
@@ -20,11 +23,17 @@ class TomlReader {
   const std::string& file() const { return file_; }
   [[noreturn]] void fail(const TomlNode& node, const std::string& message) const;
 
+  /// Refuses a file that other commands read, by its keys. @param expected "a scenario", "a sweep", "a testbed" or "a
+  /// plan of traffic lights"
+  void require_kind(const TomlNode& root, std::string_view expected) const;
   /// Refuses keys that are not in `known`, with a suggestion.
   void require_known(const TomlNode& table, std::span<const std::string_view> known) const;
 
-  double number(const TomlNode& table, std::string_view key, double fallback, double least, double most) const;
-  double number(const TomlNode& node, std::string_view key, double least, double most) const;
+  /// @param unit for errors, e.g. "seconds"; empty: a bare number
+  double number(const TomlNode& table, std::string_view key, double fallback, double least, double most,
+                std::string_view unit = {}) const;
+  double number(const TomlNode& node, std::string_view key, double least, double most,
+                std::string_view unit = {}) const;
   std::uint64_t whole(const TomlNode& table, std::string_view key, std::uint64_t fallback, double most) const;
   std::string text(const TomlNode& table, std::string_view key, const std::string& fallback) const;
   /// False where `table` does not have the key.

@@ -136,7 +136,7 @@ void print_failures(const Results& results) {
     if (!results[job] || results[job]->message.empty() || ++count > kMost) continue;
     print_message("job {} {}: {}", job, word_of(results[job]->status), results[job]->message);
   }
-  if (count > kMost) print_message("{} more: see jobs.csv", counted(count - kMost, "job"));
+  if (count > kMost) print_message("{}: see jobs.csv", counted(count - kMost, "more job"));
 }
 
 /// Into `plots` of the folder. The tables are the result: without plots (a node without Cairo) it is whole, too.

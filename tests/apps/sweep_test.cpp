@@ -122,14 +122,14 @@ TEST(SweepCommand, MissedExpectationsAreInTablesAndExitCode) {
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.out.find("24 jobs: 24 missed"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("job 0 missed: distance: expected >= 1000, got "), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("14 jobs more: see jobs.csv"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("14 more jobs: see jobs.csv"), std::string::npos) << outcome.err;
 }
 
 TEST(SweepCommand, TenFailuresAreNamedAndTheOthersCounted) {
   const Folder folder;
   folder.write("small.toml",
                "world = \"" + our_world("rooms.world") + "\"\nrobots = 1\nduration = 0.1\n[expect]\ndistance = 1000\n");
-  for (const auto& [seeds, rest] : {std::pair{"10", ""}, {"11", "sensorfarm: 1 job more: see jobs.csv\n"}}) {
+  for (const auto& [seeds, rest] : {std::pair{"10", ""}, {"11", "sensorfarm: 1 more job: see jobs.csv\n"}}) {
     const std::string file =
         folder.write("sweep.toml", "scenario = \"small.toml\"\nseeds = " + std::string(seeds) + "\n");
     const Outcome outcome = run_program({"sweep", file, "-o", folder.path(seeds)});

@@ -92,6 +92,26 @@ TEST(Settings, ValuesOfAFileKeepTheirTypes) {
   EXPECT_NE(refusal(given(true), text_of).find("got true"), std::string::npos);
 }
 
+TEST(Settings, MisspeltKeysAndWordsGetASuggestion) {
+  const auto refusal_after = [](Setting setting) {
+    Settings settings("controller 'c'", {std::move(setting)});
+    try {
+      settings.number("speed", 0.0, 0.0, 1.0);
+      settings.choice("side", "left", {"left", "right"});
+      settings.require_all_read();
+    } catch (const base::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal_after({"sped", RawText{""}, "--set sped: "}),
+            "--set sped: controller 'c' has no setting 'sped'; did you mean 'speed'?; expected one of: side, speed");
+  EXPECT_EQ(refusal_after({"gap", 1.0, "f:1: "}),
+            "f:1: controller 'c' has no setting 'gap'; expected one of: side, speed");
+  EXPECT_EQ(refusal_after({"side", std::string("rigth"), "f:1: "}),
+            "f:1: 'side' of controller 'c' is 'rigth'; did you mean 'right'?; expected one of: left, right");
+}
+
 TEST(Settings, WithoutTheKeyTheFallbackCounts) {
   Settings none("controller 'c'", {});
   EXPECT_EQ(none.number("key", 3.0, 0.0, 1.0), 3.0);

@@ -13,6 +13,7 @@
 #include "base/files.h"
 #include "base/suggest.h"
 #include "world/toml.h"
+#include "world/toml_reader.h"
 
 namespace sf::world {
 
@@ -45,7 +46,7 @@ struct Reader {
 
   double number(const TomlNode& node, std::string_view key, double least, double most) const {
     if (node.kind == TomlNode::Kind::number && node.number >= least && node.number <= most) return node.number;
-    fail(node, fmt::format("'{}' expects a number from {} to {}", key, least, most));
+    fail(node, fmt::format("'{}' expects a number from {} to {}; got {}", key, least, most, shown_toml(node)));
   }
 
   /// [m] A length of at least 1e-6.
