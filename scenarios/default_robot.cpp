@@ -2,7 +2,10 @@
 
 #include <algorithm>
 
+#include "base/error.h"
+#include "base/installation.h"
 #include "sensors/laser_settings.h"
+#include "world/append_robot.h"
 
 namespace sf::scenarios {
 
@@ -31,11 +34,14 @@ world::Mover create_robot(std::uint32_t model) {
   return robot;
 }
 
+bool has_robot(const world::World& world) {
+  return std::any_of(world.movers.begin(), world.movers.end(), [](const world::Mover& m) { return !m.is_tag; });
+}
+
 }  // namespace
 
 bool add_default_robot(world::World& world) {
-  if (std::any_of(world.movers.begin(), world.movers.end(), [](const world::Mover& m) { return !m.is_tag; }))
-    return false;
+  if (has_robot(world)) return false;
   const auto model = static_cast<std::uint32_t>(world.models.size());
   world::Model row;
   row.name = "roomba1";
@@ -46,6 +52,19 @@ bool add_default_robot(world::World& world) {
   world.movers.push_back(create_robot(model));
   world::update_extent_and_hash(world);
   return true;
+}
+
+std::string lend_robot(world::World& world, const std::string& from, OwnRobot use, const world::LoadOptions& options) {
+  if (from.empty()) return add_default_robot(world) ? world.movers.back().name : "";
+  if (has_robot(world) && use == OwnRobot::where_needed) return "";
+  if (has_robot(world) && use == OwnRobot::needs_room)
+    throw base::InputError(world.file, 0,
+                           "has robots of its own; --robot-from is for worlds without, such as ROS maps, and for "
+                           "copies: expected --robots N, too");
+  const std::size_t colon = std::min(from.rfind(':'), from.size());
+  const std::string name = colon == from.size() ? "" : from.substr(colon + 1);
+  const std::string file = base::installed_file(from.substr(0, colon));
+  return world.movers[world::append_robot_of(world, file, name, options)].name;
 }
 
 }  // namespace sf::scenarios

@@ -30,6 +30,18 @@ void check_name(const World& world, const std::string& name);
 /// @return its row @throws base::InputError beyond kMostMovers
 std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM);
 
+/// The same for the robot in row `original` of another world. @param from may be `world`
+std::uint32_t append_robot(World& world, const World& from, std::uint32_t original, const std::string& name,
+                           const Pose& X_WM);
+
+/// Appends the robot `name` of the world file `file`, at rest at the origin: a robot of that world, else one of the
+/// type that the file or its includes define by that name. `name` is changed where a model of `world` has it. Warnings
+/// of the file are added to those of `world`. Takes time in proportion to both worlds.
+/// @return its row @throws base::InputError for a file that is no such world, and a name that it does not have, with
+/// the names that it has
+std::uint32_t append_robot_of(World& world, const std::string& file, const std::string& name,
+                              const LoadOptions& options);
+
 /// Both rows have the same type, body, drive and sensors.
 bool is_same_kind(const World& world, std::uint32_t a, std::uint32_t b);
 

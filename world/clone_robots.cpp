@@ -108,21 +108,23 @@ Mover kept_one(const Mover& mover, const Kept& kept) {
   return same;
 }
 
-/// Appends the models of `original`, renamed and moved with it. @return new rows by old row
-std::vector<std::uint32_t> append_models(World& world, std::uint32_t original, const std::string& name,
-                                         const Pose& X_WM) {
-  const Mover& mover = world.movers[original];
-  const std::string before = world.models[mover.model].name;
+/// Appends the models of `original`, renamed and moved with it. @param from may be `world`
+/// @return new rows by old row
+std::vector<std::uint32_t> append_models(World& world, const World& from, std::uint32_t original,
+                                         const std::string& name, const Pose& X_WM) {
+  const Mover& mover = from.movers[original];
+  const std::string before = from.models[mover.model].name;
   const auto row = static_cast<std::uint32_t>(world.movers.size());
-  std::vector<std::uint32_t> rows(world.models.size(), kNone);
+  std::vector<std::uint32_t> rows(from.models.size(), kNone);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (world.models[i].mover != original) continue;
+    if (from.models[i].mover != original) continue;
     rows[i] = static_cast<std::uint32_t>(world.models.size());
-    Model model = world.models[i];
+    Model model = from.models[i];
     const bool is_nested = model.name == before || model.name.starts_with(before + ".");
     model.name = name + (is_nested ? model.name.substr(before.size()) : "." + model.name);
     model.X_WM = compose(X_WM, compose(inverse(mover.X_WM), model.X_WM));
-    if (model.parent != kNone && rows[model.parent] != kNone) model.parent = rows[model.parent];
+    const std::uint32_t parent = renamed(rows, model.parent);
+    if (parent != kNone || &from != &world) model.parent = parent;
     model.mover = row;
     world.models.push_back(std::move(model));
   }
@@ -241,20 +243,25 @@ void check_name(const World& world, const std::string& name) {
 }
 
 std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM) {
-  SF_CHECK(original < world.movers.size(), "a copy of a robot that does not exist");
+  return append_robot(world, world, original, name, X_WM);
+}
+
+std::uint32_t append_robot(World& world, const World& from, std::uint32_t original, const std::string& name,
+                           const Pose& X_WM) {
+  SF_CHECK(original < from.movers.size(), "a copy of a robot that does not exist");
   if (world.movers.size() >= kMostMovers)
     throw base::InputError(
         fmt::format("'{}' cannot join: a run has at most {} robots, counting those that left", name, kMostMovers));
   const auto row = static_cast<std::uint32_t>(world.movers.size());
-  const Pose X_join{X_WM.x, X_WM.y, world.movers[original].X_WM.z, X_WM.yaw};
-  const std::vector<std::uint32_t> rows = append_models(world, original, name, X_join);
-  Mover copy = world.movers[original];
+  const Pose X_join{X_WM.x, X_WM.y, from.movers[original].X_WM.z, X_WM.yaw};
+  const std::vector<std::uint32_t> rows = append_models(world, from, original, name, X_join);
+  Mover copy = from.movers[original];
   copy.name = name;
   copy.X_WM = X_join;
   copy.id = next_id(world);
   copy.model = rows[copy.model];
-  for (Segment& side : copy.body) side.model = rows[side.model];
-  for (Magnet& magnet : copy.magnets) magnet.model = rows[magnet.model];
+  retarget(copy.body, rows);
+  retarget(copy.magnets, rows);
   world.movers.push_back(std::move(copy));
   update_extent_and_hash(world);
   return row;
