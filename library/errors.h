@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "cluster/failure.h"
+#include "library/words.h"
 #include "sensorfarm/simulation.h"
 
 namespace sf::library {
@@ -16,12 +17,12 @@ auto translated(Call&& call) -> std::invoke_result_t<Call> {
   try {
     return call();
   } catch (const cluster::Failure& failure) {
-    if (failure.code() == 3) throw sensorfarm::DeviceError(failure.what());
-    throw sensorfarm::Error(failure.what());
+    if (failure.code() == 3) throw sensorfarm::DeviceError(in_own_words(failure.what()));
+    throw sensorfarm::Error(in_own_words(failure.what()));
   } catch (const base::DeviceError& error) {
-    throw sensorfarm::DeviceError(error.what());
+    throw sensorfarm::DeviceError(in_own_words(error.what()));
   } catch (const base::InputError& error) {
-    throw sensorfarm::Error(error.what());
+    throw sensorfarm::Error(in_own_words(error.what()));
   }
 }
 

@@ -28,8 +28,13 @@ world::World load(const WorldSource& source, const sensorfarm::Options& options)
   load.sensors = sensors::world_file_words();
   world::World world =
       source.text.empty() ? world::load_world(source.file, load) : world::build_world(source.file, source.text, load);
-  const bool lent = scenarios::add_default_robot(world);
-  if (options.robots > 0 || lent) world::clone_robots(world, std::max(1u, options.robots), options.seed, options.of);
+  if (!options.robot_from.empty() && !options.of.empty())
+    throw base::InputError("of and robot_from both name the robot that is copied; expected one of them");
+  using scenarios::OwnRobot;
+  const std::string lent = scenarios::lend_robot(
+      world, options.robot_from, options.robots > 0 ? OwnRobot::for_copies : OwnRobot::needs_room, load);
+  if (options.robots > 0 || !lent.empty())
+    world::clone_robots(world, std::max(1u, options.robots), options.seed, lent.empty() ? options.of : lent);
   return world;
 }
 

@@ -119,6 +119,7 @@ void Simulation::State::prepare() {
   if (!device->notice().empty()) warnings.push_back(device->notice());
   for (const world::Warning& w : world.warnings)
     warnings.push_back(fmt::format("{}:{}: {}", w.file, w.line, w.message));
+  for (std::string& warning : warnings) warning = library::in_own_words(std::move(warning));
   commands.assign(world.movers.size(), {});
   sent = commands;
   for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
@@ -140,6 +141,7 @@ void Simulation::State::record() {
   if (options.compression == "none") part.compression = record::Compression::none;
   if (ranks != nullptr && !options.record_readings && ranks->rank() > 0) return;
   recorder.emplace(options.record, run_info(), part);
+  for (const std::string& note : recorder->taken_names()) warnings.push_back("topics: " + note);
 }
 
 record::RunInfo Simulation::State::run_info() const {

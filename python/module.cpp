@@ -112,6 +112,7 @@ Options options_of(Keywords& given) {
   Options options;
   py::object controller = py::str("");
   given.read("robots", options.robots), given.read("of", options.of), given.read("seed", options.seed);
+  given.read("robot_from", options.robot_from);
   given.read("threads", options.threads), given.read("noise", options.noise);
   given.read("accuracy", options.accuracy), given.read("device", options.device), given.read("caster", options.caster);
   given.read("require_vulkan", options.require_vulkan);
@@ -310,15 +311,15 @@ void add_readings(py::class_<PySimulation>& c) {
 void add_simulation(py::module_& module) {
   py::class_<PySimulation> c(module, "Simulation",
                              "A simulated fleet. Arrays are views, valid until the next step, put or reset.");
-  c.def(
-       py::init([](Text world, const py::kwargs& options) {
-         return made(options, [&](const Options& given) { return Simulation(world, given); });
-       }),
-       py::arg("world"),
-       "world: a file; options: robots=0, of='', seed=1, threads=0, noise=True, accuracy='', device='', caster='auto', "
-       "require_vulkan=False, "
-       "controller='', settings={}, record='', record_readings=False, ranks=False, too_near_min=False, "
-       "compression='zstd', writable=False (docs/python.md)")
+  c.def(py::init([](Text world, const py::kwargs& options) {
+          return made(options, [&](const Options& given) { return Simulation(world, given); });
+        }),
+        py::arg("world"),
+        "world: a file; options: robots=0, of='', robot_from='', seed=1, threads=0, noise=True, accuracy='', "
+        "device='', caster='auto', "
+        "require_vulkan=False, "
+        "controller='', settings={}, record='', record_readings=False, ranks=False, too_near_min=False, "
+        "compression='zstd', writable=False (docs/python.md)")
       .def_static(
           "from_text",
           [](Text text, Text name, const py::kwargs& options) {

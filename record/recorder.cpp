@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::size_t kMaxChannels = 0xFFFF;
 
-RunInfo named(RunInfo info, const RecordingPart& part) {
+/// @param taken out: notes of names that are taken
+RunInfo named(RunInfo info, const RecordingPart& part, std::vector<std::string>& taken) {
   SF_CHECK(!info.snapshot.empty(), "a recording without its world");
   SF_CHECK(info.interval > 0.0 && info.odometry_rate >= 0.0, std::to_string(info.interval));
   const bool has_encoders = std::any_of(info.movers.begin(), info.movers.end(),
@@ -31,7 +32,7 @@ RunInfo named(RunInfo info, const RecordingPart& part) {
     exact.odometry = OdometrySource::exact;
     put_naming(exact, info);
   }
-  name_frames(info);
+  taken = name_frames(info);
   if (info.estimated) info.options.emplace_back("states", "estimated");  // read back by decode_run_info
   return info;
 }
@@ -90,7 +91,7 @@ std::optional<JoinedMover> joined_mover_of(const TextPairs& pairs) {
 }
 
 Recorder::Recorder(const std::string& directory, RunInfo info, const RecordingPart& part)
-    : info_(named(std::move(info), part)),
+    : info_(named(std::move(info), part, taken_names_)),
       file_(directory + "/" + part.file()),
       mcap_("ros2", "sensorfarm " SF_VERSION, part.compression),
       messages_(std::in_place, info_) {
@@ -159,7 +160,7 @@ void Recorder::add_channels() {
 
 void Recorder::add_movers(RunInfo info) {
   SF_CHECK(!finished_ && wanted_.empty(), "movers join a part of a recording, or after its end");
-  info = named(std::move(info), {});
+  info = named(std::move(info), {}, taken_names_);
   check_topics(TickMessages(info));
   const std::size_t known = info_.joined.size();
   const TickMessages before = std::move(*messages_);  // of which only its counts are used

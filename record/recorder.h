@@ -64,6 +64,8 @@ class Recorder : public base::Sink {
   /// fails.
   void finish();
 
+  /// A line for each name of a topic that another one has taken (name_frames), of all movers so far.
+  const std::vector<std::string>& taken_names() const { return taken_names_; }
   const std::string& path() const { return file_.path(); }
   std::uint64_t size() const { return file_.size(); }  ///< [byte] in the file so far
 
@@ -74,6 +76,7 @@ class Recorder : public base::Sink {
   void flush();
   void start_writer();
 
+  std::vector<std::string> taken_names_;  ///< set by the making of `info_`
   RunInfo info_;
   GrowingFile file_;
   McapWriter mcap_;

@@ -127,7 +127,7 @@ void name_by_types(const RunInfo& info, TopicStyle style, MoverInfo& mover, std:
     const std::string name = type.is_scan ? "scan" : ros_name(type.name, "sensor");
     const int number = counts[name]++;
     const std::string topic = unique(name, topics, 1);
-    if (topic != (number == 0 ? name : name + "_" + std::to_string(number)))
+    if (info.record_readings && topic != (number == 0 ? name : name + "_" + std::to_string(number)))
       notes.push_back(fmt::format("sensor '{}' of '{}' has the topic {}/{}: a name before it is taken", sensor.name,
                                   mover.name, mover.space, topic));
     sensor.topic = mover.space + "/" + topic;

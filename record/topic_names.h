@@ -54,7 +54,7 @@ Naming naming_of(const RunInfo& info);
 /// Gives every mover its topics' prefix and its frames, and every sensor and its standard topics theirs. Names consist
 /// of [A-Za-z0-9_], without a digit or '_' in front, a '_' at the end, or two in a row; equal ones are numbered. Names
 /// of a mover do not depend on later ones.
-/// @return a line for each name that another one has taken
+/// @return a line for each name that another one has taken; of sensors only where readings are published
 std::vector<std::string> name_frames(RunInfo& info);
 
 }  // namespace sf::record

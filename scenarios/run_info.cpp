@@ -53,14 +53,6 @@ std::vector<std::string> accuracy_rows(const world::World& world, const sensors:
   return rows;
 }
 
-void check_names(const record::Naming& naming) {
-  const bool unknown = naming.odometry == record::OdometrySource::exact || naming.localizer || naming.filter;
-  if (naming.style == record::TopicStyle::sensor && unknown)
-    throw base::InputError(
-        "--topics sensor has no frame odom, and true odometry: leave out --odometry exact, --external localizer and "
-        "--external filter, or choose other names");
-}
-
 /// The robot without a namespace: the only one. Tags, objects and robots that join keep theirs.
 void choose_plain(const world::World& world, record::RunInfo& info) {
   std::vector<std::size_t> robots;
@@ -90,7 +82,6 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
                   {"caster", settings.caster}};
   info.accuracy = accuracy_rows(world, sensor_set, settings.noise);
   if (settings.too_near_min) info.options.emplace_back(record::kTooNear, "min");
-  check_names(settings.naming);
   record::put_naming(settings.naming, info);
   info.snapshot = world::snapshot(world);
   info.joined = settings.joined;

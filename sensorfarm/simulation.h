@@ -62,6 +62,9 @@ struct Options {
   bool require_vulkan = false;       ///< without a usable Vulkan device DeviceError, not the host
   bool too_near_min = false;         ///< recorded ranges of surfaces that are too near are range_min, not -infinity
   std::string compression = "zstd";  ///< of the recording: "zstd" or "none", of which a kill loses no tick
+  /// "FILE:NAME": the robot NAME of a world file, or that type which it defines, for a world without robots (a ROS
+  /// map), or as the robot that is cloned; FILE is found as worlds are. Empty: the default robot, or `of`
+  std::string robot_from;
 };
 
 /// The newest readings of all sensors of one type, as one table with a row per sensor. A view: valid until the next

@@ -82,7 +82,7 @@ std::string text_of(const scenarios::Explanation& e) {
 }
 
 int explain(const ExplainOptions& options) {
-  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
+  const world::World world = load_with_robots(options, options);
   gpu::Device device = open_device(options);
   scenarios::Explanation explanation;
   {

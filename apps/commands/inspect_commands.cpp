@@ -139,7 +139,7 @@ int draw(const DrawOptions& options) {
 }
 
 int sense(const SenseOptions& options) {
-  const world::World world = load_with_robots(options.world, options.load);
+  const world::World world = load_with_robots(options);
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, sensor_set, options);
   const Chosen chosen = require_sensor(world, sensor_set, options, mover);

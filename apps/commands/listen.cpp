@@ -14,7 +14,7 @@
 namespace sf::apps {
 
 int listen(const ListenOptions& options) {
-  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
+  const world::World world = load_with_robots(options, options);
   const sensors::SensorSet sensor_set(world);
   const server::StreamLayout sent = stream_layout_of(world, sensor_set, options);
   const std::vector<server::SensorStream> sources = server::sensor_streams(sensor_set, sent);

@@ -7,12 +7,13 @@
 #include <fmt/format.h>
 
 #include "apps/options/automatic_accuracy.h"
+#include "apps/options/bridge_options.h"
 #include "apps/options/default_robot.h"
+#include "apps/reports/exposure_warning.h"
 #include "apps/options/open_device.h"
 #include "apps/options/peers_option.h"
-#include "apps/processes/stop_signals.h"
-#include "apps/reports/exposure_warning.h"
 #include "apps/reports/report.h"
+#include "apps/processes/stop_signals.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
 #include "raycast/caster_choice.h"
@@ -71,7 +72,7 @@ RunReport lockstep_report(scenarios::LockstepService& service, const world::Worl
 }  // namespace
 
 int serve_lockstep(const ServeOptions& options) {
-  world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
+  world::World world = load_with_robots(options, options);
   const scenarios::LockstepServiceOptions chosen = lockstep_options(options, world);
   gpu::Device device = open_device(options);
   choose_accuracy(world, device, options, options.seed, 0);
@@ -91,6 +92,7 @@ int serve_lockstep(const ServeOptions& options) {
                                             .too_near_min = options.too_near_min,
                                             .naming = options.naming}),
                        record::RecordingPart{.compression = options.compression});
+      print_taken_names(recorder->taken_names());
       service.record_to(*recorder);
     }
     install_stop_handlers();

@@ -103,7 +103,7 @@ std::uint32_t find_robot(const world::World& world, const std::string& name) {
 }  // namespace
 
 int robot(const RobotOptions& options) {
-  const world::World world = load_with_robots(options.world, options.load);
+  const world::World world = load_with_robots(options);
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, options.robot);
   server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options),

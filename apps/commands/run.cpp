@@ -122,7 +122,8 @@ struct Ground {
     if (file.empty())
       world::update_extent_and_hash(scenery.world);
     else
-      scenery.world = load_with_robots(file, load_options(options, nullptr), 0, options.seed);
+      scenery.world =
+          load_with_robots(source_of(options, file, nullptr), seed_of(options), scenarios::OwnRobot::where_needed);
     scenery.layout = layout_of(scenery.world, options);
     return scenery;
   }
@@ -149,10 +150,17 @@ struct Ground {
 
   /// Ranks with tiles read outlines when they know their part, except where each keeps the whole world, and its
   /// recording.
-  static world::LoadOptions load_options(const RunOptions& options, const cluster::Ranks* ranks) {
-    world::LoadOptions load = options.load;
-    load.leave_outlines = ranks != nullptr && options.tiles && options.balance == 0.0 && options.record.empty();
-    return load;
+  static WorldOptions source_of(const RunOptions& options, const std::string& file, const cluster::Ranks* ranks) {
+    WorldOptions source = options;
+    source.world = file;
+    source.load.leave_outlines = ranks != nullptr && options.tiles && options.balance == 0.0 && options.record.empty();
+    return source;
+  }
+  /// No copies.
+  static CloneOptions seed_of(const RunOptions& options) {
+    CloneOptions clones;
+    clones.seed = options.seed;
+    return clones;
   }
   static std::optional<server::StreamLayout> layout_of(const world::World& world, const RunOptions& options) {
     if (options.send.empty()) return std::nullopt;
@@ -160,7 +168,7 @@ struct Ground {
   }
   world::World load(const RunOptions& options, const cluster::Ranks* ranks) const {
     if (scenario) return load_scenario_world(*scenario, options.load);
-    return load_with_robots(options.world, load_options(options, ranks), options.robots, options.seed, options.of);
+    return load_with_robots(source_of(options, options.world, ranks), options);
   }
   const world::World& with_accuracy(const RunOptions& options) {
     choose_accuracy(world, device, options, options.seed, options.threads);
@@ -348,6 +356,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
                                         .naming = options.naming},
                  true);
   });
+  if (live->empty()) print_taken_names(course->outputs.taken_names());
   std::vector<world::Warning> heard = course->simulation.warnings();
   for (world::Warning& warning : course->simulation.share().warnings_of_starts()) heard.push_back(std::move(warning));
   if (!heard.empty()) print_warnings(heard.front().file, heard);
@@ -397,6 +406,13 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
 
   const double duration = options.duration.value_or(live->empty() ? 60.0 : kWithoutEnd);
   const double ticks = std::round(duration / ground->world.interval);
+  if (ticks < 1.0)
+    print_message(
+        "--duration {:g} simulates nothing, since a tick takes {:g} s; expected more, or no --duration, which is 60 s, "
+        "and beside bridges without end",
+        duration, ground->world.interval);
+  if (options.tiles && ranks == nullptr)
+    print_message("--tiles has no effect in one process: start several (mpirun -n N sensorfarm run ...)");
   RunReport facts;
   const auto start = std::chrono::steady_clock::now();
   {

@@ -41,6 +41,10 @@ RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sens
   if (!record.empty()) recorder_.emplace(record, info, part);
 }
 
+std::vector<std::string> RunOutputs::taken_names() const {
+  return recorder_ ? recorder_->taken_names() : std::vector<std::string>();
+}
+
 void RunOutputs::write(base::TickRecord tick, const std::function<void(std::int64_t)>& wait) {
   const auto start = Clock::now();
   tick.readings = no_return_filter_.apply(tick.readings);

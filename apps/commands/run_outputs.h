@@ -33,6 +33,7 @@ class RunOutputs {
   void write(base::TickRecord tick, const std::function<void(std::int64_t)>& wait);
   /// Robots joined, in the world's last rows. They are recorded; packets of their readings are not sent.
   void add_movers(const std::vector<record::JoinedMover>& joined);
+  std::vector<std::string> taken_names() const;  ///< as of Recorder
   /// Ends recording and video. @param facts out: what was sent and recorded
   void finish(RunReport& facts);
 

@@ -144,7 +144,7 @@ RunReport report_of(const server::ServiceStats& stats, const world::World& world
 
 int serve(const ServeOptions& options) {
   if (options.lockstep) return serve_lockstep(options);
-  world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
+  world::World world = load_with_robots(options, options);
   const server::StreamLayout layout = stream_layout_of(world, sensors::SensorSet(world), options);
   const server::ServiceOptions chosen = service_options(options, world);
   gpu::Device device = open_device(options);
@@ -167,6 +167,7 @@ int serve(const ServeOptions& options) {
     }
     StrayedRobots strayed(world);
     if (strayed.names()) service.record_to(strayed);
+    if (recorder && !options.BridgeOptions::any()) print_taken_names(recorder->taken_names());
     LiveBridges live(options, world, sensor_set, run_settings(options, device.info().software), false);
     if (!live.empty()) service.record_to(live);
     install_stop_handlers();

@@ -129,7 +129,7 @@ void choose_accuracy(world::World& world, gpu::Device& device, const AccuracyTar
 namespace {
 
 int measure_alone(const TradeoffOptions& options) {
-  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
+  const world::World world = load_with_robots(options, options);
   gpu::Device device = open_device(options);
   install_stop_handlers();
   const scenarios::AccuracyTarget target = wish_of(options);

@@ -1,5 +1,7 @@
 #include "apps/options/bridge_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <utility>
@@ -31,21 +33,22 @@ std::vector<std::string> world_folders(const world::World& world) {
   return folders;
 }
 
-/// Of names that are taken: a fleet may have many.
-void print_notes(const std::vector<std::string>& notes) {
+}  // namespace
+
+void print_taken_names(const std::vector<std::string>& notes) {
   constexpr std::size_t kMost = 3;
   for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i) print_message("topics: {}", notes[i]);
-  if (notes.size() > kMost) print_message("topics: {} more names are taken", notes.size() - kMost);
+  if (notes.size() <= kMost) return;
+  const std::size_t more = notes.size() - kMost;
+  print_message("topics: {} taken", more == 1 ? "1 more name is" : fmt::format("{} more names are", more));
 }
-
-}  // namespace
 
 LiveBridges::LiveBridges(const BridgeOptions& options, const world::World& world, const sensors::SensorSet& sensor_set,
                          const scenarios::RunSettings& settings, bool simulated)
     : options_(options), world_(world), sensor_set_(sensor_set), settings_(settings), simulated_(simulated) {
   if (!options.any()) return;
   info_ = scenarios::run_info(world, sensor_set, settings);
-  print_notes(record::name_frames(info_));
+  print_taken_names(record::name_frames(info_));
   if (options.ros2) open_ros2();
   if (!options.player.empty()) {
     open_player();

@@ -8,6 +8,9 @@
 
 namespace sf::apps {
 
+/// Prints notes of names of topics that are taken: the first three, since a fleet may have many.
+void print_taken_names(const std::vector<std::string>& notes);
+
 /// Bridges with what they show. World and sensor set must outlive it.
 class LiveBridges : public base::Sink {
  public:

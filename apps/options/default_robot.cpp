@@ -5,25 +5,26 @@
 #include "apps/reports/report.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
-#include "scenarios/default_robot.h"
 #include "sensors/sensor_type.h"
 #include "world/free_space.h"
 #include "world/outlines.h"
 
 namespace sf::apps {
 
-world::World load_with_robots(const std::string& file, const world::LoadOptions& options, std::uint32_t count,
-                              std::uint64_t seed, const std::string& of) {
-  world::World world = world::load_world(file, options);
-  const bool added = scenarios::add_default_robot(world);
-  if (count > 0 || added) world::read_unread(world);  // free places are looked for among all walls
-  if (added)
+world::World load_with_robots(const WorldOptions& options, const CloneOptions& clones, scenarios::OwnRobot use) {
+  world::World world = world::load_world(options.world, options.load);
+  if (clones.robots > 0) use = scenarios::OwnRobot::for_copies;
+  const std::string added = scenarios::lend_robot(world, options.robot_from, use, options.load);
+  const bool copies = clones.robots > 0 || !added.empty();
+  if (copies) world::read_unread(world);  // free places are looked for among all walls
+  if (!added.empty() && options.robot_from.empty())
     print_message(
         "{} has no robot; it is lent 'roomba1' (id 1), a Create with a laser of 361 rays, 180 "
-        "degrees, 8 m; for a robot of yours, write a world that includes this file (docs/worlds.md)",
-        file);
-  if (count > 0 || added) world::clone_robots(world, std::max(1u, count), seed, of);
-  print_warnings(file, world.warnings);
+        "degrees, 8 m; for a robot of yours, give --robot-from FILE:NAME, or write a world that includes this file "
+        "(docs/worlds.md)",
+        options.world);
+  if (copies) world::clone_robots(world, std::max(1u, clones.robots), clones.seed, added.empty() ? clones.of : added);
+  print_warnings(options.world, world.warnings);
   return world;
 }
 

@@ -295,6 +295,33 @@ void add_naming(CLI::App& app, NamingOption& o) {
       ->group(kNaming);
 }
 
+void require_any(const CLI::App& sub, const std::vector<std::string>& options, const std::vector<std::string>& wanted) {
+  const auto given = [&](const std::string& name) { return sub.count(name) > 0; };
+  if (std::any_of(wanted.begin(), wanted.end(), given)) return;
+  for (const std::string& option : options)
+    if (given(option)) throw CLI::RequiresError(option, join_or(wanted));
+}
+
+void check_naming(const CLI::App& sub, const char* readings_option) {
+  require_any(sub, {"--topics", "--odometry", "--external", "--too-near"}, {"--record", "--ros2", "--view"});
+  const auto text_of = [&](const char* name) {
+    return sub.count(name) > 0 ? sub.get_option(name)->results().back() : std::string();
+  };
+  const std::string odometry = text_of("--odometry");
+  const std::vector<std::string> nodes = sub.get_option("--external")->results();
+  const bool other = (!odometry.empty() && odometry != "truth") ||
+                     std::any_of(nodes.begin(), nodes.end(), [](const std::string& node) { return node != "mapper"; });
+  if (text_of("--topics") == "sensor" && other)
+    throw CLI::ValidationError("--topics",
+                               "sensor has no frame odom, and true odometry: leave out --odometry encoders and exact, "
+                               "--external localizer and filter, or choose other names");
+  if (readings_option == nullptr || odometry.empty() || odometry == "truth") return;
+  if (sub.count(readings_option) + sub.count("--ros2") + sub.count("--view") == 0)
+    throw CLI::ValidationError(
+        "--odometry",
+        fmt::format("{} requires {}: recordings without readings have the true pose", odometry, readings_option));
+}
+
 void add_threads(CLI::App& app, ThreadsOption& o) {
   app.add_option("--threads", o.threads, "Threads of the host (0: all); readings do not depend on it")
       ->check(whole(0, 256))
@@ -412,9 +439,11 @@ void add_video_look(CLI::App& app, VideoOptions& o, CLI::Option* wanted) {
              "Area of the world to show [m] (default: all of it)")
           ->check(readable(read_extent, "XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1"));
   in_group(extent, "XMIN,YMIN,XMAX,YMAX");
-  add_names("--video-follow", o.video_follow, "Robots that the camera follows")->excludes(extent);
+  CLI::Option* const follow =
+      add_names("--video-follow", o.video_follow, "Robots that the camera follows")->excludes(extent);
   in_group(app.add_option("--video-around", o.video_around, "Area shown around the followed robots [m]")
                ->check(number(0.01, 1e6))
+               ->needs(follow)
                ->capture_default_str(),
            "M");
   add_names("--video-readings", o.video_readings, "Robots whose scans and cones are shown");
@@ -458,6 +487,16 @@ void add_robots(CLI::App& app, CloneOptions& o) {
       ->needs(robots)
       ->type_name("NAME");
   add_seed(app, o, "Seed of poses, decisions and noise");
+}
+
+void add_robot_from(CLI::App& app, WorldOptions& o) {
+  CLI::Option* const from =
+      app.add_option("--robot-from", o.robot_from,
+                     "Robot of another world file, or a type that it defines, for a world without robots such as a ROS "
+                     "map, and to copy (docs/worlds.md)")
+          ->check(not_empty("FILE:NAME such as worlds/robots.inc:create"))
+          ->type_name("FILE:NAME");
+  if (CLI::Option* const of = app.get_option_no_throw("--of"); of != nullptr) from->excludes(of);
 }
 
 void add_in_process(CLI::App& app, InProcessOption& o) {

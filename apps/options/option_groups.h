@@ -79,6 +79,11 @@ void add_until(CLI::App& app, DurationOption& o, const std::string& help);
 /// `--latitude` and `--longitude`.
 void add_origin(CLI::App& app, OriginOption& o, const std::string& group = "Options");
 void add_ports(CLI::App& app, PortOptions& o);
+/// Refuses names of topics that contradict each other, and those that nothing has. @param readings_option of recordings
+/// with readings; null: they have these @throws CLI::Error
+void check_naming(const CLI::App& sub, const char* readings_option = nullptr);
+/// Refuses `options` without any of `wanted`, without which they mean nothing. @throws CLI::RequiresError
+void require_any(const CLI::App& sub, const std::vector<std::string>& options, const std::vector<std::string>& wanted);
 void add_threads(CLI::App& app, ThreadsOption& o);
 /// Other programs beside `run` and `serve`, as options of this group.
 inline constexpr const char* kBridgeGroup = "Bridges to other programs (docs/bridges.md)";
@@ -90,6 +95,8 @@ CLI::Option* add_picture(CLI::App& app, std::string& file,
                          const std::string& help = "Picture to write: .png, .svg or .pdf");
 /// `--size`, `--font-size`, `--dpi` and `--no-title`.
 void add_page(CLI::App& app, PageOption& o);
+/// Options of `add_page`.
+inline const std::vector<std::string> kPageOptions{"--size", "--font-size", "--dpi", "--no-title"};
 /// `--line-styles` of figures with curves.
 void add_line_styles(CLI::App& app, PageOption& o);
 /// `--map-colors` of occupancy maps.
@@ -112,6 +119,8 @@ void add_recording(CLI::App& app, RecordingOption& o);
 void add_sensor_type(CLI::App& app, SenseOptions& o);
 void add_seed(CLI::App& app, SeedOption& o, const std::string& what);
 void add_robots(CLI::App& app, CloneOptions& o);
+/// `--robot-from`, after `add_robots` where both are there.
+void add_robot_from(CLI::App& app, WorldOptions& o);
 void add_controller(CLI::App& app, ControllerOptions& o);
 
 }  // namespace sf::apps

@@ -42,7 +42,8 @@ struct InProcessOption {
 };
 
 struct WorldOptions {
-  std::string world;  ///< world file
+  std::string world;       ///< world file
+  std::string robot_from;  ///< "FILE:NAME" of the robot that a world without one is lent; empty: the default
   world::LoadOptions load;
 };
 

@@ -25,7 +25,7 @@ CLI::Option* add_every(CLI::App& app, double& every, const std::string& help) {
 void add_export(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "export", "Write a recorded run's trajectories and readings as CSV, or its geometry as VTK files for ParaView");
-  auto& o = add_command(*sub, call, export_recording);
+  auto& o = add_command(*sub, call, export_recording, [sub] { require_any(*sub, {"--every", "--height"}, {"--vtk"}); });
   add_examples(*sub, {"out/run -o tables", "out/run --vtk --every 0.5 -o paraview"});
   add_recording(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for the files")

@@ -92,6 +92,7 @@ void add_sense(CLI::App& app, Call& call) {
       ->check(readable(read_pose, "X,Y,YAW_DEG such as 1.5,-2,90"))
       ->type_name("X,Y,YAW_DEG");
   sub->add_option("--robot", o.robot, "Name of the robot (default: the first that has a sensor)")->type_name("NAME");
+  add_robot_from(*sub, o);
   add_sensor_type(*sub, o);
   sub->add_option("--sensor", o.sensor,
                   "Number of its sensor, from 0: of that type, or through all its types where none is named")
@@ -201,6 +202,7 @@ void add_explain(CLI::App& app, Call& call) {
   add_json(*sub, o);
   add_device(*sub, o);
   add_robots(*sub, o);
+  add_robot_from(*sub, o);
   add_threads(*sub, o);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "apps/commands/commands.h"
 #include "apps/commands/run_scenario.h"
@@ -15,12 +16,24 @@ namespace sf::apps {
 
 namespace {
 
+/// Options of add_ports: --laser-port and so on, --ports-per-robot and --wire.
+std::vector<std::string> names_of_ports(const CLI::App& sub) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : sub.get_options()) {
+    const std::string name = option->get_name();
+    if ((name != "--port" && name.ends_with("-port")) || name == "--ports-per-robot" || name == "--wire")
+      names.push_back(name);
+  }
+  return names;
+}
+
 /// Where a scenario takes the place of the world, it states these.
 void refuse_options_of_worlds(const CLI::App& run) {
   const auto world = run.get_option("world")->as<std::string>();
   if (!is_scenario(world)) return;
   for (const auto& [option, key] : {std::pair{"--robots", "robots"},
                                     {"--of", "of"},
+                                    {"--robot-from", "world"},
                                     {"--seed", "seed"},
                                     {"--controller", "controller"},
                                     {"--set", "settings"},
@@ -30,9 +43,15 @@ void refuse_options_of_worlds(const CLI::App& run) {
       throw CLI::ValidationError(option, fmt::format("is for worlds; a scenario states `{}`: change {}", key, world));
 }
 
+void check_run(const CLI::App& run) {
+  refuse_options_of_worlds(run);
+  check_naming(run, "--record-readings");
+  require_any(run, names_of_ports(run), {"--send"});
+}
+
 void add_run(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("run", "Simulate a fleet with its sensors and controllers, as fast as possible");
-  auto& o = add_command(*sub, call, run, [sub] { refuse_options_of_worlds(*sub); });
+  auto& o = add_command(*sub, call, run, [sub] { check_run(*sub); });
   add_examples(*sub, {"worlds/cave.world --robots 50 --duration 30", "worlds/cave.world --robots 4 --record out/run",
                       "worlds/cave.world --robots 9 --duration 20 --video run.webm",
                       "worlds/cave.world --robots 4 --send 127.0.0.1 --real-time", "experiments/simville.toml --view"});
@@ -43,6 +62,7 @@ void add_run(CLI::App& app, Call& call) {
   add_json(*sub, o);
   add_device(*sub, o);
   add_robots(*sub, o);
+  add_robot_from(*sub, o);
   add_controller(*sub, o);
   sub->add_option("--drive", o.drive, "Robot to drive; all others stand (may be repeated; default: every robot)")
       ->check(not_empty("the name of a robot"))
@@ -150,15 +170,23 @@ void add_filter(CLI::App& app, FilterOptions& o) {
 /// Options of `serve` without a meaning where the farm itself moves the robots.
 void refuse_with_lockstep(const CLI::App& sub) {
   if (sub.count("--lockstep") == 0) return;
+  const std::vector<std::string> ports = names_of_ports(sub);
   for (const CLI::Option* option : sub.get_options()) {
     const std::string name = option->get_name();
-    const bool of_ports =
-        (name != "--port" && name.ends_with("-port")) || name == "--ports-per-robot" || name == "--wire";
-    if (option->count() > 0 &&
-        (of_ports || name == "--rate" || name == "--radio" || name == "--forget" || name == "--mirror" ||
-         name == "--filter" || name == "--stale-after" || option->get_group() == kBridgeGroup))
+    const bool of_ports = std::find(ports.begin(), ports.end(), name) != ports.end();
+    if (option->count() > 0 && (of_ports || name == "--spat" || name == "--stale-lights" || name == "--rate" ||
+                                name == "--radio" || name == "--forget" || name == "--mirror" || name == "--filter" ||
+                                name == "--stale-after" || option->get_group() == kBridgeGroup))
       throw CLI::ValidationError(name, "does not go with --lockstep");
   }
+}
+
+void check_serve(const CLI::App& sub) {
+  refuse_with_lockstep(sub);
+  check_naming(sub);
+  if (sub.count("--link-delay") > 0 && sub.count("--clock") > 0 &&
+      sub.get_option("--clock")->as<std::string>() != "estimated")
+    throw CLI::ValidationError("--link-delay", "is for clocks that are estimated: leave it out, or --clock");
 }
 
 void add_lockstep(CLI::App& app, ServeOptions& o) {
@@ -186,7 +214,7 @@ void add_lockstep(CLI::App& app, ServeOptions& o) {
 void add_serve(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "serve", "Serve virtual sensors to robots in other processes: V2V packets in, sensor packets out");
-  auto& o = add_command(*sub, call, serve, [sub] { refuse_with_lockstep(*sub); });
+  auto& o = add_command(*sub, call, serve, [sub] { check_serve(*sub); });
   add_examples(*sub, {"worlds/rooms.world", "worlds/rooms.world --bind 0.0.0.0 --port 9001",
                       "worlds/rooms.world --filter --record out/service", "worlds/cave.world --lockstep --robots 50"});
   add_world(*sub, o);
@@ -235,6 +263,7 @@ void add_serve(CLI::App& app, Call& call) {
           ->type_name("DIR");
   add_compression(*sub, o)->needs(record);
   add_robots(*sub, o);
+  add_robot_from(*sub, o);
   add_bridges(*sub, o);
   add_naming(*sub, o);
   add_until(*sub, o, "Stop after this long [s] (0: at Ctrl-C)");
@@ -297,7 +326,7 @@ void add_robot(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("robot",
                                      "Run one simulated robot as a process of its own, with sensors from a farm that "
                                      "serves (exit 1 when nothing came from the farm)");
-  auto& o = add_command(*sub, call, robot);
+  auto& o = add_command(*sub, call, robot, [sub] { require_any(*sub, {"--tag"}, {"--cameras", "--truth"}); });
   add_examples(*sub, {"worlds/testpath/testpath.world --name roomba0 --controller lane-keeping --duration 30",
                       "worlds/rooms.world --name roomba1 --server 192.168.1.5 --loss 0.1 --delay 0.05"});
   add_world(*sub, o);
@@ -307,6 +336,7 @@ void add_robot(CLI::App& app, Call& call) {
   add_link(*sub, o);
   add_ports(*sub, o);
   sub->add_option("--name", o.robot, "Name of the robot in the world")->required()->type_name("NAME");
+  add_robot_from(*sub, o);
   sub->add_option("--rate", o.rate, "Decisions and packets per second (default: the controller's own)")
       ->check(number(0.1, 1000.0))
       ->type_name("HZ");
@@ -344,7 +374,10 @@ void add_light(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("light",
                                      "Send traffic lights, of a world or a plan, as SAE J2735 messages over UDP, as "
                                      "lights of streets do (SPaT at a rate, MAP once a second), and as V2I to a farm");
-  auto& o = add_command(*sub, call, light);
+  auto& o = add_command(*sub, call, light, [sub] {
+    require_any(*sub, {"--port", "--latitude", "--longitude"}, {"--send"});
+    require_any(*sub, {"--peers"}, {"--farm"});
+  });
   add_examples(*sub, {"worlds/simville/simville.world --send 127.0.0.1",
                       "worlds/simville/simville.world --send 192.168.1.7 --set 'light1=flashing red'",
                       "worlds/simville/lights.toml --farm 127.0.0.1:9000"});
@@ -417,6 +450,7 @@ void add_listen(CLI::App& app, Call& call) {
   add_world(*sub, o);
   add_json(*sub, o);
   add_robots(*sub, o);
+  add_robot_from(*sub, o);
   add_ports(*sub, o);
   add_bind(*sub, o);
   add_from(*sub, o);
@@ -462,7 +496,10 @@ void add_dump(CLI::App& app, Call& call) {
 void add_map(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("map", "Show the occupancy maps that robots send, live in a terminal, and draw them");
-  auto& o = add_command(*sub, call, map);
+  auto& o = add_command(*sub, call, map, [sub] {
+    require_any(*sub, kPageOptions, {"--out"});
+    require_any(*sub, {"--map-colors"}, {"--out"});
+  });
   add_examples(*sub, {"--listen 52008 -o map.png"});
   add_ports_to_bind(*sub, "--listen", o.map_ports, "Port of a robot's map, or a range of ports A-B (may be repeated)")
       ->required();

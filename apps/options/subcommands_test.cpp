@@ -164,7 +164,10 @@ void add_verify(CLI::App& app, Call& call) {
 void add_tradeoff(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "tradeoff", "Measure speed and error of every accuracy mode of a world's sensors on this machine");
-  auto& o = add_command(*sub, call, tradeoff);
+  auto& o = add_command(*sub, call, tradeoff, [sub] {
+    require_any(*sub, kPageOptions, {"--out"});
+    require_any(*sub, {"--format"}, {"--out"});
+  });
   add_examples(*sub, {"worlds/cave.world --max-error 5mm"});
   add_world(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for tradeoff.csv and the picture, tradeoff.png")
@@ -177,6 +180,7 @@ void add_tradeoff(CLI::App& app, Call& call) {
   add_json(*sub, o);
   add_device(*sub, o);
   add_robots(*sub, o);
+  add_robot_from(*sub, o);
   add_threads(*sub, o);
 }
 

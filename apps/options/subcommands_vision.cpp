@@ -48,7 +48,10 @@ void refuse_bind_alone(const CLI::App& sub) {
 void add_vps(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "vps", "Virtual positioning system: find tags in the images of overhead cameras and send a TAG packet for each");
-  auto& o = add_command(*sub, call, vps, [sub] { refuse_bind_alone(*sub); });
+  auto& o = add_command(*sub, call, vps, [sub] {
+    refuse_bind_alone(*sub);
+    require_any(*sub, {"--seed"}, {"--rendered", "--robots"});
+  });
   add_examples(*sub, {"worlds/testbed.toml --rendered 30 --images 20",
                       "lab.toml --input north=/dev/video0 --input south=/dev/video1 --send 192.168.1.5:9000",
                       "lab.toml --input north=photographs --overlay out/pictures",
@@ -115,7 +118,11 @@ void add_calibrate(CLI::App& app, Call& call) {
       "calibrate",
       "Print the [[camera]] section of a testbed file, with the residual: the intrinsics from images of a chessboard, "
       "or the pose from images of surveyed tags");
-  auto& o = add_command(*sub, call, calibrate);
+  auto& o = add_command(*sub, call, calibrate, [sub] {
+    for (const char* board : {"--columns", "--rows", "--square"})
+      if (sub->count(board) > 0 && sub->count("--survey") > 0)
+        throw CLI::ValidationError(board, "is of a chessboard, and --survey looks for tags");
+  });
   add_examples(*sub, {"photographs --columns 9 --rows 6 --square 0.025 --name north > lab.toml",
                       "photographs --columns 6 --rows 4 --square 0.04 --charuco aruco_4x4_50 --marker 0.03",
                       "/dev/video0 --survey lab.toml --name north"});

@@ -188,7 +188,7 @@ class Simulation:
     """A simulated fleet. One thread at a time. Arrays are views without a copy, valid until the next step, put or reset:
     read them anew after it, and copy what you keep. They cannot be written to, unless `writable`."""
 
-    def __init__(self, world: str, *, robots: int = 0, of: str = "", seed: int = 1, threads: int = 0, noise: bool = True,
+    def __init__(self, world: str, *, robots: int = 0, of: str = "", robot_from: str = "", seed: int = 1, threads: int = 0, noise: bool = True,
                  accuracy: str = "", device: str = "", caster: str = "auto",
                  require_vulkan: bool = False, controller: str | type[Controller] = "",
                  settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,

@@ -104,7 +104,8 @@ TEST(Usage, MistakesAreExplained) {
            {{"run", world, "--controller", "wandr"}, "did you mean 'wander'?"},
            {{"help", "rnu"}, "did you mean 'run'?"},
            {{"export", world}, "expected a recording, such as the folder that `run --record` writes, got"},
-           {{"plot", "m.yaml"}, "expected a recording"}}) {
+           {{"plot", "m.yaml"}, "expected a recording"},
+           {{"run", world, "--set", "sped=0.2"}, "has no setting 'sped'; did you mean 'speed'?"}}) {
     const Outcome outcome = run_program(arguments);
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
@@ -132,32 +133,148 @@ TEST(Usage, OptionsThatNeedAnotherOneAreRefusedWithoutIt) {
   const Folder folder;
   const std::string world = our_world("rooms.world"), out = folder.path("out");
   const std::string sweep = SF_SOURCE_DIR "/experiments/sweeps/lane-edge.toml";
-  for (const auto& [arguments, said] :
-       std::vector<Wrong>{{{"run", world, "--of", "roomba0"}, "--of requires --robots"},
-                          {{"run", world, "--record-readings"}, "--record-readings requires --record"},
-                          {{"run", world, "--checkpoint", "1"}, "--checkpoint requires --record"},
-                          {{"run", world, "--resume"}, "--resume requires --record"},
-                          {{"run", world, "--balance", "1"}, "--balance requires --tiles"},
-                          {{"run", world, "--max-error", "5mm"}, "--max-error requires"},
-                          {{"run", world, "--min-rate", "1e6"}, "--min-rate requires"},
-                          {{"serve", world, "--stale", "hide"}, "--stale requires --filter"},
-                          {{"serve", world, "--clock", "estimated"}, "--clock requires --filter"},
-                          {{"serve", world, "--link-delay", "1"}, "--link-delay requires --filter"},
-                          {{"serve", world, "--hypotheses", "1"}, "--hypotheses requires --filter"},
-                          {{"serve", world, "--wait-for", "1"}, "--wait-for requires --lockstep"},
-                          {{"serve", world, "--lockstep-timeout", "1"}, "--lockstep-timeout requires --lockstep"},
-                          {{"robot", world, "--name", "roomba1", "--clock", "estimated"}, "--clock requires --cameras"},
-                          {{"robot", world, "--name", "roomba1", "--baud", "57600"}, "--baud requires --serial"},
-                          {{"sweep", sweep, "-o", out, "--tasks", "3"}, "--tasks requires --slurm"},
-                          {{"sweep", sweep, "-o", out, "--sbatch=--time=1"}, "--sbatch requires --slurm"},
-                          {{"view", out, "--time", "1"}, "--time requires --3d"},
-                          {{"view", out, "--screenshot", "a.png"}, "--screenshot requires --3d"},
-                          {{"view", out, "--every", "1"}, "--every requires --3d"},
-                          {{"view", out, "--height", "1"}, "--height requires --3d"},
-                          {{"experiment", "mapping"}, "requires --out"},
-                          {{"calibrate", out, "--marker", "0.03"}, "--marker requires --charuco"},
-                          {{"calibrate", out, "--charuco", "aruco_4x4_50"}, "--charuco requires --marker"}})
+  for (const auto& [arguments, said] : std::vector<Wrong>{
+           {{"run", world, "--of", "roomba0"}, "--of requires --robots"},
+           {{"run", world, "--record-readings"}, "--record-readings requires --record"},
+           {{"run", world, "--checkpoint", "1"}, "--checkpoint requires --record"},
+           {{"run", world, "--resume"}, "--resume requires --record"},
+           {{"run", world, "--balance", "1"}, "--balance requires --tiles"},
+           {{"run", world, "--max-error", "5mm"}, "--max-error requires"},
+           {{"run", world, "--min-rate", "1e6"}, "--min-rate requires"},
+           {{"serve", world, "--stale", "hide"}, "--stale requires --filter"},
+           {{"serve", world, "--clock", "estimated"}, "--clock requires --filter"},
+           {{"serve", world, "--link-delay", "1"}, "--link-delay requires --filter"},
+           {{"serve", world, "--hypotheses", "1"}, "--hypotheses requires --filter"},
+           {{"serve", world, "--wait-for", "1"}, "--wait-for requires --lockstep"},
+           {{"serve", world, "--lockstep-timeout", "1"}, "--lockstep-timeout requires --lockstep"},
+           {{"robot", world, "--name", "roomba1", "--clock", "estimated"}, "--clock requires --cameras"},
+           {{"robot", world, "--name", "roomba1", "--baud", "57600"}, "--baud requires --serial"},
+           {{"sweep", sweep, "-o", out, "--tasks", "3"}, "--tasks requires --slurm"},
+           {{"sweep", sweep, "-o", out, "--sbatch=--time=1"}, "--sbatch requires --slurm"},
+           {{"view", out, "--time", "1"}, "--time requires --3d"},
+           {{"view", out, "--screenshot", "a.png"}, "--screenshot requires --3d"},
+           {{"view", out, "--every", "1"}, "--every requires --3d"},
+           {{"view", out, "--height", "1"}, "--height requires --3d"},
+           {{"experiment", "mapping"}, "requires --out"},
+           {{"run", world, "--topics", "nav2"}, "--topics requires --record, --ros2 or --view"},
+           {{"run", world, "--odometry", "truth"}, "--odometry requires --record, --ros2 or --view"},
+           {{"run", world, "--external", "mapper"}, "--external requires --record, --ros2 or --view"},
+           {{"run", world, "--player", "0", "--topics", "nav2"}, "--topics requires"},
+           {{"run", world, "--too-near", "min"}, "--too-near requires --record, --ros2 or --view"},
+           {{"serve", world, "--topics", "nav2"}, "--topics requires --record, --ros2 or --view"},
+           {{"serve", world, "--too-near", "min"}, "--too-near requires --record, --ros2 or --view"},
+           {{"run", world, "--record", out, "--odometry", "exact"}, "--odometry: exact requires --record-readings"},
+           {{"run", world, "--wire", "thesis"}, "--wire requires --send"},
+           {{"run", world, "--laser-port", "5000"}, "--laser-port requires --send"},
+           {{"run", world, "--ports-per-robot", "9"}, "--ports-per-robot requires --send"},
+           {{"run", world, "--video", "a.webm", "--video-around", "2"}, "requires --video-follow"},
+           {{"robot", world, "--name", "roomba1", "--tag", "3"}, "--tag requires --cameras or --truth"},
+           {{"light", world, "--farm", "127.0.0.1:9", "--port", "9"}, "--port requires --send"},
+           {{"light", world, "--farm", "127.0.0.1:9", "--latitude", "9"}, "--latitude requires --send"},
+           {{"light", world, "--send", "127.0.0.1", "--peers", "p"}, "--peers requires --farm"},
+           {{"map", "--listen", "52000", "--size", "88"}, "--size requires --out"},
+           {{"map", "--listen", "52000", "--map-colors", "ros"}, "--map-colors requires --out"},
+           {{"tradeoff", world, "--dpi", "300"}, "--dpi requires --out"},
+           {{"tradeoff", world, "--format", "pdf"}, "--format requires --out"},
+           {{"export", out, "-o", out, "--every", "1"}, "--every requires --vtk"},
+           {{"export", out, "-o", out, "--height", "1"}, "--height requires --vtk"},
+           {{"vps", our_world("testbed.toml"), "--seed", "2"}, "--seed requires --rendered or --robots"},
+           {{"calibrate", out, "--marker", "0.03"}, "--marker requires --charuco"},
+           {{"calibrate", out, "--charuco", "aruco_4x4_50"}, "--charuco requires --marker"}})
     expect_refused(arguments, said);
+}
+
+/// Options that contradict each other, in any words.
+TEST(Usage, OptionsThatContradictAreRefused) {
+  const Folder folder;
+  const std::string world = our_world("rooms.world"), out = folder.path("out");
+  const Words sensor{"run", world, "--record", out, "--record-readings", "--topics", "sensor"};
+  for (const Words& more : std::vector<Words>{{"--odometry", "encoders"},
+                                              {"--odometry", "exact"},
+                                              {"--external", "localizer"},
+                                              {"--external", "filter"},
+                                              {"--external", "mapper,filter"}}) {
+    Words words = sensor;
+    words.insert(words.end(), more.begin(), more.end());
+    expect_refused(words, "--topics: sensor has no frame odom, and true odometry");
+    words[0] = "serve";
+    words.erase(words.begin() + 4);  // --record-readings
+    expect_refused(words, "--topics: sensor has no frame odom, and true odometry");
+  }
+  for (const Words& more : std::vector<Words>{{"--odometry", "truth"}, {"--external", "mapper"}}) {
+    Words words = sensor;
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"--duration", "0.1"});
+    EXPECT_EQ(run_program(words).code, 0) << more[1] << " says the same";
+  }
+  for (const auto& [arguments, said] : std::vector<Wrong>{
+           {{"serve", world, "--filter", "--clock", "trusted", "--link-delay", "0.1"}, "--link-delay: is for clocks"},
+           {{"serve", world, "--lockstep", "--spat", "9010"}, "--spat: does not go with --lockstep"},
+           {{"serve", world, "--lockstep", "--stale-lights", "plan"}, "--stale-lights: does not go with --lockstep"},
+           {{"calibrate", out, "--survey", "lab.toml", "--rows", "6"}, "--rows: is of a chessboard"},
+           {{"run", world, "--robots", "2", "--of", "roomba1", "--robot-from", "a.inc:b"}, "excludes"}})
+    expect_refused(arguments, said);
+}
+
+/// Names that are taken are told of recordings, too: of sensors where readings are recorded.
+TEST(Usage, TakenNamesOfTopicsAreToldOfRecordings) {
+  const Folder folder;
+  const std::string world =
+      folder.write("w.world",
+                   "position( name \"map\" size [0.3 0.3 0.1] laser( samples 3 ) )\n"
+                   "position( name \"a b\" pose [2 0 0 0] size [0.3 0.3 0.1] laser( samples 3 ) )\n"
+                   "position( name \"a-b\" pose [4 0 0 0] size [0.3 0.3 0.1] laser( samples 3 ) )\n");
+  const std::string taken = "sensorfarm: topics: robot 'map' is /map_2, since /map is taken\n";
+  const Outcome run = run_program({"run", world, "--duration", "0.2", "--record", folder.path("r")});
+  EXPECT_NE(run.err.find(taken), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("topics: robot 'a-b' is /a_b_2"), std::string::npos) << run.err;
+  EXPECT_EQ(run.err.find("topics"), run.err.rfind("topics: robot 'map'")) << "once: " << run.err;
+  const Outcome serve = run_program({"serve", world, "--port", "0", "--duration", "0.2", "--record", folder.path("s")});
+  EXPECT_NE(serve.err.find(taken), std::string::npos) << serve.err;
+  const Outcome lockstep =
+      run_program({"serve", world, "--lockstep", "--port", "0", "--duration", "0.2", "--record", folder.path("l")});
+  EXPECT_NE(lockstep.err.find(taken), std::string::npos) << lockstep.err;
+  const Outcome none = run_program({"run", world, "--duration", "0.2"});
+  EXPECT_EQ(none.err.find("topics"), std::string::npos) << none.err;
+}
+
+TEST(Usage, RunsThatDoNothingSaySo) {
+  const std::string world = our_world("rooms.world");
+  for (const char* duration : {"0", "0.01"}) {
+    const Outcome outcome = run_program({"run", world, "--duration", duration});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find(std::string("--duration ") + duration + " simulates nothing, since a tick takes 0.1 s"),
+              std::string::npos)
+        << outcome.err;
+  }
+  const Outcome tick = run_program({"run", world, "--duration", "0.1", "--tiles"});
+  EXPECT_EQ(tick.err.find("simulates nothing"), std::string::npos) << tick.err;
+  EXPECT_NE(tick.err.find("--tiles has no effect in one process"), std::string::npos) << tick.err;
+}
+
+/// TOML files of other commands.
+TEST(Usage, FilesOfOtherCommandsAreNamed) {
+  const std::string source = SF_SOURCE_DIR;
+  const std::string sweep = source + "/experiments/sweeps/lane-edge.toml",
+                    scenario = source + "/experiments/mapping.toml";
+  const std::string testbed = our_world("testbed.toml"), plan = our_world("simville/lights.toml");
+  const Folder folder;
+  for (const char* command : {"run", "test"}) {
+    for (const auto& [file, said] :
+         {std::pair{sweep, "this file is a sweep, for `sensorfarm sweep`; expected a scenario"},
+          {testbed, "this file is a testbed, for `sensorfarm vps`"},
+          {plan, "this file is a plan of traffic lights, for `sensorfarm light`"},
+          {our_world("simville/simville.toml"), "this file is of a road network"}}) {
+      const Outcome outcome = run_program({command, file});
+      EXPECT_NE(outcome.code, 0);
+      EXPECT_NE((outcome.err + outcome.out).find(said), std::string::npos) << outcome.err << outcome.out;
+    }
+  }
+  expect_refused({"sweep", scenario, "-o", folder.path("o")}, "this file is a scenario, for `sensorfarm run`");
+  expect_refused({"vps", scenario}, "this file is a scenario");
+  const std::string minutes =
+      folder.write("m.toml", "world = \"" + our_world("rooms.world") + "\"\nduration = \"5 min\"\n");
+  expect_refused({"run", minutes}, "m.toml:2: 'duration' expects a number from 0 to 1e+09, in seconds; got \"5 min\"");
 }
 
 TEST(Usage, VersionIsPrinted) {
@@ -419,6 +536,21 @@ TEST(Devices, TheChosenOneIsNamed) {
   EXPECT_EQ(facts.text("/devices/" + std::to_string(facts.size("/devices") - 1) + "/name"), "host");
   EXPECT_EQ(chosen, 1u);
   EXPECT_NE(run_program({"devices"}).out.find("self-check passed"), std::string::npos);
+}
+
+TEST(Devices, TheHostIsNamedInAnyCase) {
+  const std::string world = our_world("rooms.world");
+  for (const char* name : {"host", "Host", "HOST"}) {
+    const Outcome outcome = run_program({"sense", world, "--device", name}, {{"SENSORFARM_CASTER", "auto"}});
+    EXPECT_EQ(outcome.code, 0) << name << outcome.err;
+  }
+  const Outcome listed = run_program({"devices", "--device", "Host"}, {{"SENSORFARM_CASTER", "auto"}});
+  EXPECT_EQ(listed.code, 0) << listed.err;
+  for (const char* name : {"hots", "Hos"}) {
+    const Outcome outcome = run_program({"sense", world, "--device", name});
+    EXPECT_EQ(outcome.code, 3) << name;
+    EXPECT_NE(outcome.err.find("did you mean 'host'?"), std::string::npos) << outcome.err;
+  }
 }
 
 TEST(Devices, NoSuchDeviceEndsWithThree) {

@@ -208,6 +208,49 @@ TEST(Library, ErrorsHaveFileAndLine) {
   EXPECT_THROW(Simulation(kCave, {.device = "no such device"}), DeviceError);
 }
 
+/// Never those of the command line.
+TEST(Library, MessagesNameOptionsOfTheLibrary) {
+  const std::vector<std::string> messages{
+      refusal_of<DeviceError>([] { Simulation simulation(kCave, {.device = "hots"}); }),
+      refusal_of<DeviceError>([] { Simulation simulation(kCave, {.device = "host", .require_vulkan = true}); }),
+      refusal_of<Error>([] { Simulation simulation(kCave, {.accuracy = "fast"}); }),
+      refusal_of<Error>([] { Simulation simulation(kCave, {.robot_from = "worlds/robots.inc:create"}); })};
+  for (const std::string& message : messages) EXPECT_EQ(message.find("--"), std::string::npos) << message;
+  expect_in("name another with device", messages[0]);
+  expect_in("did you mean 'host'?", messages[0]);
+  expect_in("(require_vulkan, SENSORFARM_REQUIRE_VULKAN or caster=\"vulkan\")", messages[1]);
+  expect_in("accuracy: there is no accuracy \"fast\"", messages[2]);
+  expect_in("expected robots=N, too", messages[3]);
+  const std::string noisy = "position( ctrl \"fasr\" ranger( noise [0.1 0 0] sensor( ) ) )";
+  const Simulation simulation = Simulation::from_text(noisy, {.device = "Host"});
+  ASSERT_EQ(simulation.warnings().size(), 2u);
+  for (const std::string& warning : simulation.warnings()) EXPECT_EQ(warning.find("--"), std::string::npos) << warning;
+}
+
+TEST(Library, ARobotOfAnotherFileIsLentAndCopied) {
+  const std::string own = SF_SOURCE_DIR "/worlds/simville/simville.world:car";
+  const std::string bare = "model( size [9 0.1 1] pose [0 4 0 0] ) model( size [9 0.1 1] pose [0 -4 0 0] )";
+  const Simulation one = Simulation::from_text(bare, {.robot_from = own});
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_EQ(one.robots()[0].name, "car1");
+  EXPECT_EQ(Simulation(kCave, {.robots = 3, .robot_from = "worlds/robots.inc:create"}).size(), 3u);
+  expect_in("has no robot 'crate'; did you mean 'create'?", refusal_of<Error>([] {
+              Simulation simulation(kCave, {.robots = 2, .robot_from = "worlds/robots.inc:crate"});
+            }));
+  expect_in("expected one of them", refusal_of<Error>([&] {
+              Simulation simulation(kCave, {.robots = 2, .of = "roomba1", .robot_from = own});
+            }));
+}
+
+TEST(Library, TakenNamesOfRecordedTopicsAreWarnings) {
+  const auto folder = std::filesystem::temp_directory_path() / "sensorfarm_library_names";
+  const Simulation simulation =
+      Simulation::from_text("position( name \"map\" laser( samples 3 ) )", {.record = folder.string()});
+  ASSERT_EQ(simulation.warnings().size(), 1u);
+  expect_in("topics: robot 'map' is /map_2", simulation.warnings()[0]);
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Library, CastersGiveTheSameBytes) {
   Simulation host(kCave, {.robots = 4, .caster = "host"}), vulkan(kCave, {.robots = 4, .caster = "vulkan"});
   drive(host, 5), drive(vulkan, 5);
