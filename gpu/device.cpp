@@ -32,7 +32,9 @@ bool names_host(const std::string& wanted) {
 std::string suggest_device(const std::string& wanted, const DeviceCandidates& candidates) {
   std::vector<std::string_view> names{kHostDevice};
   for (const DeviceInfo& info : candidates.info) names.emplace_back(info.name);
-  return wanted.empty() ? "" : base::suggest(wanted, names);
+  std::string word = wanted;
+  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
+  return word.empty() ? "" : base::suggest(word, names);
 }
 
 std::string no_device_message(const Instance& instance, const DeviceCandidates& candidates, const std::string& wanted) {

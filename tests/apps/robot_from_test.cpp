@@ -33,7 +33,7 @@ TEST(RobotFrom, TakesThePlaceOfTheRobotThatAMapIsLent) {
   EXPECT_EQ(Json(many.out).number("/robots"), 5);
   const Outcome sense = run_program({"sense", map, "--robot-from", own});
   EXPECT_EQ(sense.code, 0) << sense.err;
-  EXPECT_NE(sense.out.find("scout1"), std::string::npos) << sense.out;
+  EXPECT_NE(sense.err.find("scout1 at ("), std::string::npos) << sense.err;
   EXPECT_NE(run_program({"sense", map}).err.find("give --robot-from FILE:NAME"), std::string::npos);
   for (const Words& words : std::vector<Words>{{"serve", map, "--port", "0", "--duration", "0.2"},
                                                {"serve", map, "--lockstep", "--port", "0", "--duration", "0.2"},

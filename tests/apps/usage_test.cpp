@@ -216,8 +216,8 @@ TEST(Usage, OptionsThatContradictAreRefused) {
     expect_refused(arguments, said);
 }
 
-/// Names that are taken are told of recordings, too: of sensors where readings are recorded.
-TEST(Usage, TakenNamesOfTopicsAreToldOfRecordings) {
+/// Names that are taken are printed for recordings, too: of sensors where readings are recorded.
+TEST(Usage, TakenNamesOfTopicsArePrintedForRecordings) {
   const Folder folder;
   const std::string world =
       folder.write("w.world",

@@ -63,7 +63,7 @@ TEST_F(RobotOfFile, IsOneThatTheFileDefines) {
   EXPECT_EQ(world.walls.size(), 4u) << "nothing else of the file";
 }
 
-/// Slips of the definition are told, with their lines; the place of a robot in its own world does not matter.
+/// Slips of the definition are reported, with their lines; the place of a robot in its own world does not matter.
 TEST_F(RobotOfFile, WarningsOfTheFileAreKept) {
   World world;
   append_robot_of(world, write("own.world", kInclude + "\nbox( )\n"), "scout", kWithLasers);
