@@ -188,13 +188,14 @@ class Simulation:
     """A simulated fleet. One thread at a time. Arrays are views without a copy, valid until the next step, put or reset:
     read them anew after it, and copy what you keep. They cannot be written to, unless `writable`."""
 
-    def __init__(self, world: str, *, robots: int = 0, of: str = "", robot_from: str = "", seed: int = 1, threads: int = 0, noise: bool = True,
-                 accuracy: str = "", device: str = "", caster: str = "auto",
+    def __init__(self, world: str, *, robots: int = 0, of: str = "", robot_from: str = "",
+                 seed: int = 1, threads: int = 0, noise: bool = True, accuracy: str = "", device: str = "", caster: str = "auto",
                  require_vulkan: bool = False, controller: str | type[Controller] = "",
                  settings: Mapping[str, Any] = {}, record: str = "", record_readings: bool = False,
                  ranks: bool = False, too_near_min: bool = False, compression: str = "zstd", writable: bool = False) -> None:
         """world: a world file or ROS map (.yaml), also one of the installed worlds. robots: clones of one robot (`of`;
-        else the first with sensors) at free poses; 0: the world's own. seed: of poses, noise and controllers. threads: 0
+        else the first with sensors) at free poses; 0: the world's own. robot_from: "FILE:NAME", a robot of another
+        world file, for a world without robots (a ROS map) or to be cloned. seed: of poses, noise and controllers. threads: 0
         for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row or part of a device's name, or
         "host". require_vulkan: without a usable device DeviceError, not the host. caster:
         auto, vulkan or host. controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty:
