@@ -9,7 +9,7 @@ namespace sf::netio {
 
 namespace {
 
-constexpr std::size_t kCommandHead = 16, kStepBytes = 16, kStateBytes = 80, kValuesHead = 72;  ///< [byte]
+constexpr std::size_t kCommandHead = 16, kValuesHead = 72;  ///< [byte]
 static_assert(kCommandHead + kMaxCommands * kCommandRowBytes <= kMaxPayload);
 static_assert(kValuesHead + kMaxValues * sizeof(double) == kMaxPayload);
 

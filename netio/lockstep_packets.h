@@ -12,12 +12,13 @@
 
 namespace sf::netio {
 
-inline constexpr std::size_t kMaxCommands = 38;           ///< rows of one COMMAND
-inline constexpr std::uint32_t kMaxTicks = 1000;          ///< of one STEP
-inline constexpr std::uint32_t kMaxFetched = 64;          ///< datagrams that one FETCH asks for
-inline constexpr std::size_t kMaxValues = 148;            ///< of one VALUES
-inline constexpr std::uint32_t kMaxTotal = 1u << 24;      ///< values of a reading
-inline constexpr std::size_t kCommandRowBytes = 32;       ///< of one row
+inline constexpr std::size_t kMaxCommands = 38;                  ///< rows of one COMMAND
+inline constexpr std::uint32_t kMaxTicks = 1000;                 ///< of one STEP
+inline constexpr std::uint32_t kMaxFetched = 64;                 ///< datagrams that one FETCH asks for
+inline constexpr std::size_t kMaxValues = 148;                   ///< of one VALUES
+inline constexpr std::uint32_t kMaxTotal = 1u << 24;             ///< values of a reading
+inline constexpr std::size_t kCommandRowBytes = 32;              ///< of one row
+inline constexpr std::size_t kStepBytes = 16, kStateBytes = 80;  ///< of the payloads of STEP and FETCH, and of STATE
 inline constexpr std::uint32_t kDriverLostBit = 1;        ///< STATE: a driving process timed out before this tick
 inline constexpr std::uint32_t kMaxStepCommands = 65536;  ///< one for each id
 

@@ -6,10 +6,11 @@ namespace sf::netio {
 
 namespace {
 
-constexpr std::array<std::string_view, kPacketStatuses> kNames = {
-    "accepted",   "too short",       "bad magic",       "unknown version", "unknown type", "too long",
-    "not finite", "out of range",    "wrong direction", "unknown robot",   "unknown tag",  "unknown light",
-    "not signed", "wrong signature", "replayed",        "unproven",        "wrong source", "stale"};
+constexpr std::string_view kNames[] = {
+#define SF_TEXT(status, text) text,
+    SF_PACKET_STATUSES(SF_TEXT)
+#undef SF_TEXT
+};
 
 }  // namespace
 

@@ -9,29 +9,39 @@
 
 namespace sf::netio {
 
-/// Each datagram gets exactly one status: the first that applies, in this order.
+// Each status: its enumerator, its text in tables and summaries, and its meaning. Each datagram gets exactly one: the
+// first that applies, in this order. A macro, so that enumerators, texts and their number cannot differ.
+// clang-format off
+#define SF_PACKET_STATUSES(X) \
+  X(accepted, "accepted")               /* not dropped */ \
+  X(too_short, "too short")             /* shorter than its header or its type requires */ \
+  X(bad_magic, "bad magic")             /* does not start with "SFPK" */ \
+  X(unknown_version, "unknown version") /* other than version 2 */ \
+  X(unknown_type, "unknown type")       /* a type number unknown to this version */ \
+  X(too_long, "too long")               /* longer than its type */ \
+  X(not_finite, "not finite")           /* contains NaN or infinity */ \
+  X(out_of_range, "out of range")       /* contains a number outside the range in docs/packets.md */ \
+  X(wrong_direction, "wrong direction") /* a reading sent to the farm, or a state sent to a receiver of readings */ \
+  X(unknown_robot, "unknown robot")     /* a robot id that the world does not have */ \
+  X(unknown_tag, "unknown tag")         /* a tag id that the world does not have */ \
+  X(unknown_light, "unknown light")     /* an intersection id that the world does not have */ \
+  X(not_signed, "not signed")           /* without a signature, where the table of peers has a key */ \
+  X(wrong_signature, "wrong signature") /* signed with another key, or changed on its way */ \
+  X(replayed, "replayed")               /* its signature is valid and came before, or is too old */ \
+  X(unproven, "unproven")               /* without the token of its address; answered by a CHALLENGE */ \
+  X(wrong_source, "wrong source")       /* its id is another sender's or address', its port another sensor's, or its farm not selected */ \
+  X(stale, "stale")                     /* its sequence is not newer than the last accepted one */
+// clang-format on
+
+/// As in SF_PACKET_STATUSES.
 enum class PacketStatus : std::uint8_t {
-  accepted,         ///< not dropped
-  too_short,        ///< shorter than its header or its type requires
-  bad_magic,        ///< does not start with "SFPK"
-  unknown_version,  ///< other than version 2
-  unknown_type,     ///< a type number unknown to this version
-  too_long,         ///< longer than its type
-  not_finite,       ///< contains NaN or infinity
-  out_of_range,     ///< contains a number outside the range in docs/packets.md
-  wrong_direction,  ///< a reading sent to the farm, or a state sent to a receiver of readings
-  unknown_robot,    ///< a robot id that the world does not have
-  unknown_tag,      ///< a tag id that the world does not have
-  unknown_light,    ///< an intersection id that the world does not have
-  not_signed,       ///< without a signature, where the table of peers has a key
-  wrong_signature,  ///< signed with another key, or changed on its way
-  replayed,         ///< its signature is valid and came before, or is too old
-  unproven,         ///< without the token of its address; answered by a CHALLENGE
-  wrong_source,  ///< the id is bound to another sender or address, the packet came to another sensor's port, or it is
-                 ///< not from the selected farm
-  stale,         ///< its sequence is not newer than the last accepted one
+#define SF_ENUMERATOR(status, text) status,
+  SF_PACKET_STATUSES(SF_ENUMERATOR)
+#undef SF_ENUMERATOR
 };
-inline constexpr std::size_t kPacketStatuses = 18;
+#define SF_ONE(status, text) +1
+inline constexpr std::size_t kPacketStatuses = SF_PACKET_STATUSES(SF_ONE);
+#undef SF_ONE
 
 /// Text for tables and summaries: "too short", "bad magic", ...
 std::string_view name(PacketStatus status);

@@ -11,8 +11,6 @@ namespace sf::netio {
 
 namespace {
 
-constexpr std::size_t kChallengeBytes = 4;
-constexpr std::size_t kRefusalBytes = 4;
 constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] of session and token
 constexpr std::uint32_t kDockingBit = 1;
 constexpr std::uint32_t kPresentBit = 1;

@@ -140,7 +140,8 @@ struct Refusal {
 
 inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;                           ///< of a complete V2V packet
 inline constexpr std::size_t kTagBytes = 104, kSubscribeBytes = 4, kObjectBytes = 4;  ///< of their payloads
-inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;                ///< V2V packets in one NEIGHBOURS
+inline constexpr std::size_t kChallengeBytes = 4, kRefusalBytes = 4;
+inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;  ///< V2V packets in one NEIGHBOURS
 inline constexpr double kV2vRange = 50.0;  ///< [m] default radius within which the farm forwards V2V
 
 /// Forwarded states of other robots: complete V2V datagrams, one after another.

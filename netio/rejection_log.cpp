@@ -3,38 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
-#include "netio/packets.h"
+#include "netio/packet_forms.h"
 
 namespace sf::netio {
 
 namespace {
 
-struct Form {
-  Type type;
-  const char* name;
-  std::size_t bytes;  ///< header included; 0: not of one size
-};
-constexpr Form kForms[] = {{Type::v2v, "V2V", kV2vBytes},
-                           {Type::tag, "TAG", kHeaderBytes + kTagBytes},
-                           {Type::subscribe, "SUBSCRIBE", kHeaderBytes + kSubscribeBytes},
-                           {Type::start, "START", kHeaderBytes},
-                           {Type::leave, "LEAVE", kHeaderBytes},
-                           {Type::object, "OBJECT", kHeaderBytes + kObjectBytes},
-                           {Type::v2i, "V2I", 0}};
-
 /// "a V2V of 131 bytes", with the size that it should have.
 std::string size_text(std::span<const std::uint8_t> bytes, bool is_short) {
   if (bytes.size() < kHeaderBytes)
     return fmt::format("{} bytes: every packet begins with a header of {} bytes", bytes.size(), kHeaderBytes);
-  const auto form = std::find_if(std::begin(kForms), std::end(kForms),
-                                 [&](const Form& f) { return static_cast<std::uint8_t>(f.type) == bytes[kTypeAt]; });
-  const std::string size = form == std::end(kForms)
+  const PacketForm* const form = find_packet_form(static_cast<Type>(bytes[kTypeAt]));
+  const std::string size = form == nullptr
                                ? fmt::format("a packet of type {} and {} bytes", bytes[kTypeAt], bytes.size())
                                : fmt::format("a {} of {} bytes", form->name, bytes.size());
   const std::string fault = fmt::format("{} is too {}", size, is_short ? "short" : "long");
-  return form == std::end(kForms) || form->bytes == 0 ? fault : fmt::format("{}: expected {}", fault, form->bytes);
+  return form == nullptr || form->bytes == 0 ? fault : fmt::format("{}: expected {}", fault, form->bytes);
 }
 
 std::string ids_text(std::span<const std::uint32_t> ids) {

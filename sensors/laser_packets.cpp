@@ -15,10 +15,7 @@ namespace {
 
 constexpr double kPlainPerMetre = 1e3;
 constexpr double kExtendedPerMetre = 1e4;
-constexpr double kRangeSlack = 1e-3;                 ///< [m] one unit of the coarser wire form
-constexpr std::size_t kMaxPayload = 1400 - 64 - 80;  ///< [byte] between the header and the signature
-constexpr std::size_t kPartHeaderBytes = 16;
-static_assert(kPartHeaderBytes + 4 * kPartRays <= kMaxPayload);
+constexpr double kRangeSlack = 1e-3;  ///< [m] one unit of the coarser wire form
 
 bool fits_plain(const SensorSpec& sensor) { return sensor.elements <= kPlainRays && sensor.limit <= kPlainRange; }
 

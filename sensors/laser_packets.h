@@ -15,11 +15,13 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint32_t kPlainRays = 361;           ///< most rays of the plain and the thesis form
-inline constexpr double kPlainRange = 65.535;              ///< [m] largest range of these two forms
-inline constexpr std::uint32_t kPartRays = 310;            ///< rays of each extended part except the last
-inline constexpr std::uint32_t kExtendedRays = 1'000'000;  ///< most rays of a scan
-inline constexpr std::uint32_t kNoReturn = 0xFFFFFFFFu;    ///< extended word for an infinite range
+inline constexpr std::uint32_t kPlainRays = 361;     ///< most rays of the plain and the thesis form
+inline constexpr double kPlainRange = 65.535;        ///< [m] largest range of these two forms
+inline constexpr std::uint32_t kPartRays = 310;      ///< rays of each extended part except the last
+inline constexpr std::size_t kPartHeaderBytes = 16;  ///< of an extended part, before its rays
+inline constexpr std::size_t kPartBytes = kPartHeaderBytes + 4 * kPartRays;  ///< of the longest payload
+inline constexpr std::uint32_t kExtendedRays = 1'000'000;                    ///< most rays of a scan
+inline constexpr std::uint32_t kNoReturn = 0xFFFFFFFFu;                      ///< extended word for an infinite range
 
 /// The reason for which `wire` cannot carry this laser's scans, with a remedy; empty when it can.
 std::string laser_wire_problem(const SensorSpec& sensor, WireFormat wire);

@@ -7,9 +7,10 @@
 #include <limits>
 
 #include "maps/map_packets.h"
+#include "netio/packet_forms.h"
+#include "server/sensor_streams.h"
 #include "sensors/laser_packets.h"
 #include "sensors/occupancy.h"
-#include "server/sensor_streams.h"
 
 namespace sf::server {
 
@@ -233,40 +234,9 @@ PacketStatus add_reading(const netio::Header& header, std::span<const std::uint8
   return PacketStatus::accepted;
 }
 
-std::string name_of(netio::Type type) {
-  switch (type) {
-    case netio::Type::v2v:
-      return "V2V";
-    case netio::Type::tag:
-      return "TAG";
-    case netio::Type::subscribe:
-      return "SUBSCRIBE";
-    case netio::Type::start:
-      return "START";
-    case netio::Type::leave:
-      return "LEAVE";
-    case netio::Type::challenge:
-      return "CHALLENGE";
-    case netio::Type::v2i:
-      return "V2I";
-    case netio::Type::object:
-      return "OBJECT";
-    case netio::Type::refusal:
-      return "REFUSAL";
-    case netio::Type::neighbours:
-      return "NEIGHBOURS";
-    case netio::Type::command:
-      return "COMMAND";
-    case netio::Type::step:
-      return "STEP";
-    case netio::Type::fetch:
-      return "FETCH";
-    case netio::Type::state:
-      return "STATE";
-    case netio::Type::values:
-      return "VALUES";
-  }
-  return std::string(sensors::find_sensor_type(netio::sensor_type_of(type))->name);
+std::string_view name_of(netio::Type type) {
+  const netio::PacketForm* const form = netio::find_packet_form(type);
+  return form != nullptr ? form->name : sensors::find_sensor_type(netio::sensor_type_of(type))->name;
 }
 
 }  // namespace

@@ -1,8 +1,17 @@
 #include "server/sensor_streams.h"
 
+#include "maps/map_packets.h"
+#include "sensors/laser_packets.h"
+#include "sensors/plain_packets.h"
+
 namespace sf::server {
 
 namespace {
+
+// Sensor types have no packets; here their longest payloads meet them.
+static_assert(sensors::kPartBytes <= netio::kMaxPayload);
+static_assert(sizeof(std::int32_t) * sensors::kMaxPlainWords < netio::kMaxPayload);
+static_assert(sizeof(std::uint32_t) * maps::kPartWords < netio::kMaxPayload);
 
 netio::PacketStatus reason_of(sensors::PayloadError fault) {
   switch (fault) {

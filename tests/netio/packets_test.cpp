@@ -490,7 +490,9 @@ TEST(PacketStatus, EachHasItsOwnName) {
     for (std::size_t j = 0; j < i; ++j)
       EXPECT_NE(name(static_cast<PacketStatus>(i)), name(static_cast<PacketStatus>(j)));
   }
+  EXPECT_EQ(name(PacketStatus::wrong_source), "wrong source");
   EXPECT_EQ(name(PacketStatus::stale), "stale");
+  EXPECT_EQ(static_cast<std::size_t>(PacketStatus::stale) + 1, kPacketStatuses) << "the last one";
 }
 
 TEST(PacketStatus, CountsSayWhatHappened) {

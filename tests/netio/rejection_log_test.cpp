@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/time.h"
+#include "netio/packet_forms.h"
 #include "netio/packets.h"
 #include "tests/netio/log_pipe.h"
 #include "tests/units.h"
@@ -35,6 +36,46 @@ TEST(RejectionText, NamesTheFaultAndTheRemedy) {
   bytes[kVersionAt] = 1;
   EXPECT_EQ(rejection_text(PacketStatus::unknown_version, bytes, kRobots),
             "version 1 of the protocol: expected 2; update the sender");
+}
+
+/// Packets of processes in lockstep, too.
+TEST(RejectionText, NamesEveryType) {
+  base::Bytes bytes = v2v();
+  bytes[kTypeAt] = static_cast<std::uint8_t>(Type::step);
+  bytes.resize(kHeaderBytes + 15);
+  EXPECT_EQ(rejection_text(PacketStatus::too_short, bytes, kRobots), "a STEP of 79 bytes is too short: expected 80");
+  bytes[kTypeAt] = static_cast<std::uint8_t>(Type::command);
+  EXPECT_EQ(rejection_text(PacketStatus::too_short, bytes, kRobots), "a COMMAND of 79 bytes is too short")
+      << "its size depends on its rows";
+}
+
+/// The decoder knows all types of the table, and their sizes are those that it takes.
+TEST(PacketForms, AreThoseOfTheDecoder) {
+  int forms = 0;
+  for (int number = 0; number < 256; ++number) {
+    const auto type = static_cast<Type>(number);
+    const PacketForm* const form = find_packet_form(type);
+    base::Bytes bytes = v2v();
+    bytes[kTypeAt] = static_cast<std::uint8_t>(number);
+    bytes.resize(form != nullptr && form->bytes > 0 ? form->bytes : kHeaderBytes);
+    const auto status = [&](std::size_t size) {
+      Packet packet;
+      bytes.resize(size);
+      return decode(bytes, packet);
+    };
+    EXPECT_EQ(form == nullptr && sensor_type_of(type) == 0, status(bytes.size()) == PacketStatus::unknown_type)
+        << number;
+    if (form == nullptr) continue;
+    ++forms;
+    EXPECT_EQ(form->type, type);
+    if (form->bytes == 0) continue;
+    const PacketStatus right = status(form->bytes);
+    EXPECT_TRUE(right != PacketStatus::too_short && right != PacketStatus::too_long)
+        << form->name << ": " << name(right);
+    EXPECT_EQ(status(form->bytes + 1), PacketStatus::too_long) << form->name;
+    EXPECT_EQ(status(form->bytes - 1), PacketStatus::too_short) << form->name;
+  }
+  EXPECT_EQ(forms, 15);
 }
 
 // Every reason that is not another log's has words of its own.

@@ -1,0 +1,34 @@
+#include "netio/packet_forms.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace sf::netio {
+
+namespace {
+
+constexpr PacketForm kForms[] = {{Type::v2v, "V2V", kV2vBytes},
+                                 {Type::tag, "TAG", kHeaderBytes + kTagBytes},
+                                 {Type::subscribe, "SUBSCRIBE", kHeaderBytes + kSubscribeBytes},
+                                 {Type::start, "START", kHeaderBytes},
+                                 {Type::leave, "LEAVE", kHeaderBytes},
+                                 {Type::challenge, "CHALLENGE", kHeaderBytes + kChallengeBytes},
+                                 {Type::command, "COMMAND", 0},
+                                 {Type::step, "STEP", kHeaderBytes + kStepBytes},
+                                 {Type::fetch, "FETCH", kHeaderBytes + kStepBytes},
+                                 {Type::v2i, "V2I", 0},
+                                 {Type::object, "OBJECT", kHeaderBytes + kObjectBytes},
+                                 {Type::refusal, "REFUSAL", kHeaderBytes + kRefusalBytes},
+                                 {Type::neighbours, "NEIGHBOURS", 0},
+                                 {Type::state, "STATE", kHeaderBytes + kStateBytes},
+                                 {Type::values, "VALUES", 0}};
+
+}  // namespace
+
+const PacketForm* find_packet_form(Type type) {
+  const auto* const form =
+      std::find_if(std::begin(kForms), std::end(kForms), [&](const PacketForm& f) { return f.type == type; });
+  return form == std::end(kForms) ? nullptr : form;
+}
+
+}  // namespace sf::netio
