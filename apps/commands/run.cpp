@@ -11,21 +11,22 @@
 
 #include <fmt/format.h>
 
-#include "apps/commands/commands.h"
-#include "apps/commands/rank_run.h"
-#include "apps/commands/run_outputs.h"
-#include "apps/commands/run_scenario.h"
 #include "apps/options/automatic_accuracy.h"
 #include "apps/options/bridge_options.h"
+#include "apps/processes/checkpoints.h"
+#include "apps/commands/commands.h"
 #include "apps/options/controller_options.h"
 #include "apps/options/default_robot.h"
 #include "apps/options/layout_options.h"
 #include "apps/options/open_device.h"
-#include "apps/processes/checkpoints.h"
-#include "apps/processes/stop_signals.h"
 #include "apps/reports/progress_line.h"
+#include "apps/commands/rank_run.h"
 #include "apps/reports/rate_warnings.h"
 #include "apps/reports/report.h"
+#include "apps/commands/run_outputs.h"
+#include "apps/commands/run_scenario.h"
+#include "apps/commands/run_settings.h"
+#include "apps/processes/stop_signals.h"
 #include "apps/reports/strayed_robots.h"
 #include "apps/reports/text.h"
 #include "base/contact_onset.h"
@@ -122,8 +123,7 @@ struct Ground {
     if (file.empty())
       world::update_extent_and_hash(scenery.world);
     else
-      scenery.world =
-          load_with_robots(source_of(options, file, nullptr), seed_of(options), scenarios::OwnRobot::where_needed);
+      scenery.world = load_with_robots(file, load_options(options, nullptr), 0, options.seed);
     scenery.layout = layout_of(scenery.world, options);
     return scenery;
   }
@@ -150,17 +150,10 @@ struct Ground {
 
   /// Ranks with tiles read outlines when they know their part, except where each keeps the whole world, and its
   /// recording.
-  static WorldOptions source_of(const RunOptions& options, const std::string& file, const cluster::Ranks* ranks) {
-    WorldOptions source = options;
-    source.world = file;
-    source.load.leave_outlines = ranks != nullptr && options.tiles && options.balance == 0.0 && options.record.empty();
-    return source;
-  }
-  /// No copies.
-  static CloneOptions seed_of(const RunOptions& options) {
-    CloneOptions clones;
-    clones.seed = options.seed;
-    return clones;
+  static world::LoadOptions load_options(const RunOptions& options, const cluster::Ranks* ranks) {
+    world::LoadOptions load = options.load;
+    load.leave_outlines = ranks != nullptr && options.tiles && options.balance == 0.0 && options.record.empty();
+    return load;
   }
   static std::optional<server::StreamLayout> layout_of(const world::World& world, const RunOptions& options) {
     if (options.send.empty()) return std::nullopt;
@@ -168,7 +161,7 @@ struct Ground {
   }
   world::World load(const RunOptions& options, const cluster::Ranks* ranks) const {
     if (scenario) return load_scenario_world(*scenario, options.load);
-    return load_with_robots(source_of(options, options.world, ranks), options);
+    return load_with_robots(options.world, load_options(options, ranks), options.robots, options.seed, options.of);
   }
   const world::World& with_accuracy(const RunOptions& options) {
     choose_accuracy(world, device, options, options.seed, options.threads);
@@ -299,7 +292,7 @@ struct Course {
     facts.farm = simulation.farm().stats();
     facts.hash = simulation.farm().hash();
     outputs.finish(facts);
-    if (ranks != nullptr) add_up(*ranks, facts, simulation.share().passed_on());
+    if (ranks != nullptr) add_up(*ranks, facts, simulation.passed_on());
   }
 };
 
@@ -347,18 +340,10 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
     if (ranks != nullptr) check_for_ranks(options);
     ground.emplace(options, ranks);
     begin(0);
-    live.emplace(options, ground->world, ground->sensor_set,
-                 scenarios::RunSettings{.seed = options.seed,
-                                        .record_readings = true,
-                                        .no_return_inf = options.no_return_inf,
-                                        .caster = ground->caster,
-                                        .too_near_min = options.too_near_min,
-                                        .naming = options.naming},
-                 true);
+    live.emplace(options, ground->world, ground->sensor_set, run_settings(options, ground->caster, true), true);
   });
-  if (live->empty()) print_taken_names(course->outputs.taken_names());
   std::vector<world::Warning> heard = course->simulation.warnings();
-  for (world::Warning& warning : course->simulation.share().warnings_of_starts()) heard.push_back(std::move(warning));
+  for (world::Warning& warning : course->simulation.warnings_of_starts()) heard.push_back(std::move(warning));
   if (!heard.empty()) print_warnings(heard.front().file, heard);
   std::atomic<bool> all_stop = false;
   scenarios::Operator users(live->bridges(), ranks != nullptr ? all_stop : stop_requested(),
@@ -406,13 +391,6 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
 
   const double duration = options.duration.value_or(live->empty() ? 60.0 : kWithoutEnd);
   const double ticks = std::round(duration / ground->world.interval);
-  if (ticks < 1.0)
-    print_message(
-        "--duration {:g} simulates nothing, since a tick takes {:g} s; expected more, or no --duration, which is 60 s, "
-        "and beside bridges without end",
-        duration, ground->world.interval);
-  if (options.tiles && ranks == nullptr)
-    print_message("--tiles has no effect in one process: start several (mpirun -n N sensorfarm run ...)");
   RunReport facts;
   const auto start = std::chrono::steady_clock::now();
   {
@@ -429,7 +407,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
         change_world();
         continue;
       }
-      if (stop_requested()) course->simulation.share().request_stop();
+      if (stop_requested()) course->simulation.request_stop();
       try {
         course->apply_events(*ground, *live);
         advised(ground->world, options, [&] { course->step(users); });
@@ -437,7 +415,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
         next = scenarios::Operator::Next::stop;
         break;
       }
-      all_stop = course->simulation.share().stop_agreed();
+      all_stop = course->simulation.stop_agreed();
       const double simulated = course->simulated();
       if (duration < kWithoutEnd && (ranks == nullptr || ranks->rank() == 0))
         progress.show(simulated / duration, fmt::format("{:.0f} s of {:g} s", simulated, duration));

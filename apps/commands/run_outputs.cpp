@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/commands/run_settings.h"
 #include "base/elapsed.h"
 #include "base/time.h"
 #include "netio/address_token.h"
@@ -18,12 +19,7 @@ RunOutputs::RunOutputs(const world::World& world, const sensors::SensorSet& sens
                        const std::string& video)
     : world_(world),
       sensor_set_(sensor_set),
-      settings_{.seed = options.seed,
-                .record_readings = options.record_readings,
-                .no_return_inf = options.no_return_inf,
-                .caster = caster,
-                .too_near_min = options.too_near_min,
-                .naming = options.naming},
+      settings_(run_settings(options, caster, options.record_readings)),
       no_return_filter_(sensor_set, options.no_return_inf),
       session_token_{netio::random_session(), 0},
       sent_movers_(world.movers.size()) {

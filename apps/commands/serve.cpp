@@ -6,27 +6,28 @@
 #include <optional>
 #include <span>
 
-#include "apps/commands/commands.h"
-#include "apps/commands/lockstep.h"
 #include "apps/options/address.h"
 #include "apps/options/automatic_accuracy.h"
 #include "apps/options/bridge_options.h"
+#include "apps/commands/commands.h"
 #include "apps/options/default_robot.h"
+#include "apps/reports/exposure_warning.h"
 #include "apps/options/layout_options.h"
+#include "apps/commands/lockstep.h"
 #include "apps/options/open_device.h"
 #include "apps/options/peers_option.h"
-#include "apps/processes/stop_signals.h"
-#include "apps/reports/exposure_warning.h"
 #include "apps/reports/rate_warnings.h"
 #include "apps/reports/report.h"
+#include "apps/commands/run_settings.h"
+#include "apps/processes/stop_signals.h"
 #include "apps/reports/strayed_robots.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
 #include "base/time.h"
+#include "server/service.h"
 #include "raycast/caster_choice.h"
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
-#include "server/service.h"
 
 namespace sf::apps {
 
@@ -84,20 +85,16 @@ void require_lights(const ServeOptions& options, std::span<const netio::Peer> pe
                                          lights.empty() ? "none" : fmt::format("{}", fmt::join(lights, ", "))));
 }
 
-scenarios::RunSettings run_settings(const ServeOptions& options, bool software) {
-  return {.seed = options.seed,
-          .record_readings = true,
-          .no_return_inf = options.no_return_inf,
-          .caster = raycast::describe_caster(software),
-          .estimated = true,
-          .too_near_min = options.too_near_min,
-          .naming = options.naming};
+scenarios::RunSettings service_settings(const ServeOptions& options, bool software) {
+  scenarios::RunSettings settings = run_settings(options, raycast::describe_caster(software), true);
+  settings.estimated = true;
+  return settings;
 }
 
 /// The recording of a service: its states are estimates, its ticks and samples are at times of its clock.
 record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const ServeOptions& options,
                          bool software) {
-  record::RunInfo info = scenarios::run_info(world, sensor_set, run_settings(options, software));
+  record::RunInfo info = scenarios::run_info(world, sensor_set, service_settings(options, software));
   if (options.rate > 0.0) info.interval = 1.0 / options.rate;
   return info;
 }
@@ -144,7 +141,7 @@ RunReport report_of(const server::ServiceStats& stats, const world::World& world
 
 int serve(const ServeOptions& options) {
   if (options.lockstep) return serve_lockstep(options);
-  world::World world = load_with_robots(options, options);
+  world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   const server::StreamLayout layout = stream_layout_of(world, sensors::SensorSet(world), options);
   const server::ServiceOptions chosen = service_options(options, world);
   gpu::Device device = open_device(options);
@@ -167,8 +164,7 @@ int serve(const ServeOptions& options) {
     }
     StrayedRobots strayed(world);
     if (strayed.names()) service.record_to(strayed);
-    if (recorder && !options.BridgeOptions::any()) print_taken_names(recorder->taken_names());
-    LiveBridges live(options, world, sensor_set, run_settings(options, device.info().software), false);
+    LiveBridges live(options, world, sensor_set, service_settings(options, device.info().software), false);
     if (!live.empty()) service.record_to(live);
     install_stop_handlers();
     print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; Ctrl-C ends it", counted(service.robots(), "robot"),

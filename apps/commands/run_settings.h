@@ -1,0 +1,21 @@
+#pragma once
+// Settings of a run, for its recording and its bridges, from the options of `run` or `serve`.
+
+#include <string>
+
+#include "scenarios/run_info.h"
+
+namespace sf::apps {
+
+/// @param caster description of the ray caster
+template <class Options>
+scenarios::RunSettings run_settings(const Options& options, const std::string& caster, bool record_readings) {
+  return {.seed = options.seed,
+          .record_readings = record_readings,
+          .no_return_inf = options.no_return_inf,
+          .caster = caster,
+          .too_near_min = options.too_near_min,
+          .naming = options.naming};
+}
+
+}  // namespace sf::apps
