@@ -6,7 +6,6 @@
 
 #include "apps/reports/csv_text.h"
 #include "apps/reports/report.h"
-#include "base/csv.h"
 
 namespace sf::apps {
 
@@ -31,13 +30,6 @@ std::string csv_heading(const sensors::SensorType& type) {
 }
 
 }  // namespace
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
@@ -64,7 +56,7 @@ std::string text_of(const world::World& world, const sensors::SensorSet& sensor_
       for (std::uint32_t k = 0; k < column.width; ++k, ++at)
         line += (type.is_scan || at > i * width ? "," : "") + missing_or(reading.values[at], column);
     if (type.is_scan)
-      line += "," + (reading.hits[i] == base::kNoHit ? "" : base::csv_field(world.models[reading.hits[i]].name));
+      line += "," + (reading.hits[i] == base::kNoHit ? "" : csv_field(world.models[reading.hits[i]].name));
     text += line + "\n";
   }
   return text;

@@ -3,10 +3,11 @@
 
 #include <string>
 
+#include "base/csv.h"
+
 namespace sf::apps {
 
-/// In quotes where a comma, a quote or a line end would be misread.
-std::string csv_field(const std::string& text);
+using base::csv_field;
 /// The shortest text that reads back as the same number; empty for not-a-number.
 std::string csv_number(double value);
 
