@@ -69,10 +69,22 @@ int run(int argc, char** argv) {
   }
 }
 
+/// For exit handlers that take longer, and for tests. @return false: it is no such number
+bool read_seconds_to_end() {
+  const char* const text = std::getenv("SENSORFARM_SECONDS_TO_END");
+  if (text == nullptr || *text == '\0') return true;
+  char* end = nullptr;
+  const double seconds = std::strtod(text, &end);
+  if (*end != '\0' || !(seconds >= 0.001 && seconds <= 1e6)) return false;
+  sf::base::set_seconds_to_end(seconds);
+  return true;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   fill_standard_streams();
+  if (!read_seconds_to_end()) return fail(2, "SENSORFARM_SECONDS_TO_END expects a number of seconds from 0.001 to 1e6");
   // A file that may not grow any more is an error with a message, as a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);
   if (sf::apps::needs_supervision(argc, argv))

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <pthread.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,6 +27,7 @@ std::atomic<PluginCalls*> shared_calls{&own_calls};
 std::atomic<std::uint64_t> taken_rows{0};  ///< bit k: a thread has row k
 static_assert(PluginCalls::kThreads == 64);
 thread_local int thread_row = kNone;  ///< of this thread in the calls
+double end_limit = 10.0;              ///< [s]
 bool is_watching = false;             ///< handlers are installed
 thread_local bool forked_in_call = false;
 bool is_copy = false;  ///< a call forked this process
@@ -202,14 +204,21 @@ void renew_plugin_watch() {
   if (is_watching) on_exit(on_exit_called, nullptr);
 }
 
+double seconds_to_end() { return end_limit; }
+
+void set_seconds_to_end(double seconds) { end_limit = seconds; }
+
 void finish_plugin_calls(int code) {
   PluginCalls& calls = *shared_calls.load();
   calls.code = code;
   calls.finished = true;
   if (&calls != &own_calls || called(calls).empty()) return;
-  late_line = fmt::format("sensorfarm: {}, {:g} s after the end of the program\n", goes_on(calls), kSecondsToEnd);
+  late_line = fmt::format("sensorfarm: {}, {:g} s after the end of the program\n", goes_on(calls), end_limit);
   std::signal(SIGALRM, on_late);
-  alarm(static_cast<unsigned>(kSecondsToEnd));
+  const double whole = std::floor(end_limit);
+  const itimerval once{.it_interval = {},
+                       .it_value = {static_cast<time_t>(whole), static_cast<suseconds_t>(1e6 * (end_limit - whole))}};
+  setitimer(ITIMER_REAL, &once, nullptr);
 }
 
 std::string goes_on(const PluginCalls& calls) {

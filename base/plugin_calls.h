@@ -14,9 +14,12 @@
 
 namespace sf::base {
 
-/// The calls of one process. Its parent can read them where they are in shared memory.
-inline constexpr double kSecondsToEnd = 10.0;  ///< for exit handlers: those of Python wait for its threads
+/// [s] for exit handlers, since those of Python wait for its threads: 10 unless set.
+double seconds_to_end();
+/// @param seconds in [1e-3, 1e6]. To be called before threads and child processes exist.
+void set_seconds_to_end(double seconds);
 
+/// The calls of one process. Its parent can read them where they are in shared memory.
 struct PluginCalls {
   static constexpr int kThreads = 64;
   struct Call {
@@ -55,7 +58,7 @@ void watch_plugin_calls();
 void renew_plugin_watch();
 
 /// From now on exit() is the program's own. Without a parent that watches, a process whose plug-ins were called and
-/// that goes on for kSecondsToEnd ends with one line. @param code exit code
+/// that goes on for seconds_to_end() ends with one line. @param code exit code
 void finish_plugin_calls(int code);
 
 /// Names the call that ended the process: "controller 'a' of robot 'b' ended the process (exit code 0) at 3.200 s

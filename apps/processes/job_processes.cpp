@@ -174,7 +174,7 @@ class Children {
     const bool ends = seat.calls.finished;
     const std::size_t row = seat.row;
     if (row != std::exchange(child.row, row) || ends != std::exchange(child.ends, ends)) child.since = Clock::now();
-    const double most = ends ? base::kSecondsToEnd : calls_.timeout;
+    const double most = ends ? base::seconds_to_end() : calls_.timeout;
     if (most == 0.0 || row == kNoRow || child.late || base::seconds_since(child.since) < most) return;
     child.late = true;
     kill(child.pid, SIGKILL);
@@ -183,7 +183,7 @@ class Children {
   std::string cause_of(std::size_t slot, int status) const {
     const Seat& seat = board_.seat(slot);
     if (children_[slot].late && seat.calls.finished)
-      return fmt::format("its process did not end within {:g} s: {}", base::kSecondsToEnd, base::goes_on(seat.calls));
+      return fmt::format("its process did not end within {:g} s: {}", base::seconds_to_end(), base::goes_on(seat.calls));
     if (children_[slot].late) {
       const std::string who = base::under_way(seat.calls);
       return fmt::format("it took more than {:g} s (--timeout){}", calls_.timeout,

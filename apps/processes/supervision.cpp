@@ -95,7 +95,7 @@ class Supervisor {
   void end_where_late() {
     if (page_.calls.finished && !finished_at_) finished_at_ = Clock::now();
     if (finished_at_) {
-      const double most = stops_ > 0 ? kPatience : base::kSecondsToEnd;
+      const double most = stops_ > 0 ? kPatience : base::seconds_to_end();
       if (base::seconds_since(std::max(*finished_at_, since_)) < most) return;
       return end(fmt::format("{}, {:g} s after {}: it ends with the process", base::goes_on(page_.calls), most,
                              stops_ > 0 ? "the request to stop" : "the end of the program"));

@@ -257,17 +257,27 @@ TEST(OwnProcesses, AThreadThatGoesOnIsEndedByARequestToStop) {
   }
 }
 
-/// Without one, too, after the seconds that exit handlers are given; all three wait at once.
+/// Without one, too, after the seconds that exit handlers are given.
 TEST(OwnProcesses, AThreadThatGoesOnIsEnded) {
   const Bench bench;
-  Program child(bench.run("linger")), here(bench.run("linger", {"--in-process"})),
-      test({"test", bench.scenario("a", "linger")});
+  const Environment soon{{"SENSORFARM_SECONDS_TO_END", "0.15"}};
+  Program child(bench.run("linger"), soon), here(bench.run("linger", {"--in-process"}), soon),
+      test({"test", bench.scenario("a", "linger")}, soon);
   for (Program* program : {&child, &here, &test}) {
     const Outcome outcome = program->wait();
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     EXPECT_TRUE(has(outcome.out + outcome.err, "a thread of controller 'test-ends' of robot 'r0' goes on"))
         << outcome.out << outcome.err;
   }
+}
+
+TEST(OwnProcesses, TheSecondsToEndAreANumber) {
+  for (const char* text : {"soon", "0", "-1", "nan", "1e7", "1 s"}) {
+    const Outcome outcome = run_program({"--version"}, {{"SENSORFARM_SECONDS_TO_END", text}});
+    EXPECT_EQ(outcome.code, 2) << text;
+    EXPECT_TRUE(has(outcome.err, "SENSORFARM_SECONDS_TO_END expects a number of seconds")) << outcome.err;
+  }
+  EXPECT_EQ(run_program({"--version"}, {{"SENSORFARM_SECONDS_TO_END", ""}}).code, 0) << "as if it were not set";
 }
 
 /// Exit handlers of plug-ins do not turn a failure into success, nor into an error of another kind.
