@@ -45,8 +45,9 @@ Odometer::Odometer(const MoverInfo& mover, OdometrySource source)
 
 void Odometer::begin() {
   state_ = {};
-  walked_ = {};
+  errors_ = {};
   left_ = right_ = 0.0;
+  counted_ = {};
   away_ = false;
 }
 
@@ -86,23 +87,52 @@ bool Odometer::roll(const base::ReadingBlock& encoder) {
   return true;
 }
 
-/// One step of the pose's covariance. @param middle [rad] heading half way
+/// One step of the errors. @param middle [rad] heading half way
 void Odometer::propagate(double left, double right, double middle) {
-  const double track = encoder_->track, way = 0.5 * (left + right), slip2 = encoder_->slip * encoder_->slip;
-  const double c = std::cos(middle), s = std::sin(middle), dx = way * c, dy = way * s;
-  auto& P = walked_;
-  // x and y move with the error of the heading: F = [1 0 -dy; 0 1 dx; 0 0 1].
-  P = {P[0] - 2 * dy * P[2] + dy * dy * P[5],
-       P[1] + dx * P[2] - dy * P[4] - dx * dy * P[5],
-       P[2] - dy * P[5],
-       P[3] + 2 * dx * P[4] + dx * dx * P[5],
-       P[4] + dx * P[5],
-       P[5]};
-  const double lever = way / (2.0 * track);
-  add_along(P, 0.5 * c + lever * s, 0.5 * s - lever * c, -1.0 / track, slip2 * std::abs(left));
-  add_along(P, 0.5 * c - lever * s, 0.5 * s + lever * c, 1.0 / track, slip2 * std::abs(right));
-  const double rounded_yaw = encoder_->per_count * encoder_->per_count / (6.0 * track * track);
-  add_along(P, -dy, dx, 0.0, rounded_yaw);
+  const double half = 0.5 * (right - left) / encoder_->track, way = 0.5 * (left + right);
+  const double chord = std::abs(half) < 1e-4 ? way : way * std::sin(half) / half;
+  const Errors::Complex along = std::polar(1.0, middle);
+  add_slip(left, right, chord, along);
+  add_rounding(left, right, chord * along);
+}
+
+/// D grows by (way + a) along exp(i (e + n / 2)) - way along, and e by n: the mean over normal errors a of the way and
+/// n of the turn, by E exp(i k n) = exp(-k^2 n^2 / 2) and E a f(n) = E[a n] E f'(n).
+void Odometer::add_slip(double left, double right, double way, Errors::Complex along) {
+  using Complex = Errors::Complex;
+  const double track = encoder_->track, slip2 = encoder_->slip * encoder_->slip;
+  const double nn = slip2 * (std::abs(left) + std::abs(right)) / (track * track);
+  const double aa = slip2 * (std::abs(left) + std::abs(right)) / 4.0;
+  const Complex an(0.0, slip2 * (std::abs(right) - std::abs(left)) / (2.0 * track));
+  const Errors before = errors_;
+  const double e1 = std::exp(-0.5 * before.yaw), e2 = std::exp(-2.0 * before.yaw);  // of exp(ie), exp(2ie)
+  const double n1 = std::exp(-0.125 * nn), n2 = std::exp(-0.5 * nn), n3 = std::exp(-1.125 * nn);
+  const Complex step = way * along, mean = n1 * along * (way + 0.5 * an);
+  const Complex square = n2 * along * along * ((way + an) * (way + an) + aa);
+  Errors& now = errors_;
+  now.position += mean * e1 - step;
+  now.norm += 2.0 * std::real(mean * std::conj(before.back) - step * std::conj(before.position)) + 2.0 * way * way +
+              aa - 2.0 * e1 * std::real(std::conj(step) * mean);
+  now.square +=
+      2.0 * (mean * before.turned - step * before.position) + e2 * square - 2.0 * e1 * step * mean + step * step;
+  now.turned = n2 * before.turned + n3 * e2 * along * (way + 1.5 * an) - n2 * e1 * step;
+  now.back = n2 * before.back + n1 * along * (way - 0.5 * an) - n2 * e1 * step;
+  now.with_yaw +=
+      e1 * (Complex(0.0, before.yaw) * mean + n1 * along * ((way + 0.5 * an) * Complex(0.0, 0.5 * nn) + std::imag(an)));
+  now.yaw += nn;
+}
+
+void Odometer::add_rounding(double left, double right, Errors::Complex step) {
+  const double count = encoder_->per_count;
+  const std::array<double, 2> counts{std::round(left / count), std::round(right / count)};
+  const bool rests = counts == std::array<double, 2>{};
+  if (!rests && counts != counted_) errors_.with_rounded = 0.0;
+  if (!rests) counted_ = counts;
+  const double variance = count * count / (6.0 * encoder_->track * encoder_->track);
+  const Errors::Complex sideways = Errors::Complex(0.0, 1.0) * step;
+  errors_.norm += 2.0 * std::real(std::conj(errors_.with_rounded) * sideways) + std::norm(step) * variance;
+  errors_.square += 2.0 * sideways * errors_.with_rounded + sideways * sideways * variance;
+  errors_.with_rounded += sideways * variance;
 }
 
 /// As stated: with the rounding of the last counts, and at least kLeastVariance.
@@ -110,7 +140,11 @@ void Odometer::state_covariance(double left, double right, double seconds) {
   const double count2 = encoder_->per_count * encoder_->per_count, slip2 = encoder_->slip * encoder_->slip;
   const double track = encoder_->track, yaw = state_.X_OM.yaw;
   OdometryCovariance& stated = state_.covariance = kExact;
-  for (std::size_t i = 0; i < walked_.size(); ++i) stated.pose[i] += walked_[i];
+  const Errors& e = errors_;
+  const Errors::Complex with_yaw = e.with_yaw + e.with_rounded;
+  const double walked[6] = {0.5 * (e.norm + e.square.real()), 0.5 * e.square.imag(), with_yaw.real(),
+                            0.5 * (e.norm - e.square.real()), with_yaw.imag(),       e.yaw};
+  for (std::size_t i = 0; i < stated.pose.size(); ++i) stated.pose[i] += walked[i];
   add_along(stated.pose, std::cos(yaw), std::sin(yaw), 0.0, count2 / 24.0);
   stated.pose[5] += count2 / (6.0 * track * track);
   if (seconds <= 0.0) return;

@@ -6,11 +6,19 @@
 //   if (odometer.has_encoders()) odometer.roll(reading);  // each reading of its encoders
 //   else odometer.move(time, X_WM, velocity);             // each tick
 //
-// The covariance of wheel odometry is propagated to first order (Siegwart and Nourbakhsh, Introduction to Autonomous
-// Mobile Robots, 5.2.4), with the variance slip^2 |d| of a wheel that rolled d. Rounding to counts does not add up
-// along the way, as each count is of the whole way, except that a heading that is off displaces each step sideways.
+// The covariance of wheel odometry has two parts; docs/bridges.md gives the formulas.
+//
+// Slip: the variance slip^2 |d| of a wheel that rolled d. The usual propagation to first order (Siegwart and
+// Nourbakhsh, Introduction to Autonomous Mobile Robots, 5.2.4) fails once the heading is off by some tenths of a
+// radian: it states far too little along a straight way, which such a heading shortens. Deviation: the mean squares
+// here are exact, as those of e^(i error) are for a normal error of the heading.
+//
+// Rounding to counts: at most half a count of each wheel's whole way, which does not add up. But it turns the heading,
+// which displaces each step sideways. While the wheels count the same in each step, as at constant speed, this is the
+// same error from step to step; else another one.
 
 #include <array>
+#include <complex>
 #include <cstdint>
 #include <optional>
 
@@ -63,7 +71,23 @@ class Odometer {
   const OdometryState& state() const { return state_; }
 
  private:
+  /// Mean values of the error D of the position, as a complex number x + iy [m], with the error e [rad] of the heading
+  /// by slip, and with that by rounding.
+  struct Errors {
+    using Complex = std::complex<double>;
+    Complex position;      ///< of D
+    Complex square;        ///< of D^2
+    Complex turned;        ///< of D exp(ie)
+    Complex back;          ///< of D exp(-ie)
+    Complex with_yaw;      ///< of D e
+    Complex with_rounded;  ///< of D and the rounding of the heading
+    double norm = 0.0;     ///< of |D|^2
+    double yaw = 0.0;      ///< of e^2
+  };
+
   void propagate(double left, double right, double middle);
+  void add_slip(double left, double right, double way, Errors::Complex along);
+  void add_rounding(double left, double right, Errors::Complex step);
   void state_covariance(double left, double right, double seconds);
 
   std::optional<EncoderInfo> encoder_;
@@ -71,8 +95,9 @@ class Odometer {
   bool away_ = false;
   double max_forward_;  ///< [m/s]
   OdometryState state_;
-  std::array<double, 6> walked_{};   ///< covariance of the pose, without the rounding of the last counts
+  Errors errors_;                    ///< without the rounding of the last counts
   double left_ = 0.0, right_ = 0.0;  ///< [m] rolled at the last reading
+  std::array<double, 2> counted_{};  ///< by both wheels, in the last step that counted
 };
 
 }  // namespace sf::record
