@@ -9,6 +9,7 @@
 #include "scenarios/coverage.h"
 #include "scenarios/experiment.h"
 #include "scenarios/path_report.h"
+#include "scenarios/visible_area.h"
 #include "sensors/accuracy.h"
 #include "viz/series_figure.h"
 

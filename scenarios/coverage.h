@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,7 +18,7 @@ namespace sf::scenarios {
 class RobotMap {
  public:
   /// Uses the grid of the explorer (control/explore.h), or one of the world's extent where the area is too large for
-  /// that.
+  /// that. Cells are larger where the map would have more than 4.2 million of them.
   /// @param cell [m]
   /// @pre the mover has a laser
   RobotMap(const world::World& world, std::uint32_t mover, double cell = 0.03);
@@ -37,24 +36,6 @@ class RobotMap {
 
 /// Adds each scan to the map of its mover, if there is one. @param maps by row of the mover
 void add_scans(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, RobotMap>& maps);
-
-/// Reference map: everything that the robot's first laser can see from poses which the robot can reach without touching
-/// a wall. Made of scans from the centres of all cells of `geometry` that are connected to the robot's start, with
-/// sixteen headings. Cells whose centre is in view from none of these poses stay unexplored. Movers are ignored.
-maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover, const maps::GridGeometry& geometry);
-
-/// Caches `visible_area` for one world, mover and geometry, since it is slow. The world must outlive it.
-class VisibleArea {
- public:
-  explicit VisibleArea(const world::World& world) : world_(world) {}
-  /// The result lives until the next call.
-  const maps::OccupancyGrid& of(std::uint32_t mover, const maps::GridGeometry& geometry);
-
- private:
-  const world::World& world_;
-  std::uint32_t mover_ = 0;
-  std::optional<maps::OccupancyGrid> grid_;
-};
 
 /// Free cells of a reference, and those of them that are unexplored in a map.
 struct Coverage {

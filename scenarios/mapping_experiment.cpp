@@ -8,6 +8,7 @@
 #include "maps/map_text.h"
 #include "scenarios/coverage.h"
 #include "scenarios/experiment.h"
+#include "scenarios/visible_area.h"
 #include "viz/map_figure.h"
 #include "viz/trajectory_figure.h"
 

@@ -16,6 +16,7 @@
 #include "scenarios/run_metrics.h"
 #include "scenarios/scenario_events.h"
 #include "scenarios/statistics.h"
+#include "scenarios/visible_area.h"
 #include "sensors/laser_settings.h"
 #include "world/roads/roads.h"
 
@@ -96,6 +97,7 @@ class Run {
     if (stop && ranks_ == nullptr) simulation_.interrupt_on(stop);
     const auto ticks = static_cast<std::uint64_t>(std::llround(scenario_.duration / world_.interval));
     const bool until_done = expects(scenario_, Kind::done);
+    const double driven = maps_.empty() ? 1.0 : 0.9;  // of the progress; maps are compared afterwards
     const auto start = Clock::now();
     for (; result.ticks < ticks && !(until_done && simulation_.all_done()); ++result.ticks) {
       events_.apply(simulation_, world_, static_cast<double>(result.ticks) * world_.interval, [&](std::uint32_t row) {
@@ -112,12 +114,16 @@ class Run {
       tick_ms_.push_back(1e3 * base::seconds_since(begin));
       metrics_.update(tick);
       add_scans(tick.readings, maps_);
-      if (progress && result.ticks % 16 == 0) progress(static_cast<double>(result.ticks) / static_cast<double>(ticks));
+      if (progress && result.ticks % 16 == 0)
+        progress(driven * static_cast<double>(result.ticks) / static_cast<double>(ticks));
     }
     result.wall = base::seconds_since(start);
     result.simulated = static_cast<double>(result.ticks) * world_.interval;
     result.hash = simulation_.farm().hash();
-    cover();
+    cover([&](double part) {
+      if (stop && stop() && ranks_ == nullptr) throw base::Interrupted();
+      if (progress) progress(driven + (1.0 - driven) * part);
+    });
     for (const Expectation& e : scenario_.expect) result.outcomes.push_back(judge(e));
     result.metrics = all_metrics();
   }
@@ -179,11 +185,14 @@ class Run {
   }
 
   /// Compares all maps with what could be seen; each rank has those of its own robots.
-  void cover() {
+  void cover(const std::function<void(double)>& progress) {
     base::Bytes block;
     base::ByteWriter out(block);
+    VisibleArea reference(world_);
     for (const auto& [row, map] : maps_) {
-      const Coverage seen = coverage_of(map.grid(), visible_area(world_, row, map.grid().geometry));
+      const Coverage seen = coverage_of(map.grid(), reference.of(row, map.grid().geometry, [&](double part) {
+        progress((static_cast<double>(coverages_.size()) + part) / static_cast<double>(maps_.size()));
+      }));
       coverages_[row] = seen.coverage();
       out.put(row);
       out.put(seen.coverage());

@@ -2,11 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 #include "control/explore.h"
+#include "scenarios/visible_area.h"
 #include "sensors/laser.h"
 #include "sensors/laser_settings.h"
 #include "sensors/sensor_type.h"
 #include "sensors/sonar.h"
+#include "world/wall_tree.h"
 
 namespace sf::scenarios {
 namespace {
@@ -98,6 +104,134 @@ TEST(Coverage, TheVisibleAreaIsTheRoom) {
       area += seen.geometry.cell * seen.geometry.cell;
     }
   EXPECT_NEAR(area, 9.0 - 3 * 0.25 - 0.013, 0.25);
+}
+
+/// Tests every cell from every position by every wall, with code of its own.
+struct BruteForce {
+  const world::World& world;
+  maps::GridGeometry grid;
+  sensors::LaserSettings laser = sensors::lasers_of(world.movers[0])[0];
+  std::vector<base::Pose> eyes = {};
+
+  bool is_free(glm::dvec2 a, glm::dvec2 b) const {
+    const auto side = [](glm::dvec2 p, glm::dvec2 q, glm::dvec2 r) { return base::cross(q - p, r - p) > 0.0; };
+    return std::none_of(world.walls.begin(), world.walls.end(), [&](const world::Segment& w) {
+      return side(a, b, w.a) != side(a, b, w.b) && side(w.a, w.b, a) != side(w.a, w.b, b);
+    });
+  }
+  bool is_clear(glm::dvec2 p) const {
+    return std::none_of(world.walls.begin(), world.walls.end(),
+                        [&](const world::Segment& w) { return world::distance(p, w.a, w.b) < world.movers[0].radius; });
+  }
+  void collect_eyes() {
+    maps::OccupancyGrid known(grid);
+    const base::Pose& X_WM = world.movers[0].X_WM;
+    std::vector<maps::CellAt> open{maps::cell_at(grid, {X_WM.x, X_WM.y})};
+    while (!open.empty()) {
+      const maps::CellAt at = open.back();
+      open.pop_back();
+      const glm::dvec2 p = maps::middle(grid, at);
+      if (!maps::contains(grid, at) || known.at(at) != Cell::unexplored || !is_clear(p)) continue;
+      known.set(at, Cell::free);
+      for (int h = 0; h < 16; ++h) {
+        const base::Pose X_WS = base::compose({p.x, p.y, 0.0, h * M_PI / 8.0}, laser.X_MS);
+        if (is_free(p, {X_WS.x, X_WS.y})) eyes.push_back(X_WS);
+      }
+      for (int k = 0; k < 4; ++k) open.push_back({at.column + (k - 1) % 2, at.row + (2 - k) % 2});
+    }
+  }
+  bool sees(glm::dvec2 p) const {
+    return std::any_of(eyes.begin(), eyes.end(), [&](const base::Pose& X_WS) {
+      const glm::dvec2 d = base::rotate(-X_WS.yaw, p - glm::dvec2{X_WS.x, X_WS.y});
+      return glm::length(d) < laser.range_max && std::abs(std::atan2(d.y, d.x)) <= 0.5 * laser.fov &&
+             is_free({X_WS.x, X_WS.y}, p);
+    });
+  }
+  bool has_wall(glm::dvec2 p) const {  // within the circle around the cell
+    return std::any_of(world.walls.begin(), world.walls.end(),
+                       [&](const world::Segment& w) { return world::distance(p, w.a, w.b) < 0.71 * grid.cell; });
+  }
+};
+
+/// Rooms with random walls, which cross each other; the grid is offset so that no centre is on a line of sight's edge.
+TEST(Coverage, TheVisibleAreaIsThatOfAllRays) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> at(-1.45, 1.45), length(-0.7, 0.7);
+  struct Case {
+    int walls;
+    double range, fov, ahead;  // [m], [rad], [m]
+  };
+  for (const Case& c : {Case{0, 8.0, M_PI, 0.0}, Case{25, 8.0, M_PI, 0.07}, Case{40, 0.5, 0.9, 0.05},
+                        Case{40, 1.1, 0.2, 0.0}, Case{60, 8.0, 4.5, -0.06}}) {
+    world::World world = mapping_world();
+    const glm::dvec2 start{world.movers[0].X_WM.x, world.movers[0].X_WM.y};
+    std::erase_if(world.walls, [](const world::Segment& wall) { return wall.z_min > 0.0; });  // above the beams
+    for (int i = 0; i < c.walls; ++i) {
+      const glm::dvec2 a{at(random), at(random)}, b = a + glm::dvec2{length(random), length(random)};
+      if (world::distance(start, a, b) > 0.3) world.walls.push_back({.a = a, .b = b, .z_max = 0.5});
+    }
+    world::update_extent_and_hash(world);
+    world.movers[0].radius = 0.09;  // gets everywhere
+    sensors::LaserSettings laser = sensors::lasers_of(world.movers[0])[0];
+    laser.range_max = c.range, laser.fov = c.fov, laser.X_MS.x = c.ahead;
+    world.movers[0].sensors = {sensors::laser_sensor(laser)};
+    BruteForce all{world, {-1.8123, 1.8456, 0.0811, 12, 12}};
+    all.collect_eyes();
+    ASSERT_GT(all.eyes.size(), 100u);
+    const maps::OccupancyGrid seen = visible_area(world, 0, all.grid);
+    int free = 0;
+    for (std::int64_t row = 0; row < maps::rows(all.grid); ++row)
+      for (std::int64_t column = 0; column < maps::columns(all.grid); ++column) {
+        const glm::dvec2 p = maps::middle(all.grid, {column, row});
+        const Cell cell = seen.at({column, row});
+        if (all.has_wall(p)) continue;
+        EXPECT_EQ(cell == Cell::free, all.sees(p)) << c.walls << " walls: " << p.x << " " << p.y;
+        EXPECT_NE(cell, Cell::occupied);
+        free += cell == Cell::free;
+      }
+    EXPECT_GT(free, 100);
+  }
+}
+
+/// Behind the cell that a wall is in there may be light again, through a gap next to it.
+TEST(Coverage, LightFallsThroughGaps) {
+  world::World world = mapping_world();
+  for (const auto& [from, to] : {std::pair{-1.5, 0.0}, {0.05, 1.5}})
+    world.walls.push_back({.a = {from, 0.35}, .b = {to, 0.35}, .z_max = 0.5});
+  world::update_extent_and_hash(world);
+  const RobotMap map(world, 0);
+  const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().geometry);
+  int beyond = 0;
+  for (int i = 0; i < 30; ++i) beyond += seen.at(maps::cell_at(seen.geometry, {0.025, 0.5 + 0.03 * i})) == Cell::free;
+  EXPECT_GT(beyond, 10) << "as far as the laser reaches";
+}
+
+/// The work is bounded by larger cells, not by a part of the world.
+TEST(Coverage, LargeWorldsHaveLargeCells) {
+  world::World world = mapping_world();
+  world.walls.push_back({.a = {-900.0, -500.0}, .b = {900.0, 500.0}, .z_max = 0.5});
+  world::update_extent_and_hash(world);
+  const maps::GridGeometry grid = RobotMap(world, 0).grid().geometry;
+  EXPECT_LE(maps::words(grid), 1u << 18);
+  EXPECT_GT(maps::words(grid), 1u << 17);
+  EXPECT_TRUE(maps::is_valid(grid));
+  EXPECT_GE(static_cast<double>(maps::columns(grid)) * grid.cell, 1800.0);
+  EXPECT_GE(static_cast<double>(maps::rows(grid)) * grid.cell, 1000.0);
+}
+
+/// Searched once: robots of one shape whose positions are connected see the same.
+TEST(Coverage, AlikeRobotsShareTheirReference) {
+  world::World world = mapping_world();
+  world.movers[0].X_WM.y = -1.0;  // clear of the wall
+  world.movers.resize(3, world.movers[0]);
+  world.movers[1].X_WM.x += 0.1;
+  world.movers[2].radius += 0.02;
+  VisibleArea area(world);
+  const maps::GridGeometry grid = RobotMap(world, 0, 0.1).grid().geometry;
+  const maps::OccupancyGrid& first = area.of(0, grid);
+  EXPECT_EQ(&area.of(1, grid), &first);
+  EXPECT_EQ(first.words, visible_area(world, 1, grid).words);
+  EXPECT_NE(&area.of(2, grid), &first) << "it does not fit where the others do";
 }
 
 /// No cell behind a closed wall is visible.
