@@ -8,9 +8,9 @@
 
 #include "maps/map_packets.h"
 #include "netio/packet_forms.h"
-#include "server/sensor_streams.h"
 #include "sensors/laser_packets.h"
 #include "sensors/occupancy.h"
+#include "server/sensor_streams.h"
 
 namespace sf::server {
 

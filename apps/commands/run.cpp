@@ -11,22 +11,22 @@
 
 #include <fmt/format.h>
 
+#include "apps/commands/commands.h"
+#include "apps/commands/rank_run.h"
+#include "apps/commands/run_outputs.h"
+#include "apps/commands/run_scenario.h"
+#include "apps/commands/run_settings.h"
 #include "apps/options/automatic_accuracy.h"
 #include "apps/options/bridge_options.h"
-#include "apps/processes/checkpoints.h"
-#include "apps/commands/commands.h"
 #include "apps/options/controller_options.h"
 #include "apps/options/default_robot.h"
 #include "apps/options/layout_options.h"
 #include "apps/options/open_device.h"
+#include "apps/processes/checkpoints.h"
+#include "apps/processes/stop_signals.h"
 #include "apps/reports/progress_line.h"
-#include "apps/commands/rank_run.h"
 #include "apps/reports/rate_warnings.h"
 #include "apps/reports/report.h"
-#include "apps/commands/run_outputs.h"
-#include "apps/commands/run_scenario.h"
-#include "apps/commands/run_settings.h"
-#include "apps/processes/stop_signals.h"
 #include "apps/reports/strayed_robots.h"
 #include "apps/reports/text.h"
 #include "base/contact_onset.h"
@@ -123,7 +123,8 @@ struct Ground {
     if (file.empty())
       world::update_extent_and_hash(scenery.world);
     else
-      scenery.world = load_with_robots(file, load_options(options, nullptr), 0, options.seed);
+      scenery.world =
+          load_with_robots(source_of(options, file, nullptr), seed_of(options), scenarios::OwnRobot::where_needed);
     scenery.layout = layout_of(scenery.world, options);
     return scenery;
   }
@@ -150,10 +151,17 @@ struct Ground {
 
   /// Ranks with tiles read outlines when they know their part, except where each keeps the whole world, and its
   /// recording.
-  static world::LoadOptions load_options(const RunOptions& options, const cluster::Ranks* ranks) {
-    world::LoadOptions load = options.load;
-    load.leave_outlines = ranks != nullptr && options.tiles && options.balance == 0.0 && options.record.empty();
-    return load;
+  static WorldOptions source_of(const RunOptions& options, const std::string& file, const cluster::Ranks* ranks) {
+    WorldOptions source = options;
+    source.world = file;
+    source.load.leave_outlines = ranks != nullptr && options.tiles && options.balance == 0.0 && options.record.empty();
+    return source;
+  }
+  /// No copies.
+  static CloneOptions seed_of(const RunOptions& options) {
+    CloneOptions clones;
+    clones.seed = options.seed;
+    return clones;
   }
   static std::optional<server::StreamLayout> layout_of(const world::World& world, const RunOptions& options) {
     if (options.send.empty()) return std::nullopt;
@@ -161,7 +169,7 @@ struct Ground {
   }
   world::World load(const RunOptions& options, const cluster::Ranks* ranks) const {
     if (scenario) return load_scenario_world(*scenario, options.load);
-    return load_with_robots(options.world, load_options(options, ranks), options.robots, options.seed, options.of);
+    return load_with_robots(source_of(options, options.world, ranks), options);
   }
   const world::World& with_accuracy(const RunOptions& options) {
     choose_accuracy(world, device, options, options.seed, options.threads);
@@ -292,7 +300,7 @@ struct Course {
     facts.farm = simulation.farm().stats();
     facts.hash = simulation.farm().hash();
     outputs.finish(facts);
-    if (ranks != nullptr) add_up(*ranks, facts, simulation.passed_on());
+    if (ranks != nullptr) add_up(*ranks, facts, simulation.share().passed_on());
   }
 };
 
@@ -342,8 +350,9 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
     begin(0);
     live.emplace(options, ground->world, ground->sensor_set, run_settings(options, ground->caster, true), true);
   });
+  if (live->empty()) print_taken_names(course->outputs.taken_names());
   std::vector<world::Warning> heard = course->simulation.warnings();
-  for (world::Warning& warning : course->simulation.warnings_of_starts()) heard.push_back(std::move(warning));
+  for (world::Warning& warning : course->simulation.share().warnings_of_starts()) heard.push_back(std::move(warning));
   if (!heard.empty()) print_warnings(heard.front().file, heard);
   std::atomic<bool> all_stop = false;
   scenarios::Operator users(live->bridges(), ranks != nullptr ? all_stop : stop_requested(),
@@ -391,6 +400,13 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
 
   const double duration = options.duration.value_or(live->empty() ? 60.0 : kWithoutEnd);
   const double ticks = std::round(duration / ground->world.interval);
+  if (ticks < 1.0)
+    print_message(
+        "--duration {:g} simulates nothing, since a tick takes {:g} s; expected more, or no --duration, which is 60 s, "
+        "and beside bridges without end",
+        duration, ground->world.interval);
+  if (options.tiles && ranks == nullptr)
+    print_message("--tiles has no effect in one process: start several (mpirun -n N sensorfarm run ...)");
   RunReport facts;
   const auto start = std::chrono::steady_clock::now();
   {
@@ -407,7 +423,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
         change_world();
         continue;
       }
-      if (stop_requested()) course->simulation.request_stop();
+      if (stop_requested()) course->simulation.share().request_stop();
       try {
         course->apply_events(*ground, *live);
         advised(ground->world, options, [&] { course->step(users); });
@@ -415,7 +431,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
         next = scenarios::Operator::Next::stop;
         break;
       }
-      all_stop = course->simulation.stop_agreed();
+      all_stop = course->simulation.share().stop_agreed();
       const double simulated = course->simulated();
       if (duration < kWithoutEnd && (ranks == nullptr || ranks->rank() == 0))
         progress.show(simulated / duration, fmt::format("{:.0f} s of {:g} s", simulated, duration));

@@ -6,28 +6,28 @@
 #include <optional>
 #include <span>
 
+#include "apps/commands/commands.h"
+#include "apps/commands/lockstep.h"
+#include "apps/commands/run_settings.h"
 #include "apps/options/address.h"
 #include "apps/options/automatic_accuracy.h"
 #include "apps/options/bridge_options.h"
-#include "apps/commands/commands.h"
 #include "apps/options/default_robot.h"
-#include "apps/reports/exposure_warning.h"
 #include "apps/options/layout_options.h"
-#include "apps/commands/lockstep.h"
 #include "apps/options/open_device.h"
 #include "apps/options/peers_option.h"
+#include "apps/processes/stop_signals.h"
+#include "apps/reports/exposure_warning.h"
 #include "apps/reports/rate_warnings.h"
 #include "apps/reports/report.h"
-#include "apps/commands/run_settings.h"
-#include "apps/processes/stop_signals.h"
 #include "apps/reports/strayed_robots.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
 #include "base/time.h"
-#include "server/service.h"
 #include "raycast/caster_choice.h"
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
+#include "server/service.h"
 
 namespace sf::apps {
 
@@ -141,7 +141,7 @@ RunReport report_of(const server::ServiceStats& stats, const world::World& world
 
 int serve(const ServeOptions& options) {
   if (options.lockstep) return serve_lockstep(options);
-  world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
+  world::World world = load_with_robots(options, options);
   const server::StreamLayout layout = stream_layout_of(world, sensors::SensorSet(world), options);
   const server::ServiceOptions chosen = service_options(options, world);
   gpu::Device device = open_device(options);
@@ -164,6 +164,7 @@ int serve(const ServeOptions& options) {
     }
     StrayedRobots strayed(world);
     if (strayed.names()) service.record_to(strayed);
+    if (recorder && !options.BridgeOptions::any()) print_taken_names(recorder->taken_names());
     LiveBridges live(options, world, sensor_set, service_settings(options, device.info().software), false);
     if (!live.empty()) service.record_to(live);
     install_stop_handlers();

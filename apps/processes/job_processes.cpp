@@ -183,7 +183,8 @@ class Children {
   std::string cause_of(std::size_t slot, int status) const {
     const Seat& seat = board_.seat(slot);
     if (children_[slot].late && seat.calls.finished)
-      return fmt::format("its process did not end within {:g} s: {}", base::seconds_to_end(), base::goes_on(seat.calls));
+      return fmt::format("its process did not end within {:g} s: {}", base::seconds_to_end(),
+                         base::goes_on(seat.calls));
     if (children_[slot].late) {
       const std::string who = base::under_way(seat.calls);
       return fmt::format("it took more than {:g} s (--timeout){}", calls_.timeout,
