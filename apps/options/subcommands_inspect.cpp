@@ -9,6 +9,7 @@
 #include "apps/options/option_groups.h"
 #include "apps/options/option_parsers.h"
 #include "apps/options/subcommands.h"
+#include "base/installation.h"
 
 namespace sf::apps {
 
@@ -181,6 +182,7 @@ void add_v2x(CLI::App& app, Call& call) {
          "as decode prints it (both: - is standard input); to export: a world file")
       ->required()
       ->check(not_empty("a file"))
+      ->transform(base::installed_file)
       ->type_name("FILE");
   sub->add_flag("--xml", o.xml, "Decode to XML (XER) in place of JSON");
   sub->add_option("--time", o.time, "Simulated time [s] of the SPaT; time 0 is the year's start in UTC")

@@ -1,10 +1,10 @@
-// The Python of docs/packets.md, as it is printed there: it decodes the examples beside it, and is served.
+// The client of docs/packets.md, as it is printed there, is served; the client in examples/ decodes the page's
+// examples.
 
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <cstdlib>
-#include <regex>
 
 #include "tests/apps/remote_robot.h"
 #include "tests/netio/documented.h"
@@ -13,16 +13,12 @@ namespace sf {
 
 namespace {
 
-/// All code of the page, one block after another.
+/// The client that the page opens with.
 std::string python_of_the_page() {
   const std::string page = read_file(SF_SOURCE_DIR "/docs/packets.md");
-  std::string code;
   const std::string open = "```python\n";
-  for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
-    at += open.size();
-    code += page.substr(at, page.find("```", at) - at) + "\n";
-  }
-  return code;
+  const std::size_t at = page.find(open) + open.size();
+  return page.substr(at, page.find("```", at) - at);
 }
 
 /// The output of `script`.
@@ -41,23 +37,25 @@ std::string hex(const base::Bytes& bytes) {
 
 }  // namespace
 
-TEST(PacketsPage, ItsDecoderReadsItsExamples) {
+TEST(PacketsPage, TheClientInPythonReadsItsExamples) {
   if (!have_python()) GTEST_SKIP() << "this machine has no python3";
   const Folder folder;
-  std::string script = python_of_the_page();
-  script = script.substr(0, script.find("import os, select"));
+  std::string script = "import sys\nsys.path.insert(0, '" SF_SOURCE_DIR
+                       "/examples/clients')\nsys.dont_write_bytecode = True\n"
+                       "from sensorfarm_client import decode\n";
   for (const std::string name : {"laser", "laser_extended", "lane_edge", "magnetometer", "infrared", "gps", "occupancy",
                                  "challenge", "subscribe", "v2i", "neighbours"})
     script += "print('" + name + "', decode(bytes.fromhex('" + hex(test::documented(name)) + "')))\n";
   const std::string out = printed(folder, script);
-  for (const std::string said :
-       {"laser {'type': 1, 'robot': 7, 'sensor': 0, 'sequence': 258, 'time_s': 1.5, 'from': 287454020, 'to': "
-        "1432778632, 'ranges': [1.0, 0.25, 8.0]}",
-        "'total': 312, 'first': 310, 'part': 1, 'parts': 2, 'ranges': [81.9175, inf]", "'distance_m': 0.25", ", 767)]",
-        "'rows': [(None, None, None, 3)]", "'left_ms': 6500", "'lane': 1, 'point': 11", "'words': (1, 2315255808)",
-        "'to': 1432778632, 'token': 195948557", "neighbours {'type': 140, 'robot': 3, ",
-        "'pose': (1.5, -2.25, 0.0, 0.5)", "'robot': 9, ", "'pose': (3.0, 0.0, "})
-    EXPECT_NE(out.find(said), std::string::npos) << said << " is not in\n" << out;
+  for (const std::string expected :
+       {"laser {'type': 1, 'robot': 7, 'sensor': 0, 'sequence': 258, 'time_ns': 1500000000, 'session': 287454020, "
+        "'token': 1432778632, ",
+        "'range_m': [1.0, 0.25, 8.0]}", "'total': 312, 'first': 310, 'part': 1, 'parts': 2, 'range_m': [81.9175, inf]",
+        "'distance_m': 0.25", "'value': [0, 767]", "'satellites': [3]", "'left_s': [6.5]", "'stop_point': [3, 1, 11]",
+        "'word': [1, 2315255808]", "'token': 1432778632, 'challenge': 195948557",
+        "neighbours {'type': 140, 'robot': 3, ", "'pose': [1.5, -2.25, 0.0, 0.5]", "'robot': 9, ",
+        "'pose': [3.0, 0.0, "})
+    EXPECT_NE(out.find(expected), std::string::npos) << expected << " is not in\n" << out;
 }
 
 TEST(PacketsPage, ItsRobotProvesItsAddressAndIsServed) {

@@ -1,6 +1,7 @@
 #pragma once
 // The worked examples of docs/packets.md, byte by byte.
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <sstream>
@@ -18,10 +19,20 @@ inline base::Bytes documented(const std::string& example) {
   }
   std::getline(file, line);  // opening fence
   base::Bytes bytes;
+  std::size_t end = 0;
   while (std::getline(file, line) && line != "```") {
-    std::istringstream row(line.substr(4));
-    for (unsigned byte = 0; row >> std::hex >> byte;) bytes.push_back(static_cast<std::uint8_t>(byte));
+    if (line == "*") continue;  // rows like the one before, up to the next row's offset
+    std::istringstream row(line);
+    std::size_t offset = 0;
+    row >> std::hex >> offset;
+    if (end == 0 && offset > 0) bytes = documented("sonar");  // the header of plain readings
+    while (end >= 16 && end < offset && bytes.size() < offset) bytes.push_back(bytes[bytes.size() - 16]);
+    for (unsigned byte = 0; row >> std::hex >> byte; end = ++offset) {
+      bytes.resize(std::max(bytes.size(), offset + 1));
+      bytes[offset] = static_cast<std::uint8_t>(byte);
+    }
   }
+  bytes.resize(end);
   return bytes;
 }
 
