@@ -9,9 +9,9 @@ RayCaster::RayCaster(const SensorContext& context, const world::World& world, st
 
 RayCaster::~RayCaster() = default;
 
-const std::vector<Scanner>& RayCaster::scanners() const { return t_->scanners; }
-const BeamPlan& RayCaster::plan(std::uint32_t scanner) const { return t_->scanner_rows[scanner].plan; }
-std::uint32_t RayCaster::lane(std::uint32_t scanner) const { return t_->scanner_rows[scanner].out; }
+const std::vector<Scanner>& RayCaster::scanners() const { return t_->plan.scanners; }
+const BeamPlan& RayCaster::plan(std::uint32_t scanner) const { return t_->plan.rows[scanner].plan; }
+std::uint32_t RayCaster::lane(std::uint32_t scanner) const { return t_->plan.rows[scanner].out; }
 const Pose& RayCaster::X_WS(std::size_t i) const { return t_->views[i].X_WS; }
 bool RayCaster::on_device() const { return t_->scene != nullptr; }
 SensorStats RayCaster::stats() const {
@@ -45,13 +45,9 @@ bool RayCaster::prepare(std::span<const DueSample> due, bool cast) {
       due.size(), 256, [&t](std::size_t first, std::size_t last, unsigned) { t.compute_viewpoints(first, last); });
   if (t.scene) t.begin_uncertain();
   const bool replaced = t.scene && t.prepare();
-  t.write_lanes();
+  t.uploads.write_lanes(due);
   // Scans on the host turn their beams themselves.
-  if ((t.scene || !cast) && t.any_angle_noise)
-    t.thread_pool.parallel_for(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
-      for (std::size_t i = first; i < last; ++i)
-        if (t.scanner_rows[t.due[i].row].angle_noise) t.apply_angle_noise(t.due[i], thread);
-    });
+  if (t.scene || !cast) t.uploads.turn_all_beams(due, t.thread_pool);
   t.find_host_due();
   if (cast) t.scan_on_host();
   const bool rebind = replaced || !t.bound;
@@ -61,8 +57,8 @@ bool RayCaster::prepare(std::span<const DueSample> due, bool cast) {
 
 void RayCaster::record(gpu::Batch& batch) {
   if (!t_->scene) return;
-  batch.dispatch(*t_->exact.kernel, *t_->exact.groups, 0);
-  if (t_->single) batch.dispatch(*t_->single->kernel, *t_->single->groups, 0);
+  batch.dispatch(*t_->exact.kernel, t_->exact.lanes->groups, 0);
+  if (t_->single) batch.dispatch(*t_->single->kernel, t_->single->lanes->groups, 0);
   batch.barrier();
   batch.dispatch(*t_->exact.uncertain_kernel, *t_->exact.uncertain, 0);
   if (t_->single) batch.dispatch(*t_->single->uncertain_kernel, *t_->single->uncertain, 0);
@@ -70,55 +66,33 @@ void RayCaster::record(gpu::Batch& batch) {
 
 void RayCaster::add_copies(gpu::Batch& batch, bool results) {
   Tables& t = *t_;
-  if (t.scene) t.scene->upload(batch);
-  if (t.scene) batch.upload(*t.rows, 0, t.due.size() * sizeof(RayRow));
-  const auto send = [&](const CastDispatch& pass) {
-    const auto counts = pass.groups->host<std::uint32_t>();
-    if (t.lanes_changed) {
-      batch.upload(*pass.lanes, 0, sizeof(Lane) * SF_LANES_PER_GROUP * counts[0] * counts[1]);
-      batch.upload(*pass.groups, 0, pass.groups->bytes());
-    }
-    if (!t.scene) return;
-    batch.upload(*pass.uncertain, 0, sizeof(UncertainLanes));
-    batch.download(*pass.uncertain, 0, pass.uncertain->bytes());
-  };
-  send(t.exact);
-  if (t.single) send(*t.single);
-  t.lanes_changed = false;
-  if (t.beams_changed) {
-    batch.upload(*t.mid_bearings, 0, t.mid_bearings->bytes());
-    batch.upload(*t.directions64, 0, t.directions64->bytes());
-  } else {
-    for (const DueSample& d : t.due) {
-      const ScannerRow& row = t.scanner_rows[d.row];
-      if (!row.angle_noise) continue;
-      batch.upload(*t.mid_bearings, sizeof(float) * row.beams, sizeof(float) * row.plan.lanes());
-      const std::size_t lane = SF_BEAMS_PER_LANE * sizeof(BeamDirection);
-      batch.upload(*t.directions64, lane * row.beams, lane * row.plan.lanes());
-    }
+  if (t.scene) {
+    t.scene->upload(batch);
+    batch.upload(*t.rows, 0, t.due.size() * sizeof(RayRow));
+    const auto send = [&](const CastDispatch& pass) {
+      batch.upload(*pass.uncertain, 0, sizeof(UncertainLanes));
+      batch.download(*pass.uncertain, 0, pass.uncertain->bytes());
+    };
+    send(t.exact);
+    if (t.single) send(*t.single);
   }
-  t.beams_changed = false;
-  for (const std::uint32_t i : t.host_due) {
-    const ScannerRow& row = t.scanner_rows[t.due[i].row];
-    const std::size_t lanes = row.plan.lanes();
-    batch.upload(*t.ranges, sizeof(LaneRanges) * row.out, sizeof(LaneRanges) * lanes);
-    batch.upload(*t.hits, sizeof(LaneHits) * row.out, sizeof(LaneHits) * lanes);
-  }
+  t.uploads.add_copies(batch, t.due);
+  for (const std::uint32_t i : t.host_due) t.results.upload(batch, t.plan.rows[t.due[i].row]);
   if (!t.scene || !results) return;
   // Scans with adjacent results are copied together.
   for (std::size_t i = 0; i < t.due.size();) {
-    const std::size_t first = t.scanner_rows[t.due[i].row].out;
+    const std::size_t first = t.plan.rows[t.due[i].row].out;
     std::size_t lanes = 0;
-    for (; i < t.due.size() && t.scanner_rows[t.due[i].row].out == first + lanes; ++i)
-      lanes += t.scanner_rows[t.due[i].row].plan.lanes();
-    batch.download(*t.ranges, sizeof(LaneRanges) * first, sizeof(LaneRanges) * lanes);
-    batch.download(*t.hits, sizeof(LaneHits) * first, sizeof(LaneHits) * lanes);
+    for (; i < t.due.size() && t.plan.rows[t.due[i].row].out == first + lanes; ++i)
+      lanes += t.plan.rows[t.due[i].row].plan.lanes();
+    batch.download(t.results.ranges, sizeof(LaneRanges) * first, sizeof(LaneRanges) * lanes);
+    batch.download(t.results.hits, sizeof(LaneHits) * first, sizeof(LaneHits) * lanes);
   }
 }
 
 ScanResult RayCaster::results(std::size_t i) const {
-  const ScannerRow& row = t_->scanner_rows[t_->due[i].row];
-  return {t_->due[i].row,      row.out, row.beams, &row.plan, &t_->scanners[t_->due[i].row], t_->views[i].X_WS,
+  const ScannerRow& row = t_->plan.rows[t_->due[i].row];
+  return {t_->due[i].row,      row.out, row.beams, &row.plan, &t_->plan.scanners[t_->due[i].row], t_->views[i].X_WS,
           t_->views[i].heading};
 }
 
@@ -128,11 +102,11 @@ void RayCaster::take_flags() {
   if (t_->single) t_->take_uncertain(*t_->single);
 }
 
-gpu::Buffer& RayCaster::ranges() { return *t_->ranges; }
-gpu::Buffer& RayCaster::hits() { return *t_->hits; }
-gpu::Buffer& RayCaster::directions64() { return *t_->directions64; }
-std::span<const std::uint32_t> RayCaster::beam_flags() const { return t_->beam_flags; }
-gpu::Buffer& RayCaster::lanes() { return *t_->exact.lanes; }
-gpu::Buffer& RayCaster::groups() { return *t_->exact.groups; }
+gpu::Buffer& RayCaster::ranges() { return t_->results.ranges; }
+gpu::Buffer& RayCaster::hits() { return t_->results.hits; }
+gpu::Buffer& RayCaster::directions64() { return t_->uploads.directions64(); }
+std::span<const std::uint32_t> RayCaster::beam_flags() const { return t_->results.beam_flags; }
+gpu::Buffer& RayCaster::lanes() { return t_->uploads.exact().lanes; }
+gpu::Buffer& RayCaster::groups() { return t_->uploads.exact().groups; }
 
 }  // namespace sf::raycast

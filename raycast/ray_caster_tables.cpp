@@ -5,12 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <map>
-#include <numeric>
-#include <tuple>
 
 #include "base/error.h"
-#include "gpu/group_counts.h"
 #include "shaders/laser.comp.h"
 #include "shaders/laser_uncertain.comp.h"
 
@@ -39,9 +35,6 @@ ScanView scan_view_of(const ScannerRow& row, const Viewpoint& from) {
 /// [beams] whose results are fetched before a scan: a third of the smallest first-level cache.
 constexpr std::size_t kMostFetched = 1024;
 
-/// Scanners with equal beams share beam tables.
-using BeamTableKey = std::tuple<double, std::uint32_t, std::uint32_t>;
-
 /// True for the caster of Vulkan kernels. @throws base::DeviceError where it is asked for on the host
 bool kernels_cast(const SensorContext& context) {
   const bool kernels = choose_caster(context.device.info().software, context.scene.caster) == CasterChoice::vulkan;
@@ -54,106 +47,38 @@ bool kernels_cast(const SensorContext& context) {
 
 }  // namespace
 
-RayCaster::Tables::Tables(const SensorContext& context, const world::World& world, std::vector<Scanner> f)
+RayCaster::Tables::Tables(const SensorContext& context, const world::World& world, std::vector<Scanner> scanners)
     : thread_pool(context.thread_pool),
       states(context.states),
-      seed(context.seed),
-      noise(context.noise),
-      configs(world),
-      scanners(std::move(f)) {
-  plan(world);
-  host = std::make_unique<HostScene>(world, configs, thread_pool);
+      plan(world, std::move(scanners), context.noise),
+      uploads(context, plan),
+      results(context.device, plan) {
+  host = std::make_unique<HostScene>(world, plan.configs, thread_pool);
   if (kernels_cast(context))
-    scene = std::make_unique<DeviceScene>(world, configs, context.device, thread_pool, context.scene,
-                                          count_sensing_movers(scanners));
+    scene = std::make_unique<DeviceScene>(world, plan.configs, context.device, thread_pool, context.scene,
+                                          count_sensing_movers(plan.scanners));
   scratch.resize(thread_pool.threads());
-  angle_offsets.resize(thread_pool.threads());
-  std::uint32_t beam_lanes = 0;
-  struct Shared {
-    std::uint32_t beams, pattern;
-  };
-  std::map<BeamTableKey, Shared> shared;
-  for (std::size_t i = 0; i < scanners.size(); ++i) {
-    ScannerRow& row = scanner_rows[i];
-    const BeamTableKey key{scanners[i].scan.fov, scanners[i].scan.samples, scanners[i].scan.resolution};
-    const auto known = shared.find(key);
-    if (!row.angle_noise && known != shared.end()) {
-      row.beams = known->second.beams;
-      row.pattern = known->second.pattern;
-      continue;
-    }
-    row.beams = beam_lanes;
-    if (!row.angle_noise) {
-      row.pattern = static_cast<std::uint32_t>(shared.size());
-      shared[key] = {beam_lanes, row.pattern};
-    }
-    beam_lanes += row.plan.lanes();
-  }
-  make_tables(context.device, context.scene.largest_buffer, beam_lanes);
-  write_all_beams();
-  // Patterns were numbered in order of rows, like beam tables.
-  for (const ScannerRow& row : scanner_rows)
+  if (scene) make_passes(context.device, context.scene.largest_buffer);
+  for (const ScannerRow& row : plan.rows)
     if (!row.angle_noise && row.pattern == patterns.size())
-      make_pattern(static_cast<std::size_t>(&row - scanner_rows.data()), {}, scratch[0], patterns.emplace_back());
-  shared_of.assign(scanners.size(), kNotShared);
+      make_pattern(static_cast<std::size_t>(&row - plan.rows.data()), {}, scratch[0], patterns.emplace_back());
+  shared_of.assign(plan.scanners.size(), kNotShared);
   if (!scene) find_shared_views();
 }
 
-void RayCaster::Tables::plan(const world::World& world) {
-  std::vector<std::size_t> beams(world.movers.size(), 0);
-  for (const Scanner& scanner : scanners) beams[scanner.mover] += scanner.scan.samples / scanner.scan.resolution;
-  for (const Scanner& scanner : scanners) {
-    ScannerRow row;
-    row.plan = plan_beams(scanner.scan, noise);
-    row.mover = scanner.mover;
-    row.range_min = scanner.scan.range_min;
-    row.single = scanner.single;
-    row.mount = scanner.scan.X_MS;
-    row.mount.z += world.movers[scanner.mover].X_WM.z;
-    const double turn = noise ? kMaxSigmas * scanner.scan.noise.angle_sigma : 0.0;
-    const ListConfig config{row.mount.z, scanner.scan.range_max, row.plan.spread, scanner.scan.fov + 2.0 * turn,
-                            static_cast<std::uint32_t>(std::min<std::size_t>(beams[scanner.mover], 1'000'000))};
-    row.config = configs.add(config);
-    row.angle_noise = noise && scanner.scan.noise.angle_sigma > 0.0;
-    any_angle_noise = any_angle_noise || row.angle_noise;
-    row.out = out_lanes;
-    out_lanes += row.plan.lanes();
-    spare_lanes = std::max(spare_lanes, row.plan.lanes());
-    scanner_rows.push_back(std::move(row));
-  }
-}
-
-void RayCaster::Tables::make_tables(gpu::Device& device, std::size_t largest_buffer, std::uint32_t beam_lanes) {
-  using gpu::Role;
-  using gpu::Texel;
-  const std::size_t count = std::max<std::size_t>(1, scanners.size());
-  if (scene)
-    rows =
-        std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, gpu::texels_of<RayRow>(count));
-  mid_bearings =
-      std::make_unique<gpu::Buffer>(device, "middles of lanes", Role::upload, Texel::f32, std::size_t{beam_lanes} + 1);
-  directions64 =
-      std::make_unique<gpu::Buffer>(device, "beams in 64 bits", Role::upload, Texel::u32x4,
-                                    gpu::texels_of<BeamDirection>(SF_BEAMS_PER_LANE * (std::size_t{beam_lanes} + 1)));
-  const std::size_t results = std::size_t{out_lanes} + std::max(spare_lanes, 1u);
-  ranges = std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4,
-                                         gpu::texels_of<LaneRanges>(results));
-  hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, gpu::texels_of<LaneHits>(results));
-  beam_flags.assign(results, 0);
-  texel_results = !ranges->fits_storage_buffer() || ranges->bytes() > largest_buffer;
+void RayCaster::Tables::make_passes(gpu::Device& device, std::size_t largest_buffer) {
+  rows = std::make_unique<gpu::Buffer>(device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4,
+                                       gpu::texels_of<RayRow>(std::max<std::size_t>(1, plan.scanners.size())));
+  texel_results = !results.ranges.fits_storage_buffer() || results.ranges.bytes() > largest_buffer;
   make_pass(device, exact, false);
-  const auto asks = [](const Scanner& scanner) { return scanner.single; };
-  if (std::any_of(scanners.begin(), scanners.end(), asks)) make_pass(device, single.emplace(), true);
+  if (uploads.single()) make_pass(device, single.emplace(), true);
 }
 
 void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool is_single) {
   using gpu::Role;
   using gpu::Texel;
-  // Lanes are padded to whole groups, and large numbers of groups to whole rows of groups.
-  const std::size_t padded = gpu::most_groups_for(out_lanes, SF_LANES_PER_GROUP) * SF_LANES_PER_GROUP;
-  pass.lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
-  pass.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
-  if (!scene) return;
+  pass.lanes = is_single ? &*uploads.single() : &uploads.exact();
+  const std::size_t padded = pass.lanes->lanes.texels() / 2;
   const std::uint32_t constants[] = {scene->has_movers(), is_single, texel_results, device.rounds32()};
   constexpr std::size_t kWords = sizeof(UncertainLanes) / 4, kEntryWords = sizeof(UncertainLanes::Entry) / 4;
   pass.uncertain = std::make_unique<gpu::Buffer>(device, "uncertain lanes", Role::download, Texel::u32,
@@ -162,7 +87,7 @@ void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool 
     throw base::DeviceError(
         fmt::format("{} million beams exceed the storage buffers of the device; use fewer robots or beams, or --caster "
                     "host",
-                    SF_BEAMS_PER_LANE * out_lanes / 1'000'000));
+                    SF_BEAMS_PER_LANE * plan.result_lanes / 1'000'000));
   pass.begin_uncertain();  // no lanes until the first cast
   pass.kernel =
       std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", laser_comp_spv, constants);
@@ -170,65 +95,16 @@ void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool 
       device, is_single ? "uncertain beams in 32 bits" : "uncertain beams", laser_uncertain_comp_spv, constants);
 }
 
-void RayCaster::Tables::write_all_beams() {
-  // Tables were allocated in order of rows: a table behind all written ones is new, others are shared.
-  std::uint32_t written = 0;
-  for (std::size_t i = 0; i < scanners.size(); ++i) {
-    const ScannerRow& row = scanner_rows[i];
-    if (row.beams < written) continue;
-    write_beams(scanners[i].scan, row.plan, {}, beam_tables(row.beams));
-    written += row.plan.lanes();
-  }
-}
-
-void RayCaster::Tables::apply_angle_noise(const DueSample& d, unsigned thread) {
-  const Scanner& scanner = scanners[d.row];
-  const ScannerRow& row = scanner_rows[d.row];
-  std::vector<double>& angle_noise = angle_offsets[thread];
-  angle_noise.resize(row.plan.samples.size());
-  draw_angle_noise(scanner.scan, row.plan,
-                   {seed, base::RandomStream::angle_noise, scanner.mover, scanner.sensor, d.sequence}, angle_noise);
-  write_beams(scanner.scan, row.plan, angle_noise, beam_tables(row.beams));
-}
-
-void RayCaster::Tables::write_lanes() {
-  // New tables hold undefined values: the first tick writes them even when nothing is due.
-  const bool same = bound && lanes_written.size() == due.size() &&
-                    std::equal(due.begin(), due.end(), lanes_written.begin(),
-                               [](const DueSample& d, std::uint32_t row) { return d.row == row; });
-  if (same) return;
-  lanes_changed = true;
-  lanes_written.clear();
-  for (const DueSample& d : due) lanes_written.push_back(d.row);
-  write_lanes(exact, false);
-  if (single) write_lanes(*single, true);
-}
-
-void RayCaster::Tables::write_lanes(CastDispatch& pass, bool is_single) {
-  const auto table = pass.lanes->host<Lane>();
-  std::size_t at = 0;
-  for (std::uint32_t i = 0; i < due.size(); ++i) {
-    if (scanners[due[i].row].single != is_single) continue;
-    for (std::uint32_t lane = 0; lane < scanner_rows[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
-  }
-  const gpu::GroupCounts groups = gpu::groups_for(at, SF_LANES_PER_GROUP);
-  // Padding repeats the last lane; its results are written repeatedly with equal values.
-  const Lane last = at > 0 ? table[at - 1] : Lane{0, 0};
-  std::fill(table.begin() + static_cast<std::ptrdiff_t>(at),
-            table.begin() + static_cast<std::ptrdiff_t>(SF_LANES_PER_GROUP * groups.all()), last);
-  gpu::write_counts(groups, *pass.groups);
-}
-
 /// Makes the pattern of scanner `i` from its beam tables. @param angle_noise [rad] of each cast beam; empty: none
 void RayCaster::Tables::make_pattern(std::size_t i, std::span<const double> angle_noise, Scratch& own,
                                      ScanPattern& pattern) {
-  const ScanSettings& scan = scanners[i].scan;
-  const ScannerRow& row = scanner_rows[i];
+  const ScanSettings& scan = plan.scanners[i].scan;
+  const ScannerRow& row = plan.rows[i];
   const std::vector<std::uint32_t>& samples = row.plan.samples;
   own.bearings.resize(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k)
     own.bearings[k] = bearing_of(scan, samples[k]) + (angle_noise.empty() ? 0.0 : angle_noise[k]);
-  pattern.assign(own.bearings, {beam_tables(row.beams).directions64, 8 * std::size_t{row.plan.lanes()}},
+  pattern.assign(own.bearings, {uploads.beam_tables(row.beams).directions64, 8 * std::size_t{row.plan.lanes()}},
                  bearing_of(scan, samples.front()), bearing_of(scan, samples.back()), row.plan.place(1));
 }
 
@@ -238,7 +114,7 @@ void RayCaster::Tables::compute_viewpoints(std::size_t first, std::size_t last) 
   std::uint64_t beams = 0;
   glm::dvec2 turn;
   for (std::size_t i = first; i < last; ++i) {
-    const ScannerRow& row = scanner_rows[due[i].row];
+    const ScannerRow& row = plan.rows[due[i].row];
     const Pose &X = states[row.mover].X_WM, &X_MS = row.mount;
     if (row.mover != mover) turn = {std::cos(X.yaw), std::sin(X.yaw)};
     mover = row.mover;
@@ -258,10 +134,10 @@ bool RayCaster::Tables::prepare() {
   const bool replaced = scene->prepare(views, ray_rows);
   thread_pool.parallel_for(due.size(), 512, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
-      const ScannerRow& row = scanner_rows[due[i].row];
+      const ScannerRow& row = plan.rows[due[i].row];
       ray_rows[i].beams = row.beams;
       ray_rows[i].results = row.out;
-      ray_rows[i].range_min = scanners[due[i].row].scan.range_min;
+      ray_rows[i].range_min = plan.scanners[due[i].row].scan.range_min;
     }
   });
   return replaced;
@@ -270,14 +146,15 @@ bool RayCaster::Tables::prepare() {
 /// Finds runs of scanners of one mover at one point.
 void RayCaster::Tables::find_shared_views() {
   std::vector<const BeamPlan*> plans;
-  for (const ScannerRow& row : scanner_rows) plans.push_back(&row.plan);
-  for (std::uint32_t first = 0, end; first < scanners.size(); first = end) {
-    for (end = first + 1; end < scanners.size() && same_viewpoint(scanners[first], scanners[end]); ++end) {
+  for (const ScannerRow& row : plan.rows) plans.push_back(&row.plan);
+  for (std::uint32_t first = 0, end; first < plan.scanners.size(); first = end) {
+    for (end = first + 1; end < plan.scanners.size() && same_viewpoint(plan.scanners[first], plan.scanners[end]);
+         ++end) {
     }
-    const auto own = std::span(scanner_rows).subspan(first, end - first);
+    const auto own = std::span(plan.rows).subspan(first, end - first);
     if (own.size() < 2 || std::any_of(own.begin(), own.end(), [](const ScannerRow& row) { return row.angle_noise; }))
       continue;
-    if (shared_views.add(first, std::span(scanners).subspan(first, own.size()),
+    if (shared_views.add(first, std::span(plan.scanners).subspan(first, own.size()),
                          std::span(plans).subspan(first, own.size())))
       shared_of[first] = static_cast<std::uint32_t>(shared_views.views().size() - 1);
   }
@@ -311,59 +188,33 @@ void RayCaster::Tables::list_scans() {
   }
 }
 
-/// Writes a scanner's results in the layout of the kernels. @param grazes null when no beam grazes
-void RayCaster::Tables::write_results(const ScannerRow& row, const double* own_ranges, const std::uint32_t* own_models,
-                                      const std::uint8_t* grazes) {
-  const std::size_t beams = row.plan.samples.size(), lanes = row.plan.lanes(), places = SF_BEAMS_PER_LANE * lanes;
-  double* const out = ranges->host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
-  std::uint32_t* const hit_models = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
-  std::uint32_t* const lane_flags = beam_flags.data() + row.out;
-  std::fill_n(lane_flags, lanes, 0u);
-  if (row.plan.packed) {
-    if (own_ranges != out) std::copy_n(own_ranges, beams, out);
-    if (own_models != hit_models) std::copy_n(own_models, beams, hit_models);
-    // Unused places repeat the last beam.
-    std::fill(out + beams, out + places, out[beams - 1]);
-    std::fill(hit_models + beams, hit_models + places, hit_models[beams - 1]);
-    for (std::size_t b = 0; grazes != nullptr && b < beams; ++b)
-      if (grazes[b] != 0) lane_flags[b / SF_BEAMS_PER_LANE] |= SF_GRAZING << b % SF_BEAMS_PER_LANE;
-    return;
-  }
-  for (std::size_t b = 0; b < beams; ++b) {
-    std::fill_n(out + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own_ranges[b]);
-    std::fill_n(hit_models + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own_models[b]);
-    if (grazes != nullptr && grazes[b] != 0) lane_flags[b] |= SF_GRAZING;
-  }
-}
-
 void RayCaster::Tables::scan_one(std::size_t k, unsigned thread) {
   const DueSample& d = due[scans[k].due];
-  const ScannerRow& row = scanner_rows[d.row];
+  const ScannerRow& row = plan.rows[d.row];
   Scratch& own = scratch[thread];
-  if (row.angle_noise) apply_angle_noise(d, thread);
-  if (row.angle_noise) make_pattern(d.row, angle_offsets[thread], own, own.pattern);
+  if (row.angle_noise) make_pattern(d.row, uploads.turn_beams(d, thread), own, own.pattern);
   const ScanPattern& pattern = row.angle_noise ? own.pattern : patterns[row.pattern];
   own.make_room(pattern.beams);
   double* to = own.ranges.data();
   std::uint32_t* hit_models = own.models.data();
   if (row.plan.packed) {
-    to = ranges->host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
-    hit_models = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
+    to = results.ranges_of(row);
+    hit_models = results.models_of(row);
     // A fleet's results exceed the caches: stores would wait for each of their lines.
     const std::size_t fetched = std::min<std::size_t>(pattern.beams, kMostFetched);
     prefetch(to, fetched * sizeof *to), prefetch(hit_models, fetched * sizeof *hit_models);
   }
   const bool grazes =
       host->scan(k, scan_view_of(row, host_views[k]), pattern, thread, {to, hit_models, own.grazes.data()});
-  write_results(row, to, hit_models, grazes ? own.grazes.data() : nullptr);
+  results.write(row, to, hit_models, grazes ? own.grazes.data() : nullptr);
 }
 
 /// Scans all beams of a shared view and distributes the results to its scanners, in the layout of the kernels.
 void RayCaster::Tables::scan_shared(std::size_t k, unsigned thread) {
   const SharedView& shared = shared_views.views()[scans[k].shared];
   const SharedPattern& all = shared_views.pattern(shared);
-  const ScannerRow& row = scanner_rows[shared.first];
-  const std::size_t beams = all.sources.size(), first = SF_BEAMS_PER_LANE * std::size_t{row.out};
+  const ScannerRow& row = plan.rows[shared.first];
+  const std::size_t beams = all.sources.size();
   Scratch& own = scratch[thread];
   own.make_room(beams);
   ScanView view = scan_view_of(row, host_views[k]);
@@ -375,9 +226,9 @@ void RayCaster::Tables::scan_shared(std::size_t k, unsigned thread) {
   view.heading = host_views[k].heading;
   view.x = own.x.data(), view.y = own.y.data();
   const bool grazes = host->scan(k, view, all.beams, thread, {own.ranges.data(), own.models.data(), own.grazes.data()});
-  double* const out = ranges->host<double>().data() + first;
-  std::uint32_t* const hit_models = hits->host<std::uint32_t>().data() + first;
-  std::uint32_t* const lane_flags = beam_flags.data() + row.out;
+  double* const out = results.ranges_of(row);
+  std::uint32_t* const hit_models = results.models_of(row);
+  std::uint32_t* const lane_flags = results.beam_flags.data() + row.out;
   std::fill_n(lane_flags, all.lanes, 0u);
   for (std::size_t b = 0; b < beams; ++b) {
     const SharedPattern::Source& s = all.sources[b];
@@ -397,25 +248,25 @@ void RayCaster::Tables::find_host_due() {
   for (std::uint32_t i = 0; i < due.size(); ++i) {
     if (!scene->needs_host(i)) continue;
     host_due.push_back(i);
-    ray_rows[i].results = out_lanes;
+    ray_rows[i].results = plan.result_lanes;
   }
   host_scans += host_due.size();
 }
 
 void RayCaster::Tables::bind(CastDispatch& pass) {
   const std::vector<gpu::TableBinding> tables{{"rows", rows.get()},
-                                              {"lanes", pass.lanes.get()},
-                                              {"bearings", mid_bearings.get()},
-                                              {"directions", directions64.get()},
+                                              {"lanes", &pass.lanes->lanes},
+                                              {"bearings", &uploads.mid_bearings()},
+                                              {"directions", &uploads.directions64()},
                                               {"lists", &scene->lists()},
                                               {"segment_ids", &scene->segment_ids()},
                                               {"mover_rows", &scene->mover_rows()},
                                               {"segments", &scene->segments()},
                                               {"models", &scene->models()},
-                                              {"range_texels", ranges.get()},
-                                              {"hit_texels", hits.get()},
-                                              {"ranges", ranges.get()},
-                                              {"hits", hits.get()},
+                                              {"range_texels", &results.ranges},
+                                              {"hit_texels", &results.hits},
+                                              {"ranges", &results.ranges},
+                                              {"hits", &results.hits},
                                               {"uncertain", pass.uncertain.get()}};
   pass.kernel->bind(tables);
   pass.uncertain_kernel->bind(tables);
@@ -423,7 +274,7 @@ void RayCaster::Tables::bind(CastDispatch& pass) {
 
 /// Empties the lists of uncertain lanes, and clears the flags of the last cast.
 void RayCaster::Tables::begin_uncertain() {
-  for (const std::uint32_t lane : flagged) beam_flags[lane] = 0;
+  for (const std::uint32_t lane : flagged) results.beam_flags[lane] = 0;
   flagged.clear();
   exact.begin_uncertain();
   if (single) single->begin_uncertain();
@@ -433,15 +284,15 @@ void RayCaster::Tables::begin_uncertain() {
 void RayCaster::Tables::take_uncertain(CastDispatch& pass) {
   const std::span<const std::uint32_t> words = pass.uncertain->host<std::uint32_t>();
   const std::uint32_t count = reinterpret_cast<const UncertainLanes*>(words.data())->count;
-  const std::span<const Lane> lanes = pass.lanes->host<Lane>();
+  const std::span<const Lane> lanes = pass.lanes->lanes.host<Lane>();
   const auto* entries =
       reinterpret_cast<const UncertainLanes::Entry*>(words.data() + sizeof(UncertainLanes) / sizeof words[0]);
   for (const UncertainLanes::Entry& entry : std::span(entries, count)) {
     const Lane& lane = lanes[entry.lane];
-    std::uint32_t& flags = beam_flags[scanner_rows[due[lane.row].row].out + lane.lane];
+    std::uint32_t& flags = results.beam_flags[plan.rows[due[lane.row].row].out + lane.lane];
     if (scene->needs_host(lane.row) || flags != 0) continue;  // padding repeats the last lane
     flags = entry.flags;
-    flagged.push_back(scanner_rows[due[lane.row].row].out + lane.lane);
+    flagged.push_back(plan.rows[due[lane.row].row].out + lane.lane);
     uncertain_beams += static_cast<std::uint64_t>(std::popcount(flags / SF_UNCERTAIN));
   }
 }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "raycast/ray_caster.h"
+#include "raycast/cast_plan.h"
 #include "raycast/scan_tables.h"
 
 namespace sf::raycast {
