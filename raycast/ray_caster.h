@@ -9,6 +9,7 @@
 // passes beams that leave it. A sensor inside a solid reads the distance to its boundary. The mover that carries the
 // sensor is invisible to it.
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -16,7 +17,7 @@
 
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
-#include "raycast/cast_plan.h"
+#include "raycast/caster.h"
 #include "raycast/range_bounds.h"
 #include "raycast/sensor_context.h"
 
@@ -41,39 +42,55 @@ class RayCaster {
   RayCaster(const SensorContext& context, const world::World& world, std::vector<Scanner> scanners);
   ~RayCaster();
 
-  const std::vector<Scanner>& scanners() const;
-  const BeamPlan& plan(std::uint32_t scanner) const;
-  std::uint32_t lane(std::uint32_t scanner) const;  ///< first of its lanes in the result tables
+  const std::vector<Scanner>& scanners() const { return plan_.scanners; }
+  const BeamPlan& plan(std::uint32_t scanner) const { return plan_.rows[scanner].plan; }
+  /// First of a scanner's lanes in the result tables.
+  std::uint32_t lane(std::uint32_t scanner) const { return plan_.rows[scanner].out; }
   SensorStats stats() const;
-  bool on_device() const;  ///< false: scans run on the host, and nothing is recorded
+  /// False: scans run on the host, and nothing is recorded.
+  bool on_device() const { return on_device_; }
 
   /// Moves the movers to the poses of `SensorContext::states`, before `prepare`.
-  void place_movers();
+  void place_movers() { caster_->place(); }
   /// @param due rows of scanners  @param cast false: no scan on the host; the caller records no cast,
   /// and reads the beams' directions alone
   /// @return true when kernels must be recorded again
   bool prepare(std::span<const DueSample> due, bool cast = true);
-  void record(gpu::Batch& batch);
+  void record(gpu::Batch& batch) { caster_->record(batch); }
   /// @param results copies ranges and hits to the host
   void add_copies(gpu::Batch& batch, bool results);
   /// Results of the i-th due scanner, valid after `prepare`.
   ScanResult results(std::size_t i) const;
-  const Pose& X_WS(std::size_t i) const;  ///< pose of the i-th due scanner
+  const Pose& X_WS(std::size_t i) const { return due_.views[i].X_WS; }  ///< pose of the i-th due scanner
   /// One word per lane of the results, valid as long as the caster: SF_UNCERTAIN, SF_GRAZING.
-  std::span<const std::uint32_t> beam_flags() const;
+  std::span<const std::uint32_t> beam_flags() const { return results_.beam_flags; }
   /// Takes in the device's beam flags, and adds its uncertain beams to `stats`. Call once after each batch.
-  void take_flags();
+  void take_flags() { caster_->collect(due_); }
 
   // Result tables, on the device and (when copied) on the host, and the beams' directions in the sensor frame.
-  gpu::Buffer& ranges();        ///< SF_BEAMS_PER_LANE doubles [m] per lane
-  gpu::Buffer& hits();          ///< SF_BEAMS_PER_LANE words per lane: `Segment::model` of the hit, or SF_NO_HIT
-  gpu::Buffer& directions64();  ///< SF_BEAMS_PER_LANE pairs of doubles per lane: cosine and sine of the bearing
-  gpu::Buffer& lanes();         ///< Lane per invocation: the due scanner and its lane; without `single` scanners
-  gpu::Buffer& groups();        ///< group counts of the dispatch over `lanes`
+  gpu::Buffer& ranges() { return results_.ranges; }  ///< SF_BEAMS_PER_LANE doubles [m] per lane
+  /// SF_BEAMS_PER_LANE words per lane: `Segment::model` of the hit, or SF_NO_HIT.
+  gpu::Buffer& hits() { return results_.hits; }
+  /// SF_BEAMS_PER_LANE pairs of doubles per lane: cosine and sine of the bearing.
+  gpu::Buffer& directions64() { return uploads_.directions64(); }
+  /// Lane per invocation: the due scanner and its lane; without `single` scanners.
+  gpu::Buffer& lanes() { return uploads_.exact().lanes; }
+  /// Group counts of the dispatch over `lanes`.
+  gpu::Buffer& groups() { return uploads_.exact().groups; }
 
  private:
-  struct Tables;
-  std::unique_ptr<Tables> t_;
+  void find_views(std::size_t first, std::size_t last);
+
+  base::ThreadPool& thread_pool_;
+  const std::span<const base::Report> states_;  ///< of all movers, in this tick
+  const bool on_device_;
+  const CastPlan plan_;
+  CastUploads uploads_;
+  CastResults results_;
+  std::unique_ptr<Caster> caster_;
+  DueScans due_;
+  std::atomic<std::uint64_t> rays_{0};
+  bool fresh_ = true;  ///< no tick was prepared
 };
 
 }  // namespace sf::raycast

@@ -1,0 +1,59 @@
+#pragma once
+// The device's caster: Vulkan kernels that search lists (raycast/device_scene.h). The host computes the scans whose
+// lists exceed the device's limits.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gpu/kernel.h"
+#include "raycast/caster.h"
+#include "raycast/device_scene.h"
+#include "raycast/host_caster.h"
+
+namespace sf::raycast {
+
+class DeviceCaster : public Caster {
+ public:
+  /// @throws base::DeviceError when the device is the host, or cannot hold the tables
+  explicit DeviceCaster(const CasterInputs& in);
+
+  void place() override;
+  bool prepare(const DueScans& due, bool cast) override;
+  void record(gpu::Batch& batch) override;
+  void add_copies(gpu::Batch& batch, const DueScans& due, bool results) override;
+  void collect(const DueScans& due) override;
+  SensorStats stats() const override;
+
+ private:
+  /// Two kernels over the lanes of their due scanners: the second casts the listed ones in 64 bits.
+  struct Pass {
+    std::unique_ptr<gpu::Kernel> kernel, uncertain_kernel;
+    LaneTable* lanes = nullptr;
+    std::unique_ptr<gpu::Buffer> uncertain;  ///< UncertainLanes and its entries
+
+    void begin();
+  };
+
+  void make_pass(gpu::Device& device, Pass& pass, LaneTable& lanes, bool is_single, bool texel_results);
+  bool write_rows(const DueScans& due);
+  void find_host_scans(const DueScans& due);
+  void bind(Pass& pass);
+  void begin_passes();
+  void take_uncertain(const DueScans& due, Pass& pass);
+  void download(gpu::Batch& batch, const DueScans& due);
+
+  HostCaster host_;
+  DeviceScene scene_;
+  gpu::Buffer rows_;  ///< RayRow of each due scanner
+  Pass exact_;
+  std::optional<Pass> single_;             ///< present where a scanner is `single`
+  std::vector<std::uint32_t> host_scans_;  ///< due scans of this tick that the host computes
+  std::vector<std::uint32_t> flagged_;     ///< lanes whose flags the last cast set
+  std::uint64_t host_scans_in_all_ = 0;
+  std::uint64_t uncertain_beams_ = 0;
+  bool bound_ = false;
+};
+
+}  // namespace sf::raycast
