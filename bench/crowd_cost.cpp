@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "bench/cost.h"
 #include "farm/farm.h"
+#include "raycast/casters.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/scenes.h"
 
@@ -72,7 +73,7 @@ constexpr Layout kLayouts[] = {
      }},
 };
 
-void measure(gpu::Device& device, const Layout& layout, int robots, raycast::CasterChoice caster) {
+void measure(gpu::Device& device, const Layout& layout, int robots, const raycast::CasterType* caster) {
   world::World world;
   scenes::add_room(world, {}, 400.0);
   Chance chance(5);
@@ -88,8 +89,7 @@ void measure(gpu::Device& device, const Layout& layout, int robots, raycast::Cas
     farm.tick(tick * 1'000'000'000ll, reports);
     if (tick > 0) costs.push_back(since(start));
   }
-  fmt::print("{:6} {:24} {:7} {:9.2f} ms   {}\n", robots, layout.name,
-             caster == raycast::CasterChoice::host ? "host" : "vulkan", 1e3 * median(costs).cpu_s,
+  fmt::print("{:6} {:24} {:7} {:9.2f} ms   {}\n", robots, layout.name, caster->name, 1e3 * median(costs).cpu_s,
              base::hash_hex(farm.hash()));
 }
 
@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
     else
       chosen = argv[k];
   if (sizes.empty()) sizes = {50, 200, 800, 1'000};
-  for (const auto caster : {sf::raycast::CasterChoice::host, sf::raycast::CasterChoice::vulkan})
+  for (const auto caster : {&sf::raycast::host_caster, &sf::raycast::device_caster})
     for (const int robots : sizes)
       for (const sf::bench::Layout& layout : sf::bench::kLayouts)
         if (std::string_view(layout.name).find(chosen) != std::string_view::npos)

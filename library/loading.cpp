@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "base/installation.h"
-#include "raycast/rasterizer.h"
+#include "raycast/casters.h"
 #include "scenarios/default_robot.h"
 #include "sensors/sensor_type.h"
 #include "world/free_space.h"
@@ -42,26 +42,14 @@ std::shared_ptr<gpu::Device> shared_device(const sensorfarm::Options& options) {
   static std::mutex lock;
   // A process that was forked has devices of its parent, whose threads it lacks: it opens its own.
   static std::map<std::tuple<pid_t, std::string, bool>, std::weak_ptr<gpu::Device>> open;
-  const bool require_vulkan = options.require_vulkan ||
-                              raycast::choose_caster(true, caster_of(options.caster)) == raycast::CasterChoice::vulkan;
+  const bool require_vulkan =
+      options.require_vulkan || raycast::choose_caster(true, raycast::caster_named(options.caster)).on_device;
   const std::scoped_lock guard(lock);
   std::weak_ptr<gpu::Device>& known = open[{getpid(), options.device, require_vulkan}];
   if (auto device = known.lock()) return device;
   auto device = std::make_shared<gpu::Device>(gpu::Device::or_host(options.device, require_vulkan));
   known = device;
   return device;
-}
-
-raycast::CasterChoice caster_of(const std::string& word) {
-  if (word == "auto") return raycast::CasterChoice::automatic;
-  if (word == "vulkan") return raycast::CasterChoice::vulkan;
-  if (word == "host") return raycast::CasterChoice::host;
-  throw base::InputError(fmt::format("there is no caster '{}'; expected auto, vulkan or host", word));
-}
-
-std::string describe_caster(bool software, const std::string& word) {
-  const bool host = raycast::choose_caster(software, caster_of(word)) == raycast::CasterChoice::host;
-  return host ? std::string("host, ") + raycast::vector_instructions() : "Vulkan kernels";
 }
 
 control::ControllerConfig controller_of(const std::string& name, const SettingTexts& texts) {

@@ -8,7 +8,6 @@
 
 #include "control/controllers.h"
 #include "gpu/device.h"
-#include "raycast/caster_choice.h"
 #include "sensorfarm/simulation.h"
 #include "world/world.h"
 
@@ -29,12 +28,6 @@ world::World load(const WorldSource& source, const sensorfarm::Options& options)
 /// The open device that `options` choose, shared by all that ask for it while one of them lives.
 /// @throws base::DeviceError
 std::shared_ptr<gpu::Device> shared_device(const sensorfarm::Options& options);
-
-/// @throws base::InputError for a word that is no caster
-raycast::CasterChoice caster_of(const std::string& word);
-
-/// As raycast::describe_caster, of the caster that `word` asks for.
-std::string describe_caster(bool software, const std::string& word);
 
 using SettingTexts = std::vector<std::pair<std::string, std::string>>;
 control::ControllerConfig controller_of(const std::string& name, const SettingTexts& settings);

@@ -19,6 +19,7 @@
 #include "library/loading.h"
 #include "library/ranks.h"
 #include "library/reading_table.h"
+#include "raycast/casters.h"
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
@@ -36,7 +37,7 @@ scenarios::SimulationOptions simulation_options(const Options& options, cluster:
   scenarios::SimulationOptions simulation{.seed = options.seed, .threads = cluster::threads_of(options.threads, ranks)};
   simulation.ranks = ranks;
   simulation.noise = options.noise;
-  simulation.caster = library::caster_of(options.caster);
+  simulation.caster = raycast::caster_named(options.caster);
   simulation.actor.controller = library::controller_of(options.controller, options.settings);
   return simulation;
 }
@@ -145,13 +146,14 @@ void Simulation::State::record() {
 }
 
 record::RunInfo Simulation::State::run_info() const {
-  return scenarios::run_info(world, simulation->farm().sensor_set(),
-                             {.seed = options.seed,
-                              .record_readings = options.record_readings,
-                              .caster = library::describe_caster(device->info().software, options.caster),
-                              .noise = options.noise,
-                              .joined = simulation->joined(),
-                              .too_near_min = options.too_near_min});
+  return scenarios::run_info(
+      world, simulation->farm().sensor_set(),
+      {.seed = options.seed,
+       .record_readings = options.record_readings,
+       .caster = raycast::describe_caster(device->info().software, raycast::caster_named(options.caster)),
+       .noise = options.noise,
+       .joined = simulation->joined(),
+       .too_near_min = options.too_near_min});
 }
 
 void Simulation::State::step(std::span<const Twist> given) {
@@ -394,7 +396,7 @@ std::uint64_t Simulation::hash() const {
 std::string Simulation::description() const {
   const gpu::DeviceInfo& info = state_->device->info();
   return fmt::format("{}, rays cast by: {}", info.name,
-                     library::describe_caster(info.software, state_->options.caster));
+                     raycast::describe_caster(info.software, raycast::caster_named(state_->options.caster)));
 }
 
 const std::vector<std::string>& Simulation::warnings() const { return state_->warnings; }

@@ -6,6 +6,8 @@
 #include <bit>
 
 #include "base/error.h"
+#include "raycast/casters.h"
+#include "raycast/range_bounds.h"
 #include "shaders/laser.comp.h"
 #include "shaders/laser_uncertain.comp.h"
 
@@ -213,5 +215,14 @@ SensorStats DeviceCaster::stats() const {
   stats.host_scans = host_scans_in_all_;
   return stats;
 }
+
+constinit const CasterType device_caster{
+    .name = "vulkan",
+    .summary = "the device's kernels",
+    .on_device = true,
+    .describe = [] { return std::string("Vulkan kernels"); },
+    .bound = exact_bound,
+    .make = [](const CasterInputs& in) -> std::unique_ptr<Caster> { return std::make_unique<DeviceCaster>(in); },
+};
 
 }  // namespace sf::raycast

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "raycast/casters.h"
 #include "raycast/range_bounds.h"
 
 namespace sf::raycast {
@@ -161,5 +162,13 @@ SensorStats HostCaster::stats() const {
   stats.movers_visible = scans.movers_visible;
   return stats;
 }
+
+constinit const CasterType host_caster{
+    .name = "host",
+    .summary = "the host's vector code, with the same results",
+    .describe = [] { return std::string("host, ") + vector_instructions(); },
+    .bound = exact_bound,
+    .make = [](const CasterInputs& in) -> std::unique_ptr<Caster> { return std::make_unique<HostCaster>(in); },
+};
 
 }  // namespace sf::raycast

@@ -3,30 +3,16 @@
 #include <cmath>
 #include <utility>
 
-#include "raycast/caster_choice.h"
-#include "raycast/device_caster.h"
-#include "raycast/host_caster.h"
-
 namespace sf::raycast {
-
-namespace {
-
-std::unique_ptr<Caster> make_caster(const CasterInputs& in) {
-  if (choose_caster(in.context.device.info().software, in.context.scene.caster) == CasterChoice::vulkan)
-    return std::make_unique<DeviceCaster>(in);
-  return std::make_unique<HostCaster>(in);
-}
-
-}  // namespace
 
 RayCaster::RayCaster(const SensorContext& context, const world::World& world, std::vector<Scanner> scanners)
     : thread_pool_(context.thread_pool),
       states_(context.states),
-      on_device_(choose_caster(context.device.info().software, context.scene.caster) == CasterChoice::vulkan),
+      type_(choose_caster(context.device.info().software, context.scene.caster)),
       plan_(world, std::move(scanners), context.noise),
       uploads_(context, plan_),
       results_(context.device, plan_),
-      caster_(make_caster({context, world, plan_, uploads_, results_})) {}
+      caster_(type_.make({context, world, plan_, uploads_, results_})) {}
 
 RayCaster::~RayCaster() = default;
 

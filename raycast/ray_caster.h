@@ -2,12 +2,13 @@
 // Casts the beams of many scanners at once, for lasers, lane edge sensors and cones (ConeCaster). Beams lie in the
 // horizontal plane of their sensor.
 //
-// Ranges are exact: the nearest surface along each beam, from either side, decided in 64 bits against the segments of
-// the world, within `exact_bound` of real arithmetic except for beams that graze a surface; scanners that are `single`
-// add `single_bound`. A beam without a hit before range_max reads range_max. A surface
-// that touches the sensor (within SF_CONTACT_DISTANCE along the beam) stops beams that enter it, which read 0, and
-// passes beams that leave it. A sensor inside a solid reads the distance to its boundary. The mover that carries the
-// sensor is invisible to it.
+// Ranges are exact: the nearest surface along each beam, from either side, decided against the segments of the world,
+// within the caster's `bound` of real arithmetic except for beams that graze a surface. A beam without a hit before
+// range_max reads range_max. A surface that touches the sensor (within SF_CONTACT_DISTANCE along the beam) stops beams
+// that enter it, which read 0, and passes beams that leave it. A sensor inside a solid reads the distance to its
+// boundary. The mover that carries the sensor is invisible to it.
+//
+// Who casts is `SceneOptions::caster`, one of raycast/casters.h.
 
 #include <atomic>
 #include <cstdint>
@@ -18,6 +19,7 @@
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
 #include "raycast/caster.h"
+#include "raycast/casters.h"
 #include "raycast/range_bounds.h"
 #include "raycast/sensor_context.h"
 
@@ -38,7 +40,8 @@ struct ScanResult {
 class RayCaster {
  public:
   /// @param world the visible geometry, which may be a subset of `context.world`; the movers must be the same
-  /// @throws base::DeviceError when the device cannot hold the tables
+  /// @throws base::DeviceError when the device cannot hold the tables; base::InputError when the caster refuses the
+  /// world's size
   RayCaster(const SensorContext& context, const world::World& world, std::vector<Scanner> scanners);
   ~RayCaster();
 
@@ -46,9 +49,14 @@ class RayCaster {
   const BeamPlan& plan(std::uint32_t scanner) const { return plan_.rows[scanner].plan; }
   /// First of a scanner's lanes in the result tables.
   std::uint32_t lane(std::uint32_t scanner) const { return plan_.rows[scanner].out; }
+  const CasterType& type() const { return type_; }
+  /// [m] largest error of a range of a beam that does not graze; parameters as of `exact_bound`.
+  double bound(double range_max, double longest, double farthest, bool single) const {
+    return type_.bound(range_max, longest, farthest) + (single ? single_bound(range_max) : 0.0);
+  }
   SensorStats stats() const;
   /// False: scans run on the host, and nothing is recorded.
-  bool on_device() const { return on_device_; }
+  bool on_device() const { return type_.on_device; }
 
   /// Moves the movers to the poses of `SensorContext::states`, before `prepare`.
   void place_movers() { caster_->place(); }
@@ -83,7 +91,7 @@ class RayCaster {
 
   base::ThreadPool& thread_pool_;
   const std::span<const base::Report> states_;  ///< of all movers, in this tick
-  const bool on_device_;
+  const CasterType& type_;
   const CastPlan plan_;
   CastUploads uploads_;
   CastResults results_;

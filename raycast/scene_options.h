@@ -4,14 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "raycast/caster_choice.h"
-
 namespace sf::raycast {
+
+struct CasterType;
 
 /// Limits beyond which the oldest lists are evicted. A few robots start with less. When one tick alone needs more, the
 /// capacity doubles.
 struct SceneOptions {
-  CasterChoice caster = CasterChoice::automatic;
+  const CasterType* caster = nullptr;    ///< null: as `choose_caster` decides
   std::uint32_t pool_chunks = 1u << 20;  ///< 80 bytes each; memory is committed only as far as used
   std::uint32_t pool_cells = 1u << 14;
   /// [chunks] per sector; the device's own limit also applies. Scans with longer lists run on the host.

@@ -13,7 +13,7 @@
 #include "base/elapsed.h"
 #include "base/time.h"
 #include "farm/farm.h"
-#include "raycast/caster_choice.h"
+#include "raycast/casters.h"
 #include "scenarios/recorded_paths.h"
 
 namespace sf::scenarios {

@@ -58,7 +58,7 @@ struct SimulationOptions {
   std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; none: the farm knows the true ones
   bool no_return_inf = false;              ///< see farm::FarmOptions
   bool noise = true;                       ///< likewise
-  raycast::CasterChoice caster = raycast::CasterChoice::automatic;
+  const raycast::CasterType* caster = nullptr;  ///< null: as `raycast::choose_caster` decides
   cluster::Ranks* ranks = nullptr;  ///< that share the fleet, with the same options; null: this process has all of it
   double balance = 0.0;  ///< [s] simulated between new cuts of the tiles, by measured times; 0: tiles stay, and ranks
                          ///< keep only the walls of their own

@@ -9,7 +9,7 @@
 #include "base/elapsed.h"
 #include "base/random.h"
 #include "cluster/failure.h"
-#include "raycast/caster_choice.h"
+#include "raycast/casters.h"
 #include "scenarios/coverage.h"
 #include "scenarios/run_info.h"
 #include "sensors/laser_settings.h"

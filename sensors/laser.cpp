@@ -176,7 +176,7 @@ void Lasers::write(std::size_t i, base::ReadingBlock& block) const {
   block.flags = 0;
   block.mode = row.mode;
   const double away = std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y));
-  block.bound = block.bound_without_noise = laser_bound(row.range_max, row.single, longest_, away + row.range_max);
+  block.bound = block.bound_without_noise = caster_.bound(row.range_max, longest_, away + row.range_max, row.single);
   block.sigma = 0.0;
   block.quality = {};
   if (row.grazing || row.interpolated || row.too_near)

@@ -5,7 +5,7 @@
 
 #include "base/marked_values.h"
 #include "maps/map_packets.h"
-#include "raycast/caster_choice.h"
+#include "raycast/casters.h"
 #include "sensors/laser.h"
 #include "sensors/occupancy_batch.h"
 #include "sensors/occupancy_packets.h"
@@ -53,7 +53,7 @@ std::vector<MapSettings> map_settings_of(const std::vector<Occupancy>& all) {
 
 /// As rays are: a software device is slower at both.
 bool on_host(const SensorContext& context) {
-  return raycast::choose_caster(context.device.info().software, context.scene.caster) == raycast::CasterChoice::host;
+  return !raycast::choose_caster(context.device.info().software, context.scene.caster).on_device;
 }
 
 Occupancies::Occupancies(const SensorContext& context)

@@ -16,7 +16,7 @@
 #include "apps/reports/report.h"
 #include "apps/reports/text.h"
 #include "base/error.h"
-#include "raycast/caster_choice.h"
+#include "raycast/casters.h"
 #include "record/recorder.h"
 #include "scenarios/lockstep_service.h"
 #include "scenarios/run_info.h"

@@ -35,7 +35,7 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "cluster/failure.h"
-#include "raycast/caster_choice.h"
+#include "raycast/casters.h"
 #include "scenarios/operator.h"
 #include "scenarios/scenario_events.h"
 #include "scenarios/simulation.h"

@@ -24,7 +24,7 @@
 #include "apps/reports/text.h"
 #include "base/error.h"
 #include "base/time.h"
-#include "raycast/caster_choice.h"
+#include "raycast/casters.h"
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
 #include "server/service.h"

@@ -1,12 +1,12 @@
 #include "apps/options/open_device.h"
 
 #include "apps/reports/text.h"
-#include "raycast/caster_choice.h"
+#include "raycast/casters.h"
 
 namespace sf::apps {
 
 gpu::Device open_device_silently(const DeviceOption& options) {
-  const bool kernels_cast = raycast::choose_caster(true) == raycast::CasterChoice::vulkan;
+  const bool kernels_cast = raycast::choose_caster(true).on_device;
   return gpu::Device::or_host(options.device, options.require_vulkan || kernels_cast);
 }
 

@@ -12,6 +12,7 @@
 #include "base/installation.h"
 #include "bridges/dds.h"
 #include "control/own_controllers.h"
+#include "raycast/casters.h"
 #include "sensors/accuracy.h"
 
 namespace sf::apps {
@@ -52,6 +53,19 @@ void add_json(CLI::App& app, JsonOption& o) {
   app.add_flag("--json", o.json, "Print the report as JSON on standard output");
 }
 
+namespace {
+
+std::string caster_help() {
+  std::vector<std::string> casters;
+  for (const raycast::CasterType* type : raycast::casters())
+    casters.push_back(fmt::format("{}: {}", type->name, type->summary));
+  return fmt::format(
+      "Ray caster. {} (default: $SENSORFARM_CASTER, else auto: host where the device is software, else vulkan)",
+      fmt::join(casters, "; "));
+}
+
+}  // namespace
+
 void add_device(CLI::App& app, DeviceOption& o) {
   app.add_option("--device", o.device,
                  "Vulkan device, by its row in `devices` or part of its name, or host: no device, with the same "
@@ -64,12 +78,10 @@ void add_device(CLI::App& app, DeviceOption& o) {
                "Without a usable Vulkan device, end with exit code 3 rather than compute on the host (also "
                "SENSORFARM_REQUIRE_VULKAN=1)")
       ->group(kDevice);
-  // Farms look it up where they are made (raycast/caster_choice.h).
+  // Farms look it up where they are made (raycast/casters.h).
   add_choice(
-      app, "--caster", {"auto", "vulkan", "host"},
-      [](const std::string& word) { setenv("SENSORFARM_CASTER", word.c_str(), 1); },
-      "Ray caster: the device's kernels or the host's vector code, with the same results (default: $SENSORFARM_CASTER, "
-      "else auto: host where the device is software)")
+      app, "--caster", raycast::caster_words(),
+      [](const std::string& word) { setenv("SENSORFARM_CASTER", word.c_str(), 1); }, caster_help())
       ->group(kDevice);
 }
 

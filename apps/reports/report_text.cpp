@@ -7,7 +7,7 @@
 #include "apps/reports/report.h"
 #include "apps/reports/text.h"
 #include "base/hash.h"
-#include "raycast/caster_choice.h"
+#include "raycast/casters.h"
 #include "sensors/accuracy.h"
 #include "sensors/magnetic_field/truncation.h"
 

@@ -58,10 +58,11 @@ TEST(Explain, TheCasterIsAsAsked) {
   EXPECT_EQ(json.size("/types/0/kernels"), 0u);
   const Outcome wrong = run_program({"explain", our_world("rooms.world"), "--caster", "gpu"});
   EXPECT_EQ(wrong.code, 2);
-  EXPECT_NE(wrong.err.find("--caster: expected auto, vulkan or host, got 'gpu'"), std::string::npos) << wrong.err;
+  EXPECT_NE(wrong.err.find("--caster: expected auto, vulkan, host"), std::string::npos) << wrong.err;
   const Outcome misspelt = run_program({"explain", our_world("rooms.world")}, {{"SENSORFARM_CASTER", "gpu"}});
   EXPECT_EQ(misspelt.code, 2) << "from the environment too";
-  EXPECT_NE(misspelt.err.find("SENSORFARM_CASTER=gpu: expected auto, vulkan or host"), std::string::npos)
+  EXPECT_NE(misspelt.err.find("SENSORFARM_CASTER: there is no caster 'gpu'; expected one of: auto, vulkan, host"),
+            std::string::npos)
       << misspelt.err;
   const Outcome both =
       run_program({"explain", our_world("rooms.world"), "--robots", "2", "--caster", "vulkan", "--json"},

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/hash.h"
+#include "raycast/casters.h"
 #include "robots/kinematics.h"
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/chance.h"
@@ -93,20 +94,18 @@ TEST(Determinism, IndependentOfThePoolsSize) {
   const std::uint64_t large = run(world, {.seed = 1});
   for (const std::uint32_t chunks : {32u, 1024u, 16'384u})
     for (const std::uint32_t cells : {1u, 8u, 40u})
-      EXPECT_EQ(
-          run(world, {.seed = 1,
-                      .scene = {.caster = raycast::CasterChoice::vulkan, .pool_chunks = chunks, .pool_cells = cells}}),
-          large)
+      EXPECT_EQ(run(world, {.seed = 1,
+                            .scene = {.caster = &raycast::device_caster, .pool_chunks = chunks, .pool_cells = cells}}),
+                large)
           << chunks << " chunks, " << cells << " cells";
 }
 
 TEST(Determinism, EvictedCellsAreBuiltAgain) {
   const world::World world = small_world(30);
-  Farm farm(world, device(),
-            {.scene = {.caster = raycast::CasterChoice::vulkan, .pool_chunks = 16'384, .pool_cells = 32}});
+  Farm farm(world, device(), {.scene = {.caster = &raycast::device_caster, .pool_chunks = 16'384, .pool_cells = 32}});
   farm.subscribe_all();
   for (int k = 0; k < 12; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
-  Farm roomy(world, device(), {.scene = {.caster = raycast::CasterChoice::vulkan}});
+  Farm roomy(world, device(), {.scene = {.caster = &raycast::device_caster}});
   roomy.subscribe_all();
   for (int k = 0; k < 12; ++k) roomy.tick(k * 100'000'000ll, reports_at(world, k));
   EXPECT_GT(farm.stats().work.cells_built, roomy.stats().work.cells_built) << "the test is meant to evict";

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "raycast/casters.h"
 #include "robots/fleet.h"
 #include "sensors/laser.h"
 #include "sensors/laser_reference.h"
@@ -68,7 +69,7 @@ void expect_sound(const sensors::LaserReference& reference, const base::ReadingB
 
 /// @return the hash of all readings
 std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigned threads,
-                          raycast::CasterChoice caster) {
+                          const raycast::CasterType* caster) {
   trial::Chance chance(seed);
   Farm farm(world, device(), {.true_poses = false, .threads = threads, .scene = {.caster = caster}});
   robots::Fleet fleet(world);
@@ -102,9 +103,9 @@ std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigne
 }
 
 void expect_the_same_from_all(const world::World& world, std::uint64_t seed) {
-  const std::uint64_t hash = under_siege(world, seed, 2, raycast::CasterChoice::host);
-  EXPECT_EQ(under_siege(world, seed, 1, raycast::CasterChoice::host), hash) << "one thread";
-  EXPECT_EQ(under_siege(world, seed, 2, raycast::CasterChoice::vulkan), hash) << "the device's kernels";
+  const std::uint64_t hash = under_siege(world, seed, 2, &raycast::host_caster);
+  EXPECT_EQ(under_siege(world, seed, 1, &raycast::host_caster), hash) << "one thread";
+  EXPECT_EQ(under_siege(world, seed, 2, &raycast::device_caster), hash) << "the device's kernels";
 }
 
 TEST(HostileStates, AmongBoxes) {

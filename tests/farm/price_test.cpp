@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "raycast/casters.h"
 #include "sensors/laser.h"
 #include "sensors/magnetometer.h"
 #include "tests/farm/small_farm.h"
@@ -65,7 +66,7 @@ TEST(Price, KindsThatAreHeardLaterReadTheSame) {
     mover.sensors.push_back(scenes::five());
     mover.sensors.push_back(trial::cones("infrared", trial::ring(4, 0.1)));
   }
-  auto caster = raycast::CasterChoice::host;
+  auto caster = &raycast::host_caster;
   const auto readings = [&](const std::vector<std::uint32_t>& heard) {
     Farm farm(world, device(), {.reuse_unchanged = false, .scene = {.caster = caster}});
     std::vector<Kept> kept;
@@ -79,7 +80,7 @@ TEST(Price, KindsThatAreHeardLaterReadTheSame) {
   const std::uint32_t laser = 1u << sensors::kLaser, magnets = 1u << sensors::kMagnetometer;
   const std::vector<Kept> all = readings({kAllSensorTypes, kAllSensorTypes, kAllSensorTypes, kAllSensorTypes});
   EXPECT_EQ(all.size(), 3u * 6u * 3u);
-  for (const auto each : {raycast::CasterChoice::host, raycast::CasterChoice::vulkan}) {
+  for (const auto each : {&raycast::host_caster, &raycast::device_caster}) {
     caster = each;
     EXPECT_EQ(readings({laser, 0, laser | magnets, kAllSensorTypes}), all);
     EXPECT_EQ(readings({0, magnets, laser, kAllSensorTypes}), all);
@@ -118,7 +119,7 @@ TEST(Price, AStandingFleetCastsAndSubmitsNothing) {
 /// Host scans need no batch and give the same bytes.
 TEST(Price, ScansOfTheHostSubmitNothing) {
   const world::World world = small_world(20);
-  Farm by_host(world, device(), {.scene = {.caster = raycast::CasterChoice::host}});
+  Farm by_host(world, device(), {.scene = {.caster = &raycast::host_caster}});
   Farm by_device(world, device(), kOnDevice);
   for (Farm* farm : {&by_host, &by_device}) {
     farm->subscribe_all();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "farm/farm.h"
+#include "raycast/casters.h"
 #include "sensors/laser_settings.h"
 #include "tests/device.h"
 #include "tests/sensors/scenes.h"
@@ -13,7 +14,7 @@ namespace sf::farm {
 inline constexpr std::uint32_t kBeams = 61;
 
 /// Lasers on the device's kernels, even on a software device.
-inline constexpr FarmOptions kOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
+inline constexpr FarmOptions kOnDevice{.scene = {.caster = &raycast::device_caster}};
 
 /// `robots` robots among boxes, each with one laser at 10 Hz.
 inline world::World small_world(std::uint32_t robots, const raycast::ScanNoise& noise = {}) {

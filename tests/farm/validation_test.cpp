@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "raycast/casters.h"
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/cone_scenes.h"
 
@@ -21,7 +22,7 @@ TEST(Validation, TheLayerIsSilent) {
       for (const char* type : {"sonar", "infrared"})
         mover.sensors.push_back(trial::cones(type, trial::ring(8, 0.1), {trial::cone_setting("range", {0, 1})}));
     Farm farm(world, device,
-              {.scene = {.caster = raycast::CasterChoice::vulkan,
+              {.scene = {.caster = &raycast::device_caster,
                          .pool_chunks = 1024,
                          .pool_cells = 8}});  // so small that its tables are replaced
     farm.subscribe_all();

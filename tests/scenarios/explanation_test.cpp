@@ -1,6 +1,7 @@
 // Cost of a world in the farm.
 
 #include "scenarios/explanation.h"
+#include "raycast/casters.h"
 
 #include <gtest/gtest.h>
 
@@ -64,7 +65,7 @@ TEST(Explanation, HiddenMoversAreCounted) {
   world::World world;
   for (int i = 0; i < 6; ++i) scenes::add_robot(world, {0.5 * i, 0.0, 0.0, 0.1}, scenes::laser(61, 2.0 * M_PI, 4.0));
   world::update_extent_and_hash(world);
-  farm::Farm farm(world, device(), {.scene = {.caster = raycast::CasterChoice::host}});
+  farm::Farm farm(world, device(), {.scene = {.caster = &raycast::host_caster}});
   farm.subscribe_all();
   farm.tick(0, {});
   EXPECT_EQ(farm.stats().work.movers_in_range, 6u * 5u);
@@ -82,7 +83,7 @@ TEST(Explanation, SmallMoversBeyondTheRangeAreNotCounted) {
       mover.sensors[0].X_MS = {};
     }
     world::update_extent_and_hash(world);
-    farm::Farm farm(world, device(), {.scene = {.caster = raycast::CasterChoice::vulkan}});
+    farm::Farm farm(world, device(), {.scene = {.caster = &raycast::device_caster}});
     farm.subscribe_all();
     farm.tick(0, {});
     EXPECT_EQ(farm.stats().work.movers_in_range, at < 2.828 ? 2u : 0u) << at;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "raycast/casters.h"
 #include "record/recorder.h"
 #include "record/recording.h"
 #include "scenarios/recorded_states.h"
@@ -55,7 +56,7 @@ world::World world_of(const std::string& more = "") {
 SimulationOptions options_of(const char* caster) {
   SimulationOptions options{.seed = 5};
   options.actor.controller.name.clear();
-  options.caster = std::string(caster) == "host" ? raycast::CasterChoice::host : raycast::CasterChoice::vulkan;
+  options.caster = raycast::caster_named(caster);
   return options;
 }
 

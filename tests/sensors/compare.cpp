@@ -8,6 +8,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "raycast/casters.h"
 #include "sensors/laser_settings.h"
 #include "tests/device.h"
 #include "tests/sensors/brute_force.h"
@@ -133,9 +134,9 @@ void expect_same_bits(std::span<const base::ReadingBlock> p, std::span<const bas
 
 Tally sweep(const world::World& world, const farm::FarmOptions& options) {
   farm::FarmOptions by = options;
-  by.scene.caster = raycast::CasterChoice::host;
+  by.scene.caster = &raycast::host_caster;
   const Glance run(world, by);
-  by.scene.caster = raycast::CasterChoice::vulkan;
+  by.scene.caster = &raycast::device_caster;
   expect_same_bits(run.readings, Glance(world, by).readings);
   std::vector<Pose> poses;
   for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "raycast/casters.h"
 #include "sensors/laser_reference.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
@@ -18,11 +19,11 @@ namespace {
 using base::Pose;
 using base::ReadingBlock;
 
-const farm::FarmOptions kOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
+const farm::FarmOptions kOnDevice{.scene = {.caster = &raycast::device_caster}};
 /// No list fits.
-const farm::FarmOptions kOnHost{.scene = {.caster = raycast::CasterChoice::vulkan, .longest_list = 0}};
+const farm::FarmOptions kOnHost{.scene = {.caster = &raycast::device_caster, .longest_list = 0}};
 /// No storage buffer holds the results.
-const farm::FarmOptions kInTexels{.scene = {.caster = raycast::CasterChoice::vulkan, .largest_buffer = 0}};
+const farm::FarmOptions kInTexels{.scene = {.caster = &raycast::device_caster, .largest_buffer = 0}};
 
 bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
   const auto same = [](auto a, auto b) {
@@ -36,7 +37,7 @@ bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
 void expect_same_bytes(const world::World& world) {
   farm::Farm on_device(world, device(), kOnDevice);
   farm::Farm on_host(world, device(), kOnHost);
-  farm::Farm by_host(world, device(), {.scene = {.caster = raycast::CasterChoice::host}});
+  farm::Farm by_host(world, device(), {.scene = {.caster = &raycast::host_caster}});
   for (farm::Farm* farm : {&on_device, &on_host, &by_host}) farm->subscribe_all();
   for (int tick = 0; tick < 2; ++tick) {
     std::vector<base::Report> reports;
@@ -230,8 +231,7 @@ TEST(SharedLists, EveryBeamUncertain) {
 TEST(SharedLists, TablesThatGrewAreReadFromTheirNewPlace) {
   world::World world = scenes::cave(60, 30.0, 2);
   scenes::add_robots(world, 40, scenes::laser(), 2);
-  farm::Farm farm(world, device(),
-                  {.scene = {.caster = raycast::CasterChoice::vulkan, .pool_chunks = 512, .pool_cells = 2}});
+  farm::Farm farm(world, device(), {.scene = {.caster = &raycast::device_caster, .pool_chunks = 512, .pool_cells = 2}});
   farm.subscribe(0, farm::kAllSensorTypes);
   farm.tick(0, {});
   farm.subscribe_all();

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "raycast/casters.h"
 #include "sensors/bumper.h"
 #include "sensors/cliff.h"
 #include "sensors/encoder.h"
@@ -230,10 +231,10 @@ TEST(HostKinds, TheReadyMadeOnesAreRead) {
   EXPECT_DOUBLE_EQ(sensors::read_encoder(fitted[6], world.movers[0]).per_count, 1e-3 / 12);
 }
 
-const farm::FarmOptions kWithoutDevice{.scene = {.caster = raycast::CasterChoice::host}};
+const farm::FarmOptions kWithoutDevice{.scene = {.caster = &raycast::host_caster}};
 
 /// Two farms of one world, with noise, that are driven alike.
-void expect_same_readings(const world::World& world, raycast::CasterChoice caster, int ticks = 4) {
+void expect_same_readings(const world::World& world, const raycast::CasterType* caster, int ticks = 4) {
   farm::Farm kernels(world, device(), {.scene = {.caster = caster}}), host(world, host_device(), kWithoutDevice);
   kernels.subscribe_all(), host.subscribe_all();
   Chance chance(3);
@@ -277,7 +278,7 @@ world::World rasters(double resolution, bool with_bodies, std::uint64_t seed) {
 TEST(HostDevice, LaneEdgesOnRastersHaveTheBytesOfTheKernels) {
   for (const double resolution : {0.002, 0.005, 0.02, 0.13})
     for (const bool with_bodies : {false, true})
-      for (const auto caster : {raycast::CasterChoice::host, raycast::CasterChoice::vulkan})
+      for (const auto caster : {&raycast::host_caster, &raycast::device_caster})
         expect_same_readings(rasters(resolution, with_bodies, 7), caster);
 }
 
@@ -297,7 +298,7 @@ TEST(HostDevice, MagnetometersHaveTheBytesOfTheKernelsInAllModes) {
         const auto row = scenes::add_carrier(world, {p.x, p.y, 0.0, 0.0}, sensor);
         world.movers[row].magnets.push_back(scenes::magnet({0.1, 0.0}, 0.05, 2.0));
       }
-    expect_same_readings(world, raycast::CasterChoice::automatic);
+    expect_same_readings(world, nullptr);
   }
 }
 
@@ -320,7 +321,7 @@ TEST(HostDevice, TheCasterOfKernelsIsRefused) {
   world::World world = scenes::boxes(2, 6.0, 1);
   scenes::add_robots(world, 1, scenes::laser(), 1);
   try {
-    const farm::Farm farm(world, host_device(), {.scene = {.caster = raycast::CasterChoice::vulkan}});
+    const farm::Farm farm(world, host_device(), {.scene = {.caster = &raycast::device_caster}});
     ADD_FAILURE() << "no scan is cast by kernels on the host";
   } catch (const base::DeviceError& error) {
     EXPECT_NE(std::string(error.what()).find("mesa-vulkan-drivers"), std::string::npos) << error.what();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "raycast/casters.h"
 #include "robots/fleet.h"
 #include "sensors/laneedge_settings.h"
 #include "tests/sensors/compare.h"
@@ -57,9 +58,9 @@ world::LaneMarking arc(glm::dvec2 centre, double radius, double from, double to,
 
 namespace {
 
-raycast::CasterChoice caster_of(const gpu::Device* on) {
-  if (on == nullptr) return raycast::CasterChoice::automatic;
-  return on->is_host() ? raycast::CasterChoice::host : raycast::CasterChoice::vulkan;
+const raycast::CasterType* caster_of(const gpu::Device* on) {
+  if (on == nullptr) return nullptr;
+  return on->is_host() ? &raycast::host_caster : &raycast::device_caster;
 }
 
 }  // namespace

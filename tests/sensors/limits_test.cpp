@@ -5,6 +5,7 @@
 #include <array>
 #include <tuple>
 
+#include "raycast/casters.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/edit_laser.h"
@@ -14,7 +15,7 @@
 namespace sf::trial {
 namespace {
 
-const farm::FarmOptions kLimitsOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
+const farm::FarmOptions kLimitsOnDevice{.scene = {.caster = &raycast::device_caster}};
 
 void add_thin(std::vector<world::Segment>& out, glm::dvec2 a, glm::dvec2 b, std::uint32_t model) {
   world::Segment s;

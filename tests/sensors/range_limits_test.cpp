@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "raycast/casters.h"
 #include "sensors/accuracy.h"
 #include "sensors/laser_reference.h"
 #include "tests/sensors/cone_trial.h"
@@ -63,7 +64,7 @@ const Case kCases[] = {
     {"no surface in reach", 100.0, kMax, none, false},
 };
 
-class LaserLimits : public testing::TestWithParam<std::tuple<raycast::CasterChoice, const char*>> {};
+class LaserLimits : public testing::TestWithParam<std::tuple<std::string, const char*>> {};
 
 TEST_P(LaserLimits, ValueFlagAndModel) {
   const auto& [caster, mode] = GetParam();
@@ -74,7 +75,7 @@ TEST_P(LaserLimits, ValueFlagAndModel) {
     world::World world = wall_at(c.wall);
     add_eye(world, {}, limited(5, 0.2));
     sensors::set_accuracy(world, mode);
-    const Glance glance(world, {.scene = {.caster = caster}});
+    const Glance glance(world, {.scene = {.caster = raycast::caster_named(caster)}});
     const base::ReadingBlock& reading = glance.readings[0];
     EXPECT_NEAR(reading.values[2], c.range, single ? 1e-3 : 1e-15) << c.why;
     EXPECT_EQ(reading.values[2] == kMax, !c.named) << c.why;
@@ -85,7 +86,7 @@ TEST_P(LaserLimits, ValueFlagAndModel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Casters, LaserLimits,
-                         testing::Combine(testing::Values(raycast::CasterChoice::host, raycast::CasterChoice::vulkan),
+                         testing::Combine(testing::ValuesIn(raycast::caster_words()),
                                           testing::Values("exact", "single", "skip2")));
 
 /// The device, the host and the plain reference agree to the bit, with noise and interpolation.

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "raycast/beams.h"
+#include "raycast/casters.h"
 #include "sensors/accuracy.h"
 #include "sensors/laser_settings.h"
 #include "tests/sensors/chance.h"
@@ -114,8 +115,7 @@ TEST(Fans, OfOneRobotWithRatesOfTheirOwn) {
   }
   std::uint64_t hashes[2];
   for (const bool host : {false, true}) {
-    farm::Farm farm(world, device(),
-                    {.scene = {.caster = host ? raycast::CasterChoice::host : raycast::CasterChoice::vulkan}});
+    farm::Farm farm(world, device(), {.scene = {.caster = host ? &raycast::host_caster : &raycast::device_caster}});
     farm.subscribe_all();
     for (int tick = 0; tick < 4; ++tick) {
       std::vector<base::Report> reports;
