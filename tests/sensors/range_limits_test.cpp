@@ -21,7 +21,7 @@ using enum QualityFlag;
 constexpr double kMin = 0.5, kMax = 4.0;
 
 /// A long wall across the x axis at x = `at`.
-world::World wall_at(double at, double low = -5.0, double high = 5.0) {
+world::World wall_between(double at, double low = -5.0, double high = 5.0) {
   world::World world;
   scenes::add_outline(world, {{at, low}, {at + 1, low}, {at + 1, high}, {at, high}}, "wall");
   return world;
@@ -72,7 +72,7 @@ TEST_P(LaserLimits, ValueFlagAndModel) {
   for (const Case& c : kCases) {
     // Ranges in 32 bits do not tell a number from the next one.
     if (single && c.wall != kMin && std::abs(c.wall - kMin) < 1e-9) continue;
-    world::World world = wall_at(c.wall);
+    world::World world = wall_between(c.wall);
     add_eye(world, {}, limited(5, 0.2));
     sensors::set_accuracy(world, mode);
     const Glance glance(world, {.scene = {.caster = raycast::caster_named(caster)}});
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Casters, LaserLimits,
 TEST(RangeLimits, TheReferenceSaysTheSame) {
   for (const double sigma : {0.0, 3.0})
     for (const std::uint32_t resolution : {1u, 3u}) {
-      world::World world = wall_at(0.49);
+      world::World world = wall_between(0.49);
       sensors::LaserSettings laser = limited(40, 2.8, resolution);
       laser.noise.range_sigma = sigma;
       add_eye(world, {}, laser);
@@ -108,7 +108,7 @@ TEST(RangeLimits, TheReferenceSaysTheSame) {
 }
 
 TEST(RangeLimits, NoiseLeadsOutOfRangeButNotTooNear) {
-  world::World world = wall_at(2.0);
+  world::World world = wall_between(2.0);
   sensors::LaserSettings laser = limited(400, 0.1);
   laser.noise.range_sigma = 3.0;
   add_eye(world, {}, laser);
@@ -125,7 +125,7 @@ TEST(RangeLimits, NoiseLeadsOutOfRangeButNotTooNear) {
 }
 
 TEST(RangeLimits, NoiseHidesNoSurfaceThatIsTooNear) {
-  world::World world = wall_at(0.3);
+  world::World world = wall_between(0.3);
   sensors::LaserSettings laser = limited(40, 0.1);
   laser.noise.range_sigma = 3.0;
   add_eye(world, {}, laser);
@@ -134,7 +134,7 @@ TEST(RangeLimits, NoiseHidesNoSurfaceThatIsTooNear) {
 
 /// Between two hits beyond the minimum a flat wall is nearer than it; so is the line between them.
 TEST(RangeLimits, AChordMayComeTooNear) {
-  world::World world = wall_at(0.45);
+  world::World world = wall_between(0.45);
   add_eye(world, {}, limited(3, 1.2));
   sensors::set_accuracy(world, "skip2");
   const Glance glance(world);
@@ -144,14 +144,14 @@ TEST(RangeLimits, AChordMayComeTooNear) {
 
 /// A sample between two cast beams is too near where the nearer of these is.
 TEST(RangeLimits, InterpolatedSamplesAreTooNearLikeTheirNeighbour) {
-  world::World world = wall_at(0.3, -5.0, -0.01);
+  world::World world = wall_between(0.3, -5.0, -0.01);
   add_eye(world, {}, limited(5, 0.4, 4));
   EXPECT_EQ(flags_of(Glance(world).readings[0]), (std::vector{too_near, too_near, not_cast, not_cast, none}));
 }
 
 TEST(RangeLimits, FlagsAreThoseOfTheNewestScan) {
   for (const std::uint32_t resolution : {1u, 4u}) {
-    world::World world = wall_at(2.0);
+    world::World world = wall_between(2.0);
     add_eye(world, {}, limited(5, 0.4, resolution));
     farm::Farm farm(world, device(), {});
     farm.subscribe_all();
@@ -168,7 +168,7 @@ TEST(RangeLimits, FlagsAreThoseOfTheNewestScan) {
 }
 
 TEST(RangeLimits, WithoutAMinimumNothingIsTooNear) {
-  world::World world = wall_at(0.0);
+  world::World world = wall_between(0.0);
   add_eye(world, {}, eye(3, 0.2, kMax));
   const Glance glance(world);
   EXPECT_EQ(glance.readings[0].values[1], 0.0);
@@ -181,7 +181,7 @@ TEST(RangeLimits, WithoutAMinimumNothingIsTooNear) {
 TEST(RangeLimits, OfSonarAndInfrared) {
   for (const std::string type : {"sonar", "infrared"})
     for (const Case& c : kCases) {
-      world::World world = wall_at(c.wall);
+      world::World world = wall_between(c.wall);
       add_ranger(world, {}, cones(type, {Pose{}}, {cone_setting("range", {kMin, kMax})}));
       const Glance glance(world);
       const double range = glance.readings[0].values[0];
@@ -193,7 +193,7 @@ TEST(RangeLimits, OfSonarAndInfrared) {
 
 /// A transducer that does not fire keeps its flag with its range.
 TEST(RangeLimits, OfTransducersThatFireInTurn) {
-  world::World world = wall_at(2.0);
+  world::World world = wall_between(2.0);
   add_ranger(world, {}, cones("sonar", {Pose{}, Pose{}}, {cone_setting("range", {kMin, kMax})}));
   farm::Farm farm(world, device(), {});
   farm.subscribe_all();

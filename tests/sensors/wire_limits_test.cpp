@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sensors/infrared.h"
+#include "sensors/laser.h"
 #include "sensors/laser_packets.h"
 #include "sensors/sonar.h"
 #include "tests/sensors/chance.h"
