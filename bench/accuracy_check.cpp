@@ -1,7 +1,9 @@
 #include "bench/accuracy_check.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "raycast/reference_caster.h"
 #include "sensors/laser_settings.h"
 #include "tests/sensors/brute_force.h"
 
@@ -13,17 +15,32 @@ constexpr double kAtVertex = 1e-5;  ///< [m]
 
 std::size_t stride(std::size_t all, std::size_t wanted) { return std::max<std::size_t>(1, all / wanted); }
 
+/// [m] least distance of a beam from an end point of a surface up to `range`
+double silhouette(std::span<const world::Segment> surfaces, const raycast::WideBeam& beam, double range) {
+  double least = HUGE_VAL;
+  for (const world::Segment& s : surfaces)
+    for (const glm::dvec2& end : {s.a, s.b}) {
+      const long double wx = static_cast<long double>(end.x) - beam.origin.x;
+      const long double wy = static_cast<long double>(end.y) - beam.origin.y;
+      const long double ahead = wx * beam.x + wy * beam.y;
+      if (ahead > -1e-6L && ahead <= range + 1e-6L)
+        least = std::min(least, static_cast<double>(std::fabs(wx * beam.y - wy * beam.x)));
+    }
+  return least;
+}
+
 template <class RangeOf>
 void judge_robot(std::span<const world::Segment> surfaces, const base::Pose& X_WS, const sensors::LaserSettings& laser,
                  RangeOf range_of, AccuracyCheck& accuracy) {
   for (std::uint32_t i = 0; i < laser.samples; ++i) {
     const double direction = X_WS.yaw + bearing_of(laser, i);
-    const oracle::Answer answer = oracle::cast(surfaces, {X_WS.x, X_WS.y}, direction, laser.range_max);
+    const raycast::WideBeam beam = raycast::wide_beam({X_WS.x, X_WS.y}, {}, direction);
+    const auto range = static_cast<double>(raycast::nearest_surface(surfaces, beam, laser.range_max).range);
     ++accuracy.beams;
-    if (answer.silhouette < kAtVertex)
+    if (silhouette(surfaces, beam, range) < kAtVertex)
       ++accuracy.at_vertex;
     else
-      accuracy.max_error_m = std::max(accuracy.max_error_m, std::fabs(answer.range - range_of(i)));
+      accuracy.max_error_m = std::max(accuracy.max_error_m, std::fabs(range - range_of(i)));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "bench/lane_methods.h"
 #include "bench/report.h"
+#include "raycast/reference_caster.h"
 #include "sensors/lane_markings/host_fit.h"
 #include "tests/sensors/brute_force.h"
 
@@ -38,9 +39,11 @@ sensors::EdgeReading brute_force(const LaneScene& scene, const LaneKnowledge& kn
   for (const glm::dvec2& beam : known.job.beams) {
     const long double direction = static_cast<long double>(X_WS.yaw) +
                                   std::atan2(static_cast<long double>(beam.y), static_cast<long double>(beam.x));
-    const oracle::Answer answer = oracle::cast(near, {X_WS.x, X_WS.y}, direction, known.job.range_max);
-    ranges.push_back(answer.range);
-    tags.push_back(answer.model);
+    const raycast::WideHit hit =
+        raycast::nearest_surface(std::span<const world::Segment>(near),
+                                 raycast::wide_beam({X_WS.x, X_WS.y}, {}, direction), known.job.range_max);
+    ranges.push_back(static_cast<double>(hit.range));
+    tags.push_back(hit.model);
   }
   sensors::fit::Points points;
   sensors::fit::make_points(known.rows[i], {ranges.data(), tags.data(), known.job.directions.data(), nullptr}, points);

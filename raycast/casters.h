@@ -32,7 +32,8 @@ struct CasterType {
 // clang-format off
 #define SF_CASTERS(caster) \
   caster(device_caster)    \
-  caster(host_caster)
+  caster(host_caster)      \
+  caster(reference_caster)
 // clang-format on
 
 #define SF_DECLARE_CASTER(name) extern const CasterType name;

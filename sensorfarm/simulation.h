@@ -51,7 +51,8 @@ struct Options {
   std::string accuracy;      ///< accuracy mode of all sensors (docs/accuracy.md); empty: as the world says
   std::string device;  ///< row or part of the name of a Vulkan device, or "host": none, with the same bytes; empty:
                        ///< the best, or the host (as `warnings` states) where no device is usable
-  std::string caster = "auto";  ///< "auto", "vulkan" or "host" (docs/performance.md); the bytes are the same
+  std::string caster = "auto";  ///< "auto" or a name of `sensorfarm run --caster` (docs/accuracy.md#casters), such as
+                                ///< "host" or "reference"
   std::string controller;       ///< of all robots, by name or file; empty: commands drive them
   std::vector<std::pair<std::string, std::string>> settings;  ///< of that controller
   std::string record;                                         ///< folder of a recording (run.mcap); empty: none

@@ -198,7 +198,7 @@ class Simulation:
         world file, for a world without robots (a ROS map) or to be cloned. seed: of poses, noise and controllers. threads: 0
         for all cores. accuracy: mode of all sensors (docs/accuracy.md). device: row or part of a device's name, or
         "host". require_vulkan: without a usable device DeviceError, not the host. caster:
-        auto, vulkan or host. controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty:
+        auto, or a name of `sensorfarm run --caster`, such as host or reference (docs/accuracy.md). controller: of all robots, by name, file (mine.py:Class, ./libmine.so) or class; empty:
         twists drive them. record: folder of a recording. too_near_min: ranges of surfaces that
         are too near are recorded as range_min, not as -infinity (docs/sensors.md). compression: of the recording, zstd or none
         (docs/recordings.md). ranks: processes of mpirun share the fleet; all make the same

@@ -64,6 +64,13 @@ TEST(Explain, TheCasterIsAsAsked) {
   EXPECT_NE(misspelt.err.find("SENSORFARM_CASTER: there is no caster 'gpu'; expected one of: auto, vulkan, host"),
             std::string::npos)
       << misspelt.err;
+  const Outcome reference =
+      run_program({"explain", our_world("rooms.world"), "--robots", "2", "--caster", "reference", "--json"});
+  EXPECT_EQ(Json(reference.out).text("/caster"), "reference, long double") << reference.err;
+  const Outcome many = run_program({"run", our_world("cave.world"), "--robots", "300", "--caster", "reference"});
+  EXPECT_EQ(many.code, 2);
+  EXPECT_NE(many.err.find("the caster 'reference' intersects every beam with every surface"), std::string::npos)
+      << many.err;
   const Outcome both =
       run_program({"explain", our_world("rooms.world"), "--robots", "2", "--caster", "vulkan", "--json"},
                   {{"SENSORFARM_CASTER", "host"}});

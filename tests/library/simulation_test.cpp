@@ -258,6 +258,16 @@ TEST(Library, CastersGiveTheSameBytes) {
   EXPECT_NE(host.description(), vulkan.description());
 }
 
+/// Options take any name of `--caster`. Robots that drive without reading go the same way, to other bytes.
+TEST(Library, TheReferenceCaster) {
+  Simulation host(kCave, {.robots = 4, .caster = "host"}), reference(kCave, {.robots = 4, .caster = "reference"});
+  drive(host, 5), drive(reference, 5);
+  expect_in("rays cast by: reference, long double", reference.description());
+  EXPECT_NE(host.hash(), reference.hash());
+  expect_in("the caster 'reference' intersects every beam with every surface",
+            refusal_of<Error>([] { Simulation simulation(kCave, {.robots = 300, .caster = "reference"}); }));
+}
+
 TEST(Library, Records) {
   const auto folder = std::filesystem::temp_directory_path() / "sensorfarm_library_record";
   std::filesystem::remove_all(folder);

@@ -325,8 +325,8 @@ class Images(unittest.TestCase):
 
 class Processes(unittest.TestCase):
     def test_a_forked_process_makes_its_own(self):
-        """A simulation of its parent is refused, and a new one has the parent's readings, by either caster."""
-        for caster in ("host", "vulkan"):
+        """A simulation of its parent is refused, and a new one has the parent's readings, by every caster."""
+        for caster in ("host", "vulkan", "reference"):
             sim = room(caster=caster)
             reader, writer = os.pipe()
             child = os.fork()

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "raycast/candidate_walls.h"
+#include "raycast/reference_caster.h"
 #include "raycast/wall_blocks.h"
 #include "tests/sensors/brute_force.h"
 #include "tests/sensors/chance.h"
@@ -20,7 +21,8 @@ namespace {
 
 /// Row of the first wall along a beam, by the brute-force reference: every wall is its own model here.
 std::uint32_t first_wall(const std::vector<world::Segment>& walls, glm::dvec2 p, double direction, double range) {
-  return oracle::cast(oracle::within(walls, p, range), p, direction, range).model;
+  const WideBeam beam = wide_beam(p, {}, direction);
+  return nearest_surface(std::span<const world::Segment>(oracle::within(walls, p, range)), beam, range).model;
 }
 
 void every_hit_is_listed(world::World world, double range, double size, std::uint64_t seed) {

@@ -10,21 +10,12 @@
 
 namespace sf::oracle {
 
-struct Answer {
-  double range = 0.0;
-  std::uint32_t model = 0xFFFFFFFFu;
-  double silhouette = 0.0;  ///< [m] least distance of the beam from an end point of a segment up to the answer
-};
-
 /// All surfaces visible to a sensor of mover `self` at height `z` [m], with every mover at its pose.
 std::vector<world::Segment> surfaces(const world::World& world, std::span<const base::Pose> poses, std::uint32_t self,
                                      double z);
 
 /// The surfaces of `all` within `range` [m] of `origin`, and possibly some more.
 std::vector<world::Segment> within(std::span<const world::Segment> all, glm::dvec2 origin, double range);
-
-/// First surface along origin + t (cos, sin), from either side.
-Answer cast(std::span<const world::Segment> surfaces, glm::dvec2 origin, long double direction, double range_max);
 
 /// [m] A beam this close to a free end may hit or miss it.
 inline constexpr long double kEitherWay = 1e-6L;

@@ -15,13 +15,14 @@ namespace sf::trial {
 
 struct Tally {
   std::size_t beams = 0;
-  std::size_t met = 0;          ///< beams with a hit
-  std::size_t ambiguous = 0;    ///< beams within 1 um of a silhouette
-  std::size_t silhouettes = 0;  ///< of these, decided otherwise than in real arithmetic
-  std::size_t wrong = 0;        ///< neither valid nor ambiguous
-  double worst = 0.0;           ///< [m] error of beams decided alike, at 1 mrad or more
-  double worst_grazing = 0.0;   ///< [m] error of beams decided alike, below 1 mrad
-  std::string example;          ///< the first wrong beam
+  std::size_t met = 0;           ///< beams with a hit
+  std::size_t ambiguous = 0;     ///< beams within 1 um of a silhouette
+  std::size_t silhouettes = 0;   ///< of these, decided otherwise than in real arithmetic
+  std::size_t wrong = 0;         ///< neither valid nor ambiguous
+  std::size_t beyond_bound = 0;  ///< decided alike, at 1 mrad or more, with an error above the reading's bound
+  double worst = 0.0;            ///< [m] error of beams decided alike, at 1 mrad or more
+  double worst_grazing = 0.0;    ///< [m] error of beams decided alike, below 1 mrad
+  std::string example;           ///< the first wrong beam
 
   Tally& operator+=(const Tally& other);
 };
@@ -37,8 +38,9 @@ Tally compare(const world::World& world, std::span<const base::Pose> poses,
 /// Expects equal readings, bit by bit.
 void expect_same_bits(std::span<const base::ReadingBlock> p, std::span<const base::ReadingBlock> q);
 
-/// Compares one tick of a new farm on `world`, with all robots subscribed at their poses at load, and expects equal
-/// bits from both casters.
+/// Compares one tick of a new farm on `world`, with all robots subscribed at their poses at load, for every caster:
+/// those of which `CasterType::same_bytes` is true must give equal bits; others cast the scene where it is small,
+/// within their bounds. @return the host's tally
 Tally sweep(const world::World& world, const farm::FarmOptions& options = {});
 
 /// Logs `tally` as `name`, and expects no wrong beam and no error above `most` [m].
