@@ -12,6 +12,7 @@
 
 #include "base/thread_pool.h"
 #include "farm/farm.h"
+#include "raycast/casters.h"
 #include "robots/kinematics.h"
 #include "scenarios/recorded_states.h"
 #include "scenarios/run_info.h"
@@ -64,6 +65,15 @@ bool has_near(const base::ReadingBlock& scan) {
   return std::find(scan.quality.begin(), scan.quality.end(), base::QualityFlag::too_near) != scan.quality.end();
 }
 
+/// A caster that returns the recorded bytes: the recorded one where its bytes are its own, else one of the others.
+const raycast::CasterType& caster_of(const record::Recording& recording, bool software) {
+  const std::string_view described = record::option_of(recording.info, "caster");
+  for (const raycast::CasterType* type : raycast::casters())
+    if (!type->same_bytes && described.substr(0, described.find(',')) == type->name) return *type;
+  const raycast::CasterType& chosen = raycast::choose_caster(software);
+  return chosen.same_bytes ? chosen : raycast::host_caster;
+}
+
 /// A scan to be recomputed by plain C++.
 struct Asked {
   std::uint32_t mover, sensor, sequence;
@@ -79,7 +89,8 @@ class Verifier {
       : recording_(recording),
         options_(options),
         world_(recorded_world(recording)),
-        farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads}),
+        caster_(caster_of(recording, device.info().software)),
+        farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads, .scene = {.caster = &caster_}}),
         reference_(world_, recording.info.seed),
         longest_(sensors::reaches_of(world_).longest),
         infinite_(record::option_of(recording.info, record::kNoReturn) == "inf"),
@@ -250,21 +261,23 @@ class Verifier {
     ask(reading, theirs);
   }
 
-  /// Allowed difference: the bound of 32-bit modes and the precision of recordings. Other modes are recomputed bitwise.
-  /// @param bound [m] base::ReadingBlock::bound_without_noise
-  double allowed_of(std::uint32_t mover, std::uint32_t sensor, double bound) const {
+  /// Allowed difference of plain C++: the bounds of 32-bit modes, or of a caster with bytes of its own, and the
+  /// precision of recordings. Other modes are recomputed bitwise.
+  double allowed_of(std::uint32_t mover, std::uint32_t sensor, const base::Pose& X_WS) const {
     const sensors::CastLaser& cast = reference_.laser(mover, sensor);
+    if (!cast.single && caster_.same_bytes) return 0.0;
+    const double range_max = cast.laser.range_max;
+    const double farthest = std::max(std::abs(X_WS.x), std::abs(X_WS.y)) + range_max;
+    double bound = sensors::laser_bound(range_max, cast.single, longest_, farthest);
+    if (!caster_.same_bytes) bound += caster_.bound(range_max, longest_, farthest);
     // Noise proportional to the range scales with the error of the range.
-    const double stretch = 1.0 + 8.0 * cast.laser.noise.range_proportional;
-    return cast.single ? stretch * bound + recorded_rounding(cast.laser.range_max) : 0.0;
+    return (1.0 + 8.0 * cast.laser.noise.range_proportional) * bound + recorded_rounding(range_max);
   }
 
   /// The same of a reading of which only the scan is recorded, from the sensor's place at a tick.
   double allowed_at(std::uint32_t mover, std::uint32_t sensor, std::size_t tick) const {
-    const sensors::LaserSettings& laser = reference_.laser(mover, sensor).laser;
-    const base::Pose X_WS = base::compose(recording_.states[mover][tick].X_WM, laser.X_MS);
-    const double farthest = std::max(std::abs(X_WS.x), std::abs(X_WS.y)) + laser.range_max;
-    return allowed_of(mover, sensor, sensors::laser_bound(laser.range_max, true, longest_, farthest));
+    const base::Pose& X_MS = reference_.laser(mover, sensor).laser.X_MS;
+    return allowed_of(mover, sensor, base::compose(recording_.states[mover][tick].X_WM, X_MS));
   }
 
   /// Values as messages have them. @param flags of the reading's elements; empty: none
@@ -304,7 +317,7 @@ class Verifier {
   void ask(const base::ReadingBlock& reading, const std::vector<double>& ranges) {
     if (seen_++ % stride_ == 0)
       asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), reading.time, ranges,
-                        allowed_of(reading.mover, reading.sensor, reading.bound_without_noise)});
+                        allowed_of(reading.mover, reading.sensor, reading.X_WS)});
   }
 
   /// Recomputes the collected scans in plain C++, grouped by time, since scans of one time share the movers' poses.
@@ -366,6 +379,7 @@ class Verifier {
   const record::Recording& recording_;
   const VerifyOptions& options_;
   const world::World world_;
+  const raycast::CasterType& caster_;
   farm::Farm farm_;
   sensors::LaserReference reference_;
   const double longest_;                  ///< [m] surface of the world

@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "raycast/casters.h"
 #include "record/recorder.h"
 #include "scenarios/recorded_accuracy.h"
 #include "scenarios/run_info.h"
@@ -18,6 +19,7 @@
 #include "sensors/accuracy.h"
 #include "tests/device.h"
 #include "tests/sensors/chance.h"
+#include "tests/sensors/cone_scenes.h"
 #include "tests/sensors/edit_laser.h"
 #include "tests/sensors/scenes.h"
 
@@ -36,12 +38,14 @@ world::World recorded_world() {
 
 /// Two seconds of robots that wander, or stand.
 record::Recording recorded(bool readings, const std::string& mode = "exact", world::World world = recorded_world(),
-                           RunSettings settings = {}, bool wander = true) {
+                           RunSettings settings = {}, bool wander = true, const raycast::CasterType* caster = nullptr) {
   const auto folder = std::filesystem::temp_directory_path() / ("sf_verification_" + std::to_string(::getpid()));
   sensors::set_accuracy(world, mode);
   {
     settings.seed = 9, settings.record_readings = readings;
-    Simulation simulation(world, device(), {.seed = 9, .actor = {{.name = wander ? "wander" : ""}, {}}});
+    if (caster != nullptr) settings.caster = caster->describe();
+    Simulation simulation(world, device(),
+                          {.seed = 9, .actor = {{.name = wander ? "wander" : ""}, {}}, .caster = caster});
     record::Recorder recorder(folder.string(), run_info(world, simulation.farm().sensor_set(), settings));
     for (int tick = 0; tick < 20; ++tick) recorder.write(simulation.step());
     recorder.finish();
@@ -60,6 +64,31 @@ TEST(Verification, ASoundRun) {
   EXPECT_EQ(v.reference.readings, v.recomputed[0].readings) << "all of them by default";
   EXPECT_EQ(v.ticks, 20u);
   EXPECT_FALSE(v.interrupted);
+}
+
+/// The reference has bytes of its own, which it gives again. Plain C++ differs from them, within the bounds of both.
+TEST(Verification, OfTheReferenceCaster) {
+  world::World world = recorded_world();
+  world.movers[0].sensors.push_back(trial::cones("sonar", trial::ring(4, 0.1)));
+  const record::Recording recording = recorded(true, "exact", world, {}, true, &raycast::reference_caster);
+  EXPECT_EQ(record::option_of(recording.info, "caster"), "reference, long double");
+  const Verification v = verify(recording, device(), {});
+  EXPECT_TRUE(v.sound()) << v.reference.first;
+  for (const Comparison& c : v.recomputed) EXPECT_EQ(c.largest, 0.0) << c.type;
+  EXPECT_EQ(v.recomputed.size(), 2u);
+  record::Recording mislabelled = recording;
+  for (auto& [key, value] : mislabelled.info.options)
+    if (key == "caster") value = "host, AVX2";
+  EXPECT_FALSE(verify(mislabelled, device(), {}).sound()) << "the bytes are not the host's";
+}
+
+/// A recording of the other casters is computed again with one of them, whichever caster the environment names.
+TEST(Verification, WhereTheEnvironmentNamesTheReference) {
+  const record::Recording recording = recorded(true);
+  setenv("SENSORFARM_CASTER", "reference", 1);
+  const Verification v = verify(recording, device(), {});
+  unsetenv("SENSORFARM_CASTER");
+  EXPECT_TRUE(v.sound()) << v.reference.first;
 }
 
 /// Readings between ticks: their poses are recomputed bitwise from those of the ticks.
