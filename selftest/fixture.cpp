@@ -3,7 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raycast/casters.h"
+#include "sensors/laser_modes.h"
+
 namespace sf::selftest {
+
+double allowed_from_plain_cpp(const Fixture& fixture, const world::World& world, const base::ReadingBlock& scan) {
+  if (casts_any_world(fixture)) return 0.0;
+  const double range_max = sensors::lasers_of(world.movers[scan.mover])[scan.sensor].range_max;
+  const double farthest = std::max(std::abs(scan.X_WS.x), std::abs(scan.X_WS.y)) + range_max;
+  return scan.bound_without_noise +
+         sensors::laser_bound(range_max, false, sensors::reaches_of(world).longest, farthest);
+}
+
+void check_range(double got, double plain_cpp, double allowed, Checks& checks, std::string_view what, std::uint64_t i) {
+  allowed > 0.0 ? checks.near(got, plain_cpp, allowed, what, i) : checks.same(got, plain_cpp, what, i);
+}
+
+bool casts_any_world(const Fixture& fixture) {
+  return raycast::choose_caster(fixture.device().info().software).same_bytes;
+}
 
 TestFarm Fixture::measure(world::World world, farm::FarmOptions options) const {
   // Small pools are fast to make. They grow where a case needs more and do not affect readings.

@@ -12,6 +12,7 @@
 
 #include "farm/farm.h"
 #include "gpu/device.h"
+#include "selftest/case.h"
 #include "sensors/laser_settings.h"
 #include "world/world.h"
 
@@ -48,6 +49,14 @@ class Fixture {
   gpu::Device& device_;
   std::function<bool()> stop_;
 };
+
+/// [m] Allowed difference of a scan from plain C++ (sensors/laser_reference.h): 0, or the bounds of both where the
+/// chosen caster has bytes of its own.
+double allowed_from_plain_cpp(const Fixture& fixture, const world::World& world, const base::ReadingBlock& scan);
+/// Compares a range with that of plain C++, bit by bit where `allowed` is 0.
+void check_range(double got, double plain_cpp, double allowed, Checks& checks, std::string_view what, std::uint64_t i);
+/// True when the chosen caster casts worlds of any size, to the bytes of plain C++.
+bool casts_any_world(const Fixture& fixture);
 
 /// Adds a thin wall, visible from both sides, 1 m high.
 void add_wall(world::World& world, glm::dvec2 a, glm::dvec2 b);
