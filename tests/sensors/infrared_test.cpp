@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "raycast/casters.h"
 #include "tests/sensors/cone_trial.h"
 #include "tests/sensors/scenes.h"
 
@@ -83,13 +84,15 @@ TEST(Infrared, EveryConeIsTheNearestOfItsRays) {
     add_ranger(world, {p.x, p.y, 0.0, chance.between(-9, 9)}, cones("infrared", ring(8, 0.03)), 0.035);
   }
   const auto arrays = sensors::cone_arrays_of(world, "infrared", sensors::read_infrared);
-  const Glance run(world);
-  const ConeTally tally = compare_cones(world, loaded_poses(world), run.readings, arrays, 2);
-  EXPECT_EQ(tally.cones, 480u);
-  EXPECT_EQ(tally.wrong, 0u) << tally.example;
-  EXPECT_LE(tally.worst, 1e-9);
-  EXPECT_GT(tally.met, 100u);
-  EXPECT_LT(tally.met, 450u);
+  for (const raycast::CasterType* caster : raycast::casters()) {
+    const Glance run(world, {.scene = {.caster = caster}});
+    const ConeTally tally = compare_cones(world, loaded_poses(world), run.readings, arrays, 2);
+    EXPECT_EQ(tally.cones, 480u);
+    EXPECT_EQ(tally.wrong, 0u) << caster->name << ": " << tally.example;
+    EXPECT_LE(tally.worst, 1e-9) << caster->name;
+    EXPECT_GT(tally.met, 100u);
+    EXPECT_LT(tally.met, 450u);
+  }
 }
 
 TEST(Infrared, ElementsAllLookInEveryReading) {

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "base/thread_pool.h"
+#include "raycast/casters.h"
 #include "sensors/accuracy.h"
 #include "sensors/laser_settings.h"
 #include "tests/instrumented.h"
@@ -96,14 +97,14 @@ void add(const BoundTally& part, BoundTally& sum) {
   if (sum.example.empty()) sum.example = part.example;
 }
 
-BoundTally measure(BoundScene& scene, const std::string& mode) {
+BoundTally measure(BoundScene& scene, const std::string& mode, const raycast::CasterType* caster, int ticks) {
   sensors::set_accuracy(scene.world, mode);
-  farm::Farm farm(scene.world, device());
+  farm::Farm farm(scene.world, device(), {.scene = {.caster = caster}});
   farm.subscribe_all();
   base::ThreadPool thread_pool(0);
   Chance chance(11);
   BoundTally sum;
-  for (int tick = 0; tick < kTicks; ++tick) {
+  for (int tick = 0; tick < ticks; ++tick) {
     std::vector<base::Pose> poses;
     std::vector<base::Report> reports;
     for (std::uint32_t m = 0; m < scene.world.movers.size(); ++m) {
@@ -188,15 +189,16 @@ world::World shrunk(world::World world, double by) {
   return world;
 }
 
-void expect_within_bounds(const char* mode, const std::function<BoundScene()>& make) {
+void expect_within_bounds(const char* mode, const std::function<BoundScene()>& make,
+                          const raycast::CasterType* caster = nullptr, int ticks = kTicks) {
   BoundScene scene = make();
-  const BoundTally s = measure(scene, mode);
+  const BoundTally s = measure(scene, mode, caster, ticks);
   std::printf(
       "[ measured ] %s, %s: %zu beams, worst %.2g m, %.3g of the bound (up to %.2g m); %zu flagged, worst %.2g m\n",
       scene.name.c_str(), mode, s.beams, s.worst, s.worst_share, s.bound, s.flagged, s.flagged_worst);
   EXPECT_EQ(s.beyond, 0u) << scene.name << ", " << mode << ": " << s.example;
   EXPECT_LT(static_cast<double>(s.flagged), 0.01 * static_cast<double>(s.beams)) << scene.name;
-  EXPECT_GE(s.beams, kTicks > 1 ? 1'000'000u : 30'000u);
+  EXPECT_GE(s.beams, ticks > 1 ? 1'000'000u : 30'000u);
 }
 
 class LaserBounds : public testing::TestWithParam<const char*> {};
@@ -235,6 +237,18 @@ TEST_P(LaserBounds, AmongThinWallsThatCross) {
 }
 TEST_P(LaserBounds, AmongRobotsAlone) {
   expect_within_bounds(GetParam(), [] { return with_robots("robots alone", {}, 3.0, 2.0); });
+}
+
+/// Its bound is nearly the contact distance alone. (Far away, the truth's own outlines are less exact.)
+TEST(LaserBoundsOfCasters, TheReference) {
+  for (BoundScene (*make)() : {+[] { return with_robots("boxes", scenes::boxes(60, 16.0, 1), 8.0, 2.0); },
+                               +[] { return with_robots("cave", scenes::cave(100, 16.0, 3), 8.0, 1.0); },
+                               +[] { return with_robots("corridor of 1000 km", corridor(), 1.4, 8.0); },
+                               +[] { return with_robots("slivers", slivers(1.0, 8.0), 8.0, 2.0); },
+                               +[] { return with_eyes("forest", forest(3.0), 3.0, 2.0); },
+                               +[] { return with_robots("crossing walls", crossing(6.0), 6.0, 2.0); },
+                               +[] { return with_robots("robots alone", {}, 3.0, 2.0); }})
+    expect_within_bounds("exact", make, &raycast::reference_caster, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, LaserBounds, testing::Values("exact", "single"),

@@ -6,6 +6,7 @@
 
 #include <iostream>
 
+#include "raycast/casters.h"
 #include "sensors/cones/rangers.h"
 #include "tests/sensors/cone_trial.h"
 #include "tests/sensors/edit_laser.h"
@@ -134,19 +135,26 @@ TEST(Sonar, TransducersAreWhereTheFileSays) {
 
 // --- Ray by ray.
 
-/// Readings of all robots against the reference.
-ConeTally check(const world::World& world, const std::string& name) {
-  const Glance run(world);
+/// Readings of all robots against the reference, by one caster.
+ConeTally check(const world::World& world, const std::string& name, const raycast::CasterType* caster) {
+  const Glance run(world, {.scene = {.caster = caster}});
   const auto arrays = sensors::cone_arrays_of(world, "sonar", sensors::read_sonar);
   const ConeTally tally = compare_cones(world, loaded_poses(world), run.readings, arrays);
-  std::cout << "[ measured ] " << name << ": " << tally.cones << " cones, " << tally.met << " met something, worst "
-            << tally.worst << " m, " << tally.wide << " with a ray at a silhouette, " << tally.delicate
-            << " too near the limit to tell\n";
+  std::cout << "[ measured ] " << name << ", " << caster->name << ": " << tally.cones << " cones, " << tally.met
+            << " met something, worst " << tally.worst << " m, " << tally.wide << " with a ray at a silhouette, "
+            << tally.delicate << " too near the limit to tell\n";
   EXPECT_EQ(tally.wrong, 0u) << name << ": " << tally.example;
   EXPECT_GT(tally.met, tally.cones / 20) << name;
   EXPECT_LT(tally.met, tally.cones) << name;
   EXPECT_LT(tally.wide + tally.delicate, tally.cones / 50) << name;
   EXPECT_LE(tally.worst, 1e-9) << name;
+  return tally;
+}
+
+/// By every caster. @return the tally of the last
+ConeTally check(const world::World& world, const std::string& name) {
+  ConeTally tally;
+  for (const raycast::CasterType* caster : raycast::casters()) tally = check(world, name, caster);
   return tally;
 }
 
