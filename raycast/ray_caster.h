@@ -49,7 +49,6 @@ class RayCaster {
   const BeamPlan& plan(std::uint32_t scanner) const { return plan_.rows[scanner].plan; }
   /// First of a scanner's lanes in the result tables.
   std::uint32_t lane(std::uint32_t scanner) const { return plan_.rows[scanner].out; }
-  const CasterType& type() const { return type_; }
   /// [m] largest error of a range of a beam that does not graze; parameters as of `exact_bound`.
   double bound(double range_max, double longest, double farthest, bool single) const {
     return type_.bound(range_max, longest, farthest) + (single ? single_bound(range_max) : 0.0);
