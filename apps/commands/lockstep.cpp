@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/commands/run_settings.h"
 #include "apps/options/automatic_accuracy.h"
 #include "apps/options/bridge_options.h"
 #include "apps/options/default_robot.h"
@@ -83,15 +84,10 @@ int serve_lockstep(const ServeOptions& options) {
     std::optional<record::Recorder> recorder;
     if (!options.record.empty()) {
       const std::string caster = raycast::describe_caster(device.info().software);
-      recorder.emplace(options.record,
-                       scenarios::run_info(world, service.simulation().farm().sensor_set(),
-                                           {.seed = options.seed,
-                                            .record_readings = true,
-                                            .no_return_inf = options.no_return_inf,
-                                            .caster = caster,
-                                            .too_near_min = options.too_near_min,
-                                            .naming = options.naming}),
-                       record::RecordingPart{.compression = options.compression});
+      recorder.emplace(
+          options.record,
+          scenarios::run_info(world, service.simulation().farm().sensor_set(), run_settings(options, caster, true)),
+          record::RecordingPart{.compression = options.compression});
       print_taken_names(recorder->taken_names());
       service.record_to(*recorder);
     }

@@ -348,6 +348,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
     if (ranks != nullptr) check_for_ranks(options);
     ground.emplace(options, ranks);
     begin(0);
+    install_stop_handlers();  // before addresses are printed, which scripts wait for
     live.emplace(options, ground->world, ground->sensor_set, run_settings(options, ground->caster, true), true);
   });
   if (live->empty()) print_taken_names(course->outputs.taken_names());
@@ -396,8 +397,6 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
     users.pause();
     live->show_scene(true);
   };
-  install_stop_handlers();
-
   const double duration = options.duration.value_or(live->empty() ? 60.0 : kWithoutEnd);
   const double ticks = std::round(duration / ground->world.interval);
   if (ticks < 1.0)

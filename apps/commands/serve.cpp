@@ -165,9 +165,9 @@ int serve(const ServeOptions& options) {
     StrayedRobots strayed(world);
     if (strayed.names()) service.record_to(strayed);
     if (recorder && !options.BridgeOptions::any()) print_taken_names(recorder->taken_names());
+    install_stop_handlers();  // before addresses are printed, which scripts wait for
     LiveBridges live(options, world, sensor_set, service_settings(options, device.info().software), false);
     if (!live.empty()) service.record_to(live);
-    install_stop_handlers();
     print_message("serving {} of {} on {}:{}, {:g} ticks/s, on {}; Ctrl-C ends it", counted(service.robots(), "robot"),
                   world.file, options.bind, service.port(), 1.0 / service.interval(), device.info().name);
     service.run(stop_requested(), options.duration);
