@@ -12,8 +12,10 @@
 namespace sf::record {
 namespace {
 
-RunInfo named(Naming naming, std::vector<MoverInfo> movers, std::vector<std::string>* notes = nullptr) {
+RunInfo named(Naming naming, std::vector<MoverInfo> movers, std::vector<std::string>* notes = nullptr,
+              bool record_readings = true) {
   RunInfo info;
+  info.record_readings = record_readings;
   info.sensor_types = {
       test::scan_type(),       {.id = 2, .name = "sonar"}, {.id = 3, .name = "gyro"},     {.id = 4, .name = "odom"},
       {.id = 5, .name = "3d"}, {.id = 6, .name = "gps"},   {.id = 7, .name = "occupancy"}};
@@ -135,6 +137,8 @@ TEST(TopicNames, TakenOnesAreReported) {
   ASSERT_EQ(notes.size(), 2u);
   EXPECT_EQ(notes[0], "robot 'a.b' is /a_b_2, since /a_b is taken");
   EXPECT_NE(notes[1].find("/c/odom_1"), std::string::npos) << notes[1];
+  named({}, {{.name = "c", .sensors = {{.type = 4, .name = "x"}}}}, &notes, false);
+  EXPECT_TRUE(notes.empty()) << "no readings, no topic";
   named({}, {kRobot}, &notes);
   EXPECT_TRUE(notes.empty()) << "a second sensor of a type is no surprise";
 }
