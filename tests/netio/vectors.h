@@ -2,7 +2,12 @@
 // The golden packets in tests/netio/vectors/, to which the farm and the clients in examples/clients/ are held.
 //
 // A file has the packets of one type, separated by empty lines: comments (#), `key = value` lines and, below `hex =`,
-// the bytes. Numbers have ten significant digits. In statuses.txt the only key is the packet's status.
+// the bytes. Numbers have ten significant digits. In statuses.txt the only key is the packet's status, and the bytes
+// are edits of another packet:
+//
+//   like = laser 0         the first packet of laser.txt
+//   size = 76              cut, or extended by zeros
+//   at 72 = ab ab x 2      bytes from offset 72, twice
 
 #include <algorithm>
 #include <filesystem>
@@ -30,6 +35,29 @@ inline std::vector<std::string> vector_files() {
   return files;
 }
 
+std::vector<PacketVector> read_vectors(const std::string& path);
+
+/// Applies a line that edits a packet. @return false for another line
+inline bool edit(const std::string& line, const std::string& path, base::Bytes& bytes) {
+  std::istringstream row(line);
+  std::string word, equals;
+  std::size_t at = 0, times = 1;
+  row >> word;
+  if (word == "like" && row >> equals >> word >> at) {
+    bytes = read_vectors(std::filesystem::path(path).replace_filename(word + ".txt").string()).at(at).bytes;
+  } else if (word == "size" && row >> equals >> at) {
+    bytes.resize(at);
+  } else if (word == "at" && row >> at >> equals) {
+    base::Bytes piece;
+    for (; row >> word && word != "x";) piece.push_back(static_cast<std::uint8_t>(std::stoul(word, nullptr, 16)));
+    for (row >> times; times-- > 0; at += piece.size())
+      std::copy(piece.begin(), piece.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
+  } else {
+    return false;
+  }
+  return true;
+}
+
 inline std::vector<PacketVector> read_vectors(const std::string& path) {
   std::vector<PacketVector> vectors;
   std::ifstream file(path);
@@ -39,6 +67,7 @@ inline std::vector<PacketVector> read_vectors(const std::string& path) {
     if (line.empty() || line[0] == '#' || line == "hex =") continue;
     if (!open) vectors.push_back({path, "", {}});
     open = true;
+    if (edit(line, path, vectors.back().bytes)) continue;
     std::istringstream row(line);
     if (line[0] != ' ') vectors.back().text += line + "\n";
     if (line[0] == ' ')

@@ -53,6 +53,49 @@ static bool judge(const char* text, const uint8_t* bytes, size_t size) {
   return same;
 }
 
+static void read_hex(const char* at, uint8_t* bytes, size_t* size) {
+  unsigned byte;
+  for (; sscanf(at, " %2x", &byte) == 1; at += 3) bytes[(*size)++] = (uint8_t)byte;
+}
+
+/* Packet `row` of the file NAME.txt beside `path`. */
+static size_t read_packet(const char* path, const char* name, unsigned row, uint8_t* bytes) {
+  char other[4096], line[8192];
+  snprintf(other, sizeof other, "%.*s%s.txt", (int)(strrchr(path, '/') + 1 - path), path, name);
+  FILE* file = fopen(other, "r");
+  size_t size = 0;
+  while (file && fgets(line, sizeof line, file)) {
+    if (strncmp(line, "  ", 2) == 0 && row == 0) read_hex(line + 1, bytes, &size);
+    if (line[0] == '\n' && row-- == 0) break;
+  }
+  if (file) fclose(file);
+  return size;
+}
+
+/* Applies a line of statuses.txt that edits a packet (tests/netio/vectors.h). */
+static int edit(const char* path, const char* line, uint8_t* bytes, size_t* size) {
+  char name[64];
+  unsigned at;
+  if (sscanf(line, "like = %63s %u", name, &at) == 2) {
+    memset(bytes, 0, 2048);
+    *size = read_packet(path, name, at, bytes);
+  } else if (sscanf(line, "size = %u", &at) == 1) {
+    if (at < *size) memset(bytes + at, 0, *size - at);
+    *size = at;
+  } else if (sscanf(line, "at %u =", &at) == 1) {
+    unsigned times = 1;
+    uint8_t piece[1024];
+    size_t length = 0;
+    read_hex(strchr(line, '=') + 1, piece, &length);
+    const char* repeat = strstr(line, " x ");
+    if (repeat) sscanf(repeat, " x %u", &times);
+    for (; times-- > 0; at += length) memcpy(bytes + at, piece, length);
+  } else {
+    return 0;
+  }
+  return 1;
+}
+
 int main(int argc, char** argv) {
   unsigned count = 0;
   for (int i = 1; i < argc; ++i) {
@@ -64,8 +107,8 @@ int main(int argc, char** argv) {
     while (true) {
       const bool more = fgets(line, sizeof line, file) != NULL;
       if (more && strncmp(line, "  ", 2) == 0) {
-        unsigned byte;
-        for (const char* at = line + 1; sscanf(at, " %2x", &byte) == 1; at += 3) bytes[size++] = (uint8_t)byte;
+        read_hex(line + 1, bytes, &size);
+      } else if (more && edit(argv[i], line, bytes, &size)) {
       } else if (more && line[0] != '#' && line[0] != '\n' && strcmp(line, "hex =\n") != 0) {
         strcat(text, line);
       } else if ((!more || line[0] == '\n') && size > 0) {

@@ -15,8 +15,28 @@ def vectors(path):
     """(lines of text, bytes) of each packet of a file."""
     for block in pathlib.Path(path).read_text().strip().split("\n\n"):
         lines = [line for line in block.splitlines() if not line.startswith("#")]
-        at = lines.index("hex =")
-        yield lines[:at], bytes.fromhex("".join(lines[at + 1:]))
+        if "hex =" in lines:
+            at = lines.index("hex =")
+            yield lines[:at], bytes.fromhex("".join(lines[at + 1:]))
+        else:
+            yield lines[:1], edited(path, lines[1:])
+
+
+def edited(path, lines):
+    """The bytes of a packet of statuses.txt (tests/netio/vectors.h)."""
+    for line in lines:
+        key, value = line.split(" = ")
+        if key == "like":
+            name, row = value.split()
+            data = bytearray(list(vectors(pathlib.Path(path).with_name(name + ".txt")))[int(row)][1])
+        elif key == "size":
+            data = (data + bytes(int(value)))[:int(value)]
+        else:
+            piece, _, times = value.partition(" x ")
+            piece = bytes.fromhex(piece) * int(times or 1)
+            at = int(key.split()[1])
+            data[at:at + len(piece)] = piece
+    return bytes(data)
 
 
 def decoded(data):
