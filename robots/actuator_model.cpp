@@ -10,16 +10,16 @@ namespace sf::robots {
 
 namespace {
 
-constexpr double kMaxSpeed = 500.0;  // [mm/s] of the Open Interface's drive command
+constexpr double kMaxSpeed = 500.0;  // [mm/s] limit of the Open Interface's drive command
 constexpr int kMaxRadius = 2000;     // [mm]
 
-/// Whole [mm/s], within kMaxSpeed.
+/// Rounds to whole [mm/s], within kMaxSpeed.
 double whole_speed(double metres_per_second) {
   return std::clamp(std::rint(1e3 * metres_per_second), -kMaxSpeed, kMaxSpeed);
 }
 
-/// [mm] as computed by Player 3's driver of the Create (create_comms.c, `rad_mm /= 2`); its integer division truncates
-/// towards zero. The robot has no radius 0: 0 stands for the sharpest turn.
+/// Returns the radius [mm] as Player 3's driver for the Create computes it (create_comms.c, `rad_mm /= 2`); its integer
+/// division truncates towards zero. The robot has no radius 0, so 0 means the sharpest turn.
 int radius_mm(double speed_mm, double turn) {
   const double asked = std::clamp(std::rint(speed_mm / turn), -1e9, 1e9);
   const int radius = std::clamp(static_cast<int>(asked) / 2, -kMaxRadius, kMaxRadius);

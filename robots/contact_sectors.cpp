@@ -14,13 +14,13 @@ namespace {
 
 using base::kContactSectors;
 
-/// A piece of surface in the mover's frame; heights above the mover's origin.
+/// A piece of surface in the mover's frame; heights are above the mover's origin.
 struct Surface {
   glm::dvec2 a, b;
   double z_min, z_max;
 };
 
-/// Directions between the sectors, in the mover's frame.
+/// Directions of the borders between sectors, in the mover's frame.
 const std::array<glm::dvec2, kContactSectors + 1>& borders() {
   static const auto table = [] {
     std::array<glm::dvec2, kContactSectors + 1> directions;
@@ -60,7 +60,7 @@ Part within_sector(const Surface& s, std::uint32_t k) {
 
 bool overlap(const FootprintEdge& e, const Surface& s) { return e.z_min < s.z_max && s.z_min < e.z_max; }
 
-/// Whether the segments ab and cd come within kContactDistance of one another.
+/// Returns whether the segments ab and cd are within kContactDistance of each other.
 bool near(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const auto apart = [](double p, double q, double r, double s) {
     return std::min(p, q) > std::max(r, s) + kContactDistance || std::min(r, s) > std::max(p, q) + kContactDistance;
@@ -71,7 +71,7 @@ bool near(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
          world::distance(d, a, b) <= kContactDistance;
 }
 
-/// The edges from the first to the last one that are near the surface; an empty span when there are none.
+/// Returns the edges from the first to the last one near the surface; an empty span if there are none.
 std::span<const FootprintEdge> edges_near(const Footprint& outline, const Surface& s) {
   std::size_t first = 0, end = 0;
   for (std::size_t i = 0; i < outline.edges.size(); ++i) {
@@ -83,7 +83,7 @@ std::span<const FootprintEdge> edges_near(const Footprint& outline, const Surfac
   return {outline.edges.data() + first, end - first};
 }
 
-// A part is near an edge, or else wholly inside or wholly outside, as its middle is.
+// A part that is not near an edge is wholly inside or wholly outside, so its midpoint decides.
 bool presses(const Footprint& outline, std::span<const FootprintEdge> edges, const Surface& s, const Part& part) {
   const glm::dvec2 a = s.a + part.from * (s.b - s.a), b = s.a + part.to * (s.b - s.a);
   for (const FootprintEdge& e : edges)
@@ -91,7 +91,7 @@ bool presses(const Footprint& outline, std::span<const FootprintEdge> edges, con
   return inside(outline.edges, 0.5 * (a + b), s.z_min, s.z_max);
 }
 
-/// The wanted sectors that the surface crosses.
+/// Returns the wanted sectors that the surface crosses.
 std::uint32_t sectors_crossed(const Surface& s, std::uint32_t wanted) {
   std::uint32_t crossed = 0;
   for (std::uint32_t left = wanted; left != 0; left &= left - 1) {
@@ -150,7 +150,7 @@ std::uint32_t sectors_to_test(const Footprint& outline, const base::Pose& X_WM, 
   if (d > reach + r) return 0;
   if (outline.inner == 0.0 || d + outline.inner <= r) return kAllSectors;
   if (d <= r) return ~known;
-  // The part of the other's disc within reach: up to its tangents, or to where the two circles meet.
+  // The part of the other's disc within reach ends at its tangents or where the two circles meet.
   const bool holds_tangents = d * d <= reach * reach + r * r;
   const double half =
       holds_tangents ? std::asin(r / d) : std::acos(std::min((d * d + reach * reach - r * r) / (2.0 * d * reach), 1.0));

@@ -30,7 +30,7 @@ std::vector<Segment> stopping(const world::World& world) {
   return walls;
 }
 
-/// The place of each row in the order of robots before tags, each in order of ids.
+/// Returns the position of each row in the order of robots before tags, each in order of ids.
 std::vector<std::uint32_t> ranks_of(const world::World& world) {
   std::vector<std::uint32_t> order(world.movers.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -78,7 +78,7 @@ void Fleet::add_mover() {
   make_room();
 }
 
-/// For all movers, so that ticks allocate nothing.
+/// Resizes everything for all movers, so that ticks do not allocate.
 void Fleet::make_room() {
   const std::size_t count = reports_.size();
   std::size_t edges = 0;
@@ -133,8 +133,8 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
   update_contacts();
 }
 
-// Contacts exist only for movers with a refused step, for movers in contact before, and for the movers that refused a
-// step. Only these are tested.
+// Only movers with a refused step, movers in contact before, and movers that refused a step can be in contact. Tests
+// only these.
 void Fleet::update_contacts() {
   for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
     contacts_[row] = absent_[row] == 0 && (refused_[row] != 0 || reports_[row].contact_mask != 0);

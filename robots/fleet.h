@@ -1,5 +1,5 @@
 #pragma once
-// The states of all movers, and their motion.
+// The states and the motion of all movers.
 //
 //   Fleet fleet(world);
 //   fleet.move(commands, interval);            // simulated, or
@@ -9,15 +9,16 @@
 //
 // `move` resolves conflicts in at most Fleet::kRounds rounds of two phases:
 //
-//   1 propose  Each mover goes as far as the walls and the other movers allow; the others stand where they are at the
-//              begin of the round. In front of a mover that may still go on it waits with the rest of its way.
-//   2 resolve  A mover whose proposed way meets the proposed place of a mover with a smaller id stays where it was.
+//   1 propose  Each mover advances as far as the walls and the other movers allow. The others are held at their poses
+//              at the start of the round. In front of a mover that may still advance, it waits with the rest of its
+//              path.
+//   2 resolve  A mover whose proposed path meets the proposed place of a mover with a smaller id keeps its old place.
 //
-// The next round is for movers that wait or stayed where they or a mover near them moved or stayed. In the last round
-// no mover waits: a mover whose step is still refused stands, and turns where it can. Each round thus has the result of
-// movers that go one after another in order of ids (robots, then tags), and no mover overlaps another that it did not
-// overlap before. A mover's result depends only on the movers near it (within kRounds times the ways of both), not on
-// rows, threads or the rest of the fleet.
+// The next round runs for the movers that wait or were held back, if they or a mover near them moved or were held back.
+// In the last round no mover waits: a mover whose step is still refused stops, and turns if it can. Each round
+// therefore gives the same result as moving one mover after another in order of ids (robots, then tags), and no mover
+// overlaps another that it did not overlap before. A mover's result depends only on the movers near it (within kRounds
+// times the paths of both), not on rows, threads or the rest of the fleet.
 
 #include <cstdint>
 #include <span>
@@ -34,64 +35,68 @@
 
 namespace sf::robots {
 
-/// All movers at rest at their poses at load, at time 0; one per mover, in order of rows.
+/// Returns the states of all movers at rest at their load poses at time 0, in order of rows.
 std::vector<base::Report> states_at_load(const world::World& world);
 
-/// One caller at a time. Allocates nothing after construction, unless more than a thousand walls are near one mover.
+/// Not thread-safe. Does not allocate after construction, unless more than a thousand walls are near one mover.
 class Fleet {
  public:
   static constexpr int kRounds = 4;                ///< per tick, at most
   static constexpr double kMostTested = 16'384.0;  ///< [substeps] with obstacles near, per mover and round
 
-  /// All movers at rest at their poses at load, at time 0. `world` and `thread_pool` must outlive the fleet.
-  /// @param thread_pool shares the work of `move` and `predict`, with the same results; null: the caller's thread alone
+  /// All movers start at rest at their load poses at time 0. `world` and `thread_pool` must outlive the fleet.
+  /// @param thread_pool shares the work of `move` and `predict` without changing results; null: uses only the caller's
+  /// thread
   explicit Fleet(const world::World& world, base::ThreadPool* thread_pool = nullptr);
 
-  /// Simulates `dt` [ns] > 0. A command passes the mover's actuator model, then the limits of its drive and of its
-  /// accelerations from its current velocity. Motion is tested in substeps no longer than `Footprint::step`. A substep
-  /// that would make the outline touch a wall or another mover is refused: the mover goes only to within 0.5 mm of the
-  /// contact and then stops. A stopped mover may still turn in place (a car may not), and for that may push itself off
-  /// by up to 4 mm a substep. A contact that exists already (overlapping starts, reports) stops a mover only when its
-  /// origin would come closer to the touched wall or mover. Conflicts between movers follow the rule above.
+  /// Simulates `dt` [ns] > 0. A command passes through the mover's actuator model, then through the limits of its drive
+  /// and of its accelerations from its current velocity. Motion is tested in substeps no longer than `Footprint::step`.
+  /// A substep that would make the outline touch a wall or another mover is refused: the mover advances to within 0.5
+  /// mm of the contact and stops. A stopped mover may still turn in place (except a car), and may push itself off by up
+  /// to 4 mm per substep to do so. An existing contact (from overlapping starts or reports) stops a mover only if its
+  /// origin would move closer to the touched wall or mover. Conflicts between movers follow the rule above.
   ///
-  /// Afterwards `Report::contact_mask` has the touched sectors (robots/contact_sectors.h): of movers with a refused
-  /// step, of the movers that refused it, and for as long as the contact lasts, also at rest. Passing by without a
-  /// refused step does not count.
+  /// Afterwards `Report::contact_mask` has the touched sectors (robots/contact_sectors.h) of movers with a refused step
+  /// and of the movers that refused it. The mask is kept as long as the contact lasts, also at rest. Passing by without
+  /// a refused step does not count.
   ///
-  /// The work is bounded: of a way of more than 1 024 substeps, pieces without obstacles near them are not tested, and
-  /// a mover that has passed obstacles for 16 384 substeps ends its tick there.
+  /// The work is bounded. On a path of more than 1024 substeps, pieces without obstacles near them are not tested. A
+  /// mover that has passed obstacles for 16384 substeps ends its tick there.
   /// @param commands one per mover; NaN and infinity count as 0
   void move(std::span<const base::Twist> commands, std::int64_t dt);
 
-  /// Takes the states of movers from outside; `predict` computes their contacts. A report older than the mover's state
-  /// is ignored; one of the same time replaces it. Heights stay those at load, whatever the report has: the world is
-  /// 2.5-D, for contacts as for sensors.
-  /// @param reports finite, rows of existing movers
+  /// Applies states of movers from outside; `predict` computes their contacts. A report older than the mover's state is
+  /// ignored; a report of the same time replaces it. Heights stay at their load values regardless of the report: the
+  /// world is 2.5-D, for contacts as for sensors.
+  /// @param reports finite, with rows of existing movers
   /// @return number of accepted reports
   std::size_t apply(std::span<const base::Report> reports);
 
-  /// Until it is set present again, no mover meets an absent one, `move` lets it stand, and it has no contacts.
+  /// Marks a mover as absent or present. Other movers do not collide with an absent mover, `move` does not move it, and
+  /// it has no contacts.
   void set_absent(std::uint32_t row, bool gone) { absent_[row] = gone ? 1 : 0; }
 
-  /// The world has got one more mover, in its last row: at rest at its pose at load, at the time of the others.
+  /// Adds the world's new last mover: at rest at its load pose, at the time of the others.
   void add_mover();
 
-  /// Takes the state of a mover as another process' `move` left it. @param contact its entry in `contacts`
+  /// Sets the state of a mover that another process computed with `move`.
+  /// @param contact its entry in `contacts`
   void set_moved(const base::Report& report, bool contact);
 
-  /// One per mover, in order of rows: the newest state. Yaw is in [-pi, pi] after `move`, as reported after `apply`.
-  /// The velocity of a simulated mover is the one at the end of the tick, 0 after a stop. Valid as long as the fleet.
+  /// Returns the newest states, one per mover in order of rows. Yaw is in [-pi, pi] after `move`, and as reported after
+  /// `apply`. The velocity of a simulated mover is that at the end of the tick, and 0 after a stop. Valid as long as
+  /// the fleet.
   std::span<const base::Report> reports() const { return reports_; }
 
-  /// `reports()` at `time` [ns] (robots::extrapolate).
-  /// Contacts of movers with reports from outside are computed at these poses and added to the contacts in the reports.
-  /// Valid until the next call.
+  /// Returns `reports()` extrapolated to `time` [ns] (robots::extrapolate). Contacts of movers with reports from
+  /// outside are computed at these poses and added to those in the reports. Valid until the next call.
   std::span<const base::Report> predict(std::int64_t time);
 
-  /// Substeps that `move` has tested against obstacles near them, in all ticks.
+  /// Returns the number of substeps that `move` has tested against obstacles near them, in all ticks.
   std::uint64_t steps_tested() const;
 
-  /// One per mover: 1 when the last `move` refused it a step, or when it touches something (`Report::contact_mask`).
+  /// Returns one value per mover: 1 if the last `move` refused it a step or if it touches something
+  /// (`Report::contact_mask`).
   std::span<const std::uint8_t> contacts() const { return contacts_; }
 
  private:
@@ -100,19 +105,19 @@ class Fleet {
   /// Progress of a mover in this tick.
   struct Progress {
     base::Pose X_WM;
-    base::Twist velocity;  ///< velocity for the rest of the tick
+    base::Twist velocity;  ///< for the rest of the tick
     double left = 0.0;     ///< [s] left of the tick; 0: finished
     bool refused = false;  ///< a step was refused in this tick
     bool free = false;     ///< no obstacle is near
-    bool exposed = false;  ///< ways of other movers are near
+    bool exposed = false;  ///< paths of other movers are near
   };
-  /// Outcome of one step: free, held for another round, or not allowed.
+  /// Outcome of one step: free, held for another round, or refused.
   enum class Stop : std::uint8_t { none, waiting, refused };
   struct BodyContact {
     std::uint32_t sectors = 0;
-    glm::dvec2 away;  ///< world frame: the sum of unit vectors from the touching surfaces to the mover's origin
+    glm::dvec2 away;  ///< world frame: sum of the unit vectors from the touching surfaces to the mover's origin
   };
-  /// A disc without walls round a former place: while a mover's way stays in it, no wall is searched for. A mover's
+  /// A disc without walls around a former place. No walls are searched while a mover's path stays in it. A mover's
   /// height never changes.
   struct FreeDisc {
     glm::dvec2 centre;
@@ -121,13 +126,13 @@ class Fleet {
   /// Buffers of one thread.
   struct Scratch {
     std::vector<FootprintEdge> next, now, other;  ///< for place_footprint
-    std::vector<std::uint32_t> near;              ///< movers near this one's way, or a piece of it
-    std::vector<std::uint32_t> all_near;          ///< movers near the whole way
-    std::vector<const world::Segment*> walls;     ///< likewise
+    std::vector<std::uint32_t> near;              ///< movers near this mover's path or a piece of it
+    std::vector<std::uint32_t> all_near;          ///< movers near the whole path
+    std::vector<const world::Segment*> walls;     ///< walls near the whole path
     std::vector<std::uint32_t>
-        priority_movers;       ///< of these: movers with a smaller id and a different place after this round
+        priority_movers;       ///< subset: movers with a smaller id and a different place after this round
     std::uint64_t tested = 0;  ///< [steps] as `steps_tested`
-    bool yields = false;       ///< its way meets the place of a priority mover
+    bool yields = false;       ///< its path meets the place of a priority mover
     double farthest = 0.0;     ///< [m] largest travel of an origin in this tick, of all movers so far
   };
 
@@ -162,7 +167,7 @@ class Fleet {
   bool turn_in_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const;
   bool push_off(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const;
 
-  // Obstacles on a mover's way from one pose to another.
+  // Obstacles on a mover's path from one pose to another.
   Stop stop_at(std::uint32_t row, const base::Pose& from, const base::Pose& to, bool last, Scratch& scratch) const;
   bool meets_priority_mover(std::uint32_t row, const base::Pose& from, const PlacedFootprint& next,
                             Scratch& scratch) const;
@@ -189,23 +194,23 @@ class Fleet {
   std::vector<base::Report> reports_;
   std::vector<base::Report> predicted_;
   std::vector<std::uint32_t> rank_;  ///< place in the order of ids, robots before tags
-  std::vector<double> travels_;      ///< [m] largest travel of its origin in this tick
+  std::vector<double> travels_;      ///< [m] largest travel of each origin in this tick
   std::vector<Progress>
-      progress_;  ///< at the begin of the round; `reports_` has the poses that other movers test against
+      progress_;  ///< at the start of the round; `reports_` has the poses that other movers test against
   std::vector<Progress> proposed_;
   std::vector<FreeDisc> free_discs_;
   std::vector<std::uint8_t> waiting_;      ///< 1: its tick is not finished
   std::vector<std::uint8_t> yielded_;      ///< 1: yielded in this round
   std::vector<std::uint8_t> changed_;      ///< 1: it moved or yielded in this round
   std::vector<std::uint8_t> continues_;    ///< 1: takes part in the next round
-  std::vector<std::uint32_t> unfinished_;  ///< rows with an unfinished tick
-  std::vector<std::uint32_t> round_rows_;  ///< of these: rows in this round
+  std::vector<std::uint32_t> unfinished_;  ///< rows whose tick is not finished
+  std::vector<std::uint32_t> round_rows_;  ///< subset of `unfinished_`: rows in this round
   std::vector<Scratch> scratch_;           ///< per thread
   std::vector<std::uint8_t> contacts_;
   std::vector<std::uint8_t> refused_;   ///< 1: the last `move` refused it a step
   std::vector<std::uint8_t> struck_;    ///< 1: it touches a mover with a refused step; 0 between calls
   std::vector<std::uint8_t> reported_;  ///< 1: set by a report since the last `move`
-  std::vector<std::uint8_t> absent_;    ///< 1: absent
+  std::vector<std::uint8_t> absent_;
 };
 
 template <class Body>

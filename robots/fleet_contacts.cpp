@@ -1,4 +1,4 @@
-// The motion of one mover of a fleet: its approach to obstacles, and its contacts.
+// Motion of one mover of a fleet: its approach to obstacles, and its contacts.
 
 #include <algorithm>
 #include <atomic>
@@ -16,14 +16,14 @@ using base::Twist;
 using world::Segment;
 
 constexpr double kGap = 4e-4;              // [m] largest gap between a stopped mover and the obstacle
-constexpr double kWhole = 0x1p40;          // fixed point: sums of integers do not depend on their order
-constexpr double kLongestTested = 1024.0;  // [steps] longer ways are tested in pieces
+constexpr double kWhole = 0x1p40;          // fixed point: sums of integers do not depend on the order
+constexpr double kLongestTested = 1024.0;  // [steps] longer paths are tested in pieces
 constexpr double kPiece = 64.0;            // [steps] of a piece with obstacles near
 static_assert(base::kContactSectors == 32);
 
 glm::dvec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
 
-// Not closer to a surface touched before; rounding at 100 km is 1.5e-11.
+// Returns whether the mover is no closer to a touched surface than before. Rounding at 100 km is 1.5e-11.
 bool no_nearer(double after, double before) { return after >= before - 1e-10; }
 
 glm::dvec2 unit(glm::dvec2 v) {
@@ -33,7 +33,7 @@ glm::dvec2 unit(glm::dvec2 v) {
 
 }  // namespace
 
-/// True as soon as `visit(wall, distance [m] from the mover's circle)` is true for a wall within about `sweep` of it.
+/// Returns true as soon as `visit(wall, distance [m] from the mover's circle)` is true for a wall within about `sweep`.
 template <class Visit>
 bool Fleet::any_wall(std::uint32_t row, const Pose& X_WM, double sweep, Visit&& visit) const {
   const Footprint& outline = footprints_[row];
@@ -54,7 +54,8 @@ bool Fleet::clear(std::uint32_t row, std::span<const base::Report> reports, doub
          });
 }
 
-/// Whether the circle of a mover that stands at `from` and travels by `sweep` [m] can meet the circle of another mover.
+/// Returns whether a mover's circle that starts at `from` and travels up to `sweep` [m] can meet another mover's
+/// circle.
 bool Fleet::comes_near(std::uint32_t row, const Pose& from, double sweep, std::uint32_t other, const Pose& X_WO) const {
   if (footprints_[row].edges.empty() || footprints_[other].edges.empty()) return false;
   const glm::dvec2 d = origin(X_WO) - origin(from);
@@ -62,25 +63,25 @@ bool Fleet::comes_near(std::uint32_t row, const Pose& from, double sweep, std::u
   return dot(d, d) <= apart * apart;
 }
 
-/// [m] Largest travel of any point of the mover in the rest of the tick.
+/// [m] Returns the largest travel of any point of the mover in the rest of the tick.
 double Fleet::sweep_of(std::uint32_t row) const {
   const Twist& v = progress_[row].velocity;
   return (std::hypot(v.forward, v.left) + std::abs(v.turn) * footprints_[row].radius) * progress_[row].left;
 }
 
-/// [m] The same plus the largest push-off.
+/// [m] Returns `sweep_of` plus the largest push-off.
 double Fleet::reach_of(std::uint32_t row) const {
   return travels_[row] + std::abs(progress_[row].velocity.turn) * footprints_[row].radius * progress_[row].left;
 }
 
 bool Fleet::is_in_free_disc(std::uint32_t row) const {
-  constexpr double kMargin = 1e-6;  // [m] of rounding
+  constexpr double kMargin = 1e-6;  // [m] for rounding
   const FreeDisc& disc = free_discs_[row];
   const double reach = footprints_[row].radius + reach_of(row);
   return length(origin(progress_[row].X_WM) - disc.centre) + reach + kMargin <= disc.radius;
 }
 
-/// Looks farther than this tick needs. Near walls, the first one ends the search.
+/// Looks farther than this tick needs. Near walls, the first wall found ends the search.
 void Fleet::find_free_disc(std::uint32_t row) {
   if (is_in_free_disc(row)) return;
   const Pose& X_WM = progress_[row].X_WM;
@@ -113,8 +114,8 @@ Fleet::Progress Fleet::advance_mover(std::uint32_t row, bool last, Scratch& scra
   return progress;
 }
 
-/// Whether the obstacles of a piece of a way are far from it: the way of the origin lies within `bulge` of the line
-/// from `from` to its end.
+/// Returns whether a piece of a path is far from all obstacles. The path of the origin stays within `bulge` of the
+/// straight line from `from` to its end.
 bool Fleet::is_free(std::uint32_t row, const Progress& from, double seconds, std::span<const std::uint32_t> others,
                     std::span<const std::uint32_t> rivals) const {
   const Twist& v = from.velocity;
@@ -147,8 +148,8 @@ void Fleet::find_obstacles(std::uint32_t row, const Pose& X_WM, double reach, st
   });
 }
 
-/// A way of thousands of steps: free pieces in one go, the others step by step. A mover that passes obstacles for too
-/// many steps ends its tick there.
+/// Advances along a path of thousands of steps: free pieces at once, the others step by step. A mover that passes
+/// obstacles for too many steps ends its tick there.
 Fleet::Progress Fleet::advance_in_pieces(std::uint32_t row, double steps, bool last, Scratch& scratch) const {
   Progress progress = progress_[row];
   const double dt = progress.left / steps;
@@ -206,7 +207,7 @@ Fleet::Progress Fleet::advance_in_steps(std::uint32_t row, Progress progress, do
       }
     } else {
       advance_to_contact(row, progress, dt, last, scratch);
-      // Repeats the step as a turn in place.
+      // Retries the step as a turn in place.
       if (progress.velocity.turn != 0.0 && world_.movers[row].drive != world::Drive::car) {
         progress.velocity = {0.0, 0.0, progress.velocity.turn};
         continue;
@@ -219,8 +220,8 @@ Fleet::Progress Fleet::advance_in_steps(std::uint32_t row, Progress progress, do
   return progress;
 }
 
-// Advances along a refused step up to the obstacle. Returns the time taken [s]. The smallest part is tried first: a
-// mover in contact stays.
+// Advances along a refused step up to the obstacle, and returns the time taken [s]. Tries the smallest part first, so a
+// mover in contact stays in place.
 double Fleet::advance_to_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const {
   const Pose X_start = progress.X_WM;
   const auto refused = [&](double part) {
@@ -237,14 +238,14 @@ double Fleet::advance_to_contact(std::uint32_t row, Progress& progress, double d
   return free * dt;
 }
 
-// A mover not close enough for a push-off turns until it is.
+// Turns a mover that is not close enough for a push-off until it is.
 bool Fleet::turn_in_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const {
   if (push_off(row, progress, dt, last, scratch)) return true;
   const double done = advance_to_contact(row, progress, dt, last, scratch);
   return done > 0.0 && push_off(row, progress, dt - done, last, scratch);
 }
 
-// A body that is not quite round (a disc of sixteen sides) pushes itself off the touched surface in a turn.
+// A body that is not exactly round (a disc of sixteen sides) pushes itself off the touched surface when turning.
 bool Fleet::push_off(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const {
   const glm::dvec2 away = unit(body_contact(row, progress.X_WM, reports_).away);
   if (away.x == 0.0 && away.y == 0.0) return false;
@@ -274,7 +275,7 @@ Fleet::Stop Fleet::stop_at(std::uint32_t row, const Pose& from, const Pose& to, 
   return stop;
 }
 
-/// Tests priority movers on a way without other obstacles.
+/// Tests priority movers on a path without other obstacles.
 bool Fleet::meets_priority_mover(std::uint32_t row, const Pose& from, const PlacedFootprint& next,
                                  Scratch& scratch) const {
   for (const std::uint32_t rival : scratch.priority_movers)
@@ -296,7 +297,7 @@ bool Fleet::is_stopped(std::uint32_t row, const Pose& from, const PlacedFootprin
   return nearer || !touches(now, placed);
 }
 
-/// True when the mover touches the wall already and its origin comes no closer to it.
+/// Returns whether the mover already touches the wall and its origin gets no closer to it.
 bool Fleet::leaves(std::uint32_t row, const Pose& from, glm::dvec2 to, const Segment& wall, Scratch& scratch) const {
   const PlacedFootprint now = place_footprint(footprints_[row], from, scratch.now);
   return touches(now, wall) &&
@@ -323,7 +324,7 @@ Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std:
   const auto meet = [&](std::uint32_t other, glm::dvec2 from_other, bool deep) {
     const Footprint& its = footprints_[other];
     const Pose& X_WO = reports[other].X_WM;
-    // A mover placed from outside needs its contact sectors alone.
+    // Only the contact sectors of a mover placed from outside are needed.
     const std::uint32_t wanted =
         reported_[row] != 0 ? sectors_to_test(outline, X_WM, its, X_WO, touch.sectors) : kAllSectors;
     const bool known = deep && touch.sectors == kAllSectors;
@@ -333,7 +334,7 @@ Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std:
     if (!struck.empty()) std::atomic_ref(struck[other]).store(1, std::memory_order_relaxed);
     return reported_[row] != 0 && touch.sectors == kAllSectors;
   };
-  // First the movers that overlap deeply: in a crowd at one place they soon touch all sectors.
+  // Movers that overlap deeply come first: in a dense crowd they soon touch all sectors.
   for (const bool deeply : {true, false}) {
     const bool done = neighbours_.any(p, reach + widest_ + farthest_, [&](std::uint32_t other) {
       const glm::dvec2 from_other = p - origin(reports[other].X_WM);

@@ -1,4 +1,4 @@
-// The rounds of a fleet's tick: the proposed ways of movers, and the rejection of some of them.
+// The rounds of a fleet's tick: proposes paths of movers and rejects some of them.
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,7 @@ void Fleet::propose(std::uint32_t row, bool last, Scratch& scratch) {
       std::any_of(scratch.near.begin(), scratch.near.end(), [&](std::uint32_t other) { return waiting_[other] != 0; });
 }
 
-/// Tests the same way again with the new places of priority_movers.
+/// Tests the same path again with the new places of priority_movers.
 bool Fleet::yields(std::uint32_t row, bool last, Scratch& scratch) {
   if (!proposed_[row].exposed || !moved(row)) return false;
   find_near(row, scratch);

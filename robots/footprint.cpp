@@ -18,7 +18,7 @@ bool follows(const FootprintEdge& e, const FootprintEdge& before) {
   return e.a.x == before.b.x && e.a.y == before.b.y && e.z_min == before.z_min && e.z_max == before.z_max;
 }
 
-// Inradius about the origin of one closed outline; 0 when the origin is outside.
+// Returns the inradius about the origin of one closed outline; 0 if the origin is outside.
 double inradius(std::span<const FootprintEdge> loop) {
   if (!inside(loop, {0.0, 0.0}, loop.front().z_min, loop.front().z_max)) return 0.0;
   double nearest = HUGE_VAL;
@@ -26,7 +26,7 @@ double inradius(std::span<const FootprintEdge> loop) {
   return nearest;
 }
 
-// The largest inradius among the chains of consecutive edges.
+// Returns the largest inradius among the chains of consecutive edges.
 double largest_inradius(std::span<const FootprintEdge> edges) {
   double largest = 0.0;
   std::size_t first = 0;
@@ -38,7 +38,7 @@ double largest_inradius(std::span<const FootprintEdge> edges) {
   return largest;
 }
 
-// For outlines whose edges do not meet: a chain of edges is then inside as a whole or not at all, so its first corner
+// For outlines whose edges do not meet. A chain of edges is then wholly inside or wholly outside, so its first corner
 // decides.
 bool any_inside(std::span<const FootprintEdge> chains, glm::dvec2 shift, const PlacedFootprint& outer) {
   for (std::size_t i = 0; i < chains.size(); ++i) {
@@ -50,8 +50,8 @@ bool any_inside(std::span<const FootprintEdge> chains, glm::dvec2 shift, const P
   return false;
 }
 
-/// Whether one of a few directions separates all edges of q from those of p: then they share no point. A fast test that
-/// succeeds for most pairs that do not touch.
+/// Returns whether one of a few directions separates all edges of q from those of p, so that they share no point. A
+/// fast test that succeeds for most pairs that do not touch.
 bool apart(const PlacedFootprint& p, const PlacedFootprint& q, glm::dvec2 d) {
   const auto beyond = [&](glm::dvec2 axis) {
     double p_most = -HUGE_VAL, q_least = HUGE_VAL;
@@ -60,7 +60,7 @@ bool apart(const PlacedFootprint& p, const PlacedFootprint& q, glm::dvec2 d) {
     return dot(axis, d) + q_least - p_most > 1e-9 * (p.radius + q.radius) * (std::abs(axis.x) + std::abs(axis.y));
   };
   if (beyond(d)) return true;
-  // Outward normals of the edges that face the other outline; outward is on the right of a -> b.
+  // Outward normals of the edges that face the other outline. Outward is on the right of a -> b.
   const auto normal = [](std::span<const FootprintEdge> edges, glm::dvec2 towards) {
     glm::dvec2 best{};
     double most = 0.0;
@@ -75,14 +75,14 @@ bool apart(const PlacedFootprint& p, const PlacedFootprint& q, glm::dvec2 d) {
   return beyond(from_p) || beyond(glm::dvec2{} - from_q);
 }
 
-/// Length of the chain of consecutive edges that begins at `first`.
+/// Returns the length of the chain of consecutive edges that begins at `first`.
 std::size_t chain_length(std::span<const FootprintEdge> edges, std::size_t first) {
   std::size_t end = first + 1;
   while (end < edges.size() && follows(edges[end], edges[end - 1])) ++end;
   return end - first;
 }
 
-/// True where every chain with a solid edge is a closed outline, the solid inside.
+/// Returns whether every chain with a solid edge is a closed outline with the solid inside.
 bool are_solids(std::span<const FootprintEdge> edges) {
   for (std::size_t first = 0; first < edges.size();) {
     const auto chain = edges.subspan(first, chain_length(edges, first));

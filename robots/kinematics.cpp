@@ -7,17 +7,17 @@ namespace sf::robots {
 
 namespace {
 
-// sin(x)/x. Below the threshold the next term of the series is under half an ulp.
+// sin(x)/x. Below the threshold, the next term of the series is less than half an ulp.
 double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x; }
 
-constexpr double kSame = 1e-7;  // [m], [rad] poses within this distance are equal up to rounding
+constexpr double kSame = 1e-7;  // [m], [rad] poses within this distance are equal except for rounding
 
 bool near(const base::Pose& p, const base::Pose& q) {
   return std::abs(p.x - q.x) <= kSame && std::abs(p.y - q.y) <= kSame &&
          std::abs(base::wrap_angle(p.yaw - q.yaw)) <= kSame;
 }
 
-/// The constant twist from one pose to another in `seconds`, by the smaller turn: the inverse of `advance`.
+/// Returns the constant twist from one pose to another in `seconds`, by the smaller turn: the inverse of `advance`.
 base::Twist twist_between(const base::Pose& from, const base::Pose& to, double seconds) {
   const double turn = base::wrap_angle(to.yaw - from.yaw);
   const glm::dvec2 chord = base::rotate(-(from.yaw + 0.5 * turn), {to.x - from.x, to.y - from.y});
@@ -79,7 +79,7 @@ base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double d
 base::Report extrapolate(const base::Report& known, std::int64_t time) {
   const std::int64_t ahead = std::clamp<std::int64_t>(time - known.time, 0, kMaxExtrapolation);
   base::Report report = known;
-  if (ahead == 0) return report;  // bitwise equal, whatever its yaw
+  if (ahead == 0) return report;  // bitwise equal, for any yaw
   report.time += ahead;
   report.X_WM = advance(known.X_WM, known.velocity, 1e-9 * static_cast<double>(ahead));
   return report;
@@ -89,7 +89,7 @@ base::Report interpolate(const base::Report& before, const base::Report& after, 
   const base::Pose &from = before.X_WM, &to = after.X_WM;
   base::Report report = before;
   report.time = time;
-  // Bitwise equal poses allow the reuse of readings of a mover at rest.
+  // Bitwise equal poses allow readings of a mover at rest to be reused.
   if (from.x == to.x && from.y == to.y && from.yaw == to.yaw) {
     report.velocity = after.velocity;
     return report;

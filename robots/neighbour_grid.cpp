@@ -12,7 +12,7 @@ void NeighbourGrid::build(std::span<const base::Report> reports, double cell) {
   cells_.resize(reports.size());
   bucket_of_.resize(reports.size());
 
-  // Counting sort: after the second pass `starts_[at]` is the end of bucket `at - 1`, which is where it starts.
+  // Counting sort. After the second pass, `starts_[at]` is the end of bucket `at - 1`, and so the start of bucket `at`.
   for (std::size_t row = 0; row < reports.size(); ++row) {
     const std::size_t at = bucket(cell_of(reports[row].X_WM.x), cell_of(reports[row].X_WM.y));
     bucket_of_[row] = static_cast<std::uint32_t>(at);

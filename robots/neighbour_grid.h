@@ -1,5 +1,5 @@
 #pragma once
-// Index of movers near a position: a hashed grid of points, rebuilt each tick.
+// Index of movers by position: a hashed grid of points, rebuilt each tick.
 
 #include <algorithm>
 #include <cmath>
@@ -12,15 +12,15 @@
 
 namespace sf::robots {
 
-/// Queries may run on any thread, but not during `build`.
+/// Thread-safe for queries, except during `build`.
 class NeighbourGrid {
  public:
-  /// @param reports one per row; allocates only when there are more than in any call before
+  /// @param reports one per row; allocates only if there are more than in all earlier calls
   /// @param cell [m] > 0, about twice the reach of a query
   void build(std::span<const base::Report> reports, double cell);
 
-  /// True as soon as `predicate(row)` is true for a row whose cell, at the time of `build`, was within `reach` [m] of
-  /// `p`. The predicate is called at most once per row; the order depends on the number of rows.
+  /// Returns true as soon as `predicate(row)` is true for a row whose cell, at the time of `build`, was within `reach`
+  /// [m] of `p`. Calls the predicate at most once per row, in an order that depends on the number of rows.
   template <class Predicate>
   bool any(glm::dvec2 p, double reach, Predicate&& predicate) const {
     const std::int64_t x1 = cell_of(p.x + reach), y1 = cell_of(p.y + reach);
@@ -40,13 +40,13 @@ class NeighbourGrid {
     std::int64_t x, y;
   };
   std::int64_t cell_of(double v) const {
-    constexpr double kFarthest = 4.0e15;  // bound that keeps cell numbers integers for any reported position
+    constexpr double kFarthest = 4.0e15;  // keeps cell numbers exact integers for any reported position
     return static_cast<std::int64_t>(std::clamp(std::floor(v / cell_), -kFarthest, kFarthest));
   }
   std::size_t bucket(std::int64_t x, std::int64_t y) const;
 
   double cell_ = 1.0;
-  std::vector<std::uint32_t> starts_;  ///< per bucket, into rows_; one more at the end
+  std::vector<std::uint32_t> starts_;  ///< per bucket, index into rows_; one extra entry at the end
   std::vector<std::uint32_t> rows_;
   std::vector<Cell> cells_;               ///< parallel to rows_: several cells share a bucket
   std::vector<std::uint32_t> bucket_of_;  ///< per row

@@ -10,12 +10,12 @@ namespace {
 
 // Commands.
 constexpr std::uint8_t kStart = 128, kSafe = 131, kDriveDirect = 145, kStream = 148, kPauseStream = 150;
-// Packets of a frame: id, then the number of its data bytes.
+// Packets of a frame: id, then number of data bytes.
 constexpr std::uint8_t kBumps = 7, kDistance = 19, kAngle = 20, kMode = 35;
 constexpr std::uint8_t kHeader = 19;
 constexpr std::array<std::uint8_t, 4> kPackets{kBumps, kDistance, kAngle, kMode};
 
-// A frame's bytes: places of ids, and of what follows them.
+// Fixed bytes of a frame: positions and values of ids and lengths.
 constexpr std::array<std::pair<std::size_t, std::uint8_t>, 6> kFixed{
     {{0, kHeader}, {1, CreateStream::kFrameBytes - 3}, {2, kBumps}, {4, kDistance}, {7, kAngle}, {10, kMode}}};
 
@@ -64,7 +64,7 @@ base::Bytes create_stop() {
 
 std::optional<CreateFrame> CreateStream::take(std::uint8_t byte) {
   bytes_[size_++] = byte;
-  // Bytes that cannot begin a frame are dropped, one by one: a frame may begin within a broken one.
+  // Drops bytes that cannot begin a frame one at a time, since a frame may begin within a broken one.
   const auto may_be_one = [&] {
     return std::all_of(kFixed.begin(), kFixed.end(),
                        [&](const auto& fixed) { return fixed.first >= size_ || bytes_[fixed.first] == fixed.second; });
@@ -79,7 +79,7 @@ std::optional<CreateFrame> CreateStream::whole() {
     const std::array<std::uint8_t, kFrameBytes> broken = bytes_;
     size_ = 0;
     ++skipped_;
-    // Shorter than a frame: none of these completes one.
+    // Fewer bytes than a frame, so none of these calls completes one.
     for (std::size_t i = 1; i < broken.size(); ++i) take(broken[i]);
     return std::nullopt;
   }

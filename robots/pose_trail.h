@@ -1,5 +1,5 @@
 #pragma once
-// The last poses of one mover, by time.
+// The recent poses of one mover, by time.
 
 #include <array>
 #include <cstddef>
@@ -9,13 +9,13 @@
 
 namespace sf::robots {
 
-/// Times [ns] are non-decreasing. Before the first `add` its one pose is `start`, at time 0.
+/// Times [ns] are non-decreasing. Before the first `add`, the only pose is `start` at time 0.
 class PoseTrail {
  public:
   explicit PoseTrail(const base::Pose& start = {}) { points_[0].X_WM = start; }
 
   void add(std::int64_t time, const base::Pose& X_WM) { points_[++added_ % points_.size()] = {time, X_WM}; }
-  /// Interpolated between the last 256 poses; before these the oldest, after them the newest.
+  /// Interpolates between the last 256 poses. Returns the oldest pose for earlier times and the newest for later ones.
   base::Pose at(std::int64_t time) const;
 
  private:

@@ -31,7 +31,8 @@ RobotBody::RobotBody(const world::World& world, std::uint32_t mover, std::int64_
 
 void RobotBody::update_other(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity,
                              std::int64_t now) {
-  // The fleet's time is the sum of its steps, slightly behind `now`: the report gets this time, to count as the newest.
+  // The fleet's time is the sum of its steps, slightly behind `now`. The report gets this time, so it is accepted as
+  // newest.
   const base::Report report{mover, fleet_.reports()[mover].time, X_WM, velocity};
   fleet_.apply({&report, 1});
   fleet_.set_absent(mover, false);

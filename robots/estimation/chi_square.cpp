@@ -11,7 +11,7 @@ double chi_square_tail(int degrees, double x) {
   const double half = 0.5 * x;
   int k = degrees % 2 == 1 ? 1 : 2;
   double tail = k == 1 ? std::erfc(std::sqrt(half)) : std::exp(-half);
-  // The logarithm of the term grows step by step, since the term itself may underflow where later ones do not.
+  // Accumulates the logarithm, since a term may underflow where later terms do not.
   double log_term = 0.5 * k * std::log(half) - half - std::log(k == 1 ? 0.5 * std::sqrt(M_PI) : 1.0);
   for (; k < degrees; k += 2) {
     tail += std::exp(log_term);

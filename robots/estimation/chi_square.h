@@ -1,13 +1,13 @@
 #pragma once
-// The chi-square distribution, for gates and consistency tests.
+// The chi-square distribution, for gating and consistency tests.
 
 namespace sf::estimation {
 
-/// Probability that a chi-square variable of `degrees` >= 1 degrees of freedom exceeds `x` >= 0. Error below 1e-10 up
-/// to 1e5 degrees.
+/// Returns the probability that a chi-square variable with `degrees` >= 1 degrees of freedom exceeds `x` >= 0. The
+/// error is below 1e-10 for up to 1e5 degrees.
 double chi_square_tail(int degrees, double x);
 
-/// The x whose tail is `probability` in (0, 1).
+/// Returns the x whose tail probability is `probability`, in (0, 1).
 double chi_square_limit(int degrees, double probability);
 
 }  // namespace sf::estimation

@@ -7,17 +7,17 @@ namespace sf::estimation {
 
 namespace {
 
-constexpr double kCertain = 0.05;      // [rad] headings within which a path is as good as linear
-constexpr std::size_t kHeadings = 24;  // hypotheses of a heading that is not measured
+constexpr double kCertain = 0.05;      // [rad] within this, a path is practically linear in the errors
+constexpr std::size_t kHeadings = 24;  // hypotheses for a heading that is not measured
 constexpr double kLeastWeight = 1e-5;
-constexpr double kFarthest = 10.0;  // [rad] beyond all distances of headings
+constexpr double kFarthest = 10.0;  // [rad] exceeds any distance of headings
 
-/// [rad] distance of headings among `count` hypotheses: the fewer there are, the narrower and more exact they can be.
+/// [rad] Distance of headings with `count` hypotheses. With fewer hypotheses, they can be narrower and more exact.
 double heading_distance(std::size_t count) { return std::clamp(0.011 * static_cast<double>(count), 0.08, 0.26); }
 
 bool lighter(const Hypothesis& a, const Hypothesis& b) { return a.weight < b.weight; }
 
-/// Drops negligible ones.
+/// Drops negligible hypotheses and scales the weights to sum to 1. The heaviest one comes first.
 void normalise(Hypotheses& all) {
   std::iter_swap(all.begin(), std::max_element(all.begin(), all.end(), lighter));
   const double least = kLeastWeight * all[0].weight;
@@ -28,8 +28,8 @@ void normalise(Hypotheses& all) {
   for (Hypothesis& h : all) h.weight /= sum;
 }
 
-/// Merges those with headings near the ones of heavier ones, now and in the middle since the last measurement, on which
-/// the way since then depends.
+/// Merges hypotheses into heavier ones with similar headings, now and halfway since the last measurement. The latter
+/// determines the path since then.
 void reduce(const MotionModel& model, const HypothesesLimits& limits, Hypotheses& all) {
   normalise(all);
   const double half = 0.5e-9 * static_cast<double>(all[0].estimate.time - limits.corrected);
@@ -48,12 +48,12 @@ void reduce(const MotionModel& model, const HypothesesLimits& limits, Hypotheses
     all.resize(count);
     if (count <= limits.most) return;
   }
-  // More are left where numbers are not finite, which are near nothing.
+  // More than the limit remain only if numbers are not finite, because these are not near anything.
   all.resize(std::min(all.size(), limits.most));
   normalise(all);
 }
 
-/// Splits wide headings on the way. Headings that are a little uncertain are split, and merged at the end of the step.
+/// Splits uncertain headings before predicting. Slightly uncertain ones are merged again at the end of the step.
 void step(const MotionModel& model, std::int64_t time, const HypothesesLimits& limits, Hypotheses& all) {
   const double dt = 1e-9 * static_cast<double>(time - all[0].estimate.time);
   const double distance = heading_distance(all.size());
@@ -136,7 +136,7 @@ void correct(const MotionModel& model, const Measurement& measurement, const Hyp
     one = limits.most == 1 ? correct(one, measurement) : correct(model, one, measurement);
     return;
   }
-  // Logarithms, since all likelihoods may underflow.
+  // Uses logarithms, since all likelihoods may underflow.
   double most = -HUGE_VAL;
   for (Hypothesis& h : all) {
     const Innovation surprise = innovation(h.estimate, measurement);

@@ -1,7 +1,7 @@
 #pragma once
-// The state of an object whose heading may be uncertain, as a sum of Gaussians with narrow headings. A single Gaussian
-// cannot represent it: after an unknown turn the position lies on an arc, and a path that was driven forwards is also
-// that of the opposite heading driven backwards.
+// The state of an object with an uncertain heading, as a sum of Gaussians that each have a narrow heading. A single
+// Gaussian cannot represent it: after an unknown turn the position lies on an arc, and driving a path forwards looks
+// the same as driving it backwards with the opposite heading.
 //
 // Reference: H. W. Sorenson and D. L. Alspach, Recursive Bayesian estimation using Gaussian sums, Automatica 7, 1971.
 
@@ -11,44 +11,49 @@
 
 namespace sf::estimation {
 
-/// All of one time, with weights whose sum is 1. Empty: nothing is known. A certain heading needs one.
+/// Hypotheses at a common time whose weights sum to 1. Empty: the state is unknown. A certain heading takes one
+/// hypothesis.
 using Hypotheses = std::vector<Hypothesis>;
 
-/// [ns] steps of predictions of uncertain headings, and their number; what is left of a longer time is one step.
+/// [ns] Step size for predicting uncertain headings, and the largest number of steps. One last step covers the rest of
+/// a longer time.
 inline constexpr std::int64_t kHypothesesStep = 100'000'000;
 inline constexpr std::int64_t kMostHypothesesSteps = 10;
 
-/// What limits the sums. Rule: most > 0
+/// Limits of the sum. Precondition: most > 0
 struct HypothesesLimits {
-  std::size_t most = 1;        ///< hypotheses; with 1 each function does what that of kalman.h does
+  std::size_t most =
+      1;  ///< number of hypotheses; with 1, each function gives the result of its counterpart in kalman.h
   std::int64_t corrected = 0;  ///< [ns] time of the last measurement
 };
 
-/// The state after the first measurement: all headings, where it has none. @param measurement valid, with x and y
+/// Initializes the state from the first measurement. All headings are possible if it has no yaw.
+/// @param measurement valid, with x and y
 void start(const MotionModel& model, const Measurement& measurement, std::size_t most, Hypotheses& all);
 
-/// To 0.05 rad (one standard deviation). Paths are then as good as linear in the errors, and one Gaussian is enough.
+/// Returns whether the heading's standard deviation is at most 0.05 rad. Paths are then practically linear in the
+/// errors, and a single Gaussian is enough.
 bool has_certain_heading(const Estimate& estimate);
 
-/// The state at `time`, later or earlier. Of a single hypothesis whose heading is still certain then: that of kalman.h,
-/// to the bit. Otherwise by `advance`.
+/// Predicts the state at `time`, earlier or later. A single hypothesis whose heading is still certain at `time` gives
+/// bitwise the result of kalman.h; all other cases use `advance`.
 void predict(const MotionModel& model, std::int64_t time, const HypothesesLimits& limits, Hypotheses& all);
 
-/// The state at `time`, in steps of kHypothesesStep from the last measurement on, in which wide headings are split. It
-/// may be called for whole steps first: the result is the same, to the bit.
+/// Predicts the state at `time` in steps of kHypothesesStep counted from the last measurement, splitting wide headings.
+/// Calling it for whole steps first gives a bitwise identical result.
 void advance(const MotionModel& model, std::int64_t time, const HypothesesLimits& limits, Hypotheses& all);
 
-/// The least innovation of all hypotheses: a measurement is an outlier when none explains it.
+/// Returns the smallest innovation over all hypotheses: a measurement is an outlier only if no hypothesis explains it.
 Innovation innovation(const Hypotheses& predicted, const Measurement& measurement);
 
-/// Corrects each hypothesis, and its weight by the measurement's likelihood. Rule: the innovation is finite
+/// Corrects each hypothesis, and reweights it by the measurement's likelihood. Precondition: the innovation is finite
 void correct(const MotionModel& model, const Measurement& measurement, const HypothesesLimits& limits, Hypotheses& all);
 
-/// The estimate of the most probable hypothesis; one that drives backwards has to be twice as probable as another.
-/// Its covariance leaves the others out.
+/// Returns the estimate of the most probable hypothesis. A hypothesis that drives backwards has to be twice as probable
+/// as another. The covariance is that of this hypothesis only.
 const Estimate& most_probable(const Hypotheses& all);
 
-/// Mean squares of the errors of `state` over all hypotheses, with yaw wrapped.
+/// Returns the mean squared errors of `state` over all hypotheses, with yaw wrapped.
 Covariance covariance_about(const Estimate& state, const Hypotheses& all);
 
 }  // namespace sf::estimation

@@ -14,7 +14,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 Eigen::Map<const Matrix6> view(const Covariance& P) { return Eigen::Map<const Matrix6>(P.data()); }
 Eigen::Map<Matrix6> view(Covariance& P) { return Eigen::Map<Matrix6>(P.data()); }
 
-/// The yaw by which velocities are turned: into the world's frame or, on arcs, not.
+/// Returns the yaw that rotates velocities into the world frame; 0 on arcs.
 double frame(const MotionModel& model, const Estimate& e) {
   return model.path == MotionModel::Path::arc ? 0.0 : e.X_WM.yaw;
 }
@@ -28,7 +28,7 @@ Vector6 difference(const MotionModel& model, const Estimate& a, const Estimate& 
   return d;
 }
 
-/// The state whose difference to `from` is `d`.
+/// Returns the state that differs from `from` by `d`.
 Estimate moved(const MotionModel& model, const Estimate& from, const Vector6& d) {
   Estimate e = from;
   e.X_WM.x += d(kX), e.X_WM.y += d(kY);
@@ -39,7 +39,7 @@ Estimate moved(const MotionModel& model, const Estimate& from, const Vector6& d)
   return e;
 }
 
-/// Derivative of a difference by the state, and its inverse.
+/// Derivatives of a difference with respect to the state, and its inverse.
 Matrix6 to_difference(const MotionModel& model, const Estimate& e) {
   Matrix6 H = Matrix6::Identity();
   if (model.path == MotionModel::Path::arc) return H;
@@ -66,8 +66,8 @@ double middle_heading_sigma(const Estimate& estimate, double dt) {
   return std::sqrt(std::max(0.0, P(kYaw, kYaw) + dt * P(kYaw, kTurn) + 0.25 * dt * dt * P(kTurn, kTurn)));
 }
 
-// Along the direction in which the heading changes: DeMars, Bishop and Jah, Entropy-based approach for uncertainty
-// propagation, J. Guidance 36, 2013, with parts at equal distances instead of fitted ones.
+// Splits along the direction in which the heading changes: DeMars, Bishop and Jah, Entropy-based approach for
+// uncertainty propagation, J. Guidance 36, 2013, but with equally spaced parts instead of fitted ones.
 void split(const MotionModel& model, const Hypothesis& whole, double dt, double narrow,
            std::vector<Hypothesis>& parts) {
   const Matrix6 H = to_difference(model, whole.estimate);
@@ -128,7 +128,7 @@ void add_square_error(const Estimate& state, const Hypothesis& truth, Covariance
   const auto P = view(truth.estimate.covariance);
   const Vector6 d = difference({}, truth.estimate, state);
   Matrix6 S = P + d * d.transpose();
-  // Errors of yaw beyond half a turn are a turn less: moments of the part of a Gaussian beyond a limit.
+  // Yaw errors beyond half a turn wrap to the other side: uses the moments of the tail of a Gaussian.
   if (const double sigma = std::sqrt(P(kYaw, kYaw)); sigma > 0.0) {
     const double z = (M_PI - std::abs(d(kYaw))) / sigma;
     const double beyond = 0.5 * std::erfc(z / std::sqrt(2.0));

@@ -1,8 +1,8 @@
 #pragma once
-// One Gaussian of a sum of Gaussians: splitting it by its heading, merging some into one, and its errors.
+// One Gaussian of a sum of Gaussians: splitting by heading, merging, and error moments.
 //
-// Of a free body these work on velocities in the world, which do not depend on its heading: it moves on a straight
-// line.
+// For a free body these functions work on velocities in the world frame, which do not depend on the heading, because
+// the body moves on a straight line.
 
 #include <span>
 #include <vector>
@@ -16,23 +16,24 @@ struct Hypothesis {
   Estimate estimate;
 };
 
-/// [rad] standard deviation of the heading in the middle of a step of `dt` [s]: the direction of the path.
+/// [rad] Returns the standard deviation of the heading, and so of the path's direction, in the middle of a step of `dt`
+/// [s].
 double middle_heading_sigma(const Estimate& estimate, double dt);
 
-/// Appends three to nine parts with `narrow` headings in the middle of a step of `dt`; the middle part first. Together
-/// they have the mean and the covariance of the whole. @param narrow [rad] in (0, middle_heading_sigma)
+/// Appends three to nine parts whose headings have standard deviation `narrow` in the middle of a step of `dt`, the
+/// central part first. Their sum has the mean and the covariance of `whole`.
+/// @param narrow [rad] in (0, middle_heading_sigma)
 void split(const MotionModel& model, const Hypothesis& whole, double dt, double narrow, std::vector<Hypothesis>& parts);
 
-/// The Gaussian with the mean and the covariance of `parts`, whose headings are near that of the first.
-/// @param parts not empty, of one time
+/// Returns the Gaussian with the mean and the covariance of `parts`, whose headings are close to that of the first.
+/// @param parts not empty, all at the same time
 Hypothesis merged(const MotionModel& model, std::span<const Hypothesis> parts);
 
-/// As `correct` of kalman.h. Of a free body without a measured velocity it is the exact update of the velocity in the
-/// world.
+/// Same as `correct` of kalman.h, except that for a free body without a measured velocity it updates the velocity in
+/// the world frame exactly.
 Estimate correct(const MotionModel& model, const Estimate& predicted, const Measurement& measurement);
 
-/// Adds the weighted mean square of the errors of `state` to `sum`. Errors of yaw are wrapped, so that no heading is
-/// more than half a turn wrong.
+/// Adds the weighted mean squared error of `state` to `sum`. Yaw errors are wrapped to half a turn.
 void add_square_error(const Estimate& state, const Hypothesis& truth, Covariance& sum);
 
 }  // namespace sf::estimation

@@ -12,18 +12,18 @@ namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using Columns3 = Eigen::Matrix<double, 6, 3>;
-// One row or column per measured component; on the stack.
+// One row or column per measured component, on the stack.
 using MeasuredVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 using MeasuredMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 
 Eigen::Map<const Matrix6> matrix(const Covariance& covariance) { return Eigen::Map<const Matrix6>(covariance.data()); }
 
-/// Stores the symmetric part, which rounding may have left.
+/// Stores the symmetric part, to remove rounding errors.
 void store(const Matrix6& P, Covariance& covariance) {
   Eigen::Map<Matrix6>(covariance.data()) = 0.5 * (P + P.transpose());
 }
 
-/// d/dx of sin(x)/x. Below the threshold the series' next term is below 1e-11.
+/// d/dx of sin(x)/x. Below the threshold, the next term of the series is below 1e-11.
 double sinc_slope(double x) {
   if (std::abs(x) < 1e-2) return x * (-1.0 / 3.0 + x * x / 30.0);
   return (std::cos(x) - std::sin(x) / x) / x;
@@ -43,7 +43,7 @@ Motion move(MotionModel::Path path, const Motion& from, double dt) {
   return {{X.x + d.x, X.y + d.y, X.z, base::wrap_angle(X.yaw + v.turn * dt)}, {later.x, later.y, v.turn}};
 }
 
-/// Derivative of `move` by pose and twist.
+/// Derivative of `move` with respect to pose and twist.
 Matrix6 jacobian(MotionModel::Path path, const Motion& from, double dt) {
   const double yaw = from.X_WM.yaw;
   const auto& [forward, left, turn] = from.velocity;
@@ -76,7 +76,7 @@ Matrix6 jacobian(MotionModel::Path path, const Motion& from, double dt) {
   return F;
 }
 
-/// Covariance of what white accelerations over dt add: the integral of F G q G^T F^T, where F leads from the time of
+/// Covariance added by white accelerations over dt: the integral of F G q G^T F^T, where F propagates from the time of
 /// the noise to the end.
 Matrix6 process_noise(const MotionModel& model, const Motion& from, double dt) {
   const Eigen::Vector3d density(model.forward, model.left, model.turn);
@@ -92,7 +92,7 @@ Matrix6 process_noise(const MotionModel& model, const Motion& from, double dt) {
   return Q;
 }
 
-/// The rows of H, which are rows of the identity.
+/// The rows of H, which are rows of the identity matrix.
 struct Measured {
   std::array<int, 6> component{};
   int count = 0;
@@ -183,7 +183,7 @@ Estimate correct(const Estimate& predicted, const Measurement& measurement) {
   Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> PHt(6, measured.count);
   for (int i = 0; i < measured.count; ++i) PHt.col(i) = P.col(measured.component[i]);
 
-  // K = P H^T S^-1, and K H with its columns where they belong.
+  // K = P H^T S^-1, and K H expanded to all columns.
   const MeasuredMatrix S = select_block(P + R, measured);
   const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 6, 6> Kt = S.llt().solve(PHt.transpose());
   Matrix6 KH = Matrix6::Zero();

@@ -8,16 +8,15 @@ namespace sf::estimation {
 namespace {
 
 constexpr double kLeastVariance = 1e-12;
-constexpr std::int64_t kStand = 1'000'000'000;    // [ns] without a count; shorter ones are part of slow turns
-constexpr std::int64_t kBiasApart = 200'000'000;  // [ns] of gyro and wheels, at most
-constexpr double kBiasGate = 16.0;                // squared, of 4 standard deviations
+constexpr std::int64_t kStand = 1'000'000'000;    // [ns] without a count; shorter pauses occur in slow turns
+constexpr std::int64_t kBiasApart = 200'000'000;  // [ns] largest time between gyro and wheel readings
+constexpr double kBiasGate = 16.0;                // squared, for 4 standard deviations
 
 FilterOptions filter_options() {
   FilterOptions options{.model = differential_drive()};
-  // A position that comes after a long time under a bridge and that the gate refuses must not start the track anew,
-  // without a heading.
+  // After a long time under a bridge, a position that the gate rejects must not restart the track without a heading.
   options.stale_after = 60'000'000'000;
-  // The window of one second at 250 Hz each of encoder and gyro, and GPS.
+  // A window of one second with encoder and gyro at 250 Hz each, and GPS.
   options.capacity = 512;
   return options;
 }
@@ -50,7 +49,7 @@ void Localization::add_encoder(std::int64_t time, double left, double right) {
   const double dl = left - before->left, dr = right - before->right;
   if (dl != 0.0 || dr != 0.0) last_count_ = time;
 
-  // Two rounded counts and the slip of each wheel's way.
+  // Rounding of two counts, and slip over each wheel's path.
   const auto variance = [&](double way) {
     const LocalizationOptions& o = options_;
     return std::max(o.encoder.per_count * o.encoder.per_count / 6.0 + o.encoder.slip * o.encoder.slip * std::abs(way),
@@ -89,7 +88,7 @@ void Localization::learn_bias(std::int64_t time, double rate, double noise) {
 
 void Localization::add_gps(std::int64_t time, double x, double y, double hdop) {
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(hdop)) return;
-  // Readings state the sum of both axes' dilution.
+  // Readings contain the sum of both axes' dilution.
   const double variance = std::max(0.5 * options_.gps_noise * options_.gps_noise * hdop * hdop, kLeastVariance);
   Measurement position{.time = time, .components = kPositionBits, .X_WM = {x, y}};
   position.pose_covariance = {variance, 0.0, 0.0, variance, 0.0, 1.0};

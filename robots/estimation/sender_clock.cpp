@@ -8,18 +8,19 @@ namespace sf::estimation {
 
 namespace {
 
-/// A point relative to the newest timestamp and the offset there: small numbers, exact as doubles.
+/// A point relative to the newest timestamp and its offset. The numbers are small, so doubles hold them exactly.
 struct HullPoint {
   double sent = 0.0;  ///< [ns] <= 0
   double gap = 0.0;   ///< [ns]
 };
 
-/// Differences of gaps may exceed 64 bits; doubles tell them from limits of seconds.
+/// Differences of gaps may exceed 64 bits. Doubles are precise enough to compare them with limits of seconds.
 double difference(std::int64_t a, std::int64_t b) { return static_cast<double>(a) - static_cast<double>(b); }
 
 double slope(const HullPoint& a, const HullPoint& b) { return (b.gap - a.gap) / (b.sent - a.sent); }
 
-/// Andrew's monotone chain: leaves the lower convex hull in front. @param points sorted by `sent`, without equals
+/// Andrew's monotone chain: leaves the lower convex hull at the front.
+/// @param points sorted by `sent`, without duplicates
 /// @return number of points of the hull
 std::size_t lower_hull(HullPoint* points, std::size_t count) {
   std::size_t hull = 0;
@@ -49,7 +50,7 @@ ClockVerdict SenderClock::take(std::int64_t sent, std::int64_t arrival) {
     return ClockVerdict::used;
   }
 
-  // Beyond the least one.
+  // In excess of the least delay.
   const double delay = difference(gap - options_.least_delay, state_.offset) - state_.drift * difference(sent, newest_);
   const ClockVerdict verdict = delay < -static_cast<double>(options_.max_future) ? ClockVerdict::future
                                : delay > static_cast<double>(options_.max_delay) ? ClockVerdict::late
@@ -65,7 +66,7 @@ ClockVerdict SenderClock::take(std::int64_t sent, std::int64_t arrival) {
   return ClockVerdict::used;
 }
 
-/// A clock that was set shows the same new gap in every packet.
+/// After a clock was reset, every packet shows the same new gap.
 bool SenderClock::confirms_step(ClockVerdict refusal, std::int64_t gap) {
   const bool agrees = refusals_ > 0 && refusal == refusal_ &&
                       std::abs(difference(gap, refused_gap_)) <= static_cast<double>(options_.max_future);
@@ -98,7 +99,7 @@ bool SenderClock::add(std::int64_t sent, std::int64_t gap) {
   return better;
 }
 
-/// The line of Moon et al. through the points of the window.
+/// Fits the line of Moon et al. to the points of the window.
 void SenderClock::fit() {
   std::array<HullPoint, kSlots> points;
   std::size_t count = 0;
@@ -122,7 +123,7 @@ void SenderClock::fit() {
     while (right + 1 < size && hull[right].sent < middle) ++right;
     drift = std::clamp(slope(hull[right - 1], hull[right]), -kMaxDrift, kMaxDrift);
   }
-  // The highest line of this slope below all points, at the newest timestamp.
+  // The highest line with this slope below all points, at the newest timestamp.
   double least = HUGE_VAL;
   for (std::size_t k = 0; k < count; ++k) least = std::min(least, points[k].gap - drift * points[k].sent);
   state_.drift = drift;

@@ -1,11 +1,11 @@
 #pragma once
-// Estimate of a sender's clock from the timestamps and arrivals of its packets.
+// Estimates a sender's clock from the timestamps and arrival times of its packets.
 //
-// A packet stamped s on the sender's clock arrives at a = s + gap, gap = offset + drift s + delay with delay >= least
-// delay. The line below all points (s, gap) that is nearest to them is the edge of their lower convex hull under the
-// middle of the window: S. B. Moon, P. Skelly, D. Towsley, Estimation and removal of clock skew from network delay
-// measurements, INFOCOM 1999. Only the packets with the least delay of each slot of the window count, so jitter is
-// harmless. One-way packets cannot tell offset from the least delay: it is given, and 0 unless known better.
+// A packet stamped s on the sender's clock arrives at a = s + gap, where gap = offset + drift s + delay and delay >=
+// least delay. The closest line below all points (s, gap) is the edge of their lower convex hull under the middle of
+// the window: S. B. Moon, P. Skelly, D. Towsley, Estimation and removal of clock skew from network delay measurements,
+// INFOCOM 1999. Only the packet with the least delay in each slot of the window counts, so jitter does no harm. One-way
+// packets cannot separate the offset from the least delay, so the least delay is a parameter with default 0.
 
 #include <array>
 #include <cstdint>
@@ -13,54 +13,56 @@
 
 namespace sf::estimation {
 
-/// The clock that times of measurements follow.
+/// The clock that timestamps of measurements refer to.
 enum class ClockSource : std::uint8_t {
-  estimated,  ///< from the packets
-  trusted,    ///< sender and receiver are synchronised (PTP, NTP): timestamps count as they are
-  arrival     ///< timestamps are ignored: a measurement is true when it arrives
+  estimated,  ///< estimated from the packets
+  trusted,    ///< sender and receiver are synchronised (PTP, NTP): timestamps are used unchanged
+  arrival     ///< timestamps are ignored: a measurement is dated by its arrival
 };
 
 struct ClockOptions {
   ClockSource source = ClockSource::estimated;
-  std::int64_t least_delay = 0;            ///< [ns] >= 0 of the link, for `estimated`
-  std::int64_t max_future = 250'000'000;   ///< [ns] >= 0 of arrival before the estimate's least delay
-  std::int64_t max_delay = 1'000'000'000;  ///< [ns] > 0 beyond the least one
+  std::int64_t least_delay = 0;            ///< [ns] >= 0 least delay of the link, for `estimated`
+  std::int64_t max_future = 250'000'000;   ///< [ns] >= 0 by which a packet may arrive before the estimated least delay
+  std::int64_t max_delay = 1'000'000'000;  ///< [ns] > 0 in excess of the least delay
 };
 
 enum class ClockVerdict : std::uint8_t {
   used,
-  stepped,  ///< used: the sender's clock was set anew, shown by kConfirmations packets that agree
-  future,   ///< refused: from the future by more than `max_future`
-  late      ///< refused: delayed by more than `max_delay`
+  stepped,  ///< used: the sender's clock was reset, as shown by kConfirmations packets that agree
+  future,   ///< rejected: more than `max_future` in the future
+  late      ///< rejected: delayed by more than `max_delay`
 };
 
 struct ClockState {
   std::int64_t offset = 0;    ///< [ns] receiver's time minus sender's, at the newest timestamp
-  double drift = 0.0;         ///< [s/s] of that offset, within kMaxDrift; 0 until kDriftSpan of timestamps are known
-  bool synchronised = false;  ///< the offset is known, from packets: never with `trusted` and `arrival`
+  double drift = 0.0;         ///< [s/s] drift of the offset, within kMaxDrift; 0 until the timestamps span kDriftSpan
+  bool synchronised = false;  ///< the offset was estimated from packets; always false with `trusted` and `arrival`
   bool drift_known = false;
-  std::uint64_t steps = 0;  ///< of the sender's clock
+  std::uint64_t steps = 0;  ///< number of times that the sender's clock was reset
 };
 
-/// Bounded: kSlots points. The result depends on the packets' order of arrival only where a step is judged. No clock is
-/// read. One thread.
+/// Uses bounded memory: kSlots points. The result depends on the order of arrival only when a clock step is detected.
+/// Does not read any clock. Not thread-safe.
 class SenderClock {
  public:
-  static constexpr std::int64_t kWindow = 64'000'000'000;     ///< [ns] of timestamps that the estimate uses
-  static constexpr std::int64_t kDriftSpan = 10'000'000'000;  ///< [ns] that an estimate of the drift needs
-  static constexpr double kMaxDrift = 5e-4;                   ///< of crystals, with a wide margin
+  static constexpr std::int64_t kWindow = 64'000'000'000;     ///< [ns] span of timestamps used for the estimate
+  static constexpr std::int64_t kDriftSpan = 10'000'000'000;  ///< [ns] span of timestamps required for a drift estimate
+  static constexpr double kMaxDrift = 5e-4;                   ///< crystals drift less, by a wide margin
   static constexpr int kConfirmations = 5;
 
   explicit SenderClock(const ClockOptions& options = {}) : options_(options) {}
 
-  /// Takes a packet's timestamp `sent` on the sender's clock and its arrival on the receiver's, both in [0, 2^62] ns.
+  /// Processes a packet's timestamp `sent` on the sender's clock and its `arrival` on the receiver's, both in [0, 2^62]
+  /// ns.
   ClockVerdict take(std::int64_t sent, std::int64_t arrival);
 
-  /// [ns] The sender's time at the receiver's time `own` in [0, 2^61]. `trusted`, `arrival`: `own`.
+  /// Returns the sender's time [ns] at the receiver's time `own` in [0, 2^61]. With `trusted` and `arrival`, returns
+  /// `own`.
   std::int64_t to_sender(std::int64_t own) const;
 
   const ClockState& state() const { return state_; }
-  /// For a sender that restarts.
+  /// Resets the estimate, for a sender that restarts.
   void reset();
 
  private:
@@ -79,9 +81,9 @@ class SenderClock {
 
   ClockOptions options_;
   ClockState state_;
-  std::array<Point, kSlots> points_;  ///< of each slot the one with the least gap; slot k at k modulo kSlots
-  std::int64_t newest_ = 0;           ///< [ns] timestamp at which `state_.offset` holds
-  // Refused packets in a row that agree with each other.
+  std::array<Point, kSlots> points_;  ///< the point with the least gap in each slot; slot k is at k modulo kSlots
+  std::int64_t newest_ = 0;           ///< [ns] timestamp for which `state_.offset` is valid
+  // Consecutive rejected packets that agree with each other.
   ClockVerdict refusal_ = ClockVerdict::used;
   std::int64_t refused_gap_ = 0;
   int refusals_ = 0;

@@ -24,7 +24,7 @@ constexpr double kMostVariance = 1e18;
 
 bool is_variance(double v) { return v >= kLeastStateVariance && v <= kMostVariance; }
 
-/// Sylvester's criterion, on correlations so that units do not matter. Correlations of 1 - 1e-9 and more are refused.
+/// Sylvester's criterion on correlations, so that units do not matter. Rejects correlations of 1 - 1e-9 and above.
 bool is_positive_definite(const std::array<double, 6>& c) {
   if (!is_variance(c[0]) || !is_variance(c[3]) || !is_variance(c[5])) return false;
   const double xy = c[1] / std::sqrt(c[0] * c[3]);

@@ -18,10 +18,10 @@ double distance(const Measurement& m, const Estimate& e) {
   return std::hypot(x ? m.X_WM.x - e.X_WM.x : 0.0, y ? m.X_WM.y - e.X_WM.y : 0.0);
 }
 
-/// The motion model of a restarted track. Its prior on speeds is at least as wide as the speeds of the last state plus
-/// their random walk since then.
+/// Returns the motion model for a restarted track. Its prior on speeds is at least as wide as the speeds of the last
+/// state plus their random walk since then.
 MotionModel with_speeds_of(const MotionModel& model, const Hypotheses& last, std::int64_t time) {
-  constexpr double kLongest = 10.0;  // [s] of wandering
+  constexpr double kLongest = 10.0;  // [s] of random walk
   const double seconds = std::clamp(1e-9 * static_cast<double>(time - last[0].estimate.time), 0.0, kLongest);
   std::array<double, kComponents> squares{};
   for (const auto& [weight, e] : last) {
@@ -71,7 +71,7 @@ Verdict TrackFilter::take(const Measurement& measurement, std::int64_t now) {
 
   drop_before(std::max(newest, measurement.time) - options_.window);
   if (size_ == entries_.size()) {
-    // The ring's oldest leaves, unless the new one is older still.
+    // The oldest entry leaves the ring, unless the new one is even older.
     if (measurement < entry(0).measurement) return count(Verdict::too_late);
     drop_oldest();
   }
@@ -110,7 +110,7 @@ void TrackFilter::replay(std::size_t from) {
   }
 }
 
-/// A refused measurement leaves every bit of the state as it was.
+/// A rejected measurement leaves every bit of the state unchanged.
 Verdict TrackFilter::apply(const Measurement& m, State& state) {
   const auto begin = [&] {
     state.last_position = m.time;
@@ -127,9 +127,9 @@ Verdict TrackFilter::apply(const Measurement& m, State& state) {
   estimation::predict(options_.model, m.time, limits, predicted_);
   const Innovation surprise = innovation(predicted_, m);
   const bool far = distance(m, most_probable(predicted_)) > options_.max_jump;
-  // `!(a <= b)` refuses NaN as well.
+  // `!(a <= b)` rejects NaN as well.
   if (far || !(surprise.squared <= limits_[surprise.degrees])) {
-    // An object that was carried elsewhere: its positions are refused for stale_after, and then believed.
+    // The object was carried elsewhere: its positions are rejected for stale_after, then accepted.
     if (position && m.time - state.last_position > options_.stale_after) return begin();
     return far ? Verdict::jump : Verdict::outlier;
   }
@@ -167,7 +167,7 @@ Prediction TrackFilter::predict(std::int64_t time) const {
   return prediction;
 }
 
-/// Makes `predicted_` the hypotheses at `time`. Later predictions go on from the last whole step of earlier ones.
+/// Sets `predicted_` to the hypotheses at `time`. Later predictions continue from the last whole step of earlier ones.
 void TrackFilter::advance_to(std::int64_t time, const State& newest, std::size_t place) const {
   const HypothesesLimits limits{options_.hypotheses, newest.time()};
   const std::int64_t steps = (time - limits.corrected) / kHypothesesStep;

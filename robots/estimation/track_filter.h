@@ -1,17 +1,17 @@
 #pragma once
-// The filter of one object: measurements in any order of arrival, estimates for any time.
+// The filter of one object: takes measurements in any order of arrival and predicts the state at any time.
 //
 //   TrackFilter filter({.model = differential_drive()});
-//   filter.take(measurement, now);                 // late ones too
+//   filter.take(measurement, now);                 // may be late
 //   const Prediction seen = filter.predict(now);   // seen.status, seen.age, seen.estimate
 //
-// The filter keeps the measurements of the last `window`, sorted, each with the estimate after it. A late measurement
-// is inserted at its place and the later ones are applied again. All decisions except `future`, `too_late`, `replayed`
-// and `invalid` are made in that order: measurements that arrive within the window give the same bytes in any order of
-// arrival.
+// The filter keeps the measurements of the last `window` in sorted order, each with the estimate after it. A late
+// measurement is inserted at its place, and the later ones are applied again. All verdicts except `future`, `too_late`,
+// `replayed` and `invalid` are made in this order, so measurements that arrive within the window give bitwise identical
+// results in any order of arrival.
 //
-// Measurements may have any of the components. Where they leave the heading open, as positions alone do, the filter
-// keeps several hypotheses of it.
+// Measurements may have any subset of the components. While they leave the heading open, as positions alone do, the
+// filter keeps several heading hypotheses.
 
 #include <array>
 #include <cstdint>
@@ -23,88 +23,91 @@
 
 namespace sf::estimation {
 
-/// Treatment of an object whose state is stale, by the owner of the filter.
+/// What the owner of the filter does with an object whose state is stale.
 enum class StalePolicy : std::uint8_t {
-  freeze,  ///< stands at its last prediction that was not stale
-  hide,    ///< is out of the world until it is measured again
-  drop     ///< likewise, and its track and its sender's clock are forgotten
+  freeze,  ///< keeps it at rest at its last prediction that was not stale
+  hide,    ///< hides it from the world until it is measured again
+  drop     ///< hides it and drops its track and its sender's clock
 };
 
 struct FilterOptions {
   MotionModel model;
-  /// Probability with which the gate refuses a true measurement, in (0, 1).
+  /// Probability that the gate rejects a correct measurement, in (0, 1).
   double gate = 1e-4;
-  double max_jump = 10.0;                    ///< [m] > 0 from the prediction; a farther measurement is a `jump`
+  double max_jump = 10.0;                    ///< [m] > 0 from the prediction; measurements farther away are a `jump`
   std::int64_t stale_after = 1'000'000'000;  ///< [ns] > 0 without a used measurement
-  std::int64_t window = 1'000'000'000;       ///< [ns] > 0; measurements older than the newest by more are refused
-  std::size_t capacity = 64;                 ///< > 0 measurements in the window; with more, the window is shorter
-  std::int64_t max_future = 20'000'000;      ///< [ns] >= 0 that a measurement may lie ahead of the clock
-  /// > 0 Gaussians that a state with an uncertain heading may have. With 1, the covariance is that of a linearised
-  /// path: too small when the heading is not measured for a second, or never.
+  std::int64_t window =
+      1'000'000'000;          ///< [ns] > 0; measurements that are older than the newest by more than this are rejected
+  std::size_t capacity = 64;  ///< > 0 measurements in the window; when full, the window becomes shorter
+  std::int64_t max_future = 20'000'000;  ///< [ns] >= 0 by which a measurement may be ahead of the clock
+  /// > 0 Largest number of Gaussians for a state with an uncertain heading. With 1, the covariance is that of a
+  /// linearised path, which is too small if the heading is not measured for a second or longer.
   std::size_t hypotheses = 64;
 };
 
 /// Result of a measurement.
 enum class Verdict : std::uint8_t {
-  started,   ///< used: the first one with a position, the first after a stale time, or one
-             ///< beyond the gate when no position was used for that time
+  started,   ///< used: the first measurement with a position, the first after a stale time, or one beyond the gate when
+             ///< no position was used during that time
   used,      ///< updated the estimate
-  outlier,   ///< refused by the gate
-  jump,      ///< refused: farther from the prediction than `max_jump`
-  no_track,  ///< refused: without a position, of an object without a state
-  replayed,  ///< refused: identical to one in the window or the newest that left it
-  too_late,  ///< refused: before the window
-  future,    ///< refused: ahead of the clock
-  invalid    ///< refused: `is_valid` is false
+  outlier,   ///< rejected by the gate
+  jump,      ///< rejected: farther than `max_jump` from the prediction
+  no_track,  ///< rejected: it has no position and the object has no state
+  replayed,  ///< rejected: identical to one in the window or to the newest that left it
+  too_late,  ///< rejected: before the window
+  future,    ///< rejected: ahead of the clock
+  invalid    ///< rejected: `is_valid` is false
 };
 inline constexpr std::size_t kVerdicts = 9;
 std::string_view name(Verdict verdict);
 
-/// Number of measurements by verdict. A late measurement may change the verdicts of later ones; each counts once.
+/// Number of measurements by verdict. A late measurement may change the verdicts of later ones. Each measurement counts
+/// once.
 using VerdictCounts = std::array<std::uint64_t, kVerdicts>;
 
 struct Prediction {
   enum class Status : std::uint8_t {
-    none,   ///< nothing was used yet, or since `reset`; the other members are 0
+    none,   ///< no measurement was used since construction or `reset`; the other members are 0
     fresh,  ///< age <= stale_after
-    stale   ///< the pose is that of the time when the state became stale, at rest
+    stale   ///< at rest, at the predicted pose of the moment when the state became stale
   };
   Status status = Status::none;
-  std::int64_t age = 0;  ///< [ns] since the last used measurement; < 0 for times before it
-  /// At the time asked for, from the most probable hypothesis. Its covariance is that of all hypotheses around it.
-  /// Stale: around the pose at rest, so that it has the way and the speeds since then as errors, and grows with age. An
-  /// unknown heading has a variance of pi^2 / 3 and more.
+  std::int64_t age = 0;  ///< [ns] since the last used measurement; < 0 for earlier times
+  /// Estimate at the requested time, from the most probable hypothesis. Its covariance is that of all hypotheses about
+  /// it. When stale, the errors about the pose at rest include the distance and speeds since then, so the covariance
+  /// grows with age. An unknown heading has a variance of at least pi^2 / 3.
   Estimate estimate;
 };
 
-/// Of the squared innovation, by degrees of freedom from 1 on.
+/// Limits of the squared innovation, by degrees of freedom from 1 on.
 using GateLimits = std::array<double, kComponents + 1>;
 /// @param gate as in FilterOptions
 GateLimits gate_limits(double gate);
 
-/// Allocates in the constructor alone, except for the second and further hypotheses of uncertain headings, once for
-/// each place in the window. One thread.
+/// Allocates in the constructor, and once per place in the window when an uncertain heading takes a second hypothesis
+/// or more. Not thread-safe.
 class TrackFilter {
  public:
   explicit TrackFilter(const FilterOptions& options) : TrackFilter(options, gate_limits(options.gate)) {}
-  /// @param limits of `options.gate`, computed once for several filters
+  /// @param limits gate_limits(options.gate), computed once for several filters
   TrackFilter(const FilterOptions& options, const GateLimits& limits);
 
-  /// @param now [ns] on the clock of the measurements' times
-  /// @return the measurement's verdict at its place in the window
+  /// @param now [ns] on the clock that the measurements use
+  /// @return the verdict on the measurement at its place in the window
   Verdict take(const Measurement& measurement, std::int64_t now);
 
-  /// State at `time`, from the measurements up to then. Before the window: backwards from the estimate at its begin.
+  /// Returns the state at `time`, from the measurements up to that time. A time before the window is extrapolated
+  /// backwards from the first estimate in it.
   Prediction predict(std::int64_t time) const;
 
-  /// Forgets everything but the counts, as for a sender that restarts.
+  /// Drops everything except the counts, for a sender that restarts.
   void reset();
 
   const VerdictCounts& counts() const { return counts_; }
 
  private:
   struct State {
-    std::int64_t last_position = 0;  ///< [ns] of the last used one with a position
+    std::int64_t last_position = 0;  ///< [ns] time of the last used measurement with a position
     Hypotheses hypotheses;           ///< at the last used measurement
 
     bool known() const { return !hypotheses.empty(); }
@@ -131,12 +134,13 @@ class TrackFilter {
   std::vector<Entry> entries_;  ///< ring of `capacity`, sorted from first_ on
   std::size_t first_ = 0;
   std::size_t size_ = 0;
-  State before_;           ///< after the measurements that left the ring
-  Measurement last_left_;  ///< the newest of them
+  State before_;           ///< state after the measurements that left the ring
+  Measurement last_left_;  ///< newest measurement that left the ring
   bool any_left_ = false;
   VerdictCounts counts_{};
 
-  // To allocate once. `ahead_`: at a whole step after the state at `ahead_of_`; empty after each measurement.
+  // Members, to avoid reallocation. `ahead_`: a whole step after the state at `ahead_of_`; empty after each
+  // measurement.
   mutable Hypotheses predicted_;
   mutable Hypotheses ahead_;
   mutable std::size_t ahead_of_ = 0;

@@ -25,18 +25,18 @@ void expect_twist(const Twist& actual, const Twist& expected) {
   EXPECT_DOUBLE_EQ(actual.turn, expected.turn);
 }
 
-TEST(ActuatorModel, DirectIsTheCommandItself) {
+TEST(ActuatorModel, DirectReturnsTheCommand) {
   expect_twist(apply_actuator_model(world::Mover{}, {0.1234, 0.2, -3.3}), {0.1234, 0.2, -3.3});
 }
 
-TEST(ActuatorModel, CommandsThatAreNotFiniteAreZero) {
+TEST(ActuatorModel, NonFiniteCommandsBecomeZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   expect_twist(apply_actuator_model(world::Mover{}, {nan, inf, 1.0}), {0.0, 0.0, 1.0});
   expect_twist(apply_actuator_model(create(), {nan, inf, -inf}), {0.0, 0.0, 0.0});
 }
 
-// The cases of Player's driver one by one; radii computed by hand.
-TEST(ActuatorModel, ACreateIsToldWholeMillimetres) {
+// The cases of Player's driver, with radii computed by hand.
+TEST(ActuatorModel, CreateReceivesWholeMillimetres) {
   expect_twist(apply_actuator_model(create(), {0.1234, 0.0, 0.0}), {0.123, 0.0, 0.0});     // 123 mm/s, straight
   expect_twist(apply_actuator_model(create(), {0.7, 0.0, 0.0}), {0.5, 0.0, 0.0});          // largest speed
   expect_twist(apply_actuator_model(create(), {-0.7, 0.0, 0.0}), {-0.5, 0.0, 0.0});        // largest reverse speed
@@ -50,27 +50,26 @@ TEST(ActuatorModel, ACreateIsToldWholeMillimetres) {
   expect_twist(apply_actuator_model(create(), {0.1, 0.0, 0.001}), {0.1, 0.0, 0.1 / 2.0});     // clamped to 2 m
   expect_twist(apply_actuator_model(create(), {0.1, 0.0, -1e-300}), {0.1, 0.0, -0.1 / 2.0});  // for any small turn
   expect_twist(apply_actuator_model(create(), {0.1, 0.0, 25.0}), {0.1, 0.0, 0.1 / 0.002});    // 4 mm, halved
-  expect_twist(apply_actuator_model(create(), {0.0001, 0.0, 0.5}), {0.0, 0.0, 0.0});  // rounded to 0 mm/s: at rest
+  expect_twist(apply_actuator_model(create(), {0.0001, 0.0, 0.5}), {0.0, 0.0, 0.0});  // rounds to 0 mm/s: at rest
 }
 
-TEST(ActuatorModel, ACreateSpinsWhereNoRadiusIsLeft) {
+TEST(ActuatorModel, CreateSpinsWhenTheRadiusVanishes) {
   expect_twist(apply_actuator_model(create(), {0.1, 0.0, 50.0}),
                {0.0, 0.0, 0.1 / 0.129});  // 2 mm halved is 1: the code for a spin
-  expect_twist(apply_actuator_model(create(), {0.1, 0.0, 100.0}),
-               {0.0, 0.0, 0.1 / 0.129});  // 1 mm halved is 0: likewise
+  expect_twist(apply_actuator_model(create(), {0.1, 0.0, 100.0}), {0.0, 0.0, 0.1 / 0.129});  // 1 mm halved is 0: same
   expect_twist(apply_actuator_model(create(), {0.1, 0.0, -100.0}), {0.0, 0.0, -0.1 / 0.129});
   expect_twist(apply_actuator_model(create(), {-0.1, 0.0, 100.0}), {0.0, 0.0, 0.1 / 0.129});
 }
 
-TEST(ActuatorModel, ACreateSpinsInPlaceByWholeMillimetresOfItsWheels) {
+TEST(ActuatorModel, CreateSpinsInPlaceAtWholeWheelMillimetres) {
   expect_twist(apply_actuator_model(create(), {0.0, 0.0, 1.0}), {0.0, 0.0, 0.129 / 0.129});
   expect_twist(apply_actuator_model(create(), {0.0, 0.0, -1.001}), {0.0, 0.0, -0.129 / 0.129});
   expect_twist(apply_actuator_model(create(), {0.0, 0.0, 100.0}), {0.0, 0.0, 0.5 / 0.129});
   expect_twist(apply_actuator_model(create(), {0.0, 0.0, 0.003}),
-               {0.0, 0.0, 0.0});  // less than half a millimetre a second
+               {0.0, 0.0, 0.0});  // less than half a millimetre per second
 }
 
-TEST(ActuatorModel, ACreateTurnsAboutTwiceAsMuchAsItIsTold) {
+TEST(ActuatorModel, CreateTurnsAboutTwiceAsMuchAsCommanded) {
   for (std::uint32_t k = 0; k < 2000; ++k) {
     const auto u = base::random_uniform({.seed = 11, .stream = base::RandomStream::slip, .a = k}, 0);
     const double forward = 0.05 + 0.45 * u[0], turn = (u[1] < 0.5 ? -1.0 : 1.0) * (0.02 + std::abs(u[1] - 0.5));

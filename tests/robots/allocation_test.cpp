@@ -1,4 +1,4 @@
-// No allocation per tick: every `new` of this program is counted.
+// Counts every `new` of this program: ticks must not allocate.
 
 #include <gtest/gtest.h>
 
@@ -25,13 +25,13 @@ std::atomic<long> allocations{0};
 namespace sf::robots {
 namespace {
 
-TEST(Allocation, CountsAtAll) {
+TEST(Allocation, CounterWorks) {
   const long before = allocations;
-  ::operator delete(::operator new(100));  // called by name: cannot be optimised away
+  ::operator delete(::operator new(100));  // called by name, so it cannot be optimised away
   EXPECT_EQ(allocations - before, 1);
 }
 
-TEST(Allocation, NoneWhileRobotsMoveAndCollide) {
+TEST(Allocation, MovingAndCollidingRobotsDoNotAllocate) {
   world::World world = scenes::boxed_world(6, 6);
   for (int i = 0; i < 36; ++i) scenes::add_create(world, {0.5 + i % 6, 0.5 + i / 6, 0, 0.7 * i});
   Fleet fleet(world);

@@ -30,7 +30,7 @@ world::Segment wall(glm::dvec2 a, glm::dvec2 b, double z_min = 0.0, double z_max
 
 std::uint32_t bit(int k) { return 1u << ((k + 32) % 32); }
 
-TEST(Sectors, APostIsOneSector) {
+TEST(Sectors, PostTouchesOneSector) {
   // Sector 0 begins at bearing 0; the square's right side is at x = 0.2.
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2005, 0.01}, {0.2005, 0.012})), bit(0));
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2005, -0.01}, {0.2005, -0.012})), bit(-1));
@@ -39,14 +39,14 @@ TEST(Sectors, APostIsOneSector) {
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.01, -0.2005}, {0.012, -0.2005})), bit(24));
 }
 
-TEST(Sectors, AWallAlongASideIsAllSectorsOfTheSide) {
+TEST(Sectors, WallAlongASideTouchesAllSectorsOfTheSide) {
   const std::uint32_t side = bit(0) | bit(1) | bit(2) | bit(3) | bit(-1) | bit(-2) | bit(-3) | bit(-4);
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2005, -0.2}, {0.2005, 0.2})), side) << "from -45 to 45 degrees";
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2005, -5.0}, {0.2005, 5.0})), side | bit(4) | bit(-5))
       << "a longer wall is within a millimetre of the corners on their other side, too";
 }
 
-TEST(Sectors, ADiscAgainstAWallIsTouchedWhereItIsNearest) {
+TEST(Sectors, DiscTouchesAWallAtTheNearestPoint) {
   const std::uint32_t front = contact_sectors(disc(), {}, wall({0.1655, -5.0}, {0.1655, 5.0}));
   EXPECT_EQ(front, bit(0) | bit(-1)) << "its corner at bearing 0 is on the border of two";
 }
@@ -56,7 +56,7 @@ TEST(Sectors, EndWhereTheSurfaceIsAMillimetreAway) {
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.20101, -1.0}, {0.20101, 1.0})), 0u);
 }
 
-TEST(Sectors, ACornerTouchesASurfaceAtExactlyAMillimetre) {
+TEST(Sectors, CornerTouchesASurfaceAtExactlyAMillimetre) {
   world::World world = scenes::empty_world();
   const Footprint diamond = footprint_of(scenes::add_mover(world, {}, {{1, 0}, {0, 1}, {-1, 0}, {0, -1}}));
   const double x = diamond.radius + kContactDistance;
@@ -70,7 +70,7 @@ TEST(Sectors, ObjectsAboveOrBelowDoNotTouch) {
   EXPECT_EQ(contact_sectors(square(), {0, 0, 1.0, 0}, wall({0.2, -1.0}, {0.2, 1.0})), 0u);
 }
 
-TEST(Sectors, AWallThroughTheBodyIsInsideIt) {
+TEST(Sectors, WallThroughTheBodyCountsAsInside) {
   const std::uint32_t through = contact_sectors(square(), {}, wall({0.1, -5.0}, {0.1, 5.0}));
   EXPECT_EQ(through & (bit(0) | bit(-1)), bit(0) | bit(-1)) << "ahead";
   EXPECT_EQ(through & (bit(15) | bit(16)), 0u) << "and not behind";
@@ -83,7 +83,7 @@ TEST(Sectors, TurnWithTheMover) {
   EXPECT_EQ(contact_sectors(square(), {1, 2, 0, M_PI / 2}, post), bit(24)) << "what was ahead is on the right";
 }
 
-TEST(Sectors, AnotherOutlineIsWhatItsEdgesAre) {
+TEST(Sectors, AnotherOutlineEqualsItsEdges) {
   const std::uint32_t beside = contact_sectors(square(), {}, square(), {0.4005, 0, 0, 0});
   EXPECT_EQ(beside, bit(0) | bit(1) | bit(2) | bit(3) | bit(-1) | bit(-2) | bit(-3) | bit(-4));
   EXPECT_EQ(contact_sectors(square(), {}, square(), {0.4011, 0, 0, 0}), 0u);
@@ -93,25 +93,25 @@ TEST(Sectors, AnotherOutlineIsWhatItsEdgesAre) {
       << "a corner";
 }
 
-TEST(Sectors, WithinALargerSolidAllArePressed) {
+TEST(Sectors, AllAreTouchedInsideALargerSolid) {
   world::World world = scenes::empty_world();
   const Footprint large = footprint_of(scenes::add_mover(world, {}, scenes::rectangle({}, 4.0, 4.0)));
   EXPECT_EQ(contact_sectors(square(), {0.5, 0.2, 0, 1}, large, {}), ~0u);
   EXPECT_EQ(contact_sectors(square(), {2.5, 0.2, 0, 0}, large, {}), 0u);
 }
 
-TEST(Sectors, OfNothingAreNone) {
+TEST(Sectors, EmptyOutlineTouchesNothing) {
   EXPECT_EQ(contact_sectors(Footprint{.step = 1.0}, {}, wall({0.0, -1.0}, {0.0, 1.0})), 0u);
   EXPECT_EQ(contact_sectors(Footprint{.step = 1.0}, {}, square(), {}), 0u);
 }
 
-TEST(Sectors, TheSame100KmAway) {
+TEST(Sectors, AreTheSame100KmAway) {
   const Pose X{1e5, -1e5, 0, 0.3};
   const auto moved = [&](glm::dvec2 p) { return transform(X, p); };
   EXPECT_EQ(contact_sectors(square(), X, wall(moved({0.2005, -0.01}), moved({0.2005, -0.012}))), bit(-1));
 }
 
-// Reference: many points along the wall, within reach of the outline or inside it, by distances in long double.
+// Reference: many points along the wall, within reach of the outline or inside it, with distances in long double.
 TEST(Sectors, AgreeWithPointsAlongTheWall) {
   const Footprint outline = disc();
   int pressed = 0;
@@ -128,11 +128,11 @@ TEST(Sectors, AgreeWithPointsAlongTheWall) {
     std::uint32_t expected = 0, border = 0;
     for (int i = 0; i <= 4000; ++i) {
       const glm::dvec2 p = base::rotate(-X.yaw, w.a + i / 4000.0 * (w.b - w.a) - glm::dvec2{X.x, X.y});
-      double depth = HUGE_VAL;  // [m] smallest distance inside all sides: negative outside
+      double depth = HUGE_VAL;  // [m] smallest distance inside all sides; negative outside
       for (const FootprintEdge& e : outline.edges)
         depth = std::min(depth, base::cross(e.b - e.a, p - e.a) / length(e.b - e.a));
       const double sector = (base::wrap_angle(std::atan2(p.y, p.x)) + (p.y < 0.0 ? 2.0 * M_PI : 0.0)) * 16.0 / M_PI;
-      // Points at the limit of the reach or of the sector are skipped.
+      // Skips points at the limit of the reach or of the sector.
       const bool doubtful = std::abs(depth + kContactDistance) < 1e-4 || std::abs(sector - std::round(sector)) < 0.01;
       if (depth > -kContactDistance - 1e-4) (doubtful ? border : expected) |= bit(static_cast<int>(sector));
       if (doubtful) border |= bit(static_cast<int>(std::round(sector))) | bit(static_cast<int>(std::round(sector)) - 1);
@@ -145,8 +145,8 @@ TEST(Sectors, AgreeWithPointsAlongTheWall) {
   EXPECT_GT(pressed, 300) << "the walls should touch something";
 }
 
-/// Random pairs of discs and squares of all sizes: the tests that save work agree with those that they save.
-TEST(Sectors, QuickTestsAgreeWithWholeOnes) {
+/// Random pairs of discs and squares of all sizes: the quick tests must agree with the full tests that they replace.
+TEST(Sectors, QuickTestsAgreeWithFullTests) {
   int deep = 0, fewer = 0;
   for (std::uint32_t k = 0; k < 20'000; ++k) {
     const auto u = base::random_uniform({.seed = 4, .a = k}, 0), v = base::random_uniform({.seed = 4, .a = k}, 1);

@@ -1,4 +1,4 @@
-// The distance at which movers stop, and their contact sectors.
+// Stopping distances and contact sectors of movers.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ double gap_to(const world::World& world, const Pose& X_WM, const world::Mover& m
   return gap;
 }
 
-TEST(Contact, ARobotStopsWithinHalfAMillimetreOfAnyObstacle) {
+TEST(Contact, RobotStopsWithinHalfAMillimetreOfAnyObstacle) {
   for (std::uint32_t k = 0; k < 60; ++k) {
     const auto u = base::random_uniform({.seed = 31, .stream = base::RandomStream::placement, .a = k}, 0);
     world::World world = scenes::boxed_world(2, 2);
@@ -52,14 +52,14 @@ TEST(Contact, ARobotStopsWithinHalfAMillimetreOfAnyObstacle) {
   }
 }
 
-TEST(Contact, IsFeltWhereItPresses) {
+TEST(Contact, SectorsFaceTheWall) {
   for (const auto& [yaw, sectors] :
        {std::pair{0.0, sector_bit(0) | sector_bit(-1)}, {M_PI / 2, sector_bit(7) | sector_bit(8)}}) {
     world::World world = scenes::empty_world();
     scenes::add_wall(world, {0.5, -1}, {0.5, 1});
     scenes::add_create(world, {0, 0, 0, 0}).drive = world::Drive::omni;
     Fleet fleet(world);
-    // Drives with the facing side towards the wall; contact sectors are in the robot's frame.
+    // Drives towards the wall with the side to test in front; contact sectors are in the robot's frame.
     const_cast<world::Mover&>(world.movers[0]).X_WM.yaw = -yaw;
     Fleet turned(world);
     drive(turned, {{0.5 * std::cos(yaw), 0.5 * std::sin(yaw), 0}}, 20);
@@ -68,7 +68,7 @@ TEST(Contact, IsFeltWhereItPresses) {
   }
 }
 
-TEST(Contact, StaysWhileItTouchesAndEndsWhenItLeaves) {
+TEST(Contact, LastsWhileTouchingAndEndsOnLeaving) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.5, -1}, {0.5, 1});
   scenes::add_create(world, {0, 0, 0, 0});
@@ -86,7 +86,7 @@ TEST(Contact, StaysWhileItTouchesAndEndsWhenItLeaves) {
   EXPECT_EQ(fleet.contacts()[0], 0);
 }
 
-TEST(Contact, PassingByIsNone) {
+TEST(Contact, PassingByDoesNotCount) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {-5, 0.2005}, {5, 0.2005});
   scenes::add_square(world, {0, 0, 0, 0});
@@ -96,7 +96,7 @@ TEST(Contact, PassingByIsNone) {
   EXPECT_EQ(fleet.contacts()[0], 0);
 }
 
-TEST(Contact, BothRobotsFeelAContact) {
+TEST(Contact, IsReportedByBothRobots) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {0, 0, 0, M_PI});  // with its back to the other
   scenes::add_square(world, {1, 0, 0, M_PI});
@@ -113,7 +113,7 @@ TEST(Contact, BothRobotsFeelAContact) {
   EXPECT_EQ(fleet.reports()[0].contact_mask & (sector_bit(15) | sector_bit(16)), 0u) << "released on that side";
 }
 
-TEST(Contact, ARoundRobotThatPressesCanTurnWhateverSideItPressesWith) {
+TEST(Contact, RoundRobotCanTurnWhicheverSideTouches) {
   for (int k = 0; k < 32; ++k) {
     world::World world = scenes::empty_world();
     scenes::add_wall(world, {0.5, -1}, {0.5, 1});
@@ -131,7 +131,7 @@ TEST(Contact, ARoundRobotThatPressesCanTurnWhateverSideItPressesWith) {
   }
 }
 
-TEST(Contact, AccelerationsLimitDrivingButNotBeingStopped) {
+TEST(Contact, AccelerationsLimitDrivingButNotStopping) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.5, -1}, {0.5, 1});
   scenes::add_create(world, {0, 0, 0, 0}).max_acceleration = 1.0;
@@ -149,7 +149,7 @@ TEST(Contact, AccelerationsLimitDrivingButNotBeingStopped) {
   EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.forward, -0.1) << "and leaves from standing";
 }
 
-TEST(Contact, TheActuatorModelComesFirst) {
+TEST(Contact, ActuatorModelIsAppliedFirst) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_create(world, {0, 0, 0, 0});
   mover.track = 0.258;
@@ -159,7 +159,7 @@ TEST(Contact, TheActuatorModelComesFirst) {
   EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.turn, 0.2);
 }
 
-TEST(Contact, ARobotThatIsToldPressesOnVirtualThings) {
+TEST(Contact, ReportedRobotTouchesVirtualObjects) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.5, -1}, {0.5, 1});
   scenes::add_create(world, {0, 0, 0, 0});
@@ -180,7 +180,7 @@ TEST(Contact, ARobotThatIsToldPressesOnVirtualThings) {
   EXPECT_EQ(fleet.predict(5 * kTick)[1].contact_mask, 0u);
 }
 
-TEST(Contact, AReportedContactOfARealBumperStays) {
+TEST(Contact, ReportedContactOfARealBumperIsKept) {
   world::World world = scenes::empty_world();
   scenes::add_create(world, {0, 0, 0, 0});
   Fleet fleet(world);
@@ -196,7 +196,7 @@ TEST(Contact, AReportedContactOfARealBumperStays) {
       << "beside what the virtual world adds";
 }
 
-TEST(Contact, RobotsThatAreToldPressOnEachOther) {
+TEST(Contact, ReportedRobotsTouchEachOther) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {0, 0, 0, 0});
   scenes::add_square(world, {5, 0, 0, 0});

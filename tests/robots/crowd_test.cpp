@@ -26,7 +26,7 @@ world::World crowd() {
   world::World world = scenes::empty_world();
   scenes::add_bitmap(world, scenes::cave(60, 60, 3), 0.2);
   scenes::add_wall(world, {3, 3}, {9, 8.5});
-  // On a lattice without contacts.
+  // Starts on a lattice without contacts.
   for (int i = 0; i < 22 * 22; ++i) {
     const Pose X{0.6 + 0.5 * (i % 22), 0.6 + 0.5 * (i / 22), 0, 0.1 * i};
     world::World trial = world;
@@ -60,7 +60,7 @@ std::vector<Twist> random_commands(std::size_t count, int tick) {
   return commands;
 }
 
-// By signed areas in long double, all pairs: independent of the code under test.
+// Signed areas in long double for all pairs, independent of the code under test.
 bool strictly_cross(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const auto side = [](glm::dvec2 p, glm::dvec2 q, glm::dvec2 r) {
     return (static_cast<long double>(q.x) - p.x) * (static_cast<long double>(r.y) - p.y) -
@@ -85,7 +85,7 @@ int crossings(const world::World& world, std::span<const Report> reports) {
   return count;
 }
 
-TEST(Crowd, NothingEverCrossesAnything) {
+TEST(Crowd, NothingEverOverlaps) {
   const world::World world = crowd();
   ASSERT_GT(world.movers.size(), 60u);
   Fleet fleet(world);
@@ -103,8 +103,8 @@ TEST(Crowd, NothingEverCrossesAnything) {
   EXPECT_GT(travelled, ticks / 3.0);
 }
 
-/// The discs that a fleet keeps between ticks change nothing.
-TEST(Crowd, MovesAsAFleetMadeAnewWould) {
+/// Free discs kept between ticks must not change results.
+TEST(Crowd, MovesLikeANewlyBuiltFleet) {
   const world::World world = crowd();
   Fleet fleet(world);
   for (int tick = 0; tick < (instrumented() ? 30 : 200); ++tick) {
@@ -134,13 +134,13 @@ std::uint64_t hash_of_run(const world::World& world, int ticks) {
   return hash;
 }
 
-TEST(Crowd, TheSameRunAgain) {
+TEST(Crowd, RunIsReproducible) {
   const world::World world = crowd();
   const int ticks = instrumented() ? 100 : 300;
   EXPECT_EQ(hash_of_run(world, ticks), hash_of_run(world, ticks));
 }
 
-TEST(Crowd, AFixedRunHasAFixedHash) { EXPECT_EQ(base::hash_hex(hash_of_run(crowd(), 200)), "54c08826eb08614a"); }
+TEST(Crowd, RunHasAFixedHash) { EXPECT_EQ(base::hash_hex(hash_of_run(crowd(), 200)), "54c08826eb08614a"); }
 
 std::vector<Twist> commands_by_id(const world::World& world, int tick) {
   const std::vector<Twist> by_id = random_commands(world.movers.size() + 1, tick);
@@ -149,8 +149,8 @@ std::vector<Twist> commands_by_id(const world::World& world, int tick) {
   return commands;
 }
 
-/// Both fleets get the same commands for `ticks`; the states of each robot, by id, must be bitwise equal.
-/// @return ticks with contact of all robots
+/// Runs both fleets with the same commands for `ticks`, and expects bitwise equal states of each robot, by id.
+/// @return number of ticks with contact, over all robots
 int expect_same(const world::World& world, Fleet& fleet, const world::World& other_world, Fleet& other, int ticks) {
   std::map<std::uint32_t, std::uint32_t> other_row;
   for (std::uint32_t row = 0; row < other_world.movers.size(); ++row) other_row[other_world.movers[row].id] = row;
@@ -171,7 +171,7 @@ int expect_same(const world::World& world, Fleet& fleet, const world::World& oth
   return contacts;
 }
 
-/// Too many robots for the room: they press on each other from all sides.
+/// Too many robots for the room: they push each other from all sides.
 world::World throng(int side) {
   world::World world = scenes::boxed_world(0.45 * side, 0.45 * side);
   for (int i = 0; i < side * side; ++i) {
@@ -183,8 +183,8 @@ world::World throng(int side) {
   return world;
 }
 
-/// Nor does their size, which is that of most movers.
-TEST(Crowd, MoversFarAwayChangeNothing) {
+/// The number of distant movers must not change results either, nor their size, which sets the grid's cells.
+TEST(Crowd, DistantMoversChangeNothing) {
   const world::World world = crowd();
   world::World more = world;
   for (int i = 0; i < 600; ++i) scenes::add_mover(more, {1000.0 + 5.0 * i, 0, 0, 0}, scenes::rectangle({}, 2.0, 2.0));
@@ -193,7 +193,7 @@ TEST(Crowd, MoversFarAwayChangeNothing) {
   EXPECT_GT(expect_same(world, fleet, more, other, ticks), 2 * ticks);
 }
 
-TEST(Crowd, TheOrderOfRowsChangesNothing) {
+TEST(Crowd, OrderOfRowsChangesNothing) {
   for (const world::World& world : {crowd(), throng(6)}) {
     for (std::uint32_t k = 1; k <= (instrumented() ? 1u : 3u); ++k) {
       world::World mixed = world;
@@ -220,9 +220,9 @@ TEST(Crowd, ThreadsChangeNothing) {
   }
 }
 
-/// Wider and faster robots elsewhere change the search for neighbours, not its result. An equal number of small ones
-/// keeps the cells of the walls' index, and thus the order of sums over walls.
-TEST(Crowd, ACrowdFarAwayChangesNothing) {
+/// Wider and faster robots elsewhere change the search for neighbours, but not its result. The same number of small
+/// ones keeps the cells of the walls' index, and so the order of sums over walls.
+TEST(Crowd, DistantCrowdChangesNothing) {
   const world::World alone = throng(7);
   world::World together = alone;
   for (int i = 0; i < 9; ++i) {
@@ -233,7 +233,7 @@ TEST(Crowd, ACrowdFarAwayChangesNothing) {
   EXPECT_GT(expect_same(alone, one, together, two, 200), 100);
 }
 
-TEST(Crowd, NothingCrossesAnythingInAThrong) {
+TEST(Crowd, NothingOverlapsInAThrong) {
   const world::World world = throng(7);
   base::ThreadPool thread_pool(2);
   Fleet fleet(world, &thread_pool);
@@ -246,7 +246,7 @@ TEST(Crowd, NothingCrossesAnythingInAThrong) {
   EXPECT_GT(travelled, 5.0);
 }
 
-/// Fast enough to pass through each other in one tick: 1 m a tick, 0.4 m wide.
+/// Fast enough to pass through each other in one tick: 1 m per tick, 0.4 m wide.
 TEST(Crowd, FastRobotsDoNotPassThroughEachOther) {
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
     world::World world = scenes::empty_world();
@@ -261,7 +261,7 @@ TEST(Crowd, FastRobotsDoNotPassThroughEachOther) {
   }
 }
 
-TEST(Crowd, OfTwoThatWantOneGapTheSmallerIdGoesFirst) {
+TEST(Crowd, SmallerIdGoesFirstThroughAGap) {
   for (const bool swapped : {false, true}) {
     world::World world = scenes::empty_world();
     scenes::add_wall(world, {0, 0.22}, {0, 3});
@@ -270,7 +270,7 @@ TEST(Crowd, OfTwoThatWantOneGapTheSmallerIdGoesFirst) {
     scenes::add_square(world, {-0.30, 0.45, 0, 0});
     for (world::Mover& mover : world.movers) mover.drive = world::Drive::omni, mover.max_forward = 5.0;
     if (swapped) std::swap(world.movers[0].id, world.movers[1].id);
-    // Both would be at the same place after this tick, one straight on, one from the side.
+    // Both would be at the same place after this tick: one straight ahead, one from the side.
     Fleet fleet(world);
     fleet.move(std::vector<Twist>{{4.5, 0, 0}, {0.0, -2.0, 0}}, kTick);
     const double straight = fleet.reports()[0].X_WM.x, side = fleet.reports()[1].X_WM.y;
@@ -285,8 +285,8 @@ TEST(Crowd, OfTwoThatWantOneGapTheSmallerIdGoesFirst) {
   }
 }
 
-/// A robot close behind a moving one is not stopped by the other's previous place, whichever has the smaller id.
-TEST(Crowd, ACloseFollowerIsNotStopped) {
+/// A robot close behind a moving one is not stopped by the other's previous place, whichever id is smaller.
+TEST(Crowd, CloseFollowerIsNotStopped) {
   for (const bool swapped : {false, true}) {
     world::World world = scenes::empty_world();
     for (int i = 0; i < 3; ++i) scenes::add_square(world, {-0.41 * i, 0, 0, 0});
@@ -300,8 +300,8 @@ TEST(Crowd, ACloseFollowerIsNotStopped) {
   }
 }
 
-/// Many robots that push towards one place and go anywhere when stopped: no robot waits for ever.
-TEST(Crowd, AllWhoPushThroughAGapGetThrough) {
+/// Many robots push towards one place and take any direction when stopped: every robot gets through.
+TEST(Crowd, AllRobotsGetThroughAGap) {
   world::World world = scenes::boxed_world(12, 6, {-6, -3});
   scenes::add_wall(world, {0, 0.4}, {0, 3});
   scenes::add_wall(world, {0, -0.4}, {0, -3});
@@ -326,7 +326,7 @@ TEST(Crowd, AllWhoPushThroughAGapGetThrough) {
   EXPECT_EQ(through, 20);
 }
 
-TEST(Crowd, ARobotFarAwayChangesNothing) {
+TEST(Crowd, DistantRobotChangesNothing) {
   world::World alone = scenes::boxed_world(6, 6), together = alone;
   scenes::add_create(alone, {3, 3, 0, 0});
   scenes::add_create(together, {3, 3, 0, 0});

@@ -33,7 +33,7 @@ Driven run(const world::World& world, const Twist& command, int ticks, std::size
   return result;
 }
 
-TEST(Fleet, StartsAtRestWhereTheWorldSays) {
+TEST(Fleet, StartsAtRestAtTheLoadPoses) {
   world::World world = scenes::boxed_world(4, 4);
   scenes::add_square(world, {2, 2, 0, 1});
   const Fleet fleet(world);
@@ -80,7 +80,7 @@ TEST(Fleet, StopsInACorner) {
   EXPECT_GT(r.report.X_WM.x, 3.75);
 }
 
-TEST(Fleet, MeetsTheEndOfAWall) {
+TEST(Fleet, StopsAtTheEndOfAWall) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {1, 0}, {3, 0});  // its end points at the robot
   scenes::add_square(world, {0, 0, 0, 0});
@@ -89,7 +89,7 @@ TEST(Fleet, MeetsTheEndOfAWall) {
   EXPECT_GT(r.contacts, 0);
 }
 
-TEST(Fleet, PassesBesideTheEndOfAWall) {
+TEST(Fleet, PassesTheEndOfAWall) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {1, 0.201}, {1, 3});
   scenes::add_square(world, {0, 0, 0, 0});
@@ -103,7 +103,7 @@ TEST(Fleet, PassesUnderABridge) {
   EXPECT_NEAR(run(world, {0.5, 0, 0}, 50).report.X_WM.x, 2.5, 1e-9);
 }
 
-TEST(Fleet, PassesWhatDoesNotStopRobots) {
+TEST(Fleet, PassesThroughNonObstacles) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {1, -1}, {1, 1});
   world.walls[0].stops_robots = false;
@@ -112,7 +112,7 @@ TEST(Fleet, PassesWhatDoesNotStopRobots) {
 }
 
 TEST(Fleet, DoesNotSlipBetweenDiagonalCells) {
-  // Two solid cells that share one corner: no gap, although neither has a wall across the way.
+  // Two solid cells that share one corner leave no gap, although neither has a wall across the path.
   world::World world = scenes::empty_world();
   scenes::add_bitmap(world, {{false, true}, {true, false}}, 1.0);
   scenes::add_create(world, {0.4, 0.4, 0, M_PI / 4});
@@ -124,7 +124,7 @@ TEST(Fleet, DoesNotSlipBetweenDiagonalCells) {
 TEST(Fleet, DoesNotJumpAThinWallAtSpeed) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {1, -1}, {1, 1});
-  scenes::add_square(world, {0, 0, 0, 0}).max_forward = 100.0;  // 10 m a tick
+  scenes::add_square(world, {0, 0, 0, 0}).max_forward = 100.0;  // 10 m per tick
   const Driven r = run(world, {100, 0, 0}, 5);
   EXPECT_LT(r.report.X_WM.x, 0.8);
   EXPECT_GT(r.report.X_WM.x, 0.7995);
@@ -159,14 +159,14 @@ TEST(Fleet, FastRobotsDoNotJumpEachOther) {
   EXPECT_GT(fleet.reports()[1].X_WM.x - fleet.reports()[0].X_WM.x, 0.4);
 }
 
-TEST(Fleet, AStandingRobotReportsNoContact) {
+TEST(Fleet, RobotAtRestReportsNoContact) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {0, 0, 0, 0});
   scenes::add_square(world, {0.41, 0, 0, 0});
   EXPECT_EQ(run(world, {}, 3).contacts, 0);
 }
 
-TEST(Fleet, BlockedAheadStillTurnsWhereItCan) {
+TEST(Fleet, BlockedAheadStillTurnsWherePossible) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.30, -1}, {0.30, 1});
   scenes::add_create(world, {0, 0, 0, 0});
@@ -175,7 +175,7 @@ TEST(Fleet, BlockedAheadStillTurnsWhereItCan) {
   EXPECT_GT(r.contacts, 0);
 }
 
-TEST(Fleet, ASquareWedgedInASlotCannotTurn) {
+TEST(Fleet, SquareWedgedInASlotCannotTurn) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {-3, 0.21}, {3, 0.21});
   scenes::add_wall(world, {-3, -0.21}, {3, -0.21});
@@ -185,7 +185,7 @@ TEST(Fleet, ASquareWedgedInASlotCannotTurn) {
   EXPECT_GT(r.contacts, 10);
 }
 
-TEST(Fleet, ACarDoesNotTurnInPlace) {
+TEST(Fleet, CarDoesNotTurnInPlace) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.2001, -1}, {0.2001, 1});
   scenes::add_square(world, {0, 0, 0, 0}).drive = world::Drive::car;
@@ -194,7 +194,7 @@ TEST(Fleet, ACarDoesNotTurnInPlace) {
   EXPECT_EQ(r.contacts, 10);
 }
 
-TEST(Fleet, OverlappingStartsComeApart) {
+TEST(Fleet, OverlappingStartsSeparate) {
   for (const double offset : {0.0, 0.1, 0.35}) {
     world::World world = scenes::empty_world();
     scenes::add_square(world, {0, 0, 0, 0});
@@ -207,7 +207,7 @@ TEST(Fleet, OverlappingStartsComeApart) {
   }
 }
 
-TEST(Fleet, AStartAcrossAWallLeavesToTheOriginSideOnly) {
+TEST(Fleet, StartAcrossAWallLeavesOnlyToTheOriginSide) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.1, -1}, {0.1, 1});
   scenes::add_square(world, {0, 0, 0, 0});
@@ -215,7 +215,7 @@ TEST(Fleet, AStartAcrossAWallLeavesToTheOriginSideOnly) {
   EXPECT_NEAR(run(world, {0.5, 0, 0}, 20).report.X_WM.x, 0.0, 1e-9) << "never through";
 }
 
-TEST(Fleet, ARobotThatOverlapsOneWallIsStillStoppedByAnother) {
+TEST(Fleet, RobotThatOverlapsOneWallIsStillStoppedByAnother) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.1, -1}, {0.1, 1});
   scenes::add_wall(world, {-0.6, -1}, {-0.6, 1});
@@ -223,7 +223,7 @@ TEST(Fleet, ARobotThatOverlapsOneWallIsStillStoppedByAnother) {
   EXPECT_GT(run(world, {-0.5, 0, 0}, 20).report.X_WM.x, -0.4);
 }
 
-TEST(Fleet, TheSame100KmAway) {
+TEST(Fleet, IsTheSame100KmAway) {
   world::World near = scenes::boxed_world(4, 4), far = scenes::boxed_world(4, 4, {1e5, -1e5});
   scenes::add_create(near, {2, 2, 0, 0.7});
   scenes::add_create(far, {1e5 + 2, -1e5 + 2, 0, 0.7});
@@ -233,7 +233,7 @@ TEST(Fleet, TheSame100KmAway) {
   EXPECT_EQ(a.contacts, b.contacts);
 }
 
-TEST(Fleet, ReportsNewestWins) {
+TEST(Fleet, NewestReportWins) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {});
   Fleet fleet(world);
@@ -244,8 +244,9 @@ TEST(Fleet, ReportsNewestWins) {
   EXPECT_EQ(fleet.reports()[0].X_WM.x, 3.0);
 }
 
-/// A report has the robot above a kerb, or below the floor: its height stays that at load, for contacts as for sensors.
-TEST(Fleet, HeightsAreThoseAtLoadWhateverReportsSay) {
+/// Reports place the robot above a kerb, or below the floor. Its height stays that at load, for contacts as for
+/// sensors.
+TEST(Fleet, HeightsStayAtLoadValuesForAnyReport) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.9, -1}, {0.9, 1}, 0.0, 0.08);  // a kerb
   scenes::add_square(world, {});
@@ -261,7 +262,7 @@ TEST(Fleet, HeightsAreThoseAtLoadWhateverReportsSay) {
   }
 }
 
-TEST(Fleet, AnAbsentRobotTouchesNoOther) {
+TEST(Fleet, AbsentRobotTouchesNoOther) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {});
   scenes::add_square(world, {2, 0, 0, 0});
@@ -278,7 +279,7 @@ TEST(Fleet, AnAbsentRobotTouchesNoOther) {
 }
 
 /// A robot drives through the place of an absent one.
-TEST(Fleet, AnAbsentRobotStopsNoOther) {
+TEST(Fleet, AbsentRobotStopsNoOther) {
   for (const bool gone : {false, true}) {
     world::World world = scenes::empty_world();
     scenes::add_square(world, {});
@@ -291,7 +292,7 @@ TEST(Fleet, AnAbsentRobotStopsNoOther) {
   }
 }
 
-TEST(Fleet, PredictsAlongTheArcForAWhile) {
+TEST(Fleet, PredictsAlongTheArcForALimitedTime) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {});
   Fleet fleet(world);
@@ -305,8 +306,8 @@ TEST(Fleet, PredictsAlongTheArcForAWhile) {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-/// 10 km/s with ticks of a second: a free way is not tested at all.
-TEST(Fleet, ALongFreeWayIsNotTested) {
+/// 10 km/s with ticks of one second: a free path is not tested at all.
+TEST(Fleet, LongFreePathIsNotTested) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {-1, 5}, {20'000, 5});
   scenes::add_square(world, {0, 0, 0, 0}).max_forward = 1e4;
@@ -318,8 +319,8 @@ TEST(Fleet, ALongFreeWayIsNotTested) {
   EXPECT_EQ(fleet.contacts()[0], 0);
 }
 
-/// Walls and robots at the end of a long way stop it, near them step by step.
-TEST(Fleet, ALongWayEndsAtWhatIsInIt) {
+/// Walls and robots at the end of a long path stop the mover. Near them it is tested step by step.
+TEST(Fleet, LongPathEndsAtAnObstacle) {
   for (const bool robot : {false, true}) {
     world::World world = scenes::empty_world();
     scenes::add_square(world, {0, 0, 0, 0}).max_forward = 1e4;
@@ -336,8 +337,8 @@ TEST(Fleet, ALongWayEndsAtWhatIsInIt) {
   }
 }
 
-/// The bound of work: a mover that passes a wall closely for kilometres ends its tick after 16 384 substeps.
-TEST(Fleet, ALongWayBesideAWallEndsAtTheBoundOfWork) {
+/// The bound of work: a mover that passes close to a wall for kilometres ends its tick after 16384 substeps.
+TEST(Fleet, LongPathAlongAWallEndsAtTheBoundOfWork) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {-1, 0.21}, {20'000, 0.21});
   scenes::add_square(world, {0, 0, 0, 0}).max_forward = 1e4;
@@ -349,8 +350,8 @@ TEST(Fleet, ALongWayBesideAWallEndsAtTheBoundOfWork) {
   EXPECT_LE(fleet.steps_tested(), Fleet::kRounds * 16'384u);
 }
 
-/// A million radians a second: in place, the disc of the body is free or not.
-TEST(Fleet, ASpinInTheOpenIsNotTested) {
+/// A million radians per second: a spin in place is free exactly if the disc of the body is.
+TEST(Fleet, SpinInTheOpenIsNotTested) {
   world::World world = scenes::boxed_world(2, 2);
   scenes::add_square(world, {1, 1, 0, 0}).max_turn = 1e6;
   Fleet fleet(world);
@@ -359,8 +360,8 @@ TEST(Fleet, ASpinInTheOpenIsNotTested) {
   EXPECT_NEAR(std::abs(base::wrap_angle(fleet.reports()[0].X_WM.yaw - base::wrap_angle(1e6))), 0.0, 1e-9);
 }
 
-/// Just below and above 1 024 substeps, where ways are tested in pieces, the way is the same but for rounding.
-TEST(Fleet, PiecesOfAWayAreTheWay) {
+/// Just below and above 1024 substeps, where testing in pieces begins, the path is the same except for rounding.
+TEST(Fleet, PathInPiecesEqualsWholePath) {
   for (const double speed : {51.0, 51.3, 60.0, 200.0}) {
     world::World world = scenes::empty_world();
     scenes::add_wall(world, {-1, 0.4}, {300, 0.4});

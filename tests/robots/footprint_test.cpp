@@ -41,7 +41,7 @@ TEST(Footprint, WallCaseByCase) {
 }
 
 TEST(Footprint, Heights) {
-  const Square square({0, 0, 0.5, 0});  // at z = 0.5, 0.1 high
+  const Square square({0, 0, 0.5, 0});  // at z = 0.5, 0.1 m high
   EXPECT_FALSE(touches_wall(square, {0, -1}, {0, 1}, 0.6, 1)) << "a bridge exactly above";
   EXPECT_TRUE(touches_wall(square, {0, -1}, {0, 1}, 0.59, 1));
   EXPECT_FALSE(touches_wall(square, {0, -1}, {0, 1}, 0, 0.5)) << "a kerb exactly below";
@@ -64,7 +64,7 @@ TEST(Footprint, PairsCaseByCase) {
   EXPECT_FALSE(touches(square.placed, Square({0, 0, 0.1, 0}).placed)) << "one on top of the other";
 }
 
-TEST(Footprint, TheSame100KmAway) {
+TEST(Footprint, IsTheSame100KmAway) {
   EXPECT_TRUE(touches_wall(Square({1e5, 1e5, 0, 0}), {1e5 + 0.2 - 1e-9, 1e5 - 1}, {1e5 + 0.2 - 1e-9, 1e5 + 1}));
   EXPECT_FALSE(touches_wall(Square({1e5, 1e5, 0, 0}), {1e5 + 0.2 + 1e-9, 1e5 - 1}, {1e5 + 0.2 + 1e-9, 1e5 + 1}));
 }
@@ -79,7 +79,7 @@ TEST(Footprint, StepIsAQuarterOfTheInradius) {
   EXPECT_NEAR(footprint_of(mover).step, std::hypot(1.2, 0.2) / 16, 1e-12) << "the origin is outside";
 }
 
-TEST(Footprint, EdgesThatStopNoRobotAreLeftOut) {
+TEST(Footprint, EdgesThatStopNoRobotAreOmitted) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   for (world::Segment& s : mover.body) s.stops_robots = false;

@@ -26,20 +26,20 @@ TEST(Advance, TurnInPlace) { expect_pose(advance({1, 2, 0, 0}, {0, 0, 1}, 0.5), 
 TEST(Advance, Sideways) { expect_pose(advance({0, 0, 0, 0}, {0, 0.5, 0}, 2.0), {0, 1, 0, 0}); }
 
 TEST(Advance, QuarterCircle) {
-  // Radius v/w = 2 m: ends at (R sin, R (1 - cos)).
+  // Radius v/w = 2 m. The arc ends at (R sin, R (1 - cos)).
   expect_pose(advance({}, {1.0, 0, 0.5}, M_PI), {2, 2, 0, M_PI / 2});
 }
 
-TEST(Advance, FullCircleComesBack) { expect_pose(advance({5, 6, 0, 1}, {1, 0.3, 2}, M_PI), {5, 6, 0, 1}); }
+TEST(Advance, FullCircleReturnsToTheStart) { expect_pose(advance({5, 6, 0, 1}, {1, 0.3, 2}, M_PI), {5, 6, 0, 1}); }
 
-TEST(Advance, ManySmallStepsAreOneLarge) {
+TEST(Advance, ManySmallStepsEqualOneLargeStep) {
   Pose X{0.3, -0.2, 0, 2};
   for (int i = 0; i < 1000; ++i) X = advance(X, {0.4, -0.1, 0.7}, 0.01);
   expect_pose(X, advance({0.3, -0.2, 0, 2}, {0.4, -0.1, 0.7}, 10.0), 1e-11);
 }
 
 TEST(Advance, TinyTurnsAgreeWithTheStraightLine) {
-  // Around the threshold of the series.
+  // Near the threshold of the series.
   for (const double turn : {1e-9, 1.9e-4, 2.1e-4}) {
     const Pose X = advance({}, {1, 0, turn}, 1.0);
     EXPECT_NEAR(X.x, std::sin(turn) / turn, 1e-15) << turn;
@@ -53,9 +53,9 @@ TEST(Advance, YawIsWrapped) { EXPECT_LE(std::abs(advance({0, 0, 0, 3}, {0, 0, 1}
 
 base::Report at(std::int64_t time, const Pose& X_WM, const Twist& velocity) { return {0, time, X_WM, velocity, 0}; }
 
-/// A mover that nothing stops is on its arc at any part of the tick.
-/// Before and at its own time, within reach, and beyond: half a second.
-TEST(Extrapolate, FollowsTheTwistAsFarAsItReaches) {
+/// A mover that is not stopped is on its arc at any part of the tick. Covers times before and at its own, within reach,
+/// and beyond reach (half a second).
+TEST(Extrapolate, FollowsTheTwistUpToItsReach) {
   const base::Report known{.mover = 3, .time = 100, .X_WM = {1.0, 0.0, 0.1, 4.0 * M_PI}, .velocity = {2.0, 0.0, 0.0}};
   for (const std::int64_t time : {0, 100}) {
     EXPECT_EQ(extrapolate(known, time).X_WM.x, 1.0);
@@ -69,7 +69,7 @@ TEST(Extrapolate, FollowsTheTwistAsFarAsItReaches) {
   }
 }
 
-TEST(Interpolate, UnhinderedItIsOnItsArc) {
+TEST(Interpolate, UnhinderedMoverStaysOnItsArc) {
   const Twist velocities[] = {{0.7, 0, 0}, {0.7, 0, 1.5}, {0.4, -0.3, -2}, {0, 0, 3}, {-0.2, 0, 1e-9}, {1.0, 0, 50.0}};
   for (const Twist& v : velocities) {
     const Pose start{3, -4, 0.25, 2.5};
@@ -83,8 +83,8 @@ TEST(Interpolate, UnhinderedItIsOnItsArc) {
   }
 }
 
-/// Stopped or displaced: from the one pose to the other by the smaller turn, at constant speed.
-TEST(Interpolate, HinderedItIsOnTheArcBetweenItsPoses) {
+/// Stopped or displaced: moves from one pose to the other by the smaller turn, at constant speed.
+TEST(Interpolate, HinderedMoverIsOnTheArcBetweenItsPoses) {
   const base::Report before = at(0, {1, 2, 0, 3.0}, {0.5, 0, 0}), after = at(kTick, {0.98, 2.01, 0, -3.0}, {});
   expect_pose(interpolate(before, after, 0).X_WM, before.X_WM);
   expect_pose(interpolate(before, after, kTick - 1).X_WM, after.X_WM, 1e-8);
@@ -94,8 +94,8 @@ TEST(Interpolate, HinderedItIsOnTheArcBetweenItsPoses) {
   EXPECT_NEAR(half.velocity.turn, (2 * M_PI - 6.0) / 0.1, 1e-9);
 }
 
-/// Bitwise, whatever the reported velocity, and for any representation of the yaw.
-TEST(Interpolate, AStandingMoverStands) {
+/// Bitwise, for any reported velocity and any representation of the yaw.
+TEST(Interpolate, MoverAtRestStaysAtRest) {
   const base::Report before = at(0, {0.1, 0.2, 0.3, 7.0}, {}), after = at(kTick, before.X_WM, {0.3, 0, 0});
   const base::Report report = interpolate(before, after, kTick / 3);
   EXPECT_EQ(report.X_WM.x, 0.1);
@@ -105,7 +105,7 @@ TEST(Interpolate, AStandingMoverStands) {
 }
 
 /// Contacts change at ticks only.
-TEST(Interpolate, TouchIsAsItWasAtTheTickBefore) {
+TEST(Interpolate, ContactIsThatOfTheTickBefore) {
   base::Report before = at(0, {}, {}), after = at(kTick, {0.01, 0, 0, 0}, {});
   before.contact_mask = 5;
   after.contact_mask = 6;
@@ -135,12 +135,12 @@ TEST(LimitKinematics, OmniKeepsItsDirection) {
   EXPECT_EQ(v.turn, -0.5);
 }
 
-TEST(LimitKinematics, CarTurnsNoSharperThanItSteers) {
+TEST(LimitKinematics, CarTurnIsLimitedBySteering) {
   EXPECT_EQ(limit_kinematics(mover(world::Drive::car), {0, 0, 1}).turn, 0.0);
   EXPECT_NEAR(limit_kinematics(mover(world::Drive::car), {-0.1, 0, 1}).turn, 0.1 * std::tan(kMaxSteer) / 0.25, 1e-15);
 }
 
-TEST(LimitKinematics, ASkidDriveGoesWhereADifferentialOneGoes) {
+TEST(LimitKinematics, SkidDriveMovesLikeADifferentialDrive) {
   const Twist v = limit_kinematics(mover(world::Drive::skid), {-3, 0.4, 7});
   EXPECT_EQ(v.forward, -0.5);
   EXPECT_EQ(v.left, 0.0);
@@ -154,13 +154,13 @@ world::Mover lazy(world::Drive drive) {
   return m;
 }
 
-TEST(LimitAcceleration, WithoutLimitsWhatIsWantedIsHad) {
+TEST(LimitAcceleration, WithoutLimitsReturnsTheWantedTwist) {
   const Twist v = limit_acceleration(mover(world::Drive::differential), {0.1, 0, 0.3}, {0.37, 0, -0.9}, 0.1);
   EXPECT_EQ(v.forward, 0.37);
   EXPECT_EQ(v.turn, -0.9);
 }
 
-TEST(LimitAcceleration, SpeedsUpAndSlowsDownByNoMoreThanItMay) {
+TEST(LimitAcceleration, LimitsSpeedingUpAndSlowingDown) {
   const world::Mover m = lazy(world::Drive::differential);
   EXPECT_DOUBLE_EQ(limit_acceleration(m, {}, {0.5, 0, 1.0}, 0.1).forward, 0.2);
   EXPECT_DOUBLE_EQ(limit_acceleration(m, {}, {0.5, 0, 1.0}, 0.1).turn, 0.4);
@@ -171,23 +171,23 @@ TEST(LimitAcceleration, SpeedsUpAndSlowsDownByNoMoreThanItMay) {
   EXPECT_EQ(limit_acceleration(m, {0, 0, 0.9}, {0, 0, 0.55}, 0.1).turn, 0.55);
 }
 
-TEST(LimitAcceleration, AnOmniChangesItsVelocityInOneDirection) {
+TEST(LimitAcceleration, OmniChangesItsVelocityInOneDirection) {
   const Twist v = limit_acceleration(lazy(world::Drive::omni), {0.3, 0, 0}, {0, 0.4, 0}, 0.1);
   EXPECT_NEAR(v.forward, 0.3 - 0.2 * 0.6, 1e-15);
   EXPECT_NEAR(v.left, 0.2 * 0.8, 1e-15);
 }
 
-TEST(LimitAcceleration, ACarThatStandsDoesNotTurn) {
+TEST(LimitAcceleration, CarAtRestDoesNotTurn) {
   const Twist v = limit_acceleration(lazy(world::Drive::car), {0.1, 0, 0.2}, {0, 0, 0}, 0.1);
   EXPECT_EQ(v.forward, 0.0);
   EXPECT_EQ(v.turn, 0.0) << "its steering allows no turn without speed";
 }
 
-TEST(LimitAcceleration, ReportsThatSayTooMuchAreFollowedBackAtOnce) {
+TEST(LimitAcceleration, ReportsBeyondTheLimitsAreFollowedBackAtOnce) {
   EXPECT_EQ(limit_acceleration(lazy(world::Drive::differential), {5.0, 0.3, 0}, {0.5, 0, 0}, 0.1).forward, 0.5);
 }
 
-TEST(LimitKinematics, CommandsThatAreNotFiniteAreZero) {
+TEST(LimitKinematics, NonFiniteCommandsBecomeZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const auto drive : {world::Drive::differential, world::Drive::omni, world::Drive::car}) {
     const Twist v = limit_kinematics(mover(drive), {nan, inf, -inf});

@@ -72,7 +72,7 @@ base::Bytes without(std::size_t at) {
   return bytes;
 }
 
-TEST(CreateStream, GoesOnBehindDamage) {
+TEST(CreateStream, RecoversAfterDamage) {
   struct Case {
     base::Bytes damage;
     std::uint64_t wrong_checksums;
@@ -88,7 +88,7 @@ TEST(CreateStream, GoesOnBehindDamage) {
   for (std::size_t at = 0; at < kFrame.size(); ++at) cases.push_back({without(at), 0, "a lost byte"});
   for (const Case& c : cases) {
     CreateStream stream;
-    // The byte after a frame with a lost one may complete it by its length alone.
+    // The byte after a frame that lost a byte may complete it by length alone.
     const std::size_t frames = taken(stream, {kFrame, c.damage, kFrame, kFrame}).size();
     EXPECT_EQ(frames, 3u) << c.why;
     EXPECT_EQ(stream.frames(), frames);
@@ -97,14 +97,14 @@ TEST(CreateStream, GoesOnBehindDamage) {
   }
 }
 
-/// A lost last byte: the next frame's header stands in for the checksum, and that frame must not be lost with it.
+/// The last byte is lost: the next frame's header takes the place of the checksum, but that frame must not be lost.
 TEST(CreateStream, FindsTheFrameThatBeginsInABrokenOne) {
   CreateStream stream;
   EXPECT_EQ(taken(stream, {without(12), kFrame}).size(), 1u);
   EXPECT_EQ(stream.wrong_checksums(), 1u);
 }
 
-TEST(CreateStream, TakesAnyBytes) {
+TEST(CreateStream, AcceptsAnyBytes) {
   CreateStream stream;
   std::mt19937 random(7);
   std::uint64_t bytes = 0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kMilli = 1'000'000;
 
-/// A room of 6 m by 4 m with two robots of 0.3 m by 0.3 m.
+/// A 6 m by 4 m room with two robots of 0.3 m by 0.3 m.
 world::World room() {
   world::World world = scenes::boxed_world(6.0, 4.0, {-3.0, -2.0});
   for (const base::Pose& X_WM : {base::Pose{-2.0, 0.0, 0.0, 0.0}, base::Pose{2.0, 1.0, 0.0, M_PI / 2}})
@@ -24,7 +24,7 @@ struct BodyTest : testing::Test {
   RobotBody body{world, 0};
 };
 
-TEST_F(BodyTest, DrivesForTheTimeThatPassed) {
+TEST_F(BodyTest, DrivesForTheElapsedTime) {
   body.move({0.2, 0.0, 0.0}, 100 * kMilli);
   body.move({0.2, 0.0, 0.0}, 250 * kMilli);
   EXPECT_NEAR(body.state().X_WM.x, -2.0 + 0.2 * 0.25, 1e-12);
@@ -33,7 +33,7 @@ TEST_F(BodyTest, DrivesForTheTimeThatPassed) {
   EXPECT_NEAR(body.distance(), 0.05, 1e-12);
 }
 
-TEST_F(BodyTest, AProcessThatStoodStillDoesNotJump) {
+TEST_F(BodyTest, SuspendedProcessDoesNotJump) {
   body.move({0.2, 0.0, 0.0}, 60'000 * kMilli);
   EXPECT_NEAR(body.state().X_WM.x, -2.0 + 0.2 * 0.5, 1e-12);  // half a second
 }
@@ -59,8 +59,8 @@ TEST_F(BodyTest, FollowsARealRobot) {
   EXPECT_NEAR(body.pose_at(300 * kMilli).x, -2.225, 1e-9);
 }
 
-/// The other robot reports a pose in the way, and then is silent.
-TEST_F(BodyTest, ALongSilentRobotIsNoObstacle) {
+/// The other robot reports a pose in the way, then sends nothing more.
+TEST_F(BodyTest, LongSilentRobotIsNotAnObstacle) {
   for (const std::int64_t forget : {std::int64_t{0}, 2000 * kMilli}) {
     RobotBody one(world, 0, forget);
     one.move({}, 100 * kMilli);
@@ -76,38 +76,38 @@ TEST_F(BodyTest, ALongSilentRobotIsNoObstacle) {
   }
 }
 
-TEST_F(BodyTest, OthersAreWhereTheySayAndGoOnForHalfASecond) {
+TEST_F(BodyTest, OthersContinueFromTheirReportsForHalfASecond) {
   body.move({}, 100 * kMilli);
   body.update_other(1, {0.0, 1.0, 0.0, 0.0}, {0.4, 0.0, 0.0}, 100 * kMilli);
   EXPECT_EQ(body.state(1).X_WM.x, 0.0);
   for (int i = 2; i <= 20; ++i) body.move({}, i * 100 * kMilli);
   EXPECT_NEAR(body.state(1).X_WM.x, 0.4 * 0.4, 0.041);  // moves that end within the half second
   body.update_other(1, {1.5, 1.0, 0.0, 0.0}, {}, 2000 * kMilli);
-  EXPECT_EQ(body.state(1).X_WM.x, 1.5);  // the newest state counts
+  EXPECT_EQ(body.state(1).X_WM.x, 1.5);  // the newest state is used
 }
 
-TEST_F(BodyTest, OthersStopIt) {
+TEST_F(BodyTest, IsStoppedByOthers) {
   body.update_other(1, {-1.5, 0.0, 0.0, 0.0}, {}, 0);
   for (int i = 1; i <= 20; ++i) body.move({0.5, 0.0, 0.0}, i * 100 * kMilli);
   EXPECT_TRUE(body.contact());
   EXPECT_LT(body.state().X_WM.x, -1.5 - 0.29);
 }
 
-TEST_F(BodyTest, RemembersWhereItWas) {
+TEST_F(BodyTest, KeepsItsPastPoses) {
   for (int i = 1; i <= 10; ++i) body.move({0.2, 0.0, 0.0}, i * 100 * kMilli);
   EXPECT_NEAR(body.pose_at(350 * kMilli).x, -2.0 + 0.2 * 0.35, 1e-12);  // between two moves
-  EXPECT_NEAR(body.pose_at(400 * kMilli).x, -2.0 + 0.2 * 0.4, 1e-12);   // at one
+  EXPECT_NEAR(body.pose_at(400 * kMilli).x, -2.0 + 0.2 * 0.4, 1e-12);   // at a move
   EXPECT_EQ(body.pose_at(-5).x, -2.0);                                  // before the first
   EXPECT_EQ(body.pose_at(2000 * kMilli).x, body.state().X_WM.x);        // after the last
 }
 
-TEST_F(BodyTest, ForgetsWhatWasLongAgo) {
+TEST_F(BodyTest, DropsOldPoses) {
   for (int i = 1; i <= 1000; ++i) body.move({0.0, 0.0, 0.5}, i * kMilli);
   EXPECT_NEAR(body.pose_at(900 * kMilli).yaw, 0.45, 1e-9);
   EXPECT_NEAR(body.pose_at(0).yaw, 0.5 * 0.745, 1e-9);  // the oldest of 256
 }
 
-TEST_F(BodyTest, HeadingsAreBetweenAcrossHalfATurn) {
+TEST_F(BodyTest, HeadingsInterpolateAcrossHalfATurn) {
   world.movers[0].X_WM.yaw = M_PI - 0.01;
   RobotBody turned(world, 0);
   turned.move({0.0, 0.0, 0.2}, 100 * kMilli);

@@ -18,7 +18,7 @@ inline void add_wall(world::World& world, glm::dvec2 a, glm::dvec2 b, double z_m
   world.walls.push_back({.a = a, .b = b, .z_min = z_min, .z_max = z_max, .model = 0, .solid_left = false});
 }
 
-/// A closed outline in the order of `corners`; counter-clockwise has its solid inside.
+/// Adds a closed outline in the order of `corners`. A counter-clockwise one has its solid inside.
 inline void add_outline(std::vector<world::Segment>& to, const std::vector<glm::dvec2>& corners, double z_min = 0.0,
                         double z_max = 1.0) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -34,7 +34,7 @@ inline std::vector<glm::dvec2> rectangle(glm::dvec2 centre, double length, doubl
           {centre.x - x, centre.y + y}};
 }
 
-/// A world with one static model and no walls.
+/// Returns a world with one static model and no walls.
 inline world::World empty_world() {
   world::World world;
   world.name = "scene";
@@ -43,7 +43,7 @@ inline world::World empty_world() {
   return world;
 }
 
-/// Four thin walls around [x0, x0 + width] x [y0, y0 + height].
+/// Returns a world with four thin walls around [x0, x0 + width] x [y0, y0 + height].
 inline world::World boxed_world(double width, double height, glm::dvec2 corner = {}) {
   world::World world = empty_world();
   const glm::dvec2 p = corner, q{corner.x + width, corner.y + height};
@@ -54,7 +54,7 @@ inline world::World boxed_world(double width, double height, glm::dvec2 corner =
   return world;
 }
 
-/// Adds a mover whose body is one outline, its height [0, 0.1].
+/// Adds a mover whose body is one outline with heights [0, 0.1].
 inline world::Mover& add_mover(world::World& world, const Pose& X_WM, const std::vector<glm::dvec2>& corners) {
   world::Mover mover;
   mover.name = "robot" + std::to_string(world.movers.size() + 1);
@@ -72,26 +72,26 @@ inline world::Mover& add_mover(world::World& world, const Pose& X_WM, const std:
   return world.movers.back();
 }
 
-/// A 16-sided disc of radius 0.165 m with at most 0.5 m/s and 90 degrees a second.
+/// Adds a 16-sided disc of radius 0.165 m with at most 0.5 m/s and 90 degrees per second.
 inline world::Mover& add_create(world::World& world, const Pose& X_WM) {
   std::vector<glm::dvec2> corners;
   for (int i = 0; i < 16; ++i) corners.push_back(0.165 * glm::dvec2{std::cos(M_PI * i / 8), std::sin(M_PI * i / 8)});
   return add_mover(world, X_WM, corners);
 }
 
-/// A square of edge 0.4 m.
+/// Adds a square of edge 0.4 m.
 inline world::Mover& add_square(world::World& world, const Pose& X_WM) {
   return add_mover(world, X_WM, rectangle({}, 0.4, 0.4));
 }
 
-/// A picture of cells, `true` is solid, as boundary segments merged into runs, the solid on their left.
+/// Adds a picture of cells, `true` is solid, as boundary segments merged into runs with the solid on their left.
 inline void add_bitmap(world::World& world, const std::vector<std::vector<bool>>& solid, double cell) {
   const int rows = static_cast<int>(solid.size()), columns = static_cast<int>(solid.front().size());
   const auto at = [&](int x, int y) { return x >= 0 && y >= 0 && x < columns && y < rows && solid[y][x]; };
   const auto add = [&](glm::dvec2 a, glm::dvec2 b) {
     world.walls.push_back({.a = cell * a, .b = cell * b, .z_min = 0.0, .z_max = 1.0});
   };
-  // Edges between a row and the one below, then the same for columns.
+  // Edges between a row and the one below; the same for columns after that.
   for (int y = 0; y <= rows; ++y) {
     for (int x = 0; x < columns;) {
       const bool up = at(x, y) && !at(x, y - 1), down = !at(x, y) && at(x, y - 1);
@@ -114,7 +114,7 @@ inline void add_bitmap(world::World& world, const std::vector<std::vector<bool>>
   }
 }
 
-/// A closed cave of columns x rows cells: noise smoothed by majority, with a solid rim.
+/// Returns a closed cave of columns x rows cells: noise smoothed by majority, with a solid rim.
 inline std::vector<std::vector<bool>> cave(int columns, int rows, std::uint64_t seed, double fill = 0.44,
                                            int rounds = 4) {
   std::vector<std::vector<bool>> solid(rows, std::vector<bool>(columns, true));
@@ -139,7 +139,7 @@ inline std::vector<std::vector<bool>> cave(int columns, int rows, std::uint64_t 
   return solid;
 }
 
-/// A row of magnetometers across the front of a robot, element 0 in its middle.
+/// Returns a row of magnetometers across the front of a robot, with element 0 in the middle.
 inline world::Sensor magnetometers(int count) {
   world::Sensor sensor{.type = "magnetometer"};
   sensor.settings.push_back({.key = "scount", .numbers = {1.0 * count}});

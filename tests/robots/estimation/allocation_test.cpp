@@ -7,7 +7,7 @@
 namespace sf::estimation {
 namespace {
 
-TEST(EstimationAllocation, NothingIsAllocatedAfterConstruction) {
+TEST(EstimationAllocation, FilterDoesNotAllocateAfterConstruction) {
   TrackFilter filter({});
   SenderClock clock;
   std::int64_t t = 0;
@@ -24,7 +24,7 @@ TEST(EstimationAllocation, NothingIsAllocatedAfterConstruction) {
 }
 
 TEST(EstimationAllocation, HypothesesAreAllocatedOnce) {
-  // Positions of a robot at rest: all headings, in the same places of the window again and again.
+  // Positions of a robot at rest: all headings, repeatedly in the same places of the window.
   TrackFilter filter({.capacity = 8});
   std::int64_t t = 0;
   const auto lap = [&] {

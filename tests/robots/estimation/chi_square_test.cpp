@@ -7,8 +7,8 @@
 namespace sf::estimation {
 namespace {
 
-// Abramowitz and Stegun, table 26.8, with the digits of newer tables.
-TEST(ChiSquare, LimitsAreThoseOfTables) {
+// Abramowitz and Stegun, table 26.8, with digits from newer tables.
+TEST(ChiSquare, LimitsMatchTables) {
   EXPECT_NEAR(chi_square_limit(1, 0.05), 3.841458820694124, 1e-9);
   EXPECT_NEAR(chi_square_limit(3, 0.01), 11.344866730144373, 1e-9);
   EXPECT_NEAR(chi_square_limit(5, 0.95), 1.145476226061769, 1e-9);
@@ -16,12 +16,12 @@ TEST(ChiSquare, LimitsAreThoseOfTables) {
   EXPECT_NEAR(chi_square_limit(100, 0.5), 99.33412923598846, 1e-8);
 }
 
-TEST(ChiSquare, TwoDegreesAreTheExponentialDistribution) {
+TEST(ChiSquare, TwoDegreesMatchTheExponentialDistribution) {
   for (const double p : {1e-12, 1e-4, 0.3, 0.999999}) EXPECT_NEAR(chi_square_limit(2, p), -2.0 * std::log(p), 1e-9);
 }
 
 TEST(ChiSquare, ManyDegreesApproachTheNormalDistribution) {
-  // Wilson and Hilferty: at 5000 degrees the approximation is good to 1e-3.
+  // Wilson and Hilferty: at 5000 degrees of freedom the approximation is accurate to 1e-3.
   const double n = 5000.0;
   const double z = 3.0902323061678132;  // tail 0.001
   const double expected = n * std::pow(1.0 - 2.0 / (9.0 * n) + z * std::sqrt(2.0 / (9.0 * n)), 3);

@@ -1,5 +1,5 @@
-// Consistency of the filter with its own model, over 1000 simulated runs: the errors are as large as the covariance
-// says (NEES), the innovations as large as their covariance (NIS), and innovations of different times are uncorrelated.
+// Consistency of the filter with its own model over 1000 simulated runs: errors match the covariance (NEES),
+// innovations match their covariance (NIS), and innovations at different times are uncorrelated.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,8 @@ struct Sums {
   int nis_degrees = 0;
 };
 
-/// @param assumed the filter's model; `model` is the truth's
+/// @param model the true model
+/// @param assumed the filter's model
 Sums simulate(const MotionModel& model, const MotionModel& assumed, std::uint8_t components) {
   Sums sums;
   std::mt19937_64 random(1);
@@ -48,7 +49,7 @@ Sums simulate(const MotionModel& model, const MotionModel& assumed, std::uint8_t
   return sums;
 }
 
-/// Steps whose sum over runs is outside of the central 99 % of its distribution.
+/// Returns the number of steps whose sum over runs is outside the central 99 % of its distribution.
 int outside(const std::array<double, kSteps>& sums, int degrees) {
   const double low = chi_square_limit(kRuns * degrees, 0.995);
   const double high = chi_square_limit(kRuns * degrees, 0.005);
@@ -57,7 +58,7 @@ int outside(const std::array<double, kSteps>& sums, int degrees) {
   return count;
 }
 
-// Of 30 steps 0.3 are outside by chance (correlated within a run); 4 or more have a probability of some 1e-3.
+// Of 30 steps, 0.3 are outside by chance (correlated within a run); 4 or more have a probability of about 1e-3.
 constexpr int kMostOutside = 3;
 
 struct Case {
@@ -73,7 +74,7 @@ const std::vector<Case> kCases{{"wheels, pose and twist", differential_drive(0.0
                                 {MotionModel::Path::arc, 0.05, 0.05, 0.2},
                                 kPositionBits | 1u << kYaw | 1u << kTurn}};
 
-TEST(Consistency, ErrorsAreAsLargeAsTheCovarianceSays) {
+TEST(Consistency, ErrorsMatchTheCovariance) {
   for (const Case& c : kCases) {
     const Sums sums = simulate(c.model, c.model, c.components);
     EXPECT_LE(outside(sums.nees, sums.nees_degrees), kMostOutside) << c.name;
@@ -82,7 +83,7 @@ TEST(Consistency, ErrorsAreAsLargeAsTheCovarianceSays) {
   }
 }
 
-TEST(Consistency, TheBoundsTellAWrongModel) {
+TEST(Consistency, BoundsDetectAWrongModel) {
   // A filter that assumes half or twice the noise fails the same test in nearly every step.
   const MotionModel model = differential_drive(0.05, 0.2);
   for (const double factor : {0.5, 2.0}) {

@@ -17,7 +17,7 @@ constexpr std::size_t kYawYaw = kComponents * kYaw + kYaw;
 const MotionModel kWheeled = differential_drive();
 const MotionModel kSliding = free_body();
 
-/// With correlations between all components.
+/// Has correlations between all components.
 Estimate uncertain(double yaw_sigma) {
   Estimate e{kSecond, {1e5, -2.0, 0.3, 3.0}, {0.5, -0.2, 1.0}};
   const std::array<double, 6> sigma{0.1, 0.2, yaw_sigma, 0.3, 0.1, 0.2};
@@ -44,7 +44,7 @@ TEST(Hypothesis, PartsHaveTheMomentsOfTheWhole) {
         EXPECT_GE(parts.size(), 3u);
         for (const Hypothesis& part : parts)
           EXPECT_LT(middle_heading_sigma(part.estimate, 0.1), middle_heading_sigma(whole.estimate, 0.1));
-        if (sigma > 1.0) continue;  // parts half a turn away are not near each other
+        if (sigma > 1.0) continue;  // parts half a turn apart are not near each other
         const Hypothesis back = merged(model, parts);
         EXPECT_NEAR(back.weight, 0.25, 1e-15);
         EXPECT_NEAR(back.estimate.X_WM.x, 1e5, 1e-9);
@@ -55,8 +55,8 @@ TEST(Hypothesis, PartsHaveTheMomentsOfTheWhole) {
     }
 }
 
-TEST(Hypothesis, ErrorsOfYawAreWrapped) {
-  // Against a million draws: a heading with a deviation of 0.4 rad, 3 rad from the stated one.
+TEST(Hypothesis, YawErrorsAreWrapped) {
+  // Compares with a million draws: the heading has a deviation of 0.4 rad and is 3 rad from the stated one.
   Estimate truth = uncertain(0.4), state = truth;
   state.X_WM.yaw = 0.0;
   for (const double side : {1.0, -1.0}) {
@@ -77,7 +77,7 @@ TEST(Hypothesis, ErrorsOfYawAreWrapped) {
   }
 }
 
-TEST(Hypotheses, CertainHeadingsAreFilteredAsByOneGaussian) {
+TEST(Hypotheses, CertainHeadingsMatchASingleGaussian) {
   Measurement m{.time = kSecond, .X_WM = {1, 2, 0, 3}, .velocity = {0.5, 0, 0.3}};
   Estimate one = first_estimate(kWheeled, m);
   Hypotheses all;
@@ -95,7 +95,7 @@ TEST(Hypotheses, CertainHeadingsAreFilteredAsByOneGaussian) {
   }
 }
 
-TEST(Hypotheses, OneIsASingleGaussianWhateverItsHeading) {
+TEST(Hypotheses, LimitOfOneIsASingleGaussianForAnyHeading) {
   TrackFilter filter({.model = kWheeled, .hypotheses = 1});
   filter.take(position(0), kSecond);
   const Estimate first = first_estimate(kWheeled, position(0));
@@ -103,7 +103,7 @@ TEST(Hypotheses, OneIsASingleGaussianWhateverItsHeading) {
             predict(kWheeled, first, kSecond + 500 * kMs).covariance);
 }
 
-TEST(Hypotheses, AreAsManyAsAllowed) {
+TEST(Hypotheses, NeverExceedTheLimit) {
   for (const std::size_t most : {2u, 5u, 16u, 64u}) {
     Hypotheses all;
     start(kWheeled, position(0), most, all);
@@ -120,7 +120,7 @@ TEST(Hypotheses, AreAsManyAsAllowed) {
   }
 }
 
-TEST(Hypotheses, OfAWideHeadingHaveItsDeviation) {
+TEST(Hypotheses, WideHeadingKeepsItsDeviation) {
   Measurement m = position(0);
   m.components = kPoseBits;
   m.X_WM.yaw = 3.0;
@@ -131,8 +131,8 @@ TEST(Hypotheses, OfAWideHeadingHaveItsDeviation) {
   EXPECT_NEAR(covariance_about(most_probable(all), all)[kYawYaw], 0.49, 0.03);
 }
 
-TEST(Heading, OfAStandingRobotStaysUnknown) {
-  // All headings are equal: the mean square of an error in (-pi, pi) is pi^2 / 3.
+TEST(Heading, RobotAtRestStaysUnknown) {
+  // All headings are equally likely: the mean square of an error in (-pi, pi) is pi^2 / 3.
   for (const MotionModel& model : {kWheeled, kSliding}) {
     TrackFilter filter({.model = model});
     for (std::int64_t ms = 0; ms <= 20'000; ms += 66) {
@@ -142,7 +142,7 @@ TEST(Heading, OfAStandingRobotStaysUnknown) {
   }
 }
 
-TEST(Heading, OfARobotTurningOnTheSpotStaysUnknown) {
+TEST(Heading, RobotTurningInPlaceStaysUnknown) {
   TrackFilter filter({.model = kWheeled});
   for (std::int64_t ms = 0; ms <= 5'000; ms += 66) {
     Measurement m = position(ms);
@@ -153,8 +153,8 @@ TEST(Heading, OfARobotTurningOnTheSpotStaysUnknown) {
   }
 }
 
-TEST(Heading, OfADrivenPathIsTheOneForwardsAndPerhapsItsOpposite) {
-  // Along y: half of the square of pi, and small after the first measured speed, forwards or backwards.
+TEST(Heading, DrivenPathGivesTheHeadingOrItsOpposite) {
+  // Along y: the opposite heading remains possible until a speed is measured, forwards or backwards.
   for (const double speed : {0.5, -0.5}) {
     TrackFilter filter({.model = kWheeled});
     for (std::int64_t ms = 0; ms <= 3'000; ms += 66)
@@ -173,8 +173,8 @@ TEST(Heading, OfADrivenPathIsTheOneForwardsAndPerhapsItsOpposite) {
   }
 }
 
-TEST(Heading, PredictionsDependOnMeasurementsAlone) {
-  // Not on earlier predictions, from whose steps they go on.
+TEST(Heading, PredictionsDependOnlyOnMeasurements) {
+  // They must not depend on earlier predictions, whose steps they continue.
   TrackFilter often({.model = kWheeled}), once({.model = kWheeled});
   for (std::int64_t ms = 0; ms <= 400; ms += 66)
     for (TrackFilter* filter : {&often, &once})

@@ -19,7 +19,7 @@ const MotionModel kWheels = differential_drive(0.2, 0.5);
 const MotionModel kOmni{MotionModel::Path::arc, 0.2, 0.3, 0.5};
 const MotionModel kBody = free_body(0.2, 0.5);
 
-/// With correlations between all components.
+/// Has correlations between all components.
 Estimate correlated(const base::Pose& X, const base::Twist& v, double scale = 1.0) {
   Estimate e{base::kSecond, X, v};
   const std::array<double, 6> sigma{0.1, 0.2, 0.05, 0.3, 0.1, 0.2};
@@ -28,7 +28,7 @@ Estimate correlated(const base::Pose& X, const base::Twist& v, double scale = 1.
   return e;
 }
 
-/// Greatest difference of two covariances, relative to the standard deviations.
+/// Returns the largest difference of two covariances, relative to the standard deviations.
 double covariance_error(const Estimate& e, const reference::Matrix& expected) {
   double error = 0.0;
   for (int i = 0; i < 6; ++i)
@@ -39,7 +39,7 @@ double covariance_error(const Estimate& e, const reference::Matrix& expected) {
   return error;
 }
 
-/// Symmetric, finite, and without a negative variance in any direction of a pair of components.
+/// Expects a symmetric, finite covariance without a negative variance in any direction of a pair of components.
 void expect_covariance(const Estimate& e) {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) {
@@ -72,8 +72,8 @@ TEST(Predict, FollowsTheEquationsOfMotion) {
     }
 }
 
-TEST(Predict, NoiseAloneIsWithinOnePercent) {
-  // The bound that the header states, without the initial covariance, which would hide it.
+TEST(Predict, NoiseIsWithinOnePercent) {
+  // Tests the bound stated in the header, without the initial covariance, which would hide it.
   for (const MotionModel& model : {kWheels, kOmni, kBody}) {
     const Estimate from{0, {0, 0, 0, 0.4}, {0.5, 0.0, 1.0}};
     const Estimate to = predict(model, from, base::kSecond);
@@ -81,7 +81,7 @@ TEST(Predict, NoiseAloneIsWithinOnePercent) {
   }
 }
 
-TEST(Predict, TwoStepsAreOne) {
+TEST(Predict, TwoStepsEqualOne) {
   for (const MotionModel& model : {kWheels, kBody}) {
     const Estimate from = correlated({1, 2, 0, 1}, {0.5, 0.0, 0.7});
     const Estimate once = predict(model, from, base::kSecond + 400'000'000);
@@ -91,7 +91,7 @@ TEST(Predict, TwoStepsAreOne) {
   }
 }
 
-TEST(Predict, NoTimeIsTheSameToTheBit) {
+TEST(Predict, ZeroTimeIsBitwiseEqual) {
   const Estimate from = correlated({1, 2, 0, 1}, {0.5, 0.0, 0.7});
   const Estimate same = predict(kWheels, from, from.time);
   EXPECT_EQ(same.covariance, from.covariance);
@@ -116,7 +116,7 @@ TEST(Predict, WheelsNeverMoveSideways) {
   EXPECT_EQ(later.covariance[at(kLeft, kLeft)], 0.0);
 }
 
-TEST(Correct, IsTheInformationForm) {
+TEST(Correct, MatchesTheInformationForm) {
   const Estimate predicted = correlated({1.0, -2.0, 0.0, 0.5}, {0.5, -0.2, 1.0});
   Measurement m{.time = predicted.time, .X_WM = {1.2, -2.1, 0.7, 0.6}, .velocity = {0.4, -0.1, 0.8}};
   m.pose_covariance = {0.01, 0, 0, 0.02, 0, 0.003};
@@ -128,7 +128,7 @@ TEST(Correct, IsTheInformationForm) {
   EXPECT_EQ(corrected.X_WM.z, 0.7);
 }
 
-TEST(Correct, ComponentsOneByOneAreAllAtOnce) {
+TEST(Correct, ComponentsOneByOneMatchAllAtOnce) {
   const Estimate predicted = correlated({1.0, -2.0, 0.0, 0.5}, {0.5, -0.2, 1.0});
   Measurement all{.time = predicted.time, .X_WM = {1.2, -2.1, 0.0, 0.6}, .velocity = {0.4, -0.1, 0.8}};
   Estimate one_by_one = predicted;
@@ -147,18 +147,18 @@ TEST(Correct, ComponentsOneByOneAreAllAtOnce) {
 }
 
 TEST(Correct, UsesCorrelationsOfTheMeasurement) {
-  // A line of position: known well across it and not along it, at 45 degrees.
+  // A line of position at 45 degrees: accurate across it and uncertain along it.
   Estimate predicted{0, {}, {}};
   for (int i = 0; i < 6; ++i) predicted.covariance[at(i, i)] = 1.0;
   Measurement m{.components = kPositionBits, .X_WM = {2.0, 0.0, 0.0, 0.0}};
   m.pose_covariance = {5.0 + 1e-6, 5.0 - 1e-6, 0, 5.0 + 1e-6, 0, 1.0};
   const Estimate corrected = correct(predicted, m);
-  // Across: x - y = 2 is certain. Along: x + y = 2 has the variance 20 against 2 of the prediction.
+  // Across: x - y = 2 is certain. Along: x + y = 2 has variance 20, against 2 of the prediction.
   EXPECT_NEAR(corrected.X_WM.x - corrected.X_WM.y, 2.0, 1e-4);
   EXPECT_NEAR(corrected.X_WM.x + corrected.X_WM.y, 2.0 * 2.0 / 22.0, 1e-4);
 }
 
-TEST(Correct, YawGoesTheShortWayRound) {
+TEST(Correct, YawTakesTheShorterWay) {
   Estimate predicted{0, {0, 0, 0, 3.1}, {}};
   for (int i = 0; i < 6; ++i) predicted.covariance[at(i, i)] = 1.0;
   for (const double turns : {0.0, 2.0 * M_PI, -1000.0 * M_PI}) {  // senders need not wrap
@@ -175,7 +175,7 @@ TEST(Correct, PositionAloneKeepsTheHeight) {
   EXPECT_EQ(correct(predicted, {.components = 1u << kTurn, .X_WM = {0, 0, 9.0, 0}}).X_WM.z, 0.5);
 }
 
-TEST(FirstEstimate, OpenComponentsAreUnknown) {
+TEST(FirstEstimate, UnmeasuredComponentsAreUnknown) {
   Measurement gps{.components = kPositionBits, .X_WM = {3.0, 4.0, 0.1, 1.0}, .velocity = {1, 1, 1}};
   gps.pose_covariance = {0.2, 0.1, 0.05, 0.3, 0.0, 1e-4};
   const Estimate e = first_estimate(kBody, gps);
@@ -188,8 +188,8 @@ TEST(FirstEstimate, OpenComponentsAreUnknown) {
   EXPECT_EQ(e.covariance[at(kLeft, kLeft)], 1.0);
 }
 
-TEST(Extremes, HundredKilometresFromTheOriginCostNothing) {
-  // The same run at the origin and far away: differences are those of rounding the positions.
+TEST(Extremes, DistanceFromTheOriginDoesNotMatter) {
+  // The same run at the origin and far away differs only by the rounding of positions.
   for (const double away : {1e5, 1e7}) {
     Estimate near = correlated({0, 0, 0, 0.3}, {0.5, 0, 0.2});
     Estimate far = correlated({away, -away, 0, 0.3}, {0.5, 0, 0.2});
@@ -208,8 +208,8 @@ TEST(Extremes, HundredKilometresFromTheOriginCostNothing) {
   }
 }
 
-TEST(Extremes, StandingStillForADayNeitherGrowsNorBreaks) {
-  // The covariance is at its fixed point after a hundred of the day's 1.3 million updates, sideways too.
+TEST(Extremes, DayAtRestNeitherGrowsNorBreaks) {
+  // The covariance reaches its fixed point after a hundred of the day's 1.3 million updates, sideways too.
   Estimate e = first_estimate(kWheels, {});
   for (int k = 1; k <= 50'000; ++k) e = correct(predict(kWheels, e, k * 66'666'667LL), {.time = k * 66'666'667LL});
   expect_covariance(e);
@@ -220,7 +220,7 @@ TEST(Extremes, StandingStillForADayNeitherGrowsNorBreaks) {
 }
 
 TEST(Extremes, WithoutNoiseTheCovarianceStaysPositive) {
-  // Where the usual short form P - K H P loses symmetry and sign first: no process noise, exact measurements.
+  // No process noise, exact measurements: the common short form P - K H P loses symmetry and sign here first.
   MotionModel still = differential_drive(0.0, 0.0);
   still.slip = 0.0;
   Measurement exact;
@@ -255,7 +255,7 @@ TEST(Extremes, TinyAndHugeTimes) {
   }
 }
 
-TEST(Measurements, VariancesEndAtTheirLimits) {
+TEST(Measurements, VariancesAreLimited) {
   const auto valid = [](double variance) {
     return is_valid(
         {.pose_covariance = {variance, 0, 0, variance, 0, variance}, .twist_variance = {variance, variance, variance}});
@@ -287,12 +287,12 @@ TEST(Measurements, BadNumbersAreInvalid) {
     EXPECT_FALSE(is_valid(m)) << bad;
   }
   m = {};
-  for (const std::size_t pair : {1, 2, 4}) {  // x and y, x and yaw, or y and yaw fully correlated
+  for (const std::size_t pair : {1, 2, 4}) {  // full correlation of x and y, x and yaw, or y and yaw
     m.pose_covariance = {1, 0, 0, 1, 0, 1};
     m.pose_covariance[pair] = 1;
     EXPECT_FALSE(is_valid(m)) << pair;
   }
-  m.pose_covariance = {1, 0.9, -0.9, 1, 0.9, 1};  // pairs are possible, all three are not
+  m.pose_covariance = {1, 0.9, -0.9, 1, 0.9, 1};  // each pair is possible, all three are not
   EXPECT_FALSE(is_valid(m));
   m.pose_covariance = {1, 0.9, 0.9, 1, 0.9, 1};
   EXPECT_TRUE(is_valid(m));

@@ -14,7 +14,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBias = 0.01;  // [rad/s]
 
-/// Stands for `stand` readings, then drives straight on at 0.2 m/s for 600, with a biased gyro.
+/// Rests for `stand` readings, then drives straight ahead at 0.2 m/s for 600 readings, with a biased gyro.
 base::Pose reckoned(Localization& localization, int stand) {
   for (int k = 0; k <= stand + 600; ++k) {
     const double rolled = 0.02 * std::max(0, k - stand);
@@ -24,14 +24,14 @@ base::Pose reckoned(Localization& localization, int stand) {
   return localization.predict((stand + 600) * kTick).estimate.X_WM;
 }
 
-TEST(Localization, GyroBiasIsLearntFromTheWheels) {
+TEST(Localization, GyroBiasIsEstimatedFromTheWheels) {
   Localization none({}, {}, 0), after_stand({}, {}, 0);
   EXPECT_NEAR(reckoned(after_stand, 20).x, 12.0, 0.02);
   EXPECT_NEAR(reckoned(after_stand, 20).y, 0.0, 0.2) << "two seconds at rest";
   EXPECT_LT(std::abs(reckoned(none, 0).y), 0.5 * 12.0 * 60.0 * kBias / 2.0) << "while driving, less than half is left";
 }
 
-TEST(Localization, ReadingsThatAreNotNumbersChangeNothing) {
+TEST(Localization, NonFiniteReadingsChangeNothing) {
   Localization localization({}, {1.0, 2.0, 0.0, 0.5}, 0);
   localization.add_encoder(kTick, 0.0, 0.0);
   localization.add_encoder(2 * kTick, kNan, 0.0);
@@ -47,8 +47,8 @@ TEST(Localization, ReadingsThatAreNotNumbersChangeNothing) {
   EXPECT_NEAR(localization.predict(4 * kTick).estimate.velocity.turn, 0.0, 1e-6);
 }
 
-TEST(Localization, TurnsBetweenTwoCountsAreNoBias) {
-  // 0.02 rad/s on the spot: a count of each wheel in four readings.
+TEST(Localization, TurnsBetweenTwoCountsAreNotBias) {
+  // 0.02 rad/s in place: one count of each wheel in four readings.
   Localization localization({}, {}, 0);
   for (int k = 0; k <= 600; ++k) {
     const double rolled = 1e-3 * std::round(0.02 * 0.1 * k * 0.258 / 2.0 / 1e-3);
@@ -59,16 +59,16 @@ TEST(Localization, TurnsBetweenTwoCountsAreNoBias) {
       << "slip gives counts a little less weight than none";
 }
 
-TEST(Localization, StandsBeforeALossOfTheEncodersTeachNoLaterBias) {
-  // At rest until 0.1 s, without any reading until 3.1 s, and then at 1 rad/s, with the gyro alone.
+TEST(Localization, RestBeforeALossOfTheEncodersDoesNotChangeTheBias) {
+  // At rest until 0.1 s, no readings until 3.1 s, then 1 rad/s with the gyro alone.
   Localization localization({}, {}, 0);
   for (int k = 0; k <= 1; ++k) localization.add_encoder(k * kTick, 0.0, 0.0);
   for (int k = 31; k <= 60; ++k) localization.add_gyro(k * kTick, 1.0);
   EXPECT_NEAR(localization.predict(60 * kTick).estimate.velocity.turn, 1.0, 0.01);
 }
 
-TEST(Localization, TurnsRightAfterAStandAreNoBias) {
-  // The gyro's reading comes first: it is compared with the stand a tick before.
+TEST(Localization, TurnsRightAfterARestAreNotBias) {
+  // The gyro's reading arrives first, and is compared with the rest one tick before.
   Localization localization({}, {}, 0);
   for (int k = 0; k <= 60; ++k) {
     const double turned = 0.1 * std::max(0, k - 30);
@@ -88,8 +88,8 @@ TEST(Localization, PositionsMayBeASecondLateAtHighRates) {
   EXPECT_EQ(localization.counts()[static_cast<std::size_t>(Verdict::too_late)], 0u);
 }
 
-TEST(Localization, LatePositionsPullAtTheirOwnTime) {
-  // 0.2 m/s; the fix of half a second ago says that the start was 1 m farther left.
+TEST(Localization, LatePositionsApplyAtTheirOwnTime) {
+  // 0.2 m/s; the fix of half a second ago puts the start 1 m farther left.
   Localization on_time({.gps_noise = 1e-3, .start_position = 1.0}, {}, 0);
   Localization late({.gps_noise = 1e-3, .start_position = 1.0}, {}, 0);
   for (int k = 0; k <= 20; ++k) {

@@ -1,6 +1,6 @@
 #pragma once
-// The filter's equations once more, in plain loops: continuous time, integrated in small steps, and the update in
-// information form. No code of the filter.
+// Independent reference for the filter's equations in plain loops: continuous time, integrated in small steps, and the
+// update in information form. Uses no code of the filter.
 
 #include <array>
 #include <cmath>
@@ -74,7 +74,7 @@ inline Both add(const Both& a, double h, const Both& d) {
   return sum;
 }
 
-/// Runge and Kutta's method of fourth order. @param seconds > 0
+/// Fourth-order Runge-Kutta method. @param seconds > 0
 inline Both predict(const MotionModel& model, const Estimate& from, double seconds, int steps = 2000) {
   Both b{state_of(from), covariance_of(from)};
   const double h = seconds / steps;
@@ -86,7 +86,7 @@ inline Both predict(const MotionModel& model, const Estimate& from, double secon
   return b;
 }
 
-/// Gauss and Jordan's method with pivots.
+/// Gauss-Jordan elimination with pivoting.
 inline Matrix inverse(Matrix A) {
   Matrix B{};
   for (int i = 0; i < 6; ++i) B[i][i] = 1.0;
@@ -107,7 +107,7 @@ inline Matrix inverse(Matrix A) {
   return B;
 }
 
-/// (P^-1 + R^-1)^-1 and its state, for a measurement of all six components without correlations.
+/// Returns (P^-1 + R^-1)^-1 and its state, for a measurement of all six components without correlations.
 inline Both correct(const Estimate& predicted, const Measurement& m) {
   const Vector z{m.X_WM.x, m.X_WM.y, m.X_WM.yaw, m.velocity.forward, m.velocity.left, m.velocity.turn};
   const Vector variance{m.pose_covariance[0], m.pose_covariance[3], m.pose_covariance[5],

@@ -16,10 +16,10 @@ namespace {
 using base::kSecond;
 constexpr std::int64_t kLatest = std::int64_t{1} << 62;
 
-/// A sender whose clock differs, and a link with a least delay and exponential jitter.
+/// A sender with a different clock, and a link with a least delay and exponential jitter.
 struct Sender {
   std::int64_t offset = 0;  ///< [ns] receiver minus sender at the receiver's time 0
-  double drift = 0.0;       ///< growth of that
+  double drift = 0.0;       ///< [s/s] growth of the offset
   std::int64_t least = 5 * kMs;
   double jitter = 20e6;  ///< [ns] mean
   std::mt19937_64 random{3};
@@ -28,7 +28,7 @@ struct Sender {
   std::int64_t delay() { return least + std::llround(std::exponential_distribution<double>(1.0 / jitter)(random)); }
 };
 
-/// 15 packets a second, from `begin` to `end` [s] of the receiver's time.
+/// Sends 15 packets per second, from `begin` to `end` [s] of the receiver's time.
 void run(SenderClock& clock, Sender& sender, double begin, double end) {
   for (double t = begin; t < end; t += 1.0 / 15.0) {
     const std::int64_t sent = base::nanoseconds(t);
@@ -40,7 +40,7 @@ TEST(SenderClock, FindsOffsetAndDriftUnderJitter) {
   for (const double drift : {0.0, 50e-6, -200e-6, 400e-6}) {
     SenderClock clock({.least_delay = 5 * kMs});
     Sender sender{.offset = 3600 * kSecond, .drift = drift};
-    sender.offset = -3600 * kSecond;  // an hour ahead of us
+    sender.offset = -3600 * kSecond;  // the sender is an hour ahead
     run(clock, sender, 10.0, 100.0);
     EXPECT_TRUE(clock.state().drift_known);
     EXPECT_NEAR(clock.state().drift, drift, 20e-6);
@@ -49,7 +49,7 @@ TEST(SenderClock, FindsOffsetAndDriftUnderJitter) {
   }
 }
 
-TEST(SenderClock, DelayThatIsNotStatedIsPartOfTheOffset) {
+TEST(SenderClock, UnstatedDelayIsPartOfTheOffset) {
   SenderClock clock;
   Sender sender{.offset = 0, .jitter = 1.0};
   run(clock, sender, 1.0, 3.0);
@@ -86,8 +86,8 @@ TEST(SenderClock, OrderOfArrivalDoesNotMatter) {
   EXPECT_NEAR(static_cast<double>(sorted.state().offset - swapped.state().offset), 0.0, 100.0);
 }
 
-TEST(SenderClock, ForgetsWhatLeftTheWindow) {
-  // The least delay grows by 40 ms after two minutes, such as by another route.
+TEST(SenderClock, DropsPacketsOutsideTheWindow) {
+  // The least delay grows by 40 ms after two minutes, as on another route.
   SenderClock clock;
   Sender sender{.jitter = 1e6};
   run(clock, sender, 1.0, 120.0);
@@ -104,7 +104,7 @@ TEST(SenderClock, PacketFromBeforeTheWindowTakesNoSlot) {
   EXPECT_EQ(clock.state().offset, 5 * kMs);
 }
 
-TEST(SenderClock, PacketFromTheFutureIsRefusedAndChangesNothing) {
+TEST(SenderClock, PacketFromTheFutureIsRejectedAndChangesNothing) {
   SenderClock clock;
   Sender sender;
   run(clock, sender, 1.0, 20.0);
@@ -128,7 +128,7 @@ TEST(SenderClock, LimitsAreInclusive) {
   EXPECT_EQ(clock.state().offset, -250 * kMs);
 }
 
-TEST(SenderClock, ClockThatIsSetIsFollowedAfterConfirmation) {
+TEST(SenderClock, ClockResetIsFollowedAfterConfirmation) {
   for (const std::int64_t step : {3600 * kSecond, -3600 * kSecond}) {
     SenderClock clock;
     Sender sender{.offset = -7200 * kSecond};
@@ -147,7 +147,7 @@ TEST(SenderClock, ClockThatIsSetIsFollowedAfterConfirmation) {
   }
 }
 
-TEST(SenderClock, ForgedStampsThatDisagreeSetNoClock) {
+TEST(SenderClock, ForgedStampsThatDisagreeDoNotSetTheClock) {
   SenderClock clock;
   Sender sender;
   run(clock, sender, 1.0, 20.0);
@@ -156,7 +156,7 @@ TEST(SenderClock, ForgedStampsThatDisagreeSetNoClock) {
     const auto stamp = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(kLatest));
     EXPECT_EQ(clock.take(stamp, 20 * kSecond + k * kMs), ClockVerdict::future);
   }
-  // Nor do forged ones that agree, as long as true ones come between.
+  // Forged stamps that agree do not either, as long as true ones arrive between them.
   for (int k = 0; k < 20; ++k) {
     const std::int64_t now = 21 * kSecond + k * 67 * kMs;
     EXPECT_EQ(clock.take(now + 1000 * kSecond, now), ClockVerdict::future);
@@ -176,18 +176,18 @@ TEST(SenderClock, ExtremeStampsDoNotOverflow) {
       }
 }
 
-TEST(SenderClock, TrustedStampsCountAsTheyAre) {
+TEST(SenderClock, TrustedStampsAreUsedUnchanged) {
   SenderClock clock({.source = ClockSource::trusted});
   EXPECT_EQ(clock.take(10 * kSecond, 10 * kSecond + 30 * kMs), ClockVerdict::used);
   EXPECT_EQ(clock.to_sender(10 * kSecond), 10 * kSecond);
-  for (int k = 0; k < 10; ++k) {  // no number of confirmations moves a trusted clock
+  for (int k = 0; k < 10; ++k) {  // no number of confirmations changes a trusted clock
     EXPECT_EQ(clock.take(11 * kSecond, 10 * kSecond), ClockVerdict::future);
     EXPECT_EQ(clock.take(1 * kSecond, 10 * kSecond), ClockVerdict::late);
   }
   EXPECT_FALSE(clock.state().synchronised) << "trust is no estimate of an offset";
 }
 
-TEST(SenderClock, ResetForgetsTheOffset) {
+TEST(SenderClock, ResetDropsTheOffset) {
   SenderClock clock;
   clock.take(10 * kSecond, 5 * kSecond);
   clock.reset();

@@ -1,5 +1,5 @@
 // Consistency of TrackFilter with any measured components, over 300 simulated runs each: from the first measurement on,
-// the errors are as large as the covariance says, true measurements are used, and false ones are refused.
+// errors match the covariance, true measurements are used, and false ones are rejected.
 
 #include <gtest/gtest.h>
 
@@ -34,10 +34,10 @@ struct Case {
   double rate = 15.0;  ///< [Hz]
   int steps = 20;
   double loss = 0.0;        ///< probability
-  double delay = 0.0;       ///< [s] at most, uniform: measurements overtake each other
+  double delay = 0.0;       ///< [s] largest delay, uniform: measurements overtake each other
   double outliers = 0.0;    ///< probability of an error of 3 m
-  double most_tail = 1.25;  ///< 99.9 % quantile of the errors in units of the chi-square one
-  double mean_off = 0.06;   ///< of the mean per dimension from 1
+  double most_tail = 1.25;  ///< limit of the 99.9 % quantile of the errors, relative to the chi-square one
+  double mean_off = 0.06;   ///< allowed difference of the mean per dimension from 1
 };
 
 struct Arrival {
@@ -77,7 +77,7 @@ std::vector<Arrival> measure(const Case& c, reference::Truth truth, std::vector<
   return arrivals;
 }
 
-/// The state at the first measurement is drawn from what the model says of it.
+/// Draws the state at the first measurement from the model's prior.
 Result simulate(const Case& c) {
   Result r{std::vector<double>(c.steps), {}};
   std::mt19937_64 random(20);
@@ -117,8 +117,8 @@ double mean(const std::vector<double>& v) {
   return sum / static_cast<double>(v.size());
 }
 
-/// NEES of all runs: in the central 99 % of its chi-square distribution in all but 15 % of the steps
-/// (neighbours are correlated), 1 in the mean, and with the distribution's tail.
+/// Expects the NEES of all runs in the central 99 % of its chi-square distribution in all but 15 % of the steps
+/// (neighbours are correlated), with mean 1 and the distribution's tail.
 void expect_consistent(const Case& c) {
   SCOPED_TRACE(c.name);
   Result r = simulate(c);
@@ -132,7 +132,7 @@ void expect_consistent(const Case& c) {
   const double tail = r.errors[r.errors.size() * 999 / 1000] / chi_square_limit(r.degrees, 1e-3);
   EXPECT_GT(tail, 0.8);
   EXPECT_LT(tail, c.most_tail);
-  // The gate refuses 1e-4 of true measurements.
+  // The gate rejects 1e-4 of true measurements.
   EXPECT_LE(r.refused, 1e-4 * r.measured + 4.0 * std::sqrt(1e-4 * r.measured));
 }
 
@@ -171,8 +171,8 @@ TEST(TrackConsistency, HeadingMeasuredOnce) {
 }
 
 TEST(TrackConsistency, PosesWithLossAndDelay) {
-  // Between poses the heading is uncertain, and the position lies on an arc: its errors are no Gaussian ones, and
-  // although their mean squares are right the tail is longer than the chi-square one.
+  // Between poses the heading is uncertain, and the position lies on an arc. The errors are not Gaussian: their mean
+  // squares are correct, but the tail is longer than that of the chi-square distribution.
   for (const MotionModel& model : {kDrive, kBody})
     for (const std::uint8_t components : {kPoseBits, static_cast<std::uint8_t>(kPoseBits | kTwistBits)})
       expect_consistent({.name = "poses",
@@ -199,8 +199,8 @@ TEST(TrackConsistency, PosesWithGapsNearTheStaleTime) {
                        .mean_off = 0.15});
 }
 
-/// Ten poses in a second and none for three more: the frozen pose is wrong by the way since it was frozen, and the
-/// velocity of 0 by the whole one.
+/// Ten poses in one second, then none for three seconds. The frozen pose is wrong by the distance driven since it was
+/// frozen, and the velocity of 0 by the entire velocity.
 TEST(TrackConsistency, StaleStates) {
   std::mt19937_64 random(21);
   for (const MotionModel& model : {kDrive, kBody, kOmni}) {

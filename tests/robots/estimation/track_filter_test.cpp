@@ -29,7 +29,7 @@ std::uint64_t count(const TrackFilter& filter, Verdict verdict) {
   return filter.counts()[static_cast<std::size_t>(verdict)];
 }
 
-/// Of a robot that drives along x at 0.5 m/s.
+/// Measurement of a robot that drives along x at 0.5 m/s.
 Measurement along_x(std::int64_t ms, std::uint32_t sequence = 0) {
   Measurement m{.time = ms * kMs, .sequence = sequence};
   m.X_WM = {0.5e-3 * static_cast<double>(ms), 0, 0, 0};
@@ -37,7 +37,7 @@ Measurement along_x(std::int64_t ms, std::uint32_t sequence = 0) {
   return m;
 }
 
-/// Every bit of what a filter says.
+/// Returns every bit of a filter's prediction.
 std::vector<std::uint64_t> bits(const TrackFilter& filter, std::int64_t time) {
   const Prediction p = filter.predict(time);
   const Estimate& e = p.estimate;
@@ -55,7 +55,7 @@ std::vector<std::uint64_t> bits(const TrackFilter& filter, std::int64_t time) {
 rc::Gen<Measurement> any_measurement() {
   return rc::gen::exec([] {
     Measurement m;
-    m.time = *rc::gen::inRange<std::int64_t>(0, 60) * 25 * kMs;  // few times, so that many are equal
+    m.time = *rc::gen::inRange<std::int64_t>(0, 60) * 25 * kMs;  // few distinct times, so that many are equal
     m.source = *rc::gen::inRange(0u, 3u);
     m.sequence = *rc::gen::inRange(0u, 3u);
     m.components = *rc::gen::element<std::uint8_t>(kPoseBits | kTwistBits, kPoseBits, kPositionBits, 1u << kTurn,
@@ -76,7 +76,7 @@ RC_GTEST_PROP(TrackFilterOrder, AnyOrderOfArrivalGivesTheBytesOfTheSortedOrder, 
   o.stale_after = 300 * kMs;
   std::sort(measurements.begin(), measurements.end());
 
-  // Delays up to the window: the order of arrival is that of time plus delay.
+  // Delays of up to the window. Measurements arrive in order of time plus delay.
   std::vector<std::pair<std::int64_t, std::size_t>> arrivals;
   for (std::size_t k = 0; k < measurements.size(); ++k)
     arrivals.emplace_back(measurements[k].time + *rc::gen::inRange<std::int64_t>(0, o.window + 1), k);
@@ -92,7 +92,7 @@ RC_GTEST_PROP(TrackFilterOrder, AnyOrderOfArrivalGivesTheBytesOfTheSortedOrder, 
     RC_ASSERT(bits(mixed, ms * kMs) == bits(sorted, ms * kMs));
 }
 
-TEST(TrackFilterOrder, SignedZerosHaveAnOrderToo) {
+TEST(TrackFilterOrder, SignedZerosAreOrdered) {
   Measurement plus = along_x(0), minus = along_x(0);
   minus.X_WM.y = -0.0;
   TrackFilter a(options()), b(options());
@@ -102,7 +102,7 @@ TEST(TrackFilterOrder, SignedZerosHaveAnOrderToo) {
   EXPECT_EQ(bits(a, kMs), bits(b, kMs));
 }
 
-TEST(TrackFilter, NothingMeasuredIsNoState) {
+TEST(TrackFilter, NoMeasurementGivesNoState) {
   const TrackFilter filter(options());
   EXPECT_EQ(filter.predict(5).status, Status::none);
   EXPECT_EQ(filter.predict(std::int64_t{1} << 62).status, Status::none);
@@ -114,7 +114,7 @@ TEST(TrackFilter, PredictsToAnyTime) {
   EXPECT_NEAR(filter.predict(1000 * kMs).estimate.X_WM.x, 0.5, 1e-12);
   EXPECT_NEAR(filter.predict(1080 * kMs).estimate.X_WM.x, 0.54, 1e-12);
   EXPECT_EQ(filter.predict(1080 * kMs).age, 80 * kMs);
-  // Within the window: what was known then. Before it: backwards from its first estimate.
+  // Within the window: the state at that time. Before it: extrapolated backwards from the first estimate.
   EXPECT_EQ(filter.predict(250 * kMs).age, 50 * kMs);
   EXPECT_NEAR(filter.predict(250 * kMs).estimate.X_WM.x, 0.125, 1e-12);
   EXPECT_NEAR(filter.predict(-100 * kMs).estimate.X_WM.x, -0.05, 1e-12);
@@ -143,7 +143,7 @@ TEST(TrackFilter, OutlierChangesNoBit) {
   EXPECT_EQ(with.predict(990 * kMs).age, 90 * kMs);
 }
 
-TEST(TrackFilter, JumpOf400KilometresIsRefusedAndNamed) {
+TEST(TrackFilter, JumpOf400KilometresIsRejectedAsJump) {
   TrackFilter filter(options());
   filter.take(along_x(0), 0);
   Measurement far = along_x(100);
@@ -153,8 +153,8 @@ TEST(TrackFilter, JumpOf400KilometresIsRefusedAndNamed) {
   EXPECT_EQ(filter.take(along_x(200), 200 * kMs), Verdict::used);
 }
 
-TEST(TrackFilter, JumpIsRefusedHoweverLittleIsKnown) {
-  // A sender that claims nothing about its position gets no wider gate than max_jump.
+TEST(TrackFilter, JumpIsRejectedForAnyUncertainty) {
+  // A sender with an unknown position does not get a gate wider than max_jump.
   TrackFilter filter(options());
   Measurement vague = along_x(0);
   vague.pose_covariance = {1e12, 0, 0, 1e12, 0, 1};
@@ -177,7 +177,7 @@ TEST(TrackFilter, WrongFirstPositionLastsForTheStaleTime) {
 }
 
 TEST(TrackFilter, CarriedRobotWithLiveEncodersIsFoundAgain) {
-  // Its turn rate is measured all the time, so its state never gets stale.
+  // Its turn rate is measured continuously, so its state never becomes stale.
   TrackFilter filter(options());
   filter.take(along_x(0), 0);
   for (int ms = 100; ms <= 1100; ms += 100) {
@@ -191,24 +191,25 @@ TEST(TrackFilter, CarriedRobotWithLiveEncodersIsFoundAgain) {
   EXPECT_NEAR(filter.predict(1100 * kMs).estimate.X_WM.y, 3.0, 1e-12);
 }
 
-TEST(TrackFilter, ReplayedFutureLateAndBadAreCountedByReason) {
+TEST(TrackFilter, ReplayedFutureLateAndInvalidAreCountedByReason) {
   TrackFilter filter(options());
   EXPECT_EQ(filter.take(along_x(2000), 2000 * kMs), Verdict::started);
   EXPECT_EQ(filter.take(along_x(2000), 2010 * kMs), Verdict::replayed);
   EXPECT_EQ(filter.take(along_x(2040), 2010 * kMs), Verdict::future);    // max_future is 20 ms
-  EXPECT_EQ(filter.take(along_x(2030), 2010 * kMs), Verdict::used);      // exactly that
+  EXPECT_EQ(filter.take(along_x(2030), 2010 * kMs), Verdict::used);      // exactly the limit
   EXPECT_EQ(filter.take(along_x(1029), 2040 * kMs), Verdict::too_late);  // the window is a second
-  EXPECT_EQ(filter.take(along_x(1030), 2040 * kMs), Verdict::started);   // its edge; before the first one
+  EXPECT_EQ(filter.take(along_x(1030), 2040 * kMs),
+            Verdict::started);  // at the window's edge, before the first measurement
   Measurement bad = along_x(2040);
   bad.X_WM.yaw = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(filter.take(bad, 2040 * kMs), Verdict::invalid);
   bad = along_x(std::numeric_limits<std::int64_t>::max() / kMs);
   EXPECT_EQ(filter.take(bad, 2040 * kMs), Verdict::invalid);
-  const VerdictCounts expected{1, 2, 0, 0, 0, 1, 1, 1, 2};  // the first one of 2000 ms is an update by now
+  const VerdictCounts expected{1, 2, 0, 0, 0, 1, 1, 1, 2};  // the first measurement of 2000 ms is now an update
   EXPECT_EQ(filter.counts(), expected);
 }
 
-TEST(TrackFilter, ReplayOfWhatLeftTheWindowIsRefused) {
+TEST(TrackFilter, ReplayOfAMeasurementThatLeftTheWindowIsRejected) {
   TrackFilter filter(options());
   for (int ms = 0; ms <= 1500; ms += 100) filter.take(along_x(ms), ms * kMs);
   EXPECT_EQ(filter.take(along_x(400), 1500 * kMs), Verdict::replayed);  // the last that left
@@ -230,7 +231,7 @@ TEST(TrackFilter, FullRingShortensTheWindow) {
   EXPECT_NEAR(least.predict(1000 * kMs).estimate.X_WM.x, 0.5, 1e-12);
 }
 
-TEST(TrackFilter, PositionComesFirst) {
+TEST(TrackFilter, PositionIsNeededFirst) {
   TrackFilter filter(options());
   Measurement turn = along_x(0);
   turn.components = kTwistBits;
@@ -251,7 +252,7 @@ TEST(TrackFilter, CovarianceGrowsThroughLossUntilTheStateIsStale) {
     EXPECT_GT(p.estimate.covariance[0], last);
     last = p.estimate.covariance[0];
   }
-  // One nanosecond beyond it is stale: it stands where it was, and its covariance still grows.
+  // One nanosecond later the state is stale: the pose is frozen, and the covariance still grows.
   const Prediction stale = filter.predict(2000 * kMs + 1);
   EXPECT_EQ(stale.status, Status::stale);
   EXPECT_NEAR(stale.estimate.X_WM.x, 1.0, 1e-12);
@@ -262,8 +263,8 @@ TEST(TrackFilter, CovarianceGrowsThroughLossUntilTheStateIsStale) {
   EXPECT_EQ(later.age, 59'000 * kMs);
 }
 
-/// One of the turn rate alone has no pose to start at.
-TEST(TrackFilter, OnlyAPositionStartsAnewAfterAStaleTime) {
+/// A measurement of the turn rate alone has no pose to start at.
+TEST(TrackFilter, OnlyAPositionRestartsAfterAStaleTime) {
   TrackFilter filter(options());
   for (int ms = 0; ms <= 1000; ms += 100) filter.take(along_x(ms), ms * kMs);
   Measurement turn{.time = 3000 * kMs, .sequence = 1, .components = 1u << kTurn};
@@ -272,7 +273,7 @@ TEST(TrackFilter, OnlyAPositionStartsAnewAfterAStaleTime) {
   EXPECT_GT(filter.predict(turn.time).estimate.X_WM.x, 0.9) << "where it was last, or farther";
 }
 
-TEST(TrackFilter, FirstMeasurementAfterAStaleTimeStartsAnew) {
+TEST(TrackFilter, FirstMeasurementAfterAStaleTimeRestarts) {
   TrackFilter filter(options());
   filter.take(along_x(0), 0);
   Measurement there = along_x(1001);
@@ -282,17 +283,17 @@ TEST(TrackFilter, FirstMeasurementAfterAStaleTimeStartsAnew) {
   EXPECT_EQ(filter.predict(1001 * kMs).estimate.covariance[0], there.pose_covariance[0]);
 }
 
-TEST(TrackFilter, ResetForgetsAllButTheCounts) {
+TEST(TrackFilter, ResetKeepsOnlyTheCounts) {
   TrackFilter filter(options());
   filter.take(along_x(5000), 5000 * kMs);
   filter.reset();
   EXPECT_EQ(filter.predict(5000 * kMs).status, Status::none);
-  EXPECT_EQ(filter.take(along_x(0), 5000 * kMs), Verdict::started);  // a clock that began anew
+  EXPECT_EQ(filter.take(along_x(0), 5000 * kMs), Verdict::started);  // a clock that restarted
   EXPECT_EQ(count(filter, Verdict::started), 2u);
 }
 
-TEST(TrackFilter, GateRefusesAsManyTrueMeasurementsAsItSays) {
-  // Pose errors of a standing robot, drawn from the stated covariance of innovations: 1 % are refused.
+TEST(TrackFilter, GateRejectsTheStatedShareOfTrueMeasurements) {
+  // Pose errors of a robot at rest, drawn from the stated covariance of innovations: 1 % are rejected.
   FilterOptions o = options();
   o.gate = 0.01;
   std::uint64_t refused = 0;

@@ -11,12 +11,12 @@
 
 namespace sf::estimation::reference {
 
-/// Of measurements.
+/// Variances of measurements.
 struct Variances {
   double position = 4e-4, yaw = 1e-4, speed = 1e-3, turn = 4e-3;
 };
 
-/// The true state, moved in small steps of its own equations.
+/// The true state, integrated in small steps of its own equations.
 struct Truth {
   Vector s{};
   std::mt19937_64& random;
@@ -29,7 +29,7 @@ struct Truth {
     constexpr int kParts = 8;
     const double h = seconds / kParts;
     for (int k = 0; k < kParts; ++k) {
-      // Half of each part's noise before the motion and half after it: the midpoint rule.
+      // Half of each part's noise is added before the motion and half after it: the midpoint rule.
       const Vector noise{normal(model.slip * h),    normal(model.slip * h), 0.0,
                          normal(model.forward * h), normal(model.left * h), normal(model.turn * h)};
       for (int i = 0; i < 6; ++i) s[i] += 0.5 * noise[i];
@@ -51,7 +51,7 @@ struct Truth {
   }
 };
 
-/// Normalised estimation error squared. Components that are certain take no part.
+/// Normalised estimation error squared. Components that are certain are left out.
 inline double nees(const Estimate& e, const Vector& truth, int& degrees) {
   const Vector estimated = state_of(e);
   Matrix P = covariance_of(e);
