@@ -1,5 +1,5 @@
 #pragma once
-// Robots that join a world after it was loaded.
+// Adds robots to a world after it was loaded.
 
 #include <cstdint>
 #include <string>
@@ -8,41 +8,42 @@
 
 namespace sf::world {
 
-inline constexpr std::size_t kMostMovers = 65'534;  ///< rows of a world that robots join, since ids have 16 bits
-inline constexpr std::size_t kMostNameLength = 64;  ///< of a robot that joins
+inline constexpr std::size_t kMostMovers = 65'534;  ///< rows of a world with added robots, since ids have 16 bits
+inline constexpr std::size_t kMostNameLength = 64;  ///< characters of an added robot's name
 
 inline constexpr const char* kNameRule =
     "expected 1 to 64 letters, digits or '_', a letter first, and no '_' last or twice in a row";
 bool is_robot_name(const std::string& name);
 
-/// The row of the robot that `like` names: by its name, else the first with that word for its type.
+/// Returns the row of the robot called `like`, or else of the first robot whose type has that word.
 /// @throws base::InputError with the names that exist
 std::uint32_t robot_like(const World& world, const std::string& like);
 
-/// @throws base::InputError where a robot cannot join under `name`, which must be a robot name, such as topics of ROS
-/// have, and the name of no other model
+/// @throws base::InputError if a robot cannot join as `name`. The name must be a robot name (valid in ROS topics) that
+/// no other model has.
 void check_name(const World& world, const std::string& name);
 
-/// Appends a copy of the robot in row `original` at rest at `X_WM` (its height above ground stays that of the
-/// original), with all models that it carries. Rows that exist keep their places; its id is the smallest from 1 that no
-/// row has. Updates extent and hash: takes time in proportion to the world.
-/// Rule: `check_name` accepts the name.
-/// @return its row @throws base::InputError beyond kMostMovers
+/// Appends a copy of the robot in row `original`, at rest at `X_WM` (its height above ground stays that of the
+/// original), with all models that it carries. Existing rows keep their places. The copy's id is the smallest unused
+/// one from 1. Updates extent and hash, in time proportional to the size of the world.
+/// Precondition: `check_name` accepts the name.
+/// @return its row
+/// @throws base::InputError beyond kMostMovers
 std::uint32_t append_robot(World& world, std::uint32_t original, const std::string& name, const Pose& X_WM);
 
-/// The same for the robot in row `original` of another world. @param from may be `world`
+/// Same, for the robot in row `original` of another world. @param from may be `world`
 std::uint32_t append_robot(World& world, const World& from, std::uint32_t original, const std::string& name,
                            const Pose& X_WM);
 
-/// Appends the robot `name` of the world file `file`, at rest at the origin: a robot of that world, else one of the
-/// type that the file or its includes define by that name. `name` is changed where a model of `world` has it. Warnings
-/// of the file are added to those of `world`. Takes time in proportion to both worlds.
-/// @return its row @throws base::InputError for a file that is no such world, and a name that it does not have, with
-/// the names that it has
+/// Appends the robot `name` of the world file `file`, at rest at the origin: a robot of that world, or else one of the
+/// type that the file or its includes define under that name. Renames the robot if a model of `world` has that name.
+/// Adds the file's warnings to those of `world`. Takes time proportional to the size of both worlds.
+/// @return its row
+/// @throws base::InputError if the file is not such a world, or does not have the name; lists the names that it has
 std::uint32_t append_robot_of(World& world, const std::string& file, const std::string& name,
                               const LoadOptions& options);
 
-/// Both rows have the same type, body, drive and sensors.
+/// Returns whether both rows have the same type, body, drive and sensors.
 bool is_same_kind(const World& world, std::uint32_t a, std::uint32_t b);
 
 }  // namespace sf::world

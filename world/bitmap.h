@@ -8,14 +8,14 @@
 
 namespace sf::world {
 
-/// Cells row by row, from the lower left upwards.
+/// Cells row by row, from the bottom left upwards.
 struct Bitmap {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::vector<std::uint8_t> solid;  ///< 1 solid, 0 free; outside of the grid everything is free
+  std::vector<std::uint8_t> solid;  ///< 1 solid, 0 free; everything outside the grid is free
 };
 
-/// A corner of cells: (0, 0) lower left .. (width, height) upper right.
+/// A corner of cells, from (0, 0) at the lower left to (width, height) at the upper right.
 struct Corner {
   std::uint32_t i = 0;
   std::uint32_t j = 0;
@@ -27,10 +27,10 @@ struct BoundaryRun {
   Corner b;
 };
 
-/// All boundaries between solid and free, each maximal straight run once. A run ends at each corner of the boundary,
-/// also where two solid cells touch in one corner only: four runs end in that corner, so no beam passes between the
-/// cells. The order is fixed: horizontal runs from the bottom, then vertical runs from the left.
-/// @param most largest number of runs; beyond it the trace ends early, and the result is larger than `most`.
+/// Returns all boundaries between solid and free cells, as maximal straight runs. A run ends at each corner of the
+/// boundary. If two solid cells touch only at a corner, four runs end there, so no beam passes between the cells. The
+/// order is fixed: horizontal runs from the bottom, then vertical runs from the left.
+/// @param most largest number of runs; beyond it, tracing stops early and the result is larger than `most`
 std::vector<BoundaryRun> trace_boundary(const Bitmap& grid, std::size_t most = SIZE_MAX);
 
 /// A rectangle of cells, at least one.
@@ -39,8 +39,8 @@ struct PicturePart {
   Corner high;  ///< upper right
 };
 
-/// Position of a corner in the frame of a model that shows `part` on `size_x` x `size_y`, centred. Equal corners give
-/// bitwise equal positions.
+/// Returns the position of a corner in the frame of a model that shows `part` on `size_x` x `size_y`, centred. Equal
+/// corners give bitwise equal positions.
 glm::dvec2 corner_position(const PicturePart& part, Corner corner, double size_x, double size_y);
 
 }  // namespace sf::world

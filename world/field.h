@@ -1,6 +1,6 @@
 #pragma once
-// Description of one field of a row: its key in Stage files, its bounds, and its part in snapshots and the hash.
-// world/fields.h has the tables.
+// Describes one field of a row: its key in Stage files, its bounds, and its use in snapshots and the hash. The tables
+// are in world/fields.h.
 
 #include <array>
 #include <cmath>
@@ -12,19 +12,19 @@
 
 namespace sf::world {
 
-/// Unit of a number in a Stage file. Fields are in SI units, whatever the file's units.
+/// Unit of a number in a Stage file. Fields are in SI units, whatever the units of the file.
 enum class Unit { none, length, angle, seconds, milliseconds };
 
 /// A key whose value is one field: a number, a flag (0 or 1), a text, or a word of an enumeration (`words_of`).
 struct Key {
-  std::string_view name;  ///< empty: the field has no key, or a key with a reader of its own
+  std::string_view name;  ///< empty: the field has no key, or its key has its own reader
   Unit unit = Unit::none;
   std::string_view tuple = {};  ///< names of a tuple's elements, e.g. "[xmin xmax]"; empty: a single value
-  std::uint32_t element = 0;    ///< of the tuple; the field keeps its value where a shorter tuple lacks it
-  std::uint32_t least = 0;      ///< elements that the tuple needs
+  std::uint32_t element = 0;    ///< index in the tuple; the field keeps its value if a shorter tuple lacks it
+  std::uint32_t least = 0;      ///< required number of elements
 };
 
-/// The values from `least` to `most`, without `least` where `open`. NaN is never inside.
+/// The values from `least` to `most`, excluding `least` if `open`. Never contains NaN.
 struct Bounds {
   double least = -std::numeric_limits<double>::max();
   double most = std::numeric_limits<double>::max();
@@ -39,9 +39,9 @@ inline constexpr Bounds kAboveZero{.least = 0.0, .open = true};
 inline constexpr Bounds kAboveZeroOrInfinite{0.0, HUGE_VAL, true};
 
 enum class Role {
-  physics,  ///< readings depend on the field: snapshot and hash
-  label,    ///< snapshot only
-  path      ///< snapshot only: the name of a file, relative to the world file's folder
+  physics,  ///< readings depend on the field: in snapshot and hash
+  label,    ///< in the snapshot only
+  path      ///< in the snapshot only: a file name, relative to the world file's folder
 };
 
 template <class Row, class T>
@@ -70,7 +70,7 @@ constexpr Field<Row, T> path(T Row::*member) {
   return {member, {}, kFinite, Role::path};
 }
 
-/// Flags that share a byte, the first in its lowest bit.
+/// Flags that share a byte, with the first in the lowest bit.
 template <class Row, std::size_t n>
 struct Flags {
   std::array<Field<Row, bool>, n> bits;
@@ -80,17 +80,17 @@ constexpr auto flags(const Field<Row, bool>& first, const More&... more) {
   return Flags<Row, 1 + sizeof...(more)>{{first, more...}};
 }
 
-/// The fields of a row in the order of their bytes: Field, or Flags. Specialized in world/fields.h.
+/// The fields of a row in the order of their bytes: Field or Flags. Specialized in world/fields.h.
 template <class Row>
 inline constexpr std::tuple<> kFields{};
 
-/// `visit(entry)` for each entry of the table.
+/// Calls `visit(entry)` for each entry of the table.
 template <class Row, class Visit>
 constexpr void for_each_entry(Visit&& visit) {
   std::apply([&](const auto&... entry) { (visit(entry), ...); }, kFields<Row>);
 }
 
-/// `visit(field)` for each field of the table, flags one by one.
+/// Calls `visit(field)` for each field of the table, including each single flag.
 template <class Row, class Visit>
 constexpr void for_each_field(Visit&& visit) {
   for_each_entry<Row>([&](const auto& entry) {
@@ -102,7 +102,7 @@ constexpr void for_each_field(Visit&& visit) {
   });
 }
 
-/// `visit(field)` for each field with a key.
+/// Calls `visit(field)` for each field with a key.
 template <class Row, class Visit>
 constexpr void for_each_key(Visit&& visit) {
   for_each_field<Row>([&](const auto& field) {

@@ -1,10 +1,10 @@
 #pragma once
-// The fields of a world's rows, one table per type of row. Snapshots, their bounds, the hash and, for fields with a
-// key, the known keys of Stage files and their reading follow from these tables. Links between rows are checked in
-// world/snapshot.cpp.
+// The fields of a world's rows, with one table per type of row. These tables define snapshots and their bounds, the
+// hash, and, for fields with a key, the known keys of Stage files and how they are read. Links between rows are checked
+// in world/snapshot.cpp.
 //
-// The order is that of the snapshot's bytes: raise `kVersion` in world/snapshot.cpp with each change of a table.
-// Keys with a reader of their own are listed in world/keys.cpp.
+// The order is that of the snapshot's bytes: increment `kVersion` in world/snapshot.cpp with each change of a table.
+// world/keys.cpp lists the keys that have their own readers.
 
 #include "world/field.h"
 #include "world/world.h"

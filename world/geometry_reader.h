@@ -1,5 +1,5 @@
 #pragma once
-// The grammar that well-known text and binary share.
+// The common grammar of well-known text and well-known binary.
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ enum class GeometryType : std::uint8_t {
   triangle,
 };
 
-/// The tag of well-known binary, with the flags of EWKB.
+/// The type tag of well-known binary, including the flags of EWKB.
 struct TypeCode {
   static constexpr std::uint32_t kZ = 0x80000000u, kM = 0x40000000u, kSrid = 0x20000000u;
   std::uint32_t code = 0;
@@ -41,19 +41,19 @@ struct TypeCode {
     return plain() < 4000 && ((type >= 1 && type <= 12) || (type >= 15 && type <= 17));
   }
   bool has_srid() const { return (code & kSrid) != 0; }
-  /// Coordinates beyond x and y.
+  /// Number of coordinates beyond x and y.
   int more() const {
     const bool z = (code & kZ) != 0 || plain() / 1000 % 2 == 1, m = (code & kM) != 0 || plain() / 1000 >= 2;
     return z + m;
   }
 };
 
-/// A form of writing, `In`, has
-///   GeometryType type(std::optional<GeometryType> implied)  the tag of a geometry. implied: what a member without a
-///                                                           tag is, in text; none: the tag is required
+/// Requirements on an encoding `In`:
+///   GeometryType type(std::optional<GeometryType> implied)  reads a geometry's tag. implied: type of a member that has
+///                                                           no tag in text; none: the tag is required
 ///   void each(F f)                                          calls f for every element of a list
-///   glm::dvec2 point()                                      coordinates
-///   void skip_points(GeometryType type)                     the rest of a POINT or MULTIPOINT
+///   glm::dvec2 point()                                      reads coordinates
+///   void skip_points(GeometryType type)                     skips the rest of a POINT or MULTIPOINT
 ///   void fail(std::string_view expected)                    throws base::InputError
 template <class In>
 class GeometryReader {
@@ -96,7 +96,7 @@ class GeometryReader {
 
  private:
   static constexpr int kMaxDepth = 32;
-  static constexpr double kMaxPoints = 1e6;  // of a geometry with arcs
+  static constexpr double kMaxPoints = 1e6;  // in a geometry with arcs
 
   void read_curve(GeometryType type) {
     switch (type) {
@@ -138,7 +138,7 @@ class GeometryReader {
     out_.chords_left -= static_cast<double>(out_.points.size()) - before;
   }
 
-  /// The rings of one polygon. @param ring reads the points of one
+  /// Reads the rings of one polygon. @param ring reads the points of one ring
   template <class Ring>
   void read_rings(const Ring& ring) {
     bool first = true, empty = false;

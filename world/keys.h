@@ -1,5 +1,6 @@
 #pragma once
-// Words of world files: modelled words (keys of one value: world/fields.h), and words known but not modelled.
+// Words of world files: modelled words (keys with one value: world/fields.h), and words that are known but not
+// modelled.
 
 #include <cstdint>
 #include <span>
@@ -9,28 +10,29 @@
 
 namespace sf::world {
 
-/// The entity in which a property stands.
+/// The entity that contains a property.
 enum class KeyScope { world, model, position, light, sensor, block, device, sensing, road, path, unmodelled };
 
-/// Treatment of a type of the world file.
+/// How a type of the world file is treated.
 enum class EntityKind { model, position, light, road, path, unmodelled, ignored, unknown };
 
 EntityKind entity_kind(std::string_view type);
 
-/// True for types that Stage gives no body of their own (rangers, bumpers, ...): without blocks they are invisible.
+/// Returns true for types that have no body of their own in Stage (rangers, bumpers, ...): without blocks they are
+/// invisible.
 bool has_no_body(std::string_view type);
 
-/// All known types, for suggestions.
+/// Returns all known types, for suggestions.
 std::vector<std::string_view> known_types();
 
-/// True for keys that are read in `where`, and for Stage's own keys that are not modelled. Indices do not matter.
-/// @param own further keys valid there, with empty indices.
+/// Returns true for keys that are read in `where`, and for Stage's own keys that are not modelled. Ignores indices.
+/// @param own further keys valid there, with empty indices
 bool is_known_key(KeyScope where, std::string_view key, std::span<const std::string_view> own = {});
 
-/// A warning about a key of Stage's that is known, not modelled, and changes what happens in Stage; empty: none.
+/// Returns a warning about a known Stage key that is not modelled but has an effect in Stage; empty: none.
 std::string_view unmodelled_effect(std::string_view key);
 
-/// `; did you mean 'x'?` with the nearest of the keys valid there, or an empty text.
+/// Returns `; did you mean 'x'?` with the nearest valid key, or an empty text.
 std::string suggest_key(KeyScope where, std::string_view key, std::span<const std::string_view> own = {});
 
 }  // namespace sf::world

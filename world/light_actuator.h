@@ -1,9 +1,9 @@
 #pragma once
-// Runs the actuated programs of a plan: stages that detectors prolong, call and leave out.
+// Runs the actuated programs of a plan, whose stages are extended, called and skipped by detectors.
 //
 //   LightActuator lights(world, plan);
-//   lights.detect({x, y}, time);                // a robot's state that was heard
-//   lights.step(time);                          // before each look; the more often, the prompter
+//   lights.detect({x, y}, time);                // a robot's received state
+//   lights.step(time);                          // before each query; more frequent calls react faster
 //   lights.forecasts(time)                      // of all lights of the world
 
 #include <cstdint>
@@ -14,21 +14,21 @@
 
 namespace sf::world {
 
-/// Times [s] do not go back. World and plan must outlive it. One thread.
+/// Times [s] are non-decreasing. World and plan must outlive it. Not thread-safe.
 class LightActuator {
  public:
-  static constexpr double kHeard = 0.5;  ///< [s] for which a state counts as a call
+  static constexpr double kHeard = 0.5;  ///< [s] for which a received state counts as a call
 
-  /// All actuated programs begin their first stage at `time` [s].
+  /// Starts the first stage of all actuated programs at `time` [s].
   LightActuator(const World& world, const LightPlan& plan, double time = 0.0);
 
-  /// A robot is at `p` [m].
+  /// Reports a robot at `p` [m].
   void detect(glm::dvec2 p, double time);
 
-  /// Ends stages that are due. Changes begin now, however late the call is: no yellow is shorter than planned.
+  /// Ends stages that are due. Changes start at `time` even if the call is late, so no yellow is shorter than planned.
   void step(double time);
 
-  /// One per light of the world: by its program, or by the world's plan.
+  /// Returns one forecast per light of the world, from its program or else from the world's plan.
   std::vector<SignalForecast> forecasts(double time) const;
 
  private:
@@ -49,7 +49,7 @@ class LightActuator {
 
   const World& world_;
   const LightPlan& plan_;
-  std::vector<double> last_;  ///< [s] per detector: of the last state there
+  std::vector<double> last_;  ///< [s] per detector: time of the last state there
   std::vector<Run> runs_;
 };
 

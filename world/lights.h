@@ -11,27 +11,27 @@
 
 namespace sf::world {
 
-/// One light at one time.
+/// A light's state at one time.
 struct Signal {
   LightState state = LightState::dark;
-  double left = 0.0;  ///< [s] until the next change; infinity: the state never changes, or nobody knows when
+  double left = 0.0;  ///< [s] until the next change; infinity: the state never changes, or the time is unknown
 };
 
-/// A light now, and after its next change.
+/// A light's state now and after its next change.
 struct SignalForecast {
-  Signal now;                  ///< `left`: until the earliest change
-  double latest = 0.0;         ///< [s] until the latest change, >= now.left
-  std::optional<Signal> next;  ///< after the earliest change, its `left` from now on; nullopt: not known
+  Signal now;                  ///< `left`: until the earliest possible change
+  double latest = 0.0;         ///< [s] until the latest possible change, >= now.left
+  std::optional<Signal> next;  ///< after the earliest change, with `left` counted from now; nullopt: unknown
 };
 
 /// @param time [s] simulated
 Signal signal_at(const Light& light, double time);
 SignalForecast forecast_at(const Light& light, double time);
 
-/// All lights of a world by their plans, at `time` [s].
+/// Returns the forecasts of all lights of a world by their plans, at `time` [s].
 std::vector<SignalForecast> forecasts_at(const World& world, double time);
 
-/// As recordings have it.
+/// Converts a signal to its form in recordings.
 inline base::LightStatus status_of(const Signal& signal) {
   return {static_cast<std::uint8_t>(signal.state), signal.left};
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Faults of rows in a file of outlines: warnings with lines, in a bounded number.
+// Collects faults of rows in a file of outlines: warnings with line numbers, limited in number.
 
 #include <array>
 #include <cstdint>
@@ -11,22 +11,22 @@
 
 namespace sf::world {
 
-/// The first four leave the row out, or a part of it.
+/// With the first four, the row or a part of it is left out.
 enum class OutlineFault : std::uint8_t { unreadable, empty, points, faces, height, hole, quote };
 
 class OutlineFaults {
  public:
   explicit OutlineFaults(std::string file) : file_(std::move(file)) {}
 
-  /// The first three of a kind become warnings of their own, further ones are counted.
+  /// The first three of a kind become separate warnings; further ones are counted.
   void add(OutlineFault kind, const OutlineRow& row, const std::string& reason);
-  /// Of the whole file, no fault of a row; empty: none.
+  /// Adds a remark on the whole file, which is not a fault of a row; empty: none.
   void note(const std::string& message);
   /// @throws base::InputError with the first fault, if there is one
   void refuse() const;
-  /// For a file without walls. @throws base::InputError, always, with the first fault. @param columns the file's
+  /// Throws base::InputError with the first fault, for a file without walls. @param columns of the file
   [[noreturn]] void fail(const std::string& columns) const;
-  /// Faults, then notes.
+  /// Returns warnings for the faults, then the notes.
   std::vector<Warning> warnings() const;
 
  private:

@@ -9,20 +9,22 @@
 
 namespace sf::world {
 
-/// Makes walls in the world frame of one row after the other.
+/// Builds walls in the world frame, row by row.
 class OutlineWalls {
  public:
-  /// Both live longer. @param take gets the walls
+  /// Both arguments must outlive it. @param take receives the walls
   OutlineWalls(const OutlineFile& file, const TakeOutline& take) : file_(file), take_(take) {}
 
-  /// Builds the walls of one row. @param height [m] of them  @return whether there are any
-  /// @throws base::InputError with the reason alone for a row that cannot be built
+  /// Builds the walls of one row.
+  /// @param height [m] of the walls
+  /// @return whether there are any walls
+  /// @throws base::InputError with only the reason for a row that cannot be built
   bool build(const WellKnownGeometry& geometry, double height);
-  /// Hands on the walls of the row that was built. @throws base::InputError for too many in the file
+  /// Passes on the walls of the last row. @throws base::InputError if the file has too many
   void finish();
 
-  double count() const { return count_; }               ///< of walls handed on
-  int holes_outside() const { return holes_outside_; }  ///< inner rings of the row that leave their outer ring
+  double count() const { return count_; }               ///< number of walls passed on
+  int holes_outside() const { return holes_outside_; }  ///< inner rings of the row that are not inside their outer ring
 
  private:
   Polygon polygon_of(std::span<const glm::dvec2> points);
@@ -34,15 +36,15 @@ class OutlineWalls {
 
   const OutlineFile& file_;
   const TakeOutline& take_;
-  std::vector<Segment> walls_;     ///< of the row in work
-  std::vector<std::size_t> ends_;  ///< of its rings and lines in `walls_`
+  std::vector<Segment> walls_;     ///< of the current row
+  std::vector<std::size_t> ends_;  ///< ends of its rings and lines in `walls_`
   struct {
     std::size_t begin = 0, end = 0;
     bool solid = false;
   } outer_;  ///< the last outer ring, in `walls_`
   int holes_outside_ = 0;
-  double count_ = 0.0;  ///< of all rows
-  double pairs_ = 1e9;  ///< of edges that may still be compared in the file
+  double count_ = 0.0;  ///< over all rows
+  double pairs_ = 1e9;  ///< pairs of edges that may still be compared in the file
 };
 
 }  // namespace sf::world

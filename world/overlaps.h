@@ -1,5 +1,5 @@
 #pragma once
-// Robots that overlap where they start.
+// Finds robots that overlap at their start poses.
 
 #include <cstdint>
 #include <vector>
@@ -16,13 +16,13 @@ struct Overlap {
 };
 
 struct Overlaps {
-  std::vector<std::uint32_t> robots;  ///< rows of all that overlap another, ascending
-  std::vector<Overlap> pairs;         ///< ascending; with each of `robots`, but not every pair of a crowd
-  bool complete = true;               ///< false: the work was limited, and some may be missing
+  std::vector<std::uint32_t> robots;  ///< rows of all robots that overlap another, ascending
+  std::vector<Overlap> pairs;         ///< ascending; includes each of `robots`, but not every pair of a crowd
+  bool complete = true;               ///< false: the search reached its limit, and overlaps may be missing
 };
 
-/// Overlaps of bodies that stop robots; touching ones do not overlap. Tags can stand anywhere. The work is limited to
-/// 20 million comparisons of edges.
+/// Returns overlaps of bodies that stop robots; touching bodies do not overlap. Tags can be anywhere. The search is
+/// limited to 20 million comparisons of edges.
 Overlaps find_overlaps(const World& world);
 
 }  // namespace sf::world

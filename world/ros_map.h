@@ -1,5 +1,5 @@
 #pragma once
-// Maps of ROS map_server: a YAML file and the picture that it names.
+// Maps of ROS map_server: a YAML file and its picture.
 
 #include <string>
 #include <vector>
@@ -9,32 +9,32 @@
 
 namespace sf::world {
 
-inline constexpr double kMapWallHeight = 2.0;  ///< [m] a map has no heights: its walls stand from 0 to this height
+inline constexpr double kMapWallHeight = 2.0;  ///< [m] maps have no heights: walls extend from 0 to this height
 
-/// True for file names that end in .yaml or .yml, in any case.
+/// Returns true for file names that end in .yaml or .yml, in any case.
 bool is_ros_map(const std::string& file);
 
-/// The map as one static model. Its frame is the map frame, so poses are equal to those in ROS.
-/// @throws base::InputError with file and line.
+/// Loads the map as one static model. Its frame is the map frame, so poses equal those in ROS.
+/// @throws base::InputError with file and line
 World load_ros_map(const std::string& file, const LoadOptions& options);
 
-/// Likewise from a text. `file` is the name for errors; the picture is searched in the folder of `file`.
+/// Same, from a text. `file` is the name for errors, and its folder is searched for the picture.
 World build_ros_map(const std::string& file, const std::string& text, const LoadOptions& options);
 
-/// Adds the map to a world without one, in the world's frame: its walls and warnings.
+/// Adds the map's walls and warnings to a world without a map, in the world frame.
 /// @throws base::InputError with file and line
 void add_ros_map(World& world, const std::string& file, const LoadOptions& options);
 
-/// Outlines of the known free area of the world's map, solid on their left. Reads the map's files again. Empty for a
-/// world without a map, and for a map without known free cells.
+/// Returns outlines of the known free area of the world's map, with the area on their left. Reads the map's files
+/// again. Empty for a world without a map, and for a map without known free cells.
 std::vector<Segment> known_free(const World& world);
 
-/// The space that a ROS map knows: its cells that are not unknown.
+/// The known space of a ROS map: all cells that are not unknown.
 class KnownSpace {
  public:
-  /// Reads the files of the world's map again. Everything is known where it has none.
+  /// Reads the files of the world's map again. Without a map, everything is known.
   explicit KnownSpace(const World& world);
-  /// @param at [m] in the world. False outside of the picture, too
+  /// @param at [m] world frame. False outside the picture
   bool contains(glm::dvec2 at) const;
 
  private:

@@ -1,8 +1,8 @@
 #pragma once
-// Rows of a world as bytes, by the tables of world/fields.h. Shared by the hash and the snapshot.
+// Serializes rows of a world, as described by the tables of world/fields.h. Shared by the hash and the snapshot.
 //
-// Numbers are little-endian. A flag or a word of an enumeration is one byte; texts and vectors follow their length
-// (u32); a row is its fields in the order of its table.
+// Numbers are little-endian. A flag or a word of an enumeration is one byte. Texts and vectors are preceded by their
+// length (u32). A row consists of its fields in the order of its table.
 
 #include <algorithm>
 #include <filesystem>
@@ -18,7 +18,7 @@
 
 namespace sf::world {
 
-/// The fields of a row to write: all of them, or those that a reading depends on (no colours).
+/// The fields of a row to write: all, or only those that readings depend on (no colours).
 enum class RowFields { all, physics };
 
 template <class T>
@@ -27,7 +27,7 @@ inline constexpr bool kIsRow = std::tuple_size_v<std::remove_const_t<decltype(kF
 struct RowWriter {
   base::ByteWriter& out;
   RowFields fields = RowFields::all;
-  std::filesystem::path folder = {};  ///< of the world file; files are written relative to it
+  std::filesystem::path folder = {};  ///< folder of the world file; file names are written relative to it
 
   template <class T>
   void put(const T& value, Role role = Role::physics) {
@@ -52,7 +52,7 @@ struct RowWriter {
  private:
   template <class Row>
   void put_row(const Row& row) {
-    // The hashes of worlds without an accuracy are those from before there was one.
+    // Worlds without an accuracy keep the hash that they had before this field existed.
     if constexpr (std::is_same_v<Row, Accuracy>)
       if (fields == RowFields::physics && row.word.empty()) return;
     for_each_entry<Row>([&](const auto& entry) {
@@ -71,7 +71,7 @@ struct RowWriter {
   }
 };
 
-/// The least number of bytes of a T, for the check of counts.
+/// Returns the smallest serialized size of a T, for checking counts.
 template <class T>
 constexpr std::size_t least_bytes() {
   if constexpr (std::is_same_v<T, bool> || std::is_enum_v<T>) return 1;
@@ -90,7 +90,7 @@ constexpr std::size_t least_bytes() {
 struct RowReader {
   base::ByteReader& in;
 
-  /// @throws base::InputError for a count beyond the bytes left, and for an unknown word of an enumeration.
+  /// @throws base::InputError for a count that exceeds the remaining bytes, and for an unknown word of an enumeration
   template <class T>
   void get(T& value) {
     if constexpr (std::is_same_v<T, bool>) {
@@ -136,7 +136,7 @@ struct RowReader {
   }
 };
 
-/// Whether all numbers are within the bounds of their fields.
+/// Returns whether all numbers are within the bounds of their fields.
 template <class T>
 bool is_within(const T& value, const Bounds& bounds = {}) {
   if constexpr (std::is_arithmetic_v<T>) {

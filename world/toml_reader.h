@@ -1,5 +1,5 @@
 #pragma once
-// Values of a TOML file with their bounds. Every error names the file, the line, and the expected value.
+// Reads bounded values from a TOML file. Every error has the file, the line, and the expected value.
 
 #include <cstdint>
 #include <span>
@@ -11,22 +11,22 @@
 
 namespace sf::world {
 
-/// The value as quoted in errors: a number, up to 40 characters of a text in quotes, true, false, or its kind.
+/// Returns the value as quoted in errors: a number, up to 40 characters of a text in quotes, true, false, or its kind.
 std::string shown_toml(const TomlNode& node);
 
-/// Functions with a key return the fallback, or null, where `table` does not have it. @throws base::InputError
+/// Functions with a key return the fallback, or null, if `table` does not have it. @throws base::InputError
 class TomlReader {
  public:
-  /// @param file for errors; lives longer than the reader
+  /// @param file for errors; must outlive the reader
   explicit TomlReader(const std::string& file) : file_(file) {}
 
   const std::string& file() const { return file_; }
   [[noreturn]] void fail(const TomlNode& node, const std::string& message) const;
 
-  /// Refuses a file that other commands read, by its keys. @param expected "a scenario", "a sweep", "a testbed" or "a
-  /// plan of traffic lights"
+  /// Rejects a file that belongs to other commands, by its keys.
+  /// @param expected "a scenario", "a sweep", "a testbed" or "a plan of traffic lights"
   void require_kind(const TomlNode& root, std::string_view expected) const;
-  /// Refuses keys that are not in `known`, with a suggestion.
+  /// Rejects keys that are not in `known`, with a suggestion.
   void require_known(const TomlNode& table, std::span<const std::string_view> known) const;
 
   /// @param unit for errors, e.g. "seconds"; empty: a bare number
@@ -36,12 +36,12 @@ class TomlReader {
                 std::string_view unit = {}) const;
   std::uint64_t whole(const TomlNode& table, std::string_view key, std::uint64_t fallback, double most) const;
   std::string text(const TomlNode& table, std::string_view key, const std::string& fallback) const;
-  /// False where `table` does not have the key.
+  /// Returns false if `table` does not have the key.
   bool flag(const TomlNode& table, std::string_view key) const;
   const TomlNode* table(const TomlNode& in, std::string_view key) const;
-  /// The items of `[[key]]`.
+  /// Returns the items of `[[key]]`.
   std::vector<const TomlNode*> tables(const TomlNode& in, std::string_view key) const;
-  /// Replaces `into`, whose size is the number of values; each is within +-`most`.
+  /// Overwrites `into`, whose size is the number of values; each is within +-`most`.
   /// @param expected for errors, e.g. "[x, y, z] in metres"
   void numbers(const TomlNode& table, std::string_view key, std::span<double> into, double most,
                std::string_view expected) const;

@@ -1,6 +1,5 @@
 #pragma once
-// Geometry of segments, and the index of walls near a position. Built once; queries allocate nothing and may run on any
-// thread.
+// Geometry of segments, and a spatial index of walls. Built once. Queries do not allocate and are thread-safe.
 
 #include <algorithm>
 #include <span>
@@ -16,10 +15,10 @@ using base::Box;
 using base::box_around;
 using base::box_of;
 
-/// Box of all segments; the box of no point without any.
+/// Returns the bounding box of all segments; an empty box if there are none.
 Box box_of(std::span<const Segment> segments);
 
-/// Vector from the segment's nearest point to `p`. [m]
+/// Returns the vector [m] from the segment's nearest point to `p`.
 inline glm::dvec2 from_segment(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
   const glm::dvec2 along = b - a;
   const double size = dot(along, along);
@@ -27,14 +26,14 @@ inline glm::dvec2 from_segment(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
   return p - a - t * along;
 }
 
-/// Distance from `p` to the nearest point of the segment. [m] >= 0
+/// Returns the distance [m] >= 0 from `p` to the nearest point of the segment.
 double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b);
 
-/// Whether two closed segments share a point; touching counts.
+/// Returns whether two closed segments share a point; touching counts.
 bool segments_meet(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d);
 
-/// Number of turns of the outlines round `p`; outlines run counter-clockwise around solids. Edges without `solid_left`
-/// are skipped.
+/// Returns the number of turns of the outlines around `p`. Outlines run counter-clockwise around solids. Skips edges
+/// without `solid_left`.
 int winding_number(std::span<const Segment> edges, glm::dvec2 p);
 
 class WallTree {
@@ -42,8 +41,8 @@ class WallTree {
   /// @param walls copied
   explicit WallTree(std::span<const Segment> walls);
 
-  /// True as soon as `predicate(const Segment&)` is true for a wall whose bounding box meets `box`. The predicate is
-  /// called at most once per wall; the order is fixed.
+  /// Returns true as soon as `predicate(const Segment&)` is true for a wall whose bounding box meets `box`. Calls the
+  /// predicate at most once per wall, in a fixed order.
   template <class Predicate>
   bool any(const Box& box, Predicate&& predicate) const {
     return tree_.any_place(box, [&](std::uint32_t place) {
@@ -53,17 +52,17 @@ class WallTree {
   }
 
   std::span<const Segment> walls() const { return walls_; }
-  Box extent() const { return tree_.extent(); }  ///< the box of no point without walls
+  Box extent() const { return tree_.extent(); }  ///< empty box if there are no walls
 
  private:
-  std::vector<Segment> walls_;  ///< neighbours stand together
+  std::vector<Segment> walls_;  ///< sorted by place
   base::BoxTree tree_;
 };
 
-/// The same of those walls of a tree for which `counts(const Segment&)` is true.
+/// Same, for the walls of a tree for which `counts(const Segment&)` is true.
 template <class Predicate>
 int winding_number(const WallTree& walls, glm::dvec2 p, Predicate&& counts) {
-  int sum = 0;  // of the edges that a line from `p` to the right crosses
+  int sum = 0;  // over the edges crossed by a line from `p` to the right
   walls.any({p, {HUGE_VAL, p.y}}, [&](const Segment& wall) {
     if (counts(wall)) sum += winding_number(std::span(&wall, 1), p);
     return false;

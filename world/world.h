@@ -1,9 +1,9 @@
 #pragma once
-// The world: static geometry and the descriptions of movers, from one world file. After load it is changed only by the
-// functions at the end of this header and by sensors::set_accuracy.
+// The world: static geometry and the descriptions of movers, from one world file. After loading, only the functions at
+// the end of this header and sensors::set_accuracy change it.
 //
 // A world is 2.5-D: flat outlines with a range of heights. The static part is a list of wall segments; movers (robots
-// and linked objects) carry their outlines. Tables of rows, joined by row number.
+// and linked objects) carry their outlines. Data is stored in tables, joined by row number.
 
 #include <cmath>
 #include <cstdint>
@@ -22,13 +22,13 @@ using base::Pose;
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
 /// One straight piece of surface, visible from both sides.
-/// Rule: `a != b`. With `solid_left`, the segment is part of closed simple outlines of a bounded solid on the left of a
-/// -> b: counter-clockwise around the solid, clockwise around its holes.
+/// Invariant: `a != b`. With `solid_left`, the segment is part of closed simple outlines of a bounded solid on the left
+/// of a -> b: counter-clockwise around the solid, clockwise around its holes.
 struct Segment {
   glm::dvec2 a;
   glm::dvec2 b;  ///< [m] world frame for walls, mover frame for bodies
   double z_min = 0.0;
-  double z_max = 0.0;            ///< [m] visible to a beam at height z when z_min <= z < z_max
+  double z_max = 0.0;            ///< [m] visible to a beam at height z if z_min <= z < z_max
   std::uint32_t model = 0;       ///< row in `World::models`
   bool solid_left = true;        ///< false: a thin or self-crossing outline, whose sides are unknown
   bool seen_by_laser = true;     ///< false: `laser_return 0` or a negative `ranger_return`
@@ -38,31 +38,31 @@ struct Segment {
 
 /// A named model of the world file, static or carried by a mover.
 struct Model {
-  std::string name;              ///< unique in the world; "parent.child" for nested models without a name of their own
-  std::string type;              ///< the type's word in the world file
-  std::uint32_t parent = kNone;  ///< row of the enclosing model
-  std::uint32_t mover = kNone;   ///< row in `World::movers` for a moving or carried model, else kNone
-  Pose X_WM;                     ///< at load
-  glm::dvec2 size;               ///< [m] bounding box
+  std::string name;                   ///< unique in the world; "parent.child" for nested models without a name
+  std::string type;                   ///< word of the type in the world file
+  std::uint32_t parent = kNone;       ///< row of the enclosing model
+  std::uint32_t mover = kNone;        ///< row in `World::movers` for a moving or carried model, else kNone
+  Pose X_WM;                          ///< pose at load
+  glm::dvec2 size;                    ///< [m] bounding box
   std::uint32_t color = 0xFF808080u;  ///< 0xAARRGGBB
   bool is_bitmap = false;             ///< the outline was traced from a picture (a floor plan)
   double pixel = 0.0;                 ///< [m] larger side of that picture's pixels; 0: no picture
 };
 
-/// One painted lane marking: a band of constant width along a line. Each dash is a marking of its own.
-/// Rule: at least two points, neighbours distinct; the line turns by less than 90 degrees at each point.
+/// One painted lane marking: a band of constant width along a line. Each dash is a separate marking.
+/// Invariant: at least two points, neighbours distinct; the line turns by less than 90 degrees at each point.
 struct LaneMarking {
   std::vector<glm::dvec2> line;       ///< [m] centre line, world frame
   double width = 0.0;                 ///< [m] > 0
   std::uint32_t color = 0xFFFFFFFFu;  ///< 0xAARRGGBB
 };
 
-/// A permanent magnet: a point dipole at the middle of its model, its moment along the world's +z.
+/// A permanent magnet: a point dipole at the centre of its model, with its moment along the world's +z.
 struct Magnet {
-  glm::dvec2 p;             ///< [m] world frame, or the mover's frame where a mover carries it
-  double z = 0.0;           ///< [m] likewise
+  glm::dvec2 p;             ///< [m] world frame, or the mover's frame if a mover carries it
+  double z = 0.0;           ///< [m] in the same frame
   double moment = 0.0;      ///< [A m^2] not 0; negative: the south pole is up
-  double radius = 0.0;      ///< [m] > 0: smaller distances count as this one
+  double radius = 0.0;      ///< [m] > 0: smaller distances are clamped to this value
   std::uint32_t model = 0;  ///< row in `World::models`
 };
 
@@ -75,27 +75,27 @@ struct Setting {
   std::string file;
 };
 
-/// A sensor that a mover carries, as described in the world file. The settings are interpreted by the sensor type
+/// A sensor carried by a mover, as described in the world file. The sensor type interprets the settings
 /// (sensors/<type>.cpp).
 struct Sensor {
   std::string type;     ///< a word of the sensor type, e.g. `magnetometer`
-  std::string name;     ///< of the model; equal only for the `sensor( )` blocks of one model
-  Pose X_MS;            ///< the model's frame in the mover's frame, its origin included; z is the foot of the model
-  double height = 0.0;  ///< [m] of the model; 0 for a `sensor( )` block, whose z is its middle
+  std::string name;     ///< name of the model; only the `sensor( )` blocks of one model share a name
+  Pose X_MS;            ///< the model's frame in the mover's frame, including its origin; z is the foot of the model
+  double height = 0.0;  ///< [m] height of the model; 0 for a `sensor( )` block, whose z is its centre
   double metres_per_unit = 1.0;   ///< [m] per unit of length of the file
   double radians_per_unit = 1.0;  ///< [rad] per unit of angle of the file
   std::vector<Setting> settings;
-  int line = 0;  ///< 1-based, of the model in `file`
+  int line = 0;  ///< 1-based, line of the model in `file`
   std::string file;
-  std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the field of view in figures
+  std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, colour of the field of view in figures
 };
 
-/// A sensor type's word in world files, and its properties beside those of every model and of every sensor (rate,
-/// phase, latency, noise).
+/// A sensor type's word in world files, and its properties in addition to those of every model and of every sensor
+/// (rate, phase, latency, noise).
 struct SensorKeyword {
   std::string_view type;
   std::span<const std::string_view> keys;  ///< without indices: `spose[]`
-  /// Properties of its `sensor( )` blocks, each of which is a sensor of this type; empty: it has no blocks.
+  /// Properties of its `sensor( )` blocks, each of which is a sensor of this type; empty: the type has no blocks.
   std::span<const std::string_view> block_keys = {};
 };
 
@@ -106,12 +106,12 @@ struct Accuracy {
   int line = 0;  ///< 1-based, in `file`
 };
 
-/// Drive types. `skid`: wheels that cannot be steered on both sides (Pioneer 3-AT); they scrub in turns.
+/// Drive types. `skid`: fixed wheels on both sides (Pioneer 3-AT), which scrub in turns.
 enum class Drive { differential, omni, car, skid };
 
-/// Transformation between a commanded twist and the wheels (robots/actuator_model.h).
+/// How a commanded twist becomes wheel motion (robots/actuator_model.h).
 enum class ActuatorModel : std::uint8_t {
-  direct,        ///< none
+  direct,        ///< unchanged
   player_create  ///< Player's driver for the iRobot Create: whole millimetres, half the radius, at most 2 m
 };
 
@@ -120,18 +120,18 @@ struct Mover {
   std::string name;           ///< the model's name
   std::uint32_t model = 0;    ///< row in `World::models`
   std::uint32_t id = 0;       ///< number in packets, unique among robots (or among tags)
-  bool is_tag = false;        ///< follows TAG packets (`tag<N>`); else V2V packets of robot `id`
-  Pose X_WM;                  ///< at load
-  Pose X_MT;                  ///< pose of the mounted tag; not in snapshots, since recorded runs take no TAG packets
-  std::vector<Segment> body;  ///< outline in the mover's frame, z above the mover's origin; carried models included
-  double radius = 0.0;        ///< [m] of the circle about the origin that holds the body
+  bool is_tag = false;        ///< follows TAG packets (`tag<N>`); otherwise V2V packets of robot `id`
+  Pose X_WM;                  ///< pose at load
+  Pose X_MT;                  ///< pose of the mounted tag; not in snapshots, since recorded runs do not use TAG packets
+  std::vector<Segment> body;  ///< outline in the mover's frame, z above the mover's origin; includes carried models
+  double radius = 0.0;        ///< [m] radius of the circle about the origin that contains the body
   Drive drive = Drive::differential;
   double max_forward = 0.5;                 ///< [m/s] > 0
   double max_turn = M_PI / 2;               ///< [rad/s] > 0
   double max_acceleration = HUGE_VAL;       ///< [m/s^2] > 0, for acceleration and deceleration
   double max_turn_acceleration = HUGE_VAL;  ///< [rad/s^2] > 0
-  double wheelbase = 1.0;                   ///< [m] between the axles of a car
-  double track = 0.3;                       ///< [m] > 0, between left and right wheels, as measured by encoders
+  double wheelbase = 1.0;                   ///< [m] distance between the axles of a car
+  double track = 0.3;  ///< [m] > 0, distance between left and right wheels, as measured by encoders
   ActuatorModel actuator_model = ActuatorModel::direct;
   std::string controller;       ///< default controller; empty: the file names no known controller
   std::vector<Sensor> sensors;  ///< in file order
@@ -143,13 +143,13 @@ struct PathPiece {
   Pose X_WP;               ///< the lane's centre line at the start of the piece, x along it
   double length = 0.0;     ///< [m] > 0, along the centre line
   double curvature = 0.0;  ///< [1/m] positive: to the left; 0: straight
-  double width = 0.0;      ///< [m] > 0, of the lane
+  double width = 0.0;      ///< [m] > 0, width of the lane
 };
 
 /// A lane to follow (`path( ... )`), piece by piece.
 struct Path {
   std::string name;
-  std::vector<PathPiece> pieces;  ///< at least one; each begins at the end of the previous one
+  std::vector<PathPiece> pieces;  ///< at least one; each starts at the end of the previous one
 };
 
 /// State of a traffic light.
@@ -160,15 +160,15 @@ struct LightPhase {
   double duration = 0.0;  ///< [s] > 0
 };
 
-/// A traffic light with a fixed plan; `signal_at` in world/lights.h gives the state at a time.
+/// A traffic light with a fixed plan. `signal_at` in world/lights.h gives its state at any time.
 struct Light {
   std::string name;                 ///< unique in the world
   std::uint32_t model = 0;          ///< row in `World::models`
   Pose X_WL;                        ///< the lamps face along x, towards approaching robots
   bool single = false;              ///< true: one lamp per side; false: three lamps per side and an indicator on top
-  std::vector<LightPhase> phases;   ///< at least one; repeated without end
+  std::vector<LightPhase> phases;   ///< at least one; repeated endlessly
   double offset = 0.0;              ///< [s] start time of the first phase
-  std::vector<std::string> points;  ///< "segment.lane.point" of way-points whose stop lines the light governs
+  std::vector<std::string> points;  ///< "segment.lane.point" of way-points whose stop lines the light controls
 };
 
 /// An infrared emitter for receivers on robots: a virtual wall or a dock.
@@ -177,9 +177,9 @@ struct Emitter {
   Kind kind = Kind::virtual_wall;
   std::uint32_t model = 0;  ///< row in `World::models`
   Pose X_WE;                ///< the beam points along x
-  double range = 0.0;       ///< [m] > 0, of the beam (dock: of the two buoys' beams)
-  double fov = 0.0;         ///< [rad] in (0, 2 pi], of the beam, half to each side (dock: of each buoy)
-  double halo = 0.0;        ///< [m] >= 0, around it (dock: of the force field)
+  double range = 0.0;       ///< [m] > 0, range of the beam (dock: of the two buoys' beams)
+  double fov = 0.0;         ///< [rad] in (0, 2 pi], full angle of the beam, half to each side (dock: of each buoy)
+  double halo = 0.0;        ///< [m] >= 0, radius of the halo around it (dock: of the force field)
 };
 
 /// A hole in the floor, for cliff sensors.
@@ -188,7 +188,7 @@ struct FloorHole {
   std::uint32_t model = 0;          ///< row in `World::models`
 };
 
-/// A message for the user that did not stop the load.
+/// A user message about a problem that did not stop the load.
 struct Warning {
   std::string file;
   int line = 0;  ///< 1-based; 0: the whole file
@@ -205,68 +205,71 @@ struct OutlineFile {
   std::string file;              ///< as opened
   Pose X_WF;                     ///< frame of the file's coordinates; z is the foot of the walls
   double metres_per_unit = 1.0;  ///< [m] per unit of length of the file
-  Segment surface;               ///< model, flags, and the height of outlines without one of their own (`z_max`)
-  double longest = 0.0;          ///< [m] wall
-  bool strict = false;           ///< a row that would be left out, or has no valid height, is an error
+  Segment surface;               ///< model, flags, and the height of outlines without a height in the file (`z_max`)
+  double longest = 0.0;          ///< [m] length of the longest wall
+  bool strict = false;           ///< reject rows that would be skipped or have no valid height
 };
 
 struct World {
   std::string name;
   std::string file;  ///< as given by the user
-  /// YAML file of its ROS map, which may be `file`; empty: none, also of a world from a snapshot
+  /// YAML file of its ROS map, possibly equal to `file`; empty: none, or a world from a snapshot
   std::string ros_map;
   std::vector<Model> models;
-  std::vector<Segment> walls;       ///< static segments in the world frame
-  std::vector<OutlineFile> unread;  ///< follow `walls`; `extent` and `hash` count them (LoadOptions::leave_outlines)
+  std::vector<Segment> walls;  ///< static segments in the world frame
+  std::vector<OutlineFile>
+      unread;  ///< walls after `walls`; included in `extent` and `hash` (LoadOptions::leave_outlines)
   std::vector<LaneMarking> lane_markings;  ///< road paint, visible to lane edge sensors only
   double road_resolution = 0.0;            ///< [m] raster step for lane edge sensors; 0: exact markings
   std::vector<Magnet> magnets;             ///< static magnets
-  double magnet_cutoff = 0.0;  ///< [m] magnets beyond this horizontal distance are left out of sums; 0: none
-  Accuracy accuracy;           ///< of sensors without a word of their own whose type knows the word
+  double magnet_cutoff = 0.0;              ///< [m] magnets beyond this horizontal distance are ignored; 0: none
+  Accuracy accuracy;                       ///< for sensors without their own word, if their type has the word
   std::vector<Mover> movers;
   std::vector<Path> paths;
   std::vector<Light> lights;
   std::vector<Emitter> emitters;
   std::vector<FloorHole> floor_holes;
-  std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as load_roads opens them
-  std::map<std::string, int> unmodelled;  ///< entity types without a model, kept as plain bodies, with their count
-  double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)
+  std::vector<std::string> road_files;  ///< paths of the RNDFs of the world's roads, as opened by load_roads
+  std::map<std::string, int>
+      unmodelled;         ///< entity types that are not modelled and become plain bodies, with their counts
+  double interval = 0.1;  ///< [s] simulated time per tick (`interval_sim`)
   Extent extent;
   std::vector<Warning> warnings;
-  std::uint64_t hash = 0;  ///< of all data above that a reading depends on
+  std::uint64_t hash = 0;  ///< of all data above that readings depend on
 };
 
-/// Options of the load.
+/// Options for loading.
 struct LoadOptions {
-  bool stage_obstacles = false;  ///< keep Stage's rule that floor plans with `obstacle_return 0` do not stop robots
+  bool stage_obstacles = false;  ///< use Stage's rule that floor plans with `obstacle_return 0` do not stop robots
   bool stage_noise = false;      ///< read the first number of `noise` as a variance, as Stage does
   bool unknown_is_wall = false;  ///< ROS maps: unknown cells are walls
-  bool strict = false;           ///< refuse road networks and files of outlines that deviate from their format
-  bool leave_outlines = false;   ///< the walls of outline files stay in their files (`World::unread`)
-  std::string accuracy;          ///< word for all sensors, before those of the file; empty: those of the file hold
+  bool strict = false;           ///< reject road networks and files of outlines that deviate from their format
+  bool leave_outlines = false;   ///< keep the walls of outline files in their files (`World::unread`)
+  std::string accuracy;          ///< word for all sensors, overrides those of the file; empty: no override
   std::span<const SensorKeyword> sensors;  ///< modelled sensor types; models of other types become plain bodies
 };
 
 /// Reads a Stage world (either dialect) or a ROS map_server map (`.yaml`).
-/// @throws base::InputError with file, line, what was expected and what to do.
+/// @throws base::InputError with file, line, expected input and advice
 World load_world(const std::string& file, const LoadOptions& options = {});
 
 /// Moves all geometry by (dx, dy), except the networks of `road_files`. For tests far from the origin.
 void translate(World& world, double dx, double dy);
 
 /// Grows or shrinks `movers` to `count` copies of one robot (a mover that is not a tag) at free poses: the first with
-/// sensors, else the first (robot_to_copy, world/free_space.h). Copy k is clear of walls and of copies 0..k-1, drawn
-/// from (seed, k) alone. Copy 0 gets a new pose as well.
-/// @throws base::InputError when there is no robot, or no room.
+/// sensors, or else the first (robot_to_copy, world/free_space.h). Copy k is clear of walls and of copies 0..k-1, and
+/// is drawn only from (seed, k). Copy 0 gets a new pose as well.
+/// @throws base::InputError if there is no robot, or not enough room
 void clone_robots(World& world, std::uint32_t count, std::uint64_t seed);
 
 /// Replaces `movers` by the unchanged robots in rows `robots` (ascending), then a copy of the robot in row `original`
-/// at each pose [m, rad], then the tags. Copies get the smallest ids from 1 that no robot of `robots` has, and names
-/// with these ids. The poses are not checked for collisions.
+/// at each pose [m, rad], then the tags. Copies get the smallest ids from 1 that no robot in `robots` has, and names
+/// with these ids. Does not check the poses for collisions.
 void copy_robots(World& world, std::uint32_t original, std::span<const Pose> poses,
                  std::span<const std::uint32_t> robots);
 
-/// The whole world as bytes, and back. Recordings carry a snapshot so that a run can be drawn and recomputed elsewhere.
+/// Serializes the whole world, and restores it. Recordings contain a snapshot, so a run can be drawn and recomputed
+/// elsewhere.
 std::vector<std::uint8_t> snapshot(const World& world);
 World from_snapshot(const std::vector<std::uint8_t>& bytes);
 

@@ -1,15 +1,16 @@
 #pragma once
 // Smooth lines through way-points.
 //
-// A cubic Hermite curve joins each pair of neighbouring way-points, so the line passes through every way-point exactly
+// A cubic Hermite curve joins each pair of neighbouring way-points. The line passes exactly through every way-point,
 // and its direction is continuous (C1 in arc length). The direction at a way-point lies between those of its two
-// chords, nearer to the chord that bends less at its far end (after H. Akima, "A new method of interpolation and smooth
-// curve fitting", J. ACM 17(4), 1970, with curvatures of chords in place of slopes), so that straights beside bends
+// chords, closer to the chord that bends less at its far end (after H. Akima, "A new method of interpolation and smooth
+// curve fitting", J. ACM 17(4), 1970, with curvatures of chords in place of slopes), so straight parts next to bends
 // stay straight. The length of a tangent is the shorter of the two chords, times 1 / cos^2(turn of the span / 4):
 // equally spaced points of a circle give a circle (within 1e-6 of its radius for points every 30 degrees).
 //
-// No overshoot: along its chord the curve moves forwards only, and its lateral distance from the chord is at most half
-// of the chord (at most a quarter of the shorter neighbouring chord times the sine of its steepest angle, times that
+// The curve does not overshoot: along its chord it only moves forwards, and its lateral distance from the chord is at
+// most half of the chord (at most a quarter of the shorter neighbouring chord times the sine of its steepest angle,
+// times that factor).
 // factor).
 
 #include <cstddef>
@@ -24,29 +25,30 @@ namespace sf::world {
 struct Curve {
   std::vector<glm::dvec2> points;    ///< [m]
   std::vector<glm::dvec2> tangents;  ///< unit vectors along the curve; {1, 0} for a curve of one point
-  std::vector<double> s;             ///< [m] length of the polyline up to this point
-  std::vector<std::size_t> knots;    ///< row of each way-point; way-points that coincide share one
+  std::vector<double> s;             ///< [m] length of the polyline up to each point
+  std::vector<std::size_t> knots;    ///< row of each way-point; coincident way-points share a row
 };
 
-/// Sampling of a curve as a polyline.
+/// How a curve is sampled as a polyline.
 struct Sampling {
-  double tolerance = 1e-3;      ///< [m] > 0: largest distance of the curve from the polyline
-  double half_width = 0.0;      ///< [m] >= 0: the tolerance holds for the curve's offset at this distance as well
+  double tolerance = 1e-3;      ///< [m] > 0: largest distance between the curve and the polyline
+  double half_width = 0.0;      ///< [m] >= 0: the tolerance also holds for the curve's offset at this distance
   std::size_t most = 1u << 20;  ///< largest number of points; beyond it the polyline is coarser than the tolerance
 };
 
-/// The smooth line through `waypoints`, at least one. A way-point within 1e-6 m of the previous one is merged with it.
+/// Returns the smooth line through `waypoints`, at least one. Merges a way-point within 1e-6 m of the previous one with
+/// it.
 Curve smooth_curve(std::span<const glm::dvec2> waypoints, const Sampling& sampling);
 
-/// A smooth connection from `a` in direction `tangent_a` to `b` in direction `tangent_b` (unit vectors).
+/// Returns a smooth connection from `a` in direction `tangent_a` to `b` in direction `tangent_b` (unit vectors).
 Curve connection(glm::dvec2 a, glm::dvec2 tangent_a, glm::dvec2 b, glm::dvec2 tangent_b, const Sampling& sampling);
 
-/// The curve's parallel at `distance` to its left (negative: right) [m]. Where the curve bends tighter than `distance`,
-/// points closer to the curve than `distance` are left out, so that the inside of a bend has a corner instead of a
-/// loop. Neighbouring points are distinct; empty when no point is left, and for a curve of one point.
+/// Returns the parallel of the curve at `distance` [m] to its left (negative: right). Where the curve bends more
+/// tightly than `distance`, points closer to it than `distance` are left out, so the inside of a bend has a corner
+/// instead of a loop. Neighbouring points are distinct. Empty if no point is left, and for a curve of one point.
 std::vector<glm::dvec2> offset_curve(const Curve& curve, double distance);
 
-/// Point at `s` [m] along the polyline, clamped to its ends.
+/// Returns the point at `s` [m] along the polyline, clamped to its ends.
 glm::dvec2 point_at(const Curve& curve, double s);
 
 }  // namespace sf::world

@@ -1,9 +1,9 @@
 #pragma once
-// Collected problems of a road network or a mission. Hand-written files have slips with a clear meaning, and slips
-// without one.
+// Collects the problems of a road network or a mission. Some mistakes in hand-written files have an obvious
+// interpretation, others do not.
 //
-// In strict mode the first problem is thrown. Otherwise a problem with a clear meaning becomes a warning that states
-// the interpretation, and the others are collected, so that one error lists them all.
+// In strict mode the first problem is thrown. Otherwise, a problem with an obvious interpretation becomes a warning
+// that states it. All others are collected, so that one error lists them all.
 
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@
 
 namespace sf::world {
 
-/// A file of another format. It ends the diagnosis: other problems of the file are not reported.
+/// Thrown for a file of another format. Ends the diagnosis: other problems of the file are not reported.
 struct WrongFormatError : base::InputError {
   using base::InputError::InputError;
 };
@@ -26,14 +26,17 @@ class Diagnostics {
 
   bool strict() const { return strict_; }
 
-  /// A problem with a clear meaning. @param remedy advice for the user, @param taken the interpretation used
-  /// @throws base::InputError in strict mode. Past 10 000 warnings it adds an error
+  /// Adds a problem with an obvious interpretation.
+  /// @param remedy advice for the user
+  /// @param taken the interpretation used
+  /// @throws base::InputError in strict mode. After 10 000 warnings, adds an error
   void add_warning(int line, const std::string& what, const std::string& remedy, const std::string& taken);
-  /// A problem without a clear meaning. @throws base::InputError in strict mode, and at the hundredth such problem
+  /// Adds a problem without an obvious interpretation.
+  /// @throws base::InputError in strict mode, and at the hundredth such problem
   void add_error(int line, const std::string& what);
 
-  /// Calls `act()`. An exception counts as one problem of `line`, and the result is false. @throws base::InputError in
-  /// strict mode
+  /// Calls `act()`. An exception counts as one problem of `line` and gives false.
+  /// @throws base::InputError in strict mode
   template <class Act>
   bool attempt(const int& line, Act&& act) {
     if (strict_) return act(), true;
@@ -48,7 +51,7 @@ class Diagnostics {
     }
   }
 
-  /// @throws base::InputError with all collected errors in order of lines, when there are any.
+  /// @throws base::InputError with all collected errors in order of lines, if there are any
   void throw_errors();
 
  private:
@@ -57,7 +60,7 @@ class Diagnostics {
   std::string file_;
   bool strict_;
   std::vector<Warning>* warnings_;
-  std::vector<std::pair<int, std::string>> refused_;  ///< line, and the whole message
+  std::vector<std::pair<int, std::string>> refused_;  ///< line and whole message
 };
 
 }  // namespace sf::world

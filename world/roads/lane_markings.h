@@ -1,14 +1,14 @@
 #pragma once
-// The lane markings of a road network, as lane edge sensors measure them.
+// The lane markings of a road network, as measured by lane edge sensors.
 //
-// The centre of a line lies on the lane's edge. The two solid lines of `double_yellow` lie on both sides of it, one
-// line width apart. Dashes begin with the lane, each is a marking of its own, and the last one ends with the lane. Stop
-// lines and the sides and ends of parking spots are white. Perimeters of zones and edges without a boundary have no
-// markings. A line between two lanes is added twice when both lanes specify it.
+// The centre of a line is on the lane's edge. The two solid lines of `double_yellow` are on both sides of the edge, one
+// line width apart. Dashes start at the start of the lane, each dash is a separate marking, and the last one ends with
+// the lane. Stop lines and the sides and ends of parking spots are white. Perimeters of zones and edges without a
+// boundary have no markings. A line between two lanes is added twice if both lanes specify it.
 //
-// Sizes, unless the sidecar has its own, times the scale (FHWA, "Manual on Uniform Traffic Control Devices", 2009:
-// 3A.06 longitudinal lines 4 to 6 in, double lines with a discernible gap, broken lines 10 ft with gaps of 30 ft; 3B.16
-// stop lines 12 to 24 in): lines 4 in, dashes 10 ft, gaps 30 ft, stop lines 12 in.
+// Default sizes, times the scale, unless the sidecar sets others (FHWA, "Manual on Uniform Traffic Control Devices",
+// 2009: 3A.06 longitudinal lines 4 to 6 in, double lines with a discernible gap, broken lines 10 ft with gaps of 30 ft;
+// 3B.16 stop lines 12 to 24 in): lines 4 in, dashes 10 ft, gaps 30 ft, stop lines 12 in.
 
 #include <vector>
 
@@ -22,7 +22,7 @@ inline constexpr double kInch = 0.0254;  ///< [m]
 inline constexpr std::uint32_t kYellowPaint = 0xFFF2B800u;  ///< 0xAARRGGBB
 inline constexpr std::uint32_t kWhitePaint = 0xFFFFFFFFu;
 
-/// @throws base::InputError when there are more than a million markings.
+/// @throws base::InputError if there are more than a million markings
 std::vector<LaneMarking> lane_markings_of(const RoadNetwork& network);
 
 }  // namespace sf::world

@@ -1,6 +1,6 @@
 #pragma once
-// A road network in metres of the world: lanes as smooth lines with edges and markings, and the transitions between
-// lanes. Tables of rows in file order, joined by row number; immutable after it is built.
+// A road network in world metres: lanes as smooth lines with edges and markings, and the transitions between lanes.
+// Consists of tables in file order, joined by row number. Immutable once built.
 //
 //   RoadNetwork roads = load_roads("site.rndf", warnings);         // world/roads/roads.h
 //   const glm::dvec2 p = position_of(roads, *find_point(roads, {1, 2, 3}));
@@ -17,12 +17,12 @@
 
 namespace sf::world {
 
-/// A point by its row in the tables.
+/// Refers to a point by its row in the tables.
 struct PointRef {
   enum class Kind : std::uint8_t { lane, perimeter, spot };
   Kind kind = Kind::lane;
   std::uint32_t row = 0;    ///< in `lanes`, `zones` or `spots`
-  std::uint32_t index = 0;  ///< among the points of that row; spot: 0 its entry, 1 its end
+  std::uint32_t index = 0;  ///< among the points of that row; for a spot, 0 is the entry and 1 the end
 
   friend bool operator==(const PointRef&, const PointRef&) = default;
 };
@@ -34,7 +34,7 @@ struct LanePoint {
   double yaw = 0.0;  ///< [rad] driving direction; 0 for a lane of one point
 };
 
-/// Rule: a lane with one way-point (or only coincident ones) has a centre line of one point and no edges.
+/// Invariant: a lane with one way-point (or only coincident ones) has a centre line of one point and no edges.
 struct RoadLane {
   std::uint32_t segment = 0;  ///< row in `segments`
   int number = 0;             ///< in the file
@@ -42,9 +42,9 @@ struct RoadLane {
   Boundary left = Boundary::none;
   Boundary right = Boundary::none;
   std::vector<LanePoint> points;       ///< at least one, in driving direction
-  Curve centre;                        ///< knots: `points`
+  Curve centre;                        ///< its knots are `points`
   std::vector<glm::dvec2> left_edge;   ///< [m] half the width to the left of the centre line, in driving direction
-  std::vector<glm::dvec2> right_edge;  ///< [m] likewise
+  std::vector<glm::dvec2> right_edge;  ///< [m] half the width to the right
 };
 inline double length_of(const RoadLane& lane) { return lane.centre.s.back(); }
 
@@ -63,7 +63,7 @@ struct PerimeterPoint {
 struct RoadZone {
   int id = 0;
   std::string name;
-  std::vector<PerimeterPoint> perimeter;  ///< closed: the last point is joined to the first
+  std::vector<PerimeterPoint> perimeter;  ///< closed: the last point is connected to the first
   std::uint32_t first_spot = 0;           ///< rows [first_spot, first_spot + spots) of `spots`
   std::uint32_t spots = 0;
 };
@@ -73,16 +73,16 @@ struct RoadSpot {
   int number = 0;
   double width = 0.0;  ///< [m] > 0
   glm::dvec2 entry;    ///< [m] world frame
-  glm::dvec2 end;      ///< [m] position of a parked car's front
+  glm::dvec2 end;      ///< [m] position of the front of a parked car
 };
 
 struct RoadExit {
   PointRef from;
   PointRef to;
-  double length = 0.0;  ///< [m] of `exit_curve`
+  double length = 0.0;  ///< [m] along `exit_curve`
 };
 
-/// A line across the full width of the lane. Lanes without a direction have none.
+/// A line across the full width of the lane. Lanes without a direction have no stop lines.
 struct StopLine {
   PointRef at;
   glm::dvec2 left;   ///< [m] end on the lane's left edge
@@ -95,7 +95,7 @@ struct RoadCheckpoint {
   glm::dvec2 p;  ///< [m] world frame
 };
 
-/// Sizes of markings, scaled. [m] > 0
+/// Sizes of markings, including the scale. [m] > 0
 struct MarkingSizes {
   double line_width = 0.0;
   double dash_length = 0.0;
@@ -107,7 +107,7 @@ struct RoadNetwork {
   std::string name;
   std::string file;
   double scale = 1.0;       ///< [-] metres of the world per metre of the RNDF
-  double tolerance = 1e-3;  ///< [m] largest distance of polylines from their curves
+  double tolerance = 1e-3;  ///< [m] largest distance between polylines and their curves
   std::vector<RoadSegment> segments;
   std::vector<RoadLane> lanes;
   std::vector<RoadZone> zones;
@@ -117,43 +117,44 @@ struct RoadNetwork {
   std::vector<RoadCheckpoint> checkpoints;  ///< sorted by id
   MarkingSizes paint;
   RoadCounts counts;
-  Extent extent;                                    ///< [m] of all points, edges and spots
-  std::vector<std::pair<PointId, PointRef>> index;  ///< sorted: see `find_point`
+  Extent extent;                                    ///< [m] bounds of all points, edges and spots
+  std::vector<std::pair<PointId, PointRef>> index;  ///< sorted, for `find_point`
 };
 
-/// Builds the network. @throws base::InputError when the sidecar names a missing lane or point, or the network is too
-/// large.
+/// Builds the network.
+/// @throws base::InputError if the sidecar refers to a missing lane or point, or if the network is too large
 RoadNetwork build_network(const Rndf& rndf, const RoadSidecar& sidecar, std::vector<Warning>& warnings);
 
-/// nullopt when the network has no such point.
+/// Returns nullopt if the network has no such point.
 std::optional<PointRef> find_point(const RoadNetwork& network, PointId id);
-/// Null when the network has no such checkpoint. Lives as long as the network.
+/// Returns null if the network has no such checkpoint. Valid as long as the network.
 const RoadCheckpoint* find_checkpoint(const RoadNetwork& network, int id);
 
 PointId id_of(const RoadNetwork& network, PointRef at);
 glm::dvec2 position_of(const RoadNetwork& network, PointRef at);
-/// Driving direction [rad]; nullopt for perimeter points, and for lanes without a direction.
+/// Returns the driving direction [rad]; nullopt for perimeter points and for lanes without a direction.
 std::optional<double> yaw_of(const RoadNetwork& network, PointRef at);
 /// "1.2", as written in the file.
 std::string name_of(const RoadNetwork& network, const RoadLane& lane);
 
-/// One transition from a point to another.
+/// A transition from a point to another.
 struct Transition {
   enum class Kind : std::uint8_t { lane, exit, zone, change };
   Kind kind = Kind::lane;  ///< along the lane, by an exit, freely across a zone, or to the adjacent lane
   PointRef to;
-  double length = 0.0;  ///< [m] along the lane; of the connection of an exit or change; straight across a zone
+  double length =
+      0.0;  ///< [m] along the lane; for an exit or change, of the connecting curve; for a zone, of the straight line
 };
 
-/// Lane changes from `at`: to lanes of the same segment that run beside it in the same direction, with a broken line or
-/// no known marking between them. Each change ends at the first point of the other lane at least three lane widths
-/// farther on. Empty for points of zones and spots.
+/// Returns the lane changes from `at` to adjacent lanes of the same segment and direction, across a broken line or an
+/// unspecified marking. Each change ends at the first point of the other lane that is at least three lane widths
+/// farther along. Empty for points of zones and spots.
 std::vector<Transition> lane_changes(const RoadNetwork& network, PointRef at);
 
-/// The curve of a lane change, from one lane's direction into the other's.
+/// Returns the curve of a lane change, from one lane's direction to the other's.
 Curve lane_change_curve(const RoadNetwork& network, PointRef from, PointRef to);
 
-/// The curve of an exit, from the lane's direction into that of the entry; straight when a direction is not known.
+/// Returns the curve of an exit, from the lane's direction to that of the entry; straight if a direction is unknown.
 Curve exit_curve(const RoadNetwork& network, const RoadExit& exit);
 
 }  // namespace sf::world

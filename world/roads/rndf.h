@@ -14,14 +14,14 @@
 
 namespace sf::world {
 
-/// Marking along one side of a lane. `none`: the file specifies nothing.
+/// Marking along one side of a lane. `none`: not specified in the file.
 enum class Boundary : std::uint8_t { none, double_yellow, solid_yellow, solid_white, broken_white };
 
-/// The file's word for it; "none" for none.
+/// Returns the word in the file; "none" for none.
 std::string_view word_of(Boundary boundary);
-/// nullopt for a word that is not a boundary; "none" is not a word of the format.
+/// Returns nullopt for a word that is not a boundary; "none" is not a word of the format.
 std::optional<Boundary> boundary_of(std::string_view word);
-/// `double_yellow, solid_yellow, ...`, for errors.
+/// Returns `double_yellow, solid_yellow, ...`, for errors.
 std::string boundary_words();
 
 struct RndfPoint {
@@ -31,8 +31,8 @@ struct RndfPoint {
   int line = 0;            ///< 1-based, here and below
 };
 
-/// An exit of a lane or a zone; it may stand in the block of another one. Both points are existing way-points of lanes
-/// or perimeter points of zones.
+/// An exit of a lane or a zone, possibly written in the block of another one. Both points are existing way-points of
+/// lanes or perimeter points of zones.
 struct RndfExit {
   PointId from;
   PointId to;
@@ -52,7 +52,7 @@ struct RndfCheckpoint {
 
 struct RndfLane {
   int number = 0;                  ///< in [1, 32768]
-  std::optional<double> width_ft;  ///< [ft] > 0; nullopt when the file has no width or 0
+  std::optional<double> width_ft;  ///< [ft] > 0; nullopt if the file has no width or 0
   Boundary left = Boundary::none;
   Boundary right = Boundary::none;
   std::vector<RndfPoint> points;  ///< at least one, in driving direction
@@ -64,14 +64,14 @@ struct RndfLane {
 
 struct RndfSegment {
   int id = 0;        ///< in [1, 32768], unique among segments and zones
-  std::string name;  ///< may be empty or hold blanks
+  std::string name;  ///< may be empty or contain blanks
   std::vector<RndfLane> lanes;
   int line = 0;
 };
 
 struct RndfSpot {
   int number = 0;                  ///< in [1, 32768]
-  std::optional<double> width_ft;  ///< [ft] > 0; nullopt when the file has no width or 0
+  std::optional<double> width_ft;  ///< [ft] > 0; nullopt if the file has no width or 0
   std::vector<RndfPoint> points;   ///< two: entry and end
   std::vector<RndfCheckpoint> checkpoints;
   int line = 0;
@@ -79,8 +79,8 @@ struct RndfSpot {
 
 struct RndfZone {
   int id = 0;                        ///< in [1, 32768], unique among segments and zones
-  std::string name;                  ///< may be empty or hold blanks
-  std::vector<RndfPoint> perimeter;  ///< closed: the last is joined to the first; at least one
+  std::string name;                  ///< may be empty or contain blanks
+  std::vector<RndfPoint> perimeter;  ///< closed: the last point is connected to the first; at least one
   std::vector<RndfExit> exits;
   std::vector<RndfSpot> spots;
   int line = 0;
@@ -91,7 +91,7 @@ struct Rndf {
   std::string name;
   std::string format_version;
   std::string creation_date;
-  std::vector<RndfSegment> segments;  ///< in file order, as all lists here
+  std::vector<RndfSegment> segments;  ///< in file order, like all lists here
   std::vector<RndfZone> zones;
   std::vector<Warning> warnings;
 };
@@ -109,13 +109,13 @@ struct RoadCounts {
 };
 RoadCounts count(const Rndf& rndf);
 
-/// Reads a file and checks its syntax and all its references. Problems with a clear meaning become warnings; all others
-/// are thrown together.
-/// @param strict the first problem is thrown.
-/// @throws base::InputError with file, line, what was expected and what to do.
+/// Reads a file and checks its syntax and all its references. Problems with an obvious interpretation become warnings;
+/// all others are thrown together.
+/// @param strict throw the first problem
+/// @throws base::InputError with file, line, expected input and advice
 Rndf read_rndf(const std::string& file, bool strict = false);
 
-/// Likewise from memory. @param file name for errors
+/// Same, from memory. @param file name for errors
 Rndf parse_rndf(const std::string& file, std::string_view text, bool strict = false);
 
 }  // namespace sf::world

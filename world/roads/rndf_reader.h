@@ -1,5 +1,5 @@
 #pragma once
-// Parser state of an RNDF: the open blocks, and the effect of each keyword in them.
+// Parser state for an RNDF: the open blocks, and the effect of each keyword in them.
 //
 //   file > segment > lane
 //   file > zone > perimeter
@@ -36,8 +36,8 @@ class RndfReader {
     int line = 0;
     std::string name;                                            ///< `lane 1.2`
     std::map<std::string, DeclaredCount, std::less<>> declared;  ///< by keyword, e.g. `num_lanes`
-    std::map<std::string, std::string, std::less<>> seen;  ///< keywords allowed once in the block, with their text
-    /// Refused blocks in this block, by keyword, and refused points as `point`.
+    std::map<std::string, std::string, std::less<>> seen;        ///< keywords allowed once per block, with their text
+    /// Number of rejected blocks in this block, by keyword, and of rejected points, as `point`.
     std::map<std::string, std::size_t, std::less<>> skipped;
     std::size_t refused(std::string_view what) const {
       const auto found = skipped.find(what);
@@ -98,14 +98,14 @@ class RndfReader {
   std::map<int, RndfCheckpoint> checkpoints_;  ///< by id
   std::map<std::pair<PointId, PointId>, int> exits_;
   std::set<PointId> stops_;
-  std::set<std::string, std::less<>> unknown_;  ///< unknown keywords with a warning so far
-  std::set<PointId> unread_;                    ///< refused points, which references may still name
+  std::set<std::string, std::less<>> unknown_;  ///< unknown keywords already warned about
+  std::set<PointId> unread_;                    ///< rejected points, which references may still use
   bool ended_ = false;
-  bool cut_ = false;  ///< the file has no end_file: it may be truncated
+  bool cut_ = false;  ///< the file has no end_file, so it may be truncated
 };
 
-/// Checks that all points named by exits, stops and checkpoints exist. @param unread refused points: references to them
-/// are not reported
+/// Checks that all points named by exits, stops and checkpoints exist.
+/// @param unread rejected points; references to them are not reported
 void check_references(const Rndf& rndf, const std::set<PointId>& unread, Diagnostics& diagnostics);
 
 }  // namespace sf::world

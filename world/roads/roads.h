@@ -1,5 +1,5 @@
 #pragma once
-// Entry point of road networks for other modules: a file in, lanes and markings out.
+// Entry point to road networks for other modules: reads a file and returns lanes and markings.
 
 #include <optional>
 #include <string>
@@ -11,14 +11,14 @@
 
 namespace sf::world {
 
-/// Reads an RNDF and the sidecar beside it. Problems other than errors are added to `warnings`. @param strict as for
-/// `read_rndf`
-/// @throws base::InputError with file and line.
+/// Reads an RNDF and the sidecar in the same folder. Adds problems other than errors to `warnings`.
+/// @param strict as in `read_rndf`
+/// @throws base::InputError with file and line
 RoadNetwork load_roads(const std::string& rndf_file, std::vector<Warning>& warnings, bool strict = false);
 
-/// The network of a loaded world, the first one when there are several; nullopt when there is none. Warnings are
-/// dropped, since load_world reported them. @throws base::InputError when the file has changed and can no longer be
-/// read.
+/// Returns the network of a loaded world (the first of several), or nullopt if there is none. Drops warnings, since
+/// load_world has reported them.
+/// @throws base::InputError if the file has changed and can no longer be read
 std::optional<RoadNetwork> roads_of(const World& world);
 
 }  // namespace sf::world

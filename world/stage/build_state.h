@@ -1,5 +1,5 @@
 #pragma once
-// A world under construction from the tree of its file.
+// A world under construction from its file's tree.
 
 #include <map>
 #include <optional>
@@ -14,13 +14,13 @@
 
 namespace sf::world {
 
-/// The frame and names for the children of a model.
+/// The frame and names that a model passes to its children.
 struct Parent {
   std::uint32_t model = kNone;
   std::uint32_t mover = kNone;
-  Pose X_WP;          ///< the parent in the world
-  Pose X_MP;          ///< the parent in its mover's frame, for a parent with a mover
-  double lift = 0.0;  ///< [m] the parent's height, for a parent that stacks its children
+  Pose X_WP;          ///< pose of the parent in the world
+  Pose X_MP;          ///< pose of the parent in its mover's frame, if it has a mover
+  double lift = 0.0;  ///< [m] the parent's height, if it stacks its children
   std::string name;
   std::string name_in_mover;                     ///< empty for the mover itself
   std::map<std::string, std::uint32_t> unnamed;  ///< per word: number of children without a name
@@ -33,8 +33,8 @@ struct BuildState {
   World world;
   BitmapCache bitmaps;
   std::set<std::string> names;
-  std::map<std::string, int> copies;                  ///< last number of models with the same name
-  std::set<std::string> warned_types;                 ///< types with a warning so far
+  std::map<std::string, int> copies;                  ///< last number used for models with the same name
+  std::set<std::string> warned_types;                 ///< types already warned about
   std::vector<std::optional<std::uint32_t>> numbers;  ///< per mover: the number in its name
   std::vector<SourceLocation> locations;              ///< per mover: its place in the file
   std::vector<std::string_view> types;                ///< every type and macro, for suggestions
@@ -42,16 +42,15 @@ struct BuildState {
   std::map<std::string, bool> way_points;             ///< of all road networks; true: with a stop line
 };
 
-/// `wanted`, or `wanted#2`, `wanted#3`, ...: a name that no other model has.
+/// Returns `wanted`, or `wanted#2`, `wanted#3`, ...: a name that no other model has.
 std::string free_name(BuildState& b, const std::string& wanted);
 
-/// Adds the children of `entity` and their descendants as models; warns about entities in the wrong
-/// place.
-/// @throws base::InputError with file and line.
+/// Adds the children of `entity` and their descendants as models. Warns about entities in the wrong place.
+/// @throws base::InputError with file and line
 void add_children(BuildState& b, const Entity& entity, Parent& parent);
 
-/// Warns about properties that are unknown in `where`, with the nearest known key.
-/// @param own further keys known there.
+/// Warns about properties that are unknown in `where`, suggesting the nearest known key.
+/// @param own further keys known there
 void check_keys(StageContext& context, const Entity& entity, KeyScope where,
                 std::span<const std::string_view> own = {});
 

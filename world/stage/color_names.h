@@ -1,5 +1,5 @@
 #pragma once
-// Colour names of X11, as world files use them.
+// X11 colour names, as used in world files.
 
 #include <cstdint>
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace sf::world {
 
-/// 0xFFRRGGBB. Case and blanks do not matter (`steel blue`, `SteelBlue`); `gray0` .. `gray100` and the darker variants
-/// `red1` .. `red4` are known.
+/// Returns 0xFFRRGGBB. Ignores case and blanks (`steel blue`, `SteelBlue`). Knows `gray0` .. `gray100` and the darker
+/// variants `red1` .. `red4`.
 std::optional<std::uint32_t> color_of(std::string_view name);
 
 }  // namespace sf::world

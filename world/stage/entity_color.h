@@ -5,8 +5,8 @@
 
 namespace sf::world {
 
-/// The colour of the property `key`, else that of `color_rgba`, else the fallback. An unknown name gives the fallback
-/// and a warning. `random` is a fixed function of `seed`.
+/// Returns the colour of the property `key`, or else that of `color_rgba`, or else the fallback. An unknown name gives
+/// the fallback and a warning. `random` is a fixed function of `seed`.
 std::uint32_t entity_color(StageContext& context, const Entity& entity, std::string_view key, std::uint32_t fallback,
                            std::uint32_t seed);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Properties of models for a robot's infrared receivers and cliff sensors: infrared emitters (`ir_emitter`) and holes
-// in the floor (`cliff_return 1`).
+// Model properties for a robot's infrared receivers and cliff sensors: infrared emitters (`ir_emitter`) and holes in
+// the floor (`cliff_return 1`).
 
 #include <vector>
 
@@ -8,18 +8,18 @@
 
 namespace sf::world {
 
-/// True when `entity` is a hole in the floor.
+/// Returns true if `entity` is a hole in the floor.
 bool is_floor_hole(const StageContext& context, const Entity& entity);
 
 /// Adds each closed outline of `shape` as a hole. `model` becomes the next row of the models.
-/// @param shape in the body's frame
+/// @param shape in the body frame
 /// @param X_B the body frame in the world
-/// @throws base::InputError for a hole on a mover, a bitmap, or a self-crossing outline.
+/// @throws base::InputError for a hole on a mover, a bitmap, or a self-crossing outline
 void add_floor_holes(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
                      const Pose& X_B);
 
-/// Adds an emitter when `entity` has one. `model` becomes the next row of the models.
-/// @throws base::InputError for an unknown kind, lengths or angles out of range, or an emitter on a mover.
+/// Adds an emitter if `entity` has one. `model` becomes the next row of the models.
+/// @throws base::InputError for an unknown kind, lengths or angles out of range, or an emitter on a mover
 void add_emitter(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B);
 
 }  // namespace sf::world

@@ -10,15 +10,16 @@
 
 namespace sf::world {
 
-/// Adds the light that `entity` describes; `model` becomes the next row of the models.
-/// @throws base::InputError with file and line for a malformed plan, malformed way-points, or a light on a mover.
+/// Adds the light described by `entity`; `model` becomes the next row of the models.
+/// @throws base::InputError with file and line for a malformed plan, malformed way-points, or a light on a mover
 void add_light(BuildState& b, const Entity& entity, const Model& model);
 
-/// The body of a light without blocks of its own: a pole, and a head of the full size on it. Frame as in `shape_of`.
+/// Returns the body of a light without blocks: a pole with a head of the full size on top. Frame as in `shape_of`.
 std::vector<Segment> light_shape(const Size& size, bool single);
 
-/// Checks, after all entities are read, that the way-points of lights exist in worlds with roads; warns about
-/// way-points without a stop line. @throws base::InputError naming the light's line.
+/// Checks, after all entities are read, that the way-points of lights exist in worlds with roads. Warns about
+/// way-points without a stop line.
+/// @throws base::InputError with the light's line
 void check_stop_lines(BuildState& b);
 
 }  // namespace sf::world

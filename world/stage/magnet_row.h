@@ -1,5 +1,5 @@
 #pragma once
-// Magnets in a row under a lane: four properties for thousands of magnets.
+// Rows of magnets under a lane: four properties describe thousands of magnets.
 
 #include <functional>
 #include <optional>
@@ -17,12 +17,13 @@ struct MagnetRow {
   double top = 0.0;      ///< [m] upper end above the ground
 };
 
-/// `magnetic_moment`, `magnet_spacing`, `magnet_size [width length]` and `magnet_top`; nullopt when the first two are
-/// absent. @throws base::InputError with file and line.
+/// Reads `magnetic_moment`, `magnet_spacing`, `magnet_size [width length]` and `magnet_top`; nullopt if the first two
+/// are absent.
+/// @throws base::InputError with file and line
 std::optional<MagnetRow> read_magnet_row(const StageContext& context, const Entity& entity);
 
-/// Adds magnets at s = 0, spacing, 2 spacing ... up to `length` [m], at `along(s)`; they belong to the last model.
-/// @throws base::InputError, naming `entity`, when there are more than a million.
+/// Adds magnets at s = 0, spacing, 2 spacing ... up to `length` [m], at `along(s)`. They belong to the last model.
+/// @throws base::InputError, with the place of `entity`, for more than a million magnets
 void place_magnets(BuildState& b, const Entity& entity, const MagnetRow& row, double length,
                    const std::function<Pose(double)>& along);
 

@@ -8,14 +8,14 @@
 
 namespace sf::world {
 
-/// Segments in the body's frame: centred in x and y, z from 0 to size.z. `Segment::model` and the flags keep their
-/// defaults.
-/// @param is_box whether a model without blocks, bitmap and boundary is a box.
-/// @throws base::InputError for a block or bitmap that cannot be read.
+/// Returns segments in the body frame: centred in x and y, z from 0 to size.z. `Segment::model` and the flags keep
+/// their defaults.
+/// @param is_box whether a model without blocks, bitmap and boundary is a box
+/// @throws base::InputError for a block or bitmap that cannot be read
 std::vector<Segment> shape_of(StageContext& context, BitmapCache& bitmaps, const Entity& entity, const Size& size,
                               bool is_box);
 
-/// The `size` property, or the fallback; two numbers keep the fallback's height.
+/// Reads the `size` property, or returns the fallback. Two numbers keep the fallback's height.
 Size size_of(const StageContext& context, const Entity& entity, const Size& fallback);
 
 }  // namespace sf::world

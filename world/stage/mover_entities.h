@@ -15,23 +15,23 @@ struct PacketId {
   bool is_tag = false;
 };
 
-/// The packet id in a model's own name. Tags count from 1, robots from 0; more than nine digits give none.
+/// Returns the packet id in a model's own name. Tags count from 1, robots from 0. More than nine digits give no id.
 std::optional<PacketId> packet_id_of(std::string_view name);
 
-/// The known controller that `ctrl` names (also Stage's `wander`); empty, with a warning, for other names.
+/// Returns the known controller named by `ctrl` (including Stage's `wander`); empty, with a warning, for other names.
 std::string controller_of(BuildState& b, const Entity& entity);
 
-/// `tag_pose`: the pose of the tag on a model that follows TAG packets. Other models ignore it, with a warning.
-/// @throws base::InputError as any pose, and for a pose 100 m from the origin.
+/// Reads `tag_pose`: the pose of the tag on a model that follows TAG packets. Other models ignore it, with a warning.
+/// @throws base::InputError as for any pose, and for a pose 100 m from the origin
 Pose tag_pose_of(StageContext& context, const Entity& entity, bool is_tag);
 
 /// Adds a mover for `model`, which becomes the next row of the models, and returns its row.
-/// @throws base::InputError for bounds, a drive, an actuator model or lengths out of range.
+/// @throws base::InputError for bounds, a drive, an actuator model or lengths out of range
 std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model, std::optional<PacketId> packet_id);
 
-/// Gives each mover its id: first the ids in names; then each other robot gets the smallest free id from 0, in file
+/// Assigns the ids of movers: first the ids in names; then each other robot gets the smallest free id from 0, in file
 /// order.
-/// @throws base::InputError when two robots, or two tags, have the same id.
+/// @throws base::InputError if two robots, or two tags, have the same id
 void number_movers(BuildState& b);
 
 }  // namespace sf::world

@@ -1,5 +1,5 @@
 #pragma once
-// State of the parser that turns tokens into a tree.
+// State of the parser that converts tokens to a tree.
 
 #include <algorithm>
 #include <map>
@@ -32,19 +32,19 @@ inline const Token& now(const ParseState& r) { return r.tokens[r.at]; }
 inline const Token& next(const ParseState& r) { return r.tokens[std::min(r.at + 1, r.tokens.size() - 1)]; }
 inline SourceLocation location(const ParseState& r, const Token& token) { return {r.file, token.line}; }
 
-/// @throws base::InputError, always, with the name of the current file.
+/// Throws base::InputError with the name of the current file.
 [[noreturn]] void fail(const ParseState& r, int line, const std::string& message);
 void warn(ParseState& r, int line, std::string message);
 
-/// A token as quoted in errors.
+/// Returns a token as quoted in errors.
 std::string shown(const Token& token);
 
-/// Reads `key value` and advances. @throws base::InputError when there is no value.
+/// Reads `key value` and advances. @throws base::InputError if there is no value
 Property read_property(ParseState& r);
 
-/// Adds a property. The last of two equal ones counts, with a warning when both stand in the same parentheses.
+/// Adds a property. It overrides an equal one, with a warning if both are in the same parentheses.
 /// @param rows rows of all properties of the entity
-/// @param written keys of these parentheses so far
+/// @param written keys in these parentheses so far
 void add_property(ParseState& r, Entity& entity, KeyRows& rows, std::unordered_set<std::string>& written,
                   Property property);
 

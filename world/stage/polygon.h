@@ -13,7 +13,7 @@ struct PolygonEdge {
   glm::dvec2 b;  ///< never equal to a
 };
 
-/// Rule: with `solid_left` the edges are a simple closed polygon, counter-clockwise.
+/// Invariant: with `solid_left`, the edges are a simple closed polygon, counter-clockwise.
 struct Polygon {
   std::vector<PolygonEdge> edges;
   bool solid_left = true;
@@ -24,8 +24,10 @@ struct Polygon {
 /// `solid_left`.
 Polygon make_polygon(std::vector<glm::dvec2> points);
 
-/// The same with bounded work. @param pairs of edges that may still be compared; lowered by those that are
-/// @return nothing where more would have to be: all whose extents along x overlap, at most half the square of the edges
+/// Same, with bounded work. Compares all pairs of edges whose extents along x overlap: at most half the square of the
+/// number of edges.
+/// @param pairs of edges that may still be compared; reduced by the number of compared pairs
+/// @return nothing if more pairs would have to be compared
 std::optional<Polygon> make_polygon(std::vector<glm::dvec2> points, double& pairs);
 
 }  // namespace sf::world

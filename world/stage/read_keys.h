@@ -1,5 +1,5 @@
 #pragma once
-// Keys of the tables in world/fields.h, read into the fields of a row.
+// Reads the keys of the tables in world/fields.h into the fields of a row.
 
 #include <span>
 #include <string>
@@ -11,20 +11,20 @@
 
 namespace sf::world {
 
-/// The value of `key` in SI units; `value` itself where `entity` lacks the key or the tuple's element.
-/// @throws base::InputError when it is of another kind or out of bounds.
+/// Returns the value of `key` in SI units; `value` if `entity` lacks the key or the tuple's element.
+/// @throws base::InputError if it has another type or is out of bounds
 double read_number(const StageContext& context, const Entity& entity, const Key& key, const Bounds& bounds,
                    double value);
 
-/// The row of `written`, the text of `key`, in `words`. @throws base::InputError at `at`, naming all words.
+/// Returns the row in `words` of `written`, the text of `key`. @throws base::InputError at `at`, listing all words
 std::size_t word_row(const StageContext& context, SourceLocation at, std::string_view key, std::string_view written,
                      std::span<const std::string_view> words);
 
-/// The row in `words` of the text of `key`. @throws base::InputError naming all words.
+/// Returns the row in `words` of the text of `key`. @throws base::InputError listing all words
 std::size_t read_word(const StageContext& context, const Entity& entity, std::string_view key,
                       std::span<const std::string_view> words);
 
-/// Sets the fields whose keys `entity` has. Other fields keep their values, which are so the keys' defaults.
+/// Sets the fields whose keys `entity` has. Other fields keep their values, which are the keys' defaults.
 template <class Row>
 void read_keys(const StageContext& context, const Entity& entity, Row& row) {
   for_each_key<Row>([&](const auto& field) {

@@ -1,5 +1,5 @@
 #pragma once
-// Stage world files, from disk or from memory.
+// Reads Stage world files, from disk or from memory.
 
 #include <string>
 
@@ -7,9 +7,9 @@
 
 namespace sf::world {
 
-/// Builds the world that `text` describes. `file` is the name for errors, and its folder the place of includes and
+/// Builds the world described by `text`. `file` is the name for errors, and its folder is used to find includes and
 /// bitmaps; the file itself is not read.
-/// @throws base::InputError with file and line.
+/// @throws base::InputError with file and line
 World build_world(const std::string& file, const std::string& text, const LoadOptions& options = {});
 
 }  // namespace sf::world

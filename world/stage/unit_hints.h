@@ -1,6 +1,6 @@
 #pragma once
-// Warnings of numbers that are likely to be in another unit than the file's: radians and degrees, millimetres and
-// metres. Plausible numbers are never warned of.
+// Warns about numbers that probably have another unit than the file's: radians instead of degrees, or millimetres
+// instead of metres. Plausible numbers never cause a warning.
 
 #include <string_view>
 
@@ -8,11 +8,11 @@
 
 namespace sf::world {
 
-/// Warns of a field of view or range of a sensor or an infrared emitter, once per line of the file.
-/// @param type the sensor type's word, whose ranges differ
+/// Warns about the field of view or range of a sensor or an infrared emitter, once per line of the file.
+/// @param type word of the sensor type; types have different ranges
 void warn_of_units(BuildState& b, const Property& property, std::string_view type);
 
-/// The same angle in degrees, where `angle` is likely to be one in radians: 25 to 360 degrees, rounded or cut off to
+/// Returns the angle in degrees if `angle` was probably written in radians: 25 to 360 degrees, rounded or truncated to
 /// two decimals or more; else 0.
 double degrees_of_radians(double angle);
 
