@@ -4,13 +4,13 @@ namespace sf::world {
 
 namespace {
 
-/// Centre of the circle through the origin, `u` and `v`, which are not in line with it.
+/// Returns the centre of the circle through the origin, `u` and `v`, which are not collinear with it.
 glm::dvec2 circle_centre(glm::dvec2 u, glm::dvec2 v) {
   const double uu = dot(u, u), vv = dot(v, v);
   return glm::dvec2(v.y * uu - u.y * vv, u.x * vv - v.x * uu) / (2.0 * base::cross(u, v));
 }
 
-/// [rad] from `p` to `q` in the given direction; negative for clockwise.
+/// Returns the angle [rad] from `p` to `q` in the given direction; negative for clockwise.
 double arc_turn(glm::dvec2 p, glm::dvec2 q, bool left) {
   const double turn = std::atan2(base::cross(p, q), dot(p, q));
   if (left) return turn < 0.0 ? turn + 2.0 * M_PI : turn;

@@ -4,10 +4,10 @@ namespace sf::world {
 
 namespace {
 
-// +1 at the first solid cell in the direction of counting, -1 at the first free cell after a solid one, 0 elsewhere.
+// +1 at the first solid cell in the counting direction, -1 at the first free cell after a solid one, 0 elsewhere.
 int step(std::uint8_t before, std::uint8_t after) { return int{after} - int{before}; }
 
-// Runs on the line between rows j - 1 and j. A solid above the line is on the left of a run to the right.
+// Appends the runs on the line between rows j - 1 and j. A solid above the line is on the left of a run to the right.
 void horizontal_runs(const Bitmap& grid, std::uint32_t j, std::vector<BoundaryRun>& runs) {
   const std::vector<std::uint8_t> outside(grid.width, 0);
   const std::uint8_t* below = j > 0 ? grid.solid.data() + std::size_t{j - 1} * grid.width : outside.data();
@@ -29,8 +29,8 @@ struct Open {
   std::uint32_t begin = 0;
 };
 
-// Runs on all vertical lines at once, row by row, in the order of the cells in memory. A solid on the right of the line
-// is on the left of a downward run.
+// Returns the runs on all vertical lines at once, row by row, in memory order of the cells. A solid to the right of the
+// line is on the left of a downward run.
 std::vector<std::vector<BoundaryRun>> vertical_runs(const Bitmap& grid, std::size_t most) {
   std::vector<std::vector<BoundaryRun>> runs(grid.width + 1);
   std::vector<Open> open(grid.width + 1);

@@ -31,8 +31,8 @@ std::uint32_t renamed(const std::vector<std::uint32_t>& rows, std::uint32_t row)
   return row == kNone ? kNone : rows[row];
 }
 
-// Removes robots: `models` keeps static models, tags and the robots in `robots`. Gives new rows for old models and
-// movers.
+// Removes robots: `models` keeps static models, tags and the robots in `robots`. Maps old rows of models and movers to
+// new ones.
 struct Kept {
   std::vector<Model> models;
   std::vector<std::uint32_t> model_rows;  // kNone: removed
@@ -70,8 +70,8 @@ void retarget(std::vector<Row>& table, const std::vector<std::uint32_t>& rows) {
   for (Row& row : table) row.model = rows[row.model];
 }
 
-// A copy of the robot in row `original` of the world's movers with id `id`, for row `mover`. Its models are appended to
-// `models`.
+// Returns a copy of the robot in row `original` of the world's movers, with id `id`, for row `mover`. Appends its
+// models to `models`.
 Mover copy_of(const World& world, std::uint32_t original, std::uint32_t id, std::uint32_t mover, const Pose& X_WM,
               const Kept& kept, std::vector<Model>& models) {
   Mover copy = world.movers[original];
@@ -108,7 +108,8 @@ Mover kept_one(const Mover& mover, const Kept& kept) {
   return same;
 }
 
-/// Appends the models of `original`, renamed and moved with it. @param from may be `world`
+/// Appends the models of `original`, renamed and moved with it.
+/// @param from may be `world`
 /// @return new rows by old row
 std::vector<std::uint32_t> append_models(World& world, const World& from, std::uint32_t original,
                                          const std::string& name, const Pose& X_WM) {
@@ -140,7 +141,7 @@ std::uint32_t next_id(const World& world) {
   return id;
 }
 
-/// All of a mover that a reading depends on, apart from its place, its name and its rows.
+/// Returns all properties of a mover that readings depend on, except its place, its name and its rows.
 base::Bytes kind_of(const World& world, std::uint32_t row) {
   Mover mover = world.movers[row];
   mover.name.clear();

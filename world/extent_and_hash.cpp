@@ -18,13 +18,13 @@ void include(Extent& extent, glm::dvec2 p) {
             std::max(extent.y_max, p.y)};
 }
 
-/// Of the walls in files.
+/// Number and extent of the walls in files.
 struct UnreadWalls {
   std::uint64_t count = 0;
   Extent extent = kNowhere;
 };
 
-/// Sets the longest wall of each file, and adds warnings, too.
+/// Sets the longest wall of each file, and adds warnings.
 UnreadWalls measure_unread(World& world) {
   UnreadWalls unread;
   for (OutlineFile& file : world.unread) {
@@ -77,7 +77,7 @@ double radius_of(const Mover& mover) {
   return radius;
 }
 
-/// The order of the hash up to the accuracy is older than the table's.
+/// Fields up to the accuracy keep the hash order from before the table of fields existed.
 constexpr auto kFirstHashed = std::make_tuple(&World::interval, &World::models, &World::walls, &World::road_resolution,
                                               &World::lane_markings, &World::magnet_cutoff, &World::accuracy);
 
@@ -90,7 +90,7 @@ bool is_first_hashed(Member member) {
   return std::apply([&](auto... others) { return (same(others) || ...); }, kFirstHashed);
 }
 
-/// Hash of values as bytes, which are not kept.
+/// Hashes values as bytes without storing the bytes.
 class FieldHash {
  public:
   template <class T>
@@ -119,7 +119,7 @@ class FieldHash {
   RowWriter writer_{out_, RowFields::physics};
 };
 
-/// @param unread walls in files: they follow the others
+/// @param unread number of walls in files, which follow the others
 std::uint64_t hash_of(const World& world, std::uint64_t unread) {
   FieldHash hash;
   const auto put = [&](auto member) {

@@ -15,7 +15,7 @@ namespace sf::world {
 namespace {
 
 struct Kind {
-  std::string_view mark;  ///< the root element of an XML file, or the first bytes of any other
+  std::string_view mark;  ///< root element of an XML file, or first bytes of any other file
   std::string_view program;
   std::string_view how;
 };
@@ -31,7 +31,7 @@ constexpr std::string_view kGazebo =
 constexpr std::string_view kMujoco =
     "write each geom of type box, whose size is half of its sides, as model( size [x y z] pose [x y z yaw] )";
 
-// World files that are XML.
+// XML world files.
 constexpr auto kElements = std::to_array<Kind>({
     {"sdf", "Gazebo (SDFormat)", kGazebo},
     {"gazebo", "Gazebo (SDFormat)", kGazebo},
@@ -82,7 +82,7 @@ void skip_blanks(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
 }
 
-// Behind a <!DOCTYPE>, whose subset in brackets and quotes may contain '>'.
+// Finds the end of a <!DOCTYPE>, whose subset in brackets and quotes may contain '>'.
 std::size_t end_of_doctype(std::string_view text) {
   int brackets = 0;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -94,7 +94,7 @@ std::size_t end_of_doctype(std::string_view text) {
   return std::string_view::npos;
 }
 
-// Behind declarations and comments; empty for a text that is not XML.
+// Returns the root element, after declarations and comments; empty if the text is not XML.
 std::string_view root_element(std::string_view text) {
   for (skip_blanks(text); text.starts_with("<?") || text.starts_with("<!"); skip_blanks(text)) {
     const std::string_view end = text.starts_with("<!--") ? "-->" : "?>";
@@ -136,7 +136,7 @@ void refuse_yaml(const std::string& file, std::string_view text) {
   throw base::InputError(file, 0, "is YAML; expected a Stage world, or a ROS map in a file that ends in .yaml");
 }
 
-// Texts of JSON: of geometries, scenes and anything else.
+// Rejects JSON texts: geometries, scenes and others.
 void refuse_json(const std::string& file, std::string_view text) {
   if (contains(text, "\"coordinates\"") || contains(text, "\"FeatureCollection\"") || contains(text, "\"Topology\""))
     refuse_outlines(file);
@@ -147,7 +147,7 @@ void refuse_json(const std::string& file, std::string_view text) {
       fmt::format("is JSON of no known program; expected a Stage world or the .yaml of a ROS map: {}", kModels));
 }
 
-// Wavefront's OBJ: behind comments a word of it, and a vertex somewhere.
+// Wavefront OBJ: starts with one of its words after comments, and has a vertex somewhere.
 bool is_obj(std::string_view text) {
   constexpr auto kWords = std::to_array<std::string_view>({"mtllib ", "usemtl ", "o ", "g ", "v ", "vn ", "vt ", "s "});
   for (skip_blanks(text); text.starts_with('#'); skip_blanks(text))
@@ -159,7 +159,7 @@ bool is_obj(std::string_view text) {
   return std::count(line.begin(), line.begin() + std::min(line.find('\n'), line.size()), ' ') >= 3;
 }
 
-// In words, or binary: a header of 80 bytes, the number of triangles, and 50 bytes for each.
+// Text, or binary: a header of 80 bytes, the number of triangles, and 50 bytes for each.
 bool is_stl(std::string_view text) {
   if (text.starts_with("solid") && (contains(text, "facet normal") || contains(text, "endsolid"))) return true;
   if (text.size() < 84) return false;
@@ -168,7 +168,7 @@ bool is_stl(std::string_view text) {
   return text.size() == 84 + 50 * std::size_t{triangles};
 }
 
-// The ASCII characters of a text in UTF-16; empty for any other.
+// Returns the ASCII characters of a UTF-16 text; empty for any other text.
 std::string ascii_of_utf16(std::string_view text) {
   const bool is_little = text.starts_with("\xFF\xFE") || text.starts_with(std::string_view("<\0", 2));
   const bool is_big = text.starts_with("\xFE\xFF") || text.starts_with(std::string_view("\0<", 2));

@@ -17,9 +17,9 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kMaxCells = 2000.0;       // of the coarse grid, per axis
+constexpr double kMaxCells = 2000.0;       // cells of the coarse grid per axis
 constexpr double kOpenWorld = 10.0;        // [m] smallest searched distance around the first robot
-constexpr std::uint32_t kAttempts = 4000;  // draws per copy; a random packing is full long before
+constexpr std::uint32_t kAttempts = 4000;  // draws per copy; random packing is full long before that
 
 double clear_radius(const Mover& robot) { return robot.radius + kPlaceMargin; }
 
@@ -35,7 +35,7 @@ Heights heights_of(const Mover& robot, double z) {
   return heights;
 }
 
-// The border of a map's known area is a wall for placement, without `solid_left`.
+// For placement, the border of a map's known area is a wall without `solid_left`.
 std::vector<Segment> walls_at_height(const World& world, const Mover& robot, std::span<const Segment> known) {
   const Heights heights = heights_of(robot, robot.X_WM.z);
   std::vector<Segment> walls;
@@ -64,7 +64,7 @@ bool in_solid(const WallTree& walls, glm::dvec2 p) {
 
 bool is_known(std::span<const Segment> known, glm::dvec2 p) { return known.empty() || winding_number(known, p) != 0; }
 
-// ---- The coarse grid and the region a robot can reach in it.
+// ---- The coarse grid and the reachable region.
 
 struct Region {
   glm::dvec2 corner;  // [m] lower left
@@ -78,8 +78,9 @@ struct Region {
   }
 };
 
-// Cells of half the robot's circle, larger in large worlds, but never wider than the circle. Two neighbouring clear
-// centres then have no wall between them: each point between is within the circle's radius of one of them.
+// Builds a grid whose cells have half the size of the robot's circle. Cells are larger in large worlds, but never wider
+// than the circle. Two neighbouring clear centres then have no wall between them: each point between them is within the
+// circle's radius of one centre.
 Region grid_over(const WallTree& walls, const Mover& robot) {
   const glm::dvec2 p{robot.X_WM.x, robot.X_WM.y};
   Box box = base::united(box_around(p, kOpenWorld), walls.extent());
@@ -98,7 +99,7 @@ Region grid_over(const WallTree& walls, const Mover& robot) {
 
 enum class Cell : std::uint8_t { unknown, blocked, reached };
 
-// Appends the cells reachable from `first` to region.cells. Cells are tested when the flood fill reaches them.
+// Appends the cells reachable from `first` to region.cells. Tests cells when the flood fill reaches them.
 void flood(Region& region, std::vector<Cell>& state, const WallTree& walls, double radius, std::uint32_t first) {
   std::size_t next = region.cells.size();
   const auto visit = [&](std::uint32_t to) {
@@ -119,7 +120,7 @@ void flood(Region& region, std::vector<Cell>& state, const WallTree& walls, doub
   }
 }
 
-// The nearest clear cell without a wall between its centre and p, or kNone.
+// Returns the nearest clear cell without a wall between its centre and p, or kNone.
 std::uint32_t cell_near(const Region& region, const WallTree& walls, double radius, glm::dvec2 p) {
   const double reach = 2.0 * radius + region.cell;
   const auto index = [&](double v, std::uint32_t count) {
@@ -141,7 +142,7 @@ std::uint32_t cell_near(const Region& region, const WallTree& walls, double radi
   return nearest;
 }
 
-// True for a region that is not enclosed: it reaches the border of the searched area or of a map's known area.
+// Returns true for a region that is not enclosed: it reaches the border of the searched area or of a map's known area.
 bool is_open(const Region& region, const Box& known, double radius) {
   const double reach = radius + 1.5 * region.cell;
   return std::any_of(region.cells.begin(), region.cells.end(), [&](std::uint32_t at) {
@@ -153,7 +154,7 @@ bool is_open(const Region& region, const Box& known, double radius) {
   });
 }
 
-// Takes the largest enclosed region, unless an open region is a hundred times as large.
+// Selects the largest enclosed region, unless an open region is a hundred times larger.
 void take_largest(std::span<const Segment> known, Region& region, std::vector<Cell>& state, const WallTree& walls,
                   double radius) {
   const Box all_known = box_of(known);
@@ -187,7 +188,7 @@ Region reachable(std::span<const Segment> known, const WallTree& walls, const Mo
 
 // ---- Random placement, one pose after another.
 
-// Points in hash buckets, so that the memory depends on the number of copies and not on the extent of the world.
+// Points in hash buckets, so memory depends on the number of copies and not on the extent of the world.
 class PlacedRobots {
  public:
   PlacedRobots(std::size_t count, double apart) : apart_(apart), heads_(2 * count + 1, kNone) {}
@@ -227,7 +228,7 @@ bool clear_of_tags(const World& world, glm::dvec2 p, double radius) {
   });
 }
 
-// The floor plan or map: a picture whose area is at least half of the walls' extent. Null: none.
+// Returns the floor plan or map: a picture whose area is at least half of the walls' extent. Null: none.
 const Model* plan_of(const World& world) {
   const Box box = box_of(world.walls);
   const glm::dvec2 size = box.max - box.min;
@@ -243,8 +244,8 @@ std::vector<Segment> stopping(const World& world) {
   return walls;
 }
 
-// The first model with a wall that the robot's outline would cross at that pose; kNone without one. The outline is
-// shrunk a little, so that contact does not count.
+// Returns the first model with a wall that the robot's outline would cross at that pose, or kNone. The outline is
+// shrunk slightly, so contact does not count.
 std::uint32_t model_in(const WallTree& walls, const Mover& robot, const Pose& X_WM) {
   const Heights heights = heights_of(robot, X_WM.z);
   std::uint32_t first = kNone;

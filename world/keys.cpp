@@ -13,7 +13,7 @@ namespace {
 using Words = std::span<const std::string_view>;
 
 // clang-format off
-// Keys with a reader of their own. world/fields.h has all others.
+// Keys with their own readers. world/fields.h has all others.
 constexpr auto kWorld = std::to_array<std::string_view>({"unit_length", "unit_angle", "accuracy", "old_shapes", "stage_noise", "stage_obstacles",
   // known, not modelled
   "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
@@ -56,7 +56,7 @@ constexpr auto kIgnoredTypes = std::to_array<std::string_view>({"window", "gui",
 
 bool has(Words words, std::string_view word) { return std::find(words.begin(), words.end(), word) != words.end(); }
 
-// `block[2].point[13]` becomes `block[].point[]`.
+// Converts `block[2].point[13]` to `block[].point[]`.
 std::string without_indices(std::string_view key) {
   std::string plain;
   bool inside = false;
@@ -68,7 +68,7 @@ std::string without_indices(std::string_view key) {
   return plain;
 }
 
-/// The keys of a row's fields.
+/// Returns the keys of a row's fields.
 template <class Row>
 Words fields_of() {
   static const std::vector<std::string_view> keys = [] {
@@ -79,7 +79,7 @@ Words fields_of() {
   return keys;
 }
 
-/// The keys of every model, and others.
+/// Returns the keys of every model, and `others`.
 std::vector<Words> model_and(std::initializer_list<Words> others) {
   std::vector<Words> words{kModel, fields_of<Segment>(), fields_of<Emitter>()};
   words.insert(words.end(), others);

@@ -46,7 +46,7 @@ void LightActuator::note_calls(Run& run, double time) const {
       if (has_call(plan_.detectors[row], last_[row], time)) run.called[k] = time;
 }
 
-/// The next one that is not left out; the present one: no other is wanted.
+/// Returns the next stage that is not skipped, or the current stage if no other is needed.
 std::size_t LightActuator::next_stage(const Run& run) const {
   const std::size_t count = run.program->stages.size();
   for (std::size_t k = 1; k < count; ++k) {
@@ -56,7 +56,7 @@ std::size_t LightActuator::next_stage(const Run& run) const {
   return run.stage;
 }
 
-/// [s] of yellow and clear time to the next stage.
+/// Returns the yellow and clear time [s] before the next stage.
 double LightActuator::change_time(const Run& run) const {
   const LightStage& stage = run.program->stages[run.stage];
   for (std::size_t i = 0; i < run.program->lights.size(); ++i)
@@ -96,7 +96,7 @@ SignalForecast LightActuator::forecast(const Run& run, std::size_t i, double tim
     return {{LightState::yellow, end}, end, Signal{stage.clear > 0.0 ? LightState::red : after, kUnknown}};
   }
   const double soonest = std::max(0.0, stage.shortest - since);
-  // Without another stage that is wanted, this one may last.
+  // If no other stage is needed, this one may last.
   const double latest = run.next == run.stage ? kUnknown : std::max(soonest, stage.longest - since);
   if (run.next == run.stage || (!yellow && after == now)) return {{now, kUnknown}, kUnknown, std::nullopt};
   if (yellow) return {{now, soonest}, latest, Signal{LightState::yellow, soonest + stage.yellow}};

@@ -7,14 +7,14 @@ namespace sf::world {
 
 namespace {
 
-/// [s] between a stage and the next: its yellow and clear times, where some light needs them.
+/// Returns the time [s] between a stage and the next: its yellow and clear times, if some light needs them.
 double change_time(const LightProgram& program, std::size_t stage, std::size_t next) {
   for (std::size_t i = 0; i < program.lights.size(); ++i)
     if (needs_yellow(program, stage, next, i)) return program.stages[stage].yellow + program.stages[stage].clear;
   return 0.0;
 }
 
-/// Joins equal neighbours, so that every phase is a change.
+/// Merges equal neighbours, so every phase is a change.
 void add_phase(std::vector<LightPhase>& phases, LightState state, double duration) {
   if (duration <= 0.0) return;
   if (!phases.empty() && phases.back().state == state) {
@@ -66,7 +66,7 @@ void set_phases(const LightProgram& program, World& world) {
     Light& light = world.lights[program.lights[i]];
     light.phases = phases_of(program, i);
     light.offset = program.offset;
-    // A state that lasts over the end of the cycle is one phase, at its start.
+    // A state that spans the end of the cycle becomes one phase, at its start.
     if (light.phases.size() == 1 || light.phases.back().state != light.phases.front().state) continue;
     light.offset -= light.phases.back().duration;
     light.phases.front().duration += light.phases.back().duration;

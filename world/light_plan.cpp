@@ -53,7 +53,7 @@ class PlanReader {
   World& world_;
   std::vector<std::string_view> lights_, detectors_;
   std::vector<std::string> programs_;
-  std::vector<std::string_view> taken_;  ///< lights with a program
+  std::vector<std::string_view> taken_;  ///< lights that have a program
 };
 
 const TomlNode& PlanReader::required(const TomlNode& table, std::string_view key, std::string_view example) const {
@@ -190,7 +190,7 @@ LightProgram PlanReader::read_program(const TomlNode& table) {
   return program;
 }
 
-/// [m] from light k - 1 of a wave to light k: as given, or straight.
+/// Returns the distance [m] from light k - 1 of a wave to light k: as given, or else straight.
 double PlanReader::distance(const TomlNode& table, const std::vector<std::uint32_t>& lights, std::size_t k) const {
   const TomlNode* given = find(table, "distances");
   if (given != nullptr) {
@@ -203,7 +203,8 @@ double PlanReader::distance(const TomlNode& table, const std::vector<std::uint32
   return std::hypot(b.x - a.x, b.y - a.y);
 }
 
-/// Shifts programs so that each light of the wave turns green when a robot at its speed comes from the one before.
+/// Shifts programs so that each light of the wave turns green when a robot at the wave's speed arrives from the
+/// previous one.
 void PlanReader::read_wave(const TomlNode& table, LightPlan& plan) const {
   reader_.require_known(table, kWaveKeys);
   const double speed = reader_.number(required(table, "speed", "speed = 0.2, in m/s"), "speed", 1e-3, 1e3, "m/s");

@@ -22,7 +22,7 @@ Signal signal_at(const Light& light, double time) {
 }
 
 SignalForecast forecast_at(const Light& light, double time) {
-  constexpr double kInto = 5e-4;  // [s] into the next phase, beyond rounding
+  constexpr double kInto = 5e-4;  // [s] into the next phase, more than rounding errors
   SignalForecast forecast{signal_at(light, time), 0.0, std::nullopt};
   forecast.latest = forecast.now.left;
   if (!std::isfinite(forecast.now.left)) return forecast;

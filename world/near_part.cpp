@@ -11,7 +11,7 @@ namespace sf::world {
 
 namespace {
 
-/// Whether a wall goes on with the line of connected walls of one model that ends with `last`.
+/// Returns whether a wall continues the line of connected walls of one model that ends with `last`.
 bool goes_on(const Segment& last, const Segment& wall) { return wall.model == last.model && wall.a == last.b; }
 
 std::size_t end_of_line(const std::vector<Segment>& walls, std::size_t first) {
@@ -26,14 +26,14 @@ double longest_of(std::span<const Segment> walls) {
   return longest;
 }
 
-/// Chooses among lines of walls, in the world's order.
+/// Selects lines of walls, in the world's order.
 class NearLines {
  public:
-  /// @param longest [m] wall of the world: error bounds depend on it, so one of that length is kept
+  /// @param longest [m] longest wall of the world; one wall of that length is kept, since error bounds depend on it
   NearLines(const base::Box& near, double longest) : near_(near), missing_(longest) {}
 
   bool keeps(std::span<const Segment> line) {
-    // The rest of an outline in several pieces is not known here.
+    // The rest of an outline in several pieces is unknown here.
     const bool open = line.front().solid_left && line.front().a != line.back().b;
     const double longest = longest_of(line);
     if (!open && !base::meet(near_, box_of(line)) && longest < missing_) return false;

@@ -1,4 +1,4 @@
-// Netpbm's formats: bits (P1, P4), grey (P2, P5) and colour (P3, P6), as words (P1 to P3) or binary.
+// Netpbm formats: bits (P1, P4), grey (P2, P5) and colour (P3, P6), as text (P1 to P3) or binary.
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ struct Cursor {
 struct Format {
   bool binary = false;
   std::uint32_t channels = 1;  ///< 1 or 3
-  std::uint32_t white = 1;     ///< largest sample, up to 65535; 1: bits, of which 1 is black
+  std::uint32_t white = 1;     ///< largest sample, up to 65535; 1: bits, where 1 is black
   bool bits = false;
 
   std::size_t bytes_per_sample() const { return white > 255 ? 2 : 1; }
@@ -34,7 +34,7 @@ struct Format {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
 
-// To the end of a comment, which is that of its line, if one begins here.
+// If a comment starts here, skips it to the end of its line.
 void skip_comment(Cursor& c) {
   if (c.at < c.bytes.size() && c.bytes[c.at] == '#')
     c.at = std::min(c.bytes.find_first_of("\n\r", c.at), c.bytes.size());
@@ -44,8 +44,8 @@ void skip_blanks(Cursor& c) {
   for (skip_comment(c); c.at < c.bytes.size() && is_blank(c.bytes[c.at]); skip_comment(c)) ++c.at;
 }
 
-// The single blank between header and pixels, which may also end a comment (255#text), as in Netpbm. CRLF, which is two
-// there and shifts the picture, counts as one where all pixels follow it.
+// Skips the single blank between header and pixels, which may also end a comment (255#text), as in Netpbm. Netpbm
+// counts CRLF as two, which shifts the picture; here it counts as one if all pixels follow it.
 void end_header(Cursor& c, std::size_t least_bytes) {
   skip_comment(c);
   if (c.at == c.bytes.size() || !is_blank(c.bytes[c.at])) fail(c, "expected a blank between its header and its pixels");
@@ -54,7 +54,7 @@ void end_header(Cursor& c, std::size_t least_bytes) {
   if (is_crlf && c.bytes.size() - c.at > least_bytes) ++c.at;
 }
 
-// The next decimal number of the header or of a picture in words.
+// Reads the next decimal number of the header or of a text picture.
 std::uint32_t next_number(Cursor& c) {
   skip_blanks(c);
   std::uint32_t value = 0;
@@ -67,7 +67,7 @@ std::uint32_t next_number(Cursor& c) {
   return value;
 }
 
-// A bit of P1, which needs no blank before the next one.
+// Reads a bit of P1, which needs no blank before the next bit.
 std::uint32_t next_bit(Cursor& c) {
   skip_blanks(c);
   if (c.at == c.bytes.size() || (c.bytes[c.at] != '0' && c.bytes[c.at] != '1'))
@@ -75,7 +75,7 @@ std::uint32_t next_bit(Cursor& c) {
   return static_cast<std::uint32_t>(c.bytes[c.at++] - '0');
 }
 
-// The next sample scaled to 255.
+// Reads the next sample, scaled to 255.
 std::uint8_t next_sample(Cursor& c, const Format& format) {
   if (format.bits) return next_bit(c) == 0 ? 255 : 0;
   std::uint32_t sample = 0;
@@ -90,7 +90,7 @@ std::uint8_t next_sample(Cursor& c, const Format& format) {
 }
 
 void read_row(Cursor& c, const Format& format, std::vector<std::uint8_t>& rgba) {
-  const std::size_t bits_at = c.at;  // of P4, whose rows begin with a byte
+  const std::size_t bits_at = c.at;  // of P4, whose rows are padded to bytes
   for (std::size_t x = 0; 4 * x < rgba.size(); ++x) {
     std::uint8_t* const pixel = rgba.data() + 4 * x;
     if (format.bits && format.binary) {
@@ -103,7 +103,7 @@ void read_row(Cursor& c, const Format& format, std::vector<std::uint8_t>& rgba) 
   if (format.bits && format.binary) c.at += (rgba.size() / 4 + 7) / 8;
 }
 
-/// Smallest number of bytes of all pixels.
+/// Returns the smallest number of bytes of all pixels.
 std::size_t least_bytes(const Format& format, const Bitmap& grid) {
   if (format.bits && format.binary) return std::size_t{(grid.width + 7) / 8} * grid.height;
   const std::size_t samples = std::size_t{grid.width} * grid.height * format.channels;

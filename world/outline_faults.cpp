@@ -8,8 +8,8 @@ namespace sf::world {
 
 namespace {
 
-constexpr std::uint64_t kListedFaults = 3;  // of a kind
-/// The consequence, and what further faults are.
+constexpr std::uint64_t kListedFaults = 3;  // per kind
+/// The consequence of each fault, and the plural for further faults.
 constexpr std::array<std::array<const char*, 2>, 7> kFaultWords{
     {{": left out", "rows more are left out that cannot be read"},
      {": left out", "rows more are left out without a geometry"},

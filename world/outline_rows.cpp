@@ -19,7 +19,7 @@ using namespace std::string_view_literals;
 struct Signature {
   std::string_view bytes;
   bool gdal;
-  const char* what;  ///< and what to do, where it is not read
+  const char* what;  ///< name, and advice if the format is not read
 };
 constexpr std::array kSignatures{
     Signature{"SQLite format 3\0"sv, true, ""},
@@ -33,7 +33,7 @@ constexpr std::array kSignatures{
 constexpr std::string_view kBeforeJson = " \t\r\n\x1E";  // and the mark of GeoJSON text sequences
 
 std::string first_bytes(const std::string& file) {
-  base::LineFile check(file);  // refuses devices and pipes
+  base::LineFile check(file);  // rejects devices and pipes
   std::string bytes(512, '\0');
   std::ifstream in(file, std::ios::binary);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

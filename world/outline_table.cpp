@@ -19,7 +19,7 @@ constexpr std::string_view kSeparators = ",;\t| ";
 constexpr std::array<std::string_view, 8> kGeometryNames{"wkt",          "geom",  "geometry", "the_geom",
                                                          "wkb_geometry", "shape", "way",      "wkt_geom"};
 constexpr std::size_t kNoColumn = std::string_view::npos;
-constexpr std::size_t kKnownField = 1'000'000;    // weighs more than any number of fields
+constexpr std::size_t kKnownField = 1'000'000;    // outweighs any number of fields
 constexpr std::size_t kMaxLookahead = 64u << 20;  // characters of lines that are joined to find the separator
 constexpr std::size_t kShownColumns = 20;
 constexpr std::size_t kShownCharacters = 32;
@@ -39,10 +39,10 @@ bool is_height_name(std::string_view name) { return name.size() == 6 && lower_ca
 bool is_known_name(std::string_view name) { return is_geometry_name(name) || is_height_name(name); }
 
 bool may_be_geometry(std::string_view text) { return guess_geometry(text).content != GeometryGuess::Content::none; }
-/// The whole text is one, as far as its parentheses show.
+/// Returns whether the whole text is one geometry, judging by its parentheses.
 bool is_geometry(std::string_view text) { return !text.empty() && guess_geometry(text).length == text.size(); }
 
-/// Separated values with a column of geometries, whose first lines state how they are written.
+/// Separated values with a column of geometries. The first lines determine the dialect.
 class OutlineTable : public OutlineRows {
  public:
   explicit OutlineTable(const std::string& file) : file_(file), record_(file) {}
@@ -74,14 +74,15 @@ class OutlineTable : public OutlineRows {
   std::string remark() const override { return fmt::format("{}", fmt::join(remarks_, "; ")); }
 
  private:
-  /// Of a column, on one line.
+  /// Returns a column's name on one line.
   std::string shown(std::size_t column) const {
     if (column >= names_.size()) return fmt::format("{}", column + 1);
     return "'" + base::one_line(std::string_view(names_[column]).substr(0, kShownCharacters)) + "'";
   }
 
-  /// Reads how the table is written from a line before the first geometry: from that with known names, also below a
-  /// title or a comment, or else from the first one. @return whether the line is a row
+  /// Determines the dialect from a line before the first geometry: the line with known names, possibly below a title or
+  /// a comment, or else the first line.
+  /// @return whether the line is a row
   bool begin() {
     if (takes_separator()) return false;
     if (record_.line().find('\r') != kNoColumn)
@@ -103,7 +104,7 @@ class OutlineTable : public OutlineRows {
     return true;
   }
 
-  /// Blanks that align columns would shift the fields behind them.
+  /// Warns about blanks that align columns, since they shift the fields after them.
   void check_blanks() {
     if (separator_ != ' ' || names_.empty() || is_uneven_ || record_.size() == names_.size()) return;
     is_uneven_ = true;
@@ -113,7 +114,7 @@ class OutlineTable : public OutlineRows {
                     record_.first_line(), record_.size(), names_.size()));
   }
 
-  /// `sep=;`, as Excel writes and reads it.
+  /// Handles `sep=;`, as written and read by Excel.
   bool takes_separator() {
     std::string_view line = record_.line();
     if (line.size() == 7 && line.starts_with('"') && line.ends_with('"')) line = line.substr(1, 5);
@@ -156,7 +157,7 @@ class OutlineTable : public OutlineRows {
                                      shown(static_cast<std::size_t>(like - names_.begin()))));
   }
 
-  /// That which makes known names or geometries of the line, else the most fields of the first line.
+  /// Chooses the separator that gives known names or geometries in the line, or else the most fields in the first line.
   void choose_separator() {
     const std::string candidates = (separator_ != 0 ? std::string(1, separator_) : "") + std::string(kSeparators);
     std::size_t best = 0;
@@ -169,7 +170,7 @@ class OutlineTable : public OutlineRows {
     separator_ = chosen;
   }
 
-  /// Blanks separate only known fields that no other separator would: names and titles have blanks, too.
+  /// Blanks only separate known fields that no other separator would, since names and titles also contain blanks.
   std::size_t score_of(char separator) {
     const bool is_closed = record_.split(separator, lookahead_left_ > 0);
     if (record_.is_joined()) lookahead_left_ -= std::min(lookahead_left_, record_.line().size());
@@ -193,9 +194,9 @@ class OutlineTable : public OutlineRows {
     return fits ? known * kKnownField / (is_clean ? 1 : 2) + (is_clean ? fields : 0) : 0;
   }
 
-  /// A record of several lines whose geometry does not end well has a quote that was never closed: its first line is
-  /// then a record of its own. The lines after it up to the next quote are not joined again, so that each line is
-  /// scanned twice at most.
+  /// A record of several lines whose geometry is malformed has an unclosed quote. Its first line then becomes a
+  /// separate record. The lines after it, up to the next quote, are not joined again, so each line is scanned at most
+  /// twice.
   void read_record() {
     const bool is_closed = record_.split(separator_, record_.first_line() >= joined_);
     if (is_closed && (!record_.is_joined() || ends_well())) return;
@@ -204,12 +205,12 @@ class OutlineTable : public OutlineRows {
     record_.split(separator_, false);
   }
   bool ends_well() {
-    if (searching_ && !record_.behind_quote().empty()) return false;  // names
+    if (searching_ && !record_.behind_quote().empty()) return false;  // a line of names
     const std::string_view text = geometry_of_record();
     return text.empty() || is_geometry(text);
   }
 
-  /// The column of the first row that has walls is the column of all; a name decides between several.
+  /// The column of the first row with walls is used for all rows. A name decides between several.
   std::string_view geometry_of_record() {
     if (geometry_ == kNoColumn) return record_.field(choose_column());
     if (rival_ == kNoColumn && named_ != kNoColumn && geometry_ != named_ && has_walls(named_)) add_rival(named_);
@@ -227,7 +228,7 @@ class OutlineTable : public OutlineRows {
       if (score > most) best = i;
       most = std::max(most, score);
     }
-    if (!has_walls(best)) return best;  // an empty one, say
+    if (!has_walls(best)) return best;  // for example an empty geometry
     geometry_ = best;
     for (std::size_t i = 0; i < record_.size() && best != named_ && rival_ == kNoColumn; ++i)
       if (i != best && has_walls(i)) add_rival(i);
@@ -254,13 +255,13 @@ class OutlineTable : public OutlineRows {
   std::vector<std::string> names_;
   std::vector<std::string> remarks_;
   char separator_ = 0;                ///< 0: not known yet
-  bool is_stated_ = false;            ///< by `sep=`
-  bool is_uneven_ = false;            ///< a row has more or fewer fields than names, between blanks
-  bool searching_ = true;             ///< for the names of columns: neither a known one nor a geometry was found
+  bool is_stated_ = false;            ///< set by `sep=`
+  bool is_uneven_ = false;            ///< a row separated by blanks has more or fewer fields than names
+  bool searching_ = true;             ///< neither a known column name nor a geometry was found yet
   int joined_ = 0;                    ///< lines before this one are not joined with the following ones
   std::size_t named_ = kNoColumn;     ///< column with a name for geometries
-  std::size_t geometry_ = kNoColumn;  ///< column with geometries, once one was found
-  std::size_t rival_ = kNoColumn;     ///< another one
+  std::size_t geometry_ = kNoColumn;  ///< column with geometries, once found
+  std::size_t rival_ = kNoColumn;     ///< another such column
   std::size_t height_ = kNoColumn;
   std::size_t lookahead_left_ = kMaxLookahead;
   WellKnownGeometry scratch_;

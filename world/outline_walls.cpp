@@ -13,8 +13,8 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kTouching = 1e-6;  // [m] to an outer ring, from a corner of an inner one that may be on it
-constexpr double kMaxWalls = 5e7;   // of a file
+constexpr double kTouching = 1e-6;  // [m] tolerance for a corner of an inner ring that may be on its outer ring
+constexpr double kMaxWalls = 5e7;   // per file
 
 [[noreturn]] void refuse_pairs(std::size_t corners) {
   throw base::InputError(
@@ -80,7 +80,7 @@ void OutlineWalls::add_outer_ring(std::span<const glm::dvec2> points) {
   outer_.end = walls_.size();
 }
 
-/// Without a solid round it, a hole would turn inside and outside.
+/// Without a surrounding solid, a hole would swap inside and outside.
 void OutlineWalls::add_hole(std::span<const glm::dvec2> points) {
   const Polygon ring = polygon_of(points);
   const bool outside = outer_.solid && is_outside(ring);

@@ -22,10 +22,11 @@ namespace sf::world {
 namespace {
 
 constexpr std::size_t kShownHeight = 24;  // characters of a field in messages
-constexpr double kMaxInDegrees = 0.01;    // largest outline where small numbers are taken for degrees; 1 km on Earth
+constexpr double kMaxInDegrees =
+    0.01;  // largest outline for which small numbers are assumed to be degrees; 1 km on Earth
 
-/// Finds coordinates that are not in the world's unit: by the file's own words, or since all are small and no outline
-/// has any size, as in degrees.
+/// Detects coordinates that are not in the world's unit: the file states another unit, or all coordinates are small and
+/// all outlines tiny, as in degrees.
 class UnitCheck {
  public:
   void add(const WellKnownGeometry& geometry, const OutlineRow& row) {
@@ -45,7 +46,7 @@ class UnitCheck {
       in_range_ = in_range_ && box.min.x >= -180.0 && box.max.x <= 360.0 && box.min.y >= -90.0 && box.max.y <= 90.0;
     }
   }
-  /// A warning; empty: none.
+  /// Returns a warning; empty: none.
   std::string remark(double metres_per_unit) const {
     const bool is_small = largest_ < kMaxInDegrees && metres_per_unit_ == 0.0;
     if (in_range_ && (is_small || !degrees_.empty()))
@@ -59,14 +60,14 @@ class UnitCheck {
   }
 
  private:
-  std::string degrees_;           ///< why they are degrees; empty: nothing states it
-  double metres_per_unit_ = 0.0;  ///< that the file states; 0: none
-  std::uint32_t srid_ = 0;        ///< the first one of the file
+  std::string degrees_;           ///< why coordinates are degrees; empty: not stated
+  double metres_per_unit_ = 0.0;  ///< stated in the file; 0: not stated
+  std::uint32_t srid_ = 0;        ///< the first in the file
   bool in_range_ = true;
-  double largest_ = 0.0;  ///< extent of a ring or line along x or y
+  double largest_ = 0.0;  ///< largest extent of a ring or line along x or y
 };
 
-/// [m] of a row's walls. @throws base::InputError with the reason alone
+/// Returns the height [m] of a row's walls. @throws base::InputError with only the reason
 double height_of(const OutlineFile& file, std::string_view text) {
   if (text.empty()) return file.surface.z_max;
   double value = NAN;
@@ -107,7 +108,7 @@ class OutlineReader {
   }
 
  private:
-  /// @return false: the row has no walls. @throws base::InputError with the reason alone
+  /// @return false if the row has no walls @throws base::InputError with only the reason
   bool build(const OutlineRow& row) {
     if (row.geometry.empty()) return faults_.add(OutlineFault::empty, row, "has no geometry"), false;
     const double arc_error = kArcError / file_.metres_per_unit;

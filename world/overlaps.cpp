@@ -9,11 +9,11 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint64_t kMaxComparisons = 20'000'000;  // of edges
-constexpr double kShrink = 0.98;                       // of outlines, so that contact does not count
+constexpr double kShrink = 0.98;                       // scale of outlines, so that contact does not count
 
 struct Body {
   const Mover* mover;
-  std::vector<Segment> edges;  ///< that stop robots, in the world frame, a little shrunk
+  std::vector<Segment> edges;  ///< edges that stop robots, in the world frame, slightly shrunk
 };
 
 Body body_of(const Mover& mover) {
@@ -61,7 +61,7 @@ Overlaps find_overlaps(const World& world) {
     rows.push_back(row);
   }
 
-  // Each robot looks for one partner, so a crowd at one place costs no more than robots apart.
+  // Each robot looks for only one partner, so a crowd at one place costs no more than separate robots.
   const base::BoxTree tree(boxes);
   Overlaps found;
   std::set<Overlap> pairs;

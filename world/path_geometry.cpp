@@ -7,14 +7,14 @@ namespace sf::world {
 
 namespace {
 
-/// [m] distance along the piece of the point of its line nearest to `p`, not clamped to the piece.
+/// Returns the distance [m] along the piece of the point of its line nearest to `p`, not clamped to the piece.
 double project(const PathPiece& piece, glm::dvec2 p) {
   const glm::dvec2 q = base::rotate(-piece.X_WP.yaw, p - glm::dvec2{piece.X_WP.x, piece.X_WP.y});
   if (piece.curvature == 0.0) return q.x;
   const double radius = 1.0 / piece.curvature;
   const double side = piece.curvature > 0.0 ? 1.0 : -1.0;
   const double angle = std::atan2(q.x, side * (radius - q.y));
-  // A position behind the start of an arc is before the arc, not most of a turn ahead: the limit is half of the
+  // A position behind the start of an arc is before the arc, not almost a full turn ahead. The limit is half of the
   // remaining turn.
   const double turn = piece.length * std::abs(piece.curvature);
   const double ahead = angle < 0.0 && angle + 2.0 * M_PI < M_PI + 0.5 * turn ? angle + 2.0 * M_PI : angle;

@@ -14,7 +14,7 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMaxPixels = 16384;    // per side
-constexpr std::size_t kMaxBytes = 300u << 20;  // of a file; the largest 8-bit PGM has 256 MiB
+constexpr std::size_t kMaxBytes = 300u << 20;  // per file; the largest 8-bit PGM has 256 MiB
 
 const PictureDecoder& plugin() {
   static const auto* const loaded = static_cast<const PictureDecoder*>(
@@ -23,7 +23,7 @@ const PictureDecoder& plugin() {
   return *loaded;
 }
 
-/// A picture that the plug-in decodes. False for another format.
+/// Decodes a picture with the plug-in. Returns false for another format.
 bool decode_by_plugin(const std::string& bytes, GridBuilder& grid) {
   const auto size = size_in_header(grid.file(), bytes);
   if (!size) return false;

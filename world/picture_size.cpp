@@ -1,4 +1,4 @@
-// Sizes in the headers of pictures that the plug-in decodes.
+// Reads sizes from the headers of pictures that the plug-in decodes.
 
 #include <algorithm>
 #include <string_view>
@@ -10,7 +10,8 @@ namespace sf::world {
 
 namespace {
 
-constexpr int kMaxScans = 100;  // of a progressive JPEG, which has about ten; each takes the time of the whole picture
+constexpr int kMaxScans =
+    100;  // in a progressive JPEG, which usually has about ten; each takes as long as the whole picture
 
 struct Bytes {
   const std::string& file;
@@ -30,7 +31,7 @@ bool is_frame(std::uint64_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
-// The next marker behind the entropy-coded data of a scan, in which 0xFF is followed by 0 or a restart marker.
+// Finds the next marker after the entropy-coded data of a scan, in which 0xFF is followed by 0 or a restart marker.
 std::size_t behind_scan(const Bytes& b, std::size_t at) {
   for (;; ++at) {
     at = std::min(b.bytes.find('\xFF', at), b.bytes.size());
@@ -61,19 +62,19 @@ PictureSize jpeg_size(const Bytes& b) {
   return size;
 }
 
-// A negative height means that the top row comes first. The header of OS/2 has 16-bit sizes.
+// A negative height means that the top row comes first. The OS/2 header has 16-bit sizes.
 PictureSize bmp_size(const Bytes& b) {
   const bool is_os2 = b.little32(14) == 12;
   const std::uint64_t up = is_os2 ? b.little16(20) : b.little32(22);
   const PictureSize size{is_os2 ? b.little16(18) : b.little32(18), up < 0x80000000u ? up : 0x100000000u - up};
   const std::uint64_t compression = is_os2 ? 0 : b.little32(30);
   const std::uint64_t row = (size.width * b.little16(is_os2 ? 24 : 28) + 31) / 32 * 4;  // [byte]
-  const bool fixed = compression == 0 || compression == 3;                              // not run lengths
+  const bool fixed = compression == 0 || compression == 3;                              // not run-length encoded
   if (fixed && row * size.height > 0) b.byte(b.little32(10) + row * size.height - 1);
   return size;
 }
 
-// libgif would leave the rest of a file that is cut short black.
+// Requires the trailer, since libgif leaves the rest of a truncated file black.
 PictureSize gif_size(const Bytes& b) {
   const std::size_t last = b.bytes.find_last_not_of('\0');
   if (last == std::string_view::npos || b.bytes[last] != ';') b.fail("the picture is cut short; save it again");

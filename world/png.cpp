@@ -1,4 +1,4 @@
-// PNG, by spng.
+// Decodes PNG with spng.
 
 #include <fmt/format.h>
 #include <spng.h>
@@ -28,7 +28,7 @@ bool stores_alpha(spng_ctx* png, const spng_ihdr& header) {
          spng_get_trns(png, &transparent) == 0;
 }
 
-// Row by row unless interlaced, so that a large plan needs no second copy in memory.
+// Decodes row by row unless interlaced, so a large plan needs no second copy in memory.
 void decode_rows(spng_ctx* png, std::size_t row_bytes, bool has_alpha, GridBuilder& grid) {
   std::vector<std::uint8_t> row(row_bytes);
   check(grid, spng_decode_image(png, nullptr, 0, SPNG_FMT_RGBA8, SPNG_DECODE_TRNS | SPNG_DECODE_PROGRESSIVE));

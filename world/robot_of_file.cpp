@@ -17,7 +17,7 @@ namespace sf::world {
 
 namespace {
 
-/// The row of the robot of that name, or kNone.
+/// Returns the row of the robot with that name, or kNone.
 std::uint32_t row_named(const World& world, const std::string& name) {
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)
     if (!world.movers[row].is_tag && world.movers[row].name == name) return row;
@@ -27,7 +27,7 @@ std::uint32_t row_named(const World& world, const std::string& name) {
 /// Robots of the file, and those that it defines.
 struct RobotsOfFile {
   World world;
-  std::string text;                  ///< of the file
+  std::string text;                  ///< text of the file
   std::vector<std::string> defined;  ///< names of types
 };
 
@@ -56,7 +56,7 @@ RobotsOfFile read_robots(const std::string& file, const LoadOptions& options) {
                                      more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
-/// A model of `world` may have the robot's name.
+/// Appends to `name` until no model of `world` has it.
 std::string free_model_name(const World& world, std::string name) {
   const auto taken = [&] {
     return std::any_of(world.models.begin(), world.models.end(), [&](const Model& m) { return m.name == name; });

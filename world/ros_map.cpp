@@ -17,12 +17,13 @@ namespace sf::world {
 
 namespace {
 
-constexpr std::size_t kMaxYaml = 1u << 20;  // bytes; a map's YAML file has a few lines
+constexpr std::size_t kMaxYaml = 1u << 20;  // bytes; a map's YAML file has only a few lines
 
 enum class Ground : std::uint8_t { wall, unknown, free };
 
-// map_server's rule: occ = (255 - p) / 255 (p / 255 when negated); above `occupied` wall, below `free` free, otherwise
-// unknown. p is the mean of the colours; in mode trinary alpha, where the picture has one, is averaged in.
+// Implements map_server's rule: occ = (255 - p) / 255 (p / 255 if negated); above `occupied` is wall, below `free` is
+// free, otherwise unknown. p is the mean of the colours; in mode trinary, the mean includes alpha if the picture has
+// it.
 Ground ground_of(const RosMap& map, bool has_alpha, const std::uint8_t* rgba) {
   const bool averaged = has_alpha && map.mode == RosMap::Mode::trinary && map.averages_alpha;
   const std::uint8_t opaque = map.mode == RosMap::Mode::scale ? 255 : 128;
@@ -37,7 +38,7 @@ Ground ground_of(const RosMap& map, bool has_alpha, const std::uint8_t* rgba) {
 }
 
 /// @param counts whether this kind of ground is solid in the grid
-/// @param changed counts the cells that alpha changes
+/// @param changed counts the cells changed by alpha
 template <class Counts>
 Bitmap read_grid(const RosMap& map, Counts&& counts, std::size_t* changed = nullptr) {
   RosMap opaque = map;
@@ -103,7 +104,7 @@ void add_map(World& world, const std::string& file, const std::string& text, con
   }
 }
 
-/// Of a world with a map.
+/// Returns the map of a world that has one.
 RosMap map_of(const World& world) {
   std::vector<Warning> said;
   return read_ros_map_file(world.ros_map, base::read_text(world.ros_map, kMaxYaml), said);

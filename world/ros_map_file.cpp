@@ -19,9 +19,9 @@ namespace sf::world {
 
 namespace {
 
-constexpr std::size_t kMaxKeyWarnings = 1000;  // keys that are compared with the known ones
-constexpr double kTurn = 6.2832;               // [rad] a whole turn, rounded up
-constexpr double kCoarsest = 1.0;              // [m] a coarser resolution is likely to be in another unit
+constexpr std::size_t kMaxKeyWarnings = 1000;  // keys compared with the known ones
+constexpr double kTurn = 6.2832;               // [rad] a full turn, rounded up
+constexpr double kCoarsest = 1.0;              // [m] coarser resolutions probably have another unit
 
 struct Yaml {
   const std::string& file;
@@ -73,7 +73,7 @@ Pose origin_of(const Yaml& yaml, std::vector<Warning>& warnings) {
   return X_WL;
 }
 
-// YAML's words and numbers; map_server takes whole numbers, also hexadecimal ones, and words.
+// Accepts YAML's words and numbers. map_server accepts integers, including hexadecimal ones, and words.
 bool negate_of(const Yaml& yaml, std::vector<Warning>& warnings) {
   const YAML::Node node = yaml.root["negate"];
   bool word = false;
@@ -114,7 +114,7 @@ RosMap::Mode mode_of(const Yaml& yaml, std::vector<Warning>& warnings) {
   return RosMap::Mode::raw;
 }
 
-// Ours, for maps that were drawn for earlier versions or for Nav2 since 2025.
+// A key of this program, for maps that were drawn for earlier versions or for Nav2 since 2025.
 bool averages_alpha(const Yaml& yaml) {
   const YAML::Node node = yaml.root["transparent"];
   if (!node) return true;
@@ -147,7 +147,7 @@ YAML::Node parse_yaml(const std::string& file, const std::string& text) {
   throw base::InputError(file, 0, "expected the YAML of a ROS map: image, resolution, origin");
 }
 
-// The maps of flatland's layers: "'a.yaml' and 'b.yaml'"; empty without any.
+// Returns the maps of flatland's layers: "'a.yaml' and 'b.yaml'"; empty if there are none.
 std::string maps_of(const YAML::Node& layers) {
   std::vector<std::string> maps;
   for (const YAML::Node& layer : layers)
@@ -156,7 +156,7 @@ std::string maps_of(const YAML::Node& layers) {
   return fmt::format("{}", fmt::join(maps, ", "));
 }
 
-// flatland and ir-sim have worlds in YAML.
+// flatland and ir-sim have YAML worlds.
 void refuse_foreign_yaml(const Yaml& yaml) {
   const YAML::Node& root = yaml.root;
   if (root["image"]) return;

@@ -14,7 +14,7 @@ constexpr std::uint16_t kVersion = 5;
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("broken world snapshot: " + reason); }
 
-// Checks that row numbers refer to existing rows. Users of a world rely on it.
+// Checks that row numbers refer to existing rows, because users of a world rely on it.
 void check_links(const World& world) {
   const auto models = world.models.size();
   const auto movers = world.movers.size();
@@ -33,8 +33,8 @@ void check_links(const World& world) {
   if (!good) refuse("a row names a row that is not there");
 }
 
-// Checks the rules of world.h for rows; users of a world do not check them again. World files are checked when they are
-// read, but a recording's world is untrusted.
+// Checks the invariants of rows in world.h, because users of a world do not check them again. World files are checked
+// when they are read, but a recording's world is untrusted.
 void check_rows(const World& world) {
   bool good = is_within(world);
   for (const Path& path : world.paths) good &= !path.pieces.empty();

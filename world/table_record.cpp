@@ -9,7 +9,7 @@ namespace sf::world {
 namespace {
 
 constexpr std::string_view kContinuations = "0123456789+-.,()";  // first characters of lines within a geometry
-constexpr std::size_t kMaxFields = 10'000;                       // of a record; those beyond are ignored
+constexpr std::size_t kMaxFields = 10'000;                       // per record; further fields are ignored
 constexpr int kMaxUnclosed = 8;
 
 }  // namespace
@@ -20,7 +20,7 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r\n") + 1 - first);
 }
 
-/// Without a byte order mark, and without the CR that a CR in front of CRLF leaves (Python's csv in text mode).
+/// Removes a byte order mark, and the CR left by a CR before CRLF (Python's csv in text mode).
 void TableRecord::trim_line() {
   if (lines_.number() == 1 && line_.starts_with("\xEF\xBB\xBF")) line_.remove_prefix(3);
   while (line_.ends_with('\r')) line_.remove_suffix(1);
@@ -67,7 +67,7 @@ bool TableRecord::split(char separator, bool joins) {
   return closed_;
 }
 
-/// @return the separator behind it, or the end
+/// @return the separator after it, or the end
 std::size_t TableRecord::quoted_field(std::size_t begin) {
   const std::size_t end = closing_quote(begin);
   closed_ = closed_ && end < line_.size();
@@ -77,8 +77,8 @@ std::size_t TableRecord::quoted_field(std::size_t begin) {
   return rest.end;
 }
 
-/// A field ends at the next separator behind the geometry that it begins with, if it does. Tabs and bars are no part of
-/// a geometry, as long as that ends in its line.
+/// A field ends at the next separator after the geometry at its start, if there is one. Tabs and bars are not part of a
+/// geometry, provided that it ends in its line.
 std::size_t TableRecord::plain_field(std::size_t begin) {
   std::size_t length = 0;
   const bool may_contain = separator_ != '\t' && separator_ != '|';
@@ -99,7 +99,8 @@ std::size_t TableRecord::plain_field(std::size_t begin) {
   return end;
 }
 
-/// The first quote that ends a field; two in a row are one within it. The end of the line where there is none.
+/// Returns the first quote that ends a field; two in a row are an escaped quote. Returns the end of the line if there
+/// is none.
 std::size_t TableRecord::closing_quote(std::size_t from) {
   for (;;) {
     const std::size_t at = line_.find('"', from);
@@ -114,7 +115,7 @@ std::size_t TableRecord::closing_quote(std::size_t from) {
   }
 }
 
-/// Appends lines to a geometry without quotes that begins a record, as long as they go on with it.
+/// Appends lines to an unquoted geometry at the start of a record, as long as they continue it.
 bool TableRecord::close_parentheses(std::size_t from) {
   std::ptrdiff_t open = 0;
   for (;;) {

@@ -6,14 +6,14 @@
 
 namespace sf::world {
 
-/// toml++ 3.3 has assumptions about its input, which release builds pass on to the compiler. Here they are checked, and
-/// a violation is an error of the file.
+/// toml++ 3.3 makes assumptions about its input, which release builds pass on to the compiler. This checks them, and
+/// reports a violation as an error in the file.
 struct NoToml {};
 [[noreturn]] inline void distrust() { throw NoToml{}; }
 
 }  // namespace sf::world
 
-// Deeper values are refused by toml++ itself; dotted keys are counted below.
+// toml++ itself rejects deeper values; dotted keys are counted below.
 #define TOML_MAX_NESTED_VALUES 32
 #undef NDEBUG
 #define TOML_ASSERT(assumption) ((assumption) ? void() : ::sf::world::distrust())
@@ -28,14 +28,14 @@ namespace {
 constexpr int kDeepest = 32;
 constexpr std::size_t kMaxBytes = 4u << 20;
 
-/// The same text in ASCII: comments may contain any characters, the rest only ASCII. (toml++ up to 3.3 has undefined
-/// behaviour for some characters beyond.)
+/// Returns the same text in ASCII: comments may contain any characters, the rest only ASCII. (toml++ up to 3.3 has
+/// undefined behaviour for some other characters.)
 std::string in_ascii(const std::string& file, std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
   std::string plain(text);
   int line = 1;
-  bool quoted = false;  // the line has a quote so far
+  bool quoted = false;  // the line has had a quote
   bool comment = false;
   for (char& c : plain) {
     if (c == '\n') {
@@ -52,7 +52,7 @@ std::string in_ascii(const std::string& file, std::string_view text) {
   return plain;
 }
 
-/// The last character of the quoted text that begins at `at`; it has several lines when it begins with three quotes. An
+/// Returns the last character of the quoted text that starts at `at`; three quotes start a text of several lines. An
 /// unterminated text ends with its line, and toml++ reports it.
 std::size_t end_of_text(std::string_view text, std::size_t at, int& line) {
   const char quote = text[at];
@@ -70,9 +70,9 @@ std::size_t end_of_text(std::string_view text, std::size_t at, int& line) {
   return text.size();
 }
 
-/// Refuses keys of too many parts: toml++ nests a table for each part and destroys them recursively. Points in numbers
-/// and in quoted texts do not count: any other character between two keys ends a sequence of parts, and quoted texts
-/// are skipped.
+/// Rejects keys with too many parts, because toml++ nests a table for each part and destroys the tables recursively.
+/// Dots in numbers and in quoted texts do not count: any other character between two keys ends a sequence of parts, and
+/// quoted texts are skipped.
 void check_keys(const std::string& file, std::string_view text) {
   int line = 1;
   int points = 0;

@@ -29,7 +29,7 @@ bool segments_meet(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   if ((sa > 0.0 && sb > 0.0) || (sa < 0.0 && sb < 0.0)) return false;
   if (sa != 0.0 || sb != 0.0 || sc != 0.0 || sd != 0.0) return true;
 
-  // All four points on one line: the segments meet when their ranges overlap.
+  // All four points are on one line: the segments meet if their ranges overlap.
   const auto on = [](glm::dvec2 p, glm::dvec2 q, glm::dvec2 r) {
     return within(p.x, q.x, r.x) && within(p.y, q.y, r.y);
   };

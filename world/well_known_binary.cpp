@@ -37,13 +37,13 @@ class BinaryReader {
     return p;
   }
   void skip_points(GeometryType type_of_all) {
-    if (type_of_all == GeometryType::point) return void(any_point());  // that of an empty one is NaN
+    if (type_of_all == GeometryType::point) return void(any_point());  // an empty one has NaN
     each([&] {
       type({});
       any_point();
     });
   }
-  /// Nothing follows, or zeros: some writers pad.
+  /// Returns whether only zeros follow, since some writers pad.
   bool at_end() const { return bytes_.find_first_not_of('\0', at_) == std::string_view::npos; }
 
  private:
@@ -65,7 +65,7 @@ class BinaryReader {
   std::string_view bytes_;
   WellKnownGeometry& geometry_;
   std::size_t at_ = 0;
-  bool swap_ = false;  ///< byte order of the geometry in work, and its coordinates beyond x and y
+  bool swap_ = false;  ///< byte order of the current geometry, and its coordinates beyond x and y
   int more_ = 0;
 };
 

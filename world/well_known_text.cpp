@@ -12,7 +12,7 @@ namespace sf::world {
 namespace {
 
 constexpr std::size_t kShownText = 24;  // characters of the text in errors
-constexpr std::size_t kMinDigits = 18;  // of binary in hexadecimal digits: byte order, type and a number of members
+constexpr std::size_t kMinDigits = 18;  // of hexadecimal binary: byte order, type and a number of members
 constexpr std::string_view kTextBlanks = " \t\r\n";
 constexpr std::string_view kDigits = "0123456789abcdefABCDEF";
 
@@ -45,7 +45,7 @@ bool equals(std::string_view word, std::string_view capitals) {
 }
 bool is_dimensions(std::string_view word) { return equals(word, "Z") || equals(word, "M") || equals(word, "ZM"); }
 
-/// With or without the letters of its dimensions, as in POLYGONZ.
+/// Finds a type with or without the letters of its dimensions, as in POLYGONZ.
 const TypeName* find_type(std::string_view word) {
   for (const TypeName& row : kTypes)
     if (equals(word.substr(0, row.name.size()), row.name) &&
@@ -64,7 +64,7 @@ class TextReader {
     throw base::InputError(fmt::format("expected {}, found {}", expected,
                                        rest.empty() ? "the end of the text" : fmt::format("'{}'", rest)));
   }
-  /// `SRID=n;`. @return 0: none
+  /// Reads `SRID=n;`. @return 0: none
   std::uint32_t srid() {
     const std::size_t start = at_;
     std::uint32_t value = 0;
@@ -77,7 +77,7 @@ class TextReader {
     at_ = start;
     return 0;
   }
-  /// Null, and nothing is read: no word that is a type.
+  /// Reads a type. Returns null and reads nothing if the word is not a type.
   const TypeName* tag() {
     const std::size_t start = at_;
     const TypeName* const type = find_type(word());
@@ -142,7 +142,7 @@ class TextReader {
   void skip_blanks() {
     while (at_ < text_.size() && (text_[at_] == ' ' || (text_[at_] >= '\t' && text_[at_] <= '\r'))) ++at_;
   }
-  /// The next word; empty before anything else.
+  /// Reads the next word; empty before anything else.
   std::string_view word() {
     skip_blanks();
     const std::size_t start = at_;
@@ -167,7 +167,7 @@ class TextReader {
   std::size_t at_ = 0;
 };
 
-/// Without blanks at its start, and without the mark of PostgreSQL or SQL in front of hexadecimal digits.
+/// Removes leading blanks, and the PostgreSQL or SQL prefix of hexadecimal digits.
 std::string_view unmarked(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(kTextBlanks), text.size()));
   if (text.starts_with("\\x") || text.starts_with("0x") || text.starts_with("0X")) text.remove_prefix(2);
@@ -179,9 +179,9 @@ std::uint32_t byte_at(std::string_view digits, std::size_t i) {
   return static_cast<std::uint32_t>(16 * nibble(digits[2 * i]) + nibble(digits[2 * i + 1]));
 }
 
-/// Binary in hexadecimal digits, by its first ones.
+/// A geometry in hexadecimal digits, classified by its first digits.
 struct HexGeometry {
-  std::size_t digits = 0;  ///< 0: it is none
+  std::size_t digits = 0;  ///< 0: not a geometry
   TypeCode code;
 };
 HexGeometry hex_geometry(std::string_view text) {
@@ -196,13 +196,13 @@ HexGeometry hex_geometry(std::string_view text) {
 bool is_word_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool is_decimal(char c) { return c >= '0' && c <= '9'; }
 
-/// Words between parentheses.
+/// Matches words between parentheses.
 bool is_number(std::string_view word) { return equals(word, "NAN") || equals(word, "INF") || equals(word, "INFINITY"); }
 bool is_member(std::string_view word) {
   return find_type(word) != nullptr || is_dimensions(word) || equals(word, "EMPTY");
 }
 
-/// Follows the text between parentheses as far as it can be a geometry's.
+/// Scans the text between parentheses as long as it can be part of a geometry.
 class Follower {
  public:
   Follower(std::string_view text, std::size_t open) : text_(text), at_(open) {
@@ -216,7 +216,7 @@ class Follower {
  private:
   bool is_after(std::string_view characters) const { return characters.find(before_) != std::string_view::npos; }
 
-  /// @return false: what follows belongs to no geometry
+  /// @return false if the following text cannot be part of a geometry
   bool step() {
     const char c = text_[at_];
     if (kTextBlanks.find(c) != std::string_view::npos) return ++at_, true;
@@ -229,7 +229,7 @@ class Follower {
     return ++at_, true;
   }
   static bool is_part_of_number(char c) { return is_decimal(c) || c == '+' || c == '-' || c == '.'; }
-  /// Numbers up to the next parenthesis, comma or letter.
+  /// Scans numbers up to the next parenthesis, comma or letter.
   bool number() {
     if (is_after(")a")) return false;
     while (at_ < text_.size() && (is_part_of_number(text_[at_]) || text_[at_] == ' ')) ++at_;
@@ -253,7 +253,7 @@ class Follower {
   std::string_view text_;
   std::size_t at_;
   std::ptrdiff_t depth_ = 0;
-  char before_ = 'a';  ///< last character that is no blank: '0' for a number, 'a' for a word
+  char before_ = 'a';  ///< last non-blank character: '0' for a number, 'a' for a word
   bool has_content_ = false;
 };
 

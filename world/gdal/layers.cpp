@@ -1,4 +1,4 @@
-// The plug-in with GDAL: features of GeoPackages, shapefiles and GeoJSON as rows.
+// The GDAL plug-in: returns features of GeoPackages, shapefiles and GeoJSON as rows.
 
 #include <cpl_error.h>
 #include <cpl_http.h>
@@ -23,8 +23,8 @@ namespace {
 
 constexpr std::size_t kShownNames = 20;
 
-/// While one exists, GDAL's messages of this thread are collected, and its requests over the network fail: a GeoJSON
-/// file may name its coordinate system by a URL.
+/// While a Guard exists, GDAL's messages in this thread are collected, and its network requests fail: a GeoJSON file
+/// may refer to its coordinate system by a URL.
 class Guard {
  public:
   explicit Guard(std::string& messages) {
@@ -63,7 +63,7 @@ std::string quoted(const std::vector<std::string>& names) {
 /// @param system null: none
 SystemUnits units_of(OGRSpatialReferenceH system) {
   if (system == nullptr) return {};
-  // A GeoPackage that states no system has this one.
+  // A GeoPackage without a stated system has this one.
   if (std::string_view(OSRGetName(system)) == "Undefined geographic SRS") return {};
   if (OSRIsGeographic(system) != 0) return {.is_degrees = true};
   const double unit = OSRGetLinearUnits(system, nullptr);
@@ -80,7 +80,8 @@ SystemUnits units_of_epsg_by_gdal(std::uint32_t number) {
   return units;
 }
 
-/// Whether a property `height` of a GeoJSON file is true or false: among numbers GDAL reads them as 1 and 0.
+/// Returns whether a property `height` of a GeoJSON file is true or false. In a column of numbers, GDAL reads these as
+/// 1 and 0.
 bool has_flags(const std::string& file) {
   constexpr std::string_view kName = "\"height\"";
   constexpr std::size_t kBlock = 1u << 20, kKept = 256;  // bytes
@@ -106,7 +107,7 @@ class Layers : public OutlineRows {
  public:
   explicit Layers(const std::string& file) : file_(file) {
     const Guard guard(messages_);
-    // The absolute path is never one of GDAL's own forms of names.
+    // The absolute path never matches one of GDAL's special file names.
     dataset_ = GDALOpenEx(std::filesystem::absolute(file).c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr,
                           nullptr);
     if (dataset_ == nullptr)
@@ -185,7 +186,7 @@ class Layers : public OutlineRows {
            .metres_per_unit = metres_per_unit_};
     if (layers_.size() > 1) row.place += " of layer '" + names_[at_] + "'";
   }
-  /// Numbers with all of their digits.
+  /// Reads numbers with all their digits.
   void read_height() {
     height_.clear();
     if (height_column_ < 0 || OGR_F_IsFieldSetAndNotNull(feature_, height_column_) == 0) return;
@@ -204,23 +205,23 @@ class Layers : public OutlineRows {
   }
 
   std::string file_;
-  std::string messages_;  ///< of GDAL so far
+  std::string messages_;  ///< GDAL's messages so far
   GDALDatasetH dataset_ = nullptr;
   bool is_json_ = false;
   bool has_numbers_ = false;       ///< heights may be numbers or flags
-  std::vector<OGRLayerH> layers_;  ///< with geometries
+  std::vector<OGRLayerH> layers_;  ///< layers with geometries
   std::vector<std::string> names_;
-  std::size_t at_ = 0;    ///< layer that is being read
-  bool entered_ = false;  ///< the following three are that layer's
+  std::size_t at_ = 0;    ///< current layer
+  bool entered_ = false;  ///< the following three members are of the current layer
   int height_column_ = -1;
   std::string_view degrees_;
   double metres_per_unit_ = 0.0;
   OGRFeatureH feature_ = nullptr;
-  std::string bytes_, height_;  ///< of the feature
+  std::string bytes_, height_;  ///< of the current feature
 };
 
 std::unique_ptr<OutlineRows> open_layers(const std::string& file) {
-  // These drivers alone: others open what the content names, elsewhere or over a network.
+  // Registers only these drivers. Others open files or network resources that the content refers to.
   static const bool once =
       (RegisterOGRGeoPackage(), RegisterOGRShape(), RegisterOGRGeoJSON(), RegisterOGRGeoJSONSeq(), true);
   static_cast<void>(once);

@@ -1,4 +1,4 @@
-// Conversion of degrees and feet into the tables of a RoadNetwork.
+// Converts degrees and feet to the tables of a RoadNetwork.
 
 #include <fmt/format.h>
 
@@ -13,9 +13,9 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kLaneWidthFt = 12.0;          // default; the lane width of US highways
-constexpr double kSpotWidthFt = 9.0;           // default; a usual US parking stall
-constexpr double kFar = 20e3;                  // [m] from the origin; flattening costs 3 cm there
+constexpr double kLaneWidthFt = 12.0;          // default: the lane width of US highways
+constexpr double kSpotWidthFt = 9.0;           // default: a common US parking stall
+constexpr double kFar = 20e3;                  // [m] from the origin; flattening causes 3 cm there
 constexpr std::size_t kMaxSamples = 1u << 20;  // points of all centre lines
 constexpr std::size_t kMaxExitSamples = 4 * kMaxSamples;
 
@@ -224,7 +224,7 @@ RoadNetwork build_network(const Rndf& rndf, const RoadSidecar& sidecar, std::vec
   b.network.name = rndf.name;
   b.network.file = rndf.file;
   b.network.scale = sidecar.scale;
-  // 1 mm of the real road, but at most 0.1 mm for scaled-down networks.
+  // 1 mm on the real road, but at most 0.1 mm for scaled-down networks.
   b.network.tolerance = sidecar.scale < 1.0 ? std::min(1e-3 * sidecar.scale, 1e-4) : 1e-3 * sidecar.scale;
   b.network.paint = marking_sizes(sidecar);
   b.network.counts = count(rndf);

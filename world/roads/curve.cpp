@@ -10,8 +10,8 @@ namespace sf::world {
 namespace {
 
 constexpr double kCoincident = 1e-6;  // [m]
-constexpr int kDeepest = 20;          // halvings of one span
-constexpr double kMaxTurn = 0.5;      // [rad] from one point of the polyline to the next
+constexpr int kDeepest = 20;          // largest number of halvings of a span
+constexpr double kMaxTurn = 0.5;      // [rad] between adjacent pieces of the polyline
 
 glm::dvec2 unit(glm::dvec2 v) {
   const double l = length(v);
@@ -50,9 +50,9 @@ void add_point(Curve& curve, glm::dvec2 p, glm::dvec2 tangent) {
   curve.tangents.push_back(tangent);
 }
 
-// The curve lies in the hull of its control points, and distance to a segment is convex: no point of it is farther from
-// the chord than the control points are. An arc of angle phi deviates by (radius) phi^2 / 8, so its offset at h
-// deviates by h phi^2 / 8 more.
+// The curve is in the hull of its control points, and distance to a segment is convex, so no point of the curve is
+// farther from the chord than the control points. An arc of angle phi deviates by (radius) phi^2 / 8, so its offset at
+// h deviates by h phi^2 / 8 more.
 void flatten(Curve& curve, const Bezier& b, const Sampling& sampling, int depth) {
   const double flat = std::max(distance_to_segment(b.p1, b.p0, b.p3), distance_to_segment(b.p2, b.p0, b.p3));
   const double turn = std::abs(turn_between(start_of(b), end_of(b)));
@@ -67,7 +67,8 @@ void flatten(Curve& curve, const Bezier& b, const Sampling& sampling, int depth)
   flatten(curve, {half, p123, p23, b.p3}, sampling, depth + 1);
 }
 
-/// A Hermite span with tangents of lengths `reach_a` and `reach_b` [m], before the factor that reproduces circles.
+/// Returns a Hermite span with tangents of lengths `reach_a` and `reach_b` [m], before the factor that reproduces
+/// circles.
 Bezier span_of(glm::dvec2 a, glm::dvec2 tangent_a, double reach_a, glm::dvec2 b, glm::dvec2 tangent_b, double reach_b) {
   const double c = std::cos(turn_between(tangent_a, tangent_b) / 4.0);
   const double factor = 1.0 / (3.0 * c * c);
@@ -92,21 +93,21 @@ Chords chords_of(const std::vector<glm::dvec2>& p) {
   return chords;
 }
 
-/// Curvature [1/m] of chord `of` at way-point `at`, an end that has another chord: the turn is divided between the two
-/// chords, with the larger part for the shorter one.
+/// Returns the curvature [1/m] of chord `of` at way-point `at`, where another chord also ends. The turn is divided
+/// between the two chords; the shorter one gets the larger part.
 double bend(const Chords& chords, std::size_t of, std::size_t at) {
   const double here = chords.length[of];
   const double other = chords.length[of == at ? at - 1 : at];
   return 2.0 * std::abs(chords.turn[at]) * other / ((here + other) * here);
 }
 
-/// Direction at each way-point of a line of at least two, none of them coincident.
+/// Returns the direction at each way-point of a line of at least two, none of which coincide.
 std::vector<glm::dvec2> directions(const std::vector<glm::dvec2>& p) {
   const std::size_t n = p.size();
   const Chords chords = chords_of(p);
   std::vector<glm::dvec2> tangents(n);
   for (std::size_t i = 1; i + 1 < n; ++i) {
-    // The curvature of a chord is taken at its far end, or at this end where the line ends there.
+    // The curvature of a chord is taken at its far end, or at this end if the line ends there.
     const double before = bend(chords, i - 1, i > 1 ? i - 1 : i);
     const double after = bend(chords, i, i + 2 < n ? i + 1 : i);
     const double share = before + after > 1e-12 ? before / (before + after) : 0.5;

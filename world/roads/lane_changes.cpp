@@ -1,4 +1,4 @@
-// Lane changes: transitions that are not exits of the file.
+// Lane changes: transitions that are not exits in the file.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kWidths = 3.0;  // [lane widths] smallest advance along the lane in a change
+constexpr double kWidths = 3.0;  // [lane widths] smallest advance along the lane during a change
 
 struct Beside {
   double s = 0.0;  ///< [m] along the other lane
@@ -17,7 +17,7 @@ struct Beside {
   glm::dvec2 tangent;
 };
 
-/// The point of a lane's centre line nearest to `p`. The lane has at least two points.
+/// Returns the point of a lane's centre line nearest to `p`. The lane has at least two points.
 Beside nearest_of(const RoadLane& lane, glm::dvec2 p) {
   const Curve& c = lane.centre;
   Beside best;
@@ -38,7 +38,7 @@ bool may_cross(Boundary boundary) { return boundary == Boundary::broken_white ||
 
 glm::dvec2 direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
 
-/// nullopt when the lanes are not side by side there, or the marking forbids a change.
+/// Returns nullopt if the lanes are not adjacent there, or if the marking forbids a change.
 std::optional<double> beside(const RoadLane& from, std::uint32_t index, const RoadLane& to) {
   const LanePoint& point = from.points[index];
   const Beside other = nearest_of(to, point.p);

@@ -18,7 +18,7 @@ struct Painter {
   const RoadNetwork& network;
   std::vector<LaneMarking> lane_markings;
 
-  // A marking turns by less than 90 degrees at each point: a sharper line becomes two markings.
+  // A marking turns by less than 90 degrees at each point, so a sharper line is split into two markings.
   void add(std::vector<glm::dvec2> line, double width, std::uint32_t color) {
     if (lane_markings.size() >= kMaxLaneMarkings)
       throw base::InputError(network.file, 0,
@@ -39,7 +39,7 @@ struct Painter {
   }
 };
 
-/// The part of `line` from `begin` to `end` [m] along it.
+/// Returns the part of `line` from `begin` to `end` [m] along it.
 std::vector<glm::dvec2> part_of(const std::vector<glm::dvec2>& line, const std::vector<double>& s, double begin,
                                 double end) {
   std::vector<glm::dvec2> part;

@@ -78,7 +78,7 @@ class MdfReader {
     if (word.starts_with("end_")) return end();
   }
 
-  /// True for a repeated keyword with the same text, and for a repeated count, which is not relied on.
+  /// Returns true for a repeated keyword with the same text, and for a repeated count, since counts do not matter.
   bool repeats(std::string_view word) {
     const auto [before, fresh] = seen_.emplace(word == "RNDF_name" ? "RNDF" : word, now().rest);
     if (fresh) return false;
@@ -130,7 +130,7 @@ class MdfReader {
     return block == Block::checkpoints ? "checkpoints" : block == Block::speed_limits ? "speed_limits" : "file";
   }
 
-  // Ends the open block, also one without its own end.
+  // Ends the open block, even if its end statement is missing.
   void end_block(const std::string& because) {
     if (block_ == Block::file) return;
     warn(begun_, fmt::format("'{0}' has no 'end_{0}'; it ends {1}", name_of(block_), because));
@@ -150,7 +150,7 @@ class MdfReader {
     declared_[std::string(now().keyword)] = said;
   }
 
-  // Checks a declared count. The actual number takes precedence, unless the file ends before that number was reached.
+  // Checks a declared count. The actual number overrides it, unless the file ends before that number was reached.
   void check_count(const std::string& keyword, std::size_t have) {
     const std::string taken = have == 1 ? "1 is used" : fmt::format("{} are used", have);
     const auto said = declared_.find(keyword);
@@ -202,10 +202,10 @@ class MdfReader {
   Diagnostics diagnostics_;
   StatementReader statements_;
   Block block_ = Block::file;
-  int begun_ = 0;                                         ///< line where the block began
+  int begun_ = 0;                                         ///< line where the block started
   std::map<std::string, std::string, std::less<>> seen_;  ///< keywords and their text
   std::set<std::string, std::less<>> unknown_;
-  std::map<std::string, std::pair<int, int>> declared_;  ///< count (negative: unread) and line, by keyword
+  std::map<std::string, std::pair<int, int>> declared_;  ///< count (negative: unreadable) and line, by keyword
   std::map<int, SpeedLimit> limited_;                    ///< by segment or zone
   bool ended_ = false;
 };

@@ -1,4 +1,4 @@
-// Parallels of a curve, without the loops at tight bends: where the curve bends tighter than the distance, points of
+// Parallels of a curve without loops at tight bends. Where the curve bends more tightly than the distance, points of
 // the parallel that are closer to the curve than the distance are left out, and the two ends are joined at their
 // intersection.
 
@@ -16,9 +16,9 @@ constexpr double kAround =
     4.0;  // [distances] length along the curve around a tight bend in which points may be left out
 constexpr std::size_t kReach = 400;  // pieces of the curve on each side that are compared with a point
 constexpr std::size_t kEnds = 8;     // pieces at each end of a gap that are searched for the intersection
-constexpr double kNearer = 2e-3;     // [distances] tolerance of the distance: rounding of the polyline
+constexpr double kNearer = 2e-3;     // [distances] tolerance for the rounding of the polyline
 
-/// Intersection of the pieces a-b and c-d.
+/// Returns the intersection of the pieces a-b and c-d.
 std::optional<glm::dvec2> crossing(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const glm::dvec2 ab = b - a;
   const glm::dvec2 cd = d - c;
@@ -41,7 +41,7 @@ struct Raw {
   std::vector<bool> kept;
 };
 
-// True when no piece of the curve within reach is closer to the raw point than `distance_to_keep`.
+// Returns true if no piece of the curve within reach is closer to the raw point than `distance_to_keep`.
 bool is_clear(const Curve& curve, glm::dvec2 p, std::size_t i, double distance_to_keep) {
   const double around = kAround * distance_to_keep;
   const double least = (1.0 - kNearer) * distance_to_keep;
@@ -60,7 +60,7 @@ Raw raw_parallel(const Curve& curve, double distance) {
     raw.points.push_back(curve.points[i] + distance * glm::dvec2{-curve.tangents[i].y, curve.tangents[i].x});
   raw.kept.assign(n, true);
 
-  // Pieces in reverse direction mark bends that are too tight; only points around them are tested.
+  // Pieces in reverse direction mark bends that are too tight. Only points around them are tested.
   double last = -INFINITY;  // [m] along the curve, of the last reversed piece
   const double around = kAround * std::abs(distance);
   std::vector<double> back(n, INFINITY);
@@ -83,7 +83,7 @@ void add_distinct(std::vector<glm::dvec2>& line, glm::dvec2 p) {
   if (line.empty() || length(p - line.back()) > 1e-9) line.push_back(p);
 }
 
-/// The continuation of the run of kept points [begin, end): its intersection with the next run [from, to), if any.
+/// How the run of kept points [begin, end) continues: its intersection with the next run [from, to), if any.
 struct Join {
   std::size_t leave = 0;  ///< last point of the run before it
   std::size_t enter = 0;  ///< first point of the run after it

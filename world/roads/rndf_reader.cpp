@@ -13,7 +13,7 @@ namespace sf::world {
 namespace {
 
 // Keywords of the format's extension for traffic lights and crosswalks ("RNDF 1.1", Stanford VLR). They are not
-// modelled, and they do not change the meaning of other lines.
+// modelled and do not change the meaning of other lines.
 constexpr std::array<std::string_view, 20> kExtension{"num_intersections",
                                                       "num_crosswalks",
                                                       "speed_limit",
@@ -50,7 +50,8 @@ bool is_word(std::string_view keyword) {
 
 constexpr int kInner = 2;
 
-/// Nesting level of a keyword that begins or ends a block: 0 in the file, 1 in a segment or zone; else `kInner`.
+/// Returns the nesting level of a keyword that starts or ends a block: 0 in the file, 1 in a segment or zone; else
+/// `kInner`.
 int level_of(std::string_view keyword) {
   if (keyword == "segment" || keyword == "zone" || keyword == "end_file") return 0;
   constexpr std::array<std::string_view, 5> kSecond{"lane", "perimeter", "spot", "end_segment", "end_zone"};
@@ -66,8 +67,8 @@ std::string_view name_of(RndfBlock block) {
 
 }  // namespace
 
-/// The blocks in which a keyword may stand, whether it may repeat, and its effect. Keywords that begin or end a block
-/// close the open blocks inside of its parent.
+/// The blocks that may contain a keyword, whether it may repeat, and its effect. Keywords that start or end a block
+/// close the open blocks inside its parent.
 struct RndfReader::Rule {
   std::vector<RndfBlock> blocks;
   bool once = false;
@@ -129,7 +130,7 @@ void RndfReader::warn_once(std::string_view keyword, std::string message) {
                            fmt::format("{} unknown keywords; is this an RNDF?", unknown_.size()));
 }
 
-/// Reads the next statement; false at the end, and when no text follows.
+/// Reads the next statement. Returns false at the end, or if no text follows.
 bool RndfReader::next() {
   bool more = false;
   diagnostics_.attempt(statements_.line(), [&] { more = statements_.next(); });
@@ -154,8 +155,8 @@ Rndf RndfReader::read() {
   return std::move(rndf_);
 }
 
-/// Skips the content of a block whose first statement was refused, up to the block's end or to the begin of a sibling
-/// block.
+/// Skips the content of a block whose first statement was rejected, up to the end of the block or the start of a
+/// sibling block.
 void RndfReader::skip(std::string_view keyword) {
   const int level = level_of(keyword);
   if (is_number(keyword)) ++open_.back().skipped["point"];
@@ -193,7 +194,7 @@ void RndfReader::unknown() {
   warn_once(keyword, fmt::format("unknown keyword '{}' is ignored{}", keyword, base::suggest(keyword, known)));
 }
 
-/// True for a repeated keyword with the same text, and for a repeated count, which is not relied on.
+/// Returns true for a repeated keyword with the same text, and for a repeated count, since counts do not matter.
 bool RndfReader::repeats(std::string_view keyword) {
   const auto [before, fresh] = open_.back().seen.emplace(keyword, now().rest);
   if (fresh) return false;
@@ -224,8 +225,8 @@ void RndfReader::apply(std::string_view keyword, const Rule& rule) {
 
 void RndfReader::open(RndfBlock block, std::string name) { open_.push_back({block, now().line, std::move(name)}); }
 
-// Checks a declared count. Only the counts of zones and spots may be zero, and then may be missing. The actual number
-// takes precedence, unless the file ends before that number was reached.
+// Checks a declared count. Only the counts of zones and spots may be zero, and may then be missing. The actual number
+// overrides the count, unless the file ends before that number was reached.
 void RndfReader::check_declared(const Open& open, std::string_view keyword, std::string_view entry, std::size_t have) {
   have += open.refused(entry);
   const bool may_be_none = keyword == "num_zones" || keyword == "num_spots";

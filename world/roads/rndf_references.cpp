@@ -1,4 +1,4 @@
-// Checks of the points that exits, stops and checkpoints of an RNDF name.
+// Checks the points to which exits, stops and checkpoints of an RNDF refer.
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ class Places {
     }
   }
 
-  /// @param what the statement's text about `id`, as "the exit leads to"
+  /// @param what the statement's text about `id`, such as "the exit leads to"
   void require(PointId id, int line, std::string_view what, PlaceKind no) const {
     const auto found = places_.find(packed(id));
     if (found == places_.end())

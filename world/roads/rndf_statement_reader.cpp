@@ -68,7 +68,7 @@ StatementReader::StatementReader(std::string file, std::string_view text, Diagno
 
 void StatementReader::fail(const std::string& message) const { throw base::InputError(file_, now_.line, message); }
 
-// Copies one line without its comments; a comment counts as a blank.
+// Copies one line without its comments. A comment counts as a blank.
 bool StatementReader::read_line() {
   current_.clear();
   if (at_ >= text_.size()) return false;

@@ -15,7 +15,7 @@ PointId key(int segment, int lane = 0) {
   return {static_cast<std::uint16_t>(segment), static_cast<std::uint16_t>(lane), 0};
 }
 
-/// Text of an id; segments and zones are {id, 0, 0}, lanes and spots {id, lane, 0}.
+/// Returns the text of an id; segments and zones are {id, 0, 0}, lanes and spots {id, lane, 0}.
 std::string shown(PointId id) {
   if (id.point > 0) return text_of(id);
   return id.lane > 0 ? fmt::format("{}.{}", id.segment, id.lane) : fmt::format("{}", id.segment);
@@ -119,14 +119,14 @@ std::vector<RndfPoint>& RndfReader::points() {
                                quoted(now().keyword), open_.back().name));
 }
 
-/// The common first parts of ids in the innermost block.
+/// Returns the common first parts of ids in the innermost block.
 PointId RndfReader::key_of_block() const {
   const RndfBlock block = open_.back().block;
   if (block == RndfBlock::lane) return key(rndf_.segments.back().id, rndf_.segments.back().lanes.back().number);
   return key(rndf_.zones.back().id, block == RndfBlock::spot ? rndf_.zones.back().spots.back().number : 0);
 }
 
-// Checks that an id belongs to the block of its line.
+// Checks that an id belongs to the block that contains its line.
 PointId RndfReader::own(PointId id, std::string_view what) const {
   const PointId here = key_of_block();
   if (id.segment == here.segment && id.lane == here.lane && id.point > 0) return id;
@@ -134,7 +134,7 @@ PointId RndfReader::own(PointId id, std::string_view what) const {
                                open_.back().name, here.segment, here.lane, here.segment, here.lane));
 }
 
-// Likewise, but tolerates an id of a neighbouring block, since its meaning is clear. check_references tests at the end
+// Same, but accepts an id of a neighbouring block, since its meaning is unambiguous. check_references later checks
 // whether the point exists.
 PointId RndfReader::own_or_known(PointId id, std::string_view what) {
   const PointId here = key_of_block();
@@ -178,7 +178,7 @@ void RndfReader::read_boundary(Boundary& boundary) {
   boundary = *read;
 }
 
-// Some files write 0 for an unknown width.
+// Some files contain 0 for an unknown width.
 void RndfReader::read_width(std::optional<double>& width_ft) {
   if (now().fields.empty()) return;
   const double feet = statements_.decimal(0, "the width");

@@ -49,7 +49,7 @@ struct Reader {
     fail(node, fmt::format("'{}' expects a number from {} to {}; got {}", key, least, most, shown_toml(node)));
   }
 
-  /// [m] A length of at least 1e-6.
+  /// Reads a length [m] of at least 1e-6.
   std::optional<double> width(const TomlNode& table, std::string_view key) const {
     const TomlNode* node = find(table, key);
     if (node == nullptr) return std::nullopt;

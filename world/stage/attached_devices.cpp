@@ -19,14 +19,14 @@ const SensorKeyword* find_sensor_keyword(const BuildState& b, std::string_view t
 
 namespace {
 
-constexpr double kBlockHeight = 0.02;  // [m] of a `sensor( )` block without a size
+constexpr double kBlockHeight = 0.02;  // [m] height of a `sensor( )` block without a size
 constexpr double kMaxSamples = 1e7;
 
-/// The value of a setting that stands in for others: `rate` and `update_interval` are one.
+/// Maps settings with the same meaning to one key: `update_interval` sets the rate.
 std::string_view meaning_of(std::string_view key) { return key == "update_interval" ? "rate" : key; }
 
-/// Adds the settings of `entity`, except those that `sensor` has. General properties of models are handled elsewhere
-/// and do not affect the measurement.
+/// Adds the settings of `entity`, except those that `sensor` already has. General model properties are handled
+/// elsewhere and do not affect the measurement.
 void add_settings(BuildState& b, const Entity& entity, std::span<const std::string_view> own, Sensor& sensor) {
   const std::vector<Setting> before = sensor.settings;
   for (const Property& property : entity.properties) {

@@ -40,7 +40,7 @@ void read_units(StageContext& context, const Entity& root) {
   }
 }
 
-// Files of other programs may have Stage's grammar by chance.
+// Files of other programs may match Stage's grammar by chance.
 void warn_of_nothing(BuildState& b, const Entity& root) {
   const bool has_known = std::any_of(root.children.begin(), root.children.end(), [](const Entity& child) {
     const EntityKind kind = entity_kind(child.type);
@@ -51,12 +51,12 @@ void warn_of_nothing(BuildState& b, const Entity& root) {
        "nothing in this file is known as a wall, a robot or any other model: is it a Stage world? The world is empty");
 }
 
-/// @param option the user's, before the file's
+/// @param option the user's option, which overrides the file
 StageRule stage_rule(const StageContext& context, const Entity& root, std::string_view key, bool option) {
   return {option || flag(context, root, key, false), option || find(root, key) != nullptr};
 }
 
-// Player's configuration files have Stage's grammar, and name a world.
+// Player's configuration files have Stage's grammar and refer to a world.
 void refuse_player_file(const Document& document) {
   for (const Entity& child : document.root.children) {
     if (child.type != "driver") continue;
@@ -79,13 +79,13 @@ std::string names_of(const World& world, const std::vector<std::uint32_t>& rows)
   return rows.size() <= kShown ? names : fmt::format("{} and {} more", names, rows.size() - kShown);
 }
 
-// The walls of all models are one kind of place.
+// Groups problems: the walls of all models are one kind of place.
 std::string kind_of(const std::string& problem) {
   constexpr std::string_view kPartly = "partly in a wall";
   return problem.starts_with(kPartly) ? std::string(kPartly) : problem;
 }
 
-// One warning for each kind of place.
+// Adds one warning for each kind of place.
 void warn_of_places(BuildState& b) {
   const PlaceCheck check(b.world);
   std::map<std::string, std::vector<std::uint32_t>> rows_of;

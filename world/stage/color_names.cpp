@@ -14,7 +14,7 @@ struct Named {
   std::uint32_t rgb;
 };
 
-// The names of X11's rgb.txt that are not numbered variants; sorted.
+// The names in X11's rgb.txt that are not numbered variants; sorted.
 constexpr std::array<Named, 151> kColors{{{"aliceblue", 0xf0f8ff},
                                           {"antiquewhite", 0xfaebd7},
                                           {"aqua", 0x00ffff},

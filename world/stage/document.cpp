@@ -17,7 +17,7 @@ namespace sf::world {
 
 namespace {
 
-// Limits far above any real world, so that hostile or broken files exhaust neither stack nor memory.
+// Limits far above any real world. They prevent hostile or broken files from exhausting the stack or memory.
 constexpr std::uint32_t kMaxDepth = 64;
 constexpr std::uint32_t kMaxWeight = 4'000'000;
 constexpr int kMaxIncludes = 256;
@@ -160,7 +160,7 @@ void read_include(ParseState& r) {
     warn(r, line, fmt::format("this includes {}; Stage includes {}", found, other));
   if (++r.includes > kMaxIncludes) fail(r, line, fmt::format("more than {} includes", kMaxIncludes));
 
-  // The state of the including file is saved, and restored after the include.
+  // Saves the state of the including file, and restores it after the include.
   const std::uint32_t outer_file = r.file;
   const std::size_t outer_at = r.at;
   std::vector<Token> outer_tokens = std::move(r.tokens);

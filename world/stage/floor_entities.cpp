@@ -7,8 +7,8 @@ namespace sf::world {
 
 namespace {
 
-// The beam of a virtual wall reaches 2.4 m (8 feet, the accessory's specification), its halo 0.45 m (18 inches). The
-// width of its beam and all three values of the dock are assumptions.
+// The beam of a virtual wall reaches 2.4 m (8 feet, from the accessory's specification) and its halo 0.45 m (18
+// inches). The width of the beam and all three values of the dock are assumptions.
 constexpr Emitter kVirtualWall{.range = 2.4, .fov = 0.4, .halo = 0.45};  // [m], [rad], [m]
 constexpr Emitter kDock{.range = 1.8, .fov = 0.7, .halo = 0.6};
 

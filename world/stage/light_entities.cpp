@@ -43,7 +43,7 @@ std::vector<LightPhase> read_phases(StageContext& context, const Entity& entity)
   return phases;
 }
 
-/// "3.1.11": segment, lane and point of a road network; segment and point start at 1.
+/// Matches "3.1.11": segment, lane and point of a road network. Segment and point start at 1.
 bool is_way_point(std::string_view name) {
   const auto id = read_point_id(name);
   return id && id->segment >= 1 && id->point >= 1 && std::max({id->segment, id->lane, id->point}) <= kMaxRoadNumber;

@@ -36,7 +36,7 @@ void place_magnets(BuildState& b, const Entity& entity, const MagnetRow& row, do
     fail(b.context, location_of(entity, "magnet_spacing"),
          "'magnet_spacing' gives more than a million magnets; expected a larger one");
   const auto model = static_cast<std::uint32_t>(b.world.models.size() - 1);
-  // The tolerance keeps the last magnet at the very end when the length is a multiple of the spacing up to rounding.
+  // The tolerance keeps the last magnet at the very end if the length is a multiple of the spacing except for rounding.
   for (double k = 0.0; k * row.spacing <= length * (1.0 + 1e-12); ++k) {
     const Pose X = along(k * row.spacing);
     b.world.magnets.push_back({{X.x, X.y}, X.z + row.top - 0.5 * row.length, row.moment, 0.5 * row.width, model});

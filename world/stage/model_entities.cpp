@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kMaxSuggestions = 1'000;
 constexpr double kMaxModels = 500'000;
-constexpr std::uint32_t kStageRed = 0xFFFF0000u;  // of a model without a colour
+constexpr std::uint32_t kStageRed = 0xFFFF0000u;  // colour of a model without one
 
 // --- Words
 // --------------------------------------------------------------------------------------------------------------
@@ -39,13 +39,13 @@ KeyScope key_scope(EntityKind kind) {
   }
 }
 
-// Suggestions only while there are few unknown types: a file with many of them has no slips of spelling.
+// Suggests only while there are few unknown types: a file with many of them does not contain spelling mistakes.
 std::string suggested(const BuildState& b, const std::string& type) {
   constexpr std::size_t kMaxSlips = 100;
   return b.warned_types.size() > kMaxSlips ? "" : base::suggest(type, b.types);
 }
 
-// Types without a model become plain bodies, counted and mentioned once per type.
+// Types without a model become plain bodies. They are counted, and mentioned once per type.
 void count_unmodelled(BuildState& b, const Entity& entity, const std::string& type, bool is_known) {
   ++b.world.unmodelled[type];
   if (!b.warned_types.insert(type).second) return;
@@ -65,7 +65,7 @@ std::string unique_name(BuildState& b, const Entity& entity, const std::string& 
   return name;
 }
 
-// "parent.child" within a parent; a leading / marks a name in the scope of the whole world.
+// Names are "parent.child" within a parent. A leading / marks a name in the scope of the whole world.
 std::string own_name(BuildState& b, const Entity& entity, Parent& parent) {
   const std::string given = text(b.context, entity, "name", "");
   return given.empty() ? fmt::format("{}:{}", entity.word, parent.unnamed[entity.word]++) : given;
@@ -84,7 +84,7 @@ Size default_size(const Entity& entity) {
   return entity.type == "laser" ? Size{0.15, 0.15, 0.2} : Size{};
 }
 
-/// `local` at X, with the model and the flags of `surface`.
+/// Returns `local` at X, with the model and the flags of `surface`.
 Segment placed(const Segment& local, const Pose& X, const Segment& surface) {
   Segment segment = surface;
   segment.a = transform(X, local.a);
@@ -95,7 +95,7 @@ Segment placed(const Segment& local, const Pose& X, const Segment& surface) {
   return segment;
 }
 
-/// Model and flags of a body's surface.
+/// Returns the model and flags of a body's surface.
 Segment surface_of(BuildState& b, const Entity& entity, const Model& model) {
   StageContext& context = b.context;
   Segment surface;
@@ -113,7 +113,7 @@ Segment surface_of(BuildState& b, const Entity& entity, const Model& model) {
   return surface;
 }
 
-/// @param X_B the body frame, in the mover's frame for a mover's body, else in the world.
+/// @param X_B the body frame, in the mover's frame for a mover's body, else in the world
 void add_body(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
               const Pose& X_B) {
   const Segment surface = surface_of(b, entity, model);
@@ -143,7 +143,7 @@ ModelProperties read_model_properties(BuildState& b, const Entity& entity, Paren
   said.X_PB.z += parent.lift;
   said.size = size_of(b.context, entity, default_size(entity));
 
-  // A laser with a lane edge sensor's name measures the edge of the lane, no ranges.
+  // A laser named like a lane edge sensor measures the edge of the lane instead of ranges.
   const bool is_lane_edge = entity.type == "laser" && (said.name == "laneedge" || said.name == "/laneedge");
   const std::string type = is_lane_edge ? "laneedge" : entity.type;
   said.sensor = find_sensor_keyword(b, type);
@@ -181,8 +181,8 @@ Model model_of(BuildState& b, const Entity& entity, const Parent& parent, const 
   return model;
 }
 
-// True when the model becomes a mover: a robot or a linked object. A model carried by a mover belongs to that mover,
-// whatever its type or name.
+// Returns true if the model becomes a mover: a robot or a linked object. A model carried by a mover belongs to that
+// mover, whatever its type or name.
 bool becomes_mover(BuildState& b, const Entity& entity, const Parent& parent, const ModelProperties& said) {
   if (said.kind != EntityKind::position && !packet_id_of(said.name)) return false;
   if (parent.mover == kNone) return true;
@@ -234,7 +234,7 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   add_children(b, entity, own);
 }
 
-// Keys that change what happens in Stage, and nothing here; once per key.
+// Warns, once per key, about keys that have an effect in Stage but not here.
 void warn_of_effect(StageContext& context, const Property& property) {
   const std::string_view effect = unmodelled_effect(property.key);
   if (effect.empty()) return;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxRuns = 2'000'000;
 
-// Stage's rule: dark is solid. Ours: transparent is free.
+// Dark pixels are solid, as in Stage. Transparent pixels are free, unlike in Stage.
 TracedBitmap trace_plan(const std::string& file) {
   std::size_t hidden = 0;
   const SolidRule rule = [&](const PixelRow& row, std::uint8_t* solid) {

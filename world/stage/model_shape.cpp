@@ -15,9 +15,9 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMaxPoints = 2'000;
-constexpr double kMaxCornerPairs = 1e8;  // of all blocks; the self-intersection check of a polygon is quadratic
+constexpr double kMaxCornerPairs = 1e8;  // over all blocks; the self-intersection check of a polygon is quadratic
 constexpr double kMaxSegments = 2e6;
-constexpr double kBoundary = 0.01;  // [m] thickness of the walls that `boundary 1` adds
+constexpr double kBoundary = 0.01;  // [m] thickness of the walls added by `boundary 1`
 
 struct Block {
   std::vector<glm::dvec2> points;
@@ -25,7 +25,7 @@ struct Block {
   double z_max = 1.0;
 };
 
-/// @return whether there is one
+/// @return whether the point exists
 bool read_point(const StageContext& context, const Entity& entity, const std::string& key, glm::dvec2& out) {
   const auto point = tuple(context, entity, key, 2, "[x y]");
   if (!point) return false;
@@ -34,7 +34,7 @@ bool read_point(const StageContext& context, const Entity& entity, const std::st
   return true;
 }
 
-/// @param prefix empty for `block( ... )`, `block[2].` for the older form inside the model.
+/// @param prefix empty for `block( ... )`, `block[2].` for the older form inside the model
 Block read_block(StageContext& context, const Entity& entity, const std::string& prefix) {
   Block block;
   if (find(entity, prefix + "points") == nullptr) {
@@ -97,8 +97,8 @@ Span span_of(const std::vector<Block>& blocks) {
   return span;
 }
 
-// All of a body is scaled together: its bounding box becomes size.x by size.y about the origin, its greatest height
-// size.z. An extent of zero stays zero.
+// Scales the whole body: its bounding box becomes size.x by size.y about the origin, and its greatest height size.z. An
+// extent of zero stays zero.
 struct Scale {
   Span span;
   Size size;
@@ -130,7 +130,7 @@ void warn_raised(StageContext& context, const Entity& entity, const Span& span, 
            entity.word, ours * span.bottom, ours * span.top, stages * span.bottom, stages * span.top));
 }
 
-/// Warns about blocks that seem to be in metres: without a size they become a box of 10 cm.
+/// Warns about blocks that appear to be in metres: without a size they become a box of 10 cm.
 void warn_unsized(StageContext& context, const Entity& entity, const Span& span, const Size& size) {
   const Size written = span.size();
   const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-3 * b; };
@@ -160,7 +160,7 @@ std::vector<glm::dvec2> rectangle(double x, double y) {
   return {{-x / 2, -y / 2}, {x / 2, -y / 2}, {x / 2, y / 2}, {-x / 2, y / 2}};
 }
 
-// A frame around the model: the outer faces of four walls and the inner faces, which point inwards.
+// Adds a frame around the model: the outer faces of four walls, and the inner faces, which point inwards.
 void append_boundary(std::vector<Segment>& segments, const Size& size) {
   append(segments, rectangle(size.x, size.y), 0.0, size.z);
   if (size.x <= 2 * kBoundary || size.y <= 2 * kBoundary) return;
@@ -183,7 +183,7 @@ void count_segments(StageContext& context, const Entity& entity, std::size_t run
   charge(context, entity.at, context.usage.corner_pairs, pairs, kMaxCornerPairs, "pairs of edges in blocks", remedy);
 }
 
-/// A body's own parts beside its blocks.
+/// The parts of a body other than its blocks.
 struct Parts {
   bool bitmap = false;
   bool boundary = false;
@@ -192,8 +192,8 @@ struct Parts {
   bool any() const { return bitmap || boundary; }
 };
 
-// Stage creates the box, bitmap and boundary of a model before it reads its blocks: the first block replaces the box,
-// and the boundary that was built around it.
+// Stage creates the box, bitmap and boundary of a model before it reads its blocks. The first block replaces the box
+// and the boundary around it.
 void warn_of_parts(StageContext& context, const Entity& entity, const Parts& parts, bool has_blocks) {
   if (parts.noblocks && (parts.any() || has_blocks))
     warn(context, location_of(entity, "noblocks"),
@@ -213,7 +213,7 @@ void warn_of_parts(StageContext& context, const Entity& entity, const Parts& par
                      entity.word));
 }
 
-/// The scale of a body's blocks. @param fills whether other parts fill `size`: then all is one body, in metres.
+/// Returns the scale of a body's blocks. @param fills other parts fill `size`: all form one body in metres
 Scale scale_of(StageContext& context, const Entity& entity, const std::vector<Block>& blocks, bool fills,
                const Size& size) {
   Scale scale{span_of(blocks), size};

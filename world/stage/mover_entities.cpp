@@ -12,7 +12,7 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kMaxTagReach = 100.0;  // [m] keeps the speed of a model plausible when its tag turns fast
+constexpr double kMaxTagReach = 100.0;  // [m] limits the speed of a model when its tag turns fast
 
 std::optional<std::uint32_t> number_of(std::string_view digits) {
   if (digits.empty() || digits.size() > 9) return std::nullopt;

@@ -10,7 +10,7 @@ namespace sf::world {
 
 namespace {
 
-constexpr std::size_t kFewKeys = 32;  // up to this number: linear search
+constexpr std::size_t kFewKeys = 32;  // up to this number, search is linear
 
 }  // namespace
 
@@ -34,7 +34,7 @@ namespace {
 
 Value value_of(const Token& token) { return {token.kind == TokenKind::text, token.number, token.text}; }
 
-/// Weight of a property: itself, its values, and its long texts.
+/// Returns the weight of a property: itself, its values, and its long texts.
 std::uint32_t weight_of(const Property& property) {
   constexpr std::size_t kStretch = 64;
   std::size_t bytes = property.key.size();

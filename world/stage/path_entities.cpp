@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kMaxPieces = 10'000;
 constexpr int kMaxDashes = 1'000'000;
-constexpr double kMaxPaintPoints = 4e6;  // of the lane markings of all paths
+constexpr double kMaxPaintPoints = 4e6;  // points of the lane markings of all paths
 
 PathPiece read_straight(const StageContext& context, const Property& property) {
   const auto& v = property.values;
@@ -97,14 +97,14 @@ Paint read_paint(const StageContext& context, const Entity& entity, const char* 
   return paint;
 }
 
-/// Number of chords within `kArcError` of an arc at `offset` to the left of its centre line.
+/// Returns the number of chords within `kArcError` of an arc at `offset` to the left of its centre line.
 double chords_of(const PathPiece& piece, double length, double offset, const Paint& paint) {
   if (piece.curvature == 0.0) return 1.0;
   const double outer = 1.0 / std::abs(piece.curvature) + std::abs(offset) + paint.width;
   return chord_count(outer, length * std::abs(piece.curvature), kArcError);
 }
 
-/// The marking between `from` and `to` along the centre line [m], `offset` to its left.
+/// Returns the marking between `from` and `to` along the centre line [m], `offset` to its left.
 LaneMarking marking_of(const PathPiece& piece, double from, double to, double offset, const Paint& paint) {
   LaneMarking marking{{}, paint.width, paint.color};
   const auto chords = static_cast<std::uint32_t>(chords_of(piece, to - from, offset, paint));
@@ -113,7 +113,8 @@ LaneMarking marking_of(const PathPiece& piece, double from, double to, double of
   return marking;
 }
 
-/// Dashes continue from piece to piece: `start` is the distance of the piece's start along the path.
+/// Paints one side of a piece. Dashes continue across pieces: `start` is the distance of the piece's start along the
+/// path.
 void paint_edge(World& world, const PathPiece& piece, double start, double offset, const Paint& paint) {
   if (paint.dash == 0.0) {
     world.lane_markings.push_back(marking_of(piece, 0.0, piece.length, offset, paint));

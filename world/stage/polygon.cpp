@@ -17,7 +17,7 @@ void drop_repeated(std::vector<glm::dvec2>& points) {
 }
 
 double twice_area(const std::vector<glm::dvec2>& points) {
-  double sum = 0.0;  // relative to the first corner, for a result independent of the polygon's position
+  double sum = 0.0;  // relative to the first corner, so the result does not depend on the polygon's position
   for (std::size_t i = 1; i + 1 < points.size(); ++i) sum += cross(points[i] - points[0], points[i + 1] - points[0]);
   return sum;
 }
@@ -51,13 +51,13 @@ bool folds_back(const PolygonEdge& first, const PolygonEdge& second) {
   return cross(d, e) == 0.0 && dot(d, e) < 0.0;
 }
 
-/// An edge's extent along x.
+/// The extent of an edge along x.
 struct EdgeSpan {
   double min, max;
   std::size_t edge;
 };
 
-/// By their lower ends, so that those that overlap one follow it.
+/// Returns the extents sorted by lower end, so those that overlap an extent follow it.
 std::vector<EdgeSpan> spans_of(const std::vector<PolygonEdge>& edges) {
   std::vector<EdgeSpan> spans;
   spans.reserve(edges.size());

@@ -44,7 +44,7 @@ SourceLocation location_of(const Entity& entity, std::string_view key) {
 
 namespace {
 
-// The value of a property that is not a tuple.
+// Returns the value of a property that is not a tuple.
 const Value& single(const StageContext& context, const Property& property, bool is_text) {
   const Value* value = property.values.empty() ? nullptr : &property.values.front();
   if (value == nullptr || property.values.size() != 1 || value->is_text != is_text) {

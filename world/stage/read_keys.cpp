@@ -62,10 +62,10 @@ double read_number(const StageContext& context, const Entity& entity, const Key&
     if (key.element >= elements->size()) return value;
     written = (*elements)[key.element];
   }
-  // A division keeps 0.1 s as 100 ms.
+  // Dividing by 1000 converts 100 ms to exactly 0.1 s.
   double read = key.unit == Unit::milliseconds ? written / 1000.0 : unit.si * written;
   if (key.unit == Unit::length) read = to_metres(context, at, written);
-  // A whole turn in degrees may exceed 2 pi by its rounding.
+  // A full turn in degrees may exceed 2 pi by rounding.
   if (read > bounds.most && read <= bounds.most * (1.0 + 1e-12)) read = bounds.most;
   if (bounds.contains(read)) return read;
   fail(context, at,

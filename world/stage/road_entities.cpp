@@ -26,7 +26,7 @@ RoadNetwork read_network(BuildState& b, const Entity& entity) {
   return load_roads(file, b.context.warnings, b.options.strict);
 }
 
-/// The lanes in a list such as "1.1 3.2", or all for "all".
+/// Returns the lanes in a list such as "1.1 3.2", or all for "all".
 std::vector<const RoadLane*> named_lanes(const BuildState& b, const Entity& entity, const RoadNetwork& roads) {
   const std::string names = fmt::format(" {} ", text(b.context, entity, "magnet_lanes", "all"));
   std::vector<const RoadLane*> lanes;

@@ -11,7 +11,7 @@ namespace sf::world {
 
 namespace {
 
-// Far above any real world: a broken file must not fill the memory.
+// Far above any real world, so that a broken file does not exhaust memory.
 constexpr std::size_t kMaxTokens = 8'000'000;
 constexpr std::size_t kLongestToken = 10'000;
 
@@ -28,7 +28,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 bool starts_number(char c) { return is_digit(c) || c == '+' || c == '-' || c == '.'; }
 
-/// Adds the token from `begin` to the current position; @param value of a number
+/// Adds the token from `begin` to the current position. @param value of a number
 void add(Scanner& s, TokenKind kind, std::size_t begin, double value = 0.0) {
   const std::size_t length = s.at - begin;
   if (length > kLongestToken)
@@ -44,7 +44,7 @@ char peek(const Scanner& s, std::size_t ahead = 0) {
   return s.at + ahead < s.text.size() ? s.text[s.at + ahead] : '\0';
 }
 
-// `[12]` directly behind a word is its index; any other bracket opens a tuple.
+// `[12]` directly after a word is its index; any other bracket opens a tuple.
 std::size_t index_length(const Scanner& s) {
   std::size_t n = 1;
   while (is_digit(peek(s, n))) ++n;
@@ -91,7 +91,7 @@ void scan_string(Scanner& s) {
   ++s.at;
 }
 
-// Skips blanks, line ends and comments. False at any other character.
+// Skips blanks, line ends and comments. Returns false at any other character.
 bool skip_blank(Scanner& s) {
   const char c = s.text[s.at];
   if (is_line_end(c)) {

@@ -12,25 +12,25 @@ namespace {
 constexpr double kDegree = M_PI / 180.0;
 
 std::size_t decimals_of(double value) {
-  const std::string text = fmt::format("{}", value);  // the shortest text, as it is likely to be written
+  const std::string text = fmt::format("{}", value);  // the shortest text, as a person would write it
   const std::size_t point = text.find('.');
   return point == std::string::npos ? 0 : text.size() - point - 1;
 }
 
-/// The multiple of `step` degrees that `angle` in radians is, rounded or cut off at `digit`; else 0.
+/// Returns the multiple of `step` degrees that gives `angle` in radians, rounded or truncated at `digit`; else 0.
 double multiple_of(double step, double angle, double digit) {
   const double degrees = step * std::round(angle / kDegree / step);
   const double lost = degrees * kDegree - angle;
   return lost < 1.001 * digit && lost > -0.501 * digit ? degrees : 0.0;
 }
 
-/// [m] from which on a range is likely to be meant in millimetres.
+/// Returns the range [m] from which on a number is probably in millimetres.
 double least_doubtful(std::string_view type) {
   if (type == "infrared" || type == "ir_emitter") return 100.0;
-  return type == "sonar" ? 200.0 : 1000.0;  // sonars of robots under water reach farther than those in air
+  return type == "sonar" ? 200.0 : 1000.0;  // underwater sonars reach farther than those in air
 }
 
-/// Place of the range's end and of the field of view among the numbers of a property; -1: it has none.
+/// Positions of the range's end and of the field of view among the numbers of a property; -1: none.
 struct Places {
   int range = -1, fov = -1;
 };
