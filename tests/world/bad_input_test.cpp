@@ -113,7 +113,7 @@ const std::vector<Bad>& corpus() {
   return cases;
 }
 
-TEST(BadInput, IsRefusedWithItsLineAndWhatWasExpected) {
+TEST(BadInput, ReportsLineAndExpectedInput) {
   for (const Bad& bad : corpus()) {
     const std::string error = error_of(bad.text);
     EXPECT_TRUE(error.starts_with(fmt::format("test.world:{}: ", bad.line))) << bad.reason << ": " << error;
@@ -121,7 +121,7 @@ TEST(BadInput, IsRefusedWithItsLineAndWhatWasExpected) {
   }
 }
 
-TEST(BadInput, AbsurdNestingIsRefusedNotAStackOverflow) {
+TEST(BadInput, DeepNestingIsRejectedWithoutStackOverflow) {
   std::string text;
   for (int i = 0; i < 100'000; ++i) text += "model(";
   EXPECT_NE(error_of(text).find("nested deeper"), std::string::npos);
@@ -133,7 +133,7 @@ TEST(BadInput, NestingThroughMacrosCountsToo) {
   EXPECT_NE(error_of(text).find("nested deeper"), std::string::npos);
 }
 
-TEST(BadInput, MacrosThatDoubleEachTimeAreRefusedNotSwallowed) {
+TEST(BadInput, MacrosThatDoubleEachTimeAreRejected) {
   std::string text = "define a0 model( size [1 1 1] )\n";
   for (int i = 1; i < 60; ++i) {
     text += fmt::format("define a{0} model( a{1}() a{1}() )\n", i, i - 1);
@@ -163,13 +163,13 @@ class Files : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(Files, AMissingFileSaysSo) {
+TEST_F(Files, MissingFileIsReported) {
   EXPECT_NE(error((folder_ / "none.world").string()).find("no such file"), std::string::npos);
 }
 
-TEST_F(Files, AFolderIsNoWorld) { EXPECT_NE(error(folder_.string()).find("not a file"), std::string::npos); }
+TEST_F(Files, FolderIsNotAWorld) { EXPECT_NE(error(folder_.string()).find("not a file"), std::string::npos); }
 
-TEST_F(Files, ACircleOfIncludesIsShownWhole) {
+TEST_F(Files, IncludeCycleIsReportedInFull) {
   const std::string a = write("a.world", "include \"b.inc\"\n");
   write("b.inc", "\ninclude \"c.inc\"\n");
   write("c.inc", "include \"a.world\"\n");
@@ -178,7 +178,7 @@ TEST_F(Files, ACircleOfIncludesIsShownWhole) {
   EXPECT_LT(text.find("b.inc ->"), text.find("c.inc ->")) << text;
 }
 
-TEST_F(Files, IncludesThatDoubleEachTimeAreRefused) {
+TEST_F(Files, IncludesThatDoubleEachTimeAreRejected) {
   const std::string a = write("f0.world", "include \"f1.inc\"\ninclude \"f1.inc\"\n");
   for (int i = 1; i < 30; ++i) {
     write(fmt::format("f{}.inc", i), fmt::format("include \"f{0}.inc\"\ninclude \"f{0}.inc\"\n", i + 1));
@@ -187,18 +187,18 @@ TEST_F(Files, IncludesThatDoubleEachTimeAreRefused) {
   EXPECT_NE(error(a).find("includes"), std::string::npos);
 }
 
-TEST_F(Files, AnErrorInAnIncludeNamesTheInclude) {
+TEST_F(Files, ErrorInAnIncludeNamesTheInclude) {
   const std::string a = write("a.world", "include \"b.inc\"\nthing()");
   write("b.inc", "define thing model(\n size [1 )\n");
   EXPECT_NE(error(a).find("b.inc:2: "), std::string::npos);
 }
 
-TEST_F(Files, APictureThatIsNoneIsNamed) {
+TEST_F(Files, InvalidPictureIsNamed) {
   write("x.png", "hello");
   EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("is no picture in PNG"), std::string::npos);
 }
 
-TEST_F(Files, ABrokenPictureIsNamed) {
+TEST_F(Files, BrokenPictureIsNamed) {
   write("x.png", "\x89PNG\r\n\x1a\n and then nothing");
   EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("broken PNG"), std::string::npos);
   write("y.pgm", "P5 3 3 255\nabc");

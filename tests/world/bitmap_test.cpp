@@ -27,7 +27,7 @@ bool solid(const Bitmap& grid, int i, int j) {
   return i >= 0 && j >= 0 && i < width && j < height && grid.solid[static_cast<std::size_t>(j * width + i)] != 0;
 }
 
-/// All unit boundaries between two cells, solid on the left, found cell by cell without the code under test.
+/// Finds all unit boundaries between two cells, solid on the left, cell by cell and without the code under test.
 std::set<EdgeKey> unit_edges(const Bitmap& grid) {
   std::set<EdgeKey> edges;
   for (int j = 0; j < static_cast<int>(grid.height); ++j) {
@@ -56,7 +56,7 @@ std::set<EdgeKey> cut(const std::vector<BoundaryRun>& runs) {
   return edges;
 }
 
-/// The smallest number of runs: one for each unit edge that does not continue another one in a straight line.
+/// Returns the smallest number of runs: one for each unit edge that does not continue another in a straight line.
 std::size_t fewest(const std::set<EdgeKey>& edges) {
   std::size_t count = 0;
   for (const auto& [ai, aj, bi, bj] : edges) count += edges.contains({2 * ai - bi, 2 * aj - bj, ai, aj}) ? 0 : 1;
@@ -76,8 +76,8 @@ int winding(const std::vector<BoundaryRun>& runs, int i, int j) {
 void check(const Bitmap& grid) {
   const auto runs = trace_boundary(grid);
   const auto edges = unit_edges(grid);
-  EXPECT_EQ(cut(runs), edges);  // each boundary once, solid on its left; so the total length is correct as well
-  EXPECT_EQ(runs.size(), fewest(edges));  // and with the smallest number of runs
+  EXPECT_EQ(cut(runs), edges);            // each boundary once, solid on its left; so the total length is also correct
+  EXPECT_EQ(runs.size(), fewest(edges));  // with the smallest number of runs
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
   for (const BoundaryRun& run : runs) {
     ++balance[{run.a.i, run.a.j}];
@@ -95,27 +95,27 @@ TEST(Bitmap, OnePixelHasFourSides) {
   check(grid);
 }
 
-TEST(Bitmap, APixelAtTheEdgeOfThePictureIsClosedThere) {
+TEST(Bitmap, PixelAtTheEdgeOfThePictureIsClosedThere) {
   const Bitmap grid = grid_of({"#"});
   EXPECT_EQ(trace_boundary(grid).size(), 4u);
   check(grid);
 }
 
-TEST(Bitmap, NothingSolidHasNoOutline) { EXPECT_TRUE(trace_boundary(grid_of({"...", "..."})).empty()); }
+TEST(Bitmap, EmptyGridHasNoOutline) { EXPECT_TRUE(trace_boundary(grid_of({"...", "..."})).empty()); }
 
-TEST(Bitmap, AnLHasSixSides) {
+TEST(Bitmap, LShapeHasSixSides) {
   const Bitmap grid = grid_of({"#..", "#..", "###"});
   EXPECT_EQ(trace_boundary(grid).size(), 6u);
   check(grid);
 }
 
-TEST(Bitmap, ARingHasAnOutlineInsideToo) {
+TEST(Bitmap, RingHasAnInnerOutlineToo) {
   const Bitmap grid = grid_of({"####", "#..#", "#..#", "####"});
   EXPECT_EQ(trace_boundary(grid).size(), 8u);
   check(grid);
 }
 
-TEST(Bitmap, TwoDiagonalPixelsMeetInOneCornerThatEndsFourRuns) {
+TEST(Bitmap, FourRunsEndWhereDiagonalPixelsTouch) {
   const Bitmap grid = grid_of({"#.", ".#"});
   const auto runs = trace_boundary(grid);
   EXPECT_EQ(runs.size(), 8u);
@@ -125,16 +125,16 @@ TEST(Bitmap, TwoDiagonalPixelsMeetInOneCornerThatEndsFourRuns) {
   check(grid);
 }
 
-TEST(Bitmap, TheOtherDiagonalAsWell) { check(grid_of({".#", "#."})); }
+TEST(Bitmap, FourRunsEndOnTheOtherDiagonalToo) { check(grid_of({".#", "#."})); }
 
-TEST(Bitmap, ACheckerboardHasFourSidesPerPixel) {
+TEST(Bitmap, CheckerboardHasFourSidesPerPixel) {
   const Bitmap grid = grid_of({"#.#.", ".#.#", "#.#.", ".#.#"});
   EXPECT_EQ(trace_boundary(grid).size(), 4u * 8u);
   check(grid);
 }
 
-TEST(Bitmap, ATraceOfTooManyRunsEndsEarly) {
-  // 10 x 10 single pixels: 200 horizontal runs, then 200 vertical ones, 20 of them a row of pixels.
+TEST(Bitmap, TraceOfTooManyRunsEndsEarly) {
+  // 10 x 10 single pixels: 200 horizontal runs, then 200 vertical ones, 20 per row of pixels.
   Bitmap grid{19, 19, {}};
   for (std::uint32_t i = 0; i < 19 * 19; ++i) grid.solid.push_back(i % 19 % 2 == 0 && i / 19 % 2 == 0 ? 1 : 0);
   EXPECT_EQ(trace_boundary(grid, 400).size(), 400u);
@@ -162,7 +162,7 @@ TEST(Bitmap, CornersSpanTheSizeAboutTheOrigin) {
   EXPECT_EQ(high.y, 1.5);
 }
 
-TEST(Bitmap, APartSpansTheSizeItself) {
+TEST(Bitmap, PartSpansTheSizeItself) {
   const PicturePart part{{3, 1}, {7, 2}};
   EXPECT_EQ(corner_position(part, {3, 1}, 8.0, 2.0), glm::dvec2(-4.0, -1.0));
   EXPECT_EQ(corner_position(part, {7, 2}, 8.0, 2.0), glm::dvec2(4.0, 1.0));

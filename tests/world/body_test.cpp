@@ -13,7 +13,8 @@
 namespace sf::world {
 namespace {
 
-/// Pictures: `full` is solid to its edges, `pad` has a solid part of 4 x 2 pixels in the middle of 8 x 8, `light` none.
+/// Pictures: `full` is solid to its edges, `pad` has a solid part of 4 x 2 pixels in the middle of 8 x 8, `light` has
+/// none.
 class Bodies : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -41,7 +42,7 @@ std::string extent_of(const World& world) {
 
 constexpr const char* kSquare = "block( points 4 z [0 1] point[0] [0 0] point[1] [1 0] point[2] [1 1] point[3] [0 1] )";
 
-TEST_F(Bodies, NoblocksRemovesTheDefaultBoxAlone) {
+TEST_F(Bodies, NoblocksRemovesOnlyTheDefaultBox) {
   EXPECT_TRUE(read("model( noblocks 1 )").walls.empty());
   EXPECT_EQ(warnings_of(read("model( noblocks 1 )")), "");
   for (const std::string part : {"boundary 1", "bitmap \"full.pgm\"", kSquare}) {
@@ -54,7 +55,7 @@ TEST_F(Bodies, NoblocksRemovesTheDefaultBoxAlone) {
   }
 }
 
-TEST_F(Bodies, TheSolidPartOfAPictureFillsTheSize) {
+TEST_F(Bodies, SolidPartOfAPictureFillsTheSize) {
   const World world = read("model( size [20 10 1]\n bitmap \"pad.pgm\" )");
   EXPECT_EQ(extent_of(world), "-10 -5 10 5");
   EXPECT_EQ(world.walls.size(), 4u);
@@ -69,20 +70,20 @@ TEST_F(Bodies, TheSolidPartOfAPictureFillsTheSize) {
   EXPECT_EQ(warnings_of(old), "");
 }
 
-TEST_F(Bodies, APictureWithoutMarginsIsReadAsBefore) {
+TEST_F(Bodies, PictureWithoutMarginsIsReadAsBefore) {
   const World world = read("model( size [20 10 1] bitmap \"full.pgm\" )");
   EXPECT_EQ(world.hash, read("old_shapes 1 model( size [20 10 1] bitmap \"full.pgm\" )").hash);
   EXPECT_EQ(warnings_of(world), "");
 }
 
-TEST_F(Bodies, APictureWithoutWallsIsAWarning) {
+TEST_F(Bodies, PictureWithoutWallsIsAWarning) {
   const World world = read("model( size [2 2 1] bitmap \"light.pgm\" )");
   EXPECT_TRUE(world.walls.empty());
   EXPECT_EQ(warnings_of(world), "1: the picture has no dark pixel, so it is no wall\n");
 }
 
-/// Stage adds the blocks to a picture that fills `size`, then scales all of it to `size`.
-TEST_F(Bodies, BlocksBesideAPictureAreInMetres) {
+/// Stage adds the blocks to a picture that fills `size`, then scales everything to `size`.
+TEST_F(Bodies, BlocksWithAPictureAreInMetres) {
   const World inside = read("model( size [20 10 1] bitmap \"full.pgm\"\n " + std::string(kSquare) + " )");
   EXPECT_EQ(extent_of(inside), "-10 -5 10 5");
   const Segment& block = inside.walls.back();
@@ -90,7 +91,7 @@ TEST_F(Bodies, BlocksBesideAPictureAreInMetres) {
   EXPECT_NEAR(block.a.y, 1.0, 1e-12) << "the square's upper left corner";
   EXPECT_NE(warnings_of(inside).find("'model' has blocks, too: their points count in metres"), std::string::npos);
 
-  // A block that reaches from -10 to 30 m: all shrinks to half of its width.
+  // A block from -10 to 30 m shrinks everything to half its width.
   const World outside = read(
       "model( size [20 10 1] bitmap \"full.pgm\" block( points 3 z [0 2] point[0] [0 0] point[1] [30 0] point[2] [0 1] "
       ") )");
@@ -104,14 +105,14 @@ TEST_F(Bodies, BlocksBesideAPictureAreInMetres) {
   EXPECT_EQ(old.walls.back().a.y, 5.0) << "the square was scaled to all of 'size'";
 }
 
-TEST_F(Bodies, ABoundaryAndBlocksStayWithAWarning) {
+TEST_F(Bodies, BoundaryAndBlocksAreKeptWithAWarning) {
   const World world = read("model( size [2 2 1]\n boundary 1 " + std::string(kSquare) + " )");
   EXPECT_EQ(world.walls.size(), 12u);
   EXPECT_EQ(warnings_of(world),
             "2: 'model' has a boundary and blocks: Stage leaves the boundary out, here both stay\n");
 }
 
-TEST_F(Bodies, BlocksThatHangInTheAirAreAWarning) {
+TEST_F(Bodies, RaisedBlocksAreAWarning) {
   const auto block = [](const char* z) {
     return fmt::format("model( size [1 1 1] block( points 3 point[0] [0 0] point[1] [1 0] point[2] [0 1]{} ) )", z);
   };
@@ -124,7 +125,7 @@ TEST_F(Bodies, BlocksThatHangInTheAirAreAWarning) {
             "1: this block has no 'z': it is read as [0 1]; Stage 4 gives it no height\n");
 }
 
-/// Keys that change what happens in Stage; once each, however many robots have them.
+/// Keys with an effect in Stage: one warning each, however many robots have them.
 TEST_F(Bodies, KeysWithoutAnEffectAreNamedOnce) {
   const World world = read(
       "\nposition( velocity [1 0 0 0] localization \"odom\" )\n"
@@ -148,8 +149,8 @@ TEST_F(Bodies, TransparentDarkPixelsAreFreeWithAWarning) {
       "for walls\n1: the picture has no dark pixel, so it is no wall\n");
 }
 
-/// Stage looks beside the world file, also for what an include names.
-TEST_F(Bodies, AFileThatStageFindsElsewhereIsAWarning) {
+/// Stage searches the folder of the world file, even for files that an include refers to.
+TEST_F(Bodies, FileThatStageFindsElsewhereIsAWarning) {
   std::filesystem::create_directories(folder_ / "inc");
   std::filesystem::copy(folder_ / "pad.pgm", folder_ / "inc" / "full.pgm");
   write("inc/other.inc", "");
@@ -162,7 +163,7 @@ TEST_F(Bodies, AFileThatStageFindsElsewhereIsAWarning) {
   EXPECT_EQ(warnings_of(read("include \"inc/plan.inc\"\nplan( bitmap \"full.pgm\" )")), "") << "written in the world";
 }
 
-/// Inputs of users' reports.
+/// Input from users' reports.
 TEST(BodyReports, AreReadAsInStage) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/reports/world/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;

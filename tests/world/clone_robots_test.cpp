@@ -29,7 +29,7 @@ World two_rooms() {
   return world;
 }
 
-TEST(CloneRobots, AllStandClear) {
+TEST(CloneRobots, AllPosesAreClear) {
   World world = two_rooms();
   clone_robots(world, 40, 1);
   ASSERT_EQ(world.movers.size(), 40u);
@@ -47,7 +47,7 @@ TEST(CloneRobots, AllStandClear) {
   EXPECT_NEAR(to_the_right, 20, 10) << "headings are of the whole turn";
 }
 
-TEST(CloneRobots, AllCouldHaveComeFromWhereTheFirstStood) {
+TEST(CloneRobots, AllPosesAreReachableFromTheFirstRobot) {
   World world = two_rooms();
   clone_robots(world, 60, 1);
   for (const Mover& mover : world.movers) {
@@ -57,7 +57,7 @@ TEST(CloneRobots, AllCouldHaveComeFromWhereTheFirstStood) {
   }
 }
 
-TEST(CloneRobots, ADoorLeadsToTheOtherRoom) {
+TEST(CloneRobots, DoorLeadsToTheOtherRoom) {
   World world = scenes::boxed_world(12, 6);
   scenes::add_wall(world, {6, 1}, {6, 6});
   scenes::add_create(world, {1, 1, 0, 0});
@@ -65,7 +65,7 @@ TEST(CloneRobots, ADoorLeadsToTheOtherRoom) {
   EXPECT_TRUE(std::any_of(world.movers.begin(), world.movers.end(), [](const Mover& m) { return m.X_WM.x > 6; }));
 }
 
-TEST(CloneRobots, AFirstRobotInASolidMeansTheLargestFreeRegion) {
+TEST(CloneRobots, FirstRobotInASolidSelectsTheLargestFreeRegion) {
   World world = two_rooms();
   world.movers[0].X_WM = {3, 3, 0, 0};
   scenes::add_wall(world, {-20, -20}, {-20, 20});
@@ -90,7 +90,7 @@ TEST(CloneRobots, AnotherSeedGivesOtherPoses) {
   EXPECT_NE(a.movers[0].X_WM.x, b.movers[0].X_WM.x);
 }
 
-TEST(CloneRobots, TheSame100KmAway) {
+TEST(CloneRobots, AreTheSame100KmAway) {
   World world = scenes::boxed_world(6, 6, {1e5, 1e5});
   scenes::add_create(world, {1e5 + 3, 1e5 + 3, 0, 0});
   clone_robots(world, 30, 1);
@@ -100,10 +100,10 @@ TEST(CloneRobots, TheSame100KmAway) {
   }
 }
 
-/// Free places are found from the region's corner on, wherever that is.
-TEST(CloneRobots, AMovedWorldMovesThemWithIt) {
+/// Free places are enumerated from the region's corner, wherever it is.
+TEST(CloneRobots, MovedWorldMovesTheCopies) {
   World here = two_rooms(), there = two_rooms();
-  const glm::dvec2 by{-32.0, 16.0};  // sums of the cells' coordinates stay exact
+  const glm::dvec2 by{-32.0, 16.0};  // keeps sums of the cells' coordinates exact
   for (Segment& wall : there.walls) wall.a += by, wall.b += by;
   there.movers[0].X_WM.x += by.x, there.movers[0].X_WM.y += by.y;
   update_extent_and_hash(there);
@@ -115,7 +115,7 @@ TEST(CloneRobots, AMovedWorldMovesThemWithIt) {
   }
 }
 
-TEST(CloneRobots, Something100KmAwayDoesNotCoarsenTheRoom) {
+TEST(CloneRobots, DistantObjectDoesNotCoarsenTheRoom) {
   World world = two_rooms();
   scenes::add_wall(world, {1e5, 1e5}, {1e5, 1e5 + 1});
   clone_robots(world, 40, 1);
@@ -129,7 +129,7 @@ TEST(CloneRobots, BridgesDoNotMatterToLowRobots) {
   EXPECT_NO_THROW(clone_robots(world, 1, 1));
 }
 
-// A robot without sensors before two robots with sensors, and a tag before all.
+// A robot without sensors before two robots with sensors, and a tag before all of these.
 World with_a_dummy() {
   World world = scenes::boxed_world(8, 8);
   scenes::add_create(world, {1, 1, 0, 0}).is_tag = true;
@@ -139,7 +139,7 @@ World with_a_dummy() {
   return world;
 }
 
-TEST(CloneRobots, TheFirstWithSensorsIsCopiedOrWhoIsNamed) {
+TEST(CloneRobots, CopiesTheFirstWithSensorsOrTheNamedRobot) {
   EXPECT_EQ(robot_to_copy(with_a_dummy()), 2u);
   EXPECT_EQ(robot_to_copy(with_a_dummy(), "dummy"), 1u);
   EXPECT_EQ(robot_to_copy(with_a_dummy(), "robot4"), 3u);
@@ -155,7 +155,7 @@ TEST(CloneRobots, TheFirstWithSensorsIsCopiedOrWhoIsNamed) {
   for (std::size_t k = 0; k < 5; ++k) EXPECT_TRUE(copies.movers[k].sensors.empty());
 }
 
-TEST(CloneRobots, ATagKeepsWhereItIsMounted) {
+TEST(CloneRobots, TagKeepsItsMount) {
   for (const char* const of : {"", "dummy"}) {
     World world = with_a_dummy();
     world.movers[0].X_MT = {0.1, 0.2, 0.3, 0.4};
@@ -167,7 +167,7 @@ TEST(CloneRobots, ATagKeepsWhereItIsMounted) {
   }
 }
 
-TEST(CloneRobots, ANameThatIsNoRobotsIsRefused) {
+TEST(CloneRobots, NameOfNoRobotIsRejected) {
   for (const auto& [name, said] : {std::pair{"robot44", "has no robot 'robot44' to copy; did you mean 'robot4'?"},
                                    std::pair{"robot1", "has no robot 'robot1' to copy"}}) {
     try {
@@ -179,8 +179,8 @@ TEST(CloneRobots, ANameThatIsNoRobotsIsRefused) {
   }
 }
 
-TEST(CloneRobots, FromWithinASolidTheyGoInsideThoughThereIsMoreOutside) {
-  World world = scenes::boxed_world(4, 4);  // the floor around it is 24 m wide
+TEST(CloneRobots, FromInsideASolidPrefersEnclosedSpace) {
+  World world = scenes::boxed_world(4, 4);  // the surrounding floor is 24 m wide
   scenes::add_outline(world.walls, scenes::rectangle({2, 2}, 0.6, 0.6));
   scenes::add_create(world, {2, 2, 0, 0});
   clone_robots(world, 20, 1);
@@ -190,8 +190,8 @@ TEST(CloneRobots, FromWithinASolidTheyGoInsideThoughThereIsMoreOutside) {
   }
 }
 
-// Boundary: a pocket of three walls, larger than the room, that is open only where the searched area ends.
-TEST(CloneRobots, APocketAtAnySideOfTheSearchedAreaIsOutside) {
+// Boundary: a pocket of three walls, larger than the room, that is open only at the end of the searched area.
+TEST(CloneRobots, PocketAtAnySideOfTheSearchedAreaIsOutside) {
   for (int side = 0; side < 4; ++side) {
     World world = scenes::boxed_world(4, 4, {-2, -2});
     scenes::add_outline(world.walls, scenes::rectangle({0, 0}, 0.6, 0.6));
@@ -202,7 +202,7 @@ TEST(CloneRobots, APocketAtAnySideOfTheSearchedAreaIsOutside) {
     scenes::add_wall(world, turned({10, -4}), turned({4, -4}));
     scenes::add_wall(world, turned({4, -4}), turned({4, 4}));
     scenes::add_wall(world, turned({4, 4}), turned({10, 4}));
-    scenes::add_create(world, {0, 0, 0, 0});  // within a solid; the floor is searched for 10 m around it
+    scenes::add_create(world, {0, 0, 0, 0});  // inside a solid; the floor is searched for 10 m around it
     clone_robots(world, 10, 1);
     for (const Mover& mover : world.movers) {
       const glm::dvec2 p = at(mover);
@@ -211,7 +211,7 @@ TEST(CloneRobots, APocketAtAnySideOfTheSearchedAreaIsOutside) {
   }
 }
 
-TEST(CloneRobots, NoRoomIsSaidWithNumbers) {
+TEST(CloneRobots, LackOfRoomIsReportedWithNumbers) {
   World world = scenes::boxed_world(2, 2);
   scenes::add_create(world, {1, 1, 0, 0});
   try {
@@ -223,7 +223,7 @@ TEST(CloneRobots, NoRoomIsSaidWithNumbers) {
   }
 }
 
-TEST(CloneRobots, NoRobotOrNoneAskedForIsRefused) {
+TEST(CloneRobots, NoRobotOrZeroCopiesIsRejected) {
   World empty = scenes::boxed_world(2, 2);
   EXPECT_THROW(clone_robots(empty, 3, 1), base::InputError);
   World tags = two_rooms();
@@ -288,7 +288,7 @@ TEST(CloneRobots, ModelsStayConsistent) {
 }
 
 /// Tags follow the copies; each keeps its own models.
-TEST(CloneRobots, EveryTagHasARowOfItsOwn) {
+TEST(CloneRobots, EveryTagHasItsOwnRow) {
   World world = mixed();
   for (const std::uint32_t id : {8u, 9u}) {
     scenes::add_create(world, {7, 1.0 * (id - 7), 0, 0}).is_tag = true;

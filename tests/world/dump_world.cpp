@@ -64,7 +64,7 @@ std::string table(const char* name, const Rows& rows) {
   return text;
 }
 
-/// The mover's fields besides those of its body, sensors and magnets, which have lines of their own.
+/// The mover's fields except those of its body, sensors and magnets, which have separate lines.
 std::string mover_lines(Mover m) {
   const Mover whole = m;
   m.body.clear(), m.sensors.clear(), m.magnets.clear();
@@ -130,7 +130,7 @@ std::string joint_lines(const RoadNetwork& roads) {
 }  // namespace
 
 std::string dump_of(const World& world) {
-  World rest = world;  // the fields of the world alone
+  World rest = world;  // only the fields of the world itself
   rest.models.clear(), rest.walls.clear(), rest.lane_markings.clear(), rest.magnets.clear(), rest.movers.clear();
   rest.paths.clear(), rest.lights.clear(), rest.emitters.clear(), rest.floor_holes.clear(), rest.warnings.clear();
   rest.hash = 0, rest.road_files.clear(), rest.unmodelled.clear();

@@ -1,5 +1,5 @@
 #pragma once
-// A loaded world as text: every field of every row, one row a line, numbers rounded to a micrometre.
+// Prints a loaded world as text: every field of every row, one row per line, numbers rounded to a micrometre.
 
 #include <string>
 
@@ -10,7 +10,7 @@
 namespace sf::world {
 
 std::string dump_of(const World& world);
-/// Lanes, edges, exits with their curves, stop lines, and the transitions from every point.
+/// Prints lanes, edges, exits with their curves, stop lines, and the transitions from every point.
 std::string dump_of(const RoadNetwork& roads);
 std::string dump_of(const LightPlan& plan);
 

@@ -1,4 +1,4 @@
-// Every key of the tables in world/fields.h is known, read, hashed, and kept by snapshots.
+// Every key in the tables of world/fields.h must be known, read, hashed, and kept by snapshots.
 
 #include "world/fields.h"
 
@@ -16,7 +16,7 @@
 namespace sf::world {
 namespace {
 
-/// A world file with one row of the type, and the place of its keys in it.
+/// A world file with one row of the type, and the position of its keys in the file.
 template <class Row>
 struct Example {
   KeyScope where;
@@ -35,7 +35,7 @@ const Example<Light> kLights{KeyScope::light, "light( phases 1 phase[0] [\"red\"
                              [](World& w) -> Light& { return w.lights.at(0); }};
 const Example<Mover> kMovers{KeyScope::position, "position( ", " )", [](World& w) -> Mover& { return w.movers.at(0); }};
 
-/// A value other than `value`, within the bounds of every field.
+/// Returns a value other than `value`, within the bounds of every field.
 template <class T>
 T other(const T& value) {
   if constexpr (std::is_same_v<T, bool>) {
@@ -63,7 +63,7 @@ std::string written(const T& value) {
 template <class T>
 constexpr bool kHasKeys = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, std::string>;
 
-/// `check(example, field, value)` for each key; @param value of the field where the file lacks the key
+/// Calls `check(example, field, value)` for each key. @param value of the field if the file lacks the key
 template <class Check>
 void for_each_key_of_all(Check check) {
   int keys = 0;
@@ -114,7 +114,7 @@ TEST(Fields, EveryKeyIsHashedAndKeptBySnapshots) {
   });
 }
 
-TEST(Fields, ValuesOutOfBoundsAreRefused) {
+TEST(Fields, ValuesOutOfBoundsAreRejected) {
   for_each_key_of_all([](const auto& example, const auto& field, const auto& value) {
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, double>) {
       const double least = std::min(-1.0, 2.0 * field.bounds.least);

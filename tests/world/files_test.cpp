@@ -21,7 +21,7 @@ std::size_t count_lasers(const World& world) {
   return count;
 }
 
-/// Each laser must be at a height at which there are walls, or the world is of no use.
+/// Each laser must be at a height with walls, otherwise the world is useless.
 void expect_lasers_see_walls(const World& world) {
   for (const Mover& mover : world.movers) {
     for (const Sensor& laser : mover.sensors) {
@@ -33,7 +33,7 @@ void expect_lasers_see_walls(const World& world) {
   }
 }
 
-/// Closed outlines: equal numbers of segments begin and end in each point.
+/// Expects closed outlines: equal numbers of segments start and end at each point.
 void expect_closed(const World& world) {
   std::map<std::pair<double, double>, int> balance;
   for (const Segment& wall : world.walls) {
@@ -44,7 +44,7 @@ void expect_closed(const World& world) {
   for (const auto& [point, sum] : balance) ASSERT_EQ(sum, 0) << point.first << ", " << point.second;
 }
 
-TEST(WorldFiles, OurCave) {
+TEST(WorldFiles, Cave) {
   const World world = load_world(SF_SOURCE_DIR "/worlds/cave.world", kWithLasers);
   EXPECT_TRUE(world.warnings.empty()) << warnings_of(world);
   ASSERT_EQ(world.movers.size(), 1u);
@@ -62,7 +62,7 @@ TEST(WorldFiles, OurCave) {
   expect_closed(world);
 }
 
-TEST(WorldFiles, OurRooms) {
+TEST(WorldFiles, Rooms) {
   const World world = load_world(SF_SOURCE_DIR "/worlds/rooms.world", kWithLasers);
   EXPECT_TRUE(world.warnings.empty()) << warnings_of(world);
   EXPECT_EQ(world.movers.size(), 3u);
@@ -85,7 +85,7 @@ TEST(WorldFiles, SimpleHasTwoPioneersWithSonarAndLaser) {
   expect_closed(world);
 }
 
-TEST(WorldFiles, RoombaHasABumperThatIsKept) {
+TEST(WorldFiles, RoombaKeepsItsBumper) {
   NEED_SHARED();
   const World world = load_world(kShared + "/stage/roomba.world", kWithLasers);
   EXPECT_EQ(world.movers.size(), 1u);
@@ -106,7 +106,7 @@ TEST(WorldFiles, CaveHasAHundredRobots) {
   expect_lasers_see_walls(world);
 }
 
-TEST(WorldFiles, HospitalHasAThousandRobotsOfTwelveSensors) {
+TEST(WorldFiles, HospitalHasAThousandRobotsWithTwelveSensors) {
   NEED_SHARED();
   const World world = load_world(kShared + "/stage/benchmark/hospital.world", kWithLasers);
   // The plan's margins, the plan that stops robots, and Stage's plug-in as the controller.
@@ -119,8 +119,8 @@ TEST(WorldFiles, HospitalHasAThousandRobotsOfTwelveSensors) {
   expect_closed(world);
 }
 
-/// Plausible numbers are no mistakes of units.
-TEST(WorldFiles, NoUnitOfStagesWorldsOrOfRosMapsIsDoubted) {
+/// Plausible numbers must not cause warnings about units.
+TEST(WorldFiles, StageWorldsAndRosMapsHaveNoUnitWarnings) {
   NEED_SHARED();
   static constexpr std::string_view kKeys[] = {"fov", "range", "sview", "view", "range_max", "scount", "spose[]"};
   static constexpr SensorKeyword kWords[] = {
@@ -134,7 +134,7 @@ TEST(WorldFiles, NoUnitOfStagesWorldsOrOfRosMapsIsDoubted) {
       try {
         world = load_world(entry.path().string(), LoadOptions{.sensors = kWords});
       } catch (const base::InputError&) {
-        continue;  // its picture is not here, or it is no world on its own
+        continue;  // its picture is missing here, or it is not a complete world
       }
       EXPECT_EQ(warnings_of(world).find("looks like"), std::string::npos) << entry.path() << warnings_of(world);
       ++loaded;
@@ -142,7 +142,7 @@ TEST(WorldFiles, NoUnitOfStagesWorldsOrOfRosMapsIsDoubted) {
   EXPECT_GE(loaded, 8u);
 }
 
-TEST(WorldFiles, EveryIncludeOfStageLoadsAndEveryDefinitionInItToo) {
+TEST(WorldFiles, EveryStageIncludeAndItsDefinitionsLoad) {
   NEED_SHARED();
   std::string all;
   for (const char* name :
@@ -160,7 +160,7 @@ TEST(WorldFiles, EveryIncludeOfStageLoadsAndEveryDefinitionInItToo) {
   EXPECT_GT(world.walls.size(), 20u);
 }
 
-TEST(WorldFiles, BothMapsOfRos) {
+TEST(WorldFiles, BothRosMaps) {
   NEED_SHARED();
   const World skirk = load_world(kShared + "/maps/skirk.yaml");
   EXPECT_TRUE(skirk.warnings.empty()) << warnings_of(skirk);

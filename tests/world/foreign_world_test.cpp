@@ -1,4 +1,4 @@
-// Worlds of other simulators and other files that are no worlds: named, with a way to use them.
+// Worlds of other simulators and other files that are not worlds: the error names them and says how to use them.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ TEST(ForeignWorlds, AreNamedByTheirFirstBytes) {
   expect_said("ply\nformat ascii 1.0\n", "a file of PLY");
 }
 
-TEST(ForeignWorlds, AreNamedByWhatIsInThem) {
+TEST(ForeignWorlds, AreNamedByTheirContent) {
   expect_said("solid cube\nfacet normal 0 0 0\n", "a file of STL");
   expect_said(std::string(80, 'x') + std::string("\1\0\0\0", 4) + std::string(50, '\0'), "a file of STL");
   expect_said("# Blender\n\nmtllib a.mtl\no Cube\nv 1.0 1.0 -1.0\nf 1 2 3\n", "Wavefront OBJ");
@@ -67,7 +67,7 @@ TEST(ForeignWorlds, AreNamedInUtf16) {
   expect_said("\xFF\xFE" + wide("model( )", true), "is a text in UTF-16: save it as UTF-8");
 }
 
-TEST(ForeignWorlds, PicturesAndOutlinesSayWhereTheyBelong) {
+TEST(ForeignWorlds, ErrorsOnPicturesAndOutlinesSayWhereTheyBelong) {
   expect_said("\x89PNG\r\n\x1a\n", "is a picture; expected a world: name it by model( bitmap");
   expect_said("P5\n2 2\n255\nabcd", "is a picture");
   expect_said("POLYGON ((0 0, 1 0, 1 1))", "by model( outlines");
@@ -76,7 +76,7 @@ TEST(ForeignWorlds, PicturesAndOutlinesSayWhereTheyBelong) {
   expect_said("{ \"type\": \"Point\", \"coordinates\": [0, 0] }", "by model( outlines");
 }
 
-TEST(ForeignWorlds, PlayersConfigurationNamesItsWorld) {
+TEST(ForeignWorlds, PlayerConfigurationNamesItsWorld) {
   const std::string driver = "driver\n(\n  name \"stage\"\n  provides [\"simulation:0\"]\n  plugin \"stageplugin\"\n";
   expect_said(driver + "  worldfile \"simple.world\"\n)\n",
               "test.world:1: 'driver' belongs to a configuration file of "
@@ -84,8 +84,8 @@ TEST(ForeignWorlds, PlayersConfigurationNamesItsWorld) {
   expect_said(driver + ")\n", "the world that its `worldfile` names");
 }
 
-/// Comments and words that only look like those of others.
-TEST(ForeignWorlds, OurOwnWorldsAreNone) {
+/// Comments and words that only look like those of other programs.
+TEST(ForeignWorlds, StageWorldsAreNotForeign) {
   EXPECT_EQ(error_of("# <sdf>\nmodel( name \"sdf\" )"), "");
   EXPECT_EQ(error_of("# VRML_SIM\nmodel( )"), "");
   EXPECT_EQ(error_of("P5( )"), "");

@@ -1,4 +1,4 @@
-// Files that request excessive resources: refused before the work is done, with the limit in the message.
+// Files that request excessive resources are rejected before the work is done, with the limit in the message.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ class HostileFiles : public ::testing::Test {
 
 const std::string kMap = "resolution: 0.05\norigin: [0, 0, 0]\n";
 
-// Reading a device never ends, and opening a pipe without a writer blocks: both are refused.
+// Reading a device never ends, and opening a pipe without a writer blocks. Both are rejected.
 TEST_F(HostileFiles, OnlyRegularFilesAreRead) {
   const std::string pipe = path("pipe");
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -56,7 +56,7 @@ TEST_F(HostileFiles, OnlyRegularFilesAreRead) {
   expect_error(write("b.world", "\ninclude \"pipe\"\n"), "b.world:2: cannot find the include \"pipe\"");
 }
 
-/// `include "robots.inc"` in a world of the user's own works in any folder, as `run worlds/cave.world` does.
+/// `include "robots.inc"` in a user's world works in any folder, like `run worlds/cave.world`.
 TEST_F(HostileFiles, IncludesAreFoundAmongTheInstalledWorlds) {
   const std::string world = write("own.world", "include \"shipped.inc\"\nposition( name \"mine\" )\n");
   expect_error(world, "or among the installed worlds");
@@ -67,7 +67,7 @@ TEST_F(HostileFiles, IncludesAreFoundAmongTheInstalledWorlds) {
   unsetenv("SENSORFARM_DATA");
 }
 
-TEST_F(HostileFiles, NothingIsNoWorld) {
+TEST_F(HostileFiles, EmptyFileIsNotAWorld) {
   for (const char* name : {"a.world", "a.yaml"}) {
     expect_error(write(name, ""), "is empty");
     expect_error(write(name, " \n\t\r\n"), "nothing but blanks");
@@ -78,13 +78,13 @@ TEST_F(HostileFiles, NothingIsNoWorld) {
   expect_error(write("m.yaml", kMap + "image: a.pgm\n"), "a.pgm: is empty");
 }
 
-TEST_F(HostileFiles, AnErrorWhileReadingIsNoEndOfFile) {
+TEST_F(HostileFiles, ReadErrorIsNotEndOfFile) {
   const std::string memory = "/proc/self/mem";  // a regular file whose first byte cannot be read
   if (!std::filesystem::exists(memory)) GTEST_SKIP() << "no /proc here";
   expect_error(memory, "cannot be read: ");
 }
 
-TEST_F(HostileFiles, ACheckerboardIsNoFloorPlan) {
+TEST_F(HostileFiles, CheckerboardIsNotAFloorPlan) {
   constexpr int kSide = 1200;  // 1.4 million cells, each with a boundary all around
   std::string pixels = fmt::format("P5 {0} {0} 255\n", kSide);
   for (int y = 0; y < kSide; ++y)
@@ -95,7 +95,7 @@ TEST_F(HostileFiles, ACheckerboardIsNoFloorPlan) {
   expect_error(write("m.yaml", kMap + "image: board.pgm\n"), "m.yaml:3: 'image': ");
 }
 
-// A repeated plan costs no reading time, and as much memory as the first.
+// A repeated plan takes no reading time, but as much memory as the first.
 TEST_F(HostileFiles, ManyPlansAreBoundedTogether) {
   std::string pixels = "P5 300 300 255\n";
   for (int y = 0; y < 300; ++y)
@@ -106,7 +106,7 @@ TEST_F(HostileFiles, ManyPlansAreBoundedTogether) {
   expect_error(write("a.world", text), "segments of the world; expected at most 2000000: leave out models");
 }
 
-TEST(HostileWorlds, ArcsOfTenThousandKilometres) {
+TEST(HostileWorlds, ArcsOfTenThousandKilometresAreRejected) {
   std::string text = "path( pieces 20\n";
   for (int i = 0; i < 20; ++i) text += fmt::format("arc[{}] [1e7 360 1]\n", i);
   const std::string said = error_of(text + "left \"solid_white\" )");
@@ -115,12 +115,12 @@ TEST(HostileWorlds, ArcsOfTenThousandKilometres) {
 }
 
 // A mile of motorway ramp is a valid world.
-TEST(HostileWorlds, ArcsOfRoadsAreFine) {
+TEST(HostileWorlds, ArcsOfRoadsAreAccepted) {
   EXPECT_EQ(error_of("path( pieces 1 arc[0] [1600 90 3.5] left \"solid_white\" right \"broken_white\" dash [3 9] )"),
             "");
 }
 
-TEST(HostileWorlds, DashesThatNobodyWrote) {
+TEST(HostileWorlds, ExcessiveDashesAreRejected) {
   EXPECT_EQ(error_of("path( pieces 1 straight[0] [300000 1]\nleft \"broken_white\" )"),
             "test.world:2: 'left' without a 'dash' gives more than 1000000 dashes; expected longer ones: dash "
             "[length gap]");
@@ -135,7 +135,7 @@ TEST(HostileWorlds, SamplesOfAllSensorsAreBoundedTogether) {
             "'samples'");
 }
 
-TEST(HostileWorlds, OutlinesThatAreCheckedAgainstThemselves) {
+TEST(HostileWorlds, OutlineSelfChecksAreBounded) {
   std::string text = "define big model( size [1 1 1] block( points 2000\n";
   for (int i = 0; i < 2000; ++i) text += fmt::format("point[{}] [{} {}]\n", i, i, i % 2);
   text += ") )\n";
@@ -144,12 +144,12 @@ TEST(HostileWorlds, OutlinesThatAreCheckedAgainstThemselves) {
             std::string::npos);
 }
 
-TEST(HostileWorlds, LongWords) {
+TEST(HostileWorlds, LongWordsAreRejected) {
   EXPECT_NE(error_of("\nname \"" + std::string(20'000, 'x') + "\"").find("test.world:2: a word or text of 20000"),
             std::string::npos);
 }
 
-// With a linear search, this number of keys of one model took minutes.
+// With a linear search, this number of keys in one model took minutes.
 TEST(HostileWorlds, ManyKeysOfOneModelAreReadOnce) {
   std::string text = "path( pieces 10000\n";
   for (int i = 0; i < 10'000; ++i) text += fmt::format("straight[{}] [1 1]\n", i);
@@ -183,8 +183,8 @@ std::string repeated(const std::string& piece, int times) {
   return text;
 }
 
-// Each part of a key is a table in a table; the recursive destruction of deep ones overflowed the stack.
-TEST(HostileToml, KeysOfManyParts) {
+// Each part of a key is a table in a table. The recursive destruction of deep tables overflowed the stack.
+TEST(HostileToml, KeysOfManyPartsAreRejected) {
   const std::string deep = repeated("a.", 150'000) + "a";
   const std::string says = "f.toml:2: nested too deep: a key of more than 32 parts";
   for (const std::string& text : {"\n" + deep + " = 1", "\n[" + deep + "]", "\n[[" + deep + "]]",
@@ -195,7 +195,7 @@ TEST(HostileToml, KeysOfManyParts) {
             std::string::npos);
 }
 
-TEST(HostileToml, PointsInTextsAndCommentsAreNoKeys) {
+TEST(HostileToml, DotsInTextsAndCommentsAreNotKeys) {
   const std::string points = repeated("x.", 100);
   EXPECT_EQ(toml_error("a = \"" + points + "\"\nb = '" + points + "'\n# " + points + "\nc = '''\n" + points +
                        "\n'''\nd = \"\"\"\n\\\"" + points + "\\\"\n\"\"\"\n"),
@@ -210,7 +210,7 @@ TEST(HostileToml, NestedValuesAndLargeFiles) {
   EXPECT_NE(toml_error(repeated("#\n", 3 << 20)).find("larger than 4 MiB"), std::string::npos);
 }
 
-TEST_F(HostileFiles, YamlThatNestsWithoutEnd) {
+TEST_F(HostileFiles, EndlesslyNestedYamlIsRejected) {
   for (const char* bracket : {"[", "{", "- ", "? ", "a: {"}) {
     const std::string map = write("m.yaml", repeated(bracket, 100'000));
     EXPECT_NE(error(map), "") << bracket;

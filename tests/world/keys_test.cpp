@@ -22,7 +22,7 @@ TEST(Keys, KeysAreKnownWhereTheyAreRead) {
   EXPECT_FALSE(is_known_key(KeyScope::world, "pose"));
 }
 
-TEST(Colors, AreSortedSoThatEveryNameIsFound) {
+TEST(Colors, AreSortedForSearch) {
   for (const char* name :
        {"aliceblue", "black", "red", "LightBlue", "steel blue", "DarkRed", "yellowgreen", "white", "grey"}) {
     EXPECT_TRUE(color_of(name)) << name;
@@ -39,7 +39,7 @@ TEST(Colors, AreSortedSoThatEveryNameIsFound) {
   EXPECT_FALSE(color_of(""));
 }
 
-TEST(Links, ComeFromNames) {
+TEST(Links, FollowFromNames) {
   EXPECT_EQ(packet_id_of("roomba12")->number, 12u);
   EXPECT_EQ(packet_id_of("/khepera3")->number, 3u);
   EXPECT_EQ(packet_id_of("roomba0")->number, 0u);

@@ -1,4 +1,4 @@
-// Actuated programs: calls, gaps, yellow, and what the forecasts promise.
+// Actuated programs: calls, gaps, yellow, and the accuracy of forecasts.
 
 #include "world/light_actuator.h"
 
@@ -14,7 +14,7 @@
 namespace sf::world {
 namespace {
 
-/// Light a is green for 5 to 20 s while robots come, b on call.
+/// Light a is green for 5 to 20 s while robots arrive; b on call.
 struct Crossing {
   World world;
   LightPlan plan;
@@ -79,7 +79,7 @@ TEST(LightActuator, RestsInGreenWithoutACall) {
   EXPECT_EQ(d.b(), LightState::red);
 }
 
-TEST(LightActuator, ACallEndsTheOthersGreenWhereNobodyComes) {
+TEST(LightActuator, CallEndsAnUnusedGreen) {
   Drive d;
   d.until(30.0);
   d.until(30.3, {kAtB});
@@ -90,7 +90,7 @@ TEST(LightActuator, ACallEndsTheOthersGreenWhereNobodyComes) {
   EXPECT_EQ(d.b(), LightState::red) << "clear time";
   d.until(33.5, {kAtB});
   EXPECT_EQ(d.b(), LightState::green);
-  // The robot has left: 4 s of green and a gap later it ends, and the call is forgotten.
+  // The robot has left: the stage ends after 4 s of green and a gap, and the call is cleared.
   d.until(36.9);
   EXPECT_EQ(d.b(), LightState::green);
   d.until(37.6);
@@ -99,7 +99,7 @@ TEST(LightActuator, ACallEndsTheOthersGreenWhereNobodyComes) {
   EXPECT_EQ(d.a(), LightState::green);
 }
 
-TEST(LightActuator, RobotsProlongGreenUpToItsMaximum) {
+TEST(LightActuator, RobotsExtendGreenUpToItsMaximum) {
   Drive d;
   d.until(19.8, {kAtA, kAtB});
   EXPECT_EQ(d.a(), LightState::green);
@@ -121,8 +121,8 @@ TEST(LightActuator, CallsOfTheFileCountAsRobots) {
   EXPECT_EQ(d.a(), LightState::yellow);
 }
 
-/// After a stop of the process: whatever was due, yellow is shown in full.
-TEST(LightActuator, ALateStepShortensNoYellow) {
+/// After the process was suspended, yellow is still shown in full, whatever was due.
+TEST(LightActuator, LateStepDoesNotShortenYellow) {
   Drive d;
   d.until(10.0);
   d.time = 50.0;
@@ -140,8 +140,8 @@ std::string text_of(const SignalForecast& f) {
   return fmt::format("{} for {:.1f} to {:.1f}{}", word(f.now.state), f.now.left, f.latest, next);
 }
 
-/// Robots at both lights for 25 s, then at b alone, then at none: forecasts of both lights every second.
-TEST(LightActuator, ForecastsAreAsRecorded) {
+/// Robots at both lights for 25 s, then only at b, then at neither: forecasts of both lights every second.
+TEST(LightActuator, ForecastsMatchTheRecord) {
   Drive d;
   std::string text;
   for (int second = 0; second <= 60; ++second) {
@@ -161,7 +161,7 @@ TEST(LightActuator, ForecastsAreAsRecorded) {
 TEST(LightActuator, ForecastsAndYellowHold) {
   Drive d;
   std::vector<SignalForecast> before = d.lights.forecasts(0.0);
-  double sooner[2] = {0.0, 0.0};  // [s] time before which no change was promised
+  double sooner[2] = {0.0, 0.0};  // [s] no change was forecast before this time
   int greens = 0;
   for (std::uint32_t k = 0; k < 18'000; ++k) {
     const auto u = base::random_uniform({.seed = 5, .stream = base::RandomStream::placement, .a = k / 40}, 0);

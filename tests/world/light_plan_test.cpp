@@ -1,4 +1,4 @@
-// Plan files of lights: what they mean, and where they are wrong.
+// Plan files of lights: their meaning and their errors.
 
 #include "world/light_plan.h"
 
@@ -11,7 +11,7 @@
 namespace sf::world {
 namespace {
 
-/// Lights a to d, 3 m apart on a street, all green for ever.
+/// Lights a to d, 3 m apart on a street, always green.
 World plan_street() {
   World world;
   world.file = "street.world";
@@ -38,10 +38,10 @@ yellow = 3
 clear = 0
 )";
 
-/// The limits of times: the value at the limit is taken, the one beyond is refused.
-TEST(LightPlan, TimesEndAtTheirLimits) {
+/// Times at the limit are accepted, and times beyond it are rejected.
+TEST(LightPlan, TimesAreLimited) {
   struct Limit {
-    std::string from, to;  ///< `from` of the plan is replaced by `to` and a value
+    std::string from, to;  ///< `from` in the plan is replaced by `to` and a value
     std::string least, below, most, beyond;
   };
   const Limit limits[] = {
@@ -66,8 +66,8 @@ TEST(LightPlan, TimesEndAtTheirLimits) {
   }
 }
 
-/// A light that is green in the last stage and in the first begins with the last.
-TEST(LightPlan, GreenOverTheEndOfTheCycleBeginsOnce) {
+/// A light that is green in the last stage and in the first turns green with the last.
+TEST(LightPlan, GreenAcrossTheEndOfTheCycleBeginsOnce) {
   World world = plan_street();
   const LightPlan plan = parse_light_plan("p.toml",
                                           "[[program]]\nlights = [\"a\", \"b\"]\n"
@@ -79,11 +79,11 @@ TEST(LightPlan, GreenOverTheEndOfTheCycleBeginsOnce) {
   EXPECT_EQ(first_green(plan.programs.at(0), 1), 8.0 + 3.0);
 }
 
-TEST(LightPlan, AFixedProgramBecomesThePlansOfItsLights) {
+TEST(LightPlan, FixedProgramBecomesThePlansOfItsLights) {
   World world = plan_street();
   const LightPlan plan = parse_light_plan("p.toml", kTwoStages, world);
   EXPECT_FALSE(is_actuated(plan.programs.at(0)));
-  // 8 s, 2 s yellow, 1 s clear; 10 s, 3 s yellow: 24 s.
+  // 8 s, 2 s yellow, 1 s clear; 10 s, 3 s yellow: 24 s in total.
   const auto at = [&](std::size_t light, double time) { return signal_at(world.lights[light], time).state; };
   for (const double cycle : {0.0, 24.0, -24.0}) {
     EXPECT_EQ(at(0, cycle + 5.0), LightState::green);
@@ -128,10 +128,10 @@ std::string wave(const std::string& wave_text, const std::string& last_green = "
   return text + "[[wave]]\nlights = [\"a\", \"b\", \"c\"]\nspeed = 0.5\nstart = 2\n" + wave_text;
 }
 
-TEST(LightPlan, AGreenWaveMovesAtItsSpeed) {
+TEST(LightPlan, GreenWaveMovesAtItsSpeed) {
   World world = plan_street();
   parse_light_plan("p.toml", wave(""), world);
-  for (std::size_t k = 0; k < 3; ++k) {  // 6 s from light to light
+  for (std::size_t k = 0; k < 3; ++k) {  // 6 s between lights
     const double green = 2.0 + 6.0 * static_cast<double>(k);
     EXPECT_EQ(signal_at(world.lights[k], green - 0.01).state, LightState::red) << k;
     EXPECT_EQ(signal_at(world.lights[k], green + 0.01).state, LightState::green) << k;
@@ -142,7 +142,7 @@ TEST(LightPlan, AGreenWaveMovesAtItsSpeed) {
   EXPECT_EQ(signal_at(world.lights[2], 12.01).state, LightState::green);
 }
 
-TEST(LightPlan, AGreenWaveMovesStraightFromLightToLight) {
+TEST(LightPlan, GreenWaveMovesStraightFromLightToLight) {
   World world = plan_street();
   world.lights[0].X_WL = {1.0, 3.0, 0.0, 0.0};
   world.lights[1].X_WL = {4.0, 7.0, 0.0, 0.0};  // 5 m
@@ -151,7 +151,7 @@ TEST(LightPlan, AGreenWaveMovesStraightFromLightToLight) {
   EXPECT_EQ(signal_at(world.lights[1], 12.01).state, LightState::green);
 }
 
-TEST(LightPlan, ItsWorldIsBesideIt) {
+TEST(LightPlan, WorldIsRelativeToThePlan) {
   EXPECT_EQ(world_of_plan("towns/p.toml", "world = \"../x.world\""), "x.world");
   EXPECT_THROW(world_of_plan("p.toml", "[[program]]"), base::InputError);
 }

@@ -16,7 +16,7 @@ Light plan() {
   return light;
 }
 
-TEST(SignalAt, EachPhaseBeginsWhereTheOneBeforeEnds) {
+TEST(SignalAt, EachPhaseBeginsAtTheEndOfThePrevious) {
   const Light light = plan();
   EXPECT_EQ(signal_at(light, 5.0).state, LightState::green);
   EXPECT_EQ(signal_at(light, 5.0).left, 8.0);
@@ -28,7 +28,7 @@ TEST(SignalAt, EachPhaseBeginsWhereTheOneBeforeEnds) {
   EXPECT_EQ(signal_at(light, 5.0 + 24.0 * 1e6 + 9.0).state, LightState::yellow);
 }
 
-TEST(SignalAt, ThePlanRunsBeforeItsOffsetToo) {
+TEST(SignalAt, PlanAlsoRunsBeforeItsOffset) {
   EXPECT_EQ(signal_at(plan(), 4.0).state, LightState::red);
   EXPECT_EQ(signal_at(plan(), 4.0).left, 1.0);
   EXPECT_EQ(signal_at(plan(), 5.0 - 24.0).state, LightState::green);
@@ -41,7 +41,7 @@ TEST(SignalAt, OnePhaseNeverChanges) {
   EXPECT_EQ(signal_at(light, 100.0).left, HUGE_VAL);
 }
 
-TEST(SignalAt, TheTimeLeftIsTheTimeToTheNextPhase) {
+TEST(SignalAt, TimeLeftIsTheTimeToTheNextPhase) {
   for (std::uint32_t k = 0; k < 2000; ++k) {
     const auto u = base::random_uniform({.seed = 3, .stream = base::RandomStream::placement, .a = k}, 0);
     Light light = plan();

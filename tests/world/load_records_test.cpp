@@ -1,4 +1,4 @@
-// Whole loaded worlds, compared with golden records.
+// Complete loaded worlds, compared with golden records.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ TEST(LoadRecords, BodiesOfEveryKind) { expect_recorded("bodies", dump_of(golden_
 
 TEST(LoadRecords, RobotsAndTheirSensors) { expect_recorded("robots", dump_of(golden_world("robots.world"))); }
 
-TEST(LoadRecords, StagesRulesForNoiseAndObstacles) {
+TEST(LoadRecords, StageRulesForNoiseAndObstacles) {
   LoadOptions options;
   options.stage_noise = options.stage_obstacles = true;
   options.accuracy = "near";
@@ -40,13 +40,13 @@ TEST(LoadRecords, StreetsWithPaintMagnetsAndLights) {
   expect_recorded("street", dump_of(golden_world("street.world")));
 }
 
-TEST(LoadRecords, ARoadNetworkWithAllItsTransitions) {
+TEST(LoadRecords, RoadNetworkWithAllItsTransitions) {
   std::vector<Warning> warnings;
   expect_recorded("small", dump_of(load_roads(kFolder + "small.rndf", warnings)));
   EXPECT_EQ(warnings_of(World{.warnings = warnings}), "");
 }
 
-TEST(LoadRecords, APlanOfLights) {
+TEST(LoadRecords, PlanOfLights) {
   World world;
   for (const char* name : {"a", "b", "c", "d"})
     world.lights.push_back({.name = name, .phases = {{LightState::green, 1.0}}});
@@ -54,7 +54,7 @@ TEST(LoadRecords, APlanOfLights) {
   expect_recorded("lights", dump_of(plan) + dump_of(world));
 }
 
-TEST(LoadRecords, ASnapshotIsTheWholeWorld) {
+TEST(LoadRecords, SnapshotContainsTheWholeWorld) {
   for (const char* name : {"bodies.world", "robots.world", "street.world"}) {
     World world = golden_world(name);
     for (Mover& m : world.movers) m.X_MT = {}, m.controller.clear();

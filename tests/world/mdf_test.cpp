@@ -45,7 +45,7 @@ TEST(Mdf, EveryStatementIsRead) {
   EXPECT_EQ(mdf.name, "go");
   EXPECT_EQ(mdf.rndf_name, "small");
   EXPECT_EQ(mdf.creation_date, "10/25/2007 6:30:28 PM");
-  ASSERT_EQ(mdf.checkpoints.size(), 3u);  // in order, repeats kept
+  ASSERT_EQ(mdf.checkpoints.size(), 3u);  // in order, including repeats
   EXPECT_EQ(mdf.checkpoints[0].id, 1);
   EXPECT_EQ(mdf.checkpoints[1].id, 2);
   EXPECT_EQ(mdf.checkpoints[2].id, 1);
@@ -57,7 +57,7 @@ TEST(Mdf, EveryStatementIsRead) {
   EXPECT_TRUE(check_against(mdf, small_rndf()).empty());
 }
 
-TEST(Mdf, RealHabitsChangeNothing) {
+TEST(Mdf, RealFileVariantsChangeNothing) {
   for (const std::string& text : {mdf_with("RNDF small", "RNDF_name small"), mdf_with("15\n", "15\t\t\r\n"),
                                   mdf_with("1\n2\n", "1\t\n\n2 /* lot */\n"), mdf_with("format_version 1.0\n", ""),
                                   mdf_with("creation_date 10/25/2007 6:30:28 PM\n", "")}) {
@@ -76,14 +76,14 @@ TEST(Mdf, MissingEndsAreWarnings) {
       {"end_file\n", "15: 'end_file' is missing at the end of the file\n"}};
   for (const auto& [end, warning] : corpus)
     EXPECT_EQ(lines_of(parse_mdf("go.mdf", mdf_with(end, "")).warnings), warning) << end;
-  // Cut within a block: the line where the block begins.
+  // Truncated inside a block: reports the line where the block starts.
   const std::string cut = kSmallMdf.substr(0, kSmallMdf.find("end_speed_limits"));
   EXPECT_EQ(lines_of(parse_mdf("go.mdf", cut).warnings),
             "11: 'speed_limits' has no 'end_speed_limits'; it ends at the end of the file\n"
             "14: 'end_file' is missing at the end of the file\n");
 }
 
-TEST(Mdf, WrongFilesAreRefused) {
+TEST(Mdf, WrongFilesAreRejected) {
   const std::vector<std::tuple<std::string, std::string, std::string>> corpus{
       {"num_checkpoints 3", "num_checkpoints 4", "go.mdf:6: 'num_checkpoints' says 4, but there are 3"},
       {"num_checkpoints 3\n", "", "go.mdf: 'num_checkpoints' is missing"},
@@ -119,19 +119,19 @@ TEST(Mdf, CheckpointsMustExist) {
   }
 }
 
-TEST(Mdf, ForeignSpeedLimitsAreWarnings) {
+TEST(Mdf, UnknownSpeedLimitsAreWarnings) {
   const auto warnings = check_against(parse_mdf("go.mdf", mdf_with("3 5 25", "9 5 25")), small_rndf());
   EXPECT_EQ(lines_of(warnings), "14: speed limit for 9, but small.rndf has no such segment or zone\n");
 }
 
-TEST(MdfFiles, OfTexas) {
+TEST(MdfFiles, TexasMissions) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/utexas/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
   const Mdf swri = read_mdf(folder + "swri_site_visit.mdf");
   EXPECT_TRUE(swri.warnings.empty());
   EXPECT_TRUE(check_against(swri, read_rndf(folder + "swri_site_visit.rndf")).empty());
 
-  // Two ends are missing, and a speed limit is for a zone 8 that its network lacks.
+  // Two ends are missing, and one speed limit is for zone 8, which its network does not have.
   const Mdf large = read_mdf(folder + "prc_large.mdf");
   EXPECT_EQ(large.warnings.size(), 2u) << lines_of(large.warnings);
   EXPECT_EQ(check_against(large, read_rndf(folder + "prc_large.rndf")).size(), 1u);

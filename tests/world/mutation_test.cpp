@@ -1,4 +1,4 @@
-// For any text the result is a world or an InputError with a file and a line.
+// Any text gives either a world or an InputError with a file and a line.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ constexpr std::array<std::string_view, 16> kPieces{"(",
                                                    "spose[0] [0 0 0] ",
                                                    "name \"tag1\" "};
 
-/// One to three changes: an insertion, a deletion, a duplication, or a flipped byte.
+/// Makes one to three changes: an insertion, a deletion, a duplication, or a flipped byte.
 std::string mutated(std::string text, std::uint32_t k) {
   const auto count = 1 + base::random_words({3, base::RandomStream::placement, k, 0, 0}, 1000)[0] % 3;
   for (std::uint32_t change = 0; change < count; ++change) {
@@ -56,7 +56,7 @@ std::string mutated(std::string text, std::uint32_t k) {
   return text;
 }
 
-/// The rules of world.h that users of a world do not check.
+/// Checks the invariants of world.h that users of a world do not check.
 void expect_sound(const World& world) {
   for (const Segment& wall : world.walls) {
     ASSERT_TRUE(wall.a.x != wall.b.x || wall.a.y != wall.b.y);
@@ -107,7 +107,7 @@ void run_text(const std::string& file, const std::string& text, std::uint32_t ti
 
 void run(const std::string& file, std::uint32_t times) { run_text(file, base::read_text(file), times); }
 
-TEST(Mutation, OfWhatStandsInStreets) {
+TEST(Mutation, StreetObjects) {
   run_text(SF_SOURCE_DIR "/worlds/test.world", R"(
 light( name "l" pose [1 2 0 90] lamps 1 phases 2 phase[0] ["green" 8] phase[1] ["flashing red" 2.5] offset 3
   stop_lines "3.1.11 4.2.5" )
@@ -120,11 +120,11 @@ position( drive "skid" track 0.4 acceleration_bounds [-1 1 0 0 0 0 -90 90] comma
            2000);
 }
 
-TEST(Mutation, OfOurRooms) { run(SF_SOURCE_DIR "/worlds/rooms.world", 2000); }
+TEST(Mutation, Rooms) { run(SF_SOURCE_DIR "/worlds/rooms.world", 2000); }
 
-TEST(Mutation, OfOurCave) { run(SF_SOURCE_DIR "/worlds/cave.world", 200); }
+TEST(Mutation, Cave) { run(SF_SOURCE_DIR "/worlds/cave.world", 200); }
 
-TEST(Mutation, OfStagesFiles) {
+TEST(Mutation, StageFiles) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/stage/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
   run(folder + "simple.world", 150);

@@ -31,12 +31,12 @@ std::size_t kept(std::vector<Segment> walls, double reach) {
   return world.walls.size();
 }
 
-TEST(NearPart, AWallAtTheReachIsKept) {
+TEST(NearPart, WallAtTheReachIsKept) {
   EXPECT_EQ(kept({kLongest, thin({12, 0}, {13, 0}, 1)}, 2.0), 2u);
   EXPECT_EQ(kept({kLongest, thin({12, 0}, {13, 0}, 1)}, 1.9), 1u);
 }
 
-TEST(NearPart, AnOutlineIsKeptWhole) {  // a ray's start in or outside a solid depends on all of its edges
+TEST(NearPart, OutlineIsKeptWhole) {  // whether a ray starts inside a solid depends on all of its edges
   const std::vector<glm::dvec2> corners{{9, 1}, {99, 1}, {99, 3}, {9, 3}};
   std::vector<Segment> walls{thin({0, 0}, {200, 0}, 0)};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -47,23 +47,23 @@ TEST(NearPart, AnOutlineIsKeptWhole) {  // a ray's start in or outside a solid d
   EXPECT_EQ(kept(walls, 1.0), 5u);
 }
 
-TEST(NearPart, AnOutlineInPiecesIsKept) {  // where its other pieces are is not known
+TEST(NearPart, OutlineInPiecesIsKept) {  // its other pieces may be anywhere
   Segment piece{{50, 50}, {51, 50}};
   piece.model = 1;
   EXPECT_EQ(kept({kLongest, piece}, 1.0), 2u);
 }
 
-TEST(NearPart, OneOfTheLongestWallsStays) {  // error bounds depend on its length
+TEST(NearPart, OneOfTheLongestWallsIsKept) {  // error bounds depend on its length
   EXPECT_EQ(kept({thin({50, 0}, {59, 0}, 0), thin({70, 0}, {79, 0}, 1), thin({50, 5}, {51, 5}, 2)}, 1.0), 1u);
 }
 
-TEST(NearPart, AnEndlessTileKeepsAll) {
+TEST(NearPart, InfiniteTileKeepsEverything) {
   World world = with_walls({thin({1e6, 0}, {1e6, 1}, 0), thin({-1e6, 0}, {-1e6, 2}, 1)});
   keep_near(world, {{-HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL}}, 1.0);
   EXPECT_EQ(world.walls.size(), 2u);
 }
 
-TEST(NearPart, OtherTablesStay) {
+TEST(NearPart, OtherTablesAreKept) {
   World world = with_walls({kLongest, thin({50, 0}, {51, 0}, 1)});
   world.models.resize(2);
   world.extent = {0, 0, 51, 0};

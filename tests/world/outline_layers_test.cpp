@@ -1,4 +1,4 @@
-// Outlines in the formats that GDAL reads, written by GDAL: the walls are those of the same outlines in text.
+// Outlines in the formats that GDAL reads, written by GDAL: the walls equal those of the same outlines in text.
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
@@ -32,7 +32,7 @@ std::string in_folder(const std::string& name) { return (std::filesystem::temp_d
 
 using Wall = std::array<double, 6>;
 struct LayerRead {
-  std::vector<Wall> walls;  ///< sorted: formats may begin a ring at another corner
+  std::vector<Wall> walls;  ///< sorted: formats may start a ring at another corner
   std::string warnings;
 };
 
@@ -60,7 +60,7 @@ LayerRead read_layers_of(const std::string& name, const std::string& text) {
   return read_layers(in_folder(name));
 }
 
-/// A file with one layer of these features. @param options of the layer
+/// Writes a file with one layer of these features. @param options of the layer
 std::string write_layer(const char* driver, const std::string& name, const std::vector<Feature>& features,
                         OGRwkbGeometryType type, const std::vector<std::string>& options = {}, int epsg = 32632,
                         int layers = 1) {
@@ -95,7 +95,7 @@ std::string write_layer(const char* driver, const std::string& name, const std::
   return in_folder(name);
 }
 
-/// Around a centre, with corners whose decimals are exact.
+/// Returns a ring around a centre, with corners whose decimals are exact.
 std::string ring_at_random(std::mt19937& random, glm::dvec2 centre, double size) {
   const int corners = 3 + static_cast<int>(random() % 8);
   std::string text;
@@ -132,7 +132,7 @@ std::string table_of(const std::vector<Feature>& features) {
   return text;
 }
 
-TEST(OutlineLayers, EveryFormatHasTheWallsOfTheText) {
+TEST(OutlineLayers, EveryFormatGivesTheWallsOfTheText) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const std::vector<Feature> houses = features_at_random(seed);
     const LayerRead text = read_layers_of("houses.txt", table_of(houses));
@@ -173,7 +173,7 @@ TEST(OutlineLayers, RowsWithoutWallsAreNamedAndCounted) {
             }));
 }
 
-TEST(OutlineLayers, CurvesAreChordsWithinAMicrometre) {
+TEST(OutlineLayers, CurvesBecomeChordsWithinAMicrometre) {
   const std::vector<Feature> tower{
       {"CURVEPOLYGON (CIRCULARSTRING (500002 0,500000 2,499998 0,500000 -2,500002 0))", 9.0}};
   const LayerRead found = read_layers(write_layer("GPKG", "tower.gpkg", tower, wkbCurvePolygon));
@@ -208,7 +208,7 @@ TEST(OutlineLayers, UnitsOtherThanTheWorldsAreNamed) {  // New York in US survey
   expect_in("has a unit of 1 m, but its coordinates count in the world's, 0.01 m", read_layers(metres, 0.01).warnings);
 }
 
-TEST(OutlineLayers, TheSridOfATableStatesItsUnit) {
+TEST(OutlineLayers, SridOfATableStatesItsUnit) {
   const auto warnings = [](const char* srid) {
     return read_layers_of("srid.csv", fmt::format("SRID={};LINESTRING (0 0,12 0)\n", srid)).warnings;
   };
@@ -220,7 +220,7 @@ TEST(OutlineLayers, TheSridOfATableStatesItsUnit) {
   expect_in("the SRID states that the coordinates are degrees", warnings("7844"));  // Australia
 }
 
-TEST(OutlineLayers, AFlagIsNoHeight) {
+TEST(OutlineLayers, FlagIsNotAHeight) {
   const LayerRead found = read_layers_of("flag.json", R"({"type": "Feature", "properties": {"height": true},
       "geometry": {"type": "LineString", "coordinates": [[0, 0], [900, 0]]}})");
   EXPECT_EQ(found.walls[0][4], 3.0);
@@ -231,14 +231,14 @@ TEST(OutlineLayers, AFlagIsNoHeight) {
                        height);
   };
   const std::string word = "a height is true or false, and counts as 1 or 0 like a number";
-  for (const char* number : {"5", "5.5"})  // GDAL makes one column of both
+  for (const char* number : {"5", "5.5"})  // GDAL reads both as one column
     expect_in(word, read_layers_of("flags.json", R"({"type": "FeatureCollection", "features": [)" + feature("true") +
                                                      "," + feature(number) + "]}")
                         .warnings);
   EXPECT_EQ(read_layers_of("number.json", feature("5")).warnings.find(word), std::string::npos);
 }
 
-TEST(OutlineLayers, AShapefileNeedsNoTable) {
+TEST(OutlineLayers, ShapefileNeedsNoTable) {
   const std::string file =
       write_layer("ESRI Shapefile", "alone.shp", {{"POLYGON ((0 0,0 900,900 0,0 0))", 9.0}}, wkbPolygon);
   EXPECT_EQ(read_layers(file).walls[0][4], 9.0);
@@ -260,7 +260,7 @@ TEST(OutlineLayers, BrokenFilesAreErrors) {
             sf::refusal_of([&] { read_layers_of("broken.shp", std::string("\0\0\x27\x0A\0\0\0\0", 8)); }));
 }
 
-TEST(OutlineLayers, AFileDoesNotReachTheNetwork) {
+TEST(OutlineLayers, FilesDoNotAccessTheNetwork) {
   const LayerRead found =
       read_layers_of("link.json", R"({"type": "FeatureCollection", "crs": {"type": "link", "properties":
       {"href": "http://127.0.0.1:9/system"}}, "features": [{"type": "Feature", "properties": {"height": "7"},

@@ -1,4 +1,4 @@
-// How tables of outlines are written: separators, empty fields, titles above the names, quotes, several geometries.
+// Dialects of outline tables: separators, empty fields, titles above the names, quotes, several geometries.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ const std::string kLine = "LINESTRING (0 0,1 0)";
 /// kLine in well-known binary.
 const std::string kHex = "01020000000200000000000000000000000000000000000000000000000000F03F0000000000000000";
 
-/// In quotes where a field needs them, as GDAL writes it.
+/// Quotes a field if it needs quotes, as GDAL does.
 std::string written(const std::string& field, char separator, bool bare) {
   const std::string special = separator == ' ' ? "\",;\t\n\r| " : "\",;\t\n\r|";
   if (bare || field.find_first_of(special) == std::string::npos) return field;
@@ -25,7 +25,7 @@ std::string written(const std::string& field, char separator, bool bare) {
   return text + "\"";
 }
 
-TEST(OutlineTableForms, RandomTablesInEverySeparatorHaveTheirMeaning) {
+TEST(OutlineTableForms, RandomTablesAreReadWithEverySeparator) {
   constexpr std::array kAttributes{
       "",     "",      "hall",   "a,b", "two\nlines",     "say \"hi\"",      "\"",      "x;y", "bar|x",
       "a\tb", "(open", "close)", "01",  "Point of sale",  "Tin roof",        "Polygon", "5",   "))",
@@ -76,7 +76,7 @@ TEST(OutlineTableForms, EmptyFieldsBeforeAGeometryInTabs) {
             read_table("geom\n" + kHex + "0\n" + kHex).warnings);
 }
 
-TEST(OutlineTableForms, BlanksSeparateWhereNothingElseDoes) {
+TEST(OutlineTableForms, BlanksSeparateIfNothingElseDoes) {
   EXPECT_EQ(read_table("WKT WKT name height\n\"" + kLine + "\" \"" + kLine + "\" \"a, \"\"b\"\"\" 6.5\n").heights(),
             "6.5 ");
   EXPECT_EQ(read_table("WKT name height\n\"" + kLine + "\"  7\n").heights(), "7 ") << "an empty name";
@@ -87,7 +87,7 @@ TEST(OutlineTableForms, BlanksSeparateWhereNothingElseDoes) {
   EXPECT_EQ(read_table("the wkt\n" + kLine + "\n").walls.size(), 1u) << "one column";
 }
 
-TEST(OutlineTableForms, TextBehindAClosingQuoteIsNamed) {
+TEST(OutlineTableForms, TextAfterAClosingQuoteIsReported) {
   const auto faults = [](const std::string& row) { return read_table("WKT,height\n" + row).warnings; };
   EXPECT_EQ(faults("\"" + kLine + "\" ,\"7\" \n"), "") << "blanks are none";
   EXPECT_EQ(faults("\"" + kLine + "\"x,7\n"),
@@ -115,7 +115,7 @@ TEST(OutlineTableForms, NamesMayFollowTitlesAndComments) {
             read_table("WKT,Height (m)\n\"" + kLine + "\",5\n").warnings);
   const TableRead rows = read_table("id,kind,outline\n1,way,\n2,way,\"" + kLine + "\"\n");
   EXPECT_EQ(rows.walls.size(), 1u);
-  expect_in("2: has no geometry: left out", rows.warnings);  // a value is no name
+  expect_in("2: has no geometry: left out", rows.warnings);  // a value is not a name
 }
 
 TEST(OutlineTableForms, LineEndsInNames) {
@@ -126,7 +126,7 @@ TEST(OutlineTableForms, LineEndsInNames) {
   expect_in("its columns are 'id no', 'geom'", sf::refusal_of([] { read_table("\"id\nno\",geom\n1,x"); }));
 }
 
-TEST(OutlineTableForms, AnEmptyGeometryDoesNotDecideTheColumn) {
+TEST(OutlineTableForms, EmptyGeometryDoesNotDecideTheColumn) {
   const std::string square = "\"" + kSquare + "\"", other = "\"POLYGON ((20 0,25 0,25 5,20 5,20 0))\"";
   EXPECT_EQ(read_table("id,roof,footprint\n1,POLYGON EMPTY," + square + "\n2," + square + "," + other + "\n3,," + other)
                 .area(),
@@ -141,7 +141,7 @@ TEST(OutlineTableForms, AnEmptyGeometryDoesNotDecideTheColumn) {
       << "one has walls";
 }
 
-TEST(OutlineTableForms, TextsLikeGeometriesEndAtTheirSeparator) {
+TEST(OutlineTableForms, GeometryLikeTextsEndAtTheirSeparator) {
   for (const char separator : {',', ';', '\t', '|'})
     for (const std::string text :
          {"Triangle (east", "MULTIPOLYGON ((", "Point (A", "Point (5", "Polygon (WKT)", "TIN ("}) {
@@ -154,7 +154,7 @@ TEST(OutlineTableForms, TextsLikeGeometriesEndAtTheirSeparator) {
   EXPECT_EQ(read_table("id,Polygon (WKT),height\n1,\"" + kLine + "\",5\n").heights(), "5 ") << "a name";
 }
 
-TEST(OutlineTableForms, ManyOpenGeometriesTakeNoLongerThanTheirRow) {  // each field searched to the end: minutes
+TEST(OutlineTableForms, ManyOpenGeometriesTakeLinearTime) {  // searching each field to the end would take minutes
   std::string row = "WKT\n" + kLine + "\n";
   for (int i = 0; i < 200'000; ++i) row += "POINT (1 1,";
   EXPECT_EQ(read_table(row).walls.size(), 1u);
@@ -165,7 +165,7 @@ TEST(OutlineTableForms, RingsOfShapelyAreLines) {
   EXPECT_EQ(read_table("WKT\nLinearRing Z (0 0 1, 12 0 1, 0 0 1)\n").walls.size(), 2u);
 }
 
-TEST(OutlineTableForms, FacesInACollectionCostNoOtherMember) {
+TEST(OutlineTableForms, FacesInACollectionAffectNoOtherMember) {
   const std::string tin = "TIN (((0 0 0,1 0 0,0 1 1,0 0 0)),((0 0 0,1 0 0,0 1 1,0 0 0)))";
   const TableRead read =
       read_table("WKT\nGEOMETRYCOLLECTION (" + tin + "," + kSquare + ",POLYHEDRALSURFACE Z (((0 0 0,1 0 0,0 1 1))))");

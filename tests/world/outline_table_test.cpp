@@ -1,4 +1,4 @@
-// Tables of outlines as programs write them: RFC 4180 and what deviates from it.
+// Outline tables as written by other programs: RFC 4180 and deviations from it.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 const std::string kSharedTables = SF_SOURCE_DIR "/../shared/data/reports/wkt/";
 
-TEST(OutlineTable, FilesOfOtherProgramsHaveTheirWalls) {
+TEST(OutlineTable, FilesOfOtherProgramsGiveTheirWalls) {
   if (!std::filesystem::exists(kSharedTables)) GTEST_SKIP() << "no shared data beside the sources";
   struct Case {
     const char* file;
@@ -46,7 +46,7 @@ TEST(OutlineTable, FilesOfOtherProgramsHaveTheirWalls) {
     EXPECT_EQ(read.warnings, c.warnings) << c.file;
     if (c.walls % 2 == 0) {
       EXPECT_EQ(read.area(), c.area) << c.file;
-    }  // a line encloses none
+    }  // a line does not enclose any points
   }
 }
 
@@ -68,7 +68,7 @@ TEST(OutlineTable, AnySeparatorAnyColumnAnyName) {
         }
 }
 
-TEST(OutlineTable, WithoutAHeaderTheGeometryIsFound) {
+TEST(OutlineTable, GeometryIsFoundWithoutAHeader) {
   for (const std::string& text : {kSquare, "\"" + kSquare + "\"", "\xEF\xBB\xBF" + kSquare, "SRID=32632;" + kSquare}) {
     EXPECT_EQ(read_table(text).area(), 96.0) << text;
     EXPECT_EQ(read_table(text).warnings, "") << text;
@@ -83,7 +83,7 @@ TEST(OutlineTable, WithoutAHeaderTheGeometryIsFound) {
   EXPECT_EQ(read_table("sep=;\nid;WKT;height\n1;" + kSquare + ";4").heights(), "4 ");
 }
 
-TEST(OutlineTable, OfSeveralGeometriesTheOneWithWalls) {  // a centre, an envelope
+TEST(OutlineTable, PrefersTheGeometryWithWalls) {  // over a centre or an envelope
   const std::string point = "\"POINT (6 4)\"", hexpoint = "0101000000000000000000184000000000000010400";
   EXPECT_EQ(read_table("center,geom\n" + point + ",\"" + kSquare + "\"").area(), 96.0);
   EXPECT_EQ(read_table("center,outline\n" + hexpoint.substr(0, 42) + ",\"" + kSquare + "\"").area(), 96.0);
@@ -100,7 +100,7 @@ TEST(OutlineTable, LineEndsInQuotes) {
   EXPECT_EQ(read.warnings, "6: points have no walls: left out\n") << "lines count, not records";
 }
 
-TEST(OutlineTable, AGeometryWithoutQuotesMayTakeSeveralLines) {
+TEST(OutlineTable, UnquotedGeometryMaySpanLines) {
   const std::string pretty = "POLYGON (\n  (0 0,\n\n   12 0,\r\n   12 8, 0 8)\n)\n", line = "LINESTRING (0 0, 1 0)\n";
   TableRead read = read_table(pretty + line + pretty + "POINT (0 0)\n");
   EXPECT_EQ(read.area(), 192.0);
@@ -111,7 +111,7 @@ TEST(OutlineTable, AGeometryWithoutQuotesMayTakeSeveralLines) {
   EXPECT_EQ(read_table("id,WKT\n1,POLYGON ((0 0, 12 0,\n2," + line).walls.size(), 1u) << "a number that begins a row";
 }
 
-TEST(OutlineTable, AQuoteThatIsNeverClosedCostsItsRowAlone) {
+TEST(OutlineTable, UnclosedQuoteAffectsOnlyItsRow) {
   const std::string good = "\"LINESTRING (0 0,1 0)\",a\n";
   TableRead read = read_table("WKT,name\n" + good + "\"LINESTRING (0 0,1 0),b\n" + good + good);
   EXPECT_EQ(read.walls.size(), 3u);
@@ -124,7 +124,8 @@ TEST(OutlineTable, AQuoteThatIsNeverClosedCostsItsRowAlone) {
   EXPECT_EQ(read_table("\"WKT,name\nLINESTRING (0 0,1 0),a\n").walls.size(), 1u) << "in the header";
 }
 
-TEST(OutlineTable, OpenQuotesAreJoinedOnce) {  // each line leaves one open; joined again from each, it takes a minute
+TEST(OutlineTable,
+     OpenQuotesAreJoinedOnce) {  // each line leaves a quote open; joining again from each line would take a minute
   std::string text = "LINESTRING (0 0,1 0)\n";
   for (int i = 0; i < 100'000; ++i) text += "a\",\"\n";
   EXPECT_EQ(read_table(text).walls.size(), 1u);
@@ -138,7 +139,7 @@ TEST(OutlineTable, RowsMayBeShort) {
   EXPECT_EQ(read.warnings, "2: has no geometry: left out\n5: has no geometry: left out\n");
 }
 
-TEST(OutlineTable, OnlyTextsOfADatabaseAreNoGeometries) {
+TEST(OutlineTable, DatabaseNullsAreNotGeometries) {
   const TableRead read = read_table("id,geom\n1,\"LINESTRING (0 0,1 0)\"\n2,NULL\n3,\\N\n4,010000000000000042\n");
   EXPECT_EQ(read.walls.size(), 1u);
   EXPECT_NE(

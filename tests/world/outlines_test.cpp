@@ -16,14 +16,14 @@ namespace sf::world {
 
 namespace {
 
-/// A file in the folder of this program.
+/// Writes a file in the folder of this program.
 std::string outlines_file(const std::string& text) {
   const std::string file = (std::filesystem::temp_directory_path() / "outlines.csv").string();
   std::ofstream(file, std::ios::binary) << text;
   return file;
 }
 
-/// A world of that file, 3 m high unless the file says otherwise.
+/// Loads a world of that file, 3 m high unless the file has a height.
 World town_of(const std::string& text, const std::string& pose = "0 0 0 0", bool leave = false) {
   LoadOptions options = kWithLasers;
   options.leave_outlines = leave;
@@ -41,7 +41,7 @@ double solid_area_of(const World& world) {
   return area;
 }
 
-TEST(Outlines, APolygonIsASolidOfItsHeight) {
+TEST(Outlines, PolygonIsASolidOfItsHeight) {
   for (const char* ring :
        {"0 0, 4 0, 4 2, 0 2, 0 0", "0 0, 0 2, 4 2, 4 0, 0 0", "0 0, 4 0, 4 2, 0 2"}) {  // any winding
     const World world = town_of("POLYGON ((" + std::string(ring) + "))");
@@ -64,13 +64,13 @@ TEST(Outlines, InnerRingsAreHoles) {  // courtyards: inside is free
   for (std::size_t i = 5; i < 8; ++i) EXPECT_EQ(world.walls[i].a, world.walls[i - 1].b) << "a hole is one line";
 }
 
-TEST(Outlines, AHoleInARingWithoutSidesHasNoneEither) {
+TEST(Outlines, HoleInARingWithoutSidesHasNoSidesEither) {
   const World world = town_of("POLYGON ((0 0, 9 9, 9 0, 0 9, 0 0), (1 4, 2 4, 2 5, 1 5, 1 4))");
   ASSERT_EQ(world.walls.size(), 8u);
   for (const Segment& wall : world.walls) EXPECT_FALSE(wall.solid_left);
 }
 
-TEST(Outlines, AHoleThatLeavesItsRingHasNoSides) {  // it would turn inside and outside
+TEST(Outlines, HoleThatLeavesItsRingHasNoSides) {  // it would swap inside and outside
   const std::string square = "POLYGON ((0 0, 9 0, 9 9, 0 9, 0 0), ", hole = ", (1 1, 2 1, 2 2, 1 1))";
   for (const char* stray :
        {"(11 3, 12 3, 12 4, 11 3)", "(8 3, 12 3, 12 4, 8 3)", "(-1 -1, 10 -1, 10 10, -1 10, -1 -1)"}) {
@@ -86,12 +86,12 @@ TEST(Outlines, AHoleThatLeavesItsRingHasNoSides) {  // it would turn inside and 
   }
 }
 
-TEST(Outlines, EveryPartOfAGeometry) {
+TEST(Outlines, EveryPartOfAGeometryIsRead) {
   EXPECT_EQ(town_of("MULTIPOLYGON (((0 0, 1 0, 0 1)), ((5 5, 6 5, 5 6), (5.1 5.1, 5.2 5.1, 5.1 5.2)))").walls.size(),
             9u);
   EXPECT_EQ(town_of("LINESTRING (0 0, 1 0, 1 1)").walls.size(), 2u);
   EXPECT_EQ(town_of("multilinestring((0 0,1 0),(2 0,3 0,4 0))").walls.size(), 3u);
-  EXPECT_EQ(town_of("LINESTRING (0 0, 0 0, 1 0)").walls.size(), 1u);  // a step of no length is no wall
+  EXPECT_EQ(town_of("LINESTRING (0 0, 0 0, 1 0)").walls.size(), 1u);  // a step of length zero is not a wall
   EXPECT_EQ(town_of("LINESTRING (0 0)\nLINESTRING (0 0, 1 0)").walls.size(), 1u);
   EXPECT_FALSE(town_of("LINESTRING (0 0, 1 0)").walls[0].solid_left);
 }
@@ -106,7 +106,7 @@ TEST(Outlines, CoordinatesBeyondThePlaneAreIgnored) {
   }
 }
 
-TEST(Outlines, ATableHasHeights) {  // as GDAL writes it
+TEST(Outlines, TableHasHeights) {  // as written by GDAL
   const World world = town_of(
       "WKT,name,height\r\n"
       "\"POLYGON ((0 0,1 0,1 1,0 0))\",town hall,12.5\r\n"
@@ -119,7 +119,7 @@ TEST(Outlines, ATableHasHeights) {  // as GDAL writes it
   EXPECT_EQ(town_of("\xEF\xBB\xBFwkt\n\"LINESTRING (0 0, 1 0)\"").walls.size(), 1u) << "with a byte order mark";
 }
 
-TEST(Outlines, StandWhereTheirModelStands) {
+TEST(Outlines, ArePlacedWithTheirModel) {
   LoadOptions options = kWithLasers;
   const World world =
       read_world("unit_length \"cm\"\nmodel( outlines \"" + outlines_file("WKT,height\n\"LINESTRING (0 0,200 0)\",50") +
@@ -134,14 +134,14 @@ TEST(Outlines, StandWhereTheirModelStands) {
   EXPECT_EQ(world.models[world.walls[0].model].name, "model:0");
 }
 
-/// The warnings of a file with a good wall in front of the given rows: "2: ...".
+/// Returns the warnings of a file with a valid wall before the given rows: "2: ...".
 std::string faults_of(const std::string& rows, const std::string& first = "\"LINESTRING (0 0,1 0)\"") {
   const World world = town_of(first + "\n" + rows);
   EXPECT_EQ(world.walls.front().b, glm::dvec2(1, 0));
   return warnings_of(world);
 }
 
-TEST(Outlines, ARowThatCannotBeReadIsLeftOutWithItsLine) {
+TEST(Outlines, UnreadableRowIsSkippedWithItsLine) {
   const std::pair<const char*, const char*> cases[] = {
       {"POINT (1 2)", "2: points have no walls: left out\n"},
       {"(0 0, 1 0)", "2: expected POLYGON, MULTIPOLYGON, LINESTRING or MULTILINESTRING, found '(0 0': left out\n"},
@@ -150,7 +150,7 @@ TEST(Outlines, ARowThatCannotBeReadIsLeftOutWithItsLine) {
       {"LINESTRING (0 0, 1 -inf)", "expected a finite number, found '-inf)'"},
       {"LINESTRING (0 0, 1 1e999)", "expected a finite number, found '1e999)'"},
       {"LINESTRING (0 0, 1 2-3)", "expected a finite number, found '2-3)'"},
-      {"LINESTRING (0 0 1 1 2 2)", "expected ')', found '2 2)'"},  // no commas
+      {"LINESTRING (0 0 1 1 2 2)", "expected ')', found '2 2)'"},  // missing commas
       {"LINESTRING (0 0, 1 1", "expected ')', found the end of the text"},
       {"LINESTRING (0 0, 1 1) x", "expected the end of the geometry, found 'x'"},
       {"LINESTRING SOME (0 0, 1 1)", "expected '(' or EMPTY after LINESTRING, found 'SOME (0 0'"},
@@ -176,7 +176,7 @@ TEST(Outlines, ARowThatCannotBeReadIsLeftOutWithItsLine) {
   expect_in("a corner is 1.00001e+07 m from", faults_of("LINESTRING (0 0, 0 -10000100)"));
 }
 
-TEST(Outlines, AHeightThatCannotBeReadIsThatOfTheModel) {
+TEST(Outlines, UnreadableHeightBecomesThatOfTheModel) {
   for (const char* height :
        {"12 m", "\"3,5\"", "5e70", "1e999", "-1", "nan", "inf", "10000001", "-1e-300", "high", "0x10", "12'6\""}) {
     const World world =
@@ -194,7 +194,7 @@ TEST(Outlines, AHeightThatCannotBeReadIsThatOfTheModel) {
   }
 }
 
-TEST(Outlines, WarningsAreFew) {  // and none is lost: the others are counted
+TEST(Outlines, WarningsAreFew) {  // the others are counted, so none is lost
   std::string rows;
   for (int i = 0; i < 1000; ++i) rows += "LINESTRING (0 0\nPOINT (0 0)\nPOLYGON EMPTY\n";
   const std::string warnings = faults_of(rows);
@@ -205,7 +205,7 @@ TEST(Outlines, WarningsAreFew) {  // and none is lost: the others are counted
   expect_in("0: 997 rows more are left out without a geometry\n", warnings);
 }
 
-TEST(Outlines, WarningsComeOnceHoweverOftenAFileIsRead) {  // for extent, for the hash, for its walls
+TEST(Outlines, WarningsAreReportedOnceForSeveralReads) {  // a file is read for the extent, the hash and its walls
   const std::string text = "LINESTRING (0 0, 1 0)\nPOINT (0 0)\n";
   World left = town_of(text, "0 0 0 0", true);
   EXPECT_EQ(warnings_of(left), warnings_of(town_of(text)));
@@ -215,7 +215,7 @@ TEST(Outlines, WarningsComeOnceHoweverOftenAFileIsRead) {  // for extent, for th
   EXPECT_EQ(left.warnings.size(), 1u);
 }
 
-TEST(Outlines, StrictlyTheFirstFaultIsAnError) {  // as before rows could be left out
+TEST(Outlines, FirstFaultIsAnErrorInStrictMode) {  // as in versions that did not skip rows
   LoadOptions strict = kWithLasers;
   strict.strict = true;
   const std::pair<const char*, const char*> cases[] = {
@@ -233,7 +233,7 @@ TEST(Outlines, StrictlyTheFirstFaultIsAnError) {  // as before rows could be lef
       << "no row's fault";
 }
 
-TEST(Outlines, AFileWithoutWallsIsAnErrorThatNamesItsColumns) {
+TEST(Outlines, FileWithoutWallsIsAnErrorWithItsColumns) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "outlines.csv: the file has no outlines with walls; its first line does not name its columns; expected"},
       {"\n  \n", "outlines.csv: the file has no outlines"},
@@ -256,7 +256,7 @@ TEST(Outlines, AFileWithoutWallsIsAnErrorThatNamesItsColumns) {
   expect_in("outlines.csv: is no text; expected a table", outline_refusal(std::string("WKT\0\0", 5)));
 }
 
-TEST(Outlines, DegreesAreNoMetres) {
+TEST(Outlines, DegreesAreNotMetres) {
   const std::string house = "POLYGON ((11.5755 48.1372, 11.5756 48.1372, 11.5756 48.1373))\n";
   expect_in("0: the coordinates are degrees", warnings_of(town_of(house)));
   expect_in("0: the SRID states that the coordinates are degrees",
@@ -277,7 +277,7 @@ TEST(Outlines, DegreesAreNoMetres) {
     EXPECT_EQ(town_of(fmt::format("SRID=4326;LINESTRING ({})", place)).warnings.size(), angles ? 1u : 0u) << place;
 }
 
-TEST(Outlines, TheWorkForCrossingsIsBounded) {  // it is quadratic where all edges overlap
+TEST(Outlines, WorkForCrossingsIsBounded) {  // it is quadratic if all edges overlap
   std::string zigzag = "LINESTRING (0 0, 1 0)\nPOLYGON ((0 0", comb = zigzag;
   for (int i = 1; i <= 50'000; ++i) {
     zigzag += fmt::format(",{} {}", i, i % 2);
@@ -290,7 +290,7 @@ TEST(Outlines, TheWorkForCrossingsIsBounded) {  // it is quadratic where all edg
             warnings_of(world));
 }
 
-TEST(Outlines, AreForModelsThatStandAndHaveNothingElse) {
+TEST(Outlines, RequireAStaticModelWithoutAnotherBody) {
   const std::string outlines = "outlines \"" + outlines_file("LINESTRING (0 0, 1 0)") + "\"";
   EXPECT_EQ(error_of("position( " + outlines + " )"),
             "test.world:1: 'outlines' are for models that stand; give robots and tags a 'block'");
@@ -302,7 +302,7 @@ TEST(Outlines, AreForModelsThatStandAndHaveNothingElse) {
             warnings_of(read_world("model( " + outlines + " )")));
 }
 
-/// Houses at random places, some with courtyards, and fences.
+/// Returns houses at random places, some with courtyards, and fences.
 std::string houses_at_random(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> place(-100.0, 100.0), size(0.5, 6.0);
@@ -327,7 +327,7 @@ bool same_walls(const World& one, const World& other) {
   return a.hash == b.hash && a.walls.size() == b.walls.size();
 }
 
-TEST(Outlines, LeftInTheirFileTheyCount) {  // in hash and extent, and they can be read later
+TEST(Outlines, UnreadFilesCountInHashAndExtent) {  // and can be read later
   const World whole = town_of(houses_at_random(1), "3 4 0 30");
   World left = town_of(houses_at_random(1), "3 4 0 30", true);
   EXPECT_TRUE(left.walls.empty());
@@ -343,7 +343,7 @@ TEST(Outlines, LeftInTheirFileTheyCount) {  // in hash and extent, and they can 
   EXPECT_NEAR(left.walls.back().b.x, moved.walls.back().b.x, 1e-9);
 }
 
-TEST(Outlines, ThePartReadIsThePartKept) {  // for any tile, by whichever way its walls come
+TEST(Outlines, ReadingPartEqualsKeepingPart) {  // for any tile
   const std::string town =
       houses_at_random(2) + "LINESTRING (-90 -90, -50 -90)\n";  // the longest wall, far from most tiles
   const World whole = town_of(town), left = town_of(town, "0 0 0 0", true);

@@ -14,7 +14,7 @@ constexpr const char* kBot = "define bot position( size [0.4 0.4 0.3] )\n";
 
 Rows overlapping(const std::string& robots) { return find_overlaps(read_world(kBot + robots)).robots; }
 
-TEST(Overlaps, RobotsInOneAnother) {
+TEST(Overlaps, RobotsInsideEachOther) {
   EXPECT_EQ(overlapping("bot( ) bot( )"), (Rows{0, 1})) << "the same pose";
   EXPECT_EQ(overlapping("bot( ) bot( pose [0.3 0.1 0 0] )"), (Rows{0, 1}));
   EXPECT_EQ(overlapping("bot( ) bot( pose [0.4 0 0 0] )"), (Rows{})) << "touching is fine";
@@ -29,7 +29,7 @@ TEST(Overlaps, RobotsInOneAnother) {
   EXPECT_EQ(overlapping("bot( noblocks 1 ) bot( )"), (Rows{})) << "without a body";
 }
 
-/// Boxes that meet, and outlines that do not.
+/// Boxes that overlap, and outlines that do not.
 TEST(Overlaps, CompareOutlinesNotBoxes) {
   const std::string wedge =
       "position( size [1 1 1] pose [0 0 0 {}] block( points 3 z [0 1] point[0] [0 0] point[1] [1 0] point[2] [0 1] ) "
@@ -49,8 +49,8 @@ TEST(Overlaps, AreOneWarningWithACount) {
             "poses apart\n");
 }
 
-/// Robots of a crowd look for one partner each, so a crowd costs no more than robots apart.
-TEST(Overlaps, ACrowdAtOnePoseIsFoundWhole) {
+/// Each robot in a crowd looks for only one partner, so a crowd takes no longer than separate robots.
+TEST(Overlaps, CrowdAtOnePoseIsFoundCompletely) {
   std::string text;
   for (int i = 0; i < 2'000; ++i) text += "bot( )\n";
   const Overlaps found = find_overlaps(read_world(kBot + text));
@@ -59,8 +59,8 @@ TEST(Overlaps, ACrowdAtOnePoseIsFoundWhole) {
   EXPECT_LT(found.pairs.size(), 4'000u);
 }
 
-/// Long robots side by side, whose boxes meet and whose outlines do not: the work is limited.
-TEST(Overlaps, TheWorkIsLimited) {
+/// Long parallel robots whose boxes overlap and whose outlines do not: the work is limited.
+TEST(Overlaps, WorkIsLimited) {
   std::string text = "define rod position( size [1000 0.001 1] )\n";
   for (int i = 0; i < 3'000; ++i) text += fmt::format("rod( pose [{} {} 0 45] )\n", 0.01 * i, -0.01 * i);
   const World world = read_world(text);

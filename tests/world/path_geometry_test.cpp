@@ -27,7 +27,7 @@ TEST(Along, PiecesJoinInPlaceAndDirection) {
   EXPECT_NEAR(length_of(path), 1.5 + 0.93 * M_PI / 2 + 0.7 * M_PI * 200 / 180 + 2.0, 1e-12);
 }
 
-TEST(Along, GoesOneMetreAMetre) {
+TEST(Along, AdvancesOneMetrePerMetre) {
   const Path path = lane();
   const double step = 1e-4;
   for (double s = -0.5; s < length_of(path) + 0.5; s += 0.01) {
@@ -38,7 +38,7 @@ TEST(Along, GoesOneMetreAMetre) {
   }
 }
 
-TEST(Along, AnArcIsACircle) {
+TEST(Along, ArcIsACircle) {
   const Path path = read_world("path( pieces 1 arc[0] [2 -180 0.5] )").paths.at(0);
   for (double s = 0.0; s < length_of(path); s += 0.1) {
     const Pose X = pose_at(path, s);
@@ -46,7 +46,7 @@ TEST(Along, AnArcIsACircle) {
   }
 }
 
-TEST(Nearest, BesideThePathIsTheOffset) {
+TEST(Nearest, OffsetIsTheDistanceFromThePath) {
   const Path path = lane();
   for (double s = 0.0; s < length_of(path); s += 0.037)
     for (const double offset : {-0.3, -0.01, 0.0, 0.2}) {
@@ -57,10 +57,11 @@ TEST(Nearest, BesideThePathIsTheOffset) {
     }
 }
 
-/// Boundary: the bearing opposite the middle of an arc's remaining turn, 225 degrees from the start of a quarter turn.
+/// Boundary: the direction opposite the middle of an arc's remaining turn, 225 degrees from the start of a quarter
+/// turn.
 TEST(Nearest, BehindAnArcIsItsNearerEnd) {
   const Path path = read_world("path( pieces 1 arc[0] [1 90 0.5] )").paths.at(0);
-  const auto at = [&](double degrees) {  // 2 m from the arc's middle, which is at (0, 1)
+  const auto at = [&](double degrees) {  // 2 m from the arc's centre, which is at (0, 1)
     const double angle = degrees * M_PI / 180.0;
     return project_onto(path, {2.0 * std::sin(angle), 1.0 - 2.0 * std::cos(angle)}).s;
   };
@@ -69,7 +70,7 @@ TEST(Nearest, BehindAnArcIsItsNearerEnd) {
   EXPECT_NEAR(at(260.0), 0.0, 1e-12);
 }
 
-TEST(Nearest, BeyondTheEndsAreTheEnds) {
+TEST(Nearest, BeyondTheEndsIsTheEnd) {
   const Path path = lane();
   EXPECT_EQ(project_onto(path, transform(pose_at(path, 0.0), {-1.0, 0.3})).s, 0.0);
   const double length = length_of(path);
@@ -78,7 +79,7 @@ TEST(Nearest, BeyondTheEndsAreTheEnds) {
   EXPECT_EQ(beyond.piece, 3u);
 }
 
-TEST(Nearest, NoPointOfThePathIsNearer) {
+TEST(Nearest, NoPointOfThePathIsCloser) {
   const Path path = lane();
   const double length = length_of(path);
   for (std::uint32_t k = 0; k < 300; ++k) {

@@ -14,7 +14,7 @@ constexpr const char* kThesis = R"(path( pose [1 2 0 0] pieces 3
   left "solid_white" right "solid_yellow" paint_width 0.02
   magnetic_moment 10000 magnet_spacing 0.071 magnet_size [0.025 0.1] ))";
 
-TEST(Path, ItsPiecesAreKept) {
+TEST(Path, KeepsItsPieces) {
   const World world = read_world(kThesis);
   ASSERT_EQ(world.paths.size(), 1u);
   const Path& path = world.paths[0];
@@ -30,7 +30,7 @@ TEST(Path, ItsPiecesAreKept) {
   EXPECT_LT(read_world("path( pieces 1 arc[0] [1 -90 0.5] )").paths[0].pieces[0].curvature, 0.0) << "to the right";
 }
 
-TEST(Path, PaintLiesOutsideTheLane) {
+TEST(Path, PaintIsOutsideTheLane) {
   const World world = read_world(kThesis);
   ASSERT_EQ(world.lane_markings.size(), 6u);
   const LaneMarking& left = world.lane_markings[0];
@@ -57,7 +57,7 @@ TEST(Path, ArcsAreWithinAMicrometre) {
   }
 }
 
-TEST(Path, PiecesFollowOneAnother) {
+TEST(Path, PiecesAreConnected) {
   const World world = read_world(kThesis);
   const auto& last = world.lane_markings[4].line;
   EXPECT_NEAR(last[0].x, 3.72 + 0.93 - 0.235, 1e-12);
@@ -85,7 +85,7 @@ TEST(Path, MagnetsKeepTheirSpacingAlongTheMiddle) {
   }
 }
 
-TEST(Path, DashesGoOnFromPieceToPiece) {
+TEST(Path, DashesContinueFromPieceToPiece) {
   const World world =
       read_world(R"(path( pieces 2 straight[0] [1 0.5] straight[1] [1 0.5] right "broken_white" dash [0.3 0.4] ))");
   std::vector<std::pair<double, double>> dashes;
@@ -99,14 +99,14 @@ TEST(Path, DashesGoOnFromPieceToPiece) {
   }
 }
 
-TEST(Path, ADashMayCrossFromOnePieceToTheNext) {
+TEST(Path, DashMaySpanTwoPieces) {
   const World world =
       read_world(R"(path( pieces 2 straight[0] [1 0.5] straight[1] [1 0.5] left "broken_white" dash [0.8 0.15] ))");
   ASSERT_EQ(world.lane_markings.size(), 4u);  // 0..0.8, 0.95..1 | 1..1.75, 1.9..2
   EXPECT_NEAR(world.lane_markings[2].line.back().x, 1.75, 1e-12);
 }
 
-TEST(Path, ADoubleLineIsTwoStripes) {
+TEST(Path, DoubleLineIsTwoStripes) {
   const World world = read_world(R"(path( pieces 1 straight[0] [1 0.5] left "double_yellow" paint_width 0.02 ))");
   ASSERT_EQ(world.lane_markings.size(), 2u);
   EXPECT_NEAR(world.lane_markings[0].line[0].y, 0.26, 1e-12);

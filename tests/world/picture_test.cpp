@@ -39,7 +39,7 @@ const std::vector<std::uint8_t> kInterlaced{
     0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0xe0, 0x62, 0x10, 0x61, 0x90, 0xd3, 0x00, 0x00, 0x00, 0xf7,
     0x00, 0x65, 0x26, 0x2e, 0x0e, 0x42, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
 
-// 16 x 8 in grey, the left half dark.
+// 16 x 8 in grey, with a dark left half.
 const std::vector<std::uint8_t> kJpeg{
     0xff, 0xd8, 0xff, 0xe0, 0x00, 0x10, 0x4a, 0x46, 0x49, 0x46, 0x00, 0x01, 0x01, 0x00, 0x00, 0x01, 0x00, 0x01,
     0x00, 0x00, 0xff, 0xdb, 0x00, 0x43, 0x00, 0x0d, 0x09, 0x0a, 0x0b, 0x0a, 0x08, 0x0d, 0x0b, 0x0a, 0x0b, 0x0e,
@@ -50,7 +50,7 @@ const std::vector<std::uint8_t> kJpeg{
     0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x07, 0x08, 0xff,
     0xc4, 0x00, 0x14, 0x10, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
     0x00, 0x00, 0x00, 0xff, 0xda, 0x00, 0x08, 0x01, 0x01, 0x00, 0x00, 0x3f, 0x00, 0x3d, 0x50, 0x2f, 0xff, 0xd9};
-// 3 x 2: black, white, white, and a row of black.
+// 3 x 2: black, white, white, and a black row.
 const std::vector<std::uint8_t> kGif{0x47, 0x49, 0x46, 0x38, 0x37, 0x61, 0x03, 0x00, 0x02, 0x00, 0x80, 0x00, 0x00,
                                      0x00, 0x00, 0x00, 0xff, 0xff, 0xff, 0x2c, 0x00, 0x00, 0x00, 0x00, 0x03, 0x00,
                                      0x02, 0x00, 0x00, 0x02, 0x05, 0x04, 0xc3, 0x10, 0x04, 0x51, 0x00, 0x3b};
@@ -64,7 +64,7 @@ const std::string kBmp(kBmpBytes.begin(), kBmpBytes.end());
 
 using Values = std::vector<std::uint8_t>;
 
-/// A picture as its rule saw it, row by row from the top.
+/// A picture as passed to its rule, row by row from the top.
 struct Seen {
   Bitmap grid;
   Values rgba;
@@ -105,7 +105,7 @@ TEST(Pictures, ColoursAreRedGreenBlueAndAlpha) {
   EXPECT_FALSE(read(kOneBit).has_alpha);
 }
 
-TEST(Pictures, TheTopRowIsTheGridsLast) { EXPECT_EQ(read("P2 1 2 255\n0 255").grid.solid, (Values{0, 1})); }
+TEST(Pictures, TopRowIsTheLastOfTheGrid) { EXPECT_EQ(read("P2 1 2 255\n0 255").grid.solid, (Values{0, 1})); }
 
 TEST(Pictures, OneBitIsBlackAndWhite) { EXPECT_EQ(read(kOneBit).channel(0), (Values{0, 255, 0})); }
 
@@ -118,8 +118,8 @@ TEST(Pictures, PalettesAreLookedUp) {
 
 TEST(Pictures, InterlacedPicturesAreTheSame) { EXPECT_EQ(read(kInterlaced).channel(0), (Values{10, 20, 30, 40})); }
 
-TEST(Pictures, EveryCutOfAPngIsRefused) {
-  const std::size_t after_pixels = kRgba.size() - 16;  // then a checksum and the chunk IEND
+TEST(Pictures, EveryTruncationOfAPngIsRejected) {
+  const std::size_t after_pixels = kRgba.size() - 16;  // a checksum and the chunk IEND follow
   for (std::size_t size = 1; size < after_pixels; ++size) {
     EXPECT_THROW(read(Values(kRgba.begin(), kRgba.begin() + static_cast<std::ptrdiff_t>(size))), base::InputError)
         << size;
@@ -128,7 +128,7 @@ TEST(Pictures, EveryCutOfAPngIsRefused) {
 
 // --- Netpbm
 
-TEST(Pictures, GreyInBinaryAndInWords) {
+TEST(Pictures, BinaryAndTextGreyAreRead) {
   EXPECT_EQ(grey("P5\n# made by hand\n2 1\n255\n\x05\xff"), (Values{5, 255}));
   EXPECT_EQ(grey("P2 3 1 # three\n10 0 5 10"), (Values{0, 127, 255}));
   EXPECT_EQ(grey("P5 1 1 65535\n\x80\x01"), (Values{127})) << "two bytes a pixel, the first one high";
@@ -137,7 +137,7 @@ TEST(Pictures, GreyInBinaryAndInWords) {
   EXPECT_EQ(grey("P2\r\n1 1\r\n1\r\n1\r\n"), (Values{255}));
 }
 
-TEST(Pictures, PixelsBeginBehindTheHeadersLastBlank) {
+TEST(Pictures, PixelsBeginAfterTheHeadersLastBlank) {
   EXPECT_EQ(grey("P5\r\n2 1\r\n255\r\n\x05\xff"), (Values{5, 255})) << "CRLF counts as one";
   EXPECT_EQ(grey("P5\n2 1\n255\r\n\x05"), (Values{'\n', 5})) << "CR alone: no byte is left for LF";
   EXPECT_EQ(grey("P5 2 1 255#made by hand\n\x05\xff"), (Values{5, 255})) << "a comment behind the last number";
@@ -152,19 +152,19 @@ TEST(Pictures, PixelsBeginBehindTheHeadersLastBlank) {
 
 TEST(Pictures, BitsAreBlackWhereTheyAreOne) {
   EXPECT_EQ(grey("P1 3 2 010\n1 # a comment\n 0 1"), (Values{255, 0, 255, 0, 255, 0})) << "blanks may be left out";
-  const std::string rows("\x40\x80\xff\x7f", 4);  // nine bits each: a row begins with a byte
+  const std::string rows("\x40\x80\xff\x7f", 4);  // nine bits each: rows are padded to bytes
   EXPECT_EQ(grey("P4 9 2\n" + rows), (Values{255, 0, 255, 255, 255, 255, 255, 255, 0,  //
                                              0, 0, 0, 0, 0, 0, 0, 0, 255}));
   EXPECT_EQ(grey("P4 8 1\n\x0f"), (Values{255, 255, 255, 255, 0, 0, 0, 0})) << "no padding";
 }
 
-TEST(Pictures, ColourInBinaryAndInWords) {
+TEST(Pictures, BinaryAndTextColourAreRead) {
   EXPECT_EQ(read("P3 2 1 10 10 5 0 0 5 10").rgba, (Values{255, 127, 0, 255, 0, 127, 255, 255}));
   EXPECT_EQ(read("P6 2 1 255\nabcdef").rgba, (Values{'a', 'b', 'c', 255, 'd', 'e', 'f', 255}));
   EXPECT_EQ(read("P6 1 1 65535\naabbcc").rgba, (Values{97, 98, 99, 255})) << "97 * 257 of 65535 is 97 of 255";
 }
 
-TEST(Pictures, NetpbmThatLiesIsRefused) {
+TEST(Pictures, InconsistentNetpbmIsRejected) {
   for (const std::string bytes : {"P5",
                                   "P5 2",
                                   "P5 0 1 255 ",
@@ -189,7 +189,7 @@ TEST(Pictures, NetpbmThatLiesIsRefused) {
   }
 }
 
-/// The sizes are refused before anything is allocated: 16384 along each side, and what the file cannot hold.
+/// Sizes are rejected before memory is allocated: above 16384 per side, or more than the file can contain.
 TEST(Pictures, SizesAreLimited) {
   EXPECT_NE(error_of_picture("P5 16385 1 255\n").find("16385 x 1 pixels; expected 1 to 16384"), std::string::npos);
   EXPECT_NE(error_of_picture("P4 1 16385\n").find("1 x 16385 pixels"), std::string::npos);
@@ -197,14 +197,14 @@ TEST(Pictures, SizesAreLimited) {
   EXPECT_EQ(read("P4 16384 1\n" + std::string(2048, '\0')).grid.width, 16384u);
   std::string bmp = kBmp;
   bmp.replace(18, 8, std::string("\x00\x40\x00\x00\x00\x40\x00\x00", 8));  // 16384 x 16384
-  bmp[30] = 1;  // in run lengths: its bytes cannot be counted
+  bmp[30] = 1;  // run-length encoded, so its size does not follow from its pixels
   EXPECT_NE(error_of_picture(bmp).find("expected at most 67108864 of them"), std::string::npos)
       << error_of_picture(bmp);
 }
 
 // --- The plug-in's formats
 
-TEST(Pictures, AJpegIsRead) {
+TEST(Pictures, JpegIsRead) {
   const Seen seen = read(std::string(kJpeg.begin(), kJpeg.end()));
   ASSERT_EQ(seen.grid.width, 16u);
   ASSERT_EQ(seen.grid.height, 8u);
@@ -214,13 +214,13 @@ TEST(Pictures, AJpegIsRead) {
       EXPECT_EQ(seen.grid.solid[y * 16 + x], x < 8 ? 1 : 0) << x << " " << y << ": the left half is dark";
 }
 
-TEST(Pictures, EveryCutOfAJpegIsRefused) {
+TEST(Pictures, EveryTruncationOfAJpegIsRejected) {
   for (std::size_t size = 3; size < kJpeg.size(); ++size)
     EXPECT_NE(error_of_picture({kJpeg.begin(), kJpeg.begin() + static_cast<std::ptrdiff_t>(size)}), "") << size;
 }
 
-/// A progressive picture takes the time of the whole one for each of its scans.
-TEST(Pictures, AJpegOfManyScansIsRefused) {
+/// Each scan of a progressive picture takes as long as the whole picture.
+TEST(Pictures, JpegOfManyScansIsRejected) {
   std::string bytes(kJpeg.begin(), kJpeg.end() - 2);
   const std::size_t scan = bytes.find("\xFF\xDA");
   const std::string again = bytes.substr(scan);
@@ -228,7 +228,7 @@ TEST(Pictures, AJpegOfManyScansIsRefused) {
   EXPECT_NE(error_of_picture(bytes + "\xFF\xD9").find("more than 100 scans"), std::string::npos);
 }
 
-TEST(Pictures, ABmpIsReadFromBothEnds) {
+TEST(Pictures, BmpIsReadFromEitherEnd) {
   EXPECT_EQ(read(kBmp).rgba, (Values{3, 2, 1, 255, 9, 8, 7, 255})) << "blue, green, red; the bottom row first";
   std::string down = kBmp;
   down.replace(22, 4, "\xFE\xFF\xFF\xFF");  // a height of -2: the top row first
@@ -237,7 +237,7 @@ TEST(Pictures, ABmpIsReadFromBothEnds) {
     EXPECT_NE(error_of_picture(kBmp.substr(0, size)), "") << size;
 }
 
-TEST(Pictures, AGifIsRead) {
+TEST(Pictures, GifIsRead) {
   const std::string file = ::testing::TempDir() + "/picture_" + std::to_string(::getpid()) + ".gif";
   const std::string bytes(kGif.begin(), kGif.end());
   std::ofstream(file, std::ios::binary) << bytes;

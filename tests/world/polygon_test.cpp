@@ -14,7 +14,7 @@ double twice_area(const Polygon& outline) {
   return sum;
 }
 
-TEST(Polygon, EitherWindingComesOutCounterClockwise) {
+TEST(Polygon, EitherWindingBecomesCounterClockwise) {
   const auto left = make_polygon({{0, 0}, {2, 0}, {2, 1}, {0, 1}});
   const auto right = make_polygon({{0, 1}, {2, 1}, {2, 0}, {0, 0}});
   EXPECT_TRUE(left.solid_left);
@@ -38,7 +38,7 @@ TEST(Polygon, RepeatedCornersAreDropped) {
   EXPECT_TRUE(outline.solid_left);
 }
 
-TEST(Polygon, NothingFromNoneOrOnePoint) {
+TEST(Polygon, NoneOrOnePointGivesNothing) {
   EXPECT_TRUE(make_polygon({}).edges.empty());
   EXPECT_TRUE(make_polygon({{1, 1}}).edges.empty());
   EXPECT_TRUE(make_polygon({{1, 1}, {1, 1}, {1, 1}}).edges.empty());
@@ -50,25 +50,25 @@ TEST(Polygon, TwoPointsAreOneWallWithoutSides) {
   EXPECT_FALSE(outline.solid_left);
 }
 
-TEST(Polygon, ABowTieHasNoSides) { EXPECT_FALSE(make_polygon({{0, 0}, {2, 2}, {2, 0}, {0, 1}}).solid_left); }
+TEST(Polygon, BowTieHasNoSides) { EXPECT_FALSE(make_polygon({{0, 0}, {2, 2}, {2, 0}, {0, 1}}).solid_left); }
 
-TEST(Polygon, APolygonThatTouchesItselfInACornerHasNoSides) {
+TEST(Polygon, PolygonThatTouchesItselfInACornerHasNoSides) {
   EXPECT_FALSE(make_polygon({{0, 0}, {2, 0}, {1, 1}, {2, 2}, {0, 2}, {1, 1}}).solid_left);
 }
 
-TEST(Polygon, NoAreaNoSides) { EXPECT_FALSE(make_polygon({{0, 0}, {1, 0}, {2, 0}}).solid_left); }
+TEST(Polygon, ZeroAreaHasNoSides) { EXPECT_FALSE(make_polygon({{0, 0}, {1, 0}, {2, 0}}).solid_left); }
 
-TEST(Polygon, ASpikeThatFoldsBackHasNoSides) {
+TEST(Polygon, SpikeThatFoldsBackHasNoSides) {
   EXPECT_FALSE(make_polygon({{0, 0}, {2, 0}, {2, 2}, {2, 3}, {2, 1}, {0, 1}}).solid_left);
 }
 
-TEST(Polygon, CornersOnAStraightEdgeAreFine) {
+TEST(Polygon, CornersOnAStraightEdgeAreAccepted) {
   const auto outline = make_polygon({{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}});
   EXPECT_TRUE(outline.solid_left);
   EXPECT_EQ(outline.edges.size(), 5u);
 }
 
-TEST(Polygon, CrossingsAreThoseThatAllPairsShow) {  // on a grid, where side and betweenness are exact
+TEST(Polygon, CrossingsMatchATestOfAllPairs) {  // on a grid, where sides and betweenness are exact
   using P = glm::dvec2;
   const auto side = [](P a, P b, P p) { return base::cross(b - a, p - a); };
   const auto on = [&](P a, P b, P p) { return side(a, b, p) == 0.0 && dot(a - p, b - p) <= 0.0; };
@@ -99,7 +99,7 @@ TEST(Polygon, CrossingsAreThoseThatAllPairsShow) {  // on a grid, where side and
   EXPECT_GT(simple, 500);
 }
 
-TEST(Polygon, WorkIsBounded) {  // pairs that overlap along x: of a square, each edge with all others
+TEST(Polygon, WorkIsBounded) {  // pairs that overlap along x; in a square, each edge overlaps all others
   const std::vector<glm::dvec2> square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   double pairs = 6.0;
   EXPECT_TRUE(make_polygon(square, pairs).has_value());

@@ -1,5 +1,5 @@
 #pragma once
-// Tables of outlines from text inside tests.
+// Reads tables of outlines from text in tests.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ inline const std::string kSquare = "POLYGON ((0 0,12 0,12 8,0 8,0 0))";
 
 struct TableRead {
   std::vector<Segment> walls;
-  std::string warnings;  ///< "2: ...", one a line
+  std::string warnings;  ///< "2: ...", one per line
 
   double area() const {
     double area = 0.0;

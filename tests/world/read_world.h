@@ -1,5 +1,5 @@
 #pragma once
-// Worlds from text inside tests.
+// Reads worlds from text in tests.
 
 #include <string>
 
@@ -18,7 +18,7 @@ inline World read_world(const std::string& text, const LoadOptions& options = kW
   return build_world(SF_SOURCE_DIR "/worlds/test.world", text, options);
 }
 
-/// The error without the path: "test.world:3: ...". Empty when the world loads.
+/// Returns the error without the path: "test.world:3: ...". Empty if the world loads.
 inline std::string error_of(const std::string& text) {
   try {
     read_world(text);
@@ -30,7 +30,7 @@ inline std::string error_of(const std::string& text) {
   return {};
 }
 
-/// All warnings, one per line: "3: ...".
+/// Returns all warnings, one per line: "3: ...".
 inline std::string warnings_of(const World& world) {
   std::string all;
   for (const Warning& warning : world.warnings) all += std::to_string(warning.line) + ": " + warning.message + "\n";

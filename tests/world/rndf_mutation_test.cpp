@@ -1,4 +1,4 @@
-// For any bytes the result is a network, a mission or a sidecar, or an InputError.
+// Any bytes give either a network, a mission or a sidecar, or an InputError.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ std::vector<std::string> lines_of_text(const std::string& text) {
   return lines;
 }
 
-/// One to three changes: a flipped byte, a line dropped, doubled or swapped with another, or a changed number.
+/// Makes one to three changes: flips a byte, drops, duplicates or swaps lines, or changes a number.
 std::string mutated_rndf(const std::string& text, std::uint32_t k) {
   constexpr std::array<std::string_view, 10> kStatements{"/*",    "*/",  "1.1.1",      "32769", "-0",
                                                          "1e308", "nan", "end_lane\n", "\r",    "\xFF"};
@@ -56,7 +56,7 @@ std::string mutated_rndf(const std::string& text, std::uint32_t k) {
   return changed;
 }
 
-/// The rules that users of a network do not check.
+/// Checks the invariants that users of a network do not check.
 void expect_sound(const RoadNetwork& network) {
   for (const RoadLane& lane : network.lanes) {
     ASSERT_GT(lane.width, 0.0);
@@ -90,9 +90,9 @@ void read_all(const std::string& text) {
   lane_markings_of(network);
 }
 
-TEST(RndfMutation, OfTheSmallNetwork) { run(std::string(kSmallRndf), 4000, read_all); }
+TEST(RndfMutation, SmallNetwork) { run(std::string(kSmallRndf), 4000, read_all); }
 
-TEST(RndfMutation, OfPublicNetworks) {
+TEST(RndfMutation, PublicNetworks) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
   for (const char* file :
@@ -101,14 +101,14 @@ TEST(RndfMutation, OfPublicNetworks) {
   run(base::read_text(folder + "darpa_sample/uce_rndf_1_final_event.rndf"), 40, read_all);
 }
 
-TEST(RndfMutation, OfAMission) {
+TEST(RndfMutation, Mission) {
   run("MDF_name go\nRNDF small\ncheckpoints\nnum_checkpoints 2\n1\n2\nend_checkpoints\nspeed_limits\nnum_speed_limits "
       "1\n1 0 "
       "15\nend_speed_limits\nend_file\n",
       3000, [](const std::string& text) { check_against(parse_mdf("go.mdf", text), small_rndf()); });
 }
 
-TEST(RndfMutation, OfASidecar) {
+TEST(RndfMutation, Sidecar) {
   run("origin = [40, -83]\nscale = 0.5\nlane_width_m = 0.5\nposition = [1, 2]\n[lanes.\"1.2\"]\nwidth_m = 0.4\nleft = "
       "\"solid_white\"\n[points.\"1.1.2\"]\nposition = [3, 4]\n",
       3000, [](const std::string& text) {
@@ -117,8 +117,9 @@ TEST(RndfMutation, OfASidecar) {
       });
 }
 
-// Coordinates all over the Earth make lanes of thousands of kilometres: refused, within bounded time and memory.
-TEST(RndfMutation, OfPlacesAllOverTheEarth) {
+// Coordinates all over the Earth give lanes of thousands of kilometres, which are rejected within bounded time and
+// memory.
+TEST(RndfMutation, PlacesAllOverTheEarth) {
   for (const std::string boundary : {"", "left_boundary broken_white\n"})
     for (std::uint32_t k = 0; k < 5; ++k) {
       std::string text =

@@ -1,4 +1,4 @@
-// Errors are refused with their line and the expected text; in strict mode, all slips are.
+// Errors are rejected with their line and the expected text. In strict mode, so are all deviations.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 struct Wrong {
   std::string from, to;  ///< the first `from` of the small network is replaced by `to`
-  std::string error;     ///< the begin of the error
+  std::string error;     ///< start of the error
 };
 
 void expect_refused(const std::vector<Wrong>& corpus) {
@@ -79,7 +79,7 @@ TEST(RndfRefusals, Counts) {
 }
 
 // Only the lists of zones and spots may be empty, with or without a declared count.
-TEST(RndfRefusals, NothingIsEmpty) {
+TEST(RndfRefusals, OnlyZonesAndSpotsMayBeEmpty) {
   const std::string head = "RNDF_name x\nnum_segments 1\nnum_zones 0\n";
   EXPECT_NE(refusal_of("RNDF_name x\nend_file\n").find("'num_segments' is missing"), std::string::npos);
   EXPECT_NE(refusal_of(head + "segment 1\nend_segment\nend_file\n").find(":4: 'num_lanes' is missing"),

@@ -1,4 +1,4 @@
-// Slips in hand-written files: those with a clear meaning are accepted with a warning, all others are refused together.
+// Mistakes in hand-written files. Unambiguous ones are accepted with a warning, all others are rejected together.
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ struct Slip {
   std::string warning;   ///< the only warning, in full
 };
 
-// Each slip is refused in strict mode, and changes no number of the network otherwise.
-TEST(RndfSlips, SlipsWithAClearMeaningAreWarnings) {
+// Each mistake is rejected in strict mode. Otherwise it does not change any number of the network.
+TEST(RndfSlips, UnambiguousMistakesAreWarnings) {
   const RoadCounts fine = count(small_rndf());
   const std::vector<Slip> corpus{
       {"num_waypoints 3", "num_waypoints 122", "10: 'num_waypoints' says 122, but lane 1.1 has 3; 3 are used"},
@@ -66,7 +66,7 @@ TEST(RndfSlips, SlipsWithAClearMeaningAreWarnings) {
   }
 }
 
-TEST(RndfSlips, AnExitOfTheNeighbourLeavesTheNeighbour) {
+TEST(RndfSlips, ExitOfTheNeighbourLeavesTheNeighbour) {
   std::vector<Warning> warnings;
   const RoadNetwork roads =
       build_network(parse_rndf("x", small_with("exit 1.1.3 2.1.1", "exit 1.2.2 2.1.1")), {}, warnings);
@@ -77,7 +77,7 @@ TEST(RndfSlips, AnExitOfTheNeighbourLeavesTheNeighbour) {
   EXPECT_EQ(id_of(roads, steps[0].to), (PointId{2, 1, 1}));
 }
 
-TEST(RndfSlips, SlipsWithoutMeaningAreRefused) {
+TEST(RndfSlips, AmbiguousMistakesAreRejected) {
   const std::vector<std::pair<std::pair<std::string, std::string>, std::string>> corpus{
       {{"exit 1.1.3 2.1.1", "exit 1.1.3 9.1.1"}, "small.rndf:16: the exit leads to way-point 9.1.1, which does not"},
       {{"exit 1.1.3 2.1.1", "exit 1.1.3 3.1.1"}, "small.rndf:16: the exit leads to 3.1.1, a point of a parking spot"},
@@ -100,14 +100,14 @@ TEST(RndfSlips, SlipsWithoutMeaningAreRefused) {
        "small.rndf:22: 'num_waypoints' says none, but lane 1.2 has 0"},
   };
   for (const auto& [change, error] : corpus) {
-    // A point with a wrong number is missing elsewhere: more errors may follow.
+    // A point with a wrong number is missing elsewhere, so more errors may follow.
     const std::string said = "\n" + refusal_of(small_with(change.first, change.second), false);
     EXPECT_NE(said.find("\n" + error), std::string::npos) << change.second << said;
   }
 }
 
-// A file that ends in the middle is truncated, whatever its counts: not a slip.
-TEST(RndfSlips, AFileThatIsCutShortIsRefused) {
+// A file that ends in the middle is truncated, whatever its counts say. It is not accepted with a warning.
+TEST(RndfSlips, TruncatedFileIsRejected) {
   const std::string whole(kSmallRndf);
   const std::string cut = refusal_of(whole.substr(0, whole.find("1.1.3 40")), false);
   EXPECT_NE(cut.find("small.rndf:10: 'num_waypoints' says 3, but lane 1.1 has 2: the file is cut short"),
@@ -118,7 +118,7 @@ TEST(RndfSlips, AFileThatIsCutShortIsRefused) {
       << cut;
 }
 
-TEST(RndfSlips, AllProblemsAreToldInOneRun) {
+TEST(RndfSlips, AllProblemsAreReportedInOneRun) {
   std::string text = small_with("exit 1.1.3 2.1.1", "exit 1.1.3 9.1.1");
   text = with(text, "num_lanes 2", "num_lanes 7");
   text = with(text, "2.1.2 40.001000", "2.1.2 41,001000");
@@ -134,22 +134,22 @@ TEST(RndfSlips, AllProblemsAreToldInOneRun) {
       << "strictly the first one ends it";
 }
 
-// A lane whose begin is refused is skipped as a whole: its lines cause no errors of their own.
-TEST(RndfSlips, OneSlipIsOneProblem) {
+// A lane whose first line is rejected is skipped as a whole, so its lines cause no further errors.
+TEST(RndfSlips, OneMistakeIsOneProblem) {
   for (const std::string lane : {"lane x.2\n", "lane 1.1\n", "lane 7.2\n"}) {
     const std::string said = refusal_of(small_with("lane 1.2\n", lane), false);
     EXPECT_EQ(said.find('\n'), std::string::npos) << said;
   }
 }
 
-// Lanes whose segment does not begin are no zones.
-TEST(RndfSlips, RefusedLanesAreNoZones) {
+// Lanes of a segment without a header are not zones.
+TEST(RndfSlips, RejectedLanesAreNotZones) {
   const std::string said = refusal_of(small_with("segment 1\n", ""), false);
   EXPECT_NE(said.find("'num_segments' says 2, but the file has 1"), std::string::npos) << said;
   EXPECT_EQ(said.find("num_zones"), std::string::npos) << said;
 }
 
-TEST(RndfSlips, AHundredProblemsAreEnough) {
+TEST(RndfSlips, StopsAfterAHundredProblems) {
   std::string text(kSmallRndf);
   std::string more;
   for (int i = 0; i < 1000; ++i) more += "exit 1.1.3 x\n";
@@ -158,7 +158,7 @@ TEST(RndfSlips, AHundredProblemsAreEnough) {
   EXPECT_NE(said.find("100 problems and more"), std::string::npos);
 }
 
-TEST(RndfSlips, TenThousandWarningsAreEnough) {
+TEST(RndfSlips, StopsAfterTenThousandWarnings) {
   const auto slips = [](int count) {
     std::string more = "stop 1.1.3\n";
     for (int i = 0; i < count; ++i) more += "stop 1.1.3\n";
@@ -173,7 +173,7 @@ const std::string kMission =
     "MDF_name go\nRNDF small\ncheckpoints\nnum_checkpoints 2\n1\n2\nend_checkpoints\nspeed_limits\n"
     "num_speed_limits 2\n1 0 15\n3 5 25\nend_speed_limits\nend_file\n";
 
-TEST(MdfSlips, SlipsWithAClearMeaningAreWarnings) {
+TEST(MdfSlips, UnambiguousMistakesAreWarnings) {
   const std::vector<Slip> corpus{
       {"num_speed_limits 2", "num_speed_limits 68", "9: 'num_speed_limits' says 68, but there are 2; 2 are used"},
       {"num_speed_limits 2\n", "", "0: 'num_speed_limits' is missing; 2 are used"},
@@ -196,7 +196,7 @@ TEST(MdfSlips, SlipsWithAClearMeaningAreWarnings) {
   }
 }
 
-TEST(MdfSlips, SlipsWithoutMeaningAreRefusedTogether) {
+TEST(MdfSlips, AmbiguousMistakesAreRejectedTogether) {
   const std::string text = with(with(kMission, "\n2\n", "\n2 3\n"), "3 5 25", "3 25 5");
   try {
     parse_mdf("go.mdf", text);
@@ -210,7 +210,7 @@ TEST(MdfSlips, SlipsWithoutMeaningAreRefusedTogether) {
   EXPECT_THROW(parse_mdf("go.mdf", kMission.substr(0, kMission.find("3 5 25"))), base::InputError) << "cut short";
 }
 
-TEST(MdfSlips, AllCheckpointsThatAreNowhereAreNamed) {
+TEST(MdfSlips, AllMissingCheckpointsAreListed) {
   const Mdf mdf = parse_mdf("go.mdf", with(kMission, "\n1\n2\n", "\n7\n8\n"));
   try {
     check_against(mdf, small_rndf());

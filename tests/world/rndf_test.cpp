@@ -71,13 +71,13 @@ TEST(Rndf, Counts) {
   EXPECT_EQ(c.checkpoints, 2u);
 }
 
-// Each text has one variant of real files.
-TEST(Rndf, RealHabitsChangeNothing) {
+// Each text contains one variant from real files.
+TEST(Rndf, RealFileVariantsChangeNothing) {
   const std::string small(kSmallRndf);
   const std::vector<std::string> habits{
       replace_all(small, "\n", "\r\n"),
-      replace_all(small, "\n", "\t\t\t\r\n"),                          // a spreadsheet's empty cells
-      with(replace_all(small, "\n", "\r\n"), "small\r\n", "small\n"),  // mixed ends
+      replace_all(small, "\n", "\t\t\t\r\n"),                          // empty cells of a spreadsheet
+      with(replace_all(small, "\n", "\r\n"), "small\r\n", "small\n"),  // mixed line ends
       replace_all(small, "\n", "\r"),
       replace_all(small, " ", "\t"),
       replace_all(small, "\n", "\n\n \t\n"),
@@ -85,7 +85,7 @@ TEST(Rndf, RealHabitsChangeNothing) {
       replace_all(small, "\n", "\n/* remark */\n"),
       "/* over\nseveral\nlines */" + small,
       "\xEF\xBB\xBF" + small,
-      small.substr(0, small.size() - 1),  // no end of the last line
+      small.substr(0, small.size() - 1),  // no line end in the last line
       with(small, "format_version 1.0\n", ""),
       with(small, "creation_date 1-Jan-07\n", ""),
       with(with(small, "num_segments 2\n", ""), "end_file", "num_segments 2\nend_file"),  // header at the end
@@ -110,23 +110,23 @@ TEST(Rndf, RealHabitsChangeNothing) {
   }
 }
 
-TEST(Rndf, EveryEndOfLineIsOneLine) {
+TEST(Rndf, EveryKindOfLineEndIsOneLine) {
   for (const std::string end : {"\n", "\r\n", "\r"})
     EXPECT_EQ(parse_rndf("x", replace_all(std::string(kSmallRndf), "\n", end)).zones[0].spots[0].points[1].line, 54);
 }
 
-TEST(Rndf, NamesMayHoldBlanksOrNothing) {
+TEST(Rndf, NamesMayContainBlanksOrBeEmpty) {
   EXPECT_EQ(parse_rndf("x", small_with("Main_Street", "Main  Street /* the old one */ ")).segments[0].name,
             "Main  Street");
   EXPECT_EQ(parse_rndf("x", small_with("RNDF_name small", "RNDF_name")).name, "");
 }
 
-TEST(Rndf, WidthOfNoughtIsNotKnown) {
+TEST(Rndf, WidthOfZeroIsUnknown) {
   EXPECT_FALSE(parse_rndf("x", small_with("lane_width 12", "lane_width 0")).segments[0].lanes[0].width_ft.has_value());
   EXPECT_FALSE(parse_rndf("x", small_with("lane_width 12", "lane_width")).segments[0].lanes[0].width_ft.has_value());
 }
 
-// Each end may be missing: one warning, the same network.
+// Each end may be missing: one warning, same network.
 TEST(Rndf, MissingEndsAreWarnings) {
   for (const std::string end :
        {"end_lane\n", "end_segment\n", "end_perimeter\n", "end_spot\n", "end_zone\n", "end_file\n"}) {
@@ -142,8 +142,8 @@ TEST(Rndf, MissingEndsAreWarnings) {
   EXPECT_EQ(count(parse_rndf("x", none)).exits, 3u);
 }
 
-// Keywords of the extension for traffic lights cause one warning each; the network is unchanged.
-TEST(Rndf, ExtensionIsReadOver) {
+// Keywords of the extension for traffic lights cause one warning each. The network is unchanged.
+TEST(Rndf, ExtensionIsSkipped) {
   const std::string text =
       with(with(std::string(kSmallRndf), "segment 1\n", "num_intersections 1\nsegment 1\nspeed_limit 25\n"), "end_file",
            "intersection 1\nnum_trafficlights 1\ntrafficlight 1.1\ngroup_id 3\nposition 40 -83 "
@@ -159,13 +159,13 @@ TEST(Rndf, UnknownWordsAreNamedOnceWithTheNearest) {
   EXPECT_EQ(lines_of(rndf.warnings), "15: unknown keyword 'stopp' is ignored; did you mean 'stop'?\n");
 }
 
-TEST(Rndf, TextBehindTheEndIsIgnored) {
+TEST(Rndf, TextAfterTheEndIsIgnored) {
   const Rndf rndf = parse_rndf("x", std::string(kSmallRndf) + "segment 9\n");
   EXPECT_EQ(rndf.warnings.size(), 1u);
   EXPECT_EQ(rndf.segments.size(), 2u);
 }
 
-TEST(Rndf, LeftOutNumbersAreAWarning) {
+TEST(Rndf, SkippedNumbersAreAWarning) {
   const std::string text =
       with(small_with("1.2.2 40.000050 -83", "1.2.7 40.000050 -83"), "num_waypoints 2", "num_waypoints 2");
   const Rndf rndf = parse_rndf("x", text);
@@ -195,7 +195,7 @@ void expect_counts(const std::string& name, const RoadCounts& expected) {
   EXPECT_EQ(c.checkpoints, expected.checkpoints) << name;
 }
 
-// Counted in the files with grep: lines that begin with each keyword.
+// Counted in the files with grep: lines that start with each keyword.
 TEST(RndfFiles, Counts) {
   if (!std::filesystem::exists(shared(""))) GTEST_SKIP() << "no shared data beside the sources";
   expect_counts("darpa_sample/Sample_RNDF_Rev_1.5.rndf", {13, 21, 1, 6, 146, 164, 49, 21, 17});
@@ -207,9 +207,8 @@ TEST(RndfFiles, Counts) {
   expect_counts("terminus_negative/mcity_generated.rndf", {33, 33, 0, 0, 572, 572, 67, 0, 0});
 }
 
-// A repeated exit has the meaning of one. An id of two lanes, segments or way-points has no clear meaning: either of
-// them could be meant.
-TEST(RndfFiles, InvalidOnesAreRefusedForTheirReason) {
+// A repeated exit counts once. An id of two lanes, segments or way-points is ambiguous.
+TEST(RndfFiles, InvalidFilesAreRejectedForTheirReason) {
   if (!std::filesystem::exists(shared(""))) GTEST_SKIP() << "no shared data beside the sources";
   const std::vector<std::pair<std::string, std::string>> wrong{
       {"duplicate_exit_it.rndf", ":12: exit 1.1.2 to 2.1.2 is already in line 11"},

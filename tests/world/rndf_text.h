@@ -68,21 +68,21 @@ end_zone
 end_file
 )";
 
-/// `text` with its first `from` replaced by `to`; fails the test when there is none.
+/// Returns `text` with its first `from` replaced by `to`. Fails the test if there is none.
 inline std::string with(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
   SF_CHECK(at != std::string::npos, "nothing to replace: " + from);
   return text.replace(at, from.size(), to);
 }
 
-/// The small network with its first `from` replaced by `to`.
+/// Returns the small network with its first `from` replaced by `to`.
 inline std::string small_with(const std::string& from, const std::string& to) {
   return with(std::string(kSmallRndf), from, to);
 }
 
 inline Rndf small_rndf() { return parse_rndf("small.rndf", kSmallRndf); }
 
-/// The error, in strict mode by default; empty when the file is read.
+/// Returns the error, in strict mode by default; empty if the file is read.
 inline std::string refusal_of(const std::string& text, bool strict = true) {
   try {
     parse_rndf("small.rndf", text, strict);
@@ -92,7 +92,7 @@ inline std::string refusal_of(const std::string& text, bool strict = true) {
   return {};
 }
 
-/// One warning per line: "3: ...".
+/// Returns one warning per line: "3: ...".
 inline std::string lines_of(const std::vector<Warning>& warnings) {
   std::string all;
   for (const Warning& warning : warnings) all += std::to_string(warning.line) + ": " + warning.message + "\n";

@@ -11,10 +11,10 @@
 namespace sf::world {
 namespace {
 
-/// A road entity, with paths relative to `worlds/`.
+/// Returns a road entity, with paths relative to `worlds/`.
 std::string road(const std::string& more) { return "road( rndf \"simville/simville.rndf\"\n" + more + ")"; }
 
-TEST(Road, ItsPaintIsTheNetworks) {
+TEST(Road, PaintIsThatOfTheNetwork) {
   const World world = read_world(road(""));
   std::vector<Warning> warnings;
   const RoadNetwork roads = load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
@@ -27,7 +27,7 @@ TEST(Road, ItsPaintIsTheNetworks) {
   EXPECT_EQ(warnings_of(world), "");
 }
 
-TEST(Road, MagnetsStandUnderTheNamedLanes) {
+TEST(Road, MagnetsAreUnderTheNamedLanes) {
   const World world = read_world(road("magnetic_moment 10000 magnet_spacing 0.071 magnet_lanes \"6.1 6.2\""));
   std::vector<Warning> warnings;
   const RoadNetwork roads = load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
@@ -58,7 +58,7 @@ TEST(Road, ErrorsNameTheirLine) {
             "test.world:2: 'magnet_spacing' gives more than a million magnets; expected a larger one");
 }
 
-TEST(Road, ANetworkAloneIsNoWorld) {
+TEST(Road, NetworkAloneIsNotAWorld) {
   try {
     load_world(SF_SOURCE_DIR "/worlds/simville/simville.rndf");
     FAIL();
@@ -68,7 +68,7 @@ TEST(Road, ANetworkAloneIsNoWorld) {
   }
 }
 
-TEST(Road, TwoRoadsHaveNamesOfTheirOwn) {
+TEST(Road, TwoRoadsHaveDifferentNames) {
   const World world = read_world(road("") + road(""));
   EXPECT_NE(world.models[0].name, world.models[1].name);
 }

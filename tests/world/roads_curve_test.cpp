@@ -1,4 +1,4 @@
-// Smooth lines: the properties stated in curve.h, on chosen and on random way-points.
+// Smooth lines: the properties stated in curve.h, for chosen and for random way-points.
 
 #include "world/roads/curve.h"
 
@@ -17,7 +17,7 @@ using Points = std::vector<glm::dvec2>;
 
 constexpr Sampling kFine{1e-3, 1.8, 1u << 20};
 
-/// Random way-points; about one in five repeats the previous one, and turns may be arbitrarily sharp.
+/// Returns random way-points. About one in five repeats its predecessor, and turns may be arbitrarily sharp.
 Points wild(std::uint32_t k) {
   Points p{{0, 0}};
   const auto n = 1 + base::random_words({7, base::RandomStream::placement, k, 0, 0}, 999)[0] % 12;
@@ -55,7 +55,7 @@ TEST(Curve, PassesThroughEveryWayPointExactly) {
   }
 }
 
-// Direction is continuous: finer sampling makes each turn of the polyline smaller, also at sharp corners.
+// The direction is continuous: finer sampling makes each turn of the polyline smaller, even at sharp corners.
 TEST(Curve, DirectionIsContinuous) {
   for (std::uint32_t k = 0; k < 100; ++k) {
     const Curve curve = smooth_curve(wild(k), {1e-3, 100.0, 1u << 20});  // offset 100 m: turns of 9 mrad
@@ -65,7 +65,7 @@ TEST(Curve, DirectionIsContinuous) {
   }
 }
 
-TEST(Curve, NeverRunsBackwardsAlongAChordNorFarAside) {
+TEST(Curve, NeitherRunsBackwardsNorLeavesItsChord) {
   for (std::uint32_t k = 0; k < 300; ++k) {
     const Points p = wild(k);
     const Curve curve = smooth_curve(p, kFine);
@@ -107,15 +107,15 @@ TEST(Curve, PolylineIsWithinTolerance) {
   }
 }
 
-TEST(Curve, StraightsStayStraight) {
+TEST(Curve, StraightLinesStayStraight) {
   const Curve line = smooth_curve(Points{{0, 0}, {5, 0}, {6, 0}, {20, 0}}, kFine);
   for (const glm::dvec2& p : line.points) EXPECT_EQ(p.y, 0.0);
   EXPECT_EQ(line.points.size(), 4u);
   EXPECT_DOUBLE_EQ(line.s.back(), 20.0);
 }
 
-// A corner between straight lines of three points each bends only the two spans beside it.
-TEST(Curve, ACornerBendsItsOwnSpansOnly) {
+// A corner between straight lines of three points each bends only the two adjacent spans.
+TEST(Curve, CornerBendsOnlyItsOwnSpans) {
   const Curve curve = smooth_curve(Points{{0, 0}, {5, 0}, {10, 0}, {10, 5}, {10, 10}}, kFine);
   for (std::size_t j = 0; j <= curve.knots[1]; ++j) EXPECT_EQ(curve.points[j].y, 0.0);
   for (std::size_t j = curve.knots[3]; j < curve.points.size(); ++j) EXPECT_EQ(curve.points[j].x, 10.0);
@@ -123,10 +123,9 @@ TEST(Curve, ACornerBendsItsOwnSpansOnly) {
   EXPECT_NEAR(std::atan2(corner.y, corner.x), M_PI / 4, 1e-12);
 }
 
-// A long chord beside a short one that goes on straight takes up the whole kink of 45 degrees, but its lateral distance
-// is at most a quarter of the short chord times its sine, times 1 / cos^2(90 / 4); also for the first and the last
-// chord.
-TEST(Curve, ShortChordsHoldLongOnes) {
+// A long chord next to a short one that continues straight takes the whole kink of 45 degrees. Its lateral distance is
+// at most a quarter of the short chord times its sine, times 1 / cos^2(90 / 4), also for the first and the last chord.
+TEST(Curve, ShortChordsLimitLongOnes) {
   for (Points p : {Points{{0, 0}, {100, 0}, {100.7, 0.7}, {101.4, 1.4}},
                    Points{{-0.7, 0.7}, {0, 0}, {100, 0}, {100.7, 0.7}, {101.4, 1.4}}})
     for (int way = 0; way < 2; ++way, std::reverse(p.begin(), p.end())) {
@@ -137,8 +136,8 @@ TEST(Curve, ShortChordsHoldLongOnes) {
     }
 }
 
-// Equally spaced points of a circle give that circle, to the precision stated in curve.h.
-TEST(Curve, CirclesOfCircles) {
+// Equally spaced points of a circle give that circle, with the precision stated in curve.h.
+TEST(Curve, CirclePointsGiveACircle) {
   const double radius = 0.93;
   Points p;
   for (int i = 0; i <= 12; ++i) p.push_back(base::rotate(i * M_PI / 6, {radius, 0.0}));
@@ -164,11 +163,11 @@ TEST(Curve, StraightAndBend) {
   EXPECT_LT(worst, 1e-3);
 }
 
-TEST(Curve, OddWayPoints) {
+TEST(Curve, UnusualWayPoints) {
   EXPECT_EQ(smooth_curve(Points{{3, 4}}, kFine).points.size(), 1u);                  // one
   EXPECT_EQ(smooth_curve(Points{{3, 4}, {3, 4}, {3, 4}}, kFine).points.size(), 1u);  // one, three times
   EXPECT_EQ(smooth_curve(Points{{0, 0}, {1, 0}}, kFine).points.size(), 2u);          // two
-  EXPECT_EQ(smooth_curve(Points{{0, 0}, {1, 0}, {1, 0}}, kFine).knots[2], 1u);       // the last repeated
+  EXPECT_EQ(smooth_curve(Points{{0, 0}, {1, 0}, {1, 0}}, kFine).knots[2], 1u);       // last point repeated
   const Curve back = smooth_curve(Points{{0, 0}, {10, 0}, {0, 0}}, kFine);           // there and back
   EXPECT_EQ(back.points[back.knots[1]].x, 10.0);
   EXPECT_LE(smooth_curve(wild(3), {1e-12, 1e6, 500}).points.size(), 600u);  // bounded
@@ -202,8 +201,8 @@ TEST(Parallel, OfACircle) {
   for (const glm::dvec2& at : offset_curve(arc, -1.8)) EXPECT_NEAR(length(at), 6.8, 2e-3);
 }
 
-// A bend of 1 m radius with edges at 2 m: the loop inside is removed, and the rest keeps its distance.
-TEST(Parallel, LoopsInsideTightBendsAreCutOff) {
+// A bend of 1 m radius with edges at 2 m: the inner loop is removed, and the rest keeps its distance.
+TEST(Parallel, LoopsInsideTightBendsAreRemoved) {
   Points p{{-10, 0}, {-5, 0}, {0, 0}};
   for (int i = 1; i <= 6; ++i) p.push_back(glm::dvec2{0, 1} + base::rotate(-M_PI / 2 + i * M_PI / 12, {1.0, 0.0}));
   p.push_back({1, 6}), p.push_back({1, 11});
@@ -215,7 +214,7 @@ TEST(Parallel, LoopsInsideTightBendsAreCutOff) {
   EXPECT_LT(inside.size(), bend.points.size());
 }
 
-// Boundary: a hairpin whose legs are as far apart as keeps their parallels, from one leg and from the other.
+// Boundary: a hairpin whose legs are just far enough apart to keep their parallels, measured from either leg.
 TEST(Parallel, KeepsPointsAtExactlyTheTolerance) {
   const double apart = 1.0 + (1.0 - 2e-3);
   const Curve hairpin{.points = {{0, 0}, {1.5, 0}, {1.5, apart}, {0, apart}},

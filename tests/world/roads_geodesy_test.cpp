@@ -1,4 +1,4 @@
-// Degrees to metres, against GeographicLib's geodesics on the same ellipsoid (GRS 80).
+// Conversion of degrees to metres, compared with GeographicLib's geodesics on the same ellipsoid (GRS 80).
 
 #include "world/roads/geodesy.h"
 
@@ -12,19 +12,19 @@
 namespace sf::world {
 namespace {
 
-TEST(LocalPlane, OriginIsNought) {
+TEST(LocalPlane, OriginIsZero) {
   const glm::dvec2 p = LocalPlane({34.5, -117.4}).east_north({34.5, -117.4});
   EXPECT_EQ(p.x, 0.0);
   EXPECT_EQ(p.y, 0.0);
 }
 
 // Known lengths: radii of curvature times a small angle.
-TEST(LocalPlane, DegreesOfKnownLength) {
+TEST(LocalPlane, DegreesHaveTheirKnownLength) {
   const double step = 1e-3;
-  // One degree of longitude on the equator is 111 319.491 m; of latitude 110 574.276 m.
+  // One degree of longitude on the equator is 111319.491 m, and one of latitude 110574.276 m.
   EXPECT_NEAR(LocalPlane({0, 0}).east_north({0, step}).x, 111.319491, 1e-6);
   EXPECT_NEAR(LocalPlane({0, 0}).east_north({step, 0}).y, 110.574276, 1e-6);
-  // At 45 degrees: longitude 78 846.835 m, latitude 111 131.778 m.
+  // At 45 degrees: longitude 78846.835 m, latitude 111131.778 m.
   EXPECT_NEAR(LocalPlane({45, 10}).east_north({45, 10 + step}).x, 78.846835, 1e-5);
   EXPECT_NEAR(LocalPlane({45, 10}).east_north({45 + step, 10}).y, 111.131778, 1e-5);
 }
@@ -52,7 +52,7 @@ TEST(LocalPlane, AgreesWithGeodesics) {
     double d = 0.0, azimuth = 0.0, arriving = 0.0;  // [m], [degrees] clockwise from north
     ellipsoid.Inverse(origin.latitude, origin.longitude, at.latitude, at.longitude, d, azimuth, arriving);
     const double east = d * std::sin(azimuth * M_PI / 180.0), north = d * std::cos(azimuth * M_PI / 180.0);
-    // Azimuths of geodesics and of straight lines differ in d^2 e^2 / R^2; degrees are rounded to 10 nm.
+    // Azimuths of geodesics and of straight lines differ by d^2 e^2 / R^2; degrees are rounded to 10 nm.
     const double allowed = 1.2 * d * d * d / (6.0 * 6371e3 * 6371e3) + 1e-7;
     EXPECT_NEAR(flat.x, east, allowed) << d;
     EXPECT_NEAR(flat.y, north, allowed) << d;
@@ -61,10 +61,10 @@ TEST(LocalPlane, AgreesWithGeodesics) {
   EXPECT_LT(worst, 3e-5);
 }
 
-// Nine decimals of a degree are a tenth of a millimetre, which must be preserved.
+// The ninth decimal of a degree is a tenth of a millimetre, which must be preserved.
 TEST(LocalPlane, SmallStepsAreNotRounded) {
   const LocalPlane plane({40.0, -83.0});
-  const double step = 1.1103463e-4;  // [m] of 1e-9 degrees there: radius of curvature of the meridian, 6 361 815.8 m
+  const double step = 1.1103463e-4;  // [m] of 1e-9 degrees there: the meridian's radius of curvature is 6361815.8 m
   for (int i = 1; i < 1000; i += 7) EXPECT_NEAR(plane.east_north({40.0 + i * 1e-9, -83.0}).y, i * step, 5e-9);
 }
 

@@ -51,9 +51,9 @@ double length_of(const LaneMarking& stripe) {
   return sum;
 }
 
-TEST(LaneMarkings, NothingSaidNothingPainted) { EXPECT_TRUE(paint("", "").empty()); }
+TEST(LaneMarkings, UnspecifiedBoundariesHaveNoPaint) { EXPECT_TRUE(paint("", "").empty()); }
 
-TEST(LaneMarkings, SolidLinesLieOnTheEdges) {
+TEST(LaneMarkings, SolidLinesAreOnTheEdges) {
   const auto lane_markings = paint("solid_yellow", "solid_white");
   ASSERT_EQ(lane_markings.size(), 2u);
   EXPECT_EQ(lane_markings[0].color, kYellowPaint);
@@ -64,7 +64,7 @@ TEST(LaneMarkings, SolidLinesLieOnTheEdges) {
   EXPECT_DOUBLE_EQ(lane_markings[0].width, 0.1016);  // 4 inches
 }
 
-TEST(LaneMarkings, DoubleLinesStandOnEitherSideOfTheEdge) {
+TEST(LaneMarkings, DoubleLinesAreOnBothSidesOfTheEdge) {
   const auto lane_markings = paint("double_yellow", "double_yellow");
   ASSERT_EQ(lane_markings.size(), 4u);
   for (const std::size_t i : {0u, 2u}) {
@@ -76,8 +76,8 @@ TEST(LaneMarkings, DoubleLinesStandOnEitherSideOfTheEdge) {
   EXPECT_LT(lane_markings[2].line[0].y, 0.0);
 }
 
-// 100 m in 40 ft: eight whole dashes of 10 ft and the start of a ninth.
-TEST(LaneMarkings, DashesHaveTheirLengthAndTheLastIsShortened) {
+// 100 m at 40 ft: eight whole dashes of 10 ft and the start of a ninth.
+TEST(LaneMarkings, DashesHaveTheirLengthExceptTheLast) {
   const auto lane_markings = paint("", "broken_white");
   ASSERT_EQ(lane_markings.size(), 9u);
   for (std::size_t k = 0; k < lane_markings.size(); ++k) {
@@ -89,9 +89,9 @@ TEST(LaneMarkings, DashesHaveTheirLengthAndTheLastIsShortened) {
   EXPECT_LT(length_of(lane_markings[8]), 10 * kFoot);
 }
 
-TEST(LaneMarkings, SizesOfTheSidecar) {
+TEST(LaneMarkings, SidecarSetsSizes) {
   const auto lane_markings = paint("", "broken_white", "paint_width_m = 0.2\ndash_length_m = 30\ndash_gap_m = 20\n");
-  ASSERT_EQ(lane_markings.size(), 2u);  // 0 to 30, 50 to 80; the next would begin at 100
+  ASSERT_EQ(lane_markings.size(), 2u);  // 0 to 30, 50 to 80; the next would start at 100
   EXPECT_EQ(lane_markings[0].width, 0.2);
   EXPECT_NEAR(lane_markings[1].line.back().x, 80.0, 1e-9);
 }
@@ -110,14 +110,14 @@ TEST(LaneMarkings, DashesFollowBends) {
   text = with(text, "1.1.1 0 0\n1.1.2 0 0.001\n", points);
   const auto lane_markings = lane_markings_of(
       build_network(parse_rndf("one.rndf", text), parse_sidecar("one.toml", sidecar, warnings), warnings));
-  ASSERT_EQ(lane_markings.size(), 5u);  // the outer edge is 50.3 m long: dashes begin every 12.192 m
+  ASSERT_EQ(lane_markings.size(), 5u);  // the outer edge is 50.3 m long: dashes start every 12.192 m
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_NEAR(length_of(lane_markings[k]), 10 * kFoot, 1e-6);
     for (const glm::dvec2& p : lane_markings[k].line) EXPECT_NEAR(length(p), 32.0, 2e-3);
   }
 }
 
-TEST(LaneMarkings, ASharpTurnBeginsANewMarking) {
+TEST(LaneMarkings, SharpTurnStartsANewMarking) {
   RoadNetwork network;
   network.lanes.push_back({.left = Boundary::solid_white, .left_edge = {{0, 0}, {2, 0}, {1, 1}, {0, 2}, {0, 0}}});
   const auto lane_markings = lane_markings_of(network);
@@ -141,7 +141,7 @@ TEST(LaneMarkings, StopLinesAndSpots) {
   EXPECT_NEAR(length_of(lane_markings.back()), 10 * kFoot, 1e-9);
 }
 
-TEST(LaneMarkings, TooManyDashesAreRefused) {
+TEST(LaneMarkings, TooManyDashesAreRejected) {
   try {
     paint("broken_white", "broken_white", "dash_length_m = 0.00001\ndash_gap_m = 0.00001\n");
     FAIL() << "ten million dashes were painted";
@@ -150,8 +150,8 @@ TEST(LaneMarkings, TooManyDashesAreRefused) {
   }
 }
 
-// The rules of world::LaneMarking, on all public networks.
-TEST(LaneMarkingFiles, StripesAreSound) {
+// Checks the invariants of world::LaneMarking in all public networks.
+TEST(LaneMarkingFiles, StripesAreValid) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
   for (const char* file : {"darpa_sample/uce_rndf_1_final_event.rndf", "darpa_sample/Sample_RNDF_Rev_1.5.rndf",

@@ -28,7 +28,7 @@ RoadNetwork small(const std::string& sidecar = "") { return build(std::string(kS
 
 glm::dvec2 at(const RoadNetwork& network, PointId id) { return position_of(network, *find_point(network, id)); }
 
-TEST(RoadNetwork, MetresFromTheFirstPoint) {
+TEST(RoadNetwork, PositionsAreMetresFromTheFirstPoint) {
   const RoadNetwork network = small();
   EXPECT_EQ(at(network, {1, 1, 1}).x, 0.0);
   EXPECT_NEAR(at(network, {1, 1, 3}).x, 0.002 * kLongitude, 1e-3);
@@ -52,7 +52,7 @@ TEST(RoadNetwork, SidecarPlacesScalesAndTurns) {
   EXPECT_NEAR(at(moved, {1, 1, 1}).y, -0.001 * kLatitude, 1e-3);
 }
 
-// Precedence of widths: the lane's own, the sidecar's for all lanes, the file's feet, 12 ft with a warning.
+// Precedence of widths: the lane's own, the sidecar's for all lanes, the file's in feet, 12 ft with a warning.
 TEST(RoadNetwork, Widths) {
   std::vector<Warning> warnings;
   const Rndf rndf =
@@ -76,7 +76,7 @@ TEST(RoadNetwork, PointsInMetresReplaceDegrees) {
   EXPECT_EQ(at(network, {1, 1, 2}).y, 5.0);
 }
 
-TEST(RoadNetwork, EdgesAreHalfAWidthAside) {
+TEST(RoadNetwork, EdgesAreHalfAWidthFromTheCentre) {
   const RoadNetwork network = small();
   const RoadLane& lane = network.lanes[0];
   ASSERT_GE(lane.left_edge.size(), 2u);
@@ -94,7 +94,7 @@ TEST(RoadNetwork, StopLinesCrossTheirLane) {
   EXPECT_GT(stop.left.y, stop.right.y);
 }
 
-TEST(RoadNetwork, CheckpointsHavePlaces) {
+TEST(RoadNetwork, CheckpointsHavePositions) {
   const RoadNetwork network = small();
   ASSERT_NE(find_checkpoint(network, 2), nullptr);
   EXPECT_EQ(id_of(network, find_checkpoint(network, 2)->at), (PointId{3, 1, 2}));
@@ -145,7 +145,7 @@ TEST(RoadNetwork, ConnectionsLeaveAndArriveInDirection) {
   }
 }
 
-TEST(RoadNetwork, LanesOfOnePoint) {
+TEST(RoadNetwork, LanesOfOnePointAreValid) {
   std::vector<Warning> warnings;
   const std::string text = with(small_with("num_waypoints 2", "num_waypoints 1"), "1.2.2 40.000050 -83.000000\n", "");
   const Rndf rndf =
@@ -154,7 +154,7 @@ TEST(RoadNetwork, LanesOfOnePoint) {
   EXPECT_EQ(network.lanes[1].points.size(), 1u);
   EXPECT_TRUE(network.lanes[1].left_edge.empty());
   EXPECT_EQ(length_of(network.lanes[1]), 0.0);
-  EXPECT_EQ(network.stops.size(), 1u);  // the other lane's
+  EXPECT_EQ(network.stops.size(), 1u);  // that of the other lane
   EXPECT_FALSE(yaw_of(network, *find_point(network, {1, 2, 1})).has_value());
   EXPECT_NE(lines_of(warnings).find("lane 1.2 has one point only"), std::string::npos);
 }
@@ -176,7 +176,7 @@ TEST(RoadNetwork, FarPointsAreNamedOnce) {
             1);
 }
 
-// A lane of half a metre: six decimals cause visible errors, nine do not.
+// A lane of half a metre: with six decimals errors are visible, with nine they are not.
 TEST(RoadNetwork, MoreDecimalsAreKept) {
   const RoadNetwork network =
       build(small_with("1.1.2 40.000000 -82.999000", "1.1.2 40.000000123 -82.999000"), "scale = 0.142857142857");
@@ -184,7 +184,7 @@ TEST(RoadNetwork, MoreDecimalsAreKept) {
               1e-6);
 }
 
-// Edges of real lanes: half a width from the centre line, within the tolerance.
+// Edges of real lanes are half a width from the centre line, within the tolerance.
 TEST(RoadNetworkFiles, EdgesKeepTheirDistance) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
@@ -198,7 +198,7 @@ TEST(RoadNetworkFiles, EdgesKeepTheirDistance) {
         for (std::size_t i = 0; i < edge->size(); i += 3) {
           double nearest = INFINITY;
           for (const glm::dvec2& p : lane.centre.points) nearest = std::min(nearest, length(p - (*edge)[i]));
-          // Distances to points of the centre line, not to its pieces: slightly larger at most.
+          // Distances to points of the centre line, not to its pieces, so they may be slightly larger.
           EXPECT_GE(nearest, half - 0.01) << name_of(network, lane);
           EXPECT_LE(nearest, half + 3.0) << name_of(network, lane);
         }
@@ -226,9 +226,9 @@ std::set<int> missed_from(const RoadNetwork& network, PointId start, bool with_c
   return missed;
 }
 
-// From a start chute of the final all checkpoints can be reached, except three that need a lane change on George Blvd
+// All checkpoints can be reached from a start chute of the final, except three that need a lane change on George Blvd
 // (segment 6), for which the file has no exit.
-TEST(RoadNetworkFiles, CheckpointsOfTheFinalAreReached) {
+TEST(RoadNetworkFiles, CheckpointsOfTheFinalAreReachable) {
   const std::string file = SF_SOURCE_DIR "/../shared/data/rndf/darpa_sample/uce_rndf_1_final_event.rndf";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared data beside the sources";
   std::vector<Warning> warnings;
@@ -238,7 +238,7 @@ TEST(RoadNetworkFiles, CheckpointsOfTheFinalAreReached) {
   EXPECT_EQ(missed_from(network, chute, true), std::set<int>{});
 }
 
-// 1.1 and 1.2 are the only adjacent lanes of the same direction in SimVille.
+// 1.1 and 1.2 are the only adjacent lanes with the same direction in SimVille.
 TEST(RoadNetwork, LaneChanges) {
   std::vector<Warning> warnings;
   const RoadNetwork network = load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
@@ -253,11 +253,11 @@ TEST(RoadNetwork, LaneChanges) {
       EXPECT_EQ(to.segment, 1) << text_of(id);
       EXPECT_EQ(to.lane, 3 - id.lane) << text_of(id);
       EXPECT_EQ(step.kind, Transition::Kind::change);
-      EXPECT_GE(step.length, 1.2) << text_of(id);  // three widths, or a little less on the outside of a bend
+      EXPECT_GE(step.length, 1.2) << text_of(id);  // three widths, or slightly less on the outside of a bend
       EXPECT_LE(step.length, 2.6) << text_of(id);
     }
   }
-  // On the straight line: 1.5 m ahead is the third of points 0.575 m apart, and the last points have no change.
+  // On the straight line: 1.5 m ahead is the third of points 0.575 m apart. The last points have no change.
   const auto change = lane_changes(network, *find_point(network, {1, 1, 10}));
   ASSERT_EQ(change.size(), 1u);
   EXPECT_EQ(text_of(id_of(network, change[0].to)), "1.2.13");
@@ -265,7 +265,7 @@ TEST(RoadNetwork, LaneChanges) {
   EXPECT_TRUE(lane_changes(network, *find_point(network, {1, 1, 16})).empty());
 }
 
-/// Lane changes from the start of a lane along +x to a lane that begins at `p` and runs beside it. Both are 4 m wide.
+/// Returns the lane changes from the start of a lane along +x to a parallel lane that starts at `p`. Both are 4 m wide.
 std::size_t changes_to(glm::dvec2 p) {
   const auto place = [](const char* id, double x, double y) {
     return "[points.\"" + std::string(id) + "\"]\nposition = [" + std::to_string(x) + ", " + std::to_string(y) + "]\n";
@@ -293,7 +293,7 @@ end_file
   return lane_changes(network, *find_point(network, {1, 1, 1})).size();
 }
 
-TEST(RoadNetwork, LanesHalfAWidthToOneAndAHalfApartAreSideBySide) {
+TEST(RoadNetwork, LanesHalfAWidthToOneAndAHalfApartAreAdjacent) {
   for (const double side : {1.0, -1.0}) {
     EXPECT_EQ(changes_to({0, side * 0.49 * 4}), 0u);
     EXPECT_EQ(changes_to({0, side * 0.51 * 4}), 1u);
@@ -302,9 +302,9 @@ TEST(RoadNetwork, LanesHalfAWidthToOneAndAHalfApartAreSideBySide) {
   }
 }
 
-TEST(RoadNetwork, ALaneThatBeginsFurtherOnIsNotBesideYet) {
+TEST(RoadNetwork, LaneThatStartsFartherAheadIsNotAdjacentYet) {
   const auto ahead = [](double part) { return glm::dvec2{part, std::sqrt(1.0 - part * part)} * 4.0; };
-  EXPECT_EQ(changes_to(ahead(0.29)), 1u);  // of its distance
+  EXPECT_EQ(changes_to(ahead(0.29)), 1u);  // relative to its distance
   EXPECT_EQ(changes_to(ahead(0.31)), 0u);
 }
 

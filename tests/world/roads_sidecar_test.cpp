@@ -65,7 +65,7 @@ position = [3, -4]
   EXPECT_EQ(s.points.at({1, 2, 1}).p.y, -4.0);
 }
 
-TEST(Sidecar, NothingIsFine) {
+TEST(Sidecar, EmptyFileIsAccepted) {
   const RoadSidecar s = read("");
   EXPECT_EQ(s.scale, 1.0);
   EXPECT_FALSE(s.origin || s.lane_width || s.spot_width);
@@ -81,7 +81,7 @@ TEST(Sidecar, UnknownKeysAreWarnings) {
       "unknown key 'z' is ignored\n");
 }
 
-TEST(Sidecar, WrongFilesAreRefused) {
+TEST(Sidecar, WrongFilesAreRejected) {
   const std::vector<std::pair<std::string, std::string>> corpus{
       {"scale = ", "small.toml:1: not TOML"},
       {"\n\nscale = 0", "small.toml:3: 'scale' expects a number from 1e-6"},
@@ -108,7 +108,7 @@ TEST(Sidecar, WrongFilesAreRefused) {
   for (const auto& [text, error] : corpus) EXPECT_EQ(refusal(text).substr(0, error.size()), error) << text;
 }
 
-// Characters beyond ASCII: accepted in comments and after a byte order mark, refused elsewhere.
+// Non-ASCII characters are accepted in comments and after a byte order mark, and rejected elsewhere.
 TEST(Sidecar, CommentsMayBeInAnyLanguage) {
   std::vector<Warning> warnings;
   EXPECT_EQ(parse_sidecar("a.toml", "\xEF\xBB\xBF# Maßstab\nscale = 0.5  # ein Halb, ½\n", warnings).scale, 0.5);
@@ -127,8 +127,8 @@ TEST(Sidecar, CommentsMayBeInAnyLanguage) {
   EXPECT_EQ(refused("\"a#\" = 1 # ƒ\n"), "a.toml:1" + expected) << "a quote may hide what looks like a comment";
 }
 
-// A text that is not TOML is an error of the file, also where toml++ has assumptions.
-TEST(Sidecar, NonsenseIsRefused) {
+// A text that is not TOML is an error in the file, even where toml++ makes assumptions.
+TEST(Sidecar, MalformedTomlIsRejected) {
   std::vector<Warning> warnings;
   for (const char* text : {"=", ".", "[", "[.]", "[[", "a..b = 1", "a. = 1", "a = {,}", "a = {.}", "a = {=1}",
                            "a = [,]", "{", "\"", "a = \"", "'''", "[a]b", "a = 1 b = 2", "[lanes.]", "scale 1"})
@@ -136,7 +136,7 @@ TEST(Sidecar, NonsenseIsRefused) {
 }
 
 // load_roads reads the file of the same name with .toml for .rndf.
-TEST(Sidecar, StandsBesideItsNetwork) {
+TEST(Sidecar, IsInTheFolderOfItsNetwork) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sf_sidecar_test";
   std::filesystem::create_directories(folder);
   const std::string rndf = (folder / "small.rndf").string();

@@ -41,7 +41,7 @@ class RobotOfFile : public ::testing::Test {
       std::filesystem::path(::testing::TempDir()) / ("robot_of_file_" + std::to_string(::getpid()));
 };
 
-TEST_F(RobotOfFile, IsOneThatTheFileDefines) {
+TEST_F(RobotOfFile, MayBeDefinedInTheFile) {
   World world = read_world("model( name \"wall\" size [1 1 1] pose [5 0 0 0] )");
   const std::uint64_t before = world.hash;
   const std::uint32_t row = append_robot_of(world, write("own.inc", kInclude), "scout", kWithLasers);
@@ -63,7 +63,7 @@ TEST_F(RobotOfFile, IsOneThatTheFileDefines) {
   EXPECT_EQ(world.walls.size(), 4u) << "nothing else of the file";
 }
 
-/// Slips of the definition are reported, with their lines; the place of a robot in its own world does not matter.
+/// Mistakes in the definition are reported with their lines. The place of a robot in its own world does not matter.
 TEST_F(RobotOfFile, WarningsOfTheFileAreKept) {
   World world;
   append_robot_of(world, write("own.world", kInclude + "\nbox( )\n"), "scout", kWithLasers);
@@ -72,7 +72,7 @@ TEST_F(RobotOfFile, WarningsOfTheFileAreKept) {
   EXPECT_NE(world.warnings[0].message.find("'fow'"), std::string::npos);
 }
 
-TEST_F(RobotOfFile, IsOneOfAWorld) {
+TEST_F(RobotOfFile, MayBeARobotOfAWorld) {
   const std::string file =
       write("two.world",
             "model( size [9 0.1 1] pose [0 4 0 0] )\n"
@@ -91,7 +91,7 @@ TEST_F(RobotOfFile, IsOneOfAWorld) {
   EXPECT_EQ(world.movers.size(), 5u);
 }
 
-TEST_F(RobotOfFile, UnknownNamesAreAnsweredWithThoseThatThereAre) {
+TEST_F(RobotOfFile, UnknownNamesListTheExistingOnes) {
   const std::string file = write("own.world", kInclude + "\nscout( name \"bob\" )\nmodel( name \"tag1\" )\n");
   EXPECT_EQ(error(file, "scuot"),
             "own.world: has no robot 'scuot'; did you mean 'scout'?; expected one of: bob, scout, wheeled");
@@ -105,7 +105,7 @@ TEST_F(RobotOfFile, UnknownNamesAreAnsweredWithThoseThatThereAre) {
             "own.world: no robot of it is named, as in FILE:NAME; expected one of: bob, scout, wheeled");
 }
 
-TEST_F(RobotOfFile, FilesWithoutRobotsAreRefused) {
+TEST_F(RobotOfFile, FilesWithoutRobotsAreRejected) {
   EXPECT_NE(
       error(write("walls.world", "model( size [1 1 1] )"), "a").find("has no robots; expected a world file with one"),
       std::string::npos);
@@ -119,8 +119,8 @@ TEST_F(RobotOfFile, FilesWithoutRobotsAreRefused) {
   EXPECT_NE(error(write("many.inc", many), "zzz").find(" and 10 more"), std::string::npos);
 }
 
-/// Each robot that the shipped definitions have.
-TEST_F(RobotOfFile, ShippedOnes) {
+/// Every robot in the shipped definitions.
+TEST_F(RobotOfFile, ShippedRobotsLoad) {
   for (const char* name : {"create", "pioneer3at", "khepera2"}) {
     World world;
     append_robot_of(world, SF_SOURCE_DIR "/worlds/robots.inc", name, kWithLasers);

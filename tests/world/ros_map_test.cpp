@@ -62,7 +62,7 @@ const std::vector<std::uint8_t> kAlpha{
 const std::string kGood =
     "image: m.pgm\nresolution: 0.5\norigin: [10, 20, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
-TEST_F(RosMap, TheOriginIsTheLowerLeftCornerAndTheFirstRowIsTheTop) {
+TEST_F(RosMap, OriginIsTheLowerLeftCornerAndTheFirstRowIsTheTop) {
   const World world = load(kGood);
   ASSERT_EQ(world.walls.size(), 4u);
   EXPECT_DOUBLE_EQ(world.extent.x_min, 10.0);
@@ -75,14 +75,14 @@ TEST_F(RosMap, TheOriginIsTheLowerLeftCornerAndTheFirstRowIsTheTop) {
   EXPECT_TRUE(world.models.at(0).is_bitmap);
 }
 
-TEST_F(RosMap, TakesTheOrderedAccuracy) {
+TEST_F(RosMap, UsesTheRequestedAccuracy) {
   LoadOptions options;
   options.accuracy = "skip2";
   EXPECT_EQ(load(kGood, options).accuracy.word, "skip2");
   EXPECT_EQ(load(kGood).accuracy.word, "");
 }
 
-TEST_F(RosMap, UnknownIsAWallOnlyWhenAskedFor) {
+TEST_F(RosMap, UnknownIsAWallOnlyOnRequest) {
   LoadOptions options;
   options.unknown_is_wall = true;
   EXPECT_NEAR(area(load(kGood, options)), 0.5, 1e-12);
@@ -118,11 +118,11 @@ void write_sandbox(const std::filesystem::path& folder) {
 constexpr const char* kSandbox =
     "image: m.pgm\nresolution: 0.05\norigin: [-10, -10, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: ";
 
-TEST_F(RosMap, CopiesStartInsideTheArenaAmidTheUnknown) {
+TEST_F(RosMap, CopiesStartInsideTheKnownArena) {
   write_sandbox(folder_);
   for (const char* threshold : {"0.196", "0.25"})  // with the latter the unexplored area counts as free
     for (const Pose& start : {Pose{}, Pose{-7.0, 3.0, 0.0, 0.0}, Pose{1.0, 1.0, 0.0, 0.0}}) {
-      if (threshold[3] == '5' && start.x < -5.0) continue;  // it stands in an area that the file declares free
+      if (threshold[3] == '5' && start.x < -5.0) continue;  // in an area that the file declares free
       World world = load(std::string(kSandbox) + threshold + "\n");
       scenes::add_create(world, start);
       update_extent_and_hash(world);
@@ -135,7 +135,7 @@ TEST_F(RosMap, CopiesStartInsideTheArenaAmidTheUnknown) {
     }
 }
 
-TEST_F(RosMap, PosesThatNobodyCanHaveAreNamed) {
+TEST_F(RosMap, ImpossiblePosesAreNamed) {
   write_sandbox(folder_);
   World world = load(std::string(kSandbox) + "0.196\n");
   scenes::add_create(world, {});
@@ -148,7 +148,7 @@ TEST_F(RosMap, PosesThatNobodyCanHaveAreNamed) {
   EXPECT_EQ(where(-10.1, 1), "outside of 'map'");
 }
 
-TEST_F(RosMap, TheKnownAreaTurnsWithTheMap) {
+TEST_F(RosMap, KnownAreaTurnsWithTheMap) {
   std::string yaml = kGood;
   yaml.replace(yaml.find("20, 0]"), 6, "20, 1.5707963267948966]");
   const std::vector<Segment> known = known_free(load(yaml));
@@ -163,8 +163,8 @@ std::string with(const std::string& key, const std::string& instead) {
   return yaml;
 }
 
-/// Degrees of a yaw in radians, centimetres, millimetres and pixels per metre of a resolution in metres.
-TEST_F(RosMap, LikelyUnitsAreWarnedOf) {
+/// Degrees in a yaw in radians; centimetres, millimetres or pixels per metre in a resolution in metres.
+TEST_F(RosMap, ProbableUnitMistakesAreWarnings) {
   const auto said = [&](const std::string& yaml) {
     const World world = load(yaml);
     return world.warnings.empty() ? "" : world.warnings[0].message;
@@ -182,7 +182,7 @@ TEST_F(RosMap, LikelyUnitsAreWarnedOf) {
   EXPECT_EQ(load(with("resolution", "resolution: 5")).warnings[0].line, 2);
 }
 
-TEST_F(RosMap, PicturesAreNoIncludes) {
+TEST_F(RosMap, PicturesAreNotIncludes) {
   write("house.yaml", kGood);
   write("house.pgm", "P2 1 1 255\n0\n");
   write("alone.PNG", "\x89PNG");
@@ -205,7 +205,7 @@ TEST_F(RosMap, PicturesAreNoIncludes) {
   EXPECT_EQ(refusal("include \"house.yaml\""), "");
 }
 
-/// Whole numbers as map_server takes them, and every word of YAML.
+/// Integers as in map_server, and every word of YAML.
 TEST_F(RosMap, NegatedMapsAreBrightWhereTheyAreOccupied) {
   for (const char* yes :
        {"1", "2", "-1", "true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "y", "0x1", "+1", "010"}) {
@@ -217,7 +217,7 @@ TEST_F(RosMap, NegatedMapsAreBrightWhereTheyAreOccupied) {
     EXPECT_NEAR(area(load(with("negate", std::string("negate: ") + no))), 0.25, 1e-12) << no;
 }
 
-/// map_server refuses them, so they are a warning.
+/// map_server rejects fractions, so they cause a warning.
 TEST_F(RosMap, NegateMayBeAFraction) {
   for (const auto& [written, size] : std::map<std::string, double>{{"0.0", 0.25}, {"1.0", 1.0}, {"1e0", 1.0}}) {
     const World world = load(with("negate", "negate: " + written));
@@ -229,7 +229,7 @@ TEST_F(RosMap, NegateMayBeAFraction) {
     EXPECT_EQ(error(with("negate", std::string("negate: ") + bad)).substr(0, 9), "m.yaml:4:") << bad;
 }
 
-TEST_F(RosMap, ModesAreWrittenInAnyCase) {
+TEST_F(RosMap, ModesIgnoreCase) {
   for (const char* mode : {"trinary", "Trinary", "TRINARY"}) {
     const World world = load(kGood + "mode: " + mode + "\n");
     EXPECT_NEAR(area(world), 0.25, 1e-12) << mode;
@@ -269,14 +269,14 @@ TEST_F(RosMap, AlphaIsAveragedInTrinaryMode) {
   EXPECT_EQ(error(yaml + "transparent: no\n").substr(0, 9), "m.yaml:7:");
 }
 
-/// In mode scale all but opaque pixels are unknown, as in Nav2.
+/// In mode scale all pixels that are not opaque are unknown, as in Nav2.
 TEST_F(RosMap, TransparentPixelsAreUnknownInModeScale) {
   write("a.png", std::string(kAlpha.begin(), kAlpha.end()));
   EXPECT_NEAR(area(load(with("image", "image: a.png") + "mode: scale\n")), 2 * 0.25, 1e-12) << "black and grey 89";
 }
 
-/// The mean of the colours is not rounded: (89 + 89 + 90) / 3 is 0.6497 occupied, and 89 would be 0.651.
-TEST_F(RosMap, TheMeanOfTheColoursIsExact) {
+/// The mean of the colours is not rounded: (89 + 89 + 90) / 3 is 0.6497 occupied, while 89 would be 0.651.
+TEST_F(RosMap, MeanOfTheColoursIsExact) {
   write("m.ppm", "P3 2 1 255\n89 89 90 89 89 89\n");
   EXPECT_NEAR(area(load(with("image", "image: m.ppm"))), 0.25, 1e-12);
 }
@@ -284,7 +284,7 @@ TEST_F(RosMap, TheMeanOfTheColoursIsExact) {
 /// A wall pixel among white ones, 3 x 2, in every format that a test can write by hand.
 TEST_F(RosMap, PicturesOfEveryFormatAreTheSameMap) {
   const std::uint64_t hash = load(with("image", "image: m.pgm")).hash;
-  const std::string white(3, '\xff'), black(3, '\0'), pad(3, '\0');  // a row of a BMP is a multiple of 4 bytes
+  const std::string white(3, '\xff'), black(3, '\0'), pad(3, '\0');  // rows of a BMP are padded to 4 bytes
   const std::string rows = white + white + white + pad + black + white + white + pad;  // the bottom row first
   const std::string bmp = std::string("BM") + std::string("\x4e\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0", 16) +
                           std::string("\3\0\0\0\2\0\0\0\1\0\x18\0", 12) + std::string(24, '\0') + rows;
@@ -323,7 +323,7 @@ TEST_F(RosMap, WorldsOfOtherSimulatorsAreNamed) {
   says("robots: 3\n", "'image' is missing");
 }
 
-TEST_F(RosMap, TheYawTurnsAboutTheOrigin) {
+TEST_F(RosMap, YawTurnsAboutTheOrigin) {
   std::string yaml = kGood;
   yaml.replace(yaml.find("20, 0]"), 6, "20, 1.5707963267948966]");
   const World world = load(yaml);
@@ -346,12 +346,12 @@ TEST_F(RosMap, ScaleIsReadAsTrinaryWithAWarning) {
   EXPECT_EQ(load(kGood + "mode: trinary\n").warnings.size(), 0u);
 }
 
-TEST_F(RosMap, DefaultsAreMapServers) {
+TEST_F(RosMap, DefaultsAreThoseOfMapServer) {
   EXPECT_EQ(load("image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n").walls.size(), 4u);
 }
 
 // A world file with the user's robot in a map: `include "m.yaml"`.
-TEST_F(RosMap, AWorldIncludesItAmongItsOwnModels) {
+TEST_F(RosMap, WorldMayIncludeAMap) {
   const World map = load(kGood);
   write("mine.world",
         "model( name \"box\" size [0.1 0.1 1] pose [11 20.2 0 0] )\ninclude \"m.yaml\"\n"
@@ -370,7 +370,7 @@ TEST_F(RosMap, AWorldIncludesItAmongItsOwnModels) {
   EXPECT_EQ(warnings_of(world), "") << "it starts in known free space";
 }
 
-TEST_F(RosMap, AWorldIncludesOneAtMost) {
+TEST_F(RosMap, WorldIncludesAtMostOneMap) {
   write("m.yaml", kGood);
   const auto error_of_text = [&](const std::string& text) -> std::string {
     write("two.world", text);
@@ -387,7 +387,7 @@ TEST_F(RosMap, AWorldIncludesOneAtMost) {
   EXPECT_EQ(error_of_text("include \"m.yaml\"\n").substr(0, 17), "m.yaml:1: 'image'") << "the map's own file and line";
 }
 
-// Cells of half a metre: wall, unknown, free; below them three free ones. Origin (10, 20).
+// Cells of half a metre: wall, unknown, free; three free ones below. Origin (10, 20).
 TEST_F(RosMap, KnownSpaceIsAllButUnknownCells) {
   const KnownSpace known(load(kGood));
   EXPECT_TRUE(known.contains({10.25, 20.75})) << "a wall is known";
@@ -406,9 +406,9 @@ TEST_F(RosMap, KnownSpaceTurnsWithItsOrigin) {
   EXPECT_TRUE(known.contains({9.75, 20.75}));
 }
 
-TEST_F(RosMap, WithoutAMapAllIsKnown) { EXPECT_TRUE(KnownSpace(World{}).contains({1e9, 0.0})); }
+TEST_F(RosMap, WithoutAMapEverythingIsKnown) { EXPECT_TRUE(KnownSpace(World{}).contains({1e9, 0.0})); }
 
-TEST_F(RosMap, BadMapsAreRefusedWithTheirLine) {
+TEST_F(RosMap, BadMapsAreRejectedWithTheirLine) {
   EXPECT_EQ(error(with("image", "image: none.pgm")).substr(0, 9), "m.yaml:1:");
   EXPECT_NE(error(with("image", "picture: m.pgm")).find("'image' is missing"), std::string::npos);
   EXPECT_EQ(error(with("resolution", "resolution: 0")).substr(0, 9), "m.yaml:2:");

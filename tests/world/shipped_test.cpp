@@ -13,7 +13,7 @@
 namespace sf::world {
 namespace {
 
-/// Loads like the programs; sensors that are not read here are kept as written.
+/// Loads like the programs. Sensors that are not modelled here are kept as written.
 World shipped(const std::string& name) {
   static constexpr std::string_view kAny[] = {"fov",     "samples",      "range_max", "range_min",    "scount",
                                               "spose[]", "ssensitivity", "sum",       "perpendicular"};
@@ -41,7 +41,7 @@ TEST(Shipped, EveryWorldLoadsWithoutAWarning) {
   EXPECT_GE(worlds, 6);
 }
 
-TEST(Shipped, TheTestPathIsTheThesis) {
+TEST(Shipped, TestPathIsThatOfTheThesis) {
   const World world = shipped("testpath/testpath.world");
   double straight = 0.0;
   for (const LaneMarking& stripe : world.lane_markings)
@@ -52,7 +52,7 @@ TEST(Shipped, TheTestPathIsTheThesis) {
   EXPECT_EQ(world.movers[0].sensors.size(), 2u);
 }
 
-TEST(Shipped, TheMappingAreaIsThreeMetresWide) {
+TEST(Shipped, MappingAreaIsThreeMetresWide) {
   const World world = shipped("mapping/mapping.world");
   EXPECT_NEAR(world.extent.x_max - world.extent.x_min, 3.08, 1e-12) << "walls of 4 cm around";
   EXPECT_NEAR(world.extent.y_max - world.extent.y_min, 3.08, 1e-12);
@@ -72,7 +72,7 @@ TEST(Shipped, SimVilleHasABridgeAndMagnets) {
 }
 
 /// Of each pair of lights on crossing arms, at most one may be green or yellow at a time.
-TEST(Shipped, SimVillesLightsNeverLetCrossingArmsGo) {
+TEST(Shipped, SimVilleLightsNeverReleaseCrossingArms) {
   const World world = shipped("simville/simville.world");
   ASSERT_EQ(world.lights.size(), 7u);
   const auto may_go = [&](const char* point, double time) {
@@ -94,7 +94,7 @@ TEST(Shipped, SimVillesLightsNeverLetCrossingArmsGo) {
   EXPECT_NEAR(somebody, 400, 4);
 }
 
-TEST(Shipped, SimVillesLightsStandBesideTheirStopLinesAndLookAtWhoComes) {
+TEST(Shipped, SimVilleLightsAreAtTheirStopLinesAndFaceTraffic) {
   const World world = shipped("simville/simville.world");
   std::vector<Warning> warnings;
   const RoadNetwork roads = load_roads(world.road_files.at(0), warnings);
@@ -109,7 +109,7 @@ TEST(Shipped, SimVillesLightsStandBesideTheirStopLinesAndLookAtWhoComes) {
   }
 }
 
-TEST(Shipped, RobotsAreWhatTheirDataSheetsSay) {
+TEST(Shipped, RobotsMatchTheirDataSheets) {
   const World world = read_world(R"(include "robots.inc"
     create( name "roomba3" ) pioneer3at( name "pioneer4" pose [1 0 0 0] ) khepera2( name "khepera5" pose [2 0 0 0] ))");
   EXPECT_EQ(warnings_of(world), "");

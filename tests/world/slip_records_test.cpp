@@ -1,6 +1,6 @@
-// Each line of a road network, a mission, a sidecar and a plan of lights left out, given twice, or with its last word
-// exchanged: a hash of what the reader says, compared with a golden record. With SENSORFARM_RECORDS=FOLDER set, what it
-// says is written there as well.
+// Omits, duplicates, or changes the last word of each line of a road network, a mission, a sidecar and a plan of
+// lights. Compares a hash of the reader's messages with a golden record. With SENSORFARM_RECORDS=FOLDER set, also
+// writes the messages there.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -27,20 +27,20 @@ std::string said_of(const Read& read, const std::vector<std::string>& lines) {
     for (const Warning& w : read(text)) said += fmt::format("  {}: {}\n", w.line, w.message);
   } catch (const base::InputError& error) {
     for (const std::string& line : golden::lines_of(error.what())) {
-      const auto library = line.find("not TOML:");  // what follows are the library's words
+      const auto library = line.find("not TOML:");  // the library's words follow
       said += "  refused: " + (library == std::string::npos ? line : line.substr(0, library + 8)) + "\n";
     }
   }
   return said;
 }
 
-/// The line with another last word.
+/// Returns the line with another last word.
 std::string with_last(const std::string& line, const char* word) {
   const auto at = line.find_last_of(" \t");
   return at == std::string::npos ? word : line.substr(0, at + 1) + word;
 }
 
-/// The messages of the reader about the slips of line `i`.
+/// Returns the reader's messages about the changed variants of line `i`.
 std::string slips_of(const std::vector<std::string>& lines, std::size_t i, const Read& read) {
   const auto at = static_cast<std::ptrdiff_t>(i);
   std::vector<std::string> changed = lines;
@@ -71,12 +71,12 @@ void expect_slips(const std::string& name, const std::string& text, const Read& 
 
 const std::string kFolder = SF_SOURCE_DIR "/tests/world/golden/";
 
-TEST(SlipRecords, OfARoadNetwork) {
+TEST(SlipRecords, RoadNetwork) {
   expect_slips("rndf_slips", std::string(kSmallRndf),
                [](const std::string& text) { return parse_rndf("r", text).warnings; });
 }
 
-TEST(SlipRecords, OfAMission) {
+TEST(SlipRecords, Mission) {
   expect_slips("mdf_slips",
                "MDF_name tour\nRNDF small\nformat_version 1.0\ncreation_date 1-Jan-07\ncheckpoints\nnum_checkpoints 2\n"
                "1\n2\nend_checkpoints\nspeed_limits\nnum_speed_limits 2\n1 5 25\n3 0 10\nend_speed_limits\nend_file\n",
@@ -88,7 +88,7 @@ TEST(SlipRecords, OfAMission) {
                });
 }
 
-TEST(SlipRecords, OfASidecar) {
+TEST(SlipRecords, Sidecar) {
   expect_slips("sidecar_slips", golden::read(kFolder + "small.toml"), [](const std::string& text) {
     std::vector<Warning> warnings;
     check_against(parse_sidecar("s", text, warnings), small_rndf());
@@ -96,7 +96,7 @@ TEST(SlipRecords, OfASidecar) {
   });
 }
 
-TEST(SlipRecords, OfAPlanOfLights) {
+TEST(SlipRecords, PlanOfLights) {
   expect_slips("lights_slips", golden::read(kFolder + "lights.toml"), [](const std::string& text) {
     World world;
     for (const char* name : {"a", "b", "c", "d"})

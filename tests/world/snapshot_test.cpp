@@ -12,7 +12,7 @@ namespace {
 
 World rooms() { return load_world(SF_SOURCE_DIR "/worlds/rooms.world", kWithLasers); }
 
-/// One row of each table that is empty in rooms.world.
+/// Adds one row to each table that is empty in rooms.world.
 void add_street(World& world) {
   world.paths.push_back({"lane", {{{1.0, 2.0, 0.0, 0.5}, 2.72, 0.0, 0.5}, {{3.0, 2.0, 0.0, 0.5}, 1.46, 1.07, 0.6}}});
   world.lights.push_back({"light",
@@ -33,7 +33,7 @@ void add_street(World& world) {
   mover.track = 0.258;
 }
 
-TEST(Snapshot, ARoundTripKeepsEverything) {
+TEST(Snapshot, RoundTripKeepsEverything) {
   World world = rooms();
   world.warnings.push_back({"some.world", 3, "text"});
   world.unmodelled["camera"] = 2;
@@ -74,8 +74,8 @@ TEST(Snapshot, ARoundTripKeepsEverything) {
   EXPECT_EQ(again.movers.at(1).sensors.at(0).color, world.movers.at(1).sensors.at(0).color);
 }
 
-/// Measured quantities are finite, whatever the origin of a recording; quantities that may be unbounded stay so.
-TEST(Snapshot, NumbersThatAreNoneAreRefused) {
+/// Measured quantities are finite, wherever a recording was made. Quantities that may be unbounded stay unbounded.
+TEST(Snapshot, NonFiniteNumbersAreRejected) {
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     World world = rooms();
     world.movers[0].sensors.push_back({.type = "laser", .settings = {{.key = "fov", .numbers = {90.0}}}});
@@ -103,7 +103,7 @@ World street() {
   return world;
 }
 
-TEST(Snapshot, RowsThatBreakTheirRulesAreRefused) {
+TEST(Snapshot, RowsThatBreakInvariantsAreRejected) {
   const auto refused = [](auto&& spoil) {
     World world = street();
     spoil(world);
@@ -133,8 +133,8 @@ TEST(Snapshot, RowsThatBreakTheirRulesAreRefused) {
   EXPECT_TRUE(refused([](World& w) { w.lights[0].phases[0].state = static_cast<LightState>(6); }));
 }
 
-/// Each link of each table, one row past the end of its target, and far past; kNone where the row is required.
-TEST(Snapshot, LinksPastTheEndAreRefused) {
+/// Sets each link of each table one row past the end of its target, and far past it; and kNone if the row is required.
+TEST(Snapshot, LinksPastTheEndAreRejected) {
   World world = street();
   world.magnets.push_back({{1.0, 2.0}, -0.04, 0.5, 0.01, 1});
   world.movers[0].magnets.push_back({{0.1, 0.0}, 0.2, -1.0, 0.02, 0});
@@ -172,7 +172,7 @@ TEST(Snapshot, LinksPastTheEndAreRefused) {
   }
 }
 
-TEST(Snapshot, EveryCutIsRefused) {
+TEST(Snapshot, EveryTruncationIsRejected) {
   const auto bytes = snapshot(street());
   for (std::size_t size = 0; size < bytes.size(); size += 7) {
     EXPECT_THROW(from_snapshot({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}), base::InputError)
@@ -180,7 +180,7 @@ TEST(Snapshot, EveryCutIsRefused) {
   }
 }
 
-TEST(Snapshot, ChangedBytesAreRefusedOrHarmless) {
+TEST(Snapshot, ChangedBytesAreRejectedOrHarmless) {
   const auto bytes = snapshot(street());
   for (std::uint32_t k = 0; k < 2000; ++k) {
     auto changed = bytes;
@@ -196,7 +196,7 @@ TEST(Snapshot, ChangedBytesAreRefusedOrHarmless) {
   }
 }
 
-TEST(Snapshot, AnotherVersionIsNamed) {
+TEST(Snapshot, OtherVersionIsNamed) {
   auto bytes = snapshot(rooms());
   bytes[4] = 99;
   try {
@@ -207,7 +207,7 @@ TEST(Snapshot, AnotherVersionIsNamed) {
   }
 }
 
-TEST(Hash, DependsOnWhatAReadingDependsOn) {
+TEST(Hash, DependsOnWhateverReadingsDependOn) {
   const std::string text = "model( name \"m\" size [1 1 1] ) position( laser() )";
   const auto hash = read_world(text).hash;
   EXPECT_EQ(read_world("# words only\n" + text).hash, hash);
@@ -219,7 +219,7 @@ TEST(Hash, DependsOnWhatAReadingDependsOn) {
   EXPECT_NE(read_world("model( name \"m\" size [1 1 1] ) position( pose [0 0 0 1] laser() )").hash, hash);
 }
 
-TEST(Hash, DependsOnLightsEmittersHolesAndHowRobotsMove) {
+TEST(Hash, DependsOnLightsEmittersHolesAndKinematics) {
   const std::string rest = "model( name \"m\" )";
   const auto hash = [&](const std::string& text) { return read_world(text + rest).hash; };
   EXPECT_NE(hash("light( name \"l\" phases 1 phase[0] [\"red\" 1] )"),
@@ -232,7 +232,7 @@ TEST(Hash, DependsOnLightsEmittersHolesAndHowRobotsMove) {
   EXPECT_NE(hash("position( )"), hash("position( acceleration_bounds [-1 1] )"));
 }
 
-TEST(Translate, MovesEverythingThatHasAPlace) {
+TEST(Translate, MovesEverythingWithAPosition) {
   const World before = street();
   World after = before;
   translate(after, 100'000.0, -50'000.0);

@@ -1,4 +1,4 @@
-// Limits of world files, as a table: the value at the limit is taken, the one beyond is refused with its message.
+// Limits of world files, as a table: the value at the limit is accepted, and the next one is rejected with its message.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ constexpr Limit kLimits[] = {
     {"position( wheelbase {} )", "0.0001", "0", "'wheelbase' is 0 m; expected more than 0"},
 };
 
-TEST(StageLimits, AreTakenAndTheNextValueIsNot) {
+TEST(StageLimits, ValueAtTheLimitIsAcceptedAndTheNextIsNot) {
   for (const Limit& l : kLimits) {
     EXPECT_EQ(error_of(fmt::format(fmt::runtime(l.form), l.taken)), "") << l.form << " with " << l.taken;
     const std::string error = error_of(fmt::format(fmt::runtime(l.form), l.beyond));
@@ -73,7 +73,7 @@ TEST(StageLimits, AreTakenAndTheNextValueIsNot) {
   }
 }
 
-TEST(StageLimits, NestingEndsAt64Levels) {
+TEST(StageLimits, NestingIsLimitedTo64Levels) {
   const auto nested = [](int levels) {
     std::string text;
     for (int i = 0; i < levels; ++i) text += "model(";
@@ -85,13 +85,13 @@ TEST(StageLimits, NestingEndsAt64Levels) {
   EXPECT_EQ(error_of(nested(levels)), "test.world:1: nested deeper than 64 levels");
 }
 
-TEST(StageLimits, AWordHasAtMostTenThousandCharacters) {
+TEST(StageLimits, WordsAreLimitedToTenThousandCharacters) {
   const auto named = [](std::size_t letters) { return "name \"" + std::string(letters, 'x') + "\""; };
   EXPECT_EQ(error_of(named(10'000)), "");
   EXPECT_EQ(error_of(named(10'001)), "test.world:1: a word or text of 10001 characters; expected at most 10000");
 }
 
-TEST(StageLimits, WarningsEndAtTenThousand) {
+TEST(StageLimits, WarningsAreLimitedToTenThousand) {
   std::string text;
   for (int i = 0; i < 10'010; ++i) text += "model( sise 1 )\n";
   const World world = read_world(text);
@@ -102,7 +102,7 @@ TEST(StageLimits, WarningsEndAtTenThousand) {
   EXPECT_EQ(world.warnings[1001].message, "unknown property 'sise' of 'model' is ignored") << "no search for thousands";
 }
 
-TEST(StageLimits, DefinitionsEndAtTwentyThousand) {
+TEST(StageLimits, DefinitionsAreLimitedToTwentyThousand) {
   std::string text;
   for (int i = 0; i < 20'000; ++i) text += fmt::format("define m{} model( )\n", i);
   EXPECT_EQ(error_of(text), "");

@@ -25,7 +25,7 @@ TEST(Stage, BracketsNeedNoBlanksAndAllLineEndsCount) {
   EXPECT_EQ(world.models[0].type, "box");
 }
 
-TEST(Stage, AMacroIsCopiedAndOverridden) {
+TEST(Stage, MacroIsCopiedAndOverridden) {
   const World world = read_world(
       "define a model( size [1 1 1] color \"red\" model() )\ndefine b a( color \"blue\" )\nb( size [2 2 2] model() )");
   ASSERT_EQ(world.models.size(), 3u);
@@ -33,21 +33,21 @@ TEST(Stage, AMacroIsCopiedAndOverridden) {
   EXPECT_EQ(world.models[0].color, 0xFF0000FFu);
 }
 
-TEST(Stage, TheFirstDefineCountsAndTheSecondIsMentioned) {
+TEST(Stage, FirstDefineCountsAndTheSecondIsReported) {
   const World world = read_world("define a model( size [1 1 1] )\ndefine a model( size [2 2 2] )\na()");
   EXPECT_EQ(world.models[0].size.x, 1.0);
   EXPECT_NE(warnings_of(world).find("2: 'a' is defined again"), std::string::npos);
 }
 
-TEST(Stage, TheLastOfTwoEqualPropertiesCounts) {
+TEST(Stage, LastOfTwoEqualPropertiesCounts) {
   const World world = read_world("model( size [1 1 1]\n size [2 2 2] )");
   EXPECT_EQ(world.models[0].size.x, 2.0);
   EXPECT_EQ(warnings_of(world),
             "2: 'size' is given twice in the same 'model': the last one counts, not that of line 1\n");
 }
 
-/// As in a published benchmark world, whose fifth corner is written twice.
-TEST(Stage, TheLastOfTwoEqualIndicesCounts) {
+/// From a published benchmark world that has its fifth corner twice.
+TEST(Stage, LastOfTwoEqualIndicesCounts) {
   const World world = read_world(
       "model( size [1 1 1] block( points 3 z [0 1]\n point[0] [0 0]\n point[1] [1 0]\n point[2] [9 9]\n"
       " point[2] [0 1] ) )");
@@ -59,8 +59,8 @@ TEST(Stage, TheLastOfTwoEqualIndicesCounts) {
             "4\n");
 }
 
-// Radians of an angle in degrees, millimetres of a range in metres.
-TEST(Stage, WarnsOfLikelyUnits) {
+// Radians in an angle in degrees, millimetres in a range in metres.
+TEST(Stage, WarnsAboutProbableUnitMistakes) {
   const auto said = [](const std::string& keys, const std::string& root = "") {
     return warnings_of(read_world(root + "position( laser( " + keys + " ) )"));
   };
@@ -71,13 +71,13 @@ TEST(Stage, WarnsOfLikelyUnits) {
     EXPECT_NE(said(std::string("fov ") + fov), "") << fov;
   for (const auto& [fov, degrees] : {std::pair{"0.44", "25"},
                                      {"0.4363", "25"},    // rounded
-                                     {"0.43", "25"},      // cut off
+                                     {"0.43", "25"},      // truncated
                                      {"3.84", "220"},     // a step of 20 degrees
-                                     {"4.363", "250"},    // the same, finer
-                                     {"0.96", "55"},      // of two decimals only rounder angles count
-                                     {"0.9599", "55"},    // finer
-                                     {"1.0123", "58"},    // a camera's
-                                     {"6.2832", "360"}})  // all around
+                                     {"4.363", "250"},    // same, with more digits
+                                     {"0.96", "55"},      // with two decimals only rounder angles count
+                                     {"0.9599", "55"},    // more digits
+                                     {"1.0123", "58"},    // of a camera
+                                     {"6.2832", "360"}})  // full turn
     if (std::string(fov) == "0.96")
       EXPECT_EQ(said(std::string("fov ") + fov), "");
     else
@@ -100,8 +100,8 @@ TEST(Stage, WarnsOfLikelyUnits) {
   EXPECT_EQ(ranger("range [0 5] fov 20"), "");
 }
 
-// Sensors of short range: millimetres are likely long before a kilometre.
-TEST(Stage, WarnsOfLikelyUnitsOfConesAndEmitters) {
+// Short-range sensors: millimetres are likely long before a kilometre.
+TEST(Stage, WarnsAboutProbableUnitMistakesOfConesAndEmitters) {
   static constexpr std::string_view kKeys[] = {"fov", "range", "sview"};
   static constexpr SensorKeyword kCones[] = {{"sonar", kKeys}, {"infrared", kKeys}};
   const auto said = [](const std::string& sensor) {
@@ -123,7 +123,7 @@ TEST(Stage, WarnsOfLikelyUnitsOfConesAndEmitters) {
   EXPECT_NE(emitter("ir_fov 0.698").find("write 40 if"), std::string::npos);
 }
 
-TEST(Stage, WarnsOfUnitsOncePerLine) {
+TEST(Stage, WarnsAboutUnitsOncePerLine) {
   EXPECT_EQ(read_world("define r position( laser( fov 3.14 ) )\nr()\nr( pose [3 0 0 0] )\n").warnings.size(), 1u);
 }
 
@@ -145,13 +145,13 @@ TEST(Stage, CentimetresAndRadians) {
   EXPECT_DOUBLE_EQ(world.walls[0].z_max, 0.3);
 }
 
-TEST(Stage, UnitsCountForTheWholeFileWhereverTheyStand) {
+TEST(Stage, UnitsApplyToTheWholeFileFromAnyPosition) {
   EXPECT_DOUBLE_EQ(read_world("model( size [10 20 30] ) unit_length \"mm\"").models[0].size.x, 0.01);
 }
 
 // --- Bodies ---
 
-TEST(Stage, AModelWithoutBlocksIsABoxOfItsSize) {
+TEST(Stage, ModelWithoutBlocksIsABoxOfItsSize) {
   const World world = read_world("model( size [2 1 0.5] pose [10 0 0 90] )");
   ASSERT_EQ(world.walls.size(), 4u);
   EXPECT_NEAR(world.extent.x_min, 9.5, 1e-12);
@@ -184,7 +184,7 @@ TEST(Stage, BlocksOfTheOldestFormAreTheSame) {
   EXPECT_EQ(warnings_of(old_form), "");
 }
 
-TEST(Stage, AMissingPointIsTheOriginAsInStage) {  // Block::Load of Stage 3 and 4: (0, 0) unless the file has it
+TEST(Stage, MissingPointIsTheOriginAsInStage) {  // Block::Load of Stage 3 and 4: (0, 0) unless the file has it
   const World world = read_world(
       "model( size [2 1 1]\n block( points 4 point[1] [2 0] point[2] [2 1] z [0 1] ) )");  // point[0], point[3]
   const World whole = read_world(
@@ -195,7 +195,7 @@ TEST(Stage, AMissingPointIsTheOriginAsInStage) {  // Block::Load of Stage 3 and 
   EXPECT_EQ(warnings_of(whole), "");
 }
 
-TEST(Stage, AClockwiseBlockIsTurnedSoThatItsSolidIsOnTheLeft) {
+TEST(Stage, ClockwiseBlockIsReversedToHaveItsSolidOnTheLeft) {
   const World world =
       read_world("model( size [1 1 1] block( points 3 point[0] [0 0] point[1] [0 1] point[2] [1 0] ) )");
   double area = 0.0;
@@ -203,7 +203,7 @@ TEST(Stage, AClockwiseBlockIsTurnedSoThatItsSolidIsOnTheLeft) {
   EXPECT_DOUBLE_EQ(area, 1.0);
 }
 
-TEST(Stage, AThinWallIsOneSegmentWithoutSides) {
+TEST(Stage, ThinWallIsOneSegmentWithoutSides) {
   const World world = read_world("model( size [0 2 1] block( points 2 point[0] [3 0] point[1] [3 1] ) )");
   ASSERT_EQ(world.walls.size(), 1u);
   EXPECT_FALSE(world.walls[0].solid_left);
@@ -211,29 +211,29 @@ TEST(Stage, AThinWallIsOneSegmentWithoutSides) {
   EXPECT_EQ(std::abs(world.walls[0].a.y), 1.0);
 }
 
-TEST(Stage, ABoundaryIsAFrameOfFourWalls) {
+TEST(Stage, BoundaryIsAFrameOfFourWalls) {
   const World world = read_world("model( size [4 2 1] boundary 1 )");
   ASSERT_EQ(world.walls.size(), 8u);
   double area = 0.0;
   for (const Segment& wall : world.walls) area += base::cross(wall.a, wall.b) / 2;
-  EXPECT_NEAR(area, 4 * 2 - 3.98 * 1.98, 1e-12);  // the frame is solid, its inside is not
+  EXPECT_NEAR(area, 4 * 2 - 3.98 * 1.98, 1e-12);  // the frame is solid, but not its inside
 }
 
-TEST(Stage, AnOriginShiftsTheBodyNotThePose) {
+TEST(Stage, OriginShiftsTheBodyNotThePose) {
   const World world = read_world("model( size [1 1 1] pose [5 0 0 90] origin [1 0 0.5 0] )");
   EXPECT_EQ(world.models[0].X_WM.x, 5.0);
   EXPECT_NEAR(world.extent.y_max, 1.5, 1e-12);
   EXPECT_EQ(world.walls[0].z_min, 0.5);
 }
 
-TEST(Stage, ChildrenStandOnTheirParentUnlessItSaysOtherwise) {
+TEST(Stage, ChildrenAreOnTopOfTheirParentByDefault) {
   const World on = read_world("model( size [1 1 0.4] pose [0 0 0.1 0] model( pose [0 0 0.05 0] ) )");
   EXPECT_DOUBLE_EQ(on.models[1].X_WM.z, 0.55);
   const World in = read_world("model( size [1 1 0.4] pose [0 0 0.1 0] stack_children 0 model( pose [0 0 0.05 0] ) )");
   EXPECT_DOUBLE_EQ(in.models[1].X_WM.z, 0.15000000000000002);
 }
 
-TEST(Stage, BitmapWallsStopRobotsUnlessStagesRuleIsAskedFor) {
+TEST(Stage, BitmapWallsStopRobotsExceptUnderStagesRule) {
   const std::string text =
       "model( size [16 16 1] bitmap \"bitmaps/cave.png\" obstacle_return 0 ) model( obstacle_return 0 )";
   const World ours = read_world(text);
@@ -248,8 +248,8 @@ TEST(Stage, BitmapWallsStopRobotsUnlessStagesRuleIsAskedFor) {
   EXPECT_EQ(warnings_of(read_world(text, options)), "");
 }
 
-/// Only rangers' noise comes from Stage.
-TEST(Stage, NoiseThatIsAVarianceInStageIsAWarningUnlessTheFileSaysWhatItIs) {
+/// Only the noise of rangers has this form in Stage.
+TEST(Stage, NoiseVarianceOfStageIsAWarningUnlessTheFileDecides) {
   const auto world = [](const char* key, const char* noise) {
     return read_world(
         fmt::format("{}\nposition( ranger( sensor( noise [{} 0 0] ) sensor( noise [{} 0 0] ) ) )", key, noise, noise));
@@ -275,7 +275,7 @@ TEST(Stage, ReturnsHideFromLasers) {
   EXPECT_FALSE(read_world("model( laser_return 0 ranger_return 1 )").walls[0].seen_by_laser) << "either hides it";
 }
 
-TEST(Stage, ABitmapIsDarkSolidAndUpright) {
+TEST(Stage, BitmapIsDarkSolidAndUpright) {
   const World world =
       build_world(SF_SOURCE_DIR "/worlds/x.world", "model( size [16 16 0.8] bitmap \"bitmaps/cave.png\" )");
   EXPECT_EQ(world.extent.x_min, -8.0);
@@ -288,7 +288,7 @@ TEST(Stage, ABitmapIsDarkSolidAndUpright) {
 
 // --- Movers ---
 
-TEST(Stage, APositionMovesAndCarriesWhatIsInIt) {
+TEST(Stage, PositionMovesAndCarriesItsChildren) {
   const World world = read_world(
       "position( name \"r0\" pose [3 4 0 90] size [0.4 0.4 0.2] model( name \"mast\" size [0.1 0.1 0.5] pose [0.1 0 0 "
       "0] ) )");
@@ -297,7 +297,7 @@ TEST(Stage, APositionMovesAndCarriesWhatIsInIt) {
   ASSERT_EQ(robot.body.size(), 8u);
   EXPECT_EQ(robot.X_WM.x, 3.0);
   EXPECT_DOUBLE_EQ(robot.X_WM.yaw, M_PI / 2);
-  EXPECT_DOUBLE_EQ(robot.body[4].z_min, 0.2);  // on top of the robot, whatever the robot's pose
+  EXPECT_DOUBLE_EQ(robot.body[4].z_min, 0.2);  // on top of the robot, for any robot pose
   EXPECT_DOUBLE_EQ(robot.body[4].z_max, 0.7);
   EXPECT_EQ(world.models[1].name, "r0.mast");
   EXPECT_EQ(world.models[1].mover, 0u);
@@ -319,7 +319,7 @@ TEST(Stage, BoundsDriveAndWheelbaseAreRead) {
   EXPECT_DOUBLE_EQ(world.movers[2].max_turn, 90 * kDegree);
 }
 
-TEST(Stage, NumbersComeFromNamesAndTheRestFillsTheGaps) {
+TEST(Stage, IdsAreTakenFromNamesThenFillGaps) {
   const World world = read_world(
       "position( name \"a\" ) position( name \"roomba1\" ) model( name \"tag1\" ) model( name \"khepera3\" ) "
       "position() position() position()");
@@ -330,7 +330,7 @@ TEST(Stage, NumbersComeFromNamesAndTheRestFillsTheGaps) {
   EXPECT_FALSE(world.movers[3].is_tag);
 }
 
-TEST(Stage, ATagMayBeMountedAnywhereOnItsModel) {
+TEST(Stage, TagMayBeMountedAnywhereOnItsModel) {
   const World world = read_world(
       "unit_length \"cm\" unit_angle \"radians\"\n"
       "model( name \"tag1\" tag_pose [10 -20 30 1.5] ) model( name \"tag2\" )");
@@ -343,8 +343,8 @@ TEST(Stage, ATagMayBeMountedAnywhereOnItsModel) {
   EXPECT_EQ(warnings_of(world), "");
 }
 
-/// Robots report their own pose, and carried models follow no packets.
-TEST(Stage, ATagPoseOfWhatFollowsNoTagIsIgnoredWithAWarning) {
+/// Robots report their own pose, and carried models do not follow packets.
+TEST(Stage, TagPoseWithoutATagIsIgnoredWithAWarning) {
   const World world = read_world(
       "position( name \"roomba1\" tag_pose [1 0 0 0]\n model( name \"tag3\" tag_pose [1 0 0 0] ) )\n"
       "model( tag_pose [1 0 0 0] )");
@@ -354,7 +354,7 @@ TEST(Stage, ATagPoseOfWhatFollowsNoTagIsIgnoredWithAWarning) {
     EXPECT_NE(warnings_of(world).find(line), std::string::npos) << line;
 }
 
-TEST(Stage, ATagPoseOfThreeNumbersIsReadAsAPoseIs) {
+TEST(Stage, TagPoseOfThreeNumbersIsReadLikeAPose) {
   const World world = read_world("model(\n name \"tag1\" tag_pose [1 0 90] )");
   EXPECT_EQ(world.movers[0].X_MT.z, 90.0);
   EXPECT_EQ(world.movers[0].X_MT.yaw, 0.0);
@@ -369,13 +369,13 @@ TEST(Stage, OtherNamesLinkNothing) {
   EXPECT_TRUE(world.movers.empty());
 }
 
-TEST(Stage, ARobotOnARobotIsCarried) {
+TEST(Stage, RobotOnARobotIsCarried) {
   const World world = read_world("position( name \"r\" position( name \"tag3\" ) )");
   EXPECT_EQ(only_mover(world).body.size(), 8u);
   EXPECT_NE(warnings_of(world).find("'tag3' is carried by 'r'"), std::string::npos);
 }
 
-TEST(Stage, ATagOnAShelfMovesByItself) {
+TEST(Stage, TagOnAShelfMovesByItself) {
   const World world =
       read_world("model( name \"shelf\" pose [1 0 0 90] size [1 1 1] model( name \"tag5\" pose [1 0 0 0] ) )");
   const Mover& tag = only_mover(world);
@@ -396,7 +396,7 @@ TEST(Stage, NamesAreUnique) {
 
 // --- Kept, ignored and suggested entities ---
 
-TEST(Stage, TypesThatAreNotModelledAreKeptCountedAndMentionedOnce) {
+TEST(Stage, UnmodelledTypesAreKeptCountedAndReportedOnce) {
   const World world = read_world(
       "position( fiducial() camera() )\nposition( pose [1 0 0 0] fiducial( fov 60 ) bumper( size [.1 .1 .1 0] ) )");
   EXPECT_EQ(world.unmodelled, (std::map<std::string, int>{{"bumper", 1}, {"camera", 1}, {"fiducial", 2}}));
@@ -404,7 +404,7 @@ TEST(Stage, TypesThatAreNotModelledAreKeptCountedAndMentionedOnce) {
   EXPECT_EQ(world.movers[0].body.size(), 8u);  // the camera is a box; a fiducial finder has no body
 }
 
-TEST(Stage, AnUnknownTypeIsKeptWithASuggestion) {
+TEST(Stage, UnknownTypeIsKeptWithASuggestion) {
   const World world = read_world("define mybot position()\n\nmybto( size [1 1 1] )");
   EXPECT_EQ(world.unmodelled.at("mybto"), 1);
   EXPECT_EQ(world.walls.size(), 4u);
@@ -412,17 +412,17 @@ TEST(Stage, AnUnknownTypeIsKeptWithASuggestion) {
       << warnings_of(world);
 }
 
-TEST(Stage, AMisspeltKeyGetsASuggestionAndOneWarningHoweverOftenItsMacroIsUsed) {
+TEST(Stage, MisspeltKeyInAMacroGetsOneWarningWithASuggestion) {
   const World world = read_world("define a model(\n sise [1 1 1] )\na() a() a()");
   EXPECT_EQ(warnings_of(world), "2: unknown property 'sise' of 'a' is ignored; did you mean 'size'?\n");
 }
 
-TEST(Stage, SuggestionsAreOfKeysValidThere) {
+TEST(Stage, SuggestsOnlyValidKeys) {
   EXPECT_NE(warnings_of(read_world("unit_lenght \"m\"")).find("did you mean 'unit_length'"), std::string::npos);
   EXPECT_EQ(warnings_of(read_world("model( sampels 3 )")).find("did you mean"), std::string::npos);
 }
 
-TEST(Stage, KeysOfStageThatAreNotModelledPassSilently) {
+TEST(Stage, UnmodelledStageKeysAreSilentlyAccepted) {
   const World world = read_world(
       "quit_time 3600 paused 1 speedup 2 threads 4 window( size [1 2] bogus 3 )\n"
       "position( ctrl \"wander\" gui_nose 1 localization \"gps\" localization_origin [0 0 0 0] trail_length 400 joules "
@@ -430,7 +430,7 @@ TEST(Stage, KeysOfStageThatAreNotModelledPassSilently) {
   EXPECT_EQ(warnings_of(world), "");
 }
 
-TEST(Stage, BlocksWithoutASizeSayWhatToWrite) {
+TEST(Stage, BlocksWithoutASizeGetAdvice) {
   const char* const blocks = "block( points 4 point[0] [0 0] point[1] [12 0] point[2] [12 8] point[3] [0 8] z [0 3] )";
   const World world = read_world(fmt::format("define house model( {} )\nhouse()", blocks));
   EXPECT_EQ(
@@ -443,20 +443,20 @@ TEST(Stage, BlocksWithoutASizeSayWhatToWrite) {
   EXPECT_NE(warnings_of(millimetres).find("write size [12 8 3]"), std::string::npos) << "in the file's own unit";
   EXPECT_NE(warnings_of(read_world("model( bitmap \"bitmaps/cave.png\" )")).find("has no 'size': it is 0.1 x 0.1 m"),
             std::string::npos);
-  // As large as the resulting size: no misunderstanding.
+  // As large as the resulting size, so no misunderstanding is possible.
   EXPECT_EQ(
       warnings_of(read_world("model( block( points 3 z [0 1] point[0] [0 0] point[1] [0.1 0] point[2] [0 0.1] ) )")),
       "");
 }
 
-TEST(Stage, PosesOfThreeNumbersSayWhatToWrite) {
+TEST(Stage, PosesOfThreeNumbersGetAdvice) {
   EXPECT_EQ(
       warnings_of(read_world("model( name \"tag1\"\n pose [1.5 -2 335] )")),
       "2: 'pose' has three numbers, read as [x y z] with yaw 0: z is 335; write [1.5 -2 335 0], or [1.5 -2 0 335] "
       "where the third is an angle\n");
 }
 
-TEST(Stage, OfStagesPluginsWanderIsOneOfOurs) {
+TEST(Stage, WanderIsTheOnlyKnownStagePlugin) {
   const World world = read_world(
       "position( name \"a\" ctrl \"wander\" )\nposition( name \"b\"\n ctrl \"fasr\" )\nposition( name \"c\" ctrl "
       "\"fasr\" )\n"
@@ -474,7 +474,7 @@ TEST(Stage, OfStagesPluginsWanderIsOneOfOurs) {
       "apart\n");
 }
 
-TEST(Stage, BlocksAndSensorsOutsideTheirPlaceAreMentioned) {
+TEST(Stage, MisplacedBlocksAndSensorsAreReported) {
   const World world = read_world("block( points 0 )\nmodel( sensor() )");
   EXPECT_NE(warnings_of(world).find("1: 'block' is ignored here"), std::string::npos);
   EXPECT_NE(warnings_of(world).find("2: 'sensor' is ignored here"), std::string::npos);
@@ -495,7 +495,7 @@ TEST(Stage, MagnetsAreReadInEitherSpelling) {
   EXPECT_EQ(world.magnets[1].moment, -2e-4);
 }
 
-TEST(Stage, ARobotsMagnetMovesWithIt) {
+TEST(Stage, MagnetOfARobotMovesWithIt) {
   const World world =
       read_world("position( name \"a\" pose [3 0 0 90] model( pose [0.1 0 0.2 0] magnetic_moment 1 ) )");
   EXPECT_TRUE(world.magnets.empty());
@@ -503,12 +503,12 @@ TEST(Stage, ARobotsMagnetMovesWithIt) {
   EXPECT_EQ(world.movers[0].magnets[0].p.x, 0.1);
 }
 
-TEST(Stage, AMagnetWithoutAWidthHasNoRadius) {
+TEST(Stage, MagnetWithoutAWidthHasNoRadius) {
   EXPECT_EQ(error_of("\nmodel( size [0 0.1 0.1] magnetic_moment 1 )"),
             "test.world:2: a magnet needs a 'size' above zero in x and y: half the smaller one is its radius");
 }
 
-TEST(Stage, KindsThatAreGivenClaimTheirSensors) {
+TEST(Stage, GivenSensorTypesClaimTheirSensors) {
   constexpr std::string_view keys[] = {"scount", "spose[]"};
   const SensorKeyword words[] = {{"magnetometer", keys}, {"laneedge", {}}};
   LoadOptions options;
@@ -544,12 +544,12 @@ TEST(Stage, ColoursByNameNumberAndRandomly) {
   EXPECT_NE(warnings_of(world).find("unknown colour"), std::string::npos);
 }
 
-TEST(Stage, TheIntervalIsInMilliseconds) {
+TEST(Stage, IntervalIsInMilliseconds) {
   EXPECT_DOUBLE_EQ(read_world("interval_sim 50").interval, 0.05);
   EXPECT_DOUBLE_EQ(read_world("").interval, 0.1);
 }
 
-TEST(Stage, AnEmptyWorldIsAWorld) {
+TEST(Stage, EmptyWorldIsAWorld) {
   const World world = read_world("# nothing\n");
   EXPECT_TRUE(world.models.empty());
   EXPECT_EQ(world.extent.x_max, 0.0);
@@ -563,8 +563,8 @@ TEST(Stage, AnEmptyWorldIsAWorld) {
     EXPECT_EQ(warnings_of(read_world(text)).find(nothing), std::string::npos) << text;
 }
 
-/// A room of 4 m with walls of 0.2 m, like a floor plan; robots are discs of 0.2 m or points without a body.
-TEST(Stage, ARobotThatCannotStandWhereItStartsIsAWarning) {
+/// A room of 4 m with walls of 0.2 m, like a floor plan. Robots are discs of 0.2 m, or points without a body.
+TEST(Stage, ImpossibleStartPoseIsAWarning) {
   const std::string room =
       "define wall model( size [4.4 0.2 1] )\n"
       "wall( name \"south\" pose [0 -2.1 0 0] ) wall( name \"north\" pose [0 2.1 0 0] )\n";
@@ -598,7 +598,7 @@ TEST(Stage, ManyRobotsInAWallAreOneWarning) {
       "expected a 'pose' in free space\n");
 }
 
-TEST(Stage, ARobotOutsideOfTheFloorPlanIsAWarning) {
+TEST(Stage, RobotOutsideTheFloorPlanIsAWarning) {
   const std::string plan = "model( name \"plan\" bitmap \"bitmaps/cave.png\" size [16 16 0.5] )\n";
   EXPECT_NE(warnings_of(read_world(plan + "position( name \"bob\" pose [9 0 0 0] )"))
                 .find("2: 'bob' starts at (9, 0), outside of 'plan'; expected"),

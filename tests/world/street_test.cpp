@@ -51,7 +51,7 @@ TEST(Light, IsAPoleWithAHead) {
   EXPECT_TRUE(world.walls[0].stops_robots);
 }
 
-TEST(Light, MayHaveABodyOfItsOwnOrNone) {
+TEST(Light, MayHaveItsOwnBodyOrNone) {
   EXPECT_EQ(read_world(R"(light( phases 1 phase[0] ["red" 1] noblocks 1 ))").walls.size(), 0u);
   EXPECT_EQ(read_world(R"(light( phases 1 phase[0] ["red" 1]
     block( points 3 point[0] [0 0] point[1] [1 0] point[2] [0 1] ) ))")
@@ -59,7 +59,7 @@ TEST(Light, MayHaveABodyOfItsOwnOrNone) {
             3u);
 }
 
-TEST(Light, OfAMacroInAModelIsPlacedThere) {
+TEST(Light, IsPlacedFromAMacroInAModel) {
   const World world = read_world(R"(define signal light( phases 1 phase[0] ["red" 1] )
     model( name "post" pose [1 2 0 90] size [1 1 1] signal( name "s" pose [1 0 0 90] ) ))");
   ASSERT_EQ(world.lights.size(), 1u);
@@ -69,7 +69,7 @@ TEST(Light, OfAMacroInAModelIsPlacedThere) {
   EXPECT_NEAR(world.lights[0].X_WL.yaw, M_PI, 1e-12);
 }
 
-TEST(Light, ItsStopLinesMustBeThereWhereRoadsAre) {
+TEST(Light, StopLinesMustExistInWorldsWithRoads) {
   const std::string road = "road( rndf \"simville/simville.rndf\" )\n";
   const auto light = [](const std::string& points) {
     return "light( name \"l\" phases 1 phase[0] [\"red\" 1]\nstop_lines \"" + points + "\" )\n";
@@ -82,7 +82,7 @@ TEST(Light, ItsStopLinesMustBeThereWhereRoadsAre) {
   EXPECT_EQ(warnings_of(read_world(light("99.1.1"))), "") << "a world without roads cannot tell";
 }
 
-TEST(Light, PhasesThatAreNotCountedAreMentioned) {
+TEST(Light, UncountedPhasesAreReported) {
   EXPECT_EQ(warnings_of(read_world("light( phases 1 phase[0] [\"red\" 1]\nphase[1] [\"green\" 1] )")),
             "2: 'phase[1]' is not used: 'phases' says 1\n");
 }
@@ -106,14 +106,14 @@ TEST(Emitter, HasTheCreatesDefaults) {
   EXPECT_EQ(world.walls.size(), 8u) << "an emitter has a body as any model";
 }
 
-TEST(Emitter, SaysItsOwn) {
+TEST(Emitter, OverridesDefaults) {
   const World world = read_world(R"(model( ir_emitter "dock" ir_range 1 ir_fov 360 ir_halo 0 ))");
   EXPECT_EQ(world.emitters.at(0).range, 1.0);
   EXPECT_EQ(world.emitters.at(0).fov, 2.0 * M_PI);
   EXPECT_EQ(world.emitters.at(0).halo, 0.0);
 }
 
-TEST(FloorHole, IsNoWallButAHole) {
+TEST(FloorHole, IsAHoleInsteadOfAWall) {
   const World world = read_world("model( name \"stairs\" pose [1 2 0 90] size [2 1 1] cliff_return 1 )");
   EXPECT_TRUE(world.walls.empty());
   ASSERT_EQ(world.floor_holes.size(), 1u);
@@ -125,7 +125,7 @@ TEST(FloorHole, IsNoWallButAHole) {
   EXPECT_NEAR(world.extent.y_max, 3.0, 1e-12);
 }
 
-TEST(FloorHole, EveryBlockIsOne) {
+TEST(FloorHole, EveryBlockIsAHole) {
   const World world = read_world(R"(model( size [3 1 1] cliff_return 1
     block( points 3 point[0] [0 0] point[1] [1 0] point[2] [0 1] )
     block( points 4 point[0] [2 0] point[1] [3 0] point[2] [3 1] point[3] [2 1] ) ))");
@@ -134,9 +134,9 @@ TEST(FloorHole, EveryBlockIsOne) {
   EXPECT_EQ(world.floor_holes[1].outline.size(), 4u);
 }
 
-TEST(FloorHole, IsOnePropertyAwayFromAWall) { EXPECT_EQ(read_world("model( cliff_return 0 )").walls.size(), 4u); }
+TEST(FloorHole, IsAWallIfThePropertyIsZero) { EXPECT_EQ(read_world("model( cliff_return 0 )").walls.size(), 4u); }
 
-TEST(Position, SaysHowItMoves) {
+TEST(Position, ReadsMotionProperties) {
   const World world = read_world(R"(position( drive "skid" track 0.4 acceleration_bounds [-1 2 0 0 0 0 -90 180]
     command_law "player_create" ) position( pose [1 0 0 0] ) position( pose [2 0 0 0] acceleration_bounds [-1 2] ))");
   EXPECT_EQ(warnings_of(world), "");
@@ -152,7 +152,7 @@ TEST(Position, SaysHowItMoves) {
   EXPECT_EQ(world.movers.at(2).max_turn_acceleration, HUGE_VAL);
 }
 
-TEST(Position, UnitsHoldForWhatItSays) {
+TEST(Position, MotionPropertiesUseTheFilesUnits) {
   const World world = read_world(
       "unit_length \"cm\" unit_angle \"radians\" position( track 40 acceleration_bounds [0 200 0 0 0 0 0 3] )");
   EXPECT_DOUBLE_EQ(world.movers.at(0).track, 0.4);

@@ -1,5 +1,5 @@
 #pragma once
-// The transitions of a road network, point by point: tests of routes walk it with code of their own.
+// The transitions of a road network, point by point. Tests of routes use this instead of the code under test.
 
 #include <vector>
 
@@ -7,8 +7,9 @@
 
 namespace sf::world {
 
-/// Transitions from `at`: along the lane and by its exits; from a perimeter point also to each spot of the zone and to
-/// each perimeter point with exits; within a spot to its end, and from its end to each perimeter point with exits.
+/// Returns the transitions from `at`: along the lane and by its exits; from a perimeter point also to each spot of the
+/// zone and to each perimeter point with exits; within a spot to its end, and from its end to each perimeter point with
+/// exits.
 inline std::vector<Transition> successors(const RoadNetwork& network, PointRef at) {
   using Kind = PointRef::Kind;
   std::vector<Transition> steps;

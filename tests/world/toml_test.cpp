@@ -57,16 +57,16 @@ a = 2
   EXPECT_EQ(find(root, "none"), nullptr);
 }
 
-TEST(Toml, AnEmptyTextIsAnEmptyTable) { EXPECT_TRUE(parse_toml("f.toml", "").items.empty()); }
+TEST(Toml, EmptyTextIsAnEmptyTable) { EXPECT_TRUE(parse_toml("f.toml", "").items.empty()); }
 
-TEST(Toml, InvalidTomlIsRefusedAtItsLine) {
+TEST(Toml, InvalidTomlIsRejectedAtItsLine) {
   EXPECT_EQ(toml_refusal("a = 1\nb = \n").substr(0, 18), "f.toml:2: not TOML");
   EXPECT_EQ(toml_refusal("a = 1\na = 2\n").substr(0, 18), "f.toml:2: not TOML");
   EXPECT_EQ(toml_refusal("a = \"\xC3\xA9\"\n").substr(0, 9), "f.toml:1:");
   EXPECT_EQ(toml_refusal("# \xC3\xA9\na = 1\n"), "");
 }
 
-TEST(Toml, NestsAsDeepAsItMay) {
+TEST(Toml, NestingIsLimited) {
   std::string deep;
   for (int i = 0; i < 32; ++i) deep += i == 0 ? "[a" : ".a";
   EXPECT_EQ(toml_refusal(deep + "]\n"), "");

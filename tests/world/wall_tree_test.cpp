@@ -84,7 +84,7 @@ std::vector<Segment> random_walls(std::uint32_t count, glm::dvec2 around, double
   return walls;
 }
 
-// Visits each wall that passes through the box, and no wall outside it.
+// Expects a visit to each wall that passes through the box, and to no wall outside it.
 void expect_same_as_brute_force(const std::vector<Segment>& walls, glm::dvec2 around, double spread) {
   const WallTree tree(walls);
   for (std::uint32_t i = 0; i < 300; ++i) {
@@ -104,20 +104,18 @@ void expect_same_as_brute_force(const std::vector<Segment>& walls, glm::dvec2 ar
   }
 }
 
-TEST(WallTree, FindsWhatBruteForceFinds) { expect_same_as_brute_force(random_walls(2000, {}, 40, 20), {}, 50); }
+TEST(WallTree, MatchesBruteForce) { expect_same_as_brute_force(random_walls(2000, {}, 40, 20), {}, 50); }
 
-TEST(WallTree, FindsWhatBruteForceFindsAmongMany) {
-  expect_same_as_brute_force(random_walls(60'000, {}, 300, 5), {}, 160);
-}
+TEST(WallTree, MatchesBruteForceAmongMany) { expect_same_as_brute_force(random_walls(60'000, {}, 300, 5), {}, 160); }
 
-TEST(WallTree, FindsIt100KmAway) {
+TEST(WallTree, MatchesBruteForce100KmAway) {
   const glm::dvec2 far{1e5, -1e5};
   expect_same_as_brute_force(random_walls(2000, far, 40, 20), far, 50);
 }
 
 TEST(WallTree, FindsWallsOf100Km) { expect_same_as_brute_force(random_walls(500, {}, 40, 2e5), {}, 50); }
 
-TEST(WallTree, StopsAtTheFirstYes) {
+TEST(WallTree, StopsAtTheFirstMatch) {
   const WallTree tree(random_walls(100, {}, 1, 1));
   int asked = 0;
   EXPECT_TRUE(tree.any(box_around({}, 1), [&](const Segment&) { return ++asked == 3; }));

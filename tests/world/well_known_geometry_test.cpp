@@ -1,4 +1,4 @@
-// Well-known text and binary in all of their forms.
+// Well-known text and binary in all their variants.
 
 #include "world/well_known_geometry.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 using Kind = WellKnownGeometry::Kind;
 
-/// "outer 0 0, 1 0; inner ..."
+/// Returns "outer 0 0, 1 0; inner ..."
 std::string geometry_words(const WellKnownGeometry& geometry) {
   std::string text;
   std::size_t at = 0;
@@ -39,7 +39,7 @@ std::string geometry_of(const std::string& text) {
          (geometry.srid > 0 ? fmt::format(" srid {}", geometry.srid) : "");
 }
 
-TEST(WellKnownText, EveryTypeInEveryWriting) {
+TEST(WellKnownText, EveryTypeIsReadInEverySpelling) {
   const std::string triangle = "outer 0 0, 1 0, 1 1;";
   for (const char* text : {"POLYGON ((0 0, 1 0, 1 1))",
                            "polygon((0 0,1 0,1 1))",
@@ -87,10 +87,10 @@ TEST(WellKnownText, DecimalsAreTheNearestDoubles) {
   }
 }
 
-/// Well-known binary, written by hand.
+/// Writes well-known binary by hand.
 struct BinaryWriter {
   bool little = true;
-  std::uint32_t flags = 0;  ///< added to types: EWKB's, or thousands of ISO
+  std::uint32_t flags = 0;  ///< added to types: flags of EWKB, or thousands of ISO
   int more = 0;             ///< coordinates beyond x and y
   std::string bytes = {};
 
@@ -122,7 +122,7 @@ std::string hex_of(const std::string& bytes, bool upper) {
   return hex;
 }
 
-TEST(WellKnownBinary, EveryOrderAndDimension) {
+TEST(WellKnownBinary, EveryByteOrderAndDimensionIsRead) {
   const std::pair<std::uint32_t, int> dimensions[] = {{0, 0},           {1000, 1},        {2000, 1},       {3000, 2},
                                                       {0x80000000u, 1}, {0x40000000u, 1}, {0xC0000000u, 2}};
   for (const bool little : {true, false})
@@ -150,7 +150,7 @@ TEST(WellKnownBinary, EveryOrderAndDimension) {
       }
 }
 
-TEST(WellKnownBinary, FaultsAreRefusedWithTheirByte) {
+TEST(WellKnownBinary, FaultsAreRejectedWithTheirByte) {
   BinaryWriter good;
   good.type(3).put(std::uint32_t{1}).ring();
   WellKnownGeometry geometry;
@@ -184,7 +184,7 @@ TEST(WellKnownBinary, DigitsAreGeometriesFromTheShortestOn) {
   EXPECT_EQ(content("020200000000000000"), GeometryGuess::Content::none) << "no byte order";
 }
 
-/// Largest distance of corners and of middles of chords from a circle.
+/// Returns the largest distance of corners and midpoints of chords from a circle.
 double off_circle(const std::vector<glm::dvec2>& line, glm::dvec2 centre, double radius) {
   double most = 0.0;
   for (std::size_t i = 1; i < line.size(); ++i)
@@ -211,7 +211,7 @@ TEST(Arcs, ChordsAreWithinTheirError) {
       }
 }
 
-TEST(Arcs, WholeCirclesStraightOnesAndTooManyChords) {
+TEST(Arcs, FullCirclesStraightArcsAndTooManyChords) {
   std::vector<glm::dvec2> line{{1, 0}};
   EXPECT_TRUE(append_arc(line, {-1, 0}, {1, 0}, 1e-3, 1e6));  // its end is its start: half a turn to the middle
   EXPECT_LE(off_circle(line, {0, 0}, 1.0), 1e-3);
@@ -225,7 +225,7 @@ TEST(Arcs, WholeCirclesStraightOnesAndTooManyChords) {
   EXPECT_EQ(line.size(), 1u);
 }
 
-TEST(Arcs, InGeometries) {
+TEST(Arcs, AreReadInGeometries) {
   WellKnownGeometry geometry;
   const auto read_as = [&](const char* text) {
     read_geometry(text, 1e-3, geometry);
@@ -255,7 +255,7 @@ TEST(Arcs, InGeometries) {
   const std::string found = geometry_words(geometry);
   read_as("CURVEPOLYGON (COMPOUNDCURVE (CIRCULARSTRING (1 0, 0 1, -1 0), (-1 0, 1 0)))");
   EXPECT_EQ(found, geometry_words(geometry));
-  geometry.chords_left = 100.0;  // of a file
+  geometry.chords_left = 100.0;  // per file
   read_as("CIRCULARSTRING (1 0, 0 1, -1 0)");
   EXPECT_EQ(geometry.chords_left, 100.0 - static_cast<double>(geometry.points.size() - 1));
   expect_in("or too many in the file", refusal_of([&] { read_as("CIRCULARSTRING (100 0, 0 100, -100 0)"); }));
