@@ -9,8 +9,8 @@
 //
 // `move` resolves conflicts in at most Fleet::kRounds rounds of two phases:
 //
-//   1 propose  Each mover advances as far as the walls and the other movers allow. The others are held at their poses
-//              at the start of the round. In front of a mover that may still advance, it waits with the rest of its
+//   1 propose  Each mover advances as far as the walls and the other movers allow, with the others at their poses at
+//              the start of the round. If a mover that may still advance is in the way, it waits with the rest of its
 //              path.
 //   2 resolve  A mover whose proposed path meets the proposed place of a mover with a smaller id keeps its old place.
 //

@@ -55,7 +55,7 @@ class WallTree {
   Box extent() const { return tree_.extent(); }  ///< empty box if there are no walls
 
  private:
-  std::vector<Segment> walls_;  ///< sorted by place
+  std::vector<Segment> walls_;  ///< in the tree's order: neighbours are adjacent
   base::BoxTree tree_;
 };
 

@@ -11,7 +11,6 @@
 // The curve does not overshoot: along its chord it only moves forwards, and its lateral distance from the chord is at
 // most half of the chord (at most a quarter of the shorter neighbouring chord times the sine of its steepest angle,
 // times that factor).
-// factor).
 
 #include <cstddef>
 #include <span>

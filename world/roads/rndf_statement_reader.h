@@ -47,7 +47,6 @@ class StatementReader {
 
   /// Advances to the next non-empty line. Returns false at the end of the file.
   /// @throws base::InputError for an unterminated comment, or a byte that is not text
-  /// @throws base::InputError for an unterminated comment, or a byte that is not text.
   bool next();
   const RoadStatement& now() const { return now_; }
   const std::string& file() const { return file_; }

@@ -7,7 +7,7 @@
 
 namespace sf::world {
 
-/// Returns 0xFFRRGGBB. Ignores case and blanks (`steel blue`, `SteelBlue`). Knows `gray0` .. `gray100` and the darker
+/// Returns 0xFFRRGGBB. Ignores case and blanks (`steel blue`, `SteelBlue`). Accepts `gray0` .. `gray100` and the darker
 /// variants `red1` .. `red4`.
 std::optional<std::uint32_t> color_of(std::string_view name);
 
