@@ -276,7 +276,7 @@ std::string PlaceCheck::problem(const Mover& robot, const Pose& X_WM) const {
   if (winding_number(walls_, p, [&](const Segment& wall) { return heights.meet(wall); }) != 0) return "within a wall";
   const std::uint32_t model = model_in(walls_, robot, X_WM);
   if (model != kNone) return "partly in a wall of '" + world_.models[model].name + "'";
-  return is_known(known_, p) ? "" : "where the map knows nothing";
+  return is_known(known_, p) ? "" : "in the map's unknown area";
 }
 
 std::string PlaceCheck::start_problem(const Mover& robot) const {

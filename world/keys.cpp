@@ -141,8 +141,8 @@ bool is_known_key(KeyScope where, std::string_view key, std::span<const std::str
 }
 
 std::string_view unmodelled_effect(std::string_view key) {
-  if (key == "velocity") return "'velocity' has no effect here: robots stand still until they are commanded";
-  if (key == "localization") return "'localization' has no effect here: robots know their true poses, without drift";
+  if (key == "velocity") return "'velocity' has no effect here: robots stay at rest until they are commanded";
+  if (key == "localization") return "'localization' has no effect here: robots have their true poses, without drift";
   return {};
 }
 

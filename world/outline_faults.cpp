@@ -11,13 +11,13 @@ namespace {
 constexpr std::uint64_t kListedFaults = 3;  // per kind
 /// The consequence of each fault, and the plural for further faults.
 constexpr std::array<std::array<const char*, 2>, 7> kFaultWords{
-    {{": left out", "rows more are left out that cannot be read"},
-     {": left out", "rows more are left out without a geometry"},
-     {": left out", "rows more have points, which are left out"},
-     {": left out", "rows more have faces in three dimensions, which are left out"},
-     {": the model's height counts", "heights more are no numbers or out of range"},
-     {": its walls are thin ones", "rows more have inner rings that leave their outer ring"},
-     {": ignored", "rows more have text behind a closing quote"}}};
+    {{": left out", "more rows cannot be read and are left out"},
+     {": left out", "more rows have no geometry and are left out"},
+     {": left out", "more rows have points, which are left out"},
+     {": left out", "more rows have three-dimensional faces, which are left out"},
+     {": using the height of the model", "more heights are not numbers or are out of range"},
+     {": its walls are thin", "more rows have inner rings that leave their outer ring"},
+     {": ignored", "more rows have text after a closing quote"}}};
 
 }  // namespace
 

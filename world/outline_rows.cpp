@@ -80,9 +80,10 @@ std::unique_ptr<OutlineRows> open_outline_rows(const std::string& file) {
   const std::size_t start = text.find_first_not_of(kBeforeJson);
   if (start != std::string_view::npos && text[start] == '{') return open_with_gdal(file);
   if (text.find('\0') != std::string_view::npos)
-    throw base::InputError(file, 0,
-                           "is no text; expected a table with geometries in well-known text, a GeoPackage, a shapefile "
-                           "(.shp) or GeoJSON");
+    throw base::InputError(
+        file, 0,
+        "is not text; expected a table with geometries in well-known text, a GeoPackage, a shapefile "
+        "(.shp) or GeoJSON");
   return open_outline_table(file);
 }
 

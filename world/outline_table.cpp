@@ -147,7 +147,7 @@ class OutlineTable : public OutlineRows {
       if (named_ == kNoColumn && is_geometry_name(names_[i])) named_ = i;
     }
     if (!record_.behind_quote().empty())
-      remarks_.push_back(fmt::format("line {}: the text behind a closing quote is ignored", record_.first_line()));
+      remarks_.push_back(fmt::format("line {}: the text after a closing quote is ignored", record_.first_line()));
     searching_ = named_ == kNoColumn && height_ == kNoColumn;
     const auto like = std::find_if(names_.begin(), names_.end(), [](const std::string& name) {
       return lower_case(name).find("height") != std::string::npos;

@@ -50,12 +50,13 @@ class UnitCheck {
   std::string remark(double metres_per_unit) const {
     const bool is_small = largest_ < kMaxInDegrees && metres_per_unit_ == 0.0;
     if (in_range_ && (is_small || !degrees_.empty()))
-      return fmt::format("{}, but they count as lengths; project them first, such as by ogr2ogr -t_srs EPSG:32632",
-                         degrees_.empty() ? "the coordinates are degrees, as it seems" : degrees_);
+      return fmt::format(
+          "{}, but they are read as lengths; project them first, for example with ogr2ogr -t_srs EPSG:32632",
+          degrees_.empty() ? "the coordinates appear to be degrees" : degrees_);
     if (metres_per_unit_ == 0.0 || std::abs(metres_per_unit_ / metres_per_unit - 1.0) < 1e-9) return {};
     return fmt::format(
-        "the file's coordinate system has a unit of {:.8g} m, but its coordinates count in the world's, {:g} m; "
-        "project them first, such as by ogr2ogr -t_srs EPSG:32632 for metres",
+        "the file's coordinate system has a unit of {:.8g} m, but its coordinates are read in the world's, {:g} m; "
+        "project them first, for example with ogr2ogr -t_srs EPSG:32632 for metres",
         metres_per_unit_, metres_per_unit);
   }
 
@@ -89,7 +90,7 @@ class OutlineReader {
     bool built = false;
     if (!row.behind_quote.empty())
       faults_.add(OutlineFault::quote, row,
-                  fmt::format("text behind a closing quote, '{}'; expected a separator or the end of the line",
+                  fmt::format("text after a closing quote, '{}'; expected a separator or the end of the line",
                               base::one_line(row.behind_quote.substr(0, kShownHeight))));
     try {
       built = build(row);

@@ -67,7 +67,7 @@ Bitmap decode_bitmap(const std::string& file, const std::string& bytes, const So
   } else if (bytes.size() > 1 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6') {
     decode_netpbm(bytes, grid);
   } else if (!decode_by_plugin(bytes, grid)) {
-    throw base::InputError(file, 0, "is no picture in PNG, Netpbm (P1 to P6), JPEG, BMP or GIF; convert it to PNG");
+    throw base::InputError(file, 0, "is not a picture in PNG, Netpbm (P1 to P6), JPEG, BMP or GIF; convert it to PNG");
   }
   return std::move(grid.grid());
 }

@@ -30,7 +30,7 @@ void check_links(const World& world) {
   good &= std::all_of(world.lights.begin(), world.lights.end(), known);
   good &= std::all_of(world.emitters.begin(), world.emitters.end(), known);
   good &= std::all_of(world.floor_holes.begin(), world.floor_holes.end(), known);
-  if (!good) refuse("a row names a row that is not there");
+  if (!good) refuse("a row refers to a row that does not exist");
 }
 
 // Checks the invariants of rows in world.h, because users of a world do not check them again. World files are checked
@@ -57,7 +57,7 @@ std::vector<std::uint8_t> snapshot(const World& world) {
 
 World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   base::ByteReader in(bytes);
-  if (in.get<std::uint32_t>() != kMagic) refuse("these bytes are no world");
+  if (in.get<std::uint32_t>() != kMagic) refuse("these bytes are not a world");
   const auto version = in.get<std::uint16_t>();
   if (version != kVersion)
     throw base::InputError(

@@ -89,14 +89,14 @@ const std::vector<Bad>& corpus() {
       {"stop line of point 0", "light( phases 1 phase[0] [\"red\" 1]\n stop_lines \"1.2.0\" )", 2, "'1.2.0'"},
       {"stop line of a number too large", "light( phases 1 phase[0] [\"red\" 1]\n stop_lines \"1.32769.3\" )", 2,
        "'1.32769.3'"},
-      {"light on a robot", "position(\n light( phases 1 phase[0] [\"red\" 1] ) )", 2, "stands still"},
+      {"light on a robot", "position(\n light( phases 1 phase[0] [\"red\" 1] ) )", 2, "does not move"},
       {"unknown emitter", "model(\n ir_emitter \"torch\" )", 2, "\"virtual_wall\" or \"dock\""},
-      {"emitter on a robot", "position(\n ir_emitter \"dock\" )", 2, "stands still"},
+      {"emitter on a robot", "position(\n ir_emitter \"dock\" )", 2, "does not move"},
       {"emitter without reach", "model( ir_emitter \"dock\"\n ir_range 0 )", 2, "more than 0"},
       {"emitter without a beam", "model( ir_emitter \"dock\"\n ir_fov 0 )", 2, "more than 0, to 360"},
       {"emitter of more than a turn", "model( ir_emitter \"dock\"\n ir_fov 361 )", 2, "'ir_fov' is 361 degrees"},
       {"halo below zero", "model( ir_emitter \"dock\"\n ir_halo -1 )", 2, "0 or more"},
-      {"hole in a robot", "position(\n cliff_return 1 )", 2, "stands still"},
+      {"hole in a robot", "position(\n cliff_return 1 )", 2, "does not move"},
       {"hole that is a line", "model(\n cliff_return 1 block( points 2 point[0] [0 0] point[1] [1 0] ) )", 2,
        "at least three corners"},
       {"hole that crosses itself",
@@ -195,7 +195,7 @@ TEST_F(Files, ErrorInAnIncludeNamesTheInclude) {
 
 TEST_F(Files, InvalidPictureIsNamed) {
   write("x.png", "hello");
-  EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("is no picture in PNG"), std::string::npos);
+  EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("is not a picture in PNG"), std::string::npos);
 }
 
 TEST_F(Files, BrokenPictureIsNamed) {

@@ -79,7 +79,7 @@ TEST_F(Bodies, PictureWithoutMarginsIsReadAsBefore) {
 TEST_F(Bodies, PictureWithoutWallsIsAWarning) {
   const World world = read("model( size [2 2 1] bitmap \"light.pgm\" )");
   EXPECT_TRUE(world.walls.empty());
-  EXPECT_EQ(warnings_of(world), "1: the picture has no dark pixel, so it is no wall\n");
+  EXPECT_EQ(warnings_of(world), "1: the picture has no dark pixel, so it has no walls\n");
 }
 
 /// Stage adds the blocks to a picture that fills `size`, then scales everything to `size`.
@@ -131,8 +131,8 @@ TEST_F(Bodies, KeysWithoutAnEffectAreNamedOnce) {
       "\nposition( velocity [1 0 0 0] localization \"odom\" )\n"
       "position( pose [2 0 0 0] velocity [1 0 0 0] )\n");
   EXPECT_EQ(warnings_of(world),
-            "2: 'velocity' has no effect here: robots stand still until they are commanded\n"
-            "2: 'localization' has no effect here: robots know their true poses, without drift\n");
+            "2: 'velocity' has no effect here: robots stay at rest until they are commanded\n"
+            "2: 'localization' has no effect here: robots have their true poses, without drift\n");
   EXPECT_EQ(warnings_of(read("position( velocity [0 0 0 0] localization \"gps\" )")), "");
 }
 
@@ -146,7 +146,7 @@ TEST_F(Bodies, TransparentDarkPixelsAreFreeWithAWarning) {
   EXPECT_EQ(
       warnings_of(read("model( size [2 1 1] bitmap \"clear.png\" )")),
       "1: 1 dark pixels of the picture are transparent, so they are free; Stage ignores transparency and takes them "
-      "for walls\n1: the picture has no dark pixel, so it is no wall\n");
+      "for walls\n1: the picture has no dark pixel, so it has no walls\n");
 }
 
 /// Stage searches the folder of the world file, even for files that an include refers to.

@@ -164,10 +164,10 @@ TEST(OutlineLayers, RowsWithoutWallsAreNamedAndCounted) {
   EXPECT_EQ(found.walls[0][4], 3.0);
   EXPECT_EQ(
       found.warnings,
-      "0: feature 1: the height is '-2'; expected a number alone, such as 3.5, from 0 to 1e+07: the model's height "
-      "counts\n0: feature 2: has no geometry: left out\n0: feature 3: points have no walls: left out\n"
+      "0: feature 1: the height is '-2'; expected a number alone, such as 3.5, from 0 to 1e+07: using the height of "
+      "the model\n0: feature 2: has no geometry: left out\n0: feature 3: points have no walls: left out\n"
       "0: feature 4: the geometry is EMPTY: left out\n0: feature 5: the geometry is EMPTY: left out\n"
-      "0: 3 rows more are left out without a geometry\n");
+      "0: 3 more rows have no geometry and are left out\n");
   expect_in("has no outlines with walls; its layers are 'houses0', their columns 'Height'", sf::refusal_of([&] {
               read_layers(write_layer("GPKG", "none.gpkg", {{"POINT (1 2)", 1.0}}, wkbUnknown));
             }));
@@ -186,7 +186,7 @@ TEST(OutlineLayers, CurvesBecomeChordsWithinAMicrometre) {
 
 TEST(OutlineLayers, SystemsInDegreesAndSeveralLayersAreNamed) {
   const std::vector<Feature> house{{"POLYGON ((11 48,11 49,12 49,11 48))", NAN}};
-  expect_in("the file states that the coordinates are degrees, but they count as lengths",
+  expect_in("the file states that the coordinates are degrees, but they are read as lengths",
             read_layers(write_layer("GPKG", "degrees.gpkg", house, wkbUnknown, {}, 4326)).warnings);
   expect_in("coordinates of GeoJSON are degrees unless its member 'crs' states another system",
             read_layers_of("degrees.json",
@@ -199,13 +199,14 @@ TEST(OutlineLayers, SystemsInDegreesAndSeveralLayersAreNamed) {
 
 TEST(OutlineLayers, UnitsOtherThanTheWorldsAreNamed) {  // New York in US survey feet, Germany in metres
   const std::vector<Feature> house{{"POLYGON ((0 0,12 0,12 8,0 0))", 5.0}};
-  const std::string feet = "the file's coordinate system has a unit of 0.30480061 m, but its coordinates count in";
+  const std::string feet = "the file's coordinate system has a unit of 0.30480061 m, but its coordinates are read in";
   expect_in(feet, read_layers(write_layer("GPKG", "feet.gpkg", house, wkbUnknown, {}, 2263)).warnings);
   expect_in(feet, read_layers(write_layer("ESRI Shapefile", "feet.shp", house, wkbPolygon, {}, 2263)).warnings);
   expect_in(feet, read_layers(write_layer("GeoJSON", "feet.geojson", house, wkbUnknown, {}, 2263)).warnings);
   const std::string metres = write_layer("GPKG", "metres.gpkg", house, wkbUnknown);
   EXPECT_EQ(read_layers(metres).warnings, "");
-  expect_in("has a unit of 1 m, but its coordinates count in the world's, 0.01 m", read_layers(metres, 0.01).warnings);
+  expect_in("has a unit of 1 m, but its coordinates are read in the world's, 0.01 m",
+            read_layers(metres, 0.01).warnings);
 }
 
 TEST(OutlineLayers, SridOfATableStatesItsUnit) {
@@ -230,7 +231,7 @@ TEST(OutlineLayers, FlagIsNotAHeight) {
       "geometry": {{"type": "LineString", "coordinates": [[0, 0], [900, 0]]}}}})",
                        height);
   };
-  const std::string word = "a height is true or false, and counts as 1 or 0 like a number";
+  const std::string word = "a height is true or false, and is read as 1 or 0";
   for (const char* number : {"5", "5.5"})  // GDAL reads both as one column
     expect_in(word, read_layers_of("flags.json", R"({"type": "FeatureCollection", "features": [)" + feature("true") +
                                                      "," + feature(number) + "]}")

@@ -91,10 +91,10 @@ TEST(OutlineTableForms, TextAfterAClosingQuoteIsReported) {
   const auto faults = [](const std::string& row) { return read_table("WKT,height\n" + row).warnings; };
   EXPECT_EQ(faults("\"" + kLine + "\" ,\"7\" \n"), "") << "blanks are none";
   EXPECT_EQ(faults("\"" + kLine + "\"x,7\n"),
-            "2: text behind a closing quote, 'x'; expected a separator or the end of the line: ignored\n");
-  expect_in("2: text behind a closing quote, 'm'", faults("\"" + kLine + "\",\"7\"m\n"));
-  expect_in("2: text behind a closing quote, 'hi'", faults("\"" + kLine + "\",\"say \\\"hi, you\\\"\"\n"));
-  expect_in("line 1: the text behind a closing quote is ignored", read_table("WKT,\"a\"b\n" + kLine + ",7").warnings);
+            "2: text after a closing quote, 'x'; expected a separator or the end of the line: ignored\n");
+  expect_in("2: text after a closing quote, 'm'", faults("\"" + kLine + "\",\"7\"m\n"));
+  expect_in("2: text after a closing quote, 'hi'", faults("\"" + kLine + "\",\"say \\\"hi, you\\\"\"\n"));
+  expect_in("line 1: the text after a closing quote is ignored", read_table("WKT,\"a\"b\n" + kLine + ",7").warnings);
 }
 
 TEST(OutlineTableForms, NamesMayFollowTitlesAndComments) {

@@ -22,7 +22,7 @@ TEST(OutlineTable, FilesOfOtherProgramsGiveTheirWalls) {
     const char* heights;
     const char* warnings;
   };
-  const std::string height = "; expected a number alone, such as 3.5, from 0 to 1e+07: the model's height counts\n";
+  const std::string height = "; expected a number alone, such as 3.5, from 0 to 1e+07: using the height of the model\n";
   const std::string h12 = "2: the height is '12 m'" + height, h35 = "2: the height is '3,5'" + height,
                     h70 = "2: the height is '5e+70'" + height;
   const Case cases[] = {{"coll.txt", 4, 96, "3 ", ""},

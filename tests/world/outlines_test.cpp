@@ -77,7 +77,7 @@ TEST(Outlines, HoleThatLeavesItsRingHasNoSides) {  // it would swap inside and o
     const World world = town_of(square + stray + hole);
     for (std::size_t i = 0; i < world.walls.size(); ++i)
       EXPECT_EQ(world.walls[i].solid_left, i < 4 || i + 3 >= world.walls.size()) << stray << " wall " << i;
-    expect_in("1: an inner ring leaves its outer ring: its walls are thin ones", warnings_of(world));
+    expect_in("1: an inner ring leaves its outer ring: its walls are thin", warnings_of(world));
   }
   for (const char* touching : {"(0 3, 1 3, 1 4, 0 3)", "(0 0, 3 1, 1 3, 0 0)", "(-1e-9 3, 1 3, 1 4, -1e-9 3)"}) {
     const World world = town_of(square + touching + hole);
@@ -200,9 +200,9 @@ TEST(Outlines, WarningsAreFew) {  // the others are counted, so none is lost
   const std::string warnings = faults_of(rows);
   EXPECT_EQ(std::count(warnings.begin(), warnings.end(), '\n'), 3 * 4) << warnings;
   expect_in("8: expected ')'", warnings);
-  expect_in("0: 997 rows more are left out that cannot be read\n", warnings);
-  expect_in("0: 997 rows more have points, which are left out\n", warnings);
-  expect_in("0: 997 rows more are left out without a geometry\n", warnings);
+  expect_in("0: 997 more rows cannot be read and are left out\n", warnings);
+  expect_in("0: 997 more rows have points, which are left out\n", warnings);
+  expect_in("0: 997 more rows have no geometry and are left out\n", warnings);
 }
 
 TEST(Outlines, WarningsAreReportedOnceForSeveralReads) {  // a file is read for the extent, the hash and its walls
@@ -253,12 +253,12 @@ TEST(Outlines, FileWithoutWallsIsAnErrorWithItsColumns) {
       {"WKT\rPOINT (0 0)\r", "outlines.csv:1: a line ends in CR alone; convert"},
   };
   for (const auto& [text, message] : cases) expect_in(message, outline_refusal(text));
-  expect_in("outlines.csv: is no text; expected a table", outline_refusal(std::string("WKT\0\0", 5)));
+  expect_in("outlines.csv: is not text; expected a table", outline_refusal(std::string("WKT\0\0", 5)));
 }
 
 TEST(Outlines, DegreesAreNotMetres) {
   const std::string house = "POLYGON ((11.5755 48.1372, 11.5756 48.1372, 11.5756 48.1373))\n";
-  expect_in("0: the coordinates are degrees", warnings_of(town_of(house)));
+  expect_in("0: the coordinates appear to be degrees", warnings_of(town_of(house)));
   expect_in("0: the SRID states that the coordinates are degrees",
             warnings_of(town_of("SRID=4326;LINESTRING (0 0, 12 0)")));
   EXPECT_EQ(warnings_of(town_of("SRID=32632;LINESTRING (0 0, 12 0)")), "");
@@ -293,7 +293,7 @@ TEST(Outlines, WorkForCrossingsIsBounded) {  // it is quadratic if all edges ove
 TEST(Outlines, RequireAStaticModelWithoutAnotherBody) {
   const std::string outlines = "outlines \"" + outlines_file("LINESTRING (0 0, 1 0)") + "\"";
   EXPECT_EQ(error_of("position( " + outlines + " )"),
-            "test.world:1: 'outlines' are for models that stand; give robots and tags a 'block'");
+            "test.world:1: 'outlines' are for static models; give robots and tags a 'block'");
   for (const char* other : {"block( points 2 point[0] [0 0] point[1] [1 1] )", "boundary 1", "cliff_return 1"})
     expect_in("'outlines' are the whole body of a model", error_of("model( " + outlines + " " + other + " )"));
   expect_in("test.world:1: cannot find the outlines \"none.csv\"; expected them beside this file",

@@ -248,7 +248,7 @@ TEST(Pictures, GifIsRead) {
 
 TEST(Pictures, OtherFormatsAreNamed) {
   EXPECT_EQ(error_of_picture("hello"),
-            "picture: is no picture in PNG, Netpbm (P1 to P6), JPEG, BMP or GIF; convert it to PNG");
+            "picture: is not a picture in PNG, Netpbm (P1 to P6), JPEG, BMP or GIF; convert it to PNG");
 }
 
 }  // namespace

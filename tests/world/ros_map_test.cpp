@@ -144,7 +144,7 @@ TEST_F(RosMap, ImpossiblePosesAreNamed) {
   EXPECT_EQ(where(1, 1), "");
   EXPECT_EQ(where(0, 0), "within a wall");
   EXPECT_EQ(where(2.35, 1), "partly in a wall of 'map'");
-  EXPECT_EQ(where(-6, 1), "where the map knows nothing");
+  EXPECT_EQ(where(-6, 1), "in the map's unknown area");
   EXPECT_EQ(where(-10.1, 1), "outside of 'map'");
 }
 

@@ -151,7 +151,7 @@ TEST(Snapshot, LinksPastTheEndAreRejected) {
       what = error.what();
     }
     link = good;
-    return what.find("names a row that is not there") != std::string::npos;
+    return what.find("refers to a row that does not exist") != std::string::npos;
   };
   struct Link {
     std::uint32_t* row;

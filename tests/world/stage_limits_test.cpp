@@ -96,7 +96,7 @@ TEST(StageLimits, WarningsAreLimitedToTenThousand) {
   for (int i = 0; i < 10'010; ++i) text += "model( sise 1 )\n";
   const World world = read_world(text);
   ASSERT_EQ(world.warnings.size(), 10'001u);
-  EXPECT_EQ(world.warnings.back().message, "more than 10000 warnings; from here on they are left out");
+  EXPECT_EQ(world.warnings.back().message, "more than 10000 warnings; further warnings are dropped");
   EXPECT_EQ(world.warnings.back().line, 10'001);
   EXPECT_EQ(world.warnings[1000].message, "unknown property 'sise' of 'model' is ignored; did you mean 'size'?");
   EXPECT_EQ(world.warnings[1001].message, "unknown property 'sise' of 'model' is ignored") << "no search for thousands";

@@ -152,8 +152,8 @@ class Layers : public OutlineRows {
       text += fmt::format("{}all {} layers are read ({}); keep one alone by ogr2ogr -f GPKG ONE.gpkg FILE LAYER",
                           text.empty() ? "" : "; ", layers_.size(), quoted(names_));
     if (is_json_ && has_numbers_ && has_flags(file_))
-      text += fmt::format("{}a height is true or false, and counts as 1 or 0 like a number; expected numbers",
-                          text.empty() ? "" : "; ");
+      text +=
+          fmt::format("{}a height is true or false, and is read as 1 or 0; expected numbers", text.empty() ? "" : "; ");
     return text;
   }
 

@@ -65,7 +65,7 @@ std::vector<std::string> read_stop_lines(const StageContext& context, const Enti
 
 void add_light(BuildState& b, const Entity& entity, const Model& model) {
   StageContext& context = b.context;
-  if (model.mover != kNone) fail(context, entity.at, "a light stands still; expected it outside of moving models");
+  if (model.mover != kNone) fail(context, entity.at, "a light does not move; expected it outside moving models");
   Light light;
   light.name = model.name;
   light.model = static_cast<std::uint32_t>(b.world.models.size());

@@ -96,7 +96,7 @@ void warn_of_picture(StageContext& context, const Entity& entity, const TracedBi
          fmt::format("{} dark pixels of the picture are transparent, so they are free; Stage ignores transparency and "
                      "takes them for walls",
                      plan.hidden));
-  if (plan.runs.empty()) warn(context, at, "the picture has no dark pixel, so it is no wall");
+  if (plan.runs.empty()) warn(context, at, "the picture has no dark pixel, so it has no walls");
   const auto& [low, high] = plan.solid;
   if (context.old_shapes || (low.i == 0 && low.j == 0 && high.i == grid.width && high.j == grid.height)) return;
   warn(

@@ -11,7 +11,7 @@ namespace sf::world {
 void add_outlines(BuildState& b, const Entity& entity, const Model& model, Segment surface, double height,
                   const Pose& X_B) {
   const SourceLocation at = location_of(entity, "outlines");
-  if (model.mover != kNone) fail(b.context, at, "'outlines' are for models that stand; give robots and tags a 'block'");
+  if (model.mover != kNone) fail(b.context, at, "'outlines' are for static models; give robots and tags a 'block'");
   const bool has_blocks =
       find(entity, "blocks") != nullptr || std::any_of(entity.children.begin(), entity.children.end(),
                                                        [](const Entity& child) { return child.type == "block"; });

@@ -21,7 +21,7 @@ void fail(const ParseState& r, int line, const std::string& message) {
 void warn(ParseState& r, int line, std::string message) {
   if (r.document.warnings.size() > kMaxWarnings) return;
   if (r.document.warnings.size() == kMaxWarnings)
-    message = fmt::format("more than {} warnings; from here on they are left out", kMaxWarnings);
+    message = fmt::format("more than {} warnings; further warnings are dropped", kMaxWarnings);
   r.document.warnings.push_back({r.document.files[r.file], line, std::move(message)});
 }
 

@@ -17,7 +17,7 @@ void warn(StageContext& context, SourceLocation at, const std::string& message) 
   if (context.warned.size() == kMaxWarnings) {
     context.warned.insert("and more");
     context.warnings.push_back({context.document.files[at.file], at.line,
-                                fmt::format("more than {} warnings; from here on they are left out", kMaxWarnings)});
+                                fmt::format("more than {} warnings; further warnings are dropped", kMaxWarnings)});
     return;
   }
   if (!context.warned.insert(fmt::format("{}:{}:{}", at.file, at.line, message)).second) return;
