@@ -20,7 +20,7 @@ struct TomlNode {
   std::vector<TomlNode> items;  ///< of a list in order, of a table by key
 };
 
-/// Returns null if the table has no such key. Valid as long as the table.
+/// Returns null if the table has no such key. Valid for the lifetime of the table.
 const TomlNode* find(const TomlNode& table, std::string_view key);
 
 /// Parses `text` as one table.

@@ -106,7 +106,7 @@ struct Accuracy {
   int line = 0;  ///< 1-based, in `file`
 };
 
-/// Drive types. `skid`: fixed wheels on both sides (Pioneer 3-AT), which scrub in turns.
+/// Drive types. `skid`: wheels on both sides that cannot be steered (Pioneer 3-AT); they scrub in turns.
 enum class Drive { differential, omni, car, skid };
 
 /// How a commanded twist becomes wheel motion (robots/actuator_model.h).

@@ -33,7 +33,7 @@ Hypothesis merged(const MotionModel& model, std::span<const Hypothesis> parts);
 /// the world frame exactly.
 Estimate correct(const MotionModel& model, const Estimate& predicted, const Measurement& measurement);
 
-/// Adds the weighted mean squared error of `state` to `sum`. Yaw errors are wrapped to half a turn.
+/// Adds the weighted mean squared error of `state` to `sum`. Yaw errors are wrapped to at most half a turn.
 void add_square_error(const Estimate& state, const Hypothesis& truth, Covariance& sum);
 
 }  // namespace sf::estimation

@@ -127,7 +127,7 @@ RoadNetwork build_network(const Rndf& rndf, const RoadSidecar& sidecar, std::vec
 
 /// Returns nullopt if the network has no such point.
 std::optional<PointRef> find_point(const RoadNetwork& network, PointId id);
-/// Returns null if the network has no such checkpoint. Valid as long as the network.
+/// Returns null if the network has no such checkpoint. Valid for the lifetime of the network.
 const RoadCheckpoint* find_checkpoint(const RoadNetwork& network, int id);
 
 PointId id_of(const RoadNetwork& network, PointRef at);
@@ -137,7 +137,7 @@ std::optional<double> yaw_of(const RoadNetwork& network, PointRef at);
 /// "1.2", as written in the file.
 std::string name_of(const RoadNetwork& network, const RoadLane& lane);
 
-/// A transition from a point to another.
+/// A transition from one point to another.
 struct Transition {
   enum class Kind : std::uint8_t { lane, exit, zone, change };
   Kind kind = Kind::lane;  ///< along the lane, by an exit, freely across a zone, or to the adjacent lane

@@ -12,7 +12,7 @@ namespace sf::world {
 inline constexpr double kMomentUnit = 1e-4;  ///< [A m^2]
 inline constexpr double kMaxMoment = 1e16;   ///< as written; corresponds to 1e12 A m^2
 
-/// Returns the keyword of the sensor type with the word `type`, or null. Valid as long as the options' list.
+/// Returns the keyword of the sensor type with the word `type`, or null. Valid for the lifetime of the options' list.
 const SensorKeyword* find_sensor_keyword(const BuildState& b, std::string_view type);
 
 /// Adds a sensor with the settings of `entity` to the mover of `model`. For types with `sensor( )` blocks, adds a

@@ -70,7 +70,7 @@ std::string find_file(const Document& document, SourceLocation from, const std::
 /// is the same.
 std::string file_in_stage(const Document& document, const std::string& name, const std::string& found);
 
-/// Returns the property with exactly that key, or null. Valid as long as the entity.
+/// Returns the property with exactly that key, or null. Valid for the lifetime of the entity.
 const Property* find(const Entity& entity, std::string_view key);
 
 }  // namespace sf::world
