@@ -84,8 +84,8 @@ class Fleet {
   void set_moved(const base::Report& report, bool contact);
 
   /// Returns the newest states, one per mover in order of rows. Yaw is in [-pi, pi] after `move`, and as reported after
-  /// `apply`. The velocity of a simulated mover is that at the end of the tick, and 0 after a stop. Valid as long as
-  /// the fleet.
+  /// `apply`. The velocity of a simulated mover is that at the end of the tick, and 0 after a stop. Valid for the
+  /// lifetime of the fleet.
   std::span<const base::Report> reports() const { return reports_; }
 
   /// Returns `reports()` extrapolated to `time` [ns] (robots::extrapolate). Contacts of movers with reports from

@@ -22,8 +22,7 @@ namespace sf::world {
 namespace {
 
 constexpr std::size_t kShownHeight = 24;  // characters of a field in messages
-constexpr double kMaxInDegrees =
-    0.01;  // largest outline for which small numbers are assumed to be degrees; 1 km on Earth
+constexpr double kMaxInDegrees = 0.01;    // largest outline whose small numbers are taken as degrees; 1 km on Earth
 
 /// Detects coordinates that are not in the world's unit: the file states another unit, or all coordinates are small and
 /// all outlines tiny, as in degrees.

@@ -10,8 +10,7 @@ namespace sf::world {
 
 namespace {
 
-constexpr int kMaxScans =
-    100;  // in a progressive JPEG, which usually has about ten; each takes as long as the whole picture
+constexpr int kMaxScans = 100;  // per progressive JPEG, usually about ten; each takes as long as the whole picture
 
 struct Bytes {
   const std::string& file;

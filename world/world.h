@@ -216,9 +216,8 @@ struct World {
   /// YAML file of its ROS map, possibly equal to `file`; empty: none, or a world from a snapshot
   std::string ros_map;
   std::vector<Model> models;
-  std::vector<Segment> walls;  ///< static segments in the world frame
-  std::vector<OutlineFile>
-      unread;  ///< walls after `walls`; included in `extent` and `hash` (LoadOptions::leave_outlines)
+  std::vector<Segment> walls;              ///< static segments in the world frame
+  std::vector<OutlineFile> unread;         ///< walls after `walls`, part of `extent` and `hash` (leave_outlines)
   std::vector<LaneMarking> lane_markings;  ///< road paint, visible to lane edge sensors only
   double road_resolution = 0.0;            ///< [m] raster step for lane edge sensors; 0: exact markings
   std::vector<Magnet> magnets;             ///< static magnets
@@ -229,10 +228,9 @@ struct World {
   std::vector<Light> lights;
   std::vector<Emitter> emitters;
   std::vector<FloorHole> floor_holes;
-  std::vector<std::string> road_files;  ///< paths of the RNDFs of the world's roads, as opened by load_roads
-  std::map<std::string, int>
-      unmodelled;         ///< entity types that are not modelled and become plain bodies, with their counts
-  double interval = 0.1;  ///< [s] simulated time per tick (`interval_sim`)
+  std::vector<std::string> road_files;    ///< paths of the RNDFs of the world's roads, as opened by load_roads
+  std::map<std::string, int> unmodelled;  ///< entity types that become plain bodies, with their counts
+  double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)
   Extent extent;
   std::vector<Warning> warnings;
   std::uint64_t hash = 0;  ///< of all data above that readings depend on

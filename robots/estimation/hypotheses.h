@@ -22,8 +22,7 @@ inline constexpr std::int64_t kMostHypothesesSteps = 10;
 
 /// Limits of the sum. Precondition: most > 0
 struct HypothesesLimits {
-  std::size_t most =
-      1;  ///< number of hypotheses; with 1, each function gives the result of its counterpart in kalman.h
+  std::size_t most = 1;        ///< number of hypotheses; 1 gives the results of kalman.h
   std::int64_t corrected = 0;  ///< [ns] time of the last measurement
 };
 

@@ -36,10 +36,9 @@ struct FilterOptions {
   double gate = 1e-4;
   double max_jump = 10.0;                    ///< [m] > 0 from the prediction; measurements farther away are a `jump`
   std::int64_t stale_after = 1'000'000'000;  ///< [ns] > 0 without a used measurement
-  std::int64_t window =
-      1'000'000'000;          ///< [ns] > 0; measurements that are older than the newest by more than this are rejected
-  std::size_t capacity = 64;  ///< > 0 measurements in the window; when full, the window becomes shorter
-  std::int64_t max_future = 20'000'000;  ///< [ns] >= 0 by which a measurement may be ahead of the clock
+  std::int64_t window = 1'000'000'000;       ///< [ns] > 0; measurements older than the newest by more are rejected
+  std::size_t capacity = 64;                 ///< > 0 measurements in the window; when full, the window becomes shorter
+  std::int64_t max_future = 20'000'000;      ///< [ns] >= 0 by which a measurement may be ahead of the clock
   /// > 0 Largest number of Gaussians for a state with an uncertain heading. With 1, the covariance is that of a
   /// linearised path, which is too small if the heading is not measured for a second or longer.
   std::size_t hypotheses = 64;

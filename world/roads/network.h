@@ -142,8 +142,7 @@ struct Transition {
   enum class Kind : std::uint8_t { lane, exit, zone, change };
   Kind kind = Kind::lane;  ///< along the lane, by an exit, freely across a zone, or to the adjacent lane
   PointRef to;
-  double length =
-      0.0;  ///< [m] along the lane; for an exit or change, of the connecting curve; for a zone, of the straight line
+  double length = 0.0;  ///< [m] along the lane, along the curve of an exit or change, or straight across a zone
 };
 
 /// Returns the lane changes from `at` to adjacent lanes of the same segment and direction, across a broken line or an

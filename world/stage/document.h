@@ -9,8 +9,7 @@
 
 namespace sf::world {
 
-inline constexpr std::size_t kMaxWarnings =
-    10'000;  ///< of the grammar, and of the meaning of keys; further warnings are dropped
+inline constexpr std::size_t kMaxWarnings = 10'000;  ///< of the grammar and of keys; further warnings are dropped
 
 /// A place in a file.
 struct SourceLocation {
