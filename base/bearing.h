@@ -5,8 +5,8 @@
 
 namespace sf::base {
 
-/// Bearing of sample `i` of a scan in the sensor's frame [rad]; exact at both ends of the field of view, and exactly
-/// symmetric about 0.
+/// Returns the bearing of sample `i` of a scan in the sensor's frame [rad]. Exact at both ends of the field of view and
+/// exactly symmetric about 0.
 inline double bearing_of(double fov, std::uint32_t samples, std::uint32_t i) {
   if (samples < 2) return 0.0;
   const double last = samples - 1;

@@ -1,6 +1,6 @@
 #pragma once
-// Little-endian bytes in and out, for packets, recordings and snapshots. No exceptions: a read beyond the end sets the
-// reader's state to bad and returns zeros.
+// Little-endian readers and writers for packets, recordings and snapshots. They throw no exceptions: a read beyond the
+// end returns zeros and marks the reader as bad.
 
 #include <bit>
 #include <cstddef>
@@ -35,7 +35,7 @@ class ByteWriter {
     out_.resize(at + size);
     if (size > 0) std::memcpy(out_.data() + at, data, size);
   }
-  /// u32 length, then the characters, no terminator.
+  /// Writes the length as u32, then the characters without a terminator.
   void put_string(std::string_view text) {
     put(static_cast<std::uint32_t>(text.size()));
     put_bytes(text.data(), text.size());
@@ -59,12 +59,12 @@ class ByteReader {
     std::memcpy(&value, in_.data() + at_ - sizeof(T), sizeof(T));
     return value;
   }
-  /// The next `size` bytes. Fewer left: an empty span, and the reader is bad.
+  /// Returns the next `size` bytes. If fewer are left, returns an empty span and marks the reader as bad.
   std::span<const std::uint8_t> get_bytes(std::size_t size) {
     if (!take(size)) return {};
     return in_.subspan(at_ - size, size);
   }
-  /// Copies the next `size` bytes; fewer left: nothing, and the reader is bad.
+  /// Copies the next `size` bytes. If fewer are left, copies nothing and marks the reader as bad.
   void get_into(void* out, std::size_t size) {
     if (take(size) && size > 0) std::memcpy(out, in_.data() + at_ - size, size);
   }
@@ -72,7 +72,7 @@ class ByteReader {
     const auto text = get_bytes(get<std::uint32_t>());
     return {reinterpret_cast<const char*>(text.data()), text.size()};
   }
-  /// False after the first read beyond the end.
+  /// Returns false after the first read beyond the end.
   bool good() const { return good_; }
   std::size_t left() const { return in_.size() - at_; }
   std::size_t position() const { return at_; }

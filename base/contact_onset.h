@@ -1,15 +1,15 @@
 #pragma once
-// The rule by which all modules count contacts: a contact begins at a tick in which something stops a mover that
-// nothing stopped in the tick before.
+// The rule by which all modules count contacts: a contact begins in a tick when a mover is blocked that was not blocked
+// in the previous tick.
 
 namespace sf::base {
 
-/// State of one mover, tick by tick.
+/// Contact state of one mover, updated every tick.
 struct ContactOnset {
   bool previous = false;
 
-  /// @param now whether something stops the mover in this tick
-  /// @return whether a contact begins in this tick
+  /// @param now true when the mover is blocked in this tick
+  /// @return true when a contact begins in this tick
   bool begins(bool now) {
     const bool began = now && !previous;
     previous = now;

@@ -5,7 +5,7 @@
 
 namespace sf::base {
 
-/// In quotes where a comma, a quote or a line end would be misread.
+/// Returns `text` as a field, in quotes if it contains a comma, a quote or a line end.
 inline std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";

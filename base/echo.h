@@ -1,5 +1,5 @@
 #pragma once
-// Elements of range readings at the limits of their sensor. docs/sensors.md has the table of all outputs.
+// Classifies elements of range readings at the limits of the sensor. docs/sensors.md lists all outputs.
 
 #include <cmath>
 #include <cstdint>
@@ -10,35 +10,36 @@
 
 namespace sf::base {
 
-/// A range sensor measures ranges in [min, max). Rule: 0 <= min <= max.
+/// Range limits of a sensor, which measures ranges in [min, max). Invariant: 0 <= min <= max.
 struct RangeLimits {
   double min = 0.0;       ///< [m]
   double max = HUGE_VAL;  ///< [m]
 };
 
-/// The state of one element of a range reading.
+/// State of one element of a range reading.
 enum class Echo : std::uint8_t {
-  too_near,  ///< a surface nearer than `min`
-  valid,     ///< a surface in [min, max)
-  none       ///< no surface before `max`
+  too_near,  ///< a surface is nearer than `min`
+  valid,     ///< a surface is in [min, max)
+  none       ///< there is no surface before `max`
 };
 
 /// Classifies an element.
-/// @param range [m] of a reading after `mark_too_near`; NaN: none
+/// @param range [m] from a reading after `mark_too_near`; NaN counts as `none`
 inline Echo echo_of(double range, const RangeLimits& limits) {
   if (range < limits.min) return Echo::too_near;
   return range < limits.max ? Echo::valid : Echo::none;
 }
 
-/// Replaces the ranges of surfaces that are too near, `min` with a quality flag in readings, by -infinity, for outputs
-/// without flags: recordings and tables.
-/// @param flags one per element; empty: none  @param values of the same reading; the range is an element's first
+/// Replaces the ranges of surfaces that are too near with -infinity, for outputs without flags: recordings and tables.
+/// Readings hold `min` and a quality flag for such elements.
+/// @param flags one per element, or empty  @param values of the same reading; the range is the first value of an
+/// element
 inline void mark_too_near(std::span<const QualityFlag> flags, std::span<double> values) {
   for (std::size_t i = 0; i < flags.size(); ++i)
     if (flags[i] == QualityFlag::too_near) values[values.size() / flags.size() * i] = -HUGE_VAL;
 }
 
-/// [m] The largest float32 that is not above `limit`, and the smallest that is not below it.
+/// Rounds `limit` [m] to float32: down in `float_below`, up in `float_above`.
 inline float float_below(double limit) {
   const auto nearest = static_cast<float>(limit);
   return nearest > limit ? std::nextafter(nearest, -HUGE_VALF) : nearest;
@@ -48,8 +49,9 @@ inline float float_above(double limit) {
   return nearest < limit ? std::nextafter(nearest, HUGE_VALF) : nearest;
 }
 
-/// [m] `range` as float32 after REP 117: -infinity for a surface that is too near, infinity for none, NaN for NaN.
-/// Valid ranges are rounded to nearest, but not out of [min, max), so that they pass any test against the limits.
+/// Returns `range` [m] as float32 according to REP 117: -infinity for a surface that is too near, infinity for no
+/// surface, NaN for NaN. Rounds valid ranges to nearest but keeps them in [min, max), so comparisons with the limits
+/// still hold.
 inline float rep117_range(double range, const RangeLimits& limits) {
   if (std::isnan(range)) return std::numeric_limits<float>::quiet_NaN();
   const Echo echo = echo_of(range, limits);

@@ -1,6 +1,6 @@
 #pragma once
-// Two families of errors. A broken contract inside the farm is a `check` that aborts with the values. A fault in the
-// user's input (a file, an option, a machine) is an `InputError` that names the place, the expected value and the
+// Two families of errors. `check` aborts with the values when a contract inside the farm is broken. `InputError`
+// reports a fault in the user's input (a file, an option, a machine) and names the place, the expected value and the
 // remedy.
 
 #include <stdexcept>
@@ -8,17 +8,17 @@
 
 namespace sf::base {
 
-/// A fault that the user can correct. `what()` is one complete line: `file:line: message` where a file is known.
+/// An error that the user can correct. `what()` is one complete line: `file:line: message` if a file is known.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
-  /// @param line 1-based; 0 when the whole file is meant.
+  /// @param line 1-based; 0 refers to the whole file
   InputError(const std::string& file, int line, const std::string& message)
       : std::runtime_error(file + (line > 0 ? std::string(":").append(std::to_string(line)) : std::string()) + ": " +
                            message) {}
 };
 
-/// No usable device. A type of its own, since programs then end with exit code 3.
+/// Thrown when there is no usable device. A separate type, because programs then end with exit code 3.
 class DeviceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -34,7 +34,7 @@ constexpr std::size_t kBlock = 1u << 20;
   throw InputError(file, 0, fmt::format("larger than {} MiB, the limit for such files", most >> 20));
 }
 
-/// An open file of `size` bytes.
+/// Opens a regular file and sets `size` [bytes].
 int open_regular(const std::string& file, std::size_t& size) {
   // O_NONBLOCK: opening a pipe without a writer would block.
   Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
@@ -49,7 +49,7 @@ int open_regular(const std::string& file, std::size_t& size) {
   return std::exchange(in.number, -1);
 }
 
-/// At most `most` bytes; 0 at the end of the file.
+/// Reads at most `most` bytes; returns 0 at the end of the file.
 std::size_t read_some(const std::string& file, int descriptor, char* out, std::size_t most) {
   for (;;) {
     const ssize_t got = ::read(descriptor, out, most);
@@ -72,7 +72,7 @@ std::string read_bytes(const std::string& file, std::size_t most) {
     if (got == 0) break;
     have += got;
     if (have > most) refuse_size(file, most);
-    if (have == bytes.size()) bytes.resize(std::min(2 * have, most + 1));  // the file grew meanwhile
+    if (have == bytes.size()) bytes.resize(std::min(2 * have, most + 1));  // the file grew after its size was read
   }
   bytes.resize(have);
   if (bytes.empty()) throw InputError(file, 0, "is empty; was it saved, or copied whole?");
@@ -93,7 +93,7 @@ LineFile::LineFile(const std::string& file) : file_(file) {
 
 LineFile::~LineFile() { ::close(descriptor_); }
 
-/// Keeps the current line.
+/// Keeps the current line in the buffer.
 bool LineFile::refill() {
   buffer_.erase(0, begin_);
   end_ -= begin_;
@@ -106,7 +106,7 @@ bool LineFile::refill() {
   return got > 0;
 }
 
-/// The first line end from `from` on, relative to `begin_`; the end of the file where none follows.
+/// Returns the first line end at or after `from`, relative to `begin_`, or the end of the file if there is none.
 std::size_t LineFile::find_end(std::size_t from) {
   for (;;) {
     const std::size_t end = buffer_.find('\n', begin_ + from);

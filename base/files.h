@@ -1,5 +1,5 @@
 #pragma once
-// Files from outside: whole ones of limited size, and larger ones a line at a time.
+// Reads files from outside: whole files of limited size, and larger files line by line.
 
 #include <cstddef>
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace sf::base {
 
-/// The whole content of a file. @throws InputError when the file is missing, not a regular file (a folder, a
+/// Returns the whole content of a file. @throws InputError when the file is missing, not a regular file (a folder, a
 /// device, a pipe), empty, larger than `most` bytes, or not readable to its end.
 std::string read_bytes(const std::string& file, std::size_t most);
-/// Likewise for a text. @throws InputError also for a text without content.
+/// Same for a text file. @throws InputError also for a text without content.
 std::string read_text(const std::string& file, std::size_t most = 64u << 20);
 
-/// The lines of a text file of any size, read in blocks.
+/// Reads the lines of a text file of any size, block by block.
 class LineFile {
  public:
   /// @throws InputError when the file is missing or not a regular file
@@ -21,16 +21,17 @@ class LineFile {
   ~LineFile();
   LineFile(const LineFile&) = delete;
 
-  /// The next line without its end (LF or CRLF) in `line`, which lives until the next call; false after the last one.
-  /// @throws InputError for a line of more than 16 MiB, and when reading fails
+  /// Sets `line` to the next line without its end (LF or CRLF). The view is valid until the next call. Returns false
+  /// after the last line.
+  /// @throws InputError for a line of more than 16 MiB and for read errors
   bool next(std::string_view& line);
   /// Appends the following line to the current one, with the line end between them. @return false, without a change,
-  /// where none follows, or both have more than 16 MiB
+  /// when there is no following line or both together exceed 16 MiB
   bool extend(std::string_view& line);
-  /// Undoes `extend`: the current line is the first one again, and `next` returns the one after it.
+  /// Undoes `extend`: restores the first line as the current line; `next` then returns the line after it.
   void shrink(std::string_view& line);
   int number() const { return number_; }                   ///< of the (first) line, 1-based
-  int last_number() const { return number_ + appended_; }  ///< of the last one appended to it
+  int last_number() const { return number_ + appended_; }  ///< of the last appended line
 
  private:
   bool refill();
@@ -39,9 +40,9 @@ class LineFile {
   std::string file_;
   int descriptor_;
   std::string buffer_;
-  std::size_t begin_ = 0;      ///< of the current line
-  std::size_t end_ = 0;        ///< of its text, with appended lines
-  std::size_t first_end_ = 0;  ///< of its text without them
+  std::size_t begin_ = 0;      ///< start of the current line
+  std::size_t end_ = 0;        ///< end of its text, including appended lines
+  std::size_t first_end_ = 0;  ///< end of its text, excluding appended lines
   int number_ = 0;
   int appended_ = 0;
 };

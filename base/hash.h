@@ -8,10 +8,10 @@
 
 namespace sf::base {
 
-/// Hash of `size` bytes, chained from `seed`: hash(b, hash(a)) is the hash of the sequence a, b.
+/// Returns the hash of `size` bytes, chained from `seed`: hash(b, hash(a)) is the hash of the sequence a, b.
 std::uint64_t hash_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
 
-/// `hash_bytes` of bytes that arrive in parts.
+/// Computes `hash_bytes` of data that arrives in parts.
 class StreamingHash {
  public:
   StreamingHash();
@@ -24,7 +24,7 @@ class StreamingHash {
   std::unique_ptr<State> state_;
 };
 
-/// 16 lower-case hexadecimal digits.
+/// Returns 16 lower-case hexadecimal digits.
 std::string hash_hex(std::uint64_t hash);
 
 }  // namespace sf::base

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folder of the program or shared library with this code.
+/// Returns the folder of the program or shared library that contains this code.
 fs::path own_folder() {
   Dl_info info = {};
   std::error_code ignored;
@@ -24,7 +24,7 @@ fs::path own_folder() {
       .parent_path();
 }
 
-/// Of the installation: own_folder() without `bin` or the folder of libraries; empty in a build folder.
+/// Returns the prefix of the installation: own_folder() without `bin` or the library folder. Empty in a build folder.
 fs::path prefix() {
   const fs::path own = own_folder();
   if (own.filename() == "bin") return own.parent_path();
@@ -53,7 +53,7 @@ std::string installed_file(const std::string& file) {
   std::error_code ignored;
   if (fs::path(file).is_absolute() || fs::exists(file, ignored)) return file;
   const char* const data = std::getenv("SENSORFARM_DATA");
-  const fs::path share = fs::path("share") / "sensorfarm";  // in a build folder: links to the sources
+  const fs::path share = fs::path("share") / "sensorfarm";  // links to the sources in a build folder
   for (const fs::path& folder : {fs::path(data != nullptr ? data : ""), prefix() / share, own_folder() / share})
     if (folder.is_absolute() && fs::exists(folder / file, ignored)) return (folder / file).string();
   return file;

@@ -1,5 +1,5 @@
 #pragma once
-// The values of a reading for consumers that do not look at its flags.
+// Values of a reading for consumers that ignore its flags.
 
 #include <span>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace sf::base {
 
-/// The values of `reading` after `mark_too_near`. @param own holds them where the reading has flags
+/// Returns the values of `reading` after `mark_too_near`. @param own storage for the values if the reading has flags
 inline std::span<const double> marked_values(const ReadingBlock& reading, std::vector<double>& own) {
   if (reading.quality.empty()) return reading.values;
   own.assign(reading.values.begin(), reading.values.end());

@@ -18,9 +18,9 @@ namespace sf::base {
 
 namespace {
 
-/// Parts of the file that dlopen maps. A shorter file would end the process when it is read there (SIGBUS). Files of
-/// other kinds and machines are left to dlopen, which explains them.
-/// @throws InputError for a file that lacks some of them
+/// Checks that the file contains all parts that dlopen maps. Reading a truncated mapping would raise SIGBUS and end the
+/// process. Leaves files of other formats and machines to dlopen, which reports a reason.
+/// @throws InputError for a truncated file
 void require_whole(const std::string& file) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   const auto size = static_cast<std::uint64_t>(std::max<std::streamoff>(0, in.tellg()));

@@ -24,17 +24,18 @@ constexpr int kNone = -1;
 
 PluginCalls own_calls;
 std::atomic<PluginCalls*> shared_calls{&own_calls};
-std::atomic<std::uint64_t> taken_rows{0};  ///< bit k: a thread has row k
+std::atomic<std::uint64_t> taken_rows{0};  ///< bit k is set while a thread uses row k
 static_assert(PluginCalls::kThreads == 64);
-thread_local int thread_row = kNone;  ///< of this thread in the calls
+thread_local int thread_row = kNone;  ///< row of this thread in the calls
 double end_limit = 10.0;              ///< [s]
-bool is_watching = false;             ///< handlers are installed
+bool is_watching = false;             ///< true once handlers are installed
 thread_local bool forked_in_call = false;
-bool is_copy = false;  ///< a call forked this process
+bool is_copy = false;  ///< a plug-in call forked this process
 
 bool is_under_way(const PluginCalls::Call& call) { return call.number % 2 != 0; }
 
-/// Returns the row of a thread that ends; not where a call on it has called exit(), whose handlers come later.
+/// Releases the row of an ending thread. Keeps it if a call on the thread has called exit(), because exit handlers run
+/// later and need it.
 struct RowHolder {
   ~RowHolder() {
     if (thread_row == kNone || is_under_way(shared_calls.load()->calls[thread_row])) return;
@@ -43,7 +44,7 @@ struct RowHolder {
   }
 };
 
-/// @return kNone where all are taken
+/// @return kNone when all rows are taken
 int take_row() {
   static thread_local const RowHolder holder;
   for (std::uint64_t before = taken_rows; ~before != 0;) {
@@ -53,21 +54,21 @@ int take_row() {
   return kNone;
 }
 
-/// This thread's call under way; kNone: none.
+/// Returns the row of this thread's current call, or kNone.
 int call_of_thread() {
   return thread_row != kNone && is_under_way(shared_calls.load()->calls[thread_row]) ? thread_row : kNone;
 }
 
-/// Asked before the fork: the original may return from its call before the copy runs.
+/// Runs before the fork, because the original may return from its call before the copy runs.
 void note_fork() { forked_in_call = call_of_thread() != kNone; }
 
-/// A copy that a call forked must not write where its original does.
+/// Runs in a process that a call forked: the copy must not write to the memory of the original.
 void note_copy() {
   is_copy = forked_in_call;
   if (is_copy) shared_calls = &own_calls;
 }
 
-/// Prints how an unsupervised process ended. Allocates nothing, since the heap may be corrupt.
+/// Prints how an unsupervised process ended. Does not allocate, because the heap may be corrupt.
 void report_end(const char* how) {
   const int blamed = own_calls.blamed;
   const PluginCalls::Call* const call = blamed == kNone ? nullptr : &own_calls.calls[blamed];
@@ -80,14 +81,14 @@ void report_end(const char* how) {
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), std::strlen(line.data()));
 }
 
-/// @return users' code ends this process
+/// @return true when users' code ends this process
 bool note_end() {
   if (is_copy || shared_calls.load()->finished) return false;
   shared_calls.load()->blamed = call_of_thread();
   return true;
 }
 
-std::string late_line;  ///< made before it is needed: the heap may be locked then
+std::string late_line;  ///< built in advance, because the heap may be locked when it is needed
 
 void on_late(int) {
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, late_line.data(), late_line.size());
@@ -108,7 +109,7 @@ void on_quick_exit_called() {
   _exit(EXIT_FAILURE);
 }
 
-/// Not async-signal-safe, in a process that cannot go on.
+/// Not async-signal-safe, but the process cannot continue anyway.
 void on_fatal(int signal) {
   std::signal(signal, SIG_DFL);
   const char* const name = sigdescr_np(signal);
@@ -120,7 +121,7 @@ void on_fatal(int signal) {
 void install_handlers() {
   pthread_atfork(note_fork, nullptr, note_copy);
   std::at_quick_exit(on_quick_exit_called);
-  // A stack of its own, for recursion without end on the main thread.
+  // Alternate stack, for infinite recursion on the main thread.
   static std::array<char, 1 << 16> stack;
   stack_t other{};
   other.ss_sp = stack.data();
@@ -129,7 +130,7 @@ void install_handlers() {
   for (const int signal : kFatal) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
-    if (before.sa_handler != SIG_DFL) continue;  // a sanitizer's
+    if (before.sa_handler != SIG_DFL) continue;  // keep a sanitizer's handler
     struct sigaction action {};
     action.sa_handler = on_fatal;
     action.sa_flags = static_cast<int>(SA_ONSTACK | SA_NODEFER);
@@ -162,7 +163,7 @@ std::string names_of(const Suspects& suspects) {
   return names;
 }
 
-/// Blamed calls, else all under way, with `what` behind their names and the time behind that.
+/// Names the blamed calls, or else all calls under way, each followed by `what` and the time.
 std::string named(const PluginCalls& calls, const std::string& what) {
   const int blamed = calls.blamed;
   const Suspects suspects =

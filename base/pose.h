@@ -12,7 +12,7 @@
 
 namespace sf::base {
 
-/// Frame B in frame A (`X_AB`): rotate by `yaw` about +z, then translate. Right-handed, x forward, y left.
+/// Pose of frame B in frame A (`X_AB`): rotate by `yaw` about +z, then translate. Right-handed, x forward, y left.
 struct Pose {
   double x = 0.0;    ///< [m]
   double y = 0.0;    ///< [m]
@@ -20,14 +20,14 @@ struct Pose {
   double yaw = 0.0;  ///< [rad] counter-clockwise, any value
 };
 
-/// Body-frame velocity.
+/// Velocity in the body frame.
 struct Twist {
   double forward = 0.0;  ///< [m/s] along the robot's x
   double left = 0.0;     ///< [m/s] along the robot's y
   double turn = 0.0;     ///< [rad/s] counter-clockwise
 };
 
-/// z of the cross product: twice the area of the triangle (0, p, q), positive where q is to the left of p.
+/// Returns z of the cross product: twice the area of the triangle (0, p, q), positive when q is to the left of p.
 inline double cross(glm::dvec2 p, glm::dvec2 q) { return p.x * q.y - p.y * q.x; }
 
 inline glm::dvec2 rotate(double yaw, glm::dvec2 p) {
@@ -36,18 +36,18 @@ inline glm::dvec2 rotate(double yaw, glm::dvec2 p) {
   return {c * p.x - s * p.y, s * p.x + c * p.y};
 }
 
-/// X_AC from X_AB and X_BC.
+/// Returns X_AC from X_AB and X_BC.
 inline Pose compose(const Pose& X_AB, const Pose& X_BC) {
   const glm::dvec2 p = rotate(X_AB.yaw, {X_BC.x, X_BC.y});
   return {X_AB.x + p.x, X_AB.y + p.y, X_AB.z + X_BC.z, X_AB.yaw + X_BC.yaw};
 }
 
-/// Point `p_B` expressed in A.
+/// Returns point `p_B` expressed in A.
 inline glm::dvec2 transform(const Pose& X_AB, glm::dvec2 p_B) {
   return glm::dvec2{X_AB.x, X_AB.y} + rotate(X_AB.yaw, p_B);
 }
 
-/// The same heading in [-pi, pi].
+/// Returns the same heading in [-pi, pi].
 inline double wrap_angle(double angle) {
   if (std::abs(angle) <= M_PI) return angle;
   // Beyond 1e6 rad, the rounding error of 2 pi times the number of turns is too large.

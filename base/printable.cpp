@@ -9,7 +9,7 @@ namespace sf::base {
 
 namespace {
 
-/// Bytes of the UTF-8 sequence that `text` begins with; 0: it begins with none.
+/// Returns the length of the UTF-8 sequence at the start of `text` [bytes]; 0 if it is invalid.
 std::size_t sequence(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
   const std::size_t size = byte(0) < 0x80   ? 1

@@ -18,8 +18,8 @@ std::uint32_t fold(std::uint64_t word) { return static_cast<std::uint32_t>(word 
 }  // namespace
 
 std::array<std::uint32_t, 4> random_words(const RandomKey& draw, std::uint32_t index) {
-  // The key holds the seed, the counter the rest. The stream shares a word with `b` (sensor below 2^24, stream below
-  // 2^8); the 64-bit `c` (tick) is folded to 32 bits.
+  // The key holds the seed and the counter holds the rest. The stream shares a word with `b` (sensor below 2^24, stream
+  // below 2^8). The 64-bit `c` (tick) is folded to 32 bits.
   const philox4x32_key_t key = {{static_cast<std::uint32_t>(draw.seed), static_cast<std::uint32_t>(draw.seed >> 32)}};
   const philox4x32_ctr_t counter = {
       {index, draw.a, draw.b << 8 | static_cast<std::uint32_t>(draw.stream), fold(draw.c)}};

@@ -1,5 +1,5 @@
 #pragma once
-// Counter-based random numbers: a pure function of (seed, stream, counter), so that noise is the same for any thread
+// Counter-based random numbers: a pure function of (seed, stream, counter). Noise is therefore the same for any thread
 // count, batch order or subset of robots. Philox 4x32-10 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3",
 // SC11).
 
@@ -8,7 +8,7 @@
 
 namespace sf::base {
 
-/// Purpose of a draw. Two streams with one key never share a number.
+/// Purpose of a draw. Two streams with the same key never share a number.
 enum class RandomStream : std::uint32_t {
   placement = 1,
   wander = 2,
@@ -21,25 +21,25 @@ enum class RandomStream : std::uint32_t {
   satellites = 9,
   link = 10,        ///< delay and loss between a robot and the farm
   decision = 11,    ///< random decisions of controllers
-  own_sensors = 12  ///< of users' own sensor types
+  own_sensors = 12  ///< users' own sensor types
 };
 
-/// Identifies one draw. All five fields matter.
+/// Identifies one draw by all five fields.
 struct RandomKey {
   std::uint64_t seed = 0;
   RandomStream stream = RandomStream::placement;
   std::uint32_t a = 0;  ///< e.g. robot
   std::uint32_t b = 0;  ///< e.g. sensor or attempt
-  std::uint64_t c = 0;  ///< e.g. tick; the beam goes into `index` below
+  std::uint64_t c = 0;  ///< e.g. tick; the beam is passed as `index` below
 };
 
-/// Four independent 32-bit words for draw `draw`, element `index`.
+/// Returns four independent 32-bit words for draw `draw`, element `index`.
 std::array<std::uint32_t, 4> random_words(const RandomKey& draw, std::uint32_t index);
 
-/// Two uniform numbers in (0, 1), never 0 and never 1.
+/// Returns two uniform numbers in (0, 1), never 0 and never 1.
 std::array<double, 2> random_uniform(const RandomKey& draw, std::uint32_t index);
 
-/// Two independent standard normal numbers (Box-Muller).
+/// Returns two independent standard normal numbers (Box-Muller).
 std::array<double, 2> random_normal(const RandomKey& draw, std::uint32_t index);
 
 }  // namespace sf::base

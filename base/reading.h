@@ -13,17 +13,17 @@ namespace sf::base {
 /// Hit value of a beam without an echo in range.
 inline constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
 
-/// The reason for which an element's error may exceed the error bound of its reading.
+/// The reason why an element's error may exceed the error bound of its reading.
 enum class QualityFlag : std::uint8_t {
-  none = 0,          ///< the bound holds, where one is stated
+  none = 0,          ///< the bound holds, if one is stated
   not_cast = 1,      ///< no beam was cast for this element: it is interpolated between cast beams
-  grazing = 2,       ///< the beam meets a surface at too small an angle (SF_MIN_SINE, raycast/records.h)
+  grazing = 2,       ///< the beam hits a surface at too small an angle (SF_MIN_SINE, raycast/records.h)
   not_straight = 3,  ///< lane edge: the points do not lie on one straight line
   extrapolated = 4,  ///< lane edge: distance without a ray on the paint, extrapolated beyond the points
   too_near = 5       ///< range: the surface is nearer than the sensor's minimum (base/echo.h)
 };
 
-/// One reading of one sensor. The spans live until the next tick of the farm that returned them.
+/// One reading of one sensor. The spans are valid until the next tick of the farm that returned them.
 struct ReadingBlock {
   std::uint32_t mover = 0;         ///< row in `world::World::movers`
   std::uint32_t sensor = 0;        ///< 0-based among the mover's sensors of this type
@@ -32,22 +32,22 @@ struct ReadingBlock {
   std::int64_t time = 0;           ///< [ns] simulated time of the measurement (not of its delivery)
   Pose X_WM;                       ///< the mover's pose at the measurement
   Pose X_WS;                       ///< the sensor's pose at the measurement
-  std::span<const double> values;  ///< element by element, in each in order of the sensor type's columns
+  std::span<const double> values;  ///< element by element; within each, in the order of the sensor type's columns
   std::span<const std::uint32_t>
-      hits;  ///< scans of this process: row of the model that each beam met, or kNoHit; empty for all others
+      hits;  ///< for scans computed in this process: row of the model that each beam hit, or kNoHit; otherwise empty
   std::uint32_t flags = 0;  ///< bits defined by the header of the sensor type
-  std::uint8_t mode = 0;    ///< accuracy mode of the measurement: row of the sensor type's modes
+  std::uint8_t mode = 0;    ///< accuracy mode of the measurement: row in the sensor type's modes
   /// [unit of the first column] largest error of that column in `values`, for elements without a quality flag
-  /// (sensors/accuracy.h). Infinite: no bound is stated, as of noisy readings, and where no element has a bound.
+  /// (sensors/accuracy.h). Infinite when no bound is stated: for noisy readings, and when no element has a bound.
   double bound = std::numeric_limits<double>::infinity();
-  double bound_without_noise = std::numeric_limits<double>::infinity();  ///< the same before noise was added
-  /// [unit of the first column] largest standard deviation of its noise; 0: no noise; infinite: not known.
+  double bound_without_noise = std::numeric_limits<double>::infinity();  ///< bound before noise was added
+  /// [unit of the first column] largest standard deviation of its noise; 0: no noise; infinite: unknown.
   double sigma = 0.0;
   std::span<const QualityFlag> quality;  ///< one per element; empty: no element has a flag
-  StateQuality state;  ///< of the mover's state at the measurement; not stated where the state is exact
+  StateQuality state;  ///< quality of the mover's state at the measurement; not stated when the state is exact
 };
 
-/// Whether the bound of the sensor type does not hold for every element: some have a quality flag, or noise.
+/// Returns true when the sensor type's bound does not hold for every element: some have a quality flag or noise.
 inline bool is_unsure(const ReadingBlock& reading) { return !reading.quality.empty() || reading.sigma > 0.0; }
 
 }  // namespace sf::base

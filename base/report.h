@@ -1,5 +1,5 @@
 #pragma once
-// The state of movers, from any source: a simulated robot, a V2V packet or a TAG packet of an overhead camera.
+// States of movers from any source: a simulated robot, a V2V packet or a TAG packet of an overhead camera.
 
 #include <cmath>
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace sf::base {
 
-/// The state of one mover at one time.
+/// State of one mover at one time.
 struct Report {
   std::uint32_t mover = 0;         ///< row in `world::World::movers`
-  std::int64_t time = 0;           ///< [ns] simulated time (or the sender's clock) at which the state was true
+  std::int64_t time = 0;           ///< [ns] simulated time (or the sender's clock) at which the state was valid
   Pose X_WM;                       ///< the mover's frame in the world; finite, or kAbsent
-  Twist velocity;                  ///< in the mover's frame; zero where unknown
-  std::uint32_t contact_mask = 0;  ///< bit k: something touches the body in sector k, see kContactSectors
+  Twist velocity;                  ///< in the mover's frame; zero if unknown
+  std::uint32_t contact_mask = 0;  ///< bit k: the body is touched in sector k, see kContactSectors
 };
 
-/// The pose of an absent mover, which nothing senses. Never reported from outside.
+/// Pose of an absent mover, which no sensor detects. Never reported from outside.
 inline constexpr Pose kAbsent{NAN, NAN, NAN, NAN};
 inline bool is_absent(const Pose& X_WM) { return std::isnan(X_WM.x); }
 
@@ -27,10 +27,10 @@ inline constexpr std::uint32_t kContactSectors = 32;
 
 inline constexpr std::uint32_t kNoId = 0xFFFFFFFFu;
 
-/// The part of a V2V packet beside the state: the robot's intent.
+/// The robot's intent, carried by a V2V packet in addition to the state.
 struct Intent {
-  std::uint32_t follows = kNoId;     ///< id of the robot it follows
-  std::uint32_t checkpoint = kNoId;  ///< id of the checkpoint it heads for
+  std::uint32_t follows = kNoId;     ///< id of the robot that it follows
+  std::uint32_t checkpoint = kNoId;  ///< id of the checkpoint that it is heading for
   bool docking = false;
 };
 

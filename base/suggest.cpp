@@ -6,7 +6,7 @@
 namespace sf::base {
 
 std::string suggest(std::string_view word, std::span<const std::string_view> candidates) {
-  std::uint32_t best = word.size() <= 4 ? 2 : 3;  // one more than accepted
+  std::uint32_t best = word.size() <= 4 ? 2 : 3;  // one more than the accepted distance
   std::string_view nearest;
   for (const std::string_view candidate : candidates) {
     const std::uint32_t distance = edit_distance(word, candidate);
@@ -18,7 +18,7 @@ std::string suggest(std::string_view word, std::span<const std::string_view> can
 }
 
 std::uint32_t edit_distance(std::string_view a, std::string_view b) {
-  constexpr std::size_t kLongest = 64;  // longer than any key; rows stay on the stack
+  constexpr std::size_t kLongest = 64;  // longer than any key, and short enough for rows on the stack
   if (a.size() > kLongest || b.size() > kLongest) return a == b ? 0 : kLongest;
   std::array<std::array<std::uint32_t, kLongest + 1>, 3> rows{};
   for (std::uint32_t j = 0; j <= b.size(); ++j) rows[0][j] = j;

@@ -8,11 +8,11 @@
 
 namespace sf::base {
 
-/// `; did you mean 'x'?` with the nearest candidate at an edit distance of at most 2 (at most 1 for words of up to four
-/// letters), else an empty text.
+/// Returns `; did you mean 'x'?` with the nearest candidate at an edit distance of at most 2 (at most 1 for words of up
+/// to four letters), or an empty text.
 std::string suggest(std::string_view word, std::span<const std::string_view> candidates);
 
-/// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.
+/// Returns the optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.
 std::uint32_t edit_distance(std::string_view a, std::string_view b);
 
 }  // namespace sf::base

@@ -21,10 +21,10 @@ namespace {
 
 constexpr int kTurnsAwake = 4000;  ///< about 60 us
 
-/// [ns] when this thread last looked for a stop, or began a loop.
+/// [ns] time when this thread last checked for a stop or began a loop.
 thread_local std::int64_t looked_at = 0;
 
-/// [ns] of the steady clock, to 4 ms: it is read before each item of a loop.
+/// Returns the steady clock [ns] to within 4 ms. Cheap, because it is read before each item of a loop.
 std::int64_t coarse_time() {
   timespec time{};
   clock_gettime(CLOCK_MONOTONIC_COARSE, &time);
@@ -37,11 +37,12 @@ void pause() {
 #endif
 }
 
-/// Pieces of a loop that one thread takes first, from the front; when its own are done, others take them from the back.
+/// Pieces of a loop assigned to one thread, which takes them from the front. Threads that have finished their own
+/// pieces take them from the back.
 class alignas(64) Share {
  public:
   void assign(std::uint32_t first, std::uint32_t end) { ends_ = std::uint64_t{end} << 32 | first; }
-  /// @return false when none is left
+  /// @return false when no piece is left
   bool take(bool from_front, std::size_t& piece) {
     for (std::uint64_t ends = ends_;;) {
       const auto first = static_cast<std::uint32_t>(ends), end = static_cast<std::uint32_t>(ends >> 32);
@@ -52,13 +53,13 @@ class alignas(64) Share {
   }
 
  private:
-  std::atomic<std::uint64_t> ends_{0};  ///< first piece, and in the upper half the one behind the last
+  std::atomic<std::uint64_t> ends_{0};  ///< first piece in the lower half, end of the pieces in the upper half
 };
 
 }  // namespace
 
-// Every loop has the same shares: what a loop over robots wrote is still in the caches of the core that reads it in the
-// next one.
+// Every loop is divided into the same shares: the data written by a loop over robots is then still in the caches of the
+// core that reads it in the next loop.
 struct ThreadPool::State {
   std::mutex lock;
   std::condition_variable wake;
@@ -69,14 +70,15 @@ struct ThreadPool::State {
   std::size_t piece = 1;
   std::vector<Share> shares;  ///< per thread
   std::atomic<unsigned> round{0};
-  std::atomic<unsigned> busy{0};  ///< threads that work on the job, without the caller
-  bool open = false;              ///< true: a thread that wakes may still join the job
+  std::atomic<unsigned> busy{0};  ///< threads working on the job, excluding the caller
+  bool open = false;              ///< true while a thread that wakes may still join the job
   bool stop = false;
-  std::exception_ptr failure;                   ///< of the job: the first that a piece threw
-  std::function<bool()> interrupt;              ///< of `interrupt_on`
+  std::exception_ptr failure;                   ///< first exception thrown by a piece of the job
+  std::function<bool()> interrupt;              ///< `stop` of `interrupt_on`
   std::chrono::nanoseconds patience{};          ///< of `interrupt_on`
-  std::atomic<std::int64_t> interrupted_at{0};  ///< [ns] `coarse_time` before which it was false; 0: it still is
-  std::atomic<bool> given_up{false};            ///< the job leaves pieces out
+  std::atomic<std::int64_t> interrupted_at{0};  ///< [ns] `coarse_time` of the last check before `interrupt` returned
+                                                ///< true; 0: it still returns false
+  std::atomic<bool> given_up{false};            ///< the job skips pieces
 
   void work(unsigned thread) {
     if (interrupt) looked_at = coarse_time();
@@ -85,7 +87,7 @@ struct ThreadPool::State {
         if (!gives_up()) call(at, thread);
   }
 
-  /// Exceptions, such as a lack of memory, wait for the end of the loop: others still work on its data.
+  /// Keeps exceptions, such as out of memory, until the end of the loop, because other threads still use its data.
   void call(std::size_t at, unsigned thread) {
     try {
       job.call(job.body, at * piece, std::min((at + 1) * piece, count), thread);
@@ -105,7 +107,7 @@ struct ThreadPool::State {
     return given_up;
   }
 
-  /// The shares of a loop differ by one piece at most.
+  /// Divides a loop into shares that differ by at most one piece.
   void divide() {
     const std::size_t pieces = (count + piece - 1) / piece, n = shares.size();
     SF_CHECK(pieces <= 0xFFFFFFFFu, std::to_string(pieces) + " pieces");
@@ -113,7 +115,8 @@ struct ThreadPool::State {
       shares[i].assign(static_cast<std::uint32_t>(i * pieces / n), static_cast<std::uint32_t>((i + 1) * pieces / n));
   }
 
-  /// Spins before a thread sleeps: the next job of a tick, and the end of a job, mostly come sooner than it would wake.
+  /// Spins before a thread sleeps. The next job of a tick and the end of a job usually arrive before the thread could
+  /// wake up.
   template <class Condition>
   static void spin_until(Condition condition) {
     for (int turn = 0; turn < kTurnsAwake && !condition(); ++turn) pause();
@@ -139,7 +142,7 @@ struct ThreadPool::State {
 
 namespace {
 
-/// Once per process.
+/// Prints the note once per process.
 void note_fewer_threads(unsigned got, unsigned wanted) {
   static std::atomic<bool> noted{false};
   if (!noted.exchange(true))
@@ -158,7 +161,7 @@ ThreadPool::ThreadPool(unsigned threads) : state_(std::make_unique<State>()) {
   state_->threads.reserve(wanted);
   try {
     for (unsigned i = 1; i < wanted; ++i) state_->threads.emplace_back([this, i] { state_->serve(i); });
-  } catch (const std::system_error&) {  // a limit of processes or memory; `threads()` has what there is
+  } catch (const std::system_error&) {  // a process or memory limit; `threads()` returns the number that started
     note_fewer_threads(this->threads(), wanted);
   }
 }
@@ -206,7 +209,7 @@ void ThreadPool::run_job(std::size_t count, std::size_t piece, Job job) {
   }
   s.wake.notify_all();
   s.work(0);
-  // All pieces are taken. Threads that have not woken yet are not waited for.
+  // All pieces are taken. Does not wait for threads that have not woken up yet.
   {
     const std::scoped_lock guard(s.lock);
     s.open = false;

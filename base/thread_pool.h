@@ -10,20 +10,20 @@
 
 namespace sf::base {
 
-/// Work was stopped before its end, as its user asked.
+/// Thrown when work is stopped early at the user's request.
 struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// A request to stop takes effect within this time. Loops are given up after half of it, and processes whose calls of
-/// users' code go on end shortly before it is over (apps/processes/supervision.h).
+/// A stop request takes effect within this time. Loops are abandoned after half of it. Processes still inside users'
+/// code end shortly before it expires (apps/processes/supervision.h).
 inline constexpr std::chrono::milliseconds kStopLimit{500};
 
 /// Threads that run the pieces of a loop. One caller at a time.
 class ThreadPool {
  public:
-  /// @param threads number of threads in a loop, including the caller; 0: one per core of the machine. Where the system
-  /// starts no more, there are fewer, with a note on standard error.
+  /// @param threads number of threads in a loop, including the caller; 0: one per core of the machine. If the system
+  /// cannot start that many, the pool has fewer and prints a note on standard error.
   explicit ThreadPool(unsigned threads = 0);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -31,14 +31,15 @@ class ThreadPool {
 
   unsigned threads() const;
 
-  /// From now on a loop is given up where its next piece, if it takes as long as the last, ends later than `patience`
-  /// after `stop` returns true: it leaves pieces out, and `parallel_for` throws Interrupted. The data of the loop are
-  /// then of no use. Shorter loops end whole. @param stop called by all threads, before each piece; empty: never
+  /// Makes later loops interruptible. A loop is abandoned if its next piece, assuming that it takes as long as the last
+  /// one, would end later than `patience` after `stop` returns true. It then skips pieces, `parallel_for` throws
+  /// Interrupted, and the data of the loop is unusable. Shorter loops complete. @param stop called by all threads
+  /// before each piece; empty: never interrupts
   void interrupt_on(std::function<bool()> stop, std::chrono::nanoseconds patience = kStopLimit / 2);
 
   /// Calls `body(first, last, thread)` on pieces of [0, count) and returns when all are done; `thread` < threads(). The
-  /// assignment of pieces to threads varies, so results of `body` must not depend on it. Allocates nothing.
-  /// @throws what a piece threw first, once all pieces are done
+  /// assignment of pieces to threads varies, so results of `body` must not depend on it. Does not allocate.
+  /// @throws the first exception thrown by a piece, once all pieces are done
   template <class Body>
   void parallel_for(std::size_t count, std::size_t piece, Body&& body) {
     using Plain = std::remove_reference_t<Body>;
@@ -49,8 +50,8 @@ class ThreadPool {
              }});
   }
 
-  /// Calls `body(item, thread)` for each item of [0, count), as `parallel_for` does for pieces. `stop` of
-  /// `interrupt_on` is called before each item: for items that may take long.
+  /// Calls `body(item, thread)` for each item of [0, count), with the contract of `parallel_for`. For items that may
+  /// take long: checks `stop` of `interrupt_on` before each item.
   template <class Body>
   void parallel_for_each(std::size_t count, std::size_t piece, Body&& body) {
     parallel_for(count, piece, [&](std::size_t first, std::size_t last, unsigned thread) {

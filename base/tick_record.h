@@ -1,5 +1,5 @@
 #pragma once
-// Results of a tick, and the interface of recorders: what the farm and the simulation know of them.
+// Results of a tick, and the interface of recorders that the farm and the simulation use.
 
 #include <cstdint>
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace sf::base {
 
-/// A traffic light.
+/// State of a traffic light.
 struct LightStatus {
   std::uint8_t state = 0;  ///< 0 dark, 1 red, 2 yellow, 3 green, 4 flashing red, 5 flashing yellow
-  double left = 0.0;       ///< [s] until the next change; infinity: none is known
+  double left = 0.0;       ///< [s] until the next change; infinity: unknown
 
   friend bool operator==(const LightStatus&, const LightStatus&) = default;
 };
@@ -22,11 +22,11 @@ struct LightStatus {
 struct TickRecord {
   std::uint64_t tick = 0;
   std::int64_t time = 0;                    ///< [ns] simulated
-  std::span<const Report> reports;          ///< every mover's true state, or its estimate; absent movers: kAbsent
+  std::span<const Report> reports;          ///< true or estimated state of every mover; absent movers: kAbsent
   std::span<const Twist> commands;          ///< one per report: the twist that the controller commanded
-  std::span<const std::uint8_t> contacts;   ///< one per report: 1 where a wall or a robot stopped the mover
+  std::span<const std::uint8_t> contacts;   ///< one per report: 1 if a wall or a robot blocked the mover
   std::span<const ReadingBlock> readings;   ///< delivered this tick
-  std::span<const StateQuality> qualities;  ///< one per report; empty: the states are true
+  std::span<const StateQuality> qualities;  ///< one per report; empty: the states are exact
   std::span<const LightStatus> lights;      ///< one per traffic light of the world; empty: not recorded
 };
 

@@ -1,4 +1,4 @@
-// Boxes, and their tree against a test of every box.
+// Compares boxes and their tree with a brute-force test of every box.
 
 #include "base/box_tree.h"
 
@@ -13,13 +13,13 @@ namespace {
 
 using Rows = std::multiset<std::uint32_t>;
 
-TEST(Box, OfTwoCornersInAnyOrder) {
+TEST(Box, AcceptsCornersInAnyOrder) {
   const Box box = box_of({3, -2}, {-1, 5});
   EXPECT_EQ(std::pair(box.min.x, box.min.y), std::pair(-1.0, -2.0));
   EXPECT_EQ(std::pair(box.max.x, box.max.y), std::pair(3.0, 5.0));
 }
 
-TEST(Box, MeetsWhereItTouches) {
+TEST(Box, TouchingBoxesMeet) {
   const Box box = box_around({0, 0}, 1.0);
   EXPECT_TRUE(meet(box, box_around({2, 2}, 1.0))) << "a corner";
   EXPECT_TRUE(meet(box, {{0.5, -5}, {0.5, 5}})) << "a line across it";
@@ -27,7 +27,7 @@ TEST(Box, MeetsWhereItTouches) {
   EXPECT_FALSE(meet(box, empty_box()));
 }
 
-/// Boxes of all sizes and, where `i` is a multiple of 3, lines and points; some are equal.
+/// Boxes of all sizes, some of them equal. Every third box is a line or a point.
 std::vector<Box> random_boxes(std::uint32_t count, glm::dvec2 around, trial::Chance& chance) {
   std::vector<Box> boxes;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -54,7 +54,7 @@ Rows expected(const std::vector<Box>& boxes, const Box& box) {
   return rows;
 }
 
-TEST(BoxTree, FindsWhatBruteForceFinds) {
+TEST(BoxTree, MatchesBruteForce) {
   trial::Chance chance(1);
   for (const std::uint32_t count : {0u, 1u, 2u, 7u, 8u, 9u, 500u})
     for (const glm::dvec2& around : {glm::dvec2{}, glm::dvec2{1e5, -1e5}}) {
@@ -70,7 +70,7 @@ TEST(BoxTree, FindsWhatBruteForceFinds) {
     }
 }
 
-TEST(BoxTree, LeavesMostOthersOut) {
+TEST(BoxTree, VisitsFewOtherBoxes) {
   trial::Chance chance(2);
   std::vector<Box> boxes;
   for (int i = 0; i < 20'000; ++i) boxes.push_back(box_around(chance.in_square(100.0), 0.1));
@@ -84,7 +84,7 @@ TEST(BoxTree, LeavesMostOthersOut) {
   EXPECT_LT(count, 2 * wanted);
 }
 
-TEST(BoxTree, StopsAtTheFirstYes) {
+TEST(BoxTree, StopsAtTheFirstMatch) {
   trial::Chance chance(3);
   const BoxTree tree(random_boxes(100, {}, chance));
   int asked = 0;
@@ -92,8 +92,8 @@ TEST(BoxTree, StopsAtTheFirstYes) {
   EXPECT_EQ(asked, 3);
 }
 
-/// Sums over subtrees rely on it.
-TEST(BoxTree, NodesStandDepthFirst) {
+/// Sums over subtrees rely on this order.
+TEST(BoxTree, NodesAreDepthFirst) {
   trial::Chance chance(4);
   const std::vector<Box> boxes = random_boxes(100, {}, chance);
   const BoxTree tree(boxes);

@@ -28,7 +28,7 @@ TEST(Echo, IsValidFromTheMinimumToBelowTheMaximum) {
   EXPECT_EQ(echo_of(0.0, {0.0, kMax}), Echo::valid) << "contact, without a minimum";
 }
 
-TEST(Echo, FloatsFollowREP117) {
+TEST(Echo, FloatsFollowRep117) {
   const RangeLimits limits{kMin, kMax};
   EXPECT_EQ(rep117_range(-HUGE_VAL, limits), -HUGE_VALF);
   EXPECT_EQ(rep117_range(below(kMin), limits), -HUGE_VALF) << "rounds to the minimum, and is too near";
@@ -49,7 +49,7 @@ TEST(Echo, LimitsOfMessagesAreRoundedOutwards) {
   EXPECT_EQ(float_above(0.1), 0.1F);
 }
 
-/// Each valid range passes `range_min <= r` and `r < range_max`, by the message's limits and by the true ones.
+/// Each valid range satisfies `range_min <= r` and `r < range_max`, for the message's limits and for the true ones.
 RC_GTEST_PROP(Echo, ValidRangesPassEveryTestAgainstTheLimits, ()) {
   const auto number = [](int most) { return 1e-3 * *rc::gen::inRange(1, most) / 3.0; };
   const double min = number(1000), max = min + number(20'000);

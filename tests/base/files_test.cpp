@@ -30,7 +30,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return all;
 }
 
-TEST(LineFile, EndsAreNoPartOfALine) {
+TEST(LineFile, LinesExcludeTheirEnds) {
   using Lines = std::vector<std::string>;
   EXPECT_EQ(lines_of(""), Lines());
   EXPECT_EQ(lines_of("\n"), Lines({""}));
@@ -39,7 +39,7 @@ TEST(LineFile, EndsAreNoPartOfALine) {
   EXPECT_EQ(lines_of("a\rb\n"), Lines({"a\rb"}));
 }
 
-TEST(LineFile, LinesMeetTheEndsOfBlocksAnywhere) {  // a block is a MiB
+TEST(LineFile, LinesMaySpanBlocks) {  // a block is 1 MiB
   for (const std::size_t first : {(1u << 20) - 2, (1u << 20) - 1, 1u << 20, (1u << 20) + 1, 3u << 20}) {
     const auto lines = lines_of(std::string(first, 'a') + "\nb\n" + std::string(first, 'c'));
     ASSERT_EQ(lines.size(), 3u) << first;
@@ -49,7 +49,7 @@ TEST(LineFile, LinesMeetTheEndsOfBlocksAnywhere) {  // a block is a MiB
   }
 }
 
-TEST(LineFile, AnEndlessLineIsRefused) {
+TEST(LineFile, RejectsEndlessLine) {
   const std::string file = file_with("a\n");
   std::filesystem::resize_file(file, 64u << 20);  // zeros
   LineFile lines(file);
@@ -58,10 +58,10 @@ TEST(LineFile, AnEndlessLineIsRefused) {
   expect_in("lines.txt:2: a line of more than 16 MiB, the limit", refusal_of([&] { lines.next(line); }));
 }
 
-TEST(LineFile, LinesCanBeJoinedAndPartedAgain) {
+TEST(LineFile, ExtendAndShrinkAreInverse) {
   for (const std::size_t first :
        {std::size_t{0}, std::size_t{3}, (std::size_t{1} << 20) - 2, (std::size_t{1} << 20) - 1,
-        std::size_t{1} << 20}) {  // the first line end at the end of a block
+        std::size_t{1} << 20}) {  // the first line end is at the end of a block
     const std::string a(first, 'a');
     LineFile lines(file_with(a + "\r\nb\nc"));
     std::string_view line;
@@ -87,7 +87,7 @@ TEST(LineFile, LinesCanBeJoinedAndPartedAgain) {
   EXPECT_FALSE(lines.extend(line)) << "a line end at the end of the file begins no line";
 }
 
-TEST(LineFile, LinesAreJoinedUpToTheLimit) {
+TEST(LineFile, ExtendStopsAtTheLimit) {
   const std::string file = file_with("a\n");
   std::filesystem::resize_file(file, 64u << 20);
   LineFile lines(file);
@@ -97,7 +97,7 @@ TEST(LineFile, LinesAreJoinedUpToTheLimit) {
   EXPECT_EQ(line, "a");
 }
 
-TEST(LineFile, NeedsAFile) {
+TEST(LineFile, RejectsMissingFile) {
   expect_in("no such file", refusal_of([] { LineFile("/nowhere/at.all"); }));
   expect_in("a folder, a device or a pipe", refusal_of([] { LineFile("/dev/zero"); }));
   const std::string pipe = (std::filesystem::temp_directory_path() / "pipe").string();
@@ -105,8 +105,8 @@ TEST(LineFile, NeedsAFile) {
   expect_in("a folder, a device or a pipe", refusal_of([&] { LineFile{pipe}; }));
 }
 
-/// Files of the kernel say that they hold 0 bytes.
-TEST(ReadBytes, AFileMayHoldMoreThanItsSize) {
+/// Files of the kernel report a size of 0 bytes.
+TEST(ReadBytes, ReadsBeyondTheReportedSize) {
   const std::string file = "/proc/version";
   ASSERT_EQ(std::filesystem::file_size(file), 0u);
   std::ostringstream text;

@@ -11,7 +11,7 @@
 namespace sf::base {
 namespace {
 
-TEST(Pose, ComposesByTurningThenMoving) {
+TEST(Pose, ComposeRotatesThenTranslates) {
   const Pose X_AB{1, 2, 3, M_PI / 2};
   const Pose X_BC{10, 0, 0.5, -M_PI};
   const Pose X_AC = compose(X_AB, X_BC);
@@ -21,7 +21,7 @@ TEST(Pose, ComposesByTurningThenMoving) {
   EXPECT_EQ(X_AC.yaw, -M_PI / 2);
 }
 
-TEST(Pose, ComposingIsTransformingTheOrigin) {
+TEST(Pose, ComposeTransformsTheOrigin) {
   const Pose X_AB{-3, 0.5, 0, 0.7};
   const Pose X_BC{0.2, -0.9, 0, 1.1};
   const glm::dvec2 p_C{2, -5};
@@ -31,7 +31,7 @@ TEST(Pose, ComposingIsTransformingTheOrigin) {
   EXPECT_NEAR(once.y, twice.y, 1e-14);
 }
 
-TEST(Pose, HeadingsWrapIntoHalfATurnEitherWay) {
+TEST(Pose, HeadingsWrapToPlusMinusPi) {
   EXPECT_EQ(wrap_angle(0.0), 0.0);
   EXPECT_NEAR(wrap_angle(2.0 * M_PI + 0.25), 0.25, 1e-15);
   EXPECT_NEAR(wrap_angle(-2.0 * M_PI - 0.25), -0.25, 1e-15);
@@ -39,7 +39,7 @@ TEST(Pose, HeadingsWrapIntoHalfATurnEitherWay) {
   EXPECT_LE(std::fabs(wrap_angle(1e9)), M_PI);
 }
 
-TEST(Bytes, WrittenValuesAreRead) {
+TEST(Bytes, RoundTrip) {
   Bytes bytes;
   ByteWriter writer(bytes);
   writer.put(std::uint16_t{0x1234});
@@ -55,8 +55,8 @@ TEST(Bytes, WrittenValuesAreRead) {
   EXPECT_EQ(reader.left(), 0u);
 }
 
-/// A read past the end gives zeros and leaves the reader bad.
-TEST(Bytes, ReadingPastTheEndIsBadForGood) {
+/// A read past the end returns zeros and marks the reader as bad.
+TEST(Bytes, StaysBadAfterReadingPastTheEnd) {
   const Bytes bytes{1, 2, 3};
   ByteReader reader(bytes);
   EXPECT_EQ(reader.get<std::uint32_t>(), 0u);
@@ -77,12 +77,12 @@ TEST(Hash, ChainsAndPrints) {
   EXPECT_EQ(hash_hex(0x1F), "000000000000001f");
 }
 
-TEST(Error, SaysFileLineAndMessage) {
+TEST(Error, ContainsFileLineAndMessage) {
   EXPECT_STREQ(InputError("w.world", 12, "expected a number").what(), "w.world:12: expected a number");
   EXPECT_STREQ(InputError("w.world", 0, "cannot be read").what(), "w.world: cannot be read");
 }
 
-TEST(ErrorDeathTest, ABrokenContractAbortsWithItsValues) {
+TEST(ErrorDeathTest, FailedCheckAbortsWithValues) {
   EXPECT_DEATH(SF_CHECK(1 > 2, "1 is not above 2"), "1 is not above 2");
 }
 

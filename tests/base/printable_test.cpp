@@ -1,4 +1,4 @@
-// Texts from outside on their way to a terminal.
+// Untrusted text that is printed to a terminal.
 
 #include "base/printable.h"
 
@@ -8,36 +8,36 @@
 namespace sf::base {
 namespace {
 
-TEST(Printable, TextStaysAsItIs) {
+TEST(Printable, KeepsPlainText) {
   for (const char* text : {"", "plain", "two\nlines\tand a tab", "Grüße, 日本, 🤖", "~"})
     EXPECT_EQ(printable(text), text);
 }
 
-TEST(Printable, ControlCharactersAreWrittenAsNumbers) {
+TEST(Printable, EscapesControlCharacters) {
   EXPECT_EQ(printable("\x1b[2J"), "\\x1b[2J");          // clears a terminal
-  EXPECT_EQ(printable("a\rb\x07"), "a\\x0db\\x07");     // returns, and rings
-  EXPECT_EQ(printable(std::string("\0", 1)), "\\x00");  // ends a C string
+  EXPECT_EQ(printable("a\rb\x07"), "a\\x0db\\x07");     // carriage return and bell
+  EXPECT_EQ(printable(std::string("\0", 1)), "\\x00");  // terminates a C string
   EXPECT_EQ(printable("\x7f"), "\\x7f");                // deletes
   EXPECT_EQ(printable("\xc2\x9b"
                       "2J"),
-            "\\xc2\\x9b2J");                     // the same as ESC [ in one character
-  EXPECT_EQ(printable("\xc2\xa0"), "\xc2\xa0");  // the first behind those
+            "\\xc2\\x9b2J");                     // same as ESC [ in one character
+  EXPECT_EQ(printable("\xc2\xa0"), "\xc2\xa0");  // first character after the control characters
 }
 
-TEST(Printable, InvalidUtf8IsWrittenAsNumbers) {
-  EXPECT_EQ(printable("\x80"), "\\x80");  // continues nothing
-  EXPECT_EQ(printable("\xc3"), "\\xc3");  // cut off
+TEST(Printable, EscapesInvalidUtf8) {
+  EXPECT_EQ(printable("\x80"), "\\x80");  // continuation byte without a start
+  EXPECT_EQ(printable("\xc3"), "\\xc3");  // truncated
   EXPECT_EQ(printable("\xe2\x82"
                       "x"),
-            "\\xe2\\x82x");                                          // cut off by another
+            "\\xe2\\x82x");                                          // truncated by another character
   EXPECT_EQ(printable("\xc0\x9b"), "\\xc0\\x9b");                    // ESC in two bytes
-  EXPECT_EQ(printable("\xe0\x80\x9b"), "\\xe0\\x80\\x9b");           // in three
-  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // half of a pair of UTF-16
-  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond the last character
+  EXPECT_EQ(printable("\xe0\x80\x9b"), "\\xe0\\x80\\x9b");           // ESC in three bytes
+  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // half of a UTF-16 surrogate pair
+  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond the last code point
 }
 
-/// The first and the last sequence of each size and of each range that UTF-8 leaves out, with their neighbours.
-TEST(Printable, SequencesEndAtTheirLimits) {
+/// The first and the last sequence of each size and of each range that is invalid in UTF-8, with their neighbours.
+TEST(Printable, ChecksSequenceLimits) {
   const char* const valid[] = {"\x7e",
                                "\xc2\xa0",
                                "\xdf\xbf",
@@ -64,7 +64,7 @@ TEST(Printable, SequencesEndAtTheirLimits) {
   EXPECT_EQ(printable(" "), " ");
 }
 
-TEST(Printable, OneLineHasNoBreaks) {
+TEST(Printable, OneLineReplacesLineBreaks) {
   EXPECT_EQ(one_line("red\x1b[0m\r\n\n sensorfarm: all is well"), "red\\x1b[0m  sensorfarm: all is well");
   EXPECT_EQ(one_line("a\tb\n"), "a b ");
 }

@@ -18,7 +18,7 @@ TEST(Random, IsAPureFunction) {
   EXPECT_EQ(random_words(kKey, 7), first);
 }
 
-/// A change of any field of the key, or of the index, changes the numbers.
+/// Changing any field of the key, or the index, changes the numbers.
 TEST(Random, EveryFieldMatters) {
   std::set<std::array<std::uint32_t, 4>> seen{random_words(kKey, 0), random_words(kKey, 1)};
   for (int field = 0; field < 7; ++field) {
@@ -34,7 +34,7 @@ TEST(Random, EveryFieldMatters) {
   }
 }
 
-TEST(Random, UniformIsOpenAndEven) {
+TEST(Random, UniformIsInOpenIntervalAndEven) {
   double sum = 0.0, squares = 0.0;
   constexpr std::uint32_t kCount = 100'000;
   for (std::uint32_t i = 0; i < kCount; ++i)
@@ -44,12 +44,12 @@ TEST(Random, UniformIsOpenAndEven) {
       sum += u;
       squares += u * u;
     }
-  // Four standard deviations of the mean of u and of u^2.
+  // Tolerances: four standard deviations of the mean of u and of u^2.
   EXPECT_NEAR(sum / (2 * kCount), 0.5, 4 * std::sqrt(1.0 / 12 / (2 * kCount)));
   EXPECT_NEAR(squares / (2 * kCount), 1.0 / 3, 4 * std::sqrt(4.0 / 45 / (2 * kCount)));
 }
 
-TEST(Random, NormalHasTheMomentsOfANormal) {
+TEST(Random, NormalHasStandardMoments) {
   double mean = 0.0, variance = 0.0, fourth = 0.0, both = 0.0;
   constexpr std::uint32_t kCount = 200'000;
   for (std::uint32_t i = 0; i < kCount; ++i) {

@@ -7,7 +7,7 @@
 namespace sf::base {
 namespace {
 
-TEST(Suggest, EditDistanceCountsSlips) {
+TEST(Suggest, EditDistanceCountsEdits) {
   EXPECT_EQ(edit_distance("", ""), 0u);
   EXPECT_EQ(edit_distance("", "abc"), 3u);
   EXPECT_EQ(edit_distance("pose", "pose"), 0u);
@@ -18,11 +18,11 @@ TEST(Suggest, EditDistanceCountsSlips) {
   EXPECT_EQ(edit_distance("range_max", "range_min"), 2u);
 }
 
-TEST(Suggest, ShortWordsAreSuggestedForOneSlipOnly) {
+TEST(Suggest, ShortWordsAllowOneEdit) {
   const std::vector<std::string_view> words{"fov", "z"};
   EXPECT_EQ(suggest("fow", words), "; did you mean 'fov'?");
   EXPECT_EQ(suggest("abc", words), "");
-  const std::vector<std::string_view> longer{"pose", "speed"};  // boundary: four letters, and five
+  const std::vector<std::string_view> longer{"pose", "speed"};  // boundary: four and five letters
   EXPECT_EQ(suggest("paxe", longer), "");
   EXPECT_EQ(suggest("spaad", longer), "; did you mean 'speed'?");
   EXPECT_EQ(suggest("spaax", longer), "") << "three slips";

@@ -15,7 +15,7 @@
 namespace sf::base {
 namespace {
 
-TEST(ThreadPool, EveryItemOnceWhateverThePiecesAndThreads) {
+TEST(ThreadPool, RunsEveryItemOnce) {
   for (const unsigned threads : {1u, 2u, 5u}) {
     ThreadPool thread_pool(threads);
     EXPECT_EQ(thread_pool.threads(), threads);
@@ -32,7 +32,7 @@ TEST(ThreadPool, EveryItemOnceWhateverThePiecesAndThreads) {
   }
 }
 
-/// On any thread, after the others have done their pieces; the next loop is as ever.
+/// An exception on any thread is rethrown after the other threads finish their pieces. The next loop runs normally.
 TEST(ThreadPool, ExceptionsReachTheCaller) {
   ThreadPool thread_pool(3);
   for (const std::size_t bad : {0u, 50u, 99u}) {
@@ -50,9 +50,9 @@ TEST(ThreadPool, ExceptionsReachTheCaller) {
   EXPECT_EQ(more, 100);
 }
 
-/// As under `ulimit -u` or `ulimit -v`: a loop runs with the threads that there are. A thread's stack takes 8 MiB of
-/// addresses.
-TEST(ThreadPool, FewerThreadsAreEnough) {
+/// As under `ulimit -u` or `ulimit -v`: a loop runs with the available threads. A thread's stack takes 8 MiB of address
+/// space.
+TEST(ThreadPool, RunsWithFewerThreads) {
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
   std::size_t pages = 0;
@@ -89,10 +89,10 @@ TEST(ThreadPool, ManyShortLoops) {
   }
 }
 
-TEST(ThreadPool, AsManyAsTheMachineHasByDefault) { EXPECT_GE(ThreadPool().threads(), 1u); }
+TEST(ThreadPool, UsesAllCoresByDefault) { EXPECT_GE(ThreadPool().threads(), 1u); }
 
-/// A loop that is still running when a stop is asked for leaves pieces out and throws; the next one runs.
-TEST(ThreadPool, AnInterruptedLoopEndsEarly) {
+/// A loop that is still running when a stop is requested skips pieces and throws. The next loop runs.
+TEST(ThreadPool, InterruptedLoopEndsEarly) {
   for (const unsigned threads : {1u, 3u}) {
     ThreadPool thread_pool(threads);
     std::atomic<bool> stop{false};
@@ -114,8 +114,8 @@ TEST(ThreadPool, AnInterruptedLoopEndsEarly) {
   }
 }
 
-/// A stop is seen between any two items of a piece.
-TEST(ThreadPool, AnInterruptedLoopEndsWithinAPiece) {
+/// A stop takes effect between any two items of a piece.
+TEST(ThreadPool, InterruptedLoopEndsWithinAPiece) {
   for (const unsigned threads : {1u, 3u}) {
     ThreadPool thread_pool(threads);
     std::atomic<bool> stop{false};
@@ -127,8 +127,8 @@ TEST(ThreadPool, AnInterruptedLoopEndsWithinAPiece) {
   }
 }
 
-/// An item that takes as long as the last would end beyond the patience: it is not begun.
-TEST(ThreadPool, LongItemsAreNotBegunAfterAStop) {
+/// An item is not started if, taking as long as the last one, it would end after the patience expires.
+TEST(ThreadPool, LongItemsDoNotStartAfterAStop) {
   constexpr std::chrono::milliseconds kPatience(50);
   ThreadPool thread_pool(1);
   std::atomic<bool> stop{false};
@@ -143,8 +143,8 @@ TEST(ThreadPool, LongItemsAreNotBegunAfterAStop) {
   EXPECT_EQ(items, 1);
 }
 
-/// Loops that end within the patience end whole.
-TEST(ThreadPool, APatientStopWaitsForTheLoop) {
+/// Loops that end within the patience complete.
+TEST(ThreadPool, ShortLoopsCompleteAfterAStop) {
   ThreadPool thread_pool(2);
   thread_pool.interrupt_on([] { return true; }, std::chrono::hours(1));
   std::atomic<int> pieces{0};
