@@ -1,8 +1,8 @@
 #ifndef MAPS_GRID_H
 #define MAPS_GRID_H
-// An occupancy grid in the layout of the thesis (figure 42): two bits a cell, 4 x 4 cells in 32 bits.
+// An occupancy grid in the layout of the thesis (figure 42): two bits per cell, 4 x 4 cells in 32 bits.
 //
-// Cell (column, row) of word (C, R) is at bits 2 * (4 * (row % 4) + column % 4); words are stored row by row. Columns
+// Cell (column, row) of word (C, R) is at bits 2 * (4 * (row % 4) + column % 4). Words are stored row by row. Columns
 // grow along +x, rows along -y, as on a page. Included by C++ and GLSL.
 
 #define SF_CELL_UNEXPLORED 0u
@@ -20,10 +20,10 @@
 
 namespace sf::maps {
 
-inline constexpr std::uint32_t kMaxWordColumns = 4096;  ///< and rows
-inline constexpr std::uint32_t kMaxWords = 1u << 20;    ///< of one map: 4 MiB, 4096 x 4096 cells
+inline constexpr std::uint32_t kMaxWordColumns = 4096;  ///< also the limit of rows
+inline constexpr std::uint32_t kMaxWords = 1u << 20;    ///< in one map: 4 MiB, 4096 x 4096 cells
 
-/// State of a cell. The fourth value of two bits is not used.
+/// State of a cell. The fourth two-bit value is unused.
 enum class Cell : std::uint8_t { unexplored = SF_CELL_UNEXPLORED, occupied = SF_CELL_OCCUPIED, free = SF_CELL_FREE };
 
 /// Position and size of a map.
@@ -33,7 +33,7 @@ struct GridGeometry {
   double top = 0.0;                 ///< [m] in [-1e7, 1e7]: y of the first row's upper side
   double cell = 0.03;               ///< [m] in [1e-4, 1e3]
   std::uint32_t word_columns = 30;  ///< in [1, kMaxWordColumns]: 4 cells each
-  std::uint32_t word_rows = 30;     ///< likewise; word_columns * word_rows <= kMaxWords
+  std::uint32_t word_rows = 30;     ///< same range; word_columns * word_rows <= kMaxWords
   bool operator==(const GridGeometry&) const = default;
 };
 
@@ -41,7 +41,7 @@ inline std::int64_t columns(const GridGeometry& geometry) { return 4 * std::int6
 inline std::int64_t rows(const GridGeometry& geometry) { return 4 * std::int64_t{geometry.word_rows}; }
 inline std::uint32_t words(const GridGeometry& geometry) { return geometry.word_columns * geometry.word_rows; }
 
-/// True for a finite geometry within the limits above. Nothing derived from it can overflow.
+/// Returns true for a finite geometry within the limits above. No value derived from it can overflow.
 inline bool is_valid(const GridGeometry& geometry) {
   constexpr double kFarthest = 1e7;  // [m]
   const bool placed = std::abs(geometry.left) <= kFarthest && std::abs(geometry.top) <= kFarthest;
@@ -51,24 +51,24 @@ inline bool is_valid(const GridGeometry& geometry) {
   return placed && sized && geometry.cell >= 1e-4 && geometry.cell <= 1e3;
 }
 
-/// True when each cell has one of the three states.
+/// Returns true when each cell has one of the three states.
 inline bool is_valid(std::uint32_t word) { return (word & (word >> 1) & 0x55555555u) == 0; }
 
-/// Indices of a cell, inside the map or outside.
+/// Indices of a cell inside or outside the map.
 struct CellAt {
   std::int64_t column = 0;
   std::int64_t row = 0;
   bool operator==(const CellAt&) const = default;
 };
 
-/// The largest integer not above `value`; |value| <= 2^62.
+/// Returns the largest integer not above `value`; |value| <= 2^62.
 inline std::int64_t whole_below(double value) {
   const auto cut = static_cast<std::int64_t>(value);
   return cut - (static_cast<double>(cut) > value ? 1 : 0);
 }
 
-/// The cell that holds `p` (within 1e15 cells). The one rule for all code: floor((x - left) / cell), floor((top - y) /
-/// cell), in double.
+/// Returns the cell that contains `p` (within 1e15 cells). All code uses this rule: floor((x - left) / cell),
+/// floor((top - y) / cell), in double.
 inline CellAt cell_at(const GridGeometry& geometry, glm::dvec2 p) {
   return {whole_below((p.x - geometry.left) / geometry.cell), whole_below((geometry.top - p.y) / geometry.cell)};
 }
@@ -77,13 +77,13 @@ inline bool contains(const GridGeometry& geometry, CellAt at) {
   return at.column >= 0 && at.row >= 0 && at.column < columns(geometry) && at.row < rows(geometry);
 }
 
-/// [m] the middle of a cell.
+/// Returns the centre of a cell [m].
 inline glm::dvec2 middle(const GridGeometry& geometry, CellAt at) {
   return {geometry.left + (static_cast<double>(at.column) + 0.5) * geometry.cell,
           geometry.top - (static_cast<double>(at.row) + 0.5) * geometry.cell};
 }
 
-/// One map.
+/// An occupancy grid.
 struct OccupancyGrid {
   GridGeometry geometry;
   std::vector<std::uint32_t> words;  ///< word_columns * word_rows
@@ -95,7 +95,7 @@ struct OccupancyGrid {
   }
   static unsigned shift_of(CellAt at) { return static_cast<unsigned>(2 * (4 * (at.row % 4) + at.column % 4)); }
 
-  /// Rule: `contains(geometry, at)`.
+  /// Precondition: `contains(geometry, at)`.
   Cell at(CellAt at) const { return static_cast<Cell>((words[word_of(at)] >> shift_of(at)) & 3u); }
   void set(CellAt at, Cell cell) {
     std::uint32_t& word = words[word_of(at)];

@@ -15,7 +15,7 @@ ScanRaster& raster() {
   return own;
 }
 
-/// The states of sixteen cells, a byte each, as a word of a map.
+/// Packs the states of sixteen cells, one byte each, into a word of a map.
 std::uint32_t word_of(const std::uint8_t* states) {
   static_assert(std::endian::native == std::endian::little);
   std::uint32_t word = 0;
@@ -30,7 +30,7 @@ std::uint32_t word_of(const std::uint8_t* states) {
   return word;
 }
 
-/// Changes the log odds of a word's cells. @return their states
+/// Updates the log odds of a word's cells. @return their states
 std::uint32_t weigh(const LogOddsUpdate& rule, const std::uint8_t* covered, std::int16_t* odds) {
   std::uint8_t states[16];
   for (int i = 0; i < 16; ++i) {

@@ -4,7 +4,7 @@ namespace sf::maps {
 
 namespace {
 
-/// Counters wrap: a newer number is less than half of the range ahead.
+/// Sequence numbers wrap: a newer number is ahead by less than half of the range.
 bool is_newer(std::uint32_t sequence, std::uint32_t than) { return sequence != than && sequence - than < 0x80000000u; }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace sf::maps {
 
 namespace {
 
-constexpr std::size_t kPartHeader = 36;  // [byte]
+constexpr std::size_t kPartHeader = 36;  // [bytes]
 constexpr std::size_t kPlainHeader = 2;
 
 std::uint32_t word_at(std::span<const std::uint8_t> bytes, std::uint32_t i) {
@@ -21,7 +21,7 @@ bool all_sound(std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-/// Checks a part against the fixed split of its map: sums of its fields cannot overflow.
+/// Checks a part against the fixed split of its map. Sums of its fields cannot overflow afterwards.
 bool fits(const MapPart& part) {
   if (!is_valid(part.geometry) || part.parts != parts_of(part.geometry) || part.part >= part.parts) return false;
   return part.count == std::min(kPartWords, words(part.geometry) - part.first) && part.flags <= kTruePoses;

@@ -8,7 +8,7 @@ namespace {
 
 char sign_of(Cell cell) { return cell == Cell::occupied ? '1' : cell == Cell::free ? ' ' : '0'; }
 
-/// State of a square of cells, without the cells outside the map.
+/// Returns the state of a square of cells, ignoring cells outside the map.
 Cell of_square(const OccupancyGrid& grid, std::int64_t column, std::int64_t row, std::int64_t side) {
   Cell all = Cell::unexplored;
   for (std::int64_t r = row; r < std::min(row + side, rows(grid.geometry)); ++r)

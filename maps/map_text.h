@@ -10,8 +10,8 @@ namespace sf::maps {
 /// One line per row, trailing blanks kept.
 std::string text_of(const OccupancyGrid& grid);
 
-/// The same for a terminal of limited size: a square of cells becomes one character, occupied when any of its cells is
-/// occupied, else free when any is free.
+/// Same, scaled to a terminal of limited size. Each character represents a square of cells: occupied if any of its
+/// cells is occupied, otherwise free if any is free.
 /// @param across, down largest number of columns and lines, at least 1
 std::string text_within(const OccupancyGrid& grid, int across, int down);
 

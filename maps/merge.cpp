@@ -9,7 +9,7 @@ namespace sf::maps {
 
 namespace {
 
-/// [cells] offset of the corner of `other` from that of `geometry`.
+/// Returns the offset of the corner of `other` from that of `geometry` [cells].
 CellAt corner_in(const GridGeometry& geometry, const GridGeometry& other) {
   return {static_cast<std::int64_t>(std::llround((other.left - geometry.left) / geometry.cell)),
           static_cast<std::int64_t>(std::llround((geometry.top - other.top) / geometry.cell))};

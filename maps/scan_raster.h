@@ -1,5 +1,5 @@
 #pragma once
-// The cells of one scan, a byte each: lines and ends are drawn without reading what a map holds, and each word of the
+// Rasterizes one scan, with one byte per cell. Lines and ends are drawn without reading the map, and each word of the
 // map is changed once.
 
 #include <array>
@@ -14,12 +14,12 @@
 
 namespace sf::maps {
 
-/// Scratch memory of one thread: up to 4 MiB. Blank between scans.
+/// Scratch memory of one thread: up to 4 MiB. All cells are blank between scans.
 class ScanRaster {
  public:
-  /// Draws the lines of a scan as free and its hits as occupied (the rule in maps/grid_update.h), then calls
-  /// `visit(word, states)` for each word of the map in which the scan has cells.
-  /// @param visit takes the index of a word and the states of its cells, 16 bytes in the order of the word's bits
+  /// Draws the lines of a scan as free and its hits as occupied (see the rule in maps/grid_update.h), then calls
+  /// `visit(word, states)` for each word of the map that the scan covers.
+  /// @param visit receives the index of a word and the states of its cells: 16 bytes, in the order of the word's bits
   template <class Visit>
   void add(const GridGeometry& geometry, const TracedScan& scan, std::span<const std::uint32_t> ends, Visit&& visit) {
     if (is_empty(intersect(scan.box, cells_of(geometry)))) return;
@@ -43,8 +43,9 @@ class ScanRaster {
     const std::int32_t far = flat ? columns : rows, aside = flat ? rows : columns;
     const std::uint32_t* along = (flat ? columns_.data() + sensor_column_ : rows_.data() + sensor_row_);
     const std::uint32_t* across = (flat ? rows_.data() + sensor_row_ : columns_.data() + sensor_column_);
-    // Steps across in 1/2^32 of a cell, rounded up: over 1 022 steps that is less than 1/(2 * 1 022), by which an
-    // offset differs from the next half cell, so that halves are still rounded away from the sensor's cell.
+    // Steps across, in units of 1/2^32 of a cell, rounded up. The sum of the errors over 1 022 steps is less than 1/(2
+    // * 1 022), the smallest distance of an offset from the next half cell, so halves are still rounded away from the
+    // sensor's cell.
     constexpr std::int64_t kOne = std::int64_t{1} << 32;
     const std::int32_t steps = std::abs(far), step = far < 0 ? -1 : 1;
     const double slope = steps > 0 ? static_cast<double>(std::abs(aside) * kOne) / steps : 0.0;
@@ -68,7 +69,7 @@ class ScanRaster {
         offer(geometry, block, block % width_, block / width_, visit);
       });
   }
-  /// Visits a block with cells of the scan inside the map, and blanks it.
+  /// Visits a block if it has cells of the scan inside the map, then blanks it.
   template <class Visit>
   void offer(const GridGeometry& geometry, std::size_t block, std::uint32_t column, std::uint32_t row, Visit& visit) {
     std::uint8_t* const states = &cells_[16 * block];
@@ -81,14 +82,14 @@ class ScanRaster {
     std::memset(states, 0, sizeof halves);
   }
 
-  std::int64_t first_column_ = 0, first_row_ = 0;  ///< [words] of the map
+  std::int64_t first_column_ = 0, first_row_ = 0;  ///< [words] in the map
   std::uint32_t width_ = 0, height_ = 0;           ///< [words]
   std::uint32_t sensor_column_ = 0, sensor_row_ = 0;
-  std::vector<std::uint8_t> cells_;     ///< word by word, in each in the order of its bits
-  std::vector<std::uint32_t> columns_;  ///< a cell's place is that of its column plus that of its row
+  std::vector<std::uint8_t> cells_;     ///< word by word, in bit order within a word
+  std::vector<std::uint32_t> columns_;  ///< the place of a cell is the sum of its column's and its row's entries
   std::vector<std::uint32_t> rows_;
-  std::vector<std::uint32_t> lines_;  ///< ends without their hits, each once where neighbours share it
-  std::size_t drawn_ = 0;             ///< cells of these lines
+  std::vector<std::uint32_t> lines_;  ///< ends without their hits; neighbouring beams with the same end share one entry
+  std::size_t drawn_ = 0;             ///< number of cells of these lines
 };
 
 }  // namespace sf::maps

@@ -11,7 +11,7 @@ namespace sf::maps {
 namespace {
 
 constexpr double kFarthestCell =
-    1e9;  // [cells] largest distance of a sensor from the map's corner; a scan beyond it is ignored
+    1e9;  // [cells] largest distance of a sensor from the map's corner; a scan from farther away is ignored
 
 void grow(CellBox& box, CellAt at) {
   box.low = {std::min(box.low.column, at.column), std::min(box.low.row, at.row)};
@@ -44,13 +44,13 @@ TracedScan trace_scan(const GridGeometry& geometry, const ScanView& scan, std::s
   const glm::dvec2 place{(X.x - geometry.left) / geometry.cell, (geometry.top - X.y) / geometry.cell};
   const double c = std::cos(X.yaw);
   const double s = std::sin(X.yaw);
-  // The negation also covers NaN.
+  // The negated comparison also rejects NaN.
   if (!(std::abs(place.x) <= kFarthestCell && std::abs(place.y) <= kFarthestCell && std::abs(c + s) <= 2.0)) return out;
   out.sensor = cell_at(geometry, {X.x, X.y});
   out.within = {place.x - static_cast<double>(out.sensor.column) - 0.5,
                 place.y - static_cast<double>(out.sensor.row) - 0.5};
 
-  std::size_t silent = 0;  // leading beams without a valid range
+  std::size_t silent = 0;  // number of leading beams without a valid range
   std::uint32_t said = 0;
   CellBox box{{0, 0}, {1, 1}};  // relative to the sensor's cell
   for (std::size_t k = 0; k < ends.size(); ++k) {

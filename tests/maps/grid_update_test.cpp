@@ -1,4 +1,4 @@
-// The update rule of maps, against cells computed by hand and against an independent definition of lines.
+// Tests the update rule of maps against cells computed by hand and against an independent definition of lines.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace sf::maps {
 namespace {
 
-/// Cells of 1 m, 12 x 12, the first at the origin.
+/// 12 x 12 cells of 1 m, the first at the origin.
 GridGeometry geometry() { return {0.0, 12.0, 1.0, 3, 3}; }
 
 /// One beam along +x of the sensor's frame.
@@ -24,19 +24,19 @@ OccupancyGrid one_beam(const base::Pose& X_WS, double range, double range_max, d
   return grid;
 }
 
-TEST(MapRule, ABeamThatMeetsSomething) {
+TEST(MapRule, HitOccupiesItsEnd) {
   const OccupancyGrid grid = one_beam({2.5, 9.5, 0, 0}, 3.0, 8.0);
   EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00   1000000");
   EXPECT_EQ(count(grid).occupied, 1u);
   EXPECT_EQ(count(grid).free, 3u);
 }
 
-TEST(MapRule, ABeamThatMeetsNothingFreesItsEnd) {
+TEST(MapRule, MissFreesItsEnd) {
   for (const double range : {3.0, 100.0, std::numeric_limits<double>::infinity()})
     EXPECT_EQ(text_of(one_beam({2.5, 9.5, 0, 0}, range, 3.0)).substr(2 * 13, 12), "00    000000") << range;
 }
 
-TEST(MapRule, RangesWithoutMeaningChangeNoCell) {
+TEST(MapRule, InvalidRangesChangeNoCell) {
   EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, std::nan(""), 3.0)).unexplored, 144u);
   EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, -0.1, 3.0)).unexplored, 144u);
   EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, 0.5, 3.0, 0.5)).unexplored, 144u) << "that, or anything nearer";
@@ -50,8 +50,8 @@ TEST(MapRule, ZeroRangeOccupiesTheSensorsCell) {
   EXPECT_EQ(count(grid).unexplored, 143u);
 }
 
-TEST(MapRule, HalvesGoAwayFromTheSensor) {
-  // Two cells along, one to the side: the middle step lies on the border.
+TEST(MapRule, HalvesRoundAwayFromTheSensor) {
+  // Two cells along, one to the side: the middle step lies on the boundary.
   const double yaw = std::atan2(1.0, 2.0);
   EXPECT_EQ(one_beam({2.5, 5.5, 0, yaw}, std::sqrt(5.0), 9.0).at({3, 5}), Cell::free) << "up, away from row 6";
   EXPECT_EQ(one_beam({2.5, 5.5, 0, -yaw}, std::sqrt(5.0), 9.0).at({3, 7}), Cell::free) << "down";
@@ -59,7 +59,7 @@ TEST(MapRule, HalvesGoAwayFromTheSensor) {
   EXPECT_EQ(one_beam({5.5, 5.5, 0, yaw + M_PI}, std::sqrt(5.0), 9.0).at({4, 7}), Cell::free) << "back, down";
 }
 
-TEST(MapRule, WithinAScanOccupiedBeatsFree) {
+TEST(MapRule, OccupiedTakesPrecedenceWithinAScan) {
   // The end of the first beam lies on the second's line; setting the beams in turn would overwrite it.
   OccupancyGrid grid(geometry());
   const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
@@ -68,7 +68,7 @@ TEST(MapRule, WithinAScanOccupiedBeatsFree) {
   EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00   1 10000");
 }
 
-TEST(MapRule, ALaterScanIsRight) {
+TEST(MapRule, LaterScanOverwrites) {
   OccupancyGrid grid = one_beam({2.5, 9.5, 0, 0}, 3.0, 8.0);
   const std::vector<glm::dvec2> beams{{1, 0}};
   const std::vector<double> ranges{6.0};
@@ -79,7 +79,7 @@ TEST(MapRule, ALaterScanIsRight) {
   EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00    1 1000") << "a free cell is occupied, and what it hides stays";
 }
 
-TEST(MapRule, BesideTheMap) {
+TEST(MapRule, SensorOutsideTheMap) {
   const OccupancyGrid into = one_beam({-2.5, 9.5, 0, 0}, 4.0, 8.0);
   EXPECT_EQ(text_of(into).substr(2 * 13, 12), " 10000000000") << "it comes from outside";
   const OccupancyGrid out = one_beam({9.5, 9.5, 0, 0}, 7.0, 8.0);
@@ -91,7 +91,7 @@ TEST(MapRule, BesideTheMap) {
   EXPECT_EQ(count(one_beam({2.5, 9.5, 0, std::nan("")}, 4.0, 8.0)).unexplored, 144u);
 }
 
-TEST(MapRule, FarFromTheOriginTheSameCells) {
+TEST(MapRule, SameCellsFarFromTheOrigin) {
   // 2^17 m away, positions in multiples of 1/64 m: sums are exact, so the map must be equal.
   trial::Chance chance(3);
   const std::vector<glm::dvec2> beams = beam_directions(M_PI, 91);
@@ -104,13 +104,13 @@ TEST(MapRule, FarFromTheOriginTheSameCells) {
     OccupancyGrid there(GridGeometry{far, 12.0 - far, 1.0, 3, 3});
     add_scan(here, {X, ranges, beams, 0.0, 5.0});
     add_scan(there, {{X.x + far, X.y - far, 0, X.yaw}, ranges, beams, 0.0, 5.0});
-    // An end within rounding of a border may fall to either side; none of these does.
+    // An end within rounding of a boundary could fall to either side; none of these ends does.
     EXPECT_EQ(here.words, there.words);
   }
 }
 
 /// The cells of one line by the definition of the rule: the nearest cell to the point at step i of n.
-TEST(MapRule, LinesAreAsWorded) {
+TEST(MapRule, LinesFollowTheRule) {
   trial::Chance chance(4);
   for (int k = 0; k < 3000; ++k) {
     const auto dc = static_cast<std::int32_t>(chance.below(41)) - 20;
@@ -135,7 +135,7 @@ TEST(MapRule, LinesAreAsWorded) {
   }
 }
 
-TEST(MapRule, EndsArePackedWithTheirSigns) {
+TEST(MapRule, PackedEndsKeepTheirSigns) {
   for (const int c : {-1023, -1, 0, 1, 1023})
     for (const int r : {-1023, -7, 0, 7, 1023})
       for (const bool hit : {false, true}) {
@@ -146,16 +146,16 @@ TEST(MapRule, EndsArePackedWithTheirSigns) {
       }
 }
 
-TEST(MapRule, BearingsEndExactlyAtTheFieldOfView) {
+TEST(MapRule, BearingsAreExactAtTheFieldOfView) {
   const auto beams = beam_directions(M_PI, 5);
   EXPECT_EQ(beams[0].y, -beams[4].y) << "mirrored";
   EXPECT_EQ(beams[2].x, 1.0) << "the middle one looks ahead";
   EXPECT_EQ(beam_directions(M_PI, 1)[0].x, 1.0);
 }
 
-TEST(LogOdds, EachScanWeighsOnceAndStaysWithinLimits) {
+TEST(LogOdds, EachScanCountsOnceAndClamps) {
   LogOddsGrid grid(geometry(), {85, 40, 200});
-  // Two beams through the same cells: one miss each.
+  // Two beams through the same cells count as one miss per cell.
   const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
   const std::vector<double> ranges{3.0, 3.0};
   const auto add = [&](double range) {

@@ -37,7 +37,7 @@ std::vector<base::Bytes> plain_parts(const OccupancyGrid& grid) {
   return parts;
 }
 
-TEST(MapPackets, EveryByteOfAPart) {
+TEST(MapPackets, EncodesEveryByteOfAPart) {
   OccupancyGrid grid(GridGeometry{1.0, -2.0, 0.5, 2, 1});
   grid.words = {0x00000001u, 0x8A000000u};
   const base::Bytes bytes = parts_of(grid, kTruePoses)[0];
@@ -55,7 +55,7 @@ TEST(MapPackets, PartsFillADatagram) {
   EXPECT_EQ(plain_parts(numbered(0))[1].size(), 1800u);
 }
 
-TEST(MapPackets, MalformedPartsAreRefused) {
+TEST(MapPackets, RejectsMalformedParts) {
   const base::Bytes good = parts_of(numbered(3))[2];
   MapPart part;
   ASSERT_EQ(read_part(good, part), PartFault::none);
@@ -80,7 +80,7 @@ TEST(MapPackets, MalformedPartsAreRefused) {
   EXPECT_EQ(patched(36, std::uint32_t{3}), PartFault::out_of_range) << "a state that no cell has";
 }
 
-TEST(MapAssembler, PartsInAnyOrderMakeTheMap) {
+TEST(MapAssembler, AcceptsPartsInAnyOrder) {
   MapAssembler assembler;
   EXPECT_EQ(assembler.map(), nullptr);
   const OccupancyGrid grid = numbered(1);
@@ -111,7 +111,7 @@ TEST(MapAssembler, LostPartsKeepTheirOldContent) {
   EXPECT_EQ(assembler.map()->words[899], numbered(2).words[899]);
 }
 
-TEST(MapAssembler, LatePartsAreLeftOut) {
+TEST(MapAssembler, IgnoresLateParts) {
   MapAssembler assembler;
   const auto old = parts_of(numbered(1));
   assembler.add_part(1, old[0]);
@@ -122,7 +122,7 @@ TEST(MapAssembler, LatePartsAreLeftOut) {
   EXPECT_EQ(assembler.map()->words, numbered(2).words);
 }
 
-TEST(MapAssembler, ASenderThatStartsAgainIsBelieved) {
+TEST(MapAssembler, AcceptsARestartedSender) {
   MapAssembler assembler;
   for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(1000, part);
   const auto again = [&](std::uint32_t sequence) {
@@ -144,8 +144,8 @@ TEST(MapAssembler, CountersWrap) {
   EXPECT_EQ(last, MapPartStatus::complete);
 }
 
-/// Of two numbers half of the range apart, neither is newer.
-TEST(MapAssembler, HalfWayRoundIsNotNewer) {
+/// If two numbers are half of the range apart, neither is newer.
+TEST(MapAssembler, HalfTheRangeAheadIsNotNewer) {
   const auto after = [](std::uint32_t first, std::uint32_t next) {
     MapAssembler assembler;
     for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(first, part);
@@ -157,7 +157,7 @@ TEST(MapAssembler, HalfWayRoundIsNotNewer) {
   EXPECT_EQ(after(5, 4), MapPartStatus::late);
 }
 
-TEST(MapAssembler, AMapThatChangesItsPlanBeginsAnew) {
+TEST(MapAssembler, NewGeometryStartsANewMap) {
   MapAssembler assembler;
   for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(1, part);
   GridGeometry other = map_geometry();
@@ -167,7 +167,7 @@ TEST(MapAssembler, AMapThatChangesItsPlanBeginsAnew) {
   EXPECT_EQ(assembler.map()->words.size(), 60u);
 }
 
-TEST(MapAssembler, TheThesisFormInTwoDatagrams) {
+TEST(MapAssembler, ThesisFormUsesTwoDatagrams) {
   MapAssembler assembler;
   const OccupancyGrid grid = numbered(4);
   const auto parts = plain_parts(grid);
@@ -187,8 +187,8 @@ TEST(MapAssembler, TheThesisFormInTwoDatagrams) {
       << "one word is all in the first";
 }
 
-TEST(MapAssembler, AnyBytesAndAnyNetwork) {
-  // Parts of a few maps, cut, flipped, repeated and shuffled: no crash, and all content was sent before.
+TEST(MapAssembler, SurvivesAnyBytesAndAnyNetwork) {
+  // Parts of a few maps, truncated, flipped, repeated and shuffled: no crash, and all content was sent before.
   trial::Chance chance(9);
   MapAssembler assembler, plain;
   std::uint64_t used = 0;

@@ -24,14 +24,14 @@ Cell at_point(const OccupancyGrid& grid, glm::dvec2 p) {
   return contains(grid.geometry, at) ? grid.at(at) : Cell::unexplored;
 }
 
-TEST(Merge, OneMapStaysWhatItIs) {
+TEST(Merge, SingleMapIsUnchanged) {
   const OccupancyGrid grid = filled({-1.2, 3.4, 0.5, 3, 2}, 1);
   const OccupancyGrid* const one[] = {&grid};
   EXPECT_EQ(merge(one).geometry, grid.geometry);
   EXPECT_EQ(merge(one).words, grid.words);
 }
 
-TEST(Merge, EveryCellIsThatOfItsMaps) {
+TEST(Merge, EveryCellComesFromItsMaps) {
   // Shifts by any number of whole cells, so that words are not aligned.
   trial::Chance chance(2);
   for (std::uint64_t k = 0; k < 40; ++k) {
@@ -68,7 +68,7 @@ TEST(Merge, EveryCellIsThatOfItsMaps) {
   }
 }
 
-TEST(Merge, MapsThatDoNotFitTogetherAreRefused) {
+TEST(Merge, RejectsIncompatibleMaps) {
   const OccupancyGrid a(GridGeometry{0, 0, 0.03, 2, 2}), coarse(GridGeometry{0, 0, 0.05, 2, 2}),
       far(GridGeometry{1e5, 0, 0.03, 2, 2});
   const OccupancyGrid* const cells[] = {&a, &coarse};
@@ -83,7 +83,7 @@ TEST(Merge, MapsThatDoNotFitTogetherAreRefused) {
   EXPECT_NE(merge_problem(ends), "");
 }
 
-TEST(MapText, AsTheThesisPrintsIt) {
+TEST(MapText, MatchesTheThesis) {
   OccupancyGrid grid(GridGeometry{0, 0, 1, 1, 1});
   grid.set({0, 0}, Cell::occupied);
   grid.set({3, 0}, Cell::free);
@@ -92,7 +92,7 @@ TEST(MapText, AsTheThesisPrintsIt) {
   EXPECT_EQ(grid.words[0], 1u | 2u << 6 | 2u << 26) << "figure 42: rows of four, two bits each";
 }
 
-TEST(MapText, ATerminalsSizeIsKept) {
+TEST(MapText, FitsTheTerminal) {
   const OccupancyGrid grid = filled({0, 0, 1, 5, 3}, 5);  // 20 x 12
   EXPECT_EQ(text_within(grid, 20, 12), text_of(grid));
   const std::string half = text_within(grid, 10, 99);

@@ -1,5 +1,6 @@
 #pragma once
-// The update rule of maps (maps/grid_update.h) cell by cell: the reference, and the peer in benchmarks.
+// Applies the update rule of maps (maps/grid_update.h) cell by cell: the reference for tests, and the baseline in
+// benchmarks.
 
 #include <algorithm>
 #include <cstdlib>
@@ -15,7 +16,7 @@ using maps::CellAt;
 using maps::CellBox;
 using maps::OccupancyGrid;
 
-/// Frees all cells of one beam's line. `inside`: the whole line is inside the map.
+/// Frees all cells of one beam's line. @param inside true if the whole line is inside the map
 inline void free_line(OccupancyGrid& grid, CellAt sensor, std::int32_t columns, std::int32_t rows, bool inside) {
   const bool flat = std::abs(columns) >= std::abs(rows);
   const std::int32_t steps = std::abs(flat ? columns : rows);
@@ -23,7 +24,7 @@ inline void free_line(OccupancyGrid& grid, CellAt sensor, std::int32_t columns, 
   const CellAt along = flat ? CellAt{columns < 0 ? -1 : 1, 0} : CellAt{0, rows < 0 ? -1 : 1};
   const CellAt across = flat ? CellAt{0, rows < 0 ? -1 : 1} : CellAt{columns < 0 ? -1 : 1, 0};
   CellAt at = sensor;
-  // floor((2 i aside + steps) / (2 steps)), kept as quotient (in `at`) and remainder.
+  // Computes floor((2 i aside + steps) / (2 steps)), kept as quotient (in `at`) and remainder.
   std::int32_t rest = steps;
   for (std::int32_t i = 0; i <= steps; ++i) {
     if (inside || contains(grid.geometry, at)) grid.set(at, maps::Cell::free);
@@ -46,7 +47,7 @@ inline void add_plainly(OccupancyGrid& grid, const maps::TracedScan& scan, std::
   }
 }
 
-/// Leaves `grid.words` as they are. @param covered scratch map of the same geometry: unexplored before and after
+/// Leaves `grid.words` unchanged. @param covered scratch map of the same geometry: unexplored before and after
 inline void add_plainly(maps::LogOddsGrid& grid, const maps::TracedScan& scan, std::span<const std::uint32_t> ends,
                         OccupancyGrid& covered) {
   const CellBox part = intersect(scan.box, cells_of(grid.geometry));
