@@ -13,14 +13,14 @@ namespace sf::gpu {
 
 namespace {
 
-/// Copies between two buffers.
+/// Copies between a pair of buffers.
 struct Copies {
   VkBuffer from;
   VkBuffer to;
   std::vector<VkBufferCopy> regions;
 };
 
-/// Adjacent regions become one, as a GPU takes microseconds for each: adds `size` bytes at `offset`.
+/// Adds a copy of `size` bytes at `offset`. Merges adjacent regions, because a GPU takes microseconds per region.
 void add_copy(std::vector<Copies>& all, VkBuffer from, VkBuffer to, VkDeviceSize offset, VkDeviceSize size) {
   const auto own = std::find_if(all.begin(), all.end(), [&](const Copies& c) { return c.from == from && c.to == to; });
   std::vector<VkBufferCopy>& regions = own != all.end() ? own->regions : all.emplace_back(Copies{from, to, {}}).regions;

@@ -25,7 +25,7 @@ VkFormat format_of(Texel texel) {
   }
 }
 
-/// Allocates in the first memory type of `wishes` that the device has.
+/// Allocates in the first memory type of `wishes` that the device supports.
 Storage allocate(const Device::Vk& vk, VkDeviceSize size, VkBufferUsageFlags usage,
                  std::initializer_list<VkMemoryPropertyFlags> wishes) {
   Storage storage;
@@ -73,7 +73,7 @@ void make_storage(Buffer::Vk& vk, const Device& device, VkDeviceSize size) {
     vk.table = allocate(*vk.device, size, table, {kCached | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT});
   } else {
     vk.table = allocate(*vk.device, size, table, {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0});
-    // Cached, since tables that grow are read as well.
+    // Cached, because the host also reads tables that grow.
     vk.staging = allocate(*vk.device, size, staging, {kCached, kHost});
   }
   const VkDeviceMemory seen = vk.staging.memory ? vk.staging.memory : vk.table.memory;

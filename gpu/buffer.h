@@ -1,6 +1,6 @@
 #pragma once
-// Tables that the device reads and writes, as texel buffers. On lavapipe, loads from texel buffers are vector gathers
-// and loads from storage buffers are not; stores to storage buffers take a fifth of the time.
+// Tables that the device reads and writes as texel buffers. On lavapipe, loads from texel buffers are vectorized
+// gathers, while loads from storage buffers are not; stores to storage buffers take a fifth of the time.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,14 +23,15 @@ enum class Role {
 
 std::size_t texel_size(Texel texel);  ///< [bytes] 4 or 16
 
-/// Number of 16-byte texels in a table of `records` records.
+/// Returns the number of 16-byte texels in a table of `records` records.
 template <class Record>
 constexpr std::size_t texels_of(std::size_t records) {
   static_assert(sizeof(Record) % 16 == 0);
   return sizeof(Record) / 16 * records;
 }
 
-/// A table of texels with a host view. On a unified device the host view is the table itself; on others a Batch copies.
+/// A table of texels with a host view. On a unified device the host view is the table itself; on others, a Batch copies
+/// between them.
 class Buffer {
  public:
   /// @param name description of the contents, for Device::allocations
@@ -41,14 +42,14 @@ class Buffer {
   Buffer(Buffer&&) noexcept;
   Buffer& operator=(Buffer&&) noexcept;
 
-  /// Host view of the whole table, valid as long as the buffer. `sizeof(T)` must divide the table's size.
+  /// Returns a host view of the whole table, valid as long as the buffer. `sizeof(T)` must divide the table's size.
   template <class T>
   std::span<T> host() {
     return {static_cast<T*>(mapped()), bytes() / sizeof(T)};
   }
   std::size_t bytes() const;
   std::size_t texels() const;
-  /// True when a kernel can write the whole table as a storage `buffer`.
+  /// Returns true when a kernel can write the whole table as a storage `buffer`.
   bool fits_storage_buffer() const;
 
   struct Vk;

@@ -18,7 +18,7 @@ struct Buffer::Vk {
   Texel texel = Texel::u32;
   std::size_t texels = 0;
   Storage table;    ///< bound to kernels
-  Storage staging;  ///< mapped by the host, where that is not the table itself
+  Storage staging;  ///< mapped by the host, if separate from the table
   VkBufferView view = VK_NULL_HANDLE;
   void* mapped = nullptr;
 };

@@ -1,4 +1,4 @@
-// Choice of the device. Unsuitable devices are refused first; then the user's choice decides, then the device type.
+// Chooses the device. Unsuitable devices are rejected first; then the user's choice decides, then the device type.
 
 #include <algorithm>
 #include <cctype>

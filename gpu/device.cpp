@@ -15,20 +15,20 @@ namespace sf::gpu {
 
 namespace {
 
-/// Drivers fail without a reason where memory is limited; empty: it is not.
+/// Returns a hint about memory limits, because drivers then fail without a reason; empty if memory is not limited.
 std::string limits_text() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
   return ", or raise the limit of memory (ulimit -v), which is " + std::to_string(limit.rlim_cur >> 20) + " MiB";
 }
 
-/// In any case of its letters.
+/// Compares ignoring case.
 bool names_host(const std::string& wanted) {
   return std::equal(wanted.begin(), wanted.end(), kHostDevice.begin(), kHostDevice.end(),
                     [](unsigned char a, char b) { return std::tolower(a) == b; });
 }
 
-/// Of a name that no device has; else "".
+/// Returns a suggestion for a name that no device has, otherwise "".
 std::string suggest_device(const std::string& wanted, const DeviceCandidates& candidates) {
   std::vector<std::string_view> names{kHostDevice};
   for (const DeviceInfo& info : candidates.info) names.emplace_back(info.name);
@@ -85,7 +85,7 @@ void close(Device::Vk& vk) {
   vk.device = VK_NULL_HANDLE;
 }
 
-/// Opens row `row` in `device` and keeps it open when it passes the self-check. @return "" or the fault
+/// Opens row `row` in `device` and keeps it open if it passes the self-check. @return "" or the fault
 std::string start(Device& device, DeviceCandidates& candidates, std::size_t row) {
   Device::Vk& vk = device.vk();
   DeviceInfo& info = candidates.info[row];
@@ -126,7 +126,7 @@ DeviceInfo host_info() {
           .self_check = "not needed"};
 }
 
-/// Why the host is not the chosen device; "" where it is.
+/// Returns why the host is not the chosen device; "" if it is.
 std::string refusal_of_host(const std::string& wanted, bool require_vulkan, bool named, bool other_chosen) {
   if (!named && !wanted.empty()) return "does not match '" + wanted + "'";
   if (require_vulkan)

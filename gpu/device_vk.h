@@ -14,17 +14,18 @@
 
 namespace sf::gpu {
 
-/// True when an environment variable is neither empty nor "0".
+/// Returns true when an environment variable is neither empty nor "0".
 bool is_set(const char* variable);
 
-/// Aborts with the call's name: a Vulkan call that fails after start-up is a bug of the program or a lost device.
+/// Aborts with the call's name if `result` is an error: a Vulkan call that fails after start-up indicates a bug or a
+/// lost device.
 void check_vk(VkResult result, const char* call);
 
 struct Instance {
   VkInstance handle = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
   std::string problem;   ///< why there is no instance
-  std::string messages;  ///< of the validation layer
+  std::string messages;  ///< messages of the validation layer
   std::mutex lock;
 
   Instance();
@@ -51,11 +52,11 @@ struct Device::Vk {
   bool is_host() const { return instance == nullptr; }
   void add_allocation(const void* what, std::string_view name, std::size_t bytes, bool is_kernel);
   void remove_allocation(const void* what);
-  /// Row of a memory type with all of `wanted` among `allowed`, or -1.
+  /// Returns the row of a memory type among `allowed` that has all properties in `wanted`, or -1.
   int memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
 };
 
-/// All physical devices of `instance`; none is chosen yet. Row i of `info` belongs to row i of `handles`. A non-empty
+/// All physical devices of `instance`, before any is chosen. Row i of `info` belongs to row i of `handles`. A non-empty
 /// `reason` names a missing feature.
 struct DeviceCandidates {
   std::vector<VkPhysicalDevice> handles;
@@ -63,30 +64,30 @@ struct DeviceCandidates {
 };
 DeviceCandidates find_candidates(const Instance& instance);
 
-/// As in `DeviceInfo::kind`.
+/// Returns the text for `DeviceInfo::kind`.
 const char* device_type_text(VkPhysicalDeviceType type);
 
 /// Marks the chosen row and gives the others a reason. @return the chosen row, or -1
 int choose_device(DeviceCandidates& candidates, const std::string& wanted);
 
-/// As above, but with `start`: a row that it returns a fault for gets the fault as its reason, and the next best is
-/// tried.
+/// Same, but calls `start` on the chosen row. If it returns a fault, the fault becomes the row's reason and the next
+/// best row is tried.
 using TryDevice = std::function<std::string(DeviceCandidates&, std::size_t row)>;
 int choose_device(DeviceCandidates& candidates, const std::string& wanted, const TryDevice& start);
 
 /// Features that a device must have.
 struct DeviceFeatures {
-  std::uint32_t api = 0;  ///< as VK_MAKE_API_VERSION
+  std::uint32_t api = 0;  ///< encoded as by VK_MAKE_API_VERSION
   bool doubles = false;
   bool compute = false;
-  bool votes = false;             ///< of subgroups, in kernels
-  std::vector<VkFormat> missing;  ///< formats without storage texel buffers
+  bool votes = false;             ///< subgroup votes in kernels
+  std::vector<VkFormat> missing;  ///< formats without support for storage texel buffers
 };
 
-/// The first missing feature, or "".
+/// Returns the first missing feature, or "".
 std::string missing_feature(const DeviceFeatures& supported);
 
-/// Index of a compute queue family, preferably without graphics, or -1.
+/// Returns the index of a compute queue family, preferably without graphics, or -1.
 int compute_queue_family(std::span<const VkQueueFamilyProperties> families);
 int compute_queue_family(VkPhysicalDevice physical);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Workgroups of a dispatch whose size changes from tick to tick: along x up to a limit, then in rows along y. The size
-// of a group is `local_size_x` of the kernel in shaders/.
+// Workgroups of a dispatch whose size changes every tick: along x up to a limit, then in rows along y. The size of a
+// group is `local_size_x` of the kernel in shaders/.
 
 #include <algorithm>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace sf::gpu {
 
-/// Groups along x, at most; Vulkan guarantees 65 535.
+/// Largest number of groups along x; Vulkan guarantees 65 535.
 inline constexpr std::uint32_t kMostGroupsAcross = 32'768;
 
 struct GroupCounts {
@@ -20,14 +20,14 @@ struct GroupCounts {
   std::size_t all() const { return std::size_t{across} * down; }
 };
 
-/// Whole rows of groups for so many invocations.
+/// Returns whole rows of groups for a number of invocations.
 inline GroupCounts groups_for(std::size_t invocations, std::size_t group_size) {
   const auto needed = static_cast<std::uint32_t>((invocations + group_size - 1) / group_size);
   const std::uint32_t across = std::min(needed, kMostGroupsAcross);
   return {across, across > 0 ? (needed + across - 1) / across : 0};
 }
 
-/// Room for the groups of any number of invocations up to `most`.
+/// Returns the largest number of groups needed for up to `most` invocations.
 inline std::size_t most_groups_for(std::size_t most, std::size_t group_size) {
   const std::size_t groups = most / group_size + 1;
   return groups > kMostGroupsAcross ? groups + kMostGroupsAcross : groups;

@@ -74,7 +74,7 @@ void make_pipeline(Kernel::Vk& vk, std::span<const std::uint32_t> spirv, std::sp
 }  // namespace
 
 KernelInterface interface_of(std::span<const std::uint32_t> spirv) {
-  // SPIR-V: five words of header, then instructions whose first word is (word count << 16 | opcode).
+  // SPIR-V: a header of five words, then instructions whose first word is (word count << 16 | opcode).
   constexpr std::uint32_t kName = 5, kExecutionMode = 16, kVariable = 59, kDecorate = 71;
   constexpr std::uint32_t kLocalSize = 17, kBinding = 33, kStorageBuffer = 12;
   KernelInterface found;

@@ -16,8 +16,8 @@ namespace sf::gpu {
 /// A table as the kernel's source declares it.
 struct KernelTable {
   std::string name;
-  std::uint32_t binding = 0;  ///< of descriptor set 0
-  bool is_buffer = false;     ///< a `buffer`; else an `imageBuffer` of the table's texel
+  std::uint32_t binding = 0;  ///< in descriptor set 0
+  bool is_buffer = false;     ///< true: a `buffer`; false: an `imageBuffer` of the table's texel
 };
 
 /// Declarations of a SPIR-V module.
@@ -32,7 +32,7 @@ struct TableBinding {
   const Buffer* table;
 };
 
-/// On a device that is the host, a kernel has its group size and checks its tables, but cannot be dispatched.
+/// On the host device, a kernel has its group size and checks its tables, but cannot be dispatched.
 class Kernel {
  public:
   /// @param name for Device::allocations
@@ -44,12 +44,13 @@ class Kernel {
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
-  /// Sets the tables of all dispatches of the kernel: call it before they are recorded. All tables that the kernel
-  /// declares, in any order; of a `buffer` larger than the device's limit the first part. Tables must outlive them.
+  /// Sets the tables for all dispatches of the kernel. Call it before they are recorded. Takes all tables that the
+  /// kernel declares, in any order. A `buffer` larger than the device's limit is bound up to that limit. Tables must
+  /// outlive the dispatches.
   void bind(const std::vector<TableBinding>& tables);
 
   std::uint32_t group_size() const;  ///< invocations along x per group
-  /// `invocations` rounded up to whole groups.
+  /// Returns `invocations` rounded up to whole groups.
   std::size_t padded(std::size_t invocations) const {
     return (invocations + group_size() - 1) / group_size() * group_size();
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Comparison of a device's arithmetic with the host's. Run on every device before it is used.
+// Compares a device's arithmetic with the host's. Runs on every device before it is used.
 
 #include <cstdint>
 #include <span>
@@ -10,16 +10,16 @@
 namespace sf::gpu {
 
 struct SelfCheck {
-  std::string fault;      ///< "" where device and host agree, else one line with the first difference: operation,
+  std::string fault;      ///< "" if device and host agree, else one line with the first difference: operation,
                           ///< operands, found and expected
   bool rounds32 = false;  ///< as gpu::rounds32
 };
 
-/// Runs the operations of gpu/self_check_arithmetic.h on the device, in the form in which kernels use them, and on the
-/// host.
+/// Runs the operations of gpu/self_check_arithmetic.h on the host, and on the device in the form in which kernels use
+/// them.
 SelfCheck self_check(Device& device);
 
-/// The same with another kernel in place of shaders/self_check.comp.
+/// Same, with another kernel instead of shaders/self_check.comp.
 SelfCheck self_check(Device& device, std::span<const std::uint32_t> spirv);
 
 }  // namespace sf::gpu

@@ -55,7 +55,7 @@ std::uint64_t refined_root(Operands o) {
   return bits(s + (square - s * s) * static_cast<double>(0.5f / root32(o)));
 }
 
-/// Vulkan allows 32-bit roots and quotients an error of a few last places; after a step of Newton's method it is below
+/// Vulkan allows errors of a few ulps in 32-bit roots and quotients. One step of Newton's method reduces them below
 /// 1e-12.
 constexpr double kNewton = 1e-12;
 

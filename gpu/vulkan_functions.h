@@ -1,6 +1,6 @@
 #pragma once
-// The functions of Vulkan's loader. The loader is opened when the first instance is made, so that the program starts
-// where it is not installed.
+// The functions of the Vulkan loader. The loader is opened when the first instance is created, so the program starts
+// even if it is not installed.
 
 #define VK_NO_PROTOTYPES
 #include <vulkan/vulkan.h>
@@ -34,7 +34,7 @@ SF_VULKAN_FUNCTIONS(SF_DECLARE_FUNCTION)
 #undef SF_DECLARE_FUNCTION
 
 /// Opens the loader at the first call; thread-safe. The functions may be called after a success.
-/// @return "" or why there is none
+/// @return "" or the reason for the failure
 const std::string& open_vulkan_loader();
 
 }  // namespace sf::gpu

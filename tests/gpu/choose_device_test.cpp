@@ -1,4 +1,4 @@
-// Choice among several synthetic devices.
+// Chooses among several synthetic devices.
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ std::string chosen_of(const std::vector<DeviceInfo>& devices, const std::string&
   return row < 0 ? "" : candidates.info[static_cast<std::size_t>(row)].name;
 }
 
-TEST(Choose, TheBestKindOfDeviceWhateverTheOrder) {
+TEST(Choose, PrefersTheBestKindInAnyOrder) {
   const DeviceInfo other = device("other", kOther), cpu = device("cpu", kCpu), guest = device("virtual", kVirtual),
                    integrated = device("integrated", kIntegrated), discrete = device("discrete", kDiscrete);
   EXPECT_EQ(chosen_of({discrete, integrated, guest, cpu, other}), "discrete");
@@ -54,7 +54,7 @@ TEST(Choose, TheBestKindOfDeviceWhateverTheOrder) {
   EXPECT_EQ(chosen_of({device("first", kCpu), device("second", kCpu)}), "first") << "of equals the first";
 }
 
-TEST(Choose, KindsHaveTheirWords) {
+TEST(Choose, NamesTheKinds) {
   EXPECT_EQ(device("", kDiscrete).kind, "discrete GPU");
   EXPECT_EQ(device("", kIntegrated).kind, "integrated GPU");
   EXPECT_EQ(device("", kVirtual).kind, "virtual GPU");
@@ -62,13 +62,13 @@ TEST(Choose, KindsHaveTheirWords) {
   EXPECT_EQ(device("", kOther).kind, "other");
 }
 
-TEST(Choose, ADeviceThatLacksSomethingIsNeverTaken) {
+TEST(Choose, NeverSelectsAnIncompleteDevice) {
   EXPECT_EQ(chosen_of(five().info), "GeForce");
   EXPECT_EQ(chosen_of(five().info, "Old"), "");
   EXPECT_EQ(chosen_of(five().info, "4"), "");
 }
 
-TEST(Choose, AWishIsARowOrAPartOfNameOrDriverInAnyCase) {
+TEST(Choose, MatchesRowOrPartOfNameOrDriverIgnoringCase) {
   EXPECT_EQ(chosen_of(five().info, "0"), "llvmpipe");
   EXPECT_EQ(chosen_of(five().info, "3"), "virgl");
   EXPECT_EQ(chosen_of(five().info, "5"), "") << "one past the last row";
@@ -79,7 +79,7 @@ TEST(Choose, AWishIsARowOrAPartOfNameOrDriverInAnyCase) {
   EXPECT_EQ(chosen_of(five().info, "driver"), "GeForce") << "the best that it names";
 }
 
-TEST(Choose, EveryOtherDeviceHasItsReason) {
+TEST(Choose, GivesAReasonForEveryOtherDevice) {
   DeviceCandidates candidates = five();
   EXPECT_EQ(choose_device(candidates, ""), 2);
   EXPECT_EQ(candidates.info[0].reason, "usable, but another ranks higher; name it with --device");
@@ -90,7 +90,7 @@ TEST(Choose, EveryOtherDeviceHasItsReason) {
 }
 
 /// A device that fails its self-check gets the fault as its reason, and the next best is chosen.
-TEST(Choose, ADeviceThatFailsItsSelfCheckIsPassedOver) {
+TEST(Choose, SkipsADeviceThatFailsItsSelfCheck) {
   DeviceCandidates candidates = five();
   std::vector<std::size_t> tried;
   const TryDevice only_software = [&](DeviceCandidates& all, std::size_t row) {
@@ -112,7 +112,7 @@ TEST(Choose, ADeviceThatFailsItsSelfCheckIsPassedOver) {
   EXPECT_EQ(candidates.info[2].reason, "differs in a + b");
 }
 
-TEST(Lacks, EachLackIsNamed) {
+TEST(Lacks, NamesEachMissingFeature) {
   const DeviceFeatures able{VK_API_VERSION_1_2, true, true, true, {}};
   EXPECT_EQ(missing_feature(able), "");
   DeviceFeatures old = able;
@@ -132,7 +132,7 @@ TEST(Lacks, EachLackIsNamed) {
   EXPECT_EQ(missing_feature(texels), "has no storage texel buffers of VkFormat 100");
 }
 
-TEST(ComputeFamily, OneWithoutGraphicsIfThereIsOne) {
+TEST(ComputeFamily, PrefersAFamilyWithoutGraphics) {
   const VkQueueFamilyProperties both{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT, 1, 0, {}};
   const VkQueueFamilyProperties plain{VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT, 1, 0, {}};
   const VkQueueFamilyProperties copies{VK_QUEUE_TRANSFER_BIT, 1, 0, {}};

@@ -13,7 +13,7 @@
 namespace sf::gpu {
 namespace {
 
-TEST(Device, OpensTheBestDeviceAndSaysWhatItIs) {
+TEST(Device, OpensAndDescribesTheBestDevice) {
   const Device device;
   EXPECT_FALSE(device.info().name.empty());
   EXPECT_TRUE(device.info().chosen);
@@ -22,7 +22,7 @@ TEST(Device, OpensTheBestDeviceAndSaysWhatItIs) {
   EXPECT_EQ(device.info().api.find("1."), 0u) << device.info().api;
 }
 
-TEST(Device, SurveyChoosesExactlyOneAndGivesTheOthersAReason) {
+TEST(Device, ListChoosesExactlyOneAndGivesTheOthersAReason) {
   const DeviceList survey = list_devices("");
   int chosen = 0;
   for (const DeviceInfo& info : survey.devices) {
@@ -32,20 +32,20 @@ TEST(Device, SurveyChoosesExactlyOneAndGivesTheOthersAReason) {
   EXPECT_EQ(chosen, 1);
 }
 
-TEST(Device, AnUnknownNameIsRefusedWithEveryDeviceAndItsReason) {
+TEST(Device, UnknownNameListsEveryDeviceAndReason) {
   try {
     Device device("no such device");
     FAIL() << "opened " << device.info().name;
   } catch (const base::DeviceError& error) {
     const std::string text = error.what();
-    const std::size_t devices = list_devices("").devices.size() - 1;  // without the host
+    const std::size_t devices = list_devices("").devices.size() - 1;  // excludes the host
     EXPECT_EQ(text.find("no usable Vulkan device among " + std::to_string(devices) + ": "), 0u) << text;
     EXPECT_NE(text.find("does not match 'no such device';"), std::string::npos) << text;
     EXPECT_NE(text.find("name another with --device"), std::string::npos) << text;
   }
 }
 
-TEST(Device, WithoutADriverItSaysWhatToInstall) {
+TEST(Device, MissingDriverErrorNamesTheDriverToInstall) {
   const char* set = std::getenv("VK_DRIVER_FILES");
   const std::string before = set ? set : "";
   setenv("VK_DRIVER_FILES", "/no/such/driver.json", 1);
@@ -76,7 +76,7 @@ TEST(Device, WithoutADriverItSaysWhatToInstall) {
   before.empty() ? unsetenv("VK_DRIVER_FILES") : setenv("VK_DRIVER_FILES", before.c_str(), 1);
 }
 
-TEST(Device, TheHostHasTablesAndKernelsThatAreNotRun) {
+TEST(Device, HostHasTablesAndKernelsButRunsNone) {
   Device host{std::string(kHostDevice)};
   EXPECT_EQ(host.info().name, "host");
   EXPECT_TRUE(host.info().software && host.unified() && host.rounds32() && !host.is_gpu());
@@ -91,7 +91,7 @@ TEST(Device, TheHostHasTablesAndKernelsThatAreNotRun) {
   EXPECT_EQ(host.allocations().size(), 1u) << "of the table alone";
 }
 
-TEST(Device, WithoutTheValidationLayerItSaysSo) {
+TEST(Device, ReportsAMissingValidationLayer) {
   const char* const names[] = {"SENSORFARM_VALIDATE", "VK_LAYER_PATH"};
   std::optional<std::string> before[2];
   for (int i = 0; i < 2; ++i)
@@ -104,7 +104,7 @@ TEST(Device, WithoutTheValidationLayerItSaysSo) {
   for (int i = 0; i < 2; ++i) before[i] ? setenv(names[i], before[i]->c_str(), 1) : unsetenv(names[i]);
 }
 
-TEST(Device, ARowNumberNamesADevice) { EXPECT_EQ(Device("0").info().name, list_devices("0").devices[0].name); }
+TEST(Device, AcceptsARowNumber) { EXPECT_EQ(Device("0").info().name, list_devices("0").devices[0].name); }
 
 }  // namespace
 }  // namespace sf::gpu

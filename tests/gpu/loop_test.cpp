@@ -44,15 +44,15 @@ Counted count_to(std::uint32_t n) {
   return {words[0], words[1]};
 }
 
-/// The farm keeps the sum of all loops of an invocation below this number.
-TEST(Loops, FortyFiveThousandTurnsAreCountedByEveryDriver) {
+/// The farm keeps the total number of loop iterations of an invocation below this number.
+TEST(Loops, EveryDriverRuns45000Iterations) {
   const Counted counted = count_to(22'500);
   EXPECT_EQ(counted.one, 22'500u);
   EXPECT_EQ(counted.two, 22'500u) << "45 000 turns in all";
 }
 
 /// Records the behaviour of the installed driver. Both results pass; any other fails.
-TEST(Loops, SeventyThousandTurnsMayBeCutOff) {
+TEST(Loops, DriversMayCutOff70000Iterations) {
   const Counted counted = count_to(70'000);
   std::cout << "[ measured ] 70 000 turns of one loop: " << counted.one << " on " << Device().info().driver << "\n";
   EXPECT_TRUE(counted.one == 70'000u || counted.one == kLimit) << counted.one;

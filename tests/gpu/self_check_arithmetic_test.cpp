@@ -1,4 +1,4 @@
-// The self-check's comparison, on synthetic results: no installed driver is wrong.
+// Tests the comparison of the self-check with synthetic results, because no installed driver is faulty.
 
 #include "gpu/self_check_arithmetic.h"
 
@@ -29,13 +29,13 @@ std::string difference_with(std::size_t at, std::uint64_t result) {
   return first_difference(found);
 }
 
-TEST(Arithmetic, TheHostAgreesWithItself) {
+TEST(Arithmetic, HostAgreesWithItself) {
   EXPECT_EQ(operands().size(), 64u) << "one group";
   EXPECT_EQ(expected_results().size(), 64 * operations().size());
   EXPECT_EQ(first_difference(expected_results()), "");
 }
 
-TEST(Arithmetic, ARefusalNamesOperationOperandsFoundAndExpected) {
+TEST(Arithmetic, FaultNamesOperationOperandsFoundAndExpected) {
   const std::size_t at = place(kOrdinary, "a + b");
   EXPECT_EQ(difference_with(at, std::bit_cast<std::uint64_t>(5.5)),
             "differs from IEEE 754 in a + b: a = 3.1415926535897931 and b = 2.7182818284590451 give 5.5, not "
@@ -48,12 +48,12 @@ TEST(Arithmetic, ARefusalNamesOperationOperandsFoundAndExpected) {
             "0x28, not 0x38");
 }
 
-/// An error in the last place, in any row, is detected and named wherever bits must agree.
-TEST(Arithmetic, ALastBitIsFoundInEveryOperation) {
+/// An error in the last place, in any row, is detected and named for all operations that must be bit-exact.
+TEST(Arithmetic, DetectsALastBitErrorInEveryOperation) {
   const std::vector<std::uint64_t> right = expected_results();
   for (std::size_t at = 0; at < right.size(); ++at) {
     const Operation& operation = operations()[at % operations().size()];
-    const bool is_zero = right[at] << 1 == 0;  // +-0 and the least denormal
+    const bool is_zero = right[at] << 1 == 0;  // +-0 and the smallest denormal
     const bool is_nan = operation.form == Form::f64 && std::isnan(std::bit_cast<double>(right[at]));
     if (!operation.required || operation.tolerance > 0.0 || is_zero || is_nan) continue;
     const std::string text = difference_with(at, right[at] ^ 1u);
@@ -62,7 +62,7 @@ TEST(Arithmetic, ALastBitIsFoundInEveryOperation) {
 }
 
 /// Vulkan leaves these open, and no reading depends on them.
-TEST(Arithmetic, SignsOfZeroAndBitsOfNaNAreFree) {
+TEST(Arithmetic, IgnoresSignsOfZeroAndBitsOfNaN) {
   const std::size_t zero = place(0, "a + b");
   EXPECT_EQ(expected_results()[zero], 0u);
   EXPECT_EQ(difference_with(zero, std::bit_cast<std::uint64_t>(-0.0)), "");
@@ -74,7 +74,7 @@ TEST(Arithmetic, SignsOfZeroAndBitsOfNaNAreFree) {
 }
 
 /// 32-bit roots may be wrong in the last places; a step of Newton's method squares the relative error.
-TEST(Arithmetic, NewtonsRootsHaveATolerance) {
+TEST(Arithmetic, NewtonRootsHaveATolerance) {
   for (const char* name :
        {"1 / sqrt(1 + a * a) to 1e-12, by Newton's method", "sqrt(1 + a * a) to 1e-12, by Newton's method"}) {
     const std::size_t at = place(kOrdinary, name);
@@ -86,8 +86,8 @@ TEST(Arithmetic, NewtonsRootsHaveATolerance) {
   }
 }
 
-/// Kernels compute them in 64 bits where a device rounds them otherwise, so no device is refused for them.
-TEST(Arithmetic, RoundingOf32BitsIsReportedAndNotRequired) {
+/// Kernels compute them in 64 bits on devices that round differently, so no device is rejected for them.
+TEST(Arithmetic, ReportsButDoesNotRequire32BitRounding) {
   EXPECT_TRUE(rounds32(expected_results()));
   for (const char* name : {"sqrt(1 + a * a) in 32 bits", "a / b in 32 bits, 0 where b is 0"}) {
     std::vector<std::uint64_t> found = expected_results();
@@ -101,7 +101,7 @@ TEST(Arithmetic, RoundingOf32BitsIsReportedAndNotRequired) {
 }
 
 /// Typical driver mistakes: fused products, a 32-bit quotient, a 32-bit root, a flushed or truncated conversion.
-TEST(Arithmetic, MistakesOfDriversAreFound) {
+TEST(Arithmetic, DetectsTypicalDriverErrors) {
   const auto found_in = [](const char* name, auto wrong) {
     std::vector<std::uint64_t> found = expected_results();
     for (std::size_t row = 0; row < operands().size(); ++row) found[place(row, name)] = wrong(operands()[row]);

@@ -41,7 +41,7 @@ void run_copies(Batch& batch) {
   batch.run();
 }
 
-TEST_F(Staging, IsForcedByTheEnvironmentWhenADeviceOpens) {
+TEST_F(Staging, EnvironmentForcesItWhenADeviceOpens) {
   EXPECT_FALSE(Device().unified());
   setenv("SENSORFARM_STAGING", "0", 1);
   const bool shared = Device().unified();
@@ -50,8 +50,8 @@ TEST_F(Staging, IsForcedByTheEnvironmentWhenADeviceOpens) {
   EXPECT_TRUE(shared || Device().info().driver.find("llvmpipe") == std::string::npos);
 }
 
-/// Only the named bytes are copied, to the same offset, once.
-TEST_F(Staging, PiecesTravelToTheirPlaces) {
+/// Only the listed bytes are copied, to the same offset, once.
+TEST_F(Staging, CopiesOnlyTheListedBytes) {
   Device device;
   Batch batch(device);
   for (const Role role : {Role::upload, Role::download}) {
@@ -83,7 +83,7 @@ TEST_F(Staging, PiecesTravelToTheirPlaces) {
 }
 
 /// Group counts at an offset, in more than one dimension.
-TEST_F(Staging, AKernelReadsWhatWasCopiedUpAndIsCopiedDown) {
+TEST_F(Staging, KernelReadsUploadsAndWritesDownloads) {
   Device device;
   Kernel kernel(device, "loop", loop_comp_spv);
   Buffer counts(device, "counts", Role::upload, Texel::u32, 128);
@@ -108,7 +108,7 @@ TEST_F(Staging, AKernelReadsWhatWasCopiedUpAndIsCopiedDown) {
     EXPECT_EQ(sums.host<std::uint32_t>()[4 * i + 1], i < 64 ? i : 77);
   }
 
-  // Recorded once, run again with other group counts.
+  // Recorded once, run again with different group counts.
   groups.host<std::uint32_t>()[4] = 2;
   batch.upload(groups, 16, 4);
   batch.download(sums, 0, sums.bytes());

@@ -17,7 +17,7 @@
 namespace sf::gpu {
 namespace {
 
-TEST(Buffer, HasTheTexelsAskedForAndAHostView) {
+TEST(Buffer, HasTheRequestedTexelsAndAHostView) {
   Device device;
   Buffer table(device, "table", Role::upload, Texel::u32x4, 5);
   EXPECT_EQ(table.texels(), 5u);
@@ -42,7 +42,7 @@ TEST(Buffer, AssignmentSwaps) {
   EXPECT_EQ(device.allocations()[0].name, "other");
 }
 
-TEST(Device, NamesWhatItHolds) {
+TEST(Device, ListsItsAllocations) {
   Device device;
   EXPECT_TRUE(device.allocations().empty()) << "the self-check leaves nothing behind";
   Buffer first(device, "first", Role::upload, Texel::u32, 3);
@@ -61,7 +61,7 @@ TEST(Device, NamesWhatItHolds) {
 }
 
 /// The driver's limit counts bytes, not texels: 5 texels of 16 bytes.
-TEST(Buffer, FitsAStorageBufferByItsBytes) {
+TEST(Buffer, StorageBufferLimitCountsBytes) {
   Device device;
   const Buffer table(device, "table", Role::upload, Texel::u32x4, 5);
   std::uint32_t& limit = device.vk().properties.limits.maxStorageBufferRange;
@@ -71,8 +71,8 @@ TEST(Buffer, FitsAStorageBufferByItsBytes) {
   EXPECT_FALSE(table.fits_storage_buffer());
 }
 
-/// A table above the device's limit is refused with the limit and a remedy.
-TEST(Buffer, MoreThanTheDeviceHoldsIsRefused) {
+/// A table above the device's limit is rejected with the limit and a remedy.
+TEST(Buffer, RejectsTablesAboveTheDeviceLimit) {
   Device device;
   try {
     Buffer table(device, "table", Role::upload, Texel::f32, std::size_t{1} << 40);
@@ -83,8 +83,8 @@ TEST(Buffer, MoreThanTheDeviceHoldsIsRefused) {
   }
 }
 
-/// Without memory of any wanted type the refusal equals that of a full device.
-TEST(Buffer, NoRoomIsRefusedWithTheSize) {
+/// Without memory of any wanted type, the error equals that of a full device.
+TEST(Buffer, OutOfMemoryErrorNamesTheSize) {
   Device device;
   const std::uint32_t types = std::exchange(device.vk().memory.memoryTypeCount, 0);
   try {
@@ -98,7 +98,7 @@ TEST(Buffer, NoRoomIsRefusedWithTheSize) {
   EXPECT_TRUE(device.allocations().empty());
 }
 
-TEST(Batch, ACopyPastTheEndIsOurMistake) {
+TEST(Batch, CopyPastTheEndAborts) {
   Device device;
   Batch batch(device);
   Buffer table(device, "table", Role::upload, Texel::u32, 4);
@@ -108,12 +108,12 @@ TEST(Batch, ACopyPastTheEndIsOurMistake) {
   EXPECT_DEATH(batch.download(table, 16, 4), "a copy past the end of a table");
 }
 
-TEST(Vulkan, ACallThatFailsEndsTheProgramByName) {
+TEST(Vulkan, FailedCallAbortsWithItsName) {
   check_vk(VK_SUCCESS, "vkQueueSubmit");
   EXPECT_DEATH(check_vk(VK_ERROR_DEVICE_LOST, "vkQueueSubmit"), "vkQueueSubmit gave VkResult -4");
 }
 
-TEST(Batch, SubmitAndWaitAreApart) {
+TEST(Batch, SubmitAndWaitAreSeparate) {
   Device device;
   Batch batch(device);
   batch.begin();
@@ -123,7 +123,7 @@ TEST(Batch, SubmitAndWaitAreApart) {
   EXPECT_DEATH(batch.submit(), "a batch is submitted again before it was waited for");
   batch.wait();
   batch.wait();
-  batch.submit();  // and given up: the destructor waits
+  batch.submit();  // destroyed without `wait`: the destructor waits
 }
 
 TEST(Kernel, GroupSizeIsReadFromTheModule) {
@@ -146,7 +146,7 @@ TEST(Kernel, OnlyLocalSizeIsTheGroupSize) {
   EXPECT_EQ(size_of({0u, kMode, 4u, 17u, 32u, 1u, 1u}), 0u) << "an instruction of no words";
 }
 
-TEST(Kernel, TablesAreNamedByTheModule) {
+TEST(Kernel, ReadsTableNamesFromTheModule) {
   const std::vector<KernelTable> tables = interface_of(loop_comp_spv).tables;
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].name, "counts");
@@ -172,19 +172,19 @@ TEST(Buffer, TexelsHaveTheirSizes) {
   EXPECT_EQ(texel_size(Texel::f32x4), 16u);
 }
 
-TEST(SelfCheck, TheChosenDeviceComputesAsTheHostDoes) {
+TEST(SelfCheck, ChosenDeviceMatchesTheHost) {
   Device device;
   EXPECT_EQ(self_check(device).fault, "");
   EXPECT_EQ(device.info().self_check, "passed");
 }
 
-TEST(SelfCheck, AKernelThatComputesOtherwiseIsFound) {
+TEST(SelfCheck, DetectsAWrongKernel) {
   Device device;
   const std::string fault = self_check(device, wrong_comp_spv).fault;
   EXPECT_EQ(fault.find("differs from IEEE 754 in "), 0u) << fault;
 }
 
-TEST(SelfCheck, TheSurveyHasItOfEveryDeviceThatLacksNothing) {
+TEST(SelfCheck, ListIncludesItForEveryCompleteDevice) {
   for (const DeviceInfo& info : list_devices("").devices) {
     if (info.name == kHostDevice) continue;
     EXPECT_NE(info.self_check, "") << info.name;
@@ -193,7 +193,7 @@ TEST(SelfCheck, TheSurveyHasItOfEveryDeviceThatLacksNothing) {
 }
 
 /// The first allowed type with all wanted properties.
-TEST(Device, MemoryTypesAreFoundByWhatTheyHave) {
+TEST(Device, FindsMemoryTypesByProperties) {
   Device device;
   Device::Vk& vk = device.vk();
   const VkPhysicalDeviceMemoryProperties own = vk.memory;
@@ -225,8 +225,8 @@ TEST(Environment, EmptyAndZeroAreNotSet) {
   unsetenv("SENSORFARM_TEST");
 }
 
-/// The layer reports an error, so that its silence in other tests is meaningful.
-TEST(Validation, TheLayerReportsAMistake) {
+/// The layer reports an error, so its silence in other tests is meaningful.
+TEST(Validation, LayerReportsAnError) {
   setenv("SENSORFARM_VALIDATE", "1", 1);
   {
     Device device;
