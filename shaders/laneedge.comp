@@ -11,7 +11,8 @@ layout(binding = 1, rgba32ui) uniform readonly uimageBuffer points;     // EdgeP
 layout(binding = 2, rgba32ui) uniform readonly uimageBuffer grains;     // Grain of each pixel size
 layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer readings;  // EdgeReading of each sensor
 layout(binding = 4, r32ui) uniform readonly uimageBuffer order;         // row that each invocation fits
-layout(binding = 5, r32ui) uniform writeonly uimageBuffer mixtures;     // one word per sensor: 1 where several edges had to be separated
+layout(binding = 5, r32ui) uniform writeonly uimageBuffer mixtures;     // one word per sensor: 1 if several edges had
+                                                                        // to be separated
 
 #include "shaders/lib/edge_fit.glsl"
 

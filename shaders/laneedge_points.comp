@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Points from the hits of the cast: every lane of four beams of all due lane edge sensors, in one dispatch.
+// Converts the hits of the cast to points: every lane of four beams of all due lane edge sensors, in one dispatch.
 
 #include "shaders/sensors/laneedge.glsl"
 #include "shaders/raycast/records.glsl"

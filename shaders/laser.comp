@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_vote : require
-// Casts every beam of all due sensors. Lists the lanes with beams whose nearest surface 32 bits cannot certify.
+// Casts every beam of all due sensors. Lists the lanes that have a beam whose nearest surface 32 bits cannot certify.
 
 #include "shaders/raycast/records.glsl"
 
@@ -9,7 +9,7 @@ layout(local_size_x = SF_LANES_PER_GROUP) in;  // raycast/records.h
 #include "shaders/lib/laser_lane.glsl"
 #include "shaders/lib/list_search.glsl"
 
-// Initially the end of the range is the nearest.
+// The nearest surface is initially at the end of the range.
 Search begin_search(Beam64 beams[SF_BEAMS_PER_LANE], double range_max) {
   const float farthest = 1.0 / float(range_max);
   Search s;
@@ -23,7 +23,7 @@ Search begin_search(Beam64 beams[SF_BEAMS_PER_LANE], double range_max) {
   return s;
 }
 
-// Evaluates the nearest segments in 64 bits. Returns the uncertain beams, a bit each.
+// Evaluates the nearest segments in 64 bits. Returns the uncertain beams, one bit each.
 uint measure(Search s, Beam64 beams[SF_BEAMS_PER_LANE], double range_max, out ClosestHit closest[SF_BEAMS_PER_LANE]) {
   uint uncertain = 0u;
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
@@ -34,7 +34,7 @@ uint measure(Search s, Beam64 beams[SF_BEAMS_PER_LANE], double range_max, out Cl
   return uncertain;
 }
 
-// Adds a lane to those that the next dispatch decides, with an invocation for each of its beams.
+// Adds a lane to the list for the next dispatch, which runs one invocation for each beam of the lane.
 void list_uncertain(int lane, uint beams) {
   const uint slot = atomicAdd(uncertain.count, 1u);
   uncertain.lanes[slot] = uvec2(lane, SF_UNCERTAIN * beams);

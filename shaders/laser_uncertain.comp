@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Casts the uncertain beams of the lanes that laser.comp listed in 64 bits: an invocation for each beam of a lane.
+// Casts the uncertain beams of the lanes listed by laser.comp in 64 bits, with one invocation for each beam of a lane.
 
 #include "shaders/raycast/records.glsl"
 
@@ -8,7 +8,7 @@ layout(local_size_x = SF_LANES_PER_GROUP) in;  // raycast/records.h
 #include "shaders/lib/laser_lane.glsl"
 #include "shaders/lib/list_chunk.glsl"
 
-// Position in a list, and the ends of its front-facing and its back-facing part [chunks].
+// Position in a list, and the ends of its front-facing and back-facing parts [chunks].
 struct ListCursor {
   int at, facing_end, end;
 };
@@ -18,11 +18,11 @@ ListCursor begin_list(ListHead list) {
   return ListCursor(int(list.first), facing_end, facing_end + int(list.back_facing));
 }
 
-// Advances to the next chunk; where the rest of this part of the list is too far, to the next part.
+// Advances to the next chunk, or to the next part of the list if the rest of this part is too far away.
 void advance(inout ListCursor c, bool far) { c.at = far ? (c.at < c.facing_end ? c.facing_end : c.end) : c.at + 1; }
 
-// The nearest segment of all entries, in 64 bits. One loop for walls and movers, as in search_lists.
-// @param live false: nothing is searched
+// Finds the nearest segment of all entries in 64 bits. Walls and movers share one loop, as in search_lists.
+// @param live false: searches nothing
 ClosestHit decide(bool live, ScanLane scan, Beam64 beam) {
   ClosestHit found = ClosestHit(scan.row.range_max, SF_NO_HIT, vec3(0.0));
   ListCursor c = begin_list(scan.walls);
@@ -48,7 +48,7 @@ ClosestHit decide(bool live, ScanLane scan, Beam64 beam) {
   return found;
 }
 
-// Two beams share a texel of results, so that one invocation stores all of a lane.
+// Two beams share a texel of results, so one invocation stores all results of a lane.
 void decide_lane(bool live, ScanLane scan, uint slot, uint asked) {
   ClosestHit closest[SF_BEAMS_PER_LANE];
   uint grazing = 0u;

@@ -6,7 +6,7 @@
 
 layout(local_size_x = 32) in;
 layout(constant_id = 0) const bool kMagnitudes = false;  // some sensor sums magnitudes
-layout(constant_id = 1) const bool kRounds32 = true;   // of the device: lib/exact32.glsl
+layout(constant_id = 1) const bool kRounds32 = true;   // device property: lib/exact32.glsl
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer items;     // FieldItem
 layout(binding = 1, r32ui) uniform readonly uimageBuffer spans;        // MagnetSpan
 layout(binding = 2, rgba32ui) uniform readonly uimageBuffer dipoles;   // DipoleRow
@@ -25,7 +25,7 @@ void main() {
     sums[i] = FieldSum(0.0LF, 0.0LF, 0.0LF, 0.0LF);
   }
 
-  // One loop over all spans, so that lanes with short spans do not wait for others at each of them.
+  // A single loop over all spans, so that lanes with short spans do not wait for others after each span.
   int at_span = int(item.first);
   MagnetSpan span = load_MagnetSpan(spans, at_span);
   int magnet = int(span.first);

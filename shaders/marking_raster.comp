@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Road markings in pixels: every ray of all due lane edge sensors, in one dispatch. The nearer of the raster's hit and
-// the cast's hit counts.
+// Intersects every ray of all due lane edge sensors with road markings in pixels, in one dispatch. Keeps the nearer of
+// the raster's hit and the cast's hit.
 
 #include "shaders/sensors/laneedge.glsl"
 #include "shaders/raycast/records.glsl"
@@ -37,7 +37,7 @@ void main() {
   const ivec2 size = ivec2(row.columns, row.rows);
   const Walk w = walk(ivec2(row.column, row.row), from, vec2(float(dx), float(dy)), row.reach, size, row.column >= 0);
 
-  // The range of the hit, in 64 bits.
+  // Computes the range of the hit in 64 bits.
   const double span = w.across_x ? double(w.face) - double(from.x) : double(w.face) - double(from.y);
   const double along = w.across_x ? dx : dy;
   precise double t = span / (along == 0.0 ? 1.0 : along);

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Occupancy maps with log odds: log odds per cell, and the states that follow from them (maps/grid_update.h).
+// Updates occupancy maps with log odds: log odds per cell, and the states derived from them (maps/grid_update.h).
 
 #include "maps/grid.h"
 #include "shaders/sensors/occupancy_records.glsl"
@@ -9,8 +9,10 @@ layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;   // MapRow of each map
 layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;    // MapBlock of eight lanes
 layout(binding = 2, r32ui) uniform readonly uimageBuffer strips;    // written by occupancy_strips.comp
-layout(binding = 3, r32ui) uniform readonly uimageBuffer hit_words;    // one word per lane: bit 2 k where a beam ended in cell k
-layout(binding = 4, r32ui) uniform writeonly uimageBuffer words;    // of all maps, and a last one for lanes without work
+layout(binding = 3, r32ui) uniform readonly uimageBuffer hit_words;    // one word per lane: bit 2 k is set if a beam
+                                                                       // ended in cell k
+layout(binding = 4, r32ui) uniform writeonly uimageBuffer words;    // of all maps; the last word is for lanes without
+                                                                    // work
 layout(binding = 5, rgba32ui) uniform uimageBuffer odds;            // SF_ODDS_TEXELS per word
 
 #include "shaders/lib/cover.glsl"

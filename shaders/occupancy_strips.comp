@@ -1,12 +1,13 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// The cells of a strip that the lines of a scan's beams cover, by the rule of maps/grid_update.h, exactly.
+// Finds the cells of a strip that are covered by the lines of a scan's beams, exactly, by the rule of
+// maps/grid_update.h.
 //
-// A strip is 32 cells of one column (flat lines cross it in one cell each) or of one row (steep lines). At step i a
+// A strip is 32 cells of one column (flat lines cross it in one cell each) or of one row (steep lines). At step i, a
 // line to an end n cells along and a to the side is floor(i a / n + 1/2) cells to the side. That sum is a multiple of 1
 // / (2 n). A bias that exceeds 0 by more than rounding, and stays below 1 / (2 n) by more than rounding, gives the same
-// floor: with n <= 1023, rounding of the slope and of the product are below 1.3e-4 together, and 1 / (2 n) is above
-// 4.8e-4.
+// floor: with n <= 1023, the rounding errors of the slope and of the product are below 1.3e-4 together, and 1 / (2 n)
+// is above 4.8e-4.
 
 #include "shaders/sensors/occupancy_records.glsl"
 
@@ -34,8 +35,8 @@ void main() {
   const int low = max(side, -i);  // no line is farther to the side than along
   const int high = min(side + SF_STRIP - 1, i);
 
-  // A covered cell's middle lies within half a cell along and one across from the beam itself: half for the end's cell,
-  // half for rounding.
+  // The centre of a covered cell lies within half a cell along and one cell across from the beam itself: half a cell
+  // for the end's cell, half a cell for rounding.
   const vec2 within = flat_strip ? vec2(map.within_x, map.within_y) : vec2(map.within_y, map.within_x);
   const float along = float(i) - (back ? -within.x : within.x);
   const float y_low = float(low) - 1.01 - within.y;
@@ -43,7 +44,7 @@ void main() {
   const float a_low = bearing_of(vec2(along + (y_low < 0.0 ? -0.51 : 0.51), y_low));
   const float a_high = bearing_of(vec2(along + (y_high > 0.0 ? -0.51 : 0.51), y_high));
   const float axis = flat_strip ? (back ? PI : 0.0) : (back ? 0.5 * PI : -0.5 * PI);
-  const bool turned = flat_strip != back;  // the strip's cells count clockwise
+  const bool turned = flat_strip != back;  // the strip's cells are numbered clockwise
   const float middle = axis + (turned ? -0.5 : 0.5) * (a_low + a_high) - map.heading;
   const float bearing = middle - 2.0 * PI * round(middle * (0.5 / PI));
   const int pairs = int(map.pairs);

@@ -1,6 +1,6 @@
 #version 450
-// The arithmetic that decides readings, each operation in the form used by kernels. gpu/self_check_arithmetic.cpp has
-// the host's results for the same operands, in this order.
+// The arithmetic that decides readings, with each operation in the form used by kernels. gpu/self_check_arithmetic.cpp
+// computes the host's results for the same operands in the same order.
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer operands;  // a and b, two words each
@@ -45,21 +45,21 @@ void main() {
   const double clamped = min(max(a, b), 3.0LF);
   store(row, 4, unpackDouble2x32(total), unpackDouble2x32(clamped));
 
-  // Comparisons, and NaN.
+  // Comparisons and NaN.
   const uint compared = (a < b ? 1u : 0u) | (a <= b ? 2u : 0u) | (a == b ? 4u : 0u) | (a > b ? 8u : 0u) | (a >= b ? 16u : 0u) |
                         (a != b ? 32u : 0u);
   const double nan = packDouble2x32(uvec2(0u, 0x7ff80000u));
   store(row, 5, uvec2(compared, 0u), unpackDouble2x32(a > b ? a : nan));
 
-  // Conversions between 64 and 32 bits. No kernel widens a value that it has just narrowed, which compilers may
-  // optimize away.
+  // Conversions between 64 and 32 bits. No kernel widens a value that it has just narrowed, because compilers may
+  // optimize this away.
   const float narrow = float(a);
   const float other = float(b);
   precise float turned = narrow * other - other * (0.9 * narrow);
   store(row, 6, unpackDouble2x32(double(uintBitsToFloat(words.y))), unpackDouble2x32(double(int(words.x))));
   store(row, 7, word_of(narrow), word_of(turned));
 
-  // 32-bit roots and quotients are only start values of a search or of one step of Newton's method in 64 bits
+  // 32-bit roots and quotients are only initial values for a search or for one step of Newton's method in 64 bits
   // (lib/dipoles.glsl).
   precise double square = 1.0LF + a * a;
   precise float root = sqrt(max(float(square), 1e-37));
@@ -72,7 +72,7 @@ void main() {
   precise double refined = s + (square - s * s) * double(half_over);
   store(row, 8, unpackDouble2x32(inverse), unpackDouble2x32(refined));
 
-  // Devices whose 32-bit roots and quotients are rounded otherwise compute these in 64 bits (lib/exact32.glsl).
+  // Devices that round 32-bit roots and quotients differently compute them in 64 bits (lib/exact32.glsl).
   precise float quotient32 = narrow / other;
   store(row, 9, word_of(root), word_of(other != 0.0 ? quotient32 : 0.0));
 }

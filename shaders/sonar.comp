@@ -11,7 +11,8 @@ layout(binding = 2, rgba32ui) uniform readonly uimageBuffer hits;        // Lane
 layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer echoes;     // ConeEcho of each cone
 layout(binding = 4, rgba32ui) uniform readonly uimageBuffer directions;  // BeamDirection of each beam
 layout(binding = 5, rgba32ui) uniform readonly uimageBuffer reflectors;  // ReflectorDirection of each surface
-layout(binding = 6, rgba32f) uniform readonly imageBuffer headings;      // one texel per mover, the first for static surfaces: cosine, sine
+layout(binding = 6, rgba32f) uniform readonly imageBuffer headings;      // one texel per mover, the first for static
+                                                                         // surfaces: cosine, sine
 
 vec2 turned(vec2 by, vec2 v) {
   precise float x = by.x * v.x - by.y * v.y;
@@ -19,7 +20,7 @@ vec2 turned(vec2 by, vec2 v) {
   return vec2(x, y);
 }
 
-// At a flat angle of incidence a smooth surface reflects sound away from the sonar.
+// At a flat angle of incidence, a smooth surface reflects sound away from the sonar.
 bool returns_echo(int beam, uint hit, vec2 heading, float min_cosine) {
   const bool any = min_cosine <= 0.0;
   const BeamDirection bearing = load_BeamDirection(directions, beam);

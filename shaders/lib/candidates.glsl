@@ -1,9 +1,9 @@
-// The pairs of beams that may have a range of bearings. Bearings only select the beams to test: too many cost time,
-// never a cell.
+// Finds the pairs of beams that may lie in a range of bearings. Bearings only select the beams to test: too many
+// candidates cost time but never change a cell.
 
 const float PI = 3.14159265;
 
-// Bearing [rad] of a direction with error up to 2e-5 (Abramowitz and Stegun 4.4.49).
+// Returns the bearing of a direction [rad] with an error of up to 2e-5 (Abramowitz and Stegun 4.4.49).
 float bearing_of(vec2 d) {
   const vec2 a = abs(d);
   const float q = min(a.x, a.y) / max(max(a.x, a.y), 1e-9);
@@ -14,9 +14,9 @@ float bearing_of(vec2 d) {
   return d.y < 0.0 ? -half_turn : half_turn;
 }
 
-// Up to three runs of pairs, because a field of view may wrap round.
+// Up to three runs of pairs, because a field of view may wrap around.
 struct Candidates {
-  int first;   // of the main run
+  int first;   // first pair of the main run
   int count;
   int low;     // length of the run that begins at pair 0
   int high;    // first pair of the run that ends at the last pair
@@ -24,12 +24,13 @@ struct Candidates {
 
 int count_of(Candidates c, int pairs) { return c.count + c.low + max(pairs - c.high, 0); }
 
-// The j-th candidate.
+// Returns the j-th candidate.
 int candidate(Candidates c, int j) {
   return j < c.count ? c.first + j : j < c.count + c.low ? j - c.count : c.high + (j - c.count - c.low);
 }
 
-// Candidates within `wide` of `bearing` (in [-pi, pi], sensor frame), or all pairs: pair p holds beams 2 p and 2 p + 1, half a pair apart.
+// Returns the candidates within `wide` of `bearing` (in [-pi, pi], sensor frame), or all pairs. Pair p holds beams 2 p
+// and 2 p + 1, half a pair apart.
 Candidates candidates(float bearing, float wide, bool all, MapRow scan) {
   const int pairs = int(scan.pairs);
   const float last = float(pairs);

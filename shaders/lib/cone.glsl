@@ -1,5 +1,5 @@
-// The nearest echo of a cone of beams. The kernel declares the tables cones, ranges, hits and echoes, and the function
-// `returns_echo`, which decides whether a hit returns its echo.
+// Finds the nearest echo in a cone of beams. The kernel declares the tables cones, ranges, hits and echoes, and the
+// function `returns_echo`, which decides whether a hit returns an echo.
 
 void write_echo(int at) {
   const ConeRow cone = load_ConeRow(cones, at);

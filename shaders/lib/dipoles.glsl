@@ -1,15 +1,16 @@
-// The field of a magnet, with kMagnitudes also its magnitude. The kernel declares the table dipoles.
+// Computes the field of a magnet, and with kMagnitudes also its magnitude. The kernel declares the table dipoles.
 //
-// A point dipole of moment m along +z, with r from dipole to point and u = r / |r|, without the factor mu0 / 4 pi,
-// which the host applies:
-//   B = m / |r|^3 (3 u_z u - e_z),  |B| = m / |r|^3 sqrt(1 + 3 u_z^2)   (the thesis' equation 1, without its differences)
-// Differences of positions have 64 bits. 1 / |r| is a 32-bit root and one step of Newton's method in 64 bits, which
-// doubles its 23 bits: a 64-bit root and division cost four times as much. Every operation is `precise` and in a fixed
-// order: host and device results are equal bit by bit.
+// A point dipole has the moment m along +z. With r from dipole to point and u = r / |r|, and without the factor mu0 / 4
+// pi, which the host applies:
+//   B = m / |r|^3 (3 u_z u - e_z),  |B| = m / |r|^3 sqrt(1 + 3 u_z^2)   (the thesis' equation 1, without its
+//   differences)
+// Differences of positions use 64 bits. 1 / |r| is a 32-bit root followed by one step of Newton's method in 64 bits,
+// which doubles its 23 bits; a 64-bit root and division cost four times as much. Every operation is `precise` and in a
+// fixed order, so host and device results are equal bit by bit.
 
-// At the exact centre of a magnet, the field is that straight above it.
+// At the exact centre of a magnet, use the field straight above it.
 #define SF_ABOVE 1e-18LF
-// [m^2] least square with a finite 32-bit inverse root.
+// [m^2] smallest square with a finite 32-bit inverse root.
 #define SF_LEAST 1e-37
 
 #include "shaders/lib/exact32.glsl"

@@ -1,9 +1,9 @@
-// Distance of a lane edge from the points of a scan. The kernel declares the tables points and grains.
+// Computes the distance of a lane edge from the points of a scan. The kernel declares the tables points and grains.
 //
-// 1. A line through all points, and a parabola for its residuals. If the points lie on it within their source's
-//    tolerance, it is the edge.
-// 2. Otherwise candidates: lines through windows of an eighth, a third and two thirds of the scan's width. All
-//    points vote (line_fit.h, `vote`). The best candidate's inliers give a second line, and its inliers the final one.
+// 1. Fits a line through all points, and a parabola to its residuals. If the points lie on it within the tolerance of
+// their source, it is the edge.
+// 2. Otherwise fits candidates: lines through windows of an eighth, a third and two thirds of the scan's width. All
+// points vote (line_fit.h, `vote`). The best candidate's inliers give a second line, and its inliers the final one.
 // All loops exit at the top, as lavapipe requires.
 
 #include "sensors/lane_markings/line_fit.h"
@@ -12,7 +12,7 @@
 
 // Points of one sensor.
 struct EdgeFan {
-  int first;  // its first point
+  int first;  // index of its first point
   int lanes;
   bool packed;
 };
@@ -49,7 +49,7 @@ Moments moments_of_all(EdgeFan fan, out uint grain) {
   return m;
 }
 
-// Moments of the points of lanes [first, end) within `allowed` of `line`.
+// Returns the moments of the points of lanes [first, end) within `allowed` of `line`.
 Moments moments_near(EdgeFan fan, int first, int end, Line line, double allowed) {
   Moments m = Moments(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
   int own = first;
@@ -80,7 +80,7 @@ LineMoments trend_near(EdgeFan fan, int end, Line line, double allowed) {
   return s;
 }
 
-// Lanes of the k-th window: nine of an eighth of the scan, five of a third, two of two thirds.
+// Returns the lanes of the k-th window: nine of an eighth of the scan, five of a third, two of two thirds.
 ivec2 window(EdgeFan fan, int k) {
   const int least = min(fan.lanes, fan.packed ? 1 : 2);
   const int width = max(least, k < 9 ? fan.lanes / 8 : k < 14 ? fan.lanes / 3 : 2 * fan.lanes / 3);
@@ -102,7 +102,7 @@ Candidate candidate(EdgeFan fan, int k, bool wanted, double source) {
   Line anywhere = Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0);
   const Moments m = moments_near(fan, wanted ? lanes.x : 0, wanted ? lanes.y : 0, anywhere, 1e30);
   const Line line = line_through(m);
-  // A bend within the scan may move points by this distance: a fraction of the scan's width on the edge.
+  // Tolerates a bend within the scan, which may move points by a fraction of the scan's width on the edge.
   precise double wide = sqrt(line.spread * 12.0) * double(fan.lanes) / double(lanes.y - lanes.x);
   precise double allowed = 0.625 * source + 0.015625 * wide;
   return Candidate(line, allowed, hypothesis_of(line, allowed), 0.0);
@@ -111,7 +111,7 @@ Candidate candidate(EdgeFan fan, int k, bool wanted, double source) {
 Candidate elect(EdgeFan fan, bool wanted, double source) {
   const Line none = Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0);
   Candidate best = Candidate(none, 0.0, hypothesis_of(none, 0.0), -1e30);
-  // In wide scans every other lane votes.
+  // In wide scans, every other lane votes.
   const int stride = fan.lanes >= 12 ? 2 : 1;
   int k = wanted ? 0 : SF_WINDOWS;
   while (k < SF_WINDOWS) {
@@ -134,7 +134,7 @@ Candidate elect(EdgeFan fan, bool wanted, double source) {
   return best;
 }
 
-// [m^2] variance of a point across the line from range and bearing noise, at the line's middle.
+// Returns the variance of a point across the line due to range and bearing noise [m^2], at the middle of the line.
 double noise_across(Line line, double range_sigma, double range_proportional, double angle_sigma) {
   precise double r2 = line.px * line.px + line.py * line.py;
   const double safe = r2 > 0.0 ? r2 : 1.0;
@@ -160,7 +160,7 @@ EdgeReading fit_edge(EdgeRow row, out bool mixed) {
   const int lanes = packed ? (beams + SF_BEAMS_PER_LANE - 1) / SF_BEAMS_PER_LANE : beams;
   const EdgeFan fan = EdgeFan(SF_BEAMS_PER_LANE * int(row.lane), lanes, packed);
 
-  // All points.
+  // Fit all points.
   uint grain_row;
   const Moments all = moments_of_all(fan, grain_row);
   const double grain = load_Grain(grains, int(grain_row)).size;
@@ -170,7 +170,7 @@ EdgeReading fit_edge(EdgeRow row, out bool mixed) {
   LineMoments trend = trend_near(fan, lanes, line, 1e30);
   Parabola curvature = parabola_of(trend);
 
-  // The points of one edge among several.
+  // Select the points of one edge among several.
   mixed = !single && trend.n > 2.5 && !is_one_edge(trend, curvature, source);
   const Candidate best = elect(fan, mixed, source);
   const int again = mixed ? lanes : 0;

@@ -1,7 +1,7 @@
-// From a hit to a point in the sensor frame. The kernel declares the tables directions and points.
+// Converts a hit to a point in the sensor frame. The kernel declares the tables directions and points.
 //
-// The last bits of a point's x hold the row of its pixel size. A beam that is no point lies at SF_NOWHERE: ranges near
-// the maximum or up to the minimum, hits of movers and of the ends of dashes.
+// The last bits of a point's x hold the row of its pixel size. Beams that yield no point are placed at SF_NOWHERE:
+// ranges near the maximum or up to the minimum, hits of movers and of the ends of dashes.
 
 void write_point(EdgeRow row, int own, int slot, float deviate, double range, uint tag) {
   precise double spread = row.range_proportional * range;

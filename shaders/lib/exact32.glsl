@@ -1,9 +1,9 @@
-// 32-bit roots and quotients as IEEE 754 rounds them. Vulkan allows devices errors of a few last places; where the
-// self-check found such (gpu::Device::rounds32), they are computed in 64 bits, whose results round to the same.
+// 32-bit roots and quotients rounded as IEEE 754 requires. Vulkan allows errors of a few ulps. If the self-check found
+// such errors (gpu::Device::rounds32), they are computed in 64 bits and rounded to the same results.
 // The kernel declares the specialization constant kRounds32.
 
-// x, as 32 bits. Mesa 25.0 takes double(float(x)) for x; the number of workgroups along z, always one, keeps it from
-// seeing both conversions.
+// Returns x, rounded to 32 bits. Mesa 25.0 simplifies double(float(x)) to x. Adding the number of workgroups along z
+// minus one, which is always 0, prevents this.
 float kept(float x) { return uintBitsToFloat(floatBitsToUint(x) + (gl_NumWorkGroups.z - 1u)); }
 
 float root32(float x) {

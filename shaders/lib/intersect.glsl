@@ -1,4 +1,4 @@
-// The 64-bit intersection of one beam and one segment. Every operation is `precise` and in a fixed order: host and
+// Intersects one beam with one segment in 64 bits. Every operation is `precise` and in a fixed order, so host and
 // device results are equal bit by bit.
 
 #include "shaders/lib/exact32.glsl"
@@ -14,15 +14,15 @@ struct ClosestHit {
   vec3 incidence;    // cross product of segment and direction [m]; x and y of the segment [m]
 };
 
-// True where the sine of the angle between beam and surface is below `least`.
+// Returns true if the sine of the angle between beam and surface is below `least`.
 bool grazes(ClosestHit d, float least) {
   return d.id != SF_NO_HIT && d.incidence.x * d.incidence.x < least * least * dot(d.incidence.yz, d.incidence.yz);
 }
 
-// A segment [m]; any values for SF_NO_HIT.
+// Returns a segment [m]; any values for SF_NO_HIT.
 ExactSegment segment_at(uint id) { return load_ExactSegment(segments, int(id == SF_NO_HIT ? 0u : id)); }
 
-// Every segment that shares an end uses the same doubles for it, so no beam passes between two neighbours.
+// All segments that share an end use the same doubles for it, so no beam passes between two neighbours.
 void intersect(uint id, Beam64 beam, inout ClosestHit best) {
   const ExactSegment s = segment_at(id);
 
@@ -50,7 +50,7 @@ void intersect(uint id, Beam64 beam, inout ClosestHit best) {
   }
 }
 
-// [m] range of a beam that certainly meets segment `id`, as in `intersect`; `range_max` for SF_NO_HIT.
+// Returns the range [m] of a beam that is certain to hit segment `id`, as in `intersect`; `range_max` for SF_NO_HIT.
 double exact_range(uint id, Beam64 beam, double range_max) {
   const ExactSegment s = segment_at(id);
   precise double wax = s.ax - beam.origin.x;
@@ -63,8 +63,8 @@ double exact_range(uint id, Beam64 beam, double range_max) {
   return id == SF_NO_HIT ? range_max : t;
 }
 
-// [m] range of a beam that meets segment `id`, in 32 bits; negative where these are not accurate enough.
-// raycast/intersect.h has the bound.
+// Returns the range [m] of a beam that hits segment `id`, in 32 bits; negative if 32 bits are not accurate enough.
+// raycast/intersect.h derives the bound.
 float range_single(uint id, Beam64 beam, float range_max) {
   const ExactSegment s = segment_at(id);
   precise float wx = float(s.ax - beam.origin.x), wy = float(s.ay - beam.origin.y);

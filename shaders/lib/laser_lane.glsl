@@ -1,9 +1,9 @@
-// A lane of the kernels that cast lasers: its tables, its beams and its results.
+// A lane of the kernels that cast lasers: its tables, beams and results.
 
 layout(constant_id = 0) const bool kMovers = true;   // the world has movers
-layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges in 32 bits where these are accurate enough
+layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges in 32 bits if they are accurate enough
 layout(constant_id = 2) const bool kTexels = false;  // results exceed the limit of storage buffers, which are faster
-layout(constant_id = 3) const bool kRounds32 = true;  // of the device: lib/exact32.glsl
+layout(constant_id = 3) const bool kRounds32 = true;  // device property: lib/exact32.glsl
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;            // RayRow of each sensor
 layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;              // Lane of each lane
 layout(binding = 2, r32f) uniform readonly imageBuffer bearings;             // middle bearing of each lane [sectors]
@@ -15,10 +15,10 @@ layout(binding = 7, rgba32ui) uniform readonly uimageBuffer segments;        // 
 layout(binding = 8, r32ui) uniform readonly uimageBuffer models;             // `Segment::model` of each segment
 layout(binding = 9, rgba32ui) uniform writeonly uimageBuffer range_texels;   // LaneRanges of each lane
 layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer hit_texels;    // LaneHits of each lane
-layout(binding = 11) writeonly buffer Ranges { dvec4 lane[]; } ranges;        // the same tables
+layout(binding = 11) writeonly buffer Ranges { dvec4 lane[]; } ranges;        // same tables as storage buffers
 layout(binding = 12) writeonly buffer Hits { uvec4 lane[]; } hits;
 layout(binding = 13) buffer Uncertain {                                       // lanes with beams that 32 bits could not certify
-  uint across, down, one;  // groups of the dispatch over them
+  uint across, down, one;  // groups of the dispatch over these lanes
   uint count;
   uvec2 lanes[];  // lane; flags: SF_UNCERTAIN, SF_GRAZING
 } uncertain;
@@ -33,7 +33,7 @@ struct ScanLane {
   ListHead walls, movers;
 };
 
-// Beam `i` of the lane whose beams begin at `first` in the tables, in the world.
+// Returns beam `i` of a lane in the world frame. The lane's beams start at `first` in the tables.
 Beam64 beam_of(RayRow row, int first, int i) {
   const BeamDirection bearing = load_BeamDirection(directions, SF_BEAMS_PER_LANE * first + i);
   precise double x = row.heading_cos64 * bearing.cos - row.heading_sin64 * bearing.sin;
@@ -54,10 +54,10 @@ ScanLane scan_lane(int lane) {
   return scan;
 }
 
-// The segment that the beam meets before the end of its range, or SF_NO_HIT.
+// Returns the segment that the beam hits before the end of its range, or SF_NO_HIT.
 uint met_before(ClosestHit hit, RayRow row) { return hit.range < row.range_max ? hit.id : SF_NO_HIT; }
 
-// The reported range, within the sensor's limits.
+// Returns the reported range, clamped to the sensor's limits.
 double reported_range(ClosestHit hit, Beam64 beam, RayRow row) {
   double range = hit.range;
   if (kSinglePrecision) {

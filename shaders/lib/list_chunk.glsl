@@ -1,7 +1,7 @@
-// A chunk of a list: its entries, and the frame of these.
+// A chunk of a list: its entries and their frame.
 
 struct Chunk {
-  float nearest;  // [m] lower bound of the distance of these entries and all that follow
+  float nearest;  // [m] lower bound of the distance of these entries and all following ones
   ivec4 entries;  // texels
   vec4 frame;     // offset [m] and heading
   int first_row;  // first exact segment of the entries' mover

@@ -1,13 +1,14 @@
-// Casts the four beams of a lane against lists: a 32-bit search that certifies the nearest segment.
+// Casts the four beams of a lane against lists. This is a 32-bit search that certifies the nearest segment.
 //
-// Assumes lists with every segment that a beam could meet, near to far, and directions of unit length. A segment is m +
-// u e, u in [-1, 1], seen from its right; with w = m - o and a beam o + t d:
+// Assumes that the lists contain every segment that a beam could hit, from near to far, and that directions have unit
+// length. A segment is m + u e, u in [-1, 1], seen from its right. With w = m - o and a beam o + t d:
 //   1 / t = (e x d) / (e x w),  u = -(d x w) / (e x d).
-// As on the host (raycast/rasterizer.h derives the errors) a beam keeps bounds of 1 / t: the largest upper bound of all
-// segments that may cover it, with the lower bound of the same segment if that certainly covers it, and the largest
-// upper bound of all others. Where the second exceeds the last, the segment is certified as the nearest.
+// As on the host (raycast/rasterizer.h derives the errors), each beam keeps bounds of 1 / t: the largest upper bound of
+// all segments that may cover it, with the lower bound of the same segment if it certainly covers the beam, and the
+// largest upper bound of all others. If the lower bound exceeds the largest upper bound of the others, the segment is
+// certified as the nearest.
 
-// Four beams, and their nearest segments so far.
+// Four beams and their nearest segments so far.
 struct Search {
   vec4 dx, dy;
   vec4 most, low, others;  // [1/m]
@@ -19,7 +20,7 @@ struct Search {
 
 vec2 turned(vec2 by, vec2 v) { return kMovers ? vec2(by.x * v.x - by.y * v.y, by.y * v.x + by.x * v.y) : v; }
 
-// @param live false: the chunk changes nothing
+// @param live false: the chunk has no effect
 void search_chunk(Chunk chunk, float band, bool live, inout Search s) {
   for (int k = 0; k < SF_CHUNK; ++k) {
     const ListEntry entry = load_ListEntry(lists, chunk.entries[k]);
@@ -50,11 +51,11 @@ void search_chunk(Chunk chunk, float band, bool live, inout Search s) {
   }
 }
 
-// True where every beam has a certain hit nearer than `nearest` [m].
+// Returns true if every beam has a certain hit nearer than `nearest` [m].
 bool all_nearer(Search s, float nearest) { return all(greaterThan(nearest * s.low, vec4(1.0001))); }
 
-// Searches the walls, then the movers, until no remaining entry can be nearer. One loop for both, which all lanes leave
-// together: lavapipe runs the body of other loops once more after the last lane has left.
+// Searches the walls, then the movers, until no remaining entry can be nearer. A single loop that all lanes leave
+// together handles both: lavapipe runs the body of other loops once more after the last lane has left.
 void search_lists(ListHead walls, ListHead movers, vec2 offset, dvec2 origin, float band, inout Search s) {
   bool at_walls = walls.count > 0u;
   int at = int(at_walls ? walls.first : movers.first);

@@ -1,4 +1,4 @@
-// Tables of users' own kernels (sensorfarm/sensor.h). A kernel declares no others:
+// Tables of users' own kernels (sensorfarm/sensor.h). A kernel must not declare other tables:
 //
 //   #version 450
 //   #extension GL_GOOGLE_include_directive : require
@@ -18,10 +18,10 @@ layout(binding = 1, rgba32ui) uniform readonly uimageBuffer surfaces;  // OwnSur
 layout(binding = 2) writeonly buffer Values { double values[]; };
 
 OwnSample own;    // this invocation's sensor
-int own_element;  // and element
+int own_element;  // this invocation's element
 int own_first;    // index of its first value
 
-/// Reads the invocation's sensor. False: it has nothing to do.
+/// Reads the invocation's sensor. Returns false if the invocation has no work.
 bool begin_sample() {
   const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
   own = load_OwnSample(samples, 0);
@@ -34,7 +34,8 @@ bool begin_sample() {
 
 void set_value(int column, double value) { values[own_first + column] = value; }
 
-/// [m] Range of the nearest surface at the sensor's height along `direction`, a unit vector; `range` without one.
+/// Returns the range [m] of the nearest surface at the sensor's height along `direction`, a unit vector; `range` if
+/// there is none.
 double nearest(dvec2 origin, dvec2 direction, double range) {
   double best = range;
   for (int i = 0; i < int(own.surfaces); ++i) {

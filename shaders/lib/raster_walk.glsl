@@ -1,19 +1,19 @@
 // Walks a ray through the road raster (sensors/lane_markings/marking_raster.h): cell by cell near paint, by whole empty
 // squares elsewhere.
 //
-// After J. Amanatides and A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987. The squares
-// are those of the chessboard distance between blocks, and aligned ones of 2 or 4 cells within a block. Cell indices
-// are exact integers; 32-bit floats, relative to the sensor's cell, only decide the order of crossings. A ray that
-// passes a cell's corner within 1e-7 of its length may take either side.
+// Based on J. Amanatides and A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987. The squares
+// are given by the chessboard distance between blocks, and are aligned squares of 2 or 4 cells within a block. Cell
+// indices are exact integers. 32-bit floats, relative to the sensor's cell, only decide the order of crossings. A ray
+// that passes a cell's corner within 1e-7 of its length may take either side.
 
-// The words of a cell, and their contents.
+// The words of a cell and their contents.
 struct Cell {
   bool inside;   // inside the raster
   bool full;     // its block has paint
   uint word;     // directory word
   int bits;      // row of its word of paint in `blocks`
   uint painted;  // 0 or 1
-  int clear;     // [cells] side of the empty square round a free cell of a full block: 1, 2 or 4
+  int clear;     // [cells] side of the empty square around a free cell of a full block: 1, 2 or 4
 };
 
 Cell cell_at(ivec2 at, ivec2 size) {
@@ -38,7 +38,8 @@ struct Walk {
   ivec2 paint;    // the painted cell at that edge
 };
 
-// From `from` in cell `start` along `d`, until paint begins (or ends, when the sensor stands on it) or `reach` [cells].
+// Walks from `from` in cell `start` along `d`, until paint begins (or ends, if the sensor starts on paint) or `reach`
+// [cells].
 Walk walk(ivec2 start, vec2 from, vec2 d, float reach, ivec2 size, bool going) {
   const vec2 inverse = vec2(d.x == 0.0 ? 1e30 : 1.0 / d.x, d.y == 0.0 ? 1e30 : 1.0 / d.y);
   const uint wanted = 1u - cell_at(start, size).painted;
