@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kExact = "exact";
 
-/// The mode of the sensor type `type` called `word`, which may have a prefix "type:"; null: none.
+/// Returns the mode of sensor type `type` called `word`, which may have a prefix "type:"; null if there is none.
 const AccuracyMode* find_mode(std::string_view type, std::span<const AccuracyMode> modes, std::string_view word) {
   const std::size_t colon = word.find(':');
   if (colon != std::string_view::npos && word.substr(0, colon) != type) return nullptr;
@@ -39,7 +39,7 @@ std::string listed(const std::vector<std::string_view>& words) {
   return text;
 }
 
-/// Error at a line of the file, or of the command line.
+/// Throws an error at a line of the file, or at the command line.
 [[noreturn]] void refuse_mode(const world::Accuracy& at, const std::string& message) {
   throw base::InputError(at.file.empty() ? "--accuracy" : at.file, at.line, message);
 }
@@ -83,7 +83,7 @@ void check_word(const world::World& world, std::span<const SensorType* const> pr
               fmt::format("accuracy \"{}\" is for {}, and the world has no such sensor; leave it out", word, who));
 }
 
-/// Types with modes check their sensors' words in `mode_of`; the other types accept only `exact`.
+/// Types with modes check their sensors' words in `mode_of`. Other types accept only `exact`.
 void check_sensor(const world::World& world, const world::Sensor& sensor) {
   const auto all = sensor_types();
   const auto type = std::find_if(all.begin(), all.end(), [&](const auto* k) { return k->word.type == sensor.type; });
@@ -116,10 +116,10 @@ std::vector<std::string_view> accuracy_words() {
 
 namespace {
 
-/// Settings by which sensors have equal bounds.
+/// Settings that determine a sensor's bound.
 using Alike = std::tuple<std::uint8_t, double, double, double, std::uint32_t>;
 
-/// @param known bounds computed before
+/// @param known bounds computed so far
 const ErrorBound& bound_of(const world::World& world, const SensorType& type, const SensorSpec& row,
                            std::map<Alike, ErrorBound>& known) {
   const auto [at, is_new] = known.try_emplace(

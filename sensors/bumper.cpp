@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kTurn = 2.0 * M_PI;
 constexpr double kSector = kTurn / base::kContactSectors;
-constexpr double kRounding = 1e-9;  // [rad] rounding of degrees converted to radians
+constexpr double kRounding = 1e-9;  // [rad] rounding error of degrees converted to radians
 
-/// Sectors whose middles have bearings from `from` counter-clockwise to `from` + `sweep` [rad].
+/// Returns the sectors whose centres have bearings from `from` counter-clockwise to `from` + `sweep` [rad].
 std::uint32_t sectors_of(double from, double sweep) {
   std::uint32_t sectors = 0;
   for (std::uint32_t k = 0; k < base::kContactSectors; ++k) {
@@ -46,7 +46,8 @@ std::uint32_t read_zone(const world::Sensor& sensor, const world::Setting& setti
                      setting.key, degrees[0], degrees[1], base::kContactSectors));
 }
 
-/// Stage's bars: [x y z angle] and `blength`, perpendicular to `angle`. A bar is the arc of bearings between its ends.
+/// Reads Stage's bars: [x y z angle] and `blength`, perpendicular to `angle`. A bar is the arc of bearings between its
+/// ends.
 std::vector<std::uint32_t> read_bars(const world::Sensor& sensor) {
   const std::uint32_t count = whole(sensor, "bcount", 1, 1, kMostBumperZones);
   std::vector<std::uint32_t> switches;

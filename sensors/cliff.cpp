@@ -18,8 +18,8 @@ base::BoxTree boxes_of(std::span<const world::FloorHole> drops) {
   return base::BoxTree(boxes);
 }
 
-/// True when the edge ab passes `p` on the right, along +x. Both ends are taken relative to `p` and in one order, so
-/// that polygons that share the edge decide alike.
+/// Returns true when the edge ab crosses the ray from `p` along +x. Both ends are taken relative to `p` and in a fixed
+/// order, so polygons that share the edge get the same result.
 bool passes(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) {
   if ((a.y <= p.y) == (b.y <= p.y)) return false;
   if (a.y > b.y) std::swap(a, b);

@@ -19,15 +19,15 @@ inline constexpr std::uint32_t kMostCliffPoints = 32;  ///< per sensor
 
 extern const SensorType cliff_type;
 
-/// True when `p` is inside the closed polygon `outline`, of either winding. Each edge is decided by the sign of one
-/// product: among polygons that share edges, exactly one contains a point on them.
+/// Returns true when `p` is inside the closed polygon `outline`, of either winding. Each edge is decided by the sign of
+/// one product: among polygons that share edges, exactly one contains a point on them.
 bool holds(std::span<const glm::dvec2> outline, glm::dvec2 p);
 
-/// The holes of a world, which must outlive this object. Thread-safe.
+/// Index of the holes of a world, which must outlive this object. Thread-safe.
 class DropOffIndex {
  public:
   explicit DropOffIndex(std::span<const world::FloorHole> drops);
-  /// True when a hole contains `p`.
+  /// Returns true when a hole contains `p`.
   bool hold(glm::dvec2 p) const;
 
  private:

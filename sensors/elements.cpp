@@ -11,7 +11,7 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kFarthest = 1e6;  // [m] of an element from its sensor
+constexpr double kFarthest = 1e6;  // [m] largest distance of an element from its sensor
 
 Pose element_pose(const world::Sensor& sensor, const world::Setting& setting, bool has_height) {
   const std::size_t least = has_height ? 4 : 3;

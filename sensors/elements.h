@@ -1,6 +1,6 @@
 #pragma once
-// Positions of an array's elements in Stage's syntax: `scount N`, then for each `spose[i] [x y yaw]` or, with a height,
-// `spose3[i] [x y z yaw]`.
+// Positions of an array's elements in Stage's syntax: `scount N`, then for each element `spose[i] [x y yaw]` or, with a
+// height, `spose3[i] [x y z yaw]`.
 
 #include <cstdint>
 #include <vector>
@@ -9,9 +9,10 @@
 
 namespace sf::sensors {
 
-/// Poses of the elements in the sensor frame [m, rad], in order; one element at the origin when nothing is set.
-/// @throws base::InputError where an element is missing, given twice, beyond `scount` or too far away, or for more than
-/// `most`
+/// Returns the poses of the elements in the sensor frame [m, rad], in order; one element at the origin when nothing is
+/// set.
+/// @throws base::InputError when an element is missing, defined twice, beyond `scount` or too far away, or when there
+/// are more than `most`
 std::vector<Pose> read_elements(const world::Sensor& sensor, std::uint32_t most);
 
 }  // namespace sf::sensors

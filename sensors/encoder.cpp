@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kSkidScrub = 1.5;  // of a Pioneer 3-AT: docs/sensors.md
 
-/// Last pose of a mover.
+/// Last known pose of a mover.
 struct Track {
   Pose X_WM;
   std::int64_t since = 0;  ///< [ns] time of that pose
-  bool moved = false;      ///< since the start
-  bool away = false;       ///< the mover is out of the world
+  bool moved = false;      ///< true once the mover has moved since the start
+  bool away = false;       ///< the mover is absent from the world
 };
 
 /// State of one robot's encoders.
@@ -72,8 +72,8 @@ Encoders::Encoders(const SensorContext& context) : HostBackend(context, encoder_
   });
 }
 
-/// False for a relocation. The time since the last pose may exceed a tick when reports are late; before the first
-/// movement it counts from the last tick.
+/// Returns false for a relocation. The time since the last pose may exceed a tick when reports are late. Before the
+/// first movement, it is measured from the last tick.
 bool Encoders::drove(const Track& track, const Pose& X_WM, double max_forward, std::int64_t now) const {
   const double seconds = 1e-9 * static_cast<double>(now - (track.moved ? track.since : last_));
   return base::is_drivable(track.X_WM, X_WM, max_forward, std::max(0.0, seconds));
@@ -86,7 +86,8 @@ void Encoders::accumulate(std::int64_t now, bool between) {
     const std::uint32_t mover = rows()[i].mover;
     const Pose& X_WM = states()[mover].X_WM;
     Track& track = tracks_[i];
-    // Of this time: a mover that stood, or was out of the world, and is elsewhere, was put there. Others may be late.
+    // Only for a state of this tick: a mover that was at rest or absent and is now elsewhere was relocated. Older
+    // states may be late.
     const bool fresh = states()[mover].time == now;
     if (base::is_absent(X_WM)) {
       if (!between) track.away = true;
@@ -113,7 +114,7 @@ void Encoders::accumulate(std::int64_t now, bool between) {
   if (!between) last_ = now;
 }
 
-// Of wheels that slip, the number of steps of a random walk is part of the state.
+// For wheels that slip, the number of steps of a random walk is part of the state.
 static_assert(std::is_trivially_copyable_v<Rolled> && std::is_trivially_copyable_v<Slippage> &&
               std::is_trivially_copyable_v<Track>);
 
@@ -149,7 +150,7 @@ void Encoders::measure(std::span<const HostSample> samples) const {
 }
 
 constexpr std::string_view kKeys[] = {"per_count", "slip", "scale", "track", "scrub"};
-// Counts are signed; integer columns of recordings are not.
+// Counts are signed, but integer columns of recordings are not.
 constexpr Column kColumns[] = {{"left_m"}, {"right_m"}, {"left_counts"}, {"right_counts"}};
 constexpr PlainNumber kNumbers[] = {{1e-5}, {1e-5}, {1.0}, {1.0}};
 constexpr PlainForm kForm{kEncoder, "encoder", kNumbers};

@@ -5,7 +5,7 @@
 //   encoder( per_count length  slip 0.005  scale [left right]  track length  scrub 1.5 )
 // `per_count`: distance that a wheel rolls per count. `slip`: standard deviation of the error after one metre; it grows
 // with the square root of the distance. `scale`: factor on each wheel's counts. `track`: distance between the wheels
-// (default: the robot's). `scrub`: factor on the track where wheels scrub sideways in turns (default: 1.5 for skid
+// (default: the robot's). `scrub`: factor on the track when wheels scrub sideways in turns (default: 1.5 for skid
 // steering, else 1).
 //
 // A reading is one row: distance rolled by the left and the right wheel since the start, in metres and in counts,

@@ -14,7 +14,7 @@ namespace {
 
 using world::Segment;
 
-constexpr double kMostPieces = 64.0;  // most steps along a line of sight
+constexpr double kMostPieces = 64.0;  // largest number of steps along a line of sight
 constexpr double kSingular = 1e-9;    // of the satellites' normal matrix
 
 bool blocks(const Segment& wall) { return wall.seen_by_laser || wall.stops_robots; }
@@ -31,7 +31,7 @@ double top_of(std::span<const Segment> walls) {
   return top;
 }
 
-/// Length [m] of which a line to the lowest satellite has about ten.
+/// Returns a piece length [m], about a tenth of a line of sight to the lowest satellite.
 double piece_of(std::span<const Segment> walls) {
   double bottom = HUGE_VAL;
   for (const Segment& wall : walls) bottom = std::min(bottom, wall.z_min);
@@ -94,7 +94,7 @@ GnssVisibility::GnssVisibility(std::vector<Segment> walls)
   add_solids(walls_.walls());
 }
 
-/// One solid per model and range of heights: overlapping parts add to the winding number.
+/// Adds one solid per model and range of heights. Overlapping parts add to the winding number.
 void GnssVisibility::add_solids(std::span<const Segment> walls) {
   std::map<std::tuple<std::uint32_t, double, double>, std::vector<Segment>> outlines;
   for (const Segment& wall : walls)

@@ -5,9 +5,9 @@
 // sin(elevation) rises from sin(15 degrees) to 1 in equal steps, with half a step at both ends. The distribution is
 // uniform over the sky above the mask (Swinbank and Purser, "Fibonacci grids", Q. J. R. Meteorol. Soc. 132, 2006).
 //
-// A line of sight is straight. Static geometry that lasers see or robots collide with blocks it: a surface where the
-// line crosses its range of heights, and a solid overhead (a bridge, a roof) where the line meets its underside within
-// its outline. Movers block nothing.
+// A line of sight is straight. Static geometry that lasers detect or robots collide with blocks it. A surface blocks
+// the line if the line crosses the surface within its range of heights. A solid overhead (a bridge, a roof) blocks the
+// line if the line meets its underside within its outline. Movers do not block lines of sight.
 
 #include <cmath>
 #include <cstdint>
@@ -27,15 +27,15 @@ struct Satellite {
   double tan_elevation = 1.0;  ///< [-] > 0
 };
 
-/// @param count in [1, 64]
+/// Returns `count` satellites. @param count in [1, 64]
 std::vector<Satellite> constellation(std::uint32_t count);
 
-inline constexpr double kLeastElevation = 15.0 * M_PI / 180.0;  ///< [rad] of all constellations
-/// [m] Largest height of what blocks lines of sight; -infinity: nothing does.
+inline constexpr double kLeastElevation = 15.0 * M_PI / 180.0;  ///< [rad] smallest elevation in all constellations
+/// Returns the largest height of geometry that blocks lines of sight [m]; -infinity if there is none.
 double top_of_blocking(const world::World& world);
 
-/// Position errors from independent range errors of standard deviation 1, with unknown 3-D position and clock: (x, y) =
-/// (xx n, yx n + yy m), with standard normal n and m.
+/// Position errors due to independent range errors of standard deviation 1, with unknown 3-D position and clock: (x, y)
+/// = (xx n, yx n + yy m), with standard normal n and m.
 struct Dilution {
   double xx = 0.0;
   double yx = 0.0;
@@ -43,7 +43,7 @@ struct Dilution {
   double hdop = 0.0;  ///< horizontal dilution of precision: square root of the sum of both variances
 };
 
-/// Empty when fewer than four satellites are visible, or when all lie on one cone.
+/// Returns an empty value when fewer than four satellites are visible, or when all lie on one cone.
 /// @param seen one bit per satellite
 std::optional<Dilution> dilution(std::span<const Satellite> satellites, std::uint64_t seen);
 
@@ -58,14 +58,14 @@ class GnssVisibility {
   explicit GnssVisibility(std::vector<world::Segment> walls);
 
   struct Solid {
-    std::uint32_t first = 0, last = 0;  ///< edges of its outline in solid_edges_
+    std::uint32_t first = 0, last = 0;  ///< edges of its outline in `solid_edges_`
     double z_min = 0.0;
   };
   void add_solids(std::span<const world::Segment> walls);
   bool crosses(glm::dvec2 p, double z, const Satellite& satellite, const world::Segment& wall) const;
   bool under(glm::dvec2 p, double z, const Satellite& satellite, const Solid& solid) const;
 
-  double piece_ = 1.0;  ///< [m] of a line of sight that is tested at once
+  double piece_ = 1.0;  ///< [m] length of a line of sight that is tested in one step
   double z_top_ = 0.0;  ///< [m] largest height of any obstacle
   world::WallTree walls_;
   std::vector<world::Segment> solid_edges_;

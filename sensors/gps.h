@@ -1,6 +1,6 @@
 #pragma once
-// Satellite positioning with loss of fix under bridges and between walls (docs/sensors.md). sensors/gnss_visibility.h
-// describes the constellation and visibility.
+// Satellite positioning, which loses its fix under bridges and between walls (docs/sensors.md).
+// sensors/gnss_visibility.h describes the constellation and visibility.
 //
 // In a world file, inside a robot:
 //   gps( satellites 8  noise 2  rate 1  latency 0.1 )

@@ -11,11 +11,11 @@ namespace sf::sensors {
 
 namespace {
 
-// Draw numbers of one gyro: per reading, and per run.
+// Draw numbers of a gyro: one per reading and one per run.
 constexpr std::uint32_t kReading = 0;
 constexpr std::uint32_t kRun = 1;
 
-/// Constants of one gyro in a run.
+/// Constants of a gyro in a run.
 struct Fixed {
   double range = 0.0;
   double scale = 1.0;

@@ -34,7 +34,7 @@ bool HostBackend::prepare(std::span<const DueSample> due) {
     const auto values = std::span(values_).subspan(first_[d.row], first_[d.row + 1] - first_[d.row]);
     samples_.push_back({d.row, d.sequence, X_WS, values});
   }
-  // A world without device work needs its empty batch recorded once.
+  // In a world without device work, the empty batch must be recorded once.
   return !std::exchange(recorded_, true);
 }
 

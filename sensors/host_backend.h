@@ -1,5 +1,5 @@
 #pragma once
-// Base of sensor backends without device work: readings are computed on the host by all pool threads.
+// Base class of sensor backends without device work. All pool threads compute readings on the host.
 
 #include <cstdint>
 #include <functional>
@@ -10,12 +10,12 @@
 
 namespace sf::sensors {
 
-/// One reading to be taken.
+/// One reading to be measured.
 struct HostSample {
-  std::uint32_t row = 0;       ///< row of the sensor type's sensors in this world
+  std::uint32_t row = 0;       ///< row among the sensor type's sensors in this world
   std::uint64_t sequence = 0;  ///< key of the reading's noise
-  Pose X_WS;                   ///< pose of the sensor; z: its world height at load (2.5-D world)
-  std::span<double> values;    ///< all rows and columns, to be filled
+  Pose X_WS;                   ///< pose of the sensor; z: height in the world at load (2.5-D world)
+  std::span<double> values;    ///< all rows and columns, to be filled in
 };
 
 /// All sensors of one type without device work. Not thread-safe.
@@ -32,7 +32,7 @@ class HostBackend : public SensorBackend {
   /// @param rows the specs of the type's sensors
   HostBackend(const SensorContext& context, const SensorType& type, std::vector<SensorSpec> rows);
 
-  /// Fills in readings. Called by several pool threads at once, each reading exactly once.
+  /// Fills in readings. Several pool threads call it concurrently, each reading exactly once.
   virtual void measure(std::span<const HostSample> samples) const = 0;
 
   std::span<const SensorSpec> rows() const { return rows_; }
@@ -47,7 +47,7 @@ class HostBackend : public SensorBackend {
   std::uint64_t seed_;
   std::uint8_t type_;
   std::vector<SensorSpec> rows_;
-  std::vector<std::size_t> first_;  ///< per row and one more: index of its first value
+  std::vector<std::size_t> first_;  ///< per row, plus one: index of its first value
   std::vector<double> values_;
   std::vector<HostSample> samples_;
   bool recorded_ = false;
@@ -56,7 +56,7 @@ class HostBackend : public SensorBackend {
 /// A sensor of a world, with its spec.
 struct MountedSensor {
   const world::Sensor& settings;
-  SensorSpec row;  ///< the settings common to all types
+  SensorSpec row;  ///< settings common to all types
 };
 
 /// Calls `body` for every sensor of `type`, by mover and in file order.

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kDegrees = M_PI / 180.0;
 
-/// Webots' table for the Khepera II: the response falls linearly with the range, and its relative noise grows linearly.
+/// Implements Webots' table for the Khepera II: the response falls linearly with the range, and its relative noise
+/// grows linearly.
 void tell_response(const ConeArray& array, double range, bool met, double deviate, std::span<double> out) {
   const double away = (std::max(range, array.range_min) - array.range_min) / (array.range_max - array.range_min);
   const double quiet = met ? kMostResponse * (1.0 - away) : 0.0;
@@ -40,7 +41,7 @@ constexpr PlainForm kForm{kInfrared, "infrared", kNumbers};
 ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type) {
   ConeArray array = read_cones(sensor, mover, number_of_type, {30.0 * kDegrees, 0.0, 0.05, 50.0});
   array.proportional = number(sensor, "noise", 0.0, 0.0, 1e3);
-  array.row.sigma = array.proportional > 0.0 ? HUGE_VAL : 0.0;  // of the response
+  array.row.sigma = array.proportional > 0.0 ? HUGE_VAL : 0.0;  // noise of the response
   return array;
 }
 

@@ -16,9 +16,9 @@ namespace {
 using world::Emitter;
 using world::Segment;
 
-constexpr double kOverlap = 0.25;  // fraction of each buoy's beam that overlaps the other's
+constexpr double kOverlap = 0.25;  // fraction of each buoy's beam that overlaps the other beam
 
-/// True when a bearing from the emitter is in a beam of width `fov` about `axis` [rad].
+/// Returns true when a bearing from the emitter is in a beam of width `fov` around `axis` [rad].
 bool within(double bearing, double axis, double fov) { return std::abs(base::wrap_angle(bearing - axis)) <= 0.5 * fov; }
 
 base::BoxTree reaches_of(const world::World& world) {
@@ -44,7 +44,7 @@ class IrReceivers : public HostBackend {
   bool hidden(const Emitter& emitter, glm::dvec2 p, double z) const;
 
   world::WallTree walls_;
-  base::BoxTree reaches_;  ///< of the world's emitters
+  base::BoxTree reaches_;  ///< reaches of the world's emitters
 };
 
 std::vector<SensorSpec> specs_of(const world::World& world) {

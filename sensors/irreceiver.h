@@ -1,12 +1,13 @@
 #pragma once
-// The iRobot Create's omnidirectional infrared receiver for virtual walls and docks (docs/sensors.md has their
+// The iRobot Create's omnidirectional infrared receiver for virtual walls and docks (docs/sensors.md describes their
 // geometry).
 //
 // In a world file, inside a robot:
 //   irreceiver()
-// A reading is one row. First: 1 in a virtual wall's beam or halo, else 0. Second: the byte of visible docks in the
-// Create's Open Interface: 240 plus 8 for the red buoy, 4 for the green buoy and 2 for the force field, or 255 for
-// none. Walls that lasers see at the receiver's height block light; the emitter's own body and movers do not.
+// A reading is one row. The first column is 1 in a virtual wall's beam or halo, else 0. The second column is the byte
+// of visible docks in the Create's Open Interface: 240 plus 8 for the red buoy, 4 for the green buoy and 2 for the
+// force field, or 255 for none. Walls that lasers detect at the receiver's height block light. The emitter's own body
+// and movers do not.
 
 #include <cstdint>
 
@@ -21,7 +22,7 @@ inline constexpr std::uint32_t kRedBuoy = 8;
 inline constexpr std::uint32_t kGreenBuoy = 4;
 inline constexpr std::uint32_t kForceField = 2;
 
-/// Signals of one emitter at a point of the plane, without walls.
+/// Returns the signals of one emitter at a point of the plane, ignoring walls.
 /// @return virtual wall: 1 in its beam or halo; dock: bits kRedBuoy, kGreenBuoy, kForceField; 0: none
 std::uint32_t light_of(const world::Emitter& emitter, glm::dvec2 p);
 

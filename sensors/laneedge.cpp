@@ -22,7 +22,7 @@ std::vector<raycast::Scanner> scanners_of(const std::vector<LaneEdge>& edges) {
   return scanners;
 }
 
-/// True when beams can meet anything but paint.
+/// Returns true when beams can hit anything except paint.
 bool anything_else(const world::World& world) {
   const auto bodies = std::count_if(world.movers.begin(), world.movers.end(),
                                     [](const world::Mover& mover) { return !mover.body.empty(); });
@@ -34,8 +34,8 @@ constexpr base::QualityFlag kReasons[] = {base::QualityFlag::none, base::Quality
                                           base::QualityFlag::grazing, base::QualityFlag::not_straight,
                                           base::QualityFlag::extrapolated};
 
-/// Casts beams against the filtered scene, exactly, and through the raster where the road is one; then fits lines to
-/// the hits.
+/// Casts beams exactly against the filtered scene, and through the raster if the road has one, then fits lines to the
+/// hits.
 class LaneEdges : public SensorBackend {
  public:
   explicit LaneEdges(const SensorContext& context);
@@ -63,10 +63,10 @@ class LaneEdges : public SensorBackend {
   bool noise_;
   bool exact_;  ///< markings are exact outlines, not pixels
   FilteredScene scene_;
-  double longest_;  ///< [m] longest surface in it
+  double longest_;  ///< [m] longest surface in the scene
   raycast::RayCaster caster_;
-  bool casting_;    ///< `caster_` has surfaces to meet
-  bool on_device_;  ///< lines are fitted there, and rays cast through the raster
+  bool casting_;    ///< `caster_` has surfaces that beams can hit
+  bool on_device_;  ///< lines are fitted, and rays cast through the raster, on the device
   std::optional<RasterCaster> raster_caster_;
   EdgeFit fit_;
   std::vector<DueSample> due_;
@@ -132,7 +132,7 @@ void LaneEdges::add_copies(gpu::Batch& batch) {
   fit_.add_copies(batch);
 }
 
-/// Sets the error bound of a reading, or the reason for which it states none.
+/// Sets the error bound of a reading, or the reason why none is stated.
 void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   const LaneEdge& edge = edges_[due_[i].row];
   const bool noisy = noise_ && edge.row.sigma > 0.0;
@@ -141,7 +141,7 @@ void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   if (exact_ && !noisy && !std::isnan(block.values[0])) block.bound = lane_edge_bound(edge, longest_, away);
   base::QualityFlag why = base::QualityFlag::none;
   if (edge.row.mode > 0)
-    why = base::QualityFlag::not_cast;  // a skipped beam may have met another edge
+    why = base::QualityFlag::not_cast;  // a skipped beam might have hit another edge
   else if (edge.single)
     why = (caster_.beam_flags()[lanes_[i]] & SF_GRAZING) != 0 ? base::QualityFlag::grazing : why;
   else if (std::isfinite(block.bound))

@@ -16,14 +16,14 @@ constexpr std::size_t kFarmBytes = 12;
 constexpr std::size_t kThesisBytes = 2;
 constexpr double kMillimetre = 1e-3;  // [m] step of the distance
 
-/// Nearest integer multiple of `unit`, in [0, most]; `most` for NaN.
+/// Returns the nearest integer multiple of `unit`, in [0, most]; `most` for NaN.
 template <class Word>
 Word in_units(double value, double unit, Word most) {
   if (std::isnan(value)) return most;
   return static_cast<Word>(std::clamp(std::floor(value / unit + 0.5), 0.0, static_cast<double>(most)));
 }
 
-/// The inverse of `in_units`; all bits set gives NaN.
+/// Inverse of `in_units`; returns NaN if all bits are set.
 template <class Word>
 double from_units(Word word, double unit) {
   return word == std::numeric_limits<Word>::max() ? std::numeric_limits<double>::quiet_NaN() : word * unit;

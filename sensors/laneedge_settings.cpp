@@ -17,9 +17,10 @@ namespace sf::sensors {
 namespace {
 
 constexpr double kDegrees = M_PI / 180.0;
-constexpr double kLongest = 1e4;  // [m] of range_max
+constexpr double kLongest = 1e4;  // [m] limit of range_max
 
-/// The robot's axis nearest to the middle bearing of the beams; ties prefer the sides to front and back.
+/// Returns the robot's axis nearest to the middle bearing of the beams. In a tie, the sides take precedence over front
+/// and back.
 double nearest_axis(double yaw) {
   const glm::dvec2 d = base::rotate(yaw, {1.0, 0.0});
   if (std::fabs(d.y) >= std::fabs(d.x) * (1.0 - 1e-9)) return d.y >= 0.0 ? 0.5 * M_PI : -0.5 * M_PI;
@@ -28,11 +29,11 @@ double nearest_axis(double yaw) {
 
 constexpr double kStraightError = 1e-8;  // [m] error of a distance near the origin
 
-/// Per mode: one of this many beams is cast.
+/// Casts one of this many beams, per mode.
 constexpr std::uint32_t kEveryRay[] = {1, 2, 4};
 static_assert(std::size(kEveryRay) == std::size(kLaneEdgeModes));
 
-/// The same field of view with fewer beams, but at least three: fewer do not determine a line.
+/// Keeps the field of view with fewer beams, but at least three, because fewer do not determine a line.
 void thin_out(LaneEdge& edge, std::uint32_t every) {
   if (edge.fan.samples > 3) edge.fan.samples = std::max(3u, (edge.fan.samples - 1 + every - 1) / every + 1);
 }
@@ -62,6 +63,7 @@ LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uin
   edge.row.limit = edge.distance_max;
   edge.row.dependency_radius = edge.row.reach = fan.range_max;
   edge.row.sigma = fan.noise.has_range() || fan.noise.angle_sigma > 0.0 ? HUGE_VAL : 0.0;  // readings have their own
+                                                                                           // sigma
   return edge;
 }
 

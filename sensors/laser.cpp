@@ -12,20 +12,20 @@ namespace sf::sensors {
 
 namespace {
 
-/// A laser's place in the tables, and what its readings need: small, since a fleet may have very many.
+/// A laser's place in the tables and the data that its readings need. Kept small, because a fleet may have very many.
 struct Row {
-  std::span<const double> values;  ///< [m] of its readings
+  std::span<const double> values;  ///< [m] ranges of its readings
   std::span<const std::uint32_t> hits;
-  std::span<const std::uint32_t> beam_flags;  ///< of its lanes
-  std::size_t first_sample;                   ///< among those of all lasers
+  std::span<const std::uint32_t> beam_flags;  ///< flags of its lanes
+  std::size_t first_sample;                   ///< index among the samples of all lasers
   double range_max;                           ///< [m]
   std::uint32_t mover, sensor;
   std::uint8_t mode;
   bool single;
   bool reworked;          ///< results are post-processed on the host
   bool interpolated;      ///< some samples are not cast
-  bool grazing = false;   ///< some beam of its last scan grazes
-  bool too_near = false;  ///< some surface of its last scan is nearer than its minimum
+  bool grazing = false;   ///< a beam of its last scan grazes a surface
+  bool too_near = false;  ///< a surface of its last scan is nearer than its minimum
 };
 
 /// The lasers of a world and their scanners, by mover and in file order.
@@ -78,9 +78,9 @@ class Lasers : public SensorBackend {
   std::vector<CastLaser> lasers_;
   std::vector<Row> rows_;  ///< per laser
   std::vector<DueSample> due_;
-  std::vector<double> values_;              ///< [m] of all lasers' samples, when any is reworked
-  std::vector<std::uint32_t> met_;          ///< models of all lasers' samples, when any is reworked
-  std::vector<base::QualityFlag> quality_;  ///< of all lasers' samples
+  std::vector<double> values_;              ///< [m] samples of all lasers, if any laser is reworked
+  std::vector<std::uint32_t> met_;          ///< models of all lasers' samples, if any laser is reworked
+  std::vector<base::QualityFlag> quality_;  ///< flags of all lasers' samples
 };
 
 Lasers::Lasers(const SensorContext& context, LaserTables tables)
@@ -147,7 +147,8 @@ void Lasers::shape(std::size_t i) {
                    {quality_.data() + row.first_sample, cast.laser.samples}});
 }
 
-/// Sets the quality flags of a scan, where they were not all as at construction; `shape` adds those that are too near.
+/// Sets the quality flags of a scan, unless they still are as set at construction. `shape` adds those that are too
+/// near.
 void Lasers::mark(std::size_t i) {
   Row& row = rows_[due_[i].row];
   const bool grazing =
@@ -164,7 +165,7 @@ void Lasers::mark(std::size_t i) {
   }
 }
 
-/// Writes every field that the farm does not fill in, where it stays: a copy of 248 bytes would double the time.
+/// Writes every field that the farm does not fill in, in place: copying 248 bytes would double the time.
 void Lasers::write(std::size_t i, base::ReadingBlock& block) const {
   const Row& row = rows_[due_[i].row];
   block.mover = row.mover;
@@ -205,7 +206,7 @@ std::vector<SensorSpec> specs_of(const world::World& world) {
     rows.back().range_min = laser.range_min;
     rows.back().dependency_radius = rows.back().reach = laser.range_max;
     const raycast::ScanNoise& noise = laser.noise;
-    rows.back().sigma = noise.angle_sigma > 0.0  // a beam that turns may meet another surface
+    rows.back().sigma = noise.angle_sigma > 0.0  // a beam that turns may hit another surface
                             ? HUGE_VAL
                             : std::hypot(noise.range_sigma, noise.range_proportional * laser.range_max);
   }

@@ -15,7 +15,7 @@ inline constexpr AccuracyMode kLaserModes[] = {
     {"skip8", "every 8th beam"},
 };
 
-/// A laser with the settings that are cast.
+/// A laser with the settings that its beams are cast with.
 struct CastLaser {
   LaserSettings laser;        ///< `resolution` includes that of its mode
   bool single = false;        ///< raycast::Scanner::single
@@ -25,15 +25,16 @@ struct CastLaser {
 };
 CastLaser cast_laser(const world::World& world, const LaserSettings& laser);
 
-/// Largest dimensions of a world, movers included.
+/// Largest dimensions of a world, including movers.
 struct Reaches {
-  double longest = 0.0;   ///< [m] surface
-  double farthest = 0.0;  ///< [m] coordinate
+  double longest = 0.0;   ///< [m] longest surface
+  double farthest = 0.0;  ///< [m] largest coordinate
 };
 Reaches reaches_of(const world::World& world);
 
-/// [m] base::ReadingBlock::bound of a laser. @param single CastLaser::single  @param longest [m] longest surface @param
-/// farthest [m] largest coordinate of anything in range
+/// Returns base::ReadingBlock::bound of a laser [m].
+/// @param single CastLaser::single  @param longest [m] longest surface
+/// @param farthest [m] largest coordinate of anything in range
 double laser_bound(double range_max, bool single, double longest, double farthest);
 
 ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor);

@@ -15,7 +15,7 @@ struct Cast {
   bool too_near;
 };
 
-/// The model of a sample. Noise may lead a hit out of range.
+/// Returns the model of a sample. Noise may move a hit out of range.
 std::uint32_t model_at(const CastLaser& shape, double range, std::uint32_t hit) {
   return range < shape.laser.range_max ? hit : base::kNoHit;
 }

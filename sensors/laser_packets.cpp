@@ -35,7 +35,7 @@ std::uint32_t extended_word(double metres) {
   return to_word<std::uint32_t>(metres, kExtendedPerMetre, kNoReturn - 1);
 }
 
-/// [m] The number of the largest word that is a range.
+/// Returns the number of the largest word that encodes a range [m].
 double largest_range(bool extended) { return extended ? (kNoReturn - 1) / kExtendedPerMetre : kPlainRange; }
 
 /// A range_max that is unknown (0) or beyond the largest word has no word of its own.
@@ -94,8 +94,7 @@ PayloadError read_extended(std::span<const std::uint8_t> payload, LaserPart& sca
   const PayloadError size = take_words(payload.subspan(reader.position()), 4, scan);
   if (size != PayloadError::none) return size;
 
-  // The split is fixed: each field follows from the total and the part number, so that a receiver's sums cannot
-  // overflow.
+  // The split is fixed: each field follows from the total and the part number, so a receiver's sums cannot overflow.
   if (scan.total < 1 || scan.total > kExtendedRays) return PayloadError::out_of_range;
   if (scan.parts != parts_of(scan.total) || scan.part >= scan.parts) return PayloadError::out_of_range;
   if (scan.first != scan.part * kPartRays) return PayloadError::out_of_range;

@@ -32,7 +32,7 @@ std::vector<LaserReference::Seen> LaserReference::in_sight(std::uint32_t self, c
     ++id;
   }
   for (std::uint32_t m = 0; m < world_.movers.size(); ++m) {
-    const double height = X_WS.z - world_.movers[m].X_WM.z;  // as loaded (2.5-D world)
+    const double height = X_WS.z - world_.movers[m].X_WM.z;  // height at load (2.5-D world)
     for (const world::Segment& s : world_.movers[m].body) {
       if (!s.seen_by_laser) continue;
       if (m != self && !base::is_absent(poses_[m]) && s.z_min <= height && height < s.z_max)

@@ -1,10 +1,11 @@
 #pragma once
 // Reference implementation of the laser: every beam against every segment, in sequence, on the host.
 //
-// Its arithmetic is that of shaders/lib/intersect.glsl, operation by operation, so that its scans equal the device's
-// bit by bit, including noise and `resolution`. Devices are tested and recordings are verified against it. A laser in
-// mode `single` is cast as an exact one. Beam layout and noise are shared with the farm (raycast/beams.h,
-// sensors/laser_noise.h); the search for surfaces is not. Some microseconds per beam in a world of a thousand walls.
+// It uses the arithmetic of shaders/lib/intersect.glsl, operation by operation, so its scans equal the device's bit by
+// bit, including noise and `resolution`. Devices are tested and recordings are verified against it. A laser in mode
+// `single` is cast as an exact one. Beam layout and noise are shared with the farm (raycast/beams.h,
+// sensors/laser_noise.h); the search for surfaces is not. A beam takes some microseconds in a world of a thousand
+// walls.
 
 #include <cstdint>
 #include <span>
@@ -15,14 +16,14 @@
 
 namespace sf::sensors {
 
-/// Immutable between two calls of `set_poses`: several threads may scan. `world` must outlive it.
+/// Immutable between two calls of `set_poses`, so several threads may scan. `world` must outlive it.
 class LaserReference {
  public:
-  /// @param noise false: no noise, whatever the world file says
+  /// @param noise false: adds no noise, whatever the world file says
   /// @throws base::InputError for a laser with invalid settings
   LaserReference(const world::World& world, std::uint64_t seed, bool noise = true);
 
-  /// A mover's laser with the settings that are cast.
+  /// Returns a mover's laser with the settings that its beams are cast with.
   const CastLaser& laser(std::uint32_t mover, std::uint32_t number) const { return lasers_[mover][number]; }
 
   /// Sets the pose of every mover. Initially movers are at their poses at load.
@@ -34,9 +35,9 @@ class LaserReference {
     std::vector<std::uint32_t> hits;         ///< model per sample, as in base::ReadingBlock
     std::vector<base::QualityFlag> quality;  ///< per sample: too_near or none
   };
-  /// One reading of a mover's laser. @param sequence key of its noise
-  /// @param slack [m] surfaces less than this from range_min are at range_min, or just nearer where it is negative:
-  /// the two readings that errors of ranges in 32 bits may give there
+  /// Returns one reading of a mover's laser. @param sequence key of its noise
+  /// @param slack [m] surfaces within this distance of range_min are treated as being at range_min, or just nearer if
+  /// it is negative. These are the two readings that 32-bit range errors may produce.
   Scan scan(std::uint32_t mover, std::uint32_t number, std::uint64_t sequence, double slack = 0.0) const;
 
  private:

@@ -27,7 +27,7 @@ void read_range(const world::Sensor& sensor, std::string_view key, std::size_t c
   if (count == 3) laser.fov = sensor.radians_per_unit * (*v)[2];
 }
 
-/// The setting that an error names: the first of `keys` that the sensor has.
+/// Returns the setting that an error names: the first of `keys` that the sensor has.
 std::string_view present(const world::Sensor& sensor, std::initializer_list<std::string_view> keys) {
   const auto has = [&](std::string_view key) { return find(sensor, key) != nullptr; };
   const auto found = std::find_if(keys.begin(), keys.end(), has);
@@ -51,7 +51,7 @@ void check(const world::Sensor& sensor, LaserSettings& laser) {
   laser.fov = std::min(laser.fov, kTurn);
 }
 
-/// @param laser defaults of samples, field of view and range, which the form of the sensor decides
+/// @param laser defaults of samples, field of view and range, which depend on the form of the sensor
 LaserSettings read_laser(const world::Sensor& sensor, LaserSettings laser) {
   const SensorSpec common = common_spec(sensor, 0, 0);
   laser.name = sensor.name;
@@ -95,7 +95,7 @@ void add_ranger(const world::Sensor& sensor, std::vector<LaserSettings>& lasers)
   }
 }
 
-/// Neighbours of one name become name[0], name[1], ...
+/// Renames neighbours with the same name to name[0], name[1], ...
 void number_equal_names(std::vector<LaserSettings>& lasers) {
   for (std::size_t first = 0, end; first < lasers.size(); first = end) {
     const std::string name = lasers[first].name;

@@ -22,29 +22,29 @@ struct LaserSettings : raycast::ScanSettings {
   std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the field of view in figures
 };
 
-/// Keys of a laser, in addition to those of every sensor.
+/// Keys of a laser, in addition to the common ones.
 inline constexpr std::string_view kLaserKeys[] = {"fov", "samples", "range_min", "range_max", "laser_color",
-                                                  // Stage's older name of `resolution`, of the same meaning
+                                                  // Stage's older name of `resolution`, with the same meaning
                                                   "laser_sample_skip"};
 inline constexpr std::string_view kRangerKeys[] = {"scount", "sview", "spose[]", "spose3[]",
-                                                   // known, not modelled
+                                                   // accepted but not modelled
                                                    "ssize", "sraycount"};
 inline constexpr std::string_view kBlockKeys[] = {"range", "view", "fov", "samples"};
 inline constexpr world::SensorKeyword kLaserWord{"laser", kLaserKeys};
 inline constexpr world::SensorKeyword kRangerWord{"ranger", kRangerKeys, kBlockKeys};
 
-/// @param type of a world::Sensor
+/// Returns true for types that are lasers. @param type of a world::Sensor
 inline bool is_laser(std::string_view type) { return type == kLaserWord.type || type == kRangerWord.type; }
 
-/// The lasers of a mover in file order, numbered as in readings. Neighbours of one name, such as the lasers of
-/// a ranger, are called `name[k]`.
+/// Returns the lasers of a mover in file order, numbered as in readings. Neighbours with the same name, such as the
+/// lasers of a ranger, are renamed `name[k]`.
 /// @throws base::InputError with file and line for an invalid setting
 std::vector<LaserSettings> lasers_of(const world::Mover& mover);
 
-/// A laser as a sensor of a world that is made in code. `lasers_of` gives the same settings back.
+/// Returns a laser as a sensor, for worlds built in code. `lasers_of` restores the same settings.
 world::Sensor laser_sensor(const LaserSettings& laser);
 
-/// `noise [constant proportional angular]`; none where it is absent.
+/// Reads `noise [constant proportional angular]`; no noise if it is absent.
 raycast::ScanNoise scan_noise_of(const world::Sensor& sensor);
 
 }  // namespace sf::sensors

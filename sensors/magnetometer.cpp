@@ -21,8 +21,8 @@ namespace {
 struct Array {
   Magnetometer settings;
   SensorSpec row;
-  FieldBound bound;                ///< largest of its elements'
-  double height = 0.0;             ///< [m] world height of its origin; fixed at load (2.5-D world)
+  FieldBound bound;                ///< largest bound of its elements
+  double height = 0.0;             ///< [m] height of its origin in the world; fixed at load (2.5-D world)
   std::size_t values = 0;          ///< index of its first value
   std::vector<glm::dvec2> facing;  ///< per element: its x axis in the sensor frame
 };
@@ -50,7 +50,7 @@ std::vector<Array> arrays_of(const world::World& world) {
   return arrays;
 }
 
-/// `p` in a frame whose x axis is `facing`, of unit length.
+/// Returns `p` in a frame whose x axis is `facing`, of unit length.
 glm::dvec2 along(glm::dvec2 facing, glm::dvec2 p) { return {glm::dot(facing, p), base::cross(facing, p)}; }
 
 bool any_magnitudes(const std::vector<Array>& arrays) {

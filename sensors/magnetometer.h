@@ -5,12 +5,13 @@
 // In a world file, inside a robot:
 //   magnetometer( scount 5  spose[0] [x y yaw] ... spose[4] [x y yaw]  ssensitivity [min max]  noise [sigma]
 //                 sum "vector" )
-// Elements are in the frame of their model and keep the order of the file. They are at half its height; spose3 ([x y z
-// yaw]) adds a height. Sensitivity and noise are in Gauss.
+// Elements are in the frame of their model and keep the order of the file. They are at half its height; spose3
+// ([x y z yaw]) adds a height. Sensitivity and noise are in Gauss.
 //
 // A reading has four columns per element: the field (length of the vector or, with `sum "magnitude"`, sum of the
-// magnitudes of the magnets' fields), and the vector in the element's frame. Noise is normal on each component, before
-// the length is taken; then all four saturate at the sensitivity. A robot's own magnets are included.
+// magnitudes of the magnets' fields), and the vector in the element's frame. Noise is normal on each component and is
+// added before the length is computed. Then all four columns saturate at the sensitivity. A robot's own magnets are
+// included.
 
 #include <cstdint>
 #include <vector>

@@ -18,10 +18,11 @@ constexpr double kCutoffs[] = {0.0, 10.0, 3.0, 1.0};  // [m] per mode; 0: none
 static_assert(std::size(kCutoffs) == std::size(kMagnetometerModes));
 
 constexpr double kArithmetic = 1e-12;  // relative to a magnet's field
-constexpr double kTooNear = 4e-6;      // [m] from a magnet's centre: nearer, rounding dominates (magnetic_field.h)
+constexpr double kTooNear = 4e-6;      // [m] distance from a magnet's centre below which rounding dominates
+                                       // (magnetic_field.h)
 
-/// Relative error of a magnet's field from the 32-bit rounding of its moment and, where `height` [m] is within its
-/// radius, of the inverse radius.
+/// Returns the relative error of a magnet's field due to 32-bit rounding of its moment and, if `height` [m] is within
+/// its radius, of the inverse radius.
 double lost_part(const world::Magnet& magnet, double height) {
   const double moment = std::abs(magnet.moment);
   const DipoleRow row = dipole_row(magnet, magnet.p, magnet.z);

@@ -12,20 +12,21 @@ inline constexpr AccuracyMode kMagnetometerModes[] = {
     {"near1", "within 1 m"},
 };
 
-/// [m] cut-off of a mode: the smaller of the mode's and the world's; 0: none.
+/// Returns the cut-off of a mode [m]: the smaller of the mode's and the world's; 0: none.
 double cutoff_of(const world::World& world, std::uint8_t mode);
 
 /// Largest error of a field, and of a magnitude, at one height, for all poses of movers.
 struct FieldBound {
   double fixed = 0.0;      ///< [T] cut-off and arithmetic
-  double per_metre = 0.0;  ///< [T/m] times the largest coordinate: rounding of points far from the origin
+  double per_metre = 0.0;  ///< [T/m] multiplied by the largest coordinate: rounding errors of points far from the
+                           ///< origin
   double at(double farthest) const { return fixed + per_metre * farthest; }
 };
-/// Bound of a mode at `height` [m]; infinite where a magnet has the sensor's height, so that the sensor may reach its
-/// centre.
+/// Returns the bound of a mode at `height` [m]; infinite if a magnet has the sensor's height, because the sensor may
+/// then reach its centre.
 FieldBound field_bound(const world::World& world, std::uint8_t mode, double height);
 
-/// [m] world heights of the elements, each once, ascending.
+/// Returns the heights of the elements in the world [m], each once, ascending.
 std::vector<double> element_heights(const world::Mover& mover, const world::Sensor& sensor);
 
 ErrorBound bound_of_magnetometer(const world::World& world, const SensorSpec& sensor);

@@ -1,11 +1,11 @@
 #pragma once
-// Readings of magnetometer arrays as payloads, little-endian; docs/packets.md gives every byte. Readings are in tesla,
-// payloads in 1e-4 Gauss (1e-8 T), rounded to nearest (half away from zero); words saturate and never wrap.
+// Readings of magnetometer arrays as little-endian payloads; docs/packets.md specifies every byte. Readings are in
+// tesla, payloads in 1e-4 Gauss (1e-8 T), rounded to nearest (half away from zero). Words saturate and never wrap.
 //
 //   farm:   u16 count, u16 0, then for each element i32 field, x, y, z
 //   thesis: for each element i32 field; the count follows from the payload's length
 //
-// Of a spec they read `elements` and `limit`.
+// The functions read only `elements` and `limit` of a spec.
 
 #include <cstdint>
 #include <span>
@@ -17,17 +17,17 @@
 
 namespace sf::sensors {
 
-/// Always empty: every array fits both formats.
+/// Returns an empty text: every array fits both formats.
 std::string magnetometer_wire_problem(const SensorSpec& sensor, WireFormat wire);
 
-/// Always 1.
+/// Returns 1.
 std::uint32_t magnetometer_parts(const SensorSpec& sensor, WireFormat wire);
 
 /// Appends the payload of a reading. @return its type; 0, with nothing appended, when a value is NaN
 std::uint8_t encode_magnetometer(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
                                  std::uint32_t part, base::Bytes& out);
 
-/// SensorType::wire_error of the elements' fields: half of 1e-8 T.
+/// Implements SensorType::wire_error for the elements' fields: half of 1e-8 T.
 double magnetometer_wire_error(const SensorSpec& sensor, const base::ReadingBlock& reading);
 
 /// Validates a payload against this array: equal number of elements, none beyond its limit by more than a unit. A spec
@@ -35,7 +35,7 @@ double magnetometer_wire_error(const SensorSpec& sensor, const base::ReadingBloc
 PayloadPart decode_magnetometer(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                                 WireFormat wire);
 
-/// Fills in all columns from a payload that `decode_magnetometer` accepted; the thesis format has only each element's
+/// Fills in all columns from a payload that `decode_magnetometer` accepted. The thesis format has only each element's
 /// field.
 void read_magnetometer_payload(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                                WireFormat wire, std::span<double> values);

@@ -30,13 +30,13 @@ class Occupancies : public SensorBackend {
     batch_.take_over(dynamic_cast<Occupancies&>(before).batch_, rows);
   }
   SensorStats stats() const override { return {}; }
-  bool on_device() const override { return false; }  // has a batch of its own
+  bool on_device() const override { return false; }  // it has its own batch
 
  private:
   std::vector<Occupancy> maps_;
   MapBatch batch_;
   std::uint32_t flags_;
-  std::multimap<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> of_laser_;  ///< (mover, laser) to its maps
+  std::multimap<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> of_laser_;  ///< from (mover, laser) to its maps
   std::vector<DueSample> due_;
   std::vector<MapScan> scans_;
   std::vector<std::vector<double>> marked_;  ///< per map: ranges of a scan with flags
@@ -51,7 +51,7 @@ std::vector<MapSettings> map_settings_of(const std::vector<Occupancy>& all) {
   return map_settings;
 }
 
-/// As rays are: a software device is slower at both.
+/// Follows the choice for rays, because a software device is slower at both.
 bool on_host(const SensorContext& context) {
   return !raycast::choose_caster(context.device.info().software, context.scene.caster).on_device;
 }

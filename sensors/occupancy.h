@@ -3,14 +3,14 @@
 //
 // In a world file, inside a robot:
 //   occupancy( cell 0.03  words [30 30]  offset [ox oy]  laser "name"  rate 1  log_odds 0 )
-// A derived sensor without a body: every scan of one of its robot's lasers is entered, by the rule of
+// This is a derived sensor without a body. Every scan of one of its robot's lasers is added to the map, by the rule of
 // maps/grid_update.h, from the robot's estimated pose. `offset` is the thesis' (O_x, O_y): the map begins at x = -ox
-// and y = -oy and extends along +x and -y; without it, the map's middle is the robot's position at load, rounded to
+// and y = -oy and extends along +x and -y. Without it, the map's centre is the robot's position at load, rounded to
 // cells. `log_odds` selects the update: 1, or [hit miss limit] in integers; 0: the last scan overwrites.
 //
 // A reading is the map as packed words (maps/grid.h), row by row. Its X_WS is the map's upper left corner, with yaw 0.
-// Its `flags` are maps::kTruePoses or 0. The map is updated while the robot's laser is subscribed, whether or not the
-// map is.
+// Its `flags` are maps::kTruePoses or 0. The map is updated while the robot's laser is subscribed, even if the map is
+// not.
 
 #include <cstdint>
 #include <vector>
@@ -29,7 +29,7 @@ struct Occupancy {
   std::uint32_t laser = 0;  ///< index of the mover's laser that fills it
 };
 
-/// All maps, by mover and in file order. @throws base::InputError with file and line
+/// Returns all maps, by mover and in file order. @throws base::InputError with file and line
 std::vector<Occupancy> occupancies_of(const world::World& world);
 
 extern const SensorType occupancy_type;

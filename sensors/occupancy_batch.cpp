@@ -12,7 +12,7 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::size_t kMostOfAll = 1u << 27;  ///< words of all maps; pairs of beams of all their lasers
+constexpr std::size_t kMostOfAll = 1u << 27;  ///< limit of words in all maps, and of pairs of beams of all their lasers
 constexpr float kBearingSlack = 1e-3f;        ///< [rad] many times the error of 32 bits and of the polynomial
 
 BeamLine line_of(std::uint32_t end) {
@@ -25,7 +25,7 @@ BeamLine line_of(std::uint32_t end) {
   return {aside / along, along + (steep ? std::copysign(static_cast<float>(SF_STEEP_REACH), along) : 0.0f)};
 }
 
-/// The device's row of a scan, without the place of its strips.
+/// Returns the device's row of a scan, without the place of its strips.
 MapRow row_of(const MapLayout& map, const maps::TracedScan& scan, const base::Pose& X_WS) {
   MapRow row{};
   row.words = map.words;
@@ -38,7 +38,7 @@ MapRow row_of(const MapLayout& map, const maps::TracedScan& scan, const base::Po
   row.within_y = static_cast<float>(scan.within.y);
   row.heading = static_cast<float>(base::wrap_angle(X_WS.yaw));
   const double step = map.settings.samples > 1 ? map.settings.fov / (map.settings.samples - 1) : 0.0;
-  const bool spread = step > 1e-6;  // parallel beams are all tested
+  const bool spread = step > 1e-6;  // false: all parallel beams are tested
   row.half_fov = static_cast<float>(0.5 * map.settings.fov);
   row.per_radian = spread ? static_cast<float>(0.5 / step) : 1.0f;
   row.slack = spread ? kBearingSlack : 1e6f;
@@ -51,7 +51,7 @@ MapRow row_of(const MapLayout& map, const maps::TracedScan& scan, const base::Po
   return row;
 }
 
-/// The smallest box of whole words that contains `box`, in cells.
+/// Returns the smallest box of whole words that contains `box`, in cells.
 maps::CellBox in_whole_words(const maps::CellBox& box) {
   return {{box.low.column / 4 * 4, box.low.row / 4 * 4}, {(box.high.column + 3) / 4 * 4, (box.high.row + 3) / 4 * 4}};
 }
@@ -157,7 +157,8 @@ void MapBatch::Tables::close(MapDispatch& dispatch) {
   gpu::write_counts(groups, *dispatch.groups);
 }
 
-/// Uploads rows and lines: all of them at first, with the row for lanes without work; then those of this update.
+/// Uploads rows and lines: initially every row, including the one for lanes without work, later only those of this
+/// update.
 void MapBatch::Tables::send_scans() {
   if (blank) {
     batch.upload(*rows, 0, rows->bytes());
@@ -202,7 +203,7 @@ void MapBatch::Tables::update(std::span<const MapScan> some, std::span<const std
   batch.run();
 }
 
-/// The first maps of both have the same places. The new tables go to the device with the first update.
+/// The leading maps of both batches have the same places. The new tables are sent to the device with the first update.
 void MapBatch::Tables::take_over(Tables& before) {
   if (!before.blank && !unified) {
     gpu::Batch copies(own_device);

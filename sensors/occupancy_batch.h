@@ -1,6 +1,6 @@
 #pragma once
-// Many occupancy maps, on the device or the host. One batch enters a tick's scans into all of them, with exactly the
-// cells that maps::add_scan would set.
+// Many occupancy maps, on the device or the host. One batch adds a tick's scans to all of them and sets exactly the
+// same cells as maps::add_scan.
 //
 // The host converts ranges to end cells in double, on all cores (maps/traced_scan.h). The device holds the maps and
 // covers cells in integer arithmetic: it needs no 64-bit floats, and its rounding has no effect.
@@ -42,25 +42,25 @@ class HostMaps;
 class MapBatch {
  public:
   /// All maps start unexplored.
-  /// @param on_host the host enters the scans; else the device, which holds the maps
+  /// @param on_host true: the host adds the scans; false: the device does, and holds the maps
   /// @throws base::DeviceError when the device cannot hold the maps
   MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapSettings> map_settings, bool on_host);
   ~MapBatch();
 
-  /// Enters scans, at most one per map. @param wanted maps whose words will be read
+  /// Adds scans, at most one per map. @param wanted maps whose words will be read
   void update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted);
 
-  /// Goes on with the first `maps` maps of another batch of the same device, which is of no further use. Before the
-  /// first update.
+  /// Continues the first `maps` maps of another batch of the same device, which must not be used afterwards. Call it
+  /// before the first update.
   void take_over(MapBatch& before, std::uint32_t maps);
 
-  /// Words of a map in the last `wanted`, packed as in maps/grid.h. Valid until the next update.
+  /// Returns the words of a map in the last `wanted`, packed as in maps/grid.h. Valid until the next update.
   std::span<const std::uint32_t> words(std::uint32_t map) const;
 
  private:
   struct Tables;
   std::size_t maps_;
-  std::unique_ptr<HostMaps> host_;  ///< or `t_`
+  std::unique_ptr<HostMaps> host_;  ///< null if `t_` is used
   std::unique_ptr<Tables> t_;
 };
 

@@ -16,11 +16,11 @@ class HostMaps {
  public:
   HostMaps(std::span<const MapSettings> map_settings, base::ThreadPool& thread_pool);
 
-  /// Enters scans, at most one per map.
+  /// Adds scans, at most one per map.
   void update(std::span<const MapScan> scans);
   /// Takes the first `maps` maps of `before`.
   void take_over(HostMaps& before, std::uint32_t maps);
-  /// Words of a map. Valid until the next update.
+  /// Returns the words of a map. Valid until the next update.
   std::span<const std::uint32_t> words(std::uint32_t map) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Occupancy maps as payloads: maps/map_packets.h as the wire part of a SensorType. Of a spec they read `elements`
-// (words), `across` (words in a row) and `pitch` (side of a cell).
+// Occupancy maps as payloads: implements the wire part of a SensorType with maps/map_packets.h. The functions read only
+// `elements` (words), `across` (words in a row) and `pitch` (side of a cell) of a spec.
 
 #include <cstdint>
 #include <span>
@@ -10,7 +10,8 @@
 
 namespace sf::sensors {
 
-/// The thesis format holds at most 1 022 words, and 255 rows or columns of them.
+/// Returns a problem for maps that the thesis format cannot hold: more than 1 022 words in total, or more than 255 rows
+/// or columns of words.
 std::string occupancy_wire_problem(const SensorSpec& sensor, WireFormat wire);
 
 std::uint32_t occupancy_parts(const SensorSpec& sensor, WireFormat wire);

@@ -11,7 +11,7 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kDefaultCell = 0.03;  // [m] the thesis'
+constexpr double kDefaultCell = 0.03;  // [m] same as in the thesis
 constexpr std::uint32_t kDefaultWords = 30;
 constexpr double kDefaultRate = 1.0;  // [Hz]
 constexpr double kFarthest = 1e7;     // [m]
@@ -70,7 +70,7 @@ std::optional<maps::LogOddsUpdate> odds_of(const world::Sensor& sensor) {
                              static_cast<std::int32_t>(v[2])};
 }
 
-/// Number of the laser that the map is made with.
+/// Returns the number of the laser that fills the map.
 std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover,
                        const std::vector<LaserSettings>& lasers) {
   if (lasers.empty())

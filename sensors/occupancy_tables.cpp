@@ -15,7 +15,7 @@ namespace {
 using gpu::Role;
 using gpu::Texel;
 
-/// Blocks of a map's words, and of its strips, for a scan that covers the whole map.
+/// Number of blocks of a map's words, and of its strips, for a scan that covers the whole map.
 std::size_t word_blocks(const maps::GridGeometry& geometry) {
   return std::size_t{units_of(geometry.word_columns, SF_MAP_BLOCK)} * geometry.word_rows;
 }
@@ -72,11 +72,11 @@ void MapBatch::Tables::assign_layout() {
   }
 }
 
-/// @return lanes, in whole groups
+/// @return number of lanes, in whole groups
 std::size_t MapBatch::Tables::make_dispatch(gpu::Device& device, const char* name, MapDispatch& dispatch,
                                             std::span<const std::uint32_t> spirv, std::size_t most_blocks) {
   dispatch.kernel = std::make_unique<gpu::Kernel>(device, name, spirv);
-  // Padded to whole groups, and to whole rows of groups where there are many.
+  // Padded to whole groups, and to whole rows of groups if there are many.
   const std::size_t group = dispatch.kernel->group_size() / SF_MAP_BLOCK;
   const std::size_t padded = gpu::most_groups_for(most_blocks, group) * group;
   dispatch.blocks = std::make_unique<gpu::Buffer>(device, "blocks of work", Role::upload, Texel::u32, 2 * padded);

@@ -1,5 +1,5 @@
 #pragma once
-// Tables that the sources of sensors::MapBatch share: layout of the maps, and the device's buffers.
+// Tables shared by the sources of sensors::MapBatch: layout of the maps, and the device's buffers.
 
 #include <cstdint>
 #include <map>
@@ -30,23 +30,23 @@ struct MapDispatch {
   std::unique_ptr<gpu::Kernel> kernel;
   std::unique_ptr<gpu::Buffer> blocks;
   std::unique_ptr<gpu::Buffer> groups;  ///< group counts
-  std::size_t count = 0;                ///< blocks of this update, padding included
+  std::size_t count = 0;                ///< blocks of this update, including padding
 };
 
-/// Words of the maps of one update rule: log odds or overwriting.
+/// Words of the maps with one update rule: log odds or overwriting.
 struct MapWords {
   MapDispatch dispatch;
-  std::unique_ptr<gpu::Buffer> hit_words;  ///< one word per lane: cells where beams ended
+  std::unique_ptr<gpu::Buffer> hit_words;  ///< one word per lane: cells in which beams ended
 };
 
 /// Work of one scan.
 struct ScanWork {
   maps::TracedScan scan;
-  maps::CellBox cells;          ///< of the map, in whole words
+  maps::CellBox cells;          ///< cells of the map, in whole words
   std::size_t first_block = 0;  ///< index of its words' first block
 };
 
-/// Number of units that hold `cells` cells, rounded up.
+/// Returns the number of units that hold `cells` cells, rounded up.
 inline std::uint32_t units_of(std::int64_t cells, std::int64_t unit) {
   return static_cast<std::uint32_t>((cells + unit - 1) / unit);
 }
@@ -58,16 +58,16 @@ struct MapBatch::Tables {
   base::ThreadPool& thread_pool;
   bool unified;
   std::vector<MapLayout> all;
-  std::size_t all_words = 0, all_lines = 0;  ///< on the device
-  std::vector<MapScan> scans;                ///< of this update, on the device
-  std::vector<std::uint32_t> wanted;         ///< of this update, on the device
+  std::size_t all_words = 0, all_lines = 0;  ///< size of the tables on the device
+  std::vector<MapScan> scans;                ///< scans of this update, on the device
+  std::vector<std::uint32_t> wanted;         ///< maps wanted in this update, on the device
   std::map<std::pair<double, std::uint32_t>, std::vector<glm::dvec2>> fans;
   MapDispatch strips;
   MapWords plain;
   MapWords log_odds_words;
   std::unique_ptr<gpu::Buffer> rows;
   std::unique_ptr<gpu::Buffer> lines;
-  std::vector<std::uint32_t> ends;       ///< of all maps: two per pair of lines
+  std::vector<std::uint32_t> ends;       ///< ends of all maps: two per pair of lines
   std::unique_ptr<gpu::Buffer> covered;  ///< one word per strip
   std::unique_ptr<gpu::Buffer> words;
   std::unique_ptr<gpu::Buffer> odds;

@@ -7,7 +7,8 @@ namespace sf::sensors {
 namespace {
 
 constexpr double kStep = 0.01;              // [m] step of the random walk
-constexpr std::uint64_t kMostSteps = 1024;  // drawn one by one; a longer distance at once is one step of equal variance
+constexpr std::uint64_t kMostSteps = 1024;  // drawn one by one; a longer distance in one advance is a single step of
+                                            // equal variance
 
 }  // namespace
 

@@ -8,27 +8,28 @@
 
 namespace sf::sensors {
 
-/// [m] distance rolled by the left and the right wheel, forward positive.
+/// Distance rolled by the left and the right wheel [m], forward positive.
 struct Rolled {
   double left = 0.0;
   double right = 0.0;
 };
 
-/// Rolled distances between two poses along the arc of constant curvature with this chord, turning by at most half a
-/// turn. If the chord belongs to no such arc (a push to the side), its component along the mean heading counts.
+/// Returns the distances rolled between two poses along the arc of constant curvature with this chord, turning by at
+/// most half a turn. If the chord does not belong to such an arc (a push to the side), its component along the mean
+/// heading counts.
 /// @param track [m] effective distance between the wheels
 Rolled roll(const base::Pose& before, const base::Pose& after, double track);
 
 /// Error of one wheel's counter: a random walk over distance with variance slip^2 per metre rolled in either direction.
-/// Its steps are fixed, one per centimetre, so that the walk does not depend on the length of ticks.
+/// Its steps are fixed, one per centimetre, so the walk does not depend on the length of ticks.
 class Slippage {
  public:
   /// @param walk key of the walk; its `c` counts steps  @param slip [m^(1/2)] >= 0; 0: none
   Slippage(const base::RandomKey& walk, std::uint32_t wheel, double slip) : walk_(walk), wheel_(wheel), slip_(slip) {}
 
-  /// @param distance [m] >= 0, to add
+  /// Adds a distance. @param distance [m] >= 0
   void advance(double distance);
-  /// [m]
+  /// Returns the error [m].
   double error() const { return error_; }
 
  private:

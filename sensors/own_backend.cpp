@@ -43,7 +43,7 @@ class PublicSensorSettings final : public sensorfarm::SensorSettings {
   const world::Sensor& sensor_;
 };
 
-/// One measurement's view of the scene.
+/// View of the scene during one measurement.
 class SensorSurroundings final : public sensorfarm::Surroundings {
  public:
   SensorSurroundings(const Scene& scene, const base::RandomKey& key, bool noise)
@@ -123,7 +123,7 @@ class OwnSensors final : public SensorBackend {
   std::vector<OwnSensor> sensors_;
   std::vector<std::string> names_;  ///< of `sensors_`
   Scene scene_;
-  std::unique_ptr<OwnKernel> kernel_;  ///< null: measured on the host alone
+  std::unique_ptr<OwnKernel> kernel_;  ///< null: sensors are measured on the host only
   std::size_t stride_;                 ///< values of the longest reading
   std::vector<double> values_;         ///< per due sensor
   std::vector<DueSample> due_;
@@ -131,7 +131,7 @@ class OwnSensors final : public SensorBackend {
   std::int64_t now_ = 0;    ///< [ns]
   bool recorded_ = false;
   std::mutex failure_lock_;
-  std::string failure_;  ///< of a measurement
+  std::string failure_;  ///< failure of a measurement
 };
 
 bool OwnSensors::prepare(std::span<const DueSample> due) {
@@ -194,14 +194,14 @@ std::vector<OwnSensor> own_sensors(const world::World& world, const OwnType& typ
   for_each_of(world, type.entry.name, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
     OwnSensor own{common_spec(sensor, mover, number), nullptr};
     own.spec.rate = rate_of(sensor, type.entry.rate);
-    own.spec.sigma = HUGE_VAL;  // it may add noise
+    own.spec.sigma = HUGE_VAL;  // the sensor may add noise
     const Pose& X = own.spec.X_MS;
     const base::PluginCall under_way(name_of(own.spec, type));
     try {
       own.sensor = type.entry.make({own.spec.name, mover, number, {X.x, X.y, X.z, X.yaw}, sensor.height},
                                    PublicSensorSettings(sensor));
     } catch (const base::InputError&) {
-      throw;  // a setting
+      throw;  // an invalid setting
     } catch (const std::exception& error) {
       refuse(sensor, "", base::one_line(error.what()));
     }

@@ -1,5 +1,5 @@
 #pragma once
-// The sensors of one own type in a world, measured on the host or by the type's kernel.
+// The sensors of a user-defined type in a world, measured on the host or by the type's kernel.
 
 #include <cstdint>
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace sf::sensors {
 
-/// An own type: what its user gave, and its row among the sensor types.
+/// A user-defined type: the user's entry, and its row among the sensor types.
 struct OwnType {
   sensorfarm::SensorEntry entry;
   std::vector<std::uint32_t> spirv;  ///< of its kernel; empty: none
@@ -25,8 +25,8 @@ struct OwnSensor {
   std::unique_ptr<sensorfarm::Sensor> sensor;
 };
 
-/// The world's sensors of that type, by mover and in file order.
-/// @throws base::InputError with file and line for invalid settings, and where the user's function refuses one
+/// Returns the world's sensors of that type, by mover and in file order.
+/// @throws base::InputError with file and line for invalid settings, and when the user's function rejects a sensor
 std::vector<OwnSensor> own_sensors(const world::World& world, const OwnType& type);
 
 std::unique_ptr<SensorBackend> make_own_backend(const SensorContext& context, const OwnType& type);

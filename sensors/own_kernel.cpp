@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kGroup = 64;  // local_size_x in shaders/lib/own_sensor.glsl
 constexpr std::uint32_t kWall = 0xFFFFFFFFu;
 
-/// Refuses a kernel that does not include the tables.
+/// Rejects a kernel that does not include the tables.
 std::span<const std::uint32_t> checked(const OwnType& type) {
   const gpu::KernelInterface interface = gpu::interface_of(type.spirv);
   std::string names;
@@ -52,7 +52,7 @@ OwnKernel::OwnKernel(const SensorContext& context, const OwnType& type, std::siz
       value_table_(context.device, "values", gpu::Role::download, gpu::Texel::u32,
                    2 * columns_ * kGroup * gpu::most_groups_for(sensors * elements, kGroup)),
       counts_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4) {
-  const gpu::KernelInterface interface = gpu::interface_of(type.spirv);  // names in `tables` are views of its own
+  const gpu::KernelInterface interface = gpu::interface_of(type.spirv);  // owns the names that `tables` refers to
   std::vector<gpu::TableBinding> tables;
   for (const gpu::KernelTable& table : interface.tables)
     tables.push_back({table.name, table.name == "samples"    ? &sample_table_
@@ -102,7 +102,7 @@ void OwnKernel::add(std::size_t i, const SensorSpec& spec, const Pose& X_WS, con
 void OwnKernel::close(std::size_t samples) {
   samples_ = samples;
   const auto rows = sample_table_.host<OwnSample>();
-  // Invocations beyond the last sensor find one without elements.
+  // Invocations beyond the last sensor read a sample without elements.
   const std::size_t last = std::min(rows.size(), kernel_.padded(samples * elements_) / elements_ + 1);
   for (std::size_t i = samples; i < last; ++i) rows[i] = {}, rows[i].lanes = elements_;
   gpu::write_counts(gpu::groups_for(samples * elements_, kGroup), counts_);

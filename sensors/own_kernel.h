@@ -1,5 +1,5 @@
 #pragma once
-// The kernel of an own sensor type with its tables (shaders/lib/own_sensor.glsl).
+// The kernel of a user-defined sensor type with its tables (shaders/lib/own_sensor.glsl).
 
 #include <array>
 #include <cstdint>
@@ -13,19 +13,19 @@ namespace sf::sensors {
 
 class OwnKernel {
  public:
-  /// @param sensors of the world  @param elements of the longest reading
-  /// @throws base::InputError for a kernel with other tables, base::DeviceError where a table is too large
+  /// @param sensors number in the world  @param elements of the longest reading
+  /// @throws base::InputError for a kernel with other tables, base::DeviceError when a table is too large
   OwnKernel(const SensorContext& context, const OwnType& type, std::size_t sensors, std::size_t elements);
 
   void place_movers();
   /// Sets sample `i` of the next run.
   void add(std::size_t i, const SensorSpec& spec, const Pose& X_WS, const std::array<double, 8>& parameters,
            std::uint64_t sequence);
-  /// The next run has so many samples.
+  /// Sets the number of samples of the next run.
   void close(std::size_t samples);
   void record(gpu::Batch& batch) const { batch.dispatch(kernel_, counts_, 0); }
   void add_copies(gpu::Batch& batch) const;
-  /// Results of sample `i`, of the length of the longest reading.
+  /// Returns the results of sample `i`, with the length of the longest reading.
   std::span<const double> values(std::size_t i);
 
  private:

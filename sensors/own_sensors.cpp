@@ -25,7 +25,7 @@ struct Added : OwnType {
   PlainForm form;
 };
 
-/// Added types by id, at one address for the rest of the program.
+/// Added types by id, at a fixed address for the rest of the program.
 std::array<std::unique_ptr<Added>, kLastOwnId + 1> added;
 
 std::vector<SensorSpec> specs_in(const world::World& world, const OwnType& type) {
@@ -42,7 +42,7 @@ std::string wire_problem_of(const Added& type, const SensorSpec& sensor, WireFor
   return plain_wire_problem(type.form, wire);
 }
 
-/// The functions of SensorType are plain pointers: each id has its own.
+/// The functions of SensorType are plain pointers, so each id has its own set.
 template <std::uint8_t kId>
 SensorType functions_of() {
   SensorType type;

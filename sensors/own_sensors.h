@@ -1,5 +1,5 @@
 #pragma once
-// Users' own sensor types (sensorfarm/sensor.h) as types of the farm.
+// Registers users' own sensor types (sensorfarm/sensor.h) as types of the farm.
 
 #include <string>
 
@@ -11,8 +11,9 @@ namespace sf::sensors {
 inline constexpr std::uint8_t kFirstOwnId = 13;
 inline constexpr std::uint8_t kLastOwnId = 31;
 
-/// Adds it for the rest of the program: worlds loaded from now on may have such sensors. Not while a farm ticks.
-/// @param from file it comes from: for messages, and its folder is that of a kernel with a relative path
+/// Adds a type for the rest of the program. Worlds loaded from now on may have such sensors. Do not call it while a
+/// farm ticks.
+/// @param from file that defines the type: used in messages, and to resolve a kernel's relative path
 /// @throws base::InputError for a name or id that is taken or unusable, and for a kernel that cannot be read
 void add_own_sensor(sensorfarm::SensorEntry entry, const std::string& from);
 

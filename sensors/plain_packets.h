@@ -1,10 +1,10 @@
 #pragma once
-// Readings of a few plain numbers as payloads: one layout, little-endian; docs/packets.md gives every byte.
+// Readings of a few plain numbers as payloads, in a single little-endian layout; docs/packets.md specifies every byte.
 //
 //   u16 count, u16 0, then for each row i32 for each of the type's numbers
 //
-// Each number has its own unit and is rounded to nearest (half away from zero); words saturate and never wrap. The
-// least word means NaN. The thesis format has no layout for these types.
+// Each number has its own unit and is rounded to nearest (half away from zero). Words saturate and never wrap. The
+// smallest word means NaN. The thesis format has no layout for these types.
 
 #include <cstdint>
 #include <limits>
@@ -26,9 +26,9 @@ inline constexpr std::uint32_t kMaxPlainWords =
 struct PlainNumber {
   double unit = 1.0;  ///< > 0, in units of the column
   double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();  ///< in units of the column; beyond: invalid
+  double most = std::numeric_limits<double>::infinity();  ///< in units of the column; values beyond are invalid
   bool range =
-      false;  ///< of a range sensor, read as a limit where its word is that of the limit or beyond (WireLimits)
+      false;  ///< number of a range sensor: a word at or beyond that of a limit is read as the limit (WireLimits)
 };
 
 /// Wire form of one sensor type.
@@ -38,9 +38,9 @@ struct PlainForm {
   std::span<const PlainNumber> numbers;  ///< of one row: one per column number; static lifetime
 };
 
-// Wire part of SensorType for `form`. Rows have at most kMaxPlainWords numbers in all: one datagram.
+// Wire part of SensorType for `form`. Rows have at most kMaxPlainWords numbers in total: one datagram.
 
-/// Refuses the thesis format.
+/// Rejects the thesis format.
 std::string plain_wire_problem(const PlainForm& form, WireFormat wire);
 std::uint8_t encode_plain(const PlainForm& form, const SensorSpec& sensor, const base::ReadingBlock& reading,
                           base::Bytes& out);
@@ -50,7 +50,7 @@ PayloadPart decode_plain(const PlainForm& form, const SensorSpec& sensor, std::s
 void read_plain(const PlainForm& form, const SensorSpec& sensor, std::span<const std::uint8_t> payload,
                 std::span<double> values);
 
-/// `type` with the id, name and wire part of kForm.
+/// Returns `type` with the id, name and wire part of kForm.
 template <const PlainForm& kForm>
 consteval SensorType plain(SensorType sensor_type) {
   sensor_type.id = kForm.id;

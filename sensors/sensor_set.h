@@ -17,23 +17,23 @@ class SensorSet {
   /// @throws base::InputError with file and line for a sensor with invalid settings
   explicit SensorSet(const world::World& world);
 
-  /// All sensors of one type, by mover and in file order; at least one.
+  /// The sensors of one type, at least one, by mover and in file order.
   struct Group {
     const SensorType* type = nullptr;
     std::vector<SensorSpec> rows;
-    std::vector<std::uint32_t> first;  ///< per mover and one more: index of its first row
+    std::vector<std::uint32_t> first;  ///< per mover, plus one: index of its first row
   };
-  /// The sensor types of this world, by id.
+  /// Returns the sensor types of this world, by id.
   std::span<const Group> groups() const { return groups_; }
   /// @return null when the world has no sensor of that type
   const Group* group(std::uint8_t type) const;
 
-  /// One mover's sensors of one type; may be empty.
+  /// Returns one mover's sensors of one type; may be empty.
   std::span<const SensorSpec> of(std::uint8_t type, std::uint32_t mover) const;
-  /// The spec of the sensor that made a reading.
+  /// Returns the spec of the sensor that produced a reading.
   const SensorSpec& row(const base::ReadingBlock& reading) const;
-  std::size_t count() const;                        ///< of all types
-  std::size_t count_of(std::uint32_t mover) const;  ///< of all types
+  std::size_t count() const;                        ///< number of sensors of all types
+  std::size_t count_of(std::uint32_t mover) const;  ///< number of a mover's sensors of all types
 
  private:
   std::vector<Group> groups_;

@@ -1,9 +1,10 @@
 #pragma once
 // A sensor type: one table with everything that the farm, the wire, the recorder and the commands need.
 //
-// A new type x takes sensors/x.h, sensors/x.cpp (its SensorType), shaders/x.comp (physics), tests/sensors/x_test.cpp
-// and `farm_sensor(<wire id> x DEVICE)` in sensors/CMakeLists.txt; records of its kernel: their header in
-// shaders/CMakeLists.txt. One without a kernel says HOST and has no shader. Rays are horizontal (raycast/ray_caster.h).
+// A new type x requires sensors/x.h, sensors/x.cpp (its SensorType), shaders/x.comp (physics), tests/sensors/x_test.cpp
+// and `farm_sensor(<wire id> x DEVICE)` in sensors/CMakeLists.txt. If its kernel has records, add their header to
+// shaders/CMakeLists.txt. A type without a kernel uses HOST and has no shader. Rays are horizontal
+// (raycast/ray_caster.h).
 
 #include <cmath>
 #include <cstdint>
@@ -34,13 +35,13 @@ using raycast::SensorStats;
 /// One accuracy mode of a sensor type.
 struct AccuracyMode {
   std::string_view word;  ///< the value of `accuracy` in world files and on the command line
-  std::string_view what;  ///< description in a few words
+  std::string_view what;  ///< short description
 };
 
 /// Largest error of a sensor without noise, stated before a run.
 struct ErrorBound {
   double error = 0.0;     ///< [unit of the first column] see base::ReadingBlock::bound_without_noise
-  std::string condition;  ///< where it holds; empty: everywhere
+  std::string condition;  ///< condition for the bound; empty: unconditional
 };
 
 /// One sensor of a world, in the form common to all types.
@@ -58,69 +59,71 @@ struct SensorSpec {
   double pitch = 0.0;          ///< [m] side of an image's cell
   std::uint8_t mode = 0;       ///< row of its type's modes
   double fov = 0.0;            ///< [rad] of a scan (SensorType::is_scan)
-  double range_min = 0.0;      ///< [m] of ranges (laser, sonar, infrared); they end before `limit`
+  double range_min = 0.0;      ///< [m] of ranges (laser, sonar, infrared); valid ranges end before `limit`
 
-  // Dependencies of a reading beside its sequence number, for the farm's reading cache.
+  // Dependencies of a reading other than its sequence number, for the farm's reading cache.
   double dependency_radius = 0.0;   ///< [m] > 0: the reading depends only on its own mover's pose and on the poses
                                     ///< within this radius. 0 disables reuse
   bool depends_on_magnets = false;  ///< the reading depends on the poses of all movers with magnets instead
-  /// [unit of the first column] largest standard deviation of its noise; infinite: not known. Where positive, the
-  /// reading also depends on noise, unless that is off.
+  /// [unit of the first column] largest standard deviation of its noise; infinite: unknown. If positive, the reading
+  /// also depends on noise, unless noise is off.
   double sigma = 0.0;
-  /// [m] from the sensor: surfaces farther away have no effect on a reading. Infinite: all surfaces may have one.
+  /// [m] from the sensor: surfaces farther away have no effect on a reading. Infinite: any surface may have an effect.
   double reach = HUGE_VAL;
 };
 
 inline base::RangeLimits limits_of(const SensorSpec& sensor) { return {sensor.range_min, sensor.limit}; }
 
-/// [rad] Bearing of beam `i` of a scan in the sensor's frame.
+/// Returns the bearing of beam `i` of a scan in the sensor's frame [rad].
 inline double bearing_of(const SensorSpec& sensor, std::uint32_t i) {
   return base::bearing_of(sensor.fov, sensor.elements, i);
 }
 
-/// All sensors of one type, computed as a batch. Movers are where `SensorContext::states` has them. Not thread-safe.
+/// All sensors of one type, computed as a batch. `SensorContext::states` holds the states of movers. Not thread-safe.
 class SensorBackend {
  public:
   virtual ~SensorBackend() = default;
 
-  /// Called in each tick with its new `SensorContext::states`, even when nothing is due: for quantities that accumulate
-  /// (wheels).
+  /// Updates quantities that accumulate, such as wheel rotation. Called in each tick with its new
+  /// `SensorContext::states`, even when nothing is due.
   /// @param now [ns]  @param between true: a sample between two ticks; the next tick continues from the last one
   virtual void accumulate(std::int64_t /*now*/, bool /*between*/) {}
-  /// Moves surfaces and magnets of movers to their poses, before `prepare`, when a sensor is measured. Absent movers
-  /// are invisible.
+  /// Moves surfaces and magnets of movers to their poses. Called before `prepare` when a sensor is measured. Absent
+  /// movers are invisible.
   virtual void place_movers() {}
-  /// Host work before the batch, even when nothing is due. @return true when the batch must be recorded again
+  /// Does host work before the batch, even when nothing is due. @return true when the batch must be recorded again
   virtual bool prepare(std::span<const DueSample> due) = 0;
-  /// Records the kernels that read the world, then those that read their results. The farm puts a barrier between both.
+  /// Records the kernels that read the world (`record_measure`) and those that read their results (`record_derive`).
+  /// The farm puts a barrier between the two.
   virtual void record_measure(gpu::Batch& batch) = 0;
   virtual void record_derive(gpu::Batch&) {}
-  /// Adds this tick's copies, to and from the device.
+  /// Adds this tick's copies to and from the device.
   virtual void add_copies(gpu::Batch& batch) = 0;
-  /// Receives this tick's readings of all types that are not derived, before latency, for sensors that derive theirs
-  /// from some of them (SensorType::derived_from). Called before `collect` whenever a sensor is due; may be empty.
+  /// Receives this tick's readings of all types that are not derived, before latency, for sensors that derive their
+  /// readings from them (SensorType::derived_from). Called before `collect` whenever a sensor is due; may be empty.
   virtual void observe(std::span<const base::ReadingBlock>) {}
-  /// Host work after the batch: writes one block per due sensor, in order. The farm fills in time, sequence and X_WM.
-  /// Spans of the blocks are valid until the next `prepare`.
+  /// Does host work after the batch: writes one block per due sensor, in order. The farm fills in time, sequence and
+  /// X_WM. Spans of the blocks are valid until the next `prepare`.
   virtual void collect(std::span<base::ReadingBlock> out) = 0;
-  /// The part of one sensor's state on which its later readings depend and which poses and settings do not give, for a
-  /// process that goes on with this sensor; initially none. @param row among the world's sensors of this type
+  /// Writes, or reads, the state of one sensor that its later readings depend on and that does not follow from poses
+  /// and settings. Used by a process that continues this sensor. Empty by default. @param row among the world's sensors
+  /// of this type
   virtual void write_state(std::uint32_t /*row*/, base::ByteWriter& /*out*/) const {}
   virtual void read_state(std::uint32_t /*row*/, base::ByteReader& /*in*/) {}
-  /// Goes on for the sensors of `before`, its first `rows` rows: with what `write_state` has of each, and with what
-  /// only this process has. `before` is of no further use.
+  /// Continues the sensors of `before`, its first `rows` rows, using the state from `write_state` and any state that
+  /// exists only in this process. `before` must not be used afterwards.
   virtual void take_over(SensorBackend& before, std::uint32_t rows);
   virtual SensorStats stats() const = 0;
-  /// True when the due readings need the farm's batch.
+  /// Returns true when the due readings need the farm's batch.
   virtual bool on_device() const { return true; }
 };
 
-/// One column of a reading. Values lie row by row (element by element), the columns of a row one after another.
+/// One column of a reading. Values are stored row by row (element by element), with the columns of a row in sequence.
 struct Column {
   std::string_view name;    ///< name in JSON and CSV, with its unit: `distance_m`
-  std::uint32_t width = 1;  ///< numbers: 3 for a vector
+  std::uint32_t width = 1;  ///< count of numbers: 3 for a vector
   bool whole = false;       ///< an integer count
-  int decimals = 0;         ///< in CSV; 0: as many as the number has
+  int decimals = 0;         ///< in CSV; 0: as many as needed
 };
 
 /// Byte layout of readings: docs/packets.md, or the thesis' plain layout.
@@ -148,65 +151,66 @@ struct SensorType {
   std::uint32_t base_port = 0;           ///< default of the first UDP port of its packets
   std::string_view list;                 ///< JSON name of the list of elements; empty: a reading is one row
   std::span<const Column> columns;
-  bool is_scan = false;  ///< a reading is a planar scan: elements are beams, the one column is their range [m].
+  bool is_scan = false;  ///< a reading is a planar scan: elements are beams, and the only column is their range [m].
                          ///< Recorded as a ROS LaserScan, printed with bearings
-  std::uint8_t derived_from = 0;  ///< id of the type from whose readings this one is computed: `observe` is called, and
-                                  ///< `collect` runs after theirs; 0: none
+  std::uint8_t derived_from = 0;  ///< id of the type whose readings this type is computed from: `observe` is called,
+                                  ///< and `collect` runs after theirs; 0: none
 
   std::span<const AccuracyMode> modes;  ///< the first is `exact`; empty: no other mode
-  /// The error bound of one sensor's readings without noise. Null: no bound is stated, neither here nor in readings.
+  /// Returns the error bound of one sensor's readings without noise. Null: no bound is stated, neither here nor in
+  /// readings.
   ErrorBound (*bound)(const world::World& world, const SensorSpec& sensor) = nullptr;
 
-  /// Specs of all sensors of this type, by mover and in file order.
+  /// Returns the specs of all sensors of this type, by mover and in file order.
   /// @throws base::InputError with file and line for invalid settings
   std::vector<SensorSpec> (*specs)(const world::World& world);
-  /// Makes the backend of a world with such sensors. @throws base::DeviceError when the device cannot hold its tables
+  /// Creates the backend of a world with such sensors. @throws base::DeviceError when the device cannot hold its tables
   std::unique_ptr<SensorBackend> (*make)(const SensorContext& context);
 
-  /// The reason for which `wire` cannot carry this sensor's readings, with a remedy; empty when it can.
+  /// Returns the reason why `wire` cannot carry this sensor's readings, with a remedy; empty if it can.
   std::string (*wire_problem)(const SensorSpec& sensor, WireFormat wire);
-  /// Datagrams per reading.
+  /// Returns the number of datagrams per reading.
   std::uint32_t (*parts)(const SensorSpec& sensor, WireFormat wire);
-  /// Appends the payload of datagram `part`. Values outside the wire's range saturate, never wrap.
+  /// Appends the payload of datagram `part`. Values outside the wire's range saturate and never wrap.
   /// @return its type; 0 when a value is NaN and nothing may be sent
   std::uint8_t (*encode)(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
                          std::uint32_t part, base::Bytes& out);
-  /// The largest difference between the first column of a reading and of its payloads in the farm's format, in the
-  /// column's unit: half a step of the wire; infinite where a value saturates. Words that are no numbers do not count.
+  /// Returns the largest difference between the first column of a reading and of its payloads in the farm's format, in
+  /// the column's unit: half a step of the wire; infinite if a value saturates. Ignores words that are not numbers.
   /// Null for types without a bound.
   double (*wire_error)(const SensorSpec& sensor, const base::ReadingBlock& reading) = nullptr;
-  /// Validates arbitrary bytes as such a payload.
+  /// Validates arbitrary bytes as a payload of this type.
   PayloadPart (*decode)(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                         WireFormat wire);
-  /// Reads a payload that `decode` accepted: writes this part's elements of `values`, which are the whole reading's, as
-  /// in a ReadingBlock. Values that the wire does not carry stay unchanged.
+  /// Reads a payload that `decode` accepted. Writes this part's elements of `values`, which holds the whole reading as
+  /// in a ReadingBlock. Values that the wire does not carry are left unchanged.
   void (*read)(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
                std::span<double> values) = nullptr;
 };
 
-/// Numbers per element of a reading.
+/// Returns the number of values per element of a reading.
 inline std::size_t element_width(const SensorType& type) {
   std::size_t width = 0;
   for (const Column& column : type.columns) width += column.width;
   return width;
 }
 
-/// `SensorType::make` for a backend that needs only the context.
+/// Implements `SensorType::make` for a backend that needs only the context.
 template <class Made>
 std::unique_ptr<SensorBackend> make_backend(const SensorContext& context) {
   return std::make_unique<Made>(context);
 }
 
-/// The farm's own sensor types, by id: generated from sensors/CMakeLists.txt.
+/// Returns the farm's own sensor types, by id, generated from sensors/CMakeLists.txt.
 std::span<const SensorType* const> built_in_sensor_types();
-/// These and those that were added, by id.
+/// Returns the built-in and the added types, by id.
 std::span<const SensorType* const> sensor_types();
-/// Adds a type for the rest of the program (sensors/own_sensors.h); not while types are looked up on another thread.
-/// @param type lives as long as the program; its id is not that of another type
+/// Adds a type for the rest of the program (sensors/own_sensors.h). Do not call it while another thread looks up types.
+/// @param type must live as long as the program; its id must be unused
 void add_sensor_type(const SensorType* type);
 /// @return null when no type has that id
 const SensorType* find_sensor_type(std::uint8_t id);
-/// Sensor keywords of world files, for world::LoadOptions.
+/// Returns the sensor keywords of world files, for world::LoadOptions.
 std::span<const world::SensorKeyword> world_file_words();
 
 }  // namespace sf::sensors

@@ -22,7 +22,7 @@ const std::vector<double>& numbers(const world::Sensor& sensor, const world::Set
   refuse(sensor, setting.key, fmt::format("'{}' expects {}", setting.key, meaning));
 }
 
-/// `unit` is one unit of the file in SI; bounds and fallback are in SI.
+/// @param unit one unit of the file in SI; bounds and fallback are in SI
 double scaled(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most,
               double unit, const std::string& name) {
   const world::Setting* setting = find(sensor, key);

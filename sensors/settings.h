@@ -1,5 +1,5 @@
 #pragma once
-// Reads settings of a sensor in a world file, in metres, radians and seconds. Invalid settings raise errors with file
+// Reads settings of a sensor in a world file, in metres, radians and seconds. Invalid settings throw errors with file
 // and line.
 
 #include <functional>
@@ -12,41 +12,42 @@
 
 namespace sf::sensors {
 
-/// @throws base::InputError, always: at the setting `key`, or at the sensor where that is absent
+/// Always throws. @throws base::InputError at the setting `key`, or at the sensor if the setting is absent
 [[noreturn]] void refuse(const world::Sensor& sensor, std::string_view key, const std::string& message);
 
-/// The setting of that exact key, or null. Valid as long as the sensor.
+/// Returns the setting with that exact key, or null. Valid as long as the sensor.
 const world::Setting* find(const world::Sensor& sensor, std::string_view key);
 
-// Each function reads one setting, or returns the fallback where it is absent.
+// Each function reads one setting, or returns the fallback if it is absent.
 // @throws base::InputError when it has another type or is outside [least, most]
 
 double number(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most);
-/// [m], including bounds and fallback.
+/// Reads a length [m], including bounds and fallback.
 double length(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most);
-/// [rad], including bounds and fallback.
+/// Reads an angle [rad], including bounds and fallback.
 double angle(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most);
-/// For the error of an angle [rad] beyond its bounds: that the file's angles are in radians, if they are; else empty.
+/// Returns a hint for the error of an angle [rad] beyond its bounds: that the file's angles are in radians, if they
+/// are. Otherwise empty.
 std::string hint_of_radians(const world::Sensor& sensor, double angle);
 std::uint32_t whole(const world::Sensor& sensor, std::string_view key, std::uint32_t fallback, std::uint32_t least,
                     std::uint32_t most);
-/// One of `words`. @return its index
+/// Reads one of `words`. @return its index
 std::size_t choice(const world::Sensor& sensor, std::string_view key, std::size_t fallback,
                    std::span<const std::string_view> words);
-/// The numbers of a tuple as written, at least `least` of them. @param meaning such as "[min max]", for the error
+/// Reads the numbers of a tuple as written, at least `least` of them. @param meaning such as "[min max]", for the error
 std::optional<std::vector<double>> tuple(const world::Sensor& sensor, std::string_view key, std::size_t least,
                                          const std::string& meaning);
 
-/// [Hz] from `rate` or `update_interval`.
+/// Reads `rate` or `update_interval` [Hz].
 double rate_of(const world::Sensor& sensor, double fallback);
 
-/// Refuses numbered settings beyond their count: `zone[4]` where `zones` is 4.
+/// Rejects numbered settings beyond their count: `zone[4]` when `zones` is 4.
 /// @param prefix start of their keys  @param counter key of the count, which is at most `most`
 /// @throws base::InputError at the first of them in the file
 void refuse_beyond(const world::Sensor& sensor, std::string_view prefix, std::string_view counter, std::uint32_t count,
                    std::uint32_t most);
 
-/// The common settings: name, rate (or update_interval), phase and latency; one element.
+/// Reads the common settings: name, rate (or update_interval), phase and latency; one element.
 SensorSpec common_spec(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type);
 
 /// Calls `body` for every sensor called `type`, by mover and in file order. @param number 0-based per mover

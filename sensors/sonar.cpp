@@ -15,8 +15,8 @@ namespace sf::sensors {
 namespace {
 
 constexpr double kDegrees = M_PI / 180.0;
-constexpr double kLongest = 1e4;    // [m] of noise and ranges
-constexpr double kMostShare = 1e3;  // of noise
+constexpr double kLongest = 1e4;    // [m] limit of noise and ranges
+constexpr double kMostShare = 1e3;  // limit of proportional noise
 
 /// ARIA's firing order: one transducer of each array per reading.
 std::uint32_t read_turns(const world::Sensor& sensor, std::uint32_t transducers) {

@@ -6,8 +6,8 @@
 //          incidence 90  noise [constant proportional] )
 // Lengths and angles are in the file's units.
 //
-// A reading has one column per transducer: the range [m] of the nearest surface met by one of the cone's rays, clamped
-// to [range_min, range_max]; range_max without an echo before it.
+// A reading has one column per transducer: the range [m] of the nearest surface hit by one of the cone's rays, clamped
+// to [range_min, range_max]; range_max if there is no echo before it.
 
 #include <cstdint>
 

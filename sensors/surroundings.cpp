@@ -7,8 +7,8 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kPiece = 1.0;         // [m] of a ray whose box is searched at once, at least
-constexpr double kMostPieces = 256.0;  // of a ray
+constexpr double kPiece = 1.0;         // [m] smallest length of a ray whose box is searched in one step
+constexpr double kMostPieces = 256.0;  // largest number of pieces of a ray
 
 std::vector<world::Segment> seen_by_lasers(const world::World& world) {
   std::vector<world::Segment> walls;
@@ -19,7 +19,7 @@ std::vector<world::Segment> seen_by_lasers(const world::World& world) {
 
 }  // namespace
 
-/// A ray and what it met first.
+/// A ray and its first hit.
 struct Scene::Nearest {
   std::uint32_t self;
   base::Pose from;
@@ -27,7 +27,7 @@ struct Scene::Nearest {
   raycast::ClosestHit best;
   std::uint32_t model = base::kNoHit;
 
-  /// Ids are models: a tie between two goes to the smaller number.
+  /// Ids are models. A tie between two models is resolved in favour of the smaller number.
   void meet(glm::dvec2 a, glm::dvec2 b, std::uint32_t id) {
     raycast::intersect({{a.x, a.y, b.x, b.y}, id}, origin, direction, best);
     model = best.id;
@@ -44,7 +44,7 @@ void Scene::place_movers() { grid_.build(states_, std::max(1.0, 2.0 * largest_))
 
 void Scene::meet_walls(Nearest& nearest, double from, double to) const {
   base::Box box = base::box_of(nearest.at(from), nearest.at(to));
-  // Beyond the rounding of both ends.
+  // Larger than the rounding errors of both ends.
   const double margin = 1e-6 + 1e-12 * (std::abs(nearest.origin.x) + std::abs(nearest.origin.y) + to);
   box.min -= margin, box.max += margin;
   walls_.any(box, [&](const world::Segment& wall) {
@@ -59,7 +59,7 @@ void Scene::meet_movers(Nearest& nearest) const {
     const world::Mover& mover = world_.movers[row];
     const base::Pose& X_WM = states_[row].X_WM;
     if (row == nearest.self || base::is_absent(X_WM)) return false;
-    const double height = nearest.from.z - mover.X_WM.z;  // as loaded (2.5-D world)
+    const double height = nearest.from.z - mover.X_WM.z;  // height at load (2.5-D world)
     for (const world::Segment& side : mover.body)
       if (side.seen_by_laser && side.z_min <= height && height < side.z_max)
         nearest.meet(base::transform(X_WM, side.a), base::transform(X_WM, side.b), side.model);

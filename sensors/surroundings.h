@@ -1,5 +1,5 @@
 #pragma once
-// What users' own sensors may ask about their surroundings.
+// Queries of users' own sensors about their surroundings.
 
 #include <cstdint>
 #include <span>
@@ -21,7 +21,7 @@ class Scene {
 
   /// Indexes the robots at their poses.
   void place_movers();
-  /// See sensorfarm::Surroundings::cast. @param self row of the robot that is not seen
+  /// See sensorfarm::Surroundings::cast. @param self row of the robot that the ray ignores
   sensorfarm::Hit cast(std::uint32_t self, const base::Pose& from, double range) const;
   std::span<const base::Report> states() const { return states_; }
 
@@ -32,9 +32,9 @@ class Scene {
 
   const world::World& world_;
   std::span<const base::Report> states_;
-  world::WallTree walls_;  ///< those that lasers see
+  world::WallTree walls_;  ///< walls that lasers detect
   robots::NeighbourGrid grid_;
-  double largest_ = 0.0;  ///< [m] radius of a robot
+  double largest_ = 0.0;  ///< [m] largest radius of a robot
 };
 
 }  // namespace sf::sensors

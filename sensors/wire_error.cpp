@@ -5,7 +5,7 @@
 
 namespace sf::sensors {
 
-/// The conversion of a value to a word and back rounds three times, each by at most 2^-53 of it.
+/// The conversion of a value to a word and back rounds three times, each by at most 2^-53 of the value.
 double wire_error(std::span<const double> values, std::size_t width, double step, double least, double most) {
   double largest = 0.0;
   for (std::size_t i = 0; i < values.size(); i += width) {

@@ -9,23 +9,23 @@
 
 namespace sf::sensors {
 
-/// The limits of a range sensor, and the numbers of their words on the wire. A word stands for a limit where it is that
-/// of the limit or beyond it, so that rounding makes no surface of an empty beam, and none of a surface that is too
-/// near.
+/// The limits of a range sensor, and the values of their words on the wire. A word at or beyond that of a limit is read
+/// as the limit. Rounding therefore neither turns an empty beam into a surface, nor a surface that is too near into a
+/// valid range.
 struct WireLimits {
   base::RangeLimits exact;
   base::RangeLimits rounded;
 
-  /// [m] The range of a word. @param metres the word's number; infinity and NaN are kept
+  /// Returns the range of a word [m]. @param metres the word's number; infinity and NaN are kept
   double range(double metres) const {
     if (exact.min > 0.0 && metres <= rounded.min) return exact.min;
     return metres >= rounded.max && std::isfinite(metres) ? exact.max : metres;
   }
 
-  /// [m] The largest difference between the ranges of a sensor and the limits as which a receiver reads them: less than
-  /// `step`, that of the wire. @param ranges in `exact`, or infinite
+  /// Returns the largest difference [m] between the ranges of a sensor and the limits that a receiver reads for them.
+  /// It is less than `step`, the step of the wire. @param ranges in `exact`, or infinite
   double error(std::span<const double> ranges, double step) const {
-    const double half = 0.500001 * step;  // with room for the rounding of numbers to words
+    const double half = 0.500001 * step;  // with a margin for rounding numbers to words
     const double low = exact.min > 0.0 ? rounded.min + half : 0.0, high = rounded.max - half;
     double largest = 0.0;
     for (const double range : ranges) {

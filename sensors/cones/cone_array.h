@@ -24,7 +24,7 @@ struct ConeArray {
   double range_max = 0.0;  ///< [m] > 0
   /// Readings per firing cycle: reading k fires the transducers whose index is congruent to k modulo `turns`.
   std::uint32_t turns = 1;
-  double min_cosine = 0.0;    ///< least cosine of an angle of incidence that returns an echo; 0: any angle
+  double min_cosine = 0.0;    ///< smallest cosine of an angle of incidence that returns an echo; 0: any angle
   double sigma = 0.0;         ///< [m] constant part of the noise
   double proportional = 0.0;  ///< [-] noise per metre of range; its use depends on the sensor type
 };
@@ -42,7 +42,7 @@ struct ConeDefaults {
 ConeArray read_cones(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type,
                      const ConeDefaults& defaults);
 
-/// All sensors of `type` in a world, by mover and in file order, each read by `read`.
+/// Returns all sensors of `type` in a world, by mover and in file order, using `read` for each.
 using ReadConeArray = ConeArray (*)(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_type);
 std::vector<ConeArray> cone_arrays_of(const world::World& world, std::string_view type, ReadConeArray read);
 

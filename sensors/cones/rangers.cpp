@@ -58,9 +58,9 @@ class Rangers : public SensorBackend {
   raycast::ConeCaster cones_;
   std::vector<std::uint32_t> first_cones_;  ///< per array
   std::vector<std::uint64_t> last_;         ///< per array: sequence number of its last reading, or kNever
-  std::vector<double> heights_;             ///< [m] per array: world height of its origin
-  std::vector<double> values_;              ///< of all arrays; transducers that do not fire keep theirs
-  std::vector<base::QualityFlag> quality_;  ///< per cone, likewise
+  std::vector<double> heights_;             ///< [m] per array: height of its origin in the world
+  std::vector<double> values_;              ///< of all arrays; transducers that do not fire keep their values
+  std::vector<base::QualityFlag> quality_;  ///< per cone; same rule
   std::vector<DueSample> due_;
   std::vector<Pose> X_WS_;               ///< per due array
   std::vector<DueSample> due_cones_;     ///< transducers that fire
@@ -111,7 +111,8 @@ void Rangers::fire(const DueSample& due) {
 void Rangers::write_reading(std::size_t i) {
   const DueSample& due = due_[i];
   const ConeArray& array = arrays_[due.row];
-  // Sonar and infrared share a stream and sensor numbers; a draw keeps 24 bits of this name.
+  // Sonar and infrared share a stream and sensor numbers, so the type is part of the number. A draw keeps 24 bits of
+  // it.
   const std::uint32_t name = (std::uint32_t{type_.id} << 16) | array.row.sensor;
   const base::RandomKey draw{seed_, base::RandomStream::range_cone, array.row.mover, name, due.sequence};
   const bool noisy = noise_ && (array.sigma > 0.0 || array.proportional > 0.0);
@@ -125,14 +126,14 @@ void Rangers::write_reading(std::size_t i) {
   }
 }
 
-/// Empty when all flags are none.
+/// Returns an empty span when all flags are none.
 std::span<const base::QualityFlag> Rangers::quality_of(std::uint32_t row) const {
   const auto own = std::span<const base::QualityFlag>(quality_).subspan(first_cones_[row], arrays_[row].X_SC.size());
   const bool any = std::any_of(own.begin(), own.end(), [](auto flag) { return flag != base::QualityFlag::none; });
   return any ? own : std::span<const base::QualityFlag>();
 }
 
-// The echoes of transducers that do not fire are held in arrays with a firing cycle.
+// Arrays with a firing cycle hold the echoes of transducers that do not fire.
 void Rangers::write_state(std::uint32_t row, base::ByteWriter& out) const {
   out.put(last_[row]);
   out.put_bytes(values_.data() + first_value(row), sizeof(double) * type_.columns * held(row));
@@ -171,7 +172,7 @@ std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays) {
     double& reach = rows.back().reach = 0.0;
     for (const Pose& X_SC : array.X_SC)
       reach = std::max(reach, array.range_max + glm::length(glm::dvec2{X_SC.x, X_SC.y}));
-    // With a firing cycle, a reading contains echoes of earlier readings: no reuse.
+    // With a firing cycle, a reading contains echoes of earlier readings, so it cannot be reused.
     if (array.turns == 1) rows.back().dependency_radius = reach;
   }
   return rows;

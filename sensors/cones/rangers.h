@@ -1,6 +1,6 @@
 #pragma once
-// The common backend of sonar and infrared: firing order, and readings from echoes. An element whose surface is nearer
-// than range_min has the quality flag `too_near`.
+// Common backend of sonar and infrared: firing order, and conversion of echoes to readings. An element whose surface is
+// nearer than range_min has the quality flag `too_near`.
 
 #include <memory>
 #include <span>
@@ -13,7 +13,7 @@ namespace sf::sensors {
 
 /// One type of ranger.
 struct RangerType {
-  std::uint8_t id = 0;        ///< on the wire
+  std::uint8_t id = 0;        ///< wire id
   std::uint32_t columns = 1;  ///< numbers per transducer
   raycast::ConeKernel kernel;
   /// Writes a transducer's columns.
@@ -22,16 +22,16 @@ struct RangerType {
   void (*write_reading)(const ConeArray& array, double range, bool met, double deviate, std::span<double> out);
 };
 
-/// Specs of the arrays for `SensorType::specs`.
+/// Returns the specs of the arrays for `SensorType::specs`.
 std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays);
 
-/// A reading updates the transducers that fired since its sensor's last reading: all of them after a whole cycle or for
-/// the first reading. The others keep their values.
+/// Creates the backend. A reading updates the transducers that fired since its sensor's last reading: every transducer
+/// after a whole cycle or for the first reading. The others keep their values.
 std::unique_ptr<SensorBackend> make_ranger_backend(const SensorContext& context, std::vector<ConeArray> arrays,
                                                    const RangerType& type);
 
-/// True when transducer `number` fires in a reading after `last`, up to and including `sequence`. Both are sequence
-/// numbers, which also count skipped readings. @param turns readings per cycle
+/// Returns true when transducer `number` fires in a reading after `last`, up to and including `sequence`. Both are
+/// sequence numbers, which also count skipped readings. @param turns readings per cycle
 bool has_fired(std::uint32_t number, std::uint32_t turns, std::uint64_t sequence, std::uint64_t last);
 
 }  // namespace sf::sensors

@@ -17,7 +17,7 @@ namespace sf::sensors {
 
 namespace {
 
-/// The constant part of a sensor's row. The places in shared tables are filled in later.
+/// Returns the constant part of a sensor's row. The places in shared tables are filled in later.
 EdgeRow row_of(const LaneEdge& edge, const raycast::BeamPlan& plan, const raycast::ScanNoise& noise) {
   EdgeRow row{};
   row.beams = edge.fan.samples;
@@ -151,9 +151,9 @@ bool EdgeFit::write_rows(std::span<const std::uint32_t> lanes) {
   return false;
 }
 
-/// Order of sensors in the dispatch. Lanes of one group wait for the slowest: sensors that separated several edges last
-/// time, the slowest case, share groups. These are every other group, because lavapipe splits the groups in halves
-/// between its threads. Readings do not depend on the order.
+/// Orders the sensors in the dispatch. Lanes of one group wait for the slowest lane, so sensors that separated several
+/// edges last time, the slowest case, share groups. These are every other group, because lavapipe splits the groups in
+/// halves between its threads. Readings do not depend on the order.
 void EdgeFit::write_order(bool same_due) {
   if (due_.empty()) return;
   const auto order = order_.host<std::uint32_t>();
@@ -170,7 +170,7 @@ void EdgeFit::write_order(bool same_due) {
   for (const std::uint32_t mixed : {1u, 0u})
     for (std::uint32_t i = 0; i < due_.size(); ++i)
       if ((same_due ? mixtures[i] & 1u : 0u) == mixed) put(last = i);
-  // Padding repeats one row; its results are written repeatedly with equal values.
+  // Padding repeats one row. Its results are written repeatedly with equal values.
   while (at < groups * size) put(last);
 }
 

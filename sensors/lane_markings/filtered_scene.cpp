@@ -9,10 +9,10 @@ namespace sf::sensors {
 
 namespace {
 
-/// Markings have no height of their own: every lane edge sensor sees them.
+/// Markings have no height of their own, so every lane edge sensor detects them.
 constexpr double kAllHeights = 1e6;  // [m]
 
-/// [m] pixel size of a wall's outline; 0: none.
+/// Returns the pixel size of a wall's outline [m]; 0 if it has none.
 double pixel_of(const world::World& world, const world::Segment& wall) {
   return wall.model < world.models.size() && world.models[wall.model].is_bitmap ? world.models[wall.model].pixel : 0.0;
 }

@@ -1,6 +1,7 @@
 #pragma once
-// The lane edge sensor's fit on the host, with the same operations in the same order as shaders/lib/edge_fit.glsl: the
-// bytes are the same. In a header since a benchmark compiles it for other processors, too.
+// The lane edge sensor's fit on the host. It performs the same operations in the same order as
+// shaders/lib/edge_fit.glsl, so results are bit-identical. It is a header because a benchmark also compiles it for
+// other processors.
 
 #include <algorithm>
 #include <bit>
@@ -15,7 +16,7 @@
 
 namespace sf::sensors::fit {
 
-/// Points of one scan, beam by beam; unused places of the device's lanes are left out.
+/// Points of one scan, beam by beam, without the unused places of the device's lanes.
 struct Points {
   double w[kMostEdgeSamples], x[kMostEdgeSamples], y[kMostEdgeSamples];
   std::uint32_t count = 0;                 ///< beams
@@ -26,10 +27,10 @@ struct Points {
 /// The hits of a scan, as arrays over beams.
 struct EdgeHits {
   const double* ranges;       ///< [m]
-  const std::uint32_t* tags;  ///< of the surfaces that were met, or SF_NO_HIT
+  const std::uint32_t* tags;  ///< of the surfaces that were hit, or SF_NO_HIT
   const double* directions;   ///< cosine and sine of each beam
   const float* normals;       ///< null without noise
-  std::uint32_t stride = 1;   ///< from one beam to the next, in all of them
+  std::uint32_t stride = 1;   ///< from one beam to the next, in all arrays
 };
 
 static inline void make_points(const EdgeRow& row, const EdgeHits& hits, Points& p) {
@@ -113,7 +114,7 @@ static inline Candidate elect(const Points& p, double source) {
     c.allowed = 0.625 * source + 0.015625 * wide;
     c.votes = 0.0F;
     const Hypothesis paper = hypothesis_of(c.line, c.allowed);
-    // In wide scans every other lane votes.
+    // In wide scans, every other lane votes.
     for (std::uint32_t i = 0; i < p.count; ++i) {
       if (lanes >= 12 && i / p.lane % 2 == 1) continue;
       c.votes =

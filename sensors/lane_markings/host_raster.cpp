@@ -13,7 +13,7 @@ struct CellIndex {
   std::int32_t x, y;
 };
 
-/// As in the kernel; see there.
+/// Same as `Cell` in the kernel.
 struct RasterCell {
   bool inside, full;
   std::uint32_t word, ends;
@@ -51,7 +51,7 @@ RasterCell cell_at(const RasterTables& tables, const RasterRow& row, CellIndex a
   return c;
 }
 
-/// Cell of a coordinate [cells], relative to that of the sensor.
+/// Returns the cell of a coordinate [cells] relative to the sensor's cell.
 std::int32_t cell_of(float x, std::int32_t start, std::int32_t low, std::int32_t high) {
   return std::clamp(static_cast<std::int32_t>(std::floor(x)) + start, low, high - 1);
 }

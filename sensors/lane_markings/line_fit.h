@@ -1,7 +1,7 @@
 #ifndef SENSORS_LANE_MARKINGS_LINE_FIT_H
 #define SENSORS_LANE_MARKINGS_LINE_FIT_H
 // Fits a line to a scan's points by total least squares, which is valid for any direction, and a parabola that measures
-// how straight the points are. Read by both compilers, so that host and device compute equal results.
+// how straight the points are. Compiled by both compilers, so that host and device compute equal results.
 //
 // K. Pearson, "On lines and planes of closest fit to systems of points in space", Phil. Mag. 2 (1901): the line through
 // the centroid along the larger principal axis. Constants are exact in 32 bits because GLSL parses them as such.
@@ -66,7 +66,7 @@ SF_INLINE Line line_through(Moments m) {
   SF_REAL difference = xx - yy;
   SF_REAL cross = xy + xy;
   SF_REAL size = sqrt(difference * difference + cross * cross);
-  // Half of the angle of (difference, cross), without trigonometry.
+  // Half the angle of (difference, cross), without trigonometry.
   const double sign_of_cross = cross < 0.0 ? -1.0 : 1.0;
   SF_REAL ax = difference >= 0.0 ? size + difference : sign_of_cross * cross;
   SF_REAL ay = difference >= 0.0 ? cross : sign_of_cross * (size - difference);
@@ -148,15 +148,15 @@ SF_INLINE Parabola parabola_of(LineMoments s) {
   return parabola;
 }
 
-/// [m] largest distance of an edge's points from a line or parabola that their source explains. A grain is a pixel
-/// size.
+/// Returns the largest distance [m] of an edge's points from a line or parabola that errors of their source explain. A
+/// grain is a pixel size.
 SF_INLINE double tolerance(double grain, double noise) {
   SF_REAL t = 9.5367431640625e-07 + 1.25 * grain + 4.0 * noise;
   return t;
 }
 
-/// True for one edge: straight within its source's tolerance, or gently curved (rise at most a sixteenth of the chord)
-/// with small residuals.
+/// Returns true for a single edge: straight within its source's tolerance, or gently curved (rise at most a sixteenth
+/// of the chord) with small residuals.
 SF_INLINE bool is_one_edge(LineMoments s, Parabola b, double allowed) {
   SF_REAL chord = s.highest - s.lowest;
   const double curvature = b.curvature < 0.0 ? -b.curvature : b.curvature;
@@ -176,8 +176,8 @@ SF_INLINE Hypothesis hypothesis_of(Line line, double allowed) {
   return hypothesis;
 }
 
-/// The vote of a point: 1 for an inlier, -3 in front of the edge, 0 behind it. The nearest candidate wins whose inliers
-/// exceed a quarter of the points behind it.
+/// Returns the vote of a point: 1 for an inlier, -3 in front of the edge, 0 behind it. The nearest candidate whose
+/// inliers exceed a quarter of the points behind it wins.
 SF_INLINE float vote(Hypothesis b, float w, float x, float y) {
   SF_REAL32 v = b.nx * x + b.ny * y - b.c;
   return w * (v < -b.allowed ? -3.0f : (v <= b.allowed ? 1.0f : 0.0f));
@@ -194,24 +194,24 @@ struct PointError {
 
 struct LineFit {
   double distance, points, residual, sigma;
-  double gain;  // [-] error of the distance per error of the points across the line, at most
+  double gain;  // [-] largest error of the distance per error of the points across the line
   bool seen;
 };
 
 /// Extrapolates the line to the perpendicular e and estimates the error.
 ///
-/// The variance of the line at u0 from the centroid is sigma^2 / n (1 + u0^2 / spread) (ordinary least squares), that
-/// of its direction sigma^2 / (n spread). Pixel errors are not independent: an edge along the pixels has one offset for
-/// all of its points, which the residual does not show. The residual shows only the changes between rows of pixels, of
-/// which there are few. So sigma^2 / n is a pixel's variance less the residual's, plus a sixth of the residual's. Of an
-/// edge seen at an angle only the pixels' corners are visible: up to three times the variance. The remaining curvature
-/// at u0 is model error and counts in full. A line parallel to e within a standard deviation of its direction has no
-/// intersection.
+/// The variance of the line at u0 from the centroid is sigma^2 / n (1 + u0^2 / spread) (ordinary least squares), and
+/// the variance of its direction is sigma^2 / (n spread). Pixel errors are not independent: an edge along the pixels
+/// has the same offset for all of its points, which the residual does not show. The residual shows only the changes
+/// between rows of pixels, which are few. So sigma^2 / n is a pixel's variance minus the residual's, plus a sixth of
+/// the residual's. Of an edge seen at an angle, only the pixels' corners are visible: up to three times the variance.
+/// The remaining curvature at u0 is model error and counts in full. A line parallel to e within a standard deviation of
+/// its direction has no intersection.
 SF_INLINE LineFit fit_at(Line line, LineMoments s, Parabola b, PointError point_error, double ex, double ey,
                          double distance_max) {
   const double n = s.n > 0.0 ? s.n : 1.0;
   const double uu = s.uu > 0.0 ? s.uu : 1.0;
-  // Residual first moments from rounding.
+  // Residual first moments due to rounding.
   SF_REAL lift = s.v / n;
   SF_REAL slope = s.uv / uu;
   SF_REAL nx = line.nx - slope * line.tx;

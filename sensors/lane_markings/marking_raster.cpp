@@ -22,7 +22,7 @@ struct Crossing {
   bool operator<(const Crossing& other) const { return x < other.x; }
 };
 
-/// Least integer k with (k + 1/2) cell >= at.
+/// Returns the smallest integer k with (k + 1/2) cell >= at.
 std::int64_t first_centre(double at, double cell) { return static_cast<std::int64_t>(std::ceil(at / cell - 0.5)); }
 
 /// Edges that an ascending row of cell centres may cross.
@@ -31,7 +31,7 @@ class Sweep {
   explicit Sweep(std::vector<OutlineEdge> faces) : faces_(std::move(faces)) {
     std::sort(faces_.begin(), faces_.end(), [](const OutlineEdge& p, const OutlineEdge& q) { return low(p) < low(q); });
   }
-  /// Crossings in order of x. `y` must not decrease between calls.
+  /// Returns the crossings in order of x. `y` must not decrease between calls.
   const std::vector<Crossing>& cross(double y);
 
  private:
@@ -56,7 +56,7 @@ const std::vector<Crossing>& Sweep::cross(double y) {
   return crossings_;
 }
 
-/// True within one cell of an end edge, on its painted side.
+/// Returns true within one cell of an end edge, on its painted side.
 bool near_end(const std::vector<OutlineEdge>& ends, glm::dvec2 p, double cell) {
   return std::any_of(ends.begin(), ends.end(), [&](const OutlineEdge& f) {
     const glm::dvec2 e = f.b - f.a;
@@ -152,8 +152,8 @@ void MarkingRaster::paint(const world::LaneMarking& marking) {
   }
 }
 
-/// Two passes, each over the neighbours already visited: exact for the chessboard distance (A. Rosenfeld, J. Pfaltz,
-/// "Distance functions on digital pictures", Pattern Recognition 1 (1968)).
+/// Makes two passes, each over the neighbours already visited. This is exact for the chessboard distance (A. Rosenfeld,
+/// J. Pfaltz, "Distance functions on digital pictures", Pattern Recognition 1 (1968)).
 void MarkingRaster::measure_distances() {
   const auto far = std::numeric_limits<std::uint32_t>::max() >> 1;
   const auto w = static_cast<std::int64_t>(columns_);

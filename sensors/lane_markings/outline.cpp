@@ -18,7 +18,7 @@ glm::dvec2 direction(glm::dvec2 from, glm::dvec2 to) {
 
 glm::dvec2 left_of(glm::dvec2 d) { return {-d.y, d.x}; }
 
-/// Offset from a vertex of the line to its left side: half the width from both adjacent pieces.
+/// Returns the offset from a vertex of the line to its left side, at half the width from both adjacent pieces.
 glm::dvec2 mitre(glm::dvec2 before, glm::dvec2 after, double half) {
   const glm::dvec2 sum = left_of(before) + left_of(after);
   return (2.0 * half / dot(sum, sum)) * sum;
@@ -46,7 +46,7 @@ Sides sides_of(const std::vector<glm::dvec2>& line, double half, bool closed) {
   return sides;
 }
 
-/// True when a side of a piece runs against the line: the band is wider than the bend allows.
+/// Returns true when a side of a piece runs against the line: the band is wider than the bend allows.
 bool runs_back(const std::vector<glm::dvec2>& line, const std::vector<glm::dvec2>& side) {
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     const glm::dvec2 along = side[(i + 1) % side.size()] - side[i];
@@ -81,7 +81,7 @@ void add_outline(const world::LaneMarking& marking, std::vector<OutlineEdge>& ou
 
 std::vector<world::LaneMarking> distinct_markings(std::span<const world::LaneMarking> lane_markings, double within) {
   using Key = std::tuple<std::size_t, std::int64_t, std::int64_t>;
-  // Keys are coarse squares of [m]; equal markings may fall into neighbouring squares, so all neighbours are searched.
+  // Keys are coarse squares of [m]. Equal markings may fall into neighbouring squares, so all neighbours are searched.
   const double square = std::max(1e-2, 4.0 * within);
   const auto key_of = [&](const world::LaneMarking& s, int dx, int dy) {
     const glm::dvec2 sum = s.line.front() + s.line.back();

@@ -1,9 +1,9 @@
 #pragma once
-// The outlines of road markings, for rays along the ground.
+// Outlines of road markings, for rays along the ground.
 //
 // A marking is the band within half its width of its line. The outline runs along the line's right side, across the
 // end, back along the left side and across the start. At the line's vertices both sides meet on the bisector (a mitre),
-// so that the outline keeps exactly half the width from the line.
+// so the outline keeps exactly half the width from the line.
 
 #include <cstdint>
 #include <span>
@@ -25,8 +25,8 @@ struct OutlineEdge {
 /// Precondition (World::lane_markings): at least two points, distinct neighbours, turns below 90 degrees.
 void add_outline(const world::LaneMarking& marking, std::vector<OutlineEdge>& out);
 
-/// Removes duplicates: two lanes paint their shared edge twice. Duplicates have equal width and points within `within`
-/// [m], in either direction; the first one stays.
+/// Removes duplicates, because two lanes paint their shared edge twice. Duplicates have equal width and points within
+/// `within` [m], in either direction. The first one is kept.
 std::vector<world::LaneMarking> distinct_markings(std::span<const world::LaneMarking> lane_markings,
                                                   double within = 1e-4);
 

@@ -14,8 +14,8 @@ namespace sf::sensors {
 
 namespace {
 
-/// [cells] longest ray. At this distance the rounding of 32-bit floats is a thousandth of a cell, and the steps stay
-/// below the limit of older Mesa.
+/// [cells] longest ray. At this distance the rounding error of 32-bit floats is a thousandth of a cell, and the number
+/// of steps stays below the limit of older Mesa.
 constexpr double kLongestRay = 8192.0;
 
 void refuse_long_rays(const SensorContext& context, const raycast::RayCaster& caster, double cell) {
@@ -92,7 +92,7 @@ void RasterCaster::prepare(std::size_t due) {
   thread_pool_.parallel_for(due, 256, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i);
   });
-  // One invocation per beam, where the cast has one per lane.
+  // One invocation per beam, unlike the cast, which has one per lane.
   const auto lanes = caster_.groups().host<std::uint32_t>();
   const auto groups = groups_.host<std::uint32_t>();
   groups[0] = lanes[0];

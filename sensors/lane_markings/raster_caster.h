@@ -19,22 +19,22 @@ namespace sf::sensors {
 /// Casts the beams of a `raycast::RayCaster` through a raster, after that caster's own cast. Not thread-safe.
 class RasterCaster {
  public:
-  /// @param tag tag of paint  @param with_casts whether hits of `caster` count
-  /// @param on_host nothing is bound or recorded: `cast_on_host` for each due scanner after `prepare`
+  /// @param tag tag of paint  @param with_casts true: hits of `caster` count
+  /// @param on_host true: binds and records nothing; call `cast_on_host` for each due scanner after `prepare`
   /// @throws base::DeviceError when the device cannot hold the tables
   RasterCaster(const SensorContext& context, const MarkingRaster& raster, raycast::RayCaster& caster, std::uint32_t tag,
                bool with_casts, bool on_host);
 
-  /// Computes the poses of the due scanners; call after `caster.prepare` with the same number.
+  /// Computes the poses of the due scanners. Call it after `caster.prepare` with the same number.
   void prepare(std::size_t due);
-  /// Call once before `record`, and after the tables of `caster` were replaced.
+  /// Call it once before `record`, and again after the tables of `caster` were replaced.
   void bind(const PointTables& out);
   void record(gpu::Batch& batch);
   void add_copies(gpu::Batch& batch);
 
-  /// Casts the beams of the i-th due scanner; several threads may cast different ones.
+  /// Casts the beams of the i-th due scanner. Several threads may cast different scanners.
   void cast_on_host(std::size_t i);
-  /// Results on the host, in the places that those of `caster` have: ranges [m] and tags.
+  /// Results on the host, in the same places as the results of `caster`: ranges [m] and tags.
   std::span<const double> ranges() const { return ranges_; }
   std::span<const std::uint32_t> tags() const { return tags_; }
 
@@ -54,7 +54,7 @@ class RasterCaster {
   gpu::Kernel kernel_;
   gpu::Buffer place_, groups_, directory_, blocks_;
   std::vector<double> ranges_;       ///< on the host
-  std::vector<std::uint32_t> tags_;  ///< likewise
+  std::vector<std::uint32_t> tags_;  ///< on the host
 };
 
 }  // namespace sf::sensors

@@ -6,7 +6,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sensors/magnetic_field/host_sums.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target.h: the code that is compiled per instruction set.
+// After foreach_target.h: the code below is compiled once per instruction set.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -14,7 +14,7 @@ namespace sf::sensors::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A vector has one point per lane. Magnets are added one after another, so that each point's sum has one order.
+// A vector has one point per lane. Magnets are added one by one, so each point's sum has a fixed order.
 using D = hn::CappedTag<double, 8>;
 using F = hn::Rebind<float, D>;
 using V = hn::Vec<D>;
@@ -34,7 +34,7 @@ struct Sums {
 
 HWY_INLINE V number(double value) { return hn::Set(kD, value); }
 
-/// As `add` in shaders/lib/dipoles.glsl, term by term.
+/// Same as `add` in shaders/lib/dipoles.glsl, term by term.
 template <bool kMagnitudes>
 HWY_INLINE void add(const DipoleRow& m, V px, V py, V pz, V cutoff_squared, Sums& sum) {
   const V dx = hn::Sub(px, number(m.x));

@@ -9,11 +9,11 @@ namespace sf::sensors {
 
 namespace {
 
-// Rows are coarse because each costs a span; columns are fine because they cost only memory.
+// Rows are coarse because each costs a span. Columns are fine because they cost only memory.
 constexpr double kRowsPerCutoff = 4.0;
 constexpr double kColumnsPerCutoff = 16.0;
 
-/// [m] A few units in the last place of a coordinate: the rounding of a row's edge.
+/// Returns a few ulps of a coordinate [m]: the rounding error of a row's edge.
 double rounding(double a, double b) { return 8.0 * std::numeric_limits<double>::epsilon() * (std::abs(a) + b); }
 
 }  // namespace
@@ -56,7 +56,7 @@ void MagnetGrid::build(std::span<const glm::dvec2> magnets, double cutoff, std::
   }
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
 
-  // Filling moves each cell's start to the next one's; all move back afterwards.
+  // Filling moves each cell's start to the next cell's start. All starts are moved back afterwards.
   for (std::uint32_t i = 0; i < magnets.size(); ++i) order_[starts_[cells_[i]]++] = i;
   std::move_backward(starts_.begin(), starts_.end() - 1, starts_.end());
   starts_.front() = 0;

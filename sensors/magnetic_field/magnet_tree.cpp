@@ -9,7 +9,7 @@ namespace {
 
 using base::Box;
 
-/// A node stands for its magnets when it is smaller than this fraction of its distance or of the query box. The bound
+/// A node represents its magnets when it is smaller than this fraction of its distance or of the query box. The bound
 /// is then too large by some per cent, or by less than the box itself adds.
 constexpr double kOpening = 0.25;
 constexpr double kOpeningToBox = 0.5;

@@ -10,11 +10,11 @@
 
 namespace sf::sensors {
 
-/// [T m^3] mu0 / 4 pi times the magnitude of the magnet's moment.
+/// Returns mu0 / 4 pi times the magnitude of the magnet's moment [T m^3].
 double strength_of(const world::Magnet& magnet);
 
-/// [T] largest field of a magnet of strength `k` [T m^3] at a distance of at least `along` [m] on the ground and
-/// `above` [m] in height. @param along > 0
+/// Returns the largest field [T] of a magnet of strength `k` [T m^3] at a distance of at least `along` [m] on the
+/// ground and `above` [m] in height. @param along > 0
 double field_beyond(double k, double along, double above);
 
 class MagnetTree {
@@ -22,15 +22,16 @@ class MagnetTree {
   /// @param height [m] of all points
   MagnetTree(std::span<const world::Magnet> magnets, double height);
 
-  /// [T] upper bound, at any point in `box`, of the sum of the magnitudes of all magnets farther than `cutoff` [m] > 0.
+  /// Returns an upper bound [T], at any point in `box`, of the sum of the magnitudes of all magnets farther than
+  /// `cutoff` [m] > 0.
   double bound(const base::Box& box, double cutoff) const;
-  base::Box extent() const { return tree_.extent(); }  ///< of the magnets, at least one
+  base::Box extent() const { return tree_.extent(); }  ///< extent of the magnets, at least one
 
  private:
   /// The magnets of one node.
   struct Sum {
     double strength = 0.0;  ///< [T m^3] sum of magnitudes
-    double above = 0.0;     ///< [m] least vertical distance
+    double above = 0.0;     ///< [m] smallest vertical distance
   };
   base::BoxTree tree_;     ///< one magnet per leaf
   std::vector<Sum> sums_;  ///< per node

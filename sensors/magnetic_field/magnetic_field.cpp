@@ -13,11 +13,11 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kLeastRadius = 1e-9;  // [m] least radius whose inverse cubed is finite in 32 bits
+constexpr double kLeastRadius = 1e-9;  // [m] smallest radius whose inverse cubed is finite in 32 bits
 constexpr std::size_t kLeastCells = 1u << 20;
 constexpr std::size_t kLeastMovingCells = 1u << 12;
 
-/// Cells of a grid: few enough to be filled each tick where magnets move.
+/// Returns the number of cells of a grid: few enough to be filled every tick if magnets move.
 std::size_t most_cells(std::size_t magnets, std::size_t least) { return std::max(least, 8 * magnets); }
 
 template <class Rows>
@@ -50,7 +50,7 @@ MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Threa
   const std::uint32_t constants[] = {magnitudes, device.rounds32()};
   kernel = std::make_unique<gpu::Kernel>(device, magnitudes ? "magnetometer with magnitudes" : "magnetometer",
                                          magnetometer_comp_spv, constants);
-  // An unrolled iteration may load rows behind the last magnet; they have moment 0.
+  // An unrolled iteration may load rows after the last magnet; they have moment 0.
   const std::size_t rows = std::size_t{fixed_magnets} + moving_magnets + SF_FIELD_UNROLL;
   dipoles =
       std::make_unique<gpu::Buffer>(device, "magnets", Role::upload, Texel::u32x4, gpu::texels_of<DipoleRow>(rows));
@@ -134,7 +134,7 @@ void MagneticField::sum_on_host() {
   const std::span<const DipoleRow> dipoles = t.dipoles->host<DipoleRow>();
   const std::span<const FieldPointRow> points = t.points->host<FieldPointRow>();
   const std::span<FieldSum> results = t.results->host<FieldSum>();
-  // Longest first, one item at a time: no thread is left with the long ones.
+  // Longest first, one item at a time, so that no thread ends up with several long ones.
   t.thread_pool.parallel_for_each(t.sorted.size(), 4, [&](std::size_t i, unsigned) {
     const FieldItem& item = t.planned[t.sorted[i]].item;
     sum_fields(spans.subspan(item.first, item.end - item.first), dipoles,

@@ -11,11 +11,11 @@ namespace sf::sensors {
 
 struct FieldSampleOptions {
   bool magnitudes = false;                    ///< also sums the magnitudes of the magnets' fields
-  unsigned threads = 0;                       ///< host threads; 0: all of the machine. The result does not depend on it
-  std::function<void(double done)> progress;  ///< called occasionally with the finished part in (0, 1]
+  unsigned threads = 0;                       ///< host threads; 0: one per core; results do not depend on it
+  std::function<void(double done)> progress;  ///< called occasionally with the finished fraction in (0, 1]
 };
 
-/// Computes the field with the magnetometers' kernel, in batches. Fastest when each five consecutive points are
+/// Computes the field with the magnetometers' kernel, in batches. Fastest when every five consecutive points are
 /// neighbours.
 /// @return one sum per point  @throws base::DeviceError when the device cannot hold the magnets
 std::vector<FieldSum> sample_field(const world::World& world, gpu::Device& device, std::span<const FieldPoint> points,

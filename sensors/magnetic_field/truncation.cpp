@@ -16,7 +16,7 @@ namespace {
 
 using base::Box;
 
-constexpr double kRounding = 1.0 + 1e-6;        // rounding of sums, 32-bit moments and decisions at the cut-off
+constexpr double kRounding = 1.0 + 1e-6;        // rounding errors of sums, 32-bit moments and decisions at the cut-off
 constexpr double kFinest = 0.25;                // fraction of the cut-off: smaller squares are not halved
 constexpr std::size_t kMostSquares = 1u << 15;  // limit of the refinement
 
@@ -26,7 +26,8 @@ struct Square {
   bool operator<(const Square& other) const { return bound < other.bound; }
 };
 
-/// A box outside of which every magnet is beyond the cut-off, and farther away than from some point on the box's edge.
+/// Returns a box outside which every magnet is beyond the cut-off, and farther away than from some point on the box's
+/// edge.
 Box around(const Box& magnets, double cutoff) {
   const double margin = 1.01 * cutoff;
   const glm::dvec2 middle = 0.5 * (magnets.min + magnets.max);
@@ -34,7 +35,8 @@ Box around(const Box& magnets, double cutoff) {
   return {middle - glm::dvec2{half, half}, middle + glm::dvec2{half, half}};
 }
 
-/// The largest bound over all squares: the square with the largest bound is refined until it is small enough.
+/// Returns the largest bound over all squares. Repeatedly refines the square with the largest bound until it is small
+/// enough.
 double largest(const MagnetTree& tree, double cutoff) {
   const Box all = around(tree.extent(), cutoff);
   std::priority_queue<Square> squares;
@@ -53,7 +55,7 @@ double largest(const MagnetTree& tree, double cutoff) {
   return squares.top().bound;
 }
 
-/// Heights of all elements, each once.
+/// Returns the heights of all elements, each once.
 std::vector<double> heights_of(const world::World& world) {
   std::vector<double> heights;
   for_each_of(world, magnetometer_type.word.type,
@@ -66,7 +68,7 @@ std::vector<double> heights_of(const world::World& world) {
   return heights;
 }
 
-/// The world with all magnets at one height, the worst case.
+/// Returns the world with all magnets at one height, the worst case.
 world::World flattened(const world::World& world) {
   world::World flat;
   flat.magnet_cutoff = world.magnet_cutoff;

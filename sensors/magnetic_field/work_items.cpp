@@ -1,4 +1,4 @@
-// Partition of the points into work items: spans of magnets per group, cut to a size, longest first, evenly
+// Partition of the points into work items: spans of magnets per group, split to a size, longest first, evenly
 // distributed.
 
 #include <algorithm>
@@ -23,7 +23,8 @@ constexpr std::uint32_t kTurnsApart = kMostItemMagnets / 1024;
 
 std::uint32_t ceiling(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
 
-/// Makes `table` hold `texels`, growing at least twofold. @return true for a new table, whose contents are undefined
+/// Ensures that `table` holds `texels`, growing at least twofold. @return true for a new table, whose contents are
+/// undefined
 bool hold(std::unique_ptr<gpu::Buffer>& table, gpu::Device& device, const char* name, Role role, Texel texel,
           std::size_t texels) {
   if (table != nullptr && table->texels() >= texels) return false;
@@ -33,7 +34,8 @@ bool hold(std::unique_ptr<gpu::Buffer>& table, gpu::Device& device, const char* 
   return true;
 }
 
-/// Cuts spans longer than an item, in place, from the back. The array has room for it. @return the new number of spans
+/// Splits spans longer than an item, in place, from the back. The array has room for it. @return the new number of
+/// spans
 std::uint32_t cut(std::span<MagnetSpan> spans, std::uint32_t count) {
   std::uint32_t pieces = 0;
   for (std::uint32_t i = 0; i < count; ++i) pieces += ceiling(spans[i].end - spans[i].first, kMostItemMagnets);
@@ -62,7 +64,7 @@ void MagneticField::Tables::gather(std::span<const FieldPoint> at, std::span<con
       group.centre = group.centre + (1.0 / group.points) * glm::dvec2{at[i].x, at[i].y};
     for (std::uint32_t i = first; i < end; ++i)
       group.reach = std::max(group.reach, glm::length(glm::dvec2{at[i].x, at[i].y} - group.centre));
-    // Rounding of a centre far from the origin.
+    // Rounding error of a centre far from the origin.
     const double slack = 1e-9 * cutoff + 1e-15 * (std::abs(group.centre.x) + std::abs(group.centre.y));
     group.reach += cutoff + slack;
     farthest = std::max(farthest, group.reach);
@@ -133,7 +135,7 @@ void MagneticField::Tables::sort_items() {
   for (std::uint32_t i = 0; i < planned.size(); ++i) sorted[lengths[bucket(planned[i])]++] = i;
 }
 
-/// Devices give each thread a fixed share of the groups, so long and short groups are interleaved over all of them by a
+/// Devices give each thread a fixed share of the groups, so long and short groups are interleaved over all shares by a
 /// step of 0.618 of their number.
 void MagneticField::Tables::write_items() {
   const auto count = static_cast<std::uint32_t>(planned.size());
@@ -146,7 +148,7 @@ void MagneticField::Tables::write_items() {
                  gpu::texels_of<FieldSum>(SF_FIELD_POINTS * (std::size_t{count} + 1)));
 
   const auto table = items->host<FieldItem>();
-  // Lanes without work sum nothing into a result of their own.
+  // Lanes without work write an empty sum to a result of their own.
   std::fill(table.begin(), table.begin() + static_cast<std::ptrdiff_t>(lanes), FieldItem{0, 0, 0, count});
   std::uint32_t step = static_cast<std::uint32_t>(0.618 * needed) + 1;
   while (std::gcd(step, needed) > 1) ++step;
