@@ -50,7 +50,7 @@ TEST(Echo, LimitsOfMessagesAreRoundedOutwards) {
 }
 
 /// Each valid range satisfies `range_min <= r` and `r < range_max`, for the message's limits and for the true ones.
-RC_GTEST_PROP(Echo, ValidRangesPassEveryTestAgainstTheLimits, ()) {
+RC_GTEST_PROP(Echo, ValidRangesSatisfyTheLimits, ()) {
   const auto number = [](int most) { return 1e-3 * *rc::gen::inRange(1, most) / 3.0; };
   const double min = number(1000), max = min + number(20'000);
   const std::vector<double> ranges{min, above(min), min + 0.5 * (max - min), below(max), max - 1e-9 * max};

@@ -46,27 +46,27 @@ std::string refusal(const world::World& world) {
   return "";
 }
 
-TEST(Accuracy, IsExactUnlessSomebodySaysSo) { EXPECT_EQ(modes(load("")), "exact"); }
+TEST(Accuracy, IsExactByDefault) { EXPECT_EQ(modes(load("")), "exact"); }
 
-TEST(Accuracy, TheWorldsWordIsForWhoKnowsIt) {
+TEST(Accuracy, WorldWordAppliesToTypesThatHaveIt) {
   EXPECT_EQ(modes(load("accuracy \"skip2\"")), "laser:skip2");
   EXPECT_EQ(modes(load("accuracy \"near3\"")), "magnetometer:near3");
   EXPECT_EQ(modes(load("accuracy \"near3 single\"")), "laser:single magnetometer:near3");
   EXPECT_EQ(modes(load("accuracy \"laser:skip4\"")), "laser:skip4");
 }
 
-TEST(Accuracy, ASensorsOwnWordComesFirst) {
+TEST(Accuracy, SensorWordOverridesWorldWord) {
   EXPECT_EQ(modes(load("accuracy \"skip2\"", "accuracy \"single\"")), "laser:single");
   EXPECT_EQ(modes(load("accuracy \"skip2\"", "accuracy \"exact\"")), "exact");
   EXPECT_EQ(modes(load("", "", "accuracy \"near1\"")), "magnetometer:near1");
 }
 
-TEST(Accuracy, AnOrderComesBeforeBoth) {
+TEST(Accuracy, CommandLineOverridesBoth) {
   EXPECT_EQ(modes(load("accuracy \"skip2\"", "accuracy \"single\"", "accuracy \"near1\"", "skip8")), "laser:skip8");
   EXPECT_EQ(modes(load("accuracy \"skip2\"", "", "", "exact")), "exact");
 }
 
-TEST(Accuracy, UnknownModesAreRefusedAtTheirLine) {
+TEST(Accuracy, RejectsUnknownModesWithTheirLine) {
   EXPECT_NE(refusal(load("\naccuracy \"skip3\""))
                 .find("sf_accuracy.world:2: there is no accuracy \"skip3\"; expected "
                       "one of \"exact\", \"single\""),
@@ -81,13 +81,13 @@ TEST(Accuracy, UnknownModesAreRefusedAtTheirLine) {
   EXPECT_NE(refusal(load("", "", "accuracy 3")).find("expects a word"), std::string::npos);
 }
 
-TEST(Accuracy, KindsWithoutModesAreExact) {
+TEST(Accuracy, TypesWithoutModesAreExact) {
   EXPECT_EQ(modes(load("", "", "", "", "accuracy \"exact\"")), "exact");
   const std::string text = refusal(load("", "", "", "", "accuracy \"skip2\""));
   EXPECT_NE(text.find(":5: 'accuracy' is \"skip2\"; this sensor supports \"exact\""), std::string::npos) << text;
 }
 
-TEST(Accuracy, AWordForSensorsThatAreNotThereIsRefused) {
+TEST(Accuracy, RejectsWordsOfAbsentTypes) {
   world::World world = scenes::boxes(5, 8.0, 1);
   scenes::add_robots(world, 1, scenes::laser(11), 1);
   sensors::set_accuracy(world, "near3");
@@ -141,7 +141,7 @@ world::World crowd(std::uint32_t samples, double fov = M_PI) {
 }
 
 /// Samples cast: every n-th from the first, and the last one.
-TEST(Accuracy, SkippingCastsTheSameBeamsToTheBit) {
+TEST(Accuracy, SkipModesCastBitIdenticalBeams) {
   for (const std::uint32_t samples : {361u, 360u, 3u, 2u, 1u})
     for (const auto& [mode, skip] : {std::pair{"skip2", 2u}, std::pair{"skip4", 4u}, std::pair{"skip8", 8u}}) {
       const Read exact = read_in(crowd(samples), "exact"), some = read_in(crowd(samples), mode);
@@ -160,7 +160,7 @@ TEST(Accuracy, SkippingCastsTheSameBeamsToTheBit) {
 }
 
 /// In an empty square room, interpolated samples between two hits on one wall lie on it.
-TEST(Accuracy, SkippingIsRightOnFlatWalls) {
+TEST(Accuracy, SkipModesAreExactOnFlatWalls) {
   world::World world;
   scenes::add_room(world, {0.0, 0.0}, 4.0);
   scenes::add_robot(world, {0.3, -0.7, 0.0, 0.4}, scenes::laser(361, 2.0 * M_PI, 8.0));
@@ -175,7 +175,7 @@ TEST(Accuracy, SkippingIsRightOnFlatWalls) {
   EXPECT_LE(near_corners, 4u * 3u) << "four corners, three beams between two that are cast";
 }
 
-TEST(Accuracy, BetweenTwoThingsTheNearerBeamIsTaken) {
+TEST(Accuracy, UsesTheNearerBeamBetweenTwoSurfaces) {
   world::World world;
   scenes::add_room(world, {0.0, 0.0}, 8.0);
   scenes::add_outline(world, {{1.0, 0.02}, {1.2, 0.02}, {1.2, 1.0}, {1.0, 1.0}}, "box");
@@ -188,7 +188,7 @@ TEST(Accuracy, BetweenTwoThingsTheNearerBeamIsTaken) {
   EXPECT_EQ(some.hits[2], base::kNoHit) << "what lies between is not known";
 }
 
-TEST(Accuracy, In32BitsHitsAreTheSameAndRangesWithinTheBound) {
+TEST(Accuracy, SingleModeKeepsHitsAndRangesWithinTheBound) {
   const Read exact = read_in(crowd(361), "exact"), single = read_in(crowd(361), "single");
   EXPECT_EQ(single.hits, exact.hits);
   EXPECT_NE(single.values, exact.values) << "or nothing was measured in 32 bits";
@@ -199,7 +199,7 @@ TEST(Accuracy, In32BitsHitsAreTheSameAndRangesWithinTheBound) {
     ASSERT_LE(std::abs(single.values[i] - exact.values[i]), single.bound) << i;
 }
 
-TEST(Accuracy, ModesOfOneWorldDoNotDisturbEachOther) {
+TEST(Accuracy, ModesInOneWorldAreIndependent) {
   world::World mixed = crowd(61);
   for (std::size_t m = 0; m < mixed.movers.size(); ++m)
     scenes::edit_laser(mixed.movers[m])->accuracy.word = m % 3 == 0 ? "single" : m % 3 == 1 ? "skip2" : "exact";
@@ -215,7 +215,7 @@ TEST(Accuracy, ModesOfOneWorldDoNotDisturbEachOther) {
   }
 }
 
-/// A wall seen at less than a milliradian magnifies rounding a thousandfold; the reading is flagged.
+/// A wall seen at less than a milliradian magnifies rounding errors a thousandfold; the reading is flagged.
 TEST(Accuracy, GrazingBeamsAreFlagged) {
   world::World world;
   scenes::add_outline(world, {{0.0, -1.0}, {10.0, -1.0}, {10.0, -1e-4}, {0.0, -1e-4}}, "floor");
@@ -232,7 +232,7 @@ TEST(Accuracy, GrazingBeamsAreFlagged) {
   EXPECT_TRUE(glance.readings[1].quality.empty()) << "at 0.1 rad";
 }
 
-TEST(Accuracy, BoundsAreStatedBeforehandAndGrowWithTheWorld) {
+TEST(Accuracy, BoundsGrowWithTheWorld) {
   const auto stated = [](const world::World& world) {
     return sensors::accuracy_statements(world, sensors::SensorSet(world)).at(0).bound.error;
   };
@@ -248,7 +248,7 @@ TEST(Accuracy, BoundsAreStatedBeforehandAndGrowWithTheWorld) {
 
 // --- Magnets.
 
-TEST(Accuracy, NearMagnetsAloneStayWithinTheBound) {
+TEST(Accuracy, NearModesStayWithinTheBound) {
   Chance chance(3);
   world::World world;
   for (int i = 0; i < 400; ++i)
@@ -292,9 +292,9 @@ long double field_at(const world::World& world, const base::Pose& X_WM, const ba
   return std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
 }
 
-/// Moments that 32 bits cannot represent, elements off the middle, sensors above magnets and within their radius, near
+/// Moments that 32 bits cannot represent, elements off the centre, sensors above magnets and within their radius, near
 /// the origin and at coordinates where positions are rounded.
-TEST(Accuracy, FieldsAreWithinTheirBoundAnywhere) {
+TEST(Accuracy, FieldsStayWithinTheirBoundAnywhere) {
   for (const double height : {0.05, 0.012})
     for (const double far : {0.0, 1e5, 1e7}) {
       Chance chance(21);
@@ -326,7 +326,7 @@ TEST(Accuracy, FieldsAreWithinTheirBoundAnywhere) {
 }
 
 /// A sensor that may reach a magnet's centre has no bound.
-TEST(Accuracy, AMagnetAsHighAsTheSensorHasNoBound) {
+TEST(Accuracy, MagnetAtSensorHeightHasNoBound) {
   world::World world;
   world.magnets.push_back({{0.0, 0.0}, 0.05, 1.0, 0.01, 0});
   scenes::add_carrier(world, {0.3, 0.0, 0.0, 0.0}, scenes::array({{0.0, 0.0, 0.0, 0.0}}, 0.05));
@@ -336,7 +336,7 @@ TEST(Accuracy, AMagnetAsHighAsTheSensorHasNoBound) {
 }
 
 /// Sensor types without a bound report none.
-TEST(Accuracy, KindsWithoutABoundStateNone) {
+TEST(Accuracy, TypesWithoutABoundStateNone) {
   world::World world;
   scenes::add_room(world, {0.0, 0.0}, 4.0);
   const std::uint32_t m = scenes::add_robot(world, {}, scenes::laser(3));
@@ -349,7 +349,7 @@ TEST(Accuracy, KindsWithoutABoundStateNone) {
     EXPECT_EQ(std::isinf(r.bound), r.type != sensors::kLaser) << static_cast<int>(r.type);
 }
 
-/// One rule for all types: a noisy reading states no bound, but what its bound was without noise, and sigma.
+/// One rule for all types: a noisy reading states sigma and the bound without noise, but no bound.
 TEST(Accuracy, NoisyReadingsStateNoBound) {
   struct Case {
     const char* type;
@@ -394,8 +394,8 @@ TEST(Accuracy, NoisyReadingsStateNoBound) {
   }
 }
 
-/// The noise of lane edges reaches the fitted line: a reading has its own sigma, and no bound without it either, since
-/// nothing shows whether the edge is straight.
+/// The noise of lane edges affects the fitted line. A reading has its own sigma, and no bound without noise either,
+/// because nothing shows whether the edge is straight.
 TEST(Accuracy, NoisyLaneEdgesHaveTheirOwnSigma) {
   world::World world;
   world.lane_markings.push_back({{{-10.0, 0.4}, {10.0, 0.4}}, 0.1, 0xFFFFFFFFu});
@@ -410,7 +410,7 @@ TEST(Accuracy, NoisyLaneEdgesHaveTheirOwnSigma) {
 }
 
 /// Boundary: the only beam of a scan grazes. No element has a bound, so the reading states none.
-TEST(Accuracy, AReadingOfFlaggedElementsStatesNoBound) {
+TEST(Accuracy, ReadingWithOnlyFlaggedElementsStatesNoBound) {
   world::World world;
   scenes::add_room(world, {0.0, 0.0}, 4.0);
   scenes::add_robot(world, {0.0, 2.0 - 1e-4, 0.0, 1e-4}, scenes::laser(1));
@@ -423,7 +423,7 @@ TEST(Accuracy, AReadingOfFlaggedElementsStatesNoBound) {
   EXPECT_TRUE(std::isinf(reading.bound_without_noise));
 }
 
-TEST(Accuracy, AWorldsOwnCutOffStaysTheNearest) {
+TEST(Accuracy, SmallerCutoffApplies) {
   world::World world;
   world.magnet_cutoff = 2.0;
   EXPECT_EQ(sensors::cutoff_of(world, 0), 2.0);
@@ -436,7 +436,7 @@ TEST(Accuracy, AWorldsOwnCutOffStaysTheNearest) {
 
 // --- Lane edges.
 
-TEST(Accuracy, FewerRaysFindAStraightEdgeAsWell) {
+TEST(Accuracy, FewerRaysFindAStraightEdge) {
   world::World world;
   world.lane_markings.push_back({{{-10.0, 0.4}, {10.0, 0.4}}, 0.1, 0xFFFFFFFFu});
   add_edge_eye(world, {0.0, 0.0, 0.0, 0.5 * M_PI + 0.1});

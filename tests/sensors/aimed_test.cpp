@@ -13,15 +13,15 @@ namespace {
 
 const int kEyes = instrumented() ? 100 : 400;
 
-/// Eyes at random points, also inside solids, whose middle beam hits a vertex: nine beams round it, or four within a
-/// nanometre.
+/// Eyes at random points, including points inside solids, whose middle beam hits a vertex: nine beams around it, or
+/// four within a nanometre.
 void aim_at_vertices(world::World& world, double half, double range, std::uint64_t seed) {
   Chance chance(seed);
   for (int i = 0; i < kEyes; ++i) {
     const world::Segment& s = world.walls[chance.below(static_cast<std::uint32_t>(world.walls.size()))];
     const sensors::LaserSettings laser = i % 2 ? eye(9, 1e-6, range) : eye(5, 4e-10, range);
     glm::dvec2 from = chance.in_square(half);
-    if (i % 3) from = s.a + (0.1 * range / half) * from;  // most of them close by, so that the beam reaches the vertex
+    if (i % 3) from = s.a + (0.1 * range / half) * from;  // mostly close by, so that the beam reaches the vertex
     aim(world, from, chance.below(2) ? s.a : s.b, laser);
   }
 }
@@ -58,8 +58,8 @@ world::World checkerboard(int n) {
   return world;
 }
 
-/// From a free field every beam ends at the field's border, even when aimed exactly at a corner.
-TEST(Aimed, NothingSlipsThroughDiagonalCorners) {
+/// From a free field, every beam ends at the field's border, even when aimed exactly at a corner.
+TEST(Aimed, NoBeamPassesDiagonalCorners) {
   world::World world = checkerboard(8);
   Chance chance(4);
   for (int i = 0; i < kEyes; ++i) {
@@ -130,7 +130,7 @@ TEST(Aimed, GrazingALongWall) {
     }
 }
 
-/// A sensor collinear with a wall: before it, within it and behind it.
+/// A sensor collinear with a wall: in front of it, within it and behind it.
 TEST(Aimed, CollinearWithAWall) {
   for (const double yaw : {0.0, 0.5 * M_PI, 0.3}) {
     world::World world;

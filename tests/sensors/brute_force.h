@@ -14,7 +14,7 @@ namespace sf::oracle {
 std::vector<world::Segment> surfaces(const world::World& world, std::span<const base::Pose> poses, std::uint32_t self,
                                      double z);
 
-/// The surfaces of `all` within `range` [m] of `origin`, and possibly some more.
+/// Returns the surfaces of `all` within `range` [m] of `origin`, and possibly some more.
 std::vector<world::Segment> within(std::span<const world::Segment> all, glm::dvec2 origin, double range);
 
 /// [m] A beam this close to a free end may hit or miss it.
@@ -30,7 +30,7 @@ struct Meeting {
   double arm = 0.0;   ///< [m] from the sensor to the start of the segment
 };
 
-/// All valid answers of a beam.
+/// All valid answers for a beam.
 struct Truth {
   Meeting first;               ///< in real arithmetic; range_max and 0xFFFFFFFF without a hit
   std::vector<Meeting> right;  ///< all valid answers, including `first` and its ties
@@ -38,11 +38,11 @@ struct Truth {
 };
 
 /// A wall is closed where two segments share an end (equal doubles) and lie on both sides of the beam. Surfaces within
-/// kTouch give 0 for beams into them and are passed by beams off them; the solid is on the left of a segment.
+/// kTouch return 0 for beams into them and are ignored by beams off them; the solid is on the left of a segment.
 Truth judge(std::span<const world::Segment> surfaces, glm::dvec2 origin, long double direction, double range_max);
 
-/// [m] Error of 64-bit arithmetic at `meeting`, from rounding of the beam's direction and of the products with the
-/// segment's start. A surface that is edge-on within rounding may be hit anywhere along it.
+/// Returns the error [m] of 64-bit arithmetic at `meeting`, due to rounding of the beam's direction and of the products
+/// with the segment's start. A surface that is edge-on within rounding may be hit anywhere along it.
 double rounding(const Meeting& meeting);
 
 }  // namespace sf::oracle

@@ -22,7 +22,7 @@ world::Sensor zones(const std::vector<std::vector<double>>& arcs, double yaw = 0
 
 std::uint32_t one(double from, double to, double yaw = 0.0) { return read_bumper(zones({{from, to}}, yaw))[0]; }
 
-TEST(Bumper, ZonesAreTheSectorsWhoseMiddlesTheyHold) {
+TEST(Bumper, ZonesContainSectorsByTheirCentre) {
   EXPECT_EQ(one(0, 90), 0x000000FFu) << "eight sectors to the left";
   EXPECT_EQ(one(-90, 0), 0xFF000000u) << "eight to the right: none in common";
   EXPECT_EQ(one(-180, 180), 0xFFFFFFFFu) << "all round";
@@ -36,21 +36,21 @@ TEST(Bumper, ZonesAreTheSectorsWhoseMiddlesTheyHold) {
   EXPECT_EQ(one(0, 90, M_PI), 0x00FF0000u) << "turned with the sensor: rear right";
 }
 
-TEST(Bumper, ZonesThatShareAnEdgeShareNoSector) {
+TEST(Bumper, AdjacentZonesShareNoSector) {
   for (int k = 0; k < 64; ++k) {
-    const double edge = -180.0 + 5.625 * k;  // edges of sectors and their middles
+    const double edge = -180.0 + 5.625 * k;  // edges and centres of sectors
     const std::uint32_t left = one(edge, edge + 180.0), right = one(edge + 180.0, edge + 360.0);
     EXPECT_EQ(left & right, 0u) << edge;
     EXPECT_EQ(left | right, 0xFFFFFFFFu) << edge;
   }
 }
 
-TEST(Bumper, WithoutZonesOneSwitchAllRound) {
+TEST(Bumper, HasOneSwitchAllAroundWithoutZones) {
   EXPECT_EQ(read_bumper(fitted("bumper")), (std::vector<std::uint32_t>{0xFFFFFFFFu}));
 }
 
 /// Stage's Roomba: two bars of 0.33 m across both front corners.
-TEST(Bumper, StagesBarsAreTheArcsBetweenTheirEnds) {
+TEST(Bumper, StageBarsAreArcsBetweenTheirEnds) {
   std::vector<world::Setting> bars{setting("bcount", {2}), setting("blength", {0.33}),
                                    setting("bpose[0]", {0.12, 0.12, 0.02, 45}),
                                    setting("bpose[1]", {0.12, -0.12, 0.02, -45})};
@@ -63,7 +63,7 @@ TEST(Bumper, StagesBarsAreTheArcsBetweenTheirEnds) {
 }
 
 /// At the rear, where bearings wrap; rotated and moved with the sensor; with Stage's default length.
-TEST(Bumper, StagesBarsBehindAndOnATurnedSensor) {
+TEST(Bumper, StageBarsBehindAndOnARotatedSensor) {
   const auto bar = [](std::vector<double> pose, const base::Pose& X_MS, std::vector<world::Setting> more = {}) {
     std::vector<world::Setting> settings{setting("bcount", {1}), setting("bpose[0]", std::move(pose))};
     settings.insert(settings.end(), more.begin(), more.end());
@@ -72,7 +72,7 @@ TEST(Bumper, StagesBarsBehindAndOnATurnedSensor) {
     return read_bumper(sensor)[0];
   };
   const world::Setting wide = setting("blength", {0.33});
-  constexpr std::uint32_t kRear = 0x001FF800u;  // middles from 129 to 231 degrees; the bar's ends are at 126 and 234
+  constexpr std::uint32_t kRear = 0x001FF800u;  // centres from 129 to 231 degrees; the bar's ends are at 126 and 234
   EXPECT_EQ(bar({-0.12, 0, 0, 180}, {}, {wide}), kRear);
   EXPECT_EQ(bar({0.12, 0, 0, 0}, {0, 0, 0, M_PI}, {wide}), kRear) << "turned";
   EXPECT_EQ(bar({0, 0, 0, 0}, {-0.12, 0, 0, M_PI}, {wide}), kRear) << "moved";
@@ -80,7 +80,7 @@ TEST(Bumper, StagesBarsBehindAndOnATurnedSensor) {
 }
 
 /// Each sector alone, and its reading, robot by robot.
-TEST(Bumper, ReadsWhatPressesNow) {
+TEST(Bumper, ReadsCurrentContacts) {
   const world::World world = carriers(zones({{0, 90}, {-90, 0}}), {{0, 0, 0, 0}, {1, 0, 0, 2}});
   farm::Farm farm(world, device());
   farm.subscribe_all();
@@ -96,14 +96,14 @@ TEST(Bumper, ReadsWhatPressesNow) {
   }
 }
 
-TEST(Bumper, NothingIsPressedBeforeAnythingIsReported) {
+TEST(Bumper, IsReleasedBeforeTheFirstReport) {
   const world::World world = carriers(fitted("bumper"));
   const Glance run(world);
   EXPECT_EQ(values_of(run.readings[0]), std::vector<double>{0.0});
   EXPECT_EQ(run.farm.sensor_set().of(sensors::kBumper, 0)[0].elements, 1u);
 }
 
-TEST(Bumper, SettingsThatMakeNoSense) {
+TEST(Bumper, RejectsInvalidSettings) {
   const std::string type = "bumper";
   expect_refused(type, {setting("zones", {0})}, 8, "expected 1 to 32");
   expect_refused(type, {setting("zones", {33})}, 8, "expected 1 to 32");

@@ -1,5 +1,5 @@
 #pragma once
-// Random numbers for tests, equal on every machine.
+// Random numbers for tests, the same on every machine.
 
 #include <cstdint>
 
@@ -12,11 +12,11 @@ namespace sf::trial {
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : seed_(seed) {}
-  /// Uniform in (low, high).
+  /// Returns a uniform number in (low, high).
   double between(double low, double high) {
     return low + (high - low) * base::random_uniform({seed_, base::RandomStream::placement, 77, 0, count_++}, 0)[0];
   }
-  /// Uniform in {0, ..., count - 1}.
+  /// Returns a uniform number in {0, ..., count - 1}.
   std::uint32_t below(std::uint32_t count) {
     return base::random_words({seed_, base::RandomStream::placement, 78, 0, count_++}, 0)[0] % count;
   }

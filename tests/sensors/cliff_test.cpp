@@ -23,7 +23,7 @@ void add_drop(world::World& world, std::vector<glm::dvec2> outline) {
   world.floor_holes.push_back({std::move(outline), 0});
 }
 
-TEST(Cliff, ReadsOneOverADropInOrderOfTheFile) {
+TEST(Cliff, ReadsOneOverADropInFileOrder) {
   world::World world = carriers(four_points());
   EXPECT_EQ(read_once(world), (std::vector<double>{0, 0, 0, 0})) << "a floor everywhere";
   add_drop(world, {{0.05, 0.0}, {5, 0.0}, {5, 5}, {0.05, 5}});
@@ -34,7 +34,7 @@ TEST(Cliff, ReadsOneOverADropInOrderOfTheFile) {
   EXPECT_EQ(read_once(world), (std::vector<double>{1, 1, 1, 0})) << "either drop counts";
 }
 
-TEST(Cliff, TheSensorsOwnPoseCounts) {
+TEST(Cliff, UsesTheSensorPose) {
   world::Sensor sensor = fitted("cliff");
   sensor.X_MS = {0.5, 0.25, 0, 0};
   world::World world = carriers(sensor, {{1, 1, 0, M_PI / 2}});
@@ -42,7 +42,7 @@ TEST(Cliff, TheSensorsOwnPoseCounts) {
   EXPECT_EQ(read_once(world), std::vector<double>{1});
 }
 
-TEST(Cliff, EitherWindingAndAnyShape) {
+TEST(Cliff, HandlesEitherWindingAndAnyShape) {
   const std::vector<glm::dvec2> notch{{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}};
   const std::vector<glm::dvec2> reversed(notch.rbegin(), notch.rend());
   for (const auto& outline : {notch, reversed}) {
@@ -58,8 +58,8 @@ TEST(Cliff, EitherWindingAndAnyShape) {
   EXPECT_FALSE(holds(std::vector<glm::dvec2>{{0, 0}, {1, 1}}, {0.5, 0.5})) << "two points hold nothing";
 }
 
-/// A square cut into a fan of triangles: every point, also on shared edges, is in exactly one of them.
-TEST(Cliff, PointsOnSharedEdgesAreInExactlyOneDrop) {
+/// A square split into a fan of triangles: every point, including points on shared edges, is in exactly one of them.
+TEST(Cliff, PointsOnSharedEdgesAreInExactlyOneHole) {
   Chance chance(1);
   for (int round = 0; round < 50; ++round) {
     const double far = round % 2 == 0 ? 0.0 : 1e5;
@@ -78,8 +78,8 @@ TEST(Cliff, PointsOnSharedEdgesAreInExactlyOneDrop) {
   }
 }
 
-/// The tree of boxes against a test of every hole.
-TEST(Cliff, ManyDropsAnswerAsEachOneDoes) {
+/// Compares the tree of boxes with a test of every hole.
+TEST(Cliff, IndexMatchesATestOfEveryHole) {
   Chance chance(2);
   std::vector<world::FloorHole> drops;
   for (int i = 0; i < 300; ++i) {
@@ -101,7 +101,7 @@ TEST(Cliff, ManyDropsAnswerAsEachOneDoes) {
   EXPECT_LT(inside, 4500);
 }
 
-TEST(Cliff, SettingsThatMakeNoSense) {
+TEST(Cliff, RejectsInvalidSettings) {
   expect_refused("cliff", {setting("scount", {33})}, 8, "expected 1 to 32");
   expect_refused("cliff", {setting("scount", {2}), setting("spose[0]", {0, 0, 0})}, 8, "'spose[1]' is missing");
   expect_refused("cliff", {setting("spose[0]", {0, 0})}, 8, "[x y yaw]");

@@ -31,7 +31,7 @@ inline world::Sensor cones(const std::string& type, const std::vector<base::Pose
   return sensor;
 }
 
-/// `count` transducers in a ring round a robot, at `radius` [m], facing outward.
+/// Returns the poses of `count` transducers in a ring around a robot, at `radius` [m], facing outward.
 inline std::vector<base::Pose> ring(std::uint32_t count, double radius) {
   std::vector<base::Pose> poses;
   for (std::uint32_t i = 0; i < count; ++i) {

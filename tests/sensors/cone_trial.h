@@ -1,5 +1,6 @@
 #pragma once
-// Hand-made sonar and infrared sensors, and the reference: the nearest of a cone's rays, each against every segment.
+// Hand-made sonar and infrared sensors, and the reference: the nearest of a cone's rays, each tested against every
+// segment.
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,7 @@
 
 namespace sf::trial {
 
-/// Adds a robot that carries `sensor`; with a 12-sided disc of `radius` [m] as its body, if given.
+/// Adds a robot that carries `sensor`. Its body is a 12-sided disc of `radius` [m], if given.
 inline std::uint32_t add_ranger(world::World& world, const base::Pose& pose, const world::Sensor& sensor,
                                 double radius = 0.0) {
   const std::uint32_t mover = add_eye(world, pose, {});
@@ -40,10 +41,10 @@ inline std::uint32_t add_ranger(world::World& world, const base::Pose& pose, con
 struct ConeTruth {
   double low = 0.0, high = 0.0;  ///< [m] equal except where a ray passes a silhouette
   bool met = false;
-  bool delicate = false;  ///< some ray's incidence is too close to the limit to decide
+  bool delicate = false;  ///< the incidence of some ray is too close to the limit to decide
 };
 
-/// In `long double`, ray by ray. @param X_WC pose of the transducer in the world
+/// Computes the valid readings in `long double`, ray by ray. @param X_WC pose of the transducer in the world
 inline ConeTruth cone_truth(std::span<const world::Segment> all, const base::Pose& X_WC,
                             const sensors::ConeArray& array) {
   using Wide = long double;
@@ -79,7 +80,7 @@ struct ConeTally {
   std::string example;
 };
 
-/// First columns of `readings`, with `columns` numbers per transducer, against the reference at `poses`.
+/// Compares the first columns of `readings`, with `columns` numbers per transducer, with the reference at `poses`.
 inline ConeTally compare_cones(const world::World& world, std::span<const base::Pose> poses,
                                std::span<const base::ReadingBlock> readings, std::span<const sensors::ConeArray> arrays,
                                std::size_t columns = 1) {

@@ -1,5 +1,5 @@
 #pragma once
-// Lasers of movers in hand-made worlds, changed in place.
+// Changes lasers of movers in hand-made worlds in place.
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace sf::scenes {
 
 inline bool is_laser(const world::Sensor& sensor) { return sensors::is_laser(sensor.type); }
 
-/// The settings of one laser, written back to its sensor at the end of its life.
+/// The settings of one laser. The destructor writes them back to its sensor.
 class LaserEdit {
  public:
   LaserEdit(world::Sensor& sensor, const sensors::LaserSettings& laser) : sensor_(sensor), laser_(laser) {}
@@ -24,14 +24,14 @@ class LaserEdit {
   sensors::LaserSettings laser_;
 };
 
-/// The i-th laser of a mover without arrays of transducers, as in `edit_laser(mover)->rate = 5.0;`
+/// Edits the i-th laser of a mover without arrays of transducers, as in `edit_laser(mover)->rate = 5.0;`
 inline LaserEdit edit_laser(world::Mover& mover, std::size_t i = 0) {
   auto at = std::find_if(mover.sensors.begin(), mover.sensors.end(), is_laser);
   for (std::size_t k = 0; k < i; ++k) at = std::find_if(at + 1, mover.sensors.end(), is_laser);
   return {*at, sensors::lasers_of(mover).at(i)};
 }
 
-/// `change(laser)` for each laser of the mover.
+/// Calls `change(laser)` for each laser of the mover.
 template <class Change>
 void edit_lasers(world::Mover& mover, Change&& change) {
   std::vector<sensors::LaserSettings> lasers = sensors::lasers_of(mover);

@@ -19,7 +19,7 @@ using sensors::roll;
 using sensors::Rolled;
 using sensors::Slippage;
 
-/// Pose of a wheel pair after rolling `left` and `right` from `from`: the textbook arc about its centre.
+/// Returns the pose of a wheel pair after rolling `left` and `right` from `from`: the textbook arc around its centre.
 Pose driven(const Pose& from, double left, double right, double track) {
   const long double turn = (static_cast<long double>(right) - left) / track,
                     arc = (static_cast<long double>(left) + right) / 2;
@@ -35,7 +35,7 @@ Pose driven(const Pose& from, double left, double right, double track) {
 
 // --- Arcs.
 
-TEST(Odometer, IsTheInverseOfDrivingAnyArc) {
+TEST(Odometer, InvertsAnyArc) {
   Chance chance(1);
   for (int i = 0; i < 2000; ++i) {
     const double track = chance.between(0.05, 1.0);
@@ -67,7 +67,7 @@ TEST(Odometer, BoundaryCases) {
 
 // --- Slippage.
 
-TEST(Odometer, SlippageIsOneWalkHoweverTheWayIsCut) {
+TEST(Odometer, SlippageDoesNotDependOnStepSizes) {
   const base::RandomKey walk{3, base::RandomStream::slip, 1, 2};
   Slippage whole(walk, 0, 0.01), cut(walk, 0, 0.01), other(walk, 1, 0.01);
   Chance chance(2);
@@ -84,7 +84,7 @@ TEST(Odometer, SlippageIsOneWalkHoweverTheWayIsCut) {
   EXPECT_GT(std::abs(whole.error() - other.error()), 1e-6) << "wheels slip by themselves";
 }
 
-TEST(Odometer, SlippageVariesAsTheWay) {
+TEST(Odometer, SlippageVarianceGrowsWithDistance) {
   constexpr double kSlip = 0.02;
   for (const double way : {0.01, 0.25, 1.0, 4.0}) {
     std::vector<double> draws;
@@ -97,7 +97,7 @@ TEST(Odometer, SlippageVariesAsTheWay) {
   }
 }
 
-TEST(Odometer, ALeapIsOneStepOfAsMuchVariance) {
+TEST(Odometer, LongDistanceIsOneStepOfEqualVariance) {
   std::vector<double> draws;
   for (std::uint32_t robot = 0; robot < 2000; ++robot) {
     Slippage slippage({8, base::RandomStream::slip, robot, 0}, 0, 0.01);
@@ -107,7 +107,7 @@ TEST(Odometer, ALeapIsOneStepOfAsMuchVariance) {
   EXPECT_LT(ks(draws), 1.95);
 }
 
-TEST(Odometer, NothingSlipsAtRestOrWithoutSlip) {
+TEST(Odometer, NoSlippageAtRestOrWithoutSlip) {
   Slippage none({1, base::RandomStream::slip, 0, 0}, 0, 0.0), still({1, base::RandomStream::slip, 0, 0}, 0, 0.1);
   none.advance(3.0);
   still.advance(0.0);
@@ -141,7 +141,7 @@ std::vector<double> drive(const world::World& world, const std::vector<Rolled>& 
   return last;
 }
 
-TEST(Encoder, CountsWhatBothWheelsRolled) {
+TEST(Encoder, CountsBothWheels) {
   const std::vector<double> r = drive(one_robot(), std::vector<Rolled>(100, {0.03, 0.05}));
   ASSERT_EQ(r.size(), 4u);
   EXPECT_EQ(r[2], 3000.0) << "millimetres";
@@ -165,7 +165,7 @@ TEST(Encoder, QuantisesToCounts) {
   }
 }
 
-TEST(Encoder, WhereItScrubsItsTrackSeemsWider) {
+TEST(Encoder, ScrubWidensTheTrack) {
   world::World world = one_robot();
   world.movers[0].drive = world::Drive::skid;
   const double turn = 2.0;
@@ -178,14 +178,14 @@ TEST(Encoder, WhereItScrubsItsTrackSeemsWider) {
   EXPECT_EQ(r[3], 100.0) << "straight on nothing scrubs";
 }
 
-TEST(Encoder, WheelsOfAnotherSizeThanTheyCountFor) {
+TEST(Encoder, ScaleChangesTheCounts) {
   const std::vector<double> r = drive(one_robot({setting("scale", {1.01, 0.99})}), {{0.2, 0.2}});
   EXPECT_EQ(r[2], 202.0);
   EXPECT_EQ(r[3], 198.0);
 }
 
 /// Slip in readings as a distribution; the fine resolution avoids quantisation.
-TEST(Encoder, SlipsByTheFilesStandardDeviationAfterAMetre) {
+TEST(Encoder, SlipHasTheFilesDeviationAfterAMetre) {
   world::World world;
   for (int i = 0; i < 500; ++i)
     scenes::add_carrier(world, {0, 1.0 * i, 0, 0},
@@ -213,7 +213,7 @@ TEST(Encoder, SlipsByTheFilesStandardDeviationAfterAMetre) {
 }
 
 /// Each wheel slips over its own distance, in either direction.
-TEST(Encoder, WheelsSlipOverTheirOwnWay) {
+TEST(Encoder, WheelsSlipOverTheirOwnDistance) {
   const auto world = one_robot({setting("slip", {0.05}), setting("per_count", {1e-6})});
   for (const double way : {0.05, -0.05}) {
     std::vector<double> r = drive(world, std::vector<Rolled>(10, {0.0, way}), {.seed = 5});
@@ -225,8 +225,8 @@ TEST(Encoder, WheelsSlipOverTheirOwnWay) {
   }
 }
 
-/// A reading between two ticks is current; the next tick continues from the last one, to the bit.
-TEST(Encoder, AreReadBetweenTicksAndGoOnFromTheLast) {
+/// A reading between two ticks is current. The next tick continues from the last one, bit by bit.
+TEST(Encoder, ReadsBetweenTicksAndContinuesFromTheLastTick) {
   const world::World world = one_robot({setting("per_count", {1e-6}), setting("slip", {0.02}), setting("rate", {50})});
   farm::Farm often(world, device(), {.seed = 2}), seldom(world, device(), {.seed = 2});
   for (farm::Farm* farm : {&often, &seldom}) farm->subscribe_all();
@@ -250,7 +250,7 @@ TEST(Encoder, AreReadBetweenTicksAndGoOnFromTheLast) {
 }
 
 /// Distances between ticks without slip: relocations do not count, driven distances do.
-TEST(Encoder, BetweenTicksJumpsAreNotRolledEither) {
+TEST(Encoder, IgnoresRelocationsBetweenTicks) {
   const world::World world = one_robot({setting("rate", {50})}, 1.0);
   farm::Farm farm(world, device());
   farm.subscribe_all();
@@ -268,9 +268,9 @@ TEST(Encoder, BetweenTicksJumpsAreNotRolledEither) {
   EXPECT_EQ(counts(120, 0.1), 100.0) << "at rest";
 }
 
-/// The largest possible displacement counts from the last tick, independent of samples in between; also at the first
-/// move.
-TEST(Encoder, ReadingsBetweenTicksMakeNoMoveAJump) {
+/// The largest possible displacement is measured from the last tick, regardless of samples in between, including for
+/// the first move.
+TEST(Encoder, ReadingsBetweenTicksDoNotCauseRelocations) {
   const world::World world = one_robot({setting("rate", {50})}, 1.0);
   farm::Farm farm(world, device());
   farm.subscribe_all();
@@ -281,8 +281,8 @@ TEST(Encoder, ReadingsBetweenTicksMakeNoMoveAJump) {
   EXPECT_EQ(farm.tick(100'000'000, states)[0].values[2], 600.0) << "half a metre, and twice its speed";
 }
 
-/// An absent robot's wheels stand; after its return they go on from its last pose.
-TEST(Encoder, StandWhileTheirRobotIsAbsent) {
+/// An absent robot's wheels do not roll. After its return they continue from its last pose.
+TEST(Encoder, StopsWhileTheRobotIsAbsent) {
   const world::World world = one_robot({setting("rate", {50})}, 1.0);
   farm::Farm farm(world, device());
   farm.subscribe_all();
@@ -297,8 +297,8 @@ TEST(Encoder, StandWhileTheirRobotIsAbsent) {
   EXPECT_EQ(farm.tick(300'000'000, states)[0].values[2], 200.0);
 }
 
-/// Fast robots exceed half a metre per tick: twice the distance at their top speed is still driven.
-TEST(Encoder, DrivingFastIsNoJump) {
+/// Fast robots exceed half a metre per tick: twice the distance at their top speed still counts as driven.
+TEST(Encoder, FastDrivingIsNotARelocation) {
   for (const double max_forward : {1.0, 10.0, 30.0}) {
     const world::World world = one_robot({}, max_forward);
     farm::Farm farm(world, device());
@@ -316,7 +316,7 @@ TEST(Encoder, DrivingFastIsNoJump) {
   }
 }
 
-TEST(Encoder, ARelocatedRobotHasNotRolled) {
+TEST(Encoder, RelocatedRobotHasNotRolled) {
   const world::World world = one_robot();
   farm::Farm farm(world, device());
   farm.subscribe_all();
@@ -333,8 +333,8 @@ TEST(Encoder, ARelocatedRobotHasNotRolled) {
   EXPECT_EQ(counts(10'400, 10.6), 10'700.0) << "silent for ten seconds, so it may have driven";
 }
 
-/// In a simulation, states are of the tick's time: a robot that stood, or was out of the world, was put where it is.
-TEST(Encoder, ASimulatedRobotThatIsPutElsewhereHasNotRolled) {
+/// In a simulation, states have the time of the tick. A robot that was at rest or absent was relocated.
+TEST(Encoder, RelocatedSimulatedRobotHasNotRolled) {
   for (const bool removed : {false, true}) {
     const world::World world = one_robot();
     farm::Farm farm(world, device());
@@ -356,8 +356,8 @@ TEST(Encoder, ASimulatedRobotThatIsPutElsewhereHasNotRolled) {
   }
 }
 
-/// Unsubscribed readings do not stop the count.
-TEST(Encoder, CountsWhetherHeardOrNot) {
+/// Readings without subscribers do not stop the count.
+TEST(Encoder, CountsWithoutSubscribers) {
   const world::World world = one_robot();
   farm::Farm farm(world, device());
   std::vector<base::Report> states = to_occupancy(world);
@@ -370,7 +370,7 @@ TEST(Encoder, CountsWhetherHeardOrNot) {
   }
 }
 
-TEST(Encoder, SettingsThatMakeNoSense) {
+TEST(Encoder, RejectsInvalidSettings) {
   expect_refused("encoder", {setting("per_count", {0})}, 8, "'per_count' is 0");
   expect_refused("encoder", {setting("slip", {-0.1})}, 8, "'slip' is -0.1");
   expect_refused("encoder", {setting("scale", {1})}, 8, "expects [left right]");

@@ -1,5 +1,5 @@
 #pragma once
-// The field of a world, summed by the kernel and by the host's code, which give the same bytes.
+// Sums the field of a world with the kernel and with the host's code, and compares the bytes.
 
 #include <gtest/gtest.h>
 

@@ -31,7 +31,7 @@ bool is_visible(const world::World& world, glm::dvec2 p, double z, const Satelli
 
 // --- The constellation.
 
-TEST(Gps, SatellitesStandAboveTheMaskAllRound) {
+TEST(Gps, SatellitesSurroundTheSkyAboveTheMask) {
   for (const std::uint32_t count : {4u, 8u, 32u, 64u}) {
     const auto all = constellation(count);
     glm::dvec2 sum;
@@ -45,8 +45,8 @@ TEST(Gps, SatellitesStandAboveTheMaskAllRound) {
   }
 }
 
-/// Azimuths and elevations as docs/sensors.md has them.
-TEST(Gps, SatellitesStandWhereTheDocumentSays) {
+/// Azimuths and elevations listed in docs/sensors.md.
+TEST(Gps, SatellitePositionsMatchTheDocument) {
   const std::string text = base::read_text(SF_SOURCE_DIR "/docs/sensors.md"), said = "that is i · ";
   ASSERT_NE(text.find(said), std::string::npos);
   const double degrees = std::strtod(text.c_str() + text.find(said) + said.size(), nullptr);
@@ -108,7 +108,7 @@ TEST(Gps, DilutionIsTheInverseOfTheGeometry) {
   }
 }
 
-TEST(Gps, FewSatellitesOrAllOnOneConeGiveNoFix) {
+TEST(Gps, NoFixWithFewSatellitesOrAllOnOneCone) {
   const auto all = constellation(8);
   EXPECT_FALSE(dilution(all, 0));
   EXPECT_FALSE(dilution(all, 0b111)) << "three";
@@ -120,7 +120,7 @@ TEST(Gps, FewSatellitesOrAllOnOneConeGiveNoFix) {
 
 // --- Obstacles.
 
-TEST(Gps, AWallBlocksWhereTheLineCrossesItsHeights) {
+TEST(Gps, WallBlocksLinesWithinItsHeights) {
   world::World world;
   const auto wall = [&](double x, double z_min, double z_max) {
     world.walls = {{.a = {x, -1}, .b = {x, 1}, .z_min = z_min, .z_max = z_max, .solid_left = false}};
@@ -144,7 +144,7 @@ TEST(Gps, AWallBlocksWhereTheLineCrossesItsHeights) {
   EXPECT_TRUE(is_visible(world, {0, 0}, 0, kEast)) << "edge on";
 }
 
-TEST(Gps, ASegmentThatNeitherEchoesNorStopsHidesNoSatellite) {
+TEST(Gps, SegmentWithoutEchoOrCollisionBlocksNothing) {
   world::World world;
   world.walls = {{.a = {1, -1}, .b = {1, 1}, .z_min = 0, .z_max = 9}};
   world.walls[0].seen_by_laser = false;
@@ -153,7 +153,7 @@ TEST(Gps, ASegmentThatNeitherEchoesNorStopsHidesNoSatellite) {
   EXPECT_TRUE(is_visible(world, {0, 0}, 0, kEast));
 }
 
-TEST(Gps, ADeckBlocksWhereTheLineReachesItsUnderside) {
+TEST(Gps, DeckBlocksLinesToItsUnderside) {
   world::World world;
   add_solid(world, square({0, 0}, 4), 1.0, 1.1);
   EXPECT_FALSE(is_visible(world, {0, 0}, 0, kEast)) << "under its middle";
@@ -165,10 +165,10 @@ TEST(Gps, ADeckBlocksWhereTheLineReachesItsUnderside) {
   EXPECT_TRUE(is_visible(world, {0, 0}, 1.2, kEast)) << "on top of it";
 }
 
-TEST(Gps, ADeckWithAHoleAndDecksThatOverlap) {
+TEST(Gps, DecksWithHolesAndOverlaps) {
   world::World world;
   add_solid(world, square({0, 0}, 4), 1.0, 1.1);
-  // A hole round (0.5, 0), clockwise, of the same model.
+  // A hole around (0.5, 0), clockwise, of the same model.
   const auto ring = square({0.5, 0}, 0.6);
   for (std::size_t i = 4; i > 0; --i)
     world.walls.push_back({.a = ring[i % 4], .b = ring[i - 1], .z_min = 1.0, .z_max = 1.1});
@@ -185,8 +185,8 @@ TEST(Gps, ADeckWithAHoleAndDecksThatOverlap) {
   EXPECT_FALSE(is_visible(twice, {0.5, 0}, 0, kEast)) << "where both parts lie";
 }
 
-/// Random boxes, some of them overhead, against small steps along the line of sight.
-TEST(Gps, SightAgreesWithWalkingAlongTheLine) {
+/// Compares random boxes, some of them overhead, with small steps along the line of sight.
+TEST(Gps, VisibilityMatchesStepsAlongTheLine) {
   Chance chance(2);
   const auto satellites = constellation(8);
   std::size_t blocked = 0, clear = 0, differ = 0;
@@ -228,7 +228,7 @@ TEST(Gps, SightAgreesWithWalkingAlongTheLine) {
 
 // --- Readings.
 
-TEST(Gps, InTheOpenItReadsItsAntennasPlace) {
+TEST(Gps, ReadsTheAntennaPositionInTheOpen) {
   world::Sensor sensor = fitted("gps");
   sensor.X_MS = {0.5, 0, 0.1, 0};
   const std::vector<double> r = read_once(carriers(sensor, {{10, 20, 0, M_PI / 2}}));
@@ -239,7 +239,7 @@ TEST(Gps, InTheOpenItReadsItsAntennasPlace) {
   EXPECT_EQ(r[3], 8.0);
 }
 
-TEST(Gps, UnderABridgeThereIsNoFix) {
+TEST(Gps, NoFixUnderABridge) {
   world::World world = carriers(fitted("gps"), {{0, 0, 0, 0}, {50, 0, 0, 0}});
   add_solid(world, square({0, 0}, 10), 1.0, 1.2);
   const Glance run(world);
@@ -250,8 +250,8 @@ TEST(Gps, UnderABridgeThereIsNoFix) {
   EXPECT_EQ(fixed[0], 50.0);
 }
 
-/// In a street between tall walls only satellites along it are visible, and errors across it grow.
-TEST(Gps, InAStreetErrorsGrow) {
+/// In a street between tall walls, only satellites along it are visible, and errors across it grow.
+TEST(Gps, ErrorsGrowInAStreet) {
   world::World world = carriers(fitted("gps", {setting("satellites", {32})}), {{0, 0, 0, 0}, {0, 500, 0, 0}});
   add_solid(world, {{-50, 1}, {50, 1}, {50, 2}, {-50, 2}}, 0, 3);
   add_solid(world, {{-50, -2}, {50, -2}, {50, -1}, {-50, -1}}, 0, 3);
@@ -261,7 +261,7 @@ TEST(Gps, InAStreetErrorsGrow) {
   EXPECT_GT(run.readings[0].values[2], 1.5 * run.readings[1].values[2]);
 }
 
-TEST(Gps, ComesOnceASecondUnlessToldOtherwise) {
+TEST(Gps, DefaultRateIsOneHertz) {
   const auto rate = [](std::vector<world::Setting> settings) {
     const sensors::SensorSet sensor_set(carriers(fitted("gps", std::move(settings))));
     return sensor_set.of(sensors::kGps, 0)[0].rate;
@@ -303,7 +303,7 @@ TEST(Gps, ErrorsAreNoiseTimesTheDilution) {
   EXPECT_NEAR(std::sqrt(squares / 2000.0), 2.0 * hdop, 0.1 * hdop) << "root of the mean square distance";
 }
 
-TEST(Gps, TheSameForAnyNumberOfThreads) {
+TEST(Gps, IsTheSameForAnyNumberOfThreads) {
   std::vector<base::Pose> poses;
   for (int i = 0; i < 300; ++i) poses.push_back({0.1 * i, 0, 0, 0});
   world::World world = carriers(fitted("gps", {setting("noise", {1})}), poses);
@@ -313,7 +313,7 @@ TEST(Gps, TheSameForAnyNumberOfThreads) {
   EXPECT_NE(one.farm.hash(), Glance(world, {.seed = 2}).farm.hash());
 }
 
-TEST(Gps, SettingsThatMakeNoSense) {
+TEST(Gps, RejectsInvalidSettings) {
   expect_refused("gps", {setting("satellites", {3})}, 8, "expected 4 to 64");
   expect_refused("gps", {setting("satellites", {65})}, 8, "expected 4 to 64");
   expect_refused("gps", {setting("rate", {1}), setting("noise", {-1})}, 9, "'noise' is -1");
@@ -321,7 +321,7 @@ TEST(Gps, SettingsThatMakeNoSense) {
 }
 
 /// SimVille has a bridge over Second Street.
-TEST(Gps, UnderSimVillesBridge) {
+TEST(Gps, NoFixUnderSimVillesBridge) {
   world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
   world.movers.clear();

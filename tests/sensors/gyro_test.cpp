@@ -13,7 +13,7 @@
 namespace sf::trial {
 namespace {
 
-/// Readings of `robots` gyros over `ticks`, all turning at `turn` [rad/s], robot by robot.
+/// Returns the readings of `robots` gyros over `ticks`, all turning at `turn` [rad/s], robot by robot.
 std::vector<std::vector<double>> turning(const world::World& world, double turn, int ticks,
                                          farm::FarmOptions options = {}) {
   farm::Farm farm(world, device(), options);
@@ -30,18 +30,18 @@ world::World gyros(std::size_t count, std::vector<world::Setting> settings) {
   return carriers(fitted("gyro", std::move(settings)), std::vector<base::Pose>(count));
 }
 
-TEST(Gyro, APerfectOneReadsTheTurnRate) {
+TEST(Gyro, PerfectGyroReadsTheTurnRate) {
   for (const double turn : {0.0, 1.25, -7.0}) EXPECT_EQ(turning(gyros(1, {}), turn, 1)[0][0], turn);
 }
 
-TEST(Gyro, SaturatesBothWays) {
+TEST(Gyro, SaturatesInBothDirections) {
   const world::World world = gyros(1, {setting("range", {90})});
   EXPECT_DOUBLE_EQ(turning(world, 2.0, 1)[0][0], M_PI / 2);
   EXPECT_DOUBLE_EQ(turning(world, -2.0, 1)[0][0], -M_PI / 2);
   EXPECT_EQ(turning(world, 1.5, 1)[0][0], 1.5);
 }
 
-TEST(Gyro, NoiseIsNormalAndEachReadingsOwn) {
+TEST(Gyro, NoiseIsNormalAndIndependentPerReading) {
   const auto rates = turning(gyros(50, {setting("noise", {0.5})}), 1.0, 40, {.seed = 3});
   std::vector<double> draws;
   for (const auto& robot : rates)
@@ -53,7 +53,7 @@ TEST(Gyro, NoiseIsNormalAndEachReadingsOwn) {
   EXPECT_LT(std::abs(correlation(draws, draws, 40)), some) << "from robot to robot";
 }
 
-TEST(Gyro, TheBiasIsTheRunsOwn) {
+TEST(Gyro, BiasIsDrawnPerRun) {
   const world::World world = gyros(1000, {setting("bias", {2.0})});
   const auto one = turning(world, 0.0, 2, {.seed = 4}), other = turning(world, 0.0, 1, {.seed = 5});
   std::vector<double> draws, others;
@@ -66,7 +66,7 @@ TEST(Gyro, TheBiasIsTheRunsOwn) {
   EXPECT_LT(std::abs(correlation(draws, others)), 4.0 / std::sqrt(1000.0)) << "another seed, another run";
 }
 
-TEST(Gyro, TheScaleErrorIsTheRunsOwnAndGrowsWithTheRate) {
+TEST(Gyro, ScaleErrorIsDrawnPerRunAndGrowsWithTheRate) {
   const world::World world = gyros(1000, {setting("scale_error", {0.01})});
   const auto slow = turning(world, 1.0, 1, {.seed = 6}), fast = turning(world, 3.0, 1, {.seed = 6});
   std::vector<double> draws;
@@ -77,7 +77,7 @@ TEST(Gyro, TheScaleErrorIsTheRunsOwnAndGrowsWithTheRate) {
   EXPECT_LT(ks(draws), 1.95);
 }
 
-TEST(Gyro, ErrorsOfTheRunHaveNothingInCommon) {
+TEST(Gyro, ErrorsOfARunAreIndependent) {
   const auto biased = turning(gyros(1000, {setting("bias", {1.0})}), 0.0, 1, {.seed = 7});
   const auto scaled = turning(gyros(1000, {setting("scale_error", {0.1})}), 1.0, 1, {.seed = 7});
   const auto noisy = turning(gyros(1000, {setting("noise", {1.0})}), 0.0, 1, {.seed = 7});
@@ -93,12 +93,12 @@ TEST(Gyro, ErrorsOfTheRunHaveNothingInCommon) {
   EXPECT_LT(std::abs(correlation(s, n)), some);
 }
 
-TEST(Gyro, WithoutNoiseItIsPerfect) {
+TEST(Gyro, IsPerfectWithoutNoise) {
   const world::World world = gyros(2, {setting("bias", {1}), setting("noise", {1}), setting("scale_error", {0.5})});
   EXPECT_EQ(turning(world, 0.75, 1, {.noise = false})[1][0], 0.75);
 }
 
-TEST(Gyro, SettingsThatMakeNoSense) {
+TEST(Gyro, RejectsInvalidSettings) {
   expect_refused("gyro", {setting("bias", {-1})}, 8, "'bias' is -1");
   expect_refused("gyro", {setting("noise", {-1})}, 8, "'noise' is -1");
   expect_refused("gyro", {setting("scale_error", {2})}, 8, "'scale_error' is 2");

@@ -20,7 +20,7 @@ void add_box(world::World& world, double z_min, double z_max, bool seen = true) 
   }
 }
 
-/// Range of a beam straight ahead at height `z` [m].
+/// Returns the range of a beam straight ahead at height `z` [m].
 double look(world::World world, double z) {
   sensors::LaserSettings laser = eye(1, 0.0, 8.0);
   laser.X_MS.z = z;
@@ -28,7 +28,7 @@ double look(world::World world, double z) {
   return Glance(world).readings[0].values[0];
 }
 
-TEST(Heights, ABeamSeesWhatSpansItsHeight) {
+TEST(Heights, BeamHitsSurfacesAtItsHeight) {
   world::World world;
   add_box(world, 0.1, 0.3);
   EXPECT_EQ(look(world, 0.05), 8.0) << "under it";
@@ -40,7 +40,7 @@ TEST(Heights, ABeamSeesWhatSpansItsHeight) {
   EXPECT_NEAR(look(world, std::nextafter(0.3, 0.0)), 2.0, 1e-12) << "just below its top";
 }
 
-TEST(Heights, UnderABridgeAndOverALowBoxTheWallBehindIsSeen) {
+TEST(Heights, BeamPassesUnderABridgeAndOverALowBox) {
   world::World world;
   add_box(world, 0.5, 1.0);
   add_box(world, 0.0, 0.05);
@@ -48,14 +48,14 @@ TEST(Heights, UnderABridgeAndOverALowBoxTheWallBehindIsSeen) {
   EXPECT_NEAR(look(world, 0.2), 5.0, 1e-12);
 }
 
-TEST(Heights, ABoxThatDoesNotEchoIsNotSeen) {
+TEST(Heights, BeamIgnoresABoxWithoutEcho) {
   world::World world;
   add_box(world, 0.0, 1.0, false);
   EXPECT_EQ(look(world, 0.2), 8.0);
 }
 
-/// A sensor is inside a solid only at the solid's heights: over a low box its view is free.
-TEST(Heights, OverALowBoxASensorIsNotInside) {
+/// A sensor is inside a solid only at the solid's heights: above a low box its view is free.
+TEST(Heights, SensorAboveALowBoxIsNotInsideIt) {
   world::World world;
   add_box(world, 0.0, 0.05);
   scenes::add_outline(world, {{5, -1}, {6, -1}, {6, 1}, {5, 1}}, "behind");
@@ -78,8 +78,8 @@ TEST(Heights, SensorsOfManyHeightsAndRangesShareAWorld) {
   expect_exact("heights and ranges", sweep(world));
 }
 
-/// The pose of a sensor: rotated, off the robot's centre, above it.
-TEST(Heights, TheSensorsPoseIsComposedWithTheMovers) {
+/// The pose of a sensor that is rotated, off the robot's centre and above it.
+TEST(Heights, SensorPoseIsComposedWithTheMoverPose) {
   world::World world;
   add_box(world, 0.4, 0.6);
   sensors::LaserSettings laser = eye(1, 0.0, 8.0);

@@ -17,7 +17,7 @@ namespace sf::trial {
 using scenes::setting;
 using scenes::text;
 
-/// A sensor of type `type` at line 7 of park.world, in metres and degrees; its settings are on lines 8, 9, ...
+/// Returns a sensor of type `type` at line 7 of park.world, in metres and degrees. Its settings are on lines 8, 9, ...
 inline world::Sensor fitted(const std::string& type, std::vector<world::Setting> settings = {}) {
   world::Sensor sensor;
   sensor.type = type;
@@ -31,14 +31,14 @@ inline world::Sensor fitted(const std::string& type, std::vector<world::Setting>
   return sensor;
 }
 
-/// Robots at `poses`, each with `sensor`.
+/// Returns a world with robots at `poses`, each with `sensor`.
 inline world::World carriers(const world::Sensor& sensor, const std::vector<base::Pose>& poses = {base::Pose{}}) {
   world::World world;
   for (const base::Pose& pose : poses) scenes::add_carrier(world, pose, sensor);
   return world;
 }
 
-/// States of all robots: at rest at their poses at load.
+/// Returns the states of all robots: at rest at their poses at load.
 inline std::vector<base::Report> to_occupancy(const world::World& world) {
   std::vector<base::Report> states;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) states.push_back({.mover = m, .X_WM = world.movers[m].X_WM});
@@ -49,7 +49,7 @@ inline std::vector<double> values_of(const base::ReadingBlock& reading) {
   return {reading.values.begin(), reading.values.end()};
 }
 
-/// Values of the world's first reading.
+/// Returns the values of the world's first reading.
 inline std::vector<double> read_once(const world::World& world) { return values_of(Glance(world).readings[0]); }
 
 /// Adds a static outline, solid inside, from `z_min` to `z_max` [m]; corners counter-clockwise.
@@ -69,7 +69,7 @@ inline std::vector<glm::dvec2> square(glm::dvec2 middle, double side) {
           {middle.x - h, middle.y + h}};
 }
 
-/// Expects that settings are refused at park.world:`line` with a message that contains `words`.
+/// Expects that settings are rejected at park.world:`line` with a message that contains `words`.
 inline void expect_refused(const std::string& type, std::vector<world::Setting> settings, int line,
                            const std::string& words) {
   try {
@@ -82,7 +82,7 @@ inline void expect_refused(const std::string& type, std::vector<world::Setting> 
   }
 }
 
-/// Correlation of two samples of mean 0 and variance 1.
+/// Returns the correlation of two samples of mean 0 and variance 1.
 inline double correlation(const std::vector<double>& p, const std::vector<double>& q, std::size_t lag = 0) {
   double sum = 0.0;
   for (std::size_t i = 0; i + lag < p.size(); ++i) sum += p[i] * q[i + lag];

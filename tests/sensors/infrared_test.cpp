@@ -17,7 +17,7 @@ struct Response {
   double range, value;
 };
 
-/// A wall `gap` [m] ahead of one element.
+/// Returns the response to a wall `gap` [m] ahead of one element.
 Response see(double gap, std::vector<world::Setting> more = {}) {
   world::World world;
   scenes::add_outline(world, {{gap, -1}, {gap + 1, -1}, {gap + 1, 1}, {gap, 1}}, "wall");
@@ -28,7 +28,7 @@ Response see(double gap, std::vector<world::Setting> more = {}) {
   return {run.readings[0].values[0], run.readings[0].values[1]};
 }
 
-TEST(Infrared, TheResponseFallsInAStraightLine) {
+TEST(Infrared, ResponseFallsLinearly) {
   for (int k = 0; k <= 50; ++k) {
     const double gap = 1e-3 * k + 1e-7;
     const Response r = see(gap);
@@ -37,14 +37,14 @@ TEST(Infrared, TheResponseFallsInAStraightLine) {
   }
 }
 
-TEST(Infrared, TouchedItSaysAllAndInTheOpenNothing) {
+TEST(Infrared, ReadsTheMaximumOnContactAndZeroInTheOpen) {
   EXPECT_EQ(see(1e-12).value, 1023.0);
   EXPECT_NEAR(see(1e-12).range, 0.0, 1e-9);
   EXPECT_EQ(see(0.06).value, 0.0);
   EXPECT_EQ(see(0.06).range, 0.05);
 }
 
-TEST(Infrared, NearerThanRangeMinItSaturates) {
+TEST(Infrared, SaturatesBelowRangeMin) {
   const std::vector<world::Setting> range{cone_setting("range", {0.01, 0.03})};
   EXPECT_EQ(see(0.005, range).value, 1023.0);
   EXPECT_EQ(see(0.005, range).range, 0.01);
@@ -53,7 +53,7 @@ TEST(Infrared, NearerThanRangeMinItSaturates) {
 }
 
 /// Light returns from any angle: the reading is the nearest of eleven rays in 30 degrees, at any incidence.
-TEST(Infrared, AWallIsSeenFromTheSide) {
+TEST(Infrared, DetectsAWallAtAnyIncidence) {
   for (int degrees = -60; degrees <= 60; degrees += 5) {
     world::World world;
     scenes::add_outline(world, {{0.02, -9}, {1, -9}, {1, 9}, {0.02, 9}}, "wall");
@@ -65,7 +65,7 @@ TEST(Infrared, AWallIsSeenFromTheSide) {
 }
 
 /// Two Kheperas side by side: each detects the other and never itself.
-TEST(Infrared, SeesOtherRobotsAndNeverItsOwn) {
+TEST(Infrared, DetectsOtherRobotsButNotItsOwn) {
   world::World world;
   add_ranger(world, {}, cones("infrared", ring(8, 0.03)), 0.035);
   add_ranger(world, {0.09, 0, 0, 0}, cones("infrared", ring(8, 0.03)), 0.035);
@@ -76,7 +76,7 @@ TEST(Infrared, SeesOtherRobotsAndNeverItsOwn) {
   EXPECT_EQ(run.readings[1].values[8], run.readings[0].values[0]) << "they face each other";
 }
 
-TEST(Infrared, EveryConeIsTheNearestOfItsRays) {
+TEST(Infrared, EveryConeReadsTheNearestOfItsRays) {
   world::World world = scenes::boxes(40, 2.0, 7);
   Chance chance(1);
   for (int m = 0; m < 60; ++m) {
@@ -95,7 +95,7 @@ TEST(Infrared, EveryConeIsTheNearestOfItsRays) {
   }
 }
 
-TEST(Infrared, ElementsAllLookInEveryReading) {
+TEST(Infrared, EveryReadingUsesAllElements) {
   world::World world;
   add_ranger(world, {}, cones("infrared", ring(8, 0.03)));
   farm::Farm farm(world, device(), {.reuse_unchanged = false});

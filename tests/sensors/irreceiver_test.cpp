@@ -19,7 +19,7 @@ using world::Emitter;
 Emitter virtual_wall(const Pose& X_WE = {}) {
   return {Emitter::Kind::virtual_wall, world::kNone, X_WE, 2.0, 20 * kDegree, 0.4};
 }
-/// Buoy beams of 40 degrees: 15 on each side alone, and an overlap of 5 + 5 in the middle.
+/// Buoy beams of 40 degrees: 15 degrees on each side alone, and an overlap of 5 + 5 in the middle.
 Emitter dock(const Pose& X_WE = {}) { return {Emitter::Kind::dock, world::kNone, X_WE, 2.0, 40 * kDegree, 0.5}; }
 
 glm::dvec2 at(double distance, double degrees) { return base::rotate(degrees * kDegree, {distance, 0.0}); }
@@ -32,7 +32,7 @@ world::World one_receiver(std::vector<Emitter> emitters, const Pose& X_WM = {}) 
 
 // --- Light.
 
-TEST(IrReceiver, AVirtualWallIsABeamAndAHalo) {
+TEST(IrReceiver, VirtualWallHasABeamAndAHalo) {
   EXPECT_EQ(light_of(virtual_wall(), at(1.9, 9.9)), 1u);
   EXPECT_EQ(light_of(virtual_wall(), at(1.9, -9.9)), 1u);
   EXPECT_EQ(light_of(virtual_wall(), at(1.9, 10.1)), 0u) << "beside the beam";
@@ -42,7 +42,7 @@ TEST(IrReceiver, AVirtualWallIsABeamAndAHalo) {
   EXPECT_EQ(light_of(virtual_wall(), {0, 0}), 1u) << "on top of it";
 }
 
-TEST(IrReceiver, ADockHasABuoyToEachSide) {
+TEST(IrReceiver, DockHasABuoyOnEachSide) {
   EXPECT_EQ(light_of(dock(), at(1.5, 0)), 8u | 4u) << "both in the middle";
   EXPECT_EQ(light_of(dock(), at(1.5, 4.9)), 8u | 4u);
   EXPECT_EQ(light_of(dock(), at(1.5, 5.1)), 8u) << "red on the dock's left, the right of who faces it";
@@ -65,8 +65,8 @@ TEST(IrReceiver, HalosOfAnySize) {
   EXPECT_EQ(light_of(none, {0, 0}) & 2u, 0u);
 }
 
-/// Light rotates and moves with the emitter, for headings beyond a whole turn too.
-TEST(IrReceiver, LightTurnsWithItsEmitter) {
+/// Light rotates and moves with the emitter, including headings beyond a full turn.
+TEST(IrReceiver, LightRotatesWithItsEmitter) {
   Chance chance(1);
   for (int i = 0; i < 500; ++i) {
     const Pose X_WE{chance.between(-9, 9), chance.between(-9, 9), 0, chance.between(-20, 20)};
@@ -78,7 +78,7 @@ TEST(IrReceiver, LightTurnsWithItsEmitter) {
 
 // --- Readings.
 
-TEST(IrReceiver, BytesOfTheOpenInterface) {
+TEST(IrReceiver, EncodesBytesOfTheOpenInterface) {
   const auto byte = [](const glm::dvec2& p) { return read_once(one_receiver({dock()}, {p.x, p.y, 0, 1}))[1]; };
   EXPECT_EQ(byte(at(3, 0)), 255.0) << "none";
   EXPECT_EQ(byte(at(1.5, 20)), 248.0) << "red buoy";
@@ -90,7 +90,7 @@ TEST(IrReceiver, BytesOfTheOpenInterface) {
   EXPECT_EQ(byte(at(0.4, 0)), 254.0) << "all";
 }
 
-TEST(IrReceiver, WallsAndDocksAreToldApart) {
+TEST(IrReceiver, DistinguishesWallsAndDocks) {
   EXPECT_EQ(read_once(one_receiver({virtual_wall({-1, 0, 0, 0})})), (std::vector<double>{1, 255}));
   EXPECT_EQ(read_once(one_receiver({dock({-1, 0, 0, 0})})), (std::vector<double>{0, 252}));
   EXPECT_EQ(read_once(one_receiver({virtual_wall({-1, 0, 0, 0}), dock({0, 1, 0, -1.2})})),
@@ -100,7 +100,7 @@ TEST(IrReceiver, WallsAndDocksAreToldApart) {
   EXPECT_EQ(read_once(one_receiver({})), (std::vector<double>{0, 255})) << "no emitters";
 }
 
-TEST(IrReceiver, LightIsHiddenByWallsAtItsHeight) {
+TEST(IrReceiver, WallsAtTheReceiverHeightBlockLight) {
   world::World world = one_receiver({virtual_wall({-1, 0, 0, 0})});
   world.movers[0].sensors[0].X_MS.z = 0.1;
   const auto wall = [&](double z_min, double z_max, std::uint32_t model = 7) {
@@ -120,8 +120,8 @@ TEST(IrReceiver, LightIsHiddenByWallsAtItsHeight) {
   EXPECT_EQ(read_once(world)[0], 1.0) << "a wall behind the receiver";
 }
 
-/// Many emitters: the tree against a test of each.
-TEST(IrReceiver, ManyEmittersAnswerAsEachOneDoes) {
+/// Compares the tree with a test of each of many emitters.
+TEST(IrReceiver, TreeMatchesATestOfEveryEmitter) {
   Chance chance(2);
   world::World world = carriers(fitted("irreceiver"), {});
   for (int i = 0; i < 400; ++i) {
@@ -145,7 +145,7 @@ TEST(IrReceiver, ManyEmittersAnswerAsEachOneDoes) {
   EXPECT_LT(lit, 380u);
 }
 
-TEST(IrReceiver, SettingsThatMakeNoSense) { expect_refused("irreceiver", {setting("rate", {-1})}, 8, "'rate' is -1"); }
+TEST(IrReceiver, RejectsInvalidSettings) { expect_refused("irreceiver", {setting("rate", {-1})}, 8, "'rate' is -1"); }
 
 }  // namespace
 }  // namespace sf::trial

@@ -18,11 +18,11 @@ struct Crossing {
   Wide aside_b = 0.0L;
   glm::dvec2 a, b;
   bool strict = false;     ///< hit in real arithmetic
-  bool firm = false;       ///< and by more than kEitherWay
+  bool firm = false;       ///< hit by more than kEitherWay
   bool uncertain = false;  ///< contact with the sensor depends on rounding
 };
 
-/// False when the segment is farther than kEitherWay from the beam's line.
+/// Returns false when the segment is farther than kEitherWay from the beam's line.
 bool meet(const world::Segment& s, glm::dvec2 origin, Wide dx, Wide dy, Crossing& out) {
   const Wide wx = static_cast<Wide>(s.a.x) - origin.x;
   const Wide wy = static_cast<Wide>(s.a.y) - origin.y;
@@ -49,7 +49,7 @@ bool meet(const world::Segment& s, glm::dvec2 origin, Wide dx, Wide dy, Crossing
   return true;
 }
 
-/// True when two crossings share an end near the beam, and their other ends lie on both sides of it.
+/// Returns true when two crossings share an end near the beam, and their other ends lie on both sides of it.
 bool closes(const Crossing& p, const Crossing& q) {
   const auto same = [](glm::dvec2 v, glm::dvec2 w) { return v.x == w.x && v.y == w.y; };
   const auto apart = [](Wide shared, Wide other_p, Wide other_q) {
@@ -62,7 +62,7 @@ bool closes(const Crossing& p, const Crossing& q) {
          (same(p.b, q.b) && apart(p.aside_b, p.aside_a, q.aside_a));
 }
 
-/// Range beyond which nothing is visible.
+/// Returns the range beyond which nothing is visible.
 Wide firm_range(const std::vector<Crossing>& crossings, Wide range_max) {
   Wide firm = range_max;
   for (const Crossing& c : crossings)
@@ -101,7 +101,7 @@ Truth judge(std::span<const world::Segment> surfaces, glm::dvec2 origin, Wide di
     if (c.strict && !c.uncertain && c.meeting.range < truth.first.range) truth.first = c.meeting;
     if (c.meeting.range <= firm + slack && c.meeting.range < range_max + slack) truth.right.push_back(c.meeting);
   }
-  // Crossings within rounding of the firm answer are valid answers too.
+  // Crossings within rounding of the firm answer are also valid.
   truth.right.push_back(truth.first);
   for (const Meeting& m : truth.right)
     truth.ambiguous = truth.ambiguous || std::fabs(m.range - truth.first.range) > 1e-5L;

@@ -1,5 +1,5 @@
-// A warm tick of lane edge sensors allocates nothing. The test replaces `operator new` and counts calls of the calling
-// thread only: the Vulkan driver's threads may allocate.
+// A warm tick of lane edge sensors does not allocate. The test replaces `operator new` and counts calls of the calling
+// thread only, because the Vulkan driver's threads may allocate.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ std::uint64_t allocations_per_lap(const world::World& world) {
 }
 
 /// Exact and in pixels, with noise, distinguishable dashes, and a robot in the way.
-TEST(LaneEdgeAllocation, NoneOnceWarm) {
+TEST(LaneEdgeAllocation, WarmTicksDoNotAllocate) {
   for (const double h : {0.0, 0.01}) {
     world::World world;
     world.road_resolution = h;

@@ -1,4 +1,5 @@
-// Every lane edge reading keeps its stated bound or is flagged, against the edges' formulas in `long double`.
+// Every lane edge reading stays within its stated bound or is flagged, according to the edges' formulas in `long
+// double`.
 
 #include <gtest/gtest.h>
 
@@ -33,8 +34,8 @@ void add_straight(world::World& world, std::vector<Face>& faces, glm::dvec2 a, g
   add_sides(faces, a, b);
 }
 
-/// [m] Distance of `read`, along `bearing` from `p`, from the nearest true edge; infinite without one. The choice among
-/// several edges is not an error.
+/// Returns the distance [m] of `read`, along `bearing` from `p`, from the nearest true edge; infinite if there is none.
+/// The choice among several edges is not an error.
 Wide error_of(Wide read, const std::vector<Face>& faces, const Pose& p, Wide bearing) {
   Wide least = HUGE_VALL;
   for (const Face& f : faces) {
@@ -56,7 +57,7 @@ struct Seen {
   std::string example;
 };
 
-/// Reads once from all poses and checks the readings that state a bound.
+/// Takes one reading from every pose and checks the readings that state a bound.
 Seen judge(world::World world, const std::vector<Face>& faces, const std::vector<Pose>& poses,
            const Settings& settings = {{"perpendicular", {0}}}) {
   for (const Pose& pose : poses) add_edge_eye(world, pose, settings);
@@ -83,7 +84,7 @@ Seen judge(world::World world, const std::vector<Face>& faces, const std::vector
   return seen;
 }
 
-/// Random poses in a square round `middle`.
+/// Returns random poses in a square around `middle`.
 std::vector<Pose> anywhere(int count, glm::dvec2 middle, double half, std::uint64_t seed) {
   Chance chance(seed);
   std::vector<Pose> poses;
@@ -120,8 +121,8 @@ TEST(LaneEdgeBounds, HoldWhereStripesCross) {
   EXPECT_LT(seen.stated, seen.read);
 }
 
-/// Straight, a bend of the thesis' radius, straight: as on its test path.
-TEST(LaneEdgeBounds, HoldIntoABendAndOutOfIt) {
+/// Straight, a bend of the thesis' radius, straight: the same as on its test path.
+TEST(LaneEdgeBounds, HoldIntoAndOutOfABend) {
   world::World world;
   std::vector<Face> faces;
   world::LaneMarking whole = arc({0.0, 0.68}, 0.68, -0.5 * M_PI, 0.0, kWidth);
@@ -130,7 +131,7 @@ TEST(LaneEdgeBounds, HoldIntoABendAndOutOfIt) {
   whole.line.insert(whole.line.begin(), {-1.0, 0.0});
   whole.line.push_back({0.68, 1.68});
   world.lane_markings = {whole};
-  // A bend is made of chords: within one of them, 2 mm long, an edge is straight.
+  // A bend is made of chords. Within a chord, 2 mm long, an edge is straight.
   for (std::size_t i = 0; i + 1 < whole.line.size(); ++i) add_sides(faces, whole.line[i], whole.line[i + 1]);
   const Seen seen = judge(world, faces, anywhere(8000, {0.0, 0.5}, 1.0, 9));
   EXPECT_EQ(seen.beyond, 0) << seen.example;
@@ -152,7 +153,7 @@ TEST(LaneEdgeBounds, HoldOnDashes) {
   EXPECT_GT(seen.stated, 300);
 }
 
-/// Wide scans near a corner see two edges at once; narrow ones with few rays see little of any.
+/// Wide scans near a corner see two edges at once. Narrow ones with few rays see little of either.
 TEST(LaneEdgeBounds, HoldForAnyFan) {
   world::World world;
   std::vector<Face> faces;
@@ -167,8 +168,8 @@ TEST(LaneEdgeBounds, HoldForAnyFan) {
     }
 }
 
-/// The range of a single ray is the reading: valid on bends too, unless the ray grazes.
-TEST(LaneEdgeBounds, OfASingleRayIsThatOfItsRange) {
+/// The range of a single ray is the reading. It is also valid on bends, unless the ray grazes.
+TEST(LaneEdgeBounds, SingleRayHasTheBoundOfItsRange) {
   world::World world;
   std::vector<Face> faces;
   add_straight(world, faces, {-1.0, 0.0}, {1.0, 0.0});
@@ -177,7 +178,7 @@ TEST(LaneEdgeBounds, OfASingleRayIsThatOfItsRange) {
   const Seen seen = judge(world, faces, anywhere(2000, {}, 0.9, 13), one);
   EXPECT_EQ(seen.beyond, 0) << seen.example;
   EXPECT_GT(seen.stated, 300);
-  add_edge_eye(world, {-0.9, 0.05 + 1e-5, 0.0, -1e-4}, one);  // meets the edge 0.1 m ahead, at 1e-4 rad
+  add_edge_eye(world, {-0.9, 0.05 + 1e-5, 0.0, -1e-4}, one);  // hits the edge 0.1 m ahead, at 1e-4 rad
   EdgeRig rig(world);
   const auto& blocks = rig.tick({{0, 0}}, {world.movers[0].X_WM});
   ASSERT_EQ(blocks[0].quality.size(), 1u);
@@ -185,7 +186,7 @@ TEST(LaneEdgeBounds, OfASingleRayIsThatOfItsRange) {
   EXPECT_TRUE(std::isinf(blocks[0].bound));
 }
 
-/// The quality flag of one sensor at `pose`. A flagged reading states no bound.
+/// Returns the quality flag of one sensor at `pose`. A flagged reading states no bound.
 QualityFlag said(world::World world, const Pose& pose, const Settings& settings = {{"perpendicular", {0}}}) {
   add_edge_eye(world, pose, settings);
   EdgeRig rig(world);
@@ -195,7 +196,7 @@ QualityFlag said(world::World world, const Pose& pose, const Settings& settings 
   return blocks[0].quality.empty() ? QualityFlag::none : blocks[0].quality[0];
 }
 
-TEST(LaneEdgeBounds, AFlagSaysWhy) {
+TEST(LaneEdgeBounds, FlagGivesTheReason) {
   world::World line;
   line.lane_markings.push_back(marking({-1.0, 0.0}, {1.0, 0.0}, kWidth));
   EXPECT_EQ(said(line, {0.0, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::none);
@@ -210,8 +211,8 @@ TEST(LaneEdgeBounds, AFlagSaysWhy) {
   EXPECT_EQ(said(two, {0.0, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::not_straight) << "another edge behind its end";
 }
 
-/// With noise or pixels no bound is stated, and sigma applies.
-TEST(LaneEdgeBounds, AreNotStatedOfNoiseAndPixels) {
+/// With noise or pixels, no bound is stated and sigma applies.
+TEST(LaneEdgeBounds, NoneWithNoiseOrPixels) {
   world::World world;
   world.lane_markings.push_back(marking({-1.0, 0.0}, {1.0, 0.0}, kWidth));
   const Pose pose{0.0, -0.3, 0.0, 0.5 * M_PI};

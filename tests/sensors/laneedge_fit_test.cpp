@@ -1,4 +1,4 @@
-// The fit on the device: against the same steps on the host, to the bit, and on hand-made points.
+// The fit on the device: compared with the same steps on the host, bit by bit, and on hand-made points.
 
 #include <gtest/gtest.h>
 
@@ -115,7 +115,7 @@ class FitRig {
   sensors::EdgeFit fit_;
 };
 
-/// Every beam meets the line x = `x` of the sensor frame.
+/// Every beam hits the line x = `x` of the sensor frame.
 Shot wall_ahead(const raycast::ScanSettings& fan, double x) {
   Shot shot;
   for (std::uint32_t k = 0; k < fan.samples; ++k) {
@@ -149,7 +149,7 @@ void expect_none(const EdgeReading& r, double points) {
   EXPECT_EQ(r.residual, 0.0);
 }
 
-TEST(LaneEdgeFit, NoPointsAndOnePointAreNoLine) {
+TEST(LaneEdgeFit, FewerThanTwoPointsAreNotALine) {
   Shot shot = nothing(fan_of(kAhead));
   expect_none(read_one(kAhead, shot), 0);
   shot.ranges[30] = 0.5;
@@ -170,7 +170,7 @@ TEST(LaneEdgeFit, TwoPointsAreALine) {
   EXPECT_LT(r.residual, 1e-15);
 }
 
-/// Equal points define no line; at the sensor itself, every line through them is at distance 0.
+/// Equal points define no line. At the sensor itself, every line through them is at distance 0.
 TEST(LaneEdgeFit, EqualPoints) {
   Shot shot = nothing(fan_of(kAhead));
   shot.ranges.assign(shot.ranges.size(), 0.0);
@@ -187,7 +187,7 @@ TEST(LaneEdgeFit, PointsTooCloseForALine) {
   expect_none(read_one(narrow, wall_ahead(fan_of(narrow), 0.5)), 61);
 }
 
-/// A line along one ray passes through the sensor: the distance is 0, for any bearing of the ray.
+/// A line along one ray passes through the sensor, so the distance is 0 for any bearing of the ray.
 TEST(LaneEdgeFit, PointsOnOneRay) {
   const Settings narrow{{"perpendicular", {90}}, {"fov", {1e-9}}};
   Shot shot = nothing(fan_of(narrow));
@@ -202,7 +202,7 @@ TEST(LaneEdgeFit, PointsOnOneRay) {
   expect_none(read_one(along, shot), 61);
 }
 
-TEST(LaneEdgeFit, RangesNearTheMaximumAreNoPoints) {
+TEST(LaneEdgeFit, IgnoresRangesNearTheMaximum) {
   Shot shot = nothing(fan_of(kAhead));
   shot.tags.assign(shot.tags.size(), 0);
   shot.ranges.assign(shot.ranges.size(), 0.99);  // the limit itself
@@ -211,14 +211,14 @@ TEST(LaneEdgeFit, RangesNearTheMaximumAreNoPoints) {
   EXPECT_GT(read_one(kAhead, shot).points, 10);
 }
 
-TEST(LaneEdgeFit, RangesUpToTheMinimumAreNoPoints) {
+TEST(LaneEdgeFit, IgnoresRangesUpToTheMinimum) {
   const Settings settings{{"perpendicular", {0}}, {"range_min", {0.3}}};
   Shot shot = wall_ahead(fan_of(settings), 0.5);
   for (std::size_t k = 0; k < 20; ++k) shot.ranges[k] = 0.3;
   EXPECT_EQ(read_one(settings, shot).points, 41);
 }
 
-TEST(LaneEdgeFit, EndFacesAndMoversAreNoPoints) {
+TEST(LaneEdgeFit, IgnoresEndFacesAndMovers) {
   Shot shot = wall_ahead(fan_of(kAhead), 0.5);
   for (std::size_t k = 0; k < 20; ++k) {
     shot.ranges[k] = 0.2;
@@ -230,13 +230,13 @@ TEST(LaneEdgeFit, EndFacesAndMoversAreNoPoints) {
 }
 
 /// A line behind the sensor along the perpendicular is on the wrong side.
-TEST(LaneEdgeFit, AnEdgeOnTheOtherSideIsOutOfSight) {
+TEST(LaneEdgeFit, EdgeOnTheOtherSideIsOutOfSight) {
   const Settings back{{"perpendicular", {180}}};
   expect_none(read_one(back, wall_ahead(fan_of(back), 0.5)), 61);
 }
 
-/// Extrapolation reaches ten times the largest range and no farther.
-TEST(LaneEdgeFit, FartherThanTenTimesTheRangeIsOutOfSight) {
+/// Extrapolation reaches up to ten times the largest range.
+TEST(LaneEdgeFit, EdgeBeyondTenTimesTheRangeIsOutOfSight) {
   for (const double degrees : {86.0, 88.0}) {
     const Settings askew{{"perpendicular", {degrees}}};
     const EdgeReading r = read_one(askew, wall_ahead(fan_of(askew), 0.5));
@@ -249,7 +249,7 @@ TEST(LaneEdgeFit, FartherThanTenTimesTheRangeIsOutOfSight) {
 }
 
 /// A few points in front of a line of many do not change it.
-TEST(LaneEdgeFit, FewOutliersDoNotCount) {
+TEST(LaneEdgeFit, IgnoresFewOutliers) {
   for (const std::size_t outliers : {1u, 5u, 8u}) {
     Shot shot = wall_ahead(fan_of(kAhead), 0.5);
     for (std::size_t k = 0; k < outliers; ++k)
@@ -260,7 +260,7 @@ TEST(LaneEdgeFit, FewOutliersDoNotCount) {
   }
 }
 
-TEST(LaneEdgeFit, OfTwoEdgesTheNearerWinsWithMoreThanAQuarterOfTheFarther) {
+TEST(LaneEdgeFit, NearerEdgeWinsWithMoreThanAQuarterOfThePoints) {
   for (const std::size_t near : {8u, 14u, 30u, 50u}) {
     const Shot at_03 = wall_ahead(fan_of(kAhead), 0.3);
     Shot shot = wall_ahead(fan_of(kAhead), 0.5);
@@ -271,7 +271,7 @@ TEST(LaneEdgeFit, OfTwoEdgesTheNearerWinsWithMoreThanAQuarterOfTheFarther) {
   }
 }
 
-TEST(LaneEdgeFit, ASingleRayIsItsOwnReading) {
+TEST(LaneEdgeFit, SingleRayRangeIsTheReading) {
   for (const double samples : {1.0, 2.0}) {
     const Settings single{{"samples", {samples}}, {"fov", {1}}};
     Shot shot = nothing(fan_of(single));
@@ -317,7 +317,7 @@ Shot anything(const raycast::ScanSettings& fan, Chance& chance) {
   return shot;
 }
 
-TEST(LaneEdgeFit, TheHostComputesTheSameToTheBit) {
+TEST(LaneEdgeFit, HostIsBitIdentical) {
   Chance chance(17);
   std::vector<Settings> settings;
   for (int i = 0; i < 3000; ++i) {

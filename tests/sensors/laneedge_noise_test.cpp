@@ -15,7 +15,7 @@ namespace {
 
 using sensors::EdgeReading;
 
-/// `count` sensors before one straight edge, 0.4 m ahead, at angles of up to 40 degrees.
+/// `count` sensors in front of a straight edge, 0.4 m ahead, at angles of up to 40 degrees.
 world::World noisy_world(std::size_t count, const std::vector<double>& noise) {
   world::World world;
   world.lane_markings.push_back(marking({30.0, 0.45}, {-30.0, 0.45}, 0.1));
@@ -61,9 +61,9 @@ Spread spread_of(const world::World& world, int rounds) {
 }
 
 /// Constant, proportional and angular noise separately and together: sigma is the error's standard deviation within a
-/// third, and errors have no bias. Sigma is estimated from 61 points, together with a curvature that is 0 here, so that
-/// it is conservative.
-TEST(LaneEdgeNoise, SigmaIsTheErrorsDeviation) {
+/// third, and errors have no bias. Sigma is estimated from 61 points, together with a curvature that is 0 here, so it
+/// is conservative.
+TEST(LaneEdgeNoise, SigmaIsTheDeviationOfErrors) {
   for (const std::vector<double>& noise :
        {std::vector{0.005, 0.0, 0.0}, {0.0, 0.01, 0.0}, {0.0, 0.0, 0.3}, {0.003, 0.005, 0.2}}) {
     const Spread s = spread_of(noisy_world(300, noise), 10);
@@ -79,7 +79,7 @@ TEST(LaneEdgeNoise, SigmaIsTheErrorsDeviation) {
 }
 
 /// The noise of a single ray is the normal distribution of the world file.
-TEST(LaneEdgeNoise, ASingleRayIsNormal) {
+TEST(LaneEdgeNoise, SingleRayNoiseIsNormal) {
   world::World world = noisy_world(500, {0.004, 0.005, 0.0});
   for (world::Mover& mover : world.movers) {
     mover.X_WM.yaw = 0.5 * M_PI;
@@ -91,7 +91,7 @@ TEST(LaneEdgeNoise, ASingleRayIsNormal) {
   EXPECT_LT(s.kolmogorov, 0.03);
 }
 
-TEST(LaneEdgeNoise, NoneWhereNoneIsWanted) {
+TEST(LaneEdgeNoise, NoiseCanBeDisabled) {
   const world::World world = noisy_world(50, {0.005, 0.01, 0.3});
   EdgeRig quiet(world, 5, 0, false);
   for (const EdgeReading& r : quiet.read()) EXPECT_LT(r.sigma, 1e-6);
@@ -106,8 +106,8 @@ bool same(const EdgeReading& p, const EdgeReading& q) {
          bits(p.sigma) == bits(q.sigma);
 }
 
-/// Threads, other sensors and order change no bit; seed and sequence do.
-TEST(LaneEdgeNoise, IsAFunctionOfNames) {
+/// Threads, other sensors and order change no bit. Seed and sequence do.
+TEST(LaneEdgeNoise, DependsOnlyOnItsKeys) {
   const world::World exact = noisy_world(150, {0.003, 0.005, 0.2});
   world::World pixels = exact;
   pixels.road_resolution = 0.01;
@@ -134,8 +134,8 @@ TEST(LaneEdgeNoise, IsAFunctionOfNames) {
   }
 }
 
-/// No sensor due, then all, then one: the tables follow.
-TEST(LaneEdgeNoise, IndependentOfTheSensorsThatAreDue) {
+/// No sensor is due, then all, then one: the tables follow.
+TEST(LaneEdgeNoise, DoesNotDependOnWhichSensorsAreDue) {
   const world::World world = noisy_world(70, {0.0, 0.0, 0.0});
   EdgeRig rig(world);
   std::vector<base::Pose> poses;
@@ -147,7 +147,7 @@ TEST(LaneEdgeNoise, IndependentOfTheSensorsThatAreDue) {
   EXPECT_TRUE(same(rig.read_some({{69, 0}}, poses)[0], all[69]));
 }
 
-/// Deviates of ranges lie beam by beam, and with bearings that deviate, four places apart.
+/// Deviates of ranges are stored beam by beam and, with bearings that deviate, four places apart.
 TEST(LaneEdgeNoise, KernelsAndHostReadTheSameBits) {
   for (const std::vector<double>& noise : {std::vector{0.003, 0.005, 0.0}, {0.003, 0.005, 0.2}}) {
     const world::World world = noisy_world(150, noise);
@@ -159,7 +159,7 @@ TEST(LaneEdgeNoise, KernelsAndHostReadTheSameBits) {
 }
 
 /// No messages of the validation layer, with exact markings and with the raster.
-TEST(LaneEdgeNoise, TheValidationLayerIsSilent) {
+TEST(LaneEdgeNoise, ValidationLayerIsSilent) {
   setenv("SENSORFARM_VALIDATE", "1", 1);
   {
     gpu::Device checked;

@@ -20,7 +20,7 @@ base::Bytes encoded(const std::vector<double>& values, WireFormat wire) {
   return out;
 }
 
-TEST(LaneEdgePackets, EveryByte) {
+TEST(LaneEdgePackets, EncodesEveryByte) {
   const base::Bytes farm = encoded({0.25, 61, 0.000'123, 0.004'567}, WireFormat::farm);
   EXPECT_EQ(farm, (base::Bytes{0xFA, 0x00, 61, 0, 123, 0, 0, 0, 0xD7, 0x11, 0, 0}));
   EXPECT_EQ(encoded({0.25, 61, 0.1, 0.1}, WireFormat::thesis), (base::Bytes{0xFA, 0x00}));
@@ -50,7 +50,7 @@ TEST(LaneEdgePackets, NoEdgeInSightKeepsItsPoints) {
             (base::Bytes{100, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}));
 }
 
-TEST(LaneEdgePackets, AnyBytesGiveAPartOrAFault) {
+TEST(LaneEdgePackets, AnyBytesDecodeToAPartOrAFault) {
   for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis}) {
     const std::size_t right = wire == WireFormat::farm ? 12 : 2;
     for (std::size_t size = 0; size < 20; ++size) {
@@ -65,7 +65,7 @@ TEST(LaneEdgePackets, AnyBytesGiveAPartOrAFault) {
   EXPECT_EQ(decode_lane_edge({}, std::vector<std::uint8_t>(12), kLaneEdge, WireFormat::farm).elements, 1u);
 }
 
-TEST(LaneEdgePackets, OneDatagramAndNeverRefused) {
+TEST(LaneEdgePackets, UsesOneDatagramAndIsNeverRejected) {
   for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis}) {
     EXPECT_EQ(lane_edge_parts({}, wire), 1u);
     EXPECT_EQ(lane_edge_wire_problem({}, wire), "");

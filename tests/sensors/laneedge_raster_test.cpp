@@ -32,7 +32,7 @@ struct Entry {
   bool doubtful = false;  ///< a painted cell's corner is very close to the ray
 };
 
-/// Range at which origin + t d enters the box of one cell, corner by corner in long double.
+/// Returns the range at which origin + t d enters the box of one cell, corner by corner in long double.
 void meet_cell(glm::dvec2 low, double cell, glm::dvec2 o, glm::dvec2 d, Entry& best) {
   const long double x0 = (static_cast<long double>(low.x) - o.x) / d.x;
   const long double x1 = (static_cast<long double>(low.x) + cell - o.x) / d.x;
@@ -61,7 +61,7 @@ TEST(LaneEdgeRaster, EveryRayEntersTheFirstPaintedCell) {
     std::vector<Pose> poses;
     for (int i = 0; i < 400; ++i) {
       const glm::dvec2 p = chance.in_square(1.2);
-      // Every eighth along an axis, where a ray runs along pixel borders.
+      // Every eighth ray runs along an axis and thus along pixel borders.
       const double yaw = i % 8 == 0 ? 0.5 * M_PI * (i / 8 % 4) : chance.between(-M_PI, M_PI);
       add_edge_eye(world, {p.x, p.y, 0.0, yaw}, {{"samples", {1}}});
       poses.push_back({p.x, p.y, 0.0, yaw});
@@ -92,8 +92,8 @@ TEST(LaneEdgeRaster, EveryRayEntersTheFirstPaintedCell) {
   }
 }
 
-/// Inside paint a ray reads the distance to its border.
-TEST(LaneEdgeRaster, OnPaintARayReadsTheWayOff) {
+/// Inside paint, a ray reads the distance to the border of the paint.
+TEST(LaneEdgeRaster, OnPaintARayReadsTheDistanceToTheBorder) {
   world::World world;
   world.road_resolution = 0.01;
   world.lane_markings.push_back(marking({-1.0, 0.0}, {1.0, 0.0}, 0.1));
@@ -116,8 +116,8 @@ TEST(LaneEdgeRaster, FarFromAllPaint) {
   }
 }
 
-/// Outlines and movers count beside the pixels; the nearest surface wins.
-TEST(LaneEdgeRaster, WallsAndMoversBesidePixels) {
+/// Outlines and movers count in addition to the pixels. The nearest surface wins.
+TEST(LaneEdgeRaster, WallsAndMoversNextToPixels) {
   world::World world;
   world.road_resolution = 0.005;
   world.lane_markings.push_back(marking({-3.0, 0.55}, {3.0, 0.55}, 0.1));
@@ -133,7 +133,7 @@ TEST(LaneEdgeRaster, WallsAndMoversBesidePixels) {
   EXPECT_LT(readings[2].points, 5) << "a robot hides what is behind it";
 }
 
-TEST(LaneEdgeRaster, TooFineForItsRangeIsRefusedByName) {
+TEST(LaneEdgeRaster, RejectsAResolutionTooFineForTheRange) {
   world::World world;
   world.file = "hand.world";
   world.road_resolution = 1e-4;
@@ -191,7 +191,7 @@ Outcome judge(const char* name, const Trial& trial) {
   return o;
 }
 
-/// Sensors round straight markings at every angle to the pixels; `paint` and `gap` [m] of dashes, or solid.
+/// Sensors around straight markings at every angle to the pixels; `paint` and `gap` [m] of dashes, or solid.
 Trial straight(double h, std::size_t count, double from_degrees, double to_degrees, double nearest, double farthest,
                double paint = 0.0, double gap = 0.0) {
   Trial trial;
@@ -219,7 +219,7 @@ Trial straight(double h, std::size_t count, double from_degrees, double to_degre
 }
 
 /// The documented bound: solid paint within 45 degrees, at least ten points.
-TEST(LaneEdgeRaster, SolidPaintWithin45DegreesKeepsItsBound) {
+TEST(LaneEdgeRaster, SolidPaintWithin45DegreesStaysWithinItsBound) {
   for (const double h : kPixels) {
     const Outcome o = judge("solid, to 45 degrees", straight(h, 6000, 0.0, 45.0, 0.04, 0.65));
     EXPECT_EQ(o.beyond, 0u) << h;
@@ -230,8 +230,8 @@ TEST(LaneEdgeRaster, SolidPaintWithin45DegreesKeepsItsBound) {
   }
 }
 
-/// Elsewhere sigma is documented: 95 % within two sigmas, no outlier far beyond.
-TEST(LaneEdgeRaster, ElsewhereSigmaIsHonest) {
+/// Elsewhere, sigma is documented: 95 % within two sigmas, no outlier far beyond.
+TEST(LaneEdgeRaster, SigmaIsCalibratedElsewhere) {
   for (const double h : kPixels) {
     for (const Outcome& o : {judge("solid, 45 to 60", straight(h, 1000, 45.0, 60.0, 0.04, 0.4)),
                              judge("solid, 60 to 75", straight(h, 1000, 60.0, 75.0, 0.02, 0.2)),
@@ -246,7 +246,7 @@ TEST(LaneEdgeRaster, ElsewhereSigmaIsHonest) {
   }
 }
 
-/// The thesis' turn: the inner edge of a lane 0.5 m wide about a centre line of 0.93 m radius.
+/// The thesis' turn: the inner edge of a lane 0.5 m wide around a centre line of 0.93 m radius.
 Trial turn(double h, bool inside, double look) {
   Trial trial;
   trial.world.road_resolution = h;
@@ -270,7 +270,7 @@ Trial turn(double h, bool inside, double look) {
   return trial;
 }
 
-TEST(LaneEdgeRaster, ArcsAreOffByTheirBendAndSaySo) {
+TEST(LaneEdgeRaster, SigmaCoversTheBendOfArcs) {
   for (const double h : {0.0, 0.005, 0.02})
     for (const double look : {0.0, 20.0})
       for (const bool inside : {true, false}) {
@@ -286,8 +286,8 @@ TEST(LaneEdgeRaster, ArcsAreOffByTheirBendAndSaySo) {
 
 // --- A bitmap as a road -------------------------------------------------------------------------------------------
 
-/// As in the thesis, a bitmap as a Stage model, with outlines as edges: equal pixels give equal readings.
-TEST(LaneEdgeRaster, AStageBitmapReadsAsTheRasterDoes) {
+/// As in the thesis, a bitmap as a Stage model, with outlines as edges: equal pixels produce equal readings.
+TEST(LaneEdgeRaster, StageBitmapMatchesTheRaster) {
   constexpr double kPixel = 1.0 / 128.0;
   Trial trial = straight(kPixel, 10, 0.0, 30.0, 0.05, 0.4);
   trial.world.lane_markings.resize(1);

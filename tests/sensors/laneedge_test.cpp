@@ -19,7 +19,8 @@ using sensors::EdgeReading;
 
 constexpr double kLineWidth = 0.1;
 
-/// Distance from `X_WS` along `bearing` [rad, sensor frame] to the left edge of a straight marking, by its formula.
+/// Returns the distance from `X_WS` along `bearing` [rad, sensor frame] to the left edge of a straight marking, by its
+/// formula.
 long double face_distance(const world::LaneMarking& s, const Pose& X_WS, double bearing) {
   const long double tx = static_cast<long double>(s.line[1].x) - s.line[0].x;
   const long double ty = static_cast<long double>(s.line[1].y) - s.line[0].y;
@@ -52,35 +53,34 @@ TEST(LaneEdge, ReadsTheDistanceToTheFaceAtAnyAngle) {
   }
 }
 
-/// A robot that drives across the edge: its perpendicular never meets the line.
-TEST(LaneEdge, AnEdgeParallelToThePerpendicularIsOutOfSight) {
+/// A robot that drives across the edge: its perpendicular never intersects the line.
+TEST(LaneEdge, EdgeParallelToThePerpendicularIsOutOfSight) {
   const EdgeReading r = askew(0.25, 0.0, {{"perpendicular", {90}}});
   EXPECT_TRUE(std::isnan(r.distance));
   EXPECT_EQ(r.points, 61);
 }
 
-/// Within 1 nm of the edge a sensor touches it; farther inside, it stands on paint and reads the distance to its
-/// border.
+/// Within 1 nm of the edge, a sensor touches it. Farther inside, it is on paint and reads the distance to the border.
 TEST(LaneEdge, OnTheEdgeItselfAndOnPaint) {
   EXPECT_NEAR(askew(0.0, 10.0).distance, 0.0, 1e-9);
   EXPECT_NEAR(askew(1e-6, 10.0).distance, 1e-6 / std::cos(10.0 * kDegree), 1e-12);
   EXPECT_NEAR(askew(-0.04, 0.0).distance, 0.06, 1e-10) << "the far face, 0.1 m beyond the near one";
 }
 
-TEST(LaneEdge, AtTheMaximumNothingIsSeen) {
+TEST(LaneEdge, SeesNothingAtTheMaximum) {
   EXPECT_TRUE(std::isnan(askew(1.0, 0.0).distance));
   EXPECT_EQ(askew(1.0, 0.0).points, 0);
   EXPECT_TRUE(std::isnan(askew(0.99, 0.0).distance));
   EXPECT_NEAR(askew(0.985, 0.0).distance, 0.985, 1e-10);
 }
 
-TEST(LaneEdge, AMarkingBehindIsNotSeen) {
+TEST(LaneEdge, IgnoresAMarkingBehind) {
   const EdgeReading r = askew(0.25, 180.0);
   EXPECT_TRUE(std::isnan(r.distance));
   EXPECT_EQ(r.points, 0);
 }
 
-TEST(LaneEdge, TheEndOfADashIsNoEdge) {
+TEST(LaneEdge, EndOfADashIsNotAnEdge) {
   world::World world;
   world.lane_markings.push_back(marking({0.3, 0.0}, {2.0, 0.0}, 0.2));
   add_edge_eye(world, {});
@@ -92,7 +92,7 @@ TEST(LaneEdge, TheEndOfADashIsNoEdge) {
 }
 
 /// A gap wider than the field of view, a narrower one, and one seen from far enough.
-TEST(LaneEdge, DashesAreOneEdge) {
+TEST(LaneEdge, DashesFormOneEdge) {
   world::World world;
   add_dashes(world, {0.0, 0.0}, {20.0, 0.0}, 0.05, 0.3, 0.3);
   add_edge_eye(world, {0.45, -0.325, 0.0, 0.5 * M_PI});
@@ -105,17 +105,17 @@ TEST(LaneEdge, DashesAreOneEdge) {
   EXPECT_LT(readings[2].points, 30);
 }
 
-/// As in the thesis: of two samples the first ray's range is the reading, not its projection.
-TEST(LaneEdge, ASingleRayReadsItsRange) {
+/// As in the thesis: with two samples, the first ray's range is the reading, not its projection.
+TEST(LaneEdge, SingleRayReadsItsRange) {
   EXPECT_NEAR(askew(0.25, 0.0, {{"samples", {2}}, {"fov", {60}}}).distance, 0.25 / std::cos(30.0 * kDegree), 1e-12);
   EXPECT_NEAR(askew(0.25, 0.0, {{"samples", {1}}}).distance, 0.25, 1e-12);
   EXPECT_EQ(askew(0.25, 0.0, {{"samples", {1}}}).points, 1);
   EXPECT_TRUE(std::isnan(askew(1.5, 0.0, {{"samples", {1}}}).distance));
 }
 
-/// The thesis' robot faces -y and its sensor its own +x, which is its left; this project's faces +x and its sensor +y.
-/// Both see the same edge, by default perpendicular to the robot.
-TEST(LaneEdge, TheThesisFrameAndOurs) {
+/// The thesis' robot faces -y and its sensor its own +x, which is its left. This project's robot faces +x and its
+/// sensor +y. Both detect the same edge, by default perpendicular to the robot.
+TEST(LaneEdge, MatchesTheThesisFrame) {
   world::World world;
   world.lane_markings.push_back(marking({5.0, 0.5}, {-5.0, 0.5}, kLineWidth));
   for (const double tilt : {0.0, 20.0, -20.0}) {
@@ -136,7 +136,7 @@ TEST(LaneEdge, TheThesisFrameAndOurs) {
   }
 }
 
-TEST(LaneEdge, ThePerpendicularIsTheRobotsAxisNearestToTheView) {
+TEST(LaneEdge, PerpendicularIsTheRobotAxisNearestToTheView) {
   struct Case {
     double yaw, expected;  ///< [deg] yaw of the sensor, and direction of the distance, in the robot's frame
   };
@@ -149,7 +149,7 @@ TEST(LaneEdge, ThePerpendicularIsTheRobotsAxisNearestToTheView) {
   }
 }
 
-TEST(LaneEdge, SettingsThatMakeNoSenseAreRefusedWhereTheyStand) {
+TEST(LaneEdge, RejectsInvalidSettingsWithTheirLine) {
   const Settings bad[] = {{{"samples", {0}}},
                           {{"samples", {1025}}},
                           {{"samples", {2.5}}},
@@ -173,7 +173,7 @@ TEST(LaneEdge, SettingsThatMakeNoSenseAreRefusedWhereTheyStand) {
   }
 }
 
-TEST(LaneEdge, DefaultsAreThoseOfTheThesis) {
+TEST(LaneEdge, DefaultsMatchTheThesis) {
   const auto edge = sensors::lane_edge_of(edge_sensor({}, {0, 0, 0.02, 0}), 0, 0);
   EXPECT_EQ(edge.fan.samples, 61u);
   EXPECT_NEAR(edge.fan.fov, 30.0 * kDegree, 1e-15);
@@ -183,8 +183,8 @@ TEST(LaneEdge, DefaultsAreThoseOfTheThesis) {
   EXPECT_EQ(edge.row.limit, 10.0);
 }
 
-/// Movers hide markings and are no edges; the sensor's own robot hides nothing.
-TEST(LaneEdge, AMoverInTheWayIsNoEdge) {
+/// Movers occlude markings and are not edges. The sensor's own robot occludes nothing.
+TEST(LaneEdge, OccludingMoverIsNotAnEdge) {
   world::World world;
   world.lane_markings.push_back(marking({5.0, 0.0}, {-5.0, 0.0}, kLineWidth));
   add_edge_eye(world, {0.0, -0.55, 0.0, 0.5 * M_PI});
@@ -199,7 +199,7 @@ TEST(LaneEdge, AMoverInTheWayIsNoEdge) {
   EXPECT_TRUE(std::isnan(hidden.distance) || hidden.points < 20);
 }
 
-/// Static outlines are edges as well, as in the thesis' roads, unless the model disables it.
+/// Static outlines are also edges, as in the thesis' roads, unless the model disables this.
 TEST(LaneEdge, WallsAtItsHeightAreEdges) {
   world::World world;
   scenes::add_outline(world, {{0.4, -2}, {0.5, -2}, {0.5, 2}, {0.4, 2}}, "kerb");
@@ -216,7 +216,7 @@ TEST(LaneEdge, WallsAtItsHeightAreEdges) {
   EXPECT_TRUE(std::isnan(read_edges(world)[0].distance));
 }
 
-/// Straight markings at any angle and position, with robots round them; `offset` moves everything.
+/// Straight markings at any angle and position, with robots around them; `offset` moves everything.
 struct Scene {
   world::World world;
   std::vector<long double> truth;
@@ -259,8 +259,8 @@ Errors errors(const Scene& scene) {
   return e;
 }
 
-/// The documented bound is 1 mm; the actual error is rounding.
-TEST(LaneEdge, ExactPaintAgreesWithItsFormula) {
+/// The documented bound is 1 mm; the actual error is only rounding.
+TEST(LaneEdge, ExactPaintMatchesItsFormula) {
   const Errors e = errors(straight_scene(4000, 85.0, 3));
   EXPECT_GE(e.seen, 3990u);
   EXPECT_LT(e.worst, 1e-9);
@@ -281,7 +281,7 @@ TEST(LaneEdge, FarFromTheOrigin) {
 
 glm::dvec2 mirrored(glm::dvec2 p) { return {p.x, -p.y}; }
 
-/// Rotated, translated and mirrored, with a robot added that hides nothing: the reading is the same.
+/// Rotated, translated and mirrored, with an additional robot that occludes nothing: the reading is the same.
 TEST(LaneEdge, InvariantUnderMotionAndReflection) {
   world::World world;
   Chance chance(8);
@@ -327,8 +327,8 @@ TEST(LaneEdge, InvariantUnderMotionAndReflection) {
   EXPECT_LE(differ, 3u);
 }
 
-/// Two lanes paint their shared edge: it counts once.
-TEST(LaneEdge, PaintOnPaintIsOnePaint) {
+/// Two lanes paint their shared edge twice: it counts once.
+TEST(LaneEdge, OverlappingPaintCountsOnce) {
   world::World world;
   world.lane_markings.push_back(marking({-2, 0}, {2, 0}));
   world.lane_markings.push_back(marking({2, 0}, {-2, 0}));
@@ -340,8 +340,8 @@ TEST(LaneEdge, PaintOnPaintIsOnePaint) {
   EXPECT_EQ(once.points, twice.points);
 }
 
-/// An arc is not a line: the curvature shifts the reading, and sigma covers it.
-TEST(LaneEdge, AnArcIsOffByItsBendAndSaysSo) {
+/// An arc is not a line: the curvature shifts the reading, and sigma covers the shift.
+TEST(LaneEdge, SigmaCoversTheBendOfAnArc) {
   world::World world;
   std::vector<double> truth;
   Chance chance(12);

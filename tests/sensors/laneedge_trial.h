@@ -14,20 +14,20 @@ namespace sf::trial {
 /// Settings of a sensor as in a world file: metres and degrees.
 using Settings = std::vector<std::pair<std::string, std::vector<double>>>;
 
-/// A sensor of type `laneedge`.
+/// Returns a sensor of type `laneedge`.
 world::Sensor edge_sensor(const Settings& settings, const base::Pose& X_MS = {});
 
 /// Adds a robot without a body with a sensor at its origin, facing the robot's +x. `perpendicular` defaults to 0
 /// degrees.
 std::uint32_t add_edge_eye(world::World& world, const base::Pose& X_WM, Settings settings = {});
 
-/// A straight marking.
+/// Returns a straight marking.
 world::LaneMarking marking(glm::dvec2 from, glm::dvec2 to, double width = 0.1);
 
-/// Dashes along a straight line: `paint` [m] of it, then `gap` [m] without, starting at `from`.
+/// Adds dashes along a straight line, starting at `from`: `paint` [m] painted, then `gap` [m] unpainted.
 void add_dashes(world::World& world, glm::dvec2 from, glm::dvec2 to, double width, double paint, double gap);
 
-/// A marking along an arc about `centre`, in chords that stay within `sagitta` [m] of it.
+/// Returns a marking along an arc around `centre`, in chords that stay within `sagitta` [m] of it.
 world::LaneMarking arc(glm::dvec2 centre, double radius, double from, double to, double width, double sagitta = 1e-6);
 
 /// The sensor backend of one world, driven without a farm.
@@ -39,13 +39,13 @@ class EdgeRig {
   ~EdgeRig();
   EdgeRig(const EdgeRig&) = delete;
   EdgeRig& operator=(const EdgeRig&) = delete;
-  /// One reading of each sensor, in order of rows; poses default to those at load. Through a raster, the bytes of the
-  /// kernels and of the host are compared.
+  /// Returns one reading of each sensor, in order of rows. Poses default to those at load. With a raster, compares the
+  /// bytes of the kernels and of the host.
   std::vector<sensors::EdgeReading> read(std::uint64_t sequence = 0, std::vector<base::Pose> poses = {});
-  /// Readings of the given rows.
+  /// Returns readings of the given rows.
   std::vector<sensors::EdgeReading> read_some(const std::vector<sensors::DueSample>& due,
                                               const std::vector<base::Pose>& poses);
-  /// The same without a copy, for counting allocations: spans are valid until the next call.
+  /// Same without a copy, for counting allocations: spans are valid until the next call.
   const std::vector<base::ReadingBlock>& tick(const std::vector<sensors::DueSample>& due,
                                               const std::vector<base::Pose>& poses);
 
@@ -54,7 +54,7 @@ class EdgeRig {
   std::unique_ptr<State> s_;
 };
 
-/// One reading of each sensor of `world`.
+/// Returns one reading of each sensor of `world`.
 std::vector<sensors::EdgeReading> read_edges(const world::World& world);
 
 }  // namespace sf::trial

@@ -1,5 +1,5 @@
 // No range exceeds the bound of its reading: a million random beams in each of ten worlds, in 64 and in 32 bits,
-// against `long double`.
+// compared with `long double`.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ namespace {
 using Wide = long double;
 
 const int kTicks = instrumented() ? 1 : 28;
-constexpr std::uint32_t kBoundRobots = 100;  // of 361 beams
+constexpr std::uint32_t kBoundRobots = 100;  // with 361 beams each
 
 /// A world with the square in which robots are placed.
 struct BoundScene {
@@ -183,7 +183,7 @@ world::World crossing(double half) {
   return world;
 }
 
-/// Everything scaled by `by`.
+/// Returns the world scaled by `by`.
 world::World shrunk(world::World world, double by) {
   for (world::Segment& wall : world.walls) wall.a = by * wall.a, wall.b = by * wall.b;
   return world;
@@ -235,7 +235,7 @@ TEST_P(LaserBounds, InAForestOfCentimetres) {
 TEST_P(LaserBounds, AmongThinWallsThatCross) {
   expect_within_bounds(GetParam(), [] { return with_robots("crossing walls", crossing(6.0), 6.0, 2.0); });
 }
-TEST_P(LaserBounds, AmongRobotsAlone) {
+TEST_P(LaserBounds, AmongRobotsOnly) {
   expect_within_bounds(GetParam(), [] { return with_robots("robots alone", {}, 3.0, 2.0); });
 }
 

@@ -17,8 +17,8 @@ using test::documented;
 
 constexpr std::uint8_t kPlain = 1;
 constexpr std::uint8_t kExtendedType = 65;
-constexpr std::size_t kHeader = 64;     ///< [byte] before every payload on the wire
-constexpr std::size_t kSignature = 80;  ///< [byte] behind it
+constexpr std::size_t kHeader = 64;     ///< [bytes] before every payload on the wire
+constexpr std::size_t kSignature = 80;  ///< [bytes] after every payload
 
 SensorSpec laser(std::uint32_t samples, double range_max) {
   SensorSpec row;
@@ -44,7 +44,7 @@ base::Bytes patched(base::Bytes bytes, std::size_t offset, T value) {
   return bytes;
 }
 
-/// The value that a receiver decodes for `metres`.
+/// Returns the value that a receiver decodes for `metres`.
 double through_wire(double metres, double range_max) {
   const base::Bytes bytes = encoded({metres}, range_max);
   LaserPart scan;
@@ -52,7 +52,7 @@ double through_wire(double metres, double range_max) {
   return range_of(scan, 0);
 }
 
-TEST(LaserPackets, PayloadsAreTheDocumentedOnes) {
+TEST(LaserPackets, PayloadsMatchTheDocumentation) {
   std::vector<double> parts(312, 1.0);
   parts[310] = 81.9175;
   parts[311] = kInf;
@@ -69,7 +69,7 @@ TEST(LaserPackets, PlainRangesRoundAndSaturate) {
   EXPECT_EQ(plain(0.000499), 0.0);  // just below half a unit
   EXPECT_EQ(plain(0.0005), 0.001);  // half a unit rounds up
   EXPECT_EQ(plain(1.2344), 1.234);
-  EXPECT_EQ(plain(65.534), 65.534);   // last unit but one
+  EXPECT_EQ(plain(65.534), 65.534);   // second to last unit
   EXPECT_EQ(plain(65.535), 65.535);   // last unit
   EXPECT_EQ(plain(65.536), 65.535);   // one past it: u16 would wrap to 0
   EXPECT_EQ(plain(131.072), 65.535);  // would wrap twice
@@ -86,7 +86,7 @@ TEST(LaserPackets, ExtendedRangesRoundAndSaturate) {
   EXPECT_EQ(extended(0.00004), 0.0);
   EXPECT_EQ(extended(0.00006), 0.0001);
   EXPECT_EQ(extended(65.5361), 65.5361);          // past the plain form
-  EXPECT_EQ(extended(429496.7294), 429496.7294);  // last unit
+  EXPECT_EQ(extended(429496.7294), 429496.7294);  // second to last word
   EXPECT_EQ(extended(429496.7295), 429496.7294);  // the reserved word is never a range
   EXPECT_EQ(extended(429496.7296), 429496.7294);  // u32 would wrap to 0
   EXPECT_EQ(extended(1e300), 429496.7294);
@@ -106,7 +106,7 @@ TEST(LaserPackets, NanIsNeverSent) {
   EXPECT_EQ(encode_laser(laser(1, 8.0), scan_of({kNaN}), WireFormat::thesis, 0, out), 0);
 }
 
-TEST(LaserPackets, ANanStopsItsOwnPartOnly) {
+TEST(LaserPackets, NanOnlyStopsItsOwnPart) {
   std::vector<double> ranges(311, 1.0);
   ranges[310] = kNaN;
   base::Bytes out;
@@ -120,7 +120,7 @@ TEST(LaserPackets, PayloadsAreAppended) {
   EXPECT_EQ(out, (base::Bytes{9, 1, 0, 0xe8, 3}));
 }
 
-TEST(LaserPackets, TheFormFollowsFromTheSensor) {
+TEST(LaserPackets, SensorDeterminesTheForm) {
   const auto type = [](std::uint32_t samples, double range_max) {
     base::Bytes out;
     const std::vector<double> ranges(samples, 1.0);
@@ -137,7 +137,7 @@ TEST(LaserPackets, TheFormFollowsFromTheSensor) {
   EXPECT_EQ(laser_parts(laser(kExtendedRays, 80.0), WireFormat::farm), 3226u);
 }
 
-TEST(LaserPackets, ScansOfAnySizeComeBackWhole) {
+TEST(LaserPackets, ScansOfAnySizeRoundTrip) {
   for (const std::uint32_t samples : {1u, 2u, 309u, 310u, 311u, 361u, 362u, 620u, 621u, 10'000u, kExtendedRays}) {
     for (const double range_max : {8.0, 100.0}) {
       const SensorSpec row = laser(samples, range_max);
@@ -167,13 +167,13 @@ TEST(LaserPackets, ScansOfAnySizeComeBackWhole) {
   }
 }
 
-TEST(LaserPackets, LargestPayloadsAreTheDocumentedOnes) {
+TEST(LaserPackets, LargestPayloadsMatchTheDocumentation) {
   EXPECT_EQ(kHeader + encoded(std::vector<double>(361, 1.0), 8.0).size(), 788u);
   EXPECT_EQ(encoded(std::vector<double>(361, 1.0), 8.0, 0, WireFormat::thesis).size(), 724u);
   EXPECT_EQ(kHeader + encoded(std::vector<double>(310, 1.0), 80.0).size() + kSignature, 1400u);
 }
 
-TEST(LaserPackets, CountsThatDoNotFitAreRefused) {
+TEST(LaserPackets, RejectsInconsistentCounts) {
   const auto plain = [](const base::Bytes& payload) {
     LaserPart scan;
     return read_laser(payload, false, scan);
@@ -210,7 +210,7 @@ TEST(LaserPackets, CountsThatDoNotFitAreRefused) {
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 14, 9)), PayloadError::none);  // reserved: ignored
 }
 
-TEST(LaserPackets, EveryShorterPrefixIsTooShortAndOneByteMoreTooLong) {
+TEST(LaserPackets, PrefixesAreTooShortAndOneMoreByteIsTooLong) {
   for (const bool extended : {false, true}) {
     base::Bytes whole = payload_of(documented(extended ? "laser_extended" : "laser"));
     LaserPart scan;
@@ -221,7 +221,7 @@ TEST(LaserPackets, EveryShorterPrefixIsTooShortAndOneByteMoreTooLong) {
   }
 }
 
-TEST(LaserPackets, AScanIsWhatItsSensorMayHaveSent) {
+TEST(LaserPackets, ValidatesScansAgainstTheSensor) {
   const auto judged = [](const std::vector<double>& ranges, double said, const SensorSpec& row) {
     const base::Bytes bytes = encoded(ranges, said);
     const std::uint8_t type = said > kPlainRange ? kExtendedType : kPlain;
@@ -236,14 +236,14 @@ TEST(LaserPackets, AScanIsWhatItsSensorMayHaveSent) {
   EXPECT_EQ(judged({429'496}, 100.0, laser(0, 0.0)), PayloadError::none);  // no checks for this spec
 }
 
-TEST(LaserPackets, OtherTypesAreNoScans) {
+TEST(LaserPackets, RejectsOtherTypes) {
   const base::Bytes bytes = encoded({1.0}, 8.0);
   for (const int type : {0, 2, 64, 66, 128})
     EXPECT_EQ(decode_laser(laser(1, 8.0), bytes, static_cast<std::uint8_t>(type), WireFormat::farm).fault,
               PayloadError::out_of_range);
 }
 
-TEST(LaserPackets, SensorsThatAWireCannotCarryAreRefusedAtLoad) {
+TEST(LaserPackets, RejectsSensorsThatTheWireCannotCarryAtLoad) {
   EXPECT_EQ(laser_wire_problem(laser(361, 65.535), WireFormat::thesis), "");
   EXPECT_EQ(laser_wire_problem(laser(kExtendedRays, 1e5), WireFormat::farm), "");
   EXPECT_NE(laser_wire_problem(laser(362, 8.0), WireFormat::thesis).find("362 samples up to 8"), std::string::npos);
@@ -252,7 +252,7 @@ TEST(LaserPackets, SensorsThatAWireCannotCarryAreRefusedAtLoad) {
             std::string::npos);
 }
 
-TEST(LaserPackets, OurOwnBadScansAbort) {
+TEST(LaserPackets, InvalidLocalScansAbort) {
   base::Bytes out;
   const std::vector<double> three(3, 1.0);
   EXPECT_DEATH(encode_laser(laser(4, 8.0), scan_of(three), WireFormat::farm, 0, out), "3 rays, of 4 samples");
@@ -260,7 +260,7 @@ TEST(LaserPackets, OurOwnBadScansAbort) {
   EXPECT_DEATH(encode_laser(laser(3, 99.0), scan_of(three), WireFormat::thesis, 0, out), "in the thesis' layout");
 }
 
-TEST(LaserPackets, AnyBytesAreJudged) {
+TEST(LaserPackets, ValidatesAnyBytes) {
   std::mt19937 random(20260102);  // NOLINT: the same payloads in every run
   const SensorSpec rows[] = {laser(3, 8.0), laser(312, 100.0), laser(0, 0.0)};
   const base::Bytes seeds[] = {payload_of(documented("laser")), payload_of(documented("laser_extended"))};

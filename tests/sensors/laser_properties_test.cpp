@@ -1,4 +1,4 @@
-// Properties of any scan in any world: translated, rotated, mirrored_point, with objects added, sampled more densely.
+// Properties of any scan in any world: translated, rotated, mirrored, with objects added, sampled more densely.
 // Counterexamples are shrunk to small worlds.
 
 #include <gtest/gtest.h>
@@ -103,8 +103,8 @@ std::vector<Pose> poses_of(const Stands& stands) {
   return poses;
 }
 
-/// [m] Largest change of the beam's range from rounding the world anew; infinite for a beam so close to a silhouette
-/// that it may hit or miss it.
+/// Returns the largest change [m] of the beam's range due to rounding the world again; infinite for a beam so close to
+/// a silhouette that it may hit or miss it.
 double slack(const world::World& world, const Pose& pose, std::uint32_t sample) {
   const auto walls = oracle::surfaces(world, {}, 0, 0.1);
   const long double direction = pose.yaw + (-0.5 + static_cast<double>(sample) / (kSamples - 1)) * kFov;
@@ -121,10 +121,10 @@ void expect_alike(const world::World& world, const std::vector<Pose>& poses, con
     }
 }
 
-/// At least one eye; more cost little.
+/// At least one eye; additional eyes cost little.
 Stands some_stands() { return *rc::gen::nonEmpty<Stands>(); }
 
-RC_GTEST_PROP(LaserProperties, MovingTheWholeSceneChangesNoBit, (const Blocks& blocks)) {
+RC_GTEST_PROP(LaserProperties, TranslationChangesNoBit, (const Blocks& blocks)) {
   // Sums of lattice points are exact, so no bit may change.
   const Stands stands = some_stands();
   static glm::dvec2 by;
@@ -134,7 +134,7 @@ RC_GTEST_PROP(LaserProperties, MovingTheWholeSceneChangesNoBit, (const Blocks& b
   RC_ASSERT(look(build(blocks), poses_of(stands)) == look(build(blocks, [](glm::dvec2 p) { return p + by; }), there));
 }
 
-RC_GTEST_PROP(LaserProperties, TurningTheWholeSceneChangesNoRange, (const Blocks& blocks)) {
+RC_GTEST_PROP(LaserProperties, RotationChangesNoRange, (const Blocks& blocks)) {
   const Stands stands = some_stands();
   static double angle;
   angle = 2.0 * M_PI * *rc::gen::inRange(1, 1000) / 1000;
@@ -144,7 +144,7 @@ RC_GTEST_PROP(LaserProperties, TurningTheWholeSceneChangesNoRange, (const Blocks
   expect_alike(build(blocks), poses_of(stands), look(build(blocks), poses_of(stands)), after);
 }
 
-RC_GTEST_PROP(LaserProperties, AMirroredWorldGivesMirroredScans, (const Blocks& blocks)) {
+RC_GTEST_PROP(LaserProperties, MirroredWorldGivesMirroredScans, (const Blocks& blocks)) {
   const Stands stands = some_stands();
   std::vector<Pose> there = poses_of(stands);
   for (Pose& pose : there) pose.y = -pose.y, pose.yaw = -pose.yaw;
@@ -174,8 +174,8 @@ RC_GTEST_PROP(LaserProperties, MoreSamplesContainFewer, (const Blocks& blocks)) 
     }
 }
 
-/// Guards against a farm that sees nothing, which would satisfy the properties above.
-TEST(LaserProperties, ThereIsSomethingToSee) {
+/// Guards against a farm that detects nothing, which would satisfy the properties above.
+TEST(LaserProperties, ScansHitSomething) {
   const Scans scans = look(build({{0, 0, 64, 64, 3}}), {pose_of({128, 0, 500})});
   EXPECT_GT(std::count_if(scans[0].begin(), scans[0].end(), [](double r) { return r < kRange; }), 5);
 }

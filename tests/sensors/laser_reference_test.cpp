@@ -1,4 +1,4 @@
-// The device and the plain C++ caster give equal bits.
+// The device and the plain C++ caster produce equal bits.
 
 #include "sensors/laser_reference.h"
 
@@ -23,7 +23,8 @@ struct Disagreement {
   std::string example;
 };
 
-/// Three ticks of a farm with small motions of all robots; every beam of every laser against the reference.
+/// Runs three ticks of a farm with small motions of all robots and compares every beam of every laser with the
+/// reference.
 Disagreement disagreement(const world::World& world, std::uint64_t seed, bool noise = true) {
   farm::Farm farm(world, device(), {.seed = seed, .noise = noise});
   farm.subscribe_all();
@@ -71,7 +72,7 @@ world::World crowd(const sensors::LaserSettings& laser, std::uint64_t seed) {
 
 TEST(LaserReference, AmongBoxesAndRobots) { expect_same_bits("boxes", disagreement(crowd(scenes::laser(), 1), 1)); }
 
-TEST(LaserReference, InModesThatSkip) {
+TEST(LaserReference, InSkipModes) {
   world::World world = crowd(scenes::laser(), 2);
   for (std::size_t m = 0; m < world.movers.size(); ++m)
     scenes::edit_laser(world.movers[m])->accuracy.word = m % 2 == 0 ? "skip2" : "skip8";
@@ -91,14 +92,14 @@ TEST(LaserReference, WithNoise) {
   expect_same_bits("noise left out", disagreement(crowd(laser, 2), 7, false));
 }
 
-TEST(LaserReference, WithBeamsLeftOut) {
+TEST(LaserReference, WithSkippedBeams) {
   sensors::LaserSettings laser = scenes::laser(361, M_PI, 8.0);
   laser.resolution = 7;
   laser.range_min = 0.4;
   expect_same_bits("resolution 7", disagreement(crowd(laser, 4), 1));
 }
 
-TEST(LaserReference, WideApart) {
+TEST(LaserReference, WithWidelySpacedBeams) {
   // Lanes of one beam: four neighbours would not fit into a sector.
   expect_same_bits("12 beams", disagreement(crowd(scenes::laser(12, 2.0 * M_PI, 5.0), 5), 1));
   expect_same_bits("1 beam", disagreement(crowd(scenes::laser(1, 0.0, 5.0), 6), 1));
@@ -113,7 +114,7 @@ TEST(LaserReference, FarFromTheOrigin) {
   expect_same_bits("far away", disagreement(world, 1));
 }
 
-TEST(LaserReference, HasTheLasersOfEachRobotAsTheyAreCast) {
+TEST(LaserReference, ReturnsEachRobotsLasersAsCast) {
   world::World world = crowd(scenes::laser(181), 2);
   scenes::remove_lasers(world.movers[0]);
   world.movers[1].sensors.push_back(sensors::laser_sensor(scenes::laser(9, 1.0, 3.0)));
@@ -127,8 +128,8 @@ TEST(LaserReference, HasTheLasersOfEachRobotAsTheyAreCast) {
   EXPECT_TRUE(reference.laser(2, 0).single);
 }
 
-/// The comparison detects differences: another seed gives other noise.
-TEST(LaserReference, SeesAnotherSeed) {
+/// The comparison detects differences: another seed produces different noise.
+TEST(LaserReference, DetectsAnotherSeed) {
   sensors::LaserSettings laser = scenes::laser(61);
   laser.noise.range_sigma = 0.01;
   const world::World world = crowd(laser, 2);

@@ -28,7 +28,7 @@ std::vector<LaserSettings> lasers(const std::string& inside, const LoadOptions& 
   return lasers_of(read("position( size [0.4 0.4 0.1] " + inside + " )", options).movers.at(0));
 }
 
-TEST(Lasers, TheOlderDialect) {
+TEST(Lasers, OlderDialect) {
   const auto all = lasers(
       "laser( fov 90 samples 31 range_min 0.1 range_max 4 resolution 3 laser_color \"green\" pose [0.1 0.2 -0.025 30]"
       " size [0.1 0.1 0.19] )");
@@ -46,7 +46,7 @@ TEST(Lasers, TheOlderDialect) {
   EXPECT_EQ(laser.name, "laser:0");
 }
 
-TEST(Lasers, TheOlderDialectsDefaults) {
+TEST(Lasers, DefaultsOfTheOlderDialect) {
   const LaserSettings laser = lasers("laser()").at(0);
   EXPECT_EQ(laser.samples, 180u);
   EXPECT_DOUBLE_EQ(laser.fov, M_PI);
@@ -56,7 +56,7 @@ TEST(Lasers, TheOlderDialectsDefaults) {
   EXPECT_DOUBLE_EQ(laser.X_MS.z, 0.2);
 }
 
-TEST(Lasers, TheNewerDialectIsOneLaserPerSensorInFileOrder) {
+TEST(Lasers, NewerDialectHasOneLaserPerSensorInFileOrder) {
   const auto all = lasers(
       "ranger( pose [0.1 0 0 90] origin [0 0 0.3 0] sensor( pose [0.2 0 0.1 10] range [0.5 3] fov 20 samples 7 ) "
       "sensor() )");
@@ -74,7 +74,7 @@ TEST(Lasers, TheNewerDialectIsOneLaserPerSensorInFileOrder) {
   EXPECT_EQ(all[1].fov, 0.1);
 }
 
-TEST(Lasers, TheArrayOfTheOlderDialect) {
+TEST(Lasers, ArrayOfTheOlderDialect) {
   const auto all = lasers("ranger( scount 2 sview [0.1 2 30] spose[1] [0.1 -0.1 -45] spose[0] [0.1 0.1 45] )");
   ASSERT_EQ(all.size(), 2u);
   EXPECT_DOUBLE_EQ(all[0].X_MS.yaw, 45 * kDegree);
@@ -85,13 +85,13 @@ TEST(Lasers, TheArrayOfTheOlderDialect) {
   EXPECT_EQ(all[1].samples, 1u);
 }
 
-TEST(Lasers, TheOldViewOfASensorIsItsRangeAndField) {
+TEST(Lasers, OldViewSetsRangeAndFieldOfView) {
   const LaserSettings laser = lasers("ranger( sensor( size [0.01 0.04] view [0.1 5 30] ) )").at(0);
   EXPECT_EQ(laser.range_min, 0.1);
   EXPECT_DOUBLE_EQ(laser.fov, 30 * kDegree);
 }
 
-TEST(Lasers, ASensorOverridesItsRangersTiming) {
+TEST(Lasers, SensorOverridesItsRangersTiming) {
   const auto all = lasers("ranger( update_interval 50 latency 0.02 sensor() sensor( rate 5 phase 0.1 latency 0.3 ) )");
   EXPECT_DOUBLE_EQ(all[0].rate, 20.0);
   EXPECT_EQ(all[0].latency, 0.02);
@@ -100,9 +100,9 @@ TEST(Lasers, ASensorOverridesItsRangersTiming) {
   EXPECT_EQ(all[1].latency, 0.3);
 }
 
-TEST(Lasers, ARateCountsMoreThanAnInterval) { EXPECT_EQ(lasers("laser( update_interval 50 rate 4 )").at(0).rate, 4.0); }
+TEST(Lasers, RateOverridesInterval) { EXPECT_EQ(lasers("laser( update_interval 50 rate 4 )").at(0).rate, 4.0); }
 
-TEST(Lasers, NoiseIsAStandardDeviationUnlessStagesVarianceIsAskedFor) {
+TEST(Lasers, NoiseIsADeviationUnlessStageNoiseIsRequested) {
   const std::string text = "laser( noise [0.04 0.01 2] )";
   const raycast::ScanNoise ours = lasers(text).at(0).noise;
   EXPECT_DOUBLE_EQ(ours.range_sigma, 0.04);
@@ -113,31 +113,31 @@ TEST(Lasers, NoiseIsAStandardDeviationUnlessStagesVarianceIsAskedFor) {
   EXPECT_DOUBLE_EQ(lasers(text, options).at(0).noise.range_sigma, 0.2);
 }
 
-TEST(Lasers, TheLimitsThemselvesAreAllowed) {
+TEST(Lasers, AcceptsTheLimits) {
   const LaserSettings laser = lasers("laser( fov 360 samples 1000000 range_min 8 range_max 8 )").at(0);
   EXPECT_LE(laser.fov, 2 * M_PI);
   EXPECT_EQ(laser.samples, 1'000'000u);
   EXPECT_EQ(lasers("laser( fov 0 samples 1 )").at(0).fov, 0.0);
 }
 
-TEST(Lasers, ALaserThatNobodyCarriesMeasuresNothing) {
+TEST(Lasers, WarnsAboutALaserWithoutARobot) {
   const World world = read("laser()");
   EXPECT_TRUE(world.movers.empty());
   EXPECT_EQ(world.walls.size(), 4u);
   EXPECT_NE(warnings_of(world).find("carried by no robot"), std::string::npos);
 }
 
-TEST(Lasers, ALaserCalledLaneedgeIsNoRangeFinder) {
+TEST(Lasers, LaserNamedLaneedgeIsALaneEdgeSensor) {
   const World world = read("position( laser( name \"laneedge\" ) laser() )");
   EXPECT_EQ(lasers_of(world.movers.at(0)).size(), 1u);
   EXPECT_EQ(world.movers.at(0).sensors.at(0).type, "laneedge");
 }
 
-TEST(Lasers, ARangerWithoutSensorsIsMentioned) {
+TEST(Lasers, WarnsAboutARangerWithoutSensors) {
   EXPECT_NE(warnings_of(read("position( ranger() )")).find("measures nothing"), std::string::npos);
 }
 
-TEST(Lasers, NamesAreUniqueOnTheirRobot) {
+TEST(Lasers, NamesAreUniquePerRobot) {
   const auto all = lasers("laser() laser() ranger( sensor() sensor() ) model( laser() )");
   std::set<std::string> names;
   for (const LaserSettings& laser : all) names.insert(laser.name);
@@ -145,7 +145,7 @@ TEST(Lasers, NamesAreUniqueOnTheirRobot) {
   EXPECT_TRUE(names.contains("model:0.laser:0"));
 }
 
-TEST(Lasers, SettingsAreGivenBackByTheirSensor) {
+TEST(Lasers, SettingsRoundTripThroughASensor) {
   LaserSettings laser;
   laser.name = "eye";
   laser.X_MS = {0.1, 0.2, 0.3, 0.4};
@@ -171,8 +171,8 @@ TEST(Lasers, SettingsAreGivenBackByTheirSensor) {
   EXPECT_EQ(all(again), all(laser));
 }
 
-/// A rate or interval of a block replaces the rate and the interval of its ranger.
-TEST(Lasers, ASensorsIntervalOverridesItsRangersRate) {
+/// A rate or interval of a block overrides the rate and the interval of its ranger.
+TEST(Lasers, SensorIntervalOverridesItsRangersRate) {
   EXPECT_DOUBLE_EQ(lasers("ranger( rate 10 sensor( update_interval 50 ) )").at(0).rate, 20.0);
 }
 
@@ -190,7 +190,7 @@ TEST(Lasers, ColoursAreNotMeasured) {
 }
 
 /// One error each, with the line that the user has to correct.
-TEST(Lasers, SettingsOutOfRangeAreRefused) {
+TEST(Lasers, RejectsSettingsOutOfRange) {
   struct Bad {
     const char* text;
     int line;

@@ -1,4 +1,5 @@
-// Every range against the brute-force reference: real and artificial floor plans, near the origin and far from it.
+// Every range is compared with the brute-force reference: real and artificial floor plans, near the origin and far from
+// it.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@ namespace {
 const std::uint32_t kLaserRobots = instrumented() ? 6 : 24;  ///< each beam is checked against every segment
 constexpr double kRanges[] = {0.75, 8.0, 30.0, 100.0};
 
-/// Robots with bodies at random free poses, with two of four ranges each time, so that list configs mix.
+/// Robots with bodies at random free poses, with two of four ranges each time, to mix list configurations.
 world::World with_robots(world::World world, double range, std::uint64_t seed) {
   scenes::add_robots(world, kLaserRobots, scenes::laser(181, M_PI, range), seed);
   return world;

@@ -23,8 +23,8 @@ using sensors::FieldPoint;
 
 double field_z(const world::World& world, const FieldPoint& point) { return sample_on_both(world, {&point, 1})[0].z; }
 
-/// The distance is along the ground, at any height. A magnet at exactly the cut-off counts; a unit in the last place
-/// farther it does not.
+/// The distance is along the ground, at any height. A magnet at exactly the cut-off counts; one ulp farther away it
+/// does not.
 TEST(MagnetCutoff, IsSharpAndAlongTheGround) {
   world::World world;
   world.magnets.push_back(magnet({0, 0}));
@@ -35,8 +35,8 @@ TEST(MagnetCutoff, IsSharpAndAlongTheGround) {
   EXPECT_EQ(field_z(world, {1.5, 1.5, 0.0}), 0.0);
 }
 
-/// Against a sum over exactly the magnets within the cut-off, at points and cut-offs of all sizes.
-TEST(MagnetCutoff, SumsTheMagnetsThatAreNearEnough) {
+/// Compares with a sum over exactly the magnets within the cut-off, at points and cut-offs of all sizes.
+TEST(MagnetCutoff, SumsTheMagnetsWithinIt) {
   Chance chance(5);
   for (const double cutoff : {0.05, 0.5, 3.0, 30.0})
     for (const double offset : {0.0, 1e5}) {
@@ -57,8 +57,8 @@ TEST(MagnetCutoff, SumsTheMagnetsThatAreNearEnough) {
 
 // --- The bound.
 
-/// Contribution of one magnet beyond the cut-off: the formula against the field, and its decrease with distance and
-/// height.
+/// Contribution of one magnet beyond the cut-off: compares the formula with the field, and checks its decrease with
+/// distance and height.
 TEST(MagnetBound, OneMagnet) {
   Chance chance(7);
   for (int i = 0; i < 500; ++i) {
@@ -77,7 +77,7 @@ struct Measured {
   double worst = 0.0;  ///< [T] |B - B_cut|
 };
 
-/// Points all over the world, outside it, at the cut-off distance of magnets, and where the bound was largest.
+/// Measures points all over the world, outside it, at the cut-off distance of magnets, and at the maximum of the bound.
 Measured measure(world::World world, double half, double height, std::uint32_t count) {
   Chance chance(9);
   std::vector<FieldPoint> points;
@@ -124,14 +124,14 @@ TEST(MagnetBound, HoldsOnASheet) {
   expect_bounded("60 x 60 in a square, 8 m", world, 30.0, 0.2, 4.0);
 }
 
-TEST(MagnetBound, HoldsWhereMagnetsLieAtRandomEitherWayUp) {
+TEST(MagnetBound, HoldsForRandomMagnetsInBothOrientations) {
   world::World world = scenes::sheet(1500, 30.0, 10, true);
   world.magnet_cutoff = 3.0;
   expect_bounded("1500 at random, either way up, 3 m", world, 15.0, 0.3, 100.0);
 }
 
 /// Two clusters far apart, and one single magnet: most of the world is empty.
-TEST(MagnetBound, HoldsWhereMostIsEmpty) {
+TEST(MagnetBound, HoldsInAMostlyEmptyWorld) {
   world::World world = scenes::sheet(50, 0.5, 11);
   for (int i = 0; i < 20; ++i) world.magnets.push_back(magnet({3000.0 + 0.01 * i, 4000.0}, 0.0, 5.0));
   world.magnets.push_back(magnet({-700.0, 20.0}, 0.0, -0.1));
@@ -140,7 +140,7 @@ TEST(MagnetBound, HoldsWhereMostIsEmpty) {
 }
 
 /// A sensor just outside the cut-off of a single magnet misses all of its field.
-TEST(MagnetBound, OfOneMagnetIsItsFieldAtTheCutoff) {
+TEST(MagnetBound, EqualsTheFieldOfOneMagnetAtTheCutoff) {
   world::World world;
   world.magnets.push_back(magnet({5, 5}));
   world.magnet_cutoff = 2.0;
@@ -151,15 +151,15 @@ TEST(MagnetBound, OfOneMagnetIsItsFieldAtTheCutoff) {
   }
 }
 
-/// Magnets that are summed as one are taken to be as high as the nearest of them.
-TEST(MagnetBound, OfTwoHeightsIsOfTheNearer) {
+/// Magnets that are summed as one are assumed to be at the height of the nearest of them.
+TEST(MagnetBound, UsesTheNearerOfTwoHeights) {
   world::World world;
   world.magnets = {magnet({0, 0}), magnet({0.01, 0}, -5.0)};
   world.magnet_cutoff = 2.0;
   EXPECT_GE(sensors::truncation_bound(world, 0.1), sensors::field_beyond(1e-7, 2.0, 0.1));
 }
 
-TEST(MagnetBound, IsNothingWithoutACutoffOrWithoutMagnets) {
+TEST(MagnetBound, IsZeroWithoutACutoffOrMagnets) {
   world::World world = scenes::line(10, 0.1);
   EXPECT_EQ(sensors::truncation_bound(world, 0.1), 0.0);
   world.magnets.clear();
@@ -167,7 +167,7 @@ TEST(MagnetBound, IsNothingWithoutACutoffOrWithoutMagnets) {
   EXPECT_EQ(sensors::truncation_bound(world, 0.1), 0.0);
 }
 
-/// Movers' magnets may be anywhere: all of them at the cut-off distance at once.
+/// Movers' magnets may be anywhere, so all of them count at the cut-off distance at once.
 TEST(MagnetBound, CountsMovingMagnetsAtTheCutoff) {
   world::World world;
   scenes::add_carrier(world, {0, 0, 0.5, 0}, scenes::five());
@@ -177,7 +177,7 @@ TEST(MagnetBound, CountsMovingMagnetsAtTheCutoff) {
               1e-5 * sensors::field_beyond(4e-7, 2.0, 0.3));
 }
 
-TEST(MagnetBound, FactsAreOfTheWorstElement) {
+TEST(MagnetBound, SummaryIsForTheWorstElement) {
   world::World world = scenes::line(100, 0.1);
   world.magnet_cutoff = 1.5;
   const sensors::MagnetSummary nobody = sensors::summarize_magnets(world);

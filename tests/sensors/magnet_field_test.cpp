@@ -1,4 +1,4 @@
-// The field of a magnet, boundary case by boundary case, against physics.
+// The field of a magnet, boundary case by boundary case, compared with physics.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ FieldSum field(const world::World& world, const FieldPoint& point) {
   return sample_on_both(world, {&point, 1}, {.magnitudes = true})[0];
 }
 
-TEST(MagnetField, AboveAndBelowItIsTwiceTheStrengthByTheCube) {
+TEST(MagnetField, AboveAndBelowItIsTwiceTheStrengthOverTheCube) {
   for (const double z : {0.5, -0.5}) {
     const FieldSum b = field(one(magnet({3, 4})), {3, 4, z});
     EXPECT_NEAR(b.z, 2e-7 / 0.125, 2e-7 / 0.125 * kMoment);
@@ -39,21 +39,21 @@ TEST(MagnetField, AboveAndBelowItIsTwiceTheStrengthByTheCube) {
   }
 }
 
-TEST(MagnetField, BesideItPointsDownWithTheStrengthByTheCube) {
+TEST(MagnetField, AtTheSideItPointsDownWithTheStrengthOverTheCube) {
   const FieldSum b = field(one(magnet({0, 0})), {0.3, -0.4, 0.0});
   EXPECT_NEAR(b.z, -1e-7 / 0.125, 1e-7 / 0.125 * kMoment);
   EXPECT_NEAR(b.x, 0.0, 1e-7 / 0.125 * 1e-15) << "up to what tells the middle from nowhere";
 }
 
 /// At 45 degrees the dipole field has the direction of (1.5, 0, 0.5) k / r^3.
-TEST(MagnetField, AtFortyFiveDegreesItLeans) {
+TEST(MagnetField, IsInclinedAtFortyFiveDegrees) {
   const FieldSum b = field(one(magnet({0, 0})), {1, 0, 1});
   const double k = 1e-7 / std::pow(2.0, 1.5);
   EXPECT_NEAR(b.x, 1.5 * k, k * 1e-7);
   EXPECT_NEAR(b.z, 0.5 * k, k * 1e-7);
 }
 
-TEST(MagnetField, ANegativeMomentTurnsItRound) {
+TEST(MagnetField, NegativeMomentReversesIt) {
   const FieldSum up = field(one(magnet({0, 0})), {0.1, 0.2, 0.3});
   const FieldSum down = field(one(magnet({0, 0}, 0, -1)), {0.1, 0.2, 0.3});
   EXPECT_EQ(up.x, -down.x);
@@ -62,7 +62,7 @@ TEST(MagnetField, ANegativeMomentTurnsItRound) {
   EXPECT_EQ(up.magnitudes, down.magnitudes);
 }
 
-TEST(MagnetField, InTheMiddleItIsTheFieldAboveItAtTheRadius) {
+TEST(MagnetField, AtTheCentreItIsTheFieldAboveAtTheRadius) {
   const double most = 2e-7 / std::pow(0.0125, 3);
   const FieldSum b = field(one(magnet({7, -2}, 0.04)), {7, -2, 0.04});
   EXPECT_NEAR(b.z, most, most * 4 * kMoment);
@@ -70,8 +70,8 @@ TEST(MagnetField, InTheMiddleItIsTheFieldAboveItAtTheRadius) {
   EXPECT_EQ(std::hypot(b.x, b.y), 0.0);
 }
 
-/// At the limits of doubles no root overflows or underflows.
-TEST(MagnetField, NextToTheMiddleItIsANumber) {
+/// At the limits of doubles, no root overflows or underflows.
+TEST(MagnetField, IsFiniteNextToTheCentre) {
   for (const double d : {1e-300, 1e-160, 1e-40, 1e-30, 1e-20, 1e-18, 1e-17, 1e-9}) {
     for (const FieldPoint& point :
          {FieldPoint{d, 0, 0}, FieldPoint{0, -d, 0}, FieldPoint{0, 0, d}, FieldPoint{0, 0, -d}, FieldPoint{d, d, -d}}) {
@@ -85,7 +85,7 @@ TEST(MagnetField, NextToTheMiddleItIsANumber) {
 }
 
 /// The field is continuous across the radius, in any direction.
-TEST(MagnetField, AtItsRadiusItIsContinuousAndConstantInside) {
+TEST(MagnetField, IsContinuousAtTheRadiusAndConstantInside) {
   Chance chance(1);
   for (int i = 0; i < 40; ++i) {
     const double a = chance.between(-M_PI, M_PI), b = chance.between(-1.5, 1.5);
@@ -114,7 +114,7 @@ TEST(MagnetField, OppositePairsCancelExactly) {
 }
 
 /// The unit of the world file's moments.
-TEST(MagnetField, OneAmpereSquareMetreAtAnEighthOfAMetreIsAGauss) {
+TEST(MagnetField, OneAmpereSquareMetreAtAnEighthOfAMetreIsOneGauss) {
   EXPECT_NEAR(field(one(magnet({0, 0})), {0, 0, 0.125}).z / kGauss, 1.024, 1e-6);
 }
 
@@ -124,7 +124,7 @@ TEST(MagnetField, ALineEvery71MillimetresIs181AboveAnd074AtFifteenCentimetres) {
   EXPECT_NEAR(magnitude(field(world, {0, 0.15, 0.125})) / kGauss, 0.74, 0.005);
 }
 
-TEST(MagnetField, WithoutMagnetsThereIsNone) {
+TEST(MagnetField, IsZeroWithoutMagnets) {
   const FieldSum b = field({}, {1, 2, 3});
   EXPECT_EQ(magnitude(b) + b.magnitudes, 0.0);
 }
@@ -141,7 +141,7 @@ TEST(MagnetField, NeitherOverflowsNorUnderflows) {
     }
 }
 
-TEST(MagnetField, BeyondAllDistancesItIsNothing) {
+TEST(MagnetField, IsZeroAtHugeDistances) {
   for (const double r : {1e12, 1e19, 1e30, 1e150}) {
     const FieldSum b = field(one(magnet({0, 0})), {r, 0, 0});
     EXPECT_LE(magnitude(b), 1e-40) << r;

@@ -1,4 +1,4 @@
-// The grid of magnets behind a cut-off.
+// The grid of magnets that implements the cut-off.
 
 #include "sensors/magnetic_field/magnet_grid.h"
 
@@ -11,7 +11,7 @@
 namespace sf::trial {
 namespace {
 
-/// Every magnet within reach is in some span; spans are ordered and do not overlap.
+/// Expects every magnet within reach to be in some span, and spans to be ordered and disjoint.
 void expect_found(std::span<const glm::dvec2> magnets, const sensors::MagnetGrid& grid, glm::dvec2 centre,
                   double reach) {
   std::vector<sensors::MagnetSpan> spans(grid.most_spans(reach));
@@ -31,7 +31,7 @@ void expect_found(std::span<const glm::dvec2> magnets, const sensors::MagnetGrid
   }
 }
 
-TEST(MagnetGrid, FindsAllThatAreNear) {
+TEST(MagnetGrid, FindsAllNearMagnets) {
   Chance chance(1);
   for (int round = 0; round < 60; ++round) {
     const double offset = round % 3 == 0 ? 1e5 : 0.0;
@@ -50,7 +50,7 @@ TEST(MagnetGrid, FindsAllThatAreNear) {
   }
 }
 
-/// A magnet at exactly the reach, in each direction; points lie on cell borders too.
+/// A magnet at exactly the reach, in each direction. Points also lie on cell borders.
 TEST(MagnetGrid, FindsMagnetsAtTheRim) {
   for (const double offset : {0.0, 1e5}) {
     std::vector<glm::dvec2> magnets;
@@ -62,7 +62,7 @@ TEST(MagnetGrid, FindsMagnetsAtTheRim) {
   }
 }
 
-TEST(MagnetGrid, LeavesMostOthersOut) {
+TEST(MagnetGrid, FindsFewOtherMagnets) {
   const world::World world = scenes::sheet(40'000, 200.0, 3);
   std::vector<glm::dvec2> magnets;
   for (const world::Magnet& m : world.magnets) magnets.push_back(m.p);
@@ -78,7 +78,7 @@ TEST(MagnetGrid, LeavesMostOthersOut) {
   EXPECT_LT(found / 100, 1.25 * M_PI * 100.0) << "314 are within 10 m";
 }
 
-/// Room for the spans of a search: the rows that it crosses with one at each end, and never more than there are.
+/// Room for the spans of a search: the rows that it crosses, plus one at each end, and never more than there are.
 TEST(MagnetGrid, NeedsRoomForTheRowsItCrosses) {
   std::vector<glm::dvec2> magnets;
   for (int i = 0; i < 64; ++i)
@@ -97,7 +97,7 @@ TEST(MagnetGrid, NeedsRoomForTheRowsItCrosses) {
   EXPECT_EQ(grid.most_spans(1e6), 1u) << "without a cut-off all are one span";
 }
 
-TEST(MagnetGrid, HoldsNone) {
+TEST(MagnetGrid, HandlesNoMagnets) {
   sensors::MagnetGrid grid;
   EXPECT_EQ(grid.most_spans(1.0), 0u) << "before it is built";
   for (const double cutoff : {0.0, 1.0}) {

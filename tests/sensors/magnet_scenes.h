@@ -16,14 +16,15 @@ inline world::Magnet magnet(glm::dvec2 p, double z = 0.0, double moment = 1.0, d
   return {p, z, moment, radius, 0};
 }
 
-/// `count` magnets of 1 A m^2 along x, `spacing` [m] apart, the middle one at the origin.
+/// Returns `count` magnets of 1 A m^2 along x, `spacing` [m] apart, the middle one at the origin.
 inline world::World line(std::uint32_t count, double spacing) {
   world::World world;
   for (std::uint32_t i = 0; i < count; ++i) world.magnets.push_back(magnet({(i - 0.5 * (count - 1)) * spacing, 0.0}));
   return world;
 }
 
-/// `count` magnets at random in a square of `side` [m] round the origin, all with north up, or in both directions.
+/// Returns `count` magnets at random in a square of `side` [m] around the origin, all with north up, or in both
+/// directions.
 inline world::World sheet(std::uint32_t count, double side, std::uint64_t seed, bool both_ways = false) {
   world::World world;
   trial::Chance chance(seed);
@@ -43,7 +44,7 @@ inline world::Setting text(const std::string& key, const std::string& value) {
   return {key, {}, value, 1, "made.world"};
 }
 
-/// An array with the given elements, at `height` [m] above its mover's base, without noise.
+/// Returns an array with the given elements, at `height` [m] above its mover's base, without noise.
 inline world::Sensor array(const std::vector<base::Pose>& elements, double height = 0.2) {
   world::Sensor sensor;
   sensor.type = "magnetometer";
@@ -59,7 +60,8 @@ inline world::Sensor array(const std::vector<base::Pose>& elements, double heigh
   return sensor;
 }
 
-/// The thesis' array of five across the robot, 0.20 m ahead, the first one on the right, for a robot that faces +x.
+/// Returns the thesis' array of five across the robot, 0.20 m ahead, the first one on the right, for a robot that faces
+/// +x.
 inline world::Sensor five(double height = 0.2) {
   std::vector<base::Pose> elements;
   for (int i = 0; i < 5; ++i) elements.push_back({0.20, 0.075 * (i - 2), 0.0, 0.0});
@@ -91,13 +93,13 @@ inline Element element(const base::ReadingBlock& reading, std::size_t e) {
 
 using Real = long double;
 
-/// A field [T] in more than 64 bits.
+/// A field [T] with more than 64 bits.
 struct Exact {
   Real x = 0, y = 0, z = 0, magnitudes = 0;
 };
 
-/// The thesis' equation 1, component by component as printed there; |B| is the root of the sum of these components'
-/// squares. Inside a magnet's radius, the field at the radius.
+/// Adds the thesis' equation 1, component by component as printed there. |B| is the root of the sum of these
+/// components' squares. Inside a magnet's radius, the field is that at the radius.
 inline void add_exact(const world::Magnet& m, const sensors::FieldPoint& place, Exact& sum) {
   Real x = Real{place.x} - m.p.x, y = Real{place.y} - m.p.y, z = Real{place.z} - m.z;
   Real r = std::sqrt(x * x + y * y + z * z);
@@ -110,7 +112,7 @@ inline void add_exact(const world::Magnet& m, const sensors::FieldPoint& place, 
   sum.magnitudes += std::sqrt(bx * bx + by * by + bz * bz);
 }
 
-/// Sum over all static magnets, or over those within `cutoff` [m] along the ground.
+/// Returns the sum over all static magnets, or over those within `cutoff` [m] along the ground.
 inline Exact exact(const world::World& world, const sensors::FieldPoint& place, double cutoff = 0.0) {
   Exact sum;
   for (const world::Magnet& m : world.magnets) {

@@ -1,4 +1,4 @@
-// Sums over many magnets: against more than 64 bits, to the bit, and by their properties.
+// Sums over many magnets: compared with more than 64 bits, bit by bit, and by their properties.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ FieldSum summed_field(const world::World& world, const FieldPoint& point) {
   return sample_on_both(world, {&point, 1}, {.magnitudes = true})[0];
 }
 
-TEST(MagnetSum, TheSumOfMagnitudesIsThat) {
+TEST(MagnetSum, SumsMagnitudes) {
   const world::World world = scenes::sheet(300, 3.0, 4, true);
   Chance chance(5);
   for (int i = 0; i < 50; ++i) {
@@ -71,7 +71,7 @@ SumErrors errors(const world::World& world, std::span<const FieldPoint> points) 
   return e;
 }
 
-/// `count` points at `height` [m], some of them directly above a magnet, where the summed_field is largest.
+/// Returns `count` points at `height` [m], some of them directly above a magnet, where the field is largest.
 std::vector<FieldPoint> places_over(const world::World& world, std::uint32_t count, double half, double height) {
   Chance chance(11);
   std::vector<FieldPoint> points;
@@ -106,7 +106,7 @@ std::vector<FieldSum> direct_sums(const world::World& world, std::span<const Fie
 }
 
 /// A sheet of magnets at the origin and 100 km away, near it and high above it: 2000 points in all.
-TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
+TEST(MagnetSum, TwoHundredThousandMagnetsAreAccurateAnywhere) {
   for (const double offset : {0.0, 1e5})
     for (const double height : {0.1, 1.0}) {
       world::World world = scenes::sheet(kMany, 400.0, 7);
@@ -127,7 +127,7 @@ TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
     }
 }
 
-/// All magnets in one spot, so that no grid reduces their number: items stay below the loop limit of drivers, with and
+/// All magnets are in one spot, so no grid reduces their number. Items stay below the loop limit of drivers, with and
 /// without a cut-off.
 TEST(MagnetSum, TwoHundredThousandMagnetsInOneSpot) {
   for (const double cutoff : {0.0, 0.5, 1e6}) {
@@ -141,7 +141,7 @@ TEST(MagnetSum, TwoHundredThousandMagnetsInOneSpot) {
   }
 }
 
-/// Numbers of magnets and points round the sizes of iterations, items and groups.
+/// Numbers of magnets and points around the sizes of iterations, items and groups.
 TEST(MagnetSum, EveryNumberOfMagnetsAndPlaces) {
   Chance chance(8);
   const auto most = sensors::kMostItemMagnets;
@@ -176,7 +176,7 @@ FieldSum mirrored(const sensors::DipoleRow& m, const FieldPoint& p) {
   return {c * dx, c * dy, c * dz - scale, std::abs(scale) * shape};
 }
 
-TEST(MagnetSum, TheKernelIsItsMirrorToTheBit) {
+TEST(MagnetSum, TheKernelIsBitIdenticalToItsMirror) {
   const world::World world = scenes::sheet(50, 1.0, 9, true);
   const auto points = places_over(world, 301, 0.6, 0.05);
   const auto sums = sample_on_both(world, points, {.magnitudes = true});
@@ -191,7 +191,7 @@ TEST(MagnetSum, TheKernelIsItsMirrorToTheBit) {
   }
 }
 
-TEST(MagnetSum, ThreadsAndCompanyChangeNothing) {
+TEST(MagnetSum, DoesNotDependOnThreadsOrOtherPoints) {
   for (const double cutoff : {0.0, 1.0}) {
     world::World world = scenes::sheet(3000, 10.0, 10, true);
     world.magnet_cutoff = cutoff;
@@ -209,7 +209,7 @@ TEST(MagnetSum, ThreadsAndCompanyChangeNothing) {
 
 // --- Properties.
 
-/// The summed_field of two worlds together is the sum of both.
+/// The field of two worlds together is the sum of both fields.
 TEST(MagnetSum, IsLinear) {
   Chance chance(12);
   const world::World one_world = scenes::sheet(40, 2.0, 20, true), other = scenes::sheet(30, 2.0, 21, true);
@@ -223,8 +223,8 @@ TEST(MagnetSum, IsLinear) {
   }
 }
 
-/// A rotated and translated world has the rotated summed_field; mirrored in the plane x = 0, the mirrored summed_field.
-TEST(MagnetSum, TurnsAndMirrorsWithTheWorld) {
+/// A rotated and translated world has the rotated field. A world mirrored in the plane x = 0 has the mirrored field.
+TEST(MagnetSum, RotatesAndMirrorsWithTheWorld) {
   Chance chance(13);
   const world::World world = scenes::sheet(60, 2.0, 22, true);
   for (int i = 0; i < 20; ++i) {

@@ -36,8 +36,8 @@ std::vector<base::Report> reports_at(const world::World& world, int tick) {
   return reports;
 }
 
-/// Magnets of an absent robot are absent too, as in a world without them.
-TEST(MagnetTick, AnAbsentRobotHasNoMagnets) {
+/// Magnets of an absent robot are also absent, as in a world without them.
+TEST(MagnetTick, AbsentRobotHasNoMagnets) {
   for (const double cutoff : {0.0, 1.5}) {
     const world::World world = park(cutoff);
     world::World without = world;
@@ -54,7 +54,7 @@ TEST(MagnetTick, AnAbsentRobotHasNoMagnets) {
   }
 }
 
-TEST(MagnetTick, TheValidationLayerIsSilent) {
+TEST(MagnetTick, ValidationLayerIsSilent) {
   setenv("SENSORFARM_VALIDATE", "1", 1);
   {
     gpu::Device device;

@@ -66,9 +66,9 @@ TEST(MagnetometerNoise, IsNormalAndIndependentOnEachComponent) {
   }
 }
 
-TEST(MagnetometerNoise, TheFieldIsTheLengthOfTheNoisyVector) { EXPECT_EQ(draw_noise(false).lengths_wrong, 0u); }
+TEST(MagnetometerNoise, FieldIsTheLengthOfTheNoisyVector) { EXPECT_EQ(draw_noise(false).lengths_wrong, 0u); }
 
-TEST(MagnetometerNoise, ComesBeforeSaturation) {
+TEST(MagnetometerNoise, IsAddedBeforeSaturation) {
   world::World world;
   world::Sensor sensor = scenes::five();
   sensor.settings.push_back(scenes::setting("noise", {1.0}));

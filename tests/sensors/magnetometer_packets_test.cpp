@@ -29,20 +29,21 @@ base::Bytes bytes_of(std::vector<double> values, WireFormat wire, std::uint8_t e
   return out;
 }
 
-/// [T] Word `i` of a payload: four per element behind a head of four bytes, or one per element without a head.
+/// Returns word `i` of a payload [T]: four per element after a header of four bytes, or one per element without a
+/// header.
 double magnetometer_word(const base::Bytes& payload, WireFormat wire, std::uint32_t i) {
   std::int32_t word = 0;
   std::memcpy(&word, payload.data() + (wire == WireFormat::farm ? 4 : 0) + 4 * i, sizeof word);
   return 1e-8 * word;
 }
 
-TEST(MagnetometerPackets, EveryByteOfTheFarmsForm) {
+TEST(MagnetometerPackets, EncodesEveryByteOfTheFarmForm) {
   // 1 Gauss, -1e-4 Gauss, 0x01020304 units and 0.
   const base::Bytes bytes = bytes_of({1e-4, -1e-8, 0x01020304 * 1e-8, 0.0}, WireFormat::farm);
   EXPECT_EQ(bytes, (base::Bytes{1, 0, 0, 0, 0x10, 0x27, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 4, 3, 2, 1, 0, 0, 0, 0}));
 }
 
-TEST(MagnetometerPackets, EveryByteOfTheThesisForm) {
+TEST(MagnetometerPackets, EncodesEveryByteOfTheThesisForm) {
   const base::Bytes bytes = bytes_of({1e-4, 7, 7, 7, -2e-8, 7, 7, 7}, WireFormat::thesis);
   EXPECT_EQ(bytes, (base::Bytes{0x10, 0x27, 0, 0, 0xFE, 0xFF, 0xFF, 0xFF}));
 }
@@ -62,7 +63,7 @@ TEST(MagnetometerPackets, RoundsToNearestAndSaturates) {
   EXPECT_DOUBLE_EQ(word(-1e300), -21.47483648);
 }
 
-TEST(MagnetometerPackets, ReadingsThatAreNotANumberAreNotSent) {
+TEST(MagnetometerPackets, DoesNotSendNan) {
   for (std::size_t i = 0; i < 8; ++i) {
     std::vector<double> values(8, 1e-5);
     values[i] = std::nan("");
@@ -71,7 +72,7 @@ TEST(MagnetometerPackets, ReadingsThatAreNotANumberAreNotSent) {
   }
 }
 
-TEST(MagnetometerPackets, GoesThereAndBackInBothForms) {
+TEST(MagnetometerPackets, RoundTripsInBothForms) {
   trial::Chance chance(1);
   for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis})
     for (std::uint32_t count = 1; count <= kMostElements; ++count) {
@@ -89,7 +90,7 @@ TEST(MagnetometerPackets, GoesThereAndBackInBothForms) {
     }
 }
 
-TEST(MagnetometerPackets, JudgesWhatCannotBe) {
+TEST(MagnetometerPackets, RejectsImpossibleValues) {
   const base::Bytes good = bytes_of({1e-5, 0, 0, 1e-5, 2e-5, 0, 0, 2e-5}, WireFormat::farm);
   const auto fault = [&](base::Bytes bytes, SensorSpec sensor, WireFormat wire = WireFormat::farm,
                          std::uint8_t type = 3) { return decode_magnetometer(sensor, bytes, type, wire).fault; };
@@ -117,14 +118,14 @@ TEST(MagnetometerPackets, JudgesWhatCannotBe) {
   EXPECT_EQ(fault(longer, row(2)), PayloadError::too_long);
 }
 
-/// A saturated word stands for any larger value.
-TEST(MagnetometerPackets, ASaturatedWordIsBelieved) {
+/// A saturated word represents any larger value.
+TEST(MagnetometerPackets, AcceptsASaturatedWord) {
   const base::Bytes bytes = bytes_of({100.0, -100.0, 0, 0}, WireFormat::farm);
   EXPECT_EQ(decode_magnetometer(row(1, 50.0), bytes, kMagnetometer, WireFormat::farm).fault, PayloadError::none);
 }
 
 /// Arbitrary bytes are validated without a crash.
-TEST(MagnetometerPackets, AnyBytesAreJudged) {
+TEST(MagnetometerPackets, ValidatesAnyBytes) {
   trial::Chance chance(2);
   for (int i = 0; i < 5000; ++i) {
     base::Bytes bytes(chance.below(300));

@@ -31,7 +31,7 @@ world::Sensor listed(std::uint32_t count) {
   return sensor;
 }
 
-TEST(MagnetometerSettings, TheThesisListingNumbered) {
+TEST(MagnetometerSettings, AcceptsTheNumberedListingOfTheThesis) {
   const Magnetometer m = read_magnetometer(listed(5));
   ASSERT_EQ(m.X_SE.size(), 5u);
   EXPECT_DOUBLE_EQ(m.X_SE[0].x, -0.15);
@@ -40,14 +40,14 @@ TEST(MagnetometerSettings, TheThesisListingNumbered) {
   EXPECT_EQ(m.sigma, 0.0);
 }
 
-TEST(MagnetometerSettings, NothingSaidIsOneElementInTheMiddle) {
+TEST(MagnetometerSettings, DefaultIsOneElementAtTheCentre) {
   const Magnetometer m = read_magnetometer(bare());
   ASSERT_EQ(m.X_SE.size(), 1u);
   EXPECT_EQ(m.X_SE[0].x, 0.0);
   EXPECT_EQ(m.X_SE[0].yaw, 0.0);
 }
 
-TEST(MagnetometerSettings, UnitsAreTheFiles) {
+TEST(MagnetometerSettings, UsesTheUnitsOfTheFile) {
   world::Sensor sensor = bare();
   sensor.metres_per_unit = 0.01;
   sensor.radians_per_unit = M_PI / 180;
@@ -64,7 +64,7 @@ TEST(MagnetometerSettings, UnitsAreTheFiles) {
   EXPECT_DOUBLE_EQ(m.sigma, 0.5e-4);
 }
 
-TEST(MagnetometerSettings, ElementsStandAtHalfTheModelsHeight) {
+TEST(MagnetometerSettings, ElementsAreAtHalfTheModelsHeight) {
   world::World world;
   world::Sensor sensor = listed(3);
   sensor.X_MS = {0.1, 0, 0.06, 0};
@@ -80,7 +80,7 @@ TEST(MagnetometerSettings, ElementsStandAtHalfTheModelsHeight) {
   EXPECT_EQ(rows[0].sensor, 0u);
 }
 
-/// One invalid file: the change, and the expected message beside file and line.
+/// One invalid file: the change, and the expected message in addition to file and line.
 struct Wrong {
   std::string name;
   std::function<void(world::Sensor&)> spoil;
@@ -96,7 +96,7 @@ void say(world::Sensor& sensor, const std::string& key, const std::string& text)
   sensor.settings.push_back({key, {}, text, 42, "park.world"});
 }
 
-TEST(MagnetometerSettings, WrongSettingsAreRefusedWithFileAndLine) {
+TEST(MagnetometerSettings, RejectsInvalidSettingsWithFileAndLine) {
   const std::vector<Wrong> corpus = {
       {"the thesis' sample, whose spose[0] came five times",
        [](auto& s) {

@@ -21,14 +21,14 @@ using scenes::magnet;
 
 constexpr double kHigh = 0.125;  // [m] height of the thesis' sensors above the magnets' centres
 
-/// A robot at `X_WM` with `sensor` over one magnet of 1 A m^2 at (1, 0).
+/// Adds a robot at `X_WM` with `sensor` over one magnet of 1 A m^2 at (1, 0).
 Glance over_one(const Pose& X_WM, const world::Sensor& sensor, world::World& world) {
   world.magnets.push_back(magnet({1, 0}));
   scenes::add_carrier(world, X_WM, sensor);
   return Glance(world);
 }
 
-TEST(Magnetometer, ReadsOneGaussRightAboveAMagnet) {
+TEST(Magnetometer, ReadsOneGaussStraightAboveAMagnet) {
   world::World world;
   const Glance run = over_one({0.8, 0, 0, 0}, scenes::five(kHigh), world);
   ASSERT_EQ(run.readings.size(), 1u);
@@ -41,8 +41,8 @@ TEST(Magnetometer, ReadsOneGaussRightAboveAMagnet) {
   EXPECT_NEAR(std::hypot(middle.x, middle.y), 0.0, 1e-17);
 }
 
-/// Elements keep the order of the file; left and right elements measure the same field, mirrored.
-TEST(Magnetometer, ElementsStandWhereTheFileSaysInItsOrder) {
+/// Elements keep the order of the file. Left and right elements measure the same field, mirrored.
+TEST(Magnetometer, ElementsKeepTheirPositionsAndOrder) {
   world::World world;
   const Glance run = over_one({0.8, 0, 0, 0}, scenes::five(kHigh), world);
   for (int i = 0; i < 5; ++i) {
@@ -81,7 +81,7 @@ TEST(Magnetometer, VectorsAreInTheElementsOwnFrame) {
 
 /// The thesis' robot faces -y and its array runs along x from its right to its left. The readings equal those of the
 /// version that faces +x in a world rotated with it.
-TEST(Magnetometer, TheThesisMinusYFrameReadsTheSame) {
+TEST(Magnetometer, ThesisMinusYFrameReadsTheSame) {
   std::vector<Pose> thesis, ours;
   for (int i = 0; i < 5; ++i) {
     thesis.push_back({0.075 * (i - 2), 0, 0, -M_PI / 2});
@@ -137,7 +137,7 @@ TEST(Magnetometer, SaturatesAtBothEnds) {
   EXPECT_EQ(least.field, 0.8 * sensors::kGauss) << "the field has no sign";
 }
 
-TEST(Magnetometer, InTheMiddleOfAMagnetItSaturates) {
+TEST(Magnetometer, SaturatesAtTheCentreOfAMagnet) {
   world::Sensor sensor = scenes::array({{0, 0, 0, 0}}, 0.0);
   sensor.settings.push_back(scenes::setting("ssensitivity", {-100, 100}));
   world::World world;
@@ -145,7 +145,7 @@ TEST(Magnetometer, InTheMiddleOfAMagnetItSaturates) {
   EXPECT_EQ(e.field, 100 * sensors::kGauss) << "it is 1024 Gauss";
 }
 
-TEST(Magnetometer, TheSensitivitysDefaultIsWhatTheWireHolds) {
+TEST(Magnetometer, DefaultSensitivityIsTheRangeOfTheWire) {
   const auto m = sensors::read_magnetometer(scenes::array({{0, 0, 0, 0}}));
   EXPECT_NEAR(m.most, 21.47483647, 1e-12);
   EXPECT_EQ(m.least, -m.most);
@@ -153,8 +153,8 @@ TEST(Magnetometer, TheSensitivitysDefaultIsWhatTheWireHolds) {
 
 // --- Sums.
 
-/// Arrays of both kinds of sum in one world.
-TEST(Magnetometer, AddsMagnitudesWhereItIsTold) {
+/// Arrays with both kinds of sum in one world.
+TEST(Magnetometer, SumsMagnitudesOnRequest) {
   world::World world = scenes::sheet(200, 1.0, 5, true);
   world::Sensor told = scenes::five(), untold = scenes::five();
   told.settings.push_back(scenes::text("sum", "magnitude"));
@@ -175,10 +175,10 @@ TEST(Magnetometer, AddsMagnitudesWhereItIsTold) {
 
 // --- Moving magnets.
 
-/// Moving robots with magnets and arrays: each tick against the sum over all magnets at their current poses. A robot's
-/// own magnets count.
+/// Moving robots with magnets and arrays: each tick is compared with the sum over all magnets at their current poses. A
+/// robot's own magnets count.
 void expect_moving_magnets(double cutoff) {
-  // An odd number, so that the last magnet of an iteration is a mover's first one, which must count once.
+  // An odd number: the last magnet of an iteration is a mover's first one, which must count once.
   world::World world = scenes::sheet(41, 4.0, 6, true);
   world.magnet_cutoff = cutoff;
   Chance chance(7);
@@ -214,14 +214,14 @@ void expect_moving_magnets(double cutoff) {
   }
 }
 
-TEST(Magnetometer, MoversMagnetsGoWithThem) { expect_moving_magnets(0.0); }
-TEST(Magnetometer, MoversMagnetsGoWithThemBehindACutoff) { expect_moving_magnets(1.0); }
+TEST(Magnetometer, MagnetsMoveWithTheirMovers) { expect_moving_magnets(0.0); }
+TEST(Magnetometer, MagnetsMoveWithTheirMoversWithACutoff) { expect_moving_magnets(1.0); }
 
 // --- Properties.
 
 /// World and robot rotated and translated together: the reading is the same, including vectors, which are in the
 /// robot's frame.
-TEST(Magnetometer, ReadingsTurnWithTheRobot) {
+TEST(Magnetometer, ReadingsRotateWithTheRobot) {
   Chance chance(8);
   world::World world = scenes::sheet(80, 1.5, 9, true);
   scenes::add_carrier(world, {0.1, -0.1, 0, 0.7}, scenes::five());
@@ -238,7 +238,7 @@ TEST(Magnetometer, ReadingsTurnWithTheRobot) {
 }
 
 /// Equal bits for any number of threads, with noise and a cut-off.
-TEST(Magnetometer, ThreadsChangeNothing) {
+TEST(Magnetometer, DoesNotDependOnThreads) {
   world::World world = scenes::sheet(500, 5.0, 10, true);
   world.magnet_cutoff = 1.0;
   Chance chance(11);
@@ -258,7 +258,7 @@ TEST(Magnetometer, ThreadsChangeNothing) {
 }
 
 /// A sensor's reading does not depend on other subscriptions.
-TEST(Magnetometer, CompanyChangesNothing) {
+TEST(Magnetometer, DoesNotDependOnOtherSubscriptions) {
   world::World world = scenes::sheet(500, 5.0, 12);
   world.magnet_cutoff = 0.8;
   for (int i = 0; i < 60; ++i) scenes::add_carrier(world, {0.05 * i - 1.5, 0.1, 0, 0}, scenes::five());

@@ -30,7 +30,7 @@ inline std::vector<double> odd_ranges(Chance& chance, const sensors::MapSettings
   return ranges;
 }
 
-/// A robot's pose: anywhere on the map, or up to a range beside it.
+/// Returns a robot's pose: anywhere on the map, or up to a range outside it.
 inline base::Pose odd_pose(Chance& chance, const sensors::MapSettings& settings) {
   const double wide = settings.grid.cell * static_cast<double>(maps::columns(settings.grid));
   const double high = settings.grid.cell * static_cast<double>(maps::rows(settings.grid));

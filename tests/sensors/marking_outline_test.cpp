@@ -1,4 +1,4 @@
-// The outline of a marking, from its definition: the band within half the width of its line.
+// The outline of a marking, tested by its definition: the band within half the width of its line.
 
 #include <gtest/gtest.h>
 
@@ -20,14 +20,14 @@ std::vector<OutlineEdge> reflectors_of(const world::LaneMarking& s) {
   return outline;
 }
 
-/// [m^2] signed area of closed outlines, counter-clockwise positive.
+/// Returns the signed area [m^2] of closed outlines, counter-clockwise positive.
 double area(const std::vector<OutlineEdge>& outline) {
   double twice = 0.0;
   for (const OutlineEdge& f : outline) twice += base::cross(f.a, f.b);
   return 0.5 * twice;
 }
 
-/// Every edge's end is another edge's start, in equal doubles.
+/// Expects every edge's end to be another edge's start, in equal doubles.
 void expect_closed(const std::vector<OutlineEdge>& outline) {
   for (const OutlineEdge& f : outline) {
     const auto follows = [&](const OutlineEdge& g) { return g.a.x == f.b.x && g.a.y == f.b.y; };
@@ -45,7 +45,7 @@ double distance_to_line(const std::vector<glm::dvec2>& line, glm::dvec2 p) {
   return least;
 }
 
-TEST(PaintFaces, AStraightStripeIsARectangle) {
+TEST(PaintFaces, StraightStripeIsARectangle) {
   const auto outline = reflectors_of(marking({1, 2}, {4, 2}, 0.5));
   ASSERT_EQ(outline.size(), 4u);
   expect_closed(outline);
@@ -57,7 +57,8 @@ TEST(PaintFaces, AStraightStripeIsARectangle) {
   }
 }
 
-/// At the limit of a right angle a mitre is 1.41 half widths long; the edges beside it stay half a width off the line.
+/// At the limit of a right angle, a mitre is 1.41 half widths long. The edges next to it stay half a width off the
+/// line.
 TEST(PaintFaces, BendsAreMitred) {
   Chance chance(4);
   for (int round = 0; round < 200; ++round) {
@@ -78,7 +79,7 @@ TEST(PaintFaces, BendsAreMitred) {
         EXPECT_NEAR(length(f.b - f.a), s.width, 1e-12);
         continue;
       }
-      // Between the mitres of its ends an edge is half a width off a straight piece: certainly at its middle third.
+      // Between the mitres of its ends, an edge is half a width off a straight piece: certainly at its middle third.
       bool parallel = false;
       for (std::size_t i = 0; i + 1 < s.line.size(); ++i) {
         const glm::dvec2 e = s.line[i + 1] - s.line[i];
@@ -91,7 +92,7 @@ TEST(PaintFaces, BendsAreMitred) {
   }
 }
 
-TEST(PaintFaces, PaintLiesOnTheLeft) {
+TEST(PaintFaces, PaintIsOnTheLeft) {
   Chance chance(9);
   for (int round = 0; round < 100; ++round) {
     const world::LaneMarking s =
@@ -108,7 +109,7 @@ TEST(PaintFaces, PaintLiesOnTheLeft) {
   }
 }
 
-TEST(PaintFaces, ALineThatClosesHasNoEnds) {
+TEST(PaintFaces, ClosedLineHasNoEnds) {
   world::LaneMarking s = arc({1, 1}, 2.0, 0.0, 2.0 * M_PI, 0.1, 1e-3);
   s.line.back() = s.line.front();
   const auto outline = reflectors_of(s);
@@ -118,12 +119,12 @@ TEST(PaintFaces, ALineThatClosesHasNoEnds) {
 }
 
 /// A band wider than its bend: the inner side runs backward, and the painted side is undefined.
-TEST(PaintFaces, ABandWiderThanItsBendIsThin) {
+TEST(PaintFaces, BandWiderThanItsBendIsNotSolid) {
   const auto outline = reflectors_of(arc({0, 0}, 0.1, 0.0, 2.0, 0.3, 1e-3));
   for (const OutlineEdge& f : outline) EXPECT_FALSE(f.is_solid);
 }
 
-TEST(PaintFaces, StripesOnStripesAreOne) {
+TEST(PaintFaces, RemovesDuplicateStripes) {
   const world::LaneMarking s = arc({0, 0}, 2.0, 0.0, 1.0, 0.1, 1e-3);
   world::LaneMarking turned = s;
   std::reverse(turned.line.begin(), turned.line.end());

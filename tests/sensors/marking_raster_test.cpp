@@ -1,4 +1,4 @@
-// Markings in pixels against the definition: a cell is painted when its centre lies in a marking.
+// Markings in pixels, tested by the definition: a cell is painted when its centre is in a marking.
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ namespace {
 
 using sensors::MarkingRaster;
 
-/// True when `p` is within half the width of a piece, between its ends: exact for straight markings. @param doubt
-/// within 1e-9 m of the outline
+/// Returns true when `p` is within half the width of a piece, between its ends: exact for straight markings. @param
+/// doubt within 1e-9 m of the outline
 bool in_straight(const world::LaneMarking& s, glm::dvec2 p, bool& doubt) {
   const glm::dvec2 e = s.line[1] - s.line[0];
   const double size = length(e);
@@ -30,7 +30,7 @@ glm::dvec2 centre_of(const MarkingRaster& raster, std::int64_t x, std::int64_t y
           (static_cast<double>(raster.first_row() + y) + 0.5) * raster.cell()};
 }
 
-TEST(MarkingRaster, ACellIsPaintedWhenItsCentreIs) {
+TEST(MarkingRaster, CellIsPaintedWhenItsCentreIs) {
   Chance chance(2);
   for (int round = 0; round < 20; ++round) {
     std::vector<world::LaneMarking> lane_markings;
@@ -52,7 +52,7 @@ TEST(MarkingRaster, ACellIsPaintedWhenItsCentreIs) {
   }
 }
 
-/// Dashes keep their lengths: 0.3 m painted, 0.2 m not, along the pixels.
+/// Dashes keep their lengths: 0.3 m painted, 0.2 m unpainted, along the pixels.
 TEST(MarkingRaster, DashesHaveTrueLengths) {
   world::World world;
   add_dashes(world, {0.0, 0.005}, {5.0, 0.005}, 0.05, 0.3, 0.2);
@@ -65,7 +65,7 @@ TEST(MarkingRaster, DashesHaveTrueLengths) {
   }
 }
 
-TEST(MarkingRaster, TheDirectorySaysHowFarPaintIs) {
+TEST(MarkingRaster, DirectoryHoldsTheDistanceToPaint) {
   Chance chance(6);
   std::vector<world::LaneMarking> lane_markings;
   for (int i = 0; i < 4; ++i) lane_markings.push_back(marking(chance.in_square(1.5), chance.in_square(1.5), 0.02));
@@ -97,7 +97,7 @@ TEST(MarkingRaster, KeepsItsMargin) {
   EXPECT_GE(static_cast<double>(raster.first_row() + 8 * raster.rows()) * 0.01, 4.05 + 0.7);
 }
 
-TEST(MarkingRaster, TooManyPixelsAreRefusedByName) {
+TEST(MarkingRaster, RejectsTooManyPixels) {
   try {
     const MarkingRaster raster({marking({0, 0}, {5000, 5000}, 0.1)}, 0.001, 1.0, "hand.world");
     ADD_FAILURE();
@@ -106,7 +106,7 @@ TEST(MarkingRaster, TooManyPixelsAreRefusedByName) {
   }
 }
 
-TEST(MarkingRaster, NoPaintIsOneEmptyBlock) {
+TEST(MarkingRaster, IsOneEmptyBlockWithoutPaint) {
   const MarkingRaster raster({}, 0.01, 1.0, "hand.world");
   EXPECT_EQ(raster.directory().size(), 1u);
   EXPECT_FALSE(raster.painted(0, 0));

@@ -19,14 +19,14 @@ std::vector<Pose> poses_of(const world::World& world) {
   return poses;
 }
 
-TEST(Movers, ARobotNeverSeesItself) {
+TEST(Movers, RobotNeverSeesItself) {
   world::World world;
   scenes::add_robot(world, {}, scenes::laser(361, 2.0 * M_PI, 8.0));
   const Glance glance(world);
   for (const std::uint32_t hit : glance.readings[0].hits) EXPECT_EQ(hit, base::kNoHit);
 }
 
-TEST(Movers, AnotherIsSeenWhereItWasReported) {
+TEST(Movers, OtherRobotIsSeenAtItsReportedPose) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
   const std::uint32_t other = scenes::add_robot(world, {50, 0, 0, 0}, eye(1, 0.0, 8.0));
@@ -42,12 +42,12 @@ TEST(Movers, AnotherIsSeenWhereItWasReported) {
     EXPECT_EQ(readings[0].hits[0], world.movers[other].model);
     EXPECT_EQ(readings[0].X_WM.x, 0.0);
   }
-  // Without a report it stays.
+  // Without a report it stays there.
   EXPECT_NEAR(farm.tick(500'000'000, {})[0].values[0], 3.0 - 0.165, 1e-12);
 }
 
-/// A silent robot is invisible until its next report; the reading is not reused.
-TEST(Movers, AnAbsentRobotIsNotSeenUntilItIsBack) {
+/// An absent robot is invisible until its next report. The reading is not reused.
+TEST(Movers, AbsentRobotIsInvisibleUntilItReturns) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
   const std::uint32_t other = scenes::add_robot(world, {2, 0, 0, 0}, eye(1, 0.0, 8.0));
@@ -70,7 +70,7 @@ TEST(Movers, AnAbsentRobotIsNotSeenUntilItIsBack) {
 }
 
 /// A single robot, and all others absent.
-TEST(Movers, AllOthersMayBeGone) {
+TEST(Movers, AllOtherRobotsMayBeAbsent) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
   for (int i = 0; i < 3; ++i) scenes::add_robot(world, {2.0 + i, 0, 0, 0}, eye(1, 0.0, 8.0));
@@ -83,7 +83,7 @@ TEST(Movers, AllOthersMayBeGone) {
 }
 
 /// The world is 2.5-D: reported heights have no effect.
-TEST(Movers, AreSeenAtTheirHeightAtLoadWhateverReportsSay) {
+TEST(Movers, ReportsDoNotChangeTheirHeight) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
   const std::uint32_t other = scenes::add_robot(world, {2, 0, 0, 0}, eye(1, 0.0, 8.0));
@@ -95,7 +95,7 @@ TEST(Movers, AreSeenAtTheirHeightAtLoadWhateverReportsSay) {
   }
 }
 
-TEST(Movers, OnlyTheirEchoingPartsAtTheBeamsHeightAreSeen) {
+TEST(Movers, OnlyEchoingPartsAtTheBeamHeightAreVisible) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
   const std::uint32_t other = scenes::add_robot(world, {2, 0, 0, 0}, eye(1, 0.0, 8.0));
@@ -116,7 +116,7 @@ TEST(Movers, OverlappingRobots) {
 }
 
 /// A sensor inside a robot, with a third robot that extends into the same body.
-TEST(Movers, InsideARobotAThirdThatReachesInIsSeen) {
+TEST(Movers, SensorInsideARobotSeesAThirdOneExtendingIntoIt) {
   world::World world;
   add_eye(world, {-0.05, 0, 0, 0}, eye(61, 1.0, 8.0));
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
@@ -139,7 +139,7 @@ TEST(Movers, RobotsTouchingAWall) {
 }
 
 /// A dense crowd with occlusion and overlaps, near the origin and far from it.
-TEST(Movers, ADenseCrowd) {
+TEST(Movers, DenseCrowd) {
   for (const double far : {0.0, 1e5}) {
     world::World world = scenes::boxes(8, 7.0, 6);
     Chance chance(7);
@@ -197,8 +197,8 @@ TEST(Movers, LongThinMovers) {
   expect_exact("long thin movers", sweep(world));
 }
 
-/// Crowds, where robots at one place see each other from inside: at one pose, turned, nearly at one pose, in a line
-/// along their beams, some inside a large one, and two groups side by side.
+/// Crowds in which robots at one place see each other from inside: at one pose, rotated, nearly at one pose, in a line
+/// along their beams, some inside a large one, and two groups next to each other.
 TEST(Movers, CrowdsOfEveryKind) {
   const auto pose = [](int layout, int i, Chance& chance) -> Pose {
     const double x = chance.between(-1.0, 1.0), y = chance.between(-1.0, 1.0);

@@ -35,7 +35,7 @@ double correlation(const std::vector<double>& p, const std::vector<double>& q) {
   return sum / static_cast<double>(p.size());
 }
 
-/// Robots before a long slanted wall y = 2 + x / 2, each with two equal sensors.
+/// Robots in front of a long slanted wall y = 2 + x / 2, each with two equal sensors.
 world::World slanted(const raycast::ScanNoise& noise, double range_max = 30.0) {
   world::World world;
   scenes::add_outline(world, {{-100, -48}, {100, 52}, {100, 60}, {-100, -40}}, "wall");
@@ -49,7 +49,7 @@ world::World slanted(const raycast::ScanNoise& noise, double range_max = 30.0) {
   return world;
 }
 
-/// Draws by tick, then sensor, then beam, extracted by `of(reading, beam, quiet range)`.
+/// Returns draws by tick, then sensor, then beam, extracted by `of(reading, beam, quiet range)`.
 template <class Of>
 std::vector<double> draws(const world::World& world, std::uint64_t seed, Of of) {
   farm::Farm noisy(world, device(), {.seed = seed});
@@ -72,7 +72,7 @@ void expect_standard_normal(const std::vector<double>& all) {
   EXPECT_LT(chi_square(all), 72.0);
 }
 
-/// Neighbouring beams, sensors, robots and ticks are uncorrelated, within 4 standard deviations.
+/// Expects neighbouring beams, sensors, robots and ticks to be uncorrelated, within 4 standard deviations.
 void expect_independent(const std::vector<double>& all) {
   const std::size_t per_tick = static_cast<std::size_t>(kNoisyRobots) * 2 * kBeams;
   for (const std::size_t lag :
@@ -106,7 +106,7 @@ TEST(Noise, BothPartsAddAsVariances) {
   expect_standard_normal(all);
 }
 
-/// Bearing at which the slanted wall is at `range`: r (sin b - cos b / 2) = 2 + x / 2 - y.
+/// Returns the bearing at which the slanted wall is at `range`: r (sin b - cos b / 2) = 2 + x / 2 - y.
 double bearing_at(const base::Pose& X_WS, double range) {
   const double gap = (2.0 + 0.5 * X_WS.x - X_WS.y) / std::hypot(1.0, 0.5);
   const double normal = std::atan2(1.0, -0.5);
@@ -129,7 +129,7 @@ TEST(Noise, AngularNoiseTurnsTheBeamBeforeItIsCast) {
   expect_independent(all);
 }
 
-/// Angles so large that a lane's beams no longer lie together: the distribution holds, and ranges are exact.
+/// Angles so large that a lane's beams are no longer adjacent: the distribution holds, and ranges are exact.
 TEST(Noise, LargeAngularNoise) {
   world::World world = slanted({.angle_sigma = 0.03});
   for (world::Mover& mover : world.movers)
@@ -143,7 +143,7 @@ TEST(Noise, LargeAngularNoise) {
   }));
 }
 
-TEST(Noise, MissesAreNotDisturbed) {
+TEST(Noise, MissesHaveNoNoise) {
   world::World world = slanted({.range_sigma = 0.5, .range_proportional = 0.1}, 1.0);
   const Glance glance(world, {.seed = 6});
   for (const auto& reading : glance.readings)
@@ -166,7 +166,7 @@ TEST(Noise, StaysWithinRangeMinAndRangeMax) {
   EXPECT_GT(high, 10u);
 }
 
-TEST(Noise, OffMeansOff) {
+TEST(Noise, CanBeDisabled) {
   const world::World world = slanted({.range_sigma = 0.5, .angle_sigma = 0.1});
   const Glance quiet(world, {.noise = false});
   std::vector<base::Pose> poses;
@@ -174,7 +174,7 @@ TEST(Noise, OffMeansOff) {
   expect_exact("noise off", compare(world, poses, quiet.readings));
 }
 
-TEST(Noise, AnotherSeedGivesOtherNumbers) {
+TEST(Noise, DependsOnTheSeed) {
   const world::World world = slanted({.range_sigma = 0.02});
   const Glance one(world, {.seed = 1});
   const Glance two(world, {.seed = 2});

@@ -25,12 +25,12 @@ sensors::MapSettings map_of(double fov, std::uint32_t samples, double range_max,
 struct CellTally {
   std::size_t scans = 0;
   std::size_t cells = 0;      ///< compared
-  std::size_t occupied = 0;   ///< of these
-  std::size_t free = 0;       ///< of these
-  std::size_t different = 0;  ///< words
+  std::size_t occupied = 0;   ///< occupied cells among these
+  std::size_t free = 0;       ///< free cells among these
+  std::size_t different = 0;  ///< words that differ
 };
 
-/// `rounds` scans into every map, or each time into `some` of them, in both orders; all maps are compared after each
+/// Adds `rounds` scans to every map, or each time to `some` of them, in both orders. Compares all maps after every
 /// `every`-th scan.
 CellTally contest(const std::vector<sensors::MapSettings>& map_settings, std::size_t rounds, std::size_t every,
                   std::uint64_t seed, bool some = false) {
@@ -71,7 +71,7 @@ CellTally contest(const std::vector<sensors::MapSettings>& map_settings, std::si
   return tally;
 }
 
-/// Many maps of equal settings, here and 100 km away.
+/// Returns many maps of equal settings, here and 100 km away.
 std::vector<sensors::MapSettings> spread(const sensors::MapSettings& common, std::size_t count) {
   std::vector<sensors::MapSettings> map_settings;
   Chance chance(count);
@@ -85,7 +85,7 @@ std::vector<sensors::MapSettings> spread(const sensors::MapSettings& common, std
   return map_settings;
 }
 
-TEST(OccupancyBatch, AgreesWithTheRuleOnTheThesisLaser) {
+TEST(OccupancyBatch, MatchesTheRuleForTheThesisLaser) {
   const CellTally tally = contest(spread(map_of(M_PI, 361, 0.75), 50), 40, 5, 1);
   EXPECT_EQ(tally.different, 0u);
   EXPECT_EQ(tally.scans, 2'000u);
@@ -94,9 +94,9 @@ TEST(OccupancyBatch, AgreesWithTheRuleOnTheThesisLaser) {
   RecordProperty("cells", static_cast<int>(tally.cells));
 }
 
-TEST(OccupancyBatch, AgreesWithTheRuleOnOtherLasers) {
+TEST(OccupancyBatch, MatchesTheRuleForOtherLasers) {
   const std::vector<sensors::MapSettings> cases{
-      map_of(2.0 * M_PI, 720, 2.0),         // all round: candidates wrap at the rear
+      map_of(2.0 * M_PI, 720, 2.0),         // full turn: candidates wrap at the rear
       map_of(2.0 * M_PI, 7, 3.0),           // few beams, far apart
       map_of(1.9 * M_PI, 100, 1.5),         // a gap at the rear
       map_of(M_PI / 6, 61, 4.0),            // longer than the map
@@ -116,13 +116,13 @@ TEST(OccupancyBatch, AgreesWithTheRuleOnOtherLasers) {
   }
 }
 
-TEST(OccupancyBatch, AgreesWithTheRuleWhereLasersAreBlindNearby) {
+TEST(OccupancyBatch, MatchesTheRuleForLasersWithAMinimumRange) {
   sensors::MapSettings settings = map_of(M_PI, 181, 1.5);
   settings.range_min = 0.2;
   EXPECT_EQ(contest(spread(settings, 20), 10, 2, 30).different, 0u);
 }
 
-TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
+TEST(OccupancyBatch, LogOddsMatchAmongPlainMaps) {
   std::vector<sensors::MapSettings> map_settings = spread(map_of(M_PI, 181, 1.2), 24);
   for (std::size_t i = 0; i < map_settings.size(); i += 2) map_settings[i].odds = maps::LogOddsUpdate{};
   map_settings[0].odds = maps::LogOddsUpdate{32767, 32767, 32767};  // the largest
@@ -133,14 +133,14 @@ TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
   EXPECT_GT(tally.occupied, 1'000u);
 }
 
-TEST(OccupancyBatch, AgreesWithTheRuleAtTheFarthestEnds) {
+TEST(OccupancyBatch, MatchesTheRuleAtTheFarthestEnds) {
   // 1022 cells: the longest lines, with the smallest differences between cells.
   sensors::MapSettings settings = map_of(2.0 * M_PI, 97, 1'022 * 0.01, 0.01);
   settings.grid.word_columns = settings.grid.word_rows = 300;
   EXPECT_EQ(contest(spread(settings, 4), 8, 2, 50).different, 0u);
 }
 
-TEST(OccupancyBatch, AgreesWithTheRuleOnMapsOfDifferentShapes) {
+TEST(OccupancyBatch, MatchesTheRuleForMapsOfDifferentShapes) {
   std::vector<sensors::MapSettings> map_settings;
   Chance chance(60);
   for (int i = 0; i < 30; ++i) {
@@ -164,7 +164,7 @@ TEST(OccupancyBatch, UpdatesAFewMapsAtATimeInAnyOrder) {
   EXPECT_GT(tally.occupied, 1'000u);
 }
 
-TEST(OccupancyBatch, ScansThatSayNothingChangeNothing) {
+TEST(OccupancyBatch, EmptyScansChangeNothing) {
   base::ThreadPool thread_pool(2);
   sensors::MapBatch batch(device(), thread_pool, {map_of(M_PI, 3, 1.0), map_of(M_PI, 3, 1.0)}, false);
   const double nan = std::nan("");
@@ -182,8 +182,8 @@ TEST(OccupancyBatch, ScansThatSayNothingChangeNothing) {
 }
 
 TEST(OccupancyBatch, DrawsOneScanCellByCell) {
-  // Cells of 1 m, the sensor in the middle of cell (10, 10). The beam ahead hits at 3 m; one beam to each side has no
-  // return within 4 m.
+  // Cells of 1 m, with the sensor at the centre of cell (10, 10). The beam ahead hits at 3 m. The beams to both sides
+  // have no return within 4 m.
   sensors::MapSettings p = map_of(M_PI, 3, 4.0, 1.0, {0.0, 40.0});
   p.grid.word_columns = p.grid.word_rows = 10;
   base::ThreadPool thread_pool(1);
@@ -205,7 +205,7 @@ TEST(OccupancyBatch, DrawsOneScanCellByCell) {
     }
 }
 
-/// One word of a map fills its tables to their ends, and each of its cells is hit in turn.
+/// One word of a map fills its tables completely, and each of its cells is hit in turn.
 TEST(OccupancyBatch, EveryCellOfTheSmallestMapCanBeHit) {
   sensors::MapSettings p = map_of(0.0, 1, 4.0, 1.0, {0.0, 4.0});
   p.grid.word_columns = p.grid.word_rows = 1;

@@ -57,8 +57,8 @@ void expect_refused(const std::vector<world::Setting>& settings, const std::stri
   }
 }
 
-/// Noise may lead the range of a surface that is too near into the limits; its flag keeps it out of maps.
-TEST(OccupancyTick, SurfacesThatAreTooNearAreNoObstacles) {
+/// Noise may move the range of a surface that is too near into the limits. Its flag keeps it out of maps.
+TEST(OccupancyTick, IgnoresSurfacesThatAreTooNear) {
   for (const double range_min : {0.5, 0.0}) {
     world::World world;
     scenes::add_outline(world, {{0.3, -5}, {1, -5}, {1, 5}, {0.3, 5}}, "wall");
@@ -89,7 +89,7 @@ TEST(OccupancySettings, Defaults) {
   EXPECT_NEAR(std::remainder(map.settings.grid.left, 0.03), 0.0, 1e-9) << "on a lattice that all such maps share";
 }
 
-TEST(OccupancySettings, AsWritten) {
+TEST(OccupancySettings, ReadsAllSettings) {
   const sensors::Occupancy map =
       only(mapped(1, {numbers("cell", {0.05}), numbers("words", {20, 10}), numbers("offset", {0.25, -1.75}),
                       numbers("rate", {2}), numbers("log_odds", {70, 30, 500}), text("laser", "laser")}));
@@ -100,7 +100,7 @@ TEST(OccupancySettings, AsWritten) {
   EXPECT_FALSE(only(mapped(1, {numbers("log_odds", {0})})).settings.odds);
 }
 
-TEST(OccupancySettings, WrongSettingsAreRefused) {
+TEST(OccupancySettings, RejectsInvalidSettings) {
   expect_refused({numbers("cell", {0.0})}, "'cell' is 0");
   expect_refused({numbers("cell", {0.0005})}, "more than 1022 cells");
   expect_refused({numbers("words", {30})}, "[columns rows]");
@@ -133,7 +133,7 @@ std::vector<base::Report> map_reports_at(const world::World& world, int tick) {
   return reports;
 }
 
-/// Runs `ticks` tenths of seconds; every delivered map must equal the map of the delivered scans.
+/// Runs `ticks` tenths of seconds. Every delivered map must equal the map of the delivered scans.
 std::size_t compare_run(const world::World& world, int ticks) {
   farm::Farm farm(world, device());
   farm.subscribe_all();
@@ -161,11 +161,11 @@ std::size_t compare_run(const world::World& world, int ticks) {
   return compared;
 }
 
-TEST(OccupancyTick, MapsAreWhatTheScansSay) { EXPECT_EQ(compare_run(mapped(12), 31), 12u * 4) << "at 0, 1, 2 and 3 s"; }
+TEST(OccupancyTick, MapsMatchTheScans) { EXPECT_EQ(compare_run(mapped(12), 31), 12u * 4) << "at 0, 1, 2 and 3 s"; }
 
-TEST(OccupancyTick, LogOddsLikewise) { EXPECT_EQ(compare_run(mapped(5, {numbers("log_odds", {1})}), 31), 5u * 4); }
+TEST(OccupancyTick, LogOddsMatchTheScans) { EXPECT_EQ(compare_run(mapped(5, {numbers("log_odds", {1})}), 31), 5u * 4); }
 
-TEST(OccupancyTick, TheWordIsSaidWherePosesAreEstimates) {
+TEST(OccupancyTick, FlagsAreClearForEstimatedPoses) {
   const world::World world = mapped(1);
   farm::FarmOptions options;
   options.true_poses = false;
@@ -177,7 +177,7 @@ TEST(OccupancyTick, TheWordIsSaidWherePosesAreEstimates) {
   EXPECT_EQ(seen, 1u);
 }
 
-TEST(OccupancyTick, AMapThatNobodyHearsStillGrows) {
+TEST(OccupancyTick, MapWithoutSubscribersIsUpdated) {
   const world::World world = mapped(1);
   farm::Farm quiet(world, device()), loud(world, device());
   loud.subscribe_all();
@@ -197,7 +197,7 @@ TEST(OccupancyTick, AMapThatNobodyHearsStillGrows) {
   EXPECT_EQ(heard, unheard);
 }
 
-TEST(OccupancyTick, ThreadsChangeNothing) {
+TEST(OccupancyTick, DoesNotDependOnThreads) {
   const world::World world = mapped(20);
   std::uint64_t hashes[2] = {};
   for (const unsigned threads : {1u, 4u}) {
@@ -211,7 +211,7 @@ TEST(OccupancyTick, ThreadsChangeNothing) {
   EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-TEST(OccupancyTick, TheValidationLayerIsSilent) {
+TEST(OccupancyTick, ValidationLayerIsSilent) {
   setenv("SENSORFARM_VALIDATE", "1", 1);
   {
     gpu::Device own;
@@ -250,7 +250,7 @@ std::vector<double> any_words(std::uint32_t count, std::uint64_t seed) {
   return words;
 }
 
-TEST(OccupancyPackets, GoThereAndBackInBothForms) {
+TEST(OccupancyPackets, RoundTripInBothForms) {
   const sensors::SensorType& type = sensors::occupancy_type;
   for (const auto& [columns, rows] : {std::pair{30u, 30u}, {1u, 1u}, {67u, 5u}, {7u, 146u}}) {
     const sensors::SensorSpec row = map_row(columns, rows);
@@ -277,7 +277,7 @@ TEST(OccupancyPackets, GoThereAndBackInBothForms) {
   }
 }
 
-TEST(OccupancyPackets, OthersMapsAreRefused) {
+TEST(OccupancyPackets, RejectsMapsOfOtherSensors) {
   const sensors::SensorType& type = sensors::occupancy_type;
   const auto words = any_words(900, 3);
   base::ReadingBlock reading;
@@ -296,7 +296,7 @@ TEST(OccupancyPackets, OthersMapsAreRefused) {
             sensors::PayloadError::out_of_range);
 }
 
-TEST(OccupancyPackets, TheThesisFormIsForSmallMaps) {
+TEST(OccupancyPackets, ThesisFormIsLimitedToSmallMaps) {
   const sensors::SensorType& type = sensors::occupancy_type;
   EXPECT_EQ(type.wire_problem(map_row(7, 146), WireFormat::thesis), "") << "1022 words";
   EXPECT_NE(type.wire_problem(map_row(32, 32), WireFormat::thesis), "");

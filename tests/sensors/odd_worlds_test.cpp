@@ -29,7 +29,7 @@ void look_at_everything(world::World& world, double half, double range, std::uin
   }
 }
 
-TEST(OddWorlds, NoWallsAtAll) {
+TEST(OddWorlds, NoWalls) {
   world::World world;
   add_eye(world, {1, 2, 0, 3}, eye(361, 2.0 * M_PI, 8.0));
   const Glance run(world);
@@ -38,7 +38,7 @@ TEST(OddWorlds, NoWallsAtAll) {
   for (const std::uint32_t hit : run.readings[0].hits) EXPECT_EQ(hit, base::kNoHit);
 }
 
-TEST(OddWorlds, NoRobotsAtAll) {
+TEST(OddWorlds, NoRobots) {
   const world::World world = scenes::boxes(3, 5.0, 1);
   EXPECT_TRUE(Glance(world).readings.empty());
 }
@@ -50,7 +50,7 @@ TEST(OddWorlds, OneSegment) {
   expect_exact("one segment", sweep(world));
 }
 
-/// One wall ends on another's middle, one crosses it, three meet in a point.
+/// One wall ends at the middle of another, one crosses it, three meet in a point.
 TEST(OddWorlds, JunctionsAndCrossings) {
   for (const double yaw : {0.0, 0.4}) {
     world::World world;
@@ -79,8 +79,8 @@ TEST(OddWorlds, CoincidentSegments) {
   expect_exact("coincident segments", sweep(world));
 }
 
-/// Of coincident surfaces the first in the world's table is reported, in any order of lists.
-TEST(OddWorlds, OfCoincidentSurfacesTheFirstIsNamed) {
+/// Among coincident surfaces, the first in the world's table is reported, in any order of lists.
+TEST(OddWorlds, ReportsTheFirstOfCoincidentSurfaces) {
   world::World world;
   scenes::add_outline(world, {{1, -1}, {2, -1}, {2, 1}, {1, 1}}, "first");
   scenes::add_outline(world, {{1, -1}, {2, -1}, {2, 1}, {1, 1}}, "second");
@@ -89,7 +89,7 @@ TEST(OddWorlds, OfCoincidentSurfacesTheFirstIsNamed) {
   for (const std::uint32_t hit : run.readings[0].hits) EXPECT_EQ(hit, world.walls[0].model);
 }
 
-/// Nanometres beside a hundred kilometres.
+/// Nanometres next to a hundred kilometres.
 TEST(OddWorlds, TinyAndHugeSegments) {
   for (const double range : {0.75, 100.0}) {
     world::World world;
@@ -108,7 +108,7 @@ TEST(OddWorlds, TinyAndHugeSegments) {
 }
 
 /// A curve of a thousand chords, each shorter than a millimetre: neighbours differ by less than 15 degrees.
-TEST(OddWorlds, ARoundPillarOfManyChords) {
+TEST(OddWorlds, RoundPillarOfManyChords) {
   world::World world;
   std::vector<glm::dvec2> corners;
   for (int i = 0; i < 1000; ++i) corners.push_back(base::rotate(i * 2.0 * M_PI / 1000, {0.1, 0.0}));

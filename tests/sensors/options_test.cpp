@@ -32,7 +32,7 @@ TEST(Options, NearEchoesReadRangeMin) {
   EXPECT_EQ(ranges[1], 2.005);
 }
 
-TEST(Options, RangeMaxIsWhereEchoesEnd) {
+TEST(Options, EchoesEndAtRangeMax) {
   EXPECT_EQ(read(eye(1, 0.0, std::nextafter(2.0, 0.0)))[0], std::nextafter(2.0, 0.0)) << "just short of the wall";
   EXPECT_EQ(read(eye(1, 0.0, 2.0))[0], 2.0) << "at the wall";
   world::World world = one_wall();
@@ -42,7 +42,7 @@ TEST(Options, RangeMaxIsWhereEchoesEnd) {
   EXPECT_EQ(glance.readings[0].hits[0], world.walls[0].model);
 }
 
-/// Every n-th sample and the last are cast; the others are interpolated linearly.
+/// Every n-th sample and the last are cast. The others are interpolated linearly.
 TEST(Options, ResolutionCastsEveryNthBeam) {
   world::World world = one_wall();
   const sensors::LaserSettings fine = eye(10, 1.2, 8.0);
@@ -61,7 +61,7 @@ TEST(Options, ResolutionCastsEveryNthBeam) {
   EXPECT_EQ(glance.farm.stats().work.rays, 10u + 4u) << "beams left out cost nothing";
 }
 
-TEST(Options, InterpolatedBeamsNameWhatBothNeighboursMet) {
+TEST(Options, InterpolatedBeamsReportTheModelOfBothNeighbours) {
   world::World world;
   scenes::add_outline(world, {{2, -50}, {3, -50}, {3, 0.001}, {2, 0.001}}, "right half");
   sensors::LaserSettings laser = eye(9, 1.2, 8.0);
@@ -73,7 +73,7 @@ TEST(Options, InterpolatedBeamsNameWhatBothNeighboursMet) {
   for (const std::size_t i : {5u, 6u, 7u, 8u}) EXPECT_EQ(hits[i], base::kNoHit) << i;
 }
 
-TEST(Options, AResolutionBeyondTheSamplesCastsBothEnds) {
+TEST(Options, ResolutionBeyondTheSamplesCastsBothEnds) {
   sensors::LaserSettings laser = eye(9, 1.2, 8.0);
   laser.resolution = 1000;
   const raycast::BeamPlan plan = raycast::plan_beams(laser, false);
@@ -82,7 +82,8 @@ TEST(Options, AResolutionBeyondTheSamplesCastsBothEnds) {
   for (const double range : ranges) EXPECT_NEAR(range, 2.0 / std::cos(0.6), 1e-12);
 }
 
-/// Bearings: both ends exact, the middle 0, mirrored to the bit. Four beams share a lane until they spread too far.
+/// Bearings: both ends are exact, the middle is 0, mirrored bit by bit. Four beams share a lane until they spread too
+/// far.
 TEST(Options, BearingsAndLanes) {
   const sensors::LaserSettings fan = eye(361, M_PI, 8.0);
   EXPECT_EQ(bearing_of(fan, 0), -M_PI / 2);
@@ -103,7 +104,7 @@ TEST(Options, BearingsAndLanes) {
 }
 
 /// Unused places of a lane repeat its last beam.
-TEST(Options, TheLastLaneIsFilledUp) {
+TEST(Options, LastLaneIsPadded) {
   const sensors::LaserSettings laser = eye(5, 0.2, 8.0);
   const raycast::BeamPlan plan = raycast::plan_beams(laser, false);
   ASSERT_EQ(plan.lanes(), 2u);

@@ -31,7 +31,7 @@ struct ScriptedSensor : sensorfarm::Sensor {
   void read(const sensorfarm::Measurement& m, Values values) const override { read_values(m, values); }
 };
 
-/// What the next sensors of a type do; types stay for the whole program.
+/// Actions of the next sensors of a type; types stay registered for the whole program.
 std::map<std::string, Read> reads;
 
 void add_type(const std::string& name, std::uint8_t id, const std::string& kernel = "") {
@@ -70,7 +70,7 @@ std::vector<base::Report> standing(const world::World& world) {
   return reports;
 }
 
-TEST(OwnSensors, AreReadWithTheirOwnRateRowsAndPose) {
+TEST(OwnSensors, UseTheirOwnRateRowsAndPose) {
   add_type("scripted", 20);
   reads["scripted"] = [](const sensorfarm::Measurement& m, Values values) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i) + m.X_WS.z;
@@ -93,11 +93,11 @@ TEST(OwnSensors, AreReadWithTheirOwnRateRowsAndPose) {
   EXPECT_TRUE(std::ranges::equal(on_host.tick(50'000'000, reports)[0].values, readings[0].values));
 }
 
-TEST(OwnSensors, CastAsLasersDo) {
+TEST(OwnSensors, CastLikeLasers) {
   add_type("scripted", 20);
   world::World world = world::load_world(SF_SOURCE_DIR "/worlds/cave.world", {.sensors = world_file_words()});
   world::clone_robots(world, 30, 5);
-  // One of our sensors on each robot, where its laser stands.
+  // One of the user's sensors on each robot, at the pose of its laser.
   const world::World donor = world_with("scripted( )");
   for (world::Mover& mover : world.movers) {
     world::Sensor own = donor.movers[0].sensors[0];
@@ -122,7 +122,7 @@ TEST(OwnSensors, CastAsLasersDo) {
   for (std::size_t m = 0; m < cast.size(); ++m) EXPECT_NEAR(cast[m], ranges[m], 1e-12) << m;
 }
 
-TEST(OwnSensors, SeeRobotsButNotTheirOwnAndNothingBelowThem) {
+TEST(OwnSensors, SeeRobotsExceptTheirOwnAndNothingBelow) {
   add_type("scripted", 20);
   std::vector<sensorfarm::Hit> hits;
   reads["scripted"] = [&](const sensorfarm::Measurement& m, Values) {
@@ -144,7 +144,7 @@ position( name "r1" size [0.3 0.3 0.4] pose [0 -1 0 0] )");
   EXPECT_EQ(world.models[hits[3].model].name, "r1");
 }
 
-TEST(OwnSensors, NoiseIsAFunctionOfSeedAndReading) {
+TEST(OwnSensors, NoiseDependsOnlyOnSeedAndReading) {
   add_type("scripted", 20);
   std::vector<double> drawn;
   reads["scripted"] = [&](const sensorfarm::Measurement& m, Values) { drawn.push_back(m.around.normal(0)[0]); };
@@ -170,7 +170,7 @@ TEST(OwnSensors, KernelsMeasureAndTheHostMayFinish) {
       .write(reinterpret_cast<const char*>(test_openness_comp_spv), sizeof test_openness_comp_spv);
   add_type("openness", 21, file.string());
   reads["openness"] = [](const sensorfarm::Measurement&, Values values) { values[1] = 7.0; };
-  // Four sensors of different lengths, so that invocations without work lie between those with.
+  // Four sensors of different lengths, so that invocations without work lie between those with work.
   const world::World world = world_with(
       "openness( rows 4 pose [0 0 0.05 0] ) openness( rows 1 ) openness( rows 100 pose [0 0 0.05 0] ) openness( rows 2 "
       ")");
@@ -190,7 +190,7 @@ TEST(OwnSensors, KernelsMeasureAndTheHostMayFinish) {
       EXPECT_NEAR(readings[2].values[2 * i], meets ? 1.95 / c : 4.0, 1e-5) << i;
     }
   }
-  // Without a device there is nothing that could run it.
+  // No device could run it.
   try {
     const farm::Farm none(world, host_device());
     ADD_FAILURE() << "a kernel ran on the host";
@@ -201,7 +201,7 @@ TEST(OwnSensors, KernelsMeasureAndTheHostMayFinish) {
   std::filesystem::remove(file);
 }
 
-TEST(OwnSensors, KernelsAreRefusedWithTheReason) {
+TEST(OwnSensors, RejectedKernelsStateTheReason) {
   const auto add = [](const std::string& kernel) {
     return refusal_of([&] {
       add_own_sensor(
@@ -213,7 +213,7 @@ TEST(OwnSensors, KernelsAreRefusedWithTheReason) {
   expect_in("is no SPIR-V module", add(SF_SOURCE_DIR "/LICENSE"));
 }
 
-TEST(OwnSensors, SettingsAreRefusedWithFileAndLine) {
+TEST(OwnSensors, RejectsSettingsWithFileAndLine) {
   add_type("scripted", 20);
   const auto make = [](const std::string& sensor) {
     return refusal_of([&] { SensorSet sensor_set(world_with(sensor)); });
@@ -221,7 +221,7 @@ TEST(OwnSensors, SettingsAreRefusedWithFileAndLine) {
   expect_in("own.world:5: 'rows' is -1; expected 0 to 1000000", make("scripted( rows -1 )"));
   expect_in("own.world:5: 'range_max'", make("scripted( range_max 1000 )"));
   expect_in("own.world:5: not this one", make("scripted( name \"refused\" )"));
-  EXPECT_EQ(world_with("scripted( row 1 )").warnings.size(), 1u);  // as for our own types
+  EXPECT_EQ(world_with("scripted( row 1 )").warnings.size(), 1u);  // as for built-in types
 }
 
 TEST(OwnSensors, FailuresEndTheTickWithTheirMessage) {
@@ -243,14 +243,14 @@ TEST(OwnSensors, TypesMustBeNewAndUsable) {
   expect_in("expected 13 to 31", add({.name = "mine", .id = 12, .columns = {{"x"}}}));
   expect_in("expected 13 to 31", add({.name = "mine", .id = 32, .columns = {{"x"}}}));
   expect_in("there is 'laser'", add({.name = "laser", .id = 30, .columns = {{"x"}}}));
-  expect_in("there is 'laser'", add({.name = "ranger", .id = 30, .columns = {{"x"}}}));  // a word of world files
+  expect_in("there is 'laser'", add({.name = "ranger", .id = 30, .columns = {{"x"}}}));  // a keyword of world files
   expect_in("has no column", add({.name = "mine", .id = 30}));
   expect_in("a unit above 0", add({.name = "mine", .id = 30, .columns = {{"x", 0.0}}}));
   expect_in("a rate of", add({.name = "mine", .id = 30, .columns = {{"x"}}, .rate = 0.0}));
   EXPECT_EQ(find_sensor_type(30), nullptr);
 }
 
-TEST(OwnSensors, PacketsComeBackWithinTheirUnits) {
+TEST(OwnSensors, PacketsRoundTripWithinTheirUnits) {
   add_type("scripted", 20);
   const SensorType& type = *find_sensor_type(20);
   const world::World world = world_with("scripted( rows 2 )");

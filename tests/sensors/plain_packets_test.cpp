@@ -42,7 +42,7 @@ std::vector<double> back(const std::vector<double>& values) {
   return read;
 }
 
-TEST(PlainPackets, EveryByte) {
+TEST(PlainPackets, EncodesEveryByte) {
   EXPECT_EQ(bytes_of({1.0, 2.0, -0.001, kNaN}), (base::Bytes{2,    0,    0,    0,    0xE8, 3, 0, 0,   2, 0, 0, 0,  //
                                                              0xFF, 0xFF, 0xFF, 0xFF, 0,    0, 0, 0x80}));
 }
@@ -59,7 +59,7 @@ TEST(PlainPackets, RoundsToNearestAndSaturates) {
   EXPECT_TRUE(std::isnan(back({kNaN, 0})[0]));
 }
 
-TEST(PlainPackets, JudgesWhatCannotBe) {
+TEST(PlainPackets, RejectsImpossibleValues) {
   const base::Bytes good = bytes_of({1, 2, 3, 4});
   const auto fault = [&](base::Bytes bytes, std::uint32_t rows, std::uint8_t type = 29,
                          WireFormat wire = WireFormat::farm) {
@@ -84,7 +84,7 @@ TEST(PlainPackets, JudgesWhatCannotBe) {
   EXPECT_EQ(fault(bytes_of({1e9, 0}), 1), PayloadError::none) << "saturated says more";
 }
 
-TEST(PlainPackets, AsManyNumbersAsADatagramHolds) {
+TEST(PlainPackets, LimitsNumbersToOneDatagram) {
   std::vector<double> most(312, 1.0);
   const base::Bytes bytes = bytes_of(most);
   EXPECT_EQ(bytes.size(), 4 + 4 * 312u);
@@ -95,7 +95,7 @@ TEST(PlainPackets, AsManyNumbersAsADatagramHolds) {
   EXPECT_EQ(kTrial.decode(plain_row(0), more, 29, WireFormat::farm).fault, PayloadError::out_of_range);
 }
 
-TEST(PlainPackets, TheThesisHasNoLayoutForThem) {
+TEST(PlainPackets, RejectsTheThesisFormat) {
   EXPECT_EQ(kTrial.wire_problem({}, WireFormat::farm), "");
   const std::string why = kTrial.wire_problem({}, WireFormat::thesis);
   EXPECT_NE(why.find("trial"), std::string::npos);
@@ -103,8 +103,8 @@ TEST(PlainPackets, TheThesisHasNoLayoutForThem) {
   EXPECT_EQ(kTrial.parts({}, WireFormat::farm), 1u);
 }
 
-/// Arbitrary bytes are validated without a crash; accepted ones can be read.
-TEST(PlainPackets, AnyBytesAreJudged) {
+/// Arbitrary bytes are validated without a crash. Accepted payloads can be read.
+TEST(PlainPackets, ValidatesAnyBytes) {
   trial::Chance chance(4);
   std::size_t taken = 0;
   for (int i = 0; i < 20'000; ++i) {
@@ -128,7 +128,7 @@ TEST(PlainPackets, AnyBytesAreJudged) {
 }
 
 /// Payloads of each type as documented and printed.
-TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
+TEST(PlainPackets, PayloadsMatchTheDocumentation) {
   const struct {
     const char* example;
     std::uint8_t id;
@@ -159,8 +159,8 @@ TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
   }
 }
 
-/// Ports, ids and numbers of rows as the tables of docs/packets.md have them.
-TEST(PacketsPage, SensorTypesAreThoseOfTheProgram) {
+/// Ports, ids and numbers of rows as in the tables of docs/packets.md.
+TEST(PacketsPage, SensorTypesMatchTheProgram) {
   std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
   std::size_t ports = 0, rows = 0;
   for (std::string line; std::getline(file, line);) {
@@ -180,7 +180,7 @@ TEST(PacketsPage, SensorTypesAreThoseOfTheProgram) {
       if (cells.size() != 5 || cells[2] != upper) continue;
       ++rows;
       EXPECT_EQ(cells[1], std::to_string(type->id)) << upper;
-      std::size_t numbers = 1;  // each behind a comma or a semicolon, those in brackets aside
+      std::size_t numbers = 1;  // each after a comma or a semicolon, except those in brackets
       for (std::size_t at = 0, open = 0; at < cells[4].size(); ++at) {
         open += cells[4][at] == '(', open -= cells[4][at] == ')';
         numbers += open == 0 && (cells[4][at] == ',' || cells[4][at] == ';');

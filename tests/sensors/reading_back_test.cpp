@@ -23,7 +23,7 @@ SensorSpec row_of_elements(std::uint32_t elements, double limit = 0.0) {
   return row;
 }
 
-/// A receiver's values after every part of `values`.
+/// Returns a receiver's values after every part of `values`.
 std::vector<double> back(std::uint8_t id, const SensorSpec& row, const std::vector<double>& values, WireFormat wire) {
   const SensorType& type = *find_sensor_type(id);
   base::ReadingBlock block;
@@ -42,7 +42,7 @@ std::vector<double> back(std::uint8_t id, const SensorSpec& row, const std::vect
   return read;
 }
 
-TEST(ReadingBack, EveryKindReads) {
+TEST(ReadingBack, EveryTypeReads) {
   for (const SensorType* type : sensor_types()) EXPECT_NE(type->read, nullptr) << type->name;
 }
 
@@ -67,7 +67,7 @@ TEST(ReadingBack, ExtendedScansPartByPart) {
   }
 }
 
-TEST(ReadingBack, APartLeavesTheOthersAsTheyAre) {
+TEST(ReadingBack, PartLeavesOtherPartsUnchanged) {
   const SensorType& type = *find_sensor_type(sensors::kLaser);
   const SensorSpec row = row_of_elements(700, 100.0);
   const std::vector<double> ranges(700, 5.0);
@@ -111,7 +111,7 @@ TEST(ReadingBack, NoLaneEdgeInSight) {
   EXPECT_TRUE(std::isnan(none[3]));
 }
 
-TEST(ReadingBack, TheThesisCarriesADistanceAlone) {
+TEST(ReadingBack, ThesisFormCarriesOnlyTheDistance) {
   const std::vector<double> read = back(kLaneEdge, row_of_elements(1), {0.25, 61, 12e-6, 1.5e-3}, WireFormat::thesis);
   EXPECT_DOUBLE_EQ(read[0], 0.25);
   for (std::size_t i = 1; i < 4; ++i) EXPECT_TRUE(std::isnan(read[i])) << i;

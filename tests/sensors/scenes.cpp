@@ -45,7 +45,7 @@ void add_segment(world::World& world, glm::dvec2 a, glm::dvec2 b) {
   world.walls.push_back(s);
 }
 
-/// Runs of boundary along x (or, transposed, along y), straight with the solid on one side.
+/// Adds runs of boundary along x (or, transposed, along y), straight with the solid on one side.
 void add_runs(world::World& world, const Cells& cells, double cell, bool transposed) {
   const auto solid = [&](std::int64_t x, std::int64_t y) { return transposed ? cells.at(y, x) : cells.at(x, y); };
   const double half = 0.5 * cells.n * cell;
@@ -62,7 +62,7 @@ void add_runs(world::World& world, const Cells& cells, double cell, bool transpo
       }
       const std::int64_t start = x;
       while (x < cells.n && solid(x, y - 1) == below && solid(x, y) != below) ++x;
-      // Solid above a run along +x is on its left; transposing mirrors.
+      // The solid above a run along +x is on its left. Transposing mirrors it.
       const bool forward = below == transposed;
       if (forward)
         add_segment(world, point(start, y), point(x, y));

@@ -29,7 +29,7 @@ world::Sensor with(std::vector<world::Setting> settings, const std::string& type
   return sensor;
 }
 
-TEST(SonarSettings, NothingSaidIsOneTransducerOfAPioneer) {
+TEST(SonarSettings, DefaultIsOneTransducerOfAPioneer) {
   const ConeArray s = read_sonar(bare_sonar(), 3, 1);
   EXPECT_EQ(s.row.mover, 3u);
   EXPECT_EQ(s.row.sensor, 1u);
@@ -46,7 +46,7 @@ TEST(SonarSettings, NothingSaidIsOneTransducerOfAPioneer) {
   EXPECT_EQ(s.proportional, 0.0);
 }
 
-TEST(SonarSettings, NothingSaidIsOneElementOfAKhepera) {
+TEST(SonarSettings, DefaultIsOneElementOfAKhepera) {
   const ConeArray s = read_infrared(bare_sonar("infrared"), 0, 0);
   EXPECT_EQ(s.row.elements, 1u);
   EXPECT_EQ(s.row.limit, 0.05);
@@ -59,7 +59,7 @@ TEST(SonarSettings, NothingSaidIsOneElementOfAKhepera) {
   EXPECT_EQ(s.proportional, 0.0);
 }
 
-TEST(SonarSettings, UnitsAreTheFiles) {
+TEST(SonarSettings, UsesTheUnitsOfTheFile) {
   world::Sensor sensor =
       with({cone_setting("scount", {2}), cone_setting("spose[0]", {20, -5, 90}),
             cone_setting("spose3[1]", {1, 2, 3, -180}), cone_setting("fov", {15}), cone_setting("range", {10, 300}),
@@ -80,7 +80,7 @@ TEST(SonarSettings, UnitsAreTheFiles) {
 }
 
 /// Stage's older settings with the same meaning.
-TEST(SonarSettings, StagesViewIsUnderstood) {
+TEST(SonarSettings, AcceptsStagesView) {
   const ConeArray old = read_sonar(with({cone_setting("sview", {0.2, 5, 0.25})}), 0, 0);
   EXPECT_EQ(old.range_min, 0.2);
   EXPECT_EQ(old.range_max, 5.0);
@@ -91,7 +91,7 @@ TEST(SonarSettings, StagesViewIsUnderstood) {
   EXPECT_EQ(both.fov, 0.5);
 }
 
-TEST(SonarSettings, TurnsAreWhatOneArrayHas) {
+TEST(SonarSettings, TurnsAreTheTransducersOfOneArray) {
   const auto turns = [](double count, std::vector<world::Setting> more) {
     world::Sensor sensor = trial::cones("sonar", std::vector<Pose>(static_cast<std::size_t>(count)), std::move(more));
     return read_sonar(sensor, 0, 0).turns;
@@ -103,7 +103,7 @@ TEST(SonarSettings, TurnsAreWhatOneArrayHas) {
   EXPECT_EQ(turns(16, {cone_setting("firing", {}, "all"), cone_setting("arrays", {2})}), 1u);
 }
 
-TEST(SonarSettings, OneRayLooksAlongTheAxis) {
+TEST(SonarSettings, OneRayIsOnTheAxis) {
   EXPECT_EQ(read_sonar(with({cone_setting("fov", {0})}), 0, 0).rays, 1u);
   EXPECT_EQ(read_sonar(with({cone_setting("incidence", {M_PI / 2})}), 0, 0).min_cosine, 0.0) << "off";
 }
@@ -116,7 +116,7 @@ struct WrongSonar {
   const char* type = "sonar";
 };
 
-TEST(SonarSettings, WrongSettingsAreRefusedWithFileAndLine) {
+TEST(SonarSettings, RejectsInvalidSettingsWithFileAndLine) {
   const std::vector<WrongSonar> corpus = {
       {"scount", {0}, "", "'scount' is 0; expected 1 to 64"},
       {"scount", {65}, "", "'scount' is 65; expected 1 to 64"},
@@ -164,7 +164,7 @@ TEST(SonarSettings, WrongSettingsAreRefusedWithFileAndLine) {
   }
 }
 
-TEST(SonarSettings, TheLargestNoiseIsTaken) {
+TEST(SonarSettings, AcceptsTheLargestNoise) {
   const ConeArray s = read_sonar(with({cone_setting("noise", {1e4, 1e3})}), 0, 0);
   EXPECT_EQ(s.sigma, 1e4);
   EXPECT_EQ(s.proportional, 1e3);
@@ -180,7 +180,7 @@ TEST(SonarSettings, ArraysDivideTheTransducers) {
   }
 }
 
-// --- The rings that ship.
+// --- The predefined rings.
 
 world::World shipped(const std::string& body) {
   const std::string file = testing::TempDir() + "/rangers.world";
@@ -188,7 +188,7 @@ world::World shipped(const std::string& body) {
   return world::load_world(file, {.sensors = world_file_words()});
 }
 
-TEST(SonarSettings, ThePioneersRings) {
+TEST(SonarSettings, RingsOfThePioneer) {
   const world::World world = shipped("pioneer3at( name \"pioneer1\" pioneer_sonar( ) )\n");
   EXPECT_TRUE(world.warnings.empty());
   const auto arrays = cone_arrays_of(world, "sonar", read_sonar);
@@ -197,7 +197,7 @@ TEST(SonarSettings, ThePioneersRings) {
   ASSERT_EQ(ring.X_SC.size(), 16u);
   EXPECT_NEAR(ring.row.X_MS.z, 0.24, 1e-12);
   EXPECT_EQ(ring.turns, 8u);
-  // The robot is symmetric: front transducers k and 7 - k are mirror images, and likewise at the rear.
+  // The robot is symmetric: front transducers k and 7 - k are mirror images, and the rear ones too.
   for (std::size_t k = 0; k < 8; ++k)
     for (const std::size_t first : {0u, 8u}) {
       const Pose& left = ring.X_SC[first + k];
@@ -211,7 +211,7 @@ TEST(SonarSettings, ThePioneersRings) {
   for (const world::Segment& side : world.movers[0].body) EXPECT_LT(side.z_max, 0.281) << "no body of its own";
 }
 
-TEST(SonarSettings, TheKheperasEight) {
+TEST(SonarSettings, RingOfTheKhepera) {
   const world::World world = shipped("khepera2( name \"khepera1\" khepera_infrared( ) )\n");
   EXPECT_TRUE(world.warnings.empty());
   const auto arrays = cone_arrays_of(world, "infrared", read_infrared);
@@ -248,12 +248,12 @@ void expect_there_and_back(const SensorType& type, const std::vector<double>& va
   EXPECT_FALSE(type.wire_problem(row, WireFormat::thesis).empty()) << "the thesis has no such message";
 }
 
-TEST(SonarPackets, ThereAndBack) {
+TEST(SonarPackets, RoundTrip) {
   expect_there_and_back(sonar_type, {0.1, 1.2344, 4.0, 2.71828}, 4, 1e-3);
   expect_there_and_back(infrared_type, {0.05, 0.0, 0.0, 1023.0, 0.012345, 770.0}, 3, 1e-6);
 }
 
-TEST(SonarPackets, NumbersThatCannotBeAreRefused) {
+TEST(SonarPackets, RejectsImpossibleNumbers) {
   SensorSpec row;
   row.elements = 1;
   base::ReadingBlock block;

@@ -1,4 +1,5 @@
-// Sonar: analytic walls, corners and robots; every cone against the nearest of its rays, one by one; firing order.
+// Sonar: analytic walls, corners and robots; every cone compared with the nearest of its rays, one by one; firing
+// order.
 
 #include "sensors/sonar.h"
 
@@ -25,7 +26,7 @@ world::Sensor sonar(const std::vector<Pose>& poses, std::vector<world::Setting> 
   return cones("sonar", poses, std::move(more));
 }
 
-/// Range of one transducer at `X_WM`.
+/// Returns the range of one transducer at `X_WM`.
 double hear(world::World world, const Pose& X_WM, std::vector<world::Setting> more = {}) {
   add_ranger(world, X_WM, sonar({Pose{}}, std::move(more)));
   const Glance run(world);
@@ -33,19 +34,19 @@ double hear(world::World world, const Pose& X_WM, std::vector<world::Setting> mo
   return run.readings.back().values[0];
 }
 
-/// A long wall with its surface at x = `x`, from y = `low` to 50; its end slopes away.
+/// Returns a long wall with its surface at x = `x`, from y = `low` to 50; its end slopes away.
 world::World wall_at(double x, double low = -50.0) {
   world::World world;
   scenes::add_outline(world, {{x, low}, {x + 1.0, low + 10.0}, {x + 1.0, 50.0}, {x, 50.0}}, "wall");
   return world;
 }
 
-// --- With a ruler.
+// --- Analytic ranges.
 
-TEST(Sonar, AWallAheadIsAsFarAsItIs) { EXPECT_NEAR(hear(wall_at(2.0), {}), 2.0, 1e-12); }
+TEST(Sonar, ReadsTheDistanceToAWallAhead) { EXPECT_NEAR(hear(wall_at(2.0), {}), 2.0, 1e-12); }
 
-/// Within half a cone of the wall's normal some ray is close to it: rays are 2.5 degrees apart.
-TEST(Sonar, AWallIsHeardByTheRayNearestToItsNormal) {
+/// Within half a cone of the wall's normal, some ray is close to it: rays are 2.5 degrees apart.
+TEST(Sonar, ReadsAWallWithTheRayNearestToItsNormal) {
   for (int k = -40; k <= 40; ++k) {
     const double yaw = k * kDegree;
     double expected = 4.0;
@@ -54,7 +55,7 @@ TEST(Sonar, AWallIsHeardByTheRayNearestToItsNormal) {
   }
 }
 
-TEST(Sonar, ACornerIsAsFarAsItsNearerWall) {
+TEST(Sonar, ReadsTheNearerWallOfACorner) {
   world::World world = wall_at(1.0);
   scenes::add_outline(world, {{-50, 0.5}, {50, 0.5}, {50, 1.5}, {-50, 1.5}}, "side");
   EXPECT_NEAR(hear(world, {0, 0, 0, 0}), 1.0, 1e-12) << "along the side wall it is ahead";
@@ -64,7 +65,7 @@ TEST(Sonar, ACornerIsAsFarAsItsNearerWall) {
 }
 
 /// A wall that begins just within the outermost ray returns an echo, one just outside does not.
-TEST(Sonar, TheConeEndsWhereItsFieldOfViewDoes) {
+TEST(Sonar, ConeEndsAtItsFieldOfView) {
   for (const double fov : {5.0 * kDegree, kSonarFov, 60.0 * kDegree})
     for (const double sign : {-1.0, 1.0}) {
       const double y = 2.0 * std::tan(0.5 * fov);
@@ -82,7 +83,7 @@ TEST(Sonar, TheConeEndsWhereItsFieldOfViewDoes) {
     }
 }
 
-TEST(Sonar, NearerThanRangeMinReadsRangeMinAndBeyondRangeMaxRangeMax) {
+TEST(Sonar, ClampsToRangeMinAndRangeMax) {
   EXPECT_EQ(hear(wall_at(0.05), {}), 0.10);
   EXPECT_NEAR(hear(wall_at(0.1001), {}), 0.1001, 1e-12) << "just beyond range_min";
   EXPECT_NEAR(hear(wall_at(3.9999), {}), 3.9999, 1e-12) << "just within range_max";
@@ -92,7 +93,7 @@ TEST(Sonar, NearerThanRangeMinReadsRangeMinAndBeyondRangeMaxRangeMax) {
   EXPECT_EQ(hear(wall_at(0.8), {}, {cone_setting("range", {0.5, 0.75})}), 0.75);
 }
 
-TEST(Sonar, HearsWhatSpansItsHeight) {
+TEST(Sonar, DetectsSurfacesAtItsHeight) {
   world::World world = wall_at(2.0);
   for (world::Segment& s : world.walls) s.z_max = 0.1;
   EXPECT_EQ(hear(world, {}), 4.0) << "over it: transducers are 0.1 m up";
@@ -103,7 +104,7 @@ TEST(Sonar, HearsWhatSpansItsHeight) {
 }
 
 /// A ring inside its robot's own body detects the other robot and never its own.
-TEST(Sonar, HearsOtherRobotsAndNeverItsOwn) {
+TEST(Sonar, DetectsOtherRobotsButNotItsOwn) {
   world::World world;
   add_ranger(world, {}, sonar(ring(16, 0.1)), 0.2);
   add_ranger(world, {1.0, 0, 0, 0.3}, sonar(ring(16, 0.1)), 0.2);
@@ -117,7 +118,7 @@ TEST(Sonar, HearsOtherRobotsAndNeverItsOwn) {
   EXPECT_EQ(run.readings[0].values[8], 4.0);
 }
 
-TEST(Sonar, TransducersAreWhereTheFileSays) {
+TEST(Sonar, TransducersAreAtTheirPoses) {
   world::World world = wall_at(2.0);
   world::Sensor sensor = sonar({{0.2, 0.1, 0.0, 0.0}, {0.0, 0.3, 0.05, M_PI}, {0.1, 0.0, 0.0, M_PI / 2}});
   sensor.X_MS = {0.1, 0.0, 0.0, M_PI / 2};
@@ -177,12 +178,12 @@ world::World fleet(world::World world, std::uint64_t seed, double incidence = 0.
   return world;
 }
 
-TEST(Sonar, EveryConeIsTheNearestOfItsRays) {
+TEST(Sonar, EveryConeReadsTheNearestOfItsRays) {
   check(fleet(scenes::boxes(60, 16.0, 5), 1), "boxes");
   check(fleet(scenes::cave(500, 16.0, 3), 2), "cave");
 }
 
-TEST(Sonar, EveryConeIsTheNearestOfItsRaysFarFromTheOrigin) {
+TEST(Sonar, EveryConeReadsTheNearestOfItsRaysFarFromTheOrigin) {
   world::World world = fleet(scenes::boxes(60, 16.0, 5), 3);
   world::translate(world, 1e5, -1e5);
   check(world, "boxes at 100 km");
@@ -190,7 +191,7 @@ TEST(Sonar, EveryConeIsTheNearestOfItsRaysFarFromTheOrigin) {
 
 // --- Flat incidence.
 
-TEST(Sonar, ASmoothWallIsNotHeardFlatly) {
+TEST(Sonar, NoEchoFromASmoothWallAtFlatIncidence) {
   const auto one_ray = [](double incidence, double yaw) {
     return hear(wall_at(2.0), {0, 0, 0, yaw},
                 {cone_setting("incidence", {incidence}), cone_setting("rays", {1.0}), cone_setting("fov", {0.0})});
@@ -202,8 +203,8 @@ TEST(Sonar, ASmoothWallIsNotHeardFlatly) {
   }
 }
 
-/// A smooth wall returns an echo while some ray is near its normal; the range is that ray's.
-TEST(Sonar, AConeHearsASmoothWallWhileItsNormalIsWithin) {
+/// A smooth wall returns an echo while some ray is near its normal. The range is that of this ray.
+TEST(Sonar, ConeDetectsASmoothWallWhileItsNormalIsInside) {
   const auto look = [](double degrees) {
     return hear(wall_at(2.0), {0, 0, 0, degrees * kDegree}, {cone_setting("incidence", {5.0 * kDegree})});
   };
@@ -213,7 +214,7 @@ TEST(Sonar, AConeHearsASmoothWallWhileItsNormalIsWithin) {
 
 /// A surface without an echo still occludes: sound reflected off a smooth wall is lost, and the ray does not continue
 /// behind it.
-TEST(Sonar, BehindASmoothWallNothingIsHeard) {
+TEST(Sonar, SmoothWallOccludes) {
   world::World world = wall_at(3.0);
   scenes::add_outline(world, {{1.0, 0.9}, {1.0, -1.1}, {2.0, 0.0}, {2.0, 0.4}}, "wedge");
   const double straight = hear(world, {}, {cone_setting("incidence", {1.0 * kDegree}), cone_setting("rays", {1.0})});
@@ -222,7 +223,7 @@ TEST(Sonar, BehindASmoothWallNothingIsHeard) {
   EXPECT_EQ(flat, 4.0);
 }
 
-TEST(Sonar, RobotsTurnTheirSmoothSides) {
+TEST(Sonar, SmoothSidesRotateWithTheirRobot) {
   for (const double yaw : {0.0, M_PI / 2, 0.3, 2.0}) {
     world::World world;
     add_ranger(world, {}, sonar({Pose{}}, {cone_setting("incidence", {0.05}), cone_setting("rays", {1.0})}));
@@ -246,13 +247,13 @@ TEST(Sonar, RobotsTurnTheirSmoothSides) {
   }
 }
 
-TEST(Sonar, EveryConeHearsWhatItsRaysMeetSteeply) {
+TEST(Sonar, EveryConeReadsTheNearestSteepHit) {
   check(fleet(scenes::boxes(60, 16.0, 5), 4, 1.2), "smooth boxes");
   check(fleet(scenes::cave(500, 16.0, 3), 5, 1.2), "smooth cave");
 }
 
-/// Surfaces without an echo for one sensor may echo for another in the same world.
-TEST(Sonar, OneThatIsDeafToFlatWallsBesideOneThatIsNot) {
+/// Surfaces without an echo for one sensor may return an echo to another in the same world.
+TEST(Sonar, SensorsWithDifferentIncidenceLimitsShareAWorld) {
   world::World world = wall_at(2.0);
   const auto one_ray = [](double incidence) {
     return cones("sonar", {Pose{}},
@@ -270,7 +271,7 @@ TEST(Sonar, OneThatIsDeafToFlatWallsBesideOneThatIsNot) {
 
 /// A robot passes rings at rest, some of them with a firing cycle, and stops: reused and measured readings have equal
 /// bytes.
-TEST(Sonar, ReadingsThatAreGivenAgainAreThoseThatWouldBeTaken) {
+TEST(Sonar, ReusedReadingsEqualMeasuredOnes) {
   world::World world = scenes::boxes(20, 8.0, 2);
   const auto passer = add_ranger(world, {}, cones("sonar", ring(4, 0.15)), 0.2);
   for (int i = 0; i < 6; ++i)
@@ -291,7 +292,7 @@ TEST(Sonar, ReadingsThatAreGivenAgainAreThoseThatWouldBeTaken) {
 
 // --- Firing order.
 
-TEST(Sonar, TurnsGoRound) {
+TEST(Sonar, FiringCycleRepeats) {
   using sensors::has_fired;
   constexpr std::uint64_t kNever = ~std::uint64_t{0};
   for (std::uint32_t i = 0; i < 8; ++i) {
@@ -311,8 +312,8 @@ TEST(Sonar, TurnsGoRound) {
 
 std::vector<base::Report> standing_at(double x) { return {{0, 0, Pose{x, 0, 0, 0}, {}}}; }
 
-/// Two arrays of four round a robot that moves a centimetre per reading: a transducer's range is that of its firing.
-TEST(Sonar, OneTransducerOfEachArrayFiresAtATime) {
+/// Two arrays of four around a robot that moves a centimetre per reading: a transducer's range is that of its firing.
+TEST(Sonar, OneTransducerOfEachArrayFiresPerReading) {
   world::World world = wall_at(3.0);
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8), {cone_setting("arrays", {2.0})}));
   farm::Farm farm(world, device());
@@ -331,8 +332,8 @@ TEST(Sonar, OneTransducerOfEachArrayFiresAtATime) {
   EXPECT_EQ(farm.stats().work.rays, (8u + 29u * 2u) * 11u);
 }
 
-/// A farm with ticks slower than the firing renews in each tick all transducers that have fired since.
-TEST(Sonar, SlowTicksLoseNoTurn) {
+/// In a farm with ticks slower than the firing, each tick updates all transducers that have fired since the last tick.
+TEST(Sonar, SlowTicksSkipNoTurn) {
   world::World world = wall_at(3.0);
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8)));
   farm::Farm farm(world, device());
@@ -351,7 +352,7 @@ TEST(Sonar, SlowTicksLoseNoTurn) {
   }
 }
 
-TEST(Sonar, AfterAPauseAllAreRenewed) {
+TEST(Sonar, AllTransducersUpdateAfterAPause) {
   world::World world = wall_at(3.0);
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8)));
   farm::Farm farm(world, device());
@@ -365,8 +366,8 @@ TEST(Sonar, AfterAPauseAllAreRenewed) {
   for (const double range : farm.sense(0, sensors::kSonar, 0, {1.5, 0, 0, 0}).values) EXPECT_NEAR(range, 1.5, 1e-12);
 }
 
-/// Tables are written even when nothing is due: in the first tick nothing is, later some are.
-TEST(Sonar, SomeAreDueAndSomeAreNot) {
+/// Tables are written even when nothing is due: nothing in the first tick, some sensors later.
+TEST(Sonar, SomeSensorsAreDueAndSomeAreNot) {
   world::World world = wall_at(3.0);
   for (int m = 0; m < 200; ++m) {
     world::Sensor sensor = sonar({Pose{}}, {cone_setting("rate", {m % 2 == 0 ? 10.0 : 5.0})});

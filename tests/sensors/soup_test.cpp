@@ -11,9 +11,9 @@ namespace sf::trial {
 namespace {
 
 const int kBowls = instrumented() ? 4 : 24;
-constexpr double kBowl = 6.0;        ///< [m] half the side of the room round each soup
+constexpr double kBowl = 6.0;        ///< [m] half the side of the room around each soup
 constexpr double kSoupRange = 18.0;  ///< [m] more than its diagonal
-constexpr double kApart = 64.0;      ///< [m] so that soups are invisible to each other
+constexpr double kApart = 64.0;      ///< [m] distance that makes soups invisible to each other
 
 std::vector<glm::dvec2> star(Chance& chance) {
   const std::uint32_t corners = 3 + chance.below(7);
@@ -44,11 +44,11 @@ std::vector<glm::dvec2> ingredient(const std::vector<std::vector<glm::dvec2>>& s
   const glm::dvec2 target = what == 4 ? other[chance.below(static_cast<std::uint32_t>(other.size()))] : at;
   const glm::dvec2 shift = target - outline[corner];
   for (glm::dvec2& p : outline) p = p + shift;
-  outline[corner] = target;  // exactly, where they share a vertex
+  outline[corner] = target;  // exactly at a shared vertex
   return outline;
 }
 
-/// One soup in its room round `centre`, with eyes in it: at random and aimed at vertices.
+/// Adds one soup in its room around `centre`, with eyes in it: at random and aimed at vertices.
 void cook(world::World& world, glm::dvec2 centre, std::uint64_t seed) {
   Chance chance(seed);
   std::vector<std::vector<glm::dvec2>> soup;

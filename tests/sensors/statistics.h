@@ -7,8 +7,8 @@
 
 namespace sf::trial {
 
-/// Kolmogorov-Smirnov distance of `draws` from the standard normal distribution, times the root of their number: above
-/// 1.95 once in a thousand runs. Seeds are fixed, so results are reproducible.
+/// Returns the Kolmogorov-Smirnov distance of `draws` from the standard normal distribution, times the root of their
+/// number: above 1.95 once in a thousand runs. Seeds are fixed, so results are reproducible.
 inline double ks(std::vector<double> draws) {
   std::sort(draws.begin(), draws.end());
   const double n = static_cast<double>(draws.size());

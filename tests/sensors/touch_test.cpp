@@ -19,7 +19,7 @@ world::World unit_box() {
   return world;
 }
 
-/// Range of one beam from (0.5, 1 + above) at `heading`: the top of the unit box is at y = 1.
+/// Returns the range of one beam from (0.5, 1 + above) at `heading`: the top of the unit box is at y = 1.
 double look(double above, double heading) {
   world::World world = unit_box();
   add_eye(world, {0.5, 1.0 + above, 0.0, heading}, eye(1, 0.0, kFar));
@@ -29,7 +29,7 @@ double look(double above, double heading) {
 constexpr double kUp = 0.5 * M_PI;
 constexpr double kDown = -0.5 * M_PI;
 
-TEST(Touch, ASensorOnASurfaceReadsZeroIntoItAndLooksFreelyOffIt) {
+TEST(Touch, SensorOnASurfaceReadsZeroIntoItAndSeesFreelyOffIt) {
   // On the surface, and half a nanometre on either side: less than the contact distance of 1 nm.
   for (const double above : {0.0, 0.5e-9, -0.5e-9}) {
     EXPECT_EQ(look(above, kUp), kFar) << above;
@@ -40,13 +40,13 @@ TEST(Touch, ASensorOnASurfaceReadsZeroIntoItAndLooksFreelyOffIt) {
   EXPECT_EQ(look(0.0, kDown), 0.0);
 }
 
-/// The contact distance is measured along the beam: at an angle, half a nanometre of depth may be more.
-TEST(Touch, ABeamAskewHasFartherToGo) {
+/// The contact distance is measured along the beam: at an angle, half a nanometre of depth may exceed it.
+TEST(Touch, ObliqueBeamHasALongerContactDistance) {
   EXPECT_NEAR(look(-0.5e-9, kUp - 1.5), 0.5e-9 / std::sin(M_PI / 2 - 1.5), 1e-14);
   EXPECT_NEAR(look(0.5e-9, kDown + 1.5), 0.5e-9 / std::sin(M_PI / 2 - 1.5), 1e-14);
 }
 
-TEST(Touch, BeyondTheTouchASensorIsOnOneSide) {
+TEST(Touch, SensorBeyondTheContactDistanceIsOnOneSide) {
   // Outside: the gap, and no hit.
   EXPECT_NEAR(look(2e-9, kDown), 2e-9, 1e-15);
   EXPECT_EQ(look(2e-9, kUp), kFar);
@@ -55,14 +55,14 @@ TEST(Touch, BeyondTheTouchASensorIsOnOneSide) {
   EXPECT_NEAR(look(-2e-9, kDown), 1.0 - 2e-9, 1e-12);
 }
 
-TEST(Touch, InsideASolidASensorReadsTheWayOut) {
+TEST(Touch, SensorInsideASolidReadsTheDistanceOut) {
   EXPECT_NEAR(look(-0.25, kUp), 0.25, 1e-12);
   EXPECT_NEAR(look(-0.25, kDown), 0.75, 1e-12);
   EXPECT_NEAR(look(-0.25, 0.0), 0.5, 1e-12);
 }
 
-/// A thin wall has no inside: it stops beams from either side, and contact acts as for a solid on the left of a -> b.
-TEST(Touch, AThinWallIsSeenFromBothSides) {
+/// A thin wall has no inside. It stops beams from either side, and contact acts as for a solid on the left of a -> b.
+TEST(Touch, ThinWallIsVisibleFromBothSides) {
   world::World world;
   scenes::add_outline(world, {{-1, 0}, {1, 0}}, "wall");
   world.walls.pop_back();

@@ -1,4 +1,5 @@
-// Ranges read from packets keep to their side of the sensor's limits, whole units of the wire or not.
+// Ranges read from packets stay on their side of the sensor's limits, even if the limits are not whole units of the
+// wire.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ std::vector<Form> forms() {
           {find_sensor_type(kInfrared), WireFormat::farm, 1e-6, 2e3}};
 }
 
-/// The range that a receiver reads.
+/// Returns the range that a receiver reads.
 double received(const Form& form, SensorSpec row, double range) {
   const bool extended = form.step < 1e-3 && form.type->id == kLaser;
   row.elements = extended ? kPlainRays + 1 : 1;
@@ -77,7 +78,7 @@ TEST(WireLimits, RangesKeepTheirSide) {
     }
 }
 
-TEST(WireLimits, AtGivenPlaces) {
+TEST(WireLimits, ReadsTheExpectedRanges) {
   struct Case {
     const char* why;
     double least, most, range, read;
