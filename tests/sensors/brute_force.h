@@ -10,7 +10,7 @@
 
 namespace sf::oracle {
 
-/// All surfaces visible to a sensor of mover `self` at height `z` [m], with every mover at its pose.
+/// Returns all surfaces visible to a sensor of mover `self` at height `z` [m], with every mover at its pose.
 std::vector<world::Segment> surfaces(const world::World& world, std::span<const base::Pose> poses, std::uint32_t self,
                                      double z);
 

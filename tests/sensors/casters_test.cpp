@@ -1,4 +1,4 @@
-// Every caster of the table serves every sensor type: readings are equal, or agree within the bounds of both casters.
+// Every caster of the table supports every sensor type: readings are equal, or agree within the bounds of both casters.
 
 #include "raycast/casters.h"
 
@@ -43,8 +43,8 @@ class EveryCaster : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Casters, EveryCaster, testing::ValuesIn(raycast::caster_words()),
                          [](const auto& name) { return name.param; });
 
-/// Robots move, and one of them goes and comes back.
-TEST_P(EveryCaster, ReadsEverySensorTypeAlike) {
+/// Robots move. One of them leaves and returns.
+TEST_P(EveryCaster, MatchesTheHostForEverySensorType) {
   const world::World world = mixed();
   const raycast::CasterType* const type = raycast::caster_named(GetParam());
   farm::Farm host(world, device(), {.seed = 4, .scene = {.caster = &raycast::host_caster}});
@@ -95,7 +95,7 @@ TEST_P(EveryCaster, StatesItsBound) {
   EXPECT_LE(glance.readings[0].bound, sensors::laser_bound(20.0, false, longest, 20.0)) << "the stated one";
 }
 
-TEST(Casters, AreNamedByOneTable) {
+TEST(Casters, HaveTheNamesOfTheTable) {
   EXPECT_EQ(raycast::caster_words(), (std::vector<std::string>{"auto", "vulkan", "host", "reference"}));
   EXPECT_EQ(raycast::caster_named("auto"), nullptr);
   for (const raycast::CasterType* type : raycast::casters()) EXPECT_EQ(raycast::caster_named(type->name), type);

@@ -68,7 +68,7 @@ std::string describe(const oracle::Truth& truth, const Said& said) {
   return out.str();
 }
 
-/// @param slack [m] error of the truth's own outlines of movers, which it computes in `double`
+/// @param slack [m] error of the movers' outlines in the truth, which are computed in `double`
 void compare_beam(const oracle::Truth& truth, const Said& said, double slack, Tally& tally) {
   const double range = said.range;
   const std::uint32_t model = said.model;
@@ -94,7 +94,7 @@ void compare_beam(const oracle::Truth& truth, const Said& said, double slack, Ta
   if (++tally.wrong == 1) tally.example = describe(truth, said);
 }
 
-/// Readings of one caster, and what they come to.
+/// Readings of one caster, and the results of their comparison.
 struct Compared {
   std::string_view caster;
   std::span<const base::ReadingBlock> readings;
@@ -102,7 +102,7 @@ struct Compared {
   Tally tally = {};
 };
 
-/// Compares readings of several casters with one truth.
+/// Compares readings of several casters with the same truth.
 void compare(const world::World& world, std::span<const Pose> poses, std::span<Compared> all) {
   for (std::size_t k = 0; k < all[0].readings.size(); ++k) {
     const base::ReadingBlock& r = all[0].readings[k];
@@ -111,7 +111,7 @@ void compare(const world::World& world, std::span<const Pose> poses, std::span<C
     const double farthest = std::max(std::abs(origin.x), std::abs(origin.y)) + laser.range_max;
     const auto visible = oracle::surfaces(world, poses, r.mover, r.X_WS.z);
     const auto near = oracle::within(visible, origin, laser.range_max);
-    // The reference is slow: of a scan with very many beams, it checks some thousand.
+    // The reference is slow: it checks only some thousand beams of a scan with very many.
     const std::size_t stride = r.values.size() / 5000 + 1;
     for (std::size_t i = 0; i < r.values.size(); i += stride) {
       const auto truth = oracle::judge(near, origin, r.X_WS.yaw + bearing(laser, i), laser.range_max);
@@ -123,7 +123,7 @@ void compare(const world::World& world, std::span<const Pose> poses, std::span<C
   }
 }
 
-/// [pairs of a beam and a surface] up to which a scene is small: the reference casts it in some tenths of a second.
+/// [pairs of a beam and a surface] largest size of a small scene: the reference casts it in some tenths of a second.
 constexpr std::size_t kSmall = 20'000'000;
 
 bool is_small(const world::World& world) {
@@ -188,7 +188,7 @@ Tally sweep(const world::World& world, const farm::FarmOptions& options) {
   compare(world, poses, compared);
   for (const Compared& each : compared) {
     EXPECT_EQ(each.tally.beyond_bound, 0u) << each.caster << ": " << text(each.tally);
-    if (&each == compared.data()) continue;  // judged by the caller
+    if (&each == compared.data()) continue;  // checked by the caller
     EXPECT_EQ(each.tally.wrong, 0u) << each.caster << ": " << each.tally.example;
     std::cout << "[ measured ] " << each.caster << ": " << text(each.tally) << "\n";
   }

@@ -33,7 +33,7 @@ bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
          same(p.hits, q.hits) && same(p.quality, q.quality);
 }
 
-/// Two ticks of all farms; all robots move in between.
+/// Runs two ticks of all farms. All robots move in between.
 void expect_same_bytes(const world::World& world) {
   farm::Farm on_device(world, device(), kOnDevice);
   farm::Farm on_host(world, device(), kOnHost);
@@ -66,7 +66,7 @@ TEST(HostCast, LasersAmongBoxesAndRobots) {
   expect_same_bytes(world);
 }
 
-TEST(DeviceCast, ResultsThatNoBufferHoldsAreTheSame) {
+TEST(DeviceCast, ResultsBeyondBufferLimitsAreTheSame) {
   world::World world = scenes::boxes(60, 16.0, 3);
   scenes::add_robots(world, 30, scenes::laser(), 3);
   const Glance in_buffers(world, kOnDevice), in_texels(world, kInTexels);
@@ -85,8 +85,8 @@ TEST(HostCast, LasersWithNoiseAndResolution) {
   expect_same_bytes(world);
 }
 
-/// Lasers at one place of a robot share a pattern of beams on the host where these lie evenly: one pattern for robots
-/// with equal lasers, another one where yaw, field of view, samples or resolution differ.
+/// Lasers at one place of a robot share a pattern of beams on the host if the beams are evenly spaced: one pattern for
+/// robots with equal lasers, another if yaw, field of view, samples or resolution differ.
 TEST(HostCast, LasersAtOnePlaceOfARobot) {
   world::World world = scenes::boxes(60, 16.0, 6);
   scenes::add_robots(world, 12, scenes::laser(91, M_PI / 2, 5.0), 6);
@@ -103,7 +103,7 @@ TEST(HostCast, LasersAtOnePlaceOfARobot) {
   expect_same_bytes(world);
 }
 
-/// Grazing beams are flagged alike. (Exactly on the wall, either side may be the sensor's.)
+/// Both flag the same grazing beams. (Exactly on the wall, the sensor may be on either side.)
 TEST(HostCast, AlongWalls) {
   world::World world;
   scenes::add_room(world, {}, 6.0);
@@ -141,7 +141,7 @@ world::World road(double resolution) {
 TEST(HostCast, LaneEdgesOnExactPaint) { expect_same_bytes(road(0.0)); }
 TEST(HostCast, LaneEdgesOnARaster) { expect_same_bytes(road(0.01)); }
 
-/// All robots at one place, turned by their index. Three are subscribed.
+/// All robots are at one place, rotated by their index. Three are subscribed.
 void crowd_at_one_place(std::uint32_t count) {
   world::World world;
   scenes::add_room(world, {}, 10.0);
@@ -159,10 +159,10 @@ void crowd_at_one_place(std::uint32_t count) {
   }
 }
 
-TEST(HostCast, ACrowdOfAThousandAtOnePlace) { crowd_at_one_place(1'000); }
-TEST(HostCast, ACrowdOfThousandsAtOnePlace) { crowd_at_one_place(6'000); }
+TEST(HostCast, CrowdOfAThousandAtOnePlace) { crowd_at_one_place(1'000); }
+TEST(HostCast, CrowdOfThousandsAtOnePlace) { crowd_at_one_place(6'000); }
 
-/// Cones and lane edges in a crowd; comparisons with the device are in the tests above.
+/// Cones and lane edges in a crowd. The tests above compare them with the device.
 TEST(HostCast, RangersAndLaneEdgesInACrowdAtOnePlace) {
   world::World world = road(0.0);
   const auto array = cones("sonar", ring(4, 0.1));
@@ -179,9 +179,9 @@ TEST(HostCast, RangersAndLaneEdgesInACrowdAtOnePlace) {
   EXPECT_EQ(farm.hash(), again.hash());
 }
 
-/// The lasers of one robot share a list, made for a disc that contains both: walls hidden from its middle may be
+/// The lasers of one robot share a list, built for a disc that contains both: walls hidden from its centre may be
 /// visible from its rim.
-TEST(SharedLists, AWallThatOneOfTwoLasersSeesIsSeen) {
+TEST(SharedLists, ContainWallsVisibleToEitherLaser) {
   for (const double y : {0.3, -0.3}) {
     world::World world;
     const std::uint32_t m = add_eye(world, {}, eye(361, M_PI, 8.0));
@@ -197,7 +197,7 @@ TEST(SharedLists, AWallThatOneOfTwoLasersSeesIsSeen) {
   }
 }
 
-/// Robots with two lasers each, close to each other and to walls: no surface visible to either is missing.
+/// Robots with two lasers each, close to each other and to walls: no surface visible to either laser is missing.
 TEST(SharedLists, CrowdsOfRobotsWithTwoLasers) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     world::World world = scenes::boxes(12, 6.0, seed);
@@ -212,8 +212,8 @@ TEST(SharedLists, CrowdsOfRobotsWithTwoLasers) {
   }
 }
 
-/// Walls that are there twice are equally near: no beam that meets one is certain. 5 400 lanes of the second kernel,
-/// more than a row of its groups.
+/// Duplicate walls are equally near, so no beam that hits one is certain. 5 400 lanes of the second kernel, more than a
+/// row of its groups.
 TEST(SharedLists, EveryBeamUncertain) {
   world::World world = scenes::cave(60, 12.0, 5);
   const std::vector<world::Segment> walls = world.walls;
@@ -228,7 +228,7 @@ TEST(SharedLists, EveryBeamUncertain) {
 }
 
 /// Tables that have grown since the kernels were bound are bound again.
-TEST(SharedLists, TablesThatGrewAreReadFromTheirNewPlace) {
+TEST(SharedLists, GrownTablesAreBoundAgain) {
   world::World world = scenes::cave(60, 30.0, 2);
   scenes::add_robots(world, 40, scenes::laser(), 2);
   farm::Farm farm(world, device(), {.scene = {.caster = &raycast::device_caster, .pool_chunks = 512, .pool_cells = 2}});

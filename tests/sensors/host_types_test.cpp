@@ -1,5 +1,6 @@
-// Common tests of sensor types without device work: equal bytes for any number of threads, no allocation when warm. And
-// all types without a device: the host gives the bytes of the kernels, and refuses where only a kernel would do.
+// Common tests of sensor types without device work: equal bytes for any number of threads, no allocation when warm.
+// Also tests all types without a device: the host produces the bytes of the kernels, and rejects requests that require
+// a kernel.
 
 #include <gtest/gtest.h>
 
@@ -60,7 +61,7 @@ std::uint64_t hash_of(const world::World& world, const farm::FarmOptions& option
   return farm.hash();
 }
 
-TEST(HostKinds, TheSameBytesForAnyThreads) {
+TEST(HostKinds, SameBytesForAnyThreads) {
   const world::World world = everything(200);
   const std::uint64_t one = hash_of(world, {.seed = 1, .threads = 1});
   for (const unsigned threads : {2u, 3u}) EXPECT_EQ(hash_of(world, {.seed = 1, .threads = threads}), one);
@@ -68,7 +69,7 @@ TEST(HostKinds, TheSameBytesForAnyThreads) {
 }
 
 /// A robot's readings do not depend on other robots.
-TEST(HostKinds, OthersChangeNothing) {
+TEST(HostKinds, DoNotDependOnOtherRobots) {
   const world::World few = everything(3), many = everything(50);
   farm::Farm a(few, device(), {.seed = 1}), b(many, device(), {.seed = 1});
   a.subscribe_all();
@@ -85,7 +86,7 @@ TEST(HostKinds, OthersChangeNothing) {
   }
 }
 
-TEST(HostKinds, AreSensedByHandAnywhere) {
+TEST(HostKinds, CanBeSensedAtAnyPose) {
   const world::World world = everything(2);
   farm::Farm farm(world, device());
   const auto sense = [&](std::uint8_t type) { return farm.sense(1, type, 0, {100, 100, 0, 1}); };
@@ -96,7 +97,7 @@ TEST(HostKinds, AreSensedByHandAnywhere) {
   EXPECT_EQ(sense(sensors::kGps).X_WS.x, 100.0);
 }
 
-/// Readings of robot `mover` of one sensor type, by sensor.
+/// Returns readings of robot `mover` of one sensor type, by sensor.
 std::vector<std::vector<double>> of(std::span<const base::ReadingBlock> readings, std::uint8_t type,
                                     std::uint32_t mover) {
   std::vector<std::vector<double>> all;
@@ -105,8 +106,9 @@ std::vector<std::vector<double>> of(std::span<const base::ReadingBlock> readings
   return all;
 }
 
-/// Every sensor has its own settings and its own robot's state: the first robot has none, the third two of each type.
-TEST(HostKinds, EachIsItsOwn) {
+/// Every sensor has its own settings and its own robot's state: the first robot has no sensors, the third two of each
+/// type.
+TEST(HostKinds, SensorsAreIndependent) {
   world::World world = carriers(fitted("bumper"), {{0, 0, 0, 0}, {10, 0, 0.5, 0}, {20, 0, 0, 0}});
   const auto fit = [&](std::size_t m, const char* type, std::vector<world::Setting> settings) {
     world.movers[m].sensors.push_back(fitted(type, std::move(settings)));
@@ -158,7 +160,7 @@ TEST(HostKinds, EachIsItsOwn) {
 }
 
 /// Errors of two sensors of one type on a robot are independent.
-TEST(HostKinds, TwoOfAKindDrawByThemselves) {
+TEST(HostKinds, TwoOfATypeHaveIndependentErrors) {
   world::World world = carriers(fitted("gyro", {setting("bias", {1.0})}));
   const auto fit = [&](const char* type, const char* key) {
     for (int i = 0; i < 2; ++i) world.movers[0].sensors.push_back(fitted(type, {setting(key, {0.5})}));
@@ -184,7 +186,7 @@ TEST(HostKinds, TwoOfAKindDrawByThemselves) {
 }
 
 /// Phase, latency and names apply to all sensors.
-TEST(HostKinds, LatencyHoldsReadingsBack) {
+TEST(HostKinds, LatencyDelaysReadings) {
   const world::World world = carriers(fitted("gyro", {setting("latency", {0.15})}));
   farm::Farm farm(world, device());
   farm.subscribe_all();
@@ -195,14 +197,14 @@ TEST(HostKinds, LatencyHoldsReadingsBack) {
   }
 }
 
-/// A world file with a robot of `sensors` from robots.inc.
+/// Returns a world file with a robot of `sensors` from robots.inc.
 world::World ready_made(const std::string& sensors) {
   const std::string file = testing::TempDir() + "ready_made.world";
   std::ofstream(file) << "include \"" SF_SOURCE_DIR "/worlds/robots.inc\"\ncreate( name \"one\" " << sensors << ")\n";
   return world::load_world(file, {.sensors = sensors::world_file_words()});
 }
 
-TEST(HostKinds, TheReadyMadeOnesAreRead) {
+TEST(HostKinds, PredefinedSensorsAreRead) {
   const world::World world = ready_made(
       "create_bumper() create_cliff() create_irreceiver() create_encoder() pioneer_bumpers() pioneer_encoder() "
       "khepera_encoder() mems_gyro() outdoor_gps()");
@@ -233,7 +235,7 @@ TEST(HostKinds, TheReadyMadeOnesAreRead) {
 
 const farm::FarmOptions kWithoutDevice{.scene = {.caster = &raycast::host_caster}};
 
-/// Two farms of one world, with noise, that are driven alike.
+/// Compares two farms of one world, with noise, that receive the same states.
 void expect_same_readings(const world::World& world, const raycast::CasterType* caster, int ticks = 4) {
   farm::Farm kernels(world, device(), {.scene = {.caster = caster}}), host(world, host_device(), kWithoutDevice);
   kernels.subscribe_all(), host.subscribe_all();
@@ -255,7 +257,7 @@ void expect_same_readings(const world::World& world, const raycast::CasterType* 
   EXPECT_EQ(host.stats().batches, 0u) << "nothing is submitted";
 }
 
-/// Paint at random, with walls and robots before it, and every kind of scan: one beam, few in one lane, many with
+/// Paint at random, with walls and robots in front of it, and every kind of scan: one beam, few in one lane, many with
 /// noise.
 world::World rasters(double resolution, bool with_bodies, std::uint64_t seed) {
   Chance chance(seed);
@@ -266,8 +268,9 @@ world::World rasters(double resolution, bool with_bodies, std::uint64_t seed) {
   add_dashes(world, {-2.5, 0.3}, {2.5, 0.3}, 0.1, 0.3, 0.2);
   if (with_bodies) scenes::add_robots(world, 6, scenes::laser(3), seed);
   for (int i = 0; i < 60; ++i) {
-    const glm::dvec2 p = chance.in_square(i % 10 == 9 ? 40.0 : 3.0);                         // some far from all paint
-    const double yaw = i % 4 == 0 ? 0.5 * M_PI * (i / 4 % 4) : chance.between(-M_PI, M_PI);  // some along pixels
+    const glm::dvec2 p = chance.in_square(i % 10 == 9 ? 40.0 : 3.0);                         // some are far from all
+                                                                                             // paint
+    const double yaw = i % 4 == 0 ? 0.5 * M_PI * (i / 4 % 4) : chance.between(-M_PI, M_PI);  // some are along pixels
     Settings settings{{"samples", {static_cast<double>(1 + i % 7 * (i % 5) * 9)}}, {"range_max", {1.0 + i % 3}}};
     if (i % 2 == 1) settings.push_back({"noise", {0.01, 0.002, i % 4 == 1 ? 0.5 : 0.0}});
     add_edge_eye(world, {p.x, p.y, 0.0, yaw}, settings);
@@ -302,8 +305,8 @@ TEST(HostDevice, MagnetometersHaveTheBytesOfTheKernelsInAllModes) {
   }
 }
 
-/// Types without subscribers are not prepared, and collect nothing.
-TEST(HostDevice, ATypeAloneIsReadAmongAll) {
+/// Types without subscribers are not prepared and collect nothing.
+TEST(HostDevice, EachTypeCanBeReadAlone) {
   world::World world = rasters(0.01, true, 4);
   scenes::add_carrier(world, {}, scenes::five());
   scenes::add_carrier(world, {}, fitted("sonar"));
@@ -317,7 +320,7 @@ TEST(HostDevice, ATypeAloneIsReadAmongAll) {
   }
 }
 
-TEST(HostDevice, TheCasterOfKernelsIsRefused) {
+TEST(HostDevice, RejectsTheCasterOfKernels) {
   world::World world = scenes::boxes(2, 6.0, 1);
   scenes::add_robots(world, 1, scenes::laser(), 1);
   try {

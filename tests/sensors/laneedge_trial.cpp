@@ -74,7 +74,7 @@ struct EdgeRig::State {
   gpu::Batch batch;
   std::size_t rows;
   std::vector<base::ReadingBlock> blocks;
-  std::unique_ptr<EdgeRig> twin;  ///< on the host, of a raster; null for rigs on a chosen device
+  std::unique_ptr<EdgeRig> twin;  ///< on the host, for a raster; null for rigs on a chosen device
 
   State(const world::World& w, std::uint64_t seed, unsigned threads, bool noise, gpu::Device* on)
       : world(w),

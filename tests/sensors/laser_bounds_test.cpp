@@ -239,7 +239,8 @@ TEST_P(LaserBounds, AmongRobotsOnly) {
   expect_within_bounds(GetParam(), [] { return with_robots("robots alone", {}, 3.0, 2.0); });
 }
 
-/// Its bound is nearly the contact distance alone. (Far away, the truth's own outlines are less exact.)
+/// The bound of the reference is almost only the contact distance. (Far away, the outlines used for the truth are less
+/// exact.)
 TEST(LaserBoundsOfCasters, TheReference) {
   for (BoundScene (*make)() : {+[] { return with_robots("boxes", scenes::boxes(60, 16.0, 1), 8.0, 2.0); },
                                +[] { return with_robots("cave", scenes::cave(100, 16.0, 3), 8.0, 1.0); },

@@ -1,4 +1,4 @@
-// Limits of the farm: refusals, and success just below the limit.
+// Limits of the farm: errors above them, and success just below them.
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ void add_thin(std::vector<world::Segment>& out, glm::dvec2 a, glm::dvec2 b, std:
   out.push_back(s);
 }
 
-/// `count` rails beside the x axis, 4 um from it, all within one direction sector, with a wall behind them. A beam
-/// along the axis passes between all of them, and each is edge-on.
+/// `count` rails along the x axis, 4 um from it, all within one direction sector, with a wall behind them. A beam along
+/// the axis passes between all rails, and each is edge-on.
 world::World rails(int count) {
   world::World world;
   world.models.push_back({"rails", "model"});
@@ -44,7 +44,7 @@ world::World rails(int count) {
 }
 
 /// Thin rails are listed twice, once per side visible from the cell: 5 500 of them are 11 000 entries.
-TEST(Limits, ListsNearlyAsLongAsTheBoundAreReadToTheEnd) {
+TEST(Limits, ReadsListsJustBelowTheLimitToTheEnd) {
   const world::World world = rails(5'500);
   const Glance glance(world, kLimitsOnDevice);
   EXPECT_NEAR(glance.readings[0].values[0], 7.0, 1e-12) << "the last of the list is what the first beam meets";
@@ -53,8 +53,8 @@ TEST(Limits, ListsNearlyAsLongAsTheBoundAreReadToTheEnd) {
   expect_exact("5 500 rails", sweep(world));
 }
 
-/// A mover with nearly as many segments as its limit, beside walls with nearly as many as theirs.
-TEST(Limits, WallsAndMoversTogetherStayWithinTheLoopsBudget) {
+/// A mover with nearly as many segments as its limit, next to walls with nearly as many as theirs.
+TEST(Limits, WallsAndMoversTogetherStayWithinTheLoopLimit) {
   world::World world = rails(5'500);
   const std::uint32_t m = add_eye(world, {6.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 8.0));
   world::Mover& mover = world.movers[m];
@@ -71,7 +71,7 @@ TEST(Limits, WallsAndMoversTogetherStayWithinTheLoopsBudget) {
 }
 
 /// One more than the limit, and many more: scans run on the host and are counted.
-TEST(Limits, MoreWallsInOneSectorThanTheBoundAreCastOnTheHost) {
+TEST(Limits, CastsTooManyWallsInOneSectorOnTheHost) {
   for (const int count : {5'601, 12'500}) {
     const world::World world = rails(count);
     const Glance glance(world, kLimitsOnDevice);
@@ -83,7 +83,7 @@ TEST(Limits, MoreWallsInOneSectorThanTheBoundAreCastOnTheHost) {
   EXPECT_EQ(Glance(rails(5'500), kLimitsOnDevice).farm.stats().work.host_scans, 0u);
 }
 
-TEST(Limits, MoreOfMoversInOneSectorThanTheBoundAreCastOnTheHost) {
+TEST(Limits, CastsTooManyMoverSegmentsInOneSectorOnTheHost) {
   world::World world;
   add_eye(world, {}, eye(1, 0.0, 8.0));
   const std::uint32_t m = add_eye(world, {7.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 8.0));
@@ -96,7 +96,7 @@ TEST(Limits, MoreOfMoversInOneSectorThanTheBoundAreCastOnTheHost) {
 }
 
 /// Further device limits: a dispatch of several rows of groups, and one whose last lanes are padding.
-TEST(Limits, AMillionBeamsOfOneSensor) {
+TEST(Limits, MillionBeamsOfOneSensor) {
   world::World world = scenes::boxes(10, 8.0, 1);
   add_eye(world, {0.3, 0.2, 0, 0}, eye(1'000'000, 2.0 * M_PI, 12.0));
   expect_exact("a million beams", sweep(world));
@@ -116,7 +116,7 @@ TEST(Limits, ShortRangesFarAway) {
 }
 
 /// Settings of world files at their limits, in metres and degrees, and the next values beyond.
-TEST(Limits, SettingsEndAtThem) {
+TEST(Limits, SettingsAreLimited) {
   const auto refused = [](const std::string& type, const std::string& key, std::vector<double> values) {
     try {
       const sensors::SensorSet sensor_set(carriers(fitted(type, {setting(key, std::move(values))})));

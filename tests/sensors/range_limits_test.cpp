@@ -49,7 +49,7 @@ struct Case {
   double wall;   ///< [m] distance along the beam
   double range;  ///< [m] as read
   QualityFlag flag;
-  bool named;  ///< the model is
+  bool named;  ///< true: the reading has a model
 };
 
 const Case kCases[] = {
@@ -70,7 +70,7 @@ TEST_P(LaserLimits, ValueFlagAndModel) {
   const auto& [caster, mode] = GetParam();
   const bool single = mode == std::string("single");
   for (const Case& c : kCases) {
-    // Ranges in 32 bits do not tell a number from the next one.
+    // Ranges in 32 bits do not distinguish a number from the next one.
     if (single && c.wall != kMin && std::abs(c.wall - kMin) < 1e-9) continue;
     world::World world = wall_between(c.wall);
     add_eye(world, {}, limited(5, 0.2));
@@ -89,8 +89,8 @@ INSTANTIATE_TEST_SUITE_P(Casters, LaserLimits,
                          testing::Combine(testing::ValuesIn(raycast::caster_words()),
                                           testing::Values("exact", "single", "skip2")));
 
-/// The device, the host and the plain reference agree to the bit, with noise and interpolation.
-TEST(RangeLimits, TheReferenceSaysTheSame) {
+/// The device, the host and the plain reference agree bit by bit, with noise and interpolation.
+TEST(RangeLimits, ReferenceIsBitIdentical) {
   for (const double sigma : {0.0, 3.0})
     for (const std::uint32_t resolution : {1u, 3u}) {
       world::World world = wall_between(0.49);
@@ -107,7 +107,7 @@ TEST(RangeLimits, TheReferenceSaysTheSame) {
     }
 }
 
-TEST(RangeLimits, NoiseLeadsOutOfRangeButNotTooNear) {
+TEST(RangeLimits, NoiseMovesRangesOutOfRangeButNotTooNear) {
   world::World world = wall_between(2.0);
   sensors::LaserSettings laser = limited(400, 0.1);
   laser.noise.range_sigma = 3.0;
@@ -124,7 +124,7 @@ TEST(RangeLimits, NoiseLeadsOutOfRangeButNotTooNear) {
   EXPECT_TRUE(reading.quality.empty()) << "the surface is not too near, whatever its range says";
 }
 
-TEST(RangeLimits, NoiseHidesNoSurfaceThatIsTooNear) {
+TEST(RangeLimits, NoiseDoesNotHideSurfacesThatAreTooNear) {
   world::World world = wall_between(0.3);
   sensors::LaserSettings laser = limited(40, 0.1);
   laser.noise.range_sigma = 3.0;
@@ -132,8 +132,8 @@ TEST(RangeLimits, NoiseHidesNoSurfaceThatIsTooNear) {
   EXPECT_EQ(flags_of(Glance(world).readings[0]), std::vector(40, too_near));
 }
 
-/// Between two hits beyond the minimum a flat wall is nearer than it; so is the line between them.
-TEST(RangeLimits, AChordMayComeTooNear) {
+/// Between two hits beyond the minimum, a flat wall may be nearer than the minimum, and so may the line between them.
+TEST(RangeLimits, ChordMayBeTooNear) {
   world::World world = wall_between(0.45);
   add_eye(world, {}, limited(3, 1.2));
   sensors::set_accuracy(world, "skip2");
@@ -142,14 +142,14 @@ TEST(RangeLimits, AChordMayComeTooNear) {
   EXPECT_EQ(flags_of(glance.readings[0]), (std::vector{none, too_near, none}));
 }
 
-/// A sample between two cast beams is too near where the nearer of these is.
-TEST(RangeLimits, InterpolatedSamplesAreTooNearLikeTheirNeighbour) {
+/// A sample between two cast beams is too near if the nearer of the two is.
+TEST(RangeLimits, InterpolatedSamplesTakeTheFlagOfTheNearerBeam) {
   world::World world = wall_between(0.3, -5.0, -0.01);
   add_eye(world, {}, limited(5, 0.4, 4));
   EXPECT_EQ(flags_of(Glance(world).readings[0]), (std::vector{too_near, too_near, not_cast, not_cast, none}));
 }
 
-TEST(RangeLimits, FlagsAreThoseOfTheNewestScan) {
+TEST(RangeLimits, FlagsBelongToTheNewestScan) {
   for (const std::uint32_t resolution : {1u, 4u}) {
     world::World world = wall_between(2.0);
     add_eye(world, {}, limited(5, 0.4, resolution));
@@ -167,7 +167,7 @@ TEST(RangeLimits, FlagsAreThoseOfTheNewestScan) {
   }
 }
 
-TEST(RangeLimits, WithoutAMinimumNothingIsTooNear) {
+TEST(RangeLimits, NothingIsTooNearWithoutAMinimum) {
   world::World world = wall_between(0.0);
   add_eye(world, {}, eye(3, 0.2, kMax));
   const Glance glance(world);
@@ -191,7 +191,7 @@ TEST(RangeLimits, OfSonarAndInfrared) {
     }
 }
 
-/// A transducer that does not fire keeps its flag with its range.
+/// A transducer that does not fire keeps its flag and its range.
 TEST(RangeLimits, OfTransducersThatFireInTurn) {
   world::World world = wall_between(2.0);
   add_ranger(world, {}, cones("sonar", {Pose{}, Pose{}}, {cone_setting("range", {kMin, kMax})}));

@@ -37,7 +37,7 @@ TEST(Fans, AHundredThousandSamples) {
   expect_exact("100 000 samples", sweep(world));
 }
 
-/// A heading of many turns, and each heading at which a beam falls on the border of two direction sectors.
+/// A heading of many turns, and every heading at which a beam falls on the boundary of two direction sectors.
 TEST(Fans, EveryHeading) {
   world::World world = scenes::boxes(30, 16.0, 2);
   for (int i = -40; i < 40; ++i) {
@@ -48,7 +48,7 @@ TEST(Fans, EveryHeading) {
   expect_exact("headings", sweep(world));
 }
 
-/// A robot whose lasers share one point, like infrared spots in Stage. @param fans (samples, fov, heading) of each
+/// Adds a robot whose lasers share one point, like infrared spots in Stage. @param fans (samples, fov, heading) of each
 void add_spots(world::World& world, const base::Pose& pose, const std::vector<std::array<double, 3>>& fans) {
   const std::uint32_t mover = scenes::add_robot(world, pose, eye(1, 0.0, 4.0));
   sensors::LaserSettings laser = sensors::lasers_of(world.movers[mover])[0];
@@ -69,7 +69,7 @@ world::World spots() {
   for (int i = 0; i < 40; ++i) {
     const glm::dvec2 p = chance.in_square(3.5);
     const base::Pose X{p.x, p.y, 0.0, chance.between(-10.0, 10.0)};
-    // Evenly all round; several at one bearing; of different width, including a whole turn; too uneven to share.
+    // Evenly spaced all around; several at one bearing; of different width, including a full turn; too uneven to share.
     if (i % 4 == 0) add_spots(world, X, ring);
     if (i % 4 == 1) add_spots(world, X, {{1, 0, 0.5}, {1, 0, 0.5}, {1, 0, -0.5}, {1, 0, 7.0}});
     if (i % 4 == 2) add_spots(world, X, {{9, 1.0, 0.0}, {5, 2 * M_PI, 0.3}, {2, M_PI, 2.0}, {361, 2 * M_PI, 0.0}});
@@ -78,9 +78,9 @@ world::World spots() {
   return world;
 }
 
-TEST(Fans, OfOneRobotThatLookFromOnePoint) { expect_exact("spots", sweep(spots())); }
+TEST(Fans, OfOneRobotAtOnePoint) { expect_exact("spots", sweep(spots())); }
 
-/// Beams that graze are flagged with either caster, whichever place they have among those of the robot's scanners.
+/// Beams that graze are flagged with either caster, regardless of their place among the beams of the robot's scanners.
 TEST(Fans, OfOneRobotAlongAWall) {
   world::World world;
   scenes::add_room(world, {}, 6.0);
@@ -107,7 +107,7 @@ TEST(Fans, OfOneRobotInThirtyTwoBits) {
 }
 
 /// Scanners at one point are cast together when all are due, and separately otherwise.
-TEST(Fans, OfOneRobotWithRatesOfTheirOwn) {
+TEST(Fans, OfOneRobotWithDifferentRates) {
   world::World world = spots();
   for (world::Mover& mover : world.movers) {
     scenes::edit_laser(mover, sensors::lasers_of(mover).size() - 1)->rate = 5.0;

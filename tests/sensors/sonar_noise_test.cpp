@@ -18,7 +18,7 @@ constexpr int kRings = 8;
 constexpr std::size_t kTransducers = 16;
 constexpr int kRingTicks = 40;
 
-/// Robots before a long slanted wall y = 2 + x / 2, each with two equal rings that face it.
+/// Robots in front of a long slanted wall y = 2 + x / 2, each with two equal rings that face it.
 world::World slanted(const world::Sensor& sensor) {
   world::World world;
   scenes::add_outline(world, {{-100, -48}, {100, 52}, {100, 60}, {-100, -40}}, "wall");
@@ -37,7 +37,7 @@ world::Sensor noisy_sonar(double sigma, double proportional) {
                 cone_setting("noise", {sigma, proportional})});
 }
 
-/// Draws by tick, then sensor, then transducer, extracted by `of(noisy, quiet)` from first columns.
+/// Returns draws by tick, then sensor, then transducer, extracted by `of(noisy, quiet)` from first columns.
 template <class Of>
 std::vector<double> draws(const world::World& world, std::size_t columns, std::int64_t interval, Of of) {
   farm::Farm noisy(world, device(), {.seed = 5});
@@ -56,7 +56,7 @@ std::vector<double> draws(const world::World& world, std::size_t columns, std::i
   return all;
 }
 
-/// Neighbouring transducers, sensors, robots and ticks are uncorrelated, within 4 standard deviations.
+/// Expects neighbouring transducers, sensors, robots and ticks to be uncorrelated, within 4 standard deviations.
 void expect_independent_rings(const std::vector<double>& all) {
   for (const std::size_t lag :
        {std::size_t{1}, std::size_t{2}, kTransducers, 2 * kTransducers, kRings * 2 * kTransducers}) {
@@ -67,7 +67,7 @@ void expect_independent_rings(const std::vector<double>& all) {
   }
 }
 
-TEST(SonarNoise, ConstantNoiseIsNormalAndEveryDrawItsOwn) {
+TEST(SonarNoise, ConstantNoiseIsNormalAndIndependent) {
   const auto all = draws(slanted(noisy_sonar(0.02, 0.0)), 1, 40'000'000,
                          [](double noisy, double quiet) { return (noisy - quiet) / 0.02; });
   EXPECT_LT(ks(all), 1.95);
@@ -80,7 +80,7 @@ TEST(SonarNoise, BothPartsAddAsVariances) {
   EXPECT_LT(ks(all), 1.95);
 }
 
-/// Noise is added after the choice of the nearest ray, so that it does not shorten ranges.
+/// Noise is added after the choice of the nearest ray, so it does not shorten ranges.
 TEST(SonarNoise, IsNotBiased) {
   const auto all =
       draws(slanted(noisy_sonar(0.02, 0.0)), 1, 40'000'000, [](double noisy, double quiet) { return noisy - quiet; });
@@ -90,7 +90,7 @@ TEST(SonarNoise, IsNotBiased) {
   EXPECT_LT(std::fabs(sum / n), 4.0 * 0.02 / std::sqrt(n));
 }
 
-TEST(SonarNoise, StaysWithinRangeAndLeavesAloneWhatHeardNothing) {
+TEST(SonarNoise, StaysWithinRangeAndSkipsMissingEchoes) {
   world::World world;
   scenes::add_outline(world, {{1, -50}, {2, -50}, {2, 50}, {1, 50}}, "wall");
   world::Sensor sensor = noisy_sonar(5.0, 0.0);
@@ -114,8 +114,8 @@ TEST(SonarNoise, StaysWithinRangeAndLeavesAloneWhatHeardNothing) {
   EXPECT_GT(high, 10u);
 }
 
-/// Transducers that do not fire keep their draw too: their last reading stays the same to the bit.
-TEST(SonarNoise, ATransducerThatDoesNotFireKeepsItsReading) {
+/// Transducers that do not fire also keep their draw: their last reading stays the same bit by bit.
+TEST(SonarNoise, TransducerThatDoesNotFireKeepsItsReading) {
   world::World world;
   scenes::add_outline(world, {{1, -50}, {2, -50}, {2, 50}, {1, 50}}, "wall");
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8), {cone_setting("noise", {0.05})}));
@@ -149,7 +149,7 @@ TEST(InfraredNoise, IsRelativeToTheResponseAndGrowsWithTheRange) {
   expect_independent_rings(all);
 }
 
-TEST(InfraredNoise, TheValueIsTheDisturbedResponse) {
+TEST(InfraredNoise, RangeCorrespondsToTheNoisyResponse) {
   world::World world;
   scenes::add_outline(world, {{0.03, -1}, {1, -1}, {1, 1}, {0.03, 1}}, "wall");
   add_ranger(world, {}, cones("infrared", ring(8, 0.001), {cone_setting("noise", {0.2})}));
@@ -168,7 +168,7 @@ TEST(InfraredNoise, TheValueIsTheDisturbedResponse) {
 }
 
 /// A sonar and an infrared sensor with the same number on one robot draw independently.
-TEST(InfraredNoise, IsNotTheSonars) {
+TEST(InfraredNoise, IsIndependentOfSonarNoise) {
   world::World world;
   scenes::add_outline(world, {{1, -50}, {2, -50}, {2, 50}, {1, 50}}, "wall");
   const std::vector<world::Setting> same{cone_setting("range", {0, 2}), cone_setting("rate", {10})};
@@ -223,7 +223,7 @@ std::uint64_t hash_of_rings(const world::World& world, const farm::FarmOptions& 
   return farm.hash();
 }
 
-TEST(SonarHash, NoThreadCountNoRoomAndNoRunChangesAReading) {
+TEST(SonarHash, DoesNotDependOnThreadsMemoryOrRun) {
   const world::World world = busy_world(40);
   const std::uint64_t one = hash_of_rings(world, {.seed = 4, .threads = 1});
   EXPECT_EQ(hash_of_rings(world, {.seed = 4, .threads = 1}), one);
@@ -237,7 +237,7 @@ TEST(SonarHash, NoThreadCountNoRoomAndNoRunChangesAReading) {
 }
 
 /// Robots out of range change nothing.
-TEST(SonarHash, StrangersChangeNothing) {
+TEST(SonarHash, DoesNotDependOnRobotsOutOfRange) {
   const world::World few = busy_world(6);
   world::World more = few;
   for (int i = 0; i < 5; ++i)

@@ -136,7 +136,7 @@ TEST(Sonar, TransducersAreAtTheirPoses) {
 
 // --- Ray by ray.
 
-/// Readings of all robots against the reference, by one caster.
+/// Compares the readings of all robots with the reference, for one caster.
 ConeTally check(const world::World& world, const std::string& name, const raycast::CasterType* caster) {
   const Glance run(world, {.scene = {.caster = caster}});
   const auto arrays = sensors::cone_arrays_of(world, "sonar", sensors::read_sonar);
@@ -152,7 +152,7 @@ ConeTally check(const world::World& world, const std::string& name, const raycas
   return tally;
 }
 
-/// By every caster. @return the tally of the last
+/// Checks every caster. @return the tally of the last one
 ConeTally check(const world::World& world, const std::string& name) {
   ConeTally tally;
   for (const raycast::CasterType* caster : raycast::casters()) tally = check(world, name, caster);
