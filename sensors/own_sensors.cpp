@@ -100,7 +100,7 @@ std::vector<std::uint32_t> read_kernel(const std::string& file) {
   std::vector<std::uint32_t> words(bytes.size() / 4);
   std::memcpy(words.data(), bytes.data(), 4 * words.size());
   if (bytes.size() % 4 != 0 || words.size() < 5 || words[0] != kSpirvMagic)
-    throw base::InputError(file, 0, "is no SPIR-V module: compile the kernel with glslangValidator -V");
+    throw base::InputError(file, 0, "is not a SPIR-V module: compile the kernel with glslangValidator -V");
   return words;
 }
 

@@ -210,7 +210,7 @@ TEST(OwnSensors, RejectedKernelsStateTheReason) {
     });
   };
   expect_in("no such file", add("/nowhere.spv"));
-  expect_in("is no SPIR-V module", add(SF_SOURCE_DIR "/LICENSE"));
+  expect_in("is not a SPIR-V module", add(SF_SOURCE_DIR "/LICENSE"));
 }
 
 TEST(OwnSensors, RejectsSettingsWithFileAndLine) {
