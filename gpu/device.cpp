@@ -130,7 +130,8 @@ DeviceInfo host_info() {
 std::string refusal_of_host(const std::string& wanted, bool require_vulkan, bool named, bool other_chosen) {
   if (!named && !wanted.empty()) return "does not match '" + wanted + "'";
   if (require_vulkan)
-    return "is no Vulkan device, and one is required (--require-vulkan, SENSORFARM_REQUIRE_VULKAN or --caster vulkan)";
+    return "is not a Vulkan device, but one is required (--require-vulkan, SENSORFARM_REQUIRE_VULKAN or --caster "
+           "vulkan)";
   return other_chosen ? "usable, but a Vulkan device ranks higher; name it with --device host" : "";
 }
 
