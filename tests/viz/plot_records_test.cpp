@@ -10,7 +10,6 @@
 #include "tests/viz/png.h"
 #include "viz/field_figure.h"
 #include "viz/legend.h"
-#include "viz/lights_figure.h"
 #include "viz/map_figure.h"
 #include "viz/series_figure.h"
 #include "viz/svg.h"
@@ -56,29 +55,6 @@ TEST(SeriesRecord, ShowsPanelsAndTheirLegends) {
   expect_drawing("series", [](const std::string& file) { draw_series(panels(), file); });
 }
 
-TEST(SeriesRecord, BeginsAtZeroOnAPage) {
-  SeriesOptions options = panels();
-  options.from_zero = true;
-  options.x_name = "delay [s]";
-  options.panels.resize(2);
-  for (double& v : options.panels[1].series[0].values) v = 7.0;  // of no span
-  expect_drawing("series_page",
-                 [&](const std::string& file) { draw_series(options, file, {.width = 100.0, .height = 120.0}); });
-}
-
-TEST(LightsRecord, ShowsEachState) {
-  using world::LightState;
-  std::vector<LightRow> rows{{"north", {}}, {"a light in the south", {}}};
-  double time = 1.0;
-  for (const LightState state : {LightState::dark, LightState::red, LightState::yellow, LightState::green,
-                                 LightState::flashing_red, LightState::flashing_yellow}) {
-    rows[0].spans.push_back({time, time + 1.25, state});
-    rows[1].spans.push_back({2.0 * time, 2.0 * time + 0.1, state});
-    time += 1.5;
-  }
-  expect_drawing("lights", [&](const std::string& file) { draw_light_states(rows, filler(), file); });
-}
-
 TEST(TradeoffRecord, ShowsPointsAndTheirBounds) {
   TradeoffPoint exact{"exact", 2.5e5, 0.0, 0.0, 1e-9, true, {}}, table{"table", 1.5e6, 1e-5, 3e-4, 2e-3, true, {}};
   TradeoffPoint skip{"skip4", 9.0e5, 1e-6, 4e-4, HUGE_VAL, false, {0.259, 1e-3, 2e-3}};
@@ -86,9 +62,6 @@ TEST(TradeoffRecord, ShowsPointsAndTheirBounds) {
       {"laser", "rays per second", "error [m]", {exact, table, skip}},
       {"sonar", "readings per second", "error [m]", {{"one", 700.0, 0.12, 0.3, 0.85}}}};
   expect_drawing("tradeoff", [&](const std::string& file) { draw_tradeoff("Speed", filler(), both, file); });
-  expect_drawing("tradeoff_page", [&](const std::string& file) {
-    draw_tradeoff("Speed", "over error", both, file, {.width = 110.0, .height = 150.0});
-  });
 }
 
 world::World magnets() {
@@ -117,21 +90,6 @@ TEST(FieldRecord, ShowsMapAndProfile) {
   expect_drawing("field", [&](const std::string& file) { draw_field(magnets(), view, samples(view), file); });
 }
 
-TEST(FieldRecord, FollowsItsPage) {
-  const Page page{.width = 120.0, .height = 140.0};
-  const FieldView view = field_view(magnets(), {0.3, Line{{0.0, -0.5}, {0.4, 0.5}}, std::nullopt, page});
-  expect_drawing("field_page",
-                 [&](const std::string& file) { draw_field(magnets(), view, samples(view), file, page); });
-}
-
-TEST(FieldRecord, ShowsAColumnOfMagnets) {
-  world::World world;
-  world.file = "some/column.world";
-  for (int i = 0; i < 7; ++i) world.magnets.push_back({{2.0 + 0.02 * i, 0.25 * i}, 0.1 * i, 1.0, 0.0125, 0});
-  const FieldView view = field_view(world, {.height = 0.2});
-  expect_drawing("field_column", [&](const std::string& file) { draw_field(world, view, samples(view), file); });
-}
-
 maps::OccupancyGrid grid() {
   maps::OccupancyGrid made({-1.0, 2.0, 0.25, 3, 2});
   for (std::int64_t i = 0; i < 60; ++i) made.set({i % 12, i / 12}, static_cast<maps::Cell>(i % 7 < 4 ? 2 : i % 3));
@@ -146,13 +104,6 @@ MapFigure figure() {
 
 TEST(MapRecord, ShowsCellsAndRobots) {
   expect_drawing("map", [](const std::string& file) { draw_map(grid(), figure(), file); });
-}
-
-TEST(MapRecord, FollowsItsPage) {
-  MapFigure one = figure();
-  one.places.resize(2);
-  expect_drawing("map_page",
-                 [&](const std::string& file) { draw_map(grid(), one, file, {.width = 100.0, .height = 60.0}); });
 }
 
 TEST(LegendRecord, DrawsEachMark) {

@@ -8,9 +8,6 @@
 #include "tests/viz/drawing_record.h"
 #include "tests/viz/png.h"
 #include "tests/viz/rich_world.h"
-#include "viz/occupancy_figure.h"
-#include "viz/path_figure.h"
-#include "viz/town_figure.h"
 #include "viz/trajectory_figure.h"
 #include "viz/world_figure.h"
 
@@ -52,22 +49,6 @@ TEST(WorldRecord, ShowsOneOfEverything) {
   expect_drawing("world", [](const std::string& file) { draw_world(scenes::rich_world(), file); });
 }
 
-TEST(WorldRecord, FollowsItsPage) {
-  const Page page{.width = 170.0, .height = 150.0, .title = false, .extent = world::Extent{0.5, 0.5, 4.5, 3.5}};
-  expect_drawing("world_page", [&](const std::string& file) { draw_world(scenes::rich_world(), file, page); });
-}
-
-TEST(WorldRecord, UnitesTheViewsOfACrowd) {
-  world::World world = scenes::rich_world();
-  world.movers.clear();
-  world.emitters.erase(world.emitters.begin());
-  world.magnets.resize(3);
-  world.lights.clear();
-  for (std::uint32_t i = 0; i < 21; ++i)
-    world.movers.push_back(scenes::make_robot(world, i + 1, {0.35 * (i + 1), 2.5, 0, 0.3 * i}, 0xFF2E7D32u, 0.6));
-  expect_drawing("world_crowd", [&](const std::string& file) { draw_world(world, file); });
-}
-
 /// Boundary: the number of movers up to which views in a union have outlines.
 TEST(WorldFigure, ViewsOfVeryManyMoversHaveNoOutlines) {
   for (const std::size_t count : {300u, 301u}) {
@@ -86,13 +67,6 @@ TEST(TrajectoryRecord, NamesAFewTracksInTheLegend) {
   tracks[2].contacts.clear();
   expect_drawing("trajectories",
                  [&](const std::string& file) { draw_trajectories(scenes::rich_world(), tracks, file); });
-}
-
-TEST(TrajectoryRecord, NamesMoreTracksAtTheirEnds) {
-  std::vector<Track> tracks = tracks_of(9);
-  for (Track& track : tracks) track.duration = 0.5;
-  expect_drawing("trajectories_many",
-                 [&](const std::string& file) { draw_trajectories(scenes::rich_world(), tracks, file, "trial"); });
 }
 
 /// Boundary: the numbers of tracks at which lines, marks and crosses become thinner.
@@ -135,38 +109,6 @@ TEST(TrajectoryFigure, ManyTracksHaveTheNamesAskedFor) {
     EXPECT_TRUE(names(one, "run 2")) << count;
     EXPECT_EQ(names(one, "run 1"), count <= 7) << count << ": in the legend";
   }
-}
-
-TEST(PathRecord, ShowsLanesAndTheirMiddles) {
-  std::vector<Track> tracks = tracks_of(3);
-  tracks[0].color = 0xFF654321u;
-  expect_drawing("paths", [&](const std::string& file) {
-    draw_along_paths(scenes::rich_world(), tracks, "Along the lane", "three runs", file);
-  });
-}
-
-TEST(OccupancyRecord, ShowsCellsAndTheirShares) {
-  maps::OccupancyGrid grid({-0.5, 4.5, 0.5, 3, 2});
-  for (std::int64_t i = 0; i < 75; ++i) grid.set({i % 12, i / 12}, static_cast<maps::Cell>(i % 7 < 4 ? 2 : i % 3));
-  expect_drawing("occupancy", [&](const std::string& file) { draw_occupancy(scenes::rich_world(), grid, file); });
-}
-
-TEST(TownRecord, ShowsConvoysAndLights) {
-  const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world");
-  std::vector<Track> tracks;
-  TownFinalState end{.time = 9.0};
-  for (const std::uint32_t row : {0u, 1u, 2u, 6u}) {
-    const base::Pose& X = world.movers[row].X_WM;
-    Track track{.name = world.movers[row].name};
-    for (int i = 0; i <= 10; ++i) track.poses.push_back({X.x + 0.1 * i, X.y + 0.02 * i * row, 0.0, 0.1 * i});
-    track.contacts.assign(11, 0);
-    track.contacts[row + 1] = 1;
-    tracks.push_back(track);
-    end.movers.push_back(row);
-    end.follows.push_back(world::kNone);
-  }
-  end.follows[1] = 0;
-  expect_drawing("town", [&](const std::string& file) { draw_town(world, tracks, end, file); });
 }
 
 }  // namespace
