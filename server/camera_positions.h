@@ -1,6 +1,6 @@
 #pragma once
-// A robot's own state from cameras: TAG packets of the tag that it carries (`sensorfarm vps`), filtered as `serve
-// --filter` does with states.
+// Estimates a robot's own state from cameras: receives TAG packets (`sensorfarm vps`) of the tag that the robot carries
+// and filters them as `serve --filter` filters states.
 //
 //   CameraPositions cameras(world, mover, 7, {.bind = {kLoopback, 9100}});
 //   cameras.receive(now);
@@ -19,40 +19,40 @@
 namespace sf::server {
 
 struct CameraPositionsOptions {
-  netio::Endpoint bind;            ///< where TAG packets come; port 0: any free one
-  StateFilterOptions filter;       ///< enabled or not; `stale_after` is the time that a state counts without cameras
-  std::vector<netio::Peer> peers;  ///< of the tag, or none
+  netio::Endpoint bind;            ///< where TAG packets arrive; port 0: any free port
+  StateFilterOptions filter;       ///< `stale_after`: how long a state remains valid without cameras
+  std::vector<netio::Peer> peers;  ///< the peer of the tag, or empty
 };
 
-/// Errors of estimates, by comparison with the truth.
+/// Errors of estimates compared with the truth.
 struct PositionErrors {
   std::uint64_t count = 0;
-  double squares = 0.0;          ///< [m²] sum over the positions
+  double squares = 0.0;          ///< [m²] sum of squared position errors
   double largest = 0.0;          ///< [m]
   double largest_heading = 0.0;  ///< [rad]
 
-  double rms() const;  ///< [m]; 0 of none
+  double rms() const;  ///< [m]; 0 if empty
 };
 void add(PositionErrors& errors, const base::Pose& estimate, const base::Pose& truth);
 
-/// Times are of the robot's clock [ns], which begins at 0 and does not go back. The world must outlive it. One thread.
+/// Times [ns] are on the robot's monotonic clock, which starts at 0. The world must outlive it. Not thread-safe.
 class CameraPositions {
  public:
   /// @param tag in [netio::kMinTag, netio::kMaxId]
-  /// @throws netio::PortInUse, base::InputError when the address cannot be bound
+  /// @throws netio::PortInUse, base::InputError if the address cannot be bound
   CameraPositions(const world::World& world, std::uint32_t mover, std::uint32_t tag,
                   const CameraPositionsOptions& options);
 
   /// [ns] Unix time at the robot's time 0, for estimation::ClockSource::trusted.
   void set_epoch(std::int64_t epoch) { filter_.set_epoch(epoch); }
-  /// Takes every datagram that waits, up to a limit.
+  /// Processes the waiting datagrams, up to a limit.
   void receive(std::int64_t now);
   /// Predicts the state to `now`.
   void predict(std::int64_t now);
 
   // As of the last `predict`.
   bool is_fresh() const { return filter_.quality(mover_).stated && !filter_.quality(mover_).stale; }
-  const base::Report& state() const { return state_; }  ///< where it was fresh once
+  const base::Report& state() const { return state_; }  ///< valid once it has been fresh
   base::Pose pose_at(std::int64_t time) const { return trail_.at(time); }
 
   std::uint16_t port() const { return inbox_.port(); }
@@ -64,7 +64,7 @@ class CameraPositions {
   netio::Inbox inbox_;
   StateFilter filter_;
   base::Report state_;
-  robots::PoseTrail trail_;  ///< of estimates, each made at its time
+  robots::PoseTrail trail_;  ///< of estimates, each made at its own time
 };
 
 }  // namespace sf::server

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kSilence = 500'000'000;    // [ns] 33 frames
 constexpr std::int64_t kRevival = 1'000'000'000;  // [ns] between attempts
-constexpr std::size_t kMostBytes = 8192;          // of one update: more than a second of 57600 baud
+constexpr std::size_t kMostBytes = 8192;          // read per update: more than one second at 57600 baud
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void CreateDrive::update(std::int64_t now) {
   if (silent(now)) revive(now);
 }
 
-/// @return a frame came
+/// Returns whether a frame arrived.
 bool CreateDrive::receive() {
   bool came = false, bumped = false, dropped = false;
   std::array<std::uint8_t, 512> bytes;
@@ -62,14 +62,14 @@ bool CreateDrive::receive() {
   return came;
 }
 
-/// Along an arc.
+/// Integrates the motion along an arc.
 void CreateDrive::take(const robots::CreateFrame& frame) {
   frame_ = frame;
   const double way = 1e-3 * frame.distance, turn = frame.angle * M_PI / 180.0, middle = state_.X_WM.yaw + 0.5 * turn;
   state_.X_WM.x += way * std::cos(middle);
   state_.X_WM.y += way * std::sin(middle);
   state_.X_WM.yaw = base::wrap_angle(state_.X_WM.yaw + turn);
-  // A lifted robot is put down again by people, where it may drive. At a cliff it waits for them.
+  // People put a lifted robot down where it may drive, so it resumes. At a cliff, it waits for them.
   lifted_ = (lifted_ || frame.wheel_drop) && frame.mode != robots::CreateFrame::safe;
   if (lifted_ && !frame.wheel_drop && frame.mode == robots::CreateFrame::passive && line_)
     line_->write(robots::create_safe());
@@ -87,7 +87,7 @@ void CreateDrive::revive(std::int64_t now) {
     }
     start();
   } catch (const base::InputError&) {
-    // Unplugged still: tried again.
+    // Still unplugged: retry later.
   }
 }
 

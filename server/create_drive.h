@@ -1,6 +1,6 @@
 #pragma once
-// A real iRobot Create on a serial line, in place of a robot's motion model: commands go to its wheels, and its pose is
-// the sum of the distances and angles that it reports (odometry) from the start pose on.
+// Drives a real iRobot Create on a serial line in place of a robot's motion model. Commands are sent to its wheels. Its
+// pose is dead-reckoned from the start pose, by the distances and angles that it reports (odometry).
 
 #include <cstdint>
 #include <optional>
@@ -18,39 +18,40 @@ struct CreateOptions {
 };
 
 struct CreateCounts {
-  std::uint64_t frames = 0;           ///< of its sensor stream
-  std::uint64_t wrong_checksums = 0;  ///< frames that were left out; the way in them is lost
-  std::uint64_t skipped_bytes = 0;    ///< in no frame
-  std::uint64_t starts = 0;           ///< times that the robot was started: again after silence and after a new line
-  std::uint64_t lines = 0;            ///< times that the line was opened
-  std::uint64_t refused = 0;          ///< commands that a full line did not take
+  std::uint64_t frames = 0;           ///< received from its sensor stream
+  std::uint64_t wrong_checksums = 0;  ///< dropped frames; the distance in them is lost
+  std::uint64_t skipped_bytes = 0;    ///< outside frames
+  std::uint64_t starts = 0;           ///< starts of the robot, repeated after silence and after reopening the line
+  std::uint64_t lines = 0;            ///< number of times the line was opened
+  std::uint64_t refused = 0;          ///< commands dropped because the line's buffer was full
 };
 
-/// Times are of the robot's own clock [ns], which does not go back. One thread.
+/// Times [ns] are on the robot's own monotonic clock. Not thread-safe.
 class CreateDrive {
  public:
   /// @param X_WM start pose @param track [m] > 0
-  /// @throws base::InputError where the line cannot be opened
+  /// @throws base::InputError if the line cannot be opened
   CreateDrive(const CreateOptions& options, const base::Pose& X_WM, double track);
   /// Stops the robot.
   ~CreateDrive() { stop(); }
   CreateDrive(const CreateDrive&) = delete;
   CreateDrive& operator=(const CreateDrive&) = delete;
 
-  /// Takes what came. After half a second of silence it starts the robot anew, once a second, and opens a lost line.
+  /// Processes received frames. After half a second of silence, restarts the robot once a second and reopens a lost
+  /// line.
   void update(std::int64_t now);
-  /// Until the next call; call it at every step. At rest while the robot is silent or has left safe mode.
+  /// Applies until the next call; call it at every step. The robot stops while it is silent or not in safe mode.
   void drive(const base::Twist& twist, std::int64_t now);
-  /// At rest, stream off, passive mode.
+  /// Stops the wheels and the stream, and enters passive mode.
   void stop();
 
-  /// A frame came in the last half second, and the robot takes commands.
+  /// Returns whether a frame arrived in the last half second and the robot accepts commands.
   bool ready(std::int64_t now) const { return problem(now).empty(); }
-  /// Why not; empty: it is ready.
+  /// Returns why the robot is not ready; empty if it is.
   std::string problem(std::int64_t now) const;
-  /// Pose by odometry, twist of the last update.
+  /// Pose by odometry, and twist of the last update.
   const base::Report& state() const { return state_; }
-  /// A bump or a wheel drop in any frame of the last update with frames.
+  /// Returns whether any frame of the last update that had frames reported a bump or a wheel drop.
   bool contact() const { return contact_; }
   CreateCounts counts() const;
 
@@ -63,13 +64,13 @@ class CreateDrive {
 
   CreateOptions options_;
   double track_;
-  std::optional<netio::SerialLine> line_;  ///< none: lost
+  std::optional<netio::SerialLine> line_;  ///< empty: the line is lost
   robots::CreateStream stream_;
-  robots::CreateFrame frame_;  ///< the last one
+  robots::CreateFrame frame_;  ///< most recent
   bool contact_ = false;
   std::optional<std::int64_t> last_;     ///< [ns] of the last update with a frame
   std::optional<std::int64_t> revived_;  ///< [ns]
-  bool lifted_ = false;                  ///< since it was last in safe mode
+  bool lifted_ = false;                  ///< lifted since it was last in safe mode
   base::Report state_;
   CreateCounts counts_;
 };

@@ -10,7 +10,7 @@ namespace sf::server {
 namespace {
 
 constexpr std::size_t kBatch = 16;
-constexpr std::size_t kMost = 256;  ///< datagrams per call: bounds the work under a flood
+constexpr std::size_t kMost = 256;  ///< datagrams per call; bounds the work under a flood
 
 }  // namespace
 
@@ -51,7 +51,7 @@ void LightListener::accept(std::span<const std::uint8_t> bytes, const netio::End
   ++(states > 0 ? counts_.messages : counts_.others);
 }
 
-/// SPaT has no signature: where one is expected, it is not taken.
+/// SPaT has no signature, so it is refused where a signature is required.
 bool LightListener::is_refused(const v2x::Spat& spat, const netio::Endpoint& source) const {
   return std::any_of(spat.intersections.begin(), spat.intersections.end(), [&](const v2x::IntersectionState& state) {
     const netio::Peer* peer = netio::find(options_.peers, netio::PeerKind::light, state.id.id);

@@ -1,8 +1,9 @@
 #pragma once
-// The traffic lights of a farm that serves: by the world's plans, or as they are heard, and on to the robots as V2I.
+// The traffic lights of a serving farm. States follow the world's plans or received messages, and are sent to robots as
+// V2I.
 //
 //   LightService lights(world, {.spat = ...});
-//   lights.accept(header, v2i, now);             // what the inbox accepted
+//   lights.accept(header, v2i, now);             // packets accepted by the inbox
 //   lights.update(now);                          // each tick; then lights.signals()
 //   lights.publish(now, receiver, states);
 
@@ -24,23 +25,23 @@ struct LightServiceCounts {
   std::uint64_t sent = 0;  ///< V2I packets to robots
 };
 
-/// Times `now` [ns] are of one clock that does not go back; simulated time of the plans. The world must outlive it. One
-/// thread.
+/// Times `now` [ns] are on one monotonic clock and are the simulated time of the plans. The world must outlive it. Not
+/// thread-safe.
 class LightService {
  public:
-  static constexpr std::int64_t kPeriod = 100'000'000;  ///< [ns] least between two V2I of an intersection
+  static constexpr std::int64_t kPeriod = 100'000'000;  ///< [ns] minimum between two V2I of an intersection
 
-  /// @param radio [m] beyond which robots are not told of an intersection; 0: none is
-  /// @throws netio::PortInUse, base::InputError when the port for SPaT cannot be bound
+  /// @param radio [m] range within which robots receive an intersection's state; 0: no robot does
+  /// @throws netio::PortInUse, base::InputError if the port for SPaT cannot be bound
   LightService(const world::World& world, const LightListenerOptions& options, double radio);
 
   std::vector<std::uint32_t> ids() const;  ///< of intersections
   void accept(const netio::Header& header, const netio::V2i& signals, std::int64_t now);
-  /// Hears what waits, and sets the states at `now`.
+  /// Processes waiting messages and sets the states at `now`.
   void update(std::int64_t now);
-  /// One per row of `World::lights`, at the last `update`.
+  /// One per row of `World::lights`, as of the last `update`.
   std::span<const world::Signal> signals() const { return signals_; }
-  /// Queues the states for robots that want those of others, where `kPeriod` has passed.
+  /// Queues the states for robots that subscribed to the states of others, at most once per `kPeriod`.
   void publish(std::int64_t now, StateReceiver& receiver);
 
   const LightListener& listener() const { return listener_; }
@@ -54,7 +55,7 @@ class LightService {
   double radio_;
   std::vector<world::SignalForecast> forecasts_;
   std::vector<world::Signal> signals_;
-  std::vector<std::optional<glm::dvec2>> places_;  ///< [m] per mover, in one call
+  std::vector<std::optional<glm::dvec2>> places_;  ///< [m] per mover, valid within one call
   std::optional<std::int64_t> published_;          ///< [ns]
   std::uint64_t sent_ = 0;
 };

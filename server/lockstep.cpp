@@ -11,8 +11,8 @@ namespace sf::server {
 
 namespace {
 
-constexpr std::int64_t kRenewal = netio::kClientTimeout / 4;  ///< [ns] between renewals of a process' bindings
-constexpr std::size_t kMostNamed = 8;                         ///< robots of one message
+constexpr std::int64_t kRenewal = netio::kClientTimeout / 4;  ///< [ns] between renewals of a process's bindings
+constexpr std::size_t kMostNamed = 8;                         ///< robots listed in one message
 
 bool same_key(std::span<const netio::Peer> peers, std::uint32_t one, std::uint32_t other) {
   const auto key_of = [&](std::uint32_t id) {
@@ -69,7 +69,7 @@ void Lockstep::take(const netio::Packet& packet, std::int64_t now) {
   if (const auto* fetch = std::get_if<netio::Fetch>(&packet.body)) take(*process, *fetch);
 }
 
-/// The first command of a robot and tick counts, so that copies change nothing.
+/// Only the first command for a robot and tick counts, so duplicates have no effect.
 void Lockstep::take(Process& process, const netio::Command& command, const netio::Header& header) {
   for (std::size_t i = 0; i < netio::count_rows(command); ++i) {
     const netio::CommandRow row = netio::row_of(command, i);
@@ -96,7 +96,7 @@ void Lockstep::take(Process& process, const netio::Step& step, std::int64_t now)
     return;
   }
   ++counts_.repeated;
-  // The answer was lost, or others are waited for: its first datagram shows that the farm is there.
+  // The answer was lost, or the farm waits for other processes. Its first datagram shows that the farm is alive.
   if (answerable(process)) answer_again(process, 0, step.tick < published_.tick() ? kPushed : 1);
 }
 
@@ -113,7 +113,7 @@ void Lockstep::subscribe(const netio::Header& header, std::uint32_t types, std::
   if (process.movers.empty()) {
     process = {
         .endpoint = endpoint, .session = header.session, .movers = {}, .answered = published_.tick(), .renewed = now};
-    changed_ = now;  // others begin to wait for this one
+    changed_ = now;  // other processes start waiting for this one
   }
   const bool added = seats_[mover].driver == nullptr;
   counts_.repeated += added ? 0 : 1;
@@ -132,7 +132,7 @@ void Lockstep::subscribe(const netio::Header& header, std::uint32_t types, std::
   unacknowledged_.push_back(mover);
 }
 
-/// A robot's STATE shows its process that it is subscribed.
+/// Sends a STATE of each new robot, which confirms its subscription.
 void Lockstep::acknowledge() {
   if (unacknowledged_.empty()) return;
   std::sort(unacknowledged_.begin(), unacknowledged_.end());
@@ -148,7 +148,7 @@ void Lockstep::acknowledge() {
   unacknowledged_.clear();
 }
 
-/// The robot stands from now on; its process is gone with its last robot.
+/// Stops the robot. Removes its process together with its last robot.
 void Lockstep::release(std::uint32_t mover) {
   Process* process = std::exchange(seats_[mover].driver, nullptr);
   commands_[mover] = {};
@@ -182,7 +182,7 @@ void Lockstep::check_timeout(std::int64_t now) {
   const std::int64_t limit = base::nanoseconds(options_.timeout);
   if (limit <= 0 || !begun_ || processes_.empty() || ready()) return;
   missing_.clear();
-  bool held_up = false;  // a process waits for others
+  bool held_up = false;  // whether a process waits for others
   for (const auto& [key, process] : processes_) {
     held_up = held_up || is_done(process);
     if (!is_done(process)) missing_.insert(missing_.end(), process.movers.begin(), process.movers.end());

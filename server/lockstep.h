@@ -1,16 +1,16 @@
 #pragma once
-// Lockstep by UDP: processes elsewhere command simulated robots, and the farm simulates a tick when all of them have
-// asked for it. Commands come in, states and readings go out; the caller simulates.
+// Lockstep over UDP: external processes command simulated robots, and the farm simulates a tick once all of them have
+// requested it. Commands are received, states and readings are sent; the caller simulates.
 //
 //   Lockstep lockstep(world, sensor_set, {});
 //   lockstep.publish(simulation.step(), now);            // tick 0
-//   lockstep.receive(now);                               // as long as it is not ready
+//   lockstep.receive(now);                               // until it is ready
 //   if (lockstep.ready()) simulation.command(lockstep.commands()), lockstep.publish(simulation.step(), now);
 //
-// A process is an address and port. It subscribes robots, and after each tick that it asked for is sent one answer:
-// a STATE of each of its robots and the VALUES of their readings. Every packet names its tick and may be repeated:
-// results depend neither on loss nor on order (docs/packets.md, Lockstep). A process says in STEP how many commands it
-// has sent, and the farm waits for all of them.
+// A process is an address and port. It subscribes robots, and receives one answer after each tick that it requested: a
+// STATE for each of its robots and the VALUES of their readings. Every packet carries its tick and may be repeated, so
+// results depend neither on loss nor on order (docs/packets.md, Lockstep). STEP states how many commands a process has
+// sent, and the farm waits for all of them.
 //
 // Algorithm: conservative synchronisation of simulations (IEEE 1516, time advance request and grant).
 
@@ -38,37 +38,38 @@ namespace sf::server {
 struct LockstepOptions {
   netio::Endpoint bind = {netio::kLoopback, netio::kInboxPort};
   std::uint32_t robots = 1;  ///< the first tick waits until this many are subscribed
-  double timeout = 5.0;      ///< [s] that processes wait for another, which is then left out; 0: without end
+  double timeout = 5.0;      ///< [s] that processes wait for another before it is dropped; 0: no limit
   int log_descriptor = 2;    ///< -1: no log
   std::vector<netio::Peer> peers;
 };
 
 struct LockstepCounts {
-  std::uint64_t commands = 0;     ///< rows that were taken
-  std::uint64_t repeated = 0;     ///< rows, STEP and SUBSCRIBE that had come before, or came too late
-  std::uint64_t refused = 0;      ///< rows for robots of another process, or with another key
+  std::uint64_t commands = 0;     ///< accepted rows
+  std::uint64_t repeated = 0;     ///< duplicate or late rows, STEP and SUBSCRIBE
+  std::uint64_t refused = 0;      ///< rows for robots of another process or with a wrong key
   std::uint64_t fetched = 0;      ///< datagrams sent on request
-  std::uint64_t lost_robots = 0;  ///< whose process timed out
+  std::uint64_t lost_robots = 0;  ///< robots whose process timed out
 };
 
-/// World and sensor set must outlive it. One thread. Times are of one clock [ns] that does not go back.
+/// The world and the sensor set must outlive it. Not thread-safe. Times [ns] are on one monotonic clock.
 class Lockstep {
  public:
-  /// Datagrams of an answer that are sent at once; the process fetches the others.
+  /// Datagrams of an answer that are sent immediately; the process fetches the others.
   static constexpr std::uint32_t kPushed = 64;
-  /// Most datagrams sent on request in one `receive`; requests beyond are dropped, and repeated by their process.
+  /// Maximum number of datagrams sent on request in one `receive`. Further requests are dropped, and their process
+  /// repeats them.
   static constexpr std::uint64_t kMaxAnswers = 16'384;
 
-  /// @throws netio::PortInUse, base::InputError when the address cannot be bound
+  /// @throws netio::PortInUse, base::InputError if the address cannot be bound
   Lockstep(const world::World& world, const sensors::SensorSet& sensor_set, const LockstepOptions& options);
 
-  /// Takes all datagrams that wait, and leaves out processes that hold up others for too long.
+  /// Processes all waiting datagrams, and drops processes that delay others for too long.
   void receive(std::int64_t now);
-  /// Every process has asked for the tick after the published one, and all of its commands have come.
+  /// Returns whether every process has requested the tick after the published one and all of its commands have arrived.
   bool ready() const;
-  /// Per mover: the twist until the next tick. Lives until the next `receive`.
+  /// Twist per mover until the next tick. Valid until the next `receive`.
   std::span<const base::Twist> commands() const { return commands_; }
-  /// Takes the results of a tick, and answers the processes that asked to come this far.
+  /// Stores the results of a tick, and answers the processes that requested it.
   void publish(const base::TickRecord& record, std::int64_t now);
 
   void wait(int timeout_ms) const { inbox_.wait(timeout_ms); }
@@ -83,26 +84,26 @@ class Lockstep {
   struct Part {
     std::uint32_t mover = 0;
     std::uint32_t reading = 0;  ///< row of `published_`, or kState
-    std::uint32_t first = 0;    ///< value
+    std::uint32_t first = 0;    ///< index of the first value
   };
   struct Process {
     netio::Endpoint endpoint;
     std::uint32_t session = 0;
     std::vector<std::uint32_t> movers;     ///< rows, by id
     std::uint64_t answered = 0;            ///< tick of `answer`
-    bool built = false;                    ///< `answer` is that of its robots
+    bool built = false;                    ///< `answer` has been built for its robots
     std::vector<Part> answer;              ///< valid until the next tick is simulated
-    std::optional<netio::Step> step;       ///< that waits, or is being simulated
+    std::optional<netio::Step> step;       ///< waiting, or being simulated
     std::uint32_t commands = 0;            ///< robots with a command of tick `answered`
     std::uint32_t states = 0, values = 0;  ///< datagrams sent
-    std::int64_t renewed = 0;              ///< [ns] when the inbox was last told that its robots are driven
+    std::int64_t renewed = 0;              ///< [ns] when its bindings in the inbox were last renewed
   };
-  /// A mover as seen by the process that drives it.
+  /// A mover, seen from the process that drives it.
   struct Seat {
-    Process* driver = nullptr;               ///< null: the mover stands
-    std::uint32_t types = 0;                 ///< mask of its SUBSCRIBE
-    std::optional<std::uint64_t> answered;   ///< tick of its newest answer; none: none yet
-    std::optional<std::uint64_t> before;     ///< tick of the answer before that one
+    Process* driver = nullptr;               ///< null: the mover is at rest
+    std::uint32_t types = 0;                 ///< type mask of its SUBSCRIBE
+    std::optional<std::uint64_t> answered;   ///< tick of its newest answer
+    std::optional<std::uint64_t> before;     ///< tick of the previous answer
     std::optional<std::uint64_t> commanded;  ///< tick of its last command
   };
   using Key = std::pair<std::uint32_t, std::uint16_t>;  ///< address and port
@@ -142,12 +143,12 @@ class Lockstep {
   PublishedTick published_;
   std::vector<std::uint32_t> rows_;            ///< scratch
   std::vector<std::uint32_t> missing_;         ///< scratch
-  std::vector<std::uint32_t> unacknowledged_;  ///< movers that were subscribed in this `receive`
+  std::vector<std::uint32_t> unacknowledged_;  ///< movers subscribed in this `receive`
   std::size_t driven_ = 0;                     ///< movers with a process
-  bool begun_ = false;                         ///< enough robots have subscribed
-  std::int64_t changed_ = 0;                   ///< [ns] when the tick was published, or a process joined after it
-  std::optional<std::int64_t> first_step_;     ///< [ns] since when a process waits for the next tick
-  std::optional<std::uint64_t> warned_;        ///< tick of the last warning that all are silent
+  bool begun_ = false;                         ///< whether enough robots have subscribed
+  std::int64_t changed_ = 0;                   ///< [ns] when the tick was published or a process last joined
+  std::optional<std::int64_t> first_step_;     ///< [ns] since when a process has waited for the next tick
+  std::optional<std::uint64_t> warned_;        ///< tick of the last warning that all processes are silent
   std::uint64_t again_ = 0;                    ///< datagrams sent on request in this `receive`
   LockstepCounts counts_;
   base::Bytes packet_;

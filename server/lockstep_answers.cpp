@@ -1,4 +1,4 @@
-// Packets that lockstep sends: the answer of a tick as numbered datagrams, encoded when they are sent.
+// Packets sent by lockstep: the answer of a tick as numbered datagrams, which are encoded when they are sent.
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ void Lockstep::grant(Process& process) {
   send(process, 0, kPushed);
 }
 
-/// States and readings of its robots; with bit 0 of a SUBSCRIBE, then the states of all others.
+/// Adds states and readings of its robots. With bit 0 of SUBSCRIBE, adds the states of all other robots.
 void Lockstep::build_answer(Process& process) {
   if (std::exchange(process.built, true)) return;
   process.answer.clear();
@@ -45,7 +45,7 @@ void Lockstep::build_answer(Process& process) {
     if (others && seats_[mover].driver != &process) process.answer.push_back({mover, kState, 0});
 }
 
-/// The newest reading of each sensor that was delivered since the answer before.
+/// Adds the newest reading of each sensor delivered since the previous answer.
 void Lockstep::add_readings(std::uint32_t mover, std::vector<Part>& parts) {
   const Seat& seat = seats_[mover];
   rows_.clear();
@@ -69,7 +69,7 @@ void Lockstep::send(Process& process, std::uint32_t first, std::uint32_t count) 
   const std::uint64_t end = std::min<std::uint64_t>(process.answer.size(), std::uint64_t{first} + count);
   for (std::uint64_t i = first; i < end; ++i) {
     encode(process, static_cast<std::uint32_t>(i));
-    // States of robots of others are signed like those of the first of its own.
+    // States of other processes' robots are signed like those of the process's first robot.
     const std::uint32_t mover = process.answer[i].mover;
     const std::uint32_t signs = seats_[mover].driver == &process ? mover : process.movers.front();
     outbox_.queue(process.endpoint, packet_, {inbox_.session(), process.session},
@@ -95,10 +95,11 @@ void Lockstep::encode(Process& process, std::uint32_t index) {
   header.sensor = static_cast<std::uint16_t>(reading.sensor);
   header.sequence = process.values++;
   header.time = reading.time;
-  // Receivers do not see which elements have a flag, so `error` is stated only where it holds for all of them.
+  // Receivers cannot see which elements are flagged, so `error` is given only if it holds for all of them.
   const bool unsure = base::is_unsure(reading);
   const double error = unsure ? HUGE_VAL : reading.bound;
-  // A bound of 0, as without magnets, is the least that the word states: 0 stands for none there.
+  // A bound of 0 (for example without magnets) is encoded as the smallest value, because 0 means "no bound" in this
+  // word.
   const double bound = std::max(reading.bound, std::numeric_limits<double>::min());
   header.accuracy = netio::encode_accuracy({reading.mode, unsure, bound});
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes());

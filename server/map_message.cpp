@@ -20,11 +20,11 @@ constexpr std::size_t kMaxLanes = 255, kMaxNodes = 63, kMaxConnections = 16;
 constexpr std::uint8_t kIngress = 0b10, kEgress = 0b01;
 constexpr std::array<std::int32_t, 6> kReach{511, 1023, 2047, 4095, 8191, 32'767};  ///< [cm] of node-XY1 to node-XY6
 
-constexpr double kNodeReach = 327.0;  ///< [m] in each direction, of node-XY6
+constexpr double kNodeReach = 327.0;  ///< [m] per axis, of node-XY6
 
 std::int32_t centimetres(double metres) { return static_cast<std::int32_t>(std::lround(100.0 * metres)); }
 
-/// The reverse of LocalPlane::east_north, by Newton's method; below 1e-9 degrees after five steps.
+/// Inverts LocalPlane::east_north by Newton's method; the error is below 1e-9 degrees after five steps.
 world::Geodetic geodetic_of(glm::dvec2 p, world::Geodetic origin) {
   constexpr double kMetresPerDegree = 111'320.0;
   const world::LocalPlane plane(origin);
@@ -38,7 +38,7 @@ world::Geodetic geodetic_of(glm::dvec2 p, world::Geodetic origin) {
   return at;
 }
 
-/// [1e-7 degrees] above -180 degrees, up to 180.
+/// Wraps to (-180, 180] degrees, in units of 1e-7 degrees.
 std::int32_t wrapped_longitude(double degrees) {
   constexpr std::int64_t kTurn = 3'600'000'000;
   const std::int64_t units = std::llround(1e7 * degrees) % kTurn;
@@ -46,7 +46,7 @@ std::int32_t wrapped_longitude(double degrees) {
   return static_cast<std::int32_t>(units <= -kTurn / 2 ? units + kTurn : units);
 }
 
-/// The points, and more between those that are farther apart than a node's offset reaches.
+/// Returns the points, with points inserted where two are farther apart than a node's offset reaches.
 std::vector<glm::dvec2> within_reach(std::span<const glm::dvec2> points) {
   std::vector<glm::dvec2> all;
   for (const glm::dvec2& p : points) {
@@ -59,8 +59,8 @@ std::vector<glm::dvec2> within_reach(std::span<const glm::dvec2> points) {
   return all;
 }
 
-/// Nodes relative to each other, the first one to `reference`. Each is rounded by itself, so that errors do not add up.
-/// The first point must be within reach of it.
+/// Returns nodes relative to each other, the first relative to `reference`. Each is rounded separately, so errors do
+/// not accumulate. The first point must be within reach of `reference`.
 std::vector<v2x::Node> nodes_of(std::span<const glm::dvec2> points, glm::dvec2 reference) {
   std::vector<v2x::Node> nodes;
   std::int32_t x = 0, y = 0;
@@ -77,7 +77,7 @@ std::vector<v2x::Node> nodes_of(std::span<const glm::dvec2> points, glm::dvec2 r
   return nodes;
 }
 
-/// Way-points from `from` against or in driving direction; at least two.
+/// Returns at least two way-points from `from`, in or against the driving direction.
 std::vector<glm::dvec2> way_of(const RoadNetwork& roads, PointRef from, bool forwards) {
   const world::RoadLane& lane = roads.lanes[from.row];
   std::vector<glm::dvec2> points;
@@ -170,7 +170,7 @@ class MapBuilder {
   glm::dvec2 reference_;
   std::vector<v2x::GenericLane> lanes_;
   std::vector<std::pair<PointRef, std::size_t>> egress_;
-  std::uint8_t connections_ = 0;  ///< with an id
+  std::uint8_t connections_ = 0;  ///< connections with an id
 };
 
 }  // namespace

@@ -49,7 +49,7 @@ MirroredReadings::MirroredReadings(const world::World& world, const sensors::Sen
 void MirroredReadings::accept(std::span<const std::uint8_t> bytes, std::int64_t now) {
   netio::Header header;
   std::span<const std::uint8_t> payload;
-  netio::decode_reading(bytes, {}, header, payload);  // only to know whose it is
+  netio::decode_reading(bytes, {}, header, payload);  // only to identify the sensor
   const auto stream = streams_.find({netio::sensor_type_of(header.type), header.robot, header.sensor});
   if (stream == streams_.end())
     ++unknown_;
@@ -80,12 +80,12 @@ void MirroredReadings::add_scan(const sensors::SensorSpec& laser, const base::Po
     echoes.points.clear();
   };
   for (std::uint32_t i = 0; i < laser.elements; ++i) {
-    const bool too_near = laser.range_min > 0.0 && ranges[i] <= laser.range_min;  // or there: no place is known
+    const bool too_near = laser.range_min > 0.0 && ranges[i] <= laser.range_min;  // position unknown
     const bool returned = !too_near && ranges[i] < laser.limit;
     const double range = std::min(ranges[i], laser.limit);
     const glm::dvec2 end = base::transform(X_WS, base::rotate(sensors::bearing_of(laser, i), {range, 0.0}));
     if (i % every == 0) lines.push_back({SightLine::Kind::beam, {{X_WS.x, X_WS.y}, end}, X_WS.z});
-    // A step of range that no surface at up to 80 degrees explains is the edge of one.
+    // A step in range that no surface at up to 80 degrees explains is an edge.
     const double before = i > 0 ? std::min(ranges[i - 1], laser.limit) : range;
     const double most = 0.05 + 5.7 * step * std::min(range, before);
     if (!returned || std::abs(range - before) > most) end_echoes();
@@ -94,7 +94,7 @@ void MirroredReadings::add_scan(const sensors::SensorSpec& laser, const base::Po
   end_echoes();
 }
 
-/// NaN: no edge in sight.
+/// NaN: no edge in range.
 void MirroredReadings::add_edge(std::size_t stream, const base::Pose& X_WS, double distance,
                                 std::vector<SightLine>& lines) const {
   constexpr double kHalf = 0.15;  // [m]

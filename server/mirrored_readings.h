@@ -1,5 +1,6 @@
 #pragma once
-// Readings of any robots, as a farm mirrors them (`serve --mirror`), and what their sensors saw as lines.
+// Decodes readings of any robots, as mirrored by a farm (`serve --mirror`), and draws what their sensors measured as
+// lines.
 //
 //   MirroredReadings readings(world, sensor_set);
 //   readings.accept(datagram, now);
@@ -22,39 +23,40 @@ namespace sf::server {
 struct SightLine {
   enum class Kind : std::uint8_t {
     beam,      ///< from the sensor to where the beam ended
-    echoes,    ///< through the ends of neighbouring beams that returned from one surface
-    lane_edge  ///< a piece of the edge, 0.3 m long, at a right angle to the direction in which it was measured
+    echoes,    ///< through the ends of neighbouring beams that hit the same surface
+    lane_edge  ///< a piece of the edge, 0.3 m long, perpendicular to the direction of measurement
   } kind = Kind::beam;
   std::vector<glm::dvec2> points;  ///< [m] in the world
   double z = 0.0;                  ///< [m]
 };
 
-/// Times are of one clock [ns] that does not go back. World and sensor set must outlive it. One thread.
+/// Times [ns] are on one monotonic clock. The world and the sensor set must outlive it. Not thread-safe.
 class MirroredReadings {
  public:
-  static constexpr std::int64_t kFresh = 1'000'000'000;  ///< [ns] older readings are not drawn
-  static constexpr std::uint32_t kMostBeams = 45;        ///< drawn of a scan; all count for echoes
+  static constexpr std::int64_t kFresh = 1'000'000'000;  ///< [ns] maximum age of drawn readings
+  static constexpr std::uint32_t kMostBeams = 45;        ///< beams drawn per scan; all are used for echoes
 
   MirroredReadings(const world::World& world, const sensors::SensorSet& sensor_set);
   MirroredReadings(const MirroredReadings&) = delete;
   MirroredReadings& operator=(const MirroredReadings&) = delete;
 
-  /// Takes any bytes.
+  /// Accepts any bytes.
   void accept(std::span<const std::uint8_t> bytes, std::int64_t now);
-  /// Appends what the mover's lasers and lane edge sensors saw last, from its pose `X_WM` now.
+  /// Appends lines for the last readings of the mover's lasers and lane edge sensors, drawn from its current pose
+  /// `X_WM`.
   void add_lines(std::uint32_t mover, const base::Pose& X_WM, std::int64_t now, std::vector<SightLine>& lines) const;
   netio::ReceiverCounts counts() const { return receiver_.counts(); }
-  std::uint64_t unknown() const { return unknown_; }  ///< datagrams of no sensor of the world
+  std::uint64_t unknown() const { return unknown_; }  ///< datagrams of unknown sensors
 
  private:
-  using Key = std::tuple<std::uint8_t, std::uint16_t, std::uint16_t>;  ///< type, robot's id, sensor
+  using Key = std::tuple<std::uint8_t, std::uint16_t, std::uint16_t>;  ///< type, robot id, sensor
   void add_scan(const sensors::SensorSpec& laser, const base::Pose& X_WS, std::span<const double> ranges,
                 std::vector<SightLine>& lines) const;
   void add_edge(std::size_t stream, const base::Pose& X_WS, double distance, std::vector<SightLine>& lines) const;
 
   std::vector<SensorStream> sources_;
   std::map<Key, std::size_t> streams_;                ///< rows of `sources_`
-  std::map<std::size_t, glm::dvec2> perpendiculars_;  ///< of lane edge sensors, by stream, in their frames
+  std::map<std::size_t, glm::dvec2> perpendiculars_;  ///< of lane edge sensors, by stream, in their own frames
   std::map<std::uint32_t, std::vector<std::size_t>> by_mover_;
   netio::Receiver receiver_;
   std::uint64_t unknown_ = 0;

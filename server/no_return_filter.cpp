@@ -12,7 +12,7 @@ std::span<const base::ReadingBlock> NoReturnFilter::apply(std::span<const base::
   blocks_.assign(readings.begin(), readings.end());
   double* at = ranges_.data();
   for (base::ReadingBlock& r : blocks_) {
-    if (r.hits.empty()) continue;  // no beams
+    if (r.hits.empty()) continue;  // not a laser: no beams
     sensors::mark_no_return(r, sensor_set_.row(r).limit, {at, r.values.size()});
     r.values = {at, r.values.size()};
     at += r.values.size();

@@ -1,5 +1,5 @@
 #pragma once
-// Ranges without a return, as the user wants them to read.
+// Output of ranges without a return, in the form that the user selects.
 
 #include <span>
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace sf::server {
 
-/// Replaces the range of each beam without a return by infinity, where that is asked for.
+/// Replaces the range of each beam without a return by infinity, if enabled.
 class NoReturnFilter {
  public:
   /// @param infinite false: readings pass unchanged. `sensor_set` must outlive the filter.
   NoReturnFilter(const sensors::SensorSet& sensor_set, bool infinite) : sensor_set_(sensor_set), infinite_(infinite) {}
-  /// The same readings, or copies. They live until the next call.
+  /// Returns the readings themselves or modified copies, valid until the next call.
   std::span<const base::ReadingBlock> apply(std::span<const base::ReadingBlock> readings);
 
  private:

@@ -16,9 +16,9 @@ namespace sf::server {
 
 namespace {
 
-constexpr double kCell = 0.03;  // [m] the thesis'
+constexpr double kCell = 0.03;  // [m] as in the thesis
 
-/// A map of the whole world, on the lattice of all maps of its cells.
+/// Returns a map of the whole world, aligned with the lattice shared by all maps of this cell size.
 world::Sensor whole_world(const world::Extent& extent, double range) {
   const auto words = [](double low, double high, double cell) {
     return std::ceil(std::ceil(high / cell) / 4.0 - std::floor(low / cell) / 4.0);

@@ -1,5 +1,5 @@
 #pragma once
-// The occupancy map that a robot makes of its own scans (thesis, 4.4), and its packets.
+// The occupancy map that a robot builds from its own scans (thesis, 4.4), and its packets.
 //
 //   OwnMap map(world, mover, {.receiver = {address, 52008}});
 //   map.add(scan, X_WS);      // each reading of its laser
@@ -24,23 +24,25 @@ struct OwnMapOptions {
 };
 
 struct OwnMapCounts {
-  std::uint64_t scans = 0;  ///< entered
-  std::uint64_t maps = 0;   ///< sent, all their parts
+  std::uint64_t scans = 0;  ///< added to the map
+  std::uint64_t maps = 0;   ///< sent with all their parts
   netio::OutboxCounts sent;
 };
 
-/// One thread.
+/// Not thread-safe.
 class OwnMap {
  public:
-  /// With the settings of the robot's first `occupancy( )`; without one over all of the world, of laser 0, in cells of
-  /// 3 cm or as many times two as its range and the largest map need, once a second.
-  /// @throws base::InputError for a robot without lasers, invalid settings, and a map that the wire cannot carry
+  /// Uses the settings of the robot's first `occupancy( )`. Without one, maps the whole world from laser 0 once a
+  /// second, in cells of 3 cm, doubled until its range and the map size fit the limits.
+  /// @throws base::InputError for a robot without lasers, for invalid settings, and for a map that the wire format
+  /// cannot carry
   OwnMap(const world::World& world, std::uint32_t mover, const OwnMapOptions& options);
 
-  /// Enters a reading of the map's laser that is newer than the last; all others are ignored.
+  /// Adds a reading of the map's laser that is newer than the last; ignores all others.
   /// @param X_WM of the robot at the reading's time
   void add(const base::ReadingBlock& reading, const base::Pose& X_WM);
-  /// Sends the map when it is due. @param now [ns] of the packets' timestamps @param true_poses it was made from these
+  /// Sends the map if it is due.
+  /// @param now [ns] timestamp of the packets @param true_poses whether the map was built from true poses
   void send(std::int64_t now, bool true_poses);
 
   const sensors::Occupancy& settings() const { return settings_; }
@@ -48,7 +50,7 @@ class OwnMap {
 
  private:
   sensors::Occupancy settings_;
-  base::Pose X_ML_;  ///< laser in the robot's frame
+  base::Pose X_ML_;  ///< laser in the robot frame
   OwnMapOptions options_;
   std::uint16_t robot_;
   std::uint32_t session_;

@@ -54,7 +54,7 @@ void add_header(const netio::Header& header, Fields& out) {
   add(out, "unsure", accuracy.unsure);
   add(out, "bound", std::isinf(accuracy.bound) ? kNan : accuracy.bound);
   if (!is_reading) return;
-  constexpr std::int64_t kMost = 0xFFFFFFFF;  // says more, too
+  constexpr std::int64_t kMost = 0xFFFFFFFF;  // saturates: larger ages are stated as this
   add(out, "age_us", std::min(header.state.age / 1000, kMost));
   add(out, "stale", header.state.stale);
   add(out, "covariance", header.state.covariance);
@@ -83,7 +83,7 @@ void add_body(const netio::Refusal& refusal, Fields& out) {
 }
 void add_body(const netio::Challenge& challenge, Fields& out) { add(out, "challenge", challenge.token); }
 
-/// Lists by robot, and per robot forward, left, turn.
+/// Adds one list of robots, and per robot forward, left and turn.
 void add_body(const netio::Command& command, Fields& out) {
   std::vector<double> robots, twists;
   for (std::size_t i = 0; i < netio::count_rows(command); ++i) {
@@ -129,7 +129,7 @@ void add_body(const netio::Values& values, Fields& out) {
   add(out, "value", numbers);
 }
 
-/// Approaches, then stop lines, each column by itself.
+/// Adds approaches, then stop lines, each column separately.
 void add_body(const netio::V2i& signals, Fields& out) {
   std::vector<double> group, state, next, left, light, stop_group, stop_point, stop_line;
   for (std::size_t k = 0; k < netio::count(signals.approaches); ++k) {
@@ -157,7 +157,7 @@ void add_body(const netio::V2i& signals, Fields& out) {
 }
 void add_body(const netio::Object& object, Fields& out) { add(out, "present", object.present); }
 
-/// The states by their place: "0.robot", ... Those that are no V2V are left out.
+/// Adds the states, prefixed by their index: "0.robot", ... States that are not valid V2V are omitted.
 void add_body(const netio::Neighbours& neighbours, Fields& out) {
   for (std::size_t i = 0; i < neighbours.states.size() / netio::kV2vBytes; ++i) {
     netio::Packet packet;
@@ -202,7 +202,8 @@ void add_map(std::span<const std::uint8_t> payload, Fields& out) {
   add(out, "word", words);
 }
 
-/// The columns of a reading that is one datagram. @param elements its rows
+/// Adds the columns of a reading that fits one datagram.
+/// @param elements its rows
 void add_columns(const sensors::SensorType& type, std::uint32_t elements, std::span<const std::uint8_t> payload,
                  Fields& out) {
   const std::size_t width = sensors::element_width(type);

@@ -11,7 +11,7 @@
 
 namespace sf::server {
 
-/// A list has the numbers of a column of a reading, or of a vector. NaN: no number; infinity: no return of a laser.
+/// A list contains the values of a reading's column or of a vector. NaN: no number; infinity: no return of a laser.
 struct PacketField {
   std::string name;
   std::variant<std::int64_t, double, std::vector<double>> value;
@@ -20,12 +20,12 @@ struct PacketField {
 /// "3", "0.25", "1 none inf": numbers of ten digits.
 std::string text_of(const PacketField& field);
 
-/// A datagram, as any receiver of such packets judges it.
+/// A datagram as judged by a receiver of its type.
 struct PacketDescription {
-  netio::PacketStatus status = netio::PacketStatus::too_short;  ///< the rest is filled in where it is accepted
+  netio::PacketStatus status = netio::PacketStatus::too_short;  ///< other members are set only if it is accepted
   netio::Header header;
   std::string name;                 ///< "laser", "V2V", ...
-  std::vector<PacketField> fields;  ///< of the header, then those of the payload
+  std::vector<PacketField> fields;  ///< of the header, then of the payload
   std::size_t header_fields = 0;    ///< of `fields`
 };
 

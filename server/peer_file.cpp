@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 1> kKeys{"peer"};
 constexpr std::array<std::string_view, 6> kPeerKeys{"robot", "tag", "start", "light", "address", "key"};
 constexpr std::array<std::string_view, 4> kKindKeys{"robot", "tag", "start", "light"};
 
-/// The one key of `table` that says whose packets it is about.
+/// Returns the only key of `table` that names the sender of its packets.
 const TomlNode& kind_node(const TomlReader& reader, const TomlNode& table) {
   const TomlNode* found = nullptr;
   for (const std::string_view key : kKindKeys) {
@@ -44,7 +44,7 @@ const TomlNode& kind_node(const TomlReader& reader, const TomlNode& table) {
 /// @param rows by id
 void require_known(const TomlReader& reader, const TomlNode& node, const std::map<std::uint32_t, std::uint32_t>& rows,
                    std::uint32_t id) {
-  constexpr std::size_t kMost = 16;  // in the error
+  constexpr std::size_t kMost = 16;  // names listed in the error
   if (rows.count(id) > 0) return;
   std::vector<std::uint32_t> ids = ids_of(rows);
   const bool more = ids.size() > kMost;
@@ -80,7 +80,7 @@ void read_address(const TomlReader& reader, const TomlNode& table, Peer& peer) {
     reader.fail(*world::find(table, "address"), "'address' expects an IPv4 address such as \"192.168.1.7\"");
 }
 
-/// Errors do not repeat the text: they may end in a log.
+/// Errors do not quote the text, because they may be logged.
 void read_key(const TomlReader& reader, const TomlNode& table, Peer& peer) {
   if (world::find(table, "key") == nullptr) return;
   const std::string text = reader.text(table, "key", "");
@@ -97,7 +97,8 @@ void read_key(const TomlReader& reader, const TomlNode& table, Peer& peer) {
   peer.key = key;
 }
 
-/// Tags of one camera may share a key. Two robots must not, since each would take packets to the other for signed.
+/// Tags of one camera may share a key. Two robots must not, because each would accept packets addressed to the other as
+/// signed.
 void require_own_key(const TomlReader& reader, const TomlNode& table, const Peer& peer,
                      std::map<netio::SigningKey, PeerKind>& keys) {
   if (!peer.key) return;

@@ -1,5 +1,5 @@
 #pragma once
-// The tick that a lockstep published last: states of all movers, and the newest reading of each sensor.
+// The tick that a lockstep published last: states of all movers and the newest reading of each sensor.
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace sf::server {
 
-/// One thread. The sensor set must outlive it.
+/// Not thread-safe. The sensor set must outlive it.
 class PublishedTick {
  public:
   explicit PublishedTick(const sensors::SensorSet& sensor_set);
@@ -23,22 +23,23 @@ class PublishedTick {
   const base::Report& report(std::uint32_t mover) const { return reports_[mover]; }
   bool contact(std::uint32_t mover) const { return contacts_[mover] != 0; }
 
-  /// Rows of the mover's sensors with a reading delivered after tick `after` (nullopt: ever), by type and sensor.
-  /// @param types bit k: sensor type with wire id k; appended to `rows`
+  /// Appends the rows of the mover's sensors with a reading delivered after tick `after` (nullopt: ever), ordered by
+  /// type and sensor.
+  /// @param types bit k: sensor type with wire id k
   void find_new(std::uint32_t mover, std::uint32_t types, std::optional<std::uint64_t> after,
                 std::vector<std::uint32_t>& rows) const;
-  /// The newest reading of a row that `find_new` found.
+  /// Returns the newest reading of a row found by `find_new`.
   const base::ReadingBlock& reading(std::uint32_t row) const { return newest_[row].reading.block(); }
 
  private:
   struct Newest {
     farm::StoredReading reading;
-    std::optional<std::uint64_t> tick;  ///< of its delivery; none: nothing was delivered
+    std::optional<std::uint64_t> tick;  ///< of its delivery; nullopt: never delivered
   };
   std::uint32_t row_of(const base::ReadingBlock& reading) const;
 
   const sensors::SensorSet& sensor_set_;
-  std::vector<std::uint32_t> first_;  ///< per group of sensors: its first row
+  std::vector<std::uint32_t> first_;  ///< first row per group of sensors
   std::vector<Newest> newest_;        ///< per sensor
   std::vector<base::Report> reports_;
   std::vector<std::uint8_t> contacts_;

@@ -11,7 +11,7 @@ namespace sf::server {
 
 namespace {
 
-/// The bound of the numbers that packets carry, which are rounded.
+/// Returns the accuracy of the values in packets, which includes their rounding.
 netio::Accuracy accuracy_on_wire(const sensors::SensorType& type, const sensors::SensorSpec& row,
                                  const base::ReadingBlock& reading) {
   const bool stated = type.wire_error != nullptr && std::isfinite(reading.bound);
@@ -56,7 +56,8 @@ ReadingPublisher::Job ReadingPublisher::make_job(const AddressedReading& address
   return {addressed, group.type, &row, &stream, stream.sent, 0, 0, true};
 }
 
-/// @return how many parts could not be made; each of the others is put: (datagram, endpoint, bytes).
+/// Calls `put` (datagram, endpoint, bytes) for each part.
+/// @return number of parts that could not be encoded
 template <class Put>
 std::uint32_t ReadingPublisher::encode(const Job& job, Memory& memory, Put&& put) const {
   const base::ReadingBlock& reading = *job.addressed.reading;
@@ -101,7 +102,7 @@ void ReadingPublisher::queue(std::span<const AddressedReading> readings) {
       datagrams = 0;
     }
     job.place = datagrams;
-    // Before the threads begin: signatures do not depend on their order.
+    // Take counters before the threads start: signatures do not depend on the order of the threads.
     if (job.addressed.signer != nullptr) job.counter = job.addressed.signer->take(job.stream->parts);
     datagrams += datagrams_of(*job.stream);
     ++job.stream->sent;
@@ -110,7 +111,8 @@ void ReadingPublisher::queue(std::span<const AddressedReading> readings) {
   encode_all();
 }
 
-/// All at once; where a part is not numbers, one by one, since what is not sent is not numbered.
+/// Encodes all readings in parallel. Falls back to one by one if a part contains a value that is not a number, because
+/// unsent packets are not numbered.
 void ReadingPublisher::encode_all() {
   if (jobs_.empty()) return;
   const std::size_t datagrams = jobs_.back().place + datagrams_of(*jobs_.back().stream);

@@ -1,5 +1,5 @@
 #pragma once
-// Readings to robots: what leaves, in which form.
+// Sends readings to robots as packets.
 
 #include <cstdint>
 #include <optional>
@@ -18,43 +18,43 @@ namespace sf::server {
 
 struct PublisherCounts {
   netio::OutboxCounts packets;
-  std::uint64_t not_numbers = 0;  ///< packets never made, for a value that is not a number where none may be missing
+  std::uint64_t not_numbers = 0;  ///< packets not sent because a required value is not a number
 };
 
-/// A reading on its way to a robot.
+/// A reading with the robot it is sent to.
 struct AddressedReading {
   const base::ReadingBlock* reading = nullptr;
   std::uint32_t address = 0;
   netio::SessionToken session_token;
-  netio::PacketSigner* signer = nullptr;  ///< of the robot; null: not signed
+  netio::PacketSigner* signer = nullptr;  ///< of the robot; null: unsigned
 };
 
-/// Fleets of more sensors than this are encoded on all cores, and sent by a thread of their own.
+/// Fleets with more sensors are encoded on all cores and sent by a separate thread.
 inline constexpr std::size_t kLargeFleet = 256;
 
-/// How `sensor_set`'s readings are sent.
+/// Returns how the readings of `sensor_set` are sent.
 netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set);
 
-/// Readings as packets, numbered per sensor as they are sent: a reading that was due and never sent leaves no gap.
-/// World and roster must outlive it.
+/// Encodes readings as packets, numbered per sensor in the order of sending. A reading that was due but never sent
+/// leaves no gap. The world and the roster must outlive it.
 class ReadingPublisher {
  public:
-  /// @param mirror gets a copy of each packet as well, byte for byte; not with the thesis' packets, which do not say
-  /// whose they are
+  /// @param mirror receives a byte-identical copy of each packet; not allowed with the thesis' packets, which do not
+  /// name their sensor
   ReadingPublisher(const world::World& world, const sensors::SensorSet& sensor_set, StreamLayout layout,
                    netio::Outbox outbox, std::optional<netio::Endpoint> mirror = std::nullopt);
 
-  /// Queues each reading's packets to its address, at its sensor's port; none where the layout has none of its
-  /// sensor's.
+  /// Queues each reading's packets for its address, at the port of its sensor. Skips sensors without a port in the
+  /// layout.
   void queue(std::span<const AddressedReading> readings);
   void flush() { outbox_.flush(); }
   PublisherCounts counts() const { return {outbox_.counts(), not_numbers_}; }
 
  private:
-  /// One sensor's stream.
+  /// The stream of one sensor.
   struct Stream {
-    std::uint32_t sent = 0;   ///< readings
-    std::uint32_t parts = 0;  ///< datagrams of a reading; 0: it is not sent
+    std::uint32_t sent = 0;   ///< number of readings
+    std::uint32_t parts = 0;  ///< datagrams per reading; 0: not sent
   };
   /// A reading that is being encoded.
   struct Job {
@@ -65,13 +65,13 @@ class ReadingPublisher {
     std::uint32_t sequence = 0;
     std::size_t place = 0;      ///< of its first datagram
     std::uint64_t counter = 0;  ///< of its first datagram's signature
-    bool whole = true;          ///< every part is numbers
+    bool whole = true;          ///< every part contains only numbers
   };
   struct Memory {
     base::Bytes payload, packet;
   };
   Job make_job(const AddressedReading& addressed);
-  /// Of a reading, copies included.
+  /// Datagrams of a reading, copies included.
   std::size_t datagrams_of(const Stream& stream) const { return stream.parts * (mirror_ ? 2u : 1u); }
   void encode_all();
   void encode_and_queue(Job& job);

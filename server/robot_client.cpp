@@ -15,7 +15,7 @@ namespace sf::server {
 
 namespace {
 
-/// [ns] Never shorter than two and a half periods of the fastest sensor, so that one lost reading stops nobody.
+/// [ns] At least two and a half periods of the fastest sensor, so that a single lost reading does not stop a robot.
 std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mover, double seconds) {
   double fastest = 0.0;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
@@ -100,7 +100,7 @@ void RobotClient::leave(std::int64_t now) {
   link_.leave(now);
 }
 
-/// A robot that does not know where it is does not say so: the farm's state of it grows stale, as do its readings.
+/// A robot with an unknown pose sends no state. The farm's state of it then becomes stale, and so do its readings.
 void RobotClient::send_state(std::int64_t now) {
   if (is_lost()) return link_.send_request(now);
   link_.send_state(v2v_of(own_state(), made_.controller->intent()), now);
@@ -115,7 +115,7 @@ void RobotClient::wait_until(std::int64_t until, const std::atomic<bool>& stop, 
   }
 }
 
-/// [ns] The farm loses a robot that sends no states: without scans, steps go on at half the rate.
+/// [ns] The farm drops a robot that sends no states, so without scans it steps at half the rate.
 std::int64_t RobotClient::next_step(std::int64_t now) const {
   const std::int64_t period = std::llround(1e9 / rate());
   return made_.on_scans ? now + 2 * period : std::max(next_ + period, now - period);
@@ -194,7 +194,7 @@ void RobotClient::decide(std::int64_t now) {
   if (map_) draw_map(now);
 }
 
-/// From the poses that the controller drives by.
+/// Uses the poses of the controller's own localization, if it has one.
 void RobotClient::draw_map(std::int64_t now) {
   const control::OwnLocalization* own = control::localization_of(*made_.controller);
   for (const base::ReadingBlock& reading : readings_)
@@ -202,7 +202,7 @@ void RobotClient::draw_map(std::int64_t now) {
   map_->send(now, own == nullptr && !create_);
 }
 
-/// Packets do not state the pose that the farm read from: the robot takes its own at that time.
+/// Packets do not carry the pose that the farm cast from, so the robot uses its own pose at that time.
 void RobotClient::gather_readings() {
   readings_.clear();
   for (RobotLink::Newest& newest : link_.readings()) {
@@ -225,7 +225,7 @@ void RobotClient::gather_others(std::int64_t now) {
   }
 }
 
-/// Lights go by the farm's clock, and by what they say.
+/// Signals follow the farm's clock, and received states override the plans.
 void RobotClient::gather_signals(std::int64_t now) {
   const double time = 1e-9 * static_cast<double>(link_.clock().to_farm(now));
   signals_.clear();

@@ -1,5 +1,5 @@
 #pragma once
-// A robot's process without its command line: the controller, its inputs, and the loop around both.
+// A robot's process without its command line: the controller, its inputs, and the loop that runs them.
 
 #include <atomic>
 #include <cstdint>
@@ -33,89 +33,88 @@ struct RobotClientOptions {
   LinkOptions link;
   control::ControllerConfig controller;
   std::uint64_t seed = 1;
-  double forget = 10.0;                 ///< [s] of silence after which another robot is no obstacle any more; 0: never
-  double stop_after = 0.5;              ///< [s] without a reading after which it stands; 0: never
-  bool wait_for_start = false;          ///< it stands until the start signal comes
-  int log_descriptor = 2;               ///< of its log's lines; -1: none
-  std::optional<netio::Endpoint> spat;  ///< where it listens for SPaT of traffic lights, in place of the farm's V2I
-  std::function<std::int64_t()> utc;    ///< [ms] since 1970; empty: the machine's clock
-  std::uint32_t tag = 0;                ///< that it carries, below cameras; 0: the one with the robot's id
-  /// Its own pose, and that in its packets to the farm, come from cameras alone; nullopt: it knows its true pose.
+  double forget = 10.0;                 ///< [s] of silence after which another robot is no longer an obstacle; 0: never
+  double stop_after = 0.5;              ///< [s] without a reading after which the robot stops; 0: never
+  bool wait_for_start = false;          ///< stays at rest until the start signal arrives
+  int log_descriptor = 2;               ///< of its log; -1: no log
+  std::optional<netio::Endpoint> spat;  ///< where to receive SPaT of traffic lights, in place of the farm's V2I
+  std::function<std::int64_t()> utc;    ///< [ms] since 1970; empty: the system clock
+  std::uint32_t tag = 0;                ///< id of the tag carried below cameras; 0: same as the robot
+  /// If set, its own pose and that in its packets to the farm are estimated from cameras only; nullopt: true pose.
   std::optional<CameraPositionsOptions> cameras;
-  /// Where it reports its true state as V2V packets with its tag's id, 50 a second, stamped with Unix time; nullopt:
-  /// nowhere. It stands for the light that cameras see.
+  /// Where to report its true state as V2V packets with its tag's id, 50 per second, stamped with Unix time; nullopt:
+  /// nowhere. Replaces the light that cameras see.
   std::optional<netio::Endpoint> truth;
-  std::optional<CreateOptions> create;  ///< a real robot, which moves in place of the model; nullopt: none
-  std::optional<OwnMapOptions> map;     ///< where it sends its own map; nullopt: it makes none
+  std::optional<CreateOptions> create;  ///< real robot that moves in place of the model; nullopt: none
+  std::optional<OwnMapOptions> map;     ///< where to send its own map; nullopt: no map
 };
 
-/// Positions from cameras.
+/// Statistics of positions from cameras.
 struct CameraPositionsStats {
   netio::PacketCounts packets;
   StateFilterCounts states;
-  PositionErrors errors;  ///< of its own fresh states at its steps
+  PositionErrors errors;  ///< of its own fresh states, at its steps
 };
 
-/// How a robot's process went.
+/// Statistics of a robot's process.
 struct RobotClientStats {
-  std::string robot;  ///< name in the world
+  std::string robot;  ///< name in the world file
   std::uint32_t id = 0;
   std::string controller;
   std::string farm;  ///< "127.0.0.1:9000"
   double wall_s = 0.0;
   std::uint64_t steps = 0;  ///< of the controller
-  bool started = true;      ///< it did not wait for a start signal, or it came
-  bool done = false;        ///< as the controller says
-  bool answered = false;    ///< anything came from the farm
-  bool listens = true;      ///< it has sensors, so that something should have come
+  bool started = true;      ///< no start signal was required, or it arrived
+  bool done = false;        ///< as reported by the controller
+  bool answered = false;    ///< a packet arrived from the farm
+  bool listens = true;      ///< it has sensors and therefore expects packets
   LinkCounts link;
-  std::uint64_t contacts = 0;        ///< that began
-  std::uint64_t stops = 0;           ///< times that it stood for want of readings or positions
-  std::uint64_t lines_left_out = 0;  ///< of its log
-  double distance_m = 0.0;           ///< driven
+  std::uint64_t contacts = 0;        ///< number of contacts that began
+  std::uint64_t stops = 0;           ///< number of stops for lack of readings or positions
+  std::uint64_t lines_left_out = 0;  ///< dropped from its log
+  double distance_m = 0.0;           ///< distance driven
   base::Pose pose;                   ///< at the end
   control::ErrorSummary error;
-  std::optional<CameraPositionsStats> cameras;  ///< nullopt: it knows its true pose
-  control::LocalizationError localization;      ///< beside the poses of its motion model
-  std::optional<CreateCounts> create;           ///< nullopt: no real robot
-  std::optional<OwnMapCounts> map;              ///< nullopt: it makes none
+  std::optional<CameraPositionsStats> cameras;  ///< nullopt: true pose
+  control::LocalizationError localization;      ///< compared with the poses of its motion model
+  std::optional<CreateCounts> create;           ///< nullopt: simulated robot
+  std::optional<OwnMapCounts> map;              ///< nullopt: no map
   bool listens_for_spat = false;
   LightCounts lights;
 };
 
-/// Times are of the robot's own clock [ns], which begins at 0 and does not go back. World and sensor set must outlive
-/// it. One thread.
+/// Times [ns] are on the robot's own monotonic clock, which starts at 0. The world and the sensor set must outlive it.
+/// Not thread-safe.
 class RobotClient {
  public:
-  /// @throws base::InputError for a controller that cannot be had, a tag without an id, a port that is taken, a farm's
-  /// host that is unknown.
+  /// @throws base::InputError for an unavailable controller, a tag without an id, a port in use, or an unknown host of
+  /// the farm
   RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
               const StreamLayout& layout, const RobotClientOptions& options);
 
-  /// Steps at its rate by the machine's clock, or on each new scan (ControllerType::on_scans), until `stop` is set, the
-  /// controller is done, or `duration` [s] have passed (0: without end); then leaves.
+  /// Steps at its rate by the system clock, or on each new scan (ControllerType::on_scans), until `stop` is set, the
+  /// controller is done, or `duration` [s] have passed (0: no limit). Then leaves.
   void run(const std::atomic<bool>& stop, double duration);
 
-  /// Takes what came, and lets go what is due in both directions.
+  /// Processes received packets and releases delayed ones, in both directions.
   void receive(std::int64_t now);
 
-  /// Moves as it decided last, and reports the truth. `step` does it too; between steps it makes the truth finer.
+  /// Moves by the last command and reports the true state. `step` includes this; calls between steps make the reported
+  /// truth finer.
   void move(std::int64_t now);
-  /// The next step is due: by its rate, or because a new scan has arrived.
+  /// Returns whether the next step is due, by its rate or because a new scan has arrived.
   bool is_due(std::int64_t now) const { return now >= next_ || (made_.on_scans && link_.scans() > scans_); }
-  /// Executes the last command until `now`, decides, and sends its state.
+  /// Executes the last command until `now`, computes the next one, and sends its state.
   void step(std::int64_t now);
 
-  /// The last packet, after which the farm accepts another process with this id at once.
+  /// Sends the last packet, after which the farm immediately accepts another process with this id.
   void leave(std::int64_t now);
 
-  double rate() const { return made_.rate; }  ///< [Hz] of steps
-  bool on_scans() const {
-    return made_.on_scans;
-  }  ///< steps on each new scan, in the absence of scans at half its rate
+  double rate() const { return made_.rate; }        ///< [Hz] of steps
+  bool on_scans() const { return made_.on_scans; }  ///< steps on each new scan, or at half its rate without scans
   bool done() const { return started_ && made_.controller->done(); }
   const RobotLink& link() const { return link_; }
-  const CameraPositions* cameras() const { return cameras_ ? &*cameras_ : nullptr; }  ///< null: it has none
+  const CameraPositions* cameras() const { return cameras_ ? &*cameras_ : nullptr; }  ///< null: no cameras
   const LightListener& lights() const { return lights_; }
   RobotClientStats stats() const;
 
@@ -126,12 +125,12 @@ class RobotClient {
   void on_packet(const netio::Packet& packet, std::int64_t now);
   void decide(std::int64_t now);
   void send_state(std::int64_t now);
-  /// As it knows it.
+  /// Own state as estimated by the robot.
   const base::Report& own_state() const { return cameras_ ? cameras_->state() : body_.state(); }
   void gather_readings();
   void gather_others(std::int64_t now);
   void gather_signals(std::int64_t now);
-  /// No camera saw it for so long that its state is no ground to drive by.
+  /// Returns whether no camera has seen the robot recently: its state is too old to act on.
   bool is_lost() const { return cameras_ && !cameras_->is_fresh(); }
   void draw_map(std::int64_t now);
 
@@ -143,12 +142,12 @@ class RobotClient {
   LightListener lights_;
   RobotLink link_;
   control::ConfiguredController made_;
-  std::vector<base::Intent> intents_;  ///< per mover, as told
+  std::vector<base::Intent> intents_;  ///< last received, per mover
   base::Twist command_;
   bool started_;
   RobotClientLog log_;
   std::uint64_t steps_ = 0;
-  std::uint64_t scans_ = 0;  ///< that had arrived at the last step
+  std::uint64_t scans_ = 0;  ///< arrived by the last step
   std::int64_t next_ = 0;    ///< [ns] of the next step by its rate
   base::ContactOnset contact_;
   std::uint64_t contacts_ = 0;
@@ -162,9 +161,9 @@ class RobotClient {
   std::optional<CameraPositions> cameras_;
   PositionErrors position_errors_;
   std::optional<TruthReport> truth_;
-  std::int64_t epoch_ = 0;             ///< [ns] Unix time at time 0 of its clock, in `run`
-  std::optional<CreateDrive> create_;  ///< none: the body is a model
-  std::optional<OwnMap> map_;          ///< none: it makes no map
+  std::int64_t epoch_ = 0;             ///< [ns] Unix time at time 0 of its clock, set in `run`
+  std::optional<CreateDrive> create_;  ///< empty: the body is a model
+  std::optional<OwnMap> map_;          ///< empty: no map
 };
 
 }  // namespace sf::server

@@ -11,8 +11,8 @@ namespace sf::server {
 
 namespace {
 
-constexpr std::int64_t kAnswerIn = 3'000'000'000;       ///< [ns] of silence before a message
-constexpr std::int64_t kTroubleIn = 1'000'000'000;      ///< [ns] of refused signatures before a message
+constexpr std::int64_t kAnswerIn = 3'000'000'000;       ///< [ns] of silence before a message is logged
+constexpr std::int64_t kTroubleIn = 1'000'000'000;      ///< [ns] of refused signatures before a message is logged
 constexpr std::int64_t kTroubleEvery = 10'000'000'000;  ///< [ns]
 
 }  // namespace
@@ -24,7 +24,7 @@ bool RobotClientLog::readings_timed_out(const RobotLink& link, std::int64_t now)
   return reading_timeout_ > 0 && link.listens() && now - link.last_reading().value_or(0) > reading_timeout_;
 }
 
-/// Refused signatures while nothing else arrives: at once, then every ten seconds.
+/// Logs refused signatures while nothing else arrives: immediately, then every ten seconds.
 void RobotClientLog::note_signatures(const RobotLink& link, std::int64_t now) {
   const netio::SignatureTrouble& trouble = link.trouble();
   const bool is_new = trouble.count > std::exchange(troubles_, trouble.count);

@@ -13,9 +13,9 @@ namespace sf::server {
 namespace {
 
 constexpr std::int64_t kMilli = 1'000'000;            ///< [ns]
-constexpr std::int64_t kRequest = 500 * kMilli;       ///< [ns] between two SUBSCRIBEs: four within the farm's patience
-constexpr std::int64_t kLongestSleep = 100 * kMilli;  ///< [ns] a request to stop is seen soon enough
-constexpr std::uint32_t kRelayed = 1;                 ///< among the streams of a type: passed on by the farm
+constexpr std::int64_t kRequest = 500 * kMilli;       ///< [ns] between SUBSCRIBEs: four within the farm's timeout
+constexpr std::int64_t kLongestSleep = 100 * kMilli;  ///< [ns] bounds the delay of a stop request
+constexpr std::uint32_t kRelayed = 1;                 ///< stream number for packets relayed by the farm
 
 std::uint32_t stream_number(netio::Type type, std::uint32_t low) {
   return static_cast<std::uint32_t>(type) << 16 | low;
@@ -139,7 +139,7 @@ void RobotLink::run(std::int64_t now) {
   in_.release(now, [&](std::size_t tag, std::span<const std::uint8_t> bytes) { take(tag, bytes, now); });
 }
 
-/// The first datagram of a reading has the fate that the reading has in a simulation with the same link.
+/// The first datagram of a reading is delayed or lost exactly as the reading is in a simulation with the same link.
 netio::MessageId RobotLink::reading_id(Stream& stream, std::span<const std::uint8_t> bytes) const {
   netio::Packet packet;
   if (netio::decode(bytes, packet) == netio::PacketStatus::accepted && packet.header.sequence != stream.sequence) {
@@ -179,7 +179,7 @@ void RobotLink::take_packet(std::span<const std::uint8_t> bytes, std::int64_t no
   handler_(packet, now);
 }
 
-/// The requests before it were dropped. A new session is a new farm, with a clock and sequences of its own.
+/// Earlier requests were dropped. A new session means a new farm, with its own clock and sequences.
 void RobotLink::handle_challenge(const netio::SessionToken& before) {
   next_request_ = 0;
   if (v2v_socket_.farm_session_token().session == before.session) return;
@@ -196,8 +196,8 @@ std::uint64_t RobotLink::scans() const {
 
 namespace {
 
-/// Packets do not say which elements have a flag: a bound is stated where it holds for all of them. Without one, the
-/// sensor may be noisy.
+/// Packets do not show which elements are flagged, so a bound is given only if it holds for all of them. Without one,
+/// the sensor may be noisy.
 void state_bound(const netio::Accuracy& accuracy, double sigma, base::ReadingBlock& block) {
   block.bound = block.bound_without_noise = accuracy.unsure ? HUGE_VAL : accuracy.bound;
   block.sigma = std::isinf(block.bound) ? sigma : 0.0;

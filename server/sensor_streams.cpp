@@ -8,7 +8,7 @@ namespace sf::server {
 
 namespace {
 
-// Sensor types have no packets; here their longest payloads meet them.
+// Sensor types do not depend on packets; check their longest payloads here.
 static_assert(sensors::kPartBytes <= netio::kMaxPayload);
 static_assert(sizeof(std::int32_t) * sensors::kMaxPlainWords < netio::kMaxPayload);
 static_assert(sizeof(std::uint32_t) * maps::kPartWords < netio::kMaxPayload);
@@ -27,7 +27,7 @@ netio::PacketStatus reason_of(sensors::PayloadError fault) {
   return netio::PacketStatus::out_of_range;
 }
 
-/// The thesis' datagrams do not tell their type: the port does.
+/// The thesis' datagrams carry no type: the port determines it.
 std::uint8_t type_of(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header) {
   return wire == sensors::WireFormat::farm ? static_cast<std::uint8_t>(header.type) : source.type->id;
 }

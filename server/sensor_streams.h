@@ -17,17 +17,18 @@ struct SensorStream {
   const sensors::SensorSpec* row = nullptr;
 };
 
-/// All sensors of a world with ports in the layout, ordered by sensor type. Pointers live as long as the sensor set.
+/// Returns all sensors of a world with ports in the layout, ordered by sensor type. Pointers live as long as the sensor
+/// set.
 std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& layout);
-/// The same for one mover.
+/// Returns those of one mover.
 std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& layout,
                                          std::uint32_t mover);
 
-/// Checks the bytes of a payload, which may be any, whose header has the stream's robot and sensor number.
+/// Checks the bytes of a payload, which may be arbitrary. Its header has the stream's robot and sensor number.
 netio::PayloadInfo inspect_payload(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header,
                                    std::span<const std::uint8_t> payload);
 
-/// Writes the values of an accepted payload into those of its reading.
+/// Decodes an accepted payload into the values of its reading.
 void decode_payload(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header,
                     std::span<const std::uint8_t> payload, std::span<double> values);
 

@@ -61,10 +61,10 @@ void Service::run(const std::atomic<bool>& stop, double duration) {
   try {
     run_ticks(clock, stop, duration);
   } catch (const base::Interrupted&) {
-    // The tick was long: it is given up.
+    // The tick takes too long: abandon it.
   }
   farm_.thread_pool().interrupt_on({});
-  receive_pending(clock.now());  // datagrams that wait are counted too
+  receive_pending(clock.now());  // include waiting datagrams in the counts
   wall_s_ = 1e-9 * static_cast<double>(clock.now());
 }
 
@@ -85,8 +85,8 @@ void Service::run_ticks(const Clock& clock, const std::atomic<bool>& stop, doubl
   }
 }
 
-/// Sleeps until `when`, taking in what comes meanwhile. Never less: at a tick that is early, a sensor of the same rate
-/// would not be due yet.
+/// Sleeps until `when` while processing received packets. Never returns early: at an early tick, a sensor of the same
+/// rate would not be due yet.
 void Service::wait_until(const Clock& clock, std::int64_t when, const std::atomic<bool>& stop) {
   for (;;) {
     const std::int64_t left = when - clock.now();
@@ -123,7 +123,8 @@ void Service::publish_due(std::int64_t now, bool between) {
   warn_of_missed(now);
 }
 
-/// Takes movers in and out of the world, with what they ask for. @return the newest states
+/// Updates which movers are in the world and what they subscribe to.
+/// @return the newest states
 std::span<const base::Report> Service::update_movers(std::int64_t now) {
   for (const auto& [id, row] : receiver_.robots()) {
     absent_[row] = receiver_.update_absent(id, now);
@@ -140,7 +141,7 @@ std::span<const base::Report> Service::update_movers(std::int64_t now) {
 
 void Service::address(std::span<const base::ReadingBlock> readings) {
   for (const base::ReadingBlock& reading : readings) {
-    // A delayed reading of a robot that left meanwhile has no address.
+    // A delayed reading of a robot that has left has no address.
     const std::uint32_t id = world_.movers[reading.mover].id;
     const auto to = receiver_.inbox().address(id);
     if (to)
@@ -168,7 +169,7 @@ void Service::record(std::int64_t now, std::span<const base::Report> states,
   std::erase_if(sinks_, [&](base::Sink* sink) { return !write(*sink, tick); });
 }
 
-/// @return false: the sink takes no more
+/// Returns false once the sink accepts no more.
 bool Service::write(base::Sink& sink, const base::TickRecord& record) {
   try {
     sink.write(record);
@@ -180,7 +181,7 @@ bool Service::write(base::Sink& sink, const base::TickRecord& record) {
   }
 }
 
-/// Bit k: robot `id` is active, and wants its sensors of type k.
+/// Bit k: robot `id` is active and subscribed to sensors of type k.
 std::uint32_t Service::subscribed_types(std::uint32_t id, std::int64_t now) const {
   std::uint32_t types = 0;
   for (const sensors::SensorSet::Group& group : sensor_set_.groups())
@@ -189,7 +190,7 @@ std::uint32_t Service::subscribed_types(std::uint32_t id, std::int64_t now) cons
   return types;
 }
 
-/// Once, when more than one reading in twenty is missed.
+/// Warns once, when more than one reading in twenty is missed.
 void Service::warn_of_missed(std::int64_t now) {
   const farm::FarmStats stats = farm_.stats();
   if (warned_of_missed_ || only_at_ticks_ || stats.missed < 20 || 20 * stats.missed < stats.readings) return;

@@ -1,8 +1,8 @@
 #pragma once
-// `serve` without its command line: robots' states come in, readings go back to them.
+// `serve` without its command line: receives the states of robots and sends them readings.
 //
 //   Service service(world, sensor_set, device, layout, {});
-//   service.run(stop, 0.0);        // by the machine's clock, or, by any clock:
+//   service.run(stop, 0.0);        // by the system clock; or, by any clock:
 //   service.receive_pending(now);
 //   service.tick(now);
 
@@ -28,60 +28,61 @@ namespace sf::server {
 
 struct ServiceOptions {
   StateReceiverOptions receiver;
-  /// [Hz] of ticks, at which sensors are read when due; 0: the world's ticks, sensors at their own rates.
+  /// [Hz] of ticks, at which due sensors are read. 0: ticks of the world, and sensors at their own rates.
   double rate = 0.0;
   std::uint64_t seed = 1;
   bool no_return_inf = false;
-  /// Lights of the world; peers are those of `receiver`.
-  std::optional<netio::Endpoint> spat;  ///< where to listen for SPaT; nullopt: nowhere
+  /// Lights of the world; their peers are those of `receiver`.
+  std::optional<netio::Endpoint> spat;  ///< where to receive SPaT; nullopt: nowhere
   StaleLights stale_lights = StaleLights::dark;
-  std::optional<netio::Endpoint> mirror;  ///< where a copy of each reading's packets goes; nullopt: nowhere
+  std::optional<netio::Endpoint> mirror;  ///< receives a copy of each reading's packets; nullopt: none
 };
 
 struct ServiceStats {
-  std::uint32_t robots = 0;  ///< of the world, connected or not
+  std::uint32_t robots = 0;  ///< in the world, connected or not
   std::uint64_t ticks = 0;
   double wall_s = 0.0;  ///< [s] of `run`
   farm::FarmStats farm;
   std::uint64_t hash = 0;
   PublisherCounts publisher;
   netio::PacketCounts inbox;
-  std::uint64_t socket_drops = 0;  ///< datagrams that came while the inbox' buffer was full
+  std::uint64_t socket_drops = 0;  ///< datagrams dropped because the inbox's buffer was full
   netio::RelayCounts relayed;
   LightServiceCounts lights;
-  netio::OutboxCounts answers;       ///< challenges, and datagrams of the relay
-  std::uint64_t lines_left_out = 0;  ///< of the log
-  bool filtered = false;             ///< `states` and `clocks` count
+  netio::OutboxCounts answers;       ///< challenges and relayed datagrams
+  std::uint64_t lines_left_out = 0;  ///< dropped from the log
+  bool filtered = false;             ///< whether `states` and `clocks` are valid
   StateFilterCounts states;
   std::vector<SenderClockState> clocks;
-  std::string recording_error;  ///< why the recording ends before the service; empty: it does not
+  std::string recording_error;  ///< why the recording ended early; empty: it did not
 };
 
-/// Times are of one clock [ns] that begins at 0 and does not go back. World, sensor set, device and layout must outlive
-/// it. One caller at a time.
+/// Times [ns] are on one monotonic clock that starts at 0. The world, sensor set, device and layout must outlive it.
+/// One caller at a time.
 class Service {
  public:
-  /// @throws netio::PortInUse, base::InputError when the address cannot be bound, and as `farm::Farm`.
+  /// @throws netio::PortInUse, base::InputError if the address cannot be bound, and as `farm::Farm`
   Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
           const StreamLayout& layout, const ServiceOptions& options);
 
-  /// From now on `sink`, too, takes each tick, and each sample between two ticks as a tick of its own. It must outlive
-  /// the service. Once it throws base::InputError, which is logged, it takes no more; robots are served all the same.
+  /// Adds a sink for each tick. A sample between two ticks is written as a tick of its own. `sink` must outlive the
+  /// service. If it throws base::InputError, the error is logged and no more ticks are written to it; robots are still
+  /// served.
   void record_to(base::Sink& sink) { sinks_.push_back(&sink); }
 
-  /// Serves by the machine's clock, which begins at 0, until `stop` is set or `duration` [s] have passed (0: without
-  /// end). Once only, and not after `tick`.
+  /// Serves by the system clock, from time 0, until `stop` is set or `duration` [s] have passed (0: no limit). Call it
+  /// once only, and not after `tick`.
   void run(const std::atomic<bool>& stop, double duration);
 
-  /// Reads and sends all due sensors, and relays states of neighbours.
+  /// Reads and sends all due sensors, and relays the states of neighbours.
   void tick(std::int64_t now);
   /// Reads and sends the sensors that are due between two ticks.
   void sample(std::int64_t now) { publish_due(now, true); }
   void receive_pending(std::int64_t now) { receiver_.receive_pending(now); }
-  /// [ns] Time of the next reading or delivery; farm::kNever: none, or `ServiceOptions::rate` is set.
+  /// [ns] time of the next reading or delivery; farm::kNever: none, or `ServiceOptions::rate` is set.
   std::int64_t next_due() const;
 
-  double interval() const { return interval_; }  ///< [s] of a tick
+  double interval() const { return interval_; }  ///< [s] per tick
   std::uint16_t port() const { return receiver_.inbox().port(); }
   std::size_t robots() const { return receiver_.robots().size(); }
   StateReceiver& receiver() { return receiver_; }
@@ -108,14 +109,14 @@ class Service {
   ReadingPublisher publisher_;
   farm::Farm farm_;
   std::vector<base::Sink*> sinks_;
-  std::vector<base::Report> states_;             ///< per mover, of one tick or sample
-  std::vector<base::StateQuality> qualities_;    ///< likewise
+  std::vector<base::Report> states_;             ///< per mover, for one tick or sample
+  std::vector<base::StateQuality> qualities_;    ///< per mover, for one tick or sample
   std::vector<bool> absent_;                     ///< per mover
-  std::vector<base::LightStatus> light_states_;  ///< per light, of one tick or sample
+  std::vector<base::LightStatus> light_states_;  ///< per light, for one tick or sample
   std::string recording_error_;
-  std::uint64_t records_ = 0;  ///< written to the sinks
+  std::uint64_t records_ = 0;  ///< number written to the sinks
   NoReturnFilter no_return_filter_;
-  std::vector<AddressedReading> addressed_readings_;  ///< of one tick
+  std::vector<AddressedReading> addressed_readings_;  ///< for one tick
   double interval_;
   bool only_at_ticks_;  ///< `ServiceOptions::rate` is set
   bool warned_of_missed_ = false;

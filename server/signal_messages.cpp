@@ -24,13 +24,13 @@ using world::RoadNetwork;
 constexpr std::int64_t kMark = 100, kMinute = 60'000, kHour = 3'600'000;  ///< [ms]
 constexpr std::size_t kMaxGroups = 254;                                   ///< signal groups 0 and 255 are reserved
 
-/// The way into a lane behind a stop line.
+/// The path to a lane behind a stop line.
 struct ExitPath {
   PointRef to;
   std::vector<glm::dvec2> points;  ///< [m]
 };
 
-/// A way-point's stop line, the light that governs it and the ways behind it.
+/// The stop line of a way-point, the light that governs it, and the paths behind it.
 struct LightStop {
   std::uint32_t light = 0;
   PointRef at;
@@ -71,7 +71,7 @@ bool share_a_crossing(const LightStop& a, const LightStop& b) {
   return false;
 }
 
-/// Per light: the first light of its intersection.
+/// Returns the first light of each light's intersection.
 std::vector<std::uint32_t> first_lights(std::size_t lights, std::span<const LightStop> stops) {
   std::vector<std::uint32_t> first(lights);
   std::iota(first.begin(), first.end(), 0u);
@@ -84,9 +84,9 @@ std::vector<std::uint32_t> first_lights(std::size_t lights, std::span<const Ligh
   return first;
 }
 
-/// Rounds up: a receiver takes a mark before the message's own time for one of the next hour.
+/// Rounds up: a receiver assigns a mark before the message's own time to the next hour.
 v2x::TimeMark mark_of(std::int64_t utc, double left) {
-  constexpr double kRounding = 1e-6;  // [0.1 s] of sums of durations
+  constexpr double kRounding = 1e-6;  // [0.1 s] tolerance for sums of durations
   if (!std::isfinite(left)) return v2x::kUnknownTime;
   const std::int64_t now = utc % kHour;
   const double ms = 1e3 * std::max(left, 0.0);
@@ -104,7 +104,7 @@ v2x::MovementEvent event_of(const world::Signal& signal, double latest, std::int
   return event;
 }
 
-/// [ms] in the year; nothing where the message has no time.
+/// [ms] since the start of the year; nullopt if the message has no time.
 std::optional<std::int64_t> time_of(const v2x::IntersectionState& state) {
   if (!state.minute || *state.minute == v2x::kInvalidMinute) return std::nullopt;
   if (!state.milliseconds || *state.milliseconds >= kMinute) return std::nullopt;
@@ -113,7 +113,7 @@ std::optional<std::int64_t> time_of(const v2x::IntersectionState& state) {
 
 double seconds_until(v2x::TimeMark mark, std::int64_t utc) {
   if (mark >= v2x::kMoreThanAnHour) return std::numeric_limits<double>::infinity();
-  // A change that was due within the last half hour is late, not 59 minutes away.
+  // A change that was due within the last half hour is overdue, not 59 minutes ahead.
   const std::int64_t ahead = ((mark * kMark - utc % kHour) % kHour + kHour) % kHour;
   return ahead < kHour / 2 ? 1e-3 * static_cast<double>(ahead) : 0.0;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The traffic lights of a world as SPaT and MAP messages, and SPaT messages as states of lights.
+// Converts the traffic lights of a world to SPaT and MAP messages, and SPaT messages to states of lights.
 //
 //   for (const Intersection& each : intersections_of(world, roads)) {
 //     Spat spat = spat_of(each, forecasts, utc);               // the states of all lights
@@ -8,7 +8,7 @@
 //   read_spat(spat, intersections, utc, take);                 // the reverse
 //
 // A light is a signal group. Lights whose exits meet or lead to the same point belong to one intersection; a light
-// without exits is an intersection of its own.
+// without exits forms an intersection alone.
 
 #include <cstdint>
 #include <functional>
@@ -25,38 +25,38 @@
 namespace sf::server {
 
 struct Intersection {
-  std::uint16_t id = 0;                ///< from 1 on, in the order of their first lights
+  std::uint16_t id = 0;                ///< from 1, in the order of their first lights
   std::vector<std::uint32_t> lights;   ///< rows of `World::lights`, ascending; the k-th is signal group k + 1
-  std::vector<world::PointRef> stops;  ///< way-points of their stop lines, light by light
-  std::vector<std::uint32_t> groups;   ///< per stop: its signal group
+  std::vector<world::PointRef> stops;  ///< way-points of their stop lines, ordered by light
+  std::vector<std::uint32_t> groups;   ///< signal group per stop
 };
 
 /// @param roads the world's network; null: none
-/// @throws base::InputError where an intersection has more than 254 lights
+/// @throws base::InputError if an intersection has more than 254 lights
 std::vector<Intersection> intersections_of(const world::World& world, const world::RoadNetwork* roads);
 
-/// The present state of each light with the time of its change, and the state after that. Marks are rounded up to
-/// 0.1 s: none is before `utc`, and start <= min_end <= max_end. Changes an hour ahead or later: `kMoreThanAnHour`.
-/// @param forecasts one per row of `World::lights` @param utc [ms] since 1970 at their time
+/// Returns the present state of each light, the time of its change, and the next state. Times are rounded up to 0.1 s,
+/// never before `utc`, with start <= min_end <= max_end. Changes an hour or more ahead are `kMoreThanAnHour`.
+/// @param forecasts one per row of `World::lights` @param utc [ms] since 1970 at the time of the forecasts
 v2x::Spat spat_of(const Intersection& intersection, std::span<const world::SignalForecast> forecasts, std::int64_t utc);
 
-/// A lane that ends at each stop line, a lane that begins at each of their exits' ends, and the connections between
-/// them. Offsets are those of the world, x east and y north. Nothing where the intersection has no stop line.
+/// Returns a lane that ends at each stop line, a lane that begins at the end of each exit, and the connections between
+/// them. Offsets are in the world frame, x east and y north. Returns nullopt if the intersection has no stop line.
 /// @param origin of the world
 /// @throws base::InputError for more than 255 lanes, and for lanes that begin more than 327 m from the middle
 std::optional<v2x::MapData> map_of(const world::RoadNetwork& roads, const Intersection& intersection,
                                    world::Geodetic origin);
 
-/// Passes the states that `spat` has for lights of `intersections` to `take`; other intersections and groups are
-/// ignored. The time to the next change counts from the message's own time, or `utc` where it has none.
-/// A change more than half an hour ahead counts as late: 0 s are left.
-/// @param utc [ms] since 1970, now @param take is given the row of `World::lights`
+/// Passes the states in `spat` for lights of `intersections` to `take`; ignores other intersections and groups. The
+/// time to the next change counts from the message's own time, or from `utc` if it has none. A change more than half an
+/// hour ahead is treated as overdue: 0 s are left.
+/// @param utc [ms] current time since 1970 @param take receives the row of `World::lights`
 /// @return number of states
 std::size_t read_spat(const v2x::Spat& spat, std::span<const Intersection> intersections, std::int64_t utc,
                       const std::function<void(std::uint32_t light, const world::Signal&)>& take);
 
 v2x::PhaseState phase_of(world::LightState state);
-/// Unavailable states are dark, red with yellow is red.
+/// Maps unavailable to dark, and red with yellow to red.
 world::LightState light_of(v2x::PhaseState phase);
 
 }  // namespace sf::server

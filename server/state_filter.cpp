@@ -6,7 +6,7 @@ namespace sf::server {
 
 namespace {
 
-/// A car or a wheeled robot drives on arcs. A tag may be on anything.
+/// Cars and wheeled robots drive on arcs; a tag may be on anything.
 estimation::MotionModel motion_model(const world::Mover& mover) {
   if (mover.is_tag) return estimation::free_body();
   estimation::MotionModel model = estimation::differential_drive();
@@ -48,7 +48,7 @@ void StateFilter::take(const base::Report& report, const netio::Header& header, 
                                                   .max_future = options_.clock.max_future,
                                                   .hypotheses = options_.hypotheses},
                         gate_limits_);
-  if (header.session != mover.session) forget(mover);  // its sender restarted
+  if (header.session != mover.session) forget(mover);  // the sender restarted
   mover.session = header.session;
 
   const ClockVerdict verdict = mover.clock.take(header.time, now + epoch());
@@ -56,7 +56,7 @@ void StateFilter::take(const base::Report& report, const netio::Header& header, 
   if (verdict == ClockVerdict::stepped) mover.track->reset();
   if (verdict != ClockVerdict::used && verdict != ClockVerdict::stepped) return;
 
-  // The track's times are the sender's: an estimate of its clock that changes moves no measurement.
+  // The track's times are on the sender's clock, so a changed clock estimate moves no measurement.
   const std::int64_t sender_now = mover.clock.to_sender(now + epoch());
   estimation::Measurement m = measurement(report, header);
   m.time = options_.clock.source == ClockSource::arrival ? now : header.time;
@@ -70,7 +70,7 @@ estimation::Measurement StateFilter::measurement(const base::Report& report, con
   estimation::Measurement m{.sequence = header.sequence, .X_WM = report.X_WM, .velocity = report.velocity};
   m.pose_covariance = {position, 0.0, 0.0, position, 0.0, square(options_.yaw_sigma)};
   m.twist_variance = {speed, speed, square(options_.turn_sigma)};
-  // Cameras that measure no velocities send zeros.
+  // Cameras that do not measure velocities send zeros.
   const base::Twist& v = report.velocity;
   if (world_.movers[report.mover].is_tag && v.forward == 0.0 && v.left == 0.0 && v.turn == 0.0)
     m.components = estimation::kPoseBits;

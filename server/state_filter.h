@@ -1,5 +1,5 @@
 #pragma once
-// The states of movers from their packets, filtered: one track and one sender's clock per mover.
+// Filters the states of movers from their packets, with one track and one sender clock per mover.
 
 #include <array>
 #include <cstdint>
@@ -15,13 +15,13 @@
 namespace sf::server {
 
 struct StateFilterOptions {
-  bool enabled = false;  ///< false: the newest state counts, from its arrival on
+  bool enabled = false;  ///< false: uses the newest state, as of its arrival
   estimation::ClockOptions clock;
   std::int64_t stale_after = 1'000'000'000;  ///< [ns] > 0
   estimation::StalePolicy policy = estimation::StalePolicy::freeze;
-  /// > 0 (estimation::FilterOptions). Packets always contain a heading, so that it is uncertain after losses alone.
+  /// > 0 (estimation::FilterOptions). Packets always contain a heading, so it is uncertain only after losses.
   std::size_t hypotheses = 16;
-  /// [ns] on the senders' common clock at time 0 of the receiver's, for estimation::ClockSource::trusted.
+  /// [ns] on the senders' common clock at time 0 of the receiver's clock, for estimation::ClockSource::trusted.
   std::int64_t epoch = 0;
   // Standard deviations of reported states, which packets do not contain.
   double position_sigma = 0.01;  ///< [m] > 0
@@ -31,9 +31,9 @@ struct StateFilterOptions {
 };
 
 struct StateFilterCounts {
-  estimation::VerdictCounts states{};     ///< whose clock was accepted, by verdict
-  std::array<std::uint64_t, 4> clocks{};  ///< all states but the flooded ones, by estimation::ClockVerdict
-  std::uint64_t flooded = 0;              ///< left out, beyond StateFilter::kMostBetweenPredictions
+  estimation::VerdictCounts states{};     ///< states with an accepted clock, by verdict
+  std::array<std::uint64_t, 4> clocks{};  ///< all states except flooded ones, by estimation::ClockVerdict
+  std::uint64_t flooded = 0;              ///< dropped beyond StateFilter::kMostBetweenPredictions
 };
 
 /// The clock of one mover's sender.
@@ -42,28 +42,29 @@ struct SenderClockState {
   estimation::ClockState clock;
 };
 
-/// Times are of one clock [ns] that does not go back. The world must outlive it. Allocates at a mover's first state
-/// only. One thread.
+/// Times [ns] are on one monotonic clock. The world must outlive it. Allocates only at the first state of a mover. Not
+/// thread-safe.
 class StateFilter {
  public:
-  /// States of one mover that are taken between two predictions: each may apply a window of measurements again.
+  /// Maximum number of states of one mover between two predictions; each may reapply a window of measurements.
   static constexpr std::size_t kMostBetweenPredictions = 64;
 
   StateFilter(const world::World& world, const StateFilterOptions& options);
 
-  /// The world has got one more mover, in its last row.
+  /// Adds the mover that was appended to the world.
   void add_mover();
 
-  /// Takes a mover's state, late ones too. @param report at the sender's time `header.time`
+  /// Accepts a state of a mover, including late ones.
+  /// @param report at the sender's time `header.time`
   void take(const base::Report& report, const netio::Header& header, std::int64_t now);
 
   /// Predicts all movers with a state to `now`.
-  /// @return their reports, of that time; they live until the next call
+  /// @return their reports at that time, valid until the next call
   const std::vector<base::Report>& predict(std::int64_t now);
 
   // As of the last `predict`.
   const netio::StateQuality& quality(std::uint32_t row) const { return movers_[row].quality; }
-  /// Stale, and out of the world by the policy.
+  /// Returns whether the state is stale and the policy removes the mover from the world.
   bool is_gone(std::uint32_t row) const { return movers_[row].gone; }
 
   const StateFilterOptions& options() const { return options_; }

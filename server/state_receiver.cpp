@@ -12,7 +12,7 @@ namespace sf::server {
 
 namespace {
 
-/// By time of arrival no state is late: an overtaken one would count as the newest.
+/// By time of arrival, no state is late: an overtaken state would count as the newest.
 bool takes_late(const StateFilterOptions& filter) {
   return filter.enabled && filter.clock.source != estimation::ClockSource::arrival;
 }
@@ -85,7 +85,7 @@ void StateReceiver::take(const netio::Packet& packet, std::int64_t now) {
   }
   last_state_[report.mover] = now;
   if (filter_.options().enabled) return filter_.take(report, packet.header, now);
-  // Senders' clocks are their own: a state is true when it arrives.
+  // Senders' clocks are not comparable: a state is valid at its arrival.
   report.time = now;
   reports_.push_back(report);
 }
@@ -138,7 +138,7 @@ std::string StateReceiver::name_of(const netio::Header& header) const {
   return world_.movers[(claim.kind == netio::PeerKind::tag ? names_.tags : names_.robots).at(claim.id)].name;
 }
 
-/// Whom a packet claims to be from.
+/// Describes the claimed sender of a packet.
 std::string StateReceiver::sender_text(const netio::Header& header) const {
   const netio::Claim claim = netio::claim_of(header);
   if (claim.kind == netio::PeerKind::start) return "the sender of START";
@@ -146,7 +146,7 @@ std::string StateReceiver::sender_text(const netio::Header& header) const {
   return fmt::format("{} ({} {})", name_of(header), claim.kind == netio::PeerKind::tag ? "tag" : "id", claim.id);
 }
 
-/// The address that its id is bound to.
+/// Returns the address that its id is bound to.
 std::optional<netio::Endpoint> StateReceiver::bound_address(const netio::Header& header, std::int64_t now) const {
   const netio::Claim claim = netio::claim_of(header);
   if (claim.kind == netio::PeerKind::light) return inbox_.light_address(claim.id, now);
@@ -154,7 +154,7 @@ std::optional<netio::Endpoint> StateReceiver::bound_address(const netio::Header&
   return header.type == netio::Type::object ? inbox_.object_address(claim.id) : inbox_.tag_address(claim.id);
 }
 
-/// Once per binding, or once for the address in the table of peers.
+/// Logs once per binding, or once for the address in the table of peers.
 void StateReceiver::log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now) {
   const netio::Claim claim = netio::claim_of(packet.header);
   const netio::Peer* peer = netio::find(peers_, claim.kind, claim.id);

@@ -25,50 +25,51 @@ namespace sf::server {
 
 struct StateReceiverOptions {
   netio::Endpoint bind = {netio::kLoopback, netio::kInboxPort};
-  double radio = netio::kV2vRange;  ///< [m] farther away, states are not relayed; 0: none is
-  double forget = 10.0;             ///< [s] of silence after which a robot is no obstacle any more; 0: never
+  double radio = netio::kV2vRange;  ///< [m] range within which states are relayed; 0: no relay
+  double forget = 10.0;             ///< [s] of silence after which a robot is no longer an obstacle; 0: never
   int log_descriptor = 2;           ///< -1: no log
   StateFilterOptions filter;
-  std::vector<netio::Peer> peers;     ///< of the world's robots, tags and intersections, and START
-  std::vector<std::uint32_t> lights;  ///< ids of intersections whose V2I are taken
+  std::vector<netio::Peer> peers;     ///< of the world's robots, tags and intersections, and of START
+  std::vector<std::uint32_t> lights;  ///< ids of intersections whose V2I are accepted
 };
 
-/// Times are of one clock [ns] that does not go back. The world must outlive it. One thread.
+/// Times [ns] are on one monotonic clock. The world must outlive it. Not thread-safe.
 class StateReceiver {
  public:
-  /// @throws netio::PortInUse, or base::InputError when the address cannot be bound.
+  /// @throws netio::PortInUse, base::InputError if the address cannot be bound
   StateReceiver(const world::World& world, const StateReceiverOptions& options);
 
-  /// From now on `handler` is given accepted V2I.
+  /// Sets the handler of accepted V2I.
   using LightHandler = std::function<void(const netio::Header&, const netio::V2i&, std::int64_t now)>;
   void set_light_handler(LightHandler handler) { light_handler_ = std::move(handler); }
 
-  /// Takes every datagram that waits.
+  /// Processes every waiting datagram.
   void receive_pending(std::int64_t now);
-  /// Queues a packet for robot `id`, which is active, with its session and signature; it leaves with `relay`.
+  /// Queues a packet for the active robot `id`, with its session and signature. `relay` sends it.
   void queue(std::uint32_t id, std::span<const std::uint8_t> packet);
-  /// Passes on what came since the last time, to robots that asked for it.
+  /// Forwards packets received since the last call to robots that subscribed to them.
   void relay(std::int64_t now);
-  /// Predicts the states to `now`, for the calls below.
+  /// Predicts the states to `now` for the calls below.
   void predict(std::int64_t now);
-  /// Whether a robot spoke once and has been silent since for as long as `forget`, or its state is stale and the policy
-  /// takes it out of the world: until it speaks again. To be asked at each tick.
+  /// Returns whether a robot is absent: it was active and has been silent for `forget`, or its state is stale and the
+  /// policy removes it from the world. Lasts until its next packet. Call it at each tick.
   bool update_absent(std::uint32_t id, std::int64_t now);
-  /// Likewise of a tag, whose silence alone does not matter, and which an OBJECT can take out of the world.
+  /// Returns whether a tag is absent. Silence alone does not matter; an OBJECT can remove it from the world.
   bool update_absent_tag(std::uint32_t row);
-  /// The newest states at `now`. They live until the next call.
+  /// Returns the newest states at `now`, valid until the next call.
   std::span<const base::Report> states(std::int64_t now) { return fleet_.predict(now); }
-  /// Of a mover's state at `now`. Unfiltered states are as old as their arrival, of unknown covariance.
+  /// Returns the quality of a mover's state at `now`. The age of unfiltered states counts from their arrival, and their
+  /// covariance is unknown.
   netio::StateQuality quality(std::uint32_t row, std::int64_t now) const;
 
   const std::map<std::uint32_t, std::uint32_t>& robots() const { return names_.robots; }  ///< rows by id
-  const std::map<std::uint32_t, std::uint32_t>& tags() const { return names_.tags; }      ///< likewise
+  const std::map<std::uint32_t, std::uint32_t>& tags() const { return names_.tags; }      ///< rows by id
   const StateFilter& filter() const { return filter_; }
   StateFilter& filter() { return filter_; }
   const netio::Inbox& inbox() const { return inbox_; }
   netio::Inbox& inbox() { return inbox_; }
   const netio::RelayCounts& relayed() const { return relay_.counts(); }
-  netio::OutboxCounts answered() const { return answers_.counts(); }  ///< challenges, and relayed packets
+  netio::OutboxCounts answered() const { return answers_.counts(); }  ///< challenges and relayed packets
   netio::RateLimitedLog& log() { return log_; }
   const netio::RateLimitedLog& log() const { return log_; }
 
@@ -91,15 +92,15 @@ class StateReceiver {
   StateFilter filter_;
   std::vector<base::Report> reports_;
   base::Bytes challenge_;
-  std::int64_t forget_;  ///< [ns] since it was last active, or kNever
+  std::int64_t forget_;  ///< [ns] timeout since the last activity, or kNever
   LightHandler light_handler_;
   std::vector<bool> removed_;              ///< per mover, by OBJECT
-  std::vector<std::int64_t> last_active_;  ///< [ns] per mover
-  std::vector<std::int64_t> last_state_;   ///< [ns] arrival, per mover, or kNever
+  std::vector<std::int64_t> last_active_;  ///< [ns] per mover, or kNever
+  std::vector<std::int64_t> last_state_;   ///< [ns] arrival per mover, or kNever
   netio::RateLimitedLog log_;
   netio::SignatureTroubleLog trouble_;
   netio::RejectionLog rejections_;
-  /// The bound address whose other senders are in the log already.
+  /// The bound address for which other senders have already been logged.
   std::map<std::pair<netio::PeerKind, std::uint32_t>, std::optional<netio::Endpoint>> logged_;
 };
 

@@ -13,11 +13,11 @@ namespace sf::server {
 namespace {
 
 constexpr std::uint32_t kUsualStride = 8;
-constexpr std::size_t kMostNotes = 20;  ///< about sensors that are left out
+constexpr std::size_t kMostNotes = 20;  ///< about omitted sensors
 
 std::string port_option(const sensors::SensorType& type) { return "--" + std::string(type.name) + "-port"; }
 
-/// One line for each sensor that the wire cannot carry.
+/// Returns one line for each sensor that the wire format cannot carry.
 std::vector<std::string> left_out(const world::World& world, const sensors::SensorSet& sensor_set,
                                   const StreamLayout& layout) {
   std::vector<std::string> lines;
@@ -28,8 +28,8 @@ std::vector<std::string> left_out(const world::World& world, const sensors::Sens
   return lines;
 }
 
-/// Notes the sensors that are left out.
-/// @throws base::InputError when no sensor is sent, or one is left out of the farm's own format.
+/// Adds notes on omitted sensors.
+/// @throws base::InputError if no sensor is sent, or if a sensor is omitted from the farm's own format
 void note_left_out(const sensors::SensorSet& sensor_set, const std::vector<std::string>& lines, StreamLayout& layout) {
   if (lines.empty()) return;
   if (layout.wire != sensors::WireFormat::thesis || lines.size() >= sensor_set.count())

@@ -1,5 +1,5 @@
 #pragma once
-// A simulated robot's true state, for those that render what cameras see of it (`sensorfarm vps --robots`).
+// Sends a simulated robot's true state to renderers of camera images (`sensorfarm vps --robots`).
 
 #include <cstdint>
 
@@ -9,15 +9,15 @@
 
 namespace sf::server {
 
-/// V2V of a state, bounded by what a packet may hold, whatever the world file lets a robot do.
+/// Returns the V2V of a state, clamped to the range of a packet, whatever the world file permits.
 netio::V2v v2v_of(const base::Report& report, const base::Intent& intent = {});
 
-/// One thread.
+/// Not thread-safe.
 class TruthReport {
  public:
-  static constexpr std::int64_t kPeriod = 20'000'000;  ///< [ns] between two of `is_due`
+  static constexpr std::int64_t kPeriod = 20'000'000;  ///< [ns] between two due reports
 
-  /// @throws base::InputError when no socket can be opened
+  /// @throws base::InputError if no socket can be opened
   TruthReport(const netio::Endpoint& to, std::uint32_t tag);
 
   bool is_due(std::int64_t now) const { return now >= due_; }

@@ -50,7 +50,7 @@ netio::SignalApproach V2iMessages::approach_of(const Intersection& one, std::siz
   return approach;
 }
 
-/// Fills packets with approaches, each followed by its stop lines, as far as they fit.
+/// Fills each packet with approaches and their stop lines until it is full.
 void V2iMessages::for_each_packet(std::size_t intersection, std::span<const world::SignalForecast> forecasts,
                                   std::int64_t now, const std::function<void(const base::Bytes&)>& take) {
   const Intersection& one = intersections_[intersection];

@@ -16,17 +16,17 @@
 
 namespace sf::server {
 
-/// The world must outlive it. One thread.
+/// The world must outlive it. Not thread-safe.
 class V2iMessages {
  public:
   /// @param roads the world's network; null: none, and packets have no stop lines
   V2iMessages(const world::World& world, const world::RoadNetwork* roads);
 
   const std::vector<Intersection>& intersections() const { return intersections_; }
-  /// [m] Of its first light.
+  /// [m] position of its first light.
   glm::dvec2 position(std::size_t intersection) const;
 
-  /// Encodes the packets of an intersection, of which more than 38 lights and stop lines need several.
+  /// Encodes the packets of an intersection; more than 38 lights and stop lines need several.
   /// @param forecasts one per row of `World::lights` @param now [ns] time of the states
   void for_each_packet(std::size_t intersection, std::span<const world::SignalForecast> forecasts, std::int64_t now,
                        const std::function<void(const base::Bytes&)>& take);
@@ -38,7 +38,7 @@ class V2iMessages {
   const world::World& world_;
   std::vector<Intersection> intersections_;
   std::vector<std::vector<netio::SignalStop>> stops_;  ///< per intersection, by group
-  std::vector<std::uint32_t> sent_;                    ///< packets, per intersection
+  std::vector<std::uint32_t> sent_;                    ///< packets per intersection
   base::Bytes approach_rows_, stop_rows_, packet_;
 };
 

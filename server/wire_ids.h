@@ -1,5 +1,5 @@
 #pragma once
-// Robot ids of packets and the movers of a world.
+// Robot ids in packets and their movers in a world.
 
 #include <cstdint>
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace sf::server {
 
-/// Rows in `World::movers` by id on the wire.
+/// Rows of `World::movers` by id on the wire.
 struct WireNames {
   std::map<std::uint32_t, std::uint32_t> robots;
   std::map<std::uint32_t, std::uint32_t> tags;
