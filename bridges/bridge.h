@@ -1,11 +1,11 @@
 #pragma once
-// Bridges connect a run or a service to programs of other people: viewers, ROS 2, clients of Player. Each tick goes
-// out to all of them, and what their users asked for comes back before the next tick:
+// Bridges connect a run or a service to external programs: viewers, ROS 2, clients of Player. Each tick is published to
+// all bridges, and requests of their users are collected before the next tick:
 //
 //   bridges.publish(simulation.step(), state);
 //   bridges.take(requests);
 //
-// A bridge does its input and output on a thread of its own. A slow or hostile client costs itself readings, never a
+// A bridge does its input and output on its own thread. A slow or hostile client loses readings but never delays a
 // tick.
 
 #include <cstdint>
@@ -23,16 +23,16 @@
 
 namespace sf::bridges {
 
-/// What a run consists of. All three outlive its bridges.
+/// The parts of a run. All three references outlive its bridges.
 struct Scene {
   const world::World& world;
   const sensors::SensorSet& sensor_set;
   const record::RunInfo& info;  ///< with frames and topics (`record::name_frames`); movers are rows of the world's
-  bool simulated = true;        ///< robots are moved by the simulation and take commands; false: `serve`
+  bool simulated = true;        ///< whether the simulation moves robots and accepts commands; false: `serve`
   std::vector<std::string> world_folders = {};  ///< whose worlds users may load; empty: none
 };
 
-/// Outcome of a request that the run may refuse, written before the next `publish`.
+/// The outcome of a request that the run may refuse. Written before the next `publish`.
 struct Outcome {
   enum class Fault : std::uint8_t { none, failed, unreadable, unsupported };
   bool done = false;
@@ -40,7 +40,7 @@ struct Outcome {
   std::string reason;  ///< of a fault
 };
 
-/// A robot that is to join, a copy of another.
+/// A robot that joins as a copy of another.
 struct Joining {
   std::string name, like;  ///< see world::append_robot
   base::Pose X_WM;         ///< finite
@@ -52,14 +52,14 @@ struct Leaving {
   std::shared_ptr<Outcome> outcome;
 };
 
-/// A world to go on with, from time 0, paused.
+/// A world to continue with, from time 0, paused.
 struct WorldChange {
-  std::string file;     ///< empty: a world without anything
-  bool strict = false;  ///< files with warnings are refused
+  std::string file;     ///< empty: an empty world
+  bool strict = false;  ///< whether files with warnings are refused
   std::shared_ptr<Outcome> outcome;
 };
 
-/// A mover's velocity, in its frame, in force until the next one.
+/// The velocity of a mover in its own frame. Applies until the next command.
 struct Command {
   std::uint32_t mover = 0;
   base::Twist twist;  ///< finite
@@ -70,50 +70,52 @@ struct Placement {
   base::Pose X_WM;  ///< finite
 };
 
-/// What users asked for since the last call, in the order in which it came. Bridges refuse requests that name no mover,
-/// are not finite, or come where robots are not simulated.
+/// User requests since the last call, in order of arrival. Bridges reject requests that name no mover or contain
+/// numbers that are not finite, and all requests if robots are not simulated.
 struct Requests {
-  std::vector<Command> commands;  ///< from its first on, a robot is driven from outside, no longer by its controller
+  std::vector<Command> commands;  ///< from its first command on, a robot is driven externally, not by its controller
   std::vector<Placement> placements;
   std::optional<bool> paused;
   std::optional<double> speed;      ///< [1] simulated over real time, > 0; infinity: as fast as the machine allows
-  std::uint32_t steps = 0;          ///< ticks to be made while paused
-  std::uint32_t dropped_steps = 0;  ///< of those that were asked for before
+  std::uint32_t steps = 0;          ///< ticks to simulate while paused
+  std::uint32_t dropped_steps = 0;  ///< of earlier requested steps
   std::vector<Joining> joining;
   std::vector<Leaving> leaving;
   std::optional<WorldChange> world;
-  bool reset = false;                ///< begins again at time 0, with the same seed
-  std::optional<std::int64_t> time;  ///< [ns] of a recording, to go to
+  bool reset = false;                ///< restarts at time 0 with the same seed
+  std::optional<std::int64_t> time;  ///< [ns] time in a recording to jump to
 
-  /// Forgets all, and keeps its memory.
+  /// Clears all requests and keeps the memory.
   void clear();
-  /// Moves all of `later` to the end: what both ask for is what `later` asks for.
+  /// Moves all of `later` to the end; its values override earlier ones.
   void add(Requests& later);
 };
 
-/// Of a run between two ticks.
+/// State of a run between two ticks.
 struct RunState {
   bool paused = false;
   double speed = 1.0;      ///< as in `Requests`
-  double measured = 0.0;   ///< [1] simulated over real time, of the last second
+  double measured = 0.0;   ///< [1] simulated over real time, during the last second
   std::uint32_t runs = 0;  ///< number of resets
 };
 
 class Bridge {
  public:
   virtual ~Bridge() = default;
-  /// Takes one tick; times begin again at 0 after a reset (`RunState::runs`). Copies what it needs, and never waits.
+  /// Publishes one tick. Times restart at 0 after a reset (`RunState::runs`). Copies what it needs and never blocks.
   virtual void publish(const base::TickRecord& tick, const RunState& state) = 0;
-  /// Called instead while the run is paused, some 30 times a second. Never waits.
+  /// Called instead while the run is paused, about 30 times a second. Never blocks.
   virtual void publish(const RunState& state) = 0;
-  /// Appends requests. Never waits.
+  /// Appends requests. Never blocks.
   virtual void take(Requests& requests) = 0;
-  /// Whether it goes on when its scene changes. Else it is closed before, and another one is opened.
+  /// Returns whether the bridge remains open when its scene changes. Otherwise it is closed first, and a new one is
+  /// opened.
   virtual bool keeps_on() const { return false; }
-  /// World, sensor set and info of its scene have more or other movers than before: they were changed in place, between
-  /// two ticks. @param is_new it is another world
+  /// Called when the movers in the world, sensor set and info of its scene have changed. They were changed in place,
+  /// between two ticks.
+  /// @param is_new whether it is another world
   virtual void show_scene(bool /*is_new*/) {}
-  /// What it is and where, as a line for users: "view on http://127.0.0.1:8765".
+  /// Returns a line for users with its kind and address: "view on http://127.0.0.1:8765".
   virtual std::string describe() const = 0;
 };
 
@@ -131,7 +133,7 @@ class Bridges {
 
   void publish(const base::TickRecord& tick, const RunState& state);
   void publish(const RunState& state);
-  /// Replaces `requests` by all that came since the last call.
+  /// Replaces `requests` by all requests since the last call.
   void take(Requests& requests);
   std::vector<std::string> describe() const;
 

@@ -6,9 +6,9 @@ namespace sf::bridges {
 
 namespace {
 
-constexpr std::chrono::milliseconds kRest{500};      // without a write to readers that were behind
-constexpr std::chrono::milliseconds kMaxWait{100};   // for the reader of a reply, as rmw_cyclonedds waits
-constexpr std::chrono::milliseconds kLookAgain{10};  // for it
+constexpr std::chrono::milliseconds kRest{500};      // pause before writing again to readers that were behind
+constexpr std::chrono::milliseconds kMaxWait{100};   // for the reader of a reply, as in rmw_cyclonedds
+constexpr std::chrono::milliseconds kLookAgain{10};  // interval of checks for it
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 #pragma once
-// Messages on their way to DDS. A thread writes them, since a write waits for slow readers.
+// Queue of messages to DDS. A thread writes them, because a write waits for slow readers.
 
 #include <chrono>
 #include <condition_variable>
@@ -18,10 +18,10 @@ struct DdsOutgoing {
   base::Bytes message;
 };
 
-/// Messages of one tick, and memory for further ones.
+/// The messages of one tick, in memory that is reused.
 class DdsBatch {
  public:
-  /// A cleared buffer for a message.
+  /// Returns a cleared buffer for a message.
   base::Bytes& add(std::size_t writer);
   void clear() { size_ = 0; }
   std::span<const DdsOutgoing> messages() const { return std::span(rows_).first(size_); }
@@ -31,41 +31,41 @@ class DdsBatch {
   std::size_t size_ = 0;
 };
 
-/// An answer to a client whose reader may not be known yet.
+/// A reply to a client whose reader may not have been discovered yet.
 struct DdsReply {
   std::size_t writer = 0, reader = 0;
-  std::uint64_t sender = 0;  ///< of the question
+  std::uint64_t sender = 0;  ///< of the request
   base::Bytes message;
 };
 
 class DdsOutbox {
  public:
-  static constexpr std::size_t kMaxTicks = 8;       ///< that wait; of more, the oldest is left out
-  static constexpr std::size_t kMaxReplies = 1024;  ///< that wait; more are left out
+  static constexpr std::size_t kMaxTicks = 8;       ///< maximum number queued; the oldest is dropped beyond it
+  static constexpr std::size_t kMaxReplies = 1024;  ///< maximum number queued; more are dropped
 
   explicit DdsOutbox(DdsParticipant& participant);
-  ~DdsOutbox();  ///< what waits is left out
+  ~DdsOutbox();  ///< drops queued messages
 
-  /// Takes a tick's messages, and gives an empty batch for the next. Never waits.
+  /// Queues the messages of a tick and replaces them by an empty batch. Never blocks.
   void add(DdsBatch& tick);
   void add(DdsReply&& reply);
 
   struct Counts {
     std::uint64_t written = 0;
-    std::uint64_t ticks_left_out = 0;  ///< all readers were behind
-    std::uint64_t left_out = 0;        ///< messages whose own readers were behind, and replies
+    std::uint64_t ticks_left_out = 0;  ///< dropped ticks: all readers were behind
+    std::uint64_t left_out = 0;        ///< dropped messages, whose own readers were behind, and dropped replies
   };
   Counts counts() const;
 
  private:
   using Clock = std::chrono::steady_clock;
   struct WaitingReply : DdsReply {
-    Clock::time_point until;  ///< then it is written in any case
+    Clock::time_point until;  ///< time at which it is written in any case
   };
   void run();
   void write(const DdsBatch& tick);
   void write_replies();
-  /// @return false: its readers are behind
+  /// Returns false if its readers are behind.
   bool write(std::size_t writer, const base::Bytes& message);
 
   DdsParticipant& participant_;
@@ -77,9 +77,9 @@ class DdsOutbox {
   std::deque<DdsReply> replies_;
   Counts counts_;
 
-  // Of the thread alone.
+  // Used by the thread only.
   std::deque<WaitingReply> waiting_;
-  std::vector<Clock::time_point> behind_until_;  ///< by writer
+  std::vector<Clock::time_point> behind_until_;  ///< per writer
   std::thread thread_;
 };
 

@@ -18,9 +18,9 @@ namespace sf::bridges {
 namespace {
 
 constexpr std::uint32_t kMaxFrame = kDdsMaxReceived + 64;   // [byte] from the process
-constexpr std::size_t kMaxQueued = DdsOutbox::kMaxReplies;  // replies; more are left out
-constexpr std::chrono::milliseconds kLeave{250};            // for the process to end by itself
-constexpr std::chrono::seconds kBeforeRestart{1};           // before it is started again
+constexpr std::size_t kMaxQueued = DdsOutbox::kMaxReplies;  // maximum number of queued replies; more are dropped
+constexpr std::chrono::milliseconds kLeave{250};            // for the process to exit by itself
+constexpr std::chrono::seconds kBeforeRestart{1};           // pause before a restart
 
 /// One end of a pipe.
 class PipeEnd {
@@ -47,7 +47,7 @@ std::pair<Pipe, Pipe> new_pipe() {
   return {std::make_shared<PipeEnd>(ends[0]), std::make_shared<PipeEnd>(ends[1])};
 }
 
-/// In the new process, where only system calls are safe. Ctrl-C does not reach it; it ends when the farm does.
+/// Runs in the new process, where only system calls are safe. Ctrl-C does not reach it; it exits when the farm does.
 [[noreturn]] void become(const char* file, int in, int out) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -120,7 +120,7 @@ class FastProcess : public FastServices {
   }
 
  private:
-  /// @throws std::runtime_error saying why it does not start
+  /// @throws std::runtime_error with the reason if it does not start
   void start() {
     Process made;
     auto [in, to] = new_pipe();
@@ -131,7 +131,8 @@ class FastProcess : public FastServices {
     if (made.pid == 0) become(file_.c_str(), in->get(), out->get());
     if (made.pid < 0) throw std::runtime_error("no further process can be started");
     out.reset();
-    // The pipe holds all of it, and has a reader here, so that the process may have ended already.
+    // The settings fit the pipe, and its reading end is still open here, so the write works even if the process has
+    // already exited.
     write_frame(to->get(), {FrameKind::open, 0, 0, settings_of(options_)});
     in.reset();
     Frame first;
@@ -155,7 +156,7 @@ class FastProcess : public FastServices {
     return process_.from;
   }
 
-  /// Of `reader_`: passes requests on, and starts the process again where it ends.
+  /// Body of `reader_`: forwards requests, and restarts the process when it exits.
   void read() {
     while (true) {
       const Pipe from = input();
@@ -177,7 +178,7 @@ class FastProcess : public FastServices {
     }
   }
 
-  /// @return false: no frame that it may send
+  /// Returns false for a frame that the process may not send.
   bool take(Frame& frame) {
     if (frame.kind == FrameKind::log) {
       options_.dds.log({reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size()});
@@ -190,7 +191,8 @@ class FastProcess : public FastServices {
     return true;
   }
 
-  /// Ends the process, if it has not. @return how it did
+  /// Ends the process if it is running.
+  /// @return how it ended
   std::string end() {
     const std::lock_guard lock(mutex_);
     int status = 0;
@@ -203,7 +205,7 @@ class FastProcess : public FastServices {
     return WIFSIGNALED(status) ? fmt::format("was ended by signal {}", WTERMSIG(status)) : "ended";
   }
 
-  /// Of `writer_`. Where the process ended, write() gives an error in place of a signal.
+  /// Body of `writer_`. After the process has exited, write() fails instead of raising a signal.
   void write() {
     sigset_t pipes;
     ::sigemptyset(&pipes);

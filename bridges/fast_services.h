@@ -1,6 +1,6 @@
 #pragma once
-// Services for clients of rmw_fastrtps, by Fast DDS in a process of its own: a datagram of a stranger may end that
-// process, which is then started again, and never the run.
+// Services for clients of rmw_fastrtps, by Fast DDS in a separate process. A malicious datagram may crash that process,
+// which is then restarted, but never the run.
 
 #include <condition_variable>
 #include <deque>
@@ -22,21 +22,22 @@ struct FastService {
 };
 
 struct FastOptions {
-  DdsOptions dds;  ///< messages that it receives have `DdsSender::fast`, and the number of their service as `reader`
+  DdsOptions dds;  ///< received messages have `DdsSender::fast`, and the number of their service as `reader`
   std::vector<FastService> services;
 };
 
 class FastServices {
  public:
-  virtual ~FastServices() = default;  ///< after it, nothing is received
-  /// Takes the answer to a request. Never waits. @param reply its writer is the number of the service
+  virtual ~FastServices() = default;  ///< nothing is received afterwards
+  /// Queues the reply to a request. Never blocks.
+  /// @param reply its writer is the number of the service
   virtual void add(DdsReply&& reply) = 0;
   virtual DdsOutbox::Counts counts() const = 0;
 };
 
-/// @throws std::runtime_error saying why there are none
+/// @throws std::runtime_error with the reason
 using OpenFastServices = std::unique_ptr<FastServices> (*)(const FastOptions& options);
-/// Starts the process `sensorfarm_fastdds`, which is installed beside the plug-ins.
+/// Starts the process `sensorfarm_fastdds`, which is installed next to the plug-ins.
 std::unique_ptr<FastServices> open_fast_services(const FastOptions& options);
 
 }  // namespace sf::bridges

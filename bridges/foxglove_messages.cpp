@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 /// Text that is no UTF-8 must not end the program: names come from world files.
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-/// Null where the text is no JSON or nested too deeply to be any message of the protocol.
+/// Returns null if the text is not JSON, or is nested more deeply than any message of the protocol.
 Json parse(std::string_view text) {
   constexpr int kMaxDepth = 16;
   bool too_deep = false;
@@ -49,7 +49,7 @@ std::string string_in(const Json& json, const char* key) {
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// Calls `read` with each element of the list `key`; false where there is no list, or `read` says so.
+/// Calls `read` with each element of the list `key`. Returns false if there is no list, or if `read` returns false.
 template <class Read>
 bool each(const Json& json, const char* key, Read read) {
   const auto found = json.find(key);

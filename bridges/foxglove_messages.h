@@ -1,6 +1,6 @@
 #pragma once
-// The JSON messages of Foxglove's WebSocket protocol: github.com/foxglove/ws-protocol docs/spec.md
-// (foxglove.websocket.v1), and foxglove.sdk.v1, which adds control of playback.
+// JSON messages of Foxglove's WebSocket protocol: github.com/foxglove/ws-protocol docs/spec.md (foxglove.websocket.v1),
+// and foxglove.sdk.v1, which adds playback control.
 
 #include <cstdint>
 #include <optional>
@@ -19,28 +19,28 @@ inline constexpr const char* kSdkV1 = "foxglove.sdk.v1";
 
 struct Parameter {
   std::string name;
-  std::variant<std::monostate, bool, double, std::string> value;  ///< monostate: none, or of another type
+  std::variant<std::monostate, bool, double, std::string> value;  ///< monostate: no value, or one of another type
 };
 
 struct Channel {
   std::uint32_t id = 0;
   std::string topic;
-  std::string type;    ///< such as "nav_msgs/msg/Odometry"
+  std::string type;    ///< for example "nav_msgs/msg/Odometry"
   std::string schema;  ///< ros2msg
 };
 
 struct Service {
   std::uint32_t id = 0;
   std::string name;
-  std::string type;      ///< such as "std_srvs/srv/Trigger"
+  std::string type;      ///< for example "std_srvs/srv/Trigger"
   std::string request;   ///< ros2msg fields; may be empty
-  std::string response;  ///< likewise
+  std::string response;  ///< ros2msg fields; may be empty
 };
 
 struct ServerInfo {
   std::string name;
   std::vector<std::string> capabilities;
-  std::string session;  ///< another one tells clients to forget what they were sent
+  std::string session;  ///< a new id makes clients discard what they received
   std::vector<std::pair<std::string, std::string>> metadata;
   std::optional<std::int64_t> start, end;  ///< [ns] of a recording
 };
@@ -55,7 +55,7 @@ std::string parameters_text(std::span<const Parameter> parameters, std::string_v
 std::string status_text(StatusLevel level, std::string_view message);
 std::string service_failure_text(std::uint32_t service, std::uint32_t call, std::string_view message);
 
-/// A message of a client. Each operation uses the members named with it.
+/// A message from a client. Each operation uses the members in its comment.
 struct ClientText {
   enum class Op {
     subscribe,               ///< subscriptions
@@ -66,7 +66,7 @@ struct ClientText {
     set_parameters,          ///< parameters, id
     subscribe_parameters,    ///< names
     unsubscribe_parameters,  ///< names
-    other                    ///< known, without a meaning here
+    other                    ///< known but ignored
   };
   struct Subscription {
     std::uint32_t id = 0;
@@ -87,15 +87,16 @@ struct ClientText {
   std::string id;
 };
 
-/// @return nullopt for text that is not such a message
+/// @return nullopt if the text is not such a message
 std::optional<ClientText> parse_client_text(std::string_view text);
 
-/// Twist of a geometry_msgs Twist or TwistStamped in JSON: linear.x, linear.y, angular.z, each 0 where it is missing.
-/// @return nullopt for other text
+/// Reads a geometry_msgs Twist or TwistStamped in JSON: linear.x, linear.y, angular.z, each 0 if missing.
+/// @return nullopt for any other text
 std::optional<base::Twist> parse_json_twist(std::string_view text);
-/// `data` of a std_srvs SetBool request in JSON; nullopt for other text.
+/// Reads `data` of a std_srvs SetBool request in JSON.
+/// @return nullopt for any other text
 std::optional<bool> parse_json_bool(std::string_view text);
-/// Response of std_srvs SetBool and Trigger in JSON.
+/// Returns a response of std_srvs SetBool or Trigger in JSON.
 std::string json_response(bool success, std::string_view message);
 
 }  // namespace sf::bridges

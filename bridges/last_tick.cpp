@@ -43,7 +43,7 @@ const base::TickRecord& LastTick::record() {
   blocks_.clear();
   for (const Stored& stored : readings_) {
     blocks_.push_back(stored.block);
-    blocks_.back().values = stored.values;  // the table may have moved since
+    blocks_.back().values = stored.values;  // the table may have been reallocated
     blocks_.back().quality = stored.quality;
   }
   tick_.readings = blocks_;

@@ -1,5 +1,5 @@
 #pragma once
-// The newest tick: what a viewer is shown that connects, or chooses another robot, while the run is paused.
+// The newest tick, for viewers that connect or select another robot while the run is paused.
 
 #include <cstdint>
 #include <unordered_map>
@@ -9,15 +9,16 @@
 
 namespace sf::bridges {
 
-/// One thread.
+/// Not thread-safe.
 class LastTick {
  public:
-  /// Copies the tick. @param with_readings true: those that it lacks are kept from earlier ticks, unless time went
-  /// back; false: readings, which are the largest part, are left out and forgotten
+  /// Copies the tick.
+  /// @param with_readings true: keeps readings of earlier ticks that this tick lacks, unless time has gone back; false:
+  /// drops all readings, which are the largest part
   void store(const base::TickRecord& tick, bool with_readings);
   bool empty() const { return reports_.empty(); }
   std::int64_t time() const { return tick_.time; }
-  /// Spans live until the next `store`.
+  /// Spans are valid until the next `store`.
   const base::TickRecord& record();
 
  private:

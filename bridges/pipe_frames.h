@@ -1,5 +1,5 @@
 #pragma once
-// Frames between the farm and the process with Fast DDS, over two pipes.
+// Frames between the farm and the Fast DDS process, over two pipes.
 
 #include <unistd.h>
 
@@ -12,11 +12,11 @@ namespace sf::bridges {
 
 enum class FrameKind : std::uint8_t {
   open,     ///< to the process, once: its settings
-  ready,    ///< from it, once: its endpoints are there
-  failed,   ///< from it, instead: why not
-  request,  ///< from it: of `service`, by `sender`
-  reply,    ///< to it: of `service`, to `sender`
-  log,      ///< from it: a line
+  ready,    ///< from the process, once: its endpoints are ready
+  failed,   ///< from the process, instead of `ready`: the error
+  request,  ///< from the process: a request to `service`, from `sender`
+  reply,    ///< to the process: a reply of `service`, to `sender`
+  log,      ///< from the process: a line
 };
 
 struct Frame {
@@ -25,7 +25,8 @@ struct Frame {
   base::Bytes bytes;
 };
 
-/// Waits. @return false: the other end is closed, or does not read
+/// Blocks.
+/// @return false: the other end is closed or does not read
 inline bool write_frame(int pipe, const Frame& frame) {
   base::Bytes out;
   base::ByteWriter writer(out);
@@ -43,7 +44,8 @@ inline bool write_frame(int pipe, const Frame& frame) {
   return true;
 }
 
-/// Waits. @return false: the pipe ended
+/// Blocks.
+/// @return false: the pipe ended
 inline bool read_all(int pipe, std::uint8_t* out, std::size_t size) {
   while (size > 0) {
     const ssize_t count = ::read(pipe, out, size);
@@ -55,7 +57,9 @@ inline bool read_all(int pipe, std::uint8_t* out, std::size_t size) {
   return true;
 }
 
-/// Waits. @param most [byte] of a frame that is taken @return false: the pipe ended, or a frame is longer
+/// Blocks.
+/// @param most [byte] maximum size of a frame
+/// @return false: the pipe ended, or a frame is longer
 inline bool read_frame(int pipe, Frame& frame, std::uint32_t most) {
   std::uint8_t head[21];
   if (!read_all(pipe, head, sizeof head)) return false;

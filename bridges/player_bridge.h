@@ -1,6 +1,6 @@
 #pragma once
-// A Player server (playerstage.sourceforge.net): programs for a Create, a Pioneer or Stage read virtual sensors and
-// drive robots (docs/bridges.md).
+// A Player server (playerstage.sourceforge.net): programs written for a Create, a Pioneer or Stage read virtual sensors
+// and drive robots (docs/bridges.md).
 
 #include <memory>
 
@@ -10,11 +10,11 @@
 
 namespace sf::bridges {
 
-/// `publish` copies the readings that clients want.
+/// `publish` copies the readings of opened devices.
 class PlayerBridge : public Bridge {
  public:
   /// @param bind, silent, log_descriptor see player::Server
-  /// @throws base::InputError when a port is in use
+  /// @throws base::InputError if a port is in use
   PlayerBridge(const Scene& scene, const netio::Endpoint& bind, double silent = player::kSilent,
                int log_descriptor = 2);
 

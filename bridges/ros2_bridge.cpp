@@ -32,8 +32,8 @@ bool is_set(const char* variable, std::string_view value) {
   return text != nullptr && value == text;
 }
 
-/// As rmw_cyclonedds numbers them: the participant's prefix and a count, so that a client knows which request reader
-/// and which reply writer are one service.
+/// Numbered as in rmw_cyclonedds: the participant's prefix and a count. This shows a client which request reader and
+/// reply writer belong to one service.
 std::string service_id(DdsGuid guid, std::size_t number) {
   for (std::size_t i = 0; i < 4; ++i) guid[12 + i] = static_cast<std::uint8_t>((number + 1) >> (24 - 8 * i));
   std::string text = "serviceid=";
@@ -41,7 +41,7 @@ std::string service_id(DdsGuid guid, std::size_t number) {
   return text + ";";
 }
 
-/// A participant that gets more readers and writers while another thread writes.
+/// A participant to which readers and writers are added while another thread writes.
 class GrowingParticipant : public DdsParticipant {
  public:
   explicit GrowingParticipant(std::unique_ptr<DdsParticipant> inner) : inner_(std::move(inner)) {}
@@ -72,7 +72,8 @@ class GrowingParticipant : public DdsParticipant {
   std::unique_ptr<DdsParticipant> inner_;
 };
 
-/// Requests come from reliable writers. @param id in front of its user data
+/// Request writers are reliable.
+/// @param id prefix of its user data
 DdsEndpoint request_reader(const ServiceType& service, const std::string& id) {
   const std::string type = std::string(service.type) + "_Request";
   return {.topic = "rq" + std::string(service.name) + "Request",
@@ -139,7 +140,7 @@ void DdsLog::write(std::string_view line) {
 Ros2Bridge::Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library,
                        OpenFastServices open_fast)
     : options_(options), scene_(scene), services_(scene), messages_(std::in_place, scene.info) {
-  // Requests of services wait apart from commands, which are taken in every tick.
+  // Queue service requests separately from commands, which are handled in every tick.
   const auto receive = [this](DdsMessage&& message) {
     const bool is_request = message.reader < services_.types().size();
     (is_request ? requests_ : commands_).add(std::move(message));
@@ -171,7 +172,7 @@ std::string Ros2Bridge::describe() const {
 }
 
 void Ros2Bridge::show_scene(bool is_new) {
-  const record::TickMessages before = std::move(*messages_);  // of which only its counts are used
+  const record::TickMessages before = std::move(*messages_);  // only its counts are used
   messages_.emplace(scene_.info);
   try {
     add_topics();
@@ -189,7 +190,7 @@ void Ros2Bridge::show_scene(bool is_new) {
 void Ros2Bridge::add_topics() {
   writer_of_.clear();
   for (const record::Topic& topic : messages_->topics()) {
-    const bool is_command = topic.type == record::kTwistStamped;  // of a controller; those of others are heard there
+    const bool is_command = topic.type == record::kTwistStamped;  // its topic receives external commands
     const int depth = topic.latched ? 1 : topic.type == record::kTransforms ? kTransformsDepth : kDepth;
     const auto [known, is_new] = writer_of_topic_.try_emplace(topic.name, kNone);
     if (is_new && !is_command)
@@ -204,9 +205,9 @@ void Ros2Bridge::add_commands() {
   const std::string plain = record::schema_text("geometry_msgs/msg/Twist");
   const std::string stamped = record::schema_text(record::kTwistStamped);
   for (std::size_t reader = services_.types().size(); reader < reader_of_.size(); ++reader)
-    reader_of_[reader].mover = world::kNone;  // until a mover of this scene has them
+    reader_of_[reader].mover = world::kNone;  // until a mover of this scene uses the topic
   for (std::uint32_t row = 0; row < scene_.info.movers.size(); ++row) {
-    if (scene_.world.movers[row].is_tag) continue;  // tags follow packets
+    if (scene_.world.movers[row].is_tag) continue;  // tags are placed by packets
     const std::string topic = "rt" + scene_.info.movers[row].space + "/cmd_vel";
     const auto [known, is_new] = commands_of_.try_emplace(topic, reader_of_.size());
     if (is_new) {
@@ -231,7 +232,7 @@ void Ros2Bridge::add_services() {
                                          topic.latched ? 1 : kDepth, topic.latched));
 }
 
-/// The same services once more, for clients that the participant above leaves out.
+/// Adds the same services again, for clients that the participant above ignores.
 void Ros2Bridge::add_fast(OpenFastServices open, const std::set<std::string>& addresses) {
   FastOptions options;
   options.dds = {.domain = options_.domain,
@@ -250,11 +251,11 @@ void Ros2Bridge::add_fast(OpenFastServices open, const std::set<std::string>& ad
   }
 }
 
-/// What `ros2 node list` reads: the participant's nodes, and their readers and writers.
+/// Publishes the data behind `ros2 node list`: the participant's nodes and their readers and writers.
 void Ros2Bridge::announce() {
   if (discovery_ == kNone) {
     discovery_ = add_writer("ros_discovery_info", kDiscovery, ros_definition(kDiscoveryFields), 1, true);
-    writers_.pop_back();  // it is the participant's, not the node's
+    writers_.pop_back();  // belongs to the participant, not to the node
   }
   record::CdrWriter cdr(batch_.add(discovery_));
   const auto put = [&cdr](const DdsGuid& guid) {
@@ -277,7 +278,7 @@ std::size_t Ros2Bridge::add_writer(const std::string& topic, std::string_view ty
 }
 
 std::size_t Ros2Bridge::add_reader(const std::string& topic, std::string_view type, std::string_view definition) {
-  // Commands of writers of any kind are taken.
+  // Accept commands from reliable and best-effort writers.
   return participant_->add_reader({.topic = topic,
                                    .type = dds_type(type),
                                    .user_data = type_user_data(type, definition),
@@ -324,12 +325,12 @@ bool Ros2Bridge::take_command(const DdsMessage& message, Requests& requests) con
   record::CdrReader cdr(message.bytes);
   std::int64_t time = 0;
   const Reader& reader = reader_of_[message.reader];
-  if (reader.mover == world::kNone) return false;  // of a world before
+  if (reader.mover == world::kNone) return false;  // of an earlier world
   if (reader.stamped) record::get_header(cdr, time);
   Command command{.mover = reader.mover};
   command.twist.forward = cdr.get<double>();
   command.twist.left = cdr.get<double>();
-  for (int i = 0; i < 3; ++i) cdr.get<double>();  // upwards, and turns about x and y
+  for (int i = 0; i < 3; ++i) cdr.get<double>();  // z velocity, and rotation about x and y
   command.twist.turn = cdr.get<double>();
   const base::Twist& twist = command.twist;
   if (!cdr.good() || !std::isfinite(twist.forward + twist.left + twist.turn)) return false;

@@ -1,6 +1,6 @@
 #pragma once
-// A run as a node of ROS 2, `/sensorfarm`, without a ROS installation: its topics are those of recordings, its commands
-// are geometry_msgs/Twist and TwistStamped on the topics cmd_vel, its services those of `RosServices`.
+// Presents a run as a ROS 2 node, `/sensorfarm`, without a ROS installation. Its topics are those of recordings, its
+// commands are geometry_msgs/Twist and TwistStamped on the cmd_vel topics, and its services are those of `RosServices`.
 
 #include <deque>
 #include <map>
@@ -23,15 +23,15 @@ namespace sf::bridges {
 
 struct Ros2Options {
   std::uint32_t domain = 0;  ///< ROS_DOMAIN_ID of the nodes, [0, kDdsMaxDomain]
-  bool loopback = false;     ///< nodes of this machine only
+  bool loopback = false;     ///< only nodes on this machine
 };
 
-/// @param domain digits; empty: ROS_DOMAIN_ID of the environment, or 0. Of the environment, too, as nodes of ROS 2 read
-/// it, ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_LOCALHOST_ONLY=1: `loopback`.
-/// @throws base::InputError where it is no domain
+/// @param domain digits; empty: ROS_DOMAIN_ID of the environment, or 0. Like ROS 2 nodes, sets `loopback` if the
+/// environment has ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST or ROS_LOCALHOST_ONLY=1.
+/// @throws base::InputError if it is not a domain
 Ros2Options ros2_options(std::string domain);
 
-/// Messages of others, until the run asks for them.
+/// Received messages, until the run collects them.
 class DdsInbox {
  public:
   static constexpr std::size_t kMaxMessages = 4096;
@@ -49,12 +49,12 @@ class DdsInbox {
   std::uint64_t left_out_ = 0;
 };
 
-/// Lines of the DDS library on standard error, as few as of all that strangers can cause.
+/// Writes lines of the DDS library to standard error, rate-limited because external traffic can cause them.
 class DdsLog {
  public:
   /// @param descriptor 2: standard error
   explicit DdsLog(int descriptor = 2) : log_(descriptor) {}
-  /// From any thread.
+  /// Thread-safe.
   void write(std::string_view line);
 
  private:
@@ -65,10 +65,10 @@ class DdsLog {
 class Ros2Bridge : public Bridge {
  public:
   static constexpr std::size_t kNone = ~std::size_t{0};
-  static constexpr std::size_t kMaxRequests = 32;  ///< of services, taken per tick; further ones wait
+  static constexpr std::size_t kMaxRequests = 32;  ///< maximum number of service requests handled per tick; others wait
 
-  /// @param open_fast where it throws, services do not answer clients of rmw_fastrtps
-  /// @throws base::InputError where DDS cannot be used
+  /// @param open_fast if it throws, services do not answer clients of rmw_fastrtps
+  /// @throws base::InputError if DDS is unavailable
   Ros2Bridge(const Ros2Options& options, const Scene& scene, const DdsLibrary& library = dds_library(),
              OpenFastServices open_fast = open_fast_services);
 
@@ -76,14 +76,14 @@ class Ros2Bridge : public Bridge {
   void publish(const RunState& state) override;
   void take(Requests& requests) override;
   bool keeps_on() const override { return true; }
-  /// Adds readers and writers of topics that are new. Those of movers that left stay, and are silent.
+  /// Adds readers and writers for new topics. Those of movers that have left remain but are silent.
   void show_scene(bool is_new) override;
   std::string describe() const override;
 
   struct Counts {
     DdsOutbox::Counts sent;
-    std::uint64_t malformed = 0;  ///< messages that could not be read
-    std::uint64_t left_out = 0;   ///< messages that came faster than ticks
+    std::uint64_t malformed = 0;  ///< messages that could not be parsed
+    std::uint64_t left_out = 0;   ///< messages dropped because they arrived faster than ticks
   };
   Counts counts() const;
 
@@ -97,7 +97,7 @@ class Ros2Bridge : public Bridge {
                          bool latched);
   std::size_t add_reader(const std::string& topic, std::string_view type, std::string_view definition);
   void add(const record::TopicMessage& message);
-  /// @return false: it cannot be read
+  /// Returns false if it cannot be parsed.
   bool take_command(const DdsMessage& message, Requests& requests) const;
   void send_answers();
 
@@ -106,29 +106,29 @@ class Ros2Bridge : public Bridge {
   RosServices services_;
   std::optional<record::TickMessages> messages_;
   DdsInbox commands_, requests_;           // outlive the participant, which fills them
-  std::deque<DdsMessage> come_, pending_;  ///< taken from these
+  std::deque<DdsMessage> come_, pending_;  ///< taken from the inboxes
   std::uint64_t malformed_ = 0;
-  std::vector<std::size_t> writer_of_;  ///< by row of `messages_.topics()`; kNone: it has none
-  std::vector<bool> wanted_;            ///< by row of `messages_.topics()`: it has readers
-  /// Of commands to a mover; those of services come first.
+  std::vector<std::size_t> writer_of_;  ///< by row of `messages_.topics()`; kNone: no writer
+  std::vector<bool> wanted_;            ///< by row of `messages_.topics()`: whether it has readers
+  /// A reader of commands to a mover; readers of services come first.
   struct Reader {
-    std::uint32_t mover = 0;  ///< row; world::kNone: it is of another world
+    std::uint32_t mover = 0;  ///< row; world::kNone: the mover belongs to another world
     bool stamped = false;
   };
   std::vector<Reader> reader_of_;                       ///< by reader
-  std::map<std::string, std::size_t> writer_of_topic_;  ///< of all topics that ever were
-  std::map<std::string, std::size_t> commands_of_;      ///< first reader of the topic's commands
-  std::vector<std::size_t> reply_writers_;              ///< by service; those of Fast DDS are in order of services
-  std::vector<std::size_t> action_writers_;             ///< by topic of actions
+  std::map<std::string, std::size_t> writer_of_topic_;  ///< of every topic since the start
+  std::map<std::string, std::size_t> commands_of_;      ///< first reader of the command topic
+  std::vector<std::size_t> reply_writers_;              ///< by service; those of Fast DDS are in the order of services
+  std::vector<std::size_t> action_writers_;             ///< by action topic
   std::size_t discovery_ = kNone;                       ///< writer
-  std::vector<DdsGuid> readers_, writers_;              ///< all of them
+  std::vector<DdsGuid> readers_, writers_;              ///< of all endpoints
   std::uint32_t runs_ = 0;
   std::int64_t time_ = 0;  ///< [ns] of the last tick
   DdsBatch batch_;
   DdsLog log_;
-  std::string why_no_fast_;  ///< empty: clients of rmw_fastrtps are answered
+  std::string why_no_fast_;  ///< why clients of rmw_fastrtps get no answers; empty: they do
   std::unique_ptr<DdsParticipant> participant_;
-  std::unique_ptr<FastServices> fast_;  ///< null: they are not
+  std::unique_ptr<FastServices> fast_;  ///< null: clients of rmw_fastrtps get no answers
   std::optional<DdsOutbox> outbox_;
 };
 

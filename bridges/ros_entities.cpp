@@ -11,13 +11,13 @@ namespace sf::bridges {
 
 namespace {
 
-/// A regular expression of characters, '.' and ".*" for some part of `name`, or from '^' or to '$' on. Takes time in
-/// proportion to the product of both lengths.
+/// Matches a regular expression of characters, '.' and ".*" with any part of `name`; '^' and '$' anchor it. Takes time
+/// proportional to the product of both lengths.
 bool matches(std::string_view pattern, std::string_view name) {
   const bool from_begin = pattern.starts_with('^'), to_end = pattern.ends_with('$');
   pattern.remove_prefix(from_begin ? 1 : 0);
   pattern.remove_suffix(to_end ? 1 : 0);
-  std::vector<bool> reached(name.size() + 1, !from_begin);  // by position: the pattern so far can end there
+  std::vector<bool> reached(name.size() + 1, !from_begin);  // by position: whether the pattern so far can end there
   reached[0] = true;
   for (std::size_t i = 0; i < pattern.size(); ++i) {
     const bool any = pattern.substr(i, 2) == ".*";
@@ -43,7 +43,7 @@ bool is_simple(std::string_view pattern) {
   return true;
 }
 
-/// (x, y, z, w) of a turn about +z, of any length but 0.
+/// (x, y, z, w) of a rotation about +z, of any non-zero length.
 std::optional<double> yaw_of(double x, double y, double z, double w) {
   const double length = std::hypot(std::hypot(x, y), std::hypot(z, w));
   constexpr double kSmall = 1e-3;
@@ -61,7 +61,7 @@ std::string find_entities(record::CdrReader& cdr, const record::RunInfo& info, c
   for (std::uint32_t i = 0; i < categories; ++i) cdr.get<std::uint8_t>();
   const std::uint32_t tags = cdr.get_count(kLeastString);
   for (std::uint32_t i = 0; i < tags; ++i) cdr.get_string();
-  cdr.get<std::uint8_t>();  // any or all of the tags
+  cdr.get<std::uint8_t>();  // whether any or all of the tags are required
   const auto bounds = cdr.get<std::uint8_t>();
   for (std::uint32_t left = 3 * cdr.get_count(kVector); left > 0; --left) cdr.get<double>();
   if (!cdr.good()) return {};
@@ -79,7 +79,7 @@ void put_entity_state(record::CdrWriter& cdr, std::int64_t time, const base::Rep
   for (const double value : {X_WM.x, X_WM.y, X_WM.z, 0.0, 0.0, std::sin(half), std::cos(half)}) cdr.put(value);
   const glm::dvec2 v_W = base::rotate(X_WM.yaw, {state.velocity.forward, state.velocity.left});
   for (const double value : {v_W.x, v_W.y, 0.0, 0.0, 0.0, state.velocity.turn}) cdr.put(value);
-  for (int i = 0; i < 6; ++i) cdr.put(0.0);  // accelerations are not known
+  for (int i = 0; i < 6; ++i) cdr.put(0.0);  // accelerations are unknown
 }
 
 EntityState get_stamped_pose(record::CdrReader& cdr, double z) {
@@ -98,7 +98,7 @@ EntityState get_stamped_pose(record::CdrReader& cdr, double z) {
 EntityState get_entity_state(record::CdrReader& cdr, double z) {
   EntityState state = get_stamped_pose(cdr, z);
   for (int i = 0; i < 12; ++i) cdr.get<double>();  // velocity and acceleration
-  if (cdr.left() == 0) return state;               // version 1.0 sets the pose always
+  if (cdr.left() == 0) return state;               // version 1.0 always sets the pose
   state.pose = cdr.get<bool>();
   state.twist = cdr.get<bool>();
   state.acceleration = cdr.get<bool>();

@@ -15,20 +15,20 @@ using record::CdrWriter;
 
 namespace {
 
-// Further codes: of SetSimulationState, SetEntityState, SpawnEntities, GetCurrentWorld and UnloadWorld, LoadWorld
+// Additional codes: SetSimulationState, SetEntityState, SpawnEntities, GetCurrentWorld and UnloadWorld, LoadWorld
 constexpr std::uint8_t kAlready = 101, kInvalidPose = 101, kSpawnFailed = 150, kNoWorld = 101, kParseError = 103,
                        kUnsupportedElements = 106;
 
 // simulation_interfaces/msg/SimulationState
 constexpr std::uint8_t kStopped = 0, kPlaying = 1, kPaused = 2;
 
-// simulation_interfaces/srv/ResetSimulation: all; time and state; both, and what was spawned
+// simulation_interfaces/srv/ResetSimulation: all; time and state; both, and spawned entities
 constexpr std::array<std::uint8_t, 4> kScopes = {0, 3, 7, 255};
 
-// simulation_interfaces/msg/SimulatorFeatures: named poses with bounds, bounds, states and infos of entities, state and
-// world of the run are given. Where it is simulated, entities are spawned, also several at once, from spawnables, and
-// deleted and placed, the run is reset (its time, its state, what was spawned), begun and paused, and makes one step or
-// many, also as an action, and worlds are listed, loaded and unloaded.
+// simulation_interfaces/msg/SimulatorFeatures. Always available: named poses with bounds, bounds, states and infos of
+// entities, state and world of the run. In simulated runs also: spawning one or several entities from spawnables,
+// deleting and placing them; resetting the run (time, state, spawned entities), starting, pausing, and single or
+// multiple steps, also as an action; listing, loading and unloading worlds.
 constexpr std::array<std::uint16_t, 7> kFeatures = {2, 3, 5, 10, 12, 24, 44};
 constexpr std::array<std::uint16_t, 17> kFeaturesSimulated = {0,  1,  11, 14, 20, 21, 22, 23, 25,
                                                               26, 31, 32, 33, 40, 43, 45, 50};
@@ -66,7 +66,7 @@ void put_result(CdrWriter& cdr, std::uint8_t code, std::string_view message = {}
 
 }  // namespace
 
-/// The services, with what each does. A handler returns false where the request cannot be read.
+/// The services and their handlers. A handler returns false if the request cannot be parsed.
 struct RosServices::Handlers {
   using Handler = bool (*)(RosServices&, Call, CdrReader&, Requests&);
   struct Row {
@@ -82,7 +82,7 @@ struct RosServices::Handlers {
     for (const std::uint16_t feature : kFeatures) cdr.put(feature);
     if (of.scene_.simulated)
       for (const std::uint16_t feature : kFeaturesSimulated) cdr.put(feature);
-    cdr.put_count(0);  // formats of what can be spawned
+    cdr.put_count(0);  // formats of spawnables
     cdr.put("");
     return true;
   }
@@ -201,7 +201,7 @@ struct RosServices::Handlers {
     return true;
   }
 
-  /// Where nothing is to be done, it is answered at once.
+  /// Answers immediately if there is nothing to do.
   static bool wait_for(RosServices& of, Call call) {
     call.until = Until::outcomes;
     return call.outcomes.empty() ? call.answer(of, call), true : of.wait(call);
@@ -282,7 +282,7 @@ struct RosServices::Handlers {
     for (std::uint32_t left = request.get_count(5); left > 0 && request.good(); --left)
       unknown += (unknown.empty() ? "not searched: " : ", ") + request.get_string();
     const TagsFilter filter = get_tags_filter(request);
-    request.get<bool>(), request.get<bool>();  // local sources alone; to go on after errors
+    request.get<bool>(), request.get<bool>();  // local sources only; continue after errors
     if (!request.good()) return false;
     const std::vector<AvailableWorld> worlds = filter.matches({}) ? of.worlds() : std::vector<AvailableWorld>();
     CdrWriter cdr = of.begin_answer(call);
@@ -294,7 +294,7 @@ struct RosServices::Handlers {
   static bool load_world(RosServices& of, Call call, CdrReader& request, Requests& requests) {
     const std::string uri = request.get_string(), text = request.get_string();
     const bool strict = request.get<bool>();
-    request.get<bool>();  // assets that are missing: a world without its files is no world
+    request.get<bool>();  // missing assets: a world without its files is not accepted
     if (!request.good()) return false;
     const auto refuse = [&](std::uint8_t code, const std::string& why) { answer_world(of, call, code, why); };
     constexpr std::uint8_t kFormat = 101, kNone = 102;
@@ -526,7 +526,7 @@ const std::array<RosServices::Handlers::Row, 27> RosServices::Handlers::kRows = 
     {{"/sensorfarm/reset", "std_srvs/srv/Trigger", "", kSuccess}, reset, true},
 }};
 
-// The services that change nothing come first, so that a service's row is the same in both lists.
+// Services that change nothing come first, so a service has the same row in both lists.
 RosServices::RosServices(const Scene& scene) : scene_(scene) {
   for (const Handlers::Row& row : Handlers::kRows)
     if (scene.simulated || !row.simulated) types_.push_back(row.type);

@@ -17,7 +17,7 @@ struct Definition {
   std::string_view fields;
 };
 
-// Types that recordings do not have, without their constants.
+// Types that do not occur in recordings, without their constants.
 constexpr std::array kDefinitions = {
     Definition{"action_msgs/GoalInfo", "unique_identifier_msgs/UUID goal_id\nbuiltin_interfaces/Time stamp\n"},
     Definition{"action_msgs/GoalStatus", "action_msgs/GoalInfo goal_info\nint8 status\n"},
@@ -61,7 +61,7 @@ constexpr std::array kDefinitions = {
     Definition{"unique_identifier_msgs/UUID", "uint8[16] uuid\n"},
 };
 
-/// "package/Name" as "package/msg/Name"; parts of actions have their whole names.
+/// Converts "package/Name" to "package/msg/Name". Parts of actions already have full names.
 std::string message_name(const std::string& type) {
   const std::size_t slash = type.find('/');
   if (type.find('/', slash + 1) != std::string::npos) return type;
@@ -77,7 +77,7 @@ void add_needed(std::string_view fields, std::set<std::string>& added, std::stri
     const auto own = std::find_if(kDefinitions.begin(), kDefinitions.end(),
                                   [&](const Definition& definition) { return definition.name == type; });
     if (own == kDefinitions.end()) {
-      text += record::schema_text(message_name(type));  // with all that it needs
+      text += record::schema_text(message_name(type));  // with all types that it uses
     } else {
       text += own->fields;
       add_needed(own->fields, added, text);

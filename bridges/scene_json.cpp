@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 using world::Segment;
 using world::World;
 
-/// To a tenth of a millimetre: a third of the digits.
+/// Rounds to a tenth of a millimetre: a third of the digits.
 double round(double metres) { return std::round(metres * 1e4) / 1e4; }
 
 std::string color_of(std::uint32_t argb) { return fmt::format("#{:06x}", argb & 0xFFFFFFu); }
@@ -39,11 +39,11 @@ Json points_json(const std::vector<glm::dvec2>& points) {
   return line;
 }
 
-/// Segments as lines [x, y, x, y, ...]: each continues from segment to segment as far as it can, so that outlines are
-/// closed.
+/// Converts segments to lines [x, y, x, y, ...]. Each line continues from segment to segment as far as possible, so
+/// that outlines are closed.
 Json lines_of(const std::vector<const Segment*>& segments) {
   const auto key = [](glm::dvec2 p) { return std::pair(p.x, p.y); };
-  std::multimap<std::pair<double, double>, const Segment*> from;  // not yet in a line, by their start
+  std::multimap<std::pair<double, double>, const Segment*> from;  // not yet in a line, by start point
   for (const Segment* segment : segments) from.emplace(key(segment->a), segment);
   std::set<const Segment*> left(segments.begin(), segments.end());
   Json lines = Json::array();
@@ -63,7 +63,7 @@ Json lines_of(const std::vector<const Segment*>& segments) {
   return lines;
 }
 
-/// [m] height above all movers; infinite without movers.
+/// [m] height above all movers; infinite if there are none.
 double headroom(const World& world) {
   double top = world.movers.empty() ? std::numeric_limits<double>::infinity() : 0.0;
   for (const world::Mover& mover : world.movers)
@@ -71,7 +71,7 @@ double headroom(const World& world) {
   return top;
 }
 
-/// As the figures tell walls apart (viz/wall_layer.cpp).
+/// Distinguishes walls as the figures do (viz/wall_layer.cpp).
 const char* kind_of(const Segment& s, double room) {
   if (s.z_min >= room) return "overhead";
   if (!s.seen_by_laser) return "unseen";
@@ -135,7 +135,7 @@ Json holes_json(const World& world) {
   return holes;
 }
 
-/// What lane edge sensors look at, by mover and sensor.
+/// Targets of lane edge sensors, by mover and sensor.
 using LaneEdges = std::map<std::pair<std::uint32_t, std::uint32_t>, sensors::LaneEdge>;
 
 LaneEdges lane_edges_by_sensor(const World& world) {
@@ -145,7 +145,7 @@ LaneEdges lane_edges_by_sensor(const World& world) {
   return edges;
 }
 
-/// Details that a sensor's messages do not state: places of its elements, openings, the corner of a map.
+/// Adds details that a sensor's messages do not contain: poses of its elements, apertures, the corner of a map.
 void add_elements(const record::SensorInfo& sensor, Json& row) {
   using Message = record::StandardTopic::Message;
   for (const record::StandardTopic& element : sensor.standard) {
@@ -201,7 +201,7 @@ Json sensors_json(const record::RunInfo& info, std::uint32_t mover, const LaneEd
   return list;
 }
 
-/// Fleets have few different bodies: each stands once in `shapes`, which `numbers` finds again.
+/// Fleets have few different bodies, so each is stored once in `shapes`; `numbers` maps a body to its number.
 std::size_t shape_number(const world::Mover& mover, std::map<std::string, std::size_t>& numbers, Json& shapes) {
   std::vector<const Segment*> closed, open;
   for (const Segment& s : mover.body) (s.solid_left ? closed : open).push_back(&s);

@@ -1,5 +1,5 @@
 #pragma once
-// What the page draws of a world, as JSON: everything that messages do not say, since it does not change.
+// The static parts of a world that the page draws, as JSON: everything that messages do not contain.
 
 #include <string>
 

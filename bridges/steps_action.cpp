@@ -12,7 +12,7 @@ namespace {
 
 // action_msgs/srv/CancelGoal
 constexpr std::int8_t kNoError = 0, kRejected = 1, kUnknownGoal = 2, kGoalEnded = 3;
-constexpr std::uint8_t kCanceledCode = 4;  // simulation_interfaces/msg/Result: it could not be completed
+constexpr std::uint8_t kCanceledCode = 4;  // simulation_interfaces/msg/Result: the operation failed
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 enum Topic : std::size_t { kFeedback, kStatus };

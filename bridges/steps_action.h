@@ -1,5 +1,6 @@
 #pragma once
-// Goals of the action simulation_interfaces/SimulateSteps: a number of ticks of a paused run, with feedback after each.
+// Goals of the action simulation_interfaces/SimulateSteps: simulates a number of ticks of a paused run, with feedback
+// after each.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 namespace sf::bridges {
 
-/// A topic of actions.
+/// A topic of an action.
 struct ActionTopic {
   std::string_view name, type, fields;
   bool latched = false;
@@ -26,8 +27,8 @@ struct ActionMessage {
 
 class StepsAction {
  public:
-  static constexpr std::size_t kMostActive = 16;  ///< goals; more are rejected
-  static constexpr std::size_t kMostKept = 64;    ///< goals, ended ones among them, whose results can be asked for
+  static constexpr std::size_t kMostActive = 16;  ///< maximum number of active goals; more are rejected
+  static constexpr std::size_t kMostKept = 64;  ///< maximum number of goals whose results are kept; ended ones included
   static const std::array<ActionTopic, 2> kTopics;
 
   using Id = std::array<std::uint8_t, 16>;
@@ -44,19 +45,19 @@ class StepsAction {
   };
 
   static Id get_id(record::CdrReader& cdr);
-  /// @return null: it has no goal of that id
+  /// Returns the goal with that id, or null.
   Goal* find(const Id& id);
-  /// @return false: the goal is rejected
+  /// Returns false if the goal is rejected.
   bool accept(const Id& id, std::uint64_t steps, std::int64_t now);
-  void step(Goal& goal);  ///< one was completed
+  void step(Goal& goal);  ///< counts one completed step
   void end(Goal& goal, Status status, std::uint8_t code, std::string message);
-  /// Reads an action_msgs/srv/CancelGoal, cancels the goals that it names, and appends the answer's fields.
-  /// @return steps that they had left
+  /// Reads an action_msgs/srv/CancelGoal, cancels the goals that it names, and appends the fields of the answer.
+  /// @return number of steps that they had left
   std::uint64_t cancel(record::CdrReader& request, record::CdrWriter& answer);
   static void put_result(record::CdrWriter& cdr, const Goal& goal);
   const std::deque<Goal>& goals() const { return goals_; }
 
-  /// Messages since the last call.
+  /// Returns the messages created since the last call.
   std::vector<ActionMessage> messages();
 
  private:
@@ -64,7 +65,7 @@ class StepsAction {
 
   std::deque<Goal> goals_;
   std::vector<ActionMessage> messages_;
-  bool changed_ = true;  ///< some status: clients that come later read the newest
+  bool changed_ = true;  ///< whether a status has changed; late clients read the newest
 };
 
 }  // namespace sf::bridges

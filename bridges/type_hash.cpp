@@ -16,12 +16,12 @@ namespace sf::bridges {
 
 namespace {
 
-/// Ids of primitive types (type_description_interfaces/msg/FieldType). `char` is an uint8 in ROS 2.
+/// Ids of primitive types (type_description_interfaces/msg/FieldType). `char` is uint8 in ROS 2.
 const std::map<std::string_view, int> kTypeIds{
     {"int8", 2},   {"uint8", 3},    {"int16", 4},    {"uint16", 5}, {"int32", 6}, {"uint32", 7}, {"int64", 8},
     {"uint64", 9}, {"float32", 10}, {"float64", 11}, {"bool", 15},  {"byte", 16}, {"char", 3},   {"string", 17},
 };
-constexpr int kNested = 1, kBoundedString = 21;                     // instead of the above
+constexpr int kNested = 1, kBoundedString = 21;                     // in place of the above
 constexpr int kArray = 48, kBoundedSequence = 96, kSequence = 144;  // added to the above
 
 struct Field {
@@ -39,14 +39,14 @@ std::optional<std::uint32_t> number(std::string_view digits) {
   return value;
 }
 
-/// "package/Name" as "package/msg/Name"; parts of actions have their whole names.
+/// Converts "package/Name" to "package/msg/Name". Parts of actions already have full names.
 std::string whole_name(std::string_view type) {
   const std::size_t slash = type.find('/');
   if (type.find('/', slash + 1) != std::string_view::npos) return std::string(type);
   return std::string(type.substr(0, slash)) + "/msg" + std::string(type.substr(slash));
 }
 
-/// Takes "[3]", "[<=3]" or "[]" off the end of `type`.
+/// Removes "[3]", "[<=3]" or "[]" from the end of `type`.
 bool read_extent(std::string_view& type, Field& field) {
   const std::size_t bracket = type.find('[');
   if (bracket == std::string_view::npos) return true;
@@ -83,7 +83,8 @@ std::optional<Field> read_field(std::string_view type, const std::string& name) 
   return field;
 }
 
-/// A line of a definition. @return false: it cannot be read
+/// Parses a line of a definition.
+/// @return false: it cannot be parsed
 bool read_line(const std::string& line, Fields& fields) {
   std::istringstream words(line.substr(0, line.find('#')));
   std::string type, name, rest;
@@ -95,7 +96,7 @@ bool read_line(const std::string& line, Fields& fields) {
   return field.has_value();
 }
 
-/// By whole name. Empty: the text cannot be read.
+/// Types by full name. Empty if the text cannot be parsed.
 std::map<std::string, Fields> read_types(std::string_view type, std::string_view text) {
   std::map<std::string, Fields> types;
   std::string current(type);
@@ -111,7 +112,7 @@ std::map<std::string, Fields> read_types(std::string_view type, std::string_view
       return {};
     }
   }
-  // A structure of IDL has a member, so an empty message is given one.
+  // An IDL structure needs a member, so add one to an empty message.
   for (auto& [name, fields] : types)
     if (fields.empty()) fields.push_back({.name = "structure_needs_at_least_one_member", .type_id = 3});
   return types;
@@ -127,7 +128,8 @@ std::string json_of(const std::string& name, const Fields& fields) {
   return json + "]}";
 }
 
-/// Adds all that `name` needs. @return false: one is missing
+/// Adds all types that `name` uses.
+/// @return false: a type is missing
 bool add_needed(const std::string& name, const std::map<std::string, Fields>& types, std::set<std::string>& needed) {
   const auto found = types.find(name);
   if (found == types.end()) return false;

@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Ticks at 30 Hz come every 33 ms, more or less; none of them is left out.
+// Ticks at 30 Hz arrive about every 33 ms; none of them may be skipped.
 constexpr milliseconds kLeastInterval(25);
 constexpr milliseconds kStateInterval(500);  // of the measured speed
 constexpr int kMostWaiting = 4;
@@ -60,7 +60,7 @@ std::string Viewer::describe() const { return "view on " + server_->url(); }
 void Viewer::publish(const base::TickRecord& tick, const RunState& state) {
   if (!last_.empty() && tick.time < last_.time()) messages_.begin([](const record::TopicMessage&) {});  // a new run
   const bool is_watched = !sessions_.empty();
-  // Copying all readings of a large fleet in every tick would cost more than showing them.
+  // Copying all readings of a large fleet in every tick would cost more than sending the displayed ones.
   is_kept_ = state.paused || pausing_ || (mode_ == ViewerMode::recording && is_watched);
   last_.store(tick, is_kept_);
   show(state);
@@ -81,7 +81,7 @@ void Viewer::take(Requests& requests) {
 void Viewer::publish(const RunState& state) {
   show(state);
   if (sessions_.empty() || last_.empty()) return;
-  choose_topics(!paused_shown_);  // ticks may have been left out before the pause
+  choose_topics(!paused_shown_);  // ticks may have been skipped before the pause
   paused_shown_ = true;
   if (!due_.empty()) send(last_.record());
 }
@@ -99,9 +99,10 @@ void Viewer::show(const RunState& state) {
   server_->post([this, next, time = last_.time()] { sessions_.show(next, time); });
 }
 
-/// Topics go with the states of the same tick, or readings would be drawn where their robots have been: they wait for
-/// them, but no longer than one interval more, since a seldom reading is in one tick only.
-/// @param all topics that are subscribed, though it may not be their turn
+/// Sends readings together with the states of the same tick, because they would otherwise be drawn at earlier poses of
+/// their robots. Topics wait for the states, but at most one interval longer, because a rare reading occurs in one tick
+/// only.
+/// @param all sends all subscribed topics, whether or not they are due
 void Viewer::choose_topics(bool all) {
   topics_.clear();
   fresh_.clear();
@@ -115,13 +116,13 @@ void Viewer::choose_topics(bool all) {
   }
 }
 
-/// Sends the tick's time, and what it has to say on the topics of `due_`.
+/// Sends the tick's time and its messages on the topics of `due_`.
 void Viewer::send(const base::TickRecord& tick) {
   if (waiting_ >= kMostWaiting) {
     ++dropped_;
     return;
   }
-  // A tick that is late does not hold back the next one, which comes sooner after it.
+  // A late tick does not delay the next one, which follows sooner.
   const Clock::time_point now = Clock::now();
   const auto next = [now](Clock::time_point last) { return std::max(last, now - kLeastInterval) + kLeastInterval; };
   next_time_ = next(next_time_);
@@ -140,7 +141,7 @@ void Viewer::send(const base::TickRecord& tick) {
   });
 }
 
-/// Large messages take buffers that all clients have done with: new memory costs more than filling it.
+/// Large messages reuse buffers that all clients have released: allocating memory costs more than filling it.
 std::shared_ptr<const base::Bytes> Viewer::copy_of(std::span<const std::uint8_t> message) {
   constexpr std::size_t kLarge = 16 << 10, kMostBuffers = 8;
   if (message.size() < kLarge) return std::make_shared<const base::Bytes>(message.begin(), message.end());
@@ -151,7 +152,7 @@ std::shared_ptr<const base::Bytes> Viewer::copy_of(std::span<const std::uint8_t>
     if (buffers_.size() < kMostBuffers) buffers_.push_back(made);
     return made;
   }
-  std::atomic_thread_fence(std::memory_order_acquire);  // the last reader was the server's thread
+  std::atomic_thread_fence(std::memory_order_acquire);  // synchronises with the last reader, the server's thread
   (*free)->assign(message.begin(), message.end());
   return *free;
 }

@@ -4,8 +4,8 @@
 //   Viewer viewer(scene, {.address = {"127.0.0.1", 8765}});
 //   puts(viewer.describe());   // view on http://127.0.0.1:8765/
 //
-// The run's thread encodes messages of subscribed topics, each at most 40 times a second of real time; the rest is on
-// the server's thread.
+// The run's thread encodes messages of subscribed topics, each at most 40 times a second of real time. The server's
+// thread does the rest.
 
 #include <atomic>
 #include <chrono>
@@ -32,18 +32,18 @@ struct ViewerOptions {
 
 class Viewer : public Bridge {
  public:
-  /// @throws base::InputError when the address cannot be had
+  /// @throws base::InputError if the address is unavailable
   Viewer(const Scene& scene, const ViewerOptions& options);
   ~Viewer() override;
 
   void publish(const base::TickRecord& tick, const RunState& state) override;
   void publish(const RunState& state) override;
-  /// A pause waits for one more tick, of which all readings are kept for those who look at robots meanwhile.
+  /// Delays a pause by one tick, whose readings are all kept for users who select robots meanwhile.
   void take(Requests& requests) override;
   std::string describe() const override;
 
   const WebServer& server() const { return *server_; }
-  /// Updates that no client was sent, since the server's thread was behind.
+  /// Returns the number of updates sent to no client because the server's thread was behind.
   std::uint64_t dropped() const { return dropped_; }
 
  private:
@@ -64,17 +64,17 @@ class Viewer : public Bridge {
   bool shown_ = false;
   Clock::time_point next_state_, next_time_;
   std::uint32_t fleet_;                              ///< topic of the states
-  std::vector<std::uint32_t> topics_, fresh_, due_;  ///< `due_`: to be sent, those of `fresh_` among them
+  std::vector<std::uint32_t> topics_, fresh_, due_;  ///< `due_`: topics to send, including `fresh_`
   std::vector<bool> wanted_;
   std::vector<Clock::time_point> next_;                ///< per topic: earliest time of its next message
-  std::vector<std::shared_ptr<base::Bytes>> buffers_;  ///< of large messages, used again
+  std::vector<std::shared_ptr<base::Bytes>> buffers_;  ///< of large messages, reused
   Requests requests_;
-  bool pausing_ = false;          ///< a pause waits for a tick
-  bool is_kept_ = false;          ///< `last_` has the newest tick's readings
-  bool paused_shown_ = false;     ///< the last tick before the pause was sent
-  std::atomic<int> waiting_ = 0;  ///< updates on their way to the server's thread
+  bool pausing_ = false;          ///< whether a pause waits for a tick
+  bool is_kept_ = false;          ///< whether `last_` has the readings of the newest tick
+  bool paused_shown_ = false;     ///< whether the last tick before the pause was sent
+  std::atomic<int> waiting_ = 0;  ///< updates queued for the server's thread
   std::uint64_t dropped_ = 0;
-  std::unique_ptr<WebServer> server_;  ///< last: its thread uses the others
+  std::unique_ptr<WebServer> server_;  ///< last member: its thread uses the others
 };
 
 }  // namespace sf::bridges

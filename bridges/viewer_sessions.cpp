@@ -15,7 +15,7 @@ namespace sf::bridges {
 namespace {
 
 constexpr std::size_t kChannelsPerMessage = 256;
-constexpr std::size_t kMostOwnChannels = 4096;  // that a client publishes
+constexpr std::size_t kMostOwnChannels = 4096;  // maximum number of channels that a client publishes
 
 constexpr const char* kPaused = "/paused";
 constexpr const char* kSpeed = "/speed";  // 0: as fast as the machine allows
@@ -257,7 +257,7 @@ void ViewerSessions::play(ClientId id, const PlaybackRequest& request) {
   send(id, playback_state_bytes(answer));
 }
 
-/// @return the reason for which a parameter cannot be set so; empty when it is
+/// Returns why a parameter cannot be set, or an empty string if it was set.
 std::string ViewerSessions::set(const Parameter& parameter) {
   if (!is_controlled()) return parameter.name + " cannot be set: robots elsewhere do not wait.";
   if (parameter.name == kPaused) {
@@ -280,7 +280,7 @@ void ViewerSessions::watch(Client& client, const ClientText& message) {
   const std::vector<std::string>& names = message.names.empty() ? kParameters : message.names;
   for (const std::string& name : names) {
     if (message.op == ClientText::Op::unsubscribe_parameters) client.watched.erase(name);
-    // Unknown names are not kept: clients cannot fill the memory with them.
+    // Unknown names are not stored, so clients cannot fill the memory with them.
     else if (std::find(kParameters.begin(), kParameters.end(), name) != kParameters.end())
       client.watched.insert(name);
   }

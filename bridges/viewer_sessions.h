@@ -1,6 +1,6 @@
 #pragma once
-// Clients of Foxglove's protocol: what each was told, subscribed to and asked for. On the server's thread, but for the
-// functions of `ViewerWishes`.
+// Clients of Foxglove's protocol: what each client received, subscribed to and requested. Runs on the server's thread,
+// except `ViewerWishes`.
 
 #include <atomic>
 #include <cstdint>
@@ -21,23 +21,23 @@
 
 namespace sf::bridges {
 
-/// What a bridge shows: how its time runs, and what its users may change.
+/// How the time of a bridge's scene advances, and what its users may change.
 enum class ViewerMode {
   run,       ///< pause, speed, steps, reset; robots take commands
   service,   ///< nothing
   recording  ///< pause, speed, steps, and any time of the recording
 };
 
-/// What all clients want, between the server's thread and the run's. Every function returns at once.
+/// The requests of all clients, shared by the server's thread and the run's thread. No function blocks.
 class ViewerWishes {
  public:
   explicit ViewerWishes(std::size_t topics) : subscribers_(topics, 0) {}
 
   void subscribe(std::uint32_t topic, bool on);
-  /// Appends the topics with subscribers to `all`, and those with new ones since the last call to `fresh`.
+  /// Appends the topics with subscribers to `all`, and the topics with new subscribers since the last call to `fresh`.
   void topics(std::vector<std::uint32_t>& all, std::vector<std::uint32_t>& fresh);
 
-  void command(const Command& command);  ///< a newer one of the same mover replaces it
+  void command(const Command& command);  ///< replaces an earlier command to the same mover
   void pause(bool paused);
   void step();
   void speed(double speed);
@@ -53,7 +53,7 @@ class ViewerWishes {
   Requests requests_;
 };
 
-/// One message of a topic, for all of its subscribers.
+/// One message of a topic, shared by all of its subscribers.
 struct SharedMessage {
   std::uint32_t topic = 0;
   std::int64_t time = 0;  ///< [ns]
@@ -66,22 +66,24 @@ class ViewerSessions : public WebApplication {
     std::string name;
     ViewerMode mode = ViewerMode::run;
     std::int64_t start = 0, end = 0;   ///< [ns] of a recording
-    std::vector<std::string> drivers;  ///< topics that take commands, by mover; empty: none does
+    std::vector<std::string> drivers;  ///< command topics by mover; empty: none
   };
   ViewerSessions(About about, std::span<const record::Topic> topics, ViewerWishes& wishes);
 
-  /// Set once, before the first client. @param latched messages, at most one per topic
+  /// Called once, before the first client.
+  /// @param latched messages, at most one per topic
   void start(WebServer& server, std::vector<SharedMessage> latched);
 
   void opened(ClientId client, const std::string& protocol) override;
   void received(ClientId client, bool is_text, std::span<const std::uint8_t> bytes) override;
   void closed(ClientId client) override;
 
-  bool empty() const { return count_ == 0; }  ///< any thread
+  bool empty() const { return count_ == 0; }  ///< thread-safe
 
-  /// Sends one update to all clients: what they subscribed to of `messages`, and the time.
+  /// Sends one update to all clients: their subscribed topics of `messages`, and the time.
   void update(std::int64_t time, const std::vector<SharedMessage>& messages);
-  /// Tells clients what changed. @param time [ns]
+  /// Sends changes of the run's state to clients.
+  /// @param time [ns]
   void show(const RunState& state, std::int64_t time);
 
  private:
@@ -89,7 +91,7 @@ class ViewerSessions : public WebApplication {
     bool is_sdk = false;
     std::unordered_map<std::uint32_t, std::uint32_t> subscription_of;  ///< by topic
     std::unordered_map<std::uint32_t, std::uint32_t> topic_of;         ///< by subscription
-    std::map<std::uint32_t, ClientText::Advertised> channels;          ///< that it publishes, by id
+    std::map<std::uint32_t, ClientText::Advertised> channels;          ///< published by the client, by id
     std::set<std::string> watched;                                     ///< parameters
   };
 
@@ -116,7 +118,7 @@ class ViewerSessions : public WebApplication {
   std::vector<std::shared_ptr<const base::Bytes>> greetings_;  ///< channels and services
   std::size_t topic_count_ = 0;
   std::unordered_map<std::uint32_t, SharedMessage> latched_;
-  std::unordered_map<std::string, std::uint32_t> movers_;  ///< by topic of commands
+  std::unordered_map<std::string, std::uint32_t> movers_;  ///< by command topic
   std::string session_;
   std::map<ClientId, Client> clients_;
   std::atomic<std::size_t> count_ = 0;  ///< of clients

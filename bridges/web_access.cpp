@@ -75,7 +75,7 @@ bool is_own_name(std::string_view host) { return is_loopback(host_of(host)); }
 bool is_known_origin(std::string_view origin, std::string_view host) {
   if (origin.empty() || origin == "file://" || origin == "https://app.foxglove.dev") return true;
   const std::size_t scheme = origin.find("://");
-  if (scheme == std::string_view::npos) return false;  // "null": a page that hides where it came from
+  if (scheme == std::string_view::npos) return false;  // "null": a page that hides its origin
   const std::string_view authority = origin.substr(scheme + 3);
   return lower(authority) == lower(host) || is_own_name(authority);
 }

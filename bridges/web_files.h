@@ -10,7 +10,7 @@
 
 namespace sf::bridges {
 
-/// One file of viz/web, written into a source by cmake/WebFiles.cmake.
+/// One file of viz/web, converted to a source by cmake/WebFiles.cmake.
 struct EmbeddedFile {
   std::string_view name;
   std::string_view text;
@@ -18,7 +18,7 @@ struct EmbeddedFile {
 extern const EmbeddedFile kEmbeddedFiles[];
 extern const std::size_t kEmbeddedFileCount;
 
-/// By path; "/" is the page.
+/// Returns the files by path; "/" is the page.
 std::map<std::string, WebFile> web_files();
 
 }  // namespace sf::bridges

@@ -27,10 +27,10 @@ using tcp = asio::ip::tcp;
 using Error = beast::error_code;
 
 constexpr std::size_t kMaxHeader = 16 << 10;                   // [byte]
-constexpr auto kAcceptPause = std::chrono::milliseconds(200);  // after a connection that could not be accepted
+constexpr auto kAcceptPause = std::chrono::milliseconds(200);  // after a connection could not be accepted
 constexpr auto kRequestTime = std::chrono::seconds(15);
-constexpr auto kSilence = std::chrono::seconds(60);  // without a message or an answer to a ping
-// [byte] What the kernel takes is not skipped any more: a second of a large fleet would be too much.
+constexpr auto kSilence = std::chrono::seconds(60);  // maximum time without a message or an answer to a ping
+// [byte] Data in the kernel's buffer can no longer be dropped: a second's data of a large fleet would be too much.
 constexpr int kSendBuffer = 256 << 10;
 
 using Request = http::request<http::empty_body>;
@@ -38,7 +38,7 @@ using Response = http::response<http::string_body>;
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
-/// The first of the offered sub-protocols that is known; empty: none.
+/// Returns the first offered sub-protocol that is known; empty: none.
 std::string choose_protocol(const Request& request, const std::vector<std::string>& known) {
   for (const auto& offered : http::token_list(request[http::field::sec_websocket_protocol]))
     for (const std::string& protocol : known)
@@ -84,7 +84,7 @@ class WebServer::Implementation {
   void left() { --connections_; }
   bool is_full() const { return clients_.size() >= options.limits.clients; }
   void skip() { ++server_.skipped_; }
-  /// Empty, or the reason for which a request is refused.
+  /// Returns why a request is refused; empty: accepted.
   std::string refuse(const Request& request, bool needs_token) const;
 
   const WebOptions options;
@@ -98,13 +98,13 @@ class WebServer::Implementation {
   std::size_t connections_ = 0;
   ClientId next_client_ = 1;
   std::map<ClientId, Connection*> clients_;
-  asio::io_context context_{1};  // after all that connections use: they end with it
+  asio::io_context context_{1};  // destroyed after everything that its connections use
   tcp::acceptor acceptor_{context_};
   asio::steady_timer pause_{context_};
   std::thread thread_;
 };
 
-/// One connection: requests for files, then perhaps a WebSocket.
+/// One connection: requests for files, then possibly a WebSocket.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(tcp::socket socket, WebServer::Implementation& server) : server_(server), socket_(std::move(socket)) {}
@@ -132,14 +132,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::unique_ptr<http::request_parser<http::empty_body>> parser_;
   std::unique_ptr<Response> response_;
   std::string protocol_;
-  ClientId client_ = 0;  ///< 0: no WebSocket
+  ClientId client_ = 0;  ///< 0: not a WebSocket
   bool ended_ = false;
 
   std::deque<WebMessage> replies_;
-  std::size_t reply_bytes_ = 0;  ///< of those in `replies_` that count
+  std::size_t reply_bytes_ = 0;  ///< counted bytes in `replies_`
   std::deque<std::vector<WebMessage>> updates_;
   std::vector<WebMessage> current_;  ///< update being sent
-  std::size_t next_ = 0;             ///< in `current_`
+  std::size_t next_ = 0;             ///< index in `current_`
   bool sending_ = false;
   WebMessage sent_;  ///< being sent
 };
@@ -184,7 +184,7 @@ void WebServer::Implementation::accept() {
   });
 }
 
-/// Where no descriptors are left, the connection keeps waiting, and each attempt would fail at once.
+/// Without free descriptors, the connection remains pending and each attempt would fail immediately.
 void WebServer::Implementation::accept_later() {
   pause_.expires_after(kAcceptPause);
   pause_.async_wait([this](Error error) {
@@ -327,7 +327,7 @@ void Connection::drop_old_updates() {
   }
 }
 
-/// Replies first, then the rest of the current update.
+/// Sends replies first, then the rest of the current update.
 void Connection::send_next() {
   if (sending_ || ended_) return;
   if (!replies_.empty()) {
@@ -356,7 +356,7 @@ void Connection::send_next() {
   });
 }
 
-/// Closes without a farewell: what waits is of no use, and a client that does not read would not answer.
+/// Closes without a handshake: pending data is useless, and a client that does not read would not answer.
 void Connection::end() {
   if (ended_) return;
   ended_ = true;
@@ -364,7 +364,7 @@ void Connection::end() {
   beast::get_lowest_layer(socket_).socket().close(ignored);
   if (client_ == 0) return;
   server_.remove(client_);
-  // Later, since the application may be in the middle of a message of that client.
+  // Post it: the application may be processing a message of that client.
   server_.post([&application = server_.application, client = client_] { application.closed(client); });
 }
 

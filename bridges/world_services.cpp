@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 // simulation_interfaces/msg/EntityCategory and Bounds
 constexpr std::uint8_t kRobotCategory = 1, kDynamicObject = 4, kEmpty = 0, kBox = 1;
 constexpr std::size_t kLeastText = 5;        // [byte] of a string
-constexpr std::size_t kMostVisited = 5'000;  // files of the folders with worlds
+constexpr std::size_t kMostVisited = 5'000;  // maximum number of files visited in folders of worlds
 
 void put_texts(CdrWriter& cdr, const std::vector<std::string>& texts) {
   cdr.put_count(texts.size());
@@ -45,7 +45,7 @@ std::string described(const Scene& scene, std::uint32_t row) {
   return text;
 }
 
-/// A name that no model, no topic and no request before has, from the letters of `like`.
+/// Returns a name built from the letters of `like` that no model, topic or earlier request uses.
 std::string free_name(const std::string& like, const Scene& scene, const std::set<std::string>& taken) {
   std::string stem = like.substr(0, std::min<std::size_t>(like.find_last_not_of("0123456789") + 1, 40));
   for (char& c : stem) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
@@ -66,7 +66,7 @@ bool is_removed(const std::string& name, std::uint32_t like, const Scene& scene,
   return false;
 }
 
-/// A name that is a topic's, or whose frame another mover has.
+/// Returns whether a name is that of a topic, or its frame belongs to another mover.
 bool is_reserved(const std::string& name, const Scene& scene) {
   static const std::set<std::string> kTopics = {"world", "run",    "fleet",     "clock",  "map",       "walls",
                                                 "tf",    "bodies", "tf_static", "lights", "sensorfarm"};
@@ -74,7 +74,7 @@ bool is_reserved(const std::string& name, const Scene& scene) {
                                                [&](const record::MoverInfo& m) { return m.frame == name; });
 }
 
-/// [/]name[/name ...] as ROS allows it.
+/// Returns whether the text has the form [/]name[/name ...] that ROS accepts.
 bool is_namespace(std::string_view text) {
   if (text.starts_with('/')) text.remove_prefix(1);
   bool begins = true;

@@ -16,7 +16,7 @@ namespace sf::bridges {
 namespace {
 
 struct Sample : ddsi_serdata {
-  base::Bytes bytes;  ///< a multiple of 4, as the network has them
+  base::Bytes bytes;  ///< a multiple of 4, as on the network
   std::uint32_t size = 0;
 };
 
@@ -30,7 +30,7 @@ Sample* new_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t
 
 const Sample* sample_of(const ddsi_serdata* data) { return static_cast<const Sample*>(data); }
 
-// Received from the network. Fragments may overlap. What is too long becomes an empty sample, which nobody can read.
+// Received from the network. Fragments may overlap. An oversized sample becomes empty, which readers reject.
 ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment,
                              std::size_t size) {
   if (size > kDdsMaxReceived) return new_sample(type, kind, 0);
@@ -78,7 +78,8 @@ std::size_t print(const ddsi_sertype*, const ddsi_serdata* data, char* text, std
   return static_cast<std::size_t>(std::snprintf(text, size, "%u bytes", sample_of(data)->size));
 }
 
-// Without a key, all samples are of one instance. Samples come and go as bytes only, by dds_forwardcdr and dds_takecdr.
+// Without a key, all samples belong to one instance. Samples are exchanged only as bytes, by dds_forwardcdr and
+// dds_takecdr.
 ddsi_serdata_ops sample_functions() {
   ddsi_serdata_ops functions{};
   functions.eqkey = [](const ddsi_serdata*, const ddsi_serdata*) { return true; };
@@ -100,7 +101,7 @@ ddsi_serdata_ops sample_functions() {
   functions.free = [](ddsi_serdata* data) { delete static_cast<Sample*>(data); };
   functions.print = print;
   functions.get_keyhash = [](const ddsi_serdata*, ddsi_keyhash* hash, bool) { std::memset(hash, 0, sizeof(*hash)); };
-#ifdef DDS_HAS_SHM  // shared memory, which types without a fixed size do not use
+#ifdef DDS_HAS_SHM  // shared memory, which is not used for types of variable size
   functions.get_sample_size = ddsi_serdata_iox_size;
   functions.from_iox_buffer = [](const ddsi_sertype*, ddsi_serdata_kind, void*, void*) -> ddsi_serdata* {
     return nullptr;

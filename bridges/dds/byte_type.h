@@ -1,5 +1,5 @@
 #pragma once
-// Types of DDS whose samples are bytes: a whole message, already encoded, with its four bytes of encapsulation.
+// DDS types whose samples are bytes: a complete encoded message with its four bytes of encapsulation.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,10 +10,11 @@ struct ddsi_sertype;
 
 namespace sf::bridges {
 
-/// A new type without a key. Its owner is the caller, and then the topic made of it.
+/// Returns a new type without a key. The caller owns it until a topic is created from it.
 ddsi_sertype* new_byte_type(const char* name);
 
-/// A sample of one message. @return owned by the caller, and then by the call that writes it
+/// Returns a sample of one message.
+/// @return owned by the caller, and then by the call that writes it
 ddsi_serdata* new_byte_sample(const ddsi_sertype* type, std::span<const std::uint8_t> message);
 
 /// Valid as long as the sample.

@@ -22,7 +22,7 @@ namespace sf::bridges {
 
 namespace {
 
-constexpr dds_duration_t kMaxWait = DDS_MSECS(20);  // of one write, for slow readers
+constexpr dds_duration_t kMaxWait = DDS_MSECS(20);  // per write, for slow readers
 
 void require(dds_return_t code, const std::string& what) {
   if (code < 0) throw std::runtime_error(fmt::format("Cyclone DDS {} ({})", what, dds_strretcode(code)));
@@ -36,8 +36,8 @@ DdsGuid guid_of(dds_entity_t entity) {
   return bytes;
 }
 
-/// As CYCLONEDDS_URI, whose settings are of higher rank, and which is XML or a file's name. On the loopback interface,
-/// which has no multicast, participants are looked for on all ports.
+/// Returns settings in the format of CYCLONEDDS_URI, which overrides them and is XML or a file name. The loopback
+/// interface has no multicast, so participants are searched on all ports.
 std::string configuration_of(const DdsOptions& options) {
   std::string text = "<CycloneDDS><Domain><Internal><MaxSampleSize>64MiB</MaxSampleSize></Internal>";
   if (options.loopback)
@@ -55,7 +55,7 @@ struct DeleteQos {
 };
 using Qos = std::unique_ptr<dds_qos_t, DeleteQos>;
 
-/// Quality of service as rmw_cyclonedds sets it, except that a write does not wait for ever.
+/// Returns the quality of service of rmw_cyclonedds, except that a write does not block indefinitely.
 Qos qos_of(const DdsEndpoint& endpoint) {
   Qos qos(dds_create_qos());
   dds_qset_writer_data_lifecycle(qos.get(), false);
@@ -93,7 +93,7 @@ struct Reader {
   bool requests = false;
 };
 
-/// False for a writer that is gone, whose client waits for no answer.
+/// Returns false for a writer that has left, because its client expects no answer.
 bool is_of_own_kind(dds_entity_t reader, dds_instance_handle_t writer) {
   const EndpointData data(dds_get_matched_publication_data(reader, writer));
   if (data == nullptr) return false;
@@ -192,7 +192,7 @@ class CycloneParticipant : public DdsParticipant {
  private:
   void start() {
     domain_ = dds_create_domain(options_.domain, configuration_of(options_).c_str());
-    if (domain_ != DDS_RETCODE_PRECONDITION_NOT_MET)  // this process is in that domain already
+    if (domain_ != DDS_RETCODE_PRECONDITION_NOT_MET)  // this process has already joined that domain
       require(domain_,
               "does not start in domain " + std::to_string(options_.domain) + "; check CYCLONEDDS_URI, if set");
     Qos qos(dds_create_qos());
@@ -207,7 +207,7 @@ class CycloneParticipant : public DdsParticipant {
     dds_set_log_sink(nullptr, nullptr);
   }
 
-  /// @param type out: of the topic's samples, which lives as long as the topic
+  /// @param type out: of the topic's samples; lives as long as the topic
   dds_entity_t add_topic(const DdsEndpoint& endpoint, const ddsi_sertype** type) {
     ddsi_sertype* wanted = new_byte_type(endpoint.type.c_str());
     const dds_entity_t topic =
@@ -224,7 +224,7 @@ class CycloneParticipant : public DdsParticipant {
   std::vector<std::unique_ptr<Reader>> readers_;
 };
 
-/// Cyclone DDS does not survive it where descriptors run out as it starts.
+/// Cyclone DDS crashes if it runs out of descriptors while it starts.
 void require_descriptors() {
   constexpr std::size_t kNeeded = 16;
   std::vector<int> opened;

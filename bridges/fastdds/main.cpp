@@ -1,5 +1,5 @@
-// The process with Fast DDS (bridges/fast_services.h): settings and replies come on standard input, requests go
-// to standard output. It ends with its input.
+// The process with Fast DDS (bridges/fast_services.h). Reads settings and replies from standard input, writes requests
+// to standard output, and exits when its input ends.
 
 #include <cstdio>
 #include <mutex>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kMaxFrame = 1u << 30;  // [byte] from the farm
 constexpr unsigned kMaxStart = 20;             // [s]
 
-/// Any thread.
+/// Thread-safe.
 void send(const Frame& frame) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);

@@ -1,6 +1,7 @@
-// Participants of Fast DDS with the endpoints of services, for clients of rmw_fastrtps. These name the
-// reader of their reply beside a request, and look for the request's number beside the reply (`related_sample_identity`
-// of DDS-RPC), where Cyclone DDS neither reads nor writes. Here both become the header of rmw_cyclonedds.
+// Fast DDS participants with the endpoints of services, for clients of rmw_fastrtps. These name the reader of their
+// reply in the metadata of a request, and expect the request's number in the metadata of the reply
+// (`related_sample_identity` of DDS-RPC), which Cyclone DDS neither reads nor writes. Here both are converted to the
+// header of rmw_cyclonedds.
 
 #include "bridges/fastdds/participant.h"
 #include <fastdds/rtps/common/WriteParams.h>
@@ -36,11 +37,11 @@ namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastrtps::types::ReturnCode_t;
 
 constexpr std::size_t kEncapsulation = 4, kHeader = 16;  // [byte] of a message, and of rmw_cyclonedds
-constexpr std::uint32_t kMaxRequest = 1 << 18;           // [byte] longer ones are left out by Fast DDS
-constexpr int kMaxSamples = 32;                          // that a reader keeps, of that size
-constexpr std::size_t kMaxPending = 8192;  // requests without a reply; of more, the oldest are answered by none
-constexpr int kMaxWaitMs = 20;             // of one write, for slow readers
-constexpr std::uint32_t kPeers = 33;       // participants per machine on the loopback interface, as for Cyclone DDS
+constexpr std::uint32_t kMaxRequest = 1 << 18;           // [byte] Fast DDS drops longer ones
+constexpr int kMaxSamples = 32;                          // kept by a reader, of that size
+constexpr std::size_t kMaxPending = 8192;                // requests without a reply; beyond it, the oldest are dropped
+constexpr int kMaxWaitMs = 20;                           // per write, for slow readers
+constexpr std::uint32_t kPeers = 33;  // participants per machine on the loopback interface, as for Cyclone DDS
 
 template <class T>
 T* require(T* made, const std::string& what) {
@@ -55,7 +56,7 @@ DdsGuid bytes_of(const rtps::GUID_t& guid) {
   return bytes;
 }
 
-/// A type of which a sample is a message as bytes, with its encapsulation.
+/// A type whose samples are messages as bytes, with their encapsulation.
 class ByteType : public dds::TopicDataType {
  public:
   ByteType(const std::string& name, std::uint32_t size) {
@@ -85,7 +86,7 @@ class ByteType : public dds::TopicDataType {
   bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
 };
 
-/// Without it, the library writes to standard output.
+/// Redirects the library's log, which would otherwise go to standard output.
 class LogToOptions : public dds::LogConsumer {
  public:
   explicit LogToOptions(const DdsOptions& options) : options_(options) {}
@@ -97,8 +98,8 @@ class LogToOptions : public dds::LogConsumer {
   const DdsOptions& options_;
 };
 
-/// UDP over IPv4 alone: shared memory would leave files behind a process that is killed. On the loopback interface,
-/// participants are looked for at all their ports, as there may be no multicast.
+/// Uses only UDP over IPv4, because shared memory would leave files behind when a process is killed. On the loopback
+/// interface, searches participants at all their ports, because multicast may be unavailable.
 dds::DomainParticipantQos qos_of(const DdsOptions& options) {
   dds::DomainParticipantQos qos;
   const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -130,7 +131,7 @@ void set_common(Qos& qos, const DdsEndpoint& endpoint) {
   qos.user_data().assign(endpoint.user_data.begin(), endpoint.user_data.end());
 }
 
-/// A request that waits for its reply.
+/// A request without a reply.
 struct Pending {
   rtps::GUID_t writer, reply_to;
   rtps::SequenceNumber_t sequence;
@@ -170,7 +171,7 @@ class FastParticipant : public DdsParticipant, dds::DomainParticipantListener {
     return writers_.size() - 1;
   }
 
-  /// Of fixed sizes, so that no datagram makes the reader allocate as much as it states.
+  /// Uses fixed sizes, so that the size stated in a datagram cannot make the reader allocate memory.
   std::size_t add_reader(const DdsEndpoint& endpoint, DdsGuid& guid) override {
     dds::DataReaderQos qos;
     set_common(qos, endpoint);
@@ -220,7 +221,7 @@ class FastParticipant : public DdsParticipant, dds::DomainParticipantListener {
                       !written_by->second.contains(request->second.writer);
     if (gone || read_by == matched_.end()) return gone;
     const rtps::GUID_t& to = request->second.reply_to;
-    constexpr std::uint8_t kIsReader = 0x04;  // of entity ids; else `to` is the request's writer
+    constexpr std::uint8_t kIsReader = 0x04;  // in entity ids; otherwise `to` is the request's writer
     if ((to.entityId.value[3] & kIsReader) != 0) return read_by->second.contains(to);
     return std::any_of(read_by->second.begin(), read_by->second.end(),
                        [&](const rtps::GUID_t& one) { return one.guidPrefix == to.guidPrefix; });
@@ -246,7 +247,7 @@ class FastParticipant : public DdsParticipant, dds::DomainParticipantListener {
     if (change < 0) matched_[ours].erase(other);
   }
 
-  /// Passes a request on with the header of rmw_cyclonedds: its number here, and its sequence number.
+  /// Forwards a request with the header of rmw_cyclonedds: its number here and its sequence number.
   void receive(const dds::DataReader* reader, const base::Bytes& message, const dds::SampleInfo& info) {
     const rtps::SampleIdentity& from = info.sample_identity;
     if (message.size() < kEncapsulation || has_request_header(bytes_of(from.writer_guid()))) return;
@@ -270,7 +271,7 @@ class FastParticipant : public DdsParticipant, dds::DomainParticipantListener {
     options_.receive(std::move(request));
   }
 
-  /// @param size [byte] of a sample, of which memory is kept
+  /// @param size [byte] of a sample, for preallocation
   dds::Topic* add_topic(const DdsEndpoint& endpoint, std::uint32_t size) {
     if (types_.insert(endpoint.type).second)
       dds::TypeSupport(new ByteType(endpoint.type, size)).register_type(participant_);
@@ -294,9 +295,9 @@ class FastParticipant : public DdsParticipant, dds::DomainParticipantListener {
   std::set<std::string> types_;
   std::vector<dds::DataWriter*> writers_;
 
-  mutable std::mutex mutex_;  // of all below, which the library's threads use; not held in calls of the library
+  mutable std::mutex mutex_;  // protects the members below from the library's threads; not held in calls of the library
   std::vector<dds::DataReader*> readers_;
-  std::map<const void*, std::set<rtps::GUID_t>> matched_;  ///< by endpoint: those of others
+  std::map<const void*, std::set<rtps::GUID_t>> matched_;  ///< matched remote endpoints, by own endpoint
   std::map<std::uint64_t, Pending> pending_;
   std::uint64_t last_ = 0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Participants of Fast DDS with the endpoints of services.
+// Fast DDS participants with the endpoints of services.
 
 #include <memory>
 
@@ -7,8 +7,9 @@
 
 namespace sf::bridges {
 
-/// Messages are as clients of rmw_cyclonedds write and read them, with a header before their fields: a number of the
-/// request, and its sequence number. @throws std::runtime_error saying why it cannot
+/// Messages have the format of rmw_cyclonedds, with a header before their fields: a number of the request and its
+/// sequence number.
+/// @throws std::runtime_error with the reason
 std::unique_ptr<DdsParticipant> open_fast_dds(const DdsOptions& options);
 
 }  // namespace sf::bridges

@@ -8,8 +8,8 @@ namespace sf::bridges::player {
 
 namespace {
 
-constexpr std::size_t kAtOnce = 64u << 10;  // [byte] received before other clients have their turn
-constexpr std::uint32_t kEndOfRound = 1;    // subtype: nothing was lost
+constexpr std::size_t kAtOnce = 64u << 10;  // [byte] received per turn of a client
+constexpr std::uint32_t kEndOfRound = 1;    // subtype: no data was lost
 
 }  // namespace
 

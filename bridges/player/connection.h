@@ -1,9 +1,8 @@
 #pragma once
-// One client of the Player server: bytes in, messages out.
+// One client of the Player server: receives bytes, sends messages.
 //
-// Data of a device that the client has not been sent yet is replaced by newer data, so a slow client skips ahead. In
-// push mode data goes out when it comes; in pull mode a round goes out when the client asks for one, and a message ends
-// it (docs/bridges.md).
+// New data of a device replaces its unsent data, so a slow client skips ahead. In push mode data is sent when it
+// arrives. In pull mode a round is sent when the client requests one, and ends with a message (docs/bridges.md).
 
 #include <chrono>
 #include <cstdint>
@@ -17,27 +16,29 @@
 
 namespace sf::bridges::player {
 
-inline constexpr std::size_t kMostRequest = 64u << 10;  ///< [byte] payload of a client's message
-inline constexpr std::size_t kMostWaiting = 16u << 20;  ///< [byte] of data for one client that is not sent yet
-inline constexpr std::size_t kMostUnsent = 32u << 20;   ///< [byte] more of answers end the connection
+inline constexpr std::size_t kMostRequest = 64u << 10;  ///< [byte] maximum payload of a client's message
+inline constexpr std::size_t kMostWaiting = 16u << 20;  ///< [byte] maximum unsent data for one client
+inline constexpr std::size_t kMostUnsent = 32u << 20;   ///< [byte] of answers beyond which the connection is closed
 
-/// A device that a client has opened.
+/// A device opened by a client.
 struct Subscription {
   std::uint32_t device = 0;  ///< row of `Devices`
-  base::Bytes waiting;       ///< the newest message of data, with its header; empty: none
-  bool described = false;    ///< geometry and configuration were sent with data
-  bool describes = false;    ///< `waiting` has them
+  base::Bytes waiting;       ///< the newest data message, with its header; empty: none
+  bool described = false;    ///< whether geometry and configuration were sent with data
+  bool describes = false;    ///< whether `waiting` contains them
 };
 
-/// One thread.
+/// Not thread-safe.
 class Connection {
  public:
-  /// Greets the client. @param port row of the port it came to  @param local address and port of this end
-  /// @param host address of the client
+  /// Greets the client.
+  /// @param port row of the port it connected to @param local address and port of this end @param host address of the
+  /// client
   Connection(netio::Socket socket, std::size_t port, const netio::Endpoint& local, std::uint32_t host);
 
-  /// Passes each whole message to `take(const Header&, std::span<const std::uint8_t> payload)`, which returns false
-  /// when it is malformed. @return false when the connection has ended, or is to end
+  /// Passes each complete message to `take(const Header&, std::span<const std::uint8_t> payload)`, which returns false
+  /// for a malformed message.
+  /// @return false: the connection has ended or must be closed
   template <class Take>
   bool receive(Take&& take) {
     const bool open = fill();
@@ -58,19 +59,20 @@ class Connection {
   void answer(const Header& request, MessageType type, std::span<const std::uint8_t> payload, double time);
   void set_mode(DataMode mode) { pull_ = mode == DataMode::pull; }
   void ask_for_data() { asked_ = true; }
-  /// Open devices, by address.
+  /// Returns the open devices by address.
   std::map<Address, Subscription>& subscriptions() { return subscriptions_; }
   void unsubscribe(const Address& address);
-  /// Replaces the data that waits for a subscription. Dropped where too much waits.
+  /// Replaces the unsent data of a subscription. Drops it if too much is unsent.
   void put_data(const Address& address, Subscription& subscription, std::uint32_t subtype, double time,
                 std::span<const std::uint8_t> payload);
-  /// Sends what the client takes. @return false when the connection has ended, or is to end
+  /// Sends as much as the client accepts.
+  /// @return false: the connection has ended or must be closed
   bool flush(double time);
-  /// Something waits for room.
+  /// Returns whether output is waiting for buffer space.
   bool is_full() const { return sent_ < out_.size(); }
 
   std::uint32_t host() const { return host_; }
-  /// Of its last whole message, or of its beginning.
+  /// Returns the time of its last complete message, or of its start.
   std::chrono::steady_clock::time_point heard() const { return heard_; }
   const netio::Socket& socket() const { return socket_; }
   std::size_t port() const { return port_; }
@@ -86,13 +88,13 @@ class Connection {
   netio::Endpoint local_;
   std::uint32_t host_;
   std::chrono::steady_clock::time_point heard_ = std::chrono::steady_clock::now();
-  base::Bytes in_;   ///< received, not a whole message yet
-  base::Bytes out_;  ///< of which `sent_` bytes are sent
+  base::Bytes in_;   ///< received, incomplete message
+  base::Bytes out_;  ///< `sent_` bytes of it are sent
   std::size_t sent_ = 0;
-  std::size_t waiting_ = 0;  ///< [byte] of data
+  std::size_t waiting_ = 0;  ///< [byte] of unsent data
   std::uint32_t sequence_ = 0;
   bool pull_ = false;
-  bool asked_ = false;  ///< for a round of data
+  bool asked_ = false;  ///< a round of data was requested
   std::map<Address, Subscription> subscriptions_;
 };
 

@@ -10,7 +10,7 @@ namespace sf::bridges::player {
 
 namespace {
 
-/// Interfaces to the readings of a sensor type, in the order of their devices.
+/// The interfaces to the readings of a sensor type, in the order of their devices.
 struct Offer {
   std::uint8_t type;
   std::vector<Interface> interfaces;

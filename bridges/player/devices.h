@@ -1,5 +1,6 @@
 #pragma once
-// What clients of Player see of a run: each robot's position2d and sensors, and one simulation and one map for all.
+// The devices of a run that clients of Player see: position2d and sensors of each robot, and one simulation and one map
+// for all.
 
 #include <cstdint>
 #include <map>
@@ -17,29 +18,29 @@
 
 namespace sf::bridges::player {
 
-/// Most elements of a sensor that fit into a message; devices of larger ones are not offered.
+/// Maximum number of elements of a sensor that fit a message; devices of larger sensors are not offered.
 inline constexpr std::uint32_t kMostElements = 1'000'000;
 
 struct Device {
   Interface interf = Interface::simulation;
-  std::string name;                    ///< shown to users as the driver's name: the robot's, with ".sensor"
+  std::string name;                    ///< shown as the driver's name: the robot's, with ".sensor"
   std::uint32_t mover = world::kNone;  ///< row; kNone: simulation, map
   const sensors::SensorSpec* sensor = nullptr;
   std::uint8_t type = 0;              ///< of the sensor
-  std::uint32_t slot = world::kNone;  ///< of the sensor's readings; kNone: it has none
+  std::uint32_t slot = world::kNone;  ///< of the sensor's readings; kNone: none
   base::Bytes geometry;               ///< payload of the answer to GET_GEOM; empty: none
   base::Bytes config;                 ///< payload of the answer to GET_CONFIG; empty: none
 };
 
-/// Immutable. World and sensor set outlive it.
+/// Immutable. The world and the sensor set must outlive it.
 class Devices {
  public:
   Devices(const world::World& world, const sensors::SensorSet& sensor_set);
 
   std::span<const Device> rows() const { return rows_; }
-  /// Rows of movers with devices: robots, and tags with sensors.
+  /// Returns rows of movers with devices: robots, and tags with sensors.
   std::span<const std::uint32_t> robots() const { return robots_; }
-  /// Readings have a slot for each sensor of the world.
+  /// Returns the number of slots for readings, one per sensor of the world.
   std::size_t slots() const { return slots_; }
   std::uint32_t slot_of(std::uint8_t type, std::uint32_t mover, std::uint32_t sensor) const;
 
@@ -54,13 +55,13 @@ class Devices {
   std::size_t slots_ = 0;
 };
 
-/// The devices at one port. Those of each interface are numbered from 0 in the order of the world file.
+/// The devices at one port, numbered from 0 per interface in the order of the world file.
 class Listing {
  public:
-  /// @param mover the only robot at the port; nullopt: all of them
+  /// @param mover the only robot at the port; nullopt: all robots
   Listing(const Devices& devices, std::optional<std::uint32_t> mover);
 
-  /// Addresses with rows of `Devices`, in order.
+  /// Returns rows of `Devices` by address.
   const std::map<Address, std::uint32_t>& rows() const { return rows_; }
 
  private:

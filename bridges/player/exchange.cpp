@@ -15,7 +15,7 @@ Exchange::Exchange(const Scene& scene, const Devices& devices)
   contacts_.resize(reports_.size());
 }
 
-/// A run at its start: odometry at 0, nothing asked for.
+/// Resets to the start of a run: odometry at 0, no requests.
 void Exchange::begin() {
   robots_.assign(scene_.world.movers.size(), {});
   sensors::for_each_sensor(scene_.world, sensors::encoder_type, [this](const sensors::MountedSensor& mounted) {
@@ -33,7 +33,7 @@ void Exchange::publish(const base::TickRecord& tick, const RunState& state) {
   is_new_ = true;
   reports_.assign(tick.reports.begin(), tick.reports.end());
   contacts_.assign(tick.contacts.begin(), tick.contacts.end());
-  contacts_.resize(reports_.size());  // a service knows of none
+  contacts_.resize(reports_.size());  // a service has no contacts
   for (const base::ReadingBlock& reading : tick.readings) {
     const std::uint32_t slot = devices_.slot_of(reading.type, reading.mover, reading.sensor);
     if (slot == robots_[reading.mover].encoder) robots_[reading.mover].odometry.roll(reading);

@@ -1,5 +1,5 @@
 #pragma once
-// What the thread of a run and the thread of the Player server hand each other.
+// Data exchanged between the thread of a run and the thread of the Player server.
 
 #include <cstdint>
 #include <mutex>
@@ -13,38 +13,38 @@
 
 namespace sf::bridges::player {
 
-/// The run as the server last saw it.
+/// The run as last copied by the server.
 struct Snapshot {
   std::int64_t time = 0;               ///< [ns] simulated
-  bool is_new = false;                 ///< a tick since the look before
+  bool is_new = false;                 ///< whether a tick was published since the last `look`
   std::vector<base::Report> reports;   ///< per mover
   std::vector<base::Pose> odometry;    ///< per mover
   std::vector<std::uint8_t> contacts;  ///< per mover
   std::vector<LastReading> readings;   ///< per slot
 };
 
-/// Thread-safe. Every call is short: it copies what changed, and the newest replaces what was not fetched.
+/// Thread-safe. Every call is short: it copies changes, and newer data replaces data that was not fetched.
 class Exchange {
  public:
   Exchange(const Scene& scene, const Devices& devices);
 
-  // The run's thread.
+  // For the run's thread.
   void publish(const base::TickRecord& tick, const RunState& state);
   void publish(const RunState& state);
   void take(Requests& requests);
 
-  // The server's thread.
-  /// Readings of slots without users are not copied.
+  // For the server's thread.
+  /// Selects a slot. Readings of unused slots are not copied.
   void use(std::uint32_t slot, bool used);
   void look(Snapshot& snapshot);
-  /// The mover's pose: where it was last put, or stands. NaN: absent.
+  /// Returns the mover's current pose, or the pose where it was last placed. NaN: absent.
   base::Pose pose_of(std::uint32_t mover);
   double seconds();  ///< [s] simulated
   void drive(std::uint32_t mover, const base::Twist& twist);
   void drive(std::uint32_t mover, const Goal& goal);
-  /// Stops the robot, if anything drives it from here.
+  /// Stops the robot if a client drives it.
   void stop(std::uint32_t mover);
-  /// While off, a robot stands still and takes no commands.
+  /// While off, a robot stays at rest and ignores commands.
   void set_motors(std::uint32_t mover, bool on);
   void set_odometry(std::uint32_t mover, const base::Pose& X_OM);
   void place(std::uint32_t mover, const base::Pose& X_WM);
@@ -56,11 +56,11 @@ class Exchange {
     Odometry odometry;
     std::uint32_t encoder = world::kNone;  ///< slot of its encoders
     bool motors = true;
-    bool driven = false;  ///< a command other than to stop is in force
+    bool driven = false;  ///< whether a command other than stop is in force
     std::optional<base::Twist> command;
     std::optional<Goal> goal;
     std::optional<base::Pose> placement;
-    bool placed = false;  ///< the run took the placement
+    bool placed = false;  ///< whether the run received the placement
   };
   void begin();
   void set_state(const RunState& state);

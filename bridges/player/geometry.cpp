@@ -27,7 +27,7 @@ base::Bytes scanner_geometry(const sensors::SensorSpec& spec) {
   return out;
 }
 
-/// One element has all beams of a laser; an array has an element per transducer.
+/// A laser is one element with all its beams; an array has one element per transducer.
 base::Bytes ranger_geometry(const sensors::SensorSpec& spec, std::span<const base::Pose> elements) {
   base::Bytes out = scanner_geometry(spec);
   XdrWriter xdr(out);
@@ -46,7 +46,7 @@ base::Bytes array_geometry(const sensors::ConeArray& array) {
   return out;
 }
 
-/// Each switch is the arc of its sectors on the circle about the parts of the body that touch others.
+/// Each switch is the arc of its sectors on the circle around the parts of the body that collide.
 base::Bytes bumper_geometry(const std::vector<std::uint32_t>& switches, const world::Mover& mover) {
   double radius = 0.0;
   for (const world::Segment& side : mover.body)
@@ -71,7 +71,7 @@ double resolution_of(const sensors::SensorSpec& laser) {
   return laser.elements > 1 ? laser.fov / (laser.elements - 1) : 0.0;
 }
 
-/// Ranges are not quantised: a resolution of 0.
+/// Ranges are not quantised, so the resolution is 0.
 base::Bytes laser_config(const sensors::SensorSpec& laser) {
   base::Bytes out;
   XdrWriter xdr(out);
@@ -83,8 +83,9 @@ base::Bytes laser_config(const sensors::SensorSpec& laser) {
   return out;
 }
 
-/// Clients take range i of an element to have the bearing of its least angle plus i times the resolution: those of one
-/// range are 0. @param resolution [rad] of arrays: the aperture of a cone
+/// Clients compute the bearing of range i of an element as its minimum angle plus i times the resolution. An element
+/// with one range has 0 for both.
+/// @param resolution [rad] of arrays: the aperture of a cone
 base::Bytes ranger_config(const sensors::SensorSpec& spec, double least, double most, double resolution) {
   base::Bytes out;
   XdrWriter xdr(out);

@@ -1,6 +1,6 @@
 #pragma once
-// The network protocol of the Player robot server, version 3: banner, headers, and the numbers of interfaces, types and
-// subtypes that this server knows. Payloads are in XDR (xdr.h).
+// The network protocol of the Player robot server, version 3: banner, headers, and the numbers of the interfaces, types
+// and subtypes supported by this server. Payloads are in XDR (xdr.h).
 
 #include <cstdint>
 #include <span>
@@ -10,14 +10,14 @@
 
 namespace sf::bridges::player {
 
-inline constexpr std::uint16_t kPort = 6665;     ///< that clients try where none is given
+inline constexpr std::uint16_t kPort = 6665;     ///< default port of clients
 inline constexpr std::size_t kBannerBytes = 32;  ///< sent on connection, padded with zeros
 inline constexpr std::string_view kBanner = "Player v.3.1.0 (sensorfarm)";
 inline constexpr std::size_t kHeaderBytes = 40;
-inline constexpr std::size_t kMostPayload = 8u << 20;  ///< [byte] that clients accept
+inline constexpr std::size_t kMostPayload = 8u << 20;  ///< [byte] maximum accepted by clients
 inline constexpr std::size_t kMostDriverName = 63;     ///< characters
 
-/// Its number in headers.
+/// Interface codes in headers.
 enum class Interface : std::uint32_t {
   player = 1,
   position2d = 4,
@@ -67,7 +67,7 @@ namespace ranger_data {
 enum : std::uint32_t { ranges = 1, stamped = 2 };
 }
 
-/// A device as clients name it. One connection is to one port, so that host and port do not matter.
+/// The address of a device as sent by clients. Each connection is to one port, so host and port do not matter.
 struct Address {
   Interface interf = Interface::player;
   std::uint32_t index = 0;
@@ -77,7 +77,7 @@ struct Address {
 struct Header {
   std::uint32_t host = 0;   ///< IPv4 address
   std::uint32_t robot = 0;  ///< port
-  Address address;          ///< of any numbers
+  Address address;          ///< any numbers
   MessageType type = MessageType::data;
   std::uint32_t subtype = 0;
   double time = 0.0;  ///< [s]
@@ -87,7 +87,7 @@ struct Header {
 
 /// Appends the kHeaderBytes of `header`.
 void put_header(const Header& header, base::Bytes& out);
-/// @param bytes kHeaderBytes at least
+/// @param bytes at least kHeaderBytes
 Header read_header(std::span<const std::uint8_t> bytes);
 
 }  // namespace sf::bridges::player

@@ -9,8 +9,8 @@ namespace sf::bridges::player {
 
 namespace {
 
-/// [m] Player's ranges are finite and lie within the sensor's limits; NaN becomes the largest. A valid range is less
-/// than the largest as it is sent, in float32 too.
+/// [m] Player's ranges are finite and within the sensor's limits; NaN becomes the maximum. A valid range is below the
+/// maximum as it is sent, also in float32.
 template <class Number>
 Number clean(double range, const base::RangeLimits& limits) {
   const auto most = static_cast<Number>(limits.max);
@@ -19,7 +19,7 @@ Number clean(double range, const base::RangeLimits& limits) {
   return nearest < most ? nearest : std::nextafter(most, Number{0});
 }
 
-/// Numbers per element, of which the first is its range.
+/// Returns the number of values per element, of which the first is the range.
 std::size_t width_of(const Device& device) { return device.type == sensors::kInfrared ? sensors::kInfraredColumns : 1; }
 
 template <class Number>
@@ -31,16 +31,16 @@ void put_ranges(const Device& device, const LastReading& reading, XdrWriter& xdr
 }
 
 void put_scan(const Device& device, const LastReading& reading, XdrWriter& xdr) {
-  constexpr std::size_t kAngles = 16;  // [byte] a scan begins like its configuration: angles and the largest range
+  constexpr std::size_t kAngles = 16;  // [byte] a scan starts like its configuration: angles and maximum range
   xdr.put_bytes(std::span(device.config).first(kAngles));
   put_ranges<float>(device, reading, xdr);
   xdr.put_opaque(
-      base::Bytes(reading.values.size()));  // intensities, which some clients print without a look at their count
+      base::Bytes(reading.values.size()));  // intensities, which some clients print without checking their count
   xdr.put(reading.sequence);
 }
 
-/// Player's drivers leave the voltage of a sensor's response to the robot; it is that of an analogue output of 5 V
-/// here.
+/// Player's drivers leave the conversion from a sensor's voltage to the robot. Here the voltage is that of a 5 V
+/// analogue output.
 void put_infrared(const Device& device, const LastReading& reading, XdrWriter& xdr) {
   constexpr double kVolts = 5.0 / sensors::kMostResponse;
   const std::vector<double>& values = reading.values;
@@ -62,8 +62,8 @@ std::int32_t whole(double value, double per) {
   return std::isfinite(value) ? static_cast<std::int32_t>(std::clamp(std::round(value * per), -kMost, kMost)) : 0;
 }
 
-/// A world has no place on the Earth: its origin is at 0 degrees north and east, and UTM coordinates are x and y, in
-/// centimetres, as Player's drivers send and its clients read them. Without a fix the position is 0.
+/// A world has no position on the Earth. Its origin is at 0 degrees north and east, and UTM coordinates are x and y in
+/// centimetres, the unit used by Player's drivers and clients. Without a fix the position is 0.
 void put_gps(const LastReading& reading, const base::Report& report, XdrWriter& xdr) {
   constexpr double kNorth = 110'574.3, kEast = 111'319.5;  // [m] per degree at the equator, WGS84
   const double x = reading.values[0], y = reading.values[1];
@@ -76,7 +76,7 @@ void put_gps(const LastReading& reading, const base::Report& report, XdrWriter& 
   for (const double position : {x, y}) xdr.put(fix ? std::round(100.0 * position) : 0.0);
   xdr.put(fix ? 1u : 0u);
   xdr.put_all({whole(reading.values[3], 1.0), whole(reading.values[2], 10.0), 0});
-  xdr.put_all({0.0, 0.0});  // errors in metres are not stated
+  xdr.put_all({0.0, 0.0});  // errors in metres are unknown
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 using Kind = Answer::Kind;
 constexpr std::size_t kMostName = 1024;  // [byte]
 
-/// Subtypes of the requests that several interfaces share; 0: it has none.
+/// Request subtypes shared by several interfaces; 0: not supported.
 struct SensorRequests {
   Interface interf;
   std::uint32_t geometry = 0, get_config = 0, set_config = 0, power = 0;
@@ -34,7 +34,7 @@ base::Pose get_pose2d(XdrReader& xdr) {
   return pose;
 }
 
-/// [m] Beyond this, distances lose their millimetres.
+/// [m] Beyond this, distances lose millimetre resolution.
 bool is_usable(const base::Pose& pose) {
   constexpr double kFarthest = 1e6;
   const bool finite = std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
@@ -61,7 +61,7 @@ Answer Requester::to_sensor(std::uint32_t device, std::uint32_t subtype, std::sp
   if (row == kSensorRequests.end() || subtype == 0) return {};
   if (subtype == row->geometry) return {Kind::granted, known.geometry};
   if (subtype == row->get_config) return {Kind::granted, known.config};
-  if (subtype == row->set_config)  // answered by the configuration, which stays
+  if (subtype == row->set_config)  // answered by the configuration, which remains unchanged
     return payload.size() == known.config.size() ? Answer{Kind::granted, known.config} : Answer{Kind::malformed, {}};
   if (subtype != row->power) return {};
   XdrReader xdr(payload);
@@ -85,7 +85,7 @@ Answer Requester::to_position(const Device& device, std::uint32_t subtype, std::
       request == Request::motors || request == Request::velocity_mode || request == Request::position_mode;
   if (!known || !scene_.simulated) return {};
   const bool on = xdr.get() != 0;
-  // Velocities and positions are taken in any mode.
+  // Accept velocities and positions in any mode.
   if (xdr.done() && request == Request::motors) exchange_.set_motors(device.mover, on);
   return granted_if(xdr.done());
 }
@@ -98,7 +98,7 @@ std::optional<std::uint32_t> Requester::find_mover(const std::string& name) cons
   return static_cast<std::uint32_t>(mover - movers.begin());
 }
 
-/// Of a mover, or of a model that stands still.
+/// Returns the pose of a mover or of a static model.
 std::optional<base::Pose> Requester::pose_of(const std::string& name) {
   if (const auto mover = find_mover(name)) {
     const base::Pose X_WM = exchange_.pose_of(*mover);
@@ -116,7 +116,7 @@ Answer Requester::to_simulation(std::uint32_t subtype, std::span<const std::uint
   const std::string name = xdr.get_text(kMostName);
   if (!xdr.good()) return {Kind::malformed, {}};
   Answer answer{Kind::granted, {}};
-  if (get) {  // the pose of the request has no meaning
+  if (get) {  // the pose in the request is unused
     const auto X_WM = pose_of(name);
     if (!X_WM) return {};
     XdrWriter out(answer.payload);
@@ -128,7 +128,7 @@ Answer Requester::to_simulation(std::uint32_t subtype, std::span<const std::uint
   }
   base::Pose X_WM = get_pose2d(xdr);
   if (!flat) {
-    xdr.get_double(), xdr.get_double();  // roll and pitch; what was read as the yaw is the height
+    xdr.get_double(), xdr.get_double();  // roll and pitch; the value parsed as yaw is the height
     X_WM.z = X_WM.yaw, X_WM.yaw = xdr.get_double();
     xdr.get_double();
   }
@@ -172,7 +172,7 @@ bool Requester::drive(const Device& device, std::uint32_t subtype, XdrReader& xd
   std::array<double, 6> numbers{};
   const std::size_t count = command == Command::velocity ? 3 : command == Command::position ? 6 : 2;
   for (std::size_t i = 0; i < count; ++i) numbers[i] = xdr.get_double();
-  if (count > 2) xdr.get();  // the motors' state, which has a request of its own
+  if (count > 2) xdr.get();  // the motor state, which has its own request
   if (!xdr.done()) return false;
   const bool usable = std::all_of(numbers.begin(), numbers.end(), [](double v) { return std::abs(v) <= 1e6; });
   if (scene_.simulated && usable) drive(device.mover, command, numbers);
@@ -188,7 +188,7 @@ void Requester::drive(std::uint32_t mover, position2d::Command command, const st
   if (command == Command::car)
     exchange_.drive(mover, base::Twist{speed, 0.0, car ? speed * std::tan(angle) / robot.wheelbase : angle});
   if (command == Command::heading) exchange_.drive(mover, Goal{{0.0, 0.0, 0.0, angle}, speed, true});
-  if (command != Command::position || car) return;  // cars cannot turn to a goal where they stand
+  if (command != Command::position || car) return;  // cars cannot turn in place to a goal
   const double most = numbers[3] > 0.0 ? std::min(numbers[3], robot.max_forward) : robot.max_forward;
   exchange_.drive(mover, Goal{{numbers[0], numbers[1], 0.0, numbers[2]}, most});
 }

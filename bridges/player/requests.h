@@ -15,18 +15,18 @@ namespace sf::bridges::player {
 /// The answer to a request.
 struct Answer {
   enum class Kind { granted, refused, malformed } kind = Kind::refused;
-  base::Bytes payload;  ///< where granted
+  base::Bytes payload;  ///< if granted
 };
 
-/// One thread.
+/// Not thread-safe.
 class Requester {
  public:
   Requester(const Scene& scene, const Devices& devices, Exchange& exchange);
 
   Answer request(std::uint32_t device, std::uint32_t subtype, std::span<const std::uint8_t> payload);
-  /// @return false when it is malformed. Commands that a device does not know, or that are not finite, are ignored
+  /// Returns false if the command is malformed. Ignores commands that a device does not support or that are not finite.
   bool command(std::uint32_t device, std::uint32_t subtype, std::span<const std::uint8_t> payload);
-  /// False after a client has turned the device off, until one turns it on.
+  /// Returns false after a client has turned the device off, until a client turns it on.
   bool is_on(std::uint32_t device) const { return on_[device] != 0; }
 
  private:

@@ -10,9 +10,9 @@ namespace sf::bridges::player {
 
 namespace {
 
-constexpr double kGain = 1.5;          // [1/s] speed per distance, and turn per angle
+constexpr double kGain = 1.5;          // [1/s] speed per distance, and turn rate per angle
 constexpr double kReached = 0.01;      // [m]
-constexpr double kAhead = M_PI / 4.0;  // [rad] a goal within this bearing is driven to
+constexpr double kAhead = M_PI / 4.0;  // [rad] drives forward if the goal is within this bearing
 
 base::Pose inverse(const base::Pose& X_AB) {
   const glm::dvec2 p = base::rotate(-X_AB.yaw, {-X_AB.x, -X_AB.y});

@@ -1,6 +1,6 @@
 #pragma once
-// What clients of Player make one robot do, in the frame of its odometry: velocities, a heading to keep, a pose to
-// reach.
+// Executes commands of Player clients for one robot, in the frame of its odometry: velocities, a heading to keep, or a
+// pose to reach.
 
 #include <cstdint>
 #include <optional>
@@ -12,37 +12,38 @@
 
 namespace sf::bridges::player {
 
-/// Where a robot is by its own account. Begins at 0, where the robot starts.
+/// The robot's pose by odometry. Starts at 0 at the robot's start pose.
 class Odometry {
  public:
-  /// @param track [m] between the wheels, as its encoders measure it; 0: it has no encoders, and knows its way exactly
+  /// @param track [m] wheel track as measured by its encoders; 0: no encoders, and exact odometry
   explicit Odometry(double track) : track_(track) {}
   Odometry() = default;
 
-  /// True pose of a tick.
+  /// Adds the true pose of a tick.
   void move(const base::Pose& X_WM);
-  /// A reading of the robot's encoders.
+  /// Adds a reading of the robot's encoders.
   void roll(const base::ReadingBlock& encoder);
-  /// Makes `X_OM` the robot's pose, and goes on from it.
+  /// Sets the robot's pose to `X_OM` and continues from it.
   void set(const base::Pose& X_OM);
   base::Pose pose() const;
 
  private:
   double track_ = 0.0;
   base::Pose X_WM_;
-  std::optional<base::Pose> X_OW_;   ///< of exact odometry; none before the first tick
+  std::optional<base::Pose> X_OW_;   ///< of exact odometry; empty before the first tick
   base::Pose X_OM_;                  ///< by encoders
-  double left_ = 0.0, right_ = 0.0;  ///< [m] rolled until X_OM_
+  double left_ = 0.0, right_ = 0.0;  ///< [m] travelled up to X_OM_
 };
 
 /// A heading to keep at a speed, or a pose to reach.
 struct Goal {
   base::Pose X_OG;
-  double speed = 0.0;       ///< [m/s] negative, to keep a heading: backwards
-  bool is_heading = false;  ///< only the yaw counts
+  double speed = 0.0;       ///< [m/s] when keeping a heading; negative: backwards
+  bool is_heading = false;  ///< only the yaw is used
 };
 
-/// The twist towards a goal. At a pose, the robot turns to its heading. @param X_OM the robot
+/// Returns the twist towards a goal. At the goal position, the robot turns to its heading.
+/// @param X_OM the robot
 base::Twist steer(const world::Mover& robot, const base::Pose& X_OM, const Goal& goal);
 
 }  // namespace sf::bridges::player

@@ -14,8 +14,8 @@ namespace sf::bridges::player {
 
 namespace {
 
-constexpr std::uint64_t kFirstConnection = 1u << 16;  // keys below are of ports
-constexpr double kQuiet = 1.0;                        // [s] after which a connection may make room
+constexpr std::uint64_t kFirstConnection = 1u << 16;  // lower keys are of ports
+constexpr double kQuiet = 1.0;                        // [s] after which a connection may be closed for a new client
 
 }  // namespace
 
@@ -41,7 +41,7 @@ Server::~Server() {
 }
 
 void Server::open(const netio::Endpoint& first) {
-  constexpr int kAttempts = 20;  // of rows of free ports
+  constexpr int kAttempts = 20;  // attempts to find consecutive free ports
   for (int attempt = 1; ports_.empty(); ++attempt) {
     try {
       open_all(first);
@@ -76,12 +76,12 @@ void Server::run() {
   while (!stop_) {
     const std::size_t before = connections_.size();
     for (const std::uint64_t key : wait_.wait()) {
-      if (key == netio::SocketWait::kWoken) publish(), flush();  // ahead of answers to requests that came later
+      if (key == netio::SocketWait::kWoken) publish(), flush();  // before answers to requests that arrived later
       if (key < kFirstConnection) accept_all(key);
       if (key >= kFirstConnection && key != netio::SocketWait::kWoken) receive(key);
     }
     flush();
-    // A descriptor is free again: those that waited for one are not reported a second time.
+    // A descriptor is free again. Pending connections are not reported a second time, so accept them now.
     if (connections_.size() >= before) continue;
     for (std::size_t port = 0; port < ports_.size(); ++port) accept_all(port);
     flush();
@@ -106,9 +106,9 @@ void Server::accept_all(std::size_t port) {
   }
 }
 
-/// Ends the connection that has been silent for longest among those that have opened no device, else among those of
-/// the host with most connections; where that host has no more than `host` would have, among all, of those that have
-/// been silent for `silent_`. Connections that were heard in the last second stay.
+/// Closes a connection to make room. Chooses the one that has been silent longest among those without an open device,
+/// else among those of the host with most connections. If that host has no more than `host` would have, chooses among
+/// all that have been silent for `silent_`. Connections active in the last second remain.
 bool Server::make_room(std::uint32_t host) {
   std::map<std::uint32_t, std::size_t> counts;
   for (const auto& [key, connection] : connections_) ++counts[connection.host()];
@@ -133,7 +133,7 @@ bool Server::make_room(std::uint32_t host) {
   return true;
 }
 
-/// The first one, then every ten seconds their number while more come.
+/// Logs the first refused client, then every ten seconds their number while more arrive.
 void Server::note_full(const netio::Endpoint& peer) {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_line_) return;
@@ -214,7 +214,7 @@ void Server::subscribe(Connection& connection, const Address& address, std::uint
   if (users_[device]++ == 0 && slot != world::kNone) exchange_.use(slot, true);
 }
 
-/// A robot whose last driver has left stands still.
+/// Stops a robot when its last driver has left.
 void Server::unsubscribe(Connection& connection, const Address& address) {
   const std::uint32_t row = connection.subscriptions().at(address).device;
   connection.unsubscribe(address);

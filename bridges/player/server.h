@@ -1,5 +1,5 @@
 #pragma once
-// The Player server: its ports, its clients and their messages, on a thread of its own.
+// The Player server: its ports, clients and messages, on its own thread.
 
 #include <atomic>
 #include <chrono>
@@ -20,28 +20,28 @@ namespace sf::bridges::player {
 
 inline constexpr std::size_t kMostClients = 64;
 inline constexpr std::size_t kMostRobotPorts = 256;
-inline constexpr double kSilent = 10.0;  ///< [s] without a message after which any connection may make room
+inline constexpr double kSilent = 10.0;  ///< [s] without a message after which a connection may be replaced
 
 struct ServerCounts {
   std::uint64_t clients = 0;    ///< accepted since the start
-  std::uint64_t refused = 0;    ///< closed at once, since kMostClients are connected that are all in use
+  std::uint64_t refused = 0;    ///< closed immediately, because kMostClients clients are connected and active
   std::uint64_t evicted = 0;    ///< closed for a new client
-  std::uint64_t malformed = 0;  ///< connections that a malformed message ended
+  std::uint64_t malformed = 0;  ///< connections closed because of a malformed message
 };
 
 class Server {
  public:
-  /// All robots are at the first port, robot k from 1 on alone at the k-th port after it, up to kMostRobotPorts.
-  /// @param bind its port is 0: any free ones in a row
-  /// @param silent [s] in place of kSilent
-  /// @throws base::InputError when a port is in use
+  /// All robots are at the first port. Robot k, counted from 1, is also alone at the k-th port after it, up to
+  /// kMostRobotPorts.
+  /// @param bind port 0: any free consecutive ports @param silent [s] in place of kSilent
+  /// @throws base::InputError if a port is in use
   Server(const Scene& scene, const Devices& devices, Exchange& exchange, const netio::Endpoint& bind,
          double silent = kSilent, int log_descriptor = 2);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Something was published. Never waits.
+  /// Signals that data was published. Never blocks.
   void wake();
   /// The first port.
   netio::Endpoint endpoint() const { return endpoint_; }
@@ -93,8 +93,8 @@ class Server {
   std::atomic<bool> stop_ = false;
   const double silent_;
   netio::RateLimitedLog log_;
-  std::chrono::steady_clock::time_point next_line_;  ///< of a client that is refused
-  std::uint64_t stated_ = 0;                         ///< of `refused_`, by the last line
+  std::chrono::steady_clock::time_point next_line_;  ///< of a refused client
+  std::uint64_t stated_ = 0;                         ///< value of `refused_` in the last line
   std::thread thread_;
 };
 

@@ -1,4 +1,4 @@
-// Requests to the server itself: which devices there are, what a client wants of them, and how.
+// Requests to the server itself: device lists, subscriptions and data modes.
 
 #include "bridges/player/server.h"
 
@@ -7,7 +7,7 @@ namespace sf::bridges::player {
 namespace {
 
 Address get_address(XdrReader& xdr) {
-  xdr.get(), xdr.get();  // host and port are the connection's
+  xdr.get(), xdr.get();  // host and port are those of the connection
   Address address;
   address.interf = static_cast<Interface>(xdr.get());
   address.index = xdr.get();
@@ -46,7 +46,7 @@ bool Server::handle_own(Connection& connection, const Header& header, std::span<
       connection.set_mode(static_cast<DataMode>(xdr.get()));
       acknowledge();
       return xdr.done();
-    case server_request::replace_rule:  // newer data replaces older always
+    case server_request::replace_rule:  // newer data always replaces older data
       for (int i = 0; i < 5; ++i) xdr.get();
       acknowledge();
       return xdr.done();
@@ -57,7 +57,7 @@ bool Server::handle_own(Connection& connection, const Header& header, std::span<
 }
 
 void Server::list(Connection& connection, const Header& header) {
-  constexpr std::size_t kMostListed = 4096;  // that clients have room for
+  constexpr std::size_t kMostListed = 4096;  // capacity of clients
   const auto& listing = ports_[connection.port()].listing.rows();
   payload_.clear();
   XdrWriter xdr(payload_);

@@ -1,7 +1,7 @@
 #pragma once
-// External Data Representation (RFC 4506) as Player uses it: big-endian, in units of four bytes. A variable array has
-// its count twice, as a member and as the array's length. A read beyond the end sets the reader's state to bad and
-// returns zeros.
+// External Data Representation (RFC 4506) as used by Player: big-endian, in units of four bytes. A variable array has
+// its count twice, as a member and as the array's length. A read beyond the end makes the reader invalid and returns
+// zeros.
 
 #include <bit>
 #include <concepts>
@@ -21,7 +21,7 @@ class XdrWriter {
  public:
   explicit XdrWriter(base::Bytes& out) : out_(out) {}
 
-  /// Smaller integers too take four bytes.
+  /// Smaller integers also take four bytes.
   void put(std::uint32_t value) { put_big(value, 4); }
   void put(std::int32_t value) { put(static_cast<std::uint32_t>(value)); }
   void put(float value) { put_big(std::bit_cast<std::uint32_t>(value), 4); }
@@ -30,24 +30,24 @@ class XdrWriter {
   void put_all(std::initializer_list<T> values) {
     for (const T value : values) put(value);
   }
-  /// Of a variable array, whose elements follow.
+  /// Writes the count of a variable array, whose elements follow.
   void put_count(std::size_t count) {
     put(static_cast<std::uint32_t>(count));
     put(static_cast<std::uint32_t>(count));
   }
-  /// A variable array of bytes.
+  /// Writes a variable array of bytes.
   void put_opaque(std::span<const std::uint8_t> bytes) {
     put_count(bytes.size());
     put_padded(bytes);
   }
-  /// Its bytes without their count.
+  /// Writes the bytes without their count.
   void put_padded(std::span<const std::uint8_t> bytes) {
     put_bytes(bytes);
     out_.resize(out_.size() + (4 - bytes.size() % 4) % 4);
   }
-  /// Bytes that are in XDR already.
+  /// Writes bytes that are already in XDR.
   void put_bytes(std::span<const std::uint8_t> bytes) { out_.insert(out_.end(), bytes.begin(), bytes.end()); }
-  /// Characters with their terminator.
+  /// Writes characters with their terminator.
   void put_text(const std::string& text) {
     put_opaque({reinterpret_cast<const std::uint8_t*>(text.c_str()), text.size() + 1});
   }
@@ -67,7 +67,8 @@ class XdrReader {
 
   std::uint32_t get() { return static_cast<std::uint32_t>(get_big(4)); }
   double get_double() { return std::bit_cast<double>(get_big(8)); }
-  /// Without its terminator. @param most [byte] longer texts, and counts that differ, make the reader bad
+  /// Returns the text without its terminator.
+  /// @param most [byte] longer texts, and counts that differ, make the reader invalid
   std::string get_text(std::size_t most) {
     const std::size_t count = get();
     good_ = good_ && get() == count && count <= most && (count + 3) / 4 * 4 <= in_.size() - at_;
@@ -76,9 +77,9 @@ class XdrReader {
     at_ += (count + 3) / 4 * 4;
     return std::string(text.substr(0, text.find('\0')));
   }
-  /// False after the first read beyond the end, and after a bad count.
+  /// Returns false after the first read beyond the end, and after an invalid count.
   bool good() const { return good_; }
-  /// True when all was read, and nothing beyond.
+  /// Returns whether exactly all bytes were read.
   bool done() const { return good_ && at_ == in_.size(); }
 
  private:
