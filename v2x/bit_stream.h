@@ -1,6 +1,6 @@
 #pragma once
-// Bits in and out, most significant first, as the unaligned packed encoding rules have them (UPER, ITU-T X.691), with
-// the encodings that all types share: lengths, open types, small numbers.
+// Bit streams, most significant bit first, as in the unaligned packed encoding rules (UPER, ITU-T X.691), with the
+// encodings shared by all types: lengths, open types, small numbers.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,26 +12,26 @@
 
 namespace sf::v2x {
 
-/// Reads a caller's bytes, which must outlive the reader. No exceptions: after the first fault all reads return zeros.
+/// Reads a caller's bytes, which must outlive the reader. Does not throw: after the first fault all reads return zeros.
 class BitReader {
  public:
   explicit BitReader(std::span<const std::uint8_t> in) : in_(in) {}
 
-  /// The next `count` bits, at most 64.
+  /// Returns the next `count` bits, at most 64.
   std::uint64_t bits(unsigned count);
   bool bit() { return bits(1) != 0; }
-  /// Octets behind a length, which may be fragmented: an open type or an OCTET STRING without bounds (X.691, 11.9).
+  /// Reads octets after a length, which may be fragmented: an open type or an unbounded OCTET STRING (X.691, 11.9).
   base::Bytes octets();
-  /// A normally small number (X.691, 11.6) below 64; a larger one is a fault.
+  /// Reads a normally small number (X.691, 11.6) below 64; a larger number is a fault.
   std::uint8_t small_number();
 
-  /// The first fault counts.
+  /// Records a fault. Only the first one is kept.
   void fail(std::string reason);
-  /// Puts a component's name before the place of the fault: "states", "[3]", "signalGroup".
+  /// Prepends a component's name to the location of the fault: "states", "[3]", "signalGroup".
   void fail_within(std::string_view component);
 
   bool good() const { return reason_.empty(); }
-  /// "states[3].signalGroup: reason"; empty without a fault.
+  /// Returns "states[3].signalGroup: reason"; empty without a fault.
   std::string fault() const { return place_.empty() ? reason_ : place_ + ": " + reason_; }
   std::size_t position() const { return at_; }               ///< [bit]
   std::size_t left() const { return in_.size() * 8 - at_; }  ///< [bit]
@@ -42,12 +42,12 @@ class BitReader {
   std::string place_, reason_;
 };
 
-/// Appends to a caller's buffer, which starts at a byte's border.
+/// Appends to a caller's buffer, starting at a byte boundary.
 class BitWriter {
  public:
   explicit BitWriter(base::Bytes& out) : out_(out) {}
 
-  /// The lowest `count` bits of `value`, at most 64.
+  /// Writes the lowest `count` bits of `value`, at most 64.
   void put(std::uint64_t value, unsigned count);
   void put_octets(std::span<const std::uint8_t> octets);
   /// @pre number < 64
@@ -55,7 +55,7 @@ class BitWriter {
 
  private:
   base::Bytes& out_;
-  unsigned free_ = 0;  ///< bits of the last byte that are not used yet
+  unsigned free_ = 0;  ///< unused bits of the last byte
 };
 
 }  // namespace sf::v2x

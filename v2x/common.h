@@ -1,6 +1,6 @@
 #pragma once
-// Parts that SPaT and MAP share (SAE J2735-2016, ISO/TS 19091). Numbers are those of the messages, not SI: each comment
-// has the unit. A member that is not optional here is required there.
+// Parts shared by SPaT and MAP (SAE J2735-2016, ISO/TS 19091). Numbers have the units of the messages, not SI: each
+// comment gives the unit. Members that are not optional here are required in the messages.
 
 #include <array>
 
@@ -8,7 +8,7 @@
 
 namespace sf::v2x {
 
-/// The addition of a region or agency to a message. Its octets are kept and not read.
+/// An extension of a message by a region or agency. Its octets are stored without decoding.
 struct RegionalExtension {
   std::uint8_t region = 0;
   base::Bytes value;
@@ -17,7 +17,7 @@ struct RegionalExtension {
 using Regional = std::vector<RegionalExtension>;  ///< at most 4; empty: absent
 
 struct IntersectionReference {
-  std::optional<std::uint16_t> region;  ///< road regulator; 0: tests
+  std::optional<std::uint16_t> region;  ///< road regulator; 0: reserved for tests
   std::uint16_t id = 0;
   bool operator==(const IntersectionReference&) const = default;
 };

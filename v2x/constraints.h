@@ -1,5 +1,5 @@
 #pragma once
-// Types of components as ASN.1 has them. Each message describes itself once, by
+// Types of components as in ASN.1. Each message describes itself once, by
 //
 //   fields(value, f)        f("name", member, constraint), f.optional("name", member, constraint), in order (SEQUENCE)
 //   alternative(value, f)   f(member, constraint) for the alternative `value.choice` (CHOICE)
@@ -26,7 +26,8 @@ struct Whole {
   std::int64_t max = 0;
 };
 
-/// ENUMERATED: the member holds the row of its name; beyond the names, where extensible: their number + the addition's.
+/// ENUMERATED: the member is the row of its name. In an extensible type, larger values are the number of names plus the
+/// number of the addition.
 struct Named {
   std::span<const std::string_view> names;
   bool extensible = true;
@@ -53,7 +54,7 @@ struct Text {
 /// BOOLEAN
 struct Flag {};
 
-/// An open type, whose octets are kept
+/// An open type, stored as octets
 struct Octets {};
 
 /// A SEQUENCE or CHOICE that describes itself
@@ -62,13 +63,13 @@ struct Described {};
 /// SEQUENCE (SIZE(min..max)) OF
 template <class Item = Described>
 struct ListOf {
-  std::string_view element;  ///< its name in XML; items that are a CHOICE or ENUMERATED have none
+  std::string_view element;  ///< its name in XML; none for items that are a CHOICE or ENUMERATED
   std::size_t min = 1;
   std::size_t max = 0;
   Item item{};
 };
 
-/// Components that a later edition added to a SEQUENCE; absent ones are empty. No values: no extension.
+/// Components added to a SEQUENCE by a later edition; absent ones are empty. No values: no extension.
 struct Additions {
   static constexpr std::size_t kMax = 64;
   std::vector<std::optional<base::Bytes>> values;
@@ -79,7 +80,7 @@ template <class T>
 concept Choice = requires(T& value) {
   value.choice;
 };
-/// Its `unknown` holds the octets of an alternative that a later edition added.
+/// `unknown` contains the octets of an alternative added by a later edition.
 template <class T>
 concept ExtensibleChoice = Choice<T> && requires(T& value) {
   value.unknown;
@@ -101,7 +102,7 @@ bool is_present(const std::vector<T>& list) {
   return !list.empty();
 }
 
-/// The value of an optional component: that of a present one, or a new one.
+/// Returns the value of an optional component, and creates it if absent.
 template <class T>
 T& engage(std::optional<T>& value) {
   return value ? *value : value.emplace();
@@ -115,7 +116,7 @@ T& engage(T& value) {
   return value;
 }
 
-/// Row in the names of a choice or enumeration as a number, beyond them for additions.
+/// Row in the names of a choice or enumeration as a number; additions follow the names.
 template <class Row>
 std::size_t row_of(Row row) {
   return static_cast<std::size_t>(row);

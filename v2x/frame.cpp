@@ -61,7 +61,7 @@ DecodeResult decode(std::span<const std::uint8_t> bytes, Frame& frame) {
   const bool is_extended = in.bit();
   const std::uint64_t id = in.bits(15);
   if (!in.good()) return {0, in.fault()};
-  // Before its length: what is no frame at all seldom has a valid one.
+  // Check before the length: data other than a frame rarely has a valid one.
   const bool is_spat = id == Spat::kMessageId;
   if (!is_spat && id != MapData::kMessageId)
     return {0, fmt::format("messageId: {}{} is neither SPaT (19) nor MAP (18)", id, name_of(id))};

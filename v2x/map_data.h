@@ -20,7 +20,7 @@ struct Position {
   bool operator==(const Position&) const = default;
 };
 
-/// A point of a lane, relative to the one before it, of the first one to the reference point.
+/// A point of a lane, relative to the previous point; the first point is relative to the reference point.
 struct NodeOffset {
   /// Offsets of 10, 11, 12, 13, 14 and 16 bits, a position, or an extension.
   enum Alternative : std::uint8_t { xy1, xy2, xy3, xy4, xy5, xy6, position, regional_offset };
@@ -61,21 +61,21 @@ struct LaneDataAttribute {
                                                                  "speedLimits",
                                                                  "regional"};
   Alternative choice = path_end_point_angle;
-  std::int16_t angle = 0;          ///< of the first five
+  std::int16_t angle = 0;          ///< of the first five alternatives
   std::vector<SpeedLimit> limits;  ///< 1 to 9
   Regional regional;
   base::Bytes unknown;
   bool operator==(const LaneDataAttribute&) const = default;
 };
 
-/// Attributes of a node, and of the lane from there on.
+/// Attributes of a node, and of the lane from that node on.
 struct NodeAttributes {
-  std::vector<std::uint8_t> local;        ///< of this node: rows of kNodeAttributes, at most 8, as the next two
-  std::vector<std::uint8_t> disabled;     ///< from here on no longer: rows of kSegmentAttributes
-  std::vector<std::uint8_t> enabled;      ///< from here on
+  std::vector<std::uint8_t> local;     ///< of this node: rows of kNodeAttributes; at most 8, also in the next two lists
+  std::vector<std::uint8_t> disabled;  ///< ending at this node: rows of kSegmentAttributes
+  std::vector<std::uint8_t> enabled;   ///< starting at this node
   std::vector<LaneDataAttribute> data;    ///< at most 8
-  std::optional<std::int16_t> width;      ///< [cm] added to the lane's, in [-512, 511]
-  std::optional<std::int16_t> elevation;  ///< [10 cm] added to that of the node before, in [-512, 511]
+  std::optional<std::int16_t> width;      ///< [cm] added to the lane's width, in [-512, 511]
+  std::optional<std::int16_t> elevation;  ///< [10 cm] added to the elevation of the previous node, in [-512, 511]
   Regional regional;
   Additions additions;
   bool operator==(const NodeAttributes&) const = default;
@@ -96,12 +96,12 @@ struct LaneOffset {
   bool operator==(const LaneOffset&) const = default;
 };
 
-/// A lane that is a copy of another one.
+/// A lane defined as a copy of another one.
 struct ComputedLane {
   std::uint8_t reference_lane = 0;
   LaneOffset x, y;
   std::optional<std::uint16_t> rotation;  ///< [0.0125 degrees] in [0, 28800]; 28800: unavailable
-  std::optional<std::int16_t> scale_x;    ///< [0.05 %] beyond 100 %, in [-2048, 2047]
+  std::optional<std::int16_t> scale_x;    ///< [0.05 %] in addition to 100 %, in [-2048, 2047]
   std::optional<std::int16_t> scale_y;
   Regional regional;
   Additions additions;
@@ -112,7 +112,7 @@ struct NodeList {
   enum Alternative : std::uint8_t { listed, computed_lane };
   static constexpr std::array<std::string_view, 2> kAlternatives{"nodes", "computed"};
   Alternative choice = listed;
-  std::vector<Node> nodes;  ///< 2 to 63; of an ingress lane, the first is at the stop line
+  std::vector<Node> nodes;  ///< 2 to 63; the first node of an ingress lane is at the stop line
   ComputedLane computed;
   base::Bytes unknown;
   bool operator==(const NodeList&) const = default;
@@ -137,7 +137,7 @@ struct LaneAttributes {
   bool operator==(const LaneAttributes&) const = default;
 };
 
-/// From a lane to another one, which may be part of another intersection.
+/// A connection from a lane to another, which may be part of another intersection.
 struct Connection {
   struct ConnectingLane {
     std::uint8_t lane = 0;
@@ -167,7 +167,7 @@ struct GenericLane {
   bool operator==(const GenericLane&) const = default;
 };
 
-/// An extension alone.
+/// Contains only an extension.
 struct SignalControlZone {
   RegionalExtension zone;
   Additions additions;

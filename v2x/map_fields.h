@@ -238,7 +238,7 @@ void fields(T& v, F&& f) {
   f("zone", v.zone, Described{});
 }
 
-/// The components with which intersections and road segments begin.
+/// Components at the start of intersections and road segments.
 template <class T, class F>
 void place_fields(T& v, F& f) {
   f.optional("name", v.name, kName);

@@ -18,7 +18,8 @@ enum class PhaseState : std::uint8_t {
   caution_conflicting_traffic   ///< flashing yellow
 };
 
-/// [0.1 s] since the start of the UTC hour, of the next hour where less than now; up to 35999, 36000 in a leap second.
+/// [0.1 s] since the start of the UTC hour, or of the next hour if less than the current time; up to 35999, and 36000
+/// in a leap second.
 using TimeMark = std::uint16_t;
 inline constexpr TimeMark kMoreThanAnHour = 36'000;
 inline constexpr TimeMark kUnknownTime = 36'001;  ///< 36111 in editions from 2020 on
@@ -29,7 +30,7 @@ struct TimeChangeDetails {
   std::optional<TimeMark> max_end;
   std::optional<TimeMark> likely;
   std::optional<std::uint8_t> confidence;  ///< of `likely`: row of a table of probabilities, in [0, 15]
-  std::optional<TimeMark> next;            ///< when the movement may go again
+  std::optional<TimeMark> next;            ///< when the movement is allowed again
   bool operator==(const TimeChangeDetails&) const = default;
 };
 
@@ -44,7 +45,7 @@ struct AdvisorySpeed {
   bool operator==(const AdvisorySpeed&) const = default;
 };
 
-/// A state, the present one or a later one.
+/// A present or future state.
 struct MovementEvent {
   PhaseState state = PhaseState::unavailable;
   std::optional<TimeChangeDetails> timing;
@@ -80,11 +81,11 @@ struct MovementState {
 struct IntersectionState {
   std::string name;
   IntersectionReference id;
-  std::uint8_t revision = 0;                  ///< in [0, 127]; changes with the MAP's
+  std::uint8_t revision = 0;                  ///< in [0, 127]; changes with that of the MAP
   std::uint16_t status = 0;                   ///< bit 0, manual control, is the most significant
-  std::optional<std::uint32_t> minute;        ///< of the year; kInvalidMinute: none
-  std::optional<std::uint16_t> milliseconds;  ///< in the minute
-  std::vector<std::uint8_t> enabled_lanes;    ///< revocable lanes that are open, at most 16
+  std::optional<std::uint32_t> minute;        ///< of the year; kInvalidMinute: unknown
+  std::optional<std::uint16_t> milliseconds;  ///< within the minute
+  std::vector<std::uint8_t> enabled_lanes;    ///< open revocable lanes, at most 16
   std::vector<MovementState> states;          ///< 1 to 255
   std::vector<ManeuverAssist> assist;         ///< at most 16
   Regional regional;

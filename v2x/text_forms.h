@@ -1,5 +1,5 @@
 #pragma once
-// How XML and JSON write the values that are no numbers.
+// Text forms in XML and JSON of values that are not numbers.
 
 #include <span>
 #include <string>
@@ -8,15 +8,18 @@
 
 namespace sf::v2x {
 
-/// "0010": `size` bits, the most significant first.
+/// Returns `size` bits as "0010", most significant first.
 std::string bits_text(std::uint64_t bits, unsigned size);
-/// "0A1B"
+/// Returns octets as "0A1B".
 std::string hex_text(std::span<const std::uint8_t> octets);
-/// Octets of a text of hexadecimal digits, in any case; nothing for other texts.
+/// Parses hexadecimal digits in either case.
+/// @return nullopt for any other text
 std::optional<base::Bytes> read_hex(std::string_view text);
-/// The name of a row; "extension-0" and so on beyond the names.
+/// Returns the name of a row; beyond the names, "extension-0" and so on.
 std::string row_text(std::span<const std::string_view> names, std::size_t row);
-/// The reverse; nothing for an unknown name. @param extensible "extension-N" is a name
+/// Inverts `row_text`.
+/// @param extensible whether "extension-N" is a name
+/// @return nullopt for an unknown name
 std::optional<std::uint8_t> read_row(std::span<const std::string_view> names, bool extensible, std::string_view text);
 
 }  // namespace sf::v2x

@@ -1,7 +1,7 @@
 #pragma once
-// Described values from UPER bits (ITU-T X.691, unaligned). A fault stays in the reader, with its place.
+// Decodes described values from UPER bits (ITU-T X.691, unaligned). The reader stores a fault with its location.
 //
-// Work is bounded by the input: every component that is read takes at least one bit, and reading stops at a fault.
+// Work is bounded by the input: every component takes at least one bit, and reading stops at a fault.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 
 namespace sf::v2x::uper {
 
-/// [bit] of a number in [0, range].
+/// Width [bit] of a number in [0, range].
 constexpr unsigned width_of(std::uint64_t range) { return static_cast<unsigned>(std::bit_width(range)); }
 
 template <class T>
@@ -79,7 +79,7 @@ inline void decode(BitReader& in, Additions& additions) {
     if (present >> (count - 1 - i) & 1) additions.values[i] = in.octets();
 }
 
-/// Reads the bits that tell which optional components are present.
+/// Reads the presence bits of optional components.
 struct Presence {
   BitReader& in;
   std::uint32_t bits = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Described values to UPER bits (ITU-T X.691, unaligned), the mirror of uper_decoder.h. A value out of its bounds is a
-// programming error and aborts.
+// Encodes described values to UPER bits (ITU-T X.691, unaligned), the inverse of uper_decoder.h. A value out of bounds
+// is a programming error and aborts.
 
 #include <fmt/format.h>
 
@@ -76,7 +76,7 @@ inline void encode(BitWriter& out, const Additions& additions) {
     if (value) out.put_octets(*value);
 }
 
-/// Writes the bits that tell which optional components are present.
+/// Writes the presence bits of optional components.
 struct PutPresence {
   BitWriter& out;
 

@@ -10,7 +10,7 @@ namespace sf::v2x {
 
 namespace {
 
-/// X.693 writes control characters as elements.
+/// X.693 encodes control characters as elements.
 constexpr std::array<std::string_view, 32> kControls{
     "nul", "soh", "stx", "etx", "eot", "enq", "ack", "bel", "bs",  "tab", "lf",  "vt",  "ff",  "cr",  "so",  "si",
     "dle", "dc1", "dc2", "dc3", "dc4", "nak", "syn", "etb", "can", "em",  "sub", "esc", "is4", "is3", "is2", "is1"};
@@ -33,7 +33,7 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-/// The lines of one message. Values of one line stand between their tags; all others have lines of their own.
+/// Writes the lines of one message. One-line values are placed between their tags; all others have their own lines.
 class Writer {
  public:
   explicit Writer(unsigned depth) : depth_(depth) {}
@@ -74,7 +74,7 @@ class Writer {
  private:
   void line(std::string_view text) { lines_ += fmt::format("{:{}}{}\n", "", 2 * depth_, text); }
 
-  // Values of one line.
+  // One-line values.
   template <class T>
   static std::string text(const T& value, const Whole&) {
     return fmt::format("{}", value);
@@ -87,7 +87,7 @@ class Writer {
   static std::string text(const std::string& value, const Text&) { return escaped(value); }
   static std::string text(const base::Bytes& value, const Octets&) { return hex_text(value); }
 
-  // Values of several.
+  // Multi-line values.
   template <class T>
   void content(const T& value, const Named& type) {
     line(fmt::format("<{}/>", row_text(type.names, row_of(value))));

@@ -1,6 +1,6 @@
 #pragma once
-// Frames as XML, by the XML encoding rules of ASN.1 (X.693) as usual tools write them: names of J2735, lists of choices
-// and enumerations without names of items, octets as hexadecimal digits.
+// Frames as XML, by the XML encoding rules of ASN.1 (X.693) in their usual form: names of J2735, no item names in lists
+// of choices and enumerations, octets as hexadecimal digits.
 
 #include <string>
 
@@ -8,7 +8,8 @@
 
 namespace sf::v2x {
 
-/// `<MessageFrame>` and all within, indented by two blanks a level. @param depth levels around it
+/// Returns `<MessageFrame>` with its content, indented by two spaces per level.
+/// @param depth enclosing levels
 std::string xml_of(const Frame& frame, unsigned depth = 0);
 
 }  // namespace sf::v2x
