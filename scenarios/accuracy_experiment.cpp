@@ -17,15 +17,15 @@ namespace sf::scenarios {
 
 namespace {
 
-/// Results of one mode, means over trials.
+/// Results of one mode, averaged over trials.
 struct Outcome {
   std::string test;
   std::string sensor;  ///< sensor type
   std::string mode;
-  double abs_error = 0.0;  ///< [m], with magnetometers [Gauss], of the controller; 0 without one
+  double abs_error = 0.0;  ///< [m], or [Gauss] for magnetometers: error of the controller; 0 without a controller
   double max_error = 0.0;
-  double missed = 0.0;  ///< [-] part of the visible cells that is not mapped
-  double wrong = 0.0;   ///< [-] part of the known cells
+  double missed = 0.0;  ///< [-] fraction of the visible cells that is not mapped
+  double wrong = 0.0;   ///< [-] fraction of the known cells
   double contacts = 0.0;
   double seconds = 0.0;  ///< simulated
   bool all_done = true;
@@ -114,7 +114,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Outcom
   return text + fmt::format("\n## What it shows\n\n{}\n", context.type.reasons);
 }
 
-/// A panel of one test, with the modes along the axis in their order.
+/// Returns a panel of one test, with the modes in order along the axis.
 viz::Panel panel_of(const std::vector<Outcome>& outcomes, const std::string& test, const std::string& y_name,
                     double Outcome::*value, double scale) {
   viz::Panel panel{.y_name = y_name, .from_zero = true};

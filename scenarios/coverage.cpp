@@ -21,9 +21,9 @@ using maps::Cell;
 using sensors::lasers_of;
 using sensors::LaserSettings;
 
-constexpr double kMostWords = 1 << 18;  ///< 61 m x 61 m in cells of 3 cm, which bounds memory and time
+constexpr double kMostWords = 1 << 18;  ///< 61 m x 61 m in cells of 3 cm; bounds memory and time
 
-/// The explorer's grid where possible, so that both maps have the same cells.
+/// Uses the explorer's grid if possible, so that both maps have the same cells.
 maps::GridGeometry plan_over(const world::World& world, double cell) {
   try {
     return control::grid_around(world, cell);

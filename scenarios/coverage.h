@@ -1,5 +1,5 @@
 #pragma once
-// Map coverage of a robot: its own map compared with a reference computed from the true walls.
+// Map coverage of a robot: compares its map with a reference computed from the true walls.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,15 +14,14 @@
 
 namespace sf::scenarios {
 
-/// Map of one robot, made of the scans of its first laser at their reported poses.
+/// The map of one robot, built from the scans of its first laser at their reported poses.
 class RobotMap {
  public:
-  /// Uses the grid of the explorer (control/explore.h), or one of the world's extent where the area is too large for
-  /// that. Cells are larger where the map would have more than 4.2 million of them.
-  /// @param cell [m]
-  /// @pre the mover has a laser
+  /// Uses the grid of the explorer (control/explore.h), or one over the world's extent if the area is too large for
+  /// that. Enlarges cells if the map would have more than 4.2 million of them.
+  /// @param cell [m] @pre the mover has a laser
   RobotMap(const world::World& world, std::uint32_t mover, double cell = 0.03);
-  /// Adds the reading if it is a scan of that laser.
+  /// Adds the reading if it is a scan of the robot's first laser.
   void add(const base::ReadingBlock& reading);
   const maps::OccupancyGrid& grid() const { return grid_; }
 
@@ -31,17 +30,18 @@ class RobotMap {
   maps::OccupancyGrid grid_;
   std::vector<glm::dvec2> beams_;
   double range_min_ = 0.0, range_max_ = 0.0;  ///< [m]
-  std::vector<double> ranges_;                ///< [m] of the last scan with flags
+  std::vector<double> ranges_;                ///< [m] of the last scan with quality flags
 };
 
-/// Adds each scan to the map of its mover, if there is one. @param maps by row of the mover
+/// Adds each scan to the map of its mover, if present.
+/// @param maps by row of the mover
 void add_scans(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, RobotMap>& maps);
 
-/// Free cells of a reference, and those of them that are unexplored in a map.
+/// The free cells of a reference, and how many of them are unexplored in a map.
 struct Coverage {
   std::size_t wanted = 0;
   std::size_t missed = 0;  ///< <= wanted
-  /// [-] 1 only when no cell is missed.
+  /// [-] 1 only if no cell is missed.
   double coverage() const {
     return wanted == 0 ? 1.0 : static_cast<double>(wanted - missed) / static_cast<double>(wanted);
   }
@@ -51,7 +51,7 @@ Coverage coverage_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& 
 /// Missed and wanted cells, such as "3 of 9159".
 std::string text_of(const Coverage& seen);
 
-/// [-] Part of the cells known in both maps that are free in one and occupied in the other.
+/// [-] Fraction of the cells known in both maps that are free in one and occupied in the other.
 double disagreement(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference);
 
 }  // namespace sf::scenarios

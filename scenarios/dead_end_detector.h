@@ -1,5 +1,5 @@
 #pragma once
-// Detection of dead ends, where a robot turns back and forth without leaving.
+// Detects dead ends, in which a robot turns back and forth without leaving.
 
 #include <cstdint>
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace sf::scenarios {
 
-/// A dead end: turns in place (the robot's own, or by a supervisor) reversed their direction `kReversals` times within
-/// a body's length. It lasts from the first of these reversals until the robot is farther than that length from the
-/// place of detection.
+/// Number of reversals of turns in place (by the robot or by a supervisor), within a body's length, that make a dead
+/// end. It lasts from the first of these reversals until the robot is farther than that length from the place of
+/// detection.
 inline constexpr std::size_t kReversals = 6;
 
-/// Tracks one robot. `update` is called once per tick.
+/// Tracks one robot. Call `update` once per tick.
 class DeadEndDetector {
  public:
   /// @param length [m] of the body @param interval [s] between ticks
@@ -24,9 +24,9 @@ class DeadEndDetector {
   void turned_by_hand(const base::Report& report, double angle);
 
   std::uint32_t count() const { return count_; }
-  /// [s] Time in dead ends or standing in contact.
+  /// [s] Time in dead ends or at rest in contact.
   double stuck() const { return stuck_; }
-  /// [s] Part of it standing in contact.
+  /// [s] The part of it at rest in contact.
   double standing_in_contact() const { return stood_; }
 
  private:
@@ -44,7 +44,7 @@ class DeadEndDetector {
   glm::dvec2 where_;
   std::uint32_t count_ = 0;
   std::vector<Reversal> reversals_;
-  double waited_ = 0.0;  ///< [s] standing in contact since the first of `reversals_`, to be counted once
+  double waited_ = 0.0;  ///< [s] at rest in contact since the first of `reversals_`, to be counted only once
 };
 
 }  // namespace sf::scenarios

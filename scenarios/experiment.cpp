@@ -71,7 +71,7 @@ std::vector<Trial> run_trials(const ExperimentContext& context, const TrialOptio
       std::error_code ignored;
       std::filesystem::remove(std::filesystem::path(own.record) / recording_part_of(own.ranks, own.compression).file(),
                               ignored);
-      std::filesystem::remove(own.record, ignored);  // fails and keeps the folder when it holds other files
+      std::filesystem::remove(own.record, ignored);  // fails and keeps the folder if it contains other files
       throw;
     }
   }

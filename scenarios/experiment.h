@@ -17,13 +17,13 @@ namespace sf::scenarios {
 struct ExperimentOptions {
   std::uint32_t trials = 3;
   std::uint64_t seed = 1;                                       ///< trial k has seed + k
-  std::optional<Plant> plant;                                   ///< none: the experiment's own
+  std::optional<Plant> plant;                                   ///< nullopt: the experiment's own
   std::string folder;                                           ///< contains the scenario files
   std::string out;                                              ///< output folder
   record::Compression compression = record::Compression::zstd;  ///< of recordings
   unsigned threads = 0;
   cluster::Ranks* ranks = nullptr;  ///< that share the fleets of all trials; null: none
-  /// Receives warnings of the world file.
+  /// Called with warnings of the world file.
   std::function<void(const std::string& world, const std::vector<world::Warning>&)> warn;
   std::function<bool()> stop;  ///< polled; true ends the experiment; may be empty
 };
@@ -36,52 +36,53 @@ struct ExperimentContext {
   const Scenario& scenario;
   const ExperimentOptions& options;
   gpu::Device& device;
-  std::function<void(double, const std::string&)> progress;  ///< completed part in [0, 1], and the next step
+  std::function<void(double, const std::string&)> progress;  ///< receives the completed fraction and the next step
 };
 
 struct ExperimentType {
   std::string_view name;
   std::string_view scenario;   ///< stem of its scenario file; empty: its name
   std::string_view summary;    ///< one line for help
-  Plant plant = Plant::ideal;  ///< default of the scenario and the user
-  /// Text for its report: reasons for deviations from the thesis, or the findings.
+  Plant plant = Plant::ideal;  ///< default for the scenario and the user
+  /// Text for the report: reasons for deviations from the thesis, or the findings.
   std::string_view reasons;
-  /// Runs it. @return the names of the files written to the output folder
+  /// Runs the experiment.
+  /// @return names of the files written to the output folder
   std::vector<std::string> (*run)(const ExperimentContext& context);
 };
 
 std::span<const ExperimentType* const> experiments();
-/// Null for an unknown name.
+/// Returns null for an unknown name.
 const ExperimentType* find_experiment(std::string_view name);
 
-/// Reads the scenario, runs the experiment and writes its files: of several ranks the first, and each its parts of the
-/// recordings.
+/// Reads the scenario, runs the experiment and writes its files. With several ranks, the first one writes the files,
+/// and each writes its parts of the recordings.
 /// @return the files written
-/// @throws base::InputError for a folder that cannot be written or an invalid scenario
-/// @throws Interrupted when `options.stop` returns true; the recordings of complete trials remain, and no other file is
+/// @throws base::InputError for an invalid scenario or a folder that cannot be written
+/// @throws Interrupted if `options.stop` returns true; the recordings of complete trials remain, and no other file is
 /// written
 std::vector<std::string> run_experiment(const ExperimentType& type, const ExperimentOptions& options,
                                         gpu::Device& device,
                                         const std::function<void(double, const std::string&)>& progress);
 
-// --- Used by experiments ---------------------------------------------------------------------------------------------
+// --- For experiments -------------------------------------------------------------------------------------------------
 
-/// Runs all trials one after another, each with the output folder `trial-<k>/`.
+/// Runs all trials in sequence, each with the output folder `trial-<k>/`.
 std::vector<Trial> run_trials(const ExperimentContext& context, const TrialOptions& options);
-/// This process writes the report: of several ranks the first.
+/// Returns whether this process writes the report: only the first of several ranks does.
 bool reports(const ExperimentContext& context);
-/// Options of a trial without a recording.
+/// Returns options of a trial without a recording.
 TrialOptions trial_options(const ExperimentContext& context);
-/// Path of a file in the output folder.
+/// Returns the path of a file in the output folder.
 std::string in_folder(const ExperimentContext& context, const std::string& name);
-/// Creates the output folder given with -o, and its parents, if missing.
+/// Creates the output folder given with -o, and its parents if missing.
 /// @throws base::InputError with the path on failure
 void make_folder(const std::string& path);
 /// @throws base::InputError with the path on failure
 void write_text(const std::string& path, const std::string& text);
-/// "3 trials", "1 trial".
+/// Returns "3 trials", "1 trial".
 std::string counted(std::uint64_t count, std::string_view one);
-/// Setup for reports: "plant `thesis`, seeds 1 to 3, link ...".
+/// Returns the setup for reports: "plant `thesis`, seeds 1 to 3, link ...".
 std::string setup_of(const ExperimentContext& context, const Disturbance& disturbance);
 
 }  // namespace sf::scenarios

@@ -23,9 +23,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kDriven = 2.0;  ///< [s] simulated
-constexpr int kLaps = 4;         ///< measured, after one for warm-up
+constexpr int kLaps = 4;         ///< measured, after one warm-up lap
 
-/// A farm driven along recorded paths repeatedly, with time going on from lap to lap.
+/// Drives a farm along recorded paths repeatedly. Time continues from lap to lap.
 class Drive {
  public:
   Drive(const world::World& world, gpu::Device& device, RecordedPaths paths, const farm::FarmOptions& options)
@@ -40,7 +40,7 @@ class Drive {
     farm_.tick(now_, paths_[at]);
     now_ += interval_;
   }
-  /// [s] Mean time of a tick over all laps but the first.
+  /// [s] Returns the mean time of a tick over all laps except the first.
   double laps() {
     for (std::size_t at = 0; at < paths_.size(); ++at) tick(at);
     stats_before_ = farm_.stats();

@@ -21,10 +21,10 @@ struct SensorTypeCost {
   std::vector<std::string> kernels;
   std::vector<gpu::DeviceAllocation> tables;  ///< largest first
   std::size_t bytes = 0;                      ///< of all tables
-  std::string source;         ///< sensor type from whose readings it is computed, subscribed together; empty: none
-  double tick = 0.0;          ///< [s] mean wall time of a tick with this type alone
-  double readings = 0.0;      ///< mean number per tick
-  double reused = 0.0;        ///< mean number of reused readings per tick
+  std::string source;     ///< sensor type whose readings it is computed from, subscribed together with it; empty: none
+  double tick = 0.0;      ///< [s] mean wall time of a tick with this type alone
+  double readings = 0.0;  ///< mean number per tick
+  double reused = 0.0;    ///< mean number per tick
   sensors::SensorStats work;  ///< sum over all measured ticks
 };
 
@@ -38,12 +38,12 @@ struct WallSlice {
 struct Explanation {
   std::string caster;  ///< description of the ray caster
   std::vector<SensorTypeCost> types;
-  std::vector<std::string> absent;                     ///< sensor types that the world does not have
+  std::vector<std::string> absent;                     ///< sensor types that do not occur in the world
   std::vector<WallSlice> slices;                       ///< by height of the lasers
   std::size_t walls = 0;                               ///< of the world
   std::vector<sensors::AccuracyStatement> statements;  ///< modes and bounds by sensor type
   std::uint64_t ticks = 0;                             ///< measured ticks per row
-  double build = 0.0;                                  ///< [s] time to make tables and kernels
+  double build = 0.0;                                  ///< [s] time to build tables and kernels
   double first = 0.0;                                  ///< [s] first tick with all sensors subscribed
   double silent = 0.0;                                 ///< [s] mean time of a tick without subscription
   double all = 0.0;                                    ///< [s] mean time of a tick with all sensors subscribed
@@ -52,7 +52,7 @@ struct Explanation {
 
 /// Drives the robots with `wander` for two seconds of simulated time. Then ticks a farm along the recorded paths:
 /// without subscription, with each sensor type alone, and with all.
-/// @param progress called with the completed part in (0, 1]; may be empty
+/// @param progress called with the completed fraction in (0, 1]; may be empty
 /// @throws base::InputError as farm::Farm
 Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads,
                     const std::function<void(double)>& progress = {});

@@ -59,13 +59,13 @@ class RankShare : public FleetShare {
 
   cluster::Ranks& ranks_;
   farm::Farm* farm_ = nullptr;
-  std::optional<RankExchange> exchange_;  ///< once attached
+  std::optional<RankExchange> exchange_;  ///< set by `attach`
   std::vector<ControlStatus> statuses_;   ///< per mover
   bool exchanging_ = false;
   bool stop_ = false, stop_agreed_ = false;
 };
 
-/// Every rank moves and senses the robots in its tile, and decides for those that began there.
+/// Every rank moves and senses the robots in its tile, and decides for those that started there.
 class TileShare final : public RankShare {
  public:
   TileShare(const world::World& world, const ShareOptions& options)
@@ -109,10 +109,10 @@ class TileShare final : public RankShare {
   }
 
   FleetTiles tiles_;
-  std::optional<world::World> part_;  ///< of this rank's tile; none: tiles move, and every rank knows all walls
-  bool starts_unchecked_;             ///< the walls were not known at load
-  std::uint64_t balance_ = 0;         ///< ticks between new cuts of the tiles; 0: they stay
-  double balanced_s_ = 0.0;           ///< [s] of sensing until the last cut
+  std::optional<world::World> part_;  ///< of this rank's tile; nullopt: tiles change, and every rank has all walls
+  bool starts_unchecked_;             ///< the walls were not available at load
+  std::uint64_t balance_ = 0;         ///< ticks between repartitions of the tiles; 0: fixed tiles
+  double balanced_s_ = 0.0;           ///< [s] of sensing up to the last repartition
 };
 
 }  // namespace

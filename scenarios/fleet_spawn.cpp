@@ -15,9 +15,9 @@ namespace sf::scenarios {
 
 namespace {
 
-constexpr double kBetween = 0.17;  // [m] least gap between two bodies at the start
+constexpr double kBetween = 0.17;  // [m] minimum gap between two bodies at the start
 
-/// A robot that stays, at its pose in the world or in the scenario.
+/// A robot that remains, at its pose in the world or in the scenario.
 struct Stays {
   std::uint32_t row = 0;
   base::Pose X_WM;
@@ -57,8 +57,7 @@ bool clear(const base::Pose& X_WM, double radius, const world::World& world, con
   });
 }
 
-/// Draws more poses than needed when some are too near to the robots that stay. Extra draws do not change the poses
-/// drawn before.
+/// Draws more poses than needed if some are too close to the remaining robots. Extra draws do not change earlier poses.
 std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::World& world,
                                         const world::RoadNetwork& roads, const world::Mover& original,
                                         const std::vector<Stays>& stays) {

@@ -16,7 +16,7 @@ namespace {
 
 glm::dvec2 place_of(const base::Pose& X_WM) { return {X_WM.x, X_WM.y}; }
 
-/// [m] Largest way of an origin in a tick, and largest radius.
+/// [m] Largest displacement of an origin in a tick, and largest radius.
 struct Largest {
   double way = 0.0, radius = 0.0;
 };
@@ -24,14 +24,14 @@ struct Largest {
 Largest largest_of(const world::World& world) {
   Largest largest;
   for (const world::Mover& mover : world.movers) {
-    // A command may go forward and to the left at full speed, and a turn pushes off from walls.
+    // A command may combine full speed forward and to the left, and a turn pushes off from walls.
     largest.way = std::max(largest.way, 1.5 * mover.max_forward * world.interval + 0.1);
     largest.radius = std::max(largest.radius, mover.radius);
   }
   return largest;
 }
 
-/// [m] From a mover in a tile to a surface that matters to its sensors or its motion.
+/// [m] Distance from a mover in a tile to the farthest surface that matters to its sensors or its motion.
 double reach_of(const world::World& world, const sensors::SensorSet& sensor_set) {
   const Largest largest = largest_of(world);
   double reach = robots::Fleet::kRounds * 2.0 * (largest.way + largest.radius);
@@ -42,7 +42,7 @@ double reach_of(const world::World& world, const sensors::SensorSet& sensor_set)
                                "' depend on the whole world; leave --tiles out");
       reach = std::max(reach, row.reach + std::hypot(row.X_MS.x, row.X_MS.y));
     }
-  // Samples between two ticks see movers on their way.
+  // Samples between two ticks see movers during their motion.
   return reach + largest.radius + 4.0 * largest.way;
 }
 

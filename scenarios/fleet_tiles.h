@@ -1,13 +1,13 @@
 #pragma once
-// A world in tiles, one per rank. A rank moves and senses the movers in its tile, wherever it is decided for them: at
-// their home, the rank of the tile in which they began. It knows its tile's surroundings alone:
+// A world in tiles, one per rank. A rank moves and senses the movers in its tile. Decisions for a mover are made at its
+// home, the rank of the tile in which it started. A rank stores only the surroundings of its tile:
 //
-//   walls   as far as anything in the tile can sense or collide with them
-//   ghosts  movers of other tiles as near as that; the ranks of their tiles send their states each tick, bit by bit
+//   walls   within reach of any sensor or collision in the tile
+//   ghosts  movers of other tiles within that reach; the ranks of their tiles send their exact states each tick
 //
-// Near a tile's edge a rank moves its ghosts, too: a mover's motion depends on the movers near it alone
-// (robots/fleet.h), so its own movers go where one process would let them go. A mover that crosses an edge is passed on
-// with the states of its sensors. Its home gets its state, its readings and its neighbours in radio range.
+// Near a tile's edge a rank also moves its ghosts. A mover's motion depends only on the movers near it
+// (robots/fleet.h), so a rank's own movers move exactly as in a single process. A mover that crosses an edge is handed
+// over with the states of its sensors. Its home receives its state, its readings and its neighbours in radio range.
 
 #include <cstdint>
 #include <map>
@@ -25,40 +25,43 @@
 
 namespace sf::scenarios {
 
-/// One thread; all ranks make the same calls.
+/// Not thread-safe; all ranks make the same calls.
 class FleetTiles final : public farm::ReadingExchange {
  public:
-  /// `ranks` must outlive it. @throws base::InputError for a sensor whose readings depend on the whole world
+  /// `ranks` must outlive it.
+  /// @throws base::InputError for a sensor whose readings depend on the whole world
   FleetTiles(cluster::Ranks& ranks, const world::World& world);
 
-  /// Drops the walls that this rank does not need. Of files of outlines that are not read yet, it reads the others.
+  /// Drops the walls that this rank does not need. Reads the needed ones from files of outlines that are not loaded
+  /// yet.
   void keep_own_part(world::World& world) const;
-  /// Robots of all ranks that cannot stand where they start, each judged by its home; all ranks call this.
+  /// Returns warnings about robots of all ranks that cannot start at their poses, each checked by its home. All ranks
+  /// call this.
   std::vector<world::Warning> warnings_of_starts(const world::World& part);
-  /// The home of each mover.
+  /// Returns the home of each mover.
   std::span<const unsigned> homes() const { return homes_; }
-  /// Shows `fleet` and `farm`, which must outlive it, the movers of this part at load.
-  /// @param v2v_ranges [m] in: of the movers whose home this is, 0 for all others; out: of all movers
+  /// Initializes `fleet` and `farm`, which must outlive it, with the movers of this part at load.
+  /// @param v2v_ranges [m] in: of the movers at home here, 0 for all others; out: of all movers
   void begin(robots::Fleet& fleet, farm::Farm& farm, std::span<double> v2v_ranges);
 
-  /// After each motion: takes over movers and ghosts. The first rank gets the states of all movers.
+  /// Called after each motion: takes over movers and ghosts. The first rank receives the states of all movers.
   void share_states();
-  /// After that: the neighbours in radio range of movers that are away from home.
+  /// Called after `share_states`: sends the neighbours in radio range of movers that are away from home.
   void share_neighbours();
-  /// Readings go home.
+  /// Sends readings to each mover's home rank.
   void exchange(std::vector<base::ReadingBlock>& readings) override;
 
-  /// Cuts the plane anew, by the time that ranks have taken; the new tiles hold from the next motion but one, when
-  /// their ranks know the states of their movers from the motion before. Ranks must know all walls.
-  /// @param seconds [s] of sensing since the last cut
+  /// Repartitions the plane by the time that ranks have taken. The new tiles take effect two motions later, when their
+  /// ranks have the states of their movers from the previous motion. All ranks must have all walls.
+  /// @param seconds [s] of sensing since the last repartition
   void cut_anew(double seconds);
 
   bool measures(std::uint32_t mover) const { return measured_[mover] != 0; }
-  /// The mover is in this rank's tile or a ghost there.
+  /// Returns whether the mover is in this rank's tile or a ghost there.
   bool present(std::uint32_t mover) const { return present_[mover] != 0; }
-  /// Neighbours of a mover away from its home, which this is: their states.
+  /// Returns the states of the neighbours of a mover that is away from its home, which is this rank.
   std::span<const base::Report> neighbours(std::uint32_t mover) const;
-  /// Movers that this rank has passed on so far.
+  /// Returns the number of movers that this rank has handed over.
   std::uint64_t passed_on() const { return passed_on_; }
 
  private:
@@ -70,22 +73,22 @@ class FleetTiles final : public farm::ReadingExchange {
   void clear_blocks();
 
   cluster::Ranks& ranks_;
-  double wall_reach_ = 0.0;               ///< [m] from a tile to the farthest wall that matters there
-  double ghost_reach_ = 0.0;              ///< [m] likewise, to the farthest mover
+  double wall_reach_ = 0.0;               ///< [m] from a tile to the farthest wall that matters in it
+  double ghost_reach_ = 0.0;              ///< [m] from a tile to the farthest mover that matters in it
   std::vector<double> v2v_ranges_;        ///< [m] per mover
-  std::vector<std::uint8_t> everywhere_;  ///< per mover: it carries magnets, which are summed in one order
+  std::vector<std::uint8_t> everywhere_;  ///< per mover: it carries magnets, whose fields are summed in a fixed order
   std::vector<unsigned> homes_;           ///< per mover
   std::vector<double> costs_;             ///< per mover
   cluster::Tiles tiles_;
-  std::optional<cluster::Tiles> next_;  ///< tiles from the next motion but one on
-  bool next_known_ = false;             ///< ghosts of the next tiles have been shared once
+  std::optional<cluster::Tiles> next_;  ///< tiles that take effect two motions later
+  bool next_known_ = false;             ///< whether ghosts of the next tiles have been shared once
   robots::Fleet* fleet_ = nullptr;
   farm::Farm* farm_ = nullptr;
   std::vector<std::uint8_t> measured_, present_, seen_;  ///< per mover
   std::vector<std::uint32_t> own_;                       ///< movers in the tile, ascending
   std::vector<base::Bytes> blocks_;                      ///< per rank
   std::vector<farm::ReadingFromBytes> received_;
-  std::map<std::uint32_t, std::vector<base::Report>> neighbours_;  ///< of movers away from this home
+  std::map<std::uint32_t, std::vector<base::Report>> neighbours_;  ///< of movers that are away from this home
   std::uint64_t passed_on_ = 0;
 };
 

@@ -10,11 +10,11 @@ namespace sf::scenarios {
 namespace {
 
 constexpr double kConfidence = 0.95;
-constexpr double kNormalQuantile = 1.959963984540054;  // 0.975 of the standard normal distribution
-constexpr std::size_t kMostSummed = 100'000;           // beyond, that of the normal distribution is within 3e-5
+constexpr double kNormalQuantile = 1.959963984540054;  // 0.975 quantile of the standard normal distribution
+constexpr std::size_t kMostSummed = 100'000;           // beyond this, the normal distribution is within 3e-5
 
-/// P(|t| < tan(angle) sqrt(freedom)): finite sums of Abramowitz and Stegun, "Handbook of Mathematical
-/// Functions", 26.7.3 and 26.7.4.
+/// P(|t| < tan(angle) sqrt(freedom)): finite sums of Abramowitz and Stegun, "Handbook of Mathematical Functions",
+/// 26.7.3 and 26.7.4.
 double central_part(double angle, std::size_t freedom) {
   const double cosine = std::cos(angle), square = cosine * cosine;
   const bool odd = freedom % 2 == 1;
@@ -52,7 +52,7 @@ Interval proportion_interval(std::size_t hits, std::size_t count) {
   const double z2 = kNormalQuantile * kNormalQuantile;
   const double middle = (p + 0.5 * z2 / n) / (1.0 + z2 / n);
   const double half = kNormalQuantile / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + 0.25 * z2 / (n * n));
-  // Rounding must not put the ends of the certain cases beyond them.
+  // Rounding must not move the exact limits of 0 and 1.
   return {count, p, hits == 0 ? 0.0 : std::max(0.0, middle - half), hits == count ? 1.0 : std::min(1.0, middle + half)};
 }
 

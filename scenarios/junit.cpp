@@ -16,7 +16,7 @@ std::string case_of(const ScenarioResult& result, const ExpectationResult& outco
                             escaped(outcome.expected), escaped(outcome.measured), escaped(result.file), outcome.line);
 }
 
-/// A skipped case, so that a scenario without expectations appears in the results.
+/// Returns a skipped case, so that a scenario without expectations appears in the results.
 std::string suite_of_nothing(const ScenarioResult& result) {
   return fmt::format(
       "  <testsuite name=\"{0}\" tests=\"1\" failures=\"0\" skipped=\"1\" time=\"{1:.3f}\">\n"
@@ -25,7 +25,7 @@ std::string suite_of_nothing(const ScenarioResult& result) {
       escaped(result.name), result.wall, escaped(result.file));
 }
 
-/// An error: the scenario did not come to its end, so no expectation has a value.
+/// Returns an error: the scenario did not complete, so no expectation has a value.
 std::string suite_of_failure(const ScenarioResult& result) {
   return fmt::format(
       "  <testsuite name=\"{0}\" tests=\"1\" failures=\"0\" errors=\"1\" time=\"{1:.3f}\">\n"

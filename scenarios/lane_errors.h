@@ -7,17 +7,16 @@
 namespace sf::scenarios {
 
 struct LaneErrors {
-  double mean_abs = 0.0;  ///< [m] of the robot's origin from the lane's middle
-  double max_abs = 0.0;   ///< [m]
-  double amplitude =
-      0.0;  ///< [m] of the oscillation on `kStraight`: sqrt(2) standard deviations; 0 without poses there
-  bool left_lane = false;  ///< the origin crossed an edge
+  double mean_abs = 0.0;   ///< [m] of the robot's origin from the lane's middle
+  double max_abs = 0.0;    ///< [m]
+  double amplitude = 0.0;  ///< [m] of the oscillation on `kStraight`: sqrt(2) standard deviations; 0 without poses
+  bool left_lane = false;  ///< whether the origin crossed an edge
 };
 
-/// [m] along the path: the test path's straight before its bend, behind the return from the start.
+/// [m] along the path: the straight part of the test path before its bend, after the return from the start.
 inline constexpr double kStraight[2] = {1.0, 2.6};
 
-/// Zeros for a track without poses.
+/// Returns zeros for a track without poses.
 LaneErrors lane_errors(const viz::Track& track, const world::Path& path);
 
 }  // namespace sf::scenarios

@@ -1,4 +1,4 @@
-// Lane keeping by states that reach the farm late: with the true ones, the newest, and filtered ones.
+// Lane keeping with states that reach the farm late: true, newest, and filtered states.
 
 #include <fmt/format.h>
 
@@ -18,18 +18,18 @@ struct States {
   const char* name;
   bool late;
   bool filter;
-  bool second;  ///< late by the link of `lane-edge-p`, not the scenario's
+  bool second;  ///< late by the link of `lane-edge-p` instead of the scenario's link
 };
 constexpr std::array kStates{States{"true", false, false, false}, States{"newest", true, false, false},
                              States{"filtered", true, true, false}, States{"newest, 1 s late", true, false, true},
                              States{"filtered, 1 s late", true, true, true}};
 constexpr netio::LinkModel kSecond{.delay = 0.9, .jitter = 0.2, .loss = 0.01};
 
-/// One row: means over the trials, and the worst of them.
+/// One row: means over the trials, and the worst trial.
 struct Row {
   States states;
   double speed = 0.0;  ///< [m/s]
-  double kp = 0.0;     ///< 0: the controller's own
+  double kp = 0.0;     ///< 0: the controller's default
   LaneErrors mean;     ///< `max_abs` and `left_lane`: the worst
   bool all_done = true;
   viz::Track track;  ///< of the first trial

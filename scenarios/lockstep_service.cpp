@@ -10,7 +10,7 @@ namespace sf::scenarios {
 
 namespace {
 
-constexpr int kLongestWait = 100;  ///< [ms] after which a stop and time-outs are looked at
+constexpr int kLongestWait = 100;  ///< [ms] interval at which stop requests and timeouts are checked
 
 SimulationOptions lockstep_simulation(const LockstepServiceOptions& options) {
   return {.seed = options.seed,
@@ -72,7 +72,7 @@ void LockstepService::run(const std::atomic<bool>& stop, double duration) {
       lockstep_.wait(static_cast<int>(std::clamp(left, 1.0, double{kLongestWait})));
     }
   } catch (const base::Interrupted&) {
-    // The tick was long: it is given up.
+    // The tick takes too long: abandon it.
   }
   simulation_.interrupt_on({});
 }

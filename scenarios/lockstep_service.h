@@ -1,8 +1,8 @@
 #pragma once
-// `serve --lockstep` without its command line: a simulation whose robots other processes drive.
+// `serve --lockstep` without its command line: a simulation whose robots are driven by other processes.
 //
 //   LockstepService service(world, device, {});
-//   service.run(stop, 0.0);        // by the machine's clock, or, by any clock:
+//   service.run(stop, 0.0);        // by the system clock; or, by any clock:
 //   service.advance(now);
 
 #include <atomic>
@@ -25,28 +25,30 @@ struct LockstepServiceOptions {
   bool no_return_inf = false;
 };
 
-/// `world` and `device` must outlive it. One thread at a time. Times are of one clock [ns] that does not go back; no
-/// result depends on it.
+/// `world` and `device` must outlive it. One thread at a time. Times [ns] are on one monotonic clock; no result depends
+/// on it.
 class LockstepService {
  public:
-  /// Simulates tick 0. @throws netio::PortInUse, base::InputError when the address cannot be bound
+  /// Simulates tick 0.
+  /// @throws netio::PortInUse, base::InputError if the address cannot be bound
   LockstepService(const world::World& world, gpu::Device& device, const LockstepServiceOptions& options);
 
-  /// From now on `sink`, which must outlive the service, takes each tick from the current one on. Once it throws
-  /// base::InputError it takes no more; robots are served all the same.
+  /// Writes each tick to `sink`, starting with the current one. `sink` must outlive the service. If it throws
+  /// base::InputError, it receives no more ticks; robots are still served.
   void record_to(base::Sink& sink);
 
-  /// Serves until `stop` is set or `duration` [s] have passed (0: without end).
+  /// Serves until `stop` is set or `duration` [s] have passed (0: no limit).
   void run(const std::atomic<bool>& stop, double duration);
 
-  /// Takes what has come, and simulates one tick where all processes have asked for it. @return it did
+  /// Processes received packets, and simulates one tick if all processes have requested it.
+  /// @return whether it did
   bool advance(std::int64_t now);
 
   const Simulation& simulation() const { return simulation_; }
   server::Lockstep& lockstep() { return lockstep_; }
   std::uint64_t ticks() const { return record_.tick + 1; }  ///< simulated, tick 0 included
-  double wall_seconds() const { return wall_s_; }           ///< [s] of `run`
-  std::uint64_t contacts() const { return contacts_; }      ///< of robots, that began
+  double wall_seconds() const { return wall_s_; }           ///< [s] spent in `run`
+  std::uint64_t contacts() const { return contacts_; }      ///< number of robot contacts that began
   const std::string& recording_error() const { return recording_error_; }
 
  private:

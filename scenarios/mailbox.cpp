@@ -27,7 +27,7 @@ void Mailbox::send(const base::ReadingBlock& reading, std::int64_t now) {
   place->used = true;
 }
 
-/// Shows the newest reading that is due and discards the other due ones.
+/// Moves the newest due reading to `shown` and discards the other due ones.
 void Mailbox::show(Slot& slot, std::int64_t now) {
   slot.renewed = false;
   for (Kept& kept : slot.coming) {

@@ -1,5 +1,5 @@
 #pragma once
-// Readings on their way to one robot: the newest of each sensor, after a link with delay and loss.
+// Readings in transit to one robot: the newest of each sensor, after a link with delay and loss.
 
 #include <cstdint>
 #include <span>
@@ -10,20 +10,20 @@
 
 namespace sf::scenarios {
 
-/// One thread at a time. Allocates only to grow.
+/// One thread at a time. Allocates only when it grows.
 class Mailbox {
  public:
   /// @param robot selects the robot's random numbers under the link's seed
   Mailbox(const netio::LinkModel& link, std::uint32_t robot) : link_(link), robot_(robot) {}
 
-  /// Sends a reading at `now` [ns]: it is copied and delayed, or lost.
+  /// Sends a reading at `now` [ns]: copies and delays it, or loses it.
   void send(const base::ReadingBlock& reading, std::int64_t now);
 
-  /// The newest reading of each sensor that has arrived by `now` [ns], ordered by the sensors' first arrival. Readings
-  /// overtaken by newer ones are dropped. Lives until the next call of `send` or `receive`.
+  /// Returns the newest reading of each sensor that has arrived by `now` [ns], ordered by the sensors' first arrival.
+  /// Drops readings overtaken by newer ones. Valid until the next call of `send` or `receive`.
   std::span<const base::ReadingBlock> receive(std::int64_t now);
 
-  /// True when the last `receive` delivered a reading of this type that the previous call had not.
+  /// Returns whether the last `receive` delivered a reading of this type that the previous call did not.
   bool renewed(std::uint8_t type) const;
 
  private:

@@ -1,4 +1,4 @@
-// Area mapping of the thesis: its obstacle avoidance as described, and the explorer for comparison.
+// Area mapping of the thesis: its obstacle avoidance as described there, compared with the explorer.
 
 #include <fmt/format.h>
 
@@ -18,12 +18,12 @@ namespace {
 
 constexpr SupervisorSettings kSupervisor{.patience = 5.0};
 
-/// One method to map the area.
+/// A method of mapping the area.
 struct Entrant {
   std::string name;
   control::ControllerConfig controller;
   SupervisorSettings supervisor;
-  bool looks_about = false;  ///< it turns back and forth to look around, which is not a dead end
+  bool looks_about = false;  ///< whether it turns back and forth to look around, which is not a dead end
 };
 
 /// Result of one trial.
@@ -34,7 +34,7 @@ struct Mapped {
   bool done = false;
   std::uint64_t contacts = 0;
   std::uint32_t interventions = 0;
-  std::optional<std::uint32_t> dead_ends;  ///< none: not counted
+  std::optional<std::uint32_t> dead_ends;  ///< nullopt: not counted
   double stuck = 0.0;                      ///< [s]
   double travelled = 0.0;                  ///< [m]
   Coverage seen;

@@ -26,14 +26,14 @@ namespace fs = std::filesystem;
 using record::McapMessage;
 using Sink = std::function<void(std::span<const std::uint8_t>)>;
 
-/// The recording of one rank. Its ticks begin with /fleet (the first rank's) or /clock (all others'); none is cut, as
-/// each is a chunk.
+/// The recording of one rank. Its ticks begin with /fleet (the first rank) or /clock (all others). No tick is split,
+/// because each is a chunk.
 struct Part {
   std::string name;
   record::MappedFile file;
   record::McapContents contents;
   unsigned number = 0, parts = 0;
-  std::vector<std::size_t> ticks;  ///< per tick and one more: its first message
+  std::vector<std::size_t> ticks;  ///< first message of each tick, plus the end
 
   explicit Part(const std::string& path) : name(path), file(path), contents(record::read_mcap(file.bytes(), path)) {
     const auto found = std::find_if(contents.metadata.begin(), contents.metadata.end(),
@@ -76,8 +76,8 @@ std::vector<std::string> files_at(const std::string& place) {
   return files;
 }
 
-/// All parts, by number. Of a job with fewer ranks than one before it in the same folder, the first rank's file tells
-/// how many count.
+/// Returns all parts by number. If an earlier job in the same folder had more ranks, the file of the first rank gives
+/// the number of valid parts.
 Parts open_parts(std::span<const std::string> places) {
   std::map<unsigned, std::unique_ptr<Part>> found;
   for (const std::string& place : places)
@@ -104,7 +104,7 @@ Parts open_parts(std::span<const std::string> places) {
   return all;
 }
 
-/// Messages and world say whether two parts are of one run.
+/// Compares messages and world to check that two parts belong to the same run.
 void check_same_run(const Part& first, const Part& other) {
   const auto same = [](std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
@@ -118,7 +118,7 @@ void check_same_run(const Part& first, const Part& other) {
   if (!together) throw base::InputError(other.name, 0, "is of another run than " + first.name);
 }
 
-/// Writes the parts as one.
+/// Writes the parts as one recording.
 class Merger {
  public:
   Merger(const Parts& parts, record::Compression compression, Sink sink)
@@ -146,7 +146,7 @@ class Merger {
   }
 
  private:
-  /// Messages of one reading, one after the other.
+  /// The messages of one reading, which are consecutive.
   struct Reading {
     farm::ReadingOrder::Key key;
     const Part* part;
@@ -167,8 +167,8 @@ class Merger {
   Sink sink_;
   record::McapWriter mcap_;
   std::unique_ptr<farm::ReadingOrder> order_;
-  std::unordered_map<std::uint16_t, std::uint32_t> sensors_;  ///< by channel of readings: number of the sensor
-  std::set<std::uint16_t> with_readings_;                     ///< these channels, and those of standard messages
+  std::unordered_map<std::uint16_t, std::uint32_t> sensors_;  ///< number of the sensor, by channel of readings
+  std::set<std::uint16_t> with_readings_;                     ///< these channels and those of standard messages
   std::vector<Reading> readings_;
 };
 
@@ -183,7 +183,7 @@ void Merger::find_sensors() {
     for (const record::SensorInfo& sensor : info.movers[mover].sensors)
       topics[sensor.topic] = order_->sensor_of(sensor.type, mover, before[sensor.type]++);
   }
-  // Topics of readings are the last ones, each before its standard topics.
+  // Topics of readings are last, each before its standard topics.
   bool readings = false;
   for (const auto& [id, channel] : parts_[0]->contents.channels) {
     const auto found = topics.find(channel.topic);

@@ -1,5 +1,5 @@
 #pragma once
-// Recordings of the ranks that shared a fleet, put together: one MCAP, byte for byte the one of a single process.
+// Merges the recordings of ranks that shared a fleet into one MCAP, byte-identical to that of a single process.
 
 #include <cstdint>
 #include <functional>
@@ -11,24 +11,24 @@
 
 namespace sf::scenarios {
 
-/// What was merged.
+/// The result of a merge.
 struct MergedRecording {
-  std::string file;         ///< that was written
-  std::uint64_t ticks = 0;  ///< as many as all parts have whole
+  std::string file;         ///< the written file
+  std::uint64_t ticks = 0;  ///< ticks that are complete in all parts
   std::uint64_t bytes = 0;
-  bool truncated = false;           ///< a part was not finished: a rank was killed
+  bool truncated = false;           ///< whether a part is unfinished, because a rank was killed
   std::vector<std::string> damage;  ///< of the parts
 };
 
-/// Merges the rank-*.mcap of one run. @param places folders that have them, or the files themselves
-/// @param folder for the result, run.mcap
-/// @param stop polled each tick; may be empty
-/// @throws base::InputError where a part is missing, belongs to another run, or is no recording; base::Interrupted when
-/// `stop` returns true: nothing is written then
+/// Merges the rank-*.mcap files of one run.
+/// @param places folders that contain them, or the files @param folder for the result, run.mcap @param stop polled each
+/// tick; may be empty
+/// @throws base::InputError if a part is missing, belongs to another run, or is not a recording; base::Interrupted,
+/// without writing anything, if `stop` returns true
 MergedRecording merge_recordings(std::span<const std::string> places, const std::string& folder,
                                  const std::function<bool()>& stop = {});
 
-/// Like record::open_recording; a folder with recordings of ranks is read as if it were merged.
+/// Same as record::open_recording, but reads a folder with recordings of ranks as if they were merged.
 record::Recording open_run(const std::string& place);
 
 }  // namespace sf::scenarios

@@ -17,7 +17,7 @@ double allowed(const ModeResult& grade, const AccuracyTarget& target) {
   return grade.unit == "T" ? target.tesla : target.metres;
 }
 
-/// Rows of `results` by sensor type, in order.
+/// Returns rows of `results` by sensor type, in order.
 std::vector<std::vector<std::size_t>> by_type(const std::vector<ModeResult>& results) {
   std::vector<std::vector<std::size_t>> types;
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -27,7 +27,7 @@ std::vector<std::vector<std::size_t>> by_type(const std::vector<ModeResult>& res
   return types;
 }
 
-/// The fastest mode within the error limit; `exact`, the first row, always qualifies.
+/// Returns the fastest mode within the error limit; `exact`, the first row, always qualifies.
 std::size_t fastest_within(const std::vector<ModeResult>& results, const std::vector<std::size_t>& rows,
                            const AccuracyTarget& target) {
   std::size_t best = rows.front();
@@ -38,7 +38,7 @@ std::size_t fastest_within(const std::vector<ModeResult>& results, const std::ve
   return best;
 }
 
-/// Number of modes of its sensor type with smaller errors.
+/// Returns the number of modes of its sensor type with smaller errors.
 std::size_t rank_of(const std::vector<ModeResult>& results, const std::vector<std::size_t>& rows, std::size_t row,
                     ErrorMeasure by) {
   return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](std::size_t other) {
@@ -53,8 +53,8 @@ struct Choice {
   std::size_t ranks = 0;  ///< sum over types
 };
 
-/// The most accurate combination that is fast enough, else the fastest one. Searches all combinations, at most a few
-/// hundred.
+/// Returns the most accurate combination that is fast enough, else the fastest one. Tries all combinations, at most a
+/// few hundred.
 std::vector<std::size_t> most_accurate(const std::vector<ModeResult>& results,
                                        const std::vector<std::vector<std::size_t>>& types,
                                        const AccuracyTarget& target) {

@@ -10,8 +10,8 @@ namespace sf::scenarios {
 
 namespace {
 
-constexpr std::chrono::milliseconds kLook{20};   // for requests, while the next tick is not due
-constexpr std::chrono::milliseconds kPause{33};  // between two looks at a paused run
+constexpr std::chrono::milliseconds kLook{20};   // interval of checks for requests while the next tick is not due
+constexpr std::chrono::milliseconds kPause{33};  // interval of checks while paused
 
 }  // namespace
 
@@ -111,7 +111,7 @@ void Operator::measure(double simulated) {
 }
 
 Operator::Clock::time_point Operator::due_at(double simulated) const {
-  constexpr double kAYear = 3e7;  // [s] more would overflow the clock
+  constexpr double kAYear = 3e7;  // [s] longer times would overflow the clock
   const std::chrono::duration<double> later(std::min(kAYear, (simulated - from_) / state_.speed));
   return since_ + std::chrono::duration_cast<Clock::duration>(later);
 }

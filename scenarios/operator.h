@@ -1,6 +1,6 @@
 #pragma once
-// What users of bridges do to a simulated run: they pause it, make single ticks, set its speed, begin it again, drive
-// its robots and place them.
+// Applies requests of bridge users to a simulated run: pause, single ticks, speed, reset, and driving and placing
+// robots.
 
 #include <atomic>
 #include <chrono>
@@ -16,31 +16,31 @@ namespace sf::scenarios {
 
 class Operator {
  public:
-  /// @param speed [1] simulated over real time, > 0; infinity: as fast as possible
-  /// @param stop ends all waiting; it and the bridges outlive the operator
+  /// @param speed [1] simulated over real time, > 0; infinity: as fast as possible @param stop ends all waiting; must
+  /// outlive the operator, as must the bridges
   Operator(bridges::Bridges& bridges, const std::atomic<bool>& stop, double speed);
 
-  static constexpr std::size_t kMostJoining = 4;  ///< robots in one tick, each of which takes time; others wait
-  /// Changes of the fleet between two ticks, whose outcomes it writes.
+  static constexpr std::size_t kMostJoining = 4;  ///< robots per tick, because each takes time; others wait
+  /// Changes the fleet between two ticks and writes the outcomes.
   using ChangeFleet =
       std::function<void(const std::vector<bridges::Joining>& joining, const std::vector<bridges::Leaving>& leaving)>;
-  /// Without it, and with null, such requests are refused.
+  /// Sets the handler of fleet changes. Without a handler, such requests are refused.
   void on_fleet_changes(ChangeFleet change) { change_fleet_ = std::move(change); }
-  /// Whether `wait` returns `Next::world`; else such requests are refused.
+  /// Sets whether `wait` may return `Next::world`; otherwise such requests are refused.
   void set_loads_worlds(bool loads) { loads_worlds_ = loads; }
 
   enum class Next { tick, reset, world, stop };
-  /// Does what users asked for, and waits until the run's next tick is due, or asked for.
+  /// Applies user requests, and waits until the run's next tick is due or requested.
   /// @param simulated [s] simulated so far, which is to take as long in real time at speed 1
   Next wait(Simulation& simulation, double simulated);
-  /// Waits only, until `simulated` [s] are due: for what is sent between two ticks.
+  /// Only waits until `simulated` [s] are due, for data that is sent between two ticks.
   void keep_pace(double simulated) const;
-  /// Shows a tick to the bridges.
+  /// Publishes a tick to the bridges.
   void publish(const base::TickRecord& tick);
-  /// The run begins again.
+  /// Restarts the run.
   void begin_again();
-  /// The world that a user asked for, after `Next::world`: the caller writes the outcome, and begins again and pauses
-  /// where it is good.
+  /// Returns the world that a user requested, after `Next::world`. The caller writes the outcome and, on success,
+  /// restarts and pauses.
   bridges::WorldChange take_world();
   void pause() { state_.paused = true; }
 
@@ -59,12 +59,12 @@ class Operator {
   bridges::Requests requests_;
   bridges::RunState state_;
   ChangeFleet change_fleet_;
-  std::vector<bridges::Joining> joining_;  ///< that wait for their turn
+  std::vector<bridges::Joining> joining_;  ///< waiting for a later tick
   bool loads_worlds_ = false;
   std::optional<bridges::WorldChange> world_;
-  std::uint32_t steps_ = 0;  ///< ticks to be made although paused
+  std::uint32_t steps_ = 0;  ///< ticks to simulate although paused
   bool reset_ = false;
-  Clock::time_point since_;  ///< since then the run keeps its speed, from `from_` on
+  Clock::time_point since_;  ///< time since which the run has kept its speed, starting from `from_`
   double from_ = 0.0;        ///< [s] simulated
   Clock::time_point measured_at_;
   double measured_from_ = 0.0;  ///< [s] simulated at `measured_at_`

@@ -45,7 +45,7 @@ std::string draw_errors(const ExperimentContext& context, const std::vector<Tria
   return file;
 }
 
-/// Draws figure 37: six magnets in a line. Empty when their world file is missing.
+/// Draws figure 37: six magnets in a line. Returns an empty list if their world file is missing.
 std::vector<std::string> draw_field_line(const ExperimentContext& context) {
   const std::filesystem::path worlds = std::filesystem::path(context.scenario.world).parent_path().parent_path();
   const std::string six = (worlds / "six_magnets.world").string();
@@ -58,7 +58,7 @@ std::vector<std::string> draw_field_line(const ExperimentContext& context) {
   return {file};
 }
 
-/// [s] From the first to the last control error of a trial.
+/// [s] Returns the time from the first to the last control error of a trial.
 double driven(const Trial& trial) { return trial.times.empty() ? 0.0 : trial.times.back() - trial.times.front(); }
 
 std::string report_of(const ExperimentContext& context, const std::vector<Trial>& trials, const ThesisTable& table) {

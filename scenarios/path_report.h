@@ -9,16 +9,17 @@
 
 namespace sf::scenarios {
 
-/// `trial,mean,std,min,max,abs_mean,abs_std,abs_min,abs_max`, one line per trial, numbered from 1. [m] or [Gauss]
+/// Returns `trial,mean,std,min,max,abs_mean,abs_std,abs_min,abs_max`, one line per trial, numbered from 1. [m] or
+/// [Gauss]
 std::string csv_of(std::span<const ErrorStatistics> trials);
 
-/// A Markdown table: all trials, all trials of the thesis, and the ratio of the means of both.
+/// Returns a Markdown table: all trials, all trials of the thesis, and the ratio of the two means.
 std::string table_of(std::span<const ErrorStatistics> trials, const ThesisTable& table);
 
-/// The eight columns, in the order of `kColumns`.
+/// Returns the eight columns, in the order of `kColumns`.
 ThesisRow row_of(const ErrorStatistics& statistics);
 
-/// Mean of each column.
+/// Returns the mean of each column.
 ThesisRow mean_of(std::span<const ThesisRow> rows);
 
 }  // namespace sf::scenarios

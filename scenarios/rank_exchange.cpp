@@ -15,10 +15,10 @@ namespace {
 enum Header : std::uint8_t { kStop = 1, kFailed = 2 };
 enum Present : std::uint8_t { kStepped = 1, kDone = 2, kError = 4, kIntent = 8, kCommand = 16, kLeft = 32 };
 
-/// [1/s] Rays, or as many as take the same time: of a robot's motion and controller, and of each reading.
+/// [1/s] Rays, or the number of rays that take as long as a robot's motion and controller, and each reading.
 constexpr double kPerRobot = 500.0, kPerReading = 20.0;
 
-/// To the bit: the sign of a zero counts.
+/// Compares bitwise: the sign of a zero matters.
 bool same(const base::Twist& p, const base::Twist& q) { return std::memcmp(&p, &q, sizeof p) == 0; }
 bool same(const base::Intent& p, const base::Intent& q) {
   return p.follows == q.follows && p.checkpoint == q.checkpoint && p.docking == q.docking;

@@ -1,6 +1,6 @@
 #pragma once
-// A fleet shared by the ranks of a job. A rank decides and records for its own robots, and tells the others once per
-// tick what they cannot compute: commands, intents, and what a report needs.
+// A fleet shared by the ranks of a job. A rank decides and records for its own robots. Once per tick it sends the
+// others what they cannot compute: commands, intents, and data for reports.
 
 #include <cstdint>
 #include <exception>
@@ -15,38 +15,43 @@
 
 namespace sf::scenarios {
 
-/// One row per mover of the world, which all ranks agree on after `RankExchange::finish`.
+/// One row per mover of the world. All ranks agree on it after `RankExchange::finish`.
 struct FleetDecisions {
   std::span<base::Twist> commands;
   std::span<base::Intent> intents;
   std::span<ControlStatus> statuses;
 };
 
-/// Rays per second of each mover, or as many as take the time of its motion, controller and readings.
+/// Returns the cost of each mover: its rays per second, plus the number of rays that take as long as its motion,
+/// controller and readings.
 std::vector<double> costs_of(const world::World& world, const sensors::SensorSet& sensor_set);
 
-/// The rank of each mover: neighbouring ones of the world's list have one, and all ranks have about the same cost.
+/// Returns the rank of each mover: consecutive movers of the world's list share a rank, and all ranks have about the
+/// same cost.
 std::vector<unsigned> equal_homes(std::span<const double> costs, unsigned ranks);
 
-/// One thread.
+/// Not thread-safe.
 class RankExchange {
  public:
-  /// `ranks` must outlive it. @param homes per mover: the rank that decides for it
+  /// `ranks` must outlive it.
+  /// @param homes per mover: the rank that decides for it
   RankExchange(cluster::Ranks& ranks, std::span<const unsigned> homes);
 
-  /// This rank decides for the mover, and delivers its readings.
+  /// Returns whether this rank decides for the mover and delivers its readings.
   bool owns(std::uint32_t mover) const { return owned_[mover] != 0; }
 
-  /// One more mover, in the last row, decided for by the rank with the fewest.
+  /// Adds a mover in the last row. The rank with the fewest movers decides for it.
   void add_mover();
-  void remove_last();  ///< takes that back
+  void remove_last();  ///< undoes `add_mover`
 
-  /// Sends the decisions for the own share, and its readings' hashes. @param failed mover whose controller threw
-  /// `failure`; null: none did @param stop a user asks for the end of the run
+  /// Sends the decisions for this rank's movers and the hashes of their readings.
+  /// @param failed mover whose controller threw `failure`; null: none @param stop whether a user requests the end of
+  /// the run
   void begin(const FleetDecisions& own, farm::Farm& farm, std::uint32_t failed, const std::exception_ptr& failure,
              bool stop);
-  /// Completes `all` by the others' decisions. @return a rank was asked to stop
-  /// @throws cluster::Failure on all ranks: the first mover's error
+  /// Adds the others' decisions to `all`.
+  /// @return whether a rank was asked to stop
+  /// @throws cluster::Failure on all ranks, with the first mover's error
   bool finish(const FleetDecisions& all, farm::Farm& farm);
 
  private:
@@ -55,9 +60,9 @@ class RankExchange {
 
   cluster::Ranks& ranks_;
   std::vector<std::uint8_t> owned_;                 ///< per mover
-  std::vector<std::vector<std::uint32_t>> movers_;  ///< per rank: those it decides for
-  std::vector<base::Twist> sent_commands_;  ///< per mover, as the others know them; equal ones are not sent again
-  std::vector<base::Intent> sent_intents_;  ///< likewise
+  std::vector<std::vector<std::uint32_t>> movers_;  ///< movers of each rank
+  std::vector<base::Twist> sent_commands_;          ///< per mover, as last sent; equal commands are not sent again
+  std::vector<base::Intent> sent_intents_;          ///< per mover, as last sent
   base::Bytes block_;
   std::vector<base::ByteReader> readers_;
 };

@@ -17,7 +17,7 @@ world::World world_in(const record::Recording& recording, const std::string& wor
   return world;
 }
 
-/// Two farms that measure the same.
+/// Two farms with the same sensors.
 class Pair {
  public:
   Pair(const record::Recording& recording, gpu::Device& device, const std::string& words, const VerifyOptions& options)
@@ -88,7 +88,7 @@ class Pair {
   const record::Recording& recording_;
   const world::World world_, exact_world_;
   farm::Farm farm_, exact_;
-  std::uint32_t types_ = 0;  ///< bits of those that have modes
+  std::uint32_t types_ = 0;  ///< bits of the types that have modes
   std::vector<Row> rows_;    ///< of `result_.types`
   std::vector<base::Report> reports_;
   RecordedAccuracy result_;

@@ -1,7 +1,7 @@
 #pragma once
-// A recording in another accuracy mode: what the mode's errors would have been at the recorded poses. Each reading is
-// computed twice, in that mode and in `exact`, by two farms without noise: with noise of the same seed in both, angular
-// noise would turn the beams of both, and what remains is the same error.
+// Errors of another accuracy mode at the poses of a recording. Two farms compute each reading, one in that mode and one
+// in `exact`, both without noise: angular noise would turn the beams, even if both had the same seed, and the
+// difference is the error of the mode alone.
 
 #include <cstdint>
 #include <string>
@@ -19,21 +19,22 @@ struct ModeErrors {
   std::string sensor;  ///< sensor type
   std::string mode;
   std::string unit;    ///< m or T
-  bool noisy = false;  ///< a recorded sensor of this type has noise; the errors are without it
+  bool noisy = false;  ///< whether a recorded sensor of this type has noise; the errors exclude it
   ErrorDistribution errors;
 };
 
 struct RecordedAccuracy {
-  std::string words;              ///< the mode, as asked for
-  std::uint64_t ticks = 0;        ///< that were recomputed
-  std::vector<ModeErrors> types;  ///< of the world's sensor types that have modes
+  std::string words;              ///< the mode, as requested
+  std::uint64_t ticks = 0;        ///< number of recomputed ticks
+  std::vector<ModeErrors> types;  ///< sensor types of the world that have modes
   std::vector<std::string> notes;
-  bool interrupted = false;  ///< not all ticks were recomputed
+  bool interrupted = false;  ///< whether some ticks were not recomputed
   bool within_bounds() const;
 };
 
-/// Sensors are due as in a run, also where a service was recorded. @param words as for `--accuracy`
-/// @throws base::InputError for a word that no sensor type, or none of the recorded world, has
+/// Sensors are due as in a run, even if a service was recorded.
+/// @param words as for `--accuracy`
+/// @throws base::InputError for a word that applies to no sensor type, or to none of the recorded world
 RecordedAccuracy recorded_accuracy(const record::Recording& recording, gpu::Device& device, const std::string& words,
                                    const VerifyOptions& options);
 

@@ -17,7 +17,7 @@ bool same_columns(const record::SensorTypeInfo& a, const record::SensorTypeInfo&
          std::equal(a.columns.begin(), a.columns.end(), b.columns.begin(), b.columns.end(), equal);
 }
 
-/// Whether `info` has the sensor of a reading, with values of the same form.
+/// Returns whether `info` has the sensor of a reading, with values of the same form.
 bool is_known(const record::ReadingSample& reading, const record::RunInfo& recorded, const record::RunInfo& info) {
   const record::SensorTypeInfo* const then = record::find_sensor_type(recorded, reading.type);
   const record::SensorTypeInfo* const now = record::find_sensor_type(info, reading.type);
@@ -29,7 +29,7 @@ bool is_known(const record::ReadingSample& reading, const record::RunInfo& recor
   return reading.sensor < count && (now->list.empty() ? size == width : size % width == 0);
 }
 
-/// X_MS of the sensor of a reading.
+/// Returns X_MS of the sensor of a reading.
 base::Pose mount_of(const record::RunInfo& info, const record::ReadingSample& reading) {
   std::uint32_t before = 0;  // sensors of the same type before it
   for (const record::SensorInfo& sensor : info.movers[reading.mover].sensors)
@@ -96,7 +96,7 @@ base::TickRecord Replay::tick(std::size_t number, std::optional<std::size_t> sho
   return record;
 }
 
-/// Movers of a damaged tick stand where they are not told.
+/// Omits movers without a state in a damaged tick; viewers keep their last pose.
 void Replay::add_states(std::size_t number) {
   reports_.clear();
   commands_.clear();
@@ -111,7 +111,7 @@ void Replay::add_states(std::size_t number) {
   }
 }
 
-/// Sensors measure between ticks, too: of the way from tick to tick.
+/// Interpolates between ticks, because sensors also measure between ticks.
 base::Pose Replay::pose_at(std::uint32_t mover, std::int64_t time) const {
   const auto& states = recording_.states[mover];
   const auto after = std::upper_bound(states.begin(), states.end(), time,

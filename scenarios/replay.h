@@ -1,5 +1,5 @@
 #pragma once
-// A recording as ticks again, for viewers.
+// Plays a recording back as ticks, for viewers.
 
 #include <cstdint>
 #include <map>
@@ -12,23 +12,25 @@
 
 namespace sf::scenarios {
 
-/// One thread. The recording outlives it.
+/// Not thread-safe. The recording must outlive it.
 class Replay {
  public:
-  /// @param info of the same world as this program reads it: readings of sensors that it has otherwise are left out
-  /// @throws base::InputError for a recording without ticks, or of other movers
+  /// @param info of the same world as read by this program; readings of sensors that differ are skipped
+  /// @throws base::InputError for a recording without ticks or with other movers
   Replay(const record::Recording& recording, const record::RunInfo& info);
 
   std::size_t ticks() const { return recording_.states.front().size(); }
   std::int64_t start() const { return time_of(0); }          ///< [ns]
   std::int64_t end() const { return time_of(ticks() - 1); }  ///< [ns]
   std::int64_t time_of(std::size_t tick) const { return recording_.states.front()[tick].time; }
-  /// The last tick at or before `time` [ns]; the first one for earlier times.
+  /// Returns the last tick at or before `time` [ns]; the first tick for earlier times.
   std::size_t tick_at(std::int64_t time) const;
-  /// @param shown tick that was shown last: readings delivered since then are in the result; nullopt, or a later tick:
-  /// every sensor's newest reading is. Their poses are interpolated between ticks. Spans live until the next call.
+  /// Returns a tick with readings.
+  /// @param shown last tick shown: the result contains readings delivered since then; if nullopt or later than
+  /// `number`, it contains every sensor's newest reading. Their poses are interpolated between ticks. Spans are valid
+  /// until the next call.
   base::TickRecord tick(std::size_t number, std::optional<std::size_t> shown);
-  /// Recorded readings that cannot be shown.
+  /// Returns the number of recorded readings that cannot be shown.
   std::size_t left_out() const { return left_out_; }
 
  private:
@@ -37,9 +39,9 @@ class Replay {
   base::Pose pose_at(std::uint32_t mover, std::int64_t time) const;
 
   const record::Recording& recording_;
-  std::size_t lights_;             ///< of the world
-  std::vector<std::size_t> rows_;  ///< of readings that are shown, by delivery
-  std::map<std::tuple<std::uint32_t, std::uint8_t, std::uint32_t>, std::vector<std::size_t>> sensors_;  ///< likewise
+  std::size_t lights_;             ///< number in the world
+  std::vector<std::size_t> rows_;  ///< of shown readings, in order of delivery
+  std::map<std::tuple<std::uint32_t, std::uint8_t, std::uint32_t>, std::vector<std::size_t>> sensors_;  ///< by sensor
   std::size_t left_out_ = 0;
   std::vector<base::Report> reports_;
   std::vector<base::Twist> commands_;

@@ -34,7 +34,7 @@ void add_type(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
 /// JSON has no infinite numbers.
 std::string number_or_null(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
-/// The bounds of the recorded numbers: scans have 32 bits. Flags are not recorded.
+/// Returns the bounds of the recorded numbers: scans have 32 bits. Flags are not recorded.
 std::vector<std::string> accuracy_rows(const world::World& world, const sensors::SensorSet& sensor_set, bool noise) {
   std::vector<std::string> rows;
   for (const sensors::AccuracyStatement& s : sensors::accuracy_statements(world, sensor_set)) {
@@ -53,7 +53,7 @@ std::vector<std::string> accuracy_rows(const world::World& world, const sensors:
   return rows;
 }
 
-/// The robot without a namespace: the only one. Tags, objects and robots that join keep theirs.
+/// Selects the only robot as the one without a namespace. Tags, objects and robots that join keep their own.
 void choose_plain(const world::World& world, record::RunInfo& info) {
   std::vector<std::size_t> robots;
   for (std::size_t row = 0; row + info.joined.size() < world.movers.size(); ++row)
@@ -76,7 +76,7 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   info.mode = sensors::modes_of(sensor_set);
   info.interval = world.interval;
   info.record_readings = settings.record_readings;
-  if (settings.record_readings) info.odometry_rate = 1.0 / world.interval;  // every tick, as viewers draw them
+  if (settings.record_readings) info.odometry_rate = 1.0 / world.interval;  // every tick, as for viewers
   info.estimated = settings.estimated;
   info.options = {{std::string(record::kNoReturn), settings.no_return_inf ? "inf" : "max"},
                   {"caster", settings.caster}};

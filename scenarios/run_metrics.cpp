@@ -11,7 +11,7 @@ namespace sf::scenarios {
 
 namespace {
 
-/// [m] From the origin to the foremost point that collides; carried sensors may reach farther.
+/// [m] Distance from the origin to the foremost colliding point; carried sensors may extend farther.
 double front_of(const world::Mover& mover) {
   double front = 0.0;
   for (const world::Segment& side : mover.body)

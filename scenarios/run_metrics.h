@@ -13,10 +13,10 @@ namespace sf::scenarios {
 /// Progress of one mover along its checkpoints.
 struct CheckpointProgress {
   std::uint32_t now = base::kNoId;  ///< id of the current checkpoint; base::kNoId: none
-  bool any = false;                 ///< there was a current checkpoint before
-  std::uint64_t passed = 0;         ///< number of passed checkpoints, counted when the next one is due or none is
+  bool any = false;                 ///< whether there was a current checkpoint before
+  std::uint64_t passed = 0;  ///< number of passed checkpoints, counted when the next one becomes due, or none is left
 
-  /// @param next id of the current checkpoint from now on; base::kNoId: none
+  /// @param next id of the new current checkpoint; base::kNoId: none
   void update(std::uint32_t next);
 };
 
@@ -30,18 +30,18 @@ struct RobotMetrics {
   double travelled = 0.0;               ///< [m]
 };
 
-/// Metrics of one simulation. Simulation and world must outlive it.
+/// Metrics of one simulation. The simulation and the world must outlive it.
 class RunMetrics {
  public:
   RunMetrics(const world::World& world, const Simulation& simulation);
 
-  /// The world has got one more mover, in its last row.
+  /// Adds the mover that was appended to the world.
   void add_mover();
 
-  /// Called after every `Simulation::step` with its result, and with ranks after `Simulation::settle`.
+  /// Call it after every `Simulation::step` with its result; with ranks, after `Simulation::settle`.
   void update(const base::TickRecord& tick);
 
-  /// Records that a mover was placed there, so that this does not count as driving.
+  /// Records that a mover was placed at a pose, so that this does not count as driving.
   void put(std::uint32_t mover, const base::Pose& X_WM) { before_[mover].X_WM = X_WM; }
 
   const RobotMetrics& of(std::uint32_t mover) const { return counts_[mover]; }
@@ -69,14 +69,14 @@ class RunMetrics {
   const world::World& world_;
   const Simulation& simulation_;
   std::vector<Line> lines_;
-  std::vector<double> fronts_;  ///< [m] per mover, from the origin to the foremost point that collides
+  std::vector<double> fronts_;  ///< [m] per mover, from the origin to the foremost colliding point
   std::vector<PreviousTick> before_;
   std::vector<RobotMetrics> counts_;
 };
 
 /// [m] Distance of the front beyond a stop line at which the line counts as passed.
 inline constexpr double kPassed = 0.05;
-/// [m/s] A robot drives from the first speed on, and stands below the second.
+/// [m/s] A robot counts as driving from the first speed on, and as stopped below the second.
 inline constexpr double kDriving = 0.03;
 inline constexpr double kStanding = 0.002;
 

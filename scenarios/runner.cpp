@@ -32,7 +32,7 @@ bool expects(const Scenario& scenario, Kind kind) {
                      [&](const Expectation& e) { return e.kind == kind; });
 }
 
-/// Rows of the robots to which an expectation applies.
+/// Returns the rows of the robots to which an expectation applies.
 std::vector<std::uint32_t> rows_of(const Scenario& scenario, const world::World& world, const Expectation& e) {
   if (!e.robot.empty()) return {row_of(scenario, world, e.robot, e.line)};
   std::vector<std::uint32_t> rows;
@@ -41,7 +41,7 @@ std::vector<std::uint32_t> rows_of(const Scenario& scenario, const world::World&
   return rows;
 }
 
-/// @throws base::InputError when the world or its robots lack something that the expectation needs.
+/// @throws base::InputError if the world or its robots lack something that the expectation needs
 void check_expectation(const Scenario& scenario, const world::World& world, const SimulationOptions& options,
                        const Expectation& e) {
   const auto refuse = [&](const std::string& message) { throw base::InputError(scenario.file, e.line, message); };
@@ -59,7 +59,7 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
     refuse(world.file + " has no lights to be obeyed; leave this out");
 }
 
-/// Line of the file that sets the mover's controller.
+/// Returns the line of the file that sets the mover's controller.
 int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
   for (const RobotSetup& setup : scenario.robot_setups)
     if (setup.actor && setup.name == mover.name) return setup.controller_line;
@@ -68,7 +68,7 @@ int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
   return scenario.default_line;
 }
 
-/// Errors of controllers without a location get the line that names the controller.
+/// Adds the line that names the controller to its errors that have no location.
 control::ConfiguredController try_controller(const Scenario& scenario, const control::ControllerContext& site,
                                              const control::ControllerConfig& config) {
   try {
@@ -137,7 +137,7 @@ class Run {
     return options;
   }
 
-  /// `no_collision` repeats `contacts`; `map_coverage` takes a map, so only those who expect it pay for it.
+  /// `no_collision` duplicates `contacts`. `map_coverage` needs a map, so it is computed only if expected.
   std::vector<Metric> all_metrics() const {
     std::vector<Expectation> all;
     for (const Kind kind : {Kind::contacts, Kind::mean_error, Kind::mean_abs_error, Kind::distance, Kind::checkpoints,
@@ -162,7 +162,7 @@ class Run {
     return std::string(name_of(e.kind)) + (e.robot.empty() ? "" : " of " + e.robot);
   }
 
-  /// Of a robot whose map is expected.
+  /// Adds the map of a robot whose map is expected.
   void add_map(std::uint32_t row) {
     const world::Mover& mover = world_.movers[row];
     const bool expected = std::any_of(scenario_.expect.begin(), scenario_.expect.end(), [&](const Expectation& e) {
@@ -172,7 +172,7 @@ class Run {
       maps_.try_emplace(row, world_, row);
   }
 
-  /// Worst value of a measure over the expectation's robots, ignoring NaN; NaN without a value.
+  /// Returns the worst value of a measure over the expectation's robots, ignoring NaN; NaN without a value.
   template <class Measure>
   double worst(const Expectation& e, bool least, Measure&& measure) const {
     double value = std::nan("");
@@ -184,7 +184,7 @@ class Run {
     return value;
   }
 
-  /// Compares all maps with what could be seen; each rank has those of its own robots.
+  /// Compares all maps with the visible areas; each rank has the maps of its own robots.
   void cover(const std::function<void(double)>& progress) {
     base::Bytes block;
     base::ByteWriter out(block);
@@ -205,10 +205,10 @@ class Run {
       }
   }
 
-  /// The measured value as text, with words for missing values.
+  /// Returns the measured value as text, with words for missing values.
   std::string text_of_measured(const Expectation& e, double value) const {
     if (!std::isnan(value)) {
-      // Truncated, so that only complete coverage reads 1.
+      // Truncated, so that only complete coverage is shown as 1.
       if (e.kind == Kind::map_coverage) return fmt::format("{:g}", std::floor(1e5 * value) / 1e5);
       return fmt::format("{:.4g}", value);
     }
@@ -284,8 +284,8 @@ class Run {
   Simulation simulation_;
   ScenarioEvents events_;
   RunMetrics metrics_;
-  std::map<std::uint32_t, RobotMap> maps_;     ///< by row of the mover, of this rank
-  std::map<std::uint32_t, double> coverages_;  ///< [-] likewise, of all ranks, after the run
+  std::map<std::uint32_t, RobotMap> maps_;     ///< of this rank, by row of the mover
+  std::map<std::uint32_t, double> coverages_;  ///< [-] of all ranks, by row of the mover, after the run
   std::vector<double> tick_ms_;
 };
 

@@ -21,10 +21,10 @@ struct ExpectationResult {
   int line = 0;  ///< in the scenario's file
 };
 
-/// A measure of a run over all robots: the sum or that of the worst, as in [expect] (docs/scenarios.md).
+/// A measure of a run over all robots: the sum, or the value of the worst robot, as in [expect] (docs/scenarios.md).
 struct Metric {
   std::string name;    ///< key of the expectation, or "KEY of ROBOT"
-  double value = 0.0;  ///< in the expectation's unit; NaN when there was nothing to measure
+  double value = 0.0;  ///< in the expectation's unit; NaN if there was nothing to measure
 };
 
 /// A scenario without expectations neither passes nor fails.
@@ -38,23 +38,25 @@ struct ScenarioResult {
   double wall = 0.0;       ///< [s]
   std::uint64_t ticks = 0;
   std::uint64_t hash = 0;  ///< of all readings
-  /// Those of every run, then the other ones that the scenario expects. No durations, so the same on any machine.
+  /// Metrics of every run, then the other ones that the scenario expects. Without durations, so identical on any
+  /// machine.
   std::vector<Metric> metrics;
-  std::string failure = {};       ///< why it did not come to its end; empty: it did
-  ScenarioStatus status() const;  ///< failed with a failure, whatever it expects
+  std::string failure = {};       ///< why it did not complete; empty: it did
+  ScenarioStatus status() const;  ///< failed if there is a failure, whatever it expects
 };
 
 /// Validates a scenario without a device: world, robots, controllers with their settings, and expectations.
 /// @return warnings
-/// @throws base::InputError at the scenario's line, or at that of a file named in it
+/// @throws base::InputError at the scenario's line, or at the line of a file named in it
 std::vector<world::Warning> check_scenario(const Scenario& scenario);
 
-/// @param progress called with the completed part in [0, 1]; may be empty
-/// @param threads of the host's part; 0: all. Does not affect results
-/// @param ranks that share the fleet, and all call this; null: none. The first one's result has the hash of readings
-/// @param stop polled each tick, and within long ones; may be empty
-/// @throws base::InputError when the world or a robot lacks something required; with ranks cluster::Failure on all.
-/// base::Interrupted when `stop` returns true, with ranks on all where it does on one
+/// Runs a scenario.
+/// @param progress called with the completed fraction in [0, 1]; may be empty @param threads on the host; 0: all. Does
+/// not affect results @param ranks that share the fleet and all call this; null: none. The first rank's result has the
+/// hash of readings @param stop polled each tick and within long ones; may be empty
+/// @throws base::InputError if the world or a robot lacks something required; with ranks cluster::Failure on all of
+/// them
+/// @throws base::Interrupted if `stop` returns true; with ranks on all of them if it does on one
 ScenarioResult run_scenario(const Scenario& scenario, gpu::Device& device,
                             const std::function<void(double)>& progress = {}, unsigned threads = 0,
                             cluster::Ranks* ranks = nullptr, const std::function<bool()>& stop = {});

@@ -48,7 +48,8 @@ world::World world_of(const Scenario& scenario, const world::LoadOptions& load) 
 SimulationOptions simulation_of(const Scenario& scenario, const world::World& world) {
   SimulationOptions options{.seed = scenario.seed, .start_at = scenario.start_at, .states = scenario.states};
   if (options.states) options.states->link.seed = scenario.seed;
-  // Tags stand unless a [[robot]] names them. A robot's controller in the world file overrides the scenario's default.
+  // Tags remain at rest unless a [[robot]] names them. A robot's controller in the world file overrides the scenario's
+  // default.
   for (const world::Mover& mover : world.movers) {
     Actor& actor = options.actors.emplace_back(mover.is_tag ? Actor{.controller = {.name = ""}} : scenario.actor);
     const bool own = !mover.is_tag && !mover.controller.empty() && mover.controller != actor.controller.name;

@@ -1,5 +1,6 @@
 #pragma once
-// A scenario: a world, the controllers of its robots, and expectations. A short TOML file; keys in docs/scenarios.md.
+// A scenario: a world, the controllers of its robots, and expectations. A short TOML file; see docs/scenarios.md for
+// its keys.
 
 #include <cstdint>
 #include <optional>
@@ -20,8 +21,8 @@ namespace sf::scenarios {
 /// Settings of one robot that differ from the scenario's.
 struct RobotSetup {
   std::string name;                ///< of the mover
-  std::optional<Actor> actor;      ///< controller and link; none: the scenario's
-  std::optional<base::Pose> pose;  ///< [m], [rad] start pose; none: the world's
+  std::optional<Actor> actor;      ///< controller and link; nullopt: the scenario's
+  std::optional<base::Pose> pose;  ///< [m], [rad] start pose; nullopt: the world's
   int line = 0;                    ///< in the file
   int controller_line = 0;         ///< line of its controller, or of the robot
 };
@@ -30,16 +31,16 @@ struct RobotSetup {
 struct Expectation {
   enum class Kind : std::uint8_t {
     no_collision,     ///< no contact of any robot
-    contacts,         ///< number of contacts, at most
-    mean_error,       ///< |mean control error|, at most
-    mean_abs_error,   ///< mean |control error|, at most
-    map_coverage,     ///< part of the visible cells that the robot has mapped, at least
+    contacts,         ///< maximum number of contacts
+    mean_error,       ///< maximum of |mean control error|
+    mean_abs_error,   ///< maximum of mean |control error|
+    map_coverage,     ///< minimum fraction of the visible cells that the robot has mapped
     lights_obeyed,    ///< no robot passes a stop line at red
     done,             ///< all controllers have finished
-    distance,         ///< [m] driven by each robot, at least
-    checkpoints,      ///< passed by each robot that has checkpoints, at least
-    all_checkpoints,  ///< passed by all robots together, at least
-    tick_p99          ///< [ms] 99th percentile of the duration of ticks, at most; depends on the machine
+    distance,         ///< [m] minimum distance driven by each robot
+    checkpoints,      ///< minimum number passed by each robot that has checkpoints
+    all_checkpoints,  ///< minimum number passed by all robots together
+    tick_p99          ///< [ms] maximum of the 99th percentile of the duration of ticks; depends on the machine
   };
   Kind kind = Kind::no_collision;
   std::string robot;   ///< empty: the worst of all robots
@@ -51,7 +52,7 @@ std::string_view name_of(Expectation::Kind kind);  ///< its key
 /// Copies of one robot that replace robots of the world.
 struct FleetSpawn {
   enum class Placement : std::uint8_t {
-    free,  ///< wherever there is room, replacing all robots
+    free,  ///< at any free place, replacing all robots
     lanes  ///< on lanes, replacing the robots without a [[robot]] entry
   };
   std::uint32_t robots = 0;  ///< number of copies; 0: the world's own robots
@@ -60,11 +61,11 @@ struct FleetSpawn {
   int line = 0;  ///< of `robots` in the file
 };
 
-/// A change of an object during the run, or of the fleet.
+/// A change of an object or of the fleet during the run.
 struct ObjectEvent {
   enum class Kind : std::uint8_t { object, add, remove };
   std::string object;   ///< name of a mover without sensors and controller, or of the robot that joins or leaves
-  double at = 0.0;      ///< [s] simulated; from the first tick not before it on
+  double at = 0.0;      ///< [s] simulated; takes effect at the first tick at or after it
   bool present = true;  ///< in the world
   int line = 0;
   Kind kind = Kind::object;
@@ -73,24 +74,24 @@ struct ObjectEvent {
 
 struct Scenario {
   std::string name;    ///< default: the file's name without extension
-  std::string file;    ///< empty: made in memory
+  std::string file;    ///< empty: created in memory
   std::string world;   ///< path of the world file
   int world_line = 0;  ///< line that names it
-  /// [s] simulated, at least a tick and at most this; with the expectation `done` the run ends when all controllers
-  /// have finished.
+  /// [s] simulated, at least one tick. This is the maximum: with the expectation `done` the run ends when all
+  /// controllers have finished.
   double duration = 60.0;
-  int duration_line = 0;  ///< that states it
+  int duration_line = 0;  ///< line that sets it
   std::uint64_t seed = 1;
   double tick = 0.0;                       ///< [s]; 0: the world's
   FleetSpawn fleet;                        ///< replaces the world's robots
-  std::optional<Plant> plant;              ///< of every robot; none: as the world file says
+  std::optional<Plant> plant;              ///< of every robot; nullopt: as in the world file
   double start_at = 0.0;                   ///< [s] time of the start signal
-  std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; none: it knows the true ones
+  std::optional<StateLinkOptions> states;  ///< of the robots' states to the farm; nullopt: it has the true states
   Actor actor;                             ///< default of all robots
   int default_line = 0;                    ///< line of its controller; 0: not in the file
   std::vector<RobotSetup> robot_setups;
   std::vector<Expectation> expect;
-  std::vector<ObjectEvent> events;  ///< by time
+  std::vector<ObjectEvent> events;  ///< sorted by time
 };
 
 /// The path of the world is relative to the scenario's folder.
@@ -99,16 +100,17 @@ Scenario parse_scenario(const std::string& file, std::string_view text);
 Scenario parse_scenario(const std::string& file, const world::TomlNode& root);
 Scenario read_scenario(const std::string& file);
 
-/// The world with the scenario's changes. @throws base::InputError for unknown robots or lack of room.
+/// Returns the world with the scenario's changes.
+/// @throws base::InputError for unknown robots or lack of space
 world::World world_of(const Scenario& scenario);
 world::World world_of(const Scenario& scenario, const world::LoadOptions& load);
 
-/// One actor per mover of `world_of`, with links seeded by the scenario's seed.
-/// @throws base::InputError for unknown robots.
+/// Returns one actor per mover of `world_of`, with links seeded by the scenario's seed.
+/// @throws base::InputError for unknown robots
 SimulationOptions simulation_of(const Scenario& scenario, const world::World& world);
 
-/// Row of a robot or tag.
-/// @throws base::InputError at file and line for an unknown name, with the nearest known one
+/// Returns the row of a robot or tag.
+/// @throws base::InputError at file and line for an unknown name, with the most similar known name
 std::uint32_t row_of(const Scenario& scenario, const world::World& world, const std::string& robot, int line);
 
 }  // namespace sf::scenarios

@@ -11,7 +11,7 @@ namespace sf::scenarios {
 
 namespace {
 
-/// `act()`, whose errors get the event's line.
+/// Calls `act()` and adds the event's line to its errors.
 template <class Act>
 void at_line(const Scenario& scenario, const ObjectEvent& event, Act&& act) {
   try {
@@ -23,7 +23,7 @@ void at_line(const Scenario& scenario, const ObjectEvent& event, Act&& act) {
   }
 }
 
-/// A robot of that name is there until then.
+/// Returns whether a robot of that name is present until the event.
 bool returns(const Scenario& scenario, const ObjectEvent& event, const world::World& world) {
   return std::any_of(world.movers.begin(), world.movers.end(),
                      [&](const world::Mover& mover) { return mover.name == event.object; }) &&

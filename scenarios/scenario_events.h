@@ -1,5 +1,5 @@
 #pragma once
-// The events of a scenario in a run: objects that come and go, robots that join and leave.
+// The events of a scenario during a run: objects appear and disappear, robots join and leave.
 
 #include <cstdint>
 #include <functional>
@@ -8,10 +8,10 @@
 
 namespace sf::scenarios {
 
-/// Adds the robots that join later to `world` and `options`, for a check of their controllers, and checks all events.
+/// Checks all events. Adds the robots that join later to `world` and `options`, to check their controllers.
 /// @param options one actor per mover
-/// @throws base::InputError at the event's line: an unknown object, one with sensors or a controller (a robot cannot
-/// vanish from its controller), an invalid robot, one that would join after the end
+/// @throws base::InputError at the event's line for an unknown object, one with sensors or a controller (a robot cannot
+/// vanish from its controller), an invalid robot, or one that would join after the end
 void check_events(const Scenario& scenario, world::World& world, SimulationOptions& options);
 
 class ScenarioEvents {
@@ -19,11 +19,11 @@ class ScenarioEvents {
   /// @param scenario checked; must outlive it
   explicit ScenarioEvents(const Scenario& scenario) : scenario_(scenario) {}
 
-  /// A robot joins by `time` [s] that has not joined yet.
+  /// Returns whether a robot that has not joined yet joins by `time` [s].
   bool joins(double time) const;
-  /// Applies the events that are due at `time` [s], to half a nanosecond. Called before each step, with growing times.
-  /// @param world of the simulation, which grows with robots that join
-  /// @param joined called with the row of each new mover
+  /// Applies the events that are due at `time` [s], to half a nanosecond. Called before each step, with increasing
+  /// times.
+  /// @param world of the simulation; grows with robots that join @param joined called with the row of each new mover
   /// @throws base::InputError at the event's line
   void apply(Simulation& simulation, world::World& world, double time,
              const std::function<void(std::uint32_t)>& joined);

@@ -25,7 +25,7 @@ using world::TomlNode;
 using NodeKind = TomlNode::Kind;
 
 constexpr double kLongest = 1e9;          // [s]
-constexpr double kMostWhole = 9.0e15;     // whole numbers that a double represents exactly
+constexpr double kMostWhole = 9.0e15;     // limit up to which a double represents all whole numbers exactly
 constexpr double kMostPosition = 1e7;     // [m]
 constexpr double kLongestDelay = 3600.0;  // [s]
 
@@ -74,7 +74,7 @@ control::Settings settings_of(const Reader& reader, const TomlNode* table, const
   return {fmt::format("controller '{}'", controller), std::move(settings)};
 }
 
-/// A plug-in's file, relative to the scenario's.
+/// Returns a plug-in's file, relative to the scenario's.
 std::string plugin_of(const Reader& reader, const TomlNode& node, const std::string& name) {
   const std::string file = (std::filesystem::path(reader.file()).parent_path() / name).string();
   try {
@@ -85,7 +85,7 @@ std::string plugin_of(const Reader& reader, const TomlNode& node, const std::str
   return file;
 }
 
-/// Name of the controller; empty for "none".
+/// Returns the name of the controller; empty for "none".
 std::string controller_of(const Reader& reader, const TomlNode& table, const std::string& fallback) {
   const TomlNode* const node = world::find(table, "controller");
   if (node == nullptr) return fallback;
@@ -99,7 +99,7 @@ std::string controller_of(const Reader& reader, const TomlNode& table, const std
                                  fmt::join(names, ", ")));
 }
 
-/// Without a controller in the table the fallback's applies. Settings are replaced as a whole, not key by key.
+/// If the table has no controller, the fallback's applies. Settings are replaced as a whole, not key by key.
 control::ControllerConfig controller_config_of(const Reader& reader, const TomlNode& table,
                                                const control::ControllerConfig& fallback) {
   control::ControllerConfig config = fallback;
@@ -278,7 +278,7 @@ void read_events(const Reader& reader, const TomlNode& root, Scenario& scenario)
                    [](const ObjectEvent& a, const ObjectEvent& b) { return a.at < b.at; });
 }
 
-/// Relative to the scenario's file; else among the installed worlds.
+/// Returns a path relative to the scenario's file, else among the installed worlds.
 std::string world_file(const Reader& reader, const TomlNode& root) {
   const std::string file = reader.text(root, "world", "");
   if (file.empty()) throw base::InputError(reader.file(), 0, "has no world; expected world = \"FILE\"");

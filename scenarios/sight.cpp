@@ -13,12 +13,12 @@ namespace {
 using base::cross;
 using maps::CellAt;
 
-constexpr double kTouch = 1e-9;      ///< [m] a wall as near to a point passes through it
-constexpr double kSlack = 1e-6;      ///< [m] by which triangles are widened, far above the error of their corners
+constexpr double kTouch = 1e-9;      ///< [m] a wall within this distance passes through the point
+constexpr double kSlack = 1e-6;      ///< [m] added to triangles, far above the error of their corners
 constexpr double kFirstSize = 0.75;  ///< [m] of the first square around a point
-constexpr double kGrowth = 4.0;      ///< of the next ones
+constexpr double kGrowth = 4.0;      ///< factor of the next ones
 
-/// In [-2, 2], growing with the angle from -pi to pi.
+/// Returns a value in [-2, 2] that increases with the angle from -pi to pi.
 double pseudo_angle(glm::dvec2 d) {
   const double part = d.x / (std::abs(d.x) + std::abs(d.y));
   return d.y < 0.0 ? part - 1.0 : 1.0 - part;
@@ -33,7 +33,7 @@ struct Interval {
   }
 };
 
-/// x of the part of the line from `p` to `q` with y in [low, high].
+/// Adds the x range of the part of the line from `p` to `q` with y in [low, high].
 void add_clipped(glm::dvec2 p, glm::dvec2 q, double low, double high, Interval& x) {
   if (p.y > q.y) std::swap(p, q);
   if (q.y < low || p.y > high) return;
@@ -43,7 +43,7 @@ void add_clipped(glm::dvec2 p, glm::dvec2 q, double low, double high, Interval& 
   x.add(q.y <= high ? q.x : at(high));
 }
 
-/// Of the direction from the origin, in units of its length; infinity: it does not meet the line.
+/// Returns the intersection along the direction from the origin, in units of its length; infinity: it misses the line.
 double meeting(glm::dvec2 direction, glm::dvec2 a, glm::dvec2 b) {
   const double across = cross(direction, b - a);
   return across > 0.0 ? cross(a, b - a) / across : std::numeric_limits<double>::infinity();
@@ -121,13 +121,13 @@ void Sight::add_edge(glm::dvec2 a, glm::dvec2 b, bool is_wall) {
   directions_.push_back({last, b});
   if (first <= last) {
     edges_.push_back({a, b, first, last, is_wall});
-  } else {  // across the direction of -x
+  } else {  // crosses the direction of -x
     edges_.push_back({a, b, first, 2.0, is_wall});
     edges_.push_back({a, b, -2.0, last, is_wall});
   }
 }
 
-/// Walls in a square of 2 `size` around the point, and its sides, all by the angle at which they begin.
+/// Collects walls in a square of 2 `size` around the point, and its sides, sorted by their first angle.
 void Sight::gather(glm::dvec2 p, double size) {
   edges_.clear();
   directions_.assign({{-2.0, {-1.0, 0.0}}, {2.0, {-1.0, 0.0}}});
@@ -142,7 +142,7 @@ void Sight::gather(glm::dvec2 p, double size) {
             [](const Direction& x, const Direction& y) { return x.angle < y.angle; });
 }
 
-/// False only where no eye is between the directions from the point.
+/// Returns false only if no eye is between the directions from the point.
 bool Sight::may_reach_eyes(glm::dvec2 p, glm::dvec2 d0, glm::dvec2 d1) const {
   const glm::dvec2 corners[4] = {
       box_.min - p, box_.max - p, {box_.min.x - p.x, box_.max.y - p.y}, {box_.max.x - p.x, box_.min.y - p.y}};
@@ -152,7 +152,7 @@ bool Sight::may_reach_eyes(glm::dvec2 p, glm::dvec2 d0, glm::dvec2 d1) const {
          !all([&](glm::dvec2 c) { return glm::dot(d0, c) < 0.0 && glm::dot(d1, c) < 0.0; });
 }
 
-/// @param open out: a direction to eyes is free up to the end of the square
+/// @param open out: whether a direction to eyes is clear up to the edge of the square
 std::optional<CellAt> Sight::find_within(glm::dvec2 p, double size, bool& open) {
   gather(p, size);
   active_.clear();
@@ -177,7 +177,7 @@ std::optional<CellAt> Sight::find_within(glm::dvec2 p, double size, bool& open) 
   return std::nullopt;
 }
 
-/// @param q0, q1 [m] corners from the corner `p`
+/// @param q0, q1 [m] corners opposite the corner `p`
 std::optional<CellAt> Sight::find_in_triangle(glm::dvec2 p, glm::dvec2 q0, glm::dvec2 q1) const {
   const maps::GridGeometry& grid = robots_.geometry;
   const double top = std::min(p.y + std::max({0.0, q0.y, q1.y}), box_.max.y) + kSlack;

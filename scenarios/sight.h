@@ -1,11 +1,12 @@
 #pragma once
-// Sight of a laser from many poses: whether a point is in view from one of them.
+// Visibility from many poses of a laser: whether a point is visible from any of them.
 //
-// Poses are the centres of cells with sixteen headings each. A test of all of them by ray casts costs a hidden point
-// millions of rays. So the search turns round: it sweeps the walls by angle around the point, which bounds the area in
-// view by one triangle per pair of neighbouring directions, and casts rays to the poses in these triangles alone. A
-// triangle ends at one of the walls that cover it, so it may be too large, never too small: results are those of all
-// rays. Walls are taken from growing squares, so a point within an obstacle costs the walls of that obstacle.
+// Poses are the centres of cells with sixteen headings each. Testing all of them by ray casts would take millions of
+// rays for a hidden point. The search is therefore reversed: it sweeps the walls by angle around the point, which
+// bounds the visible area by one triangle per pair of neighbouring directions, and casts rays only to the poses in
+// these triangles. A triangle ends at one of the walls that cover it, so it may be too large but never too small:
+// results equal those of all rays. Walls are collected from growing squares, so a point within an obstacle costs only
+// the walls of that obstacle.
 
 #include <array>
 #include <cstdint>
@@ -22,14 +23,14 @@ class Sight {
  public:
   static constexpr int kHeadings = 16;
 
-  /// @param walls that the laser sees  @param robots cells whose centres the robot's origin can reach: those that are
-  /// free
+  /// @param walls visible to the laser @param robots cells whose centres the robot's origin can reach: the free ones
   Sight(std::vector<world::Segment> walls, const sensors::LaserSettings& laser, const maps::OccupancyGrid& robots);
 
-  /// The point is in view from the centre of the cell with one of the headings: in range and field of view, without a
-  /// wall before it. A wall through the point does not hide it. Poses with the laser within a wall do not count.
+  /// Returns whether the point is visible from the centre of the cell with any of the headings: in range and field of
+  /// view, with no wall in front of it. A wall through the point does not hide it. Poses with the laser inside a wall
+  /// do not count.
   bool sees(maps::CellAt robot, glm::dvec2 p) const;
-  /// A cell that sees the point; nullopt: none does.
+  /// Returns a cell from which the point is visible; nullopt: none.
   std::optional<maps::CellAt> find(glm::dvec2 p);
 
   const world::WallTree& walls() const { return walls_; }
@@ -37,9 +38,9 @@ class Sight {
  private:
   struct Edge {
     glm::dvec2 a, b;  ///< [m] from the point, counter-clockwise
-    double first;     ///< pseudo-angles that it covers: [first, last]
+    double first;     ///< covers pseudo-angles [first, last]
     double last;
-    bool is_wall;  ///< or a side of the square
+    bool is_wall;  ///< false: a side of the square
   };
   struct Direction {
     double angle;
@@ -48,7 +49,7 @@ class Sight {
   struct Heading {
     glm::dvec2 eye;        ///< [m] from the robot's origin
     double yaw;            ///< [rad]
-    maps::CellAt cells{};  ///< from the robot's cell to that of the eye
+    maps::CellAt cells{};  ///< offset from the robot's cell to that of the eye
   };
 
   bool sees(maps::CellAt robot, const Heading& heading, glm::dvec2 p) const;
@@ -56,7 +57,7 @@ class Sight {
   bool is_robot(maps::CellAt at) const {
     return maps::contains(robots_.geometry, at) && robots_.at(at) == maps::Cell::free;
   }
-  /// Of the number of eyes before a cell, in the grid or the margin around it.
+  /// Index of the count of eyes before a cell, in the grid or the margin around it.
   std::size_t place_of(maps::CellAt eye) const {
     const std::int64_t wide = maps::columns(robots_.geometry) + 2 * margin_ + 1;
     return static_cast<std::size_t>((eye.row + margin_) * wide + eye.column + margin_);
@@ -72,10 +73,10 @@ class Sight {
   sensors::LaserSettings laser_;
   const maps::OccupancyGrid& robots_;
   std::array<Heading, kHeadings> headings_;
-  std::int64_t margin_;              ///< cells around the grid in which eyes of its robots may be
-  std::vector<std::uint32_t> eyes_;  ///< cells with an eye before each cell of a row, and in the whole row
+  std::int64_t margin_;              ///< cells around the grid that may contain eyes of its robots
+  std::vector<std::uint32_t> eyes_;  ///< number of cells with an eye before each cell of a row, and in the whole row
   base::Box box_;                    ///< of all eyes
-  std::vector<Edge> edges_;          ///< scratch of a search, as all below
+  std::vector<Edge> edges_;          ///< scratch for one search, as all below
   std::vector<Direction> directions_;
   std::vector<const Edge*> active_;
 };

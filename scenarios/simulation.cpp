@@ -34,7 +34,7 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   return farm;
 }
 
-/// Moves the newest reading of each sensor to the front: a sensor may have several between two ticks.
+/// Moves the newest reading of each sensor to the front, because a sensor may have several between two ticks.
 std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -82,7 +82,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
   warn_of_long_ways();
 }
 
-/// Names the first robot whose limits of speed allow ways that are longer than their tests for contacts.
+/// Warns about the first robot whose speed limits allow displacements longer than contact tests cover in a tick.
 void Simulation::warn_of_long_ways() {
   for (const world::Mover& mover : world_.movers) {
     const robots::Footprint outline = robots::footprint_of(mover);
@@ -110,7 +110,7 @@ void Simulation::use_control(RobotControl control) {
   controls_.push_back(std::move(control));
 }
 
-/// For all movers and sensors, so that ticks allocate nothing.
+/// Reserves memory for all movers and sensors, so that ticks allocate nothing.
 void Simulation::make_room() {
   for (auto& others : others_) others.reserve(v2v_range_ > 0.0 ? world_.movers.size() : 0);
   sorted_.reserve(farm_.sensor_set().count());
@@ -123,7 +123,7 @@ Simulation::RobotControl Simulation::make_control(std::uint32_t mover, const Act
   share_->set_status(mover, {.drives = true});
   if (!share_->owns(mover)) return robot;
   std::vector<world::Warning> warnings;
-  const bool joins = mover >= absent_.size();  // before the farm has its sensors
+  const bool joins = mover >= absent_.size();  // its sensors are not in the farm yet
   const control::ControllerContext site{world_,  mover,     seed_,
                                         roads(), &warnings, joins ? nullptr : &farm_.sensor_set()};
   control::ConfiguredController made = control::make_controller(site, actor.controller);
@@ -298,11 +298,12 @@ void Simulation::sort_by_mover(std::span<const base::ReadingBlock> readings) {
   by_mover_ = sorted_;
 }
 
-/// Sets `first_` for readings in order of movers. @return false for any other order
+/// Sets `first_` for readings in order of movers.
+/// @return false if they are in any other order
 bool Simulation::index_by_mover(std::span<const base::ReadingBlock> readings) {
   std::atomic<bool> in_order{true};
   farm_.thread_pool().parallel_for(readings.size(), 256, [&](std::size_t begin, std::size_t end, unsigned) {
-    std::uint32_t above = begin == 0 ? 0 : readings[begin - 1].mover + 1;  // the last reading's mover
+    std::uint32_t above = begin == 0 ? 0 : readings[begin - 1].mover + 1;  // mover of the previous reading, plus one
     for (std::size_t i = begin; i < end; ++i) {
       if (readings[i].mover + 1 < above) in_order = false;
       for (; above <= readings[i].mover; ++above) first_[above] = static_cast<std::uint32_t>(i);
@@ -340,7 +341,8 @@ ControlStatus Simulation::status(std::uint32_t mover) const {
   return agreed != nullptr ? *agreed : own_status(mover);
 }
 
-/// `decide_one`; keeps the error of the first mover that fails, since none may leave a thread of the pool.
+/// Calls `decide_one`, and stores the error of the first mover that fails, because exceptions must not leave a thread
+/// of the pool.
 void Simulation::try_to_decide(std::uint32_t mover, std::int64_t time, unsigned thread) {
   try {
     decide_one(mover, time, thread);
@@ -377,12 +379,12 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   robot.stepped = true;
 }
 
-/// [ns] Delivery time of a reading, possibly between two ticks.
+/// [ns] Returns the delivery time of a reading, possibly between two ticks.
 std::int64_t Simulation::leaves_at(const base::ReadingBlock& reading) const {
   return reading.time + base::nanoseconds(farm_.sensor_set().row(reading).latency);
 }
 
-/// The controller steps at this tick. Otherwise its last command remains in effect.
+/// Returns whether the controller steps at this tick. Otherwise its last command remains in effect.
 bool Simulation::due(RobotControl& robot, std::span<const base::ReadingBlock> fresh, std::int64_t time,
                      bool contact) const {
   if (robot.on_scans) {

@@ -19,7 +19,7 @@ namespace {
 using record::StandardTopic;
 using Message = StandardTopic::Message;
 
-/// The mover's sensor number `sensor` of a type.
+/// Returns the mover's sensor number `sensor` of a type.
 record::SensorInfo& find(record::RunInfo& info, std::uint32_t mover, std::uint8_t type, std::uint32_t sensor) {
   auto& sensors = info.movers[mover].sensors;
   return *std::find_if(sensors.begin(), sensors.end(),
@@ -49,7 +49,7 @@ void add_fields(const world::World& world, record::RunInfo& info) {
   });
 }
 
-/// Of a robot's first encoders, which its odometry is from.
+/// Adds the first encoders of each robot, from which its odometry is computed.
 void add_encoders(const world::World& world, record::RunInfo& info) {
   sensors::for_each_sensor(world, sensors::encoder_type, [&](const sensors::MountedSensor& mounted) {
     if (mounted.row.sensor > 0) return;

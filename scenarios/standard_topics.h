@@ -1,5 +1,5 @@
 #pragma once
-// Which readings recordings and bridges tell as standard ROS messages, too: elements of sonars and infrared sensors as
+// Selects the readings that are also published as standard ROS messages: elements of sonars and infrared sensors as
 // ranges, of magnetometers as magnetic fields, GPS fixes, gyros as IMUs, occupancy maps.
 
 #include "record/run_info.h"
@@ -7,7 +7,8 @@
 
 namespace sf::scenarios {
 
-/// Sets `SensorInfo::standard` of all sensors. Rule: `info` has the sensors of `world`.
+/// Sets `SensorInfo::standard` of all sensors.
+/// @pre `info` has the sensors of `world`
 void add_standard_topics(const world::World& world, record::RunInfo& info);
 
 }  // namespace sf::scenarios

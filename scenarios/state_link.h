@@ -1,5 +1,5 @@
 #pragma once
-// The states of robots on their way to the farm, in a simulation: reported at a rate, late, lost, with noise.
+// Simulates the transmission of robots' states to the farm: at a rate, with delay, loss and noise.
 
 #include <cstdint>
 #include <optional>
@@ -15,32 +15,33 @@ namespace sf::scenarios {
 
 struct StateLinkOptions {
   double rate = 10.0;           ///< [Hz] > 0, at most one state per tick
-  netio::LinkModel link;        ///< of every state
+  netio::LinkModel link;        ///< applied to every state
   double position_sigma = 0.0;  ///< [m] noise of reported positions, along x and y
-  double yaw_sigma = 0.0;       ///< [rad] likewise of yaw
-  bool filter = false;          ///< as `serve --filter`, with the link's delay as least delay, and stale one
-                                ///< second beyond its largest; false: as `serve` without
+  double yaw_sigma = 0.0;       ///< [rad] noise of reported yaw
+  bool filter = false;  ///< as `serve --filter`, with the link's delay as minimum delay, and stale one second after its
+                        ///< maximum; false: as `serve` without it
 };
 
-/// The states of a fleet as a farm receives them. Messages of one tick are taken at their own times of arrival. One
-/// thread.
+/// The states of a fleet as received by a farm. Messages of one tick are processed at their own times of arrival. Not
+/// thread-safe.
 class StateLink {
  public:
   StateLink(const world::World& world, const StateLinkOptions& options);
 
-  /// The world has got one more mover, in its last row. @param state as the farm assumes it until its first message
+  /// Adds the mover that was appended to the world.
+  /// @param state assumed by the farm until its first message
   void add_mover(const base::Report& state);
 
-  /// Reports the true states of time `time` [ns], as far as they are due, and returns those that the farm assumes.
+  /// Reports the true states at `time` [ns] if due, and returns the states that the farm assumes.
   /// @param truth one per mover; tags are passed through
-  /// @return likewise, at `time`; lives until the next call
+  /// @return one per mover, at `time`; valid until the next call
   std::span<const base::Report> pass(std::int64_t time, std::span<const base::Report> truth);
 
  private:
   struct Message {
     std::int64_t arrival = 0;  ///< [ns]
     std::uint32_t sequence = 0;
-    base::Report report;  ///< at the time of its sending
+    base::Report report;  ///< at its time of sending
   };
   void send(std::int64_t time, std::span<const base::Report> truth);
   void take(const Message& message);

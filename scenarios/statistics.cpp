@@ -22,7 +22,7 @@ Four four_of(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double v : values) sum += v;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  four.mean = std::clamp(sum / count, *least, *most);  // equal values have their value as mean, and no deviation
+  four.mean = std::clamp(sum / count, *least, *most);  // exact for equal values, whose deviation is 0
   double squares = 0.0;
   for (const double v : values) squares += (v - four.mean) * (v - four.mean);
   if (values.size() > 1) four.deviation = std::sqrt(squares / (count - 1.0));

@@ -10,13 +10,13 @@ namespace sf::scenarios {
 struct ErrorStatistics {
   std::size_t count = 0;
   double mean = 0.0, deviation = 0.0, least = 0.0, most = 0.0;
-  double abs_mean = 0.0, abs_deviation = 0.0, abs_least = 0.0, abs_most = 0.0;  ///< of the errors' absolute values
+  double abs_mean = 0.0, abs_deviation = 0.0, abs_least = 0.0, abs_most = 0.0;  ///< of the absolute errors
 };
 
-/// Sample deviations (divisor count - 1). Non-finite values are ignored.
+/// Sample deviations (divisor count - 1). Ignores non-finite values.
 ErrorStatistics statistics_of(std::span<const double> errors);
 
-/// Percentile by nearest rank, `part` in [0, 1]; NaN without values.
+/// Returns the percentile by nearest rank, `part` in [0, 1]; NaN without values.
 double percentile(std::span<const double> values, double part);
 
 }  // namespace sf::scenarios

@@ -6,12 +6,12 @@ namespace sf::scenarios {
 
 namespace {
 
-constexpr double kApart = 0.01;           // [m] between remembered poses
-constexpr std::size_t kRemembered = 400;  // poses
+constexpr double kApart = 0.01;           // [m] between stored poses
+constexpr std::size_t kRemembered = 400;  // number of stored poses
 
 double distance(const base::Pose& a, const base::Pose& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-/// Side of the contact: positive when most of it is on the left.
+/// Returns the side of the contact: positive if most of it is on the left.
 double side_of(std::uint32_t contact_mask) {
   double side = 0.0;
   for (std::uint32_t k = 0; k < base::kContactSectors; ++k)

@@ -1,6 +1,6 @@
 #pragma once
-// Model of a laboratory supervisor: a robot that has stopped in contact and waits for its bumper to be released is put
-// back along its path and turned away from the contact.
+// Model of a laboratory supervisor. A robot that has stopped in contact and waits for its bumper to be released is
+// moved back along its path and turned away from the contact.
 
 #include <cmath>
 #include <cstdint>
@@ -13,8 +13,8 @@
 namespace sf::scenarios {
 
 struct SupervisorSettings {
-  double patience = 0.0;     ///< [s] of standing in contact before the intervention; 0: no supervisor
-  double back = 0.15;        ///< [m] back along its path
+  double patience = 0.0;     ///< [s] at rest in contact before the intervention; 0: no supervisor
+  double back = 0.15;        ///< [m] distance back along its path
   double turn = M_PI / 4.0;  ///< [rad] away from the side in contact
 };
 
@@ -26,13 +26,14 @@ class Supervisor {
   };
   Supervisor(const world::World& world, const SupervisorSettings& settings);
 
-  /// Called after every tick. @return interventions to apply before the next tick; lives until the next call
+  /// Call it after every tick.
+  /// @return interventions to apply before the next tick; valid until the next call
   std::span<const Intervention> update(const base::TickRecord& tick);
 
  private:
   struct Watched {
-    std::vector<base::Pose> way;  ///< past poses at least 1 cm apart, the newest last
-    double waited = 0.0;          ///< [s] standing in contact
+    std::vector<base::Pose> way;  ///< past poses at least 1 cm apart, newest last
+    double waited = 0.0;          ///< [s] at rest in contact
   };
   base::Pose place_for(const base::Report& report, const Watched& watched) const;
 

@@ -15,8 +15,8 @@ namespace {
 using world::TomlNode;
 using Rows = std::vector<std::size_t>;
 
-/// The item that `part` names in a table, or in a list: by its name (robots) or its number from 0 (events). Made where
-/// there is none.
+/// Returns the item named by `part` in a table, or in a list by its name (robots) or its number from 0 (events).
+/// Creates it if missing.
 TomlNode& item_of(TomlNode& node, const std::string& part, bool robots) {
   for (TomlNode& item : node.items) {
     const TomlNode* const name = world::find(item, "name");
@@ -65,7 +65,7 @@ Scenario scenario_at(const Sweep& sweep, const Rows& rows, std::size_t parameter
   return parse_scenario(sweep.scenario, root);
 }
 
-/// Its warnings, or what is wrong.
+/// The warnings of a scenario, or its error.
 struct TriedScenario {
   std::string error;
   std::vector<world::Warning> warnings;
@@ -84,7 +84,7 @@ TriedScenario try_scenario(const Sweep& sweep, const Rows& rows, std::size_t par
                          fmt::format("{} = {}: {}", p.name, text_of(p.values[rows[parameter]]), error));
 }
 
-/// Of numbers the least and the greatest, of others all, but for the first.
+/// Returns the minimum and maximum of numbers, and all other values, except for the first.
 Rows rows_to_try(const SweepParameter& parameter) {
   const auto& values = parameter.values;
   const bool numbers =
@@ -137,7 +137,8 @@ std::vector<world::Warning> check_sweep(const Sweep& sweep) {
   Rows rows(all, 0);
   const TriedScenario first = try_scenario(sweep, rows, all);
   if (!first.error.empty()) {
-    // Without any parameter it is the scenario's own fault; else that of the first parameter with which it appears.
+    // If the error appears without any parameter, it is the scenario's own; else it is that of the first parameter that
+    // causes it.
     if (try_scenario(sweep, rows, 0).error == first.error) throw base::InputError(first.error);
     std::size_t count = 1;
     while (count < all && try_scenario(sweep, rows, count).error != first.error) ++count;

@@ -1,6 +1,7 @@
 #pragma once
 // A sweep: one scenario at the points of a grid or a sample of its keys, each point with several seeds. A TOML file;
-// keys in docs/sweeps.md. Jobs are numbered with the seeds fastest and the file's first parameter slowest.
+// see docs/sweeps.md for its keys. Jobs are numbered so that the seed changes fastest and the file's first parameter
+// slowest.
 
 #include <cstdint>
 #include <string>
@@ -12,13 +13,13 @@
 
 namespace sf::scenarios {
 
-/// Largest number of jobs of a sweep.
+/// Maximum number of jobs of a sweep.
 inline constexpr std::uint64_t kMostJobs = 1'000'000;
 
-/// A key of the scenario's file, and its values.
+/// A key of the scenario's file and its values.
 struct SweepParameter {
-  std::string name;                     ///< path of keys, such as "default.settings.kp" or "robot.NAME.rate"
-  std::vector<world::TomlNode> values;  ///< at least one. Of a sampled parameter: one per point of the sample
+  std::string name;                     ///< path of keys, for example "default.settings.kp" or "robot.NAME.rate"
+  std::vector<world::TomlNode> values;  ///< at least one; for a sampled parameter, one per point of the sample
   bool sampled = false;
   int line = 0;  ///< in the sweep's file
 };
@@ -28,8 +29,8 @@ struct Sweep {
   std::string file;                        ///< of the sweep
   std::string scenario;                    ///< path of the scenario's file
   world::TomlNode settings;                ///< content of the scenario's file
-  std::vector<SweepParameter> parameters;  ///< those of the grid, then the sampled ones
-  std::uint64_t samples = 1;               ///< points of the sample; 1 without one
+  std::vector<SweepParameter> parameters;  ///< of the grid first, then the sampled ones
+  std::uint64_t samples = 1;               ///< number of points of the sample; 1 without a sample
   std::vector<std::uint64_t> seeds;        ///< at least one, all different
   std::uint64_t hash = 0;                  ///< of both files
 
@@ -41,16 +42,18 @@ struct Sweep {
 Sweep parse_sweep(const std::string& file, std::string_view text);
 Sweep read_sweep(const std::string& file);
 
-/// Row of each parameter's value at a point. @param point below `points()`
+/// Returns the row of each parameter's value at a point.
+/// @param point below `points()`
 std::vector<std::size_t> rows_at(const Sweep& sweep, std::uint64_t point);
 
-/// The scenario of a job.
+/// Returns the scenario of a job.
 /// @param job below `jobs()`
-/// @throws base::InputError for values that the scenario does not take
+/// @throws base::InputError for values that the scenario does not accept
 Scenario scenario_of(const Sweep& sweep, std::uint64_t job);
 
-/// Tries the scenario with each parameter's values (of numbers the least and the greatest), all others at their first:
-/// keys, values, worlds, controllers and expectations. Needs no device. Other combinations are tried by their jobs.
+/// Checks the scenario with each parameter's values (for numbers only the minimum and maximum), with all others at
+/// their first value: keys, values, worlds, controllers and expectations. Needs no device. Other combinations are
+/// checked by their jobs.
 /// @return warnings of the first point's world
 /// @throws base::InputError at the parameter's line
 std::vector<world::Warning> check_sweep(const Sweep& sweep);

@@ -23,13 +23,13 @@ namespace {
 using world::TomlNode;
 using world::TomlReader;
 
-constexpr double kMostSeed = 9.0e15;  // whole numbers that a double represents exactly
+constexpr double kMostSeed = 9.0e15;  // limit up to which a double represents all whole numbers exactly
 constexpr double kMostJobsNumber = static_cast<double>(kMostJobs);
 constexpr std::array<std::string_view, 5> kSweepKeys{"name", "scenario", "seeds", "grid", "sample"};
 constexpr std::array<std::string_view, 4> kSampleKeys{"points", "method", "seed", "range"};
 constexpr std::array<std::string_view, 5> kRangeKeys{"from", "to", "count", "scale", "whole"};
 
-/// A range of numbers: { from, to } with scale = "log" and whole = true; in a grid with a count.
+/// A range of numbers: { from, to } with scale = "log" and whole = true; with a count in a grid.
 struct Range {
   double from = 0.0, to = 0.0;
   bool log = false;
@@ -41,7 +41,8 @@ struct Range {
     const double x = log ? from * std::pow(to / from, u) : from + u * (to - from);
     return std::clamp(whole ? std::round(x) : x, from, to);
   }
-  /// Of a grid of `count` points with both ends. @param i below `count`
+  /// Returns a point of a grid of `count` points that includes both ends.
+  /// @param i below `count`
   double point(std::uint64_t i, std::uint64_t count) const {
     if (i + 1 == count) return to;
     const double u = static_cast<double>(i) / static_cast<double>(count - 1);
@@ -100,7 +101,7 @@ void add_leaves(const TomlNode& table, const std::string& prefix, std::vector<Le
                      [](const Leaf& a, const Leaf& b) { return a.node->line < b.node->line; });
 }
 
-/// @throws base::InputError for names that no key of a scenario can have
+/// @throws base::InputError for names that cannot be keys of a scenario
 void check_name(const TomlReader& reader, const Leaf& leaf, std::set<std::string>& names) {
   if (leaf.name == "seed" || leaf.name == "name")
     reader.fail(*leaf.node, leaf.name == "seed" ? "'seed' is no parameter; expected seeds = N or seeds = [...] instead"
@@ -134,7 +135,7 @@ SweepParameter grid_parameter(const TomlReader& reader, const Leaf& leaf) {
   return parameter;
 }
 
-/// Called after each parameter, so that no list becomes much longer than that.
+/// Called after each parameter, so that no list becomes much longer than the limit.
 void check_number_of_jobs(const TomlReader& reader, const Sweep& sweep, std::size_t seeds) {
   double jobs = static_cast<double>(sweep.samples) * static_cast<double>(seeds);
   for (const SweepParameter& parameter : sweep.parameters)
@@ -216,7 +217,7 @@ std::vector<std::uint64_t> seeds_of(const TomlReader& reader, const TomlNode& ro
   return seeds;
 }
 
-/// Relative to the sweep's file; else among the installed ones.
+/// Returns a path relative to the sweep's file, else among the installed scenarios.
 std::string scenario_file_of(const TomlReader& reader, const TomlNode& root) {
   const std::string file = reader.text(root, "scenario", "");
   if (file.empty()) throw base::InputError(reader.file(), 0, "has no scenario; expected scenario = \"FILE.toml\"");

@@ -13,7 +13,7 @@ namespace sf::scenarios {
 
 namespace {
 
-/// The fields of the row at the start of `text`, which is cut off; quoted ones may contain commas and line ends.
+/// Returns the fields of the first row of `text` and removes it; quoted fields may contain commas and line ends.
 std::vector<std::string> cut_row(std::string_view& text) {
   std::vector<std::string> fields(1);
   bool quoted = false;
@@ -44,7 +44,7 @@ bool find_columns(const std::vector<std::string>& head, JobColumns& columns) {
   if (head.size() < 7 || head[0] != "job" || head[1] != "point" || head[head.size() - 3] != "simulated_s") return false;
   columns.last = head.size() - 3;
   for (std::size_t i = 2; i + 1 < columns.last; ++i)
-    if (head[i] == "seed" && head[i + 1] == "status") columns.seed = i;  // the last: a parameter may be called so, too
+    if (head[i] == "seed" && head[i + 1] == "status") columns.seed = i;  // last match: a parameter may be named so
   return columns.seed > 0;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The table of a sweep's jobs, read back.
+// Parser for the table of a sweep's jobs.
 
 #include <cstdint>
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace sf::scenarios {
 
-/// A point with the results of its seeds.
+/// A point and the results of its seeds.
 struct SweepPoint {
-  std::vector<std::string> values;           ///< by parameter, as texts
+  std::vector<std::string> values;           ///< as text, by parameter
   std::vector<std::string> status;           ///< by job: "pass", "missed", "none", "failed" or "missing"
   std::vector<std::vector<double>> metrics;  ///< by metric, then by job; NaN: empty
 };
@@ -21,7 +21,7 @@ struct SweepJobs {
 };
 
 /// @param file name for errors
-/// @throws base::InputError with file and line where the text is no table of `csv_of_jobs` (scenarios/sweep_tables.h)
+/// @throws base::InputError with file and line if the text is not a table of `csv_of_jobs` (scenarios/sweep_tables.h)
 SweepJobs read_sweep_jobs(const std::string& file, std::string_view text);
 
 }  // namespace sf::scenarios

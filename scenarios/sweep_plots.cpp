@@ -21,7 +21,7 @@ namespace sf::scenarios {
 namespace {
 
 constexpr std::size_t kMostPlotsOfFigure = 24;
-constexpr std::size_t kMostOverlaid = 7;  ///< lines that also have a figure of one plot
+constexpr std::size_t kMostOverlaid = 7;  ///< maximum number of lines in an additional figure of one plot
 
 std::optional<double> number_of(const std::string& text) {
   double value = 0.0;
@@ -33,7 +33,7 @@ std::optional<double> number_of(const std::string& text) {
 /// A parameter and its values.
 struct Parameter {
   std::size_t row = 0;
-  std::vector<std::string> values;  ///< each once: numbers ascending, others as they come
+  std::vector<std::string> values;  ///< unique: numbers ascending, others in order of appearance
   bool numeric = true;
 
   std::size_t index_of(const SweepPoint& point) const {
@@ -58,7 +58,7 @@ std::vector<Parameter> parameters_of(const SweepJobs& jobs) {
   return all;
 }
 
-/// "link.delay [s]"; keys of controllers have units of their own.
+/// Returns "link.delay [s]"; keys of controllers have their own units.
 std::string parameter_name(const std::string& name) {
   if (name.find("settings.") != std::string::npos) return name;
   const std::string key = name.substr(name.rfind('.') + 1);
@@ -68,7 +68,7 @@ std::string parameter_name(const std::string& name) {
   return key == "position_sigma" ? name + " [m]" : key == "yaw_sigma" ? name + " [rad]" : name;
 }
 
-/// The end of a parameter's name that no other parameter has: "kp", or "link.delay" beside "states.delay".
+/// Returns the shortest unique end of a parameter's name: "kp", or "link.delay" if there is also "states.delay".
 std::string short_name(const SweepJobs& jobs, std::size_t row) {
   const std::string& name = jobs.parameters[row];
   for (std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0; dot = name.rfind('.', dot - 1)) {
@@ -81,13 +81,13 @@ std::string short_name(const SweepJobs& jobs, std::size_t row) {
   return name;
 }
 
-/// "kp = 0.5".
+/// Returns "kp = 0.5".
 std::string value_name(const SweepJobs& jobs, const Parameter& p, const std::string& value) {
   return fmt::format("{} = {}", short_name(jobs, p.row),
                      p.numeric ? viz::number_text(std::strtod(value.c_str(), nullptr)) : value);
 }
 
-/// A metric as the name of an axis.
+/// Returns a metric as the name of an axis.
 std::string metric_name(const std::string& metric) {
   const std::size_t of = metric.find(" of ");
   const std::string base = metric.substr(0, of), robot = of == std::string::npos ? "" : metric.substr(of);
@@ -161,7 +161,7 @@ class SweepPlotter {
     return proportion_interval(count("pass"), count("pass") + count("missed") + count("failed"));
   }
 
-  /// The wished parameter; of a grid one, of a sample all.
+  /// Returns the requested parameter; one for a grid, all for a sample.
   std::vector<Parameter> along_x(const std::string& file) const {
     const auto named = [&](const Parameter& p) { return jobs_.parameters[p.row] == choice_.over; };
     if (const auto found = std::find_if(varied_.begin(), varied_.end(), named); found != varied_.end()) return {*found};
@@ -202,7 +202,7 @@ class SweepPlotter {
         fmt::format("{} = {}: a logarithmic axis has values above 0 only", jobs_.parameters[x.row], x.values.front()));
   }
 
-  /// "mean and 95 % interval (Student), n = 3 per point; 2 results left out".
+  /// Returns "mean and 95 % interval (Student), n = 3 per point; 2 results left out".
   std::string subtitle_of(std::size_t metric) const {
     std::size_t least = SIZE_MAX, most = 0, seeds = 0, counted_runs = 0;
     for (const SweepPoint& point : jobs_.points) {
@@ -231,7 +231,7 @@ class SweepPlotter {
     return {at, interval.mean, interval.low, interval.high};
   }
 
-  /// The points that `is` takes, in order of x.
+  /// Returns the points accepted by `is`, in order of x.
   template <class Is>
   viz::IntervalLine line_of(std::string name, std::size_t metric, const Parameter& x, Is&& is) const {
     viz::IntervalLine line{std::move(name), {}};
@@ -241,7 +241,7 @@ class SweepPlotter {
     return line;
   }
 
-  /// Parameters but for x, those of few values first.
+  /// Returns the parameters except x, those with few values first.
   std::vector<Parameter> others_than(const Parameter& x) const {
     std::vector<Parameter> others;
     for (const Parameter& p : varied_)
@@ -251,7 +251,7 @@ class SweepPlotter {
     return others;
   }
 
-  /// One plot with a line per value of `lines` at the points that `is` takes; without it one line.
+  /// Returns one plot of the points accepted by `is`, with a line per value of `lines`; one line if it is null.
   template <class Is>
   viz::IntervalPlot plot_of(std::size_t metric, const Parameter& x, const Parameter* lines, std::string title,
                             Is&& is) const {
@@ -276,7 +276,7 @@ class SweepPlotter {
     if (others.size() > 1) draw_combinations(std::move(figure), metric, x, others);
   }
 
-  /// Two parameters: a plot per value of the second one, with the lines of the others in grey.
+  /// Two parameters: a plot per value of the second one, with the other values' lines in grey.
   void draw_multiples(viz::IntervalFigure figure, std::size_t metric, const Parameter& x, const Parameter& other) {
     figure.plots.clear();
     const auto at = [&](std::size_t k) {
@@ -292,7 +292,7 @@ class SweepPlotter {
     save(figure, file_stem(metrics_[metric]) + "_multiples");
   }
 
-  /// More parameters: a plot per combination of the others' values.
+  /// More parameters: a plot per combination of the other parameters' values.
   void draw_combinations(viz::IntervalFigure figure, std::size_t metric, const Parameter& x,
                          const std::vector<Parameter>& others) {
     std::size_t count = 1;
@@ -337,9 +337,9 @@ class SweepPlotter {
   const std::string& folder_;
   const SweepPlotChoice& choice_;
   SweepPlots& plots_;
-  std::vector<Parameter> varied_;     ///< with two values or more
-  std::vector<std::string> metrics_;  ///< with "met" where runs have expectations
-  bool is_grid_ = true;               ///< each combination of values has one point
+  std::vector<Parameter> varied_;     ///< with at least two values
+  std::vector<std::string> metrics_;  ///< with "met" if runs have expectations
+  bool is_grid_ = true;               ///< whether each combination of values has exactly one point
 };
 
 }  // namespace

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 4> kStatusWords{"pass", "missed", "none", "failed"};
-constexpr std::string_view kEnd = "end\n";  // the last line of a whole result
+constexpr std::string_view kEnd = "end\n";  // the last line of a complete result
 
 std::string in_one_line(std::string text) {
   std::replace_if(
@@ -30,7 +30,7 @@ std::string in_one_line(std::string text) {
   return text;
 }
 
-/// Shortest text that is read back to the same number.
+/// Writes numbers as the shortest text that is parsed to the same value.
 std::string text_of_job(const JobResult& result) {
   std::string text = fmt::format("status\t{}\nmessage\t{}\nsimulated\t{}\nhash\t{}\n", word_of(result.status),
                                  in_one_line(result.message), result.simulated, result.hash);
@@ -40,7 +40,7 @@ std::string text_of_job(const JobResult& result) {
   return text + std::string(kEnd);
 }
 
-/// The text up to `end`, which is taken off with it.
+/// Returns the text up to `end`, and removes it and `end`.
 std::string_view cut(std::string_view& text, char end) {
   const std::string_view part = text.substr(0, text.find(end));
   text.remove_prefix(std::min(part.size() + 1, text.size()));
@@ -73,7 +73,7 @@ bool read_line(std::string_view line, JobResult& result) {
   return true;
 }
 
-/// Distinguishes the temporary files of processes of different machines, too.
+/// Returns a name that also distinguishes temporary files of processes on different machines.
 std::string name_of_process() {
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);
@@ -122,7 +122,7 @@ SweepFolder::SweepFolder(const Sweep& sweep, std::string path) : path_(std::move
 std::string SweepFolder::file(std::string_view name) const { return (fs::path(path_) / name).string(); }
 
 std::string SweepFolder::job_file(std::uint64_t job) const {
-  return file(fmt::format("jobs/{:03}/{:06}.txt", job / 1000, job));  // a thousand files in a folder at most
+  return file(fmt::format("jobs/{:03}/{:06}.txt", job / 1000, job));  // at most a thousand files in a folder
 }
 
 void SweepFolder::write(std::uint64_t job, const JobResult& result) const {

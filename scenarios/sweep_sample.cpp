@@ -8,10 +8,10 @@ namespace sf::scenarios {
 
 namespace {
 
-// The standard fixes the numbers of the engine, but not those of its distributions and of std::shuffle.
+// The standard defines the numbers of the engine, but not those of its distributions and of std::shuffle.
 using Engine = std::mt19937_64;
 
-/// In [0, 1): 53 bits.
+/// Returns a number in [0, 1) with 53 random bits.
 double uniform(Engine& engine) { return 0x1p-53 * static_cast<double>(engine() >> 11); }
 
 }  // namespace

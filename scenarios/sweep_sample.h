@@ -9,10 +9,10 @@ namespace sf::scenarios {
 
 enum class SampleMethod : std::uint8_t {
   latin_hypercube,  ///< each coordinate has one point in each of `points` equal intervals
-  random            ///< all coordinates independent; a longer sample of one seed begins with the shorter one
+  random            ///< all coordinates independent; a longer sample with the same seed begins with the shorter one
 };
 
-/// The same numbers on every machine.
+/// Returns the same numbers on every machine.
 /// @return `points` rows of `dimensions` coordinates in [0, 1)
 std::vector<std::vector<double>> sample_points(SampleMethod method, std::uint64_t points, std::size_t dimensions,
                                                std::uint64_t seed);

@@ -18,7 +18,7 @@ namespace sf::scenarios {
 
 namespace {
 
-/// In order of their first appearance: jobs may differ in what they expect, when that is a parameter.
+/// In order of first appearance: jobs may have different expectations if these depend on a parameter.
 std::vector<std::string> metric_names(JobResults results) {
   std::vector<std::string> names;
   for (const auto& result : results)
@@ -28,7 +28,7 @@ std::vector<std::string> metric_names(JobResults results) {
   return names;
 }
 
-/// NaN without one.
+/// Returns NaN if there is none.
 double value_of_metric(const JobResult& result, const std::string& name) {
   for (const Metric& metric : result.metrics)
     if (metric.name == name) return metric.value;
@@ -49,7 +49,7 @@ std::string csv_row(std::vector<std::string> fields) {
   return fmt::format("{}\n", fmt::join(fields, ","));
 }
 
-/// For tables of Markdown.
+/// Replaces the characters that break a Markdown table.
 std::string cell(std::string text) {
   std::replace(text.begin(), text.end(), '|', '/');
   return text;
@@ -70,7 +70,7 @@ ErrorStatistics over_seeds(JobResults results, const std::string& metric) {
   return statistics_of(values_over_seeds(results, metric));
 }
 
-/// Of the jobs that were to meet expectations; a failed one did not.
+/// Interval of the jobs with expectations that met them; a failed one did not.
 Interval met_interval(const JobCounts& counts) {
   return proportion_interval(counts.passed, counts.passed + counts.missed + counts.failed);
 }
@@ -80,13 +80,13 @@ void add_ends(std::vector<std::string>& row, const Interval& interval) {
   row.push_back(number_or_empty(interval.high));
 }
 
-/// "0.0341 ± 0.0012"; the deviation is left out where there is none.
+/// Returns "0.0341 ± 0.0012"; omits the deviation if there is none.
 std::string mean_and_deviation(const ErrorStatistics& s) {
   if (s.count == 0) return "";
   return fmt::format("{:.4g}", s.mean) + (s.deviation > 0.0 ? fmt::format(" ± {:.2g}", s.deviation) : "");
 }
 
-/// Metrics that some job has a value of.
+/// Returns the metrics that have a value in some job.
 std::vector<std::string> measured_names(JobResults results) {
   std::vector<std::string> names = metric_names(results);
   names.erase(std::remove_if(names.begin(), names.end(),

@@ -20,20 +20,24 @@ JobCounts counts_of(JobResults results);
 /// "12 jobs: 10 pass, 1 missed, 1 failed"; kinds without a job are left out.
 std::string text_of(const JobCounts& counts);
 
-// Functions of the results of all jobs, in their order; none: a missing one. They do not depend on who ran which job.
+// The functions below take the results of all jobs in order; nullopt: a missing result. They do not depend on which
+// process ran a job.
 
-/// `job,point,PARAMETERS,seed,status,METRICS,simulated_s,hash,message`.
+/// Returns the table `job,point,PARAMETERS,seed,status,METRICS,simulated_s,hash,message`.
 std::string csv_of_jobs(const Sweep& sweep, JobResults results);
-/// `point,PARAMETERS,jobs,pass,missed,none,failed,missing`, and of each metric `_mean,_std,_min,_max` over the seeds
-/// that have a value; the sample deviation is empty for a single one. Then `met,met_low95,met_high95`, the part of the
-/// jobs that met their expectations, and of each metric `_n,_low95,_high95`: the number of finite values, and the 95 %
-/// interval of their mean (of a metric that is 0 or 1, that of a proportion).
+/// Returns the table `point,PARAMETERS,jobs,pass,missed,none,failed,missing`, with `_mean,_std,_min,_max` of each
+/// metric over the seeds that have a value; the sample deviation is empty for a single one. Then follow
+/// `met,met_low95,met_high95`, the fraction of the jobs that met their expectations, and `_n,_low95,_high95` of each
+/// metric: the number of finite values, and the 95 % interval of their mean (of a proportion for a metric that is 0 or
+/// 1).
 std::string csv_of_points(const Sweep& sweep, JobResults results);
-/// The same for readers, as Markdown. @param most rows; more are cut, and say so
+/// Returns the same table as Markdown.
+/// @param most maximum number of rows; a note replaces further ones
 std::string markdown_of_points(const Sweep& sweep, JobResults results, std::size_t most);
 
-/// "job 4: mean_error is inf", or "is empty": the results that means and intervals leave out, but for metrics that no
-/// job has and failed and missing jobs. @param most lines; the last says how many are left out
+/// Returns "job 4: mean_error is inf" or "is empty": the results that means and intervals exclude, except metrics that
+/// no job has, and failed and missing jobs.
+/// @param most maximum number of lines; the last one gives the number of omitted lines
 std::vector<std::string> missing_values(JobResults results, std::size_t most);
 
 /// Writes jobs.csv, points.csv and report.md. @return their paths

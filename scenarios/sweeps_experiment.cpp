@@ -14,14 +14,14 @@ namespace sf::scenarios {
 
 namespace {
 
-/// Parameters of a point; the defaults are the thesis' gains on an ideal link.
+/// Parameters of a point; the defaults are the gains of the thesis on an ideal link.
 struct Setting {
   double kp = 0.5;       ///< [1/(m s)]
   double ki = 0.0;       ///< [1/(m s^2)]
   double delay = 0.0;    ///< [s]
   double loss = 0.0;     ///< [-]
   double rate = 10.0;    ///< [Hz] of sensor and controller
-  bool one_ray = false;  ///< exact distance to the edge across the robot instead of a fitted line
+  bool one_ray = false;  ///< uses the exact distance to the edge across the robot instead of a fitted line
   Plant plant = Plant::thesis;
 };
 
@@ -31,10 +31,10 @@ struct Point {
   double x = 0.0;
   std::string law;  ///< one of kLaws
   Setting setting;
-  ThesisRow mean{};      ///< mean over seeds, for each of the eight columns
+  ThesisRow mean{};      ///< mean over seeds of each of the eight columns
   double seconds = 0.0;  ///< on the path
   bool all_done = true;
-  /// [m] Mean error inherent in a P loop: the bend's angle divided by gain and time.
+  /// [m] Mean error inherent in a P loop: the angle of the bend divided by gain and time.
   double owed() const {
     const double gain = setting.plant == Plant::thesis ? 2.0 * setting.kp : setting.kp;
     return 0.5 * M_PI / (gain * seconds);
@@ -84,7 +84,7 @@ void measure(const ExperimentContext& context, Point& point) {
   point.mean = mean_of(rows);
 }
 
-/// Control laws: with and without integral, on the fitted line and on the exact distance.
+/// A control law: with or without integral, on the fitted line or on the exact distance.
 struct Law {
   const char* name;
   double ki;
@@ -93,7 +93,7 @@ struct Law {
 constexpr Law kLaws[] = {
     {"P", 0.0, false}, {"PI", 0.015, false}, {"P, exact edge", 0.0, true}, {"PI, exact edge", 0.015, true}};
 
-/// Adds a sweep's points for every law.
+/// Adds the points of a sweep for every law.
 template <class Change>
 void add(std::vector<Point>& points, const std::string& sweep, Plant plant, const std::vector<double>& xs,
          Change&& change) {

@@ -17,7 +17,7 @@ struct ThesisTable {
   std::array<ThesisRow, 3> trials;
 };
 
-/// Null for experiments without a table.
+/// Returns null for experiments without a table.
 const ThesisTable* thesis_table(std::string_view experiment);
 
 /// The headings of the eight columns.

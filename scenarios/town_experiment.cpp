@@ -1,4 +1,4 @@
-// Experiments on whole testbeds: all robots drive, and contacts, checkpoints and stops are counted.
+// Experiments on whole testbeds: all robots drive; counts contacts, checkpoints and stops.
 
 #include <fmt/format.h>
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kTradeoffDriven = 2.0;         // [s] simulated
 constexpr std::size_t kMostValues = 4'000'000;  // elements of one mode whose errors are evaluated
-constexpr int kRounds = 5;                      // timed laps; modes take turns
+constexpr int kRounds = 5;                      // timed laps; modes alternate
 constexpr std::size_t kReferenceScans = 64;
 
 /// Readings of one mode along the paths, first columns only.
@@ -171,7 +171,7 @@ std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device,
       compare(read, exact, grade);
       if (mode == 0 && type.id == sensors::kLaser) {
         grade_errors(laser_errors(*entrants[0], paths, read, sensor_set), grade);
-        grade.covered_max = grade.max;  // `exact` differs from itself nowhere
+        grade.covered_max = grade.max;  // `exact` does not differ from itself
       }
       results.push_back(grade);
       if (!go_on()) return {};

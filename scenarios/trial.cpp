@@ -19,10 +19,10 @@ namespace sf::scenarios {
 
 namespace {
 
-/// Key of the draws of `place`, distinct from those of cloned fleets.
+/// Key of the random numbers of `place`, distinct from those of cloned fleets.
 constexpr std::uint32_t kStart = 0x57A27u;
 
-/// The trial's value of `noise`, in the file's units; empty: none.
+/// Returns the trial's value of `noise`, in the file's units; empty: none.
 std::vector<double> noise_for(const world::Sensor& sensor, const Disturbance& d) {
   if (sensor.type == "laneedge" && d.edge_noise > 0.0) return {d.edge_noise / sensor.metres_per_unit, 0.0, 0.0};
   if (sensor.type == "magnetometer" && d.field_noise > 0.0) return {d.field_noise};
@@ -122,7 +122,7 @@ class Keeper {
     return grids;
   }
 
-  /// Track of the robot's leader.
+  /// Returns the track of the robot's leader.
   std::uint32_t followed_by(std::uint32_t row, const world::World& world, const Simulation& simulation) const {
     const std::uint32_t id = simulation.intent(row).follows;
     for (std::size_t i = 0; i < rows_.size() && id != base::kNoId; ++i)
@@ -163,7 +163,7 @@ record::RecordingPart recording_part_of(const cluster::Ranks* ranks, record::Com
 
 namespace {
 
-/// A trial's simulation and recording, as all ranks begin them.
+/// A trial's simulation and recording, as all ranks start them.
 struct Course {
   std::optional<Simulation> simulation;
   std::optional<record::Recorder> recorder;
@@ -186,7 +186,8 @@ struct Course {
     });
   }
 
-  /// One tick, of which all ranks know. @throws Interrupted on all of them where one was stopped
+  /// Simulates one tick.
+  /// @throws Interrupted on all ranks if one was stopped
   base::TickRecord step(const TrialOptions& options) {
     const bool stop = options.stop && options.stop();
     if (stop && options.ranks == nullptr) throw Interrupted();

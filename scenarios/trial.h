@@ -22,8 +22,8 @@
 namespace sf::scenarios {
 
 /// Random differences between trials: normally distributed, drawn from the trial's seed. The thesis mentions several
-/// nondeterministic factors without numbers; these values are our choice. A sensor whose world file has the key `noise`
-/// keeps exactly that noise, be it 0 or of another kind, such as angular noise alone.
+/// nondeterministic factors without numbers; these values are chosen here. A sensor whose world file has the key
+/// `noise` keeps exactly that noise, even if it is 0 or of another kind, for example only angular noise.
 struct Disturbance {
   double place = 0.01;         ///< [m] standard deviation of the start position, along and across
   double heading = 0.02;       ///< [rad] standard deviation of the start heading
@@ -58,22 +58,23 @@ struct TrialOptions {
   bool maps = false;
   SupervisorSettings supervisor;  ///< default: no supervisor
   unsigned threads = 0;
-  std::function<bool()> stop;       ///< polled each tick, and within long ones; true stops the trial; may be empty
-  cluster::Ranks* ranks = nullptr;  ///< that share the fleet, and all run the trial; null: none
+  std::function<bool()> stop;       ///< polled each tick and within long ones; true stops the trial; may be empty
+  cluster::Ranks* ranks = nullptr;  ///< share the fleet, and all run the trial; null: none
 };
 
-/// The trial was stopped by `TrialOptions::stop`.
+/// Thrown if `TrialOptions::stop` stopped the trial.
 using base::Interrupted;
 
-/// The part of a recording with readings that this process writes. @param ranks may be null
+/// Returns the part of a recording with readings that this process writes.
+/// @param ranks may be null
 record::RecordingPart recording_part_of(const cluster::Ranks* ranks, record::Compression compression);
 
-/// The scenario's world with the disturbance drawn from its seed.
+/// Returns the scenario's world with the disturbance drawn from its seed.
 world::World disturbed_world(const Scenario& scenario, const Disturbance& disturbance);
 
-/// Runs until all controllers are done or the scenario's duration is over.
-/// With ranks all have its results, but for the hash, which the first has; each records its part of the recording.
-/// @throws Interrupted when `options.stop` returns true; the recording then ends with the last complete tick
+/// Runs until all controllers are done or the scenario's duration is over. With ranks, all have its results, except the
+/// hash, which only the first has; each records its part of the recording.
+/// @throws Interrupted if `options.stop` returns true; the recording then ends with the last complete tick
 Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device& device, const TrialOptions& options);
 
 }  // namespace sf::scenarios

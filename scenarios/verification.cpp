@@ -54,7 +54,7 @@ void compare(std::span<const double> ours, std::span<const double> theirs, const
   if (before == 0 && into.different > 0) into.first = where;
 }
 
-/// A recording without a mark has no surface that is too near, or the value of its sensor's minimum there.
+/// A recording without any mark has no surface that is too near, or the value of the sensor's minimum there.
 bool any_marked(const record::Recording& recording) {
   return std::any_of(recording.readings.begin(), recording.readings.end(), [](const record::ReadingSample& reading) {
     return std::find(reading.values.begin(), reading.values.end(), -HUGE_VAL) != reading.values.end();
@@ -65,7 +65,7 @@ bool has_near(const base::ReadingBlock& scan) {
   return std::find(scan.quality.begin(), scan.quality.end(), base::QualityFlag::too_near) != scan.quality.end();
 }
 
-/// A caster that returns the recorded bytes: the recorded one where its bytes are its own, else one of the others.
+/// Returns a caster that reproduces the recorded bytes: the recorded one if its bytes are unique, else any other.
 const raycast::CasterType& caster_of(const record::Recording& recording, bool software) {
   const std::string_view described = record::option_of(recording.info, "caster");
   for (const raycast::CasterType* type : raycast::casters())
@@ -150,8 +150,8 @@ class Verifier {
           "all readings: the run kept none, and no robot has a laser to compare with plain C++");
   }
 
-  /// Readings of a service are those that robots asked for, at times of its clock: scans, and nothing else, can be
-  /// computed again, each from the states of its own time.
+  /// A service's readings are those that robots subscribed to, at times of its clock. Only scans can be recomputed,
+  /// each from the states at its own time.
   void verify_estimated() {
     std::uint64_t others = 0, lost = 0;
     for (const record::ReadingSample& r : recording_.readings) {
@@ -192,7 +192,7 @@ class Verifier {
     look_at(farm_.tick(time, reports_));
   }
 
-  /// Poses of all movers at the time of `asked`.
+  /// Returns the poses of all movers at the time of `asked`.
   void poses_of(const Asked& asked, std::vector<base::Pose>& poses) const {
     poses.clear();
     for (const auto& states : recording_.states) {
@@ -217,7 +217,7 @@ class Verifier {
     stride_ = options_.sample == 0 ? 1 : std::max<std::size_t>(1, all / options_.sample);
   }
 
-  /// One of the recorded ticks has exactly this time.
+  /// Returns whether a recorded tick has exactly this time.
   bool has_states_at(std::int64_t time) const {
     const auto& all = recording_.states;
     return !all.empty() && !all[0].empty() && all[0][tick_at(time)].time == time;
@@ -261,8 +261,8 @@ class Verifier {
     ask(reading, theirs);
   }
 
-  /// Allowed difference of plain C++: the bounds of 32-bit modes, or of a caster with bytes of its own, and the
-  /// precision of recordings. Other modes are recomputed bitwise.
+  /// Returns the allowed difference from plain C++: the bound of 32-bit modes, or of a caster with its own bytes, and
+  /// the precision of recordings. Other modes are compared bitwise.
   double allowed_of(std::uint32_t mover, std::uint32_t sensor, const base::Pose& X_WS) const {
     const sensors::CastLaser& cast = reference_.laser(mover, sensor);
     if (!cast.single && caster_.same_bytes) return 0.0;
@@ -274,13 +274,14 @@ class Verifier {
     return (1.0 + 8.0 * cast.laser.noise.range_proportional) * bound + recorded_rounding(range_max);
   }
 
-  /// The same of a reading of which only the scan is recorded, from the sensor's place at a tick.
+  /// The same for a reading of which only the scan is recorded, at the sensor's pose at a tick.
   double allowed_at(std::uint32_t mover, std::uint32_t sensor, std::size_t tick) const {
     const base::Pose& X_MS = reference_.laser(mover, sensor).laser.X_MS;
     return allowed_of(mover, sensor, base::compose(recording_.states[mover][tick].X_WM, X_MS));
   }
 
-  /// Values as messages have them. @param flags of the reading's elements; empty: none
+  /// Returns values as they appear in messages.
+  /// @param flags of the reading's elements; empty: none
   std::vector<double> told_values(std::span<const double> values, std::span<const base::QualityFlag> flags) const {
     std::vector<double> all(values.begin(), values.end());
     if (marks_too_near_) base::mark_too_near(flags, all);
@@ -291,8 +292,8 @@ class Verifier {
     return farm_.sensor_set().of(sensors::kLaser, mover)[sensor];
   }
 
-  /// Takes the last float32 before range_max for no echo, and one below range_min for range_min: earlier versions
-  /// rounded ranges so.
+  /// Treats the last float32 before range_max as no echo, and one below range_min as range_min, because earlier
+  /// versions rounded ranges in this way.
   std::vector<double> settled(const sensors::SensorSpec& laser, std::vector<double> ranges) const {
     const double none = infinite_ ? HUGE_VAL : laser.limit;
     const double first = base::float_above(laser.range_min);
@@ -304,7 +305,7 @@ class Verifier {
     return ranges;
   }
 
-  /// Ranges as recorded scans have them.
+  /// Returns ranges as they appear in recorded scans.
   std::vector<double> told_scan(std::uint32_t mover, std::uint32_t sensor, std::span<const double> ranges,
                                 std::span<const base::QualityFlag> flags) const {
     const sensors::SensorSpec& laser = laser_of(mover, sensor);
@@ -313,14 +314,14 @@ class Verifier {
     return settled(laser, std::move(all));
   }
 
-  /// Puts every `stride_`-th scan on the list for plain C++.
+  /// Adds every `stride_`-th scan to the list for plain C++.
   void ask(const base::ReadingBlock& reading, const std::vector<double>& ranges) {
     if (seen_++ % stride_ == 0)
       asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), reading.time, ranges,
                         allowed_of(reading.mover, reading.sensor, reading.X_WS)});
   }
 
-  /// Recomputes the collected scans in plain C++, grouped by time, since scans of one time share the movers' poses.
+  /// Recomputes the collected scans in plain C++, grouped by time, because scans at one time share the movers' poses.
   void cast_again() {
     std::stable_sort(asked_.begin(), asked_.end(), [](const Asked& a, const Asked& b) { return a.time < b.time; });
     std::vector<std::vector<double>> scans(asked_.size());
@@ -339,8 +340,8 @@ class Verifier {
     asked_.clear();
   }
 
-  /// A scan in plain C++, as recorded scans have it. Errors of 32-bit ranges may lead across range_min, where noise is
-  /// added on one side only: such beams are taken on the side of `asked`.
+  /// Computes a scan in plain C++, in the form of recorded scans. Errors of 32-bit ranges may cross range_min, where
+  /// noise is added on one side only; such beams are taken on the side of `asked`.
   std::vector<double> cast_in_plain_cpp(const Asked& asked) const {
     const auto cast = [&](double slack) {
       const auto scan = reference_.scan(asked.mover, asked.sensor, asked.sequence, slack);
@@ -362,7 +363,7 @@ class Verifier {
   void judge(const Asked& asked, std::vector<double> ours) {
     const sensors::SensorSpec& laser = laser_of(asked.mover, asked.sensor);
     std::vector<double> theirs = settled(laser, asked.ranges);
-    // Errors of 32-bit ranges may lead to range_max, where no echo is infinity.
+    // Errors of 32-bit ranges may reach range_max, where no echo is infinity.
     for (std::vector<double>* const ranges : {&ours, &theirs})
       if (asked.allowed > 0.0) std::replace(ranges->begin(), ranges->end(), HUGE_VAL, laser.limit);
     compare(ours, theirs,
@@ -385,10 +386,10 @@ class Verifier {
   const double longest_;                  ///< [m] surface of the world
   const bool infinite_;                   ///< beams without a return are recorded as infinity
   const bool marks_too_near_;             ///< ranges of surfaces that are too near are recorded as -infinity
-  const bool is_earlier_;                 ///< of a version that marks none of them, or without such surfaces
-  std::vector<bool> near_;                ///< per mover: its lasers had such surfaces
-  bool recorded_ = false;                 ///< the recording has scans
-  std::map<Name, std::size_t> readings_;  ///< recorded readings not compared yet
+  const bool is_earlier_;                 ///< recorded by a version without these marks, or without such surfaces
+  std::vector<bool> near_;                ///< per mover: whether its lasers had such surfaces
+  bool recorded_ = false;                 ///< whether the recording has scans
+  std::map<Name, std::size_t> readings_;  ///< recorded readings not yet compared
   std::vector<base::Report> reports_;     ///< of one tick
   std::map<std::uint8_t, Comparison> again_;
   std::vector<Asked> asked_;

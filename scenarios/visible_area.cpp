@@ -31,18 +31,18 @@ std::vector<world::Segment> walls_where(const world::World& world, bool (*take)(
   return walls;
 }
 
-/// [m] height of the robot's body above its origin.
+/// [m] Returns the height of the robot's body above its origin.
 double top_of(const world::Mover& robot) {
   double top = 0.0;
   for (const world::Segment& side : robot.body) top = std::max(top, side.z_max);
   return top;
 }
 
-/// Positions of a robot: cells whose centres its origin can reach, clear of walls by its radius and connected to its
+/// Positions of a robot: cells whose centres its origin can reach, at least its radius from walls and connected to its
 /// start.
 struct Positions {
   maps::OccupancyGrid cells;     ///< free where reachable
-  std::vector<CellAt> in_order;  ///< neighbours follow each other
+  std::vector<CellAt> in_order;  ///< neighbours are adjacent in the list
   bool start_is_clear = false;
 };
 
@@ -71,7 +71,7 @@ Positions positions_of(const world::World& world, std::uint32_t mover, const map
   return positions;
 }
 
-/// Middle of the part of a segment within `reach` of the origin along each axis.
+/// Returns the middle of the part of a segment within `reach` of the origin along each axis.
 std::optional<glm::dvec2> middle_inside(glm::dvec2 a, glm::dvec2 b, double reach) {
   double first = 0.0, last = 1.0;
   for (int axis = 0; axis < 2; ++axis) {
@@ -86,13 +86,13 @@ std::optional<glm::dvec2> middle_inside(glm::dvec2 a, glm::dvec2 b, double reach
   return a + 0.5 * (first + last) * (b - a);
 }
 
-/// A cell, and a position from which its neighbour is in view.
+/// A cell, and a position from which a neighbouring cell is visible.
 struct Candidate {
   CellAt at;
   CellAt robot;
 };
 
-/// Marks the cells in view: from each of them on to those within two cells, so that light falls through gaps.
+/// Marks the visible cells. Expands from each of them to those within two cells, so that light passes through gaps.
 class Survey {
  public:
   Survey(const world::World& world, std::uint32_t mover, const LaserSettings& laser, const Positions& positions,
@@ -143,7 +143,8 @@ class Survey {
     return sight_.sees(robot, p) ? std::optional(robot) : sight_.find(p);
   }
 
-  /// Occupied where a wall in the cell is in view, free where its centre is. @return a position that sees it
+  /// Marks the cell as occupied if a wall in it is visible, and as free if its centre is.
+  /// @return a position that sees it
   std::optional<CellAt> look(const Candidate& candidate) {
     const maps::GridGeometry& grid = seen_.geometry;
     const glm::dvec2 centre = maps::middle(grid, candidate.at);
@@ -174,7 +175,7 @@ LaserSettings first_laser(const world::Mover& mover) {
   return lasers[0];
 }
 
-/// All that a visible area depends on beside walls, grid and positions. [m], [rad]
+/// All inputs of a visible area other than walls, grid and positions. [m], [rad]
 using Shape = std::array<double, 9>;
 
 Shape shape_of(const world::Mover& m) {
@@ -203,7 +204,7 @@ struct SeenArea {
 
   bool is_for(std::uint64_t other_walls, const Shape& other, const maps::GridGeometry& geometry, CellAt from) const {
     if (walls != other_walls || shape != other || !(seen.geometry == geometry)) return false;
-    // From another start the first one is reached if it is clear.
+    // The first start is reachable from another one if it is clear.
     return from == start ||
            (positions.start_is_clear && maps::contains(geometry, from) && positions.cells.at(from) == Cell::free);
   }
@@ -211,7 +212,7 @@ struct SeenArea {
 
 namespace {
 
-/// Of the process, for the jobs of a sweep.
+/// Shared by the process, for the jobs of a sweep.
 constexpr std::size_t kMostAreas = 8;
 std::mutex shared_areas_mutex;
 std::deque<std::shared_ptr<const SeenArea>> shared_areas;

@@ -7,7 +7,7 @@ namespace sf::scenarios {
 
 namespace {
 
-/// One outline per model, in order of its first segment.
+/// Returns one outline per model, in order of its first segment.
 std::vector<record::Outline> outlines_of(const world::World& world, const std::vector<world::Segment>& segments) {
   std::vector<record::Outline> outlines;
   std::vector<std::size_t> row_of(world.models.size(), SIZE_MAX);
@@ -22,7 +22,7 @@ std::vector<record::Outline> outlines_of(const world::World& world, const std::v
   return outlines;
 }
 
-/// Cells that the segment passes, at steps of half a cell.
+/// Draws the cells along the segment, in steps of half a cell.
 void draw(const world::Segment& segment, record::WorldShape& shape) {
   const glm::dvec2 along = segment.b - segment.a;
   const double steps = std::ceil(2.0 * glm::length(along) / shape.cell);
