@@ -1,4 +1,4 @@
-// Beams along walls, through corners, from a wall's face and from inside blocks.
+// Beams along walls, through corners, from the face of a wall, and from inside blocks.
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@ namespace sf::selftest {
 
 namespace {
 
-/// A laser beside the start of a 100 m wall hits it half way at a grazing angle; another wall stands behind.
+/// A laser next to the start of a 100 m wall hits it halfway at a grazing angle; another wall is behind it.
 void grazing(Fixture& fixture, Checks& checks) {
   const sensors::LaserSettings eye = laser(1, 0.0, 1000.0);
   for (double angle = 1e-1; angle > 0.5e-9; angle *= 0.1) {
@@ -34,7 +34,7 @@ void grazing(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// Beams along x, parallel to a wall or in its line: they hit the wall across their end.
+/// Beams along x, parallel to a wall or collinear with it: they hit the wall across their end.
 void parallel(Fixture& fixture, Checks& checks) {
   for (const double beside : {1.0, 1e-3, 1e-6, 1e-8, 1e-300, 0.0, -1e-8, -1.0})
     for (const double from : {-2.0, 0.0, 3.0}) {
@@ -48,7 +48,7 @@ void parallel(Fixture& fixture, Checks& checks) {
     }
 }
 
-/// From inside a polygon at each corner: the range is the distance of the corner, whichever wall is hit.
+/// From inside a polygon at each corner: the range is the distance of the corner, whichever of its walls is hit.
 void corners(Fixture& fixture, Checks& checks) {
   for (const int count : {3, 7, 64, 1000})
     for (const double far : {0.0, 1e7}) {
@@ -75,7 +75,7 @@ void corners(Fixture& fixture, Checks& checks) {
     }
 }
 
-/// Two blocks that touch in one corner: a beam along the diagonal between them ends there.
+/// Two blocks touch at one corner: a beam along the diagonal between them ends there.
 void touching_corners(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
@@ -87,7 +87,7 @@ void touching_corners(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// From a wall's inner face: 0 towards the wall, the opposite wall's distance away from it.
+/// From a wall's inner face: 0 towards the wall, and the distance of the opposite wall away from it.
 void from_on_a_wall(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;

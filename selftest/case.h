@@ -1,5 +1,5 @@
 #pragma once
-// Cases of the self-test and their results. A case compares the farm with a known result at a limit of its range.
+// Cases of the self-test and their results. Each case compares the farm with a known result at a limit of its range.
 
 #include <cmath>
 #include <concepts>
@@ -13,34 +13,34 @@
 
 namespace sf::selftest {
 
-/// Type of reference results: more than 64 bits where the machine has them (x86: 64-bit significand).
+/// Type of reference results: more than 64 bits if the machine supports it (x86: 64-bit significand).
 using Real = long double;
 
 /// Result of a case.
 struct Outcome {
   std::uint64_t checks = 0;
   std::uint64_t failed = 0;
-  double error = 0.0;              ///< in the case's unit, of the check with the largest share of its allowed error
+  double error = 0.0;              ///< in the case's unit, of the check that is closest to its allowed error
   double allowed = 0.0;            ///< allowed error of that check; 0: bitwise equality
   std::string failure;             ///< description of the first failed check
-  std::vector<std::string> notes;  ///< further measurements
+  std::vector<std::string> notes;  ///< additional measurements
   double seconds = 0.0;            ///< [s] duration
 
-  /// A case without checks does not pass.
+  /// Returns whether the case passed. A case without checks does not pass.
   bool passed() const { return checks > 0 && failed == 0; }
 };
 
-/// Collects the checks of a case. One thread.
+/// Collects the checks of a case. Not thread-safe.
 class Checks {
  public:
-  /// @param stop looked at with each check, which throws base::Interrupted once it returns true; empty: never
+  /// @param stop polled at each check, which throws base::Interrupted once it returns true; empty: never
   explicit Checks(std::function<bool()> stop = {}) : stop_(std::move(stop)) {}
 
   /// Checks |got - exact| <= allowed. @param what and @param index identify the check in messages
   void near(double got, Real exact, double allowed, std::string_view what, std::uint64_t index = 0);
-  /// Bitwise equal, or both NaN.
+  /// Checks that the values are bitwise equal, or both NaN.
   void same(double got, double expected, std::string_view what, std::uint64_t index = 0);
-  /// Equal integers.
+  /// Checks that two integers are equal.
   template <std::integral A, std::integral B>
   void equal(A got, B expected, std::string_view what, std::uint64_t index = 0) {
     holds(std::cmp_equal(got, expected),
@@ -52,7 +52,7 @@ class Checks {
           index);
   }
   void holds(bool it, std::string_view what, std::uint64_t index = 0);
-  /// `call` throws base::InputError with a message that contains `word`.
+  /// Checks that `call` throws base::InputError with a message that contains `word`.
   void refused(const std::function<void()>& call, std::string_view word, std::string_view what);
   void note(std::string text);
 

@@ -17,7 +17,7 @@ double random_place(std::uint32_t index) {
   return base::random_uniform({kSeed, base::RandomStream::placement, 0, 0, index}, 0)[0];
 }
 
-/// Blocks at any angle with robots between and upon them, `far` from the origin.
+/// Blocks at any angle with robots between and on them, `far` from the origin.
 world::World crowd(double far, const sensors::LaserSettings& laser) {
   world::World world;
   const glm::dvec2 away{far, -far};
@@ -89,7 +89,7 @@ void plain_cpp(Fixture& fixture, Checks& checks) {
   checks.note(fmt::format("{} of {} beams are not the same to the bit", all.found, all.beams));
 }
 
-/// The same beam by the same formula in 32 bits, as a caster in world coordinates would compute it.
+/// Computes the same beam by the same formula in 32 bits, as a caster in world coordinates would.
 double in_32_bits(glm::dvec2 eye, double yaw, const world::Segment& s) {
   const auto f = [](double x) { return static_cast<float>(x); };
   const float dx = std::cos(f(yaw)), dy = std::sin(f(yaw));

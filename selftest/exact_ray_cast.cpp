@@ -8,7 +8,7 @@ namespace sf::selftest {
 
 namespace {
 
-/// An end is closed when another wall shares it and lies on the other side of the beam.
+/// Returns whether another wall shares the end and lies on the other side of the beam.
 bool is_closed(std::span<const world::Segment> surfaces, const Beam& beam, glm::dvec2 end, Real other_side) {
   return std::any_of(surfaces.begin(), surfaces.end(), [&](const world::Segment& s) {
     for (const auto& [near, far] : {std::pair{s.a, s.b}, std::pair{s.b, s.a}}) {

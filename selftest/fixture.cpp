@@ -25,7 +25,7 @@ bool casts_any_world(const Fixture& fixture) {
 }
 
 TestFarm Fixture::measure(world::World world, farm::FarmOptions options) const {
-  // Small pools are fast to make. They grow where a case needs more and do not affect readings.
+  // Small pools are fast to create. They grow if a case needs more, and do not affect readings.
   options.scene = {.pool_chunks = 1u << 12, .pool_cells = 1u << 7};
   TestFarm test;
   test.world = std::make_unique<world::World>(std::move(world));

@@ -1,5 +1,5 @@
 #pragma once
-// Helpers of the cases: worlds made in memory, and farms that are ticked once.
+// Helpers for the cases: worlds created in memory, and farms ticked once.
 
 #include <cmath>
 #include <functional>
@@ -30,10 +30,10 @@ inline constexpr double kDegree = M_PI / 180.0;  ///< [rad]
 struct TestFarm {
   std::unique_ptr<world::World> world;
   std::unique_ptr<farm::Farm> farm;
-  std::span<const base::ReadingBlock> readings;  ///< of the tick at time 0; live until the next one
+  std::span<const base::ReadingBlock> readings;  ///< of the tick at time 0; valid until the next one
 };
 
-/// One thread. The device must outlive it.
+/// Not thread-safe. The device must outlive it.
 class Fixture {
  public:
   /// @param stop ends a case soon after it returns true; empty: never
@@ -42,7 +42,7 @@ class Fixture {
   const std::function<bool()>& stop() const { return stop_; }
 
   gpu::Device& device() const { return device_; }
-  /// Makes a farm with small pools and ticks it once at time 0.
+  /// Creates a farm with small pools and ticks it once at time 0.
   TestFarm measure(world::World world, farm::FarmOptions options = {}) const;
 
  private:
@@ -50,12 +50,12 @@ class Fixture {
   std::function<bool()> stop_;
 };
 
-/// [m] Allowed difference of a scan from plain C++ (sensors/laser_reference.h): 0, or the bounds of both where the
-/// chosen caster has bytes of its own.
+/// [m] Returns the allowed difference of a scan from plain C++ (sensors/laser_reference.h): 0, or the bounds of both
+/// if the chosen caster has its own bytes.
 double allowed_from_plain_cpp(const Fixture& fixture, const world::World& world, const base::ReadingBlock& scan);
-/// Compares a range with that of plain C++, bit by bit where `allowed` is 0.
+/// Compares a range with that of plain C++, bitwise if `allowed` is 0.
 void check_range(double got, double plain_cpp, double allowed, Checks& checks, std::string_view what, std::uint64_t i);
-/// True when the chosen caster casts worlds of any size, to the bytes of plain C++.
+/// Returns whether the chosen caster accepts worlds of any size and returns the bytes of plain C++.
 bool casts_any_world(const Fixture& fixture);
 
 /// Adds a thin wall, visible from both sides, 1 m high.
@@ -69,7 +69,8 @@ void add_block(world::World& world, glm::dvec2 low, glm::dvec2 high);
 
 /// A laser at its mover's origin, 0.1 m high, with yaw 0.
 sensors::LaserSettings laser(std::uint32_t samples, double fov, double range_max);
-/// Adds a mover without a body. @return its row
+/// Adds a mover without a body.
+/// @return its row
 std::uint32_t add_laser_mover(world::World& world, const Pose& X_WM, const sensors::LaserSettings& laser);
 std::uint32_t add_mover(world::World& world, const Pose& X_WM);
 /// Gives a mover a square body with half side length `half` [m].

@@ -1,4 +1,4 @@
-// Fleets: no robots, all in one place, a hundred thousand.
+// Fleets: no robots, all at one place, a hundred thousand.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ void nobody(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// Robots in one place see each other's outlines from inside, all with the same ranges.
+/// Robots at one place see each other's outlines from inside, all with the same ranges.
 void coincident(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kRobots = 100;
   world::World world;
@@ -39,7 +39,7 @@ void coincident(Fixture& fixture, Checks& checks) {
     }
 }
 
-/// A grid of robots 1 m apart, each facing the back of the next: 0.75 m to the bit; the last row sees none.
+/// A grid of robots 1 m apart, each facing the back of the next: exactly 0.75 m; the last row sees none.
 void a_hundred_thousand(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kSide = 320, kRobots = 100'000;
   if (!casts_any_world(fixture)) {

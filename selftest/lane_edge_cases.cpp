@@ -1,4 +1,4 @@
-// Lane edges at every angle, and points that form no edge.
+// Lane edges at every angle, and points that do not form an edge.
 
 #include <fmt/format.h>
 
@@ -78,7 +78,7 @@ void through_the_sensor(Fixture& fixture, Checks& checks) {
       world::World world = marking_ahead(X_WM, 0.0, tilt);
       checks.near(read(fixture, world, X_WM).distance, 0, 1e-9, fmt::format("{:g} m away, tilt {:g}", far, tilt));
     }
-  // From on the paint: the distance to its end.
+  // From a point on the paint: the distance to its end.
   checks.near(read(fixture, marking_ahead({}, -0.025, 0.0), {}).distance, 0.075L, 1e-13, "on the paint");
 }
 
@@ -97,7 +97,7 @@ void ranges(Fixture& fixture, Checks& checks) {
         "range_max", fmt::format("range_max {:g}", range));
 }
 
-/// One ray of three hits a dash 2 cm long. Then both of two rays hit, and the reading is the first one's range.
+/// One ray of three hits a dash 2 cm long. Then both of two rays hit, and the reading is the range of the first one.
 void one_point(Fixture& fixture, Checks& checks) {
   world::World world;
   world.lane_markings.push_back({{{0.5, -0.01}, {0.5, 0.01}}, 0.1});

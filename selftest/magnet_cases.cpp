@@ -1,4 +1,4 @@
-// Magnets at all distances and of all moments, and cancelling pairs.
+// Magnets at all distances and with all moments, and cancelling pairs.
 
 #include <fmt/format.h>
 
@@ -34,8 +34,8 @@ void add(const world::Magnet& m, const FieldPoint& p, Field& sum) {
   sum.magnitudes += std::sqrt(bx * bx + by * by + bz * bz);
 }
 
-/// Allowed errors relative to the sum of magnitudes: 1e-13, from three squared 32-bit errors of a root, and the height
-/// of 1e-18 m that avoids a division by zero at a magnet's centre, which enters with the third power.
+/// Allowed errors relative to the sum of magnitudes: 1e-13, from three squared 32-bit errors of a root, and the effect
+/// of the height of 1e-18 m that avoids a division by zero at a magnet's centre, to the third power.
 double allowed_at(const world::World& world, const FieldPoint& p) {
   double nearest = HUGE_VAL;
   for (const world::Magnet& m : world.magnets) {
@@ -97,7 +97,8 @@ void far_origins(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// Opposite pairs in one place, also a million times stronger: nothing is left, or the magnet without a partner.
+/// Opposite pairs at one place, also a million times stronger: the result is zero, or the field of the magnet without a
+/// partner.
 void cancelling_pairs(Fixture& fixture, Checks& checks) {
   world::World world;
   for (int i = 0; i < 500; ++i)

@@ -77,7 +77,7 @@ void poses(Fixture& fixture, Checks& checks) {
     }
 }
 
-/// Commands of a controller may be any numbers.
+/// A controller's commands may be any numbers.
 void commands(Fixture&, Checks& checks) {
   world::World world;
   add_mover(world, {1.0, 2.0, 0.0, 0.5});

@@ -11,7 +11,7 @@ namespace sf::selftest {
 
 namespace {
 
-/// Corners repeated two and three times, as drawing programs write them.
+/// Corners repeated two and three times, as written by drawing programs.
 void points_given_twice(Fixture& fixture, Checks& checks) {
   const world::World read =
       world::build_world("twice.world",
@@ -55,7 +55,7 @@ void slivers(Fixture& fixture, Checks& checks) {
     }
 }
 
-/// Walls of nanometres beside walls of 200 km.
+/// Walls of nanometres next to walls of 200 km.
 void tiny_beside_huge(Fixture& fixture, Checks& checks) {
   world::World world;
   add_wall(world, {-1e5, 3.0}, {1e5, 3.5});

@@ -26,7 +26,7 @@ world::World noisy_room() {
   return world;
 }
 
-/// Compares a reading at `now` [ns] and its number with plain C++.
+/// Compares a reading at `now` [ns] and its sequence number with plain C++.
 void read_at(const Fixture& fixture, TestFarm& test, Checks& checks, std::int64_t now, std::uint64_t number,
              const std::string& what) {
   const auto readings = test.farm->tick(now, {});
@@ -78,8 +78,8 @@ void ten_second_ticks(Fixture& fixture, Checks& checks) {
     read_at(fixture, test, checks, tick * 10 * base::kSecond, static_cast<std::uint64_t>(100 * tick), "every 10 s");
 }
 
-/// A circle of 1 m radius at 0.3 m/s, in steps of 1 us for a second and in one step of 10 s. A step rounds a pose three
-/// times by half a grain of 2 m each, and the errors of the steps add up.
+/// A circle of 1 m radius at 0.3 m/s, in steps of 1 us for a second and in one step of 10 s. Each step rounds a pose
+/// three times by half a grain of 2 m, and the errors of the steps accumulate.
 void motion(Fixture&, Checks& checks) {
   const base::Twist twist{0.3, 0.0, 0.3};
   const auto expect = [&](const base::Pose& X, Real seconds, double allowed, const std::string& what) {

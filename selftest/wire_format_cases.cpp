@@ -17,7 +17,7 @@ using sensors::SensorSpec;
 using sensors::SensorType;
 using sensors::WireFormat;
 
-/// The received values after encoding and decoding; empty when nothing is sent.
+/// Returns the received values after encoding and decoding; empty if nothing is sent.
 std::vector<double> decoded(const SensorType& sensor_type, const SensorSpec& row, const std::vector<double>& values,
                             Checks& checks) {
   base::ReadingBlock reading;
@@ -37,7 +37,7 @@ struct Sent {
   double value, told;
 };
 
-/// Checks one number of a reading; the other numbers stay fixed.
+/// Checks one number of a reading; the other numbers remain fixed.
 void expect(Checks& checks, const SensorType& sensor_type, const SensorSpec& row, std::span<const Sent> sent,
             std::size_t at, std::size_t width) {
   for (const Sent& s : sent) {
