@@ -1,4 +1,4 @@
-// Errors of positions that cameras measure.
+// Errors of positions measured by cameras.
 
 #include "server/camera_positions.h"
 
@@ -7,7 +7,7 @@
 namespace sf::server {
 namespace {
 
-TEST(PositionErrors, AreRootMeanSquareAndLargest) {
+TEST(PositionErrors, RootMeanSquareAndMaximum) {
   PositionErrors errors;
   EXPECT_EQ(errors.rms(), 0.0) << "of none";
   add(errors, {3.0, 4.0, 9.0, 3.1}, {0.0, 0.0, 0.0, -3.1});

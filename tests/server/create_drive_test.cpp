@@ -1,4 +1,4 @@
-// The driver of a Create beside a simulated one, over a pseudo-terminal.
+// The Create driver with a simulated Create, over a pseudo-terminal.
 
 #include "server/create_drive.h"
 
@@ -22,7 +22,7 @@ struct CreateTest : testing::Test {
     EXPECT_TRUE(create.streaming());
   }
 
-  /// A tenth of a second, nearly.
+  /// Slightly less than a tenth of a second.
   void step(const base::Twist& twist = {}, CreateSimulator::Bytes noise = {}) {
     create.run(3);
     if (!noise.empty()) create.send(noise);
@@ -37,7 +37,7 @@ struct CreateTest : testing::Test {
   std::int64_t now = 0;
 };
 
-TEST_F(CreateTest, DrivesAndKnowsWhereItIs) {
+TEST_F(CreateTest, DrivesAndTracksItsPose) {
   EXPECT_FALSE(drive->ready(0)) << "nothing came yet";
   for (int k = 0; k < 50; ++k) step({0.3, 0, k < 25 ? 0.8 : -0.4});
   EXPECT_TRUE(drive->ready(now));
@@ -64,7 +64,7 @@ TEST_F(CreateTest, KeepsItsVelocityWithinOneInstant) {
   EXPECT_EQ(drive->state().velocity.turn, before.turn);
 }
 
-TEST_F(CreateTest, ReportsABumpThatWasShort) {
+TEST_F(CreateTest, ReportsAShortBump) {
   create.run(2);
   create.bumps = 2;
   create.run(1);
@@ -76,7 +76,7 @@ TEST_F(CreateTest, ReportsABumpThatWasShort) {
   EXPECT_FALSE(drive->contact());
 }
 
-TEST_F(CreateTest, StandsWhileLiftedAndGoesOnWhereItIsPutDown) {
+TEST_F(CreateTest, StopsWhileLiftedAndResumesWhenPutDown) {
   step({0.2, 0, 0});
   step({0.2, 0, 0});
   EXPECT_EQ(create.right, 200);
@@ -101,7 +101,7 @@ TEST_F(CreateTest, WaitsForPeopleAtACliff) {
   EXPECT_EQ(create.mode, CreateSimulator::passive) << "else it would creep over the edge";
 }
 
-TEST_F(CreateTest, LeavesOutDamagedFrames) {
+TEST_F(CreateTest, DropsDamagedFrames) {
   step();
   CreateSimulator::Bytes wrong = create.frame(), cut = create.frame();
   wrong.back() ^= 1;
@@ -115,7 +115,7 @@ TEST_F(CreateTest, LeavesOutDamagedFrames) {
   EXPECT_EQ(drive->counts().skipped_bytes, 13u + 12u + 7u);
 }
 
-TEST_F(CreateTest, StartsARobotThatWasSwitchedOffAndOn) {
+TEST_F(CreateTest, RestartsARobotAfterAPowerCycle) {
   step();
   create.restart();
   for (int k = 0; k < 5; ++k) drive->update(now += kTenth);
@@ -131,7 +131,7 @@ TEST_F(CreateTest, StartsARobotThatWasSwitchedOffAndOn) {
   EXPECT_TRUE(drive->ready(now));
 }
 
-TEST_F(CreateTest, ForgetsAFrameThatASwitchOffCutShort) {
+TEST_F(CreateTest, DiscardsAFrameCutByAPowerCycle) {
   step();
   CreateSimulator::Bytes cut = create.frame();
   cut.resize(6);
@@ -145,7 +145,7 @@ TEST_F(CreateTest, ForgetsAFrameThatASwitchOffCutShort) {
   EXPECT_EQ(drive->counts().skipped_bytes, 0u);
 }
 
-TEST(CreateDrive, OpensALineThatHungUpAnew) {
+TEST(CreateDrive, ReopensALineThatHungUp) {
   const std::filesystem::path name = std::filesystem::path(testing::TempDir()) / ("create-" + std::to_string(getpid()));
   auto create = std::make_unique<CreateSimulator>();
   std::filesystem::create_symlink(create->device(), name);
@@ -169,7 +169,7 @@ TEST(CreateDrive, OpensALineThatHungUpAnew) {
   std::filesystem::remove(name);
 }
 
-TEST_F(CreateTest, StopsTheRobotAtItsEnd) {
+TEST_F(CreateTest, StopsTheRobotOnDestruction) {
   step({0.2, 0, 0});
   step({0.2, 0, 0});
   EXPECT_EQ(create.right, 200);
@@ -188,7 +188,7 @@ std::string refusal_of(const std::string& device, unsigned baud = 57600) {
   return "";
 }
 
-TEST(CreateDrive, RefusesWhatIsNoLine) {
+TEST(CreateDrive, RejectsAFileThatIsNotASerialLine) {
   EXPECT_NE(refusal_of("/dev/ttyNONE0").find("`ls /dev/ttyUSB*"), std::string::npos);
   EXPECT_NE(refusal_of("/dev/null").find("is no serial line"), std::string::npos);
   CreateSimulator create;

@@ -1,5 +1,5 @@
 #pragma once
-// A service and a robot beside it in one process, by a clock of the test's own.
+// A service and a robot in one process, on the test's own clock.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace sf::server {
 
 using netio::LogPipe;
 
-/// A room of 6 m by 4 m with robots of 0.3 m by 0.3 m that have a laser each, at the world's 10 Hz.
+/// A room of 6 m by 4 m with robots of 0.3 m by 0.3 m, each with a laser, at the world's 10 Hz.
 inline world::World room(double rate = 10.0, double latency = 0.0, std::uint32_t samples = 91) {
   world::World world = scenes::boxed_world(6.0, 4.0, {-3.0, -2.0});
   for (const base::Pose& X_WM : {base::Pose{-2.0, 0.0, 0.0, 0.0}, base::Pose{2.0, 1.0, 0.0, 0.0}})
@@ -54,8 +54,8 @@ struct Fixture {
       : settings(chosen),
         world(in_mode(room(chosen.sensor_rate, chosen.latency, chosen.samples), chosen.accuracy)),
         sensor_set(world) {
-    // Reading ports have no option for "any free one": tests that run at once start to look at different places, and
-    // have ports for four robots there, as those of another are only taken later.
+    // Reading ports have no option for "any free port". Concurrent tests start their search at different places and
+    // reserve ports for four robots there, because another robot's ports are only bound later.
     layout.stride = 8;
     for (unsigned attempt = 0; client == nullptr && attempt < 1000; ++attempt) {
       layout.bases[sensors::kLaser] = 11'000 + (static_cast<unsigned>(getpid()) + 17 * attempt) * 32 % 20'000;
@@ -80,7 +80,7 @@ struct Fixture {
                                                                     .filter = settings.filter,
                                                                     .peers = settings.peers}});
   }
-  /// Of the robot, with its key in the table of peers or with another.
+  /// Returns the client of a robot, with its key in the table of peers or with another.
   std::unique_ptr<RobotClient> make_client(std::uint32_t mover) {
     const netio::Peer* peer = netio::find(settings.peers, netio::PeerKind::robot, world.movers[mover].id);
     return make_client(mover, peer != nullptr ? peer->key : std::nullopt);
@@ -91,7 +91,7 @@ struct Fixture {
     options.controller.name = "wander";
     return std::make_unique<RobotClient>(world, sensor_set, mover, layout, options);
   }
-  /// Both for some ticks, or the robot alone.
+  /// Runs both for some ticks, or only the robot.
   void run(int ticks, bool served = true) {
     for (int i = 0; i < ticks; ++i, now += kTick) {
       client->receive(now);

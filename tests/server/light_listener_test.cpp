@@ -14,7 +14,7 @@ using world::LightState;
 
 constexpr std::int64_t kUtc = 1'767'225'600'000;  ///< [ms]
 
-/// Two lights, each an intersection of its own: 8 s of green before yellow, and red for ever.
+/// Two lights, each forming an intersection: 8 s of green before yellow, and permanent red.
 world::World lights_of_messages() {
   world::World world;
   world.lights.resize(2);
@@ -35,7 +35,7 @@ struct Listening {
   world::World world = lights_of_messages();
   LightListener listener{world, nullptr, {.spat = netio::Endpoint{netio::kLoopback, 0}}};
 
-  /// Where the plan has dark for both.
+  /// Returns the states after `apply`, starting from flashing yellow for both.
   std::vector<world::Signal> at(std::int64_t now) {
     std::vector<world::Signal> signals(2, {LightState::flashing_yellow, 1.0});
     listener.apply(now, signals);
@@ -43,7 +43,7 @@ struct Listening {
   }
 };
 
-TEST(LightListener, OnlyHeardLightsAreReplaced) {
+TEST(LightListener, OnlyReceivedLightsAreReplaced) {
   Listening l;
   l.listener.accept(spat(l.world, 0), {}, 0, kUtc);
   const auto signals = l.at(kSecond);
@@ -52,7 +52,7 @@ TEST(LightListener, OnlyHeardLightsAreReplaced) {
   EXPECT_EQ(signals[1].state, LightState::flashing_yellow) << "by its plan";
 }
 
-TEST(LightListener, ASilentLightIsDarkUntilItSpeaks) {
+TEST(LightListener, ASilentLightIsDarkUntilItsNextMessage) {
   Listening l;
   l.listener.accept(spat(l.world, 1), {}, 0, kUtc);
   EXPECT_EQ(l.at(LightListener::kSilence - 1)[1].state, LightState::red);
@@ -61,15 +61,15 @@ TEST(LightListener, ASilentLightIsDarkUntilItSpeaks) {
   EXPECT_EQ(l.at(3 * kSecond)[1].state, LightState::red);
 }
 
-TEST(LightListener, TheTimeLeftEndsAtZero) {
+TEST(LightListener, RemainingTimeEndsAtZero) {
   Listening l;
   l.listener.accept(spat(l.world, 0, 7.5), {}, 0, kUtc);
   EXPECT_NEAR(l.at(0)[0].left, 0.5, 1e-9);
   EXPECT_EQ(l.at(kSecond)[0].left, 0.0);
 }
 
-TEST(LightListener, AWrongClockOfTheSenderDoesNotMatter) {
-  // Times are differences to the message's own time.
+TEST(LightListener, AWrongSenderClockDoesNotMatter) {
+  // Times are relative to the message's own time.
   Listening l;
   l.listener.accept(spat(l.world, 0), {}, 0, kUtc + 1'234'567);
   EXPECT_NEAR(l.at(0)[0].left, 8.0, 1e-9);
@@ -93,18 +93,18 @@ TEST(LightListener, OtherDatagramsAreCounted) {
   EXPECT_EQ(l.at(0)[0].state, LightState::flashing_yellow);
 }
 
-TEST(LightListener, HearsDatagrams) {
+TEST(LightListener, ReceivesDatagrams) {
   Listening l;
   netio::Outbox outbox;
   outbox.queue({netio::kLoopback, l.listener.port()}, spat(l.world, 0));
   outbox.queue({netio::kLoopback, l.listener.port()}, spat(l.world, 1));
   outbox.flush();
-  l.listener.receive(0, kUtc);  // loopback delivers at once
+  l.listener.receive(0, kUtc);  // loopback delivers immediately
   EXPECT_EQ(l.listener.counts().messages, 2u);
   EXPECT_EQ(l.at(0)[1].state, LightState::red);
 }
 
-TEST(RobotClient, CountsTheLightsThatItHears) {
+TEST(RobotClient, CountsReceivedLights) {
   Fixture f;
   f.world.lights = lights_of_messages().lights;
   RobotClientOptions options{.log_descriptor = f.log.descriptor()};

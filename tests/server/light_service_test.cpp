@@ -1,4 +1,4 @@
-// Lights that a farm plans or hears, and passes on to its robots.
+// Lights that a farm plans or receives, and relays to its robots.
 
 #include "server/light_service.h"
 
@@ -21,7 +21,7 @@ using world::LightState;
 constexpr std::uint16_t kFirst = 1, kSecondLight = 2;  // intersections, of one light each
 constexpr netio::SigningKey kLightKey{1, 2, 3};
 
-/// A room with two lights: green for 8 s of 10, and red for ever.
+/// A room with two lights: one green for 8 s of 10, one permanently red.
 struct LitRoom : Fixture {
   explicit LitRoom(const Settings& chosen = {}, StaleLights stale = StaleLights::dark, bool spat = false)
       : Fixture(chosen) {
@@ -55,7 +55,7 @@ struct Sender {
   netio::V2vSocket socket;
   std::uint16_t id;
   std::uint32_t sent = 0;
-  std::size_t heard = 0;  ///< states of robots
+  std::size_t heard = 0;  ///< received states of robots
 
   void send(LightState state, double left = 3.0) {
     base::Bytes rows, bytes;
@@ -70,7 +70,7 @@ struct Sender {
       heard += std::holds_alternative<netio::V2v>(packet.body) ? 1 : 0;
     });
   }
-  /// Until the farm takes its packets.
+  /// Runs until the farm accepts its packets.
   void prove(LitRoom& room) {
     send(LightState::dark);
     room.service->receive_pending(room.now);
@@ -78,7 +78,7 @@ struct Sender {
   }
 };
 
-/// The newest state of an intersection's light that a robot is sent.
+/// The newest state of an intersection's light received by a robot.
 struct Ear {
   netio::V2vSocket socket;
   std::uint32_t sent = 0;
@@ -105,7 +105,7 @@ struct Ear {
   }
 };
 
-TEST(LightService, RobotsAreToldThePlan) {
+TEST(LightService, RobotsReceiveThePlan) {
   LitRoom room;
   Ear robot{room.radio(2)};
   for (int i = 0; i < 5; ++i) robot.listen(room);
@@ -118,7 +118,7 @@ TEST(LightService, RobotsAreToldThePlan) {
   EXPECT_EQ(room.service->stats().lights.sent, robot.packets);
 }
 
-TEST(LightService, NobodyBeyondTheRadioIsTold) {
+TEST(LightService, RobotsBeyondTheRadioReceiveNothing) {
   LitRoom room({.radio = 2.0});
   Ear robot{room.radio(2)};
   for (int i = 0; i < 5; ++i) robot.listen(room, {3.5, 0.5, 0, 0});
@@ -127,7 +127,7 @@ TEST(LightService, NobodyBeyondTheRadioIsTold) {
   EXPECT_GT(robot.packets, 0u) << "2 m, inclusive";
 }
 
-TEST(LightService, AHeardLightReplacesThePlanAndIsPassedOn) {
+TEST(LightService, AReceivedLightReplacesThePlanAndIsRelayed) {
   LitRoom room;
   Sender light{room.radio(kFirst), kFirst};
   Ear robot{room.radio(2)};
@@ -142,7 +142,7 @@ TEST(LightService, AHeardLightReplacesThePlanAndIsPassedOn) {
   EXPECT_EQ(room.service->stats().lights.heard.packets, 1u);
 }
 
-/// As robots are told: planned and heard ones, at each tick.
+/// As sent to robots: planned and received states, at each tick.
 TEST(LightService, ARecordingHasTheStates) {
   struct Lights : base::Sink {
     std::vector<base::LightStatus> newest;
@@ -192,7 +192,7 @@ TEST(LightService, WrongSendersAreCountedByReason) {
   room.service->tick(0);
   EXPECT_EQ(room.received(PacketStatus::accepted), 1u);
   EXPECT_EQ(room.shown(0), LightState::yellow);
-  // Another process with the same key is not bound while this one is heard.
+  // Another process with the same key is not bound while this one is active.
   Sender second{room.radio(kFirst, kLightKey), kFirst};
   second.prove(room);
   second.send(LightState::red);
@@ -200,8 +200,8 @@ TEST(LightService, WrongSendersAreCountedByReason) {
   EXPECT_EQ(room.shown(0), LightState::yellow);
 }
 
-TEST(LightService, ALightHearsTheRobotsNearIt) {
-  for (const auto& key : {std::optional<netio::SigningKey>(), std::optional(kLightKey)}) {  // which signs for it
+TEST(LightService, ALightReceivesTheRobotsNearIt) {
+  for (const auto& key : {std::optional<netio::SigningKey>(), std::optional(kLightKey)}) {  // that signs its packets
     LitRoom room({.peers = {{netio::PeerKind::light, kFirst, std::nullopt, key}}});
     Sender light{room.radio(kFirst, key), kFirst};
     Ear robot{room.radio(2)};
@@ -212,7 +212,7 @@ TEST(LightService, ALightHearsTheRobotsNearIt) {
       light.receive(room.now);
     }
     EXPECT_GE(light.heard, 3u);
-    room.now += netio::kClientTimeout;  // silent: it is told nothing any more
+    room.now += netio::kClientTimeout;  // silent: it receives nothing any more
     robot.listen(room);
     const std::size_t before = light.heard;
     light.receive(room.now);
@@ -228,7 +228,7 @@ base::Bytes spat_of_room(const world::World& world, std::uint16_t id) {
   return bytes;
 }
 
-TEST(LightService, SpatIsHeardUnlessItsSenderHasAKey) {
+TEST(LightService, SpatIsAcceptedUnlessItsSenderHasAKey) {
   for (const bool keyed : {false, true}) {
     LitRoom room(
         {.peers = {{netio::PeerKind::light, kFirst, std::nullopt, keyed ? std::optional(kLightKey) : std::nullopt}}},
@@ -242,15 +242,16 @@ TEST(LightService, SpatIsHeardUnlessItsSenderHasAKey) {
   }
 }
 
-/// The whole way: plan, packet, robot's own listener.
-TEST(LightService, ARobotsProcessHearsTheFarmsLights) {
+/// The complete path: plan, packet, the robot's own listener.
+TEST(LightService, ARobotsProcessReceivesTheFarmsLights) {
   LitRoom room;
   room.run(10);
   EXPECT_GE(room.client->stats().lights.packets, 4u);
   EXPECT_EQ(room.client->stats().lights.silences, 0u);
 }
 
-/// 44 lights at one stop line each are 88 rows, and a packet holds 39: three packets have each light and line once.
+/// 44 lights with one stop line each are 88 rows, and a packet holds 39: three packets contain each light and line
+/// once.
 TEST(V2iMessages, ManyLightsTakeSeveralPackets) {
   world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
@@ -282,8 +283,8 @@ TEST(V2iMessages, ManyLightsTakeSeveralPackets) {
   }
 }
 
-/// OBJECT of a tag: its walls are gone from the next tick on, and back where they were.
-TEST(Service, AnObjectComesAndGoes) {
+/// OBJECT of a tag: its walls disappear at the next tick, and return later.
+TEST(Service, AnObjectDisappearsAndReturns) {
   Fixture f;
   world::Mover& door = scenes::add_mover(f.world, {-1.0, 0.0, 0.0, 0.0}, scenes::rectangle({0.0, 0.0}, 0.05, 1.0));
   door.is_tag = true;

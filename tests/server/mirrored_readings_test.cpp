@@ -1,4 +1,4 @@
-// Mirrored packets of readings, and the lines that they become.
+// Mirrored packets of readings, and the lines drawn from them.
 
 #include "server/mirrored_readings.h"
 
@@ -54,7 +54,7 @@ struct MirroredReadingsTest : testing::Test {
   MirroredReadings readings{world, sensor_set};
 };
 
-/// Limits that are no whole millimetres: 4.0004 is sent as 4000, 0.2036 as 204.
+/// Limits that are not whole millimetres: 4.0004 is sent as 4000, 0.2036 as 204.
 struct OddLimits : MirroredReadingsTest {
   OddLimits() : MirroredReadingsTest(0.2036, 4.0004) {}
 };
@@ -63,21 +63,21 @@ void expect_near(glm::dvec2 p, glm::dvec2 q) { EXPECT_NEAR(glm::distance(p, q), 
 
 }  // namespace
 
-TEST_F(MirroredReadingsTest, BeamsStartAtTheSensorOfTheSeenRobot) {
+TEST_F(MirroredReadingsTest, BeamsStartAtTheSensorOfTheirRobot) {
   EXPECT_TRUE(lines({}).empty()) << "nothing came";
   readings.accept(packet(sensors::kLaser, {1.0, 1.0, 4.0, 2.0, 2.0}), 0);
-  const auto all = lines({2.0, 3.0, 0.0, M_PI / 2});  // the robot looks along +y
+  const auto all = lines({2.0, 3.0, 0.0, M_PI / 2});  // the robot faces +y
   ASSERT_EQ(all.size(), 7u) << "five beams, and echoes on each side of the one without";
   for (const SightLine& line : all) EXPECT_DOUBLE_EQ(line.z, sensor_set.of(sensors::kLaser, 0)[0].X_MS.z);
   expect_near(all[0].points[0], {2.0, 3.1});
-  expect_near(all[0].points[1], {3.0, 3.1});  // the first beam looks to the right
+  expect_near(all[0].points[1], {3.0, 3.1});  // the first beam points to the right
   const auto echoes = std::count_if(all.begin(), all.end(), [](const SightLine& line) {
     return line.kind == Kind::echoes && line.points.size() == 2;
   });
   EXPECT_EQ(echoes, 2);
 }
 
-/// The third beam passes the near surface that the first two meet.
+/// The third beam passes the near surface that the first two hit.
 TEST_F(MirroredReadingsTest, EchoesOfTwoSurfacesAreTwoLines) {
   readings.accept(packet(sensors::kLaser, {0.1, 0.1, 3.0, 3.0, 3.0}), 0);
   std::vector<std::size_t> sizes;
@@ -86,12 +86,12 @@ TEST_F(MirroredReadingsTest, EchoesOfTwoSurfacesAreTwoLines) {
   EXPECT_EQ(sizes, (std::vector<std::size_t>{2, 3}));
 }
 
-TEST_F(OddLimits, AreNoEchoes) {
+TEST_F(OddLimits, ProduceNoEchoes) {
   readings.accept(packet(sensors::kLaser, {4.0004, 4.0004, 0.2036, 0.2036, 4.0004}), 0);
   for (const SightLine& line : lines({})) EXPECT_EQ(line.kind, Kind::beam);
 }
 
-TEST_F(MirroredReadingsTest, EdgesLieAcrossTheirPerpendicular) {
+TEST_F(MirroredReadingsTest, EdgesArePerpendicularToTheirMeasurement) {
   readings.accept(packet(sensors::kLaneEdge, {0.5, 30, 0.0, 0.0}), 0);
   const auto all = lines({1.0, 0.0, 0.0, 0.0});
   ASSERT_EQ(all.size(), 2u);
@@ -110,7 +110,7 @@ TEST_F(MirroredReadingsTest, OldReadingsAreNotDrawn) {
   EXPECT_TRUE(lines({}, MirroredReadings::kFresh + 1).empty());
 }
 
-TEST_F(MirroredReadingsTest, AnyBytesAreTaken) {
+TEST_F(MirroredReadingsTest, AnyBytesAreAccepted) {
   const base::Bytes good = packet(sensors::kLaser, {1.0, 1.0, 1.0, 1.0, 1.0});
   std::mt19937 random(1);
   for (int round = 0; round < 2000; ++round) {

@@ -1,4 +1,4 @@
-// A robot's own map: its settings, its scans, and the packets that `sensorfarm map` reads.
+// A robot's own map: its settings, its scans, and the packets read by `sensorfarm map`.
 
 #include "server/own_map.h"
 
@@ -28,7 +28,7 @@ sensors::LaserSettings map_laser() {
   return laser;
 }
 
-/// A room of 6 m by 4 m with a Create that looks around.
+/// A room of 6 m by 4 m with a Create that turns in place.
 world::World map_world(std::vector<world::Setting> settings = {}, bool has_map = false) {
   world::World world = scenes::boxed_world(6.0, 4.0, {-3.0, -2.0});
   world::Mover& robot = scenes::add_create(world, {-1.0, 0.5, 0.0, 0.3});
@@ -42,7 +42,7 @@ struct MapTest : testing::Test {
   OwnMapOptions options(sensors::WireFormat wire = sensors::WireFormat::farm) const {
     return {netio::bound_endpoint(receiver), wire};
   }
-  /// Datagrams that came since the last call.
+  /// Returns the datagrams received since the last call.
   std::vector<base::Bytes> datagrams() {
     std::vector<base::Bytes> all;
     batch.drain(receiver, 10'000, [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) {
@@ -50,7 +50,7 @@ struct MapTest : testing::Test {
     });
     return all;
   }
-  /// @return complete maps so far
+  /// @return number of complete maps so far
   std::uint64_t receive() {
     for (const base::Bytes& bytes : datagrams()) {
       EXPECT_EQ(netio::decode(bytes, packet), netio::PacketStatus::accepted);
@@ -67,7 +67,7 @@ struct MapTest : testing::Test {
   std::vector<double> ranges = std::vector<double>(91, 1.2);
 };
 
-TEST_F(MapTest, SendsWhatTheRuleMakesOfItsScans) {
+TEST_F(MapTest, SendsTheMapOfItsScans) {
   const world::World world = map_world();
   OwnMap map(world, 0, options());
   map.send(0, true);
@@ -76,7 +76,7 @@ TEST_F(MapTest, SendsWhatTheRuleMakesOfItsScans) {
   const base::Pose X_WM{-1.0, 0.5, 0.0, 0.3}, further{-0.5, 0.6, 0.0, 0.8};
   ranges[40] = 0.4;
   map.add(scan(kSecond), X_WM);
-  ranges[41] = 2.0;  // no echo
+  ranges[41] = 2.0;  // no return
   map.add(scan(2 * kSecond), further);
   map.send(2 * kSecond, true);
   ASSERT_EQ(receive(), 1u);
@@ -110,7 +110,7 @@ TEST_F(MapTest, IsSentAtItsRate) {
   EXPECT_FALSE(assembler.true_poses());
 }
 
-TEST_F(MapTest, TakesNewScansOfItsLaserAlone) {
+TEST_F(MapTest, AcceptsOnlyNewScansOfItsLaser) {
   OwnMap map(map_world(), 0, options());
   map.add(scan(kSecond), {});
   base::ReadingBlock other = scan(2 * kSecond);
@@ -119,18 +119,18 @@ TEST_F(MapTest, TakesNewScansOfItsLaserAlone) {
   other = scan(2 * kSecond);
   other.type = sensors::kLaser + 1;
   map.add(other, {});
-  map.add(scan(kSecond), {});      // given before
+  map.add(scan(kSecond), {});      // a duplicate
   map.add(scan(kSecond - 1), {});  // older
   ranges.pop_back();
   map.add(scan(3 * kSecond), {});  // of another length
   EXPECT_EQ(map.counts().scans, 1u);
   ranges.assign(91, NAN);
-  map.add(scan(4 * kSecond), {1e9, 0, 0, 0});  // nowhere
+  map.add(scan(4 * kSecond), {1e9, 0, 0, 0});  // far outside
   map.send(4 * kSecond, false);
   EXPECT_EQ(receive(), 1u);
 }
 
-TEST_F(MapTest, HasTheSettingsOfItsOccupancy) {
+TEST_F(MapTest, UsesTheSettingsOfItsOccupancy) {
   OwnMap map(map_world({{"cell", {0.1}, "", 0, ""}, {"words", {4, 3}, "", 0, ""}, {"rate", {5}, "", 0, ""}}, true), 0,
              options());
   EXPECT_EQ(map.settings().settings.grid.word_columns, 4u);
@@ -148,7 +148,7 @@ TEST_F(MapTest, SendsTheThesisLayout) {
   EXPECT_EQ(assembler.complete_maps(), 1u);
 }
 
-TEST_F(MapTest, CoversLargeWorldsAndFarLasersByLargerCells) {
+TEST_F(MapTest, LargeWorldsAndRangesGetLargerCells) {
   world::World world = map_world();
   world.extent = {-4000.0, -4000.0, 4000.0, 4000.0};
   const OwnMap wide(world, 0, options());
@@ -170,7 +170,7 @@ std::string map_refusal(const world::World& world, const OwnMapOptions& options)
   return "";
 }
 
-TEST_F(MapTest, RefusesWhatItCannotMake) {
+TEST_F(MapTest, RejectsUnsupportedMaps) {
   world::World blind = map_world();
   blind.movers[0].sensors.clear();
   EXPECT_NE(map_refusal(blind, options()).find("has no laser to make a map with"), std::string::npos);

@@ -1,4 +1,5 @@
-// The farm's encoder and decoder on the golden packets: bytes to the file's text, and what was decoded to the bytes.
+// The farm's encoder and decoder on the golden packets: bytes to the file's text, and the decoded values back to the
+// bytes.
 
 #include <gtest/gtest.h>
 
@@ -23,13 +24,13 @@ std::string text_of(const PacketDescription& packet) {
   return text;
 }
 
-/// False for readings of a sensor type that this build lacks.
+/// Returns false for readings of a sensor type that this build lacks.
 bool is_built(const base::Bytes& bytes) {
   const std::uint8_t id = bytes.size() > 5 ? netio::sensor_type_of(netio::Type{bytes[5]}) : std::uint8_t{0};
   return id == 0 || sensors::find_sensor_type(id) != nullptr;
 }
 
-/// A reading as the farm has it, before it is encoded.
+/// A reading in the farm, before it is encoded.
 struct Decoded {
   const sensors::SensorType* type = nullptr;
   sensors::SensorSpec spec;
@@ -38,7 +39,7 @@ struct Decoded {
   std::uint32_t part = 0;
 };
 
-/// The sensor of a part of a scan or map.
+/// Sets the sensor of a part of a scan or map.
 void restore_spec(std::uint8_t type, std::span<const std::uint8_t> payload, Decoded& out) {
   if (out.type->is_scan) {
     sensors::LaserPart scan;
@@ -79,7 +80,7 @@ base::Bytes encoded(const netio::Packet& packet, const netio::Reading& reading) 
   EXPECT_EQ(decoded.type->encode(decoded.spec, decoded.block, sensors::WireFormat::farm, decoded.part, payload), type);
   netio::Header header = packet.header;
   netio::Accuracy accuracy = netio::decode_accuracy(header.accuracy);
-  accuracy.bound *= 0.999999;  // a word states bounds up to its own, which is rounded
+  accuracy.bound *= 0.999999;  // a word covers bounds up to its own, which is rounded
   header.accuracy = netio::encode_accuracy(accuracy);
   netio::encode_reading(header, type, payload, bytes);
   return bytes;
@@ -92,7 +93,7 @@ base::Bytes encoded(const netio::Packet& packet, const Body& body) {
   return bytes;
 }
 
-TEST(PacketVectors, AreTheFarmsOwnPacketsInBothDirections) {
+TEST(PacketVectors, MatchTheFarmsPacketsInBothDirections) {
   std::set<netio::Type> types;
   for (const std::string& file : test::vector_files()) {
     if (file.ends_with("statuses.txt")) continue;

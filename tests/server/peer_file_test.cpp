@@ -30,7 +30,7 @@ std::vector<netio::Peer> parse(const std::string& text) {
   return parse_peers("peers.toml", text, &world);
 }
 
-/// The error of a file.
+/// Returns the error of a file.
 std::string error_of(const std::string& text) {
   try {
     parse(text);
@@ -40,7 +40,7 @@ std::string error_of(const std::string& text) {
   return "none";
 }
 
-TEST(PeerFile, HasAddressesAndKeys) {
+TEST(PeerFile, ReadsAddressesAndKeys) {
   const auto peers =
       parse(std::string("[[peer]]\nrobot = 2\nkey = \"") + kKey +
             "\"\n[[peer]]\ntag = 3\naddress = \"192.168.1.7\"\n[[peer]]\nstart = true\naddress = \"10.0.0.1\"\n");
@@ -84,15 +84,15 @@ TEST(PeerFile, ErrorsNameTheirLine) {
     expect(std::string("[[peer]]\nrobot = 1\naddress = \"") + address + "\"", "peers.toml:3", "IPv4 address");
   expect("[[peer]]\nrobot = 1\nkey = 12", "peers.toml:3", "text in quotes");
   expect("[[peer]]\nrobot = 1\nkey = \"\"", "peers.toml:3", "text in quotes");
-  // Nothing of such a peer would be checked, the last of two included.
+  // Such a peer would not be checked at all, not even the last of two.
   expect("[[peer]]\nrobot = 1", "peers.toml:1", "needs an address or a key");
   expect("[[peer]]\nstart = true", "peers.toml:1", "needs an address or a key");
   expect("[[peer]]\nrobot = 1\naddress = \"10.0.0.1\"\n[[peer]]\nlight = 4", "peers.toml:4",
          "needs an address or a key");
 }
 
-/// Boundaries: a digit less and more, and one that is none, at either place of a byte.
-TEST(PeerFile, KeysAreSixtyFourHexadecimalDigitsAndNeverPrinted) {
+/// Boundaries: one digit fewer and more, and a character that is not a digit, at either place of a byte.
+TEST(PeerFile, KeysAre64HexadecimalDigitsAndNeverPrinted) {
   const std::string key = kKey;
   for (const std::string& bad :
        {key.substr(1), key + "0", key.substr(0, 63) + "g", "g" + key.substr(1), key.substr(0, 62) + "0x",
@@ -124,7 +124,7 @@ TEST(PeerFile, IsBounded) {
   EXPECT_EQ(parse_peers("peers.toml", text, nullptr).size(), kMaxPeers) << "without a world any id is known";
 }
 
-TEST(PeerFile, ModesOpenToOthersAreSeen) {
+TEST(PeerFile, DetectsModesOpenToOthers) {
   const std::string file = testing::TempDir() + "peers.toml";
   std::ofstream(file) << "[[peer]]\nrobot = 1\naddress = \"10.0.0.1\"\n";
   using std::filesystem::perms;

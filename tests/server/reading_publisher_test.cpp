@@ -1,4 +1,4 @@
-// Readings as packets: the same bytes and numbers however many are encoded at once.
+// Readings as packets: the bytes and numbers do not depend on how many are encoded at once.
 
 #include "server/reading_publisher.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t kBeams = 31;
 
-/// Robots with one laser each, nothing else.
+/// Robots with only one laser each.
 world::World fleet(std::uint32_t robots, std::uint32_t beams = kBeams) {
   world::World world;
   for (std::uint32_t i = 0; i < robots; ++i) {
@@ -33,7 +33,7 @@ world::World fleet(std::uint32_t robots, std::uint32_t beams = kBeams) {
   return world;
 }
 
-/// Readings of everyone for some ticks; a few have a beam that is not a number, and are not sent.
+/// Readings of all robots for some ticks; a few have a beam that is not a number, and are not sent.
 struct Day {
   std::vector<std::vector<double>> values;
   std::vector<base::ReadingBlock> blocks;
@@ -59,22 +59,22 @@ struct Day {
 
 class PostTest : public testing::TestWithParam<std::uint32_t> {};
 
-/// Boundary: few sensors are encoded by one thread, many by all cores and sent by a thread of their own.
-TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
+/// Boundary: few sensors are encoded by one thread, many on all cores and sent by a separate thread.
+TEST_P(PostTest, ParallelEncodingGivesTheSameBytesAndNumbers) {
   const std::uint32_t robots = GetParam();
   const world::World world = fleet(robots);
   const sensors::SensorSet sensor_set(world);
   const netio::Socket ears = netio::open_udp({netio::kLoopback, 0}, {.receive = 32u << 20});
   if (netio::receive_buffer(ears) < 2'000 * robots) GTEST_SKIP() << "this user's receive buffers hold too little";
   StreamLayout layout;
-  layout.stride = 0;  // all to one port
+  layout.stride = 0;  // all on one port
   layout.bases[sensors::kLaser] = netio::bound_endpoint(ears).port;
   ReadingPublisher post(world, sensor_set, layout, netio::Outbox(outbox_options(sensor_set)));
 
   Day day(robots, 5);
   const sensors::SensorType& type = *sensor_set.group(sensors::kLaser)->type;
   std::map<std::uint32_t, std::uint32_t> sent;
-  // Every third robot has a key. A reading that is not sent leaves out its counter.
+  // Every third robot has a key. A reading that is not sent skips its counter.
   std::map<std::uint32_t, netio::PacketSigner> signers;
   std::map<std::uint32_t, std::uint64_t> counters;
   for (std::uint32_t robot = 0; robot < robots; robot += 3)
@@ -123,8 +123,8 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
   EXPECT_EQ(lost > 0, robots > 5);
 }
 
-/// Boundary: 400 beams are two datagrams of a reading.
-TEST(ReadingPublisher, EachPartHasACounterOfItsOwn) {
+/// Boundary: 400 beams take two datagrams.
+TEST(ReadingPublisher, EachPartHasItsOwnCounter) {
   const world::World world = fleet(1, 400);
   const sensors::SensorSet sensor_set(world);
   const netio::Socket ears = netio::open_udp({netio::kLoopback, 0});
@@ -149,8 +149,8 @@ TEST(ReadingPublisher, EachPartHasACounterOfItsOwn) {
   EXPECT_EQ(signer.take(), 9u) << "as many as datagrams";
 }
 
-/// Boundary: a reading of two parts, and one that is not numbers, which is encoded one by one.
-TEST(ReadingPublisher, AMirrorGetsACopyOfEachPacket) {
+/// Boundary: a reading of two parts, and one that contains a value that is not a number and is encoded one by one.
+TEST(ReadingPublisher, AMirrorReceivesACopyOfEachPacket) {
   const world::World world = fleet(2, 400);
   const sensors::SensorSet sensor_set(world);
   const netio::Socket ears = netio::open_udp({netio::kLoopback, 0}), mirror = netio::open_udp({netio::kLoopback, 0});

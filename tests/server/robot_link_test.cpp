@@ -1,4 +1,4 @@
-// A robot's link, and a farm that is played by the test.
+// A robot's link, with a farm simulated by the test.
 
 #include "server/robot_link.h"
 
@@ -17,7 +17,7 @@ constexpr std::uint32_t kPlayedFarm = 0xFA23;                           ///< ses
 constexpr netio::LinkModel kLossy{.loss = 0.5, .seed = 3};              ///< some of the datagrams of each test are lost
 constexpr std::uint32_t kScans = std::uint32_t{sensors::kLaser} << 16;  ///< stream of the injected link
 
-/// Whether the injected link loses a message of robot 1: 0 or 1.
+/// Returns whether the injected link loses a message of robot 1: 0 or 1.
 std::uint64_t loses(std::uint32_t stream, std::uint64_t sequence) {
   return netio::sample_delay(kLossy, {1, stream, sequence}) ? 0 : 1;
 }
@@ -26,12 +26,12 @@ std::uint32_t stream_of(Type type, std::uint32_t low) { return static_cast<std::
 /// The link of robot1.
 struct PlayedFarm : Fixture {
   explicit PlayedFarm(const netio::LinkModel& model = {}, const Settings& chosen = {}) : Fixture(chosen) {
-    client.reset();  // its ports are needed
+    client.reset();  // releases its ports
     link = std::make_unique<RobotLink>(world, sensor_set, 0, layout,
                                        LinkOptions{.farm = outbox.endpoint(), .model = model},
                                        [](const netio::Packet&, std::int64_t) {});
   }
-  /// Types of the packets that came from the robot since the last call.
+  /// Returns the types of the packets received from the robot since the last call.
   std::vector<Type> heard() {
     std::vector<Type> types;
     batch.drain(socket, 1000, [&](std::span<const std::uint8_t> bytes, const netio::Endpoint& source) {
@@ -50,7 +50,7 @@ struct PlayedFarm : Fixture {
     outbox.flush();
     link->run(now);
   }
-  /// From now on the robot hears the farm of that session.
+  /// Makes the robot accept the farm of that session.
   void challenge(std::uint32_t farm) {
     heard();
     stamp = {farm, session};
@@ -85,7 +85,7 @@ struct PlayedFarm : Fixture {
   std::unique_ptr<RobotLink> link;
 };
 
-TEST(RobotLink, OnlyTheFarmsReadingsAreHeard) {
+TEST(RobotLink, AcceptsOnlyReadingsOfItsFarm) {
   PlayedFarm f;
   f.greet();
   netio::Outbox stranger(netio::open_udp({netio::kLoopback, 0}));
@@ -102,7 +102,7 @@ TEST(RobotLink, OnlyTheFarmsReadingsAreHeard) {
   EXPECT_EQ(f.link->last_answer(), 7);
 }
 
-/// Packets do not say which elements have a flag, so controllers see the bound where it holds for all of them.
+/// Packets do not show which elements are flagged, so controllers receive the bound only if it holds for all of them.
 TEST(RobotLink, ReadingsHaveTheBoundsOfTheirPackets) {
   PlayedFarm f;
   f.greet();
@@ -120,7 +120,7 @@ TEST(RobotLink, ReadingsHaveTheBoundsOfTheirPackets) {
   EXPECT_TRUE(std::isinf(received({0, false, HUGE_VAL}))) << "none";
 }
 
-TEST(RobotLink, AFarmOnThisMachineIsHeardOnLoopbackAlone) {
+TEST(RobotLink, AcceptsAFarmOnThisMachineOnlyOverLoopback) {
   const PlayedFarm f;
   EXPECT_NO_THROW(netio::open_udp({netio::kLoopback + 1, f.reading_port(1)})) << "taken, if bound to all addresses";
 }
@@ -135,8 +135,9 @@ TEST(RobotLink, ReadingsOfAStaleStateAreCounted) {
   EXPECT_EQ(f.link->counts().stale, 3u);
 }
 
-/// Each datagram of a reading has its own; that of the first is the reading's in a simulation with the same link.
-TEST(RobotLink, ReadingsHaveTheirFateInTheInjectedLink) {
+/// Each datagram of a reading is delayed or lost separately. The first one is treated exactly as the reading in a
+/// simulation with the same link.
+TEST(RobotLink, DelaysAndLosesReadingsAsTheInjectedLinkDoes) {
   PlayedFarm f(kLossy);
   std::uint64_t lost = 0;
   for (std::uint32_t sequence = 1; sequence <= 20; ++sequence)
@@ -158,7 +159,7 @@ struct ScansInParts : PlayedFarm {
       send_scan(outbox, {.sequence = sequence, .time = sequence * kTick, .state = {.stated = true, .stale = true}},
                 part);
   }
-  /// The newest scan is that one, each part in its place.
+  /// Checks that this is the newest scan, with each part at its place.
   void expect_newest(std::uint32_t sequence) {
     const auto newest = link->readings();
     ASSERT_EQ(newest.size(), 1u);
@@ -169,7 +170,7 @@ struct ScansInParts : PlayedFarm {
   }
 };
 
-TEST(RobotLink, AReadingWithALostPartIsNone) {
+TEST(RobotLink, AReadingWithALostPartIsDropped) {
   ScansInParts f;
   f.now = 7;
   f.send_parts(1, {0, 2});
@@ -189,7 +190,7 @@ TEST(RobotLink, AReadingWithALostPartIsNone) {
   f.expect_newest(2);
 }
 
-TEST(RobotLink, RepeatedPartsMakeNoSecondReading) {
+TEST(RobotLink, DuplicatePartsDoNotCreateAReading) {
   ScansInParts f;
   f.send_parts(1, {0, 0, 1, 1});
   EXPECT_EQ(f.scans(), 0u) << "four datagrams, two parts";
@@ -200,7 +201,7 @@ TEST(RobotLink, RepeatedPartsMakeNoSecondReading) {
   f.expect_newest(1);
 }
 
-TEST(RobotLink, PartsOfReadingsComeInAnyOrder) {
+TEST(RobotLink, PartsOfReadingsArriveInAnyOrder) {
   ScansInParts f;
   f.send_parts(1, {2, 0});
   f.send_parts(2, {1});
@@ -213,7 +214,7 @@ TEST(RobotLink, PartsOfReadingsComeInAnyOrder) {
   f.expect_newest(3);
 }
 
-TEST(RobotLink, AReadingIsWholeWhereTheInjectedLinkLosesNoPart) {
+TEST(RobotLink, AReadingIsCompleteIfTheInjectedLinkLosesNoPart) {
   ScansInParts f(kLossy);
   std::uint64_t whole = 0;
   for (std::uint32_t sequence = 1; sequence <= 40; ++sequence) {
@@ -226,7 +227,7 @@ TEST(RobotLink, AReadingIsWholeWhereTheInjectedLinkLosesNoPart) {
   EXPECT_GT(whole, 0u);
 }
 
-TEST(RobotLink, PacketsHaveTheirFateInTheInjectedLink) {
+TEST(RobotLink, DelaysAndLosesPacketsAsTheInjectedLinkDoes) {
   PlayedFarm f(kLossy);
   std::uint64_t out = loses(stream_of(Type::subscribe, 0), 0), in = 0;
   for (std::uint32_t sequence = 0; sequence < 20; ++sequence) {
@@ -247,7 +248,7 @@ TEST(RobotLink, PacketsHaveTheirFateInTheInjectedLink) {
   }
 }
 
-TEST(RobotLink, ALeaveTakesWhatWaitsWithIt) {
+TEST(RobotLink, LeavingSendsDelayedPacketsToo) {
   PlayedFarm f({.delay = 1.0});
   f.link->leave(0);
   EXPECT_TRUE(f.heard().empty()) << "it said nothing";

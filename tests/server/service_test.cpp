@@ -29,7 +29,7 @@ TEST(Service, ARobotDrivesByItsReadings) {
 }
 
 /// Boundary: every datagram is lost.
-TEST(Service, ARobotWithoutALinkStands) {
+TEST(Service, ARobotWithoutALinkDoesNotMove) {
   Fixture f({.loss = 1.0});
   f.run(40);
   const RobotClientStats robot = f.client->stats();
@@ -39,9 +39,9 @@ TEST(Service, ARobotWithoutALinkStands) {
   EXPECT_EQ(count_of(f.log.read_all(), "Standing until readings come"), 1u);
 }
 
-/// A service that stops: the robot does not drive on by its last scan, two and a half periods of its sensor later, and
-/// goes on with the next.
-TEST(Service, ARobotStandsWhileNoReadingComes) {
+/// When a service stops, the robot does not drive on by its last scan. It stops after two and a half periods of its
+/// sensor, and continues with the next scan.
+TEST(Service, ARobotStopsWhileNoReadingArrives) {
   Fixture f({.sensor_rate = 4.0});
   f.run(10);
   f.run(20, false);
@@ -71,7 +71,7 @@ TEST(Service, AStartSignalReachesTheRobot) {
 }
 
 /// The robots are about 4 m apart.
-TEST(Service, StatesAreRelayedWithinTheRadiosRange) {
+TEST(Service, StatesAreRelayedWithinTheRadioRange) {
   for (const double radio : {3.0, 6.0}) {
     Fixture f({.radio = radio});
     const auto other = f.make_client(1);
@@ -93,7 +93,7 @@ TEST(Service, MissedReadingsAreLoggedOnce) {
   EXPECT_EQ(count_of(f.log.read_all(), "too slow for the sensors' rates"), 1u);
 }
 
-TEST(Service, ReadsBetweenTicksWhatIsDueThere) {
+TEST(Service, SensorsDueBetweenTicksAreReadThere) {
   Fixture f({.sensor_rate = 50.0});
   f.run(10);
   const std::int64_t due = f.service->next_due();
@@ -130,7 +130,7 @@ netio::Peer peer_of(std::uint32_t robot, std::uint8_t key) {
 }
 
 /// Readings, challenges, states of each other and the start signal, in both directions.
-TEST(Service, ARobotWithAKeyDrivesBesideOneWithout) {
+TEST(Service, RobotsWithAndWithoutAKeyDriveTogether) {
   Fixture f({.wait_for_start = true, .peers = {peer_of(1, 7)}});
   const auto other = f.make_client(1);
   const auto run = [&](int ticks) {
@@ -159,7 +159,7 @@ TEST(Service, ARobotWithAKeyDrivesBesideOneWithout) {
   EXPECT_EQ(inbox.dropped(), inbox[netio::PacketStatus::unproven]) << text(inbox);
 }
 
-/// A wanderer steps when its scan arrives, and at 5 Hz while none do, so that the farm does not lose it.
+/// A wandering robot steps when its scan arrives, and at 5 Hz without scans, so that the farm does not drop it.
 TEST(Service, ARobotThatStepsOnScansIsDueWithEachScan) {
   constexpr std::int64_t kMilli = 1'000'000;
   Fixture f;
@@ -175,8 +175,8 @@ TEST(Service, ARobotThatStepsOnScansIsDueWithEachScan) {
   EXPECT_FALSE(f.client->is_due(f.now + kMilli)) << "one step per scan";
 }
 
-/// Boundary: no key, another key, and a key that the farm does not know.
-TEST(Service, ARobotIsServedWithItsKeyAlone) {
+/// Boundary: no key, another key, and a key unknown to the farm.
+TEST(Service, ARobotIsServedOnlyWithItsKey) {
   using netio::PacketStatus;
   for (const std::optional<std::uint8_t> key : {std::optional<std::uint8_t>{}, std::optional<std::uint8_t>{8}}) {
     Fixture f({.peers = {peer_of(1, 7)}});
@@ -197,7 +197,7 @@ TEST(Service, ARobotIsServedWithItsKeyAlone) {
   EXPECT_GE(f.client->stats().link.packets[PacketStatus::not_signed], 10u);
 }
 
-TEST(Service, ARobotOfAnotherAddressIsRefusedAndLoggedOnce) {
+TEST(Service, ARobotAtAnotherAddressIsRefusedAndLoggedOnce) {
   Fixture f({.peers = {{netio::PeerKind::robot, 1, netio::kLoopback + 1, std::nullopt}}});
   f.run(10);
   EXPECT_FALSE(f.client->stats().answered);
@@ -205,7 +205,7 @@ TEST(Service, ARobotOfAnotherAddressIsRefusedAndLoggedOnce) {
   EXPECT_EQ(count_of(f.log.read_all(), "robot1 (id 1) is at 127.0.0.2 by the table of peers"), 1u);
 }
 
-/// States of robot 2, in any order of sequence.
+/// Sends states of robot 2, in any order of sequence.
 struct Speaker {
   explicit Speaker(Fixture& fixture) : f(fixture), outbox(netio::open_udp({netio::kLoopback, 0})) {}
   void say(std::uint32_t sequence) {
@@ -219,7 +219,7 @@ struct Speaker {
   netio::Outbox outbox;
 };
 
-TEST(Service, OvertakenStatesAreTakenUnlessTheirArrivalCounts) {
+TEST(Service, OvertakenStatesAreAcceptedUnlessTheirArrivalCounts) {
   using estimation::ClockSource;
   for (const ClockSource source : {ClockSource::estimated, ClockSource::trusted, ClockSource::arrival}) {
     Fixture f({.filter = {.enabled = true, .clock = {.source = source}}});
@@ -232,8 +232,8 @@ TEST(Service, OvertakenStatesAreTakenUnlessTheirArrivalCounts) {
   }
 }
 
-/// Readings are held for 40 samples; each has the age of its own sample's state.
-TEST(Service, ReadingsOfALongLatencyStateAnAge) {
+/// Readings are held for 40 samples; each has the age of the state at its own sample.
+TEST(Service, ReadingsWithALongLatencyHaveAnAge) {
   Fixture f({.latency = 4.0});
   const netio::Socket port = netio::open_udp({netio::kLoopback, f.reading_port(2)});
   Speaker robot(f);
@@ -264,7 +264,7 @@ TEST(Service, ARobotDrivesByReadingsOfItsFilteredState) {
   EXPECT_EQ(stats.clocks[0].clock.offset, 0) << "both have the test's clock";
 }
 
-TEST(Service, AStaleRobotIsOutOfTheWorldOnRequest) {
+TEST(Service, AStaleRobotIsRemovedFromTheWorldIfConfigured) {
   for (const auto policy : {estimation::StalePolicy::freeze, estimation::StalePolicy::hide}) {
     Fixture f({.filter = {.enabled = true, .policy = policy}});
     f.run(10);
@@ -276,8 +276,8 @@ TEST(Service, AStaleRobotIsOutOfTheWorldOnRequest) {
   }
 }
 
-/// After 10 s, to a tick; its last state came at 0.9 s.
-TEST(Service, ARobotIsForgottenOnceItSpokeAndFellSilent) {
+/// After 10 s, to a tick; its last state arrived at 0.9 s.
+TEST(Service, ASilentRobotIsDroppedAfterItsTimeout) {
   Fixture f;
   f.run(10);
   const auto absent_after = [&](int ticks) {
@@ -292,7 +292,7 @@ TEST(Service, ARobotIsForgottenOnceItSpokeAndFellSilent) {
   EXPECT_FALSE(f.service->receiver().update_absent(1, f.now)) << "it speaks again";
 }
 
-/// Keeps the newest of what it takes; can be full.
+/// Stores its newest tick; can simulate a full disk.
 struct TestSink : base::Sink {
   bool full = false;
   std::vector<std::int64_t> times;
@@ -312,7 +312,7 @@ struct TestSink : base::Sink {
   }
 };
 
-TEST(Service, ASinkTakesStatesTheirQualityAndReadings) {
+TEST(Service, ASinkReceivesStatesTheirQualityAndReadings) {
   Fixture f({.filter = {.enabled = true, .policy = estimation::StalePolicy::hide}});
   TestSink sink;
   f.service->record_to(sink);
@@ -331,8 +331,8 @@ TEST(Service, ASinkTakesStatesTheirQualityAndReadings) {
   EXPECT_TRUE(base::is_absent(sink.reports[0].X_WM)) << "out of the world";
 }
 
-/// Readings state how old what they know is; fresh ones come within a second of the end of the pause.
-TEST(Service, APauseOfFiveSecondsIsStatedAndEndsAtOnce) {
+/// Readings have the age of their state; fresh ones arrive within a second of the end of the pause.
+TEST(Service, APauseOfFiveSecondsIsReportedAndEndsImmediately) {
   for (const bool filtered : {false, true}) {
     for (const bool farm_pauses : {false, true}) {
       Fixture f({.filter = {.enabled = filtered}});
@@ -361,7 +361,7 @@ TEST(Service, APauseOfFiveSecondsIsStatedAndEndsAtOnce) {
   }
 }
 
-TEST(Service, AFullDiskEndsTheRecordingOnly) {
+TEST(Service, AFullDiskEndsOnlyTheRecording) {
   Fixture f;
   TestSink sink;
   f.service->record_to(sink);
@@ -389,7 +389,7 @@ TEST(Service, RunEndsByItsDurationAndByAStop) {
   EXPECT_EQ(f.client->stats().steps, 0u);
 }
 
-TEST(Service, ATakenPortIsRefused) {
+TEST(Service, APortInUseIsRejected) {
   Fixture f;
   ServiceOptions options;
   options.receiver.bind = {netio::kLoopback, f.service->port()};

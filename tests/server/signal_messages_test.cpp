@@ -25,7 +25,7 @@ world::Light light(const std::vector<world::LightPhase>& phases, double offset =
   return made;
 }
 
-/// One light of 8 s green, 2 s yellow, 14 s red; one that stays dark.
+/// One light of 8 s green, 2 s yellow, 14 s red; one that remains dark.
 world::World two_lights() {
   world::World world;
   world.lights.push_back(light({{LightState::green, 8.0}, {LightState::yellow, 2.0}, {LightState::red, 14.0}}));
@@ -33,7 +33,7 @@ world::World two_lights() {
   return world;
 }
 
-/// Sets the states that a message has.
+/// Sets the states contained in a message.
 std::size_t read(const v2x::Spat& spat, std::span<const Intersection> all, std::int64_t utc,
                  std::vector<world::Signal>& signals) {
   return read_spat(spat, all, utc, [&](std::uint32_t row, const world::Signal& signal) { signals.at(row) = signal; });
@@ -49,7 +49,7 @@ const v2x::MovementEvent& event(const v2x::Spat& spat, std::size_t row) {
   return spat.intersections.at(0).states.at(0).events.at(row);
 }
 
-/// Nodes of a lane in the world, from the intersection's middle [m].
+/// Returns the nodes of a lane in the world, from the intersection's middle [m].
 std::vector<glm::dvec2> points_of(const v2x::GenericLane& lane) {
   std::vector<glm::dvec2> points;
   glm::dvec2 p;
@@ -70,7 +70,7 @@ v2x::Frame round_trip(const v2x::MapData& map) {
   return again;
 }
 
-TEST(SignalMessages, LightsWithoutRoadsAreIntersectionsOfTheirOwn) {
+TEST(SignalMessages, LightsWithoutRoadsAreSeparateIntersections) {
   const auto all = intersections_of(two_lights(), nullptr);
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[1].id, 2);
@@ -91,12 +91,12 @@ TEST(SignalMessages, SpatHasTheStateAndTheNextOne) {
   EXPECT_EQ(event(spat, 1).timing->min_end, 683);
 }
 
-TEST(SignalMessages, MarksAtTheirBorders) {
+TEST(SignalMessages, MarksAtTheirLimits) {
   world::World world = two_lights();
   const auto all = intersections_of(world, nullptr);
-  // Across the hour: 3599 s + 5 s are 4 s of the next one.
+  // Across the hour: 3599 s + 5 s is second 4 of the next hour.
   EXPECT_EQ(event(spat_of(all[0], world::forecasts_at(world, 3.0), kNewYear2026 + 3'599'000), 0).timing->min_end, 40);
-  // A state without end has no time, and no state follows.
+  // A permanent state has no end time and no next state.
   const v2x::Spat dark = spat_of(all[1], world::forecasts_at(world, 3.0), kNewYear2026);
   EXPECT_EQ(event(dark, 0).timing->min_end, v2x::kUnknownTime);
   EXPECT_EQ(dark.intersections[0].states[0].events.size(), 1u);
@@ -109,12 +109,12 @@ TEST(SignalMessages, MarksAtTheirBorders) {
   EXPECT_EQ(spat_of(all[0], world::forecasts_at(world, 0.0), last).intersections[0].minute, 366u * 1440u - 1u);
 }
 
-/// [ms] from `utc` to a mark, by a receiver that takes every mark for one of the hour that begins now.
+/// [ms] Returns the time from `utc` to a mark, by a receiver that assigns every mark to the hour that begins now.
 std::int64_t ahead_of(v2x::TimeMark mark, std::int64_t utc) {
   return ((mark * 100 - utc % 3'600'000) % 3'600'000 + 3'600'000) % 3'600'000;
 }
 
-/// The marks of an event, in tenths after `utc`.
+/// Checks the marks of an event, in tenths of a second after `utc`.
 void expect_marks(const v2x::MovementEvent& event, double left, std::int64_t utc) {
   const std::int64_t least = ahead_of(event.timing->min_end, utc), most = ahead_of(*event.timing->max_end, utc);
   EXPECT_GE(static_cast<double>(least), 1e3 * left - 1e-3) << utc << ": earlier than the change";
@@ -123,7 +123,7 @@ void expect_marks(const v2x::MovementEvent& event, double left, std::int64_t utc
   EXPECT_LE(ahead_of(event.timing->start.value_or(event.timing->min_end), utc), least) << utc;
 }
 
-/// At every 10 ms, across the hour, with phases that are no whole marks.
+/// At every 10 ms, across the hour, with phases that are not whole marks.
 TEST(SignalMessages, NoMarkIsBeforeTheMessage) {
   world::World world;
   world.lights.push_back(
@@ -142,8 +142,8 @@ TEST(SignalMessages, NoMarkIsBeforeTheMessage) {
   }
 }
 
-/// Times that are left, each with a reason.
-TEST(SignalMessages, MarksOfTimesThatAreLeft) {
+/// Remaining times, each with a reason.
+TEST(SignalMessages, MarksOfRemainingTimes) {
   const world::World world = two_lights();
   const auto all = intersections_of(world, nullptr);
   const auto marks = [&](std::int64_t utc, double earliest, double latest) {
@@ -168,7 +168,7 @@ TEST(SignalMessages, MarksOfTimesThatAreLeft) {
   EXPECT_EQ(marks(0, 1e300, kForever), Marks(v2x::kMoreThanAnHour, v2x::kUnknownTime));
 }
 
-/// Marks from 36000 on are no times.
+/// Marks from 36000 on are not times.
 TEST(SignalMessages, MarksBeyondTheHourAreRead) {
   const world::World world = two_lights();
   const auto all = intersections_of(world, nullptr);
@@ -185,7 +185,7 @@ TEST(SignalMessages, MarksBeyondTheHourAreRead) {
   for (const int mark : {36'000, 36'001, 36'111}) EXPECT_EQ(left(static_cast<v2x::TimeMark>(mark)), kForever) << mark;
 }
 
-TEST(SignalMessages, StatesComeBackAtAnyTime) {
+TEST(SignalMessages, StatesRoundTripAtAnyTime) {
   const Town town;
   for (double time = 0.05; time < 30.0; time += 0.37) {
     const std::int64_t utc = kNewYear2026 + 3'590'000 + std::llround(1e3 * time);  // across an hour
@@ -202,7 +202,7 @@ TEST(SignalMessages, StatesComeBackAtAnyTime) {
   }
 }
 
-TEST(SignalMessages, ReadingIgnoresTheUnknown) {
+TEST(SignalMessages, UnknownPartsAreIgnored) {
   const world::World world = two_lights();
   const auto all = intersections_of(world, nullptr);
   std::vector<world::Signal> signals(2, {LightState::green, 7.0});
@@ -212,7 +212,7 @@ TEST(SignalMessages, ReadingIgnoresTheUnknown) {
   spat.intersections[0].states[0].signal_group = 0;  // unknown
   EXPECT_EQ(read(spat, all, kNewYear2026, signals), 0u);
   spat.intersections[0].states[0].signal_group = 1;
-  spat.intersections[0].id.id = 3;  // another town's
+  spat.intersections[0].id.id = 3;  // of another town
   EXPECT_EQ(read(spat, all, kNewYear2026, signals), 0u);
   EXPECT_EQ(signals[1].state, LightState::green);
   spat.intersections[0].id.id = 2;
@@ -222,7 +222,7 @@ TEST(SignalMessages, ReadingIgnoresTheUnknown) {
   EXPECT_EQ(signals[1].left, kForever);
 }
 
-TEST(SignalMessages, ALateChangeIsDueNow) {
+TEST(SignalMessages, AnOverdueChangeIsDueNow) {
   const world::World world = two_lights();
   const auto all = intersections_of(world, nullptr);
   std::vector<world::Signal> signals(2);
@@ -234,7 +234,7 @@ TEST(SignalMessages, ALateChangeIsDueNow) {
   EXPECT_EQ(signals[0].left, 0.0) << "a message without a valid minute is from now";
   spat.intersections[0].minute = 0;
   spat.intersections[0].milliseconds.reset();
-  read(spat, all, kNewYear2026 + 8'300, signals);  // from 8.3 s ago, its change 0.3 s ago
+  read(spat, all, kNewYear2026 + 8'300, signals);  // sent 8.3 s ago, its change was due 0.3 s ago
   EXPECT_EQ(signals[0].left, 0.0);
 }
 
@@ -262,8 +262,8 @@ TEST(MapMessage, SimVilleHasTwoIntersections) {
 
 using PointKind = world::PointRef::Kind;
 
-/// Two lanes of one way-point each with a stop line, at (0, 0) and (4, 0); behind them a way out at `ends` for each, of
-/// a lane or of one zone.
+/// Two lanes of one way-point each with a stop line, at (0, 0) and (4, 0). Behind each stop line, an exit leads to
+/// `ends`, of a lane or of a zone.
 struct TwoStops {
   world::World world;
   world::RoadNetwork roads;
@@ -297,9 +297,9 @@ struct TwoStops {
   std::size_t intersections() const { return intersections_of(world, &roads).size(); }
 };
 
-/// Lights belong together where the ways behind them meet: in one lane, or where they cross. Ways into a zone meet in
-/// it, where no light governs.
-TEST(MapMessage, AnIntersectionIsWhereWaysMeet) {
+/// Lights belong together if the exits behind them meet: in one lane, or by crossing. Exits to a zone meet in it, where
+/// no light governs.
+TEST(MapMessage, AnIntersectionIsWhereExitsMeet) {
   const std::vector<glm::dvec2> apart{{0.0, 5.0}, {4.0, 5.0}}, crossed{{4.0, 5.0}, {0.0, 5.0}};
   EXPECT_EQ(TwoStops(PointKind::lane, apart, {0, 1}).intersections(), 2u) << "side by side";
   EXPECT_EQ(TwoStops(PointKind::lane, crossed, {0, 1}).intersections(), 1u) << "crossing ways into two lanes";
@@ -369,8 +369,8 @@ TEST(MapMessage, TheReferencePointIsInThePlaneOfTheOrigin) {
   }
 }
 
-/// 17 lanes with 16 connections each, of one network whose exits all lead from each lane to each of 16 others.
-TEST(MapMessage, IdsOfConnectionsAreUniqueOrAbsent) {
+/// 17 lanes with 16 connections each, in one network in which exits lead from each lane to each of 16 others.
+TEST(MapMessage, ConnectionIdsAreUniqueOrAbsent) {
   world::RoadNetwork roads;
   Intersection one{.id = 1, .lights = {0}, .stops = {}, .groups = {}};
   for (std::uint32_t row = 0; row < 33; ++row) {
@@ -398,7 +398,7 @@ TEST(MapMessage, IdsOfConnectionsAreUniqueOrAbsent) {
   round_trip(*map);
 }
 
-/// Lanes side by side, each with a stop line at its end.
+/// Parallel lanes, each with a stop line at its end.
 struct StopLanes {
   world::RoadNetwork roads;
   Intersection one{.id = 1, .lights = {0}, .stops = {}, .groups = {}};
@@ -414,7 +414,7 @@ struct StopLanes {
   }
 };
 
-TEST(MapMessage, NodesStandBetweenPointsOutOfReach) {
+TEST(MapMessage, NodesAreInsertedBetweenPointsOutOfReach) {
   const StopLanes far(1, {{-600.0, -800.0}, {0.0, 0.0}});  // 1000 m: four steps of at most 327 m
   const auto map = map_of(far.roads, far.one, {});
   ASSERT_TRUE(map);
@@ -427,7 +427,7 @@ TEST(MapMessage, NodesStandBetweenPointsOutOfReach) {
   round_trip(*map);
 }
 
-TEST(MapMessage, HoldsAsManyLanesAsItHasIds) {
+TEST(MapMessage, HoldsAsManyLanesAsThereAreIds) {
   const std::vector<glm::dvec2> points{{0.0, -9.0}, {0.0, 0.0}};
   const StopLanes most(255, points), more(256, points);
   const auto map = map_of(most.roads, most.one, {});
@@ -437,7 +437,7 @@ TEST(MapMessage, HoldsAsManyLanesAsItHasIds) {
   expect_in("has 256 lanes; a MAP message holds 255", refusal_of([&] { map_of(more.roads, more.one, {}); }));
 }
 
-TEST(MapMessage, ALaneHoldsTheFirstSixteenConnections) {
+TEST(MapMessage, ALaneHasOnlyItsFirstSixteenConnections) {
   StopLanes fan(1, {{0.0, -9.0}, {0.0, 0.0}});
   for (std::uint32_t to = 1; to <= 17; ++to) {
     world::RoadLane& lane = fan.roads.lanes.emplace_back();
@@ -451,7 +451,7 @@ TEST(MapMessage, ALaneHoldsTheFirstSixteenConnections) {
   round_trip(*map);
 }
 
-TEST(MapMessage, AnIntersectionWithoutStopLinesHasNone) {
+TEST(MapMessage, AnIntersectionWithoutStopLinesHasNoMap) {
   const Town town;
   EXPECT_FALSE(map_of(town.roads, {.id = 1, .lights = {0}, .stops = {}, .groups = {}}, {}));
 }

@@ -1,4 +1,4 @@
-// Trouble with keys and clocks: both sides state it, rarely, and nothing else changes.
+// Trouble with keys and clocks: both sides log it, rate-limited, and nothing else changes.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-/// Lines of a farm and its robot in 3 s.
+/// Returns the log lines of a farm and its robot in 3 s.
 std::string lines_with(Fixture& f, const std::optional<netio::SigningKey>& key) {
   f.client.reset();  // which has its port
   f.client = f.make_client(0, key);
@@ -39,7 +39,7 @@ std::string lines_with(Fixture& f, const std::optional<netio::SigningKey>& key) 
   return f.log.read_all();
 }
 
-TEST(SignatureTrouble, AnotherKeyIsStatedByBoth) {
+TEST(SignatureTrouble, BothSidesLogAWrongKey) {
   Fixture f(with_key());
   const std::string log = lines_with(f, kOtherKey);
   EXPECT_EQ(count(log, "robot 1 ("), 1u) << log;
@@ -48,7 +48,7 @@ TEST(SignatureTrouble, AnotherKeyIsStatedByBoth) {
   EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
 }
 
-TEST(SignatureTrouble, NoKeyIsStatedByBoth) {
+TEST(SignatureTrouble, BothSidesLogAMissingKey) {
   Fixture f(with_key());
   const std::string log = lines_with(f, std::nullopt);
   EXPECT_EQ(count(log, "without a signature: --peers has a key for it here"), 1u) << log;
@@ -56,14 +56,14 @@ TEST(SignatureTrouble, NoKeyIsStatedByBoth) {
   EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
 }
 
-TEST(SignatureTrouble, AFarmWithoutTheKeyIsStatedByBoth) {
+TEST(SignatureTrouble, BothSidesLogAFarmWithoutTheKey) {
   Fixture f;
   const std::string log = lines_with(f, kKey);
   EXPECT_EQ(count(log, "whose signature is not checked: --peers has no key for it here"), 1u) << log;
   EXPECT_EQ(count(log, "does not sign its packets: start `serve` with --peers and the key of robot 1, too"), 1u) << log;
 }
 
-TEST(SignatureTrouble, AnotherAddressIsStatedByBoth) {
+TEST(SignatureTrouble, BothSidesLogAnotherAddress) {
   Settings settings;
   settings.peers = {{netio::PeerKind::robot, 1, netio::kLoopback + 1, std::nullopt}};
   Fixture f(settings);
@@ -73,8 +73,8 @@ TEST(SignatureTrouble, AnotherAddressIsStatedByBoth) {
   EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
 }
 
-/// START and lights have no robot that could be named.
-TEST(SignatureTrouble, OtherSendersAtAnotherAddressAreStatedOnce) {
+/// START and lights have no robot to name.
+TEST(SignatureTrouble, OtherSendersAtAnotherAddressAreLoggedOnce) {
   const world::World world = room();
   LogPipe log;
   StateReceiver receiver(world, {.bind = {netio::kLoopback, 0},
@@ -98,7 +98,7 @@ TEST(SignatureTrouble, OtherSendersAtAnotherAddressAreStatedOnce) {
 }
 
 /// A robot whose clock was an hour ahead has left; now its clock is right.
-TEST(SignatureTrouble, AClockThatWasSetBackIsStatedByBoth) {
+TEST(SignatureTrouble, BothSidesLogAClockThatWasSetBack) {
   Fixture f(with_key());
   netio::Outbox before({.bind = {netio::kLoopback, 0}});
   netio::PacketSigner signer(kKey, netio::unix_microseconds() + 3'600'000'000u);
@@ -120,8 +120,8 @@ TEST(SignatureTrouble, AClockThatWasSetBackIsStatedByBoth) {
   EXPECT_EQ(count(log, "is `sensorfarm serve` running there"), 0u) << log;
 }
 
-/// 65 s of refused packets, ten and more a second: a line at once, then one every ten seconds with their number.
-TEST(SignatureTrouble, LinesAreRare) {
+/// 65 s of refused packets, ten and more a second: one line immediately, then one every ten seconds with their number.
+TEST(SignatureTrouble, LinesAreRateLimited) {
   Fixture f(with_key());
   f.client.reset();
   f.client = f.make_client(0, kOtherKey);
@@ -133,8 +133,8 @@ TEST(SignatureTrouble, LinesAreRare) {
   EXPECT_GE(f.service->stats().inbox[netio::PacketStatus::wrong_signature], 120u);
 }
 
-/// Copies of signed packets, as networks make them, are no trouble.
-TEST(SignatureTrouble, CopiesAreNone) {
+/// Duplicates of signed packets, which networks create, are not logged.
+TEST(SignatureTrouble, DuplicatesAreNotLogged) {
   Fixture f(with_key());
   netio::Outbox sender({.bind = {netio::kLoopback, 0}});
   base::Bytes packet;

@@ -23,7 +23,7 @@ struct Fixture {
     chosen.enabled = true;
     filter.emplace(world, chosen);
   }
-  /// The state of `sent` [ns] on our clock, with sequence number sent / 100 ms.
+  /// Adds the state of `sent` [ns] on our clock, with sequence number sent / 100 ms.
   void take(std::int64_t sent, std::int64_t arrival, const base::Pose& error = {}) {
     netio::Header header;
     header.time = sent + 3600 * kSecond;
@@ -48,7 +48,7 @@ StateFilterOptions with_delay(std::int64_t least) {
 }
 
 TEST(StateFilter, LateStatesArePredictedToNow) {
-  // 10 Hz, 80 ms to 100 ms on the way, every twentieth lost: the pose is that of now, not of 0.1 s ago.
+  // 10 Hz, 80 ms to 100 ms in transit, every twentieth lost: the pose is the current one, not that of 0.1 s ago.
   Fixture f(with_delay(80 * kMs));
   std::mt19937 random(1);
   for (std::int64_t sent = 0; sent < 5 * kSecond; sent += 100 * kMs)
@@ -67,23 +67,23 @@ TEST(StateFilter, LateStatesArePredictedToNow) {
   EXPECT_NEAR(static_cast<double>(clocks[0].clock.offset), -3600e9, 2e6);
 }
 
-TEST(StateFilter, ReplaysAreKnownThoughTheClockWasCorrectedMeanwhile) {
+TEST(StateFilter, ReplaysAreDetectedAfterAClockCorrection) {
   Fixture f;
   f.take(1000 * kMs, 1090 * kMs);
-  f.take(1100 * kMs, 1120 * kMs);  // 70 ms less delay: all times move on our clock
+  f.take(1100 * kMs, 1120 * kMs);  // 70 ms less delay: all times shift on our clock
   f.take(1000 * kMs, 1200 * kMs);
   f.take(1100 * kMs, 1210 * kMs);
   EXPECT_EQ(f.count(Verdict::replayed), 2u);
 }
 
-TEST(StateFilter, FutureOldAndFarStatesAreCountedAndChangeNothing) {
+TEST(StateFilter, FutureOldAndFarStatesAreCountedAndIgnored) {
   Fixture f;
   for (std::int64_t sent = 1000 * kMs; sent <= 2000 * kMs; sent += 100 * kMs) f.take(sent, sent + 5 * kMs);
   const base::Report before = f.filter->predict(2005 * kMs)[0];
   f.take(9000 * kMs, 2005 * kMs);                  // seven seconds ahead
   f.take(0, 2006 * kMs);                           // two seconds old
   f.take(1950 * kMs, 2006 * kMs, {4e5, 0, 0, 0});  // 400 km away
-  f.take(1960 * kMs, 2006 * kMs, {0, 1.0, 0, 0});  // 1 m aside
+  f.take(1960 * kMs, 2006 * kMs, {0, 1.0, 0, 0});  // 1 m sideways
   const base::Report after = f.filter->predict(2005 * kMs)[0];
   EXPECT_EQ(after.X_WM.x, before.X_WM.x);
   EXPECT_EQ(after.X_WM.y, before.X_WM.y);
@@ -93,7 +93,7 @@ TEST(StateFilter, FutureOldAndFarStatesAreCountedAndChangeNothing) {
   EXPECT_EQ(f.count(Verdict::outlier), 1u);
 }
 
-TEST(StateFilter, SilenceMakesStaleByThePolicy) {
+TEST(StateFilter, SilenceMakesAStateStaleByThePolicy) {
   for (const StalePolicy policy : {StalePolicy::freeze, StalePolicy::hide, StalePolicy::drop}) {
     StateFilterOptions options;
     options.policy = policy;
@@ -116,7 +116,7 @@ TEST(StateFilter, SilenceMakesStaleByThePolicy) {
   }
 }
 
-TEST(StateFilter, NewSessionBeginsAnew) {
+TEST(StateFilter, ANewSessionStartsOver) {
   Fixture f;
   f.take(1000 * kMs, 1000 * kMs);
   f.session = 2;
@@ -125,7 +125,7 @@ TEST(StateFilter, NewSessionBeginsAnew) {
   EXPECT_NEAR(f.filter->predict(1100 * kMs).at(0).X_WM.x, 30.25, 1e-9);
 }
 
-TEST(StateFilter, StampsAreIgnoredOnRequest) {
+TEST(StateFilter, StampsAreIgnoredIfConfigured) {
   StateFilterOptions options;
   options.clock.source = estimation::ClockSource::arrival;
   Fixture f(options);
@@ -147,8 +147,8 @@ TEST(StateFilter, TrustedStampsCountFromTheEpoch) {
   EXPECT_TRUE(f.filter->clocks().empty()) << "no offset was estimated";
 }
 
-/// Each late state applies a window of states again: their number bounds the work of a tick.
-TEST(StateFilter, AFloodBetweenTwoPredictionsIsLeftOutAndCounted) {
+/// Each late state reapplies a window of states, so their number bounds the work of a tick.
+TEST(StateFilter, AFloodBetweenTwoPredictionsIsDroppedAndCounted) {
   Fixture f;
   constexpr std::int64_t kMost = StateFilter::kMostBetweenPredictions;
   for (std::int64_t k = 0; k < kMost + 10; ++k) f.take(1000 * kMs + k * kMs, 1005 * kMs + k * kMs);

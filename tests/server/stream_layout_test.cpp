@@ -9,7 +9,7 @@
 namespace sf::server {
 namespace {
 
-/// Notes on a robot with a laser that the thesis' wire format carries, and some of more rays than it does.
+/// Returns notes on a robot with a laser that the thesis' wire format carries, and some with too many rays for it.
 std::vector<std::string> notes_of(int wide) {
   world::World world = scenes::empty_world();
   std::vector<world::Sensor>& mounted = scenes::add_create(world, {}).sensors;
@@ -23,7 +23,7 @@ std::vector<std::string> notes_of(int wide) {
       .notes;
 }
 
-TEST(StreamLayout, SensorsLeftOutAreNamedUpToTwenty) {
+TEST(StreamLayout, OmittedSensorsAreNamedUpToTwenty) {
   EXPECT_TRUE(notes_of(0).empty());
   for (const int wide : {1, 20, 21, 25}) {
     const std::vector<std::string> notes = notes_of(wide);

@@ -1,5 +1,5 @@
-// The bound in a packet covers the numbers in it: every sensor type and wire form, read by a decoder of the test's own
-// that follows docs/packets.md.
+// The bound in a packet covers its values: every sensor type and wire form, decoded by the test's own decoder, which
+// follows docs/packets.md.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// A packet's type, accuracy word, and first column; NaN for words that are no numbers.
+/// A packet's type, accuracy word and first column; NaN for words that do not encode a number.
 struct Seen {
   unsigned type = 0, bit = 0;
   double bound = kInf;
@@ -59,7 +59,7 @@ class Wire {
   explicit Wire(const world::Sensor& sensor, sensors::WireFormat wire = sensors::WireFormat::farm)
       : world_(with(sensor)), sensor_set_(world_), inlet_(netio::open_udp({netio::kLoopback, 0})) {
     StreamLayout layout;
-    layout.stride = 0;  // all to one port
+    layout.stride = 0;  // all on one port
     layout.wire = wire;
     for (const auto& group : sensor_set_.groups()) layout.bases[group.type->id] = netio::bound_endpoint(inlet_).port;
     publisher_.emplace(world_, sensor_set_, layout, netio::Outbox(outbox_options(sensor_set_)));
@@ -100,7 +100,7 @@ world::Sensor laser(std::uint32_t samples, double range_max) {
 }
 world::Sensor plain(const std::string& type) { return {type, type, {}, 0.1, 1.0, 1.0, {}, 0, ""}; }
 
-/// A reading of first columns; the others are 0.
+/// A reading with given first columns; the others are 0.
 struct Made {
   Made(std::uint8_t type, std::vector<double> first, double bound, std::size_t width = 1)
       : values(first.size() * width) {
@@ -119,7 +119,7 @@ std::vector<Seen> sent(Wire& wire, const Made& made) {
   return all;
 }
 
-/// Whatever the numbers: the farm's are within `bound` of the truth, and the packet's within the bound in it.
+/// Checks for any values: the farm's are within `bound` of the truth, and the packet's within the bound in the packet.
 void covers(const world::Sensor& sensor, std::uint8_t type, std::size_t width, double largest, double half) {
   Wire wire(sensor);
   const std::size_t count = wire.sensor_set().group(type)->rows[0].elements;
@@ -148,7 +148,7 @@ TEST(WireBounds, CoverRoundedNumbers) {
   covers(plain("magnetometer"), sensors::kMagnetometer, 4, 1e-4, 0.5e-8);
 }
 
-/// The accuracy word of one reading.
+/// Returns the accuracy word of one reading.
 Seen word_of(const world::Sensor& sensor, const Made& made) {
   Wire wire(sensor);
   const std::vector<Seen> all = sent(wire, made);
@@ -161,8 +161,8 @@ void states_none(const Seen& seen, unsigned bit, const char* why) {
   EXPECT_EQ(seen.bit, bit) << why;
 }
 
-/// A word may stand for all numbers beyond it, which no bound covers.
-TEST(WireBounds, AreLeftOutWhereAWordSaturates) {
+/// A word may represent all larger values, which no bound covers.
+TEST(WireBounds, AreOmittedIfAWordSaturates) {
   const auto lane_edge = [](double distance) {
     return word_of(plain("laneedge"), {sensors::kLaneEdge, {distance}, 1e-8, 4});
   };
@@ -184,8 +184,8 @@ TEST(WireBounds, AreLeftOutWhereAWordSaturates) {
   EXPECT_TRUE(std::isnan(far(kInf).first.at(0)));
 }
 
-/// One rule for all types: noise, and readings without any element that keeps the bound.
-TEST(WireBounds, AreLeftOutOfNoiseAndOfFlaggedReadings) {
+/// The same rule for all types: noise, and readings without any element within the bound.
+TEST(WireBounds, AreOmittedForNoiseAndFlaggedReadings) {
   Made noisy(sensors::kLaser, {1.0, 2.0, 3.0}, kInf);
   noisy.block.bound_without_noise = 1.06e-9;
   noisy.block.sigma = 0.2;
@@ -202,8 +202,8 @@ TEST(WireBounds, AreLeftOutOfNoiseAndOfFlaggedReadings) {
   EXPECT_LT(word_of(laser(3, 8.0), some).bound, 0.6e-3) << "of the beams that were cast";
 }
 
-/// Types that state no bound have none in their packets, with noise or without.
-TEST(WireBounds, AreLeftOutOfTypesWithoutOne) {
+/// Types without a bound have none in their packets, with or without noise.
+TEST(WireBounds, AreOmittedForTypesWithoutOne) {
   for (const sensors::SensorType* type : sensors::built_in_sensor_types()) {
     if (type->bound != nullptr) {
       EXPECT_NE(type->wire_error, nullptr) << type->name;
@@ -223,8 +223,8 @@ TEST(WireBounds, AreLeftOutOfTypesWithoutOne) {
   }
 }
 
-/// The thesis' layout is numbers alone.
-TEST(WireBounds, TheThesisLayoutStatesNone) {
+/// The thesis' layout consists only of numbers.
+TEST(WireBounds, AreOmittedInTheThesisLayout) {
   const auto bytes = [](const world::Sensor& sensor, const Made& made) {
     Wire wire(sensor, sensors::WireFormat::thesis);
     const auto all = wire.send(made.block);
