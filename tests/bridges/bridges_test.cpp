@@ -1,4 +1,4 @@
-// All bridges of a run, as one.
+// All bridges of a run together.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace sf::bridges {
 
 namespace {
 
-/// Counts what it is given, and asks for one step.
+/// Counts its calls, and requests one step.
 struct Counting : Bridge {
   explicit Counting(int& count) : ticks(count) {}
   void publish(const base::TickRecord&, const RunState&) override { ++ticks; }
@@ -25,7 +25,7 @@ struct Counting : Bridge {
 
 }  // namespace
 
-TEST(Bridges, EachIsGivenEveryTickAndAsked) {
+TEST(Bridges, EachReceivesEveryTickAndIsPolled) {
   int first = 0, second = 5;
   Bridges bridges;
   EXPECT_TRUE(bridges.empty());
@@ -37,7 +37,7 @@ TEST(Bridges, EachIsGivenEveryTickAndAsked) {
   bridges.publish(RunState{.paused = true});
   EXPECT_EQ(first, 101);
   Requests requests;
-  for (int round = 0; round < 2; ++round) {  // what was asked for once is not asked for again
+  for (int round = 0; round < 2; ++round) {  // a request is delivered only once
     bridges.take(requests);
     EXPECT_EQ(requests.steps, 2u);
     ASSERT_EQ(requests.commands.size(), 2u);

@@ -1,4 +1,4 @@
-// The bytes and texts of Foxglove's protocol. Vectors of foxglove.sdk.v1: the snapshots of Foxglove's own SDK
+// Bytes and texts of Foxglove's protocol. The vectors of foxglove.sdk.v1 are the snapshots of Foxglove's own SDK
 // (github.com/foxglove/foxglove-sdk at ca8a1ced, rust/foxglove/src/protocol/v1/snapshots).
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ base::Bytes bytes_of_text(std::string_view text) { return {text.begin(), text.en
 
 }  // namespace
 
-TEST(FoxgloveBytes, AreThoseOfTheSdk) {
+TEST(FoxgloveBytes, MatchTheSdk) {
   EXPECT_EQ(time_bytes(1234567890), bytes_from_hex("02d202964900000000"));
   EXPECT_EQ(service_response_bytes(10, 12, "json", bytes_of_text(R"({"key": "value"})")),
             bytes_from_hex("030a0000000c000000040000006a736f6e7b226b6579223a202276616c7565227d"));
@@ -45,7 +45,7 @@ TEST(FoxgloveBytes, AreThoseOfTheSdk) {
                            "692d616d2d612d72657175657374"));
 }
 
-TEST(FoxgloveBytes, ReadsWhatTheSdkSends) {
+TEST(FoxgloveBytes, ParsesMessagesOfTheSdk) {
   const auto published = parse_client_binary(bytes_from_hex("011e0000007b226b6579223a202276616c7565227d"));
   ASSERT_TRUE(published && std::holds_alternative<ClientPublish>(*published));
   EXPECT_EQ(std::get<ClientPublish>(*published).channel, 30u);
@@ -71,7 +71,7 @@ TEST(FoxgloveBytes, ReadsWhatTheSdkSends) {
   EXPECT_FALSE(std::get<PlaybackRequest>(*pause).time);
 }
 
-TEST(FoxgloveBytes, EveryTruncationIsRefused) {
+TEST(FoxgloveBytes, RejectsEveryTruncation) {
   for (const char* whole :
        {"020a0000000c000000040000006a736f6e", "03000000803f0115cd5b070000000007000000736f6d652d6964", "011e000000"}) {
     const base::Bytes bytes = bytes_from_hex(whole);
@@ -79,10 +79,10 @@ TEST(FoxgloveBytes, EveryTruncationIsRefused) {
     for (std::size_t size = 0; size < bytes.size(); ++size)
       EXPECT_FALSE(parse_client_binary(std::span(bytes).first(size))) << whole << " cut at " << size;
   }
-  EXPECT_FALSE(parse_client_binary(bytes_from_hex("ff00000000000000")));                        // no such message
-  EXPECT_FALSE(parse_client_binary(bytes_from_hex("020a0000000c000000ffffffff6a736f6e")));      // a longer name
-  EXPECT_FALSE(parse_client_binary(bytes_from_hex("03020000803f00000000000000000000000000")));  // no such command
-  EXPECT_FALSE(parse_client_binary(bytes_from_hex("03000000803f01ffffffffffffffff00000000")));  // beyond all times
+  EXPECT_FALSE(parse_client_binary(bytes_from_hex("ff00000000000000")));                        // unknown message
+  EXPECT_FALSE(parse_client_binary(bytes_from_hex("020a0000000c000000ffffffff6a736f6e")));      // overlong name
+  EXPECT_FALSE(parse_client_binary(bytes_from_hex("03020000803f00000000000000000000000000")));  // unknown command
+  EXPECT_FALSE(parse_client_binary(bytes_from_hex("03000000803f01ffffffffffffffff00000000")));  // overflow
 }
 
 TEST(FoxgloveBytes, TwistsInCdr) {
@@ -105,8 +105,8 @@ TEST(FoxgloveBytes, TwistsInCdr) {
 TEST(FoxgloveMessages, TwistsInJson) {
   EXPECT_EQ(parse_json_twist(R"({"linear":{"x":0.5,"y":0,"z":0},"angular":{"x":0,"y":0,"z":-1}})")->turn, -1.0);
   EXPECT_EQ(parse_json_twist(R"({"header":{},"twist":{"linear":{"x":0.5}}})")->forward, 0.5);
-  EXPECT_EQ(parse_json_twist("{}")->forward, 0.0);                                   // as in a robot that is to stand
-  EXPECT_TRUE(std::isnan(parse_json_twist(R"({"linear":{"x":"fast"}})")->forward));  // and is then refused
+  EXPECT_EQ(parse_json_twist("{}")->forward, 0.0);                                   // as for a robot that is to stop
+  EXPECT_TRUE(std::isnan(parse_json_twist(R"({"linear":{"x":"fast"}})")->forward));  // and is rejected later
   for (const char* wrong : {"", "[", "7", "[1]", "{\"linear\":"}) EXPECT_FALSE(parse_json_twist(wrong)) << wrong;
 }
 
@@ -127,14 +127,14 @@ TEST(FoxgloveMessages, ReadsEachOperation) {
   ASSERT_TRUE(set);
   EXPECT_EQ(std::get<bool>(set->parameters[0].value), true);
   EXPECT_EQ(std::get<double>(set->parameters[1].value), 2.0);
-  EXPECT_TRUE(std::holds_alternative<std::monostate>(set->parameters[2].value));  // to be unset
-  EXPECT_TRUE(std::holds_alternative<std::monostate>(set->parameters[3].value));  // of a type that none here has
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(set->parameters[2].value));  // to unset it
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(set->parameters[3].value));  // of an unsupported type
   EXPECT_EQ(set->id, "x");
   EXPECT_EQ(parse_client_text(R"({"op":"fetchAsset","uri":"a","requestId":1})")->op, ClientText::Op::other);
 }
 
-TEST(FoxgloveMessages, RefusesOtherTexts) {
-  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');  // no stack may be used up by it
+TEST(FoxgloveMessages, RejectsOtherTexts) {
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');  // must not exhaust the stack
   for (const std::string& wrong :
        {std::string(), std::string("{"), std::string("[]"), std::string("null"), std::string("{\"op\":7}"),
         std::string(R"({"op":"fly"})"), std::string(R"({"op":"subscribe"})"),
@@ -150,7 +150,7 @@ TEST(FoxgloveMessages, RefusesOtherTexts) {
     EXPECT_FALSE(parse_client_text(wrong)) << wrong.substr(0, 80);
 }
 
-TEST(FoxgloveMessages, NamesThatAreNoUtf8AreSentAllTheSame) {
+TEST(FoxgloveMessages, InvalidUtf8InNamesIsReplaced) {
   const std::string text = status_text(StatusLevel::error, "robot \xff");
   EXPECT_NE(text.find("robot \xef\xbf\xbd"), std::string::npos) << text;
 }

@@ -1,4 +1,4 @@
-// What is kept of ticks for viewers of a paused run.
+// Ticks stored for viewers of a paused run.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@ namespace sf::bridges {
 
 namespace {
 
-/// A tick of two robots with one reading of one value each, as asked.
+/// A tick of two robots with one reading of one value for each given sensor.
 struct TickOf {
   explicit TickOf(std::int64_t time, const std::vector<std::uint32_t>& sensors) : values{static_cast<double>(time)} {
     for (const std::uint32_t sensor : sensors) {
@@ -38,17 +38,17 @@ std::vector<double> values_of(const base::TickRecord& tick) {
 TEST(LastTick, KeepsEachSensorsNewestReading) {
   LastTick last;
   EXPECT_TRUE(last.empty());
-  last.store(TickOf(1, {0, 1}).tick, true);  // the tick itself is gone after each call
+  last.store(TickOf(1, {0, 1}).tick, true);  // the tick is destroyed after each call
   last.store(TickOf(2, {1}).tick, true);
   EXPECT_FALSE(last.empty());
   EXPECT_EQ(last.record().reports.size(), 2u);
   EXPECT_EQ(values_of(last.record()), (std::vector<double>{1, 2}));
-  for (std::uint32_t sensor = 2; sensor < 100; ++sensor) last.store(TickOf(3, {sensor}).tick, true);  // tables move
+  for (std::uint32_t sensor = 2; sensor < 100; ++sensor) last.store(TickOf(3, {sensor}).tick, true);  // reallocates
   EXPECT_EQ(values_of(last.record())[1], 2);
   EXPECT_EQ(last.record().readings.size(), 100u);
 }
 
-/// A flag is a part of what a reading says: messages depend on it.
+/// Flags are part of a reading, because messages depend on them.
 TEST(LastTick, KeepsTheFlagsOfReadings) {
   LastTick last;
   {
@@ -62,13 +62,13 @@ TEST(LastTick, KeepsTheFlagsOfReadings) {
   EXPECT_EQ(last.record().readings[1].quality[0], base::QualityFlag::too_near);
 }
 
-TEST(LastTick, ForgetsReadingsThatGrewOld) {
+TEST(LastTick, DropsOldReadings) {
   LastTick last;
   last.store(TickOf(1, {0}).tick, true);
-  last.store(TickOf(2, {1}).tick, false);  // the run went on
+  last.store(TickOf(2, {1}).tick, false);  // the run continued
   EXPECT_TRUE(last.record().readings.empty());
   last.store(TickOf(3, {0}).tick, true);
-  last.store(TickOf(0, {1}).tick, true);  // it began again
+  last.store(TickOf(0, {1}).tick, true);  // it restarted
   EXPECT_EQ(values_of(last.record()), (std::vector<double>{0}));
 }
 

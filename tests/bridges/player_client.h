@@ -1,6 +1,6 @@
 #pragma once
-// A client of the Player server for tests, and a world for it. A request's answer proves that what was sent and
-// published before it was taken.
+// A client of the Player server for tests, and a world for it. The answer to a request proves that everything sent and
+// published before it has been processed.
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ inline world::World load_text(const std::string& text) {
   return world::load_world(file, {.sensors = sensors::world_file_words()});
 }
 
-/// A wall, a robot with one sensor of each type that Player has, and one with a laser.
+/// A wall, a robot with one sensor of each type that Player supports, and one with a laser.
 inline const char* const kTwoRobots = R"(
 name "two"
 define wall model( size [0.2 6 1] )
@@ -48,7 +48,7 @@ position
 )
 )";
 
-/// Everything that a bridge needs, and ticks made by hand.
+/// Everything that a bridge needs, and ticks created by the test.
 struct PlayerRun {
   explicit PlayerRun(const char* text = kTwoRobots, bool simulated = true)
       : world(load_text(text)), sensor_set(world), scene{world, sensor_set, info, simulated}, bridge(scene, {}) {
@@ -67,13 +67,14 @@ struct PlayerRun {
     record.readings = readings;
     bridge.publish(record, state);
   }
-  /// A reading of ann's sensor of that type.
+  /// Returns a reading of ann's sensor of that type.
   base::ReadingBlock reading(std::uint8_t type, const std::vector<double>& values, std::uint32_t sequence = 7) const {
     base::ReadingBlock block;
     block.type = type, block.sequence = sequence, block.time = 1'500'000'000, block.values = values;
     return block;
   }
-  /// A port of the server. @param robot 0: of all robots
+  /// Returns a port of the server.
+  /// @param robot 0: the port of all robots
   netio::Endpoint port(std::uint16_t robot = 0) const {
     const netio::Endpoint first = bridge.endpoint();
     return {first.address, static_cast<std::uint16_t>(first.port + robot)};
@@ -98,12 +99,12 @@ struct PlayerRun {
 struct Message {
   Header header;
   base::Bytes payload;
-  bool ended = false;  ///< nothing came: the server ended the connection
+  bool ended = false;  ///< nothing arrived: the server closed the connection
 };
 
 class TestClient {
  public:
-  /// @param host its own address; 0: any
+  /// @param host own address; 0: any
   explicit TestClient(const netio::Endpoint& server, int buffer = 0, std::uint32_t host = 0)
       : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in own{};
@@ -128,7 +129,7 @@ class TestClient {
   void send(const base::Bytes& bytes) {
     EXPECT_EQ(::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL), bytes.size());
   }
-  /// False when the connection has ended.
+  /// Returns false if the connection has ended.
   bool try_send(const base::Bytes& bytes) { return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) > 0; }
   void send(MessageType type, const Address& to, std::uint32_t subtype, const base::Bytes& payload = {}) {
     base::Bytes bytes;
@@ -141,7 +142,7 @@ class TestClient {
     bytes.insert(bytes.end(), payload.begin(), payload.end());
     send(bytes);
   }
-  /// The next message; a test fails where none comes.
+  /// Returns the next message; the test fails if none arrives.
   Message receive() {
     Message message;
     const base::Bytes header = read(kHeaderBytes);
@@ -150,7 +151,7 @@ class TestClient {
     message.payload = read(message.header.size);
     return message;
   }
-  /// The answer, ahead of which data may come, which is dropped.
+  /// Returns the answer to a request. Drops data that arrives before it.
   Message request(const Address& to, std::uint32_t subtype, const base::Bytes& payload = {}) {
     send(MessageType::request, to, subtype, payload);
     Message message;
@@ -170,7 +171,7 @@ class TestClient {
 
  private:
   base::Bytes read(std::size_t size) {
-    constexpr int kPatience = 60'000;  // [ms] that a failing test takes
+    constexpr int kPatience = 60'000;  // [ms] timeout of a failing test
     base::Bytes bytes(size);
     std::size_t have = 0;
     while (have < size) {
@@ -186,7 +187,7 @@ class TestClient {
   int socket_;
 };
 
-/// Payload of numbers in XDR.
+/// Returns a payload of numbers in XDR.
 template <class... Numbers>
 base::Bytes xdr_of(Numbers... numbers) {
   base::Bytes bytes;

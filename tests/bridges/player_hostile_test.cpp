@@ -1,4 +1,4 @@
-// Clients of the Player server that are slow, many or hostile.
+// Slow, numerous and hostile clients of the Player server.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ base::Bytes text_and(const std::string& text, std::initializer_list<double> numb
   return bytes;
 }
 
-/// One message of each form that the server reads.
+/// Returns one message of each form that the server reads.
 std::vector<base::Bytes> one_of_each() {
   std::vector<base::Bytes> all;
   const auto add = [&](MessageType type, const Address& to, std::uint32_t subtype, const base::Bytes& payload) {
@@ -67,13 +67,13 @@ bool is_served(const PlayerRun& run) {
 
 }  // namespace
 
-TEST(PlayerHostile, WrongLengthsEndTheirOwnConnectionOnly) {
+TEST(PlayerHostile, WrongLengthsEndOnlyTheirOwnConnection) {
   PlayerRun run;
   TestClient good(run.port());
   good.banner();
   std::uint64_t malformed = 0;
   for (const base::Bytes& whole : one_of_each()) {
-    // Data of one byte less, and of four more: requests without data and those that are read by name alone ignore it.
+    // Data of one byte less, and of four more: requests without data and requests that only read a name ignore it.
     const std::size_t size = whole.size() - kHeaderBytes;
     const Header header = read_header(whole);
     const bool needs_none = size == 0 || header.address.interf == Interface::map || header.address == kSimulation;
@@ -94,7 +94,7 @@ TEST(PlayerHostile, WrongLengthsEndTheirOwnConnectionOnly) {
   EXPECT_EQ(good.request(kPosition, 1).header.type, MessageType::ack);
 }
 
-/// Requests of a byte less, and of bytes behind what they have, for what other clients would notice.
+/// Requests with one byte less, and with extra bytes, checked by effects visible to other clients.
 TEST(PlayerHostile, RequestsOfAWrongLengthChangeNothing) {
   PlayerRun run;
   TestClient good(run.port());
@@ -139,7 +139,7 @@ TEST(PlayerHostile, RequestsOfAWrongLengthChangeNothing) {
   EXPECT_EQ(XdrReader(data.payload).get_double(), 0.0) << "its odometry began where it stands";
 }
 
-TEST(PlayerHostile, OversizedMessagesAreNotWaitedFor) {
+TEST(PlayerHostile, OversizedMessagesAreNotAwaited) {
   PlayerRun run;
   TestClient bad(run.port());
   bad.banner();
@@ -155,7 +155,7 @@ TEST(PlayerHostile, OversizedMessagesAreNotWaitedFor) {
   EXPECT_TRUE(is_served(run));
 }
 
-TEST(PlayerHostile, ChangedMessagesHarmNobody) {
+TEST(PlayerHostile, CorruptedMessagesAffectNoOtherClient) {
   PlayerRun run;
   std::mt19937 random(1);
   const std::vector<base::Bytes> messages = one_of_each();
@@ -187,9 +187,9 @@ TEST(PlayerHostile, TooManyClientsAreRefused) {
   EXPECT_EQ(clients[0]->request(kPosition, 1).header.type, MessageType::ack);
 }
 
-/// Connections that have opened nothing make room, the one that was silent for longest first; a client that is served
-/// stays. A second has to pass, in which a connection may be about to open its devices.
-TEST(PlayerHostile, IdleConnectionsDoNotLockOthersOut) {
+/// A connection without an open device is closed for a new client, starting with the one that has been silent longest;
+/// active clients remain. One second must pass, in which a connection may be about to open its devices.
+TEST(PlayerHostile, IdleConnectionsDoNotBlockOthers) {
   PlayerRun run;
   TestClient served(run.port());
   served.banner(), served.open(kPosition);
@@ -210,8 +210,8 @@ TEST(PlayerHostile, IdleConnectionsDoNotLockOthersOut) {
   EXPECT_EQ(served.request(kPosition, 1).header.type, MessageType::ack) << "it has opened a device";
 }
 
-/// Where one host has opened devices on all connections, another host takes its place among them. 127.0.0.2 is one.
-TEST(PlayerHostile, OneHostDoesNotTakeAllPlaces) {
+/// If one host has opened devices on all connections, another host replaces one of them. 127.0.0.2 is the other host.
+TEST(PlayerHostile, OneHostDoesNotTakeAllConnections) {
   PlayerRun run;
   std::vector<std::unique_ptr<TestClient>> greedy;
   for (std::size_t i = 0; i < kMostClients; ++i) {
@@ -226,8 +226,8 @@ TEST(PlayerHostile, OneHostDoesNotTakeAllPlaces) {
   EXPECT_EQ(run.bridge.counts().refused, 1u);
 }
 
-/// Nor do silent programs of one host lock its others out for long: the one that was silent for longest makes room, and
-/// until then one line states the reason.
+/// Silent programs of one host do not block its others for long: the one that has been silent longest is closed, and
+/// until then one log line gives the reason.
 TEST(PlayerHostile, SilentProgramsOfOneHostMakeRoom) {
   PlayerRun run;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> log(std::tmpfile(), std::fclose);
@@ -262,7 +262,7 @@ TEST(PlayerHostile, SlowClientsSkipAhead) {
   slow.banner(), quick.banner();
   slow.open(kLaserDevice), quick.open(kPosition);
   const std::vector<double> ranges(50'000, 2.0);
-  constexpr std::uint32_t kScans = 100;  // of 250 kB each, more than sockets hold
+  constexpr std::uint32_t kScans = 100;  // of 250 kB each, more than sockets buffer
   for (std::uint32_t i = 1; i <= kScans; ++i) {
     run.tick({run.reading(sensors::kLaser, ranges, i)});
     EXPECT_EQ(quick.receive().header.type, MessageType::data) << "others have every tick";
@@ -278,7 +278,7 @@ TEST(PlayerHostile, SlowClientsSkipAhead) {
   EXPECT_LT(scans, kScans) << "and the newest came";
 }
 
-TEST(PlayerHostile, DataThatWaitsIsBounded) {
+TEST(PlayerHostile, UnsentDataIsBounded) {
   std::array<int, 2> ends{};
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends.data()), 0);
   const netio::Socket other(ends[1]);
@@ -298,7 +298,7 @@ TEST(PlayerHostile, DataThatWaitsIsBounded) {
   EXPECT_TRUE(put(0, rest)) << "16 MiB in all";
 }
 
-/// A client that asks and never reads is dropped once its answers fill its share.
+/// A client that sends requests but never reads is disconnected once its answers reach the limit.
 TEST(PlayerHostile, UnreadAnswersAreBounded) {
   PlayerRun run;
   TestClient greedy(run.port(), 10'000);

@@ -1,4 +1,4 @@
-// The Player server as its clients see it.
+// The Player server as seen by its clients.
 
 #include "bridges/player_bridge.h"
 
@@ -21,7 +21,7 @@ namespace sf::bridges::player {
 
 namespace {
 
-/// Device addresses of a list.
+/// Returns the device addresses of a list.
 std::vector<Address> listed(TestClient& client) {
   const Message answer = client.request({}, server_request::device_list);
   XdrReader xdr(answer.payload);
@@ -48,7 +48,7 @@ struct PlayerTest : testing::Test {
   MessageType ask(const Address& to, std::uint32_t subtype, const base::Bytes& payload = {}) {
     return client.request(to, subtype, payload).header.type;
   }
-  /// What was sent before is done.
+  /// Waits until everything sent before has been processed.
   void settle() { EXPECT_EQ(ask(kPosition, 1), MessageType::ack); }
   void drive(double forward, double left, double turn) {
     client.send(MessageType::command, kPosition, 1, xdr_of(forward, left, turn, 1u));
@@ -66,7 +66,7 @@ base::Bytes named_pose(const std::string& name, double x, double y, double yaw) 
   return out;
 }
 
-/// The message of data after `publish`.
+/// Returns the data message that follows `publish`.
 template <class Publish>
 Message data_after(TestClient& client, Publish&& publish) {
   publish();
@@ -80,7 +80,7 @@ TEST_F(PlayerTest, GreetsWithThirtyTwoBytes) {
   EXPECT_EQ(other.banner().substr(0, 9), "Player v.");
 }
 
-TEST_F(PlayerTest, AllRobotsAreAtTheFirstPortAndEachHasOneOfItsOwn) {
+TEST_F(PlayerTest, AllRobotsAreAtTheFirstPortAndEachHasItsOwn) {
   const std::vector<Address> all = listed(client);
   EXPECT_EQ(std::count(all.begin(), all.end(), Address{Interface::position2d, 1}), 1);
   EXPECT_EQ(std::count(all.begin(), all.end(), Address{Interface::laser, 1}), 1);
@@ -99,7 +99,7 @@ TEST_F(PlayerTest, AllRobotsAreAtTheFirstPortAndEachHasOneOfItsOwn) {
   EXPECT_EQ(xdr.get_text(100), "ben.front") << "of what it is shows in lists of devices";
 }
 
-TEST_F(PlayerTest, WhatIsNotThereIsRefused) {
+TEST_F(PlayerTest, UnknownDevicesAreRefused) {
   const Message answer = client.open({Interface::laser, 9});
   EXPECT_EQ(answer.header.type, MessageType::nack);
   XdrReader xdr(answer.payload);
@@ -120,7 +120,7 @@ TEST_F(PlayerTest, PushedStateIsThatOfTheOdometry) {
   run.reports[0].X_WM = {-1.0, 0.5, 0.0, M_PI / 2};  // half a metre ahead of the start
   run.reports[0].velocity = {0.3, 0.0, 0.1};
   run.contacts[0] = 1;
-  run.tick();  // the odometry begins here
+  run.tick();  // the odometry starts here
   client.receive();
   run.reports[0].X_WM.y = 1.5;
   const Message data = data_after(client, [&] { run.tick(); });
@@ -137,13 +137,14 @@ TEST_F(PlayerTest, PushedStateIsThatOfTheOdometry) {
 TEST_F(PlayerTest, PulledRoundsEndWithASync) {
   client.pull();
   EXPECT_EQ(ask({}, server_request::data), MessageType::ack);
-  run.tick();  // the request waited for it
+  run.tick();  // the request was waiting for it
   EXPECT_EQ(client.receive().header.type, MessageType::data);
   const Message sync = client.receive();
   EXPECT_EQ(sync.header.type, MessageType::sync);
   EXPECT_EQ(sync.header.address, Address{});
   EXPECT_EQ(sync.header.host + sync.header.robot + sync.header.size, 0u);
-  // The request is used up: the next message is the answer to another, and the newest data has replaced older.
+  // The request has been consumed. The next message answers another request, and the newest data has replaced older
+  // data.
   for (int i = 0; i < 3; ++i) run.tick();
   client.send(MessageType::request, kPosition, 1);
   EXPECT_EQ(client.receive().header.type, MessageType::ack);
@@ -179,8 +180,8 @@ TEST_F(PlayerTest, ScansHaveNoNaNAndNoNegativeRange) {
   EXPECT_TRUE(xdr.done());
 }
 
-/// Sonars, infrared sensors and lasers: float32 holds 8 and 0.7 or the numbers on either side of 3.3.
-TEST(PlayerRangers, AValidRangeIsLessThanTheLargestAsItIsSent) {
+/// Sonars, infrared sensors and lasers: float32 represents 8 and 0.7, or the numbers next to 3.3.
+TEST(PlayerRangers, AValidRangeIsSentBelowTheMaximum) {
   for (const double max : {8.0, 0.7, 3.3, 5.1}) {
     const sensors::SensorSpec sensor{.limit = max, .range_min = 0.3};
     const Device device{.interf = Interface::sonar, .sensor = &sensor, .type = sensors::kSonar};
@@ -203,10 +204,10 @@ TEST(PlayerRangers, AValidRangeIsLessThanTheLargestAsItIsSent) {
   }
 }
 
-TEST_F(PlayerTest, FirstRangesOfARangerDescribeIt) {
+TEST_F(PlayerTest, TheFirstRangesOfARangerIncludeItsConfiguration) {
   const Address ranger{Interface::ranger, 0};
   client.access(kPosition, Access::close);
-  for (int opened = 0; opened < 2; ++opened) {  // and again when it is opened again
+  for (int opened = 0; opened < 2; ++opened) {  // and again after it is reopened
     client.open(ranger);
     const Message first = data_after(client, [&] { run.tick({run.reading(sensors::kLaser, {1.0, 2.0, 3.0})}); });
     EXPECT_EQ(first.header.subtype, 2u);
@@ -226,7 +227,7 @@ TEST_F(PlayerTest, FirstRangesOfARangerDescribeIt) {
   EXPECT_EQ(ask(ranger, 4, config.payload), MessageType::ack) << "setting it changes nothing";
 }
 
-/// Clients take range i of an element to have the bearing of the least angle plus i times the resolution.
+/// Clients compute the bearing of range i of an element as its minimum angle plus i times the resolution.
 TEST(PlayerRangers, TheBearingOfASingleRangeIsZero) {
   const PlayerRun run(R"(
 model( name "wall" pose [9 0 0 0] size [1 1 1] )
@@ -294,7 +295,7 @@ TEST_F(PlayerTest, BumpersArePressedAndLieOnTheBody) {
   EXPECT_NEAR(std::bit_cast<float>(xdr.get()), radius * M_PI / 2, 1e-6);
 }
 
-TEST_F(PlayerTest, ReceiversHaveMetresAndNoFixWithoutNaN) {
+TEST_F(PlayerTest, ReceiversUseMetresAndAMissingFixHasNoNaN) {
   client.access(kPosition, Access::close);
   client.open({Interface::gps, 0});
   const auto read = [&](double x, double y, double hdop) {
@@ -333,7 +334,7 @@ TEST_F(PlayerTest, VelocitiesBecomeCommands) {
   EXPECT_EQ(run.asked().commands.size(), 1u) << "the newest";
 }
 
-TEST_F(PlayerTest, CommandsThatAreNotFiniteOrNotOfAUserAreIgnored) {
+TEST_F(PlayerTest, InvalidAndUnsubscribedCommandsAreIgnored) {
   drive(kNaN, 0.0, 0.0), drive(kInf, 0.0, 0.0), drive(std::nextafter(1e6, 1e7), 0.0, 0.0);
   for (const std::uint32_t unknown : {0u, 5u}) client.send(MessageType::command, kPosition, unknown);
   settle();
@@ -352,7 +353,7 @@ TEST_F(PlayerTest, ModesAreAcknowledgedAndStopNoRobot) {
   EXPECT_EQ(run.asked().commands.at(0).twist.forward, 0.2);
 }
 
-TEST_F(PlayerTest, RobotsStandStillWithoutMotorsAndUsers) {
+TEST_F(PlayerTest, RobotsStopWithoutMotorsAndUsers) {
   drive(0.2, 0.0, 0.0);
   EXPECT_EQ(ask(kPosition, 2, xdr_of(0u)), MessageType::ack);
   drive(0.3, 0.0, 0.0);
@@ -376,7 +377,7 @@ TEST_F(PlayerTest, CarsSteerByTheAngleOfTheirWheels) {
   EXPECT_NEAR(cars.asked().commands.at(0).twist.turn, 0.4 * std::tan(0.5) / 0.5, 1e-12);
 }
 
-TEST_F(PlayerTest, GoalsAreDrivenToInEachTick) {
+TEST_F(PlayerTest, RobotsDriveTowardsGoalsInEachTick) {
   run.tick();
   client.send(MessageType::command, kPosition, 2, xdr_of(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1u));
   settle();
@@ -396,7 +397,7 @@ TEST_F(PlayerTest, GoalsAreDrivenToInEachTick) {
   EXPECT_TRUE(run.asked().commands.empty()) << "a velocity replaces a goal";
 }
 
-TEST_F(PlayerTest, GoalsAreDrivenToAtTheSpeedAskedForUpToTheRobots) {
+TEST_F(PlayerTest, GoalSpeedsAreLimitedByTheRobot) {
   run.tick();
   for (const auto& [asked, driven] : {std::pair{0.2, 0.2}, {0.5, 0.5}, {9.0, 0.5}, {-0.2, 0.5}}) {
     client.send(MessageType::command, kPosition, 2, xdr_of(3.0, 0.0, 0.0, asked, 0.0, 0.0, 1u));
@@ -406,7 +407,7 @@ TEST_F(PlayerTest, GoalsAreDrivenToAtTheSpeedAskedForUpToTheRobots) {
   }
 }
 
-TEST(PlayerGoals, AreNotForCars) {
+TEST(PlayerGoals, CarsRejectThem) {
   PlayerRun cars("name \"c\"\nposition( name \"car\" drive \"car\" wheelbase 0.5 size [0.6 0.3 0.2] )\n");
   TestClient driver(cars.port());
   driver.banner(), driver.open(kPosition);
@@ -416,7 +417,7 @@ TEST(PlayerGoals, AreNotForCars) {
   EXPECT_TRUE(cars.asked().commands.empty());
 }
 
-TEST_F(PlayerTest, AGoalWhereItStandsIsAHeading) {
+TEST_F(PlayerTest, AGoalAtTheRobotIsAHeading) {
   run.tick();
   for (const double yaw : {1.0, -1.0}) {
     client.send(MessageType::command, kPosition, 2, xdr_of(0.0, 0.0, yaw, 0.0, 0.0, 0.0, 1u));
@@ -443,7 +444,7 @@ TEST_F(PlayerTest, OdometryIsSetAndReset) {
   EXPECT_NEAR(position().x, 0.0, 1e-12);
   EXPECT_EQ(ask(kPosition, 5, xdr_of(kNaN, 6.0, 0.0)), MessageType::nack);
   run.reports[0].X_WM.y += 1.0;
-  ++run.state.runs;  // the run begins again
+  ++run.state.runs;  // the run restarts
   EXPECT_NEAR(position().x, 0.0, 1e-12);
   run.reports[0].X_WM.y += 1.0;
   ++run.state.runs;
@@ -453,7 +454,7 @@ TEST_F(PlayerTest, OdometryIsSetAndReset) {
 
 TEST_F(PlayerTest, RobotsArePlacedByName) {
   run.tick();
-  const Message answer = client.request(kSimulation, 1, named_pose("ben", kNaN, 0.0, 0.0));  // its pose is not read
+  const Message answer = client.request(kSimulation, 1, named_pose("ben", kNaN, 0.0, 0.0));  // its pose is ignored
   EXPECT_EQ(answer.payload, named_pose("ben", 1.0, 1.0, 0.0));
   EXPECT_EQ(ask(kSimulation, 2, named_pose("ben", 2.0, -1.0, 0.5)), MessageType::ack);
   EXPECT_EQ(client.request(kSimulation, 1, named_pose("ben", 0.0, 0.0, 0.0)).payload, named_pose("ben", 2.0, -1.0, 0.5))
@@ -478,7 +479,7 @@ TEST_F(PlayerTest, RobotsArePlacedByName) {
   EXPECT_EQ(X_WM.z, run.world.movers[1].X_WM.z) << "robots stay on the floor";
 }
 
-TEST_F(PlayerTest, PosesInSpaceComeWithTheTime) {
+TEST_F(PlayerTest, PosesIn3DIncludeTheTime) {
   run.reports[1].X_WM = {1.0, 2.0, 0.25, 0.5};
   run.tick();
   base::Bytes expected;
@@ -491,8 +492,8 @@ TEST_F(PlayerTest, PosesInSpaceComeWithTheTime) {
   EXPECT_TRUE(run.asked().placements.empty());
 }
 
-/// Beyond a million metres distances lose their millimetres.
-TEST_F(PlayerTest, PosesAreUsedUpToAMillionMetres) {
+/// Beyond a million metres distances lose millimetre resolution.
+TEST_F(PlayerTest, PosesAreAcceptedUpToAMillionMetres) {
   const double most = 1e6, more = std::nextafter(most, 2 * most);
   const auto set = [&](double x, double y, double yaw) {
     const MessageType answer = ask(kSimulation, 2, named_pose("ben", x, y, yaw));
@@ -505,7 +506,7 @@ TEST_F(PlayerTest, PosesAreUsedUpToAMillionMetres) {
   for (const double yaw : {kNaN, kInf}) EXPECT_EQ(set(0.0, 0.0, yaw), MessageType::nack) << yaw;
 }
 
-TEST_F(PlayerTest, RunsArePausedAndBegunAgain) {
+TEST_F(PlayerTest, RunsArePausedAndRestarted) {
   client.open(kSimulation);
   client.send(MessageType::command, kSimulation, 1);
   settle();
@@ -520,7 +521,7 @@ TEST_F(PlayerTest, RunsArePausedAndBegunAgain) {
   EXPECT_TRUE(asked.reset);
 }
 
-TEST_F(PlayerTest, ServicesAreSeenAndNotDriven) {
+TEST_F(PlayerTest, ServicesAreReadOnly) {
   PlayerRun service(kTwoRobots, false);
   TestClient user(service.port());
   user.banner(), user.open(kPosition), user.open(kSimulation);
@@ -568,7 +569,7 @@ TEST_F(PlayerTest, MapsAreTilesAndSegments) {
   EXPECT_EQ(client.request(map, 3).payload.size(), 16 + 8 + 8 * 32u) << "two walls of four sides";
 }
 
-/// Of each interface, the requests without a payload that are granted; all other numbers are refused, and 0 always is.
+/// For each interface, the requests without a payload that are granted. All other numbers are refused, including 0.
 TEST_F(PlayerTest, OtherRequestsOfEachInterfaceAreRefused) {
   run.tick();
   const struct {
@@ -598,7 +599,7 @@ TEST_F(PlayerTest, OtherRequestsOfEachInterfaceAreRefused) {
                   .header.type,
               MessageType::nack);
   EXPECT_EQ(run.bridge.counts().malformed, 0u);
-  // Places without a pose, and tiles at the map's borders.
+  // Names without a pose, and tiles at the map's edges.
   EXPECT_EQ(ask(kSimulation, 1, named_pose("eve", 0.0, 0.0, 0.0)), MessageType::nack);
   EXPECT_EQ(ask(kSimulation, 3, named_pose("eve", 0.0, 0.0, 0.0)), MessageType::nack);
   const Address map{Interface::map, 0};
@@ -614,7 +615,7 @@ TEST_F(PlayerTest, PortsInUseAreNamed) {
   expect_in("beyond 65535", refusal_of([&] { PlayerBridge(run.scene, {netio::kLoopback, 65535}); }));
 }
 
-TEST_F(PlayerTest, SaysWhichRobotIsOnWhichPort) {
+TEST_F(PlayerTest, DescribesWhichRobotIsOnWhichPort) {
   const auto described = [](const PlayerRun& of) {
     const std::string line = of.bridge.describe(), port = std::to_string(of.bridge.endpoint().port);
     return line.substr(line.find(port) + port.size());
@@ -631,7 +632,7 @@ TEST(PlayerOdometry, IsThatOfTheEncoders) {
   PlayerRun run("name \"e\"\nposition( name \"ann\" pose [3 4 0 0] size [0.4 0.3 0.2] encoder( track 0.5 ) )\n");
   TestClient client(run.port());
   client.banner(), client.open(kPosition);
-  run.reports[0].X_WM.x += 9.0;  // which wheels do not notice
+  run.reports[0].X_WM.x += 9.0;  // without wheel motion
   run.tick({run.reading(sensors::kEncoder, {1.0, 1.0, 1000.0, 1000.0})});
   client.receive();
   run.tick({run.reading(sensors::kEncoder, {1.0, 1.0 + 0.25 * M_PI, 1000.0, 1785.0})});

@@ -1,4 +1,4 @@
-// The bytes that Player's own library makes and expects (../shared/data/player).
+// The bytes written and expected by Player's own library (../shared/data/player).
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace sf::bridges::player {
 
 namespace {
 
-/// Bytes by name; a name without bytes has its size alone.
+/// Bytes by name; a name without bytes has only a size.
 struct PlayerVectors {
   std::map<std::string, base::Bytes> bytes;
   std::map<std::string, std::size_t> sizes;
@@ -111,7 +111,7 @@ TEST_F(PlayerVectorsTest, GeometriesHaveTheirSizes) {
   EXPECT_EQ(find(Interface::ranger).geometry.size(), vectors.sizes["ranger_geom empty"] + 48 + 24) << "one element";
 }
 
-/// What an unmodified client sends is understood, and answered in its form.
+/// Messages of an unmodified client are parsed and answered in its format.
 TEST_F(PlayerVectorsTest, ConversationOfAClient) {
   PlayerRun run;
   TestClient client(run.port());

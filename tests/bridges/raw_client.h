@@ -1,5 +1,5 @@
 #pragma once
-// A WebSocket client byte by byte (RFC 6455), so that tests can also send what no client would.
+// A WebSocket client at byte level (RFC 6455), so that tests can also send invalid data.
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -21,7 +21,7 @@ class RawClient {
   /// @param at_once false: `connect_now` connects
   explicit RawClient(std::uint16_t port, bool at_once = true)
       : socket_(::socket(AF_INET, SOCK_STREAM, 0)), port_(port) {
-    // A guard against a server that does not answer; nothing is measured by it.
+    // Prevents an endless wait if the server does not answer; not used for measurements.
     const timeval limit{30, 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
     ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));
@@ -48,7 +48,8 @@ class RawClient {
     return true;
   }
 
-  /// Sends a request; @return the head of the answer, empty when the connection ended.
+  /// Sends a request.
+  /// @return the head of the answer, empty if the connection ended
   std::string request(const std::string& target, const std::string& headers, const char* method = "GET") {
     send_raw(method + std::string(" ") + target + " HTTP/1.1\r\n" + headers + "\r\n");
     std::string head;
@@ -59,7 +60,8 @@ class RawClient {
     }
     return head;
   }
-  /// Asks for a WebSocket. @return the status line
+  /// Requests a WebSocket.
+  /// @return the status line
   std::string upgrade(const std::string& protocol, const std::string& more = "", const std::string& target = "/",
                       const std::string& host = "localhost") {
     const std::string offer = protocol.empty() ? "" : "Sec-WebSocket-Protocol: " + protocol + "\r\n";
@@ -77,7 +79,7 @@ class RawClient {
     frame += static_cast<char>(0x80 | (size < 126 ? size : size < 65536 ? 126 : 127));
     if (size >= 126)
       for (int shift = size < 65536 ? 8 : 56; shift >= 0; shift -= 8) frame += static_cast<char>(size >> shift & 255);
-    frame.append(4, '\0');  // a mask that changes nothing
+    frame.append(4, '\0');  // a mask without effect
     return send_raw(frame.append(payload));
   }
   bool text(std::string_view message) { return send_frame(1, message); }
@@ -86,7 +88,7 @@ class RawClient {
     int opcode = 0;
     std::string payload;
   };
-  /// nullopt when the connection ended. Pings are left out.
+  /// Returns nullopt if the connection ended. Skips pings.
   std::optional<Message> receive() {
     for (;;) {
       const std::string head = read(2);
@@ -102,19 +104,20 @@ class RawClient {
       if (message.opcode < 8) return message;
     }
   }
-  /// The first message that contains `part`; empty when the connection ended.
+  /// Returns the first message that contains `part`; empty if the connection ended.
   std::string receive_with(std::string_view part) {
     while (const auto message = receive())
       if (message->payload.find(part) != std::string::npos) return message->payload;
     return {};
   }
-  /// The next binary message whose first byte is `op`, without it.
+  /// Returns the next binary message whose first byte is `op`, without that byte.
   std::string receive_binary(char op) {
     while (const auto message = receive())
       if (message->opcode == 2 && message->payload[0] == op) return message->payload.substr(1);
     return {};
   }
-  /// Everything sent before has been read by the server. @return all that it said meanwhile
+  /// Waits until the server has read everything sent before.
+  /// @return its messages meanwhile
   std::string settle() {
     text(R"({"op":"getParameters","parameterNames":[],"id":"settle"})");
     std::string said;

@@ -1,4 +1,4 @@
-// The node of ROS 2 without a network: a participant that keeps what is written, and gives what a test says.
+// The ROS 2 node without a network: a participant that stores written messages and delivers messages of the test.
 
 #include "bridges/ros2_bridge.h"
 
@@ -21,7 +21,7 @@
 namespace sf::bridges {
 namespace {
 
-/// What the participant of a bridge is given. One bridge at a time.
+/// Data exchanged with the participant of a bridge. One bridge at a time.
 struct Network {
   std::mutex mutex;
   std::condition_variable changed;
@@ -29,8 +29,8 @@ struct Network {
   std::vector<std::pair<std::size_t, base::Bytes>> written;
   std::function<void(DdsMessage&&)> receive;
   std::set<std::size_t> read;  ///< writers that have readers
-  bool blocked = false;        ///< writes wait until it is false
-  bool behind = false;         ///< readers are
+  bool blocked = false;        ///< writes block until it is false
+  bool behind = false;         ///< readers are behind
 
   std::size_t writer(const std::string& topic) const {
     for (std::size_t i = 0; i < writers.size(); ++i)
@@ -42,7 +42,7 @@ struct Network {
       if (readers[i].topic == topic) return i;
     return readers.size();
   }
-  /// Of a writer, once there are `count`.
+  /// Returns the messages of a writer, once there are `count`.
   std::vector<base::Bytes> wait(std::size_t of, std::size_t count) {
     std::vector<base::Bytes> found;
     std::unique_lock lock(mutex);
@@ -125,7 +125,7 @@ record::RunInfo info_of_two() {
 
 struct Ros2BridgeTest : testing::Test {
   Ros2BridgeTest() { network_of_test = &network; }
-  /// Of an action that a test's bridge is to have done.
+  /// Publishes the tick of an action expected from a test's bridge.
   void publish(bool paused = false, std::uint32_t runs = 0) {
     std::vector<base::Report> reports;
     for (std::uint32_t mover = 0; mover < 3; ++mover) reports.push_back({mover, time, world.movers[mover].X_WM, {}});
@@ -138,7 +138,8 @@ struct Ros2BridgeTest : testing::Test {
   void open(bool simulated = true) {
     bridge.emplace(Ros2Options{7, true}, Scene{world, sensor_set, info, simulated}, kFake, fake_fast);
   }
-  /// A request as rmw_cyclonedds writes it. @param body appends the request's fields
+  /// Returns a request in the format of rmw_cyclonedds.
+  /// @param body appends the request's fields
   base::Bytes request(std::int64_t sequence, const std::function<void(record::CdrWriter&)>& body) {
     base::Bytes bytes;
     record::CdrWriter cdr(bytes);
@@ -155,7 +156,7 @@ struct Ros2BridgeTest : testing::Test {
     bridge->take(requests);
     return requests;
   }
-  /// Code and text of a service's answers so far, once there are `count`.
+  /// Returns code and text of a service's answers so far, once there are `count`.
   std::vector<std::pair<int, std::string>> answers(const std::string& name, std::size_t count) {
     std::vector<std::pair<int, std::string>> all;
     for (const base::Bytes& bytes : network.wait(network.writer("rr/" + name + "Reply"), count)) {
@@ -193,7 +194,7 @@ TEST_F(Ros2BridgeTest, NamesTopicsAsRos2Does) {
             "is not installed");
 }
 
-TEST_F(Ros2BridgeTest, OfAServiceNothingCanBeChanged) {
+TEST_F(Ros2BridgeTest, AServiceIsReadOnly) {
   open(false);
   EXPECT_EQ(network.reader("rt/scout/cmd_vel"), network.readers.size());
   EXPECT_EQ(network.reader("rq/step_simulationRequest"), network.readers.size());
@@ -202,7 +203,7 @@ TEST_F(Ros2BridgeTest, OfAServiceNothingCanBeChanged) {
   EXPECT_EQ(answers("get_simulation_state", 1).size(), 1u);
 }
 
-TEST_F(Ros2BridgeTest, OnlyTopicsThatAreReadAreWritten) {
+TEST_F(Ros2BridgeTest, OnlyTopicsWithReadersAreWritten) {
   open();
   const std::size_t clock = network.writer("rt/clock"), odometry = network.writer("rt/scout/odom");
   network.read = {clock};
@@ -226,7 +227,7 @@ TEST_F(Ros2BridgeTest, CommandsAreWrittenToNoTopic) {
   EXPECT_EQ(network.wait(run, 1).size(), 1u);
 }
 
-TEST_F(Ros2BridgeTest, AStuckReaderHoldsUpNoTick) {
+TEST_F(Ros2BridgeTest, AStuckReaderDelaysNoTick) {
   open();
   const std::size_t clock = network.writer("rt/clock");
   network.wait(network.writer("rt/tf_static"), 1);
@@ -235,7 +236,7 @@ TEST_F(Ros2BridgeTest, AStuckReaderHoldsUpNoTick) {
     const std::lock_guard lock(network.mutex);
     network.blocked = true;
   }
-  for (int i = 0; i < 100; ++i) publish();  // would never end if one of them waited
+  for (int i = 0; i < 100; ++i) publish();  // would never end if one of them blocked
   EXPECT_GE(bridge->counts().sent.ticks_left_out, 100 - DdsOutbox::kMaxTicks - 1);
   {
     const std::lock_guard lock(network.mutex);
@@ -247,7 +248,7 @@ TEST_F(Ros2BridgeTest, AStuckReaderHoldsUpNoTick) {
   EXPECT_EQ(last.get<std::int32_t>(), 10) << "the newest tick, of 10 s, is there";
 }
 
-TEST_F(Ros2BridgeTest, ReadersThatAreBehindAreLeftAlone) {
+TEST_F(Ros2BridgeTest, ReadersThatAreBehindAreSkipped) {
   open();
   network.wait(network.writer("rt/tf_static"), 1);
   network.behind = true;
@@ -272,7 +273,7 @@ TEST_F(Ros2BridgeTest, CommandsNameTheirRobot) {
   EXPECT_EQ(requests.commands[0].twist.turn, -1.0);
 }
 
-TEST_F(Ros2BridgeTest, ARunIsPausedWhenItIs) {
+TEST_F(Ros2BridgeTest, APauseIsAnsweredOnceTheRunIsPaused) {
   open();
   publish();
   send("rq/sensorfarm/pauseRequest", request(1, [](record::CdrWriter& cdr) { cdr.put(true); }));
@@ -284,14 +285,14 @@ TEST_F(Ros2BridgeTest, ARunIsPausedWhenItIs) {
   EXPECT_EQ(done[0].first, 1);
 }
 
-TEST_F(Ros2BridgeTest, StepsAreAnsweredWhenTheyAreMade) {
+TEST_F(Ros2BridgeTest, StepsAreAnsweredOnceTheyAreDone) {
   open();
   publish(true);
   for (std::int64_t call = 1; call <= 2; ++call)
     send("rq/step_simulationRequest", request(call, [](record::CdrWriter& cdr) { cdr.put(std::uint64_t{2}); }));
   EXPECT_EQ(take().steps, 4u);
   publish(true);
-  bridge->publish(RunState{.paused = true});  // a look at a paused run is no tick
+  bridge->publish(RunState{.paused = true});  // an update of a paused run is not a tick
   EXPECT_EQ(take().steps, 0u);
   publish(true);
   ASSERT_EQ(answers("step_simulation", 1).size(), 1u) << "the second call's ticks come after the first one's";
@@ -300,7 +301,7 @@ TEST_F(Ros2BridgeTest, StepsAreAnsweredWhenTheyAreMade) {
   EXPECT_EQ(answers("step_simulation", 2).size(), 2u);
 }
 
-TEST_F(Ros2BridgeTest, StepsOfARunThatGoesOnAreRefused) {
+TEST_F(Ros2BridgeTest, StepsOfAnUnpausedRunAreRefused) {
   open();
   publish(false);
   send("rq/step_simulationRequest", request(1, [](record::CdrWriter& cdr) { cdr.put(std::uint64_t{1}); }));
@@ -312,7 +313,7 @@ TEST_F(Ros2BridgeTest, StepsOfARunThatGoesOnAreRefused) {
   for (const auto& [code, text] : answers("step_simulation", 4)) EXPECT_EQ(code, 4) << text;
 }
 
-TEST_F(Ros2BridgeTest, AResetIsAnsweredWhenTheRunBeganAgain) {
+TEST_F(Ros2BridgeTest, AResetIsAnsweredOnceTheRunHasRestarted) {
   open();
   publish();
   const auto resets = [&](int scope) {
@@ -330,7 +331,7 @@ TEST_F(Ros2BridgeTest, AResetIsAnsweredWhenTheRunBeganAgain) {
   EXPECT_EQ(answers("reset_simulation", 6).size(), 6u);
 }
 
-TEST_F(Ros2BridgeTest, AStoppedRunIsPausedAtItsBegin) {
+TEST_F(Ros2BridgeTest, AStoppedRunIsPausedAtItsStart) {
   open();
   publish();
   const auto state = [&](std::uint8_t wanted) {
@@ -349,7 +350,7 @@ TEST_F(Ros2BridgeTest, AStoppedRunIsPausedAtItsBegin) {
   EXPECT_EQ(answers("set_simulation_state", 4).back().first, 0) << "a run does not quit for others";
 }
 
-TEST_F(Ros2BridgeTest, EntitiesAreTheRobotsThatArePresent) {
+TEST_F(Ros2BridgeTest, EntitiesAreThePresentRobots) {
   open();
   const auto names = [&](const std::string& filter) {
     const auto writer = network.writer("rr/get_entitiesReply");
@@ -381,7 +382,8 @@ TEST_F(Ros2BridgeTest, EntitiesAreTheRobotsThatArePresent) {
   EXPECT_EQ(names(std::string(300, 'a')), "0");
 }
 
-/// A SetEntityState. @param values position, rotation
+/// Returns a SetEntityState.
+/// @param values position, rotation
 base::Bytes placement(const std::string& name, const std::string& frame, const std::vector<double>& values,
                       const std::vector<bool>& flags) {
   base::Bytes bytes;
@@ -396,7 +398,7 @@ base::Bytes placement(const std::string& name, const std::string& frame, const s
   return bytes;
 }
 
-TEST_F(Ros2BridgeTest, RobotsArePlacedWhereThatCanBe) {
+TEST_F(Ros2BridgeTest, RobotsArePlacedAtValidPoses) {
   open();
   const std::vector<double> pose{3.0, -4.0, 9.0, 0.0, 0.0, std::sin(0.5), std::cos(0.5)};
   std::vector<double> tilted = pose, infinite = pose, far = pose, zero = pose;
@@ -429,8 +431,8 @@ TEST_F(Ros2BridgeTest, RobotsArePlacedWhereThatCanBe) {
   for (std::size_t i = 0; i < cases.size(); ++i) EXPECT_EQ(done[i].first, cases[i].code) << i << done[i].second;
 }
 
-/// Clients of Fast DDS are answered by its process, which has the same endpoints of services.
-TEST_F(Ros2BridgeTest, AnswersGoWhereTheirRequestsCameFrom) {
+/// Clients of Fast DDS are answered by its process, which has the same service endpoints.
+TEST_F(Ros2BridgeTest, AnswersAreSentToTheParticipantOfTheirRequest) {
   FakeFast fast;
   fast_of_test = &fast;
   open();
@@ -475,14 +477,14 @@ TEST_F(Ros2BridgeTest, AnswersGoWhereTheirRequestsCameFrom) {
   bridge.reset();  // before `fast`
 }
 
-TEST_F(Ros2BridgeTest, AnAnswerWaitsForItsReaderNotForEver) {
+TEST_F(Ros2BridgeTest, AnAnswerWaitsForItsReaderUpToALimit) {
   open();
-  send("rq/get_simulation_stateRequest", request(1, kNothing), 404);  // a client whose reader is never known
+  send("rq/get_simulation_stateRequest", request(1, kNothing), 404);  // a client whose reader is never discovered
   take();
   EXPECT_EQ(answers("get_simulation_state", 1).size(), 1u);
 }
 
-TEST_F(Ros2BridgeTest, AFloodOfRequestsWaitsAndCommandsDoNot) {
+TEST_F(Ros2BridgeTest, AFloodOfRequestsIsQueuedAndCommandsAreNot) {
   open();
   const std::size_t flood = DdsInbox::kMaxMessages + 5;
   for (std::size_t i = 0; i < flood; ++i) send("rq/get_simulation_stateRequest", request(1, kNothing));
@@ -497,7 +499,7 @@ TEST_F(Ros2BridgeTest, AFloodOfRequestsWaitsAndCommandsDoNot) {
   EXPECT_EQ(bridge->counts().left_out, 10u) << "another inbox is full while the first waits";
 }
 
-TEST_F(Ros2BridgeTest, RequestsThatWaitForTheRunAreBounded) {
+TEST_F(Ros2BridgeTest, RequestsWaitingForTheRunAreBounded) {
   open();
   for (std::size_t i = 0; i < RosServices::kMaxWaiting + 9; ++i)
     send("rq/sensorfarm/resetRequest", request(1, kNothing));
@@ -507,8 +509,8 @@ TEST_F(Ros2BridgeTest, RequestsThatWaitForTheRunAreBounded) {
   EXPECT_EQ(answers("sensorfarm/reset", RosServices::kMaxWaiting + 9).size(), RosServices::kMaxWaiting + 9);
 }
 
-// Whatever bytes come, the run goes on, and requests are finite and name robots.
-TEST_F(Ros2BridgeTest, AnyBytesAreSurvived) {
+// Whatever bytes arrive, the run continues, and requests are finite and name robots.
+TEST_F(Ros2BridgeTest, SurvivesAnyBytes) {
   open();
   publish(true);
   std::vector<base::Bytes> seeds{placement("scout", "world", {1, 2, 0, 0, 0, 0, 1}, {true, false, false})};
@@ -537,7 +539,7 @@ TEST_F(Ros2BridgeTest, AnyBytesAreSurvived) {
   EXPECT_LT(bridge->counts().malformed, 4000u);
 }
 
-/// What strangers send fills no log: of 100 000 lines at once the first are written, then five a second.
+/// External traffic cannot fill the log: of 100 000 lines at once the first are written, then five a second.
 TEST(Ros2Bridge, TheLogOfDdsIsLimited) {
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe2(ends.data(), O_NONBLOCK), 0);
@@ -554,7 +556,7 @@ TEST(Ros2Bridge, TheLogOfDdsIsLimited) {
   EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 500);
 }
 
-TEST(Ros2Options, AreReadAsNodesReadThem) {
+TEST(Ros2Options, AreReadAsInRos2Nodes) {
   const auto with = [](const char* variable, const char* value, const std::string& domain) {
     setenv(variable, value, 1);
     const Ros2Options options = ros2_options(domain);

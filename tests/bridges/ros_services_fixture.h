@@ -1,6 +1,5 @@
 #pragma once
-// The services for ROS 2 of a run with two robots, one of them absent, and a tag. Answers are decoded to their last
-// byte.
+// The ROS 2 services of a run with two robots, one of them absent, and a tag. Answers are decoded completely.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +15,7 @@ namespace sf::bridges {
 
 using Fields = std::function<void(record::CdrWriter&)>;
 
-/// An answer, read from behind the caller's numbers to its end.
+/// An answer, read from after the caller's numbers to its end.
 struct Reply {
   explicit Reply(base::Bytes message) : bytes(std::move(message)), cdr(bytes) {
     EXPECT_EQ(cdr.get<std::uint64_t>(), 17u);
@@ -26,7 +25,7 @@ struct Reply {
   Reply(const Reply&) = delete;
   Reply& operator=(const Reply&) = delete;
 
-  /// Code and text.
+  /// Returns code and text.
   std::string result() {
     const int code = cdr.get<std::uint8_t>();
     return std::to_string(code) + " " + cdr.get_string();
@@ -52,7 +51,7 @@ struct Reply {
 
 struct RosServicesTest : testing::Test {
   RosServicesTest() { tick.time = 250'000'000, tick.reports = reports; }
-  /// The answer to a request, which `then` brings about where it waits.
+  /// Returns the answer to a request. `then` triggers it if the request waits.
   base::Bytes ask(
       const std::string& name, const Fields& fields = [](auto&) {}, const std::function<void()>& then = [] {}) {
     const auto types = services.types();
@@ -117,7 +116,7 @@ struct RosServicesTest : testing::Test {
     return made;
   }();
   RosServices services{Scene{world, sensor_set, info, true}};
-  Requests asked;  ///< by the last request
+  Requests asked;  ///< of the last request
 };
 
 }  // namespace sf::bridges

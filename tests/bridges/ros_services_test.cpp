@@ -1,4 +1,4 @@
-// Every answer of every service for ROS 2.
+// Every answer of every ROS 2 service.
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ TEST_F(RosServicesTest, Entities) {
     EXPECT_EQ(one.result(), present ? "1 " : "2 no entity of that name is present") << name;
     one.expect_state(tick.time, present ? reports[static_cast<std::size_t>(row)] : base::Report{});
   }
-  /// Result and names of those that a filter matches, whose states follow.
+  /// Returns result and names of the entities that match a filter, whose states follow.
   const auto filtered = [&](const std::string& pattern, std::uint8_t categories, std::uint8_t tags,
                             std::uint8_t bounds) {
     const Fields filter = [&](record::CdrWriter& cdr) {
@@ -89,7 +89,7 @@ TEST_F(RosServicesTest, Entities) {
   EXPECT_EQ(filtered(std::string(256, '.'), 0, 0, 0), "1 ");
 }
 
-/// Each request that changes a run, which goes on, is paused, or is changed by others meanwhile.
+/// Each request that changes a run, while it is running, paused, or changed by others meanwhile.
 TEST_F(RosServicesTest, Changes) {
   EXPECT_EQ(result("/set_simulation_state", state(1)), "101 ") << "plays already";
   EXPECT_FALSE(asked.paused || asked.reset);

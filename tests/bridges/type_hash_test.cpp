@@ -1,4 +1,4 @@
-// Type hashes against those that ROS 2 Jazzy publishes for the same types.
+// Type hashes compared with those that ROS 2 Jazzy publishes for the same types.
 
 #include "bridges/type_hash.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 std::string hash_of(std::string_view type) { return type_hash(type, record::schema_text(type)); }
 
-TEST(TypeHash, IsThatOfRos2) {
+TEST(TypeHash, MatchesRos2) {
   EXPECT_EQ(type_hash("std_msgs/msg/String", "string data\n"),
             "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
   EXPECT_EQ(hash_of("sensor_msgs/msg/LaserScan"),
@@ -47,7 +47,7 @@ TEST(TypeHash, EmptyMessagesHaveAMember) {
             "RIHS01_2d946c21e2fc3f1e9ca6986a8191d85fcc70097a8bb7771a053564bc47009cdf");
 }
 
-TEST(TypeHash, IsEmptyWhereADefinitionIsIncomplete) {
+TEST(TypeHash, IsEmptyForAnIncompleteDefinition) {
   for (const char* text : {"b/C c\n", "unknown x\n", "uint8\n", "uint8[ x\n", "uint8[a] x\n", "string<=a x\n",
                            "b/C c\n====\nMSG: b/C\nd/E e\n"})
     EXPECT_EQ(type_hash("a/msg/B", text), "") << text;

@@ -1,4 +1,4 @@
-// What slow and hostile clients of the live view cost: themselves only.
+// Slow and hostile clients of the live view affect only themselves.
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -18,17 +18,17 @@ constexpr std::size_t kMany = 3000;  // robots: a quarter of a megabyte per tick
 
 }  // namespace
 
-TEST(ViewerBounds, AClientThatReadsNothingIsSkippedAhead) {
+TEST(ViewerBounds, AClientThatDoesNotReadSkipsAhead) {
   ViewerFixture fixture(ViewerMode::run, kMany);
   Watcher stuck(fixture, {"/fleet"}), reader(fixture, {"/fleet"});
-  // Far more than the kernel takes. Nothing here waits for `stuck`: each tick is published and read by `reader`.
+  // Far more than the kernel buffers. Nothing here waits for `stuck`: each tick is published and read by `reader`.
   constexpr int kTicks = 100;
   for (int tick = 1; tick <= kTicks; ++tick) {
     fixture.tick(static_cast<std::uint64_t>(tick));
     ASSERT_EQ(said(reader.receive_binary(1)), "101@" + std::to_string(tick)) << "the reader misses none";
   }
   EXPECT_GT(fixture.viewer->server().skipped(), 0u);
-  // What it reads at last is whole ticks, in order, with a gap, up to the newest.
+  // What it finally reads are complete ticks, in order, with a gap, up to the newest.
   int last = 0, gaps = 0;
   while (last < kTicks) {
     const std::string message = stuck.receive_binary(1);
@@ -41,7 +41,7 @@ TEST(ViewerBounds, AClientThatReadsNothingIsSkippedAhead) {
   EXPECT_GT(gaps, 0);
 }
 
-TEST(ViewerBounds, NoMoreUpdatesAreSkippedThanTheLimitAsksFor) {
+TEST(ViewerBounds, NoMoreUpdatesAreSkippedThanTheLimitRequires) {
   WebLimits limits;
   limits.waiting_updates = 1000;
   limits.waiting_bytes = 1'000'000;  // three ticks
@@ -59,12 +59,12 @@ TEST(ViewerBounds, NoMoreUpdatesAreSkippedThanTheLimitAsksFor) {
   EXPECT_GT(skipped, 0u);
 }
 
-TEST(ViewerBounds, RepliesThatNobodyReadsEndTheirConnection) {
+TEST(ViewerBounds, UnreadRepliesEndTheirConnection) {
   WebLimits limits;
   limits.replies = 100'000;
   ViewerFixture fixture(ViewerMode::run, 2, limits);
   Watcher stuck(fixture);
-  // Each asks for a hundred times its size, and the answers are not read.
+  // Each request's answer is a hundred times its size, and the answers are not read.
   std::string names = "\"/paused\"";
   for (int i = 0; i < 1000; ++i) names += ",\"/paused\"";
   bool alive = true;
@@ -84,7 +84,7 @@ TEST(ViewerBounds, ClientsAreCounted) {
     const Watcher second(fixture);
     EXPECT_EQ(RawClient(fixture.port()).upgrade(kSdkV1).substr(9, 3), "503");
   }
-  // The server notices the end of the second in its own time.
+  // The server detects the end of the second connection with a delay.
   std::string status;
   for (int i = 0; i < 100'000 && status != "101"; ++i) status = RawClient(fixture.port()).upgrade(kSdkV1).substr(9, 3);
   EXPECT_EQ(status, "101");
@@ -99,7 +99,7 @@ TEST(ViewerBounds, OverlongMessagesEndTheirConnection) {
   EXPECT_NE(longest.receive_with("parameterValues"), "");
   longer.text(std::string(1001, ' '));
   EXPECT_FALSE(longer.receive());
-  liar.send_frame(2, "\x01", std::uint64_t{1} << 62);  // four exabytes are announced
+  liar.send_frame(2, "\x01", std::uint64_t{1} << 62);  // announces four exabytes
   EXPECT_FALSE(liar.receive());
   EXPECT_NE(Watcher(fixture).greeting, "");
 }
@@ -114,9 +114,9 @@ TEST(ViewerBounds, OverlongRequestsAreRefused) {
 TEST(ViewerBounds, SubscriptionsAreCheckedAndBounded) {
   ViewerFixture fixture;
   Watcher client(fixture, {"/fleet"});
-  const std::vector<std::pair<int, int>> wrong{{101, fixture.channel("/clock")},  // a number in use
-                                               {5, fixture.channel("/fleet")},    // a channel in use
-                                               {5, 10'000}};                      // no such channel
+  const std::vector<std::pair<int, int>> wrong{{101, fixture.channel("/clock")},  // an id in use
+                                               {5, fixture.channel("/fleet")},    // a channel already subscribed
+                                               {5, 10'000}};                      // unknown channel
   for (const auto& [id, channel] : wrong) {
     client.subscribe(id, channel);
     EXPECT_NE(client.settle().find("\"op\":\"status\""), std::string::npos) << id << " " << channel;
@@ -146,8 +146,8 @@ TEST(ViewerBounds, SurvivesAnyBytes) {
   EXPECT_EQ(said(client.receive_binary(1)), "101@1");
 }
 
-/// Without descriptors a connection waits, and the server waits with it: in half a second it uses little of a core's
-/// time. With descriptors again, it is served.
+/// Without descriptors a connection waits, and so does the server: in half a second it uses little CPU time. Once
+/// descriptors are available, the connection is served.
 TEST(ViewerBounds, ConnectionsWaitForDescriptors) {
   ViewerFixture fixture;
   RawClient first(fixture.port());
@@ -155,7 +155,7 @@ TEST(ViewerBounds, ConnectionsWaitForDescriptors) {
   RawClient waiting(fixture.port(), false);
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
-  const int next = dup(0);  // the lowest that is free
+  const int next = dup(0);  // the lowest free one
   close(next);
   rlimit none{static_cast<rlim_t>(next), before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);

@@ -37,7 +37,7 @@ struct ViewerFixture {
     record::name_frames(info);
     return info;
   }
-  /// Paused ticks are not paced, so that tests depend on no clock.
+  /// Paused ticks are not paced, so tests do not depend on a clock.
   void tick(std::uint64_t number, bool paused = true) {
     const std::vector<base::Report> reports = states();
     base::TickRecord tick;
@@ -51,7 +51,7 @@ struct ViewerFixture {
     for (std::uint32_t i = 0; i < reports.size(); ++i) reports[i].mover = i;
     return reports;
   }
-  /// Number of the channel of a topic.
+  /// Returns the channel number of a topic.
   int channel(std::string_view topic) const {
     const record::TickMessages messages(info);
     int row = 0;
@@ -88,7 +88,7 @@ struct Watcher : RawClient {
   std::string greeting;
 };
 
-/// "subscription@tick" of a message of a topic whose first field is a time stamp, and of ticks every 0.1 s.
+/// Returns "subscription@tick" of a message of a topic whose first field is a time stamp, with ticks every 0.1 s.
 inline std::string said(const std::string& binary) {
   std::uint32_t subscription = 0, nanoseconds = 0;
   std::int32_t seconds = 0;

@@ -1,4 +1,4 @@
-// All that a viewer says to a scripted client, compared with a golden record.
+// Everything that a viewer sends to a scripted client, compared with a golden record.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ std::string call_of(std::uint32_t service, const std::string& encoding, const st
          encoding + payload;
 }
 
-/// Play (0) or pause (1), a speed, with or without a time to go to, and the request's id.
+/// Play (0) or pause (1), a speed, an optional time to jump to, and the request's id.
 std::string playback(char command, float speed, std::optional<std::int64_t> time) {
   const std::int64_t to = time.value_or(0);
   std::string text = {'\x03', command};
@@ -39,7 +39,7 @@ std::string record_of(const RawClient::Message& message) {
   return text + "\n";
 }
 
-/// All messages before the answer to a question with an id of its own.
+/// Returns all messages before the answer to a query with its own id.
 std::string said_until_settled(RawClient& client) {
   client.text(R"({"op":"getParameters","parameterNames":[],"id":"settle"})");
   std::string said;
@@ -110,16 +110,16 @@ void expect_record(const std::string& name, const std::string& text) { golden::e
 
 }  // namespace
 
-TEST(ViewerRecords, ARunSaysWhatItsRecordHas) { expect_record("run", transcript(ViewerMode::run, kWebSocketV1)); }
+TEST(ViewerRecords, ARunMatchesItsRecord) { expect_record("run", transcript(ViewerMode::run, kWebSocketV1)); }
 
-TEST(ViewerRecords, AServiceSaysWhatItsRecordHas) { expect_record("service", transcript(ViewerMode::service, kSdkV1)); }
+TEST(ViewerRecords, AServiceMatchesItsRecord) { expect_record("service", transcript(ViewerMode::service, kSdkV1)); }
 
-TEST(ViewerRecords, ARecordingSaysWhatItsRecordHas) {
+TEST(ViewerRecords, ARecordingMatchesItsRecord) {
   expect_record("recording", transcript(ViewerMode::recording, kSdkV1));
 }
 
-/// Each change alone is told, and no change is not.
-TEST(ViewerRecords, EachChangedParameterIsToldAlone) {
+/// Each change is sent once, and an unchanged value is not sent.
+TEST(ViewerRecords, EachChangedParameterIsSentAlone) {
   ViewerFixture fixture;
   Watcher client(fixture);
   client.text(R"({"op":"subscribeParameterUpdates","parameterNames":["/paused","/speed","/runs"]})");

@@ -1,4 +1,4 @@
-// The live view's server, as its clients see it.
+// The live view's server as seen by its clients.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ std::string twist_cdr(double forward, double turn) {
 
 }  // namespace
 
-TEST(Viewer, AnswersTheSubProtocolThatComesFirst) {
+TEST(Viewer, SelectsTheFirstKnownSubProtocol) {
   const ViewerFixture fixture;
   const auto chosen = [&](const char* offered) {
     RawClient client(fixture.port());
@@ -57,7 +57,7 @@ TEST(Viewer, ServesThePageAndTheScene) {
   EXPECT_EQ(RawClient(fixture.port()).request("/", "Host: localhost\r\n", "POST").substr(9, 3), "405");
 }
 
-TEST(Viewer, EndsAConnectionThatIsAskedToClose) {
+TEST(Viewer, ClosesAConnectionOnRequest) {
   const ViewerFixture fixture;
   RawClient client(fixture.port());
   const auto head = [&](const std::string& more) { return client.request("/", "Host: localhost\r\n" + more, "HEAD"); };
@@ -66,12 +66,12 @@ TEST(Viewer, EndsAConnectionThatIsAskedToClose) {
   EXPECT_EQ(head(""), "");
 }
 
-TEST(Viewer, RefusesForeignPagesAndNames) {
+TEST(Viewer, RejectsForeignPagesAndNames) {
   const ViewerFixture fixture;
   const auto status = [&](const std::string& more, const std::string& target = "/", const char* host = "localhost") {
     return RawClient(fixture.port()).upgrade(kSdkV1, more, target, host).substr(9, 3);
   };
-  EXPECT_EQ(status(""), "101");                                      // no browser
+  EXPECT_EQ(status(""), "101");                                      // not a browser
   EXPECT_EQ(status("Origin: http://localhost\r\n"), "101");          // its own page
   EXPECT_EQ(status("Origin: https://app.foxglove.dev\r\n"), "101");  // Foxglove's viewer
   EXPECT_EQ(status("Origin: https://evil.example\r\n"), "403");
@@ -79,18 +79,18 @@ TEST(Viewer, RefusesForeignPagesAndNames) {
   EXPECT_EQ(status("", "/", "evil.example"), "403");  // DNS rebinding
   EXPECT_EQ(status("Origin: http://evil.example\r\n", "/", "evil.example"), "403");
   const std::string token = "/?token=" + fixture.viewer->server().token();
-  EXPECT_EQ(status("Origin: https://evil.example\r\n", token), "101");  // whom the user gave the token
+  EXPECT_EQ(status("Origin: https://evil.example\r\n", token), "101");  // the user gave it the token
   EXPECT_EQ(RawClient(fixture.port()).request("/scene.json", "Host: evil.example\r\n").substr(9, 3), "403");
 }
 
-TEST(Viewer, NeedsTheTokenBeyondLoopback) {
+TEST(Viewer, RequiresTheTokenBeyondLoopback) {
   const ViewerFixture fixture(ViewerMode::run, 2, {}, "0.0.0.0");
   const std::string token = "token=" + fixture.viewer->server().token();
   EXPECT_NE(fixture.viewer->describe().find(token), std::string::npos);
   const auto status = [&](const std::string& target) {
     return RawClient(fixture.port()).request(target, "Host: localhost\r\n").substr(9, 3);
   };
-  EXPECT_EQ(status("/"), "200");  // the page itself is no secret
+  EXPECT_EQ(status("/"), "200");  // the page itself is public
   EXPECT_EQ(status("/scene.json"), "403");
   EXPECT_EQ(status("/scene.json?token=0"), "403");
   EXPECT_EQ(status("/scene.json?" + token), "200");
@@ -98,7 +98,7 @@ TEST(Viewer, NeedsTheTokenBeyondLoopback) {
   EXPECT_EQ(RawClient(fixture.port()).upgrade(kSdkV1, "", "/?" + token, "192.168.1.5").substr(9, 3), "101");
 }
 
-TEST(Viewer, SaysWhatItCanDo) {
+TEST(Viewer, AnnouncesItsCapabilities) {
   const auto greeting = [](ViewerMode mode, const char* protocol) {
     return Watcher(ViewerFixture(mode), {}, protocol).greeting;
   };
@@ -117,8 +117,8 @@ TEST(Viewer, SaysWhatItCanDo) {
   EXPECT_FALSE(has(greeting(ViewerMode::recording, kWebSocketV1), "playbackControl")) << "it does not know that";
 }
 
-/// Whatever their turns are: readings are drawn where the states of the same tick have the robots.
-TEST(Viewer, TopicsGoWithTheStatesOfTheirTick) {
+/// Whatever their timing: readings are drawn at the poses that robots have in the same tick.
+TEST(Viewer, TopicsAreSentWithTheStatesOfTheirTick) {
   ViewerFixture fixture;
   Watcher watcher(fixture, {"/clock"});
   std::atomic<bool> stop = false;
@@ -146,7 +146,7 @@ TEST(Viewer, TopicsGoWithTheStatesOfTheirTick) {
   run.join();
 }
 
-TEST(Viewer, SendsWhatIsSubscribedAndTheTime) {
+TEST(Viewer, SendsSubscribedTopicsAndTheTime) {
   ViewerFixture fixture;
   Watcher one(fixture, {"/fleet"}), both(fixture, {"/clock", "/fleet"});
   fixture.tick(3);
@@ -170,7 +170,7 @@ TEST(Viewer, SendsWhatIsSubscribedAndTheTime) {
   EXPECT_EQ(said(one.receive_binary(1)), "9@5");
 }
 
-TEST(Viewer, SendsLatchedTopicsAtOnce) {
+TEST(Viewer, SendsLatchedTopicsImmediately) {
   const ViewerFixture fixture;
   RawClient client(fixture.port());
   client.upgrade(kSdkV1);
@@ -181,19 +181,19 @@ TEST(Viewer, SendsLatchedTopicsAtOnce) {
 
 TEST(Viewer, ShowsAPausedRunToNewSubscribers) {
   ViewerFixture fixture;
-  fixture.tick(7);  // nobody watches
+  fixture.tick(7);  // no client is watching
   Watcher late(fixture, {"/fleet"});
   fixture.viewer->publish(RunState{.paused = true});
   EXPECT_EQ(said(late.receive_binary(1)), "101@7");
 }
 
-TEST(Viewer, ShowsTheTickBeforeAPauseThoughTicksWereLeftOut) {
+TEST(Viewer, ShowsTheTickBeforeAPauseAfterSkippedTicks) {
   ViewerFixture fixture;
   Watcher client(fixture, {"/fleet"});
   const std::vector<base::Report> reports = fixture.states();
   base::TickRecord tick;
   tick.reports = reports;
-  for (tick.tick = 1; tick.tick <= 50; ++tick.tick) {  // far more than are shown
+  for (tick.tick = 1; tick.tick <= 50; ++tick.tick) {  // far more than are sent
     tick.time = static_cast<std::int64_t>(tick.tick) * 100'000'000;
     fixture.viewer->publish(tick, {});
   }
@@ -205,7 +205,7 @@ TEST(Viewer, ShowsTheTickBeforeAPauseThoughTicksWereLeftOut) {
   }
 }
 
-TEST(Viewer, ShowsARunThatBeganAgain) {
+TEST(Viewer, ShowsARestartedRun) {
   ViewerFixture fixture;
   Watcher client(fixture, {"/left/odom"});
   for (const int tick : {5, 6, 0, 1}) {
@@ -214,7 +214,7 @@ TEST(Viewer, ShowsARunThatBeganAgain) {
   }
 }
 
-TEST(Viewer, TakesParametersAndServices) {
+TEST(Viewer, AcceptsParametersAndServices) {
   ViewerFixture fixture;
   Watcher client(fixture);
   client.text(
@@ -258,7 +258,7 @@ TEST(Viewer, PausesAfterOneMoreTick) {
   EXPECT_FALSE(fixture.requests().paused);
 }
 
-TEST(Viewer, RefusesWhatCannotBeSet) {
+TEST(Viewer, RejectsInvalidParameters) {
   ViewerFixture fixture;
   Watcher client(fixture);
   for (const char* wrong :
@@ -275,7 +275,7 @@ TEST(Viewer, RefusesWhatCannotBeSet) {
   EXPECT_FALSE(requests.paused || requests.speed || requests.reset || requests.steps > 0);
 }
 
-TEST(Viewer, TellsWatchersOfChanges) {
+TEST(Viewer, SendsChangesToWatchers) {
   ViewerFixture fixture;
   Watcher client(fixture);
   client.text(R"({"op":"subscribeParameterUpdates","parameterNames":["/paused","/runs","/none"]})");
@@ -305,7 +305,7 @@ TEST(Viewer, DrivesRobots) {
   EXPECT_EQ(requests.commands[1].twist.turn, 2.0);
 }
 
-TEST(Viewer, RefusesOtherCommands) {
+TEST(Viewer, RejectsOtherCommands) {
   ViewerFixture fixture;
   Watcher client(fixture);
   const auto advertise = [&](const char* topic, const char* encoding, const char* type) {
@@ -327,7 +327,7 @@ TEST(Viewer, RefusesOtherCommands) {
   EXPECT_TRUE(fixture.requests().commands.empty());
 }
 
-TEST(Viewer, NobodyDrivesRobotsElsewhere) {
+TEST(Viewer, ServicesAcceptNoCommands) {
   ViewerFixture fixture(ViewerMode::service);
   Watcher client(fixture);
   client.text(
@@ -344,7 +344,7 @@ TEST(Viewer, NobodyDrivesRobotsElsewhere) {
 TEST(Viewer, PlaysRecordings) {
   ViewerFixture fixture(ViewerMode::recording);
   Watcher client(fixture, {}, kSdkV1);
-  const std::string play("\x03\x00\x00\x00\x00\x40\x01", 7);  // play at speed 2, going to
+  const std::string play("\x03\x00\x00\x00\x00\x40\x01", 7);  // play at speed 2, jumping to
   const std::int64_t times[] = {2'500'000'000, 99'000'000'000};
   for (const std::int64_t time : times) {
     client.send_frame(2, play + std::string(reinterpret_cast<const char*>(&time), 8) + le32(2) + "id");

@@ -24,10 +24,10 @@ TEST(WebAddress, IsAPortAHostOrBoth) {
     EXPECT_FALSE(read_web_address(wrong)) << wrong;
 }
 
-TEST(WebAccess, KnowsItsOwnNames) {
+TEST(WebAccess, AcceptsItsOwnNames) {
   for (const char* own : {"localhost", "LOCALHOST:8765", "127.0.0.1:1", "127.1.2.3", "[::1]:8765", "[::1]"})
     EXPECT_TRUE(is_own_name(own)) << own;
-  // A name that its owner pointed at 127.0.0.1 (DNS rebinding), and names that begin like ours.
+  // A name that resolves to 127.0.0.1 (DNS rebinding), and names that begin like local ones.
   for (const char* foreign : {"", "evil.example:8765", "localhost.evil.example", "127.0.0.1.evil.example", "10.0.0.1",
                               "[", "[::1].evil.example", "[::1].evil.example:8765", "[::1]evil", "[::1", "[::1]:80:80",
                               "[::1]:evil", "localhost:80.evil.example", "localhost:evil", "localhost:65536",
@@ -35,7 +35,7 @@ TEST(WebAccess, KnowsItsOwnNames) {
     EXPECT_FALSE(is_own_name(foreign)) << foreign;
 }
 
-TEST(WebAccess, KnowsOriginsThatMayConnect) {
+TEST(WebAccess, AcceptsOnlyKnownOrigins) {
   const char* const host = "192.168.1.5:8765";
   for (const char* known : {"", "http://192.168.1.5:8765", "http://localhost:8080", "http://127.0.0.1", "file://",
                             "https://app.foxglove.dev"})
@@ -50,14 +50,14 @@ TEST(WebAccess, KnowsOriginsThatMayConnect) {
 TEST(WebAccess, FindsValuesOfQueries) {
   EXPECT_EQ(query_value("/?token=abc", "token"), "abc");
   EXPECT_EQ(query_value("/x?a=1&token=abc&b=2", "token"), "abc");
-  EXPECT_EQ(query_value("/?mytoken=abc", "token"), "");  // another key with that end
-  EXPECT_EQ(query_value("/?token2=abc", "token"), "");   // and with that start
+  EXPECT_EQ(query_value("/?mytoken=abc", "token"), "");  // another key with that ending
+  EXPECT_EQ(query_value("/?token2=abc", "token"), "");   // another key with that beginning
   EXPECT_EQ(query_value("/?token", "token"), "");        // without a value
-  EXPECT_EQ(query_value("/token=abc", "token"), "");     // no query
+  EXPECT_EQ(query_value("/token=abc", "token"), "");     // not a query
   EXPECT_EQ(query_value("/?&&", "token"), "");
 }
 
-TEST(WebAccess, TokensAreNewAndCompareWhole) {
+TEST(WebAccess, TokensAreNewAndComparedCompletely) {
   const std::string token = random_token();
   EXPECT_EQ(token.size(), 32u);
   EXPECT_NE(token, random_token());

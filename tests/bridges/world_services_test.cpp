@@ -1,4 +1,4 @@
-// Every answer of the services for ROS 2 that describe or change entities, places and worlds.
+// Every answer of the ROS 2 services that describe or change entities, places and worlds.
 
 #include "bridges/world_services.h"
 
@@ -34,14 +34,14 @@ struct WorldServicesTest : RosServicesTest {
   static Fields spawn(const Wanted& wanted) {
     return [wanted](record::CdrWriter& cdr) { put(cdr, wanted); };
   }
-  /// Code and name of an answer at once, which a refusal is.
+  /// Returns code and name of an answer that is given immediately, as a refusal is.
   std::string spawned(
       const Wanted& wanted, const std::function<void()>& then = [] {}) {
     Reply reply(ask("/spawn_entity", spawn(wanted), then));
     const std::string result = reply.result();
     return result.substr(0, result.find(' ') + 1) + reply.cdr.get_string();
   }
-  /// What the run does with what was asked for.
+  /// Returns how the run handles a request.
   std::function<void()> done(bool good = true) {
     return [this, good] {
       const Outcome outcome{true, good ? Outcome::Fault::none : Outcome::Fault::failed, good ? "" : "no room"};
@@ -105,7 +105,7 @@ TEST_F(WorldServicesTest, NamedPosesMatchTheirTags) {
   }
 }
 
-/// Robots of one kind are one spawnable; what is not searched is stated.
+/// Robots of one kind are one spawnable. The answer states what is not searched.
 TEST_F(WorldServicesTest, SpawnablesAreKindsOfRobots) {
   Reply reply(ask("/get_spawnables", [](record::CdrWriter& cdr) {
     cdr.put_count(1);
@@ -119,7 +119,7 @@ TEST_F(WorldServicesTest, SpawnablesAreKindsOfRobots) {
   EXPECT_EQ(bounds(reply), kBox);
 }
 
-TEST_F(WorldServicesTest, SpawnsOrSaysWhyNot) {
+TEST_F(WorldServicesTest, SpawnsOrGivesAReason) {
   EXPECT_EQ(spawned({}, done()), "1 new_one");
   ASSERT_EQ(asked.joining.size(), 1u);
   EXPECT_EQ(asked.joining[0].like, "scout");
@@ -158,7 +158,7 @@ TEST_F(WorldServicesTest, SpawnsOrSaysWhyNot) {
   }
 }
 
-/// Each has its own result, and names are unique among them.
+/// Each has its own result, and their names are unique.
 TEST_F(WorldServicesTest, SpawnsSeveral) {
   const auto several = [&](std::size_t count, bool good) {
     Reply reply(ask(
@@ -182,7 +182,7 @@ TEST_F(WorldServicesTest, SpawnsSeveral) {
   EXPECT_EQ(several(0, true), "1 ");
 }
 
-/// Further ones are refused while 64 wait.
+/// Further ones are refused while 64 are waiting.
 TEST_F(WorldServicesTest, WaitingRobotsAreBounded) {
   Reply many(ask(
       "/spawn_entities",
@@ -226,8 +226,8 @@ TEST_F(WorldServicesTest, DeletesEntities) {
   EXPECT_EQ(left.names(), "tag ");
 }
 
-/// Files in folders of worlds, and nothing else, can be named.
-TEST_F(WorldServicesTest, LoadsListedWorldsOnly) {
+/// Only files in folders of worlds can be named.
+TEST_F(WorldServicesTest, LoadsOnlyListedWorlds) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(testing::TempDir()) / "world_services";
   fs::remove_all(folder);
@@ -323,7 +323,7 @@ struct StepsActionTest : WorldServicesTest {
     EXPECT_EQ(reply.cdr.get<std::uint32_t>(), 250'000'000u);
     return accepted;
   }
-  /// Status, code and text.
+  /// Returns status, code and text.
   std::string ended(
       std::uint8_t id, const std::function<void()>& then = [] {}) {
     Reply reply(ask(
@@ -335,7 +335,7 @@ struct StepsActionTest : WorldServicesTest {
     const int status = reply.cdr.get<std::int8_t>();
     return std::to_string(status) + " " + reply.result();
   }
-  /// Code and number of goals.
+  /// Returns code and number of goals.
   std::string cancel(std::uint8_t id) {
     Reply reply(ask("/simulate_steps/_action/cancel_goal", [=](record::CdrWriter& cdr) {
       for (int i = 0; i < 16; ++i) cdr.put(i == 0 ? id : std::uint8_t{0});
@@ -347,7 +347,7 @@ struct StepsActionTest : WorldServicesTest {
     for (std::uint32_t i = 0; i < 24 * count; ++i) reply.cdr.get<std::uint8_t>();
     return std::to_string(code) + " " + std::to_string(count);
   }
-  /// Steps done and left, of all feedback since the last call.
+  /// Returns steps done and left, from all feedback since the last call.
   std::string feedback() {
     std::string text;
     for (const ActionMessage& message : services.messages()) {
@@ -401,7 +401,7 @@ TEST_F(StepsActionTest, GoalsAreCanceled) {
   EXPECT_EQ(ended(3), "5 4 canceled");
 }
 
-/// Goals are bounded, and clients that come late read the status of all that are kept.
+/// Goals are bounded, and late clients read the status of all that are kept.
 TEST_F(StepsActionTest, GoalsAreBounded) {
   look(true)();
   for (std::uint8_t id = 1; id <= 16; ++id) EXPECT_TRUE(send(id, 1));
@@ -420,8 +420,8 @@ TEST_F(StepsActionTest, GoalsAreBounded) {
   EXPECT_EQ(cdr.get_count(25), 64u);
 }
 
-/// Requests cut at any byte are dropped and ask for nothing.
-TEST_F(WorldServicesTest, CutRequestsAreDropped) {
+/// Requests cut at any byte are dropped and have no effect.
+TEST_F(WorldServicesTest, TruncatedRequestsAreDropped) {
   base::Bytes whole;
   record::CdrWriter cdr(whole);
   cdr.put(std::uint64_t{17});
