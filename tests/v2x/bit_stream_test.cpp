@@ -30,7 +30,7 @@ TEST(BitStream, MostSignificantBitFirst) {
   EXPECT_TRUE(in.good());
 }
 
-TEST(BitStream, NumbersOfEveryWidthComeBack) {
+TEST(BitStream, NumbersOfEveryWidthRoundTrip) {
   std::mt19937_64 random(1);
   for (unsigned offset = 0; offset < 8; ++offset) {
     base::Bytes bytes;
@@ -48,7 +48,7 @@ TEST(BitStream, NumbersOfEveryWidthComeBack) {
   }
 }
 
-TEST(BitStream, ReadingBeyondTheEndIsAFaultForEver) {
+TEST(BitStream, ReadingBeyondTheEndIsAPermanentFault) {
   const base::Bytes bytes{0xFF, 0xFF};
   BitReader in(bytes);
   EXPECT_EQ(in.bits(16), 0xFFFFu);
@@ -63,7 +63,7 @@ TEST(BitStream, ReadingBeyondTheEndIsAFaultForEver) {
   EXPECT_EQ(in.fault(), "a[2].b: 1 more bits expected, and 0 are left");
 }
 
-TEST(BitStream, LengthsChangeTheirFormAtTheirBorders) {
+TEST(BitStream, LengthsChangeTheirFormAtTheirLimits) {
   struct Case {
     std::size_t size;
     base::Bytes first;
@@ -73,7 +73,7 @@ TEST(BitStream, LengthsChangeTheirFormAtTheirBorders) {
                                          {127, {0x7F}},          // the last of 8 bits
                                          {128, {0x80, 0x80}},    // the first of 16
                                          {16383, {0xBF, 0xFF}},  // the last of 16
-                                         {16384, {0xC1}},        // one fragment and nothing
+                                         {16384, {0xC1}},        // one fragment and no rest
                                          {16385, {0xC1}},        // one fragment and one octet
                                          {65536, {0xC4}}}) {     // the largest fragment
     base::Bytes bytes;
@@ -87,12 +87,12 @@ TEST(BitStream, LengthsChangeTheirFormAtTheirBorders) {
   }
 }
 
-TEST(BitStream, RefusesLengthsThatTheInputDoesNotHold) {
+TEST(BitStream, RejectsLengthsBeyondTheInput) {
   for (const base::Bytes& bytes : std::vector<base::Bytes>{{0x05, 1, 2, 3, 4},  // one octet short
-                                                           {0xBF, 0xFF, 1},     // 16383 octets in one
-                                                           {0xC1, 1, 2},        // a fragment
-                                                           {0xC0, 0, 0},        // a fragment of nothing
-                                                           {0xC5, 0, 0},        // above the largest
+                                                           {0xBF, 0xFF, 1},     // 16383 octets, 1 present
+                                                           {0xC1, 1, 2},        // a truncated fragment
+                                                           {0xC0, 0, 0},        // an empty fragment
+                                                           {0xC5, 0, 0},        // above the largest fragment
                                                            {0x80},              // half a length
                                                            {}}) {
     BitReader in(bytes);
@@ -105,7 +105,7 @@ TEST(BitStream, SmallNumbers) {
   base::Bytes bytes;
   BitWriter out(bytes);
   out.put_small_number(63);
-  out.put(1, 1);  // a larger one begins so
+  out.put(1, 1);  // starts a larger number
   BitReader in(bytes);
   EXPECT_EQ(in.small_number(), 63);
   EXPECT_TRUE(in.good());

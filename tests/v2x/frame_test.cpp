@@ -50,13 +50,13 @@ void expect_round_trip(const Frame& frame) {
 
 }  // namespace
 
-TEST(Frame, AnyMessageWithinItsBoundsComesBack) {
+TEST(Frame, AnyMessageWithinItsBoundsRoundTrips) {
   RandomFrame plain(11, false), extended(12, true);
   for (int i = 0; i < 400; ++i) expect_round_trip(plain());
   for (int i = 0; i < 400; ++i) expect_round_trip(extended());
 }
 
-TEST(Frame, TheSmallestMessagesComeBack) {
+TEST(Frame, TheSmallestMessagesRoundTrip) {
   expect_round_trip(small_spat());
   expect_round_trip(small_map());
   Frame frame;
@@ -64,7 +64,7 @@ TEST(Frame, TheSmallestMessagesComeBack) {
   expect_round_trip(frame);
 }
 
-TEST(Frame, TheLongestListsComeBack) {
+TEST(Frame, TheLongestListsRoundTrip) {
   Frame spat = small_spat();
   IntersectionState& state = std::get<Spat>(spat.message).intersections[0];
   state.states.assign(255, state.states[0]);
@@ -82,14 +82,14 @@ TEST(Frame, TheLongestListsComeBack) {
   expect_round_trip(map);
 }
 
-TEST(Frame, NamesAreKeptToTheirLastCharacter) {
+TEST(Frame, NamesKeepTheirLastCharacter) {
   Frame frame = small_spat();
   std::get<Spat>(frame.message).name = std::string(62, 'x') + '\x7F';
   std::get<Spat>(frame.message).intersections[0].name = std::string(1, '\0');
   expect_round_trip(frame);
 }
 
-TEST(Frame, OctetsBehindTheFrameAreCounted) {
+TEST(Frame, OctetsAfterTheFrameAreCounted) {
   base::Bytes bytes = encoded(small_spat());
   const std::size_t size = bytes.size();
   bytes.insert(bytes.end(), {0, 0x13, 1});
@@ -101,13 +101,13 @@ TEST(Frame, OctetsBehindTheFrameAreCounted) {
   EXPECT_EQ(encoded(frame), bytes);
 }
 
-TEST(Frame, OctetsOfTheValueBehindTheMessageAreKept) {
+TEST(Frame, OctetsOfTheValueAfterTheMessageAreKept) {
   Frame frame = small_spat();
   frame.rest = {0xAA, 0x55};
   expect_round_trip(frame);
 }
 
-TEST(Frame, EveryTruncationIsRefused) {
+TEST(Frame, RejectsEveryTruncation) {
   RandomFrame make(5, true);
   for (int i = 0; i < 30; ++i) {
     const base::Bytes bytes = encoded(make());
@@ -118,8 +118,8 @@ TEST(Frame, EveryTruncationIsRefused) {
   }
 }
 
-TEST(Frame, AFlippedBitIsReadOrRefused) {
-  // A frame that was read can be encoded, and decodes to itself.
+TEST(Frame, AFlippedBitIsReadOrRejected) {
+  // A decoded frame can be encoded, and decodes to itself.
   RandomFrame make(6, true);
   for (int i = 0; i < 20; ++i) {
     const base::Bytes bytes = encoded(make());
@@ -132,7 +132,7 @@ TEST(Frame, AFlippedBitIsReadOrRefused) {
   }
 }
 
-TEST(Frame, RefusalsNameThePlaceAndTheReason) {
+TEST(Frame, ErrorsNameThePlaceAndTheReason) {
   EXPECT_EQ(error_of(""), "1 more bits expected, and 0 are left");
   EXPECT_EQ(error_of("00140100"), "messageId: 20 (BasicSafetyMessage) is neither SPaT (19) nor MAP (18)");
   EXPECT_EQ(error_of("7FFF00"), "messageId: 32767 is neither SPaT (19) nor MAP (18)");
@@ -143,8 +143,8 @@ TEST(Frame, RefusalsNameThePlaceAndTheReason) {
   EXPECT_EQ(error_of("001305000000"), "5 octets expected, and 3 are left");
 }
 
-TEST(Frame, NumbersAboveTheirBoundsAreRefused) {
-  // Fields that have more bits than their bound needs: a value above it is a fault of the sender.
+TEST(Frame, NumbersAboveTheirBoundsAreRejected) {
+  // Fields with more bits than their bound needs: a larger value is the sender's fault.
   Frame minute = small_spat();
   std::get<Spat>(minute.message).minute = 527'040;
   base::Bytes bytes = encoded(minute);

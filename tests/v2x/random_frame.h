@@ -1,5 +1,5 @@
 #pragma once
-// Random frames within all bounds, often at them: one more visitor of the messages' descriptions.
+// Random frames within all bounds, often at them: another visitor of the messages' descriptions.
 
 #include <random>
 
@@ -11,7 +11,7 @@ namespace sf::v2x {
 
 class RandomFrame {
  public:
-  /// @param extensions also components and alternatives of later editions, and octets behind the message
+  /// @param extensions whether to add components and alternatives of later editions, and octets after the message
   RandomFrame(std::uint64_t seed, bool extensions) : random_(seed), extensions_(extensions) {}
 
   Frame operator()() {

@@ -1,8 +1,8 @@
-// Frames that other encoders wrote, with their decodings by other decoders.
+// Frames written by other encoders, with their decodings by other decoders.
 //
-// vectors/asn1c.txt: random frames which Debian's asn1c 0.9.28 decoded from UPER, encoded again to the same bytes and
-// wrote as XML (XER), from a module with the components of J2735-2016 and without its extensions. One frame a line of
-// hexadecimal digits, followed by a line of XML. Together they have every component and name of an enumeration.
+// vectors/asn1c.txt: random frames that Debian's asn1c 0.9.28 decoded from UPER, encoded again to the same bytes and
+// wrote as XML (XER), from a module with the components of J2735-2016 without its extensions. Each frame is one line of
+// hexadecimal digits, followed by a line of XML. Together they contain every component and enumeration name.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ std::vector<std::string> lines_of(const std::string& file) {
   return lines;
 }
 
-/// Without blanks. Hexadecimal digits may have either case.
+/// Removes blanks. Hexadecimal digits may have either case.
 std::string condensed(const std::string& xml) {
   std::string text;
   for (const char c : xml)
@@ -49,7 +49,7 @@ void expect_same_bytes(const base::Bytes& bytes) {
 
 const std::string kReal = SF_SOURCE_DIR "/../shared/data/spat/";
 
-/// The message frame of a decoder's output.
+/// Returns the message frame of a decoder's output.
 std::string real_xml(const std::string& name) {
   std::stringstream text;
   for (const std::string& line : lines_of(kReal + name)) text << line << "\n";
@@ -73,7 +73,7 @@ TEST(Vectors, FramesOfAnotherEncoder) {
   }
 }
 
-TEST(Vectors, RealFramesEncodeToTheirOwnBytes) {
+TEST(Vectors, RealFramesEncodeToTheSameBytes) {
   const std::vector<std::string> files{"real_spat_frames.hex", "SpatReceiverTest_ValidSPAT.txt",
                                        "MapReceiverTest_ValidMAP.txt"};
   for (const std::string& file : files) {
@@ -93,7 +93,7 @@ TEST(Vectors, RealFramesDecodeToTheirXml) {
                                                         {"MapReceiverTest_ValidMAP.txt", "decoder-output-map.xml"}}) {
     const auto lines = lines_of(kReal + file);
     if (lines.empty()) GTEST_SKIP() << kReal + file << " is not on this machine";
-    // A time of the log stands within one value of the MAP's decoding.
+    // A log's timestamp appears within one value of the MAP's decoding.
     const std::regex logged("[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9:.]+Z ");
     const std::string expected = std::regex_replace(real_xml(xml), logged, "");
     EXPECT_EQ("      " + xml_of(decoded(*read_hex(lines[0])), 3).substr(6), "      " + expected);
