@@ -1,5 +1,5 @@
-// Random scenes at the limits of the range compared with 50 and 100 decimal digits (Boost.Multiprecision): lasers,
-// magnetometers and lane edge sensors, read by farms.
+// Random scenes at the limits of the range compared with 50 and 100 decimal digits (Boost.Multiprecision): readings of
+// lasers, magnetometers and lane edge sensors in farms.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ double magnitude(Chance& chance, double low, double high) {
 struct Met {
   Digits50 range;
   double sine = 1.0, arm = 0.0;
-  bool ambiguous = false;  ///< a free end is so near that 64-bit rounding decides
+  bool ambiguous = false;  ///< whether a free end is so near that 64-bit rounding decides
 };
 
 /// Tests every wall, with signs and quotients in 50 digits.
@@ -49,7 +49,7 @@ Met nearest_hit(const world::World& world, const Pose& eye, const sensors::Laser
     if (below == 0) continue;
     const Digits50 t = (ex * way - ey * wax) / below, u = (dx * way - dy * wax) / below;
     if (t < 0) continue;
-    // Rounding moves a hit on a wall by 1e-14 of the nearby lengths, divided by the sine.
+    // Rounding moves a hit on a wall by 1e-14 of the lengths involved, divided by the sine.
     const double length = std::hypot(s.b.x - s.a.x, s.b.y - s.a.y);
     const double sine = static_cast<double>(abs(below)) / length;
     const double arm = std::hypot(s.a.x - eye.x, s.a.y - eye.y);
@@ -161,7 +161,7 @@ TEST(Oracle, DistancesToRandomEdges) {
   for (int trial = 0; trial < 40; ++trial) {
     const double far = chance.below(2) == 0 ? 0.0 : magnitude(chance, 1.0, 1e7);
     const double grain = std::nextafter(2.0 * far, HUGE_VAL) - 2.0 * far;
-    // Nearer than a few thousand grains the marking is not straight.
+    // Nearer than a few thousand grains, rounding bends the marking.
     const double distance = magnitude(chance, std::max(1e-5, 1e4 * grain), 1e3);
     const double tilt = chance.between(-1.2, 1.2), yaw = chance.between(-4.0, 4.0);
     const Pose X{far, -far, 0.0, yaw};
@@ -191,9 +191,9 @@ TEST(Oracle, DistancesToRandomEdges) {
   EXPECT_EQ(seen, 40);
 }
 
-/// A beam at every heading to a corner 2 m ahead. A gap of any width lies beside a free end and between walls on one
-/// side of the beam, so that rounding decides; walls on both sides leave none.
-TEST(ExactRayCast, OnlyClosedCornersAreSure) {
+/// A beam at every heading to a corner 2 m ahead. At a free end, and between walls on one side of the beam, there is a
+/// gap of any width, so rounding decides. Walls on both sides leave no gap.
+TEST(ExactRayCast, OnlyClosedCornersAreUnambiguous) {
   for (int k = 0; k < 64; ++k) {
     const double heading = 0.1 * k - 3.15;
     const Pose X{3.0, -7.0, 0.0, heading};
@@ -218,7 +218,7 @@ TEST(ExactRayCast, OnlyClosedCornersAreSure) {
 }
 
 /// The reference detects a wall that is displaced by more than rounding.
-TEST(Oracle, SeesAWallThatIsElsewhere) {
+TEST(Oracle, DetectsADisplacedWall) {
   world::World world;
   add_wall(world, {2.0, -1.0}, {2.5, 1.0});
   const sensors::LaserSettings eye = laser(1, 0.0, 8.0);
@@ -230,7 +230,7 @@ TEST(Oracle, SeesAWallThatIsElsewhere) {
   EXPECT_GT(abs(Digits50(test.readings[0].values[0]) - nearest_hit(world, test.readings[0].X_WS, eye, 0).range), 2e-13);
 }
 
-/// A wall 2 m ahead of five beams: the outer two meet nothing within 8 m.
+/// A wall 2 m ahead of five beams: the outer two hit nothing within 8 m.
 world::World wall_ahead() {
   world::World world;
   add_wall(world, {2.0, -3.0}, {2.0, 3.0});
@@ -246,7 +246,7 @@ Outcome judged(const TestFarm& test, std::span<const double> values, std::uint32
   return checks.outcome();
 }
 
-TEST(CheckScan, RefusesEachWrongBeam) {
+TEST(CheckScan, RejectsEachWrongBeam) {
   const TestFarm test = fixture().measure(wall_ahead());
   const std::vector<double> good(test.readings[0].values.begin(), test.readings[0].values.end());
   EXPECT_TRUE(judged(test, good).passed());
@@ -261,19 +261,19 @@ TEST(CheckScan, RefusesEachWrongBeam) {
     }
 }
 
-TEST(CheckScan, ABeamWithoutAReturnIsItsRangeToTheBit) {
+TEST(CheckScan, ABeamWithoutAReturnEqualsItsRangeBitwise) {
   const TestFarm test = fixture().measure(wall_ahead());
   std::vector<double> values(test.readings[0].values.begin(), test.readings[0].values.end());
   values[4] = std::nextafter(8.0, 0.0);
   EXPECT_EQ(judged(test, values).failure, "scan [4]: 7.9999999999999991, expected 8");
 }
 
-TEST(CheckScan, RefusesAWrongNumberOfBeams) {
+TEST(CheckScan, RejectsAWrongNumberOfBeams) {
   const TestFarm test = fixture().measure(wall_ahead());
   EXPECT_EQ(judged(test, test.readings[0].values.first(4)).failure, "scan: samples: 4, expected 5 [0]");
 }
 
-TEST(CheckScan, AStrideLeavesBeamsOut) {
+TEST(CheckScan, AStrideSkipsBeams) {
   const TestFarm test = fixture().measure(wall_ahead());
   std::vector<double> values(test.readings[0].values.begin(), test.readings[0].values.end());
   values[1] = values[3] = kNan;
@@ -284,7 +284,7 @@ TEST(CheckScan, AStrideLeavesBeamsOut) {
 }
 
 /// The middle beam passes the free end of a wall.
-TEST(CheckScan, BeamsThatRoundingDecidesAreNotedOnly) {
+TEST(CheckScan, AmbiguousBeamsAreOnlyNoted) {
   world::World world = wall_ahead();
   world.walls[0].a.y = 0.0;
   const TestFarm test = fixture().measure(world);
@@ -296,7 +296,7 @@ TEST(CheckScan, BeamsThatRoundingDecidesAreNotedOnly) {
   EXPECT_EQ(o.notes, std::vector<std::string>{"scan: 1 beams pass an end within rounding and were not judged"});
 }
 
-/// By hand, of a wall that is 3 m away and met 4 m ahead at a sine of 0.5.
+/// Computed by hand for a wall that is 3 m away and hit 4 m ahead at a sine of 0.5.
 TEST(ExactRayCast, TheBoundGrowsWithDistancesAndShrinksWithTheSine) {
   EXPECT_NEAR(rounding({.range = 4, .model = 0, .sine = 0.5, .arm = 3}), 2.8e-14, 1e-28);
 }

@@ -32,7 +32,7 @@ std::string test_name(const testing::TestParamInfo<Case>& info) {
   return name;
 }
 
-/// Whether sines round as in the records: on processors with fused operations.
+/// Returns whether sines round as in the records: only on processors with fused operations.
 bool rounds_as_recorded() {
 #if defined(__x86_64__)
   return __builtin_cpu_supports("fma");
@@ -51,7 +51,7 @@ void expect_recorded(const std::string& name, const std::string& text) {
   EXPECT_NE(("\n" + record).find("\n" + text), std::string::npos) << file << " has no\n" << text;
 }
 
-/// Checks, closest call and notes: a changed tolerance shows there, though the case passes.
+/// Checks, the check closest to its tolerance, and notes: reveals a changed tolerance even if the case passes.
 std::string judged(const Case& c, const Outcome& o) {
   std::string text = fmt::format("{} {}: {:.2g} of {:.3g}\n", c.name, o.checks, o.error, o.allowed);
   for (const std::string& note : o.notes) text += "  " + note + "\n";
@@ -60,7 +60,7 @@ std::string judged(const Case& c, const Outcome& o) {
 
 class Extremes : public testing::TestWithParam<Case> {};
 
-TEST_P(Extremes, Holds) {
+TEST_P(Extremes, AllCasesPass) {
   const Outcome o = run(GetParam(), all_fixture());
   std::printf("[ measured ] %s: %llu checks, closest call %.3g of %.3g allowed, %.2f s\n",
               std::string(GetParam().name).c_str(), static_cast<unsigned long long>(o.checks), o.error, o.allowed,
@@ -120,8 +120,8 @@ TEST(Suite, EveryKindOfCheckCanFail) {
   EXPECT_TRUE(outcome_of([](Fixture&, Checks& c) { c.same(kNan, -kNan, "neither is a number"); }).passed());
 }
 
-/// Errors of 0.25 and of the next double beyond it: sums with 0 and 1 are exact.
-TEST(Suite, AnErrorEqualToItsToleranceIsTheLastThatPasses) {
+/// Errors of 0.25 and of the next larger double: sums with 0 and 1 are exact.
+TEST(Suite, AnErrorEqualToItsToleranceStillPasses) {
   for (const double sign : {1.0, -1.0})
     for (const double exact : {0.0, 1.0}) {
       const double last = exact + sign * 0.25, beyond = std::nextafter(last, sign * HUGE_VAL);
@@ -134,7 +134,7 @@ TEST(Suite, AnErrorEqualToItsToleranceIsTheLastThatPasses) {
   EXPECT_FALSE(outcome_of([](Checks& c) { c.near(kInfinity, 1, 1e300, "infinite"); }).passed());
 }
 
-TEST(Suite, TheSameIsTheSameToTheLastBit) {
+TEST(Suite, SameComparesBitwise) {
   const double next = std::nextafter(1.0, 2.0);
   EXPECT_TRUE(outcome_of([](Checks& c) { c.same(kInfinity, kInfinity, "infinite"); }).passed());
   EXPECT_FALSE(outcome_of([&](Checks& c) { c.same(next, 1.0, "a bit more"); }).passed());
@@ -143,7 +143,7 @@ TEST(Suite, TheSameIsTheSameToTheLastBit) {
   EXPECT_FALSE(outcome_of([](Checks& c) { c.same(kInfinity, -kInfinity, "sign"); }).passed());
 }
 
-TEST(Suite, EveryKindOfCheckNamesWhatFailed) {
+TEST(Suite, EveryKindOfCheckNamesItsFailure) {
   const auto failure = [](const std::function<void(Checks&)>& body) { return outcome_of(body).failure; };
   EXPECT_EQ(failure([](Checks& c) { c.near(kNan, 1, 0.5, "near", 3); }), "near [3]: nan, expected 1 within 0.5");
   EXPECT_EQ(failure([](Checks& c) { c.same(0.1, 0.25, "same", 4); }), "same [4]: 0.10000000000000001, expected 0.25");
@@ -157,7 +157,7 @@ TEST(Suite, EveryKindOfCheckNamesWhatFailed) {
             "it ended with: thrown [0]");
 }
 
-/// Each case looks for a stop with each of its checks.
+/// Each case polls for a stop at each of its checks.
 TEST(Suite, AStopEndsEachCase) {
   const Fixture& all = all_fixture();
   Fixture stopped(all.device(), [] { return true; });
@@ -173,7 +173,7 @@ TEST(Suite, RefusalsOfInputsAndDevicesPass) {
   EXPECT_EQ(o.checks, 2u);
 }
 
-TEST(Suite, EveryFailureCountsAndTheFirstIsTold) {
+TEST(Suite, EveryFailureCountsAndTheFirstIsReported) {
   const Outcome o = outcome_of([](Checks& c) {
     c.holds(true, "good");
     c.near(2, 1, 0.5, "first");
@@ -195,8 +195,8 @@ TEST(Suite, NotesAreKeptUpToTwelve) {
   EXPECT_EQ(o.notes.back(), "11");
 }
 
-/// An error that is not a number, or of what has no tolerance, is beyond all others.
-TEST(Suite, WhatCannotBeComparedIsTheClosestCall) {
+/// An error that is NaN, or that has no tolerance, exceeds all others.
+TEST(Suite, IncomparableErrorsAreReportedAsClosest) {
   for (const double got : {kNan, kInfinity}) {
     const Outcome o = outcome_of([&](Checks& c) {
       c.near(got, 0, 2.0, "beyond");
@@ -213,7 +213,7 @@ TEST(Suite, WhatCannotBeComparedIsTheClosestCall) {
   EXPECT_EQ(o.allowed, 0.0);
 }
 
-TEST(Suite, TheNearestToItsToleranceIsTold) {
+TEST(Suite, TheCheckClosestToItsToleranceIsReported) {
   const Outcome o = outcome_of([](Fixture&, Checks& c) {
     c.near(1.0 + 1e-3, 1, 1e-2, "a tenth");
     c.near(1.0 + 1e-6, 1, 2e-6, "a half");
@@ -225,7 +225,7 @@ TEST(Suite, TheNearestToItsToleranceIsTold) {
 }
 
 /// A non-finite pose is a programming error: packets and files are validated before.
-TEST(SuiteDeathTest, APoseThatIsNoNumberStopsTheFarm) {
+TEST(SuiteDeathTest, ANonFinitePoseAborts) {
   world::World world;
   add_laser_mover(world, {}, laser(1, 0.0, 8.0));
   const TestFarm test = all_fixture().measure(world);
