@@ -25,7 +25,7 @@ world::World mapping_world() {
 
 maps::GridGeometry small() { return {-0.12, 0.12, 0.03, 2, 2}; }
 
-TEST(Coverage, CountsOnlyWhatTheReferenceHasFree) {
+TEST(Coverage, CountsOnlyFreeCellsOfTheReference) {
   maps::OccupancyGrid reference(small()), map(small());
   EXPECT_EQ(coverage_of(map, reference).coverage(), 1.0);
   for (int i = 0; i < 4; ++i) reference.set({i, 0}, Cell::free);
@@ -48,13 +48,13 @@ TEST(Coverage, IsNeverRoundedUpToAll) {
   EXPECT_EQ(text_of({9159, 0}), "0 of 9159");
 }
 
-/// Other cells would be offset from the explorer's by part of a cell, and could be unknown to it.
-TEST(Coverage, ItsCellsAreTheExplorers) {
+/// Other cells would be offset from the explorer's by part of a cell, and could be unknown in its map.
+TEST(Coverage, UsesTheCellsOfTheExplorer) {
   const world::World world = mapping_world();
   EXPECT_EQ(RobotMap(world, 0).grid().geometry, control::grid_around(world));
 }
 
-TEST(Coverage, ReadingsOfOthersDrawNothing) {
+TEST(Coverage, ReadingsOfOtherRobotsAreIgnored) {
   const world::World world = mapping_world();
   RobotMap map(world, 0);
   const sensors::LaserSettings laser = sensors::lasers_of(world.movers[0])[0];
@@ -76,8 +76,8 @@ TEST(Coverage, ReadingsOfOthersDrawNothing) {
   EXPECT_GT(known(), 100u);
 }
 
-/// Rounding of a line may free a cell whose centre is within a wall; such cells are not required.
-TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
+/// Rounding of a line may free a cell whose centre is inside a wall; such cells are not required.
+TEST(Coverage, CellsInsideObstaclesAreNotRequired) {
   const world::World world = mapping_world();
   const RobotMap map(world, 0);
   const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().geometry);
@@ -106,7 +106,7 @@ TEST(Coverage, TheVisibleAreaIsTheRoom) {
   EXPECT_NEAR(area, 9.0 - 3 * 0.25 - 0.013, 0.25);
 }
 
-/// Tests every cell from every position by every wall, with code of its own.
+/// Tests every cell from every position against every wall, with independent code.
 struct BruteForce {
   const world::World& world;
   maps::GridGeometry grid;
@@ -153,8 +153,8 @@ struct BruteForce {
   }
 };
 
-/// Rooms with random walls, which cross each other; the grid is offset so that no centre is on a line of sight's edge.
-TEST(Coverage, TheVisibleAreaIsThatOfAllRays) {
+/// Rooms with random, crossing walls; the grid is offset so that no centre is on the edge of a line of sight.
+TEST(Coverage, TheVisibleAreaEqualsThatOfAllRays) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> at(-1.45, 1.45), length(-0.7, 0.7);
   struct Case {
@@ -171,7 +171,7 @@ TEST(Coverage, TheVisibleAreaIsThatOfAllRays) {
       if (world::distance(start, a, b) > 0.3) world.walls.push_back({.a = a, .b = b, .z_max = 0.5});
     }
     world::update_extent_and_hash(world);
-    world.movers[0].radius = 0.09;  // gets everywhere
+    world.movers[0].radius = 0.09;  // reaches every place
     sensors::LaserSettings laser = sensors::lasers_of(world.movers[0])[0];
     laser.range_max = c.range, laser.fov = c.fov, laser.X_MS.x = c.ahead;
     world.movers[0].sensors = {sensors::laser_sensor(laser)};
@@ -193,8 +193,8 @@ TEST(Coverage, TheVisibleAreaIsThatOfAllRays) {
   }
 }
 
-/// Behind the cell that a wall is in there may be light again, through a gap next to it.
-TEST(Coverage, LightFallsThroughGaps) {
+/// Behind a cell with a wall there may be visible cells again, through a gap next to it.
+TEST(Coverage, LightPassesThroughGaps) {
   world::World world = mapping_world();
   for (const auto& [from, to] : {std::pair{-1.5, 0.0}, {0.05, 1.5}})
     world.walls.push_back({.a = {from, 0.35}, .b = {to, 0.35}, .z_max = 0.5});
@@ -206,7 +206,7 @@ TEST(Coverage, LightFallsThroughGaps) {
   EXPECT_GT(beyond, 10) << "as far as the laser reaches";
 }
 
-/// The work is bounded by larger cells, not by a part of the world.
+/// Larger cells bound the work; all of the world is covered.
 TEST(Coverage, LargeWorldsHaveLargeCells) {
   world::World world = mapping_world();
   world.walls.push_back({.a = {-900.0, -500.0}, .b = {900.0, 500.0}, .z_max = 0.5});
@@ -219,8 +219,8 @@ TEST(Coverage, LargeWorldsHaveLargeCells) {
   EXPECT_GE(static_cast<double>(maps::rows(grid)) * grid.cell, 1000.0);
 }
 
-/// Searched once: robots of one shape whose positions are connected see the same.
-TEST(Coverage, AlikeRobotsShareTheirReference) {
+/// Searched once: robots of one shape whose positions are connected see the same area.
+TEST(Coverage, EqualRobotsShareTheirReference) {
   world::World world = mapping_world();
   world.movers[0].X_WM.y = -1.0;  // clear of the wall
   world.movers.resize(3, world.movers[0]);

@@ -21,7 +21,7 @@ DeadEndDetector after_turns(int turns, double step) {
 }
 
 /// Seven turns have six reversals.
-TEST(DeadEndDetector, BeginsWithTheSixthReversal) {
+TEST(DeadEndDetector, BeginsAtTheSixthReversal) {
   EXPECT_EQ(after_turns(6, 0.0).count(), 0u);
   EXPECT_EQ(after_turns(6, 0.0).stuck(), 0.0);
   EXPECT_EQ(after_turns(7, 0.0).count(), 1u);
@@ -32,8 +32,8 @@ TEST(DeadEndDetector, LastsFromTheFirstReversalOn) { EXPECT_NEAR(after_turns(7, 
 
 TEST(DeadEndDetector, StayingInItIsOneDeadEnd) { EXPECT_EQ(after_turns(60, 0.0).count(), 1u); }
 
-/// With a body's length between turns no two turns are at the same place.
-TEST(DeadEndDetector, ZigzagsThatGetSomewhereAreNone) {
+/// With a body's length between turns, no two turns are at the same place.
+TEST(DeadEndDetector, ZigzagsThatMakeProgressAreNotCounted) {
   EXPECT_EQ(after_turns(60, 0.34).count(), 0u);
   EXPECT_EQ(after_turns(60, 0.34).stuck(), 0.0);
   EXPECT_GT(after_turns(60, 0.04).count(), 0u);
@@ -50,7 +50,7 @@ TEST(DeadEndDetector, EndsABodysLengthAway) {
 }
 
 /// Turns by a supervisor in the same passage do not end a dead end.
-TEST(DeadEndDetector, TurnsByHandCount) {
+TEST(DeadEndDetector, TurnsBySupervisorsCount) {
   DeadEndDetector ends(kLength, kDetectorTick);
   for (int k = 0; k < 7; ++k) {
     for (int i = 0; i < 10; ++i) ends.update(at(0.0, 0.0, 0.0), true);
@@ -61,7 +61,7 @@ TEST(DeadEndDetector, TurnsByHandCount) {
   EXPECT_NEAR(ends.stuck(), 7.0, 1e-9);
 }
 
-/// Turns to one side do not count, nor do curves.
+/// Turns to one side and curves do not count.
 TEST(DeadEndDetector, OnlyReversalsOfTurnsInPlaceCount) {
   DeadEndDetector ends(kLength, kDetectorTick);
   for (int i = 0; i < 500; ++i) ends.update(at(0.0, 0.0, 0.5), false);
@@ -70,7 +70,7 @@ TEST(DeadEndDetector, OnlyReversalsOfTurnsInPlaceCount) {
   EXPECT_EQ(ends.stuck(), 0.0);
 }
 
-TEST(DeadEndDetector, StandingInContactIsStuckButNoDeadEnd) {
+TEST(DeadEndDetector, WaitingInContactIsStuckButNotADeadEnd) {
   DeadEndDetector ends(kLength, kDetectorTick);
   for (int i = 0; i < 50; ++i) ends.update(at(0.0, 0.0, 0.0), true);
   for (int i = 0; i < 50; ++i) ends.update(at(0.0, 0.0, 0.0), false);

@@ -15,7 +15,7 @@
 namespace sf::scenarios {
 namespace {
 
-/// SimVille with roomba5 only, which carries nothing but its receiver.
+/// SimVille with only roomba5, which carries only its receiver.
 world::World car_park() {
   world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
@@ -65,7 +65,7 @@ Docked dock(world::World world, const base::Pose& from) {
   return docked;
 }
 
-TEST(DockingInSimVille, FromAllOverTheCarPark) {
+TEST(DockingInSimVille, SucceedsFromAllOverTheCarPark) {
   const world::World world = car_park();
   ASSERT_EQ(world.emitters.front().kind, world::Emitter::Kind::dock);
   int starts = 0;

@@ -32,7 +32,7 @@ TEST(ErrorDistribution, CountsQuantilesAndBounds) {
   EXPECT_EQ(d.bound(), 300.0) << "the largest";
 }
 
-TEST(ErrorDistribution, WhatIsNoNumber) {
+TEST(ErrorDistribution, NonFiniteValues) {
   ErrorDistribution d;
   d.add(NAN, NAN, kNone);
   d.add(HUGE_VAL, HUGE_VAL, kNone);
@@ -42,7 +42,7 @@ TEST(ErrorDistribution, WhatIsNoNumber) {
   EXPECT_DOUBLE_EQ(d.zero(), 2.0 / 3.0);
 }
 
-/// Quantiles of a sample, the rest exact.
+/// Quantiles come from a sample; everything else is exact.
 TEST(ErrorDistribution, ManyErrorsAreSampledEvenly) {
   ErrorDistribution d;
   constexpr int kMany = 9'000'000;
@@ -53,7 +53,7 @@ TEST(ErrorDistribution, ManyErrorsAreSampledEvenly) {
   EXPECT_NEAR(d.quantile(0.99), 0.99 * kMany, 8.0);
 }
 
-TEST(CoveringBound, OfElementsThatAreNotFlagged) {
+TEST(CoveringBound, OnlyForUnflaggedElements) {
   base::ReadingBlock reading;
   reading.bound = 0.5;
   EXPECT_EQ(covering_bound(reading, 3, 1.0), 0.5) << "without flags it holds for all";

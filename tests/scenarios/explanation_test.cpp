@@ -25,7 +25,7 @@ world::World lasers(std::uint32_t robots) {
   return world;
 }
 
-TEST(Explanation, CountsWhatThereIs) {
+TEST(Explanation, CountsSensorsRobotsAndKernels) {
   const world::World world = lasers(6);
   const Explanation e = explain(world, device(), 1, 1);
   ASSERT_EQ(e.types.size(), 1u);
@@ -47,7 +47,7 @@ TEST(Explanation, CountsWhatThereIs) {
   EXPECT_GT(e.resident, 1u << 20);
 }
 
-/// A tag that stands: its laser has the room to itself.
+/// A tag at rest: its laser is alone in the room.
 TEST(Explanation, ReusedReadingsAreCounted) {
   world::World world;
   scenes::add_room(world, {}, 20.0);
@@ -60,7 +60,7 @@ TEST(Explanation, ReusedReadingsAreCounted) {
   EXPECT_EQ(e.types[0].work.rays, 0u);
 }
 
-/// Six robots in a row look along it: each sees its neighbours, which hide the others.
+/// Six robots in a row face along it: each sees its neighbours, which hide the others.
 TEST(Explanation, HiddenMoversAreCounted) {
   world::World world;
   for (int i = 0; i < 6; ++i) scenes::add_robot(world, {0.5 * i, 0.0, 0.0, 0.1}, scenes::laser(61, 2.0 * M_PI, 4.0));
@@ -72,7 +72,7 @@ TEST(Explanation, HiddenMoversAreCounted) {
   EXPECT_EQ(farm.stats().work.movers_visible, 2u * 5u) << "both neighbours, one at the ends";
 }
 
-/// 4 m reach from (0, 0) to (2.828, 2.828).
+/// A range of 4 m reaches from (0, 0) to (2.828, 2.828).
 TEST(Explanation, SmallMoversBeyondTheRangeAreNotCounted) {
   for (const double at : {2.82, 2.84}) {
     world::World world;
@@ -99,7 +99,7 @@ TEST(Explanation, StatesModesAndBounds) {
   EXPECT_LT(e.statements[0].bound.error, 2e-9);
 }
 
-TEST(Explanation, WallsThatNoLaserMeetsAreNotCounted) {
+TEST(Explanation, WallsOutOfReachOfLasersAreNotCounted) {
   const world::World world = lasers(2);
   const Explanation e = explain(world, device(), 1, 1);
   ASSERT_EQ(e.slices.size(), 1u);
@@ -107,7 +107,7 @@ TEST(Explanation, WallsThatNoLaserMeetsAreNotCounted) {
   EXPECT_EQ(e.slices[0].sensors, 2u);
 }
 
-TEST(Explanation, AKindThatTheWorldLacksIsNotBuilt) {
+TEST(Explanation, AMissingSensorTypeIsNotBuilt) {
   const Explanation e = explain(lasers(2), device(), 1, 1);
   EXPECT_EQ(e.absent.size(), sensors::sensor_types().size() - 1);
   EXPECT_EQ(std::count(e.absent.begin(), e.absent.end(), "magnetometer"), 1);

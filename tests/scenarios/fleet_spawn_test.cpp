@@ -29,9 +29,9 @@ name = "roomba3"
 pose = [10.25, 2.0, 90]
 )";
 
-TEST(FleetSpawn, NamedRobotsStayAndCopiesFillTheLanes) {
+TEST(FleetSpawn, NamedRobotsRemainAndCopiesFillTheLanes) {
   std::string crowded = kTen;
-  crowded.replace(crowded.find("10"), 2, "45");  // so many that some would be drawn beside the robot that stays
+  crowded.replace(crowded.find("10"), 2, "45");  // so many that some would be drawn next to the remaining robot
   const world::World world = town(crowded);
   ASSERT_EQ(world.movers.size(), 46u);
   EXPECT_EQ(world.movers[0].name, "roomba3");
@@ -73,7 +73,7 @@ TEST(FleetSpawn, RowsOfModelsAndMoversMatch) {
   for (const world::Light& light : world.lights) EXPECT_EQ(world.models.at(light.model).name, light.name);
 }
 
-TEST(FleetSpawn, PlacesDependOnTheSeedAndNotOnTheCount) {
+TEST(FleetSpawn, PlacesDependOnTheSeedButNotOnTheCount) {
   const world::World few = town("robots = 5\nplace = \"lanes\"\n");
   const world::World many = town("robots = 20\nplace = \"lanes\"\n");
   const world::World other = town("robots = 5\nplace = \"lanes\"\nseed = 2\n");
@@ -91,8 +91,8 @@ TEST(FleetSpawn, CopiesAreOfTheFirstOrTheNamedRobot) {
   EXPECT_EQ(town("robots = 2\nplace = \"lanes\"\nof = \"khepera6\"\n").movers[1].name, "khepera2");
 }
 
-/// A [[robot]] entry may name a copy, whose number is the smallest free one.
-TEST(FleetSpawn, CopiesMayBeNamedByPlans) {
+/// A [[robot]] entry may name a copy, whose number is the lowest free one.
+TEST(FleetSpawn, CopiesMayBeNamedByScenarios) {
   const world::World world = town(
       "robots = 3\nplace = \"lanes\"\n[[robot]]\nname = \"roomba1\"\n"
       "[[robot]]\nname = \"roomba6\"\npose = [0, 7, 0]\n[[robot]]\nname = \"roomba5\"\n"
@@ -102,7 +102,7 @@ TEST(FleetSpawn, CopiesMayBeNamedByPlans) {
   EXPECT_EQ(world.movers[5].X_WM.y, 7.0);
 }
 
-TEST(FleetSpawn, MistakesAreRefusedAtTheirLine) {
+TEST(FleetSpawn, MistakesAreRejectedAtTheirLine) {
   const std::string magic = "world = \"../worlds/minimagic/minimagic.world\"\n";
   const std::pair<std::string, std::string> kCorpus[] = {
       {kTown + "robots = 5\nplace = \"street\"\n", "test.toml:3: 'place' expects \"free\" or \"lanes\""},
@@ -127,7 +127,7 @@ TEST(FleetSpawn, MistakesAreRefusedAtTheirLine) {
 }
 
 /// Ten cars for half a minute: no contacts, no red lights passed, and progress.
-TEST(FleetSpawn, TenInTrafficTouchNobodyAndMindLights) {
+TEST(FleetSpawn, TenInTrafficAvoidContactsAndObeyLights) {
   gpu::Device device;
   for (const std::uint64_t seed : {1u, 2u}) {
     Scenario scenario = parse(kTown + kTen);

@@ -1,4 +1,4 @@
-// Tiles give the bytes of one process: readings, states and contacts.
+// Tiles give exactly the results of one process: readings, states and contacts.
 
 #include "scenarios/fleet_tiles.h"
 
@@ -25,7 +25,7 @@ world::World read(const std::string& text) {
   return world::read_world("include \"robots.inc\"\n" + text, {.sensors = sensors::world_file_words()});
 }
 
-/// Rows of houses, and robots between them with all kinds of sensors that keep a state or look far.
+/// Rows of houses, and robots between them with all kinds of sensors that have a state or a long range.
 world::World town(unsigned robots) {
   std::string text =
       "define house model( size [2 2 1] )\n"
@@ -45,7 +45,7 @@ world::World town(unsigned robots) {
 
 struct Course {
   std::uint64_t hash = 0;
-  std::vector<double> states;  ///< of all movers and ticks, and contacts
+  std::vector<double> states;  ///< of all movers at all ticks, and contacts
   std::uint64_t passed_on = 0;
   bool operator==(const Course& other) const { return hash == other.hash && states == other.states; }
 };
@@ -66,7 +66,7 @@ Course run(const world::World& world, gpu::Device& on, SimulationOptions options
   return course;
 }
 
-/// The first rank's course, which has all states, and the robots that all ranks have passed on.
+/// Returns the first rank's course, which has all states, and the number of robots that all ranks have handed over.
 Course run_in_tiles(const world::World& world, unsigned ranks, SimulationOptions options, int ticks) {
   std::vector<Course> courses(ranks);
   std::vector<std::unique_ptr<gpu::Device>> devices;
@@ -93,20 +93,21 @@ void expect_same(const world::World& world, const SimulationOptions& options, in
   }
 }
 
-TEST(FleetTiles, GiveTheBytesOfOneProcess) { expect_same(town(30), {.seed = 3}, 150, {2, 3, 5}); }
+TEST(FleetTiles, MatchASingleProcessBitwise) { expect_same(town(30), {.seed = 3}, 150, {2, 3, 5}); }
 
-/// Behind a slow link a robot decides by readings that it got in another tile.
-TEST(FleetTiles, GiveTheBytesOfOneProcessBehindASlowLink) {
+/// With a slow link, a robot decides by readings that it received in another tile.
+TEST(FleetTiles, MatchASingleProcessBitwiseWithASlowLink) {
   SimulationOptions options{.seed = 4};
   options.actor.link = {.delay = 0.1, .jitter = 0.2, .loss = 0.1, .seed = 7};
   expect_same(town(20), options, 80);
 }
 
-/// Times differ from run to run, and with them the tiles, but not the bytes.
-TEST(FleetTiles, NewCutsChangeNothing) { expect_same(town(24), {.seed = 8, .balance = 0.4}, 100); }
+/// Times differ between runs, and so do the tiles, but the results do not.
+TEST(FleetTiles, RepartitionsChangeNothing) { expect_same(town(24), {.seed = 8, .balance = 0.4}, 100); }
 
-/// The first robot stands, which takes no time, so the second one passes to its rank, which must know it before.
-TEST(FleetTiles, ANewCutPassesARobotFarFromTheOldEdge) {
+/// The first robot is at rest, which takes no time, so the second one is handed over to its rank, which must have its
+/// state before.
+TEST(FleetTiles, ARepartitionHandsOverARobotFarFromTheOldEdge) {
   std::string text;
   for (int k = 0; k < 3; ++k)
     text += "create( name \"r" + std::to_string(k) + "\" pose [" + std::to_string(60 * k) +
@@ -118,8 +119,8 @@ TEST(FleetTiles, ANewCutPassesARobotFarFromTheOldEdge) {
   expect_same(world, options, 60, {2});
 }
 
-/// Cars that hear each other over the whole town, and follow each other's intents.
-TEST(FleetTiles, RobotsHearEachOtherAcrossEdges) {
+/// Cars that communicate across the town and follow each other's intents.
+TEST(FleetTiles, RobotsCommunicateAcrossEdges) {
   const world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
   SimulationOptions options{.seed = 5};
@@ -131,8 +132,8 @@ TEST(FleetTiles, RobotsHearEachOtherAcrossEdges) {
   expect_same(world, options, 300);
 }
 
-/// The fields of magnets are summed in the order of one process.
-TEST(FleetTiles, CarriedMagnetsAreKnownEverywhere) {
+/// The fields of magnets are summed in the order of a single process.
+TEST(FleetTiles, CarriedMagnetsAreAvailableEverywhere) {
   std::string text;
   for (int k = 0; k < 8; ++k)
     text += "create( name \"r" + std::to_string(k) + "\" pose [" + std::to_string(3 * k) +
@@ -152,7 +153,7 @@ TEST(FleetTiles, EachRankKeepsItsHouses) {
   for (const std::size_t count : walls) EXPECT_LT(count, whole.walls.size());
 }
 
-/// A world whose houses stand in a file; one robot begins in the second row's first house.
+/// A world whose houses are in a file; one robot starts in the first house of the second row.
 std::string town_in_file() {
   const auto file = std::filesystem::temp_directory_path() / "town.csv";
   std::ofstream out(file);
@@ -167,7 +168,7 @@ std::string town_in_file() {
   return text + "create( name \"lost\" pose [0 5 0 0] )\n";
 }
 
-TEST(FleetTiles, RanksReadTheirPartOfAFileAlone) {
+TEST(FleetTiles, RanksReadOnlyTheirPartOfAFile) {
   const std::string text = town_in_file();
   const world::World whole = read(text);
   world::LoadOptions options{.sensors = sensors::world_file_words()};
@@ -178,7 +179,7 @@ TEST(FleetTiles, RanksReadTheirPartOfAFileAlone) {
   EXPECT_EQ(run_in_tiles(left, 3, {.seed = 3}, 60), alone);
 }
 
-TEST(FleetTiles, RobotsInWallsOfAFileAreNoticed) {  // when each rank knows its walls; all ranks say the same
+TEST(FleetTiles, RobotsInWallsOfAFileAreNoticed) {  // once each rank has its walls; all ranks report the same
   world::LoadOptions options{.sensors = sensors::world_file_words()};
   options.leave_outlines = true;
   const world::World left = world::read_world("include \"robots.inc\"\n" + town_in_file(), options);

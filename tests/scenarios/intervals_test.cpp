@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(Intervals, QuantilesAreThoseOfBoost) {
+TEST(Intervals, QuantilesMatchBoost) {
   for (std::size_t freedom = 1; freedom < 100'000; freedom = freedom < 40 ? freedom + 1 : freedom * 3) {
     const double exact = boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), 0.975);
     EXPECT_NEAR(student_quantile(freedom) / exact, 1.0, 1e-10) << freedom;
@@ -32,7 +32,7 @@ TEST(Intervals, MeansHaveStudentsInterval) {
   EXPECT_NEAR(3.0 - interval.low, interval.high - 3.0, 1e-12);
 }
 
-TEST(Intervals, BoundaryCasesOfMeans) {
+TEST(Intervals, LimitCasesOfMeans) {
   const Interval none = mean_interval({});
   EXPECT_EQ(none.count, 0u);
   EXPECT_TRUE(std::isnan(none.mean) && std::isnan(none.low));
@@ -44,7 +44,7 @@ TEST(Intervals, BoundaryCasesOfMeans) {
   EXPECT_EQ(mean_interval(odd).low, 2.0) << "equal values have an interval of no length";
 }
 
-/// The score test at the ends of Wilson's interval is at its limit: (p - end)^2 = z^2 end (1 - end) / n.
+/// At the ends of Wilson's interval, the score test is at its limit: (p - end)^2 = z^2 end (1 - end) / n.
 TEST(Intervals, ProportionsHaveWilsonsInterval) {
   constexpr double z = 1.959963984540054;
   for (const std::size_t n : {1u, 2u, 3u, 10u, 1000u})

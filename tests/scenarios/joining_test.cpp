@@ -1,4 +1,4 @@
-// Robots that join a run and leave it.
+// Robots that join and leave a run.
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@
 namespace sf::scenarios {
 namespace {
 
-/// Robots with a sensor of every type that keeps a state, or has a table of its own, at rates with readings between two
-/// ticks, with noise and a latency; far apart: none is in the range of another.
+/// Robots with a sensor of every type that has a state or its own table, at rates with readings between two ticks, with
+/// noise and a latency. They are far apart: none is in the range of another.
 const char* const kWorld = R"(
 interval_sim 100
 define probe position
@@ -69,21 +69,21 @@ void keep(const base::TickRecord& tick, Readings& into) {
   }
 }
 
-/// Drives all robots on circles; `act` comes before each step.
+/// Drives all robots on circles; calls `act` before each step.
 template <class Act>
 Readings run(Simulation& simulation, const world::World& world, int ticks, Act&& act) {
   Readings readings;
   for (int tick = 0; tick < ticks; ++tick) {
     act(tick);
     std::vector<base::Twist> commands(world.movers.size(), {0.3, 0.0, 0.4});
-    if (tick % 7 > 3) commands.assign(commands.size(), {});  // caches are filled while robots stand
+    if (tick % 7 > 3) commands.assign(commands.size(), {});  // caches are filled while robots are at rest
     simulation.command(commands);
     keep(simulation.step(), readings);
   }
   return readings;
 }
 
-/// Random numbers, encoders, maps, firing cycles, held and cached readings of one robot go on to the bit while others
+/// Random numbers, encoders, maps, firing cycles, held and cached readings of one robot continue bitwise while others
 /// join and leave.
 TEST(Joining, ChangesNoReadingOfARobotOutOfRange) {
   for (const char* caster : {"host", "vulkan"}) {
@@ -102,8 +102,8 @@ TEST(Joining, ChangesNoReadingOfARobotOutOfRange) {
   }
 }
 
-/// A robot that joins has the readings, and gives others those, of one that was absent until then.
-TEST(Joining, EqualsARobotThatWasAbsentUntilThen) {
+/// A robot that joins has the same readings, and affects others in the same way, as one that was absent until then.
+TEST(Joining, MatchesARobotThatWasAbsentUntilThen) {
   for (const char* caster : {"host", "vulkan"})
     for (const int when : {0, 1, 23}) {
       const std::string b = "probe ( name \"b\" pose [1 -2 0 0] )\n";
@@ -126,8 +126,8 @@ TEST(Joining, EqualsARobotThatWasAbsentUntilThen) {
     }
 }
 
-/// The first sensors of a type make a table of their own.
-TEST(Joining, BringsSensorsOfANewType) {
+/// The first sensors of a type create their own table.
+TEST(Joining, AddsSensorsOfANewType) {
   const std::string gps = "define spotter position ( size [0.2 0.2 0.2] gps ( ) )\n";
   world::World with = world_of(gps + "spotter ( name \"s\" pose [5 5 0 0] )\n");
   Simulation simulation(with, device(), options_of("host"));
@@ -137,8 +137,8 @@ TEST(Joining, BringsSensorsOfANewType) {
   EXPECT_EQ(readings.at(2).size(), readings.at(1).size());
 }
 
-/// Others see the robot that joins, and drive against it; after it has left, neither.
-TEST(Joining, IsABodyUntilItLeaves) {
+/// Others see and touch the robot after it joins, and no longer after it leaves.
+TEST(Joining, HasABodyUntilItLeaves) {
   world::World world = world_of();
   Simulation simulation(world, device(), options_of("host"));
   const auto nearest = [&] {
@@ -159,7 +159,7 @@ TEST(Joining, IsABodyUntilItLeaves) {
   EXPECT_NEAR(nearest(), 0.85, 0.1);
 }
 
-TEST(Joining, TakesAController) {
+TEST(Joining, AcceptsAController) {
   world::World world = world_of();
   Simulation simulation(world, device(), options_of("host"));
   simulation.step();
@@ -183,7 +183,7 @@ std::string refusal(Simulation& simulation, world::World& world, const JoiningRo
   return "none";
 }
 
-TEST(Joining, RefusalsSayWhyAndChangeNothing) {
+TEST(Joining, RefusalsGiveAReasonAndChangeNothing) {
   world::World world = world_of();
   Simulation simulation(world, device(), options_of("host"));
   const auto said = [&](const JoiningRobot& robot) { return refusal(simulation, world, robot); };
@@ -207,13 +207,13 @@ TEST(Joining, RefusalsSayWhyAndChangeNothing) {
   EXPECT_THROW(simulation.remove_robot(0), base::InputError);
 }
 
-TEST(Joining, ARunIsBounded) {
+TEST(Joining, TheNumberOfRobotsIsBounded) {
   world::World world = world_of();
   world.movers.resize(world::kMostMovers, world.movers[0]);
   EXPECT_THROW(world::append_robot(world, 0, "b", {}), base::InputError);
 }
 
-/// Of robots that join, leave and return between ticks, every reading is computed again.
+/// Every reading of robots that join, leave and return between ticks is recomputed.
 TEST(Joining, RecordingsAreVerified) {
   const std::string folder = (std::filesystem::temp_directory_path() / "joining").string();
   world::World world = world_of();
@@ -223,7 +223,7 @@ TEST(Joining, RecordingsAreVerified) {
       return run_info(world, simulation.farm().sensor_set(),
                       {.seed = 5, .record_readings = true, .joined = simulation.joined()});
     };
-    record::Recorder recorder(folder, info(), {.compression = record::Compression::none});  // every tick at once
+    record::Recorder recorder(folder, info(), {.compression = record::Compression::none});  // each tick at once
     for (int tick = 0; tick < 50; ++tick) {
       if (tick == 11 || tick == 30)
         simulation.add_robot(world, {.name = "b", .like = "a", .X_WM = {1.0, -2.0, 0.0, 1.0}});
@@ -255,8 +255,8 @@ TEST(Joining, RecordingsAreVerified) {
   EXPECT_GT(v.reference.readings, 100u);
 }
 
-/// A file that was cut at any byte is read to its last whole tick, with the robots of then.
-TEST(Joining, CutRecordingsAreReadable) {
+/// A file truncated at any byte is read to its last complete tick, with the robots of that time.
+TEST(Joining, TruncatedRecordingsAreReadable) {
   const std::string folder = (std::filesystem::temp_directory_path() / "joining_cut").string();
   world::World world = world_of();
   Simulation simulation(world, device(), options_of("host"));
@@ -326,7 +326,7 @@ TEST(Joining, ErrorsOfEventsNameLineAndRemedy) {
   for (const auto& [text, said] : kCorpus) EXPECT_EQ(joining_refusal(text).substr(0, said.size()), said) << text;
 }
 
-/// Ranks that share a fleet give the readings of one process, whoever joins and leaves.
+/// Ranks that share a fleet give the readings of a single process, whichever robots join and leave.
 TEST(Joining, RanksAgree) {
   const auto go = [](Simulation& simulation, world::World& world) {
     for (int tick = 0; tick < 40; ++tick) {

@@ -7,7 +7,7 @@
 namespace sf::scenarios {
 namespace {
 
-/// A reader for a subset of XML that checks well-formedness: elements by path with their attributes.
+/// A parser for a subset of XML that checks well-formedness: elements by path with their attributes.
 class Xml {
  public:
   explicit Xml(const std::string& text) : text_(text) { read(); }
@@ -16,7 +16,7 @@ class Xml {
     const auto found = counts_.find(name);
     return found == counts_.end() ? 0 : found->second;
   }
-  /// Values of an attribute in order, unescaped.
+  /// Returns the values of an attribute in order, unescaped.
   std::vector<std::string> values(const std::string& element, const std::string& attribute) const {
     std::vector<std::string> found;
     for (const auto& [e, a, v] : attributes_)
@@ -86,7 +86,7 @@ class Xml {
   std::vector<std::tuple<std::string, std::string, std::string>> attributes_;
 };
 
-TEST(Junit, HasASuiteAScenarioAndACaseAnExpectation) {
+TEST(Junit, HasASuitePerScenarioAndACasePerExpectation) {
   const std::vector<ScenarioResult> results{
       {.name = "one", .file = "a/one.toml", .outcomes = {{"done", "done", "done", true, 3}}, .wall = 1.5},
       {.name = "two",
@@ -114,7 +114,7 @@ TEST(Junit, ReservedCharactersAreEscaped) {
   EXPECT_EQ(xml.values("testcase", "name"), std::vector<std::string>{bad});
 }
 
-TEST(Junit, NothingExpectedIsASkippedCase) {
+TEST(Junit, NoExpectationsAreASkippedCase) {
   const std::vector<ScenarioResult> results{{.name = "idle", .file = "a&b.toml"}};
   const std::string text = junit_of(results);
   const Xml xml(text);
@@ -125,11 +125,11 @@ TEST(Junit, NothingExpectedIsASkippedCase) {
   EXPECT_EQ(xml.count("failure"), 0);
 }
 
-/// XML 1.0 forbids them even escaped.
-TEST(Junit, ControlCharactersAreLeftOut) { EXPECT_EQ(escaped(std::string("a\x01\x1b\tb\n", 6)), "a\tb"); }
+/// XML 1.0 forbids them even if escaped.
+TEST(Junit, ControlCharactersAreRemoved) { EXPECT_EQ(escaped(std::string("a\x01\x1b\tb\n", 6)), "a\tb"); }
 
-/// The reader above detects errors.
-TEST(Junit, TheReaderSeesWhatIsNotWellFormed) {
+/// The parser above detects errors.
+TEST(Junit, TheParserRejectsMalformedXml) {
   EXPECT_FALSE(Xml("<a><b></a></b>").fine());
   EXPECT_FALSE(Xml("<a x=\"&bad;\"/>").fine());
   EXPECT_FALSE(Xml("<a>").fine());

@@ -20,7 +20,7 @@ viz::Track track_of(const std::vector<glm::dvec2>& points) {
   return track;
 }
 
-TEST(LaneErrors, OfNoPosesAreZero) {
+TEST(LaneErrors, NoPosesGiveZeros) {
   const LaneErrors none = lane_errors({}, straight());
   EXPECT_EQ(none.mean_abs, 0.0);
   EXPECT_EQ(none.max_abs, 0.0);
@@ -34,8 +34,8 @@ TEST(LaneErrors, BothSidesCount) {
   EXPECT_NEAR(errors.max_abs, 0.2, 1e-12);
 }
 
-/// A wave of 3 cm about an offset of 5 cm, on the straight; what lies before and behind it does not count.
-TEST(LaneErrors, TheAmplitudeIsTheWavesOnTheStraight) {
+/// A wave of 3 cm about an offset of 5 cm on the straight; poses before and after it do not count.
+TEST(LaneErrors, TheAmplitudeIsThatOfTheStraight) {
   std::vector<glm::dvec2> points{{0.9, -0.2}, {2.7, 0.2}};
   for (int i = 0; i < 1600; ++i) {
     const double x = kStraight[0] + 1e-3 * (i + 0.5);
@@ -47,7 +47,7 @@ TEST(LaneErrors, TheAmplitudeIsTheWavesOnTheStraight) {
   EXPECT_EQ(lane_errors(track_of({{0.9, 0.1}, {0.95, -0.1}}), straight()).amplitude, 0.0) << "none on the straight";
 }
 
-TEST(LaneErrors, TheEdgeIsHalfTheWidthOfThePieceFromTheMiddle) {
+TEST(LaneErrors, TheEdgeIsHalfTheLocalWidthFromTheMiddle) {
   for (const double side : {1.0, -1.0}) {
     EXPECT_FALSE(lane_errors(track_of({{1.0, 0.24 * side}, {2.5, 0.14 * side}}), straight()).left_lane);
     EXPECT_TRUE(lane_errors(track_of({{1.0, 0.26 * side}, {2.5, 0.0}}), straight()).left_lane);

@@ -1,4 +1,4 @@
-// The filter on a robot's own sensors in SimVille: satellites in the streets, none under the bridge.
+// The filter on a robot's own sensors in SimVille: GPS in the streets, none under the bridge.
 
 #include "robots/estimation/localization.h"
 
@@ -28,7 +28,7 @@
 namespace sf::scenarios {
 namespace {
 
-/// Errors of all poses, beside those that the filter states.
+/// Errors of all poses, with the errors stated by the filter.
 struct Rms {
   void add(const estimation::Prediction& prediction, const base::Pose& truth) {
     const base::Pose& X = prediction.estimate.X_WM;
@@ -50,13 +50,13 @@ struct Errors {
   double longest_dropout = 0.0;  ///< [s]
 };
 
-/// One car's filters.
+/// The filters of one car.
 struct Car {
   estimation::Localization fused, reckoned;
   std::int64_t fixed = 0;  ///< [ns] of the last fix
 };
 
-// As worlds/simville/simville.world has them.
+// As in worlds/simville/simville.world.
 constexpr double kRange = 0.214;
 constexpr std::int64_t kEnd = 120 * base::kSecond;
 
@@ -138,7 +138,7 @@ TEST(Localization, FusesSatellitesWheelsAndGyroInSimVille) {
 /// Six cars together.
 struct Driving {
   double travelled = 0.0;  ///< [m]
-  double squares = 0.0;    ///< [m^2] of true distances from the middle of the nearest way
+  double squares = 0.0;    ///< [m^2] of true distances from the middle of the nearest lane
   double moving = 0.0;     ///< ticks in motion
   control::LocalizationError error;
   double lane_rms() const { return std::sqrt(squares / std::max(moving, 1.0)); }
@@ -172,8 +172,8 @@ Driving drive_by(const char* localize, std::uint64_t seed, gpu::Device& device) 
   return driving;
 }
 
-// The two rows of docs/estimation.md, over one minute of one seed; there two minutes of eight. Bounds are loose, since
-// one car that waits for another changes all that follows.
+// The two rows of docs/estimation.md, over one minute of one seed; the page uses two minutes of eight. Bounds are
+// loose, because one car that waits for another changes everything that follows.
 TEST(Localization, DrivesRoutesByTheEstimate) {
   gpu::Device device;
   const Driving truth = drive_by("false", 3, device), own = drive_by("true", 3, device);

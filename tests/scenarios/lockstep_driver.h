@@ -1,5 +1,5 @@
 #pragma once
-// A process that drives robots in lockstep, behind a link with seeded faults, by calls instead of a clock.
+// A process that drives robots in lockstep over a link with seeded faults, by calls instead of a clock.
 
 #include <gtest/gtest.h>
 
@@ -17,11 +17,11 @@
 namespace sf::scenarios {
 
 struct Faults {
-  double loss = 0.0, duplicate = 0.0, delay = 0.0;  ///< [-] shares of the datagrams, in each direction
+  double loss = 0.0, duplicate = 0.0, delay = 0.0;  ///< [-] fractions of the datagrams, in each direction
   unsigned seed = 1;
 };
 
-/// Datagrams of one direction: some are lost, some come twice, and some after those that were sent later.
+/// The datagrams of one direction. Some are lost, some are duplicated, and some arrive after later ones.
 class FaultyLink {
  public:
   explicit FaultyLink(const Faults& faults, unsigned direction)
@@ -38,7 +38,7 @@ class FaultyLink {
       }
     }
   }
-  /// What was delayed, the last first.
+  /// Delivers delayed datagrams, the last first.
   template <class Deliver>
   void release(Deliver&& deliver) {
     for (; !delayed_.empty(); delayed_.pop_back()) deliver(std::span<const std::uint8_t>(delayed_.back()));
@@ -52,12 +52,12 @@ class FaultyLink {
   std::vector<base::Bytes> delayed_;
 };
 
-/// What a process knows of one robot after a tick.
+/// The data that a process has of one robot after a tick.
 struct Driven {
   netio::State state;
   std::map<std::uint8_t, std::vector<double>> readings;  ///< newest of the first sensor of each type
-  std::map<std::uint8_t, double> errors;                 ///< VALUES: `error` of them
-  std::map<std::uint8_t, netio::Accuracy> accuracies;    ///< and the header's word
+  std::map<std::uint8_t, double> errors;                 ///< `error` of them in VALUES
+  std::map<std::uint8_t, netio::Accuracy> accuracies;    ///< accuracy word of the header
 };
 
 class Driver {
@@ -72,20 +72,20 @@ class Driver {
         to_farm_(faults, 0),
         from_farm_(faults, 1) {}
 
-  /// All robots are subscribed, and the answer of the last tick asked for is whole.
+  /// Returns whether all robots are subscribed and the answer of the last requested tick is complete.
   bool is_complete() const { return tick_ == wanted_ && !parts_.empty() && missing_ == 0 && acknowledged(); }
   std::uint64_t tick() const { return tick_; }
   const Driven& robot(std::uint32_t id) const { return driven_.at(id); }
   std::size_t datagrams() const { return parts_.size(); }
 
-  /// Takes what has come.
+  /// Processes received datagrams.
   void receive() {
     const auto take = [this](std::span<const std::uint8_t> bytes) { accept(bytes); };
     batch_.drain(socket_, 4096,
                  [&](std::span<const std::uint8_t> bytes, const netio::Endpoint&) { from_farm_.pass(bytes, take); });
     from_farm_.release(take);
   }
-  /// Repeats what has no answer yet.
+  /// Repeats requests that have no answer yet.
   void repeat() {
     if (!acknowledged()) {
       for (const std::uint32_t id : robots_)
@@ -126,7 +126,7 @@ class Driver {
     base::Bytes rows;
     for (const auto& [id, twist] : commands_) {
       netio::add_row({id, twist}, rows);
-      // Several datagrams, so that some of a tick's commands can be lost.
+      // Use several datagrams, so that some of a tick's commands can be lost.
       if (rows.size() < 2 * netio::kCommandRowBytes && id != commands_.rbegin()->first) continue;
       send(netio::Command{step_.tick, rows});
       rows.clear();
@@ -159,7 +159,7 @@ class Driver {
         all[values->first + i] = netio::value_of(*values, i);
     }
   }
-  /// @return the datagram is new, of the answer that is waited for
+  /// @return whether the datagram is new and belongs to the expected answer
   bool place(const netio::AnswerPart& part) {
     if (wanted_ == kUnknown) wanted_ = part.tick;
     if (part.tick != wanted_) return false;

@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint64_t kSeed = 5;
 constexpr int kTicks = 40;
 
-/// A controller whose command depends on every number that it is given, and on what it was given before.
+/// A controller whose command depends on all of its inputs, present and past.
 struct Chaos {
   double memory = 0.0;
   base::Twist drive(double x, double yaw, double forward, bool contact, std::span<const double> ranges) {
@@ -50,7 +50,7 @@ gpu::Device& lockstep_device() {
   return device;
 }
 
-/// A cave with noisy scans of more datagrams than one, at the ticks.
+/// A cave with noisy scans of several datagrams, at the ticks.
 world::World lockstep_world(std::uint32_t robots) {
   world::World world = world::load_world(SF_SOURCE_DIR "/worlds/cave.world", {.sensors = sensors::world_file_words()});
   world::clone_robots(world, robots, kSeed);
@@ -116,20 +116,21 @@ struct Crew {
   Driver driver;
 };
 
-/// Runs all until `done`; false where nothing comes of it.
+/// Runs all until `done`; returns false if that does not happen.
 bool play(Fixture& fixture, const std::vector<Driver*>& drivers, const std::function<bool()>& done) {
   for (int round = 0; round < 100'000 && !done(); ++round, fixture.now += 1'000'000) {
     fixture.service.advance(fixture.now);
     for (Driver* driver : drivers) driver->receive();
     if (done()) return true;
-    // What was sent a moment ago is repeated often: that must not matter.
+    // Recently sent packets are repeated often, which must not matter.
     for (Driver* driver : drivers)
       if (!driver->is_complete()) driver->repeat();
   }
   return done();
 }
 
-/// Drives to the last tick. @return hash of all readings
+/// Drives to the last tick.
+/// @return hash of all readings
 std::uint64_t hash_over_udp(Fixture& fixture, const std::vector<Crew*>& crews) {
   std::vector<Driver*> drivers;
   for (Crew* crew : crews) drivers.push_back(&crew->driver);
@@ -145,7 +146,7 @@ std::uint64_t hash_over_udp(Fixture& fixture, const std::vector<Crew*>& crews) {
   return fixture.hash();
 }
 
-TEST(LockstepService, OneProcessDrivesLikeAControllerInProcess) {
+TEST(LockstepService, OneProcessDrivesLikeALocalController) {
   Fixture fixture(5);
   Crew crew(fixture, 1, 5);
   const std::uint64_t hash = hash_over_udp(fixture, {&crew});
@@ -155,8 +156,9 @@ TEST(LockstepService, OneProcessDrivesLikeAControllerInProcess) {
   EXPECT_EQ(fixture.service.lockstep().counts().refused, 0u);
 }
 
-/// A third of all datagrams is lost, a third comes twice, a third late and in reverse order, in both directions.
-TEST(LockstepService, LossCopiesAndOrderChangeNothing) {
+/// A third of all datagrams is lost, a third is duplicated, and a third is late and in reverse order, in both
+/// directions.
+TEST(LockstepService, LossDuplicatesAndOrderChangeNothing) {
   const std::uint64_t expected = hash_in_process(lockstep_world(5));
   for (unsigned seed : {1u, 2u, 3u}) {
     Fixture fixture(5);
@@ -173,7 +175,7 @@ TEST(LockstepService, SeveralProcessesDriveLikeOne) {
   EXPECT_EQ(hash_over_udp(fixture, {&one, &other, &third}), hash_in_process(fixture.world));
 }
 
-/// 80 robots: states and scans are far more datagrams than are sent at once.
+/// 80 robots: states and scans take far more datagrams than are sent immediately.
 TEST(LockstepService, LargeAnswersAreFetched) {
   Fixture fixture(80);
   Driver driver(fixture.port(), ids(1, 80), {0.1, 0.0, 0.1, 6});
@@ -186,8 +188,8 @@ TEST(LockstepService, LargeAnswersAreFetched) {
   EXPECT_EQ(driver.robot(80).readings.at(sensors::kLaser).size(), driver.robot(1).readings.at(sensors::kLaser).size());
 }
 
-/// The farm simulates as far as all have asked: 1 + 1 + 1 ticks of one process are 3 of the other.
-TEST(LockstepService, AProcessMayAskForSeveralTicks) {
+/// The farm simulates up to the tick that all have requested: 1 + 1 + 1 ticks of one process are 3 of the other.
+TEST(LockstepService, AProcessMayRequestSeveralTicks) {
   Fixture fixture(2, 2);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2});
   const auto both = [&] { return one.is_complete() && other.is_complete(); };
@@ -204,8 +206,8 @@ TEST(LockstepService, AProcessMayAskForSeveralTicks) {
   EXPECT_DOUBLE_EQ(one.robot(1).state.velocity.forward, 0.2) << "the command held for all three";
 }
 
-/// Lasers of 5 Hz at 10 ticks a second: every other answer has a scan, and one of two ticks has it too.
-TEST(LockstepService, AnAnswerHasTheReadingsSinceTheOneBefore) {
+/// Lasers of 5 Hz at 10 ticks a second: every other answer has a scan, and an answer after two ticks has it too.
+TEST(LockstepService, AnAnswerHasTheReadingsSinceThePreviousOne) {
   Fixture fixture(server::room(5.0));
   Driver driver(fixture.port(), {1});
   const auto complete = [&] { return driver.is_complete(); };
@@ -218,7 +220,8 @@ TEST(LockstepService, AnAnswerHasTheReadingsSinceTheOneBefore) {
   EXPECT_EQ(datagrams, (std::vector<std::size_t>{2, 1, 2, 1, 2, 2})) << "at ticks 0, 1, 2, 3, 5 and 7";
 }
 
-/// A laser with `settings` for the first robot, and a lane edge sensor for both: 0.4 m before a line, and in a bend.
+/// A laser with `settings` for the first robot, and a lane edge sensor for both: one 0.4 m before a line, one in a
+/// bend.
 world::World bounds_world(const sensors::LaserSettings& settings) {
   world::World world = server::room();
   world.movers[0].sensors = {sensors::laser_sensor(settings)};
@@ -233,9 +236,9 @@ world::World bounds_world(const sensors::LaserSettings& settings) {
   return world;
 }
 
-/// `error` holds for every value, or is infinite. The header says which of both, and keeps the bound of unflagged
+/// `error` holds for every value, or is infinite. The header indicates which, and contains the bound of unflagged
 /// beams.
-TEST(LockstepService, ErrorsHoldForEveryValueOrAreLeftOut) {
+TEST(LockstepService, ErrorsHoldForEveryValueOrAreOmitted) {
   struct Case {
     double sigma;
     const char* mode;
@@ -264,7 +267,7 @@ TEST(LockstepService, ErrorsHoldForEveryValueOrAreLeftOut) {
   }
 }
 
-/// A STEP that says two commands waits for the second one, whatever is repeated meanwhile.
+/// A STEP that announces two commands waits for the second one, whatever is repeated meanwhile.
 TEST(LockstepService, AStepWaitsForItsCommands) {
   Fixture fixture(2);
   Driver driver(fixture.port(), {1, 2});
@@ -276,7 +279,7 @@ TEST(LockstepService, AStepWaitsForItsCommands) {
   };
   for (int i = 0; i < 3; ++i) {
     driver.send(netio::Step{0, 1, 2});
-    command(1, 0.1 + i);  // the first counts
+    command(1, 0.1 + i);  // only the first counts
     driver.flush();
     fixture.service.advance(0);
     EXPECT_EQ(fixture.tick(), 0u);
@@ -288,8 +291,8 @@ TEST(LockstepService, AStepWaitsForItsCommands) {
   EXPECT_FALSE(fixture.service.advance(0)) << "one STEP, one tick";
 }
 
-/// Ticks that are not the current one, robots of others, a STEP before any SUBSCRIBE: nothing moves.
-TEST(LockstepService, PacketsOutOfPlaceAreCounted) {
+/// Ticks other than the current one, robots of others, a STEP before any SUBSCRIBE: nothing happens.
+TEST(LockstepService, UnexpectedPacketsAreCounted) {
   Fixture fixture(2, 2);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2});
   one.send(netio::Step{0, 1, 0});
@@ -297,12 +300,12 @@ TEST(LockstepService, PacketsOutOfPlaceAreCounted) {
   EXPECT_FALSE(fixture.service.advance(0));
   ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
   base::Bytes rows;
-  netio::add_row({2, {1.0, 0.0, 0.0}}, rows);       // another process' robot
-  netio::add_row({40'000, {1.0, 0.0, 0.0}}, rows);  // no robot
+  netio::add_row({2, {1.0, 0.0, 0.0}}, rows);       // robot of another process
+  netio::add_row({40'000, {1.0, 0.0, 0.0}}, rows);  // unknown robot
   one.send(netio::Command{0, rows});
   rows.clear();
   netio::add_row({1, {1.0, 0.0, 0.0}}, rows);
-  one.send(netio::Command{1, rows});  // of the tick after
+  one.send(netio::Command{1, rows});  // for the next tick
   one.send(netio::Step{1, 1, 0});
   one.send(netio::Fetch{7, 0, 64});
   one.send(netio::Fetch{0, 1'000'000, 64});
@@ -316,7 +319,7 @@ TEST(LockstepService, PacketsOutOfPlaceAreCounted) {
   EXPECT_EQ(fixture.service.lockstep().commands()[1].forward, 0.0);
 }
 
-/// One process has its answer of tick 1, the other asked for tick 2.
+/// One process has its answer of tick 1, the other has requested tick 2.
 TEST(LockstepService, OnlyTheNewestAnswerIsFetched) {
   Fixture fixture(2, 2);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2});
@@ -324,7 +327,7 @@ TEST(LockstepService, OnlyTheNewestAnswerIsFetched) {
   one.step({}), other.step({}, 2);
   ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete(); }));
   const auto fetched = [&](Driver& driver, std::uint64_t tick) {
-    fixture.service.advance(fixture.now);  // what was sent before
+    fixture.service.advance(fixture.now);  // processes earlier packets
     const std::uint64_t before = fixture.service.lockstep().counts().fetched;
     driver.send(netio::Fetch{tick, 0, 64});
     driver.flush();
@@ -337,7 +340,7 @@ TEST(LockstepService, OnlyTheNewestAnswerIsFetched) {
   EXPECT_EQ(fixture.tick(), 1u);
 }
 
-TEST(LockstepService, AHungProcessIsLeftOutByName) {
+TEST(LockstepService, AHungProcessIsDroppedByName) {
   Fixture fixture(3, 3, 2.0);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2, 3});
   ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
@@ -356,7 +359,7 @@ TEST(LockstepService, AHungProcessIsLeftOutByName) {
   ASSERT_TRUE(play(fixture, {&one}, [&] { return one.is_complete(); })) << "the others go on";
 }
 
-TEST(LockstepService, OneLostRobotIsToldOf) {
+TEST(LockstepService, ALostRobotIsReported) {
   Fixture fixture(2, 2, 2.0);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2});
   ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));
@@ -366,8 +369,8 @@ TEST(LockstepService, OneLostRobotIsToldOf) {
   EXPECT_EQ(one.robot(1).state.flags, netio::kDriverLostBit);
 }
 
-/// Nobody waits for a process that is alone: it is named once a tick, and keeps its robots.
-TEST(LockstepService, ASilentProcessAloneIsWaitedFor) {
+/// A silent process without others delays nobody else: it is named once a tick, and keeps its robots.
+TEST(LockstepService, ASilentProcessAloneIsAwaited) {
   Fixture fixture(1, 1, 2.0);
   Driver driver(fixture.port(), {1});
   ASSERT_TRUE(play(fixture, {&driver}, [&] { return driver.is_complete(); }));
@@ -380,7 +383,7 @@ TEST(LockstepService, ASilentProcessAloneIsWaitedFor) {
   EXPECT_EQ(fixture.service.lockstep().counts().lost_robots, 0u);
 }
 
-TEST(LockstepService, WhoLeavesIsNotWaitedFor) {
+TEST(LockstepService, AProcessThatLeavesIsNotAwaited) {
   Fixture fixture(2, 2);
   Driver one(fixture.port(), {1}), other(fixture.port(), {2});
   const auto both = [&] { return one.is_complete() && other.is_complete(); };
@@ -393,8 +396,8 @@ TEST(LockstepService, WhoLeavesIsNotWaitedFor) {
   EXPECT_EQ(fixture.service.lockstep().commands()[1].forward, 0.0) << "its robot stands";
 }
 
-/// Four processes that say anything at any time: the farm goes on, and then serves one that keeps to the rules.
-TEST(LockstepService, NonsenseStopsNothing) {
+/// Four processes that send random packets at random times: the farm continues, and then serves a correct one.
+TEST(LockstepService, RandomPacketsStopNothing) {
   Fixture fixture(3, 1, 1.0);
   std::mt19937 generator(7);  // NOLINT: the same packets every time
   const auto random = [&](std::uint32_t end) { return static_cast<std::uint32_t>(generator()) % end; };
@@ -440,8 +443,8 @@ TEST(LockstepService, NonsenseStopsNothing) {
   }
 }
 
-/// What it has not seen is new to a robot that joins while its process waits for others.
-TEST(LockstepService, ARobotThatJoinsLateIsToldEverything) {
+/// For a robot that joins while its process waits for others, all readings are new.
+TEST(LockstepService, ARobotThatJoinsLateReceivesEverything) {
   world::World world = server::room(1.0);
   const world::Mover first = world.movers[0];
   scenes::add_mover(world, {0.0, 0.0, 0.0, 0.0}, scenes::rectangle({0.0, 0.0}, 0.3, 0.3)).sensors = first.sensors;
@@ -458,8 +461,8 @@ TEST(LockstepService, ARobotThatJoinsLateIsToldEverything) {
   EXPECT_EQ(one.robot(3).readings.at(sensors::kLaser).size(), 91u);
 }
 
-/// Bit 0 of a SUBSCRIBE: the states of all, exact as its own.
-TEST(LockstepService, StatesOfOthersComeOnRequest) {
+/// Bit 0 of a SUBSCRIBE: the states of all robots, as exact as its own.
+TEST(LockstepService, StatesOfOthersAreSentOnRequest) {
   Fixture fixture(3, 2);
   Driver one(fixture.port(), {1}, {}, netio::kNeighboursBit), other(fixture.port(), {2});
   ASSERT_TRUE(play(fixture, {&one, &other}, [&] { return one.is_complete() && other.is_complete(); }));

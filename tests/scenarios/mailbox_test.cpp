@@ -28,14 +28,14 @@ double newest(Mailbox& box, std::int64_t now) {
   return open.empty() ? -1.0 : open[0].values[0];
 }
 
-TEST(Mailbox, IsEmptyBeforeAnythingCame) {
+TEST(Mailbox, IsEmptyBeforeTheFirstReading) {
   Mailbox box({}, 0);
   EXPECT_TRUE(box.receive(0).empty());
   EXPECT_FALSE(box.renewed(1));
 }
 
-/// The farm reuses its memory in the next tick, so the mailbox has to copy.
-TEST(Mailbox, KeepsACopyUntilANewerOneComes) {
+/// The farm reuses its memory in the next tick, so the mailbox must copy.
+TEST(Mailbox, KeepsACopyUntilANewerOneArrives) {
   Mailbox box({}, 0);
   Sender sender;
   box.send(sender.reading(0), 0);
@@ -48,7 +48,7 @@ TEST(Mailbox, KeepsACopyUntilANewerOneComes) {
   EXPECT_EQ(newest(box, 100 * kMs), 1.0);
 }
 
-/// A sensor's flags change in place, too.
+/// A sensor's flags also change in place.
 TEST(Mailbox, KeepsFlags) {
   Mailbox box({}, 0);
   Sender sender;
@@ -61,7 +61,7 @@ TEST(Mailbox, KeepsFlags) {
   EXPECT_EQ(box.receive(0)[0].quality[0], base::QualityFlag::grazing);
 }
 
-TEST(Mailbox, ADelayOfDIsSeenDLater) {
+TEST(Mailbox, ADelayedReadingArrivesAfterItsDelay) {
   Mailbox box({.delay = 0.25}, 0);
   Sender sender;
   for (std::uint32_t k = 0; k < 10; ++k) {
@@ -74,7 +74,7 @@ TEST(Mailbox, ADelayOfDIsSeenDLater) {
   EXPECT_EQ(newest(box, 1150 * kMs), 9.0);
 }
 
-TEST(Mailbox, LostReadingsNeverCome) {
+TEST(Mailbox, LostReadingsNeverArrive) {
   Mailbox box({.loss = 1.0}, 0);
   Sender sender;
   for (std::uint32_t k = 0; k < 20; ++k) box.send(sender.reading(k), k * 100 * kMs);
@@ -101,7 +101,7 @@ TEST(Mailbox, NeverGoesBack) {
   EXPECT_LT(renewed, 400);
 }
 
-TEST(Mailbox, SensorsAndKindsAreApart) {
+TEST(Mailbox, SensorsAndTypesAreSeparate) {
   Mailbox box({}, 0);
   Sender a(1, 0), b(1, 1), c(3, 0);
   box.send(a.reading(5), 0);

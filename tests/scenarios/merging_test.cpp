@@ -1,4 +1,4 @@
-// Recordings of two ranks, put together.
+// Merging the recordings of two ranks.
 
 #include "scenarios/merging.h"
 
@@ -48,7 +48,7 @@ world::World merged_world() {
   return world;
 }
 
-/// Ten ticks: whole in WHOLE/run.mcap, and in RANKS by two ranks, of which the second has the odd robots.
+/// Ten ticks: complete in WHOLE/run.mcap, and in RANKS by two ranks, of which the second has the odd robots.
 void record_merged(const std::string& whole, const std::string& ranks, std::uint64_t seed = 9,
                    record::Compression compression = record::Compression::zstd) {
   const world::World world = merged_world();
@@ -70,7 +70,7 @@ void record_merged(const std::string& whole, const std::string& ranks, std::uint
   for (record::Recorder* recorder : {&one, &first, &second}) recorder->finish();
 }
 
-/// Bounds are of the recorded numbers, and noisy sensors state none.
+/// Bounds are those of the recorded numbers, and noisy sensors have none.
 TEST(RunInfo, HasTheBoundsOfRecordedReadings) {
   world::World world = merged_world();
   for (const std::size_t m : {1, 2})
@@ -122,20 +122,20 @@ void expect_bytes_of_one(record::Compression compression) {
   EXPECT_FALSE(merged.truncated);
 }
 
-TEST(Merging, GivesTheBytesOfASingleProcess) {
+TEST(Merging, MatchesTheBytesOfASingleProcess) {
   expect_bytes_of_one(record::Compression::zstd);
   expect_bytes_of_one(record::Compression::none);
 }
 
-TEST(Merging, StoppedLeavesWhatWasThere) {
+TEST(Merging, StoppingWritesNothing) {
   const std::string ranks = merging_folder("stopped"), merged = merging_folder("stopped_merged");
   record_merged(merging_folder("stopped_whole"), ranks);
   EXPECT_THROW(merge_recordings(std::span(&ranks, 1), merged, [] { return true; }), base::Interrupted);
   EXPECT_TRUE(std::filesystem::is_empty(merged));
 }
 
-/// Else the merged recording would be whole, and sound without a tick.
-TEST(Merging, ARankCutOffBeforeItsFirstTickIsRefused) {
+/// Otherwise the merged recording would be complete, and sound without a tick.
+TEST(Merging, ARankWithoutACompleteTickIsRejected) {
   const std::string ranks = merging_folder("cut");
   record_merged(merging_folder("cut_whole"), ranks, 9, record::Compression::none);
   const std::string second = ranks + "/rank-1.mcap";
@@ -146,7 +146,7 @@ TEST(Merging, ARankCutOffBeforeItsFirstTickIsRefused) {
   EXPECT_GT(part.ticks, 0u);
   EXPECT_LT(part.ticks, 10u);
   const std::string text = base::read_text(second);
-  std::filesystem::resize_file(second, text.find("/clock") + 100);  // behind the channel of the ticks' first message
+  std::filesystem::resize_file(second, text.find("/clock") + 100);  // after the channel of the ticks' first message
   EXPECT_THROW(merge_recordings(std::span(&ranks, 1), merging_folder("cut_none")), base::InputError);
 }
 

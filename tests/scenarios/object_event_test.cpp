@@ -1,4 +1,4 @@
-// Doors: objects that come and go while a scenario runs.
+// Doors: objects that appear and disappear during a scenario.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 namespace sf::scenarios {
 namespace {
 
-/// A robot with a laser in a box, and a door across its way, 1 m ahead.
+/// A robot with a laser in a box, and a door across its path, 1 m ahead.
 world::World corridor(bool with_door = true) {
   world::World world = scenes::boxed_world(6.0, 2.0, {-1.0, -1.0});
   world.interval = 0.1;
@@ -46,8 +46,8 @@ std::vector<double> ranges_of(const base::TickRecord& tick) {
   return all;
 }
 
-/// With the door open every reading is, to the bit, that of a world without a door; and back.
-TEST(ObjectEvent, AnOpenDoorIsNoDoor) {
+/// A reading equals that of a world without a door, bitwise, exactly while the door is open.
+TEST(ObjectEvent, AnOpenDoorHasNoEffect) {
   for (const char* caster : {"host", "vulkan"}) {
     setenv("SENSORFARM_CASTER", caster, 1);
     const world::World with = corridor(), without = corridor(false);
@@ -89,7 +89,7 @@ TEST(ObjectEvent, ARobotDrivesThroughAnOpenDoorOnly) {
   }
 }
 
-/// The recording knows when the door was open: every scan is computed again, also those between two ticks.
+/// The recording stores when the door was open: every scan is recomputed, also those between two ticks.
 TEST(ObjectEvent, RecordingsAreVerified) {
   const world::World world = corridor();
   const std::string folder = (std::filesystem::temp_directory_path() / "object_event").string();
@@ -107,7 +107,7 @@ TEST(ObjectEvent, RecordingsAreVerified) {
   EXPECT_GT(v.reference.readings, 40u);
 }
 
-/// Recorded ticks have the lights of their time.
+/// Recorded ticks have the states of the lights at their time.
 TEST(Simulation, RecordsTheLights) {
   world::World world = corridor();
   world.lights.emplace_back().phases = {{world::LightState::green, 0.25}, {world::LightState::red, 1.0}};

@@ -1,5 +1,5 @@
-// Users of bridges pause, step, reset, drive and place. Nothing here depends on how fast the machine is: a run without
-// a limit on its speed never waits, and a paused one goes on when it is asked to.
+// Users of bridges pause, step, reset, drive and place. Nothing here depends on the speed of the machine: a run without
+// a speed limit never waits, and a paused one continues on request.
 
 #include "scenarios/operator.h"
 
@@ -26,7 +26,7 @@ world::World room() {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-/// A bridge whose user does what a test says each time that it is asked.
+/// A bridge whose user makes the test's requests, one set per poll.
 struct Script : bridges::Bridge {
   void publish(const base::TickRecord&, const bridges::RunState& state) override { ++ticks, last = state; }
   void publish(const bridges::RunState& state) override { ++looks, last = state; }
@@ -71,7 +71,7 @@ TEST_F(OperatorTest, WithoutRequestsTicksFollow) {
   EXPECT_EQ(script->looks, 0);
 }
 
-TEST_F(OperatorTest, APausedRunMakesTheTicksThatItIsAskedFor) {
+TEST_F(OperatorTest, APausedRunSimulatesRequestedTicks) {
   int asked = 0;
   script->act = [&](bridges::Requests& requests) {
     if (asked == 0) requests.paused = true;
@@ -82,12 +82,12 @@ TEST_F(OperatorTest, APausedRunMakesTheTicksThatItIsAskedFor) {
   for (int i = 0; i < 2; ++i, tick()) ASSERT_EQ(wait(), Operator::Next::tick);
   EXPECT_TRUE(script->last.paused);
   EXPECT_EQ(script->looks, 2) << "two looks before the steps were asked for";
-  EXPECT_EQ(wait(), Operator::Next::tick);  // goes on
+  EXPECT_EQ(wait(), Operator::Next::tick);  // continues
   tick();
   EXPECT_FALSE(script->last.paused);
 }
 
-TEST_F(OperatorTest, StepsOfARunThatIsNotPausedAreForgotten) {
+TEST_F(OperatorTest, StepsOfAnUnpausedRunAreIgnored) {
   int asked = 0;
   script->act = [&](bridges::Requests& requests) {
     if (asked == 0) requests.steps = 5;
@@ -99,7 +99,7 @@ TEST_F(OperatorTest, StepsOfARunThatIsNotPausedAreForgotten) {
   EXPECT_EQ(wait(), Operator::Next::stop) << "the steps of before must not count now";
 }
 
-TEST_F(OperatorTest, AResetComesOnce) {
+TEST_F(OperatorTest, AResetIsAppliedOnce) {
   int asked = 0;
   script->act = [&](bridges::Requests& requests) { requests.reset = asked++ == 1; };
   EXPECT_EQ(wait(), Operator::Next::tick);
@@ -111,7 +111,7 @@ TEST_F(OperatorTest, AResetComesOnce) {
   EXPECT_EQ(script->last.runs, 1u);
 }
 
-TEST_F(OperatorTest, AResetOfAPausedRunComesAtOnce) {
+TEST_F(OperatorTest, AResetOfAPausedRunIsImmediate) {
   script->act = [&](bridges::Requests& requests) {
     requests.paused = true;
     requests.reset = true;
@@ -127,7 +127,7 @@ TEST_F(OperatorTest, StopEndsAllWaiting) {
   slow.keep_pace(1e6);
 }
 
-TEST_F(OperatorTest, ADrivenRobotObeysUntilItIsGivenAnother) {
+TEST_F(OperatorTest, ADrivenRobotExecutesItsCommandUntilTheNext) {
   script->act = [&](bridges::Requests& requests) {
     if (ticks == 1) requests.commands.push_back({0, {0.0, 0.0, 0.5}});
     if (ticks == 4) requests.commands.push_back({0, {}});
@@ -143,7 +143,7 @@ TEST_F(OperatorTest, ADrivenRobotObeysUntilItIsGivenAnother) {
   EXPECT_EQ(yaw[5], yaw[4]) << "a zero command stands; the controller is not asked again";
 }
 
-TEST_F(OperatorTest, PlacedRobotsAreWhereTheyWerePut) {
+TEST_F(OperatorTest, PlacedRobotsAreAtTheirNewPose) {
   script->act = [&](bridges::Requests& requests) { requests.placements.push_back({1, {0.5, 0.25, 0.0, 1.0}}); };
   ASSERT_EQ(wait(), Operator::Next::tick);
   tick();
@@ -152,7 +152,7 @@ TEST_F(OperatorTest, PlacedRobotsAreWhereTheyWerePut) {
   EXPECT_EQ(X_WM.y, 0.25);
 }
 
-TEST_F(OperatorTest, ASpeedHoldsFromThenOn) {
+TEST_F(OperatorTest, ASpeedAppliesFromThenOn) {
   script->act = [&](bridges::Requests& requests) {
     if (ticks == 0) requests.speed = 2.0;
   };
@@ -172,8 +172,8 @@ TEST(Operator, WithoutBridgesARunNeverWaits) {
 
 bridges::Joining joining(const std::string& name) { return {name, "", {}, std::make_shared<bridges::Outcome>()}; }
 
-/// A run that takes no robots and worlds refuses them, each with a reason.
-TEST_F(OperatorTest, RefusesChangesThatTheRunDoesNotTake) {
+/// A run that supports no robots and worlds refuses them, each with a reason.
+TEST_F(OperatorTest, RefusesUnsupportedChanges) {
   const bridges::Joining late = joining("late");
   const bridges::Leaving first{0, std::make_shared<bridges::Outcome>()};
   const auto other = std::make_shared<bridges::Outcome>();
@@ -190,8 +190,8 @@ TEST_F(OperatorTest, RefusesChangesThatTheRunDoesNotTake) {
   }
 }
 
-/// Each robot that joins takes time: a few do in a tick, in their order.
-TEST_F(OperatorTest, LetsAFewRobotsJoinPerTick) {
+/// Each robot that joins takes time: a few join per tick, in order.
+TEST_F(OperatorTest, AddsAFewRobotsPerTick) {
   std::vector<std::string> joined;
   users.on_fleet_changes([&](const auto& robots, const auto&) {
     for (const bridges::Joining& each : robots) {
@@ -209,7 +209,7 @@ TEST_F(OperatorTest, LetsAFewRobotsJoinPerTick) {
   EXPECT_EQ(joined.size(), 6u);
 }
 
-TEST_F(OperatorTest, GivesTheWorldThatAUserAskedFor) {
+TEST_F(OperatorTest, ReturnsTheWorldThatAUserRequested) {
   users.set_loads_worlds(true);
   script->act = [&](bridges::Requests& requests) {
     requests.world = bridges::WorldChange{"a.world", true, std::make_shared<bridges::Outcome>()};
@@ -220,7 +220,7 @@ TEST_F(OperatorTest, GivesTheWorldThatAUserAskedFor) {
   EXPECT_EQ(wait(), Operator::Next::tick);
 }
 
-/// Of ten steps of a paused run six are dropped after one.
+/// Six of ten steps of a paused run are dropped after the first one.
 TEST_F(OperatorTest, DropsSteps) {
   script->act = [&](bridges::Requests& requests) {
     requests.paused = true;

@@ -26,7 +26,7 @@ Trial run(Scenario scenario, std::uint64_t seed, const Disturbance& disturbance 
   return run_trial(scenario, disturbed_world(scenario, disturbance), device(), {.disturbance = disturbance});
 }
 
-/// Means of the eight columns over seeds 1 to 3, all of which must reach the end without contact.
+/// Returns means of the eight columns over seeds 1 to 3, all of which must reach the end without contact.
 ThesisRow mean_row(const std::string& name) {
   std::vector<ThesisRow> rows;
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
@@ -38,7 +38,7 @@ ThesisRow mean_row(const std::string& name) {
   return mean_of(rows);
 }
 
-/// Within a factor of 1.5 of the thesis' trials.
+/// Checks that the values are within a factor of 1.5 of the thesis' trials.
 void expect_near_table(const std::string& name, const ThesisRow& ours) {
   const ThesisTable& table = *thesis_table(name);
   double least = HUGE_VAL, most = 0.0;
@@ -50,7 +50,7 @@ void expect_near_table(const std::string& name, const ThesisRow& ours) {
   EXPECT_LT(ours[4], most * 1.5) << name;
 }
 
-TEST(PathFollowing, LaneEdgesLandInTheTablesRange) {
+TEST(PathFollowing, LaneEdgesMatchTheTable) {
   const ThesisRow p = mean_row("lane-edge-p");
   const ThesisRow pi = mean_row("lane-edge-pi");
   expect_near_table("lane-edge-p", p);
@@ -59,7 +59,7 @@ TEST(PathFollowing, LaneEdgesLandInTheTablesRange) {
   EXPECT_GT(pi[0], 0.0);
 }
 
-TEST(PathFollowing, MagnetsLandInTheTablesRange) {
+TEST(PathFollowing, MagnetsMatchTheTable) {
   const ThesisRow p = mean_row("magnet-p");
   const ThesisRow pi = mean_row("magnet-pi");
   expect_near_table("magnet-p", p);
@@ -69,7 +69,7 @@ TEST(PathFollowing, MagnetsLandInTheTablesRange) {
 
 /// The heading changes by kp times the integral of the error. On a path with a right-angle turn the mean error is
 /// therefore (pi / 2) / (kp T), whatever the sensor, the delay or the lane's width.
-TEST(PathFollowing, TheMeanErrorOfAPLoopIsOwedToTheBend) {
+TEST(PathFollowing, TheMeanErrorOfAPLoopComesFromTheBend) {
   for (const double delay : {0.0, 0.5}) {
     Scenario scenario = experiment("lane-edge-p", Plant::ideal);
     scenario.actor.link = {.delay = delay};
@@ -78,7 +78,7 @@ TEST(PathFollowing, TheMeanErrorOfAPLoopIsOwedToTheBend) {
     const double seconds = trial.times.back() - trial.times.front();
     EXPECT_NEAR(trial.errors[0].mean, 0.5 * M_PI / (0.5 * seconds), 0.1 * trial.errors[0].mean) << delay;
 
-    // To the last digit: every error but the last was in effect for 0.1 s.
+    // To the last digit: every error except the last was in effect for 0.1 s.
     const std::vector<double>& errors = trial.counts[0].errors;
     const double sum = std::accumulate(errors.begin(), errors.end() - 1, 0.0);
     const double turned = base::wrap_angle(trial.tracks[0].poses.back().yaw - trial.tracks[0].poses.front().yaw);
@@ -86,7 +86,7 @@ TEST(PathFollowing, TheMeanErrorOfAPLoopIsOwedToTheBend) {
   }
 }
 
-/// Player's driver halves the radius, so the same gain steers about twice as much: the mean error is about half.
+/// Player's driver halves the radius, so the same gain steers about twice as much, and the mean error is about half.
 TEST(PathFollowing, TheThesisPlantDoublesTheGain) {
   const Disturbance none{.place = 0.0, .heading = 0.0};
   const double ideal = run(experiment("lane-edge-p", Plant::ideal), 1, none).errors[0].mean;
@@ -94,9 +94,9 @@ TEST(PathFollowing, TheThesisPlantDoublesTheGain) {
   EXPECT_NEAR(thesis / ideal, 0.5, 0.08);
 }
 
-/// With the shipped robot, its own sensor and default settings, its body stays in the lane, including the bend and the
-/// narrow end.
-TEST(PathFollowing, ByItsOwnDefaultsTheShippedRobotKeepsTheLane) {
+/// The body of the shipped robot, with its own sensor and default settings, stays in the lane, including the bend and
+/// the narrow end.
+TEST(PathFollowing, TheShippedRobotKeepsTheLaneWithItsDefaults) {
   const world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/testpath/testpath.world", {.sensors = sensors::world_file_words()});
   for (const char* controller : {"lane-keeping", "magnet-keeping"}) {
@@ -124,7 +124,7 @@ TEST(PathFollowing, ATrialIsAFunctionOfItsSeed) {
   EXPECT_NE(run(scenario, 6).hash, first);
 }
 
-TEST(PathFollowing, StartsAreNormalAboutTheWorlds) {
+TEST(PathFollowing, StartsAreNormallyDistributedAroundTheWorlds) {
   Scenario scenario = experiment("lane-edge-p", Plant::thesis);
   const base::Pose at = world_of(scenario).movers[0].X_WM;
   const Disturbance d{.place = 0.01, .heading = 0.02};

@@ -11,8 +11,8 @@
 namespace sf::scenarios {
 namespace {
 
-/// [1/s] 500 for a robot, and for each reading 20 and its rays.
-TEST(RankExchange, RobotsCostTheirReadingsAndRays) {
+/// [1/s] 500 for a robot, and for each reading 20 plus its rays.
+TEST(RankExchange, CostsIncludeReadingsAndRays) {
   world::World world;
   const std::uint32_t robot = scenes::add_robot(world, {}, scenes::laser(61));
   world.movers.emplace_back();
@@ -22,8 +22,8 @@ TEST(RankExchange, RobotsCostTheirReadingsAndRays) {
   EXPECT_EQ(costs_of(world, sensor_set)[robot + 1], 500.0);
 }
 
-/// Robots of all four kinds, two of each rank.
-TEST(RankExchange, AllRanksKnowWhoMadeAStepAndWhoIsDone) {
+/// Robots in all four states, two on each rank.
+TEST(RankExchange, AllRanksGetTheStatusOfAllControllers) {
   world::World world;
   for (int m = 0; m < 4; ++m) scenes::add_robot(world, {2.0 * m, 0.0, 0.0, 0.0}, scenes::laser(3));
   const std::vector<unsigned> homes{0, 0, 1, 1};

@@ -1,4 +1,4 @@
-// A recording as ticks again.
+// A recording played back as ticks.
 
 #include <gtest/gtest.h>
 
@@ -48,10 +48,10 @@ TEST(Replay, FindsTicksByTime) {
   EXPECT_EQ(replay.tick_at(-1), 0u);            // before the first
   EXPECT_EQ(replay.tick_at(kStep - 1), 0u);     // just before a tick
   EXPECT_EQ(replay.tick_at(kStep), 1u);         // at a tick
-  EXPECT_EQ(replay.tick_at(1000 * kStep), 3u);  // beyond the last
+  EXPECT_EQ(replay.tick_at(1000 * kStep), 3u);  // after the last
 }
 
-TEST(Replay, GivesStatesAndReadingsSinceTheTickShown) {
+TEST(Replay, ReturnsStatesAndReadingsSinceTheShownTick) {
   const record::Recording recording = small_recording();
   Replay replay(recording, recording.info);
   const base::TickRecord last = replay.tick(3, 2);
@@ -67,12 +67,12 @@ TEST(Replay, GivesStatesAndReadingsSinceTheTickShown) {
   EXPECT_EQ(read_value(replay.tick(3, 0)), 8.0) << "of the ticks between, too";
 }
 
-/// Sensors measure between ticks, too; their poses are not recorded.
-TEST(Replay, GivesThePoseOfASensorWhenItMeasured) {
+/// Sensors also measure between ticks; their poses are not recorded.
+TEST(Replay, ReturnsThePoseOfASensorAtItsMeasurement) {
   record::Recording recording = small_recording();
   recording.info.movers[0].sensors[0].X_MS = {0.5, 0.0, 0.0, 0.0};
   recording.states[0][1].X_WM.yaw = 3.0;
-  recording.states[0][2].X_WM.yaw = -3.0;  // by 0.28 rad across pi
+  recording.states[0][2].X_WM.yaw = -3.0;  // 0.28 rad across pi
   const auto pose_at = [&](std::int64_t time) {
     recording.readings = {{0, 6, 0, 0, 3 * kStep, time, {7.0}}};
     Replay replay(recording, recording.info);
@@ -82,12 +82,12 @@ TEST(Replay, GivesThePoseOfASensorWhenItMeasured) {
   };
   EXPECT_EQ(pose_at(kStep).x, 1.0);                                // at a tick
   EXPECT_NEAR(pose_at(3 * kStep / 2).x, 1.5, 1e-12);               // between two
-  EXPECT_NEAR(std::cos(pose_at(3 * kStep / 2).yaw), -1.0, 1e-12);  // the shorter way round
+  EXPECT_NEAR(std::cos(pose_at(3 * kStep / 2).yaw), -1.0, 1e-12);  // the shorter way around
   EXPECT_EQ(pose_at(-5).x, 0.0);                                   // before the first
   EXPECT_EQ(pose_at(9 * kStep).x, 3.0);                            // after the last
 }
 
-TEST(Replay, GivesEachSensorsNewestReadingAfterAJump) {
+TEST(Replay, ReturnsEachSensorsNewestReadingAfterAJump) {
   const record::Recording recording = small_recording();
   Replay replay(recording, recording.info);
   EXPECT_EQ(read_value(replay.tick(1, std::nullopt)), 7.0);
@@ -95,12 +95,12 @@ TEST(Replay, GivesEachSensorsNewestReadingAfterAJump) {
   EXPECT_EQ(read_value(replay.tick(1, 3)), 7.0) << "backwards";
 }
 
-TEST(Replay, LeavesOutReadingsOfOtherForms) {
+TEST(Replay, SkipsReadingsOfOtherForms) {
   record::Recording recording = small_recording();
   record::RunInfo info = recording.info;
-  recording.readings.push_back({0, 6, 1, 0, 0, 0, {1.0}});       // no such sensor
+  recording.readings.push_back({0, 6, 1, 0, 0, 0, {1.0}});       // unknown sensor
   recording.readings.push_back({0, 6, 0, 0, 0, 0, {1.0, 2.0}});  // two rows of a type that has one
-  recording.readings.push_back({0, 9, 0, 0, 0, 0, {1.0}});       // no such type
+  recording.readings.push_back({0, 9, 0, 0, 0, 0, {1.0}});       // unknown type
   EXPECT_EQ(Replay(recording, info).left_out(), 3u);
   info.sensor_types[0].columns[0].name = "force_N";  // another version of the type
   EXPECT_EQ(Replay(recording, info).left_out(), 5u);
@@ -109,14 +109,14 @@ TEST(Replay, LeavesOutReadingsOfOtherForms) {
 TEST(Replay, SurvivesDamage) {
   record::Recording recording = small_recording();
   recording.states[1].resize(2);       // a mover without its last states
-  recording.lights = {{0, {{}, {}}}};  // lights that the world does not have
+  recording.lights = {{0, {{}, {}}}};  // lights that are not in the world
   Replay replay(recording, recording.info);
   const base::TickRecord last = replay.tick(3, std::nullopt);
   EXPECT_EQ(last.reports.size(), 1u);
   EXPECT_TRUE(last.lights.empty());
 }
 
-TEST(Replay, RefusesRecordingsThatShowNothing) {
+TEST(Replay, RejectsRecordingsWithoutTicksOrStates) {
   record::Recording empty = small_recording();
   for (auto& states : empty.states) states.clear();
   EXPECT_THROW(Replay(empty, empty.info), base::InputError);

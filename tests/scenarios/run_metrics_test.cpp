@@ -12,7 +12,7 @@
 namespace sf::scenarios {
 namespace {
 
-/// SimVille with standing robots, and a record of it that tests fill by hand.
+/// SimVille with robots at rest, and a tick record that tests fill in.
 class Town {
  public:
   Town() : world_(load()), simulation_(world_, device(), nobody()), metrics_(world_, simulation_) {
@@ -32,7 +32,8 @@ class Town {
     metrics_.update({tick_++, std::llround(1e9 * seconds), reports_, commands_, contacts_, {}});
   }
 
-  /// Moves robot 0 from half a metre before to half a metre past a line at one time. @return red lights passed
+  /// Moves robot 0 at one time from half a metre before a line to half a metre past it.
+  /// @return red lights passed
   std::uint64_t pass(const base::Pose& X_WL, double seconds) {
     const std::uint64_t before = metrics_.red_lights_passed();
     for (int i = -10; i <= 10; ++i) look(seconds, base::compose(X_WL, {0.05 * i, 0.0, 0.0, 0.0}));
@@ -58,7 +59,7 @@ class Town {
   std::vector<std::uint8_t> contacts_;
 };
 
-/// A governed way-point, x in driving direction.
+/// Returns a governed way-point, with x in driving direction.
 base::Pose line_of(const Town& town, const std::string& name) {
   unsigned a = 0, b = 0, c = 0;
   EXPECT_EQ(std::sscanf(name.c_str(), "%u.%u.%u", &a, &b, &c), 3);
@@ -88,7 +89,7 @@ TEST(RunMetrics, OnlyPassesAtRedAreCounted) {
   EXPECT_GT(others, 0);
 }
 
-TEST(RunMetrics, OtherLanesAndTheOtherDirectionAreNotMeant) {
+TEST(RunMetrics, OtherLanesAndTheOppositeDirectionDoNotCount) {
   Town town;
   const world::Light& light = town.world().lights[0];
   double red = 0.0;
@@ -97,7 +98,7 @@ TEST(RunMetrics, OtherLanesAndTheOtherDirectionAreNotMeant) {
   EXPECT_EQ(town.pass(X_WL, red), 1u);
   EXPECT_EQ(town.pass(base::compose(X_WL, {0.0, 0.4, 0.0, 0.0}), red), 0u);   // the adjacent lane
   EXPECT_EQ(town.pass(base::compose(X_WL, {0.0, 0.0, 0.0, M_PI}), red), 0u);  // back over it
-  // At the line, and a little beyond, is not past it.
+  // At the line, and slightly beyond it, does not count as passed.
   const std::uint64_t before = town.metrics().red_lights_passed();
   double front = 0.0;
   for (const world::Segment& side : town.world().movers[0].body)
@@ -108,11 +109,11 @@ TEST(RunMetrics, OtherLanesAndTheOtherDirectionAreNotMeant) {
   EXPECT_EQ(town.metrics().red_lights_passed(), before + 1);
 }
 
-TEST(CheckpointProgress, OnesThatAreNoLongerHeadedForArePassed) {
+TEST(CheckpointProgress, ReplacedCheckpointsCountAsPassed) {
   CheckpointProgress goals;
   goals.update(base::kNoId);
   EXPECT_FALSE(goals.any);
-  goals.update(3);  // the first is not passed yet
+  goals.update(3);  // the first has not been passed yet
   EXPECT_TRUE(goals.any);
   EXPECT_EQ(goals.passed, 0u);
   goals.update(3);
@@ -128,7 +129,7 @@ TEST(CheckpointProgress, OnesThatAreNoLongerHeadedForArePassed) {
   EXPECT_EQ(goals.now, 7u);
 }
 
-TEST(RunMetrics, ContactsAreCountedWhereTheyBegin) {
+TEST(RunMetrics, ContactsAreCountedAtTheirStart) {
   Town town;
   const base::Pose X = town.world().movers[0].X_WM;
   for (const bool contact : {false, true, true, false, true, true, true, false}) town.look(0.0, X, contact);
@@ -136,7 +137,7 @@ TEST(RunMetrics, ContactsAreCountedWhereTheyBegin) {
   EXPECT_EQ(town.metrics().contacts(), 2u);
 }
 
-/// A full stop is a halt after driving. Creeping is neither, and standing longer is no second stop.
+/// A full stop is a halt after driving. Creeping is neither, and a longer halt is not a second stop.
 TEST(RunMetrics, FullStopsAreCounted) {
   Town town;
   const base::Pose X = town.world().movers[0].X_WM;
@@ -152,7 +153,7 @@ TEST(RunMetrics, FullStopsAreCounted) {
   EXPECT_EQ(stops({0.0, -0.2, kStanding, 0.2, 0.0}), 3u) << "backwards, too";
 }
 
-TEST(RunMetrics, MetresAddUp) {
+TEST(RunMetrics, DistancesAreSummed) {
   Town town;
   const base::Pose X = town.world().movers[0].X_WM;
   for (int i = 0; i <= 10; ++i) town.look(0.1 * i, base::compose(X, {0.1 * i, 0.0, 0.0, 0.0}));

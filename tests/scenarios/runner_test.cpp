@@ -16,7 +16,7 @@ constexpr const char* kRunFile = SF_SOURCE_DIR "/experiments/test.toml";
 constexpr const char* kRooms = "world = \"../worlds/rooms.world\"\n";
 constexpr const char* kPath = "world = \"../worlds/testpath/testpath.world\"\n";
 
-/// Message of the check from the file's name on; empty without an error.
+/// Returns the error of the check from the file's name on; empty without an error.
 std::string run_refusal(const std::string& text) {
   try {
     check_scenario(parse_scenario(kRunFile, text));
@@ -35,7 +35,7 @@ TEST(CheckScenario, ErrorsOfARunAreFoundAtTheirLines) {
   const std::pair<std::string, std::string> kCorpus[] = {
       {"# a comment\nworld = \"nowhere.world\"\n", "test.toml:2: there is no world '"},
       {"world = \"..\"\n", "test.toml:1: there is no world '"},
-      // Known only by the controller: it needs a lane edge sensor.
+      // Detected only by the controller: it needs a lane edge sensor.
       {rooms + "[default]\nrate = 5\ncontroller = \"lane-keeping\"\n", "test.toml:4: controller 'lane-keeping'"},
       {path + "[[robot]]\nname = \"roomba0\"\ncontroller = \"route\"\n", "test.toml:4: "},
       {path + "[default]\ncontroller = \"lane-keeping\"\nsettings = { kp = \"much\" }\n", "test.toml:4: 'kp'"},
@@ -43,7 +43,7 @@ TEST(CheckScenario, ErrorsOfARunAreFoundAtTheirLines) {
       {path + "[expect]\nlights_obeyed = true\n", "test.toml:3: "},
       {path + "[default]\ncontroller = \"none\"\n[expect]\nmean_error = 1\n",
        "test.toml:5: 'mean_error' of a robot without a controller"},
-      // Nothing would be simulated, and `no_collision` be met: none of a tick of 0.1 s, and less than half of it.
+      // Nothing would be simulated, and `no_collision` would be met: zero, and less than half of a tick of 0.1 s.
       {rooms + "duration = 0\n", "test.toml:2: 'duration' 0 s is less than a tick of 0.1 s"},
       {rooms + "duration = 1e-9\n", "test.toml:2: 'duration' 1e-09 s is less than a tick of 0.1 s"},
       {rooms + "duration = 0.049\n", "test.toml:2: 'duration' 0.049 s is less than a tick of 0.1 s"},
@@ -58,8 +58,8 @@ TEST(CheckScenario, AValidScenarioPasses) {
             "");
 }
 
-/// A caller who checks nothing beforehand gets the same errors, and no run.
-TEST(RunScenario, RefusesWhatTheCheckRefuses) {
+/// A caller that does not check first gets the same errors, and no run.
+TEST(RunScenario, RejectsWhateverTheCheckRejects) {
   gpu::Device device;
   for (const std::string& text :
        {std::string(kPath) + "[expect]\nlights_obeyed = true\n",
@@ -76,7 +76,7 @@ TEST(RunScenario, RefusesWhatTheCheckRefuses) {
   }
 }
 
-TEST(ScenarioStatus, NothingExpectedIsNeitherPassedNorFailed) {
+TEST(ScenarioStatus, NoExpectationsNeitherPassNorFail) {
   ScenarioResult result;
   EXPECT_EQ(result.status(), ScenarioStatus::no_expectations);
   result.outcomes.push_back({.met = true});
@@ -85,8 +85,8 @@ TEST(ScenarioStatus, NothingExpectedIsNeitherPassedNorFailed) {
   EXPECT_EQ(result.status(), ScenarioStatus::failed);
 }
 
-/// A wandering robot has no control error: the result states this, and is a failure.
-TEST(RunScenario, SaysWhatCannotBeMeasured) {
+/// A wandering robot has no control error: the result states this and is a failure.
+TEST(RunScenario, ReportsMetricsThatCannotBeMeasured) {
   gpu::Device device;
   const ScenarioResult result = run_scenario(
       parse_scenario(kRunFile, std::string(kRooms) + "robots = 2\nduration = 1\n[expect]\nmean_abs_error = 1\n"),
@@ -96,8 +96,8 @@ TEST(RunScenario, SaysWhatCannotBeMeasured) {
   EXPECT_EQ(result.outcomes[0].measured, "no robot with a control error");
 }
 
-/// The smallest distance of several robots counts: the second one stands.
-TEST(RunScenario, DistanceIsThatOfTheLeast) {
+/// The smallest distance of several robots counts: the second one is at rest.
+TEST(RunScenario, DistanceIsTheMinimumOverRobots) {
   gpu::Device device;
   const ScenarioResult result =
       run_scenario(parse_scenario(kRunFile, std::string(kRooms) +
@@ -109,9 +109,9 @@ TEST(RunScenario, DistanceIsThatOfTheLeast) {
   EXPECT_FALSE(result.outcomes[0].met);
 }
 
-/// The worst of several robots counts, one that starts beside its lane. Errors of both signs count, though they would
-/// cancel in a mean.
-TEST(RunScenario, TheControlErrorIsTheWorstOnes) {
+/// The worst of several robots counts, one that starts next to its lane. Errors of both signs count, although they
+/// would cancel in a mean.
+TEST(RunScenario, TheControlErrorIsThatOfTheWorstRobot) {
   const std::string world = testing::TempDir() + fmt::format("two_in_a_lane_{}.world", getpid());
   std::ofstream(world) << "include \"" SF_SOURCE_DIR "/worlds/testpath/testpath.world\"\n"
                        << "create( name \"beside\" pose [1.0 0.06 0 0] create_laneedge( name \"laneedge\" ) )\n";
@@ -134,7 +134,7 @@ TEST(RunScenario, TheControlErrorIsTheWorstOnes) {
   std::filesystem::remove(world);
 }
 
-/// One missed cell of 9000 is not all of them.
+/// With one missed cell of 9000, coverage is not complete.
 TEST(RunScenario, MapCoverageIsNotRoundedUp) {
   gpu::Device device;
   const ScenarioResult result =

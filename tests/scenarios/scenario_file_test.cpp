@@ -13,7 +13,7 @@ constexpr const char* kWorld = "world = \"../worlds/testpath/testpath.world\"\n"
 
 Scenario parse_text(const std::string& text) { return parse_scenario(kFile, kWorld + text); }
 
-/// Message of the error from the file's name on; empty without an error.
+/// Returns the error from the file's name on; empty without an error.
 std::string refusal(const std::string& text, bool make = false) {
   try {
     const Scenario scenario = parse_scenario(kFile, text);
@@ -26,7 +26,7 @@ std::string refusal(const std::string& text, bool make = false) {
   return {};
 }
 
-TEST(ScenarioFile, DefaultsOfAFileThatNamesAWorld) {
+TEST(ScenarioFile, DefaultsOfAFileWithOnlyAWorld) {
   const Scenario s = parse_text("");
   EXPECT_EQ(s.name, "test");
   EXPECT_TRUE(std::filesystem::exists(s.world)) << s.world;
@@ -38,7 +38,7 @@ TEST(ScenarioFile, DefaultsOfAFileThatNamesAWorld) {
   EXPECT_TRUE(s.expect.empty());
 }
 
-TEST(ScenarioFile, EveryKeyArrives) {
+TEST(ScenarioFile, EveryKeyIsRead) {
   const Scenario s = parse_text(R"(
 name = "all keys"
 duration = 12.5
@@ -95,8 +95,8 @@ tick_p99_ms = 10
     EXPECT_EQ(e.robot, e.kind == Expectation::Kind::mean_abs_error ? "roomba0" : "");
 }
 
-/// A robot with settings only keeps the default's controller; one with another controller starts without settings.
-TEST(ScenarioFile, RobotsInheritWhatTheyDoNotSay) {
+/// A robot with only settings keeps the default's controller; one with another controller starts without settings.
+TEST(ScenarioFile, RobotsInheritUnsetKeys) {
   const Scenario s = parse_text(R"(
 [default]
 controller = "lane-keeping"
@@ -113,7 +113,7 @@ settings = { kp = 0.9 }
   EXPECT_EQ(config.settings.number("kp", 0.0, 0.0, 10.0), 0.9);
 }
 
-TEST(ScenarioFile, RobotsWithAPoseAloneKeepTheDefault) {
+TEST(ScenarioFile, RobotsWithOnlyAPoseKeepTheDefault) {
   const Scenario s = parse_text("[[robot]]\nname = \"roomba0\"\npose = [1, 0.1, 5]\n");
   ASSERT_EQ(s.robot_setups.size(), 1u);
   EXPECT_FALSE(s.robot_setups[0].actor);
@@ -122,7 +122,7 @@ TEST(ScenarioFile, RobotsWithAPoseAloneKeepTheDefault) {
   EXPECT_NE(world.hash, world_of(parse_text("")).hash);
 }
 
-TEST(ScenarioFile, ThePlantIsEveryMoversActuatorModel) {
+TEST(ScenarioFile, ThePlantSetsTheActuatorModelOfEveryMover) {
   EXPECT_EQ(world_of(parse_text("")).movers[0].actuator_model, world::ActuatorModel::direct);
   EXPECT_EQ(world_of(parse_text("plant = \"thesis\"")).movers[0].actuator_model, world::ActuatorModel::player_create);
   EXPECT_EQ(world_of(parse_text("plant = \"ideal\"")).movers[0].actuator_model, world::ActuatorModel::direct);
@@ -133,7 +133,7 @@ TEST(ScenarioFile, LinksHaveTheScenariosSeed) {
   EXPECT_EQ(simulation_of(s, world_of(s)).actors[0].link.seed, 9u);
 }
 
-TEST(ScenarioFile, StatesHaveALinkOnRequest) {
+TEST(ScenarioFile, StatesHaveALinkIfConfigured) {
   EXPECT_FALSE(parse_text("").states);
   const Scenario s = parse_text(
       "seed = 9\n[states]\nrate = 5\ndelay = 0.5\njitter = 0.1\nloss = 0.2\nfilter = true\nposition_sigma = "
@@ -151,7 +151,7 @@ TEST(ScenarioFile, StatesHaveALinkOnRequest) {
 }
 
 /// One mistake each, with its message.
-TEST(ScenarioFile, MistakesAreRefusedAtTheirLine) {
+TEST(ScenarioFile, MistakesAreRejectedAtTheirLine) {
   const std::string w = kWorld;
   const std::pair<std::string, std::string> kCorpus[] = {
       {"", "test.toml: has no world; expected world = \"FILE\""},
@@ -203,7 +203,7 @@ TEST(ScenarioFile, MistakesAreRefusedAtTheirLine) {
 }
 
 /// Mistakes that only the world or a controller can detect.
-TEST(ScenarioFile, MistakesAgainstTheWorldAreRefusedAtTheirLine) {
+TEST(ScenarioFile, MistakesAgainstTheWorldAreRejectedAtTheirLine) {
   const std::string w = kWorld;
   const std::pair<std::string, std::string> kCorpus[] = {
       {w + "[[robot]]\nname = \"roomba1\"\n", "test.toml:2: "},
@@ -225,7 +225,7 @@ TEST(ScenarioFile, MistakesAgainstTheWorldAreRefusedAtTheirLine) {
 }
 
 /// Bytes removed, repeated and changed: a result or an error, never a crash.
-TEST(ScenarioFile, MutantsAreReadOrRefused) {
+TEST(ScenarioFile, MutantsAreReadOrRejected) {
   const std::string whole = read_scenario(SF_SOURCE_DIR "/experiments/lane-edge-pi.toml").file.empty() ? "" : R"(
 world = "../worlds/testpath/testpath.world"
 [default]
@@ -254,7 +254,7 @@ mean_abs_error = { roomba0 = 0.072 }
   EXPECT_GT(read, 100);
 }
 
-TEST(ScenarioFile, OursAreRead) {
+TEST(ScenarioFile, ShippedFilesAreRead) {
   int found = 0;
   for (const auto& entry : std::filesystem::directory_iterator(SF_SOURCE_DIR "/experiments")) {
     if (entry.path().extension() != ".toml") continue;
@@ -267,7 +267,7 @@ TEST(ScenarioFile, OursAreRead) {
   EXPECT_GE(found, 7);
 }
 
-/// The least and the greatest number of each key, and the next ones beyond.
+/// The minimum and maximum number of each key, and the next numbers beyond.
 TEST(ScenarioFile, NumbersEndAtTheirLimits) {
   struct Range {
     const char *table, *key, *below, *first, *last, *above;

@@ -1,4 +1,4 @@
-// A service records what it knows: its scans can be computed again from the estimated states, and drawn.
+// A service records its estimated states: its scans can be recomputed from them and drawn.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace sf::scenarios {
 namespace {
 
-/// Two robots drive, with samples between ticks; one falls silent and is out of the world before the end.
+/// Two robots drive, with samples between ticks; one becomes silent and is removed from the world before the end.
 record::Recording recorded(const std::string& accuracy = "exact") {
   server::Fixture f({.sensor_rate = 13.0,
                      .filter = {.enabled = true, .policy = estimation::StalePolicy::hide},
@@ -37,7 +37,7 @@ record::Recording recorded(const std::string& accuracy = "exact") {
   return record::open_recording(folder);
 }
 
-TEST(ServiceRecording, ItsScansAreThoseOfPlainCpp) {
+TEST(ServiceRecording, ScansMatchPlainCpp) {
   const record::Recording recording = recorded();
   ASSERT_EQ(recording.states.size(), 2u);
   EXPECT_GT(recording.ticks, 80u) << "60 ticks, and samples between them";
@@ -50,7 +50,7 @@ TEST(ServiceRecording, ItsScansAreThoseOfPlainCpp) {
   EXPECT_EQ(v.reference.readings, recording.readings.size());
 }
 
-/// Within the bound that each reading had, which the metadata states and which follows from the sensor's place.
+/// Within the bound of each reading, which the metadata states and which follows from the sensor's pose.
 TEST(ServiceRecording, ScansIn32BitsAreComparedWithinTheirBound) {
   record::Recording recording = recorded("single");
   const Verification v = verify(recording, server::Fixture::device(), {});
@@ -62,8 +62,8 @@ TEST(ServiceRecording, ScansIn32BitsAreComparedWithinTheirBound) {
   EXPECT_EQ(verify(recording, server::Fixture::device(), {}).reference.different, 1u);
 }
 
-/// A service's readings of other types cannot be computed again.
-TEST(ServiceRecording, NothingComparedIsNotSound) {
+/// A service's readings of other types cannot be recomputed.
+TEST(ServiceRecording, WithoutComparisonsItIsNotSound) {
   record::Recording recording = recorded();
   for (record::ReadingSample& reading : recording.readings) reading.type = sensors::kLaser + 1;
   const Verification v = verify(recording, server::Fixture::device(), {});
@@ -72,7 +72,7 @@ TEST(ServiceRecording, NothingComparedIsNotSound) {
   EXPECT_FALSE(v.sound());
 }
 
-TEST(ServiceRecording, AWrongRangeIsFound) {
+TEST(ServiceRecording, AWrongRangeIsDetected) {
   record::Recording recording = recorded();
   recording.readings[20].values[7] += 1e-6;
   EXPECT_FALSE(verify(recording, server::Fixture::device(), {}).sound());

@@ -34,7 +34,7 @@ std::vector<std::uint32_t> robots_of(const world::World& world) {
   return rows;
 }
 
-/// All robots stand.
+/// All robots remain at rest.
 SimulationOptions nobody(const world::World& world) {
   SimulationOptions options;
   options.actor.controller.name.clear();
@@ -60,7 +60,7 @@ TEST(Simulation, ThreadsChangeNothing) {
   EXPECT_NE(hash_after(world, {.seed = 8, .threads = 2}, 40), first);
 }
 
-TEST(Simulation, ThreadsChangeNothingBehindABadLinkEither) {
+TEST(Simulation, ThreadsChangeNothingWithABadLink) {
   const world::World world = our_world("rooms.world", 20);
   SimulationOptions options{.seed = 7, .threads = 1};
   options.actor.link = {.delay = 0.1, .jitter = 0.3, .loss = 0.2, .seed = 7};
@@ -72,15 +72,15 @@ TEST(Simulation, ThreadsChangeNothingBehindABadLinkEither) {
 }
 
 /// A link without delay and loss gives the same readings as no link.
-TEST(Simulation, AMailboxThatKeepsNothingBackChangesNothing) {
+TEST(Simulation, AMailboxWithoutDelayChangesNothing) {
   const world::World world = our_world("rooms.world", 10);
   SimulationOptions options{.seed = 7};
   const std::uint64_t direct = hash_after(world, options, 30);
-  options.actor.link = {.jitter = 1e-12, .seed = 7};  // formally not perfect, but nothing is late
+  options.actor.link = {.jitter = 1e-12, .seed = 7};  // formally imperfect, but nothing is late
   EXPECT_EQ(hash_after(world, options, 30), direct);
 }
 
-TEST(Simulation, ARobotWithoutControllerStands) {
+TEST(Simulation, ARobotWithoutControllerDoesNotMove) {
   const world::World world = our_world("rooms.world", 3);
   SimulationOptions options;
   options.actor.controller.name.clear();
@@ -125,7 +125,7 @@ TEST(Simulation, ControllersRunAtTheirOwnRate) {
   EXPECT_EQ(steps, (std::vector<int>{0, 5, 10, 15, 20}));
 }
 
-// --- Rates that are no divisors of the tick's.
+// --- Rates that do not divide the tick rate.
 
 world::Sensor sensor(const std::string& type, double rate) {
   world::Sensor sensor;
@@ -150,7 +150,7 @@ world::World fast_world(const std::vector<double>& rates, const raycast::ScanNoi
 }
 
 /// Every reading has its time of measurement, and is measured at the robot's interpolated pose at that time.
-TEST(Simulation, SensorsLookAtTheirOwnTimes) {
+TEST(Simulation, SensorsMeasureAtTheirOwnTimes) {
   const std::vector<double> rates{13.0, 25.0, 50.0, 10.0, 4.0, 333.0};
   const world::World world = fast_world(rates);
   Simulation simulation(world, device(), {.seed = 7});
@@ -181,7 +181,7 @@ TEST(Simulation, SensorsLookAtTheirOwnTimes) {
   EXPECT_GT(driven, 200u) << "the test is meant to drive";
 }
 
-/// Readings of the first robot, bitwise.
+/// Returns the readings of the first robot.
 std::vector<std::vector<double>> read_by_first(const world::World& world, std::uint8_t but = 0) {
   Simulation simulation(world, device(), {.seed = 7});
   std::vector<std::vector<double>> all;
@@ -194,8 +194,8 @@ std::vector<std::vector<double>> read_by_first(const world::World& world, std::u
   return all;
 }
 
-/// Other sensors' samples between ticks affect neither readings nor accumulated wheel rotations.
-TEST(Simulation, OthersRatesChangeNothing) {
+/// Samples of other sensors between ticks affect neither readings nor accumulated wheel rotations.
+TEST(Simulation, RatesOfOtherSensorsChangeNothing) {
   const raycast::ScanNoise noise{.range_sigma = 0.01, .range_proportional = 0.0, .angle_sigma = 0.002};
   for (const double rate : {10.0, 13.0}) {
     world::World alone = fast_world({rate}, noise);
@@ -217,16 +217,16 @@ TEST(Simulation, OthersRatesChangeNothing) {
   }
 }
 
-/// A controller gets the newest reading of each sensor, however many there were since its last step.
-TEST(Simulation, ControllersAreGivenTheNewestScan) {
+/// A controller receives the newest reading of each sensor, regardless of how many there were since its last step.
+TEST(Simulation, ControllersReceiveTheNewestScan) {
   const world::World world = fast_world({25.0, 35.0, 50.0});
   SimulationOptions options{.seed = 7};
   const std::uint64_t direct = hash_after(world, options, 60);
-  options.actor.link = {.jitter = 1e-12, .seed = 7};  // a mailbox, which keeps the newest only
+  options.actor.link = {.jitter = 1e-12, .seed = 7};  // a mailbox, which keeps only the newest
   EXPECT_EQ(hash_after(world, options, 60), direct);
 }
 
-TEST(Simulation, ThreadsChangeNothingBetweenTicksEither) {
+TEST(Simulation, ThreadsChangeNothingBetweenTicks) {
   const world::World world = fast_world({13.0, 25.0, 50.0, 10.0, 4.0}, {.range_sigma = 0.01});
   const std::uint64_t first = hash_after(world, {.seed = 7, .threads = 1}, 30);
   EXPECT_EQ(hash_after(world, {.seed = 7, .threads = 3}, 30), first);
@@ -234,7 +234,7 @@ TEST(Simulation, ThreadsChangeNothingBetweenTicksEither) {
 
 /// The delay counts from the time of measurement, not from the next tick: first at 77 ms, received at the tick after
 /// arrival.
-TEST(Simulation, LinksDelayFromWhenAReadingWasMeasured) {
+TEST(Simulation, LinkDelaysCountFromTheMeasurement) {
   for (const auto& [delay, tick] : {std::pair{0.02, 1}, {0.022, 1}, {0.024, 2}, {0.12, 2}}) {
     world::World world = our_world("testpath/testpath.world");
     for (world::Sensor& s : world.movers[0].sensors) s.settings.push_back({"phase", {0.077}, "", 0, ""});
@@ -252,7 +252,7 @@ TEST(Simulation, LinksDelayFromWhenAReadingWasMeasured) {
 }
 
 /// The robot steers towards the lane only after the first reading.
-TEST(Simulation, ADelayedReadingIsSeenThatMuchLater) {
+TEST(Simulation, ADelayedReadingActsAfterItsDelay) {
   const world::World world = our_world("testpath/testpath.world");
   for (const double delay : {0.0, 0.5, 1.0}) {
     SimulationOptions options;
@@ -269,7 +269,7 @@ TEST(Simulation, ADelayedReadingIsSeenThatMuchLater) {
 }
 
 /// Two robots that patrol towards each other stop by V2V; without it they would collide.
-TEST(Simulation, RobotsHearEachOther) {
+TEST(Simulation, RobotsReceiveEachOthersStates) {
   world::World world = our_world("rooms.world", 2);
   const auto rows = robots_of(world);
   ASSERT_EQ(rows.size(), 2u);
@@ -297,7 +297,7 @@ TEST(Simulation, RobotsHearEachOther) {
   EXPECT_GT(gap, 0.33);
 }
 
-TEST(Simulation, UnknownControllersAndSettingsAreRefused) {
+TEST(Simulation, UnknownControllersAndSettingsAreRejected) {
   const world::World world = our_world("rooms.world", 1);
   SimulationOptions options;
   options.actor.controller = config_of("wonder");
@@ -306,7 +306,7 @@ TEST(Simulation, UnknownControllersAndSettingsAreRefused) {
   EXPECT_THROW(Simulation(world, device(), options), base::InputError);
 }
 
-/// With mailboxes, links and V2V at work.
+/// With mailboxes, links and V2V.
 TEST(Simulation, ATickAllocatesNothingAfterWarmUp) {
   world::World world = our_world("rooms.world", 12);
   SimulationOptions options = nobody(world);
@@ -316,7 +316,7 @@ TEST(Simulation, ATickAllocatesNothingAfterWarmUp) {
     options.actors[i].controller =
         i % 2 == 0 ? config_of("patrol", {{"points", std::vector<double>{0.0, 0.0}, ""}}) : config_of("wander");
   }
-  // No robot moves: new places would build cells, which allocates in the farm.
+  // No robot moves: new places would create cells, which allocates in the farm.
   for (world::Mover& mover : world.movers) mover.max_forward = mover.max_turn = 1e-12;
   Simulation simulation(world, device(), options);
   for (int i = 0; i < 200; ++i) simulation.step();
@@ -329,8 +329,8 @@ TEST(Simulation, ATickAllocatesNothingAfterWarmUp) {
   EXPECT_EQ(counted::allocations, 0u);
 }
 
-/// A step that takes long ends soon after a stop is asked for.
-TEST(Simulation, ALongStepIsGivenUp) {
+/// A long step ends soon after a stop is requested.
+TEST(Simulation, ALongStepIsAbandoned) {
   const world::World world = our_world("rooms.world", 3);
   Simulation simulation(world, device(), {});
   simulation.step();
@@ -338,8 +338,8 @@ TEST(Simulation, ALongStepIsGivenUp) {
   EXPECT_THROW(simulation.step(), base::Interrupted);
 }
 
-/// A stop is seen between two robots: the decisions of many together take long where each takes little.
-TEST(Simulation, AStopIsSeenBetweenTwoRobots) {
+/// A stop is detected between two robots: many decisions take long even if each is fast.
+TEST(Simulation, AStopIsDetectedBetweenTwoRobots) {
   static std::atomic<int> steps{0};
   struct Counts : sensorfarm::Controller {
     sensorfarm::Twist step(const sensorfarm::Input&) override { return ++steps, sensorfarm::Twist{}; }
@@ -358,8 +358,8 @@ TEST(Simulation, AStopIsSeenBetweenTwoRobots) {
   EXPECT_LE(steps, before + 2) << "one for each thread";
 }
 
-/// A robot whose ways are tested for too many substeps a tick is named once, with what to change.
-TEST(Simulation, WarnsOfRobotsTooFastForTheirTicks) {
+/// A robot whose displacements would need too many substeps per tick to test is named once, with the remedy.
+TEST(Simulation, WarnsAboutRobotsTooFastForTheirTicks) {
   world::World world = our_world("rooms.world", 3);
   EXPECT_TRUE(Simulation(world, device(), {}).warnings().empty());
   world.movers[1].max_forward = world.movers[2].max_forward = 1e5;

@@ -23,13 +23,13 @@ namespace {
 
 using base::kSecond;
 
-/// A robot on a circle of 1 m at 0.5 m/s, as the farm knows it.
+/// A robot on a circle of 1 m at 0.5 m/s, in the farm's states.
 struct Circle {
   explicit Circle(const StateLinkOptions& options) : world(scenes::boxed_world(20.0, 20.0, {-10.0, -10.0})) {
     scenes::add_square(world, {});
     states.emplace(world, options);
   }
-  /// [m] from the true position to the known one at tick k.
+  /// [m] Returns the distance between the true position and the farm's at tick k.
   double step(int k) {
     const base::Twist twist{0.5, 0.0, 0.5};
     const base::Report truth{0, k * kTick, robots::advance({}, twist, 0.1 * k), twist};
@@ -45,7 +45,7 @@ struct Circle {
   std::optional<StateLink> states;
 };
 
-TEST(StateLink, PerfectLinkShowsTheTruth) {
+TEST(StateLink, APerfectLinkGivesTheTruth) {
   EXPECT_EQ(Circle({}).worst(0, 50), 0.0);
   EXPECT_LT(Circle({.filter = true}).worst(0, 50), 1e-9);
 }
@@ -55,20 +55,21 @@ TEST(StateLink, WithoutFilterAStateIsAsOldAsItsDelay) {
   EXPECT_NEAR(Circle({.link = {.delay = 0.3}}).worst(10, 50), 2.0 * std::sin(0.5 * 0.15), 1e-6);
 }
 
-TEST(StateLink, FilterPredictsOverDelayJitterAndLoss) {
+TEST(StateLink, TheFilterPredictsOverDelayJitterAndLoss) {
   const netio::LinkModel link{.delay = 0.25, .jitter = 0.1, .loss = 0.1, .seed = 5};
   EXPECT_GT(Circle({.link = link}).worst(50, 200), 0.1);
   EXPECT_LT(Circle({.link = link, .filter = true}).worst(50, 200), 0.02);
 }
 
-TEST(StateLink, StatesComeAtTheirRate) {
+TEST(StateLink, StatesArriveAtTheirRate) {
   // One state in half a second, extrapolated in between: exact for constant twists.
   EXPECT_LT(Circle({.rate = 2.0}).worst(0, 50), 1e-9);
   Circle silent({.link = {.loss = 1.0}});
   EXPECT_NEAR(silent.worst(0, 20), 2.0 * std::sin(0.5 * 0.95), 1e-9) << "it stands where it was at load";
 }
 
-/// Means of three runs of experiments/late-states.toml. @param filter none: true states
+/// Means of three runs of experiments/late-states.toml.
+/// @param filter nullopt: true states
 LaneErrors drive(double speed, std::optional<bool> filter) {
   LaneErrors mean;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -91,7 +92,7 @@ LaneErrors drive(double speed, std::optional<bool> filter) {
 }
 
 // The figures of docs/experiments.md.
-TEST(LateStates, FilterKeepsTheLaneAsTrueStatesDo) {
+TEST(LateStates, TheFilterKeepsTheLaneLikeTrueStates) {
   for (const double speed : {0.1, 0.5}) {
     const LaneErrors truth = drive(speed, {}), newest = drive(speed, false), filtered = drive(speed, true);
     SCOPED_TRACE(fmt::format("{} m/s: mean |e| {:.4f}, {:.4f}, {:.4f} m; amplitude {:.4f}, {:.4f}, {:.4f} m", speed,
@@ -103,7 +104,7 @@ TEST(LateStates, FilterKeepsTheLaneAsTrueStatesDo) {
   }
 }
 
-TEST(LaneErrors, AmplitudeIsThatOfASineOnTheStraight) {
+TEST(LaneErrors, AmplitudeMatchesASineOnTheStraight) {
   const world::Path path{"lane", {{{}, 4.0, 0.0, 0.5}}};
   viz::Track track;
   for (int i = 0; i <= 400; ++i) track.poses.push_back({0.01 * i, 0.1 + 0.05 * std::sin(0.01 * i * 2.0 * M_PI / 0.4)});

@@ -15,14 +15,14 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(Statistics, OfNothingSayNothing) {
+TEST(Statistics, OfNoValuesAreNaN) {
   const ErrorStatistics s = statistics_of({});
   EXPECT_EQ(s.count, 0u);
   EXPECT_TRUE(std::isnan(s.mean));
   EXPECT_TRUE(std::isnan(s.abs_most));
 }
 
-TEST(Statistics, OfOneHaveNoDeviation) {
+TEST(Statistics, OfOneValueHaveNoDeviation) {
   const double one[] = {-0.5};
   const ErrorStatistics s = statistics_of(one);
   EXPECT_EQ(s.mean, -0.5);
@@ -32,7 +32,7 @@ TEST(Statistics, OfOneHaveNoDeviation) {
   EXPECT_TRUE(std::isnan(s.deviation));
 }
 
-/// A sum of three divided by three may miss the value by a rounding.
+/// A sum of three values divided by three may differ from the value by rounding.
 TEST(Statistics, OfEqualValuesHaveThatMeanAndDeviationZero) {
   for (int k = 1; k <= 200; ++k) {
     const double x = 0.0123 * k;
@@ -56,7 +56,7 @@ TEST(Statistics, ByHand) {
   EXPECT_EQ(s.abs_most, 4.0);
 }
 
-/// mean^2 + variance is the same for errors and their absolute values, in the thesis' tables, too.
+/// mean^2 + variance is the same for errors and their absolute values, also in the thesis' tables.
 TEST(Statistics, SquaresAgree) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     std::vector<double> errors;
@@ -85,7 +85,7 @@ TEST(Statistics, PercentilesAreRanks) {
     EXPECT_EQ(percentile(five, part), value) << part;
 }
 
-TEST(Statistics, CsvHasEightColumnsATrial) {
+TEST(Statistics, CsvHasEightColumnsPerTrial) {
   const double errors[] = {0.25, -0.75};
   const ErrorStatistics one = statistics_of(errors);
   EXPECT_EQ(csv_of(std::vector{one}),
@@ -93,7 +93,7 @@ TEST(Statistics, CsvHasEightColumnsATrial) {
             "1,-0.25,0.707106781,-0.75,0.25,0.5,0.353553391,0.25,0.75\n");
 }
 
-TEST(Thesis, TablesAreThoseOfTheThesis) {
+TEST(Thesis, TablesMatchTheThesis) {
   EXPECT_EQ(thesis_table("mapping"), nullptr);
   for (const char* name : {"lane-edge-p", "lane-edge-pi", "magnet-p", "magnet-pi"}) {
     const ThesisTable* table = thesis_table(name);
@@ -106,7 +106,7 @@ TEST(Thesis, TablesAreThoseOfTheThesis) {
   }
 }
 
-/// Rows in the table's order, and "-" as the ratio to a mean of the thesis that is 0.
+/// Rows in the table's order, and "-" as the ratio to a mean of 0 in the thesis.
 TEST(Statistics, TheTableHasTheRatiosOfTheMeans) {
   ThesisTable table{.experiment = "e", .number = 1, .unit = "m", .trials = {}};
   for (ThesisRow& row : table.trials) row = {0.0, 2.0, -4.0, 4.0, 0.0, 1.0, 0.5, 8.0};
@@ -135,7 +135,7 @@ TEST(Statistics, TheTableHasTheRatiosOfTheMeans) {
             "| ratio | - | 0.50 | 0.25 | 0.75 | - | 0.25 | 1.00 | 0.25 |\n");
 }
 
-/// Viewers get walls as lines up to 100 000 of them, and cells of 5 cm, or larger ones for at most 2^18.
+/// Walls are lines up to 100 000 of them, and cells of 5 cm, or larger ones for at most 2^18.
 TEST(WorldShape, HasLinesAndCellsUpToTheirLimits) {
   world::World world;
   world.models.resize(1);

@@ -15,7 +15,7 @@ world::World one_mover() {
   return world;
 }
 
-/// Drives along x to `far`, then stands in contact with these sectors.
+/// Drives along x to `far`, then stops in contact with these sectors.
 struct Ride {
   world::World world = one_mover();
   Supervisor supervisor;
@@ -38,7 +38,7 @@ struct Ride {
   }
 };
 
-TEST(Supervisor, TakesWhoHasStoodForSoLong) {
+TEST(Supervisor, RescuesARobotThatHasWaitedLongEnough) {
   Ride ride({.patience = 5.0});
   Supervisor::Intervention help;
   EXPECT_NEAR(ride.wait(help), 50, 1);
@@ -51,8 +51,8 @@ TEST(Supervisor, NoSupervisorByDefault) {
   EXPECT_EQ(ride.wait(help), 1000);
 }
 
-/// Contact while moving, or standing without contact, is not waiting.
-TEST(Supervisor, LeavesAloneWhoDoesNotWait) {
+/// Contact while moving, or a stop without contact, is not waiting.
+TEST(Supervisor, IgnoresRobotsThatDoNotWait) {
   Ride ride({.patience = 1.0});
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(ride.look(false).empty());
   ride.report.velocity.turn = 0.2;
@@ -63,7 +63,7 @@ TEST(Supervisor, LeavesAloneWhoDoesNotWait) {
   for (int i = 0; i < 9; ++i) EXPECT_TRUE(ride.look(true).empty()) << "it waits anew";
 }
 
-TEST(Supervisor, PutsItBackAlongItsWay) {
+TEST(Supervisor, MovesTheRobotBackAlongItsPath) {
   Ride ride({.patience = 1.0, .back = 0.15});
   Supervisor::Intervention help;
   ride.wait(help);
@@ -75,7 +75,7 @@ TEST(Supervisor, PutsItBackAlongItsWay) {
   EXPECT_EQ(help.X_WM.x, 0.0);
 }
 
-TEST(Supervisor, TurnsItFromWhatItTouched) {
+TEST(Supervisor, TurnsTheRobotAwayFromTheContact) {
   for (const bool left : {true, false}) {
     Ride ride({.patience = 1.0, .turn = 0.5});
     ride.report.contact_mask = left ? 1u << 2 : 1u << (base::kContactSectors - 3);
@@ -85,8 +85,8 @@ TEST(Supervisor, TurnsItFromWhatItTouched) {
   }
 }
 
-/// The thesis' avoidance scrapes and waits for ever; with a supervisor it continues.
-TEST(Supervisor, LetsTheThesisAvoidanceGoOn) {
+/// The thesis' avoidance scrapes walls and then waits forever; with a supervisor it continues.
+TEST(Supervisor, LetsTheThesisAvoidanceContinue) {
   Scenario scenario = read_scenario(SF_SOURCE_DIR "/experiments/mapping.toml");
   scenario.duration = 120.0;
   gpu::Device device;

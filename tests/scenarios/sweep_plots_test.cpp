@@ -1,4 +1,4 @@
-// Plots of sweeps from tables of jobs, as figures of their shapes.
+// Plots of sweeps from tables of jobs, checked by their shapes.
 
 #include "scenarios/sweep_plots.h"
 
@@ -23,7 +23,8 @@ std::string plots_folder(const std::string& name) {
   return path;
 }
 
-/// Rows of `job,point,PARAMETERS,seed,status,x,simulated_s,hash,message`: two seeds of 1 and 3 times a point's number.
+/// Returns rows of `job,point,PARAMETERS,seed,status,x,simulated_s,hash,message`: two seeds with 1 and 3 times the
+/// number of a point.
 std::string table(const std::string& parameters, const std::vector<std::string>& points) {
   std::string text = "job,point," + parameters + ",seed,status,x,simulated_s,hash,message\n";
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -33,7 +34,7 @@ std::string table(const std::string& parameters, const std::vector<std::string>&
   return text;
 }
 
-/// Names of the drawn files, and the text of each.
+/// Returns the names of the drawn files and the text of each.
 std::vector<std::pair<std::string, std::string>> drawn(const std::string& jobs, const SweepPlotChoice& choice = {}) {
   SweepPlotChoice svg = choice;
   svg.format = "svg";
@@ -47,7 +48,7 @@ bool has_text(const std::string& svg, const std::string& text) {
   return svg.find(">" + text + "<") != std::string::npos;
 }
 
-/// All texts, so that those of several lines are found.
+/// Returns all texts, joined so that texts of several lines are found.
 std::string words_of(const std::string& svg) {
   std::string words;
   for (std::size_t at = svg.find("<text "); at != std::string::npos; at = svg.find("<text ", at + 1)) {
@@ -84,7 +85,7 @@ TEST(SweepPlots, TwoParametersAreLinesAndSmallMultiples) {
             std::string::npos);
 }
 
-TEST(SweepPlots, TheAxisIsChosen) {
+TEST(SweepPlots, TheAxisCanBeSelected) {
   const std::string two = table("a,b", {"1,5", "1,6", "2,5", "2,6"});
   EXPECT_TRUE(has_text(drawn(two)[0].second, "a"));
   EXPECT_TRUE(has_text(drawn(two, {.over = "b"})[0].second, "b"));
@@ -93,12 +94,12 @@ TEST(SweepPlots, TheAxisIsChosen) {
       << "numbers before words";
 }
 
-TEST(SweepPlots, WordsAreCategories) {
+TEST(SweepPlots, TextValuesAreCategories) {
   const auto files = drawn(table("plant", {"ideal", "thesis", "\"a, b\""}));
   for (const char* word : {"ideal", "thesis", "a, b"}) EXPECT_TRUE(has_text(files[0].second, word)) << word;
 }
 
-/// Three points of two parameters are no grid: dots over each parameter.
+/// Three points of two parameters are not a grid: dots over each parameter.
 TEST(SweepPlots, ASampleIsDrawnOverEachParameter) {
   const auto files = drawn(table("a,b", {"0.1,7", "0.2,9", "0.3,8"}));
   ASSERT_EQ(files.size(), 4u);
@@ -130,8 +131,8 @@ TEST(SweepPlots, GeometricValuesHaveALogarithmicAxis) {
                                           {{1, 2, 5, 10}, true},
                                           {{0.001, 0.01, 0.1}, true},
                                           {{8, 1, 4, 2}, true},      // in any order
-                                          {{1, 2, 4, 7.9}, false},   // too short
-                                          {{1, 10}, false},          // two values have one ratio
+                                          {{1, 2, 4, 7.9}, false},   // too small a range
+                                          {{1, 10}, false},          // two values have only one ratio
                                           {{0, 1, 10, 100}, false},  // zero has no logarithm
                                           {{1, 5, 10}, false},       // 5 and 2
                                           {{1, 2, 3, 4, 5, 6, 7, 8, 9}, false}})
@@ -141,7 +142,7 @@ TEST(SweepPlots, GeometricValuesHaveALogarithmicAxis) {
   EXPECT_TRUE(has_text(drawn(table("a", {"0.00001", "0.001", "0.1"}))[0].second, "10⁻⁵"));
 }
 
-TEST(SweepPlots, NothingToDrawIsSaid) {
+TEST(SweepPlots, ReportsThatThereIsNothingToDraw) {
   const SweepPlots plots = draw_sweep("jobs.csv", table("a", {"1"}), plots_folder("nothing"), {});
   EXPECT_TRUE(plots.files.empty());
   ASSERT_EQ(plots.notes.size(), 1u);
@@ -161,7 +162,7 @@ TEST(SweepJobs, ReadsItsTableBack) {
   EXPECT_TRUE(std::isnan(jobs.points[0].metrics[1][0]) && std::isnan(jobs.points[0].metrics[0][1]));
 }
 
-TEST(SweepJobs, DamageIsNamedByLine) {
+TEST(SweepJobs, DamageIsReportedWithItsLine) {
   const std::string head = "job,point,a,seed,status,x,simulated_s,hash,message\n";
   const auto error = [&](const std::string& text) {
     try {

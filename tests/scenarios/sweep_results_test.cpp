@@ -31,7 +31,7 @@ JobResult result_of_job(JobStatus status, double x, double y) {
   return {.status = status, .simulated = 2.5, .hash = UINT64_MAX, .metrics = {{"x", x}, {"y of r1", y}}};
 }
 
-TEST(SweepFolder, ResultsComeBackBitForBit) {
+TEST(SweepFolder, ResultsRoundTripBitwise) {
   const SweepFolder folder(two_points(), empty_folder("results"));
   EXPECT_FALSE(folder.read(0).has_value());
   JobResult written = result_of_job(JobStatus::missed, 0.1 + 0.2, std::nan(""));
@@ -62,8 +62,8 @@ TEST(SweepFolder, AFolderHasAThousandResults) {
   EXPECT_TRUE(fs::exists(folder.file("jobs/001/001000.txt")));
 }
 
-/// As after a crash of the machine or on a full disk: each beginning of a file is no result.
-TEST(SweepFolder, APartOfAResultIsNone) {
+/// As after a system crash or on a full disk: a truncated file is not a result.
+TEST(SweepFolder, ATruncatedResultIsIgnored) {
   const SweepFolder folder(two_points(), empty_folder("parts"));
   folder.write(3, result_of_job(JobStatus::passed, 1.0, 2.0));
   const std::string file = folder.file("jobs/000/000003.txt");
@@ -78,7 +78,7 @@ TEST(SweepFolder, APartOfAResultIsNone) {
   }
 }
 
-TEST(SweepFolder, AnotherSweepIsRefused) {
+TEST(SweepFolder, AnotherSweepIsRejected) {
   const std::string path = empty_folder("mine");
   const SweepFolder folder(two_points(), path);
   EXPECT_NO_THROW(SweepFolder(two_points(), path));
@@ -101,7 +101,7 @@ TEST(SweepFolder, AFileThatCannotBeReplacedLeavesNoPart) {
   EXPECT_EQ(std::distance(fs::directory_iterator(path), {}), 1);
 }
 
-/// Each row of points.csv up to its column `met`, and the numbers behind it.
+/// Returns each row of points.csv up to its column `met`, and the numbers after it.
 std::vector<std::pair<std::string, std::vector<double>>> table_rows(const std::string& text) {
   std::vector<std::pair<std::string, std::vector<double>>> rows;
   for (std::size_t at = text.find('\n') + 1; at < text.size(); at = text.find('\n', at) + 1) {
@@ -129,8 +129,8 @@ TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
             "1,0,\"a, b\",2,missed,4,,2.5,ffffffffffffffff,\"x: expected <= 2, got 4\"\n"
             "2,1,c|d,1,failed,,,,,\"it said \"\"no\"\"\"\n"
             "3,1,c|d,2,missing,,,,,\n");
-  // Mean 2.5, deviation 1.5 sqrt(2), half an interval 12.7062 times 1.5; nothing where no job has a value. One job of
-  // two met its expectations, and none of one.
+  // Mean 2.5, deviation 1.5 sqrt(2), half an interval 12.7062 times 1.5; empty if no job has a value. One job of two
+  // met its expectations, and none of one.
   const std::string text = csv_of_points(sweep, results);
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "point,name_of,jobs,pass,missed,none,failed,missing,x_mean,x_std,x_min,x_max,y of r1_mean,y of r1_std,y of "
@@ -161,7 +161,7 @@ TEST(SweepTables, OneRowPerJobAndStatisticsPerPoint) {
   EXPECT_FALSE(counts_of(results).good());
 }
 
-TEST(SweepTables, EqualValuesHaveNoDeviationAndBarsNoMeaning) {
+TEST(SweepTables, EqualValuesHaveNoDeviationAndBarsAreReplaced) {
   const std::vector<std::optional<JobResult>> results(4, result_of_job(JobStatus::passed, 0.1, 2.0));
   EXPECT_EQ(markdown_of_points(two_points(), results, 2),
             "| point | name_of | pass | missed | failed | missing | x | y of r1 |\n|---|---|---|---|---|---|---|---|\n"
@@ -169,7 +169,7 @@ TEST(SweepTables, EqualValuesHaveNoDeviationAndBarsNoMeaning) {
       << "all points are shown: there are none more";
 }
 
-TEST(SweepTables, AReportNamesTenSeedsAndAThousandPoints) {
+TEST(SweepTables, AReportListsUpToTenSeedsAndAThousandPoints) {
   const auto report = [](const std::string& more) {
     const Sweep sweep =
         parse_sweep(SF_SOURCE_DIR "/experiments/sweeps/test.toml", "scenario = \"../simville.toml\"\n" + more);

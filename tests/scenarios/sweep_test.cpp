@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kSweepFile = SF_SOURCE_DIR "/experiments/sweeps/test.toml";
 constexpr const char* kTown = "scenario = \"../simville.toml\"\n";
 
-/// Message from the file's name on; empty without an error.
+/// Returns the error from the file's name on; empty without an error.
 std::string sweep_refusal(const std::string& text) {
   try {
     check_sweep(parse_sweep(kSweepFile, text));
@@ -36,7 +36,7 @@ std::vector<double> values_of(const std::string& parameter) {
   return numbers;
 }
 
-TEST(SweepFile, OneErrorEachAtItsLine) {
+TEST(SweepFile, EachErrorIsReportedAtItsLine) {
   const std::string town = kTown;
   const std::pair<std::string, std::string> kCorpus[] = {
       {"seeds = 2\n", "test.toml: has no scenario"},
@@ -61,12 +61,12 @@ TEST(SweepFile, OneErrorEachAtItsLine) {
        "test.toml:5: 'count' belongs to ranges of a grid"},
       {town + "[sample]\npoints = 3\nmethod = \"sobol\"\n[sample.range]\nduration = [1, 2]\n",
        "test.toml:4: 'method' expects"},
-      // Known by the scenario alone.
+      // Detected only by the scenario.
       {town + "[grid]\nduratoin = [1]\n", "test.toml:3: duratoin = 1: "},
       {town + "[grid]\nlink.delay = [0.1, 0.2, -1, 0.3]\n", "test.toml:3: link.delay = -1: "},
       {town + "[grid]\nduration.long = [1]\n", "test.toml:3: duration.long = 1: 'duration' is a value"},
       {town + "[grid]\nduration = [1]\nevent.3.at = [1]\n", "test.toml:4: event.3.at = 1: "},
-      // The second of three parameters is at fault, in a value that is neither first nor last.
+      // The second of three parameters is wrong, in a value that is neither first nor last.
       {town + "[grid]\nduration = [1, 2]\ndefault.controller = [\"wander\", \"nobody\", \"none\"]\nseeds = 1\n",
        "test.toml:5: seeds = 1: "},
       {town + "[grid]\nduration = [1, 2]\nplant = [\"ideal\", \"Ideal\", \"thesis\"]\nlink.delay = [0.1]\n",
@@ -75,8 +75,8 @@ TEST(SweepFile, OneErrorEachAtItsLine) {
   for (const auto& [text, said] : kCorpus) EXPECT_EQ(sweep_refusal(text).substr(0, said.size()), said) << text;
 }
 
-/// An event's number is digits alone, below the number of events; a value reaches the event that it names.
-TEST(SweepFile, EventsGoByTheirNumber) {
+/// An event's number consists only of digits and is below the number of events; a value reaches the named event.
+TEST(SweepFile, EventsAreAddressedByNumber) {
   const std::string file = testing::TempDir() + "events_" + std::to_string(getpid()) + ".toml";
   std::ofstream(file) << "world = \"" SF_SOURCE_DIR "/worlds/minimagic/minimagic.world\"\n"
                       << "[[event]]\nat = 1\nobject = \"tag1\"\npresent = false\n"
@@ -97,21 +97,21 @@ TEST(SweepFile, EventsGoByTheirNumber) {
   std::filesystem::remove(file);
 }
 
-/// Tried one after the other: a value stands beside the first ones of all other parameters.
-TEST(SweepFile, ValuesThatDoNotGoTogetherAreLeftToTheirJobs) {
+/// Checked one after the other: each value is combined with the first values of all other parameters.
+TEST(SweepFile, IncompatibleValuesAreLeftToTheirJobs) {
   const std::string lane = "scenario = \"../lane-edge-p.toml\"\n[grid]\n";
   const std::string controllers = "default.controller = [\"lane-keeping\", \"none\"]\n";
   EXPECT_EQ(sweep_refusal(lane + controllers + "expect = [{ contacts = 9 }, { mean_error = 9 }]\n"), "");
   EXPECT_NE(sweep_refusal(lane + controllers + "expect = [{ mean_error = 9 }]\n"), "") << "the two that do not";
 }
 
-/// Lines are the sweep's, as the scenario does not have the value.
-TEST(SweepFile, ARefusedValueHasNoLineOfTheScenario) {
+/// Lines are those of the sweep, because the scenario does not contain the value.
+TEST(SweepFile, AWrongValueHasNoLineOfTheScenario) {
   const std::string said = sweep_refusal(kTown + std::string("[grid]\nlink.delay = [-1]\n"));
   EXPECT_NE(said.find("/simville.toml: 'delay'"), std::string::npos) << said;
 }
 
-/// A scenario of its own for one test, with the seed 5, in a world with a slip.
+/// A scenario for one test, with the seed 5, in a world with a mistake.
 class OwnScenario : public testing::Test {
  protected:
   OwnScenario() {
@@ -130,25 +130,25 @@ class OwnScenario : public testing::Test {
   const std::string world_ = stem_ + ".world", scenario_ = stem_ + ".toml";
 };
 
-TEST_F(OwnScenario, ItsWarningsAreToldByTheCheck) {
+TEST_F(OwnScenario, ItsWarningsAreReturnedByTheCheck) {
   const std::vector<world::Warning> warnings = check_sweep(sweep());
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].message.find("'colour'"), std::string::npos) << warnings[0].message;
 }
 
-TEST_F(OwnScenario, ANumberOfSeedsBeginsWithItsOwn) {
+TEST_F(OwnScenario, ANumberOfSeedsStartsAtItsSeed) {
   EXPECT_EQ(sweep("seeds = 3\n").seeds, (std::vector<std::uint64_t>{5, 6, 7}));
   EXPECT_EQ(sweep().seeds, (std::vector<std::uint64_t>{5}));
 }
 
-TEST_F(OwnScenario, RobotsThatItDoesNotNameGetAnEntry) {
+TEST_F(OwnScenario, RobotsWithoutAnEntryGetOne) {
   const Scenario scenario = scenario_of(sweep("[grid]\nrobot.one.rate = [4]\n"), 0);
   ASSERT_EQ(scenario.robot_setups.size(), 1u);
   EXPECT_EQ(scenario.robot_setups[0].name, "one");
   EXPECT_EQ(scenario.robot_setups[0].actor->controller.rate, 4.0);
 }
 
-TEST(SweepFile, TheNumberOfJobsIsBoundedBeforeAnyIsMade) {
+TEST(SweepFile, TheNumberOfJobsIsCheckedBeforeTheyAreCreated) {
   const std::string grid = "[grid]\nduration = { from = 1, to = 2, count = 1000 }\n";
   const std::string delay = "link.delay = { from = 0, to = 1, count = 1000 }\n";
   EXPECT_EQ(parse_sweep(kSweepFile, kTown + grid + delay).jobs(), kMostJobs);  // the largest sweep
@@ -165,7 +165,7 @@ TEST(SweepFile, TheNumberOfJobsIsBoundedBeforeAnyIsMade) {
             "test.toml:2: too many points and ");
 }
 
-TEST(SweepFile, RangesReachBothEnds) {
+TEST(SweepFile, RangesIncludeBothEnds) {
   EXPECT_EQ(values_of("duration = { from = 1, to = 2, count = 3 }"), (std::vector<double>{1.0, 1.5, 2.0}));
   EXPECT_EQ(values_of("duration = { from = 1, to = 4, count = 4, whole = true }"), (std::vector<double>{1, 2, 3, 4}));
   const std::vector<double> decades = values_of("duration = { from = 0.1, to = 1000, count = 5, scale = \"log\" }");
@@ -174,7 +174,7 @@ TEST(SweepFile, RangesReachBothEnds) {
 }
 
 /// One of four points in each quarter: two of each whole number, and one in each decade.
-TEST(SweepFile, SampledRangesAreEvenInTheirScale) {
+TEST(SweepFile, SampledRangesAreEvenOnTheirScale) {
   const auto sampled = [](const std::string& range) {
     const Sweep sweep = parse_sweep(
         kSweepFile, kTown + std::string("[sample]\npoints = 4\n[sample.range]\nduration = { ") + range + " }\n");
@@ -192,7 +192,7 @@ TEST(SweepFile, SampledRangesAreEvenInTheirScale) {
   }
 }
 
-TEST(SweepFile, ASampleIsThatOfItsMethodAndSeed) {
+TEST(SweepFile, ASampleDependsOnItsMethodAndSeed) {
   const auto expect_sample = [](const std::string& keys, SampleMethod method, std::uint64_t seed) {
     const Sweep sweep = parse_sweep(kSweepFile, kTown + ("[sample]\npoints = 20\n" + keys) +
                                                     "[sample.range]\nlink.delay = { from = 0, to = 2 }\n"
@@ -217,7 +217,7 @@ TEST(Sweep, ParametersAreInTheOrderOfTheirLines) {
   EXPECT_EQ(names, (std::vector<std::string>{"link.delay", "duration", "link.loss"}));
 }
 
-TEST(Sweep, SeedsRunFastestAndTheFilesFirstParameterSlowest) {
+TEST(Sweep, SeedsChangeFastestAndTheFirstParameterSlowest) {
   const Sweep sweep = parse_sweep(kSweepFile, kTown + std::string("seeds = [7, 5]\n[grid]\nstart_at = [1, 2]\n"
                                                                   "duration = [10, 20, 30]\n"));
   ASSERT_EQ(sweep.jobs(), 12u);
@@ -229,7 +229,7 @@ TEST(Sweep, SeedsRunFastestAndTheFilesFirstParameterSlowest) {
   }
 }
 
-TEST(Sweep, ASampleGoesThroughEachPointOfTheGrid) {
+TEST(Sweep, ASampleIsRepeatedAtEachPointOfTheGrid) {
   const Sweep sweep =
       parse_sweep(kSweepFile, kTown + std::string("[grid]\nduration = [10, 20]\n[sample]\npoints = 3\n"
                                                   "[sample.range]\nlink.delay = { from = 0, to = 1 }\n"));
@@ -243,7 +243,7 @@ TEST(Sweep, ASampleGoesThroughEachPointOfTheGrid) {
   EXPECT_EQ(delays.size(), 3u);
 }
 
-/// A robot of the file, one of the world alone, and a whole table.
+/// A robot of the file, one that is only in the world, and a complete table.
 TEST(Sweep, ParametersReachEveryKeyOfAScenario) {
   const Sweep sweep =
       parse_sweep(kSweepFile,
@@ -263,7 +263,7 @@ TEST(Sweep, ParametersReachEveryKeyOfAScenario) {
   EXPECT_EQ(text_of(sweep.parameters[2].values[0]), "{ delay = 0.5, loss = 0.25 }");
 }
 
-TEST(Sweep, ValuesAreShownAsAFileHasThem) {
+TEST(Sweep, ValuesAreShownAsInAFile) {
   const Sweep sweep = parse_sweep(
       kSweepFile, kTown + std::string("[grid]\nvalue = [true, false, 0.5, \"two words\", [1, 2.5], { a = [true] }]\n"));
   std::vector<std::string> texts;
@@ -271,7 +271,7 @@ TEST(Sweep, ValuesAreShownAsAFileHasThem) {
   EXPECT_EQ(texts, (std::vector<std::string>{"true", "false", "0.5", "two words", "[1, 2.5]", "{ a = [true] }"}));
 }
 
-TEST(Sweep, ItsHashKnowsBothFiles) {
+TEST(Sweep, ItsHashDependsOnBothFiles) {
   const auto hash = [](const std::string& text) { return parse_sweep(kSweepFile, text).hash; };
   EXPECT_EQ(hash(kTown), hash(kTown));
   EXPECT_NE(hash(kTown), hash(std::string(kTown) + "seeds = 1\n"));
@@ -305,15 +305,15 @@ TEST(SamplePoints, ALatinHypercubeHasOnePointInEachInterval) {
       EXPECT_EQ(intervals.size(), points) << d;
     }
   }
-  // Each coordinate has its own order: of a hundred points one is expected in the same interval of two.
+  // Each coordinate has its own order: of a hundred points, one is expected in the same interval of both.
   std::size_t same = 0;
   for (const std::vector<double>& row : sample_points(SampleMethod::latin_hypercube, 100, 2, 1))
     same += std::floor(100.0 * row[0]) == std::floor(100.0 * row[1]) ? 1 : 0;
   EXPECT_LT(same, 8u);
 }
 
-/// Worked out by another program: a sweep's sample stays as it is from one version to the next.
-TEST(SamplePoints, AHypercubeIsAlwaysTheSame) {
+/// Computed by another program: a sweep's sample does not change between versions.
+TEST(SamplePoints, AHypercubeNeverChanges) {
   const std::vector<std::vector<double>> expected{{0.2267753288025065, 0.8272814072732395},
                                                   {0.8902429807689076, 0.2042048456833454},
                                                   {0.6701796227565839, 0.7822716095822353},
@@ -322,7 +322,7 @@ TEST(SamplePoints, AHypercubeIsAlwaysTheSame) {
   EXPECT_EQ(sample_points(SampleMethod::latin_hypercube, 5, 2, 1), expected);
 }
 
-TEST(SamplePoints, SeedsAndMethodsDifferAndARandomSampleGrows) {
+TEST(SamplePoints, SeedsAndMethodsDifferAndARandomSampleIsExtended) {
   const auto points = [](SampleMethod method, std::uint64_t count, std::uint64_t seed) {
     return sample_points(method, count, 2, seed);
   };
@@ -337,7 +337,7 @@ TEST(SamplePoints, SeedsAndMethodsDifferAndARandomSampleGrows) {
   EXPECT_NEAR(sample_points(SampleMethod::random, 1, 1, 1)[0][0], 0.13387664401253274, 1e-15) << "the engine's first";
 }
 
-/// The mean of a coordinate varies less over hypercubes than over independent points: that is what they are for.
+/// The mean of a coordinate varies less over hypercubes than over independent points, which is their purpose.
 TEST(SamplePoints, AHypercubesMeanIsCloserToTheMiddle) {
   double latin = 0.0, random = 0.0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {

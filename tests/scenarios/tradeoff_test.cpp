@@ -23,7 +23,7 @@ world::World small_world() {
   return world;
 }
 
-TEST(Tradeoff, MeasuresEveryModeOfEveryKind) {
+TEST(Tradeoff, MeasuresEveryModeOfEveryType) {
   const auto results = tradeoff(small_world(), device(), {});
   std::map<std::string, int> modes;
   for (const ModeResult& g : results) {
@@ -51,7 +51,7 @@ TEST(Tradeoff, CanBeStopped) {
 }
 
 /// A lane edge sensor in a bend: no bound covers its readings, and none is shown.
-TEST(Tradeoff, NoBoundIsStatedWhereNoneHolds) {
+TEST(Tradeoff, NoBoundIsGivenIfNoneHolds) {
   world::World world;
   world::LaneMarking bend{{}, 0.1};
   for (int i = 0; i <= 600; ++i) bend.line.push_back(base::rotate(0.01 * i, {0.68, 0.0}));
@@ -67,7 +67,7 @@ TEST(Tradeoff, NoBoundIsStatedWhereNoneHolds) {
   }
 }
 
-TEST(Tradeoff, IsAFileOfColumns) {
+TEST(Tradeoff, WritesAFileOfColumns) {
   const std::string csv =
       csv_of({{.sensor = "laser", .mode = "skip2", .unit = "m", .rate = 1e6, .max = 7.0, .covered = 0.5, .bound = 1e-9},
               {.sensor = "laneedge", .mode = "skip2", .unit = "m", .rate = 1e3, .max = 0.5}});
@@ -88,7 +88,7 @@ std::vector<ModeResult> made_up() {
 
 std::string advised(const AccuracyTarget& target) { return accuracy_words(made_up(), select_modes(made_up(), target)); }
 
-TEST(Advice, IsTheFastestWithinTheErrors) {
+TEST(Advice, SelectsTheFastestWithinTheErrors) {
   EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-9}), "laser:single");
   EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-6}), "laser:single magnetometer:near3");
   EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-6, .by = ErrorMeasure::p99}), "laser:skip2 magnetometer:near3");
@@ -97,7 +97,7 @@ TEST(Advice, IsTheFastestWithinTheErrors) {
 }
 
 /// Ticks add up over sensor types.
-TEST(Advice, IsTheMostAccurateThatIsFastEnough) {
+TEST(Advice, SelectsTheMostAccurateThatIsFastEnough) {
   EXPECT_EQ(advised({.least_rate = 4.0}), "exact") << "0.2 s";
   EXPECT_EQ(advised({.least_rate = 6.0}), "magnetometer:near3") << "one step like laser:single, and faster";
   EXPECT_EQ(advised({.least_rate = 8.0}), "magnetometer:near3") << "0.12 s";

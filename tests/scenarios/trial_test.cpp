@@ -24,7 +24,7 @@ world::Mover robot_of(const std::string& text, const Disturbance& disturbance) {
 
 }  // namespace
 
-TEST(Trial, SensorsWithNoiseOfTheirOwnKeepIt) {
+TEST(Trial, SensorsKeepTheirOwnNoise) {
   const world::Mover robot = robot_of(
       "unit_length \"cm\"\n"
       "position( size [40 40 10]\n"
@@ -76,7 +76,7 @@ TEST(Trial, TimesAreThoseOfTheErrors) {
   EXPECT_EQ(trial.tracks.at(0).poses.size(), 40u);
 }
 
-TEST(Trial, NoDisturbanceLeavesTheWorldAsItIs) {
+TEST(Trial, WithoutDisturbanceTheWorldIsUnchanged) {
   const world::Mover robot =
       robot_of("position( size [0.4 0.4 0.1] laser( ) magnetometer( ) )\n", {0.0, 0.0, 0.0, 0.0, 0.0});
   for (const world::Sensor& sensor : robot.sensors) EXPECT_EQ(sensors::find(sensor, "noise"), nullptr) << sensor.type;

@@ -36,7 +36,7 @@ world::World recorded_world() {
   return world;
 }
 
-/// Two seconds of robots that wander, or stand.
+/// Two seconds of robots that wander or remain at rest.
 record::Recording recorded(bool readings, const std::string& mode = "exact", world::World world = recorded_world(),
                            RunSettings settings = {}, bool wander = true, const raycast::CasterType* caster = nullptr) {
   const auto folder = std::filesystem::temp_directory_path() / ("sf_verification_" + std::to_string(::getpid()));
@@ -55,7 +55,7 @@ record::Recording recorded(bool readings, const std::string& mode = "exact", wor
   return recording;
 }
 
-TEST(Verification, ASoundRun) {
+TEST(Verification, ASoundRunPasses) {
   const Verification v = verify(recorded(true), device(), {});
   EXPECT_TRUE(v.sound()) << v.reference.first;
   ASSERT_EQ(v.recomputed.size(), 1u);
@@ -66,8 +66,8 @@ TEST(Verification, ASoundRun) {
   EXPECT_FALSE(v.interrupted);
 }
 
-/// The reference has bytes of its own, which it gives again. Plain C++ differs from them, within the bounds of both.
-TEST(Verification, OfTheReferenceCaster) {
+/// The reference caster reproduces its own bytes. Plain C++ differs from them, within the bounds of both.
+TEST(Verification, RecordingsOfTheReferenceCasterPass) {
   world::World world = recorded_world();
   world.movers[0].sensors.push_back(trial::cones("sonar", trial::ring(4, 0.1)));
   const record::Recording recording = recorded(true, "exact", world, {}, true, &raycast::reference_caster);
@@ -82,8 +82,8 @@ TEST(Verification, OfTheReferenceCaster) {
   EXPECT_FALSE(verify(mislabelled, device(), {}).sound()) << "the bytes are not the host's";
 }
 
-/// A recording of the other casters is computed again with one of them, whichever caster the environment names.
-TEST(Verification, WhereTheEnvironmentNamesTheReference) {
+/// A recording of the other casters is recomputed with one of them, whichever caster the environment names.
+TEST(Verification, IgnoresTheCasterOfTheEnvironment) {
   const record::Recording recording = recorded(true);
   setenv("SENSORFARM_CASTER", "reference", 1);
   const Verification v = verify(recording, device(), {});
@@ -92,7 +92,7 @@ TEST(Verification, WhereTheEnvironmentNamesTheReference) {
 }
 
 /// Readings between ticks: their poses are recomputed bitwise from those of the ticks.
-TEST(Verification, ReadingsFromBetweenTicks) {
+TEST(Verification, ReadingsBetweenTicksPass) {
   world::World world = recorded_world();
   for (std::size_t m = 0; m < world.movers.size(); ++m) {
     scenes::edit_laser(world.movers[m])->rate = 13.0 + 12.0 * static_cast<double>(m);
@@ -120,7 +120,7 @@ TEST(Verification, ReadingsFromBetweenTicks) {
 }
 
 /// Skipped beams are recomputed bitwise; 32-bit scans bitwise on the device and within the bound by plain C++.
-TEST(Verification, InOtherModes) {
+TEST(Verification, OtherModesPass) {
   const record::Recording skipped = recorded(true, "skip4");
   EXPECT_EQ(skipped.info.mode, "laser:skip4");
   const Verification all = verify(skipped, device(), {});
@@ -134,7 +134,7 @@ TEST(Verification, InOtherModes) {
   EXPECT_LT(single.reference.largest, 1e-3);
 }
 
-/// Robots whose lasers and sonars have many surfaces nearer than their minimum.
+/// Robots whose lasers and sonars have many surfaces below their minimum range.
 world::World near_world() {
   world::World world = recorded_world();
   for (world::Mover& mover : world.movers) {
@@ -158,9 +158,9 @@ std::size_t count_too_near(const record::Recording& run) {
   return count;
 }
 
-/// Ranges of surfaces that are too near are recorded as -infinity, or as the minimum; those of earlier versions, which
-/// name no option, as the minimum.
-TEST(Verification, RangesThatAreTooNear) {
+/// Ranges of surfaces that are too near are recorded as -infinity, or as the minimum. Earlier versions, which record no
+/// option, use the minimum.
+TEST(Verification, RangesThatAreTooNearPass) {
   for (const std::string mode : {"exact", "skip4", "single"}) {
     const record::Recording marked = recorded(true, mode, near_world());
     EXPECT_GT(count_too_near(marked), 100u);
@@ -186,8 +186,8 @@ TEST(Verification, RangesThatAreTooNear) {
   }
 }
 
-/// Walls at range_min and range_max, within the error of 32 bits: this device and plain C++ put beams of both on unlike
-/// sides, and noise is added on one.
+/// Walls at range_min and range_max, within the error of 32 bits: this device and plain C++ put beams on different
+/// sides of both, and noise is added on one side.
 world::World world_at_limits() {
   world::World world;
   trial::Chance chance(5);
@@ -206,7 +206,7 @@ world::World world_at_limits() {
   return world;
 }
 
-TEST(Verification, A32BitErrorMayLeadAcrossALimit) {
+TEST(Verification, A32BitErrorMayCrossALimit) {
   for (const bool infinite : {false, true}) {
     const record::Recording run = recorded(true, "single", world_at_limits(), {.no_return_inf = infinite}, false);
     EXPECT_GT(count_too_near(run), 100u);
@@ -216,14 +216,14 @@ TEST(Verification, A32BitErrorMayLeadAcrossALimit) {
   }
 }
 
-TEST(Verification, A32BitRangeBeyondItsBoundIsFound) {
+TEST(Verification, A32BitRangeBeyondItsBoundIsDetected) {
   record::Recording run = recorded(true, "single");
   for (record::ReadingSample& sample : run.readings) sample.values[7] += 2e-3;
   EXPECT_FALSE(verify(run, device(), {}).sound());
   EXPECT_GT(verify(run, device(), {}).reference.different, 0u);
 }
 
-TEST(Verification, WithoutReadingsPlainCppIsBesideTheDevice) {
+TEST(Verification, WithoutReadingsPlainCppIsComparedWithTheDevice) {
   const Verification v = verify(recorded(false), device(), {});
   EXPECT_TRUE(v.sound());
   EXPECT_TRUE(v.recomputed.empty()) << "there is nothing to compare with";
@@ -239,7 +239,7 @@ TEST(Verification, ASampleIsSpreadOverTheRun) {
   EXPECT_EQ(v.recomputed[0].readings, run.readings.size()) << "the device looks at all";
 }
 
-TEST(Verification, OneBitOfOneBeam) {
+TEST(Verification, DetectsOneBitOfOneBeam) {
   record::Recording run = recorded(true);
   double& range = run.readings[7].values[30];
   range = std::nextafter(static_cast<float>(range), 0.0F);
@@ -251,13 +251,13 @@ TEST(Verification, OneBitOfOneBeam) {
   EXPECT_NE(v.recomputed[0].first.find("sensor 0"), std::string::npos) << v.recomputed[0].first;
 }
 
-TEST(Verification, AnotherSeed) {
+TEST(Verification, DetectsAnotherSeed) {
   record::Recording run = recorded(true);
   run.info.seed = 10;
   EXPECT_FALSE(verify(run, device(), {}).sound());
 }
 
-TEST(Verification, AMovedPose) {
+TEST(Verification, DetectsAMovedPose) {
   record::Recording run = recorded(true);
   run.states[2][5].X_WM.x += 1e-6;
   const Verification v = verify(run, device(), {});
@@ -265,7 +265,7 @@ TEST(Verification, AMovedPose) {
   EXPECT_LT(v.recomputed[0].different, v.recomputed[0].values / 10) << "those who see it, and itself, at one tick";
 }
 
-TEST(Verification, AReadingThatNobodyWasDueToMake) {
+TEST(Verification, DetectsAReadingThatWasNotDue) {
   record::Recording run = recorded(true);
   run.readings.push_back(run.readings.back());
   run.readings.back().sequence = 1000;
@@ -274,15 +274,15 @@ TEST(Verification, AReadingThatNobodyWasDueToMake) {
   EXPECT_FALSE(v.sound());
 }
 
-TEST(Verification, StoppedIsNotUnsound) {
+TEST(Verification, AnInterruptedVerificationIsNotUnsound) {
   const Verification v = verify(recorded(true), device(), {.progress = [](double) { return false; }});
   EXPECT_EQ(v.ticks, 1u);
   EXPECT_TRUE(v.interrupted);
   EXPECT_EQ(v.missing, 0u) << "what was not looked at is not missing";
 }
 
-/// Nothing to compare is no proof.
-TEST(Verification, ARecordingCutOffBeforeItsFirstTickIsNotSound) {
+/// An empty comparison is not evidence of soundness.
+TEST(Verification, ARecordingTruncatedBeforeItsFirstTickIsNotSound) {
   record::Recording run = recorded(true);
   for (auto& states : run.states) states.clear();
   run.readings.clear();
@@ -295,14 +295,14 @@ TEST(Verification, ARecordingCutOffBeforeItsFirstTickIsNotSound) {
   ASSERT_EQ(v.damage.size(), 1u);
 }
 
-TEST(Verification, StatesOfAnotherWorldAreRefused) {
+TEST(Verification, StatesOfAnotherWorldAreRejected) {
   record::Recording run = recorded(true);
   run.states.pop_back();
   EXPECT_THROW(verify(run, device(), {}), base::InputError);
   EXPECT_THROW(recorded_accuracy(run, device(), "skip2", {}), base::InputError);
 }
 
-/// Each mode against `exact`, at the poses of one noisy recording: as many values as were recorded.
+/// Each mode compared with `exact`, at the poses of one noisy recording: as many values as were recorded.
 TEST(RecordedAccuracy, ModesHaveTheirErrors) {
   const record::Recording run = recorded(true);
   const auto errors = [&](const std::string& words) {
@@ -332,8 +332,8 @@ TEST(RecordedAccuracy, ModesHaveTheirErrors) {
   EXPECT_LT(skip4.zero(), skip2.zero());
 }
 
-/// The mode of the recording does not matter, only its poses do: robots that see in 32 bits drive a little differently.
-TEST(RecordedAccuracy, OfARecordingInAnotherModeOrWithoutReadings) {
+/// The mode of the recording does not matter, only its poses do: robots with 32-bit scans drive slightly differently.
+TEST(RecordedAccuracy, WorksForRecordingsInOtherModesOrWithoutReadings) {
   const auto errors = [](const record::Recording& run) {
     return recorded_accuracy(run, device(), "skip4", {}).types.at(0).errors;
   };
@@ -353,7 +353,7 @@ TEST(RecordedAccuracy, CanBeStopped) {
   EXPECT_EQ(a.ticks, 1u);
 }
 
-TEST(RecordedAccuracy, ModesThatNoSensorHasAreRefused) {
+TEST(RecordedAccuracy, ModesOfNoSensorAreRejected) {
   const record::Recording run = recorded(false);
   EXPECT_THROW(recorded_accuracy(run, device(), "skip3", {}), base::InputError);
   EXPECT_THROW(recorded_accuracy(run, device(), "near3", {}), base::InputError) << "of magnetometers";
