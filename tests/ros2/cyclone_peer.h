@@ -1,5 +1,5 @@
 #pragma once
-// A participant of Cyclone DDS on the loopback interface, by the plug-in: a client of services, as rmw_cyclonedds is.
+// A Cyclone DDS participant on the loopback interface, by the plug-in: a client of services, like rmw_cyclonedds.
 
 #include <memory>
 #include <mutex>
@@ -20,7 +20,7 @@ class CyclonePeer {
   std::size_t advertise(const std::string& topic, const std::string& type);
   void send(std::size_t writer, const base::Bytes& message) { participant_->write(writer, message); }
   bool matched_writer(std::size_t writer) const { return participant_->count_readers(writer) > 0; }
-  std::vector<base::Bytes> messages(std::size_t reader) const;  ///< all that came
+  std::vector<base::Bytes> messages(std::size_t reader) const;  ///< all received messages
 
  private:
   mutable std::mutex mutex_;

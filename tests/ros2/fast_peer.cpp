@@ -28,7 +28,7 @@ using base::Bytes;
 
 namespace {
 
-/// A type of which a sample is a message as bytes, with its encapsulation.
+/// A type whose samples are messages as bytes, with their encapsulation.
 class ByteType : public dds::TopicDataType {
  public:
   explicit ByteType(const std::string& name) {

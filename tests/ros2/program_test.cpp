@@ -1,4 +1,4 @@
-// The program with --ros2, in a process of its own, and Fast DDS in this one.
+// The program with --ros2 in its own process, and Fast DDS in this one.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@ std::string domain_of_program() { return std::to_string(1 + (static_cast<unsigne
 
 const Environment kHere{{"ROS_LOCALHOST_ONLY", "1"}};
 
-TEST(Ros2Program, ARunIsSeenDrivenAndPaused) {
+TEST(Ros2Program, ARunIsVisibleDrivableAndPausable) {
   const std::string domain = domain_of_program();
   Program run({"run", our_world("rooms.world"), "--ros2", domain}, kHere);
   ASSERT_TRUE(run.says("node /sensorfarm in domain " + domain + ", on this machine")) << run.err();
@@ -52,15 +52,15 @@ TEST(Ros2Program, ARunIsSeenDrivenAndPaused) {
   EXPECT_EQ(run.wait().code, 0);
 }
 
-/// A robot joins the run, then another world replaces it. Files outside its folders cannot be named.
-TEST(Ros2Program, ARunGetsRobotsAndWorlds) {
+/// A robot joins the run, then another world replaces it. Files outside the run's folders cannot be named.
+TEST(Ros2Program, ARunAcceptsRobotsAndWorlds) {
   const std::string domain = domain_of_program();
   Program run({"run", our_world("rooms.world"), "--ros2", domain, "--view", "127.0.0.1:0", "--player", "127.0.0.1:0"},
               kHere);
   const std::string before_port = "view on http://127.0.0.1:";
   ASSERT_TRUE(run.says(before_port)) << run.err();
   const int port = std::atoi(run.err().c_str() + run.err().find(before_port) + before_port.size());
-  /// The topics that the live view advertises.
+  /// Returns the topics advertised by the live view.
   const auto greeting = [port] {
     bridges::RawClient client(static_cast<std::uint16_t>(port));
     EXPECT_EQ(client.upgrade("foxglove.websocket.v1").substr(9, 3), "101");
@@ -69,7 +69,7 @@ TEST(Ros2Program, ARunGetsRobotsAndWorlds) {
   FastPeer peer(static_cast<std::uint32_t>(std::stoul(domain)));
   CyclonePeer cyclone(static_cast<std::uint32_t>(std::stoul(domain)));
   std::int64_t calls = 0;
-  /// Code of the answer, 0 without one.
+  /// Returns the code of the answer, 0 without one.
   const auto call = [&](const std::string& name, const std::string& type, const auto& put) {
     base::Bytes fields;
     record::CdrWriter cdr(fields);
@@ -80,7 +80,7 @@ TEST(Ros2Program, ARunGetsRobotsAndWorlds) {
         cyclone.subscribe("rr/" + name + "Reply", "simulation_interfaces::srv::dds_::" + type + "_Response_");
     int code = 0;
     peer.wait([&] { return cyclone.matched_writer(ask); });
-    // Again and again: a participant may know the other before it is known.
+    // Repeat the call: a participant may discover the other before it is discovered itself.
     const std::int64_t first = calls + 1;
     int looked = 0;
     EXPECT_TRUE(peer.wait([&] {
@@ -125,8 +125,8 @@ TEST(Ros2Program, ARunGetsRobotsAndWorlds) {
   EXPECT_EQ(run.wait().code, 0) << run.err();
 }
 
-/// Cyclone DDS crashes where it opens no more. Below 8, other parts state it.
-TEST(Ros2Program, TooFewDescriptorsAreStated) {
+/// Cyclone DDS crashes if it cannot open more descriptors. Below 8, other parts report the error.
+TEST(Ros2Program, TooFewDescriptorsAreReported) {
   for (const char* most : {"8", "9", "10", "11", "12", "13", "16", "20"}) {
     const Outcome outcome = Program({"-c", std::string("ulimit -n ") + most + "; exec \"$0\" \"$@\"", SF_PROGRAM, "run",
                                      our_world("rooms.world"), "--duration", "0.1", "--ros2", domain_of_program()},
@@ -139,7 +139,7 @@ TEST(Ros2Program, TooFewDescriptorsAreStated) {
   }
 }
 
-TEST(Ros2Program, AServiceAnswersQuestions) {
+TEST(Ros2Program, AServiceAnswersQueries) {
   const std::string domain = domain_of_program();
   Program serve({"serve", our_world("rooms.world"), "--port", "0", "--ros2", domain}, kHere);
   ASSERT_TRUE(serve.says("node /sensorfarm")) << serve.err();
@@ -159,7 +159,7 @@ TEST(Ros2Program, AServiceAnswersQuestions) {
   EXPECT_EQ(serve.wait().code, 0);
 }
 
-TEST(Ros2Program, SaysInOneLineWhyItCannot) {
+TEST(Ros2Program, ReportsTheErrorInOneLine) {
   const std::string world = our_world("rooms.world");
   const auto refusal = [&](const Words& words, const Environment& environment) {
     Words all{"run", world, "--duration", "0.1"};
@@ -177,7 +177,7 @@ TEST(Ros2Program, SaysInOneLineWhyItCannot) {
   EXPECT_NE(refusal({"--ros2"}, {{"ROS_DOMAIN_ID", "home"}}).find("ROS_DOMAIN_ID 'home'"), std::string::npos);
 }
 
-TEST(Ros2Program, WithoutThePlugInSaysWhatIsMissing) {
+TEST(Ros2Program, WithoutThePlugInReportsTheMissingFile) {
   const Folder folder;
   std::filesystem::copy_file(SF_PROGRAM, folder.path("alone"));
   setenv("SENSORFARM_PROGRAM", folder.path("alone").c_str(), 1);

@@ -1,6 +1,6 @@
-// The program with --ros2 beside nodes as Nav2, slam_toolbox and robot_localization have them by default (the table in
-// docs/bridges.md): their subscriptions by name, type and QoS, the frames that they look up, and the tree of frames.
-// The nodes are readers and writers of Fast DDS; the projects themselves do not run.
+// The program with --ros2 together with nodes like those of Nav2, slam_toolbox and robot_localization by default (the
+// table in docs/bridges.md): their subscriptions by name, type and QoS, the frames that they look up, and the tree of
+// frames. The nodes are readers and writers of Fast DDS; the projects themselves do not run.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -24,7 +24,7 @@ constexpr const char* kMap = "nav_msgs::msg::dds_::OccupancyGrid_";
 constexpr const char* kTwist = "geometry_msgs::msg::dds_::Twist_";
 constexpr const char* kTwistStamped = "geometry_msgs::msg::dds_::TwistStamped_";
 
-/// A subscription of a project. Names are relative to the robot's namespace, or begin with '/'.
+/// A subscription of a project. Names are relative to the robot's namespace unless they begin with '/'.
 struct Subscription {
   const char* project;
   const char* topic;
@@ -45,7 +45,7 @@ constexpr Subscription kSubscriptions[] = {
     {"robot_localization: ekf, navsat", "imu", "sensor_msgs::msg::dds_::Imu_", false, false, "gyro"},
     {"robot_localization: navsat", "gps/fix", "sensor_msgs::msg::dds_::NavSatFix_", false, false, "gps"}};
 
-/// A room with `robots`, which have a laser, encoders, a gyro and GPS.
+/// A room with `robots` that have a laser, encoders, a gyro and GPS.
 std::string world_of(const Folder& folder, const std::vector<std::string>& robots) {
   const std::string path = folder.path("room.world");
   std::ofstream out(path);
@@ -59,7 +59,7 @@ std::string world_of(const Folder& folder, const std::vector<std::string>& robot
   return path;
 }
 
-/// Frames that were told, as listeners of tf see them.
+/// Published frames, as seen by listeners of tf.
 struct Tree {
   std::map<std::string, std::set<std::string>> parents;  ///< by child
   std::map<std::string, std::vector<std::int64_t>> stamps;
@@ -74,7 +74,7 @@ struct Tree {
       }
     }
   }
-  /// One parent for each, one root for all, stamps that grow.
+  /// Checks that each frame has one parent, all have one root, and stamps increase.
   void expect_sound(const std::string& root) const {
     for (const auto& [child, all] : parents) {
       EXPECT_EQ(all.size(), 1u) << child << " has several parents";
@@ -90,7 +90,7 @@ struct Tree {
   }
 };
 
-/// The program in a domain of its own, and its peer.
+/// The program in its own domain, and its peer.
 struct Ros2Projects : testing::Test {
   void start(const std::vector<std::string>& robots, const Words& options) {
     domain = 1 + (static_cast<unsigned>(getpid()) + 57) % 230;
@@ -105,7 +105,7 @@ struct Ros2Projects : testing::Test {
     program->signal(SIGINT);
     EXPECT_EQ(program->wait().code, 0) << program->err();
   }
-  /// @param tf in front of /tf and /tf_static
+  /// @param tf prefix of /tf and /tf_static
   Tree tree(const std::string& tf, std::size_t messages = 10) {
     const std::size_t moving = peer->subscribe("rt" + tf + "/tf", kTransforms, false, true);
     const std::size_t fixed = peer->subscribe("rt" + tf + "/tf_static", kTransforms, true, true);
@@ -121,14 +121,14 @@ struct Ros2Projects : testing::Test {
       if (one.writes && one.topic == topic) return true;
     return false;
   }
-  /// Every subscription of the table matches, and gets messages in its frame.
-  /// @param space in front of relative names @param prefix of frames @param tf in front of /tf and /tf_static
+  /// Checks that every subscription of the table matches and receives messages in its frame.
+  /// @param space prefix of relative names @param prefix of frames @param tf prefix of /tf and /tf_static
   void expect_subscriptions(const std::string& space, const std::string& prefix, const std::string& tf) {
     for (const Subscription& one : kSubscriptions) {
       std::string topic = one.topic[0] == '/' ? one.topic : space + "/" + one.topic;
       if (one.type == kTransforms) topic = tf + topic;
       if (one.type == kMap && tf.empty()) topic = "/map";  // of a fleet
-      FastPeer node(domain);                               // a node of its own: several subscribe to one topic
+      FastPeer node(domain);                               // a separate node: several subscribe to one topic
       const std::size_t reader = node.subscribe("rt" + topic, one.type, one.latched, one.reliable);
       ASSERT_TRUE(node.wait([&] { return !node.messages(reader).empty(); })) << one.project << " " << topic;
       if (one.frame == nullptr) continue;
@@ -159,7 +159,7 @@ TEST_F(Ros2Projects, OneRobotHasTheirDefaultNames) {
   EXPECT_GE(frames.stamps.at("base_link").size(), 10u);
 }
 
-TEST_F(Ros2Projects, ScansAndOdometryAreAsTheyExpect) {
+TEST_F(Ros2Projects, ScansAndOdometryMatchTheirExpectations) {
   ASSERT_NO_FATAL_FAILURE(start({"roomba"}, {"--topics", "plain"}));
   const std::size_t scans = peer->subscribe("rt/scan", kScan, false, false);
   const std::size_t odometry = peer->subscribe("rt/odom", kOdometry);
@@ -194,7 +194,7 @@ TEST_F(Ros2Projects, ScansAndOdometryAreAsTheyExpect) {
   EXPECT_EQ(pose->pose.child, "base_link");
 }
 
-TEST_F(Ros2Projects, TheyDriveByEitherTwist) {
+TEST_F(Ros2Projects, BothTypesOfTwistDriveTheRobot) {
   ASSERT_NO_FATAL_FAILURE(start({"roomba"}, {"--topics", "plain"}));
   const std::size_t truth = peer->subscribe("rt/ground_truth/odom", kOdometry);
   const auto turns = [&](FastPeer& node, std::size_t writer, const base::Bytes& command, double turn) {
@@ -225,7 +225,7 @@ TEST_F(Ros2Projects, AFleetHasNamespacesAndOneTree) {
   }
 }
 
-/// As Nav2's launch files for several robots have it: /tf and /tf_static are remapped to tf and tf_static.
+/// As in Nav2's launch files for several robots: /tf and /tf_static are remapped to tf and tf_static.
 TEST_F(Ros2Projects, AFleetMayHaveATreePerRobot) {
   ASSERT_NO_FATAL_FAILURE(start({"ann", "bob"}, {"--topics", "nav2"}));
   for (const char* space : {"/ann", "/bob"}) {
@@ -246,12 +246,12 @@ TEST_F(Ros2Projects, ALocalizerIsTheOnlyParentOfOdom) {
   EXPECT_EQ(frames.parent("odom"), "");
   EXPECT_EQ(frames.parent("base_link"), "odom");
   EXPECT_TRUE(peer->wait([&] { return writes("rt/map"); }));
-  frames.parents["odom"].insert("map");  // the localizer's
+  frames.parents["odom"].insert("map");  // published by the localizer
   frames.expect_sound("map");
 }
 
 /// slam_toolbox publishes map -> odom and /map.
-TEST_F(Ros2Projects, AMapperHasTheOnlyMap) {
+TEST_F(Ros2Projects, AMapperPublishesTheOnlyMap) {
   ASSERT_NO_FATAL_FAILURE(start({"roomba"}, {"--topics", "plain", "--external", "mapper"}));
   Tree frames = tree("");
   EXPECT_EQ(frames.parent("odom"), "");

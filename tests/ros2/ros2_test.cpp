@@ -1,5 +1,5 @@
-// A run as a node of ROS 2, as Fast DDS, another implementation of DDS, sees it. Both are in this process, and reach
-// each other over the loopback interface. All waiting is for conditions.
+// A run as a ROS 2 node, seen by Fast DDS, another DDS implementation. Both are in this process and communicate over
+// the loopback interface. Tests wait only for conditions.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -41,7 +41,7 @@ world::World room() {
   return world;
 }
 
-/// A domain of this process's own, so that tests that run at once do not meet.
+/// Returns a domain for this process only, so that concurrent tests do not interfere.
 std::uint32_t own_domain() { return 1 + static_cast<std::uint32_t>(getpid()) % 230; }
 
 record::RunInfo named(record::RunInfo info) {
@@ -49,7 +49,7 @@ record::RunInfo named(record::RunInfo info) {
   return info;
 }
 
-/// A run of that world behind the bridge, and its peer.
+/// A run of that world with the bridge, and its peer.
 struct Ros2Test : testing::Test {
   Ros2Test() {
     auto made = std::make_unique<bridges::Ros2Bridge>(bridges::Ros2Options{own_domain(), true},
@@ -58,7 +58,8 @@ struct Ros2Test : testing::Test {
     all.add(std::move(made));
   }
 
-  /// Makes the next tick, or begins again. @return false: asked to stop
+  /// Simulates the next tick, or restarts.
+  /// @return false: asked to stop
   bool go_on() {
     const auto next = users.wait(simulation, 0.1 * static_cast<double>(ticks));
     if (next == scenarios::Operator::Next::stop) return false;
@@ -69,11 +70,12 @@ struct Ros2Test : testing::Test {
     ++ticks;
     return true;
   }
-  /// Makes ticks until `condition` holds. @return false: it did not within a minute
+  /// Simulates ticks until `condition` holds.
+  /// @return false: it did not within a minute
   bool run_until(const std::function<bool()>& condition) {
     return peer.wait([&] { return condition() || (go_on(), false); });
   }
-  /// Likewise of a run that is paused, or will be, which makes the ticks that it is asked for.
+  /// Does the same for a run that is paused, or will be, and that simulates requested ticks.
   bool run_paused_until(const std::function<bool()>& condition) {
     bool held = false;
     std::thread watch([&] {
@@ -105,7 +107,7 @@ struct Ros2Test : testing::Test {
   int ticks = 0;
 };
 
-/// A client of a service, as rmw_cyclonedds writes them.
+/// A client of a service, in the format of rmw_cyclonedds.
 struct Client {
   Client(const FastPeer& clock, CyclonePeer& of, const std::string& name, const std::string& type)
       : waiting(clock),
@@ -113,19 +115,20 @@ struct Client {
         requests(of.advertise("rq/" + name + "Request", type + "_Request_")),
         replies(of.subscribe("rr/" + name + "Reply", type + "_Response_")) {}
   bool known() const { return peer.matched_writer(requests); }
-  /// Calls until an answer comes: a participant may know the other before it is known. The run goes on meanwhile.
+  /// Calls until an answer arrives, because a participant may discover the other before it is discovered itself. The
+  /// run continues meanwhile.
   bool connect(const std::vector<std::uint8_t>& fields, const std::function<void()>& go_on) {
     if (!waiting.wait([&] { return known(); })) return false;
     int looked = 0;
     return waiting.wait([&] {
-      if (looked++ % 8 == 0) call(fields);  // a reset with each look would leave no tick to answer after
+      if (looked++ % 8 == 0) call(fields);  // a reset at each check would leave no tick after which to answer
       go_on();
       return answers() > 0;
     });
   }
   std::size_t answers() const { return peer.messages(replies).size(); }
   void call(const std::vector<std::uint8_t>& fields) { peer.send(requests, encode_request(17, ++calls, fields)); }
-  /// The answer to the last call; nullopt: none came yet
+  /// Returns the answer to the last call; nullopt: none yet.
   std::optional<Reply> reply() const {
     for (const base::Bytes& message : peer.messages(replies)) {
       const auto reply = decode_reply(message);
@@ -146,7 +149,7 @@ constexpr const char* kTransforms = "tf2_msgs::msg::dds_::TFMessage_";
 constexpr const char* kClock = "rosgraph_msgs::msg::dds_::Clock_";
 constexpr const char* kDiscovery = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
 
-TEST_F(Ros2Test, EndpointsAreNamedAsNodesOfRos2NameThem) {
+TEST_F(Ros2Test, EndpointsAreNamedAsInRos2Nodes) {
   const auto find = [&](const std::string& topic, const std::string& type) -> std::optional<Endpoint> {
     for (const Endpoint& one : peer.endpoints())
       if (one.topic == topic && one.type == type) return one;
@@ -206,7 +209,7 @@ TEST_F(Ros2Test, TheNodeIsAnnouncedToLateReaders) {
       << count() << " of " << nodes->front().readers << " + " << nodes->front().writers;
 }
 
-TEST_F(Ros2Test, LateReadersAreGivenTheFramesOfSensors) {
+TEST_F(Ros2Test, LateReadersReceiveTheFramesOfSensors) {
   for (int i = 0; i < 3; ++i) go_on();
   const std::size_t reader = peer.subscribe("rt/tf_static", kTransforms, true);
   ASSERT_TRUE(peer.wait([&] { return !peer.messages(reader).empty(); }));
@@ -221,7 +224,7 @@ TEST_F(Ros2Test, LateReadersAreGivenTheFramesOfSensors) {
                                                          {"robot_2/laser", "robot_2/base_link"}}));
 }
 
-/// Of each topic one reader, and a recording of the same ticks.
+/// One reader of each topic, and a recording of the same ticks.
 struct Ros2Readings : Ros2Test {
   static constexpr std::size_t kTicks = 12;
 
@@ -251,7 +254,7 @@ struct Ros2Readings : Ros2Test {
   record::Recording recording;
 };
 
-TEST_F(Ros2Readings, AreThoseOfTheRecording) {
+TEST_F(Ros2Readings, MatchTheRecording) {
   ASSERT_NO_FATAL_FAILURE(run());
   std::map<std::int64_t, const record::ReadingSample*> recorded;
   for (const record::ReadingSample& sample : recording.readings)
@@ -298,7 +301,7 @@ TEST_F(Ros2Readings, AreThoseOfTheRecording) {
   }
 }
 
-TEST_F(Ros2Readings, TheClockTellsEveryTick) {
+TEST_F(Ros2Readings, TheClockPublishesEveryTick) {
   ASSERT_NO_FATAL_FAILURE(run());
   ASSERT_TRUE(peer.wait([&] { return !peer.messages(clock).empty(); }));
   std::int64_t last = -1;
@@ -313,7 +316,7 @@ TEST_F(Ros2Readings, TheClockTellsEveryTick) {
 
 /// A publisher of commands for a robot, and its odometry.
 struct Ros2Commands : Ros2Test {
-  /// Sends `command` before every tick, as nodes do, until the robot turns that fast.
+  /// Sends `command` before every tick, as nodes do, until the robot turns at that rate.
   bool turns(std::size_t writer, const base::Bytes& command, double turn) {
     return peer.wait([&] {
       peer.send(writer, command);
@@ -330,7 +333,7 @@ struct Ros2Commands : Ros2Test {
 TEST_F(Ros2Commands, DriveTheRobot) { EXPECT_TRUE(turns(plain, encode_twist(0.0, 0.0, 0.5), 0.5)); }
 
 TEST_F(Ros2Commands, MayBeStamped) {
-  FastPeer other(own_domain());  // a participant has one type per topic
+  FastPeer other(own_domain());  // a participant has only one type per topic
   const std::size_t stamped = other.advertise("rt/scout/cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_");
   EXPECT_TRUE(peer.wait([&] {
     other.send(stamped, encode_twist_stamped(0.0, 0.0, -0.25));
@@ -345,11 +348,11 @@ TEST_F(Ros2Commands, UnreadableOnesAreCountedAndDropped) {
   const base::Bytes whole = encode_twist(1.0, 0.0, 0.0);
   const std::vector<base::Bytes> faulty{
       {whole.begin(), whole.begin() + 4},             // no field
-      {whole.begin(), whole.end() - 4},               // the last one is cut
+      {whole.begin(), whole.end() - 4},               // the last field is truncated
       {2, 0, 0, 0, 0, 0, 0, 0},                       // another encapsulation
       encode_twist(NAN, 0.0, 0.0),                    // not a number
       encode_twist(0.0, 0.0, INFINITY),               // not finite
-      base::Bytes(bridges::kDdsMaxReceived + 1, 0)};  // longer than any message that is read
+      base::Bytes(bridges::kDdsMaxReceived + 1, 0)};  // longer than any accepted message
   ASSERT_TRUE(turns(plain, encode_twist(0.0, 0.0, 0.5), 0.5)) << "from here on, the writer is known";
   const std::size_t reliable = peer.advertise("rt/robot_2/cmd_vel", "geometry_msgs::msg::dds_::Twist_");
   for (std::size_t i = 0; i < faulty.size(); ++i)
@@ -362,7 +365,7 @@ TEST_F(Ros2Commands, UnreadableOnesAreCountedAndDropped) {
   EXPECT_TRUE(turns(plain, encode_twist(0.0, 0.0, 0.25), 0.25)) << "others are heard as before";
 }
 
-TEST_F(Ros2Test, APausedRunMakesTheStepsThatAServiceAsksFor) {
+TEST_F(Ros2Test, APausedRunSimulatesTheStepsRequestedByAService) {
   Client set(peer, cyclone, "set_simulation_state", "simulation_interfaces::srv::dds_::SetSimulationState");
   Client step(peer, cyclone, "step_simulation", "simulation_interfaces::srv::dds_::StepSimulation");
   ASSERT_TRUE(set.connect({9}, [&] { go_on(); })) << "an unknown state, which is refused";
@@ -383,7 +386,7 @@ TEST_F(Ros2Test, APausedRunMakesTheStepsThatAServiceAsksFor) {
   EXPECT_EQ(set.reply()->code, 101) << "paused already";
 }
 
-TEST_F(Ros2Test, StandardServicesPauseAndBeginAgain) {
+TEST_F(Ros2Test, StandardServicesPauseAndRestart) {
   Client pause(peer, cyclone, "sensorfarm/pause", "std_srvs::srv::dds_::SetBool");
   Client reset(peer, cyclone, "sensorfarm/reset", "std_srvs::srv::dds_::Trigger");
   ASSERT_TRUE(pause.connect({0}, [&] { go_on(); }));
@@ -418,7 +421,7 @@ TEST_F(Ros2Test, AServicePlacesARobot) {
   EXPECT_EQ(place.reply()->code, 1) << place.reply()->message;
 }
 
-/// Fields of a request, whose first ones are the caller's two numbers.
+/// Returns fields of a request, of which the first ones are the caller's two numbers.
 std::vector<std::uint8_t> fields_of(const std::function<void(record::CdrWriter&)>& put) {
   base::Bytes bytes;
   record::CdrWriter cdr(bytes);
@@ -426,14 +429,14 @@ std::vector<std::uint8_t> fields_of(const std::function<void(record::CdrWriter&)
   return {bytes.begin() + 4, bytes.end()};
 }
 
-/// A robot that joins has topics of its own, and takes commands; one that leaves is silent.
+/// A robot that joins has its own topics and accepts commands; one that leaves is silent.
 TEST_F(Ros2Test, ServicesAddAndRemoveRobots) {
   users.on_fleet_changes([&](const auto& joining, const auto& leaving) {
     for (const bridges::Leaving& each : leaving) simulation.remove_robot(each.mover), each.outcome->done = true;
     for (const bridges::Joining& each : joining) try {
         each.outcome->done = true;
         simulation.add_robot(world, {.name = each.name, .like = each.like, .X_WM = each.X_WM});
-      } catch (const base::InputError& error) {  // asked for more than once before it was there
+      } catch (const base::InputError& error) {  // it was requested more than once before it joined
         each.outcome->fault = bridges::Outcome::Fault::failed;
       }
     sensor_set = sensors::SensorSet(world);
@@ -471,7 +474,7 @@ TEST_F(Ros2Test, ServicesAddAndRemoveRobots) {
 }
 
 /// Feedback after each step, then the result.
-TEST_F(Ros2Test, AnActionMakesSteps) {
+TEST_F(Ros2Test, AnActionSimulatesSteps) {
   Client set(peer, cyclone, "set_simulation_state", "simulation_interfaces::srv::dds_::SetSimulationState");
   Client send(peer, cyclone, "simulate_steps/_action/send_goal",
               "simulation_interfaces::action::dds_::SimulateSteps_SendGoal");
@@ -485,7 +488,7 @@ TEST_F(Ros2Test, AnActionMakesSteps) {
   ASSERT_TRUE(run_paused_until([&] { return set.reply().has_value(); }));
   const int before = ticks;
   std::vector<std::uint8_t> goal(16, 7);
-  get.call(goal);  // not known yet: answered at once, or after the goal
+  get.call(goal);  // not discovered yet: answered immediately, or after the goal
   goal.insert(goal.end(), {3, 0, 0, 0, 0, 0, 0, 0});
   send.call(goal);
   ASSERT_TRUE(run_paused_until([&] { return peer.messages(feedback).size() >= 3; }));

@@ -15,7 +15,8 @@ using eprosima::fastcdr::FastBuffer;
 
 namespace {
 
-/// Nullopt unless `read` takes all bytes, up to padding to a multiple of 4. @param whole false: more may follow
+/// Returns nullopt unless `read` consumes all bytes, up to padding to a multiple of 4.
+/// @param whole false: more may follow
 template <class T, class Read>
 std::optional<T> decode(const Bytes& message, Read&& read, bool whole = true) {
   Bytes copy = message;

@@ -1,4 +1,4 @@
-// Services of the program for clients of rmw_fastrtps and of rmw_cyclonedds at once: each request is executed once and
+// Services of the program for clients of rmw_fastrtps and rmw_cyclonedds together: each request is executed once and
 // answered once.
 
 #include <gtest/gtest.h>
@@ -30,13 +30,13 @@ constexpr const char* kGetState = "simulation_interfaces::srv::dds_::GetSimulati
 
 Fields steps(std::uint8_t count) { return {count, 0, 0, 0, 0, 0, 0, 0}; }
 
-/// As rclcpp uses rmw_fastrtps.
+/// A client like rclcpp with rmw_fastrtps.
 struct FastClient {
   FastClient(FastPeer& of, const std::string& name, const std::string& type)
       : peer(of),
         requests(of.advertise("rq/" + name + "Request", type + "_Request_")),
         replies(of.subscribe("rr/" + name + "Reply", type + "_Response_")) {}
-  /// `service_is_ready`: as many readers of requests as writers of replies. Here it is one of each implementation.
+  /// `service_is_ready`: as many readers of requests as writers of replies. Here there is one of each implementation.
   bool ready() const { return peer.count_matched_writer(requests) >= 2 && peer.count_matched_reader(replies) >= 2; }
   void call(const Fields& fields) { calls.push_back(peer.call(requests, replies, encode_fields(fields))); }
   std::size_t answers(std::int64_t call) const {
@@ -51,7 +51,7 @@ struct FastClient {
   std::vector<std::int64_t> calls;  ///< their sequence numbers
 };
 
-/// As rclcpp uses rmw_cyclonedds.
+/// A client like rclcpp with rmw_cyclonedds.
 struct CycloneClient {
   CycloneClient(CyclonePeer& of, const std::string& name, const std::string& type)
       : peer(of),
@@ -65,7 +65,7 @@ struct CycloneClient {
   std::size_t answers(std::int64_t call) const {
     std::size_t count = 0;
     for (const base::Bytes& message : peer.messages(replies)) {
-      if (message.size() < 20) continue;  // a reply to another client has no header
+      if (message.size() < 20) continue;  // replies to other clients have no header
       std::uint64_t client = 0;
       std::int64_t sequence = 0;
       std::memcpy(&client, message.data() + 4, sizeof client);
@@ -82,19 +82,19 @@ struct CycloneClient {
   std::vector<std::int64_t> calls;
 };
 
-/// The first one; empty: none, or the kernel does not list them.
+/// Returns the first child process; empty: none, or the kernel does not list them.
 std::string child_of(const std::string& process) {
   std::string child;
   std::ifstream("/proc/" + process + "/task/" + process + "/children") >> child;
   return child;
 }
 
-/// With Fast DDS, below this process or the one that it has started.
+/// Returns the process with Fast DDS, a child of this process or of the one that it has started.
 std::string fast_process() {
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
     std::string name, parent;
     std::ifstream(entry.path() / "comm") >> name;
-    if (name != "sensorfarm_fast") continue;  // cut to 15 characters
+    if (name != "sensorfarm_fast") continue;  // truncated to 15 characters
     std::ifstream stat(entry.path() / "stat");
     for (int i = 0; i < 4; ++i) stat >> parent;
     std::string grandparent;
@@ -107,7 +107,7 @@ std::string fast_process() {
 }
 
 struct Ros2Services : testing::Test {
-  /// Calls until one is answered, as a participant may know the other before it is known.
+  /// Calls until one call is answered, because a participant may discover the other before it is discovered itself.
   template <class Client>
   bool connect(Client& client, const Fields& fields) {
     const std::size_t from = client.calls.size();
@@ -142,7 +142,7 @@ TEST_F(Ros2Services, BothClientsAreAnsweredOnce) {
   const std::size_t before_a = a.calls.size(), before_b = b.calls.size();
   for (int i = 0; i < 8; ++i) a.call({0}), b.call({0});
   ASSERT_TRUE(fast.wait([&] { return a.answered() && b.answered(); }));
-  a.call({0}), b.call({0});  // an answer more would have come before theirs
+  a.call({0}), b.call({0});  // an extra answer would have arrived before theirs
   ASSERT_TRUE(fast.wait([&] { return a.answered() && b.answered(); }));
   expect_each_answered_once(a, before_a);
   expect_each_answered_once(b, before_b);
@@ -181,12 +181,12 @@ TEST_F(Ros2Services, UnreadableRequestsOfFastDdsAreDropped) {
   const std::size_t from = client.calls.size();
   const base::Bytes whole = encode_fields(steps(0));
   const std::vector<base::Bytes> faulty{
-      {},                                    // nothing
+      {},                                    // empty
       {0, 1, 0},                             // less than an encapsulation
       {0, 1, 0, 0},                          // no field
-      {whole.begin(), whole.end() - 1},      // its field is cut
+      {whole.begin(), whole.end() - 1},      // its field is truncated
       {2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},  // another encapsulation
-      base::Bytes((1 << 18) + 1, 0),         // longer than any request that is read
+      base::Bytes((1 << 18) + 1, 0),         // longer than any accepted request
   };
   for (const base::Bytes& bytes : faulty) fast.call(client.requests, client.replies, bytes);
   client.call(steps(0));
@@ -227,8 +227,8 @@ TEST_F(Ros2Services, NoSharedMemoryIsUsed) {
   }
 }
 
-/// Some malformed datagrams end Fast DDS 2.9.1. The run goes on, and its services are answered again.
-TEST_F(Ros2Services, TheRunOutlivesFastDds) {
+/// Some malformed datagrams crash Fast DDS 2.9.1. The run continues, and its services answer again.
+TEST_F(Ros2Services, TheRunSurvivesFastDds) {
   ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
   FastClient before(fast, "get_simulation_state", kGetState);
   CycloneClient other(cyclone, "get_simulation_state", kGetState);
@@ -246,7 +246,7 @@ TEST_F(Ros2Services, TheRunOutlivesFastDds) {
   EXPECT_EQ(run.wait().code, 0);
 }
 
-/// A process that is killed leaves none behind.
+/// A killed process leaves no child behind.
 TEST_F(Ros2Services, FastDdsEndsWithTheRun) {
   ASSERT_TRUE(run.says("node /sensorfarm")) << run.err();
   const std::string process = fast_process();
@@ -261,8 +261,8 @@ TEST_F(Ros2Services, FastDdsEndsWithTheRun) {
   }));
 }
 
-/// Clients of rmw_cyclonedds are answered as before.
-TEST(Ros2Program, WithoutFastDdsSaysWhoIsNotAnswered) {
+/// Clients of rmw_cyclonedds are still answered.
+TEST(Ros2Program, WithoutFastDdsReportsWhichClientsGetNoAnswer) {
   const Folder folder;
   std::filesystem::copy_file(SF_PROGRAM, folder.path("alone"));
   std::filesystem::copy_file(std::filesystem::path(SF_PROGRAM).parent_path() / "sensorfarm_dds.so",
