@@ -30,8 +30,8 @@ const char* const kOverhead =
     "dictionary = \"aruco_4x4_50\"\ntag_side = 0.15\ntag_height = 0.2\n[[camera]]\nname = \"a\"\nsize = [320, 240]\n"
     "focal = [400, 400]\nposition = [0, 0, 2.2]\n[[tag]]\nid = 1\n";
 
-constexpr const char* kStands = "stands until one comes";
-constexpr const char* kGoesOn = "goes on";
+constexpr const char* kStands = "stops until one arrives";
+constexpr const char* kGoesOn = "drives on";
 
 /// A farm on a port that it keeps through restarts, with what it needs to be found.
 struct Hall {

@@ -36,7 +36,7 @@ TEST(Service, ARobotWithoutALinkDoesNotMove) {
   EXPECT_FALSE(robot.answered);
   EXPECT_EQ(robot.steps, 6u) << "the time before the first reading counts as silence from 0.5 s on";
   EXPECT_EQ(f.service->stats().inbox.total(), 0u);
-  EXPECT_EQ(count_of(f.log.read_all(), "Standing until readings come"), 1u);
+  EXPECT_EQ(count_of(f.log.read_all(), "It stops until readings arrive"), 1u);
 }
 
 /// When a service stops, the robot does not drive on by its last scan. It stops after two and a half periods of its
@@ -47,10 +47,10 @@ TEST(Service, ARobotStopsWhileNoReadingArrives) {
   f.run(20, false);
   const std::uint64_t steps = f.client->stats().steps;
   EXPECT_EQ(f.client->stats().stops, 1u);
-  EXPECT_NE(f.log.read_all().find("for 0.625 s: robot1 stands until one comes"), std::string::npos);
+  EXPECT_NE(f.log.read_all().find("for 0.625 s: robot1 stops until one arrives"), std::string::npos);
   f.run(10);
   EXPECT_GT(f.client->stats().steps, steps + 5);
-  EXPECT_NE(f.log.read_all().find("readings come: robot1 goes on"), std::string::npos);
+  EXPECT_NE(f.log.read_all().find("readings arrive: robot1 drives on"), std::string::npos);
   EXPECT_EQ(f.client->stats().stops, 1u) << "going on is no stop";
 }
 
