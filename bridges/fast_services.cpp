@@ -146,7 +146,7 @@ class FastProcess : public FastServices {
     ::kill(made.pid, SIGKILL);
     ::waitpid(made.pid, nullptr, 0);
     throw std::runtime_error(answered ? std::string(first.bytes.begin(), first.bytes.end())
-                                      : fmt::format("{} does not start: keep it beside the program, and Fast DDS 2.9 "
+                                      : fmt::format("{} does not start: keep it with the plug-ins, and Fast DDS 2.9 "
                                                     "(libfastrtps2.9) installed",
                                                     file_));
   }

@@ -414,7 +414,7 @@ struct RosServices::Handlers {
     if (std::find(kScopes.begin(), kScopes.end(), scope) == kScopes.end())
       return of.add_result(call, kUnsupported, "time and state are reset together only: scope 0, 3, 7 or 255"), true;
     if (scope == 3 && of.movers_.size() > of.loaded_)
-      return of.add_result(call, kUnsupported, "what was spawned goes with every reset: scope 0, 7 or 255"), true;
+      return of.add_result(call, kUnsupported, "every reset removes spawned entities: scope 0, 7 or 255"), true;
     return reset(of, call, request, requests);
   }
 

@@ -212,7 +212,7 @@ void ViewerSessions::published(ClientId id, const Client& client, const ClientPu
       channel.encoding == "json" ? parse_json_twist(text_of(publish.payload))
                                  : read_cdr_twist(publish.payload, twist_type(channel.type) == TwistType::stamped);
   if (!twist || !std::isfinite(twist->forward) || !std::isfinite(twist->left) || !std::isfinite(twist->turn))
-    return complain(id, fmt::format("{}: the message is no finite {}.", channel.topic, channel.type));
+    return complain(id, fmt::format("{}: the message is not a finite {}.", channel.topic, channel.type));
   wishes_.command({movers_.at(channel.topic), *twist});
 }
 
@@ -241,7 +241,7 @@ void ViewerSessions::call(ClientId id, const ServiceCall& request) {
 }
 
 void ViewerSessions::play(ClientId id, const PlaybackRequest& request) {
-  if (about_.mode != ViewerMode::recording) return complain(id, "This is no recording.");
+  if (about_.mode != ViewerMode::recording) return complain(id, "This is not a recording.");
   if (!std::isfinite(request.speed) || request.speed <= 0.0F) return complain(id, "The speed must be above 0.");
   wishes_.pause(request.pause);
   wishes_.speed(request.speed);
