@@ -70,8 +70,8 @@ std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::W
       poses = control::start_poses(roads, drawn, scenario.seed, apart);
     } catch (const base::InputError&) {
       throw base::InputError(scenario.file, scenario.fleet.line,
-                             fmt::format("{} robots {:.2f} m apart find no room on the lanes of {} beside the {} that "
-                                         "stay where they are; use fewer",
+                             fmt::format("{} robots {:.2f} m apart do not fit on the lanes of {} with the {} that "
+                                         "remain there; use fewer",
                                          wanted, apart, roads.file, stays.size()));
     }
     std::erase_if(poses, [&](const base::Pose& X) { return !clear(X, radius, world, stays); });

@@ -77,7 +77,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Mapped
     text += fmt::format("| {} | {} | {:.0f} | {} | {} | {} | {} | {:.0f} | {:.1f} | {} | {:.2f} % |\n", m.entrant,
                         m.trial, m.simulated, m.done ? "yes" : "no", m.contacts, m.interventions,
                         text_of(m.dead_ends, "-"), m.stuck, m.travelled, text_of(m.seen), 100.0 * m.wrong);
-  return text + fmt::format("\n## Beside the thesis\n\n{}\n", context.type.reasons);
+  return text + fmt::format("\n## Comparison with the thesis\n\n{}\n", context.type.reasons);
 }
 
 Mapped mapped_of(const Entrant& entrant, std::uint32_t number, const Trial& trial,

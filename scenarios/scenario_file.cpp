@@ -152,7 +152,7 @@ FleetSpawn crowd_of(const Reader& reader, const TomlNode& root) {
   if (const TomlNode* robots = world::find(root, "robots")) fleet.line = robots->line;
   for (const std::string_view key : {"of", "place"})
     if (const TomlNode* node = world::find(root, key); node != nullptr && fleet.robots == 0)
-      reader.fail(*node, fmt::format("'{}' applies to copies, and there are none; expected robots = N beside it", key));
+      reader.fail(*node, fmt::format("'{}' applies to copies, but there are none; expected robots = N as well", key));
   return fleet;
 }
 

@@ -90,7 +90,7 @@ void Simulation::warn_of_long_ways() {
     if (outline.edges.empty() || way <= robots::Fleet::kMostTested * outline.step) continue;
     warnings_.push_back(
         {world_.file, 0,
-         fmt::format("'{}' may travel {:.4g} m in a tick of {:g} s: beside obstacles it ends a tick "
+         fmt::format("'{}' may travel {:.4g} m in a tick of {:g} s: near obstacles it ends a tick "
                      "after {:.4g} m of it, tested in steps of {:.2g} m; lower its velocity_bounds, or "
                      "the world's interval_sim",
                      mover.name, way, world_.interval, robots::Fleet::kMostTested * outline.step, outline.step)});

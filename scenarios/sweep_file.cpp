@@ -104,8 +104,9 @@ void add_leaves(const TomlNode& table, const std::string& prefix, std::vector<Le
 /// @throws base::InputError for names that cannot be keys of a scenario
 void check_name(const TomlReader& reader, const Leaf& leaf, std::set<std::string>& names) {
   if (leaf.name == "seed" || leaf.name == "name")
-    reader.fail(*leaf.node, leaf.name == "seed" ? "'seed' is no parameter; expected seeds = N or seeds = [...] instead"
-                                                : "'name' is no parameter; expected a key that changes the run");
+    reader.fail(*leaf.node, leaf.name == "seed"
+                                ? "'seed' is not a parameter; expected seeds = N or seeds = [...] instead"
+                                : "'name' is not a parameter; expected a key that changes the run");
   if (("." + leaf.name + ".").find("..") != std::string::npos)
     reader.fail(*leaf.node, fmt::format("'{}' has an empty part; expected keys joined by points", leaf.name));
   if (!names.insert(leaf.name).second)

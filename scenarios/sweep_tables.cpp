@@ -245,7 +245,7 @@ std::vector<std::string> write_sweep_tables(const Sweep& sweep, const SweepFolde
   std::string missing;
   for (const std::string& line : missing_values(results, 1000)) missing += "- " + line + "\n";
   if (!missing.empty())
-    missing = "\nResults that are no finite numbers, which means and intervals leave out:\n\n" + missing;
+    missing = "\nResults that are not finite numbers, which means and intervals exclude:\n\n" + missing;
   write_whole(files[2], report + markdown_of_points(sweep, results, 1000) + missing);
   return files;
 }

@@ -36,7 +36,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Trial>
                           trial.counts[i].contacts, trial.counts[i].goals.passed, trial.counts[i].stops,
                           trial.counts[i].red_lights_passed);
   }
-  return text + fmt::format("\n## Beside the thesis\n\n{}\n", context.type.reasons);
+  return text + fmt::format("\n## Comparison with the thesis\n\n{}\n", context.type.reasons);
 }
 
 std::vector<std::string> run_town(const ExperimentContext& context) {

@@ -106,13 +106,13 @@ TEST(FleetSpawn, MistakesAreRejectedAtTheirLine) {
   const std::string magic = "world = \"../worlds/minimagic/minimagic.world\"\n";
   const std::pair<std::string, std::string> kCorpus[] = {
       {kTown + "robots = 5\nplace = \"street\"\n", "test.toml:3: 'place' expects \"free\" or \"lanes\""},
-      {kTown + "place = \"lanes\"\n", "test.toml:2: 'place' applies to copies, and there are none"},
+      {kTown + "place = \"lanes\"\n", "test.toml:2: 'place' applies to copies, but there are none"},
       {kTown + "of = \"roomba1\"\nrobots = 0\n", "test.toml:2: 'of' applies to copies"},
       {kTown + "of = \"roomba9\"\nrobots = 2\n", "test.toml:3: "},
       {kTown + "robots = 2\nof = 3\n", "test.toml:3: 'of' expects a text in quotes"},
       {magic + "robots = 2\nof = \"tag1\"\n", "test.toml:2: 'tag1' is a tag, not a robot"},
       {magic + "robots = 2\nplace = \"lanes\"\n", "test.toml:2: robots on lanes, and "},
-      {kTown + "robots = 500\nplace = \"lanes\"\n", "test.toml:2: 500 robots 0.50 m apart find no room"},
+      {kTown + "robots = 500\nplace = \"lanes\"\n", "test.toml:2: 500 robots 0.50 m apart do not fit"},
   };
   for (const auto& [text, said] : kCorpus) {
     std::string what;

@@ -45,7 +45,7 @@ TEST(SweepFile, EachErrorIsReportedAtItsLine) {
       {town + "seeds = 0\n", "test.toml:2: 'seeds' expects at least one"},
       {town + "seeds = [1, 2, 1]\n", "test.toml:2: 'seeds' has one of them twice"},
       {town + "seeds = [1.5]\n", "test.toml:2: 'seeds' expects a whole number"},
-      {town + "[grid]\nseed = [1, 2]\n", "test.toml:3: 'seed' is no parameter"},
+      {town + "[grid]\nseed = [1, 2]\n", "test.toml:3: 'seed' is not a parameter"},
       {town + "[grid]\nduration = []\n", "test.toml:3: 'duration' has no values"},
       {town + "[grid]\n\"link..delay\" = [1]\n", "test.toml:3: 'link..delay' has an empty part"},
       {town + "[grid]\nlink.delay = [0]\n\"link.delay\" = [1]\n", "test.toml:4: 'link.delay' is a parameter already"},
