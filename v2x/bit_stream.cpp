@@ -97,7 +97,7 @@ void BitWriter::put_octets(std::span<const std::uint8_t> octets) {
 }
 
 void BitWriter::put_small_number(std::uint64_t number) {
-  SF_CHECK(number < 64, fmt::format("{} is no small number", number));
+  SF_CHECK(number < 64, fmt::format("{} is not a small number", number));
   put(number, 7);
 }
 

@@ -26,7 +26,7 @@ template <class T>
 void decode(BitReader& in, T& value, const Named& named) {
   const bool is_addition = named.extensible && in.bit();
   std::size_t row = is_addition ? named.names.size() + in.small_number() : in.bits(width_of(named.names.size() - 1));
-  if (!is_addition && row >= named.names.size()) in.fail(fmt::format("{} is no value of the enumeration", row));
+  if (!is_addition && row >= named.names.size()) in.fail(fmt::format("{} is not a value of the enumeration", row));
   value = static_cast<T>(row);
 }
 
@@ -117,7 +117,7 @@ void decode_choice(BitReader& in, T& value) {
   if constexpr (ExtensibleChoice<T>) is_addition = in.bit();
   const std::size_t known = T::kAlternatives.size();
   const std::size_t row = is_addition ? known + in.small_number() : in.bits(width_of(known - 1));
-  if (!is_addition && row >= known) in.fail(fmt::format("{} is no alternative of the choice", row));
+  if (!is_addition && row >= known) in.fail(fmt::format("{} is not an alternative of the choice", row));
   if (!in.good()) return;
   value.choice = static_cast<typename T::Alternative>(row);
   if constexpr (ExtensibleChoice<T>) {
