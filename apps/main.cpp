@@ -1,4 +1,4 @@
-// sensorfarm: one program, its subcommands, and what becomes of errors.
+// sensorfarm: the main program with its subcommands and error handling.
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -48,7 +48,7 @@ int run(int argc, char** argv) {
     if (const char* const plugins = std::getenv("SENSORFARM_PLUGINS")) sf::control::load_plugin_list(plugins);
     const sf::apps::Parsed parsed = sf::apps::parse_command_line(argc, argv);
     const int code = parsed.exit_code ? *parsed.exit_code : parsed.call();
-    // A full disk must not pass for an answer.
+    // Report write errors, so that truncated output is never mistaken for success.
     if (!sf::apps::flush_output()) return fail(2, "standard output cannot be written");
     return code;
   } catch (const sf::apps::Incomplete& stop) {
@@ -69,7 +69,7 @@ int run(int argc, char** argv) {
   }
 }
 
-/// For exit handlers that take longer, and for tests. @return false: it is no such number
+/// For exit handlers that need longer, and for tests. @return false if it is not a valid number
 bool read_seconds_to_end() {
   const char* const text = std::getenv("SENSORFARM_SECONDS_TO_END");
   if (text == nullptr || *text == '\0') return true;
@@ -85,7 +85,7 @@ bool read_seconds_to_end() {
 int main(int argc, char** argv) {
   fill_standard_streams();
   if (!read_seconds_to_end()) return fail(2, "SENSORFARM_SECONDS_TO_END expects a number of seconds from 0.001 to 1e6");
-  // A file that may not grow any more is an error with a message, as a full disk is.
+  // Report the file size limit as an error message, like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   if (sf::apps::needs_supervision(argc, argv))
     if (const std::optional<int> code = sf::apps::supervise()) return *code;

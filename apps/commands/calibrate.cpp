@@ -1,4 +1,4 @@
-// `calibrate`: a camera's intrinsics from images of a chessboard, or its pose from images of surveyed tags.
+// `calibrate`: computes a camera's intrinsics from images of a chessboard, or its pose from images of surveyed tags.
 
 #include "vision/calibration.h"
 
@@ -29,7 +29,7 @@ vision::Chessboard board_of(const CalibrateOptions& options) {
 
 vision::Calibration calibrate_shown(const CalibrateOptions& options) {
   const auto source = vision::opencv().open_source(options.images, 0, 0, 0.0);
-  // The number of a video's images is not known before its end.
+  // The number of images in a video is unknown until its end.
   const double images = static_cast<double>(source->size() > 0 ? source->size() : vision::kMaxCalibrationImages);
   Progress progress("calibrating");
   return vision::calibrate(*source, options.images, board_of(options), [&](std::size_t done) {

@@ -1,6 +1,6 @@
 #pragma once
-// The subcommands. Each returns the exit code: 0 when all went well. They throw base::InputError (2),
-// base::DeviceError (3) and Incomplete (apps/processes/stop_signals.h). docs/ci.md has all codes.
+// The subcommands. Each returns the exit code, 0 on success, and may throw base::InputError (2), base::DeviceError (3)
+// or Incomplete (apps/processes/stop_signals.h). docs/ci.md lists all codes.
 
 #include "apps/options/options.h"
 

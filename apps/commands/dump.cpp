@@ -1,4 +1,4 @@
-// `dump`: one line for each datagram that comes to a port, or stands in a capture file.
+// `dump`: prints one line for each datagram received on a port or read from a capture file.
 
 #include <fmt/format.h>
 
@@ -28,11 +28,11 @@ namespace sf::apps {
 namespace {
 
 constexpr std::size_t kMaxFile = 512u << 20;      ///< [byte]
-constexpr std::size_t kReceiveBuffer = 1u << 22;  ///< [byte] asked of the kernel
-constexpr std::size_t kMaxNumbers = 8;            ///< of a list in words; longer ones are summed up
+constexpr std::size_t kReceiveBuffer = 1u << 22;  ///< [byte] requested from the kernel
+constexpr std::size_t kMaxNumbers = 8;            ///< longest list that is printed in full; longer lists are summarized
 constexpr int kPatience = 100;                    ///< [ms]
 
-/// Type of a packet, its sensor and its robot.
+/// Packet type, sensor and robot.
 std::string subject_of(const server::PacketDescription& packet) {
   const netio::Header& header = packet.header;
   switch (header.type) {
@@ -57,13 +57,13 @@ std::string subject_of(const server::PacketDescription& packet) {
   return fmt::format("{} {} of robot {}", packet.name, header.sensor, header.robot);
 }
 
-/// @param exact all digits: VALUES are not rounded, and state the error of what they are
+/// @param exact prints all digits: VALUES packets carry unrounded values with error bounds
 std::string words_of(double number, bool exact) {
   if (std::isnan(number)) return "none";
   return exact ? fmt::format("{}", number) : fmt::format("{:.10g}", number);
 }
 
-/// "range_m = 1 0.25 8"; of a long list its number of numbers and their extremes.
+/// "range_m = 1 0.25 8"; for a long list, its length, minimum and maximum.
 std::string words_of(const server::PacketField& field, bool exact) {
   if (std::holds_alternative<std::int64_t>(field.value)) return field.name + " = " + text_of(field);
   if (const auto* number = std::get_if<double>(&field.value)) return field.name + " = " + words_of(*number, exact);
@@ -78,7 +78,7 @@ std::string words_of(const server::PacketField& field, bool exact) {
   return fmt::format("{} {} numbers, {} to {}", text, list.size(), words_of(least, exact), words_of(most, exact));
 }
 
-/// Accuracy of a reading and quality of the state behind it.
+/// Accuracy of the reading and quality of the state that it was computed from.
 std::string quality_words(const netio::Header& header) {
   if (netio::sensor_type_of(header.type) == 0 && header.type != netio::Type::values) return "";
   const netio::Accuracy accuracy = netio::decode_accuracy(header.accuracy);
@@ -95,7 +95,7 @@ std::string quality_words(const netio::Header& header) {
   return text;
 }
 
-/// In the header of a state that NEIGHBOURS contains, the same for all of them.
+/// Header fields of the states in a NEIGHBOURS packet, equal in all of them.
 bool is_repeated(const std::string& name) {
   return name.ends_with(".type") || name.ends_with(".sensor") || name.ends_with(".session") || name.ends_with(".token");
 }
@@ -141,7 +141,7 @@ std::string words_of(const v2x::Frame& frame) {
   return fmt::format("SPaT of {}", fmt::join(parts, "; "));
 }
 
-/// A datagram that is one J2735 frame.
+/// Returns the frame if the datagram consists of exactly one J2735 frame.
 std::optional<v2x::Frame> whole_frame(std::span<const std::uint8_t> bytes) {
   v2x::Frame frame;
   const v2x::DecodeResult result = v2x::decode(bytes, frame);

@@ -1,4 +1,4 @@
-// `experiment`: trials of one of the experiments, in one folder.
+// `experiment`: runs the trials of one experiment and writes the results to one folder.
 
 #include "scenarios/experiment.h"
 #include "apps/options/open_device.h"
@@ -27,7 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder asked for, or `experiments` here, above the program, or installed with it.
+/// Returns the requested folder, or the first `experiments` folder found in the working directory, above the program or
+/// in its installation.
 std::string folder_of(const ExperimentOptions& options) {
   if (!options.experiments.empty()) return options.experiments;
   std::error_code error;

@@ -1,4 +1,5 @@
-// `explain`: what a world makes the farm build and do, and what each part costs here.
+// `explain`: prints which structures the farm builds for a world, what it does with them, and their cost on this
+// machine.
 
 #include <fmt/format.h>
 

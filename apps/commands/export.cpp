@@ -1,4 +1,4 @@
-// `export`: a recording as tables or as geometry, for other programs.
+// `export`: writes a recording as tables or geometry for other programs.
 
 #include <fmt/format.h>
 

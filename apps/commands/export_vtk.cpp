@@ -38,7 +38,7 @@ double time_at(const RecordingPart& part, std::size_t tick) {
   return 0.0;
 }
 
-/// Files of one thing over time.
+/// A file series over time.
 class FileSeries {
  public:
   FileSeries(std::string folder, std::string name) : folder_(std::move(folder)), name_(std::move(name)) {
@@ -59,7 +59,7 @@ class FileSeries {
   std::vector<viz::SeriesFile> files_;
 };
 
-/// States of cells as in occupancy maps of robots: 0 unexplored, 1 occupied, 2 free.
+/// Cell states as in the robots' occupancy maps: 0 unexplored, 1 occupied, 2 free.
 viz::GridData grid_of(const maps::OccupancyGrid& map) {
   const maps::GridGeometry& g = map.geometry;
   const auto columns = static_cast<int>(maps::columns(g)), rows = static_cast<int>(maps::rows(g));

@@ -1,4 +1,4 @@
-// `field`: the field of a world's magnets as a picture, and as numbers along a line.
+// `field`: draws the field of a world's magnets, and writes the values along a line.
 
 #include <fmt/format.h>
 

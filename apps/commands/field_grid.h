@@ -9,8 +9,8 @@
 
 namespace sf::apps {
 
-/// Cells over the world's extent with arrays `magnitude` [T], `B` [T] and `in_plane` [T], B without its z. nullopt: the
-/// world has no magnets.
+/// Returns cells over the world's extent with the arrays `magnitude` [T], `B` [T] and `in_plane` [T], which is B
+/// without its z component. Returns nullopt if the world has no magnets.
 /// @param height [m] of the plane in the world
 std::optional<viz::GridData> field_grid(const world::World& world, gpu::Device& device, double height);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The thread that paints frames of a run and writes them.
+// A thread that paints and writes the frames of a run.
 
 #include <condition_variable>
 #include <cstdint>
@@ -15,12 +15,13 @@ namespace sf::apps {
 
 class FrameWriter {
  public:
-  /// @param write called in order for every frame, by the thread, which alone paints
+  /// @param write called for every frame in order, on the thread; only this thread paints
   FrameWriter(viz::RunView view, std::function<void(const viz::PixelImage&)> write);
-  /// Joins the thread once all frames are written, or writing failed.
+  /// Waits until all frames are written or writing has failed, and joins the thread.
   ~FrameWriter();
 
-  /// Waits while `kMostWaiting` frames wait. @throws what writing an earlier frame threw
+  /// Queues a frame. Blocks while `kMostWaiting` frames are queued.
+  /// @throws the exception that writing an earlier frame threw
   void add(viz::RunFrame frame);
   /// Waits until all frames are written. @throws as `add`
   void finish();
@@ -33,10 +34,10 @@ class FrameWriter {
 
   viz::RunView view_;
   std::function<void(const viz::PixelImage&)> write_;
-  std::mutex mutex_;  ///< of all below but the thread
+  std::mutex mutex_;  ///< guards all members below except the thread
   std::condition_variable changed_;
   std::deque<viz::RunFrame> waiting_;
-  bool is_ended_ = false;  ///< no more frames come
+  bool is_ended_ = false;  ///< no more frames will be added
   std::exception_ptr failure_;
   std::thread thread_;
 };

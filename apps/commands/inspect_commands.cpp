@@ -1,4 +1,4 @@
-// Commands that look without running: devices, check, draw, sense.
+// Commands that inspect without running: devices, check, draw, sense.
 
 #include <algorithm>
 
@@ -20,9 +20,9 @@ namespace sf::apps {
 
 namespace {
 
-constexpr double kArea = 2.0;  ///< [m] least sides of what walls enclose
+constexpr double kArea = 2.0;  ///< smallest width and height of walls that count as an enclosure
 
-/// Whether the mover has a sensor of that type; 0: of any.
+/// True if the mover has a sensor of that type; type 0 matches any.
 bool has_type(const sensors::SensorSet& sensor_set, std::uint8_t type, std::uint32_t mover) {
   return type == 0 ? sensor_set.count_of(mover) > 0 : !sensor_set.of(type, mover).empty();
 }
@@ -58,13 +58,14 @@ std::string all_sensors_of(const sensors::SensorSet& sensor_set, std::uint32_t m
   return text;
 }
 
-/// A sensor by its type and its number among the mover's sensors of that type.
+/// A sensor, given by its type and its index among the mover's sensors of that type.
 struct Chosen {
   const sensors::SensorType* type = nullptr;
   std::uint32_t sensor = 0;
 };
 
-/// Numbers count among one type where it was named, else through all of the mover's sensors, type after type.
+/// If a type was given, the number counts sensors of that type; otherwise it counts all sensors of the mover, type by
+/// type.
 Chosen find_sensor(const sensors::SensorSet& sensor_set, const SenseOptions& options, std::uint32_t mover) {
   std::uint32_t number = options.sensor;
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
@@ -76,7 +77,7 @@ Chosen find_sensor(const sensors::SensorSet& sensor_set, const SenseOptions& opt
   return {};
 }
 
-/// The sensor that was asked for, which is there.
+/// Returns the requested sensor. Ends with an error if it does not exist.
 Chosen require_sensor(const world::World& world, const sensors::SensorSet& sensor_set, const SenseOptions& options,
                       std::uint32_t mover) {
   const Chosen chosen = find_sensor(sensor_set, options, mover);
@@ -90,7 +91,7 @@ Chosen require_sensor(const world::World& world, const sensors::SensorSet& senso
                              std::to_string(options.sensor) + "; it has " + has + " (--type, --sensor)");
 }
 
-/// Where a place beyond walls that enclose an area is, such as one in millimetres; else "".
+/// Describes a position outside of enclosing walls, for example one given in millimetres; "" if there is no problem.
 std::string beyond_walls(const world::World& world, const base::Pose& X) {
   base::Box walls = base::empty_box();
   for (const world::Segment& wall : world.walls) walls = base::united(walls, base::box_of(wall.a, wall.b));
@@ -112,7 +113,7 @@ int devices(const DevicesOptions& options) {
   const gpu::DeviceList list = gpu::list_devices(options.device, options.require_vulkan);
   const bool any = std::any_of(list.devices.begin(), list.devices.end(), [](const auto& d) { return d.chosen; });
   print(options.json ? json_of(list) : text_of(list));
-  // Says in one line why there is none, or why it is the host.
+  // Prints one line if there is no device, or if the host is used.
   const gpu::Device device = open_device(options);
   return any ? 0 : 3;
 }

@@ -1,4 +1,5 @@
-// `light`: the traffic lights of a world or a plan, sent as SPaT and MAP like those of a street, and to a farm as V2I.
+// `light`: sends the traffic lights of a world or a plan as SPaT and MAP messages, as real lights do, and to a farm as
+// V2I.
 
 #include <fmt/format.h>
 
@@ -27,7 +28,7 @@ namespace sf::apps {
 
 namespace {
 
-/// "light1=flashing red" in place of that light's plan and program.
+/// "light1=flashing red" replaces the plan and program of that light.
 void hold_state(world::World& world, world::LightPlan& plan, const std::string& setting) {
   const auto [name, word] = *read_setting(setting);
   std::vector<std::string_view> names;
@@ -50,7 +51,7 @@ void hold_state(world::World& world, world::LightPlan& plan, const std::string& 
     std::replace(program.lights.begin(), program.lights.end(), row, world::kNone);
 }
 
-/// World and plan of a file that is either.
+/// Loads a world file, or a plan and the world that it names.
 std::pair<world::World, world::LightPlan> load(const LightOptions& options) {
   std::pair<world::World, world::LightPlan> both;
   if (options.file.ends_with(".toml")) {
@@ -64,7 +65,7 @@ std::pair<world::World, world::LightPlan> load(const LightOptions& options) {
   return both;
 }
 
-/// Detectors of places hear robots through the farm.
+/// Detectors that cover an area receive the robots' states through the farm.
 void require_farm(const LightOptions& options, const world::LightPlan& plan) {
   if (options.send.empty() && options.farm.empty())
     throw base::InputError("expected a receiver: --send HOST for SPaT and MAP, --farm HOST:PORT for V2I, or both");
@@ -125,7 +126,7 @@ class Sender {
   netio::Outbox outbox_;
 };
 
-/// Sends at its rate until it is stopped. States that came are heard before each.
+/// Sends at the configured rate until stopped. Processes received states before each transmission.
 void run(const LightOptions& options, Sender& sender, LightRadio* radio, world::LightActuator& actuator) {
   const auto start = std::chrono::steady_clock::now();
   std::int64_t next_map = 0;  // [s]
@@ -144,7 +145,7 @@ void run(const LightOptions& options, Sender& sender, LightRadio* radio, world::
     }
     sender.send_states(forecasts, base::unix_time() / 1'000'000);
     if (radio != nullptr) radio->send(forecasts, now);
-    // After a pause of the process, missed messages are not sent late.
+    // After a pause of the process, skip the missed messages.
     at = std::max(at + 1.0 / options.rate, base::seconds_since(start));
     keep_pace(start, at);
   }

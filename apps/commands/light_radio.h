@@ -1,5 +1,5 @@
 #pragma once
-// V2I to a farm, and states of robots from it, as detectors of lights hear them.
+// Sends V2I to a farm, and receives the robots' states from it for the detectors of the lights.
 
 #include <deque>
 #include <functional>
@@ -14,20 +14,20 @@
 
 namespace sf::apps {
 
-/// One sender for each intersection, with the key that `peers` has for it. The world must outlive it. One thread.
+/// One sender per intersection, with its key in `peers`. The world must outlive it. Not thread-safe.
 class LightRadio {
  public:
   /// @param farm "HOST:PORT"
-  /// @throws base::InputError for another form, and an unknown host
+  /// @throws base::InputError if it has another form or the host is unknown
   LightRadio(const world::World& world, const world::RoadNetwork* roads, const std::string& farm,
              const std::vector<netio::Peer>& peers);
 
-  /// Takes what came: `hear` is given the place [m] of each state of a robot.
+  /// Processes received packets. Calls `hear` with the position [m] of each robot state.
   void receive(std::int64_t now, const std::function<void(glm::dvec2)>& hear);
   /// @param forecasts one per row of `World::lights`
   void send(std::span<const world::SignalForecast> forecasts, std::int64_t now);
 
-  /// States on standard error why the farm does not take the states, at once and then every ten seconds.
+  /// Prints on standard error why the farm rejects the states: at once, then every ten seconds.
   void report_trouble(std::int64_t now);
 
   const std::string& to() const { return farm_; }
@@ -37,11 +37,11 @@ class LightRadio {
  private:
   std::string farm_;
   server::V2iMessages messages_;
-  std::deque<netio::V2vSocket> sockets_;  ///< per intersection; they do not move
-  std::uint64_t heard_ = 0;               ///< states
+  std::deque<netio::V2vSocket> sockets_;  ///< one per intersection; addresses must stay valid
+  std::uint64_t heard_ = 0;               ///< number of states received
   bool answered_ = false;
-  std::uint64_t troubles_ = 0;     ///< refused packets that came before, of all
-  std::int64_t next_trouble_ = 0;  ///< [ns] not stated before
+  std::uint64_t troubles_ = 0;     ///< refused packets at the last report, all sockets together
+  std::int64_t next_trouble_ = 0;  ///< [ns] earliest time of the next report
 };
 
 }  // namespace sf::apps

@@ -1,4 +1,4 @@
-// `listen`: the other end of `run --send`.
+// `listen`: receives the packets of `run --send`.
 
 #include <cmath>
 

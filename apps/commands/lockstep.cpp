@@ -26,7 +26,7 @@ namespace sf::apps {
 
 namespace {
 
-/// @throws base::InputError where more robots are waited for than there are
+/// @throws base::InputError if it would wait for more robots than the world has
 scenarios::LockstepServiceOptions lockstep_options(const ServeOptions& options, const world::World& world) {
   if (options.wait_for > count_robots(world))
     throw base::InputError(fmt::format("--wait-for {}, but {} has {}: the first tick would never come",

@@ -1,4 +1,4 @@
-// `map`: whoever is on the network draws the maps that robots make (the thesis' ASCII and graphical displays).
+// `map`: draws the maps that robots build and send over the network (the ASCII and graphical displays of the thesis).
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -31,24 +31,24 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kMapPatience = 10;                     ///< [ms] to wait for something to come
-constexpr std::size_t kMapReceiveBuffer = 1u << 22;  ///< [byte] asked of the kernel: large maps come in bursts
+constexpr int kMapPatience = 10;                     ///< [ms] timeout of one wait for packets
+constexpr std::size_t kMapReceiveBuffer = 1u << 22;  ///< [byte] requested from the kernel: large maps arrive in bursts
 
-/// One port: a robot's map.
+/// The map of one robot, received on one port.
 struct Source {
   std::uint16_t port = 0;
   netio::SourceLock farm;
-  std::uint64_t farms = 0;  ///< changes of it so far
+  std::uint64_t farms = 0;  ///< number of changes of the farm so far
   netio::SequenceGuard sequences{netio::ReadingAssembler::kMaxDropout};
   maps::MapAssembler assembler;
   std::uint16_t robot = 0;
   std::uint64_t used = 0;      ///< datagrams
-  std::uint64_t left_out = 0;  ///< late, twice, too far ahead, faulty, or of something else
+  std::uint64_t left_out = 0;  ///< datagrams that are late, duplicate, too far ahead, faulty or of another type
 
   Source(std::uint16_t on, std::uint32_t host) : port(on), farm(host) {}
 };
 
-/// Whether a sound part is of the source's one farm, and near those before it.
+/// True if a valid part comes from the source's current farm and is close in sequence to the previous ones.
 bool follow(Source& source, const netio::Endpoint& from, const netio::Header& header, std::int64_t now) {
   if (!source.farm.admit(from, header.session, now)) return false;
   if (source.farms != source.farm.changes()) {
@@ -63,7 +63,7 @@ std::string name_of(const Source& source, sensors::WireFormat wire) {
                                            : "port " + std::to_string(source.port);
 }
 
-/// The datagram `bytes` that came from `from` at `now` [ns].
+/// Processes the datagram `bytes`, received from `from` at time `now` [ns].
 maps::MapPartStatus take(Source& source, sensors::WireFormat wire, std::span<const std::uint8_t> bytes,
                          const netio::Endpoint& from, std::int64_t now) {
   if (!source.farm.allows(from)) return maps::MapPartStatus::faulty;
@@ -85,7 +85,7 @@ maps::MapPartStatus take(Source& source, sensors::WireFormat wire, std::span<con
   return source.assembler.add_part(packet.header.sequence, reading->payload);
 }
 
-/// One per port, in their order. @throws base::InputError for one that is given twice.
+/// Returns one plan per port, in the given order. @throws base::InputError for a port that is given twice.
 std::vector<netio::StreamSpec> plans_of(const std::vector<std::uint16_t>& ports) {
   std::vector<std::uint16_t> sorted = ports;
   std::sort(sorted.begin(), sorted.end());
@@ -97,7 +97,7 @@ std::vector<netio::StreamSpec> plans_of(const std::vector<std::uint16_t>& ports)
   return plans;
 }
 
-/// The ports' maps as they come in.
+/// Displays the maps received on the ports.
 class Display {
  public:
   explicit Display(const MapOptions& options)
@@ -108,7 +108,7 @@ class Display {
     for (const std::uint16_t port : options.map_ports) sources_.emplace_back(port, host);
   }
 
-  /// Takes what waits, or comes within a moment. @return true when anything did.
+  /// Processes pending packets, waiting a moment for the first. @return true if there were any
   bool drain();
   bool all_whole() const;
   bool any() const;
@@ -151,7 +151,8 @@ bool Display::any() const {
   return false;
 }
 
-/// One map per port that has one, or all of them as one where they go together: what strangers send must not end this.
+/// Returns one map per port that has received one, or a single merged map if they are compatible. Packets of strangers
+/// must not end the program.
 std::vector<maps::OccupancyGrid> Display::pictures() const {
   std::vector<const maps::OccupancyGrid*> grids;
   for (const Source& source : sources_)
@@ -172,7 +173,7 @@ void Display::redraw() {
   if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) size = {24, 80, 0, 0};
   const std::vector<maps::OccupancyGrid> all = pictures();
   const int down = std::max(1, (size.ws_row - 1) / static_cast<int>(all.size()));
-  std::string text = "\x1b[H\x1b[2J";  // home, and nothing left of the last one
+  std::string text = "\x1b[H\x1b[2J";  // cursor home, clear the screen
   for (const maps::OccupancyGrid& grid : all) text += maps::text_within(grid, size.ws_col, down);
   print(text);
   flush_output();
@@ -192,7 +193,7 @@ void Display::save(const std::string& file) const {
         figure.subtitle += (figure.subtitle.empty() ? "" : ", ") + name_of(source, options_.wire);
     return viz::draw_map(all[0], figure, file, options_.page);
   }
-  // One picture a port: map.png becomes map_52000.png and so on.
+  // One picture per port: map.png becomes map_52000.png and so on.
   const std::size_t dot = file.rfind('.') > file.rfind('/') + 1 ? file.rfind('.') : std::string::npos;
   std::size_t i = 0;
   for (const Source& source : sources_) {

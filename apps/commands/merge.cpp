@@ -1,4 +1,4 @@
-// `merge`: recordings of the ranks that shared a fleet, as one.
+// `merge`: merges the recordings of ranks that shared a fleet.
 
 #include "apps/commands/commands.h"
 #include "apps/processes/stop_signals.h"

@@ -1,4 +1,4 @@
-// `plot`: pictures from a recording, later and elsewhere. Scans are computed again from the recorded poses and world.
+// `plot`: draws pictures from a recording. Scans are recomputed from the recorded poses and world.
 
 #include <fmt/format.h>
 
@@ -50,7 +50,7 @@ std::vector<viz::Track> tracks_of(const RecordingPart& part, const world::World&
   return tracks;
 }
 
-/// Successive states of each light that are equal make one span.
+/// Merges successive equal states of each light into spans.
 std::vector<viz::LightRow> light_rows(const record::Recording& recording, const world::World& world) {
   std::vector<viz::LightRow> rows;
   for (const world::Light& light : world.lights) rows.push_back({light.name, {}});
@@ -71,7 +71,7 @@ std::vector<viz::LightRow> light_rows(const record::Recording& recording, const 
   return rows;
 }
 
-/// Computes every chosen laser's scan once a simulated second from where its robot was.
+/// Computes the scan of every chosen laser once per simulated second, at the recorded pose of its robot.
 void map_scans(const RecordingPart& part, const world::World& world, gpu::Device& device, viz::ScanMap& map) {
   ScanReplay replay(part, world, device);
   const std::vector<std::size_t> ticks = ticks_apart(part, 1.0);
@@ -83,7 +83,7 @@ void map_scans(const RecordingPart& part, const world::World& world, gpu::Device
   }
 }
 
-/// Names of the files written, each at once.
+/// Prints the name of each file as soon as it is written.
 struct Written {
   void operator()(const std::string& file) const {
     print_message("wrote {}", file);
@@ -91,7 +91,7 @@ struct Written {
   }
 };
 
-/// @throws base::InputError for the name of a robot that is not drawn
+/// @throws base::InputError if a robot that is not drawn is to be labelled
 viz::TrackLabels labels_of(const RecordingPart& part, const PlotOptions& options,
                            const std::vector<viz::Track>& tracks) {
   if (options.labels == std::vector<std::string>{"all"}) return {.all = true, .names = {}};
@@ -148,7 +148,7 @@ void draw_occupancy(const RecordingPart& part, const world::World& world, const 
 
 namespace {
 
-/// A folder of `sweep`.
+/// Plots the results of `sweep` in a folder.
 int plot_sweep(const PlotOptions& options, const std::string& jobs) {
   if (!options.robots.empty() || !options.labels.empty() || !options.elements.empty() || options.curves ||
       options.csv || !options.video.empty() || options.from > 0.0 || std::isfinite(options.to))

@@ -12,9 +12,9 @@ namespace sf::apps {
 
 namespace {
 
-/// The last that one sensor said.
+/// The last map of one sensor.
 struct LastMap {
-  std::string name;  ///< its robot's; with the sensor's number where that is not 0
+  std::string name;  ///< robot's name, followed by the sensor's number if that is not 0
   viz::PoseMarker place;
   maps::OccupancyGrid grid;
 };

@@ -21,21 +21,21 @@ namespace sf::apps {
 namespace {
 
 constexpr double kPlottedGauss = 1e4;          ///< per tesla
-constexpr std::size_t kMostMagnetometers = 4;  ///< panels of their own
+constexpr std::size_t kMostMagnetometers = 4;  ///< that get panels of their own
 constexpr std::size_t kMostPanels = 16;
-constexpr std::size_t kMostCurves = 32;  ///< in a panel, where a sensor has fewer
-constexpr std::size_t kNamedCurves = 7;  ///< sensors of more elements are drawn as heat maps
+constexpr std::size_t kMostCurves = 32;  ///< per panel, for sensors with few elements
+constexpr std::size_t kNamedCurves = 7;  ///< sensors with more elements are drawn as heat maps
 constexpr std::size_t kMostHeatMaps = 4;
-constexpr std::size_t kMostRows = 240;  ///< of a heat map; of more elements every second one, or third, ...
+constexpr std::size_t kMostRows = 240;  ///< of a heat map; with more elements, every second, third, ... is drawn
 
-/// Readings of one sensor, in order of time.
+/// Readings of one sensor, sorted by time.
 struct Channel {
-  std::string name;  ///< its robot's; with the sensor's where the robot has several
+  std::string name;  ///< robot's name, followed by the sensor's if the robot has several
   std::uint32_t mover = 0, sensor = 0;
   std::vector<const record::ReadingSample*> readings;
 };
 
-/// Every sensor of a type that said something.
+/// Every sensor of a type that has readings.
 std::vector<Channel> channels_of(const record::Recording& recording, const record::SensorTypeInfo& type) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Channel> rows;
   for (const record::ReadingSample& reading : recording.readings)
@@ -51,7 +51,7 @@ std::vector<Channel> channels_of(const record::Recording& recording, const recor
   return channels;
 }
 
-/// `value(reading)` of every reading.
+/// Evaluates `value(reading)` for every reading.
 template <class Value>
 viz::Series series_of(const std::string& name, const Channel& channel, Value&& value) {
   viz::Series series{name, {}, {}};
@@ -80,7 +80,7 @@ std::size_t element_count(const Channel& channel, std::size_t width) {
   return std::max<std::size_t>(1, channel.readings.front()->values.size() / width);
 }
 
-/// The elements to draw of a sensor that has `count`.
+/// Returns the elements to draw for a sensor with `count` elements.
 std::vector<std::size_t> chosen_elements(std::size_t count, const PlotOptions& options) {
   std::vector<std::size_t> chosen;
   for (std::size_t e = 0; e < count; ++e)
@@ -94,7 +94,7 @@ bool as_heat_map(std::size_t elements, const PlotOptions& options) {
   return elements > kNamedCurves && options.elements.empty() && !options.curves;
 }
 
-/// [s] in which a reading is succeeded by the next one: one and a half times the usual interval.
+/// [s] Longest time for which a reading is shown until the next one: 1.5 times the usual interval.
 double longest_hold(const std::vector<double>& times) {
   std::vector<double> intervals;
   for (std::size_t i = 0; i + 1 < times.size(); ++i) intervals.push_back(times[i + 1] - times[i]);
@@ -104,9 +104,9 @@ double longest_hold(const std::vector<double>& times) {
   return 1.5 * *middle + 1e-9;
 }
 
-/// One number per element: a column, or a part of one.
+/// One number per element: a column, or one component of a vector column.
 struct ElementColumn {
-  std::size_t offset = 0;  ///< in the element
+  std::size_t offset = 0;  ///< index within the element
   std::string name;        ///< with its unit
   bool whole = false, range = false;
   double scale = 1.0;
@@ -153,12 +153,12 @@ viz::Panel fields_of(const Channel& channel, std::size_t width, const PlotOption
   return panel;
 }
 
-/// A reading's row is |B|, then the vector. Path followers steer by how much stronger the last element's field is than
-/// the first's.
+/// A reading has |B| first, then the vector. Path followers steer by the difference between the magnitudes at the last
+/// and the first element.
 viz::SeriesOptions fields(const record::Recording& recording, const std::vector<Channel>& channels, std::size_t width,
                           const PlotOptions& options) {
   viz::SeriesOptions figure{"Magnetic field", "", {}};
-  // Signed: a difference of magnitudes is no magnitude.
+  // Signed, since a difference of magnitudes may be negative.
   viz::Panel difference{"last element less the first", "difference of |B| [G]", {}};
   const std::size_t drawn = std::min(channels.size(), kMostMagnetometers);
   for (std::size_t i = 0; i < drawn; ++i) {
@@ -190,7 +190,7 @@ std::string axis_name(const std::string& column) {
   return name + unit;
 }
 
-/// "robot1", "robot1 3 x": the element of a list, and the part of a vector.
+/// "robot1", "robot1 3 x": robot, element of a list, component of a vector.
 std::string part_name(const Channel& channel, std::size_t element, std::size_t elements, std::uint32_t part,
                       std::uint32_t width) {
   std::string name = channel.name;
@@ -201,7 +201,7 @@ std::string part_name(const Channel& channel, std::size_t element, std::size_t e
 
 bool is_whole(const record::ColumnInfo& column) { return column.whole || column.name.ends_with("_counts"); }
 
-/// @param panels of all columns of those sensors
+/// @param panels number of panels for all columns of those sensors
 std::string subtitle_of(const record::Recording& recording, std::size_t sensors, std::size_t drawn,
                         std::size_t panels) {
   std::string text = fmt::format("{}: {}", recording.info.world, counted(sensors, "sensor"));
@@ -210,7 +210,7 @@ std::string subtitle_of(const record::Recording& recording, std::size_t sensors,
   return text;
 }
 
-/// A panel per column and sensor, of the first sensors.
+/// One panel per column and sensor, for the first few sensors.
 viz::SeriesOptions heat_maps_of(const record::Recording& recording, const world::World& world,
                                 const record::SensorTypeInfo& type, const std::vector<Channel>& channels,
                                 std::size_t width) {
@@ -230,7 +230,7 @@ viz::SeriesOptions heat_maps_of(const record::Recording& recording, const world:
   return figure;
 }
 
-/// Any sensor type: a panel per column, a curve per sensor, element and part of a vector.
+/// Handles any sensor type: one panel per column, one curve per sensor, element and vector component.
 viz::SeriesOptions columns_of(const record::Recording& recording, const record::SensorTypeInfo& type,
                               const std::vector<Channel>& channels, std::size_t width, const PlotOptions& options) {
   viz::SeriesOptions figure{"Readings of " + type.name, "", {}};
@@ -258,11 +258,11 @@ viz::SeriesOptions columns_of(const record::Recording& recording, const record::
   return figure;
 }
 
-/// Empty where nothing is to be drawn of the sensor type.
+/// Returns nullopt if there is nothing to draw for the sensor type.
 std::optional<viz::SeriesOptions> figure_of(const record::Recording& recording, const world::World& world,
                                             const record::SensorTypeInfo& type, const PlotOptions& options) {
   const std::vector<Channel> channels = channels_of(recording, type);
-  if (channels.empty() || type.id == sensors::kOccupancy) return std::nullopt;  // maps have figures of their own
+  if (channels.empty() || type.id == sensors::kOccupancy) return std::nullopt;  // maps have separate figures
   const std::size_t width = record::element_width(type);
   std::size_t most = 0;
   for (const Channel& channel : channels) most = std::max(most, element_count(channel, width));
@@ -271,7 +271,7 @@ std::optional<viz::SeriesOptions> figure_of(const record::Recording& recording, 
   if (type.name == "magnetometer") return fields(recording, channels, width, options);
   if (as_heat_map(most, options)) return heat_maps_of(recording, world, type, channels, width);
   if (type.is_scan && options.elements.empty() && !options.curves)
-    return std::nullopt;  // beams of few samples are on the map
+    return std::nullopt;  // scans with few beams are drawn on the map
   return columns_of(recording, type, channels, width, options);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Recorded readings over time, one figure per sensor type that has any, but for maps: curves, or heat maps of sensors
-// with many elements.
+// Draws recorded readings over time, one figure per sensor type except maps: curves, or heat maps for sensors with many
+// elements.
 
 #include <string>
 #include <vector>
@@ -11,9 +11,9 @@
 
 namespace sf::apps {
 
-/// Draws `lane_edge.png`, `magnetometer.png`, `gps.png` and so on into `folder`; with `csv` the curves, too.
+/// Draws `lane_edge.png`, `magnetometer.png`, `gps.png` and so on into `folder`; with `csv`, also writes the curves.
 /// @return the files written.
-/// @throws base::InputError for an element of `options` that no recorded sensor has
+/// @throws base::InputError for an element in `options` that no recorded sensor has
 std::vector<std::string> draw_readings(const record::Recording& recording, const world::World& world,
                                        const PlotOptions& options, const std::string& folder);
 

@@ -32,10 +32,10 @@ int run_shared(cluster::Ranks& ranks, const std::function<int(cluster::Ranks*)>&
   mute(false);
   print_message("rank {}: {}", ranks.rank(), message);
   ranks.abort(code);
-  return code;  // g++ does not know that a virtual function never returns
+  return code;  // g++ does not detect that the virtual function never returns
 }
 
-/// Counts of a rank's own robots.
+/// Counts of the robots owned by this rank.
 std::vector<std::uint64_t*> counts_of(RunReport& f) {
   sensors::SensorStats& work = f.farm.work;
   netio::OutboxCounts& packets = f.publisher.packets;

@@ -18,7 +18,7 @@ namespace sf::apps {
 
 namespace {
 
-/// Scans of the robots whose readings are shown, at the last tick before each frame.
+/// Recomputes the scans of the shown robots at the last tick before each frame.
 class MissingScans {
  public:
   MissingScans(const RecordingPart& part, const world::World& world, const VideoOptions& options,

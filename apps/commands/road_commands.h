@@ -1,5 +1,5 @@
 #pragma once
-// Road networks (.rndf) and missions (.mdf) on the command line: `check` and `draw` hand them over.
+// Road networks (.rndf) and missions (.mdf) on the command line, called by `check` and `draw`.
 
 #include <optional>
 #include <string>
@@ -11,17 +11,17 @@
 
 namespace sf::apps {
 
-/// Facts of a road network, printed as JSON or text.
+/// Facts about a road network, printed as JSON or text.
 struct RoadReport {
   const world::RoadNetwork& network;
   std::size_t lane_markings = 0;  ///< painted lines and dashes
   const std::vector<world::Warning>& warnings;
 };
 
-/// Facts of a mission, printed as JSON or text.
+/// Facts about a mission, printed as JSON or text.
 struct MissionReport {
   const world::Mdf& mission;
-  std::string network;  ///< file it was checked against; empty: none
+  std::string network;  ///< file that the mission was checked against; empty: none
   const std::vector<world::Warning>& warnings;
 };
 
@@ -30,11 +30,12 @@ std::string json_of(const MissionReport& facts);
 std::string text_of(const RoadReport& facts);
 std::string text_of(const MissionReport& facts);
 
-/// `check` of a .rndf (or .rdf) or .mdf file; nothing for other files.
-/// @throws base::InputError for what is wrong in it, and for --rndf without a mission.
+/// Runs `check` on a .rndf (or .rdf) or .mdf file; returns nullopt for other files.
+/// @throws base::InputError if the file is invalid, or --rndf is given without a mission.
 std::optional<int> check_roads(const CheckOptions& options);
 
-/// `draw` of a .rndf (or .rdf) file; nothing for other files. @throws base::InputError likewise, and for a mission.
+/// Runs `draw` on a .rndf (or .rdf) file; returns nullopt for other files. @throws base::InputError if the file is
+/// invalid or a mission.
 std::optional<int> draw_roads(const DrawOptions& options);
 
 }  // namespace sf::apps

@@ -1,4 +1,4 @@
-// `robot`: one simulated robot as a process of its own, beside a farm that serves.
+// `robot`: runs one simulated robot in its own process, with a serving farm.
 
 #include <algorithm>
 #include <optional>
@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::string_view kStart = "start=";
 
-/// By its own option, or by the control shell's setting.
+/// Set by its command-line option or by the control shell's setting.
 bool waits_for_start(const RobotOptions& options) {
   return options.wait_for_start || std::any_of(options.set.begin(), options.set.end(), [](const std::string& text) {
            return text.compare(0, kStart.size(), kStart) == 0 &&
@@ -37,7 +37,7 @@ bool waits_for_start(const RobotOptions& options) {
          });
 }
 
-/// The robot's own; warns where the table has none.
+/// Returns the robot's key; warns if the table has none.
 std::optional<netio::SigningKey> key_of(const RobotOptions& options, const std::vector<netio::Peer>& peers,
                                         const world::Mover& mover) {
   const netio::Peer* own = netio::find(peers, netio::PeerKind::robot, mover.id);
@@ -65,7 +65,7 @@ server::RobotClientOptions client_options(const RobotOptions& options, const wor
                                           const world::Mover& mover) {
   server::RobotClientOptions client;
   client.link.farm = farm_of(options);
-  // The tag of a robot is none of the world's.
+  // The id of the robot's tag need not be in the world.
   const std::vector<netio::Peer> peers = peers_of(options, options.cameras > 0 ? nullptr : &world);
   client.link.key = key_of(options, peers, mover);
   client.link.model = {.delay = options.delay,

@@ -1,4 +1,4 @@
-// `run`: a simulated fleet in the loop, recorded and sent as asked.
+// `run`: simulates a fleet in closed loop, and records or sends its readings on request.
 
 #include <algorithm>
 #include <atomic>
@@ -44,7 +44,7 @@ namespace sf::apps {
 
 namespace {
 
-/// `refusal` of a controller names one of several robots that are driven.
+/// True if `refusal` by a controller names one of several driven robots.
 bool names_one_of_several(const std::string& refusal, const world::World& world, const RunOptions& options) {
   if (is_scenario(options.world)) return false;
   const std::size_t driven = options.drive.empty() ? count_robots(world) : options.drive.size();
@@ -53,7 +53,7 @@ bool names_one_of_several(const std::string& refusal, const world::World& world,
          });
 }
 
-/// @param scenario null: a fleet as the options say
+/// @param scenario null: the options define the fleet
 scenarios::SimulationOptions simulation_options(const world::World& world, const RunOptions& options,
                                                 cluster::Ranks* ranks, const scenarios::Scenario* scenario) {
   scenarios::SimulationOptions simulation;
@@ -74,8 +74,8 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
 
 const char* const kRemedy = "; or name the robots that are driven (--drive NAME)";
 
-/// `act()`; where a controller refuses one of several robots, with a remedy. Some do when they are made, some when they
-/// start.
+/// Runs `act()`. If a controller refuses one of several robots, adds a remedy to the error. Some controllers refuse
+/// when they are created, others when they start.
 template <class Act>
 auto advised(const world::World& world, const RunOptions& options, Act&& act) {
   try {
@@ -89,7 +89,7 @@ auto advised(const world::World& world, const RunOptions& options, Act&& act) {
   }
 }
 
-/// What a run stands on.
+/// World, layout, device and sensors of a run.
 struct Ground {
   std::optional<scenarios::Scenario> scenario;
   world::World world;
@@ -98,7 +98,7 @@ struct Ground {
   sensors::SensorSet sensor_set;
   std::string caster;
 
-  /// @param options its seed and duration become those of a scenario. @param ranks may be null
+  /// @param options seed and duration are replaced by the scenario's. @param ranks may be null
   Ground(RunOptions& options, const cluster::Ranks* ranks)
       : scenario(scenario_of(options)),
         world(load(options, ranks)),
@@ -110,13 +110,13 @@ struct Ground {
     note_size();
   }
 
-  /// A world, and the layout of its packets.
+  /// A world and its packet layout.
   struct Scenery {
     world::World world;
     std::optional<server::StreamLayout> layout;
     std::optional<scenarios::Scenario> scenario = {};
   };
-  /// @param file of a world; empty: one without anything @throws base::InputError
+  /// @param file world file; empty: an empty world @throws base::InputError
   Scenery load(const RunOptions& options, const std::string& file) const {
     Scenery scenery;
     scenery.world.interval = world.interval;
@@ -135,7 +135,7 @@ struct Ground {
     sensor_set = sensors::SensorSet(world);
     note_size();
   }
-  /// Robots that joined are in the last rows.
+  /// Robots that joined during the run occupy the last rows.
   bool has_joined() const { return world.movers.size() > movers_; }
   void forget_joined() {
     if (!has_joined()) return;
@@ -147,17 +147,17 @@ struct Ground {
 
  private:
   void note_size() { movers_ = world.movers.size(), models_ = world.models.size(); }
-  std::size_t movers_ = 0, models_ = 0;  ///< of the world at load
+  std::size_t movers_ = 0, models_ = 0;  ///< number of each in the loaded world
 
-  /// Ranks with tiles read outlines when they know their part, except where each keeps the whole world, and its
-  /// recording.
+  /// Ranks with tiles read outlines once their tile is determined, unless they balance tiles or record, since each then
+  /// keeps the whole world.
   static WorldOptions source_of(const RunOptions& options, const std::string& file, const cluster::Ranks* ranks) {
     WorldOptions source = options;
     source.world = file;
     source.load.leave_outlines = ranks != nullptr && options.tiles && options.balance == 0.0 && options.record.empty();
     return source;
   }
-  /// No copies.
+  /// Clone options without clones.
   static CloneOptions seed_of(const RunOptions& options) {
     CloneOptions clones;
     clones.seed = options.seed;
@@ -177,7 +177,7 @@ struct Ground {
   }
 };
 
-/// What results depend on.
+/// Hash of everything that the results depend on.
 std::uint64_t hash_of(const world::World& world, const RunOptions& options) {
   std::string text = fmt::format("{} {} {} {} {} {} {}", base::hash_hex(world.hash), world.movers.size(), options.of,
                                  options.seed, options.controller, options.localize, options.no_return_inf);
@@ -187,7 +187,7 @@ std::uint64_t hash_of(const world::World& world, const RunOptions& options) {
   return base::hash_bytes(text.data(), text.size());
 }
 
-/// The first rank keeps them.
+/// Kept by the first rank.
 std::optional<Checkpoints> checkpoints_of(const world::World& world, const RunOptions& options,
                                           const cluster::Ranks* ranks, const std::string& folder) {
   if ((options.checkpoint == 0.0 && !options.resume) || (ranks != nullptr && ranks->rank() > 0)) return std::nullopt;
@@ -195,19 +195,19 @@ std::optional<Checkpoints> checkpoints_of(const world::World& world, const RunOp
   return Checkpoints(folder, hash_of(world, options), static_cast<std::uint64_t>(every), options.resume);
 }
 
-/// Readings of other ranks are in their own recordings; without readings, one recording has all.
+/// Other ranks record their own readings. Without readings, one recording contains everything.
 record::RecordingPart part_of(const RunOptions& options, const cluster::Ranks* ranks) {
   if (ranks == nullptr || !options.record_readings) return {.compression = options.compression};
   return {ranks->rank(), ranks->size(), options.compression};
 }
 
-/// Folder of the recording after `resets`: each begins one of its own. Empty: this rank records nothing.
+/// Folder of the recording after `resets` resets; each starts a new recording. Empty: this rank does not record.
 std::string recording_folder(const RunOptions& options, const cluster::Ranks* ranks, std::uint32_t resets) {
   if (ranks != nullptr && ranks->rank() > 0 && !options.record_readings) return "";
   return options.record.empty() || resets == 0 ? options.record : fmt::format("{}-{}", options.record, resets + 1);
 }
 
-/// File of the video after `resets`, numbered like the recording.
+/// File of the video after `resets` resets, numbered like the recording.
 std::string video_file(const RunOptions& options, std::uint32_t resets) {
   if (options.video.empty() || resets == 0) return options.video;
   std::filesystem::path file(options.video);
@@ -215,7 +215,7 @@ std::string video_file(const RunOptions& options, std::uint32_t resets) {
   return fmt::format("{}-{}{}", file.replace_extension().string(), resets + 1, suffix);
 }
 
-/// A fleet from time 0 on, with what follows it.
+/// The simulation of a fleet from time 0, with its metrics, events and outputs.
 struct Course {
   const world::World& world;
   cluster::Ranks* ranks;
@@ -240,7 +240,7 @@ struct Course {
         checkpoints(checkpoints_of(world, options, ranks, recording_folder(options, ranks, resets))),
         outputs(world, ground.sensor_set, ground.layout, ground.caster, options,
                 recording_folder(options, ranks, resets), part_of(options, ranks), video_file(options, resets)) {
-    // The simulation has its part of them, and a recording begins with all.
+    // The simulation has copied the walls of its tile, and a recording begins with all of them.
     if (options.tiles && ranks != nullptr && options.balance == 0.0) ground.world.walls = {};
     if (ground.scenario) events.emplace(*ground.scenario);
     if (ranks == nullptr) simulation.interrupt_on([] { return stop_requested().load(); });
@@ -252,14 +252,14 @@ struct Course {
 
   double simulated() const { return static_cast<double>(ticks) * world.interval; }
 
-  /// A robot that stands until it is commanded. @throws base::InputError, with nothing changed
+  /// Adds a robot that stops until it receives a command. @throws base::InputError, with no change made
   void add(Ground& ground, const bridges::Joining& robot) {
     const std::size_t before = world.movers.size();
     simulation.add_robot(ground.world, {.name = robot.name, .like = robot.like, .X_WM = robot.X_WM});
-    if (world.movers.size() > before) grow(ground);  // else it returned
+    if (world.movers.size() > before) grow(ground);  // otherwise an existing robot returned
   }
 
-  /// The events of the scenario that are due. @throws base::InputError at an event's line
+  /// Applies the scenario events that are due. @throws base::InputError with the line of the event
   void apply_events(Ground& ground, LiveBridges& live) {
     if (!events) return;
     const bool joins = events->joins(simulated());
@@ -268,7 +268,7 @@ struct Course {
     if (joins) live.show_scene(false);
   }
 
-  /// A mover is new, in the last row.
+  /// Extends sensors, metrics and outputs by the mover that was added in the last row.
   void grow(Ground& ground) {
     ground.sensor_set = sensors::SensorSet(world);
     contacts.emplace_back();
@@ -276,7 +276,7 @@ struct Course {
     outputs.add_movers(simulation.joined());
   }
 
-  /// Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
+  /// Motion and readings of a tick are computed at its end, so readings due during the tick are sent one tick later.
   void step(scenarios::Operator& users) {
     const base::TickRecord tick = simulation.step();
     users.publish(tick);
@@ -306,13 +306,13 @@ struct Course {
 
 constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
 
-/// [1] Simulated over real time. @param watched by users of bridges
+/// [1] Ratio of simulated to real time. @param watched users are connected through bridges
 double speed_of(const RunOptions& options, bool watched) {
   const double speed = options.speed.value_or(watched ? 1.0 : 0.0);
   return speed > 0.0 ? speed : std::numeric_limits<double>::infinity();
 }
 
-/// `act()`, with its fault in the outcome.
+/// Runs `act()` and stores its error in the outcome.
 template <class Act>
 void attempt(bridges::Outcome& outcome, bridges::Outcome::Fault fault, Act&& act) {
   outcome.done = true;
@@ -372,7 +372,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
     begin(users.resets());
     live->show_scene(true);
   };
-  /// The world that a user asked for. Where it is refused, the run goes on.
+  /// Changes the world on a user's request. If the change fails, the run continues.
   const auto change_world = [&] {
     const bridges::WorldChange change = users.take_world();
     using Fault = bridges::Outcome::Fault;
@@ -436,7 +436,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
         progress.show(simulated / duration, fmt::format("{:.0f} s of {:g} s", simulated, duration));
     }
     facts.interrupted = next == scenarios::Operator::Next::stop;
-    users.keep_pace(course->simulated());  // a tick lasts until the next one would begin
+    users.keep_pace(course->simulated());  // a tick lasts until the start of the next
   }
   facts.wall_s = base::seconds_since(start);
   const gpu::DeviceInfo& device = ground->device.info();
@@ -449,7 +449,7 @@ int simulate(RunOptions options, cluster::Ranks* ranks) {
   warnings.insert(warnings.end(), heard.begin(), heard.end());
   print(options.json ? with_warnings(json_of(facts), warnings) : text_of(facts));
   const netio::OutboxCounts& packets = facts.publisher.packets;
-  // Without an end of its own, a run is complete when its user ends it.
+  // A run without a duration is complete when its user ends it.
   if (packets.failed == 0) return facts.interrupted && duration < kWithoutEnd ? interrupted_code() : 0;
   print_message("{} of {} packets were not sent: {}", packets.failed, packets.queued, packets.first_failure);
   return 1;

@@ -1,5 +1,5 @@
 #pragma once
-// `run` with a scenario file in place of a world: the fleet of `test`, to be watched, recorded and sent.
+// `run` with a scenario file instead of a world: runs the fleet of `test` so that it can be watched, recorded and sent.
 
 #include <optional>
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace sf::apps {
 
-/// A scenario file, by its name.
+/// True if the file name is that of a scenario.
 bool is_scenario(const std::string& file);
 
-/// The scenario of a run, checked; none: its file is a world. The seed becomes the scenario's, and so does the duration
-/// where none is given, except beside bridges without a recording or video.
+/// Returns the checked scenario of a run, or nullopt if its file is a world. Sets the seed to the scenario's, and the
+/// duration if none is given, except with bridges and neither recording nor video.
 /// @throws base::InputError for a scenario that cannot be run
 std::optional<scenarios::Scenario> scenario_of(RunOptions& options);
 
-/// The scenario's world, after its warnings are printed.
+/// Loads the scenario's world and prints its warnings.
 world::World load_scenario_world(const scenarios::Scenario& scenario, const world::LoadOptions& load);
 
 /// Names of the controllers that drive robots, as in "route, convoy".

@@ -1,5 +1,5 @@
 #pragma once
-// Settings of a run, for its recording and its bridges, from the options of `run` or `serve`.
+// Converts the options of `run` or `serve` to the settings of a run for its recording and bridges.
 
 #include <string>
 

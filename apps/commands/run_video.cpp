@@ -47,15 +47,15 @@ viz::RunViewOptions view_options(const world::World& world, const VideoOptions& 
           .note = options.video_speed == 1.0 ? "" : fmt::format("  (x {:g})", options.video_speed)};
 }
 
-/// All movers at a tick.
+/// States of all movers at a tick.
 struct Moment {
   std::int64_t time = 0;             ///< [ns]
-  std::vector<base::Report> states;  ///< of this time; absent where the tick has none
+  std::vector<base::Report> states;  ///< at this time; movers without a state are absent
   std::vector<std::uint8_t> contacts;
   std::vector<world::LightState> lights;
 };
 
-/// Movers without a state are absent.
+/// Marks movers without a state as absent.
 void fill_up(std::size_t movers, Moment& moment) {
   moment.states.resize(movers, {.X_WM = base::kAbsent});
   moment.contacts.resize(movers);
@@ -77,7 +77,7 @@ void store(const base::TickRecord& tick, const std::vector<std::uint8_t>& hidden
   for (const base::LightStatus& light : tick.lights) to.lights.push_back(static_cast<world::LightState>(light.state));
 }
 
-/// A mover that is farther away than it drives was put there, and is shown at its earlier place until then.
+/// A mover that moved farther than it can drive was teleported. Shows it at its earlier place until then.
 base::Pose pose_between(const base::Report& before, const base::Report& after, std::int64_t time) {
   const base::Pose &from = before.X_WM, &to = after.X_WM;
   if (time >= after.time) return to;
@@ -89,12 +89,12 @@ base::Pose pose_between(const base::Report& before, const base::Report& after, s
   return robots::interpolate(before, after, time).X_WM;
 }
 
-/// Readings of one sensor.
+/// Readings of one sensor that are shown.
 struct Shown {
   std::size_t mover = 0;
   const record::SensorInfo* sensor = nullptr;
-  std::optional<viz::RangeReading> newest;                          ///< at the last frame's time
-  std::vector<std::pair<std::int64_t, viz::RangeReading>> arrived;  ///< since, with their times [ns]
+  std::optional<viz::RangeReading> newest;                          ///< at the time of the last frame
+  std::vector<std::pair<std::int64_t, viz::RangeReading>> arrived;  ///< since then, with their times [ns]
 };
 
 void bring_up_to(std::int64_t time, Shown& shown) {
@@ -123,7 +123,7 @@ class RunVideo::Work {
   }
 
   void add_movers(const world::World& world) {
-    writer_->finish();  // whose thread reads the world
+    writer_->finish();  // its thread reads the world
     writer_.reset();
     world_ = world;
     for (Moment* moment : {&before_, &now_}) fill_up(world_.movers.size(), *moment);
@@ -140,7 +140,7 @@ class RunVideo::Work {
   }
 
   VideoFacts finish() {
-    if (!started_) {  // stopped before its first tick: players refuse files without a frame
+    if (!started_) {  // stopped before the first tick: players reject files without a frame
       fill_up(world_.movers.size(), now_);
       for (std::size_t m = 0; m < world_.movers.size(); ++m) now_.states[m].X_WM = world_.movers[m].X_WM;
       before_ = now_;
@@ -166,7 +166,7 @@ class RunVideo::Work {
     });
   }
 
-  using Key = std::tuple<std::uint32_t, std::uint8_t, std::uint32_t>;  // mover, type, sensor of it
+  using Key = std::tuple<std::uint32_t, std::uint8_t, std::uint32_t>;  // mover, type, index of the sensor
 
   void choose_sensors(const std::vector<std::size_t>& movers) {
     for (const std::size_t mover : movers) {
@@ -192,7 +192,7 @@ class RunVideo::Work {
     found->second.arrived.emplace_back(reading.time, std::move(kept));
   }
 
-  /// [ns] simulated, of the next frame.
+  /// [ns] Simulated time of the next frame.
   std::int64_t frame_time() const {
     return start_ + base::nanoseconds(static_cast<double>(frames_) * options_.video_speed /
                                       static_cast<double>(options_.video_fps));
@@ -214,7 +214,7 @@ class RunVideo::Work {
     ++frames_;
   }
 
-  world::World world_;  ///< a copy: the run's may grow while frames are painted
+  world::World world_;  ///< a copy, since the run's world may grow while frames are painted
   const record::RunInfo info_;
   const VideoOptions options_;
   const std::vector<std::uint8_t> hidden_;
@@ -223,9 +223,9 @@ class RunVideo::Work {
   bool started_ = false;
   std::int64_t start_ = 0;    ///< [ns] of the first tick
   std::uint64_t frames_ = 0;  ///< so far
-  std::uint64_t images_ = 0;  ///< files written by the writer
+  std::uint64_t images_ = 0;  ///< files written by the writer's thread
   std::optional<viz::VideoFile> file_;
-  std::optional<FrameWriter> writer_;  ///< ends before the file
+  std::optional<FrameWriter> writer_;  ///< destroyed before the file
 };
 
 RunVideo::RunVideo(const world::World& world, record::RunInfo info, const VideoOptions& options,

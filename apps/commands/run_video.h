@@ -1,5 +1,5 @@
 #pragma once
-// A run as a video or as PNG files of its frames, painted and encoded by a thread of its own while ticks are computed.
+// Writes a run as a video or as PNG files of its frames. A separate thread paints and encodes while ticks are computed.
 
 #include <cstdint>
 #include <memory>
@@ -12,7 +12,8 @@
 
 namespace sf::apps {
 
-/// Rows of the movers that an option names (apps/robot_names.h). @throws base::InputError for one that the world lacks
+/// Returns the rows of the movers named in an option (apps/robot_names.h). @throws base::InputError for a name that the
+/// world lacks
 std::vector<std::size_t> rows_of(const world::World& world, const std::vector<std::string>& texts);
 
 struct VideoFacts {
@@ -25,24 +26,23 @@ struct VideoFacts {
 /// "250 frames, 10 s, 1.2 MB".
 std::string text_of(const VideoFacts& facts);
 
-/// Frame k of F a second shows the simulated time k / F times the speed after the first tick: poses between two ticks
-/// are interpolated, readings are the newest at that time. Few frames wait for the thread, so memory is bounded; no
-/// frame is left out: where encoding is slower, `write` waits.
+/// Frame k at F frames per second shows the simulated time k / F times the speed after the first tick. Poses are
+/// interpolated between ticks; readings are the newest at that time. The queue of frames is bounded and no frame is
+/// dropped: `write` blocks if encoding is slower.
 class RunVideo {
  public:
   /// @param world copied. @param info of the same world, with all of its sensors
-  /// @param hidden one per mover: 1 where it is not drawn; empty: all are drawn
-  /// @throws base::InputError for robots that the world lacks, without the plug-ins, and for files that cannot be
-  /// written
+  /// @param hidden one per mover: 1 if it is not drawn; empty: all are drawn
+  /// @throws base::InputError for unknown robots, missing plug-ins and files that cannot be written
   RunVideo(const world::World& world, record::RunInfo info, const VideoOptions& options,
            std::vector<std::uint8_t> hidden = {});
   ~RunVideo();
 
-  /// Ticks in order of time. @throws base::InputError where a frame could not be written
+  /// Adds a tick, in order of time. @throws base::InputError if a frame could not be written
   void write(const base::TickRecord& tick);
-  /// Movers joined: the last rows of `world`, which has the others in their places. Between two ticks.
+  /// Adds movers that joined in the last rows of `world`; the other rows are unchanged. Called between two ticks.
   void add_movers(const world::World& world);
-  /// Shows the last tick for its interval, and ends the file. @throws base::InputError as `write`
+  /// Shows the last tick for its interval, and closes the file. @throws base::InputError as `write`
   VideoFacts finish();
 
  private:

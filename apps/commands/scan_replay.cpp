@@ -48,7 +48,7 @@ std::span<const base::ReadingBlock> ScanReplay::scans_at(std::size_t tick) {
     if (part_.chosen[m] != 0) farm_.subscribe(m, 1u << sensors::kLaser);
     reports_.push_back({m, states[tick].time, states[tick].X_WM, states[tick].velocity});
   }
-  // Slow sensors look too: each call is as far from the last as their period.
+  // Advances by a long time in each call, so that sensors with long periods are due, too.
   return farm_.tick(++calls_ * 1000 * base::kSecond, reports_);
 }
 

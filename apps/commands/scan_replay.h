@@ -1,5 +1,5 @@
 #pragma once
-// Laser scans of a recording, computed again from the recorded poses and world, without noise.
+// Recomputes the laser scans of a recording, without noise, from the recorded poses and world.
 
 #include <cstdint>
 #include <span>
@@ -10,20 +10,20 @@
 
 namespace sf::apps {
 
-/// True when a chosen mover has a laser.
+/// True if a chosen mover has a laser.
 bool has_laser(const RecordingPart& part, const world::World& world);
 
-/// Ticks of a recording at least `seconds` apart, the first one among them.
+/// Returns ticks of a recording at least `seconds` apart, starting with the first.
 std::vector<std::size_t> ticks_apart(const RecordingPart& part, double seconds);
 
-/// Poses of all movers at a tick of the recording. Those of which it says nothing are absent.
+/// Returns the poses of all movers at a tick. Movers without a recorded state are absent.
 std::vector<base::Pose> poses_at(const RecordingPart& part, std::size_t tick);
 
 class ScanReplay {
  public:
-  /// All references must live as long as this.
+  /// All arguments must outlive it.
   ScanReplay(const RecordingPart& part, const world::World& world, gpu::Device& device);
-  /// Scans of all chosen lasers at a tick of the recording, in any order of ticks. Valid until the next call.
+  /// Returns the scans of all chosen lasers at a tick. Ticks may be requested in any order. Valid until the next call.
   std::span<const base::ReadingBlock> scans_at(std::size_t tick);
 
  private:

@@ -1,4 +1,4 @@
-// `test`: scenarios held to what they expect, as a table and as JUnit XML.
+// `test`: runs scenarios, checks their expectations, and reports the results as a table and JUnit XML.
 
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ std::string text_of(const scenarios::ScenarioResult& result) {
   throw base::InputError(path, 0, "cannot be written; name a file in a folder that exists and can be written");
 }
 
-/// Known before anything runs; what is there stays as it is.
+/// Checks before any run that the file can be written, without changing its content.
 void check_junit(const std::string& path) {
   std::error_code error;
   const bool there = std::filesystem::exists(path, error);
@@ -64,7 +64,7 @@ void write_junit(const std::string& path, const std::vector<scenarios::ScenarioR
   if (!file) refuse_junit(path);
 }
 
-/// The first rank's word: times, which a scenario can limit, differ between ranks.
+/// Returns the result of the first rank: times, which a scenario can limit, differ between ranks.
 bool agreed(bool passed, cluster::Ranks* ranks) {
   if (ranks == nullptr) return passed;
   const std::array<std::uint8_t, 1> word{passed};
@@ -77,14 +77,14 @@ bool none_failed(std::span<const scenarios::ScenarioResult> results) {
   });
 }
 
-/// Scenarios that were not run to their end are failures in JUnit.
+/// Reports unfinished scenarios as failures in JUnit.
 void add_interrupted(const TestOptions& options, std::vector<scenarios::ScenarioResult>& results) {
   print_message("interrupted: {} of {} run", results.size(), counted(options.scenarios.size(), "scenario"));
   for (std::size_t i = results.size(); i < options.scenarios.size(); ++i)
     results.push_back({.name = options.scenarios[i], .file = options.scenarios[i], .failure = "interrupted"});
 }
 
-/// Runs the scenarios until a stop is requested. @return false then
+/// Runs the scenarios until a stop is requested. @return false if stopped
 bool run_all(const std::vector<scenarios::Scenario>& all, gpu::Device& device, cluster::Ranks* ranks, bool reports,
              std::vector<scenarios::ScenarioResult>& results) {
   try {
@@ -105,13 +105,13 @@ bool run_all(const std::vector<scenarios::Scenario>& all, gpu::Device& device, c
   return true;
 }
 
-/// One after another in this process, which shares the fleets with others.
+/// Runs them one after another in this process, which may share the fleets with other ranks.
 int test_here(const TestOptions& options, cluster::Ranks* ranks) {
   const bool reports = ranks == nullptr || ranks->rank() == 0;
   install_stop_handlers();
   std::vector<scenarios::Scenario> all;
   std::optional<gpu::Device> device;
-  // All files are read, and what they ask for is tried, before any is run: a slip in the last is known at once.
+  // Read all files and check what they need before running any, so that an error in the last file is reported at once.
   on_all(ranks, [&] {
     for (const std::string& file : options.scenarios) all.push_back(scenarios::read_scenario(file));
     for (const scenarios::Scenario& scenario : all) print_warnings(scenario.world, scenarios::check_scenario(scenario));

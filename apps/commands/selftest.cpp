@@ -1,4 +1,4 @@
-// `selftest`: the farm at the ends of its range, on this machine.
+// `selftest`: tests the farm at the limits of its range on this machine.
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// `serve`: robots live elsewhere. Their states come in, readings go back to them.
+// `serve`: receives the states of robots in other processes and sends their readings back.
 
 #include <fmt/format.h>
 
@@ -61,7 +61,7 @@ server::ServiceOptions service_options(const ServeOptions& options, const world:
   return service;
 }
 
-/// All that may send here and has to be signed; SPaT cannot be.
+/// All senders whose packets have to be signed; SPaT cannot be signed.
 std::vector<NamedPeer> senders_of(const ServeOptions& options, const world::World& world,
                                   std::span<const std::uint32_t> lights) {
   std::vector<NamedPeer> senders;
@@ -75,7 +75,7 @@ std::vector<NamedPeer> senders_of(const ServeOptions& options, const world::Worl
   return senders;
 }
 
-/// @throws base::InputError for an intersection that the world does not have
+/// @throws base::InputError for an intersection that the world lacks
 void require_lights(const ServeOptions& options, std::span<const netio::Peer> peers,
                     std::span<const std::uint32_t> lights) {
   for (const netio::Peer& peer : peers)
@@ -91,7 +91,7 @@ scenarios::RunSettings service_settings(const ServeOptions& options, bool softwa
   return settings;
 }
 
-/// The recording of a service: its states are estimates, its ticks and samples are at times of its clock.
+/// Header of a service's recording: states are estimates, and ticks and samples have times of the service's clock.
 record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const ServeOptions& options,
                          bool software) {
   record::RunInfo info = scenarios::run_info(world, sensor_set, service_settings(options, software));
@@ -99,14 +99,14 @@ record::RunInfo run_info(const world::World& world, const sensors::SensorSet& se
   return info;
 }
 
-/// The error with its remedy, which is an option of the command line.
+/// Adds the command-line option that resolves the error.
 base::InputError port_in_use(const netio::Endpoint& bind) {
   return base::InputError(netio::text(bind) +
                           " is taken, by another `sensorfarm serve` perhaps: end that one, or serve on another port "
                           "(--port N, or --port 0 for any free one) and tell the robots (robot --port N)");
 }
 
-/// With the names of the movers.
+/// Adds the names of the movers.
 std::vector<RunReport::Clock> clocks_of(const server::ServiceStats& stats, const world::World& world) {
   std::vector<RunReport::Clock> clocks;
   for (const server::SenderClockState& each : stats.clocks)

@@ -1,4 +1,4 @@
-// `start` and `object`: one word to a farm, several times, since one may be lost on the way.
+// `start` and `object`: send a signal to a farm several times, since packets may be lost.
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kRepetitions = 3;
 
-/// @throws base::InputError for a table without the key: the farm that has one would drop the packet
+/// @throws base::InputError if the table lacks the key, since a farm with a key would drop the packet
 std::optional<netio::PacketSigner> signer_of(const PeersOption& options, const netio::Claim& claim) {
   if (options.peers.empty()) return std::nullopt;
   const std::vector<netio::Peer> peers = peers_of(options, nullptr);

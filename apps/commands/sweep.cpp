@@ -1,4 +1,4 @@
-// `sweep`: a scenario over a grid or a sample of its keys, in processes, by shares, or as a Slurm job array.
+// `sweep`: runs a scenario over a grid or a sample of its parameters, in processes, by shares or as a Slurm job array.
 
 #include "scenarios/sweep.h"
 #include "apps/options/open_device.h"
@@ -34,7 +34,7 @@ using scenarios::SweepFolder;
 using Jobs = std::vector<std::uint64_t>;
 using Results = std::vector<std::optional<JobResult>>;
 
-constexpr std::size_t kRowsShown = 50;  // of the table on standard output
+constexpr std::size_t kRowsShown = 50;  // rows of the table on standard output
 
 Share share_of(const SweepOptions& options) {
   if (!options.share.empty()) return *read_share(options.share);
@@ -46,14 +46,14 @@ unsigned processes_of(const SweepOptions& options) {
   return slurm_cpus().value_or(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-/// All jobs of the sweep.
+/// Reads the results of all jobs.
 Results read_results(const Sweep& sweep, const SweepFolder& folder) {
   Results results(sweep.jobs());
   for (std::uint64_t job = 0; job < results.size(); ++job) results[job] = folder.read(job);
   return results;
 }
 
-/// Jobs to run: those without a result, with `--retry` also the failed ones.
+/// Jobs without a result; with `--retry`, also failed jobs.
 Jobs pending_jobs(const SweepOptions& options, const Results& results, const Share& share) {
   Jobs jobs;
   for (std::uint64_t job = share.index; job < results.size(); job += share.count)
@@ -61,7 +61,8 @@ Jobs pending_jobs(const SweepOptions& options, const Results& results, const Sha
   return jobs;
 }
 
-/// In a process of its own, which makes controllers. @throws base::InputError also where one of them ends it
+/// Checks the scenarios in a child process, since this creates controllers. @throws base::InputError also if a
+/// controller ends the process
 void check_in_process(const SweepOptions& options, const Sweep& sweep) {
   const auto check = [&] { print_warnings(sweep.scenario, check_sweep(sweep)); };
   if (options.in_process) return check();
@@ -100,12 +101,12 @@ JobResult run_job(const Sweep& sweep, std::uint64_t job, gpu::Device& device, un
   }
 }
 
-/// @return false when it was interrupted
+/// @return false if interrupted
 bool run_jobs(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder, const Jobs& jobs,
               bool replace) {
   const unsigned processes = processes_of(options);
   const bool alone = processes == 1 && !slurm_cpus();
-  std::unique_ptr<gpu::Device> device;  // of a child
+  std::unique_ptr<gpu::Device> device;  // of a child process
   install_stop_handlers();
   Progress progress(sweep.name);
   return run_in_processes(
@@ -113,9 +114,9 @@ bool run_jobs(const SweepOptions& options, const Sweep& sweep, const SweepFolder
       {.begin = [&] { device = std::make_unique<gpu::Device>(open_device_silently(options)); },
        .run =
            [&](std::size_t row) {
-             if (row == 0) print_notice(*device);  // of all processes, one
+             if (row == 0) print_notice(*device);  // only one process prints it
              const std::uint64_t job = jobs[row];
-             if (!replace && folder.read(job)) return;  // by another process, meanwhile
+             if (!replace && folder.read(job)) return;  // finished by another process in the meantime
              folder.write(job, run_job(sweep, job, *device, alone ? 0 : 1));
            },
        .died = [&](std::size_t row, const std::string& cause) { folder.write(jobs[row], {.message = cause}); },
@@ -128,7 +129,7 @@ bool run_jobs(const SweepOptions& options, const Sweep& sweep, const SweepFolder
        .timeout = options.timeout});
 }
 
-/// Failures and missed expectations, on standard error.
+/// Prints failures and missed expectations on standard error.
 void print_failures(const Results& results) {
   constexpr std::size_t kMost = 10;
   std::size_t count = 0;
@@ -139,7 +140,8 @@ void print_failures(const Results& results) {
   if (count > kMost) print_message("{}: see jobs.csv", counted(count - kMost, "more job"));
 }
 
-/// Into `plots` of the folder. The tables are the result: without plots (a node without Cairo) it is whole, too.
+/// Draws into the folder `plots`. The tables are the result, so a failure to draw (a node without Cairo) is not an
+/// error.
 void draw_plots(const SweepFolder& folder, const std::string& jobs) {
   const std::string plots_folder = folder.file("plots");
   try {
@@ -152,7 +154,7 @@ void draw_plots(const SweepFolder& folder, const std::string& jobs) {
 }
 
 int write_tables(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder, const Results& results) {
-  install_stop_handlers();  // the tables are written whole, whatever comes
+  install_stop_handlers();  // the tables are written completely in any case
   const std::vector<std::string> files = write_sweep_tables(sweep, folder, results);
   const scenarios::JobCounts counts = scenarios::counts_of(results);
   print(markdown_of_points(sweep, results, kRowsShown) + "\n" + text_of(counts) + "\n");
@@ -163,7 +165,7 @@ int write_tables(const SweepOptions& options, const Sweep& sweep, const SweepFol
   return counts.good() ? 0 : 1;
 }
 
-/// The result of one share, while others are not done.
+/// Reports one share while others are not finished.
 int report_share(const SweepOptions& options, const Results& results, const Share& share) {
   Results own;
   for (std::uint64_t job = share.index; job < results.size(); job += share.count) own.push_back(results[job]);

@@ -1,5 +1,5 @@
 #pragma once
-// TAG packets of tracked tags.
+// Sends TAG packets for tracked tags.
 
 #include <map>
 #include <optional>
@@ -14,16 +14,16 @@
 
 namespace sf::apps {
 
-/// The state of the object that carries the tag, in the world frame.
+/// Returns the state of the object that carries the tag, in the world frame.
 netio::Tag object_state(const vision::TrackedTag& tag, const vision::TagMount& mount);
 
-/// Sends one datagram for each tag, to the address in its section of the testbed file, else to the file's, else to
-/// `fallback`. Tags without any are not sent, nor is id 0, which packets do not have.
+/// Sends one datagram per tag: to the address in the tag's section of the testbed file, otherwise to the file's
+/// address, otherwise to `fallback`. Skips tags without an address and id 0, which is not valid in packets.
 class TagSender {
  public:
   /// @param fallback "host:port" or empty
-  /// @param peers tags in it that have a key get signed packets
-  /// @throws base::InputError for addresses of another form, and unknown hosts
+  /// @param peers packets of tags with a key in it are signed
+  /// @throws base::InputError for malformed addresses and unknown hosts
   TagSender(const vision::Testbed& testbed, const std::string& fallback, std::span<const netio::Peer> peers);
 
   /// @param epoch [ns] time of packets at time 0 of the tags

@@ -1,5 +1,5 @@
-// `tradeoff`: what each accuracy mode of a world's sensors gives and costs on this machine; and `--auto`, which goes by
-// it.
+// `tradeoff`: measures the accuracy and cost of each accuracy mode of a world's sensors on this machine. Also
+// implements `--auto`, which chooses modes by these measurements.
 
 #include "apps/options/automatic_accuracy.h"
 
@@ -28,7 +28,7 @@ namespace {
 constexpr double kUsualMetres = 0.01;
 constexpr double kUsualTesla = 1e-6;
 
-/// Where nothing was wished for, a centimetre and a microtesla.
+/// Defaults to one centimetre and one microtesla.
 scenarios::AccuracyTarget wish_of(const AccuracyTargetOptions& options) {
   scenarios::AccuracyTarget target = options.accuracy_target;
   if (target.least_rate > 0.0 || std::isfinite(target.metres) || std::isfinite(target.tesla)) return target;
@@ -37,7 +37,7 @@ scenarios::AccuracyTarget wish_of(const AccuracyTargetOptions& options) {
   return target;
 }
 
-/// The word for readings of a sensor type that are counted per second.
+/// Returns the unit in which readings of a sensor type are counted per second.
 std::string_view counted_as(const std::string& sensor) {
   return sensor == "laser" ? "rays" : sensor == "laneedge" ? "edges" : sensor == "magnetometer" ? "fields" : "readings";
 }

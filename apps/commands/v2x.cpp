@@ -24,7 +24,7 @@ constexpr std::size_t kMaxFrameFile = 64u << 20;  ///< [byte]
 constexpr std::size_t kMaxComplaints = 10;
 const std::string kXml = "<?xml version=\"1.0\"?>\n";
 
-/// The file's content; of `-`, standard input's.
+/// Returns the content of the file, or of standard input for `-`.
 std::string content_of(const std::string& file) {
   if (file != "-") return base::read_bytes(file, kMaxFrameFile);
   std::string text;
@@ -37,12 +37,13 @@ std::string content_of(const std::string& file) {
   return text;
 }
 
-/// Prints frames as they are decoded, and complains of those that are none.
+/// Prints decoded frames, and errors for invalid ones.
 class Decoder {
  public:
   explicit Decoder(const V2xOptions& options) : options_(options) {}
 
-  /// The frame at the start of `bytes`. Returns its size, all of them after a fault. @param line 0: a binary file
+  /// Decodes the frame at the start of `bytes`. Returns its size, or the size of `bytes` after an error. @param line 0:
+  /// a binary file
   std::size_t decode(std::span<const std::uint8_t> bytes, int line, bool is_alone) {
     v2x::Frame frame;
     const v2x::DecodeResult result = v2x::decode(bytes, frame);
@@ -74,9 +75,9 @@ class Decoder {
   }
 
  private:
-  /// The first bytes of a message frame with SPaT or MAP.
+  /// True if `bytes` start like a message frame with SPaT or MAP.
   static bool is_frame(std::span<const std::uint8_t> bytes) {
-    return bytes.size() > 3 && (bytes[0] & 0x7F) == 0 &&  // the first bit: extended
+    return bytes.size() > 3 && (bytes[0] & 0x7F) == 0 &&  // the first bit marks an extension
            (bytes[1] == v2x::Spat::kMessageId || bytes[1] == v2x::MapData::kMessageId);
   }
   std::string place(int line) const {
@@ -84,7 +85,7 @@ class Decoder {
                     : fmt::format("{}: frame {}", options_.file, frames_ + 1);
   }
 
-  /// Several frames need an element around them: the first one waits for the second.
+  /// Several frames need an enclosing element, so the first is held back until the second arrives.
   void put_xml(const v2x::Frame& frame) {
     if (frames_ == 1) first_ = frame;
     if (frames_ == 2) print(kXml + "<MessageFrames>\n" + v2x::xml_of(first_, 1));
@@ -99,7 +100,7 @@ class Decoder {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-/// A text of hexadecimal digits and blanks, or a binary file?
+/// True if the content consists of hexadecimal digits and whitespace, false if it is binary.
 bool is_hex(const std::string& content) {
   const auto is_text = [](unsigned char c) { return (c >= 32 && c < 127) || is_blank(static_cast<char>(c)); };
   return std::all_of(content.begin(), content.end(), is_text);
@@ -157,7 +158,7 @@ void print_frame(Message message) {
   print(v2x::hex_text(bytes) + "\n");
 }
 
-/// MAP and SPaT of each intersection. Simulated time begins with the year.
+/// Writes MAP and SPaT of each intersection. Simulated time starts with the year.
 int export_world(const V2xOptions& options) {
   const world::World world = load_lights(options.file);
   const auto roads = world::roads_of(world);

@@ -1,5 +1,5 @@
-// `verify`: a recorded run computed again, on this device and in plain C++, beside what was recorded; and in another
-// accuracy mode, beside `exact`.
+// `verify`: recomputes a recorded run on this device and in plain C++ and compares the results with the recording. Also
+// compares another accuracy mode with `exact`.
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ std::string line_of(const scenarios::Comparison& c, const std::string& by) {
   return text;
 }
 
-/// Infinite: only one of two readings is a finite number.
+/// Infinite: only one of the two readings is finite.
 std::string error_text(double error, const std::string& unit) {
   return std::isinf(error) ? "infinite" : quantity_text(error, unit);
 }
@@ -49,7 +49,7 @@ scenarios::VerifyOptions verify_options(const VerifyOptions& options, Progress& 
           }};
 }
 
-/// Nothing where no mode was asked for.
+/// Returns nullopt if no mode was requested.
 std::optional<scenarios::RecordedAccuracy> measure_accuracy(const VerifyOptions& options,
                                                             const record::Recording& recording, gpu::Device& device) {
   if (options.accuracy.empty()) return std::nullopt;
@@ -112,7 +112,7 @@ int verify(const VerifyOptions& options) {
                      : (accuracy ? text_of(*accuracy) : "") + text_of(verification, recorded));
   if (verification.faulty() || (accuracy && !accuracy->within_bounds())) return 1;
   if (verification.interrupted || (accuracy && accuracy->interrupted)) return interrupted_code();
-  // Readings that are there must be checked; without any, the file and its states were.
+  // If there are readings, they must be checked. Without readings, the file and its states were checked.
   return verification.sound() || recording.readings.empty() ? 0 : 1;
 }
 

@@ -1,4 +1,4 @@
-// `view`: a recorded run in the page of the live view, with its time to choose.
+// `view`: plays a recorded run in the page of the live view.
 
 #include <algorithm>
 #include <chrono>
@@ -25,10 +25,10 @@ namespace {
 
 using bridges::RunState;
 
-constexpr std::chrono::milliseconds kLook{15};  // between two looks at requests and time
-constexpr double kFastest = 1000.0;             // [1] recorded over real time
+constexpr std::chrono::milliseconds kLook{15};  // interval of polling requests and time
+constexpr double kFastest = 1000.0;             // [1] ratio of recorded to real time
 
-/// What users watch of a recording, and how its time runs.
+/// Plays a recording to users of the bridges, with time control.
 class Playback {
  public:
   Playback(scenarios::Replay& replay, bridges::Bridge& viewer)
@@ -50,7 +50,7 @@ class Playback {
   }
 
  private:
-  /// @return true when the time was set
+  /// @return true if the time was set
   bool apply() {
     if (requests_.speed) state_.speed = std::min(*requests_.speed, kFastest);
     if (requests_.paused) state_.paused = *requests_.paused;
@@ -90,7 +90,7 @@ int view(const ViewOptions& options) {
   const world::World world = scenarios::recorded_world(recording);
   const sensors::SensorSet sensor_set(world);
   record::Naming naming = record::naming_of(recording.info);
-  naming.odometry = record::OdometrySource::truth;  // at any time that users go to
+  naming.odometry = record::OdometrySource::truth;  // users can jump to any time
   record::RunInfo info = scenarios::run_info(
       world, sensor_set,
       {.seed = recording.info.seed, .record_readings = !recording.readings.empty(), .naming = naming});

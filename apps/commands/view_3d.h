@@ -1,5 +1,5 @@
 #pragma once
-// `view --3d`: a recording in VTK's window.
+// `view --3d`: shows a recording in VTK's window.
 
 #include "apps/options/options.h"
 

@@ -28,7 +28,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t kRenderedImages = 30;  // without another limit
+constexpr std::uint64_t kRenderedImages = 30;  // default limit
 
 double cpu_seconds() {
   timespec now{};
@@ -36,7 +36,7 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// The file of `--track`.
+/// Writes the file of `--track`.
 class TrackFile {
  public:
   explicit TrackFile(const std::string& path) : path_(path) {
@@ -57,10 +57,10 @@ class TrackFile {
   std::ofstream file_;
 };
 
-/// The pictures of `--overlay`.
+/// Writes the pictures of `--overlay`.
 class Overlay {
  public:
-  static constexpr std::uint64_t kMostPictures = 20'000;  ///< of each camera, which bounds the disk
+  static constexpr std::uint64_t kMostPictures = 20'000;  ///< per camera, which limits disk usage
 
   Overlay(const VpsOptions& options, const vision::Testbed& testbed)
       : testbed_(testbed), path_(options.overlay), every_(options.every) {
@@ -101,7 +101,7 @@ class Overlay {
   }
 
  private:
-  /// Pictures are not written among the images that they are made of.
+  /// Refuses to write pictures into the folders of the input images.
   void refuse_inputs(const VpsOptions& options) const {
     auto sources = options.inputs;
     if (sources.empty())
@@ -110,7 +110,7 @@ class Overlay {
       if (std::error_code ignored; std::filesystem::equivalent(source, path_, ignored))
         throw base::InputError(path_, 0, "holds the images of camera '" + camera + "'; name another --overlay");
   }
-  /// One of each camera: tags.avi, or with several tags-north.avi and so on.
+  /// Opens one video per camera: tags.avi, or with several cameras tags-north.avi and so on.
   void open_videos() {
     const std::string stem = path_.substr(0, path_.size() - 4);
     for (const vision::TestbedCamera& each : testbed_.cameras) {
@@ -126,10 +126,10 @@ class Overlay {
   std::uint64_t pictures_ = 0;
   std::vector<std::unique_ptr<vision::VideoFile>> videos_;
   std::optional<SeenReadings> readings_;
-  std::vector<std::vector<vision::Mark>> world_marks_;  ///< of each camera
+  std::vector<std::vector<vision::Mark>> world_marks_;  ///< per camera
 };
 
-/// Finds and tracks, with its times and its tags in the report.
+/// Detects and tracks, and adds times and tags to the report.
 std::span<const vision::TrackedTag> process(std::span<const vision::Frame> frames, vision::Positioning& positioning,
                                             VpsReport& report) {
   const Clock::time_point before = Clock::now();
@@ -144,7 +144,7 @@ std::span<const vision::TrackedTag> process(std::span<const vision::Frame> frame
   return tags;
 }
 
-/// @param robots set to the inputs where they are live robots'
+/// @param robots set to the inputs if they are live robots
 std::unique_ptr<CameraInputs> open(const VpsOptions& options, const vision::Testbed& testbed,
                                    const vision::RenderedFleet* fleet, const RobotInputs*& robots) {
   if (fleet != nullptr) return rendered_inputs(testbed, *fleet, options.seed);
@@ -175,7 +175,7 @@ int vps(const VpsOptions& options) {
   TrackFile track(options.track);
   Overlay overlay(options, testbed);
   install_stop_handlers();
-  // Rendered images have no end.
+  // Rendering has no end of its own.
   const bool limited = options.images > 0 || options.duration > 0.0 || options.real_time;
   const std::uint64_t most = fleet && !limited ? kRenderedImages : options.images;
   const bool has_end = most > 0 || (!inputs->is_live() && (!fleet || options.duration > 0.0));

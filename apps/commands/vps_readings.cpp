@@ -25,7 +25,7 @@ vision::PlaneLine drawn(const server::SightLine& line) {
   return {line.points, line.z, color, line.kind == Kind::beam ? 1 : 2};
 }
 
-/// The mover from its tag's object: the world may mount the tag as well (`tag_pose`).
+/// Returns the mover's pose from that of its tag's object, since the world may define the mount, too (`tag_pose`).
 base::Pose mover_pose(const netio::Tag& object, const world::Mover& mover) {
   const double object_yaw = 2.0 * std::atan2(object.orientation[2], object.orientation[3]);
   const double yaw = object_yaw - mover.X_MT.yaw;

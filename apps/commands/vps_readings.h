@@ -1,5 +1,5 @@
 #pragma once
-// What robots' sensors saw, drawn over the images of the cameras that see the robots (`vps --readings`).
+// Draws the robots' sensor readings over the images of the cameras that see them (`vps --readings`).
 
 #include <span>
 #include <string>
@@ -17,16 +17,16 @@ namespace sf::apps {
 
 class SeenReadings {
  public:
-  /// @param bind where the farm's copies come (`serve --mirror`)  @param testbed lives longer
-  /// @throws netio::PortInUse, base::InputError when the address cannot be bound or the world cannot be read
+  /// @param bind where the farm sends copies (`serve --mirror`) @param testbed must outlive this
+  /// @throws netio::PortInUse, base::InputError if the address cannot be bound or the world cannot be read
   SeenReadings(const std::string& world_file, const netio::Endpoint& bind, const vision::Testbed& testbed);
 
   const world::World& world() const { return world_; }
-  /// Takes what came, and gives the lines of the robots whose tags were seen. Live until the next call.
+  /// Processes received packets, and returns the lines of the robots whose tags were seen. Valid until the next call.
   std::span<const vision::PlaneLine> lines(std::span<const vision::TrackedTag> tags);
 
  private:
-  /// Row of the tag's mover: of the linked object `tagN`, or of the robot that carries it.
+  /// Returns the row of the tag's mover: the linked object `tagN`, or the robot that carries the tag.
   std::optional<std::uint32_t> mover_of(std::uint32_t tag) const;
 
   const vision::Testbed& testbed_;

@@ -19,7 +19,7 @@ namespace sf::apps {
 
 namespace {
 
-/// Folders from which users of bridges may load worlds: that of the run's world, and the installed one.
+/// Folders from which users of bridges may load worlds: the folder of the run's world and the installed one.
 std::vector<std::string> world_folders(const world::World& world) {
   namespace fs = std::filesystem;
   std::vector<std::string> folders;
@@ -94,7 +94,7 @@ void LiveBridges::show_scene(bool is_new) {
     try {
       open();
     } catch (const base::InputError& error) {
-      print_message("{}", error.what());  // another program took its port
+      print_message("{}", error.what());  // another program has taken the port
     }
   };
   if (!options_.player.empty()) reopen([this] { open_player(); });
@@ -102,7 +102,7 @@ void LiveBridges::show_scene(bool is_new) {
 }
 
 void LiveBridges::write(const base::TickRecord& record) {
-  bridges_.take(ignored_);  // questions are answered, while nothing is changed
+  bridges_.take(ignored_);  // requests are answered, but change nothing
   bridges_.publish(record, {});
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The bridges that a command was asked for.
+// Opens the bridges requested on the command line.
 
 #include "apps/options/options.h"
 #include "bridges/bridge.h"
@@ -8,24 +8,24 @@
 
 namespace sf::apps {
 
-/// Prints notes of names of topics that are taken: the first three, since a fleet may have many.
+/// Prints notes about topic names that are taken: only the first three, since a fleet may have many.
 void print_taken_names(const std::vector<std::string>& notes);
 
-/// Bridges with what they show. World and sensor set must outlive it.
+/// The open bridges and the scene they publish. World and sensor set must outlive it.
 class LiveBridges : public base::Sink {
  public:
-  /// Opens all that `options` name, and says on standard error where they are.
+  /// Opens all bridges in `options` and prints their addresses on standard error.
   /// @param simulated see bridges::Scene
-  /// @throws base::InputError where one cannot be opened
+  /// @throws base::InputError if one cannot be opened
   LiveBridges(const BridgeOptions& options, const world::World& world, const sensors::SensorSet& sensor_set,
               const scenarios::RunSettings& settings, bool simulated);
 
-  /// Shows a tick of a service, which nobody pauses or drives.
+  /// Publishes a tick of a service, which users can neither pause nor drive.
   void write(const base::TickRecord& record) override;
 
-  /// Before world and sensor set change, in place: bridges that cannot go on are closed, until `show_scene`.
+  /// Called before world and sensor set change in place: closes bridges that cannot continue until `show_scene`.
   void prepare_change();
-  /// @param is_new it is another world
+  /// @param is_new true for another world
   void show_scene(bool is_new);
 
   bridges::Bridges& bridges() { return bridges_; }

@@ -49,17 +49,17 @@ class OpenedInputs : public CameraInputs {
   std::uint64_t count_ = 0;
 };
 
-/// The cameras of a testbed, simulated.
+/// Simulated cameras of a testbed.
 class RenderedCameras {
  public:
-  /// @throws base::InputError for cameras of more than 64 Mpx together
+  /// @throws base::InputError if the cameras have more than 64 Mpx in total
   RenderedCameras(const vision::Testbed& testbed, std::uint64_t seed) : testbed_(testbed) {
     check_size(testbed);
     for (const vision::TestbedCamera& each : testbed.cameras)
       renderers_.emplace_back(each.camera, vision::Imaging{}, seed);
   }
 
-  /// Images whose exposure starts at `time` [s], of a scene that is asked for at their middles.
+  /// Renders images whose exposure starts at `time` [s]. `scene_at` returns the scene in the middle of an exposure.
   template <class SceneAt>
   void render(const SceneAt& scene_at, double time, std::vector<vision::Frame>& frames) {
     frames.resize(renderers_.size());
@@ -117,7 +117,7 @@ class LiveRobotInputs : public RobotInputs {
 
   bool next(std::vector<vision::Frame>& frames) override {
     if (cameras_.count() == 0) start_ = base::unix_time();
-    due_ = std::max(due_, now());  // a late image delays those after it, as a slow camera's
+    due_ = std::max(due_, now());  // a late image delays the following ones, as in a slow camera
     for (double left = 0.0; (left = due_ - now()) > 0.0 && !stop_;) {
       receive();
       netio::wait_readable(socket_, socket_, static_cast<int>(std::ceil(std::min(1e3 * left, 100.0))));

@@ -18,7 +18,7 @@ namespace sf::apps {
 
 namespace {
 
-constexpr std::size_t kNameWidth = 34;  ///< of the column with names of options
+constexpr std::size_t kNameWidth = 34;  ///< of the column of option names
 
 std::vector<std::string> options_of(const CLI::App& sub) {
   std::vector<std::string> names;
@@ -27,7 +27,7 @@ std::vector<std::string> options_of(const CLI::App& sub) {
   return names;
 }
 
-/// A misspelt option among the arguments, which CLI11 would report after a missing world; else "".
+/// Returns a misspelt option among the arguments, since CLI11 would report a missing world first; "" if there is none.
 std::string unknown_option(const CLI::App& sub, int argc, const char* const* argv) {
   const std::vector<std::string> known = options_of(sub);
   for (int i = 2; i < argc; ++i) {
@@ -39,7 +39,7 @@ std::string unknown_option(const CLI::App& sub, int argc, const char* const* arg
   return {};
 }
 
-/// The first argument that nobody wanted; CLI11 names all, from the last on.
+/// Returns an error for the first unused argument, since CLI11 lists all of them in reverse order.
 std::string explain_extras(const CLI::App& app, const CLI::App& sub, int argc, const char* const* argv) {
   const std::vector<std::string> rest = app.remaining(true);
   const auto* const found =
@@ -48,7 +48,7 @@ std::string explain_extras(const CLI::App& app, const CLI::App& sub, int argc, c
   return fmt::format("'{}' was not expected{}", word, suggest_option(word, options_of(sub)));
 }
 
-/// Lines of at most `width` characters, since CLI11 breaks no text.
+/// Breaks the text into lines of at most `width` characters, since CLI11 does not.
 std::string wrapped(const std::string& text, std::size_t width) {
   std::istringstream words(text);
   std::string lines;
@@ -69,7 +69,7 @@ void wrap_help(CLI::App& app) {
     option->description(wrapped(option->get_description(), kWidth - kNameWidth));
 }
 
-/// `help` and `help COMMAND`. @param asked is given the command's name
+/// Adds `help` and `help COMMAND`. @param asked receives the command's name
 const CLI::App* add_help(CLI::App& app, std::string& asked) {
   CLI::App* sub = app.add_subcommand("help", "Print the help of a command");
   std::vector<std::string> names;
@@ -80,7 +80,7 @@ const CLI::App* add_help(CLI::App& app, std::string& asked) {
   return sub;
 }
 
-/// The error in the arguments, as one line that ends with the help command.
+/// Returns a one-line error for the arguments that ends with the help command.
 std::string explain_refusal(const CLI::App& app, const CLI::ParseError& error, int argc, const char* const* argv) {
   const std::vector<CLI::App*> used = app.get_subcommands();
   if (used.empty()) {
@@ -128,13 +128,13 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
     if (help->parsed()) {
-      app.clear();  // else its help would be that of `help`
+      app.clear();  // otherwise its help would be that of `help`
       const std::string text = asked.empty() ? app.help() : app.get_subcommand(asked)->help("sensorfarm");
       print(text);
       parsed.exit_code = 0;
     }
   } catch (const CLI::ParseError& error) {
-    // CLI11 has a code for each mistake; ours is 2 for all of them.
+    // CLI11 has a separate code for each error; this program returns 2 for all of them.
     const bool fine = error.get_exit_code() == 0;
     std::ostringstream text;
     if (fine) app.exit(error, text), print(text.str());

@@ -1,13 +1,13 @@
 #pragma once
-// The command line, read by CLI11 in one source.
+// Parses the command line with CLI11, which only the source includes.
 
 #include <functional>
 #include <optional>
 
 namespace sf::apps {
 
-/// The command with its options, or the exit code to end with at once: 0 after --help or --version, 2 after wrong usage
-/// (already explained).
+/// The command with its options, or an exit code if there is nothing to run: 0 after --help or --version, 2 after a
+/// usage error, which has been printed.
 struct Parsed {
   std::function<int()> call;
   std::optional<int> exit_code;

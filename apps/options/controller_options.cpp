@@ -26,7 +26,8 @@ control::ControllerConfig controller_config_of(const ControllerOptions& options)
 
 namespace {
 
-/// Robots that the world file gives a controller have that one, all others the command line's; empty where that is one.
+/// Robots with a controller in the world file use that one; all others use the command line's. Empty if all robots use
+/// the command line's.
 std::vector<scenarios::Actor> actors_of_world(const world::World& world, const RunOptions& options) {
   const auto own = [&](const world::Mover& mover) {
     return !mover.is_tag && !mover.controller.empty() && mover.controller != options.controller;

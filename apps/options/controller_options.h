@@ -1,5 +1,5 @@
 #pragma once
-// Controllers and their settings from the command line.
+// Controllers and their settings on the command line.
 
 #include <string>
 #include <vector>
@@ -11,15 +11,15 @@
 
 namespace sf::apps {
 
-/// "key=value" as a setting; the controller that reads it determines its type.
+/// Parses "key=value". The controller that reads the setting determines its type.
 control::Setting setting_of(const std::string& text);
 
 /// `--controller` with its `--set`s.
 control::ControllerConfig controller_config_of(const ControllerOptions& options);
 
-/// Controllers of all movers. With `--drive` the robots that it names have the command line's, and all others stand.
-/// Without it each robot has the controller of the world file (`ctrl`), or else the command line's; empty where all
-/// have the same.
+/// Returns the controllers of all movers. With `--drive`, the named robots have the command line's controller and all
+/// others stay at rest. Otherwise each robot has the controller of the world file (`ctrl`), or the command line's if
+/// there is none; empty if all robots have the same.
 /// @throws base::InputError for a name that the world lacks.
 std::vector<scenarios::Actor> make_actors(const world::World& world, const RunOptions& options);
 

@@ -16,7 +16,7 @@ world::World load_with_robots(const WorldOptions& options, const CloneOptions& c
   if (clones.robots > 0) use = scenarios::OwnRobot::for_copies;
   const std::string added = scenarios::lend_robot(world, options.robot_from, use, options.load);
   const bool copies = clones.robots > 0 || !added.empty();
-  if (copies) world::read_unread(world);  // free places are looked for among all walls
+  if (copies) world::read_unread(world);  // free positions must avoid all walls
   if (!added.empty() && options.robot_from.empty())
     print_message(
         "{} has no robot; it is lent 'roomba1' (id 1), a Create with a laser of 361 rays, 180 "

@@ -1,5 +1,5 @@
 #pragma once
-// The farm that a command speaks to.
+// Address of the farm that a command connects to.
 
 #include "apps/options/options.h"
 #include "netio/endpoint.h"

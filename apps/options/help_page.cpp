@@ -15,7 +15,7 @@ struct Section {
   std::vector<const char*> names;
 };
 
-/// Every command once (a test compares).
+/// Lists every command once, which a test checks.
 const Section kSections[] = {
     {"Every day", {"run", "check", "view", "plot", "test"}},
     {"Run", {"experiment", "sweep", "serve", "robot", "merge"}},
@@ -25,7 +25,7 @@ const Section kSections[] = {
     {"Check", {"devices", "selftest", "verify", "help"}},
 };
 
-/// Options of every day, of commands with many.
+/// The most common options of commands with many options.
 const Section kEveryday[] = {
     {"run",
      {"--robots", "--controller", "--set", "--duration", "--seed", "--record", "--view", "--send", "--accuracy",

@@ -1,5 +1,5 @@
 #pragma once
-// The layout of `sensorfarm help` and of the help of a command.
+// Layout of `sensorfarm help` and of each command's help.
 
 #include <cstddef>
 #include <memory>
@@ -10,8 +10,8 @@ class FormatterBase;
 
 namespace sf::apps {
 
-/// Commands in groups, those of every day first. A command's help begins with its examples; of a command with many
-/// options it has the ten of every day, and `--help-all` has the rest.
+/// Lists the commands in groups, the most common group first. A command's help starts with examples. A command with
+/// many options shows its ten most common ones; `--help-all` shows the rest.
 std::shared_ptr<CLI::FormatterBase> help_page(std::size_t column_width);
 
 }  // namespace sf::apps

@@ -1,19 +1,19 @@
 #pragma once
-// The device of a command.
+// Opens the device of a command.
 
 #include "apps/options/options.h"
 #include "gpu/device.h"
 
 namespace sf::apps {
 
-/// Opens the device as `options` choose it. The caster `vulkan` asks for a Vulkan device, as `--require-vulkan` does.
-/// @throws base::DeviceError without a usable one
+/// Opens the device that `options` select. The caster `vulkan` requires a Vulkan device, as `--require-vulkan` does.
+/// @throws base::DeviceError if there is no usable device
 gpu::Device open_device_silently(const DeviceOption& options);
 
-/// Says in one line why a device that ranks higher is not used.
+/// Prints one line that explains why a device with a higher rank is not used.
 void print_notice(const gpu::Device& device);
 
-/// Both.
+/// Opens the device and prints the notice.
 gpu::Device open_device(const DeviceOption& options);
 
 }  // namespace sf::apps

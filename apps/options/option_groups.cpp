@@ -19,7 +19,7 @@ namespace sf::apps {
 
 namespace {
 
-// Headings of the help.
+// Headings in the help.
 constexpr const char* kWorld = "World file";
 constexpr const char* kAccuracy = "Accuracy";
 constexpr const char* kDevice = "Device";
@@ -78,7 +78,7 @@ void add_device(CLI::App& app, DeviceOption& o) {
                "Without a usable Vulkan device, end with exit code 3 rather than compute on the host (also "
                "SENSORFARM_REQUIRE_VULKAN=1)")
       ->group(kDevice);
-  // Farms look it up where they are made (raycast/casters.h).
+  // Read where farms are created (raycast/casters.h).
   add_choice(
       app, "--caster", raycast::caster_words(),
       [](const std::string& word) { setenv("SENSORFARM_CASTER", word.c_str(), 1); }, caster_help())

@@ -1,5 +1,5 @@
 #pragma once
-// The groups of options that subcommands share.
+// Groups of options shared by several subcommands.
 
 #include <functional>
 #include <memory>
@@ -16,13 +16,14 @@ class Option;
 
 namespace sf::apps {
 
-/// A command with its options. Returns the exit code.
+/// Runs a command with its options and returns the exit code.
 using Call = std::function<int()>;
 
-/// When `sub` is parsed, `check` (which may throw CLI::Error), then `set`.
+/// After `sub` is parsed, calls `check` (which may throw CLI::Error), then `set`.
 void on_parsed(CLI::App& sub, std::function<void()> set, std::function<void()> check);
 
-/// Values for the options of `sub`, with which `call` is to run `command`. They live as long as either.
+/// Returns the values for the options of `sub`, and sets `call` to run `command` with them if `sub` is chosen. They
+/// live as long as both.
 template <class CommandOptions>
 CommandOptions& add_command(CLI::App& sub, Call& call, int (*command)(const CommandOptions&),
                             std::function<void()> check = {}) {
@@ -32,13 +33,13 @@ CommandOptions& add_command(CLI::App& sub, Call& call, int (*command)(const Comm
   return *options;
 }
 
-/// The end of the command's help. @param arguments of one call each
+/// Adds examples to the command's help. @param arguments one entry per example call
 void add_examples(CLI::App& sub, const std::vector<std::string>& arguments);
 
-/// An option whose argument is one of `words`, which is given to `set`.
+/// Adds an option whose argument must be one of `words`. `set` receives the word.
 CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                         const std::function<void(const std::string&)>& set, const std::string& help);
-/// The same where each word stands for a value.
+/// The same with a value for each word.
 template <class Target, class Value>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
                         const std::vector<std::pair<std::string, Value>>& choices, const std::string& help) {
@@ -53,14 +54,14 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Target& target,
 
 void add_json(CLI::App& app, JsonOption& o);
 CLI::Option* add_compression(CLI::App& app, CompressionOption& o);
-/// Without `--device`, SENSORFARM_DEVICE counts.
+/// Without `--device`, the environment variable SENSORFARM_DEVICE applies.
 void add_device(CLI::App& app, DeviceOption& o);
 void add_in_process(CLI::App& app, InProcessOption& o);
-/// `--timeout` of a job, e.g. "scenario".
+/// Adds `--timeout` for a job such as "scenario".
 void add_timeout(CLI::App& app, double& seconds, const std::string& job);
 void add_world(CLI::App& app, WorldOptions& o);
 void add_accuracy(CLI::App& app, WorldOptions& o);
-/// @param help without the words that are known
+/// @param help without the list of valid words
 CLI::Option* add_accuracy(CLI::App& app, std::string& words, const std::string& help);
 /// `--max-error`, `--by` and `--min-rate`.
 void add_accuracy_target(CLI::App& app, AccuracyTargetOptions& o);
@@ -71,55 +72,55 @@ void add_wire(CLI::App& app, WireOption& o);
 void add_bind(CLI::App& app, BindOption& o);
 /// `--peers`: the table of addresses and keys.
 void add_peers(CLI::App& app, PeersOption& o);
-/// `--from`: the host that packets are taken from.
+/// `--from`: the host from which packets are accepted.
 void add_from(CLI::App& app, ReceiveOptions& o);
 void add_silence(CLI::App& app, ReceiveOptions& o);
-/// `--duration`, without which the command goes on.
+/// Adds `--duration`; without it, the command runs until stopped.
 void add_until(CLI::App& app, DurationOption& o, const std::string& help);
 /// `--latitude` and `--longitude`.
 void add_origin(CLI::App& app, OriginOption& o, const std::string& group = "Options");
 void add_ports(CLI::App& app, PortOptions& o);
-/// Refuses names of topics that contradict each other, and those that nothing has. @param readings_option of recordings
-/// with readings; null: they have these @throws CLI::Error
+/// Rejects topic names that contradict each other and names for topics that do not exist. @param readings_option option
+/// that records readings; null: the recording always has them @throws CLI::Error
 void check_naming(const CLI::App& sub, const char* readings_option = nullptr);
-/// Refuses `options` without any of `wanted`, without which they mean nothing. @throws CLI::RequiresError
+/// Rejects `options` if none of `wanted` is given, since they have no effect then. @throws CLI::RequiresError
 void require_any(const CLI::App& sub, const std::vector<std::string>& options, const std::vector<std::string>& wanted);
 void add_threads(CLI::App& app, ThreadsOption& o);
-/// Other programs beside `run` and `serve`, as options of this group.
+/// Group of the options for other programs that run alongside `run` and `serve`.
 inline constexpr const char* kBridgeGroup = "Bridges to other programs (docs/bridges.md)";
 void add_bridges(CLI::App& app, BridgeOptions& o);
 /// `--topics`, `--odometry` and `--external`.
 void add_naming(CLI::App& app, NamingOption& o);
-/// `--out FILE` of one picture.
+/// Adds `--out FILE` for one picture.
 CLI::Option* add_picture(CLI::App& app, std::string& file,
                          const std::string& help = "Picture to write: .png, .svg or .pdf");
 /// `--size`, `--font-size`, `--dpi` and `--no-title`.
 void add_page(CLI::App& app, PageOption& o);
-/// Options of `add_page`.
+/// The options that `add_page` adds.
 inline const std::vector<std::string> kPageOptions{"--size", "--font-size", "--dpi", "--no-title"};
-/// `--line-styles` of figures with curves.
+/// Adds `--line-styles` for figures with curves.
 void add_line_styles(CLI::App& app, PageOption& o);
-/// `--map-colors` of occupancy maps.
+/// Adds `--map-colors` for occupancy maps.
 void add_map_colors(CLI::App& app, PageOption& o);
-/// `--extent` of figures of a world.
+/// Adds `--extent` for figures of a world.
 void add_extent(CLI::App& app, PageOption& o);
-/// `--format` of pictures in a folder.
+/// Adds `--format` for pictures in a folder.
 void add_format(CLI::App& app, std::string& format);
-/// `--robots` (names), `--from` and `--to`.
-/// How a video looks. @param wanted the option that asks for it
+/// Adds the options for a video's appearance. @param wanted option that requests the video
 void add_video_look(CLI::App& app, VideoOptions& o, CLI::Option* wanted);
 void add_video(CLI::App& app, VideoOptions& o, const std::string& help);
 
-/// Names of robots, separated by commas; resolved by apps/robot_names.h, since names have commas, too.
+/// Adds an option for comma-separated robot names; apps/robot_names.h resolves them, since names may contain commas.
 CLI::Option* add_robot_names(CLI::App& app, const std::string& option, std::vector<std::string>& names,
                              const std::string& help);
+/// `--robots` (names), `--from` and `--to`.
 void add_part(CLI::App& app, PartOption& o);
 /// The folder of a recorded run.
 void add_recording(CLI::App& app, RecordingOption& o);
 void add_sensor_type(CLI::App& app, SenseOptions& o);
 void add_seed(CLI::App& app, SeedOption& o, const std::string& what);
 void add_robots(CLI::App& app, CloneOptions& o);
-/// `--robot-from`, after `add_robots` where both are there.
+/// Adds `--robot-from`; must be called after `add_robots` if both are used.
 void add_robot_from(CLI::App& app, WorldOptions& o);
 void add_controller(CLI::App& app, ControllerOptions& o);
 

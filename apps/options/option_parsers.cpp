@@ -19,7 +19,7 @@ namespace sf::apps {
 
 namespace {
 
-/// Decimal digits, without leading zeros (CLI11 would read those as octal).
+/// Parses decimal digits. Rejects leading zeros, which CLI11 would read as octal.
 std::optional<std::uint64_t> read_integer(const std::string& text) {
   std::uint64_t value = 0;
   const char* const end = text.data() + text.size();
@@ -28,7 +28,7 @@ std::optional<std::uint64_t> read_integer(const std::string& text) {
   return value;
 }
 
-/// The number that `text` begins with, above 0 and finite, and the rest of the text.
+/// Returns the positive finite number at the start of `text`, and the rest of the text.
 std::optional<std::pair<double, std::string_view>> read_positive(const std::string& text) {
   char* stop = nullptr;
   const double value = std::strtod(text.c_str(), &stop);
@@ -36,7 +36,7 @@ std::optional<std::pair<double, std::string_view>> read_positive(const std::stri
   return std::pair{value, std::string_view(stop)};
 }
 
-/// `count` numbers, each within the coordinates that world files and packets may have.
+/// Parses `count` numbers, each within the coordinate range of world files and packets.
 std::optional<std::vector<double>> read_coordinates(const std::string& text, std::size_t count) {
   constexpr double kFarthest = 1e7;
   const auto values = control::read_numbers(text);
@@ -45,7 +45,7 @@ std::optional<std::vector<double>> read_coordinates(const std::string& text, std
   return values;
 }
 
-/// A unit and how much of m or T it is.
+/// A unit and its value in m or T.
 struct Unit {
   std::string_view name;
   double value;

@@ -1,6 +1,6 @@
 #pragma once
-// The arguments of each command as plain values. Groups that commands share come first; a command has those that it
-// names, and its own.
+// The arguments of each command as plain values. Groups shared by several commands come first; a command derives from
+// its groups and adds its own options.
 
 #include <cmath>
 #include <cstdint>
@@ -33,12 +33,12 @@ struct JsonOption {
 };
 
 struct DeviceOption {
-  std::string device;           ///< row or part of a name, or gpu::kHostDevice; empty: the best
-  bool require_vulkan = false;  ///< the host is no device
+  std::string device;           ///< row or part of a name, or gpu::kHostDevice; empty: the best device
+  bool require_vulkan = false;  ///< do not fall back to the host
 };
 
 struct InProcessOption {
-  bool in_process = false;  ///< users' code runs in this process, not in a child
+  bool in_process = false;  ///< users' code runs in this process instead of a child process
 };
 
 struct WorldOptions {
@@ -62,17 +62,17 @@ struct CompressionOption {
 /// A video of a run, or its frames.
 struct VideoOptions {
   std::string video;                           ///< file; empty: none
-  std::string frames;                          ///< folder of PNG files in its place; empty: none
+  std::string frames;                          ///< folder for PNG files instead of a video; empty: none
   int video_fps = 25;                          ///< [Hz] frames per second of video
-  double video_speed = 1.0;                    ///< [1] simulated time over the video's
+  double video_speed = 1.0;                    ///< [1] simulated time per video time
   int video_width = 1280, video_height = 720;  ///< [px] even
   std::optional<world::Extent> video_extent;   ///< [m] area shown at least; nullopt: the whole world
-  std::vector<std::string> video_follow;       ///< robots that the camera follows; empty: it stays
-  double video_around = 5.0;                   ///< [m] shown around them
-  std::vector<std::string> video_readings;     ///< robots whose ranges are shown
+  std::vector<std::string> video_follow;       ///< robots that the camera follows; empty: the camera does not move
+  double video_around = 5.0;                   ///< [m] margin around them
+  std::vector<std::string> video_readings;     ///< robots whose ranges are drawn
 };
 
-/// The part of a recording that a command is about.
+/// The part of a recording that a command processes.
 struct PartOption {
   std::vector<std::string> robots;  ///< names; empty: all
   double from = 0.0;                ///< [s] simulated
@@ -84,8 +84,8 @@ struct SeedOption {
 };
 
 struct CloneOptions : SeedOption {
-  std::uint32_t robots = 0;  ///< clones; 0: the world's own
-  std::string of;            ///< robot that they are clones of; empty: the first with sensors
+  std::uint32_t robots = 0;  ///< clones; 0: the world's own robots
+  std::string of;            ///< robot to clone; empty: the first with sensors
 };
 
 struct ThreadsOption {
@@ -94,18 +94,18 @@ struct ThreadsOption {
 
 struct NoReturnOption {
   bool no_return_inf = false;
-  bool too_near_min = false;  ///< in messages, and in CSV
+  bool too_near_min = false;  ///< in packets and CSV
 };
 
 struct AccuracyTargetOptions {
   scenarios::AccuracyTarget accuracy_target;
-  bool automatic = false;  ///< measure first, and take the modes that reach the target
+  bool automatic = false;  ///< measure first and use the modes that reach the target
 };
 
 struct ControllerOptions : InProcessOption {
   std::string controller = "wander";
   std::vector<std::string> set;  ///< its settings, "key=value" each
-  bool localize = false;         ///< as the setting of this name
+  bool localize = false;         ///< see the setting of this name
 };
 
 struct WireOption {
@@ -113,8 +113,8 @@ struct WireOption {
 };
 
 struct PortOptions : WireOption {
-  std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor type; every type is in it
-  std::uint32_t ports_per_robot = 0;                 ///< 0: 8, or the least that fits
+  std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor type; contains every type
+  std::uint32_t ports_per_robot = 0;                 ///< 0: 8, or the smallest number that suffices
 };
 
 struct BindOption {
@@ -122,8 +122,8 @@ struct BindOption {
 };
 
 struct ReceiveOptions : BindOption {
-  std::string from;      ///< host that packets are taken from; empty: the first that sends
-  double silence = 3.0;  ///< [s] after which the command ends
+  std::string from;      ///< host from which packets are accepted; empty: the first that sends
+  double silence = 3.0;  ///< [s] without packets after which the command ends
 };
 
 struct FarmOptions {
@@ -140,17 +140,17 @@ struct LinkOptions {
 };
 
 struct ForgetOption {
-  double forget = 10.0;  ///< [s] of silence after which a robot is no obstacle any more; 0: never
+  double forget = 10.0;  ///< [s] without packets after which a robot is no longer an obstacle; 0: never
 };
 
-/// Of the states that robots and cameras send.
+/// For the states that robots and cameras send.
 struct FilterOptions {
   bool filter = false;
   estimation::ClockSource clock = estimation::ClockSource::estimated;
-  double link_delay = 0.0;   ///< [s] least delay of the link, for estimated clocks
-  double stale_after = 1.0;  ///< [s] without a used state
+  double link_delay = 0.0;   ///< [s] minimum link delay, for clock estimates
+  double stale_after = 1.0;  ///< [s] without an accepted state
   estimation::StalePolicy stale = estimation::StalePolicy::freeze;
-  std::size_t hypotheses = 16;  ///< > 0 of a state with an uncertain heading
+  std::size_t hypotheses = 16;  ///< > 0; for a state with an uncertain heading
 };
 
 struct PeersOption {
@@ -161,21 +161,21 @@ struct DurationOption {
   double duration = 0.0;  ///< [s]; 0: until stopped
 };
 
-/// Place of the world's origin on the Earth.
+/// Position of the world's origin on the Earth.
 struct OriginOption {
   double latitude = 0.0;   ///< [deg] in [-89, 89]
-  double longitude = 0.0;  ///< [deg] within 180
+  double longitude = 0.0;  ///< [deg] in [-180, 180]
 };
 
 struct DevicesOptions : JsonOption, DeviceOption {};
 
 struct CheckOptions : WorldOptions, JsonOption {
-  std::string rndf;   ///< network that a mission is checked against; empty: none
-  double rate = 0.0;  ///< [Hz] that sensors are compared with; 0: none
+  std::string rndf;   ///< network to check a mission against; empty: none
+  double rate = 0.0;  ///< [Hz] rate that the sensors are compared with; 0: none
 };
 
 struct DrawOptions : WorldOptions, PageOption {
-  std::string out;  ///< picture
+  std::string out;  ///< picture file
 };
 
 struct V2xOptions : OriginOption {
@@ -183,11 +183,11 @@ struct V2xOptions : OriginOption {
   enum class Action { decode, encode, export_world };
   Action action = Action::decode;
   bool xml = false;   ///< decode to XML
-  double time = 0.0;  ///< [s] export: simulated
+  double time = 0.0;  ///< [s] for export: simulated time
 };
 
 struct FieldOptions : WorldOptions, DeviceOption, PageOption {
-  std::string out;                      ///< picture
+  std::string out;                      ///< picture file
   double height = 0.0;                  ///< [m] of the figure
   std::optional<viz::Line> line;        ///< [m] of its profile
   std::optional<world::Extent> extent;  ///< [m] of its map
@@ -196,40 +196,40 @@ struct FieldOptions : WorldOptions, DeviceOption, PageOption {
 
 struct SenseOptions : WorldOptions, JsonOption, DeviceOption, NoReturnOption {
   std::optional<base::Pose> pose;  ///< of the robot
-  std::string robot;               ///< empty: the first that has a sensor
-  std::uint8_t type = 0;           ///< of its sensor; 0: the first it has
-  std::uint32_t sensor = 0;        ///< among its sensors of that type
+  std::string robot;               ///< empty: the first robot that has a sensor
+  std::uint8_t type = 0;           ///< of the sensor; 0: the robot's first type
+  std::uint32_t sensor = 0;        ///< index among the robot's sensors of that type
 };
 
-/// The choices of a user about plots of sweeps.
+/// User settings of plots of sweeps.
 struct SweepPlotOptions {
-  std::string over;  ///< parameter along x; empty: the first with numbers that differ
+  std::string over;  ///< parameter along x; empty: the first whose numbers differ
   viz::AxisScale x_axis = viz::AxisScale::automatic;
 };
 
 struct PlotOptions : RecordingOption, PartOption, DeviceOption, PageOption, SweepPlotOptions, VideoOptions {
   std::string out;                      ///< folder; empty: the recording's
   std::string format = "png";           ///< suffix of the pictures
-  bool csv = false;                     ///< the curves as CSV files, too
+  bool csv = false;                     ///< also write the curves as CSV files
   std::vector<std::string> labels;      ///< robots named in the trajectories, or "all"
-  std::vector<std::uint32_t> elements;  ///< of sensors, as curves; empty: all
-  bool curves = false;                  ///< readings of many elements as curves in place of heat maps
+  std::vector<std::uint32_t> elements;  ///< of sensors, drawn as curves; empty: all
+  bool curves = false;                  ///< curves instead of heat maps for readings with many elements
 };
 
 struct ExportOptions : RecordingOption, PartOption, DeviceOption {
   std::string out;      ///< folder
-  bool vtk = false;     ///< VTK's files in place of CSV
+  bool vtk = false;     ///< VTK files instead of CSV
   double every = 1.0;   ///< [s] between files of a series
   double height = 0.1;  ///< [m] of the field's plane
 };
 
 struct ViewOptions : RecordingOption, PartOption, DeviceOption, VideoOptions {
-  bridges::WebAddress port;  ///< of the page in a browser
-  bool three_d = false;      ///< VTK's window instead
+  bridges::WebAddress port;  ///< of the page for browsers
+  bool three_d = false;      ///< VTK's window instead of a browser
   double every = 0.1;        ///< [s] between frames
   double height = 0.1;       ///< [m] of the field's plane
   double time = 0.0;         ///< [s] of the first frame shown
-  std::string screenshot;    ///< picture to write in place of waiting for a user; empty: none
+  std::string screenshot;    ///< picture to write instead of waiting for a user; empty: none
 };
 
 struct ExplainOptions : WorldOptions, JsonOption, DeviceOption, CloneOptions, ThreadsOption {};
@@ -239,9 +239,9 @@ struct NamingOption {
   record::Naming naming;
 };
 
-/// Connections to other programs (bridges); each is an address, or a number, as its option's help says.
+/// Connections to other programs (bridges). Each value is an address or a number, as described in its option's help.
 struct BridgeOptions {
-  std::optional<std::string> ros2;          ///< domain; empty: that of the environment, or 0
+  std::optional<std::string> ros2;          ///< domain; empty: from the environment, or 0
   std::string player;                       ///< [HOST:]PORT of a Player server; empty: none
   std::optional<bridges::WebAddress> view;  ///< of the live view; nullopt: none
   bool any() const { return ros2 || !player.empty() || view; }
@@ -260,16 +260,17 @@ struct RunOptions : WorldOptions,
                     VideoOptions,
                     NamingOption,
                     BridgeOptions {
-  std::vector<std::string> drive;  ///< robots that the controller drives, by name; empty: every robot
-  std::optional<double> duration;  ///< [s]; nullopt: 60, and without end beside bridges
-  std::optional<double> speed;     ///< [1] simulated over real time, 0: no limit; nullopt: none, and 1 beside bridges
-  std::string record;              ///< folder; empty: no recording
+  std::vector<std::string> drive;  ///< names of the robots that the controller drives; empty: all robots
+  std::optional<double> duration;  ///< [s]; nullopt: 60, or unlimited with bridges
+  std::optional<double>
+      speed;           ///< [1] ratio of simulated to real time, 0: no limit; nullopt: no limit, or 1 with bridges
+  std::string record;  ///< folder; empty: no recording
   bool record_readings = false;
   std::string send;         ///< host; empty: none
-  bool tiles = false;       ///< each rank has a part of the world
-  double balance = 0.0;     ///< [s] simulated between new cuts of tiles; 0: none
-  double checkpoint = 0.0;  ///< [s] simulated between check points; 0: none
-  bool resume = false;      ///< a run that was cut short: compare with its check points
+  bool tiles = false;       ///< each rank owns a part of the world
+  double balance = 0.0;     ///< [s] simulated time between rebalancing of tiles; 0: never
+  double checkpoint = 0.0;  ///< [s] simulated time between check points; 0: none
+  bool resume = false;      ///< restart an interrupted run and compare it with its check points
 };
 
 struct ServeOptions : WorldOptions,
@@ -287,14 +288,14 @@ struct ServeOptions : WorldOptions,
                       CompressionOption,
                       NamingOption,
                       BridgeOptions {
-  std::uint32_t port = netio::kInboxPort;  ///< 0: any free one
+  std::uint32_t port = netio::kInboxPort;  ///< 0: any free port
   double rate = 0.0;                       ///< [Hz]; 0: the world's own
-  double radio = netio::kV2vRange;         ///< [m] farther away, states are not relayed; 0: none is
+  double radio = netio::kV2vRange;         ///< [m] range beyond which states are not relayed; 0: no states are relayed
   std::string record;                      ///< folder; empty: not recorded
   bool lockstep = false;                   ///< clients command the robots tick by tick
-  double lockstep_timeout = 5.0;           ///< [s] that clients wait for another; 0: without end
-  std::uint32_t wait_for = 1;              ///< robots that are subscribed before the first tick
-  std::uint16_t spat = 0;                  ///< port for SPaT; 0: none is heard
+  double lockstep_timeout = 5.0;           ///< [s] maximum time to wait for a client; 0: unlimited
+  std::uint32_t wait_for = 1;              ///< number of robots that must subscribe before the first tick
+  std::uint16_t spat = 0;                  ///< port for SPaT; 0: none is received
   server::StaleLights stale_lights = server::StaleLights::dark;
   std::string mirror;  ///< "host:port" of an observer of all readings; empty: none
 };
@@ -309,34 +310,34 @@ struct RobotOptions : WorldOptions,
                       PeersOption,
                       SeedOption,
                       DurationOption {
-  std::string robot;        ///< its name
+  std::string robot;        ///< name of the robot
   double rate = 0.0;        ///< [Hz]; 0: the controller's own
-  double stop_after = 0.5;  ///< [s] without a reading after which it stands; 0: never
+  double stop_after = 0.5;  ///< [s] without a reading after which the robot stops; 0: never
   bool wait_for_start = false;
-  std::uint16_t spat = 0;     ///< port for SPaT; 0: the lights are the farm's
-  std::uint16_t cameras = 0;  ///< port for TAG packets; 0: it knows its true pose
+  std::uint16_t spat = 0;     ///< port for SPaT; 0: the lights come from the farm
+  std::uint16_t cameras = 0;  ///< port for TAG packets; 0: the robot uses its true pose
   estimation::ClockSource camera_clock = estimation::ClockSource::estimated;
-  std::uint32_t tag = 0;  ///< that it carries; 0: the one with its id
+  std::uint32_t tag = 0;  ///< id of the tag that the robot carries; 0: the robot's id
   std::string truth;      ///< "host:port" that its true state goes to; empty: none
   std::string map;        ///< "host:port" that its own map is sent to; empty: none
-  std::string serial;     ///< device of a real Create; empty: none
+  std::string serial;     ///< device of a real Create robot; empty: none
   unsigned baud = 57600;
 };
 
 inline constexpr std::uint16_t kSpatPort = 9010;  ///< default port of SPaT and MAP
 
 struct LightOptions : OriginOption, DurationOption, PeersOption {
-  std::string file;  ///< world, or plan that names its world
+  std::string file;  ///< a world, or a plan that names its world
   std::string send;  ///< host; empty: none
   std::string farm;  ///< "HOST:PORT" that V2I go to; empty: none
   std::vector<std::uint16_t> ports{kSpatPort};
   double rate = 10.0;            ///< [Hz]
-  double time = 0.0;             ///< [s] simulated, at the start
+  double time = 0.0;             ///< [s] simulated time at the start
   std::vector<std::string> set;  ///< "NAME=STATE", in place of a plan
 };
 
 struct StartOptions : FarmOptions, PeersOption {
-  std::uint32_t start_id = netio::kBroadcastId;  ///< robot to be started
+  std::uint32_t start_id = netio::kBroadcastId;  ///< robot to start
 };
 
 struct ObjectOptions : FarmOptions, PeersOption {
@@ -348,56 +349,56 @@ struct ObjectOptions : FarmOptions, PeersOption {
 struct ListenOptions : WorldOptions, JsonOption, CloneOptions, PortOptions, ReceiveOptions, DurationOption {};
 
 struct DumpOptions : JsonOption, BindOption, DurationOption {
-  std::string file;                  ///< capture; empty: live
+  std::string file;                  ///< capture file; empty: live
   std::vector<std::uint16_t> ports;  ///< to listen on
-  std::uint64_t count = 0;           ///< of datagrams after which it ends; 0: any
+  std::uint64_t count = 0;           ///< stop after this many datagrams; 0: unlimited
 };
 
 struct MapOptions : ReceiveOptions, WireOption, DurationOption, PageOption {
   std::vector<std::uint16_t> map_ports;  ///< to listen on
-  bool merge = false;                    ///< of all of them one map
+  bool merge = false;                    ///< merge all maps into one
   std::string out;                       ///< picture; empty: none
-  bool once = false;                     ///< until every port has brought a complete map
+  bool once = false;                     ///< stop once every port has received a complete map
 };
 
 struct ExperimentOptions : SeedOption, DeviceOption, InProcessOption, CompressionOption {
-  std::string experiment;  ///< by name
+  std::string experiment;  ///< name of the experiment
   bool list = false;       ///< print all names
   std::string out;         ///< folder
   std::uint32_t trials = 3;
-  std::optional<scenarios::Plant> plant;  ///< else the experiment's own
-  std::string experiments;                ///< folder of their files; empty: found
+  std::optional<scenarios::Plant> plant;  ///< nullopt: the experiment's own
+  std::string experiments;                ///< folder of their files; empty: searched for
 };
 
 struct TestOptions : DeviceOption, InProcessOption {
   std::vector<std::string> scenarios;  ///< files
   std::string junit;                   ///< file; empty: none
   unsigned jobs = 1;                   ///< scenarios at a time
-  double timeout = 0.0;                ///< [s] of wall-clock time per scenario; 0: none
+  double timeout = 0.0;                ///< [s] wall-clock time per scenario; 0: unlimited
 };
 
 struct SweepOptions : DeviceOption, InProcessOption {
-  std::string file;                 ///< of the sweep
+  std::string file;                 ///< sweep file
   std::string out;                  ///< folder
   unsigned jobs = 0;                ///< processes; 0: one per core, or Slurm's CPUs per task
-  double timeout = 0.0;             ///< [s] of wall-clock time per job; 0: none
+  double timeout = 0.0;             ///< [s] wall-clock time per job; 0: unlimited
   std::string share;                ///< "K/N"; empty: all, or the task's of `srun`
   bool list = false;                ///< print the points
-  bool retry = false;               ///< failed jobs once more
-  bool merge = false;               ///< write the tables of what is there
-  bool plots = true;                ///< draw its metrics
+  bool retry = false;               ///< rerun failed jobs
+  bool merge = false;               ///< write the tables of the existing results
+  bool plots = true;                ///< draw the metrics
   bool slurm = false;               ///< write a batch script
-  std::uint64_t tasks = 100;        ///< of its job array, at most
-  std::vector<std::string> sbatch;  ///< its options of sbatch
+  std::uint64_t tasks = 100;        ///< maximum size of the job array
+  std::vector<std::string> sbatch;  ///< extra options for sbatch
 };
 
 struct VerifyOptions : RecordingOption, ThreadsOption, JsonOption, DeviceOption {
-  std::uint64_t sample = 500;  ///< scans that are cast again in plain C++; 0: all
+  std::uint64_t sample = 500;  ///< number of scans to recompute in plain C++; 0: all
   std::string accuracy;        ///< modes whose errors are measured at the recorded poses; empty: none
 };
 
 struct MergeOptions {
-  std::vector<std::string> places;  ///< folders with recordings of ranks, or these themselves
+  std::vector<std::string> places;  ///< folders of ranks' recordings, or the recordings themselves
   std::string out;                  ///< folder
 };
 
@@ -414,18 +415,18 @@ struct TradeoffOptions : WorldOptions,
 
 struct VpsOptions : JsonOption, SeedOption, DurationOption, PeersOption, BindOption {
   std::string testbed;                                      ///< file
-  std::vector<std::pair<std::string, std::string>> inputs;  ///< camera and its source, in place of the file's
-  std::uint32_t rendered = 0;                               ///< tags of a simulated testbed; 0: none
-  double speed = 0.5;                                       ///< [m/s] of the fastest of them
-  std::uint32_t occluders = 0;                              ///< above them
-  std::uint16_t robots = 0;                                 ///< port for robots' true states; 0: none are rendered
-  std::uint64_t images = 0;                                 ///< of each camera; 0: all
-  bool real_time = false;                                   ///< at the cameras' rate
+  std::vector<std::pair<std::string, std::string>> inputs;  ///< pairs of camera and source that override the file
+  std::uint32_t rendered = 0;                               ///< number of tags in a simulated testbed; 0: none
+  double speed = 0.5;                                       ///< [m/s] of the fastest tag
+  std::uint32_t occluders = 0;                              ///< number of objects above the tags
+  std::uint16_t robots = 0;                                 ///< port for robots' true states; 0: no robots are rendered
+  std::uint64_t images = 0;                                 ///< per camera; 0: all
+  bool real_time = false;                                   ///< at the cameras' frame rate
   std::string send;                                         ///< "host:port" of tags without an address; empty: none
   std::string track;                                        ///< CSV file; empty: none
   std::string overlay;                                      ///< folder of pictures, or video; empty: none
-  std::uint32_t every = 1;                                  ///< image of each camera that is drawn over
-  std::string world;                                        ///< drawn over the pictures; empty: none
+  std::uint32_t every = 1;                                  ///< draw over every n-th image of each camera
+  std::string world;                                        ///< world to draw over the pictures; empty: none
   std::uint16_t readings = 0;                               ///< port for mirrored readings; 0: none are drawn
 };
 
@@ -435,13 +436,13 @@ struct CalibrateOptions {
   std::uint32_t rows = 6;
   double square = 0.025;  ///< [m]
   std::string charuco;    ///< dictionary of the board's tags; empty: a plain chessboard
-  double marker = 0.0;    ///< [m] their side
+  double marker = 0.0;    ///< [m] side of the board's tags
   std::string name = "camera";
-  std::string testbed;  ///< file with the camera's intrinsics and surveyed tags; empty: intrinsics are sought
+  std::string testbed;  ///< file with the camera's intrinsics and surveyed tags; empty: compute the intrinsics
 };
 
 struct SelfTestOptions : JsonOption, DeviceOption {
-  std::vector<std::string> cases;  ///< or groups of them; empty: all
+  std::vector<std::string> cases;  ///< or groups of cases; empty: all
   bool list = false;               ///< print all cases
 };
 

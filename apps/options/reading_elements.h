@@ -1,5 +1,5 @@
 #pragma once
-// The elements of a recorded sensor: where they look, and the limits of their ranges.
+// The elements of a recorded sensor: their directions and range limits.
 
 #include <cstdint>
 #include <string>
@@ -11,20 +11,20 @@
 namespace sf::apps {
 
 struct SensorElements {
-  std::vector<double> bearings;  ///< [rad] in the sensor's frame, by element; empty where elements have none
-  double range_min = 0.0;        ///< [m] of a column `range_m`
-  double range_max = HUGE_VAL;   ///< [m] infinite: no limit is known
+  std::vector<double> bearings;  ///< [rad] in the sensor's frame, by element; empty if the elements have no bearing
+  double range_min = 0.0;        ///< [m] of the column `range_m`
+  double range_max = HUGE_VAL;   ///< [m] infinite: unknown
 };
 
-/// @param sensor 0-based among the mover's sensors of that type
+/// @param sensor 0-based index among the mover's sensors of that type
 SensorElements elements_of(const world::World& world, const record::SensorTypeInfo& type, std::uint32_t mover,
                            std::uint32_t sensor);
 
-/// Every `every`-th of `count` elements as rows from above: by bearing in (−180°, 180°], the leftmost first; in the
-/// order of their numbers where they have none.
+/// Returns every `every`-th of `count` elements as rows from the top: sorted by bearing in (−180°, 180°] with the
+/// leftmost first, or by index if the elements have no bearing.
 std::vector<std::size_t> element_rows(const SensorElements& elements, std::size_t count, std::size_t every);
 
-/// "−45°"; "3" where it has no bearing.
+/// "−45°"; "3" if the element has no bearing.
 std::string bearing_name(const SensorElements& elements, std::size_t element);
 
 }  // namespace sf::apps

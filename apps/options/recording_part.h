@@ -1,5 +1,5 @@
 #pragma once
-// The part of a recording that a command is about: some of its robots, for some time.
+// The part of a recording that a command processes: some robots over some time.
 
 #include <cstdint>
 #include <vector>
@@ -10,13 +10,13 @@
 namespace sf::apps {
 
 struct RecordingPart {
-  record::Recording recording;       ///< states and lights of that time; readings of that time and those movers
-  std::vector<std::uint8_t> chosen;  ///< one per mover: 1 where the command is about it
+  record::Recording recording;       ///< states and lights of the time span; readings of the chosen movers in it
+  std::vector<std::uint8_t> chosen;  ///< one per mover: 1 if the mover is chosen
   double seconds = 0.0;              ///< from the first tick to the last
 };
 
 /// Opens a recording and prints its damage.
-/// @throws base::InputError when it has no such robot, or no tick in that time.
+/// @throws base::InputError if it lacks a named robot or has no tick in the time span.
 RecordingPart open_part(const std::string& directory, const PartOption& wanted);
 
 }  // namespace sf::apps

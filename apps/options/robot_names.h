@@ -1,5 +1,5 @@
 #pragma once
-// Robots named on the command line.
+// Robot names on the command line.
 
 #include <span>
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace sf::apps {
 
-/// The names in `texts`, each "NAME" or "NAME,NAME,...": from left to right the longest that is one of `known`, up to a
-/// comma or the end. A part that begins none is taken up to its comma, for the message that refuses it.
+/// Splits `texts`, each "NAME" or "NAME,NAME,...", into names. From left to right, takes the longest name in `known`
+/// that ends at a comma or the end of the text. If none matches, takes the text up to the next comma, so that an error
+/// message can name it.
 std::vector<std::string> robot_names(const std::vector<std::string>& texts, std::span<const std::string_view> known);
 
 }  // namespace sf::apps

@@ -1,4 +1,4 @@
-// Subcommands that bring recordings to other programs and windows.
+// Subcommands that export recordings to other programs and windows.
 
 #include <CLI/CLI.hpp>
 

@@ -1,4 +1,4 @@
-// Subcommands that look at worlds, devices and recordings.
+// Subcommands that inspect worlds, devices and recordings.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -16,7 +16,7 @@ namespace sf::apps {
 
 namespace {
 
-/// Options of add_ports: --laser-port and so on, --ports-per-robot and --wire.
+/// Names of the options that add_ports adds: --laser-port and so on, --ports-per-robot and --wire.
 std::vector<std::string> names_of_ports(const CLI::App& sub) {
   std::vector<std::string> names;
   for (const CLI::Option* option : sub.get_options()) {
@@ -27,7 +27,7 @@ std::vector<std::string> names_of_ports(const CLI::App& sub) {
   return names;
 }
 
-/// Where a scenario takes the place of the world, it states these.
+/// Rejects options that a scenario file defines itself.
 void refuse_options_of_worlds(const CLI::App& run) {
   const auto world = run.get_option("world")->as<std::string>();
   if (!is_scenario(world)) return;
@@ -167,7 +167,7 @@ void add_filter(CLI::App& app, FilterOptions& o) {
       ->group(kGroup);
 }
 
-/// Options of `serve` without a meaning where the farm itself moves the robots.
+/// Rejects options of `serve` that have no effect if the farm moves the robots.
 void refuse_with_lockstep(const CLI::App& sub) {
   if (sub.count("--lockstep") == 0) return;
   const std::vector<std::string> ports = names_of_ports(sub);

@@ -1,4 +1,4 @@
-// Subcommands that prove: experiments, scenarios, and the farm itself.
+// Subcommands that test: experiments, scenarios, and the farm itself.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Subcommands about cameras.
+// Subcommands for cameras.
 
 #include <CLI/CLI.hpp>
 

@@ -27,7 +27,7 @@ void Checkpoints::read(const std::string& head) {
   if (!std::filesystem::exists(file_))
     throw base::InputError(file_, 0, "there is no run to resume: make one with --record and --checkpoint S");
   const std::string text = base::read_text(file_);
-  const std::size_t whole = text.rfind('\n') + 1;  // the last line may be cut
+  const std::size_t whole = text.rfind('\n') + 1;  // the last line may be truncated
   std::filesystem::resize_file(file_, whole);
   std::istringstream lines(text.substr(0, whole));
   std::string line;

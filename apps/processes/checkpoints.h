@@ -1,7 +1,7 @@
 #pragma once
-// Check points of a run in DIR/checkpoints: hashes of its readings and states, from time to time. A run that was cut
-// short is computed again from its start, which is right for every controller and sensor whatever state they keep, and
-// proves at each check point that it is the same run.
+// Check points of a run in DIR/checkpoints: periodic hashes of its readings and states. An interrupted run is
+// recomputed from its start, which works for every controller and sensor regardless of their internal state. Each check
+// point verifies that it is the same run.
 
 #include <cstdint>
 #include <map>
@@ -14,13 +14,14 @@ namespace sf::apps {
 
 class Checkpoints {
  public:
-  /// @param run hash of all that the run's results depend on @param every [tick] 0: none are added
-  /// @param resume compare with those in the file, else begin it anew
-  /// @throws base::InputError where there are none to resume, they are another run's, or the file cannot be written
+  /// @param run hash of everything that the run's results depend on @param every [tick] 0: adds none
+  /// @param resume compares with the check points in the file; otherwise starts a new file
+  /// @throws base::InputError if there is nothing to resume, the check points belong to another run, or the file cannot
+  /// be written
   Checkpoints(const std::string& folder, std::uint64_t run, std::uint64_t every, bool resume);
 
-  /// After each tick. @param ticks so far @param readings hash of all readings so far
-  /// @throws base::InputError where the run differs from the one that is resumed
+  /// Call after each tick. @param ticks so far @param readings hash of all readings so far
+  /// @throws base::InputError if the run differs from the resumed one
   void update(std::uint64_t ticks, std::uint64_t readings, std::span<const base::Report> reports);
 
  private:
@@ -33,7 +34,7 @@ class Checkpoints {
 
   std::string file_;
   std::uint64_t every_;
-  std::map<std::uint64_t, Point> known_;  ///< by tick, of the run that is resumed
+  std::map<std::uint64_t, Point> known_;  ///< by tick, of the resumed run
 };
 
 }  // namespace sf::apps

@@ -15,7 +15,8 @@ namespace sf::apps {
 
 namespace {
 
-/// As /proc has it: "PID (NAME) STATE PARENT ...", where NAME may contain blanks and parentheses. 0: it has ended
+/// Parses /proc's "PID (NAME) STATE PARENT ..."; NAME may contain spaces and parentheses. Returns 0 if the process has
+/// ended.
 pid_t parent_of(const std::filesystem::path& process) {
   std::string text;
   std::getline(std::ifstream(process / "stat"), text);

@@ -1,5 +1,5 @@
 #pragma once
-// Processes that children of this one leave running.
+// Processes that children of this process leave running.
 
 #include <sys/types.h>
 
@@ -7,8 +7,8 @@
 
 namespace sf::apps {
 
-/// From its construction on, processes whose parents end become children of this one (PR_SET_CHILD_SUBREAPER) in place
-/// of init's, so that none escapes. One at a time.
+/// While it exists, processes whose parents end become children of this process (PR_SET_CHILD_SUBREAPER) instead of
+/// init's, so that none escapes. Only one instance at a time.
 class Descendants {
  public:
   Descendants();
@@ -16,8 +16,8 @@ class Descendants {
   Descendants(const Descendants&) = delete;
   Descendants& operator=(const Descendants&) = delete;
 
-  /// Kills all children that this process did not have before, and what these leave in turn, and waits for them for 1 s
-  /// at most. @param spared children that go on
+  /// Kills all children started since construction, and the children that these leave behind, and waits at most 1 s for
+  /// them. @param spared children to keep
   void end(const std::set<pid_t>& spared = {}) const;
 
  private:

@@ -34,14 +34,14 @@ constexpr std::size_t kMostProcesses = 1024;
 using Clock = std::chrono::steady_clock;
 enum Code : int { kFine = 0, kFailed = 1, kInput = 2, kDevice = 3 };
 
-/// A child's part of the memory that parent and children share.
+/// A child's part of the shared memory.
 struct Seat {
-  std::atomic<std::size_t> row{kNoRow};  ///< its job; kNoRow: between two
-  char error[1024] = {};                 ///< text of the exception
+  std::atomic<std::size_t> row{kNoRow};  ///< current job; kNoRow: between two jobs
+  char error[1024] = {};                 ///< message of the exception
   base::PluginCalls calls;
 };
 
-/// Memory that parent and children share.
+/// Memory shared by parent and children.
 class Board {
  public:
   explicit Board(std::size_t seats)
@@ -60,7 +60,7 @@ class Board {
 
  private:
   struct alignas(Seat) Counts {
-    std::atomic<std::size_t> next{0};  ///< row that is handed out next
+    std::atomic<std::size_t> next{0};  ///< next row to hand out
     std::atomic<std::size_t> done{0};
   };
   std::size_t size_;
@@ -107,7 +107,7 @@ class Children {
 
   void start(std::size_t slot) {
     Seat& seat = *new (&board_.seat(slot)) Seat;
-    std::fflush(nullptr);  // else both processes write what waits
+    std::fflush(nullptr);  // otherwise both processes would write the buffered output
     const pid_t parent = getpid();
     const pid_t pid = fork();
     if (pid < 0)
@@ -116,16 +116,16 @@ class Children {
                       "(ulimit -u) to be larger",
                       std::strerror(errno)));
     if (pid > 0) {
-      setpgid(pid, pid);  // here and below: whichever comes first
+      setpgid(pid, pid);  // parent and child both call it, since either may run first
       children_[slot] = {pid, kNoRow, Clock::now()};
       return;
     }
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(kFailed);  // it died before the line above
-    // Ctrl-C is the parent's to decide on. A process in the background may write to the terminal, and reads nothing.
+    if (getppid() != parent) _exit(kFailed);  // the parent died before the line above
+    // The parent handles Ctrl-C. A process in the background may write to the terminal but does not read from it.
     for (const int signal : {SIGINT, SIGTTOU, SIGTTIN}) std::signal(signal, SIG_IGN);
-    if (calls_.own_processes) std::signal(SIGTERM, SIG_DFL);  // nothing but a job itself sends it to one alone
+    if (calls_.own_processes) std::signal(SIGTERM, SIG_DFL);  // only a job itself would send it to a single process
     base::share_plugin_calls(&seat.calls);
     const int code = work(board_, seat, count_, calls_);
     seat.calls.code = code;
@@ -135,7 +135,8 @@ class Children {
     _exit(code);
   }
 
-  /// Takes note of all that ended. @return whether some are still at work
+  /// Collects children that have ended.
+  /// @return true if some are still running
   bool look() {
     bool working = false;
     for (std::size_t slot = 0; slot < children_.size(); ++slot) {
@@ -158,10 +159,10 @@ class Children {
  private:
   struct Child {
     pid_t pid = 0;             ///< 0: none
-    std::size_t row = kNoRow;  ///< as seen last
-    Clock::time_point since;   ///< at which it was first seen
-    bool ends = false;         ///< its work is done
-    bool late = false;         ///< killed for it
+    std::size_t row = kNoRow;  ///< as of the last look
+    Clock::time_point since;   ///< when `row` or `ends` last changed
+    bool ends = false;         ///< has finished its work
+    bool late = false;         ///< killed because it took too long
   };
 
   bool others_work() const {
@@ -217,7 +218,7 @@ class Children {
       if (row != kNoRow) ++board_.done();
     } else if (row != kNoRow || code != kFine) {
       const std::string cause = cause_of(slot, status);
-      // Between two jobs, or before the first, the fault is not a job's: another process would have it as well.
+      // Outside of any job, the error is not the job's fault, and another process would fail in the same way.
       if (row == kNoRow) throw base::InputError("a process died outside of any job: " + cause);
       calls_.died(row, cause);
       ++board_.done();

@@ -1,15 +1,15 @@
 #pragma once
-// Limits of memory (ulimit -v, -d) as the cause of a crash.
+// Detects memory limits (ulimit -v, -d) as the cause of a crash.
 
 #include <string>
 
 namespace sf::apps {
 
-/// In place of the text of std::bad_alloc.
+/// Replaces the text of std::bad_alloc.
 inline constexpr const char* kNoMemory = "not enough memory: free some, raise the limit (ulimit -v), or ask for less";
 
-/// "; memory is limited to 256 MiB (ulimit -v), ...", to be put behind how a process was ended: drivers and libraries
-/// crash where memory ends. Empty: neither addresses nor data are limited.
+/// Returns "; memory is limited to 256 MiB (ulimit -v), ..." to append to the description of a crash, since drivers and
+/// libraries crash when memory runs out. Empty if neither address space nor data is limited.
 std::string memory_limit_note();
 
 }  // namespace sf::apps

@@ -31,7 +31,7 @@ namespace {
 
 using scenarios::ScenarioResult;
 
-/// The part of a result that `test` prints. `row` comes first, then the size of the rest.
+/// Serializes the part of a result that `test` prints: `row`, the size of the rest, and the rest.
 base::Bytes bytes_of(std::size_t row, const ScenarioResult& result) {
   base::Bytes body, bytes;
   base::ByteWriter out(body);
@@ -67,7 +67,7 @@ ScenarioResult result_of(const std::string& file, std::span<const std::uint8_t> 
   return result;
 }
 
-/// Results on their way from children to their parent: a file in memory that all append to.
+/// Passes results from children to their parent through a file in memory that all of them append to.
 class ResultFile {
  public:
   ResultFile() : descriptor_(memfd_create("results", MFD_CLOEXEC)) {
@@ -84,7 +84,7 @@ class ResultFile {
       throw std::runtime_error(std::string("its result cannot be passed on: ") + std::strerror(errno));
   }
 
-  /// Results that have come since the last call.
+  /// Reads the results added since the last call.
   void take(const std::vector<std::string>& files, std::vector<std::optional<ScenarioResult>>& results) {
     std::uint64_t head[2];
     while (::pread(descriptor_, head, sizeof head, position_) == static_cast<ssize_t>(sizeof head)) {
@@ -109,7 +109,7 @@ class OwnProcesses {
   OwnProcesses(const TestOptions& options, const std::function<void(const ScenarioResult&)>& show)
       : options_(options), show_(show), results_(options.scenarios.size()), came_(results_.size()) {}
 
-  /// Each in a process of its own, since its plug-ins are loaded, and its controllers made.
+  /// Checks each scenario in a separate process, since this loads plug-ins and creates controllers.
   bool check() {
     for (std::size_t row = 0; row < results_.size(); ++row) rows_.push_back(row);
     return run_in_processes(rows_.size(), 1,
@@ -123,10 +123,10 @@ class OwnProcesses {
   bool run() {
     std::erase_if(rows_, [&](std::size_t row) { return results_[row].has_value(); });
     show();
-    std::unique_ptr<gpu::Device> device;  // of a child
+    std::unique_ptr<gpu::Device> device;  // of a child process
     JobCalls all = calls([&] { device = std::make_unique<gpu::Device>(open_device_silently(options_)); },
                          [&](std::size_t job) {
-                           if (job == 0) print_notice(*device);  // of all processes, one
+                           if (job == 0) print_notice(*device);  // only one process prints it
                            file_.put(rows_[job], result_of_run(rows_[job], *device));
                            device.reset();
                          });
@@ -145,7 +145,7 @@ class OwnProcesses {
     return {.name = std::filesystem::path(file(row)).stem().string(), .file = file(row), .failure = why};
   }
 
-  /// Jobs of the scenarios in `rows_`.
+  /// Job callbacks for the scenarios in `rows_`.
   JobCalls calls(std::function<void()> begin, std::function<void(std::size_t)> run) {
     return {.begin = std::move(begin),
             .run = std::move(run),
@@ -162,7 +162,7 @@ class OwnProcesses {
             .timeout = options_.timeout};
   }
 
-  /// In a child. An error of a controller is its scenario's.
+  /// Runs in a child. Errors of a controller fail its scenario.
   ScenarioResult result_of_run(std::size_t row, gpu::Device& device) const {
     ScenarioResult result = lost(row, "");
     try {
@@ -193,8 +193,9 @@ class OwnProcesses {
 
   const TestOptions& options_;
   const std::function<void(const ScenarioResult&)>& show_;
-  std::vector<std::optional<ScenarioResult>> results_, came_;  ///< per file; those of children that may still die
-  std::vector<std::size_t> rows_;                              ///< of the scenarios that are checked or run
+  std::vector<std::optional<ScenarioResult>> results_,
+      came_;                       ///< by file; `came_` has results of children that may still die
+  std::vector<std::size_t> rows_;  ///< of the scenarios to check or run
   std::size_t shown_ = 0;
   ResultFile file_;
 };

@@ -10,7 +10,7 @@ namespace sf::apps {
 namespace {
 
 std::atomic<bool> stop{false};
-std::atomic<int> stop_signal{SIGINT};  // of another rank's stop, too
+std::atomic<int> stop_signal{SIGINT};  // set by a stop on another rank, too
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 std::optional<int> chosen_code;
 
@@ -40,13 +40,13 @@ void count_stops(std::atomic<unsigned>* count) { stops = count; }
 void install_stop_handlers() {
   struct sigaction action {};
   action.sa_handler = on_signal;
-  // Once only: who asks twice is not kept waiting.
+  // The handler is reset, so that a second signal ends the program at once.
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);
-  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // else `nohup` said not to
+  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // `nohup` ignores it
 }
 
 void remove_stop_handlers() {

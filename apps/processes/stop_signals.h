@@ -1,5 +1,5 @@
 #pragma once
-// SIGINT (Ctrl-C), SIGTERM and SIGHUP ask for a stop; the loop ends where it is whole.
+// SIGINT (Ctrl-C), SIGTERM and SIGHUP request a stop. Loops stop at the next point where their output is complete.
 
 #include <atomic>
 #include <chrono>
@@ -7,35 +7,36 @@
 
 namespace sf::apps {
 
-/// Set once one of them came. A second one ends the program at once.
+/// True once one of them was received. A second signal ends the program at once.
 const std::atomic<bool>& stop_requested();
 
-/// A command was stopped before its work was complete: `main` prints the message and exits with `interrupted_code`.
+/// A command was stopped before its work was complete. `main` prints the message and exits with `interrupted_code`.
 class Incomplete : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// For commands that write several files, each of them whole. @throws Incomplete when a stop was requested
+/// For commands that write several files, each of them complete. @throws Incomplete if a stop was requested
 void heed_stop(const char* what = "interrupted: the files that were written are whole, others are not there");
 
-/// Exit code of such a command: as shells have it, 128 and the signal's number (130 after Ctrl-C).
+/// Exit code of such a command: 128 plus the signal's number, as in shells (130 after Ctrl-C).
 int interrupted_code();
-/// Another code for all signals (--interrupted-code). @param code in [0, 255]
+/// Sets one exit code for all signals (--interrupted-code). @param code in [0, 255]
 void set_interrupted_code(int code);
 
-/// Where the handlers count the signals that come, for a parent that passes on others (apps/processes/supervision.h).
+/// Sets the counter that the handlers increment, for a parent that forwards other signals
+/// (apps/processes/supervision.h).
 void count_stops(std::atomic<unsigned>* count);
 
-/// Takes the signals over, but for a SIGHUP that is ignored (nohup). To be called once, before the loop.
+/// Installs the handlers, except for SIGHUP if it is ignored (nohup). Call once, before the loop.
 void install_stop_handlers();
 
-/// To be called after the program's end, when nothing looks at `stop_requested` any more: the signals end the process,
-/// unless a parent counts them and does.
+/// Call after the program's end, when `stop_requested` is no longer polled: the signals then end the process, unless a
+/// parent counts them and ends it.
 void remove_stop_handlers();
 
-/// Sleeps until `seconds` [s] have passed since `start`, not at all when they have; ends within 50 ms of a request to
-/// stop.
+/// Sleeps until `seconds` [s] have passed since `start`; returns at once if they have, and within 50 ms of a stop
+/// request.
 void keep_pace(std::chrono::steady_clock::time_point start, double seconds);
 
 }  // namespace sf::apps

@@ -31,16 +31,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::array kStops{SIGINT, SIGTERM, SIGHUP};
-constexpr double kForwardAfter = 0.1;  ///< [s] the terminal, or `timeout`, signals parent and child alike
-/// [s] with calls that go on after a request to stop; the rest of the limit is for the end of the process
+constexpr double kForwardAfter = 0.1;  ///< [s] the terminal or `timeout` signals parent and child alike
+/// [s] for calls that continue after a stop request; the rest of the limit is for ending the process
 constexpr double kPatience = 0.8 * std::chrono::duration<double>(base::kStopLimit).count();
 constexpr timespec kTurn{0, 20'000'000};
-constexpr int kTurnsInCalls = 5;  ///< calls that are shorter than these are not what the process is kept by
+constexpr int kTurnsInCalls = 5;  ///< calls that are shorter than this many turns do not block the process
 
-/// In memory that parent and child share.
+/// In memory shared by parent and child.
 struct Page {
   base::PluginCalls calls;
-  std::atomic<unsigned> stops{0};  ///< signals that the child has taken
+  std::atomic<unsigned> stops{0};  ///< number of signals that the child has received
 };
 
 bool is_code(std::string_view argument) {
@@ -76,22 +76,21 @@ class Supervisor {
 
  private:
   void note_stop(int signal) {
-    // `nohup` ignores SIGHUP. Shells ignore SIGINT for commands in the background, which the program handles all the
-    // same.
+    // `nohup` ignores SIGHUP. Shells ignore SIGINT for background commands, but the program handles it anyway.
     if (signal == SIGHUP && is_ignored(signal)) return;
     ++stops_;
     last_ = signal;
     since_ = Clock::now();
   }
 
-  /// Passes on what the child did not get from elsewhere.
+  /// Forwards signals that the child has not received directly.
   void pass_on() {
     if (base::seconds_since(since_) <= kForwardAfter || page_.stops >= stops_ || forwarded_ >= stops_) return;
     forwarded_ = stops_;
     kill(child_, last_);
   }
 
-  /// Ends the child where a call, or one after the other, keeps it from its end, and where a thread does.
+  /// Ends the child if a call, a sequence of calls or a thread delays its exit.
   void end_where_late() {
     if (page_.calls.finished && !finished_at_) finished_at_ = Clock::now();
     if (finished_at_) {
@@ -142,13 +141,13 @@ class Supervisor {
   const Page& page_;
   sigset_t signals_;
   Descendants descendants_;
-  unsigned stops_ = 0;      ///< signals that came
-  unsigned forwarded_ = 0;  ///< of these
+  unsigned stops_ = 0;      ///< number of signals received
+  unsigned forwarded_ = 0;  ///< number of them forwarded
   int last_ = 0;
-  Clock::time_point since_;                       ///< when the last of them came
-  std::optional<Clock::time_point> finished_at_;  ///< when the program was seen at its end
-  int turns_in_calls_ = 0;                        ///< in a row, in each of which a call was under way
-  bool killed_ = false;                           ///< as it was late
+  Clock::time_point since_;                       ///< time of the last signal
+  std::optional<Clock::time_point> finished_at_;  ///< when the program was found to have ended
+  int turns_in_calls_ = 0;                        ///< successive turns in which a call was in progress
+  bool killed_ = false;                           ///< because it took too long
 };
 
 }  // namespace
@@ -159,7 +158,7 @@ bool needs_supervision(int argc, const char* const* argv) {
   const auto any = [&](auto&& test) { return std::any_of(argv + 1, argv + argc, test); };
   if (any([](std::string_view word) { return word == "--in-process"; })) return false;
   const char* const plugins = std::getenv("SENSORFARM_PLUGINS");
-  // Scenarios may name controllers, too; `test` and sweeps have processes of their own.
+  // Scenarios may name controllers, too. `test` and sweeps start their own processes.
   if (command == "run" && any([](std::string_view word) { return word.ends_with(".toml"); })) return true;
   return !memory_limit_note().empty() || (plugins != nullptr && *plugins != '\0') || command == "experiment" ||
          any(is_code);

@@ -1,5 +1,5 @@
 #pragma once
-// How controllers fared: their error, whether they are done, the checkpoints they passed.
+// Results of controllers: their error, whether they are done, and the checkpoints they passed.
 
 #include <cstdint>
 #include <optional>
@@ -18,57 +18,59 @@ namespace sf::apps {
 std::string text_of(const control::ErrorSummary& facts);
 std::string text_of(const control::LocalizationError& facts);
 
-/// Robots that stand at the end for one reason.
+/// Robots that are at rest at the end for the same reason.
 struct Standing {
-  std::string reason;              ///< as their controllers state it
+  std::string reason;              ///< as stated by their controllers
   std::vector<std::string> names;  ///< at most kNamed of them
   std::uint64_t robots = 0;
-  double seconds = 0.0;  ///< [s] the longest has stood
+  double seconds = 0.0;  ///< [s] longest time at rest
   static constexpr std::size_t kNamed = 3;
 };
 /// "roomba0 for 598 s: 'roomba1' stands in its way".
 std::string text_of(const Standing& standing);
 
-/// Of a run's robots that have a controller, all together.
+/// Combined results of the robots in a run that have a controller.
 struct ControlReport {
-  std::string controller;                   ///< its name
-  std::uint64_t robots = 0;                 ///< that it drives
-  std::uint64_t done = 0;                   ///< of these, at the end
-  control::ErrorSummary error;              ///< of all steps of all of them
-  bool has_goals = false;                   ///< one of them headed for a checkpoint
-  std::uint64_t checkpoints = 0;            ///< that they no longer head for, since the next or none is due
-  control::LocalizationError localization;  ///< of those that localize themselves, beside their true poses
-  std::vector<Standing> standing;           ///< not done, and without motion for kStill or longer: most robots first
+  std::string controller;                   ///< name of the controller
+  std::uint64_t robots = 0;                 ///< number of robots it drives
+  std::uint64_t done = 0;                   ///< number of them that are done at the end
+  control::ErrorSummary error;              ///< over all steps of all robots
+  bool has_goals = false;                   ///< true if any robot headed for a checkpoint
+  std::uint64_t checkpoints = 0;            ///< number of checkpoints passed
+  control::LocalizationError localization;  ///< of robots that localize themselves, compared with their true poses
+  std::vector<Standing>
+      standing;  ///< robots that are not done and have not moved for kStill or longer; the largest group first
 };
 
-/// Robots that have not moved for so long stand. [s]
+/// [s] Robots that have not moved for this time are at rest.
 inline constexpr double kStill = 3.0;
 
-/// Follows a simulation, which must outlive it, tick by tick.
+/// Updated with each tick of a simulation, which must outlive it.
 class ControlMetrics {
  public:
   ControlMetrics(const scenarios::Simulation& simulation, std::size_t movers, std::string controller);
 
-  /// A robot joined, in the last row.
+  /// Adds a robot that joined in the last row.
   void add_mover();
-  /// After every `Simulation::step`, with what it gave.
+  /// Called after every `Simulation::step`, with its result.
   void update(const base::TickRecord& tick);
-  /// @param ranks that share the fleet, which all call this; null: none
+  /// Collective over ranks.
+  /// @param ranks that share the fleet; null: none
   ControlReport facts(const world::World& world, cluster::Ranks* ranks = nullptr) const;
 
  private:
   const scenarios::Simulation& simulation_;
   ControlReport facts_;
-  /// A robot since it last moved.
+  /// A robot's state since it last moved.
   struct Rest {
     base::Pose X_WM;
     std::int64_t since = 0;  ///< [ns]
     bool contact = false;    ///< at the last tick
   };
-  /// Of a robot at the end.
+  /// A robot's state at the end.
   struct End {
     std::optional<control::LocalizationError> localization;
-    std::string reason;  ///< why it stands; empty: none was stated, or it drives
+    std::string reason;  ///< why it is at rest; empty: no reason was stated, or it moves
   };
   bool stands(std::uint32_t mover) const;
   std::vector<End> ends() const;

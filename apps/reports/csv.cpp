@@ -1,4 +1,4 @@
-// One reading for people and spreadsheets.
+// Formats one reading as text or CSV.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,8 @@ std::string missing_or(double value, const sensors::Column& column) {
                                              : fmt::format("{}", value);
 }
 
-/// `distance_m,points`; a vector's columns are `vector_T_x,vector_T_y,vector_T_z`. Scans have bearings and models too.
+/// `distance_m,points`; a vector has the columns `vector_T_x,vector_T_y,vector_T_z`. Scans also have bearings and
+/// models.
 std::string csv_heading(const sensors::SensorType& type) {
   std::string text = type.is_scan ? "bearing_rad" : "";
   for (const sensors::Column& column : type.columns)

@@ -8,7 +8,7 @@
 namespace sf::apps {
 
 using base::csv_field;
-/// The shortest text that reads back as the same number; empty for not-a-number.
+/// Returns the shortest text that parses to the same number; empty for NaN.
 std::string csv_number(double value);
 
 }  // namespace sf::apps

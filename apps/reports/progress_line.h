@@ -1,5 +1,5 @@
 #pragma once
-// How far a long job is: one line that rewrites itself on a terminal, nothing in a pipe.
+// Progress of a long job: one line that rewrites itself on a terminal, nothing in a pipe.
 
 #include <chrono>
 #include <string>
@@ -11,9 +11,10 @@ class Progress {
   explicit Progress(std::string what);
   ~Progress();
 
-  /// @param part [-] in [0, 1]. Draws at most ten times a second.
+  /// Draws at most ten times a second.
+  /// @param part [-] finished part in [0, 1]
   void show(double part, const std::string& note = "");
-  /// Clears a line that another process has left.
+  /// Clears a line left by another process.
   static void clear();
 
  private:

@@ -18,7 +18,7 @@ namespace sf::apps {
 
 namespace {
 
-/// A file of rows of fields, which has its name once it is whole: until `close` it is FILE.new.
+/// A CSV file that gets its name once it is complete; until `close`, its name is FILE.new.
 class CsvFile {
  public:
   explicit CsvFile(const std::string& path) : path_(path), file_(fresh(), std::ios::trunc) {}
@@ -28,7 +28,7 @@ class CsvFile {
     std::error_code ignored;
     if (!whole_) std::filesystem::remove(fresh(), ignored);
   }
-  /// @throws base::InputError when a row could not be written
+  /// @throws base::InputError if a row could not be written
   void close() {
     file_.close();
     std::error_code error;

@@ -14,7 +14,7 @@ void print_warnings(const std::string& file, const std::vector<world::Warning>& 
   const std::size_t count = warnings.size();
   if (count == 0) return;
   std::string lines = text_of(std::span(warnings).first(std::min(count, kFirst)));
-  lines.pop_back();  // `print_message` ends the line
+  lines.pop_back();  // `print_message` adds the line end
   print_message("{}{}:\n{}", counted(count, "warning"),
                 count > kFirst ? fmt::format(", the first 3 here, all with `sensorfarm check {}`", file) : "", lines);
 }

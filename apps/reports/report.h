@@ -1,5 +1,5 @@
 #pragma once
-// Reports of commands, as rows of a table or as JSON. nlohmann/json stays in the source.
+// Reports of commands, as rows of a table or as JSON. Only the source includes nlohmann/json.
 
 #include <optional>
 #include <span>
@@ -29,78 +29,79 @@
 
 namespace sf::apps {
 
-/// How a run or a service went.
+/// Results of a run or a service.
 struct RunReport {
   std::string device;
   bool software = false;
-  std::string caster;  ///< what casts rays
+  std::string caster;  ///< description of the ray caster
   std::uint32_t robots = 0;
   std::uint64_t ticks = 0;
   double simulated_s = 0.0;
   double wall_s = 0.0;
-  std::uint64_t contacts = 0;  ///< of robots, that began
-  /// Robots that have been outside of the known space of the world's ROS map; nullopt: it has none.
+  std::uint64_t contacts = 0;  ///< number of robot contacts that began
+  /// Robots that have left the known space of the world's ROS map; nullopt: the world has no ROS map.
   std::optional<std::vector<std::string>> strayed;
-  ControlReport control;  ///< no robots: others decide
-  double move_s = 0.0;    ///< [s] controllers and motion
-  double out_s = 0.0;     ///< [s] packets and recording
+  ControlReport control;  ///< no robots: other processes control them
+  double move_s = 0.0;    ///< [s] spent on controllers and motion
+  double out_s = 0.0;     ///< [s] spent on packets and recording
   farm::FarmStats farm;
   std::uint64_t hash = 0;
   bool interrupted = false;
-  bool sent = false;  ///< `publisher` counts
+  bool sent = false;  ///< `publisher` is valid
   server::PublisherCounts publisher;
-  bool received = false;  ///< `inbox` counts
+  bool received = false;  ///< `inbox` is valid
   netio::PacketCounts inbox;
-  std::uint64_t socket_drops = 0;  ///< datagrams that came while the inbox' buffer was full
-  netio::RelayCounts relayed;      ///< to robots, of others' states and start signals
+  std::uint64_t socket_drops = 0;  ///< datagrams dropped because the inbox's buffer was full
+  netio::RelayCounts relayed;      ///< states of other robots and start signals, relayed to robots
   server::LightServiceCounts lights;
-  bool filtered = false;  ///< `states` and `clocks` count
+  bool filtered = false;  ///< `states` and `clocks` are valid
   server::StateFilterCounts states;
   struct Clock {
     std::string name;  ///< of the mover
     estimation::ClockState clock;
   };
-  std::vector<Clock> clocks;                       ///< of senders of states
+  std::vector<Clock> clocks;                       ///< of the senders of states
   std::uint64_t lines_left_out = 0;                ///< of the log
   std::string recording;                           ///< file; empty: none
   std::uint64_t recorded_bytes = 0;                ///< its size
-  VideoFacts video;                                ///< without a file: none
-  std::string recording_error;                     ///< why it ends before the run; empty: it does not
-  std::optional<server::LockstepCounts> lockstep;  ///< of a service in lockstep
-  std::optional<RankReport> shared;                ///< by several ranks; times are means of theirs, counts sums
+  VideoFacts video;                                ///< no file name: no video
+  std::string recording_error;                     ///< why it ends before the run; empty: it is complete
+  std::optional<server::LockstepCounts> lockstep;  ///< for a service in lockstep
+  std::optional<RankReport>
+      shared;  ///< for a fleet shared by several ranks; times are means over them, counts are sums
 };
 
 /// Results of `selftest`.
 struct SelfTestReport {
   gpu::DeviceInfo device;
   std::vector<std::pair<const selftest::Case*, selftest::Outcome>> cases;  ///< that were run
-  std::size_t asked = 0;                                                   ///< to be run; more, where interrupted
-  double seconds = 0.0;                                                    ///< [s] of all of them
+  std::size_t asked = 0;  ///< number of cases selected; more than were run if interrupted
+  double seconds = 0.0;   ///< [s] of all cases
 
   std::size_t passed() const;
   bool interrupted() const { return cases.size() < asked; }
-  /// All cases were run, one at least, and passed.
+  /// True if all cases were run, at least one, and all passed.
   bool sound() const { return !cases.empty() && passed() == cases.size() && !interrupted(); }
 };
 
-/// Says on standard error how many warnings there are, and the first three of them. @param file that `check` lists all
-/// of
+/// Prints the number of warnings and the first three of them on standard error. @param file for which `check` lists all
+/// warnings
 void print_warnings(const std::string& file, const std::vector<world::Warning>& warnings);
 /// "file:line: warning: message", one a line.
 std::string text_of(std::span<const world::Warning> warnings);
-/// The JSON object with the list of all of them at its end.
+/// Appends the list of all warnings to the JSON object.
 std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings);
 
-/// Says on standard error what a recording lacks.
+/// Prints on standard error which data a recording lacks.
 void print_damage(const record::Recording& recording);
 
 std::size_t count_robots(const world::World& world);
-/// Ends with the names of the world's robots. @param names that may be suggested for `name`
+/// Throws an error that lists the names of the world's robots. @param names that may be suggested for `name`
 [[noreturn]] void refuse_robot(const world::World& world, const std::string& name,
                                const std::vector<std::string_view>& names);
-/// All that stand still or are carried.
+/// Counts fixed and carried magnets.
 std::size_t count_magnets(const world::World& world);
-/// Of the infrared emitters; the others are virtual walls.
+/// Counts the docks among the infrared emitters; the others are virtual walls.
 std::size_t count_docks(const world::World& world);
 
 std::string json_of(const gpu::DeviceList& list);
@@ -129,7 +130,7 @@ std::string text_of(const std::vector<scenarios::ModeResult>& results);
 std::string json_of(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target);
 std::string text_of(const SelfTestReport& test);
 std::string json_of(const SelfTestReport& test);
-/// Where robot and sensor stood, in one line for people.
+/// Positions of robot and sensor, in one line.
 std::string place_of(const world::World& world, const sensors::SensorSet& sensor_set,
                      const base::ReadingBlock& reading);
 

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Names are whatever bytes a world file holds: what is no UTF-8 is replaced.
+/// Names may contain any bytes of a world file: invalid UTF-8 is replaced.
 std::string dump_json(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
@@ -54,10 +54,10 @@ Json warnings_json(const std::vector<world::Warning>& warnings) {
   return json;
 }
 
-/// JSON has no infinite numbers: these become null.
+/// Returns null for infinite numbers, which JSON does not support.
 Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// Of a noisy sensor.
+/// For a noisy sensor.
 Json noise_json(double bound_without_noise, double sigma) {
   return {{"bound_without_noise", finite_json(bound_without_noise)}, {"sigma", finite_json(sigma)}};
 }
@@ -78,7 +78,7 @@ Json statements_json(const std::vector<sensors::AccuracyStatement>& statements) 
 
 Json number_json(double value, bool whole) {
   if (whole && std::isfinite(value)) return static_cast<std::int64_t>(value);
-  return value;  // printed as null where it is not finite
+  return value;  // printed as null if it is not finite
 }
 
 std::string_view word_of(base::QualityFlag quality) {
@@ -86,7 +86,7 @@ std::string_view word_of(base::QualityFlag quality) {
   return kWords[static_cast<std::size_t>(quality)];
 }
 
-/// One element's columns, by name. Beams have their bearing and the model that they met too.
+/// The columns of one element, by name. Beams also have their bearing and the model that they hit.
 Json element_json(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading,
                   std::uint32_t i) {
   const sensors::SensorType& type = *sensors::find_sensor_type(reading.type);
@@ -124,7 +124,7 @@ Json control_json(const ControlReport& f) {
   return json;
 }
 
-/// Non-zero counts by verdict, states beyond the limit of a tick, and the senders' clocks.
+/// Non-zero counts by verdict, states beyond the limit per tick, and the senders' clocks.
 Json states_json(const RunReport& f) {
   Json json{{"by_verdict", Json::object()},
             {"by_clock", Json::object()},
@@ -348,7 +348,7 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
     head.update(element_json(world, sensor_set, reading, 0));
     return dump_json(head) + "\n";
   }
-  // Elements are lines of their own.
+  // Each element has a separate line.
   std::string text = dump_json(head);
   text.back() = ',';
   text += fmt::format("\n\"{}\": [", type.list);

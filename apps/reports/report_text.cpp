@@ -129,7 +129,7 @@ std::string text_of(const world::World& world, const sensors::SensorSet& sensor_
 
 namespace {
 
-/// Readings and rays with their rates, over the whole run and while sensing.
+/// Readings and rays with their rates over the whole run and over the sensing time.
 std::string work_text(const RunReport& f) {
   const double sensing = f.farm.place_s + f.farm.lists_s + f.farm.device_s + f.farm.collect_s;
   const auto rows = [&](const char* what, std::uint64_t count) {
@@ -164,7 +164,7 @@ std::string control_text(const ControlReport& f) {
   return text;
 }
 
-/// Of datagrams that no program ever saw.
+/// Datagrams that never reached the program.
 std::string drops_text(std::uint64_t drops) {
   return row("dropped by the operating system", "{}: they came faster than they were taken", drops);
 }
@@ -180,7 +180,7 @@ std::string packets_text(const server::PublisherCounts& publisher) {
   return text;
 }
 
-/// "used 120, outlier 2", the states that clocks refused, and the clocks themselves.
+/// "used 120, outlier 2", states rejected because of clocks, and the clocks themselves.
 std::string states_text(const RunReport& f) {
   std::string counts;
   const auto add = [&](std::string_view what, std::uint64_t count) {

@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Names are the bytes of a file: invalid UTF-8 is replaced.
+/// Names contain the bytes of a file: invalid UTF-8 is replaced.
 std::string with_road_warnings(const Json& json, const std::vector<world::Warning>& warnings) {
   return with_warnings(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", warnings);
 }

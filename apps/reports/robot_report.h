@@ -1,5 +1,5 @@
 #pragma once
-// How a robot's process went, printed.
+// Prints the results of a robot's process.
 
 #include <string>
 

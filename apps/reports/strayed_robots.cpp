@@ -11,7 +11,7 @@ StrayedRobots::StrayedRobots(const world::World& world) : world_(world), known_(
 
 void StrayedRobots::write(const base::TickRecord& tick) {
   if (world_.ros_map.empty()) return;
-  outside_.resize(world_.movers.size());  // robots may join
+  outside_.resize(world_.movers.size());  // robots may join during a run
   for (std::size_t m = 0; m < outside_.size(); ++m) {
     const base::Pose& X_WM = tick.reports[m].X_WM;
     if (outside_[m] || world_.movers[m].is_tag || std::isnan(X_WM.x) || known_.contains({X_WM.x, X_WM.y})) continue;

@@ -15,15 +15,15 @@ class StrayedRobots final : public base::Sink {
   /// @param world must outlive it
   explicit StrayedRobots(const world::World& world);
 
-  /// Notes robots whose origin is outside now. Standard error states the first.
+  /// Updates the set of robots whose origin is outside. Reports the first on standard error.
   void write(const base::TickRecord& tick) override;
-  /// All that have been outside so far, in file order; nullopt: the world has no ROS map.
+  /// Returns all robots that have been outside so far, in file order; nullopt: the world has no ROS map.
   std::optional<std::vector<std::string>> names() const;
 
  private:
   const world::World& world_;
   world::KnownSpace known_;
-  std::vector<bool> outside_;  ///< per mover, at some time
+  std::vector<bool> outside_;  ///< per mover: true if it has ever been outside
 };
 
 }  // namespace sf::apps

@@ -17,7 +17,7 @@ namespace sf::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using namespace v2x;  // the constraints, on each of which both directions are overloaded
+using namespace v2x;  // the constraints; each is overloaded for both directions
 
 constexpr const char* kExtensions = "extensions";
 
@@ -83,11 +83,12 @@ Json to_json(const T& value, Described) {
   return object;
 }
 
-/// Type of the input. Not ordered: ordered objects copy their values as they grow, as deep as these are nested.
+/// Type of the input. Not the ordered type: ordered objects copy their values when they grow, recursively for nested
+/// ones.
 using Input = nlohmann::json;
 
-/// A value in a message. Lists and objects are not printed: printing and copying them would recurse as deep as they are
-/// nested.
+/// Formats a value for a message. Lists and objects are not printed, since printing and copying them recurse for nested
+/// ones.
 std::string shown(const Input& json) {
   if (json.is_array()) return fmt::format("a list of {}", json.size());
   if (json.is_object()) return "an object";
@@ -95,7 +96,7 @@ std::string shown(const Input& json) {
   return text.size() > 40 ? text.substr(0, 37) + "..." : text;
 }
 
-/// Values from JSON. Faults name the component, as "SPAT.intersections[0].states[2].signalGroup".
+/// Converts JSON to values. Errors name the component, as "SPAT.intersections[0].states[2].signalGroup".
 class Reader {
  public:
   Reader(const std::string& file, int line) : file_(file), line_(line) {}
@@ -122,7 +123,7 @@ class Reader {
   }
 
  private:
-  /// The members of one object. Keeps their names, to know those that do not belong there.
+  /// The members of one object. Stores their names to detect unknown ones.
   struct Members {
     Reader& reader;
     const Input& json;

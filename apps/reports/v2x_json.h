@@ -1,6 +1,6 @@
 #pragma once
-// V2X frames as JSON: the names of J2735, enumerations and choices by name, bit strings as "0010", octets as
-// hexadecimal digits. nlohmann/json stays in the source.
+// V2X frames as JSON: names as in J2735, enumerations and choices by name, bit strings as "0010", octets as hexadecimal
+// digits. Only the source includes nlohmann/json.
 
 #include <functional>
 #include <string>
@@ -12,8 +12,9 @@ namespace sf::apps {
 /// On one line, without its end.
 std::string json_of(const v2x::Frame& frame);
 
-/// The frames of a text, in order: JSON objects one after another (JSON Lines among them), or an array of them.
-/// @throws base::InputError with file, line and component for the first fault; frames before it were given to `take`
+/// Parses the frames in a text, in order: successive JSON objects (including JSON Lines) or an array of objects.
+/// @throws base::InputError with file, line and component for the first error; the frames before it were passed to
+/// `take`
 void read_frames(const std::string& file, const std::string& text, const std::function<void(const v2x::Frame&)>& take);
 
 }  // namespace sf::apps

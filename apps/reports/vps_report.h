@@ -16,13 +16,13 @@ struct VpsReport {
   vision::DetectionCounts counts;
   std::uint64_t refused = 0;                         ///< by the tracker
   double processing_s = 0.0;                         ///< [s] of detection and tracking, on all cores
-  double processing_cpu_s = 0.0;                     ///< [s] CPU time of the same
-  std::map<std::uint32_t, vision::TrackedTag> tags;  ///< the newest state of each
-  std::map<std::uint32_t, std::uint64_t> reported;   ///< states of each
-  std::optional<vision::Accuracy> accuracy;          ///< of rendered images
+  double processing_cpu_s = 0.0;                     ///< [s] CPU time of both
+  std::map<std::uint32_t, vision::TrackedTag> tags;  ///< newest state of each tag
+  std::map<std::uint32_t, std::uint64_t> reported;   ///< number of states of each tag
+  std::optional<vision::Accuracy> accuracy;          ///< for rendered images
   std::optional<netio::OutboxCounts> sent;
   std::uint64_t unaddressed = 0;
-  std::optional<TruthCounts> truth;  ///< of rendered robots
+  std::optional<TruthCounts> truth;  ///< for rendered robots
 };
 
 std::string text_of(const VpsReport& report);
